@@ -1,0 +1,33 @@
+// What the narrow phase finds for a pair of convex shapes. All in the centre frame of shape A.
+#pragma once
+
+#include <Fulcrum/Math/Vector.h>
+
+#include <cstdint>
+
+namespace fulcrum {
+
+struct ManifoldPoint {
+    Vector3 positionOnA = Vector3::Zero();  // m; the point on B is positionOnA + normal * separation
+    float separation = 0;                   // m along the normal; negative where the shapes overlap
+    uint32_t feature = 0;                   // the same from step to step while the same features touch; not 0
+};
+
+struct Manifold {
+    static constexpr int kMaxPoints = 4;
+    Vector3 normal = Vector3::Zero();  // unit, from A towards B
+    int pointCount = 0;                // 0: farther apart than the speculative distance
+    ManifoldPoint points[kMaxPoints];
+};
+
+// What a pair function remembers about a pair from one step to the next, to start its search from. It is part of the
+// simulation's state. All zero: nothing known.
+struct PairCache {
+    enum class Kind : uint8_t { None, FaceOfA, FaceOfB, EdgePair, Axis };
+    Kind kind = Kind::None;
+    uint8_t indexA = 0, indexB = 0;
+    uint8_t spare = 0;
+    float axis[3] = {0, 0, 0};  // in A's frame, where the kind is Axis
+};
+
+}  // namespace fulcrum

@@ -1,0 +1,61 @@
+// Convex hull of a point set: polygonal faces, in the centre frame. Created from any points by Create (quickhull with
+// merging of coplanar faces, HullBuilder); immutable afterwards.
+#pragma once
+
+#include <Fulcrum/Collision/Shapes/Shape.h>
+
+#include <span>
+#include <vector>
+
+namespace fulcrum {
+
+struct ConvexHullSettings {
+    int maxVertices = 64;      // 4..255; a hull with more is simplified to at most so many, growing outwards nowhere
+    float convexRadius = 0;    // m, >= 0: the hull is shrunk by it and rounded again; 0 keeps sharp edges
+};
+
+class ConvexHull final : public ConvexShape {
+public:
+    struct Face {
+        uint16_t firstIndex;   // into Indices(): the corners, counter-clockwise seen from outside
+        uint16_t cornerCount;  // >= 3
+        Vector3 normal;        // unit, outwards
+        float offset;          // the face's plane is normal . x = offset, offset > 0
+    };
+    struct Edge {              // each edge once
+        uint8_t from, to;      // vertices
+        uint8_t left, right;   // faces: `left` runs from -> to counter-clockwise
+    };
+
+    // Hull of at least 4 points that span a volume, coordinates in metres.
+    // Errors: NonFinite, Degenerate (fewer than 4 points, coincident, collinear or coplanar: the message says which),
+    // OutOfRange (a setting).
+    static Result<std::shared_ptr<const ConvexHull>> Create(std::span<const Vector3> points,
+                                                            const ConvexHullSettings& settings = {});
+
+    Vector3 SupportCore(const Vector3& direction) const override;
+
+    std::span<const Vector3> Vertices() const { return vertices_; }
+    std::span<const Face> Faces() const { return faces_; }
+    std::span<const Edge> Edges() const { return edges_; }
+    std::span<const uint8_t> Indices() const { return indices_; }
+    // The vertices by lanes: coordinate arrays x, y, z of PaddedVertexCount() floats each, 64-byte aligned. The padding
+    // repeats vertex 0, so that a support search needs no tail.
+    const float* LaneX() const { return lanes_.data(); }
+    const float* LaneY() const { return lanes_.data() + paddedCount_; }
+    const float* LaneZ() const { return lanes_.data() + 2 * paddedCount_; }
+    int PaddedVertexCount() const { return paddedCount_; }  // a multiple of 16
+
+private:
+    ConvexHull() : ConvexShape(ShapeType::ConvexHull) {}
+    friend class HullFinisher;  // ConvexHull.cpp: fills a hull from the builder's mesh
+
+    std::vector<Vector3> vertices_;
+    std::vector<Face> faces_;
+    std::vector<Edge> edges_;
+    std::vector<uint8_t> indices_;
+    std::vector<float, Eigen::aligned_allocator<float>> lanes_;
+    int paddedCount_ = 0;
+};
+
+}  // namespace fulcrum

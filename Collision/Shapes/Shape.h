@@ -1,0 +1,71 @@
+// The base of all shapes. A shape is immutable once created and shared by any number of bodies and threads.
+// Its geometry is expressed in the centre frame: axes of the frame that the user described it in, origin at the centre
+// of mass of its volume. So a body's internal pose is that of its centre of mass, and no kernel adds an offset.
+#pragma once
+
+#include <Fulcrum/Math/Bounds.h>
+#include <Fulcrum/Math/Pose.h>
+#include <Fulcrum/Math/Result.h>
+
+#include <cstdint>
+#include <memory>
+
+namespace fulcrum {
+
+// One line a shape here, one in NarrowPhase/PairTable.cpp.
+enum class ShapeType : uint8_t { Sphere, Box, Capsule, ConvexHull, Compound };
+inline constexpr int kConvexShapeTypes = 4;  // those before Compound
+const char* ShapeTypeName(ShapeType type);
+
+// Of a solid of density 1 kg/m3, about its centre of mass.
+struct MassProperties {
+    float volume = 0;                                // m3
+    Vector3 centreOfMass = Vector3::Zero();          // m, in the user's frame
+    Vector3 principalInertia = Vector3::Zero();      // kg m2 at density 1, along the principal axes
+    Quaternion principalAxes;                        // rotation from the principal frame to the shape's frame
+};
+
+class Shape {
+public:
+    virtual ~Shape() = default;
+
+    ShapeType Type() const { return type_; }
+    bool IsConvex() const { return type_ != ShapeType::Compound; }
+    const MassProperties& Mass() const { return mass_; }
+    // In the centre frame.
+    const Bounds& LocalBounds() const { return bounds_; }
+    // Radius of the largest sphere about the centre of mass that fits inside: a fast body is one that moves farther.
+    float InnerRadius() const { return innerRadius_; }
+    // Distance of the farthest point from the centre of mass.
+    float OuterRadius() const { return outerRadius_; }
+
+protected:
+    explicit Shape(ShapeType type) : type_(type) {}
+
+    ShapeType type_;
+    MassProperties mass_;
+    Bounds bounds_;
+    float innerRadius_ = 0;
+    float outerRadius_ = 0;
+};
+
+using ShapePtr = std::shared_ptr<const Shape>;
+
+// A shape that has a support function. `convexRadius` is the part of it that is rounding: the shape is the Minkowski sum
+// of its core and a sphere of that radius (a sphere's core is a point, a capsule's a segment).
+class ConvexShape : public Shape {
+public:
+    float ConvexRadius() const { return convexRadius_; }
+    // The point of the core that lies farthest along `direction` (any length > 0), in the centre frame.
+    virtual Vector3 SupportCore(const Vector3& direction) const = 0;
+    // The point of the whole shape that lies farthest along `direction`.
+    Vector3 Support(const Vector3& direction) const {
+        return SupportCore(direction) + Normalized(direction) * convexRadius_;
+    }
+
+protected:
+    using Shape::Shape;
+    float convexRadius_ = 0;
+};
+
+}  // namespace fulcrum

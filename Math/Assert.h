@@ -1,0 +1,15 @@
+// Checks of the engine's own invariants, compiled in where FULCRUM_ASSERTIONS is defined (debug and sanitizer presets).
+// What a caller passes in is never checked with these: that is answered with a Result.
+#pragma once
+
+#ifdef FULCRUM_ASSERTIONS
+#include <cstdio>
+#include <cstdlib>
+#define FULCRUM_ASSERT(condition)                                                                                      \
+    ((condition) ? void()                                                                                              \
+                 : (std::fprintf(stderr, "%s:%d: assertion failed: %s\n", __FILE__, __LINE__, #condition), std::abort()))
+#define FULCRUM_VALIDATE(statement) statement
+#else
+#define FULCRUM_ASSERT(condition) void()
+#define FULCRUM_VALIDATE(statement) void()
+#endif
