@@ -1,0 +1,326 @@
+// Lanes: Wide<N> is N floats (N = 1, 4, 8, 16) that are added, multiplied, compared and selected at once. Kernels are
+// templates over Real = float or Wide<N> and give the same bits for every N. The only file with intrinsics and CPU #ifs.
+// The arithmetic is the compilers' vector extension, so any width works on any CPU; intrinsics are used where the
+// compilers' own code for an operation is poor.
+#pragma once
+
+#include <Fulcrum/Math/Vector.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#if defined(__AVX2__)
+#include <immintrin.h>
+#elif defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+namespace fulcrum {
+
+// Lanes of a batch of constraints in this build.
+#if defined(FULCRUM_SCALAR_LANES)
+inline constexpr int kLanes = 1;
+#elif defined(__AVX2__)
+inline constexpr int kLanes = 8;
+#else
+inline constexpr int kLanes = 4;
+#endif
+
+// "scalar", "SSE2", "AVX2" or "vector": what this build was compiled for.
+#if defined(FULCRUM_SCALAR_LANES)
+inline constexpr const char* kSimdName = "scalar";
+#elif defined(__AVX2__)
+inline constexpr const char* kSimdName = "AVX2";
+#elif defined(__SSE2__)
+inline constexpr const char* kSimdName = "SSE2";
+#else
+inline constexpr const char* kSimdName = "vector";
+#endif
+
+namespace detail {
+template <int N>
+struct LaneTypes;
+template <>
+struct LaneTypes<1> {
+    using Float = float;
+    using Int = int32_t;
+};
+template <>
+struct LaneTypes<4> {
+    typedef float Float __attribute__((vector_size(16)));
+    typedef int32_t Int __attribute__((vector_size(16)));
+};
+template <>
+struct LaneTypes<8> {
+    typedef float Float __attribute__((vector_size(32)));
+    typedef int32_t Int __attribute__((vector_size(32)));
+};
+template <>
+struct LaneTypes<16> {
+    typedef float Float __attribute__((vector_size(64)));
+    typedef int32_t Int __attribute__((vector_size(64)));
+};
+}  // namespace detail
+
+// One truth value a lane.
+template <int N>
+struct WideMask {
+    using Int = typename detail::LaneTypes<N>::Int;
+    Int bits;  // -1 true, 0 false
+
+    friend WideMask operator&(WideMask a, WideMask b) { return {a.bits & b.bits}; }
+    friend WideMask operator|(WideMask a, WideMask b) { return {a.bits | b.bits}; }
+    WideMask operator~() const { return {~bits}; }
+    bool operator[](int lane) const {
+        if constexpr (N == 1) return bits != 0;
+        else return bits[lane] != 0;
+    }
+    // Bit i is lane i.
+    uint32_t ToBits() const {
+#if defined(__AVX2__)
+        if constexpr (N == 8) return static_cast<uint32_t>(_mm256_movemask_ps((__m256)bits));
+#endif
+#if defined(__SSE2__)
+        if constexpr (N == 4) return static_cast<uint32_t>(_mm_movemask_ps((__m128)bits));
+#endif
+        uint32_t result = 0;
+        for (int i = 0; i < N; ++i) result |= static_cast<uint32_t>((*this)[i]) << i;
+        return result;
+    }
+    bool Any() const { return ToBits() != 0; }
+    bool All() const { return ToBits() == (N == 32 ? ~0u : (1u << N) - 1u); }
+};
+
+template <int N>
+struct alignas(4 * N) Wide {
+    using Float = typename detail::LaneTypes<N>::Float;
+    using Mask = WideMask<N>;
+    static constexpr int kCount = N;
+    Float v;
+
+    Wide() = default;
+    Wide(float x) : v(Float{} + x) {}                          // all lanes x
+    explicit Wide(int x) : Wide(static_cast<float>(x)) {}
+    explicit Wide(double x) : Wide(static_cast<float>(x)) {}
+    static Wide Of(Float x) {
+        Wide w;
+        w.v = x;
+        return w;
+    }
+    // From and to N floats at any address.
+    static Wide Load(const float* from) {
+        Wide w;
+        std::memcpy(&w.v, from, sizeof(Float));
+        return w;
+    }
+    void Store(float* to) const { std::memcpy(to, &v, sizeof(Float)); }
+
+    float operator[](int lane) const {
+        if constexpr (N == 1) return v;
+        else return v[lane];
+    }
+    void Set(int lane, float x) {
+        if constexpr (N == 1) v = x;
+        else v[lane] = x;
+    }
+
+    friend Wide operator+(Wide a, Wide b) { return Of(a.v + b.v); }
+    friend Wide operator-(Wide a, Wide b) { return Of(a.v - b.v); }
+    friend Wide operator*(Wide a, Wide b) { return Of(a.v * b.v); }
+    friend Wide operator/(Wide a, Wide b) { return Of(a.v / b.v); }
+    Wide operator-() const { return Of(-v); }
+    Wide& operator+=(Wide b) { return *this = *this + b; }
+    Wide& operator-=(Wide b) { return *this = *this - b; }
+    Wide& operator*=(Wide b) { return *this = *this * b; }
+
+    friend Mask operator<(Wide a, Wide b) { return Compare(a, b, [](auto x, auto y) { return x < y; }); }
+    friend Mask operator<=(Wide a, Wide b) { return Compare(a, b, [](auto x, auto y) { return x <= y; }); }
+    friend Mask operator>(Wide a, Wide b) { return Compare(a, b, [](auto x, auto y) { return x > y; }); }
+    friend Mask operator>=(Wide a, Wide b) { return Compare(a, b, [](auto x, auto y) { return x >= y; }); }
+    friend Mask operator==(Wide a, Wide b) { return Compare(a, b, [](auto x, auto y) { return x == y; }); }
+
+private:
+    template <class F>
+    static Mask Compare(Wide a, Wide b, F compare) {
+        if constexpr (N == 1) return {compare(a.v, b.v) ? -1 : 0};
+        else return {compare(a.v, b.v)};
+    }
+};
+
+// mask ? a : b
+template <int N>
+inline Wide<N> Select(WideMask<N> mask, Wide<N> a, Wide<N> b) {
+#if defined(__AVX2__)
+    if constexpr (N == 8)
+        return Wide<N>::Of((typename Wide<N>::Float)_mm256_blendv_ps((__m256)b.v, (__m256)a.v, (__m256)mask.bits));
+#endif
+    return Wide<N>::Of(mask.bits ? a.v : b.v);
+}
+inline float Select(bool mask, float a, float b) { return mask ? a : b; }
+
+// a < b ? a : b and a > b ? a : b: the second operand where one is NaN or both are zeros, as the CPUs' instructions.
+template <int N>
+inline Wide<N> Min(Wide<N> a, Wide<N> b) {
+#if defined(__AVX2__)
+    if constexpr (N == 8) return Wide<N>::Of((typename Wide<N>::Float)_mm256_min_ps((__m256)a.v, (__m256)b.v));
+#endif
+#if defined(__SSE2__)
+    if constexpr (N == 4) return Wide<N>::Of((typename Wide<N>::Float)_mm_min_ps((__m128)a.v, (__m128)b.v));
+#endif
+    return Select(a < b, a, b);
+}
+template <int N>
+inline Wide<N> Max(Wide<N> a, Wide<N> b) {
+#if defined(__AVX2__)
+    if constexpr (N == 8) return Wide<N>::Of((typename Wide<N>::Float)_mm256_max_ps((__m256)a.v, (__m256)b.v));
+#endif
+#if defined(__SSE2__)
+    if constexpr (N == 4) return Wide<N>::Of((typename Wide<N>::Float)_mm_max_ps((__m128)a.v, (__m128)b.v));
+#endif
+    return Select(a > b, a, b);
+}
+inline float Min(float a, float b) { return a < b ? a : b; }
+inline float Max(float a, float b) { return a > b ? a : b; }
+
+template <class Real>
+inline Real Clamp(Real x, Real low, Real high) {
+    return Max(low, Min(high, x));
+}
+
+// Correctly rounded, as IEEE 754 asks.
+template <int N>
+inline Wide<N> Sqrt(Wide<N> a) {
+#if defined(__AVX2__)
+    if constexpr (N == 8) return Wide<N>::Of((typename Wide<N>::Float)_mm256_sqrt_ps((__m256)a.v));
+#endif
+#if defined(__SSE2__)
+    if constexpr (N == 4) return Wide<N>::Of((typename Wide<N>::Float)_mm_sqrt_ps((__m128)a.v));
+#endif
+    Wide<N> r;
+    for (int i = 0; i < N; ++i) r.Set(i, std::sqrt(a[i]));
+    return r;
+}
+inline float Sqrt(float a) { return std::sqrt(a); }
+
+template <int N>
+inline Wide<N> Abs(Wide<N> a) {
+    return Select(a < Wide<N>(0.0f), -a, a);
+}
+inline float Abs(float a) { return a < 0.0f ? -a : a; }
+
+// Sum, smallest and largest over the lanes, lane by lane: the order is the same for every width of one array.
+template <int N>
+inline float HorizontalMax(Wide<N> a) {
+    float m = a[0];
+    for (int i = 1; i < N; ++i) m = a[i] > m ? a[i] : m;
+    return m;
+}
+template <int N>
+inline float HorizontalMin(Wide<N> a) {
+    float m = a[0];
+    for (int i = 1; i < N; ++i) m = a[i] < m ? a[i] : m;
+    return m;
+}
+
+namespace detail {
+#if defined(__AVX2__)
+// Rows to columns of an 8x8 block; its own inverse.
+inline void Transpose8(__m256 (&r)[8]) {
+    const __m256 a0 = _mm256_unpacklo_ps(r[0], r[1]), a1 = _mm256_unpackhi_ps(r[0], r[1]);
+    const __m256 a2 = _mm256_unpacklo_ps(r[2], r[3]), a3 = _mm256_unpackhi_ps(r[2], r[3]);
+    const __m256 a4 = _mm256_unpacklo_ps(r[4], r[5]), a5 = _mm256_unpackhi_ps(r[4], r[5]);
+    const __m256 a6 = _mm256_unpacklo_ps(r[6], r[7]), a7 = _mm256_unpackhi_ps(r[6], r[7]);
+    const __m256 b0 = _mm256_shuffle_ps(a0, a2, 0x44), b1 = _mm256_shuffle_ps(a0, a2, 0xEE);
+    const __m256 b2 = _mm256_shuffle_ps(a1, a3, 0x44), b3 = _mm256_shuffle_ps(a1, a3, 0xEE);
+    const __m256 b4 = _mm256_shuffle_ps(a4, a6, 0x44), b5 = _mm256_shuffle_ps(a4, a6, 0xEE);
+    const __m256 b6 = _mm256_shuffle_ps(a5, a7, 0x44), b7 = _mm256_shuffle_ps(a5, a7, 0xEE);
+    r[0] = _mm256_permute2f128_ps(b0, b4, 0x20);
+    r[1] = _mm256_permute2f128_ps(b1, b5, 0x20);
+    r[2] = _mm256_permute2f128_ps(b2, b6, 0x20);
+    r[3] = _mm256_permute2f128_ps(b3, b7, 0x20);
+    r[4] = _mm256_permute2f128_ps(b0, b4, 0x31);
+    r[5] = _mm256_permute2f128_ps(b1, b5, 0x31);
+    r[6] = _mm256_permute2f128_ps(b2, b6, 0x31);
+    r[7] = _mm256_permute2f128_ps(b3, b7, 0x31);
+}
+#endif
+#if defined(__SSE2__)
+inline void Transpose4(__m128& r0, __m128& r1, __m128& r2, __m128& r3) { _MM_TRANSPOSE4_PS(r0, r1, r2, r3); }
+#endif
+}  // namespace detail
+
+// Reads eight floats at rows[lane] for each of N lanes into eight wide values: out[k][lane] = rows[lane][k].
+// The rows are 32-byte aligned.
+template <int N>
+inline void GatherRows(const float* const (&rows)[N], Wide<N> (&out)[8]) {
+#if defined(__AVX2__)
+    if constexpr (N == 8) {
+        __m256 r[8];
+        for (int i = 0; i < 8; ++i) r[i] = _mm256_load_ps(rows[i]);
+        detail::Transpose8(r);
+        for (int i = 0; i < 8; ++i) out[i].v = (typename Wide<N>::Float)r[i];
+        return;
+    }
+#endif
+#if defined(__SSE2__)
+    if constexpr (N == 4) {
+        for (int half = 0; half < 2; ++half) {
+            __m128 r0 = _mm_load_ps(rows[0] + 4 * half), r1 = _mm_load_ps(rows[1] + 4 * half);
+            __m128 r2 = _mm_load_ps(rows[2] + 4 * half), r3 = _mm_load_ps(rows[3] + 4 * half);
+            detail::Transpose4(r0, r1, r2, r3);
+            out[4 * half].v = (typename Wide<N>::Float)r0;
+            out[4 * half + 1].v = (typename Wide<N>::Float)r1;
+            out[4 * half + 2].v = (typename Wide<N>::Float)r2;
+            out[4 * half + 3].v = (typename Wide<N>::Float)r3;
+        }
+        return;
+    }
+#endif
+    for (int k = 0; k < 8; ++k)
+        for (int i = 0; i < N; ++i) out[k].Set(i, rows[i][k]);
+}
+
+// The reverse, for the first `count` lanes: rows[lane][k] = in[k][lane].
+template <int N>
+inline void ScatterRows(float* const (&rows)[N], const Wide<N> (&in)[8], int count) {
+#if defined(__AVX2__)
+    if constexpr (N == 8) {
+        __m256 r[8];
+        for (int i = 0; i < 8; ++i) r[i] = (__m256)in[i].v;
+        detail::Transpose8(r);
+        if (count == 8) {
+            for (int i = 0; i < 8; ++i) _mm256_store_ps(rows[i], r[i]);
+        } else {
+            for (int i = 0; i < count; ++i) _mm256_store_ps(rows[i], r[i]);
+        }
+        return;
+    }
+#endif
+#if defined(__SSE2__)
+    if constexpr (N == 4) {
+        for (int half = 0; half < 2; ++half) {
+            __m128 r[4] = {(__m128)in[4 * half].v, (__m128)in[4 * half + 1].v, (__m128)in[4 * half + 2].v,
+                           (__m128)in[4 * half + 3].v};
+            detail::Transpose4(r[0], r[1], r[2], r[3]);
+            for (int i = 0; i < count; ++i) _mm_store_ps(rows[i] + 4 * half, r[i]);
+        }
+        return;
+    }
+#endif
+    for (int i = 0; i < count; ++i)
+        for (int k = 0; k < 8; ++k) rows[i][k] = in[k][i];
+}
+
+}  // namespace fulcrum
+
+// Lets Eigen's vectors hold lanes.
+namespace Eigen {
+template <int N>
+struct NumTraits<fulcrum::Wide<N>> : GenericNumTraits<fulcrum::Wide<N>> {
+    using Real = fulcrum::Wide<N>;
+    using NonInteger = fulcrum::Wide<N>;
+    using Nested = fulcrum::Wide<N>;
+    enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 0, ReadCost = 1, AddCost = 1, MulCost = 1 };
+};
+}  // namespace Eigen
