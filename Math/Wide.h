@@ -39,6 +39,17 @@ inline constexpr const char* kSimdName = "vector";
 #endif
 
 namespace detail {
+// No type is aligned more strictly than a register of this build, which is what Eigen's storage expects too.
+#if defined(__AVX512F__)
+#define FULCRUM_LANES_OF(lanes) __attribute__((vector_size(4 * lanes)))
+inline constexpr int kRegisterBytes = 64;
+#elif defined(__AVX__)
+#define FULCRUM_LANES_OF(lanes) __attribute__((vector_size(4 * lanes), aligned(lanes < 8 ? 4 * lanes : 32)))
+inline constexpr int kRegisterBytes = 32;
+#else
+#define FULCRUM_LANES_OF(lanes) __attribute__((vector_size(4 * lanes), aligned(16)))
+inline constexpr int kRegisterBytes = 16;
+#endif
 template <int N>
 struct LaneTypes;
 template <>
@@ -48,19 +59,20 @@ struct LaneTypes<1> {
 };
 template <>
 struct LaneTypes<4> {
-    typedef float Float __attribute__((vector_size(16)));
-    typedef int32_t Int __attribute__((vector_size(16)));
+    typedef float Float FULCRUM_LANES_OF(4);
+    typedef int32_t Int FULCRUM_LANES_OF(4);
 };
 template <>
 struct LaneTypes<8> {
-    typedef float Float __attribute__((vector_size(32)));
-    typedef int32_t Int __attribute__((vector_size(32)));
+    typedef float Float FULCRUM_LANES_OF(8);
+    typedef int32_t Int FULCRUM_LANES_OF(8);
 };
 template <>
 struct LaneTypes<16> {
-    typedef float Float __attribute__((vector_size(64)));
-    typedef int32_t Int __attribute__((vector_size(64)));
+    typedef float Float FULCRUM_LANES_OF(16);
+    typedef int32_t Int FULCRUM_LANES_OF(16);
 };
+#undef FULCRUM_LANES_OF
 }  // namespace detail
 
 // One truth value a lane.
@@ -93,7 +105,7 @@ struct WideMask {
 };
 
 template <int N>
-struct alignas(4 * N) Wide {
+struct alignas(4 * N < detail::kRegisterBytes ? 4 * N : detail::kRegisterBytes) Wide {
     using Float = typename detail::LaneTypes<N>::Float;
     using Mask = WideMask<N>;
     static constexpr int kCount = N;
