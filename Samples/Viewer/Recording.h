@@ -1,0 +1,104 @@
+// What a run leaves behind for its pictures: shapes, bodies, their states frame by frame, contacts and the report.
+// Filled in by the runner through AppendFrame, read by HtmlWriter and GlbWriter. Knows nothing of the engine but its
+// Math types. One thread at a time.
+#pragma once
+
+#include <Fulcrum/Math/Pose.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace fulcrum {
+
+enum class RecordedShapeKind : uint8_t { Sphere, Box, Capsule, Hull, Compound };
+
+struct RecordedChild {
+    uint32_t shape = 0;  // index into Recording::shapes, smaller than that of the compound itself
+    RelativePose pose;   // in the compound's frame
+};
+
+// Only the members of its kind count. Lengths in metres.
+struct RecordedShape {
+    RecordedShapeKind kind = RecordedShapeKind::Sphere;
+    std::string name;                                // for people; the kind's name where empty
+    float radius = 0;                                // sphere, capsule
+    float halfHeight = 0;                            // capsule: half length of its segment, along y
+    Vector3 halfExtents = Vector3::Zero();           // box
+    std::vector<Vector3> vertices;                   // hull
+    std::vector<std::array<uint32_t, 3>> triangles;  // hull: counter-clockwise seen from outside
+    std::vector<RecordedChild> children;             // compound
+};
+
+enum class RecordedMotion : uint8_t { Static, Kinematic, Dynamic };
+
+struct RecordedBody {
+    uint32_t shape = 0;  // index into Recording::shapes
+    RecordedMotion motion = RecordedMotion::Dynamic;
+    float mass = 0;    // kg; counts for dynamic bodies only
+    std::string name;  // may be empty
+};
+
+struct RecordedState {
+    uint32_t body = 0;                     // index into Recording::bodies
+    Vector3 position = Vector3::Zero();    // m, origin of the shape's frame, relative to Recording::origin
+    Quaternion rotation;                   // of the shape's frame
+    Vector3 velocity = Vector3::Zero();    // m/s, linear
+    bool awake = true;
+    int32_t island = -1;                   // -1: in none
+};
+
+struct RecordedContact {
+    Vector3 point = Vector3::Zero();   // m, relative to Recording::origin
+    Vector3 normal = Vector3::Zero();  // unit, from body A to body B
+    float separation = 0;              // m, negative where the bodies overlap
+    float impulse = 0;                 // N s, along the normal, over the step
+    uint32_t bodyA = 0, bodyB = 0;     // indices into Recording::bodies
+};
+
+struct RecordedFrame {
+    double time = 0;                        // s
+    std::vector<RecordedState> states;      // ascending by body; only those that changed since the frame before
+    std::vector<RecordedContact> contacts;  // empty where `hasContacts` is false
+    bool hasContacts = false;
+};
+
+// A line of the panel beside the picture. Lines of one section follow each other.
+struct ReportLine {
+    std::string section, label, value;
+};
+
+struct Recording {
+    std::string title;        // the scene's name
+    std::string description;  // one sentence or two
+    Position origin = Position::Zero();
+    std::vector<RecordedShape> shapes;
+    std::vector<RecordedBody> bodies;
+    std::vector<RecordedFrame> frames;
+    std::vector<ReportLine> report;
+
+    // Kept by AppendFrame.
+    std::vector<RecordedState> latest;  // of every body
+    size_t contactInterval = 1;         // contacts are kept of every so many frames
+    size_t contactCount = 0;            // of all frames
+    size_t largestContactCut = 0;       // most contacts that a frame lost to kMostContactsPerFrame
+};
+
+inline constexpr size_t kMostContacts = 400'000;  // of a whole recording: about 5 MB in a page
+inline constexpr size_t kMostContactsPerFrame = 50'000;
+
+// Adds a frame at `time` seconds. `states` names bodies ascending by index, all of them or, from the second frame on, only
+// those that may have changed; what equals the state before is dropped, and so is a state that is not finite. A body that no
+// frame has named yet counts as resting at the origin. So that no recording outgrows memory, contacts are kept of every
+// frame first, of every second once there are more than kMostContacts, then of every fourth, and so on; of more than
+// kMostContactsPerFrame in one frame an even choice is kept.
+void AppendFrame(Recording& recording, double time, std::span<const RecordedState> states,
+                 std::span<const RecordedContact> contacts);
+
+// Whether the next frame's contacts would be kept: saves collecting them for nothing.
+bool WantsContacts(const Recording& recording);
+
+}  // namespace fulcrum
