@@ -1,0 +1,60 @@
+// Adds, removes, moves, pushes and reads bodies. From PhysicsSystem::Bodies(); call it between steps, from one thread at a
+// time (reading from many is fine). Poses are those of the shape's own frame, as the user described it.
+#pragma once
+
+#include <Fulcrum/Physics/Settings.h>
+
+namespace fulcrum {
+
+struct WorldState;
+
+class BodyInterface {
+public:
+    explicit BodyInterface(WorldState& world) : world_(world) {}
+
+    // Errors name the field: NonFinite, NonPositive, Negative, OutOfRange, Unnormalized, Unsupported (no shape; a dynamic
+    // body asleep that is not dynamic). Nothing is created then.
+    Result<BodyId> Create(const BodySettings& settings);
+    // Wakes what rested on it. Error: UnknownId.
+    Status Remove(BodyId id);
+    bool Exists(BodyId id) const;
+
+    // Teleports; wakes it, what rested on it and what it now touches. Errors: UnknownId, NonFinite, Unnormalized.
+    Status SetPose(BodyId id, const Position& position, const Quaternion& rotation);
+    // Gives a kinematic body the velocity with which it reaches the pose after `dt` seconds (> 0). Errors also: Unsupported.
+    Status MoveKinematic(BodyId id, const Position& position, const Quaternion& rotation, float dt);
+    Status SetVelocity(BodyId id, const Vector3& linear, const Vector3& angular);  // m/s, rad/s; wakes
+    // Acts during the next step only: N at a world point, N m; wakes. Errors: UnknownId, NonFinite, Unsupported (not dynamic).
+    Status AddForce(BodyId id, const Vector3& force);
+    Status AddForceAt(BodyId id, const Vector3& force, const Position& point);
+    Status AddTorque(BodyId id, const Vector3& torque);
+    // Acts at once: N s at the centre of mass or a world point, N m s; wakes.
+    Status AddImpulse(BodyId id, const Vector3& impulse);
+    Status AddImpulseAt(BodyId id, const Vector3& impulse, const Position& point);
+    Status AddAngularImpulse(BodyId id, const Vector3& impulse);
+    Status SetMaterial(BodyId id, const Material& material);
+    Status SetGravityFactor(BodyId id, float factor);
+    Status Wake(BodyId id);
+    // Puts the body, and what it is in touch with, to sleep.
+    Status Sleep(BodyId id);
+
+    // Readers return zeros for an unknown id.
+    Pose GetPose(BodyId id) const;
+    Position GetCentreOfMass(BodyId id) const;
+    Vector3 GetLinearVelocity(BodyId id) const;   // m/s, of the centre of mass
+    Vector3 GetAngularVelocity(BodyId id) const;  // rad/s, world axes
+    Vector3 GetVelocityAt(BodyId id, const Position& point) const;
+    float GetMass(BodyId id) const;               // kg; 0 for a body that is not dynamic
+    Vector3 GetAngularMomentum(BodyId id) const;  // kg m2/s, about the centre of mass, world axes
+    double GetKineticEnergy(BodyId id) const;     // J
+    MotionType GetMotionType(BodyId id) const;
+    ShapePtr GetShape(BodyId id) const;
+    uint64_t GetUserData(BodyId id) const;
+    bool IsAwake(BodyId id) const;
+    bool IsFrozen(BodyId id) const;  // its state turned non-finite; SetPose revives it
+
+private:
+    WorldState& world_;
+};
+
+}  // namespace fulcrum

@@ -1,0 +1,64 @@
+// A world of rigid bodies. Create it, add bodies through Bodies(), call Update once a frame. One thread at a time.
+#pragma once
+
+#include <Fulcrum/Jobs/JobSystem.h>
+#include <Fulcrum/Physics/BodyInterface.h>
+#include <Fulcrum/Physics/StepReport.h>
+
+#include <memory>
+#include <span>
+
+namespace fulcrum {
+
+// One touching pair of convex shapes as it was solved in the last step.
+struct ContactView {
+    BodyId bodyA, bodyB;
+    Vector3 normal;  // unit, from A to B
+    struct Point {
+        Position position;  // on A's surface
+        float separation;   // m, negative where they overlap
+        float impulse;      // N s, along the normal, of the last substep
+    };
+    std::span<const Point> points;
+};
+
+class PhysicsSystem {
+public:
+    // `jobs` (not owned, may be null: no threads) must outlive the system. Errors name the field: NonFinite, NonPositive,
+    // Negative, OutOfRange, Unsupported (layerCollides not symmetric).
+    static Result<std::unique_ptr<PhysicsSystem>> Create(const SystemSettings& settings = {}, JobSystem* jobs = nullptr);
+    ~PhysicsSystem();
+    PhysicsSystem(const PhysicsSystem&) = delete;
+    PhysicsSystem& operator=(const PhysicsSystem&) = delete;
+
+    // Advances by dt seconds, 0 .. 1; 0 changes no pose. Errors: NonFinite, OutOfRange: nothing has happened then.
+    Status Update(double dt);
+
+    BodyInterface& Bodies() { return bodies_; }
+    const BodyInterface& Bodies() const { return bodies_; }
+    const StepReport& Report() const;
+    const SystemSettings& Settings() const;
+    // As for Create. Takes effect at the next step.
+    Status SetSettings(const SystemSettings& settings);
+
+    // All bodies, in the order of their indices.
+    void VisitBodies(FunctionRef<void(BodyId)> visit) const;
+    // All awake contacts with at least one point, in a deterministic order.
+    void VisitContacts(FunctionRef<void(const ContactView&)> visit) const;
+    // Calls visit(id, island) for each dynamic body; islands are numbered from 0 in the order of their smallest body
+    // index. Found anew by this call: for viewers and tests.
+    void VisitIslands(FunctionRef<void(BodyId, uint32_t island)> visit) const;
+    // Kinetic plus gravitational potential energy of the dynamic bodies, J; the potential is zero at the world's origin.
+    double GetEnergy() const;
+    // FNV-1a, 64 bits, of all bodies' poses (position, rotation x y z w as doubles) in the order of their indices.
+    uint64_t HashPoses() const;
+    // Bytes held by the system, all buffers included.
+    size_t MemoryUsed() const;
+
+private:
+    explicit PhysicsSystem(std::unique_ptr<WorldState> world);
+    std::unique_ptr<WorldState> world_;
+    BodyInterface bodies_;
+};
+
+}  // namespace fulcrum

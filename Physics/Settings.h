@@ -1,0 +1,108 @@
+// What a user sets: the system, the solver, a body. Every default works; every field says its unit and range.
+#pragma once
+
+#include <Fulcrum/Collision/NarrowPhase/Collide.h>
+#include <Fulcrum/Collision/Shapes/Shape.h>
+#include <Fulcrum/Math/Pose.h>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+namespace fulcrum {
+
+// Names a body. Ids of removed bodies are never valid again: an index is reused with another generation.
+struct BodyId {
+    uint32_t index = 0xFFFFFFFFu;
+    uint32_t generation = 0;
+    friend auto operator<=>(const BodyId&, const BodyId&) = default;
+};
+
+enum class MotionType : uint8_t {
+    Static,     // never moves
+    Kinematic,  // moves with the velocity that it is given, pushed by nothing
+    Dynamic,    // moved by forces, contacts and joints
+};
+
+// How the coefficients of two touching bodies make one. Where their rules differ the later one in this list wins.
+enum class CombineRule : uint8_t { GeometricMean, Average, Minimum, Multiply, Maximum };
+
+struct Material {
+    float friction = 0.5f;     // Coulomb coefficient, >= 0
+    float restitution = 0.0f;  // 0 (no bounce) .. 1 (no loss)
+    CombineRule frictionRule = CombineRule::GeometricMean;
+    CombineRule restitutionRule = CombineRule::Maximum;
+};
+
+// Degrees of freedom in world axes; combine with |.
+enum class LockedAxes : uint8_t {
+    None = 0,
+    TranslationX = 1, TranslationY = 2, TranslationZ = 4,
+    RotationX = 8, RotationY = 16, RotationZ = 32,
+    Rotation = 8 | 16 | 32,
+    Plane2D = 4 | 8 | 16,  // moves in the x-y plane, turns about z
+};
+constexpr LockedAxes operator|(LockedAxes a, LockedAxes b) {
+    return static_cast<LockedAxes>(static_cast<uint8_t>(a) | static_cast<uint8_t>(b));
+}
+
+// The trade of speed for accuracy.
+struct SolverSettings {
+    int substeps = 4;            // 1..64; each integrates dt / substeps
+    int velocityIterations = 1;  // 1..255 per substep
+    int positionIterations = 1;  // 0..255 per substep
+};
+
+struct BodySettings {
+    ShapePtr shape;
+    MotionType motion = MotionType::Dynamic;
+    Position position = Position::Zero();         // m, of the shape's own origin
+    Quaternion rotation;                          // unit within 1e-3; normalised exactly
+    Vector3 linearVelocity = Vector3::Zero();     // m/s, of the centre of mass
+    Vector3 angularVelocity = Vector3::Zero();    // rad/s, world axes
+    float density = 1000.0f;                      // kg/m3, > 0; used where mass is 0
+    float mass = 0.0f;                            // kg, >= 0; 0: density times volume
+    Vector3 inertia = Vector3::Zero();            // kg m2 about the shape's principal axes; zero: the shape's own
+    Material material;
+    float linearDamping = 0.0f;                   // 1/s, >= 0: v' = -damping v
+    float angularDamping = 0.0f;                  // 1/s, >= 0
+    float gravityFactor = 1.0f;                   // finite
+    LockedAxes lockedAxes = LockedAxes::None;
+    float maxLinearSpeed = 1000.0f;               // m/s, > 0: the step clamps to it
+    float maxAngularSpeed = 300.0f;               // rad/s, > 0
+    bool gyroscopicTorque = true;                 // conserve angular momentum of bodies whose inertia is not spherical
+    bool allowSleep = true;
+    bool startAsleep = false;                     // dynamic bodies only
+    uint8_t layer = 0;                            // 0..31, see SystemSettings::layerCollides
+    std::optional<SolverSettings> effort;         // more effort for the island that this body is in; unset: the system's
+    uint64_t userData = 0;
+};
+
+struct SleepSettings {
+    bool enabled = true;
+    float seconds = 0.5f;       // >= 0: an island whose bodies have all been slow for so long falls asleep
+    float linearSpeed = 0.05f;  // m/s, >= 0: slow is below this, at the farthest point of the body
+};
+
+struct SystemSettings {
+    Vector3 gravity = Vector3(0, -9.81f, 0);  // m/s2
+    SolverSettings solver;
+    SleepSettings sleep;
+    NarrowPhaseMethod narrowPhase = NarrowPhaseMethod::Automatic;
+    float speculativeDistance = 0.02f;   // m, > 0: contacts begin at this separation, so that nothing bumps
+    float penetrationSlop = 0.0005f;     // m, >= 0: overlap that is left alone
+    float baumgarte = 0.2f;              // 0..1: part of the overlap above the slop that a position iteration removes
+    float maxPositionCorrection = 0.2f;  // m, > 0: of one contact in one position iteration
+    float restitutionSpeed = 0.5f;       // m/s, >= 0: slower impacts do not bounce
+    float boundsMargin = 0.05f;          // m, > 0: fat bounds exceed the shape's by this
+    // Bit j of layerCollides[i]: bodies of layer i and j collide. Must be symmetric.
+    std::array<uint32_t, 32> layerCollides = AllLayers();
+
+    static constexpr std::array<uint32_t, 32> AllLayers() {
+        std::array<uint32_t, 32> all{};
+        for (uint32_t& mask : all) mask = 0xFFFFFFFFu;
+        return all;
+    }
+};
+
+}  // namespace fulcrum

@@ -1,0 +1,33 @@
+// What a step did: sizes, times, the worst culprits. Filled by PhysicsSystem::Update.
+#pragma once
+
+#include <Fulcrum/Physics/Settings.h>
+
+#include <array>
+
+namespace fulcrum {
+
+// The stages of a step, in their order; each is a file in Physics/Stages.
+enum class Stage : uint8_t { UpdateBounds, FindPairs, Collide, BuildIslands, Color, Prepare, Solve, Restitution, Store, Sleep };
+inline constexpr int kStageCount = 10;
+const char* StageName(Stage stage);
+
+struct StepReport {
+    uint64_t step = 0;                                // 1 for the first
+    double totalMs = 0;                               // wall clock
+    std::array<double, kStageCount> stageMs{};        // wall clock by stage
+    uint32_t bodies = 0, awakeBodies = 0;
+    uint32_t pairs = 0;                               // of colliders whose fat bounds overlap, awake ones
+    uint32_t contacts = 0, contactPoints = 0;         // manifolds with at least one point, awake ones
+    uint32_t keptManifolds = 0;                       // of these, not collided anew
+    uint32_t colours = 0, overflowContacts = 0;       // overflow: fitted no colour, solved one by one
+    uint32_t islands = 0;                             // awake ones; 0 where sleeping is off (nothing needs them)
+    float largestPenetration = 0;                     // m, >= 0, as found by Collide
+    BodyId deepestA, deepestB;
+    CollideCounters libccd;
+    uint32_t frozenBodies = 0;                        // bodies stopped because their state turned non-finite
+    BodyId firstFrozen;
+    uint32_t clampedBodies = 0;                       // bodies that exceeded their speed limits
+};
+
+}  // namespace fulcrum
