@@ -1,0 +1,39 @@
+# Compiler flags of the targets of this repository; none of these reaches the code of users.
+
+# Sets FULCRUM_SIMD_FLAGS from FULCRUM_SIMD. AVX2 without FMA: fused operations would change the bits.
+function(fulcrum_choose_lanes)
+  set(flags "")
+  if(FULCRUM_SIMD STREQUAL "SCALAR")
+    set(flags -DFULCRUM_SCALAR_LANES)
+  elseif(FULCRUM_SIMD STREQUAL "AVX2")
+    set(flags -mavx2)
+  elseif(FULCRUM_SIMD STREQUAL "AUTO")
+    if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT CMAKE_CROSSCOMPILING)
+      include(CheckCXXSourceRuns)
+      set(CMAKE_REQUIRED_FLAGS -mavx2)
+      check_cxx_source_runs("int main() { return __builtin_cpu_supports(\"avx2\") ? 0 : 1; }" FULCRUM_HOST_HAS_AVX2)
+      if(FULCRUM_HOST_HAS_AVX2)
+        set(flags -mavx2)
+      endif()
+    endif()
+  elseif(NOT FULCRUM_SIMD STREQUAL "SSE2")
+    message(FATAL_ERROR "FULCRUM_SIMD is '${FULCRUM_SIMD}'; it must be AUTO, SCALAR, SSE2 or AVX2.")
+  endif()
+  set(FULCRUM_SIMD_FLAGS ${flags} PARENT_SCOPE)
+endfunction()
+
+fulcrum_choose_lanes()
+
+# For every target of this repository: the flags of the lanes, assertions where chosen, warnings.
+function(fulcrum_compile_options target)
+  target_compile_features(${target} PRIVATE cxx_std_20)
+  target_compile_options(${target} PRIVATE
+    -fno-math-errno -fno-trapping-math ${FULCRUM_SIMD_FLAGS}
+    -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wno-psabi)
+  if(FULCRUM_WARNINGS_AS_ERRORS)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  if(FULCRUM_ASSERTIONS)
+    target_compile_definitions(${target} PRIVATE FULCRUM_ASSERTIONS)
+  endif()
+endfunction()
