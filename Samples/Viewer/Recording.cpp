@@ -50,6 +50,7 @@ void AppendFrame(Recording& recording, double time, std::span<const RecordedStat
     for (size_t i = recording.latest.size(); i < recording.bodies.size(); ++i)
         recording.latest.emplace_back().body = static_cast<uint32_t>(i);
     for (const RecordedState& state : states) {
+        if (state.body >= recording.latest.size()) continue;
         RecordedState& latest = recording.latest[state.body];
         if (!IsFinite(state) || (!recording.frames.empty() && IsEqual(state, latest))) continue;
         latest = state;
@@ -63,6 +64,32 @@ void AppendFrame(Recording& recording, double time, std::span<const RecordedStat
     }
     recording.frames.push_back(std::move(frame));
     ThinContacts(recording);
+}
+
+Status CheckRecording(const Recording& recording) {
+    const auto unknown = [](const char* user, size_t index, const char* used, size_t number) {
+        return Error{ErrorCode::UnknownId, std::string("the recording's ") + user + " " + std::to_string(index) + " names " +
+                                               used + " " + std::to_string(number) + ", which it lacks"};
+    };
+    for (size_t i = 0; i < recording.shapes.size(); ++i) {
+        const RecordedShape& shape = recording.shapes[i];
+        for (const RecordedChild& child : shape.children)
+            if (child.shape >= i) return unknown("shape", i, "the earlier shape", child.shape);
+        for (const auto& triangle : shape.triangles)
+            for (uint32_t corner : triangle)
+                if (corner >= shape.vertices.size()) return unknown("shape", i, "the vertex", corner);
+    }
+    for (size_t i = 0; i < recording.bodies.size(); ++i)
+        if (recording.bodies[i].shape >= recording.shapes.size()) return unknown("body", i, "the shape", recording.bodies[i].shape);
+    for (size_t i = 0; i < recording.frames.size(); ++i) {
+        const RecordedFrame& frame = recording.frames[i];
+        for (const RecordedState& state : frame.states)
+            if (state.body >= recording.bodies.size()) return unknown("frame", i, "the body", state.body);
+        for (const RecordedContact& contact : frame.contacts)
+            if (const uint32_t body = std::max(contact.bodyA, contact.bodyB); body >= recording.bodies.size())
+                return unknown("frame", i, "the body", body);
+    }
+    return Done{};
 }
 
 }  // namespace fulcrum

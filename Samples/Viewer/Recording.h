@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Fulcrum/Math/Pose.h>
+#include <Fulcrum/Math/Result.h>
 
 #include <array>
 #include <cstddef>
@@ -92,7 +93,7 @@ inline constexpr size_t kMostContactsPerFrame = 50'000;
 
 // Adds a frame at `time` seconds. `states` names bodies ascending by index, all of them or, from the second frame on, only
 // those that may have changed; what equals the state before is dropped, and so is a state that is not finite. A body that no
-// frame has named yet counts as resting at the origin. So that no recording outgrows memory, contacts are kept of every
+// frame has named yet counts as resting at the origin; one that is no body of the recording's is dropped. So that no recording outgrows memory, contacts are kept of every
 // frame first, of every second once there are more than kMostContacts, then of every fourth, and so on; of more than
 // kMostContactsPerFrame in one frame an even choice is kept.
 void AppendFrame(Recording& recording, double time, std::span<const RecordedState> states,
@@ -100,5 +101,8 @@ void AppendFrame(Recording& recording, double time, std::span<const RecordedStat
 
 // Whether the next frame's contacts would be kept: saves collecting them for nothing.
 bool WantsContacts(const Recording& recording);
+
+// That every index names something. Error UnknownId says which one does not.
+Status CheckRecording(const Recording& recording);
 
 }  // namespace fulcrum
