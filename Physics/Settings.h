@@ -7,7 +7,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 
 namespace fulcrum {
 
@@ -74,7 +73,6 @@ struct BodySettings {
     bool allowSleep = true;
     bool startAsleep = false;                     // dynamic bodies only
     uint8_t layer = 0;                            // 0..31, see SystemSettings::layerCollides
-    std::optional<SolverSettings> effort;         // more effort for the island that this body is in; unset: the system's
     uint64_t userData = 0;
 };
 

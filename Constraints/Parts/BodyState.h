@@ -1,0 +1,57 @@
+// What the solver reads and writes of a body: one 64-byte line, two rows of eight floats that are gathered into lanes.
+// Masses sit beside it, one row. Filled by Physics before the solve, read back after it.
+#pragma once
+
+#include <Fulcrum/Math/Matrix.h>
+#include <Fulcrum/Math/Wide.h>
+
+#include <cstdint>
+
+namespace fulcrum {
+
+struct alignas(64) BodyState {
+    // First row: the velocity.
+    float linearVelocity[3] = {0, 0, 0};   // m/s, of the centre of mass
+    float angularVelocity[3] = {0, 0, 0};  // rad/s, world axes
+    float velocitySpare[2] = {0, 0};
+    // Second row: change of pose since the start of the step.
+    float deltaPosition[3] = {0, 0, 0};    // m
+    float deltaRotation[3] = {0, 0, 0};    // rad, rotation vector in world axes
+    float poseSpare[2] = {0, 0};
+
+    float* VelocityRow() { return linearVelocity; }
+    float* PoseRow() { return deltaPosition; }
+};
+static_assert(sizeof(BodyState) == 64);
+
+// Zero for a body that nothing moves.
+struct alignas(32) BodyMass {
+    float inverseInertia[6] = {0, 0, 0, 0, 0, 0};  // xx yy zz xy xz yz, world axes, 1/(kg m2)
+    float inverseMass = 0;                         // 1/kg
+    float spare = 0;
+
+    const float* Row() const { return inverseInertia; }
+};
+static_assert(sizeof(BodyMass) == 32);
+
+// Linear and angular velocity, or linear and angular displacement: six numbers over one scalar or lanes.
+template <class Real>
+struct Twist {
+    Vec3<Real> linear = Vec3<Real>(Real(0.0f), Real(0.0f), Real(0.0f));
+    Vec3<Real> angular = Vec3<Real>(Real(0.0f), Real(0.0f), Real(0.0f));
+};
+
+// Inverse mass and world inverse inertia.
+template <class Real>
+struct InverseMass {
+    Real mass = Real(0.0f);
+    Sym3<Real> inertia;
+};
+
+// Constraints refer to bodies by index into these arrays.
+struct SolverBodies {
+    BodyState* states;
+    const BodyMass* masses;
+};
+
+}  // namespace fulcrum
