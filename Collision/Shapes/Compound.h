@@ -22,8 +22,10 @@ public:
         RelativePose pose;  // of the child's centre frame in the compound's centre frame
     };
 
-    // Mass is the sum of the children's (overlaps count twice).
-    // Errors: Degenerate (no child), Unsupported (null or not convex child), NonFinite, Unnormalized, NonPositive.
+    // Mass is the sum of the children's (overlaps count twice), scaled so that the whole has density 1 on average.
+    // InnerRadius is the smallest child's: no child may pass through a surface unseen.
+    // Errors: Degenerate (no child), Unsupported (null or not convex child), NonFinite, Unnormalized, NonPositive,
+    // OutOfRange (the inertia is no normal float).
     static Result<std::shared_ptr<const Compound>> Create(std::span<const ChildSettings> children);
 
     std::span<const Child> Children() const { return children_; }

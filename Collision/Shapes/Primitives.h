@@ -5,7 +5,8 @@
 
 namespace fulcrum {
 
-// Ball of `radius` metres, > 0. Errors: NonFinite, NonPositive.
+// Ball of `radius` metres, > 0. Errors: NonFinite, NonPositive, OutOfRange (the inertia is no normal float: sizes of about
+// 1e-7 m or 1e7 m; so for all shapes).
 class Sphere final : public ConvexShape {
 public:
     static Result<std::shared_ptr<const Sphere>> Create(float radius);
@@ -17,7 +18,7 @@ private:
 };
 
 // Box of half extents `halfExtents` metres, each > 0. `convexRadius` (0 .. smallest half extent) rounds its edges within
-// those extents; 0, the default, keeps them sharp. Errors: NonFinite, NonPositive, OutOfRange (convexRadius).
+// those extents; 0, the default, keeps them sharp. The mass is that of the sharp box. Errors: NonFinite, NonPositive, OutOfRange.
 class Box final : public ConvexShape {
 public:
     static Result<std::shared_ptr<const Box>> Create(const Vector3& halfExtents, float convexRadius = 0);
@@ -30,7 +31,7 @@ private:
 };
 
 // Capsule along y: a segment of half length `halfHeight` metres (> 0) and radius `radius` (> 0) about it.
-// Errors: NonFinite, NonPositive.
+// Errors: NonFinite, NonPositive, OutOfRange.
 class Capsule final : public ConvexShape {
 public:
     static Result<std::shared_ptr<const Capsule>> Create(float halfHeight, float radius);
