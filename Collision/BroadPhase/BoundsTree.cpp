@@ -1,0 +1,301 @@
+#include <Fulcrum/Collision/BroadPhase/BoundsTree.h>
+
+#include <Fulcrum/Math/Assert.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fulcrum {
+
+namespace {
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr uint8_t kBuilt = 255;  // depthFromLeaves of nodes that a build made
+
+// What a build costs a leaf, in queries; the queries' own unit makes the rule independent of the machine.
+constexpr double kBuildCostInQueries = 0.4;
+}  // namespace
+
+// ---- Boxes
+
+BoundsTree::Packed BoundsTree::Pack(const Bounds& b) {
+    return {{b.lower.x(), b.lower.y(), b.lower.z(), 0, -b.upper.x(), -b.upper.y(), -b.upper.z(), 0}};
+}
+
+Bounds BoundsTree::Unpack(const Packed& box) {
+    Bounds bounds;
+    bounds.lower = Vector3(box.lane[0], box.lane[1], box.lane[2]);
+    bounds.upper = Vector3(-box.lane[4], -box.lane[5], -box.lane[6]);
+    return bounds;
+}
+
+BoundsTree::Packed BoundsTree::EmptyBox() {
+    return {{kInfinity, kInfinity, kInfinity, kInfinity, kInfinity, kInfinity, kInfinity, kInfinity}};
+}
+
+// In double: the square of any float is finite there.
+double BoundsTree::HalfArea(const Packed& box) {
+    if (box.lane[0] == kInfinity) return 0;
+    const double x = -double(box.lane[4]) - double(box.lane[0]);
+    const double y = -double(box.lane[5]) - double(box.lane[1]);
+    const double z = -double(box.lane[6]) - double(box.lane[2]);
+    return x * y + y * z + z * x;
+}
+
+bool BoundsTree::IsValid(const Bounds& b) {
+    return IsFinite(b.lower) && IsFinite(b.upper) && (b.lower.array() <= b.upper.array()).all();
+}
+
+// The box around a node's eight slots; empty ones are inverted and do not count.
+BoundsTree::Packed BoundsTree::Union(const Node& node) {
+    // The fourth rows are anything: their lanes are not read.
+    const float* const rows[8] = {node.lower[0],        node.lower[1],        node.lower[2],        node.lower[2],
+                                  node.negatedUpper[0], node.negatedUpper[1], node.negatedUpper[2], node.negatedUpper[2]};
+    Wide<8> column[8];
+    GatherRows<8>(rows, column);
+    Packed box;
+    Min(Min(Min(column[0], column[1]), Min(column[2], column[3])), Min(Min(column[4], column[5]), Min(column[6], column[7])))
+        .Store(box.lane);
+    return box;
+}
+
+BoundsTree::Packed BoundsTree::SlotBox(uint32_t node, int slot) const {
+    const Node& n = nodes_[node];
+    return {{n.lower[0][slot], n.lower[1][slot], n.lower[2][slot], 0, n.negatedUpper[0][slot], n.negatedUpper[1][slot],
+             n.negatedUpper[2][slot], 0}};
+}
+
+void BoundsTree::SetSlotBox(uint32_t node, int slot, const Packed& box) {
+    Node& n = nodes_[node];
+    for (int axis = 0; axis < 3; ++axis) {
+        n.lower[axis][slot] = box.lane[axis];
+        n.negatedUpper[axis][slot] = box.lane[4 + axis];
+    }
+}
+
+// ---- Nodes
+
+uint32_t BoundsTree::AllocateNode() {
+    uint32_t index = freeNode_;
+    if (index != kNoNode) {
+        freeNode_ = nodes_[index].parent;
+    } else {
+        index = nodeCount_++;
+        if (index == nodes_.size()) {
+            // By a quarter, not by half or double: the nodes are most of the tree's memory.
+            if (nodes_.size() == nodes_.capacity()) nodes_.reserve(nodes_.size() + nodes_.size() / 4 + 16);
+            nodes_.emplace_back();
+        }
+    }
+    Node& n = nodes_[index];
+    std::fill_n(&n.lower[0][0], 3 * kWidth, kInfinity);
+    std::fill_n(&n.negatedUpper[0][0], 3 * kWidth, kInfinity);
+    std::fill_n(n.child, kWidth, kNoNode);
+    n.parent = kNoNode;
+    n.parentSlot = 0;
+    n.leaves = n.inner = n.stale = n.appended = 0;
+    n.depthFromLeaves = kBuilt;
+    return index;
+}
+
+void BoundsTree::SetLeaf(uint32_t node, int slot, uint32_t id, const Packed& box) {
+    SetSlotBox(node, slot, box);
+    nodes_[node].child[slot] = id;
+    nodes_[node].leaves |= static_cast<uint8_t>(1u << slot);
+    places_[id] = node * kWidth + static_cast<uint32_t>(slot);
+}
+
+void BoundsTree::SetInner(uint32_t node, int slot, uint32_t child, const Packed& box) {
+    SetSlotBox(node, slot, box);
+    nodes_[node].child[slot] = child;
+    nodes_[node].inner |= static_cast<uint8_t>(1u << slot);
+    nodes_[child].parent = node;
+    nodes_[child].parentSlot = static_cast<uint8_t>(slot);
+    area_ += HalfArea(box);
+}
+
+void BoundsTree::ReleaseIfEmpty(uint32_t node) {
+    while (node != kRoot) {
+        Node& n = nodes_[node];
+        const bool isBeingFilled = n.depthFromLeaves < pendingHeight_ && pendingSpine_[n.depthFromLeaves] == node;
+        if ((n.leaves | n.inner) != 0 || isBeingFilled) return;
+        const uint32_t parent = n.parent;
+        const int slot = n.parentSlot;
+        area_ -= HalfArea(SlotBox(parent, slot));
+        SetSlotBox(parent, slot, EmptyBox());
+        nodes_[parent].inner &= static_cast<uint8_t>(~(1u << slot));
+        nodes_[parent].stale &= static_cast<uint8_t>(~(1u << slot));
+        n.parent = freeNode_;
+        freeNode_ = node;
+        node = parent;
+    }
+}
+
+// ---- Leaves
+
+void BoundsTree::Insert(uint32_t id, const Bounds& bounds) {
+    FULCRUM_ASSERT(!Contains(id) && IsValid(bounds));
+    if (id >= places_.size()) places_.resize(id + 1, kNowhere);
+    if (nodeCount_ == 0) AllocateNode();
+    const uint32_t node = PendingLeafNode();
+    const Packed box = Pack(bounds);
+    SetLeaf(node, nodes_[node].appended++, id, box);
+    Loosen(node, box);
+    ++size_;
+    ++pendingCount_;
+    ++changesSinceOptimize_;
+}
+
+// The node of recent arrivals that has a slot to append to.
+uint32_t BoundsTree::PendingLeafNode() {
+    if (pendingHeight_ == 0) {
+        const uint32_t node = AllocateNode();
+        nodes_[node].depthFromLeaves = 0;
+        SetInner(kRoot, kPendingSlot, node, EmptyBox());
+        pendingSpine_[pendingHeight_++] = node;
+    } else if (nodes_[pendingSpine_[0]].appended == kWidth) {
+        AppendToSpine(0);
+    }
+    return pendingSpine_[0];
+}
+
+// Replaces the full spine node of a height by a new one beside it, as a counter in base eight carries.
+void BoundsTree::AppendToSpine(uint32_t height) {
+    const uint32_t full = pendingSpine_[height];
+    const uint32_t node = AllocateNode();
+    nodes_[node].depthFromLeaves = static_cast<uint8_t>(height);
+    if (height + 1 == pendingHeight_) {
+        // The pending tree grows by a root above its old one.
+        FULCRUM_ASSERT(pendingHeight_ < kMaxPendingHeight);
+        const uint32_t above = AllocateNode();
+        const Packed box = SlotBox(kRoot, kPendingSlot);
+        const uint8_t isStale = nodes_[kRoot].stale >> kPendingSlot;
+        area_ -= HalfArea(box);
+        SetInner(above, 0, full, box);
+        SetInner(kRoot, kPendingSlot, above, box);
+        nodes_[above].depthFromLeaves = static_cast<uint8_t>(pendingHeight_);
+        nodes_[above].stale = isStale;
+        nodes_[above].appended = 1;
+        pendingSpine_[pendingHeight_++] = above;
+    } else if (nodes_[pendingSpine_[height + 1]].appended == kWidth) {
+        AppendToSpine(height + 1);
+    }
+    const uint32_t parent = pendingSpine_[height + 1];
+    SetInner(parent, nodes_[parent].appended++, node, EmptyBox());
+    pendingSpine_[height] = node;
+    ReleaseIfEmpty(full);
+}
+
+void BoundsTree::Remove(uint32_t id) {
+    FULCRUM_ASSERT(Contains(id));
+    const uint32_t node = places_[id] / kWidth;
+    const int slot = static_cast<int>(places_[id] % kWidth);
+    places_[id] = kNowhere;
+    if (--size_ == 0) {
+        Clear();
+        return;
+    }
+    SetSlotBox(node, slot, EmptyBox());
+    nodes_[node].leaves &= static_cast<uint8_t>(~(1u << slot));
+    Loosen(node, EmptyBox());
+    ReleaseIfEmpty(node);
+}
+
+void BoundsTree::Update(uint32_t id, const Bounds& bounds) {
+    FULCRUM_ASSERT(Contains(id) && IsValid(bounds));
+    const uint32_t node = places_[id] / kWidth;
+    const Packed box = Pack(bounds);
+    SetSlotBox(node, static_cast<int>(places_[id] % kWidth), box);
+    Loosen(node, box);
+    ++changesSinceOptimize_;
+}
+
+Bounds BoundsTree::GetBounds(uint32_t id) const {
+    FULCRUM_ASSERT(Contains(id));
+    return Unpack(SlotBox(places_[id] / kWidth, static_cast<int>(places_[id] % kWidth)));
+}
+
+// A box inside `node` changed to `box`: enlarges the slots above that do not contain it, and notes in all of them that
+// they may be larger than needed. Once a slot contains it, those above do, and once a slot was noted, those above were.
+void BoundsTree::Loosen(uint32_t node, const Packed& box) {
+    while (node != kRoot) {
+        const int slot = nodes_[node].parentSlot;
+        node = nodes_[node].parent;
+        Node& n = nodes_[node];
+        bool contains = true;
+        for (int axis = 0; axis < 3; ++axis)
+            contains &= (n.lower[axis][slot] <= box.lane[axis]) & (n.negatedUpper[axis][slot] <= box.lane[4 + axis]);
+        const uint8_t bit = static_cast<uint8_t>(1u << slot);
+        if (contains && (n.stale & bit) != 0) return;
+        n.stale |= bit;
+        if (contains) continue;
+        area_ -= HalfArea(SlotBox(node, slot));
+        for (int axis = 0; axis < 3; ++axis) {
+            n.lower[axis][slot] = Min(n.lower[axis][slot], box.lane[axis]);
+            n.negatedUpper[axis][slot] = Min(n.negatedUpper[axis][slot], box.lane[4 + axis]);
+        }
+        area_ += HalfArea(SlotBox(node, slot));
+    }
+}
+
+// ---- Upkeep
+
+// Tightens the noted slots below a node. Returns the box around it.
+BoundsTree::Packed BoundsTree::Refit(uint32_t node) {
+    for (uint32_t stale = nodes_[node].stale; stale != 0; stale &= stale - 1) {
+        const int slot = std::countr_zero(stale);
+        const Packed box = Refit(nodes_[node].child[slot]);
+        area_ += HalfArea(box) - HalfArea(SlotBox(node, slot));
+        SetSlotBox(node, slot, box);
+    }
+    nodes_[node].stale = 0;
+    return Union(nodes_[node]);
+}
+
+void BoundsTree::Optimize() {
+    if (size_ == 0) return;
+    if (nodes_[kRoot].stale != 0) Refit(kRoot);
+    const double excess = builtArea_ > 0 ? area_ / builtArea_ - 1 : 0;
+    debt_ += std::max(0.0, excess) * changesSinceOptimize_;
+    changesSinceOptimize_ = 0;
+    const bool isMostlyPending = pendingCount_ > kWidth && pendingCount_ > size_ / 2;
+    if (isMostlyPending || debt_ > kBuildCostInQueries * size_) Rebuild();
+}
+
+void BoundsTree::Clear() {
+    std::fill(places_.begin(), places_.end(), kNowhere);
+    nodeCount_ = size_ = pendingCount_ = pendingHeight_ = changesSinceOptimize_ = 0;
+    freeNode_ = kNoNode;
+    area_ = builtArea_ = debt_ = 0;
+}
+
+Bounds BoundsTree::TotalBounds() const {
+    return size_ == 0 ? Bounds{} : Unpack(Union(nodes_[kRoot]));
+}
+
+float BoundsTree::Cost() const {
+    if (size_ == 0) return 0;
+    double sum = 0;
+    uint32_t nodes = 1;
+    uint32_t stack[kMaxStack];
+    int top = 0;
+    stack[top++] = kRoot;
+    while (top > 0) {
+        const uint32_t node = stack[--top];
+        for (uint32_t inner = nodes_[node].inner; inner != 0; inner &= inner - 1) {
+            const int slot = std::countr_zero(inner);
+            sum += HalfArea(SlotBox(node, slot));
+            ++nodes;
+            stack[top++] = nodes_[node].child[slot];
+        }
+    }
+    const double total = HalfArea(Union(nodes_[kRoot]));
+    // Without an area every line through the total goes through every node.
+    return static_cast<float>(total > 0 ? 1 + sum / total : nodes);
+}
+
+size_t BoundsTree::MemoryUsed() const {
+    return nodes_.capacity() * sizeof(Node) + places_.capacity() * sizeof(uint32_t) + gathered_.capacity() * sizeof(Packed);
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,171 @@
+// A dynamic tree of bounding boxes, eight to a node, that finds the leaves which overlap a box. The broad phase keeps one
+// for moving and one for static colliders. Queries may run on any number of threads at once; everything that is not const
+// is serial. The tree's shape decides the order in which leaves are found, never which: whoever needs an order sorts.
+//
+// Three ways to change it, each cheap on its own, and one call a step that keeps it good:
+// - Insert appends to a tree of recent arrivals, packed eight by eight in the order of their insertion, which hangs in the
+//   last slot of the root. Colliders that are created together mostly lie together, so even this tree is worth searching.
+// - Update writes the leaf's box and enlarges what is above it as far as needed; it only notes what could shrink.
+// - Remove empties the leaf's slot and gives back nodes that became empty.
+// - Optimize tightens the noted boxes, and rebuilds all where that pays (see Optimize).
+#pragma once
+
+#include <Fulcrum/Math/Bounds.h>
+#include <Fulcrum/Math/Wide.h>
+
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+namespace fulcrum {
+
+class BoundsTree {
+public:
+    // Ids are the caller's, dense from 0: memory grows with the largest. Bounds are finite, lower <= upper (asserted).
+    void Insert(uint32_t id, const Bounds& bounds);         // id is not in the tree
+    void Remove(uint32_t id);                               // id is in the tree
+    void Update(uint32_t id, const Bounds& bounds);         // id is in the tree
+
+    bool Contains(uint32_t id) const { return id < places_.size() && places_[id] != kNowhere; }
+    uint32_t Size() const { return size_; }
+    Bounds GetBounds(uint32_t id) const;                    // id is in the tree
+
+    // Once a step: tightens the boxes above leaves that changed, and rebuilds the tree when the extra work which its
+    // loosened shape has cost the queries since the last build comes to the price of a build. Each Insert and Update is
+    // taken to be followed by one query. If the shape decays steadily, that is the cheapest moment to rebuild.
+    void Optimize();
+
+    // Builds the whole tree anew, top down, each node full but for the last ones.
+    void Rebuild();
+
+    // Forgets all leaves and keeps the memory.
+    void Clear();
+
+    // Calls visit(uint32_t id) for every leaf whose bounds overlap `bounds` (touching counts; infinite bounds are
+    // allowed). Allocates nothing. The visitor must not change the tree.
+    template <class Visitor>
+    void Query(const Bounds& bounds, Visitor&& visit) const;
+
+    // A box around all leaves: the tightest after Optimize or Rebuild. Empty without leaves.
+    Bounds TotalBounds() const;
+
+    // The nodes that a random line through TotalBounds() is expected to visit (surface area heuristic); 0 without leaves.
+    float Cost() const;
+
+    // Bytes that the tree holds on to.
+    size_t MemoryUsed() const;
+
+    // Aborts where the structure is broken: a leaf unreachable or reached twice, a parent that does not contain a child,
+    // a wrong count. For tests; reads the whole tree.
+    void Validate() const;
+
+private:
+    static constexpr int kWidth = 8;
+    static constexpr uint32_t kNowhere = ~0u;
+    static constexpr uint32_t kNoNode = ~0u;
+    static constexpr uint32_t kRoot = 0;
+    static constexpr int kPendingSlot = kWidth - 1;         // of the root: the tree of recent arrivals
+    static constexpr int kMaxDepth = 24;                    // of nodes; halving 2^32 leaves by eights needs 12
+    static constexpr uint32_t kMaxPendingHeight = 22;
+    static constexpr int kMaxStack = (kWidth - 1) * kMaxDepth + 1;
+
+    // Eight boxes, one a column. Upper coordinates are negated, so that a box is eight floats of which the union takes the
+    // smallest, and a query compares "row <= limit" alone. Empty slots are in neither mask; their box is inverted.
+    struct alignas(64) Node {
+        float lower[3][kWidth];
+        uint32_t child[kWidth];                             // a node, or the id of a leaf
+        float negatedUpper[3][kWidth];
+        uint32_t parent;                                    // kNoNode for the root; the next free node for a free one
+        uint8_t parentSlot;
+        uint8_t leaves;                                     // slots that hold leaves
+        uint8_t inner;                                      // slots that hold nodes
+        uint8_t stale;                                      // inner slots whose box may be larger than needed
+        uint8_t appended;                                   // pending nodes: slots used so far
+        uint8_t depthFromLeaves;                            // pending nodes: 0 holds leaves
+    };
+    static_assert(sizeof(Node) == 256);
+
+    // A box as {lower, w, -upper, w'}: the union of boxes is the lane-wise minimum. What w and w' hold is the user's.
+    struct alignas(32) Packed {
+        float lane[8];
+    };
+
+    static Packed Pack(const Bounds& bounds);
+    static Bounds Unpack(const Packed& box);
+    static Packed EmptyBox();
+    static Packed Union(const Node& node);
+    static double HalfArea(const Packed& box);
+    static bool IsValid(const Bounds& bounds);
+
+    Packed SlotBox(uint32_t node, int slot) const;
+    void SetSlotBox(uint32_t node, int slot, const Packed& box);
+    void SetLeaf(uint32_t node, int slot, uint32_t id, const Packed& box);
+    void SetInner(uint32_t node, int slot, uint32_t child, const Packed& box);
+    void Loosen(uint32_t node, const Packed& box);
+    Packed Refit(uint32_t node);
+
+    uint32_t AllocateNode();
+    void ReleaseIfEmpty(uint32_t node);
+    uint32_t PendingLeafNode();
+    void AppendToSpine(uint32_t height);
+
+    void GatherLeaves();
+    Packed BuildNode(uint32_t node, uint32_t first, uint32_t count, int slots);
+    void BuildChildren(uint32_t node, uint32_t first, uint32_t count, uint32_t capacity, int& slot, Packed& total);
+    void SplitAt(uint32_t first, uint32_t count, uint32_t left);
+
+    void ValidateNode(uint32_t node, int depth, uint32_t& nodes, uint32_t& leaves) const;
+
+    static uint32_t TestSlots(const Node& node, const float (&limit)[6]);
+
+    std::vector<Node> nodes_;                               // the first nodeCount_ are in use or on the free list
+    std::vector<uint32_t> places_;                          // id -> node * kWidth + slot
+    std::vector<Packed> gathered_;                          // Rebuild's leaves; lane 3 holds the id's bits
+    uint32_t pendingSpine_[kMaxPendingHeight] = {};                 // the pending tree's node being filled, by height
+    uint32_t pendingHeight_ = 0;                            // nodes on the spine
+    uint32_t nodeCount_ = 0;
+    uint32_t freeNode_ = kNoNode;
+    uint32_t size_ = 0;
+    uint32_t pendingCount_ = 0;                             // insertions since the last build
+    uint32_t changesSinceOptimize_ = 0;
+    double area_ = 0;                                       // summed half areas of all nodes but the root
+    double builtArea_ = 0;                                  // the same after the last build
+    double debt_ = 0;                                       // queries' worth of work lost since the last build
+};
+
+// The slots whose boxes overlap the query; limit = {upper, -lower}.
+inline uint32_t BoundsTree::TestSlots(const Node& node, const float (&limit)[6]) {
+    constexpr int kStep = kLanes >= 8 ? 8 : 4;
+    using Lanes = Wide<kStep>;
+    uint32_t bits = 0;
+    for (int i = 0; i < kWidth; i += kStep) {
+        const auto below = (Lanes::Load(node.lower[0] + i) <= Lanes(limit[0])) &
+                           (Lanes::Load(node.lower[1] + i) <= Lanes(limit[1])) &
+                           (Lanes::Load(node.lower[2] + i) <= Lanes(limit[2]));
+        const auto above = (Lanes::Load(node.negatedUpper[0] + i) <= Lanes(limit[3])) &
+                           (Lanes::Load(node.negatedUpper[1] + i) <= Lanes(limit[4])) &
+                           (Lanes::Load(node.negatedUpper[2] + i) <= Lanes(limit[5]));
+        bits |= (below & above).ToBits() << i;
+    }
+    return bits;
+}
+
+template <class Visitor>
+void BoundsTree::Query(const Bounds& bounds, Visitor&& visit) const {
+    if (size_ == 0) return;
+    const float limit[6] = {bounds.upper.x(),  bounds.upper.y(),  bounds.upper.z(),
+                            -bounds.lower.x(), -bounds.lower.y(), -bounds.lower.z()};
+    uint32_t stack[kMaxStack];
+    int top = 0;
+    stack[top++] = kRoot;
+    while (top > 0) {
+        const Node& node = nodes_[stack[--top]];
+        const uint32_t hits = TestSlots(node, limit);
+        for (uint32_t leaves = hits & node.leaves; leaves != 0; leaves &= leaves - 1)
+            visit(node.child[std::countr_zero(leaves)]);
+        for (uint32_t inner = hits & node.inner; inner != 0; inner &= inner - 1)
+            stack[top++] = node.child[std::countr_zero(inner)];
+    }
+}
+
+}  // namespace fulcrum
