@@ -34,6 +34,16 @@ struct alignas(32) BodyMass {
 };
 static_assert(sizeof(BodyMass) == 32);
 
+// Pose of the centre frame at the start of the step, and the acceleration that gravity and forces give.
+struct alignas(64) BodyPose {
+    float rotation[4] = {0, 0, 0, 1};   // x y z w
+    float acceleration[3] = {0, 0, 0};  // m/s2
+    float spare = 0;
+    double position[3] = {0, 0, 0};     // m, of the centre of mass
+    double positionSpare = 0;
+};
+static_assert(sizeof(BodyPose) == 64);
+
 // Linear and angular velocity, or linear and angular displacement: six numbers over one scalar or lanes.
 template <class Real>
 struct Twist {
@@ -52,6 +62,7 @@ struct InverseMass {
 struct SolverBodies {
     BodyState* states;
     const BodyMass* masses;
+    const BodyPose* poses;
 };
 
 }  // namespace fulcrum

@@ -1,0 +1,98 @@
+// Shared by the contact kernels: reading and writing the twists of a batch, and the twist at the manifold's centre.
+#pragma once
+
+#include <Fulcrum/Constraints/Contacts/ContactBatch.h>
+
+namespace fulcrum::contacts {
+
+enum class Of { Velocity, Displacement };
+
+template <Of kOf>
+inline float* RowOf(BodyState& state) {
+    return kOf == Of::Velocity ? state.VelocityRow() : state.PoseRow();
+}
+
+// The two bodies' twists in lanes; kept whole so that the spare floats of a row survive the scatter.
+template <int N, bool kFixedB>
+struct Twists {
+    using Real = Wide<N>;
+    float* rowsA[N];
+    float* rowsB[N];
+    Real a[8], b[8];
+};
+
+template <Of kOf, int N, bool kFixedB>
+inline void Gather(const ContactBatch<N, kFixedB>& batch, BodyState* states, Twists<N, kFixedB>& twists) {
+    for (int i = 0; i < N; ++i) twists.rowsA[i] = RowOf<kOf>(states[batch.bodyA[i]]);
+    GatherRows<N>(reinterpret_cast<const float* const(&)[N]>(twists.rowsA), twists.a);
+    if constexpr (!kFixedB) {
+        for (int i = 0; i < N; ++i) twists.rowsB[i] = RowOf<kOf>(states[batch.sideB.body[i]]);
+        GatherRows<N>(reinterpret_cast<const float* const(&)[N]>(twists.rowsB), twists.b);
+    }
+}
+
+template <int N, bool kFixedB>
+inline void Scatter(const ContactBatch<N, kFixedB>& batch, const Twists<N, kFixedB>& twists) {
+    ScatterRows<N>(twists.rowsA, twists.a, batch.count);
+    if constexpr (!kFixedB) ScatterRows<N>(twists.rowsB, twists.b, batch.count);
+}
+
+template <class Real>
+inline Vec3<Real> Linear(const Real (&row)[8]) {
+    return Vec3<Real>(row[0], row[1], row[2]);
+}
+template <class Real>
+inline Vec3<Real> Angular(const Real (&row)[8]) {
+    return Vec3<Real>(row[3], row[4], row[5]);
+}
+
+// Adds sign * M^-1 (F, r x F + T) to a row.
+template <class Real>
+inline void ApplyWrench(Real (&row)[8], const InverseMass<Real>& inverse, const Vec3<Real>& arm, const Vec3<Real>& force,
+                        const Vec3<Real>& torque, Real sign) {
+    const Vec3<Real> dv = force * (inverse.mass * sign);
+    const Vec3<Real> dw = inverse.inertia * Vec3<Real>((Cross<Real>(arm, force) + torque) * sign);
+    row[0] += dv.x();
+    row[1] += dv.y();
+    row[2] += dv.z();
+    row[3] += dw.x();
+    row[4] += dw.y();
+    row[5] += dw.z();
+}
+
+// The relative twist at c. `fixedScale` turns the fixed side's velocity into what `a` holds: 1, or the elapsed time.
+template <int N, bool kFixedB>
+inline Twist<Wide<N>> RelativeTwist(const ContactBatch<N, kFixedB>& batch, const Twists<N, kFixedB>& twists,
+                                    Wide<N> fixedScale) {
+    using Real = Wide<N>;
+    Twist<Real> relative;
+    const Vec3<Real> atA = Linear(twists.a) + Cross<Real>(Angular(twists.a), batch.armA);
+    if constexpr (kFixedB) {
+        relative.linear = batch.sideB.velocity.linear * fixedScale - atA;
+        relative.angular = batch.sideB.velocity.angular * fixedScale - Angular(twists.a);
+    } else {
+        relative.linear = Linear(twists.b) + Cross<Real>(Angular(twists.b), batch.sideB.arm) - atA;
+        relative.angular = Angular(twists.b) - Angular(twists.a);
+    }
+    return relative;
+}
+
+// Applies the wrench of the impulses: `force` = n sum + t1 f1 + t2 f2 at c, and the torque about c.
+template <int N, bool kFixedB>
+inline void ApplyToBoth(const ContactBatch<N, kFixedB>& batch, Twists<N, kFixedB>& twists, const Vec3<Wide<N>>& force,
+                        const Vec3<Wide<N>>& torque) {
+    using Real = Wide<N>;
+    ApplyWrench<Real>(twists.a, batch.inverseA, batch.armA, force, torque, Real(-1.0f));
+    if constexpr (!kFixedB) ApplyWrench<Real>(twists.b, batch.sideB.inverse, batch.sideB.arm, force, torque, Real(1.0f));
+}
+
+// Torque about c of normal impulses: sum of (a t1 + b t2) x n l, with sums over a l and b l.
+template <int N, bool kFixedB>
+inline Vec3<Wide<N>> NormalTorque(const ContactBatch<N, kFixedB>& batch, Wide<N> sumA, Wide<N> sumB) {
+    return batch.tangent1 * sumB - batch.tangent2 * sumA;
+}
+
+// Index into `response` of the pair i < j.
+constexpr int PairIndex(int i, int j) { return i == 0 ? j - 1 : i + j; }
+
+}  // namespace fulcrum::contacts

@@ -1,0 +1,38 @@
+// What the solver needs to know of one contact manifold, and what it keeps from step to step: rows of eight floats, so that
+// Prepare can gather the contacts of a batch into lanes. Written by the Collide stage, impulses by Store.
+#pragma once
+
+#include <Fulcrum/Math/Vector.h>
+
+#include <cstdint>
+
+namespace fulcrum {
+
+struct alignas(32) ContactRecord {
+    static constexpr int kMaxPoints = 4;
+
+    struct Point {
+        float onA[3] = {0, 0, 0};  // m, in A's centre frame
+        float separation = 0;      // m at the start of the step; negative: overlap
+        float impulse = 0;         // N s along the normal, of the last substep
+        float onB[3] = {0, 0, 0};  // m, in B's centre frame
+    };
+
+    float normal[3] = {0, 1, 0};          // unit, from A to B, in A's centre frame
+    float pointCount = 0;                 // 0..4
+    float friction = 0;                   // Coulomb coefficient
+    float restitution = 0;                // 0..1
+    float twistRadius = 0;                // m: mean distance of the contact patch from its centre
+    float twistImpulse = 0;               // N m s about the normal
+    float frictionImpulse[3] = {0, 0, 0}; // N s, world axes, on B
+    float spare[5] = {0, 0, 0, 0, 0};
+    Point points[kMaxPoints];
+};
+static_assert(sizeof(ContactRecord) == 192);
+
+// Mean distance of a convex polygon's points from the origin, the origin inside; `x`, `y` are its corners in any order, at
+// most 4. Over the triangle (0, P, Q) it is 2/3 of the mean over the edge PQ, which Simpson's rule gives to 1e-3.
+// Two corners: a segment through the origin. This times mu N is the torque that friction under even pressure can hold.
+float MeanDistance(const float* x, const float* y, int count);
+
+}  // namespace fulcrum

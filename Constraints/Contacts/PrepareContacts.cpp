@@ -1,0 +1,231 @@
+#include <Fulcrum/Constraints/Contacts/ContactKernels.h>
+
+namespace fulcrum {
+
+namespace {
+
+using namespace contacts;
+
+// A unit vector perpendicular to n (Duff et al., JCGT 2017).
+template <class Real>
+Vec3<Real> PerpendicularTo(const Vec3<Real>& n) {
+    const Real sign = Select(n.z() < Real(0.0f), Real(-1.0f), Real(1.0f));
+    const Real a = Real(-1.0f) / (sign + n.z());
+    return Vec3<Real>(Real(1.0f) + sign * n.x() * n.x() * a, sign * n.x() * n.y() * a, -sign * n.x());
+}
+
+template <int N>
+void GatherRecordRow(const uint32_t (&index)[N], const ContactRecord* records, int row, Wide<N> (&out)[8]) {
+    const float* rows[N];
+    for (int i = 0; i < N; ++i) rows[i] = reinterpret_cast<const float*>(&records[index[i]]) + 8 * row;
+    GatherRows<N>(rows, out);
+}
+
+template <int N>
+void GatherMass(const uint32_t (&index)[N], const BodyMass* masses, InverseMass<Wide<N>>& out) {
+    const float* rows[N];
+    for (int i = 0; i < N; ++i) rows[i] = masses[index[i]].Row();
+    Wide<N> r[8];
+    GatherRows<N>(rows, r);
+    out.inertia.xx = r[0];
+    out.inertia.yy = r[1];
+    out.inertia.zz = r[2];
+    out.inertia.xy = r[3];
+    out.inertia.xz = r[4];
+    out.inertia.yz = r[5];
+    out.mass = r[6];
+}
+
+// Sums, over both bodies, what the response matrices are made of.
+template <class Real>
+struct Responses {
+    Real normal[6] = {};             // (n, t1-, t2-)-rows: 00 01 02 11 12 22
+    Real friction[6] = {};           // t1 t1, t2 t2, nn, t1 t2, t1 n, t2 n
+    Real coupling[3][3] = {};
+
+    void Add(const InverseMass<Real>& inverse, const Vec3<Real>& arm, const Vec3<Real>& n, const Vec3<Real>& t1,
+             const Vec3<Real>& t2) {
+        const Vec3<Real> jn = Cross<Real>(arm, n), j1 = Cross<Real>(arm, t1), j2 = Cross<Real>(arm, t2);
+        const Vec3<Real> in = inverse.inertia * jn, i1 = inverse.inertia * j1, i2 = inverse.inertia * j2;
+        const Vec3<Real> it1 = inverse.inertia * t1, it2 = inverse.inertia * t2, itn = inverse.inertia * n;
+        normal[0] += inverse.mass + Dot<Real>(jn, in);
+        normal[1] += Dot<Real>(t1, in);
+        normal[2] += Dot<Real>(t2, in);
+        normal[3] += Dot<Real>(t1, it1);
+        normal[4] += Dot<Real>(t1, it2);
+        normal[5] += Dot<Real>(t2, it2);
+        friction[0] += inverse.mass + Dot<Real>(j1, i1);
+        friction[1] += inverse.mass + Dot<Real>(j2, i2);
+        friction[2] += Dot<Real>(n, itn);
+        friction[3] += Dot<Real>(j1, i2);
+        friction[4] += Dot<Real>(j1, itn);
+        friction[5] += Dot<Real>(j2, itn);
+        const Vec3<Real> columns[3] = {i1, i2, itn};
+        for (int k = 0; k < 3; ++k) {
+            coupling[0][k] += Dot<Real>(jn, columns[k]);
+            coupling[1][k] += Dot<Real>(t1, columns[k]);
+            coupling[2][k] += Dot<Real>(t2, columns[k]);
+        }
+    }
+};
+
+template <class Real>
+Real InverseOrZero(Real x) {
+    return Select(x > Real(0.0f), Real(1.0f) / Max(x, Real(1e-30f)), Real(0.0f));
+}
+
+template <int N, bool kFixedB>
+void PrepareBounces(ContactBatch<N, kFixedB>& batch, Wide<N> restitution, const uint32_t (&bodyB)[N],
+                    const SolverBodies& bodies, const ContactPrepareSettings& settings) {
+    using Real = Wide<N>;
+    Twists<N, kFixedB> twists;
+    Gather<Of::Velocity>(batch, bodies.states, twists);
+    const Twist<Real> relative = RelativeTwist(batch, twists, Real(1.0f));
+    const Real vn = Dot<Real>(relative.linear, batch.normal);
+    const Real w1 = Dot<Real>(relative.angular, batch.tangent1), w2 = Dot<Real>(relative.angular, batch.tangent2);
+    // How fast the gap closes ever faster: minus the relative acceleration along n.
+    Vec3<Real> acceleration;
+    for (int i = 0; i < N; ++i) {
+        const BodyPose& a = bodies.poses[batch.bodyA[i]];
+        const BodyPose& b = bodies.poses[bodyB[i]];
+        for (int k = 0; k < 3; ++k) acceleration[k].Set(i, a.acceleration[k] - b.acceleration[k]);
+    }
+    const Real closing = Dot<Real>(acceleration, batch.normal);
+    for (int i = 0; i < batch.pointCount; ++i) {
+        auto& row = batch.rows[i];
+        const Real approach = vn + row.b * w1 - row.a * w2;
+        // Speed at the time of impact, v^2 = v0^2 + 2 a s: so that restitution 1 neither gains nor loses energy.
+        const Real gap = Max(row.startSeparation, Real(0.0f));
+        const Real speed = Sqrt(Max(approach * approach + Real(2.0f) * closing * gap, Real(0.0f)));
+        const Real bounce = Select((approach < Real(0.0f)) & (speed > Real(settings.restitutionSpeed)),
+                                   restitution * speed, Real(0.0f));
+        batch.bounceSpeed[i] = bounce;
+        batch.largestImpulse[i] = Real(0.0f);
+    }
+}
+
+}  // namespace
+
+template <int N, bool kFixedB>
+void PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* records, const uint32_t (&bodyB)[N],
+                     const SolverBodies& bodies, const ContactPrepareSettings& settings) {
+    using Real = Wide<N>;
+    const Real zero(0.0f);
+    Real head[8], tail[8], frame[8];
+    GatherRecordRow<N>(batch.contact, records, 0, head);
+    GatherRecordRow<N>(batch.contact, records, 1, tail);
+    const float* frames[N];
+    Vec3<Real> between;  // from A's centre of mass to B's
+    for (int i = 0; i < N; ++i) {
+        const BodyPose& a = bodies.poses[batch.bodyA[i]];
+        const BodyPose& b = bodies.poses[bodyB[i]];
+        frames[i] = a.rotation;
+        for (int k = 0; k < 3; ++k) between[k].Set(i, static_cast<float>(b.position[k] - a.position[k]));
+    }
+    GatherRows<N>(frames, frame);
+    const Mat3<Real> rotation = ToMatrix(Quat<Real>{frame[0], frame[1], frame[2], frame[3]});
+
+    const Vec3<Real> n = rotation * Vec3<Real>(head[0], head[1], head[2]);
+    const Vec3<Real> t1 = PerpendicularTo<Real>(n), t2 = Cross<Real>(n, t1);
+    batch.normal = n;
+    batch.tangent1 = t1;
+    batch.tangent2 = t2;
+    batch.friction = head[4];
+    batch.twistRadius = head[6];
+    batch.pointCount = static_cast<int32_t>(HorizontalMax(head[3]));
+    batch.bounces = HorizontalMax(head[5]) > 0.0f;
+
+    // Points, halfway between the surfaces, and their centre.
+    Vec3<Real> points[ContactRecord::kMaxPoints];
+    Vec3<Real> centre(zero, zero, zero);
+    for (int i = 0; i < batch.pointCount; ++i) {
+        Real p[8];
+        GatherRecordRow<N>(batch.contact, records, 2 + i, p);
+        const auto used = head[3] > Real(static_cast<float>(i));
+        points[i] = rotation * Vec3<Real>(p[0], p[1], p[2]) + n * (p[3] * Real(0.5f));
+        batch.rows[i].startSeparation = batch.rows[i].separation = Select(used, p[3], zero);
+        batch.rows[i].impulse = Select(used, p[4] * Real(settings.impulseScale), zero);
+        for (int k = 0; k < 3; ++k) centre[k] += Select(used, points[i][k], zero);
+    }
+    centre = centre * (Real(1.0f) / Max(head[3], Real(1.0f)));
+    batch.armA = centre;
+
+    Responses<Real> responses;
+    GatherMass<N>(batch.bodyA, bodies.masses, batch.inverseA);
+    responses.Add(batch.inverseA, batch.armA, n, t1, t2);
+    const Vec3<Real> armB = centre - between;
+    if constexpr (kFixedB) {
+        const float* rows[N];
+        for (int i = 0; i < N; ++i) rows[i] = bodies.states[bodyB[i]].VelocityRow();
+        Real velocity[8];
+        GatherRows<N>(rows, velocity);
+        batch.sideB.velocity.angular = Angular(velocity);
+        batch.sideB.velocity.linear = Linear(velocity) + Cross<Real>(Angular(velocity), armB);
+    } else {
+        for (int i = 0; i < N; ++i) batch.sideB.body[i] = bodyB[i];
+        batch.sideB.arm = armB;
+        GatherMass<N>(bodyB, bodies.masses, batch.sideB.inverse);
+        responses.Add(batch.sideB.inverse, armB, n, t1, t2);
+    }
+
+    for (int k = 0; k < 3; ++k) {
+        batch.frictionInverse[k] = InverseOrZero(responses.friction[k]);
+        batch.frictionResponse[k] = responses.friction[3 + k];
+        for (int j = 0; j < 3; ++j) batch.coupling[j][k] = responses.coupling[j][k];
+    }
+    const Vec3<Real> impulse(tail[0], tail[1], tail[2]);
+    const Real scale(settings.impulseScale);
+    batch.frictionImpulse[0] = Dot<Real>(impulse, t1) * scale;
+    batch.frictionImpulse[1] = Dot<Real>(impulse, t2) * scale;
+    batch.frictionImpulse[2] = head[7] * scale;
+
+    // J of a point: n-row + b t1-row - a t2-row.
+    const auto& g = responses.normal;
+    for (int i = 0; i < batch.pointCount; ++i) {
+        auto& row = batch.rows[i];
+        const Vec3<Real> offset = points[i] - centre;
+        row.a = Dot<Real>(offset, t1);
+        row.b = Dot<Real>(offset, t2);
+        const Real two(2.0f);
+        const Real diagonal = g[0] + two * (row.b * g[1] - row.a * g[2]) + row.b * row.b * g[3] -
+                              two * row.a * row.b * g[4] + row.a * row.a * g[5];
+        const auto used = head[3] > Real(static_cast<float>(i));
+        row.inverseResponse = Select(used, InverseOrZero(diagonal), zero);
+        row.a = Select(used, row.a, zero);
+        row.b = Select(used, row.b, zero);
+        for (int j = 0; j < i; ++j) {
+            const auto& other = batch.rows[j];
+            batch.response[PairIndex(j, i)] = g[0] + (row.b + other.b) * g[1] - (row.a + other.a) * g[2] +
+                                              row.b * other.b * g[3] - (row.a * other.b + row.b * other.a) * g[4] +
+                                              row.a * other.a * g[5];
+        }
+    }
+    if (batch.bounces) PrepareBounces(batch, head[5], bodyB, bodies, settings);
+}
+
+template <int N, bool kFixedB>
+void StoreContacts(const ContactBatch<N, kFixedB>& batch, ContactRecord* records) {
+    const auto friction = batch.tangent1 * batch.frictionImpulse[0] + batch.tangent2 * batch.frictionImpulse[1];
+    for (int lane = 0; lane < batch.count; ++lane) {
+        ContactRecord& record = records[batch.contact[lane]];
+        for (int i = 0; i < batch.pointCount; ++i) record.points[i].impulse = batch.rows[i].impulse[lane];
+        record.twistImpulse = batch.frictionImpulse[2][lane];
+        for (int k = 0; k < 3; ++k) record.frictionImpulse[k] = friction[k][lane];
+    }
+}
+
+#define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                              \
+    template void PrepareContacts(ContactBatch<lanes, fixedB>&, const ContactRecord*, const uint32_t(&)[lanes],         \
+                                  const SolverBodies&, const ContactPrepareSettings&);                                  \
+    template void StoreContacts(const ContactBatch<lanes, fixedB>&, ContactRecord*);
+FULCRUM_INSTANTIATE(1, false)
+FULCRUM_INSTANTIATE(1, true)
+FULCRUM_INSTANTIATE(4, false)
+FULCRUM_INSTANTIATE(4, true)
+FULCRUM_INSTANTIATE(8, false)
+FULCRUM_INSTANTIATE(8, true)
+FULCRUM_INSTANTIATE(16, false)
+FULCRUM_INSTANTIATE(16, true)
+#undef FULCRUM_INSTANTIATE
+
+}  // namespace fulcrum

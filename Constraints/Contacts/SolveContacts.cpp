@@ -1,0 +1,181 @@
+#include <Fulcrum/Constraints/Contacts/ContactKernels.h>
+
+namespace fulcrum {
+
+namespace {
+
+using namespace contacts;
+
+// The friction rows: impulses first clamped to the cone's cross-section (as a vector, so that no heading is preferred),
+// then the torque. Returns the change of impulse of t1, t2 and twist.
+template <int N, bool kFixedB>
+void SolveFriction(ContactBatch<N, kFixedB>& batch, Wide<N> v1, Wide<N> v2, Wide<N> wn, Wide<N> (&change)[3]) {
+    using Real = Wide<N>;
+    Real sum(0.0f);
+    for (int i = 0; i < batch.pointCount; ++i) sum += batch.rows[i].impulse;
+    const Real limit = batch.friction * sum;
+
+    Real* total = batch.frictionImpulse;
+    const Real* inverse = batch.frictionInverse;
+    const Real* response = batch.frictionResponse;
+    const Real step1 = -inverse[0] * v1;
+    const Real step2 = -inverse[1] * (v2 + response[0] * step1);
+    const Real wanted1 = total[0] + step1, wanted2 = total[1] + step2;
+    const Real lengthSquared = wanted1 * wanted1 + wanted2 * wanted2;
+    const Real scale = Select(lengthSquared > limit * limit, limit / Sqrt(Max(lengthSquared, Real(1e-30f))), Real(1.0f));
+    change[0] = wanted1 * scale - total[0];
+    change[1] = wanted2 * scale - total[1];
+    total[0] = wanted1 * scale;
+    total[1] = wanted2 * scale;
+
+    const Real twistLimit = limit * batch.twistRadius;
+    const Real spin = wn + response[1] * change[0] + response[2] * change[1];
+    const Real twist = Clamp(total[2] - inverse[2] * spin, -twistLimit, twistLimit);
+    change[2] = twist - total[2];
+    total[2] = twist;
+}
+
+}  // namespace
+
+template <int N, bool kFixedB>
+void WarmStartContacts(const ContactBatch<N, kFixedB>& batch, BodyState* states) {
+    using Real = Wide<N>;
+    Twists<N, kFixedB> twists;
+    Gather<Of::Velocity>(batch, states, twists);
+    Real sum(0.0f), sumA(0.0f), sumB(0.0f);
+    for (int i = 0; i < batch.pointCount; ++i) {
+        const auto& row = batch.rows[i];
+        sum += row.impulse;
+        sumA += row.a * row.impulse;
+        sumB += row.b * row.impulse;
+    }
+    const Real* f = batch.frictionImpulse;
+    ApplyToBoth<N, kFixedB>(batch, twists, batch.normal * sum + batch.tangent1 * f[0] + batch.tangent2 * f[1],
+                            NormalTorque(batch, sumA, sumB) + batch.normal * f[2]);
+    Scatter(batch, twists);
+}
+
+template <int N, bool kFixedB>
+void SolveContactVelocities(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings) {
+    using Real = Wide<N>;
+    const Real zero(0.0f);
+    Twists<N, kFixedB> twists;
+    Gather<Of::Velocity>(batch, states, twists);
+    const Twist<Real> relative = RelativeTwist(batch, twists, Real(1.0f));
+    Real vn = Dot<Real>(relative.linear, batch.normal);
+    Real w1 = Dot<Real>(relative.angular, batch.tangent1), w2 = Dot<Real>(relative.angular, batch.tangent2);
+
+    Real friction[3];
+    SolveFriction<N, kFixedB>(batch, Dot<Real>(relative.linear, batch.tangent1),
+                              Dot<Real>(relative.linear, batch.tangent2), Dot<Real>(relative.angular, batch.normal),
+                              friction);
+    for (int k = 0; k < 3; ++k) {
+        vn += batch.coupling[0][k] * friction[k];
+        w1 += batch.coupling[1][k] * friction[k];
+        w2 += batch.coupling[2][k] * friction[k];
+    }
+
+    // Points that are apart may close their gap within the substep; those that touch may not approach.
+    const Real inverseDt(settings.inverseDt);
+    Real speed[ContactRecord::kMaxPoints];
+    for (int i = 0; i < batch.pointCount; ++i) {
+        const auto& row = batch.rows[i];
+        speed[i] = vn + row.b * w1 - row.a * w2 + Max(row.separation, zero) * inverseDt;
+    }
+    Real sum = zero, sumA = zero, sumB = zero;
+    for (int i = 0; i < batch.pointCount; ++i) {
+        auto& row = batch.rows[i];
+        const Real total = Max(row.impulse - row.inverseResponse * speed[i], zero);
+        const Real change = total - row.impulse;
+        row.impulse = total;
+        for (int j = i + 1; j < batch.pointCount; ++j) speed[j] += batch.response[PairIndex(i, j)] * change;
+        sum += change;
+        sumA += row.a * change;
+        sumB += row.b * change;
+    }
+    if (batch.bounces)
+        for (int i = 0; i < batch.pointCount; ++i)
+            batch.largestImpulse[i] = Max(batch.largestImpulse[i], batch.rows[i].impulse);
+
+    ApplyToBoth<N, kFixedB>(batch, twists,
+                            batch.normal * sum + batch.tangent1 * friction[0] + batch.tangent2 * friction[1],
+                            NormalTorque(batch, sumA, sumB) + batch.normal * friction[2]);
+    Scatter(batch, twists);
+}
+
+template <int N, bool kFixedB>
+void SolveContactPositions(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings) {
+    using Real = Wide<N>;
+    const Real zero(0.0f), slop(settings.slop), baumgarte(settings.baumgarte), deepest(-settings.maxCorrection);
+    Twists<N, kFixedB> twists;
+    Gather<Of::Displacement>(batch, states, twists);
+    const Twist<Real> relative = RelativeTwist(batch, twists, Real(settings.elapsed));
+    const Real xn = Dot<Real>(relative.linear, batch.normal);
+    const Real w1 = Dot<Real>(relative.angular, batch.tangent1), w2 = Dot<Real>(relative.angular, batch.tangent2);
+    for (int i = 0; i < batch.pointCount; ++i) {
+        auto& row = batch.rows[i];
+        row.separation = row.startSeparation + (xn + row.b * w1 - row.a * w2);
+    }
+    Real sum = zero, sumA = zero, sumB = zero;
+    for (int i = 0; i < batch.pointCount; ++i) {
+        auto& row = batch.rows[i];
+        const Real error = Clamp(row.separation + slop, deepest, zero);
+        const Real push = -row.inverseResponse * baumgarte * error;
+        sum += push;
+        sumA += row.a * push;
+        sumB += row.b * push;
+        for (int j = 0; j < batch.pointCount; ++j)
+            if (j != i) batch.rows[j].separation += batch.response[i < j ? PairIndex(i, j) : PairIndex(j, i)] * push;
+        row.separation -= baumgarte * error;
+    }
+    ApplyToBoth<N, kFixedB>(batch, twists, batch.normal * sum, NormalTorque(batch, sumA, sumB));
+    Scatter(batch, twists);
+}
+
+template <int N, bool kFixedB>
+void RestituteContacts(ContactBatch<N, kFixedB>& batch, BodyState* states) {
+    if (!batch.bounces) return;
+    using Real = Wide<N>;
+    const Real zero(0.0f);
+    Twists<N, kFixedB> twists;
+    Gather<Of::Velocity>(batch, states, twists);
+    const Twist<Real> relative = RelativeTwist(batch, twists, Real(1.0f));
+    const Real vn = Dot<Real>(relative.linear, batch.normal);
+    const Real w1 = Dot<Real>(relative.angular, batch.tangent1), w2 = Dot<Real>(relative.angular, batch.tangent2);
+    Real speed[ContactRecord::kMaxPoints];
+    for (int i = 0; i < batch.pointCount; ++i) {
+        const auto& row = batch.rows[i];
+        speed[i] = vn + row.b * w1 - row.a * w2;
+    }
+    Real sum = zero, sumA = zero, sumB = zero;
+    for (int i = 0; i < batch.pointCount; ++i) {
+        auto& row = batch.rows[i];
+        const auto hit = (batch.bounceSpeed[i] > zero) & (batch.largestImpulse[i] > zero);
+        const Real total = Max(row.impulse - row.inverseResponse * (speed[i] - batch.bounceSpeed[i]), zero);
+        const Real change = Select(hit, total - row.impulse, zero);
+        row.impulse += change;
+        for (int j = i + 1; j < batch.pointCount; ++j) speed[j] += batch.response[PairIndex(i, j)] * change;
+        sum += change;
+        sumA += row.a * change;
+        sumB += row.b * change;
+    }
+    ApplyToBoth<N, kFixedB>(batch, twists, batch.normal * sum, NormalTorque(batch, sumA, sumB));
+    Scatter(batch, twists);
+}
+
+#define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                              \
+    template void WarmStartContacts(const ContactBatch<lanes, fixedB>&, BodyState*);                                    \
+    template void SolveContactVelocities(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);        \
+    template void SolveContactPositions(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);         \
+    template void RestituteContacts(ContactBatch<lanes, fixedB>&, BodyState*);
+FULCRUM_INSTANTIATE(1, false)
+FULCRUM_INSTANTIATE(1, true)
+FULCRUM_INSTANTIATE(4, false)
+FULCRUM_INSTANTIATE(4, true)
+FULCRUM_INSTANTIATE(8, false)
+FULCRUM_INSTANTIATE(8, true)
+FULCRUM_INSTANTIATE(16, false)
+FULCRUM_INSTANTIATE(16, true)
+#undef FULCRUM_INSTANTIATE
+
+}  // namespace fulcrum
