@@ -47,15 +47,16 @@ void AppendFrame(Recording& recording, double time, std::span<const RecordedStat
                  std::span<const RecordedContact> contacts) {
     RecordedFrame frame;
     frame.time = time;
-    for (size_t i = recording.latest.size(); i < recording.bodies.size(); ++i)
-        recording.latest.emplace_back().body = static_cast<uint32_t>(i);
+    const size_t known = recording.latest.size();
+    for (size_t i = known; i < recording.bodies.size(); ++i) recording.latest.emplace_back().body = static_cast<uint32_t>(i);
     for (const RecordedState& state : states) {
-        if (state.body >= recording.latest.size()) continue;
+        if (state.body >= recording.latest.size() || !IsFinite(state)) continue;
         RecordedState& latest = recording.latest[state.body];
-        if (!IsFinite(state) || (!recording.frames.empty() && IsEqual(state, latest))) continue;
+        if (state.body < known && !IsEqual(state, latest)) frame.states.push_back(state);
         latest = state;
-        frame.states.push_back(state);
     }
+    // New bodies come last, and with the frame, whether named or not.
+    frame.states.insert(frame.states.end(), recording.latest.begin() + static_cast<ptrdiff_t>(known), recording.latest.end());
     if (WantsContacts(recording)) {
         frame.contacts = EvenChoice(contacts);
         frame.hasContacts = true;

@@ -1,0 +1,123 @@
+// All bodies as instanced meshes, one for each geometry, moving and fixed bodies apart. Those that move come first in
+// each mesh, so that a frame touches and uploads no more than what moves.
+import { Color, InstancedMesh, Matrix4, MeshStandardMaterial, Quaternion, Sphere, Vector3 } from 'three';
+import { SELECTED, colourOf } from './colours.js';
+import { GeometryChoice, leavesOf } from './shapes.js';
+import { addGrid } from './stage.js';
+
+export class Bodies {
+  constructor(recording, timeline, stage) {
+    this.recording = recording;
+    this.timeline = timeline;
+    this.selected = -1;
+    this.material = new MeshStandardMaterial({ vertexColors: true, roughness: 0.62, metalness: 0.02 });
+    this.fixedMaterial = addGrid(new MeshStandardMaterial({ vertexColors: true, roughness: 0.95 }), stage.grid);
+    this.drivenMaterial = new MeshStandardMaterial({ vertexColors: true, roughness: 0.7 });
+    this.meshes = this.#build();
+    for (const { mesh } of this.meshes) stage.scene.add(mesh);
+    this.#placeAll(true);
+  }
+
+  // Fixed bodies let one see through where they would hide what happens between them.
+  setSolid(isSolid) {
+    for (const material of [this.fixedMaterial, this.drivenMaterial]) {
+      material.transparent = !isSolid;
+      material.opacity = isSolid ? 1 : 0.16;
+      material.depthWrite = isSolid;
+      material.needsUpdate = true;
+    }
+    for (const group of this.meshes) if (group.motion !== 2) group.mesh.castShadow = isSolid;
+  }
+
+  update(mode, top) {
+    this.#placeAll(false);
+    this.#colourAll(mode, top);
+  }
+
+  // The body that the ray meets first, or -1.
+  pick(raycaster) {
+    const solid = this.fixedMaterial.opacity === 1;
+    const meshes = this.meshes.filter((group) => solid || group.motion === 2).map((group) => group.mesh);
+    const [hit] = raycaster.intersectObjects(meshes, false);
+    return hit ? hit.object.userData.leaves[hit.instanceId].body : -1;
+  }
+
+  #build() {
+    const { bodies, bodyCount, shapes, movers } = this.recording;
+    const isMover = new Uint8Array(bodyCount);
+    for (const body of movers) isMover[body] = 1;
+    const leavesOfShape = shapes.map((_, index) => leavesOf(shapes, index));
+    const leafCount = bodies.shapes.reduce((sum, shape) => sum + leavesOfShape[shape].length, 0);
+    const choice = new GeometryChoice(leafCount, shapes);
+    const choiceOf = new Map();
+    const groups = new Map();
+    for (const moving of [1, 0]) {
+      for (let body = 0; body < bodyCount; ++body) {
+        if (isMover[body] !== moving) continue;
+        const motion = bodies.motions[body];
+        for (const leaf of leavesOfShape[bodies.shapes[body]]) {
+          const wanted = motion === 0 ? 'fixed' : 'free';
+          const known = choiceOf.get(leaf) ?? {};
+          const chosen = (known[wanted] ??= choice.of(leaf.shape, motion === 0));
+          choiceOf.set(leaf, known);
+          const byKey = groups.get(chosen.key) ?? groups.set(chosen.key, new Map()).get(chosen.key);
+          const group = byKey.get(motion) ?? byKey.set(motion, { motion, make: chosen.make, leaves: [], moving: 0 }).get(motion);
+          group.leaves.push({ body, position: leaf.position, rotation: leaf.rotation, scale: chosen.scale });
+          group.moving += moving;
+        }
+      }
+    }
+    return [...groups.values()].flatMap((byKey) => [...byKey.values()]).map((group) => this.#addMesh(group));
+  }
+
+  #addMesh(group) {
+    const material = [this.fixedMaterial, this.drivenMaterial, this.material][group.motion];
+    const mesh = new InstancedMesh(group.make(), material, group.leaves.length);
+    mesh.castShadow = true;
+    mesh.receiveShadow = true;
+    mesh.frustumCulled = false;
+    mesh.boundingSphere = new Sphere(new Vector3(), Infinity); // picking asks each instance
+    mesh.setColorAt(0, new Color());
+    mesh.userData.leaves = group.leaves;
+    return { ...group, mesh };
+  }
+
+  #placeAll(andResting) {
+    const { positions, rotations } = this.timeline;
+    const matrix = new Matrix4(), place = new Vector3(), turn = new Quaternion(), size = new Vector3(), offset = new Vector3();
+    for (const { mesh, leaves, moving } of this.meshes) {
+      const count = andResting ? leaves.length : moving;
+      for (let i = 0; i < count; ++i) {
+        const { body, position, rotation, scale } = leaves[i];
+        turn.fromArray(rotations, 4 * body).normalize();
+        place.fromArray(positions, 3 * body).add(offset.copy(position).applyQuaternion(turn));
+        matrix.compose(place, turn.multiply(rotation), size.fromArray(scale)).toArray(mesh.instanceMatrix.array, 16 * i);
+      }
+      if (count > 0) this.#upload(mesh.instanceMatrix, 16 * count);
+    }
+  }
+
+  // Resting bodies need a colour only when the mode or the selection changes.
+  #colourAll(mode, top) {
+    const colour = new Color();
+    const state = `${mode} ${this.selected}`;
+    const andResting = state !== this.colouredFor;
+    this.colouredFor = state;
+    for (const { mesh, leaves, moving } of this.meshes) {
+      const count = andResting ? leaves.length : moving;
+      for (let i = 0; i < count; ++i) {
+        const { body } = leaves[i];
+        if (body === this.selected) colour.copy(SELECTED);
+        else colourOf(mode, this.timeline, body, top, colour);
+        colour.toArray(mesh.instanceColor.array, 3 * i);
+      }
+      if (count > 0) this.#upload(mesh.instanceColor, 3 * count);
+    }
+  }
+
+  #upload(attribute, count) {
+    attribute.clearUpdateRanges();
+    attribute.addUpdateRange(0, count);
+    attribute.needsUpdate = true;
+  }
+}

@@ -1,0 +1,72 @@
+// The colours of bodies, by what the user wants to see in them.
+import { Color } from 'three';
+
+const PLAIN = ['#6f93b8', '#7fa3a0', '#b89a6f', '#a5829c', '#8a98a8'].map((hex) => new Color(hex));
+const ISLANDS = ['#4e86c6', '#e0995e', '#6fae7d', '#c86f6f', '#8f7cc0', '#d3b04f', '#5fb0b3', '#c583ab', '#8a9a5b', '#7d8794']
+  .map((hex) => new Color(hex));
+const SPEEDS = ['#31508f', '#2f86a8', '#4fb08a', '#c9cc55', '#f2a33c', '#d8432f'].map((hex) => new Color(hex));
+const ALONE = new Color('#aab2ba');
+const FIXED = new Color('#d3d9de');
+const DRIVEN = new Color('#9aa7b4');
+const AWAKE = new Color('#e38b42');
+const ASLEEP = new Color('#7d93aa');
+export const SELECTED = new Color('#ff4d1c');
+
+// The same number for the same id, with neighbouring ids far apart: the fractions of the golden ratio.
+const scattered = (id) => (id * 0.6180339887498949) % 1;
+
+function ramp(colours, fraction, out) {
+  const at = Math.min(1, Math.max(0, fraction)) * (colours.length - 1);
+  const low = Math.min(colours.length - 2, Math.floor(at));
+  return out.lerpColors(colours[low], colours[low + 1], at - low);
+}
+
+// Neighbours of one colour are told apart by a little light.
+const shade = (colour, body) => colour.multiplyScalar(0.9 + 0.2 * scattered(body + 1));
+
+// The speed that the scale ends at: 99 % of the moving samples are slower.
+export function topSpeed({ samples }) {
+  const speeds = [];
+  const step = Math.max(1, Math.floor(samples.frames.length / 50000));
+  for (let i = 0; i < samples.frames.length; i += step) {
+    const speed = Math.hypot(samples.velocities[3 * i], samples.velocities[3 * i + 1], samples.velocities[3 * i + 2]);
+    if (speed > 0.05) speeds.push(speed);
+  }
+  speeds.sort((a, b) => a - b);
+  const top = speeds[Math.floor(0.99 * speeds.length)] ?? 1;
+  const magnitude = 10 ** Math.floor(Math.log10(top));
+  return Math.ceil(top / magnitude) * magnitude;
+}
+
+const byMode = {
+  plain: (timeline, body, recording, top, out) => shade(out.copy(PLAIN[recording.bodies.shapes[body] % PLAIN.length]), body),
+  island: (timeline, body, recording, top, out) => {
+    const island = timeline.island(body);
+    return shade(out.copy(island < 0 ? ALONE : ISLANDS[Math.floor(scattered(island + 1) * ISLANDS.length)]), body);
+  },
+  speed: (timeline, body, recording, top, out) => ramp(SPEEDS, timeline.speed(body) / top, out),
+  awake: (timeline, body, recording, top, out) => shade(out.copy(timeline.isAwake(body) ? AWAKE : ASLEEP), body),
+};
+export const MODES = Object.keys(byMode);
+
+// `top`: what topSpeed returns. Static and kinematic bodies keep a colour of their own.
+export function colourOf(mode, timeline, body, top, out) {
+  const { recording } = timeline;
+  const motion = recording.bodies.motions[body];
+  if (motion === 0) return out.copy(FIXED);
+  if (motion === 1 && mode !== 'speed') return out.copy(DRIVEN);
+  return byMode[mode](timeline, body, recording, top, out);
+}
+
+const key = (colour, text) => `<div class="key"><i style="background:#${colour.getHexString()}"></i>${text}</div>`;
+
+export function legend(mode, top) {
+  if (mode === 'speed') {
+    const stops = SPEEDS.map((colour) => `#${colour.getHexString()}`).join(',');
+    return `<div class="scale" style="background:linear-gradient(90deg,${stops})"></div>` +
+      `<div class="ends"><span>0</span><span>${Number(top.toPrecision(3))} m/s</span></div>`;
+  }
+  if (mode === 'awake') return key(AWAKE, 'awake') + key(ASLEEP, 'asleep');
+  if (mode === 'island') return key(ALONE, 'in no island') + 'one colour an island';
+  return '';
+}

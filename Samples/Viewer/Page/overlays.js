@@ -1,0 +1,143 @@
+// What is drawn over the bodies: contact points, contact normals and bounding boxes.
+import {
+  BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, InstancedBufferAttribute, InstancedBufferGeometry, LineBasicMaterial,
+  LineSegments, Points, Quaternion, ShaderMaterial, Vector3,
+} from 'three';
+import { includeLeaf, leavesOf } from './shapes.js';
+
+const TOUCHING = new Color('#0d3b66');
+const OVERLAPPING = new Color('#d7263d');
+const OVERLAP_SHOWN_RED = 0.01; // m
+
+// Contacts lie between bodies, so they are drawn through them.
+const throughBodies = { depthTest: false, transparent: true };
+
+function pointMaterial() {
+  return new ShaderMaterial({
+    ...throughBodies,
+    vertexColors: true,
+    uniforms: { pixels: { value: 6 } },
+    vertexShader: `
+      uniform float pixels;
+      varying vec3 tint;
+      void main() {
+        tint = color;
+        gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+        gl_PointSize = pixels;
+      }`,
+    fragmentShader: `
+      varying vec3 tint;
+      void main() {
+        float distance = length(gl_PointCoord - 0.5);
+        if (distance > 0.5) discard;
+        gl_FragColor = vec4(distance > 0.32 ? vec3(1.0) : tint, 0.9);
+        #include <colorspace_fragment>
+      }`,
+  });
+}
+
+export class Contacts {
+  constructor(recording, stage) {
+    const most = recording.contacts.reduce((sum, contacts) => Math.max(sum, contacts.count), 0);
+    const buffer = (perContact) => new BufferAttribute(new Float32Array(perContact * most), 3).setUsage(DynamicDrawUsage);
+    this.geometry = new BufferGeometry().setAttribute('position', buffer(3)).setAttribute('color', buffer(3));
+    this.lineGeometry = new BufferGeometry().setAttribute('position', buffer(6));
+    this.points = new Points(this.geometry, pointMaterial());
+    this.normals = new LineSegments(this.lineGeometry, new LineBasicMaterial({ color: '#14804a', opacity: 0.8, ...throughBodies }));
+    for (const object of [this.points, this.normals]) {
+      object.frustumCulled = false;
+      object.visible = false;
+      object.renderOrder = 2;
+      stage.scene.add(object);
+    }
+    this.points.material.uniforms.pixels.value = 6 * stage.renderer.getPixelRatio();
+  }
+
+  // `length`: of the normal of the largest impulse, metres.
+  update(contacts, length) {
+    if (contacts === this.shown || (!this.points.visible && !this.normals.visible)) return;
+    this.shown = contacts;
+    const count = contacts?.count ?? 0;
+    const places = this.geometry.attributes.position, colours = this.geometry.attributes.color, ends = this.lineGeometry.attributes.position;
+    if (count > 0) places.array.set(contacts.points);
+    const colour = new Color();
+    const largest = count > 0 ? contacts.impulses.reduce((a, b) => Math.max(a, b), 1e-9) : 1;
+    for (let i = 0; i < count; ++i) {
+      colour.lerpColors(TOUCHING, OVERLAPPING, Math.min(1, Math.max(0, -contacts.separations[i] / OVERLAP_SHOWN_RED))).toArray(colours.array, 3 * i);
+      const reach = length * (0.3 + 0.7 * Math.sqrt(contacts.impulses[i] / largest));
+      for (let k = 0; k < 3; ++k) {
+        ends.array[6 * i + k] = contacts.points[3 * i + k];
+        ends.array[6 * i + 3 + k] = contacts.points[3 * i + k] + reach * contacts.normals[3 * i + k];
+      }
+    }
+    for (const attribute of [places, colours, ends]) attribute.needsUpdate = true;
+    this.geometry.setDrawRange(0, count);
+    this.lineGeometry.setDrawRange(0, 2 * count);
+  }
+}
+
+function unitBoxLines() {
+  const lines = [];
+  for (let axis = 0; axis < 3; ++axis) {
+    for (const [u, v] of [[-1, -1], [-1, 1], [1, -1], [1, 1]]) {
+      for (const end of [-1, 1]) {
+        const corner = [];
+        corner[axis] = end;
+        corner[(axis + 1) % 3] = u;
+        corner[(axis + 2) % 3] = v;
+        lines.push(...corner);
+      }
+    }
+  }
+  return new BufferAttribute(new Float32Array(lines), 3);
+}
+
+export class BoundingBoxes {
+  constructor(recording, timeline, stage) {
+    this.timeline = timeline;
+    this.leaves = recording.shapes.map((_, index) => leavesOf(recording.shapes, index));
+    this.shapes = recording.bodies.shapes;
+    this.bodies = [...recording.bodies.motions.keys()].filter((body) => recording.bodies.motions[body] !== 0);
+    const buffer = () => new InstancedBufferAttribute(new Float32Array(3 * this.bodies.length), 3).setUsage(DynamicDrawUsage);
+    this.geometry = new InstancedBufferGeometry().setAttribute('position', unitBoxLines())
+      .setAttribute('centre', buffer()).setAttribute('halfSize', buffer());
+    this.geometry.instanceCount = this.bodies.length;
+    const material = new ShaderMaterial({
+      uniforms: { tint: { value: new Color('#b0357a') } },
+      vertexShader: `
+        attribute vec3 centre, halfSize;
+        void main() { gl_Position = projectionMatrix * viewMatrix * vec4(centre + position * halfSize, 1.0); }`,
+      fragmentShader: `
+        uniform vec3 tint;
+        void main() {
+          gl_FragColor = vec4(tint, 1.0);
+          #include <colorspace_fragment>
+        }`,
+    });
+    this.object = new LineSegments(this.geometry, material);
+    this.object.frustumCulled = false;
+    this.object.visible = false;
+    stage.scene.add(this.object);
+  }
+
+  update() {
+    if (!this.object.visible) return;
+    const { centre, halfSize } = this.geometry.attributes;
+    const place = new Vector3(), turn = new Quaternion(), leafPlace = new Vector3(), leafTurn = new Quaternion();
+    const lower = new Vector3(), upper = new Vector3(), scratch = new Vector3();
+    this.bodies.forEach((body, i) => {
+      place.fromArray(this.timeline.positions, 3 * body);
+      turn.fromArray(this.timeline.rotations, 4 * body).normalize();
+      lower.setScalar(Infinity);
+      upper.setScalar(-Infinity);
+      for (const { shape, position, rotation } of this.leaves[this.shapes[body]]) {
+        leafPlace.copy(position).applyQuaternion(turn).add(place);
+        includeLeaf(shape, leafPlace, leafTurn.copy(turn).multiply(rotation), lower, upper, scratch);
+      }
+      lower.add(upper).multiplyScalar(0.5).toArray(centre.array, 3 * i);
+      upper.sub(lower).toArray(halfSize.array, 3 * i);
+    });
+    centre.needsUpdate = true;
+    halfSize.needsUpdate = true;
+  }
+}
