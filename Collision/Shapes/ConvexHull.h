@@ -10,8 +10,9 @@
 namespace fulcrum {
 
 struct ConvexHullSettings {
-    int maxVertices = 64;      // 4..255; a hull with more is simplified to at most so many, growing outwards nowhere
-    float convexRadius = 0;    // m, >= 0: the hull is shrunk by it and rounded again; 0 keeps sharp edges
+    int maxVertices = 64;    // 4..255; a hull with more is simplified to the most far-flung so many, outside it nowhere
+    float convexRadius = 0;  // m, >= 0: the hull is shrunk by it and rounded again; 0 keeps sharp edges. Vertices, faces
+                             // and edges are then those of the shrunk core; the mass is that of the sharp hull
 };
 
 class ConvexHull final : public ConvexShape {
@@ -27,9 +28,11 @@ public:
         uint8_t left, right;   // faces: `left` runs from -> to counter-clockwise
     };
 
-    // Hull of at least 4 points that span a volume, coordinates in metres.
+    // Hull of at least 4 points that span a volume, coordinates in metres. Points are dropped and faces merged where
+    // that moves the surface by less than about 2e-7 of the largest coordinates, or a thousandth of the thickness.
+    // At most 255 faces: a hull with more is simplified too.
     // Errors: NonFinite, Degenerate (fewer than 4 points, coincident, collinear or coplanar: the message says which),
-    // OutOfRange (a setting).
+    // OutOfRange (maxVertices; a negative convexRadius or one that leaves no core; an inertia that is no normal float).
     static Result<std::shared_ptr<const ConvexHull>> Create(std::span<const Vector3> points,
                                                             const ConvexHullSettings& settings = {});
 

@@ -1,0 +1,173 @@
+#include <Fulcrum/Collision/Shapes/ConvexHull.h>
+
+#include <Fulcrum/Collision/Shapes/HullBuilder.h>
+#include <Fulcrum/Collision/Shapes/Message.h>
+#include <Fulcrum/Math/Wide.h>
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+namespace fulcrum {
+namespace {
+
+Status CheckInput(std::span<const Vector3> points, const ConvexHullSettings& settings) {
+    if (settings.maxVertices < 4 || settings.maxVertices > 255) {
+        return Error{ErrorCode::OutOfRange, Message("maxVertices is %d: it must be 4 to 255", settings.maxVertices)};
+    }
+    if (!std::isfinite(settings.convexRadius)) {
+        return Error{ErrorCode::NonFinite, Message("convexRadius is %g: it must be finite", double{settings.convexRadius})};
+    }
+    if (settings.convexRadius < 0) {
+        return Error{ErrorCode::OutOfRange,
+                     Message("convexRadius is %g m: it must be 0 or larger", double{settings.convexRadius})};
+    }
+    for (size_t i = 0; i < points.size(); ++i) {
+        if (IsFinite(points[i])) continue;
+        return Error{ErrorCode::NonFinite, Message("point %zu is (%g, %g, %g): coordinates must be finite", i,
+                                                   double{points[i].x()}, double{points[i].y()}, double{points[i].z()})};
+    }
+    return Done{};
+}
+
+double DistanceToSurface(const HullMesh& mesh, const Position& inside) {
+    double distance = std::numeric_limits<double>::infinity();
+    for (const HullMesh::Face& face : mesh.faces) {
+        distance = std::min(distance, face.offset - Dot<double>(face.normal, inside));
+    }
+    return distance;
+}
+
+// The hull with all planes moved inwards by `radius`, by polar duality about `centre`: the planes n . x = d are the points
+// n / d, and the planes of those points' hull are the vertices of the intersection.
+Result<HullMesh> ShrunkHull(const HullMesh& mesh, const Position& centre, double radius, int maxVertices) {
+    std::vector<Position> dualPoints, vertices;
+    for (const HullMesh::Face& face : mesh.faces) {
+        dualPoints.push_back(face.normal * (1 / (face.offset - Dot<double>(face.normal, centre) - radius)));
+    }
+    constexpr int unlimited = std::numeric_limits<int>::max();
+    const Result<HullMesh> dual = BuildHull(dualPoints, {unlimited, unlimited, 0x1p-46});
+    if (!dual) return dual.GetError();
+    for (const HullMesh::Face& face : dual.Value().faces) vertices.push_back(centre + face.normal * (1 / face.offset));
+    return BuildHull(vertices, {.maxVertices = maxVertices});
+}
+
+}  // namespace
+
+// Turns the builder's mesh into a shape's arrays, in floats about the centre of mass.
+class HullFinisher {
+public:
+    static Result<std::shared_ptr<const ConvexHull>> Finish(const HullMesh& mesh, const Position& centre,
+                                                            const MassProperties& mass, float convexRadius) {
+        const std::shared_ptr<ConvexHull> hull(new ConvexHull);
+        hull->mass_ = mass;
+        hull->convexRadius_ = convexRadius;
+        AddVertices(*hull, mesh, centre);
+        if (!AddFaces(*hull, mesh)) {
+            return Error{ErrorCode::OutOfRange, "the convexRadius leaves a core without the centre of mass"};
+        }
+        AddEdges(*hull);
+        return std::shared_ptr<const ConvexHull>(hull);
+    }
+
+private:
+    static void AddVertices(ConvexHull& hull, const HullMesh& mesh, const Position& centre) {
+        for (const Position& v : mesh.vertices) {
+            hull.vertices_.push_back((v - centre).cast<float>());
+            hull.bounds_.Include(hull.vertices_.back());
+            hull.outerRadius_ = std::max(hull.outerRadius_, Length(hull.vertices_.back()));
+        }
+        hull.outerRadius_ += hull.convexRadius_;
+        hull.bounds_.lower -= Vector3::Constant(hull.convexRadius_);
+        hull.bounds_.upper += Vector3::Constant(hull.convexRadius_);
+
+        const int count = static_cast<int>(hull.vertices_.size());
+        hull.paddedCount_ = (count + 15) / 16 * 16;
+        for (int axis = 0; axis < 3; ++axis)
+            for (int i = 0; i < hull.paddedCount_; ++i) hull.lanes_.push_back(hull.vertices_[i < count ? i : 0][axis]);
+    }
+
+    // Planes support the vertices as rounded. False where one does not pass outside the centre.
+    static bool AddFaces(ConvexHull& hull, const HullMesh& mesh) {
+        float smallestOffset = std::numeric_limits<float>::infinity();
+        for (const HullMesh::Face& from : mesh.faces) {
+            ConvexHull::Face face{static_cast<uint16_t>(hull.indices_.size()), static_cast<uint16_t>(from.corners.cornerCount),
+                                  from.normal.cast<float>(), 0};
+            double offset = -std::numeric_limits<double>::infinity();
+            for (const Vector3& v : hull.vertices_) {
+                offset = std::max(offset, Dot<double>(face.normal.cast<double>(), v.cast<double>()));
+            }
+            face.offset = static_cast<float>(offset);
+            smallestOffset = std::min(smallestOffset, face.offset);
+            for (int i = 0; i < from.corners.cornerCount; ++i) {
+                hull.indices_.push_back(static_cast<uint8_t>(mesh.indices[from.corners.firstIndex + i]));
+            }
+            hull.faces_.push_back(face);
+        }
+        hull.innerRadius_ = smallestOffset + hull.convexRadius_;
+        return smallestOffset > 0;
+    }
+
+    // In the order of the faces that run along them first.
+    static void AddEdges(ConvexHull& hull) {
+        const size_t count = hull.vertices_.size();
+        std::vector<int> edgeFrom(count * count, -1);
+        for (size_t f = 0; f < hull.faces_.size(); ++f) {
+            const ConvexHull::Face& face = hull.faces_[f];
+            for (int i = 0; i < face.cornerCount; ++i) {
+                const uint8_t from = hull.indices_[face.firstIndex + i];
+                const uint8_t to = hull.indices_[face.firstIndex + (i + 1) % face.cornerCount];
+                const int opposite = edgeFrom[to * count + from];
+                if (opposite >= 0) {
+                    hull.edges_[opposite].right = static_cast<uint8_t>(f);
+                    continue;
+                }
+                edgeFrom[from * count + to] = static_cast<int>(hull.edges_.size());
+                hull.edges_.push_back({from, to, static_cast<uint8_t>(f), 0});
+            }
+        }
+    }
+};
+
+Result<std::shared_ptr<const ConvexHull>> ConvexHull::Create(std::span<const Vector3> points,
+                                                             const ConvexHullSettings& settings) {
+    if (const Status status = CheckInput(points, settings); !status) return status.GetError();
+    std::vector<Position> positions;
+    positions.reserve(points.size());
+    for (const Vector3& p : points) positions.push_back(p.cast<double>());
+
+    const Result<HullMesh> mesh = BuildHull(positions, {.maxVertices = settings.maxVertices});
+    if (!mesh) return mesh.GetError();
+    const SolidMass solid = mesh.Value().Mass();
+    const Result<MassProperties> mass = ToMassProperties(solid);
+    if (!mass) return mass.GetError();
+    if (settings.convexRadius == 0) return HullFinisher::Finish(mesh.Value(), solid.centre, mass.Value(), 0);
+
+    const double radius = settings.convexRadius, innerRadius = DistanceToSurface(mesh.Value(), solid.centre);
+    const Error tooLarge{ErrorCode::OutOfRange,
+                         Message("convexRadius is %g m: it must be smaller than the hull's inner radius, %g m", radius,
+                                 innerRadius)};
+    if (radius >= innerRadius) return tooLarge;
+    const Result<HullMesh> core = ShrunkHull(mesh.Value(), solid.centre, radius, settings.maxVertices);
+    if (!core) return tooLarge;
+    return HullFinisher::Finish(core.Value(), solid.centre, mass.Value(), settings.convexRadius);
+}
+
+Vector3 ConvexHull::SupportCore(const Vector3& direction) const {
+    using Lanes = Wide<kLanes>;
+    const Lanes x(direction.x()), y(direction.y()), z(direction.z());
+    const auto heights = [&](int i) {
+        return Lanes::Load(LaneX() + i) * x + Lanes::Load(LaneY() + i) * y + Lanes::Load(LaneZ() + i) * z;
+    };
+    // Largest height first, then the first vertex that has it: no index is carried through the search.
+    Lanes best = heights(0);
+    for (int i = kLanes; i < paddedCount_; i += kLanes) best = Max(best, heights(i));
+    const Lanes top(HorizontalMax(best));
+    for (int i = 0; i < paddedCount_; i += kLanes) {
+        const uint32_t bits = (heights(i) == top).ToBits();
+        if (bits != 0) return vertices_[i + std::countr_zero(bits)];
+    }
+    return vertices_[0];  // the direction is not finite
+}
+
+}  // namespace fulcrum
