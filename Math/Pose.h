@@ -7,7 +7,7 @@ namespace fulcrum {
 
 struct Pose {
     Position position = Position::Zero();  // m, world space
-    Quaternion rotation;                   // unit
+    Quaternion rotation{};                 // unit
 
     // The world position of a point given in the pose's own frame.
     Position Transform(const Vector3& local) const {

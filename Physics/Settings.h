@@ -56,13 +56,13 @@ struct BodySettings {
     ShapePtr shape;
     MotionType motion = MotionType::Dynamic;
     Position position = Position::Zero();         // m, of the shape's own origin
-    Quaternion rotation;                          // unit within 1e-3; normalised exactly
+    Quaternion rotation{};                        // unit within 1e-3; normalised exactly
     Vector3 linearVelocity = Vector3::Zero();     // m/s, of the centre of mass
     Vector3 angularVelocity = Vector3::Zero();    // rad/s, world axes
     float density = 1000.0f;                      // kg/m3, > 0; used where mass is 0
     float mass = 0.0f;                            // kg, >= 0; 0: density times volume
     Vector3 inertia = Vector3::Zero();            // kg m2 about the shape's principal axes; zero: the shape's own
-    Material material;
+    Material material{};
     float linearDamping = 0.0f;                   // 1/s, >= 0: v' = -damping v
     float angularDamping = 0.0f;                  // 1/s, >= 0
     float gravityFactor = 1.0f;                   // finite

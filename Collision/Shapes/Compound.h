@@ -14,7 +14,7 @@ public:
     struct ChildSettings {
         ShapePtr shape;                         // convex
         Vector3 position = Vector3::Zero();     // of the child's user frame in the compound's user frame, m
-        Quaternion rotation;                    // unit
+        Quaternion rotation{};                  // unit
         float density = 1;                      // relative to the other children's, > 0
     };
     struct Child {
