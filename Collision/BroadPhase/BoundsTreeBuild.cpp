@@ -4,13 +4,81 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstdint>
 #include <limits>
 
 namespace fulcrum {
 
 namespace {
+
 constexpr int kIdLane = 3;
+constexpr int kBins = 128;
+constexpr uint32_t kSmallSplit = 64;
+
+// Twice a leaf's centre.
+inline float Centre(const float* leaf, int axis) { return leaf[axis] - leaf[4 + axis]; }
+
+struct Spread {
+    int axis;
+    float lowest, extent;
+    // False where all centres coincide or lie beyond the floats, and any split is as good as another.
+    bool IsUsable() const { return extent > 1e-30f && extent < std::numeric_limits<float>::max(); }
+};
+
+// The axis along which the centres lie farthest apart.
+template <class Leaf>
+Spread LongestSpread(const Leaf* leaves, uint32_t count) {
+    // The fourth lane is an id's bits: no product here, those of denormal numbers are slow.
+    using Lanes = Wide<4>;
+    Lanes lowest(std::numeric_limits<float>::infinity()), highest(-std::numeric_limits<float>::infinity());
+    for (uint32_t i = 0; i < count; ++i) {
+        const Lanes centre = Lanes::Load(leaves[i].lane) - Lanes::Load(leaves[i].lane + 4);
+        lowest = Min(lowest, centre);
+        highest = Max(highest, centre);
+    }
+    const Lanes extent = highest - lowest;
+    int axis = extent[1] > extent[0] ? 1 : 0;
+    if (extent[2] > extent[axis]) axis = 2;
+    return {axis, lowest[axis], extent[axis]};
 }
+
+// Moves those that `belongs` to the front. Without branches: the tests are coin tosses.
+template <class Leaf, class Test>
+void Partition(Leaf* leaves, uint32_t count, Test belongs) {
+    uint32_t end = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        const Leaf leaf = leaves[i];
+        leaves[i] = leaves[end];
+        leaves[end] = leaf;
+        end += belongs(leaf);
+    }
+}
+
+// The split of a small range: a leaf's place is the number of leaves with smaller keys, counted lanes at a time.
+template <class Leaf>
+void SplitByRank(Leaf* leaves, uint32_t count, uint32_t left, const Spread& spread) {
+    constexpr int kStep = kLanes >= 8 ? 8 : 4;
+    using Lanes = Wide<kStep>;
+    // Keys in [1, 2], of which the last bits are the leaf's index: no two are equal.
+    alignas(32) float keys[kSmallSplit];
+    const float scale = 1.0f / spread.extent;
+    for (uint32_t i = 0; i < count; ++i) {
+        const float key = 1.0f + (Centre(leaves[i].lane, spread.axis) - spread.lowest) * scale;
+        keys[i] = std::bit_cast<float>((std::bit_cast<uint32_t>(key) & ~(kSmallSplit - 1)) | i);
+    }
+    for (uint32_t i = count; i % kStep != 0; ++i) keys[i] = std::numeric_limits<float>::infinity();
+    uint32_t end = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        int rank = 0;
+        for (uint32_t j = 0; j < count; j += kStep) rank += std::popcount((Lanes::Load(keys + j) < Lanes(keys[i])).ToBits());
+        const Leaf leaf = leaves[i];
+        leaves[i] = leaves[end];
+        leaves[end] = leaf;
+        end += static_cast<uint32_t>(rank) < left;
+    }
+}
+
+}  // namespace
 
 // All leaves in the order of the nodes' memory: mostly the spatial order of the last build.
 void BoundsTree::GatherLeaves() {
@@ -78,26 +146,35 @@ void BoundsTree::BuildChildren(uint32_t node, uint32_t first, uint32_t count, ui
     Min(Wide<8>::Load(total.lane), Wide<8>::Load(box.lane)).Store(total.lane);
 }
 
-// Reorders a range so that its first `left` leaves have the smaller centres along the axis on which the centres lie
-// farthest apart.
+// Reorders a range so that its first `left` leaves have the smaller centres, along the axis on which the centres lie
+// farthest apart. Leaves with the same centre may go to either side.
 void BoundsTree::SplitAt(uint32_t first, uint32_t count, uint32_t left) {
-    const auto centre = [](const Packed& leaf, int axis) { return 0.5f * leaf.lane[axis] - 0.5f * leaf.lane[4 + axis]; };
-    float lowest[3], highest[3];
-    for (int axis = 0; axis < 3; ++axis) lowest[axis] = highest[axis] = centre(gathered_[first], axis);
-    for (uint32_t i = first + 1; i < first + count; ++i) {
-        for (int axis = 0; axis < 3; ++axis) {
-            const float c = centre(gathered_[i], axis);
-            lowest[axis] = Min(lowest[axis], c);
-            highest[axis] = Max(highest[axis], c);
+    while (left > 0 && left < count) {
+        const Spread spread = LongestSpread(&gathered_[first], count);
+        if (!spread.IsUsable()) return;
+        if (count <= kSmallSplit) {
+            SplitByRank(&gathered_[first], count, left, spread);
+            return;
         }
+        // A histogram tells the slab in which the median lies; what is left of the problem is inside it.
+        const float scale = static_cast<float>(kBins) / spread.extent;
+        const auto binOf = [&](const float* leaf) {
+            return std::min(static_cast<int>((Centre(leaf, spread.axis) - spread.lowest) * scale), kBins - 1);
+        };
+        uint32_t histogram[kBins] = {};
+        for (uint32_t i = first; i < first + count; ++i) ++histogram[binOf(gathered_[i].lane)];
+        int bin = 0;
+        uint32_t below = 0;
+        while (below + histogram[bin] <= left) below += histogram[bin++];
+        const auto isBelow = [&](const Packed& leaf) { return binOf(leaf.lane) < bin; };
+        const auto isWithin = [&](const Packed& leaf) { return binOf(leaf.lane) == bin; };
+        Partition(&gathered_[first], count, isBelow);
+        if (below == left) return;
+        Partition(&gathered_[first + below], count - below, isWithin);
+        first += below;
+        count = histogram[bin];
+        left -= below;
     }
-    int longest = 0;
-    for (int axis = 1; axis < 3; ++axis)
-        if (highest[axis] - lowest[axis] > highest[longest] - lowest[longest]) longest = axis;
-    const auto begin = gathered_.begin() + first;
-    std::nth_element(begin, begin + left, begin + count, [&](const Packed& a, const Packed& b) {
-        return centre(a, longest) < centre(b, longest);
-    });
 }
 
 }  // namespace fulcrum
