@@ -1,0 +1,33 @@
+#include <Fulcrum/Jobs/ScratchArena.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+namespace {
+constexpr size_t kFirstBlockBytes = 64 * 1024;
+}
+
+// A block is as large as all before it together: the capacity doubles, so few blocks serve even a step that grows.
+void ScratchArena::AddBlock(size_t minimumBytes) {
+    const size_t bytes = std::max({minimumBytes, capacity_, kFirstBlockBytes});
+    blocks_.emplace_back(static_cast<std::byte*>(::operator new(bytes, std::align_val_t{kAlignment})));
+    next_ = blocks_.back().get();
+    left_ = bytes;
+    capacity_ += bytes;
+}
+
+void ScratchArena::Reset() {
+    if (blocks_.empty()) return;
+    if (blocks_.size() > 1) {
+        const size_t total = capacity_;
+        blocks_.clear();
+        next_ = nullptr;
+        left_ = capacity_ = 0;
+        AddBlock(total);
+    }
+    next_ = blocks_.front().get();
+    left_ = capacity_;
+}
+
+}  // namespace fulcrum

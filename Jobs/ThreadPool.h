@@ -1,0 +1,66 @@
+// The engine's own job system: threads that steal ranges from one another.
+// Used by PhysicsSystem where the game brings no JobSystem of its own.
+// Any thread may call it, jobs included; constructed and destroyed by one thread while no call is running.
+#pragma once
+
+#include <Fulcrum/Jobs/JobSystem.h>
+
+#include <atomic>
+#include <memory>
+#include <thread>
+#include <vector>
+
+namespace fulcrum {
+
+// The calling thread is worker 0 and always does its share: helpers make a call faster, but no call waits for a helper
+// that has not begun. Helpers spin for some 100 us after a job, which covers the gaps within a step, and then sleep.
+//
+// Only one call has the helpers at a time. A call from inside a job runs on its own thread alone, under the worker that
+// thread already has. So does a call from a second thread outside the pool, as worker 0 of its own call: ids are unique
+// within a call, and memory they select must belong to that call.
+//
+// Jobs must not throw. Nothing is allocated after construction.
+class ThreadPool final : public JobSystem {
+public:
+    static constexpr uint32_t kMaximumWorkers = 64;
+
+    // workers: threads that take part, the caller included, so that 1 starts no thread. Clamped to 1 .. kMaximumWorkers;
+    // fewer where the operating system refuses to start as many (see WorkerCount).
+    explicit ThreadPool(uint32_t workers);
+    ~ThreadPool() override;
+    ThreadPool(const ThreadPool&) = delete;
+    ThreadPool& operator=(const ThreadPool&) = delete;
+
+    uint32_t WorkerCount() const override { return static_cast<uint32_t>(helpers_.size()) + 1; }
+
+    // minimumRange 0 counts as 1. A count of at most minimumRange is one range on the caller and wakes nobody.
+    void ParallelFor(uint32_t count, uint32_t minimumRange, FunctionRef<void(JobRange)> job) override;
+
+    void RunOnWorkers(FunctionRef<void(uint32_t worker)> job) override;
+
+private:
+    // What a worker has left of a ParallelFor: first and last block of minimumRange items, packed in one word.
+    struct alignas(64) Share {
+        std::atomic<uint64_t> blocks{0};
+    };
+    struct Blocks {
+        uint32_t begin, end;
+    };
+
+    bool TryTakeHelpers();
+    void Dispatch(FunctionRef<void(uint32_t)> job) noexcept;
+    void RunHelper(uint32_t worker);
+    uint32_t CallersWorker() const;
+
+    Blocks TakeFromOwnShare(uint32_t worker);
+    Blocks Steal(uint32_t thief);
+
+    // The door to the current job: generation, open bit, number of helpers inside. See ThreadPool.cpp.
+    alignas(64) std::atomic<uint32_t> gate_{0};
+    const FunctionRef<void(uint32_t)>* job_ = nullptr;
+    alignas(64) std::atomic<bool> busy_{false};
+    std::unique_ptr<Share[]> shares_;
+    std::vector<std::thread> helpers_;
+};
+
+}  // namespace fulcrum
