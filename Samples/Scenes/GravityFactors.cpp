@@ -1,0 +1,50 @@
+#include <Fulcrum/Samples/Scenes/SceneWorld.h>
+
+#include <algorithm>
+#include <array>
+
+namespace fulcrum {
+namespace {
+
+constexpr double kStart = 20;  // m
+constexpr std::array<float, 5> kFactors{-0.2f, 0, 0.25f, 0.5f, 1};
+constexpr std::array<float, 3> kDamping{0.5f, 1, 2};  // 1/s
+constexpr std::array<float, 2> kSpeedLimits{3, 6};    // m/s
+
+// From left to right: the factors, the dampings, the limits.
+void Build(SceneWorld& world) {
+    world.AddFloor(20, 10);
+    const ShapePtr ball = world.SphereOf(0.4f);
+    double x = -6.75;
+    const auto nextPlace = [&x] { return Position(x += 1.5, kStart, 0); };
+    for (float factor : kFactors)
+        world.watched.push_back(world.Add({.shape = ball, .position = nextPlace(), .gravityFactor = factor}));
+    for (float damping : kDamping)
+        world.Add({.shape = ball, .position = nextPlace(), .linearDamping = damping});
+    for (float limit : kSpeedLimits)
+        world.Add({.shape = ball, .position = nextPlace(), .maxLinearSpeed = limit});
+}
+
+// While none has landed yet.
+double Accuracy(const SceneWorld& world) {
+    double worst = 0;
+    for (size_t i = 0; i < kFactors.size(); ++i) {
+        const double expected = kStart - 0.5 * 9.81 * kFactors[i] * world.Time() * world.Time();
+        worst = std::max(worst, std::fabs(world.Bodies().GetPose(world.watched[i]).position.y() - expected));
+    }
+    return worst;
+}
+
+}  // namespace
+
+extern const Scene kGravityFactorsScene{
+    .name = "gravity_factors",
+    .description = "ten balls fall from one height: gravity factors -0.2 to 1, dampings, speed limits",
+    .steps = 114,
+    .sleeping = false,
+    .build = Build,
+    .accuracy = Accuracy,
+    .accuracyMeaning = "largest error of a free ball's height against g t^2 / 2, m",
+};
+
+}  // namespace fulcrum

@@ -1,0 +1,26 @@
+#include <Fulcrum/Samples/Scenes/FlatPyramid.h>
+
+namespace fulcrum {
+namespace {
+
+void Build(SceneWorld& world) {
+    world.AddFloor(400, 400);
+    AddFlatPyramid(world, world.BoxOf(0.5f, 0.5f, 0.5f), 100, 0, 0);
+}
+
+double Accuracy(const SceneWorld& world) { return WorstHeightError(world, 99.5); }
+
+}  // namespace
+
+extern const Scene kLargePyramidScene{
+    .name = "large_pyramid",
+    .description = "5050 boxes in a wall of 100 layers that tapers to one box",
+    .kind = SceneKind::Performance,
+    .steps = 200,
+    .sleeping = false,
+    .build = Build,
+    .accuracy = Accuracy,
+    .accuracyMeaning = "height of the top box minus 99.5 m, that of a perfect stack",
+};
+
+}  // namespace fulcrum

@@ -1,0 +1,36 @@
+#include <Fulcrum/Samples/Scenes/SceneWorld.h>
+
+namespace fulcrum {
+namespace {
+
+constexpr double kStart = 5;  // m, of the balls' centres
+constexpr float kRadius = 0.4f;
+
+void Build(SceneWorld& world) {
+    world.AddFloor(20, 20);
+    const ShapePtr ball = world.SphereOf(kRadius);
+    for (int i = 0; i <= 10; ++i)
+        world.watched.push_back(world.Add({.shape = ball,
+                                           .position = {1.2 * (i - 5), kStart, 0},
+                                           .material = {.restitution = 0.1f * static_cast<float>(i)}}));
+}
+
+// Of the ball that loses nothing: the height that it could climb to.
+double Accuracy(const SceneWorld& world) {
+    const BodyId ball = world.watched.back();
+    const double speed = world.Bodies().GetLinearVelocity(ball).y();
+    return world.Bodies().GetPose(ball).position.y() + speed * speed / (2 * 9.81) - kStart;
+}
+
+}  // namespace
+
+extern const Scene kRestitutionRowScene{
+    .name = "restitution_row",
+    .description = "eleven balls with restitution 0 to 1 bounce side by side",
+    .steps = 600,
+    .build = Build,
+    .accuracy = Accuracy,
+    .accuracyMeaning = "energy height of the ball with restitution 1 minus its start, m",
+};
+
+}  // namespace fulcrum

@@ -1,0 +1,95 @@
+#include <Fulcrum/Samples/Scenes/SceneWorld.h>
+
+#include <Fulcrum/Collision/Shapes/ConvexHull.h>
+#include <Fulcrum/Collision/Shapes/Primitives.h>
+#include <Fulcrum/Math/Trigonometry.h>
+
+#include <algorithm>
+#include <chrono>
+
+namespace fulcrum {
+
+SceneWorld::SceneWorld(const Scene& scene, const SceneInput& input)
+    : random(input.seed), scene_(scene), input_(input) {}
+
+Result<std::unique_ptr<SceneWorld>> SceneWorld::Create(const Scene& scene, const SceneInput& input, JobSystem* jobs) {
+    SystemSettings settings;
+    settings.solver = input.solver;
+    settings.sleep.enabled = scene.sleeping;
+    if (scene.adjust) scene.adjust(settings);
+    Result<std::unique_ptr<PhysicsSystem>> system = PhysicsSystem::Create(settings, jobs);
+    if (!system) return system.GetError();
+
+    std::unique_ptr<SceneWorld> world(new SceneWorld(scene, input));
+    world->system_ = std::move(system.Value());
+    scene.build(*world);
+    if (world->firstError_) return *world->firstError_;
+    return world;
+}
+
+Status SceneWorld::Step(double dt) {
+    if (scene_.beforeStep) scene_.beforeStep(*this, dt);
+    const auto begin = std::chrono::steady_clock::now();
+    Status status = system_->Update(dt);
+    if (!status) return status;
+    lastMs_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+    if (stepCount_ > 0) longestMs_ = std::max(longestMs_, lastMs_);
+    ++stepCount_;
+    time_ += dt;
+    return status;
+}
+
+int SceneWorld::NonFiniteBodies() const {
+    int count = 0;
+    system_->VisitBodies([&](BodyId id) {
+        const Pose pose = Bodies().GetPose(id);
+        const bool finite = IsFinite(pose.position) && IsFinite(pose.rotation) &&
+                            IsFinite(Bodies().GetLinearVelocity(id)) && IsFinite(Bodies().GetAngularVelocity(id));
+        if (!finite || Bodies().IsFrozen(id)) ++count;
+    });
+    return count;
+}
+
+template <class T>
+ShapePtr SceneWorld::Checked(Result<T> shape) {
+    if (shape) return shape.Value();
+    if (!firstError_) firstError_ = shape.GetError();
+    return nullptr;
+}
+
+ShapePtr SceneWorld::BoxOf(float halfX, float halfY, float halfZ) {
+    return Checked(Box::Create(Vector3(halfX, halfY, halfZ)));
+}
+ShapePtr SceneWorld::SphereOf(float radius) { return Checked(Sphere::Create(radius)); }
+ShapePtr SceneWorld::CapsuleOf(float halfHeight, float radius) { return Checked(Capsule::Create(halfHeight, radius)); }
+ShapePtr SceneWorld::HullOf(std::span<const Vector3> points) { return Checked(ConvexHull::Create(points)); }
+ShapePtr SceneWorld::CompoundOf(std::span<const Compound::ChildSettings> children) {
+    return Checked(Compound::Create(children));
+}
+
+BodyId SceneWorld::Add(const BodySettings& settings) {
+    Result<BodyId> id = Bodies().Create(settings);
+    if (id) return id.Value();
+    if (!firstError_) firstError_ = id.GetError();
+    return {};
+}
+
+BodyId SceneWorld::AddFloor(float halfX, float halfZ) {
+    return Add({.shape = BoxOf(halfX, 1, halfZ), .motion = MotionType::Static, .position = {0, -1, 0}});
+}
+
+double BodiesBelowTheFloor(const SceneWorld& world) {
+    int count = 0;
+    world.System().VisitBodies([&](BodyId id) {
+        const bool dynamic = world.Bodies().GetMotionType(id) == MotionType::Dynamic;
+        if (dynamic && !(world.Bodies().GetCentreOfMass(id).y() >= 0)) ++count;
+    });
+    return count;
+}
+
+Quaternion Turn(const Vector3& axis, double angle) {
+    const Vector3 imaginary = axis * static_cast<float>(Sin(0.5 * angle));
+    return {imaginary.x(), imaginary.y(), imaginary.z(), static_cast<float>(Cos(0.5 * angle))};
+}
+
+}  // namespace fulcrum

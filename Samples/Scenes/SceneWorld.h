@@ -1,0 +1,89 @@
+// A physics system filled by a scene, and the helpers with which scenes fill it. Owned by the runner, the benchmark and the
+// tests; one thread at a time.
+#pragma once
+
+#include <Fulcrum/Collision/Shapes/Compound.h>
+#include <Fulcrum/Physics/PhysicsSystem.h>
+#include <Fulcrum/Samples/Scenes/Random.h>
+#include <Fulcrum/Samples/Scenes/Scene.h>
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace fulcrum {
+
+struct SceneInput {
+    uint64_t seed = 1;
+    SolverSettings solver;  // the default effort
+    ShapePtr shape;         // of the drop scene
+    int count = 50;         // bodies of the drop scene, >= 1
+};
+
+class SceneWorld {
+public:
+    // `jobs` (not owned, may be null) must outlive the world. Errors: those of PhysicsSystem::Create, of the shapes and of
+    // BodyInterface::Create, the first that was met.
+    static Result<std::unique_ptr<SceneWorld>> Create(const Scene& scene, const SceneInput& input = {},
+                                                      JobSystem* jobs = nullptr);
+
+    // The scene's own doings, then PhysicsSystem::Update. Errors as there.
+    Status Step(double dt);
+
+    const Scene& Definition() const { return scene_; }
+    const SceneInput& Input() const { return input_; }
+    PhysicsSystem& System() { return *system_; }
+    const PhysicsSystem& System() const { return *system_; }
+    BodyInterface& Bodies() { return system_->Bodies(); }
+    const BodyInterface& Bodies() const { return system_->Bodies(); }
+    int StepCount() const { return stepCount_; }
+    double Time() const { return time_; }               // s
+    double LastStepMs() const { return lastMs_; }        // wall clock of PhysicsSystem::Update alone
+    double LongestStepMs() const { return longestMs_; }  // of all but the first step
+
+    // Number of bodies with a pose or velocity that is not finite, or frozen for that reason.
+    int NonFiniteBodies() const;
+
+    // For scenes. -------------------------------------------------------------------------------------------------------
+
+    Random random;                // seeded by the input
+    std::vector<BodyId> watched;  // what the figure looks at, in an order that the scene chooses
+
+    // Shapes; null, and an error of Create, where the sizes are wrong.
+    ShapePtr BoxOf(float halfX, float halfY, float halfZ);
+    ShapePtr SphereOf(float radius);
+    ShapePtr CapsuleOf(float halfHeight, float radius);
+    ShapePtr HullOf(std::span<const Vector3> points);
+    ShapePtr CompoundOf(std::span<const Compound::ChildSettings> children);
+
+    // An error of Create where the settings are wrong.
+    BodyId Add(const BodySettings& settings);
+    // Static box, its top at y = 0.
+    BodyId AddFloor(float halfX, float halfZ);
+
+private:
+    SceneWorld(const Scene& scene, const SceneInput& input);
+    template <class T>
+    ShapePtr Checked(Result<T> shape);
+
+    const Scene& scene_;
+    SceneInput input_;
+    std::unique_ptr<PhysicsSystem> system_;
+    std::optional<Error> firstError_;
+    int stepCount_ = 0;
+    double time_ = 0;
+    double lastMs_ = 0;
+    double longestMs_ = 0;
+};
+
+// A figure of several scenes: dynamic bodies whose centre is below y = 0, or nowhere.
+double BodiesBelowTheFloor(const SceneWorld& world);
+
+// The rotation by `angle` radians about a unit axis.
+Quaternion Turn(const Vector3& axis, double angle);
+
+inline constexpr double kPi = 3.14159265358979323846;
+inline constexpr double kDegree = kPi / 180;
+
+}  // namespace fulcrum

@@ -1,0 +1,50 @@
+#include <Fulcrum/Samples/Scenes/Scenes.h>
+
+#include <iterator>
+
+namespace fulcrum {
+
+// A line a scene; each is defined in the file of its name as `const Scene kNameScene`.
+#define FULCRUM_SCENES(scene) \
+    scene(Pyramid)            \
+    scene(LargePyramid)       \
+    scene(ManyPyramids)       \
+    scene(HullPile)           \
+    scene(Drum)               \
+    scene(MostlyAsleep)       \
+    scene(Tower)              \
+    scene(Dominoes)           \
+    scene(CardHouse)          \
+    scene(WreckingPile)       \
+    scene(FrictionRamp)       \
+    scene(RestitutionRow)     \
+    scene(Gyroscope)          \
+    scene(Bowls)              \
+    scene(GravityFactors)     \
+    scene(FlatLand)           \
+    scene(MovingPlatforms)    \
+    scene(Layers)             \
+    scene(TrapDoor)
+
+#define FULCRUM_DECLARE(Name) extern const Scene k##Name##Scene;
+FULCRUM_SCENES(FULCRUM_DECLARE)
+#undef FULCRUM_DECLARE
+
+namespace {
+
+#define FULCRUM_LIST(Name) &k##Name##Scene,
+const Scene* const kScenes[] = {FULCRUM_SCENES(FULCRUM_LIST)};
+#undef FULCRUM_LIST
+#undef FULCRUM_SCENES
+
+}  // namespace
+
+std::span<const Scene* const> AllScenes() { return kScenes; }
+
+const Scene* FindScene(std::string_view name) {
+    for (const Scene* scene : kScenes)
+        if (name == scene->name) return scene;
+    return nullptr;
+}
+
+}  // namespace fulcrum

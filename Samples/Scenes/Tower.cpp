@@ -1,0 +1,33 @@
+#include <Fulcrum/Samples/Scenes/SceneWorld.h>
+
+namespace fulcrum {
+namespace {
+
+constexpr int kBoxes = 20;
+
+void Build(SceneWorld& world) {
+    world.AddFloor(20, 20);
+    const ShapePtr cube = world.BoxOf(0.5f, 0.5f, 0.5f);
+    for (int i = 0; i < kBoxes; ++i) {
+        const double x = world.random.Between(-0.01, 0.01), z = world.random.Between(-0.01, 0.01);
+        world.watched.push_back(world.Add({.shape = cube, .position = {x, 0.5 + i, z}}));
+    }
+}
+
+double Accuracy(const SceneWorld& world) {
+    return world.Bodies().GetPose(world.watched.back()).position.y() - (kBoxes - 0.5);
+}
+
+}  // namespace
+
+extern const Scene kTowerScene{
+    .name = "tower",
+    .description = "20 boxes stacked up to 1 cm out of line: the tower stands and falls asleep",
+    .steps = 600,
+    .usesSeed = true,
+    .build = Build,
+    .accuracy = Accuracy,
+    .accuracyMeaning = "height of the top box minus 19.5 m, that of a perfect stack",
+};
+
+}  // namespace fulcrum
