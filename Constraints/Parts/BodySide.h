@@ -1,0 +1,44 @@
+// What every constraint part shares about its two bodies: how a side moves (known at compile time), masses overridden
+// for one constraint, masked updates of lanes. Called by the parts and by whoever sets them up. No state.
+#pragma once
+
+#include <Fulcrum/Constraints/Parts/BodyState.h>
+
+#include <cstdint>
+
+namespace fulcrum {
+
+// A side that is not Dynamic is neither read nor written where that changes nothing: Static has no velocity and no mass,
+// Kinematic has a velocity, which the row sees, and no mass.
+enum class BodySide : uint8_t { Static, Kinematic, Dynamic };
+
+constexpr bool HasVelocity(BodySide side) { return side != BodySide::Static; }
+constexpr bool HasMass(BodySide side) { return side == BodySide::Dynamic; }
+
+// bool for float, one truth value a lane for lanes.
+template <class Real>
+using MaskOf = decltype(Real(0.0f) < Real(0.0f));
+
+// The mass of a body as one constraint is to see it: another inverse mass (1/kg, >= 0) and the inverse inertia scaled
+// (>= 0). A user makes one body heavier for one contact this way. Give the result to set-up, velocity and position solve
+// alike; momentum is then not conserved unless both bodies' scales agree.
+template <class Real>
+inline InverseMass<Real> OverrideMass(const InverseMass<Real>& mass, Real inverseMass, Real inverseInertiaScale) {
+    InverseMass<Real> result;
+    result.mass = inverseMass;
+    result.inertia.xx = mass.inertia.xx * inverseInertiaScale;
+    result.inertia.yy = mass.inertia.yy * inverseInertiaScale;
+    result.inertia.zz = mass.inertia.zz * inverseInertiaScale;
+    result.inertia.xy = mass.inertia.xy * inverseInertiaScale;
+    result.inertia.xz = mass.inertia.xz * inverseInertiaScale;
+    result.inertia.yz = mass.inertia.yz * inverseInertiaScale;
+    return result;
+}
+
+// mask ? a : b, by component. Adding zero instead would turn -0 into +0 and NaN times zero into NaN.
+template <class Real>
+inline Vec3<Real> Select(MaskOf<Real> mask, const Vec3<Real>& a, const Vec3<Real>& b) {
+    return Vec3<Real>(Select(mask, a.x(), b.x()), Select(mask, a.y(), b.y()), Select(mask, a.z(), b.z()));
+}
+
+}  // namespace fulcrum
