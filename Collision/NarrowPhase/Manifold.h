@@ -25,9 +25,8 @@ struct Manifold {
 struct PairCache {
     enum class Kind : uint8_t { None, FaceOfA, FaceOfB, EdgePair, Axis };
     Kind kind = Kind::None;
-    uint8_t indexA = 0, indexB = 0;
-    uint8_t spare = 0;
-    float axis[3] = {0, 0, 0};  // in A's frame, where the kind is Axis
+    uint16_t indexA = 0, indexB = 0;  // the faces that touched; of an EdgePair, the edges (each function's own numbers)
+    float axis[3] = {0, 0, 0};        // in A's frame, where the kind is Axis
 };
 
 }  // namespace fulcrum

@@ -1,0 +1,207 @@
+#include <Fulcrum/Collision/NarrowPhase/FaceContact.h>
+
+#include <Fulcrum/Collision/NarrowPhase/AxisProof.h>
+#include <Fulcrum/Collision/NarrowPhase/Clipping.h>
+#include <Fulcrum/Collision/NarrowPhase/Features.h>
+#include <Fulcrum/Collision/NarrowPhase/ManifoldReduction.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+namespace {
+
+// The pair as seen from the reference face's polyhedron: its own frame, and the other's pose in it.
+struct FaceView {
+    const Polyhedron& reference;
+    const Polyhedron& incident;
+    Matrix3 rotation;  // the incident polyhedron's axes
+    Vector3 position;  // its centre
+    const ConvexHull::Face& face;
+    const uint8_t* corners;
+
+    FaceView(const PolyhedronPair& pair, const ReferenceFace& f)
+        : reference(f.ofA ? pair.a : pair.b), incident(f.ofA ? pair.b : pair.a), face(reference.faces[f.index]),
+          corners(reference.indices + face.firstIndex) {
+        if (f.ofA) {
+            rotation = pair.rotation;
+            position = pair.position;
+        } else {
+            const Matrix3& r = pair.rotation;
+            rotation = {Vector3(r.x.x(), r.y.x(), r.z.x()), Vector3(r.x.y(), r.y.y(), r.z.y()),
+                        Vector3(r.x.z(), r.y.z(), r.z.z())};
+            position = -r.TransposeMultiply(pair.position);
+        }
+    }
+    Vector3 IncidentVertex(int i) const { return rotation * incident.vertices[i] + position; }
+    ClipSide Side(int i) const {
+        const Vector3& from = reference.vertices[corners[i]];
+        const Vector3& to = reference.vertices[corners[i + 1 == face.cornerCount ? 0 : i + 1]];
+        const Vector3 outwards = Normalized(Cross<float>(Vector3(to - from), face.normal));
+        return {outwards, Dot(outwards, from)};
+    }
+};
+
+// The other polyhedron's feature that faces the reference, and what clipping leaves of it.
+class ClippedFeature {
+public:
+    ClippedFeature(const FaceView& view, float slop);
+
+    int Count() const { return count_; }
+    int IncidentFace() const { return incidentFace_; }
+    const ClipVertex& operator[](int i) const { return current_[i]; }
+    uint32_t Feature(int i, bool referenceOfA) const;
+
+private:
+    void ClipPolygon(float slop);
+    void ClipSegment(float slop);
+    uint32_t IncidentCorner(uint32_t i) const { return corners_ != nullptr ? corners_[i] : i; }
+    uint32_t IncidentEdge(uint32_t i) const {
+        return EdgeName(IncidentCorner(i), IncidentCorner(i + 1 == static_cast<uint32_t>(cornerCount_) ? 0 : i + 1));
+    }
+
+    const FaceView& view_;
+    const uint8_t* corners_ = nullptr;  // of the incident face
+    int cornerCount_ = 0;
+    int incidentFace_ = 0;
+    int count_ = 0;
+    ClipVertex* current_ = first_;
+    ClipVertex first_[kMaxClipVertices];
+    ClipVertex second_[kMaxClipVertices];
+};
+
+ClippedFeature::ClippedFeature(const FaceView& view, float slop) : view_(view) {
+    const Polyhedron& incident = view.incident;
+    if (incident.faceCount > 0) {
+        incidentFace_ = FaceAlong(incident, -view.rotation.TransposeMultiply(view.face.normal));
+        const ConvexHull::Face& face = incident.faces[incidentFace_];
+        corners_ = incident.indices + face.firstIndex;
+        cornerCount_ = face.cornerCount;
+    } else {
+        cornerCount_ = incident.vertexCount;
+    }
+    count_ = cornerCount_;
+    for (int i = 0; i < count_; ++i) {
+        first_[i].position = view.IncidentVertex(static_cast<int>(IncidentCorner(i)));
+        first_[i].label = static_cast<uint32_t>(i);
+    }
+    if (count_ > 2) ClipPolygon(slop);
+    else ClipSegment(slop);
+}
+
+void ClippedFeature::ClipPolygon(float slop) {
+    ClipVertex* spare = second_;
+    for (int k = 0; k < view_.face.cornerCount && count_ > 0; ++k) {
+        count_ = ClipBySide(current_, count_, view_.Side(k), kSideLabel + static_cast<uint32_t>(k), slop, spare);
+        std::swap(current_, spare);
+    }
+}
+
+void ClippedFeature::ClipSegment(float slop) {
+    if (count_ == 1) current_[1] = current_[0];
+    int left = 2;
+    for (int k = 0; k < view_.face.cornerCount && left > 0; ++k)
+        left = ClipSegmentBySide(current_, view_.Side(k), kSideLabel + static_cast<uint32_t>(k), slop);
+    count_ = left == 0 ? 0 : count_;
+}
+
+uint32_t ClippedFeature::Feature(int i, bool referenceOfA) const {
+    const uint32_t starts = current_[i].label;
+    const auto crossing = [&](uint32_t incidentEdge, uint32_t side) {
+        const uint32_t next = side + 1 == view_.face.cornerCount ? 0 : side + 1;
+        const uint32_t referenceEdge = EdgeName(view_.corners[side], view_.corners[next]);
+        return referenceOfA ? CrossingFeature(referenceEdge, incidentEdge)
+                            : CrossingFeature(incidentEdge, referenceEdge);
+    };
+    if (cornerCount_ <= 2) {  // ends of a segment
+        if (starts < kSideLabel) return VertexFeature(!referenceOfA, starts);
+        return crossing(EdgeName(0, 1), starts - kSideLabel);
+    }
+    const uint32_t ends = current_[i == 0 ? count_ - 1 : i - 1].label;
+    if (starts < kSideLabel && ends < kSideLabel) return VertexFeature(!referenceOfA, IncidentCorner(starts));
+    if (starts < kSideLabel) return crossing(IncidentEdge(starts), ends - kSideLabel);
+    if (ends < kSideLabel) return crossing(IncidentEdge(ends), starts - kSideLabel);
+    // Two sides meet: a corner of the reference face, which begins the later of the two.
+    const uint32_t low = std::min(starts, ends) - kSideLabel, high = std::max(starts, ends) - kSideLabel;
+    const bool wraps = low == 0 && high + 1 == view_.face.cornerCount;
+    return VertexFeature(referenceOfA, view_.corners[wraps ? 0 : high]);
+}
+
+// How far inside all sides of the face the middle of the deepest points lies: a disc of that radius about it, in the
+// reference face's plane, belongs to the Minkowski difference.
+float DiscRadius(const FaceView& view, const ClippedFeature& feature, float deepEnough) {
+    Vector3 middle = Vector3::Zero();
+    float count = 0;
+    for (int i = 0; i < feature.Count(); ++i) {
+        if (Dot(view.face.normal, feature[i].position) - view.face.offset > deepEnough) continue;
+        middle += feature[i].position;
+        count += 1;
+    }
+    middle *= 1.0f / count;
+    float radius = view.Side(0).offset - Dot(view.Side(0).normal, middle);
+    for (int k = 1; k < view.face.cornerCount; ++k) {
+        const ClipSide side = view.Side(k);
+        radius = Min(radius, side.offset - Dot(side.normal, middle));
+    }
+    return radius;
+}
+
+}  // namespace
+
+ReferenceFace MeasureFace(const PolyhedronPair& pair, bool ofA, int index) {
+    if (ofA) {
+        const ConvexHull::Face& face = pair.a.faces[index];
+        const Extreme e = FarthestVertex(pair.b, -pair.DirectionInB(face.normal));
+        return {true, index, Dot(face.normal, pair.position) - e.value - face.offset, e.vertex};
+    }
+    const ConvexHull::Face& face = pair.b.faces[index];
+    const Extreme e = FarthestVertex(pair.a, -(pair.rotation * face.normal));
+    return {false, index, -Dot(face.normal, pair.rotation.TransposeMultiply(pair.position)) - e.value - face.offset,
+            e.vertex};
+}
+
+FaceContact BuildFaceContact(const PolyhedronPair& pair, const ReferenceFace& face, const ContactTolerances& tolerances,
+                             Manifold& manifold) {
+    const FaceView view(pair, face);
+    const ClippedFeature feature(view, tolerances.prefer);
+    FaceContact result{false, false, feature.IncidentFace()};
+    manifold.pointCount = 0;
+    if (feature.Count() == 0) return result;
+
+    const Vector3 normal = view.face.normal;
+    manifold.normal = face.ofA ? normal : Vector3(-(pair.rotation * normal));
+    float separations[kMaxClipVertices];
+    int near[kMaxClipVertices];
+    int nearCount = 0;
+    float least = 0;
+    for (int i = 0; i < feature.Count(); ++i) {
+        const float separation = Dot(normal, feature[i].position) - view.face.offset;
+        if (i == 0 || separation < least) least = separation;
+        if (separation > tolerances.reach) continue;
+        separations[nearCount] = separation;
+        near[nearCount++] = i;
+    }
+    result.touches = least <= face.separation + tolerances.prefer;
+    if (result.touches) {
+        const float radius = face.separation >= 0 ? 0 : DiscRadius(view, feature, least + tolerances.prefer);
+        result.proven = NoBetterAxis(pair, manifold.normal, -face.separation, radius);
+    }
+
+    int chosen[4];
+    const int count = ChooseFour(
+        nearCount, normal, tolerances.prefer, [&](int i) -> const Vector3& { return feature[near[i]].position; },
+        [&](int i) { return separations[i]; }, chosen);
+    manifold.pointCount = count;
+    for (int i = 0; i < count; ++i) {
+        const int c = chosen[i];
+        const Vector3& x = feature[near[c]].position;
+        ManifoldPoint& point = manifold.points[i];
+        const Vector3 onCore = face.ofA ? Vector3(x - normal * separations[c]) : Vector3(pair.rotation * x + pair.position);
+        point.positionOnA = onCore + manifold.normal * pair.a.radius;
+        point.separation = separations[c] - pair.RadiusSum();
+        point.feature = feature.Feature(near[c], face.ofA);
+    }
+    return result;
+}
+
+}  // namespace fulcrum

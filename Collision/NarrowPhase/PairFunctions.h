@@ -1,0 +1,31 @@
+// The pair functions that the pair table names. Each writes the manifold of its two shapes, in the first one's frame.
+// Called by Collide; thread-safe; none but the libccd ones allocates.
+#pragma once
+
+#include <Fulcrum/Collision/NarrowPhase/Collide.h>
+
+namespace fulcrum {
+
+// What a pair function is given besides the manifold it writes.
+struct PairQuery {
+    const ConvexShape& a;
+    const ConvexShape& b;
+    const RelativePose& bInA;
+    const CollideSettings& settings;
+    PairCache& cache;
+    CollideCounters& counters;
+};
+
+using PairFunction = void (*)(const PairQuery& query, Manifold& manifold);
+
+void CollideSphereSphere(const PairQuery& query, Manifold& manifold);
+void CollideCapsuleSphere(const PairQuery& query, Manifold& manifold);
+void CollideCapsuleCapsule(const PairQuery& query, Manifold& manifold);
+void CollideBoxSphere(const PairQuery& query, Manifold& manifold);
+void CollideBoxBox(const PairQuery& query, Manifold& manifold);
+// Any two of sphere, capsule, box and hull of which one at least is a box or a hull.
+void CollidePolyhedra(const PairQuery& query, Manifold& manifold);
+// Any two.
+void CollideLibccd(const PairQuery& query, Manifold& manifold);
+
+}  // namespace fulcrum

@@ -1,0 +1,51 @@
+// The pair table: which function serves which two shapes.
+#include <Fulcrum/Collision/NarrowPhase/PairFunctions.h>
+
+namespace fulcrum {
+
+namespace {
+
+// Serves (a, b) with a function written for (b, a): the same contact seen from the other side. The cache is always used
+// the same way round, so that it needs no flip.
+template <PairFunction Function>
+void Flip(const PairQuery& query, Manifold& manifold) {
+    const RelativePose aInB = Inverse(query.bInA);
+    Function({query.b, query.a, aInB, query.settings, query.cache, query.counters}, manifold);
+    const Matrix3 rotation = ToMatrix(query.bInA.rotation);
+    for (int i = 0; i < manifold.pointCount; ++i) {
+        ManifoldPoint& point = manifold.points[i];
+        const Vector3 onOther = point.positionOnA + manifold.normal * point.separation;
+        point.positionOnA = rotation * onOther + query.bInA.position;
+        // Vertices of A and of B are the features of kinds 1 and 2.
+        const uint32_t kind = point.feature >> 30;
+        if (kind == 1 || kind == 2) point.feature ^= 3u << 30;
+    }
+    manifold.normal = -(rotation * manifold.normal);
+}
+
+constexpr PairFunction kSphereSphere = CollideSphereSphere, kSphereCapsule = Flip<CollideCapsuleSphere>;
+constexpr PairFunction kBoxSphere = CollideBoxSphere, kSphereBox = Flip<CollideBoxSphere>;
+constexpr PairFunction kCapsuleSphere = CollideCapsuleSphere, kCapsuleCapsule = CollideCapsuleCapsule;
+constexpr PairFunction kBoxBox = CollideBoxBox;
+constexpr PairFunction kPolyhedra = CollidePolyhedra, kFlipped = Flip<CollidePolyhedra>;
+
+// By the type of A down and of B across. A shape that gets a line here and no functions of its own is served by CollideLibccd.
+constexpr PairFunction kPairTable[kConvexShapeTypes][kConvexShapeTypes] = {
+    //                   Sphere          Box         Capsule          ConvexHull
+    /* Sphere     */ {kSphereSphere, kSphereBox, kSphereCapsule, kFlipped},
+    /* Box        */ {kBoxSphere, kBoxBox, kPolyhedra, kFlipped},
+    /* Capsule    */ {kCapsuleSphere, kFlipped, kCapsuleCapsule, kFlipped},
+    /* ConvexHull */ {kPolyhedra, kPolyhedra, kPolyhedra, kPolyhedra},
+};
+
+}  // namespace
+
+void Collide(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA, const CollideSettings& settings,
+             PairCache& cache, Manifold& manifold, CollideCounters& counters) {
+    const PairFunction function = settings.method == NarrowPhaseMethod::Libccd
+                                      ? CollideLibccd
+                                      : kPairTable[static_cast<int>(a.Type())][static_cast<int>(b.Type())];
+    function({a, b, bInA, settings, cache, counters}, manifold);
+}
+
+}  // namespace fulcrum

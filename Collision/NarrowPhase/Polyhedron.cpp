@@ -1,0 +1,112 @@
+#include <Fulcrum/Collision/NarrowPhase/Polyhedron.h>
+
+#include <Fulcrum/Collision/Shapes/Primitives.h>
+
+namespace fulcrum {
+
+namespace {
+
+// Four corners a face, counter-clockwise seen from outside.
+constexpr uint8_t kBoxIndices[24] = {1, 3, 7, 5, 0, 4, 6, 2, 2, 6, 7, 3, 0, 1, 5, 4, 4, 5, 7, 6, 0, 2, 3, 1};
+
+// From, to, the face on the left (seen from outside, upwards along the edge) and on the right.
+constexpr ConvexHull::Edge kBoxEdges[12] = {{0, 1, 5, 3}, {2, 3, 2, 5}, {4, 5, 3, 4}, {6, 7, 4, 2},
+                                            {0, 2, 1, 5}, {1, 3, 5, 0}, {4, 6, 4, 1}, {5, 7, 0, 4},
+                                            {0, 4, 3, 1}, {1, 5, 0, 3}, {2, 6, 1, 2}, {3, 7, 2, 0}};
+// A segment has no faces; those named here are not looked at.
+constexpr ConvexHull::Edge kSegmentEdge[1] = {{0, 1, 0, 0}};
+
+Polyhedron SmallCore(const PolyhedronStorage& storage, int vertexCount, int faceCount) {
+    Polyhedron p;
+    p.x = storage.lanes;
+    p.y = storage.lanes + 8;
+    p.z = storage.lanes + 16;
+    p.laneCount = 8;
+    p.vertexCount = vertexCount;
+    p.faceCount = faceCount;
+    p.vertices = storage.vertices;
+    p.faces = storage.faces;
+    p.indices = kBoxIndices;
+    p.edges = faceCount > 0 ? kBoxEdges : kSegmentEdge;
+    p.edgeCount = faceCount > 0 ? 12 : vertexCount - 1;
+    p.radius = 0;
+    p.innerRadius = 0;
+    return p;
+}
+
+void FillLanes(PolyhedronStorage& storage, int vertexCount) {
+    for (int i = 0; i < 8; ++i) {
+        const Vector3& v = storage.vertices[i < vertexCount ? i : 0];
+        storage.lanes[i] = v.x();
+        storage.lanes[8 + i] = v.y();
+        storage.lanes[16 + i] = v.z();
+    }
+}
+
+}  // namespace
+
+Polyhedron CoreOf(const ConvexHull& hull) {
+    Polyhedron p;
+    p.x = hull.LaneX();
+    p.y = hull.LaneY();
+    p.z = hull.LaneZ();
+    p.laneCount = hull.PaddedVertexCount();
+    p.vertexCount = static_cast<int>(hull.Vertices().size());
+    p.faceCount = static_cast<int>(hull.Faces().size());
+    p.vertices = hull.Vertices().data();
+    p.faces = hull.Faces().data();
+    p.indices = hull.Indices().data();
+    p.edges = hull.Edges().data();
+    p.edgeCount = static_cast<int>(hull.Edges().size());
+    p.radius = hull.ConvexRadius();
+    p.innerRadius = Max(0.0f, hull.InnerRadius() - hull.ConvexRadius());
+    return p;
+}
+
+Polyhedron CoreOf(const Box& box, PolyhedronStorage& storage) {
+    const float radius = box.ConvexRadius();
+    const Vector3 h = box.HalfExtents() - Vector3::Constant(radius);
+    for (int i = 0; i < 8; ++i)
+        storage.vertices[i] = Vector3(i & 1 ? h.x() : -h.x(), i & 2 ? h.y() : -h.y(), i & 4 ? h.z() : -h.z());
+    for (int i = 0; i < 6; ++i) {
+        ConvexHull::Face& face = storage.faces[i];
+        face.firstIndex = static_cast<uint16_t>(4 * i);
+        face.cornerCount = 4;
+        face.normal = Vector3::Zero();
+        face.normal[i / 2] = i % 2 == 0 ? 1.0f : -1.0f;
+        face.offset = h[i / 2];
+    }
+    FillLanes(storage, 8);
+    Polyhedron p = SmallCore(storage, 8, 6);
+    p.radius = radius;
+    p.innerRadius = Min(h.x(), Min(h.y(), h.z()));
+    return p;
+}
+
+Polyhedron CoreOf(const Capsule& capsule, PolyhedronStorage& storage) {
+    storage.vertices[0] = Vector3(0, -capsule.HalfHeight(), 0);
+    storage.vertices[1] = Vector3(0, capsule.HalfHeight(), 0);
+    FillLanes(storage, 2);
+    Polyhedron p = SmallCore(storage, 2, 0);
+    p.radius = capsule.Radius();
+    return p;
+}
+
+Polyhedron CoreOf(const Sphere& sphere, PolyhedronStorage& storage) {
+    storage.vertices[0] = Vector3::Zero();
+    FillLanes(storage, 1);
+    Polyhedron p = SmallCore(storage, 1, 0);
+    p.radius = sphere.Radius();
+    return p;
+}
+
+Polyhedron CoreOf(const ConvexShape& shape, PolyhedronStorage& storage) {
+    switch (shape.Type()) {
+        case ShapeType::Sphere: return CoreOf(static_cast<const Sphere&>(shape), storage);
+        case ShapeType::Box: return CoreOf(static_cast<const Box&>(shape), storage);
+        case ShapeType::Capsule: return CoreOf(static_cast<const Capsule&>(shape), storage);
+        default: return CoreOf(static_cast<const ConvexHull&>(shape));
+    }
+}
+
+}  // namespace fulcrum

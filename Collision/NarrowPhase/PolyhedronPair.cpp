@@ -1,0 +1,81 @@
+// The pair function of polyhedra: box-hull, hull-hull, and spheres and capsules against both. What touched in the last step
+// is looked at first, and where it provably still is the closest feature nothing else is. Otherwise GJK finds the closest
+// points of cores that are apart, EPA the axis of least depth of those that overlap, and where EPA
+// gives up, a search through all axes does.
+#include <Fulcrum/Collision/NarrowPhase/AxisContact.h>
+#include <Fulcrum/Collision/NarrowPhase/AxisSearch.h>
+#include <Fulcrum/Collision/NarrowPhase/Epa.h>
+#include <Fulcrum/Collision/NarrowPhase/PairFunctions.h>
+#include <Fulcrum/Math/Assert.h>
+
+namespace fulcrum {
+
+namespace {
+
+// What last step's features say about this one.
+struct WarmStart {
+    bool done = false;  // the manifold is written
+    Vector3 axis;       // the best guess otherwise, unit
+};
+
+WarmStart TryCache(const PolyhedronPair& pair, const ContactTolerances& tolerances, PairCache& cache,
+                   Manifold& manifold) {
+    WarmStart warm;
+    switch (cache.kind) {
+        case PairCache::Kind::FaceOfA:
+        case PairCache::Kind::FaceOfB: {
+            const bool ofA = cache.kind == PairCache::Kind::FaceOfA;
+            const int index = ofA ? cache.indexA : cache.indexB;
+            FULCRUM_ASSERT(index < (ofA ? pair.a.faceCount : pair.b.faceCount));
+            const ReferenceFace face = MeasureFace(pair, ofA, index);
+            warm.axis = ofA ? pair.a.faces[face.index].normal
+                            : Vector3(-(pair.rotation * pair.b.faces[face.index].normal));
+            if (face.separation > tolerances.reach) {
+                manifold.normal = warm.axis;
+                manifold.pointCount = 0;
+                warm.done = true;
+            } else {
+                warm.done = BuildFaceContact(pair, face, tolerances, manifold).proven && manifold.pointCount > 0;
+            }
+            return warm;
+        }
+        case PairCache::Kind::EdgePair: {
+            const EdgeContact contact = TryCachedEdges(pair, tolerances, cache, manifold);
+            warm.done = contact.proven || contact.beyondReach;
+            break;
+        }
+        default: break;
+    }
+    warm.axis = Vector3(cache.axis[0], cache.axis[1], cache.axis[2]);
+    if (cache.kind == PairCache::Kind::None) warm.axis = Normalized(pair.position);
+    return warm;
+}
+
+}  // namespace
+
+void CollidePolyhedra(const PairQuery& query, Manifold& manifold) {
+    PolyhedronStorage storageA, storageB;
+    const PolyhedronPair pair(CoreOf(query.a, storageA), CoreOf(query.b, storageB), query.bInA);
+    const ContactTolerances tolerances(pair, query.settings);
+    const WarmStart warm = TryCache(pair, tolerances, query.cache, manifold);
+    if (warm.done) return;
+
+    const GjkResult gjk = Gjk(pair, warm.axis, tolerances.reach);
+    KnownAxis known{gjk.axis, gjk.separation, tolerances.feature};
+    if (gjk.status == GjkResult::Status::BeyondReach) {
+        manifold.normal = gjk.axis;
+        manifold.pointCount = 0;
+        query.cache.kind = PairCache::Kind::Axis;
+        for (int i = 0; i < 3; ++i) query.cache.axis[i] = gjk.axis[i];
+        return;
+    }
+    if (gjk.status == GjkResult::Status::Overlapping) {
+        const EpaResult epa = Epa(pair, gjk.simplex);
+        const FoundAxis found = epa.found ? FoundAxis{epa.axis, epa.separation} : SearchAllAxes(pair);
+        known.axis = found.axis;
+        known.separation = found.separation;
+    }
+    BuildContactFromAxis(pair, known, tolerances, query.cache, manifold);
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,91 @@
+// Pair functions of spheres and capsules among themselves: closest points of points and segments.
+#include <Fulcrum/Collision/NarrowPhase/Features.h>
+#include <Fulcrum/Collision/NarrowPhase/PairFunctions.h>
+#include <Fulcrum/Collision/NarrowPhase/Segments.h>
+#include <Fulcrum/Collision/Shapes/Primitives.h>
+
+namespace fulcrum {
+
+namespace {
+
+// The point between two rounded cores, from the closest points of the cores. Where those coincide but for rounding,
+// `fallback` (unit) is the normal.
+void BuildPoint(const Vector3& onCoreA, const Vector3& onCoreB, float radiusA, float radiusB, const Vector3& fallback,
+                float speculativeDistance, Manifold& manifold) {
+    const Vector3 between = onCoreB - onCoreA;
+    const float distance = Length(between);
+    const float separation = distance - (radiusA + radiusB);
+    manifold.pointCount = 0;
+    if (separation > speculativeDistance) return;
+    manifold.normal = distance > 1e-5f * (radiusA + radiusB) ? Vector3(between * (1.0f / distance)) : fallback;
+    manifold.pointCount = 1;
+    manifold.points[0] = {onCoreA + manifold.normal * radiusA, separation, VertexFeature(true, 0)};
+}
+
+Segment CoreSegment(const Capsule& capsule) {
+    return {Vector3(0, -capsule.HalfHeight(), 0), Vector3(0, capsule.HalfHeight(), 0)};
+}
+
+// Two points along the common length of nearly parallel capsules; false where they lie one behind the other.
+bool BuildParallel(const Segment& onA, const Segment& onB, float radiusA, float radiusB, float speculativeDistance,
+                   Manifold& manifold) {
+    float from, to;
+    if (!CommonLength(onA, onB, from, to)) return false;
+    const Vector3 middle = onA.At(0.5f * (from + to)), along = onB.to - onB.from;
+    const float scale = 1.0f / Dot(along, along);
+    const auto beside = [&](const Vector3& x) -> Vector3 {
+        return onB.from + along * (Dot(along, Vector3(x - onB.from)) * scale);
+    };
+    const Vector3 between = beside(middle) - middle;
+    const float distance = Length(between);
+    if (!(distance > 1e-3f * (radiusA + radiusB))) return false;
+    manifold.normal = between * (1.0f / distance);
+    for (int i = 0; i < 2; ++i) {
+        const Vector3 x = onA.At(i == 0 ? from : to);
+        const float separation = Dot(manifold.normal, Vector3(beside(x) - x)) - (radiusA + radiusB);
+        if (separation > speculativeDistance) continue;
+        manifold.points[manifold.pointCount++] = {x + manifold.normal * radiusA, separation,
+                                                  CrossingFeature(0, static_cast<uint32_t>(1 + i))};
+    }
+    return manifold.pointCount > 0;
+}
+
+}  // namespace
+
+void CollideSphereSphere(const PairQuery& query, Manifold& manifold) {
+    const auto& a = static_cast<const Sphere&>(query.a);
+    const auto& b = static_cast<const Sphere&>(query.b);
+    BuildPoint(Vector3::Zero(), query.bInA.position, a.Radius(), b.Radius(), Vector3(0, 1, 0),
+               query.settings.speculativeDistance, manifold);
+}
+
+void CollideCapsuleSphere(const PairQuery& query, Manifold& manifold) {
+    const auto& a = static_cast<const Capsule&>(query.a);
+    const auto& b = static_cast<const Sphere&>(query.b);
+    const Vector3 centre = query.bInA.position;
+    const Vector3 onCore(0, Clamp(centre.y(), -a.HalfHeight(), a.HalfHeight()), 0);
+    BuildPoint(onCore, centre, a.Radius(), b.Radius(), Vector3(1, 0, 0), query.settings.speculativeDistance, manifold);
+}
+
+void CollideCapsuleCapsule(const PairQuery& query, Manifold& manifold) {
+    const auto& a = static_cast<const Capsule&>(query.a);
+    const auto& b = static_cast<const Capsule&>(query.b);
+    const float reach = a.Radius() + b.Radius() + query.settings.speculativeDistance;
+    manifold.pointCount = 0;
+    const float outer = a.HalfHeight() + b.HalfHeight() + reach;
+    if (LengthSquared(query.bInA.position) > outer * outer) return;
+    const Vector3 half = Rotate(query.bInA.rotation, Vector3(0, b.HalfHeight(), 0));
+    const Segment onA = CoreSegment(a), onB{query.bInA.position - half, query.bInA.position + half};
+    const ClosestParameters closest = ClosestOnSegments(onA, onB);
+    const Vector3 x = onA.At(closest.s), y = onB.At(closest.t);
+    if (LengthSquared(Vector3(y - x)) > reach * reach) return;
+    if (NearlyParallel(onA, onB) &&
+        BuildParallel(onA, onB, a.Radius(), b.Radius(), query.settings.speculativeDistance, manifold))
+        return;
+    // Cores that cross: perpendicular to both is the shortest way out.
+    const Vector3 crossing = Cross<float>(Vector3(0, 1, 0), half);
+    BuildPoint(x, y, a.Radius(), b.Radius(), Normalized(crossing, Vector3(1, 0, 0)),
+               query.settings.speculativeDistance, manifold);
+}
+
+}  // namespace fulcrum
