@@ -1,0 +1,35 @@
+// Reads command lines so that every mistake is answered with the nearest valid thing. Used by the runner and the benchmark,
+// on top of CLI11; one thread.
+#pragma once
+
+#include <Fulcrum/Math/Result.h>
+
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace fulcrum {
+
+// Options that take one value. A value that is no number, or outside lowest..highest, is an error of ParseCommandLine that
+// names the nearest valid value.
+CLI::Option* AddInteger(CLI::App& app, const std::string& name, int lowest, int highest, const std::string& help,
+                        std::function<void(int)> store);
+CLI::Option* AddReal(CLI::App& app, const std::string& name, double lowest, double highest, const std::string& help,
+                     std::function<void(double)> store);
+CLI::Option* AddSeed(CLI::App& app, const std::string& name, const std::string& help, std::function<void(uint64_t)> store);
+// `store` may throw CLI::ValidationError.
+CLI::Option* AddText(CLI::App& app, const std::string& name, const std::string& help,
+                     std::function<void(const std::string&)> store);
+
+// `what` is what the names are ("scene"). The error's message names the nearest one.
+Error UnknownName(const std::string& what, const std::string& name, std::span<const std::string> names);
+
+// Arguments without the program's name. An empty text: parsed; otherwise the help that was asked for.
+// Error OutOfRange: one line that says what is wrong, what was meant and where help is.
+Result<std::string> ParseCommandLine(CLI::App& app, std::vector<std::string> arguments);
+
+}  // namespace fulcrum

@@ -1,0 +1,152 @@
+#include <Fulcrum/Samples/Runner/Commands.h>
+
+#include <Fulcrum/Jobs/ThreadPool.h>
+#include <Fulcrum/Samples/Runner/MeshImport.h>
+#include <Fulcrum/Samples/Runner/Progress.h>
+#include <Fulcrum/Samples/Runner/Recorder.h>
+#include <Fulcrum/Samples/Runner/RunReport.h>
+#include <Fulcrum/Samples/Scenes/Scenes.h>
+#include <Fulcrum/Samples/Viewer/GlbWriter.h>
+#include <Fulcrum/Samples/Viewer/HtmlWriter.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <optional>
+
+namespace fulcrum {
+namespace {
+
+constexpr const char* kOutput = "out";
+constexpr double kDroppedSize = 1;  // m, largest extent of a dropped mesh
+
+int Fail(const std::string& message) {
+    std::fprintf(stderr, "fulcrum: %s\n", message.c_str());
+    return 1;
+}
+
+// Bodies differ from one scene to the next; what is asked for is the same.
+struct Job {
+    const Scene& scene;
+    SceneInput input;
+    const RunOptions& options;
+    std::string name;         // of the report and of the files in out/
+    std::string description;
+};
+
+// Before the simulation, so that minutes of it are not lost to a misspelt folder. Empty where all is well.
+std::string CheckOutputs(const RunOptions& options) {
+    std::error_code error;
+    if (options.recordHtml || options.recordGlb) {
+        std::filesystem::create_directories(kOutput, error);
+        if (error) return std::string("cannot create the folder ") + kOutput + ": " + error.message();
+    }
+    const std::filesystem::path folder = options.json.parent_path();
+    if (!folder.empty() && !std::filesystem::is_directory(folder, error))
+        return "--json " + options.json.string() + ": there is no folder " + folder.string();
+    return {};
+}
+
+std::string WriteJson(const std::filesystem::path& path, const nlohmann::ordered_json& json) {
+    std::ofstream file(path);
+    file << json.dump(2) << "\n";
+    file.close();
+    return file ? std::string() : "cannot write " + path.string();
+}
+
+// The files that the options name; empty where all were written, else what went wrong.
+std::string WriteOutputs(const Job& job, const Recorder* recorder, const RunFigures& figures) {
+    const std::filesystem::path base = std::filesystem::path(kOutput) / job.name;
+    const auto write = [&](const char* extension, auto writer) -> std::string {
+        const std::filesystem::path path = base.string() + extension;
+        const Status status = writer(recorder->recording, path);
+        if (!status) return status.GetError().message;
+        std::printf("Wrote %s (%.1f MB)\n", path.c_str(), static_cast<double>(std::filesystem::file_size(path)) / 1e6);
+        return {};
+    };
+    std::string trouble;
+    if (job.options.recordHtml) trouble = write(".html", WriteHtml);
+    if (trouble.empty() && job.options.recordGlb) trouble = write(".glb", WriteGlb);
+    if (trouble.empty() && !job.options.json.empty()) {
+        trouble = WriteJson(job.options.json, ReportJson(job.name, figures, job.input.seed));
+        if (trouble.empty()) std::printf("Wrote %s\n", job.options.json.c_str());
+    }
+    return trouble;
+}
+
+int RunJob(const Job& job) {
+    const std::string trouble = CheckOutputs(job.options);
+    if (!trouble.empty()) return Fail(trouble);
+
+    std::optional<ThreadPool> pool;
+    if (job.options.threads > 1) pool.emplace(static_cast<uint32_t>(job.options.threads));
+    auto created = SceneWorld::Create(job.scene, job.input, pool ? &*pool : nullptr);
+    if (!created) return Fail(job.name + ": " + created.GetError().message);
+    SceneWorld& world = *created.Value();
+
+    const int steps = job.options.StepsOf(job.scene);
+    std::optional<Recorder> recorder;
+    if (job.options.recordHtml || job.options.recordGlb) {
+        recorder.emplace(world, steps, job.options.dt);
+        recorder->recording.title = job.name;
+        recorder->recording.description = job.description;
+    }
+    Result<RunFigures> run = [&] {
+        Progress progress(job.name.c_str(), steps);
+        return Simulate(world, 0, steps, job.options.dt, pool ? pool->WorkerCount() : 1, [&] {
+            if (recorder) recorder->AfterStep();
+            progress.Advance();
+        });
+    }();
+    if (!run) return Fail(job.name + ": " + run.GetError().message);
+
+    const std::vector<ReportLine> lines = ReportLines(job.scene, run.Value(), job.input.seed);
+    if (recorder) recorder->recording.report = lines;
+    std::printf("%s: %s\n%s", job.name.c_str(), job.description.c_str(), ReportText(lines).c_str());
+    const std::string unwritten = WriteOutputs(job, recorder ? &*recorder : nullptr, run.Value());
+    return unwritten.empty() ? 0 : Fail(unwritten);
+}
+
+int Drop(const Command& command, SceneInput input) {
+    Result<ImportedShape> imported = ImportShape(command.file, kDroppedSize);
+    if (!imported) return Fail(imported.GetError().message);
+    const ImportedShape& model = imported.Value();
+    for (const std::string& warning : model.warnings) std::fprintf(stderr, "fulcrum: warning: %s\n", warning.c_str());
+    std::printf("%s: %zu points became %zu hull%s of %zu vertices in all; %.4g units are %g m here\n",
+                command.file.filename().c_str(), model.points, model.hulls, model.hulls == 1 ? "" : "s",
+                model.hullVertices, model.fileSize, kDroppedSize);
+    input.shape = model.shape;
+    input.count = command.count;
+    return RunJob({*command.scene, input, command.options, "drop_" + command.file.stem().string(),
+                   std::to_string(command.count) + " of " + command.file.filename().string() + " in a heap"});
+}
+
+int List() {
+    size_t width = 0;
+    for (const Scene* scene : AllScenes()) width = std::max(width, std::string(scene->name).size());
+    for (SceneKind kind : {SceneKind::Performance, SceneKind::Sample}) {
+        std::printf("%s\n", kind == SceneKind::Performance ? "Performance scenes, timed by ./fulcrum bench" : "Samples");
+        for (const Scene* scene : AllScenes())
+            if (scene->kind == kind) std::printf("  %-*s  %s\n", static_cast<int>(width), scene->name, scene->description);
+    }
+    return 0;
+}
+
+}  // namespace
+
+int Execute(const Command& command) {
+    SceneInput input;
+    input.seed = command.options.seed;
+    input.solver = command.options.solver;
+    switch (command.kind) {
+        case CommandKind::Run:
+            return RunJob({*command.scene, input, command.options, command.scene->name, command.scene->description});
+        case CommandKind::Drop: return Drop(command, input);
+        case CommandKind::List: return List();
+        default: std::printf("%s", command.help.c_str()); return 0;
+    }
+}
+
+}  // namespace fulcrum

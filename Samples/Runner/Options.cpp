@@ -1,0 +1,118 @@
+#include <Fulcrum/Samples/Runner/Options.h>
+
+#include <Fulcrum/Samples/Runner/CommandLine.h>
+#include <Fulcrum/Samples/Scenes/Scenes.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <thread>
+
+namespace fulcrum {
+namespace {
+
+void SetRecord(const std::string& text, RunOptions& options) {
+    options.recordHtml = options.recordGlb = false;
+    const std::array<std::string, 3> kinds{"html", "glb", "none"};
+    bool none = false;
+    std::istringstream list(text);
+    for (std::string kind; std::getline(list, kind, ',');) {
+        if (kind == "html") options.recordHtml = true;
+        else if (kind == "glb") options.recordGlb = true;
+        else if (kind == "none") none = true;
+        else throw CLI::ValidationError(UnknownName("kind of --record", kind, kinds).message);
+    }
+    if (none && (options.recordHtml || options.recordGlb))
+        throw CLI::ValidationError("--record " + text + ": none stands alone; html,glb records both");
+    if (!none && !options.recordHtml && !options.recordGlb)
+        throw CLI::ValidationError("--record takes html, glb, html,glb or none");
+}
+
+void AddRunOptions(CLI::App& app, RunOptions& options) {
+    CLI::Option* steps = AddInteger(app, "--steps", 1, kMostSteps, "steps to simulate (default: the scene's own number)",
+                                    [&](int value) { options.steps = value; });
+    AddReal(app, "--seconds", 0.001, 1e6, "simulated time instead of --steps", [&](double value) { options.seconds = value; })
+        ->excludes(steps);
+    AddReal(app, "--dt", 1e-5, 1, "seconds a step (default 1/60)", [&](double value) { options.dt = value; });
+    AddInteger(app, "--threads", 1, kMostThreads, "threads (default: all of this machine)",
+               [&](int value) { options.threads = value; });
+    AddSolverOptions(app, options.solver);
+    AddText(app, "--record", "html,glb (default), html, glb or none", [&](const std::string& text) {
+        SetRecord(text, options);
+    })->type_name("KINDS");
+    AddText(app, "--json", "also write the report as JSON", [&](const std::string& text) {
+        options.json = text;
+    })->type_name("FILE");
+    AddSeed(app, "--seed", "of the random numbers of scenes that use them (default 1)",
+            [&](uint64_t value) { options.seed = value; });
+}
+
+}  // namespace
+
+int RunOptions::StepsOf(const Scene& scene) const {
+    if (steps) return *steps;
+    // A millionth of a step is rounding: 5 s of 1/60 s are 300 steps.
+    const double exact = (seconds ? *seconds : scene.steps / 60.0) / dt;
+    return static_cast<int>(std::clamp(std::ceil(exact - 1e-6 * std::max(1.0, exact)), 1.0, 1.0 * kMostSteps));
+}
+
+void AddSolverOptions(CLI::App& app, SolverSettings& solver) {
+    const auto text = [](const char* what, int value) { return std::string(what) + " (default " + std::to_string(value) + ")"; };
+    AddInteger(app, "--substeps", 1, 64, text("solver substeps a step", solver.substeps),
+               [&](int value) { solver.substeps = value; });
+    AddInteger(app, "--velocity-iterations", 1, 255, text("velocity iterations a substep", solver.velocityIterations),
+               [&](int value) { solver.velocityIterations = value; });
+    AddInteger(app, "--position-iterations", 0, 255, text("position iterations a substep", solver.positionIterations),
+               [&](int value) { solver.positionIterations = value; });
+}
+
+std::vector<std::string> SceneNames() {
+    std::vector<std::string> names;
+    for (const Scene* scene : AllScenes()) names.push_back(scene->name);
+    return names;
+}
+
+Result<Command> ParseRunnerCommand(std::vector<std::string> arguments) {
+    Command command;
+    command.options.threads = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, kMostThreads);
+    std::string sceneName, file;
+
+    CLI::App app("Simulates scenes of Fulcrum", "fulcrum");
+    CLI::App* run = app.add_subcommand("run", "simulate a scene, report, record it to out/SCENE.html and out/SCENE.glb");
+    run->add_option("scene", sceneName, "one of ./fulcrum list")->type_name("SCENE");
+    AddRunOptions(*run, command.options);
+    CLI::App* drop = app.add_subcommand("drop", "the same with a heap of the mesh in a file: OBJ, STL, PLY, glTF, ...");
+    drop->add_option("file", file, "the mesh; each of its parts becomes a convex hull, the whole 1 m large")->type_name("FILE");
+    AddInteger(*drop, "--count", 1, 20'000, "bodies in the heap (default 50)", [&](int value) { command.count = value; });
+    AddRunOptions(*drop, command.options);
+    CLI::App* list = app.add_subcommand("list", "list the scenes");
+
+    Result<std::string> parsed = ParseCommandLine(app, std::move(arguments));
+    if (!parsed) return parsed.GetError();
+    command.help = parsed.Value();
+    if (!command.help.empty()) return command;
+
+    if (run->parsed()) {
+        command.kind = CommandKind::Run;
+        if (sceneName.empty()) return Error{ErrorCode::OutOfRange, "run needs a scene's name, for example: ./fulcrum run pyramid"};
+        command.scene = FindScene(sceneName);
+        if (!command.scene) {
+            Error error = UnknownName("scene", sceneName, SceneNames());
+            error.message += " (./fulcrum list shows all)";
+            return error;
+        }
+    } else if (drop->parsed()) {
+        command.kind = CommandKind::Drop;
+        if (file.empty()) return Error{ErrorCode::OutOfRange, "drop needs a mesh file, for example: ./fulcrum drop teapot.obj"};
+        command.scene = &kDropScene;
+        command.file = file;
+    } else if (list->parsed()) {
+        command.kind = CommandKind::List;
+    } else {
+        command.help = app.help();
+    }
+    return command;
+}
+
+}  // namespace fulcrum

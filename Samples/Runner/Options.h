@@ -1,0 +1,52 @@
+// What `fulcrum run`, `drop` and `list` were asked for. Read by Main.cpp; pure function of the arguments.
+#pragma once
+
+#include <Fulcrum/Math/Result.h>
+#include <Fulcrum/Physics/Settings.h>
+#include <Fulcrum/Samples/Scenes/Scene.h>
+
+#include <CLI/App.hpp>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fulcrum {
+
+struct RunOptions {
+    std::optional<int> steps;
+    std::optional<double> seconds;
+    double dt = 1.0 / 60;
+    int threads = 1;
+    SolverSettings solver;
+    bool recordHtml = true, recordGlb = true;
+    std::filesystem::path json;  // empty: none
+    uint64_t seed = 1;
+
+    // --steps, else --seconds over dt rounded up, else the scene's own duration at this dt.
+    int StepsOf(const Scene& scene) const;
+};
+
+enum class CommandKind { Help, List, Run, Drop };
+
+struct Command {
+    CommandKind kind = CommandKind::Help;
+    std::string help;             // Help
+    const Scene* scene = nullptr; // Run, Drop
+    std::filesystem::path file;   // Drop
+    int count = 50;               // Drop
+    RunOptions options;           // Run, Drop
+};
+
+// Arguments without the program's name. Error OutOfRange: one line that says what is wrong and what was probably meant.
+Result<Command> ParseRunnerCommand(std::vector<std::string> arguments);
+
+// --substeps, --velocity-iterations, --position-iterations: the benchmark has them too.
+void AddSolverOptions(CLI::App& app, SolverSettings& solver);
+
+inline constexpr int kMostSteps = 10'000'000;
+inline constexpr int kMostThreads = 64;  // as ThreadPool
+std::vector<std::string> SceneNames();
+
+}  // namespace fulcrum

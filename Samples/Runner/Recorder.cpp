@@ -1,0 +1,175 @@
+#include <Fulcrum/Samples/Runner/Recorder.h>
+
+#include <Fulcrum/Collision/Shapes/ConvexHull.h>
+#include <Fulcrum/Collision/Shapes/Primitives.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fulcrum {
+namespace {
+
+constexpr double kFramesPerSecond = 60;
+// Each is about 10 bytes of a page.
+constexpr double kMostStates = 1.2e6;
+
+constexpr uint8_t kGone = 2;  // of settled_: removed, and hidden already
+
+Vector3 ToVector(const Position& position, const Position& origin) {
+    return Vector3((position - origin).cast<float>());
+}
+
+RecordedShape RecordedHull(const ConvexHull& hull) {
+    RecordedShape shape;
+    shape.kind = RecordedShapeKind::Hull;
+    // The recording speaks of the shape's own frame, the hull of its centre of mass.
+    for (const Vector3& vertex : hull.Vertices()) shape.vertices.push_back(vertex + hull.Mass().centreOfMass);
+    for (const ConvexHull::Face& face : hull.Faces()) {
+        const auto corners = hull.Indices().subspan(face.firstIndex, face.cornerCount);
+        for (size_t i = 2; i < corners.size(); ++i) shape.triangles.push_back({corners[0], corners[i - 1], corners[i]});
+    }
+    return shape;
+}
+
+RecordedShape RecordedPrimitive(const Shape& source) {
+    RecordedShape shape;
+    if (const auto* sphere = dynamic_cast<const Sphere*>(&source)) {
+        shape.kind = RecordedShapeKind::Sphere;
+        shape.radius = sphere->Radius();
+    } else if (const auto* box = dynamic_cast<const Box*>(&source)) {
+        shape.kind = RecordedShapeKind::Box;
+        shape.halfExtents = box->HalfExtents();
+    } else if (const auto* capsule = dynamic_cast<const Capsule*>(&source)) {
+        shape.kind = RecordedShapeKind::Capsule;
+        shape.radius = capsule->Radius();
+        shape.halfHeight = capsule->HalfHeight();
+    } else if (const auto* hull = dynamic_cast<const ConvexHull*>(&source)) {
+        return RecordedHull(*hull);
+    }
+    return shape;
+}
+
+RecordedMotion MotionOf(MotionType motion) {
+    switch (motion) {
+        case MotionType::Static: return RecordedMotion::Static;
+        case MotionType::Kinematic: return RecordedMotion::Kinematic;
+        default: return RecordedMotion::Dynamic;
+    }
+}
+
+}  // namespace
+
+Recorder::Recorder(const SceneWorld& world, int steps, double dt) : world_(world), steps_(steps) {
+    recording.title = world.Definition().name;
+    recording.description = world.Definition().description;
+    double moving = 0;
+    world.System().VisitBodies([&](BodyId id) {
+        AddBody(id);
+        if (world.Bodies().GetMotionType(id) == MotionType::Dynamic && world.Bodies().IsAwake(id)) ++moving;
+    });
+    const double forRate = 1 / (kFramesPerSecond * dt), forSize = moving * steps / kMostStates;
+    interval_ = static_cast<int>(std::max({1.0, std::round(forRate), std::ceil(forSize)}));
+    AddFrame();
+}
+
+void Recorder::AfterStep() {
+    const int step = world_.StepCount();
+    if (step % interval_ == 0 || step == steps_) AddFrame();
+}
+
+uint32_t Recorder::RecordShape(const ShapePtr& shape) {
+    const auto known = shapes_.find(shape.get());
+    if (known != shapes_.end()) return known->second;
+    RecordedShape recorded;
+    if (const auto* compound = dynamic_cast<const Compound*>(shape.get())) {
+        recorded.kind = RecordedShapeKind::Compound;
+        for (const Compound::Child& child : compound->Children()) {
+            // From the child's own frame to the compound's, by way of both centres of mass.
+            RelativePose pose = child.pose;
+            pose.position += compound->Mass().centreOfMass - Rotate(pose.rotation, child.shape->Mass().centreOfMass);
+            recorded.children.push_back({RecordShape(child.shape), pose});
+        }
+    } else {
+        recorded = RecordedPrimitive(*shape);
+    }
+    const uint32_t index = static_cast<uint32_t>(recording.shapes.size());
+    recording.shapes.push_back(std::move(recorded));
+    shapes_.emplace(shape.get(), index);
+    return index;
+}
+
+void Recorder::AddBody(BodyId id) {
+    if (recorded_.size() <= id.index) recorded_.resize(id.index + 1);
+    recorded_[id.index] = static_cast<uint32_t>(ids_.size());
+    ids_.push_back(id);
+    settled_.push_back(0);
+    islands_.push_back(-1);
+    recording.bodies.push_back({.shape = RecordShape(world_.Bodies().GetShape(id)),
+                                .motion = MotionOf(world_.Bodies().GetMotionType(id)),
+                                .mass = world_.Bodies().GetMass(id),
+                                .name = {}});
+}
+
+void Recorder::AddFrame() {
+    CollectIslands();
+    states_.clear();
+    const BodyInterface& bodies = world_.Bodies();
+    for (uint32_t body = 0; body < ids_.size(); ++body) {
+        const BodyId id = ids_[body];
+        if (settled_[body] == kGone) continue;
+        if (!bodies.Exists(id)) {
+            HideRemovedBody(body, recording.latest[body]);
+            continue;
+        }
+        const bool awake = bodies.IsAwake(id);
+        if (settled_[body] == 1 && !awake) continue;
+        settled_[body] = !awake && recording.bodies[body].motion != RecordedMotion::Kinematic;
+        const Pose pose = bodies.GetPose(id);
+        states_.push_back({.body = body,
+                           .position = ToVector(pose.position, recording.origin),
+                           .rotation = pose.rotation,
+                           .velocity = bodies.GetLinearVelocity(id),
+                           .awake = awake,
+                           .island = islands_[body]});
+    }
+    contacts_.clear();
+    if (WantsContacts(recording)) CollectContacts();
+    AppendFrame(recording, world_.Time(), states_, contacts_);
+}
+
+// An island is known by its first body, so that its number, and with it its colour, stays when others merge.
+void Recorder::CollectIslands() {
+    firstOfIsland_.clear();
+    world_.System().VisitIslands([&](BodyId id, uint32_t island) {
+        const int32_t body = static_cast<int32_t>(recorded_[id.index]);
+        if (firstOfIsland_.size() <= island) firstOfIsland_.resize(island + 1, -1);
+        int32_t& first = firstOfIsland_[island];
+        if (first < 0) first = body;
+        islands_[static_cast<size_t>(body)] = first;
+    });
+}
+
+void Recorder::CollectContacts() {
+    world_.System().VisitContacts([&](const ContactView& contact) {
+        for (const ContactView::Point& point : contact.points)
+            contacts_.push_back({.point = ToVector(point.position, recording.origin),
+                                 .normal = contact.normal,
+                                 .separation = point.separation,
+                                 .impulse = point.impulse,
+                                 .bodyA = recorded_[contact.bodyA.index],
+                                 .bodyB = recorded_[contact.bodyB.index]});
+    });
+}
+
+// A recording cannot say that a body is gone: it sinks below everything, where floors hide it.
+void Recorder::HideRemovedBody(uint32_t body, RecordedState state) {
+    settled_[body] = kGone;
+    float lowest = 0;
+    for (const RecordedState& other : recording.latest) lowest = std::min(lowest, other.position.y());
+    state.position.y() = lowest - 1;
+    state.velocity = Vector3::Zero();
+    state.awake = false;
+    states_.push_back(state);
+}
+
+}  // namespace fulcrum

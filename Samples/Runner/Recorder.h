@@ -1,0 +1,44 @@
+// Turns the states of a world into a Recording, frame by frame. Used by the runner; one thread.
+#pragma once
+
+#include <Fulcrum/Samples/Scenes/SceneWorld.h>
+#include <Fulcrum/Samples/Viewer/Recording.h>
+
+#include <map>
+#include <vector>
+
+namespace fulcrum {
+
+class Recorder {
+public:
+    // The first frame is the world as it is now. Of `steps` steps of dt seconds, every so many become frames that there are
+    // at most 60 a second and that the pages of large worlds stay small; the last step is always one. `world` must outlive this.
+    Recorder(const SceneWorld& world, int steps, double dt);
+
+    // After every step.
+    void AfterStep();
+
+    Recording recording;
+
+private:
+    uint32_t RecordShape(const ShapePtr& shape);
+    void AddBody(BodyId id);
+    void AddFrame();
+    void CollectIslands();
+    void CollectContacts();
+    void HideRemovedBody(uint32_t body, RecordedState state);
+
+    const SceneWorld& world_;
+    int steps_;
+    int interval_ = 1;  // steps a frame
+    std::map<const Shape*, uint32_t> shapes_;
+    std::vector<BodyId> ids_;          // of the recorded bodies
+    std::vector<uint32_t> recorded_;   // index of the recorded body by BodyId::index
+    std::vector<uint8_t> settled_;     // by recorded body: 1: its resting state is recorded
+    std::vector<int32_t> islands_;     // by recorded body
+    std::vector<int32_t> firstOfIsland_;
+    std::vector<RecordedState> states_;
+    std::vector<RecordedContact> contacts_;
+};
+
+}  // namespace fulcrum

@@ -1,0 +1,135 @@
+#include <Fulcrum/Samples/Runner/RunReport.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+
+namespace fulcrum {
+namespace {
+
+[[gnu::format(printf, 1, 2)]] std::string Text(const char* format, ...) {
+    char text[256];
+    va_list arguments;
+    va_start(arguments, format);
+    std::vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    return text;
+}
+
+std::string Bytes(size_t bytes) {
+    const double megabytes = static_cast<double>(bytes) / (1024 * 1024);
+    return megabytes < 1 ? Text("%.0f KB", 1024 * megabytes) : Text("%.1f MB", megabytes);
+}
+
+std::string Energy(double joules) {
+    const double size = std::fabs(joules);
+    if (size >= 1e9) return Text("%.4g GJ", joules * 1e-9);
+    if (size >= 1e6) return Text("%.4g MJ", joules * 1e-6);
+    if (size >= 1e3) return Text("%.4g kJ", joules * 1e-3);
+    return Text("%.4g J", joules);
+}
+
+std::string Settings(const SolverSettings& solver) {
+    return Text("%d substeps, %d velocity and %d position iterations", solver.substeps, solver.velocityIterations,
+                solver.positionIterations);
+}
+
+// What went wrong, where anything did.
+void AddTroubles(const RunFigures& figures, std::vector<ReportLine>& lines) {
+    const auto add = [&](const char* label, uint64_t count) {
+        if (count > 0) lines.push_back({"Troubles", label, std::to_string(count)});
+    };
+    add("bodies frozen, not finite", static_cast<uint64_t>(figures.nonFinite));
+    add("libccd: EPA gave up", figures.libccdFailures);
+    add("libccd: centre line taken", figures.libccdFallbacks);
+    add("contacts without a colour", figures.last.overflowContacts);
+    add("bodies at their speed limit", figures.last.clampedBodies);
+}
+
+double JsonNumber(double value) { return std::isfinite(value) ? value : 1e300; }
+
+}  // namespace
+
+std::vector<ReportLine> ReportLines(const Scene& scene, const RunFigures& figures, uint64_t seed) {
+    std::vector<ReportLine> lines;
+    const auto add = [&](const char* section, const char* label, std::string value) {
+        lines.push_back({section, label, std::move(value)});
+    };
+    const StepReport& last = figures.last;
+    add("World", "bodies", Text("%zu (%zu dynamic, %u awake)", figures.bodies, figures.dynamicBodies, last.awakeBodies));
+    add("World", "contacts", Text("%u (%u points), at most %u", last.contacts, last.contactPoints, figures.largestContacts));
+    add("World", "islands", Text("%u (%u awake)", figures.islands, std::min(last.islands, figures.islands)));
+    add("World", "memory", Bytes(figures.memoryBytes));
+    add("Run", "steps", Text("%d of %.5g s", figures.steps, figures.dt));
+    add("Run", "solver", Settings(figures.solver));
+    add("Run", "threads", Text("%u", figures.threads));
+    if (scene.usesSeed) add("Run", "seed", std::to_string(seed));
+    add("Time", "a step, median", Text("%.3f ms", figures.stepMs.median));
+    add("Time", "a step, 99th percentile", Text("%.3f ms", figures.stepMs.p99));
+    add("Time", "a step, longest", Text("%.3f ms", figures.stepMs.max));
+    for (int stage = 0; stage < kStageCount; ++stage)
+        add("Stages, median", StageName(static_cast<Stage>(stage)), Text("%.3f ms", figures.stageMedianMs[static_cast<size_t>(stage)]));
+    add("Result", "largest penetration",
+        figures.deepestPair.empty() ? "none"
+                                    : Text("%.2f mm, %s at step %d", 1000.0 * static_cast<double>(figures.largestPenetration),
+                                           figures.deepestPair.c_str(), figures.deepestStep));
+    add("Result", "energy", Energy(figures.energyAtStart) + " to " + Energy(figures.energyAtEnd));
+    if (scene.accuracy) add("Result", "accuracy", Text("%.6g (%s)", figures.accuracy, scene.accuracyMeaning));
+    add("Result", "pose hash", HashText(figures.poseHash));
+    AddTroubles(figures, lines);
+    return lines;
+}
+
+std::string ReportText(const std::vector<ReportLine>& lines) {
+    size_t width = 0;
+    for (const ReportLine& line : lines) width = std::max(width, line.label.size());
+    std::string text, section;
+    for (const ReportLine& line : lines) {
+        if (line.section != section) text += line.section + "\n";
+        section = line.section;
+        text += "  " + line.label + std::string(width + 2 - line.label.size(), ' ') + line.value + "\n";
+    }
+    return text;
+}
+
+nlohmann::ordered_json ReportJson(const std::string& name, const RunFigures& figures, uint64_t seed) {
+    nlohmann::ordered_json stages;
+    for (int stage = 0; stage < kStageCount; ++stage)
+        stages[StageName(static_cast<Stage>(stage))] = figures.stageMedianMs[static_cast<size_t>(stage)];
+    const StepReport& last = figures.last;
+    return {{"engine", "fulcrum"},
+            {"version", FULCRUM_VERSION},
+            {"scene", name},
+            {"threads", figures.threads},
+            {"bodies", figures.bodies},
+            {"contacts", last.contacts},
+            {"contact_points", last.contactPoints},
+            {"steps", figures.steps},
+            {"median_ms", figures.stepMs.median},
+            {"mean_ms", figures.stepMs.mean},
+            {"p99_ms", figures.stepMs.p99},
+            {"max_ms", figures.stepMs.max},
+            {"steps_per_s", figures.stepMs.mean > 0 ? 1000 / figures.stepMs.mean : 0},
+            {"accuracy", JsonNumber(figures.accuracy)},
+            {"nonfinite", figures.nonFinite},
+            {"hash", HashText(figures.poseHash)},
+            {"stages_ms", stages},
+            {"settings",
+             {{"dt", figures.dt},
+              {"substeps", figures.solver.substeps},
+              {"velocity_iterations", figures.solver.velocityIterations},
+              {"position_iterations", figures.solver.positionIterations},
+              {"seed", seed}}},
+            {"islands", figures.islands},
+            {"awake_bodies", last.awakeBodies},
+            {"largest_penetration_m", figures.largestPenetration},
+            {"deepest_pair", figures.deepestPair},
+            {"energy_start_j", JsonNumber(figures.energyAtStart)},
+            {"energy_end_j", JsonNumber(figures.energyAtEnd)},
+            {"memory_bytes", figures.memoryBytes}};
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,24 @@
+// What a run measured, for people and for programs. Used by the runner and the benchmark; pure functions.
+#pragma once
+
+#include <Fulcrum/Samples/Runner/Simulation.h>
+#include <Fulcrum/Samples/Viewer/Recording.h>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <string>
+#include <vector>
+
+namespace fulcrum {
+
+// The report's lines by section: beside the picture and on the terminal alike.
+std::vector<ReportLine> ReportLines(const Scene& scene, const RunFigures& figures, uint64_t seed);
+
+// Lines of text with a heading for each section.
+std::string ReportText(const std::vector<ReportLine>& lines);
+
+// One run with the field names that benchmarks of other engines use: scene threads bodies contacts contact_points steps
+// median_ms mean_ms p99_ms max_ms steps_per_s accuracy nonfinite hash; and the engine's own.
+nlohmann::ordered_json ReportJson(const std::string& name, const RunFigures& figures, uint64_t seed);
+
+}  // namespace fulcrum

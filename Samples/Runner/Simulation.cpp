@@ -1,0 +1,90 @@
+#include <Fulcrum/Samples/Runner/Simulation.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace fulcrum {
+namespace {
+
+std::string BodyText(const SceneWorld& world, BodyId id) {
+    const ShapePtr shape = world.Bodies().GetShape(id);
+    return (shape ? std::string(ShapeTypeName(shape->Type())) + " " : std::string()) + std::to_string(id.index);
+}
+
+void NotePenetration(const SceneWorld& world, RunFigures& figures) {
+    const StepReport& report = world.System().Report();
+    if (report.largestPenetration <= figures.largestPenetration) return;
+    figures.largestPenetration = report.largestPenetration;
+    figures.deepestPair = BodyText(world, report.deepestA) + " and " + BodyText(world, report.deepestB);
+    figures.deepestStep = world.StepCount();
+}
+
+void CountBodies(const SceneWorld& world, RunFigures& figures) {
+    world.System().VisitBodies([&](BodyId id) {
+        ++figures.bodies;
+        if (world.Bodies().GetMotionType(id) == MotionType::Dynamic) ++figures.dynamicBodies;
+    });
+    world.System().VisitIslands([&](BodyId, uint32_t island) { figures.islands = std::max(figures.islands, island + 1); });
+}
+
+}  // namespace
+
+Statistics Summarize(std::vector<double> samples) {
+    Statistics result;
+    if (samples.empty()) return result;
+    for (double sample : samples) result.mean += sample;
+    std::sort(samples.begin(), samples.end());
+    const size_t count = samples.size();
+    result.mean /= static_cast<double>(count);
+    result.median = count % 2 == 1 ? samples[count / 2] : 0.5 * (samples[count / 2 - 1] + samples[count / 2]);
+    result.p99 = samples[(99 * count + 99) / 100 - 1];
+    result.max = samples.back();
+    return result;
+}
+
+Result<RunFigures> Simulate(SceneWorld& world, int untimed, int steps, double dt, uint32_t threads,
+                            FunctionRef<void()> afterStep) {
+    RunFigures figures;
+    figures.steps = steps;
+    figures.dt = dt;
+    figures.threads = threads;
+    figures.solver = world.System().Settings().solver;
+    figures.energyAtStart = world.System().GetEnergy();
+
+    std::vector<double> stepMs;
+    std::array<std::vector<double>, kStageCount> stageMs;
+    for (int step = 0; step < untimed + steps; ++step) {
+        const Status status = world.Step(dt);
+        if (!status) return status.GetError();
+        const StepReport& report = world.System().Report();
+        if (step >= untimed) {
+            stepMs.push_back(world.LastStepMs());
+            for (size_t stage = 0; stage < stageMs.size(); ++stage) stageMs[stage].push_back(report.stageMs[stage]);
+        }
+        NotePenetration(world, figures);
+        figures.largestContacts = std::max(figures.largestContacts, report.contacts);
+        figures.libccdFailures += report.libccd.epaFailures;
+        figures.libccdFallbacks += report.libccd.centreLineFallbacks;
+        afterStep();
+    }
+
+    figures.stepMs = Summarize(std::move(stepMs));
+    for (size_t stage = 0; stage < stageMs.size(); ++stage)
+        figures.stageMedianMs[stage] = Summarize(std::move(stageMs[stage])).median;
+    figures.last = world.System().Report();
+    CountBodies(world, figures);
+    figures.energyAtEnd = world.System().GetEnergy();
+    figures.poseHash = world.System().HashPoses();
+    figures.memoryBytes = world.System().MemoryUsed();
+    figures.accuracy = world.Definition().accuracy ? world.Definition().accuracy(world) : 0;
+    figures.nonFinite = world.NonFiniteBodies();
+    return figures;
+}
+
+std::string HashText(uint64_t hash) {
+    char text[17];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+    return text;
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,49 @@
+// Runs a scene step by step and measures it. Used by the runner and the benchmark; one thread.
+#pragma once
+
+#include <Fulcrum/Samples/Scenes/SceneWorld.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace fulcrum {
+
+struct Statistics {
+    double median = 0, mean = 0, p99 = 0, max = 0;
+};
+// p99 is the smallest sample that 99 % of them do not exceed. Zeros where there are no samples.
+Statistics Summarize(std::vector<double> samples);
+
+// What a run measured. Times are wall clock, ms.
+struct RunFigures {
+    int steps = 0;  // those that were timed
+    double dt = 0;  // s
+    uint32_t threads = 1;
+    SolverSettings solver;
+    Statistics stepMs;
+    std::array<double, kStageCount> stageMedianMs{};
+    StepReport last;  // of the last step
+    size_t bodies = 0, dynamicBodies = 0;
+    uint32_t islands = 0;  // at the end, sleeping ones included
+    float largestPenetration = 0;
+    std::string deepestPair;    // "box 12 and hull 15"; empty where nothing touched
+    int deepestStep = 0;
+    uint32_t largestContacts = 0;
+    uint32_t libccdFailures = 0, libccdFallbacks = 0;  // of all steps
+    double energyAtStart = 0, energyAtEnd = 0;  // J
+    uint64_t poseHash = 0;
+    size_t memoryBytes = 0;
+    double accuracy = 0;   // the scene's figure
+    int nonFinite = 0;     // bodies
+};
+
+// Takes `untimed` steps, then `steps` timed ones of dt seconds; `afterStep` is called after each of all of them.
+// Errors: those of PhysicsSystem::Update.
+Result<RunFigures> Simulate(SceneWorld& world, int untimed, int steps, double dt, uint32_t threads,
+                            FunctionRef<void()> afterStep);
+
+// 16 hexadecimal digits.
+std::string HashText(uint64_t hash);
+
+}  // namespace fulcrum
