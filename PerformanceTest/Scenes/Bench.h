@@ -1,0 +1,32 @@
+// Times performance scenes: what ./fulcrum bench starts. Called by Main.cpp; one thread besides the pool that it makes.
+#pragma once
+
+#include <Fulcrum/Samples/Runner/Simulation.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace fulcrum {
+
+struct BenchOptions {
+    std::vector<const Scene*> scenes;
+    int threads = 1;
+    int steps = 0;  // 0: the scene's own number
+    int runs = 1;   // of each scene, of which the one with the lowest median counts
+    SolverSettings solver;
+    uint64_t seed = 1;
+    std::filesystem::path json;  // empty: none
+    std::string help;            // not empty: nothing else was asked for
+};
+
+// Arguments without the program's name. Error OutOfRange as ParseRunnerCommand's.
+Result<BenchOptions> ParseBenchOptions(std::vector<std::string> arguments);
+
+// 1 untimed step, then the timed ones, as benchmarks of other engines do it.
+Result<RunFigures> TimeScene(const Scene& scene, const BenchOptions& options);
+
+// Prints a table line by line, writes the JSON. Returns the exit status.
+int RunBench(const BenchOptions& options);
+
+}  // namespace fulcrum
