@@ -30,11 +30,26 @@ template <class Leaf>
 Spread LongestSpread(const Leaf* leaves, uint32_t count) {
     // The fourth lane is an id's bits: no product here, those of denormal numbers are slow.
     using Lanes = Wide<4>;
-    Lanes lowest(std::numeric_limits<float>::infinity()), highest(-std::numeric_limits<float>::infinity());
-    for (uint32_t i = 0; i < count; ++i) {
-        const Lanes centre = Lanes::Load(leaves[i].lane) - Lanes::Load(leaves[i].lane + 4);
-        lowest = Min(lowest, centre);
-        highest = Max(highest, centre);
+    constexpr uint32_t kChains = 4;  // that do not wait for each other
+    const auto centre = [&](uint32_t i) { return Lanes::Load(leaves[i].lane) - Lanes::Load(leaves[i].lane + 4); };
+    Lanes lowest = centre(0), highest = lowest;
+    uint32_t i = 1;
+    if (count >= kChains) {
+        Lanes low[kChains], high[kChains];
+        for (uint32_t k = 0; k < kChains; ++k) low[k] = high[k] = centre(k);
+        for (i = kChains; i + kChains <= count; i += kChains) {
+            for (uint32_t k = 0; k < kChains; ++k) {
+                const Lanes c = centre(i + k);
+                low[k] = Min(low[k], c);
+                high[k] = Max(high[k], c);
+            }
+        }
+        lowest = Min(Min(low[0], low[1]), Min(low[2], low[3]));
+        highest = Max(Max(high[0], high[1]), Max(high[2], high[3]));
+    }
+    for (; i < count; ++i) {
+        lowest = Min(lowest, centre(i));
+        highest = Max(highest, centre(i));
     }
     const Lanes extent = highest - lowest;
     int axis = extent[1] > extent[0] ? 1 : 0;
@@ -42,15 +57,21 @@ Spread LongestSpread(const Leaf* leaves, uint32_t count) {
     return {axis, lowest[axis], extent[axis]};
 }
 
+template <class Leaf>
+inline void Swap(Leaf& a, Leaf& b) {
+    const Wide<8> was = Wide<8>::Load(a.lane);
+    Wide<8>::Load(b.lane).Store(a.lane);
+    was.Store(b.lane);
+}
+
 // Moves those that `belongs` to the front. Without branches: the tests are coin tosses.
 template <class Leaf, class Test>
 void Partition(Leaf* leaves, uint32_t count, Test belongs) {
     uint32_t end = 0;
     for (uint32_t i = 0; i < count; ++i) {
-        const Leaf leaf = leaves[i];
-        leaves[i] = leaves[end];
-        leaves[end] = leaf;
-        end += belongs(leaf);
+        const bool isFront = belongs(leaves[i]);
+        Swap(leaves[i], leaves[end]);
+        end += isFront;
     }
 }
 
@@ -71,9 +92,7 @@ void SplitByRank(Leaf* leaves, uint32_t count, uint32_t left, const Spread& spre
     for (uint32_t i = 0; i < count; ++i) {
         int rank = 0;
         for (uint32_t j = 0; j < count; j += kStep) rank += std::popcount((Lanes::Load(keys + j) < Lanes(keys[i])).ToBits());
-        const Leaf leaf = leaves[i];
-        leaves[i] = leaves[end];
-        leaves[end] = leaf;
+        Swap(leaves[i], leaves[end]);
         end += static_cast<uint32_t>(rank) < left;
     }
 }
@@ -158,19 +177,16 @@ void BoundsTree::SplitAt(uint32_t first, uint32_t count, uint32_t left) {
         }
         // A histogram tells the slab in which the median lies; what is left of the problem is inside it.
         const float scale = static_cast<float>(kBins) / spread.extent;
-        const auto binOf = [&](const float* leaf) {
-            return std::min(static_cast<int>((Centre(leaf, spread.axis) - spread.lowest) * scale), kBins - 1);
-        };
+        const auto place = [&](const Packed& leaf) { return (Centre(leaf.lane, spread.axis) - spread.lowest) * scale; };
         uint32_t histogram[kBins] = {};
-        for (uint32_t i = first; i < first + count; ++i) ++histogram[binOf(gathered_[i].lane)];
+        for (uint32_t i = first; i < first + count; ++i) ++histogram[std::min(static_cast<int>(place(gathered_[i])), kBins - 1)];
         int bin = 0;
         uint32_t below = 0;
         while (below + histogram[bin] <= left) below += histogram[bin++];
-        const auto isBelow = [&](const Packed& leaf) { return binOf(leaf.lane) < bin; };
-        const auto isWithin = [&](const Packed& leaf) { return binOf(leaf.lane) == bin; };
-        Partition(&gathered_[first], count, isBelow);
+        const float slabBegin = static_cast<float>(bin), slabEnd = bin + 1 < kBins ? slabBegin + 1 : 2 * kBins;
+        Partition(&gathered_[first], count, [&](const Packed& leaf) { return place(leaf) < slabBegin; });
         if (below == left) return;
-        Partition(&gathered_[first + below], count - below, isWithin);
+        Partition(&gathered_[first + below], count - below, [&](const Packed& leaf) { return place(leaf) < slabEnd; });
         first += below;
         count = histogram[bin];
         left -= below;

@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <random>
+#include <thread>
 #include <vector>
 
 namespace fulcrum {
@@ -17,10 +20,13 @@ public:
         return low + (high - low) * static_cast<float>(engine_() >> 8) / 16777216.0f;
     }
     uint32_t Below(uint32_t n) { return static_cast<uint32_t>(engine_() % n); }
+    Vector3 Vector(float low, float high) {
+        const float x = Uniform(low, high), y = Uniform(low, high), z = Uniform(low, high);
+        return Vector3(x, y, z);
+    }
     Bounds Box(float range, float largest) {
         Bounds box;
-        const Vector3 centre(Uniform(-range, range), Uniform(-range, range), Uniform(-range, range));
-        const Vector3 half(Uniform(0, largest), Uniform(0, largest), Uniform(0, largest));
+        const Vector3 centre = Vector(-range, range), half = Vector(0, largest);
         box.lower = centre - half;
         box.upper = centre + half;
         return box;
@@ -95,6 +101,233 @@ TEST(BoundsTree, AgreesWithBruteForceUnderRandomOperations) {
         ASSERT_EQ(reference.tree.Contains(id), reference.Contains(id));
     }
 }
+
+// Recent arrivals are found before any upkeep, and so they are after each kind of it.
+TEST(BoundsTree, FindsTenThousandBoxesBeforeAndAfterTheBuild) {
+    Random random;
+    Reference reference;
+    const auto expectSame = [&] {
+        reference.tree.Validate();
+        for (int i = 0; i < 50; ++i) reference.ExpectSame(random.Box(50, 4));
+    };
+    for (uint32_t id = 0; id < 10000; ++id) reference.Insert(id, random.Box(50, 1));
+    EXPECT_EQ(reference.tree.Size(), 10000u);
+    expectSame();
+    reference.tree.Optimize();
+    expectSame();
+    for (uint32_t id = 10000; id < 10500; ++id) reference.Insert(id, random.Box(50, 1));
+    expectSame();
+    for (uint32_t id = 0; id < 10500; id += 3) reference.Remove(id);
+    expectSame();
+    reference.tree.Optimize();
+    expectSame();
+    reference.tree.Rebuild();
+    expectSame();
+}
+
+// One by one, at every size around those at which nodes fill and the tree grows in height.
+TEST(BoundsTree, IsWholeAtEverySize) {
+    Random random;
+    for (uint32_t count = 1; count <= 600; count += count < 140 ? 1 : 37) {
+        Reference reference;
+        for (uint32_t id = 0; id < count; ++id) reference.Insert(id, random.Box(5, 1));
+        reference.tree.Validate();
+        reference.ExpectSame(random.Box(5, 5));
+        reference.tree.Rebuild();
+        reference.tree.Validate();
+        reference.ExpectSame(random.Box(5, 5));
+        for (uint32_t id = 0; id < count; ++id) {
+            reference.Remove(id);
+            if (id % 7 == 0) reference.tree.Validate();
+        }
+        EXPECT_EQ(reference.tree.Size(), 0u);
+    }
+}
+
+TEST(BoundsTree, FindsAllOfFourThousandBoxesInOnePlace) {
+    const Bounds box = Box(Vector3(1, 2, 3), Vector3(2, 3, 4));
+    Reference reference;
+    for (uint32_t id = 0; id < 4096; ++id) reference.Insert(id, box);
+    for (int build = 0; build < 2; ++build) {
+        reference.tree.Validate();
+        reference.ExpectSame(box);
+        reference.ExpectSame(Box(Vector3(2.5f, 2, 3), Vector3(3, 3, 4)));
+        reference.tree.Rebuild();
+    }
+}
+
+TEST(BoundsTree, FindsHugeFloorsAmongSmallBoxes) {
+    Random random;
+    Reference reference;
+    for (uint32_t id = 0; id < 2000; ++id)
+        reference.Insert(id, id % 500 == 7 ? Box(Vector3(-1e4f, -1, -1e4f), Vector3(1e4f, 0, 1e4f)) : random.Box(50, 0.5f));
+    reference.tree.Optimize();
+    reference.tree.Validate();
+    for (int i = 0; i < 100; ++i) reference.ExpectSame(random.Box(60, 2));
+    reference.ExpectSame(Box(Vector3(9e3f, -0.5f, 9e3f), Vector3(9e3f, -0.5f, 9e3f)));
+}
+
+// Points on a line whose distances span all of the floats: no equal halves in space, no area, sums beyond the floats.
+TEST(BoundsTree, FindsPointsAtAllScales) {
+    Reference reference;
+    uint32_t id = 0;
+    for (float x = 3e38f; x > 1e-44f; x *= 0.5f) {
+        reference.Insert(id++, Box(Vector3::Constant(x), Vector3::Constant(x)));
+        reference.Insert(id++, Box(Vector3::Constant(-x), Vector3::Constant(-x)));
+        reference.Insert(id++, Box(Vector3(x, 0, 0), Vector3(x, 0, 0)));
+    }
+    for (int build = 0; build < 3; ++build) {
+        reference.tree.Validate();
+        for (float x = 3e38f; x > 1e-44f; x *= 0.25f) {
+            reference.ExpectSame(Box(Vector3::Constant(x), Vector3::Constant(x)));
+            reference.ExpectSame(Box(Vector3::Constant(-x), Vector3(x, 0, 0)));
+        }
+        if (build == 0) reference.tree.Optimize();
+        else reference.tree.Rebuild();
+    }
+    EXPECT_GE(reference.tree.Cost(), 1.0f);
+}
+
+TEST(BoundsTree, CountsTouchingBoxesAsOverlapping) {
+    BoundsTree tree;
+    tree.Insert(3, Box(Vector3(0, 0, 0), Vector3(1, 1, 1)));
+    EXPECT_EQ(Found(tree, Box(Vector3(1, 1, 1), Vector3(2, 2, 2))), std::vector<uint32_t>{3});
+    EXPECT_EQ(Found(tree, Box(Vector3(std::nextafter(1.0f, 2.0f), 1, 1), Vector3(2, 2, 2))), std::vector<uint32_t>{});
+}
+
+TEST(BoundsTree, FindsEachLeafOnceWithinInfiniteBounds) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    Random random;
+    Reference reference;
+    for (uint32_t id = 0; id < 100; ++id) reference.Insert(id, random.Box(5, 1));
+    reference.tree.Rebuild();
+    for (uint32_t id = 0; id < 100; id += 2) reference.Remove(id);
+    reference.ExpectSame(Box(Vector3::Constant(-kInfinity), Vector3::Constant(kInfinity)));
+    reference.ExpectSame(Box(Vector3::Constant(-kInfinity), Vector3(kInfinity, 0, kInfinity)));
+}
+
+TEST(BoundsTree, IsEmptyBeforeAndAfterItsLeaves) {
+    const Bounds box = Box(Vector3(0, 0, 0), Vector3(1, 1, 1));
+    BoundsTree tree;
+    for (int round = 0; round < 3; ++round) {
+        tree.Optimize();
+        tree.Rebuild();
+        tree.Validate();
+        EXPECT_EQ(tree.Size(), 0u);
+        EXPECT_EQ(tree.Cost(), 0.0f);
+        EXPECT_TRUE(tree.TotalBounds().IsEmpty());
+        EXPECT_FALSE(tree.Contains(5));
+        EXPECT_EQ(Found(tree, box), std::vector<uint32_t>{});
+        tree.Insert(5, box);
+        EXPECT_TRUE(tree.Contains(5));
+        EXPECT_FALSE(tree.Contains(4));
+        EXPECT_FALSE(tree.Contains(6));
+        EXPECT_EQ(Found(tree, box), std::vector<uint32_t>{5});
+        if (round == 1) tree.Optimize();
+        if (round == 2) tree.Clear();
+        else tree.Remove(5);
+    }
+}
+
+TEST(BoundsTree, TellsTheBoundsOfALeafAndOfAll) {
+    Random random;
+    BoundsTree tree;
+    std::vector<Bounds> boxes;
+    for (uint32_t id = 0; id < 300; ++id) {
+        boxes.push_back(random.Box(10, 1));
+        tree.Insert(id, boxes.back());
+    }
+    tree.Optimize();
+    boxes[17] = Box(Vector3(40, 50, 60), Vector3(41, 51, 61));
+    tree.Update(17, boxes[17]);
+    EXPECT_EQ(tree.TotalBounds().upper, Vector3(41, 51, 61));
+    tree.Remove(17);
+    tree.Optimize();
+    Bounds total;
+    for (uint32_t id = 0; id < 300; ++id) {
+        if (id == 17) continue;
+        total.Include(boxes[id]);
+        EXPECT_EQ(tree.GetBounds(id).lower, boxes[id].lower);
+        EXPECT_EQ(tree.GetBounds(id).upper, boxes[id].upper);
+    }
+    EXPECT_EQ(tree.TotalBounds().lower, total.lower);
+    EXPECT_EQ(tree.TotalBounds().upper, total.upper);
+}
+
+// Every leaf moves each step. A build pays when the summed excess of the nodes' area over that of the last build passes
+// 0.3, so none larger remains; two builds of the same leaves differ by less than 0.1.
+TEST(BoundsTree, StaysAlmostAsGoodAsNewWhileAllLeavesMove) {
+    Random random;
+    std::vector<Vector3> centres, velocities;
+    BoundsTree tree;
+    const auto boxAt = [](const Vector3& centre) {
+        return Box(centre - Vector3::Constant(0.3f), centre + Vector3::Constant(0.3f));
+    };
+    for (uint32_t id = 0; id < 4000; ++id) {
+        centres.push_back(random.Vector(-6, 6));
+        velocities.push_back(random.Vector(-1, 1));
+        tree.Insert(id, boxAt(centres[id]));
+    }
+    for (int step = 0; step < 60; ++step) {
+        for (uint32_t id = 0; id < 4000; ++id) {
+            centres[id] += 0.1f * velocities[id];
+            tree.Update(id, boxAt(centres[id]));
+        }
+        tree.Optimize();
+    }
+    BoundsTree fresh = tree;
+    fresh.Rebuild();
+    EXPECT_LT(tree.Cost(), 1.4f * fresh.Cost());
+}
+
+// All that it holds is in its own buffers, whose capacities are what MemoryUsed counts.
+TEST(BoundsTree, HoldsLittleMemoryAndNoMoreInASteadyState) {
+    constexpr uint32_t kCount = 10000;
+    Random random;
+    BoundsTree tree;
+    for (uint32_t id = 0; id < kCount; ++id) tree.Insert(id, random.Box(20, 0.3f));
+    tree.Optimize();
+    EXPECT_LT(tree.MemoryUsed(), 85u * kCount);
+    const size_t before = tree.MemoryUsed();
+    for (int step = 0; step < 50; ++step) {
+        for (uint32_t id = step % 5; id < kCount; id += 5) tree.Update(id, random.Box(20, 0.3f));
+        tree.Optimize();
+    }
+    tree.Rebuild();
+    EXPECT_EQ(tree.MemoryUsed(), before);
+}
+
+TEST(BoundsTree, AnswersManyThreadsAtOnce) {
+    Random random;
+    Reference reference;
+    for (uint32_t id = 0; id < 3000; ++id) reference.Insert(id, random.Box(20, 1));
+    reference.tree.Optimize();
+    std::vector<Bounds> queries;
+    std::vector<std::vector<uint32_t>> found(200);
+    for (size_t i = 0; i < found.size(); ++i) queries.push_back(random.Box(20, 2));
+    std::vector<std::thread> threads;
+    for (size_t thread = 0; thread < 4; ++thread)
+        threads.emplace_back([&, thread] {
+            for (size_t i = thread; i < found.size(); i += 4) found[i] = Found(reference.tree, queries[i]);
+        });
+    for (std::thread& thread : threads) thread.join();
+    for (size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i], reference.Overlapping(queries[i]));
+}
+
+#ifdef FULCRUM_ASSERTIONS
+TEST(BoundsTreeDeathTest, RejectsWhatIsNoBoxAndWhatIsNotThere) {
+    const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+    const Bounds box = Box(Vector3(0, 0, 0), Vector3(1, 1, 1));
+    BoundsTree tree;
+    tree.Insert(0, box);
+    EXPECT_DEATH(tree.Insert(1, Box(Vector3(0, nan, 0), Vector3(1, 1, 1))), "assertion");
+    EXPECT_DEATH(tree.Update(0, Box(Vector3(0, 0, 0), Vector3(1, 1, infinity))), "assertion");
+    EXPECT_DEATH(tree.Update(0, Bounds{}), "assertion");
+    EXPECT_DEATH(tree.Insert(0, box), "assertion");
+    EXPECT_DEATH(tree.Update(1, box), "assertion");
+    EXPECT_DEATH(tree.Remove(1), "assertion");
+}
+#endif
 
 }  // namespace
 }  // namespace fulcrum
