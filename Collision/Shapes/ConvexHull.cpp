@@ -83,8 +83,12 @@ private:
 
         const int count = static_cast<int>(hull.vertices_.size());
         hull.paddedCount_ = (count + 15) / 16 * 16;
-        for (int axis = 0; axis < 3; ++axis)
-            for (int i = 0; i < hull.paddedCount_; ++i) hull.lanes_.push_back(hull.vertices_[i < count ? i : 0][axis]);
+        for (int axis = 0; axis < 3; ++axis) {
+            for (int block = 0; block < hull.paddedCount_; block += 16) {
+                float* const values = hull.lanes_.emplace_back().values;
+                for (int i = 0; i < 16; ++i) values[i] = hull.vertices_[block + i < count ? block + i : 0][axis];
+            }
+        }
     }
 
     // Planes support the vertices as rounded. False where one does not pass outside the centre.

@@ -44,9 +44,9 @@ public:
     std::span<const uint8_t> Indices() const { return indices_; }
     // The vertices by lanes: coordinate arrays x, y, z of PaddedVertexCount() floats each, 64-byte aligned. The padding
     // repeats vertex 0, so that a support search needs no tail.
-    const float* LaneX() const { return lanes_.data(); }
-    const float* LaneY() const { return lanes_.data() + paddedCount_; }
-    const float* LaneZ() const { return lanes_.data() + 2 * paddedCount_; }
+    const float* LaneX() const { return lanes_.data()->values; }
+    const float* LaneY() const { return LaneX() + paddedCount_; }
+    const float* LaneZ() const { return LaneX() + 2 * paddedCount_; }
     int PaddedVertexCount() const { return paddedCount_; }  // a multiple of 16
 
 private:
@@ -57,7 +57,10 @@ private:
     std::vector<Face> faces_;
     std::vector<Edge> edges_;
     std::vector<uint8_t> indices_;
-    std::vector<float, Eigen::aligned_allocator<float>> lanes_;
+    struct alignas(64) LaneBlock {
+        float values[16];
+    };
+    std::vector<LaneBlock> lanes_;
     int paddedCount_ = 0;
 };
 
