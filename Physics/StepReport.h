@@ -8,8 +8,8 @@
 namespace fulcrum {
 
 // The stages of a step, in their order; each is a file in Physics/Stages.
-enum class Stage : uint8_t { UpdateBounds, FindPairs, Collide, BuildIslands, Color, Prepare, Solve, Restitution, Store, Sleep };
-inline constexpr int kStageCount = 10;
+enum class Stage : uint8_t { UpdateBounds, FindPairs, Collide, Color, Prepare, Solve, Restitution, Store, Sleep };
+inline constexpr int kStageCount = 9;
 const char* StageName(Stage stage);
 
 struct StepReport {

@@ -38,7 +38,7 @@ static_assert(sizeof(BodyMass) == 32);
 struct alignas(64) BodyPose {
     float rotation[4] = {0, 0, 0, 1};   // x y z w
     float acceleration[3] = {0, 0, 0};  // m/s2
-    float spare = 0;
+    uint32_t boundsChangedIn = 0;       // the step in which fat bounds of it last changed: its pairs must be checked
     double position[3] = {0, 0, 0};     // m, of the centre of mass
     double positionSpare = 0;
 };

@@ -1,0 +1,313 @@
+#include <Fulcrum/Physics/BodyInterface.h>
+
+#include <Fulcrum/Collision/Shapes/Compound.h>
+#include <Fulcrum/Math/Trigonometry.h>
+#include <Fulcrum/Physics/Stages/Stages.h>
+#include <Fulcrum/Physics/Validation.h>
+
+namespace fulcrum {
+
+namespace {
+
+Error Unknown(BodyId id) {
+    return {ErrorCode::UnknownId, "no body has the id (index " + std::to_string(id.index) + ", generation " +
+                                      std::to_string(id.generation) + ")"};
+}
+
+// The centre frame's pose of a body whose own frame is at `position`, `rotation`.
+Pose CentrePose(const Shape& shape, const Position& position, const Quaternion& rotation) {
+    const Quaternion q = Normalized(rotation);
+    return {position + Rotate(q, shape.Mass().centreOfMass).cast<double>(), q};
+}
+
+void FillDynamics(BodyDynamics& d, const BodySettings& s) {
+    const MassProperties& mass = s.shape->Mass();
+    d.motion = s.motion;
+    d.lockedAxes = s.lockedAxes;
+    d.gravityFactor = s.gravityFactor;
+    d.linearDamping = s.linearDamping;
+    d.angularDamping = s.angularDamping;
+    d.maxLinearSpeed = s.maxLinearSpeed;
+    d.maxAngularSpeed = s.maxAngularSpeed;
+    d.outerRadius = s.shape->OuterRadius();
+    d.gyroscopic = s.gyroscopicTorque;
+    d.allowSleep = s.allowSleep;
+    d.layer = s.layer;
+    const Quaternion& q = mass.principalAxes;
+    const float axes[4] = {q.x, q.y, q.z, q.w};
+    for (int k = 0; k < 4; ++k) d.principalAxes[k] = axes[k];
+    if (s.motion != MotionType::Dynamic) return;
+    const float kilograms = s.mass > 0 ? s.mass : s.density * mass.volume;
+    d.inverseMass = 1.0f / kilograms;
+    const Vector3 inertia = s.inertia.isZero(0) ? Vector3(mass.principalInertia * (kilograms / mass.volume)) : s.inertia;
+    for (int k = 0; k < 3; ++k) d.inverseInertia[k] = 1.0f / inertia[k];
+    const float spread = inertia.maxCoeff() - inertia.minCoeff();
+    d.spherical = spread <= 1e-5f * inertia.maxCoeff();
+}
+
+void MakeColliders(WorldState& world, uint32_t body) {
+    ColliderStore& store = world.colliders;
+    BodyCold& cold = world.bodies.cold[body];
+    const Shape& shape = *cold.shape;
+    const auto* compound = shape.IsConvex() ? nullptr : static_cast<const Compound*>(&shape);
+    cold.colliderCount = compound ? static_cast<uint32_t>(compound->Children().size()) : 1;
+    cold.firstCollider = store.Allocate(cold.colliderCount);
+    const bool moving = world.bodies.dynamics[body].motion != MotionType::Static;
+    (moving ? store.movingLayers : store.fixedLayers) |= 1u << world.bodies.dynamics[body].layer;
+    for (uint32_t i = 0; i < cold.colliderCount; ++i) {
+        Collider& collider = store.colliders[cold.firstCollider + i];
+        collider.body = body;
+        collider.moving = moving;
+        if (compound) {
+            const Compound::Child& child = compound->Children()[i];
+            collider.shape = child.shape.get();
+            collider.local = child.pose;
+            collider.offset = true;
+        } else {
+            collider.shape = static_cast<const ConvexShape*>(&shape);
+        }
+        SetFatBounds(world, cold.firstCollider + i);
+        store.TreeOf(collider).Insert(cold.firstCollider + i, collider.fat);
+    }
+}
+
+void QueueColliders(WorldState& world, uint32_t body) {
+    const BodyCold& cold = world.bodies.cold[body];
+    for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i) world.colliders.Queue(i);
+}
+
+// Wakes what overlaps the body's fat bounds: what it may rest on, or what may rest on it.
+void WakeNeighbours(WorldState& world, uint32_t body) {
+    const BodyCold& cold = world.bodies.cold[body];
+    for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i)
+        WakeInside(world, world.colliders.colliders[i].fat);
+}
+
+// Brings everything in line with a pose that was set by hand.
+void Teleported(WorldState& world, uint32_t body) {
+    world.bodies.UpdateInertia(body);
+    const BodyCold& cold = world.bodies.cold[body];
+    for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i) {
+        SetFatBounds(world, i);
+        const Collider& collider = world.colliders.colliders[i];
+        world.colliders.TreeOf(collider).Update(i, collider.fat);
+    }
+    world.bodies.poses[body].boundsChangedIn = static_cast<uint32_t>(world.report.step + 1);
+    QueueColliders(world, body);
+}
+
+}  // namespace
+
+Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
+    if (MaybeError error = Check(settings)) return *error;
+    const uint32_t body = world_.bodies.Allocate();
+    BodyCold& cold = world_.bodies.cold[body];
+    cold.shape = settings.shape;
+    cold.material = settings.material;
+    cold.userData = settings.userData;
+    FillDynamics(world_.bodies.dynamics[body], settings);
+    world_.bodies.SetCentrePose(body, CentrePose(*settings.shape, settings.position, settings.rotation));
+    world_.bodies.SetVelocity(body, settings.linearVelocity, settings.angularVelocity);
+    world_.bodies.UpdateInertia(body);
+    MakeColliders(world_, body);
+    if (settings.startAsleep) {
+        world_.bodies.SetVelocity(body, Vector3::Zero(), Vector3::Zero());
+    } else if (settings.motion != MotionType::Static) {
+        world_.bodies.MarkAwake(body);
+        QueueColliders(world_, body);
+    } else {
+        QueueColliders(world_, body);
+    }
+    return world_.bodies.IdOf(body);
+}
+
+Status BodyInterface::Remove(BodyId id) {
+    if (!Exists(id)) return Unknown(id);
+    const uint32_t body = id.index;
+    WakeBody(world_, body);
+    WakeNeighbours(world_, body);
+    BodyCold& cold = world_.bodies.cold[body];
+    for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i)
+        world_.colliders.TreeOf(world_.colliders.colliders[i]).Remove(i);
+    world_.bodies.MarkAsleep(body);
+    cold.exists = false;
+    cold.removed = true;
+    world_.removed.push_back(body);
+    return Done{};
+}
+
+bool BodyInterface::Exists(BodyId id) const { return world_.bodies.Find(id); }
+
+Status BodyInterface::SetPose(BodyId id, const Position& position, const Quaternion& rotation) {
+    if (!Exists(id)) return Unknown(id);
+    if (MaybeError e = FirstOf(CheckFinite("position", position), CheckRotation("rotation", rotation))) return *e;
+    const uint32_t body = id.index;
+    world_.bodies.dynamics[body].frozen = false;
+    WakeBody(world_, body);
+    WakeNeighbours(world_, body);
+    world_.bodies.SetCentrePose(body, CentrePose(*world_.bodies.cold[body].shape, position, rotation));
+    Teleported(world_, body);
+    WakeNeighbours(world_, body);
+    return Done{};
+}
+
+Status BodyInterface::MoveKinematic(BodyId id, const Position& position, const Quaternion& rotation, float dt) {
+    if (!Exists(id)) return Unknown(id);
+    if (world_.bodies.dynamics[id.index].motion != MotionType::Kinematic)
+        return Error{ErrorCode::Unsupported, "MoveKinematic needs a kinematic body"};
+    if (MaybeError e = FirstOf(CheckFinite("position", position), CheckRotation("rotation", rotation), CheckPositive("dt", dt)))
+        return *e;
+    const Pose now = world_.bodies.CentrePoseOf(id.index);
+    const Pose goal = CentrePose(*world_.bodies.cold[id.index].shape, position, rotation);
+    const Vector3 linear = Vector3((goal.position - now.position).cast<float>()) * (1.0f / dt);
+    const Vector3 angular = RotationVectorOf(goal.rotation * now.rotation.Conjugate()) * (1.0f / dt);
+    return SetVelocity(id, linear, angular);
+}
+
+Status BodyInterface::SetVelocity(BodyId id, const Vector3& linear, const Vector3& angular) {
+    if (!Exists(id)) return Unknown(id);
+    if (MaybeError e = FirstOf(CheckFinite("linear", linear), CheckFinite("angular", angular))) return *e;
+    const BodyDynamics& d = world_.bodies.dynamics[id.index];
+    if (d.motion == MotionType::Static) return Error{ErrorCode::Unsupported, "a static body has no velocity"};
+    if (d.frozen) return Error{ErrorCode::Unsupported, "the body is frozen; SetPose revives it"};
+    WakeBody(world_, id.index);
+    if (d.motion == MotionType::Kinematic && !(linear.isZero(0) && angular.isZero(0)) && !d.awake) {
+        world_.bodies.MarkAwake(id.index);
+        QueueColliders(world_, id.index);
+    }
+    world_.bodies.SetVelocity(id.index, linear, angular);
+    return Done{};
+}
+
+namespace {
+
+MaybeError CheckPushable(const WorldState& world, BodyId id) {
+    if (!world.bodies.Find(id)) return Unknown(id);
+    const BodyDynamics& d = world.bodies.dynamics[id.index];
+    if (d.motion != MotionType::Dynamic) return Error{ErrorCode::Unsupported, "only dynamic bodies can be pushed"};
+    if (d.frozen) return Error{ErrorCode::Unsupported, "the body is frozen; SetPose revives it"};
+    return std::nullopt;
+}
+
+Vector3 ArmTo(const WorldState& world, BodyId id, const Position& point) {
+    return (point - world.bodies.CentreOf(id.index)).cast<float>();
+}
+
+Status Push(WorldState& world, BodyId id, const Vector3& force, const Vector3& torque) {
+    if (MaybeError e = FirstOf(CheckPushable(world, id), CheckFinite("force", force), CheckFinite("torque", torque))) return *e;
+    WakeBody(world, id.index);
+    BodyCold& cold = world.bodies.cold[id.index];
+    cold.force += force;
+    cold.torque += torque;
+    world.bodies.dynamics[id.index].hasForce = true;
+    return Done{};
+}
+
+Status Kick(WorldState& world, BodyId id, const Vector3& impulse, const Vector3& angularImpulse) {
+    if (MaybeError e = FirstOf(CheckPushable(world, id), CheckFinite("impulse", impulse), CheckFinite("angular impulse", angularImpulse)))
+        return *e;
+    WakeBody(world, id.index);
+    const BodyMass& m = world.bodies.masses[id.index];
+    const float* i = m.inverseInertia;
+    const SymmetricMatrix3 inverse{i[0], i[1], i[2], i[3], i[4], i[5]};
+    world.bodies.SetVelocity(id.index, world.bodies.LinearVelocityOf(id.index) + impulse * m.inverseMass,
+                             world.bodies.AngularVelocityOf(id.index) + inverse * angularImpulse);
+    return Done{};
+}
+
+}  // namespace
+
+Status BodyInterface::AddForce(BodyId id, const Vector3& force) { return Push(world_, id, force, Vector3::Zero()); }
+Status BodyInterface::AddTorque(BodyId id, const Vector3& torque) { return Push(world_, id, Vector3::Zero(), torque); }
+Status BodyInterface::AddForceAt(BodyId id, const Vector3& force, const Position& point) {
+    if (MaybeError e = FirstOf(CheckPushable(world_, id), CheckFinite("point", point))) return *e;
+    return Push(world_, id, force, Cross<float>(ArmTo(world_, id, point), force));
+}
+Status BodyInterface::AddImpulse(BodyId id, const Vector3& impulse) { return Kick(world_, id, impulse, Vector3::Zero()); }
+Status BodyInterface::AddAngularImpulse(BodyId id, const Vector3& impulse) {
+    return Kick(world_, id, Vector3::Zero(), impulse);
+}
+Status BodyInterface::AddImpulseAt(BodyId id, const Vector3& impulse, const Position& point) {
+    if (MaybeError e = FirstOf(CheckPushable(world_, id), CheckFinite("point", point))) return *e;
+    return Kick(world_, id, impulse, Cross<float>(ArmTo(world_, id, point), impulse));
+}
+
+Status BodyInterface::SetMaterial(BodyId id, const Material& material) {
+    if (!Exists(id)) return Unknown(id);
+    if (MaybeError e = Check(material)) return *e;
+    world_.bodies.cold[id.index].material = material;
+    for (uint32_t i = 0; i < world_.pairs.pairs.size(); ++i) {
+        const Pair& pair = world_.pairs.pairs[i];
+        if (pair.exists && (pair.bodyA == id.index || pair.bodyB == id.index)) CombineMaterials(world_, i);
+    }
+    WakeBody(world_, id.index);
+    WakeNeighbours(world_, id.index);
+    return Done{};
+}
+
+Status BodyInterface::SetGravityFactor(BodyId id, float factor) {
+    if (!Exists(id)) return Unknown(id);
+    if (MaybeError e = CheckRange("gravityFactor", factor, -1e6, 1e6)) return *e;
+    world_.bodies.dynamics[id.index].gravityFactor = factor;
+    WakeBody(world_, id.index);
+    return Done{};
+}
+
+Status BodyInterface::Wake(BodyId id) {
+    if (!Exists(id)) return Unknown(id);
+    WakeBody(world_, id.index);
+    return Done{};
+}
+
+Status BodyInterface::Sleep(BodyId id) {
+    if (!Exists(id)) return Unknown(id);
+    if (world_.bodies.dynamics[id.index].motion != MotionType::Dynamic)
+        return Error{ErrorCode::Unsupported, "only dynamic bodies sleep"};
+    if (world_.bodies.dynamics[id.index].awake) SleepIslandOf(world_, id.index);
+    return Done{};
+}
+
+Pose BodyInterface::GetPose(BodyId id) const {
+    if (!Exists(id)) return {};
+    const Pose centre = world_.bodies.CentrePoseOf(id.index);
+    const Vector3 offset = world_.bodies.cold[id.index].shape->Mass().centreOfMass;
+    return {centre.position - Rotate(centre.rotation, offset).cast<double>(), centre.rotation};
+}
+
+Position BodyInterface::GetCentreOfMass(BodyId id) const {
+    return Exists(id) ? world_.bodies.CentreOf(id.index) : Position(Position::Zero());
+}
+Vector3 BodyInterface::GetLinearVelocity(BodyId id) const {
+    return Exists(id) ? world_.bodies.LinearVelocityOf(id.index) : Vector3(Vector3::Zero());
+}
+Vector3 BodyInterface::GetAngularVelocity(BodyId id) const {
+    return Exists(id) ? world_.bodies.AngularVelocityOf(id.index) : Vector3(Vector3::Zero());
+}
+Vector3 BodyInterface::GetVelocityAt(BodyId id, const Position& point) const {
+    if (!Exists(id)) return Vector3::Zero();
+    return GetLinearVelocity(id) + Cross<float>(GetAngularVelocity(id), ArmTo(world_, id, point));
+}
+float BodyInterface::GetMass(BodyId id) const {
+    if (!Exists(id)) return 0;
+    const float inverse = world_.bodies.dynamics[id.index].inverseMass;
+    return inverse > 0 ? 1.0f / inverse : 0.0f;
+}
+Vector3 BodyInterface::GetAngularMomentum(BodyId id) const {
+    if (!Exists(id)) return Vector3::Zero();
+    return AngularMomentum(world_.bodies.dynamics[id.index], world_.bodies.RotationOf(id.index), GetAngularVelocity(id));
+}
+double BodyInterface::GetKineticEnergy(BodyId id) const {
+    if (!Exists(id) || world_.bodies.dynamics[id.index].motion != MotionType::Dynamic) return 0;
+    const Position v = GetLinearVelocity(id).cast<double>(), w = GetAngularVelocity(id).cast<double>();
+    const Position momentum = GetAngularMomentum(id).cast<double>();
+    return 0.5 * (double(GetMass(id)) * v.squaredNorm() + Dot<double>(w, momentum));
+}
+MotionType BodyInterface::GetMotionType(BodyId id) const {
+    return Exists(id) ? world_.bodies.dynamics[id.index].motion : MotionType::Static;
+}
+ShapePtr BodyInterface::GetShape(BodyId id) const { return Exists(id) ? world_.bodies.cold[id.index].shape : nullptr; }
+uint64_t BodyInterface::GetUserData(BodyId id) const { return Exists(id) ? world_.bodies.cold[id.index].userData : 0; }
+bool BodyInterface::IsAwake(BodyId id) const { return Exists(id) && world_.bodies.dynamics[id.index].awake; }
+bool BodyInterface::IsFrozen(BodyId id) const { return Exists(id) && world_.bodies.dynamics[id.index].frozen; }
+
+}  // namespace fulcrum

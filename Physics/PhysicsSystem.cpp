@@ -1,0 +1,217 @@
+#include <Fulcrum/Physics/PhysicsSystem.h>
+
+#include <Fulcrum/Physics/Islands/UnionFind.h>
+#include <Fulcrum/Physics/Stages/Stages.h>
+#include <Fulcrum/Physics/Validation.h>
+
+#include <chrono>
+#include <cstring>
+
+namespace fulcrum {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double Milliseconds(Clock::time_point from, Clock::time_point to) {
+    return std::chrono::duration<double, std::milli>(to - from).count();
+}
+
+// Forgets the bodies that were removed since the last step, and all pairs that they were part of.
+void ForgetRemoved(WorldState& world) {
+    if (world.removed.empty()) return;
+    for (uint32_t i = 0; i < world.pairs.pairs.size(); ++i) {
+        const Pair& pair = world.pairs.pairs[i];
+        if (!pair.exists || !(world.bodies.cold[pair.bodyA].removed || world.bodies.cold[pair.bodyB].removed)) continue;
+        UncolourPair(world, i);
+        world.pairs.Remove(i);
+    }
+    std::erase_if(world.colliders.moved, [&](uint32_t collider) {
+        return world.bodies.cold[world.colliders.colliders[collider].body].removed;
+    });
+    for (uint32_t body : world.removed) {
+        const BodyCold& cold = world.bodies.cold[body];
+        world.colliders.Free(cold.firstCollider, cold.colliderCount);
+        world.bodies.Free(body);
+    }
+    world.removed.clear();
+}
+
+void BeginReport(WorldState& world) {
+    const uint64_t step = world.report.step + 1;
+    world.report = {};
+    world.report.step = step;
+    for (WorkerFindings& f : world.findings) {
+        f.libccd = {};
+        f.contacts = f.points = f.kept = f.clamped = f.frozen = f.sleepCandidates = 0;
+        f.deepest = 0;
+        f.deepestPair = f.firstFrozen = ~0u;
+        f.bounces = false;
+    }
+}
+
+// Runs the stages one after the other and notes how long each took.
+class StepTimer {
+public:
+    explicit StepTimer(StepReport& report) : report_(report), start_(Clock::now()), last_(start_) {}
+    void Finished(Stage stage) {
+        const Clock::time_point now = Clock::now();
+        report_.stageMs[static_cast<size_t>(stage)] = Milliseconds(last_, now);
+        last_ = now;
+    }
+    void FinishedAll() { report_.totalMs = Milliseconds(start_, last_); }
+
+private:
+    StepReport& report_;
+    Clock::time_point start_, last_;
+};
+
+}  // namespace
+
+const char* StageName(Stage stage) {
+    static constexpr const char* kNames[kStageCount] = {"UpdateBounds", "FindPairs", "Collide", "Color", "Prepare",
+                                                        "Solve",        "Restitution", "Store", "Sleep"};
+    return kNames[static_cast<size_t>(stage)];
+}
+
+Result<std::unique_ptr<PhysicsSystem>> PhysicsSystem::Create(const SystemSettings& settings, JobSystem* jobs) {
+    if (MaybeError error = Check(settings)) return *error;
+    auto world = std::make_unique<WorldState>();
+    world->settings = settings;
+    if (!jobs) {
+        world->ownJobs = std::make_unique<ThreadPool>(1);
+        jobs = world->ownJobs.get();
+    }
+    world->jobs = jobs;
+    world->findings.resize(jobs->WorkerCount());
+    return std::unique_ptr<PhysicsSystem>(new PhysicsSystem(std::move(world)));
+}
+
+PhysicsSystem::PhysicsSystem(std::unique_ptr<WorldState> world) : world_(std::move(world)), bodies_(*world_) {}
+PhysicsSystem::~PhysicsSystem() = default;
+
+Status PhysicsSystem::Update(double dt) {
+    if (MaybeError error = CheckRange("dt", dt, 0, 1)) return *error;
+    WorldState& world = *world_;
+    ForgetRemoved(world);
+    BeginReport(world);
+    if (dt == 0) return Done{};
+    StepContext step;
+    step.dt = static_cast<float>(dt);
+    step.substepDt = step.dt / static_cast<float>(world.settings.solver.substeps);
+    world.scratch.Reset();
+
+    StepTimer timer(world.report);
+    UpdateBounds(world, step);
+    timer.Finished(Stage::UpdateBounds);
+    FindPairs(world);
+    timer.Finished(Stage::FindPairs);
+    Collide(world, step);
+    timer.Finished(Stage::Collide);
+    Color(world);
+    timer.Finished(Stage::Color);
+    Prepare(world, step);
+    timer.Finished(Stage::Prepare);
+    Solve(world, step);
+    timer.Finished(Stage::Solve);
+    Restitution(world);
+    timer.Finished(Stage::Restitution);
+    Store(world, step);
+    timer.Finished(Stage::Store);
+    Sleep(world);
+    timer.Finished(Stage::Sleep);
+    timer.FinishedAll();
+
+    world.report.bodies = world.bodies.Count();
+    world.report.awakeBodies = static_cast<uint32_t>(world.bodies.awake.size());
+    world.report.pairs = static_cast<uint32_t>(world.pairs.active.size());
+    return Done{};
+}
+
+const StepReport& PhysicsSystem::Report() const { return world_->report; }
+const SystemSettings& PhysicsSystem::Settings() const { return world_->settings; }
+
+Status PhysicsSystem::SetSettings(const SystemSettings& settings) {
+    if (MaybeError error = Check(settings)) return *error;
+    world_->settings = settings;
+    return Done{};
+}
+
+void PhysicsSystem::VisitBodies(FunctionRef<void(BodyId)> visit) const {
+    const BodyStore& bodies = world_->bodies;
+    for (uint32_t i = 0; i < bodies.Size(); ++i)
+        if (bodies.cold[i].exists) visit(bodies.IdOf(i));
+}
+
+void PhysicsSystem::VisitContacts(FunctionRef<void(const ContactView&)> visit) const {
+    const WorldState& world = *world_;
+    for (uint32_t index : world.pairs.active) {
+        const Pair& pair = world.pairs.pairs[index];
+        const ContactRecord& record = world.pairs.records[index];
+        if (!pair.touching) continue;
+        const Pose poseA = world.bodies.CentrePoseOf(pair.bodyA);
+        ContactView::Point points[ContactRecord::kMaxPoints];
+        const size_t count = static_cast<size_t>(record.pointCount);
+        for (size_t i = 0; i < count; ++i) {
+            const ContactRecord::Point& p = record.points[i];
+            points[i] = {poseA.Transform(Vector3(p.onA[0], p.onA[1], p.onA[2])), p.separation, p.impulse};
+        }
+        visit({world.bodies.IdOf(pair.bodyA), world.bodies.IdOf(pair.bodyB),
+               Rotate(poseA.rotation, Vector3(record.normal[0], record.normal[1], record.normal[2])),
+               std::span<const ContactView::Point>(points, count)});
+    }
+}
+
+void PhysicsSystem::VisitIslands(FunctionRef<void(BodyId, uint32_t island)> visit) const {
+    const BodyStore& bodies = world_->bodies;
+    std::vector<uint32_t> parents(bodies.Size());
+    UnionFind sets(parents);
+    for (uint32_t index : world_->pairs.active) {
+        const Pair& pair = world_->pairs.pairs[index];
+        if (pair.touching && !pair.fixedB) sets.Unite(pair.bodyA, pair.bodyB);
+    }
+    // Sleepers belong together as they fell asleep.
+    std::vector<uint32_t> first(bodies.Size(), ~0u);
+    for (uint32_t i = 0; i < bodies.Size(); ++i) {
+        const uint32_t island = bodies.cold[i].sleepingIsland;
+        if (island == SleepingIslands::kNone) continue;
+        sets.Unite(i, world_->sleeping.Bodies(island).front());
+    }
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < bodies.Size(); ++i) {
+        if (!bodies.cold[i].exists || bodies.dynamics[i].motion != MotionType::Dynamic) continue;
+        const uint32_t root = sets.Find(i);
+        if (first[root] == ~0u) first[root] = count++;
+        visit(bodies.IdOf(i), first[root]);
+    }
+}
+
+double PhysicsSystem::GetEnergy() const {
+    double energy = 0;
+    const Position gravity = world_->settings.gravity.cast<double>();
+    const BodyStore& bodies = world_->bodies;
+    for (uint32_t i = 0; i < bodies.Size(); ++i) {
+        if (!bodies.cold[i].exists || bodies.dynamics[i].motion != MotionType::Dynamic) continue;
+        const BodyId id = bodies.IdOf(i);
+        energy += bodies_.GetKineticEnergy(id) -
+                  double(bodies_.GetMass(id)) * double(bodies.dynamics[i].gravityFactor) * Dot<double>(gravity, bodies.CentreOf(i));
+    }
+    return energy;
+}
+
+uint64_t PhysicsSystem::HashPoses() const {
+    uint64_t hash = 0xCBF29CE484222325ull;  // FNV-1a, 64 bits
+    VisitBodies([&](BodyId id) {
+        const Pose pose = bodies_.GetPose(id);
+        const Quaternion& q = pose.rotation;
+        const double numbers[7] = {pose.position.x(), pose.position.y(), pose.position.z(), q.x, q.y, q.z, q.w};
+        unsigned char bytes[sizeof numbers];
+        std::memcpy(bytes, numbers, sizeof numbers);
+        for (unsigned char byte : bytes) hash = (hash ^ byte) * 0x100000001B3ull;
+    });
+    return hash;
+}
+
+size_t PhysicsSystem::MemoryUsed() const { return world_->MemoryUsed(); }
+
+}  // namespace fulcrum

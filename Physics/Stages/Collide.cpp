@@ -1,0 +1,233 @@
+// Manifolds of all active pairs. A pair whose bodies hardly moved relative to each other keeps its manifold: only the
+// separations are brought up to date. Contacts reach as far ahead as the bodies may move within the step, so that nothing
+// is driven into the other by a whole step's motion before it is seen.
+#include <Fulcrum/Physics/Stages/Stages.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+namespace {
+
+// A manifold is kept up to this relative motion since it was found.
+constexpr float kKeptDistance = 1e-3f;  // m, but at most this part of the smaller body:
+constexpr float kKeptPart = 2e-3f;
+constexpr float kKeptAngle = 1e-3f;     // rad
+
+struct PairView {
+    Pair& pair;
+    ContactRecord& record;
+    const ConvexShape& shapeA;
+    const ConvexShape& shapeB;
+    RelativePose bInA;  // of the pieces' centre frames
+};
+
+// Points are stored relative to the bodies, the narrow phase speaks of the pieces.
+Vector3 ToBody(const WorldState& world, const Pair& pair, uint32_t collider, const Vector3& point) {
+    return pair.offset ? world.colliders.colliders[collider].local.Transform(point) : point;
+}
+
+bool HardlyMoved(const PairView& v) {
+    const RelativePose& old = v.pair.reference;
+    const float size = std::min(v.shapeA.OuterRadius(), v.shapeB.OuterRadius());
+    const float distance = std::min(kKeptDistance, kKeptPart * size);
+    if (LengthSquared(Vector3(v.bInA.position - old.position)) > distance * distance) return false;
+    // For small angles |q - q0| is half the angle; the sign of a quaternion does not flip between two steps.
+    const Quaternion& a = v.bInA.rotation;
+    const Quaternion& b = old.rotation;
+    const Quaternion d{a.x - b.x, a.y - b.y, a.z - b.z, a.w - b.w};
+    return LengthSquared(d) <= 0.25f * kKeptAngle * kKeptAngle;
+}
+
+// Separations of the record's points at the pieces' poses of now.
+void UpdateSeparations(const PairView& v, const RelativePose& bodyBInA) {
+    ContactRecord& record = v.record;
+    const Vector3 normal(record.normal[0], record.normal[1], record.normal[2]);
+    const Matrix3 rotation = ToMatrix(bodyBInA.rotation);
+    for (int i = 0; i < static_cast<int>(record.pointCount); ++i) {
+        ContactRecord::Point& p = record.points[i];
+        const Vector3 onB = bodyBInA.position + rotation * Vector3(p.onB[0], p.onB[1], p.onB[2]);
+        p.separation = Dot<float>(normal, Vector3(onB - Vector3(p.onA[0], p.onA[1], p.onA[2])));
+    }
+}
+
+void WriteTwistRadius(ContactRecord& record) {
+    const Vector3 normal(record.normal[0], record.normal[1], record.normal[2]);
+    const Vector3 t1 = Perpendicular(normal), t2 = Cross<float>(normal, t1);
+    const int count = static_cast<int>(record.pointCount);
+    Vector3 centre = Vector3::Zero();
+    for (int i = 0; i < count; ++i) centre += Vector3(record.points[i].onA[0], record.points[i].onA[1], record.points[i].onA[2]);
+    centre = centre * (1.0f / static_cast<float>(count));
+    float x[ContactRecord::kMaxPoints], y[ContactRecord::kMaxPoints];
+    for (int i = 0; i < count; ++i) {
+        const Vector3 r = Vector3(record.points[i].onA[0], record.points[i].onA[1], record.points[i].onA[2]) - centre;
+        x[i] = Dot<float>(r, t1);
+        y[i] = Dot<float>(r, t2);
+    }
+    record.twistRadius = MeanDistance(x, y, count);
+}
+
+// Writes what the narrow phase found into the record. Impulses go on where the same features touch. Points that are farther
+// apart than the speculative distance stay only if they can meet within the step.
+void WriteManifold(const WorldState& world, const PairView& v, const RelativePose& bodyBInA, const Manifold& manifold,
+                   float dt) {
+    Pair& pair = v.pair;
+    ContactRecord& record = v.record;
+    const ContactRecord old = record;
+    uint32_t oldFeatures[Manifold::kMaxPoints];
+    std::copy(pair.features, pair.features + Manifold::kMaxPoints, oldFeatures);
+
+    const Vector3 normal = pair.offset ? Rotate(world.colliders.colliders[pair.colliderA].local.rotation, manifold.normal)
+                                       : manifold.normal;
+    // Velocities of B relative to A, in A's frame.
+    const BodyStore& bodies = world.bodies;
+    const Quaternion toWorld = bodies.RotationOf(pair.bodyA);
+    const auto inA = [&](const Vector3& world_) { return InverseRotate(toWorld, world_); };
+    const Vector3 vA = inA(bodies.LinearVelocityOf(pair.bodyA)), wA = inA(bodies.AngularVelocityOf(pair.bodyA));
+    const Vector3 vB = inA(bodies.LinearVelocityOf(pair.bodyB)), wB = inA(bodies.AngularVelocityOf(pair.bodyB));
+
+    int count = 0;
+    for (int i = 0; i < manifold.pointCount; ++i) {
+        const ManifoldPoint& found = manifold.points[i];
+        const Vector3 onA = ToBody(world, pair, pair.colliderA, found.positionOnA);
+        const Vector3 meets = onA + normal * found.separation;  // on B, in A's frame
+        const Vector3 velocity = vB + Cross<float>(wB, Vector3(meets - bodyBInA.position)) - vA - Cross<float>(wA, onA);
+        const float approach = -Dot<float>(velocity, normal);
+        if (found.separation > world.settings.speculativeDistance + std::max(approach, 0.0f) * dt) continue;
+        const Vector3 onB = bodyBInA.InverseTransform(meets);
+        ContactRecord::Point& p = record.points[count];
+        p = {};
+        for (int k = 0; k < 3; ++k) {
+            p.onA[k] = onA[k];
+            p.onB[k] = onB[k];
+        }
+        p.separation = found.separation;
+        for (int j = 0; j < static_cast<int>(old.pointCount); ++j)
+            if (oldFeatures[j] == found.feature) p.impulse = old.points[j].impulse;
+        pair.features[count++] = found.feature;
+    }
+    for (int k = 0; k < 3; ++k) record.normal[k] = normal[k];
+    record.pointCount = static_cast<float>(count);
+    if (old.pointCount == 0) {
+        record.twistImpulse = 0;
+        for (float& f : record.frictionImpulse) f = 0;
+    }
+    if (count > 0) WriteTwistRadius(record);
+}
+
+// Whether fat bounds still overlap; asked only where they changed.
+bool Overlap(const WorldState& world, const Pair& pair) {
+    return world.colliders.colliders[pair.colliderA].fat.Overlaps(world.colliders.colliders[pair.colliderB].fat);
+}
+
+void Count(const PairView& v, uint32_t index, WorkerFindings& findings) {
+    ++findings.contacts;
+    findings.points += static_cast<uint32_t>(v.record.pointCount);
+    float lowest = 0;
+    for (int i = 0; i < static_cast<int>(v.record.pointCount); ++i) lowest = std::min(lowest, v.record.points[i].separation);
+    if (-lowest > findings.deepest || (-lowest == findings.deepest && index < findings.deepestPair)) {
+        findings.deepest = -lowest;
+        findings.deepestPair = index;
+    }
+}
+
+PairChange CollidePair(WorldState& world, uint32_t index, float dt, WorkerFindings& findings) {
+    Pair& pair = world.pairs.pairs[index];
+    const BodyPose& poseA = world.bodies.poses[pair.bodyA];
+    const BodyPose& poseB = world.bodies.poses[pair.bodyB];
+    const uint32_t now = static_cast<uint32_t>(world.report.step);
+    if ((poseA.boundsChangedIn == now || poseB.boundsChangedIn == now) && !Overlap(world, pair)) return PairChange::Dead;
+
+    const Collider& colliderA = world.colliders.colliders[pair.colliderA];
+    const Collider& colliderB = world.colliders.colliders[pair.colliderB];
+    const RelativePose bodyBInA = Relative(world.bodies.CentrePoseOf(pair.bodyA), world.bodies.CentrePoseOf(pair.bodyB));
+    PairView v{pair, world.pairs.records[index], *colliderA.shape, *colliderB.shape, bodyBInA};
+    if (pair.offset) v.bInA = Inverse(colliderA.local) * bodyBInA * colliderB.local;
+
+    const bool touched = pair.touching;
+    if (pair.found && v.record.pointCount > 0 && HardlyMoved(v)) {
+        UpdateSeparations(v, bodyBInA);
+        ++findings.kept;
+    } else {
+        const Vector3 relative = world.bodies.LinearVelocityOf(pair.bodyB) - world.bodies.LinearVelocityOf(pair.bodyA);
+        CollideSettings settings;
+        settings.method = world.settings.narrowPhase;
+        settings.speculativeDistance = world.settings.speculativeDistance + Length(relative) * dt;
+        const float reach = v.shapeA.OuterRadius() + v.shapeB.OuterRadius() + settings.speculativeDistance;
+        if (LengthSquared(v.bInA.position) > reach * reach) {
+            v.record.pointCount = 0;
+        } else {
+            Manifold manifold;
+            Collide(v.shapeA, v.shapeB, v.bInA, settings, pair.cache, manifold, findings.libccd);
+            WriteManifold(world, v, bodyBInA, manifold, dt);
+        }
+        pair.reference = v.bInA;
+        pair.found = true;
+    }
+    pair.touching = v.record.pointCount > 0;
+    if (pair.touching) Count(v, index, findings);
+    if (pair.touching) {
+        const auto sleeps = [&](uint32_t body) {
+            const BodyDynamics& d = world.bodies.dynamics[body];
+            return d.motion == MotionType::Dynamic && !d.awake;
+        };
+        if (sleeps(pair.bodyA) || sleeps(pair.bodyB)) return PairChange::WakesOther;
+    }
+    if (pair.touching == touched) return PairChange::None;
+    return pair.touching ? PairChange::Began : PairChange::Ended;
+}
+
+void CollideRange(WorldState& world, uint32_t first, float dt) {
+    const uint32_t count = static_cast<uint32_t>(world.pairs.active.size()) - first;
+    world.changes.resize(world.pairs.active.size());
+    world.jobs->ParallelFor(count, 32, [&](JobRange range) {
+        for (uint32_t i = first + range.begin; i < first + range.end; ++i)
+            world.changes[i] = CollidePair(world, world.pairs.active[i], dt, world.findings[range.worker]);
+    });
+}
+
+// Wakes the sleeping bodies that the pairs from `first` on touch. They search for pairs of their own at once: what is hit
+// must not lose its support for a step.
+void WakeTouched(WorldState& world, uint32_t first) {
+    for (uint32_t i = first; i < world.changes.size(); ++i) {
+        if (world.changes[i] != PairChange::WakesOther) continue;
+        const Pair& pair = world.pairs.pairs[world.pairs.active[i]];
+        WakeBody(world, pair.bodyA);
+        if (!pair.fixedB) WakeBody(world, pair.bodyB);
+        world.changes[i] = PairChange::Began;
+    }
+    FindPairs(world);
+}
+
+}  // namespace
+
+void Collide(WorldState& world, const StepContext& step) {
+    uint32_t first = 0;
+    while (first < world.pairs.active.size()) {
+        const uint32_t end = static_cast<uint32_t>(world.pairs.active.size());
+        CollideRange(world, first, step.dt);
+        WakeTouched(world, first);
+        first = end;
+    }
+    world.changes.resize(world.pairs.active.size());
+    StepReport& report = world.report;
+    uint32_t deepestPair = ~0u;
+    for (WorkerFindings& f : world.findings) {
+        report.contacts += f.contacts;
+        report.contactPoints += f.points;
+        report.keptManifolds += f.kept;
+        report.libccd.epaFailures += f.libccd.epaFailures;
+        report.libccd.centreLineFallbacks += f.libccd.centreLineFallbacks;
+        if (f.deepest > report.largestPenetration ||
+            (f.deepest == report.largestPenetration && f.deepestPair < deepestPair)) {
+            report.largestPenetration = f.deepest;
+            deepestPair = f.deepestPair;
+        }
+    }
+    if (deepestPair != ~0u) {
+        report.deepestA = world.bodies.IdOf(world.pairs.pairs[deepestPair].bodyA);
+        report.deepestB = world.bodies.IdOf(world.pairs.pairs[deepestPair].bodyB);
+    }
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,54 @@
+// The step as a list of verbs, in the order in which PhysicsSystem::Update calls them; each is a file beside this one.
+// All run on the thread that steps and schedule their ranges on the world's job system.
+#pragma once
+
+#include <Fulcrum/Physics/State/WorldState.h>
+
+namespace fulcrum {
+
+struct StepContext {
+    float dt;         // s, of the step, > 0
+    float substepDt;  // s
+};
+
+// Reads poses, velocities, shapes. Writes world inertia and accelerations; fat bounds and trees where a collider left its own.
+void UpdateBounds(WorldState& world, const StepContext& step);
+
+// Fat bounds of a collider at its body's pose, at rest.
+void SetFatBounds(WorldState& world, uint32_t collider);
+
+// Reads trees and the colliders that moved. Adds pairs, sorted by id, and activates resting ones.
+void FindPairs(WorldState& world);
+
+// Writes the combined friction and restitution of a pair into its record.
+void CombineMaterials(WorldState& world, uint32_t pair);
+
+// Reads active pairs, poses, shapes. Writes manifolds into the records, and which pairs changed. Wakes what is hit.
+void Collide(WorldState& world, const StepContext& step);
+
+// Applies the changes: colours contacts that began, uncolours those that ended, removes dead pairs.
+void Color(WorldState& world);
+// Gives a pair's contact a colour, or takes it away; nothing where it has one, or none.
+void ColourPair(WorldState& world, uint32_t pair);
+void UncolourPair(WorldState& world, uint32_t pair);
+
+// Reads records, poses, masses. Writes batches of rows.
+void Prepare(WorldState& world, const StepContext& step);
+
+// Substeps: integrates velocities, warm starts, iterates, integrates poses, position passes.
+void Solve(WorldState& world, const StepContext& step);
+
+// Bounces what was hit.
+void Restitution(WorldState& world);
+
+// Writes impulses to the records, displacements to the poses; moves bodies that nothing touched; measures slowness.
+void Store(WorldState& world, const StepContext& step);
+
+// Puts islands that have been slow for long enough to sleep.
+void Sleep(WorldState& world);
+// Makes the bodies, all awake, one sleeping island.
+void PutToSleep(WorldState& world, std::span<const uint32_t> bodies);
+// Puts the island of an awake body to sleep, slow or not.
+void SleepIslandOf(WorldState& world, uint32_t body);
+
+}  // namespace fulcrum

@@ -1,0 +1,161 @@
+// Ends the step for each body: what was solved moves by the sum of its substeps, what nothing touched flies freely and
+// exactly. Impulses go back to the records.
+#include <Fulcrum/Math/Trigonometry.h>
+#include <Fulcrum/Physics/Stages/Stages.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+namespace {
+
+// Slower than this, in rad/s, gyroscopic torque changes nothing that can be seen.
+constexpr float kGyroscopicSpeed = 0.1f;
+
+SymmetricMatrix3 InverseInertia(const BodyDynamics& d, const Quaternion& rotation) {
+    return RotatedDiagonal(ToMatrix(rotation * d.PrincipalAxes()), Vector3(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]));
+}
+
+bool FeelsGyroscopicTorque(const BodyDynamics& d, const Vector3& w) {
+    return d.gyroscopic && !d.spherical && LengthSquared(w) > kGyroscopicSpeed * kGyroscopicSpeed;
+}
+
+bool Clamp(Vector3& v, float limit) {
+    const float length = Length(v);
+    if (!(length > limit)) return false;
+    v *= limit / length;
+    return true;
+}
+
+// Keeps the angular momentum L: the orientation advances with the angular velocity of the midpoint, I(q_mid)^-1 L, found
+// from a predicted one and corrected once.
+void RotateFreely(const BodyDynamics& d, Quaternion& q, Vector3& w, const Vector3& torque, float dt, int substeps) {
+    const float h = dt / static_cast<float>(substeps);
+    Vector3 momentum = AngularMomentum(d, q, w);
+    for (int i = 0; i < substeps; ++i) {
+        momentum += torque * h;
+        const Vector3 start = InverseInertia(d, q) * momentum;
+        Vector3 middle = InverseInertia(d, RotationFromVector(Vector3(start * (0.5f * h))) * q) * momentum;
+        middle = InverseInertia(d, RotationFromVector(Vector3(middle * (0.5f * h))) * q) * momentum;
+        q = Normalized(RotationFromVector(Vector3(middle * h)) * q);
+    }
+    w = InverseInertia(d, q) * momentum;
+}
+
+// A body that no contact touched: x += v t + a t^2 / 2, exact under constant acceleration.
+void FlyFreely(WorldState& world, uint32_t body, const StepContext& step, Pose& pose, Vector3& v, Vector3& w,
+               WorkerFindings& findings) {
+    const BodyDynamics& d = world.bodies.dynamics[body];
+    const float* a = world.bodies.poses[body].acceleration;
+    const Vector3 before = v;
+    v += Vector3(a[0], a[1], a[2]) * step.dt;
+    if (d.linearDamping > 0) v *= Exp(-d.linearDamping * step.dt);
+    Vector3 change = (before + v) * (0.5f * step.dt);
+    if (static_cast<uint8_t>(d.lockedAxes) & 7)
+        for (int k = 0; k < 3; ++k)
+            if (static_cast<uint8_t>(d.lockedAxes) >> k & 1) v[k] = change[k] = 0;
+    pose.position += change.cast<double>();
+
+    const Vector3 torque = d.hasForce ? world.bodies.cold[body].torque : Vector3(Vector3::Zero());
+    const bool clamped = Clamp(v, d.maxLinearSpeed) | Clamp(w, d.maxAngularSpeed);
+    findings.clamped += clamped;
+    if (FeelsGyroscopicTorque(d, w) && (static_cast<uint8_t>(d.lockedAxes) & 56) == 0) {
+        RotateFreely(d, pose.rotation, w, torque, step.dt, world.settings.solver.substeps);
+    } else {
+        const float* i = world.bodies.masses[body].inverseInertia;
+        if (d.hasForce) w += SymmetricMatrix3{i[0], i[1], i[2], i[3], i[4], i[5]} * torque * step.dt;
+        pose.rotation = Normalized(RotationFromVector(Vector3(w * step.dt)) * pose.rotation);
+    }
+    if (d.angularDamping > 0) w *= Exp(-d.angularDamping * step.dt);
+}
+
+void MoveSolved(WorldState& world, uint32_t body, Pose& pose, Vector3& w) {
+    BodyState& s = world.bodies.states[body];
+    const BodyDynamics& d = world.bodies.dynamics[body];
+    const Quaternion before = pose.rotation;
+    pose.position += Vector3(s.deltaPosition[0], s.deltaPosition[1], s.deltaPosition[2]).cast<double>();
+    pose.rotation = Normalized(RotationFromVector(Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2])) * before);
+    // What turned keeps its momentum, not its angular velocity.
+    if (FeelsGyroscopicTorque(d, w) && (static_cast<uint8_t>(d.lockedAxes) & 56) == 0)
+        w = InverseInertia(d, pose.rotation) * AngularMomentum(d, before, w);
+}
+
+// Stops a body whose state is not finite, at its last good pose; it stays there like a static one.
+void Freeze(WorldState& world, uint32_t body, WorkerFindings& findings) {
+    world.bodies.SetVelocity(body, Vector3::Zero(), Vector3::Zero());
+    world.bodies.dynamics[body].frozen = true;
+    world.bodies.UpdateInertia(body);
+    ++findings.frozen;
+    findings.firstFrozen = std::min(findings.firstFrozen, body);
+}
+
+void MeasureSlowness(WorldState& world, uint32_t body, const Vector3& v, const Vector3& w, float dt, WorkerFindings& findings) {
+    BodyDynamics& d = world.bodies.dynamics[body];
+    const SleepSettings& sleep = world.settings.sleep;
+    const float speed = Length(v) + Length(w) * d.outerRadius;
+    const bool slow = d.allowSleep && speed < sleep.linearSpeed;
+    d.slowSeconds = slow ? d.slowSeconds + dt : 0.0f;
+    findings.sleepCandidates += slow && d.slowSeconds >= sleep.seconds;
+}
+
+void EndBody(WorldState& world, uint32_t body, const StepContext& step, WorkerFindings& findings) {
+    BodyStore& bodies = world.bodies;
+    BodyDynamics& d = bodies.dynamics[body];
+    Pose pose = bodies.CentrePoseOf(body);
+    Vector3 v = bodies.LinearVelocityOf(body), w = bodies.AngularVelocityOf(body);
+    if (d.frozen) return;
+    if (d.motion == MotionType::Kinematic) {
+        pose.position += (v * step.dt).cast<double>();
+        pose.rotation = Normalized(RotationFromVector(Vector3(w * step.dt)) * pose.rotation);
+    } else if (world.colouring.IsTouched(body)) {
+        MoveSolved(world, body, pose, w);
+    } else {
+        FlyFreely(world, body, step, pose, v, w, findings);
+    }
+    bodies.states[body] = {};
+    if (!IsFinite(pose.position) || !IsFinite(pose.rotation) || !IsFinite(v) || !IsFinite(w)) {
+        Freeze(world, body, findings);
+        return;
+    }
+    bodies.SetVelocity(body, v, w);
+    bodies.SetCentrePose(body, pose);
+    if (d.hasForce) {
+        bodies.cold[body].force.setZero();
+        bodies.cold[body].torque.setZero();
+        d.hasForce = false;
+    }
+    if (world.settings.sleep.enabled && d.motion == MotionType::Dynamic)
+        MeasureSlowness(world, body, v, w, step.dt, findings);
+}
+
+template <class Batch>
+void StoreAll(WorldState& world, std::vector<Batch>& batches, uint32_t count) {
+    world.jobs->ParallelFor(count, 16, [&](JobRange range) {
+        for (uint32_t i = range.begin; i < range.end; ++i) StoreContacts(batches[i], world.pairs.records.data());
+    });
+}
+
+}  // namespace
+
+void Store(WorldState& world, const StepContext& step) {
+    SolverGroup& group = world.group;
+    StoreAll(world, group.moving, group.movingCount);
+    StoreAll(world, group.fixed, group.fixedCount);
+    StoreAll(world, group.overflowMoving, static_cast<uint32_t>(group.overflowMoving.size()));
+    StoreAll(world, group.overflowFixed, static_cast<uint32_t>(group.overflowFixed.size()));
+    world.jobs->ParallelFor(static_cast<uint32_t>(world.bodies.awake.size()), 64, [&](JobRange range) {
+        for (uint32_t i = range.begin; i < range.end; ++i)
+            EndBody(world, world.bodies.awake[i], step, world.findings[range.worker]);
+    });
+    world.lastSubstepDt = step.substepDt;
+
+    uint32_t firstFrozen = ~0u;
+    for (const WorkerFindings& findings : world.findings) {
+        world.report.clampedBodies += findings.clamped;
+        world.report.frozenBodies += findings.frozen;
+        firstFrozen = std::min(firstFrozen, findings.firstFrozen);
+    }
+    if (firstFrozen != ~0u) world.report.firstFrozen = world.bodies.IdOf(firstFrozen);
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,100 @@
+// A collider searches for pairs only when it leaves its fat bounds. These reach ahead along the velocity, so that a body in
+// flight leaves them once in several steps.
+#include <Fulcrum/Physics/Stages/Stages.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+namespace {
+
+constexpr float kStepsAhead = 4;  // fat bounds reach so many steps along the velocity
+
+// World bounds of a collider, without any margin. A hull as round as a ball is bounded best by its outer sphere.
+Bounds TightBounds(const Collider& collider, const Pose& pose, const Matrix3& rotation) {
+    const Bounds& local = collider.shape->LocalBounds();
+    const Vector3 centre = rotation * local.Centre(), half = local.HalfExtents();
+    const Vector3 reach = rotation.x.cwiseAbs() * half.x() + rotation.y.cwiseAbs() * half.y() + rotation.z.cwiseAbs() * half.z();
+    const Vector3 sphere = Vector3::Constant(collider.shape->OuterRadius());
+    const Vector3 lower = Vector3(centre - reach).cwiseMax(-sphere), upper = Vector3(centre + reach).cwiseMin(sphere);
+    return RoundedOutwards(pose.position + lower.cast<double>(), pose.position + upper.cast<double>());
+}
+
+// A step's motion and the speculative distance on both sides.
+Bounds Reach(const Bounds& tight, const Vector3& motion, float margin) {
+    Bounds b;
+    b.lower = tight.lower + motion.cwiseMin(0.0f) - Vector3::Constant(margin);
+    b.upper = tight.upper + motion.cwiseMax(0.0f) + Vector3::Constant(margin);
+    return b;
+}
+
+void UpdateColliders(WorldState& world, uint32_t body, float dt, WorkerFindings& findings) {
+    const BodyCold& cold = world.bodies.cold[body];
+    const Pose pose = world.bodies.CentrePoseOf(body);
+    const Matrix3 rotation = ToMatrix(pose.rotation);
+    const Vector3 linear = world.bodies.LinearVelocityOf(body), angular = world.bodies.AngularVelocityOf(body);
+    bool changed = false;
+    for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i) {
+        Collider& collider = world.colliders.colliders[i];
+        Bounds tight;
+        Vector3 motion = linear * dt;
+        if (collider.offset) {
+            const Pose piece = pose * collider.local;
+            tight = TightBounds(collider, piece, ToMatrix(piece.rotation));
+            motion += Cross<float>(angular, Vector3(rotation * collider.local.position)) * dt;
+        } else {
+            tight = TightBounds(collider, pose, rotation);
+        }
+        const float speculative = 0.5f * world.settings.speculativeDistance;
+        if (collider.fat.Contains(Reach(tight, motion, speculative))) continue;
+        collider.fat = Reach(tight, motion * kStepsAhead, speculative + world.settings.boundsMargin);
+        findings.colliders.push_back(i);
+        changed = true;
+    }
+    if (changed) world.bodies.poses[body].boundsChangedIn = static_cast<uint32_t>(world.report.step);
+}
+
+}  // namespace
+
+void SetFatBounds(WorldState& world, uint32_t index) {
+    Collider& collider = world.colliders.colliders[index];
+    const Pose pose = world.bodies.CentrePoseOf(collider.body) * collider.local;
+    const float margin = 0.5f * world.settings.speculativeDistance + world.settings.boundsMargin;
+    collider.fat = Reach(TightBounds(collider, pose, ToMatrix(pose.rotation)), Vector3::Zero(), margin);
+}
+
+void UpdateBounds(WorldState& world, const StepContext& step) {
+    BodyStore& bodies = world.bodies;
+    const Vector3 gravity = world.settings.gravity;
+    world.jobs->ParallelFor(static_cast<uint32_t>(bodies.awake.size()), 64, [&](JobRange range) {
+        WorkerFindings& findings = world.findings[range.worker];
+        for (uint32_t i = range.begin; i < range.end; ++i) {
+            const uint32_t body = bodies.awake[i];
+            const BodyDynamics& dynamics = bodies.dynamics[body];
+            if (dynamics.motion == MotionType::Dynamic) {
+                bodies.UpdateInertia(body);
+                Vector3 acceleration = gravity * dynamics.gravityFactor;
+                if (dynamics.hasForce) acceleration += bodies.cold[body].force * dynamics.inverseMass;
+                if (dynamics.frozen) acceleration.setZero();
+                for (int k = 0; k < 3; ++k) bodies.poses[body].acceleration[k] = acceleration[k];
+            }
+            UpdateColliders(world, body, step.dt, findings);
+        }
+    });
+    // The trees learn of them in the order of their ids, so that their shape repeats from run to run.
+    size_t first = world.colliders.moved.size();
+    for (WorkerFindings& findings : world.findings) {
+        for (uint32_t collider : findings.colliders) world.colliders.Queue(collider);
+        findings.colliders.clear();
+    }
+    std::vector<uint32_t>& moved = world.colliders.moved;
+    std::sort(moved.begin() + static_cast<ptrdiff_t>(std::min(first, moved.size())), moved.end());
+    for (uint32_t i : moved) {
+        const Collider& collider = world.colliders.colliders[i];
+        world.colliders.TreeOf(collider).Update(i, collider.fat);
+    }
+    world.colliders.movingTree.Optimize();
+    world.colliders.fixedTree.Optimize();
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,110 @@
+#include <Fulcrum/Physics/State/BodyStore.h>
+
+namespace fulcrum {
+
+uint32_t BodyStore::Allocate() {
+    uint32_t index;
+    if (!free_.empty()) {
+        index = free_.back();
+        free_.pop_back();
+    } else {
+        index = Size();
+        states.emplace_back();
+        masses.emplace_back();
+        poses.emplace_back();
+        unconstrained.emplace_back();
+        dynamics.emplace_back();
+        cold.emplace_back();
+    }
+    cold[index].exists = true;
+    ++count_;
+    return index;
+}
+
+void BodyStore::Free(uint32_t index) {
+    const uint32_t generation = cold[index].generation + 1;
+    states[index] = {};
+    masses[index] = {};
+    poses[index] = {};
+    dynamics[index] = {};
+    cold[index] = {};
+    cold[index].generation = generation;
+    free_.push_back(index);
+    --count_;
+}
+
+void BodyStore::MarkAwake(uint32_t index) {
+    if (dynamics[index].awake) return;
+    dynamics[index].awake = true;
+    dynamics[index].slowSeconds = 0;
+    cold[index].awakePlace = static_cast<uint32_t>(awake.size());
+    awake.push_back(index);
+}
+
+void BodyStore::MarkAsleep(uint32_t index) {
+    if (!dynamics[index].awake) return;
+    dynamics[index].awake = false;
+    const uint32_t place = cold[index].awakePlace;
+    awake[place] = awake.back();
+    cold[awake[place]].awakePlace = place;
+    awake.pop_back();
+}
+
+void BodyStore::SetCentrePose(uint32_t index, const Pose& pose) {
+    BodyPose& p = poses[index];
+    const Quaternion& q = pose.rotation;
+    p.rotation[0] = q.x;
+    p.rotation[1] = q.y;
+    p.rotation[2] = q.z;
+    p.rotation[3] = q.w;
+    for (int k = 0; k < 3; ++k) p.position[k] = pose.position[k];
+}
+
+void BodyStore::SetVelocity(uint32_t index, const Vector3& linear, const Vector3& angular) {
+    BodyState& s = states[index];
+    for (int k = 0; k < 3; ++k) {
+        s.linearVelocity[k] = linear[k];
+        s.angularVelocity[k] = angular[k];
+    }
+}
+
+void BodyStore::UpdateInertia(uint32_t index) {
+    const BodyDynamics& d = dynamics[index];
+    BodyMass& m = masses[index];
+    if (d.frozen) {
+        m = {};
+        return;
+    }
+    m.inverseMass = d.inverseMass;
+    const Matrix3 axes = ToMatrix(RotationOf(index) * d.PrincipalAxes());
+    const Vector3 inverse(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]);
+    SymmetricMatrix3 i;
+    if (d.spherical) i.xx = i.yy = i.zz = inverse.x();
+    else i = RotatedDiagonal(axes, inverse);
+    const auto locked = [&](LockedAxes axis) { return (static_cast<uint8_t>(d.lockedAxes) & static_cast<uint8_t>(axis)) != 0; };
+    if (locked(LockedAxes::RotationX)) i.xx = i.xy = i.xz = 0;
+    if (locked(LockedAxes::RotationY)) i.yy = i.xy = i.yz = 0;
+    if (locked(LockedAxes::RotationZ)) i.zz = i.xz = i.yz = 0;
+    m.inverseInertia[0] = i.xx;
+    m.inverseInertia[1] = i.yy;
+    m.inverseInertia[2] = i.zz;
+    m.inverseInertia[3] = i.xy;
+    m.inverseInertia[4] = i.xz;
+    m.inverseInertia[5] = i.yz;
+}
+
+Vector3 AngularMomentum(const BodyDynamics& d, const Quaternion& rotation, const Vector3& w) {
+    const Quaternion axes = rotation * d.PrincipalAxes();
+    Vector3 local = InverseRotate(axes, w);
+    for (int k = 0; k < 3; ++k) local[k] = d.inverseInertia[k] > 0 ? local[k] / d.inverseInertia[k] : 0.0f;
+    return Rotate(axes, local);
+}
+
+size_t BodyStore::MemoryUsed() const {
+    return states.capacity() * sizeof(BodyState) + masses.capacity() * sizeof(BodyMass) +
+           poses.capacity() * sizeof(BodyPose) + unconstrained.capacity() * sizeof(UnconstrainedVelocity) +
+           dynamics.capacity() * sizeof(BodyDynamics) + cold.capacity() * sizeof(BodyCold) +
+           (awake.capacity() + free_.capacity()) * sizeof(uint32_t);
+}
+
+}  // namespace fulcrum

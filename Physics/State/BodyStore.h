@@ -1,0 +1,115 @@
+// All bodies, as arrays by index: what each stage touches lies together. Indices of removed bodies are reused with another
+// generation. Written by BodyInterface between steps and by the stages during one.
+#pragma once
+
+#include <Fulcrum/Constraints/Parts/BodyState.h>
+#include <Fulcrum/Physics/Settings.h>
+
+#include <span>
+#include <vector>
+
+namespace fulcrum {
+
+// Warm: read once per body and step. Principal inertia, damping, limits.
+struct alignas(64) BodyDynamics {
+    float inverseInertia[3] = {0, 0, 0};   // 1/(kg m2), principal axes
+    float inverseMass = 0;                 // 1/kg
+    float principalAxes[4] = {0, 0, 0, 1}; // x y z w: from the principal frame to the centre frame
+    float gravityFactor = 1;
+    float linearDamping = 0, angularDamping = 0;        // 1/s
+    float maxLinearSpeed = 0, maxAngularSpeed = 0;      // m/s, rad/s
+    float slowSeconds = 0;                              // how long it has been slow enough to sleep
+    float outerRadius = 0;                              // m
+    MotionType motion = MotionType::Static;
+    LockedAxes lockedAxes = LockedAxes::None;
+    bool awake : 1 = false;
+    bool spherical : 1 = false;    // all principal moments are equal
+    bool gyroscopic : 1 = false;
+    bool allowSleep : 1 = true;
+    bool hasForce : 1 = false;     // BodyCold::force or torque is not zero
+    bool frozen : 1 = false;
+    uint8_t layer = 0;
+
+    Quaternion PrincipalAxes() const {
+        return {principalAxes[0], principalAxes[1], principalAxes[2], principalAxes[3]};
+    }
+};
+static_assert(sizeof(BodyDynamics) == 64);
+
+// kg m2/s about the centre of mass, world axes, at the rotation and angular velocity (rad/s).
+Vector3 AngularMomentum(const BodyDynamics& body, const Quaternion& rotation, const Vector3& angularVelocity);
+
+// Cold: for the interface.
+struct BodyCold {
+    ShapePtr shape;
+    uint64_t userData = 0;
+    Material material;
+    Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  // of the next step
+    uint32_t firstCollider = 0, colliderCount = 0;
+    uint32_t generation = 0;
+    uint32_t awakePlace = 0;        // index into BodyStore::awake
+    uint32_t sleepingIsland = ~0u;  // index into SleepingIslands
+    bool exists = false;
+    bool removed = false;           // by the interface, its index not yet free
+};
+
+// Velocity without the constraints' share, from which the next substep's warm start follows.
+struct alignas(32) UnconstrainedVelocity {
+    float row[8];
+};
+
+class BodyStore {
+public:
+    // By index; all of the same size.
+    std::vector<BodyState> states;
+    std::vector<BodyMass> masses;
+    std::vector<BodyPose> poses;
+    std::vector<UnconstrainedVelocity> unconstrained;
+    std::vector<BodyDynamics> dynamics;
+    std::vector<BodyCold> cold;
+
+    std::vector<uint32_t> awake;  // dynamic bodies awake and kinematic ones that move, in no order
+
+    uint32_t Size() const { return static_cast<uint32_t>(cold.size()); }  // of the arrays
+    uint32_t Count() const { return count_; }                              // of the bodies
+    uint32_t Allocate();           // an index with fresh values; exists is set
+    void Free(uint32_t index);     // after Remove: the index may be reused
+    // Whether the id names a body; then Index is its index.
+    bool Find(BodyId id) const {
+        return id.index < cold.size() && cold[id.index].exists && cold[id.index].generation == id.generation;
+    }
+    BodyId IdOf(uint32_t index) const { return {index, cold[index].generation}; }
+
+    void MarkAwake(uint32_t index);
+    void MarkAsleep(uint32_t index);
+
+    Quaternion RotationOf(uint32_t index) const {
+        const float* r = poses[index].rotation;
+        return {r[0], r[1], r[2], r[3]};
+    }
+    Position CentreOf(uint32_t index) const {
+        const double* p = poses[index].position;
+        return Position(p[0], p[1], p[2]);
+    }
+    Pose CentrePoseOf(uint32_t index) const { return {CentreOf(index), RotationOf(index)}; }
+    void SetCentrePose(uint32_t index, const Pose& pose);
+    Vector3 LinearVelocityOf(uint32_t index) const {
+        const float* v = states[index].linearVelocity;
+        return Vector3(v[0], v[1], v[2]);
+    }
+    Vector3 AngularVelocityOf(uint32_t index) const {
+        const float* w = states[index].angularVelocity;
+        return Vector3(w[0], w[1], w[2]);
+    }
+    void SetVelocity(uint32_t index, const Vector3& linear, const Vector3& angular);
+    // Brings the world inverse inertia of `masses` in line with the rotation.
+    void UpdateInertia(uint32_t index);
+    SolverBodies ForSolver() { return {states.data(), masses.data(), poses.data()}; }
+    size_t MemoryUsed() const;
+
+private:
+    std::vector<uint32_t> free_;
+    uint32_t count_ = 0;
+};
+
+}  // namespace fulcrum

@@ -1,0 +1,22 @@
+#include <Fulcrum/Physics/State/ColliderStore.h>
+
+namespace fulcrum {
+
+uint32_t ColliderStore::Allocate(uint32_t count) {
+    if (count < free_.size() && !free_[count].empty()) {
+        const uint32_t first = free_[count].back();
+        free_[count].pop_back();
+        return first;
+    }
+    const uint32_t first = static_cast<uint32_t>(colliders.size());
+    colliders.resize(colliders.size() + count);
+    return first;
+}
+
+void ColliderStore::Free(uint32_t first, uint32_t count) {
+    for (uint32_t i = first; i < first + count; ++i) colliders[i] = {};
+    if (count >= free_.size()) free_.resize(count + 1);
+    free_[count].push_back(first);
+}
+
+}  // namespace fulcrum

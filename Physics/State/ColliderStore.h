@@ -1,0 +1,46 @@
+// Colliders: the convex pieces of the bodies, as the broad phase sees them. A body of a convex shape has one, a compound
+// one per child, consecutive. Two trees keep what moves apart from what never does.
+#pragma once
+
+#include <Fulcrum/Collision/BroadPhase/BoundsTree.h>
+#include <Fulcrum/Collision/Shapes/Shape.h>
+
+#include <vector>
+
+namespace fulcrum {
+
+struct Collider {
+    const ConvexShape* shape = nullptr;  // kept alive by the body's shape
+    uint32_t body = 0;
+    bool moving = false;                 // which tree
+    bool queued = false;                 // in ColliderStore::moved
+    bool offset = false;                 // `local` is not the identity
+    RelativePose local;                  // of the shape's centre frame in the body's
+    Bounds fat;                          // world, m: the piece stays inside until it is moved out
+};
+
+class ColliderStore {
+public:
+    std::vector<Collider> colliders;
+    BoundsTree fixedTree, movingTree;
+    uint32_t movingLayers = 0, fixedLayers = 0;  // bit i: a body of layer i is, or was, in the tree
+    std::vector<uint32_t> moved;                 // whose pairs must be searched
+
+    BoundsTree& TreeOf(const Collider& c) { return c.moving ? movingTree : fixedTree; }
+    uint32_t Allocate(uint32_t count);           // index of the first of `count` consecutive ones
+    void Free(uint32_t first, uint32_t count);
+    void Queue(uint32_t collider) {
+        if (colliders[collider].queued) return;
+        colliders[collider].queued = true;
+        moved.push_back(collider);
+    }
+    size_t MemoryUsed() const {
+        return colliders.capacity() * sizeof(Collider) + fixedTree.MemoryUsed() + movingTree.MemoryUsed() +
+               moved.capacity() * sizeof(uint32_t);
+    }
+
+private:
+    std::vector<std::vector<uint32_t>> free_;  // by count: first indices of runs that were given back
+};
+
+}  // namespace fulcrum

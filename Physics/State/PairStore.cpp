@@ -1,0 +1,98 @@
+#include <Fulcrum/Physics/State/PairStore.h>
+
+namespace fulcrum {
+
+uint32_t PairStore::Home(uint64_t key) const {
+    key ^= key >> 32;
+    key *= 0x9E3779B97F4A7C15ull;  // Fibonacci hashing
+    return static_cast<uint32_t>(key >> 32) & static_cast<uint32_t>(table_.size() - 1);
+}
+
+uint32_t PairStore::Find(uint32_t colliderA, uint32_t colliderB) const {
+    if (table_.empty()) return kNone;
+    const uint64_t key = Key(colliderA, colliderB);
+    const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
+    for (uint32_t i = Home(key);; i = (i + 1) & mask) {
+        if (table_[i].index == kNone) return kNone;
+        if (table_[i].key == key) return table_[i].index;
+    }
+}
+
+void PairStore::Grow() {
+    std::vector<Entry> old(table_.empty() ? 1024 : 2 * table_.size());
+    old.swap(table_);
+    const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
+    for (const Entry& entry : old) {
+        if (entry.index == kNone) continue;
+        uint32_t i = Home(entry.key);
+        while (table_[i].index != kNone) i = (i + 1) & mask;
+        table_[i] = entry;
+    }
+}
+
+uint32_t PairStore::Add(uint32_t colliderA, uint32_t colliderB) {
+    if (2 * (size_ + 1) > table_.size()) Grow();
+    uint32_t index;
+    if (!free_.empty()) {
+        index = free_.back();
+        free_.pop_back();
+    } else {
+        index = static_cast<uint32_t>(pairs.size());
+        pairs.emplace_back();
+        records.emplace_back();
+    }
+    pairs[index] = {};
+    records[index] = {};
+    pairs[index].exists = true;
+    pairs[index].colliderA = colliderA;
+    pairs[index].colliderB = colliderB;
+
+    const uint64_t key = Key(colliderA, colliderB);
+    const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
+    uint32_t i = Home(key);
+    while (table_[i].index != kNone) i = (i + 1) & mask;
+    table_[i] = {key, index};
+    ++size_;
+    return index;
+}
+
+void PairStore::Remove(uint32_t index) {
+    Deactivate(index);
+    const uint64_t key = Key(pairs[index].colliderA, pairs[index].colliderB);
+    const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
+    uint32_t hole = Home(key);
+    while (table_[hole].key != key || table_[hole].index == kNone) hole = (hole + 1) & mask;
+    // Entries behind the hole move up where that brings them no nearer than their home.
+    for (uint32_t i = (hole + 1) & mask; table_[i].index != kNone; i = (i + 1) & mask) {
+        if (((i - Home(table_[i].key)) & mask) >= ((i - hole) & mask)) {
+            table_[hole] = table_[i];
+            hole = i;
+        }
+    }
+    table_[hole].index = kNone;
+    pairs[index].exists = false;
+    free_.push_back(index);
+    --size_;
+}
+
+void PairStore::Activate(uint32_t index) {
+    if (pairs[index].activePlace != kNone) return;
+    pairs[index].activePlace = static_cast<uint32_t>(active.size());
+    active.push_back(index);
+}
+
+void PairStore::Deactivate(uint32_t index) {
+    const uint32_t place = pairs[index].activePlace;
+    if (place == kNone) return;
+    active[place] = active.back();
+    pairs[active[place]].activePlace = place;
+    active.pop_back();
+    pairs[index].activePlace = kNone;
+}
+
+size_t PairStore::MemoryUsed() const {
+    return pairs.capacity() * sizeof(Pair) + records.capacity() * sizeof(ContactRecord) +
+           (active.capacity() + free_.capacity()) * sizeof(uint32_t) + table_.capacity() * sizeof(Entry);
+}
+
+}  // namespace fulcrum

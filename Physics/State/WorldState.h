@@ -1,0 +1,82 @@
+// Everything a PhysicsSystem holds. The stages are functions over it; each says what it reads and writes.
+#pragma once
+
+#include <Fulcrum/Constraints/Contacts/ContactBatch.h>
+#include <Fulcrum/Jobs/ScratchArena.h>
+#include <Fulcrum/Jobs/ThreadPool.h>
+#include <Fulcrum/Physics/Islands/SleepingIslands.h>
+#include <Fulcrum/Physics/State/BodyStore.h>
+#include <Fulcrum/Physics/State/ColliderStore.h>
+#include <Fulcrum/Physics/State/PairStore.h>
+#include <Fulcrum/Physics/StepReport.h>
+
+#include <memory>
+#include <vector>
+
+namespace fulcrum {
+
+// One worker's own findings in a stage; merged in an order that does not depend on who found what.
+struct alignas(64) WorkerFindings {
+    std::vector<uint32_t> colliders;  // UpdateBounds: those that left their fat bounds
+    std::vector<uint64_t> pairs;      // FindPairs: keys of new or resting pairs
+    CollideCounters libccd;
+    uint32_t contacts = 0, points = 0, kept = 0;
+    float deepest = 0;                // largest penetration, m
+    uint32_t deepestPair = ~0u;
+    uint32_t clamped = 0, frozen = 0;
+    uint32_t firstFrozen = ~0u;
+    uint32_t sleepCandidates = 0;     // bodies that have been slow for long enough
+    bool bounces = false;             // Prepare: some contact has restitution
+};
+
+// The rows of all coloured contacts, rebuilt each step. A solver group has its own settings and batches: islands that ask
+// for more effort are to become further groups; today all contacts are in the one group of the system's settings.
+struct SolverGroup {
+    struct ColourRange {
+        uint32_t colour;
+        uint32_t movingBegin, movingEnd;  // into `moving`
+        uint32_t fixedBegin, fixedEnd;    // into `fixed`
+    };
+    SolverSettings settings;
+    std::vector<ColourRange> colours;     // those that are not empty, in the order of solving
+    std::vector<ContactBatch<kLanes, false>> moving;
+    std::vector<ContactBatch<kLanes, true>> fixed;
+    std::vector<ContactBatch<1, false>> overflowMoving;  // solved one by one, after the colours
+    std::vector<ContactBatch<1, true>> overflowFixed;
+    uint32_t movingCount = 0, fixedCount = 0;            // batches in use
+    size_t MemoryUsed() const;
+};
+
+// What Collide found out about an active pair that the rest of the world must hear of.
+enum class PairChange : uint8_t { None, Began, Ended, Dead, WakesOther };
+
+struct WorldState {
+    SystemSettings settings;
+    JobSystem* jobs = nullptr;
+    std::unique_ptr<ThreadPool> ownJobs;
+
+    BodyStore bodies;
+    ColliderStore colliders;
+    PairStore pairs;
+    ContactColouring colouring;
+    SleepingIslands sleeping;
+    SolverGroup group;
+
+    std::vector<uint32_t> removed;            // bodies to forget before the next step
+    std::vector<PairChange> changes;          // by place in pairs.active
+    std::vector<uint64_t> newPairs;
+    std::vector<WorkerFindings> findings;     // by worker
+    ScratchArena scratch;
+    StepReport report;
+    bool bounces = false;                     // some contact of this step has restitution
+    float lastSubstepDt = 0;                  // s
+
+    size_t MemoryUsed() const;
+};
+
+// Wakes a body and the island it sleeps in; their colliders are queued for FindPairs.
+void WakeBody(WorldState& world, uint32_t body);
+// Wakes what overlaps the bounds.
+void WakeInside(WorldState& world, const Bounds& bounds);
+
+}  // namespace fulcrum

@@ -1,0 +1,106 @@
+#include <Fulcrum/Physics/Validation.h>
+
+#include <cstdio>
+
+namespace fulcrum {
+
+namespace {
+
+std::string Number(double x) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%g", x);
+    return text;
+}
+
+template <class V>
+MaybeError CheckFiniteVector(const char* field, const V& v) {
+    if (IsFinite(v)) return std::nullopt;
+    return Error{ErrorCode::NonFinite, std::string(field) + " is (" + Number(v.x()) + ", " + Number(v.y()) + ", " +
+                                           Number(v.z()) + "); it must be finite"};
+}
+
+MaybeError CheckFiniteNumber(const char* field, double x) {
+    if (std::isfinite(x)) return std::nullopt;
+    return Error{ErrorCode::NonFinite, std::string(field) + " is " + Number(x) + "; it must be finite"};
+}
+
+}  // namespace
+
+MaybeError CheckFinite(const char* field, const Vector3& value) { return CheckFiniteVector(field, value); }
+MaybeError CheckFinite(const char* field, const Position& value) { return CheckFiniteVector(field, value); }
+
+MaybeError CheckRange(const char* field, double value, double low, double high) {
+    if (MaybeError e = CheckFiniteNumber(field, value)) return e;
+    if (value >= low && value <= high) return std::nullopt;
+    return Error{ErrorCode::OutOfRange, std::string(field) + " is " + Number(value) + "; it must be from " + Number(low) + " to " + Number(high)};
+}
+
+MaybeError CheckPositive(const char* field, double value) {
+    if (MaybeError e = CheckFiniteNumber(field, value)) return e;
+    if (value > 0) return std::nullopt;
+    return Error{ErrorCode::NonPositive, std::string(field) + " is " + Number(value) + "; it must be larger than 0"};
+}
+
+MaybeError CheckNotNegative(const char* field, double value) {
+    if (MaybeError e = CheckFiniteNumber(field, value)) return e;
+    if (value >= 0) return std::nullopt;
+    return Error{ErrorCode::Negative, std::string(field) + " is " + Number(value) + "; it must be 0 or more"};
+}
+
+MaybeError CheckRotation(const char* field, const Quaternion& value) {
+    if (!IsFinite(value)) return Error{ErrorCode::NonFinite, std::string(field) + " has a component that is not finite"};
+    const double length = std::sqrt(double(LengthSquared(value)));
+    if (std::fabs(length - 1.0) <= 1e-3) return std::nullopt;
+    return Error{ErrorCode::Unnormalized, std::string(field) + " has length " + Number(length) + "; it must be 1"};
+}
+
+MaybeError Check(const Material& m) {
+    return FirstOf(CheckNotNegative("material.friction", m.friction),
+                   CheckRange("material.restitution", m.restitution, 0, 1));
+}
+
+MaybeError Check(const BodySettings& s) {
+    if (!s.shape) return Error{ErrorCode::Unsupported, "shape is null; a body needs one"};
+    if (MaybeError e = FirstOf(CheckFinite("position", s.position), CheckRotation("rotation", s.rotation),
+                               CheckFinite("linearVelocity", s.linearVelocity),
+                               CheckFinite("angularVelocity", s.angularVelocity), CheckPositive("density", s.density),
+                               CheckNotNegative("mass", s.mass), CheckFinite("inertia", s.inertia)))
+        return e;
+    if (!s.inertia.isZero(0) && !(s.inertia.minCoeff() > 0))
+        return Error{ErrorCode::NonPositive, "inertia must be larger than 0 in all three components, or zero in all"};
+    if (MaybeError e = FirstOf(Check(s.material), CheckNotNegative("linearDamping", s.linearDamping),
+                               CheckNotNegative("angularDamping", s.angularDamping),
+                               CheckRange("gravityFactor", s.gravityFactor, -1e6, 1e6),
+                               CheckPositive("maxLinearSpeed", s.maxLinearSpeed),
+                               CheckPositive("maxAngularSpeed", s.maxAngularSpeed), CheckRange("layer", s.layer, 0, 31),
+                               CheckRange("lockedAxes", static_cast<uint8_t>(s.lockedAxes), 0, 63)))
+        return e;
+    if (s.startAsleep && s.motion != MotionType::Dynamic)
+        return Error{ErrorCode::Unsupported, "startAsleep is set for a body that is not dynamic"};
+    if (s.motion == MotionType::Static && !(s.linearVelocity.isZero(0) && s.angularVelocity.isZero(0)))
+        return Error{ErrorCode::Unsupported, "a static body was given a velocity"};
+    return std::nullopt;
+}
+
+MaybeError Check(const SystemSettings& s) {
+    if (MaybeError e = FirstOf(CheckFinite("gravity", s.gravity), CheckRange("solver.substeps", s.solver.substeps, 1, 64),
+                               CheckRange("solver.velocityIterations", s.solver.velocityIterations, 1, 255),
+                               CheckRange("solver.positionIterations", s.solver.positionIterations, 0, 255),
+                               CheckNotNegative("sleep.seconds", s.sleep.seconds),
+                               CheckNotNegative("sleep.linearSpeed", s.sleep.linearSpeed),
+                               CheckPositive("speculativeDistance", s.speculativeDistance),
+                               CheckNotNegative("penetrationSlop", s.penetrationSlop),
+                               CheckRange("baumgarte", s.baumgarte, 0, 1),
+                               CheckPositive("maxPositionCorrection", s.maxPositionCorrection),
+                               CheckNotNegative("restitutionSpeed", s.restitutionSpeed),
+                               CheckPositive("boundsMargin", s.boundsMargin)))
+        return e;
+    for (size_t i = 0; i < 32; ++i)
+        for (size_t j = 0; j < i; ++j)
+            if ((s.layerCollides[i] >> j & 1) != (s.layerCollides[j] >> i & 1))
+                return Error{ErrorCode::Unsupported, "layerCollides is not symmetric for layers " + std::to_string(j) +
+                                                         " and " + std::to_string(i)};
+    return std::nullopt;
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,30 @@
+// Checks of what callers pass in. Each returns an error that names the field, its value and what would be valid.
+#pragma once
+
+#include <Fulcrum/Physics/Settings.h>
+
+#include <optional>
+
+namespace fulcrum {
+
+using MaybeError = std::optional<Error>;
+
+MaybeError CheckFinite(const char* field, const Vector3& value);
+MaybeError CheckFinite(const char* field, const Position& value);
+MaybeError CheckRange(const char* field, double value, double low, double high);  // both ends included
+MaybeError CheckPositive(const char* field, double value);
+MaybeError CheckNotNegative(const char* field, double value);
+MaybeError CheckRotation(const char* field, const Quaternion& value);  // finite, of length 1 within 1e-3
+MaybeError Check(const Material& material);
+MaybeError Check(const BodySettings& settings);
+MaybeError Check(const SystemSettings& settings);
+
+// The first error of several checks, none where all are empty.
+template <class... Checks>
+MaybeError FirstOf(Checks&&... checks) {
+    MaybeError first;
+    ((first ? void() : void(first = std::forward<Checks>(checks))), ...);
+    return first;
+}
+
+}  // namespace fulcrum
