@@ -1,6 +1,6 @@
 # Builds and runs the program in Consumer/ as a user would, outside the tree. CTest calls it with
 #   WAY        `installed` (find_package on a fresh installation of FULCRUM_BUILD) or `subdirectory` (FetchContent)
-#   FULCRUM_SOURCE, FULCRUM_BUILD, WORK (a folder to empty and use), GENERATOR, COMPILER, FLAGS, BUILD_TYPE
+#   FULCRUM_SOURCE, FULCRUM_BUILD, WORK (a folder to empty and use), GENERATOR, COMPILER, FLAGS
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT status EQUAL 0)
@@ -11,12 +11,12 @@ function(run)
 endfunction()
 
 set(configure ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/Consumer -G ${GENERATOR}
-  -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_CXX_FLAGS=${FLAGS} -DCMAKE_BUILD_TYPE=${BUILD_TYPE})
+  -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_CXX_FLAGS=${FLAGS})
 
 file(REMOVE_RECURSE ${WORK})
 if(WAY STREQUAL "installed")
   run(${CMAKE_COMMAND} --install ${FULCRUM_BUILD} --prefix ${WORK}/prefix)
-  run(${configure} -B ${WORK}/build -DCMAKE_PREFIX_PATH=${WORK}/prefix)
+  run(${configure} -B ${WORK}/build -DCMAKE_PREFIX_PATH=${WORK}/prefix -DCMAKE_BUILD_TYPE=Release)
 
   # The version is checked: no interface of a later release is promised.
   file(WRITE ${WORK}/later/CMakeLists.txt
@@ -29,7 +29,8 @@ if(WAY STREQUAL "installed")
     message(FATAL_ERROR "find_package(Fulcrum 99) accepted this version")
   endif()
 else()
-  run(${configure} -B ${WORK}/build -DFULCRUM_SOURCE=${FULCRUM_SOURCE})
+  # Without optimisation: the whole library is compiled again.
+  run(${configure} -B ${WORK}/build -DFULCRUM_SOURCE=${FULCRUM_SOURCE} -DCMAKE_BUILD_TYPE=Debug)
 
   # Whoever adds Fulcrum gets the library alone.
   run(${CMAKE_COMMAND} --build ${WORK}/build --target help)
