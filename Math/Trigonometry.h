@@ -2,8 +2,8 @@
 // bit operations only. Used wherever the engine turns angles into rotations and back. Free functions, no state.
 //
 // Where not said otherwise a function takes Real = float, double or, for angles, Wide<N>, whose lanes give the bits of
-// float. Arguments must be finite. The errors are the largest measured, in units of the result's last place; those of
-// float over every float in the range.
+// float. Arguments must be finite. The errors are the largest measured, in units of the result's last place: over every
+// float from 2^-13 up, and over millions of doubles and pairs.
 #pragma once
 
 #include <Fulcrum/Math/Quaternion.h>
@@ -127,7 +127,7 @@ struct SineCosine {
     Real sine, cosine;
 };
 
-// x in radians, |x| <= 1e6. Error: float 0.81, double 0.81.
+// x in radians, |x| <= 1e6. Error: float 0.83, double 1.1.
 template <class Real>
     requires(!std::is_integral_v<Real>)
 inline SineCosine<Real> SinCos(const Real& x) {
@@ -165,7 +165,7 @@ inline Real Cos(const Real& x) {
 }
 
 // The angle of the point (x, y), -pi .. pi; 0 at the origin. Zeros count as positive, whatever their sign.
-// |x|, |y| below half the largest number. Error: float 1.6, double 1.6.
+// |x|, |y| below half the largest number. Error: float 2.2, double 2.4.
 template <class Real>
     requires(!std::is_integral_v<Real>)
 inline Real Atan2(const Real& y, const Real& x) {
@@ -203,7 +203,7 @@ inline Real Atan2(const Real& y, const Real& x) {
     return Select(y < zero, -result, result);
 }
 
-// 0 .. pi. Arguments beyond -1 .. 1 count as -1 and 1. Error: float 2.3, double 2.3.
+// 0 .. pi. Arguments beyond -1 .. 1 count as -1 and 1. Error: float 2.9, double 3.0.
 template <class Real>
     requires(!std::is_integral_v<Real>)
 inline Real Acos(const Real& x) {
@@ -212,7 +212,7 @@ inline Real Acos(const Real& x) {
     return Atan2(detail::Sqrt((one - cosine) * (one + cosine)), cosine);
 }
 
-// -pi/2 .. pi/2. Arguments beyond -1 .. 1 count as -1 and 1. Error: float 2.3, double 2.3.
+// -pi/2 .. pi/2. Arguments beyond -1 .. 1 count as -1 and 1. Error: float 2.9, double 3.0.
 template <class Real>
     requires(!std::is_integral_v<Real>)
 inline Real Asin(const Real& x) {
@@ -221,7 +221,7 @@ inline Real Asin(const Real& x) {
     return Atan2(sine, detail::Sqrt((one - sine) * (one + sine)));
 }
 
-// e^x; infinite above 709.78, 0 below -745.13, NaN for NaN. Error: 0.8 (float 0.51).
+// e^x; infinite above 709.78, 0 below -745.13, NaN for NaN. Error: 0.95 (float 0.51).
 inline double Exp(double x) {
     if (x > 709.782712893384) return std::numeric_limits<double>::infinity();
     if (x < -745.133219101941) return 0.0;
@@ -232,7 +232,7 @@ inline double Exp(double x) {
 }
 inline float Exp(float x) { return static_cast<float>(Exp(static_cast<double>(x))); }
 
-// The natural logarithm; -infinite for 0, NaN below. Error: 0.9 (float 0.51).
+// The natural logarithm; -infinite for 0, NaN below. Error: 0.85 (float 0.51).
 inline double Log(double x) {
     if (!(x > 0.0)) return x == 0.0 ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
     if (x > std::numeric_limits<double>::max()) return x;
