@@ -1,4 +1,191 @@
+// Pair function of two boxes: the separating-axis test over the 15 axes of the two, by lanes, then the contact of the best
+// face, or of two edges where those separate clearly better.
+// Source of the axes: S. Gottschalk, M. Lin, D. Manocha, OBBTree, SIGGRAPH 1996.
+#include <Fulcrum/Collision/NarrowPhase/BoxFaceContact.h>
+#include <Fulcrum/Collision/NarrowPhase/Features.h>
 #include <Fulcrum/Collision/NarrowPhase/PairFunctions.h>
+#include <Fulcrum/Collision/NarrowPhase/Segments.h>
+#include <Fulcrum/Collision/Shapes/Primitives.h>
+
 namespace fulcrum {
-void CollideBoxBox(const PairQuery& query, Manifold& manifold) { CollidePolyhedra(query, manifold); }
+
+namespace {
+
+using Four = Wide<4>;
+
+Four Lanes(float a, float b, float c) { return Four::Of(Four::Float{a, b, c, a}); }
+Four Lanes(const Vector3& v) { return Lanes(v.x(), v.y(), v.z()); }
+
+BoxPair MakePair(const Box& a, const Box& b, const RelativePose& bInA) {
+    BoxPair pair;
+    pair.radiusA = a.ConvexRadius();
+    pair.radiusB = b.ConvexRadius();
+    pair.halfA = a.HalfExtents() - Vector3::Constant(pair.radiusA);
+    pair.halfB = b.HalfExtents() - Vector3::Constant(pair.radiusB);
+    pair.rotation = ToMatrix(bInA.rotation);
+    const Matrix3& r = pair.rotation;
+    pair.transposed = {Vector3(r.x.x(), r.y.x(), r.z.x()), Vector3(r.x.y(), r.y.y(), r.z.y()),
+                       Vector3(r.x.z(), r.y.z(), r.z.z())};
+    pair.position = bInA.position;
+    pair.positionInB = r.TransposeMultiply(bInA.position);
+    return pair;
 }
+
+// Separation along the axis of one face, of A or B, on the side where the other box's centre is.
+float FaceSeparation(const BoxPair& pair, bool ofA, int axis) {
+    const Vector3& column = ofA ? (&pair.transposed.x)[axis] : (&pair.rotation.x)[axis];
+    const Vector3& half = ofA ? pair.halfA : pair.halfB;
+    const Vector3& other = ofA ? pair.halfB : pair.halfA;
+    const float along = ofA ? pair.position[axis] : pair.positionInB[axis];
+    return Abs(along) - half[axis] -
+           (Abs(column.x()) * other.x() + Abs(column.y()) * other.y() + Abs(column.z()) * other.z());
+}
+
+struct BestFace {
+    float separation;
+    bool ofA;
+    int axis;
+};
+
+// The six face axes, three at once. Among equals A's come first, or what the cache holds.
+BestFace FindBestFace(const BoxPair& pair, const PairCache& cache, float prefer) {
+    const Matrix3 &r = pair.rotation, &t = pair.transposed;
+    const Four halfA = Lanes(pair.halfA), halfB = Lanes(pair.halfB);
+    const Four ofA = Abs(Lanes(pair.position)) - halfA -
+                     (Abs(Lanes(r.x)) * Four(pair.halfB.x()) + Abs(Lanes(r.y)) * Four(pair.halfB.y()) +
+                      Abs(Lanes(r.z)) * Four(pair.halfB.z()));
+    const Four ofB = Abs(Lanes(pair.positionInB)) - halfB -
+                     (Abs(Lanes(t.x)) * Four(pair.halfA.x()) + Abs(Lanes(t.y)) * Four(pair.halfA.y()) +
+                      Abs(Lanes(t.z)) * Four(pair.halfA.z()));
+    int a = ofA[1] > ofA[0] ? 1 : 0, b = ofB[1] > ofB[0] ? 1 : 0;
+    if (ofA[2] > ofA[a]) a = 2;
+    if (ofB[2] > ofB[b]) b = 2;
+    BestFace best{ofA[a], true, a};
+    if (ofB[b] > ofA[a] + prefer) best = {ofB[b], false, b};
+    if (cache.kind == PairCache::Kind::FaceOfA) {
+        const int axis = cache.indexA / 2;
+        if (ofA[axis] >= Max(ofA[a], ofB[b]) - prefer) best = {ofA[axis], true, axis};
+    } else if (cache.kind == PairCache::Kind::FaceOfB) {
+        const int axis = cache.indexB / 2;
+        if (ofB[axis] >= Max(ofA[a], ofB[b]) - prefer) best = {ofB[axis], false, axis};
+    }
+    return best;
+}
+
+struct BestEdges {
+    float separation;
+    int axisA, axisB;
+};
+
+// The nine cross products of an axis of A and one of B: three at once, those of one axis i of A. With the rows R_i of the
+// rotation, i, j, k cyclic, and m, n the two cyclic successors of B's axis: distance |p_k R_j - p_j R_k|, reach of A
+// a_j |R_k| + a_k |R_j|, of B b_m |R_in| + b_n |R_im|, all over the length of the product, sqrt(R_j^2 + R_k^2).
+BestEdges FindBestEdges(const BoxPair& pair) {
+    const Matrix3& t = pair.transposed;
+    const Vector3* rows = &t.x;
+    const Vector3 &p = pair.position, &a = pair.halfA, &b = pair.halfB;
+    const Four bm = Lanes(b.y(), b.z(), b.x()), bn = Lanes(b.z(), b.x(), b.y());
+    BestEdges best{-std::numeric_limits<float>::infinity(), 0, 0};
+    for (int i = 0; i < 3; ++i) {
+        const int j = i == 2 ? 0 : i + 1, k = i == 0 ? 2 : i - 1;
+        const Four rowJ = Lanes(rows[j]), rowK = Lanes(rows[k]);
+        const Four rowM = Lanes(rows[i].y(), rows[i].z(), rows[i].x()), rowN = Lanes(rows[i].z(), rows[i].x(), rows[i].y());
+        const Four distance = Abs(Four(p[k]) * rowJ - Four(p[j]) * rowK);
+        const Four reachA = Four(a[j]) * Abs(rowK) + Four(a[k]) * Abs(rowJ);
+        const Four reachB = bm * Abs(rowN) + bn * Abs(rowM);
+        const Four squared = rowJ * rowJ + rowK * rowK;
+        // Nearly parallel axes name no direction, and the faces' axes serve.
+        const Four separation = Select(squared > Four(1e-4f), (distance - reachA - reachB) / Sqrt(squared),
+                                       Four(-std::numeric_limits<float>::infinity()));
+        for (int n = 0; n < 3; ++n)
+            if (separation[n] > best.separation) best = {separation[n], i, n};
+    }
+    return best;
+}
+
+Vector3 EdgeAxis(const BoxPair& pair, int axisA, int axisB) {
+    Vector3 unit = Vector3::Zero();
+    unit[axisA] = 1;
+    const Vector3 n = Normalized(Cross<float>(unit, (&pair.rotation.x)[axisB]));
+    return Dot(n, pair.position) < 0.0f ? Vector3(-n) : n;
+}
+
+// The edge of a box along one of its axes that lies farthest along a direction, and the name of it.
+Segment FarthestEdge(const Vector3& half, int axis, const Vector3& direction, uint32_t& name) {
+    Vector3 from = half;
+    uint32_t vertex = 0;
+    for (int i = 0; i < 3; ++i) {
+        if (i == axis || direction[i] < 0.0f) from[i] = -half[i];
+        else vertex |= 1u << i;
+    }
+    Vector3 to = from;
+    to[axis] = half[axis];
+    name = EdgeName(vertex, vertex | 1u << axis);
+    return {from, to};
+}
+
+// The contact of two crossing edges. False where the points that come closest are ends: no edge axis then.
+bool BuildBoxEdgeContact(const BoxPair& pair, const BestEdges& edges, float prefer, Manifold& manifold) {
+    const Vector3 normal = EdgeAxis(pair, edges.axisA, edges.axisB);
+    uint32_t nameA, nameB;
+    const Segment onA = FarthestEdge(pair.halfA, edges.axisA, normal, nameA);
+    const Segment inB = FarthestEdge(pair.halfB, edges.axisB, -pair.rotation.TransposeMultiply(normal), nameB);
+    const Segment onB{pair.rotation * inB.from + pair.position, pair.rotation * inB.to + pair.position};
+    const ClosestParameters closest = ClosestOnSegments(onA, onB);
+    const Vector3 x = onA.At(closest.s);
+    if (Length(Vector3(onB.At(closest.t) - x)) > Abs(edges.separation) + prefer) return false;
+    manifold.normal = normal;
+    manifold.pointCount = 1;
+    manifold.points[0] = {x + normal * pair.radiusA, edges.separation - (pair.radiusA + pair.radiusB),
+                          CrossingFeature(nameA, nameB)};
+    return true;
+}
+
+// One test of the axis that separated the boxes in the last step.
+bool StillApart(const BoxPair& pair, const PairCache& cache, float reach) {
+    switch (cache.kind) {
+        case PairCache::Kind::FaceOfA: return FaceSeparation(pair, true, cache.indexA / 2) > reach;
+        case PairCache::Kind::FaceOfB: return FaceSeparation(pair, false, cache.indexB / 2) > reach;
+        default: return false;
+    }
+}
+
+void Remember(PairCache& cache, PairCache::Kind kind, int indexA, int indexB) {
+    cache.kind = kind;
+    cache.indexA = static_cast<uint16_t>(indexA);
+    cache.indexB = static_cast<uint16_t>(indexB);
+}
+
+}  // namespace
+
+void CollideBoxBox(const PairQuery& query, Manifold& manifold) {
+    const BoxPair pair = MakePair(static_cast<const Box&>(query.a), static_cast<const Box&>(query.b), query.bInA);
+    const ContactTolerances tolerances(pair.halfA.minCoeff() + pair.halfB.minCoeff(), pair.radiusA + pair.radiusB,
+                                       query.settings);
+    PairCache& cache = query.cache;
+    manifold.pointCount = 0;
+    if (StillApart(pair, cache, tolerances.reach)) return;
+
+    const BestFace face = FindBestFace(pair, cache, tolerances.prefer);
+    const float along = face.ofA ? pair.position[face.axis] : -pair.positionInB[face.axis];
+    const int faceIndex = 2 * face.axis + (along < 0.0f ? 1 : 0);
+    const auto rememberFace = [&] {
+        Remember(cache, face.ofA ? PairCache::Kind::FaceOfA : PairCache::Kind::FaceOfB, faceIndex, faceIndex);
+    };
+    if (face.separation > tolerances.reach) return rememberFace();
+
+    const BestEdges edges = FindBestEdges(pair);
+    if (edges.separation > tolerances.reach) return Remember(cache, PairCache::Kind::EdgePair, edges.axisA, edges.axisB);
+    if (edges.separation > face.separation + tolerances.prefer) {
+        if (BuildBoxEdgeContact(pair, edges, tolerances.prefer, manifold))
+            return Remember(cache, PairCache::Kind::EdgePair, edges.axisA, edges.axisB);
+    } else if (BuildBoxFaceContact(pair, face.ofA, faceIndex, face.separation, tolerances, manifold)) {
+        return rememberFace();
+    }
+    // Corners come closest, or parallel edges: what the general function is for. It has its own kind of cache.
+    cache = {};
+    CollidePolyhedra(query, manifold);
+    cache = {};
+}
+
+}  // namespace fulcrum

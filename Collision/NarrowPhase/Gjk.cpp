@@ -9,7 +9,7 @@ namespace {
 Vector3 ClosestOnSegment(Simplex& s) {
     const Vector3 a = s.vertices[0].w, ab = s.vertices[1].w - a;
     const float along = -Dot(a, ab), length = Dot(ab, ab);
-    if (along <= 0.0f) {
+    if (along <= 0.0f) {  // also where both ends are one point
         s.count = 1;
         return a;
     }
@@ -33,6 +33,23 @@ void Keep(Simplex& s, int i, int j) {
     s.count = 2;
 }
 
+// Of a triangle whose corners lie on a line.
+Vector3 ClosestOnEdges(Simplex& s) {
+    static constexpr int kEdges[3][2] = {{0, 1}, {0, 2}, {1, 2}};
+    Simplex best;
+    Vector3 closest = Vector3::Zero();
+    for (const auto& ends : kEdges) {
+        Simplex edge = s;
+        Keep(edge, ends[0], ends[1]);
+        const Vector3 point = ClosestOnSegment(edge);
+        if (best.count > 0 && LengthSquared(point) >= LengthSquared(closest)) continue;
+        best = edge;
+        closest = point;
+    }
+    s = best;
+    return closest;
+}
+
 Vector3 ClosestOnTriangle(Simplex& s) {
     const Vector3 a = s.vertices[0].w, b = s.vertices[1].w, c = s.vertices[2].w;
     const Vector3 ab = b - a, ac = c - a;
@@ -51,7 +68,9 @@ Vector3 ClosestOnTriangle(Simplex& s) {
         return Keep(s, 1, 2), Vector3(b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))));
     // Inside: the foot of the origin on the plane is more exact than the sum of the weighted corners.
     const Vector3 n = Cross<float>(ab, ac);
-    return n * (Dot(n, a) / Dot(n, n));
+    const float square = Dot(n, n);
+    if (square <= 1e-12f * Dot(ab, ab) * Dot(ac, ac)) return ClosestOnEdges(s);
+    return n * (Dot(n, a) / square);
 }
 
 Vector3 ClosestInTetrahedron(Simplex& s) {
@@ -62,10 +81,11 @@ Vector3 ClosestInTetrahedron(Simplex& s) {
     for (const auto& face : kFaces) {
         const Vector3 &a = s.vertices[face[0]].w, &b = s.vertices[face[1]].w, &c = s.vertices[face[2]].w;
         const Vector3 n = Cross<float>(Vector3(b - a), Vector3(c - a));
-        const float opposite = Dot(n, Vector3(s.vertices[face[3]].w - a));
-        const float origin = -Dot(n, a);
+        const Vector3 ad = s.vertices[face[3]].w - a;
+        const float opposite = Dot(n, ad), origin = -Dot(n, a);
         // A flat tetrahedron has no inside: each of its faces counts.
-        if (origin * opposite > 0.0f) continue;
+        const bool flat = opposite * opposite <= 1e-10f * Dot(n, n) * Dot(ad, ad);
+        if (!flat && origin * opposite > 0.0f) continue;
         Simplex triangle;
         triangle.count = 3;
         for (int i = 0; i < 3; ++i) triangle.vertices[i] = s.vertices[face[i]];

@@ -82,7 +82,7 @@ LibccdResult LibccdPenetration(const ConvexShape& a, const ConvexShape& b, const
 void CollideLibccd(const PairQuery& query, Manifold& manifold) {
     PolyhedronStorage storageA, storageB;
     const PolyhedronPair pair(CoreOf(query.a, storageA), CoreOf(query.b, storageB), query.bInA);
-    const ContactTolerances tolerances(pair, query.settings);
+    const ContactTolerances tolerances = pair.Tolerances(query.settings);
     const double margin = query.settings.speculativeDistance;
     LibccdResult result = LibccdPenetration(query.a, query.b, query.bInA, margin, LibccdAlgorithm::Epa);
     if (result.status == LibccdResult::Status::Failed) {

@@ -56,7 +56,7 @@ WarmStart TryCache(const PolyhedronPair& pair, const ContactTolerances& toleranc
 void CollidePolyhedra(const PairQuery& query, Manifold& manifold) {
     PolyhedronStorage storageA, storageB;
     const PolyhedronPair pair(CoreOf(query.a, storageA), CoreOf(query.b, storageB), query.bInA);
-    const ContactTolerances tolerances(pair, query.settings);
+    const ContactTolerances tolerances = pair.Tolerances(query.settings);
     const WarmStart warm = TryCache(pair, tolerances, query.cache, manifold);
     if (warm.done) return;
 

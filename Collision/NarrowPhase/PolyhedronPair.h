@@ -2,7 +2,7 @@
 // builders walk on. Its signed distance from the origin is the separation of the two. Used by the narrow phase alone.
 #pragma once
 
-#include <Fulcrum/Collision/NarrowPhase/Collide.h>
+#include <Fulcrum/Collision/NarrowPhase/ContactTolerances.h>
 #include <Fulcrum/Collision/NarrowPhase/Polyhedron.h>
 
 namespace fulcrum {
@@ -29,6 +29,10 @@ struct PolyhedronPair {
         return Abs(position.x()) + Abs(position.y()) + Abs(position.z()) + a.innerRadius + b.innerRadius;
     }
 
+    ContactTolerances Tolerances(const CollideSettings& settings) const {
+        return ContactTolerances(a.innerRadius + b.innerRadius, RadiusSum(), settings);
+    }
+
     // The vertex that lies least far along n: the one that says how far the cores are separated along n.
     MinkowskiVertex Support(const Vector3& n) const {
         const int ia = FarthestVertex(a, n).vertex;
@@ -38,20 +42,6 @@ struct PolyhedronPair {
     // Separation of the cores along the unit vector n: negative where their shadows on n overlap.
     float SeparationAlong(const Vector3& n) const {
         return Dot(n, position) - FarthestVertex(b, -DirectionInB(n)).value - FarthestVertex(a, n).value;
-    }
-};
-
-// Tolerances of one query, from the settings and the sizes of the shapes.
-struct ContactTolerances {
-    float reach;    // m: the cores' separation up to which there are points
-    float prefer;   // m: a face contact is taken where its separation is at most this much below the best axis
-    float feature;  // m: vertices this close to the extreme one belong to the supporting feature
-
-    ContactTolerances(const PolyhedronPair& pair, const CollideSettings& settings)
-        : reach(settings.speculativeDistance + pair.RadiusSum()) {
-        const float size = pair.a.innerRadius + pair.b.innerRadius + pair.RadiusSum();
-        prefer = Min(0.02f * settings.speculativeDistance, 0.002f * size);
-        feature = 1e-4f * size;
     }
 };
 

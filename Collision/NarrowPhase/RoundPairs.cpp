@@ -8,16 +8,17 @@ namespace fulcrum {
 
 namespace {
 
-// The point between two rounded cores, from the closest points of the cores. Where those coincide but for rounding,
-// `fallback` (unit) is the normal.
-void BuildPoint(const Vector3& onCoreA, const Vector3& onCoreB, float radiusA, float radiusB, const Vector3& fallback,
-                float speculativeDistance, Manifold& manifold) {
+// The point between two rounded cores, from the closest points of the cores. `known` (unit) is the normal where it is
+// certain or those points coincide but for rounding.
+void BuildPoint(const Vector3& onCoreA, const Vector3& onCoreB, float radiusA, float radiusB, const Vector3& known,
+                bool certain, float speculativeDistance, Manifold& manifold) {
     const Vector3 between = onCoreB - onCoreA;
     const float distance = Length(between);
     const float separation = distance - (radiusA + radiusB);
     manifold.pointCount = 0;
     if (separation > speculativeDistance) return;
-    manifold.normal = distance > 1e-5f * (radiusA + radiusB) ? Vector3(between * (1.0f / distance)) : fallback;
+    const bool useKnown = certain || distance <= 1e-5f * (radiusA + radiusB);
+    manifold.normal = useKnown ? known : Vector3(between * (1.0f / distance));
     manifold.pointCount = 1;
     manifold.points[0] = {onCoreA + manifold.normal * radiusA, separation, VertexFeature(true, 0)};
 }
@@ -55,7 +56,7 @@ bool BuildParallel(const Segment& onA, const Segment& onB, float radiusA, float 
 void CollideSphereSphere(const PairQuery& query, Manifold& manifold) {
     const auto& a = static_cast<const Sphere&>(query.a);
     const auto& b = static_cast<const Sphere&>(query.b);
-    BuildPoint(Vector3::Zero(), query.bInA.position, a.Radius(), b.Radius(), Vector3(0, 1, 0),
+    BuildPoint(Vector3::Zero(), query.bInA.position, a.Radius(), b.Radius(), Vector3(0, 1, 0), false,
                query.settings.speculativeDistance, manifold);
 }
 
@@ -64,7 +65,8 @@ void CollideCapsuleSphere(const PairQuery& query, Manifold& manifold) {
     const auto& b = static_cast<const Sphere&>(query.b);
     const Vector3 centre = query.bInA.position;
     const Vector3 onCore(0, Clamp(centre.y(), -a.HalfHeight(), a.HalfHeight()), 0);
-    BuildPoint(onCore, centre, a.Radius(), b.Radius(), Vector3(1, 0, 0), query.settings.speculativeDistance, manifold);
+    BuildPoint(onCore, centre, a.Radius(), b.Radius(), Vector3(1, 0, 0), false,
+               query.settings.speculativeDistance, manifold);
 }
 
 void CollideCapsuleCapsule(const PairQuery& query, Manifold& manifold) {
@@ -79,13 +81,13 @@ void CollideCapsuleCapsule(const PairQuery& query, Manifold& manifold) {
     const ClosestParameters closest = ClosestOnSegments(onA, onB);
     const Vector3 x = onA.At(closest.s), y = onB.At(closest.t);
     if (LengthSquared(Vector3(y - x)) > reach * reach) return;
-    if (NearlyParallel(onA, onB) &&
-        BuildParallel(onA, onB, a.Radius(), b.Radius(), query.settings.speculativeDistance, manifold))
-        return;
-    // Cores that cross: perpendicular to both is the shortest way out.
-    const Vector3 crossing = Cross<float>(Vector3(0, 1, 0), half);
-    BuildPoint(x, y, a.Radius(), b.Radius(), Normalized(crossing, Vector3(1, 0, 0)),
-               query.settings.speculativeDistance, manifold);
+    // Perpendicular to both is the normal where they cross, and the shortest way out of cores that touch.
+    const bool parallel = NearlyParallel(onA, onB);
+    if (parallel && BuildParallel(onA, onB, a.Radius(), b.Radius(), query.settings.speculativeDistance, manifold)) return;
+    Vector3 crossing = Normalized(Cross<float>(Vector3(0, 1, 0), half), Vector3(1, 0, 0));
+    if (Dot(crossing, Vector3(y - x)) < 0.0f) crossing = -crossing;
+    const bool cross = !parallel && closest.s > 0 && closest.s < 1 && closest.t > 0 && closest.t < 1;
+    BuildPoint(x, y, a.Radius(), b.Radius(), crossing, cross, query.settings.speculativeDistance, manifold);
 }
 
 }  // namespace fulcrum

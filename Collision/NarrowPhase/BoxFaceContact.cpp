@@ -1,0 +1,191 @@
+#include <Fulcrum/Collision/NarrowPhase/BoxFaceContact.h>
+
+#include <Fulcrum/Collision/NarrowPhase/Features.h>
+#include <Fulcrum/Collision/NarrowPhase/ManifoldReduction.h>
+
+namespace fulcrum {
+
+namespace {
+
+using Four = Wide<4>;
+
+Four Lanes(float a, float b, float c, float d) { return Four::Of(Four::Float{a, b, c, d}); }
+
+// The other box's face as a parallelogram over the reference face: middle and half sides in the coordinates (u, v) along
+// the reference face and its separation w from the plane of it.
+struct Parallelogram {
+    float u, v, w;
+    float u1, v1, w1;
+    float u2, v2, w2;
+};
+
+// The reference box's frame: which of its axes is the normal, and the two others in cyclic order.
+struct FaceFrame {
+    int normal, u, v;
+    float side;  // +1 or -1: the face's place on the normal axis
+};
+
+// Vertex and edge numbers of the four corners of a box face, counter-clockwise in its two axes from the corner (+, +).
+struct FaceCorners {
+    uint32_t vertices[4];
+
+    FaceCorners(int normal, bool positive, int first, int second) {
+        const uint32_t base = positive ? 1u << normal : 0u, p = 1u << first, q = 1u << second;
+        vertices[0] = base | p | q;
+        vertices[1] = base | q;
+        vertices[2] = base;
+        vertices[3] = base | p;
+    }
+    // Edge k starts at corner k.
+    uint32_t Edge(int k) const { return EdgeName(vertices[k], vertices[(k + 1) & 3]); }
+};
+
+struct Candidates {
+    static constexpr int kMost = 12;
+    float u[kMost], v[kMost], w[kMost];
+    uint32_t feature[kMost];
+    int count = 0;
+
+    void Add(float pointU, float pointV, float pointW, uint32_t pointFeature) {
+        u[count] = pointU;
+        v[count] = pointV;
+        w[count] = pointW;
+        feature[count++] = pointFeature;
+    }
+};
+
+// The sides of the parallelogram are cut by the reference rectangle, all four at once (Y. Liang and B. Barsky, A New
+// Concept and Method for Line Clipping, ACM TOG 3(1), 1984). The rectangle is larger by the slop, so that sides that lie on
+// each other stay whole under tiny motions. Each side gives its entry point, if cut there, and its exit or end.
+void AddCutSides(const Parallelogram& p, float halfU, float halfV, float slop, const FaceCorners& reference,
+                 const FaceCorners& incident, bool referenceOfA, float reach, Candidates& out) {
+    const Four sign1 = Lanes(1, -1, -1, 1), sign2 = Lanes(1, 1, -1, -1);
+    const Four u = Four(p.u) + sign1 * Four(p.u1) + sign2 * Four(p.u2);
+    const Four v = Four(p.v) + sign1 * Four(p.v1) + sign2 * Four(p.v2);
+    const Four w = Four(p.w) + sign1 * Four(p.w1) + sign2 * Four(p.w2);
+    // From corner k to the next: -2 along the first side, -2 along the second, and back.
+    const Four step1 = Lanes(-2, 0, 2, 0), step2 = Lanes(0, -2, 0, 2);
+    const Four du = step1 * Four(p.u1) + step2 * Four(p.u2), dv = step1 * Four(p.v1) + step2 * Four(p.v2);
+    const Four dw = step1 * Four(p.w1) + step2 * Four(p.w2);
+
+    const auto notZero = [](Four x) { return Select(Abs(x) < Four(1e-12f), Four(1e-12f), x); };
+    const Four perU = Four(1.0f) / notZero(du), perV = Four(1.0f) / notZero(dv);
+    const Four limitU(halfU + slop), limitV(halfV + slop);
+    const Four ta = (limitU - u) * perU, tb = (-limitU - u) * perU, tc = (limitV - v) * perV, td = (-limitV - v) * perV;
+    const Four inU = Min(ta, tb), outU = Max(ta, tb), inV = Min(tc, td), outV = Max(tc, td);
+    const Four enter = Max(Max(inU, inV), Four(0.0f)), leave = Min(Min(outU, outV), Four(1.0f));
+    const uint32_t crosses = (enter <= leave).ToBits();
+    if (crosses == 0) return;
+    const uint32_t entersLate = crosses & (enter > Four(0.0f)).ToBits();
+    const uint32_t entersByU = (inU >= inV).ToBits(), leavesByU = (outU <= outV).ToBits();
+    const uint32_t reachesEnd = (leave >= Four(1.0f)).ToBits();
+    const uint32_t upwardsU = (du > Four(0.0f)).ToBits(), upwardsV = (dv > Four(0.0f)).ToBits();
+
+    float us[2][4], vs[2][4], ws[2][4];
+    (u + du * enter).Store(us[0]);
+    (v + dv * enter).Store(vs[0]);
+    const Four wEnter = w + dw * enter, wLeave = w + dw * leave;
+    wEnter.Store(ws[0]);
+    (u + du * leave).Store(us[1]);
+    (v + dv * leave).Store(vs[1]);
+    wLeave.Store(ws[1]);
+    const uint32_t nearEnter = (wEnter <= Four(reach)).ToBits(), nearLeave = (wLeave <= Four(reach)).ToBits();
+
+    // The reference side that cuts at a bound of u or v: sides start at the corners (+,+), (-,+), (-,-), (+,-).
+    const auto side = [](bool byU, bool upper) { return byU ? (upper ? 3 : 1) : (upper ? 0 : 2); };
+    const auto crossing = [&](int edge, int cut) {
+        const uint32_t r = reference.Edge(cut), i = incident.Edge(edge);
+        return referenceOfA ? CrossingFeature(r, i) : CrossingFeature(i, r);
+    };
+    for (uint32_t left = crosses & (nearEnter & entersLate); left != 0; left &= left - 1) {
+        const int k = __builtin_ctz(left);
+        const bool byU = entersByU >> k & 1, upwards = (byU ? upwardsU : upwardsV) >> k & 1;
+        out.Add(us[0][k], vs[0][k], ws[0][k], crossing(k, side(byU, !upwards)));
+    }
+    for (uint32_t left = crosses & nearLeave; left != 0; left &= left - 1) {
+        const int k = __builtin_ctz(left);
+        const bool byU = leavesByU >> k & 1, upwards = (byU ? upwardsU : upwardsV) >> k & 1;
+        const uint32_t feature = reachesEnd >> k & 1 ? VertexFeature(!referenceOfA, incident.vertices[(k + 1) & 3])
+                                                     : crossing(k, side(byU, upwards));
+        out.Add(us[1][k], vs[1][k], ws[1][k], feature);
+    }
+}
+
+// The corners of the reference rectangle that lie inside the parallelogram by more than the slop.
+void AddCoveredCorners(const Parallelogram& p, float halfU, float halfV, float slop, const FaceCorners& reference,
+                       bool referenceOfA, float reach, Candidates& out) {
+    const float determinant = p.u1 * p.v2 - p.u2 * p.v1;
+    if (Abs(determinant) <= 1e-12f * (halfU * halfV)) return;  // seen edge on
+    const float scale = 1.0f / determinant;
+    const Four u = Lanes(halfU, -halfU, -halfU, halfU), v = Lanes(halfV, halfV, -halfV, -halfV);
+    const Four du = u - Four(p.u), dv = v - Four(p.v);
+    const Four along1 = (du * Four(p.v2) - dv * Four(p.u2)) * Four(scale);
+    const Four along2 = (dv * Four(p.u1) - du * Four(p.v1)) * Four(scale);
+    // The height of the parallelogram over a side, which the slop is measured along, is |determinant| / |that side|.
+    const float margin1 = 1.0f - slop * Sqrt(p.u2 * p.u2 + p.v2 * p.v2) * Abs(scale);
+    const float margin2 = 1.0f - slop * Sqrt(p.u1 * p.u1 + p.v1 * p.v1) * Abs(scale);
+    const Four w = Four(p.w) + along1 * Four(p.w1) + along2 * Four(p.w2);
+    const uint32_t covered = ((Abs(along1) < Four(margin1)) & (Abs(along2) < Four(margin2)) & (w <= Four(reach))).ToBits();
+    for (uint32_t left = covered; left != 0; left &= left - 1) {
+        const int k = __builtin_ctz(left);
+        out.Add(k == 0 || k == 3 ? halfU : -halfU, k < 2 ? halfV : -halfV, w[k],
+                VertexFeature(referenceOfA, reference.vertices[k]));
+    }
+}
+
+}  // namespace
+
+bool BuildBoxFaceContact(const BoxPair& pair, bool ofA, int face, float separation, const ContactTolerances& tolerances,
+                         Manifold& manifold) {
+    const FaceFrame frame{face / 2, (face / 2 + 1) % 3, (face / 2 + 2) % 3, face % 2 == 0 ? 1.0f : -1.0f};
+    const Vector3& half = ofA ? pair.halfA : pair.halfB;
+    const Vector3& otherHalf = ofA ? pair.halfB : pair.halfA;
+    const Matrix3& axes = ofA ? pair.rotation : pair.transposed;  // the other box's, in this box's frame
+    const Vector3 otherCentre = ofA ? pair.position : Vector3(-pair.positionInB);
+
+    // The other box's face that points most nearly against the normal.
+    const float cosines[3] = {axes.x[frame.normal], axes.y[frame.normal], axes.z[frame.normal]};
+    int m = Abs(cosines[1]) > Abs(cosines[0]) ? 1 : 0;
+    if (Abs(cosines[2]) > Abs(cosines[m])) m = 2;
+    const int m1 = (m + 1) % 3, m2 = (m + 2) % 3;
+    const bool positive = cosines[m] * frame.side < 0.0f;
+    const Vector3* columns = &axes.x;
+    const Vector3 middle = otherCentre + columns[m] * (positive ? otherHalf[m] : -otherHalf[m]);
+    const Vector3 side1 = columns[m1] * otherHalf[m1], side2 = columns[m2] * otherHalf[m2];
+    const Parallelogram p{middle[frame.u], middle[frame.v], middle[frame.normal] * frame.side - half[frame.normal],
+                          side1[frame.u],  side1[frame.v],  side1[frame.normal] * frame.side,
+                          side2[frame.u],  side2[frame.v],  side2[frame.normal] * frame.side};
+
+    const FaceCorners reference(frame.normal, frame.side > 0, frame.u, frame.v), incident(m, positive, m1, m2);
+    Candidates found;
+    AddCutSides(p, half[frame.u], half[frame.v], tolerances.prefer, reference, incident, ofA, tolerances.reach, found);
+    AddCoveredCorners(p, half[frame.u], half[frame.v], tolerances.prefer, reference, ofA, tolerances.reach, found);
+    float least = std::numeric_limits<float>::infinity();
+    for (int i = 0; i < found.count; ++i) least = Min(least, found.w[i]);
+    if (!(least <= separation + tolerances.prefer)) return false;
+
+    // In the plane of the face the choice needs two coordinates alone.
+    int chosen[4];
+    const int count = ChooseFour(
+        found.count, Vector3(0, 0, 1), tolerances.prefer, [&](int i) { return Vector3(found.u[i], found.v[i], 0); },
+        [&](int i) { return found.w[i]; }, chosen);
+    const Vector3 column = ofA ? Vector3::Zero() : Vector3((&pair.rotation.x)[frame.normal]);
+    manifold.normal = ofA ? Vector3::Zero() : Vector3(column * -frame.side);
+    if (ofA) manifold.normal[frame.normal] = frame.side;
+    manifold.pointCount = count;
+    for (int i = 0; i < count; ++i) {
+        const int c = chosen[i];
+        Vector3 x;
+        x[frame.u] = found.u[c];
+        x[frame.v] = found.v[c];
+        x[frame.normal] = frame.side * (ofA ? half[frame.normal] + pair.radiusA
+                                            : half[frame.normal] + found.w[c] - pair.radiusA);
+        ManifoldPoint& point = manifold.points[i];
+        point.positionOnA = ofA ? x : Vector3(pair.rotation * x + pair.position);
+        point.separation = found.w[c] - (pair.radiusA + pair.radiusB);
+        point.feature = found.feature[c];
+    }
+    return true;
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,21 @@
+// Tolerances of one narrow-phase query. Used by the pair functions.
+#pragma once
+
+#include <Fulcrum/Collision/NarrowPhase/Collide.h>
+#include <Fulcrum/Math/Wide.h>
+
+namespace fulcrum {
+
+struct ContactTolerances {
+    float reach;    // m: the cores' separation up to which there are points
+    float prefer;   // m: a face contact is taken where its separation is at most this much below the best axis
+    float feature;  // m: vertices this close to the extreme one belong to the supporting feature
+
+    // `innerRadii`: the sum of the radii of the balls inside the two cores; `rounding`: of their convex radii. In m.
+    ContactTolerances(float innerRadii, float rounding, const CollideSettings& settings)
+        : reach(settings.speculativeDistance + rounding),
+          prefer(Min(0.02f * settings.speculativeDistance, 0.002f * (innerRadii + rounding))),
+          feature(1e-4f * (innerRadii + rounding)) {}
+};
+
+}  // namespace fulcrum
