@@ -155,12 +155,12 @@ private:
                              const InverseMass<Real>& mass2, const Vector& axis, Real lambda) {
         const Mask applied = (lambda < Real(0.0f)) | (lambda > Real(0.0f));
         if constexpr (HasMass(kSide1)) {
-            const Vector angular = motion1.angular - (mass1.inertia * axis) * lambda;
-            motion1.angular = Select<Real>(applied, angular, motion1.angular);
+            const Vector angular = (mass1.inertia * axis) * lambda;
+            motion1.angular -= ZeroUnless<Real>(applied, angular);
         }
         if constexpr (HasMass(kSide2)) {
-            const Vector angular = motion2.angular + (mass2.inertia * axis) * lambda;
-            motion2.angular = Select<Real>(applied, angular, motion2.angular);
+            const Vector angular = (mass2.inertia * axis) * -lambda;
+            motion2.angular -= ZeroUnless<Real>(applied, angular);
         }
         return applied;
     }

@@ -184,16 +184,16 @@ private:
                       const InverseMass<Real>& mass2, const Vector& axis, Real lambda) const {
         const Mask applied = (lambda < Real(0.0f)) | (lambda > Real(0.0f));
         if constexpr (HasMass(kSide1)) {
-            const Vector linear = motion1.linear - axis * (mass1.mass * lambda);
-            const Vector angular = motion1.angular - (mass1.inertia * r1PlusUCrossAxis_) * lambda;
-            motion1.linear = Select<Real>(applied, linear, motion1.linear);
-            motion1.angular = Select<Real>(applied, angular, motion1.angular);
+            const Vector linear = axis * (mass1.mass * lambda);
+            const Vector angular = (mass1.inertia * r1PlusUCrossAxis_) * lambda;
+            motion1.linear -= ZeroUnless<Real>(applied, linear);
+            motion1.angular -= ZeroUnless<Real>(applied, angular);
         }
         if constexpr (HasMass(kSide2)) {
-            const Vector linear = motion2.linear + axis * (mass2.mass * lambda);
-            const Vector angular = motion2.angular + (mass2.inertia * r2CrossAxis_) * lambda;
-            motion2.linear = Select<Real>(applied, linear, motion2.linear);
-            motion2.angular = Select<Real>(applied, angular, motion2.angular);
+            const Vector linear = axis * (mass2.mass * -lambda);
+            const Vector angular = (mass2.inertia * r2CrossAxis_) * -lambda;
+            motion2.linear -= ZeroUnless<Real>(applied, linear);
+            motion2.angular -= ZeroUnless<Real>(applied, angular);
         }
         return applied;
     }

@@ -35,10 +35,16 @@ inline InverseMass<Real> OverrideMass(const InverseMass<Real>& mass, Real invers
     return result;
 }
 
-// mask ? a : b, by component. Adding zero instead would turn -0 into +0 and NaN times zero into NaN.
+// mask ? a : +0. Subtracting it leaves every bit of a lane where the mask is false, -0 and NaN included; a product with
+// zero would not.
+inline float ZeroUnless(bool mask, float a) { return mask ? a : 0.0f; }
+template <int N>
+inline Wide<N> ZeroUnless(WideMask<N> mask, Wide<N> a) {
+    return Wide<N>::Of(mask.bits ? a.v : typename Wide<N>::Float{});
+}
 template <class Real>
-inline Vec3<Real> Select(MaskOf<Real> mask, const Vec3<Real>& a, const Vec3<Real>& b) {
-    return Vec3<Real>(Select(mask, a.x(), b.x()), Select(mask, a.y(), b.y()), Select(mask, a.z(), b.z()));
+inline Vec3<Real> ZeroUnless(MaskOf<Real> mask, const Vec3<Real>& a) {
+    return Vec3<Real>(ZeroUnless(mask, a.x()), ZeroUnless(mask, a.y()), ZeroUnless(mask, a.z()));
 }
 
 }  // namespace fulcrum

@@ -82,13 +82,13 @@ inline constexpr int kLaneCount = sizeof(Real) / sizeof(float);
 template <class Real>
 inline SpringGains<Real> CalculateSpringGains(Real dt, Real inverseEffectiveMass, const SpringConstants<Real>& spring) {
     // Far beyond any spring that differs from a hard row, and far from overflow.
-    const Real largest(1e30f);
+    const Real largest(1e18f);
     const Real one(1.0f);
-    const Real squaredOmega = Min(spring.squaredFrequency + spring.stiffness * inverseEffectiveMass, largest);
-    const Real decayRate = Min(spring.decayRate + spring.damping * inverseEffectiveMass, largest);
-    const Real squaredAngle = squaredOmega * dt * dt;
-    const Real twiceDecay = decayRate * dt;
-    const Real excess = Min(twiceDecay + squaredAngle, largest);  // D - 1 of the implicit form
+    const Real squaredOmega = spring.squaredFrequency + spring.stiffness * inverseEffectiveMass;
+    const Real decayRate = spring.decayRate + spring.damping * inverseEffectiveMass;
+    const Real squaredAngle = Min(squaredOmega * dt * dt, largest);
+    const Real twiceDecay = Min(decayRate * dt, largest);
+    const Real excess = twiceDecay + squaredAngle;  // D - 1 of the implicit form
     SpringGains<Real> gains;
     gains.softness = one / (one + excess);
     gains.massScale = excess * gains.softness;

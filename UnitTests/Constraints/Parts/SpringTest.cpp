@@ -1,0 +1,270 @@
+// Springs against closed forms: the continuous oscillator, the implicit recursion, the force law at rest.
+#include "RandomBodies.h"
+
+#include <Fulcrum/Constraints/Parts/SpringPart.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace fulcrum {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kDt = 1.0 / 60.0;
+
+// The oscillator x'' + 2 zeta w x' + w^2 x = 0 from x(0) = 1, x'(0) = 0, for zeta below and above 1.
+double Continuum(double frequency, double zeta, double t) {
+    const double w = 2.0 * kPi * frequency;
+    if (zeta < 1.0) {
+        const double wd = w * std::sqrt(1.0 - zeta * zeta);
+        return std::exp(-zeta * w * t) * (std::cos(wd * t) + zeta * w / wd * std::sin(wd * t));
+    }
+    const double root = std::sqrt(zeta * zeta - 1.0);
+    const double s1 = -w * (zeta - root), s2 = -w * (zeta + root);
+    return (s2 * std::exp(s1 * t) - s1 * std::exp(s2 * t)) / (s2 - s1);
+}
+
+// One mass on a spring to the world: velocity solve with warm start, then x += dt v. `load` is an acceleration.
+struct Oscillator {
+    float inverseMass = 0.5f;
+    float x = 1.0f, v = 0.0f, lambda = 0.0f;
+
+    void Step(const SpringSettings& settings, float load = 0.0f, int iterations = 1) {
+        const float dt = static_cast<float>(kDt);
+        SpringPart<float> part;
+        part.SetSoft(dt, inverseMass, 0.0f, x, ToConstants(settings));
+        v += load * dt;
+        v += inverseMass * lambda;
+        for (int i = 0; i < iterations; ++i) {
+            const float total = part.SolveTotalLambda(v, lambda);
+            v += inverseMass * (total - lambda);
+            lambda = total;
+        }
+        x += dt * v;
+    }
+};
+
+// v holds (x - x of the step before) / dt, so that is what starts an oscillator on the continuum's curve.
+Oscillator OnTheCurve(double frequency, double zeta) {
+    Oscillator oscillator;
+    oscillator.v = static_cast<float>((1.0 - Continuum(frequency, zeta, -kDt)) / kDt);
+    return oscillator;
+}
+
+double LargestError(double frequency, double zeta, SpringForm form, int steps) {
+    Oscillator oscillator = OnTheCurve(frequency, zeta);
+    const SpringSettings settings{.frequency = static_cast<float>(frequency),
+                                  .dampingRatio = static_cast<float>(zeta),
+                                  .form = form};
+    double worst = 0.0;
+    for (int i = 1; i <= steps; ++i) {
+        oscillator.Step(settings);
+        worst = std::max(worst, std::fabs(static_cast<double>(oscillator.x) - Continuum(frequency, zeta, i * kDt)));
+    }
+    return worst;
+}
+
+// Frequency (Hz) and damping ratio of the linear map v' = s v - p x / dt, x' = x + dt v', from its eigenvalues.
+void EffectiveMotion(const detail::SpringGains<float>& gains, double& frequency, double& zeta) {
+    const double determinant = static_cast<double>(gains.softness);
+    const double trace = 1.0 + determinant - static_cast<double>(gains.errorGain);
+    const double decay = -0.5 * std::log(determinant) / kDt;
+    const double damped = std::acos(0.5 * trace / std::sqrt(determinant)) / kDt;
+    frequency = damped / (2.0 * kPi);
+    zeta = decay / std::sqrt(decay * decay + damped * damped);
+}
+
+detail::SpringGains<float> Gains(float frequency, float zeta, SpringForm form) {
+    return detail::CalculateSpringGains(static_cast<float>(kDt), 1.0f, FrequencyConstants(frequency, zeta, form));
+}
+
+TEST(Spring, ExactFormMeetsTheContinuousOscillator) {
+    // Rounding: each of 600 steps adds an error of about 1e-7 to x and v, which sum up like a random walk to some 3e-6,
+    // and the three gains, wrong by half a unit each (6e-8), turn the phase of 126 rad by some 1e-5.
+    EXPECT_LT(LargestError(2.0, 0.1, SpringForm::Exact, 600), 2e-5);
+    EXPECT_LT(LargestError(2.0, 0.1, SpringForm::Automatic, 600), 2e-5);
+    // Without damping (no softened mass: the row is a pure force) nothing of the error decays: 126 rad, all of it kept.
+    EXPECT_LT(LargestError(2.0, 0.0, SpringForm::Exact, 600), 1e-4);
+    EXPECT_LT(LargestError(11.0, 0.05, SpringForm::Exact, 600), 2e-5);
+    EXPECT_LT(LargestError(2.0, 0.9999, SpringForm::Exact, 600), 2e-5);
+    EXPECT_LT(LargestError(2.0, 1.0001, SpringForm::Exact, 600), 2e-5);
+    EXPECT_LT(LargestError(2.0, 3.0, SpringForm::Exact, 600), 2e-5);
+}
+
+TEST(Spring, ImplicitFormFollowsItsRecursion) {
+    const double w = 2.0 * kPi * 2.0, zeta = 0.1;
+    Oscillator oscillator;
+    double x = 1.0, v = 0.0;
+    for (int i = 0; i < 600; ++i) {
+        oscillator.Step({.frequency = 2.0f, .dampingRatio = 0.1f, .form = SpringForm::Implicit});
+        v = (v - w * w * kDt * x) / (1.0 + 2.0 * zeta * w * kDt + w * w * kDt * kDt);
+        x += kDt * v;
+        ASSERT_NEAR(static_cast<double>(oscillator.x), x, 1e-5) << i;
+    }
+}
+
+TEST(Spring, ImplicitFormIsTheSoftRowOfTheLiterature) {
+    // gamma = 1 / (h (c + h k)), b += beta C with beta = h k gamma, delta = -(J v + b + gamma lambda) / (K + gamma).
+    const double h = kDt, k = 80.0, c = 3.0, inverse = 0.7, error = 0.3, bias = -0.4, v = 1.3, lambda = 0.6;
+    const double gamma = 1.0 / (h * (c + h * k));
+    const double expected = lambda - (v + bias + h * k * gamma * error + gamma * lambda) / (inverse + gamma);
+    SpringPart<float> part;
+    part.SetSoft(static_cast<float>(h), 0.7f, -0.4f, 0.3f, StiffnessConstants(80.0f, 3.0f));
+    EXPECT_NEAR(static_cast<double>(part.SolveTotalLambda(1.3f, 0.6f)), expected, 1e-6);
+    EXPECT_NEAR(static_cast<double>(part.GetEffectiveMass()), 1.0 / (inverse + gamma), 1e-6);
+}
+
+TEST(Spring, FormsDampAsDocumented) {
+    double frequency = 0.0, zeta = 0.0;
+    EffectiveMotion(Gains(2.0f, 0.1f, SpringForm::Implicit), frequency, zeta);
+    EXPECT_NEAR(zeta, 0.2002, 1e-3);
+    EXPECT_NEAR(frequency, 1.9227, 1e-3);
+    EffectiveMotion(Gains(2.0f, 0.1f, SpringForm::Exact), frequency, zeta);
+    EXPECT_NEAR(zeta, 0.1, 1e-5);
+    EXPECT_NEAR(frequency, 2.0 * std::sqrt(0.99), 1e-5);
+    // Automatic without damping: w h / 4 = 0.052 of damping, half of the implicit form's, at the exact frequency.
+    EffectiveMotion(Gains(2.0f, 0.0f, SpringForm::Automatic), frequency, zeta);
+    EXPECT_NEAR(zeta, kPi * kDt, 0.01 * kPi * kDt);
+    EXPECT_NEAR(frequency, 2.0, 1e-4);
+}
+
+TEST(Spring, AutomaticChoosesTheForm) {
+    const auto same = [](const detail::SpringGains<float>& a, const detail::SpringGains<float>& b) {
+        return a.softness == b.softness && a.massScale == b.massScale && a.errorGain == b.errorGain;
+    };
+    const auto automatic = [](float f, float zeta) { return Gains(f, zeta, SpringForm::Automatic); };
+    EXPECT_TRUE(same(automatic(2.0f, 0.1f), Gains(2.0f, 0.1f, SpringForm::Exact)));
+    EXPECT_TRUE(same(automatic(2.0f, 0.7f), Gains(2.0f, 0.7f, SpringForm::Exact)));
+    EXPECT_TRUE(same(automatic(2.0f, 0.72f), Gains(2.0f, 0.72f, SpringForm::Implicit)));
+    EXPECT_TRUE(same(automatic(20.0f, 0.1f), Gains(20.0f, 0.1f, SpringForm::Implicit)));  // 3 steps a period
+    const SpringSettings law{.mode = SpringMode::StiffnessAndDamping, .stiffness = 100.0f, .damping = 1.0f};
+    EXPECT_EQ(ToConstants(law).form, static_cast<float>(SpringForm::Implicit));
+}
+
+TEST(Spring, AutomaticNeverFeedsEnergy) {
+    // The bound D - 1 >= K / 2 divided by D, for every frequency and damping ratio; rounding of the three gains allowed.
+    for (float f = 0.05f; f < 40.0f; f *= 1.07f)
+        for (float zeta = 0.0f; zeta < 4.0f; zeta += 0.0371f) {
+            const auto gains = Gains(f, zeta, SpringForm::Automatic);
+            EXPECT_GE(gains.massScale - 0.5f * gains.errorGain, -2e-7f) << f << " " << zeta;
+        }
+}
+
+TEST(Spring, ManySpringsOnFewBodiesStayBounded) {
+    // 8 masses of 0.03 to 30 kg, 28 undamped springs, a single iteration: the energy of the header never grows by more
+    // than what a single iteration leaves unsolved.
+    for (const float frequency : {1.0f, 3.0f, 9.0f, 30.0f}) {
+        testing::Random random(3);
+        constexpr int kMasses = 8;
+        double inverse[kMasses], v[kMasses] = {}, x[kMasses];
+        for (double& m : inverse) m = std::pow(10.0, static_cast<double>(random.Number(-1.5f, 1.5f)));
+        for (double& p : x) p = static_cast<double>(random.Number(-0.1f, 0.1f));
+        const auto spring = FrequencyConstants(frequency, 0.0f);
+        const auto gains = detail::CalculateSpringGains(static_cast<float>(kDt), 1.0f, spring);
+        const double stiffness = static_cast<double>(gains.errorGain / gains.softness) / (kDt * kDt);
+        std::vector<float> lambdas(kMasses * kMasses, 0.0f);
+        std::vector<SpringPart<float>> parts(kMasses * kMasses);
+        double first = 0.0, largest = 0.0, last = 0.0;
+        for (int step = 0; step < 600; ++step) {
+            double energy = 0.0;
+            for (int i = 0; i < kMasses; ++i) energy += 0.5 * v[i] * v[i] / inverse[i];
+            for (int i = 0; i < kMasses; ++i)
+                for (int j = 0; j < i; ++j) {
+                    const int row = i * kMasses + j;
+                    const double k = inverse[i] + inverse[j], error = x[i] - x[j];
+                    energy += 0.5 * stiffness / k * error * error;
+                    parts[row].SetSoft(static_cast<float>(kDt), static_cast<float>(k), 0.0f, static_cast<float>(error),
+                                       spring);
+                    v[i] += inverse[i] * static_cast<double>(lambdas[row]);
+                    v[j] -= inverse[j] * static_cast<double>(lambdas[row]);
+                }
+            for (int i = 0; i < kMasses; ++i)
+                for (int j = 0; j < i; ++j) {
+                    const int row = i * kMasses + j;
+                    const float total = parts[row].SolveTotalLambda(static_cast<float>(v[i] - v[j]), lambdas[row]);
+                    v[i] += inverse[i] * static_cast<double>(total - lambdas[row]);
+                    v[j] -= inverse[j] * static_cast<double>(total - lambdas[row]);
+                    lambdas[row] = total;
+                }
+            for (int i = 0; i < kMasses; ++i) x[i] += kDt * v[i];
+            if (step == 0) first = energy;
+            largest = std::max(largest, energy);
+            last = energy;
+        }
+        EXPECT_LT(largest, 1.2 * first) << frequency;
+        EXPECT_LT(last, 0.1 * first) << frequency;
+    }
+}
+
+TEST(Spring, ForceLawHoldsAtRest) {
+    // k x = m g: 2 kg, 50 N/m. After 30 s of decay at c / (2 m) = 1 /s nothing but rounding is left of the motion.
+    Oscillator oscillator;
+    const SpringSettings law{.mode = SpringMode::StiffnessAndDamping, .stiffness = 50.0f, .damping = 4.0f};
+    for (int i = 0; i < 1800; ++i) oscillator.Step(law, -9.81f);
+    EXPECT_NEAR(oscillator.x, -2.0f * 9.81f / 50.0f, 2e-6f);
+    // By frequency, critically damped: automatic is implicit and meets g / w^2.
+    Oscillator suspension;
+    for (int i = 0; i < 1800; ++i) suspension.Step({.frequency = 2.0f, .dampingRatio = 1.0f}, -9.81f);
+    const double w = 2.0 * kPi * 2.0;
+    EXPECT_NEAR(static_cast<double>(suspension.x), -9.81 / (w * w), 2e-6);
+}
+
+TEST(Spring, MoreIterationsChangeNothingAlone) {
+    for (const SpringForm form : {SpringForm::Exact, SpringForm::Implicit}) {
+        Oscillator once, often;
+        const SpringSettings settings{.frequency = 3.0f, .dampingRatio = 0.2f, .form = form};
+        for (int i = 0; i < 100; ++i) {
+            once.Step(settings);
+            often.Step(settings, 0.0f, 8);
+        }
+        EXPECT_NEAR(once.x, often.x, 1e-5f);
+    }
+}
+
+TEST(Spring, NoStiffnessMeansHard) {
+    for (const SpringSettings& settings :
+         {SpringSettings{}, SpringSettings{.dampingRatio = 0.5f},
+          SpringSettings{.mode = SpringMode::StiffnessAndDamping, .damping = 7.0f, .form = SpringForm::Exact}}) {
+        SpringPart<float> soft, hard;
+        soft.SetSoft(0.01f, 0.3f, 0.2f, 5.0f, ToConstants(settings));
+        hard.SetHard(0.3f, 0.2f);
+        EXPECT_EQ(soft.SolveTotalLambda(1.5f, 0.4f), hard.SolveTotalLambda(1.5f, 0.4f));
+        EXPECT_TRUE(soft.IsHard());
+    }
+}
+
+TEST(Spring, ExtremesStayFinite) {
+    const float largest = std::numeric_limits<float>::max();
+    for (const SpringForm form : {SpringForm::Automatic, SpringForm::Exact, SpringForm::Implicit})
+        for (const SpringMode mode : {SpringMode::FrequencyAndDamping, SpringMode::StiffnessAndDamping})
+            for (const float stiffness : {1e-30f, 1.0f, 1e6f, 1e20f, largest})
+                for (const float damping : {0.0f, 1e-30f, 1.0f, 1e20f, largest})
+                    for (const float dt : {1e-5f, 0.01f, 1.0f}) {
+                        const SpringSettings settings{mode, stiffness, damping, stiffness, damping, form};
+                        const auto gains = detail::CalculateSpringGains(dt, 1.0f, ToConstants(settings));
+                        // No spring is stiffer than hard (v' = -x / dt), but one of two to three steps a period.
+                        EXPECT_TRUE(gains.massScale >= 0.0f && gains.massScale <= 1.0f);
+                        EXPECT_TRUE(gains.softness >= 0.0f && gains.softness <= 1.0f);
+                        EXPECT_TRUE(gains.errorGain >= 0.0f && gains.errorGain <= 4.0f);
+                    }
+}
+
+TEST(Spring, BadSettingsAreNamed) {
+    EXPECT_TRUE(Validate(SpringSettings{}));
+    EXPECT_TRUE(Validate(SpringSettings{.frequency = 3.0f, .dampingRatio = 2.0f}));
+    const Status negative = Validate({.frequency = -1.0f});
+    ASSERT_FALSE(negative);
+    EXPECT_EQ(negative.GetError().code, ErrorCode::Negative);
+    EXPECT_EQ(negative.GetError().message, "spring frequency is -1; it must be 0 or more");
+    const Status notANumber = Validate({.damping = std::numeric_limits<float>::quiet_NaN()});
+    ASSERT_FALSE(notANumber);
+    EXPECT_EQ(notANumber.GetError().code, ErrorCode::NonFinite);
+    EXPECT_FALSE(Validate({.dampingRatio = std::numeric_limits<float>::infinity()}));
+    EXPECT_FALSE(Validate({.stiffness = -1e-9f}));
+}
+
+}  // namespace
+}  // namespace fulcrum
