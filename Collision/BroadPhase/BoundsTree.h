@@ -35,7 +35,8 @@ public:
     // taken to be followed by one query. If the shape decays steadily, that is the cheapest moment to rebuild.
     void Optimize();
 
-    // Builds the whole tree anew, top down, each node full but for the last ones.
+    // Builds the whole tree anew, top down, each node full but for the last ones; leaves that are large beside the whole,
+    // as floors are, hang right below the root.
     void Rebuild();
 
     // Forgets all leaves and keeps the memory.
@@ -110,7 +111,8 @@ private:
     void AppendToSpine(uint32_t height);
 
     void GatherLeaves();
-    Packed BuildNode(uint32_t node, uint32_t first, uint32_t count, int slots);
+    uint32_t MoveLargeLeavesToBack();
+    Packed BuildNode(uint32_t node, uint32_t first, uint32_t count, int slot, int end);
     void BuildChildren(uint32_t node, uint32_t first, uint32_t count, uint32_t capacity, int& slot, Packed& total);
     void SplitAt(uint32_t first, uint32_t count, uint32_t left);
 

@@ -120,16 +120,43 @@ void BoundsTree::Rebuild() {
     freeNode_ = kNoNode;
     pendingHeight_ = pendingCount_ = changesSinceOptimize_ = 0;
     area_ = debt_ = 0;
-    BuildNode(AllocateNode(), 0, size_, kPendingSlot);
+    const uint32_t root = AllocateNode();
+    const uint32_t large = MoveLargeLeavesToBack();
+    int slot = 0;
+    // One or two large leaves lie in the root itself, more of them in a child of it.
+    Packed box = EmptyBox();
+    if (large > 0) BuildChildren(root, size_ - large, large, large <= 2 ? 1 : large, slot, box);
+    BuildNode(root, 0, size_ - large, slot, kPendingSlot);
     builtArea_ = area_;
 }
 
-// Fills `slots` slots of a new node with the gathered leaves [first, first + count). Returns the box around them.
-BoundsTree::Packed BoundsTree::BuildNode(uint32_t node, uint32_t first, uint32_t count, int slots) {
+// Floors and walls among small boxes would make every node above them as large as they are, down to the last one.
+// Moves the few leaves that are longer than a quarter of the whole to the back, and returns their number.
+uint32_t BoundsTree::MoveLargeLeavesToBack() {
+    using Lanes = Wide<4>;
+    Wide<8> total(std::numeric_limits<float>::infinity());
+    for (const Packed& leaf : gathered_) total = Min(total, Wide<8>::Load(leaf.lane));
+    float longest = 0;
+    for (int axis = 0; axis < 3; ++axis) longest = Max(longest, -total[4 + axis] - total[axis]);
+    const Lanes limit(-0.25f * longest);
+    const auto isSmall = [&](const Packed& leaf) {
+        const Lanes negatedExtent = Lanes::Load(leaf.lane) + Lanes::Load(leaf.lane + 4);
+        return ((negatedExtent < limit).ToBits() & 7u) == 0;  // the fourth lane is the id's
+    };
+    uint32_t large = 0;
+    for (const Packed& leaf : gathered_) large += !isSmall(leaf);
+    if (large == 0 || large > size_ / kWidth) return 0;
+    Partition(gathered_.data(), size_, isSmall);
+    return large;
+}
+
+// Fills the slots from `slot` to before `end` of a node with the gathered leaves [first, first + count). Returns the box
+// around them.
+BoundsTree::Packed BoundsTree::BuildNode(uint32_t node, uint32_t first, uint32_t count, int slot, int end) {
     Wide<8> total(std::numeric_limits<float>::infinity());
     Packed box;
-    int slot = 0;
-    if (count <= static_cast<uint32_t>(slots)) {
+    const uint32_t slots = static_cast<uint32_t>(end - slot);
+    if (count <= slots) {
         for (uint32_t i = first; i < first + count; ++i) {
             SetLeaf(node, slot++, std::bit_cast<uint32_t>(gathered_[i].lane[kIdLane]), gathered_[i]);
             total = Min(total, Wide<8>::Load(gathered_[i].lane));
@@ -138,7 +165,7 @@ BoundsTree::Packed BoundsTree::BuildNode(uint32_t node, uint32_t first, uint32_t
         return box;
     }
     uint64_t capacity = kWidth;
-    while (capacity * static_cast<uint64_t>(slots) < count) capacity *= kWidth;
+    while (capacity * slots < count) capacity *= kWidth;
     total.Store(box.lane);
     BuildChildren(node, first, count, static_cast<uint32_t>(capacity), slot, box);
     return box;
@@ -159,7 +186,7 @@ void BoundsTree::BuildChildren(uint32_t node, uint32_t first, uint32_t count, ui
         SetLeaf(node, slot++, std::bit_cast<uint32_t>(box.lane[kIdLane]), box);
     } else {
         const uint32_t child = AllocateNode();
-        box = BuildNode(child, first, count, kWidth);
+        box = BuildNode(child, first, count, 0, kWidth);
         SetInner(node, slot++, child, box);
     }
     Min(Wide<8>::Load(total.lane), Wide<8>::Load(box.lane)).Store(total.lane);

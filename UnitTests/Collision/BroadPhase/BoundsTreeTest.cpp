@@ -167,6 +167,22 @@ TEST(BoundsTree, FindsHugeFloorsAmongSmallBoxes) {
     reference.ExpectSame(Box(Vector3(9e3f, -0.5f, 9e3f), Vector3(9e3f, -0.5f, 9e3f)));
 }
 
+// A floor below thousand boxes is one more box to test in the root; as a leaf like any other it would be in every node
+// above it, and a line would visit these too.
+TEST(BoundsTree, VisitsLessThanOneNodeMoreBecauseOfAFloor) {
+    Random random;
+    BoundsTree tree;
+    for (uint32_t id = 0; id < 1000; ++id) tree.Insert(id, random.Box(16, 0.5f));
+    tree.Rebuild();
+    const float without = tree.Cost();
+    Bounds floor = tree.TotalBounds();
+    floor.upper.y() = floor.lower.y() + 1;
+    tree.Insert(1000, floor);
+    tree.Rebuild();
+    EXPECT_LT(tree.Cost(), without + 1);
+    tree.Validate();
+}
+
 // Points on a line whose distances span all of the floats: no equal halves in space, no area, sums beyond the floats.
 TEST(BoundsTree, FindsPointsAtAllScales) {
     Reference reference;
