@@ -1,0 +1,145 @@
+// Mesh files as shapes: good ones, and those that have nothing to drop.
+#include <Fulcrum/Collision/Shapes/Compound.h>
+#include <Fulcrum/Collision/Shapes/ConvexHull.h>
+#include <Fulcrum/Samples/Runner/MeshImport.h>
+#include <Fulcrum/Samples/Scenes/Scenes.h>
+#include <Fulcrum/Samples/Scenes/SceneWorld.h>
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <array>
+#include <fstream>
+#include <sstream>
+
+namespace fulcrum {
+namespace {
+
+namespace fs = std::filesystem;
+
+class MeshFiles : public testing::Test {
+protected:
+    void SetUp() override {
+        std::string name = (fs::temp_directory_path() / "fulcrum-meshes-XXXXXX").string();
+        ASSERT_NE(mkdtemp(name.data()), nullptr);
+        folder_ = name;
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    fs::path Write(const std::string& name, const std::string& text) const {
+        std::ofstream(folder_ / name) << text;
+        return folder_ / name;
+    }
+    std::string Complaint(const fs::path& path) const {
+        const auto shape = ImportShape(path, 1);
+        if (!shape) return shape.GetError().message;
+        ADD_FAILURE() << path << " was read";
+        return {};
+    }
+
+    fs::path folder_;
+};
+
+// A box of an OBJ group; `first` is the number of vertices before it.
+std::string ObjBox(const std::string& name, const Position& lowest, const Position& highest, int first) {
+    std::ostringstream text;
+    text << "o " << name << "\n";
+    for (int i = 0; i < 8; ++i)
+        text << "v " << (i & 1 ? highest : lowest).x() << " " << (i & 2 ? highest : lowest).y() << " "
+             << (i & 4 ? highest : lowest).z() << "\n";
+    const std::array<std::array<int, 4>, 6> faces{
+        {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
+    for (const auto& face : faces) {
+        text << "f";
+        for (int corner : face) text << " " << first + corner + 1;
+        text << "\n";
+    }
+    return text.str();
+}
+
+TEST_F(MeshFiles, ACubeBecomesAHullOf8VerticesAnd1m) {
+    const auto read = ImportShape(Write("cube.obj", ObjBox("cube", {10, 10, 10}, {14, 14, 14}, 0)), 1);
+    ASSERT_TRUE(read) << read.GetError().message;
+    const auto hull = std::dynamic_pointer_cast<const ConvexHull>(read.Value().shape);
+    ASSERT_TRUE(hull);
+    EXPECT_EQ(hull->Vertices().size(), 8u);
+    EXPECT_NEAR(hull->Mass().volume, 1, 1e-5);
+    EXPECT_LT(Length(hull->Mass().centreOfMass), 1e-5f);  // centred on its bounds
+    EXPECT_DOUBLE_EQ(read.Value().fileSize, 4);
+    EXPECT_TRUE(read.Value().warnings.empty());
+}
+
+TEST_F(MeshFiles, TwoMeshesBecomeACompoundOfTwoHulls) {
+    const std::string text = ObjBox("left", {0, 0, 0}, {1, 1, 1}, 0) + ObjBox("right", {3, 0, 0}, {4, 1, 1}, 8);
+    const auto read = ImportShape(Write("two.obj", text), 2);
+    ASSERT_TRUE(read) << read.GetError().message;
+    const auto compound = std::dynamic_pointer_cast<const Compound>(read.Value().shape);
+    ASSERT_TRUE(compound);
+    EXPECT_EQ(compound->Children().size(), 2u);
+    EXPECT_NEAR(compound->LocalBounds().upper.x(), 1, 1e-5);  // 4 units are 2 m
+    EXPECT_NEAR(compound->Mass().volume, 2 * 0.125, 1e-5);
+}
+
+TEST_F(MeshFiles, AFlatPartIsLeftOutWithAWarning) {
+    const std::string text =
+        ObjBox("cube", {0, 0, 0}, {1, 1, 1}, 0) + "o sheet\nv 0 0 9\nv 9 0 9\nv 0 9 9\nf 9 10 11\n";
+    const auto read = ImportShape(Write("sheet.obj", text), 1);
+    ASSERT_TRUE(read) << read.GetError().message;
+    EXPECT_EQ(read.Value().hulls, 1u);
+    ASSERT_EQ(read.Value().warnings.size(), 1u);
+    EXPECT_NE(read.Value().warnings[0].find("sheet"), std::string::npos) << read.Value().warnings[0];
+    // The sheet counts no more: the cube alone is 1 m.
+    EXPECT_NEAR(read.Value().shape->LocalBounds().upper.x(), 0.5, 1e-5);
+}
+
+TEST_F(MeshFiles, NodesPlaceTheirMeshes) {
+    // A triangle pyramid in glTF, drawn by two nodes, one moved by 3 and turned upside down.
+    const std::string buffer =
+        "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAAC"
+        "AAEAAAABAAMAAAADAAIAAQACAAMA";
+    const std::string text = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1]}],
+      "nodes":[{"mesh":0},{"mesh":0,"translation":[3,0,0],"rotation":[1,0,0,0]}],
+      "meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
+      "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,1]},
+                   {"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}],
+      "bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":24}],
+      "buffers":[{"byteLength":72,"uri":")" + buffer + R"("}]})";
+    const auto read = ImportShape(Write("nodes.gltf", text), 4);
+    ASSERT_TRUE(read) << read.GetError().message;
+    EXPECT_EQ(read.Value().hulls, 2u);
+    // From 0 to 4 in x; the second pyramid reaches as far below y = 0 as the first one above.
+    EXPECT_NEAR(read.Value().shape->LocalBounds().upper.x() - read.Value().shape->LocalBounds().lower.x(), 4, 1e-4);
+    EXPECT_NEAR(read.Value().shape->LocalBounds().upper.y() - read.Value().shape->LocalBounds().lower.y(), 2, 1e-4);
+}
+
+TEST_F(MeshFiles, WhatCannotBeDroppedIsExplained) {
+    EXPECT_NE(Complaint(folder_ / "absent.obj").find("no file"), std::string::npos);
+    EXPECT_NE(Complaint(folder_).find("not a file"), std::string::npos);
+    EXPECT_NE(Complaint(Write("empty.obj", "")).find("empty.obj"), std::string::npos);
+    EXPECT_NE(Complaint(Write("text.txt", "no mesh at all")).find("cannot be read"), std::string::npos);
+    EXPECT_NE(Complaint(Write("broken.stl", "solid x\nfacet normal 0 0")).find("broken.stl"), std::string::npos);
+    const std::string flat = Complaint(Write("quad.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"));
+    EXPECT_NE(flat.find("no part with a volume"), std::string::npos) << flat;
+    const std::string point = Complaint(Write("point.obj", "v 2 2 2\nv 2 2 2\nv 2 2 2\nf 1 2 3\n"));
+    EXPECT_NE(point.find("extent"), std::string::npos) << point;
+}
+
+TEST_F(MeshFiles, AHeapOfOneLandsInItsTray) {
+    const std::string text = ObjBox("left", {0, 0, 0}, {1, 1, 1}, 0) + ObjBox("right", {1, 0, 0}, {2, 3, 1}, 8);
+    const auto read = ImportShape(Write("ell.obj", text), 1);
+    ASSERT_TRUE(read) << read.GetError().message;
+    SceneInput input;
+    input.shape = read.Value().shape;
+    input.count = 12;
+    const auto world = SceneWorld::Create(kDropScene, input);
+    ASSERT_TRUE(world) << world.GetError().message;
+    for (int step = 0; step < 240; ++step) ASSERT_TRUE(world.Value()->Step(1.0 / 60));
+    EXPECT_EQ(world.Value()->watched.size(), 12u);
+    EXPECT_EQ(world.Value()->NonFiniteBodies(), 0);
+    EXPECT_EQ(kDropScene.accuracy(*world.Value()), 0);
+    for (BodyId id : world.Value()->watched) EXPECT_LT(world.Value()->Bodies().GetCentreOfMass(id).y(), 2.5);
+}
+
+}  // namespace
+}  // namespace fulcrum

@@ -1,0 +1,125 @@
+// The measuring of a run: its statistics, its report, its recording.
+#include <Fulcrum/Samples/Runner/Recorder.h>
+#include <Fulcrum/Samples/Runner/RunReport.h>
+#include <Fulcrum/Samples/Scenes/Scenes.h>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace fulcrum {
+namespace {
+
+std::unique_ptr<SceneWorld> Build(const char* name) {
+    auto world = SceneWorld::Create(*FindScene(name));
+    if (!world) ADD_FAILURE() << world.GetError().message;
+    return world ? std::move(world.Value()) : nullptr;
+}
+
+TEST(Statistics, OfAHundredSamples) {
+    std::vector<double> samples;
+    for (int i = 100; i >= 1; --i) samples.push_back(i);
+    const Statistics result = Summarize(samples);
+    EXPECT_DOUBLE_EQ(result.median, 50.5);
+    EXPECT_DOUBLE_EQ(result.mean, 50.5);
+    EXPECT_DOUBLE_EQ(result.p99, 99);
+    EXPECT_DOUBLE_EQ(result.max, 100);
+}
+
+TEST(Statistics, OfOneSampleAndOfNone) {
+    const Statistics one = Summarize({3});
+    EXPECT_DOUBLE_EQ(one.median, 3);
+    EXPECT_DOUBLE_EQ(one.p99, 3);
+    EXPECT_DOUBLE_EQ(Summarize({}).max, 0);
+}
+
+TEST(Simulation, MeasuresARun) {
+    const auto world = Build("tower");
+    ASSERT_TRUE(world);
+    int calls = 0;
+    const auto run = Simulate(*world, 1, 30, 1.0 / 60, 1, [&] { ++calls; });
+    ASSERT_TRUE(run) << run.GetError().message;
+    const RunFigures& figures = run.Value();
+    EXPECT_EQ(calls, 31);
+    EXPECT_EQ(world->StepCount(), 31);
+    EXPECT_EQ(figures.steps, 30);
+    EXPECT_EQ(figures.bodies, 21u);
+    EXPECT_EQ(figures.dynamicBodies, 20u);
+    EXPECT_EQ(figures.islands, 1u);
+    EXPECT_EQ(figures.poseHash, world->System().HashPoses());
+    EXPECT_GT(figures.stepMs.median, 0);
+    EXPECT_GE(figures.stepMs.max, figures.stepMs.p99);
+    EXPECT_GT(figures.memoryBytes, 0u);
+    // 20 cubes of 1000 kg at 0.5 .. 19.5 m.
+    EXPECT_NEAR(figures.energyAtStart, 9.81 * 1000 * 200, 100);
+}
+
+TEST(Simulation, ReportsForPeopleAndForPrograms) {
+    const auto world = Build("tower");
+    ASSERT_TRUE(world);
+    const auto run = Simulate(*world, 0, 5, 1.0 / 60, 1, [] {});
+    ASSERT_TRUE(run);
+    const std::string text = ReportText(ReportLines(world->Definition(), run.Value(), 1));
+    for (const char* part : {"bodies", "contacts", "islands", "median", "99th", "penetration", "energy", "pose hash", "threads",
+                             "substeps", "seed"})
+        EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+    const auto json = ReportJson("tower", run.Value(), 1);
+    for (const char* field : {"scene", "threads", "bodies", "contacts", "steps", "median_ms", "mean_ms", "p99_ms", "max_ms",
+                              "steps_per_s", "accuracy", "hash", "stages_ms", "settings"})
+        EXPECT_TRUE(json.contains(field)) << field;
+    EXPECT_EQ(json["hash"].get<std::string>(), HashText(world->System().HashPoses()));
+    EXPECT_EQ(json["stages_ms"].size(), static_cast<size_t>(kStageCount));
+}
+
+TEST(Recorder, KeepsEveryStepOfASmallWorld) {
+    const auto world = Build("tower");
+    ASSERT_TRUE(world);
+    Recorder recorder(*world, 10, 1.0 / 60);
+    ASSERT_TRUE(Simulate(*world, 0, 10, 1.0 / 60, 1, [&] { recorder.AfterStep(); }));
+    const Recording& recording = recorder.recording;
+    EXPECT_EQ(recording.bodies.size(), 21u);
+    EXPECT_EQ(recording.shapes.size(), 2u);  // floor and cube, shared
+    ASSERT_EQ(recording.frames.size(), 11u);
+    EXPECT_DOUBLE_EQ(recording.frames[0].time, 0);
+    EXPECT_NEAR(recording.frames[10].time, 10.0 / 60, 1e-12);
+    size_t top = 0;
+    for (size_t i = 1; i < recording.bodies.size(); ++i)
+        if (recording.latest[i].position.y() > recording.latest[top].position.y()) top = i;
+    const Position expected = world->Bodies().GetPose(world->watched.back()).position;
+    EXPECT_LT((recording.latest[top].position.cast<double>() - expected).norm(), 1e-5);
+    EXPECT_FALSE(recording.frames[10].contacts.empty());
+}
+
+TEST(Recorder, ShortStepsShareAFrame) {
+    const auto world = Build("tower");
+    ASSERT_TRUE(world);
+    Recorder recorder(*world, 9, 1.0 / 240);
+    ASSERT_TRUE(Simulate(*world, 0, 9, 1.0 / 240, 1, [&] { recorder.AfterStep(); }));
+    EXPECT_EQ(recorder.recording.frames.size(), 4u);  // after 0, 4, 8 and, as the last, 9 steps
+}
+
+TEST(Recorder, ARemovedBodySinksOutOfSight) {
+    const auto world = Build("trap_door");
+    ASSERT_TRUE(world);
+    const uint32_t pillar = world->watched[0].index;
+    Recorder recorder(*world, 200, 1.0 / 60);
+    ASSERT_TRUE(Simulate(*world, 0, 200, 1.0 / 60, 1, [&] { recorder.AfterStep(); }));
+    // The floor's centre is at -1 m and its underside at -2 m.
+    EXPECT_LT(recorder.recording.latest[pillar].position.y(), -1);
+}
+
+TEST(Recorder, PlacesTheChildrenOfACompoundWhereTheirOwnFrameIs) {
+    const auto world = Build("gyroscope");
+    ASSERT_TRUE(world);
+    const Recorder recorder(*world, 1, 1.0 / 60);
+    const auto handle = std::find_if(recorder.recording.shapes.begin(), recorder.recording.shapes.end(),
+                                     [](const RecordedShape& shape) { return shape.kind == RecordedShapeKind::Compound; });
+    ASSERT_NE(handle, recorder.recording.shapes.end());
+    ASSERT_EQ(handle->children.size(), 2u);
+    EXPECT_LT(Length(handle->children[0].pose.position), 1e-6f);
+    EXPECT_LT(Length(handle->children[1].pose.position - Vector3(0, -0.35f, 0)), 1e-6f);
+}
+
+}  // namespace
+}  // namespace fulcrum
