@@ -30,6 +30,17 @@ Status CheckInput(std::span<const Vector3> points, const ConvexHullSettings& set
     return Done{};
 }
 
+// By halves, which waits a third as long as lane after lane. The order makes no difference to a maximum.
+float Largest(const Wide<kLanes>& wide) {
+    if constexpr (kLanes < 4) return HorizontalMax(wide);
+    alignas(64) float lanes[kLanes < 4 ? 4 : kLanes];
+    wide.Store(lanes);
+    Wide<4> four = Wide<4>::Load(lanes);
+    for (int i = 4; i < kLanes; i += 4) four = Max(four, Wide<4>::Load(lanes + i));
+    const float a = Max(four[0], four[1]), b = Max(four[2], four[3]);
+    return Max(a, b);
+}
+
 double DistanceToSurface(const HullMesh& mesh, const Position& inside) {
     double distance = std::numeric_limits<double>::infinity();
     for (const HullMesh::Face& face : mesh.faces) {
@@ -160,18 +171,26 @@ Result<std::shared_ptr<const ConvexHull>> ConvexHull::Create(std::span<const Vec
 Vector3 ConvexHull::SupportCore(const Vector3& direction) const {
     using Lanes = Wide<kLanes>;
     const Lanes x(direction.x()), y(direction.y()), z(direction.z());
-    const auto heights = [&](int i) {
-        return Lanes::Load(LaneX() + i) * x + Lanes::Load(LaneY() + i) * y + Lanes::Load(LaneZ() + i) * z;
-    };
-    // Largest height first, then the first vertex that has it: no index is carried through the search.
-    Lanes best = heights(0);
-    for (int i = kLanes; i < paddedCount_; i += kLanes) best = Max(best, heights(i));
-    const Lanes top(HorizontalMax(best));
+    const float *const laneX = LaneX(), *const laneY = LaneY(), *const laneZ = LaneZ();
+    // Largest height first, then the first vertex that has it: no index is carried through the search, and no branch
+    // depends on where it is.
+    alignas(64) float heights[256];
+    Lanes best(-std::numeric_limits<float>::infinity());
     for (int i = 0; i < paddedCount_; i += kLanes) {
-        const uint32_t bits = (heights(i) == top).ToBits();
-        if (bits != 0) return vertices_[i + std::countr_zero(bits)];
+        const Lanes height = Lanes::Load(laneX + i) * x + Lanes::Load(laneY + i) * y + Lanes::Load(laneZ + i) * z;
+        height.Store(heights + i);
+        best = Max(height, best);
     }
-    return vertices_[0];  // the direction is not finite
+    const Lanes top(Largest(best));
+    for (int block = 0; block < paddedCount_; block += 64) {
+        uint64_t isTop = 0;
+        const int end = std::min(block + 64, paddedCount_);
+        for (int i = block; i < end; i += kLanes) {
+            isTop |= uint64_t{(Lanes::Load(heights + i) == top).ToBits()} << (i - block);
+        }
+        if (isTop != 0) return vertices_[block + std::countr_zero(isTop)];
+    }
+    return vertices_[0];  // the direction is not a number
 }
 
 }  // namespace fulcrum
