@@ -1,10 +1,10 @@
 // The colours of bodies, by what the user wants to see in them.
 import { Color } from 'three';
 
-const PLAIN = ['#6f93b8', '#7fa3a0', '#b89a6f', '#a5829c', '#8a98a8'].map((hex) => new Color(hex));
-const ISLANDS = ['#4e86c6', '#e0995e', '#6fae7d', '#c86f6f', '#8f7cc0', '#d3b04f', '#5fb0b3', '#c583ab', '#8a9a5b', '#7d8794']
+const PLAIN = ['#6c9bd0', '#e2a35c', '#73b58a', '#c98aa8', '#9a8fd0'].map((hex) => new Color(hex));
+const ISLANDS = ['#4f8fd8', '#e8935a', '#58b07c', '#d66a6a', '#8d7bd0', '#dcb345', '#45b0b8', '#d07fb0', '#93ad4e']
   .map((hex) => new Color(hex));
-const SPEEDS = ['#31508f', '#2f86a8', '#4fb08a', '#c9cc55', '#f2a33c', '#d8432f'].map((hex) => new Color(hex));
+const SPEEDS = ['#86a3c8', '#4fa3cc', '#4fb890', '#dccb4c', '#f0963a', '#d63c2c'].map((hex) => new Color(hex));
 const ALONE = new Color('#aab2ba');
 const FIXED = new Color('#d3d9de');
 const DRIVEN = new Color('#9aa7b4');

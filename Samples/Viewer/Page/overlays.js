@@ -7,33 +7,52 @@ import { includeLeaf, leavesOf } from './shapes.js';
 
 const TOUCHING = new Color('#0d3b66');
 const OVERLAPPING = new Color('#d7263d');
+const NORMAL = new Color('#0f7a43');
 const OVERLAP_SHOWN_RED = 0.01; // m
 
-// Contacts lie between bodies, so they are drawn through them.
-const throughBodies = { depthTest: false, transparent: true };
+// Contacts lie between bodies: those in sight are drawn in full, the others faintly through what hides them.
+const IN_SIGHT = { transparent: true, depthWrite: false };
+const HIDDEN = { ...IN_SIGHT, depthTest: false };
 
-function pointMaterial() {
+function pointMaterial(settings, opacity, pixels) {
   return new ShaderMaterial({
-    ...throughBodies,
+    ...settings,
     vertexColors: true,
-    uniforms: { pixels: { value: 6 } },
+    uniforms: { pixels: { value: pixels }, opacity: { value: opacity } },
     vertexShader: `
       uniform float pixels;
       varying vec3 tint;
       void main() {
         tint = color;
         gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+        gl_Position.z -= 0.0015 * gl_Position.w; // before the surface that it lies in
         gl_PointSize = pixels;
       }`,
     fragmentShader: `
+      uniform float opacity;
       varying vec3 tint;
       void main() {
         float distance = length(gl_PointCoord - 0.5);
         if (distance > 0.5) discard;
-        gl_FragColor = vec4(distance > 0.32 ? vec3(1.0) : tint, 0.9);
+        gl_FragColor = vec4(distance > 0.36 ? vec3(1.0) : tint, opacity);
         #include <colorspace_fragment>
       }`,
   });
+}
+
+// An object drawn twice, as above. `pair.visible` shows both.
+class SeenThrough {
+  constructor(stage, inSight, hidden) {
+    this.objects = [hidden, inSight];
+    this.visible = false;
+    this.objects.forEach((object, i) => {
+      object.frustumCulled = false;
+      object.renderOrder = 2 + i;
+      stage.scene.add(object);
+    });
+  }
+  get visible() { return this.objects[0].visible; }
+  set visible(isVisible) { for (const object of this.objects) object.visible = isVisible; }
 }
 
 export class Contacts {
@@ -42,15 +61,11 @@ export class Contacts {
     const buffer = (perContact) => new BufferAttribute(new Float32Array(perContact * most), 3).setUsage(DynamicDrawUsage);
     this.geometry = new BufferGeometry().setAttribute('position', buffer(3)).setAttribute('color', buffer(3));
     this.lineGeometry = new BufferGeometry().setAttribute('position', buffer(6));
-    this.points = new Points(this.geometry, pointMaterial());
-    this.normals = new LineSegments(this.lineGeometry, new LineBasicMaterial({ color: '#14804a', opacity: 0.8, ...throughBodies }));
-    for (const object of [this.points, this.normals]) {
-      object.frustumCulled = false;
-      object.visible = false;
-      object.renderOrder = 2;
-      stage.scene.add(object);
-    }
-    this.points.material.uniforms.pixels.value = 6 * stage.renderer.getPixelRatio();
+    const pixels = 7 * stage.renderer.getPixelRatio();
+    this.points = new SeenThrough(stage, new Points(this.geometry, pointMaterial(IN_SIGHT, 1, pixels)),
+      new Points(this.geometry, pointMaterial(HIDDEN, 0.16, 0.6 * pixels)));
+    const lines = (settings, opacity) => new LineSegments(this.lineGeometry, new LineBasicMaterial({ color: NORMAL, opacity, ...settings }));
+    this.normals = new SeenThrough(stage, lines(IN_SIGHT, 1), lines(HIDDEN, 0.22));
   }
 
   // `length`: of the normal of the largest impulse, metres.

@@ -117,7 +117,7 @@ export class GeometryChoice {
     if (shape.kind === 'box') {
       const size = shape.halfExtents.map((half) => 2 * half);
       if (this.oneBox || isFixed) return { key: 'box', scale: size, make: () => paint(new BoxGeometry(1, 1, 1), false) };
-      const bevel = 0.035 * Math.min(...size);
+      const bevel = 0.05 * Math.min(...size);
       return { key: `box ${size}`, scale: [1, 1, 1], make: () => paint(new RoundedBoxGeometry(...size, 1, bevel), false) };
     }
     return { key: shape, scale: [1, 1, 1], make: () => paint(hullGeometry(shape), false) };

@@ -7,7 +7,7 @@ import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
 const HORIZON = new Color('#dde4ea');
 const ZENITH = new Color('#f7f9fb');
-const LIGHT_DIRECTION = new Vector3(0.45, 1, 0.35).normalize();
+const LIGHT_DIRECTION = new Vector3(-0.55, 1, 0.62).normalize();
 
 function makeSky() {
   const material = new ShaderMaterial({
@@ -103,8 +103,9 @@ export class Stage {
     const { centre, radius } = this.subject;
     const half = (this.camera.fov * Math.PI) / 360;
     const narrowest = Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect));
-    const distance = (0.92 * radius) / Math.sin(narrowest);
-    this.controls.target.set(...centre);
+    const distance = radius / Math.sin(narrowest);
+    // The controls take some of the lower edge.
+    this.controls.target.set(centre[0], centre[1] - 0.1 * radius, centre[2]);
     this.camera.position.set(0.62, 0.42, 1).normalize().multiplyScalar(distance).add(this.controls.target);
     this.controls.update();
   }
@@ -129,8 +130,8 @@ export class Stage {
 
   #addLights() {
     const { centre, radius } = this.subject;
-    this.scene.add(new HemisphereLight('#ffffff', '#b9b2a8', 1.7));
-    const sun = new DirectionalLight('#fff6e8', 2.3);
+    this.scene.add(new HemisphereLight('#ffffff', '#cfc8be', 2.1));
+    const sun = new DirectionalLight('#fff4e2', 2.2);
     sun.target.position.set(...centre);
     sun.position.copy(LIGHT_DIRECTION).multiplyScalar(4 * radius).add(sun.target.position);
     sun.castShadow = true;
@@ -141,9 +142,9 @@ export class Stage {
     sun.shadow.bias = -0.0002;
     sun.shadow.radius = 3;
     this.scene.add(sun, sun.target);
-    // From behind, so that no side is flat grey.
-    const fill = new DirectionalLight('#dbe8ff', 0.55);
-    fill.position.set(-0.7, 0.35, -0.6);
+    // From the other side, so that nothing seen from the front is flat grey.
+    const fill = new DirectionalLight('#dbe8ff', 0.6);
+    fill.position.set(0.9, 0.3, 0.2);
     this.scene.add(fill);
   }
 }
