@@ -141,6 +141,25 @@ TEST(PartLanes, EveryWidthGivesTheBitsOfTheScalar) {
     ExpectLanesEqualScalar<16>();
 }
 
+// The same bits from every compiler and processor. The number changes only with the parts' arithmetic (or that of Exp and
+// Sin), never with the build.
+TEST(PartLanes, EveryBuildGivesTheSameBits) {
+    Random random(70);
+    uint64_t hash = 14695981039346656037ull;  // FNV-1a
+    const auto add = [&hash](float x) { hash = (hash ^ Bits(x)) * 1099511628211ull; };
+    for (int i = 0; i < 500; ++i) {
+        const Outcome outcome = RunScalar(MakeRow(random));
+        for (const Twist<float>* twist : {&outcome.v1, &outcome.v2})
+            for (int k = 0; k < 3; ++k) {
+                add(twist->linear[k]);
+                add(twist->angular[k]);
+            }
+        add(outcome.axisLambda);
+        add(outcome.angleLambda);
+    }
+    EXPECT_EQ(hash, 17746675870070632894ull);
+}
+
 // A row that is known to be hard gives the bits of a row that might be soft.
 TEST(PartLanes, HardOnlyPartsGiveTheBitsOfHardRows) {
     Random random(50);
