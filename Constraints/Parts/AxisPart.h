@@ -12,9 +12,9 @@
 //   A solve changes the impulse by delta lambda = -K^-1 (J v + b) (soft: SpringPart.h), clamps the total to its limits and
 //   adds M^-1 J^T delta lambda to the velocities.
 //
-// What a part keeps is small, because solving is limited by memory: the axis and the masses, which other rows of the
-// same constraint share, are handed in again at every call and must be those of the set-up (another mass may be forced
-// with OverrideMass). I^-1 (r x n) is recomputed: cheaper than a load.
+// What a part keeps is small, because large scenes are limited by memory: the axis and the masses, which other rows of
+// the same constraint share, are handed in again at every call and must be those of the set-up (another mass may be
+// forced with OverrideMass); I^-1 (r x n) is recomputed from them, which saves six numbers a row.
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/SpringPart.h>

@@ -178,7 +178,7 @@ TEST(AxisPart, TwoHalvesGiveTheBitsOfTheWhole) {
     }
 }
 
-// A compile-time side must be the dynamic row with zeros in the right places; `mass` and `velocity` say what it may have.
+// A compile-time side must be the dynamic row with zeros in the right places, whatever it is handed there.
 template <BodySide kSide1, BodySide kSide2>
 void ExpectSideIsDynamicWithZeros(uint32_t seed) {
     Random random(seed);
