@@ -2,7 +2,7 @@
 import { Color } from 'three';
 
 const PLAIN = ['#6c9bd0', '#e2a35c', '#73b58a', '#c98aa8', '#9a8fd0'].map((hex) => new Color(hex));
-const ISLANDS = ['#4f8fd8', '#e8935a', '#58b07c', '#d66a6a', '#8d7bd0', '#dcb345', '#45b0b8', '#d07fb0', '#93ad4e']
+const ISLANDS = ['#4f8fd8', '#e8935a', '#58b07c', '#d66a6a', '#8d7bd0', '#dcb345', '#45b0b8', '#d07fb0']
   .map((hex) => new Color(hex));
 const SPEEDS = ['#86a3c8', '#4fa3cc', '#4fb890', '#dccb4c', '#f0963a', '#d63c2c'].map((hex) => new Color(hex));
 const ALONE = new Color('#aab2ba');

@@ -24,8 +24,8 @@ function pointMaterial(settings, opacity, pixels) {
       varying vec3 tint;
       void main() {
         tint = color;
-        gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
-        gl_Position.z -= 0.0015 * gl_Position.w; // before the surface that it lies in
+        vec4 place = modelViewMatrix * vec4(position, 1.0);
+        gl_Position = projectionMatrix * vec4(0.997 * place.xyz, 1.0); // before the surface that it lies in
         gl_PointSize = pixels;
       }`,
     fragmentShader: `
