@@ -41,16 +41,12 @@ struct FaceCorners {
 };
 
 struct Candidates {
-    static constexpr int kMost = 12;
-    float u[kMost], v[kMost], w[kMost];
-    uint32_t feature[kMost];
-    int count = 0;
+    FlatPoints<16> points;  // of which at most 12 are used: two a side, and the corners of the rectangle
+    uint32_t features[16];
 
-    void Add(float pointU, float pointV, float pointW, uint32_t pointFeature) {
-        u[count] = pointU;
-        v[count] = pointV;
-        w[count] = pointW;
-        feature[count++] = pointFeature;
+    void Add(float u, float v, float w, uint32_t feature) {
+        features[points.count] = feature;
+        points.Add(u, v, w);
     }
 };
 
@@ -160,30 +156,27 @@ bool BuildBoxFaceContact(const BoxPair& pair, bool ofA, int face, float separati
     Candidates found;
     AddCutSides(p, half[frame.u], half[frame.v], tolerances.prefer, reference, incident, ofA, tolerances.reach, found);
     AddCoveredCorners(p, half[frame.u], half[frame.v], tolerances.prefer, reference, ofA, tolerances.reach, found);
+    FlatPoints<16>& points = found.points;
     float least = std::numeric_limits<float>::infinity();
-    for (int i = 0; i < found.count; ++i) least = Min(least, found.w[i]);
+    for (int i = 0; i < points.count; ++i) least = Min(least, points.separation[i]);
     if (!(least <= separation + tolerances.prefer)) return false;
 
-    // In the plane of the face the choice needs two coordinates alone.
     int chosen[4];
-    const int count = ChooseFour(
-        found.count, Vector3(0, 0, 1), tolerances.prefer, [&](int i) { return Vector3(found.u[i], found.v[i], 0); },
-        [&](int i) { return found.w[i]; }, chosen);
-    const Vector3 column = ofA ? Vector3::Zero() : Vector3((&pair.rotation.x)[frame.normal]);
-    manifold.normal = ofA ? Vector3::Zero() : Vector3(column * -frame.side);
-    if (ofA) manifold.normal[frame.normal] = frame.side;
+    const int count = ChooseFour(points, tolerances.prefer, chosen);
+    static const Matrix3 kOwn{Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, 0, 1)};
+    const Vector3* own = ofA ? &kOwn.x : &pair.rotation.x;  // this box's axes in A's frame
+    const Vector3 normal = own[frame.normal] * frame.side;
+    const Vector3 plane = (ofA ? Vector3(Vector3::Zero()) : pair.position) + normal * half[frame.normal];
+    manifold.normal = ofA ? normal : Vector3(-normal);
     manifold.pointCount = count;
     for (int i = 0; i < count; ++i) {
         const int c = chosen[i];
-        Vector3 x;
-        x[frame.u] = found.u[c];
-        x[frame.v] = found.v[c];
-        x[frame.normal] = frame.side * (ofA ? half[frame.normal] + pair.radiusA
-                                            : half[frame.normal] + found.w[c] - pair.radiusA);
+        const float w = points.separation[c];
+        const float aboveCore = ofA ? pair.radiusA : w - pair.radiusA;  // of A's surface over this box's core
         ManifoldPoint& point = manifold.points[i];
-        point.positionOnA = ofA ? x : Vector3(pair.rotation * x + pair.position);
-        point.separation = found.w[c] - (pair.radiusA + pair.radiusB);
-        point.feature = found.feature[c];
+        point.positionOnA = plane + own[frame.u] * points.u[c] + own[frame.v] * points.v[c] + normal * aboveCore;
+        point.separation = w - (pair.radiusA + pair.radiusB);
+        point.feature = found.features[c];
     }
     return true;
 }

@@ -170,16 +170,16 @@ FaceContact BuildFaceContact(const PolyhedronPair& pair, const ReferenceFace& fa
 
     const Vector3 normal = view.face.normal;
     manifold.normal = face.ofA ? normal : Vector3(-(pair.rotation * normal));
-    float separations[kMaxClipVertices];
+    FlatPoints<kMaxClipVertices> points;
     int near[kMaxClipVertices];
-    int nearCount = 0;
+    const Vector3 tangentU = Perpendicular(normal), tangentV = Cross<float>(normal, tangentU);
     float least = 0;
     for (int i = 0; i < feature.Count(); ++i) {
         const float separation = Dot(normal, feature[i].position) - view.face.offset;
         if (i == 0 || separation < least) least = separation;
         if (separation > tolerances.reach) continue;
-        separations[nearCount] = separation;
-        near[nearCount++] = i;
+        near[points.count] = i;
+        points.Add(Dot(tangentU, feature[i].position), Dot(tangentV, feature[i].position), separation);
     }
     result.touches = least <= face.separation + tolerances.prefer;
     if (result.touches) {
@@ -188,17 +188,15 @@ FaceContact BuildFaceContact(const PolyhedronPair& pair, const ReferenceFace& fa
     }
 
     int chosen[4];
-    const int count = ChooseFour(
-        nearCount, normal, tolerances.prefer, [&](int i) -> const Vector3& { return feature[near[i]].position; },
-        [&](int i) { return separations[i]; }, chosen);
+    const int count = ChooseFour(points, tolerances.prefer, chosen);
     manifold.pointCount = count;
     for (int i = 0; i < count; ++i) {
         const int c = chosen[i];
         const Vector3& x = feature[near[c]].position;
         ManifoldPoint& point = manifold.points[i];
-        const Vector3 onCore = face.ofA ? Vector3(x - normal * separations[c]) : Vector3(pair.rotation * x + pair.position);
+        const Vector3 onCore = face.ofA ? Vector3(x - normal * points.separation[c]) : Vector3(pair.rotation * x + pair.position);
         point.positionOnA = onCore + manifold.normal * pair.a.radius;
-        point.separation = separations[c] - pair.RadiusSum();
+        point.separation = points.separation[c] - pair.RadiusSum();
         point.feature = feature.Feature(near[c], face.ofA);
     }
     return result;

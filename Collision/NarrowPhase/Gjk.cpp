@@ -36,13 +36,13 @@ void Keep(Simplex& s, int i, int j) {
 // Of a triangle whose corners lie on a line.
 Vector3 ClosestOnEdges(Simplex& s) {
     static constexpr int kEdges[3][2] = {{0, 1}, {0, 2}, {1, 2}};
-    Simplex best;
-    Vector3 closest = Vector3::Zero();
+    Simplex best = s;
+    Vector3 closest = s.vertices[0].w;
     for (const auto& ends : kEdges) {
         Simplex edge = s;
         Keep(edge, ends[0], ends[1]);
         const Vector3 point = ClosestOnSegment(edge);
-        if (best.count > 0 && LengthSquared(point) >= LengthSquared(closest)) continue;
+        if (best.count < 3 && LengthSquared(point) >= LengthSquared(closest)) continue;
         best = edge;
         closest = point;
     }
@@ -75,7 +75,7 @@ Vector3 ClosestOnTriangle(Simplex& s) {
 
 Vector3 ClosestInTetrahedron(Simplex& s) {
     static constexpr int kFaces[4][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 3, 2, 0}};
-    Simplex best;
+    Simplex best = s;
     Vector3 closest = Vector3::Zero();
     float bestDistance = 0;
     for (const auto& face : kFaces) {
@@ -86,18 +86,18 @@ Vector3 ClosestInTetrahedron(Simplex& s) {
         // A flat tetrahedron has no inside: each of its faces counts.
         const bool flat = opposite * opposite <= 1e-10f * Dot(n, n) * Dot(ad, ad);
         if (!flat && origin * opposite > 0.0f) continue;
-        Simplex triangle;
+        Simplex triangle = s;
         triangle.count = 3;
         for (int i = 0; i < 3; ++i) triangle.vertices[i] = s.vertices[face[i]];
         const Vector3 point = ClosestOnTriangle(triangle);
         const float distance = LengthSquared(point);
-        if (best.count == 0 || distance < bestDistance) {
+        if (best.count == 4 || distance < bestDistance) {
             best = triangle;
             closest = point;
             bestDistance = distance;
         }
     }
-    if (best.count > 0) s = best;
+    s = best;
     return closest;
 }
 
@@ -146,15 +146,21 @@ GjkResult Gjk(const PolyhedronPair& pair, const Vector3& start, float reach) {
             simplex = next;
             return result;
         }
-        if (distance >= 0 && closer >= distance) break;  // rounding stops the descent: this is as close as it gets
+        // Rounding stops the descent: this is as close as it gets. The last vertex may still turn the axis a little.
+        const bool last = distance >= 0 && closer >= distance;
+        if (last && closer > distance * 1.000001f) break;
         simplex = next;
         distance = closer;
         axis = closest * (1.0f / closer);
+        if (last) {
+            gap = distance - pair.SeparationAlong(axis);
+            break;
+        }
     }
     result.axis = axis;
     result.separation = distance;
     // So close that the direction is lost in rounding: the axis does not separate the cores as far as they seem apart.
-    if (gap > 100 * touching) result.status = GjkResult::Status::Overlapping;
+    if (gap > 100 * touching && distance < 1000 * touching) result.status = GjkResult::Status::Overlapping;
     return result;
 }
 

@@ -1,59 +1,88 @@
 // Chooses at most four of many contact points, for depth and area. Used by the contact builders. Thread-safe.
 #pragma once
 
-#include <Fulcrum/Math/Vector.h>
+#include <Fulcrum/Collision/NarrowPhase/LaneSearch.h>
 
 namespace fulcrum {
 
+// Contact points as the choice sees them: two coordinates in the contact plane, and the separation. By lanes: the arrays
+// are filled up with copies of the first point to a multiple of eight.
+template <int kMost>
+struct FlatPoints {
+    static_assert(kMost % 8 == 0);
+    float u[kMost], v[kMost], separation[kMost];
+    int count = 0;
+
+    void Add(float pointU, float pointV, float pointSeparation) {
+        u[count] = pointU;
+        v[count] = pointV;
+        separation[count++] = pointSeparation;
+    }
+};
+
 // Writes the chosen indices in increasing order and returns how many: first a deepest point, then the point farthest
-// from it, then those that span the largest area on each side of the line of the two. A later point replaces an earlier one
-// only where it is better by more than rounding and tiny motions make it: by `depthSlop` metres, or by a hundredth.
-// `position(i)` and `separation(i)` describe point i; `normal` is the plane that areas are measured in.
-template <class PositionOf, class SeparationOf>
-int ChooseFour(int count, const Vector3& normal, float depthSlop, const PositionOf& position,
-               const SeparationOf& separation, int (&chosen)[4]) {
-    constexpr float kClearly = 1.01f;
+// from it, then those that span the largest area on each side of the line of the two. The first point that is as good as
+// the best to within `depthSlop` metres, or a hundredth of the distance or area, is taken, so that rounding and tiny
+// motions change nothing.
+template <int kMost>
+int ChooseFour(FlatPoints<kMost>& points, float depthSlop, int (&chosen)[4]) {
+    constexpr float kNearly = 0.99f;
+    const int count = points.count;
     if (count <= 4) {
         for (int i = 0; i < count; ++i) chosen[i] = i;
         return count;
     }
-    float least = separation(0);
-    for (int i = 1; i < count; ++i) least = separation(i) < least ? separation(i) : least;
-    int first = 0;
-    while (separation(first) > least + depthSlop) ++first;
-
-    const Vector3 p0 = position(first);
-    int second = -1;
-    float farthest = 0;
-    for (int i = 0; i < count; ++i) {
-        const float distance = LengthSquared(Vector3(position(i) - p0));
-        if (distance > farthest * kClearly) {
-            farthest = distance;
-            second = i;
-        }
+    const int blocks = (count + 7) / 8;
+    for (int i = count; i < 8 * blocks; ++i) {
+        points.u[i] = points.u[0];
+        points.v[i] = points.v[0];
+        points.separation[i] = points.separation[0];
     }
-    if (second < 0) {  // all in one place
+    Wide<8> values[kMost / 8];
+    Wide<8> best = values[0] = Wide<8>::Load(points.separation);
+    for (int k = 1; k < blocks; ++k) best = Min(best, values[k] = Wide<8>::Load(points.separation + 8 * k));
+    const Wide<8> deep(Smallest(best) + depthSlop);
+    const int first = FirstWhere(values, blocks, [&](Wide<8> x) { return x <= deep; });
+
+    const Wide<8> u0(points.u[first]), v0(points.v[first]);
+    best = Wide<8>(0.0f);
+    for (int k = 0; k < blocks; ++k) {
+        const Wide<8> du = Wide<8>::Load(points.u + 8 * k) - u0, dv = Wide<8>::Load(points.v + 8 * k) - v0;
+        best = Max(best, values[k] = du * du + dv * dv);
+    }
+    const float farthest = Largest(best);
+    if (!(farthest > 0.0f)) {  // all in one place
         chosen[0] = first;
         return 1;
     }
+    const Wide<8> far(kNearly * farthest);
+    const int second = FirstWhere(values, blocks, [&](Wide<8> x) { return x >= far; });
 
-    const Vector3 across = Cross<float>(normal, Vector3(position(second) - p0));
-    int third = -1, fourth = -1;
-    const float nothing = 1e-6f * farthest;  // as an area, against the square of the longest distance
-    float left = nothing, right = nothing;
-    for (int i = 0; i < count; ++i) {
-        const float side = Dot(across, Vector3(position(i) - p0));
-        if (side > left * kClearly) {
-            left = side;
-            third = i;
-        } else if (-side > right * kClearly) {
-            right = -side;
-            fourth = i;
-        }
+    const Wide<8> alongU(points.u[second] - points.u[first]), alongV(points.v[second] - points.v[first]);
+    Wide<8> most(0.0f), least(0.0f);
+    for (int k = 0; k < blocks; ++k) {
+        const Wide<8> du = Wide<8>::Load(points.u + 8 * k) - u0, dv = Wide<8>::Load(points.v + 8 * k) - v0;
+        values[k] = alongU * dv - alongV * du;
+        most = Max(most, values[k]);
+        least = Min(least, values[k]);
     }
-    int found = 0;
-    for (int i = 0; i < count; ++i)
-        if (i == first || i == second || i == third || i == fourth) chosen[found++] = i;
+    const float nothing = 1e-6f * farthest;  // an area, against the square of the longest distance
+    const float left = Largest(most), right = Smallest(least);
+    int found = 0, pick[4] = {first, second, 0, 0};
+    found = 2;
+    if (left > nothing) {
+        const Wide<8> wanted(kNearly * left);
+        pick[found++] = FirstWhere(values, blocks, [&](Wide<8> x) { return x >= wanted; });
+    }
+    if (right < -nothing) {
+        const Wide<8> wanted(kNearly * right);
+        pick[found++] = FirstWhere(values, blocks, [&](Wide<8> x) { return x <= wanted; });
+    }
+    for (int i = 0; i < found; ++i) {  // by insertion
+        int at = i;
+        for (; at > 0 && chosen[at - 1] > pick[i]; --at) chosen[at] = chosen[at - 1];
+        chosen[at] = pick[i];
+    }
     return found;
 }
 

@@ -3,8 +3,8 @@
 // on the stack of one call.
 #pragma once
 
+#include <Fulcrum/Collision/NarrowPhase/LaneSearch.h>
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
-#include <Fulcrum/Math/Wide.h>
 
 namespace fulcrum {
 
@@ -58,13 +58,9 @@ inline Extreme FarthestVertex(const Polyhedron& p, const Vector3& direction) {
         values[k] = blockValue(8 * k);
         largest = Max(largest, values[k]);
     }
-    const float value = HorizontalMax(largest);
+    const float value = Largest(largest);
     const Wide<8> wanted(value);
-    for (int k = 0; k < blocks; ++k) {
-        const uint32_t hits = (values[k] == wanted).ToBits();
-        if (hits != 0) return {8 * k + __builtin_ctz(hits), value};
-    }
-    return {0, value};  // only a direction that is not a number ends here
+    return {FirstWhere(values, blocks, [&](Wide<8> v) { return v == wanted; }), value};
 }
 
 // How many vertices lie at least as far along `direction` as `threshold`.
