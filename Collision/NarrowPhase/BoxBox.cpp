@@ -133,7 +133,8 @@ bool BuildBoxEdgeContact(const BoxPair& pair, const BestEdges& edges, float pref
     const Segment onB{pair.rotation * inB.from + pair.position, pair.rotation * inB.to + pair.position};
     const ClosestParameters closest = ClosestOnSegments(onA, onB);
     const Vector3 x = onA.At(closest.s);
-    if (Length(Vector3(onB.At(closest.t) - x)) > Abs(edges.separation) + prefer) return false;
+    const Vector3 between = onB.At(closest.t) - x;
+    if (LengthSquared(Vector3(between - normal * edges.separation)) > prefer * prefer) return false;
     manifold.normal = normal;
     manifold.pointCount = 1;
     manifold.points[0] = {x + normal * pair.radiusA, edges.separation - (pair.radiusA + pair.radiusB),

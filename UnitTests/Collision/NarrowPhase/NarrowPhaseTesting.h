@@ -1,0 +1,113 @@
+// What the narrow phase's tests share: shapes, random poses and measures in double that know nothing of the code under test
+// but the shapes' support functions.
+#pragma once
+
+#include <Fulcrum/Collision/NarrowPhase/Collide.h>
+#include <Fulcrum/Collision/Shapes/ConvexHull.h>
+#include <Fulcrum/Collision/Shapes/Primitives.h>
+
+#include <random>
+#include <string>
+#include <vector>
+
+namespace fulcrum::testing {
+
+using ConvexPtr = std::shared_ptr<const ConvexShape>;
+
+struct NamedShape {
+    std::string name;
+    ConvexPtr shape;
+};
+
+inline ConvexPtr MakeSphere(float radius) { return Sphere::Create(radius).Value(); }
+inline ConvexPtr MakeBox(const Vector3& half, float radius = 0) { return Box::Create(half, radius).Value(); }
+inline ConvexPtr MakeCapsule(float halfHeight, float radius) { return Capsule::Create(halfHeight, radius).Value(); }
+inline ConvexPtr MakeHull(const std::vector<Vector3>& points) { return ConvexHull::Create(points).Value(); }
+
+// Points on a sphere by the golden angle.
+inline ConvexPtr MakeRoundHull(int count, float radius) {
+    std::vector<Vector3> points;
+    for (int i = 0; i < count; ++i) {
+        const double y = 1 - (2 * i + 1.0) / count, r = std::sqrt(1 - y * y), angle = i * 2.399963229728653;
+        points.push_back(Vector3(Position(r * std::cos(angle), y, r * std::sin(angle)).cast<float>() * radius));
+    }
+    return MakeHull(points);
+}
+
+// A prism along y over a regular polygon: many parallel and perpendicular features.
+inline ConvexPtr MakePrism(int sides, float radius, float halfHeight) {
+    std::vector<Vector3> points;
+    for (int i = 0; i < 2 * sides; ++i) {
+        const double angle = 6.283185307179586 * (i / 2) / sides;
+        points.push_back(Vector3(static_cast<float>(radius * std::cos(angle)), i % 2 == 0 ? halfHeight : -halfHeight,
+                                 static_cast<float>(radius * std::sin(angle))));
+    }
+    return MakeHull(points);
+}
+
+class Random {
+public:
+    explicit Random(uint32_t seed) : engine_(seed) {}
+    float Between(float low, float high) {
+        return low + (high - low) * static_cast<float>(engine_() >> 8) * (1.0f / 16777216.0f);
+    }
+    Vector3 InCube() {
+        const float x = Between(-1, 1), y = Between(-1, 1), z = Between(-1, 1);
+        return Vector3(x, y, z);
+    }
+    Vector3 Direction() {
+        for (;;) {
+            const Vector3 v = InCube();
+            if (Length(v) > 0.1f && Length(v) < 1) return Normalized(v);
+        }
+    }
+    Quaternion Rotation() {
+        for (;;) {
+            const Vector3 v = InCube();
+            const Quaternion q{v.x(), v.y(), v.z(), Between(-1, 1)};
+            if (LengthSquared(q) > 0.01f && LengthSquared(q) < 1) return Normalized(q);
+        }
+    }
+    // One of the 24 rotations that map the axes onto each other, or none: parallel faces.
+    Quaternion QuarterTurns() {
+        const float h = std::sqrt(0.5f);
+        const Quaternion turns[4] = {{0, 0, 0, 1}, {h, 0, 0, h}, {0, h, 0, h}, {0, 0, h, h}};
+        const Quaternion first = turns[engine_() % 4], second = turns[engine_() % 4];
+        return Normalized(first * second);
+    }
+
+private:
+    std::mt19937 engine_;
+};
+
+// Exact to rounding in double: how far the whole shapes are apart along n.
+inline double SeparationAlong(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA, const Vector3& n) {
+    const Quaternion& q = bInA.rotation;
+    const Mat3<double> rotation = ToMatrix(Quat<double>{q.x, q.y, q.z, q.w});
+    const Position unit = n.cast<double>() * (1 / std::sqrt(n.cast<double>().squaredNorm()));
+    const Position onA = a.SupportCore(n).cast<double>();
+    const Position inB = b.SupportCore(Vector3(rotation.TransposeMultiply(-unit).cast<float>())).cast<double>();
+    const Position onB = rotation * inB + bInA.position.cast<double>();
+    return Dot<double>(unit, Position(onB - onA)) - a.ConvexRadius() - b.ConvexRadius();
+}
+
+inline float DeepestSeparation(const Manifold& manifold) {
+    float least = std::numeric_limits<float>::infinity();
+    for (int i = 0; i < manifold.pointCount; ++i) least = std::min(least, manifold.points[i].separation);
+    return least;
+}
+
+inline Manifold CollideOnce(const ConvexPtr& a, const ConvexPtr& b, const RelativePose& bInA, PairCache& cache,
+                            const CollideSettings& settings = {}) {
+    Manifold manifold;
+    CollideCounters counters;
+    Collide(*a, *b, bInA, settings, cache, manifold, counters);
+    return manifold;
+}
+inline Manifold CollideCold(const ConvexPtr& a, const ConvexPtr& b, const RelativePose& bInA,
+                            const CollideSettings& settings = {}) {
+    PairCache cache;
+    return CollideOnce(a, b, bInA, cache, settings);
+}
+
+}  // namespace fulcrum::testing
