@@ -104,7 +104,7 @@ Result<std::string> ParseCommandLine(CLI::App& app, std::vector<std::string> arg
     try {
         app.parse(std::move(arguments));
     } catch (const CLI::CallForHelp&) {
-        return Chosen(app).help();
+        return Chosen(app).help(app.get_subcommands().empty() ? "" : "./" + app.get_name());
     } catch (const CLI::ParseError& error) {
         // A value that is missing because an unknown option stands there is best told by that option.
         const std::vector<std::string> rest = app.remaining(true);

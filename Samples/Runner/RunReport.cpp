@@ -37,10 +37,10 @@ std::string Settings(const SolverSettings& solver) {
                 solver.positionIterations);
 }
 
-// What went wrong, where anything did.
-void AddTroubles(const RunFigures& figures, std::vector<ReportLine>& lines) {
+// What is seldom, where it happened.
+void AddRemarks(const RunFigures& figures, std::vector<ReportLine>& lines) {
     const auto add = [&](const char* label, uint64_t count) {
-        if (count > 0) lines.push_back({"Troubles", label, std::to_string(count)});
+        if (count > 0) lines.push_back({"Remarks", label, std::to_string(count)});
     };
     add("bodies frozen, not finite", static_cast<uint64_t>(figures.nonFinite));
     add("libccd: EPA gave up", figures.libccdFailures);
@@ -61,7 +61,7 @@ std::vector<ReportLine> ReportLines(const Scene& scene, const RunFigures& figure
     const StepReport& last = figures.last;
     add("World", "bodies", Text("%zu (%zu dynamic, %u awake)", figures.bodies, figures.dynamicBodies, last.awakeBodies));
     add("World", "contacts", Text("%u (%u points), at most %u", last.contacts, last.contactPoints, figures.largestContacts));
-    add("World", "islands", Text("%u (%u awake)", figures.islands, std::min(last.islands, figures.islands)));
+    add("World", "islands", Text("%u (%u awake)", figures.islands, figures.awakeIslands));
     add("World", "memory", Bytes(figures.memoryBytes));
     add("Run", "steps", Text("%d of %.5g s", figures.steps, figures.dt));
     add("Run", "solver", Settings(figures.solver));
@@ -79,7 +79,7 @@ std::vector<ReportLine> ReportLines(const Scene& scene, const RunFigures& figure
     add("Result", "energy", Energy(figures.energyAtStart) + " to " + Energy(figures.energyAtEnd));
     if (scene.accuracy) add("Result", "accuracy", Text("%.6g (%s)", figures.accuracy, scene.accuracyMeaning));
     add("Result", "pose hash", HashText(figures.poseHash));
-    AddTroubles(figures, lines);
+    AddRemarks(figures, lines);
     return lines;
 }
 
@@ -124,6 +124,7 @@ nlohmann::ordered_json ReportJson(const std::string& name, const RunFigures& fig
               {"position_iterations", figures.solver.positionIterations},
               {"seed", seed}}},
             {"islands", figures.islands},
+            {"awake_islands", figures.awakeIslands},
             {"awake_bodies", last.awakeBodies},
             {"largest_penetration_m", figures.largestPenetration},
             {"deepest_pair", figures.deepestPair},

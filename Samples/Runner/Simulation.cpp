@@ -24,7 +24,13 @@ void CountBodies(const SceneWorld& world, RunFigures& figures) {
         ++figures.bodies;
         if (world.Bodies().GetMotionType(id) == MotionType::Dynamic) ++figures.dynamicBodies;
     });
-    world.System().VisitIslands([&](BodyId, uint32_t island) { figures.islands = std::max(figures.islands, island + 1); });
+    std::vector<bool> awake;  // by island
+    world.System().VisitIslands([&](BodyId id, uint32_t island) {
+        if (awake.size() <= island) awake.resize(island + 1);
+        if (world.Bodies().IsAwake(id)) awake[island] = true;
+    });
+    figures.islands = static_cast<uint32_t>(awake.size());
+    figures.awakeIslands = static_cast<uint32_t>(std::count(awake.begin(), awake.end(), true));
 }
 
 }  // namespace

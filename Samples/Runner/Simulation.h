@@ -25,7 +25,7 @@ struct RunFigures {
     std::array<double, kStageCount> stageMedianMs{};
     StepReport last;  // of the last step
     size_t bodies = 0, dynamicBodies = 0;
-    uint32_t islands = 0;  // at the end, sleeping ones included
+    uint32_t islands = 0, awakeIslands = 0;  // at the end
     float largestPenetration = 0;
     std::string deepestPair;    // "box 12 and hull 15"; empty where nothing touched
     int deepestStep = 0;
