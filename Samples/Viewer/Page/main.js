@@ -196,7 +196,7 @@ function publish(viewer) {
     play() { viewer.setPlaying(true); },
     colour(mode) { viewer.setMode(mode); viewer.drawNow(); },
     show(what, isShown) { viewer.show(what, isShown); viewer.drawNow(); },
-    pick(x, y) { const body = viewer.pick(x, y); viewer.drawNow(); return body; },
+    pick(x, y) { return viewer.pick(x, y); },
     body(id) { return bodyInfo(recording, timeline, id); },
     camera() { return [...stage.camera.position.toArray(), ...stage.controls.target.toArray()]; },
   };

@@ -14,7 +14,7 @@ const complaints = [], requests = [];
 
 before(async () => {
   browser = await chromium.launch({ executablePath: process.env.CHROMIUM || '/usr/bin/chromium', args: ARGUMENTS });
-  page = await browser.newPage({ viewport: { width: 1280, height: 720 } });
+  page = await browser.newPage({ viewport: { width: 960, height: 540 } }); // small: software draws it
   page.on('console', (message) => ['error', 'warning'].includes(message.type()) && complaints.push(message.text()));
   page.on('pageerror', (error) => complaints.push(error.message));
   page.on('request', (request) => requests.push(request.url()));
@@ -116,7 +116,7 @@ test('buttons and arrow keys go one frame on and back', async () => {
 
 test('the space bar plays and pauses', async () => {
   await seek(0);
-  await page.locator('#canvas').click({ position: { x: 5, y: 300 } });
+  await page.locator('#canvas').click({ position: { x: 5, y: 200 } });
   await page.keyboard.press('Space');
   await page.waitForFunction(() => window.fulcrum.frame > 1);
   await page.keyboard.press('Space');
@@ -180,7 +180,7 @@ test('the report is beside the picture', async () => {
 
 test('nothing is wider than the window, however small', async () => {
   for (const width of [360, 600, 820, 1280]) {
-    await page.setViewportSize({ width, height: 720 });
+    await page.setViewportSize({ width, height: 540 });
     const overflow = await page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
     assert.ok(overflow <= 0, `${overflow} pixels too wide at ${width}`);
   }
