@@ -11,6 +11,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -109,8 +111,29 @@ int RunJob(const Job& job) {
     return unwritten.empty() ? 0 : Fail(unwritten);
 }
 
+// A broken file may claim to hold more than any memory: while it is read, what exceeds this is an error and not a machine
+// that swaps.
+class AddressSpaceLimit {
+public:
+    explicit AddressSpaceLimit(rlim_t bytes) {
+        getrlimit(RLIMIT_AS, &before_);
+        rlimit limited = before_;
+        limited.rlim_cur = std::min(before_.rlim_cur, bytes);
+        setrlimit(RLIMIT_AS, &limited);
+    }
+    ~AddressSpaceLimit() { setrlimit(RLIMIT_AS, &before_); }
+    AddressSpaceLimit(const AddressSpaceLimit&) = delete;
+    AddressSpaceLimit& operator=(const AddressSpaceLimit&) = delete;
+
+private:
+    rlimit before_{};
+};
+
 int Drop(const Command& command, SceneInput input) {
-    Result<ImportedShape> imported = ImportShape(command.file, kDroppedSize);
+    Result<ImportedShape> imported = [&] {
+        const AddressSpaceLimit limit(rlim_t{8} << 30);
+        return ImportShape(command.file, kDroppedSize);
+    }();
     if (!imported) return Fail(imported.GetError().message);
     const ImportedShape& model = imported.Value();
     for (const std::string& warning : model.warnings) std::fprintf(stderr, "fulcrum: warning: %s\n", warning.c_str());
