@@ -5,6 +5,8 @@ import { SELECTED, colourOf } from './colours.js';
 import { GeometryChoice, leavesOf } from './shapes.js';
 import { addGrid } from './stage.js';
 
+const RESTING_WITH_SHADOW_AT_MOST = 30000;
+
 export class Bodies {
   constructor(recording, timeline, stage) {
     this.recording = recording;
@@ -26,7 +28,7 @@ export class Bodies {
       material.depthWrite = isSolid;
       material.needsUpdate = true;
     }
-    for (const group of this.meshes) if (group.motion !== 2) group.mesh.castShadow = isSolid;
+    for (const group of this.meshes) if (group.motion !== 2) group.mesh.castShadow = isSolid && group.castsShadow;
   }
 
   update(mode, top) {
@@ -73,7 +75,9 @@ export class Bodies {
   #addMesh(group) {
     const material = [this.fixedMaterial, this.drivenMaterial, this.material][group.motion];
     const mesh = new InstancedMesh(group.make(), material, group.leaves.length);
-    mesh.castShadow = true;
+    // Of very many bodies at rest, the shadows would cost as much as the bodies.
+    group.castsShadow = group.moving > 0 || group.leaves.length < RESTING_WITH_SHADOW_AT_MOST;
+    mesh.castShadow = group.castsShadow;
     mesh.receiveShadow = true;
     mesh.frustumCulled = false;
     mesh.boundingSphere = new Sphere(new Vector3(), Infinity); // picking asks each instance

@@ -8,7 +8,7 @@ const SPEEDS = ['#86a3c8', '#4fa3cc', '#4fb890', '#dccb4c', '#f0963a', '#d63c2c'
 const ALONE = new Color('#aab2ba');
 const FIXED = new Color('#d3d9de');
 const DRIVEN = new Color('#9aa7b4');
-const AWAKE = new Color('#e38b42');
+const AWAKE = new Color('#f0ab6b');
 const ASLEEP = new Color('#7d93aa');
 export const SELECTED = new Color('#ff4d1c');
 

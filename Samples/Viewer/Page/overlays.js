@@ -65,7 +65,7 @@ export class Contacts {
     this.points = new SeenThrough(stage, new Points(this.geometry, pointMaterial(IN_SIGHT, 1, pixels)),
       new Points(this.geometry, pointMaterial(HIDDEN, 0.16, 0.6 * pixels)));
     const lines = (settings, opacity) => new LineSegments(this.lineGeometry, new LineBasicMaterial({ color: NORMAL, opacity, ...settings }));
-    this.normals = new SeenThrough(stage, lines(IN_SIGHT, 1), lines(HIDDEN, 0.22));
+    this.normals = new SeenThrough(stage, lines(IN_SIGHT, 1), lines(HIDDEN, 0.1));
   }
 
   // `length`: of the normal of the largest impulse, metres.
