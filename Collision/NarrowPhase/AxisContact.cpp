@@ -18,11 +18,11 @@ struct SupportingEdge {
 SupportingEdge FindSupportingEdge(const Polyhedron& p, const Vector3& direction, float tolerance) {
     SupportingEdge edge;
     const Extreme extreme = FarthestVertex(p, direction);
-    edge.vertices[edge.count++] = static_cast<uint8_t>(extreme.vertex);
+    edge.vertices[edge.count++] = static_cast<uint8_t>(extreme.index);
     float second = extreme.value - tolerance;
     for (int i = 0; i < p.vertexCount; ++i) {
         const float value = Dot(direction, p.vertices[i]);
-        if (i == extreme.vertex || value < second) continue;
+        if (i == extreme.index || value < second) continue;
         second = value;
         edge.vertices[1] = static_cast<uint8_t>(i);
         edge.count = 2;

@@ -24,19 +24,17 @@ struct ClipSide {
     float offset;
 };
 
-// Keeps of the convex polygon `in` what lies inside the side to within `slop`. `label` names the side.
-// Returns the number of vertices written to `out`.
-inline int ClipBySide(const ClipVertex* in, int count, const ClipSide& side, uint32_t label, float slop,
-                      ClipVertex* out) {
+// Keeps of the convex polygon `in` what lies inside the side to within `slop`. `outside` says how far each vertex lies
+// beyond it, `label` names it. Returns the number of vertices written to `out`.
+inline int ClipBySide(const ClipVertex* in, int count, const float* outside, uint32_t label, float slop, ClipVertex* out) {
     int written = 0;
     const ClipVertex* current = &in[count - 1];
-    float currentOutside = Dot(side.normal, current->position) - side.offset;
+    float currentOutside = outside[count - 1];
     for (int i = 0; i < count; ++i) {
         const ClipVertex* next = &in[i];
-        const float nextOutside = Dot(side.normal, next->position) - side.offset;
+        const float nextOutside = outside[i];
         const bool currentKept = currentOutside <= slop, nextKept = nextOutside <= slop;
         if (currentKept != nextKept) {
-            // One is beyond the slop, so the difference is not zero unless the other lies within the slop too.
             float t = currentOutside / (currentOutside - nextOutside);
             t = t < 0.0f ? 0.0f : (t > 1.0f ? 1.0f : t);
             out[written].position = current->position + (next->position - current->position) * t;

@@ -34,18 +34,29 @@ struct FaceView {
         }
     }
     Vector3 IncidentVertex(int i) const { return rotation * incident.vertices[i] + position; }
-    ClipSide Side(int i) const {
-        const Vector3& from = reference.vertices[corners[i]];
-        const Vector3& to = reference.vertices[corners[i + 1 == face.cornerCount ? 0 : i + 1]];
-        const Vector3 outwards = Normalized(Cross<float>(Vector3(to - from), face.normal));
-        return {outwards, Dot(outwards, from)};
+};
+
+// The planes through the sides of the reference face, side i from corner i to the next.
+struct FaceSides {
+    ClipSide planes[256];
+
+    explicit FaceSides(const FaceView& view) {
+        const int count = view.face.cornerCount;
+        for (int i = 0; i < count; ++i) {
+            const Vector3& from = view.reference.vertices[view.corners[i]];
+            const Vector3& to = view.reference.vertices[view.corners[i + 1 == count ? 0 : i + 1]];
+            const Vector3 outwards = Cross<float>(Vector3(to - from), view.face.normal);
+            planes[i].normal = outwards * (1.0f / Length(outwards));
+            planes[i].offset = Dot(planes[i].normal, from);
+        }
     }
+    const ClipSide& operator[](int i) const { return planes[i]; }
 };
 
 // The other polyhedron's feature that faces the reference, and what clipping leaves of it.
 class ClippedFeature {
 public:
-    ClippedFeature(const FaceView& view, float slop);
+    ClippedFeature(const FaceView& view, const FaceSides& sides, float slop);
 
     int Count() const { return count_; }
     int IncidentFace() const { return incidentFace_; }
@@ -53,8 +64,8 @@ public:
     uint32_t Feature(int i, bool referenceOfA) const;
 
 private:
-    void ClipPolygon(float slop);
-    void ClipSegment(float slop);
+    void ClipPolygon(const FaceSides& sides, float slop);
+    void ClipSegment(const FaceSides& sides, float slop);
     uint32_t IncidentCorner(uint32_t i) const { return corners_ != nullptr ? corners_[i] : i; }
     uint32_t IncidentEdge(uint32_t i) const {
         return EdgeName(IncidentCorner(i), IncidentCorner(i + 1 == static_cast<uint32_t>(cornerCount_) ? 0 : i + 1));
@@ -70,7 +81,7 @@ private:
     ClipVertex second_[kMaxClipVertices];
 };
 
-ClippedFeature::ClippedFeature(const FaceView& view, float slop) : view_(view) {
+ClippedFeature::ClippedFeature(const FaceView& view, const FaceSides& sides, float slop) : view_(view) {
     const Polyhedron& incident = view.incident;
     if (incident.faceCount > 0) {
         incidentFace_ = FaceAlong(incident, -view.rotation.TransposeMultiply(view.face.normal));
@@ -85,23 +96,30 @@ ClippedFeature::ClippedFeature(const FaceView& view, float slop) : view_(view) {
         first_[i].position = view.IncidentVertex(static_cast<int>(IncidentCorner(i)));
         first_[i].label = static_cast<uint32_t>(i);
     }
-    if (count_ > 2) ClipPolygon(slop);
-    else ClipSegment(slop);
+    if (count_ > 2) ClipPolygon(sides, slop);
+    else ClipSegment(sides, slop);
 }
 
-void ClippedFeature::ClipPolygon(float slop) {
+void ClippedFeature::ClipPolygon(const FaceSides& sides, float slop) {
     ClipVertex* spare = second_;
+    float outside[kMaxClipVertices];
     for (int k = 0; k < view_.face.cornerCount && count_ > 0; ++k) {
-        count_ = ClipBySide(current_, count_, view_.Side(k), kSideLabel + static_cast<uint32_t>(k), slop, spare);
+        bool cuts = false;
+        for (int i = 0; i < count_; ++i) {
+            outside[i] = Dot(sides[k].normal, current_[i].position) - sides[k].offset;
+            cuts |= outside[i] > slop;
+        }
+        if (!cuts) continue;
+        count_ = ClipBySide(current_, count_, outside, kSideLabel + static_cast<uint32_t>(k), slop, spare);
         std::swap(current_, spare);
     }
 }
 
-void ClippedFeature::ClipSegment(float slop) {
+void ClippedFeature::ClipSegment(const FaceSides& sides, float slop) {
     if (count_ == 1) current_[1] = current_[0];
     int left = 2;
     for (int k = 0; k < view_.face.cornerCount && left > 0; ++k)
-        left = ClipSegmentBySide(current_, view_.Side(k), kSideLabel + static_cast<uint32_t>(k), slop);
+        left = ClipSegmentBySide(current_, sides[k], kSideLabel + static_cast<uint32_t>(k), slop);
     count_ = left == 0 ? 0 : count_;
 }
 
@@ -129,7 +147,7 @@ uint32_t ClippedFeature::Feature(int i, bool referenceOfA) const {
 
 // How far inside all sides of the face the middle of the deepest points lies: a disc of that radius about it, in the
 // reference face's plane, belongs to the Minkowski difference.
-float DiscRadius(const FaceView& view, const ClippedFeature& feature, float deepEnough) {
+float DiscRadius(const FaceView& view, const FaceSides& sides, const ClippedFeature& feature, float deepEnough) {
     Vector3 middle = Vector3::Zero();
     float count = 0;
     for (int i = 0; i < feature.Count(); ++i) {
@@ -138,11 +156,9 @@ float DiscRadius(const FaceView& view, const ClippedFeature& feature, float deep
         count += 1;
     }
     middle *= 1.0f / count;
-    float radius = view.Side(0).offset - Dot(view.Side(0).normal, middle);
-    for (int k = 1; k < view.face.cornerCount; ++k) {
-        const ClipSide side = view.Side(k);
-        radius = Min(radius, side.offset - Dot(side.normal, middle));
-    }
+    float radius = sides[0].offset - Dot(sides[0].normal, middle);
+    for (int k = 1; k < view.face.cornerCount; ++k)
+        radius = Min(radius, sides[k].offset - Dot(sides[k].normal, middle));
     return radius;
 }
 
@@ -152,18 +168,18 @@ ReferenceFace MeasureFace(const PolyhedronPair& pair, bool ofA, int index) {
     if (ofA) {
         const ConvexHull::Face& face = pair.a.faces[index];
         const Extreme e = FarthestVertex(pair.b, -pair.DirectionInB(face.normal));
-        return {true, index, Dot(face.normal, pair.position) - e.value - face.offset, e.vertex};
+        return {true, index, Dot(face.normal, pair.position) - e.value - face.offset};
     }
     const ConvexHull::Face& face = pair.b.faces[index];
     const Extreme e = FarthestVertex(pair.a, -(pair.rotation * face.normal));
-    return {false, index, -Dot(face.normal, pair.rotation.TransposeMultiply(pair.position)) - e.value - face.offset,
-            e.vertex};
+    return {false, index, -Dot(face.normal, pair.rotation.TransposeMultiply(pair.position)) - e.value - face.offset};
 }
 
 FaceContact BuildFaceContact(const PolyhedronPair& pair, const ReferenceFace& face, const ContactTolerances& tolerances,
                              Manifold& manifold) {
     const FaceView view(pair, face);
-    const ClippedFeature feature(view, tolerances.prefer);
+    const FaceSides sides(view);
+    const ClippedFeature feature(view, sides, tolerances.prefer);
     FaceContact result{false, false, feature.IncidentFace()};
     manifold.pointCount = 0;
     if (feature.Count() == 0) return result;
@@ -183,7 +199,7 @@ FaceContact BuildFaceContact(const PolyhedronPair& pair, const ReferenceFace& fa
     }
     result.touches = least <= face.separation + tolerances.prefer;
     if (result.touches) {
-        const float radius = face.separation >= 0 ? 0 : DiscRadius(view, feature, least + tolerances.prefer);
+        const float radius = face.separation >= 0 ? 0 : DiscRadius(view, sides, feature, least + tolerances.prefer);
         result.proven = NoBetterAxis(pair, manifold.normal, -face.separation, radius);
     }
 

@@ -10,7 +10,6 @@ struct ReferenceFace {
     bool ofA;
     int index;
     float separation;  // m: of the other core from the face's plane, negative where it dips below
-    int otherVertex;   // the vertex of the other core that says so
 };
 
 ReferenceFace MeasureFace(const PolyhedronPair& pair, bool ofA, int index);

@@ -9,6 +9,9 @@ namespace {
 // Four corners a face, counter-clockwise seen from outside.
 constexpr uint8_t kBoxIndices[24] = {1, 3, 7, 5, 0, 4, 6, 2, 2, 6, 7, 3, 0, 1, 5, 4, 4, 5, 7, 6, 0, 2, 3, 1};
 
+// The six normals by lanes, filled up with the first.
+alignas(32) constexpr float kBoxNormals[24] = {1, -1, 0, 0, 0, 0, 1, 1, 0, 0, 1, -1, 0, 0, 0, 0, 0, 0, 0, 0, 1, -1, 0, 0};
+
 // From, to, the face on the left (seen from outside, upwards along the edge) and on the right.
 constexpr ConvexHull::Edge kBoxEdges[12] = {{0, 1, 5, 3}, {2, 3, 2, 5}, {4, 5, 3, 4}, {6, 7, 4, 2},
                                             {0, 2, 1, 5}, {1, 3, 5, 0}, {4, 6, 4, 1}, {5, 7, 0, 4},
@@ -23,6 +26,10 @@ Polyhedron SmallCore(const PolyhedronStorage& storage, int vertexCount, int face
     p.z = storage.lanes + 16;
     p.laneCount = 8;
     p.vertexCount = vertexCount;
+    p.normalX = kBoxNormals;
+    p.normalY = kBoxNormals + 8;
+    p.normalZ = kBoxNormals + 16;
+    p.faceLaneCount = 8;
     p.faceCount = faceCount;
     p.vertices = storage.vertices;
     p.faces = storage.faces;
@@ -52,6 +59,10 @@ Polyhedron CoreOf(const ConvexHull& hull) {
     p.z = hull.LaneZ();
     p.laneCount = hull.PaddedVertexCount();
     p.vertexCount = static_cast<int>(hull.Vertices().size());
+    p.normalX = hull.NormalLaneX();
+    p.normalY = hull.NormalLaneY();
+    p.normalZ = hull.NormalLaneZ();
+    p.faceLaneCount = hull.PaddedFaceCount();
     p.faceCount = static_cast<int>(hull.Faces().size());
     p.vertices = hull.Vertices().data();
     p.faces = hull.Faces().data();

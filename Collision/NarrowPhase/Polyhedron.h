@@ -14,6 +14,10 @@ struct Polyhedron {
     const float* z;
     int laneCount;
     int vertexCount;
+    const float* normalX;  // the faces' normals in the same way
+    const float* normalY;
+    const float* normalZ;
+    int faceLaneCount;
     int faceCount;  // 0: a segment or a point
     const Vector3* vertices;
     const ConvexHull::Face* faces;
@@ -39,28 +43,8 @@ Polyhedron CoreOf(const class Sphere& sphere, PolyhedronStorage& storage);
 // Any of those.
 Polyhedron CoreOf(const ConvexShape& shape, PolyhedronStorage& storage);
 
-struct Extreme {
-    int vertex;
-    float value;  // direction . vertex
-};
-
-// The vertex that lies farthest along `direction`; of several, the first. The search runs eight vertices at a time.
 inline Extreme FarthestVertex(const Polyhedron& p, const Vector3& direction) {
-    constexpr int kMaxBlocks = 256 / 8;
-    const Wide<8> dx(direction.x()), dy(direction.y()), dz(direction.z());
-    const auto blockValue = [&](int i) {
-        return dx * Wide<8>::Load(p.x + i) + dy * Wide<8>::Load(p.y + i) + dz * Wide<8>::Load(p.z + i);
-    };
-    Wide<8> values[kMaxBlocks];
-    Wide<8> largest = values[0] = blockValue(0);
-    const int blocks = p.laneCount / 8;
-    for (int k = 1; k < blocks; ++k) {
-        values[k] = blockValue(8 * k);
-        largest = Max(largest, values[k]);
-    }
-    const float value = Largest(largest);
-    const Wide<8> wanted(value);
-    return {FirstWhere(values, blocks, [&](Wide<8> v) { return v == wanted; }), value};
+    return Farthest(p.x, p.y, p.z, p.laneCount, direction);
 }
 
 // How many vertices lie at least as far along `direction` as `threshold`.
@@ -79,16 +63,7 @@ inline int CountBeyond(const Polyhedron& p, const Vector3& direction, float thre
 
 // The face whose normal points most nearly along `direction`. Only where the polyhedron has faces.
 inline int FaceAlong(const Polyhedron& p, const Vector3& direction) {
-    int best = 0;
-    float bestCosine = Dot(p.faces[0].normal, direction);
-    for (int i = 1; i < p.faceCount; ++i) {
-        const float cosine = Dot(p.faces[i].normal, direction);
-        if (cosine > bestCosine) {
-            bestCosine = cosine;
-            best = i;
-        }
-    }
-    return best;
+    return Farthest(p.normalX, p.normalY, p.normalZ, p.faceLaneCount, direction).index;
 }
 
 }  // namespace fulcrum

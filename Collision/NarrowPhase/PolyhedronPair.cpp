@@ -44,7 +44,14 @@ WarmStart TryCache(const PolyhedronPair& pair, const ContactTolerances& toleranc
             warm.done = contact.proven || contact.beyondReach;
             break;
         }
-        default: break;
+        case PairCache::Kind::Axis: {
+            const Vector3 axis(cache.axis[0], cache.axis[1], cache.axis[2]);
+            warm.done = pair.SeparationAlong(axis) > tolerances.reach;
+            manifold.normal = axis;
+            manifold.pointCount = 0;
+            break;
+        }
+        case PairCache::Kind::None: break;
     }
     warm.axis = Vector3(cache.axis[0], cache.axis[1], cache.axis[2]);
     if (cache.kind == PairCache::Kind::None) warm.axis = Normalized(pair.position);

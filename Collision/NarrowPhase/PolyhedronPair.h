@@ -35,8 +35,8 @@ struct PolyhedronPair {
 
     // The vertex that lies least far along n: the one that says how far the cores are separated along n.
     MinkowskiVertex Support(const Vector3& n) const {
-        const int ia = FarthestVertex(a, n).vertex;
-        const int ib = FarthestVertex(b, -DirectionInB(n)).vertex;
+        const int ia = FarthestVertex(a, n).index;
+        const int ib = FarthestVertex(b, -DirectionInB(n)).index;
         return {VertexOfB(ib) - a.vertices[ia], static_cast<uint8_t>(ia), static_cast<uint8_t>(ib)};
     }
     // Separation of the cores along the unit vector n: negative where their shadows on n overlap.

@@ -119,6 +119,14 @@ private:
             }
             hull.faces_.push_back(face);
         }
+        const int count = static_cast<int>(hull.faces_.size());
+        hull.paddedFaceCount_ = (count + 15) / 16 * 16;
+        for (int axis = 0; axis < 3; ++axis) {
+            for (int block = 0; block < hull.paddedFaceCount_; block += 16) {
+                float* const values = hull.normalLanes_.emplace_back().values;
+                for (int i = 0; i < 16; ++i) values[i] = hull.faces_[block + i < count ? block + i : 0].normal[axis];
+            }
+        }
         hull.innerRadius_ = smallestOffset + hull.convexRadius_;
         return smallestOffset > 0;
     }

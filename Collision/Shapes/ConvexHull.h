@@ -48,6 +48,11 @@ public:
     const float* LaneY() const { return LaneX() + paddedCount_; }
     const float* LaneZ() const { return LaneX() + 2 * paddedCount_; }
     int PaddedVertexCount() const { return paddedCount_; }  // a multiple of 16
+    // The faces' normals in the same way; the padding repeats face 0.
+    const float* NormalLaneX() const { return normalLanes_.data()->values; }
+    const float* NormalLaneY() const { return NormalLaneX() + paddedFaceCount_; }
+    const float* NormalLaneZ() const { return NormalLaneX() + 2 * paddedFaceCount_; }
+    int PaddedFaceCount() const { return paddedFaceCount_; }  // a multiple of 16
 
 private:
     ConvexHull() : ConvexShape(ShapeType::ConvexHull) {}
@@ -62,6 +67,8 @@ private:
     };
     std::vector<LaneBlock> lanes_;
     int paddedCount_ = 0;
+    std::vector<LaneBlock> normalLanes_;
+    int paddedFaceCount_ = 0;
 };
 
 }  // namespace fulcrum
