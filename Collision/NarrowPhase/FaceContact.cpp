@@ -46,7 +46,9 @@ struct FaceSides {
             const Vector3& from = view.reference.vertices[view.corners[i]];
             const Vector3& to = view.reference.vertices[view.corners[i + 1 == count ? 0 : i + 1]];
             const Vector3 outwards = Cross<float>(Vector3(to - from), view.face.normal);
-            planes[i].normal = outwards * (1.0f / Length(outwards));
+            const float length = Length(outwards);
+            // A box rounded to its middle plane has sides of no length, which cut nothing off.
+            planes[i].normal = outwards * (length > 1e-12f ? 1.0f / length : 0.0f);
             planes[i].offset = Dot(planes[i].normal, from);
         }
     }

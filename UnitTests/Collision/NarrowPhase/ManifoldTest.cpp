@@ -194,7 +194,7 @@ TEST(Manifold, DegenerateOverlapsHaveAWayOut) {
                 if (m.pointCount == 0) continue;
                 ASSERT_NEAR(Length(m.normal), 1, 1e-5f) << a.name << " " << b.name << " " << i;
                 for (int k = 0; k < m.pointCount; ++k) {
-                    ASSERT_TRUE(IsFinite(m.points[k].positionOnA) && std::isfinite(m.points[k].separation));
+                    ASSERT_TRUE(IsFinite(m.points[k].positionOnA) && std::isfinite(m.points[k].separation)) << a.name << " " << b.name << " " << i;
                     ASSERT_NE(m.points[k].feature, 0u);
                 }
                 pose.position += m.normal * (1e-5f - DeepestSeparation(m));
