@@ -238,7 +238,7 @@ inline float HorizontalMin(Wide<N> a) {
 namespace detail {
 #if defined(__AVX2__)
 // Rows to columns of an 8x8 block; its own inverse.
-inline void Transpose8(__m256 (&r)[8]) {
+[[gnu::always_inline]] inline void Transpose8(__m256 (&r)[8]) {
     const __m256 a0 = _mm256_unpacklo_ps(r[0], r[1]), a1 = _mm256_unpackhi_ps(r[0], r[1]);
     const __m256 a2 = _mm256_unpacklo_ps(r[2], r[3]), a3 = _mm256_unpackhi_ps(r[2], r[3]);
     const __m256 a4 = _mm256_unpacklo_ps(r[4], r[5]), a5 = _mm256_unpackhi_ps(r[4], r[5]);
@@ -258,14 +258,14 @@ inline void Transpose8(__m256 (&r)[8]) {
 }
 #endif
 #if defined(__SSE2__)
-inline void Transpose4(__m128& r0, __m128& r1, __m128& r2, __m128& r3) { _MM_TRANSPOSE4_PS(r0, r1, r2, r3); }
+[[gnu::always_inline]] inline void Transpose4(__m128& r0, __m128& r1, __m128& r2, __m128& r3) { _MM_TRANSPOSE4_PS(r0, r1, r2, r3); }
 #endif
 }  // namespace detail
 
 // Reads eight floats at rows[lane] for each of N lanes into eight wide values: out[k][lane] = rows[lane][k].
 // The rows are 32-byte aligned.
 template <int N>
-inline void GatherRows(const float* const (&rows)[N], Wide<N> (&out)[8]) {
+[[gnu::always_inline]] inline void GatherRows(const float* const (&rows)[N], Wide<N> (&out)[8]) {
 #if defined(__AVX2__)
     if constexpr (N == 8) {
         __m256 r[8];
@@ -295,7 +295,7 @@ inline void GatherRows(const float* const (&rows)[N], Wide<N> (&out)[8]) {
 
 // The reverse, for the first `count` lanes: rows[lane][k] = in[k][lane].
 template <int N>
-inline void ScatterRows(float* const (&rows)[N], const Wide<N> (&in)[8], int count) {
+[[gnu::always_inline]] inline void ScatterRows(float* const (&rows)[N], const Wide<N> (&in)[8], int count) {
 #if defined(__AVX2__)
     if constexpr (N == 8) {
         __m256 r[8];

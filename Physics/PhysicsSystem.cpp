@@ -150,14 +150,17 @@ void PhysicsSystem::VisitContacts(FunctionRef<void(const ContactView&)> visit) c
         const ContactRecord& record = world.pairs.records[index];
         if (!pair.touching) continue;
         const Pose poseA = world.bodies.CentrePoseOf(pair.bodyA);
+        const Pose poseB = world.bodies.CentrePoseOf(pair.bodyB);
+        const Vector3 normal = Rotate(poseA.rotation, Vector3(record.normal[0], record.normal[1], record.normal[2]));
         ContactView::Point points[ContactRecord::kMaxPoints];
         const size_t count = static_cast<size_t>(record.pointCount);
         for (size_t i = 0; i < count; ++i) {
             const ContactRecord::Point& p = record.points[i];
-            points[i] = {poseA.Transform(Vector3(p.onA[0], p.onA[1], p.onA[2])), p.separation, p.impulse};
+            const Position onA = poseA.Transform(Vector3(p.onA[0], p.onA[1], p.onA[2]));
+            const Position onB = poseB.Transform(Vector3(p.onB[0], p.onB[1], p.onB[2]));
+            points[i] = {onA, Dot<float>(normal, Vector3((onB - onA).cast<float>())), record.impulse[i]};
         }
-        visit({world.bodies.IdOf(pair.bodyA), world.bodies.IdOf(pair.bodyB),
-               Rotate(poseA.rotation, Vector3(record.normal[0], record.normal[1], record.normal[2])),
+        visit({world.bodies.IdOf(pair.bodyA), world.bodies.IdOf(pair.bodyB), normal,
                std::span<const ContactView::Point>(points, count)});
     }
 }

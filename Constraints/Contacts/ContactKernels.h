@@ -8,7 +8,7 @@ namespace fulcrum::contacts {
 enum class Of { Velocity, Displacement };
 
 template <Of kOf>
-inline float* RowOf(BodyState& state) {
+[[gnu::always_inline]] inline float* RowOf(BodyState& state) {
     return kOf == Of::Velocity ? state.VelocityRow() : state.PoseRow();
 }
 
@@ -22,7 +22,7 @@ struct Twists {
 };
 
 template <Of kOf, int N, bool kFixedB>
-inline void Gather(const ContactBatch<N, kFixedB>& batch, BodyState* states, Twists<N, kFixedB>& twists) {
+[[gnu::always_inline]] inline void Gather(const ContactBatch<N, kFixedB>& batch, BodyState* states, Twists<N, kFixedB>& twists) {
     for (int i = 0; i < N; ++i) twists.rowsA[i] = RowOf<kOf>(states[batch.bodyA[i]]);
     GatherRows<N>(reinterpret_cast<const float* const(&)[N]>(twists.rowsA), twists.a);
     if constexpr (!kFixedB) {
@@ -32,23 +32,23 @@ inline void Gather(const ContactBatch<N, kFixedB>& batch, BodyState* states, Twi
 }
 
 template <int N, bool kFixedB>
-inline void Scatter(const ContactBatch<N, kFixedB>& batch, const Twists<N, kFixedB>& twists) {
+[[gnu::always_inline]] inline void Scatter(const ContactBatch<N, kFixedB>& batch, const Twists<N, kFixedB>& twists) {
     ScatterRows<N>(twists.rowsA, twists.a, batch.count);
     if constexpr (!kFixedB) ScatterRows<N>(twists.rowsB, twists.b, batch.count);
 }
 
 template <class Real>
-inline Vec3<Real> Linear(const Real (&row)[8]) {
+[[gnu::always_inline]] inline Vec3<Real> Linear(const Real (&row)[8]) {
     return Vec3<Real>(row[0], row[1], row[2]);
 }
 template <class Real>
-inline Vec3<Real> Angular(const Real (&row)[8]) {
+[[gnu::always_inline]] inline Vec3<Real> Angular(const Real (&row)[8]) {
     return Vec3<Real>(row[3], row[4], row[5]);
 }
 
 // Adds sign * M^-1 (F, r x F + T) to a row.
 template <class Real>
-inline void ApplyWrench(Real (&row)[8], const InverseMass<Real>& inverse, const Vec3<Real>& arm, const Vec3<Real>& force,
+[[gnu::always_inline]] inline void ApplyWrench(Real (&row)[8], const InverseMass<Real>& inverse, const Vec3<Real>& arm, const Vec3<Real>& force,
                         const Vec3<Real>& torque, Real sign) {
     const Vec3<Real> dv = force * (inverse.mass * sign);
     const Vec3<Real> dw = inverse.inertia * Vec3<Real>((Cross<Real>(arm, force) + torque) * sign);
@@ -62,7 +62,7 @@ inline void ApplyWrench(Real (&row)[8], const InverseMass<Real>& inverse, const 
 
 // The relative twist at c. `fixedScale` turns the fixed side's velocity into what `a` holds: 1, or the elapsed time.
 template <int N, bool kFixedB>
-inline Twist<Wide<N>> RelativeTwist(const ContactBatch<N, kFixedB>& batch, const Twists<N, kFixedB>& twists,
+[[gnu::always_inline]] inline Twist<Wide<N>> RelativeTwist(const ContactBatch<N, kFixedB>& batch, const Twists<N, kFixedB>& twists,
                                     Wide<N> fixedScale) {
     using Real = Wide<N>;
     Twist<Real> relative;
@@ -79,7 +79,7 @@ inline Twist<Wide<N>> RelativeTwist(const ContactBatch<N, kFixedB>& batch, const
 
 // Applies the wrench of the impulses: `force` = n sum + t1 f1 + t2 f2 at c, and the torque about c.
 template <int N, bool kFixedB>
-inline void ApplyToBoth(const ContactBatch<N, kFixedB>& batch, Twists<N, kFixedB>& twists, const Vec3<Wide<N>>& force,
+[[gnu::always_inline]] inline void ApplyToBoth(const ContactBatch<N, kFixedB>& batch, Twists<N, kFixedB>& twists, const Vec3<Wide<N>>& force,
                         const Vec3<Wide<N>>& torque) {
     using Real = Wide<N>;
     ApplyWrench<Real>(twists.a, batch.inverseA, batch.armA, force, torque, Real(-1.0f));
@@ -88,7 +88,7 @@ inline void ApplyToBoth(const ContactBatch<N, kFixedB>& batch, Twists<N, kFixedB
 
 // Torque about c of normal impulses: sum of (a t1 + b t2) x n l, with sums over a l and b l.
 template <int N, bool kFixedB>
-inline Vec3<Wide<N>> NormalTorque(const ContactBatch<N, kFixedB>& batch, Wide<N> sumA, Wide<N> sumB) {
+[[gnu::always_inline]] inline Vec3<Wide<N>> NormalTorque(const ContactBatch<N, kFixedB>& batch, Wide<N> sumA, Wide<N> sumB) {
     return batch.tangent1 * sumB - batch.tangent2 * sumA;
 }
 

@@ -13,19 +13,21 @@ struct alignas(32) ContactRecord {
 
     struct Point {
         float onA[3] = {0, 0, 0};  // m, in A's centre frame
-        float separation = 0;      // m at the start of the step; negative: overlap
-        float impulse = 0;         // N s along the normal, of the last substep
-        float onB[3] = {0, 0, 0};  // m, in B's centre frame
+        float spareA = 0;
+        float onB[3] = {0, 0, 0};  // m, in B's centre frame; the separation is (onB - onA) . normal at the poses of now
+        float spareB = 0;
     };
 
-    float normal[3] = {0, 1, 0};          // unit, from A to B, in A's centre frame
-    float pointCount = 0;                 // 0..4
-    float friction = 0;                   // Coulomb coefficient
-    float restitution = 0;                // 0..1
-    float twistRadius = 0;                // m: mean distance of the contact patch from its centre
-    float twistImpulse = 0;               // N m s about the normal
-    float frictionImpulse[3] = {0, 0, 0}; // N s, world axes, on B
-    float spare[5] = {0, 0, 0, 0, 0};
+    float normal[3] = {0, 1, 0};           // unit, from A to B, in A's centre frame
+    float pointCount = 0;                  // 0..4
+    float friction = 0;                    // Coulomb coefficient
+    float restitution = 0;                 // 0..1
+    float twistRadius = 0;                 // m: mean distance of the contact patch from its centre
+    float spare = 0;
+    // Second row: impulses of the last substep.
+    float impulse[kMaxPoints] = {0, 0, 0, 0};  // N s along the normal, by point
+    float frictionImpulse[3] = {0, 0, 0};      // N s, world axes, on B
+    float twistImpulse = 0;                    // N m s about the normal
     Point points[kMaxPoints];
 };
 static_assert(sizeof(ContactRecord) == 192);

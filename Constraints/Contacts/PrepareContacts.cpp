@@ -15,14 +15,14 @@ Vec3<Real> PerpendicularTo(const Vec3<Real>& n) {
 }
 
 template <int N>
-void GatherRecordRow(const uint32_t (&index)[N], const ContactRecord* records, int row, Wide<N> (&out)[8]) {
+[[gnu::always_inline]] inline void GatherRecordRow(const uint32_t (&index)[N], const ContactRecord* records, int row, Wide<N> (&out)[8]) {
     const float* rows[N];
     for (int i = 0; i < N; ++i) rows[i] = reinterpret_cast<const float*>(&records[index[i]]) + 8 * row;
     GatherRows<N>(rows, out);
 }
 
 template <int N>
-void GatherMass(const uint32_t (&index)[N], const BodyMass* masses, InverseMass<Wide<N>>& out) {
+[[gnu::always_inline]] inline void GatherMass(const uint32_t (&index)[N], const BodyMass* masses, InverseMass<Wide<N>>& out) {
     const float* rows[N];
     for (int i = 0; i < N; ++i) rows[i] = masses[index[i]].Row();
     Wide<N> r[8];
@@ -43,7 +43,7 @@ struct Responses {
     Real friction[6] = {};           // t1 t1, t2 t2, nn, t1 t2, t1 n, t2 n
     Real coupling[3][3] = {};
 
-    void Add(const InverseMass<Real>& inverse, const Vec3<Real>& arm, const Vec3<Real>& n, const Vec3<Real>& t1,
+    [[gnu::always_inline]] void Add(const InverseMass<Real>& inverse, const Vec3<Real>& arm, const Vec3<Real>& n, const Vec3<Real>& t1,
              const Vec3<Real>& t2) {
         const Vec3<Real> jn = Cross<Real>(arm, n), j1 = Cross<Real>(arm, t1), j2 = Cross<Real>(arm, t2);
         const Vec3<Real> in = inverse.inertia * jn, i1 = inverse.inertia * j1, i2 = inverse.inertia * j2;
@@ -84,12 +84,13 @@ void PrepareBounces(ContactBatch<N, kFixedB>& batch, Wide<N> restitution, const 
     const Real vn = Dot<Real>(relative.linear, batch.normal);
     const Real w1 = Dot<Real>(relative.angular, batch.tangent1), w2 = Dot<Real>(relative.angular, batch.tangent2);
     // How fast the gap closes ever faster: minus the relative acceleration along n.
-    Vec3<Real> acceleration;
+    alignas(64) float differences[3][N];
     for (int i = 0; i < N; ++i) {
         const BodyPose& a = bodies.poses[batch.bodyA[i]];
         const BodyPose& b = bodies.poses[bodyB[i]];
-        for (int k = 0; k < 3; ++k) acceleration[k].Set(i, a.acceleration[k] - b.acceleration[k]);
+        for (int k = 0; k < 3; ++k) differences[k][i] = a.acceleration[k] - b.acceleration[k];
     }
+    const Vec3<Real> acceleration(Real::Load(differences[0]), Real::Load(differences[1]), Real::Load(differences[2]));
     const Real closing = Dot<Real>(acceleration, batch.normal);
     for (int i = 0; i < batch.pointCount; ++i) {
         auto& row = batch.rows[i];
@@ -111,19 +112,25 @@ void PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* recor
                      const SolverBodies& bodies, const ContactPrepareSettings& settings) {
     using Real = Wide<N>;
     const Real zero(0.0f);
-    Real head[8], tail[8], frame[8];
+    Real head[8], impulses[8], frame[8];
     GatherRecordRow<N>(batch.contact, records, 0, head);
-    GatherRecordRow<N>(batch.contact, records, 1, tail);
-    const float* frames[N];
-    Vec3<Real> between;  // from A's centre of mass to B's
+    GatherRecordRow<N>(batch.contact, records, 1, impulses);
+    const float* framesA[N];
+    const float* framesB[N];
+    alignas(64) float offsets[3][N];
     for (int i = 0; i < N; ++i) {
         const BodyPose& a = bodies.poses[batch.bodyA[i]];
         const BodyPose& b = bodies.poses[bodyB[i]];
-        frames[i] = a.rotation;
-        for (int k = 0; k < 3; ++k) between[k].Set(i, static_cast<float>(b.position[k] - a.position[k]));
+        framesA[i] = a.rotation;
+        framesB[i] = b.rotation;
+        for (int k = 0; k < 3; ++k) offsets[k][i] = static_cast<float>(b.position[k] - a.position[k]);
     }
-    GatherRows<N>(frames, frame);
+    // From A's centre of mass to B's.
+    const Vec3<Real> between(Real::Load(offsets[0]), Real::Load(offsets[1]), Real::Load(offsets[2]));
+    GatherRows<N>(framesA, frame);
     const Mat3<Real> rotation = ToMatrix(Quat<Real>{frame[0], frame[1], frame[2], frame[3]});
+    GatherRows<N>(framesB, frame);
+    const Mat3<Real> rotationB = ToMatrix(Quat<Real>{frame[0], frame[1], frame[2], frame[3]});
 
     const Vec3<Real> n = rotation * Vec3<Real>(head[0], head[1], head[2]);
     const Vec3<Real> t1 = PerpendicularTo<Real>(n), t2 = Cross<Real>(n, t1);
@@ -142,9 +149,12 @@ void PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* recor
         Real p[8];
         GatherRecordRow<N>(batch.contact, records, 2 + i, p);
         const auto used = head[3] > Real(static_cast<float>(i));
-        points[i] = rotation * Vec3<Real>(p[0], p[1], p[2]) + n * (p[3] * Real(0.5f));
-        batch.rows[i].startSeparation = batch.rows[i].separation = Select(used, p[3], zero);
-        batch.rows[i].impulse = Select(used, p[4] * Real(settings.impulseScale), zero);
+        const Vec3<Real> onA = rotation * Vec3<Real>(p[0], p[1], p[2]);
+        const Vec3<Real> onB = between + rotationB * Vec3<Real>(p[4], p[5], p[6]);
+        const Real separation = Dot<Real>(n, Vec3<Real>(onB - onA));
+        points[i] = onA + n * (separation * Real(0.5f));
+        batch.rows[i].startSeparation = batch.rows[i].separation = Select(used, separation, zero);
+        batch.rows[i].impulse = Select(used, impulses[i] * Real(settings.impulseScale), zero);
         for (int k = 0; k < 3; ++k) centre[k] += Select(used, points[i][k], zero);
     }
     centre = centre * (Real(1.0f) / Max(head[3], Real(1.0f)));
@@ -173,11 +183,11 @@ void PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* recor
         batch.frictionResponse[k] = responses.friction[3 + k];
         for (int j = 0; j < 3; ++j) batch.coupling[j][k] = responses.coupling[j][k];
     }
-    const Vec3<Real> impulse(tail[0], tail[1], tail[2]);
+    const Vec3<Real> impulse(impulses[4], impulses[5], impulses[6]);
     const Real scale(settings.impulseScale);
     batch.frictionImpulse[0] = Dot<Real>(impulse, t1) * scale;
     batch.frictionImpulse[1] = Dot<Real>(impulse, t2) * scale;
-    batch.frictionImpulse[2] = head[7] * scale;
+    batch.frictionImpulse[2] = impulses[7] * scale;
 
     // J of a point: n-row + b t1-row - a t2-row.
     const auto& g = responses.normal;
@@ -206,12 +216,13 @@ void PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* recor
 template <int N, bool kFixedB>
 void StoreContacts(const ContactBatch<N, kFixedB>& batch, ContactRecord* records) {
     const auto friction = batch.tangent1 * batch.frictionImpulse[0] + batch.tangent2 * batch.frictionImpulse[1];
-    for (int lane = 0; lane < batch.count; ++lane) {
-        ContactRecord& record = records[batch.contact[lane]];
-        for (int i = 0; i < batch.pointCount; ++i) record.points[i].impulse = batch.rows[i].impulse[lane];
-        record.twistImpulse = batch.frictionImpulse[2][lane];
-        for (int k = 0; k < 3; ++k) record.frictionImpulse[k] = friction[k][lane];
-    }
+    Wide<N> row[8];
+    for (int i = 0; i < ContactRecord::kMaxPoints; ++i) row[i] = i < batch.pointCount ? batch.rows[i].impulse : Wide<N>(0.0f);
+    for (int k = 0; k < 3; ++k) row[4 + k] = friction[k];
+    row[7] = batch.frictionImpulse[2];
+    float* rows[N];
+    for (int lane = 0; lane < N; ++lane) rows[lane] = records[batch.contact[lane]].impulse;
+    ScatterRows<N>(rows, row, batch.count);
 }
 
 #define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                              \

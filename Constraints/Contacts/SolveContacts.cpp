@@ -9,7 +9,7 @@ using namespace contacts;
 // The friction rows: impulses first clamped to the cone's cross-section (as a vector, so that no heading is preferred),
 // then the torque. Returns the change of impulse of t1, t2 and twist.
 template <int N, bool kFixedB>
-void SolveFriction(ContactBatch<N, kFixedB>& batch, Wide<N> v1, Wide<N> v2, Wide<N> wn, Wide<N> (&change)[3]) {
+[[gnu::always_inline]] inline void SolveFriction(ContactBatch<N, kFixedB>& batch, Wide<N> v1, Wide<N> v2, Wide<N> wn, Wide<N> (&change)[3]) {
     using Real = Wide<N>;
     Real sum(0.0f);
     for (int i = 0; i < batch.pointCount; ++i) sum += batch.rows[i].impulse;

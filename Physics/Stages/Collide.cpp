@@ -1,5 +1,5 @@
-// Manifolds of all active pairs. A pair whose bodies hardly moved relative to each other keeps its manifold: only the
-// separations are brought up to date. Contacts reach as far ahead as the bodies may move within the step, so that nothing
+// Manifolds of all active pairs. A pair whose bodies hardly moved relative to each other keeps its manifold, of
+// which Prepare brings the separations up to date. Contacts reach as far ahead as the bodies may move within the step, so that nothing
 // is driven into the other by a whole step's motion before it is seen.
 #include <Fulcrum/Physics/Stages/Stages.h>
 
@@ -37,18 +37,6 @@ bool HardlyMoved(const PairView& v) {
     const Quaternion& b = old.rotation;
     const Quaternion d{a.x - b.x, a.y - b.y, a.z - b.z, a.w - b.w};
     return LengthSquared(d) <= 0.25f * kKeptAngle * kKeptAngle;
-}
-
-// Separations of the record's points at the pieces' poses of now.
-void UpdateSeparations(const PairView& v, const RelativePose& bodyBInA) {
-    ContactRecord& record = v.record;
-    const Vector3 normal(record.normal[0], record.normal[1], record.normal[2]);
-    const Matrix3 rotation = ToMatrix(bodyBInA.rotation);
-    for (int i = 0; i < static_cast<int>(record.pointCount); ++i) {
-        ContactRecord::Point& p = record.points[i];
-        const Vector3 onB = bodyBInA.position + rotation * Vector3(p.onB[0], p.onB[1], p.onB[2]);
-        p.separation = Dot<float>(normal, Vector3(onB - Vector3(p.onA[0], p.onA[1], p.onA[2])));
-    }
 }
 
 void WriteTwistRadius(ContactRecord& record) {
@@ -95,19 +83,18 @@ void WriteManifold(const WorldState& world, const PairView& v, const RelativePos
         const float approach = -Dot<float>(velocity, normal);
         if (found.separation > world.settings.speculativeDistance + std::max(approach, 0.0f) * dt) continue;
         const Vector3 onB = bodyBInA.InverseTransform(meets);
-        ContactRecord::Point& p = record.points[count];
-        p = {};
         for (int k = 0; k < 3; ++k) {
-            p.onA[k] = onA[k];
-            p.onB[k] = onB[k];
+            record.points[count].onA[k] = onA[k];
+            record.points[count].onB[k] = onB[k];
         }
-        p.separation = found.separation;
-        for (int j = 0; j < static_cast<int>(old.pointCount); ++j)
-            if (oldFeatures[j] == found.feature) p.impulse = old.points[j].impulse;
+        record.impulse[count] = 0;
+        for (int j = 0; j < pair.pointCount; ++j)
+            if (oldFeatures[j] == found.feature) record.impulse[count] = old.impulse[j];
         pair.features[count++] = found.feature;
     }
     for (int k = 0; k < 3; ++k) record.normal[k] = normal[k];
     record.pointCount = static_cast<float>(count);
+    pair.pointCount = static_cast<uint8_t>(count);
     if (old.pointCount == 0) {
         record.twistImpulse = 0;
         for (float& f : record.frictionImpulse) f = 0;
@@ -118,17 +105,6 @@ void WriteManifold(const WorldState& world, const PairView& v, const RelativePos
 // Whether fat bounds still overlap; asked only where they changed.
 bool Overlap(const WorldState& world, const Pair& pair) {
     return world.colliders.colliders[pair.colliderA].fat.Overlaps(world.colliders.colliders[pair.colliderB].fat);
-}
-
-void Count(const PairView& v, uint32_t index, WorkerFindings& findings) {
-    ++findings.contacts;
-    findings.points += static_cast<uint32_t>(v.record.pointCount);
-    float lowest = 0;
-    for (int i = 0; i < static_cast<int>(v.record.pointCount); ++i) lowest = std::min(lowest, v.record.points[i].separation);
-    if (-lowest > findings.deepest || (-lowest == findings.deepest && index < findings.deepestPair)) {
-        findings.deepest = -lowest;
-        findings.deepestPair = index;
-    }
 }
 
 PairChange CollidePair(WorldState& world, uint32_t index, float dt, WorkerFindings& findings) {
@@ -145,8 +121,7 @@ PairChange CollidePair(WorldState& world, uint32_t index, float dt, WorkerFindin
     if (pair.offset) v.bInA = Inverse(colliderA.local) * bodyBInA * colliderB.local;
 
     const bool touched = pair.touching;
-    if (pair.found && v.record.pointCount > 0 && HardlyMoved(v)) {
-        UpdateSeparations(v, bodyBInA);
+    if (pair.pointCount > 0 && HardlyMoved(v)) {
         ++findings.kept;
     } else {
         const Vector3 relative = world.bodies.LinearVelocityOf(pair.bodyB) - world.bodies.LinearVelocityOf(pair.bodyA);
@@ -156,17 +131,18 @@ PairChange CollidePair(WorldState& world, uint32_t index, float dt, WorkerFindin
         const float reach = v.shapeA.OuterRadius() + v.shapeB.OuterRadius() + settings.speculativeDistance;
         if (LengthSquared(v.bInA.position) > reach * reach) {
             v.record.pointCount = 0;
+            pair.pointCount = 0;
         } else {
             Manifold manifold;
             Collide(v.shapeA, v.shapeB, v.bInA, settings, pair.cache, manifold, findings.libccd);
             WriteManifold(world, v, bodyBInA, manifold, dt);
         }
         pair.reference = v.bInA;
-        pair.found = true;
     }
-    pair.touching = v.record.pointCount > 0;
-    if (pair.touching) Count(v, index, findings);
+    pair.touching = pair.pointCount > 0;
     if (pair.touching) {
+        ++findings.contacts;
+        findings.points += pair.pointCount;
         const auto sleeps = [&](uint32_t body) {
             const BodyDynamics& d = world.bodies.dynamics[body];
             return d.motion == MotionType::Dynamic && !d.awake;
@@ -211,22 +187,12 @@ void Collide(WorldState& world, const StepContext& step) {
     }
     world.changes.resize(world.pairs.active.size());
     StepReport& report = world.report;
-    uint32_t deepestPair = ~0u;
-    for (WorkerFindings& f : world.findings) {
+    for (const WorkerFindings& f : world.findings) {
         report.contacts += f.contacts;
         report.contactPoints += f.points;
         report.keptManifolds += f.kept;
         report.libccd.epaFailures += f.libccd.epaFailures;
         report.libccd.centreLineFallbacks += f.libccd.centreLineFallbacks;
-        if (f.deepest > report.largestPenetration ||
-            (f.deepest == report.largestPenetration && f.deepestPair < deepestPair)) {
-            report.largestPenetration = f.deepest;
-            deepestPair = f.deepestPair;
-        }
-    }
-    if (deepestPair != ~0u) {
-        report.deepestA = world.bodies.IdOf(world.pairs.pairs[deepestPair].bodyA);
-        report.deepestB = world.bodies.IdOf(world.pairs.pairs[deepestPair].bodyB);
     }
 }
 

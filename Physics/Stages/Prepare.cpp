@@ -36,6 +36,20 @@ void LayOut(WorldState& world) {
     group.overflowFixed.resize(overflow.fixed.size());
 }
 
+template <int N, bool kFixedB>
+void NoteDeepest(const ContactBatch<N, kFixedB>& batch, WorkerFindings& findings) {
+    Wide<N> lowest(0.0f);
+    for (int i = 0; i < batch.pointCount; ++i) lowest = Min(lowest, batch.rows[i].startSeparation);
+    if (!(lowest <= Wide<N>(-findings.deepest)).Any()) return;
+    for (int lane = 0; lane < batch.count; ++lane) {
+        const float depth = -lowest[lane];
+        const uint32_t contact = batch.contact[lane];
+        if (depth < findings.deepest || (depth == findings.deepest && contact >= findings.deepestPair)) continue;
+        findings.deepest = depth;
+        findings.deepestPair = contact;
+    }
+}
+
 // Fills the batch with the contacts list[first ...]; lanes beyond the list repeat its last contact and are never written.
 template <int N, bool kFixedB>
 void Fill(WorldState& world, ContactBatch<N, kFixedB>& batch, const std::vector<uint32_t>& list, size_t first,
@@ -53,6 +67,7 @@ void Fill(WorldState& world, ContactBatch<N, kFixedB>& batch, const std::vector<
     }
     PrepareContacts<N, kFixedB>(batch, world.pairs.records.data(), bodyB, world.bodies.ForSolver(), settings);
     findings.bounces |= batch.bounces;
+    NoteDeepest(batch, findings);
 }
 
 }  // namespace
@@ -83,7 +98,18 @@ void Prepare(WorldState& world, const StepContext& step) {
         Fill(world, group.overflowFixed[i], overflow.fixed, i, settings, world.findings[0]);
 
     world.bounces = false;
-    for (const WorkerFindings& findings : world.findings) world.bounces |= findings.bounces;
+    uint32_t deepestPair = ~0u;
+    for (const WorkerFindings& findings : world.findings) {
+        world.bounces |= findings.bounces;
+        const float depth = findings.deepest, worst = world.report.largestPenetration;
+        if (depth < worst || (depth == worst && findings.deepestPair >= deepestPair)) continue;
+        world.report.largestPenetration = depth;
+        deepestPair = findings.deepestPair;
+    }
+    if (deepestPair != ~0u) {
+        world.report.deepestA = world.bodies.IdOf(world.pairs.pairs[deepestPair].bodyA);
+        world.report.deepestB = world.bodies.IdOf(world.pairs.pairs[deepestPair].bodyB);
+    }
     world.report.colours = static_cast<uint32_t>(group.colours.size());
     world.report.overflowContacts = static_cast<uint32_t>(overflow.moving.size() + overflow.fixed.size());
 }

@@ -72,7 +72,7 @@ void UpdateBounds(WorldState& world, const StepContext& step) {
             const uint32_t body = bodies.awake[i];
             const BodyDynamics& dynamics = bodies.dynamics[body];
             if (dynamics.motion == MotionType::Dynamic) {
-                bodies.UpdateInertia(body);
+                if (!dynamics.spherical) bodies.UpdateInertia(body);
                 Vector3 acceleration = gravity * dynamics.gravityFactor;
                 if (dynamics.hasForce) acceleration += bodies.cold[body].force * dynamics.inverseMass;
                 if (dynamics.frozen) acceleration.setZero();

@@ -22,8 +22,8 @@ struct Pair {
     bool exists = false;
     bool fixedB = false;         // B's body is not dynamic
     bool offset = false;         // a collider is not at its body's centre frame (child of a compound)
-    bool touching = false;       // the record has points
-    bool found = false;          // `reference` and the record hold what the narrow phase found
+    bool touching = false;       // was active, with points, in the last step
+    uint8_t pointCount = 0;      // of the record, as found at `reference`
 };
 
 class PairStore {
