@@ -40,21 +40,37 @@ struct FaceCorners {
     uint32_t Edge(int k) const { return EdgeName(vertices[k], vertices[(k + 1) & 3]); }
 };
 
+// Where a candidate comes from: the number of a side or corner, and of what kind; named only once it is chosen.
+struct Origin {
+    enum Kind : uint8_t { SideEnters, SideLeaves, IncidentCorner, ReferenceCorner };
+    uint8_t number;
+    Kind kind;
+    bool byU, upper;  // the bound of the rectangle that cuts the side
+};
+
 struct Candidates {
     FlatPoints<16> points;  // of which at most 12 are used: two a side, and the corners of the rectangle
-    uint32_t features[16];
+    Origin origins[16];
 
-    void Add(float u, float v, float w, uint32_t feature) {
-        features[points.count] = feature;
+    void Add(float u, float v, float w, Origin origin) {
+        origins[points.count] = origin;
         points.Add(u, v, w);
     }
 };
 
+uint32_t FeatureOf(const Origin& origin, const FaceCorners& reference, const FaceCorners& incident, bool referenceOfA) {
+    if (origin.kind == Origin::ReferenceCorner) return VertexFeature(referenceOfA, reference.vertices[origin.number]);
+    if (origin.kind == Origin::IncidentCorner) return VertexFeature(!referenceOfA, incident.vertices[origin.number]);
+    // Sides start at the corners (+,+), (-,+), (-,-), (+,-).
+    const int cut = origin.byU ? (origin.upper ? 3 : 1) : (origin.upper ? 0 : 2);
+    const uint32_t r = reference.Edge(cut), i = incident.Edge(origin.number);
+    return referenceOfA ? CrossingFeature(r, i) : CrossingFeature(i, r);
+}
+
 // The sides of the parallelogram are cut by the reference rectangle, all four at once (Y. Liang and B. Barsky, A New
 // Concept and Method for Line Clipping, ACM TOG 3(1), 1984). The rectangle is larger by the slop, so that sides that lie on
 // each other stay whole under tiny motions. Each side gives its entry point, if cut there, and its exit or end.
-void AddCutSides(const Parallelogram& p, float halfU, float halfV, float slop, const FaceCorners& reference,
-                 const FaceCorners& incident, bool referenceOfA, float reach, Candidates& out) {
+void AddCutSides(const Parallelogram& p, float halfU, float halfV, float slop, float reach, Candidates& out) {
     const Four sign1 = Lanes(1, -1, -1, 1), sign2 = Lanes(1, 1, -1, -1);
     const Four u = Four(p.u) + sign1 * Four(p.u1) + sign2 * Four(p.u2);
     const Four v = Four(p.v) + sign1 * Four(p.v1) + sign2 * Four(p.v2);
@@ -87,29 +103,22 @@ void AddCutSides(const Parallelogram& p, float halfU, float halfV, float slop, c
     wLeave.Store(ws[1]);
     const uint32_t nearEnter = (wEnter <= Four(reach)).ToBits(), nearLeave = (wLeave <= Four(reach)).ToBits();
 
-    // The reference side that cuts at a bound of u or v: sides start at the corners (+,+), (-,+), (-,-), (+,-).
-    const auto side = [](bool byU, bool upper) { return byU ? (upper ? 3 : 1) : (upper ? 0 : 2); };
-    const auto crossing = [&](int edge, int cut) {
-        const uint32_t r = reference.Edge(cut), i = incident.Edge(edge);
-        return referenceOfA ? CrossingFeature(r, i) : CrossingFeature(i, r);
-    };
     for (uint32_t left = crosses & (nearEnter & entersLate); left != 0; left &= left - 1) {
         const int k = __builtin_ctz(left);
-        const bool byU = entersByU >> k & 1, upwards = (byU ? upwardsU : upwardsV) >> k & 1;
-        out.Add(us[0][k], vs[0][k], ws[0][k], crossing(k, side(byU, !upwards)));
+        const bool byU = entersByU >> k & 1, upwards = ((entersByU & upwardsU) | (~entersByU & upwardsV)) >> k & 1;
+        out.Add(us[0][k], vs[0][k], ws[0][k], {static_cast<uint8_t>(k), Origin::SideEnters, byU, !upwards});
     }
     for (uint32_t left = crosses & nearLeave; left != 0; left &= left - 1) {
         const int k = __builtin_ctz(left);
-        const bool byU = leavesByU >> k & 1, upwards = (byU ? upwardsU : upwardsV) >> k & 1;
-        const uint32_t feature = reachesEnd >> k & 1 ? VertexFeature(!referenceOfA, incident.vertices[(k + 1) & 3])
-                                                     : crossing(k, side(byU, upwards));
-        out.Add(us[1][k], vs[1][k], ws[1][k], feature);
+        const bool byU = leavesByU >> k & 1, upwards = ((leavesByU & upwardsU) | (~leavesByU & upwardsV)) >> k & 1;
+        const bool ends = reachesEnd >> k & 1;
+        out.Add(us[1][k], vs[1][k], ws[1][k], {static_cast<uint8_t>(ends ? (k + 1) & 3 : k),
+                                               ends ? Origin::IncidentCorner : Origin::SideLeaves, byU, upwards});
     }
 }
 
 // The corners of the reference rectangle that lie inside the parallelogram by more than the slop.
-void AddCoveredCorners(const Parallelogram& p, float halfU, float halfV, float slop, const FaceCorners& reference,
-                       bool referenceOfA, float reach, Candidates& out) {
+void AddCoveredCorners(const Parallelogram& p, float halfU, float halfV, float slop, float reach, Candidates& out) {
     const float determinant = p.u1 * p.v2 - p.u2 * p.v1;
     if (Abs(determinant) <= 1e-12f * (halfU * halfV)) return;  // seen edge on
     const float scale = 1.0f / determinant;
@@ -125,7 +134,7 @@ void AddCoveredCorners(const Parallelogram& p, float halfU, float halfV, float s
     for (uint32_t left = covered; left != 0; left &= left - 1) {
         const int k = __builtin_ctz(left);
         out.Add(k == 0 || k == 3 ? halfU : -halfU, k < 2 ? halfV : -halfV, w[k],
-                VertexFeature(referenceOfA, reference.vertices[k]));
+                {static_cast<uint8_t>(k), Origin::ReferenceCorner, false, false});
     }
 }
 
@@ -154,8 +163,8 @@ bool BuildBoxFaceContact(const BoxPair& pair, bool ofA, int face, float separati
 
     const FaceCorners reference(frame.normal, frame.side > 0, frame.u, frame.v), incident(m, positive, m1, m2);
     Candidates found;
-    AddCutSides(p, half[frame.u], half[frame.v], tolerances.prefer, reference, incident, ofA, tolerances.reach, found);
-    AddCoveredCorners(p, half[frame.u], half[frame.v], tolerances.prefer, reference, ofA, tolerances.reach, found);
+    AddCutSides(p, half[frame.u], half[frame.v], tolerances.prefer, tolerances.reach, found);
+    AddCoveredCorners(p, half[frame.u], half[frame.v], tolerances.prefer, tolerances.reach, found);
     FlatPoints<16>& points = found.points;
     float least = std::numeric_limits<float>::infinity();
     for (int i = 0; i < points.count; ++i) least = Min(least, points.separation[i]);
@@ -176,7 +185,7 @@ bool BuildBoxFaceContact(const BoxPair& pair, bool ofA, int face, float separati
         ManifoldPoint& point = manifold.points[i];
         point.positionOnA = plane + own[frame.u] * points.u[c] + own[frame.v] * points.v[c] + normal * aboveCore;
         point.separation = w - (pair.radiusA + pair.radiusB);
-        point.feature = found.features[c];
+        point.feature = FeatureOf(found.origins[c], reference, incident, ofA);
     }
     return true;
 }

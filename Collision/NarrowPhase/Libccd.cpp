@@ -38,9 +38,7 @@ void Centre(const void* object, ccd_vec3_t* result) {
     ccdVec3Set(result, body.position.x(), body.position.y(), body.position.z());
 }
 
-Position CentreLine(const RelativePose& bInA) {
-    return Normalized(bInA.position).cast<double>();
-}
+Vector3 CentreLine(const RelativePose& bInA) { return Normalized(bInA.position); }
 
 }  // namespace
 
@@ -85,22 +83,28 @@ void CollideLibccd(const PairQuery& query, Manifold& manifold) {
     const ContactTolerances tolerances = pair.Tolerances(query.settings);
     const double margin = query.settings.speculativeDistance;
     LibccdResult result = LibccdPenetration(query.a, query.b, query.bInA, margin, LibccdAlgorithm::Epa);
-    if (result.status == LibccdResult::Status::Failed) {
-        ++query.counters.epaFailures;
-        result = LibccdPenetration(query.a, query.b, query.bInA, margin, LibccdAlgorithm::Mpr);
-    }
-    if (result.status == LibccdResult::Status::Failed) {
-        ++query.counters.centreLineFallbacks;
-        result.normal = CentreLine(query.bInA);
-    }
-    manifold.normal = result.normal.cast<float>();
     manifold.pointCount = 0;
     if (result.status == LibccdResult::Status::Apart) return;
+    Vector3 axis = Normalized(result.normal.cast<float>());
+    float separation = pair.SeparationAlong(axis);
+    // libccd takes some deep overlaps for touching ones: then its depth is not that of its own direction.
+    const double size = static_cast<double>(query.a.InnerRadius()) + query.b.InnerRadius();
+    const bool contradicts = separation - pair.RadiusSum() < result.separation - 0.01 * size;
+    if (result.status == LibccdResult::Status::Failed || contradicts) {
+        ++query.counters.epaFailures;
+        const LibccdResult mpr = LibccdPenetration(query.a, query.b, query.bInA, margin, LibccdAlgorithm::Mpr);
+        const bool mprFound = mpr.status == LibccdResult::Status::Found;
+        if (!mprFound) ++query.counters.centreLineFallbacks;
+        const Vector3 other = mprFound ? Vector3(mpr.normal.cast<float>()) : CentreLine(query.bInA);
+        const float otherSeparation = pair.SeparationAlong(other);
+        if (result.status == LibccdResult::Status::Failed || otherSeparation > separation) {
+            axis = other;
+            separation = otherSeparation;
+        }
+    }
     // The axis is as exact as libccd's tolerance; the separation along it is measured on the cores themselves. The polytope of
     // rounded shapes has flat facets: its normals are off by about the root of the relative tolerance.
-    const Vector3 axis = Normalized(manifold.normal);
-    const KnownAxis known{axis, pair.SeparationAlong(axis), 100 * tolerances.feature};
-    BuildContactFromAxis(pair, known, tolerances, query.cache, manifold);
+    BuildContactFromAxis(pair, {axis, separation, 100 * tolerances.feature}, tolerances, query.cache, manifold);
 }
 
 }  // namespace fulcrum

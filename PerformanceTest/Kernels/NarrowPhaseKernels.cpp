@@ -17,7 +17,7 @@ namespace {
 
 using ConvexPtr = std::shared_ptr<const ConvexShape>;
 
-enum class Placement { FaceContact, Touching, Apart };
+enum class Placement { Aligned, FaceContact, Touching, Apart };
 
 struct PosedPair {
     RelativePose poses[2];  // of two steps in a row
@@ -73,9 +73,9 @@ std::vector<PosedPair> PosePairs(const ConvexShape& a, const ConvexShape& b, Pla
         RelativePose& pose = pair.poses[0];
         Vector3 direction = random.Direction();
         pose.rotation = random.Rotation();
-        if (placement == Placement::FaceContact) {  // B stands on A, turned about the vertical
+        if (placement == Placement::Aligned || placement == Placement::FaceContact) {  // B stands on A
             direction = Normalized(Vector3(random.Between(-0.3f, 0.3f), 1, random.Between(-0.3f, 0.3f)));
-            const float angle = random.Between(-3, 3);
+            const float angle = placement == Placement::Aligned ? 0 : random.Between(-3, 3);  // about the vertical
             pose.rotation = {0, std::sin(angle / 2), 0, std::cos(angle / 2)};
         }
         const float gap = placement == Placement::Apart ? random.Between(0.05f, 0.15f) : random.Between(-0.01f, 0);
@@ -150,6 +150,7 @@ const bool kRegistered = [] {
             Register(*shapes[i], *shapes[j], Placement::Apart, "apart");
         }
     }
+    Register(box, box, Placement::Aligned, "aligned");
     Register(box, box, Placement::FaceContact, "stacked");
     Register(floor, box, Placement::FaceContact, "stacked");
     Register(floor, hull, Placement::Touching, "touching");
