@@ -29,7 +29,9 @@ function(fulcrum_compile_options target)
   target_compile_features(${target} PRIVATE cxx_std_20)
   target_compile_options(${target} PRIVATE
     -fno-math-errno -fno-trapping-math ${FULCRUM_SIMD_FLAGS}
-    -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wno-psabi)
+    -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wno-psabi
+    # Masks, not branches: a | b on bools is meant.
+    $<$<CXX_COMPILER_ID:Clang,AppleClang>:-Wno-bitwise-instead-of-logical>)
   if(FULCRUM_WARNINGS_AS_ERRORS)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
