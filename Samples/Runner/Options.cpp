@@ -18,6 +18,7 @@ void SetRecord(const std::string& text, RunOptions& options) {
     bool none = false;
     std::istringstream list(text);
     for (std::string kind; std::getline(list, kind, ',');) {
+        if (kind.empty()) continue;
         if (kind == "html") options.recordHtml = true;
         else if (kind == "glb") options.recordGlb = true;
         else if (kind == "none") none = true;

@@ -43,7 +43,7 @@ double Accuracy(const SceneWorld& world) {
 extern const Scene kDominoesScene{
     .name = "dominoes",
     .description = "a ball topples a curved row of 72 dominoes",
-    .steps = 420,
+    .steps = 720,
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "dominoes left standing",

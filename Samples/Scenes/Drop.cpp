@@ -16,13 +16,9 @@ void Build(SceneWorld& world) {
     const int count = std::max(1, world.Input().count);
     const int side = std::clamp(static_cast<int>(std::ceil(std::cbrt(0.5 * count))), 1, 64);
     // The heap may slump to a few layers; walls half a body high keep it from rolling away.
-    const double tray = spacing * (0.5 * side + 2);
-    world.AddFloor(static_cast<float>(2 * tray + 5), static_cast<float>(2 * tray + 5));
-    const float wall = static_cast<float>(0.25 * spacing), length = static_cast<float>(tray);
-    for (double sign : {-1.0, 1.0}) {
-        world.Add({.shape = world.BoxOf(0.1f, wall, length), .motion = MotionType::Static, .position = {sign * tray, wall, 0}});
-        world.Add({.shape = world.BoxOf(length, wall, 0.1f), .motion = MotionType::Static, .position = {0, wall, sign * tray}});
-    }
+    const float tray = static_cast<float>(spacing * (0.5 * side + 2));
+    world.AddFloor(2 * tray + 5, 2 * tray + 5);
+    world.AddWalls(tray, tray, static_cast<float>(0.5 * spacing));
     for (int i = 0; i < count; ++i) {
         const int layer = i / (side * side), row = i / side % side, column = i % side;
         const Position centre(spacing * (column - 0.5 * (side - 1)), spacing * (layer + 0.75),

@@ -61,6 +61,8 @@ public:
     BodyId Add(const BodySettings& settings);
     // Static box, its top at y = 0.
     BodyId AddFloor(float halfX, float halfZ);
+    // Four static walls on the floor, their middles at x = -halfX, halfX and z = -halfZ, halfZ, `height` metres high.
+    void AddWalls(float halfX, float halfZ, float height);
 
 private:
     SceneWorld(const Scene& scene, const SceneInput& input);

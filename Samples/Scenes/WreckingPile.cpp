@@ -53,7 +53,8 @@ void AddRampAndBall(SceneWorld& world) {
 }
 
 void Build(SceneWorld& world) {
-    world.AddFloor(40, 40);
+    world.AddFloor(26, 26);
+    world.AddWalls(25, 25, 3);
     const std::array<ShapePtr, 5> shapes{world.SphereOf(0.5f), world.BoxOf(0.5f, 0.4f, 0.3f), world.CapsuleOf(0.4f, 0.3f),
                                          Rock(world), Jack(world)};
     AddRampAndBall(world);
