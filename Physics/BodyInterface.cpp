@@ -58,13 +58,14 @@ void MakeColliders(WorldState& world, uint32_t body) {
         Collider& collider = store.colliders[cold.firstCollider + i];
         collider.body = body;
         collider.moving = moving;
+        ColliderShape& piece = store.shapes[cold.firstCollider + i];
         if (compound) {
             const Compound::Child& child = compound->Children()[i];
-            collider.shape = child.shape.get();
-            collider.local = child.pose;
-            collider.offset = true;
+            piece.shape = child.shape.get();
+            piece.local = child.pose;
+            piece.offset = true;
         } else {
-            collider.shape = static_cast<const ConvexShape*>(&shape);
+            piece.shape = static_cast<const ConvexShape*>(&shape);
         }
         SetFatBounds(world, cold.firstCollider + i);
         store.TreeOf(collider).Insert(cold.firstCollider + i, collider.fat);
@@ -73,7 +74,10 @@ void MakeColliders(WorldState& world, uint32_t body) {
 
 void QueueColliders(WorldState& world, uint32_t body) {
     const BodyCold& cold = world.bodies.cold[body];
-    for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i) world.colliders.Queue(i);
+    for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i) {
+        world.colliders.colliders[i].previous = {};
+        world.colliders.Queue(i);
+    }
 }
 
 // Wakes what overlaps the body's fat bounds: what it may rest on, or what may rest on it.

@@ -124,7 +124,7 @@ Status PhysicsSystem::Update(double dt) {
 
     world.report.bodies = world.bodies.Count();
     world.report.awakeBodies = static_cast<uint32_t>(world.bodies.awake.size());
-    world.report.pairs = static_cast<uint32_t>(world.pairs.active.size());
+    world.report.pairs = static_cast<uint32_t>(world.pairs.active.Size());
     return Done{};
 }
 
@@ -145,10 +145,10 @@ void PhysicsSystem::VisitBodies(FunctionRef<void(BodyId)> visit) const {
 
 void PhysicsSystem::VisitContacts(FunctionRef<void(const ContactView&)> visit) const {
     const WorldState& world = *world_;
-    for (uint32_t index : world.pairs.active) {
+    world.pairs.active.Visit([&](uint32_t index) {
         const Pair& pair = world.pairs.pairs[index];
         const ContactRecord& record = world.pairs.records[index];
-        if (!pair.touching) continue;
+        if (!pair.touching) return;
         const Pose poseA = world.bodies.CentrePoseOf(pair.bodyA);
         const Pose poseB = world.bodies.CentrePoseOf(pair.bodyB);
         const Vector3 normal = Rotate(poseA.rotation, Vector3(record.normal[0], record.normal[1], record.normal[2]));
@@ -162,17 +162,17 @@ void PhysicsSystem::VisitContacts(FunctionRef<void(const ContactView&)> visit) c
         }
         visit({world.bodies.IdOf(pair.bodyA), world.bodies.IdOf(pair.bodyB), normal,
                std::span<const ContactView::Point>(points, count)});
-    }
+    });
 }
 
 void PhysicsSystem::VisitIslands(FunctionRef<void(BodyId, uint32_t island)> visit) const {
     const BodyStore& bodies = world_->bodies;
     std::vector<uint32_t> parents(bodies.Size());
     UnionFind sets(parents);
-    for (uint32_t index : world_->pairs.active) {
+    world_->pairs.active.Visit([&](uint32_t index) {
         const Pair& pair = world_->pairs.pairs[index];
         if (pair.touching && !pair.fixedB) sets.Unite(pair.bodyA, pair.bodyB);
-    }
+    });
     // Sleepers belong together as they fell asleep.
     std::vector<uint32_t> first(bodies.Size(), ~0u);
     for (uint32_t i = 0; i < bodies.Size(); ++i) {

@@ -24,7 +24,7 @@ struct PairView {
 
 // Points are stored relative to the bodies, the narrow phase speaks of the pieces.
 Vector3 ToBody(const WorldState& world, const Pair& pair, uint32_t collider, const Vector3& point) {
-    return pair.offset ? world.colliders.colliders[collider].local.Transform(point) : point;
+    return pair.offset ? world.colliders.shapes[collider].local.Transform(point) : point;
 }
 
 bool HardlyMoved(const PairView& v) {
@@ -65,7 +65,7 @@ void WriteManifold(const WorldState& world, const PairView& v, const RelativePos
     uint32_t oldFeatures[Manifold::kMaxPoints];
     std::copy(pair.features, pair.features + Manifold::kMaxPoints, oldFeatures);
 
-    const Vector3 normal = pair.offset ? Rotate(world.colliders.colliders[pair.colliderA].local.rotation, manifold.normal)
+    const Vector3 normal = pair.offset ? Rotate(world.colliders.shapes[pair.colliderA].local.rotation, manifold.normal)
                                        : manifold.normal;
     // Velocities of B relative to A, in A's frame.
     const BodyStore& bodies = world.bodies;
@@ -114,11 +114,10 @@ PairChange CollidePair(WorldState& world, uint32_t index, float dt, WorkerFindin
     const uint32_t now = static_cast<uint32_t>(world.report.step);
     if ((poseA.boundsChangedIn == now || poseB.boundsChangedIn == now) && !Overlap(world, pair)) return PairChange::Dead;
 
-    const Collider& colliderA = world.colliders.colliders[pair.colliderA];
-    const Collider& colliderB = world.colliders.colliders[pair.colliderB];
     const RelativePose bodyBInA = Relative(world.bodies.CentrePoseOf(pair.bodyA), world.bodies.CentrePoseOf(pair.bodyB));
-    PairView v{pair, world.pairs.records[index], *colliderA.shape, *colliderB.shape, bodyBInA};
-    if (pair.offset) v.bInA = Inverse(colliderA.local) * bodyBInA * colliderB.local;
+    PairView v{pair, world.pairs.records[index], *pair.shapeA, *pair.shapeB, bodyBInA};
+    if (pair.offset)
+        v.bInA = Inverse(world.colliders.shapes[pair.colliderA].local) * bodyBInA * world.colliders.shapes[pair.colliderB].local;
 
     const bool touched = pair.touching;
     if (pair.pointCount > 0 && HardlyMoved(v)) {
@@ -153,39 +152,61 @@ PairChange CollidePair(WorldState& world, uint32_t index, float dt, WorkerFindin
     return pair.touching ? PairChange::Began : PairChange::Ended;
 }
 
-void CollideRange(WorldState& world, uint32_t first, float dt) {
-    const uint32_t count = static_cast<uint32_t>(world.pairs.active.size()) - first;
-    world.changes.resize(world.pairs.active.size());
-    world.jobs->ParallelFor(count, 32, [&](JobRange range) {
-        for (uint32_t i = first + range.begin; i < first + range.end; ++i)
-            world.changes[i] = CollidePair(world, world.pairs.active[i], dt, world.findings[range.worker]);
+// What the next pairs need is fetched while this one is collided.
+void PrefetchAhead(const WorldState& world, uint32_t index) {
+    constexpr uint32_t kAhead = 6;
+    if (index + kAhead >= world.pairs.pairs.size()) return;
+    const Pair& pair = world.pairs.pairs[index + kAhead];
+    for (uint32_t body : {pair.bodyA, pair.bodyB}) {
+        __builtin_prefetch(&world.bodies.poses[body]);
+        __builtin_prefetch(&world.bodies.states[body]);
+    }
+}
+
+void CollideActive(WorldState& world, float dt) {
+    const IndexSet& active = world.pairs.active;
+    world.changes.resize(world.pairs.pairs.size(), PairChange::None);
+    world.jobs->ParallelFor(active.WordCount(), 1, [&](JobRange range) {
+        for (uint32_t word = range.begin; word < range.end; ++word)
+            active.VisitWord(word, [&](uint32_t index) {
+                PrefetchAhead(world, index);
+                world.changes[index] = CollidePair(world, index, dt, world.findings[range.worker]);
+            });
     });
 }
 
-// Wakes the sleeping bodies that the pairs from `first` on touch. They search for pairs of their own at once: what is hit
-// must not lose its support for a step.
-void WakeTouched(WorldState& world, uint32_t first) {
-    for (uint32_t i = first; i < world.changes.size(); ++i) {
-        if (world.changes[i] != PairChange::WakesOther) continue;
-        const Pair& pair = world.pairs.pairs[world.pairs.active[i]];
+void CollideActivated(WorldState& world, float dt) {
+    world.changes.resize(world.pairs.pairs.size(), PairChange::None);
+    world.jobs->ParallelFor(static_cast<uint32_t>(world.activated.size()), 16, [&](JobRange range) {
+        for (uint32_t i = range.begin; i < range.end; ++i) {
+            const uint32_t index = world.activated[i];
+            world.changes[index] = CollidePair(world, index, dt, world.findings[range.worker]);
+        }
+    });
+}
+
+// Wakes the sleeping bodies that were touched. They search for pairs of their own at once: what is hit must not lose its
+// support for a step. Returns whether that made pairs active, which are to be collided too.
+bool WakeTouched(WorldState& world) {
+    bool woke = false;
+    world.pairs.active.Visit([&](uint32_t index) {
+        if (world.changes[index] != PairChange::WakesOther) return;
+        const Pair& pair = world.pairs.pairs[index];
         WakeBody(world, pair.bodyA);
         if (!pair.fixedB) WakeBody(world, pair.bodyB);
-        world.changes[i] = PairChange::Began;
-    }
-    FindPairs(world);
+        world.changes[index] = PairChange::Began;
+        woke = true;
+    });
+    world.activated.clear();
+    if (woke) FindPairs(world);
+    return !world.activated.empty();
 }
 
 }  // namespace
 
 void Collide(WorldState& world, const StepContext& step) {
-    uint32_t first = 0;
-    while (first < world.pairs.active.size()) {
-        const uint32_t end = static_cast<uint32_t>(world.pairs.active.size());
-        CollideRange(world, first, step.dt);
-        WakeTouched(world, first);
-        first = end;
-    }
-    world.changes.resize(world.pairs.active.size());
+    CollideActive(world, step.dt);
+    while (WakeTouched(world)) CollideActivated(world, step.dt);
     StepReport& report = world.report;
     for (const WorkerFindings& f : world.findings) {
         report.contacts += f.contacts;

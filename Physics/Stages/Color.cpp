@@ -1,5 +1,5 @@
-// Contacts that began get a colour, those that ended lose it. Serial, in the order of the active pairs, which depends on
-// the history alone: the same colours for any number of threads.
+// Contacts that began get a colour, those that ended lose it. Serial, in the order of the pairs, which depends on the
+// history alone: the same colours for any number of threads.
 #include <Fulcrum/Physics/Stages/Stages.h>
 
 namespace fulcrum {
@@ -20,11 +20,9 @@ void UncolourPair(WorldState& world, uint32_t index) {
 
 void Color(WorldState& world) {
     world.colouring.ReserveBodies(world.bodies.Size());
-    // From the back: removing a pair moves the last one into its place, which has then been seen.
-    for (size_t i = world.changes.size(); i-- > 0;) {
-        const PairChange change = world.changes[i];
-        if (change == PairChange::None) continue;
-        const uint32_t index = world.pairs.active[i];
+    world.pairs.active.Visit([&](uint32_t index) {
+        const PairChange change = world.changes[index];
+        world.changes[index] = PairChange::None;
         switch (change) {
             case PairChange::Began: ColourPair(world, index); break;
             case PairChange::Ended: UncolourPair(world, index); break;
@@ -35,8 +33,7 @@ void Color(WorldState& world) {
             case PairChange::None:
             case PairChange::WakesOther: break;
         }
-    }
-    world.changes.clear();
+    });
 }
 
 }  // namespace fulcrum

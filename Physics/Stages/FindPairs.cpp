@@ -1,5 +1,6 @@
 // Pairs are found by whoever moved. Workers collect keys, which are sorted before any pair is made: the order of the pairs
-// depends on ids alone, not on threads nor on the shape of the trees.
+// depends on ids alone, not on threads nor on the shape of the trees. Pairs that exist are recognised by their bounds, most
+// of the time: the table of pairs is asked about new ones only.
 #include <Fulcrum/Physics/Stages/Stages.h>
 
 #include <algorithm>
@@ -22,10 +23,11 @@ void Search(const WorldState& world, uint32_t index, std::vector<uint64_t>& foun
     const Collider& self = store.colliders[index];
     const auto visit = [&](uint32_t other) {
         const Collider& collider = store.colliders[other];
-        if (collider.queued && other < index) return;  // it reports the pair itself
+        if (collider.queued && other < index) return;               // it reports the pair itself
+        if (collider.previous.Overlaps(self.previous)) return;      // they have their pair, or may not have one
         if (!MayCollide(world, self.body, collider.body)) return;
         const uint32_t pair = world.pairs.Find(index, other);
-        if (pair != PairStore::kNone && world.pairs.pairs[pair].activePlace != PairStore::kNone) return;
+        if (pair != PairStore::kNone && world.pairs.active.Contains(pair)) return;
         found.push_back(index < other ? uint64_t(index) << 32 | other : uint64_t(other) << 32 | index);
     };
     const uint32_t layers = world.settings.layerCollides[world.bodies.dynamics[self.body].layer];
@@ -44,7 +46,7 @@ float Combine(CombineRule rule, float a, float b) {
     return 0;
 }
 
-void MakePair(WorldState& world, uint32_t colliderA, uint32_t colliderB) {
+uint32_t MakePair(WorldState& world, uint32_t colliderA, uint32_t colliderB) {
     const auto bodyOf = [&](uint32_t collider) { return world.colliders.colliders[collider].body; };
     if (world.bodies.dynamics[bodyOf(colliderA)].motion != MotionType::Dynamic) std::swap(colliderA, colliderB);
     const uint32_t index = world.pairs.Add(colliderA, colliderB);
@@ -52,9 +54,13 @@ void MakePair(WorldState& world, uint32_t colliderA, uint32_t colliderB) {
     pair.bodyA = bodyOf(colliderA);
     pair.bodyB = bodyOf(colliderB);
     pair.fixedB = world.bodies.dynamics[pair.bodyB].motion != MotionType::Dynamic;
-    pair.offset = world.colliders.colliders[colliderA].offset || world.colliders.colliders[colliderB].offset;
+    const ColliderShape& a = world.colliders.shapes[colliderA];
+    const ColliderShape& b = world.colliders.shapes[colliderB];
+    pair.offset = a.offset || b.offset;
+    pair.shapeA = a.shape;
+    pair.shapeB = b.shape;
     CombineMaterials(world, index);
-    world.pairs.Activate(index);
+    return index;
 }
 
 }  // namespace
@@ -70,6 +76,7 @@ void CombineMaterials(WorldState& world, uint32_t index) {
 
 void FindPairs(WorldState& world) {
     std::vector<uint32_t>& moved = world.colliders.moved;
+    world.activated.clear();
     if (moved.empty()) return;
     world.jobs->ParallelFor(static_cast<uint32_t>(moved.size()), 16, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i) Search(world, moved[i], world.findings[range.worker].pairs);
@@ -83,11 +90,15 @@ void FindPairs(WorldState& world) {
     std::sort(found.begin(), found.end());
     for (uint64_t key : found) {
         const uint32_t a = static_cast<uint32_t>(key >> 32), b = static_cast<uint32_t>(key);
-        const uint32_t resting = world.pairs.Find(a, b);
-        if (resting == PairStore::kNone) MakePair(world, a, b);
-        else world.pairs.Activate(resting);
+        uint32_t index = world.pairs.Find(a, b);
+        if (index == PairStore::kNone) index = MakePair(world, a, b);
+        if (world.pairs.active.Insert(index)) world.activated.push_back(index);
     }
-    for (uint32_t collider : moved) world.colliders.colliders[collider].queued = false;
+    for (uint32_t index : moved) {
+        Collider& collider = world.colliders.colliders[index];
+        collider.queued = false;
+        collider.previous = collider.fat;
+    }
     moved.clear();
 }
 

@@ -13,11 +13,11 @@ namespace {
 std::span<uint32_t> AwakeIslands(WorldState& world) {
     std::span<uint32_t> parents = world.scratch.Allocate<uint32_t>(world.bodies.awake.size());
     UnionFind sets(parents);
-    for (uint32_t index : world.pairs.active) {
+    world.pairs.active.Visit([&](uint32_t index) {
         const Pair& pair = world.pairs.pairs[index];
-        if (!pair.touching || pair.fixedB) continue;
+        if (!pair.touching || pair.fixedB) return;
         sets.Unite(world.bodies.cold[pair.bodyA].awakePlace, world.bodies.cold[pair.bodyB].awakePlace);
-    }
+    });
     for (uint32_t i = 0; i < parents.size(); ++i) parents[i] = sets.Find(i);
     return parents;
 }
@@ -25,14 +25,13 @@ std::span<uint32_t> AwakeIslands(WorldState& world) {
 // Pairs without an awake body rest until one of their bodies wakes.
 void RestPairs(WorldState& world) {
     const auto awake = [&](uint32_t body) { return world.bodies.dynamics[body].awake; };
-    for (size_t i = world.pairs.active.size(); i-- > 0;) {
-        const uint32_t index = world.pairs.active[i];
+    world.pairs.active.Visit([&](uint32_t index) {
         Pair& pair = world.pairs.pairs[index];
-        if (awake(pair.bodyA) || awake(pair.bodyB)) continue;
+        if (awake(pair.bodyA) || awake(pair.bodyB)) return;
         UncolourPair(world, index);
         pair.touching = false;
-        world.pairs.Deactivate(index);
-    }
+        world.pairs.active.Erase(index);
+    });
 }
 
 }  // namespace

@@ -8,14 +8,17 @@ namespace fulcrum {
 
 namespace {
 
-constexpr float kStepsAhead = 4;  // fat bounds reach so many steps along the velocity
+// Fat bounds reach so many steps along the velocity, but hardly farther than the body is large: every pair too many costs
+// more than a search.
+constexpr float kStepsAhead = 4;
+constexpr float kAheadPart = 0.25f;  // of the outer radius
 
 // World bounds of a collider, without any margin. A hull as round as a ball is bounded best by its outer sphere.
-Bounds TightBounds(const Collider& collider, const Pose& pose, const Matrix3& rotation) {
-    const Bounds& local = collider.shape->LocalBounds();
+Bounds TightBounds(const ConvexShape& shape, const Pose& pose, const Matrix3& rotation) {
+    const Bounds& local = shape.LocalBounds();
     const Vector3 centre = rotation * local.Centre(), half = local.HalfExtents();
     const Vector3 reach = rotation.x.cwiseAbs() * half.x() + rotation.y.cwiseAbs() * half.y() + rotation.z.cwiseAbs() * half.z();
-    const Vector3 sphere = Vector3::Constant(collider.shape->OuterRadius());
+    const Vector3 sphere = Vector3::Constant(shape.OuterRadius());
     const Vector3 lower = Vector3(centre - reach).cwiseMax(-sphere), upper = Vector3(centre + reach).cwiseMin(sphere);
     return RoundedOutwards(pose.position + lower.cast<double>(), pose.position + upper.cast<double>());
 }
@@ -36,18 +39,22 @@ void UpdateColliders(WorldState& world, uint32_t body, float dt, WorkerFindings&
     bool changed = false;
     for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i) {
         Collider& collider = world.colliders.colliders[i];
+        const ColliderShape& piece = world.colliders.shapes[i];
         Bounds tight;
         Vector3 motion = linear * dt;
-        if (collider.offset) {
-            const Pose piece = pose * collider.local;
-            tight = TightBounds(collider, piece, ToMatrix(piece.rotation));
-            motion += Cross<float>(angular, Vector3(rotation * collider.local.position)) * dt;
+        if (piece.offset) {
+            const Pose at = pose * piece.local;
+            tight = TightBounds(*piece.shape, at, ToMatrix(at.rotation));
+            motion += Cross<float>(angular, Vector3(rotation * piece.local.position)) * dt;
         } else {
-            tight = TightBounds(collider, pose, rotation);
+            tight = TightBounds(*piece.shape, pose, rotation);
         }
         const float speculative = 0.5f * world.settings.speculativeDistance;
         if (collider.fat.Contains(Reach(tight, motion, speculative))) continue;
-        collider.fat = Reach(tight, motion * kStepsAhead, speculative + world.settings.boundsMargin);
+        const float radius = piece.shape->OuterRadius();
+        const float ahead = kAheadPart * radius / std::max(Length(motion), 1e-6f);
+        const float margin = std::min(world.settings.boundsMargin, kAheadPart * radius);
+        collider.fat = Reach(tight, motion * std::clamp(ahead, 1.0f, kStepsAhead), speculative + margin);
         findings.colliders.push_back(i);
         changed = true;
     }
@@ -58,9 +65,10 @@ void UpdateColliders(WorldState& world, uint32_t body, float dt, WorkerFindings&
 
 void SetFatBounds(WorldState& world, uint32_t index) {
     Collider& collider = world.colliders.colliders[index];
-    const Pose pose = world.bodies.CentrePoseOf(collider.body) * collider.local;
+    const ColliderShape& piece = world.colliders.shapes[index];
+    const Pose pose = world.bodies.CentrePoseOf(collider.body) * piece.local;
     const float margin = 0.5f * world.settings.speculativeDistance + world.settings.boundsMargin;
-    collider.fat = Reach(TightBounds(collider, pose, ToMatrix(pose.rotation)), Vector3::Zero(), margin);
+    collider.fat = Reach(TightBounds(*piece.shape, pose, ToMatrix(pose.rotation)), Vector3::Zero(), margin);
 }
 
 void UpdateBounds(WorldState& world, const StepContext& step) {

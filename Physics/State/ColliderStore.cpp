@@ -10,11 +10,15 @@ uint32_t ColliderStore::Allocate(uint32_t count) {
     }
     const uint32_t first = static_cast<uint32_t>(colliders.size());
     colliders.resize(colliders.size() + count);
+    shapes.resize(colliders.size());
     return first;
 }
 
 void ColliderStore::Free(uint32_t first, uint32_t count) {
-    for (uint32_t i = first; i < first + count; ++i) colliders[i] = {};
+    for (uint32_t i = first; i < first + count; ++i) {
+        colliders[i] = {};
+        shapes[i] = {};
+    }
     if (count >= free_.size()) free_.resize(count + 1);
     free_[count].push_back(first);
 }

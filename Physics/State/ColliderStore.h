@@ -9,19 +9,28 @@
 
 namespace fulcrum {
 
-struct Collider {
-    const ConvexShape* shape = nullptr;  // kept alive by the body's shape
+// What the search for pairs reads: one line.
+struct alignas(64) Collider {
+    Bounds fat;                          // world, m: the piece stays inside until it is moved out
+    // As of the last search. Two colliders whose previous bounds overlap have their pair already. Empty: search for all.
+    Bounds previous;
     uint32_t body = 0;
     bool moving = false;                 // which tree
     bool queued = false;                 // in ColliderStore::moved
+};
+static_assert(sizeof(Collider) == 64);
+
+// The piece itself.
+struct ColliderShape {
+    const ConvexShape* shape = nullptr;  // kept alive by the body's shape
     bool offset = false;                 // `local` is not the identity
     RelativePose local;                  // of the shape's centre frame in the body's
-    Bounds fat;                          // world, m: the piece stays inside until it is moved out
 };
 
 class ColliderStore {
 public:
     std::vector<Collider> colliders;
+    std::vector<ColliderShape> shapes;           // same index
     BoundsTree fixedTree, movingTree;
     uint32_t movingLayers = 0, fixedLayers = 0;  // bit i: a body of layer i is, or was, in the tree
     std::vector<uint32_t> moved;                 // whose pairs must be searched
@@ -35,7 +44,7 @@ public:
         moved.push_back(collider);
     }
     size_t MemoryUsed() const {
-        return colliders.capacity() * sizeof(Collider) + fixedTree.MemoryUsed() + movingTree.MemoryUsed() +
+        return colliders.capacity() * sizeof(Collider) + shapes.capacity() * sizeof(ColliderShape) + fixedTree.MemoryUsed() + movingTree.MemoryUsed() +
                moved.capacity() * sizeof(uint32_t);
     }
 

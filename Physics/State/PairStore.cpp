@@ -40,6 +40,7 @@ uint32_t PairStore::Add(uint32_t colliderA, uint32_t colliderB) {
         index = static_cast<uint32_t>(pairs.size());
         pairs.emplace_back();
         records.emplace_back();
+        active.Reserve(index + 1);
     }
     pairs[index] = {};
     records[index] = {};
@@ -57,7 +58,7 @@ uint32_t PairStore::Add(uint32_t colliderA, uint32_t colliderB) {
 }
 
 void PairStore::Remove(uint32_t index) {
-    Deactivate(index);
+    active.Erase(index);
     const uint64_t key = Key(pairs[index].colliderA, pairs[index].colliderB);
     const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
     uint32_t hole = Home(key);
@@ -75,24 +76,9 @@ void PairStore::Remove(uint32_t index) {
     --size_;
 }
 
-void PairStore::Activate(uint32_t index) {
-    if (pairs[index].activePlace != kNone) return;
-    pairs[index].activePlace = static_cast<uint32_t>(active.size());
-    active.push_back(index);
-}
-
-void PairStore::Deactivate(uint32_t index) {
-    const uint32_t place = pairs[index].activePlace;
-    if (place == kNone) return;
-    active[place] = active.back();
-    pairs[active[place]].activePlace = place;
-    active.pop_back();
-    pairs[index].activePlace = kNone;
-}
-
 size_t PairStore::MemoryUsed() const {
     return pairs.capacity() * sizeof(Pair) + records.capacity() * sizeof(ContactRecord) +
-           (active.capacity() + free_.capacity()) * sizeof(uint32_t) + table_.capacity() * sizeof(Entry);
+           active.MemoryUsed() + free_.capacity() * sizeof(uint32_t) + table_.capacity() * sizeof(Entry);
 }
 
 }  // namespace fulcrum

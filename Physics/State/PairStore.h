@@ -7,38 +7,42 @@
 #include <Fulcrum/Constraints/Coloring.h>
 #include <Fulcrum/Constraints/Contacts/ContactRecord.h>
 
+#include <Fulcrum/Physics/State/IndexSet.h>
+
 #include <vector>
 
 namespace fulcrum {
 
-struct Pair {
-    uint32_t colliderA = 0, colliderB = 0;  // A's body is dynamic, B's any
-    uint32_t bodyA = 0, bodyB = 0;
+struct alignas(64) Pair {
+    // First line: what a pair that keeps its manifold is read for.
+    uint32_t bodyA = 0, bodyB = 0;          // A is dynamic, B any
+    uint32_t colliderA = 0, colliderB = 0;
+    const ConvexShape* shapeA = nullptr;
+    const ConvexShape* shapeB = nullptr;
+    RelativePose reference;      // of piece B in piece A when the manifold was found
+    uint8_t pointCount = 0;      // of the record, as found at `reference`
+    bool exists : 1 = false;
+    bool fixedB : 1 = false;     // B's body is not dynamic
+    bool offset : 1 = false;     // a piece is not at its body's centre frame (child of a compound)
+    bool touching : 1 = false;   // was active, with points, in the last step
+    // Second line.
     PairCache cache;
     uint32_t features[Manifold::kMaxPoints] = {0, 0, 0, 0};
-    RelativePose reference;      // of B in A when the manifold was found
-    uint32_t activePlace = ~0u;  // index into PairStore::active; ~0: not active
     ColourSlot colour;
-    bool exists = false;
-    bool fixedB = false;         // B's body is not dynamic
-    bool offset = false;         // a collider is not at its body's centre frame (child of a compound)
-    bool touching = false;       // was active, with points, in the last step
-    uint8_t pointCount = 0;      // of the record, as found at `reference`
 };
+static_assert(sizeof(Pair) == 128);
 
 class PairStore {
 public:
     std::vector<Pair> pairs;
     std::vector<ContactRecord> records;  // same index
-    std::vector<uint32_t> active;        // in no order
+    IndexSet active;
 
     // Index of the pair of two colliders, or kNone.
     static constexpr uint32_t kNone = ~0u;
     uint32_t Find(uint32_t colliderA, uint32_t colliderB) const;
     uint32_t Add(uint32_t colliderA, uint32_t colliderB);  // not there yet
     void Remove(uint32_t index);                           // not coloured
-    void Activate(uint32_t index);
-    void Deactivate(uint32_t index);
     size_t MemoryUsed() const;
 
 private:

@@ -14,7 +14,10 @@ void WakeOne(WorldState& world, uint32_t body) {
     const Vector3 acceleration = world.settings.gravity * bodies.dynamics[body].gravityFactor;
     for (int k = 0; k < 3; ++k) bodies.poses[body].acceleration[k] = acceleration[k];
     const BodyCold& cold = bodies.cold[body];
-    for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i) world.colliders.Queue(i);
+    for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i) {
+        world.colliders.colliders[i].previous = {};
+        world.colliders.Queue(i);
+    }
 }
 
 }  // namespace
@@ -51,7 +54,7 @@ size_t SolverGroup::MemoryUsed() const {
 size_t WorldState::MemoryUsed() const {
     size_t bytes = sizeof(*this) + bodies.MemoryUsed() + colliders.MemoryUsed() + pairs.MemoryUsed() +
                    colouring.MemoryUsed() + sleeping.MemoryUsed() + group.MemoryUsed() + scratch.CapacityInBytes() +
-                   changes.capacity() + newPairs.capacity() * sizeof(uint64_t);
+                   changes.capacity() + activated.capacity() * sizeof(uint32_t) + newPairs.capacity() * sizeof(uint64_t);
     for (const WorkerFindings& f : findings)
         bytes += sizeof(f) + f.colliders.capacity() * sizeof(uint32_t) + f.pairs.capacity() * sizeof(uint64_t);
     return bytes;

@@ -63,7 +63,8 @@ struct WorldState {
     SolverGroup group;
 
     std::vector<uint32_t> removed;            // bodies to forget before the next step
-    std::vector<PairChange> changes;          // by place in pairs.active
+    std::vector<PairChange> changes;          // by pair, of this step; None for those that are not active
+    std::vector<uint32_t> activated;          // pairs that FindPairs made active
     std::vector<uint64_t> newPairs;
     std::vector<WorkerFindings> findings;     // by worker
     ScratchArena scratch;
