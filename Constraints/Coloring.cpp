@@ -26,10 +26,11 @@ ColourSlot ContactColouring::Add(uint32_t contact, uint32_t bodyA, uint32_t body
         used_[bodyA] |= bit;
         if (!fixedB) used_[bodyB] |= bit;
     }
-    std::vector<uint32_t>& list = List(place.colour, fixedB);
+    std::vector<Entry>& list = List(place.colour, fixedB);
     place.slot = static_cast<uint32_t>(list.size());
-    list.push_back(contact);
+    list.push_back({contact, bodyA, bodyB});
     ++size_;
+    ++version_;
     return place;
 }
 
@@ -42,18 +43,20 @@ uint32_t ContactColouring::Remove(uint32_t contact, ColourSlot place, uint32_t b
         used_[bodyA] &= ~bit;
         if (!fixedB) used_[bodyB] &= ~bit;
     }
-    std::vector<uint32_t>& list = List(place.colour, fixedB);
-    FULCRUM_ASSERT(list[place.slot] == contact);
-    const uint32_t moved = list.back();
+    std::vector<Entry>& list = List(place.colour, fixedB);
+    FULCRUM_ASSERT(contact == list[place.slot].contact);
+    (void)contact;
+    const Entry moved = list.back();
     list[place.slot] = moved;
     list.pop_back();
     --size_;
-    return moved == contact ? contact : moved;
+    ++version_;
+    return moved.contact;
 }
 
 size_t ContactColouring::MemoryUsed() const {
     size_t bytes = used_.capacity() * sizeof(uint64_t) + overflows_.capacity() * sizeof(uint16_t);
-    for (const Colour& c : colours_) bytes += (c.moving.capacity() + c.fixed.capacity()) * sizeof(uint32_t);
+    for (const Colour& c : colours_) bytes += (c.moving.capacity() + c.fixed.capacity()) * sizeof(Entry);
     return bytes;
 }
 

@@ -19,10 +19,12 @@ public:
     static constexpr int kColours = 64;
     static constexpr uint8_t kOverflow = kColours;  // contacts of bodies that touch more than 64: solved one after the other
 
-    // The contacts of a colour, by their indices.
+    struct Entry {
+        uint32_t contact, bodyA, bodyB;
+    };
     struct Colour {
-        std::vector<uint32_t> moving;  // both bodies are dynamic
-        std::vector<uint32_t> fixed;   // only the first is
+        std::vector<Entry> moving;  // both bodies are dynamic
+        std::vector<Entry> fixed;   // only the first is
         bool Empty() const { return moving.empty() && fixed.empty(); }
     };
 
@@ -37,11 +39,13 @@ public:
 
     const Colour& At(int colour) const { return colours_[static_cast<size_t>(colour)]; }
     uint32_t Size() const { return size_; }
+    // Grows with every change: what was derived from the colours holds as long as it stays.
+    uint64_t Version() const { return version_; }
     void ReserveBodies(uint32_t count);
     size_t MemoryUsed() const;
 
 private:
-    std::vector<uint32_t>& List(uint8_t colour, bool fixedB) {
+    std::vector<Entry>& List(uint8_t colour, bool fixedB) {
         return fixedB ? colours_[colour].fixed : colours_[colour].moving;
     }
 
@@ -49,6 +53,7 @@ private:
     std::vector<uint64_t> used_;       // by body: bit c is set where a contact of colour c moves it
     std::vector<uint16_t> overflows_;  // by body: its contacts without a colour
     uint32_t size_ = 0;
+    uint64_t version_ = 1;
 };
 
 }  // namespace fulcrum

@@ -69,8 +69,8 @@ private:
 }  // namespace
 
 const char* StageName(Stage stage) {
-    static constexpr const char* kNames[kStageCount] = {"UpdateBounds", "FindPairs", "Collide", "Color", "Prepare",
-                                                        "Solve",        "Restitution", "Store", "Sleep"};
+    static constexpr const char* kNames[kStageCount] = {"UpdateBounds", "FindPairs", "Collide", "Color", "BuildIslands",
+                                                        "Prepare", "Solve", "Restitution", "Store", "Sleep"};
     return kNames[static_cast<size_t>(stage)];
 }
 
@@ -110,6 +110,8 @@ Status PhysicsSystem::Update(double dt) {
     timer.Finished(Stage::Collide);
     Color(world);
     timer.Finished(Stage::Color);
+    BuildIslands(world);
+    timer.Finished(Stage::BuildIslands);
     Prepare(world, step);
     timer.Finished(Stage::Prepare);
     Solve(world, step);
@@ -124,6 +126,7 @@ Status PhysicsSystem::Update(double dt) {
 
     world.report.bodies = world.bodies.Count();
     world.report.awakeBodies = static_cast<uint32_t>(world.bodies.awake.size());
+    world.report.islands = world.solver.islands;
     world.report.pairs = static_cast<uint32_t>(world.pairs.active.Size());
     return Done{};
 }

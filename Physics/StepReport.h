@@ -8,8 +8,8 @@
 namespace fulcrum {
 
 // The stages of a step, in their order; each is a file in Physics/Stages.
-enum class Stage : uint8_t { UpdateBounds, FindPairs, Collide, Color, Prepare, Solve, Restitution, Store, Sleep };
-inline constexpr int kStageCount = 9;
+enum class Stage : uint8_t { UpdateBounds, FindPairs, Collide, Color, BuildIslands, Prepare, Solve, Restitution, Store, Sleep };
+inline constexpr int kStageCount = 10;
 const char* StageName(Stage stage);
 
 struct StepReport {
@@ -21,7 +21,7 @@ struct StepReport {
     uint32_t contacts = 0, contactPoints = 0;         // manifolds with at least one point, awake ones
     uint32_t keptManifolds = 0;                       // of these, not collided anew
     uint32_t colours = 0, overflowContacts = 0;       // overflow: fitted no colour, solved one by one
-    uint32_t islands = 0;                             // awake ones; 0 where sleeping is off (nothing needs them)
+    uint32_t islands = 0;                             // awake ones that something touches
     float largestPenetration = 0;                     // m, >= 0, as found by Collide
     BodyId deepestA, deepestB;
     CollideCounters libccd;

@@ -189,7 +189,7 @@ void CollideActivated(WorldState& world, float dt) {
 // support for a step. Returns whether that made pairs active, which are to be collided too.
 bool WakeTouched(WorldState& world) {
     bool woke = false;
-    world.pairs.active.Visit([&](uint32_t index) {
+    VisitChanges(world, [&](uint32_t index) {
         if (world.changes[index] != PairChange::WakesOther) return;
         const Pair& pair = world.pairs.pairs[index];
         WakeBody(world, pair.bodyA);

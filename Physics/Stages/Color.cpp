@@ -20,7 +20,7 @@ void UncolourPair(WorldState& world, uint32_t index) {
 
 void Color(WorldState& world) {
     world.colouring.ReserveBodies(world.bodies.Size());
-    world.pairs.active.Visit([&](uint32_t index) {
+    VisitChanges(world, [&](uint32_t index) {
         const PairChange change = world.changes[index];
         world.changes[index] = PairChange::None;
         switch (change) {

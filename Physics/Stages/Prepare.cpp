@@ -1,40 +1,13 @@
-// Lays the coloured contacts out as batches of lanes, colour after colour, and fills their rows.
+// Fills the rows of all batches.
 #include <Fulcrum/Physics/Stages/Stages.h>
+
+#include <algorithm>
 
 namespace fulcrum {
 
 namespace {
 
-uint32_t BatchCount(size_t contacts, int lanes) {
-    return static_cast<uint32_t>((contacts + static_cast<size_t>(lanes) - 1) / static_cast<size_t>(lanes));
-}
-
-template <class Batch>
-void GrowTo(std::vector<Batch>& batches, uint32_t count) {
-    if (batches.size() < count) batches.resize(count + count / 4);
-}
-
-void LayOut(WorldState& world) {
-    SolverGroup& group = world.group;
-    group.colours.clear();
-    group.movingCount = group.fixedCount = 0;
-    for (int c = 0; c < ContactColouring::kColours; ++c) {
-        const ContactColouring::Colour& colour = world.colouring.At(c);
-        if (colour.Empty()) continue;
-        SolverGroup::ColourRange range;
-        range.colour = static_cast<uint32_t>(c);
-        range.movingBegin = group.movingCount;
-        range.movingEnd = group.movingCount += BatchCount(colour.moving.size(), kLanes);
-        range.fixedBegin = group.fixedCount;
-        range.fixedEnd = group.fixedCount += BatchCount(colour.fixed.size(), kLanes);
-        group.colours.push_back(range);
-    }
-    GrowTo(group.moving, group.movingCount);
-    GrowTo(group.fixed, group.fixedCount);
-    const ContactColouring::Colour& overflow = world.colouring.At(ContactColouring::kOverflow);
-    group.overflowMoving.resize(overflow.moving.size());
-    group.overflowFixed.resize(overflow.fixed.size());
-}
+using Entry = ContactColouring::Entry;
 
 template <int N, bool kFixedB>
 void NoteDeepest(const ContactBatch<N, kFixedB>& batch, WorkerFindings& findings) {
@@ -50,67 +23,112 @@ void NoteDeepest(const ContactBatch<N, kFixedB>& batch, WorkerFindings& findings
     }
 }
 
-// Fills the batch with the contacts list[first ...]; lanes beyond the list repeat its last contact and are never written.
+// Records and masses of the contacts that come next are on their way while these are worked on.
+void Prefetch(const WorldState& world, std::span<const Entry> entries) {
+    for (const Entry& entry : entries) {
+        const char* record = reinterpret_cast<const char*>(&world.pairs.records[entry.contact]);
+        for (size_t line = 0; line < sizeof(ContactRecord); line += 64) __builtin_prefetch(record + line);
+        for (uint32_t body : {entry.bodyA, entry.bodyB}) {
+            __builtin_prefetch(&world.bodies.poses[body]);
+            __builtin_prefetch(&world.bodies.masses[body]);
+        }
+    }
+}
+
+// Fills the batch with at most N contacts; lanes beyond them repeat the last one and are never written.
 template <int N, bool kFixedB>
-void Fill(WorldState& world, ContactBatch<N, kFixedB>& batch, const std::vector<uint32_t>& list, size_t first,
+void Fill(WorldState& world, ContactBatch<N, kFixedB>& batch, std::span<const Entry> entries,
           const ContactPrepareSettings& settings, WorkerFindings& findings) {
-    const size_t left = list.size() - first;
-    batch.count = static_cast<int32_t>(left < N ? left : N);
+    batch.count = static_cast<int32_t>(entries.size());
     uint32_t bodyB[N];
-    for (int lane = 0; lane < N; ++lane) {
-        const int used = lane < batch.count ? lane : batch.count - 1;
-        const uint32_t index = list[first + static_cast<size_t>(used)];
-        const Pair& pair = world.pairs.pairs[index];
-        batch.contact[lane] = index;
-        batch.bodyA[lane] = pair.bodyA;
-        bodyB[lane] = pair.bodyB;
+    for (size_t lane = 0; lane < N; ++lane) {
+        const Entry& entry = entries[lane < entries.size() ? lane : entries.size() - 1];
+        batch.contact[lane] = entry.contact;
+        batch.bodyA[lane] = entry.bodyA;
+        bodyB[lane] = entry.bodyB;
     }
     PrepareContacts<N, kFixedB>(batch, world.pairs.records.data(), bodyB, world.bodies.ForSolver(), settings);
     findings.bounces |= batch.bounces;
     NoteDeepest(batch, findings);
 }
 
+template <class Batch>
+void FillRange(WorldState& world, std::vector<Batch>& batches, const BatchRange& range,
+               std::span<const Entry> contacts, const ContactPrepareSettings& settings, WorkerFindings& findings) {
+    contacts = contacts.subspan(range.first, range.contacts);
+    for (uint32_t i = range.begin; i < range.end; ++i) {
+        const size_t n = std::min(contacts.size(), size_t(kLanes));
+        const std::span<const Entry> now = contacts.first(n);
+        contacts = contacts.subspan(n);
+        Prefetch(world, contacts.first(std::min(contacts.size(), size_t(kLanes))));
+        Fill(world, batches[i], now, settings, findings);
+    }
+}
+
+// A part of a colour, for the large group, whose colours are cut into pieces of so many batches.
+constexpr uint32_t kPiece = 16;
+BatchRange Piece(const BatchRange& range, uint32_t piece) {
+    const uint32_t skipped = std::min(piece * kPiece, range.Count());
+    BatchRange part;
+    part.begin = range.begin + skipped;
+    part.end = std::min(part.begin + kPiece, range.end);
+    part.first = range.first + std::min(skipped * kLanes, range.contacts);
+    part.contacts = std::min(part.Count() * kLanes, range.contacts - std::min(skipped * kLanes, range.contacts));
+    return part;
+}
+
+void FindDeepest(WorldState& world) {
+    StepReport& report = world.report;
+    uint32_t pair = ~0u;
+    for (const WorkerFindings& findings : world.findings) {
+        const float depth = findings.deepest, worst = report.largestPenetration;
+        if (depth < worst || (depth == worst && findings.deepestPair >= pair)) continue;
+        report.largestPenetration = depth;
+        pair = findings.deepestPair;
+    }
+    if (pair == ~0u) return;
+    report.deepestA = world.bodies.IdOf(world.pairs.pairs[pair].bodyA);
+    report.deepestB = world.bodies.IdOf(world.pairs.pairs[pair].bodyB);
+}
+
 }  // namespace
 
 void Prepare(WorldState& world, const StepContext& step) {
-    LayOut(world);
-    SolverGroup& group = world.group;
-    group.settings = world.settings.solver;
+    SolverLayout& layout = world.solver;
+    world.bounces = false;
+    if (world.colouring.Size() == 0) return;
+    for (SolverGroup& group : layout.groups) group.settings = world.settings.solver;
     ContactPrepareSettings settings;
     settings.impulseScale = world.lastSubstepDt > 0 ? step.substepDt / world.lastSubstepDt : 1.0f;
     settings.restitutionSpeed = world.settings.restitutionSpeed;
 
-    for (const SolverGroup::ColourRange& range : group.colours) {
-        const ContactColouring::Colour& colour = world.colouring.At(static_cast<int>(range.colour));
-        const uint32_t moving = range.movingEnd - range.movingBegin, fixed = range.fixedEnd - range.fixedBegin;
-        world.jobs->ParallelFor(moving + fixed, 8, [&](JobRange job) {
-            WorkerFindings& findings = world.findings[job.worker];
-            for (uint32_t i = job.begin; i < job.end; ++i) {
-                if (i < moving) Fill(world, group.moving[range.movingBegin + i], colour.moving, size_t(i) * kLanes, settings, findings);
-                else Fill(world, group.fixed[range.fixedBegin + i - moving], colour.fixed, size_t(i - moving) * kLanes, settings, findings);
-            }
+    const auto fill = [&](const BatchRange& moving, const BatchRange& fixed, WorkerFindings& findings) {
+        FillRange(world, layout.moving, moving, layout.movingContacts, settings, findings);
+        FillRange(world, layout.fixed, fixed, layout.fixedContacts, settings, findings);
+    };
+    const SolverGroup& large = layout.groups.front();
+    for (uint32_t c = large.coloursBegin; c < large.coloursEnd; ++c) {
+        const ColourBatches& colour = layout.colours[c];
+        const uint32_t pieces = (std::max(colour.moving.Count(), colour.fixed.Count()) + kPiece - 1) / kPiece;
+        world.jobs->ParallelFor(pieces, 1, [&](JobRange range) {
+            for (uint32_t i = range.begin; i < range.end; ++i)
+                fill(Piece(colour.moving, i), Piece(colour.fixed, i), world.findings[range.worker]);
         });
     }
+    world.jobs->ParallelFor(static_cast<uint32_t>(layout.groups.size()) - 1, 1, [&](JobRange range) {
+        for (uint32_t g = range.begin + 1; g < range.end + 1; ++g)
+            for (uint32_t c = layout.groups[g].coloursBegin; c < layout.groups[g].coloursEnd; ++c)
+                fill(layout.colours[c].moving, layout.colours[c].fixed, world.findings[range.worker]);
+    });
     const ContactColouring::Colour& overflow = world.colouring.At(ContactColouring::kOverflow);
     for (size_t i = 0; i < overflow.moving.size(); ++i)
-        Fill(world, group.overflowMoving[i], overflow.moving, i, settings, world.findings[0]);
+        Fill(world, layout.overflowMoving[i], std::span(&overflow.moving[i], 1), settings, world.findings[0]);
     for (size_t i = 0; i < overflow.fixed.size(); ++i)
-        Fill(world, group.overflowFixed[i], overflow.fixed, i, settings, world.findings[0]);
+        Fill(world, layout.overflowFixed[i], std::span(&overflow.fixed[i], 1), settings, world.findings[0]);
 
-    world.bounces = false;
-    uint32_t deepestPair = ~0u;
-    for (const WorkerFindings& findings : world.findings) {
-        world.bounces |= findings.bounces;
-        const float depth = findings.deepest, worst = world.report.largestPenetration;
-        if (depth < worst || (depth == worst && findings.deepestPair >= deepestPair)) continue;
-        world.report.largestPenetration = depth;
-        deepestPair = findings.deepestPair;
-    }
-    if (deepestPair != ~0u) {
-        world.report.deepestA = world.bodies.IdOf(world.pairs.pairs[deepestPair].bodyA);
-        world.report.deepestB = world.bodies.IdOf(world.pairs.pairs[deepestPair].bodyB);
-    }
-    world.report.colours = static_cast<uint32_t>(group.colours.size());
+    for (const WorkerFindings& findings : world.findings) world.bounces |= findings.bounces;
+    FindDeepest(world);
+    world.report.colours = layout.colourCount;
     world.report.overflowContacts = static_cast<uint32_t>(overflow.moving.size() + overflow.fixed.size());
 }
 

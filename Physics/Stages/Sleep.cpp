@@ -78,7 +78,6 @@ void Sleep(WorldState& world) {
             const BodyDynamics& d = world.bodies.dynamics[world.bodies.awake[i]];
             if (d.motion != MotionType::Dynamic || d.slowSeconds < world.settings.sleep.seconds || !d.allowSleep)
                 awake[roots[i]] = 1;
-            if (roots[i] == i) ++world.report.islands;
         }
         // Members of sleeping islands, sorted by island.
         std::span<uint64_t> members = world.scratch.Allocate<uint64_t>(count);

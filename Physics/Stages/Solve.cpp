@@ -1,5 +1,6 @@
-// The solver loop as a sequence of short parallel phases: one per colour, iteration and substep, and two over the bodies per
-// substep. Colours come in ascending order, contacts that fitted no colour after them, one by one.
+// The solver loop is a sequence of verbs. Groups of small islands run it whole, each on one worker. The large islands run it
+// as a sequence of short parallel phases: one per colour, iteration and substep, and two over the bodies per substep.
+// Colours come in ascending order, contacts that fitted no colour after them, one by one.
 //
 // Only bodies that a contact touches take part; the others are moved by Store, in one go.
 //
@@ -19,12 +20,12 @@ namespace {
 constexpr uint32_t kBatchesPerBlock = 4;
 constexpr uint32_t kBodiesPerBlock = 128;
 
-enum class Verb : uint8_t { IntegrateVelocities, WarmStart, Velocities, IntegratePoses, Positions, Separations, Restitution };
+enum class Verb : uint8_t { IntegrateVelocities, WarmStart, Velocities, IntegratePoses, Positions, Separations, Restitution, NextSubstep };
 
 struct Phase {
     Verb verb;
     uint8_t substep;
-    uint16_t colour;  // index into SolverGroup::colours; the number of colours means the overflow
+    uint16_t colour;  // of the large group, from 0; the number of its colours means the overflow
 };
 
 // Velocity that a body has after h seconds of damping 1/s, per unit: exp(-damping h).
@@ -46,7 +47,7 @@ bool ClampLength(Vector3& v, float limit) {
 
 class StepSolver {
 public:
-    StepSolver(WorldState& world, const StepContext& step) : world_(world), h_(step.substepDt) {
+    StepSolver(WorldState& world, const StepContext& step) : world_(world), layout_(world.solver), h_(step.substepDt) {
         settings_.inverseDt = 1.0f / h_;
         settings_.baumgarte = world.settings.baumgarte;
         settings_.slop = world.settings.penetrationSlop;
@@ -54,71 +55,96 @@ public:
         settings_.elapsed = 0;
     }
 
-    void Run(std::span<const Phase> phases) {
+    // The large group: all workers, phase by phase.
+    void RunTogether(std::span<const Phase> phases) {
         std::span<uint32_t> counts = world_.scratch.Allocate<uint32_t>(phases.size());
         for (size_t i = 0; i < phases.size(); ++i) counts[i] = BlockCount(phases[i]);
         RunPhases(*world_.jobs, counts, [&](uint32_t phase, uint32_t block, uint32_t worker) {
-            RunBlock(phases[phase], block, worker);
+            RunBlock(phases[phase], block, world_.findings[worker]);
         });
     }
 
-private:
-    uint32_t BlockCount(const Phase& phase) const {
-        if (phase.verb == Verb::IntegrateVelocities || phase.verb == Verb::IntegratePoses)
-            return (static_cast<uint32_t>(world_.bodies.awake.size()) + kBodiesPerBlock - 1) / kBodiesPerBlock;
-        if (phase.colour == world_.group.colours.size()) return 1;
-        const SolverGroup::ColourRange& range = world_.group.colours[phase.colour];
-        const uint32_t batches = range.movingEnd - range.movingBegin + range.fixedEnd - range.fixedBegin;
-        return (batches + kBatchesPerBlock - 1) / kBatchesPerBlock;
+    // A group of small islands: one worker, from beginning to end.
+    void RunAlone(const SolverGroup& group, std::span<const Verb> verbs, WorkerFindings& findings) {
+        uint8_t substep = 0;
+        for (Verb verb : verbs) {
+            if (IsOverBodies(verb)) {
+                RunBodies(verb, substep, std::span(layout_.bodies).subspan(group.bodiesBegin, group.bodiesEnd - group.bodiesBegin), findings);
+                continue;
+            }
+            if (verb == Verb::NextSubstep) {
+                ++substep;
+                continue;
+            }
+            for (uint32_t c = group.coloursBegin; c < group.coloursEnd; ++c)
+                RunBatches(verb, substep, layout_.colours[c], 0, layout_.colours[c].Count());
+        }
     }
 
-    void RunBlock(const Phase& phase, uint32_t block, uint32_t worker) {
-        if (phase.verb == Verb::IntegrateVelocities || phase.verb == Verb::IntegratePoses) {
-            const uint32_t end = std::min((block + 1) * kBodiesPerBlock, static_cast<uint32_t>(world_.bodies.awake.size()));
-            for (uint32_t i = block * kBodiesPerBlock; i < end; ++i) {
-                const uint32_t body = world_.bodies.awake[i];
-                if (!world_.colouring.IsTouched(body)) continue;
-                if (phase.verb == Verb::IntegratePoses) IntegratePose(body);
-                else IntegrateVelocity(body, phase.substep > 0, world_.findings[worker]);
-            }
-            return;
+private:
+    static bool IsOverBodies(Verb verb) { return verb == Verb::IntegrateVelocities || verb == Verb::IntegratePoses; }
+
+    uint32_t BlockCount(const Phase& phase) const {
+        const SolverGroup& large = layout_.groups.front();
+        if (IsOverBodies(phase.verb)) return (large.bodiesEnd - large.bodiesBegin + kBodiesPerBlock - 1) / kBodiesPerBlock;
+        if (phase.colour == large.coloursEnd - large.coloursBegin) return 1;
+        return (layout_.colours[large.coloursBegin + phase.colour].Count() + kBatchesPerBlock - 1) / kBatchesPerBlock;
+    }
+
+    void RunBlock(const Phase& phase, uint32_t block, WorkerFindings& findings) {
+        const SolverGroup& large = layout_.groups.front();
+        if (IsOverBodies(phase.verb)) {
+            const uint32_t begin = large.bodiesBegin + block * kBodiesPerBlock;
+            const uint32_t count = std::min(kBodiesPerBlock, large.bodiesEnd - begin);
+            RunBodies(phase.verb, phase.substep, std::span(layout_.bodies).subspan(begin, count), findings);
+        } else if (phase.colour == large.coloursEnd - large.coloursBegin) {
+            for (auto& batch : layout_.overflowMoving) RunBatch(phase.verb, phase.substep, batch);
+            for (auto& batch : layout_.overflowFixed) RunBatch(phase.verb, phase.substep, batch);
+        } else {
+            const ColourBatches& colour = layout_.colours[large.coloursBegin + phase.colour];
+            RunBatches(phase.verb, phase.substep, colour, block * kBatchesPerBlock,
+                       std::min((block + 1) * kBatchesPerBlock, colour.Count()));
         }
-        SolverGroup& group = world_.group;
-        if (phase.colour == group.colours.size()) {
-            for (auto& batch : group.overflowMoving) RunBatch(phase, batch);
-            for (auto& batch : group.overflowFixed) RunBatch(phase, batch);
-            return;
+    }
+
+    void RunBodies(Verb verb, uint8_t substep, std::span<const uint32_t> bodies, WorkerFindings& findings) {
+        for (uint32_t body : bodies) {
+            if (verb == Verb::IntegratePoses) IntegratePose(body);
+            else IntegrateVelocity(body, substep > 0, findings);
         }
-        const SolverGroup::ColourRange& range = group.colours[phase.colour];
-        const uint32_t moving = range.movingEnd - range.movingBegin;
-        const uint32_t all = moving + range.fixedEnd - range.fixedBegin;
-        const uint32_t end = std::min((block + 1) * kBatchesPerBlock, all);
-        for (uint32_t i = block * kBatchesPerBlock; i < end; ++i) {
+    }
+
+    // Batches [begin, end) of a colour, the moving ones first.
+    void RunBatches(Verb verb, uint8_t substep, const ColourBatches& colour, uint32_t begin, uint32_t end) {
+        const uint32_t moving = colour.moving.Count();
+        for (uint32_t i = begin; i < end; ++i) {
             if (i < moving) {
-                if (i + 1 < moving) Prefetch(group.moving[range.movingBegin + i + 1]);
-                RunBatch(phase, group.moving[range.movingBegin + i]);
+                if (i + 1 < moving) Prefetch(layout_.moving[colour.moving.begin + i + 1]);
+                RunBatch(verb, substep, layout_.moving[colour.moving.begin + i]);
+            } else {
+                RunBatch(verb, substep, layout_.fixed[colour.fixed.begin + i - moving]);
             }
-            else RunBatch(phase, group.fixed[range.fixedBegin + i - moving]);
         }
     }
 
     template <class Batch>
-    void RunBatch(const Phase& phase, Batch& batch) {
+    void RunBatch(Verb verb, uint8_t substep, Batch& batch) {
         BodyState* states = world_.bodies.states.data();
-        switch (phase.verb) {
+        switch (verb) {
             case Verb::WarmStart: WarmStartContacts(batch, states); break;
             case Verb::Velocities: SolveContactVelocities(batch, states, settings_); break;
             case Verb::Restitution: RestituteContacts(batch, states); break;
             case Verb::Positions:
             case Verb::Separations: {
                 ContactSolveSettings settings = settings_;
-                if (phase.verb == Verb::Separations) settings.baumgarte = 0;
-                settings.elapsed = h_ * static_cast<float>(phase.substep + 1);
+                if (verb == Verb::Separations) settings.baumgarte = 0;
+                settings.elapsed = h_ * static_cast<float>(substep + 1);
                 SolveContactPositions(batch, states, settings);
                 break;
             }
             case Verb::IntegrateVelocities:
-            case Verb::IntegratePoses: break;
+            case Verb::IntegratePoses:
+            case Verb::NextSubstep: break;
         }
     }
 
@@ -168,45 +194,67 @@ private:
     }
 
     WorldState& world_;
+    SolverLayout& layout_;
     float h_;
     ContactSolveSettings settings_;
 };
 
-// Appends the phases of one verb: its colours, then the overflow.
-void AppendColours(const WorldState& world, Verb verb, int substep, std::span<Phase> phases, size_t& count) {
-    const size_t colours = world.group.colours.size() + (world.report.overflowContacts > 0 ? 1 : 0);
-    for (size_t c = 0; c < colours; ++c)
-        phases[count++] = {verb, static_cast<uint8_t>(substep), static_cast<uint16_t>(c)};
+// The solver loop as the sequence of its verbs.
+std::span<const Verb> LoopOf(const SolverSettings& settings, ScratchArena& scratch) {
+    const size_t longest = static_cast<size_t>(settings.velocityIterations + settings.positionIterations + 5);
+    std::span<Verb> verbs = scratch.Allocate<Verb>(longest * static_cast<size_t>(settings.substeps));
+    size_t n = 0;
+    for (int substep = 0; substep < settings.substeps; ++substep) {
+        if (substep > 0) verbs[n++] = Verb::NextSubstep;
+        verbs[n++] = Verb::IntegrateVelocities;
+        if (substep == 0) verbs[n++] = Verb::WarmStart;
+        for (int i = 0; i < settings.velocityIterations; ++i) verbs[n++] = Verb::Velocities;
+        verbs[n++] = Verb::IntegratePoses;
+        for (int i = 0; i < settings.positionIterations; ++i) verbs[n++] = Verb::Positions;
+        // The next substep must know how far apart the points are, whether or not anything pushes them apart.
+        if (settings.positionIterations == 0) verbs[n++] = Verb::Separations;
+    }
+    return verbs.first(n);
+}
+
+// The same for the large group: a phase per colour.
+std::span<const Phase> PhasesOf(std::span<const Verb> verbs, WorldState& world) {
+    const SolverGroup& large = world.solver.groups.front();
+    const size_t colours = large.coloursEnd - large.coloursBegin + (world.solver.HasOverflow() ? 1u : 0u);
+    if (large.bodiesBegin == large.bodiesEnd) return {};
+    std::span<Phase> phases = world.scratch.Allocate<Phase>(verbs.size() * std::max<size_t>(colours, 1));
+    size_t n = 0;
+    uint8_t substep = 0;
+    for (Verb verb : verbs) {
+        if (verb == Verb::NextSubstep) ++substep;
+        else if (verb == Verb::IntegrateVelocities || verb == Verb::IntegratePoses) phases[n++] = {verb, substep, 0};
+        else
+            for (size_t c = 0; c < colours; ++c) phases[n++] = {verb, substep, static_cast<uint16_t>(c)};
+    }
+    return phases.first(n);
+}
+
+void RunVerbs(WorldState& world, const StepContext& step, std::span<const Verb> verbs) {
+    StepSolver solver(world, step);
+    const std::span<const Phase> phases = PhasesOf(verbs, world);
+    if (!phases.empty()) solver.RunTogether(phases);
+    world.jobs->ParallelFor(static_cast<uint32_t>(world.solver.groups.size()) - 1, 1, [&](JobRange range) {
+        for (uint32_t g = range.begin + 1; g < range.end + 1; ++g)
+            solver.RunAlone(world.solver.groups[g], verbs, world.findings[range.worker]);
+    });
 }
 
 }  // namespace
 
 void Solve(WorldState& world, const StepContext& step) {
     if (world.colouring.Size() == 0) return;
-    const SolverSettings& settings = world.group.settings;
-    const size_t perVerb = world.group.colours.size() + 1;
-    const size_t passes = static_cast<size_t>(settings.velocityIterations + settings.positionIterations + 2);
-    std::span<Phase> phases = world.scratch.Allocate<Phase>(static_cast<size_t>(settings.substeps) * (passes * perVerb + 2) + perVerb);
-    size_t count = 0;
-    for (int substep = 0; substep < settings.substeps; ++substep) {
-        const uint8_t s = static_cast<uint8_t>(substep);
-        phases[count++] = {Verb::IntegrateVelocities, s, 0};
-        if (substep == 0) AppendColours(world, Verb::WarmStart, substep, phases, count);
-        for (int i = 0; i < settings.velocityIterations; ++i) AppendColours(world, Verb::Velocities, substep, phases, count);
-        phases[count++] = {Verb::IntegratePoses, s, 0};
-        for (int i = 0; i < settings.positionIterations; ++i) AppendColours(world, Verb::Positions, substep, phases, count);
-        // The next substep must know how far apart the points are, whether or not anything pushes them apart.
-        if (settings.positionIterations == 0) AppendColours(world, Verb::Separations, substep, phases, count);
-    }
-    StepSolver(world, step).Run(phases.first(count));
+    RunVerbs(world, step, LoopOf(world.settings.solver, world.scratch));
 }
 
 void Restitution(WorldState& world) {
     if (!world.bounces) return;
-    std::span<Phase> phases = world.scratch.Allocate<Phase>(world.group.colours.size() + 1);
-    size_t count = 0;
-    AppendColours(world, Verb::Restitution, 0, phases, count);
-    StepSolver(world, {1.0f, 1.0f}).Run(phases.first(count));
+    static constexpr Verb kVerbs[] = {Verb::Restitution};
+    RunVerbs(world, {1.0f, 1.0f}, kVerbs);
 }
 
 }  // namespace fulcrum

@@ -32,6 +32,9 @@ void Color(WorldState& world);
 void ColourPair(WorldState& world, uint32_t pair);
 void UncolourPair(WorldState& world, uint32_t pair);
 
+// Sorts the coloured contacts into the solver's groups and batches, where they changed.
+void BuildIslands(WorldState& world);
+
 // Reads records, poses, masses. Writes batches of rows.
 void Prepare(WorldState& world, const StepContext& step);
 

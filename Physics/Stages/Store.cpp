@@ -138,11 +138,11 @@ void StoreAll(WorldState& world, std::vector<Batch>& batches, uint32_t count) {
 }  // namespace
 
 void Store(WorldState& world, const StepContext& step) {
-    SolverGroup& group = world.group;
-    StoreAll(world, group.moving, group.movingCount);
-    StoreAll(world, group.fixed, group.fixedCount);
-    StoreAll(world, group.overflowMoving, static_cast<uint32_t>(group.overflowMoving.size()));
-    StoreAll(world, group.overflowFixed, static_cast<uint32_t>(group.overflowFixed.size()));
+    SolverLayout& layout = world.solver;
+    StoreAll(world, layout.moving, layout.movingCount);
+    StoreAll(world, layout.fixed, layout.fixedCount);
+    StoreAll(world, layout.overflowMoving, static_cast<uint32_t>(layout.overflowMoving.size()));
+    StoreAll(world, layout.overflowFixed, static_cast<uint32_t>(layout.overflowFixed.size()));
     world.jobs->ParallelFor(static_cast<uint32_t>(world.bodies.awake.size()), 64, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i)
             EndBody(world, world.bodies.awake[i], step, world.findings[range.worker]);

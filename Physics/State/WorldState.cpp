@@ -46,14 +46,9 @@ void WakeInside(WorldState& world, const Bounds& bounds) {
     for (uint32_t body : found) WakeBody(world, body);
 }
 
-size_t SolverGroup::MemoryUsed() const {
-    return moving.capacity() * sizeof(moving[0]) + fixed.capacity() * sizeof(fixed[0]) +
-           overflowMoving.capacity() * sizeof(overflowMoving[0]) + overflowFixed.capacity() * sizeof(overflowFixed[0]);
-}
-
 size_t WorldState::MemoryUsed() const {
     size_t bytes = sizeof(*this) + bodies.MemoryUsed() + colliders.MemoryUsed() + pairs.MemoryUsed() +
-                   colouring.MemoryUsed() + sleeping.MemoryUsed() + group.MemoryUsed() + scratch.CapacityInBytes() +
+                   colouring.MemoryUsed() + sleeping.MemoryUsed() + solver.MemoryUsed() + scratch.CapacityInBytes() +
                    changes.capacity() + activated.capacity() * sizeof(uint32_t) + newPairs.capacity() * sizeof(uint64_t);
     for (const WorkerFindings& f : findings)
         bytes += sizeof(f) + f.colliders.capacity() * sizeof(uint32_t) + f.pairs.capacity() * sizeof(uint64_t);

@@ -8,8 +8,11 @@
 #include <Fulcrum/Physics/State/BodyStore.h>
 #include <Fulcrum/Physics/State/ColliderStore.h>
 #include <Fulcrum/Physics/State/PairStore.h>
+#include <Fulcrum/Physics/State/SolverLayout.h>
 #include <Fulcrum/Physics/StepReport.h>
 
+#include <algorithm>
+#include <cstring>
 #include <memory>
 #include <vector>
 
@@ -29,24 +32,6 @@ struct alignas(64) WorkerFindings {
     bool bounces = false;             // Prepare: some contact has restitution
 };
 
-// The rows of all coloured contacts, rebuilt each step. A solver group has its own settings and batches: islands that ask
-// for more effort are to become further groups; today all contacts are in the one group of the system's settings.
-struct SolverGroup {
-    struct ColourRange {
-        uint32_t colour;
-        uint32_t movingBegin, movingEnd;  // into `moving`
-        uint32_t fixedBegin, fixedEnd;    // into `fixed`
-    };
-    SolverSettings settings;
-    std::vector<ColourRange> colours;     // those that are not empty, in the order of solving
-    std::vector<ContactBatch<kLanes, false>> moving;
-    std::vector<ContactBatch<kLanes, true>> fixed;
-    std::vector<ContactBatch<1, false>> overflowMoving;  // solved one by one, after the colours
-    std::vector<ContactBatch<1, true>> overflowFixed;
-    uint32_t movingCount = 0, fixedCount = 0;            // batches in use
-    size_t MemoryUsed() const;
-};
-
 // What Collide found out about an active pair that the rest of the world must hear of.
 enum class PairChange : uint8_t { None, Began, Ended, Dead, WakesOther };
 
@@ -60,7 +45,7 @@ struct WorldState {
     PairStore pairs;
     ContactColouring colouring;
     SleepingIslands sleeping;
-    SolverGroup group;
+    SolverLayout solver;
 
     std::vector<uint32_t> removed;            // bodies to forget before the next step
     std::vector<PairChange> changes;          // by pair, of this step; None for those that are not active
@@ -74,6 +59,24 @@ struct WorldState {
 
     size_t MemoryUsed() const;
 };
+
+// Visits the pairs with a change, in ascending order; in most steps that are few.
+template <class Visitor>
+void VisitChanges(const WorldState& world, Visitor&& visit) {
+    const size_t count = world.changes.size();
+    for (size_t i = 0; i < count;) {
+        uint64_t eight = 0;
+        if (i + 8 <= count) {
+            std::memcpy(&eight, &world.changes[i], 8);
+            if (eight == 0) {
+                i += 8;
+                continue;
+            }
+        }
+        for (const size_t end = std::min(i + 8, count); i < end; ++i)
+            if (world.changes[i] != PairChange::None) visit(static_cast<uint32_t>(i));
+    }
+}
 
 // Wakes a body and the island it sleeps in; their colliders are queued for FindPairs.
 void WakeBody(WorldState& world, uint32_t body);

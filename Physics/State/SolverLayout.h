@@ -1,0 +1,53 @@
+// The coloured contacts as the solver runs them: groups of islands, in each group colour after colour, in each colour
+// batches of lanes. Written by the BuildIslands stage where contacts began or ended; rows are filled by Prepare.
+#pragma once
+
+#include <Fulcrum/Constraints/Coloring.h>
+#include <Fulcrum/Constraints/Contacts/ContactBatch.h>
+#include <Fulcrum/Physics/Settings.h>
+
+#include <vector>
+
+namespace fulcrum {
+
+// Islands that are solved together, and by the same settings. The first group holds the large islands, which are solved
+// colour by colour on all workers. Each of the others is a handful of small islands that one worker solves from beginning
+// to end, in its own cache and without a barrier. Which islands share a group has no influence on any result.
+// A group is the place for effort of its own: today all have the system's settings.
+struct SolverGroup {
+    SolverSettings settings;
+    uint32_t coloursBegin = 0, coloursEnd = 0;  // into SolverLayout::colours
+    uint32_t bodiesBegin = 0, bodiesEnd = 0;    // into SolverLayout::bodies
+};
+
+// Contacts [first, first + contacts) of a list, in the batches [begin, end).
+struct BatchRange {
+    uint32_t first = 0, contacts = 0;
+    uint32_t begin = 0, end = 0;
+    uint32_t Count() const { return end - begin; }
+};
+
+struct ColourBatches {
+    BatchRange moving, fixed;
+    uint32_t Count() const { return moving.Count() + fixed.Count(); }
+};
+
+struct SolverLayout {
+    std::vector<SolverGroup> groups;                                // empty: nothing to solve
+    std::vector<ColourBatches> colours;
+    std::vector<uint32_t> bodies;                                   // dynamic ones that a contact touches, by group
+    std::vector<ContactColouring::Entry> movingContacts, fixedContacts;  // by group and colour
+    std::vector<ContactBatch<kLanes, false>> moving;
+    std::vector<ContactBatch<kLanes, true>> fixed;
+    std::vector<ContactBatch<1, false>> overflowMoving;             // of the first group: solved one by one, at last
+    std::vector<ContactBatch<1, true>> overflowFixed;
+    uint32_t movingCount = 0, fixedCount = 0;                       // batches in use
+    uint32_t colourCount = 0;                                       // colours in use
+    uint32_t islands = 0;
+    uint64_t version = 0;                                           // of the colouring that this was made from
+
+    bool HasOverflow() const { return !overflowMoving.empty() || !overflowFixed.empty(); }
+    size_t MemoryUsed() const;
+};
+
+}  // namespace fulcrum
