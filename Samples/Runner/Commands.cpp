@@ -93,6 +93,7 @@ int RunJob(const Job& job) {
     if (job.options.recordHtml || job.options.recordGlb) {
         recorder.emplace(world, steps, job.options.dt);
         recorder->recording.title = job.name;
+        std::replace(recorder->recording.title.begin(), recorder->recording.title.end(), '_', ' ');
         recorder->recording.description = job.description;
     }
     Result<RunFigures> run = [&] {
