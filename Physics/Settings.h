@@ -47,7 +47,7 @@ constexpr LockedAxes operator|(LockedAxes a, LockedAxes b) {
 
 // The trade of speed for accuracy.
 struct SolverSettings {
-    int substeps = 4;            // 1..64; each integrates dt / substeps
+    int substeps = 6;            // 1..64; each integrates dt / substeps
     int velocityIterations = 1;  // 1..255 per substep
     int positionIterations = 1;  // 0..255 per substep
 };

@@ -61,7 +61,9 @@ void WriteManifold(const WorldState& world, const PairView& v, const RelativePos
                    float dt) {
     Pair& pair = v.pair;
     ContactRecord& record = v.record;
-    const ContactRecord old = record;
+    float oldImpulses[Manifold::kMaxPoints];
+    std::copy(record.impulse, record.impulse + Manifold::kMaxPoints, oldImpulses);
+    const int oldCount = pair.pointCount;
     uint32_t oldFeatures[Manifold::kMaxPoints];
     std::copy(pair.features, pair.features + Manifold::kMaxPoints, oldFeatures);
 
@@ -88,14 +90,14 @@ void WriteManifold(const WorldState& world, const PairView& v, const RelativePos
             record.points[count].onB[k] = onB[k];
         }
         record.impulse[count] = 0;
-        for (int j = 0; j < pair.pointCount; ++j)
-            if (oldFeatures[j] == found.feature) record.impulse[count] = old.impulse[j];
+        for (int j = 0; j < oldCount; ++j)
+            if (oldFeatures[j] == found.feature) record.impulse[count] = oldImpulses[j];
         pair.features[count++] = found.feature;
     }
     for (int k = 0; k < 3; ++k) record.normal[k] = normal[k];
     record.pointCount = static_cast<float>(count);
     pair.pointCount = static_cast<uint8_t>(count);
-    if (old.pointCount == 0) {
+    if (oldCount == 0) {
         record.twistImpulse = 0;
         for (float& f : record.frictionImpulse) f = 0;
     }
@@ -107,6 +109,13 @@ bool Overlap(const WorldState& world, const Pair& pair) {
     return world.colliders.colliders[pair.colliderA].fat.Overlaps(world.colliders.colliders[pair.colliderB].fat);
 }
 
+// Whether the outer spheres of two bodies are farther apart than `distance`.
+bool BallsApart(const WorldState& world, const Pair& pair, float distance) {
+    const Vector3 between = (world.bodies.CentreOf(pair.bodyB) - world.bodies.CentreOf(pair.bodyA)).cast<float>();
+    const float reach = pair.shapeA->OuterRadius() + pair.shapeB->OuterRadius() + distance;
+    return LengthSquared(between) > reach * reach;
+}
+
 PairChange CollidePair(WorldState& world, uint32_t index, float dt, WorkerFindings& findings) {
     Pair& pair = world.pairs.pairs[index];
     const BodyPose& poseA = world.bodies.poses[pair.bodyA];
@@ -114,6 +123,9 @@ PairChange CollidePair(WorldState& world, uint32_t index, float dt, WorkerFindin
     const uint32_t now = static_cast<uint32_t>(world.report.step);
     if ((poseA.boundsChangedIn == now || poseB.boundsChangedIn == now) && !Overlap(world, pair)) return PairChange::Dead;
 
+    const float reachAhead = world.settings.speculativeDistance + dt * Length(Vector3(
+        world.bodies.LinearVelocityOf(pair.bodyB) - world.bodies.LinearVelocityOf(pair.bodyA)));
+    if (pair.pointCount == 0 && !pair.offset && BallsApart(world, pair, reachAhead)) return PairChange::None;
     const RelativePose bodyBInA = Relative(world.bodies.CentrePoseOf(pair.bodyA), world.bodies.CentrePoseOf(pair.bodyB));
     PairView v{pair, world.pairs.records[index], *pair.shapeA, *pair.shapeB, bodyBInA};
     if (pair.offset)
@@ -123,19 +135,12 @@ PairChange CollidePair(WorldState& world, uint32_t index, float dt, WorkerFindin
     if (pair.pointCount > 0 && HardlyMoved(v)) {
         ++findings.kept;
     } else {
-        const Vector3 relative = world.bodies.LinearVelocityOf(pair.bodyB) - world.bodies.LinearVelocityOf(pair.bodyA);
         CollideSettings settings;
         settings.method = world.settings.narrowPhase;
-        settings.speculativeDistance = world.settings.speculativeDistance + Length(relative) * dt;
-        const float reach = v.shapeA.OuterRadius() + v.shapeB.OuterRadius() + settings.speculativeDistance;
-        if (LengthSquared(v.bInA.position) > reach * reach) {
-            v.record.pointCount = 0;
-            pair.pointCount = 0;
-        } else {
-            Manifold manifold;
-            Collide(v.shapeA, v.shapeB, v.bInA, settings, pair.cache, manifold, findings.libccd);
-            WriteManifold(world, v, bodyBInA, manifold, dt);
-        }
+        settings.speculativeDistance = reachAhead;
+        Manifold manifold;
+        Collide(v.shapeA, v.shapeB, v.bInA, settings, pair.cache, manifold, findings.libccd);
+        WriteManifold(world, v, bodyBInA, manifold, dt);
         pair.reference = v.bInA;
     }
     pair.touching = pair.pointCount > 0;

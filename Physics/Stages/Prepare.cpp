@@ -107,14 +107,22 @@ void Prepare(WorldState& world, const StepContext& step) {
         FillRange(world, layout.fixed, fixed, layout.fixedContacts, settings, findings);
     };
     const SolverGroup& large = layout.groups.front();
-    for (uint32_t c = large.coloursBegin; c < large.coloursEnd; ++c) {
+    const auto piecesOf = [&](uint32_t c) {
         const ColourBatches& colour = layout.colours[c];
-        const uint32_t pieces = (std::max(colour.moving.Count(), colour.fixed.Count()) + kPiece - 1) / kPiece;
-        world.jobs->ParallelFor(pieces, 1, [&](JobRange range) {
-            for (uint32_t i = range.begin; i < range.end; ++i)
-                fill(Piece(colour.moving, i), Piece(colour.fixed, i), world.findings[range.worker]);
-        });
-    }
+        return (std::max(colour.moving.Count(), colour.fixed.Count()) + kPiece - 1) / kPiece;
+    };
+    uint32_t count = 0;
+    for (uint32_t c = large.coloursBegin; c < large.coloursEnd; ++c) count += piecesOf(c);
+    std::span<std::pair<uint32_t, uint32_t>> pieces = world.scratch.Allocate<std::pair<uint32_t, uint32_t>>(count);
+    count = 0;
+    for (uint32_t c = large.coloursBegin; c < large.coloursEnd; ++c)
+        for (uint32_t i = 0; i < piecesOf(c); ++i) pieces[count++] = {c, i};
+    world.jobs->ParallelFor(count, 1, [&](JobRange range) {
+        for (uint32_t i = range.begin; i < range.end; ++i) {
+            const auto [c, piece] = pieces[i];
+            fill(Piece(layout.colours[c].moving, piece), Piece(layout.colours[c].fixed, piece), world.findings[range.worker]);
+        }
+    });
     world.jobs->ParallelFor(static_cast<uint32_t>(layout.groups.size()) - 1, 1, [&](JobRange range) {
         for (uint32_t g = range.begin + 1; g < range.end + 1; ++g)
             for (uint32_t c = layout.groups[g].coloursBegin; c < layout.groups[g].coloursEnd; ++c)
