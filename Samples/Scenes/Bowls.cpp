@@ -6,14 +6,14 @@
 namespace fulcrum {
 namespace {
 
-constexpr double kInner = 1.5, kOuter = 1.7;  // m, radii of a bowl
-constexpr int kBands = 4, kSectors = 16;
-constexpr double kRim = 80 * kDegree;         // from the bottom
+constexpr double kInner = 2, kOuter = 2.2;  // m, radii of a bowl
+constexpr int kBands = 5, kSectors = 24;
+constexpr double kRim = 55 * kDegree;         // from the bottom
 constexpr std::array<float, 4> kDamping{0, 0.1f, 0.5f, 3};
 
-Position BowlCentre(size_t bowl) { return {4.0 * (static_cast<double>(bowl) - 1.5), 2, 0}; }
+Position BowlCentre(size_t bowl) { return {4.2 * (static_cast<double>(bowl) - 1.5), kOuter, 0}; }
 
-// Half a hollow ball of convex pieces: bands from the bottom to the rim, each cut into sectors.
+// The lower part of a hollow ball, of convex pieces: bands from the bottom to the rim, each cut into sectors.
 ShapePtr Bowl(SceneWorld& world) {
     std::vector<Compound::ChildSettings> pieces;
     for (int band = 0; band < kBands; ++band)
@@ -44,9 +44,9 @@ void Build(SceneWorld& world) {
                                                .linearDamping = kDamping[i],
                                                .angularDamping = kDamping[i]}));
         };
-        addMoving(ball, {1.05, -0.3, 0});
-        addMoving(ball, {0.1, -0.2, 1.1});
-        addMoving(capsule, {-0.8, -0.4, -0.5});
+        addMoving(ball, {1.3, -1.1, 0});
+        addMoving(ball, {0.1, -1.05, 1.35});
+        addMoving(capsule, {-1, -0.9, -0.5});
     }
 }
 

@@ -17,7 +17,8 @@ Position OnCircle(double angle, double radius, double height) {
 
 // A spiral of dominoes, so that the end does not meet the beginning; a ball rolls into the first.
 void Build(SceneWorld& world) {
-    world.AddFloor(10, 10);
+    world.AddFloor(6, 6);
+    world.AddWalls(5.5f, 5.5f, 0.3f);
     const ShapePtr domino = world.BoxOf(0.1f, 0.25f, 0.03f);  // its thickness is along the arc
     for (int i = 0; i < kDominoes; ++i) {
         const double angle = i * kStep;

@@ -20,7 +20,8 @@ Position StartOf(size_t box) { return OnRamp(2 - kHalfLength, 0.4, 1.2 * (static
 
 // The ramp's coefficient is 1 and the boxes multiply theirs with it, so each slides or sticks by its own.
 void Build(SceneWorld& world) {
-    world.AddFloor(20, 20);
+    world.AddFloor(20, 10);
+    world.AddWalls(19, 9, 1);
     const Quaternion tilt = Turn(Vector3(0, 0, 1), -kSlope);
     world.Add({.shape = world.BoxOf(kHalfLength, 0.2f, 6),
                .motion = MotionType::Static,

@@ -43,7 +43,8 @@ ShapePtr Disc(SceneWorld& world) {
 }
 
 void Build(SceneWorld& world) {
-    world.AddFloor(14, 14);
+    world.AddFloor(14, 10);
+    world.AddWalls(12, 8, 0.5f);
     const std::array<ShapePtr, kPlatforms> shapes{world.BoxOf(0.8f, 0.15f, 0.8f), world.BoxOf(1.4f, 0.15f, 0.8f),
                                                   Disc(world), world.BoxOf(2.5f, 0.4f, 0.1f)};
     for (size_t i = 0; i < kPlatforms; ++i) {

@@ -58,19 +58,21 @@ void Build(SceneWorld& world) {
     const std::array<ShapePtr, 5> shapes{world.SphereOf(0.5f), world.BoxOf(0.5f, 0.4f, 0.3f), world.CapsuleOf(0.4f, 0.3f),
                                          Rock(world), Jack(world)};
     AddRampAndBall(world);
-    size_t next = 0;
     for (int layer = 0; layer < 10; ++layer)
         for (int i = 0; i < 5; ++i)
             for (int j = 0; j < 5; ++j) {
                 const double x = world.random.Between(-0.1, 0.1), z = world.random.Between(-0.1, 0.1);
-                world.Add({.shape = shapes[next++ % shapes.size()],
+                // Shifted from layer to layer: columns of one shape would stand.
+                world.Add({.shape = shapes[static_cast<size_t>(i + j + 2 * layer) % shapes.size()],
                            .position = {1.25 * (i - 2) + x, 0.8 + 1.3 * layer, 1.25 * (j - 2) + z}});
             }
 }
 
 void OpenTheGate(SceneWorld& world, double) {
     const BodyId gate = world.watched[0];
-    if (world.StepCount() == kGateOpens) (void)world.Bodies().SetVelocity(gate, Vector3(0, 6, 0), Vector3::Zero());
+    // In its own plane: upwards it would push the ball up the ramp.
+    const Vector3 speed(static_cast<float>(6 * Sin(kSlope)), static_cast<float>(6 * Cos(kSlope)), 0);
+    if (world.StepCount() == kGateOpens) (void)world.Bodies().SetVelocity(gate, speed, Vector3::Zero());
     if (world.StepCount() == kGateOpens + 30) (void)world.Bodies().SetVelocity(gate, Vector3::Zero(), Vector3::Zero());
 }
 
