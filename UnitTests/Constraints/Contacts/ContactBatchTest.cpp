@@ -1,0 +1,252 @@
+// A contact batch against the same rows as a sequence of axis and angle parts, and against conservation of momentum.
+#include <Fulcrum/Constraints/Parts/AnglePart.h>
+#include <Fulcrum/Constraints/Parts/AxisPart.h>
+#include <Fulcrum/UnitTests/Constraints/Contacts/RandomContacts.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fulcrum::testing {
+namespace {
+
+constexpr ContactPrepareSettings kPrepare{1.0f, 0.5f};
+constexpr ContactSolveSettings kSolve{240.0f, 0.2f, 0.0005f, 0.2f, 0.0f};
+
+// One contact, row by row: friction along two tangents and about the normal first, then the points.
+template <BodySide kSideB>
+class Rows {
+public:
+    Rows(const RandomContacts& contacts, uint32_t contact)
+        : record_(contacts.records[contact]), mass1_(contacts.MassOf(2 * contact)), mass2_(contacts.MassOf(2 * contact + 1)) {
+        const Pose a = contacts.PoseOf(2 * contact), b = contacts.PoseOf(2 * contact + 1);
+        const Vector3 between((b.position - a.position).cast<float>());
+        count_ = static_cast<int>(record_.pointCount);
+        normal_ = Rotate(a.rotation, Vector3(record_.normal[0], record_.normal[1], record_.normal[2]));
+        t1_ = Perpendicular(normal_);
+        t2_ = Cross<float>(normal_, t1_);
+        Vector3 points[4], centre = Vector3::Zero();
+        for (int i = 0; i < count_; ++i) {
+            const ContactRecord::Point& p = record_.points[i];
+            const Vector3 onA = Rotate(a.rotation, Vector3(p.onA[0], p.onA[1], p.onA[2]));
+            const Vector3 onB = between + Rotate(b.rotation, Vector3(p.onB[0], p.onB[1], p.onB[2]));
+            separation_[i] = Dot<float>(normal_, Vector3(onB - onA));
+            points[i] = onA + normal_ * (0.5f * separation_[i]);
+            centre += points[i] / static_cast<float>(count_);
+        }
+        const auto frame = [&](const Vector3& point, const Vector3& axis) { return AxisFrame<float>{point, Vector3(point - between), axis}; };
+        for (int i = 0; i < count_; ++i) {
+            point_[i].template CalculateProperties<BodySide::Dynamic, kSideB>(mass1_, mass2_, frame(points[i], normal_), 0.0f);
+            point_[i].SetTotalLambda(record_.impulse[i]);
+        }
+        const Vector3 friction(record_.frictionImpulse[0], record_.frictionImpulse[1], record_.frictionImpulse[2]);
+        tangent1_.template CalculateProperties<BodySide::Dynamic, kSideB>(mass1_, mass2_, frame(centre, t1_), 0.0f);
+        tangent2_.template CalculateProperties<BodySide::Dynamic, kSideB>(mass1_, mass2_, frame(centre, t2_), 0.0f);
+        twist_.template CalculateProperties<BodySide::Dynamic, kSideB>(mass1_, mass2_, normal_, 0.0f);
+        tangent1_.SetTotalLambda(Dot<float>(friction, t1_));
+        tangent2_.SetTotalLambda(Dot<float>(friction, t2_));
+        twist_.SetTotalLambda(record_.twistImpulse);
+    }
+
+    void WarmStart(Twist<float>& v1, Twist<float>& v2) {
+        tangent1_.template WarmStart<BodySide::Dynamic, kSideB>(v1, v2, mass1_, mass2_, t1_, 1.0f);
+        tangent2_.template WarmStart<BodySide::Dynamic, kSideB>(v1, v2, mass1_, mass2_, t2_, 1.0f);
+        twist_.template WarmStart<BodySide::Dynamic, kSideB>(v1, v2, mass1_, mass2_, normal_, 1.0f);
+        for (int i = 0; i < count_; ++i) point_[i].template WarmStart<BodySide::Dynamic, kSideB>(v1, v2, mass1_, mass2_, normal_, 1.0f);
+    }
+
+    void SolveVelocity(Twist<float>& v1, Twist<float>& v2) {
+        float limit = 0;
+        for (int i = 0; i < count_; ++i) limit += record_.friction * point_[i].GetTotalLambda();
+        // Both tangents' impulses are found, one after the other, before they are clamped to the cone together.
+        const float before1 = tangent1_.GetTotalLambda(), before2 = tangent2_.GetTotalLambda();
+        Twist<float> w1 = v1, w2 = v2;
+        const float wanted1 = tangent1_.template SolveTotalLambda<BodySide::Dynamic, kSideB>(w1, w2, t1_);
+        tangent1_.template ApplyTotalLambda<BodySide::Dynamic, kSideB>(w1, w2, mass1_, mass2_, t1_, wanted1);
+        const float wanted2 = tangent2_.template SolveTotalLambda<BodySide::Dynamic, kSideB>(w1, w2, t2_);
+        tangent1_.SetTotalLambda(before1);
+        tangent2_.SetTotalLambda(before2);
+        const float length = std::sqrt(wanted1 * wanted1 + wanted2 * wanted2);
+        const float scale = length > limit ? limit / length : 1.0f;
+        tangent1_.template ApplyTotalLambda<BodySide::Dynamic, kSideB>(v1, v2, mass1_, mass2_, t1_, wanted1 * scale);
+        tangent2_.template ApplyTotalLambda<BodySide::Dynamic, kSideB>(v1, v2, mass1_, mass2_, t2_, wanted2 * scale);
+        const float most = limit * record_.twistRadius;
+        twist_.template SolveVelocity<BodySide::Dynamic, kSideB>(v1, v2, mass1_, mass2_, normal_, -most, most);
+        for (int i = 0; i < count_; ++i) {
+            point_[i].SetBias(std::max(separation_[i], 0.0f) * kSolve.inverseDt);
+            point_[i].template SolveVelocity<BodySide::Dynamic, kSideB>(v1, v2, mass1_, mass2_, normal_, 0.0f, 1e30f);
+        }
+    }
+
+    // Each point's error is measured when its turn comes.
+    void SolvePosition(Twist<float>& d1, Twist<float>& d2) {
+        for (int i = 0; i < count_; ++i) {
+            const float now = separation_[i] + point_[i].template RelativeMotion<BodySide::Dynamic, kSideB>(d1, d2, normal_);
+            const float error = std::clamp(now + kSolve.slop, -kSolve.maxCorrection, 0.0f);
+            point_[i].template SolvePosition<BodySide::Dynamic, kSideB>(d1, d2, mass1_, mass2_, normal_, error, kSolve.baumgarte);
+        }
+    }
+
+    int count_ = 0;
+    AxisPart<float, false> point_[4], tangent1_, tangent2_;
+    AnglePart<float, false> twist_;
+
+private:
+    ContactRecord record_;
+    InverseMass<float> mass1_, mass2_;
+    Vector3 normal_, t1_, t2_;
+    float separation_[4] = {};
+};
+
+// Numbers are of size 10 and go through some hundred roundings of 2^-24, some of differences.
+constexpr float kTolerance = 2e-4f;
+
+void ExpectNear(const Twist<float>& a, const Twist<float>& b, const char* what, uint32_t contact) {
+    for (int k = 0; k < 3; ++k) {
+        EXPECT_NEAR(a.linear[k], b.linear[k], kTolerance) << what << " of contact " << contact;
+        EXPECT_NEAR(a.angular[k], b.angular[k], kTolerance) << what << " of contact " << contact;
+    }
+}
+
+template <bool kFixedB>
+void CompareWithParts(uint32_t seed) {
+    constexpr BodySide kSideB = kFixedB ? BodySide::Kinematic : BodySide::Dynamic;
+    RandomContacts contacts(16, kFixedB, seed);
+    for (uint32_t i = 0; i < 16; ++i) {
+        Rows<kSideB> rows(contacts, i);
+        auto batch = PrepareBatch<1, kFixedB>(contacts, i, kPrepare);
+        Twist<float> v1 = contacts.VelocityOf(2 * i), v2 = contacts.VelocityOf(2 * i + 1);
+
+        WarmStartContacts(batch, contacts.states.data());
+        rows.WarmStart(v1, v2);
+        ExpectNear(contacts.VelocityOf(2 * i), v1, "warm start, A", i);
+        ExpectNear(contacts.VelocityOf(2 * i + 1), v2, "warm start, B", i);
+        for (int iteration = 0; iteration < 3; ++iteration) {
+            SolveContactVelocities(batch, contacts.states.data(), kSolve);
+            rows.SolveVelocity(v1, v2);
+            ExpectNear(contacts.VelocityOf(2 * i), v1, "velocity, A", i);
+            ExpectNear(contacts.VelocityOf(2 * i + 1), v2, "velocity, B", i);
+            for (int p = 0; p < rows.count_; ++p)
+                EXPECT_NEAR(batch.rows[p].impulse[0], rows.point_[p].GetTotalLambda(), 10 * kTolerance);
+            EXPECT_NEAR(batch.frictionImpulse[0][0], rows.tangent1_.GetTotalLambda(), 10 * kTolerance);
+            EXPECT_NEAR(batch.frictionImpulse[1][0], rows.tangent2_.GetTotalLambda(), 10 * kTolerance);
+            EXPECT_NEAR(batch.frictionImpulse[2][0], rows.twist_.GetTotalLambda(), 10 * kTolerance);
+        }
+
+        Twist<float> d1, d2;  // nobody has moved yet
+        for (int pass = 0; pass < 2; ++pass) {
+            SolveContactPositions(batch, contacts.states.data(), kSolve);
+            rows.SolvePosition(d1, d2);
+            ExpectNear(contacts.DisplacementOf(2 * i), d1, "displacement, A", i);
+            ExpectNear(contacts.DisplacementOf(2 * i + 1), d2, "displacement, B", i);
+        }
+        if (::testing::Test::HasFailure()) return;
+    }
+}
+
+TEST(ContactBatch, IsTheSequenceOfItsParts) {
+    for (uint32_t seed = 1; seed <= 10; ++seed) CompareWithParts<false>(seed);
+}
+
+TEST(ContactBatch, IsTheSequenceOfItsPartsAgainstAFixedBody) {
+    for (uint32_t seed = 1; seed <= 10; ++seed) CompareWithParts<true>(seed);
+}
+
+// Momentum of both bodies about the world's origin, in double.
+void Momentum(const RandomContacts& contacts, uint32_t contact, Position& linear, Position& angular) {
+    linear = angular = Position::Zero();
+    for (uint32_t body = 2 * contact; body < 2 * contact + 2; ++body) {
+        const Twist<float> v = contacts.VelocityOf(body);
+        const InverseMass<float> m = contacts.MassOf(body);
+        Eigen::Matrix3d inverse;
+        const auto& i = m.inertia;
+        inverse << double(i.xx), double(i.xy), double(i.xz), double(i.xy), double(i.yy), double(i.yz), double(i.xz), double(i.yz), double(i.zz);
+        const Position p = v.linear.cast<double>() / double(m.mass);
+        linear += p;
+        angular += inverse.inverse() * v.angular.cast<double>() + contacts.PoseOf(body).position.cross(p);
+    }
+}
+
+TEST(ContactBatch, KeepsLinearAndAngularMomentum) {
+    RandomContacts contacts(64, false, 5);
+    for (uint32_t i = 0; i < 64; ++i) {
+        Position linear, angular, linearAfter, angularAfter;
+        Momentum(contacts, i, linear, angular);
+        auto batch = PrepareBatch<1, false>(contacts, i, kPrepare);
+        WarmStartContacts(batch, contacts.states.data());
+        for (int k = 0; k < 4; ++k) SolveContactVelocities(batch, contacts.states.data(), kSolve);
+        RestituteContacts(batch, contacts.states.data());
+        Momentum(contacts, i, linearAfter, angularAfter);
+        // Inverse masses and inertias are from 0.1 on: each rounding of a velocity of size 10 is one of 1e-5 of momentum.
+        EXPECT_LT((linearAfter - linear).norm(), 3e-4) << i;
+        EXPECT_LT((angularAfter - angular).norm(), 2e-3) << i;
+    }
+}
+
+TEST(ContactBatch, LeavesNoApproachBehind) {
+    // One point, without friction: after one solve the gap at most closes.
+    RandomContacts contacts(64, false, 9);
+    for (ContactRecord& record : contacts.records) {
+        record.pointCount = 1;
+        record.friction = 0;
+        for (float& impulse : record.impulse) impulse = 0;
+        for (float& impulse : record.frictionImpulse) impulse = 0;
+        record.twistImpulse = 0;
+    }
+    for (uint32_t i = 0; i < 64; ++i) {
+        auto batch = PrepareBatch<1, false>(contacts, i, kPrepare);
+        SolveContactVelocities(batch, contacts.states.data(), kSolve);
+        const Twist<float> a = contacts.VelocityOf(2 * i), b = contacts.VelocityOf(2 * i + 1);
+        const auto vec = [](const Vec3<Wide<1>>& v) { return Lane<1>(v, 0); };
+        const Vector3 relative = b.linear + Cross<float>(b.angular, vec(batch.sideB.arm)) - a.linear - Cross<float>(a.angular, vec(batch.armA));
+        const float allowed = -std::max(batch.rows[0].startSeparation[0], 0.0f) * kSolve.inverseDt;
+        EXPECT_GE(Dot<float>(relative, vec(batch.normal)), allowed - 1e-5f) << i;
+        EXPECT_GE(batch.rows[0].impulse[0], 0.0f);
+    }
+}
+
+TEST(ContactBatch, AFixedSideIsNeitherReadAsMovableNorWritten) {
+    RandomContacts contacts(16, true, 4);
+    const std::vector<BodyState> before = contacts.states;
+    for (uint32_t i = 0; i < 16; ++i) {
+        auto batch = PrepareBatch<1, true>(contacts, i, kPrepare);
+        WarmStartContacts(batch, contacts.states.data());
+        SolveContactVelocities(batch, contacts.states.data(), kSolve);
+        SolveContactPositions(batch, contacts.states.data(), kSolve);
+        RestituteContacts(batch, contacts.states.data());
+        EXPECT_EQ(std::memcmp(&contacts.states[2 * i + 1], &before[2 * i + 1], sizeof(BodyState)), 0);
+    }
+}
+
+TEST(MeanDistance, OfASquareIsItsClosedForm) {
+    // Mean distance from the centre of a square of half side 1: (sqrt 2 + ln(1 + sqrt 2)) / 3 = 0.7652.
+    const float x[4] = {1, -1, -1, 1}, y[4] = {1, 1, -1, -1};
+    EXPECT_NEAR(MeanDistance(x, y, 4), (std::sqrt(2.0) + std::log(1 + std::sqrt(2.0))) / 3, 1e-3);
+    // Corners come in any order.
+    const float u[4] = {1, -1, 1, -1}, v[4] = {1, -1, -1, 1};
+    EXPECT_FLOAT_EQ(MeanDistance(u, v, 4), MeanDistance(x, y, 4));
+}
+
+TEST(MeanDistance, OfASegmentIsAQuarterOfItsLength) {
+    const float x[2] = {-1.5f, 1.5f}, y[2] = {-2, 2};
+    EXPECT_FLOAT_EQ(MeanDistance(x, y, 2), 5.0f / 4);
+}
+
+TEST(MeanDistance, OfAPointIsNothing) {
+    const float x[1] = {0}, y[1] = {0};
+    EXPECT_EQ(MeanDistance(x, y, 1), 0);
+}
+
+TEST(MeanDistance, OfATriangleScalesWithItsSize) {
+    // Equilateral, circumradius 1, inner radius r = 1/2: two thirds of the mean of sqrt(r^2 + s^2), s from 0 to sqrt(3) / 2.
+    const float x[3] = {1, -0.5f, -0.5f}, y[3] = {0, static_cast<float>(std::sqrt(0.75)), -static_cast<float>(std::sqrt(0.75))};
+    const double r = 0.5, s = std::sqrt(0.75);
+    const double edge = 0.5 * (s * std::sqrt(r * r + s * s) + r * r * std::asinh(s / r)) / s;
+    EXPECT_NEAR(MeanDistance(x, y, 3), 2.0 / 3 * edge, 1e-2);
+    const float x3[3] = {3 * x[0], 3 * x[1], 3 * x[2]}, y3[3] = {3 * y[0], 3 * y[1], 3 * y[2]};
+    EXPECT_NEAR(MeanDistance(x3, y3, 3), 3 * MeanDistance(x, y, 3), 1e-6);
+}
+
+}  // namespace
+}  // namespace fulcrum::testing

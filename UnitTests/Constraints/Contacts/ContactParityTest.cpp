@@ -1,0 +1,65 @@
+// Contacts solved in 1, 4, 8 and 16 lanes: the same bits, contact by contact.
+#include <Fulcrum/UnitTests/Constraints/Contacts/RandomContacts.h>
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+namespace fulcrum::testing {
+namespace {
+
+constexpr uint32_t kContacts = 61;  // no multiple of any number of lanes
+
+// The whole life of contacts over two substeps.
+template <int N, bool kFixedB>
+RandomContacts Solved(uint32_t seed) {
+    RandomContacts contacts(kContacts, kFixedB, seed);
+    BodyState* states = contacts.states.data();
+    for (uint32_t first = 0; first < kContacts; first += N) {
+        auto batch = PrepareBatch<N, kFixedB>(contacts, first, {0.9f, 0.5f});
+        ContactSolveSettings settings{240.0f, 0.2f, 0.0005f, 0.2f, 0.0f};
+        WarmStartContacts(batch, states);
+        for (int substep = 1; substep <= 2; ++substep) {
+            settings.elapsed = static_cast<float>(substep) / 240.0f;
+            SolveContactVelocities(batch, states, settings);
+            SolveContactVelocities(batch, states, settings);
+            for (int lane = 0; lane < batch.count; ++lane)
+                for (uint32_t body = batch.bodyA[lane]; body < batch.bodyA[lane] + (kFixedB ? 1 : 2); ++body)
+                    for (int k = 0; k < 3; ++k) {
+                        states[body].deltaPosition[k] += states[body].linearVelocity[k] / 240.0f;
+                        states[body].deltaRotation[k] += states[body].angularVelocity[k] / 240.0f;
+                    }
+            SolveContactPositions(batch, states, settings);
+        }
+        RestituteContacts(batch, states);
+        StoreContacts(batch, contacts.records.data());
+    }
+    return contacts;
+}
+
+template <bool kFixedB>
+void ExpectSameBits(const RandomContacts& a, const RandomContacts& b, const char* lanes) {
+    for (size_t i = 0; i < a.states.size(); ++i)
+        ASSERT_EQ(std::memcmp(&a.states[i], &b.states[i], sizeof(BodyState)), 0) << lanes << ", body " << i;
+    for (size_t i = 0; i < a.records.size(); ++i)
+        ASSERT_EQ(std::memcmp(&a.records[i], &b.records[i], sizeof(ContactRecord)), 0) << lanes << ", contact " << i;
+}
+
+template <bool kFixedB>
+void ExpectParity(uint32_t seed) {
+    const RandomContacts one = Solved<1, kFixedB>(seed);
+    ExpectSameBits<kFixedB>(one, Solved<4, kFixedB>(seed), "4 lanes");
+    ExpectSameBits<kFixedB>(one, Solved<8, kFixedB>(seed), "8 lanes");
+    ExpectSameBits<kFixedB>(one, Solved<16, kFixedB>(seed), "16 lanes");
+}
+
+TEST(ContactParity, OfTwoMovingBodies) {
+    for (uint32_t seed = 1; seed <= 20; ++seed) ExpectParity<false>(seed);
+}
+
+TEST(ContactParity, OfAMovingAndAFixedBody) {
+    for (uint32_t seed = 1; seed <= 20; ++seed) ExpectParity<true>(seed);
+}
+
+}  // namespace
+}  // namespace fulcrum::testing

@@ -1,0 +1,243 @@
+// What a body is told to be: locked, layered, moved by hand, added, removed, read.
+#include <Fulcrum/UnitTests/Support/TestWorld.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace fulcrum::testing {
+namespace {
+
+TEST(LockedAxes, LockedTranslationsStayInPlace) {
+    TestWorld world;
+    const BodyId hangs = world.Add({.shape = SphereOf(0.5f), .position = {0, 5, 0}, .linearVelocity = {1, 1, 1}, .lockedAxes = LockedAxes::TranslationY});
+    world.Run(1);
+    EXPECT_EQ(world.PositionOf(hangs).y(), 5);
+    EXPECT_NEAR(world.PositionOf(hangs).x(), 1, 1e-5);
+    EXPECT_NEAR(world.PositionOf(hangs).z(), 1, 1e-5);
+}
+
+TEST(LockedAxes, LockedRotationsNeitherTurnNorBeginTo) {
+    GTEST_SKIP() << "Known defect: an initial spin about a locked axis goes on.";
+    TestWorld world(NoGravity());
+    const BodyId ball = world.Add({.shape = SphereOf(0.5f), .angularVelocity = {1, 2, 3}, .lockedAxes = LockedAxes::Rotation});
+    ASSERT_TRUE(world.Bodies().AddTorque(ball, {1000, 1000, 1000}));
+    ASSERT_TRUE(world.Bodies().AddAngularImpulse(ball, {1000, 1000, 1000}));
+    world.Run(1);
+    const Quaternion q = world.Bodies().GetPose(ball).rotation;
+    EXPECT_EQ(q.w, 1);
+    EXPECT_EQ(world.Bodies().GetAngularVelocity(ball), Vector3(0, 0, 0));
+}
+
+TEST(LockedAxes, TheFreeAxisTurnsWithItsOwnInertia) {
+    GTEST_SKIP() << "Known defect: locked rotations cut rows of the inverse inertia instead of inverting what is free.";
+    TestWorld world(NoGravity());
+    // A rod that leans: its inertia about y alone is I_yy, not one over the y-y element of the inverse of the whole.
+    const double angle = 30 * kDegree;
+    const BodyId rod = world.Add({.shape = BoxOf(0.05f, 1, 0.05f), .rotation = Turn({0, 0, 1}, angle), .mass = 3,
+                                  .lockedAxes = LockedAxes::RotationX | LockedAxes::RotationZ});
+    const double along = 3 * (0.0025 + 0.0025) / 3, across = 3 * (1 + 0.0025) / 3;
+    const double inertia = along * std::cos(angle) * std::cos(angle) + across * std::sin(angle) * std::sin(angle);
+    ASSERT_TRUE(world.Bodies().AddAngularImpulse(rod, {0, 1, 0}));
+    EXPECT_NEAR(world.Bodies().GetAngularVelocity(rod).y(), 1 / inertia, 1e-4 / inertia);
+    EXPECT_EQ(world.Bodies().GetAngularVelocity(rod).x(), 0);
+}
+
+TEST(LockedAxes, AnUprightCapsuleDoesNotFallOver) {
+    TestWorld world(NoSleep());
+    world.AddFloor();
+    const BodyId walker = world.Add({.shape = CapsuleOf(0.5f, 0.3f), .position = {0, 0.8, 0}, .linearVelocity = {3, 0, 0}, .lockedAxes = LockedAxes::Rotation});
+    world.Run(3);
+    EXPECT_EQ(world.Bodies().GetPose(walker).rotation.w, 1);
+    EXPECT_NEAR(world.PositionOf(walker).y(), 0.8, 0.005);
+    EXPECT_NEAR(world.PositionOf(walker).x(), 9 / (2 * 0.5 * kGravity), 0.02);
+}
+
+TEST(LockedAxes, ContactsDoNotPushAlongLockedAxes) {
+    TestWorld world(NoSleep());
+    const BodyId rail = world.Add({.shape = CubeOf(0.5f), .position = {0, 0, 0}, .gravityFactor = 0, .lockedAxes = LockedAxes::Plane2D});
+    world.Add({.shape = SphereOf(0.5f), .position = {0.2, 3, 0.2}});
+    world.Run(2);
+    EXPECT_EQ(world.PositionOf(rail).z(), 0);
+    EXPECT_LT(world.PositionOf(rail).y(), -0.1);
+    const Vector3 w = world.Bodies().GetAngularVelocity(rail);
+    EXPECT_EQ(w.x(), 0);
+    EXPECT_EQ(w.y(), 0);
+}
+
+TEST(Layers, OnlyThoseThatCollideMeet) {
+    SystemSettings settings;
+    settings.layerCollides[1] &= ~4u;  // 1 and 2 ignore each other
+    settings.layerCollides[2] &= ~2u;
+    TestWorld world(settings);
+    world.Add({.shape = BoxOf(5, 1, 5), .motion = MotionType::Static, .position = {0, -1, 0}, .layer = 1});
+    const BodyId meets = world.Add({.shape = SphereOf(0.5f), .position = {-2, 1, 0}, .layer = 1});
+    const BodyId falls = world.Add({.shape = SphereOf(0.5f), .position = {2, 1, 0}, .layer = 2});
+    world.Run(2);
+    EXPECT_NEAR(world.PositionOf(meets).y(), 0.5, 0.005);
+    EXPECT_LT(world.PositionOf(falls).y(), -10);
+}
+
+TEST(Kinematic, ArrivesWhereItIsMoved) {
+    TestWorld world;
+    const BodyId lift = world.Add({.shape = BoxOf(2, 0.5f, 2), .motion = MotionType::Kinematic});
+    const Quaternion turned = Turn({0, 1, 0}, 0.1);
+    ASSERT_TRUE(world.Bodies().MoveKinematic(lift, {0.5, 0.25, -0.125}, turned, static_cast<float>(kStep)));
+    world.Step();
+    // Half a metre in one step, in float.
+    EXPECT_LT((world.PositionOf(lift) - Position(0.5, 0.25, -0.125)).norm(), 1e-6);
+    EXPECT_NEAR(world.Bodies().GetPose(lift).rotation.y, turned.y, 1e-6);
+    EXPECT_NEAR(world.Bodies().GetPose(lift).rotation.w, turned.w, 1e-6);
+}
+
+TEST(Kinematic, FeelsNoForces) {
+    TestWorld world;
+    const BodyId platform = world.Add({.shape = BoxOf(2, 0.5f, 2), .motion = MotionType::Kinematic, .linearVelocity = {1, 0, 0}});
+    world.Add({.shape = CubeOf(0.5f), .position = {0, 3, 0}, .mass = 1e5f});
+    world.Run(1);
+    EXPECT_EQ(world.VelocityOf(platform), Vector3(1, 0, 0));
+    EXPECT_NEAR(world.PositionOf(platform).x(), 1, 1e-5);
+    EXPECT_EQ(world.PositionOf(platform).y(), 0);
+}
+
+TEST(Kinematic, CarriesABoxByFriction) {
+    TestWorld world;
+    const BodyId platform = world.Add({.shape = BoxOf(5, 0.5f, 5), .motion = MotionType::Kinematic, .position = {0, -0.5, 0}});
+    const BodyId box = world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5, 0}});
+    world.Run(2);
+    EXPECT_FALSE(world.Bodies().IsAwake(box));
+    // Speeding up at 2 m/s2, less than mu g: the box keeps up, and wakes to do so.
+    double x = 0;
+    for (int i = 1; i <= 60; ++i) {
+        const double t = i * kStep;
+        x = t * t;
+        ASSERT_TRUE(world.Bodies().MoveKinematic(platform, {x, -0.5, 0}, {}, static_cast<float>(kStep)));
+        world.Step();
+    }
+    EXPECT_TRUE(world.Bodies().IsAwake(box));
+    EXPECT_NEAR(world.PositionOf(box).x(), x, 0.02);
+    EXPECT_NEAR(world.VelocityOf(box).x(), world.VelocityOf(platform).x(), 0.05);
+    EXPECT_NEAR(world.PositionOf(box).y(), 0.5, 0.005);
+}
+
+TEST(Kinematic, TurnsABoxWithATurntable) {
+    TestWorld world(NoSleep());
+    world.Add({.shape = BoxOf(5, 0.5f, 5), .motion = MotionType::Kinematic, .position = {0, -0.5, 0}, .angularVelocity = {0, 1, 0}});
+    const BodyId box = world.Add({.shape = CubeOf(0.5f), .position = {2, 0.5, 0}, .linearVelocity = {0, 0, -2}, .angularVelocity = {0, 1, 0}});
+    // Half a turn; w^2 r = 2 m/s2 is less than mu g. Each step goes along the tangent: r grows by (w dt)^2 / 2 of itself.
+    const double dt = 1.0 / 240;
+    world.Run(kPi, dt);
+    EXPECT_NEAR(world.PositionOf(box).x(), -2, 2 * (kPi / dt) * dt * dt / 2 + 0.01);
+    EXPECT_NEAR(world.PositionOf(box).y(), 0.5, 0.005);
+}
+
+TEST(Bodies, IdsOfRemovedBodiesStayInvalid) {
+    TestWorld world;
+    world.AddFloor();
+    const BodyId first = world.Add({.shape = SphereOf(0.5f), .position = {0, 0.5, 0}});
+    world.Steps(10);
+    ASSERT_TRUE(world.Bodies().Remove(first));
+    EXPECT_FALSE(world.Bodies().Exists(first));
+    EXPECT_FALSE(world.Bodies().Remove(first));
+    world.Step();
+    const BodyId second = world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5, 0}});
+    EXPECT_EQ(second.index, first.index);
+    EXPECT_NE(second.generation, first.generation);
+    EXPECT_FALSE(world.Bodies().Exists(first));
+    EXPECT_TRUE(world.Bodies().Exists(second));
+    EXPECT_EQ(world.Bodies().GetMass(first), 0);
+    const Status status = world.Bodies().SetVelocity(first, {1, 0, 0}, {0, 0, 0});
+    ASSERT_FALSE(status);
+    EXPECT_EQ(status.GetError().code, ErrorCode::UnknownId);
+    world.Run(2);
+    EXPECT_NEAR(world.PositionOf(second).y(), 0.5, 0.005);
+}
+
+TEST(Bodies, ComeAndGoByTheHundred) {
+    TestWorld world;
+    world.AddFloor();
+    std::vector<BodyId> ids;
+    for (int round = 0; round < 20; ++round) {
+        for (int i = 0; i < 30; ++i)
+            ids.push_back(world.Add({.shape = i % 2 ? SphereOf(0.3f) : CubeOf(0.3f), .position = {i % 6 * 0.5, 1.0 + i / 6 * 0.5, 0.1 * i}}));
+        world.Steps(5);
+        for (size_t i = 0; i < ids.size(); i += 2) {
+            ASSERT_TRUE(world.Bodies().Remove(ids[i]));
+            ids[i] = ids.back();
+            ids.pop_back();
+        }
+        world.Steps(3);
+        EXPECT_EQ(world.Report().bodies, ids.size() + 1);
+    }
+    for (BodyId id : ids) EXPECT_TRUE(world.Bodies().Exists(id));
+    EXPECT_TRUE(world.AllFinite());
+}
+
+TEST(Bodies, AnAddedAndRemovedBodyLeavesTheOthersBitsAlone) {
+    const auto run = [](bool visitor) {
+        TestWorld world;
+        world.AddFloor();
+        const BodyId box = world.Add({.shape = CubeOf(0.5f), .position = {0, 2, 0}, .rotation = Turn({0, 0, 1}, 0.3)});
+        world.Steps(20);
+        if (visitor) {
+            const BodyId far = world.Add({.shape = CubeOf(0.5f), .position = {50, 2, 0}});
+            EXPECT_TRUE(world.Bodies().Remove(far));
+        }
+        world.Steps(100);
+        return BitsOf(world, box);
+    };
+    EXPECT_EQ(run(false), run(true));
+}
+
+TEST(Bodies, AreReadAsTheyWereDescribed) {
+    TestWorld world;
+    // The centre of mass of this hull is not its origin.
+    const ShapePtr hull = HullOf({{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}});
+    const Quaternion turned = Turn({0, 1, 0}, 0.5);
+    const BodyId id = world.Add({.shape = hull, .position = {10, 20, 30}, .rotation = turned, .density = 2, .userData = 42});
+    EXPECT_LT((world.PositionOf(id) - Position(10, 20, 30)).norm(), 1e-6);
+    EXPECT_GT((world.Bodies().GetCentreOfMass(id) - Position(10, 20, 30)).norm(), 0.5);
+    EXPECT_NEAR(world.Bodies().GetMass(id), 2 * 8.0 / 6, 1e-5);
+    EXPECT_EQ(world.Bodies().GetUserData(id), 42u);
+    EXPECT_EQ(world.Bodies().GetShape(id), hull);
+    EXPECT_EQ(world.Bodies().GetMotionType(id), MotionType::Dynamic);
+}
+
+TEST(Bodies, ASlightlyLongRotationIsNormalised) {
+    TestWorld world;
+    const BodyId id = world.Add({.shape = CubeOf(1), .rotation = {0, 0, 0, 1.0005f}});
+    EXPECT_EQ(world.Bodies().GetPose(id).rotation.w, 1);
+}
+
+TEST(Bodies, ATeleportedBodyTouchesWhatIsThere) {
+    TestWorld world;
+    world.AddFloor();
+    const BodyId ball = world.Add({.shape = SphereOf(0.5f), .position = {0, 50, 0}});
+    world.Step();
+    ASSERT_TRUE(world.Bodies().SetPose(ball, {20, 0.5, 0}, {}));
+    ASSERT_TRUE(world.Bodies().SetVelocity(ball, {0, 0, 0}, {0, 0, 0}));
+    world.Run(1);
+    EXPECT_NEAR(world.PositionOf(ball).y(), 0.5, 0.005);
+    EXPECT_NEAR(world.PositionOf(ball).x(), 20, 1e-6);
+}
+
+TEST(System, CountsItsBodiesAndHashesTheirPoses) {
+    TestWorld a, b;
+    EXPECT_EQ(a.System().HashPoses(), b.System().HashPoses());
+    a.Add({.shape = CubeOf(1)});
+    EXPECT_NE(a.System().HashPoses(), b.System().HashPoses());
+    b.Add({.shape = SphereOf(1)});
+    EXPECT_EQ(a.System().HashPoses(), b.System().HashPoses());  // of poses alone
+    a.Step();
+    EXPECT_EQ(a.Report().bodies, 1u);
+    EXPECT_EQ(a.Report().step, 1u);
+}
+
+TEST(System, EnergyIsKineticPlusPotential) {
+    TestWorld world;
+    world.Add({.shape = SphereOf(0.5f), .position = {0, 3, 0}, .linearVelocity = {2, 0, 0}, .mass = 4});
+    EXPECT_NEAR(world.System().GetEnergy(), 0.5 * 4 * 4 + 4 * kGravity * 3, 1e-4);
+}
+
+}  // namespace
+}  // namespace fulcrum::testing

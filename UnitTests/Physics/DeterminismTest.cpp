@@ -1,0 +1,31 @@
+// The same scene gives the same bits, however many threads compute it and however often.
+#include <Fulcrum/UnitTests/Support/MixedScene.h>
+
+namespace fulcrum::testing {
+namespace {
+
+TEST(Determinism, TheSameBitsForAnyNumberOfThreads) {
+    const uint64_t one = HashOfMixedScene(1);
+    EXPECT_EQ(HashOfMixedScene(1), one);
+    EXPECT_EQ(HashOfMixedScene(2), one);
+    EXPECT_EQ(HashOfMixedScene(4), one);
+}
+
+TEST(Determinism, EveryStepOfThreadsIsThatOfOne) {
+    // Where the test above fails, this one says when it began.
+    TestWorld one({}, 1), four({}, 4);
+    MixedScene sceneOfOne(one), sceneOfFour(four);
+    for (int step = 0; step < 60; ++step) {
+        sceneOfOne.BeforeStep(step);
+        sceneOfFour.BeforeStep(step);
+        one.Step();
+        four.Step();
+        ASSERT_EQ(one.System().HashPoses(), four.System().HashPoses()) << "step " << step;
+        ASSERT_EQ(one.Report().contacts, four.Report().contacts) << "step " << step;
+        ASSERT_EQ(one.Report().largestPenetration, four.Report().largestPenetration) << "step " << step;
+        ASSERT_EQ(one.Report().deepestA, four.Report().deepestA) << "step " << step;
+    }
+}
+
+}  // namespace
+}  // namespace fulcrum::testing

