@@ -304,7 +304,7 @@ double BodyInterface::GetKineticEnergy(BodyId id) const {
     if (!Exists(id) || world_.bodies.dynamics[id.index].motion != MotionType::Dynamic) return 0;
     const Position v = GetLinearVelocity(id).cast<double>(), w = GetAngularVelocity(id).cast<double>();
     const Position momentum = GetAngularMomentum(id).cast<double>();
-    return 0.5 * (double(GetMass(id)) * v.squaredNorm() + Dot<double>(w, momentum));
+    return 0.5 * (double(GetMass(id)) * Dot<double>(v, v) + Dot<double>(w, momentum));
 }
 MotionType BodyInterface::GetMotionType(BodyId id) const {
     return Exists(id) ? world_.bodies.dynamics[id.index].motion : MotionType::Static;

@@ -38,6 +38,14 @@ constexpr PairFunction kPairTable[kConvexShapeTypes][kConvexShapeTypes] = {
     /* ConvexHull */ {kPolyhedra, kPolyhedra, kPolyhedra, kPolyhedra},
 };
 
+constexpr bool IsFull() {
+    for (const auto& row : kPairTable)
+        for (PairFunction function : row)
+            if (function == nullptr) return false;
+    return true;
+}
+static_assert(IsFull(), "every convex shape needs a row and a column in the pair table");
+
 }  // namespace
 
 void Collide(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA, const CollideSettings& settings,

@@ -116,8 +116,11 @@ Polyhedron CoreOf(const ConvexShape& shape, PolyhedronStorage& storage) {
         case ShapeType::Sphere: return CoreOf(static_cast<const Sphere&>(shape), storage);
         case ShapeType::Box: return CoreOf(static_cast<const Box&>(shape), storage);
         case ShapeType::Capsule: return CoreOf(static_cast<const Capsule&>(shape), storage);
-        default: return CoreOf(static_cast<const ConvexHull&>(shape));
+        case ShapeType::ConvexHull: return CoreOf(static_cast<const ConvexHull&>(shape));
+        case ShapeType::Compound: break;
     }
+    FULCRUM_ASSERT(!"a compound has no core");
+    return {};
 }
 
 }  // namespace fulcrum

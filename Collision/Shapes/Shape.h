@@ -14,7 +14,7 @@ namespace fulcrum {
 
 // One line a shape here, one in NarrowPhase/PairTable.cpp.
 enum class ShapeType : uint8_t { Sphere, Box, Capsule, ConvexHull, Compound };
-inline constexpr int kConvexShapeTypes = 4;  // those before Compound
+inline constexpr int kConvexShapeTypes = static_cast<int>(ShapeType::Compound);  // those before it
 const char* ShapeTypeName(ShapeType type);
 
 // Of a solid of density 1 kg/m3, about its centre of mass.

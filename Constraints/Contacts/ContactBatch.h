@@ -6,8 +6,8 @@
 // and with a point at c + a t1 + b t2 its row is J v = V.n + b W.t1 - a W.t2. So a batch reads the twist once, relaxes all its
 // rows on six numbers by means of their small response matrices, and applies one wrench (F, T) at the end:
 //     v += m^-1 F,  w += I^-1 (r x F + T).
-// This is the sequence of the axis and angle parts to the letter, row after row (the tests compare), at a third of the
-// arithmetic and a fourth of the memory. The friction rows come first, the normal rows last: non-penetration wins.
+// This is the sequence of the axis and angle parts, row after row (the tests compare), at half the arithmetic. The friction
+// rows come first, the normal rows last: non-penetration wins.
 //
 // The same rows solve positions: with displacements since the start of the step in place of velocities, the row gives the
 // change of the separation.

@@ -159,7 +159,14 @@ void RestituteContacts(ContactBatch<N, kFixedB>& batch, BodyState* states) {
         sumA += row.a * change;
         sumB += row.b * change;
     }
+    // Lanes without a bounce keep every bit, as they do where their batch has no bouncing neighbour.
+    const Twists<N, kFixedB> before = twists;
     ApplyToBoth<N, kFixedB>(batch, twists, batch.normal * sum, NormalTorque(batch, sumA, sumB));
+    const auto still = sum == zero;
+    for (int k = 0; k < 6; ++k) {
+        twists.a[k] = Select(still, before.a[k], twists.a[k]);
+        if constexpr (!kFixedB) twists.b[k] = Select(still, before.b[k], twists.b[k]);
+    }
     Scatter(batch, twists);
 }
 

@@ -97,7 +97,6 @@ void Prepare(WorldState& world, const StepContext& step) {
     SolverLayout& layout = world.solver;
     world.bounces = false;
     if (world.colouring.Size() == 0) return;
-    for (SolverGroup& group : layout.groups) group.settings = world.settings.solver;
     ContactPrepareSettings settings;
     settings.impulseScale = world.lastSubstepDt > 0 ? step.substepDt / world.lastSubstepDt : 1.0f;
     settings.restitutionSpeed = world.settings.restitutionSpeed;

@@ -10,12 +10,11 @@
 
 namespace fulcrum {
 
-// Islands that are solved together, and by the same settings. The first group holds the large islands, which are solved
+// Islands that are solved together. The first group holds the large islands, which are solved
 // colour by colour on all workers. Each of the others is a handful of small islands that one worker solves from beginning
 // to end, in its own cache and without a barrier. Which islands share a group has no influence on any result.
-// A group is the place for effort of its own: today all have the system's settings.
+// An island that is to be solved with more effort than the rest needs no more than a group of its own.
 struct SolverGroup {
-    SolverSettings settings;
     uint32_t coloursBegin = 0, coloursEnd = 0;  // into SolverLayout::colours
     uint32_t bodiesBegin = 0, bodiesEnd = 0;    // into SolverLayout::bodies
 };
