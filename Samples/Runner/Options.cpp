@@ -59,7 +59,9 @@ int RunOptions::StepsOf(const Scene& scene) const {
 }
 
 void AddSolverOptions(CLI::App& app, SolverSettings& solver) {
-    const auto text = [](const char* what, int value) { return std::string(what) + " (default " + std::to_string(value) + ")"; };
+    const auto text = [](const char* what, int value) {
+        return std::string(what) + " (default " + std::to_string(value) + ")";
+    };
     AddInteger(app, "--substeps", 1, 64, text("solver substeps a step", solver.substeps),
                [&](int value) { solver.substeps = value; });
     AddInteger(app, "--velocity-iterations", 1, 255, text("velocity iterations a substep", solver.velocityIterations),
@@ -96,7 +98,8 @@ Result<Command> ParseRunnerCommand(std::vector<std::string> arguments) {
 
     if (run->parsed()) {
         command.kind = CommandKind::Run;
-        if (sceneName.empty()) return Error{ErrorCode::OutOfRange, "run needs a scene's name, for example: ./fulcrum run pyramid"};
+        if (sceneName.empty())
+            return Error{ErrorCode::OutOfRange, "run needs a scene's name, for example: ./fulcrum run pyramid"};
         command.scene = FindScene(sceneName);
         if (!command.scene) {
             Error error = UnknownName("scene", sceneName, SceneNames());

@@ -12,7 +12,8 @@ namespace fulcrum {
 class Recorder {
 public:
     // The first frame is the world as it is now. Of `steps` steps of dt seconds, every so many become frames that there are
-    // at most 60 a second and that the pages of large worlds stay small; the last step is always one. `world` must outlive this.
+    // at most 60 a second and that the pages of large worlds stay small; the last step is always one. `world` must outlive
+    // this.
     Recorder(const SceneWorld& world, int steps, double dt);
 
     // After every step.

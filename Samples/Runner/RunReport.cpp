@@ -71,7 +71,8 @@ std::vector<ReportLine> ReportLines(const Scene& scene, const RunFigures& figure
     add("Time", "a step, 99th percentile", Text("%.3f ms", figures.stepMs.p99));
     add("Time", "a step, longest", Text("%.3f ms", figures.stepMs.max));
     for (int stage = 0; stage < kStageCount; ++stage)
-        add("Stages, median", StageName(static_cast<Stage>(stage)), Text("%.3f ms", figures.stageMedianMs[static_cast<size_t>(stage)]));
+        add("Stages, median", StageName(static_cast<Stage>(stage)),
+            Text("%.3f ms", figures.stageMedianMs[static_cast<size_t>(stage)]));
     add("Result", "largest penetration",
         figures.deepestPair.empty() ? "none"
                                     : Text("%.2f mm, %s at step %d", 1000.0 * static_cast<double>(figures.largestPenetration),

@@ -48,7 +48,10 @@ void AddRampAndBall(SceneWorld& world) {
                                    .motion = MotionType::Kinematic,
                                    .position = OnRamp(-3.6, 1),
                                    .rotation = tilt});
-    world.Add({.shape = world.SphereOf(kBallRadius), .position = OnRamp(-3.7 - kBallRadius, kBallRadius), .rotation = tilt, .density = 4000});
+    world.Add({.shape = world.SphereOf(kBallRadius),
+               .position = OnRamp(-3.7 - kBallRadius, kBallRadius),
+               .rotation = tilt,
+               .density = 4000});
     world.watched.push_back(gate);
 }
 
