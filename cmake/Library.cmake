@@ -17,6 +17,7 @@ function(fulcrum_usage_requirements target scope)
     $<BUILD_INTERFACE:${FULCRUM_INCLUDE_ROOT}> $<INSTALL_INTERFACE:include>)
 endfunction()
 
+# A folder of headers alone (Math) becomes an interface library.
 function(fulcrum_library folder)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "PUBLIC;PRIVATE")
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
