@@ -50,6 +50,16 @@ void BeginReport(WorldState& world) {
     }
 }
 
+// A step shorter than this, in seconds, moves nothing that a float could tell; its inverse would only overflow.
+constexpr double kShortestStep = 1e-9;
+
+void CountBodies(WorldState& world) {
+    world.report.bodies = world.bodies.Count();
+    world.report.awakeBodies = static_cast<uint32_t>(world.bodies.awake.size());
+    world.report.islands = world.solver.islands;
+    world.report.pairs = static_cast<uint32_t>(world.pairs.active.Size());
+}
+
 // Runs the stages one after the other and notes how long each took.
 class StepTimer {
 public:
@@ -95,7 +105,10 @@ Status PhysicsSystem::Update(double dt) {
     WorldState& world = *world_;
     ForgetRemoved(world);
     BeginReport(world);
-    if (dt == 0) return Done{};
+    if (dt < kShortestStep) {
+        CountBodies(world);
+        return Done{};
+    }
     StepContext step;
     step.dt = static_cast<float>(dt);
     step.substepDt = step.dt / static_cast<float>(world.settings.solver.substeps);
@@ -124,10 +137,7 @@ Status PhysicsSystem::Update(double dt) {
     timer.Finished(Stage::Sleep);
     timer.FinishedAll();
 
-    world.report.bodies = world.bodies.Count();
-    world.report.awakeBodies = static_cast<uint32_t>(world.bodies.awake.size());
-    world.report.islands = world.solver.islands;
-    world.report.pairs = static_cast<uint32_t>(world.pairs.active.Size());
+    CountBodies(world);
     return Done{};
 }
 

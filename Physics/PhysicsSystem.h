@@ -31,7 +31,7 @@ public:
     PhysicsSystem(const PhysicsSystem&) = delete;
     PhysicsSystem& operator=(const PhysicsSystem&) = delete;
 
-    // Advances by dt seconds, 0 .. 1; 0 changes no pose. Errors: NonFinite, OutOfRange: nothing has happened then.
+    // Advances by dt seconds, 0 .. 1; less than a nanosecond changes nothing. Errors: NonFinite, OutOfRange: nothing has happened then.
     Status Update(double dt);
 
     BodyInterface& Bodies() { return bodies_; }

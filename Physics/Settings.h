@@ -47,9 +47,9 @@ constexpr LockedAxes operator|(LockedAxes a, LockedAxes b) {
 
 // The trade of speed for accuracy.
 struct SolverSettings {
-    int substeps = 6;            // 1..64; each integrates dt / substeps
+    int substeps = 4;            // 1..64; each integrates dt / substeps
     int velocityIterations = 1;  // 1..255 per substep
-    int positionIterations = 1;  // 0..255 per substep
+    int positionIterations = 1;  // 0..255 per substep: passes that take the speed of pushes out again
 };
 
 struct BodySettings {
@@ -88,9 +88,10 @@ struct SystemSettings {
     SleepSettings sleep;
     NarrowPhaseMethod narrowPhase = NarrowPhaseMethod::Automatic;
     float speculativeDistance = 0.02f;   // m, > 0: contacts begin at this separation, so that nothing bumps
-    float penetrationSlop = 0.0005f;     // m, >= 0: overlap that is left alone
-    float baumgarte = 0.2f;              // 0..1: part of the overlap above the slop that a position iteration removes
-    float maxPositionCorrection = 0.2f;  // m, > 0: of one contact in one position iteration
+    float penetrationSlop = 0.0f;       // m, >= 0: overlap that is left alone
+    float contactFrequency = 120.0f;     // Hz, > 0, of the spring that pushes overlaps apart; half of the substeps' rate at most
+    float contactDampingRatio = 10.0f;   // >= 0
+    float contactPushSpeed = 3.0f;       // m/s, > 0: the fastest push
     float restitutionSpeed = 0.5f;       // m/s, >= 0: slower impacts do not bounce
     float boundsMargin = 0.05f;          // m, > 0: fat bounds exceed the shape's by this
     // Bit j of layerCollides[i]: bodies of layer i and j collide. Must be symmetric.

@@ -59,6 +59,22 @@ MaybeError Check(const Material& m) {
                    CheckRange("material.restitution", m.restitution, 0, 1));
 }
 
+// Mass and inertia must have inverses that are normal floats.
+static MaybeError CheckInverses(const BodySettings& s) {
+    const auto usable = [](float x) { return std::isnormal(x) && std::isnormal(1.0f / x); };
+    const float mass = s.mass > 0 ? s.mass : s.density * s.shape->Mass().volume;
+    if (!usable(mass))
+        return Error{ErrorCode::OutOfRange, std::string(s.mass > 0 ? "mass" : "density") + " makes a mass of " + Number(mass) +
+                                                " kg; it and its inverse must be normal floats"};
+    const Vector3 inertia = s.inertia.isZero(0) ? Vector3(s.shape->Mass().principalInertia * (mass / s.shape->Mass().volume)) : s.inertia;
+    for (int k = 0; k < 3; ++k)
+        if (!usable(inertia[k]))
+            return Error{ErrorCode::OutOfRange, std::string(!s.inertia.isZero(0) ? "inertia" : s.mass > 0 ? "mass" : "density") +
+                                                    " makes a moment of inertia of " + Number(inertia[k]) +
+                                                    " kg m2; it and its inverse must be normal floats"};
+    return std::nullopt;
+}
+
 MaybeError Check(const BodySettings& s) {
     if (!s.shape) return Error{ErrorCode::Unsupported, "shape is null; a body needs one"};
     if (MaybeError e = FirstOf(CheckFinite("position", s.position), CheckRotation("rotation", s.rotation),
@@ -75,6 +91,8 @@ MaybeError Check(const BodySettings& s) {
                                CheckPositive("maxAngularSpeed", s.maxAngularSpeed), CheckRange("layer", s.layer, 0, 31),
                                CheckRange("lockedAxes", static_cast<uint8_t>(s.lockedAxes), 0, 63)))
         return e;
+    if (s.motion == MotionType::Dynamic)
+        if (MaybeError e = CheckInverses(s)) return e;
     if (s.startAsleep && s.motion != MotionType::Dynamic)
         return Error{ErrorCode::Unsupported, "startAsleep is set for a body that is not dynamic"};
     if (s.motion == MotionType::Static && !(s.linearVelocity.isZero(0) && s.angularVelocity.isZero(0)))
@@ -90,8 +108,9 @@ MaybeError Check(const SystemSettings& s) {
                                CheckNotNegative("sleep.linearSpeed", s.sleep.linearSpeed),
                                CheckPositive("speculativeDistance", s.speculativeDistance),
                                CheckNotNegative("penetrationSlop", s.penetrationSlop),
-                               CheckRange("baumgarte", s.baumgarte, 0, 1),
-                               CheckPositive("maxPositionCorrection", s.maxPositionCorrection),
+                               CheckPositive("contactFrequency", s.contactFrequency),
+                               CheckNotNegative("contactDampingRatio", s.contactDampingRatio),
+                               CheckPositive("contactPushSpeed", s.contactPushSpeed),
                                CheckNotNegative("restitutionSpeed", s.restitutionSpeed),
                                CheckPositive("boundsMargin", s.boundsMargin)))
         return e;

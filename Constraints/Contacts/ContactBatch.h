@@ -9,7 +9,7 @@
 // This is the sequence of the axis and angle parts, row after row (the tests compare), at half the arithmetic. The friction
 // rows come first, the normal rows last: non-penetration wins.
 //
-// The same rows solve positions: with displacements since the start of the step in place of velocities, the row gives the
+// The same rows read positions: with displacements since the start of the step in place of velocities, the row gives the
 // change of the separation.
 #pragma once
 
@@ -76,10 +76,19 @@ struct ContactPrepareSettings {
 
 struct ContactSolveSettings {
     float inverseDt;         // 1/s, of the substep
-    float baumgarte;         // 0..1
-    float slop;              // m
-    float maxCorrection;     // m
     float elapsed;           // s since the start of the step: how far fixed sides have moved
+    // Points that overlap are pushed apart by a soft row, see Soften.
+    float pushRate;          // 1/s: speed of the push per metre of overlap
+    float massScale;         // 0..1: softened effective mass / effective mass
+    float impulseScale;      // 0..1: part of the impulse that the row gives way by
+    float maxPushSpeed;      // m/s
+    float slop;              // m: overlap that is left alone
+
+    // Sets pushRate, massScale and impulseScale to those of a spring of `frequency` Hz and `dampingRatio` for a substep of
+    // h seconds: with w = 2 pi f, gamma = 1 / (h (c + h k)) and beta = h k / (c + h k) of the soft constraint (k = m w^2,
+    // c = 2 m zeta w), pushRate = beta / h = w / (2 zeta + h w), massScale = a / (1 + a), impulseScale = 1 / (1 + a),
+    // a = h w (2 zeta + h w). Source: Catto, "Solver2D", 2024.
+    void Soften(float frequency, float dampingRatio, float h);
 };
 
 // Fills the batch of `batch.contact[0 .. count)` from the records; bodyB[] are the second bodies.
@@ -94,9 +103,14 @@ void WarmStartContacts(const ContactBatch<N, kFixedB>& batch, BodyState* states)
 template <int N, bool kFixedB>
 void SolveContactVelocities(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
 
-// One non-linear Gauss-Seidel pass over the overlaps; also brings the separations up to date.
+// Brings the separations up to date with the displacements, and solves the velocities again without any push: what was
+// pushed apart keeps its place but not its speed.
 template <int N, bool kFixedB>
-void SolveContactPositions(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
+void RelaxContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
+
+// Brings the separations up to date.
+template <int N, bool kFixedB>
+void UpdateSeparations(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
 
 // Makes the points that were hit leave with their bounce speed.
 template <int N, bool kFixedB>

@@ -22,7 +22,7 @@ template <int N, bool kFixedB>
     const Real step2 = -inverse[1] * (v2 + response[0] * step1);
     const Real wanted1 = total[0] + step1, wanted2 = total[1] + step2;
     const Real lengthSquared = wanted1 * wanted1 + wanted2 * wanted2;
-    const Real scale = Select(lengthSquared > limit * limit, limit / Sqrt(Max(lengthSquared, Real(1e-30f))), Real(1.0f));
+    const Real scale = Select(lengthSquared <= limit * limit, Real(1.0f), limit / Sqrt(Max(lengthSquared, Real(1e-30f))));
     change[0] = wanted1 * scale - total[0];
     change[1] = wanted2 * scale - total[1];
     total[0] = wanted1 * scale;
@@ -35,7 +35,75 @@ template <int N, bool kFixedB>
     total[2] = twist;
 }
 
+// All rows of a batch once, on velocities: friction, then the normal rows. A relaxing pass pushes nothing.
+template <bool kRelax, int N, bool kFixedB>
+[[gnu::always_inline]] inline void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* states,
+                                             const ContactSolveSettings& settings) {
+    using Real = Wide<N>;
+    const Real zero(0.0f), one(1.0f);
+    Twists<N, kFixedB> twists;
+    Gather<Of::Velocity>(batch, states, twists);
+    const Twist<Real> relative = RelativeTwist(batch, twists, one);
+    Real vn = Dot<Real>(relative.linear, batch.normal);
+    Real w1 = Dot<Real>(relative.angular, batch.tangent1), w2 = Dot<Real>(relative.angular, batch.tangent2);
+
+    Real friction[3];
+    SolveFriction<N, kFixedB>(batch, Dot<Real>(relative.linear, batch.tangent1),
+                              Dot<Real>(relative.linear, batch.tangent2), Dot<Real>(relative.angular, batch.normal),
+                              friction);
+    for (int k = 0; k < 3; ++k) {
+        vn += batch.coupling[0][k] * friction[k];
+        w1 += batch.coupling[1][k] * friction[k];
+        w2 += batch.coupling[2][k] * friction[k];
+    }
+
+    // Points that are apart may close their gap within the substep; those that touch may not approach; those that overlap
+    // are pushed apart, softly.
+    const Real inverseDt(settings.inverseDt), pushRate(settings.pushRate), fastest(-settings.maxPushSpeed);
+    Real speed[ContactRecord::kMaxPoints];
+    for (int i = 0; i < batch.pointCount; ++i) {
+        const auto& row = batch.rows[i];
+        speed[i] = vn + row.b * w1 - row.a * w2 + Max(row.separation, zero) * inverseDt;
+        if constexpr (!kRelax) speed[i] += Clamp((row.separation + Real(settings.slop)) * pushRate, fastest, zero);
+    }
+    Real sum = zero, sumA = zero, sumB = zero;
+    for (int i = 0; i < batch.pointCount; ++i) {
+        auto& row = batch.rows[i];
+        Real wanted;
+        if constexpr (kRelax) {
+            wanted = row.impulse - row.inverseResponse * speed[i];
+        } else {
+            const auto overlaps = row.separation < zero;
+            wanted = Select(overlaps, row.impulse * Real(1.0f - settings.impulseScale), row.impulse) -
+                     row.inverseResponse * Select(overlaps, speed[i] * Real(settings.massScale), speed[i]);
+        }
+        const Real total = Max(wanted, zero);
+        const Real change = total - row.impulse;
+        row.impulse = total;
+        for (int j = i + 1; j < batch.pointCount; ++j) speed[j] += batch.response[PairIndex(i, j)] * change;
+        sum += change;
+        sumA += row.a * change;
+        sumB += row.b * change;
+    }
+    if (batch.bounces)
+        for (int i = 0; i < batch.pointCount; ++i)
+            batch.largestImpulse[i] = Max(batch.largestImpulse[i], batch.rows[i].impulse);
+
+    ApplyToBoth<N, kFixedB>(batch, twists,
+                            batch.normal * sum + batch.tangent1 * friction[0] + batch.tangent2 * friction[1],
+                            NormalTorque(batch, sumA, sumB) + batch.normal * friction[2]);
+    Scatter(batch, twists);
+}
+
 }  // namespace
+
+void ContactSolveSettings::Soften(float frequency, float dampingRatio, float h) {
+    const float w = 6.28318531f * frequency;
+    const float a = h * w * (2.0f * dampingRatio + h * w);
+    pushRate = w / (2.0f * dampingRatio + h * w);
+    massScale = a / (1.0f + a);
+    impulseScale = 1.0f / (1.0f + a);
+}
 
 template <int N, bool kFixedB>
 void WarmStartContacts(const ContactBatch<N, kFixedB>& batch, BodyState* states) {
@@ -57,56 +125,12 @@ void WarmStartContacts(const ContactBatch<N, kFixedB>& batch, BodyState* states)
 
 template <int N, bool kFixedB>
 void SolveContactVelocities(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings) {
-    using Real = Wide<N>;
-    const Real zero(0.0f);
-    Twists<N, kFixedB> twists;
-    Gather<Of::Velocity>(batch, states, twists);
-    const Twist<Real> relative = RelativeTwist(batch, twists, Real(1.0f));
-    Real vn = Dot<Real>(relative.linear, batch.normal);
-    Real w1 = Dot<Real>(relative.angular, batch.tangent1), w2 = Dot<Real>(relative.angular, batch.tangent2);
-
-    Real friction[3];
-    SolveFriction<N, kFixedB>(batch, Dot<Real>(relative.linear, batch.tangent1),
-                              Dot<Real>(relative.linear, batch.tangent2), Dot<Real>(relative.angular, batch.normal),
-                              friction);
-    for (int k = 0; k < 3; ++k) {
-        vn += batch.coupling[0][k] * friction[k];
-        w1 += batch.coupling[1][k] * friction[k];
-        w2 += batch.coupling[2][k] * friction[k];
-    }
-
-    // Points that are apart may close their gap within the substep; those that touch may not approach.
-    const Real inverseDt(settings.inverseDt);
-    Real speed[ContactRecord::kMaxPoints];
-    for (int i = 0; i < batch.pointCount; ++i) {
-        const auto& row = batch.rows[i];
-        speed[i] = vn + row.b * w1 - row.a * w2 + Max(row.separation, zero) * inverseDt;
-    }
-    Real sum = zero, sumA = zero, sumB = zero;
-    for (int i = 0; i < batch.pointCount; ++i) {
-        auto& row = batch.rows[i];
-        const Real total = Max(row.impulse - row.inverseResponse * speed[i], zero);
-        const Real change = total - row.impulse;
-        row.impulse = total;
-        for (int j = i + 1; j < batch.pointCount; ++j) speed[j] += batch.response[PairIndex(i, j)] * change;
-        sum += change;
-        sumA += row.a * change;
-        sumB += row.b * change;
-    }
-    if (batch.bounces)
-        for (int i = 0; i < batch.pointCount; ++i)
-            batch.largestImpulse[i] = Max(batch.largestImpulse[i], batch.rows[i].impulse);
-
-    ApplyToBoth<N, kFixedB>(batch, twists,
-                            batch.normal * sum + batch.tangent1 * friction[0] + batch.tangent2 * friction[1],
-                            NormalTorque(batch, sumA, sumB) + batch.normal * friction[2]);
-    Scatter(batch, twists);
+    SolveRows<false>(batch, states, settings);
 }
 
 template <int N, bool kFixedB>
-void SolveContactPositions(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings) {
+void UpdateSeparations(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings) {
     using Real = Wide<N>;
-    const Real zero(0.0f), slop(settings.slop), baumgarte(settings.baumgarte), deepest(-settings.maxCorrection);
     Twists<N, kFixedB> twists;
     Gather<Of::Displacement>(batch, states, twists);
     const Twist<Real> relative = RelativeTwist(batch, twists, Real(settings.elapsed));
@@ -116,20 +140,12 @@ void SolveContactPositions(ContactBatch<N, kFixedB>& batch, BodyState* states, c
         auto& row = batch.rows[i];
         row.separation = row.startSeparation + (xn + row.b * w1 - row.a * w2);
     }
-    Real sum = zero, sumA = zero, sumB = zero;
-    for (int i = 0; i < batch.pointCount; ++i) {
-        auto& row = batch.rows[i];
-        const Real error = Clamp(row.separation + slop, deepest, zero);
-        const Real push = -row.inverseResponse * baumgarte * error;
-        sum += push;
-        sumA += row.a * push;
-        sumB += row.b * push;
-        for (int j = 0; j < batch.pointCount; ++j)
-            if (j != i) batch.rows[j].separation += batch.response[i < j ? PairIndex(i, j) : PairIndex(j, i)] * push;
-        row.separation -= baumgarte * error;
-    }
-    ApplyToBoth<N, kFixedB>(batch, twists, batch.normal * sum, NormalTorque(batch, sumA, sumB));
-    Scatter(batch, twists);
+}
+
+template <int N, bool kFixedB>
+void RelaxContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings) {
+    UpdateSeparations(batch, states, settings);
+    SolveRows<true>(batch, states, settings);
 }
 
 template <int N, bool kFixedB>
@@ -173,7 +189,8 @@ void RestituteContacts(ContactBatch<N, kFixedB>& batch, BodyState* states) {
 #define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                              \
     template void WarmStartContacts(const ContactBatch<lanes, fixedB>&, BodyState*);                                    \
     template void SolveContactVelocities(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);        \
-    template void SolveContactPositions(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);         \
+    template void RelaxContacts(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);                 \
+    template void UpdateSeparations(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);             \
     template void RestituteContacts(ContactBatch<lanes, fixedB>&, BodyState*);
 FULCRUM_INSTANTIATE(1, false)
 FULCRUM_INSTANTIATE(1, true)

@@ -20,7 +20,7 @@ namespace {
 constexpr uint32_t kBatchesPerBlock = 4;
 constexpr uint32_t kBodiesPerBlock = 128;
 
-enum class Verb : uint8_t { IntegrateVelocities, WarmStart, Velocities, IntegratePoses, Positions, Separations, Restitution, NextSubstep };
+enum class Verb : uint8_t { IntegrateVelocities, WarmStart, Velocities, IntegratePoses, Relax, Separations, Restitution, NextSubstep };
 
 struct Phase {
     Verb verb;
@@ -49,9 +49,11 @@ class StepSolver {
 public:
     StepSolver(WorldState& world, const StepContext& step) : world_(world), layout_(world.solver), h_(step.substepDt) {
         settings_.inverseDt = 1.0f / h_;
-        settings_.baumgarte = world.settings.baumgarte;
         settings_.slop = world.settings.penetrationSlop;
-        settings_.maxCorrection = world.settings.maxPositionCorrection;
+        settings_.maxPushSpeed = world.settings.contactPushSpeed;
+        // A spring that is too stiff for the substep is no longer soft.
+        const float frequency = std::min(world.settings.contactFrequency, 0.5f * settings_.inverseDt);
+        settings_.Soften(frequency, world.settings.contactDampingRatio, h_);
         settings_.elapsed = 0;
     }
 
@@ -134,12 +136,12 @@ private:
             case Verb::WarmStart: WarmStartContacts(batch, states); break;
             case Verb::Velocities: SolveContactVelocities(batch, states, settings_); break;
             case Verb::Restitution: RestituteContacts(batch, states); break;
-            case Verb::Positions:
+            case Verb::Relax:
             case Verb::Separations: {
                 ContactSolveSettings settings = settings_;
-                if (verb == Verb::Separations) settings.baumgarte = 0;
                 settings.elapsed = h_ * static_cast<float>(substep + 1);
-                SolveContactPositions(batch, states, settings);
+                if (verb == Verb::Relax) RelaxContacts(batch, states, settings);
+                else UpdateSeparations(batch, states, settings);
                 break;
             }
             case Verb::IntegrateVelocities:
@@ -167,9 +169,12 @@ private:
             const float* i = bodies.masses[body].inverseInertia;
             w += SymmetricMatrix3{i[0], i[1], i[2], i[3], i[4], i[5]} * bodies.cold[body].torque * h_;
         }
-        if (static_cast<uint8_t>(d.lockedAxes) & 7)
-            for (int k = 0; k < 3; ++k)
-                if (static_cast<uint8_t>(d.lockedAxes) >> k & 1) v[k] = carryV[k] = 0;
+        if (d.lockedAxes != LockedAxes::None) {
+            d.Lock(v, w);
+            d.Lock(carryV, carryW);
+        }
+        // What is not finite must not reach the rows: its neighbours go on. Store finds the forces and freezes it.
+        if (!IsFinite(v) || !IsFinite(w)) v = w = carryV = carryW = Vector3::Zero();
         const bool fast = ClampLength(v, d.maxLinearSpeed) | ClampLength(w, d.maxAngularSpeed);
         findings.clamped += fast;
         for (int k = 0; k < 3; ++k) {
@@ -184,9 +189,11 @@ private:
         const BodyDynamics& d = world_.bodies.dynamics[body];
         if (d.motion != MotionType::Dynamic) return;
         BodyState& s = world_.bodies.states[body];
-        if (static_cast<uint8_t>(d.lockedAxes) & 7)
-            for (int k = 0; k < 3; ++k)
-                if (static_cast<uint8_t>(d.lockedAxes) >> k & 1) s.linearVelocity[k] = 0;
+        if (d.lockedAxes != LockedAxes::None) {
+            Vector3 v = world_.bodies.LinearVelocityOf(body), w = world_.bodies.AngularVelocityOf(body);
+            d.Lock(v, w);
+            world_.bodies.SetVelocity(body, v, w);
+        }
         for (int k = 0; k < 3; ++k) {
             s.deltaPosition[k] += s.linearVelocity[k] * h_;
             s.deltaRotation[k] += s.angularVelocity[k] * h_;
@@ -210,8 +217,8 @@ std::span<const Verb> LoopOf(const SolverSettings& settings, ScratchArena& scrat
         if (substep == 0) verbs[n++] = Verb::WarmStart;
         for (int i = 0; i < settings.velocityIterations; ++i) verbs[n++] = Verb::Velocities;
         verbs[n++] = Verb::IntegratePoses;
-        for (int i = 0; i < settings.positionIterations; ++i) verbs[n++] = Verb::Positions;
-        // The next substep must know how far apart the points are, whether or not anything pushes them apart.
+        for (int i = 0; i < settings.positionIterations; ++i) verbs[n++] = Verb::Relax;
+        // The next substep must know how far apart the points are, whether or not they are relaxed.
         if (settings.positionIterations == 0) verbs[n++] = Verb::Separations;
     }
     return verbs.first(n);

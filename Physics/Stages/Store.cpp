@@ -17,7 +17,7 @@ SymmetricMatrix3 InverseInertia(const BodyDynamics& d, const Quaternion& rotatio
 }
 
 bool FeelsGyroscopicTorque(const BodyDynamics& d, const Vector3& w) {
-    return d.gyroscopic && !d.spherical && LengthSquared(w) > kGyroscopicSpeed * kGyroscopicSpeed;
+    return d.gyroscopic && !d.spherical && !d.LocksRotation() && LengthSquared(w) > kGyroscopicSpeed * kGyroscopicSpeed;
 }
 
 bool Clamp(Vector3& v, float limit) {
@@ -27,9 +27,19 @@ bool Clamp(Vector3& v, float limit) {
     return true;
 }
 
+// The axis of rotation wanders the faster the more the principal moments differ: so many substeps that it turns by little
+// in each, for a body that turns by `angle` in the step.
+int RotationSubsteps(const BodyDynamics& d, float angle) {
+    constexpr float kSmall = 0.004f;  // rad
+    const auto [low, high] = std::minmax({d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]});
+    const float wandering = angle * (1.0f - low / high);
+    return static_cast<int>(std::clamp(wandering / kSmall, 0.0f, 63.0f)) + 1;
+}
+
 // Keeps the angular momentum L: the orientation advances with the angular velocity of the midpoint, I(q_mid)^-1 L, found
 // from a predicted one and corrected once.
-void RotateFreely(const BodyDynamics& d, Quaternion& q, Vector3& w, const Vector3& torque, float dt, int substeps) {
+void RotateFreely(const BodyDynamics& d, Quaternion& q, Vector3& w, const Vector3& torque, float dt) {
+    const int substeps = RotationSubsteps(d, Length(w) * dt);
     const float h = dt / static_cast<float>(substeps);
     Vector3 momentum = AngularMomentum(d, q, w);
     for (int i = 0; i < substeps; ++i) {
@@ -51,16 +61,17 @@ void FlyFreely(WorldState& world, uint32_t body, const StepContext& step, Pose& 
     v += Vector3(a[0], a[1], a[2]) * step.dt;
     if (d.linearDamping > 0) v *= Exp(-d.linearDamping * step.dt);
     Vector3 change = (before + v) * (0.5f * step.dt);
-    if (static_cast<uint8_t>(d.lockedAxes) & 7)
-        for (int k = 0; k < 3; ++k)
-            if (static_cast<uint8_t>(d.lockedAxes) >> k & 1) v[k] = change[k] = 0;
+    if (d.lockedAxes != LockedAxes::None) {
+        d.Lock(v, w);
+        d.Lock(change, w);
+    }
     pose.position += change.cast<double>();
 
     const Vector3 torque = d.hasForce ? world.bodies.cold[body].torque : Vector3(Vector3::Zero());
     const bool clamped = Clamp(v, d.maxLinearSpeed) | Clamp(w, d.maxAngularSpeed);
     findings.clamped += clamped;
-    if (FeelsGyroscopicTorque(d, w) && (static_cast<uint8_t>(d.lockedAxes) & 56) == 0) {
-        RotateFreely(d, pose.rotation, w, torque, step.dt, world.settings.solver.substeps);
+    if (FeelsGyroscopicTorque(d, w)) {
+        RotateFreely(d, pose.rotation, w, torque, step.dt);
     } else {
         const float* i = world.bodies.masses[body].inverseInertia;
         if (d.hasForce) w += SymmetricMatrix3{i[0], i[1], i[2], i[3], i[4], i[5]} * torque * step.dt;
@@ -76,8 +87,14 @@ void MoveSolved(WorldState& world, uint32_t body, Pose& pose, Vector3& w) {
     pose.position += Vector3(s.deltaPosition[0], s.deltaPosition[1], s.deltaPosition[2]).cast<double>();
     pose.rotation = Normalized(RotationFromVector(Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2])) * before);
     // What turned keeps its momentum, not its angular velocity.
-    if (FeelsGyroscopicTorque(d, w) && (static_cast<uint8_t>(d.lockedAxes) & 56) == 0)
+    if (FeelsGyroscopicTorque(d, w))
         w = InverseInertia(d, pose.rotation) * AngularMomentum(d, before, w);
+}
+
+void ForgetForces(WorldState& world, uint32_t body) {
+    world.bodies.cold[body].force.setZero();
+    world.bodies.cold[body].torque.setZero();
+    world.bodies.dynamics[body].hasForce = false;
 }
 
 // Stops a body whose state is not finite, at its last good pose; it stays there like a static one.
@@ -85,6 +102,7 @@ void Freeze(WorldState& world, uint32_t body, WorkerFindings& findings) {
     world.bodies.SetVelocity(body, Vector3::Zero(), Vector3::Zero());
     world.bodies.dynamics[body].frozen = true;
     world.bodies.UpdateInertia(body);
+    ForgetForces(world, body);
     ++findings.frozen;
     findings.firstFrozen = std::min(findings.firstFrozen, body);
 }
@@ -96,6 +114,15 @@ void MeasureSlowness(WorldState& world, uint32_t body, const Vector3& v, const V
     const bool slow = d.allowSleep && speed < sleep.linearSpeed;
     d.slowSeconds = slow ? d.slowSeconds + dt : 0.0f;
     findings.sleepCandidates += slow && d.slowSeconds >= sleep.seconds;
+}
+
+// Whether force and torque of this step changed the velocity by finite amounts.
+bool PushIsFinite(const WorldState& world, uint32_t body) {
+    if (!world.bodies.dynamics[body].hasForce) return true;
+    const float* a = world.bodies.poses[body].acceleration;
+    const float* i = world.bodies.masses[body].inverseInertia;
+    const SymmetricMatrix3 inverse{i[0], i[1], i[2], i[3], i[4], i[5]};
+    return IsFinite(Vector3(a[0], a[1], a[2])) && IsFinite(Vector3(inverse * world.bodies.cold[body].torque));
 }
 
 void EndBody(WorldState& world, uint32_t body, const StepContext& step, WorkerFindings& findings) {
@@ -113,17 +140,13 @@ void EndBody(WorldState& world, uint32_t body, const StepContext& step, WorkerFi
         FlyFreely(world, body, step, pose, v, w, findings);
     }
     bodies.states[body] = {};
-    if (!IsFinite(pose.position) || !IsFinite(pose.rotation) || !IsFinite(v) || !IsFinite(w)) {
+    if (!IsFinite(pose.position) || !IsFinite(pose.rotation) || !IsFinite(v) || !IsFinite(w) || !PushIsFinite(world, body)) {
         Freeze(world, body, findings);
         return;
     }
     bodies.SetVelocity(body, v, w);
     bodies.SetCentrePose(body, pose);
-    if (d.hasForce) {
-        bodies.cold[body].force.setZero();
-        bodies.cold[body].torque.setZero();
-        d.hasForce = false;
-    }
+    if (d.hasForce) ForgetForces(world, body);
     if (world.settings.sleep.enabled && d.motion == MotionType::Dynamic)
         MeasureSlowness(world, body, v, w, step.dt, findings);
 }

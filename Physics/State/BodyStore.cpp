@@ -68,6 +68,34 @@ void BodyStore::SetVelocity(uint32_t index, const Vector3& linear, const Vector3
     }
 }
 
+namespace {
+
+// World inverse inertia of a body that cannot turn about some world axes: the inverse of the block of the others.
+SymmetricMatrix3 InverseOfFreeAxes(const BodyDynamics& d, const Matrix3& axes) {
+    Vector3 principal;
+    for (int k = 0; k < 3; ++k) principal[k] = d.inverseInertia[k] > 0 ? 1.0f / d.inverseInertia[k] : 0.0f;
+    const SymmetricMatrix3 w = RotatedDiagonal(axes, principal);
+    const unsigned locked = static_cast<unsigned>(d.lockedAxes) >> 3;
+    const bool x = !(locked & 1), y = !(locked & 2), z = !(locked & 4);
+    SymmetricMatrix3 i;
+    const auto pair = [](float a, float b, float c, float& ia, float& ib, float& ic) {
+        const float determinant = a * b - c * c;
+        ia = b / determinant;
+        ib = a / determinant;
+        ic = -c / determinant;
+    };
+    if (!(d.inverseMass > 0)) return i;
+    if (x && y && !z) pair(w.xx, w.yy, w.xy, i.xx, i.yy, i.xy);
+    else if (x && z && !y) pair(w.xx, w.zz, w.xz, i.xx, i.zz, i.xz);
+    else if (y && z && !x) pair(w.yy, w.zz, w.yz, i.yy, i.zz, i.yz);
+    else if (x) i.xx = 1.0f / w.xx;
+    else if (y) i.yy = 1.0f / w.yy;
+    else if (z) i.zz = 1.0f / w.zz;
+    return i;
+}
+
+}  // namespace
+
 void BodyStore::UpdateInertia(uint32_t index) {
     const BodyDynamics& d = dynamics[index];
     BodyMass& m = masses[index];
@@ -81,10 +109,7 @@ void BodyStore::UpdateInertia(uint32_t index) {
     SymmetricMatrix3 i;
     if (d.spherical) i.xx = i.yy = i.zz = inverse.x();
     else i = RotatedDiagonal(axes, inverse);
-    const auto locked = [&](LockedAxes axis) { return (static_cast<uint8_t>(d.lockedAxes) & static_cast<uint8_t>(axis)) != 0; };
-    if (locked(LockedAxes::RotationX)) i.xx = i.xy = i.xz = 0;
-    if (locked(LockedAxes::RotationY)) i.yy = i.xy = i.yz = 0;
-    if (locked(LockedAxes::RotationZ)) i.zz = i.xz = i.yz = 0;
+    if (d.LocksRotation()) i = InverseOfFreeAxes(d, axes);
     m.inverseInertia[0] = i.xx;
     m.inverseInertia[1] = i.yy;
     m.inverseInertia[2] = i.zz;

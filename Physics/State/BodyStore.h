@@ -30,6 +30,15 @@ struct alignas(64) BodyDynamics {
     bool frozen : 1 = false;
     uint8_t layer = 0;
 
+    // Sets what the locked axes forbid of a velocity or a displacement to zero.
+    void Lock(Vector3& linear, Vector3& angular) const {
+        const unsigned locked = static_cast<unsigned>(lockedAxes);
+        for (unsigned k = 0; k < 3; ++k) {
+            if (locked >> k & 1) linear[k] = 0;
+            if (locked >> (3 + k) & 1) angular[k] = 0;
+        }
+    }
+    bool LocksRotation() const { return (static_cast<unsigned>(lockedAxes) & 56u) != 0; }
     Quaternion PrincipalAxes() const {
         return {principalAxes[0], principalAxes[1], principalAxes[2], principalAxes[3]};
     }

@@ -67,7 +67,6 @@ std::vector<BadBody> BadBodies() {
 }
 
 TEST(Errors, ABadBodyIsNotCreatedAndNamesItsField) {
-    GTEST_SKIP() << "Known defect: a mass, an inertia or a density without a finite inverse is accepted.";
     TestWorld world;
     world.AddFloor();
     const BodyId witness = world.Add({.shape = CubeOf(0.5f), .position = {0, 3, 0}});
@@ -149,9 +148,10 @@ TEST(Errors, ABadSystemIsNotCreated) {
         {"sleep.linearSpeed", ErrorCode::NonFinite, [](S& s) { s.sleep.linearSpeed = kInfinite; }},
         {"speculativeDistance", ErrorCode::NonPositive, [](S& s) { s.speculativeDistance = 0; }},
         {"penetrationSlop", ErrorCode::Negative, [](S& s) { s.penetrationSlop = -1; }},
-        {"baumgarte", ErrorCode::OutOfRange, [](S& s) { s.baumgarte = 1.5f; }},
-        {"baumgarte", ErrorCode::NonFinite, [](S& s) { s.baumgarte = kNaN; }},
-        {"maxPositionCorrection", ErrorCode::NonPositive, [](S& s) { s.maxPositionCorrection = 0; }},
+        {"contactFrequency", ErrorCode::NonPositive, [](S& s) { s.contactFrequency = 0; }},
+        {"contactFrequency", ErrorCode::NonFinite, [](S& s) { s.contactFrequency = kNaN; }},
+        {"contactDampingRatio", ErrorCode::Negative, [](S& s) { s.contactDampingRatio = -1; }},
+        {"contactPushSpeed", ErrorCode::NonPositive, [](S& s) { s.contactPushSpeed = 0; }},
         {"restitutionSpeed", ErrorCode::Negative, [](S& s) { s.restitutionSpeed = -1; }},
         {"boundsMargin", ErrorCode::NonPositive, [](S& s) { s.boundsMargin = 0; }},
         {"layerCollides", ErrorCode::Unsupported, [](S& s) { s.layerCollides[3] = 1; }},
@@ -175,7 +175,6 @@ void PushBeyondAllNumbers(TestWorld& world, BodyId id) {
 }
 
 TEST(Frozen, ABodyThatTurnsNonFiniteStopsAtItsLastGoodPose) {
-    GTEST_SKIP() << "Known defect: SetPose revives a frozen body with the force that froze it.";
     TestWorld world;
     const BodyId bad = world.Add({.shape = SphereOf(0.5f), .position = {1, 2, 3}, .maxLinearSpeed = 3e38f, .maxAngularSpeed = 3e38f});
     const BodyId good = world.Add({.shape = SphereOf(0.5f), .position = {10, 2, 3}});
@@ -201,7 +200,6 @@ TEST(Frozen, ABodyThatTurnsNonFiniteStopsAtItsLastGoodPose) {
 }
 
 TEST(Frozen, NeighboursInTouchGoOn) {
-    GTEST_SKIP() << "Known defect: bodies in touch with one that turns non-finite freeze with it.";
     TestWorld world(NoSleep());
     world.AddFloor();
     const BodyId below = world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5, 0}});

@@ -172,7 +172,6 @@ TEST(Sleep, IsPutToSleepByHandWithWhatItTouches) {
 }
 
 TEST(Sleep, AWokenStackStandsAsBefore) {
-    GTEST_SKIP() << "Known defect: eight boxes do not fall asleep.";
     TestWorld world;
     world.AddFloor();
     const std::vector<BodyId> stack = AddStack(world, 8);

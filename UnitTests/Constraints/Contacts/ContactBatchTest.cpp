@@ -12,7 +12,8 @@ namespace fulcrum::testing {
 namespace {
 
 constexpr ContactPrepareSettings kPrepare{1.0f, 0.5f};
-constexpr ContactSolveSettings kSolve{240.0f, 0.2f, 0.0005f, 0.2f, 0.0f};
+// Hard rows: nothing is pushed.
+constexpr ContactSolveSettings kSolve{.inverseDt = 240.0f, .elapsed = 0, .pushRate = 0, .massScale = 1, .impulseScale = 0, .maxPushSpeed = 3, .slop = 0};
 
 // One contact, row by row: friction along two tangents and about the normal first, then the points.
 template <BodySide kSideB>
@@ -79,15 +80,6 @@ public:
         }
     }
 
-    // Each point's error is measured when its turn comes.
-    void SolvePosition(Twist<float>& d1, Twist<float>& d2) {
-        for (int i = 0; i < count_; ++i) {
-            const float now = separation_[i] + point_[i].template RelativeMotion<BodySide::Dynamic, kSideB>(d1, d2, normal_);
-            const float error = std::clamp(now + kSolve.slop, -kSolve.maxCorrection, 0.0f);
-            point_[i].template SolvePosition<BodySide::Dynamic, kSideB>(d1, d2, mass1_, mass2_, normal_, error, kSolve.baumgarte);
-        }
-    }
-
     int count_ = 0;
     AxisPart<float, false> point_[4], tangent1_, tangent2_;
     AnglePart<float, false> twist_;
@@ -134,13 +126,11 @@ void CompareWithParts(uint32_t seed) {
             EXPECT_NEAR(batch.frictionImpulse[2][0], rows.twist_.GetTotalLambda(), 10 * kTolerance);
         }
 
-        Twist<float> d1, d2;  // nobody has moved yet
-        for (int pass = 0; pass < 2; ++pass) {
-            SolveContactPositions(batch, contacts.states.data(), kSolve);
-            rows.SolvePosition(d1, d2);
-            ExpectNear(contacts.DisplacementOf(2 * i), d1, "displacement, A", i);
-            ExpectNear(contacts.DisplacementOf(2 * i + 1), d2, "displacement, B", i);
-        }
+        // Nobody has moved yet, so relaxing is one more velocity iteration.
+        RelaxContacts(batch, contacts.states.data(), kSolve);
+        rows.SolveVelocity(v1, v2);
+        ExpectNear(contacts.VelocityOf(2 * i), v1, "relaxed, A", i);
+        ExpectNear(contacts.VelocityOf(2 * i + 1), v2, "relaxed, B", i);
         if (::testing::Test::HasFailure()) return;
     }
 }
@@ -213,10 +203,36 @@ TEST(ContactBatch, AFixedSideIsNeitherReadAsMovableNorWritten) {
         auto batch = PrepareBatch<1, true>(contacts, i, kPrepare);
         WarmStartContacts(batch, contacts.states.data());
         SolveContactVelocities(batch, contacts.states.data(), kSolve);
-        SolveContactPositions(batch, contacts.states.data(), kSolve);
+        RelaxContacts(batch, contacts.states.data(), kSolve);
         RestituteContacts(batch, contacts.states.data());
         EXPECT_EQ(std::memcmp(&contacts.states[2 * i + 1], &before[2 * i + 1], sizeof(BodyState)), 0);
     }
+}
+
+TEST(ContactBatch, SeparationsFollowTheDisplacements) {
+    RandomContacts contacts(16, false, 5);
+    for (uint32_t i = 0; i < 16; ++i) {
+        auto batch = PrepareBatch<1, false>(contacts, i, kPrepare);
+        const Vector3 normal = Lane<1>(batch.normal, 0);
+        BodyState& b = contacts.states[2 * i + 1];
+        for (int k = 0; k < 3; ++k) b.deltaPosition[k] = 0.25f * normal[k];
+        UpdateSeparations(batch, contacts.states.data(), kSolve);
+        // A quarter of a metre along the normal opens every gap by as much; rounded at a size of 10.
+        for (int p = 0; p < batch.pointCount; ++p)
+            EXPECT_NEAR(batch.rows[p].separation[0], batch.rows[p].startSeparation[0] + 0.25f, 1e-5f);
+    }
+}
+
+TEST(ContactSolveSettings, SoftenIsTheSoftConstraintOfTheSpring) {
+    // k = m w^2, c = 2 m zeta w with m = 1: gamma = 1 / (h (c + h k)), beta = h k / (c + h k). The row's effective mass is
+    // 1 / (1 + gamma), the part of the impulse that it gives way by gamma / (1 + gamma), its push beta / h per metre.
+    const double f = 60, zeta = 10, h = 1.0 / 240, w = 2 * M_PI * f, k = w * w, c = 2 * zeta * w;
+    const double gamma = 1 / (h * (c + h * k)), beta = h * k / (c + h * k);
+    ContactSolveSettings settings = kSolve;
+    settings.Soften(60, 10, 1.0f / 240);
+    EXPECT_NEAR(settings.massScale, 1 / (1 + gamma), 1e-6);
+    EXPECT_NEAR(settings.impulseScale, gamma / (1 + gamma), 1e-6);
+    EXPECT_NEAR(settings.pushRate, beta / h, 1e-4);
 }
 
 TEST(MeanDistance, OfASquareIsItsClosedForm) {

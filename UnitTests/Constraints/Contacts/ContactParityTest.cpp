@@ -17,7 +17,8 @@ RandomContacts Solved(uint32_t seed) {
     BodyState* states = contacts.states.data();
     for (uint32_t first = 0; first < kContacts; first += N) {
         auto batch = PrepareBatch<N, kFixedB>(contacts, first, {0.9f, 0.5f});
-        ContactSolveSettings settings{240.0f, 0.2f, 0.0005f, 0.2f, 0.0f};
+        ContactSolveSettings settings{.inverseDt = 240.0f, .elapsed = 0, .pushRate = 0, .massScale = 0, .impulseScale = 0, .maxPushSpeed = 3, .slop = 0.0005f};
+        settings.Soften(60, 10, 1.0f / 240);
         WarmStartContacts(batch, states);
         for (int substep = 1; substep <= 2; ++substep) {
             settings.elapsed = static_cast<float>(substep) / 240.0f;
@@ -29,7 +30,7 @@ RandomContacts Solved(uint32_t seed) {
                         states[body].deltaPosition[k] += states[body].linearVelocity[k] / 240.0f;
                         states[body].deltaRotation[k] += states[body].angularVelocity[k] / 240.0f;
                     }
-            SolveContactPositions(batch, states, settings);
+            RelaxContacts(batch, states, settings);
         }
         RestituteContacts(batch, states);
         StoreContacts(batch, contacts.records.data());
