@@ -89,7 +89,7 @@ struct SystemSettings {
     NarrowPhaseMethod narrowPhase = NarrowPhaseMethod::Automatic;
     float speculativeDistance = 0.02f;   // m, > 0: contacts begin at this separation, so that nothing bumps
     float penetrationSlop = 0.0f;       // m, >= 0: overlap that is left alone
-    float contactFrequency = 120.0f;     // Hz, > 0, of the spring that pushes overlaps apart; half of the substeps' rate at most
+    float contactFrequency = 60.0f;      // Hz, > 0, of the spring that pushes overlaps apart; a quarter of the substeps' rate at most
     float contactDampingRatio = 10.0f;   // >= 0
     float contactPushSpeed = 3.0f;       // m/s, > 0: the fastest push
     float restitutionSpeed = 0.5f;       // m/s, >= 0: slower impacts do not bounce

@@ -52,7 +52,7 @@ public:
         settings_.slop = world.settings.penetrationSlop;
         settings_.maxPushSpeed = world.settings.contactPushSpeed;
         // A spring that is too stiff for the substep is no longer soft.
-        const float frequency = std::min(world.settings.contactFrequency, 0.5f * settings_.inverseDt);
+        const float frequency = std::min(world.settings.contactFrequency, 0.25f * settings_.inverseDt);
         settings_.Soften(frequency, world.settings.contactDampingRatio, h_);
         settings_.elapsed = 0;
     }
