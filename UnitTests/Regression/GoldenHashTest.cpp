@@ -8,7 +8,7 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0xbd5615696b008c2bull;
+constexpr uint64_t kGoldenHash = 0x1e30f1b1846d78fdull;
 
 std::string Hex(uint64_t number) {
     char text[24];
