@@ -90,7 +90,7 @@ struct SystemSettings {
     float speculativeDistance = 0.02f;   // m, > 0: contacts begin at this separation, so that nothing bumps
     float penetrationSlop = 0.0f;       // m, >= 0: overlap that is left alone
     float contactFrequency = 60.0f;      // Hz, > 0, of the spring that pushes overlaps apart; a quarter of the substeps' rate at most
-    float contactDampingRatio = 10.0f;   // >= 0
+    float contactDampingRatio = 1.0f;    // >= 0
     float contactPushSpeed = 3.0f;       // m/s, > 0: the fastest push
     float restitutionSpeed = 0.5f;       // m/s, >= 0: slower impacts do not bounce
     float boundsMargin = 0.05f;          // m, > 0: fat bounds exceed the shape's by this

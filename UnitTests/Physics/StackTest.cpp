@@ -85,7 +85,6 @@ TEST(Stack, TwentyBoxesStandAMinuteAwake) {
 }
 
 TEST(Stack, ThePyramidsTopStaysInItsPlace) {
-    GTEST_SKIP() << "Known defect: the top of a flat pyramid of base 15 moves by 0.15 m.";
     TestWorld world;
     world.AddFloor();
     const int base = 15;
@@ -124,8 +123,8 @@ TEST(Stack, AnOverlapIsResolvedGently) {
         world.Step();
         fastest = std::max(fastest, std::fabs(world.VelocityOf(box).y()));
     }
-    // Positions are corrected without giving speed: half a metre's overlap does not throw it into the air.
-    EXPECT_LT(fastest, 0.2f);
+    // Relaxing takes most of the push's speed out again: what is left is below the setting that bounds the push.
+    EXPECT_LT(fastest, 0.5f * world.System().Settings().contactPushSpeed);
     EXPECT_NEAR(world.PositionOf(box).y(), 0.5, kRestingOverlap);
 }
 

@@ -8,7 +8,7 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0x1e30f1b1846d78fdull;
+constexpr uint64_t kGoldenHash = 0x1b381dc6a270aeceull;
 
 std::string Hex(uint64_t number) {
     char text[24];
