@@ -175,8 +175,8 @@ private:
         }
         // What is not finite must not reach the rows: its neighbours go on. Store finds the forces and freezes it.
         if (!IsFinite(v) || !IsFinite(w)) v = w = carryV = carryW = Vector3::Zero();
-        const bool fast = ClampLength(v, d.maxLinearSpeed) | ClampLength(w, d.maxAngularSpeed);
-        findings.clamped += fast;
+        const bool fastLinear = ClampLength(v, d.maxLinearSpeed), fastAngular = ClampLength(w, d.maxAngularSpeed);
+        findings.clamped += fastLinear || fastAngular;
         for (int k = 0; k < 3; ++k) {
             unconstrained[k] = v[k];
             unconstrained[3 + k] = w[k];

@@ -68,8 +68,8 @@ void FlyFreely(WorldState& world, uint32_t body, const StepContext& step, Pose& 
     pose.position += change.cast<double>();
 
     const Vector3 torque = d.hasForce ? world.bodies.cold[body].torque : Vector3(Vector3::Zero());
-    const bool clamped = Clamp(v, d.maxLinearSpeed) | Clamp(w, d.maxAngularSpeed);
-    findings.clamped += clamped;
+    const bool fastLinear = Clamp(v, d.maxLinearSpeed), fastAngular = Clamp(w, d.maxAngularSpeed);
+    findings.clamped += fastLinear || fastAngular;
     if (FeelsGyroscopicTorque(d, w)) {
         RotateFreely(d, pose.rotation, w, torque, step.dt);
     } else {
