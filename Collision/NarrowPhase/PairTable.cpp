@@ -1,6 +1,9 @@
 // The pair table: which function serves which two shapes.
 #include <Fulcrum/Collision/NarrowPhase/PairFunctions.h>
 
+#include <array>
+#include <iterator>
+
 namespace fulcrum {
 
 namespace {
@@ -23,28 +26,25 @@ void Flip(const PairQuery& query, Manifold& manifold) {
     manifold.normal = -(rotation * manifold.normal);
 }
 
-constexpr PairFunction kSphereSphere = CollideSphereSphere, kSphereCapsule = Flip<CollideCapsuleSphere>;
-constexpr PairFunction kBoxSphere = CollideBoxSphere, kSphereBox = Flip<CollideBoxSphere>;
-constexpr PairFunction kCapsuleSphere = CollideCapsuleSphere, kCapsuleCapsule = CollideCapsuleCapsule;
-constexpr PairFunction kBoxBox = CollideBoxBox;
-constexpr PairFunction kPolyhedra = CollidePolyhedra, kFlipped = Flip<CollidePolyhedra>;
+using PairRow = std::array<PairFunction, kConvexShapeTypes>;
+
+template <PairFunction... Functions>
+constexpr PairRow Row() {
+    static_assert(sizeof...(Functions) == kConvexShapeTypes, "every convex shape needs a column in the pair table");
+    return {Functions...};
+}
+
+constexpr PairFunction kFlipped = Flip<CollidePolyhedra>;
 
 // By the type of A down and of B across. A shape that gets a line here and no functions of its own is served by CollideLibccd.
-constexpr PairFunction kPairTable[kConvexShapeTypes][kConvexShapeTypes] = {
-    //                   Sphere          Box         Capsule          ConvexHull
-    /* Sphere     */ {kSphereSphere, kSphereBox, kSphereCapsule, kFlipped},
-    /* Box        */ {kBoxSphere, kBoxBox, kPolyhedra, kFlipped},
-    /* Capsule    */ {kCapsuleSphere, kFlipped, kCapsuleCapsule, kFlipped},
-    /* ConvexHull */ {kPolyhedra, kPolyhedra, kPolyhedra, kPolyhedra},
+constexpr PairRow kPairTable[] = {
+    //                Sphere                Box                      Capsule                     ConvexHull
+    /* Sphere     */ Row<CollideSphereSphere, Flip<CollideBoxSphere>, Flip<CollideCapsuleSphere>, kFlipped>(),
+    /* Box        */ Row<CollideBoxSphere, CollideBoxBox, CollidePolyhedra, kFlipped>(),
+    /* Capsule    */ Row<CollideCapsuleSphere, kFlipped, CollideCapsuleCapsule, kFlipped>(),
+    /* ConvexHull */ Row<CollidePolyhedra, CollidePolyhedra, CollidePolyhedra, CollidePolyhedra>(),
 };
-
-constexpr bool IsFull() {
-    for (const auto& row : kPairTable)
-        for (PairFunction function : row)
-            if (function == nullptr) return false;
-    return true;
-}
-static_assert(IsFull(), "every convex shape needs a row and a column in the pair table");
+static_assert(std::size(kPairTable) == kConvexShapeTypes, "every convex shape needs a row in the pair table");
 
 }  // namespace
 
