@@ -212,10 +212,8 @@ Status Kick(WorldState& world, BodyId id, const Vector3& impulse, const Vector3&
         return *e;
     WakeBody(world, id.index);
     const BodyMass& m = world.bodies.masses[id.index];
-    const float* i = m.inverseInertia;
-    const SymmetricMatrix3 inverse{i[0], i[1], i[2], i[3], i[4], i[5]};
     world.bodies.SetVelocity(id.index, world.bodies.LinearVelocityOf(id.index) + impulse * m.inverseMass,
-                             world.bodies.AngularVelocityOf(id.index) + inverse * angularImpulse);
+                             world.bodies.AngularVelocityOf(id.index) + m.InverseInertia() * angularImpulse);
     return Done{};
 }
 

@@ -63,6 +63,7 @@ struct ContactBatch {
     Real coupling[3][3];            // change of V.n, W.t1, W.t2 by a unit impulse of t1, t2, twist
     Real frictionImpulse[3];
     Real friction, twistRadius;
+    Real relaxedImpulse;            // N s, sum of the normal impulses after the last relaxing pass
 
     // Only where `bounces`.
     Real bounceSpeed[kPoints];      // m/s that the point must leave with; 0: none

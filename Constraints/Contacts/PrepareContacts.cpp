@@ -141,6 +141,7 @@ void PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* recor
     batch.twistRadius = head[6];
     batch.pointCount = static_cast<int32_t>(HorizontalMax(head[3]));
     batch.bounces = HorizontalMax(head[5]) > 0.0f;
+    batch.relaxedImpulse = zero;
 
     // Points, halfway between the surfaces, and their centre.
     Vec3<Real> points[ContactRecord::kMaxPoints];
@@ -155,6 +156,7 @@ void PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* recor
         points[i] = onA + n * (separation * Real(0.5f));
         batch.rows[i].startSeparation = batch.rows[i].separation = Select(used, separation, zero);
         batch.rows[i].impulse = Select(used, impulses[i] * Real(settings.impulseScale), zero);
+        batch.relaxedImpulse += batch.rows[i].impulse;
         for (int k = 0; k < 3; ++k) centre[k] += Select(used, points[i][k], zero);
     }
     centre = centre * (Real(1.0f) / Max(head[3], Real(1.0f)));

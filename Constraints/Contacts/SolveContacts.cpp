@@ -7,13 +7,15 @@ namespace {
 using namespace contacts;
 
 // The friction rows: impulses first clamped to the cone's cross-section (as a vector, so that no heading is preferred),
-// then the torque. Returns the change of impulse of t1, t2 and twist.
+// then the torque. The limit is that of the last relaxed normal impulses, where they were larger: those of the soft rows since
+// give way, and would let friction lose its grip for as long as an overlap builds up. Returns the change of impulse of t1, t2
+// and twist.
 template <int N, bool kFixedB>
 [[gnu::always_inline]] inline void SolveFriction(ContactBatch<N, kFixedB>& batch, Wide<N> v1, Wide<N> v2, Wide<N> wn, Wide<N> (&change)[3]) {
     using Real = Wide<N>;
     Real sum(0.0f);
     for (int i = 0; i < batch.pointCount; ++i) sum += batch.rows[i].impulse;
-    const Real limit = batch.friction * sum;
+    const Real limit = batch.friction * Max(sum, batch.relaxedImpulse);
 
     Real* total = batch.frictionImpulse;
     const Real* inverse = batch.frictionInverse;
@@ -66,7 +68,7 @@ template <bool kRelax, int N, bool kFixedB>
         speed[i] = vn + row.b * w1 - row.a * w2 + Max(row.separation, zero) * inverseDt;
         if constexpr (!kRelax) speed[i] += Clamp((row.separation + Real(settings.slop)) * pushRate, fastest, zero);
     }
-    Real sum = zero, sumA = zero, sumB = zero;
+    Real sum = zero, sumA = zero, sumB = zero, relaxed = zero;
     for (int i = 0; i < batch.pointCount; ++i) {
         auto& row = batch.rows[i];
         Real wanted;
@@ -84,7 +86,9 @@ template <bool kRelax, int N, bool kFixedB>
         sum += change;
         sumA += row.a * change;
         sumB += row.b * change;
+        relaxed += total;
     }
+    if constexpr (kRelax) batch.relaxedImpulse = relaxed;
     if (batch.bounces)
         for (int i = 0; i < batch.pointCount; ++i)
             batch.largestImpulse[i] = Max(batch.largestImpulse[i], batch.rows[i].impulse);

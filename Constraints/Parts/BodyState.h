@@ -31,6 +31,10 @@ struct alignas(32) BodyMass {
     float spare = 0;
 
     const float* Row() const { return inverseInertia; }
+    SymmetricMatrix3 InverseInertia() const {
+        const float* i = inverseInertia;
+        return {i[0], i[1], i[2], i[3], i[4], i[5]};
+    }
 };
 static_assert(sizeof(BodyMass) == 32);
 

@@ -38,13 +38,6 @@ template <class Batch>
     for (size_t line = 0; line < offsetof(Batch, bounceSpeed); line += 64) __builtin_prefetch(bytes + line);
 }
 
-bool ClampLength(Vector3& v, float limit) {
-    const float squared = LengthSquared(v);
-    if (squared <= limit * limit) return false;
-    v *= limit / std::sqrt(squared);
-    return true;
-}
-
 class StepSolver {
 public:
     StepSolver(WorldState& world, const StepContext& step) : world_(world), layout_(world.solver), h_(step.substepDt) {
@@ -165,10 +158,7 @@ private:
         }
         v = (v + Vector3(a[0], a[1], a[2]) * h_) * DampingFactor(d.linearDamping, h_);
         w *= DampingFactor(d.angularDamping, h_);
-        if (d.hasForce) {
-            const float* i = bodies.masses[body].inverseInertia;
-            w += SymmetricMatrix3{i[0], i[1], i[2], i[3], i[4], i[5]} * bodies.cold[body].torque * h_;
-        }
+        if (d.hasForce) w += bodies.masses[body].InverseInertia() * bodies.cold[body].torque * h_;
         if (d.lockedAxes != LockedAxes::None) {
             d.Lock(v, w);
             d.Lock(carryV, carryW);

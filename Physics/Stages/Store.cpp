@@ -20,13 +20,6 @@ bool FeelsGyroscopicTorque(const BodyDynamics& d, const Vector3& w) {
     return d.gyroscopic && !d.spherical && !d.LocksRotation() && LengthSquared(w) > kGyroscopicSpeed * kGyroscopicSpeed;
 }
 
-bool Clamp(Vector3& v, float limit) {
-    const float length = Length(v);
-    if (!(length > limit)) return false;
-    v *= limit / length;
-    return true;
-}
-
 // The axis of rotation wanders the faster the more the principal moments differ: so many substeps that it turns by little
 // in each, for a body that turns by `angle` in the step.
 int RotationSubsteps(const BodyDynamics& d, float angle) {
@@ -68,13 +61,12 @@ void FlyFreely(WorldState& world, uint32_t body, const StepContext& step, Pose& 
     pose.position += change.cast<double>();
 
     const Vector3 torque = d.hasForce ? world.bodies.cold[body].torque : Vector3(Vector3::Zero());
-    const bool fastLinear = Clamp(v, d.maxLinearSpeed), fastAngular = Clamp(w, d.maxAngularSpeed);
+    const bool fastLinear = ClampLength(v, d.maxLinearSpeed), fastAngular = ClampLength(w, d.maxAngularSpeed);
     findings.clamped += fastLinear || fastAngular;
     if (FeelsGyroscopicTorque(d, w)) {
         RotateFreely(d, pose.rotation, w, torque, step.dt);
     } else {
-        const float* i = world.bodies.masses[body].inverseInertia;
-        if (d.hasForce) w += SymmetricMatrix3{i[0], i[1], i[2], i[3], i[4], i[5]} * torque * step.dt;
+        if (d.hasForce) w += world.bodies.masses[body].InverseInertia() * torque * step.dt;
         pose.rotation = Normalized(RotationFromVector(Vector3(w * step.dt)) * pose.rotation);
     }
     if (d.angularDamping > 0) w *= Exp(-d.angularDamping * step.dt);
@@ -120,8 +112,7 @@ void MeasureSlowness(WorldState& world, uint32_t body, const Vector3& v, const V
 bool PushIsFinite(const WorldState& world, uint32_t body) {
     if (!world.bodies.dynamics[body].hasForce) return true;
     const float* a = world.bodies.poses[body].acceleration;
-    const float* i = world.bodies.masses[body].inverseInertia;
-    const SymmetricMatrix3 inverse{i[0], i[1], i[2], i[3], i[4], i[5]};
+    const SymmetricMatrix3 inverse = world.bodies.masses[body].InverseInertia();
     return IsFinite(Vector3(a[0], a[1], a[2])) && IsFinite(Vector3(inverse * world.bodies.cold[body].torque));
 }
 

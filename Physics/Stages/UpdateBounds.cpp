@@ -61,6 +61,19 @@ void UpdateColliders(WorldState& world, uint32_t body, float dt, WorkerFindings&
     if (changed) world.bodies.poses[body].boundsChangedIn = static_cast<uint32_t>(world.report.step);
 }
 
+// The lists of what moves and meets get room by the size of the world, so that no step of a settled one allocates.
+void ReserveLists(WorldState& world) {
+    const size_t colliders = world.colliders.colliders.capacity();
+    if (world.colliders.moved.capacity() >= colliders) return;
+    world.colliders.moved.reserve(colliders);
+    world.activated.reserve(colliders);
+    world.newPairs.reserve(colliders);
+    for (WorkerFindings& findings : world.findings) {
+        findings.colliders.reserve(colliders);
+        findings.pairs.reserve(colliders);
+    }
+}
+
 }  // namespace
 
 void SetFatBounds(WorldState& world, uint32_t index) {
@@ -72,6 +85,7 @@ void SetFatBounds(WorldState& world, uint32_t index) {
 }
 
 void UpdateBounds(WorldState& world, const StepContext& step) {
+    ReserveLists(world);
     BodyStore& bodies = world.bodies;
     const Vector3 gravity = world.settings.gravity;
     world.jobs->ParallelFor(static_cast<uint32_t>(bodies.awake.size()), 64, [&](JobRange range) {

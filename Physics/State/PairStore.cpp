@@ -41,6 +41,7 @@ uint32_t PairStore::Add(uint32_t colliderA, uint32_t colliderB) {
         pairs.emplace_back();
         records.emplace_back();
         active.Reserve(index + 1);
+        free_.reserve(pairs.capacity());  // so that removing never allocates
     }
     pairs[index] = {};
     records[index] = {};

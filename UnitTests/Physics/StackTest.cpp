@@ -129,7 +129,6 @@ TEST(Stack, AnOverlapIsResolvedGently) {
 }
 
 TEST(Stack, NothingMovesInAStackAtRest) {
-    GTEST_SKIP() << "Known defect: 0.12 mm in a second, 0.1 mm are allowed.";
     // No jitter: awake, at rest, each body's position over a second stays within a tenth of a millimetre.
     TestWorld world(NoSleep());
     world.AddFloor();

@@ -8,7 +8,7 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0x1b381dc6a270aeceull;
+constexpr uint64_t kGoldenHash = 0x5790cd0722bae4c2ull;
 
 std::string Hex(uint64_t number) {
     char text[24];

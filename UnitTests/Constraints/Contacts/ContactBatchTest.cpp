@@ -58,8 +58,13 @@ public:
     }
 
     void SolveVelocity(Twist<float>& v1, Twist<float>& v2) {
-        float limit = 0;
-        for (int i = 0; i < count_; ++i) limit += record_.friction * point_[i].GetTotalLambda();
+        // Friction may lean on the impulses of the last step where the new ones are smaller.
+        float sum = 0, relaxed = 0;
+        for (int i = 0; i < count_; ++i) {
+            sum += point_[i].GetTotalLambda();
+            relaxed += record_.impulse[i] * kPrepare.impulseScale;
+        }
+        const float limit = record_.friction * std::max(sum, relaxed);
         // Both tangents' impulses are found, one after the other, before they are clamped to the cone together.
         const float before1 = tangent1_.GetTotalLambda(), before2 = tangent2_.GetTotalLambda();
         Twist<float> w1 = v1, w2 = v2;
