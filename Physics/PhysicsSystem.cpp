@@ -129,7 +129,7 @@ Status PhysicsSystem::Update(double dt) {
     timer.Finished(Stage::Prepare);
     Solve(world, step);
     timer.Finished(Stage::Solve);
-    Restitution(world);
+    Restitution(world, step);
     timer.Finished(Stage::Restitution);
     Store(world, step);
     timer.Finished(Stage::Store);

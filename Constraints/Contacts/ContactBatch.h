@@ -26,11 +26,12 @@ struct MovingSide {
     Vec3<Real> arm;  // m, from its centre of mass to c
     InverseMass<Real> inverse;
 };
-// or one that is not (static, kinematic): its velocity at c is all there is to know.
+// or one that is not (static, kinematic): the motion of its point at c is all there is to know.
 template <int N>
 struct FixedSide {
     using Real = Wide<N>;
-    Twist<Real> velocity;
+    Twist<Real> velocity;          // at the start of the step
+    Vec3<Real> acceleration;       // m/s2, w x (w x r): what turns takes its load along the arc, not along its tangent
 };
 
 template <int N, bool kFixedB>
@@ -77,7 +78,7 @@ struct ContactPrepareSettings {
 
 struct ContactSolveSettings {
     float inverseDt;         // 1/s, of the substep
-    float elapsed;           // s since the start of the step: how far fixed sides have moved
+    float elapsed;           // s since the start of the step: where fixed sides are
     // Points that overlap are pushed apart by a soft row, see Soften.
     float pushRate;          // 1/s: speed of the push per metre of overlap
     float massScale;         // 0..1: softened effective mass / effective mass
@@ -113,9 +114,9 @@ void RelaxContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const Con
 template <int N, bool kFixedB>
 void UpdateSeparations(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
 
-// Makes the points that were hit leave with their bounce speed.
+// Makes the points that were hit leave with their bounce speed, at the end of a step of `elapsed` seconds.
 template <int N, bool kFixedB>
-void RestituteContacts(ContactBatch<N, kFixedB>& batch, BodyState* states);
+void RestituteContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, float elapsed);
 
 // Writes the impulses back to the records.
 template <int N, bool kFixedB>

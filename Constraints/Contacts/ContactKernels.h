@@ -60,16 +60,23 @@ template <class Real>
     row[5] += dw.z();
 }
 
-// The relative twist at c. `fixedScale` turns the fixed side's velocity into what `a` holds: 1, or the elapsed time.
-template <int N, bool kFixedB>
+// The relative twist at c, of the velocities or of the displacements, `elapsed` seconds after the start of the step.
+template <Of kOf, int N, bool kFixedB>
 [[gnu::always_inline]] inline Twist<Wide<N>> RelativeTwist(const ContactBatch<N, kFixedB>& batch, const Twists<N, kFixedB>& twists,
-                                    Wide<N> fixedScale) {
+                                                           float elapsed) {
     using Real = Wide<N>;
     Twist<Real> relative;
     const Vec3<Real> atA = Linear(twists.a) + Cross<Real>(Angular(twists.a), batch.armA);
     if constexpr (kFixedB) {
-        relative.linear = batch.sideB.velocity.linear * fixedScale - atA;
-        relative.angular = batch.sideB.velocity.angular * fixedScale - Angular(twists.a);
+        const auto& side = batch.sideB;
+        const Real t(elapsed);
+        if constexpr (kOf == Of::Velocity) {
+            relative.linear = side.velocity.linear + side.acceleration * t - atA;
+            relative.angular = side.velocity.angular - Angular(twists.a);
+        } else {
+            relative.linear = (side.velocity.linear + side.acceleration * Real(0.5f * elapsed)) * t - atA;
+            relative.angular = side.velocity.angular * t - Angular(twists.a);
+        }
     } else {
         relative.linear = Linear(twists.b) + Cross<Real>(Angular(twists.b), batch.sideB.arm) - atA;
         relative.angular = Angular(twists.b) - Angular(twists.a);

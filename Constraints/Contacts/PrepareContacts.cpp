@@ -80,7 +80,7 @@ void PrepareBounces(ContactBatch<N, kFixedB>& batch, Wide<N> restitution, const 
     using Real = Wide<N>;
     Twists<N, kFixedB> twists;
     Gather<Of::Velocity>(batch, bodies.states, twists);
-    const Twist<Real> relative = RelativeTwist(batch, twists, Real(1.0f));
+    const Twist<Real> relative = RelativeTwist<Of::Velocity>(batch, twists, 0);
     const Real vn = Dot<Real>(relative.linear, batch.normal);
     const Real w1 = Dot<Real>(relative.angular, batch.tangent1), w2 = Dot<Real>(relative.angular, batch.tangent2);
     // How fast the gap closes ever faster: minus the relative acceleration along n.
@@ -172,7 +172,9 @@ void PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* recor
         Real velocity[8];
         GatherRows<N>(rows, velocity);
         batch.sideB.velocity.angular = Angular(velocity);
-        batch.sideB.velocity.linear = Linear(velocity) + Cross<Real>(Angular(velocity), armB);
+        const Vec3<Real> turning = Cross<Real>(Angular(velocity), armB);
+        batch.sideB.velocity.linear = Linear(velocity) + turning;
+        batch.sideB.acceleration = Cross<Real>(Angular(velocity), turning);
     } else {
         for (int i = 0; i < N; ++i) batch.sideB.body[i] = bodyB[i];
         batch.sideB.arm = armB;

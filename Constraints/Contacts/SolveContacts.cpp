@@ -42,10 +42,10 @@ template <bool kRelax, int N, bool kFixedB>
 [[gnu::always_inline]] inline void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* states,
                                              const ContactSolveSettings& settings) {
     using Real = Wide<N>;
-    const Real zero(0.0f), one(1.0f);
+    const Real zero(0.0f);
     Twists<N, kFixedB> twists;
     Gather<Of::Velocity>(batch, states, twists);
-    const Twist<Real> relative = RelativeTwist(batch, twists, one);
+    const Twist<Real> relative = RelativeTwist<Of::Velocity>(batch, twists, settings.elapsed);
     Real vn = Dot<Real>(relative.linear, batch.normal);
     Real w1 = Dot<Real>(relative.angular, batch.tangent1), w2 = Dot<Real>(relative.angular, batch.tangent2);
 
@@ -137,7 +137,7 @@ void UpdateSeparations(ContactBatch<N, kFixedB>& batch, BodyState* states, const
     using Real = Wide<N>;
     Twists<N, kFixedB> twists;
     Gather<Of::Displacement>(batch, states, twists);
-    const Twist<Real> relative = RelativeTwist(batch, twists, Real(settings.elapsed));
+    const Twist<Real> relative = RelativeTwist<Of::Displacement>(batch, twists, settings.elapsed);
     const Real xn = Dot<Real>(relative.linear, batch.normal);
     const Real w1 = Dot<Real>(relative.angular, batch.tangent1), w2 = Dot<Real>(relative.angular, batch.tangent2);
     for (int i = 0; i < batch.pointCount; ++i) {
@@ -153,13 +153,13 @@ void RelaxContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const Con
 }
 
 template <int N, bool kFixedB>
-void RestituteContacts(ContactBatch<N, kFixedB>& batch, BodyState* states) {
+void RestituteContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, float elapsed) {
     if (!batch.bounces) return;
     using Real = Wide<N>;
     const Real zero(0.0f);
     Twists<N, kFixedB> twists;
     Gather<Of::Velocity>(batch, states, twists);
-    const Twist<Real> relative = RelativeTwist(batch, twists, Real(1.0f));
+    const Twist<Real> relative = RelativeTwist<Of::Velocity>(batch, twists, elapsed);
     const Real vn = Dot<Real>(relative.linear, batch.normal);
     const Real w1 = Dot<Real>(relative.angular, batch.tangent1), w2 = Dot<Real>(relative.angular, batch.tangent2);
     Real speed[ContactRecord::kMaxPoints];
@@ -195,7 +195,7 @@ void RestituteContacts(ContactBatch<N, kFixedB>& batch, BodyState* states) {
     template void SolveContactVelocities(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);        \
     template void RelaxContacts(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);                 \
     template void UpdateSeparations(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);             \
-    template void RestituteContacts(ContactBatch<lanes, fixedB>&, BodyState*);
+    template void RestituteContacts(ContactBatch<lanes, fixedB>&, BodyState*, float);
 FULCRUM_INSTANTIATE(1, false)
 FULCRUM_INSTANTIATE(1, true)
 FULCRUM_INSTANTIATE(4, false)

@@ -40,14 +40,13 @@ template <class Batch>
 
 class StepSolver {
 public:
-    StepSolver(WorldState& world, const StepContext& step) : world_(world), layout_(world.solver), h_(step.substepDt) {
+    StepSolver(WorldState& world, const StepContext& step) : world_(world), layout_(world.solver), h_(step.substepDt), dt_(step.dt) {
         settings_.inverseDt = 1.0f / h_;
         settings_.slop = world.settings.penetrationSlop;
         settings_.maxPushSpeed = world.settings.contactPushSpeed;
         // A spring that is too stiff for the substep is no longer soft.
         const float frequency = std::min(world.settings.contactFrequency, 0.25f * settings_.inverseDt);
         settings_.Soften(frequency, world.settings.contactDampingRatio, h_);
-        settings_.elapsed = 0;
     }
 
     // The large group: all workers, phase by phase.
@@ -127,20 +126,21 @@ private:
         BodyState* states = world_.bodies.states.data();
         switch (verb) {
             case Verb::WarmStart: WarmStartContacts(batch, states); break;
-            case Verb::Velocities: SolveContactVelocities(batch, states, settings_); break;
-            case Verb::Restitution: RestituteContacts(batch, states); break;
-            case Verb::Relax:
-            case Verb::Separations: {
-                ContactSolveSettings settings = settings_;
-                settings.elapsed = h_ * static_cast<float>(substep + 1);
-                if (verb == Verb::Relax) RelaxContacts(batch, states, settings);
-                else UpdateSeparations(batch, states, settings);
-                break;
-            }
+            // Poses move with these velocities from the beginning of the substep to its end: they are those of its middle.
+            case Verb::Velocities: SolveContactVelocities(batch, states, SettingsAt(substep, 0.5f)); break;
+            case Verb::Relax: RelaxContacts(batch, states, SettingsAt(substep, 1)); break;
+            case Verb::Separations: UpdateSeparations(batch, states, SettingsAt(substep, 1)); break;
+            case Verb::Restitution: RestituteContacts(batch, states, dt_); break;
             case Verb::IntegrateVelocities:
             case Verb::IntegratePoses:
             case Verb::NextSubstep: break;
         }
+    }
+
+    ContactSolveSettings SettingsAt(uint8_t substep, float part) const {
+        ContactSolveSettings settings = settings_;
+        settings.elapsed = h_ * (static_cast<float>(substep) + part);
+        return settings;
     }
 
     void IntegrateVelocity(uint32_t body, bool again, WorkerFindings& findings) {
@@ -192,7 +192,7 @@ private:
 
     WorldState& world_;
     SolverLayout& layout_;
-    float h_;
+    float h_, dt_;  // s, of a substep and of the step
     ContactSolveSettings settings_;
 };
 
@@ -248,10 +248,10 @@ void Solve(WorldState& world, const StepContext& step) {
     RunVerbs(world, step, LoopOf(world.settings.solver, world.scratch));
 }
 
-void Restitution(WorldState& world) {
+void Restitution(WorldState& world, const StepContext& step) {
     if (!world.bounces) return;
     static constexpr Verb kVerbs[] = {Verb::Restitution};
-    RunVerbs(world, {1.0f, 1.0f}, kVerbs);
+    RunVerbs(world, step, kVerbs);
 }
 
 }  // namespace fulcrum

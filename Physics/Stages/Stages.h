@@ -42,7 +42,7 @@ void Prepare(WorldState& world, const StepContext& step);
 void Solve(WorldState& world, const StepContext& step);
 
 // Bounces what was hit.
-void Restitution(WorldState& world);
+void Restitution(WorldState& world, const StepContext& step);
 
 // Writes impulses to the records, displacements to the poses; moves bodies that nothing touched; measures slowness.
 void Store(WorldState& world, const StepContext& step);

@@ -8,7 +8,7 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0x5790cd0722bae4c2ull;
+constexpr uint64_t kGoldenHash = 0x60f06d86a5acdbd9ull;
 
 std::string Hex(uint64_t number) {
     char text[24];

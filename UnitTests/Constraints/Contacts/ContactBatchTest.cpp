@@ -171,7 +171,7 @@ TEST(ContactBatch, KeepsLinearAndAngularMomentum) {
         auto batch = PrepareBatch<1, false>(contacts, i, kPrepare);
         WarmStartContacts(batch, contacts.states.data());
         for (int k = 0; k < 4; ++k) SolveContactVelocities(batch, contacts.states.data(), kSolve);
-        RestituteContacts(batch, contacts.states.data());
+        RestituteContacts(batch, contacts.states.data(), 0);
         Momentum(contacts, i, linearAfter, angularAfter);
         // Inverse masses and inertias are from 0.1 on: each rounding of a velocity of size 10 is one of 1e-5 of momentum.
         EXPECT_LT((linearAfter - linear).norm(), 3e-4) << i;
@@ -209,7 +209,7 @@ TEST(ContactBatch, AFixedSideIsNeitherReadAsMovableNorWritten) {
         WarmStartContacts(batch, contacts.states.data());
         SolveContactVelocities(batch, contacts.states.data(), kSolve);
         RelaxContacts(batch, contacts.states.data(), kSolve);
-        RestituteContacts(batch, contacts.states.data());
+        RestituteContacts(batch, contacts.states.data(), 0);
         EXPECT_EQ(std::memcmp(&contacts.states[2 * i + 1], &before[2 * i + 1], sizeof(BodyState)), 0);
     }
 }

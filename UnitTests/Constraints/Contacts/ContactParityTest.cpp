@@ -32,7 +32,7 @@ RandomContacts Solved(uint32_t seed) {
                     }
             RelaxContacts(batch, states, settings);
         }
-        RestituteContacts(batch, states);
+        RestituteContacts(batch, states, 0);
         StoreContacts(batch, contacts.records.data());
     }
     return contacts;
