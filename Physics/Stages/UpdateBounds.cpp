@@ -12,6 +12,8 @@ namespace {
 // more than a search.
 constexpr float kStepsAhead = 4;
 constexpr float kAheadPart = 0.25f;  // of the outer radius
+// What moves by this part of the margin in a step would leave fat bounds so soon that they only cost pairs: it gets tight ones.
+constexpr float kFastPart = 0.5f;
 
 // World bounds of a collider, without any margin. A hull as round as a ball is bounded best by its outer sphere.
 Bounds TightBounds(const ConvexShape& shape, const Pose& pose, const Matrix3& rotation) {
@@ -51,10 +53,14 @@ void UpdateColliders(WorldState& world, uint32_t body, float dt, WorkerFindings&
         }
         const float speculative = 0.5f * world.settings.speculativeDistance;
         if (collider.fat.Contains(Reach(tight, motion, speculative))) continue;
-        const float radius = piece.shape->OuterRadius();
-        const float ahead = kAheadPart * radius / std::max(Length(motion), 1e-6f);
+        const float radius = piece.shape->OuterRadius(), distance = Length(motion);
         const float margin = std::min(world.settings.boundsMargin, kAheadPart * radius);
-        collider.fat = Reach(tight, motion * std::clamp(ahead, 1.0f, kStepsAhead), speculative + margin);
+        if (distance > kFastPart * margin) {
+            collider.fat = Reach(tight, motion, speculative);
+        } else {
+            const float ahead = kAheadPart * radius / std::max(distance, 1e-6f);
+            collider.fat = Reach(tight, motion * std::clamp(ahead, 1.0f, kStepsAhead), speculative + margin);
+        }
         findings.colliders.push_back(i);
         changed = true;
     }
