@@ -233,14 +233,7 @@ void StoreContacts(const ContactBatch<N, kFixedB>& batch, ContactRecord* records
     template void PrepareContacts(ContactBatch<lanes, fixedB>&, const ContactRecord*, const uint32_t(&)[lanes],         \
                                   const SolverBodies&, const ContactPrepareSettings&);                                  \
     template void StoreContacts(const ContactBatch<lanes, fixedB>&, ContactRecord*);
-FULCRUM_INSTANTIATE(1, false)
-FULCRUM_INSTANTIATE(1, true)
-FULCRUM_INSTANTIATE(4, false)
-FULCRUM_INSTANTIATE(4, true)
-FULCRUM_INSTANTIATE(8, false)
-FULCRUM_INSTANTIATE(8, true)
-FULCRUM_INSTANTIATE(16, false)
-FULCRUM_INSTANTIATE(16, true)
+FULCRUM_FOR_EACH_CONTACT_BATCH(FULCRUM_INSTANTIATE)
 #undef FULCRUM_INSTANTIATE
 
 }  // namespace fulcrum

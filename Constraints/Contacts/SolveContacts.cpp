@@ -196,14 +196,7 @@ void RestituteContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, float
     template void RelaxContacts(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);                 \
     template void UpdateSeparations(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);             \
     template void RestituteContacts(ContactBatch<lanes, fixedB>&, BodyState*, float);
-FULCRUM_INSTANTIATE(1, false)
-FULCRUM_INSTANTIATE(1, true)
-FULCRUM_INSTANTIATE(4, false)
-FULCRUM_INSTANTIATE(4, true)
-FULCRUM_INSTANTIATE(8, false)
-FULCRUM_INSTANTIATE(8, true)
-FULCRUM_INSTANTIATE(16, false)
-FULCRUM_INSTANTIATE(16, true)
+FULCRUM_FOR_EACH_CONTACT_BATCH(FULCRUM_INSTANTIATE)
 #undef FULCRUM_INSTANTIATE
 
 }  // namespace fulcrum

@@ -49,9 +49,10 @@ TEST_P(Restitution, NeverRisesAboveWhereItFell) {
     EXPECT_LE(highest, kDrop + kRadius + double(world.System().Settings().penetrationSlop));
 }
 
-TEST_P(Restitution, ComesToRestAfterTheSumOfAllBounces) {
+class FadingRestitution : public Restitution {};
+
+TEST_P(FadingRestitution, ComesToRestAfterTheSumOfAllBounces) {
     const double e = double(GetParam()), dt = 1.0 / 240;
-    if (e > 0.9) GTEST_SKIP() << "bounces for longer than this test runs";
     TestWorld world(Bouncy());
     world.AddFloor();
     const BodyId ball = AddBall(world, GetParam());
@@ -68,6 +69,7 @@ TEST_P(Restitution, ComesToRestAfterTheSumOfAllBounces) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Coefficients, Restitution, ::testing::Values(0.0f, 0.3f, 0.5f, 0.8f, 0.95f, 1.0f));
+INSTANTIATE_TEST_SUITE_P(Coefficients, FadingRestitution, ::testing::Values(0.0f, 0.3f, 0.5f, 0.8f));
 
 TEST(Restitution, OneLosesNothingInTenSeconds) {
     TestWorld world(NoSleep());
