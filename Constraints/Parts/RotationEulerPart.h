@@ -1,0 +1,100 @@
+// Three rows that lock the rotation of two bodies against each other: fixed joints and sliders. Called by joints, which
+// gather the bodies' lanes before and scatter them after. One thread per part.
+//
+// Source: D. Chappuis, "Constraints Derivation for Rigid Body Simulation in 3D" (fixed joint); the error is our own.
+//   q1, q2  rotations of the bodies     q0 = q1^-1 q2  where the constraint holds, constant
+//   d = q2 q0^-1 q1^-1                  the rotation that body 2 has too much, world space: q2 = d q1 q0
+//   Constraint:  C = rotation vector of d, by the short way, |C| <= pi
+//   Derivative:  dC/dt = w2 - w1 for small C and, for any C, for rotations about C itself
+//   Jacobian:    J = [0, -1, 0, 1]
+//   K = J M^-1 J^T = I1^-1 + I2^-1
+// C is the angle itself and not the imaginary part of d, which is half the sine of it: it leads back from 180 degrees too.
+#pragma once
+
+#include <Fulcrum/Constraints/Parts/BlockPart.h>
+#include <Fulcrum/Math/Trigonometry.h>
+
+namespace fulcrum {
+
+// q0^-1 of bodies that are now where the constraint holds.
+template <class Real>
+inline Quat<Real> InverseInitialOrientation(const Quat<Real>& rotation1, const Quat<Real>& rotation2) {
+    return rotation2.Conjugate() * rotation1;
+}
+
+namespace detail {
+
+// The rotation with these columns, orthonormal. Source: S. W. Shepperd, "Quaternion from Rotation Matrix", 1978: divides by
+// the largest of the four components.
+inline Quaternion RotationFromColumns(const Matrix3& m) {
+    const float xx = m.x.x(), yy = m.y.y(), zz = m.z.z(), trace = xx + yy + zz;
+    Quaternion q;
+    if (trace >= xx && trace >= yy && trace >= zz)
+        q = {m.y.z() - m.z.y(), m.z.x() - m.x.z(), m.x.y() - m.y.x(), 1.0f + trace};
+    else if (xx >= yy && xx >= zz)
+        q = {1.0f + xx - yy - zz, m.x.y() + m.y.x(), m.x.z() + m.z.x(), m.y.z() - m.z.y()};
+    else if (yy >= zz)
+        q = {m.x.y() + m.y.x(), 1.0f + yy - zz - xx, m.y.z() + m.z.y(), m.z.x() - m.x.z()};
+    else
+        q = {m.x.z() + m.z.x(), m.y.z() + m.z.y(), 1.0f + zz - xx - yy, m.x.y() - m.y.x()};
+    return Normalized(q);
+}
+
+}  // namespace detail
+
+// The rotation that takes the x and y axes to the given ones: unit vectors, perpendicular (y is straightened to be), not
+// parallel. The same from the axes x and z.
+inline Quaternion RotationFromAxesXY(const Vector3& axisX, const Vector3& axisY) {
+    const Vector3 z = Normalized(Cross(axisX, axisY));
+    return detail::RotationFromColumns({axisX, Cross(z, axisX), z});
+}
+inline Quaternion RotationFromAxesXZ(const Vector3& axisX, const Vector3& axisZ) {
+    return RotationFromAxesXY(axisX, Vector3(Cross(axisZ, axisX)));
+}
+
+// q0^-1 for which the axes given in body 1's own space and those in body 2's own space point the same way in the world:
+// q1 f1 = q2 f2 with f1, f2 the frames of the axes, so q0^-1 = f2 f1^-1. Axes as for RotationFromAxesXY.
+inline Quaternion InverseInitialOrientationFromXY(const Vector3& axisX1, const Vector3& axisY1, const Vector3& axisX2,
+                                                  const Vector3& axisY2) {
+    return Normalized(RotationFromAxesXY(axisX2, axisY2) * RotationFromAxesXY(axisX1, axisY1).Conjugate());
+}
+inline Quaternion InverseInitialOrientationFromXZ(const Vector3& axisX1, const Vector3& axisZ1, const Vector3& axisX2,
+                                                  const Vector3& axisZ2) {
+    return Normalized(RotationFromAxesXZ(axisX2, axisZ2) * RotationFromAxesXZ(axisX1, axisZ1).Conjugate());
+}
+
+// C, rad, world space.
+template <class Real>
+inline Vec3<Real> RotationError(const Quat<Real>& rotation1, const Quat<Real>& rotation2,
+                                const Quat<Real>& inverseInitial) {
+    return RotationVectorOf<Real>(rotation2 * inverseInitial * rotation1.Conjugate());
+}
+
+template <class Real>
+class RotationEulerPart : public BlockPart<RotationEulerPart<Real>, Real, 3> {
+public:
+    using typename BlockPart<RotationEulerPart, Real, 3>::Vector;
+    using typename BlockPart<RotationEulerPart, Real, 3>::Mask;
+
+    // Once per substep. bias: b, rad/s. The solve reaches J v = -b.
+    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
+    void CalculateProperties(const InverseMass<Real>& mass1, const InverseMass<Real>& mass2, const Vector& bias,
+                             const RowSoftness<Real>& softness = {}) {
+        this->SetRows(AngularInverseMass<kSide1, kSide2>(mass1, mass2), bias, softness);
+    }
+
+    // J applied to velocities (rad/s), or to displacements: the change of C to first order (rad).
+    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
+    Vector RelativeMotion(const Twist<Real>& motion1, const Twist<Real>& motion2) const {
+        return AngularMotion<kSide1, kSide2>(motion1, motion2);
+    }
+
+    // Adds M^-1 J^T lambda, where `applied`.
+    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
+    void AddImpulse(Twist<Real>& motion1, Twist<Real>& motion2, const InverseMass<Real>& mass1,
+                    const InverseMass<Real>& mass2, const Vector& lambda, Mask applied) const {
+        AddAngularImpulse<kSide1, kSide2>(motion1, motion2, mass1, mass2, lambda, applied);
+    }
+};
+
+}  // namespace fulcrum

@@ -1,0 +1,410 @@
+// What all block parts have in common, against their Jacobians written out densely in double, and their lanes.
+#include "BlockCases.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace fulcrum {
+namespace {
+
+using testing::Bits;
+using testing::BlockInputs;
+using testing::Lane;
+using testing::MakeBody;
+using testing::MakeInputs;
+using testing::PutLane;
+using testing::Random;
+using testing::RandomBody;
+using testing::RowOf;
+using testing::SameBits;
+using testing::ToDense;
+
+// Numbers below are of order 10 and go through about 20 roundings of 6e-8, of which the inverse makes some ten times more.
+constexpr double kRounding = 5e-5;
+
+template <class Case>
+struct Pair {
+    RandomBody a, b;
+    BlockInputs<float> inputs;
+    typename Case::template Part<float> part;
+
+    explicit Pair(Random& random) : a(MakeBody(random)), b(MakeBody(random)), inputs(MakeInputs(random)) {}
+    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
+    void SetUp() {
+        Case::template SetUp<kSide1, kSide2>(part, a.mass, b.mass, inputs);
+    }
+    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
+    bool Solve() {
+        return part.template SolveVelocity<kSide1, kSide2>(a.velocity, b.velocity, a.mass, b.mass);
+    }
+    Eigen::VectorXd Motion() const { return testing::ToDense(part.RelativeMotion(a.velocity, b.velocity)); }
+    Eigen::VectorXd Bias() const { return inputs.bias.cast<double>().head(Case::kRows); }
+    Eigen::MatrixXd K() const {
+        const auto j = Case::Jacobian(inputs);
+        return j * testing::DenseInverseMass(a.mass, b.mass) * j.transpose();
+    }
+    bool IsAs(const Pair& other) const {
+        return SameBits(a.velocity, other.a.velocity) && SameBits(b.velocity, other.b.velocity);
+    }
+};
+
+template <class Rows>
+bool SameRows(const Rows& a, const Rows& b, int rows) {
+    for (int i = 0; i < rows; ++i)
+        if (Bits(RowOf(a, i)) != Bits(RowOf(b, i))) return false;
+    return true;
+}
+// A value that every row gets.
+template <class Part>
+typename Part::Rows AllRows(float x) {
+    typename Part::Rows rows{};
+    if constexpr (std::is_same_v<typename Part::Rows, float>) rows = x;
+    else rows.setConstant(x);
+    return rows;
+}
+
+template <class Case>
+class BlockPartTest : public ::testing::Test {};
+using Cases =
+    ::testing::Types<testing::PointCase, testing::RotationEulerCase, testing::DualAxisCase, testing::HingeRotationCase,
+                     testing::GearCase, testing::RackAndPinionCase, testing::IndependentAxisCase>;
+TYPED_TEST_SUITE(BlockPartTest, Cases);
+
+TYPED_TEST(BlockPartTest, EffectiveMassIsTheInverseOfTheDenseProduct) {
+    Random random(1);
+    for (int i = 0; i < 200; ++i) {
+        Pair<TypeParam> pair(random);
+        pair.SetUp();
+        const Eigen::MatrixXd expected = pair.K().inverse();
+        const Eigen::MatrixXd mass = ToDense(pair.part.GetEffectiveMass());
+        // The inverse loses as many units as K is ill-conditioned, which is below 100 here.
+        EXPECT_LT((mass - expected).norm(), 3e-5 * expected.norm()) << i;
+        const Eigen::VectorXd motion =
+            TypeParam::Jacobian(pair.inputs) * testing::DenseMotion(pair.a.velocity, pair.b.velocity);
+        EXPECT_LT((pair.Motion() - motion).norm(), kRounding);
+    }
+}
+
+TYPED_TEST(BlockPartTest, OneSolveMeetsTheBias) {
+    Random random(2);
+    for (int i = 0; i < 200; ++i) {
+        Pair<TypeParam> pair(random);
+        pair.SetUp();
+        const auto before = testing::DenseMotion(pair.a.velocity, pair.b.velocity);
+        EXPECT_TRUE(pair.Solve());
+        EXPECT_LT((pair.Motion() + pair.Bias()).norm(), kRounding);
+        // And the velocities changed by M^-1 J^T lambda.
+        const auto after = testing::DenseMotion(pair.a.velocity, pair.b.velocity);
+        const Eigen::VectorXd gain = testing::DenseInverseMass(pair.a.mass, pair.b.mass) *
+                                     TypeParam::Jacobian(pair.inputs).transpose() *
+                                     ToDense(pair.part.GetTotalLambda());
+        EXPECT_LT((after - before - gain).norm(), kRounding);
+    }
+}
+
+TYPED_TEST(BlockPartTest, ImpulsesKeepMomentum) {
+    if constexpr (TypeParam::kKeepsMomentum) {
+        Random random(3);
+        for (int i = 0; i < 100; ++i) {
+            Pair<TypeParam> pair(random);
+            pair.inputs.r1 = pair.b.position + pair.inputs.r2 - pair.a.position;  // both impulses act at p2
+            const auto momentum = [&] {
+                Eigen::Matrix<double, 6, 1> sum = Eigen::Matrix<double, 6, 1>::Zero();
+                for (const RandomBody* body : {&pair.a, &pair.b}) {
+                    const Position p = body->velocity.linear.cast<double>() / static_cast<double>(body->mass.mass);
+                    sum.head(3) += p;
+                    sum.tail(3) += body->position.cast<double>().cross(p) +
+                                   testing::DenseInertia(body->mass).inverse() * body->velocity.angular.cast<double>();
+                }
+                return sum;
+            };
+            const auto before = momentum();
+            pair.SetUp();
+            pair.Solve();
+            // Velocities are rounded to 3e-7 or so, and multiplied by masses of up to 10 kg at up to 4 m.
+            EXPECT_LT((momentum() - before).norm(), 3e-4);
+        }
+    }
+}
+
+// delta = -s K^-1 (J v + b) - g lambda. With y = K lambda, J v = J v0 + y and r = J v0 + b, so y' = y - s (y + r) - g y: y
+// runs to its fixed point -s r / (s + g) by the factor 1 - s - g, in every row alike.
+TYPED_TEST(BlockPartTest, SoftRowsFollowTheirRecursion) {
+    Random random(4);
+    for (int i = 0; i < 50; ++i) {
+        Pair<TypeParam> pair(random);
+        const float s = random.Number(0.1f, 0.8f), g = random.Number(0.05f, 0.2f);
+        pair.inputs.softness = {s, g};
+        pair.SetUp();
+        const Eigen::VectorXd r = pair.Motion() + pair.Bias();
+        const double ds = static_cast<double>(s), dg = static_cast<double>(g);
+        for (int n = 1; n <= 5; ++n) {
+            pair.Solve();
+            const Eigen::VectorXd y = -ds / (ds + dg) * (1.0 - std::pow(1.0 - ds - dg, n)) * r;
+            EXPECT_LT((pair.K() * ToDense(pair.part.GetTotalLambda()) - y).norm(), 2.0 * kRounding);
+            EXPECT_LT((pair.Motion() + pair.Bias() - r - y).norm(), 2.0 * kRounding);
+        }
+        // Hard and without bias from here on: at rest after one more solve.
+        pair.part.SetSoftness({});
+        pair.part.SetBias(AllRows<decltype(pair.part)>(0.0f));
+        pair.Solve();
+        EXPECT_LT(pair.Motion().norm(), kRounding);
+    }
+}
+
+TYPED_TEST(BlockPartTest, PositionPassTakesTheBaumgarteShareOfTheError) {
+    Random random(5);
+    for (int i = 0; i < 50; ++i) {
+        Pair<TypeParam> pair(random);
+        pair.inputs.softness = {0.5f, 0.1f};  // no matter for positions
+        pair.SetUp();
+        using Rows = typename decltype(pair.part)::Rows;
+        const Rows error = AllRows<decltype(pair.part)>(0.1f);
+        Twist<float> moved1, moved2;
+        EXPECT_TRUE(pair.part.SolvePosition(moved1, moved2, pair.a.mass, pair.b.mass, error, 0.2f));
+        const Eigen::VectorXd change = ToDense(pair.part.RelativeMotion(moved1, moved2));
+        EXPECT_LT((change + 0.2 * ToDense(error)).norm(), 1e-6);
+        EXPECT_FALSE(
+            pair.part.SolvePosition(moved1, moved2, pair.a.mass, pair.b.mass, AllRows<decltype(pair.part)>(0.0f), 0.2f));
+    }
+}
+
+// A compile-time side must be the dynamic block with zeros in the right places, whatever it is handed there.
+template <class Case, BodySide kSide1, BodySide kSide2>
+void ExpectSideIsDynamicWithZeros(uint32_t seed) {
+    Random random(seed);
+    for (int i = 0; i < 50; ++i) {
+        Pair<Case> general(random);
+        Pair<Case> special = general;
+        const RandomBody a = special.a, b = special.b;
+        const auto zero = [](RandomBody& body, BodySide side) {
+            if (!HasMass(side)) body.mass = {};
+            if (!HasVelocity(side)) body.velocity = {};
+        };
+        zero(general.a, kSide1);
+        zero(general.b, kSide2);
+        general.SetUp();
+        special.template SetUp<kSide1, kSide2>();
+        for (auto* pair : {&general, &special}) pair->part.SetTotalLambda(AllRows<decltype(pair->part)>(0.1f));
+        general.part.WarmStart(general.a.velocity, general.b.velocity, general.a.mass, general.b.mass, 0.5f);
+        special.part.template WarmStart<kSide1, kSide2>(special.a.velocity, special.b.velocity, special.a.mass,
+                                                        special.b.mass, 0.5f);
+        EXPECT_TRUE(general.Solve());
+        EXPECT_TRUE((special.template Solve<kSide1, kSide2>()));
+        EXPECT_TRUE(SameRows(special.part.GetTotalLambda(), general.part.GetTotalLambda(), Case::kRows));
+        EXPECT_TRUE(SameBits(special.a.velocity, (HasMass(kSide1) ? general.a : a).velocity));
+        EXPECT_TRUE(SameBits(special.b.velocity, (HasMass(kSide2) ? general.b : b).velocity));
+        const Eigen::VectorXd left = ToDense(special.part.template RelativeMotion<kSide1, kSide2>(
+                                         special.a.velocity, special.b.velocity)) + special.Bias();
+        EXPECT_LT(left.norm(), kRounding);
+    }
+}
+
+TYPED_TEST(BlockPartTest, StaticAndKinematicSides) {
+    ExpectSideIsDynamicWithZeros<TypeParam, BodySide::Static, BodySide::Dynamic>(7);
+    ExpectSideIsDynamicWithZeros<TypeParam, BodySide::Dynamic, BodySide::Static>(8);
+    ExpectSideIsDynamicWithZeros<TypeParam, BodySide::Kinematic, BodySide::Dynamic>(9);
+    ExpectSideIsDynamicWithZeros<TypeParam, BodySide::Dynamic, BodySide::Kinematic>(10);
+    ExpectSideIsDynamicWithZeros<TypeParam, BodySide::Dynamic, BodySide::Dynamic>(11);
+}
+
+TYPED_TEST(BlockPartTest, WarmStartStateAndDeactivation) {
+    Random random(12);
+    Pair<TypeParam> pair(random);
+    using Part = decltype(pair.part);
+    pair.SetUp();
+    pair.part.SetTotalLambda(AllRows<Part>(0.8f));
+    const auto before = testing::DenseMotion(pair.a.velocity, pair.b.velocity);
+    pair.part.WarmStart(pair.a.velocity, pair.b.velocity, pair.a.mass, pair.b.mass, 0.25f);
+    EXPECT_TRUE(SameRows(pair.part.GetTotalLambda(), AllRows<Part>(0.2f), TypeParam::kRows));
+    const Eigen::VectorXd gain = testing::DenseInverseMass(pair.a.mass, pair.b.mass) *
+                                 TypeParam::Jacobian(pair.inputs).transpose() * ToDense(AllRows<Part>(0.2f));
+    EXPECT_LT((testing::DenseMotion(pair.a.velocity, pair.b.velocity) - before - gain).norm(), 1e-5);
+
+    pair.Solve();
+    Part fresh;
+    EXPECT_FALSE(fresh.IsActive());
+    fresh.RestoreState(pair.part.SaveState());
+    TypeParam::template SetUp<BodySide::Dynamic, BodySide::Dynamic>(fresh, pair.a.mass, pair.b.mass, pair.inputs);
+    EXPECT_TRUE(SameRows(fresh.GetTotalLambda(), pair.part.GetTotalLambda(), TypeParam::kRows));
+
+    EXPECT_TRUE(pair.part.IsActive());
+    pair.part.Deactivate();
+    EXPECT_FALSE(pair.part.IsActive());
+    EXPECT_EQ(ToDense(pair.part.GetTotalLambda()).norm(), 0.0);
+    const Pair<TypeParam> still = pair;
+    EXPECT_FALSE(pair.Solve());
+    EXPECT_TRUE(pair.IsAs(still));
+
+    // Two bodies that nothing moves.
+    pair.SetUp();
+    pair.part.SetTotalLambda(AllRows<Part>(2.0f));
+    pair.a.mass = pair.b.mass = {};
+    pair.SetUp();
+    EXPECT_FALSE(pair.part.IsActive());
+    EXPECT_EQ(ToDense(pair.part.GetTotalLambda()).norm(), 0.0);
+    EXPECT_FALSE(pair.Solve());
+    EXPECT_TRUE(pair.IsAs(still));
+}
+
+TYPED_TEST(BlockPartTest, NotANumberSpoilsNoBody) {
+    Random random(13);
+    Pair<TypeParam> pair(random);
+    pair.SetUp();
+    pair.part.SetBias(AllRows<decltype(pair.part)>(std::numeric_limits<float>::quiet_NaN()));
+    const Pair<TypeParam> before = pair;
+    EXPECT_FALSE(pair.Solve());
+    EXPECT_TRUE(pair.IsAs(before));
+    EXPECT_EQ(ToDense(pair.part.GetTotalLambda()).norm(), 0.0);
+}
+
+// Every call of a part's life, for scalars and lanes alike.
+template <class Case, class Real>
+struct Life {
+    Twist<Real> v1, v2;
+    InverseMass<Real> m1, m2;
+    BlockInputs<Real> inputs;
+    typename Case::template Part<Real> part;
+    MaskOf<Real> applied;
+
+    void Run() {
+        constexpr BodySide kDynamic = BodySide::Dynamic;
+        using Rows = typename Case::template Part<Real>::Rows;
+        const auto rows = [&](const Vec3<Real>& v) {
+            if constexpr (Case::kRows == 1) return v.x();
+            else return Rows(v.template head<Case::kRows>());
+        };
+        part.SetTotalLambda(rows(inputs.bias));
+        Case::template SetUp<kDynamic, kDynamic>(part, m1, m2, inputs);
+        part.WarmStart(v1, v2, m1, m2, Real(0.9f));
+        for (int i = 0; i < 3; ++i) applied = part.SolveVelocity(v1, v2, m1, m2);
+        part.SetSoftness({});
+        part.SetBias(rows(inputs.r1));
+        if constexpr (Case::kRows == 1) part.SolveVelocity(v1, v2, m1, m2, Real(-0.1f), Real(0.2f));
+        else part.SolveVelocity(v1, v2, m1, m2);
+        part.SolvePosition(v1, v2, m1, m2, rows(inputs.r2), Real(0.2f));
+    }
+};
+
+template <class Case>
+Life<Case, float> MakeLife(Random& random) {
+    Life<Case, float> life;
+    const RandomBody a = MakeBody(random), b = MakeBody(random);
+    life.v1 = a.velocity;
+    life.v2 = b.velocity;
+    life.m1 = a.mass;
+    life.m2 = b.mass;
+    life.inputs = MakeInputs(random);
+    if (random.Chance(0.2f)) life.m1 = {};
+    if (random.Chance(0.2f)) life.m2 = {};
+    if (random.Chance(0.5f)) life.inputs.softness = {random.Number(0.2f, 0.9f), random.Number(0.0f, 0.3f)};
+    return life;
+}
+
+template <class Case, int N>
+void PutLife(Life<Case, Wide<N>>& lanes, int lane, const Life<Case, float>& life) {
+    PutLane(lanes.v1, lane, life.v1);
+    PutLane(lanes.v2, lane, life.v2);
+    PutLane(lanes.m1, lane, life.m1);
+    PutLane(lanes.m2, lane, life.m2);
+    PutLane(lanes.inputs.r1, lane, life.inputs.r1);
+    PutLane(lanes.inputs.r2, lane, life.inputs.r2);
+    PutLane(lanes.inputs.axis1, lane, life.inputs.axis1);
+    PutLane(lanes.inputs.axis2, lane, life.inputs.axis2);
+    PutLane(lanes.inputs.bias, lane, life.inputs.bias);
+    lanes.inputs.ratio.Set(lane, life.inputs.ratio);
+    lanes.inputs.softness.massScale.Set(lane, life.inputs.softness.massScale);
+    lanes.inputs.softness.impulseScale.Set(lane, life.inputs.softness.impulseScale);
+}
+
+template <class Case, int N>
+void ExpectLanesEqualScalar() {
+    Random random(40 + N);
+    for (int batch = 0; batch < 800 / N; ++batch) {
+        Life<Case, Wide<N>> lanes{};
+        std::vector<Life<Case, float>> expected;
+        for (int i = 0; i < N; ++i) {
+            expected.push_back(MakeLife<Case>(random));
+            PutLife(lanes, i, expected.back());
+            expected.back().Run();
+        }
+        lanes.Run();
+        for (int i = 0; i < N; ++i) {
+            ASSERT_TRUE(SameBits(Lane(lanes.v1, i), expected[i].v1)) << batch << " " << i;
+            ASSERT_TRUE(SameBits(Lane(lanes.v2, i), expected[i].v2)) << batch << " " << i;
+            ASSERT_EQ(lanes.applied[i], expected[i].applied);
+            for (int row = 0; row < Case::kRows; ++row)
+                ASSERT_EQ(Bits(RowOf(lanes.part.GetTotalLambda(), row)[i]),
+                          Bits(RowOf(expected[i].part.GetTotalLambda(), row)));
+        }
+    }
+}
+
+TYPED_TEST(BlockPartTest, EveryWidthGivesTheBitsOfTheScalar) {
+    ExpectLanesEqualScalar<TypeParam, 1>();
+    ExpectLanesEqualScalar<TypeParam, 4>();
+    ExpectLanesEqualScalar<TypeParam, 8>();
+    ExpectLanesEqualScalar<TypeParam, 16>();
+}
+
+// Odd lanes are deactivated, and their bodies hold what arithmetic would disturb.
+template <class Case, int N>
+void ExpectInactiveLanesUntouched() {
+    const float odd[] = {-0.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1e-42f,
+                         0.0f,  -3.5f};
+    Random random(60 + N);
+    for (int batch = 0; batch < 50; ++batch) {
+        Life<Case, Wide<N>> lanes{};
+        Twist<float> before1[N], before2[N];
+        Wide<N> which(0.0f);
+        for (int i = 0; i < N; ++i) {
+            const bool inactive = i % 2 == 1 || N == 1;
+            auto life = MakeLife<Case>(random);
+            life.m1 = MakeBody(random).mass;
+            life.m2 = MakeBody(random).mass;
+            if (inactive)
+                for (Twist<float>* twist : {&life.v1, &life.v2})
+                    for (int k = 0; k < 3; ++k) {
+                        twist->linear[k] = odd[static_cast<int>(random.Number(0.0f, 5.99f))];
+                        twist->angular[k] = odd[static_cast<int>(random.Number(0.0f, 5.99f))];
+                    }
+            before1[i] = life.v1;
+            before2[i] = life.v2;
+            PutLife(lanes, i, life);
+            which.Set(i, inactive ? 1.0f : 0.0f);
+        }
+        auto& part = lanes.part;
+        using Rows = typename Case::template Part<Wide<N>>::Rows;
+        Rows half = part.GetTotalLambda();  // zero
+        if constexpr (Case::kRows == 1) half = Wide<N>(0.5f);
+        else half.setConstant(Wide<N>(0.5f));
+        part.SetTotalLambda(half);
+        Case::template SetUp<BodySide::Dynamic, BodySide::Dynamic>(part, lanes.m1, lanes.m2, lanes.inputs);
+        const auto off = which > Wide<N>(0.0f);
+        part.Deactivate(off);
+        part.WarmStart(lanes.v1, lanes.v2, lanes.m1, lanes.m2, Wide<N>(1.0f));
+        const auto applied = part.SolveVelocity(lanes.v1, lanes.v2, lanes.m1, lanes.m2);
+        part.SolvePosition(lanes.v1, lanes.v2, lanes.m1, lanes.m2, half, Wide<N>(0.2f));
+        for (int i = 0; i < N; ++i) {
+            const bool inactive = off[i];
+            EXPECT_EQ(applied[i], !inactive);
+            EXPECT_EQ(part.IsActive()[i], !inactive);
+            const bool same = SameBits(Lane(lanes.v1, i), before1[i]) && SameBits(Lane(lanes.v2, i), before2[i]);
+            EXPECT_EQ(same, inactive) << N << " " << i;
+            if (inactive) {
+                EXPECT_EQ(RowOf(part.GetTotalLambda(), 0)[i], 0.0f);
+            }
+        }
+    }
+}
+
+TYPED_TEST(BlockPartTest, InactiveLanesAreUntouched) {
+    ExpectInactiveLanesUntouched<TypeParam, 1>();
+    ExpectInactiveLanesUntouched<TypeParam, 4>();
+    ExpectInactiveLanesUntouched<TypeParam, 8>();
+    ExpectInactiveLanesUntouched<TypeParam, 16>();
+}
+
+}  // namespace
+}  // namespace fulcrum
