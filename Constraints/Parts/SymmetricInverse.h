@@ -27,10 +27,11 @@ struct Sym2 {
 
 namespace detail {
 
-// 1 / pivot. What elimination leaves of a diagonal is off by some units of 6e-8 of that diagonal.
+// 1 / pivot. scale: the diagonal, and what was taken from it beyond that on the way; rounding leaves some units of 6e-8 of
+// these.
 template <class Real>
-inline Real InversePivot(Real pivot, Real diagonal) {
-    const MaskOf<Real> stands = pivot > diagonal * Real(2e-6f);
+inline Real InversePivot(Real pivot, Real scale) {
+    const MaskOf<Real> stands = pivot > scale * Real(1e-6f);
     return Select(stands, Real(1.0f) / Select(stands, pivot, Real(1.0f)), Real(0.0f));
 }
 
@@ -63,7 +64,8 @@ inline Sym3<Real> SymmetricInverse(const Sym3<Real>& k) {
     const Real yz = k.yz - k.xy * lxz;
     const Real dy = detail::InversePivot(k.yy - k.xy * lxy, k.yy);
     const Real lyz = yz * dy;
-    const Real dz = detail::InversePivot(k.zz - k.xz * lxz - yz * lyz, k.zz);
+    // yz is off by units of kyy and kzz, which lyz magnifies where the first two rows are nearly the same.
+    const Real dz = detail::InversePivot(k.zz - k.xz * lxz - yz * lyz, k.zz + lyz * lyz * k.yy);
     const Real corner = lxy * lyz - lxz;  // of L^-1
     Sym3<Real> inverse;
     inverse.zz = dz;
