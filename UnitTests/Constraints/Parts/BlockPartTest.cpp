@@ -266,7 +266,7 @@ struct Life {
     InverseMass<Real> m1, m2;
     BlockInputs<Real> inputs;
     typename Case::template Part<Real> part;
-    MaskOf<Real> applied;
+    MaskOf<Real> applied{};
 
     void Run() {
         constexpr BodySide kDynamic = BodySide::Dynamic;

@@ -233,7 +233,7 @@ TEST(JointError, HingeErrorIsTheAngleBetweenTheAxes) {
 TEST(JointError, HingeJacobianIsTheDerivativeOfTheError) {
     Random random(8);
     for (int i = 0; i < 100; ++i) {
-        const Body a = RandomPose(random), b{{}, a.rotation, 1.0f, Vector3(1, 1, 1)};
+        const Body a = RandomPose(random), b{Vector3::Zero(), a.rotation, 1.0f, Vector3(1, 1, 1)};
         const Twist<float> v1{Vector3::Zero(), random.Vector(1e-3f)}, v2{Vector3::Zero(), random.Vector(1e-3f)};
         const Matrix3 m = ToMatrix(b.rotation);
         HingeRotationPart<float> part;
