@@ -1,0 +1,51 @@
+// What the type of a joint asks for in one step beyond its locks: rows for limits in reach, motors that are on, springs and
+// friction. Filled once a step by the types (JointType.h), solved in lanes (JointBatch.h). Plain data, no threads.
+//
+// A row is one equation between two bodies, with v linear and w angular velocities in world axes:
+//     J v = linearB . vB + angularB . wB - linearA . vA - angularA . wA,     dC/dt = J v
+#pragma once
+
+#include <Fulcrum/Constraints/Parts/BodyState.h>
+#include <Fulcrum/Constraints/Parts/SpringSettings.h>
+
+#include <array>
+#include <limits>
+
+namespace fulcrum {
+
+struct JointRow {
+    enum class Kind : uint8_t {
+        Equal,          // C = 0
+        AtLeast,        // C >= 0: pushes C up, never down
+        Spring,         // C = 0, as softly as `spring` says
+        SpringAtLeast,  // the same, where C < 0
+        Speed,          // J v = speed: motors, and friction with speed 0
+    };
+    static constexpr float kUnlimited = std::numeric_limits<float>::infinity();
+
+    Kind kind = Kind::Equal;
+    uint8_t slot = 0;      // which of its type's rows it is: its impulse of the last step is kept by that number
+    Twist<float> a, b;     // linearA, angularA; linearB, angularB
+    float error = 0;       // C at the start of the step, m or rad
+    float speed = 0;       // m/s or rad/s
+    float minForce = -kUnlimited, maxForce = kUnlimited;  // N or N m
+    SpringSettings spring;
+};
+
+// The rows of one joint in one step.
+struct JointRowList {
+    static constexpr uint32_t kMaxRows = 18;  // six limits, six motors, six frictions
+    std::array<JointRow, kMaxRows> rows;
+    uint32_t count = 0;
+
+    // A new row in the slot, to be filled.
+    JointRow& Add(uint32_t slot, JointRow::Kind kind) {
+        FULCRUM_ASSERT(count < kMaxRows && slot < kMaxRows);
+        JointRow& row = rows[count++] = {};
+        row.slot = static_cast<uint8_t>(slot);
+        row.kind = kind;
+        return row;
+    }
+};
+
+}  // namespace fulcrum

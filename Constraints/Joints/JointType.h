@@ -1,0 +1,77 @@
+// What kinds of joints differ in: which motions they lock, and which rows they add in a step. The joint's locks are solved
+// anew from the poses in every substep; rows keep their Jacobian for a step. A user-defined constraint is a class of its own
+// derived from JointType. Called by the Prepare stage, for different joints on different threads, for one joint on one.
+#pragma once
+
+#include <Fulcrum/Constraints/Joints/JointRow.h>
+
+namespace fulcrum {
+
+// How the anchor of body B may move against that of body A.
+enum class LinearLock : uint8_t {
+    None,   // anyhow
+    Line,   // along one axis that moves with A
+    Point,  // not at all
+};
+// How body B may turn against body A.
+enum class AngularLock : uint8_t {
+    None,   // anyhow
+    Axis,   // about one axis
+    All,    // not at all
+};
+
+// The free axes are those of the joint's frame: 0, 1, 2 for x, y, z.
+struct JointLocks {
+    LinearLock linear = LinearLock::None;
+    AngularLock angular = AngularLock::None;
+    uint8_t line = 0;  // the axis that Line leaves free
+    uint8_t axis = 0;  // the axis that Axis leaves free
+    friend bool operator==(const JointLocks&, const JointLocks&) = default;
+};
+
+// The bodies as a step begins, world axes. Frame A is the joint's frame as it moves with body A, frame B as with body B; they
+// coincide where all is locked.
+struct JointPose {
+    Vector3 armA, armB;         // m, from the centre of mass to the anchor
+    Vector3 offset;             // m, from A's anchor to B's
+    Quaternion frameA, frameB;
+    Twist<float> velocityA, velocityB;  // m/s of the centres of mass, rad/s
+    float dt = 0, substepDt = 0;        // s
+
+    // Velocity of B's anchor against the point of A that is there now, m/s.
+    Vector3 AnchorVelocity() const {
+        return velocityB.linear + Cross<float>(velocityB.angular, armB) - velocityA.linear -
+               Cross<float>(velocityA.angular, Vector3(armA + offset));
+    }
+    Vector3 AngularVelocity() const { return velocityB.angular - velocityA.angular; }  // rad/s, of B against A
+    // Jacobians of the motion of B's anchor along the unit axis n of A, and of the rotation of B against A about `axis`.
+    void SetAlong(JointRow& row, const Vector3& n) const {
+        row.a = {n, Cross<float>(Vector3(armA + offset), n)};
+        row.b = {n, Cross<float>(armB, n)};
+    }
+    static void SetAbout(JointRow& row, const Vector3& axis) { row.a.angular = row.b.angular = axis; }
+    // How fast the row's C changes now: J v.
+    float SpeedOf(const JointRow& row) const {
+        return Dot(row.b.linear, velocityB.linear) + Dot(row.b.angular, velocityB.angular) -
+               Dot(row.a.linear, velocityA.linear) - Dot(row.a.angular, velocityA.angular);
+    }
+};
+
+class JointType {
+public:
+    virtual ~JointType() = default;
+
+    virtual JointLocks Locks() const { return {}; }
+    // The largest number of rows that CollectRows adds as long as neither Locks nor motor modes change; 0: it is never called.
+    virtual uint32_t MaxRows() const { return 0; }
+    // Adds the rows of the step. A limit that cannot be reached within the step, a motor that is off: no row.
+    virtual void CollectRows(const JointPose& pose, JointRowList& rows) {
+        (void)pose;
+        (void)rows;
+    }
+
+    // Impulses of the last substep by slot, N s or N m s; 0 where there was no row. Written by the Store stage.
+    std::array<float, JointRowList::kMaxRows> impulses{};
+};
+
+}  // namespace fulcrum
