@@ -1,6 +1,7 @@
 // What a user sets of a joint: the bodies, where it holds them, and what its kind needs. Every field says its unit and range.
 #pragma once
 
+#include <Fulcrum/Constraints/Joints/JointType.h>
 #include <Fulcrum/Physics/Settings.h>
 
 #include <limits>
@@ -45,6 +46,30 @@ struct JointSettings {
     int velocityIterations = 0;  // 0..255
     int positionIterations = 0;  // 0..255
     uint64_t userData = 0;
+};
+
+// B's anchor stays at A's; B turns freely.
+struct PointJointSettings : JointSettings {};
+
+// B does not move against A.
+struct FixedJointSettings : JointSettings {};
+
+// The distance of the anchors stays in a range: a rod, a rope, a spring.
+struct DistanceJointSettings : JointSettings {
+    // m, 0 <= min <= max, max may be infinite. One left out: 0, infinite. Both left out: as it is when the joint is made.
+    std::optional<float> minDistance, maxDistance;
+    SpringSettings spring;  // of both ends; where min is max, of the distance itself
+};
+
+// B turns about the anchor's axis. The angle is the rotation of B against A about it, zero where the frames coincide,
+// counted over any number of turns.
+struct HingeJointSettings : JointSettings {
+    AxisControl angle;  // rad, rad/s, N m
+};
+
+// B slides along the anchor's axis and does not turn.
+struct SliderJointSettings : JointSettings {
+    AxisControl slide;  // m, m/s, N
 };
 
 }  // namespace fulcrum

@@ -34,7 +34,7 @@ struct JointRow {
 
 // The rows of one joint in one step.
 struct JointRowList {
-    static constexpr uint32_t kMaxRows = 18;  // six limits, six motors, six frictions
+    static constexpr uint32_t kMaxRows = 24;  // six axes, each with two limits, a motor and friction
     std::array<JointRow, kMaxRows> rows;
     uint32_t count = 0;
 

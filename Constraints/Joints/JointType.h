@@ -3,7 +3,11 @@
 // derived from JointType. Called by the Prepare stage, for different joints on different threads, for one joint on one.
 #pragma once
 
+#include <Fulcrum/Constraints/Joints/AxisControl.h>
 #include <Fulcrum/Constraints/Joints/JointRow.h>
+#include <Fulcrum/Math/Trigonometry.h>
+
+#include <span>
 
 namespace fulcrum {
 
@@ -37,6 +41,7 @@ struct JointPose {
     Quaternion frameA, frameB;
     Twist<float> velocityA, velocityB;  // m/s of the centres of mass, rad/s
     float dt = 0, substepDt = 0;        // s
+    Position anchorA = Position::Zero();  // m, world space
 
     // Velocity of B's anchor against the point of A that is there now, m/s.
     Vector3 AnchorVelocity() const {
@@ -70,8 +75,30 @@ public:
         (void)rows;
     }
 
+    // Once, when the joint is made, with the bodies as they then are (velocities and times are zero): what a type measures
+    // from there on, such as the length of its rope or the phase of its gears.
+    virtual void Start(const JointPose& pose) { (void)pose; }
+    // What the joint does along a free axis, to be read and changed between steps; null where the type has nothing there.
+    virtual AxisControl* Control(JointAxis axis) {
+        (void)axis;
+        return nullptr;
+    }
+    // The orientation of frame B against frame A that position motors turn to, unit; for types that have such motors.
+    virtual void SetTargetOrientation(const Quaternion& target) { (void)target; }
+    // Where B is along or about an axis, m or rad. Here: the way of B's anchor along the axis of frame A, and the rotation
+    // vector of frame B against A. Types that count turns, or that measure something else, say so.
+    virtual double Coordinate(JointAxis axis, const JointPose& pose) const;
+    // What the type carries from step to step besides impulses; snapshots copy these numbers.
+    virtual std::span<double> State() { return {}; }
+
     // Impulses of the last substep by slot, N s or N m s; 0 where there was no row. Written by the Store stage.
     std::array<float, JointRowList::kMaxRows> impulses{};
 };
+
+inline double JointType::Coordinate(JointAxis axis, const JointPose& pose) const {
+    const auto index = static_cast<int>(axis);
+    if (index < 3) return InverseRotate(pose.frameA, pose.offset)[index];
+    return RotationVectorOf<float>(pose.frameA.Conjugate() * pose.frameB)[index - 3];
+}
 
 }  // namespace fulcrum

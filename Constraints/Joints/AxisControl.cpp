@@ -1,0 +1,116 @@
+#include <Fulcrum/Constraints/Joints/AxisControl.h>
+
+#include <Fulcrum/Constraints/Joints/JointType.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+namespace {
+
+// So far beyond a limit a motor is still trusted to hold: rounding must not switch it off and on.
+constexpr float kLimitSlop = 1e-3f;  // m or rad
+
+bool IsLocked(const AxisControl& control) { return control.limited && control.limits.min >= control.limits.max; }
+
+JointRow& AddRow(const JointRow& motion, float sign, uint32_t slot, JointRow::Kind kind, JointRowList& rows) {
+    JointRow& row = rows.Add(slot, kind);
+    row.a = {motion.a.linear * sign, motion.a.angular * sign};
+    row.b = {motion.b.linear * sign, motion.b.angular * sign};
+    return row;
+}
+
+// The farthest way that the spring of a position motor can pull from `way` m or rad before the target within dt: an undamped
+// oscillator from rest moves way (1 - cos(w dt)).
+float WayOfSpring(const SpringSettings& spring, float way, float dt) {
+    if (IsHard(spring)) return way;
+    if (spring.mode == SpringMode::StiffnessAndDamping) return 2.0f * way;  // the mass is not known here
+    const float phase = 6.28318531f * spring.frequency * dt;
+    return way * std::min(2.0f, 0.5f * phase * phase);
+}
+
+// How far the axis may get within the step in the direction of `sign`.
+float Reach(const AxisControl& control, double position, float speed, float sign, float slackSpeed, float dt) {
+    const JointMotor& motor = control.motor;
+    float closing = std::max(0.0f, sign * speed);
+    if (motor.mode == MotorMode::ToVelocity) closing = std::max(closing, sign * motor.targetSpeed);
+    float reach = (1.25f * closing + slackSpeed) * dt;
+    if (motor.mode == MotorMode::ToPosition) {
+        const float target = std::clamp(motor.targetPosition, control.limits.min, control.limits.max);
+        reach += WayOfSpring(motor.spring, std::max(0.0f, sign * static_cast<float>(target - position)), dt);
+    }
+    return reach;
+}
+
+void AddMotorRow(const AxisControl& control, const JointRow& motion, double position, float dt, uint32_t slot,
+                 JointRowList& rows) {
+    const JointMotor& motor = control.motor;
+    if (motor.mode == MotorMode::ToPosition) {
+        const double target = control.limited
+                                  ? std::clamp(motor.targetPosition, control.limits.min, control.limits.max)
+                                  : motor.targetPosition;
+        JointRow& row = AddRow(motion, 1.0f, slot, IsHard(motor.spring) ? JointRow::Kind::Equal : JointRow::Kind::Spring, rows);
+        row.error = static_cast<float>(position - target);
+        row.spring = motor.spring;
+        row.minForce = motor.minForce;
+        row.maxForce = motor.maxForce;
+        return;
+    }
+    JointRow& row = AddRow(motion, 1.0f, slot, JointRow::Kind::Speed, rows);
+    row.speed = motor.targetSpeed;
+    row.minForce = motor.minForce;
+    row.maxForce = motor.maxForce;
+    if (!control.limited || !IsHard(control.limits.spring)) return;
+    // A motor that pushed on against a hard stop would have both rows' impulses grow without end. It wants what the limit
+    // allows: to be there as the step ends. Well beyond the limit it must not hold what the limit pushes back.
+    const float below = static_cast<float>(control.limits.max - position);
+    const float above = static_cast<float>(position - control.limits.min);
+    row.speed = std::min(row.speed, std::max(below, -kLimitSlop) / dt);
+    row.speed = std::max(row.speed, -std::max(above, -kLimitSlop) / dt);
+    if (below < -kLimitSlop) row.maxForce = 0.0f;
+    if (above < -kLimitSlop) row.minForce = 0.0f;
+}
+
+void AddLimitRow(const JointLimits& limits, const JointRow& motion, float sign, float error, uint32_t slot,
+                 JointRowList& rows) {
+    JointRow& row = AddRow(motion, sign, slot,
+                           IsHard(limits.spring) ? JointRow::Kind::AtLeast : JointRow::Kind::SpringAtLeast, rows);
+    row.error = error;
+    row.spring = limits.spring;
+    row.minForce = 0.0f;
+}
+
+}  // namespace
+
+uint32_t MaxControlRows(const AxisControl& control) {
+    if (IsLocked(control)) return 1;
+    return (control.limited ? 2u : 0u) + (control.motor.mode != MotorMode::Off ? 1u : 0u) + (control.friction > 0.0f ? 1u : 0u);
+}
+
+void AddControlRows(const AxisControl& control, const JointPose& pose, const JointRow& motion, double position,
+                    float slackSpeed, uint32_t firstSlot, JointRowList& rows) {
+    const JointLimits& limits = control.limits;
+    if (IsLocked(control)) {
+        JointRow& row = AddRow(motion, 1.0f, firstSlot + ControlSlots::kLowLimit,
+                               IsHard(limits.spring) ? JointRow::Kind::Equal : JointRow::Kind::Spring, rows);
+        row.error = static_cast<float>(position - limits.min);
+        row.spring = limits.spring;
+        return;
+    }
+    if (control.friction > 0.0f) {
+        JointRow& row = AddRow(motion, 1.0f, firstSlot + ControlSlots::kFriction, JointRow::Kind::Speed, rows);
+        row.minForce = -control.friction;
+        row.maxForce = control.friction;
+    }
+    if (control.motor.mode != MotorMode::Off)
+        AddMotorRow(control, motion, position, pose.dt, firstSlot + ControlSlots::kMotor, rows);
+    if (!control.limited) return;
+    const float speed = pose.SpeedOf(motion);
+    const float above = static_cast<float>(position - limits.min), below = static_cast<float>(limits.max - position);
+    if (above <= Reach(control, position, speed, -1.0f, slackSpeed, pose.dt))
+        AddLimitRow(limits, motion, 1.0f, above, firstSlot + ControlSlots::kLowLimit, rows);
+    if (below <= Reach(control, position, speed, 1.0f, slackSpeed, pose.dt))
+        AddLimitRow(limits, motion, -1.0f, below, firstSlot + ControlSlots::kHighLimit, rows);
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,72 @@
+// What a joint does along one of its free axes: limits, a motor, friction. The user sets it when the joint is made and may
+// change it between steps; joint types turn it into rows in CollectRows. Plain data and free functions, no threads.
+#pragma once
+
+#include <Fulcrum/Constraints/Parts/SpringSettings.h>
+
+#include <cstdint>
+#include <limits>
+
+namespace fulcrum {
+
+struct JointPose;
+struct JointRow;
+struct JointRowList;
+
+// Axes of a joint's frame; angular ones are those turned about.
+enum class JointAxis : uint8_t { LinearX, LinearY, LinearZ, AngularX, AngularY, AngularZ };
+
+// m or rad.
+struct JointLimits {
+    float min = 0.0f;
+    float max = 0.0f;       // >= min; the same: locked there
+    SpringSettings spring;  // frequency 0 or stiffness 0: a hard stop
+};
+
+enum class MotorMode : uint8_t {
+    Off,
+    ToVelocity,  // reaches targetSpeed
+    ToPosition,  // pulls to targetPosition by its spring
+};
+
+struct JointMotor {
+    MotorMode mode = MotorMode::Off;
+    float targetSpeed = 0.0f;     // m/s or rad/s; a hard limit is approached so that it is met, not hit
+    float targetPosition = 0.0f;  // m or rad; beyond the limits: the nearer limit
+    SpringSettings spring = {.frequency = 2.0f, .dampingRatio = 1.0f};  // of ToPosition; hard: as fast as the forces allow
+    float minForce = -std::numeric_limits<float>::infinity();           // N or N m, <= 0
+    float maxForce = std::numeric_limits<float>::infinity();            // N or N m, >= 0
+};
+
+struct AxisControl {
+    bool limited = false;
+    JointLimits limits;  // used where limited
+    JointMotor motor;
+    float friction = 0.0f;  // N or N m, >= 0: the largest force against motion
+};
+
+// Whether these settings mean a hard constraint.
+inline bool IsHard(const SpringSettings& spring) {
+    return (spring.mode == SpringMode::StiffnessAndDamping ? spring.stiffness : spring.frequency) <= 0.0f;
+}
+
+// Slots of the rows of one axis, counted from the axis' first one.
+struct ControlSlots {
+    static constexpr uint32_t kLowLimit = 0, kHighLimit = 1, kMotor = 2, kFriction = 3, kCount = 4;
+};
+
+// The largest number of rows that AddControlRows adds.
+uint32_t MaxControlRows(const AxisControl& control);
+
+// How much faster than now and than its motor wants an axis may move on average before the step is over: what pushes it
+// otherwise is unknown when limits are chosen. 120 m/s2 and 240 rad/s2 at 60 Hz; beyond that a limit is late by one step.
+inline constexpr float kLinearSlackSpeed = 1.0f;   // m/s
+inline constexpr float kAngularSlackSpeed = 2.0f;  // rad/s
+
+// Adds the rows of an axis at `position` (m or rad) whose rate is J v of `motion` (only the Jacobian is read): each limit
+// that may be reached within the step, the motor if it is on, friction if there is any. Limits come last: where rows
+// disagree, they win.
+void AddControlRows(const AxisControl& control, const JointPose& pose, const JointRow& motion, double position,
+                    float slackSpeed, uint32_t firstSlot, JointRowList& rows);
+
+}  // namespace fulcrum

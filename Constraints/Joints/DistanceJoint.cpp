@@ -1,0 +1,32 @@
+#include <Fulcrum/Constraints/Joints/DistanceJoint.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+DistanceJoint::DistanceJoint(std::optional<float> minDistance, std::optional<float> maxDistance, const SpringSettings& spring)
+    : isMeasured_(!minDistance && !maxDistance) {
+    control_.limited = true;
+    control_.limits = {minDistance.value_or(0.0f), maxDistance.value_or(std::numeric_limits<float>::infinity()), spring};
+}
+
+void DistanceJoint::Start(const JointPose& pose) {
+    if (isMeasured_) control_.limits.min = control_.limits.max = Length(pose.offset);
+}
+
+void DistanceJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
+    const float distance = Length(pose.offset);
+    JointRow motion;
+    pose.SetAlong(motion, Normalized(pose.offset, ToMatrix(pose.frameA).x));
+    // Motion across lengthens the distance as well: by (v dt)^2 / 2 d, and by v dt at most.
+    const Vector3 velocity = pose.AnchorVelocity();
+    const float speed = Length(velocity);
+    const float across = speed * std::min(1.0f, speed * pose.dt / std::max(distance, 1e-6f));
+    AddControlRows(control_, pose, motion, distance, kLinearSlackSpeed + across, 0, rows);
+}
+
+double DistanceJoint::Coordinate(JointAxis axis, const JointPose& pose) const {
+    return axis == JointAxis::LinearX ? static_cast<double>(Length(pose.offset)) : JointType::Coordinate(axis, pose);
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,31 @@
+// A hinge: B turns against A about the x axis of the frames, with limits, motor and friction. Solved with the other joints;
+// no threads.
+//
+//   theta       rotation of frame B against frame A about +x, counted over any number of turns
+//   Locks:      point; rotation but about x
+//   Rows:       C = theta - ..., J = [0, -a, 0, a], a the hinge axis (AngularX)
+#pragma once
+
+#include <Fulcrum/Constraints/Joints/JointAngles.h>
+
+namespace fulcrum {
+
+class HingeJoint final : public JointType {
+public:
+    // rad, N m. Limits may be anywhere: turns are counted from the one that is nearest to them when the joint is made.
+    explicit HingeJoint(const AxisControl& angle) : control_(angle) {}
+
+    JointLocks Locks() const override { return {LinearLock::Point, AngularLock::Axis, 0, 0}; }
+    uint32_t MaxRows() const override { return MaxControlRows(control_); }
+    void Start(const JointPose& pose) override;
+    void CollectRows(const JointPose& pose, JointRowList& rows) override;
+    AxisControl* Control(JointAxis axis) override { return axis == JointAxis::AngularX ? &control_ : nullptr; }
+    double Coordinate(JointAxis axis, const JointPose& pose) const override;
+    std::span<double> State() override { return turns_.numbers; }
+
+private:
+    AxisControl control_;
+    TurnCount turns_;
+};
+
+}  // namespace fulcrum

@@ -1,0 +1,31 @@
+// A slider: B's anchor moves along the x axis of A's frame and does not turn, with limits, motor and friction. Solved with
+// the other joints; no threads.
+//
+//   d           way from A's anchor to B's along x            x  unit axis, moving with A
+//   Locks:      line along x; all rotation
+//   Rows:       C = d - ..., J = [-x, -(r1 + u) x x, x, r2 x x] (LinearX)
+#pragma once
+
+#include <Fulcrum/Constraints/Joints/JointType.h>
+
+namespace fulcrum {
+
+class SliderJoint final : public JointType {
+public:
+    explicit SliderJoint(const AxisControl& slide) : control_(slide) {}  // m, N
+
+    JointLocks Locks() const override { return {LinearLock::Line, AngularLock::All, 0, 0}; }
+    uint32_t MaxRows() const override { return MaxControlRows(control_); }
+    void CollectRows(const JointPose& pose, JointRowList& rows) override {
+        const Vector3 axis = ToMatrix(pose.frameA).x;
+        JointRow motion;
+        pose.SetAlong(motion, axis);
+        AddControlRows(control_, pose, motion, Dot(pose.offset, axis), kLinearSlackSpeed, 0, rows);
+    }
+    AxisControl* Control(JointAxis axis) override { return axis == JointAxis::LinearX ? &control_ : nullptr; }
+
+private:
+    AxisControl control_;
+};
+
+}  // namespace fulcrum

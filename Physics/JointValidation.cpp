@@ -1,0 +1,140 @@
+#include <Fulcrum/Physics/JointValidation.h>
+
+#include <Fulcrum/Constraints/Joints/DistanceJoint.h>
+#include <Fulcrum/Constraints/Joints/HingeJoint.h>
+#include <Fulcrum/Constraints/Joints/LockJoint.h>
+#include <Fulcrum/Constraints/Joints/SliderJoint.h>
+
+#include <cstdio>
+
+namespace fulcrum {
+
+namespace {
+
+std::string Number(double x) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%g", x);
+    return text;
+}
+
+MaybeError CheckNotNaN(const std::string& field, double x) {
+    if (x == x) return std::nullopt;
+    return Error{ErrorCode::NonFinite, field + " is NaN; it must be a number"};
+}
+
+MaybeError CheckFinite(const std::string& field, double x) {
+    if (std::isfinite(x)) return std::nullopt;
+    return Error{ErrorCode::NonFinite, field + " is " + Number(x) + "; it must be finite"};
+}
+
+// From `low` to `high`, which may be infinite.
+MaybeError CheckBetween(const std::string& field, double x, double low, double high) {
+    if (MaybeError e = CheckNotNaN(field, x)) return e;
+    if (x >= low && x <= high) return std::nullopt;
+    return Error{ErrorCode::OutOfRange, field + " is " + Number(x) + "; it must be from " + Number(low) + " to " + Number(high)};
+}
+
+MaybeError CheckOrder(const std::string& lowField, double low, const std::string& highField, double high) {
+    if (low <= high) return std::nullopt;
+    return Error{ErrorCode::OutOfRange, lowField + " is " + Number(low) + "; it must not be larger than " + highField + ", which is " + Number(high)};
+}
+
+MaybeError CheckUnit(const std::string& field, const Vector3& v) {
+    if (MaybeError e = fulcrum::CheckFinite(field.c_str(), v)) return e;
+    const double length = std::sqrt(v.cast<double>().squaredNorm());
+    if (std::fabs(length - 1.0) <= 1e-3) return std::nullopt;
+    return Error{ErrorCode::Unnormalized, field + " has length " + Number(length) + "; it must be 1"};
+}
+
+MaybeError CheckAnchor(const std::string& name, const JointAnchor& anchor) {
+    if (MaybeError e = FirstOf(fulcrum::CheckFinite((name + ".point").c_str(), anchor.point), CheckUnit(name + ".axis", anchor.axis))) return e;
+    if (!anchor.normal) return std::nullopt;
+    if (MaybeError e = CheckUnit(name + ".normal", *anchor.normal)) return e;
+    const float cosine = Dot(anchor.axis, *anchor.normal);
+    if (std::fabs(cosine) <= 1e-3f) return std::nullopt;
+    return Error{ErrorCode::Degenerate, name + ".normal is not perpendicular to " + name + ".axis: their cosine is " +
+                                            Number(cosine) + "; it must be 0 within 0.001"};
+}
+
+MaybeError CheckBreak(const char* field, float x) {
+    if (MaybeError e = CheckNotNaN(field, x)) return e;
+    if (x > 0.0f) return std::nullopt;
+    return Error{ErrorCode::NonPositive, std::string(field) + " is " + Number(x) + "; it must be larger than 0"};
+}
+
+MaybeError CheckSpring(const std::string& name, const SpringSettings& spring) {
+    const Status status = Validate(spring);
+    if (status) return std::nullopt;
+    // Its messages begin with "spring ".
+    return Error{status.GetError().code, name + "." + status.GetError().message.substr(7)};
+}
+
+template <class E>
+MaybeError CheckEnum(const std::string& field, E value, E last) {
+    if (static_cast<int>(value) <= static_cast<int>(last)) return std::nullopt;
+    return Error{ErrorCode::OutOfRange, field + " is " + Number(static_cast<int>(value)) + "; it must be from 0 to " + Number(static_cast<int>(last))};
+}
+
+MaybeError CheckLimits(const std::string& name, const JointLimits& limits) {
+    constexpr double kEnd = std::numeric_limits<double>::infinity();
+    if (MaybeError e = FirstOf(CheckNotNaN(name + ".min", limits.min), CheckNotNaN(name + ".max", limits.max),
+                               CheckOrder(name + ".min", limits.min, name + ".max", limits.max), CheckSpring(name + ".spring", limits.spring)))
+        return e;
+    if (limits.min < kEnd && limits.max > -kEnd) return std::nullopt;
+    return Error{ErrorCode::NonFinite, name + ".min and " + name + ".max are the same infinity"};
+}
+
+MaybeError CheckMotor(const std::string& name, const JointMotor& motor) {
+    constexpr double kEnd = std::numeric_limits<double>::infinity();
+    return FirstOf(CheckEnum(name + ".mode", motor.mode, MotorMode::ToPosition),
+                   CheckFinite(name + ".targetSpeed", motor.targetSpeed),
+                   CheckFinite(name + ".targetPosition", motor.targetPosition),
+                   CheckSpring(name + ".spring", motor.spring), CheckBetween(name + ".minForce", motor.minForce, -kEnd, 0.0),
+                   CheckBetween(name + ".maxForce", motor.maxForce, 0.0, kEnd));
+}
+
+// Both a kind's own fields and the shared ones.
+template <class... Checks>
+MaybeError CheckWith(const JointSettings& settings, Checks&&... checks) {
+    return FirstOf(CheckCommon(settings), std::forward<Checks>(checks)...);
+}
+
+}  // namespace
+
+MaybeError CheckCommon(const JointSettings& s) {
+    return FirstOf(CheckEnum("space", s.space, JointSpace::Body), CheckAnchor("anchorA", s.anchorA),
+                   s.anchorB ? CheckAnchor("anchorB", *s.anchorB) : std::nullopt, CheckEnum("priority", s.priority, JointPriority::High),
+                   CheckBreak("breakForce", s.breakForce), CheckBreak("breakTorque", s.breakTorque),
+                   CheckRange("substeps", s.substeps, 0, 64), CheckRange("velocityIterations", s.velocityIterations, 0, 255),
+                   CheckRange("positionIterations", s.positionIterations, 0, 255));
+}
+
+MaybeError CheckControl(const std::string& name, const AxisControl& control) {
+    return FirstOf(CheckLimits(name + ".limits", control.limits), CheckMotor(name + ".motor", control.motor),
+                   CheckNotNegative((name + ".friction").c_str(), control.friction));
+}
+
+MaybeError Check(const PointJointSettings& s) { return CheckCommon(s); }
+MaybeError Check(const FixedJointSettings& s) { return CheckCommon(s); }
+MaybeError Check(const DistanceJointSettings& s) {
+    constexpr double kEnd = std::numeric_limits<double>::infinity();
+    const double min = s.minDistance.value_or(0.0f), max = s.maxDistance ? *s.maxDistance : kEnd;
+    return CheckWith(s, CheckNotNegative("minDistance", min), CheckBetween("maxDistance", max, 0.0, kEnd),
+                     CheckOrder("minDistance", min, "maxDistance", max), CheckSpring("spring", s.spring));
+}
+MaybeError Check(const HingeJointSettings& s) { return CheckWith(s, CheckControl("angle", s.angle)); }
+MaybeError Check(const SliderJointSettings& s) { return CheckWith(s, CheckControl("slide", s.slide)); }
+
+std::unique_ptr<JointType> MakeType(const PointJointSettings&) {
+    return std::make_unique<LockJoint>(JointLocks{.linear = LinearLock::Point});
+}
+std::unique_ptr<JointType> MakeType(const FixedJointSettings&) {
+    return std::make_unique<LockJoint>(JointLocks{.linear = LinearLock::Point, .angular = AngularLock::All});
+}
+std::unique_ptr<JointType> MakeType(const DistanceJointSettings& s) {
+    return std::make_unique<DistanceJoint>(s.minDistance, s.maxDistance, s.spring);
+}
+std::unique_ptr<JointType> MakeType(const HingeJointSettings& s) { return std::make_unique<HingeJoint>(s.angle); }
+std::unique_ptr<JointType> MakeType(const SliderJointSettings& s) { return std::make_unique<SliderJoint>(s.slide); }
+
+}  // namespace fulcrum
