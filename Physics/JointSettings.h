@@ -2,9 +2,12 @@
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/JointType.h>
+#include <Fulcrum/Constraints/Joints/PathJoint.h>
 #include <Fulcrum/Physics/Settings.h>
 
+#include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 
 namespace fulcrum {
@@ -58,18 +61,73 @@ struct FixedJointSettings : JointSettings {};
 struct DistanceJointSettings : JointSettings {
     // m, 0 <= min <= max, max may be infinite. One left out: 0, infinite. Both left out: as it is when the joint is made.
     std::optional<float> minDistance, maxDistance;
-    SpringSettings spring;  // of both ends; where min is max, of the distance itself
+    SpringSettings spring{};  // of both ends; where min is max, of the distance itself
 };
 
 // B turns about the anchor's axis. The angle is the rotation of B against A about it, zero where the frames coincide,
 // counted over any number of turns.
 struct HingeJointSettings : JointSettings {
-    AxisControl angle;  // rad, rad/s, N m
+    AxisControl angle{};  // rad, rad/s, N m
 };
 
 // B slides along the anchor's axis and does not turn.
 struct SliderJointSettings : JointSettings {
-    AxisControl slide;  // m, m/s, N
+    AxisControl slide{};  // m, m/s, N
+};
+
+// A point joint whose axes stay within an angle of each other; B spins about its axis freely.
+struct ConeJointSettings : JointSettings {
+    float halfAngle = 0.785398163f;  // rad, 0..pi; pi: no limit
+    SpringSettings spring{};         // of the limit
+};
+
+// A turns about anchor A's axis, B about anchor B's, each in a bearing that other joints make to a body at rest; their teeth
+// mesh. turns of A = -ratio turns of B.
+struct GearJointSettings : JointSettings {
+    float ratio = 1.0f;  // not 0; teeth of B / teeth of A, > 0 where they mesh outside
+};
+
+// A, the pinion, turns about anchor A's axis through its point; B, the rack, moves along anchor B's axis. Other joints make
+// bearing and guide.
+struct RackAndPinionJointSettings : JointSettings {
+    float ratio = 1.0f;  // rad/m, not 0; 1 / radius of the pinion, negative to move the other way
+};
+
+// A rope from A's anchor over two fixed points to B's: distance of A + ratio distance of B = its length.
+struct PulleyJointSettings : JointSettings {
+    Position fixedPointA = Position::Zero();  // m, world space
+    Position fixedPointB = Position::Zero();  // m, world space
+    float ratio = 1.0f;                       // > 0
+    float minLength = 0.0f;                   // m, >= 0
+    std::optional<float> maxLength;           // m, >= minLength; left out: as it is when the joint is made
+};
+
+// B's anchor rides on a path that is given in the frame of A's anchor.
+struct PathJointSettings : JointSettings {
+    std::shared_ptr<const Path> path = Path::Straight(1.0f);  // not null
+    AxisControl along{};                                      // m from its start, m/s, N
+    PathRotation rotation = PathRotation::Free;
+};
+
+// B, a wheel, spins about the anchor's axis, its axle, and slides along the anchor's normal, upwards, which steers too.
+struct WheelJointSettings : JointSettings {
+    // m, N; zero where the anchors coincide. The motor's spring carries the chassis, the limits are the stops.
+    AxisControl suspension = {
+        .limited = true,
+        .limits = {.min = -0.2f, .max = 0.2f},
+        .motor = {.mode = MotorMode::ToPosition,
+                  .spring = {.mode = SpringMode::StiffnessAndDamping, .stiffness = 4.0e4f, .damping = 4.0e3f}}};
+    bool isSteered = false;
+    // rad, N m; used where steered.
+    AxisControl steering = {.limited = true,
+                            .limits = {.min = -0.6f, .max = 0.6f},
+                            .motor = {.mode = MotorMode::ToPosition, .spring = {}}};
+    AxisControl spin{};  // rad, N m; the motor drives, friction brakes
+};
+
+// A constraint of the user's own.
+struct CustomJointSettings : JointSettings {
+    std::function<std::unique_ptr<JointType>()> make;  // not empty; called once a joint, gives a type
 };
 
 }  // namespace fulcrum

@@ -1,15 +1,24 @@
 #include <Fulcrum/Physics/JointValidation.h>
 
+#include <Fulcrum/Constraints/Joints/ConeJoint.h>
 #include <Fulcrum/Constraints/Joints/DistanceJoint.h>
+#include <Fulcrum/Constraints/Joints/GearJoint.h>
 #include <Fulcrum/Constraints/Joints/HingeJoint.h>
 #include <Fulcrum/Constraints/Joints/LockJoint.h>
+#include <Fulcrum/Constraints/Joints/PathJoint.h>
+#include <Fulcrum/Constraints/Joints/PulleyJoint.h>
+#include <Fulcrum/Constraints/Joints/RackAndPinionJoint.h>
 #include <Fulcrum/Constraints/Joints/SliderJoint.h>
+#include <Fulcrum/Constraints/Joints/WheelJoint.h>
 
 #include <cstdio>
 
 namespace fulcrum {
 
 namespace {
+
+constexpr double kEndless = std::numeric_limits<double>::infinity();
+constexpr double kHalfTurn = 3.1415927410125732;  // pi as a float
 
 std::string Number(double x) {
     char text[40];
@@ -76,21 +85,26 @@ MaybeError CheckEnum(const std::string& field, E value, E last) {
 }
 
 MaybeError CheckLimits(const std::string& name, const JointLimits& limits) {
-    constexpr double kEnd = std::numeric_limits<double>::infinity();
     if (MaybeError e = FirstOf(CheckNotNaN(name + ".min", limits.min), CheckNotNaN(name + ".max", limits.max),
                                CheckOrder(name + ".min", limits.min, name + ".max", limits.max), CheckSpring(name + ".spring", limits.spring)))
         return e;
-    if (limits.min < kEnd && limits.max > -kEnd) return std::nullopt;
+    if (limits.min < kEndless && limits.max > -kEndless) return std::nullopt;
     return Error{ErrorCode::NonFinite, name + ".min and " + name + ".max are the same infinity"};
 }
 
 MaybeError CheckMotor(const std::string& name, const JointMotor& motor) {
-    constexpr double kEnd = std::numeric_limits<double>::infinity();
     return FirstOf(CheckEnum(name + ".mode", motor.mode, MotorMode::ToPosition),
                    CheckFinite(name + ".targetSpeed", motor.targetSpeed),
                    CheckFinite(name + ".targetPosition", motor.targetPosition),
-                   CheckSpring(name + ".spring", motor.spring), CheckBetween(name + ".minForce", motor.minForce, -kEnd, 0.0),
-                   CheckBetween(name + ".maxForce", motor.maxForce, 0.0, kEnd));
+                   CheckSpring(name + ".spring", motor.spring), CheckBetween(name + ".minForce", motor.minForce, -kEndless, 0.0),
+                   CheckBetween(name + ".maxForce", motor.maxForce, 0.0, kEndless));
+}
+
+// A ratio of gears and the like.
+MaybeError CheckNotZero(const std::string& field, float x) {
+    if (MaybeError e = CheckFinite(field, x)) return e;
+    if (x != 0.0f) return std::nullopt;
+    return Error{ErrorCode::OutOfRange, field + " is 0; it must not be"};
 }
 
 // Both a kind's own fields and the shared ones.
@@ -117,13 +131,37 @@ MaybeError CheckControl(const std::string& name, const AxisControl& control) {
 MaybeError Check(const PointJointSettings& s) { return CheckCommon(s); }
 MaybeError Check(const FixedJointSettings& s) { return CheckCommon(s); }
 MaybeError Check(const DistanceJointSettings& s) {
-    constexpr double kEnd = std::numeric_limits<double>::infinity();
-    const double min = s.minDistance.value_or(0.0f), max = s.maxDistance ? *s.maxDistance : kEnd;
-    return CheckWith(s, CheckNotNegative("minDistance", min), CheckBetween("maxDistance", max, 0.0, kEnd),
+    const double min = s.minDistance.value_or(0.0f), max = s.maxDistance ? *s.maxDistance : kEndless;
+    return CheckWith(s, CheckNotNegative("minDistance", min), CheckBetween("maxDistance", max, 0.0, kEndless),
                      CheckOrder("minDistance", min, "maxDistance", max), CheckSpring("spring", s.spring));
 }
 MaybeError Check(const HingeJointSettings& s) { return CheckWith(s, CheckControl("angle", s.angle)); }
 MaybeError Check(const SliderJointSettings& s) { return CheckWith(s, CheckControl("slide", s.slide)); }
+MaybeError Check(const ConeJointSettings& s) {
+    return CheckWith(s, CheckRange("halfAngle", s.halfAngle, 0.0, kHalfTurn), CheckSpring("spring", s.spring));
+}
+MaybeError Check(const GearJointSettings& s) { return CheckWith(s, CheckNotZero("ratio", s.ratio)); }
+MaybeError Check(const RackAndPinionJointSettings& s) { return CheckWith(s, CheckNotZero("ratio", s.ratio)); }
+MaybeError Check(const PulleyJointSettings& s) {
+    if (MaybeError e = CheckWith(s, fulcrum::CheckFinite("fixedPointA", s.fixedPointA), fulcrum::CheckFinite("fixedPointB", s.fixedPointB),
+                                 CheckPositive("ratio", s.ratio), CheckNotNegative("minLength", s.minLength)))
+        return e;
+    if (!s.maxLength) return std::nullopt;
+    return FirstOf(CheckBetween("maxLength", *s.maxLength, 0.0, kEndless), CheckOrder("minLength", s.minLength, "maxLength", *s.maxLength));
+}
+MaybeError Check(const PathJointSettings& s) {
+    if (MaybeError e = CheckWith(s, CheckControl("along", s.along), CheckEnum("rotation", s.rotation, PathRotation::Constant))) return e;
+    if (s.path) return std::nullopt;
+    return Error{ErrorCode::Unsupported, "path is null; the joint needs one"};
+}
+MaybeError Check(const WheelJointSettings& s) {
+    return CheckWith(s, CheckControl("suspension", s.suspension), CheckControl("steering", s.steering), CheckControl("spin", s.spin));
+}
+MaybeError Check(const CustomJointSettings& s) {
+    if (MaybeError e = CheckCommon(s)) return e;
+    if (s.make) return std::nullopt;
+    return Error{ErrorCode::Unsupported, "make is empty; the joint needs a type"};
+}
 
 std::unique_ptr<JointType> MakeType(const PointJointSettings&) {
     return std::make_unique<LockJoint>(JointLocks{.linear = LinearLock::Point});
@@ -136,5 +174,16 @@ std::unique_ptr<JointType> MakeType(const DistanceJointSettings& s) {
 }
 std::unique_ptr<JointType> MakeType(const HingeJointSettings& s) { return std::make_unique<HingeJoint>(s.angle); }
 std::unique_ptr<JointType> MakeType(const SliderJointSettings& s) { return std::make_unique<SliderJoint>(s.slide); }
+std::unique_ptr<JointType> MakeType(const ConeJointSettings& s) { return std::make_unique<ConeJoint>(s.halfAngle, s.spring); }
+std::unique_ptr<JointType> MakeType(const GearJointSettings& s) { return std::make_unique<GearJoint>(s.ratio); }
+std::unique_ptr<JointType> MakeType(const RackAndPinionJointSettings& s) { return std::make_unique<RackAndPinionJoint>(s.ratio); }
+std::unique_ptr<JointType> MakeType(const PulleyJointSettings& s) {
+    return std::make_unique<PulleyJoint>(s.fixedPointA, s.fixedPointB, s.ratio, s.minLength, s.maxLength);
+}
+std::unique_ptr<JointType> MakeType(const PathJointSettings& s) { return std::make_unique<PathJoint>(s.path, s.along, s.rotation); }
+std::unique_ptr<JointType> MakeType(const WheelJointSettings& s) {
+    return std::make_unique<WheelJoint>(s.suspension, s.isSteered, s.steering, s.spin);
+}
+std::unique_ptr<JointType> MakeType(const CustomJointSettings& s) { return s.make(); }
 
 }  // namespace fulcrum

@@ -21,12 +21,26 @@ MaybeError Check(const FixedJointSettings& settings);
 MaybeError Check(const DistanceJointSettings& settings);
 MaybeError Check(const HingeJointSettings& settings);
 MaybeError Check(const SliderJointSettings& settings);
+MaybeError Check(const ConeJointSettings& settings);
+MaybeError Check(const GearJointSettings& settings);
+MaybeError Check(const RackAndPinionJointSettings& settings);
+MaybeError Check(const PulleyJointSettings& settings);
+MaybeError Check(const PathJointSettings& settings);
+MaybeError Check(const WheelJointSettings& settings);
+MaybeError Check(const CustomJointSettings& settings);
 
-// Settings must have passed their check.
+// Settings must have passed their check. Null where a custom `make` gives null.
 std::unique_ptr<JointType> MakeType(const PointJointSettings& settings);
 std::unique_ptr<JointType> MakeType(const FixedJointSettings& settings);
 std::unique_ptr<JointType> MakeType(const DistanceJointSettings& settings);
 std::unique_ptr<JointType> MakeType(const HingeJointSettings& settings);
 std::unique_ptr<JointType> MakeType(const SliderJointSettings& settings);
+std::unique_ptr<JointType> MakeType(const ConeJointSettings& settings);
+std::unique_ptr<JointType> MakeType(const GearJointSettings& settings);
+std::unique_ptr<JointType> MakeType(const RackAndPinionJointSettings& settings);
+std::unique_ptr<JointType> MakeType(const PulleyJointSettings& settings);
+std::unique_ptr<JointType> MakeType(const PathJointSettings& settings);
+std::unique_ptr<JointType> MakeType(const WheelJointSettings& settings);
+std::unique_ptr<JointType> MakeType(const CustomJointSettings& settings);
 
 }  // namespace fulcrum

@@ -20,7 +20,7 @@ enum class JointAxis : uint8_t { LinearX, LinearY, LinearZ, AngularX, AngularY, 
 struct JointLimits {
     float min = 0.0f;
     float max = 0.0f;       // >= min; the same: locked there
-    SpringSettings spring;  // frequency 0 or stiffness 0: a hard stop
+    SpringSettings spring{};  // frequency 0 or stiffness 0: a hard stop
 };
 
 enum class MotorMode : uint8_t {
@@ -40,8 +40,8 @@ struct JointMotor {
 
 struct AxisControl {
     bool limited = false;
-    JointLimits limits;  // used where limited
-    JointMotor motor;
+    JointLimits limits{};  // used where limited
+    JointMotor motor{};
     float friction = 0.0f;  // N or N m, >= 0: the largest force against motion
 };
 

@@ -1,0 +1,52 @@
+#include <Fulcrum/Constraints/Joints/ConeJoint.h>
+
+namespace fulcrum {
+
+namespace {
+
+constexpr float kPi = 3.14159265f;
+// A hundredth of a degree, as in SwingTwist.h: nearer to 0 it is an axle, nearer to 180 degrees no limit.
+constexpr float kNarrow = 1.7e-4f;
+
+struct Swing {
+    float angle;   // rad
+    Vector3 axis;  // unit
+};
+
+Swing SwingOf(const JointPose& pose) {
+    const Matrix3 a = ToMatrix(pose.frameA);
+    const Vector3 xB = ToMatrix(pose.frameB).x;
+    const Vector3 across = Cross(a.x, xB);
+    const float sine = Length(across);
+    return {Atan2(sine, Dot(a.x, xB)), sine > 1e-6f ? Vector3(across * (1.0f / sine)) : a.y};
+}
+
+}  // namespace
+
+ConeJoint::ConeJoint(float halfAngle, const SpringSettings& spring) {
+    control_.limited = true;
+    control_.limits = {-std::numeric_limits<float>::infinity(), halfAngle, spring};
+}
+
+bool ConeJoint::IsAxle() const { return control_.limits.max < kNarrow && IsHard(control_.limits.spring); }
+bool ConeJoint::IsFree() const { return control_.limits.max > kPi - kNarrow; }
+
+JointLocks ConeJoint::Locks() const {
+    return {LinearLock::Point, IsAxle() ? AngularLock::Axis : AngularLock::None, 0, 0};
+}
+
+void ConeJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
+    const Swing swing = SwingOf(pose);
+    JointRow motion;
+    pose.SetAbout(motion, swing.axis);
+    // Turning across e widens the angle too, the more so the nearer the axes are: count all of it.
+    const Vector3 angular = pose.AngularVelocity();
+    const float across = Length(Vector3(angular - swing.axis * Dot(angular, swing.axis)));
+    AddControlRows(control_, pose, motion, swing.angle, kAngularSlackSpeed + across, 0, rows);
+}
+
+double ConeJoint::Coordinate(JointAxis axis, const JointPose& pose) const {
+    return axis == JointAxis::AngularY ? static_cast<double>(SwingOf(pose).angle) : JointType::Coordinate(axis, pose);
+}
+
+}  // namespace fulcrum

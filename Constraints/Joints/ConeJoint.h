@@ -1,0 +1,32 @@
+// A cone: B's anchor stays at A's and the x axis of B's frame stays within an angle of A's; B spins about it freely. Solved
+// with the other joints; no threads.
+//
+//   alpha       angle between the two x axes, 0..pi           e  unit axis from A's x to B's: xA cross xB / sin(alpha)
+//   Locks:      point; for a half angle of zero rotation but about x as well
+//   Rows:       C = halfAngle - alpha >= 0, J = [0, e, 0, -e]
+// Where the axes are the same, or opposite, any axis perpendicular to x is e.
+#pragma once
+
+#include <Fulcrum/Constraints/Joints/JointType.h>
+
+namespace fulcrum {
+
+class ConeJoint final : public JointType {
+public:
+    // halfAngle: 0..pi rad, at pi there is no limit. The spring is that of the limit.
+    ConeJoint(float halfAngle, const SpringSettings& spring);
+
+    JointLocks Locks() const override;
+    uint32_t MaxRows() const override { return IsAxle() || IsFree() ? 0 : MaxControlRows(control_); }
+    void CollectRows(const JointPose& pose, JointRowList& rows) override;
+    // AngularY: alpha, rad. No way about a single axis, so without friction and motor.
+    double Coordinate(JointAxis axis, const JointPose& pose) const override;
+
+private:
+    bool IsAxle() const;
+    bool IsFree() const;
+
+    AxisControl control_;
+};
+
+}  // namespace fulcrum

@@ -1,0 +1,43 @@
+// Two gears that mesh: A and B turn about the x axes of their frames, each in a bearing that other joints make. Solved with
+// the other joints; no threads.
+//
+//   theta1, theta2  turned by A and by B about their axes a1, a2, since the joint was made     ratio  turns of A per turn of B
+//   Rows:       C = theta1 + ratio theta2, J = [0, a1, 0, ratio a2]
+// Both angles are counted without drift (BearingAngle.h), so that no tooth is ever lost.
+#pragma once
+
+#include <Fulcrum/Constraints/Joints/BearingAngle.h>
+
+namespace fulcrum {
+
+class GearJoint final : public JointType {
+public:
+    // ratio: not zero; > 0 where gears mesh outside and turn against each other.
+    explicit GearJoint(float ratio) : ratio_(ratio) {}
+
+    uint32_t MaxRows() const override { return 1; }
+    void Start(const JointPose& pose) override {
+        OfA().Start(pose.frameA);
+        OfB().Start(pose.frameB);
+    }
+    void CollectRows(const JointPose& pose, JointRowList& rows) override {
+        const Vector3 axisA = ToMatrix(pose.frameA).x, axisB = ToMatrix(pose.frameB).x;
+        const double angleA = OfA().Advance(pose.frameA, Dot(axisA, pose.velocityA.angular), pose.dt);
+        const double angleB = OfB().Advance(pose.frameB, Dot(axisB, pose.velocityB.angular), pose.dt);
+        JointRow& row = rows.Add(0, JointRow::Kind::Equal);
+        row.a.angular = -axisA;
+        row.b.angular = axisB * ratio_;
+        row.error = static_cast<float>(angleA + static_cast<double>(ratio_) * angleB);
+    }
+    std::span<double> State() override { return state_; }
+
+private:
+    static constexpr size_t kNumbers = BearingAngle::kNumbers;
+    BearingAngle OfA() { return BearingAngle(std::span(state_).first<kNumbers>()); }
+    BearingAngle OfB() { return BearingAngle(std::span(state_).last<kNumbers>()); }
+
+    float ratio_;
+    std::array<double, 2 * kNumbers> state_{};
+};
+
+}  // namespace fulcrum

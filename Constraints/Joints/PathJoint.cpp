@@ -1,0 +1,95 @@
+#include <Fulcrum/Constraints/Joints/PathJoint.h>
+
+#include <Fulcrum/Constraints/Parts/RotationEulerPart.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+namespace {
+
+struct Slots {
+    static constexpr uint32_t kAcross = 0, kAlong = 2, kRotation = 6;
+};
+
+// How far B's anchor is along the path.
+double WayOf(const Path& path, double parameter, const PathSample& at, const Vector3& local) {
+    const double beyond = path.IsClosed() ? 0.0 : static_cast<double>(Dot(Vector3(local - at.position), at.tangent));
+    return path.LengthAt(parameter) + beyond;
+}
+
+}  // namespace
+
+PathJoint::PathJoint(std::shared_ptr<const Path> path, const AxisControl& along, PathRotation rotation)
+    : path_(std::move(path)), along_(along), rotation_(rotation) {}
+
+AxisControl PathJoint::Bounded() const {
+    if (path_->IsClosed()) return along_;
+    AxisControl bounded = along_;
+    const auto end = static_cast<float>(path_->Length());
+    bounded.limits.min = along_.limited ? std::clamp(along_.limits.min, 0.0f, end) : 0.0f;
+    bounded.limits.max = along_.limited ? std::clamp(along_.limits.max, 0.0f, end) : end;
+    bounded.limited = true;
+    return bounded;
+}
+
+uint32_t PathJoint::MaxRows() const {
+    const uint32_t rotations = rotation_ == PathRotation::Tangent ? 2 : rotation_ == PathRotation::TangentAndNormal ? 3 : 0;
+    return 2 + MaxControlRows(Bounded()) + rotations;
+}
+
+void PathJoint::Start(const JointPose& pose) { parameter_ = path_->Closest(InverseRotate(pose.frameA, pose.offset)); }
+
+void PathJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
+    const Vector3 local = InverseRotate(pose.frameA, pose.offset);
+    parameter_ = path_->Closest(local, parameter_);
+    const PathSample at = path_->Sample(parameter_);
+    JointRow along;
+    pose.SetAlong(along, Rotate(pose.frameA, at.tangent));
+    const double way = WayOf(*path_, parameter_, at, local);
+    AddControlRows(Bounded(), pose, along, way, kLinearSlackSpeed, Slots::kAlong, rows);
+    if (rotation_ == PathRotation::Tangent || rotation_ == PathRotation::TangentAndNormal) AddRotationRows(pose, at, along, rows);
+    const Vector3 away = local - at.position;
+    uint32_t slot = Slots::kAcross;
+    for (const Vector3& normal : {at.normal, at.binormal}) {
+        JointRow& row = rows.Add(slot++, JointRow::Kind::Equal);
+        pose.SetAlong(row, Rotate(pose.frameA, normal));
+        row.error = Dot(away, normal);
+    }
+}
+
+void PathJoint::AddRotationRows(const JointPose& pose, const PathSample& at, const JointRow& along, JointRowList& rows) const {
+    const Quaternion ofPath = RotationFromAxesXY(at.tangent, at.normal);
+    const Quaternion ofB = ofPath.Conjugate() * (pose.frameA.Conjugate() * pose.frameB);
+    // What B has too much, seen from the path's frame. Free about the tangent: the turn from the one x axis to the other.
+    Vector3 error;
+    if (rotation_ == PathRotation::TangentAndNormal) {
+        error = RotationVectorOf<float>(ofB);
+    } else {
+        const Vector3 x = ToMatrix(ofB).x;
+        const float sine = std::sqrt(x.y() * x.y() + x.z() * x.z()), angle = Atan2(sine, x.x());
+        const float scale = sine > 1e-6f ? angle / sine : 1.0f;
+        // Opposite: about any axis, so about the normal.
+        error = sine > 1e-6f || x.x() > 0.0f ? Vector3(0, -x.z() * scale, x.y() * scale) : Vector3(0, angle, 0);
+    }
+    const Vector3 axes[3] = {at.tangent, at.normal, at.binormal};
+    for (int k = rotation_ == PathRotation::Tangent ? 1 : 0; k < 3; ++k) {
+        JointRow& row = rows.Add(Slots::kRotation + static_cast<uint32_t>(k), JointRow::Kind::Equal);
+        pose.SetAbout(row, Rotate(pose.frameA, axes[k]));
+        const float turn = Dot(axes[k], at.turn);
+        row.a.linear -= along.a.linear * turn;
+        row.a.angular -= along.a.angular * turn;
+        row.b.linear -= along.b.linear * turn;
+        row.b.angular -= along.b.angular * turn;
+        row.error = error[k];
+    }
+}
+
+double PathJoint::Coordinate(JointAxis axis, const JointPose& pose) const {
+    if (axis != JointAxis::LinearX) return JointType::Coordinate(axis, pose);
+    const Vector3 local = InverseRotate(pose.frameA, pose.offset);
+    const double parameter = path_->Closest(local, parameter_);
+    return WayOf(*path_, parameter, path_->Sample(parameter), local);
+}
+
+}  // namespace fulcrum

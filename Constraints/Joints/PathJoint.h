@@ -1,0 +1,50 @@
+// B's anchor rides on a path that A's frame carries, driven or free, and B may be made to turn with the path. Solved with
+// the other joints; no threads.
+//
+//   P, T, N, B, turn  of the path at the place nearest to B's anchor (Path.h), world space       u = p2 - p1, e = u - P
+//   s           way along the path, m: its length up to there; beyond the end of an open path e . T more
+//   Rows:       C = e . N, e . B, J = [-n, -(r1 + u) x n, n, r2 x n] with n = N, B
+//               C = s - ..., the same with n = T (LinearX)
+//               rotation: with c the rotation vector from the path's frame to B's, C = c . n, and
+//               dC/dt = n . (w2 - w1) - (n . turn) ds/dt: riding along turns the path's frame
+// An open path has stops at its ends.
+#pragma once
+
+#include <Fulcrum/Constraints/Joints/JointType.h>
+#include <Fulcrum/Constraints/Joints/Path.h>
+
+namespace fulcrum {
+
+enum class PathRotation : uint8_t {
+    Free,              // B turns as it likes
+    Tangent,           // the x axis of B's frame is along the path
+    TangentAndNormal,  // and its y axis along the normal
+    Constant,          // B does not turn against A
+};
+
+class PathJoint final : public JointType {
+public:
+    // along: m, N, from the start of the path; of a closed path, laps count.
+    PathJoint(std::shared_ptr<const Path> path, const AxisControl& along, PathRotation rotation);
+
+    JointLocks Locks() const override {
+        return {LinearLock::None, rotation_ == PathRotation::Constant ? AngularLock::All : AngularLock::None, 0, 0};
+    }
+    uint32_t MaxRows() const override;
+    void Start(const JointPose& pose) override;
+    void CollectRows(const JointPose& pose, JointRowList& rows) override;
+    AxisControl* Control(JointAxis axis) override { return axis == JointAxis::LinearX ? &along_ : nullptr; }
+    double Coordinate(JointAxis axis, const JointPose& pose) const override;
+    std::span<double> State() override { return {&parameter_, 1}; }
+
+private:
+    AxisControl Bounded() const;
+    void AddRotationRows(const JointPose& pose, const PathSample& at, const JointRow& along, JointRowList& rows) const;
+
+    std::shared_ptr<const Path> path_;
+    AxisControl along_;
+    PathRotation rotation_;
+    double parameter_ = 0;
+};
+
+}  // namespace fulcrum

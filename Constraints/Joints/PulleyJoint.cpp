@@ -1,0 +1,44 @@
+#include <Fulcrum/Constraints/Joints/PulleyJoint.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+PulleyJoint::PulleyJoint(const Position& fixedPointA, const Position& fixedPointB, float ratio, float minLength,
+                         std::optional<float> maxLength)
+    : fixedPointA_(fixedPointA), fixedPointB_(fixedPointB), ratio_(ratio), isMeasured_(!maxLength) {
+    control_.limited = true;
+    control_.limits = {minLength, maxLength.value_or(minLength), {}};
+}
+
+void PulleyJoint::Start(const JointPose& pose) {
+    if (!isMeasured_) return;
+    const auto length = static_cast<float>(Coordinate(JointAxis::LinearX, pose));
+    control_.limits.max = std::max(length, control_.limits.min);
+}
+
+void PulleyJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
+    const Vector3 ropeA = (pose.anchorA - fixedPointA_).cast<float>();
+    const Vector3 ropeB = (pose.anchorA + pose.offset.cast<double>() - fixedPointB_).cast<float>();
+    const Vector3 axisA = Normalized(ropeA, Vector3::Zero()), axisB = Normalized(ropeB, Vector3::Zero()) * ratio_;
+    JointRow motion;
+    motion.a = {-axisA, -Cross(pose.armA, axisA)};
+    motion.b = {axisB, Cross(pose.armB, axisB)};
+    const float lengthA = Length(ropeA), lengthB = Length(ropeB);
+    // Swinging lengthens the rope as well, as in DistanceJoint.
+    const auto across = [&](const Twist<float>& velocity, const Vector3& arm, float length) {
+        const float speed = Length(Vector3(velocity.linear + Cross(velocity.angular, arm)));
+        return speed * std::min(1.0f, speed * pose.dt / std::max(length, 1e-6f));
+    };
+    const float slack = across(pose.velocityA, pose.armA, lengthA) + ratio_ * across(pose.velocityB, pose.armB, lengthB);
+    AddControlRows(control_, pose, motion, lengthA + ratio_ * lengthB, kLinearSlackSpeed + slack, 0, rows);
+}
+
+double PulleyJoint::Coordinate(JointAxis axis, const JointPose& pose) const {
+    if (axis != JointAxis::LinearX) return JointType::Coordinate(axis, pose);
+    const Vector3 ropeA = (pose.anchorA - fixedPointA_).cast<float>();
+    const Vector3 ropeB = (pose.anchorA + pose.offset.cast<double>() - fixedPointB_).cast<float>();
+    return Length(ropeA) + ratio_ * Length(ropeB);
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,36 @@
+// A rope from A over two fixed points of the world to B, where a block and tackle may multiply it. Solved with the other
+// joints; no threads.
+//
+//   p1, p2  anchors of A and B      f1, f2  fixed points      n1 = (p1 - f1) / |p1 - f1|, n2 likewise
+//   l = |p1 - f1| + ratio |p2 - f2|, in minLength .. maxLength
+//   Rows:       C = l - minLength >= 0, maxLength - l >= 0,  l' = n1 . (v1 + w1 x r1) + ratio n2 . (v2 + w2 x r2) (LinearX)
+// At a fixed point a side pulls nowhere.
+#pragma once
+
+#include <Fulcrum/Constraints/Joints/JointType.h>
+
+#include <optional>
+
+namespace fulcrum {
+
+class PulleyJoint final : public JointType {
+public:
+    // m, world space. ratio > 0; 0 <= minLength <= maxLength; left out, maxLength is the length when the joint is made.
+    PulleyJoint(const Position& fixedPointA, const Position& fixedPointB, float ratio, float minLength,
+                std::optional<float> maxLength);
+
+    uint32_t MaxRows() const override { return MaxControlRows(control_); }
+    void Start(const JointPose& pose) override;
+    void CollectRows(const JointPose& pose, JointRowList& rows) override;
+    // Of the length: the motor winds the rope.
+    AxisControl* Control(JointAxis axis) override { return axis == JointAxis::LinearX ? &control_ : nullptr; }
+    double Coordinate(JointAxis axis, const JointPose& pose) const override;
+
+private:
+    Position fixedPointA_, fixedPointB_;
+    float ratio_;
+    AxisControl control_;
+    bool isMeasured_;
+};
+
+}  // namespace fulcrum
