@@ -1,0 +1,375 @@
+// The rotation of one joint frame against another as a swing of its x axis and a twist about it, and how far both are from
+// their limits. Called by joints once a step, and by whoever fills the lanes of the swing-twist part. Free functions, no state.
+//
+//   q      rotation of frame B seen from frame A, q = swing twist (twist first)        x  the twist axis, of frame A
+//   twist  about x, by tau in -pi..pi                  d = swing x    the twist axis of frame B, seen from frame A
+//   swing  about an axis e perpendicular to x, by alpha in 0..pi; phi = alpha e = (0, phi_y, phi_z)
+//   With s = sqrt(x^2 + w^2) = cos(alpha / 2) of the components of q:
+//          twist = (x, 0, 0, w) / s,      swing = (0, w y - x z, w z + x y, s^2) / s
+//
+// A limit is an error C, rad, positive where it is kept, and an axis a of length 1 with dC/dt = a . w, w the angular velocity
+// of B against A; a is seen from frame A, as everything here. Own derivation.
+//
+// Swing limits bound a region of the sphere of directions d. C is the distance on the sphere from d to its edge: it is
+// continuous everywhere, 180 degrees included, and its derivative is exactly of length 1. With D the nearest point of the edge
+// and n the unit tangent there that leads inwards, C = atan2(d . n, d . D) and a = D x n.
+//     cone      the circle alpha = c about x, so C = c - alpha, a = -e
+//     ellipse   phi_y^2 / Y^2 + phi_z^2 / Z^2 = 1. phi is the map of the sphere that keeps distances and directions from x.
+//               D is where d . dD/dt = 0 along the edge D(t), by bracketing
+//     pyramid   swing_y / swing_w between tan(minimum / 2) and tan(maximum / 2), likewise z: on the main planes these are angles.
+//               Its faces are circles through -x, so D is closed: the foot on a face, or a corner
+//     one axis free, the other limited: the circles of latitude asin(d . its direction), a band of constant width. (The edges
+//               above would pinch at 180 degrees, where the free axis leads through.)
+//     one axis locked, the other limited: d stays on a great circle, and lambda, its longitude there, in a range
+//     both axes locked: phi = 0, in two rows along the great circle back to x, exact from any angle
+// Twist: dtau/dt = t . w / cos(alpha / 2) with t = (x + d) / |x + d| = (s, swing_z, -swing_y), of length 1 up to 180 degrees.
+// Its C is the way to the end of the range times cos(alpha / 2), with the axis t: exact at C = 0, to first order elsewhere. It
+// fades where the x axes are opposite and twist means nothing. The longitude's C is scaled alike, by the cosine of latitude.
+#pragma once
+
+#include <Fulcrum/Math/Trigonometry.h>
+
+#include <array>
+#include <cstdint>
+
+namespace fulcrum {
+
+enum class SwingShape : uint8_t { Ellipse, Pyramid };
+
+// Radians, -pi <= minimum <= maximum <= pi. Locked where it is narrower than a hundredth of a degree, free where it leaves out
+// less than that of the full turn.
+struct AngleRange {
+    static constexpr float kHalfTurn = 3.14159265f;
+    static constexpr float kNegligible = 1.7e-4f;
+
+    float minimum = -kHalfTurn, maximum = kHalfTurn;
+
+    bool IsLocked() const { return maximum - minimum < kNegligible; }
+    bool IsFree() const { return maximum - minimum > 2.0f * kHalfTurn - kNegligible; }
+    float Centre() const { return 0.5f * (minimum + maximum); }
+};
+
+// The ranges of the swing contain 0 (a locked one is 0). The half angles of an ellipse are the maxima.
+struct SwingTwistLimits {
+    AngleRange twist, swingY, swingZ;
+    SwingShape shape = SwingShape::Ellipse;
+};
+
+// See above. `slot` tells the rows of one joint apart, from step to step.
+struct RotationLimit {
+    enum Slot : uint8_t { SwingYMaximum, SwingYMinimum, SwingZMaximum, SwingZMinimum, TwistMaximum, TwistMinimum };
+    static constexpr int kSlots = 6;
+
+    float error = 0.0f;                    // C, rad
+    Vector3 axis = Vector3::Zero();        // a
+    Slot slot = SwingYMaximum;             // an ellipse uses the first
+    bool isLocked = false;                 // C = 0, in the slot of the maximum; else C >= 0
+};
+
+struct RotationLimitList {
+    std::array<RotationLimit, RotationLimit::kSlots> limits;
+    int count = 0;
+
+    void Add(RotationLimit::Slot slot, float error, const Vector3& axis, bool isLocked = false) {
+        limits[count++] = {error, axis, slot, isLocked};
+    }
+    const RotationLimit* begin() const { return limits.data(); }
+    const RotationLimit* end() const { return limits.data() + count; }
+};
+
+// See above.
+struct SwingTwist {
+    Quaternion swing;       // x is 0, w = cos(alpha / 2) >= 0
+    float alpha = 0.0f;     // rad, 0..pi
+    float e1 = 1.0f, e2 = 0.0f;  // e = (0, e1, e2); (0, 1, 0) where alpha is 0
+    float twist = 0.0f;     // rad, -pi..pi
+    Vector3 direction;      // d
+
+    float SwingY() const { return alpha * e1; }  // phi_y, rad
+    float SwingZ() const { return alpha * e2; }
+};
+
+// q of length 1. At 180 degrees of swing any twist does, and it is 0.
+inline SwingTwist Decompose(const Quaternion& q) {
+    SwingTwist r;
+    const float cosineHalf = Sqrt(q.x * q.x + q.w * q.w);
+    if (cosineHalf > 1e-15f) {
+        const float inverse = 1.0f / cosineHalf;
+        r.swing = {0.0f, (q.w * q.y - q.x * q.z) * inverse, (q.w * q.z + q.x * q.y) * inverse, cosineHalf};
+        // q and -q are the same rotation: the one with w >= 0 has the twist within half a turn.
+        r.twist = 2.0f * (q.w < 0.0f ? Atan2(-q.x, -q.w) : Atan2(q.x, q.w));
+    } else {
+        r.swing = {0.0f, q.y, q.z, 0.0f};
+    }
+    const float sineHalf = Sqrt(r.swing.y * r.swing.y + r.swing.z * r.swing.z);
+    r.alpha = 2.0f * Atan2(sineHalf, r.swing.w);
+    if (sineHalf > 1e-15f) {
+        r.e1 = r.swing.y / sineHalf;
+        r.e2 = r.swing.z / sineHalf;
+    }
+    const float w = r.swing.w, y = r.swing.y, z = r.swing.z;
+    r.direction = Vector3(w * w - (y * y + z * z), 2.0f * (w * z), -2.0f * (w * y));
+    return r;
+}
+
+namespace detail {
+
+// Directions as (x, py, pz) with py = -z and pz = y: where rotation about +y and +z takes x. A rotation of the coordinates
+// about x, so that cross products stay what they are.
+inline Vector3 ToSwingPlane(const Vector3& v) { return Vector3(v.x(), -v.z(), v.y()); }
+inline Vector3 FromSwingPlane(const Vector3& v) { return Vector3(v.x(), v.z(), -v.y()); }
+
+// The angle by whole turns nearest to the centre, both rad.
+inline float Unwrapped(float angle, float centre) {
+    const float turn = 2.0f * AngleRange::kHalfTurn, apart = angle - centre;
+    return apart > AngleRange::kHalfTurn ? angle - turn : apart < -AngleRange::kHalfTurn ? angle + turn : angle;
+}
+
+// Both ends of a range of an angle that grows by rotation about the unit axis, at the rate 1 / scale.
+inline void AddRange(RotationLimitList& list, RotationLimit::Slot slot, float angle, float scale, const Vector3& axis,
+                     const AngleRange& range) {
+    const float here = Unwrapped(angle, range.Centre());
+    if (range.IsLocked()) return list.Add(slot, scale * (here - range.Centre()), axis, true);
+    list.Add(slot, scale * (range.maximum - here), -axis);
+    list.Add(static_cast<RotationLimit::Slot>(slot + 1), scale * (here - range.minimum), axis);
+}
+
+// A circle on the sphere, at the latitude `latitude` about the unit axis `pole`.
+struct Circle {
+    Vector3 pole;
+    float latitude;  // rad
+};
+// How far d is north of the circle, and the axis that takes it further. `across` is perpendicular to the pole and serves
+// where d is a pole.
+inline RotationLimit NorthOf(const Circle& circle, const Vector3& d, const Vector3& across) {
+    RotationLimit limit;
+    const Vector3 axis = Cross(d, circle.pole);
+    const float cosine = Length(axis);
+    limit.error = Atan2(Dot(circle.pole, d), cosine) - circle.latitude;
+    limit.axis = cosine > 1e-6f ? Vector3(axis * (1.0f / cosine)) : across;
+    return limit;
+}
+
+// The edge of the ellipse with the half axes Y, Z in 0..pi, in the swing plane's coordinates.
+struct EllipseEdge {
+    float halfY, halfZ;
+
+    struct Point {
+        Vector3 at, derivative;  // D and dD/dt at phi = (Y cos t, Z sin t)
+    };
+    Point At(float t) const {
+        const SineCosine<float> angle = SinCos(t);
+        const float y = halfY * angle.cosine, z = halfZ * angle.sine, dy = -(halfY * angle.sine), dz = halfZ * angle.cosine;
+        const float alpha = Max(Sqrt(y * y + z * z), 1e-12f), inverse = 1.0f / alpha;
+        const SineCosine<float> swing = SinCos(alpha);
+        const float ey = y * inverse, ez = z * inverse, ratio = swing.sine * inverse;
+        const float growth = ey * dy + ez * dz;  // dalpha/dt
+        const float along = swing.cosine * growth;
+        return {Vector3(swing.cosine, swing.sine * ey, swing.sine * ez),
+                Vector3(-(swing.sine * growth), along * ey + ratio * (dy - growth * ey),
+                        along * ez + ratio * (dz - growth * ez))};
+    }
+
+    // The point nearest to d, whose coordinates y and z are not negative; it is in the same quadrant, t in 0..pi/2.
+    Point Nearest(const Vector3& d) const {
+        // Where the ellipse bends more than the sphere, several points are nearest about them; the best of a few comes first.
+        constexpr int kSamples = 8;
+        constexpr float kStep = 0.5f * AngleRange::kHalfTurn / kSamples;
+        int best = 0;
+        float closest = -2.0f;
+        for (int i = 0; i <= kSamples; ++i) {
+            const float cosine = Dot(d, At(kStep * static_cast<float>(i)).at);
+            if (cosine > closest) best = i, closest = cosine;
+        }
+        // d . D grows up to the point and falls from there: a root of d . dD/dt, by the Illinois method.
+        const auto slope = [&](float t) { return Dot(d, At(t).derivative); };
+        float low = kStep * static_cast<float>(best), lowSlope = slope(low), high = low, highSlope = lowSlope;
+        if (lowSlope > 0.0f && best < kSamples)
+            high = low + kStep, highSlope = slope(high);
+        else if (best > 0)
+            low = high - kStep, lowSlope = slope(low);
+        for (int i = 0; i < 12 && lowSlope > 0.0f && highSlope < 0.0f && high - low > 1e-7f; ++i) {
+            const float t = (low * highSlope - high * lowSlope) / (highSlope - lowSlope), here = slope(t);
+            if (here > 0.0f)
+                low = t, lowSlope = here, highSlope *= 0.5f;
+            else
+                high = t, highSlope = here, lowSlope *= 0.5f;
+        }
+        // The smaller slope is the nearer end; its halving above only makes the other end look better by little.
+        return At(lowSlope < -highSlope ? low : high);
+    }
+};
+
+}  // namespace detail
+
+// alpha <= halfAngle, 0..pi. The axis at alpha = 0 is -y, at 180 degrees that of the swing that led there.
+inline RotationLimit ConeLimit(const SwingTwist& r, float halfAngle) {
+    return {halfAngle - r.alpha, Vector3(0.0f, -r.e1, -r.e2), RotationLimit::SwingYMaximum, false};
+}
+
+// halfY, halfZ > 0, < pi. Its error is at least the smaller one less alpha: a joint far inside need not call this.
+inline RotationLimit EllipseLimit(const SwingTwist& r, float halfY, float halfZ) {
+    if (Abs(halfY - halfZ) < 1e-5f) return ConeLimit(r, halfY);
+    const Vector3 d = detail::ToSwingPlane(r.direction);
+    const float signY = d.y() < 0.0f ? -1.0f : 1.0f, signZ = d.z() < 0.0f ? -1.0f : 1.0f;
+    const detail::EllipseEdge edge{halfY, halfZ};
+    const detail::EllipseEdge::Point nearest = edge.Nearest(Vector3(d.x(), d.y() * signY, d.z() * signZ));
+    // Mirrored back; the edge runs anticlockwise about x, so that D x tangent leads inwards, and a = D x (D x tangent).
+    const Vector3 at(nearest.at.x(), nearest.at.y() * signY, nearest.at.z() * signZ);
+    const Vector3 derivative = Vector3(nearest.derivative.x(), nearest.derivative.y() * signY, nearest.derivative.z() * signZ);
+    const Vector3 tangent = Normalized(Vector3(derivative * (signY * signZ)));
+    RotationLimit limit;
+    limit.error = Atan2(Dot(d, Cross(at, tangent)), Dot(d, at));
+    limit.axis = detail::FromSwingPlane(Vector3(-tangent));
+    return limit;
+}
+
+namespace detail {
+
+// The faces and corners of a pyramid, in the swing plane's coordinates.
+struct Pyramid {
+    AngleRange range[2];  // y, z
+
+    // Face 0 and 1: maximum and minimum of y, 2 and 3 of z. North of the circle is beyond the maximum, or within the minimum.
+    Circle Face(int face) const {
+        const float half = 0.5f * (face % 2 == 0 ? range[face / 2].maximum : range[face / 2].minimum);
+        const SineCosine<float> angle = SinCos(half);
+        return {Vector3(-angle.sine, face < 2 ? angle.cosine : 0.0f, face < 2 ? 0.0f : angle.cosine), half};
+    }
+    RotationLimit FaceLimit(int face, const Vector3& d) const {
+        const Vector3 across = face < 2 ? Vector3(0, 0, -1) : Vector3(0, 1, 0);  // y and z axis in these coordinates
+        RotationLimit limit = NorthOf(Face(face), d, Vector3(-across));
+        if (face % 2 == 0) limit = {-limit.error, -limit.axis, limit.slot, false};
+        limit.slot = static_cast<RotationLimit::Slot>(face);
+        return limit;
+    }
+    // Of the points of a face's circle: whether one is between the other two faces.
+    bool IsOnFace(int face, const Vector3& point) const {
+        const AngleRange& other = range[1 - face / 2];
+        const float along = face < 2 ? point.z() : point.y(), beyond = 1.0f + point.x();
+        const SineCosine<float> high = SinCos(0.5f * other.maximum), low = SinCos(0.5f * other.minimum);
+        return beyond > 1e-6f && along * high.cosine <= beyond * high.sine && along * low.cosine >= beyond * low.sine;
+    }
+    Vector3 Foot(int face, const Vector3& d) const {
+        const Circle circle = Face(face);
+        const SineCosine<float> latitude = SinCos(circle.latitude);
+        const Vector3 flat = d - circle.pole * Dot(circle.pole, d);
+        return circle.pole * latitude.sine + Normalized(flat, Vector3(1, 0, 0)) * latitude.cosine;
+    }
+    Vector3 Corner(int corner) const {
+        const SineCosine<float> y = SinCos(0.5f * (corner % 2 == 0 ? range[0].maximum : range[0].minimum));
+        const SineCosine<float> z = SinCos(0.5f * (corner / 2 == 0 ? range[1].maximum : range[1].minimum));
+        // The swing's quaternion (w, y, z), not of length 1 but at least of 1e-4.
+        const float a = y.cosine * z.cosine, b = y.sine * z.cosine, c = y.cosine * z.sine;
+        const float squared = a * a + b * b + c * c;
+        return Vector3(a * a - b * b - c * c, 2.0f * (a * b), 2.0f * (a * c)) * (1.0f / squared);
+    }
+
+    // Whether a swing is beyond a face. By its quaternion, because all the circles meet at -x.
+    bool IsBeyond(int face, const Quaternion& swing) const {
+        const SineCosine<float> half = SinCos(0.5f * (face % 2 == 0 ? range[face / 2].maximum : range[face / 2].minimum));
+        const float over = (face < 2 ? swing.y : swing.z) * half.cosine - swing.w * half.sine;
+        return face % 2 == 0 ? over > 0.0f : over < 0.0f;
+    }
+
+    // The way back to the nearest point of the region from d, which is beyond some of the faces. `slot` is of the worst.
+    RotationLimit WayBack(const Vector3& d, const RotationLimit (&faces)[4], const bool (&isBeyond)[4],
+                          RotationLimit::Slot slot) const {
+        RotationLimit best;
+        best.error = -2.0f * AngleRange::kHalfTurn;
+        for (int face = 0; face < 4; ++face)
+            if (isBeyond[face] && faces[face].error > best.error && IsOnFace(face, Foot(face, d))) best = faces[face];
+        for (int i = 0; i < 4; ++i) {
+            const Vector3 corner = Corner(i), axis = Cross(d, corner);
+            const float sine = Length(axis), error = -Atan2(sine, Dot(d, corner));
+            if (!(error > best.error)) continue;
+            best.error = error;
+            // At the corner itself a face's axis serves; opposite to it, any that is perpendicular.
+            best.axis = sine > 1e-6f ? Vector3(axis * (1.0f / sine)) : error > -1.0f ? faces[slot].axis : Perpendicular(d);
+        }
+        best.slot = slot;
+        return best;
+    }
+};
+
+}  // namespace detail
+
+// Neither range locked nor free. Inside, all four faces; outside, the way back to the nearest point of the pyramid and, as long
+// as that is short, the faces that are kept, so that no corner lets out. The least error is the distance to the edge.
+inline void AddPyramidLimits(RotationLimitList& list, const SwingTwist& r, const AngleRange& rangeY, const AngleRange& rangeZ) {
+    const detail::Pyramid pyramid{{rangeY, rangeZ}};
+    const Vector3 d = detail::ToSwingPlane(r.direction);
+    RotationLimit faces[4];
+    bool isBeyond[4];
+    int worst = -1;
+    for (int face = 0; face < 4; ++face) {
+        faces[face] = pyramid.FaceLimit(face, d);
+        isBeyond[face] = pyramid.IsBeyond(face, r.swing);
+        if (isBeyond[face] && (worst < 0 || faces[face].error < faces[worst].error)) worst = face;
+    }
+    constexpr float kShortWay = 0.1f;  // rad; further out the circles lead elsewhere than the faces
+    if (worst >= 0) {
+        const RotationLimit back = pyramid.WayBack(d, faces, isBeyond, faces[worst].slot);
+        list.Add(back.slot, back.error, detail::FromSwingPlane(back.axis));
+        if (back.error < -kShortWay) return;
+    }
+    for (int face = 0; face < 4; ++face)
+        if (!isBeyond[face]) list.Add(faces[face].slot, faces[face].error, detail::FromSwingPlane(faces[face].axis));
+}
+
+// The rows that a swing's limits make: none where both axes are free, else one to four.
+inline void AddSwingLimits(RotationLimitList& list, const SwingTwist& r, const SwingTwistLimits& limits) {
+    const AngleRange &y = limits.swingY, &z = limits.swingZ;
+    const Vector3& d = r.direction;
+    const Vector3 axisY(0, 1, 0), axisZ(0, 0, 1);
+    if (y.IsLocked() && z.IsLocked()) {
+        // phi along e and across: h = d x e.
+        const Vector3 e(0.0f, r.e1, r.e2), h = Cross(d, e);
+        list.Add(RotationLimit::SwingYMaximum, r.SwingY(), Vector3(e * r.e1 - h * r.e2), true);
+        list.Add(RotationLimit::SwingZMaximum, r.SwingZ(), Vector3(e * r.e2 + h * r.e1), true);
+        return;
+    }
+    // Latitude towards where rotation about the axis takes x; -z for y, y for z.
+    const auto addBand = [&](RotationLimit::Slot slot, const Vector3& pole, const Vector3& across, const AngleRange& range) {
+        const RotationLimit north = detail::NorthOf({pole, 0.0f}, d, across);
+        constexpr float kQuarterTurn = 0.5f * AngleRange::kHalfTurn;
+        if (range.IsLocked()) return list.Add(slot, north.error, north.axis, true);
+        if (range.maximum < kQuarterTurn) list.Add(slot, range.maximum - north.error, -north.axis);
+        if (range.minimum > -kQuarterTurn)
+            list.Add(static_cast<RotationLimit::Slot>(slot + 1), north.error - range.minimum, north.axis);
+    };
+    // The angle about `axis` at which d is, seen along it; d is at the height d . axis above the circle.
+    const auto addLongitude = [&](RotationLimit::Slot slot, const Vector3& axis, float sideways, const AngleRange& range) {
+        if (range.IsFree()) return;
+        const float height = Dot(d, axis), scale = Sqrt(d.x() * d.x() + sideways * sideways);
+        const Vector3 flat = Normalized(Vector3(d - axis * height), Vector3(1, 0, 0));
+        detail::AddRange(list, slot, Atan2(sideways, d.x()), scale, Vector3(axis * scale - flat * height), range);
+    };
+    if (y.IsLocked() || (z.IsFree() && !y.IsFree())) addBand(RotationLimit::SwingYMaximum, -axisZ, axisY, y);
+    if (z.IsLocked() || (y.IsFree() && !z.IsFree())) addBand(RotationLimit::SwingZMaximum, axisY, axisZ, z);
+    if (y.IsLocked()) addLongitude(RotationLimit::SwingZMaximum, axisZ, d.y(), z);
+    if (z.IsLocked()) addLongitude(RotationLimit::SwingYMaximum, axisY, -d.z(), y);
+    if (y.IsLocked() || z.IsLocked() || y.IsFree() || z.IsFree()) return;
+    if (limits.shape == SwingShape::Pyramid) return AddPyramidLimits(list, r, y, z);
+    const RotationLimit ellipse = EllipseLimit(r, y.maximum, z.maximum);
+    list.Add(ellipse.slot, ellipse.error, ellipse.axis);
+}
+
+// The axis about which the twist grows, at the rate 1 / cos(alpha / 2).
+inline Vector3 TwistAxis(const SwingTwist& r) { return Vector3(r.swing.w, r.swing.z, -r.swing.y); }
+
+// None where the range is free, one where it is locked, else one for either end. Beyond the ends the nearer one counts, by
+// either way round.
+inline void AddTwistLimits(RotationLimitList& list, const SwingTwist& r, const AngleRange& range) {
+    if (!range.IsFree()) detail::AddRange(list, RotationLimit::TwistMaximum, r.twist, r.swing.w, TwistAxis(r), range);
+}
+
+inline RotationLimitList CollectLimits(const Quaternion& q, const SwingTwistLimits& limits) {
+    RotationLimitList list;
+    const SwingTwist r = Decompose(q);
+    AddSwingLimits(list, r, limits);
+    AddTwistLimits(list, r, limits.twist);
+    return list;
+}
+
+}  // namespace fulcrum
