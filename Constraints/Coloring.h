@@ -1,8 +1,10 @@
-// Colours contacts so that no two of a colour share a moving body: those of a colour are solved at the same time, in lanes
-// and on any number of threads, and the result does not depend on their order. Kept from step to step: only contacts that
-// begin or end to touch are coloured. Called by the Color stage. Serial; the same calls give the same colours.
+// Colours contacts and joints so that no two of a colour share a moving body: those of a colour are solved at the same time,
+// in lanes and on any number of threads, and the result does not depend on their order. Kept from step to step: only what
+// begins or ends is coloured. Called by the Color stage and where joints come and go. Serial; the same calls give the same
+// colours.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -10,48 +12,59 @@
 namespace fulcrum {
 
 struct ColourSlot {
-    uint8_t colour = 0xFF;  // index into ContactColouring::Colours(); kOverflow where none was free
+    uint8_t colour = 0xFF;  // index into ConstraintColouring::Colours(); kOverflow where none was free
     uint32_t slot = 0;      // index into the colour's list
 };
 
-class ContactColouring {
+class ConstraintColouring {
 public:
     static constexpr int kColours = 64;
-    static constexpr uint8_t kOverflow = kColours;  // contacts of bodies that touch more than 64: solved one after the other
+    static constexpr uint8_t kOverflow = kColours;  // constraints of bodies that have more than 64: solved one after the other
 
     struct Entry {
-        uint32_t contact, bodyA, bodyB;
+        uint32_t constraint, bodyA, bodyB;
+        bool stillA = false, stillB = false;  // the body is not dynamic: constraints may share it
     };
+    enum class Kind : uint8_t {
+        Moving,  // contacts of two dynamic bodies
+        Fixed,   // contacts of a dynamic body A with one that is not
+        Joint,   // either body may be still
+    };
+    static constexpr size_t kKinds = 3;
     struct Colour {
-        std::vector<Entry> moving;  // both bodies are dynamic
-        std::vector<Entry> fixed;   // only the first is
-        bool Empty() const { return moving.empty() && fixed.empty(); }
+        std::array<std::vector<Entry>, kKinds> lists;
+        const std::vector<Entry>& Of(Kind kind) const { return lists[static_cast<size_t>(kind)]; }
+        bool Empty() const { return lists[0].empty() && lists[1].empty() && lists[2].empty(); }
     };
 
-    // Adds a contact of the moving body a with b, which is moving too unless `fixedB`.
-    ColourSlot Add(uint32_t contact, uint32_t bodyA, uint32_t bodyB, bool fixedB);
+    // Colours are solved in ascending order: what is to win comes `late`.
+    ColourSlot Add(Kind kind, const Entry& entry, bool late);
 
-    // Removes a contact. Returns the contact that now has its place, or `contact` itself where it was the last.
-    uint32_t Remove(uint32_t contact, ColourSlot place, uint32_t bodyA, uint32_t bodyB, bool fixedB);
+    // The same entry again. Returns the constraint of its kind that now has its place, or itself where it was the last.
+    uint32_t Remove(Kind kind, const Entry& entry, ColourSlot place);
 
-    // Whether any coloured contact touches the body.
+    // Says that what was derived from the colours holds no longer.
+    void Touch() { ++version_; }
+
+    // Whether any coloured constraint touches the body.
     bool IsTouched(uint32_t body) const { return body < used_.size() && (used_[body] != 0 || overflows_[body] != 0); }
 
     const Colour& At(int colour) const { return colours_[static_cast<size_t>(colour)]; }
     uint32_t Size() const { return size_; }
+    bool HasOverflow() const { return !colours_[kOverflow].Empty(); }
     // Grows with every change: what was derived from the colours holds as long as it stays.
     uint64_t Version() const { return version_; }
     void ReserveBodies(uint32_t count);
     size_t MemoryUsed() const;
 
 private:
-    std::vector<Entry>& List(uint8_t colour, bool fixedB) {
-        return fixedB ? colours_[colour].fixed : colours_[colour].moving;
-    }
+    template <class Visit>
+    static void VisitMoving(const Entry& entry, Visit&& visit);
+    std::vector<Entry>& List(uint8_t colour, Kind kind) { return colours_[colour].lists[static_cast<size_t>(kind)]; }
 
     std::vector<Colour> colours_ = std::vector<Colour>(kColours + 1);
-    std::vector<uint64_t> used_;       // by body: bit c is set where a contact of colour c moves it
-    std::vector<uint16_t> overflows_;  // by body: its contacts without a colour
+    std::vector<uint64_t> used_;       // by body: bit c is set where a constraint of colour c moves it
+    std::vector<uint16_t> overflows_;  // by body: its constraints without a colour
     uint32_t size_ = 0;
     uint64_t version_ = 1;
 };

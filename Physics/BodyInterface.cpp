@@ -72,14 +72,6 @@ void MakeColliders(WorldState& world, uint32_t body) {
     }
 }
 
-void QueueColliders(WorldState& world, uint32_t body) {
-    const BodyCold& cold = world.bodies.cold[body];
-    for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i) {
-        world.colliders.colliders[i].previous = {};
-        world.colliders.Queue(i);
-    }
-}
-
 // Wakes what overlaps the body's fat bounds: what it may rest on, or what may rest on it.
 void WakeNeighbours(WorldState& world, uint32_t body) {
     const BodyCold& cold = world.bodies.cold[body];
@@ -97,7 +89,7 @@ void Teleported(WorldState& world, uint32_t body) {
         world.colliders.TreeOf(collider).Update(i, collider.fat);
     }
     world.bodies.poses[body].boundsChangedIn = static_cast<uint32_t>(world.report.step + 1);
-    QueueColliders(world, body);
+    RequeueColliders(world, body);
 }
 
 }  // namespace
@@ -118,9 +110,9 @@ Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
         world_.bodies.SetVelocity(body, Vector3::Zero(), Vector3::Zero());
     } else if (settings.motion != MotionType::Static) {
         world_.bodies.MarkAwake(body);
-        QueueColliders(world_, body);
+        RequeueColliders(world_, body);
     } else {
-        QueueColliders(world_, body);
+        RequeueColliders(world_, body);
     }
     return world_.bodies.IdOf(body);
 }
@@ -130,6 +122,7 @@ Status BodyInterface::Remove(BodyId id) {
     const uint32_t body = id.index;
     WakeBody(world_, body);
     WakeNeighbours(world_, body);
+    world_.joints.VisitOf(body, [&](uint32_t joint) { RemoveJoint(world_, joint); });
     BodyCold& cold = world_.bodies.cold[body];
     for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i)
         world_.colliders.TreeOf(world_.colliders.colliders[i]).Remove(i);
@@ -149,6 +142,7 @@ Status BodyInterface::SetPose(BodyId id, const Position& position, const Quatern
     world_.bodies.dynamics[body].frozen = false;
     WakeBody(world_, body);
     WakeNeighbours(world_, body);
+    WakeJoined(world_, body);
     world_.bodies.SetCentrePose(body, CentrePose(*world_.bodies.cold[body].shape, position, rotation));
     Teleported(world_, body);
     WakeNeighbours(world_, body);
@@ -177,8 +171,9 @@ Status BodyInterface::SetVelocity(BodyId id, const Vector3& linear, const Vector
     WakeBody(world_, id.index);
     if (d.motion == MotionType::Kinematic && !(linear.isZero(0) && angular.isZero(0)) && !d.awake) {
         world_.bodies.MarkAwake(id.index);
-        QueueColliders(world_, id.index);
+        RequeueColliders(world_, id.index);
     }
+    if (d.motion == MotionType::Kinematic && !(linear.isZero(0) && angular.isZero(0))) WakeJoined(world_, id.index);
     world_.bodies.SetVelocity(id.index, linear, angular);
     return Done{};
 }

@@ -3,6 +3,7 @@
 
 #include <Fulcrum/Constraints/Joints/JointType.h>
 #include <Fulcrum/Constraints/Joints/PathJoint.h>
+#include <Fulcrum/Constraints/Parts/SwingTwist.h>
 #include <Fulcrum/Physics/Settings.h>
 
 #include <functional>
@@ -81,6 +82,26 @@ struct ConeJointSettings : JointSettings {
     SpringSettings spring{};         // of the limit
 };
 
+// A point joint for shoulders: B's axis (x) swings about A's y and z in an ellipse or a pyramid, and B twists about it.
+struct SwingTwistJointSettings : JointSettings {
+    SwingShape shape = SwingShape::Ellipse;
+    // rad, N m. Limits within -pi..pi, at pi there is none. Those of the swing, the y and z of its rotation vector, are around
+    // 0, and for an ellipse the same to both sides: -a..a, -b..b.
+    AxisControl twist{}, swingY{}, swingZ{};
+};
+
+// What `limited` alone means: locked at zero.
+inline constexpr AxisControl kLockedAxis = {.limited = true};
+
+// Each axis free, limited or locked (kLockedAxis; hard or, with a spring on its limits, soft), with motor and friction.
+struct SixDofJointSettings : JointSettings {
+    // In the order of JointAxis: m and N; rad and N m, rotations as in SwingTwistJointSettings.
+    std::array<AxisControl, 6> axes{};
+    SwingShape shape = SwingShape::Pyramid;
+
+    AxisControl& operator[](JointAxis axis) { return axes[static_cast<size_t>(axis)]; }
+};
+
 // A turns about anchor A's axis, B about anchor B's, each in a bearing that other joints make to a body at rest; their teeth
 // mesh. turns of A = -ratio turns of B.
 struct GearJointSettings : JointSettings {
@@ -129,5 +150,8 @@ struct WheelJointSettings : JointSettings {
 struct CustomJointSettings : JointSettings {
     std::function<std::unique_ptr<JointType>()> make;  // not empty; called once a joint, gives a type
 };
+
+// Calls a macro with the name of every kind above, without JointSettings.
+#define FULCRUM_FOR_EACH_JOINT_KIND(call) call(Point) call(Fixed) call(Distance) call(Hinge) call(Slider)
 
 }  // namespace fulcrum

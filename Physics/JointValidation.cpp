@@ -8,7 +8,9 @@
 #include <Fulcrum/Constraints/Joints/PathJoint.h>
 #include <Fulcrum/Constraints/Joints/PulleyJoint.h>
 #include <Fulcrum/Constraints/Joints/RackAndPinionJoint.h>
+#include <Fulcrum/Constraints/Joints/SixDofJoint.h>
 #include <Fulcrum/Constraints/Joints/SliderJoint.h>
+#include <Fulcrum/Constraints/Joints/SwingTwistJoint.h>
 #include <Fulcrum/Constraints/Joints/WheelJoint.h>
 
 #include <cstdio>
@@ -107,6 +109,26 @@ MaybeError CheckNotZero(const std::string& field, float x) {
     return Error{ErrorCode::OutOfRange, field + " is 0; it must not be"};
 }
 
+MaybeError CheckAngle(const std::string& name, const AxisControl& control, double highestMin, double lowestMax) {
+    if (MaybeError e = CheckControl(name, control)) return e;
+    if (!control.limited) return std::nullopt;
+    return FirstOf(CheckBetween(name + ".limits.min", control.limits.min, -kHalfTurn, highestMin),
+                   CheckBetween(name + ".limits.max", control.limits.max, lowestMax, kHalfTurn));
+}
+
+// Rotations limited as swing and twist.
+MaybeError CheckSwingTwist(const std::array<std::string, 3>& names, const std::array<AxisControl, 3>& axes, SwingShape shape) {
+    if (MaybeError e = FirstOf(CheckEnum("shape", shape, SwingShape::Pyramid), CheckAngle(names[0], axes[0], kHalfTurn, -kHalfTurn),
+                               CheckAngle(names[1], axes[1], 0.0, 0.0), CheckAngle(names[2], axes[2], 0.0, 0.0)))
+        return e;
+    if (shape != SwingShape::Ellipse) return std::nullopt;
+    for (size_t k = 1; k < 3; ++k)
+        if (axes[k].limited && axes[k].limits.min != -axes[k].limits.max)
+            return Error{ErrorCode::OutOfRange, names[k] + ".limits are " + Number(axes[k].limits.min) + " and " + Number(axes[k].limits.max) +
+                                                    "; for an ellipse they must be the same to both sides"};
+    return std::nullopt;
+}
+
 // Both a kind's own fields and the shared ones.
 template <class... Checks>
 MaybeError CheckWith(const JointSettings& settings, Checks&&... checks) {
@@ -139,6 +161,15 @@ MaybeError Check(const HingeJointSettings& s) { return CheckWith(s, CheckControl
 MaybeError Check(const SliderJointSettings& s) { return CheckWith(s, CheckControl("slide", s.slide)); }
 MaybeError Check(const ConeJointSettings& s) {
     return CheckWith(s, CheckRange("halfAngle", s.halfAngle, 0.0, kHalfTurn), CheckSpring("spring", s.spring));
+}
+MaybeError Check(const SwingTwistJointSettings& s) {
+    return CheckWith(s, CheckSwingTwist({"twist", "swingY", "swingZ"}, {s.twist, s.swingY, s.swingZ}, s.shape));
+}
+MaybeError Check(const SixDofJointSettings& s) {
+    if (MaybeError e = CheckWith(s, CheckControl("axes[LinearX]", s.axes[0]), CheckControl("axes[LinearY]", s.axes[1]),
+                                 CheckControl("axes[LinearZ]", s.axes[2])))
+        return e;
+    return CheckSwingTwist({"axes[AngularX]", "axes[AngularY]", "axes[AngularZ]"}, {s.axes[3], s.axes[4], s.axes[5]}, s.shape);
 }
 MaybeError Check(const GearJointSettings& s) { return CheckWith(s, CheckNotZero("ratio", s.ratio)); }
 MaybeError Check(const RackAndPinionJointSettings& s) { return CheckWith(s, CheckNotZero("ratio", s.ratio)); }
@@ -175,6 +206,10 @@ std::unique_ptr<JointType> MakeType(const DistanceJointSettings& s) {
 std::unique_ptr<JointType> MakeType(const HingeJointSettings& s) { return std::make_unique<HingeJoint>(s.angle); }
 std::unique_ptr<JointType> MakeType(const SliderJointSettings& s) { return std::make_unique<SliderJoint>(s.slide); }
 std::unique_ptr<JointType> MakeType(const ConeJointSettings& s) { return std::make_unique<ConeJoint>(s.halfAngle, s.spring); }
+std::unique_ptr<JointType> MakeType(const SwingTwistJointSettings& s) {
+    return std::make_unique<SwingTwistJoint>(s.twist, s.swingY, s.swingZ, s.shape);
+}
+std::unique_ptr<JointType> MakeType(const SixDofJointSettings& s) { return std::make_unique<SixDofJoint>(s.axes, s.shape); }
 std::unique_ptr<JointType> MakeType(const GearJointSettings& s) { return std::make_unique<GearJoint>(s.ratio); }
 std::unique_ptr<JointType> MakeType(const RackAndPinionJointSettings& s) { return std::make_unique<RackAndPinionJoint>(s.ratio); }
 std::unique_ptr<JointType> MakeType(const PulleyJointSettings& s) {

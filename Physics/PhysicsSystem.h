@@ -3,6 +3,7 @@
 
 #include <Fulcrum/Jobs/JobSystem.h>
 #include <Fulcrum/Physics/BodyInterface.h>
+#include <Fulcrum/Physics/JointInterface.h>
 #include <Fulcrum/Physics/StepReport.h>
 
 #include <memory>
@@ -36,7 +37,11 @@ public:
 
     BodyInterface& Bodies() { return bodies_; }
     const BodyInterface& Bodies() const { return bodies_; }
+    JointInterface& Joints() { return joints_; }
+    const JointInterface& Joints() const { return joints_; }
     const StepReport& Report() const;
+    // Joints that the last step loaded beyond their strength, in the order of their indices; they are disabled now.
+    std::span<const JointId> BrokenJoints() const;
     const SystemSettings& Settings() const;
     // As for Create. Takes effect at the next step.
     Status SetSettings(const SystemSettings& settings);
@@ -59,6 +64,7 @@ private:
     explicit PhysicsSystem(std::unique_ptr<WorldState> world);
     std::unique_ptr<WorldState> world_;
     BodyInterface bodies_;
+    JointInterface joints_;
 };
 
 }  // namespace fulcrum

@@ -50,6 +50,7 @@ struct SolverSettings {
     int substeps = 4;            // 1..64; each integrates dt / substeps
     int velocityIterations = 1;  // 1..255 per substep
     int positionIterations = 1;  // 0..255 per substep: passes that take the speed of pushes out again
+    friend bool operator==(const SolverSettings&, const SolverSettings&) = default;
 };
 
 struct BodySettings {
@@ -92,6 +93,9 @@ struct SystemSettings {
     float contactFrequency = 60.0f;      // Hz, > 0, of the spring that pushes overlaps apart; a quarter of the substeps' rate at most
     float contactDampingRatio = 1.0f;    // >= 0
     float contactPushSpeed = 3.0f;       // m/s, > 0: the fastest push
+    float jointFrequency = 60.0f;        // Hz, > 0, of the spring that pulls joints together; limited likewise
+    float jointDampingRatio = 2.0f;      // >= 0
+    float jointPushSpeed = 20.0f;        // m/s and rad/s, > 0: the fastest pull
     float restitutionSpeed = 0.5f;       // m/s, >= 0: slower impacts do not bounce
     float boundsMargin = 0.05f;          // m, > 0: fat bounds exceed the shape's by this
     // Bit j of layerCollides[i]: bodies of layer i and j collide. Must be symmetric.

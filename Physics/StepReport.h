@@ -1,7 +1,7 @@
 // What a step did: sizes, times, the worst culprits. Filled by PhysicsSystem::Update.
 #pragma once
 
-#include <Fulcrum/Physics/Settings.h>
+#include <Fulcrum/Physics/JointSettings.h>
 
 #include <array>
 
@@ -20,7 +20,11 @@ struct StepReport {
     uint32_t pairs = 0;                               // of colliders whose fat bounds overlap, awake ones
     uint32_t contacts = 0, contactPoints = 0;         // manifolds with at least one point, awake ones
     uint32_t keptManifolds = 0;                       // of these, not collided anew
-    uint32_t colours = 0, overflowContacts = 0;       // overflow: fitted no colour, solved one by one
+    uint32_t joints = 0;                              // awake ones
+    float largestJointError = 0;                      // m, >= 0: between the anchors of locks, as the step began
+    float largestJointAngle = 0;                      // rad, >= 0
+    JointId worstJoint, mostTurnedJoint;
+    uint32_t colours = 0, overflowConstraints = 0;    // overflow: fitted no colour, solved one by one
     uint32_t islands = 0;                             // awake ones that something touches
     float largestPenetration = 0;                     // m, >= 0, as found by Collide
     BodyId deepestA, deepestB;

@@ -118,8 +118,8 @@ void UpdateSeparations(ContactBatch<N, kFixedB>& batch, BodyState* states, const
 template <int N, bool kFixedB>
 void RestituteContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, float elapsed);
 
-// Writes the impulses back to the records.
+// Writes the impulses back to the records, divided by `impulseScale`.
 template <int N, bool kFixedB>
-void StoreContacts(const ContactBatch<N, kFixedB>& batch, ContactRecord* records);
+void StoreContacts(const ContactBatch<N, kFixedB>& batch, ContactRecord* records, float impulseScale = 1.0f);
 
 }  // namespace fulcrum

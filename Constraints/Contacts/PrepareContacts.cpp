@@ -218,12 +218,14 @@ void PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* recor
 }
 
 template <int N, bool kFixedB>
-void StoreContacts(const ContactBatch<N, kFixedB>& batch, ContactRecord* records) {
+void StoreContacts(const ContactBatch<N, kFixedB>& batch, ContactRecord* records, float impulseScale) {
     const auto friction = batch.tangent1 * batch.frictionImpulse[0] + batch.tangent2 * batch.frictionImpulse[1];
     Wide<N> row[8];
     for (int i = 0; i < ContactRecord::kMaxPoints; ++i) row[i] = i < batch.pointCount ? batch.rows[i].impulse : Wide<N>(0.0f);
     for (int k = 0; k < 3; ++k) row[4 + k] = friction[k];
     row[7] = batch.frictionImpulse[2];
+    if (impulseScale != 1.0f)
+        for (Wide<N>& x : row) x = x / Wide<N>(impulseScale);
     float* rows[N];
     for (int lane = 0; lane < N; ++lane) rows[lane] = records[batch.contact[lane]].impulse;
     ScatterRows<N>(rows, row, batch.count);
@@ -232,7 +234,7 @@ void StoreContacts(const ContactBatch<N, kFixedB>& batch, ContactRecord* records
 #define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                              \
     template void PrepareContacts(ContactBatch<lanes, fixedB>&, const ContactRecord*, const uint32_t(&)[lanes],         \
                                   const SolverBodies&, const ContactPrepareSettings&);                                  \
-    template void StoreContacts(const ContactBatch<lanes, fixedB>&, ContactRecord*);
+    template void StoreContacts(const ContactBatch<lanes, fixedB>&, ContactRecord*, float);
 FULCRUM_FOR_EACH_CONTACT_BATCH(FULCRUM_INSTANTIATE)
 #undef FULCRUM_INSTANTIATE
 

@@ -8,11 +8,7 @@ namespace fulcrum {
 
 namespace {
 
-// So far beyond a limit a motor is still trusted to hold: rounding must not switch it off and on.
-constexpr float kLimitSlop = 1e-3f;  // m or rad
-
-bool IsLocked(const AxisControl& control) { return control.limited && control.limits.min >= control.limits.max; }
-
+// A row along `motion` times sign.
 JointRow& AddRow(const JointRow& motion, float sign, uint32_t slot, JointRow::Kind kind, JointRowList& rows) {
     JointRow& row = rows.Add(slot, kind);
     row.a = {motion.a.linear * sign, motion.a.angular * sign};
@@ -20,14 +16,7 @@ JointRow& AddRow(const JointRow& motion, float sign, uint32_t slot, JointRow::Ki
     return row;
 }
 
-// The farthest way that the spring of a position motor can pull from `way` m or rad before the target within dt: an undamped
-// oscillator from rest moves way (1 - cos(w dt)).
-float WayOfSpring(const SpringSettings& spring, float way, float dt) {
-    if (IsHard(spring)) return way;
-    if (spring.mode == SpringMode::StiffnessAndDamping) return 2.0f * way;  // the mass is not known here
-    const float phase = 6.28318531f * spring.frequency * dt;
-    return way * std::min(2.0f, 0.5f * phase * phase);
-}
+bool IsLocked(const AxisControl& control) { return control.limited && control.limits.min >= control.limits.max; }
 
 // How far the axis may get within the step in the direction of `sign`.
 float Reach(const AxisControl& control, double position, float speed, float sign, float slackSpeed, float dt) {
@@ -49,9 +38,8 @@ void AddMotorRow(const AxisControl& control, const JointRow& motion, double posi
         const double target = control.limited
                                   ? std::clamp(motor.targetPosition, control.limits.min, control.limits.max)
                                   : motor.targetPosition;
-        JointRow& row = AddRow(motion, 1.0f, slot, IsHard(motor.spring) ? JointRow::Kind::Equal : JointRow::Kind::Spring, rows);
-        row.error = static_cast<float>(position - target);
-        row.spring = motor.spring;
+        AddLockRow(motor.spring, motion, static_cast<float>(position - target), slot, rows);
+        JointRow& row = rows.rows[rows.count - 1];
         row.minForce = motor.minForce;
         row.maxForce = motor.maxForce;
         return;
@@ -71,16 +59,28 @@ void AddMotorRow(const AxisControl& control, const JointRow& motion, double posi
     if (above < -kLimitSlop) row.minForce = 0.0f;
 }
 
-void AddLimitRow(const JointLimits& limits, const JointRow& motion, float sign, float error, uint32_t slot,
+}  // namespace
+
+float WayOfSpring(const SpringSettings& spring, float way, float dt) {
+    if (IsHard(spring)) return way;
+    if (spring.mode == SpringMode::StiffnessAndDamping) return 2.0f * way;  // the mass is not known here
+    const float phase = 6.28318531f * spring.frequency * dt;
+    return way * std::min(2.0f, 0.5f * phase * phase);
+}
+
+void AddLimitRow(const SpringSettings& spring, const JointRow& motion, float sign, float error, uint32_t slot,
                  JointRowList& rows) {
-    JointRow& row = AddRow(motion, sign, slot,
-                           IsHard(limits.spring) ? JointRow::Kind::AtLeast : JointRow::Kind::SpringAtLeast, rows);
+    JointRow& row = AddRow(motion, sign, slot, IsHard(spring) ? JointRow::Kind::AtLeast : JointRow::Kind::SpringAtLeast, rows);
     row.error = error;
-    row.spring = limits.spring;
+    row.spring = spring;
     row.minForce = 0.0f;
 }
 
-}  // namespace
+void AddLockRow(const SpringSettings& spring, const JointRow& motion, float error, uint32_t slot, JointRowList& rows) {
+    JointRow& row = AddRow(motion, 1.0f, slot, IsHard(spring) ? JointRow::Kind::Equal : JointRow::Kind::Spring, rows);
+    row.error = error;
+    row.spring = spring;
+}
 
 uint32_t MaxControlRows(const AxisControl& control) {
     if (IsLocked(control)) return 1;
@@ -91,11 +91,8 @@ void AddControlRows(const AxisControl& control, const JointPose& pose, const Joi
                     float slackSpeed, uint32_t firstSlot, JointRowList& rows) {
     const JointLimits& limits = control.limits;
     if (IsLocked(control)) {
-        JointRow& row = AddRow(motion, 1.0f, firstSlot + ControlSlots::kLowLimit,
-                               IsHard(limits.spring) ? JointRow::Kind::Equal : JointRow::Kind::Spring, rows);
-        row.error = static_cast<float>(position - limits.min);
-        row.spring = limits.spring;
-        return;
+        const auto error = static_cast<float>(position - limits.min);
+        return AddLockRow(limits.spring, motion, error, firstSlot + ControlSlots::kLowLimit, rows);
     }
     if (control.friction > 0.0f) {
         JointRow& row = AddRow(motion, 1.0f, firstSlot + ControlSlots::kFriction, JointRow::Kind::Speed, rows);
@@ -108,9 +105,9 @@ void AddControlRows(const AxisControl& control, const JointPose& pose, const Joi
     const float speed = pose.SpeedOf(motion);
     const float above = static_cast<float>(position - limits.min), below = static_cast<float>(limits.max - position);
     if (above <= Reach(control, position, speed, -1.0f, slackSpeed, pose.dt))
-        AddLimitRow(limits, motion, 1.0f, above, firstSlot + ControlSlots::kLowLimit, rows);
+        AddLimitRow(limits.spring, motion, 1.0f, above, firstSlot + ControlSlots::kLowLimit, rows);
     if (below <= Reach(control, position, speed, 1.0f, slackSpeed, pose.dt))
-        AddLimitRow(limits, motion, -1.0f, below, firstSlot + ControlSlots::kHighLimit, rows);
+        AddLimitRow(limits.spring, motion, -1.0f, below, firstSlot + ControlSlots::kHighLimit, rows);
 }
 
 }  // namespace fulcrum

@@ -63,6 +63,19 @@ uint32_t MaxControlRows(const AxisControl& control);
 inline constexpr float kLinearSlackSpeed = 1.0f;   // m/s
 inline constexpr float kAngularSlackSpeed = 2.0f;  // rad/s
 
+// The farthest way that the spring of a position motor can take an axis within dt, s, from rest `way` m or rad before its
+// target: of an undamped oscillator, way (1 - cos(w dt)).
+float WayOfSpring(const SpringSettings& spring, float way, float dt);
+
+// Beyond its limit by less, m or rad, an axis still counts as at it: rounding must not switch motors off and on.
+inline constexpr float kLimitSlop = 1e-3f;
+
+// Adds the row that keeps C >= 0: C is `error`, and its rate J v of `motion` times sign.
+void AddLimitRow(const SpringSettings& spring, const JointRow& motion, float sign, float error, uint32_t slot,
+                 JointRowList& rows);
+// Adds the row that keeps C = 0.
+void AddLockRow(const SpringSettings& spring, const JointRow& motion, float error, uint32_t slot, JointRowList& rows);
+
 // Adds the rows of an axis at `position` (m or rad) whose rate is J v of `motion` (only the Jacobian is read): each limit
 // that may be reached within the step, the motor if it is on, friction if there is any. Limits come last: where rows
 // disagree, they win.

@@ -4,6 +4,7 @@
 
 #include <Fulcrum/Constraints/Joints/JointType.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace fulcrum {
@@ -20,10 +21,18 @@ inline double NearestTurn(double wrapped, double expected) {
     return wrapped + kFullTurn * std::floor((expected - wrapped) / kFullTurn + 0.5);
 }
 
-// The axis that the twist of frame B against A turns about, unit: halfway between the two x axes. With alpha between
-// these, d twist/dt = axis . w / cos(alpha / 2), and a joint that keeps them together has alpha = 0.
-inline Vector3 TwistAxis(const Matrix3& frameA, const Matrix3& frameB) {
-    return Normalized(Vector3(frameA.x + frameB.x), frameA.x);
+inline const Vector3& AxisOf(const Matrix3& frame, int axis) { return axis == 0 ? frame.x : axis == 1 ? frame.y : frame.z; }
+
+// How far frame B is turned against A about an axis of theirs, 0, 1, 2 for x, y, z, that a joint keeps together. -pi..pi.
+inline float AngleAbout(const JointPose& pose, int axis) {
+    const Quaternion q = pose.frameA.Conjugate() * pose.frameB;
+    return TwistAngle({axis == 0 ? q.x : axis == 1 ? q.y : q.z, 0.0f, 0.0f, q.w});
+}
+// That axis in world space, unit: halfway between the frames' two. With alpha between these, d angle/dt = axis . w /
+// cos(alpha / 2), so exact where the joint holds.
+inline Vector3 AxisAbout(const JointPose& pose, int axis) {
+    const Matrix3 frameA = ToMatrix(pose.frameA), frameB = ToMatrix(pose.frameB);
+    return Normalized(Vector3(AxisOf(frameA, axis) + AxisOf(frameB, axis)), AxisOf(frameA, axis));
 }
 
 // An angle counted over any number of turns. A body may turn by more than half a turn a step: the speeds at both ends of a
@@ -32,7 +41,20 @@ struct TurnCount {
     std::array<double, 2> numbers{};  // rad, rad/s
 
     double Angle() const { return numbers[0]; }
-    void Set(double angle) { numbers = {angle, 0.0}; }
+    // From here on. With limits the turn counts that is farthest inside, of those next to their ends.
+    void Start(double wrapped, const AxisControl& control) {
+        numbers = {wrapped, 0.0};
+        if (!control.limited) return;
+        const double min = control.limits.min, max = control.limits.max;
+        const auto outside = [&](double x) { return std::max({min - x, x - max, 0.0}); };
+        for (const double end : {min, max}) {
+            if (!std::isfinite(end)) continue;
+            for (const double near : {end, end - kFullTurn, end + kFullTurn}) {
+                const double candidate = NearestTurn(wrapped, near);
+                if (outside(candidate) < outside(numbers[0])) numbers[0] = candidate;
+            }
+        }
+    }
     void Advance(double wrapped, double speed, double dt) {
         numbers = {NearestTurn(wrapped, numbers[0] + 0.5 * (numbers[1] + speed) * dt), speed};
     }

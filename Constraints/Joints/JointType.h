@@ -83,6 +83,11 @@ public:
         (void)axis;
         return nullptr;
     }
+    // Slot of the first of an axis' rows, which are in the order of ControlSlots.
+    virtual uint32_t FirstSlot(JointAxis axis) const {
+        (void)axis;
+        return 0;
+    }
     // The orientation of frame B against frame A that position motors turn to, unit; for types that have such motors.
     virtual void SetTargetOrientation(const Quaternion& target) { (void)target; }
     // Where B is along or about an axis, m or rad. Here: the way of B's anchor along the axis of frame A, and the rotation

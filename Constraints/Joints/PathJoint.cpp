@@ -20,6 +20,8 @@ double WayOf(const Path& path, double parameter, const PathSample& at, const Vec
 
 }  // namespace
 
+uint32_t PathJoint::FirstSlot(JointAxis axis) const { return axis == JointAxis::LinearX ? Slots::kAlong : 0; }
+
 PathJoint::PathJoint(std::shared_ptr<const Path> path, const AxisControl& along, PathRotation rotation)
     : path_(std::move(path)), along_(along), rotation_(rotation) {}
 

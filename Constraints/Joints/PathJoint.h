@@ -34,6 +34,7 @@ public:
     void Start(const JointPose& pose) override;
     void CollectRows(const JointPose& pose, JointRowList& rows) override;
     AxisControl* Control(JointAxis axis) override { return axis == JointAxis::LinearX ? &along_ : nullptr; }
+    uint32_t FirstSlot(JointAxis axis) const override;
     double Coordinate(JointAxis axis, const JointPose& pose) const override;
     std::span<double> State() override { return {&parameter_, 1}; }
 

@@ -45,7 +45,7 @@ uint32_t WheelJoint::MaxRows() const {
     return MaxControlRows(suspension_) + MaxControlRows(spin_) + (isSteered_ ? 1 + MaxControlRows(steering_) : 0);
 }
 
-void WheelJoint::Start(const JointPose& pose) { turns_.Set(AnglesOf(pose).spin); }
+void WheelJoint::Start(const JointPose& pose) { turns_.Start(AnglesOf(pose).spin, spin_); }
 
 void WheelJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     const WheelAngles angles = AnglesOf(pose);
@@ -70,6 +70,10 @@ AxisControl* WheelJoint::Control(JointAxis axis) {
     if (axis == JointAxis::LinearY) return &suspension_;
     if (axis == JointAxis::AngularY) return isSteered_ ? &steering_ : nullptr;
     return axis == JointAxis::AngularX ? &spin_ : nullptr;
+}
+
+uint32_t WheelJoint::FirstSlot(JointAxis axis) const {
+    return axis == JointAxis::AngularY ? Slots::kSteering : axis == JointAxis::AngularX ? Slots::kSpin : Slots::kSuspension;
 }
 
 double WheelJoint::Coordinate(JointAxis axis, const JointPose& pose) const {

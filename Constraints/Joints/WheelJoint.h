@@ -24,6 +24,7 @@ public:
     void Start(const JointPose& pose) override;
     void CollectRows(const JointPose& pose, JointRowList& rows) override;
     AxisControl* Control(JointAxis axis) override;
+    uint32_t FirstSlot(JointAxis axis) const override;
     double Coordinate(JointAxis axis, const JointPose& pose) const override;
     std::span<double> State() override { return turns_.numbers; }
 

@@ -1,6 +1,6 @@
-// Sorts the coloured contacts into groups of islands. Small islands are packed into groups that fit a worker's cache and
+// Sorts the coloured constraints into groups of islands. Small islands are packed into groups that fit a worker's cache and
 // are solved there whole; that saves them all barriers and most of the memory traffic. Done only in steps in which a
-// contact began or ended. Serial; the islands follow from the contacts alone.
+// constraint began or ended. Serial; the islands follow from the constraints alone.
 #include <Fulcrum/Physics/Islands/UnionFind.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 
@@ -10,47 +10,75 @@ namespace fulcrum {
 
 namespace {
 
-constexpr uint32_t kLargeIsland = 768;  // contacts: from here on all workers solve it together
-constexpr uint32_t kSmallGroup = 192;   // contacts that a group of small islands has at least, about 60 KB of rows
-constexpr uint32_t kColours = ContactColouring::kColours;
+constexpr uint32_t kLargeIsland = 768;  // constraints: from here on all workers solve it together
+constexpr uint32_t kSmallGroup = 192;   // constraints that a group of small islands has at least, about 60 KB of rows
+constexpr uint32_t kColours = ConstraintColouring::kColours;
 constexpr uint32_t kLargeGroup = 0;
 
-using Entry = ContactColouring::Entry;
+using Entry = ConstraintColouring::Entry;
+using Kind = ConstraintColouring::Kind;
 
 struct Islands {
-    std::span<uint32_t> groupOf;  // by place in bodies.awake: the group, or kNone where no contact touches
+    std::span<uint32_t> groupOf;  // by place in bodies.awake: the group, or kNone where no constraint touches
     uint32_t groups = 0;
     uint32_t islands = 0;
     static constexpr uint32_t kNone = ~0u;
 };
 
 template <class Visit>
-void VisitEntries(const WorldState& world, Visit&& visit) {
-    for (uint32_t c = 0; c <= kColours; ++c) {
-        const ContactColouring::Colour& colour = world.colouring.At(static_cast<int>(c));
-        for (const Entry& entry : colour.moving) visit(c, false, entry);
-        for (const Entry& entry : colour.fixed) visit(c, true, entry);
-    }
+void VisitEntries(const WorldState& world, Kind kind, Visit&& visit) {
+    for (uint32_t c = 0; c <= kColours; ++c)
+        for (const Entry& entry : world.colouring.At(static_cast<int>(c)).Of(kind)) visit(c, entry);
+}
+
+uint32_t MovingBodyOf(const Entry& entry) { return entry.stillA ? entry.bodyB : entry.bodyA; }
+
+// What an island is to be solved with: of each number the largest that its joints ask for.
+SolverSettings Larger(const SolverSettings& a, const SolverSettings& b) {
+    return {std::max(a.substeps, b.substeps), std::max(a.velocityIterations, b.velocityIterations),
+            std::max(a.positionIterations, b.positionIterations)};
+}
+
+// By the root of the island, or empty where no joint asks for an effort of its own.
+std::span<SolverSettings> FindEfforts(WorldState& world, UnionFind& sets, size_t count) {
+    std::span<SolverSettings> efforts;
+    VisitEntries(world, Kind::Joint, [&](uint32_t, const Entry& entry) {
+        const Joint& joint = world.joints.joints[entry.constraint];
+        if (!joint.HasOwnEffort()) return;
+        if (efforts.empty()) {
+            efforts = world.scratch.Allocate<SolverSettings>(count);
+            std::fill(efforts.begin(), efforts.end(), SolverSettings{0, 0, 0});
+        }
+        SolverSettings& effort = efforts[sets.Find(world.bodies.cold[MovingBodyOf(entry)].awakePlace)];
+        effort = Larger(effort, joint.effort);
+    });
+    return efforts;
 }
 
 Islands FindIslands(WorldState& world) {
     const auto placeOf = [&](uint32_t body) { return world.bodies.cold[body].awakePlace; };
     const size_t count = world.bodies.awake.size();
     UnionFind sets(world.scratch.Allocate<uint32_t>(count));
-    std::span<uint32_t> contacts = world.scratch.Allocate<uint32_t>(count);
-    std::fill(contacts.begin(), contacts.end(), 0u);
-    for (uint32_t c = 0; c <= kColours; ++c)
-        for (const Entry& entry : world.colouring.At(static_cast<int>(c)).moving)
-            sets.Unite(placeOf(entry.bodyA), placeOf(entry.bodyB));
+    std::span<uint32_t> sizes = world.scratch.Allocate<uint32_t>(count);
+    std::fill(sizes.begin(), sizes.end(), 0u);
+    const auto unite = [&](uint32_t, const Entry& entry) {
+        if (!entry.stillA && !entry.stillB) sets.Unite(placeOf(entry.bodyA), placeOf(entry.bodyB));
+    };
+    VisitEntries(world, Kind::Moving, unite);
+    VisitEntries(world, Kind::Joint, unite);
     // A body beyond all colours makes its island a large one.
-    VisitEntries(world, [&](uint32_t c, bool, const Entry& entry) {
-        contacts[sets.Find(placeOf(entry.bodyA))] += c == kColours ? kLargeIsland : 1;
-    });
+    for (Kind kind : {Kind::Moving, Kind::Fixed, Kind::Joint})
+        VisitEntries(world, kind, [&](uint32_t c, const Entry& entry) {
+            sizes[sets.Find(placeOf(MovingBodyOf(entry)))] += c == kColours ? kLargeIsland : 1;
+        });
+    const std::span<const SolverSettings> efforts = FindEfforts(world, sets, count);
 
     Islands result;
     result.groupOf = world.scratch.Allocate<uint32_t>(count);
-    result.groups = 1;
+    std::vector<SolverGroup>& groups = world.solver.groups;
+    groups.assign(1, {});
     uint32_t inGroup = kSmallGroup;  // so that the first small island opens a group
+    uint32_t open = 0;
     for (uint32_t i = 0; i < count; ++i) {
         const uint32_t root = sets.Find(i);
         if (root != i) {
@@ -58,19 +86,28 @@ Islands FindIslands(WorldState& world) {
             continue;
         }
         result.groupOf[i] = Islands::kNone;
-        if (contacts[i] == 0) continue;
+        if (sizes[i] == 0) continue;
         ++result.islands;
-        if (contacts[i] >= kLargeIsland) {
+        const bool overflows = world.colouring.HasOverflow() && sizes[i] >= kLargeIsland;
+        if (!efforts.empty() && !(efforts[i] == SolverSettings{0, 0, 0}) && !overflows) {
+            result.groupOf[i] = static_cast<uint32_t>(groups.size());
+            groups.push_back({});
+            groups.back().effort = efforts[i];
+            continue;
+        }
+        if (sizes[i] >= kLargeIsland) {
             result.groupOf[i] = kLargeGroup;
             continue;
         }
         if (inGroup >= kSmallGroup) {
-            ++result.groups;
+            open = static_cast<uint32_t>(groups.size());
+            groups.push_back({});
             inGroup = 0;
         }
-        result.groupOf[i] = result.groups - 1;
-        inGroup += contacts[i];
+        result.groupOf[i] = open;
+        inGroup += sizes[i];
     }
+    result.groups = static_cast<uint32_t>(groups.size());
     return result;
 }
 
@@ -110,30 +147,120 @@ void GrowTo(std::vector<Batch>& batches, uint32_t count) {
     if (batches.size() < count) batches.resize(count + count / 4);
 }
 
-void SortContacts(WorldState& world, const Islands& islands) {
+uint32_t GroupOf(const WorldState& world, const Islands& islands, const Entry& entry) {
+    return islands.groupOf[world.bodies.cold[MovingBodyOf(entry)].awakePlace];
+}
+
+// A joint with what decides in which batch it is.
+struct SortedJoint {
+    uint32_t place;   // group * kColours + colour
+    uint32_t kind;    // batches have joints of the same locks, and best of as many rows
+    uint32_t joint;
+    friend auto operator<=>(const SortedJoint&, const SortedJoint&) = default;
+};
+
+uint32_t LocksOf(uint32_t kind) { return kind >> 8; }
+
+std::span<const SortedJoint> SortJoints(WorldState& world, const Islands& islands) {
+    size_t count = 0;
+    VisitEntries(world, Kind::Joint, [&](uint32_t, const Entry&) { ++count; });
+    std::span<SortedJoint> sorted = world.scratch.Allocate<SortedJoint>(count);
+    count = 0;
+    VisitEntries(world, Kind::Joint, [&](uint32_t c, const Entry& entry) {
+        Joint& joint = world.joints.joints[entry.constraint];
+        joint.locks = joint.type->Locks();
+        joint.maxRows = joint.type->MaxRows();
+        JointRecord& record = world.joints.records[entry.constraint];
+        record.lineAxis = joint.locks.line;
+        record.freeAxis = joint.locks.axis;
+        if (c == kColours) return;
+        const uint32_t locks = static_cast<uint32_t>(joint.locks.linear) * 3 + static_cast<uint32_t>(joint.locks.angular);
+        sorted[count++] = {GroupOf(world, islands, entry) * kColours + c, locks << 8 | joint.maxRows, entry.constraint};
+    });
+    sorted = sorted.first(count);
+    std::sort(sorted.begin(), sorted.end());
+    return sorted;
+}
+
+// A batch of the joints, at most N; lanes beyond them repeat the last one and are never written.
+template <int N>
+void FillBatch(const WorldState& world, JointBatch<N>& batch, std::span<const SortedJoint> joints) {
+    batch.count = static_cast<int32_t>(joints.size());
+    batch.fixedA = batch.fixedB = batch.kinematicA = batch.kinematicB = 0;
+    batch.rowCount = batch.rowRoom = 0;
+    for (size_t lane = 0; lane < N; ++lane) {
+        const uint32_t index = joints[std::min(lane, joints.size() - 1)].joint;
+        const Joint& joint = world.joints.joints[index];
+        const auto bit = [&](bool set) { return static_cast<uint32_t>(set) << lane; };
+        const auto isKinematic = [&](int side) { return world.bodies.dynamics[joint.body[side]].motion == MotionType::Kinematic; };
+        batch.joint[lane] = index;
+        batch.bodyA[lane] = joint.body[0];
+        batch.bodyB[lane] = joint.body[1];
+        batch.linear = joint.locks.linear;
+        batch.angular = joint.locks.angular;
+        batch.fixedA |= bit(joint.still[0]);
+        batch.fixedB |= bit(joint.still[1]);
+        batch.kinematicA |= bit(isKinematic(0));
+        batch.kinematicB |= bit(isKinematic(1));
+        batch.rowRoom = std::max(batch.rowRoom, joint.maxRows);
+    }
+}
+
+// Cuts the joints of one colour into batches, from the front of `sorted`.
+void MakeJointBatches(WorldState& world, uint32_t place, std::span<const SortedJoint>& sorted, ColourBatches& colour) {
     SolverLayout& layout = world.solver;
-    const auto keyOf = [&](uint32_t colour, const Entry& entry) {
-        return islands.groupOf[world.bodies.cold[entry.bodyA].awakePlace] * kColours + colour;
-    };
+    colour.jointsBegin = layout.jointCount;
+    while (!sorted.empty() && sorted.front().place == place) {
+        size_t n = 1;
+        while (n < kLanes && n < sorted.size() && sorted[n].place == place && LocksOf(sorted[n].kind) == LocksOf(sorted[0].kind)) ++n;
+        if (layout.joints.size() == layout.jointCount) layout.joints.resize(layout.jointCount + layout.jointCount / 4 + 1);
+        FillBatch(world, layout.joints[layout.jointCount++], sorted.first(n));
+        sorted = sorted.subspan(n);
+    }
+    colour.jointsEnd = layout.jointCount;
+}
+
+// Gives every batch its room for rows.
+template <int N>
+void ShareRows(std::span<JointBatch<N>> batches, std::vector<JointRows<N>>& rows) {
+    size_t count = 0;
+    for (const JointBatch<N>& batch : batches) count += batch.rowRoom;
+    if (rows.size() < count) rows.resize(count + count / 4);
+    count = 0;
+    for (JointBatch<N>& batch : batches) {
+        batch.rows = rows.data() + count;
+        count += batch.rowRoom;
+    }
+}
+
+void SortConstraints(WorldState& world, const Islands& islands) {
+    SolverLayout& layout = world.solver;
+    const auto keyOf = [&](uint32_t colour, const Entry& entry) { return GroupOf(world, islands, entry) * kColours + colour; };
     const size_t keys = size_t(islands.groups) * kColours;
     std::span<uint32_t> moving = world.scratch.Allocate<uint32_t>(keys), fixed = world.scratch.Allocate<uint32_t>(keys);
-    std::fill(moving.begin(), moving.end(), 0u);
-    std::fill(fixed.begin(), fixed.end(), 0u);
-    VisitEntries(world, [&](uint32_t c, bool fixedB, const Entry& entry) {
-        if (c < kColours) ++(fixedB ? fixed : moving)[keyOf(c, entry)];
-    });
+    const auto count = [&](Kind kind, std::span<uint32_t> counts) {
+        std::fill(counts.begin(), counts.end(), 0u);
+        VisitEntries(world, kind, [&](uint32_t c, const Entry& entry) {
+            if (c < kColours) ++counts[keyOf(c, entry)];
+        });
+    };
+    count(Kind::Moving, moving);
+    count(Kind::Fixed, fixed);
+    std::span<const SortedJoint> joints = SortJoints(world, islands);
     layout.colours.clear();
     uint32_t movingFirst = 0, fixedFirst = 0;
     uint64_t used = 0;
     for (uint32_t g = 0; g < islands.groups; ++g) {
         layout.groups[g].coloursBegin = static_cast<uint32_t>(layout.colours.size());
         for (uint32_t c = 0; c < kColours; ++c) {
-            const uint32_t m = moving[g * kColours + c], f = fixed[g * kColours + c];
-            if (m + f == 0) continue;
+            const uint32_t key = g * kColours + c;
+            const uint32_t m = moving[key], f = fixed[key];
+            if (m + f == 0 && (joints.empty() || joints.front().place != key)) continue;
             used |= uint64_t(1) << c;
             ColourBatches colour;
             colour.moving = MakeRange(movingFirst, m, layout.movingCount);
             colour.fixed = MakeRange(fixedFirst, f, layout.fixedCount);
+            MakeJointBatches(world, key, joints, colour);
             layout.colours.push_back(colour);
             movingFirst += m;
             fixedFirst += f;
@@ -141,13 +268,26 @@ void SortContacts(WorldState& world, const Islands& islands) {
         layout.groups[g].coloursEnd = static_cast<uint32_t>(layout.colours.size());
     }
     layout.colourCount = static_cast<uint32_t>(std::popcount(used));
-    layout.movingContacts.resize(FirstOfEach(moving));
-    layout.fixedContacts.resize(FirstOfEach(fixed));
-    VisitEntries(world, [&](uint32_t c, bool fixedB, const Entry& entry) {
-        if (c == kColours) return;
-        if (fixedB) layout.fixedContacts[fixed[keyOf(c, entry)]++] = entry;
-        else layout.movingContacts[moving[keyOf(c, entry)]++] = entry;
-    });
+    const auto sort = [&](Kind kind, std::span<uint32_t> next, std::vector<Entry>& sorted) {
+        sorted.resize(FirstOfEach(next));
+        VisitEntries(world, kind, [&](uint32_t c, const Entry& entry) {
+            if (c < kColours) sorted[next[keyOf(c, entry)]++] = entry;
+        });
+    };
+    sort(Kind::Moving, moving, layout.movingContacts);
+    sort(Kind::Fixed, fixed, layout.fixedContacts);
+}
+
+void MakeOverflow(WorldState& world) {
+    SolverLayout& layout = world.solver;
+    const ConstraintColouring::Colour& overflow = world.colouring.At(ConstraintColouring::kOverflow);
+    layout.overflowMoving.resize(overflow.Of(Kind::Moving).size());
+    layout.overflowFixed.resize(overflow.Of(Kind::Fixed).size());
+    layout.overflowJoints.resize(overflow.Of(Kind::Joint).size());
+    for (size_t i = 0; i < layout.overflowJoints.size(); ++i) {
+        const SortedJoint joint{0, 0, overflow.Of(Kind::Joint)[i].constraint};
+        FillBatch(world, layout.overflowJoints[i], std::span(&joint, 1));
+    }
 }
 
 }  // namespace
@@ -156,17 +296,16 @@ void BuildIslands(WorldState& world) {
     SolverLayout& layout = world.solver;
     if (layout.version == world.colouring.Version()) return;
     layout.version = world.colouring.Version();
-    layout.movingCount = layout.fixedCount = 0;
+    layout.movingCount = layout.fixedCount = layout.jointCount = 0;
     const Islands islands = FindIslands(world);
     layout.islands = islands.islands;
-    layout.groups.resize(islands.groups);
     SortBodies(world, islands);
-    SortContacts(world, islands);
+    SortConstraints(world, islands);
     GrowTo(layout.moving, layout.movingCount);
     GrowTo(layout.fixed, layout.fixedCount);
-    const ContactColouring::Colour& overflow = world.colouring.At(ContactColouring::kOverflow);
-    layout.overflowMoving.resize(overflow.moving.size());
-    layout.overflowFixed.resize(overflow.fixed.size());
+    MakeOverflow(world);
+    ShareRows(std::span(layout.joints).first(layout.jointCount), layout.jointRows);
+    ShareRows(std::span(layout.overflowJoints), layout.overflowRows);
 }
 
 }  // namespace fulcrum

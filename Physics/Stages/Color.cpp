@@ -1,21 +1,51 @@
-// Contacts that began get a colour, those that ended lose it. Serial, in the order of the pairs, which depends on the
+// Contacts that began get a colour, those that ended lose it; joints do so when they come and go, wake and sleep. Serial, in the order of the pairs, which depends on the
 // history alone: the same colours for any number of threads.
 #include <Fulcrum/Physics/Stages/Stages.h>
 
 namespace fulcrum {
 
+namespace {
+
+using Colouring = ConstraintColouring;
+
+Colouring::Kind KindOf(const Pair& pair) { return pair.fixedB ? Colouring::Kind::Fixed : Colouring::Kind::Moving; }
+Colouring::Entry EntryOf(const Joint& joint, uint32_t index) {
+    return {index, joint.body[0], joint.body[1], joint.still[0], joint.still[1]};
+}
+Colouring::Entry EntryOf(const Pair& pair, uint32_t index) { return {index, pair.bodyA, pair.bodyB, false, pair.fixedB}; }
+
+}  // namespace
+
 void ColourPair(WorldState& world, uint32_t index) {
     Pair& pair = world.pairs.pairs[index];
     if (pair.colour.colour != 0xFF) return;
-    pair.colour = world.colouring.Add(index, pair.bodyA, pair.bodyB, pair.fixedB);
+    // Contacts with what does not move come last: they must win.
+    pair.colour = world.colouring.Add(KindOf(pair), EntryOf(pair, index), pair.fixedB);
 }
 
 void UncolourPair(WorldState& world, uint32_t index) {
     Pair& pair = world.pairs.pairs[index];
     if (pair.colour.colour == 0xFF) return;
-    const uint32_t moved = world.colouring.Remove(index, pair.colour, pair.bodyA, pair.bodyB, pair.fixedB);
+    const uint32_t moved = world.colouring.Remove(KindOf(pair), EntryOf(pair, index), pair.colour);
     world.pairs.pairs[moved].colour.slot = pair.colour.slot;
     pair.colour = {};
+}
+
+void ColourJoint(WorldState& world, uint32_t index) {
+    Joint& joint = world.joints.joints[index];
+    const auto isAwake = [&](int side) { return !joint.still[side] && world.bodies.dynamics[joint.body[side]].awake; };
+    if (joint.colour.colour != 0xFF || !joint.enabled || !(isAwake(0) || isAwake(1))) return;
+    world.colouring.ReserveBodies(world.bodies.Size());
+    const bool late = joint.priority == JointPriority::High || joint.still[0] || joint.still[1];
+    joint.colour = world.colouring.Add(Colouring::Kind::Joint, EntryOf(joint, index), late);
+}
+
+void UncolourJoint(WorldState& world, uint32_t index) {
+    Joint& joint = world.joints.joints[index];
+    if (joint.colour.colour == 0xFF) return;
+    const uint32_t moved = world.colouring.Remove(Colouring::Kind::Joint, EntryOf(joint, index), joint.colour);
+    world.joints.joints[moved].colour.slot = joint.colour.slot;
+    joint.colour = {};
 }
 
 void Color(WorldState& world) {

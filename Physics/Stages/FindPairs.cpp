@@ -15,7 +15,7 @@ bool MayCollide(const WorldState& world, uint32_t bodyA, uint32_t bodyB) {
     if (bodyA == bodyB) return false;
     if (a.motion != MotionType::Dynamic && b.motion != MotionType::Dynamic) return false;
     if (!(world.settings.layerCollides[a.layer] >> b.layer & 1u)) return false;
-    return a.awake || b.awake;
+    return (a.awake || b.awake) && !world.joints.ForbidsContact(bodyA, bodyB);
 }
 
 void Search(const WorldState& world, uint32_t index, std::vector<uint64_t>& found) {

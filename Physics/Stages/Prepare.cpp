@@ -1,5 +1,5 @@
 // Fills the rows of all batches.
-#include <Fulcrum/Physics/Stages/Stages.h>
+#include <Fulcrum/Physics/Stages/Effort.h>
 
 #include <algorithm>
 
@@ -7,7 +7,7 @@ namespace fulcrum {
 
 namespace {
 
-using Entry = ContactColouring::Entry;
+using Entry = ConstraintColouring::Entry;
 
 template <int N, bool kFixedB>
 void NoteDeepest(const ContactBatch<N, kFixedB>& batch, WorkerFindings& findings) {
@@ -26,7 +26,7 @@ void NoteDeepest(const ContactBatch<N, kFixedB>& batch, WorkerFindings& findings
 // Records and masses of the contacts that come next are on their way while these are worked on.
 void Prefetch(const WorldState& world, std::span<const Entry> entries) {
     for (const Entry& entry : entries) {
-        const char* record = reinterpret_cast<const char*>(&world.pairs.records[entry.contact]);
+        const char* record = reinterpret_cast<const char*>(&world.pairs.records[entry.constraint]);
         for (size_t line = 0; line < sizeof(ContactRecord); line += 64) __builtin_prefetch(record + line);
         for (uint32_t body : {entry.bodyA, entry.bodyB}) {
             __builtin_prefetch(&world.bodies.poses[body]);
@@ -43,7 +43,7 @@ void Fill(WorldState& world, ContactBatch<N, kFixedB>& batch, std::span<const En
     uint32_t bodyB[N];
     for (size_t lane = 0; lane < N; ++lane) {
         const Entry& entry = entries[lane < entries.size() ? lane : entries.size() - 1];
-        batch.contact[lane] = entry.contact;
+        batch.contact[lane] = entry.constraint;
         batch.bodyA[lane] = entry.bodyA;
         bodyB[lane] = entry.bodyB;
     }
@@ -91,28 +91,77 @@ void FindDeepest(WorldState& world) {
     report.deepestB = world.bodies.IdOf(world.pairs.pairs[pair].bodyB);
 }
 
-}  // namespace
+void FindWorstJoints(WorldState& world) {
+    StepReport& report = world.report;
+    JointFindings worst;
+    const auto note = [](float error, uint32_t joint, float& largest, uint32_t& which) {
+        if (joint == ~0u || error < largest || (error == largest && joint >= which)) return;
+        largest = error;
+        which = joint;
+    };
+    for (const WorkerFindings& findings : world.findings) {
+        note(findings.joints.linearError, findings.joints.linearJoint, worst.linearError, worst.linearJoint);
+        note(findings.joints.angularError, findings.joints.angularJoint, worst.angularError, worst.angularJoint);
+    }
+    report.largestJointError = worst.linearError;
+    report.largestJointAngle = worst.angularError;
+    if (worst.linearJoint != ~0u) report.worstJoint = world.joints.IdOf(worst.linearJoint);
+    if (worst.angularJoint != ~0u) report.mostTurnedJoint = world.joints.IdOf(worst.angularJoint);
+}
 
-// Impulses of a short step, scaled up to a long one, are mostly its noise: steps that alternate between 1/240 and 1/30 s
-// threw a stack of six boxes over with no limit, and leave one of ten standing with this one.
-constexpr float kMostScale = 2;
+class RowFiller {
+public:
+    RowFiller(WorldState& world, const Effort& effort, const StepContext& step) : world_(world), joints_(effort.joints) {
+        contacts_.impulseScale = step.impulseScale * effort.impulseScale;
+        contacts_.restitutionSpeed = world.settings.restitutionSpeed;
+    }
+    void Fill(const BatchRange& moving, const BatchRange& fixed, WorkerFindings& findings) const {
+        SolverLayout& layout = world_.solver;
+        FillRange(world_, layout.moving, moving, layout.movingContacts, contacts_, findings);
+        FillRange(world_, layout.fixed, fixed, layout.fixedContacts, contacts_, findings);
+    }
+    void FillJoints(uint32_t begin, uint32_t end, WorkerFindings& findings) const {
+        for (uint32_t i = begin; i < end; ++i) FillJoint(world_.solver.joints[i], findings);
+    }
+    void FillGroup(const SolverGroup& group, WorkerFindings& findings) const {
+        for (uint32_t c = group.coloursBegin; c < group.coloursEnd; ++c) {
+            const ColourBatches& colour = world_.solver.colours[c];
+            Fill(colour.moving, colour.fixed, findings);
+            FillJoints(colour.jointsBegin, colour.jointsEnd, findings);
+        }
+    }
+    void FillOverflow(const ConstraintColouring::Colour& overflow, WorkerFindings& findings) const {
+        using Kind = ConstraintColouring::Kind;
+        SolverLayout& layout = world_.solver;
+        for (size_t i = 0; i < layout.overflowMoving.size(); ++i)
+            fulcrum::Fill(world_, layout.overflowMoving[i], std::span(&overflow.Of(Kind::Moving)[i], 1), contacts_, findings);
+        for (size_t i = 0; i < layout.overflowFixed.size(); ++i)
+            fulcrum::Fill(world_, layout.overflowFixed[i], std::span(&overflow.Of(Kind::Fixed)[i], 1), contacts_, findings);
+        for (JointBatch<1>& batch : layout.overflowJoints) FillJoint(batch, findings);
+    }
+
+private:
+    template <int N>
+    void FillJoint(JointBatch<N>& batch, WorkerFindings& findings) const {
+        PrepareJoints(batch, world_.joints.records.data(), world_.joints.types.data(), world_.bodies.ForSolver(), joints_, findings.joints);
+    }
+
+    WorldState& world_;
+    ContactPrepareSettings contacts_;
+    JointSolveSettings joints_;
+};
+
+}  // namespace
 
 void Prepare(WorldState& world, const StepContext& step) {
     SolverLayout& layout = world.solver;
     world.bounces = false;
     if (world.colouring.Size() == 0) return;
-    ContactPrepareSettings settings;
-    settings.impulseScale = world.lastSubstepDt > 0 ? std::min(step.substepDt / world.lastSubstepDt, kMostScale) : 1.0f;
-    settings.restitutionSpeed = world.settings.restitutionSpeed;
-
-    const auto fill = [&](const BatchRange& moving, const BatchRange& fixed, WorkerFindings& findings) {
-        FillRange(world, layout.moving, moving, layout.movingContacts, settings, findings);
-        FillRange(world, layout.fixed, fixed, layout.fixedContacts, settings, findings);
-    };
     const SolverGroup& large = layout.groups.front();
+    const RowFiller filler(world, EffortOf(world, step, large), step);
     const auto piecesOf = [&](uint32_t c) {
         const ColourBatches& colour = layout.colours[c];
-        return (std::max(colour.moving.Count(), colour.fixed.Count()) + kPiece - 1) / kPiece;
+        return (std::max({colour.moving.Count(), colour.fixed.Count(), colour.JointCount()}) + kPiece - 1) / kPiece;
     };
     uint32_t count = 0;
     for (uint32_t c = large.coloursBegin; c < large.coloursEnd; ++c) count += piecesOf(c);
@@ -123,24 +172,25 @@ void Prepare(WorldState& world, const StepContext& step) {
     world.jobs->ParallelFor(count, 1, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i) {
             const auto [c, piece] = pieces[i];
-            fill(Piece(layout.colours[c].moving, piece), Piece(layout.colours[c].fixed, piece), world.findings[range.worker]);
+            const ColourBatches& colour = layout.colours[c];
+            WorkerFindings& findings = world.findings[range.worker];
+            filler.Fill(Piece(colour.moving, piece), Piece(colour.fixed, piece), findings);
+            filler.FillJoints(std::min(colour.jointsBegin + piece * kPiece, colour.jointsEnd),
+                              std::min(colour.jointsBegin + (piece + 1) * kPiece, colour.jointsEnd), findings);
         }
     });
     world.jobs->ParallelFor(static_cast<uint32_t>(layout.groups.size()) - 1, 1, [&](JobRange range) {
         for (uint32_t g = range.begin + 1; g < range.end + 1; ++g)
-            for (uint32_t c = layout.groups[g].coloursBegin; c < layout.groups[g].coloursEnd; ++c)
-                fill(layout.colours[c].moving, layout.colours[c].fixed, world.findings[range.worker]);
+            RowFiller(world, EffortOf(world, step, layout.groups[g]), step).FillGroup(layout.groups[g], world.findings[range.worker]);
     });
-    const ContactColouring::Colour& overflow = world.colouring.At(ContactColouring::kOverflow);
-    for (size_t i = 0; i < overflow.moving.size(); ++i)
-        Fill(world, layout.overflowMoving[i], std::span(&overflow.moving[i], 1), settings, world.findings[0]);
-    for (size_t i = 0; i < overflow.fixed.size(); ++i)
-        Fill(world, layout.overflowFixed[i], std::span(&overflow.fixed[i], 1), settings, world.findings[0]);
+    filler.FillOverflow(world.colouring.At(ConstraintColouring::kOverflow), world.findings[0]);
 
     for (const WorkerFindings& findings : world.findings) world.bounces |= findings.bounces;
     FindDeepest(world);
+    FindWorstJoints(world);
     world.report.colours = layout.colourCount;
-    world.report.overflowContacts = static_cast<uint32_t>(overflow.moving.size() + overflow.fixed.size());
+    world.report.overflowConstraints =
+        static_cast<uint32_t>(layout.overflowMoving.size() + layout.overflowFixed.size() + layout.overflowJoints.size());
 }
 
 }  // namespace fulcrum

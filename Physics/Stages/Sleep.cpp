@@ -1,4 +1,4 @@
-// Islands are sets of dynamic bodies that touch one another. They are found only when some body has been slow for long
+// Islands are sets of dynamic bodies that touch one another or are joined. They are found only when some body has been slow for long
 // enough: nothing else needs them. An island sleeps when all its bodies are slow.
 #include <Fulcrum/Physics/Islands/UnionFind.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
@@ -18,6 +18,10 @@ std::span<uint32_t> AwakeIslands(WorldState& world) {
         if (!pair.touching || pair.fixedB) return;
         sets.Unite(world.bodies.cold[pair.bodyA].awakePlace, world.bodies.cold[pair.bodyB].awakePlace);
     });
+    for (int c = 0; c <= ConstraintColouring::kColours; ++c)
+        for (const ConstraintColouring::Entry& entry : world.colouring.At(c).Of(ConstraintColouring::Kind::Joint))
+            if (!entry.stillA && !entry.stillB)
+                sets.Unite(world.bodies.cold[entry.bodyA].awakePlace, world.bodies.cold[entry.bodyB].awakePlace);
     for (uint32_t i = 0; i < parents.size(); ++i) parents[i] = sets.Find(i);
     return parents;
 }
@@ -42,6 +46,7 @@ void PutToSleep(WorldState& world, std::span<const uint32_t> bodies) {
         world.bodies.cold[body].sleepingIsland = island;
         world.bodies.SetVelocity(body, Vector3::Zero(), Vector3::Zero());
         world.bodies.MarkAsleep(body);
+        world.joints.VisitOf(body, [&](uint32_t joint) { UncolourJoint(world, joint); });
     }
 }
 

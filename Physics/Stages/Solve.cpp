@@ -1,15 +1,16 @@
 // The solver loop is a sequence of verbs. Groups of small islands run it whole, each on one worker. The large islands run it
 // as a sequence of short parallel phases: one per colour, iteration and substep, and two over the bodies per substep.
-// Colours come in ascending order, contacts that fitted no colour after them, one by one.
+// Colours come in ascending order, what fitted no colour after them, one by one. Within a colour joints come before contacts:
+// non-penetration wins.
 //
-// Only bodies that a contact touches take part; the others are moved by Store, in one go.
+// Only bodies that a constraint touches take part; the others are moved by Store, in one go.
 //
-// The warm start of every substep but the first costs nothing per contact: within a step the rows do not change, so the
-// impulses of the last substep give each body the same change of velocity again, and that is its velocity at the substep's
-// end minus what it was without constraints.
+// The warm start of every substep but the first costs nothing per constraint: the impulses of the last substep give each body
+// the same change of velocity again, and that is its velocity at the substep's end minus what it was without constraints. Rows
+// of contacts do not change within a step; joints add what the turning of their parts changes.
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Jobs/Phases.h>
-#include <Fulcrum/Physics/Stages/Stages.h>
+#include <Fulcrum/Physics/Stages/Effort.h>
 
 #include <algorithm>
 
@@ -20,7 +21,10 @@ namespace {
 constexpr uint32_t kBatchesPerBlock = 4;
 constexpr uint32_t kBodiesPerBlock = 128;
 
-enum class Verb : uint8_t { IntegrateVelocities, WarmStart, Velocities, IntegratePoses, Relax, Separations, Restitution, NextSubstep };
+enum class Verb : uint8_t {
+    IntegrateVelocities, WarmStart, FirstVelocities, Velocities, IntegratePoses, FirstRelax, Relax, Separations, Restitution,
+    Rejoin, NextSubstep
+};
 
 struct Phase {
     Verb verb;
@@ -40,14 +44,8 @@ template <class Batch>
 
 class StepSolver {
 public:
-    StepSolver(WorldState& world, const StepContext& step) : world_(world), layout_(world.solver), h_(step.substepDt), dt_(step.dt) {
-        settings_.inverseDt = 1.0f / h_;
-        settings_.slop = world.settings.penetrationSlop;
-        settings_.maxPushSpeed = world.settings.contactPushSpeed;
-        // A spring that is too stiff for the substep is no longer soft.
-        const float frequency = std::min(world.settings.contactFrequency, 0.25f * settings_.inverseDt);
-        settings_.Soften(frequency, world.settings.contactDampingRatio, h_);
-    }
+    StepSolver(WorldState& world, const StepContext& step, const Effort& effort)
+        : world_(world), layout_(world.solver), effort_(effort), h_(effort.substepDt), dt_(step.dt) {}
 
     // The large group: all workers, phase by phase.
     void RunTogether(std::span<const Phase> phases) {
@@ -92,6 +90,7 @@ private:
             const uint32_t count = std::min(kBodiesPerBlock, large.bodiesEnd - begin);
             RunBodies(phase.verb, phase.substep, std::span(layout_.bodies).subspan(begin, count), findings);
         } else if (phase.colour == large.coloursEnd - large.coloursBegin) {
+            for (auto& batch : layout_.overflowJoints) RunBatch(phase.verb, phase.substep, batch);
             for (auto& batch : layout_.overflowMoving) RunBatch(phase.verb, phase.substep, batch);
             for (auto& batch : layout_.overflowFixed) RunBatch(phase.verb, phase.substep, batch);
         } else {
@@ -108,37 +107,68 @@ private:
         }
     }
 
-    // Batches [begin, end) of a colour, the moving ones first.
+    // Batches [begin, end) of a colour: joints, moving contacts, fixed ones.
     void RunBatches(Verb verb, uint8_t substep, const ColourBatches& colour, uint32_t begin, uint32_t end) {
-        const uint32_t moving = colour.moving.Count();
+        const uint32_t joints = colour.JointCount(), contacts = joints + colour.moving.Count();
         for (uint32_t i = begin; i < end; ++i) {
-            if (i < moving) {
-                if (i + 1 < moving) Prefetch(layout_.moving[colour.moving.begin + i + 1]);
-                RunBatch(verb, substep, layout_.moving[colour.moving.begin + i]);
+            if (i < joints) {
+                RunBatch(verb, substep, layout_.joints[colour.jointsBegin + i]);
+            } else if (i < contacts) {
+                const uint32_t batch = colour.moving.begin + i - joints;
+                if (i + 1 < contacts) Prefetch(layout_.moving[batch + 1]);
+                RunBatch(verb, substep, layout_.moving[batch]);
             } else {
-                RunBatch(verb, substep, layout_.fixed[colour.fixed.begin + i - moving]);
+                RunBatch(verb, substep, layout_.fixed[colour.fixed.begin + i - contacts]);
             }
         }
     }
 
-    template <class Batch>
-    void RunBatch(Verb verb, uint8_t substep, Batch& batch) {
+    template <int N, bool kFixedB>
+    void RunBatch(Verb verb, uint8_t substep, ContactBatch<N, kFixedB>& batch) {
         BodyState* states = world_.bodies.states.data();
         switch (verb) {
             case Verb::WarmStart: WarmStartContacts(batch, states); break;
             // Poses move with these velocities from the beginning of the substep to its end: they are those of its middle.
-            case Verb::Velocities: SolveContactVelocities(batch, states, SettingsAt(substep, 0.5f)); break;
-            case Verb::Relax: RelaxContacts(batch, states, SettingsAt(substep, 1)); break;
-            case Verb::Separations: UpdateSeparations(batch, states, SettingsAt(substep, 1)); break;
+            case Verb::FirstVelocities:
+            case Verb::Velocities: SolveContactVelocities(batch, states, ContactSettingsAt(substep, 0.5f)); break;
+            case Verb::FirstRelax:
+            case Verb::Relax: RelaxContacts(batch, states, ContactSettingsAt(substep, 1)); break;
+            case Verb::Separations: UpdateSeparations(batch, states, ContactSettingsAt(substep, 1)); break;
             case Verb::Restitution: RestituteContacts(batch, states, dt_); break;
             case Verb::IntegrateVelocities:
             case Verb::IntegratePoses:
+            case Verb::Rejoin:
             case Verb::NextSubstep: break;
         }
     }
 
-    ContactSolveSettings SettingsAt(uint8_t substep, float part) const {
-        ContactSolveSettings settings = settings_;
+    template <int N>
+    void RunBatch(Verb verb, uint8_t substep, JointBatch<N>& batch) {
+        BodyState* states = world_.bodies.states.data();
+        JointSolveSettings settings = effort_.joints;
+        settings.elapsed = h_ * static_cast<float>(substep + 1);
+        settings.continues = verb == Verb::FirstVelocities && substep > 0;
+        settings.firstPass = verb == Verb::FirstRelax || verb == Verb::Separations;
+        switch (verb) {
+            case Verb::WarmStart: WarmStartJoints(batch, states); break;
+            case Verb::FirstVelocities:
+            case Verb::Velocities: SolveJointVelocities(batch, states, settings); break;
+            case Verb::FirstRelax:
+            case Verb::Relax: RelaxJoints(batch, states, settings); break;
+            case Verb::Separations: UpdateJoints(batch, states, settings); break;
+            case Verb::Rejoin:
+                settings.elapsed = dt_;
+                RelaxJoints(batch, states, settings);
+                break;
+            case Verb::IntegrateVelocities:
+            case Verb::IntegratePoses:
+            case Verb::Restitution:
+            case Verb::NextSubstep: break;
+        }
+    }
+
+    ContactSolveSettings ContactSettingsAt(uint8_t substep, float part) const {
+        ContactSolveSettings settings = effort_.contacts;
         settings.elapsed = h_ * (static_cast<float>(substep) + part);
         return settings;
     }
@@ -192,8 +222,8 @@ private:
 
     WorldState& world_;
     SolverLayout& layout_;
+    const Effort& effort_;
     float h_, dt_;  // s, of a substep and of the step
-    ContactSolveSettings settings_;
 };
 
 // The solver loop as the sequence of its verbs.
@@ -205,9 +235,9 @@ std::span<const Verb> LoopOf(const SolverSettings& settings, ScratchArena& scrat
         if (substep > 0) verbs[n++] = Verb::NextSubstep;
         verbs[n++] = Verb::IntegrateVelocities;
         if (substep == 0) verbs[n++] = Verb::WarmStart;
-        for (int i = 0; i < settings.velocityIterations; ++i) verbs[n++] = Verb::Velocities;
+        for (int i = 0; i < settings.velocityIterations; ++i) verbs[n++] = i == 0 ? Verb::FirstVelocities : Verb::Velocities;
         verbs[n++] = Verb::IntegratePoses;
-        for (int i = 0; i < settings.positionIterations; ++i) verbs[n++] = Verb::Relax;
+        for (int i = 0; i < settings.positionIterations; ++i) verbs[n++] = i == 0 ? Verb::FirstRelax : Verb::Relax;
         // The next substep must know how far apart the points are, whether or not they are relaxed.
         if (settings.positionIterations == 0) verbs[n++] = Verb::Separations;
     }
@@ -231,13 +261,26 @@ std::span<const Phase> PhasesOf(std::span<const Verb> verbs, WorldState& world) 
     return phases.first(n);
 }
 
-void RunVerbs(WorldState& world, const StepContext& step, std::span<const Verb> verbs) {
-    StepSolver solver(world, step);
+// Runs the verbs that loopOf(effort) names over every group.
+template <class LoopOfEffort>
+void RunVerbs(WorldState& world, const StepContext& step, LoopOfEffort&& loopOf) {
+    const std::span<const SolverGroup> groups = world.solver.groups;
+    const Effort common = EffortOf(world, step, groups.front());
+    const std::span<const Verb> verbs = loopOf(common);
+    StepSolver solver(world, step, common);
     const std::span<const Phase> phases = PhasesOf(verbs, world);
     if (!phases.empty()) solver.RunTogether(phases);
-    world.jobs->ParallelFor(static_cast<uint32_t>(world.solver.groups.size()) - 1, 1, [&](JobRange range) {
-        for (uint32_t g = range.begin + 1; g < range.end + 1; ++g)
-            solver.RunAlone(world.solver.groups[g], verbs, world.findings[range.worker]);
+    // Groups with an effort of their own, which have a loop of their own.
+    std::span<std::span<const Verb>> loops = world.scratch.Allocate<std::span<const Verb>>(groups.size());
+    for (size_t g = 1; g < groups.size(); ++g) {
+        const bool own = !(groups[g].effort == SolverSettings{0, 0, 0});
+        loops[g] = own ? loopOf(EffortOf(world, step, groups[g])) : verbs;
+    }
+    world.jobs->ParallelFor(static_cast<uint32_t>(groups.size()) - 1, 1, [&](JobRange range) {
+        for (uint32_t g = range.begin + 1; g < range.end + 1; ++g) {
+            const Effort effort = EffortOf(world, step, groups[g]);
+            StepSolver(world, step, effort).RunAlone(groups[g], loops[g], world.findings[range.worker]);
+        }
     });
 }
 
@@ -245,13 +288,15 @@ void RunVerbs(WorldState& world, const StepContext& step, std::span<const Verb> 
 
 void Solve(WorldState& world, const StepContext& step) {
     if (world.colouring.Size() == 0) return;
-    RunVerbs(world, step, LoopOf(world.settings.solver, world.scratch));
+    RunVerbs(world, step, [&](const Effort& effort) { return LoopOf(effort.solver, world.scratch); });
 }
 
 void Restitution(WorldState& world, const StepContext& step) {
     if (!world.bounces) return;
-    static constexpr Verb kVerbs[] = {Verb::Restitution};
-    RunVerbs(world, step, kVerbs);
+    // A bounce tears at joints.
+    static constexpr Verb kVerbs[] = {Verb::Restitution, Verb::Rejoin};
+    const size_t count = world.solver.jointCount > 0 || !world.solver.overflowJoints.empty() ? 2 : 1;
+    RunVerbs(world, step, [&](const Effort&) { return std::span<const Verb>(kVerbs, count); });
 }
 
 }  // namespace fulcrum

@@ -9,6 +9,7 @@ namespace fulcrum {
 struct StepContext {
     float dt;         // s, of the step, > 0
     float substepDt;  // s
+    float impulseScale;  // dt of its substeps / dt of the last step's, at most 2: scales the warm start
 };
 
 // Reads poses, velocities, shapes. Writes world inertia and accelerations; fat bounds and trees where a collider left its own.
@@ -31,8 +32,11 @@ void Color(WorldState& world);
 // Gives a pair's contact a colour, or takes it away; nothing where it has one, or none.
 void ColourPair(WorldState& world, uint32_t pair);
 void UncolourPair(WorldState& world, uint32_t pair);
+// The same for a joint; only one that is enabled and has an awake dynamic body gets a colour.
+void ColourJoint(WorldState& world, uint32_t joint);
+void UncolourJoint(WorldState& world, uint32_t joint);
 
-// Sorts the coloured contacts into the solver's groups and batches, where they changed.
+// Sorts the coloured constraints into the solver's groups and batches, where they changed.
 void BuildIslands(WorldState& world);
 
 // Reads records, poses, masses. Writes batches of rows.
@@ -44,7 +48,7 @@ void Solve(WorldState& world, const StepContext& step);
 // Bounces what was hit.
 void Restitution(WorldState& world, const StepContext& step);
 
-// Writes impulses to the records, displacements to the poses; moves bodies that nothing touched; measures slowness.
+// Writes impulses to the records, displacements to the poses; moves bodies that nothing touched; measures slowness; breaks joints.
 void Store(WorldState& world, const StepContext& step);
 
 // Puts islands that have been slow for long enough to sleep.

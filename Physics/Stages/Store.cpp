@@ -1,7 +1,7 @@
 // Ends the step for each body: what was solved moves by the sum of its substeps, what nothing touched flies freely and
 // exactly. Impulses go back to the records.
 #include <Fulcrum/Math/Trigonometry.h>
-#include <Fulcrum/Physics/Stages/Stages.h>
+#include <Fulcrum/Physics/Stages/Effort.h>
 
 #include <algorithm>
 
@@ -142,25 +142,75 @@ void EndBody(WorldState& world, uint32_t body, const StepContext& step, WorkerFi
         MeasureSlowness(world, body, v, w, step.dt, findings);
 }
 
+template <int N, bool kFixedB>
+void StoreBatch(WorldState& world, const ContactBatch<N, kFixedB>& batch, float impulseScale) {
+    StoreContacts(batch, world.pairs.records.data(), impulseScale);
+}
+template <int N>
+void StoreBatch(WorldState& world, const JointBatch<N>& batch, float impulseScale) {
+    StoreJoints(batch, world.joints.records.data(), world.joints.types.data(), impulseScale);
+}
+
 template <class Batch>
-void StoreAll(WorldState& world, std::vector<Batch>& batches, uint32_t count) {
-    world.jobs->ParallelFor(count, 16, [&](JobRange range) {
-        for (uint32_t i = range.begin; i < range.end; ++i) StoreContacts(batches[i], world.pairs.records.data());
+void StoreAll(WorldState& world, const std::vector<Batch>& batches, uint32_t begin, uint32_t end, float impulseScale) {
+    world.jobs->ParallelFor(end - begin, 16, [&](JobRange range) {
+        for (uint32_t i = range.begin; i < range.end; ++i) StoreBatch(world, batches[begin + i], impulseScale);
+    });
+}
+
+// Groups lie one after the other: those without an effort of their own are stored together.
+void StoreImpulses(WorldState& world, const StepContext& step) {
+    const SolverLayout& layout = world.solver;
+    uint32_t moving = 0, fixed = 0, joints = 0;
+    const auto storeTo = [&](uint32_t movingEnd, uint32_t fixedEnd, uint32_t jointsEnd, float impulseScale) {
+        StoreAll(world, layout.moving, moving, movingEnd, impulseScale);
+        StoreAll(world, layout.fixed, fixed, fixedEnd, impulseScale);
+        StoreAll(world, layout.joints, joints, jointsEnd, impulseScale);
+        moving = movingEnd;
+        fixed = fixedEnd;
+        joints = jointsEnd;
+    };
+    for (const SolverGroup& group : layout.groups) {
+        if (group.effort == SolverSettings{0, 0, 0} || group.coloursBegin == group.coloursEnd) continue;
+        const ColourBatches& first = layout.colours[group.coloursBegin];
+        const ColourBatches& last = layout.colours[group.coloursEnd - 1];
+        storeTo(first.moving.begin, first.fixed.begin, first.jointsBegin, 1.0f);
+        storeTo(last.moving.end, last.fixed.end, last.jointsEnd, EffortOf(world, step, group).impulseScale);
+    }
+    storeTo(layout.movingCount, layout.fixedCount, layout.jointCount, 1.0f);
+    const auto storeOverflow = [&](const auto& batches) {
+        StoreAll(world, batches, 0, static_cast<uint32_t>(batches.size()), 1.0f);
+    };
+    storeOverflow(layout.overflowMoving);
+    storeOverflow(layout.overflowFixed);
+    storeOverflow(layout.overflowJoints);
+}
+
+// Serial, in the order of the joints.
+void BreakJoints(WorldState& world, const StepContext& step) {
+    const float inverseDt = 1.0f / step.substepDt;
+    world.joints.breakable.Visit([&](uint32_t index) {
+        Joint& joint = world.joints.joints[index];
+        if (joint.colour.colour == 0xFF) return;
+        const JointRecord& record = world.joints.records[index];
+        const auto length = [&](const float (&v)[3]) { return Length(Vector3(v[0], v[1], v[2])) * inverseDt; };
+        if (length(record.totalForce) <= joint.breakForce && length(record.totalTorque) <= joint.breakTorque) return;
+        joint.enabled = false;
+        UncolourJoint(world, index);
+        for (uint32_t body : joint.body) RequeueColliders(world, body);
+        world.broken.push_back(world.joints.IdOf(index));
     });
 }
 
 }  // namespace
 
 void Store(WorldState& world, const StepContext& step) {
-    SolverLayout& layout = world.solver;
-    StoreAll(world, layout.moving, layout.movingCount);
-    StoreAll(world, layout.fixed, layout.fixedCount);
-    StoreAll(world, layout.overflowMoving, static_cast<uint32_t>(layout.overflowMoving.size()));
-    StoreAll(world, layout.overflowFixed, static_cast<uint32_t>(layout.overflowFixed.size()));
+    StoreImpulses(world, step);
     world.jobs->ParallelFor(static_cast<uint32_t>(world.bodies.awake.size()), 64, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i)
             EndBody(world, world.bodies.awake[i], step, world.findings[range.worker]);
     });
+    BreakJoints(world, step);
     world.lastSubstepDt = step.substepDt;
 
     uint32_t firstFrozen = ~0u;

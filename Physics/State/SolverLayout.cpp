@@ -5,9 +5,11 @@ namespace fulcrum {
 size_t SolverLayout::MemoryUsed() const {
     return groups.capacity() * sizeof(groups[0]) + colours.capacity() * sizeof(colours[0]) +
            bodies.capacity() * sizeof(bodies[0]) +
-           (movingContacts.capacity() + fixedContacts.capacity()) * sizeof(ContactColouring::Entry) +
+           (movingContacts.capacity() + fixedContacts.capacity()) * sizeof(ConstraintColouring::Entry) +
            moving.capacity() * sizeof(moving[0]) + fixed.capacity() * sizeof(fixed[0]) +
-           overflowMoving.capacity() * sizeof(overflowMoving[0]) + overflowFixed.capacity() * sizeof(overflowFixed[0]);
+           overflowMoving.capacity() * sizeof(overflowMoving[0]) + overflowFixed.capacity() * sizeof(overflowFixed[0]) +
+           joints.capacity() * sizeof(joints[0]) + overflowJoints.capacity() * sizeof(overflowJoints[0]) +
+           jointRows.capacity() * sizeof(jointRows[0]) + overflowRows.capacity() * sizeof(overflowRows[0]);
 }
 
 }  // namespace fulcrum

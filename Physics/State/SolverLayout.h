@@ -1,9 +1,11 @@
-// The coloured contacts as the solver runs them: groups of islands, in each group colour after colour, in each colour
-// batches of lanes. Written by the BuildIslands stage where contacts began or ended; rows are filled by Prepare.
+// The coloured constraints as the solver runs them: groups of islands, in each group colour after colour, in each colour
+// batches of lanes, joints before contacts. Written by the BuildIslands stage where constraints began or ended; rows are
+// filled by Prepare.
 #pragma once
 
 #include <Fulcrum/Constraints/Coloring.h>
 #include <Fulcrum/Constraints/Contacts/ContactBatch.h>
+#include <Fulcrum/Constraints/Joints/JointBatch.h>
 #include <Fulcrum/Physics/Settings.h>
 
 #include <vector>
@@ -13,10 +15,11 @@ namespace fulcrum {
 // Islands that are solved together. The first group holds the large islands, which are solved
 // colour by colour on all workers. Each of the others is a handful of small islands that one worker solves from beginning
 // to end, in its own cache and without a barrier. Which islands share a group has no influence on any result.
-// An island that is to be solved with more effort than the rest needs no more than a group of its own.
+// An island that is to be solved with an effort of its own has a group of its own.
 struct SolverGroup {
     uint32_t coloursBegin = 0, coloursEnd = 0;  // into SolverLayout::colours
     uint32_t bodiesBegin = 0, bodiesEnd = 0;    // into SolverLayout::bodies
+    SolverSettings effort{0, 0, 0};             // 0: the system's
 };
 
 // Contacts [first, first + contacts) of a list, in the batches [begin, end).
@@ -28,24 +31,30 @@ struct BatchRange {
 
 struct ColourBatches {
     BatchRange moving, fixed;
-    uint32_t Count() const { return moving.Count() + fixed.Count(); }
+    uint32_t jointsBegin = 0, jointsEnd = 0;  // batches
+    uint32_t JointCount() const { return jointsEnd - jointsBegin; }
+    uint32_t Count() const { return JointCount() + moving.Count() + fixed.Count(); }
 };
 
 struct SolverLayout {
     std::vector<SolverGroup> groups;                                // empty: nothing to solve
     std::vector<ColourBatches> colours;
-    std::vector<uint32_t> bodies;                                   // dynamic ones that a contact touches, by group
-    std::vector<ContactColouring::Entry> movingContacts, fixedContacts;  // by group and colour
+    std::vector<uint32_t> bodies;                                   // dynamic ones that a constraint touches, by group
+    std::vector<ConstraintColouring::Entry> movingContacts, fixedContacts;  // by group and colour
     std::vector<ContactBatch<kLanes, false>> moving;
     std::vector<ContactBatch<kLanes, true>> fixed;
     std::vector<ContactBatch<1, false>> overflowMoving;             // of the first group: solved one by one, at last
     std::vector<ContactBatch<1, true>> overflowFixed;
-    uint32_t movingCount = 0, fixedCount = 0;                       // batches in use
+    std::vector<JointBatch<kLanes>> joints;
+    std::vector<JointBatch<1>> overflowJoints;
+    std::vector<JointRows<kLanes>> jointRows;                       // room for the batches' rows
+    std::vector<JointRows<1>> overflowRows;
+    uint32_t movingCount = 0, fixedCount = 0, jointCount = 0;       // batches in use
     uint32_t colourCount = 0;                                       // colours in use
     uint32_t islands = 0;
     uint64_t version = 0;                                           // of the colouring that this was made from
 
-    bool HasOverflow() const { return !overflowMoving.empty() || !overflowFixed.empty(); }
+    bool HasOverflow() const { return !overflowMoving.empty() || !overflowFixed.empty() || !overflowJoints.empty(); }
     size_t MemoryUsed() const;
 };
 

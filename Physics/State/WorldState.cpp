@@ -1,5 +1,7 @@
 #include <Fulcrum/Physics/State/WorldState.h>
 
+#include <Fulcrum/Physics/Stages/Stages.h>
+
 #include <algorithm>
 
 namespace fulcrum {
@@ -13,29 +15,57 @@ void WakeOne(WorldState& world, uint32_t body) {
     bodies.UpdateInertia(body);
     const Vector3 acceleration = world.settings.gravity * bodies.dynamics[body].gravityFactor;
     for (int k = 0; k < 3; ++k) bodies.poses[body].acceleration[k] = acceleration[k];
-    const BodyCold& cold = bodies.cold[body];
+    RequeueColliders(world, body);
+}
+
+}  // namespace
+
+void RequeueColliders(WorldState& world, uint32_t body) {
+    const BodyCold& cold = world.bodies.cold[body];
     for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i) {
         world.colliders.colliders[i].previous = {};
         world.colliders.Queue(i);
     }
 }
 
-}  // namespace
-
 void WakeBody(WorldState& world, uint32_t body) {
-    const BodyDynamics& d = world.bodies.dynamics[body];
-    if (d.motion != MotionType::Dynamic || d.frozen) return;
-    if (d.awake) {
+    const auto maySleep = [&](uint32_t b) {
+        return world.bodies.dynamics[b].motion == MotionType::Dynamic && !world.bodies.dynamics[b].frozen;
+    };
+    if (!maySleep(body)) return;
+    if (world.bodies.dynamics[body].awake) {
         world.bodies.dynamics[body].slowSeconds = 0;
         return;
     }
-    const uint32_t island = world.bodies.cold[body].sleepingIsland;
-    if (island == SleepingIslands::kNone) {
-        WakeOne(world, body);
-        return;
+    std::vector<uint32_t> pending = {body};
+    const auto wake = [&](uint32_t member) {
+        WakeOne(world, member);
+        world.joints.VisitOf(member, [&](uint32_t index) {
+            const Joint& joint = world.joints.joints[index];
+            if (!joint.enabled) return;
+            ColourJoint(world, index);
+            pending.push_back(joint.body[1 - joint.SideOf(member)]);
+        });
+    };
+    while (!pending.empty()) {
+        const uint32_t next = pending.back();
+        pending.pop_back();
+        if (!maySleep(next) || world.bodies.dynamics[next].awake) continue;
+        const uint32_t island = world.bodies.cold[next].sleepingIsland;
+        if (island == SleepingIslands::kNone) {
+            wake(next);
+            continue;
+        }
+        for (uint32_t member : world.sleeping.Bodies(island)) wake(member);
+        world.sleeping.Remove(island);
     }
-    for (uint32_t member : world.sleeping.Bodies(island)) WakeOne(world, member);
-    world.sleeping.Remove(island);
+}
+
+void WakeJoined(WorldState& world, uint32_t body) {
+    world.joints.VisitOf(body, [&](uint32_t index) {
+        const Joint& joint = world.joints.joints[index];
+        if (joint.enabled) WakeBody(world, joint.body[1 - joint.SideOf(body)]);
+    });
 }
 
 void WakeInside(WorldState& world, const Bounds& bounds) {
@@ -48,7 +78,7 @@ void WakeInside(WorldState& world, const Bounds& bounds) {
 
 size_t WorldState::MemoryUsed() const {
     size_t bytes = sizeof(*this) + bodies.MemoryUsed() + colliders.MemoryUsed() + pairs.MemoryUsed() +
-                   colouring.MemoryUsed() + sleeping.MemoryUsed() + solver.MemoryUsed() + scratch.CapacityInBytes() +
+                   joints.MemoryUsed() + colouring.MemoryUsed() + sleeping.MemoryUsed() + solver.MemoryUsed() + scratch.CapacityInBytes() +
                    changes.capacity() + activated.capacity() * sizeof(uint32_t) + newPairs.capacity() * sizeof(uint64_t);
     for (const WorkerFindings& f : findings)
         bytes += sizeof(f) + f.colliders.capacity() * sizeof(uint32_t) + f.pairs.capacity() * sizeof(uint64_t);

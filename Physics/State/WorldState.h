@@ -7,6 +7,7 @@
 #include <Fulcrum/Physics/Islands/SleepingIslands.h>
 #include <Fulcrum/Physics/State/BodyStore.h>
 #include <Fulcrum/Physics/State/ColliderStore.h>
+#include <Fulcrum/Physics/State/JointStore.h>
 #include <Fulcrum/Physics/State/PairStore.h>
 #include <Fulcrum/Physics/State/SolverLayout.h>
 #include <Fulcrum/Physics/StepReport.h>
@@ -30,6 +31,7 @@ struct alignas(64) WorkerFindings {
     uint32_t firstFrozen = ~0u;
     uint32_t sleepCandidates = 0;     // bodies that have been slow for long enough
     bool bounces = false;             // Prepare: some contact has restitution
+    JointFindings joints;             // Prepare
 };
 
 // What Collide found out about an active pair that the rest of the world must hear of.
@@ -43,10 +45,12 @@ struct WorldState {
     BodyStore bodies;
     ColliderStore colliders;
     PairStore pairs;
-    ContactColouring colouring;
+    JointStore joints;
+    ConstraintColouring colouring;
     SleepingIslands sleeping;
     SolverLayout solver;
 
+    std::vector<JointId> broken;              // in the last step
     std::vector<uint32_t> removed;            // bodies to forget before the next step
     std::vector<PairChange> changes;          // by pair, of this step; None for those that are not active
     std::vector<uint32_t> activated;          // pairs that FindPairs made active
@@ -78,8 +82,14 @@ void VisitChanges(const WorldState& world, Visitor&& visit) {
     }
 }
 
-// Wakes a body and the island it sleeps in; their colliders are queued for FindPairs.
+// Wakes a body, the island it sleeps in and what is joined to them; their colliders are queued for FindPairs.
 void WakeBody(WorldState& world, uint32_t body);
+// Wakes what enabled joints hold to the body, which itself may be one that does not sleep.
+void WakeJoined(WorldState& world, uint32_t body);
+// Has FindPairs search for the body's pairs anew.
+void RequeueColliders(WorldState& world, uint32_t body);
+// Removes a joint; its bodies wake.
+void RemoveJoint(WorldState& world, uint32_t joint);
 // Wakes what overlaps the bounds.
 void WakeInside(WorldState& world, const Bounds& bounds);
 

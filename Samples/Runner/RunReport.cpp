@@ -45,7 +45,7 @@ void AddRemarks(const RunFigures& figures, std::vector<ReportLine>& lines) {
     add("bodies frozen, not finite", static_cast<uint64_t>(figures.nonFinite));
     add("libccd: EPA gave up", figures.libccdFailures);
     add("libccd: centre line taken", figures.libccdFallbacks);
-    add("contacts without a colour", figures.last.overflowContacts);
+    add("constraints without a colour", figures.last.overflowConstraints);
     add("bodies at their speed limit", figures.last.clampedBodies);
 }
 

@@ -11,6 +11,13 @@
 namespace fulcrum {
 namespace {
 
+ConstraintColouring::Kind KindOf(bool fixed) {
+    return fixed ? ConstraintColouring::Kind::Fixed : ConstraintColouring::Kind::Moving;
+}
+size_t MovingOf(const ConstraintColouring& colouring, int colour) {
+    return colouring.At(colour).Of(ConstraintColouring::Kind::Moving).size();
+}
+
 struct Contact {
     uint32_t a, b;
     bool fixedB;
@@ -23,11 +30,11 @@ public:
     explicit Coloured(uint32_t bodies) { colouring.ReserveBodies(bodies); }
 
     void Add(uint32_t contact, uint32_t a, uint32_t b, bool fixedB) {
-        contacts[contact] = {a, b, fixedB, colouring.Add(contact, a, b, fixedB)};
+        contacts[contact] = {a, b, fixedB, colouring.Add(KindOf(fixedB), {contact, a, b, false, fixedB}, fixedB)};
     }
     void Remove(uint32_t contact) {
         const Contact c = contacts.at(contact);
-        const uint32_t moved = colouring.Remove(contact, c.place, c.a, c.b, c.fixedB);
+        const uint32_t moved = colouring.Remove(KindOf(c.fixedB), {contact, c.a, c.b, false, c.fixedB}, c.place);
         contacts.at(moved).place.slot = c.place.slot;
         contacts.erase(contact);
     }
@@ -35,14 +42,14 @@ public:
         ASSERT_EQ(colouring.Size(), contacts.size());
         size_t listed = 0;
         std::set<uint32_t> touched;
-        for (int colour = 0; colour <= ContactColouring::kColours; ++colour) {
+        for (int colour = 0; colour <= ConstraintColouring::kColours; ++colour) {
             std::set<uint32_t> moved;
-            const ContactColouring::Colour& lists = colouring.At(colour);
+            const ConstraintColouring::Colour& lists = colouring.At(colour);
             for (bool fixed : {false, true}) {
-                const auto& list = fixed ? lists.fixed : lists.moving;
+                const auto& list = lists.Of(KindOf(fixed));
                 listed += list.size();
                 for (size_t slot = 0; slot < list.size(); ++slot) {
-                    const auto found = contacts.find(list[slot].contact);
+                    const auto found = contacts.find(list[slot].constraint);
                     ASSERT_NE(found, contacts.end());
                     const Contact& c = found->second;
                     ASSERT_EQ(c.place.colour, colour);
@@ -52,7 +59,7 @@ public:
                     ASSERT_EQ(list[slot].bodyB, c.b);
                     touched.insert(c.a);
                     if (!fixed) touched.insert(c.b);
-                    if (colour == ContactColouring::kOverflow) continue;
+                    if (colour == ConstraintColouring::kOverflow) continue;
                     ASSERT_TRUE(moved.insert(c.a).second) << "body " << c.a << " twice in colour " << colour;
                     if (fixed) continue;
                     ASSERT_TRUE(moved.insert(c.b).second) << "body " << c.b << " twice in colour " << colour;
@@ -63,7 +70,7 @@ public:
         for (uint32_t body = 0; body < 400; ++body) ASSERT_EQ(colouring.IsTouched(body), touched.count(body) > 0) << body;
     }
 
-    ContactColouring colouring;
+    ConstraintColouring colouring;
     std::map<uint32_t, Contact> contacts;
 };
 
@@ -95,13 +102,13 @@ TEST(Colouring, OverflowsWhereABodyTouchesMoreThanThereAreColours) {
     Coloured world(200);
     for (uint32_t i = 0; i < 100; ++i) world.Add(i, 0, i + 1, false);
     world.Check();
-    EXPECT_EQ(world.colouring.At(ContactColouring::kOverflow).moving.size(), 36u);
-    for (int colour = 0; colour < ContactColouring::kColours; ++colour) EXPECT_EQ(world.colouring.At(colour).moving.size(), 1u);
+    EXPECT_EQ(MovingOf(world.colouring, ConstraintColouring::kOverflow), 36u);
+    for (int colour = 0; colour < ConstraintColouring::kColours; ++colour) EXPECT_EQ(MovingOf(world.colouring, colour), 1u);
     // What becomes free is used again.
     world.Remove(10);
     world.Add(200, 0, 150, false);
     world.Check();
-    EXPECT_EQ(world.colouring.At(ContactColouring::kOverflow).moving.size(), 36u);
+    EXPECT_EQ(MovingOf(world.colouring, ConstraintColouring::kOverflow), 36u);
 }
 
 TEST(Colouring, TheFixedSideMayBeSharedByAll) {
@@ -110,7 +117,7 @@ TEST(Colouring, TheFixedSideMayBeSharedByAll) {
     for (uint32_t i = 0; i < 100; ++i) world.Add(i, i, 150, true);
     world.Check();
     int colours = 0;
-    for (int colour = 0; colour < ContactColouring::kColours; ++colour) colours += !world.colouring.At(colour).Empty();
+    for (int colour = 0; colour < ConstraintColouring::kColours; ++colour) colours += !world.colouring.At(colour).Empty();
     EXPECT_EQ(colours, 1);
     EXPECT_FALSE(world.colouring.IsTouched(150));
 }

@@ -47,7 +47,7 @@ TEST(Cost, SettledHullsCapsulesAndOverflowAllocateNothing) {
         else world.Add({.shape = CapsuleOf(0.3f, 0.2f), .position = {x, 0.7, z}, .rotation = Turn({0, 0, 1}, kPi / 2)});
     }
     EXPECT_EQ(AllocationsOfSettledSteps(world), 0u);
-    EXPECT_GT(world.Report().overflowContacts, 0u);
+    EXPECT_GT(world.Report().overflowConstraints, 0u);
 }
 
 TEST(Cost, ARestingBoxTakesAtMostOneAndAHalfKilobytes) {

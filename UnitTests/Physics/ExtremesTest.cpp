@@ -132,7 +132,7 @@ TEST(Colours, APlateWithMoreBodiesThanColoursHoldsThemAll) {
     for (int i = 0; i < 100; ++i)
         boxes.push_back(world.Add({.shape = CubeOf(0.4f), .position = {i % 10 * 1.0 - 4.5, 0.9, i / 10 * 1.0 - 4.5}, .mass = 10}));
     world.Run(3);
-    EXPECT_GT(world.Report().overflowContacts, 0u);
+    EXPECT_GT(world.Report().overflowConstraints, 0u);
     EXPECT_LE(world.Report().colours, 64u);
     for (BodyId id : boxes) {
         EXPECT_NEAR(world.PositionOf(id).y(), 0.9, 0.005);

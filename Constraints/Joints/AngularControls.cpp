@@ -1,0 +1,236 @@
+#include <Fulcrum/Constraints/Joints/AngularControls.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+namespace {
+
+AngleRange RangeOf(const AxisControl& control) {
+    if (!control.limited) return {};
+    constexpr float kHalfTurn = AngleRange::kHalfTurn;
+    return {std::clamp(control.limits.min, -kHalfTurn, kHalfTurn), std::clamp(control.limits.max, -kHalfTurn, kHalfTurn)};
+}
+
+// Which block could hold: locked at zero, and hard.
+bool IsLockedAtZero(const AxisControl& control) {
+    const AngleRange range = RangeOf(control);
+    return control.limited && range.IsLocked() && Abs(range.Centre()) < AngleRange::kNegligible && IsHard(control.limits.spring);
+}
+
+size_t AxisOfLimit(RotationLimit::Slot slot) {
+    return slot >= RotationLimit::TwistMaximum ? 0 : slot >= RotationLimit::SwingZMaximum ? 2 : 1;
+}
+uint32_t SlotOfLimit(RotationLimit::Slot slot) {
+    const bool isMaximum = slot % 2 == 0;  // as RotationLimit orders them
+    return static_cast<uint32_t>(AxisOfLimit(slot)) * ControlSlots::kCount + (isMaximum ? ControlSlots::kHighLimit : ControlSlots::kLowLimit);
+}
+
+// What is locked has neither motor nor friction.
+bool IsLocked(const AxisControl& control) { return control.limited && RangeOf(control).IsLocked(); }
+
+bool IsLimited(const AngleRange& range) { return !range.IsLocked() && !range.IsFree(); }
+
+// A swing whose y / w and z / w are within those of a pyramid's faces.
+Quaternion WithinPyramid(const Quaternion& swing, const SwingTwistLimits& limits) {
+    const auto within = [&](float x, const AngleRange& range) {
+        const float ratio = x / std::max(swing.w, 1e-6f);
+        // The tangent of a quarter turn is no number.
+        constexpr float kNearHalfTurn = AngleRange::kHalfTurn - 1e-3f;
+        const SineCosine<float> low = SinCos(0.5f * std::max(range.minimum, -kNearHalfTurn));
+        const SineCosine<float> high = SinCos(0.5f * std::min(range.maximum, kNearHalfTurn));
+        return std::clamp(ratio, low.sine / low.cosine, high.sine / high.cosine);
+    };
+    return Normalized(Quaternion{0.0f, within(swing.y, limits.swingY), within(swing.z, limits.swingZ), 1.0f});
+}
+
+}  // namespace
+
+// What the rows of a step share, world space.
+struct AngularControls::Motion {
+    SwingTwist now;
+    Matrix3 axes;         // of frame B
+    Vector3 toTarget;     // rotation vector from the target, along the axes
+    Vector3 velocity;     // rad/s, of B against A
+    Vector3 motorSpeed;   // rad/s, along the axes; zero where the motor has no target speed
+    Vector3 motorVelocity;
+};
+
+AngularControls::AngularControls(const std::array<AxisControl, 3>& axes, SwingShape shape) : axes_(axes), shape_(shape) {
+    int count = 0;
+    for (uint8_t k = 0; k < 3; ++k) {
+        if (IsLockedAtZero(axes_[k])) ++count;
+        else freeAxis_ = k;
+    }
+    if (count < 2) freeAxis_ = 0;
+    lock_ = count == 3 ? AngularLock::All : count == 2 ? AngularLock::Axis : AngularLock::None;
+}
+
+SwingTwistLimits AngularControls::Limits() const { return {RangeOf(axes_[0]), RangeOf(axes_[1]), RangeOf(axes_[2]), shape_}; }
+
+uint32_t AngularControls::MaxRows() const {
+    if (lock_ == AngularLock::All) return 0;
+    if (lock_ == AngularLock::Axis) return MaxControlRows(axes_[freeAxis_]);
+    const SwingTwistLimits limits = Limits();
+    const AngleRange &y = limits.swingY, &z = limits.swingZ;
+    // As AddSwingLimits and AddTwistLimits have it.
+    uint32_t count = limits.twist.IsFree() ? 0 : limits.twist.IsLocked() ? 1 : 2;
+    if (IsLimited(y) && IsLimited(z)) count += shape_ == SwingShape::Pyramid ? 4 : 1;
+    else count += (IsLimited(y) || IsLimited(z) ? 2u : 0u) + (y.IsLocked() ? 1u : 0u) + (z.IsLocked() ? 1u : 0u);
+    for (const AxisControl& axis : axes_)
+        if (!IsLocked(axis)) count += (axis.motor.mode != MotorMode::Off ? 1u : 0u) + (axis.friction > 0.0f ? 1u : 0u);
+    return count;
+}
+
+void AngularControls::Start(const JointPose& pose) { turns_.Start(AngleAbout(pose, freeAxis_), axes_[freeAxis_]); }
+
+void AngularControls::SetTargetOrientation(const Quaternion& target) {
+    const SwingTwist r = Decompose(target);
+    axes_[0].motor.targetPosition = r.twist;
+    axes_[1].motor.targetPosition = r.SwingY();
+    axes_[2].motor.targetPosition = r.SwingZ();
+    if (lock_ == AngularLock::Axis) {
+        const Quaternion& q = target;
+        axes_[freeAxis_].motor.targetPosition = TwistAngle({freeAxis_ == 0 ? q.x : freeAxis_ == 1 ? q.y : q.z, 0.0f, 0.0f, q.w});
+    }
+}
+
+// The target positions as an orientation within the limits.
+Quaternion AngularControls::Target(const SwingTwistLimits& limits) const {
+    const float twist = std::clamp(axes_[0].motor.targetPosition, limits.twist.minimum, limits.twist.maximum);
+    Vector3 phi(0.0f, axes_[1].motor.targetPosition, axes_[2].motor.targetPosition);
+    const AngleRange &y = limits.swingY, &z = limits.swingZ;
+    const bool isBoth = IsLimited(y) && IsLimited(z);
+    if (!isBoth) {
+        phi.y() = std::clamp(phi.y(), y.minimum, y.maximum);
+        phi.z() = std::clamp(phi.z(), z.minimum, z.maximum);
+    } else if (shape_ == SwingShape::Ellipse) {
+        const float ofY = phi.y() / y.maximum, ofZ = phi.z() / z.maximum;
+        phi *= 1.0f / std::max(1.0f, Sqrt(ofY * ofY + ofZ * ofZ));
+    }
+    Quaternion swing = RotationFromVector(phi);
+    if (isBoth && shape_ == SwingShape::Pyramid) swing = WithinPyramid(swing, limits);
+    return swing * RotationFromVector(Vector3(twist, 0.0f, 0.0f));
+}
+
+AngularControls::Motion AngularControls::MotionOf(const JointPose& pose, const SwingTwistLimits& limits) const {
+    const Quaternion q = pose.frameA.Conjugate() * pose.frameB;
+    Motion motion;
+    motion.now = Decompose(q);
+    motion.axes = ToMatrix(pose.frameB);
+    motion.velocity = pose.AngularVelocity();
+    motion.toTarget = motion.motorSpeed = Vector3::Zero();
+    const auto hasPosition = [](const AxisControl& axis) { return axis.motor.mode == MotorMode::ToPosition; };
+    if (std::any_of(axes_.begin(), axes_.end(), hasPosition))
+        motion.toTarget = RotationVectorOf<float>(Target(limits).Conjugate() * q);
+    for (int k = 0; k < 3; ++k) {
+        const AxisControl& control = axes_[static_cast<size_t>(k)];
+        const MotorMode mode = IsLocked(control) ? MotorMode::Off : control.motor.mode;
+        if (mode == MotorMode::ToVelocity) motion.motorSpeed[k] = control.motor.targetSpeed;
+        if (mode != MotorMode::ToPosition) motion.toTarget[k] = 0.0f;
+    }
+    motion.motorVelocity = motion.axes * motion.motorSpeed;
+    return motion;
+}
+
+void AngularControls::CollectRows(const JointPose& pose, uint32_t firstSlot, JointRowList& rows) {
+    if (lock_ == AngularLock::All) return;
+    if (lock_ == AngularLock::Axis) {
+        JointRow motion;
+        pose.SetAbout(motion, AxisAbout(pose, freeAxis_));
+        turns_.Advance(AngleAbout(pose, freeAxis_), pose.SpeedOf(motion), pose.dt);
+        AxisControl control = axes_[freeAxis_];
+        if (RangeOf(control).IsFree()) control.limited = false;
+        return AddControlRows(control, pose, motion, turns_.Angle(), kAngularSlackSpeed, firstSlot + freeAxis_ * ControlSlots::kCount, rows);
+    }
+    const SwingTwistLimits limits = Limits();
+    const Motion motion = MotionOf(pose, limits);
+    RotationLimitList list;
+    // An ellipse far off is not looked at.
+    float reach = (1.25f * std::max(Length(motion.velocity), Length(motion.motorSpeed)) + kAngularSlackSpeed) * pose.dt;
+    for (int k = 0; k < 3; ++k)
+        reach += WayOfSpring(axes_[static_cast<size_t>(k)].motor.spring, Abs(motion.toTarget[k]), pose.dt);
+    const bool isEllipse = shape_ == SwingShape::Ellipse && IsLimited(limits.swingY) && IsLimited(limits.swingZ);
+    if (!isEllipse || std::min(limits.swingY.maximum, limits.swingZ.maximum) - motion.now.alpha <= reach)
+        AddSwingLimits(list, motion.now, limits);
+    AddTwistLimits(list, motion.now, limits.twist);
+    // What a limit's axis is seen from.
+    for (int i = 0; i < list.count; ++i) {
+        RotationLimit& limit = list.limits[static_cast<size_t>(i)];
+        limit.axis = Rotate(pose.frameA, limit.axis);
+    }
+    AddMotorRows(pose, motion, list, firstSlot, rows);
+    AddLimitRows(pose, motion, list, firstSlot, rows);
+}
+
+void AngularControls::AddLimitRows(const JointPose& pose, const Motion& motion, const RotationLimitList& list,
+                                   uint32_t firstSlot, JointRowList& rows) const {
+    for (const RotationLimit& limit : list) {
+        const size_t axis = AxisOfLimit(limit.slot);
+        const SpringSettings& spring = axes_[axis].limits.spring;
+        JointRow row;
+        pose.SetAbout(row, limit.axis);
+        if (limit.isLocked) {
+            AddLockRow(spring, row, limit.error, firstSlot + SlotOfLimit(limit.slot), rows);
+            continue;
+        }
+        // A swing reaches its curved edge from the side as well, so that all of its speed counts.
+        const float closing = axis == 0 ? -Dot(limit.axis, motion.velocity) : Length(motion.velocity);
+        const float speed = std::max({0.0f, closing, -Dot(limit.axis, motion.motorVelocity)});
+        float reach = (1.25f * speed + kAngularSlackSpeed) * pose.dt;
+        for (int k = 0; k < 3; ++k) {
+            const float way = motion.toTarget[k] * Dot(limit.axis, AxisOf(motion.axes, k));
+            reach += WayOfSpring(axes_[static_cast<size_t>(k)].motor.spring, std::max(0.0f, way), pose.dt);
+        }
+        if (limit.error <= reach) AddLimitRow(spring, row, 1.0f, limit.error, firstSlot + SlotOfLimit(limit.slot), rows);
+    }
+}
+
+// As in AddControlRows, a motor asks for no more speed than hard limits allow, and well beyond one does not hold it there.
+void AngularControls::AddMotorRows(const JointPose& pose, const Motion& motion, const RotationLimitList& list, uint32_t firstSlot,
+                                   JointRowList& rows) const {
+    Vector3 allowed = motion.motorVelocity;
+    for (const RotationLimit& limit : list) {
+        if (limit.isLocked || !IsHard(axes_[AxisOfLimit(limit.slot)].limits.spring)) continue;
+        const float slowest = -std::max(limit.error, -kLimitSlop) / pose.dt, speed = Dot(limit.axis, allowed);
+        if (speed < slowest) allowed += limit.axis * (slowest - speed);
+    }
+    for (int k = 0; k < 3; ++k) {
+        const AxisControl& control = axes_[static_cast<size_t>(k)];
+        if (IsLocked(control)) continue;
+        const JointMotor& motor = control.motor;
+        const Vector3& axis = AxisOf(motion.axes, k);
+        const uint32_t slot = firstSlot + static_cast<uint32_t>(k) * ControlSlots::kCount;
+        if (control.friction > 0.0f) {
+            JointRow& row = rows.Add(slot + ControlSlots::kFriction, JointRow::Kind::Speed);
+            pose.SetAbout(row, axis);
+            row.minForce = -control.friction;
+            row.maxForce = control.friction;
+        }
+        if (motor.mode == MotorMode::Off) continue;
+        const bool isPosition = motor.mode == MotorMode::ToPosition;
+        const auto kind = !isPosition ? JointRow::Kind::Speed : IsHard(motor.spring) ? JointRow::Kind::Equal : JointRow::Kind::Spring;
+        JointRow& row = rows.Add(slot + ControlSlots::kMotor, kind);
+        pose.SetAbout(row, axis);
+        row.minForce = motor.minForce;
+        row.maxForce = motor.maxForce;
+        row.spring = motor.spring;
+        row.error = motion.toTarget[k];
+        if (isPosition) continue;
+        row.speed = Dot(axis, allowed);
+        for (const RotationLimit& limit : list) {
+            if (limit.isLocked || limit.error >= -kLimitSlop) continue;
+            const float along = Dot(axis, limit.axis);
+            if (along < -0.3f) row.maxForce = 0.0f;
+            if (along > 0.3f) row.minForce = 0.0f;
+        }
+    }
+}
+
+double AngularControls::Coordinate(int axis, const JointPose& pose) const {
+    if (lock_ == AngularLock::Axis && axis == freeAxis_) return NearestTurn(AngleAbout(pose, axis), turns_.Angle());
+    const SwingTwist r = Decompose(pose.frameA.Conjugate() * pose.frameB);
+    return axis == 0 ? r.twist : axis == 1 ? r.SwingY() : r.SwingZ();
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,53 @@
+// Rotation of B against A about three axes, each with limits, motor and friction: what swing-twist and
+// six-degrees-of-freedom joints share. Called by these; no threads.
+//
+//   Coordinates (SwingTwist.h): twist about x, swing about y and z as the rotation vector phi. An axis is free, limited, or,
+//   where its limits are the same, locked. Axes that are locked at zero from the start, and hard, become a block:
+//       all three: AngularLock::All           two: AngularLock::Axis; the third then is as in a hinge, and counts turns
+//   Else the rows are:
+//       limits    C and axis from SwingTwist.h
+//       motors    about the axes of B's frame. A target orientation g, made of the three target positions as swing and twist,
+//                 gives q = g exp(c): C = c, a spring along the shortest way from anywhere. A target speed is that about the axis
+//       friction  about the axes of B's frame
+#pragma once
+
+#include <Fulcrum/Constraints/Joints/JointAngles.h>
+#include <Fulcrum/Constraints/Parts/SwingTwist.h>
+
+namespace fulcrum {
+
+class AngularControls {
+public:
+    // x, y, z; rad, N m. Limits as SwingTwistLimits wants them: in -pi..pi, of y and z around 0, for an ellipse the same
+    // to both sides.
+    AngularControls(const std::array<AxisControl, 3>& axes, SwingShape shape);
+
+    AngularLock Lock() const { return lock_; }
+    uint8_t FreeAxis() const { return freeAxis_; }  // of AngularLock::Axis
+    uint32_t MaxRows() const;
+    void Start(const JointPose& pose);
+    // Each axis has its ControlSlots, from firstSlot on.
+    void CollectRows(const JointPose& pose, uint32_t firstSlot, JointRowList& rows);
+    AxisControl& At(int axis) { return axes_[static_cast<size_t>(axis)]; }
+    void SetTargetOrientation(const Quaternion& target);
+    double Coordinate(int axis, const JointPose& pose) const;
+    std::span<double> State() { return turns_.numbers; }
+
+private:
+    struct Motion;
+    SwingTwistLimits Limits() const;
+    Quaternion Target(const SwingTwistLimits& limits) const;
+    Motion MotionOf(const JointPose& pose, const SwingTwistLimits& limits) const;
+    void AddLimitRows(const JointPose& pose, const Motion& motion, const RotationLimitList& list, uint32_t firstSlot,
+                      JointRowList& rows) const;
+    void AddMotorRows(const JointPose& pose, const Motion& motion, const RotationLimitList& list, uint32_t firstSlot,
+                      JointRowList& rows) const;
+
+    std::array<AxisControl, 3> axes_;
+    SwingShape shape_;
+    AngularLock lock_ = AngularLock::None;
+    uint8_t freeAxis_ = 0;
+    TurnCount turns_;
+};
+
+}  // namespace fulcrum

@@ -1,0 +1,127 @@
+// N joints of the same locks side by side, solved in lanes. No two joints of a batch share a moving body.
+//
+// A joint is a linear lock, an angular lock (parts) and scalar rows. Within a joint the rows come first, then the angular
+// lock, then the linear one: what holds bodies together wins. Three things make few iterations go far:
+//  - The parts are set up anew in every substep from the displacements since the start of the step, so that a joint follows
+//    the arc that its bodies turn along.
+//  - A body keeps its constraints' share of velocity from substep to substep, in place of a warm start (Solve stage). What the
+//    turning of a part changes of its impulse is added then: `turnedA` and `turnedB`.
+//  - A row's impulse takes the locks' answer with it. Its response is M^-1 (J^T - L^T (L M^-1 L^T)^-1 L M^-1 J^T) with L the
+//    locks' Jacobian: it disturbs no lock, and a spring or a motor meets the mass that it really moves. The locks' own impulses
+//    change by `lockLinear` and `lockAngular` per unit.
+#pragma once
+
+#include <Fulcrum/Constraints/Joints/JointType.h>
+#include <Fulcrum/Constraints/Parts/DualAxisPart.h>
+#include <Fulcrum/Constraints/Parts/HingeRotationPart.h>
+#include <Fulcrum/Constraints/Parts/PointPart.h>
+#include <Fulcrum/Constraints/Parts/RotationEulerPart.h>
+
+namespace fulcrum {
+
+// What a joint keeps from step to step, rows of eight floats.
+struct alignas(32) JointRecord {
+    float anchorA[3] = {0, 0, 0}, anchorB[3] = {0, 0, 0};  // m, in the bodies' centre frames
+    float lineAxis = 0, freeAxis = 0;                      // JointLocks::line and ::axis
+    float frameA[4] = {0, 0, 0, 1}, frameB[4] = {0, 0, 0, 1};  // x y z w, in the bodies' centre frames
+    // Impulses of the last substep on B, world axes, N s and N m s: of the locks, and of locks and rows together.
+    float linearImpulse[3] = {0, 0, 0}, angularImpulse[3] = {0, 0, 0};
+    float spare[2] = {0, 0};
+    float totalForce[3] = {0, 0, 0}, totalTorque[3] = {0, 0, 0};  // about the anchor
+    float moreSpare[2] = {0, 0};
+
+    const float* Row(int row) const { return anchorA + 8 * row; }
+};
+static_assert(sizeof(JointRecord) == 128);
+
+// One row of each of N joints; lanes without a row have no mass.
+template <int N>
+struct JointRows {
+    using Real = Wide<N>;
+    Twist<Real> a, b;                    // J = [-a, b]
+    Twist<Real> responseA, responseB;    // change of velocity by a unit of impulse
+    Vec3<Real> lockLinear, lockAngular;  // change of the locks' impulses by a unit of impulse
+    Real startError, error;              // m or rad, at the start of the step and now
+    Real speed;                          // m/s or rad/s that J v is to be
+    Real impulse, lowest, highest;       // N s or N m s
+    // delta = -(mass (J v - speed) + gain C + softness total), see SpringPart.h
+    Real mass, gain, softness;
+    Real mostGain;                       // N s: limit of gain C
+    // One-sided rows whose error is above `openAbove` are open: delta = -(hardMass (J v + gapRate C) + openSoftness total).
+    Real openAbove, hardMass, gapRate, openSoftness;
+    uint8_t slot[N];                     // 0xFF: no row
+};
+
+template <int N>
+struct JointBatch {
+    using Real = Wide<N>;
+    uint32_t joint[N];                   // indices of the records; the first `count` lanes are in use
+    uint32_t bodyA[N], bodyB[N];
+    int32_t count;
+    uint32_t fixedA, fixedB;             // bit i: the body of lane i is not dynamic
+    uint32_t kinematicA, kinematicB;     // bit i: but it moves
+    LinearLock linear;
+    AngularLock angular;
+    uint32_t rowCount;                   // largest of the lanes
+    uint32_t rowRoom;                    // as many as the types may add
+    JointRows<N>* rows;
+
+    InverseMass<Real> massA, massB;
+    PointPart<Real> point;
+    Vec3<Real> startArmA, startArmB, startOffset;
+    Twist<Real> turnedA, turnedB;
+
+    RotationEulerPart<Real> rotation;
+    Quat<Real> startTwist;               // of B against A, world axes, for AngularLock::All
+    HingeRotationPart<Real> hinge;
+    Vec3<Real> startAxisA, startAxisB, startNormal;  // for AngularLock::Axis; the normal is one of B's
+    DualAxisPart<Real> line;
+    Vec3<Real> startLine, startLineNormal;  // for LinearLock::Line, of A
+};
+
+struct JointSolveSettings {
+    float dt, substepDt;     // s
+    float inverseDt;         // 1/s, of the substep
+    float elapsed;           // s since the start of the step
+    float impulseScale;      // dt of this substep / dt of the last: scales the warm start
+    // Errors are corrected by a soft block, as overlaps are: see ContactSolveSettings.
+    float pushRate;
+    RowSoftness<float> softness;
+    float maxPushSpeed;      // m/s and rad/s
+    bool continues;          // the first velocity iteration of a substep that is not the first of its step
+    bool firstPass;          // the first relaxing pass of a substep
+};
+
+// What Prepare noticed.
+struct JointFindings {
+    float linearError = 0, angularError = 0;  // m, rad: the largest
+    uint32_t linearJoint = ~0u, angularJoint = ~0u;
+};
+
+// Fills the batch whose lanes, fixed and kinematic bits, locks and room for rows are set.
+template <int N>
+void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* const* types, const SolverBodies& bodies,
+                   const JointSolveSettings& settings, JointFindings& findings);
+
+// Applies the impulses of the last step.
+template <int N>
+void WarmStartJoints(const JointBatch<N>& batch, BodyState* states);
+
+template <int N>
+void SolveJointVelocities(JointBatch<N>& batch, BodyState* states, const JointSolveSettings& settings);
+
+// Sets the parts up at the displaced poses and solves the velocities there without any push.
+template <int N>
+void RelaxJoints(JointBatch<N>& batch, BodyState* states, const JointSolveSettings& settings);
+
+// The set-up of RelaxJoints alone, for solves without position iterations.
+template <int N>
+void UpdateJoints(JointBatch<N>& batch, BodyState* states, const JointSolveSettings& settings);
+
+// Writes the impulses back, divided by `impulseScale`.
+template <int N>
+void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* const* types, float impulseScale);
+
+#define FULCRUM_FOR_EACH_JOINT_BATCH(instantiate) instantiate(1) instantiate(4) instantiate(8) instantiate(16)
+
+}  // namespace fulcrum

@@ -1,0 +1,414 @@
+#include <Fulcrum/Constraints/Joints/JointKernels.h>
+#include <Fulcrum/Constraints/Parts/SpringPart.h>
+
+#include <cmath>
+
+namespace fulcrum {
+
+namespace {
+
+using namespace joints;
+
+template <int N>
+void GatherRecordRow(const uint32_t (&index)[N], const JointRecord* records, int row, Wide<N> (&out)[8]) {
+    const float* rows[N];
+    for (int i = 0; i < N; ++i) rows[i] = records[index[i]].Row(row);
+    GatherRows<N>(rows, out);
+}
+
+template <int N>
+void GatherMass(const uint32_t (&index)[N], const BodyMass* masses, InverseMass<Wide<N>>& out) {
+    const float* rows[N];
+    for (int i = 0; i < N; ++i) rows[i] = masses[index[i]].Row();
+    Wide<N> r[8];
+    GatherRows<N>(rows, r);
+    out = {r[6], {r[0], r[1], r[2], r[3], r[4], r[5]}};
+}
+
+template <int N>
+Quat<Wide<N>> GatherRotation(const uint32_t (&index)[N], const BodyPose* poses) {
+    const float* rows[N];
+    for (int i = 0; i < N; ++i) rows[i] = poses[index[i]].rotation;
+    Wide<N> r[8];
+    GatherRows<N>(rows, r);
+    return {r[0], r[1], r[2], r[3]};
+}
+
+template <class Real>
+Vec3<Real> Column(const Quat<Real>& rotation, const Real& index) {
+    const Mat3<Real> m = ToMatrix(rotation);
+    Vec3<Real> column;
+    for (int k = 0; k < 3; ++k)
+        column[k] = Select(index < Real(0.5f), m.x[k], Select(index < Real(1.5f), m.y[k], m.z[k]));
+    return column;
+}
+
+// A unit vector perpendicular to n (Duff et al., JCGT 2017).
+template <class Real>
+Vec3<Real> PerpendicularTo(const Vec3<Real>& n) {
+    const Real sign = Select(n.z() < Real(0.0f), Real(-1.0f), Real(1.0f));
+    const Real a = Real(-1.0f) / (sign + n.z());
+    return Vec3<Real>(Real(1.0f) + sign * n.x() * n.x() * a, sign * n.x() * n.y() * a, -sign * n.x());
+}
+
+template <int N>
+Vector3 LaneOf(const Vec3<Wide<N>>& v, int lane) {
+    return Vector3(v.x()[lane], v.y()[lane], v.z()[lane]);
+}
+template <int N>
+void SetLane(Vec3<Wide<N>>& v, int lane, const Vector3& value) {
+    for (int k = 0; k < 3; ++k) v[k].Set(lane, value[k]);
+}
+template <int N>
+InverseMass<float> LaneOf(const InverseMass<Wide<N>>& m, int lane) {
+    const auto& i = m.inertia;
+    return {m.mass[lane], {i.xx[lane], i.yy[lane], i.zz[lane], i.xy[lane], i.xz[lane], i.yz[lane]}};
+}
+
+Twist<float> Respond(const InverseMass<float>& mass, const Twist<float>& row, float sign) {
+    return {row.linear * (mass.mass * sign), Vector3((mass.inertia * row.angular) * sign)};
+}
+float Dot6(const Twist<float>& a, const Twist<float>& b) { return Dot(a.linear, b.linear) + Dot(a.angular, b.angular); }
+
+// The locks of one joint as rows of the dense system L M^-1 L^T, at most 3 + 3.
+class LockRows {
+public:
+    LockRows(const InverseMass<float>& massA, const InverseMass<float>& massB) : massA_(massA), massB_(massB) {}
+
+    void AddLinear(const Vector3& axis, const Vector3& armA, const Vector3& armB) {
+        Add({axis, Cross<float>(armA, axis)}, {axis, Cross<float>(armB, axis)});
+        ++linear_;
+    }
+    void AddAngular(const Vector3& axis) { Add({Vector3::Zero(), axis}, {Vector3::Zero(), axis}); }
+
+    // K = L L^T by Cholesky; rows that nothing can move, or that others determine, get a zero row.
+    void Factorize() {
+        for (int i = 0; i < count_; ++i) {
+            for (int j = 0; j <= i; ++j) {
+                float sum = -Dot6(rows_[i].a, rows_[j].responseA) + Dot6(rows_[i].b, rows_[j].responseB);
+                const float diagonal = sum;
+                for (int k = 0; k < j; ++k) sum -= factor_[i][k] * factor_[j][k];
+                if (j < i) factor_[i][j] = factor_[j][j] > 0.0f ? sum / factor_[j][j] : 0.0f;
+                else factor_[i][i] = sum > 1e-6f * diagonal ? std::sqrt(sum) : 0.0f;
+            }
+        }
+    }
+
+    // Makes the responses of a row leave the locks alone; returns what that changes of the locks' impulses per unit.
+    void Project(Twist<float>& responseA, Twist<float>& responseB, Vector3& linear, Vector3& angular) const {
+        float x[6];
+        for (int i = 0; i < count_; ++i) {
+            float sum = Dot6(rows_[i].b, responseB) - Dot6(rows_[i].a, responseA);
+            for (int k = 0; k < i; ++k) sum -= factor_[i][k] * x[k];
+            x[i] = factor_[i][i] > 0.0f ? sum / factor_[i][i] : 0.0f;
+        }
+        for (int i = count_ - 1; i >= 0; --i) {
+            float sum = x[i];
+            for (int k = i + 1; k < count_; ++k) sum -= factor_[k][i] * x[k];
+            x[i] = factor_[i][i] > 0.0f ? sum / factor_[i][i] : 0.0f;
+        }
+        linear = angular = Vector3::Zero();
+        for (int i = 0; i < count_; ++i) {
+            responseA.linear -= rows_[i].responseA.linear * x[i];
+            responseA.angular -= rows_[i].responseA.angular * x[i];
+            responseB.linear -= rows_[i].responseB.linear * x[i];
+            responseB.angular -= rows_[i].responseB.angular * x[i];
+            if (i < linear_) linear[i] = -x[i];
+            else angular[i - linear_] = -x[i];
+        }
+    }
+
+private:
+    void Add(const Twist<float>& a, const Twist<float>& b) {
+        rows_[count_++] = {a, b, Respond(massA_, a, -1.0f), Respond(massB_, b, 1.0f)};
+    }
+    struct Row {
+        Twist<float> a, b, responseA, responseB;
+    };
+    InverseMass<float> massA_, massB_;
+    Row rows_[6];
+    float factor_[6][6] = {};
+    int count_ = 0, linear_ = 0;
+};
+
+struct RowContext {
+    const JointSolveSettings& settings;
+    InverseMass<float> massA, massB;
+    const LockRows& locks;
+    float previousImpulse;
+};
+
+// A lane without a row.
+template <int N>
+void ClearLane(JointRows<N>& rows, int lane) {
+    for (Twist<Wide<N>>* twist : {&rows.a, &rows.b, &rows.responseA, &rows.responseB}) {
+        SetLane(twist->linear, lane, Vector3::Zero());
+        SetLane(twist->angular, lane, Vector3::Zero());
+    }
+    SetLane(rows.lockLinear, lane, Vector3::Zero());
+    SetLane(rows.lockAngular, lane, Vector3::Zero());
+    for (Wide<N>* x : {&rows.startError, &rows.error, &rows.speed, &rows.impulse, &rows.lowest, &rows.highest, &rows.mass, &rows.gain,
+                       &rows.softness, &rows.mostGain, &rows.openAbove, &rows.hardMass, &rows.gapRate, &rows.openSoftness})
+        x->Set(lane, 0.0f);
+    rows.slot[lane] = 0xFF;
+}
+
+template <int N>
+void FillLane(JointRows<N>& rows, int lane, const JointRow& row, const RowContext& context) {
+    ClearLane(rows, lane);
+    const JointSolveSettings& s = context.settings;
+    Twist<float> responseA = Respond(context.massA, row.a, -1.0f), responseB = Respond(context.massB, row.b, 1.0f);
+    const float alone = Dot6(row.b, responseB) - Dot6(row.a, responseA);
+    Vector3 lockLinear, lockAngular;
+    context.locks.Project(responseA, responseB, lockLinear, lockAngular);
+    const float inverseMass = Dot6(row.b, responseB) - Dot6(row.a, responseA);
+    // What the locks determine alone is left to them; so is what is not finite.
+    if (!(inverseMass > 1e-5f * alone) || !std::isfinite(inverseMass) || !std::isfinite(row.error)) return;
+    SetLane(rows.a.linear, lane, row.a.linear);
+    SetLane(rows.a.angular, lane, row.a.angular);
+    SetLane(rows.b.linear, lane, row.b.linear);
+    SetLane(rows.b.angular, lane, row.b.angular);
+    SetLane(rows.responseA.linear, lane, responseA.linear);
+    SetLane(rows.responseA.angular, lane, responseA.angular);
+    SetLane(rows.responseB.linear, lane, responseB.linear);
+    SetLane(rows.responseB.angular, lane, responseB.angular);
+    SetLane(rows.lockLinear, lane, lockLinear);
+    SetLane(rows.lockAngular, lane, lockAngular);
+    rows.slot[lane] = row.slot;
+
+    using Kind = JointRow::Kind;
+    const bool oneSided = row.kind == Kind::AtLeast || row.kind == Kind::SpringAtLeast;
+    const SpringConstants<float> constants = ToConstants(row.spring);
+    const bool soft = constants.squaredFrequency > 0.0f || constants.stiffness > 0.0f;
+    const bool spring = soft && (row.kind == Kind::Spring || row.kind == Kind::SpringAtLeast);
+    const float mass = 1.0f / inverseMass, unlimited = JointRow::kUnlimited;
+    const float lowest = Max(row.minForce * s.substepDt, oneSided ? 0.0f : -unlimited), highest = row.maxForce * s.substepDt;
+    float massScale = 1.0f, softness = 0.0f, gain = 0.0f, hardMass = mass, mostGain = unlimited;
+    if (spring) {
+        const auto gains = detail::CalculateSpringGains<float>(s.substepDt, inverseMass, constants);
+        massScale = gains.massScale;
+        softness = gains.softness;
+        gain = mass * gains.errorGain * s.inverseDt;
+        hardMass = 0.0f;
+    } else if (row.kind != Kind::Speed) {
+        massScale = s.softness.massScale;
+        softness = s.softness.impulseScale;
+        gain = mass * massScale * s.pushRate;
+        mostGain = mass * massScale * s.maxPushSpeed;
+    }
+    rows.startError.Set(lane, row.error);
+    rows.error.Set(lane, row.error);
+    rows.speed.Set(lane, row.kind == Kind::Speed ? row.speed : 0.0f);
+    rows.mass.Set(lane, mass * massScale);
+    rows.gain.Set(lane, gain);
+    rows.softness.Set(lane, softness);
+    rows.mostGain.Set(lane, mostGain);
+    rows.openAbove.Set(lane, oneSided ? 0.0f : unlimited);
+    rows.hardMass.Set(lane, hardMass);
+    rows.gapRate.Set(lane, oneSided ? s.inverseDt : 0.0f);
+    rows.openSoftness.Set(lane, spring ? 1.0f : 0.0f);
+    rows.lowest.Set(lane, lowest);
+    rows.highest.Set(lane, highest);
+    rows.impulse.Set(lane, Clamp(context.previousImpulse * s.impulseScale, lowest, highest));
+}
+
+// Asks the types for their rows and spreads these over the lanes.
+template <int N>
+void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const* types, const SolverBodies& bodies,
+              const JointSolveSettings& settings) {
+    batch.rowCount = 0;
+    if (batch.rowRoom == 0) return;
+    JointRowList lists[N];
+    for (int lane = 0; lane < batch.count; ++lane) {
+        const JointRecord& record = records[batch.joint[lane]];
+        const auto velocityOf = [&](uint32_t body) {
+            const float* v = bodies.states[body].VelocityRow();
+            return Twist<float>{Vector3(v[0], v[1], v[2]), Vector3(v[3], v[4], v[5])};
+        };
+        const auto frameOf = [&](uint32_t body, const float* f) {
+            const float* q = bodies.poses[body].rotation;
+            return Quaternion{q[0], q[1], q[2], q[3]} * Quaternion{f[0], f[1], f[2], f[3]};
+        };
+        JointPose pose;
+        pose.armA = LaneOf<N>(batch.startArmA, lane);
+        pose.armB = LaneOf<N>(batch.startArmB, lane);
+        pose.offset = LaneOf<N>(batch.startOffset, lane);
+        pose.frameA = frameOf(batch.bodyA[lane], record.frameA);
+        pose.frameB = frameOf(batch.bodyB[lane], record.frameB);
+        pose.velocityA = velocityOf(batch.bodyA[lane]);
+        pose.velocityB = velocityOf(batch.bodyB[lane]);
+        pose.dt = settings.dt;
+        pose.substepDt = settings.substepDt;
+        const BodyPose& a = bodies.poses[batch.bodyA[lane]];
+        pose.anchorA = Position(a.position[0], a.position[1], a.position[2]) + pose.armA.cast<double>();
+        types[batch.joint[lane]]->CollectRows(pose, lists[lane]);
+        FULCRUM_ASSERT(lists[lane].count <= batch.rowRoom);
+        if (lists[lane].count > batch.rowCount) batch.rowCount = lists[lane].count;
+    }
+    if (batch.rowCount == 0) return;
+    for (int lane = 0; lane < N; ++lane) {
+        const JointRowList& list = lists[lane];
+        for (uint32_t i = list.count; i < batch.rowCount; ++i) ClearLane(batch.rows[i], lane);
+        if (list.count == 0) continue;
+        const InverseMass<float> massA = LaneOf<N>(batch.massA, lane), massB = LaneOf<N>(batch.massB, lane);
+        LockRows locks(massA, massB);
+        const Vector3 armA = LaneOf<N>(batch.startArmA, lane), armB = LaneOf<N>(batch.startArmB, lane);
+        if (batch.linear == LinearLock::Point)
+            for (int k = 0; k < 3; ++k) locks.AddLinear(Vector3::Unit(k), armA, armB);
+        if (batch.linear == LinearLock::Line) {
+            const Vector3 line = LaneOf<N>(batch.startLine, lane), n1 = LaneOf<N>(batch.startLineNormal, lane);
+            const Vector3 reach = armA + LaneOf<N>(batch.startOffset, lane);
+            locks.AddLinear(n1, reach, armB);
+            locks.AddLinear(Cross<float>(line, n1), reach, armB);
+        }
+        if (batch.angular == AngularLock::All)
+            for (int k = 0; k < 3; ++k) locks.AddAngular(Vector3::Unit(k));
+        if (batch.angular == AngularLock::Axis) {
+            const Vector3 axis = LaneOf<N>(batch.startAxisB, lane), b = LaneOf<N>(batch.startNormal, lane);
+            locks.AddAngular(-Cross<float>(axis, b));
+            locks.AddAngular(b);
+        }
+        locks.Factorize();
+        const auto& impulses = types[batch.joint[lane]]->impulses;
+        for (uint32_t i = 0; i < list.count; ++i)
+            FillLane(batch.rows[i], lane, list.rows[i], {settings, massA, massB, locks, impulses[list.rows[i].slot]});
+    }
+}
+
+template <int N>
+void NoteLargest(const JointBatch<N>& batch, const Wide<N>& squared, float& largest, uint32_t& joint) {
+    if (!(squared >= Wide<N>(largest * largest)).Any()) return;
+    for (int lane = 0; lane < batch.count; ++lane) {
+        const float error = std::sqrt(squared[lane]);
+        if (!(error >= largest) || (error == largest && batch.joint[lane] >= joint)) continue;
+        largest = error;
+        joint = batch.joint[lane];
+    }
+}
+
+}  // namespace
+
+template <int N>
+void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* const* types, const SolverBodies& bodies,
+                   const JointSolveSettings& settings, JointFindings& findings) {
+    using Real = Wide<N>;
+    Real head[8], frames[8], impulses[8];
+    GatherRecordRow<N>(batch.joint, records, 0, head);
+    GatherRecordRow<N>(batch.joint, records, 1, frames);
+    GatherRecordRow<N>(batch.joint, records, 2, impulses);
+    GatherMass<N>(batch.bodyA, bodies.masses, batch.massA);
+    GatherMass<N>(batch.bodyB, bodies.masses, batch.massB);
+    alignas(64) float offsets[3][N];
+    for (int i = 0; i < N; ++i)
+        for (int k = 0; k < 3; ++k)
+            offsets[k][i] = static_cast<float>(bodies.poses[batch.bodyB[i]].position[k] - bodies.poses[batch.bodyA[i]].position[k]);
+    const Vec3<Real> between(Real::Load(offsets[0]), Real::Load(offsets[1]), Real::Load(offsets[2]));
+    const Quat<Real> rotationA = GatherRotation<N>(batch.bodyA, bodies.poses), rotationB = GatherRotation<N>(batch.bodyB, bodies.poses);
+
+    JointPlace<Real> place;
+    place.armA = Rotate<Real>(rotationA, Vec3<Real>(head[0], head[1], head[2]));
+    place.armB = Rotate<Real>(rotationB, Vec3<Real>(head[3], head[4], head[5]));
+    place.offset = between + place.armB - place.armA;
+    const Quat<Real> frameA = rotationA * Quat<Real>{frames[0], frames[1], frames[2], frames[3]};
+    const Quat<Real> frameB = rotationB * Quat<Real>{frames[4], frames[5], frames[6], frames[7]};
+    batch.startArmA = place.armA;
+    batch.startArmB = place.armB;
+    batch.startOffset = place.offset;
+    const Real scale(settings.impulseScale);
+    const Vec3<Real> linearImpulse = Vec3<Real>(impulses[0], impulses[1], impulses[2]) * scale;
+    const Vec3<Real> angularImpulse = Vec3<Real>(impulses[3], impulses[4], impulses[5]) * scale;
+
+    WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
+        if constexpr (linear == LinearLock::Line) {
+            batch.startLine = place.line = Column<Real>(frameA, head[6]);
+            batch.startLineNormal = place.lineNormal = PerpendicularTo<Real>(place.line);
+        }
+        if constexpr (angular == AngularLock::All) batch.startTwist = place.twist = frameB * frameA.Conjugate();
+        if constexpr (angular == AngularLock::Axis) {
+            batch.startAxisA = place.axisA = Column<Real>(frameA, head[7]);
+            batch.startAxisB = place.axisB = Column<Real>(frameB, head[7]);
+            batch.startNormal = place.normal = PerpendicularTo<Real>(place.axisB);
+        }
+        const JointErrors<Real> errors = SetUpParts<linear, angular>(batch, place);
+        if constexpr (linear == LinearLock::Point) {
+            batch.point.SetTotalLambda(linearImpulse);
+            NoteLargest(batch, Dot<Real>(errors.point, errors.point), findings.linearError, findings.linearJoint);
+        }
+        if constexpr (linear == LinearLock::Line) {
+            const Vec3<Real> n2 = Cross<Real>(place.line, place.lineNormal);
+            batch.line.SetTotalLambda(Vec2<Real>(Dot<Real>(linearImpulse, place.lineNormal), Dot<Real>(linearImpulse, n2)));
+            NoteLargest(batch, errors.line.x() * errors.line.x() + errors.line.y() * errors.line.y(), findings.linearError,
+                        findings.linearJoint);
+        }
+        if constexpr (angular == AngularLock::All) {
+            batch.rotation.SetTotalLambda(angularImpulse);
+            NoteLargest(batch, Dot<Real>(errors.rotation, errors.rotation), findings.angularError, findings.angularJoint);
+        }
+        if constexpr (angular == AngularLock::Axis) {
+            const Vec3<Real> c = Cross<Real>(place.axisB, place.normal);
+            batch.hinge.SetTotalLambda(Vec2<Real>(-Dot<Real>(angularImpulse, c), Dot<Real>(angularImpulse, place.normal)));
+            NoteLargest(batch, errors.hinge.x() * errors.hinge.x() + errors.hinge.y() * errors.hinge.y(), findings.angularError,
+                        findings.angularJoint);
+        }
+        Soften<linear, angular>(batch, errors, settings);
+    });
+    FillRows(batch, records, types, bodies, settings);
+}
+
+template <int N>
+void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* const* types, float impulseScale) {
+    using Real = Wide<N>;
+    const Real inverse(1.0f / impulseScale);
+    // Of the parts as they are at the end of the step: the change of velocity by their impulses, of unit masses at unit arms.
+    InverseMass<Real> unit;
+    unit.mass = Real(1.0f);
+    unit.inertia.xx = unit.inertia.yy = unit.inertia.zz = Real(1.0f);
+    Vec3<Real> force = Zero<Real>(), torque = Zero<Real>();
+    const auto always = Real(0.0f) < Real(1.0f);
+    WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
+        Twist<Real> a, b;
+        if constexpr (linear == LinearLock::Point) force = batch.point.GetTotalLambda();
+        if constexpr (linear == LinearLock::Line) {
+            batch.line.AddImpulse(a, b, unit, unit, batch.line.GetTotalLambda(), always);
+            force = b.linear;
+        }
+        if constexpr (angular == AngularLock::All) torque = batch.rotation.GetTotalLambda();
+        if constexpr (angular == AngularLock::Axis) {
+            Twist<Real> c, d;
+            batch.hinge.AddImpulse(c, d, unit, unit, batch.hinge.GetTotalLambda(), always);
+            torque = d.angular;
+        }
+    });
+    Vec3<Real> totalForce = force, totalTorque = torque;
+    for (uint32_t i = 0; i < batch.rowCount; ++i) {
+        const JointRows<N>& rows = batch.rows[i];
+        totalForce += rows.b.linear * rows.impulse;
+        totalTorque += (rows.b.angular - Cross<Real>(batch.startArmB, rows.b.linear)) * rows.impulse;
+    }
+    const auto finite = [](float x) { return std::isfinite(x) ? x : 0.0f; };
+    for (int lane = 0; lane < batch.count; ++lane) {
+        JointRecord& record = records[batch.joint[lane]];
+        for (int k = 0; k < 3; ++k) {
+            record.linearImpulse[k] = finite((force[k] * inverse)[lane]);
+            record.angularImpulse[k] = finite((torque[k] * inverse)[lane]);
+            record.totalForce[k] = finite((totalForce[k] * inverse)[lane]);
+            record.totalTorque[k] = finite((totalTorque[k] * inverse)[lane]);
+        }
+        if (batch.rowRoom == 0) continue;
+        JointType* type = types[batch.joint[lane]];
+        type->impulses.fill(0.0f);
+        for (uint32_t i = 0; i < batch.rowCount; ++i) {
+            const JointRows<N>& rows = batch.rows[i];
+            if (rows.slot[lane] != 0xFF) type->impulses[rows.slot[lane]] = finite((rows.impulse * inverse)[lane]);
+        }
+    }
+}
+
+#define FULCRUM_INSTANTIATE(lanes)                                                                                         \
+    template void PrepareJoints(JointBatch<lanes>&, const JointRecord*, JointType* const*, const SolverBodies&,            \
+                                const JointSolveSettings&, JointFindings&);                                                \
+    template void StoreJoints(const JointBatch<lanes>&, JointRecord*, JointType* const*, float);
+FULCRUM_FOR_EACH_JOINT_BATCH(FULCRUM_INSTANTIATE)
+#undef FULCRUM_INSTANTIATE
+
+}  // namespace fulcrum

@@ -1,0 +1,45 @@
+#include <Fulcrum/Constraints/Joints/SixDofJoint.h>
+
+namespace fulcrum {
+
+namespace {
+
+constexpr uint32_t kAngularSlot = 3 * ControlSlots::kCount;
+
+bool IsLockedAtZero(const AxisControl& control) {
+    return control.limited && control.limits.min == 0.0f && control.limits.max == 0.0f && IsHard(control.limits.spring);
+}
+
+}  // namespace
+
+SixDofJoint::SixDofJoint(const std::array<AxisControl, 6>& axes, SwingShape shape)
+    : linear_{axes[0], axes[1], axes[2]}, angular_({axes[3], axes[4], axes[5]}, shape) {
+    int count = 0;
+    for (uint8_t k = 0; k < 3; ++k) {
+        if (IsLockedAtZero(linear_[k])) ++count;
+        else line_ = k;
+    }
+    if (count != 2) line_ = 0;
+    linearLock_ = count == 3 ? LinearLock::Point : count == 2 ? LinearLock::Line : LinearLock::None;
+}
+
+uint32_t SixDofJoint::MaxRows() const {
+    uint32_t count = angular_.MaxRows();
+    for (uint8_t k = 0; k < 3; ++k)
+        if (HasRows(k)) count += MaxControlRows(linear_[k]);
+    return count;
+}
+
+void SixDofJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
+    angular_.CollectRows(pose, kAngularSlot, rows);
+    const Matrix3 frame = ToMatrix(pose.frameA);
+    for (uint8_t k = 0; k < 3; ++k) {
+        if (!HasRows(k)) continue;
+        const Vector3& axis = AxisOf(frame, k);
+        JointRow motion;
+        pose.SetAlong(motion, axis);
+        AddControlRows(linear_[k], pose, motion, Dot(pose.offset, axis), kLinearSlackSpeed, k * ControlSlots::kCount, rows);
+    }
+}
+
+}  // namespace fulcrum

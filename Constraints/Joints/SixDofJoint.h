@@ -1,0 +1,43 @@
+// Six axes, each free, limited or locked, hard or soft, with motors and friction. Solved with the other joints; no threads.
+//
+//   translation  d = way of B's anchor along the axes of A's frame; rows as in SliderJoint.h
+//   rotation     AngularControls.h
+// What is locked at zero and hard from the start becomes a block where blocks exist: all three translations a point, two of
+// them a line, rotations as in AngularControls.h; else a row of its own.
+#pragma once
+
+#include <Fulcrum/Constraints/Joints/AngularControls.h>
+
+namespace fulcrum {
+
+class SixDofJoint final : public JointType {
+public:
+    // In the order of JointAxis; m and N, rad and N m. Limits of rotations as AngularControls wants them.
+    SixDofJoint(const std::array<AxisControl, 6>& axes, SwingShape shape);
+
+    JointLocks Locks() const override { return {linearLock_, angular_.Lock(), line_, angular_.FreeAxis()}; }
+    uint32_t MaxRows() const override;
+    void Start(const JointPose& pose) override { angular_.Start(pose); }
+    void CollectRows(const JointPose& pose, JointRowList& rows) override;
+    AxisControl* Control(JointAxis axis) override {
+        const auto index = static_cast<int>(axis);
+        return index < 3 ? &linear_[static_cast<size_t>(index)] : &angular_.At(index - 3);
+    }
+    uint32_t FirstSlot(JointAxis axis) const override { return static_cast<uint32_t>(axis) * ControlSlots::kCount; }
+    void SetTargetOrientation(const Quaternion& target) override { angular_.SetTargetOrientation(target); }
+    double Coordinate(JointAxis axis, const JointPose& pose) const override {
+        return axis < JointAxis::AngularX ? JointType::Coordinate(axis, pose) : angular_.Coordinate(static_cast<int>(axis) - 3, pose);
+    }
+    std::span<double> State() override { return angular_.State(); }
+
+private:
+    // Whether the linear axis k has rows of its own.
+    bool HasRows(uint8_t k) const { return linearLock_ == LinearLock::None || (linearLock_ == LinearLock::Line && k == line_); }
+
+    std::array<AxisControl, 3> linear_;
+    AngularControls angular_;
+    LinearLock linearLock_ = LinearLock::None;
+    uint8_t line_ = 0;
+};
+
+}  // namespace fulcrum

@@ -1,0 +1,210 @@
+#include <Fulcrum/Constraints/Joints/JointKernels.h>
+
+namespace fulcrum {
+
+namespace {
+
+using namespace joints;
+
+// Adds the total impulses of the locks to the velocities, times `sign`.
+template <LinearLock kLinear, AngularLock kAngular, int N>
+[[gnu::always_inline]] inline void AddLockImpulses(const JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, float sign) {
+    using Real = Wide<N>;
+    const auto add = [&](const auto& part) {
+        auto lambda = part.GetTotalLambda();
+        for (int k = 0; k < lambda.size(); ++k) lambda[k] = lambda[k] * Real(sign);
+        part.AddImpulse(a, b, batch.massA, batch.massB, lambda, Real(0.0f) < Real(1.0f));
+    };
+    if constexpr (kAngular == AngularLock::Axis) add(batch.hinge);
+    if constexpr (kLinear == LinearLock::Point) add(batch.point);
+    if constexpr (kLinear == LinearLock::Line) add(batch.line);
+}
+
+template <class Part, int N>
+[[gnu::always_inline]] inline void Change(Part& part, const Vec3<Wide<N>>& perImpulse, Wide<N> impulse) {
+    auto lambda = part.GetTotalLambda();
+    for (int k = 0; k < lambda.size(); ++k) lambda[k] += perImpulse[k] * impulse;
+    part.SetTotalLambda(lambda);
+}
+
+template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
+[[gnu::always_inline]] inline void SolveRow(JointBatch<N>& batch, JointRows<N>& row, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
+    using Real = Wide<N>;
+    const Real zero(0.0f);
+    const Real speed = Dot<Real>(row.b.linear, b.linear) + Dot<Real>(row.b.angular, b.angular) -
+                       Dot<Real>(row.a.linear, a.linear) - Dot<Real>(row.a.angular, a.angular);
+    Real change;
+    if constexpr (kRelax) {
+        change = row.hardMass * (speed - row.speed + Max(row.error, zero) * row.gapRate);
+    } else {
+        const Real push = Clamp(row.gain * row.error, -row.mostGain, row.mostGain);
+        const Real closed = row.mass * (speed - row.speed) + push + row.softness * row.impulse;
+        const Real open = row.hardMass * (speed + row.error * row.gapRate) + row.openSoftness * row.impulse;
+        change = Select(row.error > row.openAbove, open, closed);
+    }
+    const Real total = Clamp(row.impulse - change, row.lowest, row.highest);
+    const Real wanted = total - row.impulse;
+    const Real delta = Select(Abs(wanted) > zero, wanted, zero);  // NaN is nothing
+    row.impulse += delta;
+    a.linear += row.responseA.linear * delta;
+    a.angular += row.responseA.angular * delta;
+    b.linear += row.responseB.linear * delta;
+    b.angular += row.responseB.angular * delta;
+    if constexpr (kAngular == AngularLock::All) Change(batch.rotation, row.lockAngular, delta);
+    if constexpr (kAngular == AngularLock::Axis) Change(batch.hinge, row.lockAngular, delta);
+    if constexpr (kLinear == LinearLock::Point) Change(batch.point, row.lockLinear, delta);
+    if constexpr (kLinear == LinearLock::Line) Change(batch.line, row.lockLinear, delta);
+}
+
+template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
+[[gnu::always_inline]] inline void SolveAll(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
+    for (uint32_t i = 0; i < batch.rowCount; ++i) SolveRow<kRelax, kLinear, kAngular>(batch, batch.rows[i], a, b);
+    if constexpr (kAngular == AngularLock::All) batch.rotation.SolveVelocity(a, b, batch.massA, batch.massB);
+    if constexpr (kAngular == AngularLock::Axis) batch.hinge.SolveVelocity(a, b, batch.massA, batch.massB);
+    if constexpr (kLinear == LinearLock::Point) batch.point.SolveVelocity(a, b, batch.massA, batch.massB);
+    if constexpr (kLinear == LinearLock::Line) batch.line.SolveVelocity(a, b, batch.massA, batch.massB);
+}
+
+template <LinearLock kLinear, AngularLock kAngular, int N>
+[[gnu::always_inline]] inline JointPlace<Wide<N>> Displace(const JointBatch<N>& batch, const Twist<Wide<N>>& a, const Twist<Wide<N>>& b) {
+    using Real = Wide<N>;
+    JointPlace<Real> place;
+    const Quat<Real> turnA = RotationFromVector<Real>(a.angular), turnB = RotationFromVector<Real>(b.angular);
+    if constexpr (kLinear != LinearLock::None) {
+        place.armA = Rotate<Real>(turnA, batch.startArmA);
+        place.armB = Rotate<Real>(turnB, batch.startArmB);
+        place.offset = batch.startOffset + (b.linear - a.linear) + (place.armB - batch.startArmB) - (place.armA - batch.startArmA);
+    }
+    if constexpr (kLinear == LinearLock::Line) {
+        place.line = Rotate<Real>(turnA, batch.startLine);
+        place.lineNormal = batch.startLineNormal;
+    }
+    if constexpr (kAngular == AngularLock::All) place.twist = turnB * batch.startTwist * turnA.Conjugate();
+    if constexpr (kAngular == AngularLock::Axis) {
+        place.axisA = Rotate<Real>(turnA, batch.startAxisA);
+        place.axisB = Rotate<Real>(turnB, batch.startAxisB);
+        place.normal = batch.startNormal;
+    }
+    return place;
+}
+
+// Brings the parts and the rows' errors to the displaced poses; the turn of the locks' impulses is left for the next substep.
+template <LinearLock kLinear, AngularLock kAngular, int N>
+[[gnu::always_inline]] inline JointErrors<Wide<N>> Follow(JointBatch<N>& batch, BodyState* states, const Twist<Wide<N>>& velocityA,
+                                                          const Twist<Wide<N>>& velocityB, const JointSolveSettings& settings) {
+    using Real = Wide<N>;
+    Motion<N> motionA, motionB;
+    motionA.template Gather<Of::Displacement>(batch.bodyA, states);
+    motionB.template Gather<Of::Displacement>(batch.bodyB, states);
+    Twist<Real> a = motionA.Get(), b = motionB.Get();
+    AddKinematicMotion<N>(a, velocityA, batch.kinematicA, settings.elapsed);
+    AddKinematicMotion<N>(b, velocityB, batch.kinematicB, settings.elapsed);
+    for (uint32_t i = 0; i < batch.rowCount; ++i) {
+        JointRows<N>& row = batch.rows[i];
+        row.error = row.startError + (Dot<Real>(row.b.linear, b.linear) + Dot<Real>(row.b.angular, b.angular) -
+                                      Dot<Real>(row.a.linear, a.linear) - Dot<Real>(row.a.angular, a.angular));
+    }
+    constexpr bool kTurns = kLinear != LinearLock::None || kAngular == AngularLock::Axis;
+    Twist<Real> turnedA, turnedB;
+    if (!settings.firstPass) {
+        turnedA = batch.turnedA;
+        turnedB = batch.turnedB;
+    }
+    if constexpr (kTurns) AddLockImpulses<kLinear, kAngular>(batch, turnedA, turnedB, -1.0f);
+    const JointErrors<Real> errors = SetUpParts<kLinear, kAngular>(batch, Displace<kLinear, kAngular>(batch, a, b));
+    if constexpr (kTurns) {
+        AddLockImpulses<kLinear, kAngular>(batch, turnedA, turnedB, 1.0f);
+        batch.turnedA.angular = turnedA.angular;
+        batch.turnedB.angular = turnedB.angular;
+        if constexpr (kLinear == LinearLock::Line) {
+            batch.turnedA.linear = turnedA.linear;
+            batch.turnedB.linear = turnedB.linear;
+        }
+    }
+    return errors;
+}
+
+}  // namespace
+
+template <int N>
+void WarmStartJoints(const JointBatch<N>& batch, BodyState* states) {
+    using Real = Wide<N>;
+    WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
+        Motion<N> motionA, motionB;
+        motionA.template Gather<Of::Velocity>(batch.bodyA, states);
+        motionB.template Gather<Of::Velocity>(batch.bodyB, states);
+        Twist<Real> a = motionA.Get(), b = motionB.Get();
+        for (uint32_t i = 0; i < batch.rowCount; ++i) {
+            const JointRows<N>& row = batch.rows[i];
+            a.linear -= row.a.linear * (batch.massA.mass * row.impulse);
+            a.angular -= (batch.massA.inertia * row.a.angular) * row.impulse;
+            b.linear += row.b.linear * (batch.massB.mass * row.impulse);
+            b.angular += (batch.massB.inertia * row.b.angular) * row.impulse;
+        }
+        if constexpr (angular == AngularLock::All)
+            batch.rotation.AddImpulse(a, b, batch.massA, batch.massB, batch.rotation.GetTotalLambda(), Real(0.0f) < Real(1.0f));
+        AddLockImpulses<linear, angular>(batch, a, b, 1.0f);
+        motionA.Scatter(a, batch.count, batch.fixedA);
+        motionB.Scatter(b, batch.count, batch.fixedB);
+    });
+}
+
+template <int N>
+void SolveJointVelocities(JointBatch<N>& batch, BodyState* states, const JointSolveSettings& settings) {
+    using Real = Wide<N>;
+    WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
+        Motion<N> motionA, motionB;
+        motionA.template Gather<Of::Velocity>(batch.bodyA, states);
+        motionB.template Gather<Of::Velocity>(batch.bodyB, states);
+        Twist<Real> a = motionA.Get(), b = motionB.Get();
+        if constexpr (linear != LinearLock::None || angular == AngularLock::Axis) {
+            if (settings.continues) {
+                a.angular += batch.turnedA.angular;
+                b.angular += batch.turnedB.angular;
+                if constexpr (linear == LinearLock::Line) {
+                    a.linear += batch.turnedA.linear;
+                    b.linear += batch.turnedB.linear;
+                }
+            }
+        }
+        SolveAll<false, linear, angular>(batch, a, b);
+        motionA.Scatter(a, batch.count, batch.fixedA);
+        motionB.Scatter(b, batch.count, batch.fixedB);
+    });
+}
+
+template <int N>
+void RelaxJoints(JointBatch<N>& batch, BodyState* states, const JointSolveSettings& settings) {
+    using Real = Wide<N>;
+    WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
+        Motion<N> motionA, motionB;
+        motionA.template Gather<Of::Velocity>(batch.bodyA, states);
+        motionB.template Gather<Of::Velocity>(batch.bodyB, states);
+        Twist<Real> a = motionA.Get(), b = motionB.Get();
+        const JointErrors<Real> errors = Follow<linear, angular>(batch, states, a, b, settings);
+        SolveAll<true, linear, angular>(batch, a, b);
+        Soften<linear, angular>(batch, errors, settings);
+        motionA.Scatter(a, batch.count, batch.fixedA);
+        motionB.Scatter(b, batch.count, batch.fixedB);
+    });
+}
+
+template <int N>
+void UpdateJoints(JointBatch<N>& batch, BodyState* states, const JointSolveSettings& settings) {
+    WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
+        Motion<N> motionA, motionB;
+        motionA.template Gather<Of::Velocity>(batch.bodyA, states);
+        motionB.template Gather<Of::Velocity>(batch.bodyB, states);
+        Soften<linear, angular>(batch, Follow<linear, angular>(batch, states, motionA.Get(), motionB.Get(), settings), settings);
+    });
+}
+
+#define FULCRUM_INSTANTIATE(lanes)                                                                     \
+    template void WarmStartJoints(const JointBatch<lanes>&, BodyState*);                               \
+    template void SolveJointVelocities(JointBatch<lanes>&, BodyState*, const JointSolveSettings&);     \
+    template void RelaxJoints(JointBatch<lanes>&, BodyState*, const JointSolveSettings&);              \
+    template void UpdateJoints(JointBatch<lanes>&, BodyState*, const JointSolveSettings&);
+FULCRUM_FOR_EACH_JOINT_BATCH(FULCRUM_INSTANTIATE)
+#undef FULCRUM_INSTANTIATE
+
+}  // namespace fulcrum

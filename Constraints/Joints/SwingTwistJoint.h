@@ -1,0 +1,37 @@
+// A shoulder: B's anchor stays at A's, B's x axis swings within an ellipse or a pyramid about A's, and B twists about it in a
+// range; motors and friction about all axes. Solved with the other joints; no threads.
+//   Locks:      point; rotation as far as axes are locked (AngularControls.h)
+//   Rows:       AngularControls.h (AngularX the twist, AngularY and AngularZ the swing)
+#pragma once
+
+#include <Fulcrum/Constraints/Joints/AngularControls.h>
+
+namespace fulcrum {
+
+class SwingTwistJoint final : public JointType {
+public:
+    // rad, N m; limits as AngularControls wants them.
+    SwingTwistJoint(const AxisControl& twist, const AxisControl& swingY, const AxisControl& swingZ, SwingShape shape)
+        : angular_({twist, swingY, swingZ}, shape) {}
+
+    JointLocks Locks() const override { return {LinearLock::Point, angular_.Lock(), 0, angular_.FreeAxis()}; }
+    uint32_t MaxRows() const override { return angular_.MaxRows(); }
+    void Start(const JointPose& pose) override { angular_.Start(pose); }
+    void CollectRows(const JointPose& pose, JointRowList& rows) override { angular_.CollectRows(pose, 0, rows); }
+    AxisControl* Control(JointAxis axis) override {
+        return axis < JointAxis::AngularX ? nullptr : &angular_.At(static_cast<int>(axis) - 3);
+    }
+    uint32_t FirstSlot(JointAxis axis) const override {
+        return axis < JointAxis::AngularX ? 0 : (static_cast<uint32_t>(axis) - 3) * ControlSlots::kCount;
+    }
+    void SetTargetOrientation(const Quaternion& target) override { angular_.SetTargetOrientation(target); }
+    double Coordinate(JointAxis axis, const JointPose& pose) const override {
+        return axis < JointAxis::AngularX ? JointType::Coordinate(axis, pose) : angular_.Coordinate(static_cast<int>(axis) - 3, pose);
+    }
+    std::span<double> State() override { return angular_.State(); }
+
+private:
+    AngularControls angular_;
+};
+
+}  // namespace fulcrum

@@ -1,0 +1,332 @@
+#include <Fulcrum/Physics/JointInterface.h>
+
+#include <Fulcrum/Constraints/Parts/HingeRotationPart.h>
+#include <Fulcrum/Constraints/Parts/RotationEulerPart.h>
+#include <Fulcrum/Physics/JointValidation.h>
+#include <Fulcrum/Physics/Stages/Stages.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+namespace {
+
+Error Unknown(JointId id) {
+    return {ErrorCode::UnknownId, "no joint has the id (index " + std::to_string(id.index) + ", generation " +
+                                      std::to_string(id.generation) + ")"};
+}
+
+MaybeError CheckBodies(const WorldState& world, const JointSettings& settings) {
+    const auto check = [&](const char* field, BodyId id) -> MaybeError {
+        if (world.bodies.Find(id)) return std::nullopt;
+        return Error{ErrorCode::UnknownId, std::string(field) + ": no body has the id (index " + std::to_string(id.index) +
+                                               ", generation " + std::to_string(id.generation) + ")"};
+    };
+    if (MaybeError e = FirstOf(check("bodyA", settings.bodyA), check("bodyB", settings.bodyB))) return e;
+    if (settings.bodyA == settings.bodyB) return Error{ErrorCode::Unsupported, "bodyA and bodyB are the same; a joint needs two bodies"};
+    const auto isDynamic = [&](BodyId id) { return world.bodies.dynamics[id.index].motion == MotionType::Dynamic; };
+    if (!isDynamic(settings.bodyA) && !isDynamic(settings.bodyB))
+        return Error{ErrorCode::Unsupported, "bodyA and bodyB are both not dynamic; a joint needs one that moves"};
+    return std::nullopt;
+}
+
+// A place and a frame, in the world or in a body's centre frame.
+struct Frame {
+    Vector3 point;  // m, in the centre frame
+    Quaternion rotation;
+};
+
+Quaternion RotationOf(const JointAnchor& anchor) {
+    const Vector3 axis = Normalized(anchor.axis);
+    return RotationFromAxesXY(axis, anchor.normal ? *anchor.normal : Perpendicular(axis));
+}
+
+Frame FrameOf(const WorldState& world, uint32_t body, const JointAnchor& anchor, JointSpace space) {
+    const Pose centre = world.bodies.CentrePoseOf(body);
+    const Quaternion rotation = RotationOf(anchor);
+    if (space == JointSpace::World) return {centre.InverseTransform(anchor.point), centre.rotation.Conjugate() * rotation};
+    const Vector3 offset = world.bodies.cold[body].shape->Mass().centreOfMass;
+    return {Vector3(anchor.point.cast<float>()) - offset, rotation};
+}
+
+Pose WorldFrameOf(const WorldState& world, uint32_t body, const Frame& frame) {
+    const Pose centre = world.bodies.CentrePoseOf(body);
+    return {centre.Transform(frame.point), centre.rotation * frame.rotation};
+}
+
+// The frames of a joint: B's is where A's is in the world unless it is given; a normal that is left out follows A's.
+std::pair<Frame, Frame> FramesOf(const WorldState& world, const JointSettings& s) {
+    const Frame a = FrameOf(world, s.bodyA.index, s.anchorA, s.space);
+    const Pose pose = WorldFrameOf(world, s.bodyA.index, a);
+    JointAnchor b;
+    if (s.anchorB) {
+        b = *s.anchorB;
+        if (!b.normal) {
+            Vector3 normal = Rotate(pose.rotation, Vector3(0, 1, 0));
+            if (s.space == JointSpace::Body) normal = InverseRotate(world.bodies.RotationOf(s.bodyB.index), normal);
+            const Vector3 axis = Normalized(b.axis);
+            const Vector3 flat = normal - axis * Dot(axis, normal);
+            if (LengthSquared(flat) > 1e-6f) b.normal = Normalized(flat);
+        }
+        return {a, FrameOf(world, s.bodyB.index, b, s.space)};
+    }
+    const Pose centre = world.bodies.CentrePoseOf(s.bodyB.index);
+    return {a, {centre.InverseTransform(pose.position), Normalized(centre.rotation.Conjugate() * pose.rotation)}};
+}
+
+void Write(float (&to)[4], const Quaternion& q) {
+    to[0] = q.x;
+    to[1] = q.y;
+    to[2] = q.z;
+    to[3] = q.w;
+}
+
+Frame Read(const float (&anchor)[3], const float (&frame)[4]) {
+    return {Vector3(anchor[0], anchor[1], anchor[2]), {frame[0], frame[1], frame[2], frame[3]}};
+}
+
+// The bodies as they stand, without velocities.
+JointPose PoseOf(const WorldState& world, uint32_t index) {
+    const Joint& joint = world.joints.joints[index];
+    const JointRecord& record = world.joints.records[index];
+    const Pose a = WorldFrameOf(world, joint.body[0], Read(record.anchorA, record.frameA));
+    const Pose b = WorldFrameOf(world, joint.body[1], Read(record.anchorB, record.frameB));
+    JointPose pose;
+    pose.armA = (a.position - world.bodies.CentreOf(joint.body[0])).cast<float>();
+    pose.armB = (b.position - world.bodies.CentreOf(joint.body[1])).cast<float>();
+    pose.offset = (b.position - a.position).cast<float>();
+    pose.frameA = a.rotation;
+    pose.frameB = b.rotation;
+    pose.anchorA = a.position;
+    return pose;
+}
+
+void WakeBoth(WorldState& world, const Joint& joint) {
+    for (uint32_t body : joint.body) WakeBody(world, body);
+}
+
+// The two bodies must not touch any longer.
+void DropPairs(WorldState& world, const Joint& joint) {
+    const BodyCold& a = world.bodies.cold[joint.body[0]];
+    const BodyCold& b = world.bodies.cold[joint.body[1]];
+    for (uint32_t i = a.firstCollider; i < a.firstCollider + a.colliderCount; ++i) {
+        for (uint32_t j = b.firstCollider; j < b.firstCollider + b.colliderCount; ++j) {
+            const uint32_t pair = world.pairs.Find(i, j);
+            if (pair == PairStore::kNone) continue;
+            UncolourPair(world, pair);
+            world.pairs.Remove(pair);
+        }
+    }
+}
+
+// Brings everything in line with `enabled`.
+void Enable(WorldState& world, uint32_t index, bool enabled) {
+    Joint& joint = world.joints.joints[index];
+    joint.enabled = enabled;
+    if (enabled) {
+        if (!joint.collideConnected) DropPairs(world, joint);
+        WakeBoth(world, joint);
+        ColourJoint(world, index);
+    } else {
+        WakeBoth(world, joint);
+        UncolourJoint(world, index);
+        for (uint32_t body : joint.body) RequeueColliders(world, body);
+    }
+}
+
+}  // namespace
+
+void RemoveJoint(WorldState& world, uint32_t index) {
+    Enable(world, index, false);
+    world.joints.Unlink(index);
+    world.joints.Free(index);
+}
+
+Result<JointId> JointInterface::Add(const JointSettings& s, std::unique_ptr<JointType> type) {
+    const uint32_t index = world_.joints.Allocate();
+    Joint& joint = world_.joints.joints[index];
+    joint.body[0] = s.bodyA.index;
+    joint.body[1] = s.bodyB.index;
+    for (int side = 0; side < 2; ++side)
+        joint.still[side] = world_.bodies.dynamics[joint.body[side]].motion != MotionType::Dynamic;
+    joint.collideConnected = s.collideConnected;
+    joint.priority = s.priority;
+    joint.breakForce = s.breakForce;
+    joint.breakTorque = s.breakTorque;
+    joint.effort = {s.substeps, s.velocityIterations, s.positionIterations};
+    joint.userData = s.userData;
+    if (std::isfinite(s.breakForce) || std::isfinite(s.breakTorque)) world_.joints.breakable.Insert(index);
+    JointRecord& record = world_.joints.records[index];
+    const auto [a, b] = FramesOf(world_, s);
+    for (int k = 0; k < 3; ++k) {
+        record.anchorA[k] = a.point[k];
+        record.anchorB[k] = b.point[k];
+    }
+    Write(record.frameA, a.rotation);
+    Write(record.frameB, b.rotation);
+    type->Start(PoseOf(world_, index));
+    joint.type = std::move(type);
+    world_.joints.types[index] = joint.type.get();
+    world_.joints.Link(index);
+    joint.enabled = s.enabled;
+    if (s.enabled) Enable(world_, index, true);
+    return world_.joints.IdOf(index);
+}
+
+template <class Settings>
+Result<JointId> JointInterface::Create(const Settings& settings) {
+    if (MaybeError error = CheckBodies(world_, settings)) return *error;
+    if (MaybeError error = Check(settings)) return *error;
+    return Add(settings, MakeType(settings));
+}
+
+#define FULCRUM_INSTANTIATE(kind) template Result<JointId> JointInterface::Create(const kind##JointSettings&);
+FULCRUM_FOR_EACH_JOINT_KIND(FULCRUM_INSTANTIATE)
+#undef FULCRUM_INSTANTIATE
+
+Status JointInterface::Remove(JointId id) {
+    if (!Exists(id)) return Unknown(id);
+    RemoveJoint(world_, id.index);
+    return Done{};
+}
+
+bool JointInterface::Exists(JointId id) const { return world_.joints.Find(id); }
+
+Status JointInterface::SetEnabled(JointId id, bool enabled) {
+    if (!Exists(id)) return Unknown(id);
+    if (world_.joints.joints[id.index].enabled != enabled) Enable(world_, id.index, enabled);
+    return Done{};
+}
+
+bool JointInterface::IsEnabled(JointId id) const { return Exists(id) && world_.joints.joints[id.index].enabled; }
+
+AxisControl* JointInterface::ControlOf(JointId id, JointAxis axis) const {
+    return Exists(id) ? world_.joints.types[id.index]->Control(axis) : nullptr;
+}
+
+template <class Change>
+Status JointInterface::ChangeControl(JointId id, JointAxis axis, Change&& change) {
+    if (!Exists(id)) return Unknown(id);
+    AxisControl* control = ControlOf(id, axis);
+    if (!control) return Error{ErrorCode::Unsupported, "axis: the joint has neither limits nor motor nor friction there"};
+    AxisControl changed = *control;
+    change(changed);
+    if (MaybeError error = CheckControl("axis", changed)) return *error;
+    *control = changed;
+    Joint& joint = world_.joints.joints[id.index];
+    if (joint.type->MaxRows() != joint.maxRows || !(joint.type->Locks() == joint.locks)) world_.colouring.Touch();
+    if (joint.enabled) WakeBoth(world_, joint);
+    return Done{};
+}
+
+Status JointInterface::SetLimits(JointId id, JointAxis axis, const std::optional<JointLimits>& limits) {
+    return ChangeControl(id, axis, [&](AxisControl& control) {
+        control.limited = limits.has_value();
+        if (limits) control.limits = *limits;
+    });
+}
+Status JointInterface::SetMotor(JointId id, JointAxis axis, const JointMotor& motor) {
+    return ChangeControl(id, axis, [&](AxisControl& control) { control.motor = motor; });
+}
+Status JointInterface::SetFriction(JointId id, JointAxis axis, float friction) {
+    return ChangeControl(id, axis, [&](AxisControl& control) { control.friction = friction; });
+}
+
+Status JointInterface::SetTargetOrientation(JointId id, const Quaternion& target) {
+    if (!Exists(id)) return Unknown(id);
+    if (MaybeError error = CheckRotation("target", target)) return *error;
+    const Joint& joint = world_.joints.joints[id.index];
+    joint.type->SetTargetOrientation(Normalized(target));
+    if (joint.enabled) WakeBoth(world_, joint);
+    return Done{};
+}
+
+Status JointInterface::SetEffort(JointId id, const SolverSettings& effort) {
+    if (!Exists(id)) return Unknown(id);
+    if (MaybeError error = FirstOf(CheckRange("substeps", effort.substeps, 0, 64),
+                                   CheckRange("velocityIterations", effort.velocityIterations, 0, 255),
+                                   CheckRange("positionIterations", effort.positionIterations, 0, 255)))
+        return *error;
+    world_.joints.joints[id.index].effort = effort;
+    world_.colouring.Touch();
+    return Done{};
+}
+
+const AxisControl* JointInterface::GetControl(JointId id, JointAxis axis) const { return ControlOf(id, axis); }
+
+double JointInterface::GetCoordinate(JointId id, JointAxis axis) const {
+    return Exists(id) ? world_.joints.types[id.index]->Coordinate(axis, PoseOf(world_, id.index)) : 0.0;
+}
+
+JointError JointInterface::GetError(JointId id) const {
+    JointError error;
+    if (!Exists(id)) return error;
+    const JointPose pose = PoseOf(world_, id.index);
+    const JointLocks locks = world_.joints.types[id.index]->Locks();
+    const auto axisOf = [](const Quaternion& frame, int k) { return Rotate(frame, Vector3(Vector3::Unit(k))); };
+    if (locks.linear == LinearLock::Point) error.distance = Length(pose.offset);
+    if (locks.linear == LinearLock::Line) {
+        const Vector3 line = axisOf(pose.frameA, locks.line);
+        error.distance = Length(Vector3(pose.offset - line * Dot(line, pose.offset)));
+    }
+    if (locks.angular == AngularLock::All) error.angle = Length(RotationVectorOf<float>(pose.frameB * pose.frameA.Conjugate()));
+    if (locks.angular == AngularLock::Axis) {
+        const Vector3 b = axisOf(pose.frameB, (locks.axis + 1) % 3), c = axisOf(pose.frameB, (locks.axis + 2) % 3);
+        const Vec2<float> hinge = HingeError<float>(axisOf(pose.frameA, locks.axis), b, c);
+        error.angle = std::sqrt(hinge.x() * hinge.x() + hinge.y() * hinge.y());
+    }
+    return error;
+}
+
+namespace {
+
+Vector3 PerSecond(const WorldState& world, JointId id, float (JointRecord::*impulse)[3]) {
+    if (!world.joints.Find(id) || !(world.lastSubstepDt > 0) || world.joints.joints[id.index].colour.colour == 0xFF) return Vector3::Zero();
+    const float(&v)[3] = world.joints.records[id.index].*impulse;
+    return Vector3(v[0], v[1], v[2]) * (1.0f / world.lastSubstepDt);
+}
+
+}  // namespace
+
+Vector3 JointInterface::GetForce(JointId id) const { return PerSecond(world_, id, &JointRecord::totalForce); }
+Vector3 JointInterface::GetTorque(JointId id) const { return PerSecond(world_, id, &JointRecord::totalTorque); }
+Vector3 JointInterface::GetLockForce(JointId id) const { return PerSecond(world_, id, &JointRecord::linearImpulse); }
+Vector3 JointInterface::GetLockTorque(JointId id) const { return PerSecond(world_, id, &JointRecord::angularImpulse); }
+
+JointAxisForces JointInterface::GetAxisForces(JointId id, JointAxis axis) const {
+    if (!ControlOf(id, axis) || !(world_.lastSubstepDt > 0)) return {};
+    const JointType& type = *world_.joints.types[id.index];
+    const float perSecond = 1.0f / world_.lastSubstepDt;
+    const auto forceOf = [&](uint32_t slot) { return type.impulses[type.FirstSlot(axis) + slot] * perSecond; };
+    return {forceOf(ControlSlots::kLowLimit) - forceOf(ControlSlots::kHighLimit), forceOf(ControlSlots::kMotor),
+            forceOf(ControlSlots::kFriction)};
+}
+
+Pose JointInterface::GetFrameA(JointId id) const {
+    if (!Exists(id)) return {};
+    const JointRecord& record = world_.joints.records[id.index];
+    return WorldFrameOf(world_, world_.joints.joints[id.index].body[0], Read(record.anchorA, record.frameA));
+}
+Pose JointInterface::GetFrameB(JointId id) const {
+    if (!Exists(id)) return {};
+    const JointRecord& record = world_.joints.records[id.index];
+    return WorldFrameOf(world_, world_.joints.joints[id.index].body[1], Read(record.anchorB, record.frameB));
+}
+BodyId JointInterface::GetBodyA(JointId id) const {
+    return Exists(id) ? world_.bodies.IdOf(world_.joints.joints[id.index].body[0]) : BodyId{};
+}
+BodyId JointInterface::GetBodyB(JointId id) const {
+    return Exists(id) ? world_.bodies.IdOf(world_.joints.joints[id.index].body[1]) : BodyId{};
+}
+uint64_t JointInterface::GetUserData(JointId id) const { return Exists(id) ? world_.joints.joints[id.index].userData : 0; }
+
+void JointInterface::Visit(FunctionRef<void(JointId)> visit) const {
+    for (uint32_t i = 0; i < world_.joints.joints.size(); ++i)
+        if (world_.joints.joints[i].exists) visit(world_.joints.IdOf(i));
+}
+
+void JointInterface::VisitOf(BodyId body, FunctionRef<void(JointId)> visit) const {
+    if (world_.bodies.Find(body)) world_.joints.VisitOf(body.index, [&](uint32_t index) { visit(world_.joints.IdOf(index)); });
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,51 @@
+// How a group of islands is solved: the system's settings, or more where its joints ask for it. Used by Prepare, Solve, Store.
+#pragma once
+
+#include <Fulcrum/Physics/Stages/Stages.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+struct Effort {
+    SolverSettings solver;
+    float substepDt;            // s
+    float impulseScale;         // records hold impulses of the system's substeps: times this, they are those of the group's
+    ContactSolveSettings contacts;
+    JointSolveSettings joints;
+};
+
+inline Effort EffortOf(const WorldState& world, const StepContext& step, const SolverGroup& group) {
+    const SystemSettings& s = world.settings;
+    Effort effort;
+    effort.solver.substeps = std::max(s.solver.substeps, group.effort.substeps);
+    effort.solver.velocityIterations = std::max(s.solver.velocityIterations, group.effort.velocityIterations);
+    effort.solver.positionIterations = std::max(s.solver.positionIterations, group.effort.positionIterations);
+    const float h = effort.substepDt = step.dt / static_cast<float>(effort.solver.substeps);
+    effort.impulseScale = h / step.substepDt;
+    // A spring that is too stiff for the substep is no longer soft.
+    const float stiffest = 0.25f / h;
+
+    ContactSolveSettings& contacts = effort.contacts;
+    contacts.inverseDt = 1.0f / h;
+    contacts.elapsed = 0;
+    contacts.slop = s.penetrationSlop;
+    contacts.maxPushSpeed = s.contactPushSpeed;
+    contacts.Soften(std::min(s.contactFrequency, stiffest), s.contactDampingRatio, h);
+
+    ContactSolveSettings soft = contacts;
+    soft.Soften(std::min(s.jointFrequency, stiffest), s.jointDampingRatio, h);
+    JointSolveSettings& joints = effort.joints;
+    joints.dt = step.dt;
+    joints.substepDt = h;
+    joints.inverseDt = 1.0f / h;
+    joints.elapsed = 0;
+    joints.impulseScale = step.impulseScale * effort.impulseScale;
+    joints.pushRate = soft.pushRate;
+    joints.softness = {soft.massScale, soft.impulseScale};
+    joints.maxPushSpeed = s.jointPushSpeed;
+    joints.continues = joints.firstPass = false;
+    return effort;
+}
+
+}  // namespace fulcrum
