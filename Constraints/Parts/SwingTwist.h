@@ -25,6 +25,8 @@
 // Twist: dtau/dt = t . w / cos(alpha / 2) with t = (x + d) / |x + d| = (s, swing_z, -swing_y), of length 1 up to 180 degrees.
 // Its C is the way to the end of the range times cos(alpha / 2), with the axis t: exact at C = 0, to first order elsewhere. It
 // fades where the x axes are opposite and twist means nothing. The longitude's C is scaled alike, by the cosine of latitude.
+// Near 180 degrees t is nearly along the edge's a: a twist beyond its range and a swing beyond a wide one of 150 degrees or more
+// then push against each other, and iterations over the rows bring them back slowly. Either alone comes back at once.
 #pragma once
 
 #include <Fulcrum/Math/Trigonometry.h>
