@@ -87,6 +87,15 @@ void SceneWorld::AddWalls(float halfX, float halfZ, float height) {
     }
 }
 
+double LargestJointGap(const SceneWorld& world) {
+    double largest = 0;
+    world.Joints().Visit([&](JointId id) {
+        const Position gap = world.Joints().GetFrameB(id).position - world.Joints().GetFrameA(id).position;
+        largest = std::max(largest, gap.norm());
+    });
+    return largest;
+}
+
 double BodiesBelowTheFloor(const SceneWorld& world) {
     int count = 0;
     world.System().VisitBodies([&](BodyId id) {

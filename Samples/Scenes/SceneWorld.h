@@ -37,6 +37,8 @@ public:
     const PhysicsSystem& System() const { return *system_; }
     BodyInterface& Bodies() { return system_->Bodies(); }
     const BodyInterface& Bodies() const { return system_->Bodies(); }
+    JointInterface& Joints() { return system_->Joints(); }
+    const JointInterface& Joints() const { return system_->Joints(); }
     int StepCount() const { return stepCount_; }
     double Time() const { return time_; }               // s
     double LastStepMs() const { return lastMs_; }        // wall clock of PhysicsSystem::Update alone
@@ -49,6 +51,7 @@ public:
 
     Random random;                // seeded by the input
     std::vector<BodyId> watched;  // what the figure looks at, in an order that the scene chooses
+    std::vector<JointId> joints;  // likewise
 
     // Shapes; null, and an error of Create, where the sizes are wrong.
     ShapePtr BoxOf(float halfX, float halfY, float halfZ);
@@ -59,6 +62,14 @@ public:
 
     // An error of Create where the settings are wrong.
     BodyId Add(const BodySettings& settings);
+    // Settings of any kind of joint; likewise.
+    template <class Settings>
+    JointId Join(const Settings& settings) {
+        Result<JointId> joint = Joints().Create(settings);
+        if (joint) return joint.Value();
+        if (!firstError_) firstError_ = joint.GetError();
+        return {};
+    }
     // Static box, its top at y = 0.
     BodyId AddFloor(float halfX, float halfZ);
     // Four static walls on the floor, their middles at x = -halfX, halfX and z = -halfZ, halfZ, `height` metres high.
@@ -81,6 +92,9 @@ private:
 
 // A figure of several scenes: dynamic bodies whose centre is below y = 0, or nowhere.
 double BodiesBelowTheFloor(const SceneWorld& world);
+
+// The same: the largest distance between the two anchors of a joint, m.
+double LargestJointGap(const SceneWorld& world);
 
 // The rotation by `angle` radians about a unit axis.
 Quaternion Turn(const Vector3& axis, double angle);

@@ -9,6 +9,7 @@ namespace fulcrum {
     scene(Pyramid)            \
     scene(LargePyramid)       \
     scene(ManyPyramids)       \
+    scene(JointGrid)          \
     scene(HullPile)           \
     scene(Drum)               \
     scene(MostlyAsleep)       \
