@@ -192,7 +192,6 @@ TEST(SwingTwistPart, SpringIsTheOscillatorInTheLimit) {
         SwingTwistRows<float> pure;
         pure.row[2] = {rows.row[2].axis, rows.row[2].error / scale, rows.row[2].lowest};
         part.CalculateProperties(m1, m2, pure, spring);
-        part.SetTotalLambda(Vector3(part.GetTotalLambda()));
         part.WarmStart(v1, v2, m1, m2, 1.0f);
         part.SolveVelocity(v1, v2, m1, m2);
         angle += h * static_cast<double>(part.RelativeMotion(v1, v2, 2));
