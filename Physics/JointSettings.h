@@ -132,6 +132,8 @@ struct PathJointSettings : JointSettings {
 
 // B, a wheel, spins about the anchor's axis, its axle, and slides along the anchor's normal, upwards, which steers too.
 struct WheelJointSettings : JointSettings {
+    WheelJointSettings() { anchorA.normal = Vector3(0, 1, 0); }
+
     // m, N; zero where the anchors coincide. The motor's spring carries the chassis, the limits are the stops.
     AxisControl suspension = {
         .limited = true,

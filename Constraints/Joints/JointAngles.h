@@ -41,12 +41,13 @@ struct TurnCount {
     std::array<double, 2> numbers{};  // rad, rad/s
 
     double Angle() const { return numbers[0]; }
-    // From here on. With limits the turn counts that is farthest inside, of those next to their ends.
+    // From here on. With limits that the angle is not in, the turn counts that is farthest inside them, or nearest to them.
     void Start(double wrapped, const AxisControl& control) {
         numbers = {wrapped, 0.0};
         if (!control.limited) return;
         const double min = control.limits.min, max = control.limits.max;
-        const auto outside = [&](double x) { return std::max({min - x, x - max, 0.0}); };
+        const auto outside = [&](double x) { return std::max(min - x, x - max); };
+        if (outside(wrapped) <= 0.0) return;
         for (const double end : {min, max}) {
             if (!std::isfinite(end)) continue;
             for (const double near : {end, end - kFullTurn, end + kFullTurn}) {

@@ -109,7 +109,8 @@ double Path::Closest(const Vector3& point) const {
         const float distance = LengthSquared(Vector3(Sample(t).position - point));
         if (distance < least) least = distance, best = t;
     }
-    return Closest(point, best);
+    const double t = Closest(point, best);
+    return isClosed_ ? t - End() * std::floor(t / End()) : t;
 }
 
 Result<std::shared_ptr<const Path>> Path::Make(std::vector<PathPoint> points, bool isClosed) {
