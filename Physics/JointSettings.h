@@ -61,7 +61,7 @@ struct FixedJointSettings : JointSettings {};
 // The distance of the anchors stays in a range: a rod, a rope, a spring.
 struct DistanceJointSettings : JointSettings {
     // m, 0 <= min <= max, max may be infinite. One left out: 0, infinite. Both left out: as it is when the joint is made.
-    std::optional<float> minDistance, maxDistance;
+    std::optional<float> minDistance{}, maxDistance{};
     SpringSettings spring{};  // of both ends; where min is max, of the distance itself
 };
 
@@ -120,7 +120,7 @@ struct PulleyJointSettings : JointSettings {
     Position fixedPointB = Position::Zero();  // m, world space
     float ratio = 1.0f;                       // > 0
     float minLength = 0.0f;                   // m, >= 0
-    std::optional<float> maxLength;           // m, >= minLength; left out: as it is when the joint is made
+    std::optional<float> maxLength{};         // m, >= minLength; left out: as it is when the joint is made
 };
 
 // B's anchor rides on a path that is given in the frame of A's anchor.
