@@ -159,9 +159,8 @@ struct EllipseEdge {
     struct Point {
         Vector3 at, derivative;  // D and dD/dt at phi = (Y cos t, Z sin t)
     };
-    Point At(float t) const {
-        const SineCosine<float> angle = SinCos(t);
-        const float y = halfY * angle.cosine, z = halfZ * angle.sine, dy = -(halfY * angle.sine), dz = halfZ * angle.cosine;
+    Point At(const SineCosine<float>& t) const {
+        const float y = halfY * t.cosine, z = halfZ * t.sine, dy = -(halfY * t.sine), dz = halfZ * t.cosine;
         const float alpha = Max(Sqrt(y * y + z * z), 1e-12f), inverse = 1.0f / alpha;
         const SineCosine<float> swing = SinCos(alpha);
         const float ey = y * inverse, ez = z * inverse, ratio = swing.sine * inverse;
@@ -175,31 +174,39 @@ struct EllipseEdge {
     // The point nearest to d, whose coordinates y and z are not negative; it is in the same quadrant, t in 0..pi/2.
     Point Nearest(const Vector3& d) const {
         // Where the ellipse bends more than the sphere, several points are nearest about them; the best of a few comes first.
-        constexpr int kSamples = 8;
+        constexpr int kSamples = 6;
         constexpr float kStep = 0.5f * AngleRange::kHalfTurn / kSamples;
+        constexpr float kSine[kSamples + 1] = {0.0f, 0.25881905f, 0.5f, 0.70710678f, 0.86602540f, 0.96592583f, 1.0f};
+        const auto sample = [&](int i) { return At({kSine[i], kSine[kSamples - i]}); };
         int best = 0;
         float closest = -2.0f;
         for (int i = 0; i <= kSamples; ++i) {
-            const float cosine = Dot(d, At(kStep * static_cast<float>(i)).at);
+            const float cosine = Dot(d, sample(i).at);
             if (cosine > closest) best = i, closest = cosine;
         }
-        // d . D grows up to the point and falls from there: a root of d . dD/dt, by the Illinois method.
-        const auto slope = [&](float t) { return Dot(d, At(t).derivative); };
-        float low = kStep * static_cast<float>(best), lowSlope = slope(low), high = low, highSlope = lowSlope;
-        if (lowSlope > 0.0f && best < kSamples)
-            high = low + kStep, highSlope = slope(high);
-        else if (best > 0)
-            low = high - kStep, lowSlope = slope(low);
-        for (int i = 0; i < 12 && lowSlope > 0.0f && highSlope < 0.0f && high - low > 1e-7f; ++i) {
-            const float t = (low * highSlope - high * lowSlope) / (highSlope - lowSlope), here = slope(t);
-            if (here > 0.0f)
-                low = t, lowSlope = here, highSlope *= 0.5f;
-            else
-                high = t, highSlope = here, lowSlope *= 0.5f;
+        // d . D grows up to the point and falls from there: a root of its slope d . dD/dt, by the Illinois method.
+        Point point = sample(best);
+        float slope = Dot(d, point.derivative);
+        const int other = slope > 0.0f ? best + 1 : best - 1;
+        if (other < 0 || other > kSamples) return point;
+        float low = kStep * static_cast<float>(best), lowSlope = slope, high = kStep * static_cast<float>(other);
+        float highSlope = Dot(d, sample(other).derivative);
+        for (int i = 0; i < 12 && lowSlope * highSlope < 0.0f && Abs(slope) > kRounding; ++i) {
+            const float t = (low * highSlope - high * lowSlope) / (highSlope - lowSlope);
+            point = At(SinCos(t));
+            slope = Dot(d, point.derivative);
+            if (slope * highSlope < 0.0f) {
+                low = high;
+                lowSlope = highSlope;
+            } else {
+                lowSlope *= 0.5f;
+            }
+            high = t;
+            highSlope = slope;
         }
-        // The smaller slope is the nearer end; its halving above only makes the other end look better by little.
-        return At(lowSlope < -highSlope ? low : high);
+        return point;
     }
+    static constexpr float kRounding = 1e-7f;  // of slopes
 };
 
 }  // namespace detail

@@ -124,19 +124,22 @@ double DistanceToEdge(const SwingTwistLimits& limits, const Position& d) {
         const Position at = EdgeAt(limits, t);
         return std::atan2(at.cross(d).norm(), at.dot(d));
     };
-    constexpr int kSamples = 2000;
-    int best = 0;
-    for (int i = 1; i < kSamples; ++i)
-        if (distance(double(i) / kSamples) < distance(double(best) / kSamples)) best = i;
-    double low = (best - 1.0) / kSamples, high = (best + 1.0) / kSamples;
-    low = std::max(low, 0.0);
-    high = std::min(high, 1.0 - 1e-12);
-    for (int i = 0; i < 60; ++i) {  // the distance has one minimum between
-        const double a = low + (high - low) / 3.0, b = high - (high - low) / 3.0;
-        if (distance(a) < distance(b)) high = b;
-        else low = a;
+    double least = 10.0;
+    for (int quarter = 0; quarter < 4; ++quarter) {
+        constexpr int kSamples = 500;
+        const double start = 0.25 * quarter, end = start + 0.25 - 1e-12, step = (end - start) / kSamples;
+        double best = start;
+        for (int i = 1; i <= kSamples; ++i)
+            if (distance(start + i * step) < distance(best)) best = start + i * step;
+        double low = std::max(best - step, start), high = std::min(best + step, end);
+        for (int i = 0; i < 60; ++i) {  // the distance has one minimum between
+            const double a = low + (high - low) / 3.0, b = high - (high - low) / 3.0;
+            if (distance(a) < distance(b)) high = b;
+            else low = a;
+        }
+        least = std::min(least, std::min(distance(best), distance(0.5 * (low + high))));
     }
-    return std::min(distance(0.5 * (low + high)), distance(double(best) / kSamples));
+    return least;
 }
 // Positive inside, of any size.
 double InsideBy(const SwingTwistLimits& limits, double y, double z) {
