@@ -154,6 +154,8 @@ struct CustomJointSettings : JointSettings {
 };
 
 // Calls a macro with the name of every kind above, without JointSettings.
-#define FULCRUM_FOR_EACH_JOINT_KIND(call) call(Point) call(Fixed) call(Distance) call(Hinge) call(Slider)
+#define FULCRUM_FOR_EACH_JOINT_KIND(call)                                                                            \
+    call(Point) call(Fixed) call(Distance) call(Hinge) call(Slider) call(Cone) call(SwingTwist) call(SixDof)         \
+    call(Gear) call(RackAndPinion) call(Pulley) call(Path) call(Wheel) call(Custom)
 
 }  // namespace fulcrum
