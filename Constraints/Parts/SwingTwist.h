@@ -85,7 +85,7 @@ struct SwingTwist {
     float alpha = 0.0f;     // rad, 0..pi
     float e1 = 1.0f, e2 = 0.0f;  // e = (0, e1, e2); (0, 1, 0) where alpha is 0
     float twist = 0.0f;     // rad, -pi..pi
-    Vector3 direction;      // d
+    Vector3 direction = Vector3(1, 0, 0);  // d
 
     float SwingY() const { return alpha * e1; }  // phi_y, rad
     float SwingZ() const { return alpha * e2; }
