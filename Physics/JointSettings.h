@@ -66,7 +66,7 @@ struct DistanceJointSettings : JointSettings {
 };
 
 // B turns about the anchor's axis. The angle is the rotation of B against A about it, zero where the frames coincide,
-// counted over any number of turns.
+// counted over any number of turns as long as it has limits, a motor or friction.
 struct HingeJointSettings : JointSettings {
     AxisControl angle{};  // rad, rad/s, N m
 };
@@ -123,7 +123,8 @@ struct PulleyJointSettings : JointSettings {
     std::optional<float> maxLength{};         // m, >= minLength; left out: as it is when the joint is made
 };
 
-// B's anchor rides on a path that is given in the frame of A's anchor.
+// B's anchor rides on a path that is given in the frame of A's anchor. Where B is to turn with the path, its frame becomes the
+// path's: x along the tangent, y along the normal. So give anchor B: where B is tied, and which of its axes these are.
 struct PathJointSettings : JointSettings {
     std::shared_ptr<const Path> path = Path::Straight(1.0f);  // not null
     AxisControl along{};                                      // m from its start, m/s, N
