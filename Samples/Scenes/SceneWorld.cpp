@@ -74,6 +74,12 @@ BodyId SceneWorld::Add(const BodySettings& settings) {
     return {};
 }
 
+void SceneWorld::AddRagdoll(const RagdollSettings& settings, const Pose& origin, std::optional<MotionType> motion) {
+    Result<Ragdoll> ragdoll = Ragdoll::Create(*system_, settings, origin, motion);
+    if (ragdoll) ragdolls.push_back(std::move(ragdoll.Value()));
+    else if (!firstError_) firstError_ = ragdoll.GetError();
+}
+
 BodyId SceneWorld::AddFloor(float halfX, float halfZ) {
     return Add({.shape = BoxOf(halfX, 1, halfZ), .motion = MotionType::Static, .position = {0, -1, 0}});
 }

@@ -4,6 +4,7 @@
 
 #include <Fulcrum/Collision/Shapes/Compound.h>
 #include <Fulcrum/Physics/PhysicsSystem.h>
+#include <Fulcrum/Physics/Ragdoll/Ragdoll.h>
 #include <Fulcrum/Samples/Scenes/Random.h>
 #include <Fulcrum/Samples/Scenes/Scene.h>
 
@@ -52,6 +53,7 @@ public:
     Random random;                // seeded by the input
     std::vector<BodyId> watched;  // what the figure looks at, in an order that the scene chooses
     std::vector<JointId> joints;  // likewise
+    std::vector<Ragdoll> ragdolls;  // all that AddRagdoll made
 
     // Shapes; null, and an error of Create, where the sizes are wrong.
     ShapePtr BoxOf(float halfX, float halfY, float halfZ);
@@ -70,6 +72,8 @@ public:
         if (!firstError_) firstError_ = joint.GetError();
         return {};
     }
+    // Adds to `ragdolls`. An error of Create where the settings are wrong.
+    void AddRagdoll(const RagdollSettings& settings, const Pose& origin, std::optional<MotionType> motion = {});
     // Static box, its top at y = 0.
     BodyId AddFloor(float halfX, float halfZ);
     // Four static walls on the floor, their middles at x = -halfX, halfX and z = -halfZ, halfZ, `height` metres high.

@@ -10,6 +10,7 @@ namespace fulcrum {
     scene(LargePyramid)       \
     scene(ManyPyramids)       \
     scene(JointGrid)          \
+    scene(Ragdolls)           \
     scene(HullPile)           \
     scene(Drum)               \
     scene(MostlyAsleep)       \
