@@ -192,7 +192,7 @@ void AngularControls::AddMotorRows(const JointPose& pose, const Motion& motion, 
     Vector3 allowed = motion.motorVelocity;
     for (const RotationLimit& limit : list) {
         if (limit.isLocked || !IsHard(axes_[AxisOfLimit(limit.slot)].limits.spring)) continue;
-        const float slowest = -std::max(limit.error, -kLimitSlop) / pose.dt, speed = Dot(limit.axis, allowed);
+        const float slowest = -std::max(limit.error, -kLimitSlop) / (pose.dt + pose.substepDt), speed = Dot(limit.axis, allowed);
         if (speed < slowest) allowed += limit.axis * (slowest - speed);
     }
     for (int k = 0; k < 3; ++k) {

@@ -31,7 +31,7 @@ float Reach(const AxisControl& control, double position, float speed, float sign
     return reach;
 }
 
-void AddMotorRow(const AxisControl& control, const JointRow& motion, double position, float dt, uint32_t slot,
+void AddMotorRow(const AxisControl& control, const JointRow& motion, double position, float timeToLimit, uint32_t slot,
                  JointRowList& rows) {
     const JointMotor& motor = control.motor;
     if (motor.mode == MotorMode::ToPosition) {
@@ -49,12 +49,13 @@ void AddMotorRow(const AxisControl& control, const JointRow& motion, double posi
     row.minForce = motor.minForce;
     row.maxForce = motor.maxForce;
     if (!control.limited || !IsHard(control.limits.spring)) return;
-    // A motor that pushed on against a hard stop would have both rows' impulses grow without end. It wants what the limit
-    // allows: to be there as the step ends. Well beyond the limit it must not hold what the limit pushes back.
+    // A motor that pushed on against a hard stop would have both rows' impulses grow without end. It wants no more than the
+    // limit allows at any time of the step, which is to be there a substep later. Well beyond the limit it must not hold
+    // what the limit pushes back.
     const float below = static_cast<float>(control.limits.max - position);
     const float above = static_cast<float>(position - control.limits.min);
-    row.speed = std::min(row.speed, std::max(below, -kLimitSlop) / dt);
-    row.speed = std::max(row.speed, -std::max(above, -kLimitSlop) / dt);
+    row.speed = std::min(row.speed, std::max(below, -kLimitSlop) / timeToLimit);
+    row.speed = std::max(row.speed, -std::max(above, -kLimitSlop) / timeToLimit);
     if (below < -kLimitSlop) row.maxForce = 0.0f;
     if (above < -kLimitSlop) row.minForce = 0.0f;
 }
@@ -100,7 +101,7 @@ void AddControlRows(const AxisControl& control, const JointPose& pose, const Joi
         row.maxForce = control.friction;
     }
     if (control.motor.mode != MotorMode::Off)
-        AddMotorRow(control, motion, position, pose.dt, firstSlot + ControlSlots::kMotor, rows);
+        AddMotorRow(control, motion, position, pose.dt + pose.substepDt, firstSlot + ControlSlots::kMotor, rows);
     if (!control.limited) return;
     const float speed = pose.SpeedOf(motion);
     const float above = static_cast<float>(position - limits.min), below = static_cast<float>(limits.max - position);

@@ -99,7 +99,8 @@ TEST(AxisControl, PositionTargetsEndAtTheLimits) {
     EXPECT_NEAR(RowsAt(control, 0.5f)[kMotor].error, -0.5f, 1e-6f);
 }
 
-TEST(AxisControl, AMotorMeetsAHardLimitAtTheEndOfAStep) {
+TEST(AxisControl, AMotorComesToAHardLimitButNotBeyond) {
+    // Each step leaves the part of a substep of the way: a fifth.
     AxisControl control = Limited(-1, 1);
     for (const float speed : {1.0f, 40.0f, 1e4f}) {
         control.motor.mode = MotorMode::ToVelocity;

@@ -150,20 +150,21 @@ TEST(SwingTwistJoint, TargetsAreKeptWithinTheLimits) {
     }
 }
 
-TEST(SwingTwistJoint, AVelocityMotorMeetsAHardLimitAtTheEndOfAStep) {
+TEST(SwingTwistJoint, AVelocityMotorComesToAHardLimitButNotBeyond) {
     AxisControl swing = Limited(-0.8f, 0.8f);
     swing.motor.mode = MotorMode::ToVelocity;
     swing.motor.targetSpeed = 100.0f;
     SwingTwistJoint joint(Limited(-0.5f, 0.5f), swing, Limited(-0.8f, 0.8f), SwingShape::Ellipse);
     JointBodies bodies;
     float angle = 0.0f;
-    for (int i = 0; i < 5; ++i) {
+    for (int i = 0; i < 10; ++i) {
         bodies.PlaceB(Vector3::Zero(), AboutY(angle));
         auto rows = RowsOf(joint, bodies.Pose());
         angle += rows[SlotOf(joint, JointAxis::AngularY, ControlSlots::kMotor)].speed * bodies.dt;
         EXPECT_TRUE(rows.contains(SlotOf(joint, JointAxis::AngularY, ControlSlots::kHighLimit)));
-        EXPECT_NEAR(angle, 0.8f, 1e-5f);
+        EXPECT_LT(angle, 0.8f + 1e-6f);
     }
+    EXPECT_NEAR(angle, 0.8f, 1e-5f);
     bodies.PlaceB(Vector3::Zero(), AboutY(0.9f));
     EXPECT_EQ(RowsOf(joint, bodies.Pose())[SlotOf(joint, JointAxis::AngularY, ControlSlots::kMotor)].maxForce, 0.0f);
 }
