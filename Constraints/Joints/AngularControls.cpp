@@ -146,12 +146,13 @@ void AngularControls::CollectRows(const JointPose& pose, uint32_t firstSlot, Joi
     const SwingTwistLimits limits = Limits();
     const Motion motion = MotionOf(pose, limits);
     RotationLimitList list;
-    // An ellipse far off is not looked at.
+    // Edges far off are not looked at: an ellipse and a pyramid contain the circle of their smallest angle.
     float reach = (1.25f * std::max(Length(motion.velocity), Length(motion.motorSpeed)) + kAngularSlackSpeed) * pose.dt;
     for (int k = 0; k < 3; ++k)
         reach += WayOfSpring(axes_[static_cast<size_t>(k)].motor.spring, Abs(motion.toTarget[k]), pose.dt);
-    const bool isEllipse = shape_ == SwingShape::Ellipse && IsLimited(limits.swingY) && IsLimited(limits.swingZ);
-    if (!isEllipse || std::min(limits.swingY.maximum, limits.swingZ.maximum) - motion.now.alpha <= reach)
+    const AngleRange &y = limits.swingY, &z = limits.swingZ;
+    const float least = std::min({y.maximum, -y.minimum, z.maximum, -z.minimum});
+    if (!IsLimited(y) || !IsLimited(z) || least - motion.now.alpha <= reach)
         AddSwingLimits(list, motion.now, limits);
     AddTwistLimits(list, motion.now, limits.twist);
     // What a limit's axis is seen from.

@@ -8,8 +8,9 @@
 #include <Fulcrum/Constraints/Parts/BodyState.h>
 #include <Fulcrum/Constraints/Parts/SpringSettings.h>
 
-#include <array>
 #include <limits>
+#include <new>
+#include <type_traits>
 
 namespace fulcrum {
 
@@ -32,20 +33,34 @@ struct JointRow {
     SpringSettings spring;
 };
 
-// The rows of one joint in one step.
+// The rows of one joint in one step. Only rows that were added are ever set: a list is made for every joint with rows in
+// every step, and clearing all its room took ten times as long as most joints need to fill it.
 struct JointRowList {
     static constexpr uint32_t kMaxRows = 24;  // six axes, each with two limits, a motor and friction
-    std::array<JointRow, kMaxRows> rows;
+
+    class Rows {
+    public:
+        Rows() {}
+        JointRow& operator[](size_t i) { return rows_[i]; }
+        const JointRow& operator[](size_t i) const { return rows_[i]; }
+
+    private:
+        union {
+            JointRow rows_[kMaxRows];
+        };
+    };
+    Rows rows;
     uint32_t count = 0;
 
     // A new row in the slot, to be filled.
     JointRow& Add(uint32_t slot, JointRow::Kind kind) {
         FULCRUM_ASSERT(count < kMaxRows && slot < kMaxRows);
-        JointRow& row = rows[count++] = {};
+        JointRow& row = *new (&rows[count++]) JointRow();
         row.slot = static_cast<uint8_t>(slot);
         row.kind = kind;
         return row;
     }
 };
+static_assert(std::is_trivially_destructible_v<JointRow>);
 
 }  // namespace fulcrum

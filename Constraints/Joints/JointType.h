@@ -7,6 +7,7 @@
 #include <Fulcrum/Constraints/Joints/JointRow.h>
 #include <Fulcrum/Math/Trigonometry.h>
 
+#include <array>
 #include <span>
 
 namespace fulcrum {
