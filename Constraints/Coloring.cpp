@@ -34,6 +34,7 @@ ColourSlot ConstraintColouring::Add(Kind kind, const Entry& entry, bool late) {
     list.push_back(entry);
     ++size_;
     ++version_;
+    jointVersion_ += kind == Kind::Joint;
     return place;
 }
 
@@ -49,6 +50,7 @@ uint32_t ConstraintColouring::Remove(Kind kind, const Entry& entry, ColourSlot p
     list.pop_back();
     --size_;
     ++version_;
+    jointVersion_ += kind == Kind::Joint;
     return moved.constraint;
 }
 

@@ -44,7 +44,10 @@ public:
     uint32_t Remove(Kind kind, const Entry& entry, ColourSlot place);
 
     // Says that what was derived from the colours holds no longer.
-    void Touch() { ++version_; }
+    void Touch() {
+        ++version_;
+        ++jointVersion_;
+    }
 
     // Whether any coloured constraint touches the body.
     bool IsTouched(uint32_t body) const { return body < used_.size() && (used_[body] != 0 || overflows_[body] != 0); }
@@ -54,6 +57,7 @@ public:
     bool HasOverflow() const { return !colours_[kOverflow].Empty(); }
     // Grows with every change: what was derived from the colours holds as long as it stays.
     uint64_t Version() const { return version_; }
+    uint64_t JointVersion() const { return jointVersion_; }  // the same, of joints alone
     void ReserveBodies(uint32_t count);
     size_t MemoryUsed() const;
 
@@ -66,7 +70,7 @@ private:
     std::vector<uint64_t> used_;       // by body: bit c is set where a constraint of colour c moves it
     std::vector<uint16_t> overflows_;  // by body: its constraints without a colour
     uint32_t size_ = 0;
-    uint64_t version_ = 1;
+    uint64_t version_ = 1, jointVersion_ = 1;
 };
 
 }  // namespace fulcrum

@@ -177,7 +177,9 @@ template <class Settings>
 Result<JointId> JointInterface::Create(const Settings& settings) {
     if (MaybeError error = CheckBodies(world_, settings)) return *error;
     if (MaybeError error = Check(settings)) return *error;
-    return Add(settings, MakeType(settings));
+    std::unique_ptr<JointType> type = MakeType(settings);
+    if (!type) return Error{ErrorCode::Unsupported, "make: gave no joint type"};
+    return Add(settings, std::move(type));
 }
 
 #define FULCRUM_INSTANTIATE(kind) template Result<JointId> JointInterface::Create(const kind##JointSettings&);

@@ -29,17 +29,17 @@ enum class JointSpace : uint8_t {
 struct JointAnchor {
     Position point = Position::Zero();      // m
     Vector3 axis = Vector3(1, 0, 0);        // x of the frame; unit within 1e-3
-    std::optional<Vector3> normal;          // y of the frame; unit, perpendicular to the axis within 1e-3; left out: any
+    std::optional<Vector3> normal{};          // y of the frame; unit, perpendicular to the axis within 1e-3; left out: any
 };
 
 // Of two joints of a body the one of higher priority is solved later, and wins where they disagree.
 enum class JointPriority : uint8_t { Normal, High };
 
 struct JointSettings {
-    BodyId bodyA, bodyB;              // at least one is dynamic
+    BodyId bodyA{}, bodyB{};          // at least one is dynamic
     JointSpace space = JointSpace::World;
     JointAnchor anchorA;
-    std::optional<JointAnchor> anchorB;  // left out: where anchor A is in the world, as the bodies stand now
+    std::optional<JointAnchor> anchorB{};  // left out: where anchor A is in the world, as the bodies stand now
     bool enabled = true;
     bool collideConnected = false;    // whether the two bodies collide with each other
     JointPriority priority = JointPriority::Normal;

@@ -95,6 +95,9 @@ struct SystemSettings {
     float contactPushSpeed = 3.0f;       // m/s, > 0: the fastest push
     float jointFrequency = 60.0f;        // Hz, > 0, of the spring that pulls joints together; limited likewise
     float jointDampingRatio = 2.0f;      // >= 0
+    // Joints that carry more than this times the mass of their own bodies are solved exactly, as trees, where they form such;
+    // > 0, infinite: never.
+    float exactJointLoad = 10.0f;
     float jointPushSpeed = 20.0f;        // m/s and rad/s, > 0: the fastest pull
     float restitutionSpeed = 0.5f;       // m/s, >= 0: slower impacts do not bounce
     float boundsMargin = 0.05f;          // m, > 0: fat bounds exceed the shape's by this

@@ -1,6 +1,7 @@
 #include <Fulcrum/Physics/Validation.h>
 
 #include <cstdio>
+#include <limits>
 
 namespace fulcrum {
 
@@ -111,6 +112,12 @@ MaybeError Check(const SystemSettings& s) {
                                CheckPositive("contactFrequency", s.contactFrequency),
                                CheckNotNegative("contactDampingRatio", s.contactDampingRatio),
                                CheckPositive("contactPushSpeed", s.contactPushSpeed),
+                               CheckPositive("jointFrequency", s.jointFrequency),
+                               CheckNotNegative("jointDampingRatio", s.jointDampingRatio),
+                               CheckPositive("jointPushSpeed", s.jointPushSpeed),
+                               s.exactJointLoad == std::numeric_limits<float>::infinity()
+                                   ? MaybeError()
+                                   : CheckPositive("exactJointLoad", s.exactJointLoad),
                                CheckNotNegative("restitutionSpeed", s.restitutionSpeed),
                                CheckPositive("boundsMargin", s.boundsMargin)))
         return e;

@@ -107,6 +107,10 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
 template <int N>
 void WarmStartJoints(const JointBatch<N>& batch, BodyState* states);
 
+// Adds what the turning of the parts in the last substep changes of their impulses, where SolveJointVelocities is not told to.
+template <int N>
+void TurnJoints(const JointBatch<N>& batch, BodyState* states);
+
 template <int N>
 void SolveJointVelocities(JointBatch<N>& batch, BodyState* states, const JointSolveSettings& settings);
 

@@ -20,6 +20,19 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     if constexpr (kLinear == LinearLock::Line) add(batch.line);
 }
 
+// What the turning of the parts in the last substep changes of their impulses.
+template <LinearLock kLinear, AngularLock kAngular, int N>
+[[gnu::always_inline]] inline void Turn(const JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
+    if constexpr (kLinear != LinearLock::None || kAngular == AngularLock::Axis) {
+        a.angular += batch.turnedA.angular;
+        b.angular += batch.turnedB.angular;
+    }
+    if constexpr (kLinear == LinearLock::Line) {
+        a.linear += batch.turnedA.linear;
+        b.linear += batch.turnedB.linear;
+    }
+}
+
 template <class Part, int N>
 [[gnu::always_inline]] inline void Change(Part& part, const Vec3<Wide<N>>& perImpulse, Wide<N> impulse) {
     auto lambda = part.GetTotalLambda();
@@ -150,6 +163,20 @@ void WarmStartJoints(const JointBatch<N>& batch, BodyState* states) {
 }
 
 template <int N>
+void TurnJoints(const JointBatch<N>& batch, BodyState* states) {
+    using Real = Wide<N>;
+    WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
+        Motion<N> motionA, motionB;
+        motionA.template Gather<Of::Velocity>(batch.bodyA, states);
+        motionB.template Gather<Of::Velocity>(batch.bodyB, states);
+        Twist<Real> a = motionA.Get(), b = motionB.Get();
+        Turn<linear, angular>(batch, a, b);
+        motionA.Scatter(a, batch.count, batch.fixedA);
+        motionB.Scatter(b, batch.count, batch.fixedB);
+    });
+}
+
+template <int N>
 void SolveJointVelocities(JointBatch<N>& batch, BodyState* states, const JointSolveSettings& settings) {
     using Real = Wide<N>;
     WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
@@ -157,16 +184,7 @@ void SolveJointVelocities(JointBatch<N>& batch, BodyState* states, const JointSo
         motionA.template Gather<Of::Velocity>(batch.bodyA, states);
         motionB.template Gather<Of::Velocity>(batch.bodyB, states);
         Twist<Real> a = motionA.Get(), b = motionB.Get();
-        if constexpr (linear != LinearLock::None || angular == AngularLock::Axis) {
-            if (settings.continues) {
-                a.angular += batch.turnedA.angular;
-                b.angular += batch.turnedB.angular;
-                if constexpr (linear == LinearLock::Line) {
-                    a.linear += batch.turnedA.linear;
-                    b.linear += batch.turnedB.linear;
-                }
-            }
-        }
+        if (settings.continues) Turn<linear, angular>(batch, a, b);
         SolveAll<false, linear, angular>(batch, a, b);
         motionA.Scatter(a, batch.count, batch.fixedA);
         motionB.Scatter(b, batch.count, batch.fixedB);
@@ -201,6 +219,7 @@ void UpdateJoints(JointBatch<N>& batch, BodyState* states, const JointSolveSetti
 
 #define FULCRUM_INSTANTIATE(lanes)                                                                     \
     template void WarmStartJoints(const JointBatch<lanes>&, BodyState*);                               \
+    template void TurnJoints(const JointBatch<lanes>&, BodyState*);                                    \
     template void SolveJointVelocities(JointBatch<lanes>&, BodyState*, const JointSolveSettings&);     \
     template void RelaxJoints(JointBatch<lanes>&, BodyState*, const JointSolveSettings&);              \
     template void UpdateJoints(JointBatch<lanes>&, BodyState*, const JointSolveSettings&);

@@ -98,6 +98,7 @@ public:
 
     // Another bias, or another softness, for rows that are otherwise as they were set up.
     void SetBias(const Rows& bias) { bias_ = bias; }
+    const Rows& GetBias() const { return bias_; }
     void SetSoftness(const RowSoftness<Real>& softness) { softness_ = softness; }
 
     void Deactivate() { SetEffectiveMass(Types::NoMass()); }

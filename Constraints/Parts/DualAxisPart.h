@@ -59,6 +59,9 @@ public:
         AddPointImpulse<kSide1, kSide2>(motion1, motion2, mass1, mass2, frame_.r1PlusU, frame_.r2, impulse, applied);
     }
 
+    // As it was set up.
+    const DualAxisFrame<Real>& GetFrame() const { return frame_; }
+
 private:
     static Vector Zero() { return Vector(Real(0.0f), Real(0.0f), Real(0.0f)); }
     DualAxisFrame<Real> frame_ = {Zero(), Zero(), Zero(), Zero()};

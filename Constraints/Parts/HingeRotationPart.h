@@ -70,6 +70,10 @@ public:
         AddAngularImpulse<kSide1, kSide2>(motion1, motion2, mass1, mass2, impulse, applied);
     }
 
+    // World space, as they were set up.
+    const Vector& GetB2() const { return b2_; }
+    const Vector& GetC2() const { return c2_; }
+
 private:
     Vector b2_ = Vector(Real(0.0f), Real(0.0f), Real(0.0f));
     Vector c2_ = Vector(Real(0.0f), Real(0.0f), Real(0.0f));

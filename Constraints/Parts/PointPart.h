@@ -42,6 +42,10 @@ public:
         AddPointImpulse<kSide1, kSide2>(motion1, motion2, mass1, mass2, r1_, r2_, lambda, applied);
     }
 
+    // World space, m, as they were set up.
+    const Vector& GetArm1() const { return r1_; }
+    const Vector& GetArm2() const { return r2_; }
+
 private:
     Vector r1_ = Vector(Real(0.0f), Real(0.0f), Real(0.0f));
     Vector r2_ = Vector(Real(0.0f), Real(0.0f), Real(0.0f));

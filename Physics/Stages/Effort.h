@@ -10,14 +10,19 @@ namespace fulcrum {
 struct Effort {
     SolverSettings solver;
     float substepDt;            // s
+    bool hasTrees;              // see RunTrees
     float impulseScale;         // records hold impulses of the system's substeps: times this, they are those of the group's
     ContactSolveSettings contacts;
     JointSolveSettings joints;
 };
 
+// The part of a tree's errors that a substep corrects.
+inline constexpr float kTreePush = 0.5f;
+
 inline Effort EffortOf(const WorldState& world, const StepContext& step, const SolverGroup& group) {
     const SystemSettings& s = world.settings;
     Effort effort;
+    effort.hasTrees = group.HasTrees();
     effort.solver.substeps = std::max(s.solver.substeps, group.effort.substeps);
     effort.solver.velocityIterations = std::max(s.solver.velocityIterations, group.effort.velocityIterations);
     effort.solver.positionIterations = std::max(s.solver.positionIterations, group.effort.positionIterations);
@@ -43,6 +48,11 @@ inline Effort EffortOf(const WorldState& world, const StepContext& step, const S
     joints.impulseScale = step.impulseScale * effort.impulseScale;
     joints.pushRate = soft.pushRate;
     joints.softness = {soft.massScale, soft.impulseScale};
+    if (group.HasTrees()) {
+        // Softness would take back part of what the trees solved.
+        joints.pushRate = kTreePush / h;
+        joints.softness = {1, 0};
+    }
     joints.maxPushSpeed = s.jointPushSpeed;
     joints.continues = joints.firstPass = false;
     return effort;

@@ -68,6 +68,7 @@ public:
                 ++substep;
                 continue;
             }
+            if (group.HasTrees()) RunTrees(group, verb, substep);
             for (uint32_t c = group.coloursBegin; c < group.coloursEnd; ++c)
                 RunBatches(verb, substep, layout_.colours[c], 0, layout_.colours[c].Count());
         }
@@ -105,6 +106,54 @@ private:
             if (verb == Verb::IntegratePoses) IntegratePose(body);
             else IntegrateVelocity(body, substep > 0, findings);
         }
+    }
+
+    // What the trees of a group do before its batches take their turn.
+    void RunTrees(const SolverGroup& group, Verb verb, uint8_t substep) {
+        JointBatch<kLanes>* batches = layout_.joints.data();
+        BodyState* states = world_.bodies.states.data();
+        const std::span<JointBatch<kLanes>> own = JointBatchesOf(group);
+        const auto forTrees = [&](auto&& run) {
+            for (uint32_t t = group.treesBegin; t < group.treesEnd; ++t) run(layout_.trees.At(layout_.trees.trees[layout_.treesByGroup[t]]));
+        };
+        const auto factorize = [&] {
+            forTrees([&](const JointTree& tree) { FactorizeTree(tree, batches, world_.bodies.masses.data()); });
+        };
+        const auto solve = [&](bool relax) {
+            forTrees([&](const JointTree& tree) { SolveTree(tree, batches, states, relax); });
+        };
+        switch (verb) {
+            case Verb::WarmStart: factorize(); break;
+            case Verb::FirstVelocities:
+                if (substep > 0)
+                    for (const JointBatch<kLanes>& batch : own) TurnJoints(batch, states);
+                solve(false);
+                break;
+            case Verb::Velocities: solve(false); break;
+            case Verb::FirstRelax:
+            case Verb::Separations: {
+                JointSolveSettings settings = effort_.joints;
+                settings.elapsed = h_ * static_cast<float>(substep + 1);
+                settings.firstPass = true;
+                for (JointBatch<kLanes>& batch : own) UpdateJoints(batch, states, settings);
+                factorize();
+                if (verb == Verb::FirstRelax) solve(true);
+                break;
+            }
+            case Verb::Relax:
+            case Verb::Rejoin: solve(true); break;
+            case Verb::IntegrateVelocities:
+            case Verb::IntegratePoses:
+            case Verb::Restitution:
+            case Verb::NextSubstep: break;
+        }
+    }
+
+    // Those of a group's colours lie one after the other.
+    std::span<JointBatch<kLanes>> JointBatchesOf(const SolverGroup& group) const {
+        if (group.coloursBegin == group.coloursEnd) return {};
+        const uint32_t begin = layout_.colours[group.coloursBegin].jointsBegin, end = layout_.colours[group.coloursEnd - 1].jointsEnd;
+        return std::span(layout_.joints).subspan(begin, end - begin);
     }
 
     // Batches [begin, end) of a colour: joints, moving contacts, fixed ones.
@@ -147,8 +196,8 @@ private:
         BodyState* states = world_.bodies.states.data();
         JointSolveSettings settings = effort_.joints;
         settings.elapsed = h_ * static_cast<float>(substep + 1);
-        settings.continues = verb == Verb::FirstVelocities && substep > 0;
-        settings.firstPass = verb == Verb::FirstRelax || verb == Verb::Separations;
+        settings.continues = verb == Verb::FirstVelocities && substep > 0 && !effort_.hasTrees;
+        settings.firstPass = (verb == Verb::FirstRelax || verb == Verb::Separations) && !effort_.hasTrees;
         switch (verb) {
             case Verb::WarmStart: WarmStartJoints(batch, states); break;
             case Verb::FirstVelocities:
@@ -273,8 +322,7 @@ void RunVerbs(WorldState& world, const StepContext& step, LoopOfEffort&& loopOf)
     // Groups with an effort of their own, which have a loop of their own.
     std::span<std::span<const Verb>> loops = world.scratch.Allocate<std::span<const Verb>>(groups.size());
     for (size_t g = 1; g < groups.size(); ++g) {
-        const bool own = !(groups[g].effort == SolverSettings{0, 0, 0});
-        loops[g] = own ? loopOf(EffortOf(world, step, groups[g])) : verbs;
+        loops[g] = groups[g].IsOwn() ? loopOf(EffortOf(world, step, groups[g])) : verbs;
     }
     world.jobs->ParallelFor(static_cast<uint32_t>(groups.size()) - 1, 1, [&](JobRange range) {
         for (uint32_t g = range.begin + 1; g < range.end + 1; ++g) {

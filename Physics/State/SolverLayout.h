@@ -6,6 +6,7 @@
 #include <Fulcrum/Constraints/Coloring.h>
 #include <Fulcrum/Constraints/Contacts/ContactBatch.h>
 #include <Fulcrum/Constraints/Joints/JointBatch.h>
+#include <Fulcrum/Physics/Islands/JointTrees.h>
 #include <Fulcrum/Physics/Settings.h>
 
 #include <vector>
@@ -15,11 +16,14 @@ namespace fulcrum {
 // Islands that are solved together. The first group holds the large islands, which are solved
 // colour by colour on all workers. Each of the others is a handful of small islands that one worker solves from beginning
 // to end, in its own cache and without a barrier. Which islands share a group has no influence on any result.
-// An island that is to be solved with an effort of its own has a group of its own.
+// An island that is to be solved with an effort of its own, or that has trees of joints, has a group of its own.
 struct SolverGroup {
     uint32_t coloursBegin = 0, coloursEnd = 0;  // into SolverLayout::colours
     uint32_t bodiesBegin = 0, bodiesEnd = 0;    // into SolverLayout::bodies
     SolverSettings effort{0, 0, 0};             // 0: the system's
+    uint32_t treesBegin = 0, treesEnd = 0;      // into SolverLayout::treesByGroup
+    bool HasTrees() const { return treesEnd > treesBegin; }
+    bool IsOwn() const { return HasTrees() || !(effort == SolverSettings{0, 0, 0}); }
 };
 
 // Contacts [first, first + contacts) of a list, in the batches [begin, end).
@@ -49,6 +53,8 @@ struct SolverLayout {
     std::vector<JointBatch<1>> overflowJoints;
     std::vector<JointRows<kLanes>> jointRows;                       // room for the batches' rows
     std::vector<JointRows<1>> overflowRows;
+    JointTrees trees;
+    std::vector<uint32_t> treesByGroup;                             // indices of trees
     uint32_t movingCount = 0, fixedCount = 0, jointCount = 0;       // batches in use
     uint32_t colourCount = 0;                                       // colours in use
     uint32_t islands = 0;
