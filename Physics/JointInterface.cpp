@@ -292,8 +292,8 @@ Vector3 PerSecond(const WorldState& world, JointId id, float (JointRecord::*impu
 
 Vector3 JointInterface::GetForce(JointId id) const { return PerSecond(world_, id, &JointRecord::totalForce); }
 Vector3 JointInterface::GetTorque(JointId id) const { return PerSecond(world_, id, &JointRecord::totalTorque); }
-Vector3 JointInterface::GetLockForce(JointId id) const { return PerSecond(world_, id, &JointRecord::linearImpulse); }
-Vector3 JointInterface::GetLockTorque(JointId id) const { return PerSecond(world_, id, &JointRecord::angularImpulse); }
+Vector3 JointInterface::GetLockForce(JointId id) const { return PerSecond(world_, id, &JointRecord::lockForce); }
+Vector3 JointInterface::GetLockTorque(JointId id) const { return PerSecond(world_, id, &JointRecord::lockTorque); }
 
 JointAxisForces JointInterface::GetAxisForces(JointId id, JointAxis axis) const {
     if (!ControlOf(id, axis) || !(world_.lastSubstepDt > 0)) return {};

@@ -7,8 +7,8 @@
 //  - A body keeps its constraints' share of velocity from substep to substep, in place of a warm start (Solve stage). What the
 //    turning of a part changes of its impulse is added then: `turnedA` and `turnedB`.
 //  - A row's impulse takes the locks' answer with it. Its response is M^-1 (J^T - L^T (L M^-1 L^T)^-1 L M^-1 J^T) with L the
-//    locks' Jacobian: it disturbs no lock, and a spring or a motor meets the mass that it really moves. The locks' own impulses
-//    change by `lockLinear` and `lockAngular` per unit.
+//    locks' Jacobian: it disturbs no lock, and a spring or a motor meets the mass that it really moves. What the locks answer,
+//    `lockLinear` and `lockAngular` per unit of impulse, is kept apart from their own impulses: softness takes none of it back.
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/JointType.h>
@@ -24,15 +24,17 @@ struct alignas(32) JointRecord {
     float anchorA[3] = {0, 0, 0}, anchorB[3] = {0, 0, 0};  // m, in the bodies' centre frames
     float lineAxis = 0, freeAxis = 0;                      // JointLocks::line and ::axis
     float frameA[4] = {0, 0, 0, 1}, frameB[4] = {0, 0, 0, 1};  // x y z w, in the bodies' centre frames
-    // Impulses of the last substep on B, world axes, N s and N m s: of the locks, and of locks and rows together.
-    float linearImpulse[3] = {0, 0, 0}, angularImpulse[3] = {0, 0, 0};
+    // Impulses of the last substep on B, world axes, N s and N m s: the locks' own, the locks' with their answer to the rows,
+    // and those of locks and rows together, about the anchor.
+    float ownForce[3] = {0, 0, 0}, ownTorque[3] = {0, 0, 0};
     float spare[2] = {0, 0};
-    float totalForce[3] = {0, 0, 0}, totalTorque[3] = {0, 0, 0};  // about the anchor
-    float moreSpare[2] = {0, 0};
+    float lockForce[3] = {0, 0, 0}, lockTorque[3] = {0, 0, 0};
+    float totalForce[3] = {0, 0, 0}, totalTorque[3] = {0, 0, 0};
+    float moreSpare[4] = {0, 0, 0, 0};
 
     const float* Row(int row) const { return anchorA + 8 * row; }
 };
-static_assert(sizeof(JointRecord) == 128);
+static_assert(sizeof(JointRecord) == 160);
 
 // One row of each of N joints; lanes without a row have no mass.
 template <int N>
@@ -70,6 +72,7 @@ struct JointBatch {
     PointPart<Real> point;
     Vec3<Real> startArmA, startArmB, startOffset;
     Twist<Real> turnedA, turnedB;
+    Vec3<Real> answerLinear, answerAngular;  // of the locks to the rows; only where there are rows
 
     RotationEulerPart<Real> rotation;
     Quat<Real> startTwist;               // of B against A, world axes, for AngularLock::All

@@ -246,6 +246,7 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
         if (lists[lane].count > batch.rowCount) batch.rowCount = lists[lane].count;
     }
     if (batch.rowCount == 0) return;
+    batch.answerLinear = batch.answerAngular = Zero<Wide<N>>();
     for (int lane = 0; lane < N; ++lane) {
         const JointRowList& list = lists[lane];
         for (uint32_t i = list.count; i < batch.rowCount; ++i) ClearLane(batch.rows[i], lane);
@@ -272,6 +273,10 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
         const auto& impulses = types[batch.joint[lane]]->impulses;
         for (uint32_t i = 0; i < list.count; ++i)
             FillLane(batch.rows[i], lane, list.rows[i], {settings, massA, massB, locks, impulses[list.rows[i].slot]});
+    }
+    for (uint32_t i = 0; i < batch.rowCount; ++i) {
+        batch.answerLinear += batch.rows[i].lockLinear * batch.rows[i].impulse;
+        batch.answerAngular += batch.rows[i].lockAngular * batch.rows[i].impulse;
     }
 }
 
@@ -355,51 +360,69 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
     FillRows(batch, records, types, bodies, settings);
 }
 
+namespace {
+
+// The force and torque that impulses of the locks are, world axes: the change of velocity of a B of unit mass.
+template <int N>
+struct Wrench {
+    Vec3<Wide<N>> force = Zero<Wide<N>>(), torque = Zero<Wide<N>>();
+
+    Wrench(const JointBatch<N>& batch, bool withAnswer) {
+        using Real = Wide<N>;
+        InverseMass<Real> unit;
+        unit.mass = Real(1.0f);
+        unit.inertia.xx = unit.inertia.yy = unit.inertia.zz = Real(1.0f);
+        const auto impulseOf = [&](const auto& part, const Vec3<Real>& answer) {
+            auto lambda = part.GetTotalLambda();
+            if (withAnswer)
+                for (int k = 0; k < lambda.size(); ++k) lambda[k] += answer[k];
+            Twist<Real> a, b;
+            part.AddImpulse(a, b, unit, unit, lambda, Real(0.0f) < Real(1.0f));
+            return b;
+        };
+        if (batch.linear == LinearLock::Point) force = impulseOf(batch.point, batch.answerLinear).linear;
+        if (batch.linear == LinearLock::Line) force = impulseOf(batch.line, batch.answerLinear).linear;
+        if (batch.angular == AngularLock::All) torque = impulseOf(batch.rotation, batch.answerAngular).angular;
+        if (batch.angular == AngularLock::Axis) torque = impulseOf(batch.hinge, batch.answerAngular).angular;
+    }
+};
+
+template <int N>
+void WriteLane(float (&to)[3], const Vec3<Wide<N>>& v, int lane, float scale) {
+    for (int k = 0; k < 3; ++k) {
+        const float x = v[k][lane] * scale;
+        to[k] = std::isfinite(x) ? x : 0.0f;
+    }
+}
+
+}  // namespace
+
 template <int N>
 void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* const* types, float impulseScale) {
     using Real = Wide<N>;
-    const Real inverse(1.0f / impulseScale);
-    // Of the parts as they are at the end of the step: the change of velocity by their impulses, of unit masses at unit arms.
-    InverseMass<Real> unit;
-    unit.mass = Real(1.0f);
-    unit.inertia.xx = unit.inertia.yy = unit.inertia.zz = Real(1.0f);
-    Vec3<Real> force = Zero<Real>(), torque = Zero<Real>();
-    const auto always = Real(0.0f) < Real(1.0f);
-    WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
-        Twist<Real> a, b;
-        if constexpr (linear == LinearLock::Point) force = batch.point.GetTotalLambda();
-        if constexpr (linear == LinearLock::Line) {
-            batch.line.AddImpulse(a, b, unit, unit, batch.line.GetTotalLambda(), always);
-            force = b.linear;
-        }
-        if constexpr (angular == AngularLock::All) torque = batch.rotation.GetTotalLambda();
-        if constexpr (angular == AngularLock::Axis) {
-            Twist<Real> c, d;
-            batch.hinge.AddImpulse(c, d, unit, unit, batch.hinge.GetTotalLambda(), always);
-            torque = d.angular;
-        }
-    });
-    Vec3<Real> totalForce = force, totalTorque = torque;
+    const float inverse = 1.0f / impulseScale;
+    const Wrench<N> own(batch, false), locks(batch, batch.rowCount > 0);
+    Wrench<N> total = locks;
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         const JointRows<N>& rows = batch.rows[i];
-        totalForce += rows.b.linear * rows.impulse;
-        totalTorque += (rows.b.angular - Cross<Real>(batch.startArmB, rows.b.linear)) * rows.impulse;
+        total.force += rows.b.linear * rows.impulse;
+        total.torque += (rows.b.angular - Cross<Real>(batch.startArmB, rows.b.linear)) * rows.impulse;
     }
-    const auto finite = [](float x) { return std::isfinite(x) ? x : 0.0f; };
     for (int lane = 0; lane < batch.count; ++lane) {
         JointRecord& record = records[batch.joint[lane]];
-        for (int k = 0; k < 3; ++k) {
-            record.linearImpulse[k] = finite((force[k] * inverse)[lane]);
-            record.angularImpulse[k] = finite((torque[k] * inverse)[lane]);
-            record.totalForce[k] = finite((totalForce[k] * inverse)[lane]);
-            record.totalTorque[k] = finite((totalTorque[k] * inverse)[lane]);
-        }
+        WriteLane<N>(record.ownForce, own.force, lane, inverse);
+        WriteLane<N>(record.ownTorque, own.torque, lane, inverse);
+        WriteLane<N>(record.lockForce, locks.force, lane, inverse);
+        WriteLane<N>(record.lockTorque, locks.torque, lane, inverse);
+        WriteLane<N>(record.totalForce, total.force, lane, inverse);
+        WriteLane<N>(record.totalTorque, total.torque, lane, inverse);
         if (batch.rowRoom == 0) continue;
         JointType* type = types[batch.joint[lane]];
         type->impulses.fill(0.0f);
         for (uint32_t i = 0; i < batch.rowCount; ++i) {
             const JointRows<N>& rows = batch.rows[i];
-            if (rows.slot[lane] != 0xFF) type->impulses[rows.slot[lane]] = finite((rows.impulse * inverse)[lane]);
+            const float impulse = rows.impulse[lane] * inverse;
+            if (rows.slot[lane] != 0xFF && std::isfinite(impulse)) type->impulses[rows.slot[lane]] = impulse;
         }
     }
 }

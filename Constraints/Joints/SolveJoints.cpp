@@ -10,14 +10,17 @@ using namespace joints;
 template <LinearLock kLinear, AngularLock kAngular, int N>
 [[gnu::always_inline]] inline void AddLockImpulses(const JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, float sign) {
     using Real = Wide<N>;
-    const auto add = [&](const auto& part) {
+    const auto add = [&](const auto& part, const Vec3<Real>& answer) {
         auto lambda = part.GetTotalLambda();
+        if (batch.rowCount > 0)
+            for (int k = 0; k < lambda.size(); ++k) lambda[k] += answer[k];
         for (int k = 0; k < lambda.size(); ++k) lambda[k] = lambda[k] * Real(sign);
         part.AddImpulse(a, b, batch.massA, batch.massB, lambda, Real(0.0f) < Real(1.0f));
     };
-    if constexpr (kAngular == AngularLock::Axis) add(batch.hinge);
-    if constexpr (kLinear == LinearLock::Point) add(batch.point);
-    if constexpr (kLinear == LinearLock::Line) add(batch.line);
+    if constexpr (kAngular == AngularLock::All) add(batch.rotation, batch.answerAngular);
+    if constexpr (kAngular == AngularLock::Axis) add(batch.hinge, batch.answerAngular);
+    if constexpr (kLinear == LinearLock::Point) add(batch.point, batch.answerLinear);
+    if constexpr (kLinear == LinearLock::Line) add(batch.line, batch.answerLinear);
 }
 
 // What the turning of the parts in the last substep changes of their impulses.
@@ -31,13 +34,6 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
         a.linear += batch.turnedA.linear;
         b.linear += batch.turnedB.linear;
     }
-}
-
-template <class Part, int N>
-[[gnu::always_inline]] inline void Change(Part& part, const Vec3<Wide<N>>& perImpulse, Wide<N> impulse) {
-    auto lambda = part.GetTotalLambda();
-    for (int k = 0; k < lambda.size(); ++k) lambda[k] += perImpulse[k] * impulse;
-    part.SetTotalLambda(lambda);
 }
 
 template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
@@ -63,10 +59,8 @@ template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
     a.angular += row.responseA.angular * delta;
     b.linear += row.responseB.linear * delta;
     b.angular += row.responseB.angular * delta;
-    if constexpr (kAngular == AngularLock::All) Change(batch.rotation, row.lockAngular, delta);
-    if constexpr (kAngular == AngularLock::Axis) Change(batch.hinge, row.lockAngular, delta);
-    if constexpr (kLinear == LinearLock::Point) Change(batch.point, row.lockLinear, delta);
-    if constexpr (kLinear == LinearLock::Line) Change(batch.line, row.lockLinear, delta);
+    if constexpr (kLinear != LinearLock::None) batch.answerLinear += row.lockLinear * delta;
+    if constexpr (kAngular != AngularLock::None) batch.answerAngular += row.lockAngular * delta;
 }
 
 template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
@@ -154,8 +148,6 @@ void WarmStartJoints(const JointBatch<N>& batch, BodyState* states) {
             b.linear += row.b.linear * (batch.massB.mass * row.impulse);
             b.angular += (batch.massB.inertia * row.b.angular) * row.impulse;
         }
-        if constexpr (angular == AngularLock::All)
-            batch.rotation.AddImpulse(a, b, batch.massA, batch.massB, batch.rotation.GetTotalLambda(), Real(0.0f) < Real(1.0f));
         AddLockImpulses<linear, angular>(batch, a, b, 1.0f);
         motionA.Scatter(a, batch.count, batch.fixedA);
         motionB.Scatter(b, batch.count, batch.fixedB);
