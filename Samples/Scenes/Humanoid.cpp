@@ -1,7 +1,10 @@
 #include <Fulcrum/Samples/Scenes/Humanoid.h>
 
 #include <Fulcrum/Collision/Shapes/Primitives.h>
+#include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
+
+#include <algorithm>
 
 namespace fulcrum {
 
@@ -57,6 +60,27 @@ RagdollJoint JointOf(const Bone& bone) {
     return joint;
 }
 
+// Degrees: the twist about the joint's x axis, or the hinge's angle, and the swing about its y and z. A swing about y leads what
+// hangs backwards and what stands forwards, one about z leads both to the left.
+struct Turned {
+    double twist, swingY, swingZ;
+};
+
+// In the order of kBones.
+const Turned kPoses[3][12] = {
+    // A star.
+    {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 70}, {0, 0, -70}, {0, 0, 0}, {0, 0, 0}, {0, 0, 35}, {0, 0, -35}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}},
+    // A long stride.
+    {{0, 0, 0}, {10, 5, 0}, {-30, 0, 0}, {0, 35, 8}, {0, -45, -8}, {-70, 0, 0}, {-80, 0, 0}, {0, -42, 4}, {0, 25, -4}, {60, 0, 0}, {30, 0, 0}, {15, 0, 0}},
+    // Seated, hands raised.
+    {{0, 0, 0}, {0, -10, 0}, {0, 15, 10}, {20, -50, 15}, {-20, -50, -15}, {-110, 0, 0}, {-110, 0, 0}, {0, -45, 8}, {0, -45, -8}, {90, 0, 0}, {90, 0, 0}, {-10, 0, 0}},
+};
+
+Quaternion RotationOf(const Turned& turned) {
+    const auto vector = [](double x, double y, double z) { return Vector3((Position(x, y, z) * kDegree).cast<float>()); };
+    return RotationFromVector(vector(0, turned.swingY, turned.swingZ)) * RotationFromVector(vector(turned.twist, 0, 0));
+}
+
 }  // namespace
 
 RagdollSettings Humanoid() {
@@ -72,18 +96,33 @@ RagdollSettings Humanoid() {
     return settings;
 }
 
-RagdollSettings HumanoidWithMotors(float frequency, float maxTorque) {
-    const JointMotor motor{.mode = MotorMode::ToPosition,
-                           .spring = {.frequency = frequency, .dampingRatio = 1.0f},
-                           .minForce = -maxTorque,
-                           .maxForce = maxTorque};
+RagdollSettings HumanoidWithMotors(float stiffness, float damping, float maxTorque) {
+    const JointMotor motor{
+        .mode = MotorMode::ToPosition,
+        .spring = {.mode = SpringMode::StiffnessAndDamping, .stiffness = stiffness, .damping = damping},
+        .minForce = -maxTorque,
+        .maxForce = maxTorque};
     RagdollSettings settings = Humanoid();
     for (RagdollPart& part : settings.parts) {
+        // Parts pull at each other through stiff motors; a single iteration does not bring that to rest.
+        CommonOf(part.joint).velocityIterations = 4;
         if (auto* hinge = std::get_if<HingeJointSettings>(&part.joint)) hinge->angle.motor = motor;
         if (auto* ball = std::get_if<SwingTwistJointSettings>(&part.joint))
             ball->twist.motor = ball->swingY.motor = ball->swingZ.motor = motor;
     }
     return settings;
+}
+
+std::array<Quaternion, 12> HumanoidMotion(double time) {
+    const int pose = std::clamp(static_cast<int>(time), 0, static_cast<int>(kHumanoidPoses) - 1);
+    const double way = std::clamp((time - pose) / 0.4, 0.0, 1.0);
+    const auto eased = static_cast<float>(way * way * (3 - 2 * way));
+    std::array<Quaternion, 12> rotations;
+    for (size_t part = 0; part < rotations.size(); ++part) {
+        const Quaternion from = pose == 0 ? Quaternion{} : RotationOf(kPoses[pose - 1][part]), to = RotationOf(kPoses[pose][part]);
+        rotations[part] = Normalized(from * RotationFromVector(Vector3(RotationVectorOf(from.Conjugate() * to) * eased)));
+    }
+    return rotations;
 }
 
 }  // namespace fulcrum

@@ -4,6 +4,8 @@
 
 #include <Fulcrum/Physics/Ragdoll/RagdollSettings.h>
 
+#include <array>
+
 namespace fulcrum {
 
 // In the order of the parts.
@@ -15,7 +17,12 @@ enum class HumanoidPart : size_t {
 // Density 1000 kg/m3, no motors.
 RagdollSettings Humanoid();
 
-// With position motors on all joints, of the spring frequency in Hz, critically damped, of at most `maxTorque` N m.
-RagdollSettings HumanoidWithMotors(float frequency, float maxTorque);
+// With position motors on all joints: N m/rad, N m s/rad, at most N m.
+RagdollSettings HumanoidWithMotors(float stiffness, float damping, float maxTorque);
+
+// The joint rotations of three poses that all limits allow, for PoseFromJoints, at a time in 0 .. 3: pose k, from 0, is taken up
+// from k to k + 0.4 and held until k + 1; before the first it stands with its arms down.
+inline constexpr double kHumanoidPoses = 3;
+std::array<Quaternion, 12> HumanoidMotion(double time);
 
 }  // namespace fulcrum

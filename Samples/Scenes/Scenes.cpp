@@ -26,7 +26,8 @@ namespace fulcrum {
     scene(FlatLand)           \
     scene(MovingPlatforms)    \
     scene(Layers)             \
-    scene(TrapDoor)
+    scene(TrapDoor)           \
+    scene(RagdollDrive)
 
 #define FULCRUM_DECLARE(Name) extern const Scene k##Name##Scene;
 FULCRUM_SCENES(FULCRUM_DECLARE)

@@ -1,0 +1,147 @@
+// The fields of everything in a ragdoll's settings, each once, for reading and for writing alike. An archive has
+//   Field(name, value)            a number, vector, text, shape, another structure or an optional one
+//   Choice(name, value, names)    an enumeration by the names of its values, in their order
+// Called by RagdollJson.cpp; no state.
+#pragma once
+
+#include <Fulcrum/Physics/Ragdoll/RagdollSettings.h>
+
+#include <array>
+
+namespace fulcrum {
+
+// An error whose message begins with the path of what is wrong.
+inline Error WrongAt(const std::string& path, const std::string& what) {
+    return {ErrorCode::Unsupported, (path.empty() ? "the document" : path) + ": " + what};
+}
+
+inline constexpr std::array kJointKindNames = {"Point", "Fixed", "Hinge", "Cone", "SwingTwist", "SixDof"};  // as in RagdollJoint
+inline constexpr std::array kCombineRuleNames = {"GeometricMean", "Average", "Minimum", "Multiply", "Maximum"};
+
+template <class Archive>
+void Describe(Archive& archive, SpringSettings& s) {
+    archive.Choice("mode", s.mode, std::array{"FrequencyAndDamping", "StiffnessAndDamping"});
+    archive.Field("frequency", s.frequency);
+    archive.Field("dampingRatio", s.dampingRatio);
+    archive.Field("stiffness", s.stiffness);
+    archive.Field("damping", s.damping);
+    archive.Choice("form", s.form, std::array{"Automatic", "Exact", "Implicit"});
+}
+
+template <class Archive>
+void Describe(Archive& archive, JointLimits& s) {
+    archive.Field("min", s.min);
+    archive.Field("max", s.max);
+    archive.Field("spring", s.spring);
+}
+
+template <class Archive>
+void Describe(Archive& archive, JointMotor& s) {
+    archive.Choice("mode", s.mode, std::array{"Off", "ToVelocity", "ToPosition"});
+    archive.Field("targetSpeed", s.targetSpeed);
+    archive.Field("targetPosition", s.targetPosition);
+    archive.Field("spring", s.spring);
+    archive.Field("minForce", s.minForce);
+    archive.Field("maxForce", s.maxForce);
+}
+
+template <class Archive>
+void Describe(Archive& archive, AxisControl& s) {
+    archive.Field("limited", s.limited);
+    archive.Field("limits", s.limits);
+    archive.Field("motor", s.motor);
+    archive.Field("friction", s.friction);
+}
+
+template <class Archive>
+void Describe(Archive& archive, JointAnchor& s) {
+    archive.Field("point", s.point);
+    archive.Field("axis", s.axis);
+    archive.Field("normal", s.normal);
+}
+
+template <class Archive>
+void DescribeShared(Archive& archive, JointSettings& s) {
+    archive.Choice("space", s.space, std::array{"World", "Body"});
+    archive.Field("anchorA", s.anchorA);
+    archive.Field("anchorB", s.anchorB);
+    archive.Field("enabled", s.enabled);
+    archive.Field("collideConnected", s.collideConnected);
+    archive.Choice("priority", s.priority, std::array{"Normal", "High"});
+    archive.Field("breakForce", s.breakForce);
+    archive.Field("breakTorque", s.breakTorque);
+    archive.Field("substeps", s.substeps);
+    archive.Field("velocityIterations", s.velocityIterations);
+    archive.Field("positionIterations", s.positionIterations);
+    archive.Field("userData", s.userData);
+}
+
+template <class Archive>
+void Describe(Archive& archive, PointJointSettings& s) {
+    DescribeShared(archive, s);
+}
+template <class Archive>
+void Describe(Archive& archive, FixedJointSettings& s) {
+    DescribeShared(archive, s);
+}
+template <class Archive>
+void Describe(Archive& archive, HingeJointSettings& s) {
+    DescribeShared(archive, s);
+    archive.Field("angle", s.angle);
+}
+template <class Archive>
+void Describe(Archive& archive, ConeJointSettings& s) {
+    DescribeShared(archive, s);
+    archive.Field("halfAngle", s.halfAngle);
+    archive.Field("spring", s.spring);
+}
+template <class Archive>
+void Describe(Archive& archive, SwingTwistJointSettings& s) {
+    DescribeShared(archive, s);
+    archive.Choice("shape", s.shape, std::array{"Ellipse", "Pyramid"});
+    archive.Field("twist", s.twist);
+    archive.Field("swingY", s.swingY);
+    archive.Field("swingZ", s.swingZ);
+}
+template <class Archive>
+void Describe(Archive& archive, SixDofJointSettings& s) {
+    DescribeShared(archive, s);
+    archive.Choice("shape", s.shape, std::array{"Ellipse", "Pyramid"});
+    constexpr std::array kNames = {"linearX", "linearY", "linearZ", "angularX", "angularY", "angularZ"};
+    for (size_t k = 0; k < kNames.size(); ++k) archive.Field(kNames[k], s.axes[k]);
+}
+
+template <class Archive>
+void Describe(Archive& archive, Material& s) {
+    archive.Field("friction", s.friction);
+    archive.Field("restitution", s.restitution);
+    archive.Choice("frictionRule", s.frictionRule, kCombineRuleNames);
+    archive.Choice("restitutionRule", s.restitutionRule, kCombineRuleNames);
+}
+
+template <class Archive>
+void Describe(Archive& archive, BodySettings& s) {
+    archive.Field("shape", s.shape);
+    archive.Choice("motion", s.motion, std::array{"Static", "Kinematic", "Dynamic"});
+    archive.Field("position", s.position);
+    archive.Field("rotation", s.rotation);
+    archive.Field("linearVelocity", s.linearVelocity);
+    archive.Field("angularVelocity", s.angularVelocity);
+    archive.Field("density", s.density);
+    archive.Field("mass", s.mass);
+    archive.Field("inertia", s.inertia);
+    archive.Field("material", s.material);
+    archive.Field("linearDamping", s.linearDamping);
+    archive.Field("angularDamping", s.angularDamping);
+    archive.Field("gravityFactor", s.gravityFactor);
+    archive.Field("lockedAxes", s.lockedAxes);
+    archive.Field("maxLinearSpeed", s.maxLinearSpeed);
+    archive.Field("maxAngularSpeed", s.maxAngularSpeed);
+    archive.Field("gyroscopicTorque", s.gyroscopicTorque);
+    archive.Field("allowSleep", s.allowSleep);
+    archive.Field("startAsleep", s.startAsleep);
+    archive.Field("layer", s.layer);
+    archive.Field("userData", s.userData);
+}
+
+}  // namespace fulcrum
