@@ -27,7 +27,25 @@ namespace fulcrum {
     scene(MovingPlatforms)    \
     scene(Layers)             \
     scene(TrapDoor)           \
-    scene(RagdollDrive)
+    scene(RagdollDrive)       \
+    scene(Hinge)              \
+    scene(Slider)             \
+    scene(Distance)           \
+    scene(Cone)               \
+    scene(SwingTwist)         \
+    scene(SixDof)             \
+    scene(Gears)              \
+    scene(RackAndPinion)      \
+    scene(Pulley)             \
+    scene(Path)               \
+    scene(Wheel)              \
+    scene(Bridge)             \
+    scene(Rope)               \
+    scene(HeavyChain)         \
+    scene(NewtonsCradle)      \
+    scene(DoublePendulum)     \
+    scene(Springs)            \
+    scene(OverconstrainedDoor)
 
 #define FULCRUM_DECLARE(Name) extern const Scene k##Name##Scene;
 FULCRUM_SCENES(FULCRUM_DECLARE)

@@ -1,0 +1,38 @@
+#include <Fulcrum/Samples/Scenes/JointShorthands.h>
+
+#include <cmath>
+
+namespace fulcrum {
+namespace {
+
+// Two rods on hinges, and beside them the same pair, half a millimetre aside at the start: soon they go different ways.
+void Build(SceneWorld& world) {
+    const ShapePtr rod = world.BoxOf(0.5f, 0.05f, 0.05f);
+    for (const double aside : {0.0, 5e-4}) {
+        const double z = aside > 0 ? 1 : 0;
+        const BodyId hook = AddHook(world, {0, 3, z});
+        const BodyId upper = world.Add({.shape = rod, .position = {0.5, 3, z}, .mass = 1});
+        const BodyId lower = world.Add({.shape = rod, .position = {1.5, 3 + aside, z}, .mass = 1});
+        world.Join(JointOf<HingeJointSettings>(hook, upper, {0, 3, z}, {0, 0, 1}));
+        world.Join(JointOf<HingeJointSettings>(upper, lower, {1, 3, z}, {0, 0, 1}));
+    }
+}
+
+double EnergyChange(const SceneWorld& world) {
+    constexpr double kStart = 4 * 9.81 * 3, kScale = 2 * 9.81 * (0.5 + 1.5);  // of four rods; what can fall
+    return 100 * std::fabs(world.System().GetEnergy() - kStart) / kScale;
+}
+
+}  // namespace
+
+extern const Scene kDoublePendulumScene{
+    .name = "double_pendulum",
+    .description = "two double pendulums that start half a millimetre apart",
+    .steps = 600,
+    .sleeping = false,
+    .build = Build,
+    .accuracy = EnergyChange,
+    .accuracyMeaning = "change of the energy, % of that of the fall",
+};
+
+}  // namespace fulcrum
