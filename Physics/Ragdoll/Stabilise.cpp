@@ -60,7 +60,8 @@ Status StabiliseMasses(RagdollSettings& settings, const MassRule& rule) {
 Status StabiliseInertia(RagdollSettings& settings, const InertiaRule& rule) {
     if (MaybeError e = FirstOf(Check(settings), CheckPositive("principalRatio", rule.principalRatio), CheckPositive("childRatio", rule.childRatio)))
         return *e;
-    if (rule.principalRatio < 1.0f) return Error{ErrorCode::OutOfRange, "principalRatio is " + std::to_string(rule.principalRatio) + "; it must be 1 or more"};
+    if (rule.principalRatio < 1.0f)
+        return Error{ErrorCode::OutOfRange, "principalRatio is " + std::to_string(rule.principalRatio) + "; it must be 1 or more"};
     RagdollSettings changed = settings;
     std::vector<float> floors(settings.parts.size(), 0.0f);  // of the moments, by the children
     for (size_t i = settings.parts.size(); i-- > 0;) {

@@ -221,7 +221,8 @@ Result<RagdollSettings> RagdollFromJson(const Json& document) {
             fields.Read(*parent, fields.PathOf("parent"), name);
             const auto found = std::find_if(settings.parts.begin(), settings.parts.end(), [&](const RagdollPart& p) { return p.name == name; });
             part.parent = static_cast<int>(found - settings.parts.begin());
-            if (found == settings.parts.end() && !error) error = WrongAt(fields.PathOf("parent"), "no part before has the name \"" + name + "\"");
+            if (found == settings.parts.end() && !error)
+                error = WrongAt(fields.PathOf("parent"), "no part before has the name \"" + name + "\"");
         }
         if (const Json* joint = fields.Find("joint")) fields.Read(*joint, fields.PathOf("joint"), part.joint);
         else if (i > 0 && !error) error = WrongAt(fields.PathOf("joint"), "missing; only the first part has none");

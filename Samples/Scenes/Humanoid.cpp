@@ -69,11 +69,14 @@ struct Turned {
 // In the order of kBones.
 const Turned kPoses[3][12] = {
     // A star.
-    {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 70}, {0, 0, -70}, {0, 0, 0}, {0, 0, 0}, {0, 0, 35}, {0, 0, -35}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}},
+    {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 70}, {0, 0, -70}, {0, 0, 0}, {0, 0, 0},
+     {0, 0, 35}, {0, 0, -35}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}},
     // A long stride.
-    {{0, 0, 0}, {10, 5, 0}, {-30, 0, 0}, {0, 35, 8}, {0, -45, -8}, {-70, 0, 0}, {-80, 0, 0}, {0, -42, 4}, {0, 25, -4}, {60, 0, 0}, {30, 0, 0}, {15, 0, 0}},
+    {{0, 0, 0}, {10, 5, 0}, {-30, 0, 0}, {0, 35, 8}, {0, -45, -8}, {-70, 0, 0}, {-80, 0, 0},
+     {0, -42, 4}, {0, 25, -4}, {60, 0, 0}, {30, 0, 0}, {15, 0, 0}},
     // Seated, hands raised.
-    {{0, 0, 0}, {0, -10, 0}, {0, 15, 10}, {20, -50, 15}, {-20, -50, -15}, {-110, 0, 0}, {-110, 0, 0}, {0, -45, 8}, {0, -45, -8}, {90, 0, 0}, {90, 0, 0}, {-10, 0, 0}},
+    {{0, 0, 0}, {0, -10, 0}, {0, 15, 10}, {20, -50, 15}, {-20, -50, -15}, {-110, 0, 0}, {-110, 0, 0},
+     {0, -45, 8}, {0, -45, -8}, {90, 0, 0}, {90, 0, 0}, {-10, 0, 0}},
 };
 
 Quaternion RotationOf(const Turned& turned) {
@@ -104,7 +107,7 @@ RagdollSettings HumanoidWithMotors(float stiffness, float damping, float maxTorq
         .maxForce = maxTorque};
     RagdollSettings settings = Humanoid();
     for (RagdollPart& part : settings.parts) {
-        // Parts pull at each other through stiff motors; a single iteration does not bring that to rest.
+        // Parts pull at each other through stiff motors; a single iteration is slow to bring that to rest.
         CommonOf(part.joint).velocityIterations = 4;
         if (auto* hinge = std::get_if<HingeJointSettings>(&part.joint)) hinge->angle.motor = motor;
         if (auto* ball = std::get_if<SwingTwistJointSettings>(&part.joint))

@@ -46,10 +46,12 @@ TEST(RagdollJson, TheFileOfTheHumanoidIsTheHumanoid) {
 
 // Every kind of joint and shape, every field another value than its default.
 RagdollSettings Everything() {
-    const SpringSettings soft{.mode = SpringMode::StiffnessAndDamping, .frequency = 1.5f, .dampingRatio = 0.3f, .stiffness = 100, .damping = 1.1f, .form = SpringForm::Exact};
+    const SpringSettings soft{.mode = SpringMode::StiffnessAndDamping, .frequency = 1.5f, .dampingRatio = 0.3f,
+                              .stiffness = 100, .damping = 1.1f, .form = SpringForm::Exact};
     const AxisControl axis{.limited = true,
                            .limits = {.min = -0.7f, .max = 0.7f, .spring = soft},
-                           .motor = {.mode = MotorMode::ToVelocity, .targetSpeed = 0.1f, .targetPosition = 0.2f, .spring = soft, .minForce = -3, .maxForce = 1e7f},
+                           .motor = {.mode = MotorMode::ToVelocity, .targetSpeed = 0.1f, .targetPosition = 0.2f, .spring = soft,
+                                     .minForce = -3, .maxForce = 1e7f},
                            .friction = 0.123456789f};
     HingeJointSettings hinge;
     hinge.angle = axis;
@@ -67,7 +69,10 @@ RagdollSettings Everything() {
     RagdollSettings settings;
     for (int i = 0; i < 7; ++i) {
         RagdollPart part{.name = "part " + std::to_string(i), .parent = i == 6 ? 2 : i - 1, .body = {}, .joint = joints[i]};
-        part.body.shape = i == 1 ? SphereOf(0.3f) : i == 2 ? CapsuleOf(0.2f, 0.1f) : i == 3 ? HullOf({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}) : BoxOf(0.1f, 0.2f, 0.3f);
+        part.body.shape = BoxOf(0.1f, 0.2f, 0.3f);
+        if (i == 1) part.body.shape = SphereOf(0.3f);
+        if (i == 2) part.body.shape = CapsuleOf(0.2f, 0.1f);
+        if (i == 3) part.body.shape = HullOf({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
         part.body.position = Position(i, 0.1, -1e5);
         part.body.rotation = Turn(Vector3(0, 1, 0), 0.3 * i);
         JointSettings& joint = CommonOf(part.joint);
@@ -191,7 +196,8 @@ TEST(RagdollJson, ShapesThatCannotBeWrittenAreNamed) {
     RagdollSettings settings = Humanoid();
     settings.parts[2].body.shape = CompoundOf({{.shape = SphereOf(0.1f)}});
     EXPECT_TRUE(RagdollToJson(settings).GetError().message.starts_with("parts[2].body.shape: "));
-    settings.parts[2].body.shape = ConvexHull::Create(std::array{Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, 0, 1)}, {.convexRadius = 0.01f}).Value();
+    const std::array corners{Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, 0, 1)};
+    settings.parts[2].body.shape = ConvexHull::Create(corners, {.convexRadius = 0.01f}).Value();
     EXPECT_TRUE(RagdollToJson(settings).GetError().message.starts_with("parts[2].body.shape: "));
     settings.parts[2].body.mass = -1;
     EXPECT_EQ(RagdollToJson(settings).GetError().code, ErrorCode::Negative);

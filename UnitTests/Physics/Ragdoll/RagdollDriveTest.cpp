@@ -101,7 +101,8 @@ TEST(RagdollDrive, MotorsReachThePoseButForTheirSagUnderTheWeight) {
             }
             // What the joint locks yields, too. Another 5e-4 for what still swings after 2 s.
             const double yielded = world.System().Joints().GetError(ragdoll.Joints()[i]).angle;
-            EXPECT_LT(JointAngleError(settings, pose, target, i), torque / kStiffness + yielded + 5e-4) << settings.parts[i].name << " at " << time;
+            EXPECT_LT(JointAngleError(settings, pose, target, i), torque / kStiffness + yielded + 5e-4)
+                << settings.parts[i].name << " at " << time;
             EXPECT_LT(world.System().Joints().GetError(ragdoll.Joints()[i]).distance, 2e-3) << settings.parts[i].name;
         }
     }
@@ -117,7 +118,8 @@ TEST(RagdollDrive, MotorsOfAFloatingRagdollReachThePose) {
         world.Run(2);
         const Poses pose = PoseOf(ragdoll);
         // No load: the springs of time constant c / k = 0.05 s have had 40 of these.
-        for (size_t i = 1; i < kParts; ++i) EXPECT_LT(JointAngleError(settings, pose, target, i), 1e-3) << settings.parts[i].name << " at " << time;
+        for (size_t i = 1; i < kParts; ++i)
+            EXPECT_LT(JointAngleError(settings, pose, target, i), 1e-3) << settings.parts[i].name << " at " << time;
     }
 }
 
@@ -198,7 +200,8 @@ TEST(RagdollDrive, SetMotorsTurnsThemOnAndOff) {
     TestWorld world(NoContacts(NoGravity()));
     Ragdoll ragdoll = Add(world, Passive());
     const RagdollSettings settings = Humanoid();
-    ASSERT_TRUE(ragdoll.SetMotors({.mode = MotorMode::ToPosition, .spring = {.mode = SpringMode::StiffnessAndDamping, .stiffness = kStiffness, .damping = kDamping}}));
+    const SpringSettings spring{.mode = SpringMode::StiffnessAndDamping, .stiffness = kStiffness, .damping = kDamping};
+    ASSERT_TRUE(ragdoll.SetMotors({.mode = MotorMode::ToPosition, .spring = spring}));
     const Poses target = PoseAt(1.0);
     ASSERT_TRUE(ragdoll.DriveByMotors(target));
     world.Run(2);
@@ -268,7 +271,8 @@ TEST(RagdollDrive, KinematicPartsFollowExactly) {
     Ragdoll ragdoll = Add(world, Passive(), MotionType::Kinematic);
     for (int step = 0; step < 300; ++step) {
         const double time = (step + 1) / 100.0;
-        const Poses target = PoseAt(time, {Position(time, 0.1 * time * time, 0), Turn(Vector3(0, 1, 0), time) * Humanoid().parts[0].body.rotation});
+        const Quaternion turn = Turn(Vector3(0, 1, 0), time) * Humanoid().parts[0].body.rotation;
+        const Poses target = PoseAt(time, {Position(time, 0.1 * time * time, 0), turn});
         ASSERT_TRUE(ragdoll.DriveKinematically(target, static_cast<float>(kStep)));
         world.Step();
         const Poses pose = PoseOf(ragdoll);
@@ -287,7 +291,8 @@ TEST(RagdollDrive, DynamicPartsHangOnKinematicOnes) {
     settings.parts[1].body.motion = MotionType::Kinematic;
     Ragdoll ragdoll = Add(world, settings);
     for (int step = 0; step < 240; ++step) {
-        ASSERT_TRUE(ragdoll.DriveKinematically(PoseAt(0, {Position(step / 120.0, 0, 0), settings.parts[0].body.rotation}), static_cast<float>(kStep)));
+        const Poses target = PoseAt(0, {Position(step / 120.0, 0, 0), settings.parts[0].body.rotation});
+        ASSERT_TRUE(ragdoll.DriveKinematically(target, static_cast<float>(kStep)));
         world.Step();
         for (size_t i = 2; i < kParts; ++i) ASSERT_LT(world.System().Joints().GetError(ragdoll.Joints()[i]).distance, 5e-3);
     }

@@ -172,8 +172,8 @@ TEST(RagdollErrors, NamePartAndField) {
     ExpectError([](S& s) { s.parts[11].body.density = 0; }, ErrorCode::NonPositive, "parts[11].body: density", "foot left");
     ExpectError([](S& s) { s.parts[2].joint = HingeJointSettings{}, std::get<HingeJointSettings>(s.parts[2].joint).angle.friction = -1; },
                 ErrorCode::Negative, "parts[2].joint: angle.friction is -1", "head");
-    ExpectError([](S& s) { CommonOf(s.parts[7].joint).anchorA.axis = Vector3(0, std::numeric_limits<float>::quiet_NaN(), 0); }, ErrorCode::NonFinite, "parts[7].joint: anchorA.axis",
-                "upper leg left");
+    ExpectError([](S& s) { CommonOf(s.parts[7].joint).anchorA.axis.y() = std::numeric_limits<float>::quiet_NaN(); }, ErrorCode::NonFinite,
+                "parts[7].joint: anchorA.axis", "upper leg left");
 }
 
 TEST(RagdollErrors, OfCallsChangeNothing) {
@@ -191,7 +191,9 @@ TEST(RagdollErrors, OfCallsChangeNothing) {
     EXPECT_EQ(ragdoll.GetPose(std::span(pose).first(11)).GetError().code, ErrorCode::OutOfRange);
     EXPECT_EQ(ragdoll.DriveByVelocities(pose, 0).GetError().code, ErrorCode::NonPositive);
     pose[11].position.x() = kNaN;
-    for (const Status& status : {ragdoll.SetPose(pose), ragdoll.DriveByMotors(pose), ragdoll.DriveByVelocities(pose, 0.1f), ragdoll.DriveKinematically(pose, 0.1f)}) {
+    const Status answers[] = {ragdoll.SetPose(pose), ragdoll.DriveByMotors(pose), ragdoll.DriveByVelocities(pose, 0.1f),
+                              ragdoll.DriveKinematically(pose, 0.1f)};
+    for (const Status& status : answers) {
         ASSERT_FALSE(status);
         EXPECT_EQ(status.GetError().code, ErrorCode::NonFinite);
         EXPECT_TRUE(status.GetError().message.starts_with("pose[11].position")) << status.GetError().message;
@@ -219,7 +221,8 @@ Pose Above(const RagdollSettings& settings, double x, double z, double height, c
     std::vector<Pose> pose(settings.parts.size());
     ReferencePose(settings, {Position::Zero(), turn}, pose);
     double lowest = 0;
-    for (size_t i = 0; i < pose.size(); ++i) lowest = std::min<double>(lowest, pose[i].position.y() - settings.parts[i].body.shape->OuterRadius());
+    for (size_t i = 0; i < pose.size(); ++i)
+        lowest = std::min<double>(lowest, pose[i].position.y() - settings.parts[i].body.shape->OuterRadius());
     return {Position(x, height - lowest, z), turn};
 }
 
@@ -237,7 +240,9 @@ TEST(Ragdoll, TenFallOnAFloorHoldTogetherAndComeToRest) {
     }
     const auto isAwake = [&] {
         bool awake = false;
-        world.System().VisitBodies([&](BodyId id) { awake = awake || (world.Bodies().GetMotionType(id) == MotionType::Dynamic && world.Bodies().IsAwake(id)); });
+        world.System().VisitBodies([&](BodyId id) {
+            if (world.Bodies().GetMotionType(id) == MotionType::Dynamic) awake = awake || world.Bodies().IsAwake(id);
+        });
         return awake;
     };
     double largest = 0;

@@ -54,7 +54,8 @@ SkeletonMapping MakeMapping() {
 }
 
 size_t IndexOf(const std::string& name) {
-    return static_cast<size_t>(std::find_if(std::begin(kJoints), std::end(kJoints), [&](const Named& joint) { return name == joint.name; }) - kJoints);
+    const auto found = std::find_if(std::begin(kJoints), std::end(kJoints), [&](const Named& joint) { return name == joint.name; });
+    return static_cast<size_t>(found - kJoints);
 }
 
 
@@ -163,7 +164,8 @@ TEST(SkeletonMapping, AChainBendsTowardsItsEndAndStretchesEvenly) {
     for (int i = 1; i <= 5; ++i) ExpectSame(joints[static_cast<size_t>(i)], {Position(0, 0.5 * i, 0), quarter}, std::to_string(i));
     // Stretched, and its end twisted by 1 rad: each link has its share.
     joints = jointsFor({Position(3.0, 0, 0), Turn(Vector3(1, 0, 0), 1.0)});
-    for (int i = 1; i <= 5; ++i) ExpectSame(joints[static_cast<size_t>(i)], {Position(0.6 * i, 0, 0), Turn(Vector3(1, 0, 0), 0.2 * i)}, std::to_string(i));
+    for (int i = 1; i <= 5; ++i)
+        ExpectSame(joints[static_cast<size_t>(i)], {Position(0.6 * i, 0, 0), Turn(Vector3(1, 0, 0), 0.2 * i)}, std::to_string(i));
     // To the opposite side.
     joints = jointsFor({Position(-2.5, 0, 0), Turn(Vector3(0, 1, 0), 180 * kDegree)});
     for (int i = 1; i <= 5; ++i) EXPECT_LT((joints[static_cast<size_t>(i)].position - Position(-0.5 * i, 0, 0)).norm(), kRounding);
