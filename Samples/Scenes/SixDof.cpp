@@ -34,7 +34,8 @@ void Build(SceneWorld& world) {
     world.joints.push_back(world.Join(soft));
     world.Add({.shape = world.BoxOf(0.2f, 0.2f, 0.2f), .position = {0, 1.81, 0}, .mass = 20});
 
-    const BodyId loose = world.Add({.shape = world.BoxOf(0.3f, 0.3f, 0.3f), .position = {5, 2, 0}, .linearVelocity = {4, 2, 3}, .angularVelocity = {2, 3, 4}, .mass = 10});
+    const BodyId loose = world.Add({.shape = world.BoxOf(0.3f, 0.3f, 0.3f), .position = {5, 2, 0}, .linearVelocity = {4, 2, 3},
+                                    .angularVelocity = {2, 3, 4}, .mass = 10});
     auto within = Settings(AddHook(world, {5, 2, 0}), loose, {5, 2, 0});
     for (AxisControl& axis : within.axes) axis = Limited(-0.5f, 0.5f);
     world.joints.push_back(world.Join(within));

@@ -12,7 +12,8 @@ struct Wheel {
 Wheel AddWheel(TestWorld& world, BodyId hook, const Position& position, double inertia, double speed, bool driven = false) {
     const auto i = static_cast<float>(inertia);
     Wheel wheel;
-    wheel.body = world.Add({.shape = SphereOf(0.1f), .position = position, .angularVelocity = {0, 0, static_cast<float>(speed)}, .mass = 1, .inertia = {i, i, i}});
+    wheel.body = world.Add({.shape = SphereOf(0.1f), .position = position, .angularVelocity = {0, 0, static_cast<float>(speed)},
+                            .mass = 1, .inertia = {i, i, i}});
     HingeJointSettings settings{Between(hook, wheel.body, position, {0, 0, 1})};
     if (driven) settings.angle.motor = SpeedMotor(speed);
     wheel.bearing = Join(world, settings);
@@ -115,7 +116,8 @@ TEST(RackAndPinion, AWeightOnTheRackSpinsThePinion) {
 TEST(Pulley, EqualMassesAtARatioOfFour) {
     // l = yA + 4 yB: with the tension T on A and 4 T on B, aA = -4 aB: a = (-6.925, +1.731) m/s2.
     TestWorld world(NoSleep());
-    const BodyId a = world.Add({.shape = SphereOf(0.1f), .position = {0, -20, 0}, .mass = 5}), b = world.Add({.shape = SphereOf(0.1f), .position = {3, -10, 0}, .mass = 5});
+    const BodyId a = world.Add({.shape = SphereOf(0.1f), .position = {0, -20, 0}, .mass = 5});
+    const BodyId b = world.Add({.shape = SphereOf(0.1f), .position = {3, -10, 0}, .mass = 5});
     PulleyJointSettings settings{Between(a, b, {0, -20, 0})};
     settings.anchorB = AnchorAt({3, -10, 0});
     settings.fixedPointB = {3, 0, 0};
@@ -135,7 +137,8 @@ TEST(Pulley, EqualMassesAtARatioOfFour) {
 
 TEST(Pulley, ARopeIsSlackWhereItIsNotPulled) {
     TestWorld world(Weightless());
-    const BodyId a = world.Add({.shape = SphereOf(0.1f), .position = {0, -2, 0}, .linearVelocity = {0, 1, 0}}), b = world.Add({.shape = SphereOf(0.1f), .position = {3, -2, 0}});
+    const BodyId a = world.Add({.shape = SphereOf(0.1f), .position = {0, -2, 0}, .linearVelocity = {0, 1, 0}});
+    const BodyId b = world.Add({.shape = SphereOf(0.1f), .position = {3, -2, 0}});
     PulleyJointSettings settings{Between(a, b, {0, -2, 0})};
     settings.anchorB = AnchorAt({3, -2, 0});
     settings.fixedPointB = {3, 0, 0};
@@ -151,14 +154,17 @@ void ExpectMomentumIsKept() {
     TestWorld world(Weightless());
     std::vector<BodyId> bodies;
     for (int i = 0; i < 8; ++i) {
-        bodies.push_back(world.Add({.shape = BoxOf(0.45f, 0.1f, 0.1f), .position = {1.0 * i, 0, 0}, .mass = 2, .material = {.friction = 0, .restitution = 0.5f}}));
+        bodies.push_back(world.Add({.shape = BoxOf(0.45f, 0.1f, 0.1f), .position = {1.0 * i, 0, 0}, .mass = 2,
+                                    .material = {.friction = 0, .restitution = 0.5f}}));
         if (i > 0) Join(world, Settings{Between(bodies[i - 1], bodies[i], {i - 0.5, 0, 0}, {0, 0, 1})});
     }
-    bodies.push_back(world.Add({.shape = SphereOf(0.2f), .position = {7.2, 1, 0.03}, .linearVelocity = {0, -5, 0}, .mass = 10, .material = {.friction = 0, .restitution = 0.5f}}));
+    bodies.push_back(world.Add({.shape = SphereOf(0.2f), .position = {7.2, 1, 0.03}, .linearVelocity = {0, -5, 0}, .mass = 10,
+                                .material = {.friction = 0, .restitution = 0.5f}}));
     const auto momentum = [&](Position& linear, Position& angular) {
         linear = angular = Position::Zero();
         for (const BodyId id : bodies) {
-            const Position p = world.VelocityOf(id).template cast<double>() * double(world.Bodies().GetMass(id)), x = world.Bodies().GetCentreOfMass(id);
+            const Position p = world.VelocityOf(id).template cast<double>() * double(world.Bodies().GetMass(id));
+            const Position x = world.Bodies().GetCentreOfMass(id);
             linear += p;
             angular += Position(x.y() * p.z() - x.z() * p.y(), x.z() * p.x() - x.x() * p.z(), x.x() * p.y() - x.y() * p.x()) +
                        world.Bodies().GetAngularMomentum(id).template cast<double>();

@@ -51,7 +51,8 @@ private:
             Join(world_, PointJointSettings{Between(last, link, at + Position(0, -0.6 * i, 0))});
             last = link;
         }
-        const BodyId ball = world_.Add({.shape = SphereOf(0.2f), .position = at + Position(-1, -1, 0)}), weight = world_.Add({.shape = SphereOf(0.25f), .position = at + Position(-1, -2, 0.5)});
+        const BodyId ball = world_.Add({.shape = SphereOf(0.2f), .position = at + Position(-1, -1, 0)});
+        const BodyId weight = world_.Add({.shape = SphereOf(0.25f), .position = at + Position(-1, -2, 0.5)});
         DistanceJointSettings spring{Between(hook, ball, at)};
         spring.anchorB = AnchorAt(at + Position(-1, -1, 0));
         spring.minDistance = spring.maxDistance = 1.2f;
@@ -96,7 +97,8 @@ TEST(JointDeterminism, TheSameBitsForAnyNumberOfThreads) {
         for (int k = 0; k < kSide; ++k)
             for (int i = 0; i < kSide; ++i) {
                 const Position place(30 + k, 30 - i, 0);
-                balls.push_back(world.Add({.shape = SphereOf(0.3f), .motion = i == 0 ? MotionType::Static : MotionType::Dynamic, .position = place, .linearVelocity = {0, 0, i == 0 ? 0 : static_cast<float>(k % 5)}}));
+                balls.push_back(world.Add({.shape = SphereOf(0.3f), .motion = i == 0 ? MotionType::Static : MotionType::Dynamic,
+                                           .position = place, .linearVelocity = {0, 0, i == 0 ? 0 : static_cast<float>(k % 5)}}));
                 const size_t last = balls.size() - 1;
                 if (i > 0) Join(world, PointJointSettings{Between(balls[last - 1], balls[last], place + Position(0, 0.5, 0))});
                 if (i > 0 && k > 0) Join(world, PointJointSettings{Between(balls[last - kSide], balls[last], place - Position(0.5, 0, 0))});
@@ -145,7 +147,8 @@ Chain AddChain(TestWorld& world, double z) {
     chain.bodies.push_back(AddHook(world, {0, 0, z}));
     for (int i = 0; i < 9; ++i) {
         const Position place(i + 0.5, 0, z);
-        chain.bodies.push_back(i < 8 ? world.Add({.shape = BoxOf(0.45f, 0.05f, 0.05f), .position = place, .mass = 1}) : world.Add({.shape = SphereOf(0.3f), .position = place, .mass = 50}));
+        const bool isRod = i < 8;
+        chain.bodies.push_back(world.Add({.shape = isRod ? BoxOf(0.45f, 0.05f, 0.05f) : SphereOf(0.3f), .position = place, .mass = isRod ? 1.0f : 50.0f}));
         chain.joints.push_back(Join(world, PointJointSettings{Between(chain.bodies[i], chain.bodies[i + 1], {double(i), 0, z})}));
     }
     return chain;

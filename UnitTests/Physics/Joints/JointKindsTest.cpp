@@ -18,7 +18,8 @@ void ExpectTheSameMotion(const First& first, const Second& second) {
     const auto run = [&](const auto& settings) {
         TestWorld world(NoSleep());
         const BodyId hook = AddHook(world);
-        const BodyId box = world.Add({.shape = BoxOf(0.4f, 0.2f, 0.3f), .position = {0.4, -0.2, 0.3}, .linearVelocity = {1, 2, -1}, .angularVelocity = {3, -2, 1}});
+        const BodyId box = world.Add({.shape = BoxOf(0.4f, 0.2f, 0.3f), .position = {0.4, -0.2, 0.3},
+                                      .linearVelocity = {1, 2, -1}, .angularVelocity = {3, -2, 1}});
         auto placed = settings;
         placed.bodyA = hook;
         placed.bodyB = box;

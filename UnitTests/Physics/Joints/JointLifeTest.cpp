@@ -69,9 +69,11 @@ TEST(JointLife, ARemovedJointLetsGoAndItsIdIsNeverValidAgain) {
 
 TEST(JointLife, RemovingABodyRemovesItsJoints) {
     TestWorld world;
-    const BodyId hook = AddHook(world), a = world.Add({.shape = CubeOf(0.1f), .position = {0, -1, 0}}), b = world.Add({.shape = CubeOf(0.1f), .position = {0, -2, 0}}),
+    const BodyId hook = AddHook(world), a = world.Add({.shape = CubeOf(0.1f), .position = {0, -1, 0}});
+    const BodyId b = world.Add({.shape = CubeOf(0.1f), .position = {0, -2, 0}}),
                  c = world.Add({.shape = CubeOf(0.1f), .position = {0, -3, 0}});
-    const JointId first = Join(world, PointJointSettings{Between(hook, a, {0, 0, 0})}), second = Join(world, PointJointSettings{Between(a, b, {0, -1, 0})}),
+    const JointId first = Join(world, PointJointSettings{Between(hook, a, {0, 0, 0})});
+    const JointId second = Join(world, PointJointSettings{Between(a, b, {0, -1, 0})}),
                   third = Join(world, HingeJointSettings{Between(b, c, {0, -2, 0})});
     world.Run(1);
     int count = 0;
@@ -155,7 +157,8 @@ TEST(JointSleep, EveryChangeOfAJointWakesItsBodies) {
 
 TEST(JointSleep, AKinematicBaseThatMovesKeepsItsLoadAwake) {
     TestWorld world;
-    const BodyId base = world.Add({.shape = CubeOf(0.1f), .motion = MotionType::Kinematic}), load = world.Add({.shape = CubeOf(0.1f), .position = {0, -1, 0}});
+    const BodyId base = world.Add({.shape = CubeOf(0.1f), .motion = MotionType::Kinematic});
+    const BodyId load = world.Add({.shape = CubeOf(0.1f), .position = {0, -1, 0}});
     Join(world, PointJointSettings{Between(base, load, {0, 0, 0})});
     world.Run(3);
     EXPECT_FALSE(world.Bodies().IsAwake(load));
@@ -169,7 +172,8 @@ TEST(JointCollision, JoinedBodiesPassThroughEachOtherUnlessTheyAreAskedToCollide
     for (const bool collide : {false, true}) {
         // A rope on one side: the ball falls past the shelf that it is tied to, or rests on it.
         TestWorld world(NoSleep());
-        const BodyId shelf = world.Add({.shape = BoxOf(1, 0.1f, 1), .motion = MotionType::Static}), ball = world.Add({.shape = SphereOf(0.2f), .position = {0, 1, 0}});
+        const BodyId shelf = world.Add({.shape = BoxOf(1, 0.1f, 1), .motion = MotionType::Static});
+        const BodyId ball = world.Add({.shape = SphereOf(0.2f), .position = {0, 1, 0}});
         DistanceJointSettings settings{Between(shelf, ball, {0, 0, 0})};
         settings.anchorB = AnchorAt({0, 1, 0});
         settings.maxDistance = 3.0f;

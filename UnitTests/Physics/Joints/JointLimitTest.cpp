@@ -31,7 +31,8 @@ void ExpectWithin(TestWorld& world, JointId joint, JointAxis axis, double min, d
 TEST_P(LimitAtSpeed, AHingeIsNotDrivenThroughItsLimits) {
     for (const double force : {double(JointRow::kUnlimited), 500.0}) {
         TestWorld world(Weightless());
-        const BodyId rod = world.Add({.shape = BoxOf(0.5f, 0.05f, 0.05f), .position = {0.5, 0, 0}, .mass = 1, .maxLinearSpeed = 2000, .maxAngularSpeed = 2000});
+        const BodyId rod = world.Add({.shape = BoxOf(0.5f, 0.05f, 0.05f), .position = {0.5, 0, 0}, .mass = 1,
+                                      .maxLinearSpeed = 2000, .maxAngularSpeed = 2000});
         const JointId hinge = Join(world, HingeJointSettings{Between(AddHook(world), rod, {0, 0, 0}, {0, 0, 1}), Limited(-1, 0.5)});
         ExpectWithin(world, hinge, JointAxis::AngularX, -1, 0.5, GetParam(), force);
     }
@@ -75,7 +76,8 @@ TEST_P(LimitAtSpeed, WhatFliesAgainstAStopStopsThere) {
 TEST_P(LimitAtSpeed, ARopeIsNotTornLonger) {
     TestWorld world(Weightless());
     const auto speed = static_cast<float>(GetParam());
-    const BodyId ball = world.Add({.shape = SphereOf(0.1f), .position = {1, 0, 0}, .linearVelocity = {speed, 0.3f * speed, 0}, .mass = 1, .maxLinearSpeed = 2000});
+    const BodyId ball = world.Add({.shape = SphereOf(0.1f), .position = {1, 0, 0}, .linearVelocity = {speed, 0.3f * speed, 0},
+                                   .mass = 1, .maxLinearSpeed = 2000});
     DistanceJointSettings settings{Between(AddHook(world), ball, {0, 0, 0})};
     settings.anchorB = AnchorAt({1, 0, 0});
     settings.maxDistance = 2.0f;

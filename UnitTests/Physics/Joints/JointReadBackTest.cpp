@@ -8,8 +8,10 @@ namespace {
 
 TEST(ReadBack, AJointCarriesTheWeightOfWhatHangsThere) {
     TestWorld world(NoSleep());
-    const BodyId hook = AddHook(world), upper = world.Add({.shape = CubeOf(0.1f), .position = {0, -1, 0}, .mass = 10}), lower = world.Add({.shape = CubeOf(0.1f), .position = {0, -2, 0}, .mass = 5});
-    const JointId first = Join(world, PointJointSettings{Between(hook, upper, {0, 0, 0})}), second = Join(world, PointJointSettings{Between(upper, lower, {0, -1, 0})});
+    const BodyId hook = AddHook(world), upper = world.Add({.shape = CubeOf(0.1f), .position = {0, -1, 0}, .mass = 10});
+    const BodyId lower = world.Add({.shape = CubeOf(0.1f), .position = {0, -2, 0}, .mass = 5});
+    const JointId first = Join(world, PointJointSettings{Between(hook, upper, {0, 0, 0})});
+    const JointId second = Join(world, PointJointSettings{Between(upper, lower, {0, -1, 0})});
     // A and B swapped: the force is that on B, which now is the hook.
     const BodyId other = world.Add({.shape = CubeOf(0.1f), .position = {5, -1, 0}, .mass = 10});
     const JointId third = Join(world, PointJointSettings{Between(other, hook, {5, 0, 0})});

@@ -124,7 +124,8 @@ TEST_P(JointSpring, OfATwistMotorAndOfASixDofAxis) {
     for (const SpringSettings& spring : {ByFrequency(), ByStiffness(0.4)}) {
         TestWorld world(Weightless());
         const BodyId hook = AddHook(world);
-        const BodyId ball = world.Add({.shape = SphereOf(0.5f), .mass = 4}), other = world.Add({.shape = SphereOf(0.5f), .position = {3, 0, 0}, .mass = 4});
+        const BodyId ball = world.Add({.shape = SphereOf(0.5f), .mass = 4});
+        const BodyId other = world.Add({.shape = SphereOf(0.5f), .position = {3, 0, 0}, .mass = 4});
         SwingTwistJointSettings twist{Between(hook, ball, {0, 0, 0}, {0, 0, 1})};
         twist.twist.motor = PositionMotor(0.5, spring);
         const JointId first = Join(world, twist);

@@ -67,7 +67,8 @@ TEST(KinematicBase, AGovernorRisesToTheAngleOfItsSpeed) {
 
 TEST(KinematicBase, ASliderOnALiftWeighsMoreWhileTheLiftRisesFaster) {
     TestWorld world(NoSleep());
-    const BodyId lift = world.Add({.shape = CubeOf(0.1f), .motion = MotionType::Kinematic}), load = world.Add({.shape = CubeOf(0.1f), .position = {1, 0, 0}, .mass = 10});
+    const BodyId lift = world.Add({.shape = CubeOf(0.1f), .motion = MotionType::Kinematic});
+    const BodyId load = world.Add({.shape = CubeOf(0.1f), .position = {1, 0, 0}, .mass = 10});
     const JointId slider = Join(world, SliderJointSettings{Between(lift, load, {1, 0, 0}, {0, 1, 0}), Limited(0, 0, StiffnessSpring(1000, 200))});
     for (int i = 0; i < 240; ++i) {
         const double time = (i + 1) * kStep;
@@ -81,7 +82,8 @@ TEST(KinematicBase, StaticAndKinematicAtRestAreTheSame) {
     std::vector<Position> places;
     for (const MotionType motion : {MotionType::Static, MotionType::Kinematic}) {
         TestWorld world(NoSleep());
-        const BodyId base = world.Add({.shape = SphereOf(0.05f), .motion = motion}), rod = world.Add({.shape = BoxOf(0.5f, 0.05f, 0.05f), .position = {0.5, 0, 0}});
+        const BodyId base = world.Add({.shape = SphereOf(0.05f), .motion = motion});
+        const BodyId rod = world.Add({.shape = BoxOf(0.5f, 0.05f, 0.05f), .position = {0.5, 0, 0}});
         Join(world, HingeJointSettings{Between(base, rod, {0, 0, 0}, {0, 0, 1})});
         world.Run(3);
         places.push_back(world.PositionOf(rod));

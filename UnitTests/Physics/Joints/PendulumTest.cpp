@@ -25,7 +25,8 @@ struct RodPendulum {
         // The rod is along its own x: turned about y.
         const double heading = std::atan2(-double(along.z()), double(along.x()));
         const BodyId hook = AddHook(world);
-        rod = world.Add({.shape = BoxOf(0.5f, 0.05f, 0.05f), .position = 0.5 * along.cast<double>(), .rotation = Turn({0, 1, 0}, heading), .mass = static_cast<float>(mass)});
+        rod = world.Add({.shape = BoxOf(0.5f, 0.05f, 0.05f), .position = 0.5 * along.cast<double>(),
+                         .rotation = Turn({0, 1, 0}, heading), .mass = static_cast<float>(mass)});
         hinge = Join(world, HingeJointSettings{Between(hook, rod, {0, 0, 0}, axis)});
     }
     double Angle() { return JointsOf(world).GetCoordinate(hinge, JointAxis::AngularX); }

@@ -97,7 +97,8 @@ TEST(RecoveryFromAfar, JointsToTheWorldMetresOutOfPlace) {
 TEST(RecoveryOfLimits, NarrowHingeLimitsHalfATurnAway) {
     for (const double start : {kPi, -kPi, 3.0, -1.0}) {
         TestWorld world(NoGravity());
-        const BodyId rod = world.Add({.shape = BoxOf(0.5f, 0.05f, 0.05f), .position = {0.5 * std::cos(start), 0.5 * std::sin(start), 0}, .rotation = Turn({0, 0, 1}, start)});
+        const BodyId rod = world.Add({.shape = BoxOf(0.5f, 0.05f, 0.05f),
+                                      .position = {0.5 * std::cos(start), 0.5 * std::sin(start), 0}, .rotation = Turn({0, 0, 1}, start)});
         HingeJointSettings settings{Between(AddHook(world), rod, {0, 0, 0}, {0, 0, 1}), Limited(-0.01, 0.01)};
         settings.anchorA.normal = Vector3(1, 0, 0);
         settings.anchorB = AnchorAt({0, 0, 0}, {0, 0, 1});
@@ -118,7 +119,8 @@ TEST(RecoveryOfLimits, NarrowHingeLimitsHalfATurnAway) {
 TEST(RecoveryOfLimits, SliderAndConeAndDistanceFarBeyondTheirLimits) {
     TestWorld world(Weightless());
     const BodyId hook = AddHook(world);
-    const BodyId box = world.Add({.shape = CubeOf(0.1f), .position = {4, 0, 0}}), rod = world.Add({.shape = BoxOf(0.5f, 0.05f, 0.05f), .position = {0, 5, 0}});
+    const BodyId box = world.Add({.shape = CubeOf(0.1f), .position = {4, 0, 0}});
+    const BodyId rod = world.Add({.shape = BoxOf(0.5f, 0.05f, 0.05f), .position = {0, 5, 0}});
     const BodyId ball = world.Add({.shape = SphereOf(0.1f), .position = {0, -9, 0}});
     SliderJointSettings slide{Between(hook, box, {0, 0, 0}), Limited(-0.5, 0.5)};
     slide.anchorB = AnchorAt({4, 0, 0});
