@@ -13,6 +13,7 @@ JointRow& AddRow(const JointRow& motion, float sign, uint32_t slot, JointRow::Ki
     JointRow& row = rows.Add(slot, kind);
     row.a = {motion.a.linear * sign, motion.a.angular * sign};
     row.b = {motion.b.linear * sign, motion.b.angular * sign};
+    row.radial = motion.radial;
     return row;
 }
 

@@ -18,6 +18,7 @@ void DistanceJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     const float distance = Length(pose.offset);
     JointRow motion;
     pose.SetAlong(motion, Normalized(pose.offset, ToMatrix(pose.frameA).x));
+    motion.radial = true;
     // Motion across lengthens the distance as well: by (v dt)^2 / 2 d, and by v dt at most.
     const Vector3 velocity = pose.AnchorVelocity();
     const float speed = Length(velocity);

@@ -1,11 +1,12 @@
 // N joints of the same locks side by side, solved in lanes. No two joints of a batch share a moving body.
 //
-// A joint is a linear lock, an angular lock (parts) and scalar rows. Within a joint the rows come first, then the angular
-// lock, then the linear one: what holds bodies together wins. Three things make few iterations go far:
+// A joint is a linear lock, an angular lock (parts) and scalar rows. Within a joint the rows come first, then the locks: what
+// holds bodies together wins. Four things make few iterations go far:
 //  - The parts are set up anew in every substep from the displacements since the start of the step, so that a joint follows
 //    the arc that its bodies turn along.
 //  - A body keeps its constraints' share of velocity from substep to substep, in place of a warm start (Solve stage). What the
 //    turning of a part changes of its impulse is added then: `turnedA` and `turnedB`.
+//  - A joint that locks translation and rotation solves both as one block.
 //  - A row's impulse takes the locks' answer with it. Its response is M^-1 (J^T - L^T (L M^-1 L^T)^-1 L M^-1 J^T) with L the
 //    locks' Jacobian: it disturbs no lock, and a spring or a motor meets the mass that it really moves. What the locks answer,
 //    `lockLinear` and `lockAngular` per unit of impulse, is kept apart from their own impulses: softness takes none of it back.
@@ -46,11 +47,13 @@ struct JointRows {
     Real startError, error;              // m or rad, at the start of the step and now
     Real speed;                          // m/s or rad/s that J v is to be
     Real impulse, lowest, highest;       // N s or N m s
-    // delta = -(mass (J v - speed) + gain C + softness total), see SpringPart.h
-    Real mass, gain, softness;
-    Real mostGain;                       // N s: limit of gain C
-    // One-sided rows whose error is above `openAbove` are open: delta = -(hardMass (J v + gapRate C) + openSoftness total).
-    Real openAbove, hardMass, gapRate, openSoftness;
+    // delta = -(mass (massScale (J v - speed) + pushRate C) + softness total), see SpringPart.h
+    Real massScale, pushRate, softness;
+    Real mostPush;                       // m/s or rad/s: limit of pushRate C
+    // One-sided rows whose error is above `openAbove` are open: delta = -(mass hardScale (J v + gapRate C) + openSoftness total).
+    Real openAbove, hardScale, gapRate, openSoftness;
+    Real mass;                           // kg or kg m2 that the row meets; 0: no row
+    Real radial;                         // 1: the row acts along the line between the anchors and turns with it
     uint8_t slot[N];                     // 0xFF: no row
 };
 
@@ -80,6 +83,13 @@ struct JointBatch {
     Vec3<Real> startAxisA, startAxisB, startNormal;  // for AngularLock::Axis; the normal is one of B's
     DualAxisPart<Real> line;
     Vec3<Real> startLine, startLineNormal;  // for LinearLock::Line, of A
+
+    // Where a joint locks both, its rows are solved as one block: with C = L_linear M^-1 L_angular^T, by columns, and
+    // S = K_linear - C K_angular^-1 C^T.
+    Vec3<Real> cross[3];
+    Sym3<Real> coupledPoint;             // S^-1
+    Sym2<Real> coupledLine;
+    bool radial;                         // some row of some lane is
 };
 
 struct JointSolveSettings {

@@ -123,6 +123,232 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     return errors;
 }
 
+// Calls f(axis, index) for the axes about which the angular lock's rows act.
+template <AngularLock kAngular, int N, class F>
+[[gnu::always_inline]] inline void VisitAngularRows(const JointBatch<N>& batch, F&& f) {
+    using Real = Wide<N>;
+    const Real zero(0.0f), one(1.0f);
+    if constexpr (kAngular == AngularLock::All) {
+        f(Vec3<Real>(one, zero, zero), 0);
+        f(Vec3<Real>(zero, one, zero), 1);
+        f(Vec3<Real>(zero, zero, one), 2);
+    }
+    if constexpr (kAngular == AngularLock::Axis) {
+        f(Vec3<Real>(-batch.hinge.GetC2()), 0);
+        f(batch.hinge.GetB2(), 1);
+    }
+}
+
+template <LinearLock kLinear, AngularLock kAngular>
+inline constexpr bool kCoupled = kLinear != LinearLock::None && kAngular != AngularLock::None;
+
+template <LinearLock kLinear, int N>
+[[gnu::always_inline]] inline auto& LinearPart(JointBatch<N>& batch) {
+    if constexpr (kLinear == LinearLock::Line) return batch.line;
+    else return batch.point;
+}
+template <AngularLock kAngular, int N>
+[[gnu::always_inline]] inline auto& AngularPart(JointBatch<N>& batch) {
+    if constexpr (kAngular == AngularLock::Axis) return batch.hinge;
+    else return batch.rotation;
+}
+
+// After SetUpParts: what couples the two locks.
+template <LinearLock kLinear, AngularLock kAngular, int N>
+[[gnu::always_inline]] inline void SetUpCoupling(JointBatch<N>& batch) {
+    using Real = Wide<N>;
+    if constexpr (kCoupled<kLinear, kAngular>) {
+        constexpr int kColumns = kAngular == AngularLock::All ? 3 : 2;
+        Vec3<Real> armA, armB;
+        if constexpr (kLinear == LinearLock::Point) {
+            armA = batch.point.GetArm1();
+            armB = batch.point.GetArm2();
+        } else {
+            armA = batch.line.GetFrame().r1PlusU;
+            armB = batch.line.GetFrame().r2;
+        }
+        VisitAngularRows<kAngular>(batch, [&](const Vec3<Real>& axis, int k) {
+            const Vec3<Real> turnA = batch.massA.inertia * axis, turnB = batch.massB.inertia * axis;
+            const Vec3<Real> column = Cross<Real>(turnA, armA) + Cross<Real>(turnB, armB);
+            if constexpr (kLinear == LinearLock::Point) {
+                batch.cross[k] = column;
+            } else {
+                const auto& frame = batch.line.GetFrame();
+                batch.cross[k] = Vec3<Real>(Dot<Real>(frame.axis1, column), Dot<Real>(frame.axis2, column), Real(0.0f));
+            }
+        });
+        const auto& angularMass = AngularPart<kAngular>(batch).GetEffectiveMass();
+        // S = K - sum of C_k (K_angular^-1 C^T)_k
+        Sym3<Real> s = PointInverseMass<BodySide::Dynamic, BodySide::Dynamic>(batch.massA, batch.massB, armA, armB);
+        if constexpr (kLinear == LinearLock::Line) {
+            const auto& frame = batch.line.GetFrame();
+            const Sym3<Real> point = s;
+            s.xx = Between(frame.axis1, point, frame.axis1);
+            s.yy = Between(frame.axis2, point, frame.axis2);
+            s.xy = Between(frame.axis1, point, frame.axis2);
+        }
+        const Vec3<Real>(&c)[3] = batch.cross;
+        Vec3<Real> weighted[3];
+        if constexpr (kColumns == 3) {
+            const auto& m = angularMass;
+            weighted[0] = c[0] * m.xx + c[1] * m.xy + c[2] * m.xz;
+            weighted[1] = c[0] * m.xy + c[1] * m.yy + c[2] * m.yz;
+            weighted[2] = c[0] * m.xz + c[1] * m.yz + c[2] * m.zz;
+        } else {
+            const auto& m = angularMass;
+            weighted[0] = c[0] * m.xx + c[1] * m.xy;
+            weighted[1] = c[0] * m.xy + c[1] * m.yy;
+        }
+        for (int k = 0; k < kColumns; ++k) {
+            s.xx -= c[k].x() * weighted[k].x();
+            s.yy -= c[k].y() * weighted[k].y();
+            s.xy -= c[k].x() * weighted[k].y();
+            if constexpr (kLinear == LinearLock::Point) {
+                s.zz -= c[k].z() * weighted[k].z();
+                s.xz -= c[k].x() * weighted[k].z();
+                s.yz -= c[k].y() * weighted[k].z();
+            }
+        }
+        if constexpr (kLinear == LinearLock::Point) batch.coupledPoint = SymmetricInverse(s);
+        else batch.coupledLine = SymmetricInverse(Sym2<Real>{s.xx, s.yy, s.xy});
+    }
+}
+
+// Impulses of the locks, in the parts' rows.
+template <class Real>
+struct LockImpulses {
+    Vec3<Real> linear = Zero<Real>(), angular = Zero<Real>();
+};
+
+// K^-1 (linear, angular) with K of both locks. Unused components are zero.
+template <LinearLock kLinear, AngularLock kAngular, int N>
+[[gnu::always_inline]] inline LockImpulses<Wide<N>> SolveBlock(JointBatch<N>& batch, const Vec3<Wide<N>>& linear, const Vec3<Wide<N>>& angular) {
+    using Real = Wide<N>;
+    LockImpulses<Real> x;
+    const auto timesAngular = [&](const Vec3<Real>& v) {
+        if constexpr (kAngular == AngularLock::All) {
+            return Vec3<Real>(batch.rotation.GetEffectiveMass() * v);
+        } else {
+            const Vec2<Real> two = batch.hinge.GetEffectiveMass() * Vec2<Real>(v.x(), v.y());
+            return Vec3<Real>(two.x(), two.y(), Real(0.0f));
+        }
+    };
+    const auto timesLinear = [&](const Vec3<Real>& v) {
+        if constexpr (kLinear == LinearLock::Point) {
+            if constexpr (kCoupled<kLinear, kAngular>) return Vec3<Real>(batch.coupledPoint * v);
+            else return Vec3<Real>(batch.point.GetEffectiveMass() * v);
+        } else {
+            const Vec2<Real> flat(v.x(), v.y());
+            Vec2<Real> two;
+            if constexpr (kCoupled<kLinear, kAngular>) two = batch.coupledLine * flat;
+            else two = batch.line.GetEffectiveMass() * flat;
+            return Vec3<Real>(two.x(), two.y(), Real(0.0f));
+        }
+    };
+    if constexpr (kCoupled<kLinear, kAngular>) {
+        constexpr int kColumns = kAngular == AngularLock::All ? 3 : 2;
+        const Vec3<Real> alone = timesAngular(angular);
+        Vec3<Real> rest = linear;
+        for (int k = 0; k < kColumns; ++k) rest -= batch.cross[k] * alone[k];
+        x.linear = timesLinear(rest);
+        Vec3<Real> left = angular;
+        for (int k = 0; k < kColumns; ++k) left[k] -= Dot<Real>(batch.cross[k], x.linear);
+        x.angular = timesAngular(left);
+    } else if constexpr (kLinear != LinearLock::None) {
+        x.linear = timesLinear(linear);
+    } else if constexpr (kAngular != AngularLock::None) {
+        x.angular = timesAngular(angular);
+    }
+    return x;
+}
+
+template <class Rows, class Real>
+[[gnu::always_inline]] inline Vec3<Real> Widened(const Rows& rows, Real zero) {
+    if constexpr (Rows::SizeAtCompileTime == 3) return rows;
+    else return Vec3<Real>(rows.x(), rows.y(), zero);
+}
+
+// What the locks see of a motion: L v.
+template <LinearLock kLinear, AngularLock kAngular, int N>
+[[gnu::always_inline]] inline LockImpulses<Wide<N>> LockMotion(JointBatch<N>& batch, const Twist<Wide<N>>& a, const Twist<Wide<N>>& b) {
+    using Real = Wide<N>;
+    LockImpulses<Real> motion;
+    if constexpr (kLinear != LinearLock::None) motion.linear = Widened(LinearPart<kLinear>(batch).RelativeMotion(a, b), Real(0.0f));
+    if constexpr (kAngular != AngularLock::None) motion.angular = Widened(AngularPart<kAngular>(batch).RelativeMotion(a, b), Real(0.0f));
+    return motion;
+}
+
+// Adds M^-1 L^T impulses.
+template <LinearLock kLinear, AngularLock kAngular, int N>
+[[gnu::always_inline]] inline void AddLockMotion(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, const LockImpulses<Wide<N>>& x) {
+    using Real = Wide<N>;
+    const auto add = [&](const auto& part, const Vec3<Real>& impulse) {
+        auto rows = part.GetTotalLambda();
+        for (int k = 0; k < rows.size(); ++k) rows[k] = impulse[k];
+        part.AddImpulse(a, b, batch.massA, batch.massB, rows, Real(0.0f) < Real(1.0f));
+    };
+    if constexpr (kAngular != AngularLock::None) add(AngularPart<kAngular>(batch), x.angular);
+    if constexpr (kLinear != LinearLock::None) add(LinearPart<kLinear>(batch), x.linear);
+}
+
+// The line between the anchors, where they are apart; else as it was.
+template <int N>
+[[gnu::always_inline]] inline void TurnRadialRow(const JointBatch<N>& batch, JointRows<N>& row, const JointPlace<Wide<N>>& place) {
+    using Real = Wide<N>;
+    const Real squared = Dot<Real>(place.offset, place.offset), one(1.0f);
+    const auto turns = (row.radial > Real(0.5f)) & (squared > Real(1e-10f));
+    const Real inverse = one / Sqrt(Select(turns, squared, one));
+    Vec3<Real> n = place.offset * inverse;
+    // Rows that keep the distance down point the other way.
+    const Real sign = Select(Dot<Real>(n, row.b.linear) < Real(0.0f), -one, one);
+    n = n * sign;
+    const Vec3<Real> atA = Cross<Real>(Vec3<Real>(place.armA + place.offset), n), atB = Cross<Real>(place.armB, n);
+    const auto choose = [&](Vec3<Real>& to, const Vec3<Real>& from) {
+        for (int k = 0; k < 3; ++k) to[k] = Select(turns, from[k], to[k]);
+    };
+    choose(row.a.linear, n);
+    choose(row.b.linear, n);
+    choose(row.a.angular, atA);
+    choose(row.b.angular, atB);
+    const Real start = Sqrt(Dot<Real>(batch.startOffset, batch.startOffset));
+    row.error = Select(turns, row.startError + sign * (squared * inverse - start), row.error);
+}
+
+// After the parts were set up: responses and masses of the rows, and the locks' answer to their impulses.
+template <LinearLock kLinear, AngularLock kAngular, int N>
+[[gnu::always_inline]] inline void SetUpRows(JointBatch<N>& batch) {
+    using Real = Wide<N>;
+    const Real zero(0.0f);
+    batch.answerLinear = batch.answerAngular = Zero<Real>();
+    for (uint32_t i = 0; i < batch.rowCount; ++i) {
+        JointRows<N>& row = batch.rows[i];
+        row.responseA = {row.a.linear * -batch.massA.mass, -(batch.massA.inertia * row.a.angular)};
+        row.responseB = {row.b.linear * batch.massB.mass, batch.massB.inertia * row.b.angular};
+        const auto inverseMass = [&] {
+            return Dot<Real>(row.b.linear, row.responseB.linear) + Dot<Real>(row.b.angular, row.responseB.angular) -
+                   Dot<Real>(row.a.linear, row.responseA.linear) - Dot<Real>(row.a.angular, row.responseA.angular);
+        };
+        const Real alone = inverseMass();
+        Real together = alone;
+        row.lockLinear = row.lockAngular = Zero<Real>();
+        if constexpr (kLinear != LinearLock::None || kAngular != AngularLock::None) {
+            const LockImpulses<Real> motion = LockMotion<kLinear, kAngular>(batch, row.responseA, row.responseB);
+            LockImpulses<Real> x = SolveBlock<kLinear, kAngular>(batch, motion.linear, motion.angular);
+            x.linear = -x.linear;
+            x.angular = -x.angular;
+            AddLockMotion<kLinear, kAngular>(batch, row.responseA, row.responseB, x);
+            row.lockLinear = x.linear;
+            row.lockAngular = x.angular;
+            together = inverseMass();
+        }
+        // What the locks determine alone is left to them.
+        const auto acts = together > alone * Real(1e-5f);
+        row.mass = Select(acts, Real(1.0f) / Select(acts, together, Real(1.0f)), zero);
+        batch.answerLinear += row.lockLinear * row.impulse;
+        batch.answerAngular += row.lockAngular * row.impulse;
+    }
+}
+
 // The push that the next velocity iterations give.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 [[gnu::always_inline]] inline void Soften(JointBatch<N>& batch, const JointErrors<Wide<N>>& errors, const JointSolveSettings& settings) {

@@ -29,6 +29,7 @@ struct JointRow {
     Twist<float> a, b;     // linearA, angularA; linearB, angularB
     float error = 0;       // C at the start of the step, m or rad
     float speed = 0;       // m/s or rad/s
+    bool radial = false;   // acts along the line from A's anchor to B's and follows it as it turns
     float minForce = -kUnlimited, maxForce = kUnlimited;  // N or N m
     SpringSettings spring;
 };

@@ -59,164 +59,75 @@ template <int N>
 void SetLane(Vec3<Wide<N>>& v, int lane, const Vector3& value) {
     for (int k = 0; k < 3; ++k) v[k].Set(lane, value[k]);
 }
-template <int N>
-InverseMass<float> LaneOf(const InverseMass<Wide<N>>& m, int lane) {
-    const auto& i = m.inertia;
-    return {m.mass[lane], {i.xx[lane], i.yy[lane], i.zz[lane], i.xy[lane], i.xz[lane], i.yz[lane]}};
-}
-
-Twist<float> Respond(const InverseMass<float>& mass, const Twist<float>& row, float sign) {
-    return {row.linear * (mass.mass * sign), Vector3((mass.inertia * row.angular) * sign)};
-}
-float Dot6(const Twist<float>& a, const Twist<float>& b) { return Dot(a.linear, b.linear) + Dot(a.angular, b.angular); }
-
-// The locks of one joint as rows of the dense system L M^-1 L^T, at most 3 + 3.
-class LockRows {
-public:
-    LockRows(const InverseMass<float>& massA, const InverseMass<float>& massB) : massA_(massA), massB_(massB) {}
-
-    void AddLinear(const Vector3& axis, const Vector3& armA, const Vector3& armB) {
-        Add({axis, Cross<float>(armA, axis)}, {axis, Cross<float>(armB, axis)});
-        ++linear_;
-    }
-    void AddAngular(const Vector3& axis) { Add({Vector3::Zero(), axis}, {Vector3::Zero(), axis}); }
-
-    // K = L L^T by Cholesky; rows that nothing can move, or that others determine, get a zero row.
-    void Factorize() {
-        for (int i = 0; i < count_; ++i) {
-            for (int j = 0; j <= i; ++j) {
-                float sum = -Dot6(rows_[i].a, rows_[j].responseA) + Dot6(rows_[i].b, rows_[j].responseB);
-                const float diagonal = sum;
-                for (int k = 0; k < j; ++k) sum -= factor_[i][k] * factor_[j][k];
-                if (j < i) factor_[i][j] = factor_[j][j] > 0.0f ? sum / factor_[j][j] : 0.0f;
-                else factor_[i][i] = sum > 1e-6f * diagonal ? std::sqrt(sum) : 0.0f;
-            }
-        }
-    }
-
-    // Makes the responses of a row leave the locks alone; returns what that changes of the locks' impulses per unit.
-    void Project(Twist<float>& responseA, Twist<float>& responseB, Vector3& linear, Vector3& angular) const {
-        float x[6];
-        for (int i = 0; i < count_; ++i) {
-            float sum = Dot6(rows_[i].b, responseB) - Dot6(rows_[i].a, responseA);
-            for (int k = 0; k < i; ++k) sum -= factor_[i][k] * x[k];
-            x[i] = factor_[i][i] > 0.0f ? sum / factor_[i][i] : 0.0f;
-        }
-        for (int i = count_ - 1; i >= 0; --i) {
-            float sum = x[i];
-            for (int k = i + 1; k < count_; ++k) sum -= factor_[k][i] * x[k];
-            x[i] = factor_[i][i] > 0.0f ? sum / factor_[i][i] : 0.0f;
-        }
-        linear = angular = Vector3::Zero();
-        for (int i = 0; i < count_; ++i) {
-            responseA.linear -= rows_[i].responseA.linear * x[i];
-            responseA.angular -= rows_[i].responseA.angular * x[i];
-            responseB.linear -= rows_[i].responseB.linear * x[i];
-            responseB.angular -= rows_[i].responseB.angular * x[i];
-            if (i < linear_) linear[i] = -x[i];
-            else angular[i - linear_] = -x[i];
-        }
-    }
-
-private:
-    void Add(const Twist<float>& a, const Twist<float>& b) {
-        rows_[count_++] = {a, b, Respond(massA_, a, -1.0f), Respond(massB_, b, 1.0f)};
-    }
-    struct Row {
-        Twist<float> a, b, responseA, responseB;
-    };
-    InverseMass<float> massA_, massB_;
-    Row rows_[6];
-    float factor_[6][6] = {};
-    int count_ = 0, linear_ = 0;
-};
-
-struct RowContext {
-    const JointSolveSettings& settings;
-    InverseMass<float> massA, massB;
-    const LockRows& locks;
-    float previousImpulse;
-};
-
 // A lane without a row.
 template <int N>
 void ClearLane(JointRows<N>& rows, int lane) {
-    for (Twist<Wide<N>>* twist : {&rows.a, &rows.b, &rows.responseA, &rows.responseB}) {
+    for (Twist<Wide<N>>* twist : {&rows.a, &rows.b}) {
         SetLane(twist->linear, lane, Vector3::Zero());
         SetLane(twist->angular, lane, Vector3::Zero());
     }
-    SetLane(rows.lockLinear, lane, Vector3::Zero());
-    SetLane(rows.lockAngular, lane, Vector3::Zero());
-    for (Wide<N>* x : {&rows.startError, &rows.error, &rows.speed, &rows.impulse, &rows.lowest, &rows.highest, &rows.mass, &rows.gain,
-                       &rows.softness, &rows.mostGain, &rows.openAbove, &rows.hardMass, &rows.gapRate, &rows.openSoftness})
+    for (Wide<N>* x : {&rows.startError, &rows.error, &rows.speed, &rows.impulse, &rows.lowest, &rows.highest, &rows.massScale,
+                       &rows.pushRate, &rows.softness, &rows.mostPush, &rows.openAbove, &rows.hardScale, &rows.gapRate,
+                       &rows.openSoftness, &rows.radial})
         x->Set(lane, 0.0f);
     rows.slot[lane] = 0xFF;
 }
 
+// All but what depends on the mass that the row meets: that is set up with the parts.
 template <int N>
-void FillLane(JointRows<N>& rows, int lane, const JointRow& row, const RowContext& context) {
+void FillLane(JointRows<N>& rows, int lane, const JointRow& row, float previousImpulse, const JointSolveSettings& s) {
     ClearLane(rows, lane);
-    const JointSolveSettings& s = context.settings;
-    Twist<float> responseA = Respond(context.massA, row.a, -1.0f), responseB = Respond(context.massB, row.b, 1.0f);
-    const float alone = Dot6(row.b, responseB) - Dot6(row.a, responseA);
-    Vector3 lockLinear, lockAngular;
-    context.locks.Project(responseA, responseB, lockLinear, lockAngular);
-    const float inverseMass = Dot6(row.b, responseB) - Dot6(row.a, responseA);
-    // What the locks determine alone is left to them; so is what is not finite.
-    if (!(inverseMass > 1e-5f * alone) || !std::isfinite(inverseMass) || !std::isfinite(row.error)) return;
+    if (!std::isfinite(row.error) || !std::isfinite(row.speed)) return;
     SetLane(rows.a.linear, lane, row.a.linear);
     SetLane(rows.a.angular, lane, row.a.angular);
     SetLane(rows.b.linear, lane, row.b.linear);
     SetLane(rows.b.angular, lane, row.b.angular);
-    SetLane(rows.responseA.linear, lane, responseA.linear);
-    SetLane(rows.responseA.angular, lane, responseA.angular);
-    SetLane(rows.responseB.linear, lane, responseB.linear);
-    SetLane(rows.responseB.angular, lane, responseB.angular);
-    SetLane(rows.lockLinear, lane, lockLinear);
-    SetLane(rows.lockAngular, lane, lockAngular);
     rows.slot[lane] = row.slot;
 
     using Kind = JointRow::Kind;
     const bool oneSided = row.kind == Kind::AtLeast || row.kind == Kind::SpringAtLeast;
-    const SpringConstants<float> constants = ToConstants(row.spring);
-    const bool soft = constants.squaredFrequency > 0.0f || constants.stiffness > 0.0f;
-    const bool spring = soft && (row.kind == Kind::Spring || row.kind == Kind::SpringAtLeast);
-    const float mass = 1.0f / inverseMass, unlimited = JointRow::kUnlimited;
+    const float unlimited = JointRow::kUnlimited;
     const float lowest = Max(row.minForce * s.substepDt, oneSided ? 0.0f : -unlimited), highest = row.maxForce * s.substepDt;
-    float massScale = 1.0f, softness = 0.0f, gain = 0.0f, hardMass = mass, mostGain = unlimited;
-    if (spring) {
-        const auto gains = detail::CalculateSpringGains<float>(s.substepDt, inverseMass, constants);
-        massScale = gains.massScale;
-        softness = gains.softness;
-        gain = mass * gains.errorGain * s.inverseDt;
-        hardMass = 0.0f;
-    } else if (row.kind != Kind::Speed) {
-        massScale = s.softness.massScale;
-        softness = s.softness.impulseScale;
-        gain = mass * massScale * s.pushRate;
-        mostGain = mass * massScale * s.maxPushSpeed;
-    }
+    const bool hard = row.kind == Kind::Equal || row.kind == Kind::AtLeast;
     rows.startError.Set(lane, row.error);
     rows.error.Set(lane, row.error);
     rows.speed.Set(lane, row.kind == Kind::Speed ? row.speed : 0.0f);
-    rows.mass.Set(lane, mass * massScale);
-    rows.gain.Set(lane, gain);
-    rows.softness.Set(lane, softness);
-    rows.mostGain.Set(lane, mostGain);
+    rows.massScale.Set(lane, hard ? s.softness.massScale : 1.0f);
+    rows.pushRate.Set(lane, hard ? s.softness.massScale * s.pushRate : 0.0f);
+    rows.softness.Set(lane, hard ? s.softness.impulseScale : 0.0f);
+    rows.mostPush.Set(lane, hard ? s.softness.massScale * s.maxPushSpeed : unlimited);
     rows.openAbove.Set(lane, oneSided ? 0.0f : unlimited);
-    rows.hardMass.Set(lane, hardMass);
+    rows.hardScale.Set(lane, 1.0f);
     rows.gapRate.Set(lane, oneSided ? s.inverseDt : 0.0f);
-    rows.openSoftness.Set(lane, spring ? 1.0f : 0.0f);
     rows.lowest.Set(lane, lowest);
     rows.highest.Set(lane, highest);
-    rows.impulse.Set(lane, Clamp(context.previousImpulse * s.impulseScale, lowest, highest));
+    rows.radial.Set(lane, row.radial ? 1.0f : 0.0f);
+    rows.impulse.Set(lane, Clamp(previousImpulse * s.impulseScale, lowest, highest));
 }
 
-// Asks the types for their rows and spreads these over the lanes.
+// Springs: after the masses are known. They are not relaxed: their force is what they are for.
 template <int N>
+void SoftenLane(JointRows<N>& rows, int lane, const JointRow& row, const JointSolveSettings& s) {
+    using Kind = JointRow::Kind;
+    if (rows.slot[lane] == 0xFF || (row.kind != Kind::Spring && row.kind != Kind::SpringAtLeast)) return;
+    const float mass = rows.mass[lane];
+    SpringConstants<float> constants = ToConstants(row.spring);
+    // As stiff as a spring can be that a substep resolves.
+    if (!(constants.squaredFrequency > 0.0f || constants.stiffness > 0.0f)) constants = FrequencyConstants(0.25f * s.inverseDt, 1.0f);
+    const auto gains = detail::CalculateSpringGains<float>(s.substepDt, mass > 0.0f ? 1.0f / mass : 0.0f, constants);
+    rows.massScale.Set(lane, gains.massScale);
+    rows.softness.Set(lane, gains.softness);
+    rows.pushRate.Set(lane, gains.errorGain * s.inverseDt);
+    rows.hardScale.Set(lane, 0.0f);
+    rows.openSoftness.Set(lane, 1.0f);
+}
+
+// Asks the types for their rows and spreads these over the lanes. The parts are set up.
+template <LinearLock kLinear, AngularLock kAngular, int N>
 void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const* types, const SolverBodies& bodies,
               const JointSolveSettings& settings) {
     batch.rowCount = 0;
+    batch.radial = false;
     if (batch.rowRoom == 0) return;
     JointRowList lists[N];
     for (int lane = 0; lane < batch.count; ++lane) {
@@ -246,38 +157,17 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
         if (lists[lane].count > batch.rowCount) batch.rowCount = lists[lane].count;
     }
     if (batch.rowCount == 0) return;
-    batch.answerLinear = batch.answerAngular = Zero<Wide<N>>();
     for (int lane = 0; lane < N; ++lane) {
         const JointRowList& list = lists[lane];
         for (uint32_t i = list.count; i < batch.rowCount; ++i) ClearLane(batch.rows[i], lane);
-        if (list.count == 0) continue;
-        const InverseMass<float> massA = LaneOf<N>(batch.massA, lane), massB = LaneOf<N>(batch.massB, lane);
-        LockRows locks(massA, massB);
-        const Vector3 armA = LaneOf<N>(batch.startArmA, lane), armB = LaneOf<N>(batch.startArmB, lane);
-        if (batch.linear == LinearLock::Point)
-            for (int k = 0; k < 3; ++k) locks.AddLinear(Vector3::Unit(k), armA, armB);
-        if (batch.linear == LinearLock::Line) {
-            const Vector3 line = LaneOf<N>(batch.startLine, lane), n1 = LaneOf<N>(batch.startLineNormal, lane);
-            const Vector3 reach = armA + LaneOf<N>(batch.startOffset, lane);
-            locks.AddLinear(n1, reach, armB);
-            locks.AddLinear(Cross<float>(line, n1), reach, armB);
+        for (uint32_t i = 0; i < list.count; ++i) {
+            FillLane(batch.rows[i], lane, list.rows[i], types[batch.joint[lane]]->impulses[list.rows[i].slot], settings);
+            batch.radial |= list.rows[i].radial;
         }
-        if (batch.angular == AngularLock::All)
-            for (int k = 0; k < 3; ++k) locks.AddAngular(Vector3::Unit(k));
-        if (batch.angular == AngularLock::Axis) {
-            const Vector3 axis = LaneOf<N>(batch.startAxisB, lane), b = LaneOf<N>(batch.startNormal, lane);
-            locks.AddAngular(-Cross<float>(axis, b));
-            locks.AddAngular(b);
-        }
-        locks.Factorize();
-        const auto& impulses = types[batch.joint[lane]]->impulses;
-        for (uint32_t i = 0; i < list.count; ++i)
-            FillLane(batch.rows[i], lane, list.rows[i], {settings, massA, massB, locks, impulses[list.rows[i].slot]});
     }
-    for (uint32_t i = 0; i < batch.rowCount; ++i) {
-        batch.answerLinear += batch.rows[i].lockLinear * batch.rows[i].impulse;
-        batch.answerAngular += batch.rows[i].lockAngular * batch.rows[i].impulse;
-    }
+    SetUpRows<kLinear, kAngular>(batch);
+    for (int lane = 0; lane < batch.count; ++lane)
+        for (uint32_t i = 0; i < lists[lane].count; ++i) SoftenLane(batch.rows[i], lane, lists[lane].rows[i], settings);
 }
 
 template <int N>
@@ -355,9 +245,10 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
             NoteLargest(batch, errors.hinge.x() * errors.hinge.x() + errors.hinge.y() * errors.hinge.y(), findings.angularError,
                         findings.angularJoint);
         }
+        SetUpCoupling<linear, angular>(batch);
         Soften<linear, angular>(batch, errors, settings);
+        FillRows<linear, angular>(batch, records, types, bodies, settings);
     });
-    FillRows(batch, records, types, bodies, settings);
 }
 
 namespace {

@@ -23,14 +23,26 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     if constexpr (kLinear == LinearLock::Line) add(batch.line, batch.answerLinear);
 }
 
+// The same of the rows' own, without the locks' answer.
+template <int N>
+[[gnu::always_inline]] inline void AddRowImpulses(const JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, float sign) {
+    using Real = Wide<N>;
+    for (uint32_t i = 0; i < batch.rowCount; ++i) {
+        const JointRows<N>& row = batch.rows[i];
+        const Real impulse = row.impulse * Real(sign);
+        a.linear -= row.a.linear * (batch.massA.mass * impulse);
+        a.angular -= (batch.massA.inertia * row.a.angular) * impulse;
+        b.linear += row.b.linear * (batch.massB.mass * impulse);
+        b.angular += (batch.massB.inertia * row.b.angular) * impulse;
+    }
+}
+
 // What the turning of the parts in the last substep changes of their impulses.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 [[gnu::always_inline]] inline void Turn(const JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
-    if constexpr (kLinear != LinearLock::None || kAngular == AngularLock::Axis) {
-        a.angular += batch.turnedA.angular;
-        b.angular += batch.turnedB.angular;
-    }
-    if constexpr (kLinear == LinearLock::Line) {
+    a.angular += batch.turnedA.angular;
+    b.angular += batch.turnedB.angular;
+    if constexpr (kLinear != LinearLock::Point) {
         a.linear += batch.turnedA.linear;
         b.linear += batch.turnedB.linear;
     }
@@ -44,16 +56,16 @@ template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
                        Dot<Real>(row.a.linear, a.linear) - Dot<Real>(row.a.angular, a.angular);
     Real change;
     if constexpr (kRelax) {
-        change = row.hardMass * (speed - row.speed + Max(row.error, zero) * row.gapRate);
+        change = row.mass * row.hardScale * (speed - row.speed + Max(row.error, zero) * row.gapRate);
     } else {
-        const Real push = Clamp(row.gain * row.error, -row.mostGain, row.mostGain);
-        const Real closed = row.mass * (speed - row.speed) + push + row.softness * row.impulse;
-        const Real open = row.hardMass * (speed + row.error * row.gapRate) + row.openSoftness * row.impulse;
+        const Real push = Clamp(row.pushRate * row.error, -row.mostPush, row.mostPush);
+        const Real closed = row.mass * (row.massScale * (speed - row.speed) + push) + row.softness * row.impulse;
+        const Real open = row.mass * row.hardScale * (speed + row.error * row.gapRate) + row.openSoftness * row.impulse;
         change = Select(row.error > row.openAbove, open, closed);
     }
     const Real total = Clamp(row.impulse - change, row.lowest, row.highest);
     const Real wanted = total - row.impulse;
-    const Real delta = Select(Abs(wanted) > zero, wanted, zero);  // NaN is nothing
+    const Real delta = Select((Abs(wanted) > zero) & (row.mass > zero), wanted, zero);  // NaN is nothing
     row.impulse += delta;
     a.linear += row.responseA.linear * delta;
     a.angular += row.responseA.angular * delta;
@@ -63,13 +75,45 @@ template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
     if constexpr (kAngular != AngularLock::None) batch.answerAngular += row.lockAngular * delta;
 }
 
+// Both locks as one block. A relaxing pass is hard and pushes nothing; the parts are set up that way then.
+template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
+[[gnu::always_inline]] inline void SolveBoth(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
+    using Real = Wide<N>;
+    auto& linearPart = LinearPart<kLinear>(batch);
+    auto& angularPart = AngularPart<kAngular>(batch);
+    LockImpulses<Real> miss = LockMotion<kLinear, kAngular>(batch, a, b);
+    if constexpr (!kRelax) {
+        miss.linear += Widened(linearPart.GetBias(), Real(0.0f));
+        miss.angular += Widened(angularPart.GetBias(), Real(0.0f));
+    }
+    const LockImpulses<Real> x = SolveBlock<kLinear, kAngular>(batch, miss.linear, miss.angular);
+    const auto apply = [&](auto& part, const Vec3<Real>& impulse) {
+        auto total = part.GetTotalLambda();
+        auto delta = total;
+        Real size(0.0f);
+        for (int k = 0; k < total.size(); ++k) {
+            if constexpr (kRelax) delta[k] = -impulse[k];
+            else delta[k] = -(impulse[k] * part.GetSoftness().massScale + total[k] * part.GetSoftness().impulseScale);
+            size += Abs(delta[k]);
+        }
+        const auto applied = size > Real(0.0f);  // NaN is nothing
+        part.AddImpulse(a, b, batch.massA, batch.massB, delta, applied);
+        for (int k = 0; k < total.size(); ++k) total[k] = Select(applied, Real(total[k] + delta[k]), Real(total[k]));
+        part.SetTotalLambda(total);
+    };
+    apply(angularPart, x.angular);
+    apply(linearPart, x.linear);
+}
+
 template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
 [[gnu::always_inline]] inline void SolveAll(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
     for (uint32_t i = 0; i < batch.rowCount; ++i) SolveRow<kRelax, kLinear, kAngular>(batch, batch.rows[i], a, b);
-    if constexpr (kAngular == AngularLock::All) batch.rotation.SolveVelocity(a, b, batch.massA, batch.massB);
-    if constexpr (kAngular == AngularLock::Axis) batch.hinge.SolveVelocity(a, b, batch.massA, batch.massB);
-    if constexpr (kLinear == LinearLock::Point) batch.point.SolveVelocity(a, b, batch.massA, batch.massB);
-    if constexpr (kLinear == LinearLock::Line) batch.line.SolveVelocity(a, b, batch.massA, batch.massB);
+    if constexpr (!kCoupled<kLinear, kAngular>) {
+        if constexpr (kAngular != AngularLock::None) AngularPart<kAngular>(batch).SolveVelocity(a, b, batch.massA, batch.massB);
+        if constexpr (kLinear != LinearLock::None) LinearPart<kLinear>(batch).SolveVelocity(a, b, batch.massA, batch.massB);
+    } else {
+        SolveBoth<kRelax, kLinear, kAngular>(batch, a, b);
+    }
 }
 
 template <LinearLock kLinear, AngularLock kAngular, int N>
@@ -77,7 +121,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     using Real = Wide<N>;
     JointPlace<Real> place;
     const Quat<Real> turnA = RotationFromVector<Real>(a.angular), turnB = RotationFromVector<Real>(b.angular);
-    if constexpr (kLinear != LinearLock::None) {
+    if (kLinear != LinearLock::None || batch.radial) {
         place.armA = Rotate<Real>(turnA, batch.startArmA);
         place.armB = Rotate<Real>(turnB, batch.startArmB);
         place.offset = batch.startOffset + (b.linear - a.linear) + (place.armB - batch.startArmB) - (place.armA - batch.startArmA);
@@ -111,22 +155,33 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
         row.error = row.startError + (Dot<Real>(row.b.linear, b.linear) + Dot<Real>(row.b.angular, b.angular) -
                                       Dot<Real>(row.a.linear, a.linear) - Dot<Real>(row.a.angular, a.angular));
     }
+    constexpr bool kLocks = kLinear != LinearLock::None || kAngular != AngularLock::None;
     constexpr bool kTurns = kLinear != LinearLock::None || kAngular == AngularLock::Axis;
     Twist<Real> turnedA, turnedB;
     if (!settings.firstPass) {
         turnedA = batch.turnedA;
         turnedB = batch.turnedB;
     }
-    if constexpr (kTurns) AddLockImpulses<kLinear, kAngular>(batch, turnedA, turnedB, -1.0f);
-    const JointErrors<Real> errors = SetUpParts<kLinear, kAngular>(batch, Displace<kLinear, kAngular>(batch, a, b));
-    if constexpr (kTurns) {
+    const bool turns = kTurns || batch.radial || (kLocks && batch.rowCount > 0);
+    if (turns) {
+        AddLockImpulses<kLinear, kAngular>(batch, turnedA, turnedB, -1.0f);
+        if (batch.radial) AddRowImpulses(batch, turnedA, turnedB, -1.0f);
+    }
+    const JointPlace<Real> place = Displace<kLinear, kAngular>(batch, a, b);
+    const JointErrors<Real> errors = SetUpParts<kLinear, kAngular>(batch, place);
+    SetUpCoupling<kLinear, kAngular>(batch);
+    if (batch.radial)
+        for (uint32_t i = 0; i < batch.rowCount; ++i) TurnRadialRow(batch, batch.rows[i], place);
+    if (batch.rowCount > 0) SetUpRows<kLinear, kAngular>(batch);
+    if (turns) {
         AddLockImpulses<kLinear, kAngular>(batch, turnedA, turnedB, 1.0f);
-        batch.turnedA.angular = turnedA.angular;
-        batch.turnedB.angular = turnedB.angular;
-        if constexpr (kLinear == LinearLock::Line) {
-            batch.turnedA.linear = turnedA.linear;
-            batch.turnedB.linear = turnedB.linear;
-        }
+        if (batch.radial) AddRowImpulses(batch, turnedA, turnedB, 1.0f);
+    }
+    batch.turnedA.angular = turnedA.angular;
+    batch.turnedB.angular = turnedB.angular;
+    if constexpr (kLinear != LinearLock::Point) {
+        batch.turnedA.linear = turnedA.linear;
+        batch.turnedB.linear = turnedB.linear;
     }
     return errors;
 }
@@ -141,13 +196,7 @@ void WarmStartJoints(const JointBatch<N>& batch, BodyState* states) {
         motionA.template Gather<Of::Velocity>(batch.bodyA, states);
         motionB.template Gather<Of::Velocity>(batch.bodyB, states);
         Twist<Real> a = motionA.Get(), b = motionB.Get();
-        for (uint32_t i = 0; i < batch.rowCount; ++i) {
-            const JointRows<N>& row = batch.rows[i];
-            a.linear -= row.a.linear * (batch.massA.mass * row.impulse);
-            a.angular -= (batch.massA.inertia * row.a.angular) * row.impulse;
-            b.linear += row.b.linear * (batch.massB.mass * row.impulse);
-            b.angular += (batch.massB.inertia * row.b.angular) * row.impulse;
-        }
+        AddRowImpulses(batch, a, b, 1.0f);
         AddLockImpulses<linear, angular>(batch, a, b, 1.0f);
         motionA.Scatter(a, batch.count, batch.fixedA);
         motionB.Scatter(b, batch.count, batch.fixedB);

@@ -100,6 +100,7 @@ public:
     void SetBias(const Rows& bias) { bias_ = bias; }
     const Rows& GetBias() const { return bias_; }
     void SetSoftness(const RowSoftness<Real>& softness) { softness_ = softness; }
+    const RowSoftness<Real>& GetSoftness() const { return softness_; }
 
     void Deactivate() { SetEffectiveMass(Types::NoMass()); }
     // The lanes that `mask` names.
