@@ -111,8 +111,15 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
         batch.hinge.CalculateProperties(batch.massA, batch.massB, b, c, none);
     }
     if constexpr (kLinear == LinearLock::Point) {
+        // Impulse and answer act at one point, so that angular momentum stays however far apart the anchors are: halfway
+        // between them, or at that of the only body that moves.
+        Real share(0.5f);
+        if ((batch.fixedA | batch.fixedB) != 0)
+            for (int i = 0; i < N; ++i)
+                if ((batch.fixedA | batch.fixedB) >> i & 1u) share.Set(i, batch.fixedA >> i & 1u ? 1.0f : 0.0f);
         errors.point = place.offset;
-        batch.point.CalculateProperties(batch.massA, batch.massB, place.armA, place.armB, Zero<Real>());
+        batch.point.CalculateProperties(batch.massA, batch.massB, Vec3<Real>(place.armA + place.offset * share),
+                                        Vec3<Real>(place.armB - place.offset * (Real(1.0f) - share)), Zero<Real>());
     }
     if constexpr (kLinear == LinearLock::Line) {
         const Vec3<Real> n1 = Straightened<Real>(place.lineNormal, place.line);

@@ -6,7 +6,7 @@ namespace {
 
 // jointPushSpeed, the fastest pull, 20 m/s and 20 rad/s; a body that is turned about an anchor half a metre off moves faster by
 // half of that, and two pulls may add up.
-constexpr float kFastest = 50;
+constexpr float kFastest = 65;
 
 struct Pair {
     explicit Pair(MotionType motionOfA, const SystemSettings& settings = NoGravity()) : world(settings) {
