@@ -218,8 +218,8 @@ TEST(JointOverflow, AHubOfManyJointsStaysTogether) {
     for (int i = 0; i < 80; ++i) {
         const double angle = i * 2 * kPi / 80;
         const Vector3 out(static_cast<float>(std::cos(angle)), 0, static_cast<float>(std::sin(angle)));
-        const BodyId spoke = world.Add({.shape = SphereOf(0.05f), .position = 1.5 * out.cast<double>(), .mass = 1});
-        joints.push_back(Join(world, FixedJointSettings{Between(hub, spoke, 1.5 * out.cast<double>())}));
+        const BodyId spoke = world.Add({.shape = SphereOf(0.02f), .position = 1.5 * out.cast<double>(), .mass = 1});
+        joints.push_back(Join(world, FixedJointSettings{Between(hub, spoke, 1.0 * out.cast<double>())}));
     }
     world.Run(5);
     EXPECT_TRUE(world.AllFinite());
