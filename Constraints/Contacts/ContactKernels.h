@@ -1,6 +1,7 @@
 // Shared by the contact kernels: reading and writing the twists of a batch, and the twist at the manifold's centre.
 #pragma once
 
+#include <Fulcrum/Constraints/BodyLanes.h>
 #include <Fulcrum/Constraints/Contacts/ContactBatch.h>
 
 // Calls a macro of (lanes, fixedB) for every kind of batch: those that any build or test asks for.
@@ -10,13 +11,6 @@
     instantiate(16, false) instantiate(16, true)
 
 namespace fulcrum::contacts {
-
-enum class Of { Velocity, Displacement };
-
-template <Of kOf>
-[[gnu::always_inline]] inline float* RowOf(BodyState& state) {
-    return kOf == Of::Velocity ? state.VelocityRow() : state.PoseRow();
-}
 
 // The two bodies' twists in lanes; kept whole so that the spare floats of a row survive the scatter.
 template <int N, bool kFixedB>

@@ -6,34 +6,11 @@ namespace {
 
 using namespace contacts;
 
-// A unit vector perpendicular to n (Duff et al., JCGT 2017).
-template <class Real>
-Vec3<Real> PerpendicularTo(const Vec3<Real>& n) {
-    const Real sign = Select(n.z() < Real(0.0f), Real(-1.0f), Real(1.0f));
-    const Real a = Real(-1.0f) / (sign + n.z());
-    return Vec3<Real>(Real(1.0f) + sign * n.x() * n.x() * a, sign * n.x() * n.y() * a, -sign * n.x());
-}
-
 template <int N>
 [[gnu::always_inline]] inline void GatherRecordRow(const uint32_t (&index)[N], const ContactRecord* records, int row, Wide<N> (&out)[8]) {
     const float* rows[N];
     for (int i = 0; i < N; ++i) rows[i] = reinterpret_cast<const float*>(&records[index[i]]) + 8 * row;
     GatherRows<N>(rows, out);
-}
-
-template <int N>
-[[gnu::always_inline]] inline void GatherMass(const uint32_t (&index)[N], const BodyMass* masses, InverseMass<Wide<N>>& out) {
-    const float* rows[N];
-    for (int i = 0; i < N; ++i) rows[i] = masses[index[i]].Row();
-    Wide<N> r[8];
-    GatherRows<N>(rows, r);
-    out.inertia.xx = r[0];
-    out.inertia.yy = r[1];
-    out.inertia.zz = r[2];
-    out.inertia.xy = r[3];
-    out.inertia.xz = r[4];
-    out.inertia.yz = r[5];
-    out.mass = r[6];
 }
 
 // Sums, over both bodies, what the response matrices are made of.
@@ -112,25 +89,12 @@ void PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* recor
                      const SolverBodies& bodies, const ContactPrepareSettings& settings) {
     using Real = Wide<N>;
     const Real zero(0.0f);
-    Real head[8], impulses[8], frame[8];
+    Real head[8], impulses[8];
     GatherRecordRow<N>(batch.contact, records, 0, head);
     GatherRecordRow<N>(batch.contact, records, 1, impulses);
-    const float* framesA[N];
-    const float* framesB[N];
-    alignas(64) float offsets[3][N];
-    for (int i = 0; i < N; ++i) {
-        const BodyPose& a = bodies.poses[batch.bodyA[i]];
-        const BodyPose& b = bodies.poses[bodyB[i]];
-        framesA[i] = a.rotation;
-        framesB[i] = b.rotation;
-        for (int k = 0; k < 3; ++k) offsets[k][i] = static_cast<float>(b.position[k] - a.position[k]);
-    }
-    // From A's centre of mass to B's.
-    const Vec3<Real> between(Real::Load(offsets[0]), Real::Load(offsets[1]), Real::Load(offsets[2]));
-    GatherRows<N>(framesA, frame);
-    const Mat3<Real> rotation = ToMatrix(Quat<Real>{frame[0], frame[1], frame[2], frame[3]});
-    GatherRows<N>(framesB, frame);
-    const Mat3<Real> rotationB = ToMatrix(Quat<Real>{frame[0], frame[1], frame[2], frame[3]});
+    const Vec3<Real> between = GatherOffset<N>(batch.bodyA, bodyB, bodies.poses);
+    const Mat3<Real> rotation = ToMatrix(GatherRotation<N>(batch.bodyA, bodies.poses));
+    const Mat3<Real> rotationB = ToMatrix(GatherRotation<N>(bodyB, bodies.poses));
 
     const Vec3<Real> n = rotation * Vec3<Real>(head[0], head[1], head[2]);
     const Vec3<Real> t1 = PerpendicularTo<Real>(n), t2 = Cross<Real>(n, t1);

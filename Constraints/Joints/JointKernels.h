@@ -1,11 +1,10 @@
 // Shared by the joint kernels: lanes from and to the bodies, choosing the code by a batch's locks, setting the parts up.
 #pragma once
 
+#include <Fulcrum/Constraints/BodyLanes.h>
 #include <Fulcrum/Constraints/Joints/JointBatch.h>
 
 namespace fulcrum::joints {
-
-enum class Of { Velocity, Displacement };
 
 // Calls f(std::integral_constant<LinearLock, ...>, std::integral_constant<AngularLock, ...>) with the batch's.
 template <class F>
@@ -32,7 +31,7 @@ struct Motion {
 
     template <Of kOf>
     [[gnu::always_inline]] void Gather(const uint32_t (&bodies)[N], BodyState* states) {
-        for (int i = 0; i < N; ++i) rows[i] = kOf == Of::Velocity ? states[bodies[i]].VelocityRow() : states[bodies[i]].PoseRow();
+        for (int i = 0; i < N; ++i) rows[i] = RowOf<kOf>(states[bodies[i]]);
         GatherRows<N>(reinterpret_cast<const float* const(&)[N]>(rows), row);
     }
     [[gnu::always_inline]] Twist<Real> Get() const {
@@ -94,6 +93,13 @@ struct JointErrors {
     Vec2<Real> hinge = Vec2<Real>(Real(0.0f), Real(0.0f));
 };
 
+// J of a row applied to velocities or displacements.
+template <class Real>
+[[gnu::always_inline]] inline Real RowMotion(const JointRows<Real::kCount>& row, const Twist<Real>& a, const Twist<Real>& b) {
+    return Dot<Real>(row.b.linear, b.linear) + Dot<Real>(row.b.angular, b.angular) - Dot<Real>(row.a.linear, a.linear) -
+           Dot<Real>(row.a.angular, a.angular);
+}
+
 // Sets the parts up, hard and without bias, and returns the errors.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 [[gnu::always_inline]] inline JointErrors<Wide<N>> SetUpParts(JointBatch<N>& batch, const JointPlace<Wide<N>>& place) {
@@ -149,13 +155,13 @@ template <AngularLock kAngular, int N, class F>
 template <LinearLock kLinear, AngularLock kAngular>
 inline constexpr bool kCoupled = kLinear != LinearLock::None && kAngular != AngularLock::None;
 
-template <LinearLock kLinear, int N>
-[[gnu::always_inline]] inline auto& LinearPart(JointBatch<N>& batch) {
+template <LinearLock kLinear, class Batch>
+[[gnu::always_inline]] inline auto& LinearPart(Batch& batch) {
     if constexpr (kLinear == LinearLock::Line) return batch.line;
     else return batch.point;
 }
-template <AngularLock kAngular, int N>
-[[gnu::always_inline]] inline auto& AngularPart(JointBatch<N>& batch) {
+template <AngularLock kAngular, class Batch>
+[[gnu::always_inline]] inline auto& AngularPart(Batch& batch) {
     if constexpr (kAngular == AngularLock::Axis) return batch.hinge;
     else return batch.rotation;
 }
@@ -275,6 +281,14 @@ template <class Rows, class Real>
     else return Vec3<Real>(rows.x(), rows.y(), zero);
 }
 
+// The total impulses of a part, and what it answers to the rows.
+template <class Part, class Real>
+[[gnu::always_inline]] inline auto Answered(const Part& part, const Vec3<Real>& answer) {
+    auto lambda = part.GetTotalLambda();
+    for (int k = 0; k < lambda.size(); ++k) lambda[k] += answer[k];
+    return lambda;
+}
+
 // What the locks see of a motion: L v.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 [[gnu::always_inline]] inline LockImpulses<Wide<N>> LockMotion(JointBatch<N>& batch, const Twist<Wide<N>>& a, const Twist<Wide<N>>& b) {
@@ -331,11 +345,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
         JointRows<N>& row = batch.rows[i];
         row.responseA = {row.a.linear * -batch.massA.mass, -(batch.massA.inertia * row.a.angular)};
         row.responseB = {row.b.linear * batch.massB.mass, batch.massB.inertia * row.b.angular};
-        const auto inverseMass = [&] {
-            return Dot<Real>(row.b.linear, row.responseB.linear) + Dot<Real>(row.b.angular, row.responseB.angular) -
-                   Dot<Real>(row.a.linear, row.responseA.linear) - Dot<Real>(row.a.angular, row.responseA.angular);
-        };
-        const Real alone = inverseMass();
+        const Real alone = RowMotion<Real>(row, row.responseA, row.responseB);
         Real together = alone;
         row.lockLinear = row.lockAngular = Zero<Real>();
         if constexpr (kLinear != LinearLock::None || kAngular != AngularLock::None) {
@@ -346,7 +356,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
             AddLockMotion<kLinear, kAngular>(batch, row.responseA, row.responseB, x);
             row.lockLinear = x.linear;
             row.lockAngular = x.angular;
-            together = inverseMass();
+            together = RowMotion<Real>(row, row.responseA, row.responseB);
         }
         // What the locks determine alone is left to them.
         const auto acts = together > alone * Real(1e-5f);

@@ -16,24 +16,6 @@ void GatherRecordRow(const uint32_t (&index)[N], const JointRecord* records, int
     GatherRows<N>(rows, out);
 }
 
-template <int N>
-void GatherMass(const uint32_t (&index)[N], const BodyMass* masses, InverseMass<Wide<N>>& out) {
-    const float* rows[N];
-    for (int i = 0; i < N; ++i) rows[i] = masses[index[i]].Row();
-    Wide<N> r[8];
-    GatherRows<N>(rows, r);
-    out = {r[6], {r[0], r[1], r[2], r[3], r[4], r[5]}};
-}
-
-template <int N>
-Quat<Wide<N>> GatherRotation(const uint32_t (&index)[N], const BodyPose* poses) {
-    const float* rows[N];
-    for (int i = 0; i < N; ++i) rows[i] = poses[index[i]].rotation;
-    Wide<N> r[8];
-    GatherRows<N>(rows, r);
-    return {r[0], r[1], r[2], r[3]};
-}
-
 template <class Real>
 Vec3<Real> Column(const Quat<Real>& rotation, const Real& index) {
     const Mat3<Real> m = ToMatrix(rotation);
@@ -43,22 +25,11 @@ Vec3<Real> Column(const Quat<Real>& rotation, const Real& index) {
     return column;
 }
 
-// A unit vector perpendicular to n (Duff et al., JCGT 2017).
-template <class Real>
-Vec3<Real> PerpendicularTo(const Vec3<Real>& n) {
-    const Real sign = Select(n.z() < Real(0.0f), Real(-1.0f), Real(1.0f));
-    const Real a = Real(-1.0f) / (sign + n.z());
-    return Vec3<Real>(Real(1.0f) + sign * n.x() * n.x() * a, sign * n.x() * n.y() * a, -sign * n.x());
-}
-
-template <int N>
-Vector3 LaneOf(const Vec3<Wide<N>>& v, int lane) {
-    return Vector3(v.x()[lane], v.y()[lane], v.z()[lane]);
-}
 template <int N>
 void SetLane(Vec3<Wide<N>>& v, int lane, const Vector3& value) {
     for (int k = 0; k < 3; ++k) v[k].Set(lane, value[k]);
 }
+
 // A lane without a row.
 template <int N>
 void ClearLane(JointRows<N>& rows, int lane) {
@@ -193,11 +164,7 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
     GatherRecordRow<N>(batch.joint, records, 2, impulses);
     GatherMass<N>(batch.bodyA, bodies.masses, batch.massA);
     GatherMass<N>(batch.bodyB, bodies.masses, batch.massB);
-    alignas(64) float offsets[3][N];
-    for (int i = 0; i < N; ++i)
-        for (int k = 0; k < 3; ++k)
-            offsets[k][i] = static_cast<float>(bodies.poses[batch.bodyB[i]].position[k] - bodies.poses[batch.bodyA[i]].position[k]);
-    const Vec3<Real> between(Real::Load(offsets[0]), Real::Load(offsets[1]), Real::Load(offsets[2]));
+    const Vec3<Real> between = GatherOffset<N>(batch.bodyA, batch.bodyB, bodies.poses);
     const Quat<Real> rotationA = GatherRotation<N>(batch.bodyA, bodies.poses), rotationB = GatherRotation<N>(batch.bodyB, bodies.poses);
 
     JointPlace<Real> place;
