@@ -14,14 +14,16 @@ template <Of kOf>
     return kOf == Of::Velocity ? state.VelocityRow() : state.PoseRow();
 }
 
+// Returns the lanes whose inertia turns.
 template <int N>
-[[gnu::always_inline]] inline void GatherMass(const uint32_t (&index)[N], const BodyMass* masses, InverseMass<Wide<N>>& out) {
+[[gnu::always_inline]] inline auto GatherMass(const uint32_t (&index)[N], const BodyMass* masses, InverseMass<Wide<N>>& out) {
     const float* rows[N];
     for (int i = 0; i < N; ++i) rows[i] = masses[index[i]].Row();
     Wide<N> r[8];
     GatherRows<N>(rows, r);
     out.inertia = {r[0], r[1], r[2], r[3], r[4], r[5]};
     out.mass = r[6];
+    return r[7] > Wide<N>(0.0f);
 }
 
 template <int N>

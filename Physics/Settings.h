@@ -94,7 +94,7 @@ struct SystemSettings {
     float contactDampingRatio = 1.0f;    // >= 0
     float contactPushSpeed = 3.0f;       // m/s, > 0: the fastest push
     float jointFrequency = 60.0f;        // Hz, > 0, of the spring that pulls joints together; limited likewise
-    float jointDampingRatio = 2.0f;      // >= 0
+    float jointDampingRatio = 1.0f;      // >= 0
     // Joints that carry more than this times the mass of their own bodies are solved exactly, as trees, where they form such;
     // > 0, infinite: never.
     float exactJointLoad = 10.0f;

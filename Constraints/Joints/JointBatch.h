@@ -72,6 +72,7 @@ struct JointBatch {
     JointRows<N>* rows;
 
     InverseMass<Real> massA, massB;
+    bool turning;                        // inertias of some lane turn from substep to substep: they are read again
     PointPart<Real> point;
     Vec3<Real> startArmA, startArmB, startOffset;
     Twist<Real> turnedA, turnedB;
@@ -129,11 +130,11 @@ void SolveJointVelocities(JointBatch<N>& batch, BodyState* states, const JointSo
 
 // Sets the parts up at the displaced poses and solves the velocities there without any push.
 template <int N>
-void RelaxJoints(JointBatch<N>& batch, BodyState* states, const JointSolveSettings& settings);
+void RelaxJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings);
 
 // The set-up of RelaxJoints alone, for solves without position iterations.
 template <int N>
-void UpdateJoints(JointBatch<N>& batch, BodyState* states, const JointSolveSettings& settings);
+void UpdateJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings);
 
 // Writes the impulses back, divided by `impulseScale`.
 template <int N>

@@ -162,8 +162,9 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
     GatherRecordRow<N>(batch.joint, records, 0, head);
     GatherRecordRow<N>(batch.joint, records, 1, frames);
     GatherRecordRow<N>(batch.joint, records, 2, impulses);
-    GatherMass<N>(batch.bodyA, bodies.masses, batch.massA);
-    GatherMass<N>(batch.bodyB, bodies.masses, batch.massB);
+    const auto turnsA = GatherMass<N>(batch.bodyA, bodies.masses, batch.massA);
+    const auto turnsB = GatherMass<N>(batch.bodyB, bodies.masses, batch.massB);
+    batch.turning = (turnsA | turnsB).Any();
     const Vec3<Real> between = GatherOffset<N>(batch.bodyA, batch.bodyB, bodies.poses);
     const Quat<Real> rotationA = GatherRotation<N>(batch.bodyA, bodies.poses), rotationB = GatherRotation<N>(batch.bodyB, bodies.poses);
 

@@ -141,12 +141,12 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
 
 // Brings the parts and the rows' errors to the displaced poses; the turn of the locks' impulses is left for the next substep.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-[[gnu::always_inline]] inline JointErrors<Wide<N>> Follow(JointBatch<N>& batch, BodyState* states, const Twist<Wide<N>>& velocityA,
+[[gnu::always_inline]] inline JointErrors<Wide<N>> Follow(JointBatch<N>& batch, const SolverBodies& bodies, const Twist<Wide<N>>& velocityA,
                                                           const Twist<Wide<N>>& velocityB, const JointSolveSettings& settings) {
     using Real = Wide<N>;
     Motion<N> motionA, motionB;
-    motionA.template Gather<Of::Displacement>(batch.bodyA, states);
-    motionB.template Gather<Of::Displacement>(batch.bodyB, states);
+    motionA.template Gather<Of::Displacement>(batch.bodyA, bodies.states);
+    motionB.template Gather<Of::Displacement>(batch.bodyB, bodies.states);
     Twist<Real> a = motionA.Get(), b = motionB.Get();
     AddKinematicMotion<N>(a, velocityA, batch.kinematicA, settings.elapsed);
     AddKinematicMotion<N>(b, velocityB, batch.kinematicB, settings.elapsed);
@@ -162,10 +162,15 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
         turnedA = batch.turnedA;
         turnedB = batch.turnedB;
     }
-    const bool turns = kTurns || batch.radial || (kLocks && batch.rowCount > 0);
+    const bool turnRows = batch.radial || (batch.turning && batch.rowCount > 0);
+    const bool turns = kTurns || turnRows || (kLocks && (batch.rowCount > 0 || batch.turning));
     if (turns) {
         AddLockImpulses<kLinear, kAngular>(batch, turnedA, turnedB, -1.0f);
-        if (batch.radial) AddRowImpulses(batch, turnedA, turnedB, -1.0f);
+        if (turnRows) AddRowImpulses(batch, turnedA, turnedB, -1.0f);
+    }
+    if (batch.turning) {
+        GatherMass<N>(batch.bodyA, bodies.masses, batch.massA);
+        GatherMass<N>(batch.bodyB, bodies.masses, batch.massB);
     }
     const JointPlace<Real> place = Displace<kLinear, kAngular>(batch, a, b);
     const JointErrors<Real> errors = SetUpParts<kLinear, kAngular>(batch, place);
@@ -175,7 +180,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     if (batch.rowCount > 0) SetUpRows<kLinear, kAngular>(batch);
     if (turns) {
         AddLockImpulses<kLinear, kAngular>(batch, turnedA, turnedB, 1.0f);
-        if (batch.radial) AddRowImpulses(batch, turnedA, turnedB, 1.0f);
+        if (turnRows) AddRowImpulses(batch, turnedA, turnedB, 1.0f);
     }
     batch.turnedA.angular = turnedA.angular;
     batch.turnedB.angular = turnedB.angular;
@@ -233,14 +238,14 @@ void SolveJointVelocities(JointBatch<N>& batch, BodyState* states, const JointSo
 }
 
 template <int N>
-void RelaxJoints(JointBatch<N>& batch, BodyState* states, const JointSolveSettings& settings) {
+void RelaxJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
     using Real = Wide<N>;
     WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
         Motion<N> motionA, motionB;
-        motionA.template Gather<Of::Velocity>(batch.bodyA, states);
-        motionB.template Gather<Of::Velocity>(batch.bodyB, states);
+        motionA.template Gather<Of::Velocity>(batch.bodyA, bodies.states);
+        motionB.template Gather<Of::Velocity>(batch.bodyB, bodies.states);
         Twist<Real> a = motionA.Get(), b = motionB.Get();
-        const JointErrors<Real> errors = Follow<linear, angular>(batch, states, a, b, settings);
+        const JointErrors<Real> errors = Follow<linear, angular>(batch, bodies, a, b, settings);
         SolveAll<true, linear, angular>(batch, a, b);
         Soften<linear, angular>(batch, errors, settings);
         motionA.Scatter(a, batch.count, batch.fixedA);
@@ -249,12 +254,12 @@ void RelaxJoints(JointBatch<N>& batch, BodyState* states, const JointSolveSettin
 }
 
 template <int N>
-void UpdateJoints(JointBatch<N>& batch, BodyState* states, const JointSolveSettings& settings) {
+void UpdateJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
     WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
         Motion<N> motionA, motionB;
-        motionA.template Gather<Of::Velocity>(batch.bodyA, states);
-        motionB.template Gather<Of::Velocity>(batch.bodyB, states);
-        Soften<linear, angular>(batch, Follow<linear, angular>(batch, states, motionA.Get(), motionB.Get(), settings), settings);
+        motionA.template Gather<Of::Velocity>(batch.bodyA, bodies.states);
+        motionB.template Gather<Of::Velocity>(batch.bodyB, bodies.states);
+        Soften<linear, angular>(batch, Follow<linear, angular>(batch, bodies, motionA.Get(), motionB.Get(), settings), settings);
     });
 }
 
@@ -262,8 +267,8 @@ void UpdateJoints(JointBatch<N>& batch, BodyState* states, const JointSolveSetti
     template void WarmStartJoints(const JointBatch<lanes>&, BodyState*);                               \
     template void TurnJoints(const JointBatch<lanes>&, BodyState*);                                    \
     template void SolveJointVelocities(JointBatch<lanes>&, BodyState*, const JointSolveSettings&);     \
-    template void RelaxJoints(JointBatch<lanes>&, BodyState*, const JointSolveSettings&);              \
-    template void UpdateJoints(JointBatch<lanes>&, BodyState*, const JointSolveSettings&);
+    template void RelaxJoints(JointBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);     \
+    template void UpdateJoints(JointBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);
 FULCRUM_FOR_EACH_JOINT_BATCH(FULCRUM_INSTANTIATE)
 #undef FULCRUM_INSTANTIATE
 

@@ -28,7 +28,7 @@ static_assert(sizeof(BodyState) == 64);
 struct alignas(32) BodyMass {
     float inverseInertia[6] = {0, 0, 0, 0, 0, 0};  // xx yy zz xy xz yz, world axes, 1/(kg m2)
     float inverseMass = 0;                         // 1/kg
-    float spare = 0;
+    float turns = 0;                               // 1: the inertia turns with the body from substep to substep
 
     const float* Row() const { return inverseInertia; }
     SymmetricMatrix3 InverseInertia() const {

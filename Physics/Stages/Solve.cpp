@@ -135,7 +135,7 @@ private:
                 JointSolveSettings settings = effort_.joints;
                 settings.elapsed = h_ * static_cast<float>(substep + 1);
                 settings.firstPass = true;
-                for (JointBatch<kLanes>& batch : own) UpdateJoints(batch, states, settings);
+                for (JointBatch<kLanes>& batch : own) UpdateJoints(batch, world_.bodies.ForSolver(), settings);
                 factorize();
                 if (verb == Verb::FirstRelax) solve(true);
                 break;
@@ -203,11 +203,11 @@ private:
             case Verb::FirstVelocities:
             case Verb::Velocities: SolveJointVelocities(batch, states, settings); break;
             case Verb::FirstRelax:
-            case Verb::Relax: RelaxJoints(batch, states, settings); break;
-            case Verb::Separations: UpdateJoints(batch, states, settings); break;
+            case Verb::Relax: RelaxJoints(batch, world_.bodies.ForSolver(), settings); break;
+            case Verb::Separations: UpdateJoints(batch, world_.bodies.ForSolver(), settings); break;
             case Verb::Rejoin:
                 settings.elapsed = dt_;
-                RelaxJoints(batch, states, settings);
+                RelaxJoints(batch, world_.bodies.ForSolver(), settings);
                 break;
             case Verb::IntegrateVelocities:
             case Verb::IntegratePoses:
@@ -267,6 +267,23 @@ private:
             s.deltaPosition[k] += s.linearVelocity[k] * h_;
             s.deltaRotation[k] += s.angularVelocity[k] * h_;
         }
+        if (world_.joints.HasAny(body)) TurnInertia(body);
+    }
+
+    // Joints pull at the ends of bodies, where an inertia that is left behind makes torques of their forces that are not there.
+    void TurnInertia(uint32_t body) {
+        const BodyDynamics& d = world_.bodies.dynamics[body];
+        const Vector3 w = world_.bodies.AngularVelocityOf(body);
+        if (!d.FeelsGyroscopicTorque(w)) return;
+        BodyState& s = world_.bodies.states[body];
+        const Vector3 turn(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]);
+        const Quaternion rotation = RotationFromVector(turn) * world_.bodies.RotationOf(body);
+        const Vector3 change = AddGyroscopicTorque(d, rotation, w, h_) - w;
+        for (int k = 0; k < 3; ++k) {
+            s.angularVelocity[k] += change[k];
+            world_.bodies.unconstrained[body].row[3 + k] += change[k];
+        }
+        world_.bodies.UpdateInertia(body, rotation);
     }
 
     WorldState& world_;

@@ -9,17 +9,6 @@ namespace fulcrum {
 
 namespace {
 
-// Slower than this, in rad/s, gyroscopic torque changes nothing that can be seen.
-constexpr float kGyroscopicSpeed = 0.1f;
-
-SymmetricMatrix3 InverseInertia(const BodyDynamics& d, const Quaternion& rotation) {
-    return RotatedDiagonal(ToMatrix(rotation * d.PrincipalAxes()), Vector3(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]));
-}
-
-bool FeelsGyroscopicTorque(const BodyDynamics& d, const Vector3& w) {
-    return d.gyroscopic && !d.spherical && !d.LocksRotation() && LengthSquared(w) > kGyroscopicSpeed * kGyroscopicSpeed;
-}
-
 // The axis of rotation wanders the faster the more the principal moments differ: so many substeps that it turns by little
 // in each, for a body that turns by `angle` in the step.
 int RotationSubsteps(const BodyDynamics& d, float angle) {
@@ -63,7 +52,7 @@ void FlyFreely(WorldState& world, uint32_t body, const StepContext& step, Pose& 
     const Vector3 torque = d.hasForce ? world.bodies.cold[body].torque : Vector3(Vector3::Zero());
     const bool fastLinear = ClampLength(v, d.maxLinearSpeed), fastAngular = ClampLength(w, d.maxAngularSpeed);
     findings.clamped += fastLinear || fastAngular;
-    if (FeelsGyroscopicTorque(d, w)) {
+    if (d.FeelsGyroscopicTorque(w)) {
         RotateFreely(d, pose.rotation, w, torque, step.dt);
     } else {
         if (d.hasForce) w += world.bodies.masses[body].InverseInertia() * torque * step.dt;
@@ -72,15 +61,13 @@ void FlyFreely(WorldState& world, uint32_t body, const StepContext& step, Pose& 
     if (d.angularDamping > 0) w *= Exp(-d.angularDamping * step.dt);
 }
 
-void MoveSolved(WorldState& world, uint32_t body, Pose& pose, Vector3& w) {
+void MoveSolved(WorldState& world, uint32_t body, Pose& pose, Vector3& w, float dt) {
     BodyState& s = world.bodies.states[body];
     const BodyDynamics& d = world.bodies.dynamics[body];
-    const Quaternion before = pose.rotation;
     pose.position += Vector3(s.deltaPosition[0], s.deltaPosition[1], s.deltaPosition[2]).cast<double>();
-    pose.rotation = Normalized(RotationFromVector(Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2])) * before);
-    // What turned keeps its momentum, not its angular velocity.
-    if (FeelsGyroscopicTorque(d, w))
-        w = InverseInertia(d, pose.rotation) * AngularMomentum(d, before, w);
+    pose.rotation = Normalized(RotationFromVector(Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2])) * pose.rotation);
+    // With joints every substep has seen to that.
+    if (d.FeelsGyroscopicTorque(w) && !world.joints.HasAny(body)) w = AddGyroscopicTorque(d, pose.rotation, w, dt);
 }
 
 void ForgetForces(WorldState& world, uint32_t body) {
@@ -126,7 +113,7 @@ void EndBody(WorldState& world, uint32_t body, const StepContext& step, WorkerFi
         pose.position += (v * step.dt).cast<double>();
         pose.rotation = Normalized(RotationFromVector(Vector3(w * step.dt)) * pose.rotation);
     } else if (world.colouring.IsTouched(body)) {
-        MoveSolved(world, body, pose, w);
+        MoveSolved(world, body, pose, w, step.dt);
     } else {
         FlyFreely(world, body, step, pose, v, w, findings);
     }

@@ -70,7 +70,6 @@ void UpdateColliders(WorldState& world, uint32_t body, float dt, WorkerFindings&
 // The lists of what moves and meets get room by the size of the world, so that no step of a settled one allocates.
 void ReserveLists(WorldState& world) {
     const size_t colliders = world.colliders.colliders.capacity();
-    if (world.colliders.moved.capacity() >= colliders) return;
     world.colliders.moved.reserve(colliders);
     world.activated.reserve(colliders);
     world.newPairs.reserve(colliders);

@@ -1,5 +1,7 @@
 #include <Fulcrum/Physics/State/BodyStore.h>
 
+#include <cmath>
+
 namespace fulcrum {
 
 uint32_t BodyStore::Allocate() {
@@ -96,7 +98,7 @@ SymmetricMatrix3 InverseOfFreeAxes(const BodyDynamics& d, const Matrix3& axes) {
 
 }  // namespace
 
-void BodyStore::UpdateInertia(uint32_t index) {
+void BodyStore::UpdateInertia(uint32_t index, const Quaternion& rotation) {
     const BodyDynamics& d = dynamics[index];
     BodyMass& m = masses[index];
     if (d.frozen) {
@@ -104,7 +106,8 @@ void BodyStore::UpdateInertia(uint32_t index) {
         return;
     }
     m.inverseMass = d.inverseMass;
-    const Matrix3 axes = ToMatrix(RotationOf(index) * d.PrincipalAxes());
+    m.turns = d.gyroscopic && !d.spherical && !d.LocksRotation() && d.motion == MotionType::Dynamic ? 1.0f : 0.0f;
+    const Matrix3 axes = ToMatrix(rotation * d.PrincipalAxes());
     const Vector3 inverse(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]);
     SymmetricMatrix3 i;
     if (d.spherical) i.xx = i.yy = i.zz = inverse.x();
@@ -123,6 +126,27 @@ Vector3 AngularMomentum(const BodyDynamics& d, const Quaternion& rotation, const
     Vector3 local = InverseRotate(axes, w);
     for (int k = 0; k < 3; ++k) local[k] = d.inverseInertia[k] > 0 ? local[k] / d.inverseInertia[k] : 0.0f;
     return Rotate(axes, local);
+}
+
+SymmetricMatrix3 InverseInertia(const BodyDynamics& d, const Quaternion& rotation) {
+    return RotatedDiagonal(ToMatrix(rotation * d.PrincipalAxes()), Vector3(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]));
+}
+
+Vector3 AddGyroscopicTorque(const BodyDynamics& d, const Quaternion& rotation, const Vector3& w, float h) {
+    const float *i = d.inverseInertia;
+    if (!(i[0] > 0 && i[1] > 0 && i[2] > 0)) return w;
+    const Vector3 inertia(1.0f / i[0], 1.0f / i[1], 1.0f / i[2]);
+    const Vector3 rate((inertia.y() - inertia.z()) * i[0], (inertia.z() - inertia.x()) * i[1], (inertia.x() - inertia.y()) * i[2]);
+    const Quaternion axes = rotation * d.PrincipalAxes();
+    const Vector3 start = InverseRotate(axes, w);
+    const auto energyOf = [&](const Vector3& v) { return inertia.x() * v.x() * v.x() + inertia.y() * v.y() * v.y() + inertia.z() * v.z() * v.z(); };
+    Vector3 end = start;
+    constexpr int kIterations = 3;
+    for (int n = 0; n < kIterations; ++n) {
+        const Vector3 middle = (start + end) * 0.5f;
+        end = start + Vector3(rate.x() * middle.y() * middle.z(), rate.y() * middle.z() * middle.x(), rate.z() * middle.x() * middle.y()) * h;
+    }
+    return Rotate(axes, Vector3(end * std::sqrt(energyOf(start) / energyOf(end))));
 }
 
 size_t BodyStore::MemoryUsed() const {

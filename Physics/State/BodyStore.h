@@ -38,6 +38,11 @@ struct alignas(64) BodyDynamics {
             if (locked >> (3 + k) & 1) angular[k] = 0;
         }
     }
+    // Whether gyroscopic torque changes anything that can be seen, at the angular velocity in rad/s.
+    bool FeelsGyroscopicTorque(const Vector3& w) const {
+        constexpr float kLeast = 0.1f;  // rad/s
+        return gyroscopic && !spherical && !LocksRotation() && LengthSquared(w) > kLeast * kLeast;
+    }
     bool LocksRotation() const { return (static_cast<unsigned>(lockedAxes) & 56u) != 0; }
     Quaternion PrincipalAxes() const {
         return {principalAxes[0], principalAxes[1], principalAxes[2], principalAxes[3]};
@@ -47,6 +52,11 @@ static_assert(sizeof(BodyDynamics) == 64);
 
 // kg m2/s about the centre of mass, world axes, at the rotation and angular velocity (rad/s).
 Vector3 AngularMomentum(const BodyDynamics& body, const Quaternion& rotation, const Vector3& angularVelocity);
+SymmetricMatrix3 InverseInertia(const BodyDynamics& body, const Quaternion& rotation);
+// The angular velocity after h seconds of gyroscopic torque, at the rotation then reached: Euler's equations in the frame of
+// the body, by the implicit midpoint rule. As there, the energy stays, and a body of revolution keeps the spin about its axis;
+// a rule that keeps the momentum in world axes lets the spin of a thin rod grow without end.
+Vector3 AddGyroscopicTorque(const BodyDynamics& body, const Quaternion& rotation, const Vector3& angularVelocity, float h);
 
 // Cold: for the interface.
 struct BodyCold {
@@ -111,8 +121,9 @@ public:
         return Vector3(w[0], w[1], w[2]);
     }
     void SetVelocity(uint32_t index, const Vector3& linear, const Vector3& angular);
-    // Brings the world inverse inertia of `masses` in line with the rotation.
-    void UpdateInertia(uint32_t index);
+    // Brings the world inverse inertia of `masses` in line with the rotation: the body's, or that of the middle of a step.
+    void UpdateInertia(uint32_t index) { UpdateInertia(index, RotationOf(index)); }
+    void UpdateInertia(uint32_t index, const Quaternion& rotation);
     SolverBodies ForSolver() { return {states.data(), masses.data(), poses.data()}; }
     size_t MemoryUsed() const;
 

@@ -8,7 +8,7 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0x58b443fca9ef5384ull;
+constexpr uint64_t kGoldenHash = 0x5f17211406508028ull;
 
 std::string Hex(uint64_t number) {
     char text[24];
