@@ -63,10 +63,11 @@ void FillLane(JointRows<N>& rows, int lane, const JointRow& row, float previousI
     rows.startError.Set(lane, row.error);
     rows.error.Set(lane, row.error);
     rows.speed.Set(lane, row.kind == Kind::Speed ? row.speed : 0.0f);
-    rows.massScale.Set(lane, hard ? s.softness.massScale : 1.0f);
-    rows.pushRate.Set(lane, hard ? s.softness.massScale * s.pushRate : 0.0f);
-    rows.softness.Set(lane, hard ? s.softness.impulseScale : 0.0f);
-    rows.mostPush.Set(lane, hard ? s.softness.massScale * s.maxPushSpeed : unlimited);
+    const float massScale = row.kind == Kind::Equal ? s.softness.massScale : 1.0f;
+    rows.massScale.Set(lane, massScale);
+    rows.pushRate.Set(lane, hard ? massScale * s.pushRate : 0.0f);
+    rows.softness.Set(lane, row.kind == Kind::Equal ? s.softness.impulseScale : 0.0f);
+    rows.mostPush.Set(lane, hard ? massScale * s.maxPushSpeed : unlimited);
     rows.openAbove.Set(lane, oneSided ? 0.0f : unlimited);
     rows.hardScale.Set(lane, 1.0f);
     rows.gapRate.Set(lane, oneSided ? s.inverseDt : 0.0f);

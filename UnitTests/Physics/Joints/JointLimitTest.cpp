@@ -13,15 +13,13 @@ INSTANTIATE_TEST_SUITE_P(Speeds, LimitAtSpeed, ::testing::Values(1, 10, 100, 100
 
 // The motor runs to and fro; it must reach each end and stay within.
 void ExpectWithin(TestWorld& world, JointId joint, JointAxis axis, double min, double max, double speed, double force) {
-    // What turns by a radian and more in a step is caught with less care.
-    const double overshoot = axis == JointAxis::AngularX && speed > 60 ? 0.15 : kOvershoot;
     for (int half = 0; half < 6; ++half) {
         ASSERT_TRUE(JointsOf(world).SetMotor(joint, axis, SpeedMotor(half % 2 ? -speed : speed, force)));
         for (int i = 0; i < 150; ++i) {
             world.Step();
             const double place = JointsOf(world).GetCoordinate(joint, axis);
-            ASSERT_GE(place, min - overshoot) << "half " << half << " step " << i;
-            ASSERT_LE(place, max + overshoot) << "half " << half << " step " << i;
+            ASSERT_GE(place, min - kOvershoot) << "half " << half << " step " << i;
+            ASSERT_LE(place, max + kOvershoot) << "half " << half << " step " << i;
         }
         EXPECT_NEAR(JointsOf(world).GetCoordinate(joint, axis), half % 2 ? min : max, kOvershoot);
     }
