@@ -48,7 +48,6 @@ Quaternion WithinPyramid(const Quaternion& swing, const SwingTwistLimits& limits
 
 // What the rows of a step share, world space.
 struct AngularControls::Motion {
-    SwingTwist now;
     Matrix3 axes;         // of frame B
     Vector3 toTarget;     // rotation vector from the target, along the axes
     Vector3 velocity;     // rad/s, of B against A
@@ -116,7 +115,6 @@ Quaternion AngularControls::Target(const SwingTwistLimits& limits) const {
 AngularControls::Motion AngularControls::MotionOf(const JointPose& pose, const SwingTwistLimits& limits) const {
     const Quaternion q = pose.frameA.Conjugate() * pose.frameB;
     Motion motion;
-    motion.now = Decompose(q);
     motion.axes = ToMatrix(pose.frameB);
     motion.velocity = pose.AngularVelocity();
     motion.toTarget = motion.motorSpeed = Vector3::Zero();
@@ -151,14 +149,19 @@ void AngularControls::CollectRows(const JointPose& pose, uint32_t firstSlot, Joi
     for (int k = 0; k < 3; ++k)
         reach += WayOfSpring(axes_[static_cast<size_t>(k)].motor.spring, Abs(motion.toTarget[k]), pose.dt);
     const AngleRange &y = limits.swingY, &z = limits.swingZ;
+    // An edge that curves is best seen from where the swing goes.
+    const bool curves = IsLimited(y) && IsLimited(z) && limits.shape == SwingShape::Ellipse;
+    const auto [ahead, time] = curves ? pose.Ahead() : std::pair(pose, 0.0f);
+    const SwingTwist turned = Decompose(pose.frameA.Conjugate() * ahead.frameB);
     const float least = std::min({y.maximum, -y.minimum, z.maximum, -z.minimum});
-    if (!IsLimited(y) || !IsLimited(z) || least - motion.now.alpha <= reach)
-        AddSwingLimits(list, motion.now, limits);
-    AddTwistLimits(list, motion.now, limits.twist);
+    if (!IsLimited(y) || !IsLimited(z) || least - turned.alpha <= reach)
+        AddSwingLimits(list, turned, limits);
+    AddTwistLimits(list, turned, limits.twist);
     // What a limit's axis is seen from.
     for (int i = 0; i < list.count; ++i) {
         RotationLimit& limit = list.limits[static_cast<size_t>(i)];
         limit.axis = Rotate(pose.frameA, limit.axis);
+        limit.error -= Dot(limit.axis, motion.velocity) * time;
     }
     AddMotorRows(pose, motion, list, firstSlot, rows);
     AddLimitRows(pose, motion, list, firstSlot, rows);

@@ -36,9 +36,11 @@ JointLocks ConeJoint::Locks() const {
 }
 
 void ConeJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
-    const Swing swing = SwingOf(pose);
+    const auto [ahead, time] = pose.Ahead();
+    Swing swing = SwingOf(ahead);
     JointRow motion;
     pose.SetAbout(motion, swing.axis);
+    swing.angle -= pose.SpeedOf(motion) * time;
     // Turning across e widens the angle too, the more so the nearer the axes are: count all of it.
     const Vector3 angular = pose.AngularVelocity();
     const float across = Length(Vector3(angular - swing.axis * Dot(angular, swing.axis)));

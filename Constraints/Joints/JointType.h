@@ -9,6 +9,7 @@
 
 #include <array>
 #include <span>
+#include <utility>
 
 namespace fulcrum {
 
@@ -48,6 +49,16 @@ struct JointPose {
     Vector3 AnchorVelocity() const {
         return velocityB.linear + Cross<float>(velocityB.angular, armB) - velocityA.linear -
                Cross<float>(velocityA.angular, Vector3(armA + offset));
+    }
+    // The pose that B will have turned to, and in how many seconds: within the step, and no farther than rows can be linear.
+    // A row that is right there, its error put back to now, follows a turn better than one that is right at the start.
+    std::pair<JointPose, float> Ahead() const {
+        constexpr float kFarthest = 0.4f;  // rad
+        const Vector3 w = AngularVelocity();
+        const float speed = Length(w);
+        std::pair<JointPose, float> ahead(*this, speed * dt > kFarthest ? kFarthest / speed : dt);
+        ahead.first.frameB = RotationFromVector(Vector3(w * ahead.second)) * frameB;
+        return ahead;
     }
     Vector3 AngularVelocity() const { return velocityB.angular - velocityA.angular; }  // rad/s, of B against A
     // Jacobians of the motion of B's anchor along the unit axis n of A, and of the rotation of B against A about `axis`.
