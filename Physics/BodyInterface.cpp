@@ -139,7 +139,10 @@ Status BodyInterface::SetPose(BodyId id, const Position& position, const Quatern
     if (!Exists(id)) return Unknown(id);
     if (MaybeError e = FirstOf(CheckFinite("position", position), CheckRotation("rotation", rotation))) return *e;
     const uint32_t body = id.index;
-    world_.bodies.dynamics[body].frozen = false;
+    if (world_.bodies.dynamics[body].frozen) {
+        world_.bodies.dynamics[body].frozen = false;
+        RecolourJointsOf(world_, body);
+    }
     WakeBody(world_, body);
     WakeNeighbours(world_, body);
     WakeJoined(world_, body);

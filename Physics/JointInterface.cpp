@@ -98,6 +98,10 @@ JointPose PoseOf(const WorldState& world, uint32_t index) {
     pose.frameA = a.rotation;
     pose.frameB = b.rotation;
     pose.anchorA = a.position;
+    if (joint.type) {
+        pose.turnedA = joint.type->turnedA;
+        pose.turnedB = joint.type->turnedB;
+    }
     return pose;
 }
 
@@ -130,6 +134,7 @@ void Enable(WorldState& world, uint32_t index, bool enabled) {
     } else {
         WakeBoth(world, joint);
         UncolourJoint(world, index);
+        world.joints.Forget(index);
         for (uint32_t body : joint.body) RequeueColliders(world, body);
     }
 }
@@ -148,7 +153,7 @@ Result<JointId> JointInterface::Add(const JointSettings& s, std::unique_ptr<Join
     joint.body[0] = s.bodyA.index;
     joint.body[1] = s.bodyB.index;
     for (int side = 0; side < 2; ++side)
-        joint.still[side] = world_.bodies.dynamics[joint.body[side]].motion != MotionType::Dynamic;
+        joint.still[side] = !world_.bodies.CanMove(joint.body[side]);
     joint.collideConnected = s.collideConnected;
     joint.priority = s.priority;
     joint.breakForce = s.breakForce;
@@ -213,7 +218,7 @@ Status JointInterface::ChangeControl(JointId id, JointAxis axis, Change&& change
     if (!control) return Error{ErrorCode::Unsupported, "axis: the joint has neither limits nor motor nor friction there"};
     AxisControl changed = *control;
     change(changed);
-    if (MaybeError error = CheckControl("axis", changed)) return *error;
+    if (MaybeError error = CheckControl("axis", changed, world_.joints.types[id.index]->BoundsOf(axis))) return *error;
     *control = changed;
     Joint& joint = world_.joints.joints[id.index];
     if (joint.type->MaxRows() != joint.maxRows || !(joint.type->Locks() == joint.locks)) world_.colouring.Touch();
@@ -249,8 +254,10 @@ Status JointInterface::SetEffort(JointId id, const SolverSettings& effort) {
                                    CheckRange("velocityIterations", effort.velocityIterations, 0, 255),
                                    CheckRange("positionIterations", effort.positionIterations, 0, 255)))
         return *error;
-    world_.joints.joints[id.index].effort = effort;
+    Joint& joint = world_.joints.joints[id.index];
+    joint.effort = effort;
     world_.colouring.Touch();
+    if (joint.enabled) WakeBoth(world_, joint);
     return Done{};
 }
 
@@ -282,24 +289,23 @@ JointError JointInterface::GetError(JointId id) const {
 
 namespace {
 
-Vector3 PerSecond(const WorldState& world, JointId id, float (JointRecord::*impulse)[3]) {
-    if (!world.joints.Find(id) || !(world.lastSubstepDt > 0) || world.joints.joints[id.index].colour.colour == 0xFF) return Vector3::Zero();
-    const float(&v)[3] = world.joints.records[id.index].*impulse;
-    return Vector3(v[0], v[1], v[2]) * (1.0f / world.lastSubstepDt);
+Vector3 Read(const WorldState& world, JointId id, float (JointRecord::*force)[3]) {
+    if (!world.joints.Find(id)) return Vector3::Zero();
+    const float(&v)[3] = world.joints.records[id.index].*force;
+    return Vector3(v[0], v[1], v[2]);
 }
 
 }  // namespace
 
-Vector3 JointInterface::GetForce(JointId id) const { return PerSecond(world_, id, &JointRecord::totalForce); }
-Vector3 JointInterface::GetTorque(JointId id) const { return PerSecond(world_, id, &JointRecord::totalTorque); }
-Vector3 JointInterface::GetLockForce(JointId id) const { return PerSecond(world_, id, &JointRecord::lockForce); }
-Vector3 JointInterface::GetLockTorque(JointId id) const { return PerSecond(world_, id, &JointRecord::lockTorque); }
+Vector3 JointInterface::GetForce(JointId id) const { return Read(world_, id, &JointRecord::totalForce); }
+Vector3 JointInterface::GetTorque(JointId id) const { return Read(world_, id, &JointRecord::totalTorque); }
+Vector3 JointInterface::GetLockForce(JointId id) const { return Read(world_, id, &JointRecord::lockForce); }
+Vector3 JointInterface::GetLockTorque(JointId id) const { return Read(world_, id, &JointRecord::lockTorque); }
 
 JointAxisForces JointInterface::GetAxisForces(JointId id, JointAxis axis) const {
-    if (!ControlOf(id, axis) || !(world_.lastSubstepDt > 0)) return {};
+    if (!ControlOf(id, axis)) return {};
     const JointType& type = *world_.joints.types[id.index];
-    const float perSecond = 1.0f / world_.lastSubstepDt;
-    const auto forceOf = [&](uint32_t slot) { return type.impulses[type.FirstSlot(axis) + slot] * perSecond; };
+    const auto forceOf = [&](uint32_t slot) { return type.forces[type.FirstSlot(axis) + slot]; };
     return {forceOf(ControlSlots::kLowLimit) - forceOf(ControlSlots::kHighLimit), forceOf(ControlSlots::kMotor),
             forceOf(ControlSlots::kFriction)};
 }

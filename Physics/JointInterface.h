@@ -18,7 +18,7 @@ struct JointError {
     float angle = 0;     // rad, of what is locked
 };
 
-// What the rows along one axis did in the last step, N or N m on body B; 0 where there was no row.
+// What the rows along one axis did on average over the last step, N or N m on body B; 0 where there was no row.
 struct JointAxisForces {
     float limit = 0, motor = 0, friction = 0;
 };
@@ -53,7 +53,8 @@ public:
     const AxisControl* GetControl(JointId id, JointAxis axis) const;  // null: nothing there
     double GetCoordinate(JointId id, JointAxis axis) const;           // m or rad, see the joint's settings
     JointError GetError(JointId id) const;
-    // What the joint, locks and rows together, did to body B in the last substep: N and N m about B's anchor, world axes.
+    // What the joint, locks and rows together, did to body B on average over the last step: N and N m about B's anchor, world
+    // axes. While it sleeps, what it carried when it fell asleep; disabled, nothing.
     Vector3 GetForce(JointId id) const;
     Vector3 GetTorque(JointId id) const;
     // The locks' part of it.

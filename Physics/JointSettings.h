@@ -32,7 +32,8 @@ struct JointAnchor {
     std::optional<Vector3> normal{};          // y of the frame; unit, perpendicular to the axis within 1e-3; left out: any
 };
 
-// Of two joints of a body the one of higher priority is solved later, and wins where they disagree.
+// Of two joints of a body the one of higher priority is solved later in every iteration, and wins where they disagree. A joint
+// to what does not move counts as High. This is an order, no weight: where few iterations are made the other one still pulls.
 enum class JointPriority : uint8_t { Normal, High };
 
 struct JointSettings {
@@ -43,7 +44,8 @@ struct JointSettings {
     bool enabled = true;
     bool collideConnected = false;    // whether the two bodies collide with each other
     JointPriority priority = JointPriority::Normal;
-    float breakForce = std::numeric_limits<float>::infinity();   // N, > 0: the joint is disabled beyond it
+    // The joint is disabled where it did more on average over a step: a blow of J N s counts as J / dt.
+    float breakForce = std::numeric_limits<float>::infinity();   // N, > 0
     float breakTorque = std::numeric_limits<float>::infinity();  // N m, > 0
     // More effort for the island of this joint alone; 0: the system's.
     int substeps = 0;            // 0..64

@@ -28,42 +28,43 @@ std::string Number(double x) {
     return text;
 }
 
-MaybeError CheckNotNaN(const std::string& field, double x) {
+MaybeError CheckNotNaN(const FieldName& field, double x) {
     if (x == x) return std::nullopt;
-    return Error{ErrorCode::NonFinite, field + " is NaN; it must be a number"};
+    return Error{ErrorCode::NonFinite, field.Text() + " is NaN; it must be a number"};
 }
 
-MaybeError CheckFinite(const std::string& field, double x) {
+MaybeError CheckFinite(const FieldName& field, double x) {
     if (std::isfinite(x)) return std::nullopt;
-    return Error{ErrorCode::NonFinite, field + " is " + Number(x) + "; it must be finite"};
+    return Error{ErrorCode::NonFinite, field.Text() + " is " + Number(x) + "; it must be finite"};
 }
 
 // From `low` to `high`, which may be infinite.
-MaybeError CheckBetween(const std::string& field, double x, double low, double high) {
+MaybeError CheckBetween(const FieldName& field, double x, double low, double high) {
     if (MaybeError e = CheckNotNaN(field, x)) return e;
     if (x >= low && x <= high) return std::nullopt;
-    return Error{ErrorCode::OutOfRange, field + " is " + Number(x) + "; it must be from " + Number(low) + " to " + Number(high)};
+    return Error{ErrorCode::OutOfRange, field.Text() + " is " + Number(x) + "; it must be from " + Number(low) + " to " + Number(high)};
 }
 
-MaybeError CheckOrder(const std::string& lowField, double low, const std::string& highField, double high) {
+MaybeError CheckOrder(const FieldName& lowField, double low, const FieldName& highField, double high) {
     if (low <= high) return std::nullopt;
-    return Error{ErrorCode::OutOfRange, lowField + " is " + Number(low) + "; it must not be larger than " + highField + ", which is " + Number(high)};
+    return Error{ErrorCode::OutOfRange, lowField.Text() + " is " + Number(low) + "; it must not be larger than " + highField.Text() + ", which is " + Number(high)};
 }
 
-MaybeError CheckUnit(const std::string& field, const Vector3& v) {
-    if (MaybeError e = fulcrum::CheckFinite(field.c_str(), v)) return e;
+MaybeError CheckUnit(const FieldName& field, const Vector3& v) {
+    if (MaybeError e = fulcrum::CheckFinite(field.Text().c_str(), v)) return e;
     const double length = std::sqrt(v.cast<double>().squaredNorm());
     if (std::fabs(length - 1.0) <= 1e-3) return std::nullopt;
-    return Error{ErrorCode::Unnormalized, field + " has length " + Number(length) + "; it must be 1"};
+    return Error{ErrorCode::Unnormalized, field.Text() + " has length " + Number(length) + "; it must be 1"};
 }
 
-MaybeError CheckAnchor(const std::string& name, const JointAnchor& anchor) {
-    if (MaybeError e = FirstOf(fulcrum::CheckFinite((name + ".point").c_str(), anchor.point), CheckUnit(name + ".axis", anchor.axis))) return e;
+MaybeError CheckAnchor(const FieldName& name, const JointAnchor& anchor) {
+    if (MaybeError e = FirstOf(fulcrum::CheckFinite(FieldName(name, ".point").Text().c_str(), anchor.point), CheckUnit({name, ".axis"}, anchor.axis)))
+        return e;
     if (!anchor.normal) return std::nullopt;
-    if (MaybeError e = CheckUnit(name + ".normal", *anchor.normal)) return e;
+    if (MaybeError e = CheckUnit({name, ".normal"}, *anchor.normal)) return e;
     const float cosine = Dot(anchor.axis, *anchor.normal);
     if (std::fabs(cosine) <= 1e-3f) return std::nullopt;
-    return Error{ErrorCode::Degenerate, name + ".normal is not perpendicular to " + name + ".axis: their cosine is " +
+    return Error{ErrorCode::Degenerate, name.Text() + ".normal is not perpendicular to " + name.Text() + ".axis: their cosine is " +
                                             Number(cosine) + "; it must be 0 within 0.001"};
 }
 
@@ -73,59 +74,63 @@ MaybeError CheckBreak(const char* field, float x) {
     return Error{ErrorCode::NonPositive, std::string(field) + " is " + Number(x) + "; it must be larger than 0"};
 }
 
-MaybeError CheckSpring(const std::string& name, const SpringSettings& spring) {
+MaybeError CheckSpring(const FieldName& name, const SpringSettings& spring) {
     const Status status = Validate(spring);
     if (status) return std::nullopt;
     // Its messages begin with "spring ".
-    return Error{status.GetError().code, name + "." + status.GetError().message.substr(7)};
+    return Error{status.GetError().code, name.Text() + "." + status.GetError().message.substr(7)};
 }
 
 template <class E>
-MaybeError CheckEnum(const std::string& field, E value, E last) {
+MaybeError CheckEnum(const FieldName& field, E value, E last) {
     if (static_cast<int>(value) <= static_cast<int>(last)) return std::nullopt;
-    return Error{ErrorCode::OutOfRange, field + " is " + Number(static_cast<int>(value)) + "; it must be from 0 to " + Number(static_cast<int>(last))};
+    return Error{ErrorCode::OutOfRange, field.Text() + " is " + Number(static_cast<int>(value)) + "; it must be from 0 to " + Number(static_cast<int>(last))};
 }
 
-MaybeError CheckLimits(const std::string& name, const JointLimits& limits) {
-    if (MaybeError e = FirstOf(CheckNotNaN(name + ".min", limits.min), CheckNotNaN(name + ".max", limits.max),
-                               CheckOrder(name + ".min", limits.min, name + ".max", limits.max), CheckSpring(name + ".spring", limits.spring)))
+MaybeError CheckLimits(const FieldName& name, const JointLimits& limits) {
+    if (MaybeError e = FirstOf(CheckNotNaN({name, ".min"}, limits.min), CheckNotNaN({name, ".max"}, limits.max),
+                               CheckOrder({name, ".min"}, limits.min, {name, ".max"}, limits.max), CheckSpring({name, ".spring"}, limits.spring)))
         return e;
     if (limits.min < kEndless && limits.max > -kEndless) return std::nullopt;
-    return Error{ErrorCode::NonFinite, name + ".min and " + name + ".max are the same infinity"};
+    return Error{ErrorCode::NonFinite, name.Text() + ".min and " + name.Text() + ".max are the same infinity"};
 }
 
-MaybeError CheckMotor(const std::string& name, const JointMotor& motor) {
-    return FirstOf(CheckEnum(name + ".mode", motor.mode, MotorMode::ToPosition),
-                   CheckFinite(name + ".targetSpeed", motor.targetSpeed),
-                   CheckFinite(name + ".targetPosition", motor.targetPosition),
-                   CheckSpring(name + ".spring", motor.spring), CheckBetween(name + ".minForce", motor.minForce, -kEndless, 0.0),
-                   CheckBetween(name + ".maxForce", motor.maxForce, 0.0, kEndless));
+MaybeError CheckMotor(const FieldName& name, const JointMotor& motor) {
+    return FirstOf(CheckEnum({name, ".mode"}, motor.mode, MotorMode::ToPosition),
+                   CheckFinite({name, ".targetSpeed"}, motor.targetSpeed),
+                   CheckFinite({name, ".targetPosition"}, motor.targetPosition),
+                   CheckSpring({name, ".spring"}, motor.spring), CheckBetween({name, ".minForce"}, motor.minForce, -kEndless, 0.0),
+                   CheckBetween({name, ".maxForce"}, motor.maxForce, 0.0, kEndless));
+}
+
+MaybeError CheckFriction(const FieldName& field, float x) {
+    if (std::isfinite(x) && x >= 0.0f) return std::nullopt;
+    return CheckNotNegative(field.Text().c_str(), x);
 }
 
 // A ratio of gears and the like.
-MaybeError CheckNotZero(const std::string& field, float x) {
+MaybeError CheckNotZero(const FieldName& field, float x) {
     if (MaybeError e = CheckFinite(field, x)) return e;
     if (x != 0.0f) return std::nullopt;
-    return Error{ErrorCode::OutOfRange, field + " is 0; it must not be"};
+    return Error{ErrorCode::OutOfRange, field.Text() + " is 0; it must not be"};
 }
 
-MaybeError CheckAngle(const std::string& name, const AxisControl& control, double highestMin, double lowestMax) {
-    if (MaybeError e = CheckControl(name, control)) return e;
-    if (!control.limited) return std::nullopt;
-    return FirstOf(CheckBetween(name + ".limits.min", control.limits.min, -kHalfTurn, highestMin),
-                   CheckBetween(name + ".limits.max", control.limits.max, lowestMax, kHalfTurn));
+MaybeError CheckBounds(const FieldName& name, const JointLimits& limits, const LimitBounds& bounds) {
+    if (MaybeError e = FirstOf(CheckBetween({name, ".min"}, limits.min, bounds.lowest, bounds.highestMin),
+                               CheckBetween({name, ".max"}, limits.max, bounds.lowestMax, bounds.highest)))
+        return e;
+    if (!bounds.symmetric || limits.min == -limits.max) return std::nullopt;
+    return Error{ErrorCode::OutOfRange, name.Text() + " are " + Number(limits.min) + " and " + Number(limits.max) +
+                                            "; for an ellipse they must be the same to both sides"};
 }
 
 // Rotations limited as swing and twist.
-MaybeError CheckSwingTwist(const std::array<std::string, 3>& names, const std::array<AxisControl, 3>& axes, SwingShape shape) {
-    if (MaybeError e = FirstOf(CheckEnum("shape", shape, SwingShape::Pyramid), CheckAngle(names[0], axes[0], kHalfTurn, -kHalfTurn),
-                               CheckAngle(names[1], axes[1], 0.0, 0.0), CheckAngle(names[2], axes[2], 0.0, 0.0)))
-        return e;
-    if (shape != SwingShape::Ellipse) return std::nullopt;
-    for (size_t k = 1; k < 3; ++k)
-        if (axes[k].limited && axes[k].limits.min != -axes[k].limits.max)
-            return Error{ErrorCode::OutOfRange, names[k] + ".limits are " + Number(axes[k].limits.min) + " and " + Number(axes[k].limits.max) +
-                                                    "; for an ellipse they must be the same to both sides"};
+MaybeError CheckSwingTwist(const std::array<const char*, 3>& names, const std::array<AxisControl, 3>& axes, SwingShape shape) {
+    if (MaybeError e = CheckEnum("shape", shape, SwingShape::Pyramid)) return e;
+    for (int k = 0; k < 3; ++k) {
+        const auto i = static_cast<size_t>(k);
+        if (MaybeError e = CheckControl(names[i], axes[i], AngularControls::BoundsOf(k, shape))) return e;
+    }
     return std::nullopt;
 }
 
@@ -145,9 +150,10 @@ MaybeError CheckCommon(const JointSettings& s) {
                    CheckRange("positionIterations", s.positionIterations, 0, 255));
 }
 
-MaybeError CheckControl(const std::string& name, const AxisControl& control) {
-    return FirstOf(CheckLimits(name + ".limits", control.limits), CheckMotor(name + ".motor", control.motor),
-                   CheckNotNegative((name + ".friction").c_str(), control.friction));
+MaybeError CheckControl(const FieldName& name, const AxisControl& control, const LimitBounds& bounds) {
+    return FirstOf(CheckLimits({name, ".limits"}, control.limits), CheckMotor({name, ".motor"}, control.motor),
+                   CheckFriction({name, ".friction"}, control.friction),
+                   control.limited ? CheckBounds({name, ".limits"}, control.limits, bounds) : std::nullopt);
 }
 
 MaybeError Check(const PointJointSettings& s) { return CheckCommon(s); }

@@ -10,10 +10,23 @@
 
 namespace fulcrum {
 
+// A field, or a part of one, as an error names it. Put together only where there is an error: settings are checked in every
+// step that drives a motor. What it is made of must outlive it.
+class FieldName {
+public:
+    FieldName(const char* name) : name_(name) {}
+    FieldName(const FieldName& whole, const char* part) : whole_(&whole), name_(part) {}
+    std::string Text() const { return whole_ ? whole_->Text() + name_ : name_; }
+
+private:
+    const FieldName* whole_ = nullptr;
+    const char* name_;
+};
+
 // What all joints share.
 MaybeError CheckCommon(const JointSettings& settings);
-// Of an axis named `name`; limits may be infinite.
-MaybeError CheckControl(const std::string& name, const AxisControl& control);
+// Of an axis; limits may be infinite where the bounds are. Allocates nothing where nothing is wrong.
+MaybeError CheckControl(const FieldName& name, const AxisControl& control, const LimitBounds& bounds = {});
 
 // The fields of a kind, and those that all joints share.
 MaybeError Check(const PointJointSettings& settings);

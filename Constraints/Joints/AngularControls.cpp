@@ -65,6 +65,12 @@ AngularControls::AngularControls(const std::array<AxisControl, 3>& axes, SwingSh
     lock_ = count == 3 ? AngularLock::All : count == 2 ? AngularLock::Axis : AngularLock::None;
 }
 
+LimitBounds AngularControls::BoundsOf(int axis, SwingShape shape) {
+    constexpr float kHalfTurn = AngleRange::kHalfTurn;
+    if (axis == 0) return {-kHalfTurn, kHalfTurn, -kHalfTurn, kHalfTurn, false};
+    return {-kHalfTurn, 0.0f, 0.0f, kHalfTurn, shape == SwingShape::Ellipse};
+}
+
 SwingTwistLimits AngularControls::Limits() const { return {RangeOf(axes_[0]), RangeOf(axes_[1]), RangeOf(axes_[2]), shape_}; }
 
 uint32_t AngularControls::MaxRows() const {
@@ -134,9 +140,10 @@ AngularControls::Motion AngularControls::MotionOf(const JointPose& pose, const S
 void AngularControls::CollectRows(const JointPose& pose, uint32_t firstSlot, JointRowList& rows) {
     if (lock_ == AngularLock::All) return;
     if (lock_ == AngularLock::Axis) {
+        const Vector3 axis = AxisAbout(pose, freeAxis_);
         JointRow motion;
-        pose.SetAbout(motion, AxisAbout(pose, freeAxis_));
-        turns_.Advance(AngleAbout(pose, freeAxis_), pose.SpeedOf(motion), pose.dt);
+        pose.SetAbout(motion, axis);
+        turns_.Advance(AngleAbout(pose, freeAxis_), pose.TurnedAbout(axis));
         AxisControl control = axes_[freeAxis_];
         if (RangeOf(control).IsFree()) control.limited = false;
         return AddControlRows(control, pose, motion, turns_.Angle(), kAngularSlackSpeed, firstSlot + freeAxis_ * ControlSlots::kCount, rows);
@@ -232,7 +239,8 @@ void AngularControls::AddMotorRows(const JointPose& pose, const Motion& motion, 
 }
 
 double AngularControls::Coordinate(int axis, const JointPose& pose) const {
-    if (lock_ == AngularLock::Axis && axis == freeAxis_) return NearestTurn(AngleAbout(pose, axis), turns_.Angle());
+    if (lock_ == AngularLock::Axis && axis == freeAxis_)
+        return turns_.After(AngleAbout(pose, axis), pose.TurnedAbout(AxisAbout(pose, axis)));
     const SwingTwist r = Decompose(pose.frameA.Conjugate() * pose.frameB);
     return axis == 0 ? r.twist : axis == 1 ? r.SwingY() : r.SwingZ();
 }

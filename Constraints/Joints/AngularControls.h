@@ -22,6 +22,10 @@ public:
     // to both sides.
     AngularControls(const std::array<AxisControl, 3>& axes, SwingShape shape);
 
+    // Of the limits of x, y, z: 0, 1, 2.
+    static LimitBounds BoundsOf(int axis, SwingShape shape);
+    LimitBounds BoundsOf(int axis) const { return BoundsOf(axis, shape_); }
+
     AngularLock Lock() const { return lock_; }
     uint8_t FreeAxis() const { return freeAxis_; }  // of AngularLock::Axis
     uint32_t MaxRows() const;

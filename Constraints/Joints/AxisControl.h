@@ -45,6 +45,13 @@ struct AxisControl {
     float friction = 0.0f;  // N or N m, >= 0: the largest force against motion
 };
 
+// What the limits of an axis may be, m or rad: lowest <= min <= highestMin, lowestMax <= max <= highest.
+struct LimitBounds {
+    static constexpr float kEndless = std::numeric_limits<float>::infinity();
+    float lowest = -kEndless, highestMin = kEndless, lowestMax = -kEndless, highest = kEndless;
+    bool symmetric = false;  // min = -max
+};
+
 // Whether these settings mean a hard constraint.
 inline bool IsHard(const SpringSettings& spring) {
     return (spring.mode == SpringMode::StiffnessAndDamping ? spring.stiffness : spring.frequency) <= 0.0f;

@@ -21,6 +21,7 @@ public:
     void Start(const JointPose& pose) override;
     void CollectRows(const JointPose& pose, JointRowList& rows) override;
     AxisControl* Control(JointAxis axis) override { return axis == JointAxis::LinearX ? &control_ : nullptr; }
+    LimitBounds BoundsOf(JointAxis) const override { return {.lowest = 0.0f}; }
     double Coordinate(JointAxis axis, const JointPose& pose) const override;
 
 private:

@@ -22,8 +22,8 @@ public:
     }
     void CollectRows(const JointPose& pose, JointRowList& rows) override {
         const Vector3 axisA = ToMatrix(pose.frameA).x, axisB = ToMatrix(pose.frameB).x;
-        const double angleA = OfA().Advance(pose.frameA, Dot(axisA, pose.velocityA.angular), pose.dt);
-        const double angleB = OfB().Advance(pose.frameB, Dot(axisB, pose.velocityB.angular), pose.dt);
+        const double angleA = OfA().Advance(pose.frameA, Dot(axisA, pose.turnedA));
+        const double angleB = OfB().Advance(pose.frameB, Dot(axisB, pose.turnedB));
         JointRow& row = rows.Add(0, JointRow::Kind::Equal);
         row.a.angular = -axisA;
         row.b.angular = axisB * ratio_;

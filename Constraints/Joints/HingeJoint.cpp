@@ -5,14 +5,16 @@ namespace fulcrum {
 void HingeJoint::Start(const JointPose& pose) { turns_.Start(AngleAbout(pose, 0), control_); }
 
 void HingeJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
+    const Vector3 axis = AxisAbout(pose, 0);
     JointRow motion;
-    pose.SetAbout(motion, AxisAbout(pose, 0));
-    turns_.Advance(AngleAbout(pose, 0), pose.SpeedOf(motion), pose.dt);
+    pose.SetAbout(motion, axis);
+    turns_.Advance(AngleAbout(pose, 0), pose.TurnedAbout(axis));
     AddControlRows(control_, pose, motion, turns_.Angle(), kAngularSlackSpeed, 0, rows);
 }
 
 double HingeJoint::Coordinate(JointAxis axis, const JointPose& pose) const {
-    return axis == JointAxis::AngularX ? NearestTurn(AngleAbout(pose, 0), turns_.Angle()) : JointType::Coordinate(axis, pose);
+    if (axis != JointAxis::AngularX) return JointType::Coordinate(axis, pose);
+    return turns_.After(AngleAbout(pose, 0), pose.TurnedAbout(AxisAbout(pose, 0)));
 }
 
 }  // namespace fulcrum

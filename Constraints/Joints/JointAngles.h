@@ -35,15 +35,14 @@ inline Vector3 AxisAbout(const JointPose& pose, int axis) {
     return Normalized(Vector3(AxisOf(frameA, axis) + AxisOf(frameB, axis)), AxisOf(frameA, axis));
 }
 
-// An angle counted over any number of turns. A body may turn by more than half a turn a step: the speeds at both ends of a
-// step tell how far it came.
+// An angle counted over any number of turns. A body may turn by more than half a turn a step: how far it did tells the turn.
 struct TurnCount {
-    std::array<double, 2> numbers{};  // rad, rad/s
+    std::array<double, 1> numbers{};  // rad
 
     double Angle() const { return numbers[0]; }
     // From here on. With limits that the angle is not in, the turn counts that is farthest inside them, or nearest to them.
     void Start(double wrapped, const AxisControl& control) {
-        numbers = {wrapped, 0.0};
+        numbers = {wrapped};
         if (!control.limited) return;
         const double min = control.limits.min, max = control.limits.max;
         const auto outside = [&](double x) { return std::max(min - x, x - max); };
@@ -56,9 +55,9 @@ struct TurnCount {
             }
         }
     }
-    void Advance(double wrapped, double speed, double dt) {
-        numbers = {NearestTurn(wrapped, numbers[0] + 0.5 * (numbers[1] + speed) * dt), speed};
-    }
+    // The angle as it is after a step in which it grew by about `turned`, rad.
+    double After(double wrapped, double turned) const { return NearestTurn(wrapped, numbers[0] + turned); }
+    void Advance(double wrapped, double turned) { numbers = {After(wrapped, turned)}; }
 };
 
 }  // namespace fulcrum

@@ -25,9 +25,9 @@ struct alignas(32) JointRecord {
     float anchorA[3] = {0, 0, 0}, anchorB[3] = {0, 0, 0};  // m, in the bodies' centre frames
     float lineAxis = 0, freeAxis = 0;                      // JointLocks::line and ::axis
     float frameA[4] = {0, 0, 0, 1}, frameB[4] = {0, 0, 0, 1};  // x y z w, in the bodies' centre frames
-    // Impulses of the last substep on B, world axes, N s and N m s: the locks' own, the locks' with their answer to the rows,
-    // and those of locks and rows together, about the anchor.
-    float ownForce[3] = {0, 0, 0}, ownTorque[3] = {0, 0, 0};
+    // On B, world axes: the locks' own impulses of the last substep, N s and N m s. And as averages over the last step, N and
+    // N m: those of the locks with their answer to the rows, and of locks and rows together, about the anchor.
+    float ownImpulse[3] = {0, 0, 0}, ownAngularImpulse[3] = {0, 0, 0};
     float spare[2] = {0, 0};
     float lockForce[3] = {0, 0, 0}, lockTorque[3] = {0, 0, 0};
     float totalForce[3] = {0, 0, 0}, totalTorque[3] = {0, 0, 0};
@@ -47,6 +47,7 @@ struct JointRows {
     Real startError, error;              // m or rad, at the start of the step and now
     Real speed;                          // m/s or rad/s that J v is to be
     Real impulse, lowest, highest;       // N s or N m s
+    Real earlier;                        // N s or N m s: the sum of the substeps before
     // delta = -(mass (massScale (J v - speed) + pushRate C) + softness total), see SpringPart.h
     Real massScale, pushRate, softness;
     Real mostPush;                       // m/s or rad/s: limit of pushRate C
@@ -77,6 +78,7 @@ struct JointBatch {
     Vec3<Real> startArmA, startArmB, startOffset;
     Twist<Real> turnedA, turnedB;
     Vec3<Real> answerLinear, answerAngular;  // of the locks to the rows; only where there are rows
+    Vec3<Real> earlierLinear, earlierAngular;  // impulses and answers of the locks, summed over the substeps before
 
     RotationEulerPart<Real> rotation;
     Quat<Real> startTwist;               // of B against A, world axes, for AngularLock::All
@@ -123,7 +125,7 @@ void WarmStartJoints(const JointBatch<N>& batch, BodyState* states);
 
 // Adds what the turning of the parts in the last substep changes of their impulses, where SolveJointVelocities is not told to.
 template <int N>
-void TurnJoints(const JointBatch<N>& batch, BodyState* states);
+void TurnJoints(JointBatch<N>& batch, BodyState* states);
 
 template <int N>
 void SolveJointVelocities(JointBatch<N>& batch, BodyState* states, const JointSolveSettings& settings);
@@ -136,9 +138,10 @@ void RelaxJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSo
 template <int N>
 void UpdateJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings);
 
-// Writes the impulses back, divided by `impulseScale`.
+// Writes the impulses back, divided by `impulseScale`, the forces of the step, dt seconds long, and how far bodies turned.
 template <int N>
-void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* const* types, float impulseScale);
+void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* const* types, const BodyState* states, float dt,
+                 float impulseScale);
 
 #define FULCRUM_FOR_EACH_JOINT_BATCH(instantiate) instantiate(1) instantiate(4) instantiate(8) instantiate(16)
 

@@ -44,6 +44,10 @@ struct JointPose {
     Twist<float> velocityA, velocityB;  // m/s of the centres of mass, rad/s
     float dt = 0, substepDt = 0;        // s
     Position anchorA = Position::Zero();  // m, world space
+    Vector3 turnedA = Vector3::Zero(), turnedB = Vector3::Zero();  // rad: rotation of the bodies in the step before
+
+    // About how far B turned against A in the step before about an axis, rad.
+    double TurnedAbout(const Vector3& axis) const { return Dot(axis, Vector3(turnedB - turnedA)); }
 
     // Velocity of B's anchor against the point of A that is there now, m/s.
     Vector3 AnchorVelocity() const {
@@ -95,6 +99,11 @@ public:
         (void)axis;
         return nullptr;
     }
+    // What its limits may be.
+    virtual LimitBounds BoundsOf(JointAxis axis) const {
+        (void)axis;
+        return {};
+    }
     // Slot of the first of an axis' rows, which are in the order of ControlSlots.
     virtual uint32_t FirstSlot(JointAxis axis) const {
         (void)axis;
@@ -108,8 +117,10 @@ public:
     // What the type carries from step to step besides impulses; snapshots copy these numbers.
     virtual std::span<double> State() { return {}; }
 
-    // Impulses of the last substep by slot, N s or N m s; 0 where there was no row. Written by the Store stage.
-    std::array<float, JointRowList::kMaxRows> impulses{};
+    // By slot, 0 where there was no row: impulses of the last substep, N s or N m s, and what they were on average over the
+    // step, N or N m. Written by the Store stage, as is what JointPose says of the last step.
+    std::array<float, JointRowList::kMaxRows> impulses{}, forces{};
+    Vector3 turnedA = Vector3::Zero(), turnedB = Vector3::Zero();
 };
 
 inline double JointType::Coordinate(JointAxis axis, const JointPose& pose) const {

@@ -37,7 +37,7 @@ void ClearLane(JointRows<N>& rows, int lane) {
         SetLane(twist->linear, lane, Vector3::Zero());
         SetLane(twist->angular, lane, Vector3::Zero());
     }
-    for (Wide<N>* x : {&rows.startError, &rows.error, &rows.speed, &rows.impulse, &rows.lowest, &rows.highest, &rows.massScale,
+    for (Wide<N>* x : {&rows.startError, &rows.error, &rows.speed, &rows.impulse, &rows.earlier, &rows.lowest, &rows.highest, &rows.massScale,
                        &rows.pushRate, &rows.softness, &rows.mostPush, &rows.openAbove, &rows.hardScale, &rows.gapRate,
                        &rows.openSoftness, &rows.radial})
         x->Set(lane, 0.0f);
@@ -120,6 +120,8 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
         pose.frameB = frameOf(batch.bodyB[lane], record.frameB);
         pose.velocityA = velocityOf(batch.bodyA[lane]);
         pose.velocityB = velocityOf(batch.bodyB[lane]);
+        pose.turnedA = types[batch.joint[lane]]->turnedA;
+        pose.turnedB = types[batch.joint[lane]]->turnedB;
         pose.dt = settings.dt;
         pose.substepDt = settings.substepDt;
         const BodyPose& a = bodies.poses[batch.bodyA[lane]];
@@ -178,6 +180,7 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
     batch.startArmA = place.armA;
     batch.startArmB = place.armB;
     batch.startOffset = place.offset;
+    batch.earlierLinear = batch.earlierAngular = Zero<Real>();
     const Real scale(settings.impulseScale);
     const Vec3<Real> linearImpulse = Vec3<Real>(impulses[0], impulses[1], impulses[2]) * scale;
     const Vec3<Real> angularImpulse = Vec3<Real>(impulses[3], impulses[4], impulses[5]) * scale;
@@ -227,25 +230,50 @@ template <int N>
 struct Wrench {
     Vec3<Wide<N>> force = Zero<Wide<N>>(), torque = Zero<Wide<N>>();
 
-    Wrench(const JointBatch<N>& batch, bool withAnswer) {
+    Wrench(const JointBatch<N>& batch, const LockImpulses<Wide<N>>& impulses) {
         using Real = Wide<N>;
         InverseMass<Real> unit;
         unit.mass = Real(1.0f);
         unit.inertia.xx = unit.inertia.yy = unit.inertia.zz = Real(1.0f);
-        const auto impulseOf = [&](const auto& part, const Vec3<Real>& answer) {
+        const auto impulseOf = [&](const auto& part, const Vec3<Real>& impulse) {
             auto lambda = part.GetTotalLambda();
-            if (withAnswer)
-                for (int k = 0; k < lambda.size(); ++k) lambda[k] += answer[k];
+            for (int k = 0; k < lambda.size(); ++k) lambda[k] = impulse[k];
             Twist<Real> a, b;
             part.AddImpulse(a, b, unit, unit, lambda, Real(0.0f) < Real(1.0f));
             return b;
         };
-        if (batch.linear == LinearLock::Point) force = impulseOf(batch.point, batch.answerLinear).linear;
-        if (batch.linear == LinearLock::Line) force = impulseOf(batch.line, batch.answerLinear).linear;
-        if (batch.angular == AngularLock::All) torque = impulseOf(batch.rotation, batch.answerAngular).angular;
-        if (batch.angular == AngularLock::Axis) torque = impulseOf(batch.hinge, batch.answerAngular).angular;
+        if (batch.linear == LinearLock::Point) force = impulseOf(batch.point, impulses.linear).linear;
+        if (batch.linear == LinearLock::Line) force = impulseOf(batch.line, impulses.linear).linear;
+        if (batch.angular == AngularLock::All) torque = impulseOf(batch.rotation, impulses.angular).angular;
+        if (batch.angular == AngularLock::Axis) torque = impulseOf(batch.hinge, impulses.angular).angular;
     }
 };
+
+// The locks' own, of the last substep.
+template <int N>
+LockImpulses<Wide<N>> OwnImpulses(const JointBatch<N>& batch) {
+    using Real = Wide<N>;
+    const Real zero(0.0f);
+    LockImpulses<Real> own;
+    if (batch.linear == LinearLock::Point) own.linear = Widened(batch.point.GetTotalLambda(), zero);
+    if (batch.linear == LinearLock::Line) own.linear = Widened(batch.line.GetTotalLambda(), zero);
+    if (batch.angular == AngularLock::All) own.angular = Widened(batch.rotation.GetTotalLambda(), zero);
+    if (batch.angular == AngularLock::Axis) own.angular = Widened(batch.hinge.GetTotalLambda(), zero);
+    return own;
+}
+
+// Those of all substeps, with their answer to the rows.
+template <int N>
+LockImpulses<Wide<N>> StepImpulses(const JointBatch<N>& batch) {
+    LockImpulses<Wide<N>> sum = OwnImpulses(batch);
+    if (batch.rowCount > 0) {
+        sum.linear += batch.answerLinear;
+        sum.angular += batch.answerAngular;
+    }
+    sum.linear += batch.earlierLinear;
+    sum.angular += batch.earlierAngular;
+    return sum;
+}
 
 template <int N>
 void WriteLane(float (&to)[3], const Vec3<Wide<N>>& v, int lane, float scale) {
@@ -255,34 +283,48 @@ void WriteLane(float (&to)[3], const Vec3<Wide<N>>& v, int lane, float scale) {
     }
 }
 
+// How far a body turned in the step, rad.
+Vector3 TurnOf(const BodyState& state, bool kinematic, float dt) {
+    Vector3 turn;
+    for (int k = 0; k < 3; ++k) turn[k] = kinematic ? state.angularVelocity[k] * dt : state.deltaRotation[k];
+    return IsFinite(turn) ? turn : Vector3(Vector3::Zero());
+}
+
 }  // namespace
 
 template <int N>
-void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* const* types, float impulseScale) {
+void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* const* types, const BodyState* states, float dt,
+                 float impulseScale) {
     using Real = Wide<N>;
-    const float inverse = 1.0f / impulseScale;
-    const Wrench<N> own(batch, false), locks(batch, batch.rowCount > 0);
+    const float inverse = 1.0f / impulseScale, perSecond = 1.0f / dt;
+    const Wrench<N> own(batch, OwnImpulses(batch)), locks(batch, StepImpulses(batch));
     Wrench<N> total = locks;
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         const JointRows<N>& rows = batch.rows[i];
-        total.force += rows.b.linear * rows.impulse;
-        total.torque += (rows.b.angular - Cross<Real>(batch.startArmB, rows.b.linear)) * rows.impulse;
+        const Real impulse = rows.earlier + rows.impulse;
+        total.force += rows.b.linear * impulse;
+        total.torque += (rows.b.angular - Cross<Real>(batch.startArmB, rows.b.linear)) * impulse;
     }
     for (int lane = 0; lane < batch.count; ++lane) {
         JointRecord& record = records[batch.joint[lane]];
-        WriteLane<N>(record.ownForce, own.force, lane, inverse);
-        WriteLane<N>(record.ownTorque, own.torque, lane, inverse);
-        WriteLane<N>(record.lockForce, locks.force, lane, inverse);
-        WriteLane<N>(record.lockTorque, locks.torque, lane, inverse);
-        WriteLane<N>(record.totalForce, total.force, lane, inverse);
-        WriteLane<N>(record.totalTorque, total.torque, lane, inverse);
+        WriteLane<N>(record.ownImpulse, own.force, lane, inverse);
+        WriteLane<N>(record.ownAngularImpulse, own.torque, lane, inverse);
+        WriteLane<N>(record.lockForce, locks.force, lane, perSecond);
+        WriteLane<N>(record.lockTorque, locks.torque, lane, perSecond);
+        WriteLane<N>(record.totalForce, total.force, lane, perSecond);
+        WriteLane<N>(record.totalTorque, total.torque, lane, perSecond);
         if (batch.rowRoom == 0) continue;
         JointType* type = types[batch.joint[lane]];
+        type->turnedA = TurnOf(states[batch.bodyA[lane]], batch.kinematicA >> lane & 1u, dt);
+        type->turnedB = TurnOf(states[batch.bodyB[lane]], batch.kinematicB >> lane & 1u, dt);
         type->impulses.fill(0.0f);
+        type->forces.fill(0.0f);
         for (uint32_t i = 0; i < batch.rowCount; ++i) {
             const JointRows<N>& rows = batch.rows[i];
-            const float impulse = rows.impulse[lane] * inverse;
-            if (rows.slot[lane] != 0xFF && std::isfinite(impulse)) type->impulses[rows.slot[lane]] = impulse;
+            const float impulse = rows.impulse[lane] * inverse, force = (rows.earlier[lane] + rows.impulse[lane]) * perSecond;
+            if (rows.slot[lane] == 0xFF || !std::isfinite(impulse) || !std::isfinite(force)) continue;
+            type->impulses[rows.slot[lane]] = impulse;
+            type->forces[rows.slot[lane]] = force;
         }
     }
 }
@@ -290,7 +332,7 @@ void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* co
 #define FULCRUM_INSTANTIATE(lanes)                                                                                         \
     template void PrepareJoints(JointBatch<lanes>&, const JointRecord*, JointType* const*, const SolverBodies&,            \
                                 const JointSolveSettings&, JointFindings&);                                                \
-    template void StoreJoints(const JointBatch<lanes>&, JointRecord*, JointType* const*, float);
+    template void StoreJoints(const JointBatch<lanes>&, JointRecord*, JointType* const*, const BodyState*, float, float);
 FULCRUM_FOR_EACH_JOINT_BATCH(FULCRUM_INSTANTIATE)
 #undef FULCRUM_INSTANTIATE
 

@@ -24,6 +24,7 @@ public:
     void CollectRows(const JointPose& pose, JointRowList& rows) override;
     // Of the length: the motor winds the rope.
     AxisControl* Control(JointAxis axis) override { return axis == JointAxis::LinearX ? &control_ : nullptr; }
+    LimitBounds BoundsOf(JointAxis) const override { return {.lowest = 0.0f}; }
     double Coordinate(JointAxis axis, const JointPose& pose) const override;
 
 private:

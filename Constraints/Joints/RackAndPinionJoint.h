@@ -23,7 +23,7 @@ public:
     }
     void CollectRows(const JointPose& pose, JointRowList& rows) override {
         const Vector3 axis = ToMatrix(pose.frameA).x, way = ToMatrix(pose.frameB).x;
-        const double angle = Pinion().Advance(pose.frameA, Dot(axis, pose.velocityA.angular), pose.dt);
+        const double angle = Pinion().Advance(pose.frameA, Dot(axis, pose.turnedA));
         const double moved = Dot(pose.offset, way) - state_[BearingAngle::kNumbers];
         const Vector3 scaled = way * -ratio_;
         JointRow& row = rows.Add(0, JointRow::Kind::Equal);

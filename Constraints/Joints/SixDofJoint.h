@@ -23,6 +23,9 @@ public:
         const auto index = static_cast<int>(axis);
         return index < 3 ? &linear_[static_cast<size_t>(index)] : &angular_.At(index - 3);
     }
+    LimitBounds BoundsOf(JointAxis axis) const override {
+        return axis < JointAxis::AngularX ? LimitBounds{} : angular_.BoundsOf(static_cast<int>(axis) - 3);
+    }
     uint32_t FirstSlot(JointAxis axis) const override { return static_cast<uint32_t>(axis) * ControlSlots::kCount; }
     void SetTargetOrientation(const Quaternion& target) override { angular_.SetTargetOrientation(target); }
     double Coordinate(JointAxis axis, const JointPose& pose) const override {

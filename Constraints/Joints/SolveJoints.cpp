@@ -37,9 +37,25 @@ template <int N>
     }
 }
 
-// What the turning of the parts in the last substep changes of their impulses.
+// Adds the impulses of the substep that is over to the step's.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-[[gnu::always_inline]] inline void Turn(const JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
+[[gnu::always_inline]] inline void SumImpulses(JointBatch<N>& batch) {
+    using Real = Wide<N>;
+    const auto add = [&](Vec3<Real>& sum, const auto& part, const Vec3<Real>& answer) {
+        const auto lambda = part.GetTotalLambda();
+        for (int k = 0; k < lambda.size(); ++k) sum[k] += lambda[k];
+        if (batch.rowCount > 0)
+            for (int k = 0; k < lambda.size(); ++k) sum[k] += answer[k];
+    };
+    if constexpr (kLinear != LinearLock::None) add(batch.earlierLinear, LinearPart<kLinear>(batch), batch.answerLinear);
+    if constexpr (kAngular != AngularLock::None) add(batch.earlierAngular, AngularPart<kAngular>(batch), batch.answerAngular);
+    for (uint32_t i = 0; i < batch.rowCount; ++i) batch.rows[i].earlier += batch.rows[i].impulse;
+}
+
+// Ends a substep: what the turning of the parts in it changes of their impulses.
+template <LinearLock kLinear, AngularLock kAngular, int N>
+[[gnu::always_inline]] inline void Turn(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
+    SumImpulses<kLinear, kAngular>(batch);
     a.angular += batch.turnedA.angular;
     b.angular += batch.turnedB.angular;
     if constexpr (kLinear != LinearLock::Point) {
@@ -209,7 +225,7 @@ void WarmStartJoints(const JointBatch<N>& batch, BodyState* states) {
 }
 
 template <int N>
-void TurnJoints(const JointBatch<N>& batch, BodyState* states) {
+void TurnJoints(JointBatch<N>& batch, BodyState* states) {
     using Real = Wide<N>;
     WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
         Motion<N> motionA, motionB;
@@ -265,7 +281,7 @@ void UpdateJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointS
 
 #define FULCRUM_INSTANTIATE(lanes)                                                                     \
     template void WarmStartJoints(const JointBatch<lanes>&, BodyState*);                               \
-    template void TurnJoints(const JointBatch<lanes>&, BodyState*);                                    \
+    template void TurnJoints(JointBatch<lanes>&, BodyState*);                                          \
     template void SolveJointVelocities(JointBatch<lanes>&, BodyState*, const JointSolveSettings&);     \
     template void RelaxJoints(JointBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);     \
     template void UpdateJoints(JointBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);

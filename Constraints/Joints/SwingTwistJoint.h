@@ -21,6 +21,9 @@ public:
     AxisControl* Control(JointAxis axis) override {
         return axis < JointAxis::AngularX ? nullptr : &angular_.At(static_cast<int>(axis) - 3);
     }
+    LimitBounds BoundsOf(JointAxis axis) const override {
+        return axis < JointAxis::AngularX ? LimitBounds{} : angular_.BoundsOf(static_cast<int>(axis) - 3);
+    }
     uint32_t FirstSlot(JointAxis axis) const override {
         return axis < JointAxis::AngularX ? 0 : (static_cast<uint32_t>(axis) - 3) * ControlSlots::kCount;
     }

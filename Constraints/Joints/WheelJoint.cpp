@@ -51,7 +51,7 @@ void WheelJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     const WheelAngles angles = AnglesOf(pose);
     JointRow motion;
     pose.SetAbout(motion, angles.spinAxis);
-    turns_.Advance(angles.spin, pose.SpeedOf(motion), pose.dt);
+    turns_.Advance(angles.spin, pose.TurnedAbout(angles.spinAxis));
     AddControlRows(spin_, pose, motion, turns_.Angle(), kAngularSlackSpeed, Slots::kSpin, rows);
     if (isSteered_) {
         pose.SetAbout(motion, angles.steeringAxis);
@@ -80,7 +80,8 @@ double WheelJoint::Coordinate(JointAxis axis, const JointPose& pose) const {
     if (axis < JointAxis::AngularX) return JointType::Coordinate(axis, pose);
     const WheelAngles angles = AnglesOf(pose);
     if (axis == JointAxis::AngularY) return angles.steering;
-    return axis == JointAxis::AngularZ ? static_cast<double>(angles.tilt) : NearestTurn(angles.spin, turns_.Angle());
+    if (axis == JointAxis::AngularZ) return angles.tilt;
+    return turns_.After(angles.spin, pose.TurnedAbout(angles.spinAxis));
 }
 
 }  // namespace fulcrum

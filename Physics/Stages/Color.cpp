@@ -48,6 +48,17 @@ void UncolourJoint(WorldState& world, uint32_t index) {
     joint.colour = {};
 }
 
+void RecolourJointsOf(WorldState& world, uint32_t body) {
+    world.joints.VisitOf(body, [&](uint32_t index) {
+        Joint& joint = world.joints.joints[index];
+        bool& still = joint.still[joint.SideOf(body)];
+        if (still == !world.bodies.CanMove(body)) return;
+        UncolourJoint(world, index);
+        still = !still;
+        ColourJoint(world, index);
+    });
+}
+
 void Color(WorldState& world) {
     world.colouring.ReserveBodies(world.bodies.Size());
     VisitChanges(world, [&](uint32_t index) {

@@ -35,6 +35,8 @@ void UncolourPair(WorldState& world, uint32_t pair);
 // The same for a joint; only one that is enabled and has an awake dynamic body gets a colour.
 void ColourJoint(WorldState& world, uint32_t joint);
 void UncolourJoint(WorldState& world, uint32_t joint);
+// Has the joints of a body see whether it can move: after it was frozen, or revived.
+void RecolourJointsOf(WorldState& world, uint32_t body);
 
 // Sorts the coloured constraints into the solver's groups and batches, where they changed.
 void BuildIslands(WorldState& world);

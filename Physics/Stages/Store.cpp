@@ -86,10 +86,20 @@ void Freeze(WorldState& world, uint32_t body, WorkerFindings& findings) {
     findings.firstFrozen = std::min(findings.firstFrozen, body);
 }
 
-void MeasureSlowness(WorldState& world, uint32_t body, const Vector3& v, const Vector3& w, float dt, WorkerFindings& findings) {
+// m/s, of the farthest point of a body that moves and turns so.
+float Speed(const BodyDynamics& d, const Vector3& v, const Vector3& w) { return Length(v) + Length(w) * d.outerRadius; }
+
+// What joints pull together moves without a speed at the step's end: relaxing has taken it out.
+float PulledSpeed(const WorldState& world, uint32_t body, float dt) {
+    const BodyState& s = world.bodies.states[body];
+    if (!world.settings.sleep.enabled || !world.joints.HasAny(body)) return 0;
+    return Speed(world.bodies.dynamics[body], Vector3(s.deltaPosition[0], s.deltaPosition[1], s.deltaPosition[2]),
+                 Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2])) / dt;
+}
+
+void MeasureSlowness(WorldState& world, uint32_t body, float speed, float dt, WorkerFindings& findings) {
     BodyDynamics& d = world.bodies.dynamics[body];
     const SleepSettings& sleep = world.settings.sleep;
-    const float speed = Length(v) + Length(w) * d.outerRadius;
     const bool slow = d.allowSleep && speed < sleep.linearSpeed;
     d.slowSeconds = slow ? d.slowSeconds + dt : 0.0f;
     findings.sleepCandidates += slow && d.slowSeconds >= sleep.seconds;
@@ -117,6 +127,7 @@ void EndBody(WorldState& world, uint32_t body, const StepContext& step, WorkerFi
     } else {
         FlyFreely(world, body, step, pose, v, w, findings);
     }
+    const float pulled = PulledSpeed(world, body, step.dt);
     bodies.states[body] = {};
     if (!IsFinite(pose.position) || !IsFinite(pose.rotation) || !IsFinite(v) || !IsFinite(w) || !PushIsFinite(world, body)) {
         Freeze(world, body, findings);
@@ -126,22 +137,22 @@ void EndBody(WorldState& world, uint32_t body, const StepContext& step, WorkerFi
     bodies.SetCentrePose(body, pose);
     if (d.hasForce) ForgetForces(world, body);
     if (world.settings.sleep.enabled && d.motion == MotionType::Dynamic)
-        MeasureSlowness(world, body, v, w, step.dt, findings);
+        MeasureSlowness(world, body, std::max(Speed(d, v, w), pulled), step.dt, findings);
 }
 
 template <int N, bool kFixedB>
-void StoreBatch(WorldState& world, const ContactBatch<N, kFixedB>& batch, float impulseScale) {
+void StoreBatch(WorldState& world, const ContactBatch<N, kFixedB>& batch, float, float impulseScale) {
     StoreContacts(batch, world.pairs.records.data(), impulseScale);
 }
 template <int N>
-void StoreBatch(WorldState& world, const JointBatch<N>& batch, float impulseScale) {
-    StoreJoints(batch, world.joints.records.data(), world.joints.types.data(), impulseScale);
+void StoreBatch(WorldState& world, const JointBatch<N>& batch, float dt, float impulseScale) {
+    StoreJoints(batch, world.joints.records.data(), world.joints.types.data(), world.bodies.states.data(), dt, impulseScale);
 }
 
 template <class Batch>
-void StoreAll(WorldState& world, const std::vector<Batch>& batches, uint32_t begin, uint32_t end, float impulseScale) {
+void StoreAll(WorldState& world, const std::vector<Batch>& batches, uint32_t begin, uint32_t end, float dt, float impulseScale) {
     world.jobs->ParallelFor(end - begin, 16, [&](JobRange range) {
-        for (uint32_t i = range.begin; i < range.end; ++i) StoreBatch(world, batches[begin + i], impulseScale);
+        for (uint32_t i = range.begin; i < range.end; ++i) StoreBatch(world, batches[begin + i], dt, impulseScale);
     });
 }
 
@@ -150,9 +161,9 @@ void StoreImpulses(WorldState& world, const StepContext& step) {
     const SolverLayout& layout = world.solver;
     uint32_t moving = 0, fixed = 0, joints = 0;
     const auto storeTo = [&](uint32_t movingEnd, uint32_t fixedEnd, uint32_t jointsEnd, float impulseScale) {
-        StoreAll(world, layout.moving, moving, movingEnd, impulseScale);
-        StoreAll(world, layout.fixed, fixed, fixedEnd, impulseScale);
-        StoreAll(world, layout.joints, joints, jointsEnd, impulseScale);
+        StoreAll(world, layout.moving, moving, movingEnd, step.dt, impulseScale);
+        StoreAll(world, layout.fixed, fixed, fixedEnd, step.dt, impulseScale);
+        StoreAll(world, layout.joints, joints, jointsEnd, step.dt, impulseScale);
         moving = movingEnd;
         fixed = fixedEnd;
         joints = jointsEnd;
@@ -166,7 +177,7 @@ void StoreImpulses(WorldState& world, const StepContext& step) {
     }
     storeTo(layout.movingCount, layout.fixedCount, layout.jointCount, 1.0f);
     const auto storeOverflow = [&](const auto& batches) {
-        StoreAll(world, batches, 0, static_cast<uint32_t>(batches.size()), 1.0f);
+        StoreAll(world, batches, 0, static_cast<uint32_t>(batches.size()), step.dt, 1.0f);
     };
     storeOverflow(layout.overflowMoving);
     storeOverflow(layout.overflowFixed);
@@ -174,15 +185,15 @@ void StoreImpulses(WorldState& world, const StepContext& step) {
 }
 
 // Serial, in the order of the joints.
-void BreakJoints(WorldState& world, const StepContext& step) {
-    const float inverseDt = 1.0f / step.substepDt;
+void BreakJoints(WorldState& world) {
     world.joints.breakable.Visit([&](uint32_t index) {
         Joint& joint = world.joints.joints[index];
         if (joint.colour.colour == 0xFF) return;
         const JointRecord& record = world.joints.records[index];
-        const auto length = [&](const float (&v)[3]) { return Length(Vector3(v[0], v[1], v[2])) * inverseDt; };
+        const auto length = [](const float (&v)[3]) { return Length(Vector3(v[0], v[1], v[2])); };
         if (length(record.totalForce) <= joint.breakForce && length(record.totalTorque) <= joint.breakTorque) return;
         joint.enabled = false;
+        world.joints.Forget(index);
         UncolourJoint(world, index);
         for (uint32_t body : joint.body) RequeueColliders(world, body);
         world.broken.push_back(world.joints.IdOf(index));
@@ -197,7 +208,7 @@ void Store(WorldState& world, const StepContext& step) {
         for (uint32_t i = range.begin; i < range.end; ++i)
             EndBody(world, world.bodies.awake[i], step, world.findings[range.worker]);
     });
-    BreakJoints(world, step);
+    BreakJoints(world);
     world.lastSubstepDt = step.substepDt;
 
     uint32_t firstFrozen = ~0u;
@@ -206,7 +217,10 @@ void Store(WorldState& world, const StepContext& step) {
         world.report.frozenBodies += findings.frozen;
         firstFrozen = std::min(firstFrozen, findings.firstFrozen);
     }
-    if (firstFrozen != ~0u) world.report.firstFrozen = world.bodies.IdOf(firstFrozen);
+    if (firstFrozen == ~0u) return;
+    world.report.firstFrozen = world.bodies.IdOf(firstFrozen);
+    for (uint32_t body : world.bodies.awake)
+        if (world.bodies.dynamics[body].frozen) RecolourJointsOf(world, body);
 }
 
 }  // namespace fulcrum

@@ -99,6 +99,8 @@ public:
     }
     BodyId IdOf(uint32_t index) const { return {index, cold[index].generation}; }
 
+    // Whether constraints move it.
+    bool CanMove(uint32_t index) const { return dynamics[index].motion == MotionType::Dynamic && !dynamics[index].frozen; }
     void MarkAwake(uint32_t index);
     void MarkAsleep(uint32_t index);
 

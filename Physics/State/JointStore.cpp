@@ -36,6 +36,14 @@ void JointStore::Free(uint32_t index) {
     --count_;
 }
 
+void JointStore::Forget(uint32_t index) {
+    JointRecord& record = records[index];
+    for (float(*impulse)[3] : {&record.ownImpulse, &record.ownAngularImpulse, &record.lockForce, &record.lockTorque, &record.totalForce, &record.totalTorque})
+        std::fill(std::begin(*impulse), std::end(*impulse), 0.0f);
+    types[index]->impulses.fill(0.0f);
+    types[index]->forces.fill(0.0f);
+}
+
 void JointStore::Link(uint32_t index) {
     Joint& joint = joints[index];
     const uint32_t last = std::max(joint.body[0], joint.body[1]);

@@ -23,7 +23,7 @@ struct Joint {
     bool exists = false;
     bool enabled = true;
     bool collideConnected = false;
-    bool still[2] = {false, false};   // the body is not dynamic
+    bool still[2] = {false, false};   // the body is not dynamic, or frozen
     JointPriority priority = JointPriority::Normal;
     float breakForce = 0, breakTorque = 0;
     SolverSettings effort{0, 0, 0};   // 0: the system's
@@ -50,6 +50,9 @@ public:
         return id.index < joints.size() && joints[id.index].exists && joints[id.index].generation == id.generation;
     }
     JointId IdOf(uint32_t index) const { return {index, joints[index].generation}; }
+
+    // Its impulses and forces are zero from now on.
+    void Forget(uint32_t index);
 
     // Puts the joint on the lists of its two bodies, or takes it off them.
     void Link(uint32_t index);

@@ -24,6 +24,7 @@ struct JointBodies {
     Vector3 anchor[2] = {Vector3::Zero(), Vector3::Zero()};
     Quaternion frame[2];
     Twist<float> velocity[2];
+    Vector3 turned[2] = {Vector3::Zero(), Vector3::Zero()};  // rad, in the step before
     float dt = 1.0f / 60.0f;
 
     static JointBodies AtRandom(Random& random) {
@@ -62,6 +63,8 @@ struct JointBodies {
         pose.frameB = FrameOf(1);
         pose.velocityA = velocity[0];
         pose.velocityB = velocity[1];
+        pose.turnedA = turned[0];
+        pose.turnedB = turned[1];
         pose.dt = dt;
         pose.substepDt = dt / 4;
         pose.anchorA = AnchorOf(0);

@@ -40,6 +40,48 @@ TEST(JointExtremes, NeighboursOfAFrozenBodyGoOn) {
         EXPECT_FALSE(world.Bodies().IsFrozen(chain.bodies[i]));
         EXPECT_TRUE(IsFinite(world.PositionOf(chain.bodies[i])));
     }
+    EXPECT_LT(LargestGap(world, chain), 0.02);
+    // Revived, it hangs in the chain again.
+    ASSERT_TRUE(world.Bodies().SetPose(chain.bodies[3], world.PositionOf(chain.bodies[3]), {}));
+    world.Run(5);
+    EXPECT_LT(LargestGap(world, chain), 0.02);
+    EXPECT_LT(world.PositionOf(chain.bodies[3]).y(), -1.5);
+}
+
+TEST(JointExtremes, AFrozenBodyHoldsLikeAStaticOne) {
+    // A heavy chain is solved as a tree: the frozen body must leave it.
+    TestWorld world(NoSleep());
+    const BodyId hook = AddHook(world), rod = world.Add({.shape = CubeOf(0.1f), .position = {0, -1, 0}, .mass = 1});
+    const BodyId ball = world.Add({.shape = SphereOf(0.2f), .position = {0, -2, 0}, .mass = 1000});
+    Join(world, PointJointSettings{Between(hook, rod, {0, 0, 0})});
+    const JointId lower = Join(world, PointJointSettings{Between(rod, ball, {0, -1, 0})});
+    world.Run(0.5);
+    for (int i = 0; i < 2; ++i) ASSERT_TRUE(world.Bodies().AddForce(rod, {3e38f, 3e38f, 0}));
+    world.Step();
+    ASSERT_TRUE(world.Bodies().IsFrozen(rod));
+    world.Run(2);
+    EXPECT_LT(JointsOf(world).GetError(lower).distance, 1e-3f);
+    EXPECT_NEAR(JointsOf(world).GetForce(lower).y(), 1000 * kGravity, 98.1);
+    // What is joined to it later finds it at rest as well.
+    const BodyId other = world.Add({.shape = CubeOf(0.1f), .position = {1, -1, 0}, .mass = 1});
+    const JointId late = Join(world, PointJointSettings{Between(rod, other, {0.5, -1, 0})});
+    world.Run(2);
+    EXPECT_LT(JointsOf(world).GetError(late).distance, 5e-3f);
+    EXPECT_TRUE(world.Bodies().IsFrozen(rod));
+}
+
+TEST(JointExtremes, TimeStepsOfAnyLength) {
+    TestWorld world(NoSleep());
+    const RodChain chain = AddRodChain(world, 6);
+    const double steps[] = {1.0 / 30, 1.0 / 240, 0, 1e-5, 1.0 / 60, 0.05, 1.0 / 120};
+    for (int i = 0; i < 350; ++i) {
+        world.Step(steps[i % 7]);
+        ASSERT_TRUE(world.AllFinite()) << "step " << i;
+        // In a twentieth of a second the end moves by half a metre: what that leaves apart is pulled together within the next steps.
+        ASSERT_LT(world.PositionOf(chain.bodies[6]).norm(), 9) << "step " << i;
+    }
+    world.Run(1);
+    EXPECT_LT(LargestGap(world, chain), 0.02);
 }
 
 TEST(JointExtremes, AChainFarAwayMovesLikeTheOneAtTheOrigin) {

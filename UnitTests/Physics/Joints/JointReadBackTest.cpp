@@ -63,6 +63,64 @@ TEST(ReadBack, EachRowOfAnAxisHasItsForce) {
     }
 }
 
+TEST(ReadBack, ADisabledJointDoesNothing) {
+    TestWorld world(NoSleep());
+    const BodyId box = world.Add({.shape = CubeOf(0.1f), .mass = 10});
+    SliderJointSettings settings{Between(AddHook(world), box, {0, 0, 0}, {0, 1, 0})};
+    settings.slide.motor = SpeedMotor(0);
+    const JointId joint = Join(world, settings);
+    world.Run(1);
+    EXPECT_NEAR(JointsOf(world).GetAxisForces(joint, JointAxis::LinearX).motor, 10 * kGravity, 1);
+    ASSERT_TRUE(JointsOf(world).SetEnabled(joint, false));
+    for (int i = 0; i < 2; ++i) {
+        EXPECT_EQ(JointsOf(world).GetAxisForces(joint, JointAxis::LinearX).motor, 0);
+        EXPECT_EQ(JointsOf(world).GetForce(joint), Vector3(0, 0, 0));
+        world.Step();
+    }
+}
+
+TEST(ReadBack, ASleepingJointCarriesWhatItDid) {
+    TestWorld world;
+    const BodyId hook = AddHook(world), box = world.Add({.shape = CubeOf(0.1f), .position = {0.4, 0, 0}, .mass = 10});
+    const BodyId weight = world.Add({.shape = CubeOf(0.1f), .position = {0, -2, 0}, .mass = 10});
+    const JointId arm = Join(world, FixedJointSettings{Between(hook, box, {0, 0, 0})});
+    SliderJointSettings settings{Between(hook, weight, {0, -2, 0}, {0, 1, 0})};
+    settings.slide.motor = SpeedMotor(0);
+    const JointId slider = Join(world, settings);
+    world.Run(3);
+    ASSERT_FALSE(world.Bodies().IsAwake(box));
+    ASSERT_FALSE(world.Bodies().IsAwake(weight));
+    // Steps of another length, in which they sleep on, change nothing.
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_NEAR(JointsOf(world).GetForce(arm).y(), 10 * kGravity, 1);
+        EXPECT_NEAR(JointsOf(world).GetTorque(arm).z(), 10 * kGravity * 0.4, 0.4);
+        EXPECT_NEAR(JointsOf(world).GetAxisForces(slider, JointAxis::LinearX).motor, 10 * kGravity, 1);
+        world.Step(0.004);
+    }
+    EXPECT_FALSE(world.Bodies().IsAwake(box));
+}
+
+TEST(ReadBack, AHingeReadsTheRightTurnAtAnySpeed) {
+    // Five radians a step and more: the turn follows from the way of the step. Whoever sets the speed in between, or takes steps of
+    // other lengths, loses none.
+    for (const double speed : {220.0, -500.0, 1000.0}) {
+        TestWorld world(Weightless());
+        const BodyId ball = world.Add({.shape = SphereOf(0.2f), .mass = 1, .maxAngularSpeed = 1e4f});
+        HingeJointSettings settings{Between(AddHook(world), ball, {0, 0, 0}, {0, 0, 1})};
+        settings.angle.friction = 1e-6f;  // so that it counts
+        const JointId hinge = Join(world, settings);
+        double angle = 0;
+        for (int i = 0; i < 30; ++i) {
+            const double dt = i % 3 ? kStep : 0.02, now = i % 10 == 7 ? -0.3 * speed : speed;
+            ASSERT_TRUE(world.Bodies().SetVelocity(ball, {0, 0, 0}, {0, 0, static_cast<float>(now)}));
+            EXPECT_NEAR(JointsOf(world).GetCoordinate(hinge, JointAxis::AngularX), angle, 0.01) << speed << " step " << i;
+            world.Step(dt);
+            angle += now * dt;
+            EXPECT_NEAR(JointsOf(world).GetCoordinate(hinge, JointAxis::AngularX), angle, 0.01) << speed << " step " << i;
+        }
+    }
+}
+
 TEST(ReadBack, UnknownJointsReadAsZero) {
     TestWorld world;
     const JointId nobody{3, 1};
@@ -176,6 +234,46 @@ TEST_F(JointErrors, OfChangesLeaveTheJointAsItWas) {
     EXPECT_EQ(control->limits.min, -1);
     EXPECT_EQ(control->motor.targetSpeed, 2);
     EXPECT_EQ(control->friction, 0);
+}
+
+TEST_F(JointErrors, OfLimitsAreThoseOfCreate) {
+    SwingTwistJointSettings shoulder{Between(hook_, box_, {0, 0, 0})};
+    shoulder.swingY = Limited(-1, 1);
+    SixDofJointSettings six{Between(hook_, box_, {0, 0, 0})};
+    DistanceJointSettings rope{Between(hook_, box_, {0, 0, 0})};
+    PulleyJointSettings pulley{Between(hook_, box_, {0, 0, 0})};
+    struct Case {
+        JointId joint;
+        JointAxis axis;
+        float min, max;
+        const char* field;
+    };
+    const JointId ofShoulder = Join(world_, shoulder), ofSix = Join(world_, six), ofRope = Join(world_, rope), ofPulley = Join(world_, pulley);
+    const Case cases[] = {
+        {ofShoulder, JointAxis::AngularY, 0.1f, 1, "axis.limits.min"},     // not around 0
+        {ofShoulder, JointAxis::AngularZ, -1, -0.1f, "axis.limits.max"},   // not around 0
+        {ofShoulder, JointAxis::AngularY, -0.5f, 1, "axis.limits"},        // an ellipse has two equal sides
+        {ofShoulder, JointAxis::AngularX, -4, 0, "axis.limits.min"},       // beyond pi
+        {ofShoulder, JointAxis::AngularX, 0, 4, "axis.limits.max"},
+        {ofSix, JointAxis::AngularZ, -1, -0.5f, "axis.limits.max"},
+        {ofSix, JointAxis::AngularX, -4, 0, "axis.limits.min"},
+        {ofRope, JointAxis::LinearX, -2, -1, "axis.limits.min"},
+        {ofPulley, JointAxis::LinearX, -2, 1, "axis.limits.min"},
+    };
+    for (const Case& c : cases) {
+        const JointLimits before = JointsOf(world_).GetControl(c.joint, c.axis)->limits;
+        const Status status = JointsOf(world_).SetLimits(c.joint, c.axis, JointLimits{c.min, c.max, {}});
+        ASSERT_FALSE(status) << c.field;
+        EXPECT_EQ(status.GetError().code, ErrorCode::OutOfRange) << status.GetError().message;
+        EXPECT_TRUE(status.GetError().message.starts_with(std::string(c.field) + " ")) << status.GetError().message;
+        const JointLimits& after = JointsOf(world_).GetControl(c.joint, c.axis)->limits;
+        EXPECT_EQ(after.min, before.min);
+        EXPECT_EQ(after.max, before.max);
+    }
+    // What Create takes is taken: a pyramid need not be even, lengths may be endless.
+    EXPECT_TRUE(JointsOf(world_).SetLimits(ofSix, JointAxis::AngularY, JointLimits{-0.2f, 1, {}}));
+    EXPECT_TRUE(JointsOf(world_).SetLimits(ofRope, JointAxis::LinearX, JointLimits{0, std::numeric_limits<float>::infinity(), {}}));
+    EXPECT_TRUE(JointsOf(world_).SetLimits(ofSix, JointAxis::LinearX, JointLimits{-2, -1, {}}));
 }
 
 TEST_F(JointErrors, LeaveTheWorldsBitsAsTheyAre) {
