@@ -31,10 +31,15 @@ void UncolourPair(WorldState& world, uint32_t index) {
     pair.colour = {};
 }
 
+bool MovesAwake(const WorldState& world, uint32_t index) {
+    const Joint& joint = world.joints.joints[index];
+    const auto isAwake = [&](int side) { return !joint.still[side] && world.bodies.dynamics[joint.body[side]].awake; };
+    return isAwake(0) || isAwake(1);
+}
+
 void ColourJoint(WorldState& world, uint32_t index) {
     Joint& joint = world.joints.joints[index];
-    const auto isAwake = [&](int side) { return !joint.still[side] && world.bodies.dynamics[joint.body[side]].awake; };
-    if (joint.colour.colour != 0xFF || !joint.enabled || !(isAwake(0) || isAwake(1))) return;
+    if (joint.colour.colour != 0xFF || !joint.enabled || !MovesAwake(world, index)) return;
     world.colouring.ReserveBodies(world.bodies.Size());
     const bool late = joint.priority == JointPriority::High || joint.still[0] || joint.still[1];
     joint.colour = world.colouring.Add(Colouring::Kind::Joint, EntryOf(joint, index), late);

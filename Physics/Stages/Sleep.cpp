@@ -46,8 +46,11 @@ void PutToSleep(WorldState& world, std::span<const uint32_t> bodies) {
         world.bodies.cold[body].sleepingIsland = island;
         world.bodies.SetVelocity(body, Vector3::Zero(), Vector3::Zero());
         world.bodies.MarkAsleep(body);
-        world.joints.VisitOf(body, [&](uint32_t joint) { UncolourJoint(world, joint); });
     }
+    for (uint32_t body : bodies)
+        world.joints.VisitOf(body, [&](uint32_t joint) {
+            if (!MovesAwake(world, joint)) UncolourJoint(world, joint);
+        });
 }
 
 void SleepIslandOf(WorldState& world, uint32_t body) {

@@ -67,7 +67,8 @@ void UpdateColliders(WorldState& world, uint32_t body, float dt, WorkerFindings&
     if (changed) world.bodies.poses[body].boundsChangedIn = static_cast<uint32_t>(world.report.step);
 }
 
-// The lists of what moves and meets get room by the size of the world, so that no step of a settled one allocates.
+// The lists of what moves and meets get room by the size of the world, so that no step of a settled one allocates, whichever
+// worker does what.
 void ReserveLists(WorldState& world) {
     const size_t colliders = world.colliders.colliders.capacity();
     world.colliders.moved.reserve(colliders);

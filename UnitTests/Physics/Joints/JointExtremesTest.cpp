@@ -71,6 +71,28 @@ TEST(JointExtremes, AFrozenBodyHoldsLikeAStaticOne) {
     EXPECT_TRUE(world.Bodies().IsFrozen(rod));
 }
 
+TEST(JointExtremes, AFrozenBodyThatSleepsStillHolds) {
+    SystemSettings settings;
+    settings.sleep.seconds = 0;
+    TestWorld world(settings);
+    const BodyId a = world.Add({.shape = CubeOf(0.1f), .position = {0, -1, 0}});
+    const BodyId b = world.Add({.shape = CubeOf(0.1f), .position = {0, -2, 0}, .allowSleep = false});
+    Join(world, PointJointSettings{Between(AddHook(world), a, {0, 0, 0})});
+    const JointId joint = Join(world, PointJointSettings{Between(a, b, {0, -1, 0})});
+    // One more that is kept from its sleep: islands are looked at in every step.
+    const BodyId rests = world.Add({.shape = CubeOf(0.1f), .position = {9, 0, 0}, .gravityFactor = 0});
+    const BodyId sleepless = world.Add({.shape = CubeOf(0.1f), .position = {10, 0, 0}, .gravityFactor = 0, .allowSleep = false});
+    Join(world, FixedJointSettings{Between(rests, sleepless, {9.5, 0, 0})});
+    world.Run(2);
+    for (int i = 0; i < 2; ++i) ASSERT_TRUE(world.Bodies().AddForce(a, {3e38f, 3e38f, 0}));
+    world.Step();
+    ASSERT_TRUE(world.Bodies().IsFrozen(a));
+    world.Run(0.5);
+    EXPECT_FALSE(world.Bodies().IsAwake(a));
+    EXPECT_TRUE(world.Bodies().IsAwake(b));
+    EXPECT_LT(JointsOf(world).GetError(joint).distance, 1e-3f);
+}
+
 TEST(JointExtremes, TimeStepsOfAnyLength) {
     TestWorld world(NoSleep());
     const RodChain chain = AddRodChain(world, 6);
