@@ -73,7 +73,8 @@ struct JointBatch {
     JointRows<N>* rows;
 
     InverseMass<Real> massA, massB;
-    bool turning;                        // inertias of some lane turn from substep to substep: they are read again
+    Real turns;                          // 1: inertias of this lane turn from substep to substep
+    bool turning;                        // those of some lane do: they are read again
     PointPart<Real> point;
     Vec3<Real> startArmA, startArmB, startOffset;
     Twist<Real> turnedA, turnedB;

@@ -167,6 +167,7 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
     GatherRecordRow<N>(batch.joint, records, 2, impulses);
     const auto turnsA = GatherMass<N>(batch.bodyA, bodies.masses, batch.massA);
     const auto turnsB = GatherMass<N>(batch.bodyB, bodies.masses, batch.massB);
+    batch.turns = Select(turnsA | turnsB, Real(1.0f), Real(0.0f));
     batch.turning = (turnsA | turnsB).Any();
     const Vec3<Real> between = GatherOffset<N>(batch.bodyA, batch.bodyB, bodies.poses);
     const Quat<Real> rotationA = GatherRotation<N>(batch.bodyA, bodies.poses), rotationB = GatherRotation<N>(batch.bodyB, bodies.poses);

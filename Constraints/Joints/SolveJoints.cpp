@@ -23,13 +23,14 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     if constexpr (kLinear == LinearLock::Line) add(batch.line, batch.answerLinear);
 }
 
-// The same of the rows' own, without the locks' answer.
-template <int N>
+// The same of the rows' own, without the locks' answer; kTurning: of those alone whose direction or mass changes within the
+// step, whatever lanes beside them do.
+template <bool kTurning, int N>
 [[gnu::always_inline]] inline void AddRowImpulses(const JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, float sign) {
     using Real = Wide<N>;
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         const JointRows<N>& row = batch.rows[i];
-        const Real impulse = row.impulse * Real(sign);
+        const Real impulse = row.impulse * (kTurning ? Max(row.radial, batch.turns) * Real(sign) : Real(sign));
         a.linear -= row.a.linear * (batch.massA.mass * impulse);
         a.angular -= (batch.massA.inertia * row.a.angular) * impulse;
         b.linear += row.b.linear * (batch.massB.mass * impulse);
@@ -182,7 +183,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     const bool turns = kTurns || turnRows || (kLocks && (batch.rowCount > 0 || batch.turning));
     if (turns) {
         AddLockImpulses<kLinear, kAngular>(batch, turnedA, turnedB, -1.0f);
-        if (turnRows) AddRowImpulses(batch, turnedA, turnedB, -1.0f);
+        if (turnRows) AddRowImpulses<true>(batch, turnedA, turnedB, -1.0f);
     }
     if (batch.turning) {
         GatherMass<N>(batch.bodyA, bodies.masses, batch.massA);
@@ -196,7 +197,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     if (batch.rowCount > 0) SetUpRows<kLinear, kAngular>(batch);
     if (turns) {
         AddLockImpulses<kLinear, kAngular>(batch, turnedA, turnedB, 1.0f);
-        if (turnRows) AddRowImpulses(batch, turnedA, turnedB, 1.0f);
+        if (turnRows) AddRowImpulses<true>(batch, turnedA, turnedB, 1.0f);
     }
     batch.turnedA.angular = turnedA.angular;
     batch.turnedB.angular = turnedB.angular;
@@ -217,7 +218,7 @@ void WarmStartJoints(const JointBatch<N>& batch, BodyState* states) {
         motionA.template Gather<Of::Velocity>(batch.bodyA, states);
         motionB.template Gather<Of::Velocity>(batch.bodyB, states);
         Twist<Real> a = motionA.Get(), b = motionB.Get();
-        AddRowImpulses(batch, a, b, 1.0f);
+        AddRowImpulses<false>(batch, a, b, 1.0f);
         AddLockImpulses<linear, angular>(batch, a, b, 1.0f);
         motionA.Scatter(a, batch.count, batch.fixedA);
         motionB.Scatter(b, batch.count, batch.fixedB);
