@@ -75,6 +75,13 @@ template <class Real>
     return flat * (Real(1.0f) / Sqrt(Max(Dot<Real>(flat, flat), Real(1e-12f))));
 }
 
+// The locks' own impulses with their answer to the rows. In lanes without rows, whose answer is +0, every bit stays as it is in a
+// batch without rows; adding that zero would turn -0 into +0.
+template <class Lambda, class Real>
+[[gnu::always_inline]] inline void AddAnswer(Lambda& lambda, const Vec3<Real>& answer) {
+    for (int k = 0; k < lambda.size(); ++k) lambda[k] -= Real(0.0f) - answer[k];
+}
+
 // The places and axes of a batch, at the start of the step or displaced.
 template <class Real>
 struct JointPlace {

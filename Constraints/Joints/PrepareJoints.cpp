@@ -268,8 +268,8 @@ template <int N>
 LockImpulses<Wide<N>> StepImpulses(const JointBatch<N>& batch) {
     LockImpulses<Wide<N>> sum = OwnImpulses(batch);
     if (batch.rowCount > 0) {
-        sum.linear += batch.answerLinear;
-        sum.angular += batch.answerAngular;
+        AddAnswer(sum.linear, batch.answerLinear);
+        AddAnswer(sum.angular, batch.answerAngular);
     }
     sum.linear += batch.earlierLinear;
     sum.angular += batch.earlierAngular;
@@ -303,8 +303,9 @@ void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* co
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         const JointRows<N>& rows = batch.rows[i];
         const Real impulse = rows.earlier + rows.impulse;
-        total.force += rows.b.linear * impulse;
-        total.torque += (rows.b.angular - Cross<Real>(batch.startArmB, rows.b.linear)) * impulse;
+        const auto acts = Abs(impulse) > Real(0.0f);
+        total.force -= ZeroUnless<Real>(acts, Vec3<Real>(rows.b.linear * -impulse));
+        total.torque -= ZeroUnless<Real>(acts, Vec3<Real>((rows.b.angular - Cross<Real>(batch.startArmB, rows.b.linear)) * -impulse));
     }
     for (int lane = 0; lane < batch.count; ++lane) {
         JointRecord& record = records[batch.joint[lane]];

@@ -12,8 +12,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     using Real = Wide<N>;
     const auto add = [&](const auto& part, const Vec3<Real>& answer) {
         auto lambda = part.GetTotalLambda();
-        if (batch.rowCount > 0)
-            for (int k = 0; k < lambda.size(); ++k) lambda[k] += answer[k];
+        if (batch.rowCount > 0) AddAnswer<decltype(lambda), Real>(lambda, answer);
         for (int k = 0; k < lambda.size(); ++k) lambda[k] = lambda[k] * Real(sign);
         part.AddImpulse(a, b, batch.massA, batch.massB, lambda, Real(0.0f) < Real(1.0f));
     };
@@ -31,10 +30,11 @@ template <bool kTurning, int N>
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         const JointRows<N>& row = batch.rows[i];
         const Real impulse = row.impulse * (kTurning ? Max(row.radial, batch.turns) * Real(sign) : Real(sign));
-        a.linear -= row.a.linear * (batch.massA.mass * impulse);
-        a.angular -= (batch.massA.inertia * row.a.angular) * impulse;
-        b.linear += row.b.linear * (batch.massB.mass * impulse);
-        b.angular += (batch.massB.inertia * row.b.angular) * impulse;
+        const auto acts = Abs(impulse) > Real(0.0f);
+        a.linear -= ZeroUnless<Real>(acts, Vec3<Real>(row.a.linear * (batch.massA.mass * impulse)));
+        a.angular -= ZeroUnless<Real>(acts, Vec3<Real>((batch.massA.inertia * row.a.angular) * impulse));
+        b.linear -= ZeroUnless<Real>(acts, Vec3<Real>(row.b.linear * (batch.massB.mass * -impulse)));
+        b.angular -= ZeroUnless<Real>(acts, Vec3<Real>((batch.massB.inertia * row.b.angular) * -impulse));
     }
 }
 
@@ -82,14 +82,17 @@ template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
     }
     const Real total = Clamp(row.impulse - change, row.lowest, row.highest);
     const Real wanted = total - row.impulse;
-    const Real delta = Select((Abs(wanted) > zero) & (row.mass > zero), wanted, zero);  // NaN is nothing
+    const auto acts = (Abs(wanted) > zero) & (row.mass > zero);  // NaN is nothing
+    const Real delta = Select(acts, wanted, zero);
     row.impulse += delta;
-    a.linear += row.responseA.linear * delta;
-    a.angular += row.responseA.angular * delta;
-    b.linear += row.responseB.linear * delta;
-    b.angular += row.responseB.angular * delta;
-    if constexpr (kLinear != LinearLock::None) batch.answerLinear += row.lockLinear * delta;
-    if constexpr (kAngular != AngularLock::None) batch.answerAngular += row.lockAngular * delta;
+    // What a lane without the row has must keep every bit: see ZeroUnless.
+    const auto add = [&](Vec3<Real>& to, const Vec3<Real>& response) { to -= ZeroUnless<Real>(acts, Vec3<Real>(response * -delta)); };
+    add(a.linear, row.responseA.linear);
+    add(a.angular, row.responseA.angular);
+    add(b.linear, row.responseB.linear);
+    add(b.angular, row.responseB.angular);
+    if constexpr (kLinear != LinearLock::None) add(batch.answerLinear, row.lockLinear);
+    if constexpr (kAngular != AngularLock::None) add(batch.answerAngular, row.lockAngular);
 }
 
 // Both locks as one block. A relaxing pass is hard and pushes nothing; the parts are set up that way then.
