@@ -26,7 +26,7 @@ const std::map<std::string, std::vector<std::string>> kAllowedFolders = {
     {"Constraints", {"Math"}},
     {"Physics", {"Math", "Collision", "Constraints", "Jobs"}},
     {"Samples", {"Math", "Collision", "Constraints", "Jobs", "Physics"}},
-    {"PerformanceTest", {"Math", "Collision", "Constraints", "Jobs", "Physics", "Samples"}},
+    {"PerformanceTest", {"Math", "Collision", "Constraints", "Jobs", "Physics", "Samples", "UnitTests"}},
     {"UnitTests", {"Math", "Collision", "Constraints", "Jobs", "Physics", "Samples"}},
 };
 

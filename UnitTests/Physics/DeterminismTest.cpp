@@ -1,4 +1,5 @@
 // The same scene gives the same bits, however many threads compute it and however often.
+#include <Fulcrum/UnitTests/Support/JointScene.h>
 #include <Fulcrum/UnitTests/Support/MixedScene.h>
 
 namespace fulcrum::testing {
@@ -24,6 +25,30 @@ TEST(Determinism, EveryStepOfThreadsIsThatOfOne) {
         ASSERT_EQ(one.Report().contacts, four.Report().contacts) << "step " << step;
         ASSERT_EQ(one.Report().largestPenetration, four.Report().largestPenetration) << "step " << step;
         ASSERT_EQ(one.Report().deepestA, four.Report().deepestA) << "step " << step;
+    }
+}
+
+TEST(Determinism, OfJointsForAnyNumberOfThreads) {
+    const uint64_t one = HashOfJointScene(1);
+    EXPECT_EQ(HashOfJointScene(1), one);
+    EXPECT_EQ(HashOfJointScene(2), one);
+    EXPECT_EQ(HashOfJointScene(3), one);
+    EXPECT_EQ(HashOfJointScene(4), one);
+}
+
+TEST(Determinism, EveryStepOfJointsOfThreadsIsThatOfOne) {
+    TestWorld one(JointScene::Settings(), 1), three(JointScene::Settings(), 3);
+    JointScene sceneOfOne(one), sceneOfThree(three);
+    for (int step = 0; step < 60; ++step) {
+        sceneOfOne.BeforeStep(step);
+        sceneOfThree.BeforeStep(step);
+        one.Step();
+        three.Step();
+        ASSERT_EQ(sceneOfOne.Hash(), sceneOfThree.Hash()) << "step " << step;
+        ASSERT_EQ(one.Report().largestJointError, three.Report().largestJointError) << "step " << step;
+        ASSERT_EQ(one.Report().worstJoint, three.Report().worstJoint) << "step " << step;
+        ASSERT_EQ(one.Report().largestJointAngle, three.Report().largestJointAngle) << "step " << step;
+        ASSERT_EQ(one.Report().mostTurnedJoint, three.Report().mostTurnedJoint) << "step " << step;
     }
 }
 

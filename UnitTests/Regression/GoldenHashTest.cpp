@@ -1,5 +1,6 @@
-// The poses of the mixed scene, as one number. Every build gives it: scalar, SSE2 and AVX2 lanes, gcc and clang, any number of
-// threads. A change of the engine that is meant to change results writes the new number here, which the failure prints.
+// What the mixed scene and that of the joints come to, as one number each. Every build gives it: scalar, SSE2 and AVX2 lanes, gcc and clang, any number of
+// threads. A change of the engine that is meant to change results writes the new numbers here, which the failure prints.
+#include <Fulcrum/UnitTests/Support/JointScene.h>
 #include <Fulcrum/UnitTests/Support/MixedScene.h>
 
 #include <cstdio>
@@ -9,6 +10,7 @@ namespace fulcrum::testing {
 namespace {
 
 constexpr uint64_t kGoldenHash = 0x5f17211406508028ull;
+constexpr uint64_t kGoldenHashOfJoints = 0x21e7afdbc031d3ccull;
 
 std::string Hex(uint64_t number) {
     char text[24];
@@ -19,6 +21,11 @@ std::string Hex(uint64_t number) {
 TEST(GoldenHash, OfTheMixedScene) {
     const uint64_t hash = HashOfMixedScene(1);
     EXPECT_EQ(hash, kGoldenHash) << "This build gives kGoldenHash = " << Hex(hash);
+}
+
+TEST(GoldenHash, OfTheJointScene) {
+    const uint64_t hash = HashOfJointScene(1);
+    EXPECT_EQ(hash, kGoldenHashOfJoints) << "This build gives kGoldenHashOfJoints = " << Hex(hash);
 }
 
 }  // namespace
