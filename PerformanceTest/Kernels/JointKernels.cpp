@@ -1,0 +1,91 @@
+// Nanoseconds per joint of the joint kernels: each kind with nothing to do beyond its locks and with rows; set up once a step
+// (prepare), and in every substep one velocity iteration (velocity) and one pass that sets the parts up at the displaced poses
+// and takes the push out again (relax). Single-threaded; 1024 joints, which fit the second-level cache, between 2048 bodies
+// whose indices are anywhere. "rows" is the mean number of rows of a joint.
+#include <Fulcrum/UnitTests/Constraints/Joints/RandomJoints.h>
+
+#include <benchmark/benchmark.h>
+
+#include <string>
+
+namespace fulcrum {
+namespace {
+
+using testing::JointCase;
+using testing::RandomJoints;
+
+constexpr uint32_t kJoints = 1024;
+
+// Joints of one kind in batches of N, prepared.
+template <int N>
+class PreparedJoints {
+public:
+    explicit PreparedJoints(const JointCase& how)
+        : joints_(std::span(&how, 1), kJoints, 1, {}), batches_(joints_.Batches<N>(rows_)), settings_(testing::DefaultJointSettings()) {
+        settings_.elapsed = settings_.substepDt;
+        settings_.firstPass = true;
+        Prepare();
+    }
+
+    void Prepare() {
+        JointFindings findings;
+        for (JointBatch<N>& batch : batches_)
+            PrepareJoints(batch, joints_.records.data(), joints_.typePointers.data(), joints_.Bodies(), settings_, findings);
+        benchmark::DoNotOptimize(findings);
+    }
+    void SolveVelocities() {
+        for (JointBatch<N>& batch : batches_) SolveJointVelocities(batch, joints_.states.data(), settings_);
+    }
+    void Relax() {
+        for (JointBatch<N>& batch : batches_) RelaxJoints(batch, joints_.states.data(), settings_);
+    }
+    double RowsPerJoint() const {
+        double count = 0;
+        for (const JointBatch<N>& batch : batches_)
+            for (uint32_t i = 0; i < batch.rowCount; ++i)
+                for (int lane = 0; lane < batch.count; ++lane) count += batch.rows[i].slot[lane] != 0xFF;
+        return count / kJoints;
+    }
+
+private:
+    RandomJoints joints_;
+    std::vector<JointRows<N>> rows_;
+    std::vector<JointBatch<N>> batches_;
+    JointSolveSettings settings_;
+};
+
+template <int N>
+void Run(benchmark::State& state, const JointCase& how, void (PreparedJoints<N>::*verb)()) {
+    PreparedJoints<N> joints(how);
+    for (auto _ : state) {
+        (joints.*verb)();
+        benchmark::ClobberMemory();
+    }
+    state.counters["s_per_joint"] = benchmark::Counter(static_cast<double>(state.iterations()) * kJoints,
+                                                       benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+    state.counters["rows"] = joints.RowsPerJoint();
+}
+
+template <int N>
+void Register(const JointCase& how, const std::string& lanes) {
+    using Joints = PreparedJoints<N>;
+    const auto add = [&](const char* name, void (Joints::*verb)()) {
+        const std::string full = std::string("Joint/") + how.kind + "/" + how.state + "/" + name + "/" + lanes;
+        benchmark::RegisterBenchmark(full.c_str(), [&how, verb](benchmark::State& state) { Run<N>(state, how, verb); });
+    };
+    add("prepare", &Joints::Prepare);
+    add("velocity", &Joints::SolveVelocities);
+    add("relax", &Joints::Relax);
+}
+
+[[maybe_unused]] const bool kRegistered = [] {
+    for (const JointCase& how : testing::AllJointCases()) {
+        Register<1>(how, "scalar");
+        Register<4>(how, "4_lanes");
+        Register<8>(how, "8_lanes");
+    }
+    return true;
+}();
+
+}  // namespace
+}  // namespace fulcrum
