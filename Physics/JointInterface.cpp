@@ -328,6 +328,8 @@ BodyId JointInterface::GetBodyB(JointId id) const {
 }
 uint64_t JointInterface::GetUserData(JointId id) const { return Exists(id) ? world_.joints.joints[id.index].userData : 0; }
 
+const JointType* JointInterface::GetType(JointId id) const { return Exists(id) ? world_.joints.types[id.index] : nullptr; }
+
 void JointInterface::Visit(FunctionRef<void(JointId)> visit) const {
     for (uint32_t i = 0; i < world_.joints.joints.size(); ++i)
         if (world_.joints.joints[i].exists) visit(world_.joints.IdOf(i));

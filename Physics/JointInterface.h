@@ -67,6 +67,8 @@ public:
     BodyId GetBodyA(JointId id) const;
     BodyId GetBodyB(JointId id) const;
     uint64_t GetUserData(JointId id) const;
+    // The kind of the joint, and what only its kind has; null for an unknown id. Valid until the joint is removed.
+    const JointType* GetType(JointId id) const;
 
     // All joints, in the order of their indices; all joints of a body, the newest first.
     void Visit(FunctionRef<void(JointId)> visit) const;

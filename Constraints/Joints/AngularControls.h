@@ -36,6 +36,7 @@ public:
     void SetTargetOrientation(const Quaternion& target);
     double Coordinate(int axis, const JointPose& pose) const;
     std::span<double> State() { return turns_.numbers; }
+    SwingShape Shape() const { return shape_; }
 
 private:
     struct Motion;

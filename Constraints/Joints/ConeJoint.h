@@ -21,6 +21,7 @@ public:
     void CollectRows(const JointPose& pose, JointRowList& rows) override;
     // AngularY: alpha, rad. No way about a single axis, so without friction and motor.
     double Coordinate(JointAxis axis, const JointPose& pose) const override;
+    float HalfAngle() const { return control_.limits.max; }  // rad
 
 private:
     bool IsAxle() const;

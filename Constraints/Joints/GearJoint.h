@@ -30,6 +30,7 @@ public:
         row.error = static_cast<float>(angleA + static_cast<double>(ratio_) * angleB);
     }
     std::span<double> State() override { return state_; }
+    float Ratio() const { return ratio_; }
 
 private:
     static constexpr size_t kNumbers = BearingAngle::kNumbers;

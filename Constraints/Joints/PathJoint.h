@@ -37,6 +37,7 @@ public:
     uint32_t FirstSlot(JointAxis axis) const override;
     double Coordinate(JointAxis axis, const JointPose& pose) const override;
     std::span<double> State() override { return {&parameter_, 1}; }
+    const Path& GetPath() const { return *path_; }
 
 private:
     AxisControl Bounded() const;

@@ -26,6 +26,9 @@ public:
     AxisControl* Control(JointAxis axis) override { return axis == JointAxis::LinearX ? &control_ : nullptr; }
     LimitBounds BoundsOf(JointAxis) const override { return {.lowest = 0.0f}; }
     double Coordinate(JointAxis axis, const JointPose& pose) const override;
+    const Position& FixedPointA() const { return fixedPointA_; }  // m, world space
+    const Position& FixedPointB() const { return fixedPointB_; }
+    float Ratio() const { return ratio_; }
 
 private:
     Position fixedPointA_, fixedPointB_;

@@ -32,6 +32,7 @@ public:
         row.error = static_cast<float>(angle - static_cast<double>(ratio_) * moved);
     }
     std::span<double> State() override { return state_; }
+    float Ratio() const { return ratio_; }  // rad/m
 
 private:
     BearingAngle Pinion() { return BearingAngle(std::span(state_).first<BearingAngle::kNumbers>()); }

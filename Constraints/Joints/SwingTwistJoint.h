@@ -32,6 +32,7 @@ public:
         return axis < JointAxis::AngularX ? JointType::Coordinate(axis, pose) : angular_.Coordinate(static_cast<int>(axis) - 3, pose);
     }
     std::span<double> State() override { return angular_.State(); }
+    SwingShape Shape() const { return angular_.Shape(); }
 
 private:
     AngularControls angular_;
