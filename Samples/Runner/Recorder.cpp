@@ -67,6 +67,7 @@ Recorder::Recorder(const SceneWorld& world, int steps, double dt) : world_(world
         AddBody(id);
         if (world.Bodies().GetMotionType(id) == MotionType::Dynamic && world.Bodies().IsAwake(id)) ++moving;
     });
+    joints_.emplace(world.System(), recording.origin, [this](BodyId id) { return RecordedBodyOf(id); });
     const double forRate = 1 / (kFramesPerSecond * dt), forSize = moving * steps / kMostStates;
     interval_ = static_cast<int>(std::max({1.0, std::round(forRate), std::ceil(forSize)}));
     AddFrame();
@@ -134,7 +135,13 @@ void Recorder::AddFrame() {
     }
     contacts_.clear();
     if (WantsContacts(recording)) CollectContacts();
-    AppendFrame(recording, world_.Time(), states_, contacts_);
+    AppendFrame(recording, world_.Time(), states_, contacts_, joints_->Collect(recording.joints));
+}
+
+std::optional<uint32_t> Recorder::RecordedBodyOf(BodyId id) const {
+    if (id.index >= recorded_.size()) return std::nullopt;
+    const uint32_t body = recorded_[id.index];
+    return body < ids_.size() && ids_[body] == id ? std::optional(body) : std::nullopt;
 }
 
 // An island is known by its first body, so that its number, and with it its colour, stays when others merge.

@@ -1,10 +1,12 @@
 // Turns the states of a world into a Recording, frame by frame. Used by the runner; one thread.
 #pragma once
 
+#include <Fulcrum/Samples/Runner/JointRecorder.h>
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
 #include <Fulcrum/Samples/Viewer/Recording.h>
 
 #include <map>
+#include <optional>
 #include <vector>
 
 namespace fulcrum {
@@ -28,6 +30,7 @@ private:
     void CollectIslands();
     void CollectContacts();
     void HideRemovedBody(uint32_t body, RecordedState state);
+    std::optional<uint32_t> RecordedBodyOf(BodyId id) const;
 
     const SceneWorld& world_;
     int steps_;
@@ -40,6 +43,7 @@ private:
     std::vector<int32_t> firstOfIsland_;
     std::vector<RecordedState> states_;
     std::vector<RecordedContact> contacts_;
+    std::optional<JointRecorder> joints_;
 };
 
 }  // namespace fulcrum

@@ -1,5 +1,8 @@
 #include <Fulcrum/Samples/Viewer/PageData.h>
 
+#include <Fulcrum/Samples/Viewer/PageColumn.h>
+#include <Fulcrum/Samples/Viewer/PageJoints.h>
+
 #include <nlohmann/json.hpp>
 #include <zlib.h>
 
@@ -11,32 +14,9 @@ namespace fulcrum {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Steps3 = std::array<int64_t, 3>;
 using Steps4 = std::array<int64_t, 4>;
 
 constexpr double kMostSpeed = 1e6;  // m/s; a wilder velocity is stored as this, so that 32 bits hold it
-
-class Column {
-public:
-    void PutUnsigned(uint64_t value) {
-        for (; value >= 128; value >>= 7) bytes_.push_back(static_cast<char>(128 | (value & 127)));
-        bytes_.push_back(static_cast<char>(value));
-    }
-    void PutSigned(int64_t value) { PutUnsigned(static_cast<uint64_t>(value) << 1 ^ static_cast<uint64_t>(value >> 63)); }
-    template <size_t N>
-    void PutDifference(const std::array<int64_t, N>& value, const std::array<int64_t, N>& expected) {
-        for (size_t i = 0; i < N; ++i) PutSigned(value[i] - expected[i]);
-    }
-    void Append(const Column& other) { bytes_ += other.bytes_; }
-    const std::string& Bytes() const { return bytes_; }
-
-private:
-    std::string bytes_;
-};
-
-Steps3 Quantised(const Vector3& v, double step) {
-    return {std::llround(v.x() / step), std::llround(v.y() / step), std::llround(v.z() / step)};
-}
 
 // 0.1 mm, finer in a scene of less than 26 m, coarser where 32 bits would not hold the sum that a prediction is.
 double PositionStep(const Recording& recording) {
@@ -198,6 +178,7 @@ Json Header(const Recording& recording, double positionStep) {
     header["separationStep"] = kSeparationStep;
     header["impulseSteps"] = kImpulseSteps;
     header["impulseUnit"] = kImpulseUnit;
+    header["joints"] = JointHeader(recording);
     header["contactInterval"] = recording.contactInterval;
     header["largestContactCut"] = recording.largestContactCut;
     Json &times = header["times"] = Json::array(), &contactFrames = header["contactFrames"] = Json::array();
@@ -234,6 +215,7 @@ std::string EncodePageData(const Recording& recording) {
     }
     std::vector<std::string> columns = states.Columns();
     columns.push_back(contacts.Bytes());
+    for (std::string& column : JointColumns(recording)) columns.push_back(std::move(column));
 
     Json header = Header(recording, positionStep);
     for (const std::string& column : columns) header["columns"].push_back(column.size());

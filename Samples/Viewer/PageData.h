@@ -1,7 +1,8 @@
 // A recording as the bytes that the page plays: a JSON header, then columns of numbers, each column holding one thing of
 // all frames, deflated as a whole. Called by HtmlWriter. Page/decode.js reads it and is the other half of this format:
 //
-//   u32 length of the header | header | states | positions | rotations | velocities | islands | contacts
+//   u32 length of the header | header | states | positions | rotations | velocities | islands | contacts | joints |
+//   jointStates | jointErrors
 //
 // All numbers of a column are varints (7 bits a byte, low bits first), signed ones in zigzag. A state is stored only where
 // its quantised value differs from the body's last one. Positions are predicted from the two states before, rotations
@@ -14,6 +15,7 @@
 //   contacts    per frame of header.contactFrames: number of contacts; per contact: differences to the contact before of
 //               body A, body B and point (in kContactPointSteps positionSteps), then normal, separation, and the
 //               impulse as kImpulseSteps log2(1 + impulse / kImpulseUnit)
+//   joint...    PageJoints.h
 #pragma once
 
 #include <Fulcrum/Samples/Viewer/Recording.h>

@@ -37,6 +37,17 @@ std::vector<RecordedContact> EvenChoice(std::span<const RecordedContact> contact
     return chosen;
 }
 
+void AppendJoints(Recording& recording, const RecordedFrameJoints& joints, RecordedFrame& frame) {
+    for (size_t i = recording.latestJoints.size(); i < recording.joints.size(); ++i)
+        recording.latestJoints.push_back({.joint = static_cast<uint32_t>(i), .enabled = false});
+    for (const RecordedJointState& state : joints.states) {
+        if (state.joint >= recording.latestJoints.size() || state == recording.latestJoints[state.joint]) continue;
+        recording.latestJoints[state.joint] = state;
+        frame.joints.push_back(state);
+    }
+    frame.jointErrors = joints.errors;
+}
+
 }  // namespace
 
 bool WantsContacts(const Recording& recording) {
@@ -44,7 +55,7 @@ bool WantsContacts(const Recording& recording) {
 }
 
 void AppendFrame(Recording& recording, double time, std::span<const RecordedState> states,
-                 std::span<const RecordedContact> contacts) {
+                 std::span<const RecordedContact> contacts, const RecordedFrameJoints& joints) {
     RecordedFrame frame;
     frame.time = time;
     const size_t known = recording.latest.size();
@@ -63,6 +74,7 @@ void AppendFrame(Recording& recording, double time, std::span<const RecordedStat
         recording.contactCount += frame.contacts.size();
         recording.largestContactCut = std::max(recording.largestContactCut, contacts.size() - frame.contacts.size());
     }
+    AppendJoints(recording, joints, frame);
     recording.frames.push_back(std::move(frame));
     ThinContacts(recording);
 }
@@ -82,8 +94,16 @@ Status CheckRecording(const Recording& recording) {
     }
     for (size_t i = 0; i < recording.bodies.size(); ++i)
         if (recording.bodies[i].shape >= recording.shapes.size()) return unknown("body", i, "the shape", recording.bodies[i].shape);
+    for (size_t i = 0; i < recording.joints.size(); ++i)
+        if (const uint32_t body = std::max(recording.joints[i].bodyA, recording.joints[i].bodyB); body >= recording.bodies.size())
+            return unknown("joint", i, "the body", body);
     for (size_t i = 0; i < recording.frames.size(); ++i) {
         const RecordedFrame& frame = recording.frames[i];
+        for (const RecordedJointState& state : frame.joints)
+            if (state.joint >= recording.joints.size()) return unknown("frame", i, "the joint", state.joint);
+        if (const uint32_t joint = std::max(frame.jointErrors.distanceJoint, frame.jointErrors.angleJoint);
+            joint > 0 && joint >= recording.joints.size())
+            return unknown("frame", i, "the joint", joint);
         for (const RecordedState& state : frame.states)
             if (state.body >= recording.bodies.size()) return unknown("frame", i, "the body", state.body);
         for (const RecordedContact& contact : frame.contacts)

@@ -1,10 +1,11 @@
-// What a run leaves behind for its pictures: shapes, bodies, their states frame by frame, contacts and the report.
+// What a run leaves behind for its pictures: shapes, bodies, joints, their states frame by frame, contacts and the report.
 // Filled in by the runner through AppendFrame, read by HtmlWriter and GlbWriter. Knows nothing of the engine but its
 // Math types. One thread at a time.
 #pragma once
 
 #include <Fulcrum/Math/Pose.h>
 #include <Fulcrum/Math/Result.h>
+#include <Fulcrum/Samples/Viewer/RecordedJoint.h>
 
 #include <array>
 #include <cstddef>
@@ -65,6 +66,8 @@ struct RecordedFrame {
     std::vector<RecordedState> states;      // ascending by body; only those that changed since the frame before
     std::vector<RecordedContact> contacts;  // empty where `hasContacts` is false
     bool hasContacts = false;
+    std::vector<RecordedJointState> joints;  // ascending by joint; only those that changed since the frame before
+    RecordedJointErrors jointErrors;
 };
 
 // A line of the panel beside the picture. Lines of one section follow each other.
@@ -78,11 +81,13 @@ struct Recording {
     Position origin = Position::Zero();
     std::vector<RecordedShape> shapes;
     std::vector<RecordedBody> bodies;
+    std::vector<RecordedJoint> joints;
     std::vector<RecordedFrame> frames;
     std::vector<ReportLine> report;
 
     // Kept by AppendFrame.
     std::vector<RecordedState> latest;  // of every body
+    std::vector<RecordedJointState> latestJoints;
     size_t contactInterval = 1;         // contacts are kept of every so many frames
     size_t contactCount = 0;            // of all frames
     size_t largestContactCut = 0;       // most contacts that a frame lost to kMostContactsPerFrame
@@ -95,9 +100,10 @@ inline constexpr size_t kMostContactsPerFrame = 50'000;
 // those that may have changed; what equals the state before is dropped, and so is a state that is not finite. A body that no
 // frame has named yet counts as resting at the origin; one that is no body of the recording's is dropped. So that no recording outgrows memory, contacts are kept of every
 // frame first, of every second once there are more than kMostContacts, then of every fourth, and so on; of more than
-// kMostContactsPerFrame in one frame an even choice is kept.
+// kMostContactsPerFrame in one frame an even choice is kept. Of joints too only those need be named that may have changed; one
+// that no frame has named yet counts as switched off.
 void AppendFrame(Recording& recording, double time, std::span<const RecordedState> states,
-                 std::span<const RecordedContact> contacts);
+                 std::span<const RecordedContact> contacts, const RecordedFrameJoints& joints = {});
 
 // Whether the next frame's contacts would be kept: saves collecting them for nothing.
 bool WantsContacts(const Recording& recording);

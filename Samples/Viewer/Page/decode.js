@@ -3,24 +3,8 @@
 // The result keeps, of every body, the list of its states ("samples"): those of body b have the indices starts[b] up to
 // starts[b + 1], in the order of their frames. A body that rests has few of them however long the recording.
 
-class Reader {
-  constructor(bytes) {
-    this.bytes = bytes;
-    this.at = 0;
-  }
-  unsigned() {
-    let value = 0;
-    for (let factor = 1; ; factor *= 128) {
-      const byte = this.bytes[this.at++];
-      value += (byte & 127) * factor;
-      if (byte < 128) return value;
-    }
-  }
-  signed() {
-    const value = this.unsigned();
-    return value % 2 ? -(value + 1) / 2 : value / 2;
-  }
-}
+import { decodeJoints } from './decodeJoints.js';
+import { Reader } from './reader.js';
 
 function columnsOf(bytes) {
   const headerLength = new DataView(bytes.buffer, bytes.byteOffset).getUint32(0, true);
@@ -121,9 +105,10 @@ export function decode(bytes) {
   const bodyCount = header.bodies.shapes.length;
   const samples = decodeStates(header, readers);
   const contacts = decodeContacts(header, readers[5]);
+  const { joints, jointErrors } = decodeJoints(header, readers.slice(6));
   const movers = [];
   for (let body = 0; body < bodyCount; ++body) if (samples.starts[body + 1] - samples.starts[body] > 1) movers.push(body);
-  return { ...header, bodyCount, frameCount: header.times.length, samples, contacts, movers };
+  return { ...header, bodyCount, frameCount: header.times.length, samples, contacts, joints, jointErrors, movers };
 }
 
 // `text`: the recording as the page carries it, base64 of zlib's format.

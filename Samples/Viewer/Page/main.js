@@ -1,13 +1,14 @@
 // Puts the page together: unpacks the recording, plays it, answers the controls.
 //
-// The address may say what to show: #frame=120&camera=x,y,z,tx,ty,tz&colour=island&contacts=1&normals=1&bounds=1&bare=1.
+// The address may say what to show: #frame=120&camera=x,y,z,tx,ty,tz&colour=island&joints=1&contacts=1&normals=1&bounds=1&bare=1.
 // Scripts and tests use window.fulcrum, which is there once the page is ready.
 import { Raycaster, Vector2 } from 'three';
 import { Bodies } from './bodies.js';
 import { MODES, legend, topSpeed } from './colours.js';
 import { unpack } from './decode.js';
+import { Joints, MOST_WITH_LIMITS, jointLegend, jointSummary } from './joints.js';
 import { BoundingBoxes, Contacts } from './overlays.js';
-import { bodyInfo, showBody, showMessage, showTexts } from './panel.js';
+import { bodyInfo, showBody, showJoints, showMessage, showTexts } from './panel.js';
 import { Stage } from './stage.js';
 import { findSubject, hasFloor, isEnclosed } from './subject.js';
 import { Timeline } from './timeline.js';
@@ -24,6 +25,7 @@ class Viewer {
     if (!hasFloor(recording, subject)) this.stage.addGround();
     this.contacts = new Contacts(recording, this.stage);
     this.boxes = new BoundingBoxes(recording, this.timeline, this.stage);
+    this.joints = new Joints(recording, this.timeline, this.stage);
     this.top = topSpeed(recording);
     this.mode = 'island';
     this.selected = -1;
@@ -33,6 +35,7 @@ class Viewer {
     showTexts(recording);
     this.#connect();
     this.setSolid(!isEnclosed(recording, this.timeline, subject));
+    this.show('joints', recording.joints.length > 0 && recording.joints.length <= MOST_WITH_LIMITS);
     this.setMode(this.mode);
   }
 
@@ -45,16 +48,17 @@ class Viewer {
   setMode(mode) {
     this.mode = MODES.includes(mode) ? mode : 'island';
     document.querySelector(`input[name=colour][value=${this.mode}]`).checked = true;
-    element('legend').innerHTML = legend(this.mode, this.top);
+    this.#showLegend();
     this.draw();
   }
 
   show(what, isShown) {
-    const objects = { contacts: this.contacts.points, normals: this.contacts.normals, bounds: this.boxes.object };
+    const objects = { joints: this.joints, contacts: this.contacts.points, normals: this.contacts.normals, bounds: this.boxes.object };
     if (what === 'grid') this.stage.grid.gridStrength.value = isShown ? 1 : 0;
     else if (what === 'solid') this.bodies.setSolid(isShown);
     else objects[what].visible = isShown;
     document.querySelector(`#toggles input[value=${what}]`).checked = isShown;
+    this.#showLegend();
     this.draw();
   }
   setSolid(isSolid) {
@@ -94,8 +98,10 @@ class Viewer {
     this.bodies.update(this.mode, this.top);
     this.contacts.update(this.timeline.contacts(), 1.2 * this.stage.subject.typical);
     this.boxes.update();
+    this.joints.update(this.selected);
     this.stage.render();
     showBody(this.selected < 0 ? undefined : bodyInfo(this.recording, this.timeline, this.selected));
+    if (this.recording.joints.length > 0) showJoints(jointSummary(this.recording, this.timeline.frame));
     this.#showClock();
   }
 
@@ -109,6 +115,10 @@ class Viewer {
     }
     this.drawNow();
     if (this.isPlaying) this.draw();
+  }
+
+  #showLegend() {
+    element('legend').innerHTML = legend(this.mode, this.top) + (this.joints.visible ? jointLegend() : '');
   }
 
   #showClock() {
@@ -180,7 +190,7 @@ function applyAddress(viewer) {
     viewer.stage.controls.update();
   }
   if (wanted.has('colour')) viewer.setMode(wanted.get('colour'));
-  for (const what of ['contacts', 'normals', 'bounds', 'grid', 'solid']) if (wanted.has(what)) viewer.show(what, wanted.get(what) === '1');
+  for (const what of ['joints', 'contacts', 'normals', 'bounds', 'grid', 'solid']) if (wanted.has(what)) viewer.show(what, wanted.get(what) === '1');
   if (wanted.has('frame')) viewer.seek(Number(wanted.get('frame')));
   else if (!matchMedia('(prefers-reduced-motion: reduce)').matches) viewer.setPlaying(true);
 }
@@ -198,6 +208,7 @@ function publish(viewer) {
     show(what, isShown) { viewer.show(what, isShown); viewer.drawNow(); },
     pick(x, y) { return viewer.pick(x, y); },
     body(id) { return bodyInfo(recording, timeline, id); },
+    joints() { return jointSummary(recording, timeline.frame); },
     camera() { return [...stage.camera.position.toArray(), ...stage.controls.target.toArray()]; },
   };
 }

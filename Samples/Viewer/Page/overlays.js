@@ -11,10 +11,10 @@ const NORMAL = new Color('#0f7a43');
 const OVERLAP_SHOWN_RED = 0.01; // m
 
 // Contacts lie between bodies: those in sight are drawn in full, the others faintly through what hides them.
-const IN_SIGHT = { transparent: true, depthWrite: false };
-const HIDDEN = { ...IN_SIGHT, depthTest: false };
+export const IN_SIGHT = { transparent: true, depthWrite: false };
+export const HIDDEN = { ...IN_SIGHT, depthTest: false };
 
-function pointMaterial(settings, opacity, pixels) {
+export function pointMaterial(settings, opacity, pixels) {
   return new ShaderMaterial({
     ...settings,
     vertexColors: true,
@@ -41,7 +41,7 @@ function pointMaterial(settings, opacity, pixels) {
 }
 
 // An object drawn twice, as above. `pair.visible` shows both.
-class SeenThrough {
+export class SeenThrough {
   constructor(stage, inSight, hidden) {
     this.objects = [hidden, inSight];
     this.visible = false;

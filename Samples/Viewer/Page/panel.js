@@ -1,4 +1,6 @@
 // The texts beside the picture.
+import { stateAt } from './jointPose.js';
+import { MOST_WITH_FRAMES, MOST_WITH_LIMITS } from './joints.js';
 import { describe } from './shapes.js';
 
 const element = (id) => document.getElementById(id);
@@ -26,6 +28,9 @@ export function showTexts(recording) {
     element('report').append(section);
   }
   element('contact-note').textContent = contactNote(recording);
+  element('joints').hidden = recording.joints.length === 0;
+  document.querySelector('#toggles input[value=joints]').parentElement.hidden = recording.joints.length === 0;
+  element('joint-note').textContent = jointNote(recording.joints.length);
 }
 
 function contactNote({ contacts, contactInterval, largestContactCut }) {
@@ -34,6 +39,25 @@ function contactNote({ contacts, contactInterval, largestContactCut }) {
   if (contactInterval > 1) parts.push(`Contacts are recorded every ${contactInterval} frames.`);
   if (largestContactCut > 0) parts.push(`Up to ${largestContactCut.toLocaleString('en')} contacts of a frame are left out.`);
   return parts.join(' ');
+}
+
+function jointNote(count) {
+  if (count <= MOST_WITH_LIMITS) return '';
+  return `${count > MOST_WITH_FRAMES ? 'Frames and limits' : 'Limits'} are drawn of the selected body’s joints.`;
+}
+
+// `summary`: what jointSummary returns.
+export function showJoints({ count, enabled, distance, distanceJoint, angle, angleJoint }) {
+  const worst = (error, joint, text) => (error > 0 ? `${text(error)}, joint ${joint}` : 'none');
+  const digits = (value) => Number(value.toPrecision(3));
+  const length = (metres) => (metres < 0.1 ? `${digits(1000 * metres)} mm` : `${digits(metres)} m`);
+  const angleText = (radians) => (radians < 0.1 ? `${digits(1000 * radians)} mrad` : `${digits(radians)} rad`);
+  const number = (value) => value.toLocaleString('en');
+  element('joint-errors').replaceChildren(list([
+    ['Number', enabled === count ? number(count) : `${number(enabled)} of ${number(count)} hold`],
+    ['Largest gap', worst(distance, distanceJoint, length)],
+    ['Largest tilt', worst(angle, angleJoint, angleText)],
+  ]));
 }
 
 const MOTIONS = ['static', 'kinematic', 'dynamic'];
@@ -53,7 +77,14 @@ export function bodyInfo(recording, timeline, body) {
     speed: timeline.speed(body),
     awake: motion === 'dynamic' ? timeline.isAwake(body) : null,
     island: timeline.island(body),
+    joints: jointsOf(recording, timeline, body),
   };
+}
+
+// Those that hold at the timeline's moment.
+function jointsOf({ joints }, timeline, body) {
+  return joints.filter((joint) => (joint.bodyA === body || joint.bodyB === body) && stateAt(joint, Math.floor(timeline.frame))?.enabled)
+    .map(({ id, kind }) => `${kind} ${id}`);
 }
 
 const vector = (values, digits) => values.map((value) => value.toFixed(digits)).join(', ').replaceAll('-', '−');
@@ -71,6 +102,8 @@ export function showBody(info) {
   if (info.motion !== 'static') lines.push(['Velocity', `${vector(info.velocity, 2)} m/s`], ['Speed', `${info.speed.toFixed(3)} m/s`]);
   if (info.awake !== null) lines.push(['State', info.awake ? 'awake' : 'asleep']);
   lines.push(['Island', info.island < 0 ? 'none' : String(info.island)]);
+  const named = info.joints.slice(0, 8).join(', ');
+  if (named) lines.push(['Joints', info.joints.length > 8 ? `${named}, and ${info.joints.length - 8} more` : named]);
   element('body').replaceChildren(list(lines));
 }
 

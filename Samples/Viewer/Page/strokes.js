@@ -1,0 +1,126 @@
+// Many lines, dots and triangles that change with every picture, each kind one draw call and seen through what hides it.
+import {
+  BufferAttribute, BufferGeometry, DoubleSide, DynamicDrawUsage, Mesh, MeshBasicMaterial, Points,
+} from 'three';
+import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
+import { LineSegments2 } from 'three/addons/lines/LineSegments2.js';
+import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
+import { HIDDEN, IN_SIGHT, SeenThrough, pointMaterial } from './overlays.js';
+
+// Numbers of which there are more or fewer each time; grows, and never shrinks.
+class Growing {
+  constructor(count) {
+    this.array = new Float32Array(count);
+    this.count = 0;
+  }
+  room(count) {
+    if (this.count + count <= this.array.length) return;
+    const larger = new Float32Array(2 * (this.count + count));
+    larger.set(this.array);
+    this.array = larger;
+  }
+  three(a, b, c) {
+    this.array[this.count++] = a;
+    this.array[this.count++] = b;
+    this.array[this.count++] = c;
+  }
+}
+
+class Strokes {
+  constructor() {
+    this.places = new Growing(600);
+    this.colours = new Growing(600);
+  }
+  get visible() { return this.pair.visible; }
+  set visible(isVisible) { this.pair.visible = isVisible; }
+  begin() {
+    this.places.count = this.colours.count = 0;
+  }
+  // `points`: x y z of each, as many as the kind takes at a time; a matrix' elements put them into the world.
+  add(points, matrix, colour) {
+    this.places.room(points.length);
+    this.colours.room(points.length);
+    for (let i = 0; i < points.length; i += 3) {
+      const x = points[i], y = points[i + 1], z = points[i + 2], m = matrix;
+      this.places.three(m[0] * x + m[4] * y + m[8] * z + m[12], m[1] * x + m[5] * y + m[9] * z + m[13], m[2] * x + m[6] * y + m[10] * z + m[14]);
+      this.colours.three(colour.r, colour.g, colour.b);
+    }
+  }
+}
+
+// Lines of `pixels` width, however far away.
+export class Lines extends Strokes {
+  constructor(stage, pixels, hiddenOpacity) {
+    super();
+    this.geometry = new LineSegmentsGeometry();
+    this.#reserve();
+    const lines = (settings, opacity) => new LineSegments2(this.geometry,
+      new LineMaterial({ linewidth: pixels, vertexColors: true, toneMapped: false, opacity, ...settings }));
+    this.pair = new SeenThrough(stage, lines(IN_SIGHT, 1), lines(HIDDEN, hiddenOpacity));
+  }
+  line(from, to, colour) {
+    this.places.room(6);
+    this.colours.room(6);
+    for (const end of [from, to]) {
+      this.places.three(end.x, end.y, end.z);
+      this.colours.three(colour.r, colour.g, colour.b);
+    }
+  }
+  end() {
+    if (this.places.array !== this.reserved) this.#reserve();
+    const { instanceStart, instanceColorStart } = this.geometry.attributes;
+    instanceStart.data.needsUpdate = instanceColorStart.data.needsUpdate = true;
+    this.geometry.instanceCount = this.places.count / 6;
+  }
+  #reserve() {
+    this.geometry.dispose();
+    this.reserved = this.places.array;
+    this.geometry.setPositions(this.places.array).setColors(this.colours.array);
+    for (const name of ['instanceStart', 'instanceColorStart']) this.geometry.attributes[name].data.setUsage(DynamicDrawUsage);
+  }
+}
+
+// A geometry of points or triangles, three numbers a corner.
+class Corners extends Strokes {
+  constructor() {
+    super();
+    this.geometry = new BufferGeometry();
+    this.#reserve();
+  }
+  end() {
+    if (this.places.array !== this.reserved) this.#reserve();
+    this.geometry.attributes.position.needsUpdate = this.geometry.attributes.color.needsUpdate = true;
+    this.geometry.setDrawRange(0, this.places.count / 3);
+  }
+  #reserve() {
+    this.geometry.dispose();
+    this.reserved = this.places.array;
+    this.geometry.setAttribute('position', new BufferAttribute(this.places.array, 3).setUsage(DynamicDrawUsage));
+    this.geometry.setAttribute('color', new BufferAttribute(this.colours.array, 3).setUsage(DynamicDrawUsage));
+  }
+}
+
+export class Dots extends Corners {
+  constructor(stage, pixels) {
+    super();
+    const width = pixels * stage.renderer.getPixelRatio();
+    this.pair = new SeenThrough(stage, new Points(this.geometry, pointMaterial(IN_SIGHT, 1, width)),
+      new Points(this.geometry, pointMaterial(HIDDEN, 0.75, width)));
+  }
+  dot(place, colour) {
+    this.places.room(3);
+    this.colours.room(3);
+    this.places.three(place.x, place.y, place.z);
+    this.colours.three(colour.r, colour.g, colour.b);
+  }
+}
+
+// Faint surfaces, seen from both sides.
+export class Surfaces extends Corners {
+  constructor(stage) {
+    super();
+    const surface = (settings, opacity) => new Mesh(this.geometry,
+      new MeshBasicMaterial({ vertexColors: true, side: DoubleSide, toneMapped: false, opacity, ...settings }));
+    this.pair = new SeenThrough(stage, surface(IN_SIGHT, 0.2), surface(HIDDEN, 0.06));
+  }
+}
