@@ -1,7 +1,8 @@
 // Lines and surfaces that show the limits of a joint. They are made once for a joint and a set of limits, each in a frame that
 // the joint carries along:
 //
-//   A, B   the joint's frames         swing  frame A as swung: its x is that of B          line  at A's anchor, x towards B's
+//   A, B   the joint's frames           turn   frame A at B's anchor           swing  that, swung: its x is that of B
+//   line   at A's anchor, x towards B's
 //
 // The result maps a frame's name to { lines: [x0, y0, z0, x1, y1, z1, ...], surface: [three corners of a triangle, ...] }.
 import { Quaternion, Vector3 } from 'three';
@@ -140,10 +141,10 @@ function rotations(parts, joint, limits, radius) {
   const [twist, y, z] = limits.slice(3);
   if (joint.angularLock === 'all') return;
   if (joint.angularLock === 'axis') {
-    sector(parts('A'), (joint.axis + 1) % 3, (joint.axis + 2) % 3, limits[3 + joint.axis], radius);
+    sector(parts('turn'), (joint.axis + 1) % 3, (joint.axis + 2) % 3, limits[3 + joint.axis], radius);
     return;
   }
-  swingCone(parts('A'), y, z, joint.isPyramid, radius);
+  swingCone(parts('turn'), y, z, joint.isPyramid, radius);
   if (!isFreeAngle(twist)) sector(parts('swing'), 1, 2, twist, 0.45 * radius, 0.8 * radius);
 }
 
@@ -165,7 +166,7 @@ const byKind = {
   // One half angle all around: an ellipse with the same axes.
   cone: (parts, joint, limits, size) => {
     const half = limits[4][1];
-    swingCone(parts('A'), [-half, half], [-half, half], false, size);
+    swingCone(parts('turn'), [-half, half], [-half, half], false, size);
   },
   'swing-twist': rotations,
   'six-dof': (parts, joint, limits, size) => {

@@ -37,7 +37,7 @@ function sizesOf(recording, timeline, subject) {
     const moving = ends.filter((body) => bodies.motions[body] === 2);
     for (const body of ends) ofBody.set(body, [...(ofBody.get(body) ?? []), joint.id]);
     places.push(pose.set(joint, timeline.positions, timeline.rotations, ...ends).b.position.clone());
-    return 0.7 * Math.min(...(moving.length > 0 ? moving : ends).map((body) => radii[bodies.shapes[body]]));
+    return 0.9 * Math.min(...(moving.length > 0 ? moving : ends).map((body) => radii[bodies.shapes[body]]));
   });
   for (const list of ofBody.values()) {
     if (list.length > 50) continue; // the ground's
@@ -48,7 +48,9 @@ function sizesOf(recording, timeline, subject) {
       }
     }
   }
-  return sizes.map((size) => Math.min(0.13 * subject.radius, Math.max(0.02 * subject.radius, size)));
+  // A few joints are to be seen from afar; many would cover each other.
+  const least = (joints.length <= MOST_WITH_LIMITS ? 0.02 : 0.002) * subject.radius;
+  return sizes.map((size) => Math.min(0.13 * subject.radius, Math.max(least, size)));
 }
 
 export class Joints {
@@ -58,10 +60,11 @@ export class Joints {
     this.sizes = sizesOf(recording, timeline, stage.subject);
     this.shapes = []; // by joint: { limits, shape }
     this.pose = new JointPose();
-    this.surfaces = new Surfaces(stage);
-    this.fine = new Lines(stage, 1.6, 0.7);
-    this.bold = new Lines(stage, 3.2, 0.7);
-    this.dots = new Dots(stage, 7);
+    this.surfaces = new Surfaces(stage, 4);
+    this.fine = new Lines(stage, 6, 1.6);
+    this.bold = new Lines(stage, 8, 3, 1);
+    const { length } = recording.joints;
+    this.dots = new Dots(stage, 10, length <= MOST_WITH_LIMITS ? 7 : length <= MOST_WITH_FRAMES ? 5 : 3);
     this.parts = [this.surfaces, this.fine, this.bold, this.dots];
   }
 
@@ -125,7 +128,8 @@ export class Joints {
     if (name === 'A') return a;
     if (name === 'B') return b;
     const rotation = new Quaternion();
-    if (name === 'swing') return { position: a.position, rotation: rotation.multiplyQuaternions(a.rotation, decompose(relative).swing) };
+    if (name === 'turn') return { position: b.position, rotation: a.rotation };
+    if (name === 'swing') return { position: b.position, rotation: rotation.multiplyQuaternions(a.rotation, decompose(relative).swing) };
     const towards = new Vector3().subVectors(b.position, a.position);
     if (towards.lengthSq() > 1e-12) rotation.setFromUnitVectors(X, towards.normalize());
     return { position: a.position, rotation };
@@ -147,7 +151,7 @@ export class Joints {
       if (joint.angularLock === 'all') return;
       if (joint.angularLock === 'axis') {
         const isAtLimit = isAtAngle(twistOf(relative, joint.axis), limits[3 + joint.axis]);
-        needle(b, (joint.axis + 1) % 3, size, isAtLimit, a.position);
+        needle(b, (joint.axis + 1) % 3, size, isAtLimit);
         return;
       }
       const { y, z, twist, swing } = decompose(relative);
@@ -156,9 +160,9 @@ export class Joints {
       const isAtSwing = joint.isPyramid
         ? isAt(2 * Math.atan2(swing.y, swing.w), rangeY, 0.01) || isAt(2 * Math.atan2(swing.z, swing.w), rangeZ, 0.01)
         : ofEllipse > 0.985;
-      needle(b, 0, size, isAtSwing, a.position);
-      if (rangeTwist[1] - rangeTwist[0] < 6.28) {
-        const tip = new Vector3().copy(a.position).addScaledVector(axisOf(b, 0), 0.8 * size);
+      if (rangeY[1] > rangeY[0] || rangeZ[1] > rangeZ[0]) needle(b, 0, size, isAtSwing);
+      if (rangeTwist[1] - rangeTwist[0] < 6.28 && rangeTwist[1] > rangeTwist[0]) {
+        const tip = new Vector3().copy(b.position).addScaledVector(axisOf(b, 0), 0.8 * size);
         needle(b, 1, 0.45 * size, isAtAngle(twist, rangeTwist), tip);
       }
     };
@@ -166,11 +170,11 @@ export class Joints {
     const draw = {
       hinge: turning,
       'swing-twist': turning,
-      cone: () => needle(b, 0, size, decompose(relative).alpha > limits[4][1] - 0.01, a.position),
+      cone: () => needle(b, 0, size, decompose(relative).alpha > limits[4][1] - 0.01),
       slider: () => mark(a, 0, isAtLength(0)),
       'six-dof': () => {
         turning();
-        if (joint.linearLock !== 'point') mark(a, joint.line, [0, 1, 2].some(isAtLength));
+        if (limits.slice(0, 3).some(([min, max]) => max > min) && joint.linearLock !== 'point') mark(a, joint.line, [0, 1, 2].some(isAtLength));
       },
       gear: () => {
         const radii = gearRadii(offset.length(), joint.ratio, size);
@@ -201,8 +205,10 @@ export class Joints {
       // Along a line that is free there is no error: from the point of it that is nearest to B's anchor.
       const foot = new Vector3();
       if (joint.linearLock === 'line') foot.setComponent(joint.line, pose.offset.getComponent(joint.line));
-      this.bold.line(foot.applyQuaternion(a.rotation).add(a.position), b.position, colour);
-    } else {
+      foot.applyQuaternion(a.rotation).add(a.position);
+      // A shorter one is behind the dot.
+      if (foot.distanceTo(b.position) > 0.01 * this.sizes[joint.id]) this.bold.line(foot, b.position, colour);
+    } else if (joint.kind !== 'path') {
       this.fine.line(a.position, b.position, SLACK);
     }
     this.dots.dot(b.position, colour);
@@ -219,6 +225,6 @@ export function jointSummary(recording, frame) {
 const byHex = (colour) => `#${colour.getHexString()}`;
 
 export function jointLegend() {
-  return `<div class="scale" style="background:linear-gradient(90deg,${ERRORS.map(byHex).join(',')})"></div>` +
-    `<div class="ends"><span>${1000 * LEAST_ERROR} mm, mrad</span><span>joint error</span><span>${1000 * LARGEST_ERROR}</span></div>`;
+  return `<div>joint error, mm or mrad</div><div class="scale" style="background:linear-gradient(90deg,${ERRORS.map(byHex).join(',')})"></div>` +
+    `<div class="ends"><span>${1000 * LEAST_ERROR}</span><span>${1000 * LARGEST_ERROR}</span></div>`;
 }

@@ -1,6 +1,6 @@
 // Puts the page together: unpacks the recording, plays it, answers the controls.
 //
-// The address may say what to show: #frame=120&camera=x,y,z,tx,ty,tz&colour=island&joints=1&contacts=1&normals=1&bounds=1&bare=1.
+// The address may say what to show: #frame=120&camera=x,y,z,tx,ty,tz&colour=island&body=7&joints=1&contacts=1&normals=1&bounds=1&bare=1.
 // Scripts and tests use window.fulcrum, which is there once the page is ready.
 import { Raycaster, Vector2 } from 'three';
 import { Bodies } from './bodies.js';
@@ -65,8 +65,9 @@ class Viewer {
     this.show('solid', isSolid);
   }
 
+  // -1, or what is no body: none.
   select(body) {
-    this.selected = this.bodies.selected = body;
+    this.selected = this.bodies.selected = Number.isInteger(body) && body < this.recording.bodyCount ? body : -1;
     this.draw();
   }
 
@@ -191,6 +192,7 @@ function applyAddress(viewer) {
   }
   if (wanted.has('colour')) viewer.setMode(wanted.get('colour'));
   for (const what of ['joints', 'contacts', 'normals', 'bounds', 'grid', 'solid']) if (wanted.has(what)) viewer.show(what, wanted.get(what) === '1');
+  if (wanted.has('body')) viewer.select(Number(wanted.get('body')));
   if (wanted.has('frame')) viewer.seek(Number(wanted.get('frame')));
   else if (!matchMedia('(prefers-reduced-motion: reduce)').matches) viewer.setPlaying(true);
 }

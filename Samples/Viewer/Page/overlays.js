@@ -40,14 +40,14 @@ export function pointMaterial(settings, opacity, pixels) {
   });
 }
 
-// An object drawn twice, as above. `pair.visible` shows both.
+// An object drawn twice, as above. `pair.visible` shows both. `order`: among the overlays, the highest comes last.
 export class SeenThrough {
-  constructor(stage, inSight, hidden) {
+  constructor(stage, inSight, hidden, order = 2) {
     this.objects = [hidden, inSight];
     this.visible = false;
     this.objects.forEach((object, i) => {
       object.frustumCulled = false;
-      object.renderOrder = 2 + i;
+      object.renderOrder = order + i;
       stage.scene.add(object);
     });
   }

@@ -48,15 +48,22 @@ class Strokes {
   }
 }
 
-// Lines of `pixels` width, however far away.
+// Lines of `pixels` width, however far away; with a rim of `rim` pixels they are seen on any colour.
 export class Lines extends Strokes {
-  constructor(stage, pixels, hiddenOpacity) {
+  constructor(stage, order, pixels, rim = 0) {
     super();
     this.geometry = new LineSegmentsGeometry();
     this.#reserve();
-    const lines = (settings, opacity) => new LineSegments2(this.geometry,
-      new LineMaterial({ linewidth: pixels, vertexColors: true, toneMapped: false, opacity, ...settings }));
-    this.pair = new SeenThrough(stage, lines(IN_SIGHT, 1), lines(HIDDEN, hiddenOpacity));
+    const lines = (settings) => new LineSegments2(this.geometry, new LineMaterial({ toneMapped: false, ...settings }));
+    const shown = { linewidth: pixels, vertexColors: true };
+    this.pair = new SeenThrough(stage, lines({ ...shown, ...IN_SIGHT }), lines({ ...shown, ...HIDDEN, opacity: 0.75 }), order);
+    if (rim > 0) {
+      const behind = lines({ linewidth: pixels + 2 * rim, color: '#ffffff', ...HIDDEN, opacity: 0.6 });
+      behind.renderOrder = order - 0.5;
+      behind.frustumCulled = false;
+      stage.scene.add(behind);
+      this.pair.objects.push(behind);
+    }
   }
   line(from, to, colour) {
     this.places.room(6);
@@ -101,11 +108,11 @@ class Corners extends Strokes {
 }
 
 export class Dots extends Corners {
-  constructor(stage, pixels) {
+  constructor(stage, order, pixels) {
     super();
     const width = pixels * stage.renderer.getPixelRatio();
     this.pair = new SeenThrough(stage, new Points(this.geometry, pointMaterial(IN_SIGHT, 1, width)),
-      new Points(this.geometry, pointMaterial(HIDDEN, 0.75, width)));
+      new Points(this.geometry, pointMaterial(HIDDEN, 0.75, width)), order);
   }
   dot(place, colour) {
     this.places.room(3);
@@ -117,10 +124,10 @@ export class Dots extends Corners {
 
 // Faint surfaces, seen from both sides.
 export class Surfaces extends Corners {
-  constructor(stage) {
+  constructor(stage, order) {
     super();
     const surface = (settings, opacity) => new Mesh(this.geometry,
       new MeshBasicMaterial({ vertexColors: true, side: DoubleSide, toneMapped: false, opacity, ...settings }));
-    this.pair = new SeenThrough(stage, surface(IN_SIGHT, 0.2), surface(HIDDEN, 0.06));
+    this.pair = new SeenThrough(stage, surface(IN_SIGHT, 0.2), surface(HIDDEN, 0.06), order);
   }
 }

@@ -1,58 +1,22 @@
-// The page in headless Chromium: what a user does with it. CHROMIUM names the browser, /usr/bin/chromium by default.
+// The page in headless Chromium: what a user does with it.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { pathToFileURL } from 'node:url';
-import { chromium } from 'playwright-core';
+import { launch, openPage } from './browser.mjs';
 import { html, screenshot } from './recording.mjs';
 
-const ARGUMENTS = [
-  '--no-sandbox', '--no-first-run', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
-  '--disable-background-networking', '--disable-component-update', '--disable-sync',
-];
 let browser, page;
 const complaints = [], requests = [];
 
 before(async () => {
-  browser = await chromium.launch({ executablePath: process.env.CHROMIUM || '/usr/bin/chromium', args: ARGUMENTS });
-  page = await browser.newPage({ viewport: { width: 960, height: 540 } }); // small: software draws it
-  page.on('console', (message) => ['error', 'warning'].includes(message.type()) && complaints.push(message.text()));
-  page.on('pageerror', (error) => complaints.push(error.message));
-  page.on('request', (request) => requests.push(request.url()));
-  await page.goto(`${pathToFileURL(html)}#frame=0`);
-  await page.waitForFunction(() => window.fulcrum, null, { timeout: 120000 });
-  await page.evaluate(() => {
-    window.pictureNow = () => {
-      const source = document.getElementById('canvas');
-      const copy = Object.assign(document.createElement('canvas'), { width: source.width, height: source.height });
-      const context = copy.getContext('2d', { willReadFrequently: true });
-      context.drawImage(source, 0, 0);
-      return context.getImageData(0, 0, copy.width, copy.height).data;
-    };
-    // The share of pixels that differ clearly from those of the kept picture.
-    window.differenceToKept = () => {
-      const now = window.pictureNow();
-      let count = 0;
-      for (let i = 0; i < now.length; i += 4) {
-        const off = Math.abs(now[i] - window.kept[i]) + Math.abs(now[i + 1] - window.kept[i + 1]) + Math.abs(now[i + 2] - window.kept[i + 2]);
-        if (off > 24) ++count;
-      }
-      return count / (now.length / 4);
-    };
-  });
+  browser = await launch();
+  page = await openPage(browser, html, complaints, requests);
 });
 
 after(() => browser?.close());
 
-// The page draws with the browser's next picture; the one after that has it.
-const drawn = () => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-const keepPicture = async () => {
-  await drawn();
-  await page.evaluate(() => { window.kept = window.pictureNow(); });
-};
-const difference = async () => {
-  await drawn();
-  return page.evaluate(() => window.differenceToKept());
-};
+const drawn = () => page.evaluate(() => window.drawn());
+const keepPicture = () => page.evaluate(() => window.keepPicture());
+const difference = () => page.evaluate(() => window.differenceToKept());
 const frame = () => page.evaluate(() => window.fulcrum.frame);
 const lastFrame = () => page.evaluate(() => window.fulcrum.frameCount - 1);
 const seek = (wanted) => page.evaluate((value) => window.fulcrum.seek(value), wanted);
