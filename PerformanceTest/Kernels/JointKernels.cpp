@@ -37,7 +37,7 @@ public:
         for (JointBatch<N>& batch : batches_) SolveJointVelocities(batch, joints_.states.data(), settings_);
     }
     void Relax() {
-        for (JointBatch<N>& batch : batches_) RelaxJoints(batch, joints_.states.data(), settings_);
+        for (JointBatch<N>& batch : batches_) RelaxJoints(batch, joints_.Bodies(), settings_);
     }
     double RowsPerJoint() const {
         double count = 0;

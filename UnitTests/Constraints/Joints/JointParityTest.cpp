@@ -43,18 +43,22 @@ Solved Solve(std::span<const JointCase> cases, uint32_t seed, const RandomJoints
                 states[body].deltaPosition[k] += states[body].linearVelocity[k] * settings.substepDt;
                 states[body].deltaRotation[k] += states[body].angularVelocity[k] * settings.substepDt;
             }
+            // As if it had turned.
+            BodyMass& mass = joints.masses[body];
+            if (mass.turns > 0)
+                for (float& x : mass.inverseInertia) x *= 1.1f;
         }
         for (int pass = 0; pass < 2; ++pass) {
             settings.firstPass = pass == 0;
-            for (JointBatch<N>& batch : batches) RelaxJoints(batch, states, settings);
+            for (JointBatch<N>& batch : batches) RelaxJoints(batch, joints.Bodies(), settings);
         }
     }
-    for (const JointBatch<N>& batch : batches) TurnJoints(batch, states);
+    for (JointBatch<N>& batch : batches) TurnJoints(batch, states);
     settings.firstPass = true;
-    for (JointBatch<N>& batch : batches) UpdateJoints(batch, states, settings);
-    for (const JointBatch<N>& batch : batches) {
+    for (JointBatch<N>& batch : batches) UpdateJoints(batch, joints.Bodies(), settings);
+    for (JointBatch<N>& batch : batches) {
         TurnJoints(batch, states);
-        StoreJoints(batch, joints.records.data(), joints.typePointers.data(), 1.0f);
+        StoreJoints(batch, joints.records.data(), joints.typePointers.data(), states, settings.dt, 1.0f);
     }
     for (const JointType* type : joints.typePointers) solved.impulses.push_back(type->impulses);
     solved.states = std::move(joints.states);

@@ -242,6 +242,7 @@ private:
         const float rows[6] = {inertia.xx, inertia.yy, inertia.zz, inertia.xy, inertia.xz, inertia.yz};
         std::copy(rows, rows + 6, masses[body].inverseInertia);
         masses[body].inverseMass = random_.Number(0.5f, 2.0f);
+        masses[body].turns = random_.Number(0.0f, 1.0f) < 0.3f ? 1.0f : 0.0f;
     }
 
     void Add(uint32_t joint, const JointCase& how) {
@@ -279,8 +280,8 @@ private:
         for (int k = 0; k < 3; ++k) {
             record.anchorA[k] = anchorA[k];
             record.anchorB[k] = anchorB[k];
-            record.ownForce[k] = force[k];
-            record.ownTorque[k] = torque[k];
+            record.ownImpulse[k] = force[k];
+            record.ownAngularImpulse[k] = torque[k];
         }
         const float frames[2][4] = {{inA.x, inA.y, inA.z, inA.w}, {inB.x, inB.y, inB.z, inB.w}};
         std::copy(frames[0], frames[0] + 4, record.frameA);

@@ -14,8 +14,7 @@ RodChain AddRodChain(TestWorld& world, int count, const Position& origin = Posit
     chain.bodies.push_back(AddHook(world, origin));
     for (int i = 0; i < count; ++i) {
         chain.bodies.push_back(world.Add({.shape = BoxOf(0.45f, 0.05f, 0.05f), .position = origin + Position(i + 0.5, 0, 0),
-                                          .mass = 1, .lockedAxes = locked, .maxLinearSpeed = 3e38f, .maxAngularSpeed = 3e38f,
-                                          .gyroscopicTorque = false}));
+                                          .mass = 1, .lockedAxes = locked, .maxLinearSpeed = 3e38f, .maxAngularSpeed = 3e38f}));
         chain.joints.push_back(Join(world, PointJointSettings{Between(chain.bodies[i], chain.bodies[i + 1], origin + Position(i, 0, 0))}));
     }
     return chain;
