@@ -145,7 +145,7 @@ void AngularControls::CollectRows(const JointPose& pose, uint32_t firstSlot, Joi
         pose.SetAbout(motion, axis);
         turns_.Advance(AngleAbout(pose, freeAxis_), pose.TurnedAbout(axis));
         AxisControl control = axes_[freeAxis_];
-        if (RangeOf(control).IsFree()) control.limited = false;
+        if (RangeOf(control).IsFree() || IsTilted(pose, freeAxis_)) control.limited = false;
         return AddControlRows(control, pose, motion, turns_.Angle(), kAngularSlackSpeed, firstSlot + freeAxis_ * ControlSlots::kCount, rows);
     }
     const SwingTwistLimits limits = Limits();
@@ -193,7 +193,9 @@ void AngularControls::AddLimitRows(const JointPose& pose, const Motion& motion, 
             const float way = motion.toTarget[k] * Dot(limit.axis, AxisOf(motion.axes, k));
             reach += WayOfSpring(axes_[static_cast<size_t>(k)].motor.spring, std::max(0.0f, way), pose.dt);
         }
-        if (limit.error <= reach) AddLimitRow(spring, row, 1.0f, limit.error, firstSlot + SlotOfLimit(limit.slot), rows);
+        if (limit.error > reach) continue;
+        AddLimitRow(spring, row, 1.0f, limit.error, firstSlot + SlotOfLimit(limit.slot), rows).yields =
+            std::none_of(axes_.begin(), axes_.end(), [](const AxisControl& a) { return PressesOnLimits(a.motor); });
     }
 }
 

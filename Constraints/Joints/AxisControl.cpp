@@ -13,6 +13,7 @@ JointRow& AddRow(const JointRow& motion, float sign, uint32_t slot, JointRow::Ki
     JointRow& row = rows.Add(slot, kind);
     row.a = {motion.a.linear * sign, motion.a.angular * sign};
     row.b = {motion.b.linear * sign, motion.b.angular * sign};
+    row.turnsWithA = motion.turnsWithA;
     row.radial = motion.radial;
     return row;
 }
@@ -70,12 +71,13 @@ float WayOfSpring(const SpringSettings& spring, float way, float dt) {
     return way * std::min(2.0f, 0.5f * phase * phase);
 }
 
-void AddLimitRow(const SpringSettings& spring, const JointRow& motion, float sign, float error, uint32_t slot,
-                 JointRowList& rows) {
+JointRow& AddLimitRow(const SpringSettings& spring, const JointRow& motion, float sign, float error, uint32_t slot,
+                      JointRowList& rows) {
     JointRow& row = AddRow(motion, sign, slot, IsHard(spring) ? JointRow::Kind::AtLeast : JointRow::Kind::SpringAtLeast, rows);
     row.error = error;
     row.spring = spring;
     row.minForce = 0.0f;
+    return row;
 }
 
 void AddLockRow(const SpringSettings& spring, const JointRow& motion, float error, uint32_t slot, JointRowList& rows) {
@@ -106,10 +108,11 @@ void AddControlRows(const AxisControl& control, const JointPose& pose, const Joi
     if (!control.limited) return;
     const float speed = pose.SpeedOf(motion);
     const float above = static_cast<float>(position - limits.min), below = static_cast<float>(limits.max - position);
+    const bool yields = !PressesOnLimits(control.motor);
     if (above <= Reach(control, position, speed, -1.0f, slackSpeed, pose.dt))
-        AddLimitRow(limits.spring, motion, 1.0f, above, firstSlot + ControlSlots::kLowLimit, rows);
+        AddLimitRow(limits.spring, motion, 1.0f, above, firstSlot + ControlSlots::kLowLimit, rows).yields = yields;
     if (below <= Reach(control, position, speed, 1.0f, slackSpeed, pose.dt))
-        AddLimitRow(limits.spring, motion, -1.0f, below, firstSlot + ControlSlots::kHighLimit, rows);
+        AddLimitRow(limits.spring, motion, -1.0f, below, firstSlot + ControlSlots::kHighLimit, rows).yields = yields;
 }
 
 }  // namespace fulcrum

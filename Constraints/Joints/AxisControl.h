@@ -57,6 +57,9 @@ inline bool IsHard(const SpringSettings& spring) {
     return (spring.mode == SpringMode::StiffnessAndDamping ? spring.stiffness : spring.frequency) <= 0.0f;
 }
 
+// Whether it goes on at a limit; a limit that yields would be pushed back by 1 % of a radian by a strong one.
+inline bool PressesOnLimits(const JointMotor& motor) { return motor.mode == MotorMode::ToVelocity; }
+
 // Slots of the rows of one axis, counted from the axis' first one.
 struct ControlSlots {
     static constexpr uint32_t kLowLimit = 0, kHighLimit = 1, kMotor = 2, kFriction = 3, kCount = 4;
@@ -78,8 +81,8 @@ float WayOfSpring(const SpringSettings& spring, float way, float dt);
 inline constexpr float kLimitSlop = 1e-3f;
 
 // Adds the row that keeps C >= 0: C is `error`, and its rate J v of `motion` times sign.
-void AddLimitRow(const SpringSettings& spring, const JointRow& motion, float sign, float error, uint32_t slot,
-                 JointRowList& rows);
+JointRow& AddLimitRow(const SpringSettings& spring, const JointRow& motion, float sign, float error, uint32_t slot,
+                      JointRowList& rows);
 // Adds the row that keeps C = 0.
 void AddLockRow(const SpringSettings& spring, const JointRow& motion, float error, uint32_t slot, JointRowList& rows);
 

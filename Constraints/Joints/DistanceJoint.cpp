@@ -19,6 +19,7 @@ void DistanceJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     JointRow motion;
     pose.SetAlong(motion, Normalized(pose.offset, ToMatrix(pose.frameA).x));
     motion.radial = true;
+    motion.turnsWithA = false;
     // Motion across lengthens the distance as well: by (v dt)^2 / 2 d, and by v dt at most.
     const Vector3 velocity = pose.AnchorVelocity();
     const float speed = Length(velocity);

@@ -35,6 +35,12 @@ inline Vector3 AxisAbout(const JointPose& pose, int axis) {
     return Normalized(Vector3(AxisOf(frameA, axis) + AxisOf(frameB, axis)), AxisOf(frameA, axis));
 }
 
+// Whether the axis that a joint keeps together is more than 60 degrees apart. The angle about it then jumps by as much as the
+// bodies turn across it: limits wait until the joint has pulled it straight.
+inline bool IsTilted(const JointPose& pose, int axis) {
+    return Dot(AxisOf(ToMatrix(pose.frameA), axis), AxisOf(ToMatrix(pose.frameB), axis)) < 0.5f;
+}
+
 // An angle counted over any number of turns. A body may turn by more than half a turn a step: how far it did tells the turn.
 struct TurnCount {
     std::array<double, 1> numbers{};  // rad

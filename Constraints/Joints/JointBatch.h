@@ -54,6 +54,7 @@ struct JointRows {
     // One-sided rows whose error is above `openAbove` are open: delta = -(mass hardScale (J v + gapRate C) + openSoftness total).
     Real openAbove, hardScale, gapRate, openSoftness;
     Real mass;                           // kg or kg m2 that the row meets; 0: no row
+    Real turnsWithA;                     // 1: J turns with A from substep to substep
     Real radial;                         // 1: the row acts along the line between the anchors and turns with it
     uint8_t slot[N];                     // 0xFF: no row
 };
@@ -93,7 +94,8 @@ struct JointBatch {
     Vec3<Real> cross[3];
     Sym3<Real> coupledPoint;             // S^-1
     Sym2<Real> coupledLine;
-    bool radial;                         // some row of some lane is
+    Twist<Real> wayA, wayB;              // displacements at which rows were set up last
+    bool rowsTurnWithA, radial;          // some row of some lane does or is
 };
 
 struct JointSolveSettings {

@@ -319,6 +319,28 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     if constexpr (kLinear != LinearLock::None) add(LinearPart<kLinear>(batch), x.linear);
 }
 
+// The rows' errors and directions after the bodies moved on. Displacements are counted in pieces: of a body that turns fast their
+// sum is no rotation, and a direction that stayed behind would come to act against the locks.
+template <int N>
+[[gnu::always_inline]] inline void MoveRows(JointBatch<N>& batch, const Twist<Wide<N>>& a, const Twist<Wide<N>>& b) {
+    using Real = Wide<N>;
+    const Twist<Real> moreA{a.linear - batch.wayA.linear, a.angular - batch.wayA.angular};
+    const Twist<Real> moreB{b.linear - batch.wayB.linear, b.angular - batch.wayB.angular};
+    batch.wayA = a;
+    batch.wayB = b;
+    const Mat3<Real> turn = ToMatrix(RotationFromVector<Real>(moreA.angular));
+    for (uint32_t i = 0; i < batch.rowCount; ++i) {
+        JointRows<N>& row = batch.rows[i];
+        row.error += RowMotion<Real>(row, moreA, moreB);
+        if (!batch.rowsTurnWithA) continue;
+        const auto turns = row.turnsWithA > Real(0.5f);
+        for (Vec3<Real>* v : {&row.a.linear, &row.a.angular, &row.b.linear, &row.b.angular}) {
+            const Vec3<Real> turned = turn * *v;
+            for (int k = 0; k < 3; ++k) (*v)[k] = Select(turns, turned[k], (*v)[k]);
+        }
+    }
+}
+
 // The line between the anchors, where they are apart; else as it was.
 template <int N>
 [[gnu::always_inline]] inline void TurnRadialRow(const JointBatch<N>& batch, JointRows<N>& row, const JointPlace<Wide<N>>& place) {

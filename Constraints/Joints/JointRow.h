@@ -27,9 +27,11 @@ struct JointRow {
     Kind kind = Kind::Equal;
     uint8_t slot = 0;      // which of its type's rows it is: its impulse of the last step is kept by that number
     Twist<float> a, b;     // linearA, angularA; linearB, angularB
-    float error = 0;       // C at the start of the step, m or rad
-    float speed = 0;       // m/s or rad/s
-    bool radial = false;   // acts along the line from A's anchor to B's and follows it as it turns
+    float error = 0;          // C at the start of the step, m or rad
+    float speed = 0;          // m/s or rad/s
+    bool yields = true;       // softly, as the locks of joints do; not where a motor presses against it
+    bool turnsWithA = false;  // all of J does, from substep to substep; else it stays as it is
+    bool radial = false;      // acts along the line from A's anchor to B's and follows it as it turns
     float minForce = -kUnlimited, maxForce = kUnlimited;  // N or N m
     SpringSettings spring;
 };

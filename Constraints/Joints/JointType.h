@@ -65,12 +65,17 @@ struct JointPose {
         return ahead;
     }
     Vector3 AngularVelocity() const { return velocityB.angular - velocityA.angular; }  // rad/s, of B against A
-    // Jacobians of the motion of B's anchor along the unit axis n of A, and of the rotation of B against A about `axis`.
+    // Jacobians of the motion of B's anchor along the unit axis n of A, and of the rotation of B against A about `axis`; both
+    // turn with A.
     void SetAlong(JointRow& row, const Vector3& n) const {
+        row.turnsWithA = true;
         row.a = {n, Cross<float>(Vector3(armA + offset), n)};
         row.b = {n, Cross<float>(armB, n)};
     }
-    static void SetAbout(JointRow& row, const Vector3& axis) { row.a.angular = row.b.angular = axis; }
+    static void SetAbout(JointRow& row, const Vector3& axis) {
+        row.turnsWithA = true;
+        row.a.angular = row.b.angular = axis;
+    }
     // How fast the row's C changes now: J v.
     float SpeedOf(const JointRow& row) const {
         return Dot(row.b.linear, velocityB.linear) + Dot(row.b.angular, velocityB.angular) -

@@ -39,7 +39,7 @@ void ClearLane(JointRows<N>& rows, int lane) {
     }
     for (Wide<N>* x : {&rows.startError, &rows.error, &rows.speed, &rows.impulse, &rows.earlier, &rows.lowest, &rows.highest, &rows.massScale,
                        &rows.pushRate, &rows.softness, &rows.mostPush, &rows.openAbove, &rows.hardScale, &rows.gapRate,
-                       &rows.openSoftness, &rows.radial})
+                       &rows.openSoftness, &rows.turnsWithA, &rows.radial})
         x->Set(lane, 0.0f);
     rows.slot[lane] = 0xFF;
 }
@@ -59,20 +59,21 @@ void FillLane(JointRows<N>& rows, int lane, const JointRow& row, float previousI
     const bool oneSided = row.kind == Kind::AtLeast || row.kind == Kind::SpringAtLeast;
     const float unlimited = JointRow::kUnlimited;
     const float lowest = Max(row.minForce * s.substepDt, oneSided ? 0.0f : -unlimited), highest = row.maxForce * s.substepDt;
-    const bool hard = row.kind == Kind::Equal || row.kind == Kind::AtLeast;
+    const bool hard = row.kind == Kind::Equal || row.kind == Kind::AtLeast, yields = hard && row.yields;
     rows.startError.Set(lane, row.error);
     rows.error.Set(lane, row.error);
     rows.speed.Set(lane, row.kind == Kind::Speed ? row.speed : 0.0f);
-    const float massScale = row.kind == Kind::Equal ? s.softness.massScale : 1.0f;
+    const float massScale = yields ? s.softness.massScale : 1.0f;
     rows.massScale.Set(lane, massScale);
     rows.pushRate.Set(lane, hard ? massScale * s.pushRate : 0.0f);
-    rows.softness.Set(lane, row.kind == Kind::Equal ? s.softness.impulseScale : 0.0f);
+    rows.softness.Set(lane, yields ? s.softness.impulseScale : 0.0f);
     rows.mostPush.Set(lane, hard ? massScale * s.maxPushSpeed : unlimited);
     rows.openAbove.Set(lane, oneSided ? 0.0f : unlimited);
     rows.hardScale.Set(lane, 1.0f);
     rows.gapRate.Set(lane, oneSided ? s.inverseDt : 0.0f);
     rows.lowest.Set(lane, lowest);
     rows.highest.Set(lane, highest);
+    rows.turnsWithA.Set(lane, row.turnsWithA ? 1.0f : 0.0f);
     rows.radial.Set(lane, row.radial ? 1.0f : 0.0f);
     rows.impulse.Set(lane, Clamp(previousImpulse * s.impulseScale, lowest, highest));
 }
@@ -99,7 +100,8 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
 void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const* types, const SolverBodies& bodies,
               const JointSolveSettings& settings) {
     batch.rowCount = 0;
-    batch.radial = false;
+    batch.rowsTurnWithA = batch.radial = false;
+    batch.wayA = batch.wayB = {};
     if (batch.rowRoom == 0) return;
     JointRowList lists[N];
     for (int lane = 0; lane < batch.count; ++lane) {
@@ -136,6 +138,7 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
         for (uint32_t i = list.count; i < batch.rowCount; ++i) ClearLane(batch.rows[i], lane);
         for (uint32_t i = 0; i < list.count; ++i) {
             FillLane(batch.rows[i], lane, list.rows[i], types[batch.joint[lane]]->impulses[list.rows[i].slot], settings);
+            batch.rowsTurnWithA |= list.rows[i].turnsWithA;
             batch.radial |= list.rows[i].radial;
         }
     }

@@ -29,7 +29,7 @@ template <bool kTurning, int N>
     using Real = Wide<N>;
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         const JointRows<N>& row = batch.rows[i];
-        const Real impulse = row.impulse * (kTurning ? Max(row.radial, batch.turns) * Real(sign) : Real(sign));
+        const Real impulse = row.impulse * (kTurning ? Max(Max(row.radial, row.turnsWithA), batch.turns) * Real(sign) : Real(sign));
         const auto acts = Abs(impulse) > Real(0.0f);
         a.linear -= ZeroUnless<Real>(acts, Vec3<Real>(row.a.linear * (batch.massA.mass * impulse)));
         a.angular -= ZeroUnless<Real>(acts, Vec3<Real>((batch.massA.inertia * row.a.angular) * impulse));
@@ -170,11 +170,6 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     Twist<Real> a = motionA.Get(), b = motionB.Get();
     AddKinematicMotion<N>(a, velocityA, batch.kinematicA, settings.elapsed);
     AddKinematicMotion<N>(b, velocityB, batch.kinematicB, settings.elapsed);
-    for (uint32_t i = 0; i < batch.rowCount; ++i) {
-        JointRows<N>& row = batch.rows[i];
-        row.error = row.startError + (Dot<Real>(row.b.linear, b.linear) + Dot<Real>(row.b.angular, b.angular) -
-                                      Dot<Real>(row.a.linear, a.linear) - Dot<Real>(row.a.angular, a.angular));
-    }
     constexpr bool kLocks = kLinear != LinearLock::None || kAngular != AngularLock::None;
     constexpr bool kTurns = kLinear != LinearLock::None || kAngular == AngularLock::Axis;
     Twist<Real> turnedA, turnedB;
@@ -182,7 +177,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
         turnedA = batch.turnedA;
         turnedB = batch.turnedB;
     }
-    const bool turnRows = batch.radial || (batch.turning && batch.rowCount > 0);
+    const bool turnRows = batch.rowCount > 0 && (batch.radial || batch.rowsTurnWithA || batch.turning);
     const bool turns = kTurns || turnRows || (kLocks && (batch.rowCount > 0 || batch.turning));
     if (turns) {
         AddLockImpulses<kLinear, kAngular>(batch, turnedA, turnedB, -1.0f);
@@ -195,6 +190,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     const JointPlace<Real> place = Displace<kLinear, kAngular>(batch, a, b);
     const JointErrors<Real> errors = SetUpParts<kLinear, kAngular>(batch, place);
     SetUpCoupling<kLinear, kAngular>(batch);
+    if (batch.rowCount > 0) MoveRows(batch, a, b);
     if (batch.radial)
         for (uint32_t i = 0; i < batch.rowCount; ++i) TurnRadialRow(batch, batch.rows[i], place);
     if (batch.rowCount > 0) SetUpRows<kLinear, kAngular>(batch);
