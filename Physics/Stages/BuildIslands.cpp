@@ -188,7 +188,10 @@ std::span<const SortedJoint> SortJoints(WorldState& world, const Islands& island
         const uint32_t before = joint.maxRows;
         joint.maxRows = joint.type->MaxRows();
         // Batches without room for rows store none: what the last ones did must not stay.
-        if (joint.maxRows == 0 && before > 0) joint.type->impulses.fill(0.0f);
+        if (joint.maxRows == 0 && before > 0) {
+            joint.type->impulses.fill(0.0f);
+            joint.type->forces.fill(0.0f);
+        }
         JointRecord& record = world.joints.records[entry.constraint];
         record.lineAxis = joint.locks.line;
         record.freeAxis = joint.locks.axis;

@@ -10,7 +10,7 @@ namespace fulcrum::testing {
 namespace {
 
 constexpr uint64_t kGoldenHash = 0x5f17211406508028ull;
-constexpr uint64_t kGoldenHashOfJoints = 0x21e7afdbc031d3ccull;
+constexpr uint64_t kGoldenHashOfJoints = 0x95a80ff82a18fb66ull;
 
 std::string Hex(uint64_t number) {
     char text[24];

@@ -34,7 +34,10 @@ struct Pair {
                 fastest = std::max({fastest, Length(world.VelocityOf(id)), Length(world.Bodies().GetAngularVelocity(id))});
         }
         const JointError error = JointsOf(world).GetError(joint);
-        EXPECT_LT(error.distance, 3e-3f);  // a turning body is held to that
+        // Of what still turns, a substep leaves the arc of half a metre by r (w h)^2 / 2, and the push takes back 0.37 of a gap.
+        float spin = 0;
+        for (const BodyId id : {a, b}) spin = std::max(spin, Length(world.Bodies().GetAngularVelocity(id)) * static_cast<float>(kStep / 4));
+        EXPECT_LT(error.distance, 1e-3f + 0.25f / 0.37f * spin * spin);
         EXPECT_LT(error.angle, 2e-3f);
         EXPECT_LT(fastest, kFastest);
         EXPECT_TRUE(world.AllFinite());
