@@ -27,13 +27,13 @@ struct alignas(32) JointRecord {
     float frameA[4] = {0, 0, 0, 1}, frameB[4] = {0, 0, 0, 1};  // x y z w, in the bodies' centre frames
     // On B, world axes: the locks' own impulses of the last substep, N s and N m s. And as averages over the last step, N and
     // N m: those of the locks with their answer to the rows, and of locks and rows together, about the anchor.
-    float ownImpulse[3] = {0, 0, 0}, ownAngularImpulse[3] = {0, 0, 0};
-    float spare[2] = {0, 0};
-    float lockForce[3] = {0, 0, 0}, lockTorque[3] = {0, 0, 0};
-    float totalForce[3] = {0, 0, 0}, totalTorque[3] = {0, 0, 0};
-    float moreSpare[4] = {0, 0, 0, 0};
+    float ownImpulse[3] = {0, 0, 0}, ownAngularImpulse[3] = {0, 0, 0}, ownSpare[2] = {0, 0};
+    float lockForce[3] = {0, 0, 0}, lockTorque[3] = {0, 0, 0}, lockSpare[2] = {0, 0};
+    float totalForce[3] = {0, 0, 0}, totalTorque[3] = {0, 0, 0}, totalSpare[2] = {0, 0};
 
+    enum Rows { kAnchors, kFrames, kOwn, kLocks, kTotal };
     const float* Row(int row) const { return anchorA + 8 * row; }
+    float* Row(int row) { return anchorA + 8 * row; }
 };
 static_assert(sizeof(JointRecord) == 160);
 

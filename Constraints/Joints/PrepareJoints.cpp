@@ -165,9 +165,9 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
                    const JointSolveSettings& settings, JointFindings& findings) {
     using Real = Wide<N>;
     Real head[8], frames[8], impulses[8];
-    GatherRecordRow<N>(batch.joint, records, 0, head);
-    GatherRecordRow<N>(batch.joint, records, 1, frames);
-    GatherRecordRow<N>(batch.joint, records, 2, impulses);
+    GatherRecordRow<N>(batch.joint, records, JointRecord::kAnchors, head);
+    GatherRecordRow<N>(batch.joint, records, JointRecord::kFrames, frames);
+    GatherRecordRow<N>(batch.joint, records, JointRecord::kOwn, impulses);
     const auto turnsA = GatherMass<N>(batch.bodyA, bodies.masses, batch.massA);
     const auto turnsB = GatherMass<N>(batch.bodyB, bodies.masses, batch.massB);
     batch.turns = Select(turnsA | turnsB, Real(1.0f), Real(0.0f));
@@ -279,12 +279,21 @@ LockImpulses<Wide<N>> StepImpulses(const JointBatch<N>& batch) {
     return sum;
 }
 
+// Writes a wrench times `scale` to a row of the records; what is not finite as zero.
 template <int N>
-void WriteLane(float (&to)[3], const Vec3<Wide<N>>& v, int lane, float scale) {
+void ScatterRecordRow(const JointBatch<N>& batch, JointRecord* records, int row, const Wrench<N>& wrench, float scale) {
+    using Real = Wide<N>;
+    const Real zero(0.0f), factor(scale);
+    float* rows[N];
+    for (int i = 0; i < N; ++i) rows[i] = records[batch.joint[i]].Row(row);
+    Real out[8];
+    const auto put = [&](int k, const Real& x) { out[k] = Select(Abs(x) < Real(JointRow::kUnlimited), x, zero); };
     for (int k = 0; k < 3; ++k) {
-        const float x = v[k][lane] * scale;
-        to[k] = std::isfinite(x) ? x : 0.0f;
+        put(k, wrench.force[k] * factor);
+        put(3 + k, wrench.torque[k] * factor);
     }
+    out[6] = out[7] = zero;
+    ScatterRows<N>(rows, out, batch.count);
 }
 
 // How far a body turned in the step, rad.
@@ -310,15 +319,11 @@ void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* co
         total.force -= ZeroUnless<Real>(acts, Vec3<Real>(rows.b.linear * -impulse));
         total.torque -= ZeroUnless<Real>(acts, Vec3<Real>((rows.b.angular - Cross<Real>(batch.startArmB, rows.b.linear)) * -impulse));
     }
+    ScatterRecordRow(batch, records, JointRecord::kOwn, own, inverse);
+    ScatterRecordRow(batch, records, JointRecord::kLocks, locks, perSecond);
+    ScatterRecordRow(batch, records, JointRecord::kTotal, total, perSecond);
+    if (batch.rowRoom == 0) return;
     for (int lane = 0; lane < batch.count; ++lane) {
-        JointRecord& record = records[batch.joint[lane]];
-        WriteLane<N>(record.ownImpulse, own.force, lane, inverse);
-        WriteLane<N>(record.ownAngularImpulse, own.torque, lane, inverse);
-        WriteLane<N>(record.lockForce, locks.force, lane, perSecond);
-        WriteLane<N>(record.lockTorque, locks.torque, lane, perSecond);
-        WriteLane<N>(record.totalForce, total.force, lane, perSecond);
-        WriteLane<N>(record.totalTorque, total.torque, lane, perSecond);
-        if (batch.rowRoom == 0) continue;
         JointType* type = types[batch.joint[lane]];
         type->turnedA = TurnOf(states[batch.bodyA[lane]], batch.kinematicA >> lane & 1u, dt);
         type->turnedB = TurnOf(states[batch.bodyB[lane]], batch.kinematicB >> lane & 1u, dt);
