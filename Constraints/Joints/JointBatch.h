@@ -98,6 +98,11 @@ struct JointBatch {
     bool rowsTurnWithA, radial;          // some row of some lane does or is
 };
 
+// Rotation vectors of a step up to this, rad, are put together as rotations, longer ones added.
+namespace joints {
+inline constexpr float kFarthestSeries = 1.0f;
+}
+
 struct JointSolveSettings {
     float dt, substepDt;     // s
     float inverseDt;         // 1/s, of the substep

@@ -324,8 +324,13 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
 template <int N>
 [[gnu::always_inline]] inline void MoveRows(JointBatch<N>& batch, const Twist<Wide<N>>& a, const Twist<Wide<N>>& b) {
     using Real = Wide<N>;
-    const Twist<Real> moreA{a.linear - batch.wayA.linear, a.angular - batch.wayA.angular};
-    const Twist<Real> moreB{b.linear - batch.wayB.linear, b.angular - batch.wayB.angular};
+    // The rotation from one rotation vector to another, to the second order where those are put together by a series.
+    const auto between = [](const Vec3<Real>& from, const Vec3<Real>& to) {
+        const Real half = Select(Dot<Real>(from, from) > Real(kFarthestSeries * kFarthestSeries), Real(0.0f), Real(0.5f));
+        return Vec3<Real>(to - from - Cross<Real>(to, from) * half);
+    };
+    const Twist<Real> moreA{a.linear - batch.wayA.linear, between(batch.wayA.angular, a.angular)};
+    const Twist<Real> moreB{b.linear - batch.wayB.linear, between(batch.wayB.angular, b.angular)};
     batch.wayA = a;
     batch.wayB = b;
     const Mat3<Real> turn = ToMatrix(RotationFromVector<Real>(moreA.angular));
