@@ -71,11 +71,12 @@ struct JointBatch {
     AngularLock angular;
     uint32_t rowCount;                   // largest of the lanes
     uint32_t rowRoom;                    // as many as the types may add
+    bool rowsTurnWithA, radial;          // some row of some lane does or is
+    bool turning;                        // inertias of some lane turn from substep to substep: they are read again
     JointRows<N>* rows;
 
     InverseMass<Real> massA, massB;
-    Real turns;                          // 1: inertias of this lane turn from substep to substep
-    bool turning;                        // those of some lane do: they are read again
+    Real turns;                          // 1: those of this lane do
     PointPart<Real> point;
     Vec3<Real> startArmA, startArmB, startOffset;
     Twist<Real> turnedA, turnedB;
@@ -95,7 +96,6 @@ struct JointBatch {
     Sym3<Real> coupledPoint;             // S^-1
     Sym2<Real> coupledLine;
     Twist<Real> wayA, wayB;              // displacements at which rows were set up last
-    bool rowsTurnWithA, radial;          // some row of some lane does or is
 };
 
 // Rotation vectors of a step up to this, rad, are put together as rotations, longer ones added.

@@ -82,6 +82,20 @@ template <class Lambda, class Real>
     for (int k = 0; k < lambda.size(); ++k) lambda[k] -= Real(0.0f) - answer[k];
 }
 
+// As RotationFromVector, by the first terms of the series where the angle is below a radian, as it nearly always is; the next
+// term is below a digit.
+template <class Real>
+[[gnu::always_inline]] inline Quat<Real> RotationOf(const Vec3<Real>& v) {
+    const Real square = Dot<Real>(v, v), one(1.0f);
+    const Real scale = Real(0.5f) - square * (Real(1.0f / 48) - square * (Real(1.0f / 3840) - square * Real(1.0f / 645120)));
+    const Real cosine = one - square * (Real(1.0f / 8) - square * (Real(1.0f / 384) - square * (Real(1.0f / 46080) - square * Real(1.0f / 10321920))));
+    Quat<Real> q{v.x() * scale, v.y() * scale, v.z() * scale, cosine};
+    const auto isFar = square > one;
+    if (!isFar.Any()) return q;
+    const Quat<Real> far = RotationFromVector<Real>(v);
+    return {Select(isFar, far.x, q.x), Select(isFar, far.y, q.y), Select(isFar, far.z, q.z), Select(isFar, far.w, q.w)};
+}
+
 // The places and axes of a batch, at the start of the step or displaced.
 template <class Real>
 struct JointPlace {
@@ -333,7 +347,7 @@ template <int N>
     const Twist<Real> moreB{b.linear - batch.wayB.linear, between(batch.wayB.angular, b.angular)};
     batch.wayA = a;
     batch.wayB = b;
-    const Mat3<Real> turn = ToMatrix(RotationFromVector<Real>(moreA.angular));
+    const Mat3<Real> turn = ToMatrix(RotationOf<Real>(moreA.angular));
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         JointRows<N>& row = batch.rows[i];
         row.error += RowMotion<Real>(row, moreA, moreB);

@@ -140,7 +140,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
 [[gnu::always_inline]] inline JointPlace<Wide<N>> Displace(const JointBatch<N>& batch, const Twist<Wide<N>>& a, const Twist<Wide<N>>& b) {
     using Real = Wide<N>;
     JointPlace<Real> place;
-    const Quat<Real> turnA = RotationFromVector<Real>(a.angular), turnB = RotationFromVector<Real>(b.angular);
+    const Quat<Real> turnA = RotationOf<Real>(a.angular), turnB = RotationOf<Real>(b.angular);
     if (kLinear != LinearLock::None || batch.radial) {
         place.armA = Rotate<Real>(turnA, batch.startArmA);
         place.armB = Rotate<Real>(turnB, batch.startArmB);

@@ -10,7 +10,7 @@ namespace fulcrum::testing {
 namespace {
 
 constexpr uint64_t kGoldenHash = 0x5f17211406508028ull;
-constexpr uint64_t kGoldenHashOfJoints = 0x9d17f70c8215d983ull;
+constexpr uint64_t kGoldenHashOfJoints = 0x65de2144f4ebe963ull;
 
 std::string Hex(uint64_t number) {
     char text[24];
