@@ -291,13 +291,13 @@ private:
         if (!d.FeelsGyroscopicTorque(w)) return;
         BodyState& s = world_.bodies.states[body];
         const Vector3 turn(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]);
-        const Quaternion rotation = RotationFromVector(turn) * world_.bodies.RotationOf(body);
-        const Vector3 change = AddGyroscopicTorque(d, rotation, w, h_) - w;
+        const Matrix3 axes = AxesOf(d, RotationFromVector(turn) * world_.bodies.RotationOf(body));
+        const Vector3 change = AddGyroscopicTorque(d, axes, w, h_) - w;
         for (int k = 0; k < 3; ++k) {
             s.angularVelocity[k] += change[k];
             world_.bodies.unconstrained[body].row[3 + k] += change[k];
         }
-        world_.bodies.UpdateInertia(body, rotation);
+        world_.bodies.UpdateInertia(body, axes);
     }
 
     WorldState& world_;

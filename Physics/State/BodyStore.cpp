@@ -1,5 +1,6 @@
 #include <Fulcrum/Physics/State/BodyStore.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace fulcrum {
@@ -98,7 +99,7 @@ SymmetricMatrix3 InverseOfFreeAxes(const BodyDynamics& d, const Matrix3& axes) {
 
 }  // namespace
 
-void BodyStore::UpdateInertia(uint32_t index, const Quaternion& rotation) {
+void BodyStore::UpdateInertia(uint32_t index, const Matrix3& axes) {
     const BodyDynamics& d = dynamics[index];
     BodyMass& m = masses[index];
     if (d.frozen) {
@@ -107,7 +108,6 @@ void BodyStore::UpdateInertia(uint32_t index, const Quaternion& rotation) {
     }
     m.inverseMass = d.inverseMass;
     m.turns = d.gyroscopic && !d.spherical && !d.LocksRotation() && d.motion == MotionType::Dynamic ? 1.0f : 0.0f;
-    const Matrix3 axes = ToMatrix(rotation * d.PrincipalAxes());
     const Vector3 inverse(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]);
     SymmetricMatrix3 i;
     if (d.spherical) i.xx = i.yy = i.zz = inverse.x();
@@ -132,21 +132,24 @@ SymmetricMatrix3 InverseInertia(const BodyDynamics& d, const Quaternion& rotatio
     return RotatedDiagonal(ToMatrix(rotation * d.PrincipalAxes()), Vector3(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]));
 }
 
-Vector3 AddGyroscopicTorque(const BodyDynamics& d, const Quaternion& rotation, const Vector3& w, float h) {
-    const float *i = d.inverseInertia;
-    if (!(i[0] > 0 && i[1] > 0 && i[2] > 0)) return w;
-    const Vector3 inertia(1.0f / i[0], 1.0f / i[1], 1.0f / i[2]);
-    const Vector3 rate((inertia.y() - inertia.z()) * i[0], (inertia.z() - inertia.x()) * i[1], (inertia.x() - inertia.y()) * i[2]);
-    const Quaternion axes = rotation * d.PrincipalAxes();
-    const Vector3 start = InverseRotate(axes, w);
+Vector3 AddGyroscopicTorque(const BodyDynamics& d, const Matrix3& axes, const Vector3& w, float h) {
+    // Of the moments only ratios count: (1 / iy - 1 / iz) ix = ix^2 (iz - iy) / (ix iy iz), and so on.
+    const Vector3 inverse(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]);
+    const Vector3 i = inverse * (1.0f / std::max({inverse.x(), inverse.y(), inverse.z()}));
+    const float product = i[0] * i[1] * i[2];
+    if (!(product > 0)) return w;
+    const float scale = h / product;
+    const Vector3 rate(scale * (i[0] * i[0] * (i[2] - i[1])), scale * (i[1] * i[1] * (i[0] - i[2])), scale * (i[2] * i[2] * (i[1] - i[0])));
+    const Vector3 inertia(i[1] * i[2], i[2] * i[0], i[0] * i[1]);  // times the product
+    const Vector3 start(Dot(axes.x, w), Dot(axes.y, w), Dot(axes.z, w));
     const auto energyOf = [&](const Vector3& v) { return inertia.x() * v.x() * v.x() + inertia.y() * v.y() * v.y() + inertia.z() * v.z() * v.z(); };
     Vector3 end = start;
     constexpr int kIterations = 3;
     for (int n = 0; n < kIterations; ++n) {
         const Vector3 middle = (start + end) * 0.5f;
-        end = start + Vector3(rate.x() * middle.y() * middle.z(), rate.y() * middle.z() * middle.x(), rate.z() * middle.x() * middle.y()) * h;
+        end = start + Vector3(rate.x() * middle.y() * middle.z(), rate.y() * middle.z() * middle.x(), rate.z() * middle.x() * middle.y());
     }
-    return Rotate(axes, Vector3(end * std::sqrt(energyOf(start) / energyOf(end))));
+    return axes * Vector3(end * std::sqrt(energyOf(start) / energyOf(end)));
 }
 
 size_t BodyStore::MemoryUsed() const {

@@ -53,10 +53,12 @@ static_assert(sizeof(BodyDynamics) == 64);
 // kg m2/s about the centre of mass, world axes, at the rotation and angular velocity (rad/s).
 Vector3 AngularMomentum(const BodyDynamics& body, const Quaternion& rotation, const Vector3& angularVelocity);
 SymmetricMatrix3 InverseInertia(const BodyDynamics& body, const Quaternion& rotation);
-// The angular velocity after h seconds of gyroscopic torque, at the rotation then reached: Euler's equations in the frame of
+// The principal axes in world space.
+inline Matrix3 AxesOf(const BodyDynamics& body, const Quaternion& rotation) { return ToMatrix(rotation * body.PrincipalAxes()); }
+// The angular velocity after h seconds of gyroscopic torque, at the axes then reached: Euler's equations in the frame of
 // the body, by the implicit midpoint rule. As there, the energy stays, and a body of revolution keeps the spin about its axis;
 // a rule that keeps the momentum in world axes lets the spin of a thin rod grow without end.
-Vector3 AddGyroscopicTorque(const BodyDynamics& body, const Quaternion& rotation, const Vector3& angularVelocity, float h);
+Vector3 AddGyroscopicTorque(const BodyDynamics& body, const Matrix3& axes, const Vector3& angularVelocity, float h);
 
 // Cold: for the interface.
 struct BodyCold {
@@ -123,9 +125,9 @@ public:
         return Vector3(w[0], w[1], w[2]);
     }
     void SetVelocity(uint32_t index, const Vector3& linear, const Vector3& angular);
-    // Brings the world inverse inertia of `masses` in line with the rotation: the body's, or that of the middle of a step.
-    void UpdateInertia(uint32_t index) { UpdateInertia(index, RotationOf(index)); }
-    void UpdateInertia(uint32_t index, const Quaternion& rotation);
+    // Brings the world inverse inertia of `masses` in line with the rotation, or with principal axes in the middle of a step.
+    void UpdateInertia(uint32_t index) { UpdateInertia(index, AxesOf(dynamics[index], RotationOf(index))); }
+    void UpdateInertia(uint32_t index, const Matrix3& axes);
     SolverBodies ForSolver() { return {states.data(), masses.data(), poses.data()}; }
     size_t MemoryUsed() const;
 

@@ -9,8 +9,8 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0x5f17211406508028ull;
-constexpr uint64_t kGoldenHashOfJoints = 0x65de2144f4ebe963ull;
+constexpr uint64_t kGoldenHash = 0x7d11b6af4add90c6ull;
+constexpr uint64_t kGoldenHashOfJoints = 0x313fb75755478ab7ull;
 
 std::string Hex(uint64_t number) {
     char text[24];
