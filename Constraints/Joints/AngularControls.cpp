@@ -158,8 +158,8 @@ void AngularControls::CollectRows(const JointPose& pose, uint32_t firstSlot, Joi
     const AngleRange &y = limits.swingY, &z = limits.swingZ;
     // An edge that curves is best seen from where the swing goes.
     const bool curves = IsLimited(y) && IsLimited(z) && limits.shape == SwingShape::Ellipse;
-    const auto [ahead, time] = curves ? pose.Ahead() : std::pair(pose, 0.0f);
-    const SwingTwist turned = Decompose(pose.frameA.Conjugate() * ahead.frameB);
+    const auto [frameB, time] = curves ? pose.FrameBAhead() : std::pair(pose.frameB, 0.0f);
+    const SwingTwist turned = Decompose(pose.frameA.Conjugate() * frameB);
     const float least = std::min({y.maximum, -y.minimum, z.maximum, -z.minimum});
     if (!IsLimited(y) || !IsLimited(z) || least - turned.alpha <= reach)
         AddSwingLimits(list, turned, limits);

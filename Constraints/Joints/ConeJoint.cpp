@@ -13,9 +13,9 @@ struct Swing {
     Vector3 axis;  // unit
 };
 
-Swing SwingOf(const JointPose& pose) {
-    const Matrix3 a = ToMatrix(pose.frameA);
-    const Vector3 xB = ToMatrix(pose.frameB).x;
+Swing SwingOf(const Quaternion& frameA, const Quaternion& frameB) {
+    const Matrix3 a = ToMatrix(frameA);
+    const Vector3 xB = ToMatrix(frameB).x;
     const Vector3 across = Cross(a.x, xB);
     const float sine = Length(across);
     return {Atan2(sine, Dot(a.x, xB)), sine > 1e-6f ? Vector3(across * (1.0f / sine)) : a.y};
@@ -36,8 +36,8 @@ JointLocks ConeJoint::Locks() const {
 }
 
 void ConeJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
-    const auto [ahead, time] = pose.Ahead();
-    Swing swing = SwingOf(ahead);
+    const auto [frameB, time] = pose.FrameBAhead();
+    Swing swing = SwingOf(pose.frameA, frameB);
     JointRow motion;
     pose.SetAbout(motion, swing.axis);
     swing.angle -= pose.SpeedOf(motion) * time;
@@ -48,7 +48,7 @@ void ConeJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
 }
 
 double ConeJoint::Coordinate(JointAxis axis, const JointPose& pose) const {
-    return axis == JointAxis::AngularY ? static_cast<double>(SwingOf(pose).angle) : JointType::Coordinate(axis, pose);
+    return axis == JointAxis::AngularY ? static_cast<double>(SwingOf(pose.frameA, pose.frameB).angle) : JointType::Coordinate(axis, pose);
 }
 
 }  // namespace fulcrum

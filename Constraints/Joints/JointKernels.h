@@ -302,14 +302,6 @@ template <class Rows, class Real>
     else return Vec3<Real>(rows.x(), rows.y(), zero);
 }
 
-// The total impulses of a part, and what it answers to the rows.
-template <class Part, class Real>
-[[gnu::always_inline]] inline auto Answered(const Part& part, const Vec3<Real>& answer) {
-    auto lambda = part.GetTotalLambda();
-    for (int k = 0; k < lambda.size(); ++k) lambda[k] += answer[k];
-    return lambda;
-}
-
 // What the locks see of a motion: L v.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 [[gnu::always_inline]] inline LockImpulses<Wide<N>> LockMotion(JointBatch<N>& batch, const Twist<Wide<N>>& a, const Twist<Wide<N>>& b) {

@@ -1,5 +1,7 @@
 #include <Fulcrum/Constraints/Joints/JointTree.h>
 
+#include <Fulcrum/Constraints/BodyLanes.h>
+
 namespace fulcrum {
 
 namespace {
@@ -8,11 +10,6 @@ using Vector6 = JointTreeSlot::Vector6;
 using Matrix6 = JointTreeSlot::Matrix6;
 using Batch = JointBatch<kLanes>;
 constexpr double kAnchorCompliance = 1e-5;  // of that of its body
-
-Vector3 LaneOf(const Vec3<Wide<kLanes>>& v, uint32_t lane) {
-    const int i = static_cast<int>(lane);
-    return Vector3(v.x()[i], v.y()[i], v.z()[i]);
-}
 
 // Rows of a joint's locks: J = [-a, b].
 struct Rows {
@@ -43,17 +40,17 @@ Rows RowsOf(const Batch& batch, uint32_t lane) {
     Rows rows;
     if (batch.linear == LinearLock::Point)
         for (int k = 0; k < 3; ++k)
-            rows.AddLinear(Vector3::Unit(k), LaneOf(batch.point.GetArm1(), lane), LaneOf(batch.point.GetArm2(), lane));
+            rows.AddLinear(Vector3::Unit(k), LaneOf<kLanes>(batch.point.GetArm1(), lane), LaneOf<kLanes>(batch.point.GetArm2(), lane));
     if (batch.linear == LinearLock::Line) {
         const auto& frame = batch.line.GetFrame();
         for (const auto* axis : {&frame.axis1, &frame.axis2})
-            rows.AddLinear(LaneOf(*axis, lane), LaneOf(frame.r1PlusU, lane), LaneOf(frame.r2, lane));
+            rows.AddLinear(LaneOf<kLanes>(*axis, lane), LaneOf<kLanes>(frame.r1PlusU, lane), LaneOf<kLanes>(frame.r2, lane));
     }
     if (batch.angular == AngularLock::All)
         for (int k = 0; k < 3; ++k) rows.AddAngular(Vector3::Unit(k));
     if (batch.angular == AngularLock::Axis) {
-        rows.AddAngular(-LaneOf(batch.hinge.GetC2(), lane));
-        rows.AddAngular(LaneOf(batch.hinge.GetB2(), lane));
+        rows.AddAngular(-LaneOf<kLanes>(batch.hinge.GetC2(), lane));
+        rows.AddAngular(LaneOf<kLanes>(batch.hinge.GetB2(), lane));
     }
     return rows;
 }

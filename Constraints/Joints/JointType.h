@@ -1,5 +1,5 @@
 // What kinds of joints differ in: which motions they lock, and which rows they add in a step. The joint's locks are solved
-// anew from the poses in every substep; rows keep their Jacobian for a step. A user-defined constraint is a class of its own
+// anew from the poses in every substep; rows keep their Jacobian for a step, or turn it with body A. A user-defined constraint is a class of its own
 // derived from JointType. Called by the Prepare stage, for different joints on different threads, for one joint on one.
 #pragma once
 
@@ -54,15 +54,13 @@ struct JointPose {
         return velocityB.linear + Cross<float>(velocityB.angular, armB) - velocityA.linear -
                Cross<float>(velocityA.angular, Vector3(armA + offset));
     }
-    // The pose that B will have turned to, and in how many seconds: within the step, and no farther than rows can be linear.
+    // Frame B as it will have turned against A, and in how many seconds: within the step, and no farther than rows can be linear.
     // A row that is right there, its error put back to now, follows a turn better than one that is right at the start.
-    std::pair<JointPose, float> Ahead() const {
+    std::pair<Quaternion, float> FrameBAhead() const {
         constexpr float kFarthest = 0.4f;  // rad
         const Vector3 w = AngularVelocity();
-        const float speed = Length(w);
-        std::pair<JointPose, float> ahead(*this, speed * dt > kFarthest ? kFarthest / speed : dt);
-        ahead.first.frameB = RotationFromVector(Vector3(w * ahead.second)) * frameB;
-        return ahead;
+        const float speed = Length(w), time = speed * dt > kFarthest ? kFarthest / speed : dt;
+        return {RotationFromVector(Vector3(w * time)) * frameB, time};
     }
     Vector3 AngularVelocity() const { return velocityB.angular - velocityA.angular; }  // rad/s, of B against A
     // Jacobians of the motion of B's anchor along the unit axis n of A, and of the rotation of B against A about `axis`; both
