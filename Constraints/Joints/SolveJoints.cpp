@@ -69,8 +69,7 @@ template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
 [[gnu::always_inline]] inline void SolveRow(JointBatch<N>& batch, JointRows<N>& row, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
     using Real = Wide<N>;
     const Real zero(0.0f);
-    const Real speed = Dot<Real>(row.b.linear, b.linear) + Dot<Real>(row.b.angular, b.angular) -
-                       Dot<Real>(row.a.linear, a.linear) - Dot<Real>(row.a.angular, a.angular);
+    const Real speed = RowMotion<Real>(row, a, b);
     Real change;
     if constexpr (kRelax) {
         change = row.mass * row.hardScale * (speed - row.speed + Max(row.error, zero) * row.gapRate);
@@ -207,65 +206,51 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     return errors;
 }
 
-}  // namespace
-
-template <int N>
-void WarmStartJoints(const JointBatch<N>& batch, BodyState* states) {
-    using Real = Wide<N>;
+// Calls change(linear lock, angular lock, velocities of A, of B) for the batch, and writes these back.
+template <int N, class Batch, class F>
+[[gnu::always_inline]] inline void ChangeVelocities(Batch& batch, BodyState* states, F&& change) {
     WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
         Motion<N> motionA, motionB;
         motionA.template Gather<Of::Velocity>(batch.bodyA, states);
         motionB.template Gather<Of::Velocity>(batch.bodyB, states);
-        Twist<Real> a = motionA.Get(), b = motionB.Get();
-        AddRowImpulses<false>(batch, a, b, 1.0f);
-        AddLockImpulses<linear, angular>(batch, a, b, 1.0f);
+        Twist<Wide<N>> a = motionA.Get(), b = motionB.Get();
+        change(linear, angular, a, b);
         motionA.Scatter(a, batch.count, batch.fixedA);
         motionB.Scatter(b, batch.count, batch.fixedB);
+    });
+}
+
+}  // namespace
+
+template <int N>
+void WarmStartJoints(const JointBatch<N>& batch, BodyState* states) {
+    ChangeVelocities<N>(batch, states, [&](auto linear, auto angular, auto& a, auto& b) __attribute__((always_inline)) {
+        AddRowImpulses<false>(batch, a, b, 1.0f);
+        AddLockImpulses<linear, angular>(batch, a, b, 1.0f);
     });
 }
 
 template <int N>
 void TurnJoints(JointBatch<N>& batch, BodyState* states) {
-    using Real = Wide<N>;
-    WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
-        Motion<N> motionA, motionB;
-        motionA.template Gather<Of::Velocity>(batch.bodyA, states);
-        motionB.template Gather<Of::Velocity>(batch.bodyB, states);
-        Twist<Real> a = motionA.Get(), b = motionB.Get();
+    ChangeVelocities<N>(batch, states, [&](auto linear, auto angular, auto& a, auto& b) __attribute__((always_inline)) {
         Turn<linear, angular>(batch, a, b);
-        motionA.Scatter(a, batch.count, batch.fixedA);
-        motionB.Scatter(b, batch.count, batch.fixedB);
     });
 }
 
 template <int N>
 void SolveJointVelocities(JointBatch<N>& batch, BodyState* states, const JointSolveSettings& settings) {
-    using Real = Wide<N>;
-    WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
-        Motion<N> motionA, motionB;
-        motionA.template Gather<Of::Velocity>(batch.bodyA, states);
-        motionB.template Gather<Of::Velocity>(batch.bodyB, states);
-        Twist<Real> a = motionA.Get(), b = motionB.Get();
+    ChangeVelocities<N>(batch, states, [&](auto linear, auto angular, auto& a, auto& b) __attribute__((always_inline)) {
         if (settings.continues) Turn<linear, angular>(batch, a, b);
         SolveAll<false, linear, angular>(batch, a, b);
-        motionA.Scatter(a, batch.count, batch.fixedA);
-        motionB.Scatter(b, batch.count, batch.fixedB);
     });
 }
 
 template <int N>
 void RelaxJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
-    using Real = Wide<N>;
-    WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
-        Motion<N> motionA, motionB;
-        motionA.template Gather<Of::Velocity>(batch.bodyA, bodies.states);
-        motionB.template Gather<Of::Velocity>(batch.bodyB, bodies.states);
-        Twist<Real> a = motionA.Get(), b = motionB.Get();
-        const JointErrors<Real> errors = Follow<linear, angular>(batch, bodies, a, b, settings);
+    ChangeVelocities<N>(batch, bodies.states, [&](auto linear, auto angular, auto& a, auto& b) __attribute__((always_inline)) {
+        const JointErrors<Wide<N>> errors = Follow<linear, angular>(batch, bodies, a, b, settings);
         SolveAll<true, linear, angular>(batch, a, b);
         Soften<linear, angular>(batch, errors, settings);
-        motionA.Scatter(a, batch.count, batch.fixedA);
-        motionB.Scatter(b, batch.count, batch.fixedB);
     });
 }
 
