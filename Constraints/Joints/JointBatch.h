@@ -76,12 +76,13 @@ struct JointBatch {
     JointRows<N>* rows;
 
     InverseMass<Real> massA, massB;
-    Real turns;                          // 1: those of this lane do
     PointPart<Real> point;
     Vec3<Real> startArmA, startArmB, startOffset;
     Twist<Real> turnedA, turnedB;
-    Vec3<Real> answerLinear, answerAngular;  // of the locks to the rows; only where there are rows
     Vec3<Real> earlierLinear, earlierAngular;  // impulses and answers of the locks, summed over the substeps before
+    Real turns;                          // 1: those of this lane do
+    Vec3<Real> answerLinear, answerAngular;  // of the locks to the rows; only where there are rows
+    Twist<Real> wayA, wayB;              // displacements at which rows were set up last
 
     RotationEulerPart<Real> rotation;
     Quat<Real> startTwist;               // of B against A, world axes, for AngularLock::All
@@ -95,7 +96,6 @@ struct JointBatch {
     Vec3<Real> cross[3];
     Sym3<Real> coupledPoint;             // S^-1
     Sym2<Real> coupledLine;
-    Twist<Real> wayA, wayB;              // displacements at which rows were set up last
 };
 
 // Rotation vectors of a step up to this, rad, are put together as rotations, longer ones added.

@@ -167,21 +167,12 @@ uint32_t GroupOf(const WorldState& world, const Islands& islands, const Entry& e
     return islands.groupOf[world.bodies.cold[MovingBodyOf(entry)].awakePlace];
 }
 
-// A joint with what decides in which batch it is.
-struct SortedJoint {
-    uint32_t place;   // group * kColours + colour
-    uint32_t kind;    // batches have joints of the same locks, and best of as many rows
-    uint32_t joint;
-    friend auto operator<=>(const SortedJoint&, const SortedJoint&) = default;
-};
-
 uint32_t LocksOf(uint32_t kind) { return kind >> 8; }
 
-std::span<const SortedJoint> SortJoints(WorldState& world, const Islands& islands) {
-    size_t count = 0;
-    VisitEntries(world, Kind::Joint, [&](uint32_t, const Entry&) { ++count; });
-    std::span<SortedJoint> sorted = world.scratch.Allocate<SortedJoint>(count);
-    count = 0;
+// Brings what the layout knows of the joints up to date, and their order within a colour.
+void ListJoints(WorldState& world) {
+    SolverLayout& layout = world.solver;
+    layout.listedJoints.clear();
     VisitEntries(world, Kind::Joint, [&](uint32_t c, const Entry& entry) {
         Joint& joint = world.joints.joints[entry.constraint];
         joint.locks = joint.type->Locks();
@@ -197,10 +188,32 @@ std::span<const SortedJoint> SortJoints(WorldState& world, const Islands& island
         record.freeAxis = joint.locks.axis;
         if (c == kColours) return;
         const uint32_t locks = static_cast<uint32_t>(joint.locks.linear) * 3 + static_cast<uint32_t>(joint.locks.angular);
-        sorted[count++] = {GroupOf(world, islands, entry) * kColours + c, locks << 8 | joint.maxRows, entry.constraint};
+        layout.listedJoints.push_back({locks << 8 | joint.maxRows, entry.constraint, MovingBodyOf(entry), c});
     });
-    sorted = sorted.first(count);
-    std::sort(sorted.begin(), sorted.end());
+    std::sort(layout.listedJoints.begin(), layout.listedJoints.end());
+}
+
+// A joint with its place: group * kColours + colour.
+struct SortedJoint {
+    uint32_t place, kind, joint;
+};
+
+// By place, and within each in the order of the list.
+std::span<const SortedJoint> SortJoints(WorldState& world, const Islands& islands) {
+    SolverLayout& layout = world.solver;
+    if (layout.jointVersion != world.colouring.JointVersion()) ListJoints(world);
+    layout.jointVersion = world.colouring.JointVersion();
+    const size_t count = layout.listedJoints.size();
+    std::span<SortedJoint> placed = world.scratch.Allocate<SortedJoint>(count), sorted = world.scratch.Allocate<SortedJoint>(count);
+    std::span<uint32_t> next = world.scratch.Allocate<uint32_t>(size_t(islands.groups) * kColours);
+    std::fill(next.begin(), next.end(), 0u);
+    for (size_t i = 0; i < count; ++i) {
+        const ListedJoint& listed = layout.listedJoints[i];
+        placed[i] = {islands.groupOf[world.bodies.cold[listed.body].awakePlace] * kColours + listed.colour, listed.kind, listed.joint};
+        ++next[placed[i].place];
+    }
+    FirstOfEach(next);
+    for (const SortedJoint& joint : placed) sorted[next[joint.place]++] = joint;
     return sorted;
 }
 

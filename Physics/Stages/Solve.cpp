@@ -8,9 +8,9 @@
 // The warm start of every substep but the first costs nothing per constraint: the impulses of the last substep give each body
 // the same change of velocity again, and that is its velocity at the substep's end minus what it was without constraints. Rows
 // of contacts do not change within a step; joints add what the turning of their parts changes.
-#include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Jobs/Phases.h>
 #include <Fulcrum/Physics/Stages/Effort.h>
+#include <Fulcrum/Physics/Stages/Integrate.h>
 
 #include <algorithm>
 
@@ -31,9 +31,6 @@ struct Phase {
     uint8_t substep;
     uint16_t colour;  // of the large group, from 0; the number of its colours means the overflow
 };
-
-// Velocity that a body has after h seconds of damping 1/s, per unit: exp(-damping h).
-float DampingFactor(float damping, float h) { return damping > 0 ? Exp(-damping * h) : 1.0f; }
 
 // Batches are streamed: the next one is on its way while this one is solved.
 template <class Batch>
@@ -102,10 +99,8 @@ private:
     }
 
     void RunBodies(Verb verb, uint8_t substep, std::span<const uint32_t> bodies, WorkerFindings& findings) {
-        for (uint32_t body : bodies) {
-            if (verb == Verb::IntegratePoses) IntegratePose(body);
-            else IntegrateVelocity(body, substep > 0, findings);
-        }
+        if (verb == Verb::IntegratePoses) IntegratePoses(world_, bodies, h_);
+        else IntegrateVelocities(world_, bodies, h_, substep > 0, findings);
     }
 
     // What the trees of a group do before its batches take their turn.
@@ -220,84 +215,6 @@ private:
         ContactSolveSettings settings = effort_.contacts;
         settings.elapsed = h_ * (static_cast<float>(substep) + part);
         return settings;
-    }
-
-    void IntegrateVelocity(uint32_t body, bool again, WorkerFindings& findings) {
-        BodyStore& bodies = world_.bodies;
-        const BodyDynamics& d = bodies.dynamics[body];
-        if (d.motion != MotionType::Dynamic) return;
-        const float* a = bodies.poses[body].acceleration;
-        float* unconstrained = bodies.unconstrained[body].row;
-        float* row = bodies.states[body].VelocityRow();
-        Vector3 v(row[0], row[1], row[2]), w(row[3], row[4], row[5]);
-        Vector3 carryV = Vector3::Zero(), carryW = Vector3::Zero();
-        if (again) {
-            carryV = v - Vector3(unconstrained[0], unconstrained[1], unconstrained[2]);
-            carryW = w - Vector3(unconstrained[3], unconstrained[4], unconstrained[5]);
-        }
-        v = (v + Vector3(a[0], a[1], a[2]) * h_) * DampingFactor(d.linearDamping, h_);
-        w *= DampingFactor(d.angularDamping, h_);
-        if (d.hasForce) w += bodies.masses[body].InverseInertia() * bodies.cold[body].torque * h_;
-        if (d.lockedAxes != LockedAxes::None) {
-            d.Lock(v, w);
-            d.Lock(carryV, carryW);
-        }
-        // What is not finite must not reach the rows: its neighbours go on. Store finds the forces and freezes it.
-        if (!IsFinite(v) || !IsFinite(w)) v = w = carryV = carryW = Vector3::Zero();
-        const bool fastLinear = ClampLength(v, d.maxLinearSpeed), fastAngular = ClampLength(w, d.maxAngularSpeed);
-        findings.clamped += fastLinear || fastAngular;
-        for (int k = 0; k < 3; ++k) {
-            unconstrained[k] = v[k];
-            unconstrained[3 + k] = w[k];
-            row[k] = v[k] + carryV[k];
-            row[3 + k] = w[k] + carryW[k];
-        }
-    }
-
-    void IntegratePose(uint32_t body) {
-        const BodyDynamics& d = world_.bodies.dynamics[body];
-        if (d.motion != MotionType::Dynamic) return;
-        BodyState& s = world_.bodies.states[body];
-        if (d.lockedAxes != LockedAxes::None) {
-            Vector3 v = world_.bodies.LinearVelocityOf(body), w = world_.bodies.AngularVelocityOf(body);
-            d.Lock(v, w);
-            world_.bodies.SetVelocity(body, v, w);
-        }
-        const bool isJointed = world_.joints.HasAny(body);
-        if (isJointed) ComposeRotation(s);
-        for (int k = 0; k < 3; ++k) {
-            s.deltaPosition[k] += s.linearVelocity[k] * h_;
-            s.deltaRotation[k] += s.angularVelocity[k] * h_;
-        }
-        if (isJointed) TurnInertia(body);
-    }
-
-    // Adds what the rotation vector of one rotation after another is more than their sum, to the third order (the series of
-    // Baker, Campbell and Hausdorff), as far as that is small. Without it a step's error is that of the whole step, however many
-    // substeps there are.
-    void ComposeRotation(BodyState& s) {
-        const Vector3 before(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]);
-        if (LengthSquared(before) > joints::kFarthestSeries * joints::kFarthestSeries) return;
-        const Vector3 turn = Vector3(s.angularVelocity[0], s.angularVelocity[1], s.angularVelocity[2]) * h_;
-        const Vector3 across = Cross<float>(turn, before);
-        const Vector3 more = across * 0.5f + Cross<float>(Vector3(turn - before), across) * (1.0f / 12.0f);
-        for (int k = 0; k < 3; ++k) s.deltaRotation[k] += more[k];
-    }
-
-    // Joints pull at the ends of bodies, where an inertia that is left behind makes torques of their forces that are not there.
-    void TurnInertia(uint32_t body) {
-        const BodyDynamics& d = world_.bodies.dynamics[body];
-        const Vector3 w = world_.bodies.AngularVelocityOf(body);
-        if (!d.FeelsGyroscopicTorque(w)) return;
-        BodyState& s = world_.bodies.states[body];
-        const Vector3 turn(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]);
-        const Matrix3 axes = AxesOf(d, RotationFromVector(turn) * world_.bodies.RotationOf(body));
-        const Vector3 change = AddGyroscopicTorque(d, axes, w, h_) - w;
-        for (int k = 0; k < 3; ++k) {
-            s.angularVelocity[k] += change[k];
-            world_.bodies.unconstrained[body].row[3 + k] += change[k];
-        }
-        world_.bodies.UpdateInertia(body, axes);
     }
 
     WorldState& world_;

@@ -2,6 +2,7 @@
 // exactly. Impulses go back to the records.
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Physics/Stages/Effort.h>
+#include <Fulcrum/Physics/Stages/Integrate.h>
 
 #include <algorithm>
 
@@ -67,7 +68,7 @@ void MoveSolved(WorldState& world, uint32_t body, Pose& pose, Vector3& w, float 
     pose.position += Vector3(s.deltaPosition[0], s.deltaPosition[1], s.deltaPosition[2]).cast<double>();
     pose.rotation = Normalized(RotationFromVector(Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2])) * pose.rotation);
     // With joints every substep has seen to that.
-    if (d.FeelsGyroscopicTorque(w) && !world.joints.HasAny(body)) w = AddGyroscopicTorque(d, AxesOf(d, pose.rotation), w, dt);
+    if (d.FeelsGyroscopicTorque(w) && !world.joints.HasAny(body)) w = AddGyroscopicTorque<float>(Vector3(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]), AxesOf(d, pose.rotation), w, dt);
 }
 
 void ForgetForces(WorldState& world, uint32_t body) {

@@ -132,26 +132,6 @@ SymmetricMatrix3 InverseInertia(const BodyDynamics& d, const Quaternion& rotatio
     return RotatedDiagonal(ToMatrix(rotation * d.PrincipalAxes()), Vector3(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]));
 }
 
-Vector3 AddGyroscopicTorque(const BodyDynamics& d, const Matrix3& axes, const Vector3& w, float h) {
-    // Of the moments only ratios count: (1 / iy - 1 / iz) ix = ix^2 (iz - iy) / (ix iy iz), and so on.
-    const Vector3 inverse(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]);
-    const Vector3 i = inverse * (1.0f / std::max({inverse.x(), inverse.y(), inverse.z()}));
-    const float product = i[0] * i[1] * i[2];
-    if (!(product > 0)) return w;
-    const float scale = h / product;
-    const Vector3 rate(scale * (i[0] * i[0] * (i[2] - i[1])), scale * (i[1] * i[1] * (i[0] - i[2])), scale * (i[2] * i[2] * (i[1] - i[0])));
-    const Vector3 inertia(i[1] * i[2], i[2] * i[0], i[0] * i[1]);  // times the product
-    const Vector3 start(Dot(axes.x, w), Dot(axes.y, w), Dot(axes.z, w));
-    const auto energyOf = [&](const Vector3& v) { return inertia.x() * v.x() * v.x() + inertia.y() * v.y() * v.y() + inertia.z() * v.z() * v.z(); };
-    Vector3 end = start;
-    constexpr int kIterations = 3;
-    for (int n = 0; n < kIterations; ++n) {
-        const Vector3 middle = (start + end) * 0.5f;
-        end = start + Vector3(rate.x() * middle.y() * middle.z(), rate.y() * middle.z() * middle.x(), rate.z() * middle.x() * middle.y());
-    }
-    return axes * Vector3(end * std::sqrt(energyOf(start) / energyOf(end)));
-}
-
 size_t BodyStore::MemoryUsed() const {
     return states.capacity() * sizeof(BodyState) + masses.capacity() * sizeof(BodyMass) +
            poses.capacity() * sizeof(BodyPose) + unconstrained.capacity() * sizeof(UnconstrainedVelocity) +

@@ -30,6 +30,10 @@ struct alignas(64) BodyDynamics {
     bool frozen : 1 = false;
     uint8_t layer = 0;
 
+    // Eight numbers each, for lanes.
+    const float* InertiaRow() const { return inverseInertia; }  // moments, mass, principal axes
+    const float* LimitsRow() const { return &gravityFactor; }   // up to outerRadius
+
     // Sets what the locked axes forbid of a velocity or a displacement to zero.
     void Lock(Vector3& linear, Vector3& angular) const {
         const unsigned locked = static_cast<unsigned>(lockedAxes);
@@ -40,9 +44,10 @@ struct alignas(64) BodyDynamics {
     }
     // Whether gyroscopic torque changes anything that can be seen, at the angular velocity in rad/s.
     bool FeelsGyroscopicTorque(const Vector3& w) const {
-        constexpr float kLeast = 0.1f;  // rad/s
-        return gyroscopic && !spherical && !LocksRotation() && LengthSquared(w) > kLeast * kLeast;
+        return HasGyroscopicTorque() && LengthSquared(w) > kLeastGyroscopicSpeed * kLeastGyroscopicSpeed;
     }
+    static constexpr float kLeastGyroscopicSpeed = 0.1f;  // rad/s
+    bool HasGyroscopicTorque() const { return gyroscopic && !spherical && !LocksRotation(); }
     bool LocksRotation() const { return (static_cast<unsigned>(lockedAxes) & 56u) != 0; }
     Quaternion PrincipalAxes() const {
         return {principalAxes[0], principalAxes[1], principalAxes[2], principalAxes[3]};
@@ -55,11 +60,6 @@ Vector3 AngularMomentum(const BodyDynamics& body, const Quaternion& rotation, co
 SymmetricMatrix3 InverseInertia(const BodyDynamics& body, const Quaternion& rotation);
 // The principal axes in world space.
 inline Matrix3 AxesOf(const BodyDynamics& body, const Quaternion& rotation) { return ToMatrix(rotation * body.PrincipalAxes()); }
-// The angular velocity after h seconds of gyroscopic torque, at the axes then reached: Euler's equations in the frame of
-// the body, by the implicit midpoint rule. As there, the energy stays, and a body of revolution keeps the spin about its axis;
-// a rule that keeps the momentum in world axes lets the spin of a thin rod grow without end.
-Vector3 AddGyroscopicTorque(const BodyDynamics& body, const Matrix3& axes, const Vector3& angularVelocity, float h);
-
 // Cold: for the interface.
 struct BodyCold {
     ShapePtr shape;

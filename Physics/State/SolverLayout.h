@@ -40,6 +40,15 @@ struct ColourBatches {
     uint32_t Count() const { return JointCount() + moving.Count() + fixed.Count(); }
 };
 
+// A coloured joint. Batches have joints of the same locks, and best of as many rows.
+struct ListedJoint {
+    uint32_t kind;    // locks << 8 | rows
+    uint32_t joint;
+    uint32_t body;    // one that it moves
+    uint32_t colour;
+    friend auto operator<=>(const ListedJoint&, const ListedJoint&) = default;
+};
+
 struct SolverLayout {
     std::vector<SolverGroup> groups;                                // empty: nothing to solve
     std::vector<ColourBatches> colours;
@@ -53,6 +62,8 @@ struct SolverLayout {
     std::vector<JointBatch<1>> overflowJoints;
     std::vector<JointRows<kLanes>> jointRows;                       // room for the batches' rows
     std::vector<JointRows<1>> overflowRows;
+    std::vector<ListedJoint> listedJoints;                          // in order
+    uint64_t jointVersion = 0;                                      // of the colouring that this list was made from
     JointTrees trees;
     std::vector<uint32_t> treesByGroup;                             // indices of trees
     uint32_t movingCount = 0, fixedCount = 0, jointCount = 0;       // batches in use

@@ -1,0 +1,240 @@
+#include <Fulcrum/Physics/Stages/Integrate.h>
+
+#include <Fulcrum/Constraints/BodyLanes.h>
+#include <Fulcrum/Math/Trigonometry.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+namespace {
+
+using Lanes = Wide<kLanes>;
+using Indices = uint32_t[kLanes];
+
+// Velocity that a body has after h seconds of damping 1/s, per unit: exp(-damping h).
+float DampingFactor(float damping, float h) { return damping > 0 ? Exp(-damping * h) : 1.0f; }
+
+void IntegrateVelocity(WorldState& world, uint32_t body, float h, bool again, WorkerFindings& findings) {
+    BodyStore& bodies = world.bodies;
+    const BodyDynamics& d = bodies.dynamics[body];
+    if (d.motion != MotionType::Dynamic) return;
+    const float* a = bodies.poses[body].acceleration;
+    float* unconstrained = bodies.unconstrained[body].row;
+    float* row = bodies.states[body].VelocityRow();
+    Vector3 v(row[0], row[1], row[2]), w(row[3], row[4], row[5]);
+    Vector3 carryV = Vector3::Zero(), carryW = Vector3::Zero();
+    if (again) {
+        carryV = v - Vector3(unconstrained[0], unconstrained[1], unconstrained[2]);
+        carryW = w - Vector3(unconstrained[3], unconstrained[4], unconstrained[5]);
+    }
+    v = (v + Vector3(a[0], a[1], a[2]) * h) * DampingFactor(d.linearDamping, h);
+    w *= DampingFactor(d.angularDamping, h);
+    if (d.hasForce) w += bodies.masses[body].InverseInertia() * bodies.cold[body].torque * h;
+    if (d.lockedAxes != LockedAxes::None) {
+        d.Lock(v, w);
+        d.Lock(carryV, carryW);
+    }
+    // What is not finite must not reach the rows: its neighbours go on. Store finds the forces and freezes it.
+    if (!IsFinite(v) || !IsFinite(w)) v = w = carryV = carryW = Vector3::Zero();
+    const bool fastLinear = ClampLength(v, d.maxLinearSpeed), fastAngular = ClampLength(w, d.maxAngularSpeed);
+    findings.clamped += fastLinear || fastAngular;
+    for (int k = 0; k < 3; ++k) {
+        unconstrained[k] = v[k];
+        unconstrained[3 + k] = w[k];
+        row[k] = v[k] + carryV[k];
+        row[3 + k] = w[k] + carryW[k];
+    }
+}
+
+// Rotation vectors of one rotation after another, rad, put together to the third order (the series of Baker, Campbell and
+// Hausdorff), as far as they are small; this is what comes to their sum. Without it a step's error is that of the whole step,
+// however many substeps there are.
+template <class Real>
+[[gnu::always_inline]] inline Vec3<Real> MoreThanTheSum(const Vec3<Real>& before, const Vec3<Real>& turn) {
+    const Vec3<Real> across = Cross<Real>(turn, before);
+    return across * Real(0.5f) + Cross<Real>(Vec3<Real>(turn - before), across) * Real(1.0f / 12.0f);
+}
+constexpr float kFarthestSquared = joints::kFarthestSeries * joints::kFarthestSeries;
+
+// Joints pull at the ends of bodies, where an inertia that is left behind makes torques of their forces that are not there.
+void TurnInertia(BodyStore& bodies, uint32_t body, float h) {
+    const BodyDynamics& d = bodies.dynamics[body];
+    const Vector3 w = bodies.AngularVelocityOf(body);
+    if (!d.FeelsGyroscopicTorque(w)) return;
+    BodyState& s = bodies.states[body];
+    const Vector3 turn(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]);
+    const Matrix3 axes = AxesOf(d, RotationFromVector(turn) * bodies.RotationOf(body));
+    const float* inverse = d.inverseInertia;
+    const Vector3 change = AddGyroscopicTorque<float>(Vector3(inverse[0], inverse[1], inverse[2]), axes, w, h) - w;
+    for (int k = 0; k < 3; ++k) {
+        s.angularVelocity[k] += change[k];
+        bodies.unconstrained[body].row[3 + k] += change[k];
+    }
+    bodies.UpdateInertia(body, axes);
+}
+
+void IntegratePose(WorldState& world, uint32_t body, float h) {
+    const BodyDynamics& d = world.bodies.dynamics[body];
+    if (d.motion != MotionType::Dynamic) return;
+    BodyState& s = world.bodies.states[body];
+    if (d.lockedAxes != LockedAxes::None) {
+        Vector3 v = world.bodies.LinearVelocityOf(body), w = world.bodies.AngularVelocityOf(body);
+        d.Lock(v, w);
+        world.bodies.SetVelocity(body, v, w);
+    }
+    const bool isJointed = world.joints.HasAny(body);
+    const Vector3 before(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]);
+    if (isJointed && !(LengthSquared(before) > kFarthestSquared)) {
+        const Vector3 turn = Vector3(s.angularVelocity[0], s.angularVelocity[1], s.angularVelocity[2]) * h;
+        const Vector3 more = MoreThanTheSum<float>(before, turn);
+        for (int k = 0; k < 3; ++k) s.deltaRotation[k] += more[k];
+    }
+    for (int k = 0; k < 3; ++k) {
+        s.deltaPosition[k] += s.linearVelocity[k] * h;
+        s.deltaRotation[k] += s.angularVelocity[k] * h;
+    }
+    if (isJointed) TurnInertia(world.bodies, body, h);
+}
+
+// Eight numbers of each of so many bodies, by lanes.
+struct Rows {
+    float* rows[kLanes];
+    Lanes at[8];
+
+    template <class RowOf>
+    [[gnu::always_inline]] Rows(const Indices& bodies, RowOf&& rowOf) {
+        for (int i = 0; i < kLanes; ++i) rows[i] = const_cast<float*>(rowOf(bodies[i]));
+        GatherRows<kLanes>(reinterpret_cast<const float* const(&)[kLanes]>(rows), at);
+    }
+    Vec3<Lanes> First() const { return Vec3<Lanes>(at[0], at[1], at[2]); }
+    Vec3<Lanes> Second() const { return Vec3<Lanes>(at[3], at[4], at[5]); }
+    void Set(const Vec3<Lanes>& first, const Vec3<Lanes>& second) {
+        for (int k = 0; k < 3; ++k) {
+            at[k] = first[k];
+            at[3 + k] = second[k];
+        }
+    }
+    void Write(int count) const { ScatterRows<kLanes>(rows, at, count); }
+    // Where the bit of the lane is set.
+    void Write(int count, uint32_t lanes) {
+        alignas(32) float nowhere[8];
+        for (int i = 0; i < kLanes; ++i)
+            if (!(lanes >> i & 1u)) rows[i] = nowhere;
+        Write(count);
+    }
+};
+
+// Whether that was all there is to do; else nothing is done.
+bool IntegrateVelocitiesInLanes(WorldState& world, const Indices& index, int count, float h, bool again) {
+    BodyStore& bodies = world.bodies;
+    for (uint32_t body : index) {
+        const BodyDynamics& d = bodies.dynamics[body];
+        if (d.motion != MotionType::Dynamic || d.lockedAxes != LockedAxes::None || d.hasForce) return false;
+    }
+    const Rows limits(index, [&](uint32_t body) { return bodies.dynamics[body].LimitsRow(); });
+    const Lanes zero(0.0f), linearDamping = limits.at[1], angularDamping = limits.at[2], maxLinear = limits.at[3], maxAngular = limits.at[4];
+    if (((linearDamping > zero) | (angularDamping > zero)).Any()) return false;
+    Rows velocity(index, [&](uint32_t body) { return bodies.states[body].VelocityRow(); });
+    Rows unconstrained(index, [&](uint32_t body) { return bodies.unconstrained[body].row; });
+    const Rows pose(index, [&](uint32_t body) { return bodies.poses[body].rotation; });
+    const Vec3<Lanes> acceleration(pose.at[4], pose.at[5], pose.at[6]);
+    const Vec3<Lanes> v = velocity.First() + acceleration * Lanes(h), w = velocity.Second();
+    const auto isFine = [&](const Vec3<Lanes>& x, const Lanes& limit) {
+        const Lanes squared = Dot<Lanes>(x, x);
+        return (squared <= limit * limit) & (squared < Lanes(std::numeric_limits<float>::infinity()));
+    };
+    if (!(isFine(v, maxLinear) & isFine(w, maxAngular)).All()) return false;
+    Vec3<Lanes> carryV(zero, zero, zero), carryW(zero, zero, zero);
+    if (again) {
+        carryV = velocity.First() - unconstrained.First();
+        carryW = velocity.Second() - unconstrained.Second();
+    }
+    unconstrained.Set(v, w);
+    unconstrained.Write(count);
+    velocity.Set(v + carryV, w + carryW);
+    velocity.Write(count);
+    return true;
+}
+
+// TurnInertia of the lanes that feel it. turn: rotation since the start of the step, rad; w: rad/s, changed.
+[[gnu::always_inline]] inline void TurnInertias(BodyStore& bodies, const Indices& index, int count, WideMask<kLanes> feels,
+                                                const Vec3<Lanes>& turn, Vec3<Lanes>& w, float h) {
+    const uint32_t lanes = feels.ToBits();
+    const Rows pose(index, [&](uint32_t body) { return bodies.poses[body].rotation; });
+    const Rows inertia(index, [&](uint32_t body) { return bodies.dynamics[body].InertiaRow(); });
+    Rows unconstrained(index, [&](uint32_t body) { return bodies.unconstrained[body].row; });
+    const Quat<Lanes> rotation = RotationFromVector<Lanes>(turn) * Quat<Lanes>{pose.at[0], pose.at[1], pose.at[2], pose.at[3]};
+    const Mat3<Lanes> axes = ToMatrix<Lanes>(rotation * Quat<Lanes>{inertia.at[4], inertia.at[5], inertia.at[6], inertia.at[7]});
+    const Vec3<Lanes> change = AddGyroscopicTorque<Lanes>(inertia.First(), axes, w, Lanes(h)) - w;
+    for (int k = 0; k < 3; ++k) w[k] = Select(feels, Lanes(w[k] + change[k]), Lanes(w[k]));
+    unconstrained.Set(unconstrained.First(), unconstrained.Second() + change);
+    unconstrained.Write(count, lanes);
+    const Sym3<Lanes> turned = RotatedDiagonal<Lanes>(axes, inertia.First());
+    Rows mass(index, [&](uint32_t body) { return bodies.masses[body].Row(); });
+    mass.at[0] = turned.xx, mass.at[1] = turned.yy, mass.at[2] = turned.zz;
+    mass.at[3] = turned.xy, mass.at[4] = turned.xz, mass.at[5] = turned.yz;
+    mass.Write(count, lanes);
+}
+
+bool IntegratePosesInLanes(WorldState& world, const Indices& index, int count, float h) {
+    BodyStore& bodies = world.bodies;
+    alignas(64) float jointed[kLanes], gyroscopic[kLanes];
+    for (int i = 0; i < kLanes; ++i) {
+        const BodyDynamics& d = bodies.dynamics[index[i]];
+        if (d.motion != MotionType::Dynamic || d.lockedAxes != LockedAxes::None) return false;
+        jointed[i] = world.joints.HasAny(index[i]) ? 1.0f : 0.0f;
+        gyroscopic[i] = d.HasGyroscopicTorque() ? 1.0f : 0.0f;
+    }
+    Rows velocity(index, [&](uint32_t body) { return bodies.states[body].VelocityRow(); });
+    Rows displacement(index, [&](uint32_t body) { return bodies.states[body].PoseRow(); });
+    const Vec3<Lanes> turn = velocity.Second() * Lanes(h);
+    Vec3<Lanes> rotation = displacement.Second();
+    const auto isJointed = Lanes::Load(jointed) > Lanes(0.0f);
+    if (isJointed.Any()) {
+        const Vec3<Lanes> more = MoreThanTheSum<Lanes>(rotation, turn);
+        const auto isFar = Dot<Lanes>(rotation, rotation) > Lanes(kFarthestSquared);
+        for (int k = 0; k < 3; ++k) {
+            const Lanes composed = Select(isFar, Lanes(rotation[k]), Lanes(rotation[k] + more[k]));
+            rotation[k] = Select(isJointed, composed, Lanes(rotation[k]));
+        }
+    }
+    rotation += turn;
+    displacement.Set(displacement.First() + velocity.First() * Lanes(h), rotation);
+    displacement.Write(count);
+    Vec3<Lanes> w = velocity.Second();
+    constexpr float kLeast = BodyDynamics::kLeastGyroscopicSpeed * BodyDynamics::kLeastGyroscopicSpeed;
+    const auto feels = isJointed & (Lanes::Load(gyroscopic) > Lanes(0.0f)) & (Dot<Lanes>(w, w) > Lanes(kLeast));
+    if (!feels.Any()) return true;
+    TurnInertias(bodies, index, count, feels, rotation, w, h);
+    velocity.Set(velocity.First(), w);
+    velocity.Write(count);
+    return true;
+}
+
+// Calls inLanes(indices, count) for so many bodies at a time, and oneByOne(body) where that declines. Lanes beyond the last body repeat it.
+template <class InLanes, class OneByOne>
+void VisitBodies(std::span<const uint32_t> bodies, InLanes&& inLanes, OneByOne&& oneByOne) {
+    while (!bodies.empty()) {
+        const size_t count = std::min(bodies.size(), size_t(kLanes));
+        Indices index;
+        for (size_t i = 0; i < kLanes; ++i) index[i] = bodies[std::min(i, count - 1)];
+        if (!inLanes(index, static_cast<int>(count)))
+            for (size_t i = 0; i < count; ++i) oneByOne(bodies[i]);
+        bodies = bodies.subspan(count);
+    }
+}
+
+}  // namespace
+
+void IntegrateVelocities(WorldState& world, std::span<const uint32_t> bodies, float h, bool again, WorkerFindings& findings) {
+    VisitBodies(bodies, [&](const Indices& index, int count) { return IntegrateVelocitiesInLanes(world, index, count, h, again); },
+                [&](uint32_t body) { IntegrateVelocity(world, body, h, again, findings); });
+}
+
+void IntegratePoses(WorldState& world, std::span<const uint32_t> bodies, float h) {
+    VisitBodies(bodies, [&](const Indices& index, int count) { return IntegratePosesInLanes(world, index, count, h); },
+                [&](uint32_t body) { IntegratePose(world, body, h); });
+}
+
+}  // namespace fulcrum
