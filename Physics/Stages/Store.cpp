@@ -13,26 +13,52 @@ namespace {
 // The axis of rotation wanders the faster the more the principal moments differ: so many substeps that it turns by little
 // in each, for a body that turns by `angle` in the step.
 int RotationSubsteps(const BodyDynamics& d, float angle) {
-    constexpr float kSmall = 0.004f;  // rad
+    constexpr float kSmall = 0.1f;  // rad: errors of some 1e-8 a substep, as of the float that keeps the rotation
     const auto [low, high] = std::minmax({d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]});
     const float wandering = angle * (1.0f - low / high);
     return static_cast<int>(std::clamp(wandering / kSmall, 0.0f, 63.0f)) + 1;
 }
 
-// Keeps the angular momentum L: the orientation advances with the angular velocity of the midpoint, I(q_mid)^-1 L, found
-// from a predicted one and corrected once.
-void RotateFreely(const BodyDynamics& d, Quaternion& q, Vector3& w, const Vector3& torque, float dt) {
+// Keeps the angular momentum L: the orientation advances with the angular velocity I(q)^-1 L by a method of the fourth order
+// that stays on the rotations, by two exponentials a step (E. Celledoni, A. Marthinsen, B. Owren, Commutator-free Lie group
+// methods, Future Generation Computer Systems 19, 2003). In double: the axis in the middle doubles what it misses every
+// 2 radians or so, and the roundings of many substeps in float were a fiftieth of a turn after ten of them.
+void RotateFreely(const BodyDynamics& d, Quaternion& rotation, Vector3& w, const Vector3& torque, float dt) {
+    using Vector = Vec3<double>;
+    using Rotation = Quat<double>;
+    const auto unit = [](const Rotation& q) {
+        const double scale = 1.0 / std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+        return Rotation{q.x * scale, q.y * scale, q.z * scale, q.w * scale};
+    };
+    const auto exact = [&](const Quaternion& q) { return unit({q.x, q.y, q.z, q.w}); };
     const int substeps = RotationSubsteps(d, Length(w) * dt);
-    const float h = dt / static_cast<float>(substeps);
-    Vector3 momentum = AngularMomentum(d, q, w);
+    const double h = static_cast<double>(dt) / substeps;
+    const Vector inverse(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]);
+    const Rotation principal = exact(d.PrincipalAxes());
+    // The principal axes turn; the frame of the body follows at the end.
+    Rotation q = exact(rotation) * principal;
+    Vector momentum = InverseRotate<double>(q, w.cast<double>());
+    for (int k = 0; k < 3; ++k) momentum[k] = inverse[k] > 0 ? momentum[k] / inverse[k] : 0.0;
+    momentum = Rotate<double>(q, momentum);
+    const auto speedAt = [&](const Rotation& at) {
+        const Mat3<double> axes = ToMatrix<double>(at);
+        return Vector(axes * Vector(axes.TransposeMultiply(momentum).cwiseProduct(inverse)));
+    };
+    const auto turned = [](const Vector& by, const Rotation& at) { return RotationFromVector<double>(by) * at; };
     for (int i = 0; i < substeps; ++i) {
-        momentum += torque * h;
-        const Vector3 start = InverseInertia(d, q) * momentum;
-        Vector3 middle = InverseInertia(d, RotationFromVector(Vector3(start * (0.5f * h))) * q) * momentum;
-        middle = InverseInertia(d, RotationFromVector(Vector3(middle * (0.5f * h))) * q) * momentum;
-        q = Normalized(RotationFromVector(Vector3(middle * h)) * q);
+        momentum += torque.cast<double>() * h;
+        const Vector w1 = speedAt(q);
+        const Rotation half = turned(w1 * (0.5 * h), q);
+        const Vector w2 = speedAt(half);
+        const Vector w3 = speedAt(turned(w2 * (0.5 * h), q));
+        const Vector w4 = speedAt(turned((w3 - w1 * 0.5) * h, half));
+        const Vector middle = (w2 + w3) * 2.0;
+        const double part = h / 12.0;
+        q = unit(turned((w4 * 3.0 + middle - w1) * part, turned((w1 * 3.0 + middle - w4) * part, q)));
     }
-    w = InverseInertia(d, q) * momentum;
+    w = speedAt(q).cast<float>();
+    q = q * principal.Conjugate();
+    rotation = Normalized(Quaternion{static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z), static_cast<float>(q.w)});
 }
 
 // A body that no contact touched: x += v t + a t^2 / 2, exact under constant acceleration.

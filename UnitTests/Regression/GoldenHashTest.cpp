@@ -9,8 +9,8 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0x7d11b6af4add90c6ull;
-constexpr uint64_t kGoldenHashOfJoints = 0x313fb75755478ab7ull;
+constexpr uint64_t kGoldenHash = 0xa67676adb03e396dull;
+constexpr uint64_t kGoldenHashOfJoints = 0x3fd1e84fc3bb448full;
 
 std::string Hex(uint64_t number) {
     char text[24];
