@@ -127,6 +127,27 @@ struct alignas(4 * N < detail::kRegisterBytes ? 4 * N : detail::kRegisterBytes) 
         return w;
     }
     void Store(float* to) const { std::memcpy(to, &v, sizeof(Float)); }
+    // N bytes at any address as numbers 0 .. 255.
+    static Wide FromBytes(const uint8_t* from) {
+#if defined(__AVX2__)
+        if constexpr (N == 8) {
+            const __m128i bytes = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(from));
+            return Of((Float)_mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(bytes)));
+        }
+#endif
+#if defined(__SSE2__)
+        if constexpr (N == 4) {
+            int32_t four;
+            std::memcpy(&four, from, 4);
+            const __m128i zero = _mm_setzero_si128();
+            const __m128i words = _mm_unpacklo_epi8(_mm_cvtsi32_si128(four), zero);
+            return Of((Float)_mm_cvtepi32_ps(_mm_unpacklo_epi16(words, zero)));
+        }
+#endif
+        Wide w;
+        for (int i = 0; i < N; ++i) w.Set(i, static_cast<float>(from[i]));
+        return w;
+    }
 
     float operator[](int lane) const {
         if constexpr (N == 1) return v;
@@ -293,7 +314,28 @@ template <int N>
         for (int i = 0; i < N; ++i) out[k].Set(i, rows[i][k]);
 }
 
-// The reverse, for the first `count` lanes: rows[lane][k] = in[k][lane].
+// Reads points: the first three of four readable floats at rows[lane], for each of N lanes, into three wide values:
+// out[k][lane] = rows[lane][k]. Rows at any address.
+template <int N>
+[[gnu::always_inline]] inline void GatherPoints(const float* const (&rows)[N], Wide<N> (&out)[3]) {
+#if defined(__AVX2__)
+    if constexpr (N == 8) {
+        __m256 r[4];  // rows i and i + 4
+        for (int i = 0; i < 4; ++i)
+            r[i] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(rows[i])), _mm_loadu_ps(rows[i + 4]), 1);
+        const __m256 xy0 = _mm256_unpacklo_ps(r[0], r[1]), xy1 = _mm256_unpacklo_ps(r[2], r[3]);
+        const __m256 z0 = _mm256_unpackhi_ps(r[0], r[1]), z1 = _mm256_unpackhi_ps(r[2], r[3]);
+        out[0].v = (typename Wide<N>::Float)_mm256_shuffle_ps(xy0, xy1, 0x44);
+        out[1].v = (typename Wide<N>::Float)_mm256_shuffle_ps(xy0, xy1, 0xEE);
+        out[2].v = (typename Wide<N>::Float)_mm256_shuffle_ps(z0, z1, 0x44);
+        return;
+    }
+#endif
+    for (int k = 0; k < 3; ++k)
+        for (int i = 0; i < N; ++i) out[k].Set(i, rows[i][k]);
+}
+
+// The reverse of GatherRows, for the first `count` lanes: rows[lane][k] = in[k][lane].
 template <int N>
 [[gnu::always_inline]] inline void ScatterRows(float* const (&rows)[N], const Wide<N> (&in)[8], int count) {
 #if defined(__AVX2__)

@@ -2,6 +2,7 @@
 
 #include <Fulcrum/Collision/Shapes/MassProperties.h>
 #include <Fulcrum/Collision/Shapes/Message.h>
+#include <Fulcrum/Collision/Shapes/ShapeFileParts.h>
 
 #include <algorithm>
 
@@ -52,7 +53,8 @@ Bounds ChildBounds(const ConvexShape& shape, const RelativePose& pose) {
 
 }  // namespace
 
-Result<std::shared_ptr<const Compound>> Compound::Create(std::span<const ChildSettings> children) {
+Result<std::shared_ptr<const Compound>> Compound::Create(std::span<const ChildSettings> children,
+                                                           const Vector3& centreOffset) {
     if (children.empty()) return Error{ErrorCode::Degenerate, "a compound needs at least one child"};
 
     std::vector<SolidMass> solids;
@@ -63,23 +65,59 @@ Result<std::shared_ptr<const Compound>> Compound::Create(std::span<const ChildSe
                                      child.position.cast<double>()));
         densities.push_back(double{child.density});
     }
-    const SolidMass whole = CombinedMass(solids, densities);
+    if (!IsFinite(centreOffset)) return Error{ErrorCode::NonFinite, "centreOffset is not finite"};
+    SolidMass whole = CombinedMass(solids, densities);
+    const Position d = centreOffset.cast<double>();
+    whole.centre += d;
+    whole.inertia.xx += whole.volume * (d.y() * d.y() + d.z() * d.z());
+    whole.inertia.yy += whole.volume * (d.x() * d.x() + d.z() * d.z());
+    whole.inertia.zz += whole.volume * (d.x() * d.x() + d.y() * d.y());
+    whole.inertia.xy -= whole.volume * d.x() * d.y();
+    whole.inertia.xz -= whole.volume * d.x() * d.z();
+    whole.inertia.yz -= whole.volume * d.y() * d.z();
     const Result<MassProperties> mass = ToMassProperties(whole);
     if (!mass) return mass.GetError();
 
-    const std::shared_ptr<Compound> compound(new Compound);
-    compound->mass_ = mass.Value();
-    compound->innerRadius_ = children[0].shape->InnerRadius();
+    std::vector<Child> posed;
     for (size_t i = 0; i < children.size(); ++i) {
-        const std::shared_ptr<const ConvexShape> shape = std::static_pointer_cast<const ConvexShape>(children[i].shape);
         const Position centre = solids[i].centre - whole.centre;
-        const RelativePose pose{centre.cast<float>(), Normalized(children[i].rotation)};
-        compound->children_.push_back({shape, pose});
-        compound->bounds_.Include(ChildBounds(*shape, pose));
-        compound->innerRadius_ = std::min(compound->innerRadius_, shape->InnerRadius());
-        compound->outerRadius_ = std::max(compound->outerRadius_, Length(pose.position) + shape->OuterRadius());
+        posed.push_back({std::static_pointer_cast<const ConvexShape>(children[i].shape),
+                         {centre.cast<float>(), Normalized(children[i].rotation)}, children[i].density});
     }
+    const std::shared_ptr<Compound> compound(new Compound);
+    compound->Assemble(std::move(posed), mass.Value());
     return std::shared_ptr<const Compound>(compound);
+}
+
+std::vector<Compound::ChildSettings> Compound::Settings() const {
+    std::vector<ChildSettings> settings;
+    for (const Child& child : children_) {
+        // From the centre frames to the users'.
+        const Vector3 own = Rotate(child.pose.rotation, child.shape->Mass().centreOfMass);
+        settings.push_back({.shape = child.shape,
+                            .position = child.pose.position + mass_.centreOfMass - own,
+                            .rotation = child.pose.rotation,
+                            .density = child.density});
+    }
+    return settings;
+}
+
+// What follows from children in the centre frame and the mass of all.
+void Compound::Assemble(std::vector<Child> children, const MassProperties& mass) {
+    children_ = std::move(children);
+    mass_ = mass;
+    innerRadius_ = children_[0].shape->InnerRadius();
+    for (const Child& child : children_) {
+        bounds_.Include(ChildBounds(*child.shape, child.pose));
+        innerRadius_ = std::min(innerRadius_, child.shape->InnerRadius());
+        outerRadius_ = std::max(outerRadius_, Length(child.pose.position) + child.shape->OuterRadius());
+    }
+}
+
+ShapeResult ShapeFileAccess::MakeCompound(std::vector<Compound::Child> children, const MassProperties& mass) {
+    const std::shared_ptr<Compound> compound(new Compound);
+    compound->Assemble(std::move(children), mass);
+    return ShapePtr(compound);
 }
 
 }  // namespace fulcrum

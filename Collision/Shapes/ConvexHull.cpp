@@ -2,6 +2,8 @@
 
 #include <Fulcrum/Collision/Shapes/HullBuilder.h>
 #include <Fulcrum/Collision/Shapes/Message.h>
+#include <Fulcrum/Collision/Shapes/ShapeFileParts.h>
+#include <Fulcrum/Collision/Shapes/SupportingFace.h>
 #include <Fulcrum/Math/Wide.h>
 
 #include <algorithm>
@@ -152,6 +154,12 @@ private:
     }
 };
 
+ShapeResult ShapeFileAccess::MakeHull(const HullMesh& mesh, const MassProperties& mass, float convexRadius) {
+    const Result<std::shared_ptr<const ConvexHull>> hull = HullFinisher::Finish(mesh, Position::Zero(), mass, convexRadius);
+    if (!hull) return hull.GetError();
+    return ShapePtr(hull.Value());
+}
+
 Result<std::shared_ptr<const ConvexHull>> ConvexHull::Create(std::span<const Vector3> points,
                                                              const ConvexHullSettings& settings) {
     if (const Status status = CheckInput(points, settings); !status) return status.GetError();
@@ -199,6 +207,32 @@ Vector3 ConvexHull::SupportCore(const Vector3& direction) const {
         if (isTop != 0) return vertices_[block + std::countr_zero(isTop)];
     }
     return vertices_[0];  // the direction is not a number
+}
+
+void ConvexHull::FindSupportingFace(const Vector3& direction, SupportingFace& face) const {
+    const float *const x = NormalLaneX(), *const y = NormalLaneY(), *const z = NormalLaneZ();
+    using Lanes = Wide<kLanes>;
+    const Lanes dx(direction.x()), dy(direction.y()), dz(direction.z());
+    alignas(64) float along[256];
+    Lanes best(-std::numeric_limits<float>::infinity());
+    for (int i = 0; i < paddedFaceCount_; i += kLanes) {
+        const Lanes value = Lanes::Load(x + i) * dx + Lanes::Load(y + i) * dy + Lanes::Load(z + i) * dz;
+        value.Store(along + i);
+        best = Max(value, best);
+    }
+    const float most = Largest(best);
+    size_t index = 0;
+    while (along[index] != most) ++index;
+
+    // Of a face with very many corners as many as fit, evenly spread.
+    const Face& found = faces_[index];
+    const int count = std::min(static_cast<int>(found.cornerCount), SupportingFace::kMaxVertices);
+    face.count = 0;
+    for (int i = 0; i < count; ++i) {
+        const uint8_t corner = indices_[found.firstIndex + static_cast<size_t>(i * found.cornerCount / count)];
+        face.Add(vertices_[corner], corner);
+    }
+    face.normal = found.normal;
 }
 
 }  // namespace fulcrum

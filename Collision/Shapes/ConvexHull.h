@@ -37,6 +37,7 @@ public:
                                                             const ConvexHullSettings& settings = {});
 
     Vector3 SupportCore(const Vector3& direction) const override;
+    void FindSupportingFace(const Vector3& direction, SupportingFace& face) const override;
 
     std::span<const Vector3> Vertices() const { return vertices_; }
     std::span<const Face> Faces() const { return faces_; }

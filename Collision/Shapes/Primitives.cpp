@@ -1,19 +1,11 @@
 #include <Fulcrum/Collision/Shapes/Primitives.h>
 
 #include <Fulcrum/Collision/Shapes/MassProperties.h>
-#include <Fulcrum/Collision/Shapes/Message.h>
+#include <Fulcrum/Collision/Shapes/SizeChecks.h>
+#include <Fulcrum/Collision/Shapes/SupportingFace.h>
 
 namespace fulcrum {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-
-// Ok where the size is finite and positive; an Error that names it otherwise.
-Status CheckSize(const char* name, float size) {
-    if (!std::isfinite(size)) return Error{ErrorCode::NonFinite, Message("%s is %g: it must be finite", name, double{size})};
-    if (!(size > 0)) return Error{ErrorCode::NonPositive, Message("%s is %g m: it must be larger than 0", name, double{size})};
-    return Done{};
-}
 
 Result<MassProperties> AxisAlignedMass(double volume, const Position& inertia) {
     SolidMass solid;
@@ -53,13 +45,8 @@ Result<std::shared_ptr<const Box>> Box::Create(const Vector3& halfExtents, float
         if (const Status size = CheckSize(names[axis], halfExtents[axis]); !size) return size.GetError();
     }
     const float smallest = halfExtents.minCoeff();
-    if (!std::isfinite(convexRadius)) {
-        return Error{ErrorCode::NonFinite, Message("convexRadius is %g: it must be finite", double{convexRadius})};
-    }
-    if (convexRadius < 0 || convexRadius > smallest) {
-        return Error{ErrorCode::OutOfRange, Message("convexRadius is %g m: it must be 0 to the smallest half extent, %g m",
-                                                    double{convexRadius}, double{smallest})};
-    }
+    if (const Status rounding = CheckConvexRadius(convexRadius, smallest, "the smallest half extent"); !rounding)
+        return rounding.GetError();
     const double x = halfExtents.x(), y = halfExtents.y(), z = halfExtents.z(), volume = 8 * x * y * z;
     const Result<MassProperties> mass =
         AxisAlignedMass(volume, Position(y * y + z * z, x * x + z * z, x * x + y * y) * (volume / 3));
@@ -79,6 +66,21 @@ Vector3 Box::SupportCore(const Vector3& direction) const {
     const float x = halfExtents_.x() - convexRadius_, y = halfExtents_.y() - convexRadius_,
                 z = halfExtents_.z() - convexRadius_;
     return Vector3(direction.x() < 0 ? -x : x, direction.y() < 0 ? -y : y, direction.z() < 0 ? -z : z);
+}
+
+void Box::FindSupportingFace(const Vector3& direction, SupportingFace& face) const {
+    // Of each face, which vertices: bits 0, 1, 2 say the positive x, y, z side. Counter-clockwise seen from outside.
+    static constexpr uint8_t kCorners[6][4] = {{1, 3, 7, 5}, {0, 4, 6, 2}, {2, 6, 7, 3}, {0, 1, 5, 4}, {4, 5, 7, 6}, {0, 2, 3, 1}};
+    int axis = 0;
+    for (int i = 1; i < 3; ++i)
+        if (std::fabs(direction[i]) > std::fabs(direction[axis])) axis = i;
+    const bool negative = direction[axis] < 0;
+    const Vector3 h = halfExtents_ - Vector3::Constant(convexRadius_);
+    face.count = 0;
+    for (const uint8_t corner : kCorners[2 * axis + (negative ? 1 : 0)])
+        face.Add(Vector3(corner & 1 ? h.x() : -h.x(), corner & 2 ? h.y() : -h.y(), corner & 4 ? h.z() : -h.z()), corner);
+    face.normal = Vector3::Zero();
+    face.normal[axis] = negative ? -1.0f : 1.0f;
 }
 
 Result<std::shared_ptr<const Capsule>> Capsule::Create(float halfHeight, float radius) {
@@ -101,6 +103,17 @@ Result<std::shared_ptr<const Capsule>> Capsule::Create(float halfHeight, float r
     capsule->innerRadius_ = radius;
     capsule->outerRadius_ = halfHeight + radius;
     return std::shared_ptr<const Capsule>(capsule);
+}
+
+void Capsule::FindSupportingFace(const Vector3&, SupportingFace& face) const {
+    face.count = 0;
+    face.Add(Vector3(0, -halfHeight_, 0), 0);
+    face.Add(Vector3(0, halfHeight_, 0), 1);
+}
+
+void Sphere::FindSupportingFace(const Vector3&, SupportingFace& face) const {
+    face.count = 0;
+    face.Add(Vector3::Zero(), 0);
 }
 
 }  // namespace fulcrum

@@ -12,6 +12,7 @@ public:
     static Result<std::shared_ptr<const Sphere>> Create(float radius);
     float Radius() const { return convexRadius_; }
     Vector3 SupportCore(const Vector3&) const override { return Vector3::Zero(); }
+    void FindSupportingFace(const Vector3& direction, SupportingFace& face) const override;
 
 private:
     Sphere() : ConvexShape(ShapeType::Sphere) {}
@@ -24,6 +25,7 @@ public:
     static Result<std::shared_ptr<const Box>> Create(const Vector3& halfExtents, float convexRadius = 0);
     const Vector3& HalfExtents() const { return halfExtents_; }  // the rounding included
     Vector3 SupportCore(const Vector3& direction) const override;
+    void FindSupportingFace(const Vector3& direction, SupportingFace& face) const override;
 
 private:
     Box() : ConvexShape(ShapeType::Box) {}
@@ -40,6 +42,7 @@ public:
     Vector3 SupportCore(const Vector3& direction) const override {
         return Vector3(0, direction.y() < 0 ? -halfHeight_ : halfHeight_, 0);
     }
+    void FindSupportingFace(const Vector3& direction, SupportingFace& face) const override;
 
 private:
     Capsule() : ConvexShape(ShapeType::Capsule) {}

@@ -8,7 +8,15 @@ const char* ShapeTypeName(ShapeType type) {
         case ShapeType::Box: return "box";
         case ShapeType::Capsule: return "capsule";
         case ShapeType::ConvexHull: return "convex hull";
+        case ShapeType::Triangle: return "triangle";
+        case ShapeType::TaperedCapsule: return "tapered capsule";
+        case ShapeType::Cylinder: return "cylinder";
+        case ShapeType::Custom: return "custom shape";
         case ShapeType::Compound: return "compound";
+        case ShapeType::TriangleMesh: return "triangle mesh";
+        case ShapeType::HeightField: return "height field";
+        case ShapeType::Plane: return "plane";
+        case ShapeType::Empty: return "empty shape";
     }
     return "unknown";
 }

@@ -13,11 +13,25 @@
 namespace fulcrum {
 
 // One line a shape here, one in NarrowPhase/PairTable.cpp.
-enum class ShapeType : uint8_t { Sphere, Box, Capsule, ConvexHull, Compound };
+enum class ShapeType : uint8_t {
+    Sphere,
+    Box,
+    Capsule,
+    ConvexHull,
+    Triangle,
+    TaperedCapsule,
+    Cylinder,  // tapered ones and cones, too
+    Custom,    // what users derive from CustomConvex
+    Compound,
+    TriangleMesh,
+    HeightField,
+    Plane,
+    Empty,     // no geometry at all
+};
 inline constexpr int kConvexShapeTypes = static_cast<int>(ShapeType::Compound);  // those before it
 const char* ShapeTypeName(ShapeType type);
 
-// Of a solid of density 1 kg/m3, about its centre of mass.
+// Of a solid of density 1 kg/m3, about its centre of mass. All zero for a shape without volume or without end.
 struct MassProperties {
     float volume = 0;                                // m3
     Vector3 centreOfMass = Vector3::Zero();          // m, in the user's frame
@@ -30,7 +44,9 @@ public:
     virtual ~Shape() = default;
 
     ShapeType Type() const { return type_; }
-    bool IsConvex() const { return type_ != ShapeType::Compound; }
+    bool IsConvex() const { return type_ < ShapeType::Compound; }
+    // Made of triangles: a SurfaceShape.
+    bool IsSurface() const { return type_ == ShapeType::TriangleMesh || type_ == ShapeType::HeightField; }
     const MassProperties& Mass() const { return mass_; }
     // In the centre frame.
     const Bounds& LocalBounds() const { return bounds_; }
@@ -49,6 +65,8 @@ protected:
     float outerRadius_ = 0;
 };
 
+struct SupportingFace;
+
 using ShapePtr = std::shared_ptr<const Shape>;
 
 // A shape that has a support function. `convexRadius` is the part of it that is rounding: the shape is the Minkowski sum
@@ -62,6 +80,9 @@ public:
     Vector3 Support(const Vector3& direction) const {
         return SupportCore(direction) + Normalized(direction) * convexRadius_;
     }
+    // The flat face, straight edge or point of the core that faces the unit vector `direction` most nearly: what contacts
+    // are clipped from (SupportingFace.h). The default probes the support function around the direction.
+    virtual void FindSupportingFace(const Vector3& direction, SupportingFace& face) const;
 
 protected:
     using Shape::Shape;

@@ -1,0 +1,21 @@
+// How the slow builds of shapes use threads without knowing a job system. Passed by whoever creates the shape.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+namespace fulcrum {
+
+// Runs job(i) once for each i in 0 .. count - 1, on any threads in any order, and returns when all are done. A job system's
+// ParallelFor fits with one line of adapter. Empty: one after the other.
+using ParallelLoop = std::function<void(uint32_t count, const std::function<void(uint32_t)>& job)>;
+
+inline void RunLoop(const ParallelLoop& parallel, uint32_t count, const std::function<void(uint32_t)>& job) {
+    if (parallel && count > 1) {
+        parallel(count, job);
+    } else {
+        for (uint32_t i = 0; i < count; ++i) job(i);
+    }
+}
+
+}  // namespace fulcrum

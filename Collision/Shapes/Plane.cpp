@@ -1,0 +1,32 @@
+#include <Fulcrum/Collision/Shapes/Plane.h>
+
+#include <Fulcrum/Collision/Shapes/Message.h>
+
+namespace fulcrum {
+
+Result<std::shared_ptr<const Plane>> Plane::Create(const Vector3& normal, float offset) {
+    if (!IsFinite(normal) || !std::isfinite(offset)) {
+        return Error{ErrorCode::NonFinite, "the normal or the offset of a plane is not finite"};
+    }
+    const Position exact = normal.cast<double>();
+    const double length = std::sqrt(Dot(exact, exact));
+    if (!(length > 0)) return Error{ErrorCode::Degenerate, "the normal of a plane is zero: it must be a direction"};
+    if (!(std::fabs(offset) <= kUnboundedExtent)) {
+        return Error{ErrorCode::OutOfRange, Message("the offset is %g m: at most %g m", double{offset},
+                                                    double{kUnboundedExtent})};
+    }
+    const std::shared_ptr<Plane> plane(new Plane);
+    // A normal that is a unit vector as well as floats can say stays as it is.
+    plane->normal_ = std::fabs(length - 1) < 0x1p-23 ? normal : Vector3((exact / length).cast<float>());
+    plane->offset_ = offset;
+    plane->bounds_.lower.setConstant(-kUnboundedExtent);
+    plane->bounds_.upper.setConstant(kUnboundedExtent);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (plane->normal_[axis] == 1) plane->bounds_.upper[axis] = offset;
+        if (plane->normal_[axis] == -1) plane->bounds_.lower[axis] = -offset;
+    }
+    plane->outerRadius_ = kUnboundedExtent;
+    return std::shared_ptr<const Plane>(plane);
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,27 @@
+// Half space: solid on one side of a plane, without end. For static and kinematic bodies. Immutable.
+#pragma once
+
+#include <Fulcrum/Collision/Shapes/Shape.h>
+
+namespace fulcrum {
+
+// The bounds of what has no end: floats whose squares and sums of squares are floats, too.
+inline constexpr float kUnboundedExtent = 1e18f;  // m
+
+class Plane final : public Shape {
+public:
+    // All x with normal . x <= offset. `normal` is a direction of any length but zero and points out of the solid; offset in m.
+    // Bodies beyond kUnboundedExtent are not found. Errors: NonFinite, Degenerate (no direction), OutOfRange (the offset).
+    static Result<std::shared_ptr<const Plane>> Create(const Vector3& normal = Vector3(0, 1, 0), float offset = 0);
+    const Vector3& Normal() const { return normal_; }  // unit
+    float Offset() const { return offset_; }
+    // Signed distance from the surface, negative inside.
+    float Distance(const Vector3& point) const { return Dot(normal_, point) - offset_; }
+
+private:
+    Plane() : Shape(ShapeType::Plane) {}
+    Vector3 normal_ = Vector3(0, 1, 0);
+    float offset_ = 0;
+};
+
+}  // namespace fulcrum

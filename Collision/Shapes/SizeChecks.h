@@ -1,0 +1,37 @@
+// Checks of the sizes that users give. Used by the Create functions of the shapes.
+#pragma once
+
+#include <Fulcrum/Collision/Shapes/Message.h>
+#include <Fulcrum/Collision/Shapes/Shape.h>
+
+namespace fulcrum {
+
+inline constexpr double kPi = 3.14159265358979323846;
+
+// Ok where the size is finite and positive; an Error that names it otherwise.
+inline Status CheckSize(const char* name, float size) {
+    if (!std::isfinite(size)) return Error{ErrorCode::NonFinite, Message("%s is %g: it must be finite", name, double{size})};
+    if (!(size > 0)) return Error{ErrorCode::NonPositive, Message("%s is %g m: it must be larger than 0", name, double{size})};
+    return Done{};
+}
+
+// The same for a size that may be 0.
+inline Status CheckSizeOrZero(const char* name, float size) {
+    if (!std::isfinite(size)) return Error{ErrorCode::NonFinite, Message("%s is %g: it must be finite", name, double{size})};
+    if (!(size >= 0)) return Error{ErrorCode::Negative, Message("%s is %g m: it must be 0 or more", name, double{size})};
+    return Done{};
+}
+
+// 0 to `most`, which the message calls `mostName`.
+inline Status CheckConvexRadius(float convexRadius, float most, const char* mostName) {
+    if (!std::isfinite(convexRadius)) {
+        return Error{ErrorCode::NonFinite, Message("convexRadius is %g: it must be finite", double{convexRadius})};
+    }
+    if (convexRadius < 0 || convexRadius > most) {
+        return Error{ErrorCode::OutOfRange,
+                     Message("convexRadius is %g m: it must be 0 to %s, %g m", double{convexRadius}, mostName, double{most})};
+    }
+    return Done{};
+}
+
+}  // namespace fulcrum

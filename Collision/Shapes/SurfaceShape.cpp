@@ -1,0 +1,38 @@
+#include <Fulcrum/Collision/Shapes/SurfaceShape.h>
+
+#include <Fulcrum/Collision/Shapes/Message.h>
+
+namespace fulcrum {
+
+uint32_t SurfaceShape::FindTriangles(const Bounds& box, std::span<uint32_t> ids) const {
+    uint32_t count = 0;
+    VisitTriangles(box, [&](uint32_t id) {
+        if (count < ids.size()) ids[count] = id;
+        ++count;
+    });
+    return count;
+}
+
+Status SurfaceShape::CheckMaterials(std::span<const SurfaceMaterial> materials) {
+    if (materials.size() > 255) {
+        return Error{ErrorCode::OutOfRange, Message("%zu materials: at most 255", materials.size())};
+    }
+    for (size_t i = 0; i < materials.size(); ++i) {
+        const SurfaceMaterial& m = materials[i];
+        if (!std::isfinite(m.friction) || !std::isfinite(m.restitution)) {
+            return Error{ErrorCode::NonFinite, Message("friction %g or restitution %g of material %zu is not finite",
+                                                       double{m.friction}, double{m.restitution}, i)};
+        }
+        if (m.friction < 0 || m.restitution < 0) {
+            return Error{ErrorCode::Negative, Message("friction %g or restitution %g of material %zu is negative",
+                                                      double{m.friction}, double{m.restitution}, i)};
+        }
+        if (m.restitution > 1) {
+            return Error{ErrorCode::OutOfRange,
+                         Message("restitution of material %zu is %g: it must be 0 to 1", i, double{m.restitution})};
+        }
+    }
+    return Done{};
+}
+
+}  // namespace fulcrum

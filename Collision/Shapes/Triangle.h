@@ -1,0 +1,33 @@
+// A single triangle, alone or as a piece of something larger. Created by Create, which checks it; immutable afterwards.
+#pragma once
+
+#include <Fulcrum/Collision/Shapes/Shape.h>
+
+namespace fulcrum {
+
+// Corners in metres. `radius` >= 0 makes a plate of it, rounded all around; 0, the default, has no thickness at all: both
+// sides collide, and nothing is inside. The mass properties are those of a flat plate of thickness 2 radius, or of 1 mm where
+// the radius is 0: a body of such a triangle had better be static or be given its mass.
+// Errors: NonFinite, Negative, Degenerate (corners on a line), OutOfRange.
+class Triangle final : public ConvexShape {
+public:
+    static Result<std::shared_ptr<const Triangle>> Create(const Vector3& a, const Vector3& b, const Vector3& c, float radius = 0);
+
+    // A piece of a surface: corners about their centroid, m, and the unit normal. Without mass properties and radii.
+    Triangle(const Vector3 (&corners)[3], const Vector3& normal)
+        : ConvexShape(ShapeType::Triangle), corners_{corners[0], corners[1], corners[2]}, normal_(normal) {}
+
+    // Corner 0, 1 or 2, about the triangle's centroid.
+    const Vector3& Corner(int i) const { return corners_[i]; }
+    // Unit; the side from which the corners run counter-clockwise.
+    const Vector3& Normal() const { return normal_; }
+    Vector3 SupportCore(const Vector3& direction) const override;
+    void FindSupportingFace(const Vector3& direction, SupportingFace& face) const override;
+
+private:
+    Triangle() : ConvexShape(ShapeType::Triangle) {}
+    Vector3 corners_[3];
+    Vector3 normal_;
+};
+
+}  // namespace fulcrum
