@@ -2,7 +2,7 @@
 // contact builders.
 #pragma once
 
-#include <Fulcrum/Collision/NarrowPhase/PolyhedronPair.h>
+#include <Fulcrum/Math/Wide.h>
 
 namespace fulcrum {
 
@@ -12,7 +12,8 @@ namespace fulcrum {
 // normal the disc bounds the separation by -depth cos t - r sin t, which is at most -depth while tan(t / 2) <= r / depth; the
 // ball bounds it by c_n cos t + c_t sin t - R, which must do for all larger angles: there it falls, so the first
 // angle decides. Where the cores are apart (depth <= 0), touching within the features is all it takes.
-inline bool NoBetterAxis(const PolyhedronPair& pair, const Vector3& normal, float depth, float discRadius) {
+template <class Pair>
+bool NoBetterAxis(const Pair& pair, const Vector3& normal, float depth, float discRadius) {
     if (depth <= 0.0f) return true;
     if (!(discRadius > 0.0f)) return false;
     const float along = Dot(normal, pair.position);
@@ -20,7 +21,7 @@ inline bool NoBetterAxis(const PolyhedronPair& pair, const Vector3& normal, floa
     const float u = discRadius / depth, scale = 1.0f / (1.0f + u * u);
     const float cosine = (1.0f - u * u) * scale, sine = 2.0f * u * scale;
     const bool falls = across * cosine <= along * sine;
-    return falls && along * cosine + across * sine - (pair.a.innerRadius + pair.b.innerRadius) <= -depth;
+    return falls && along * cosine + across * sine - pair.InnerRadii() <= -depth;
 }
 
 }  // namespace fulcrum

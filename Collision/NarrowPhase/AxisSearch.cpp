@@ -6,11 +6,21 @@ namespace fulcrum {
 
 namespace {
 
-// An edge and the arc between its faces' normals on the unit sphere; a segment has no faces and a whole circle there.
+// An edge and the arc between its faces' normals on the unit sphere; a segment has no faces and a whole circle there, a flat
+// polyhedron's edge half a circle, of which `outwards` is the middle.
 struct EdgeArc {
-    Vector3 from, along, left, right;
-    bool circle;
+    Vector3 from, along, left, right, outwards;
+    bool circle, flat;
 };
+
+// Tells half circles from the rest.
+void FindMiddle(EdgeArc& arc) {
+    arc.flat = !arc.circle && Dot(arc.left, arc.right) < -0.9999f;
+    if (arc.flat) arc.outwards = Normalized(Cross<float>(arc.along, arc.left));
+}
+
+// Not of unit length; zero for a circle.
+Vector3 Middle(const EdgeArc& arc) { return arc.flat ? arc.outwards : Vector3(arc.left + arc.right); }
 
 EdgeArc ArcOfA(const PolyhedronPair& pair, int i) {
     const ConvexHull::Edge& e = pair.a.edges[i];
@@ -20,6 +30,7 @@ EdgeArc ArcOfA(const PolyhedronPair& pair, int i) {
     arc.circle = pair.a.faceCount == 0;
     arc.left = arc.circle ? Vector3(Vector3::Zero()) : pair.a.faces[e.left].normal;
     arc.right = arc.circle ? Vector3(Vector3::Zero()) : pair.a.faces[e.right].normal;
+    FindMiddle(arc);
     return arc;
 }
 
@@ -32,12 +43,23 @@ EdgeArc ArcOfB(const PolyhedronPair& pair, int i) {
     arc.circle = pair.b.faceCount == 0;
     arc.left = arc.circle ? Vector3(Vector3::Zero()) : Vector3(-(pair.rotation * pair.b.faces[e.left].normal));
     arc.right = arc.circle ? Vector3(Vector3::Zero()) : Vector3(-(pair.rotation * pair.b.faces[e.right].normal));
+    FindMiddle(arc);
     return arc;
 }
 
 // Two edges make a face of the Minkowski difference where their arcs cross.
 // Source: D. Gregorius, The Separating Axis Test between Convex Polyhedra, GDC 2013.
 bool ArcsCross(const EdgeArc& p, const EdgeArc& q) {
+    if (p.flat || q.flat) {
+        EdgeArc half = p.flat ? p : q;
+        const EdgeArc& other = p.flat ? q : p;
+        half.flat = false;
+        half.right = half.outwards;
+        if (ArcsCross(half, other)) return true;
+        half.left = half.outwards;
+        half.right = (p.flat ? p : q).right;
+        return ArcsCross(half, other);
+    }
     if (p.circle) return Dot(p.along, q.left) * Dot(p.along, q.right) < 0.0f;
     if (q.circle) return Dot(q.along, p.left) * Dot(q.along, p.right) < 0.0f;
     const Vector3 bxa = Cross<float>(p.right, p.left), dxc = Cross<float>(q.right, q.left);
@@ -64,7 +86,7 @@ void TryEdges(const PolyhedronPair& pair, FoundAxis& best) {
             const Vector3 n = Cross<float>(p.along, q.along);
             const float length = Length(n);
             if (length <= 1e-4f * Sqrt(LengthSquared(p.along) * LengthSquared(q.along))) continue;  // parallel
-            const float side = Dot(n, Vector3(p.left + p.right + q.left + q.right)) < 0.0f ? -1.0f : 1.0f;
+            const float side = Dot(n, Vector3(Middle(p) + Middle(q))) < 0.0f ? -1.0f : 1.0f;
             const Vector3 axis = n * (side / length);
             const float separation = Dot(axis, Vector3(q.from - p.from));
             if (separation <= best.separation) continue;

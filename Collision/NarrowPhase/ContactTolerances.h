@@ -11,7 +11,7 @@ struct ContactTolerances {
     float prefer;   // m: a face contact is taken where its separation is at most this much below the best axis
     float feature;  // m: vertices this close to the extreme one belong to the supporting feature
 
-    // `innerRadii`: the sum of the radii of the balls inside the two cores; `rounding`: of their convex radii. In m.
+    // `innerRadii`: the sum of the radii of the balls inside the two cores, or what measures those that are flat; `rounding`: of their convex radii. In m.
     ContactTolerances(float innerRadii, float rounding, const CollideSettings& settings)
         : reach(settings.speculativeDistance + rounding),
           prefer(Min(0.02f * settings.speculativeDistance, 0.002f * (innerRadii + rounding))),

@@ -1,10 +1,13 @@
 #include <Fulcrum/Collision/NarrowPhase/Libccd.h>
 
 #include <Fulcrum/Collision/NarrowPhase/AxisContact.h>
+#include <Fulcrum/Collision/NarrowPhase/ConvexContact.h>
 #include <Fulcrum/Collision/NarrowPhase/PairFunctions.h>
 
 #include <ccd/ccd.h>
 #include <ccd/quat.h>
+
+#include <algorithm>
 
 namespace fulcrum {
 
@@ -52,9 +55,13 @@ LibccdResult LibccdPenetration(const ConvexShape& a, const ConvexShape& b, const
     ccd.support1 = ccd.support2 = Support;
     ccd.center1 = ccd.center2 = Centre;
     ccd.max_iterations = 200;
-    const double size = static_cast<double>(a.InnerRadius()) + b.InnerRadius();
-    // libccd holds this against squares of lengths.
-    ccd.epa_tolerance = 1e-9 * size * size;
+    // Flat shapes have no inside: their tolerance must not be 0, or EPA never ends.
+    const double size = std::max(static_cast<double>(a.InnerRadius()) + b.InnerRadius(),
+                                 0.02 * (static_cast<double>(a.OuterRadius()) + b.OuterRadius()));
+    // libccd holds this against squares of lengths. The facets of a curved core are never exact, and their number grows with
+    // the inverse of this.
+    const bool curved = !HasPolyhedralCore(a.Type()) || !HasPolyhedralCore(b.Type());
+    ccd.epa_tolerance = (curved ? 1e-7 : 1e-9) * size * size;
     ccd.mpr_tolerance = 1e-5 * size;
 
     double depth = 0;
@@ -62,7 +69,7 @@ LibccdResult LibccdPenetration(const ConvexShape& a, const ConvexShape& b, const
     const int status = algorithm == LibccdAlgorithm::Epa
                            ? ccdGJKPenetration(&bodyA, &bodyB, &ccd, &depth, &direction, &position)
                            : ccdMPRPenetration(&bodyA, &bodyB, &ccd, &depth, &direction, &position);
-    LibccdResult result{LibccdResult::Status::Apart, Position::Zero(), 0};
+    LibccdResult result{LibccdResult::Status::Apart, Position::Zero(), 0, Position::Zero()};
     if (status == -1) return result;
     // -2: out of memory. Touching shapes come back as "overlapping" with a direction of zero.
     const Position d(direction.v[0], direction.v[1], direction.v[2]);
@@ -74,22 +81,30 @@ LibccdResult LibccdPenetration(const ConvexShape& a, const ConvexShape& b, const
     result.status = LibccdResult::Status::Found;
     result.normal = d * (1 / length);
     result.separation = margin - depth;
+    result.position = Position(position.v[0], position.v[1], position.v[2]);
     return result;
 }
 
-void CollideLibccd(const PairQuery& query, Manifold& manifold) {
-    PolyhedronStorage storageA, storageB;
-    const PolyhedronPair pair(CoreOf(query.a, storageA), CoreOf(query.b, storageB), query.bInA);
-    const ContactTolerances tolerances = pair.Tolerances(query.settings);
+namespace {
+
+// The axis that libccd finds, and MPR's or the centre line where it contradicts itself. Pair: any that can measure itself.
+struct LibccdAxis {
+    bool apart;
+    Vector3 axis;
+    float separation;  // m, of the cores along it
+    Vector3 position;  // m, somewhere where they touch
+};
+
+template <class Pair>
+LibccdAxis FindAxis(const PairQuery& query, const Pair& pair) {
     const double margin = query.settings.speculativeDistance;
-    LibccdResult result = LibccdPenetration(query.a, query.b, query.bInA, margin, LibccdAlgorithm::Epa);
-    manifold.pointCount = 0;
-    if (result.status == LibccdResult::Status::Apart) return;
-    Vector3 axis = Normalized(result.normal.cast<float>());
-    float separation = pair.SeparationAlong(axis);
+    const LibccdResult result = LibccdPenetration(query.a, query.b, query.bInA, margin, LibccdAlgorithm::Epa);
+    if (result.status == LibccdResult::Status::Apart) return {true, Vector3::Zero(), 0, Vector3::Zero()};
+    LibccdAxis found{false, Normalized(result.normal.cast<float>()), 0, result.position.cast<float>()};
+    found.separation = pair.SeparationAlong(found.axis);
     // libccd takes some deep overlaps for touching ones: then its depth is not that of its own direction.
     const double size = static_cast<double>(query.a.InnerRadius()) + query.b.InnerRadius();
-    const bool contradicts = separation - pair.RadiusSum() < result.separation - 0.01 * size;
+    const bool contradicts = found.separation - pair.RadiusSum() < result.separation - 0.01 * size;
     if (result.status == LibccdResult::Status::Failed || contradicts) {
         ++query.counters.epaFailures;
         const LibccdResult mpr = LibccdPenetration(query.a, query.b, query.bInA, margin, LibccdAlgorithm::Mpr);
@@ -97,14 +112,40 @@ void CollideLibccd(const PairQuery& query, Manifold& manifold) {
         if (!mprFound) ++query.counters.centreLineFallbacks;
         const Vector3 other = mprFound ? Vector3(mpr.normal.cast<float>()) : CentreLine(query.bInA);
         const float otherSeparation = pair.SeparationAlong(other);
-        if (result.status == LibccdResult::Status::Failed || otherSeparation > separation) {
-            axis = other;
-            separation = otherSeparation;
+        if (result.status == LibccdResult::Status::Failed || otherSeparation > found.separation) {
+            found.axis = other;
+            found.separation = otherSeparation;
+            found.position = mprFound ? Vector3(mpr.position.cast<float>()) : query.a.SupportCore(other);
         }
     }
+    return found;
+}
+
+// Contact points from the shapes' supporting faces: at least one of the cores is curved.
+void CollideCurved(const PairQuery& query, Manifold& manifold) {
+    const SupportPair pair(query.a, query.b, query.bInA);
+    const LibccdAxis found = FindAxis(query, pair);
+    if (found.apart) return;
+    // libccd's point lies between the surfaces: on the core along the axis.
+    const float off = Dot(found.axis, Vector3(query.a.SupportCore(found.axis) - found.position));
+    const KnownContact known{found.axis, found.separation, found.position + found.axis * off};
+    const ContactTolerances tolerances(pair.InnerRadii(), pair.RadiusSum(), query.settings);
+    BuildConvexContact(pair, known, tolerances, query.cache, manifold);
+}
+
+}  // namespace
+
+void CollideLibccd(const PairQuery& query, Manifold& manifold) {
+    manifold.pointCount = 0;
+    if (!HasPolyhedralCore(query.a.Type()) || !HasPolyhedralCore(query.b.Type())) return CollideCurved(query, manifold);
+    PolyhedronStorage storageA, storageB;
+    const PolyhedronPair pair(CoreOf(query.a, storageA), CoreOf(query.b, storageB), query.bInA);
+    const LibccdAxis found = FindAxis(query, pair);
+    if (found.apart) return;
+    const ContactTolerances tolerances = pair.Tolerances(query.settings);
     // The axis is as exact as libccd's tolerance; the separation along it is measured on the cores themselves. The polytope of
     // rounded shapes has flat facets: its normals are off by about the root of the relative tolerance.
-    BuildContactFromAxis(pair, {axis, separation, 100 * tolerances.feature}, tolerances, query.cache, manifold);
+    BuildContactFromAxis(pair, {found.axis, found.separation, 100 * tolerances.feature}, tolerances, query.cache, manifold);
 }
 
 }  // namespace fulcrum

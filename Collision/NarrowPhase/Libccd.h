@@ -13,6 +13,7 @@ struct LibccdResult {
     Status status;
     Position normal;    // unit, from A towards B, in A's frame
     double separation;  // m along the normal, of the whole shapes, <= margin
+    Position position;  // m, somewhere where they touch
 };
 
 // libccd knows no distance. Each shape is therefore its core, rounded by its convex radius and half of `margin` (m, >= 0):

@@ -23,8 +23,10 @@ void CollideCapsuleSphere(const PairQuery& query, Manifold& manifold);
 void CollideCapsuleCapsule(const PairQuery& query, Manifold& manifold);
 void CollideBoxSphere(const PairQuery& query, Manifold& manifold);
 void CollideBoxBox(const PairQuery& query, Manifold& manifold);
-// Any two of sphere, capsule, box and hull of which one at least is a box or a hull.
+// Any two of sphere, capsule, box, hull and triangle of which one at least is a box, a hull or a triangle.
 void CollidePolyhedra(const PairQuery& query, Manifold& manifold);
+// Any two; those with a curved core have no other.
+void CollideConvex(const PairQuery& query, Manifold& manifold);
 // Any two.
 void CollideLibccd(const PairQuery& query, Manifold& manifold);
 

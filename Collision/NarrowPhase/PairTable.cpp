@@ -36,13 +36,26 @@ constexpr PairRow Row() {
 
 constexpr PairFunction kFlipped = Flip<CollidePolyhedra>;
 
-// By the type of A down and of B across. A shape that gets a line here and no functions of its own is served by CollideLibccd.
+constexpr PairFunction kPolyhedra = CollidePolyhedra, kConvex = CollideConvex, kTurned = Flip<CollideConvex>;
+
+// By the type of A down and of B across. CollideConvex serves any two shapes; a pair is always passed to it
+// the same way round, so that it makes no difference which shape is A.
 constexpr PairRow kPairTable[] = {
-    //                Sphere                Box                      Capsule                     ConvexHull
-    /* Sphere     */ Row<CollideSphereSphere, Flip<CollideBoxSphere>, Flip<CollideCapsuleSphere>, kFlipped>(),
-    /* Box        */ Row<CollideBoxSphere, CollideBoxBox, CollidePolyhedra, kFlipped>(),
-    /* Capsule    */ Row<CollideCapsuleSphere, kFlipped, CollideCapsuleCapsule, kFlipped>(),
-    /* ConvexHull */ Row<CollidePolyhedra, CollidePolyhedra, CollidePolyhedra, CollidePolyhedra>(),
+    //                    Sphere, Box, Capsule, ConvexHull, Triangle, then those with curved cores:
+    //                    TaperedCapsule, Cylinder, Custom
+    /* Sphere         */ Row<CollideSphereSphere, Flip<CollideBoxSphere>, Flip<CollideCapsuleSphere>, kFlipped, kFlipped,
+                             kConvex, kConvex, kConvex>(),
+    /* Box            */ Row<CollideBoxSphere, CollideBoxBox, kPolyhedra, kFlipped, kPolyhedra,
+                             kConvex, kConvex, kConvex>(),
+    /* Capsule        */ Row<CollideCapsuleSphere, kFlipped, CollideCapsuleCapsule, kFlipped, kFlipped,
+                             kConvex, kConvex, kConvex>(),
+    /* ConvexHull     */ Row<kPolyhedra, kPolyhedra, kPolyhedra, kPolyhedra, kPolyhedra,
+                             kConvex, kConvex, kConvex>(),
+    /* Triangle       */ Row<kPolyhedra, kPolyhedra, kPolyhedra, kPolyhedra, kPolyhedra,
+                             kConvex, kConvex, kConvex>(),
+    /* TaperedCapsule */ Row<kTurned, kTurned, kTurned, kTurned, kTurned, kConvex, kConvex, kConvex>(),
+    /* Cylinder       */ Row<kTurned, kTurned, kTurned, kTurned, kTurned, kTurned, kConvex, kConvex>(),
+    /* Custom         */ Row<kTurned, kTurned, kTurned, kTurned, kTurned, kTurned, kTurned, kConvex>(),
 };
 static_assert(std::size(kPairTable) == kConvexShapeTypes, "every convex shape needs a row in the pair table");
 

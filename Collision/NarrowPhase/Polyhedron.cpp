@@ -1,6 +1,7 @@
 #include <Fulcrum/Collision/NarrowPhase/Polyhedron.h>
 
 #include <Fulcrum/Collision/Shapes/Primitives.h>
+#include <Fulcrum/Collision/Shapes/Triangle.h>
 
 namespace fulcrum {
 
@@ -16,6 +17,8 @@ alignas(32) constexpr float kBoxNormals[24] = {1, -1, 0, 0, 0, 0, 1, 1, 0, 0, 1,
 constexpr ConvexHull::Edge kBoxEdges[12] = {{0, 1, 5, 3}, {2, 3, 2, 5}, {4, 5, 3, 4}, {6, 7, 4, 2},
                                             {0, 2, 1, 5}, {1, 3, 5, 0}, {4, 6, 4, 1}, {5, 7, 0, 4},
                                             {0, 4, 3, 1}, {1, 5, 0, 3}, {2, 6, 1, 2}, {3, 7, 2, 0}};
+constexpr uint8_t kTriangleIndices[6] = {0, 1, 2, 2, 1, 0};
+constexpr ConvexHull::Edge kTriangleEdges[3] = {{0, 1, 0, 1}, {1, 2, 0, 1}, {2, 0, 0, 1}};
 // A segment has no faces; those named here are not looked at.
 constexpr ConvexHull::Edge kSegmentEdge[1] = {{0, 1, 0, 0}};
 
@@ -37,7 +40,7 @@ Polyhedron SmallCore(const PolyhedronStorage& storage, int vertexCount, int face
     p.edges = faceCount > 0 ? kBoxEdges : kSegmentEdge;
     p.edgeCount = faceCount > 0 ? 12 : vertexCount - 1;
     p.radius = 0;
-    p.innerRadius = 0;
+    p.innerRadius = p.size = 0;
     return p;
 }
 
@@ -70,7 +73,7 @@ Polyhedron CoreOf(const ConvexHull& hull) {
     p.edges = hull.Edges().data();
     p.edgeCount = static_cast<int>(hull.Edges().size());
     p.radius = hull.ConvexRadius();
-    p.innerRadius = Max(0.0f, hull.InnerRadius() - hull.ConvexRadius());
+    p.innerRadius = p.size = Max(0.0f, hull.InnerRadius() - hull.ConvexRadius());
     return p;
 }
 
@@ -90,8 +93,42 @@ Polyhedron CoreOf(const Box& box, PolyhedronStorage& storage) {
     FillLanes(storage, 8);
     Polyhedron p = SmallCore(storage, 8, 6);
     p.radius = radius;
-    p.innerRadius = Min(h.x(), Min(h.y(), h.z()));
+    p.innerRadius = p.size = Min(h.x(), Min(h.y(), h.z()));
     return p;
+}
+
+Polyhedron TriangleCore(const Vector3 (&corners)[3], const Vector3& n, float radius, PolyhedronStorage& storage) {
+    for (int i = 0; i < 3; ++i) storage.vertices[i] = corners[i];
+    for (int i = 0; i < 2; ++i) {
+        ConvexHull::Face& face = storage.faces[i];
+        face.firstIndex = static_cast<uint16_t>(3 * i);
+        face.cornerCount = 3;
+        face.normal = i == 0 ? n : Vector3(-n);
+        face.offset = Dot(face.normal, storage.vertices[0]);
+    }
+    for (int i = 0; i < 8; ++i) {
+        const Vector3& normal = storage.faces[i == 1 ? 1 : 0].normal;
+        storage.normalLanes[i] = normal.x();
+        storage.normalLanes[8 + i] = normal.y();
+        storage.normalLanes[16 + i] = normal.z();
+    }
+    FillLanes(storage, 3);
+    Polyhedron p = SmallCore(storage, 3, 2);
+    p.normalX = storage.normalLanes;
+    p.normalY = storage.normalLanes + 8;
+    p.normalZ = storage.normalLanes + 16;
+    p.indices = kTriangleIndices;
+    p.edges = kTriangleEdges;
+    p.edgeCount = 3;
+    p.radius = radius;
+    // The smallest distance of a corner from the centroid: two thirds of that median.
+    p.size = Sqrt(Min(LengthSquared(corners[0]), Min(LengthSquared(corners[1]), LengthSquared(corners[2]))));
+    return p;
+}
+
+Polyhedron CoreOf(const Triangle& triangle, PolyhedronStorage& storage) {
+    const Vector3 corners[3] = {triangle.Corner(0), triangle.Corner(1), triangle.Corner(2)};
+    return TriangleCore(corners, triangle.Normal(), triangle.ConvexRadius(), storage);
 }
 
 Polyhedron CoreOf(const Capsule& capsule, PolyhedronStorage& storage) {
@@ -117,9 +154,17 @@ Polyhedron CoreOf(const ConvexShape& shape, PolyhedronStorage& storage) {
         case ShapeType::Box: return CoreOf(static_cast<const Box&>(shape), storage);
         case ShapeType::Capsule: return CoreOf(static_cast<const Capsule&>(shape), storage);
         case ShapeType::ConvexHull: return CoreOf(static_cast<const ConvexHull&>(shape));
-        case ShapeType::Compound: break;
+        case ShapeType::Triangle: return CoreOf(static_cast<const Triangle&>(shape), storage);
+        case ShapeType::TaperedCapsule:
+        case ShapeType::Cylinder:
+        case ShapeType::Custom:
+        case ShapeType::Compound:
+        case ShapeType::TriangleMesh:
+        case ShapeType::HeightField:
+        case ShapeType::Plane:
+        case ShapeType::Empty: break;
     }
-    FULCRUM_ASSERT(!"a compound has no core");
+    FULCRUM_ASSERT(!"the shape has no polyhedral core");
     return {};
 }
 

@@ -1,5 +1,5 @@
-// One view of the cores of all convex shapes: a hull, a box, a capsule's segment and a sphere's point are polyhedra of
-// many, 8, 2 and 1 vertices. The pair functions of polyhedra work on it. Used by the narrow phase alone; a view lives
+// One view of the cores of all convex shapes that are not curved: a hull, a box, a triangle, a capsule's segment and a
+// sphere's point are polyhedra of many, 8, 3, 2 and 1 vertices. The pair functions of polyhedra work on it. Used by the narrow phase alone; a view lives
 // on the stack of one call.
 #pragma once
 
@@ -26,21 +26,30 @@ struct Polyhedron {
     int edgeCount;
     float radius;       // m: the shape is the polyhedron rounded by it
     float innerRadius;  // m: the ball about the origin of this radius lies inside the core
+    float size;         // m: the scale of its tolerances; the inner radius where it has one
 };
 
 // Where the view of a shape that is not a hull keeps its numbers.
 struct PolyhedronStorage {
     alignas(32) float lanes[24];
+    alignas(32) float normalLanes[24];  // where the shape is not aligned with its axes
     Vector3 vertices[8];
     ConvexHull::Face faces[6];
 };
 
+inline bool HasPolyhedralCore(ShapeType type) {
+    return type <= ShapeType::Triangle;  // the order of the enumerators: those before it, too
+}
+
 Polyhedron CoreOf(const ConvexHull& hull);
 // Vertex i lies at the positive x, y, z side where bit 0, 1, 2 of i is set. Faces: +x, -x, +y, -y, +z, -z.
 Polyhedron CoreOf(const class Box& box, PolyhedronStorage& storage);
+// Two faces back to back; 0 is the one that `normal` points out of. The corners are about their centroid, m.
+Polyhedron TriangleCore(const Vector3 (&corners)[3], const Vector3& normal, float radius, PolyhedronStorage& storage);
+Polyhedron CoreOf(const class Triangle& triangle, PolyhedronStorage& storage);
 Polyhedron CoreOf(const class Capsule& capsule, PolyhedronStorage& storage);
 Polyhedron CoreOf(const class Sphere& sphere, PolyhedronStorage& storage);
-// Any of those.
+// Any of those; only where HasPolyhedralCore(shape.Type()).
 Polyhedron CoreOf(const ConvexShape& shape, PolyhedronStorage& storage);
 
 inline Extreme FarthestVertex(const Polyhedron& p, const Vector3& direction) {

@@ -5,6 +5,7 @@
 #include <Fulcrum/Collision/NarrowPhase/AxisContact.h>
 #include <Fulcrum/Collision/NarrowPhase/AxisSearch.h>
 #include <Fulcrum/Collision/NarrowPhase/Epa.h>
+#include <Fulcrum/Collision/NarrowPhase/Gjk.h>
 #include <Fulcrum/Collision/NarrowPhase/PairFunctions.h>
 #include <Fulcrum/Math/Assert.h>
 
@@ -67,18 +68,18 @@ void CollidePolyhedra(const PairQuery& query, Manifold& manifold) {
     const WarmStart warm = TryCache(pair, tolerances, query.cache, manifold);
     if (warm.done) return;
 
-    const GjkResult gjk = Gjk(pair, warm.axis, tolerances.reach);
+    const GjkResult<MinkowskiVertex> gjk = Gjk(pair, warm.axis, tolerances.reach);
     KnownAxis known{gjk.axis, gjk.separation, tolerances.feature};
-    if (gjk.status == GjkResult::Status::BeyondReach) {
+    if (gjk.status == GjkStatus::BeyondReach) {
         manifold.normal = gjk.axis;
         manifold.pointCount = 0;
         query.cache.kind = PairCache::Kind::Axis;
         for (int i = 0; i < 3; ++i) query.cache.axis[i] = gjk.axis[i];
         return;
     }
-    if (gjk.status == GjkResult::Status::Overlapping) {
+    if (gjk.status == GjkStatus::Overlapping) {
         const EpaResult epa = Epa(pair, gjk.simplex);
-        const FoundAxis found = epa.found ? FoundAxis{epa.axis, epa.separation} : SearchAllAxes(pair);
+        const FoundAxis found = epa.status == EpaResult::Status::Found ? FoundAxis{epa.axis, epa.separation} : SearchAllAxes(pair);
         known.axis = found.axis;
         known.separation = found.separation;
     }

@@ -9,11 +9,16 @@ namespace fulcrum {
 
 // A vertex of the Minkowski difference: vertex b of B minus vertex a of A, in A's frame.
 struct MinkowskiVertex {
+    using Real = float;
+
     Vector3 w;
     uint8_t a, b;
+    bool SameAs(const MinkowskiVertex& v) const { return a == v.a && b == v.b; }
 };
 
 struct PolyhedronPair {
+    using Vertex = MinkowskiVertex;
+
     Polyhedron a, b;
     Matrix3 rotation;  // B's axes in A's frame
     Vector3 position;  // B's centre in A's frame
@@ -23,14 +28,17 @@ struct PolyhedronPair {
 
     Vector3 VertexOfB(int i) const { return rotation * b.vertices[i] + position; }
     Vector3 DirectionInB(const Vector3& n) const { return rotation.TransposeMultiply(n); }
+    float InnerRadii() const { return a.innerRadius + b.innerRadius; }
     float RadiusSum() const { return a.radius + b.radius; }
     // The scale that rounding errors are measured against, m.
     float Size() const {
-        return Abs(position.x()) + Abs(position.y()) + Abs(position.z()) + a.innerRadius + b.innerRadius;
+        return Abs(position.x()) + Abs(position.y()) + Abs(position.z()) + a.size + b.size;
     }
+    // How far EPA's axis may miss the least depth, m.
+    float DepthTolerance() const { return 1e-6f * Size() + 1e-12f; }
 
     ContactTolerances Tolerances(const CollideSettings& settings) const {
-        return ContactTolerances(a.innerRadius + b.innerRadius, RadiusSum(), settings);
+        return ContactTolerances(a.size + b.size, RadiusSum(), settings);
     }
 
     // The vertex that lies least far along n: the one that says how far the cores are separated along n.

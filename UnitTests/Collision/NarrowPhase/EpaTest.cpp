@@ -3,6 +3,7 @@
 
 #include <Fulcrum/Collision/NarrowPhase/AxisSearch.h>
 #include <Fulcrum/Collision/NarrowPhase/Epa.h>
+#include <Fulcrum/Collision/NarrowPhase/Gjk.h>
 
 #include <gtest/gtest.h>
 
@@ -26,9 +27,9 @@ TEST(Epa, FindsTheDepthThatTheSearchThroughAllAxesFinds) {
             for (int i = 0; i < 1000; ++i) {
                 RelativePose pose{random.InCube(), i % 3 == 0 ? random.QuarterTurns() : random.Rotation()};
                 const PolyhedronPair pair(coreA, coreB, pose);
-                const GjkResult gjk = Gjk(pair, Normalized(pose.position), 0.02f);
+                const GjkResult<MinkowskiVertex> gjk = Gjk(pair, Normalized(pose.position), 0.02f);
                 const FoundAxis search = SearchAllAxes(pair);
-                if (gjk.status != GjkResult::Status::Overlapping) {
+                if (gjk.status != GjkStatus::Overlapping) {
                     // The face and edge axes find no more than the distance, which GJK finds.
                     EXPECT_GT(gjk.separation, -1e-5f);
                     EXPECT_GE(gjk.separation, std::min(search.separation, 0.02f) - 1e-5f) << a.name << " " << b.name << " " << i;
@@ -37,7 +38,7 @@ TEST(Epa, FindsTheDepthThatTheSearchThroughAllAxesFinds) {
                 ++overlapping;
                 EXPECT_LE(search.separation, 1e-5f);
                 const EpaResult epa = Epa(pair, gjk.simplex);
-                if (!epa.found) {
+                if (epa.status != EpaResult::Status::Found) {
                     ++gaveUp;
                     continue;
                 }

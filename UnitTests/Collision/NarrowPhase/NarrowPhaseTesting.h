@@ -4,7 +4,10 @@
 
 #include <Fulcrum/Collision/NarrowPhase/Collide.h>
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
+#include <Fulcrum/Collision/Shapes/CustomConvex.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
+#include <Fulcrum/Collision/Shapes/RoundShapes.h>
+#include <Fulcrum/Collision/Shapes/Triangle.h>
 
 #include <random>
 #include <string>
@@ -33,6 +36,21 @@ inline ConvexPtr MakeRoundHull(int count, float radius) {
     }
     return MakeHull(points);
 }
+
+// Curved everywhere: no simplex and no facet of it is ever the last. As a user would write it.
+class Ellipsoid final : public CustomConvex {
+public:
+    explicit Ellipsoid(const Vector3& radii) : radii_(radii) {}
+    const Vector3& Radii() const { return radii_; }
+    Vector3 FarthestPoint(const Vector3& d) const override {
+        const Vector3 scaled = d.cwiseProduct(radii_);
+        return scaled.cwiseProduct(radii_) * (1.0f / Length(scaled));
+    }
+
+private:
+    Vector3 radii_;
+};
+inline ConvexPtr MakeEllipsoid(const Vector3& radii) { return CreateCustom<Ellipsoid>(radii).Value(); }
 
 // A prism along y over a regular polygon: many parallel and perpendicular features.
 inline ConvexPtr MakePrism(int sides, float radius, float halfHeight) {

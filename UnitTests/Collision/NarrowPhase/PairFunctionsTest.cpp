@@ -1,4 +1,5 @@
-// Every pair function against libccd on random poses: 10 pairs of types, 10^4 poses each.
+// Every pair function against libccd on random poses: all pairs of types, 10^4 poses each (300 of those with a curved core, for which libccd
+// takes a millisecond each).
 #include "NarrowPhaseTesting.h"
 
 #include <Fulcrum/Collision/NarrowPhase/Libccd.h>
@@ -11,7 +12,9 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr int kPosesPerPair = 10000;
+int PosesFor(const ConvexShape& a, const ConvexShape& b) {
+    return std::max(a.Type(), b.Type()) <= ShapeType::Triangle ? 10000 : 300;
+}
 
 // A face contact may be taken in place of an axis that is better by at most this much: 2 % of the speculative distance.
 constexpr double kPreference = 0.02 * 0.02;
@@ -22,7 +25,14 @@ const std::vector<NamedShape>& Shapes() {
     static const std::vector<NamedShape> shapes = {{"sphere", MakeSphere(0.5f)},
                                                    {"box", MakeBox(Vector3(0.5f, 0.4f, 0.7f))},
                                                    {"capsule", MakeCapsule(0.5f, 0.25f)},
-                                                   {"hull", MakeRoundHull(32, 0.6f)}};
+                                                   {"hull", MakeRoundHull(32, 0.6f)},
+                                                   {"triangle", Triangle::Create(Vector3(-0.6f, 0, -0.5f), Vector3(0.7f, 0.1f, -0.4f), Vector3(0, 0, 0.8f)).Value()},
+                                                   {"drop", TaperedCapsule::Create(0.5f, 0.2f, 0.4f).Value()},
+                                                   {"cylinder", Cylinder::Create(0.5f, 0.4f).Value()},
+                                                   {"puck", Cylinder::Create(0.2f, 0.6f, 0.05f).Value()},
+                                                   {"frustum", Cylinder::CreateTapered(0.4f, 0.2f, 0.5f).Value()},
+                                                   {"cone", Cylinder::CreateCone(0.5f, 0.4f).Value()},
+                                                   {"ellipsoid", MakeEllipsoid(Vector3(0.3f, 0.5f, 0.7f))}};
     return shapes;
 }
 
@@ -56,7 +66,7 @@ Comparison Compare(const ConvexPtr& a, const ConvexPtr& b, uint32_t seed) {
     Comparison result;
     Random random(seed);
     const CollideSettings settings;
-    for (int i = 0; i < kPosesPerPair; ++i) {
+    for (int i = 0; i < PosesFor(*a, *b); ++i) {
         const RelativePose pose = RandomPose(*a, *b, i, random);
         const Manifold manifold = CollideCold(a, b, pose, settings);
         const LibccdResult libccd = LibccdPenetration(*a, *b, pose, settings.speculativeDistance, LibccdAlgorithm::Epa);
@@ -85,12 +95,13 @@ class PairFunctions : public ::testing::TestWithParam<std::pair<int, int>> {};
 
 TEST_P(PairFunctions, FindAnAxisAsGoodAsLibccds) {
     const NamedShape &a = Shapes()[static_cast<size_t>(GetParam().first)], &b = Shapes()[static_cast<size_t>(GetParam().second)];
+    const int poses = PosesFor(*a.shape, *b.shape);
     const Comparison c = Compare(a.shape, b.shape, 17);
     std::printf("  %-8s %-8s %d of %d touch; axis worse than libccd's by at most %.1e m, points off their axis %.1e m, "
                 "libccd off by %.1e m, contradicting itself in %d\n",
-                a.name.c_str(), b.name.c_str(), c.found, kPosesPerPair, c.worseAxis, c.pointError, c.libccdError,
+                a.name.c_str(), b.name.c_str(), c.found, poses, c.worseAxis, c.pointError, c.libccdError,
                 c.libccdWrong);
-    EXPECT_GT(c.found, kPosesPerPair / 3);
+    EXPECT_GT(c.found, poses / 5);
     EXPECT_EQ(c.missed, 0);
     EXPECT_EQ(c.notUnit, 0);
     // No axis separates better than the best, so one that is at least as good as libccd's is the best one or libccd is wrong.
@@ -102,9 +113,18 @@ TEST_P(PairFunctions, FindAnAxisAsGoodAsLibccds) {
 }
 
 INSTANTIATE_TEST_SUITE_P(AllTypes, PairFunctions,
-                         ::testing::Values(std::pair(0, 0), std::pair(1, 0), std::pair(2, 0), std::pair(3, 0),
-                                           std::pair(1, 1), std::pair(2, 1), std::pair(3, 1), std::pair(2, 2),
-                                           std::pair(3, 2), std::pair(3, 3)));
+                         ::testing::ValuesIn([] {
+                             std::vector<std::pair<int, int>> pairs;
+                             for (int i = 0; i < static_cast<int>(Shapes().size()); ++i)
+                                 for (int k = 0; k <= i; ++k) pairs.push_back({i, k});
+                             return pairs;
+                         }()));
+
+// Deep inside each other, curved cores have whole rings of axes that are nearly as good; the polytope has facets of a tenth
+// of a radian there, which miss the depth by half a per cent before they are polished and pick any axis of the ring.
+double CurvedError(const NamedShape& a, const NamedShape& b, float separation) {
+    return std::max(a.shape->Type(), b.shape->Type()) > ShapeType::Triangle ? 0.006 * std::max(0.0f, -separation) : 0;
+}
 
 // How far x lies outside the shape (inside: negative). Of a hull, the farthest plane: less than the distance near an edge.
 double SignedDistance(const ConvexShape& shape, const Vector3& x) {
@@ -116,6 +136,40 @@ double SignedDistance(const ConvexShape& shape, const Vector3& x) {
             return std::max(0.0f, Length(Vector3(x - Vector3(0, std::clamp(x.y(), -half, half), 0))) - shape.ConvexRadius());
         }
         case ShapeType::Box: return (x.cwiseAbs() - static_cast<const Box&>(shape).HalfExtents()).maxCoeff();
+        case ShapeType::Triangle: {
+            const auto& triangle = static_cast<const Triangle&>(shape);
+            double most = std::abs(Dot(triangle.Normal(), x));
+            for (int i = 0; i < 3; ++i) {
+                const Vector3 from = triangle.Corner(i), to = triangle.Corner((i + 1) % 3);
+                const Vector3 outwards = Normalized(Cross<float>(Vector3(to - from), triangle.Normal()));
+                most = std::max(most, static_cast<double>(Dot(outwards, Vector3(x - from))));
+            }
+            return most;
+        }
+        case ShapeType::TaperedCapsule: {  // the union of the balls between its ends
+            const auto& drop = static_cast<const TaperedCapsule&>(shape);
+            double least = 1e30;
+            for (int i = 0; i <= 10000; ++i) {
+                const double t = i * 1e-4, y = (2 * t - 1) * drop.HalfHeight() - drop.Mass().centreOfMass.y();
+                const double radius = drop.BottomRadius() + t * (drop.TopRadius() - drop.BottomRadius());
+                least = std::min(least, Length(Vector3(x - Vector3(0, static_cast<float>(y), 0))) - radius);
+            }
+            return least;
+        }
+        case ShapeType::Cylinder: {
+            const auto& c = static_cast<const Cylinder&>(shape);
+            const double y = x.y() + c.Mass().centreOfMass.y(), h = c.HalfHeight();
+            const double slope = (c.TopRadius() - c.BottomRadius()) / (2 * h), length = std::sqrt(1 + slope * slope);
+            const double side = std::sqrt(x.x() * x.x() + x.z() * x.z()) - (c.TopRadius() + c.BottomRadius()) / 2 - slope * y;
+            const double sharp = std::max(std::abs(y) - h, side / length);
+            // Rims are rounded within: there the surface lies below the planes by at most (sqrt(2) - 1) of the rounding.
+            return c.ConvexRadius() > 0 && sharp < 0 ? std::min(0.0, sharp + 0.4143 * c.ConvexRadius()) : sharp;
+        }
+        case ShapeType::Custom: {
+            const Vector3 scaled = x.cwiseQuotient(static_cast<const Ellipsoid&>(shape).Radii());
+            const Vector3 gradient = scaled.cwiseQuotient(static_cast<const Ellipsoid&>(shape).Radii());
+            return (Dot(scaled, scaled) - 1) / (2 * Length(gradient));
+        }
         default: {
             double most = -1e30;
             for (const ConvexHull::Face& face : static_cast<const ConvexHull&>(shape).Faces())
@@ -161,7 +215,8 @@ TEST(PairFunctionsTest, MirroredPairsGiveMirroredManifolds) {
                 // Where b is placed by `inverse` twice rounded, features at the edge of a tolerance may differ.
                 if (there.pointCount != back.pointCount) continue;
                 if (there.pointCount == 0) continue;
-                EXPECT_NEAR(DeepestSeparation(there), DeepestSeparation(back), kPreference + kRounding);
+                const float depth = DeepestSeparation(there);
+                EXPECT_NEAR(depth, DeepestSeparation(back), kPreference + kRounding + CurvedError(a, b, depth));
                 const Vector3 normal = -Rotate(pose.rotation, back.normal);
                 if (Dot(normal, there.normal) < 0.9999f) continue;  // two equally good axes
                 for (int k = 0; k < back.pointCount; ++k) {
@@ -170,7 +225,7 @@ TEST(PairFunctionsTest, MirroredPairsGiveMirroredManifolds) {
                     float nearest = 1;
                     for (int m = 0; m < there.pointCount; ++m)
                         nearest = std::min(nearest, Length(Vector3(there.points[m].positionOnA - onA)));
-                    EXPECT_LE(nearest, 2e-3f) << a.name << " " << b.name << " " << i;
+                    EXPECT_LE(nearest, 2e-3 + CurvedError(a, b, depth)) << a.name << " " << b.name << " " << i;
                 }
             }
         }
@@ -183,7 +238,8 @@ TEST(PairFunctionsTest, TheLibccdMethodServesEveryPair) {
     for (const NamedShape& a : Shapes()) {
         for (const NamedShape& b : Shapes()) {
             int found = 0, wrong = 0;
-            for (int i = 0; i < 300; ++i) {
+            const int poses = PosesFor(*a.shape, *b.shape) > 300 ? 300 : 60;
+            for (int i = 0; i < poses; ++i) {
                 const RelativePose pose = RandomPose(*a.shape, *b.shape, i, random);
                 const Manifold manifold = CollideCold(a.shape, b.shape, pose, settings);
                 const Manifold expected = CollideCold(a.shape, b.shape, pose);
@@ -193,7 +249,7 @@ TEST(PairFunctionsTest, TheLibccdMethodServesEveryPair) {
                 EXPECT_NEAR(Length(manifold.normal), 1.0f, 1e-5f);
                 if (std::abs(DeepestSeparation(manifold) - DeepestSeparation(expected)) > 2e-3f) ++wrong;
             }
-            EXPECT_GT(found, 50);
+            EXPECT_GT(found, poses / 6);
             // libccd takes some deep poses for touching ones and MPR's answer is not the least depth.
             EXPECT_LE(wrong, found / 4) << a.name << " " << b.name;
         }
@@ -220,7 +276,8 @@ TEST(PairFunctionsTest, CachedAndUncachedQueriesAgree) {
                     continue;
                 }
                 // Each may prefer a face, and the warm one its last feature, by the preference.
-                EXPECT_NEAR(DeepestSeparation(warm), DeepestSeparation(cold), 2 * kPreference + kRounding)
+                const float depth = DeepestSeparation(warm);
+                EXPECT_NEAR(depth, DeepestSeparation(cold), 2 * kPreference + kRounding + CurvedError(a, b, depth))
                     << a.name << " " << b.name << " " << i;
             }
         }

@@ -1,0 +1,56 @@
+// Two convex shapes known by their support functions, and the pose of one in the other's frame: the Minkowski difference
+// B - A of their cores, as GJK and EPA walk on it. Used by the narrow phase and the queries; lives on the stack of one call.
+#pragma once
+
+#include <Fulcrum/Collision/Shapes/Shape.h>
+#include <Fulcrum/Math/Matrix.h>
+#include <Fulcrum/Math/Wide.h>
+
+namespace fulcrum {
+
+// A point of B's core minus a point of A's, in A's frame. In double: the closest points of two curved cores span ever thinner
+// triangles, from which float cannot tell the axis.
+struct SupportVertex {
+    using Real = double;
+
+    Position w;
+    Vector3 onA, onB;
+    bool SameAs(const SupportVertex& v) const { return onA == v.onA && onB == v.onB; }
+};
+
+struct SupportPair {
+    using Vertex = SupportVertex;
+
+    const ConvexShape& a;
+    const ConvexShape& b;
+    Matrix3 rotation;  // B's axes in A's frame
+    Vector3 position;  // B's centre in A's frame
+
+    SupportPair(const ConvexShape& shapeA, const ConvexShape& shapeB, const RelativePose& bInA)
+        : a(shapeA), b(shapeB), rotation(ToMatrix(bInA.rotation)), position(bInA.position) {}
+
+    Vector3 DirectionInB(const Vector3& n) const { return rotation.TransposeMultiply(n); }
+    Vector3 PointOfB(const Vector3& local) const { return rotation * local + position; }
+    float RadiusSum() const { return a.ConvexRadius() + b.ConvexRadius(); }
+    // Of the balls inside the two cores, m.
+    float InnerRadii() const {
+        return Max(0.0f, a.InnerRadius() - a.ConvexRadius()) + Max(0.0f, b.InnerRadius() - b.ConvexRadius());
+    }
+    // The scale that rounding errors are measured against, m.
+    float Size() const { return Abs(position.x()) + Abs(position.y()) + Abs(position.z()) + InnerRadii(); }
+    // How far EPA's axis may miss the least depth, m: a curved core has no last facet to find.
+    float DepthTolerance() const { return 3e-5f * Size() + 1e-12f; }
+
+    // The point that lies least far along n: the one that says how far the cores are separated along n.
+    SupportVertex Support(const Vector3& n) const {
+        const Vector3 onA = a.SupportCore(n), onB = PointOfB(b.SupportCore(-DirectionInB(n)));
+        return {onB.cast<double>() - onA.cast<double>(), onA, onB};
+    }
+    // Separation of the cores along the unit vector n: negative where their shadows on n overlap.
+    float SeparationAlong(const Vector3& n) const {
+        const Vector3 inB = DirectionInB(n);
+        return Dot(n, position) + Dot(inB, b.SupportCore(-inB)) - Dot(n, a.SupportCore(n));
+    }
+};
+
+}  // namespace fulcrum

@@ -1,0 +1,57 @@
+// Contacts of a convex shape with a surface of triangles: as many manifolds as there are directions to be pushed in, without
+// those that only an edge between two triangles would make. Called by the Collide stage, from many threads at once, each with a
+// SurfaceContacts of its own.
+//
+// Each triangle that the shape may reach is collided by itself. What lies before its face is a contact of the face. What
+// is nearest to one of its edges or corners waits until all faces are known:
+// - where a triangle with a contact of its face shares that edge or corner, its contact says it all;
+// - an active one (SurfaceShape.h), or nearly the face's direction, pushes as it is found, the deepest first, and then counts
+//   as known, too;
+// - an inactive edge has no direction of its own: the shape meets the face, if it lies before it.
+// Contacts in nearly the same direction, on the same material, become one manifold of at most four points.
+#pragma once
+
+#include <Fulcrum/Collision/NarrowPhase/Collide.h>
+#include <Fulcrum/Collision/Shapes/SurfaceShape.h>
+
+#include <vector>
+
+namespace fulcrum {
+
+struct SurfaceManifold {
+    Manifold manifold;
+    uint32_t triangle;  // the one of the deepest point when it was found
+    uint8_t material;   // index into the surface's palette
+};
+
+// Room that is used again from call to call, so that it need not be allocated.
+class SurfaceContacts {
+public:
+    // Of the last call, in an order that depends on the shapes and poses alone.
+    std::span<const SurfaceManifold> Manifolds() const { return {manifolds_.data(), manifoldCount_}; }
+
+private:
+    friend class SurfaceCollider;
+    // An edge or corner of a triangle that waits.
+    struct Waiting {
+        SurfaceManifold contact;
+        uint32_t triangle;        // index into views_
+        uint32_t vertices[2];     // ids; the same twice for a corner
+        float separation;         // m, of the deepest point
+        bool active;
+    };
+    std::vector<uint32_t> ids_;
+    std::vector<TriangleView> views_;
+    std::vector<Waiting> waiting_;
+    std::vector<uint32_t> known_;      // ids of vertices
+    std::vector<SurfaceManifold> found_;
+    std::vector<SurfaceManifold> manifolds_;
+    size_t manifoldCount_ = 0;
+};
+
+// Fills `contacts` with the manifolds of a and the triangles of b within settings.speculativeDistance, in a's centre frame, as
+// Collide does. One-sided triangles push to their front alone, and only what has its centre of mass there.
+void CollideSurface(const ConvexShape& a, const SurfaceShape& b, const RelativePose& bInA, const CollideSettings& settings,
+                    SurfaceContacts& contacts, CollideCounters& counters);
+
+}  // namespace fulcrum
