@@ -49,8 +49,8 @@ void MakeColliders(WorldState& world, uint32_t body) {
     ColliderStore& store = world.colliders;
     BodyCold& cold = world.bodies.cold[body];
     const Shape& shape = *cold.shape;
-    const auto* compound = shape.IsConvex() ? nullptr : static_cast<const Compound*>(&shape);
-    cold.colliderCount = compound ? static_cast<uint32_t>(compound->Children().size()) : 1;
+    const auto* compound = shape.Type() == ShapeType::Compound ? static_cast<const Compound*>(&shape) : nullptr;
+    cold.colliderCount = compound ? static_cast<uint32_t>(compound->Children().size()) : (shape.Type() == ShapeType::Empty ? 0 : 1);
     cold.firstCollider = store.Allocate(cold.colliderCount);
     const bool moving = world.bodies.dynamics[body].motion != MotionType::Static;
     (moving ? store.movingLayers : store.fixedLayers) |= 1u << world.bodies.dynamics[body].layer;
@@ -65,7 +65,7 @@ void MakeColliders(WorldState& world, uint32_t body) {
             piece.local = child.pose;
             piece.offset = true;
         } else {
-            piece.shape = static_cast<const ConvexShape*>(&shape);
+            piece.shape = &shape;
         }
         SetFatBounds(world, cold.firstCollider + i);
         store.TreeOf(collider).Insert(cold.firstCollider + i, collider.fat);

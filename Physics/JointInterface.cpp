@@ -117,8 +117,7 @@ void DropPairs(WorldState& world, const Joint& joint) {
         for (uint32_t j = b.firstCollider; j < b.firstCollider + b.colliderCount; ++j) {
             const uint32_t pair = world.pairs.Find(i, j);
             if (pair == PairStore::kNone) continue;
-            UncolourPair(world, pair);
-            world.pairs.Remove(pair);
+            RemovePair(world, pair);
         }
     }
 }

@@ -23,9 +23,8 @@ void ForgetRemoved(WorldState& world) {
     if (world.removed.empty()) return;
     for (uint32_t i = 0; i < world.pairs.pairs.size(); ++i) {
         const Pair& pair = world.pairs.pairs[i];
-        if (!pair.exists || !(world.bodies.cold[pair.bodyA].removed || world.bodies.cold[pair.bodyB].removed)) continue;
-        UncolourPair(world, i);
-        world.pairs.Remove(i);
+        if (!pair.exists || pair.isMore || !(world.bodies.cold[pair.bodyA].removed || world.bodies.cold[pair.bodyB].removed)) continue;
+        RemovePair(world, i);
     }
     std::erase_if(world.colliders.moved, [&](uint32_t collider) {
         return world.bodies.cold[world.colliders.colliders[collider].body].removed;
@@ -132,6 +131,7 @@ Status PhysicsSystem::Update(double dt) {
     Collide(world, step);
     timer.Finished(Stage::Collide);
     Color(world);
+    DropGhosts(world);
     timer.Finished(Stage::Color);
     BuildIslands(world);
     timer.Finished(Stage::BuildIslands);

@@ -92,6 +92,8 @@ MaybeError Check(const BodySettings& s) {
                                CheckPositive("maxAngularSpeed", s.maxAngularSpeed), CheckRange("layer", s.layer, 0, 31),
                                CheckRange("lockedAxes", static_cast<uint8_t>(s.lockedAxes), 0, 63)))
         return e;
+    if (s.motion == MotionType::Dynamic && (s.shape->IsSurface() || s.shape->Type() == ShapeType::Plane))
+        return Error{ErrorCode::Unsupported, std::string("shape is a ") + ShapeTypeName(s.shape->Type()) + "; a dynamic body needs one with a volume"};
     if (s.motion == MotionType::Dynamic)
         if (MaybeError e = CheckInverses(s)) return e;
     if (s.startAsleep && s.motion != MotionType::Dynamic)

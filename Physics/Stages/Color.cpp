@@ -31,6 +31,15 @@ void UncolourPair(WorldState& world, uint32_t index) {
     pair.colour = {};
 }
 
+void RemovePair(WorldState& world, uint32_t index) {
+    while (index != PairStore::kNone) {
+        const uint32_t next = world.pairs.pairs[index].more;
+        UncolourPair(world, index);
+        world.pairs.Remove(index);
+        index = next;
+    }
+}
+
 bool MovesAwake(const WorldState& world, uint32_t index) {
     const Joint& joint = world.joints.joints[index];
     const auto isAwake = [&](int side) { return !joint.still[side] && world.bodies.dynamics[joint.body[side]].awake; };
@@ -70,12 +79,15 @@ void Color(WorldState& world) {
         const PairChange change = world.changes[index];
         world.changes[index] = PairChange::None;
         switch (change) {
-            case PairChange::Began: ColourPair(world, index); break;
-            case PairChange::Ended: UncolourPair(world, index); break;
-            case PairChange::Dead:
-                UncolourPair(world, index);
-                world.pairs.Remove(index);
+            case PairChange::Began:
+                ColourPair(world, index);
+                world.pairs.active.Insert(index);
                 break;
+            case PairChange::Ended:
+                UncolourPair(world, index);
+                if (world.pairs.pairs[index].isMore) world.pairs.active.Erase(index);
+                break;
+            case PairChange::Dead: RemovePair(world, index); break;
             case PairChange::None:
             case PairChange::WakesOther: break;
         }

@@ -1,6 +1,7 @@
 // Pairs are found by whoever moved. Workers collect keys, which are sorted before any pair is made: the order of the pairs
 // depends on ids alone, not on threads nor on the shape of the trees. Pairs that exist are recognised by their bounds, most
 // of the time: the table of pairs is asked about new ones only.
+#include <Fulcrum/Collision/Shapes/SurfaceShape.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 
 #include <algorithm>
@@ -57,8 +58,9 @@ uint32_t MakePair(WorldState& world, uint32_t colliderA, uint32_t colliderB) {
     const ColliderShape& a = world.colliders.shapes[colliderA];
     const ColliderShape& b = world.colliders.shapes[colliderB];
     pair.offset = a.offset || b.offset;
-    pair.shapeA = a.shape;
+    pair.shapeA = static_cast<const ConvexShape*>(a.shape);  // what moves freely has a volume
     pair.shapeB = b.shape;
+    pair.surface = b.shape->IsSurface();
     CombineMaterials(world, index);
     return index;
 }
@@ -69,9 +71,17 @@ void CombineMaterials(WorldState& world, uint32_t index) {
     const Pair& pair = world.pairs.pairs[index];
     const Material& a = world.bodies.cold[pair.bodyA].material;
     const Material& b = world.bodies.cold[pair.bodyB].material;
+    float friction = b.friction, restitution = b.restitution;
+    if (pair.surface) {
+        const std::span<const SurfaceMaterial> palette = static_cast<const SurfaceShape*>(pair.shapeB)->Materials();
+        if (pair.material < palette.size()) {
+            friction = palette[pair.material].friction;
+            restitution = palette[pair.material].restitution;
+        }
+    }
     ContactRecord& record = world.pairs.records[index];
-    record.friction = Combine(std::max(a.frictionRule, b.frictionRule), a.friction, b.friction);
-    record.restitution = Combine(std::max(a.restitutionRule, b.restitutionRule), a.restitution, b.restitution);
+    record.friction = Combine(std::max(a.frictionRule, b.frictionRule), a.friction, friction);
+    record.restitution = Combine(std::max(a.restitutionRule, b.restitutionRule), a.restitution, restitution);
 }
 
 void FindPairs(WorldState& world) {

@@ -29,11 +29,15 @@ void Collide(WorldState& world, const StepContext& step);
 
 // Applies the changes: colours contacts that began, uncolours those that ended, removes dead pairs.
 void Color(WorldState& world);
+// Takes the points from contacts that only a seam between two fixed bodies makes.
+void DropGhosts(WorldState& world);
 // Whether a joint has a body that is awake and can move.
 bool MovesAwake(const WorldState& world, uint32_t joint);
 // Gives a pair's contact a colour, or takes it away; nothing where it has one, or none.
 void ColourPair(WorldState& world, uint32_t pair);
 void UncolourPair(WorldState& world, uint32_t pair);
+// Uncolours and removes a pair with all its manifolds.
+void RemovePair(WorldState& world, uint32_t pair);
 // The same for a joint; only one that is enabled and moves awake gets a colour.
 void ColourJoint(WorldState& world, uint32_t joint);
 void UncolourJoint(WorldState& world, uint32_t joint);

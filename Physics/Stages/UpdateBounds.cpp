@@ -16,7 +16,7 @@ constexpr float kAheadPart = 0.25f;  // of the outer radius
 constexpr float kFastPart = 0.5f;
 
 // World bounds of a collider, without any margin. A hull as round as a ball is bounded best by its outer sphere.
-Bounds TightBounds(const ConvexShape& shape, const Pose& pose, const Matrix3& rotation) {
+Bounds TightBounds(const Shape& shape, const Pose& pose, const Matrix3& rotation) {
     const Bounds& local = shape.LocalBounds();
     const Vector3 centre = rotation * local.Centre(), half = local.HalfExtents();
     const Vector3 reach = rotation.x.cwiseAbs() * half.x() + rotation.y.cwiseAbs() * half.y() + rotation.z.cwiseAbs() * half.z();

@@ -1,5 +1,5 @@
-// Colliders: the convex pieces of the bodies, as the broad phase sees them. A body of a convex shape has one, a compound
-// one per child, consecutive. Two trees keep what moves apart from what never does.
+// Colliders: the pieces of the bodies, as the broad phase sees them. A compound has one per child, consecutive, every other
+// shape one. Two trees keep what moves apart from what never does.
 #pragma once
 
 #include <Fulcrum/Collision/BroadPhase/BoundsTree.h>
@@ -22,7 +22,7 @@ static_assert(sizeof(Collider) == 64);
 
 // The piece itself.
 struct ColliderShape {
-    const ConvexShape* shape = nullptr;  // kept alive by the body's shape
+    const Shape* shape = nullptr;        // no compound; kept alive by the body's shape
     bool offset = false;                 // `local` is not the identity
     RelativePose local;                  // of the shape's centre frame in the body's
 };

@@ -30,8 +30,7 @@ void PairStore::Grow() {
     }
 }
 
-uint32_t PairStore::Add(uint32_t colliderA, uint32_t colliderB) {
-    if (2 * (size_ + 1) > table_.size()) Grow();
+uint32_t PairStore::Allocate() {
     uint32_t index;
     if (!free_.empty()) {
         index = free_.back();
@@ -46,6 +45,31 @@ uint32_t PairStore::Add(uint32_t colliderA, uint32_t colliderB) {
     pairs[index] = {};
     records[index] = {};
     pairs[index].exists = true;
+    return index;
+}
+
+uint32_t PairStore::AddMore(uint32_t of) {
+    const uint32_t index = Allocate();
+    Pair& pair = pairs[index];
+    const Pair& first = pairs[of];
+    pair.bodyA = first.bodyA;
+    pair.bodyB = first.bodyB;
+    pair.colliderA = first.colliderA;
+    pair.colliderB = first.colliderB;
+    pair.shapeA = first.shapeA;
+    pair.shapeB = first.shapeB;
+    pair.fixedB = first.fixedB;
+    pair.offset = first.offset;
+    pair.surface = first.surface;
+    pair.isMore = true;
+    pair.more = first.more;
+    pairs[of].more = index;
+    return index;
+}
+
+uint32_t PairStore::Add(uint32_t colliderA, uint32_t colliderB) {
+    if (2 * (size_ + 1) > table_.size()) Grow();
+    const uint32_t index = Allocate();
     pairs[index].colliderA = colliderA;
     pairs[index].colliderB = colliderB;
 
@@ -60,6 +84,11 @@ uint32_t PairStore::Add(uint32_t colliderA, uint32_t colliderB) {
 
 void PairStore::Remove(uint32_t index) {
     active.Erase(index);
+    if (pairs[index].isMore) {
+        pairs[index].exists = false;
+        free_.push_back(index);
+        return;
+    }
     const uint64_t key = Key(pairs[index].colliderA, pairs[index].colliderB);
     const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
     uint32_t hole = Home(key);

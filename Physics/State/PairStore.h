@@ -18,17 +18,22 @@ struct alignas(64) Pair {
     uint32_t bodyA = 0, bodyB = 0;          // A is dynamic, B any
     uint32_t colliderA = 0, colliderB = 0;
     const ConvexShape* shapeA = nullptr;
-    const ConvexShape* shapeB = nullptr;
+    const Shape* shapeB = nullptr;          // convex, a plane or a surface
     RelativePose reference;      // of piece B in piece A when the manifold was found
     uint8_t pointCount = 0;      // of the record, as found at `reference`
     bool exists : 1 = false;
     bool fixedB : 1 = false;     // B's body is not dynamic
     bool offset : 1 = false;     // a piece is not at its body's centre frame (child of a compound)
+    bool surface : 1 = false;    // B is a surface
     bool touching : 1 = false;   // was active, with points, in the last step
+    bool isMore = false;         // of a surface: a further manifold of a pair that has others
+    uint8_t material = 0;        // of a surface: what of its palette touches
     // Second line.
     PairCache cache;
     uint32_t features[Manifold::kMaxPoints] = {0, 0, 0, 0};
     ColourSlot colour;
+    uint32_t more = ~0u;         // of a surface: the index of the next manifold of these two colliders
+    uint32_t triangle = 0;       // of a surface: the one of the deepest point
 };
 static_assert(sizeof(Pair) == 128);
 
@@ -42,13 +47,16 @@ public:
     static constexpr uint32_t kNone = ~0u;
     uint32_t Find(uint32_t colliderA, uint32_t colliderB) const;
     uint32_t Add(uint32_t colliderA, uint32_t colliderB);  // not there yet
-    void Remove(uint32_t index);                           // not coloured
+    // A further manifold of the pair `of`, between the same shapes and bodies. Not found by Find, and not active.
+    uint32_t AddMore(uint32_t of);
+    void Remove(uint32_t index);                           // not coloured; its further manifolds are removed by themselves
     size_t MemoryUsed() const;
 
 private:
     static uint64_t Key(uint32_t a, uint32_t b) {
         return a < b ? (uint64_t(a) << 32 | b) : (uint64_t(b) << 32 | a);
     }
+    uint32_t Allocate();
     uint32_t Home(uint64_t key) const;
     void Grow();
 

@@ -1,6 +1,7 @@
 // Everything a PhysicsSystem holds. The stages are functions over it; each says what it reads and writes.
 #pragma once
 
+#include <Fulcrum/Collision/NarrowPhase/SurfaceContact.h>
 #include <Fulcrum/Constraints/Contacts/ContactBatch.h>
 #include <Fulcrum/Jobs/ScratchArena.h>
 #include <Fulcrum/Jobs/ThreadPool.h>
@@ -19,10 +20,19 @@
 
 namespace fulcrum {
 
+// A manifold that a pair with a surface has beyond those it had.
+struct MoreManifold {
+    uint32_t pair;
+    SurfaceManifold contact;
+};
+
 // One worker's own findings in a stage; merged in an order that does not depend on who found what.
 struct alignas(64) WorkerFindings {
     std::vector<uint32_t> colliders;  // UpdateBounds: those that left their fat bounds
     std::vector<uint64_t> pairs;      // FindPairs: keys of new or resting pairs
+    SurfaceContacts surface;          // Collide: room to work in
+    std::vector<uint32_t> surfacePlaces, surfaceLeft;  // Collide: likewise
+    std::vector<MoreManifold> more;   // Collide: what has no place in its pair yet
     CollideCounters libccd;
     uint32_t contacts = 0, points = 0, kept = 0;
     float deepest = 0;                // largest penetration, m
@@ -55,6 +65,8 @@ struct WorldState {
     std::vector<PairChange> changes;          // by pair, of this step; None for those that are not active
     std::vector<uint32_t> activated;          // pairs that FindPairs made active
     std::vector<uint64_t> newPairs;
+    std::vector<MoreManifold> moreManifolds;
+    std::vector<uint32_t> ghosts;             // pairs that DropGhosts took the points from, in the last step
     std::vector<WorkerFindings> findings;     // by worker
     ScratchArena scratch;
     StepReport report;

@@ -1,0 +1,122 @@
+// A pair of a convex shape and a surface has as many manifolds as there are directions in which they touch. The first is the
+// pair's own; the others are pairs of their own, chained to it, which the later stages take for any other. They stay, empty or
+// not, as long as the pair does.
+#include <Fulcrum/Physics/Stages/PairView.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+namespace {
+
+template <class Visit>
+void VisitManifolds(WorldState& world, uint32_t pair, Visit&& visit) {
+    for (; pair != PairStore::kNone; pair = world.pairs.pairs[pair].more) visit(pair);
+}
+
+int CommonFeatures(const Pair& pair, const Manifold& manifold) {
+    int count = 0;
+    for (int i = 0; i < pair.pointCount; ++i)
+        for (int j = 0; j < manifold.pointCount; ++j) count += pair.features[i] == manifold.points[j].feature;
+    return count;
+}
+
+void Write(WorldState& world, const PairView& view, uint32_t index, const SurfaceManifold& contact, float dt) {
+    Pair& pair = world.pairs.pairs[index];
+    pair.triangle = contact.triangle;
+    if (pair.material != contact.material || pair.isMore) {
+        pair.material = contact.material;
+        CombineMaterials(world, index);
+    }
+    WriteManifold(world, {pair, world.pairs.records[index], view.bodyBInA, view.bInA}, contact.manifold, dt);
+}
+
+// Gives each manifold the place whose features it shares, then any that is left.
+void WriteManifolds(WorldState& world, const PairView& view, uint32_t first, float dt, WorkerFindings& findings) {
+    constexpr uint32_t kTaken = ~0u;
+    std::vector<uint32_t>& places = findings.surfacePlaces;
+    places.clear();
+    VisitManifolds(world, first, [&](uint32_t index) { places.push_back(index); });
+    const std::span<const SurfaceManifold> found = findings.surface.Manifolds();
+    std::vector<uint32_t>& left = findings.surfaceLeft;
+    left.clear();
+    for (uint32_t m = 0; m < found.size(); ++m) {
+        int most = 0;
+        size_t best = places.size();
+        for (size_t i = 0; i < places.size(); ++i) {
+            const int common = places[i] == kTaken ? 0 : CommonFeatures(world.pairs.pairs[places[i]], found[m].manifold);
+            if (common > most) {
+                most = common;
+                best = i;
+            }
+        }
+        if (best == places.size()) {
+            left.push_back(m);
+            continue;
+        }
+        Write(world, view, places[best], found[m], dt);
+        places[best] = kTaken;
+    }
+    size_t next = 0;
+    for (uint32_t m : left) {
+        while (next < places.size() && places[next] == kTaken) ++next;
+        if (next == places.size()) {
+            findings.more.push_back({first, found[m]});
+            continue;
+        }
+        Write(world, view, places[next], found[m], dt);
+        places[next] = kTaken;
+    }
+    for (uint32_t place : places)
+        if (place != kTaken) world.pairs.pairs[place].pointCount = 0;
+}
+
+}  // namespace
+
+PairChange CollideWithSurface(WorldState& world, uint32_t first, float reach, float dt, WorkerFindings& findings) {
+    bool touches = false;
+    VisitManifolds(world, first, [&](uint32_t index) { touches |= world.pairs.pairs[index].pointCount > 0; });
+    const PairView view = ViewPair(world, first);
+    if (touches && HardlyMoved(view)) {
+        ++findings.kept;
+    } else {
+        CollideSettings settings;
+        settings.method = world.settings.narrowPhase;
+        settings.speculativeDistance = reach;
+        CollideSurface(*view.pair.shapeA, static_cast<const SurfaceShape&>(*view.pair.shapeB), view.bInA, settings, findings.surface,
+                       findings.libccd);
+        WriteManifolds(world, view, first, dt, findings);
+        view.pair.reference = view.bInA;
+    }
+    PairChange ofFirst = PairChange::None;
+    bool wakes = false;
+    VisitManifolds(world, first, [&](uint32_t index) {
+        Pair& pair = world.pairs.pairs[index];
+        const PairChange change = NoteTouching(pair, findings);
+        wakes |= TouchesSleeper(world, pair);
+        if (index == first) ofFirst = change;
+        else world.changes[index] = change;
+    });
+    return wakes ? PairChange::WakesOther : ofFirst;
+}
+
+void AddMoreManifolds(WorldState& world, float dt) {
+    std::vector<MoreManifold>& all = world.moreManifolds;
+    all.clear();
+    for (WorkerFindings& findings : world.findings) {
+        all.insert(all.end(), findings.more.begin(), findings.more.end());
+        findings.more.clear();
+    }
+    if (all.empty()) return;
+    // A pair's own are in order, whichever worker found them.
+    std::stable_sort(all.begin(), all.end(), [](const MoreManifold& a, const MoreManifold& b) { return a.pair < b.pair; });
+    for (const MoreManifold& more : all) {
+        const uint32_t index = world.pairs.AddMore(more.pair);
+        world.changes.resize(std::max(world.changes.size(), world.pairs.pairs.size()), PairChange::None);
+        Write(world, ViewPair(world, more.pair), index, more.contact, dt);
+        world.changes[index] = NoteTouching(world.pairs.pairs[index], world.findings[0]);
+        if (TouchesSleeper(world, world.pairs.pairs[index])) world.changes[more.pair] = PairChange::WakesOther;
+    }
+}
+
+}  // namespace fulcrum

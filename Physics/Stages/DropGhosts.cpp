@@ -1,0 +1,134 @@
+// What slides from one fixed body onto the next, flush with it, must not feel the seam. The narrow phase sees pairs alone: to it
+// the next body ends in an edge, or in a side that the first one hides, and both push sideways. Such a contact is dropped: its
+// shape lies as a whole below the plane of another contact on which the body rests, so there is nothing to run into.
+#include <Fulcrum/Collision/Shapes/SurfaceShape.h>
+#include <Fulcrum/Physics/Stages/PairView.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+namespace {
+
+using Kind = ConstraintColouring::Kind;
+
+constexpr float kFlush = 1e-3f;           // m: what rises less above a plane does not rise, but at most this part of the body:
+constexpr float kFlushPart = 0.01f;
+constexpr float kSameDirection = 0.9998f;  // 1 degree
+
+// A contact in the centre frame of its body A.
+struct Support {
+    uint32_t pair;
+    float separation;  // m, of the deepest point
+    Vector3 normal;    // towards B
+    Vector3 deepest;   // on B
+};
+
+Support Describe(WorldState& world, uint32_t index) {
+    const PairView view = ViewPair(world, index);
+    const ContactRecord& record = view.record;
+    Support support{index, std::numeric_limits<float>::infinity(), Vector3(record.normal[0], record.normal[1], record.normal[2]),
+                    Vector3::Zero()};
+    for (int i = 0; i < view.pair.pointCount; ++i) {
+        const ContactRecord::Point& p = record.points[i];
+        const Vector3 onB = view.bodyBInA.Transform(Vector3(p.onB[0], p.onB[1], p.onB[2]));
+        const float separation = Dot(support.normal, Vector3(onB - Vector3(p.onA[0], p.onA[1], p.onA[2])));
+        if (separation >= support.separation) continue;
+        support.separation = separation;
+        support.deepest = onB;
+    }
+    return support;
+}
+
+// Height of the pair's shape B, of a surface the triangle that touches, above a point of A's frame.
+float HeightOf(WorldState& world, uint32_t index, const Vector3& point, const Vector3& up) {
+    const PairView view = ViewPair(world, index);
+    const RelativePose pose = view.bodyBInA * world.colliders.shapes[view.pair.colliderB].local;
+    const Vector3 upInB = InverseRotate(pose.rotation, up);
+    const Shape& shape = *view.pair.shapeB;
+    float height = std::numeric_limits<float>::infinity();
+    if (view.pair.surface) {
+        const TriangleView triangle = static_cast<const SurfaceShape&>(shape).GetTriangle(view.pair.triangle);
+        height = -height;
+        for (const Vector3& vertex : triangle.vertices) height = std::max(height, Dot(upInB, vertex));
+    } else if (shape.IsConvex()) {
+        height = Dot(upInB, static_cast<const ConvexShape&>(shape).Support(upInB));
+    }
+    return height + Dot(up, Vector3(pose.position - point));
+}
+
+void Drop(WorldState& world, uint32_t index) {
+    ContactRecord& record = world.pairs.records[index];
+    record.pointCount = 0;
+    for (float& impulse : record.impulse) impulse = 0;
+    for (float& impulse : record.frictionImpulse) impulse = 0;
+    record.twistImpulse = 0;
+    world.ghosts.push_back(index);
+}
+
+// Whether a body that rests on `bearing` cannot run into what `other` touches.
+bool Hides(WorldState& world, const Support& bearing, const Support& other) {
+    const Pair& first = world.pairs.pairs[bearing.pair];
+    const Pair& second = world.pairs.pairs[other.pair];
+    if (first.colliderA != second.colliderA || first.colliderB == second.colliderB) return false;
+    const float flush = std::min(kFlush, kFlushPart * first.shapeA->OuterRadius());
+    return bearing.separation < flush && Dot(bearing.normal, other.normal) < kSameDirection &&
+           HeightOf(world, other.pair, bearing.deepest, Vector3(-bearing.normal)) < flush;
+}
+
+// The contacts of one body with fixed ones. Of two that hide each other the deeper stays.
+void DropAmong(WorldState& world, std::span<Support> supports) {
+    std::sort(supports.begin(), supports.end(), [](const Support& a, const Support& b) {
+        return a.separation < b.separation || (a.separation == b.separation && a.pair < b.pair);
+    });
+    for (size_t i = 0; i < supports.size(); ++i) {
+        for (size_t j = 0; j < supports.size(); ++j) {
+            if (i == j || world.pairs.records[supports[j].pair].pointCount <= 0 || !Hides(world, supports[j], supports[i])) continue;
+            if (i < j && Hides(world, supports[i], supports[j])) continue;
+            Drop(world, supports[i].pair);
+            break;
+        }
+    }
+}
+
+template <class Visit>
+void VisitFixed(const WorldState& world, int from, int to, Visit&& visit) {
+    for (int c = from; c <= to; ++c)
+        for (const ConstraintColouring::Entry& entry : world.colouring.At(c).Of(Kind::Fixed)) visit(entry);
+}
+
+}  // namespace
+
+void DropGhosts(WorldState& world) {
+    for (uint32_t index : world.ghosts)
+        if (world.pairs.pairs[index].exists) world.pairs.records[index].pointCount = world.pairs.pairs[index].pointCount;
+    world.ghosts.clear();
+    // Contacts with fixed bodies take the highest colour that is free: few bodies have one in any other.
+    constexpr int kHighest = ConstraintColouring::kColours - 1;
+    size_t others = world.colouring.At(ConstraintColouring::kOverflow).Of(Kind::Fixed).size();
+    for (int c = 0; c < kHighest; ++c) others += world.colouring.At(c).Of(Kind::Fixed).size();
+    if (others == 0) return;
+    std::span<uint8_t> several = world.scratch.Allocate<uint8_t>(world.bodies.Size());
+    std::fill(several.begin(), several.end(), uint8_t(0));
+    VisitFixed(world, 0, kHighest - 1, [&](const auto& entry) { several[entry.bodyA] = 1; });
+    VisitFixed(world, ConstraintColouring::kOverflow, ConstraintColouring::kOverflow, [&](const auto& entry) { several[entry.bodyA] = 1; });
+    std::span<uint64_t> contacts = world.scratch.Allocate<uint64_t>(others + world.colouring.At(kHighest).Of(Kind::Fixed).size());
+    size_t count = 0;
+    VisitFixed(world, 0, ConstraintColouring::kOverflow, [&](const auto& entry) {
+        if (several[entry.bodyA]) contacts[count++] = uint64_t(entry.bodyA) << 32 | entry.constraint;
+    });
+    contacts = contacts.first(count);
+    std::sort(contacts.begin(), contacts.end());
+    std::span<Support> supports = world.scratch.Allocate<Support>(count);
+    for (size_t begin = 0; begin < count;) {
+        size_t end = begin + 1;
+        while (end < count && contacts[end] >> 32 == contacts[begin] >> 32) ++end;
+        if (end - begin > 1) {
+            for (size_t i = begin; i < end; ++i) supports[i] = Describe(world, static_cast<uint32_t>(contacts[i]));
+            DropAmong(world, supports.subspan(begin, end - begin));
+        }
+        begin = end;
+    }
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,120 @@
+#include <Fulcrum/Physics/Stages/PairView.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+namespace {
+
+// A manifold is kept up to this relative motion since it was found.
+constexpr float kKeptDistance = 1e-3f;  // m, but at most this part of the smaller body:
+constexpr float kKeptPart = 2e-3f;
+constexpr float kKeptAngle = 1e-3f;     // rad
+
+// Points are stored relative to the bodies, the narrow phase speaks of the pieces.
+Vector3 ToBody(const WorldState& world, const Pair& pair, uint32_t collider, const Vector3& point) {
+    return pair.offset ? world.colliders.shapes[collider].local.Transform(point) : point;
+}
+
+void WriteTwistRadius(ContactRecord& record) {
+    const Vector3 normal(record.normal[0], record.normal[1], record.normal[2]);
+    const Vector3 t1 = Perpendicular(normal), t2 = Cross<float>(normal, t1);
+    const int count = static_cast<int>(record.pointCount);
+    Vector3 centre = Vector3::Zero();
+    for (int i = 0; i < count; ++i) centre += Vector3(record.points[i].onA[0], record.points[i].onA[1], record.points[i].onA[2]);
+    centre = centre * (1.0f / static_cast<float>(count));
+    float x[ContactRecord::kMaxPoints], y[ContactRecord::kMaxPoints];
+    for (int i = 0; i < count; ++i) {
+        const Vector3 r = Vector3(record.points[i].onA[0], record.points[i].onA[1], record.points[i].onA[2]) - centre;
+        x[i] = Dot<float>(r, t1);
+        y[i] = Dot<float>(r, t2);
+    }
+    record.twistRadius = MeanDistance(x, y, count);
+}
+
+}  // namespace
+
+PairView ViewPair(WorldState& world, uint32_t index) {
+    Pair& pair = world.pairs.pairs[index];
+    const RelativePose bodies = Relative(world.bodies.CentrePoseOf(pair.bodyA), world.bodies.CentrePoseOf(pair.bodyB));
+    PairView view{pair, world.pairs.records[index], bodies, bodies};
+    if (pair.offset) view.bInA = Inverse(world.colliders.shapes[pair.colliderA].local) * bodies * world.colliders.shapes[pair.colliderB].local;
+    return view;
+}
+
+bool HardlyMoved(const PairView& v) {
+    const RelativePose& old = v.pair.reference;
+    const float size = std::min(v.pair.shapeA->OuterRadius(), v.pair.shapeB->OuterRadius());
+    const float distance = std::min(kKeptDistance, kKeptPart * size);
+    if (LengthSquared(Vector3(v.bInA.position - old.position)) > distance * distance) return false;
+    // For small angles |q - q0| is half the angle; the sign of a quaternion does not flip between two steps.
+    const Quaternion& a = v.bInA.rotation;
+    const Quaternion& b = old.rotation;
+    const Quaternion d{a.x - b.x, a.y - b.y, a.z - b.z, a.w - b.w};
+    return LengthSquared(d) <= 0.25f * kKeptAngle * kKeptAngle;
+}
+
+void WriteManifold(const WorldState& world, const PairView& v, const Manifold& manifold, float dt) {
+    Pair& pair = v.pair;
+    ContactRecord& record = v.record;
+    float oldImpulses[Manifold::kMaxPoints];
+    std::copy(record.impulse, record.impulse + Manifold::kMaxPoints, oldImpulses);
+    const int oldCount = pair.pointCount;
+    uint32_t oldFeatures[Manifold::kMaxPoints];
+    std::copy(pair.features, pair.features + Manifold::kMaxPoints, oldFeatures);
+
+    const Vector3 normal = pair.offset ? Rotate(world.colliders.shapes[pair.colliderA].local.rotation, manifold.normal)
+                                       : manifold.normal;
+    // Velocities of B relative to A, in A's frame.
+    const BodyStore& bodies = world.bodies;
+    const Quaternion toWorld = bodies.RotationOf(pair.bodyA);
+    const auto inA = [&](const Vector3& world_) { return InverseRotate(toWorld, world_); };
+    const Vector3 vA = inA(bodies.LinearVelocityOf(pair.bodyA)), wA = inA(bodies.AngularVelocityOf(pair.bodyA));
+    const Vector3 vB = inA(bodies.LinearVelocityOf(pair.bodyB)), wB = inA(bodies.AngularVelocityOf(pair.bodyB));
+
+    int count = 0;
+    for (int i = 0; i < manifold.pointCount; ++i) {
+        const ManifoldPoint& found = manifold.points[i];
+        const Vector3 onA = ToBody(world, pair, pair.colliderA, found.positionOnA);
+        const Vector3 meets = onA + normal * found.separation;  // on B, in A's frame
+        const Vector3 velocity = vB + Cross<float>(wB, Vector3(meets - v.bodyBInA.position)) - vA - Cross<float>(wA, onA);
+        const float approach = -Dot<float>(velocity, normal);
+        if (found.separation > world.settings.speculativeDistance + std::max(approach, 0.0f) * dt) continue;
+        const Vector3 onB = v.bodyBInA.InverseTransform(meets);
+        for (int k = 0; k < 3; ++k) {
+            record.points[count].onA[k] = onA[k];
+            record.points[count].onB[k] = onB[k];
+        }
+        record.impulse[count] = 0;
+        for (int j = 0; j < oldCount; ++j)
+            if (oldFeatures[j] == found.feature) record.impulse[count] = oldImpulses[j];
+        pair.features[count++] = found.feature;
+    }
+    for (int k = 0; k < 3; ++k) record.normal[k] = normal[k];
+    record.pointCount = static_cast<float>(count);
+    pair.pointCount = static_cast<uint8_t>(count);
+    if (oldCount == 0) {
+        record.twistImpulse = 0;
+        for (float& f : record.frictionImpulse) f = 0;
+    }
+    if (count > 0) WriteTwistRadius(record);
+}
+
+PairChange NoteTouching(Pair& pair, WorkerFindings& findings) {
+    const bool touched = pair.touching;
+    pair.touching = pair.pointCount > 0;
+    findings.contacts += pair.touching;
+    findings.points += pair.pointCount;
+    if (pair.touching == touched) return PairChange::None;
+    return pair.touching ? PairChange::Began : PairChange::Ended;
+}
+
+bool TouchesSleeper(const WorldState& world, const Pair& pair) {
+    const auto sleeps = [&](uint32_t body) {
+        const BodyDynamics& d = world.bodies.dynamics[body];
+        return d.motion == MotionType::Dynamic && !d.awake;
+    };
+    return pair.touching && (sleeps(pair.bodyA) || sleeps(pair.bodyB));
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,36 @@
+// A pair as the Collide stage sees it, and how what the narrow phase finds is written down. Used by Collide and CollideSurface, for
+// different pairs from any number of threads at once.
+#pragma once
+
+#include <Fulcrum/Physics/Stages/Stages.h>
+
+namespace fulcrum {
+
+struct PairView {
+    Pair& pair;
+    ContactRecord& record;
+    RelativePose bodyBInA;  // of the bodies' centre frames
+    RelativePose bInA;      // of the pieces'
+};
+PairView ViewPair(WorldState& world, uint32_t pair);
+
+// Whether the manifolds that were found at pair.reference still do.
+bool HardlyMoved(const PairView& view);
+
+// Writes what the narrow phase found into the record. Impulses go on where the same features touch. Points that are farther
+// apart than the speculative distance stay only if they can meet within the step of dt seconds.
+void WriteManifold(const WorldState& world, const PairView& view, const Manifold& manifold, float dt);
+
+// Brings the manifolds of a pair with a surface up to date; `reach`, m: how far apart shapes are seen. Says of each further
+// manifold in world.changes what became of it, and returns that of the first. What has no place goes to findings.more.
+PairChange CollideWithSurface(WorldState& world, uint32_t pair, float reach, float dt, WorkerFindings& findings);
+
+// Makes places for those, serially, in the order of the pairs.
+void AddMoreManifolds(WorldState& world, float dt);
+
+// Notes what a manifold has come to in this step.
+PairChange NoteTouching(Pair& pair, WorkerFindings& findings);
+// Whether one of its bodies sleeps, and is to wake where they touch.
+bool TouchesSleeper(const WorldState& world, const Pair& pair);
+
+}  // namespace fulcrum
