@@ -5,6 +5,8 @@
 #include <Fulcrum/Collision/NarrowPhase/Libccd.h>
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
+#include <Fulcrum/Collision/Shapes/RoundShapes.h>
+#include <Fulcrum/Collision/Shapes/Triangle.h>
 
 #include <benchmark/benchmark.h>
 
@@ -155,6 +157,19 @@ const bool kRegistered = [] {
     Register(floor, box, Placement::FaceContact, "stacked");
     Register(floor, hull, Placement::Touching, "touching");
     Register(box, capsule, Placement::FaceContact, "stacked");
+
+    const NamedShape cylinder{"cylinder", Cylinder::Create(0.5f, 0.5f).Value()}, cone{"cone", Cylinder::CreateCone(0.5f, 0.5f).Value()};
+    const NamedShape rounded{"rounded_cylinder", Cylinder::Create(0.5f, 0.5f, 0.05f).Value()};
+    const NamedShape drop{"tapered_capsule", TaperedCapsule::Create(0.5f, 0.2f, 0.4f).Value()};
+    const NamedShape triangle{"triangle", Triangle::Create(Vector3(-1, 0, -1), Vector3(0, 0, 2), Vector3(1, 0, -1)).Value()};
+    for (const NamedShape* other : {&sphere, &capsule, &box, &hull, &cylinder, &rounded, &drop, &triangle}) {
+        Register(cylinder, *other, Placement::Touching, "touching");
+        Register(triangle, *other, Placement::Touching, "touching");
+    }
+    for (const NamedShape* standing : {&cylinder, &rounded, &cone, &box}) Register(floor, *standing, Placement::FaceContact, "stacked");
+    Register(cylinder, cylinder, Placement::FaceContact, "stacked");
+    Register(rounded, rounded, Placement::Touching, "touching");
+    Register(triangle, box, Placement::FaceContact, "stacked");
     return true;
 }();
 

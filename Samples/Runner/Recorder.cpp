@@ -2,9 +2,12 @@
 
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
+#include <Fulcrum/Collision/Shapes/SampledSurface.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <tuple>
 
 namespace fulcrum {
 namespace {
@@ -31,6 +34,27 @@ RecordedShape RecordedHull(const ConvexHull& hull) {
     return shape;
 }
 
+// Whatever else is convex, as the mesh that its support function spans: of a cylinder's rim, points every 4 degrees.
+RecordedShape RecordedSurface(const ConvexShape& source) {
+    RecordedShape shape;
+    shape.kind = RecordedShapeKind::Hull;
+    shape.name = ShapeTypeName(source.Type());
+    const SampledSurface surface = SampleSurface(source, 16);
+    std::map<std::tuple<float, float, float>, uint32_t> known;  // many directions share a corner
+    std::vector<uint32_t> indices;
+    for (const Vector3& v : surface.vertices) {
+        const auto [at, isNew] = known.emplace(std::tuple(v.x(), v.y(), v.z()), static_cast<uint32_t>(shape.vertices.size()));
+        if (isNew) shape.vertices.push_back(v + source.Mass().centreOfMass);
+        indices.push_back(at->second);
+    }
+    for (size_t i = 0; i < surface.indices.size(); i += 3) {
+        const auto corner = [&](size_t k) { return indices[static_cast<size_t>(surface.indices[i + k])]; };
+        if (corner(0) != corner(1) && corner(1) != corner(2) && corner(0) != corner(2))
+            shape.triangles.push_back({corner(0), corner(1), corner(2)});
+    }
+    return shape;
+}
+
 RecordedShape RecordedPrimitive(const Shape& source) {
     RecordedShape shape;
     if (const auto* sphere = dynamic_cast<const Sphere*>(&source)) {
@@ -45,6 +69,10 @@ RecordedShape RecordedPrimitive(const Shape& source) {
         shape.halfHeight = capsule->HalfHeight();
     } else if (const auto* hull = dynamic_cast<const ConvexHull*>(&source)) {
         return RecordedHull(*hull);
+    } else if (const auto* convex = dynamic_cast<const ConvexShape*>(&source)) {
+        return RecordedSurface(*convex);
+    } else {
+        shape.kind = RecordedShapeKind::Compound;  // of nothing
     }
     return shape;
 }

@@ -1,5 +1,5 @@
 #include <Fulcrum/Samples/Scenes/Humanoid.h>
-#include <Fulcrum/Samples/Scenes/SceneWorld.h>
+#include <Fulcrum/Samples/Scenes/WavyGround.h>
 
 namespace fulcrum {
 namespace {
@@ -7,12 +7,13 @@ namespace {
 constexpr int kPilesPerSide = 4, kRagdollsPerPile = 10;
 
 void Build(SceneWorld& world) {
-    world.AddFloor(125, 125);
+    AddWavyGround(world, {});
     const RagdollSettings humanoid = Humanoid();
     for (int row = 0; row < kPilesPerSide; ++row)
         for (int column = 0; column < kPilesPerSide; ++column)
             for (int i = 0; i < kRagdollsPerPile; ++i) {
-                const Position origin(4 * (column - 1.5), 1 + 1.5 * i, 4 * (row - 1.5));
+                const double x = 4 * (column - 1.5), z = 4 * (row - 1.5);
+                const Position origin(x, WavyHeight(x, z) + 1 + 1.5 * i, z);
                 world.AddRagdoll(humanoid, {origin, Turn(Vector3(0, 1, 0), 2 * kPi * i / kRagdollsPerPile)});
             }
 }

@@ -1,5 +1,7 @@
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
 
+#include <Fulcrum/Collision/Shapes/TriangleMesh.h>
+
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
 #include <Fulcrum/Math/Trigonometry.h>
@@ -63,6 +65,9 @@ ShapePtr SceneWorld::BoxOf(float halfX, float halfY, float halfZ) {
 ShapePtr SceneWorld::SphereOf(float radius) { return Checked(Sphere::Create(radius)); }
 ShapePtr SceneWorld::CapsuleOf(float halfHeight, float radius) { return Checked(Capsule::Create(halfHeight, radius)); }
 ShapePtr SceneWorld::HullOf(std::span<const Vector3> points) { return Checked(ConvexHull::Create(points)); }
+ShapePtr SceneWorld::MeshOf(std::span<const Vector3> vertices, std::span<const uint32_t> indices) {
+    return Checked(TriangleMesh::Create({.vertices = vertices, .indices = indices}));
+}
 ShapePtr SceneWorld::CompoundOf(std::span<const Compound::ChildSettings> children) {
     return Checked(Compound::Create(children));
 }

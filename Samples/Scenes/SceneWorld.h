@@ -60,6 +60,7 @@ public:
     ShapePtr SphereOf(float radius);
     ShapePtr CapsuleOf(float halfHeight, float radius);
     ShapePtr HullOf(std::span<const Vector3> points);
+    ShapePtr MeshOf(std::span<const Vector3> vertices, std::span<const uint32_t> indices);
     ShapePtr CompoundOf(std::span<const Compound::ChildSettings> children);
 
     // An error of Create where the settings are wrong.

@@ -10,6 +10,7 @@ namespace fulcrum {
     scene(LargePyramid)       \
     scene(ManyPyramids)       \
     scene(JointGrid)          \
+    scene(ConvexOnMesh)       \
     scene(Ragdolls)           \
     scene(HullPile)           \
     scene(Drum)               \
@@ -23,6 +24,7 @@ namespace fulcrum {
     scene(Gyroscope)          \
     scene(Bowls)              \
     scene(GravityFactors)     \
+    scene(ConvexShapes)       \
     scene(FlatLand)           \
     scene(MovingPlatforms)    \
     scene(Layers)             \
