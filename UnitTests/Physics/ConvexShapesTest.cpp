@@ -1,5 +1,5 @@
 // Cylinders, cones, tapered capsules and shapes that users make, in the whole engine: they stand, roll and come to rest.
-#include "Support/TestWorld.h"
+#include <Fulcrum/UnitTests/Support/TestWorld.h>
 
 #include <Fulcrum/Collision/Shapes/CustomConvex.h>
 #include <Fulcrum/Collision/Shapes/EmptyShape.h>

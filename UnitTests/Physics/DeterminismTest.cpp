@@ -1,6 +1,7 @@
 // The same scene gives the same bits, however many threads compute it and however often.
 #include <Fulcrum/UnitTests/Support/JointScene.h>
 #include <Fulcrum/UnitTests/Support/MixedScene.h>
+#include <Fulcrum/UnitTests/Support/SurfaceScene.h>
 
 namespace fulcrum::testing {
 namespace {
@@ -34,6 +35,12 @@ TEST(Determinism, OfJointsForAnyNumberOfThreads) {
     EXPECT_EQ(HashOfJointScene(2), one);
     EXPECT_EQ(HashOfJointScene(3), one);
     EXPECT_EQ(HashOfJointScene(4), one);
+}
+
+TEST(Determinism, SurfacesAreTheSameForAnyNumberOfThreads) {
+    const uint64_t one = HashOfSurfaceScene(1);
+    EXPECT_EQ(HashOfSurfaceScene(1), one);
+    for (uint32_t threads : {2u, 3u, 4u}) EXPECT_EQ(HashOfSurfaceScene(threads), one) << threads;
 }
 
 TEST(Determinism, EveryStepOfJointsOfThreadsIsThatOfOne) {

@@ -1,7 +1,8 @@
-// What the mixed scene and that of the joints come to, as one number each. Every build gives it: scalar, SSE2 and AVX2 lanes, gcc and clang, any number of
+// What the mixed scene and those of the joints and surfaces come to, as one number each. Every build gives it: scalar, SSE2 and AVX2 lanes, gcc and clang, any number of
 // threads. A change of the engine that is meant to change results writes the new numbers here, which the failure prints.
 #include <Fulcrum/UnitTests/Support/JointScene.h>
 #include <Fulcrum/UnitTests/Support/MixedScene.h>
+#include <Fulcrum/UnitTests/Support/SurfaceScene.h>
 
 #include <cstdio>
 #include <string>
@@ -11,6 +12,7 @@ namespace {
 
 constexpr uint64_t kGoldenHash = 0xa67676adb03e396dull;
 constexpr uint64_t kGoldenHashOfJoints = 0x3fd1e84fc3bb448full;
+constexpr uint64_t kGoldenHashOfSurfaces = 0x482d06e86a4191e3ull;
 
 std::string Hex(uint64_t number) {
     char text[24];
@@ -26,6 +28,11 @@ TEST(GoldenHash, OfTheMixedScene) {
 TEST(GoldenHash, OfTheJointScene) {
     const uint64_t hash = HashOfJointScene(1);
     EXPECT_EQ(hash, kGoldenHashOfJoints) << "This build gives kGoldenHashOfJoints = " << Hex(hash);
+}
+
+TEST(GoldenHash, OfTheSurfaceScene) {
+    const uint64_t hash = HashOfSurfaceScene(1);
+    EXPECT_EQ(hash, kGoldenHashOfSurfaces) << "This build gives kGoldenHashOfSurfaces = " << Hex(hash);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace fulcrum {
 namespace {
 
@@ -24,7 +26,10 @@ TEST(RagdollScenes, PilesAreThoseOfThePeers) {
     ASSERT_EQ(ragdoll.Bodies().size(), 12u);
     const Position foot = world->Bodies().GetPose(ragdoll.Bodies()[11]).position;
     const double sine = 0.9510565163, cosine = -0.3090169944;
-    EXPECT_LT((foot - Position(2 + 0.10 * cosine + 0.05 * sine, 1 + 4.5 - 0.97, -2 + 0.05 * cosine - 0.10 * sine)).norm(), 1e-6);
+    // (2, -2) lies on the diagonal of its cell of 3 m, from grid point (50, 50) to (51, 49), at two thirds of the way.
+    const auto gridHeight = [](double x, double z) { return 5 + 5 * std::sin(0.5 * x) * std::cos(0.5 * z); };
+    const double ground = (gridHeight(50, 50) + 2 * gridHeight(51, 49)) / 3;
+    EXPECT_LT((foot - Position(2 + 0.10 * cosine + 0.05 * sine, ground + 1 + 4.5 - 0.97, -2 + 0.05 * cosine - 0.10 * sine)).norm(), 1e-6);
     // pi r^2 (2 h + 4 r / 3) of the pelvis, times 1000 kg/m3.
     EXPECT_NEAR(world->Bodies().GetMass(ragdoll.Bodies()[0]), kPi * 14.4 * (0.16 + 0.16), 1e-4);
     EXPECT_LT(world->Definition().accuracy(*world), 1e-6);
