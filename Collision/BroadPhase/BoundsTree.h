@@ -19,6 +19,8 @@
 
 namespace fulcrum {
 
+class TreeRay;
+
 class BoundsTree {
 public:
     // Ids are the caller's, dense from 0: memory grows with the largest. Bounds are finite, lower <= upper (asserted).
@@ -46,6 +48,15 @@ public:
     // allowed). Allocates nothing. The visitor must not change the tree.
     template <class Visitor>
     void Query(const Bounds& bounds, Visitor&& visit) const;
+
+    // These two are defined in BoundsTreeCasts.h, which whoever calls them includes.
+    // Calls visit(uint32_t id) for the leaves that the ray, or moving box, meets within `maxFraction` of its way: those of a
+    // node that is met earlier come first. The visitor may lower maxFraction as it finds hits; below 0 ends the search.
+    template <class Visitor>
+    void CastRay(const TreeRay& ray, float& maxFraction, Visitor&& visit) const;
+    // The same for the leaves within `maxDistance` m of a box, nearer nodes first.
+    template <class Visitor>
+    void VisitNear(const Bounds& box, float& maxDistance, Visitor&& visit) const;
 
     // A box around all leaves: the tightest after Optimize or Rebuild. Empty without leaves.
     Bounds TotalBounds() const;
@@ -119,6 +130,11 @@ private:
     void ValidateNode(uint32_t node, int depth, uint32_t& nodes, uint32_t& leaves) const;
 
     static uint32_t TestSlots(const Node& node, const float (&limit)[6]);
+    static uint32_t CastToSlots(const Node& node, const TreeRay& ray, float maxFraction, float (&nearest)[kWidth]);
+    static uint32_t MeasureSlots(const Node& node, const float (&limit)[6], float maxSquare, float (&square)[kWidth]);
+    // Visits nodes in the order of what `test` says of their slots, as long as it is at most what `limit` says.
+    template <class Test, class Limit, class Visitor>
+    void VisitInOrder(Test&& test, Limit&& limit, Visitor&& visit) const;
 
     std::vector<Node> nodes_;                               // the first nodeCount_ are in use or on the free list
     std::vector<uint32_t> places_;                          // id -> node * kWidth + slot

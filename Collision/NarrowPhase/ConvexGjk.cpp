@@ -4,10 +4,8 @@
 
 namespace fulcrum {
 
-namespace {
-
-// The weights of a simplex' corners in its point closest to the origin. Source: C. Ericson, Real-Time Collision Detection, 3.4.
-Position Weights(const Simplex<SupportVertex>& s) {
+// Source: C. Ericson, Real-Time Collision Detection, 3.4.
+Position ClosestWeights(const Simplex<SupportVertex>& s) {
     if (s.count == 1) return Position(1, 0, 0);
     const Position p = -s.vertices[0].w, e = s.vertices[1].w - s.vertices[0].w;
     const double ee = Dot<double>(e, e), pe = Dot<double>(p, e);
@@ -23,13 +21,11 @@ Position Weights(const Simplex<SupportVertex>& s) {
     return Position(1 - alongE - alongF, alongE, alongF);
 }
 
-}  // namespace
-
 ConvexGjkResult ConvexGjk(const SupportPair& pair, const Vector3& start, float reach) {
     const GjkResult<SupportVertex> found = Gjk(pair, start, reach);
     ConvexGjkResult result{found.status, found.axis, found.separation, Vector3::Zero(), Vector3::Zero(), found.simplex};
     if (found.status == GjkStatus::Apart) {
-        const Position weights = Weights(found.simplex);
+        const Position weights = ClosestWeights(found.simplex);
         for (int i = 0; i < found.simplex.count; ++i) {
             result.onA += found.simplex.vertices[i].onA * static_cast<float>(weights[i]);
             result.onB += found.simplex.vertices[i].onB * static_cast<float>(weights[i]);

@@ -21,4 +21,7 @@ struct ConvexGjkResult {
 // about 1e-6 of their size apart count as overlapping.
 ConvexGjkResult ConvexGjk(const SupportPair& pair, const Vector3& start, float reach);
 
+// The weights of the corners of a simplex of 1 to 3, as GJK leaves it, in its point closest to the origin.
+Position ClosestWeights(const Simplex<SupportVertex>& simplex);
+
 }  // namespace fulcrum

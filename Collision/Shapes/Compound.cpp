@@ -108,10 +108,13 @@ void Compound::Assemble(std::vector<Child> children, const MassProperties& mass)
     mass_ = mass;
     innerRadius_ = children_[0].shape->InnerRadius();
     for (const Child& child : children_) {
-        bounds_.Include(ChildBounds(*child.shape, child.pose));
+        const Bounds bounds = ChildBounds(*child.shape, child.pose);
+        bounds_.Include(bounds);
+        tree_.Insert(static_cast<uint32_t>(&child - children_.data()), bounds);
         innerRadius_ = std::min(innerRadius_, child.shape->InnerRadius());
         outerRadius_ = std::max(outerRadius_, Length(child.pose.position) + child.shape->OuterRadius());
     }
+    tree_.Rebuild();
 }
 
 ShapeResult ShapeFileAccess::MakeCompound(std::vector<Compound::Child> children, const MassProperties& mass) {

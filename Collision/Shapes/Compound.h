@@ -2,6 +2,7 @@
 // of bodies carries one manifold per touching pair of children.
 #pragma once
 
+#include <Fulcrum/Collision/BroadPhase/BoundsTree.h>
 #include <Fulcrum/Collision/Shapes/Shape.h>
 
 #include <span>
@@ -34,6 +35,8 @@ public:
     std::vector<ChildSettings> Settings() const;
 
     std::span<const Child> Children() const { return children_; }
+    // The children's boxes in the compound's centre frame, by index.
+    const BoundsTree& Tree() const { return tree_; }
 
 private:
     friend struct ShapeFileAccess;
@@ -41,6 +44,7 @@ private:
 
     Compound() : Shape(ShapeType::Compound) {}
     std::vector<Child> children_;
+    BoundsTree tree_;
 };
 
 }  // namespace fulcrum

@@ -129,6 +129,10 @@ private:
                 for (int i = 0; i < 16; ++i) values[i] = hull.faces_[block + i < count ? block + i : 0].normal[axis];
             }
         }
+        for (int block = 0; block < hull.paddedFaceCount_; block += 16) {
+            float* const values = hull.normalLanes_.emplace_back().values;
+            for (int i = 0; i < 16; ++i) values[i] = hull.faces_[block + i < count ? block + i : 0].offset;
+        }
         hull.innerRadius_ = smallestOffset + hull.convexRadius_;
         return smallestOffset > 0;
     }

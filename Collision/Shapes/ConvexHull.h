@@ -49,10 +49,11 @@ public:
     const float* LaneY() const { return LaneX() + paddedCount_; }
     const float* LaneZ() const { return LaneX() + 2 * paddedCount_; }
     int PaddedVertexCount() const { return paddedCount_; }  // a multiple of 16
-    // The faces' normals in the same way; the padding repeats face 0.
+    // The faces' normals and offsets in the same way; the padding repeats face 0.
     const float* NormalLaneX() const { return normalLanes_.data()->values; }
     const float* NormalLaneY() const { return NormalLaneX() + paddedFaceCount_; }
     const float* NormalLaneZ() const { return NormalLaneX() + 2 * paddedFaceCount_; }
+    const float* OffsetLane() const { return NormalLaneX() + 3 * paddedFaceCount_; }
     int PaddedFaceCount() const { return paddedFaceCount_; }  // a multiple of 16
 
 private:

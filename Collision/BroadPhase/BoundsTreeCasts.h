@@ -1,0 +1,117 @@
+// Rays, moving boxes and nearest boxes in a BoundsTree. Used by the queries; any number of threads at once. Allocates nothing.
+#pragma once
+
+#include <Fulcrum/Collision/BroadPhase/BoundsTree.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+// From `origin` to origin + displacement, and a box about it that moves along. The origin is exact: what a float cannot hold of
+// it widens the box.
+class TreeRay {
+public:
+    TreeRay(const Position& origin, const Vector3& displacement, const Vector3& halfExtents = Vector3::Zero()) {
+        constexpr float kLeast = 1e-30f;  // m: less is no motion, and its inverse still a number
+        for (int axis = 0; axis < 3; ++axis) {
+            toLower[axis] = RoundUp(origin[axis] + double{halfExtents[axis]});
+            toUpper[axis] = RoundDown(origin[axis] - double{halfExtents[axis]});
+            const float d = displacement[axis];
+            inverse[axis] = 1 / (Abs(d) < kLeast ? std::copysign(kLeast, d) : d);
+        }
+    }
+
+private:
+    friend class BoundsTree;
+    float toLower[3], toUpper[3];  // m: what meets the lower and the upper planes of boxes
+    float inverse[3];
+};
+
+// The slots that the ray meets, and at which fractions. Empty ones may be among them.
+inline uint32_t BoundsTree::CastToSlots(const Node& node, const TreeRay& ray, float maxFraction, float (&nearest)[kWidth]) {
+    constexpr int kStep = kLanes >= 8 ? 8 : 4;
+    using Lanes = Wide<kStep>;
+    // Three roundings of half a unit each, with room: the plane's distance, the inverse and their product.
+    constexpr float kSlack = 1 + 0x1p-21f;
+    uint32_t bits = 0;
+    for (int i = 0; i < kWidth; i += kStep) {
+        Lanes enter(0.0f), leave(maxFraction);
+        for (int axis = 0; axis < 3; ++axis) {
+            const Lanes inverse(ray.inverse[axis]);
+            const Lanes toLower = (Lanes::Load(node.lower[axis] + i) - Lanes(ray.toLower[axis])) * inverse;
+            const Lanes toUpper = (-Lanes::Load(node.negatedUpper[axis] + i) - Lanes(ray.toUpper[axis])) * inverse;
+            enter = Max(enter, Min(toLower, toUpper));
+            leave = Min(leave, Max(toLower, toUpper));
+        }
+        bits |= (enter <= leave * Lanes(kSlack)).ToBits() << i;
+        enter.Store(nearest + i);
+    }
+    return bits;
+}
+
+// The slots within the distance of a box, by its square; limit = {upper, -lower}.
+inline uint32_t BoundsTree::MeasureSlots(const Node& node, const float (&limit)[6], float maxSquare, float (&square)[kWidth]) {
+    constexpr int kStep = kLanes >= 8 ? 8 : 4;
+    using Lanes = Wide<kStep>;
+    constexpr float kSlack = 1 + 0x1p-20f;
+    uint32_t bits = 0;
+    for (int i = 0; i < kWidth; i += kStep) {
+        Lanes sum(0.0f);
+        for (int axis = 0; axis < 3; ++axis) {
+            const Lanes above = Lanes::Load(node.lower[axis] + i) - Lanes(limit[axis]);
+            const Lanes below = Lanes::Load(node.negatedUpper[axis] + i) - Lanes(limit[3 + axis]);
+            const Lanes gap = Max(Max(above, below), Lanes(0.0f));
+            sum += gap * gap;
+        }
+        bits |= (sum <= Lanes(maxSquare * kSlack)).ToBits() << i;
+        sum.Store(square + i);
+    }
+    return bits;
+}
+
+template <class Test, class Limit, class Visitor>
+void BoundsTree::VisitInOrder(Test&& test, Limit&& limit, Visitor&& visit) const {
+    if (size_ == 0) return;
+    struct Entry {
+        float key;
+        uint32_t node;
+    };
+    Entry stack[kMaxStack];
+    int top = 0;
+    stack[top++] = {0, kRoot};
+    while (top > 0) {
+        const Entry entry = stack[--top];
+        if (!(entry.key <= limit())) continue;
+        const Node& node = nodes_[entry.node];
+        float keys[kWidth];
+        const uint32_t hits = test(node, keys);
+        for (uint32_t leaves = hits & node.leaves; leaves != 0; leaves &= leaves - 1) {
+            const int slot = std::countr_zero(leaves);
+            if (keys[slot] <= limit()) visit(node.child[slot]);
+        }
+        // Sorted in place on the stack, the nearest on top.
+        const int base = top;
+        for (uint32_t inner = hits & node.inner; inner != 0; inner &= inner - 1) {
+            const int slot = std::countr_zero(inner);
+            int place = top++;
+            for (; place > base && stack[place - 1].key < keys[slot]; --place) stack[place] = stack[place - 1];
+            stack[place] = {keys[slot], node.child[slot]};
+        }
+    }
+}
+
+template <class Visitor>
+void BoundsTree::CastRay(const TreeRay& ray, float& maxFraction, Visitor&& visit) const {
+    VisitInOrder([&](const Node& node, float (&keys)[kWidth]) { return CastToSlots(node, ray, maxFraction, keys); },
+                 [&] { return maxFraction * (1 + 0x1p-21f); }, visit);
+}
+
+template <class Visitor>
+void BoundsTree::VisitNear(const Bounds& box, float& maxDistance, Visitor&& visit) const {
+    const float limit[6] = {box.upper.x(), box.upper.y(), box.upper.z(), -box.lower.x(), -box.lower.y(), -box.lower.z()};
+    const auto square = [&] { return maxDistance < 0 ? -1.0f : maxDistance * maxDistance; };
+    VisitInOrder([&](const Node& node, float (&keys)[kWidth]) { return MeasureSlots(node, limit, square(), keys); },
+                 [&] { return square() * (1 + 0x1p-20f); }, visit);
+}
+
+}  // namespace fulcrum

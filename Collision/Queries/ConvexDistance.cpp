@@ -1,0 +1,83 @@
+#include <Fulcrum/Collision/Queries/ConvexDistance.h>
+
+#include <Fulcrum/Collision/NarrowPhase/Epa.h>
+#include <Fulcrum/Collision/NarrowPhase/Libccd.h>
+
+namespace fulcrum {
+
+namespace {
+
+// The pair as EPA walks on it, in float: depths are found to no more than floats hold.
+struct DepthPair {
+    struct Vertex {
+        using Real = float;
+        Vector3 w, onA, onB;
+        bool SameAs(const Vertex& v) const { return onA == v.onA && onB == v.onB; }
+    };
+    const SupportPair& pair;
+
+    Vertex Support(const Vector3& n) const { return From(pair.Support(n)); }
+    float Size() const { return pair.Size(); }
+    float DepthTolerance() const { return pair.DepthTolerance(); }
+    static Vertex From(const SupportVertex& v) { return {v.w.cast<float>(), v.onA, v.onB}; }
+};
+
+// The axis of least depth of overlapping cores. A flat or pointed core, as a triangle or a segment, may leave EPA nothing to
+// expand: libccd's answer is held against the centre line's then, and the axis of less depth wins.
+Vector3 AxisOfLeastDepth(const SupportPair& pair, const RelativePose& bInA, const Simplex<SupportVertex>& simplex) {
+    Simplex<DepthPair::Vertex> start;
+    for (; start.count < simplex.count; ++start.count) start.vertices[start.count] = DepthPair::From(simplex.vertices[start.count]);
+    const EpaResult epa = Epa(DepthPair{pair}, start);
+    if (epa.status == EpaResult::Status::Found) return epa.axis;
+    Vector3 axis = Normalized(pair.position);
+    float depth = -pair.SeparationAlong(axis);
+    const auto consider = [&](const Vector3& other) {
+        const float otherDepth = -pair.SeparationAlong(other);
+        if (!(otherDepth < depth)) return;
+        axis = other;
+        depth = otherDepth;
+    };
+    consider(-axis);
+    if (epa.status == EpaResult::Status::Approximate) consider(epa.axis);
+    for (const LibccdAlgorithm algorithm : {LibccdAlgorithm::Epa, LibccdAlgorithm::Mpr}) {
+        const LibccdResult found = LibccdPenetration(pair.a, pair.b, bInA, 0, algorithm);
+        if (found.status == LibccdResult::Status::Found) consider(Normalized(found.normal.cast<float>()));
+    }
+    return axis;
+}
+
+}  // namespace
+
+ConvexSeparation MeasureConvex(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA, float reach) {
+    const SupportPair pair(a, b, bInA);
+    const ConvexGjkResult gjk = ConvexGjk(pair, Normalized(pair.position), reach + pair.RadiusSum());
+    ConvexSeparation result;
+    if (gjk.status == GjkStatus::BeyondReach) {
+        result.isBeyond = true;
+        return result;
+    }
+    if (gjk.status == GjkStatus::Apart) {
+        result.separation = gjk.separation - pair.RadiusSum();
+        result.normal = gjk.axis;
+        result.onA = gjk.onA + gjk.axis * a.ConvexRadius();
+        result.onB = gjk.onB - gjk.axis * b.ConvexRadius();
+        result.isBeyond = result.separation > reach;
+        return result;
+    }
+    result.normal = AxisOfLeastDepth(pair, bInA, gjk.simplex);
+    result.separation = pair.SeparationAlong(result.normal) - pair.RadiusSum();
+    // Of B the deepest point; of A the one that B would leave by.
+    const Vector3 deepest = pair.PointOfB(b.SupportCore(-pair.DirectionInB(result.normal)));
+    result.onB = deepest - result.normal * b.ConvexRadius();
+    result.onA = result.onB - result.normal * result.separation;
+    return result;
+}
+
+bool OverlapConvex(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA) {
+    const SupportPair pair(a, b, bInA);
+    const float radii = pair.RadiusSum();
+    const ConvexGjkResult gjk = ConvexGjk(pair, Normalized(pair.position), radii);
+    return gjk.status == GjkStatus::Overlapping || (gjk.status == GjkStatus::Apart && gjk.separation <= radii);
+}
+
+}  // namespace fulcrum

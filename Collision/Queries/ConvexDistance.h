@@ -1,0 +1,23 @@
+// How far two convex shapes are apart, or how deep they overlap, through their support functions. Called by the queries.
+// Thread-safe; allocates nothing but where EPA gives up and libccd answers.
+#pragma once
+
+#include <Fulcrum/Collision/NarrowPhase/ConvexGjk.h>
+
+namespace fulcrum {
+
+struct ConvexSeparation {
+    bool isBeyond = false;  // farther apart than the reach: nothing else is set
+    float separation = 0;   // m, of the whole shapes; negative: the depth, the least move that parts them
+    Vector3 normal = Vector3::Zero();  // unit, from A towards B, A's frame
+    Vector3 onA = Vector3::Zero();     // m, A's frame: the surface's closest, or deepest, points
+    Vector3 onB = Vector3::Zero();
+};
+
+// Exact to about 1e-6 of the shapes' size where apart, to 3e-5 of it where overlapping. `reach`: m, >= 0.
+ConvexSeparation MeasureConvex(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA, float reach);
+
+// Whether they have a point in common; touching counts.
+bool OverlapConvex(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA);
+
+}  // namespace fulcrum

@@ -1,0 +1,36 @@
+// Where a line enters and leaves a convex shape. Called by the ray casts. Allocates nothing; thread-safe.
+#pragma once
+
+#include <Fulcrum/Collision/Shapes/Shape.h>
+
+namespace fulcrum {
+
+// A piece of a line, by its distance s along it: point + s direction, from <= s <= to. `point` lies near the shape's centre, so
+// that floats are exact enough however far away the piece begins.
+struct LinePiece {
+    Vector3 point;      // m, in the shape's centre frame
+    Vector3 direction;  // unit
+    float from, to;     // m
+};
+
+struct LineHit {
+    float distance = 0;                // s, m
+    Vector3 normal = Vector3::Zero();  // unit, outwards
+};
+
+struct LineResult {
+    bool hit = false;
+    bool startsInside = false;
+    LineHit entry;  // where hit and not startsInside
+};
+
+// The entry into the shape, or that the piece begins inside (touching counts). Sphere, box, capsule and hull in closed form,
+// others by EnterBySupport.
+LineResult EnterConvex(const ConvexShape& shape, const LinePiece& line);
+// By GJK on the support function alone.
+LineResult EnterBySupport(const ConvexShape& shape, const LinePiece& line);
+
+// Where a line that begins inside leaves the shape; false: not within the piece.
+bool LeaveConvex(const ConvexShape& shape, const LinePiece& line, LineHit& exit);
+
+}  // namespace fulcrum

@@ -1,0 +1,46 @@
+// Points and triangles as convex shapes, so that all that GJK knows serves them too. Used by the queries; they live on the
+// stack of one call and are bodies' shapes nowhere.
+#pragma once
+
+#include <Fulcrum/Collision/Shapes/Shape.h>
+#include <Fulcrum/Collision/Shapes/SurfaceShape.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+// A ball of radius zero at the origin.
+class PointCore final : public ConvexShape {
+public:
+    PointCore() : ConvexShape(ShapeType::Sphere) {
+        bounds_.lower = bounds_.upper = Vector3::Zero();
+    }
+    Vector3 SupportCore(const Vector3&) const override { return Vector3::Zero(); }
+};
+
+// A triangle of a surface, relative to a point near it.
+class TriangleCore final : public ConvexShape {
+public:
+    // `origin`: what becomes zero, in the surface's frame, m.
+    TriangleCore(const TriangleView& triangle, const Vector3& origin)
+        : ConvexShape(ShapeType::ConvexHull), normal_(triangle.normal), id_(triangle.id) {
+        for (int i = 0; i < 3; ++i) {
+            vertices_[i] = triangle.vertices[i] - origin;
+            bounds_.Include(vertices_[i]);
+            outerRadius_ = std::max(outerRadius_, Length(vertices_[i]));
+        }
+    }
+    Vector3 SupportCore(const Vector3& d) const override {
+        const float a = Dot(d, vertices_[0]), b = Dot(d, vertices_[1]), c = Dot(d, vertices_[2]);
+        return a >= b ? (a >= c ? vertices_[0] : vertices_[2]) : (b >= c ? vertices_[1] : vertices_[2]);
+    }
+    const Vector3& Normal() const { return normal_; }
+    uint32_t Id() const { return id_; }
+
+private:
+    Vector3 vertices_[3];
+    Vector3 normal_;
+    uint32_t id_;
+};
+
+}  // namespace fulcrum

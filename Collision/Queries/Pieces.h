@@ -1,0 +1,65 @@
+// A shape taken apart: the convex pieces of it that lie near a box, each at its pose. Used by the casts, distances and
+// overlaps; half spaces, which have no pieces, they treat themselves. Allocates nothing; thread-safe.
+#pragma once
+
+#include <Fulcrum/Collision/Queries/CoreShapes.h>
+#include <Fulcrum/Collision/Queries/SubShape.h>
+#include <Fulcrum/Collision/Shapes/Compound.h>
+
+namespace fulcrum {
+
+struct Piece {
+    const ConvexShape& shape;
+    RelativePose pose;            // in the frame of the shape that it is a piece of
+    SubShape subShape;
+    const TriangleCore* triangle = nullptr;  // the piece itself, where it is one
+    bool isTwoSided = true;                  // of the surface
+};
+
+inline bool IsSurface(const Shape& shape) {
+    return shape.Type() == ShapeType::TriangleMesh || shape.Type() == ShapeType::HeightField;
+}
+
+inline Bounds Inflated(const Bounds& bounds, float by) {
+    Bounds b;
+    b.lower = bounds.lower - Vector3::Constant(by);
+    b.upper = bounds.upper + Vector3::Constant(by);
+    return b;
+}
+
+// The box, in another frame, around a box that `pose` places there; as wide as rounding may ask for.
+inline Bounds BoundsAt(const RelativePose& pose, const Bounds& bounds) {
+    const Matrix3 r = ToMatrix(pose.rotation);
+    const Vector3 half = bounds.HalfExtents(), centre = pose.Transform(bounds.Centre());
+    const Vector3 reach = r.x.cwiseAbs() * half.x() + r.y.cwiseAbs() * half.y() + r.z.cwiseAbs() * half.z();
+    const float slack = 1e-6f * (reach.sum() + centre.cwiseAbs().sum());
+    Bounds b;
+    b.lower = centre - reach - Vector3::Constant(slack);
+    b.upper = centre + reach + Vector3::Constant(slack);
+    return b;
+}
+
+// Calls visit(const Piece&) for the pieces whose boxes overlap `box`, which is in the shape's frame; a convex shape is its own
+// piece and always visited. Not for half spaces.
+template <class Visitor>
+void VisitPieces(const Shape& shape, const Bounds& box, Visitor&& visit) {
+    if (shape.IsConvex()) {
+        visit(Piece{static_cast<const ConvexShape&>(shape), {}, {}});
+    } else if (shape.Type() == ShapeType::Compound) {
+        const Compound& compound = static_cast<const Compound&>(shape);
+        compound.Tree().Query(box, [&](uint32_t child) {
+            const Compound::Child& part = compound.Children()[child];
+            visit(Piece{*part.shape, part.pose, {child, kNoTriangle}});
+        });
+    } else if (IsSurface(shape)) {
+        const SurfaceShape& surface = static_cast<const SurfaceShape&>(shape);
+        surface.VisitTriangles(box, [&](uint32_t id) {
+            const TriangleView view = surface.GetTriangle(id);
+            const Vector3 origin = view.vertices[0];
+            const TriangleCore triangle(view, origin);
+            visit(Piece{triangle, {origin, {}}, {0, id}, &triangle, surface.IsTwoSided()});
+        });
+    }
+}
+
+}  // namespace fulcrum

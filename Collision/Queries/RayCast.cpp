@@ -1,0 +1,176 @@
+#include <Fulcrum/Collision/Queries/RayCast.h>
+
+#include <Fulcrum/Collision/BroadPhase/BoundsTreeCasts.h>
+#include <Fulcrum/Collision/Shapes/Compound.h>
+#include <Fulcrum/Collision/Shapes/Plane.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+namespace {
+
+// The ray in a compound's frame, as wide as its turning is inexact.
+TreeRay InFrameOfTree(const Ray& ray, const Shape& compound, const Pose& pose) {
+    const Quat<double> back{-pose.rotation.x, -pose.rotation.y, -pose.rotation.z, pose.rotation.w};
+    const Position origin = Rotate<double>(back, Position(ray.origin - pose.position));
+    const float slack = 1e-6f * (compound.OuterRadius() + Length(ray.displacement) + Length(Vector3(origin.cast<float>())));
+    return TreeRay(origin, InverseRotate(pose.rotation, ray.displacement), Vector3::Constant(slack));
+}
+
+}  // namespace
+
+RayCaster::RayCaster(const Ray& ray) : ray_(ray) {
+    if (!IsFinite(ray.origin) || !IsFinite(ray.displacement)) return;
+    const Position displacement = ray.displacement.cast<double>();
+    const double square = Dot<double>(displacement, displacement);
+    if (!(square > 0)) return;
+    inverseSquare_ = 1 / square;
+    length_ = std::sqrt(square);
+    direction_ = (displacement * (1 / length_)).cast<float>();
+}
+
+bool RayCaster::CastConvex(const ConvexShape& shape, const Pose& pose, const RayCastSettings& settings, RayHit& hit) const {
+    // The ray's nearest point to the shape's centre is the origin of the line: it is as small as the shape where that is hit.
+    const Position origin = ray_.origin - pose.position, displacement = ray_.displacement.cast<double>();
+    const double nearest = -Dot<double>(origin, displacement) * inverseSquare_;
+    const Vector3 point = (origin + displacement * nearest).cast<float>();
+    const float reach = shape.OuterRadius() * 1.0001f;
+    if (LengthSquared(point) > reach * reach) return false;
+    const LinePiece line{InverseRotate(pose.rotation, point), InverseRotate(pose.rotation, direction_),
+                         static_cast<float>(-nearest * length_),
+                         static_cast<float>((double{settings.maxFraction} - nearest) * length_)};
+    if (line.to < -reach || line.from > reach) return false;
+    const LineResult found = EnterConvex(shape, line);
+    if (!found.hit) return false;
+    hit.subShape = {};
+    hit.isBackFace = false;
+    if (!found.startsInside) {
+        const double fraction = nearest + double{found.entry.distance} / length_;
+        hit.fraction = std::clamp(static_cast<float>(fraction), 0.0f, settings.maxFraction);
+        hit.normal = Rotate(pose.rotation, found.entry.normal);
+        return true;
+    }
+    if (!settings.hollow) {
+        hit.fraction = 0;
+        hit.normal = -direction_;
+        return true;
+    }
+    LineHit exit;
+    if (!settings.backFaces || !LeaveConvex(shape, line, exit)) return false;
+    hit.fraction = std::clamp(static_cast<float>(nearest + double{exit.distance} / length_), 0.0f, settings.maxFraction);
+    hit.normal = Rotate(pose.rotation, Vector3(-exit.normal));
+    hit.isBackFace = true;
+    return true;
+}
+
+bool RayCaster::CastPlane(const Shape& shape, const Pose& pose, const RayCastSettings& settings, RayHit& hit) const {
+    const Plane& plane = static_cast<const Plane&>(shape);
+    const Vector3 normal = Rotate(pose.rotation, plane.Normal());
+    const Position n = normal.cast<double>();
+    const double height = Dot<double>(n, Position(ray_.origin - pose.position)) - double{plane.Offset()};
+    const double fall = -Dot<double>(n, ray_.displacement.cast<double>());
+    const bool isInside = height <= 0;
+    if (isInside && !settings.hollow) {
+        hit = {0, {}, -direction_, false};
+        return true;
+    }
+    if (isInside ? !(settings.backFaces && fall < 0) : !(fall > 0)) return false;
+    const double fraction = height / fall;
+    if (fraction > double{settings.maxFraction}) return false;
+    hit = {static_cast<float>(fraction), {}, isInside ? Vector3(-normal) : normal, isInside};
+    return true;
+}
+
+SurfaceRay RayCaster::InFrameOf(const SurfaceShape& shape, const Pose& pose, bool backFaces, double& skipped) const {
+    const Position origin = ray_.origin - pose.position, displacement = ray_.displacement.cast<double>();
+    const double nearest = -Dot<double>(origin, displacement) * inverseSquare_;
+    skipped = std::max(0.0, nearest - 1.0001 * double{shape.OuterRadius()} / length_);
+    return {InverseRotate(pose.rotation, Vector3((origin + displacement * skipped).cast<float>())),
+            InverseRotate(pose.rotation, ray_.displacement), backFaces};
+}
+
+bool RayCaster::CastSurface(const SurfaceShape& shape, const Pose& pose, const RayCastSettings& settings, RayHit& hit) const {
+    double skipped = 0;
+    const SurfaceRay ray = InFrameOf(shape, pose, settings.backFaces, skipped);
+    const double left = double{settings.maxFraction} - skipped;
+    SurfaceHit found;
+    if (left < 0 || !shape.CastRay(ray, found, static_cast<float>(left))) return false;
+    hit = {std::min(static_cast<float>(skipped + double{found.fraction}), settings.maxFraction), {0, found.triangle},
+           Rotate(pose.rotation, found.normal), found.isBackFace};
+    return true;
+}
+
+bool RayCaster::CastClosest(const Shape& shape, const Pose& pose, const RayCastSettings& settings, RayHit& hit) const {
+    if (!IsValid()) return false;
+    if (shape.IsConvex()) return CastConvex(static_cast<const ConvexShape&>(shape), pose, settings, hit);
+    if (shape.Type() == ShapeType::Plane) return CastPlane(shape, pose, settings, hit);
+    if (shape.Type() != ShapeType::Compound) return CastSurface(static_cast<const SurfaceShape&>(shape), pose, settings, hit);
+
+    const Compound& compound = static_cast<const Compound&>(shape);
+    const TreeRay ray = InFrameOfTree(ray_, shape, pose);
+    RayCastSettings shorter = settings;
+    bool found = false;
+    compound.Tree().CastRay(ray, shorter.maxFraction, [&](uint32_t child) {
+        const Compound::Child& piece = compound.Children()[child];
+        RayHit here;
+        if (!CastConvex(*piece.shape, pose * piece.pose, shorter, here)) return;
+        if (found && here.fraction == hit.fraction && child > hit.subShape.child) return;
+        found = true;
+        hit = here;
+        hit.subShape.child = child;
+        shorter.maxFraction = here.fraction;
+    });
+    return found;
+}
+
+bool RayCaster::IsHit(const Shape& shape, const Pose& pose, const RayCastSettings& settings) const {
+    const bool isSurface = !shape.IsConvex() && shape.Type() != ShapeType::Plane && shape.Type() != ShapeType::Compound;
+    if (IsValid() && isSurface) {
+        const SurfaceShape& surface = static_cast<const SurfaceShape&>(shape);
+        double skipped = 0;
+        const SurfaceRay ray = InFrameOf(surface, pose, settings.backFaces, skipped);
+        const double left = double{settings.maxFraction} - skipped;
+        return left >= 0 && surface.IsHit(ray, static_cast<float>(left));
+    }
+    bool hit = false;
+    CastAll(shape, pose, settings, [&](const RayHit&) {
+        hit = true;
+        return false;
+    });
+    return hit;
+}
+
+bool RayCaster::Search(const Shape& shape, const Pose& pose, const RayCastSettings& settings, void* context,
+                       HitFunction found) const {
+    if (!IsValid()) return true;
+    RayHit hit;
+    if (shape.IsConvex() || shape.Type() == ShapeType::Plane)
+        return !CastClosest(shape, pose, settings, hit) || found(context, hit);
+    bool goOn = true;
+    if (shape.Type() == ShapeType::Compound) {
+        const Compound& compound = static_cast<const Compound&>(shape);
+        const TreeRay ray = InFrameOfTree(ray_, shape, pose);
+        float limit = settings.maxFraction;
+        compound.Tree().CastRay(ray, limit, [&](uint32_t child) {
+            const Compound::Child& piece = compound.Children()[child];
+            if (!goOn || !CastConvex(*piece.shape, pose * piece.pose, settings, hit)) return;
+            hit.subShape.child = child;
+            goOn = found(context, hit);
+            if (!goOn) limit = -1;
+        });
+        return goOn;
+    }
+    const SurfaceShape& surface = static_cast<const SurfaceShape&>(shape);
+    double skipped = 0;
+    surface.CastRayAll(InFrameOf(surface, pose, settings.backFaces, skipped), [&](const SurfaceHit& at) {
+        const float fraction = static_cast<float>(skipped + double{at.fraction});
+        if (fraction > settings.maxFraction) return true;
+        hit = {fraction, {0, at.triangle}, Rotate(pose.rotation, at.normal), at.isBackFace};
+        goOn = found(context, hit);
+        return goOn;
+    });
+    return goOn;
+}
+
+}  // namespace fulcrum

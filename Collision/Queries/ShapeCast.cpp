@@ -1,0 +1,176 @@
+#include <Fulcrum/Collision/Queries/ShapeCast.h>
+
+#include <Fulcrum/Collision/BroadPhase/BoundsTreeCasts.h>
+#include <Fulcrum/Collision/Queries/ConvexDistance.h>
+#include <Fulcrum/Collision/Shapes/Plane.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+namespace {
+
+Position InverseRotateExactly(const Quaternion& q, const Position& v) {
+    return Rotate<double>(Quat<double>{-q.x, -q.y, -q.z, q.w}, v);
+}
+
+Bounds BoundsOfTurning(const ConvexShape& shape, const ShapeMotion& motion) {
+    if (motion.turn.isZero(0)) return BoundsAt({Vector3::Zero(), motion.pose.rotation}, shape.LocalBounds());
+    return Inflated({Vector3::Zero(), Vector3::Zero()}, shape.OuterRadius() * 1.000001f);
+}
+
+}  // namespace
+
+ShapeCaster::ShapeCaster(const ConvexShape& shape, const ShapeMotion& motion)
+    : shape_(shape), motion_(motion), bounds_(BoundsOfTurning(shape, motion)) {
+    isValid_ = IsFinite(motion.pose.position) && IsFinite(motion.pose.rotation) && IsFinite(motion.displacement) &&
+               IsFinite(motion.turn) && IsFinite(bounds_.lower) && IsFinite(bounds_.upper);
+}
+
+CoreMotion ShapeCaster::RelativeTo(const Pose& pose) const {
+    CoreMotion motion;
+    motion.position = InverseRotateExactly(pose.rotation, motion_.pose.position - pose.position);
+    motion.rotation = pose.rotation.Conjugate() * motion_.pose.rotation;
+    motion.displacement = InverseRotate(pose.rotation, motion_.displacement);
+    if (!motion_.turn.isZero(0)) motion.turn = InverseRotate(pose.rotation, motion_.turn);
+    return motion;
+}
+
+// What overlaps at the start: the least move that parts the two; off a one-sided triangle to its front.
+void ShapeCaster::MeasureDepth(const Piece& piece, const Pose& at, const CoreMotion& motion, ShapeHit& hit) const {
+    const RelativePose relative{motion.position.cast<float>(), motion.rotation};
+    const ConvexSeparation now = MeasureConvex(piece.shape, shape_, relative, std::numeric_limits<float>::infinity());
+    Vector3 normal = now.normal, onA = now.onA;
+    hit.depth = std::max(0.0f, -now.separation);
+    if (piece.triangle && !piece.isTwoSided && Dot(normal, piece.triangle->Normal()) < 0) {
+        normal = piece.triangle->Normal();
+        const Vector3 deepest = relative.Transform(shape_.Support(InverseRotate(relative.rotation, Vector3(-normal))));
+        const float height = Dot(normal, Vector3(deepest - piece.triangle->SupportCore(normal)));
+        hit.depth = std::max(0.0f, -height);
+        onA = deepest - normal * height;
+    }
+    hit.normal = Rotate(at.rotation, normal);
+    hit.position = at.Transform(onA);
+}
+
+bool ShapeCaster::CastPiece(const Piece& piece, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit) const {
+    const Pose at = pose * piece.pose;
+    const CoreMotion motion = RelativeTo(at);
+    const bool isOneSided = piece.triangle && !piece.isTwoSided && !settings.backFaces;
+    if (isOneSided && !motion.IsTurning() && Dot(motion.displacement, piece.triangle->Normal()) > 0) return false;
+    const CoreCastResult cast = CastCore(piece.shape, shape_, motion, {settings.maxFraction, settings.separation, settings.tolerance});
+    if (!cast.IsHit()) return false;
+    hit = {};
+    hit.subShape = piece.subShape;
+    hit.fraction = std::min(static_cast<float>(cast.fraction), settings.maxFraction);
+    hit.isEarly = cast.status == CoreCastResult::Status::Early;
+    if (cast.status == CoreCastResult::Status::AtStart) {
+        MeasureDepth(piece, at, motion, hit);
+        return true;
+    }
+    if (isOneSided && Dot(cast.normal, piece.triangle->Normal()) < 0) return false;
+    hit.normal = Rotate(at.rotation, cast.normal);
+    hit.position = at.Transform(cast.onA + cast.normal * piece.shape.ConvexRadius());
+    return true;
+}
+
+bool ShapeCaster::CastPlane(const Shape& shape, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit) const {
+    const Plane& plane = static_cast<const Plane&>(shape);
+    const CoreMotion motion = RelativeTo(pose);
+    const CoreCastResult cast = CastToPlane(plane.Normal(), double{plane.Offset()}, shape_, motion,
+                                            {settings.maxFraction, settings.separation, settings.tolerance});
+    if (!cast.IsHit()) return false;
+    hit = {};
+    hit.fraction = std::min(static_cast<float>(cast.fraction), settings.maxFraction);
+    hit.normal = Rotate(pose.rotation, plane.Normal());
+    hit.position = pose.Transform(cast.onA);
+    hit.isEarly = cast.status == CoreCastResult::Status::Early;
+    if (cast.status == CoreCastResult::Status::AtStart) {
+        const Vector3 lowest = Rotate(motion.rotation, shape_.Support(InverseRotate(motion.rotation, Vector3(-plane.Normal()))));
+        const double height = Dot<double>(plane.Normal().cast<double>(), Position(motion.position + lowest.cast<double>()));
+        hit.depth = std::max(0.0f, static_cast<float>(double{plane.Offset()} - height));
+    }
+    return true;
+}
+
+// A long way is cut into pieces hardly longer than the shape, so that the boxes that are searched hold few triangles beside
+// those that are met.
+void ShapeCaster::SearchSurface(const SurfaceShape& surface, const Pose& pose, ShapeCastSettings& settings, void* context,
+                                HitFunction found) const {
+    constexpr float kLengthOfPart = 4;  // half extents
+    constexpr float kMostParts = 256;
+    const CoreMotion motion = RelativeTo(pose);
+    const Bounds turned = motion.IsTurning() ? bounds_ : BoundsAt({Vector3::Zero(), motion.rotation}, shape_.LocalBounds());
+    const float size = turned.HalfExtents().maxCoeff();
+    const float length = motion.displacement.cwiseAbs().maxCoeff();
+    const int parts = static_cast<int>(std::clamp(std::ceil(length / (kLengthOfPart * size)), 1.0f, kMostParts));
+    bool goOn = true;
+    for (int i = 0; i < parts && goOn; ++i) {
+        const float from = static_cast<float>(i) / static_cast<float>(parts);
+        const float to = i + 1 == parts ? 1 : static_cast<float>(i + 1) / static_cast<float>(parts);
+        if (from > settings.maxFraction) return;
+        Bounds box;
+        for (const float fraction : {from, to}) {
+            const Vector3 centre = motion.PositionAt(double{fraction}).cast<float>();
+            box.Include(Vector3(centre + turned.lower));
+            box.Include(Vector3(centre + turned.upper));
+        }
+        const float slack = 1e-3f * size + settings.separation + settings.tolerance + 1e-6f * box.lower.cwiseAbs().maxCoeff();
+        VisitPieces(surface, Inflated(box, slack), [&](const Piece& piece) {
+            ShapeHit hit;
+            if (!goOn || !CastPiece(piece, pose, settings, hit)) return;
+            // Each part answers for its own hits: a triangle near two of them is told once.
+            const bool isHere = (hit.fraction >= from || i == 0) && (hit.fraction < to || i + 1 == parts);
+            if (isHere) goOn = found(context, hit, settings);
+        });
+    }
+}
+
+void ShapeCaster::Search(const Shape& other, const Pose& pose, ShapeCastSettings settings, void* context, HitFunction found) const {
+    if (!isValid_) return;
+    ShapeHit hit;
+    if (other.IsConvex()) {
+        const Piece piece{static_cast<const ConvexShape&>(other), {}, {}};
+        if (CastPiece(piece, pose, settings, hit)) found(context, hit, settings);
+    } else if (other.Type() == ShapeType::Plane) {
+        if (CastPlane(other, pose, settings, hit)) found(context, hit, settings);
+    } else if (IsSurface(other)) {
+        SearchSurface(static_cast<const SurfaceShape&>(other), pose, settings, context, found);
+    } else {
+        const Compound& compound = static_cast<const Compound&>(other);
+        const CoreMotion motion = RelativeTo(pose);
+        const Bounds turned = motion.IsTurning() ? bounds_ : BoundsAt({Vector3::Zero(), motion.rotation}, shape_.LocalBounds());
+        const float slack = settings.separation + settings.tolerance +
+                            1e-6f * (other.OuterRadius() + Length(motion.displacement) + Length(Vector3(motion.position.cast<float>())));
+        const TreeRay ray(motion.position + turned.Centre().cast<double>(), motion.displacement,
+                          turned.HalfExtents() + Vector3::Constant(slack));
+        float limit = settings.maxFraction;
+        compound.Tree().CastRay(ray, limit, [&](uint32_t child) {
+            const Compound::Child& part = compound.Children()[child];
+            if (!CastPiece({*part.shape, part.pose, {child, kNoTriangle}}, pose, settings, hit)) return;
+            limit = found(context, hit, settings) ? settings.maxFraction : -1;
+        });
+    }
+}
+
+bool ShapeCaster::CastClosest(const Shape& other, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit) const {
+    struct Best {
+        ShapeHit& hit;
+        bool found = false;
+    } best{hit};
+    Search(other, pose, settings, &best, [](void* context, const ShapeHit& found, ShapeCastSettings& limits) -> bool {
+        Best& b = *static_cast<Best*>(context);
+        // Of what overlaps at the start the deepest counts.
+        const bool isCloser = !b.found || found.fraction < b.hit.fraction ||
+                              (found.fraction == b.hit.fraction &&
+                               (found.depth > b.hit.depth || (found.depth == b.hit.depth && found.subShape < b.hit.subShape)));
+        if (!isCloser) return true;
+        b.found = true;
+        b.hit = found;
+        limits.maxFraction = found.fraction;
+        return true;
+    });
+    return best.found;
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,84 @@
+// A convex shape that moves straight, and may turn at a constant rate, against a single shape at rest at a pose. Called by the
+// world's queries and continuous collision, and by users who have shapes and no world. Thread-safe; allocates nothing, but where the
+// depth of a degenerate overlap is measured.
+//
+// Nothing that is touched is missed, however thin or fast. What overlaps at the start is hit at fraction 0, with the depth and
+// the normal of the least move that parts the two. One-sided triangles are hit from the front alone: a shape that moves along
+// their normal, or comes to touch them from behind, passes. A motion that is not finite hits nothing; one of no length hits
+// what overlaps it.
+#pragma once
+
+#include <Fulcrum/Collision/Queries/CoreCast.h>
+#include <Fulcrum/Collision/Queries/Pieces.h>
+
+namespace fulcrum {
+
+struct ShapeMotion {
+    Pose pose;                                // of the shape's centre frame at the start
+    Vector3 displacement = Vector3::Zero();   // m, of the centre, over the whole motion
+    Vector3 turn = Vector3::Zero();           // rad, over the whole motion: the rotation vector, about the centre
+};
+
+struct ShapeCastSettings {
+    bool backFaces = false;  // triangles are hit from behind
+    float maxFraction = 1;   // 0 .. 1, of the motion; only hits up to here
+    float separation = 0;    // m, >= 0: shapes this far apart count as touching
+    float tolerance = 0;     // m, >= 0: a hit may be found that much too far away; 0: to about 1e-6 of the shapes' size
+};
+
+struct ShapeHit {
+    float fraction = 0;                     // of the motion
+    SubShape subShape;                      // of the shape at rest
+    Vector3 normal = Vector3::Zero();       // unit, from the shape at rest towards the one that moves
+    Position position = Position::Zero();   // m, on the surface of the shape at rest
+    float depth = 0;                        // m, >= 0: how far they overlap at the start
+    bool isEarly = false;                   // the search gave up: they do not touch before, but perhaps later or never
+};
+
+// Everything is in the frame of the motion, the world's or another, and exact however far from its origin.
+class ShapeCaster {
+public:
+    ShapeCaster(const ConvexShape& shape, const ShapeMotion& motion);
+    bool IsValid() const { return isValid_; }  // else it hits nothing
+    // The box about the shape's centre that holds the shape all along, relative to where the centre is.
+    const Bounds& BoundsAboutCentre() const { return bounds_; }
+
+    // The closest hit; of equally close ones the deepest, then that of the lowest child and triangle. `pose` is that of the other shape's
+    // centre frame. False: none, `hit` is unchanged.
+    bool CastClosest(const Shape& other, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit) const;
+    // Calls visit(const ShapeHit&) for the first touch of each convex shape, child, triangle or half space, in no order, until it returns
+    // false. False: it did.
+    template <class Visitor>
+    bool CastAll(const Shape& other, const Pose& pose, const ShapeCastSettings& settings, Visitor&& visit) const;
+
+private:
+    // Visits hits, and is told through `settings` up to where they are of interest still; false ends the search.
+    using HitFunction = bool (*)(void* context, const ShapeHit& hit, ShapeCastSettings& settings);
+    void Search(const Shape& other, const Pose& pose, ShapeCastSettings settings, void* context, HitFunction found) const;
+    void SearchSurface(const SurfaceShape& surface, const Pose& pose, ShapeCastSettings& settings, void* context,
+                       HitFunction found) const;
+    bool CastPiece(const Piece& piece, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit) const;
+    bool CastPlane(const Shape& plane, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit) const;
+    void MeasureDepth(const Piece& piece, const Pose& at, const CoreMotion& motion, ShapeHit& hit) const;
+    CoreMotion RelativeTo(const Pose& pose) const;
+
+    const ConvexShape& shape_;
+    ShapeMotion motion_;
+    Bounds bounds_;
+    bool isValid_ = false;
+};
+
+template <class Visitor>
+bool ShapeCaster::CastAll(const Shape& other, const Pose& pose, const ShapeCastSettings& settings, Visitor&& visit) const {
+    struct Context {
+        std::remove_reference_t<Visitor>& visit;
+        bool goOn = true;
+    } all{visit};
+    Search(other, pose, settings, &all, [](void* context, const ShapeHit& hit, ShapeCastSettings&) -> bool {
+        Context& c = *static_cast<Context*>(context);
+        return c.goOn = c.visit(hit);
+    });
+    return all.goOn;
+}
+
+}  // namespace fulcrum
