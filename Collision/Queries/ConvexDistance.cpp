@@ -24,12 +24,12 @@ struct DepthPair {
 
 // The axis of least depth of overlapping cores. A flat or pointed core, as a triangle or a segment, may leave EPA nothing to
 // expand: libccd's answer is held against the centre line's then, and the axis of less depth wins.
-Vector3 AxisOfLeastDepth(const SupportPair& pair, const RelativePose& bInA, const Simplex<SupportVertex>& simplex) {
+Vector3 AxisOfLeastDepth(const SupportPair& pair, const RelativePose& bInA, const ConvexGjkResult& gjk) {
+    const Simplex<SupportVertex>& simplex = gjk.simplex;
     Simplex<DepthPair::Vertex> start;
     for (; start.count < simplex.count; ++start.count) start.vertices[start.count] = DepthPair::From(simplex.vertices[start.count]);
     const EpaResult epa = Epa(DepthPair{pair}, start);
-    if (epa.status == EpaResult::Status::Found) return epa.axis;
-    Vector3 axis = Normalized(pair.position);
+    Vector3 axis = gjk.axis;
     float depth = -pair.SeparationAlong(axis);
     const auto consider = [&](const Vector3& other) {
         const float otherDepth = -pair.SeparationAlong(other);
@@ -37,8 +37,10 @@ Vector3 AxisOfLeastDepth(const SupportPair& pair, const RelativePose& bInA, cons
         axis = other;
         depth = otherDepth;
     };
-    consider(-axis);
-    if (epa.status == EpaResult::Status::Approximate) consider(epa.axis);
+    if (epa.status != EpaResult::Status::Failed) consider(epa.axis);
+    if (epa.status == EpaResult::Status::Found) return axis;
+    consider(Normalized(pair.position));
+    consider(-Normalized(pair.position));
     for (const LibccdAlgorithm algorithm : {LibccdAlgorithm::Epa, LibccdAlgorithm::Mpr}) {
         const LibccdResult found = LibccdPenetration(pair.a, pair.b, bInA, 0, algorithm);
         if (found.status == LibccdResult::Status::Found) consider(Normalized(found.normal.cast<float>()));
@@ -64,7 +66,7 @@ ConvexSeparation MeasureConvex(const ConvexShape& a, const ConvexShape& b, const
         result.isBeyond = result.separation > reach;
         return result;
     }
-    result.normal = AxisOfLeastDepth(pair, bInA, gjk.simplex);
+    result.normal = AxisOfLeastDepth(pair, bInA, gjk);
     result.separation = pair.SeparationAlong(result.normal) - pair.RadiusSum();
     // Of B the deepest point; of A the one that B would leave by.
     const Vector3 deepest = pair.PointOfB(b.SupportCore(-pair.DirectionInB(result.normal)));

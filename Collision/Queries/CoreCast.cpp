@@ -3,6 +3,7 @@
 #include <Fulcrum/Math/Trigonometry.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 namespace fulcrum {
@@ -11,6 +12,8 @@ namespace {
 
 constexpr int kMaxIterations = 64;
 constexpr int kMaxTurningIterations = 200;
+
+using Vec4 = std::array<double, 4>;
 
 // Below this much, in m, two floats that describe the shapes' surfaces cannot tell touching from apart.
 double LeastTolerance(const ConvexShape& a, const ConvexShape& b) {
@@ -36,11 +39,27 @@ Position StartAxis(const Position& position) {
     return length > 1e-12 ? Position(position * (1 / length)) : Position(0, 1, 0);
 }
 
+// The weights of the corners of a tetrahedron around the origin; all zero where it is flat.
+Vec4 WeightsInside(const Simplex<SupportVertex>& s) {
+    const auto volume = [](const Position& a, const Position& b, const Position& c) { return Dot<double>(a, Cross<double>(b, c)); };
+    const Position &a = s.vertices[0].w, &b = s.vertices[1].w, &c = s.vertices[2].w, &d = s.vertices[3].w;
+    const Vec4 parts{volume(b, c, d), -volume(a, c, d), volume(a, b, d), -volume(a, b, c)};
+    const double sum = parts[0] + parts[1] + parts[2] + parts[3];
+    if (sum == 0) return {};
+    return {parts[0] / sum, parts[1] / sum, parts[2] / sum, parts[3] / sum};
+}
+
 Vector3 PointOnA(const Simplex<SupportVertex>& simplex) {
-    const Position weights = ClosestWeights(simplex);
-    Vector3 point = Vector3::Zero();
-    for (int i = 0; i < simplex.count && i < 3; ++i) point += simplex.vertices[i].onA * static_cast<float>(weights[i]);
-    return point;
+    Vec4 weights{};
+    if (simplex.count == 4) {
+        weights = WeightsInside(simplex);
+    } else {
+        const Position inPlane = ClosestWeights(simplex);
+        for (int i = 0; i < 3; ++i) weights[static_cast<size_t>(i)] = inPlane[i];
+    }
+    Position point = Position::Zero();
+    for (int i = 0; i < simplex.count; ++i) point += simplex.vertices[i].onA.cast<double>() * weights[static_cast<size_t>(i)];
+    return point.cast<float>();
 }
 
 CoreCastResult HitAt(CoreCastResult::Status status, double fraction, const Position& normal, const Vector3& onA) {
@@ -50,6 +69,10 @@ CoreCastResult HitAt(CoreCastResult::Status status, double fraction, const Posit
     result.normal = Normalized(normal.cast<float>());
     result.onA = onA;
     return result;
+}
+
+CoreCastResult::Status Touching(bool advanced) {
+    return advanced ? CoreCastResult::Status::Hit : CoreCastResult::Status::AtStart;
 }
 
 CoreCastResult CoresOverlapAtStart() {
@@ -73,11 +96,13 @@ CoreCastResult CastLinear(const ConvexShape& a, const ConvexShape& b, const Core
     const Position displacement = motion.displacement.cast<double>();
     Position at = motion.position, axis = StartAxis(motion.position), provenAxis = axis;
     double fraction = 0;
-    bool advanced = false;
+    bool advanced = false, touches = false;
     Simplex<SupportVertex> simplex;
     for (int i = 0; i < kMaxIterations; ++i) {
         SupportVertex vertex = pair.Support(at, axis);
         const double gap = Dot<double>(axis, vertex.w) - target;
+        // A point of each is near enough, and the axis tells so too: it is the normal.
+        if (touches && gap >= -2 * tolerance) return HitAt(Touching(advanced), fraction, axis, PointOnA(simplex));
         bool moved = false;
         if (gap > 0) {
             const double speed = -Dot<double>(axis, displacement);
@@ -92,27 +117,23 @@ CoreCastResult CastLinear(const ConvexShape& a, const ConvexShape& b, const Core
             moved = advanced = true;
         }
         const bool known = Contains(simplex, vertex);
-        if (known && !moved) {
-            // GJK can come no closer: the cores touch as nearly as their supports can tell.
-            return HitAt(advanced ? Outcome::Hit : Outcome::AtStart, fraction, axis, PointOnA(simplex));
-        }
+        // GJK can come no closer: the cores touch as nearly as their supports can tell.
+        if (known && !moved) return HitAt(Touching(advanced), fraction, axis, PointOnA(simplex));
         Simplex<SupportVertex> next = simplex;
         if (!known) next.vertices[next.count++] = vertex;
         const Position closest = ClosestOn(next);
         const double distance = std::sqrt(Dot<double>(closest, closest));
         if (next.count == 4 || distance <= least) {
             if (!advanced) return CoresOverlapAtStart();
-            if (next.count == 4) return HitAt(Outcome::Hit, fraction, provenAxis, PointOnA(simplex));
             return HitAt(Outcome::Hit, fraction, provenAxis, PointOnA(next));
         }
         simplex = next;
         axis = closest * (1 / distance);
-        if (distance - target <= tolerance) {
-            // A core that comes within the tolerance of touching is known by the plane it was advanced to.
-            const bool isSharp = target <= 100 * least && advanced;
-            return HitAt(advanced ? Outcome::Hit : Outcome::AtStart, fraction, isSharp ? provenAxis : axis, PointOnA(simplex));
-        }
+        touches = distance - target <= tolerance;
+        // So near each other, the cores' closest points tell no direction; the plane that they were advanced to does.
+        if (touches && advanced && distance <= 100 * least) return HitAt(Outcome::Hit, fraction, provenAxis, PointOnA(simplex));
     }
+    if (touches) return HitAt(Touching(advanced), fraction, axis, PointOnA(simplex));
     return HitAt(advanced ? Outcome::Early : Outcome::AtStart, fraction, advanced ? provenAxis : axis, PointOnA(simplex));
 }
 

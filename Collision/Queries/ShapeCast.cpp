@@ -68,7 +68,11 @@ bool ShapeCaster::CastPiece(const Piece& piece, const Pose& pose, const ShapeCas
         MeasureDepth(piece, at, motion, hit);
         return true;
     }
-    if (isOneSided && Dot(cast.normal, piece.triangle->Normal()) < 0) return false;
+    if (isOneSided && motion.IsTurning()) {
+        // What swings may touch an open edge from any side: where its centre is tells where it comes from.
+        const Position centre = motion.PositionAt(cast.fraction) - piece.triangle->SupportCore(Vector3(1, 0, 0)).cast<double>();
+        if (Dot<double>(centre, piece.triangle->Normal().cast<double>()) < 0) return false;
+    }
     hit.normal = Rotate(at.rotation, cast.normal);
     hit.position = at.Transform(cast.onA + cast.normal * piece.shape.ConvexRadius());
     return true;
