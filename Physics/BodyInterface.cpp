@@ -87,6 +87,7 @@ void Teleported(WorldState& world, uint32_t body) {
         SetFatBounds(world, i);
         const Collider& collider = world.colliders.colliders[i];
         world.colliders.TreeOf(collider).Update(i, collider.fat);
+        world.strays.Forget(i);
     }
     world.bodies.poses[body].boundsChangedIn = static_cast<uint32_t>(world.report.step + 1);
     RequeueColliders(world, body);
@@ -95,6 +96,7 @@ void Teleported(WorldState& world, uint32_t body) {
 }  // namespace
 
 Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
+    const WorldLock::Exclusive alone(world_.lock);
     if (MaybeError error = Check(settings)) return *error;
     const uint32_t body = world_.bodies.Allocate();
     BodyCold& cold = world_.bodies.cold[body];
@@ -118,14 +120,17 @@ Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
 }
 
 Status BodyInterface::Remove(BodyId id) {
+    const WorldLock::Exclusive alone(world_.lock);
     if (!Exists(id)) return Unknown(id);
     const uint32_t body = id.index;
     WakeBody(world_, body);
     WakeNeighbours(world_, body);
     world_.joints.VisitOf(body, [&](uint32_t joint) { RemoveJoint(world_, joint); });
     BodyCold& cold = world_.bodies.cold[body];
-    for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i)
+    for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i) {
         world_.colliders.TreeOf(world_.colliders.colliders[i]).Remove(i);
+        world_.strays.Forget(i);
+    }
     world_.bodies.MarkAsleep(body);
     cold.exists = false;
     cold.removed = true;
@@ -136,6 +141,7 @@ Status BodyInterface::Remove(BodyId id) {
 bool BodyInterface::Exists(BodyId id) const { return world_.bodies.Find(id); }
 
 Status BodyInterface::SetPose(BodyId id, const Position& position, const Quaternion& rotation) {
+    const WorldLock::Exclusive alone(world_.lock);
     if (!Exists(id)) return Unknown(id);
     if (MaybeError e = FirstOf(CheckFinite("position", position), CheckRotation("rotation", rotation))) return *e;
     const uint32_t body = id.index;
@@ -166,6 +172,7 @@ Status BodyInterface::MoveKinematic(BodyId id, const Position& position, const Q
 }
 
 Status BodyInterface::SetVelocity(BodyId id, const Vector3& linear, const Vector3& angular) {
+    const WorldLock::Exclusive alone(world_.lock);
     if (!Exists(id)) return Unknown(id);
     if (MaybeError e = FirstOf(CheckFinite("linear", linear), CheckFinite("angular", angular))) return *e;
     const BodyDynamics& d = world_.bodies.dynamics[id.index];
@@ -196,6 +203,7 @@ Vector3 ArmTo(const WorldState& world, BodyId id, const Position& point) {
 }
 
 Status Push(WorldState& world, BodyId id, const Vector3& force, const Vector3& torque) {
+    const WorldLock::Exclusive alone(world.lock);
     if (MaybeError e = FirstOf(CheckPushable(world, id), CheckFinite("force", force), CheckFinite("torque", torque))) return *e;
     WakeBody(world, id.index);
     BodyCold& cold = world.bodies.cold[id.index];
@@ -206,6 +214,7 @@ Status Push(WorldState& world, BodyId id, const Vector3& force, const Vector3& t
 }
 
 Status Kick(WorldState& world, BodyId id, const Vector3& impulse, const Vector3& angularImpulse) {
+    const WorldLock::Exclusive alone(world.lock);
     if (MaybeError e = FirstOf(CheckPushable(world, id), CheckFinite("impulse", impulse), CheckFinite("angular impulse", angularImpulse)))
         return *e;
     WakeBody(world, id.index);
@@ -233,6 +242,7 @@ Status BodyInterface::AddImpulseAt(BodyId id, const Vector3& impulse, const Posi
 }
 
 Status BodyInterface::SetMaterial(BodyId id, const Material& material) {
+    const WorldLock::Exclusive alone(world_.lock);
     if (!Exists(id)) return Unknown(id);
     if (MaybeError e = Check(material)) return *e;
     world_.bodies.cold[id.index].material = material;
@@ -246,6 +256,7 @@ Status BodyInterface::SetMaterial(BodyId id, const Material& material) {
 }
 
 Status BodyInterface::SetGravityFactor(BodyId id, float factor) {
+    const WorldLock::Exclusive alone(world_.lock);
     if (!Exists(id)) return Unknown(id);
     if (MaybeError e = CheckRange("gravityFactor", factor, -1e6, 1e6)) return *e;
     world_.bodies.dynamics[id.index].gravityFactor = factor;
@@ -254,12 +265,14 @@ Status BodyInterface::SetGravityFactor(BodyId id, float factor) {
 }
 
 Status BodyInterface::Wake(BodyId id) {
+    const WorldLock::Exclusive alone(world_.lock);
     if (!Exists(id)) return Unknown(id);
     WakeBody(world_, id.index);
     return Done{};
 }
 
 Status BodyInterface::Sleep(BodyId id) {
+    const WorldLock::Exclusive alone(world_.lock);
     if (!Exists(id)) return Unknown(id);
     if (world_.bodies.dynamics[id.index].motion != MotionType::Dynamic)
         return Error{ErrorCode::Unsupported, "only dynamic bodies sleep"};

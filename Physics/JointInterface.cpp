@@ -147,6 +147,7 @@ void RemoveJoint(WorldState& world, uint32_t index) {
 }
 
 Result<JointId> JointInterface::Add(const JointSettings& s, std::unique_ptr<JointType> type) {
+    const WorldLock::Exclusive alone(world_.lock);
     const uint32_t index = world_.joints.Allocate();
     Joint& joint = world_.joints.joints[index];
     joint.body[0] = s.bodyA.index;
@@ -191,6 +192,7 @@ FULCRUM_FOR_EACH_JOINT_KIND(FULCRUM_INSTANTIATE)
 #undef FULCRUM_INSTANTIATE
 
 Status JointInterface::Remove(JointId id) {
+    const WorldLock::Exclusive alone(world_.lock);
     if (!Exists(id)) return Unknown(id);
     RemoveJoint(world_, id.index);
     return Done{};
@@ -199,6 +201,7 @@ Status JointInterface::Remove(JointId id) {
 bool JointInterface::Exists(JointId id) const { return world_.joints.Find(id); }
 
 Status JointInterface::SetEnabled(JointId id, bool enabled) {
+    const WorldLock::Exclusive alone(world_.lock);
     if (!Exists(id)) return Unknown(id);
     if (world_.joints.joints[id.index].enabled != enabled) Enable(world_, id.index, enabled);
     return Done{};
@@ -212,6 +215,7 @@ AxisControl* JointInterface::ControlOf(JointId id, JointAxis axis) const {
 
 template <class Change>
 Status JointInterface::ChangeControl(JointId id, JointAxis axis, Change&& change) {
+    const WorldLock::Exclusive alone(world_.lock);
     if (!Exists(id)) return Unknown(id);
     AxisControl* control = ControlOf(id, axis);
     if (!control) return Error{ErrorCode::Unsupported, "axis: the joint has neither limits nor motor nor friction there"};
@@ -239,6 +243,7 @@ Status JointInterface::SetFriction(JointId id, JointAxis axis, float friction) {
 }
 
 Status JointInterface::SetTargetOrientation(JointId id, const Quaternion& target) {
+    const WorldLock::Exclusive alone(world_.lock);
     if (!Exists(id)) return Unknown(id);
     if (MaybeError error = CheckRotation("target", target)) return *error;
     const Joint& joint = world_.joints.joints[id.index];
@@ -248,6 +253,7 @@ Status JointInterface::SetTargetOrientation(JointId id, const Quaternion& target
 }
 
 Status JointInterface::SetEffort(JointId id, const SolverSettings& effort) {
+    const WorldLock::Exclusive alone(world_.lock);
     if (!Exists(id)) return Unknown(id);
     if (MaybeError error = FirstOf(CheckRange("substeps", effort.substeps, 0, 64),
                                    CheckRange("velocityIterations", effort.velocityIterations, 0, 255),

@@ -105,12 +105,13 @@ Result<std::unique_ptr<PhysicsSystem>> PhysicsSystem::Create(const SystemSetting
     return std::unique_ptr<PhysicsSystem>(new PhysicsSystem(std::move(world)));
 }
 
-PhysicsSystem::PhysicsSystem(std::unique_ptr<WorldState> world) : world_(std::move(world)), bodies_(*world_), joints_(*world_) {}
+PhysicsSystem::PhysicsSystem(std::unique_ptr<WorldState> world) : world_(std::move(world)), bodies_(*world_), joints_(*world_), queries_(*world_) {}
 PhysicsSystem::~PhysicsSystem() = default;
 
 Status PhysicsSystem::Update(double dt) {
     if (MaybeError error = CheckRange("dt", dt, 0, 1)) return *error;
     WorldState& world = *world_;
+    const WorldLock::Exclusive alone(world.lock);
     ForgetRemoved(world);
     BeginReport(world);
     if (dt < kShortestStep) {
@@ -146,6 +147,7 @@ Status PhysicsSystem::Update(double dt) {
     Sleep(world);
     timer.Finished(Stage::Sleep);
     timer.FinishedAll();
+    world.strays.MarkStale();
 
     CountBodies(world);
     return Done{};
@@ -158,6 +160,7 @@ const SystemSettings& PhysicsSystem::Settings() const { return world_->settings;
 
 Status PhysicsSystem::SetSettings(const SystemSettings& settings) {
     if (MaybeError error = Check(settings)) return *error;
+    const WorldLock::Exclusive alone(world_->lock);
     world_->settings = settings;
     return Done{};
 }

@@ -1,9 +1,11 @@
-// A world of rigid bodies. Create it, add bodies through Bodies(), call Update once a frame. One thread at a time.
+// A world of rigid bodies. Create it, add bodies through Bodies(), call Update once a frame. One thread at a time changes it;
+// Queries() may be asked by any number of threads at any time.
 #pragma once
 
 #include <Fulcrum/Jobs/JobSystem.h>
 #include <Fulcrum/Physics/BodyInterface.h>
 #include <Fulcrum/Physics/JointInterface.h>
+#include <Fulcrum/Physics/QueryInterface.h>
 #include <Fulcrum/Physics/StepReport.h>
 
 #include <memory>
@@ -39,6 +41,7 @@ public:
     const BodyInterface& Bodies() const { return bodies_; }
     JointInterface& Joints() { return joints_; }
     const JointInterface& Joints() const { return joints_; }
+    const QueryInterface& Queries() const { return queries_; }
     const StepReport& Report() const;
     // Joints that the last step loaded beyond their strength, in the order of their indices; they are disabled now.
     std::span<const JointId> BrokenJoints() const;
@@ -65,6 +68,7 @@ private:
     std::unique_ptr<WorldState> world_;
     BodyInterface bodies_;
     JointInterface joints_;
+    QueryInterface queries_;
 };
 
 }  // namespace fulcrum

@@ -40,12 +40,27 @@ void RestPairs(WorldState& world) {
 
 }  // namespace
 
+// What falls asleep outside its fat bounds, because it was fast or the step long, would be found by nobody until it wakes.
+static void BringHome(WorldState& world, uint32_t body) {
+    const BodyCold& cold = world.bodies.cold[body];
+    for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i) {
+        Collider& collider = world.colliders.colliders[i];
+        if (collider.fat.Contains(TightBoundsOf(world, i))) continue;
+        SetFatBounds(world, i);
+        world.colliders.TreeOf(collider).Update(i, collider.fat);
+        world.strays.Forget(i);
+        collider.previous = {};
+        world.colliders.Queue(i);
+    }
+}
+
 void PutToSleep(WorldState& world, std::span<const uint32_t> bodies) {
     const uint32_t island = world.sleeping.Add(bodies);
     for (uint32_t body : bodies) {
         world.bodies.cold[body].sleepingIsland = island;
         world.bodies.SetVelocity(body, Vector3::Zero(), Vector3::Zero());
         world.bodies.MarkAsleep(body);
+        BringHome(world, body);
     }
     for (uint32_t body : bodies)
         world.joints.VisitOf(body, [&](uint32_t joint) {

@@ -15,6 +15,9 @@ struct StepContext {
 // Reads poses, velocities, shapes. Writes world inertia and accelerations; fat bounds and trees where a collider left its own.
 void UpdateBounds(WorldState& world, const StepContext& step);
 
+// World bounds of a collider where its body is now, without any margin.
+Bounds TightBoundsOf(const WorldState& world, uint32_t collider);
+
 // Fat bounds of a collider at its body's pose, at rest.
 void SetFatBounds(WorldState& world, uint32_t collider);
 

@@ -82,12 +82,15 @@ void ReserveLists(WorldState& world) {
 
 }  // namespace
 
-void SetFatBounds(WorldState& world, uint32_t index) {
-    Collider& collider = world.colliders.colliders[index];
+Bounds TightBoundsOf(const WorldState& world, uint32_t index) {
     const ColliderShape& piece = world.colliders.shapes[index];
-    const Pose pose = world.bodies.CentrePoseOf(collider.body) * piece.local;
+    const Pose pose = world.bodies.CentrePoseOf(world.colliders.colliders[index].body) * piece.local;
+    return TightBounds(*piece.shape, pose, ToMatrix(pose.rotation));
+}
+
+void SetFatBounds(WorldState& world, uint32_t index) {
     const float margin = 0.5f * world.settings.speculativeDistance + world.settings.boundsMargin;
-    collider.fat = Reach(TightBounds(*piece.shape, pose, ToMatrix(pose.rotation)), Vector3::Zero(), margin);
+    world.colliders.colliders[index].fat = Reach(TightBoundsOf(world, index), Vector3::Zero(), margin);
 }
 
 void UpdateBounds(WorldState& world, const StepContext& step) {

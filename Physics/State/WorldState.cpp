@@ -77,7 +77,7 @@ void WakeInside(WorldState& world, const Bounds& bounds) {
 }
 
 size_t WorldState::MemoryUsed() const {
-    size_t bytes = sizeof(*this) + bodies.MemoryUsed() + colliders.MemoryUsed() + pairs.MemoryUsed() +
+    size_t bytes = sizeof(*this) + bodies.MemoryUsed() + colliders.MemoryUsed() + strays.MemoryUsed() + pairs.MemoryUsed() +
                    joints.MemoryUsed() + colouring.MemoryUsed() + sleeping.MemoryUsed() + solver.MemoryUsed() + scratch.CapacityInBytes() +
                    changes.capacity() + activated.capacity() * sizeof(uint32_t) + newPairs.capacity() * sizeof(uint64_t);
     for (const WorkerFindings& f : findings)

@@ -11,6 +11,8 @@
 #include <Fulcrum/Physics/State/JointStore.h>
 #include <Fulcrum/Physics/State/PairStore.h>
 #include <Fulcrum/Physics/State/SolverLayout.h>
+#include <Fulcrum/Physics/State/Strays.h>
+#include <Fulcrum/Physics/State/WorldLock.h>
 #include <Fulcrum/Physics/StepReport.h>
 
 #include <algorithm>
@@ -72,6 +74,10 @@ struct WorldState {
     StepReport report;
     bool bounces = false;                     // some contact of this step has restitution
     float lastSubstepDt = 0;                  // s
+
+    // For the queries.
+    WorldLock lock;
+    Strays strays;
 
     size_t MemoryUsed() const;
 };

@@ -1,0 +1,87 @@
+// The colliders that a query has to look at, from the world's trees through its filter. Called by QueryInterface under the
+// world's lock. Allocates nothing; thread-safe.
+#pragma once
+
+#include <Fulcrum/Physics/QueryInterface.h>
+#include <Fulcrum/Physics/State/WorldState.h>
+
+#include <Fulcrum/Collision/BroadPhase/BoundsTreeCasts.h>
+
+namespace fulcrum {
+
+class ColliderSearch {
+public:
+    ColliderSearch(const WorldState& world, const QueryFilter& filter)
+        : world_(world), filter_(filter),
+          seesAll_(filter.layers == 0xFFFFFFFFu && filter.ignore.empty() && !filter.accepts && !filter.acceptsChild) {}
+
+    // Traverses the trees whose layers the filter wants: walk(tree, visit), where `visit` calls found(collider) for what is
+    // accepted. What strayed from its bounds is found by where it is.
+    template <class Walk, class Found>
+    void Run(const Walk& walk, const Found& found) const {
+        const ColliderStore& store = world_.colliders;
+        const Strays& strays = world_.strays;
+        const auto visit = [&](uint32_t collider) {
+            if (Accepts(collider)) found(collider);
+        };
+        if (filter_.layers & store.movingLayers) {
+            if (strays.IsEmpty()) {
+                walk(store.movingTree, visit);
+            } else {
+                walk(strays.Tree(), visit);
+                walk(store.movingTree, [&](uint32_t collider) {
+                    if (!strays.Contains(collider)) visit(collider);
+                });
+            }
+        }
+        if (filter_.layers & store.fixedLayers) walk(store.fixedTree, visit);
+    }
+
+    uint32_t BodyOf(uint32_t collider) const { return world_.colliders.colliders[collider].body; }
+    uint32_t ChildOf(uint32_t collider) const { return collider - world_.bodies.cold[BodyOf(collider)].firstCollider; }
+    BodyId IdOf(uint32_t collider) const { return world_.bodies.IdOf(BodyOf(collider)); }
+    OverlapHit HitOf(uint32_t collider) const { return {IdOf(collider), ChildOf(collider)}; }
+    const Shape& ShapeOf(uint32_t collider) const { return *world_.colliders.shapes[collider].shape; }
+    Pose PoseOf(uint32_t collider) const {
+        const ColliderShape& piece = world_.colliders.shapes[collider];
+        const Pose body = world_.bodies.CentrePoseOf(BodyOf(collider));
+        return piece.offset ? body * piece.local : body;
+    }
+    // The order that breaks ties: by body, then child.
+    bool ComesBefore(uint32_t a, uint32_t b) const {
+        const uint32_t bodyA = BodyOf(a), bodyB = BodyOf(b);
+        return bodyA != bodyB ? bodyA < bodyB : a < b;
+    }
+
+private:
+    bool Accepts(uint32_t collider) const {
+        if (seesAll_) return true;
+        const uint32_t body = BodyOf(collider);
+        if (!(filter_.layers >> world_.bodies.dynamics[body].layer & 1u)) return false;
+        const BodyId id = world_.bodies.IdOf(body);
+        for (const BodyId& ignored : filter_.ignore)
+            if (ignored == id) return false;
+        if (filter_.accepts && !(*filter_.accepts)(id)) return false;
+        return !filter_.acceptsChild || (*filter_.acceptsChild)(id, ChildOf(collider));
+    }
+
+    const WorldState& world_;
+    const QueryFilter& filter_;
+    bool seesAll_;
+};
+
+// A query's hold on the world, and its trees brought up to date.
+class QueryScope {
+public:
+    explicit QueryScope(WorldState& world) : shared_(world.lock) { world.strays.Refresh(world); }
+
+private:
+    WorldLock::Shared shared_;
+};
+
+// The pose of a shape's centre frame from that of its own.
+inline Pose CentrePoseOf(const Shape& shape, const Pose& pose) {
+    return {pose.Transform(shape.Mass().centreOfMass), pose.rotation};
+}
+
+}  // namespace fulcrum

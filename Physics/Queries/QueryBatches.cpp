@@ -1,0 +1,90 @@
+// Batches of queries over the world's job system. Each item is the single query, so that the answers are the same bits; the
+// thread that asks holds the world for all of them.
+#include <Fulcrum/Physics/Queries/ColliderSearch.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+namespace {
+// Enough for a job to be worth its while: a few microseconds.
+constexpr uint32_t kRaysPerJob = 64;
+constexpr uint32_t kShapesPerJob = 8;
+}  // namespace
+
+template <class Item>
+void QueryInterface::ForEach(size_t count, uint32_t minimumRange, const Item& item) const {
+    const QueryScope scope(world_);
+    world_.jobs->ParallelFor(static_cast<uint32_t>(count), minimumRange, [&](JobRange range) {
+        const WorldLock::Shared borrowed(world_.lock, WorldLock::Shared::Kind::Borrowed);
+        for (uint32_t i = range.begin; i < range.end; ++i) item(i);
+    });
+}
+
+void QueryInterface::CastRays(std::span<const Ray> rays, std::span<WorldRayHit> hits, const RayCastSettings& settings,
+                              const QueryFilter& filter) const {
+    ForEach(std::min(rays.size(), hits.size()), kRaysPerJob, [&](size_t i) {
+        if (!CastRay(rays[i], hits[i], settings, filter)) hits[i] = {};
+    });
+}
+
+void QueryInterface::AreHit(std::span<const Ray> rays, std::span<uint8_t> hits, const RayCastSettings& settings,
+                            const QueryFilter& filter) const {
+    ForEach(std::min(rays.size(), hits.size()), kRaysPerJob, [&](size_t i) { hits[i] = IsHit(rays[i], settings, filter); });
+}
+
+void QueryInterface::CastRaysAll(std::span<const Ray> rays, std::vector<std::vector<WorldRayHit>>& hits,
+                                 const RayCastSettings& settings, const QueryFilter& filter) const {
+    hits.resize(rays.size());
+    ForEach(rays.size(), kRaysPerJob, [&](size_t i) { CastRayAll(rays[i], hits[i], settings, filter); });
+}
+
+void QueryInterface::CastShapes(std::span<const MovingShape> shapes, std::span<WorldShapeHit> hits,
+                                const ShapeCastSettings& settings, const QueryFilter& filter) const {
+    ForEach(std::min(shapes.size(), hits.size()), kShapesPerJob, [&](size_t i) {
+        if (!CastShape(shapes[i], hits[i], settings, filter)) hits[i] = {};
+    });
+}
+
+void QueryInterface::AreHit(std::span<const MovingShape> shapes, std::span<uint8_t> hits, const ShapeCastSettings& settings,
+                            const QueryFilter& filter) const {
+    ForEach(std::min(shapes.size(), hits.size()), kShapesPerJob, [&](size_t i) { hits[i] = IsHit(shapes[i], settings, filter); });
+}
+
+void QueryInterface::CastShapesAll(std::span<const MovingShape> shapes, std::vector<std::vector<WorldShapeHit>>& hits,
+                                   const ShapeCastSettings& settings, const QueryFilter& filter) const {
+    hits.resize(shapes.size());
+    ForEach(shapes.size(), kShapesPerJob, [&](size_t i) { CastShapeAll(shapes[i], hits[i], settings, filter); });
+}
+
+void QueryInterface::AreOverlapping(std::span<const PlacedShape> shapes, std::span<uint8_t> hits, const QueryFilter& filter) const {
+    ForEach(std::min(shapes.size(), hits.size()), kShapesPerJob, [&](size_t i) { hits[i] = IsOverlapping(shapes[i], filter); });
+}
+
+void QueryInterface::FindOverlaps(std::span<const PlacedShape> shapes, std::vector<std::vector<OverlapHit>>& hits,
+                                  const QueryFilter& filter) const {
+    hits.resize(shapes.size());
+    ForEach(shapes.size(), kShapesPerJob, [&](size_t i) { FindOverlaps(shapes[i], hits[i], filter); });
+}
+
+void QueryInterface::FindBodiesAt(std::span<const Position> points, std::vector<std::vector<OverlapHit>>& hits,
+                                  const QueryFilter& filter) const {
+    hits.resize(points.size());
+    ForEach(points.size(), kRaysPerJob, [&](size_t i) { FindBodiesAt(points[i], hits[i], filter); });
+}
+
+void QueryInterface::FindClosest(std::span<const Position> points, float maxDistance, std::span<WorldClosest> closest,
+                                 const QueryFilter& filter) const {
+    ForEach(std::min(points.size(), closest.size()), kShapesPerJob, [&](size_t i) {
+        if (!FindClosest(points[i], maxDistance, closest[i], filter)) closest[i] = {};
+    });
+}
+
+void QueryInterface::FindClosest(std::span<const PlacedShape> shapes, float maxDistance, std::span<WorldClosest> closest,
+                                 const QueryFilter& filter) const {
+    ForEach(std::min(shapes.size(), closest.size()), kShapesPerJob, [&](size_t i) {
+        if (!FindClosest(shapes[i], maxDistance, closest[i], filter)) closest[i] = {};
+    });
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,311 @@
+#include <Fulcrum/Physics/QueryInterface.h>
+
+#include <Fulcrum/Collision/Queries/Distance.h>
+#include <Fulcrum/Physics/Queries/ColliderSearch.h>
+
+#include <algorithm>
+#include <tuple>
+
+namespace fulcrum {
+
+namespace {
+
+WorldRayHit ToWorld(const ColliderSearch& search, uint32_t collider, const Ray& ray, const RayHit& hit) {
+    WorldRayHit result;
+    result.body = search.IdOf(collider);
+    result.subShape = {search.ChildOf(collider), hit.subShape.triangle};
+    result.fraction = hit.fraction;
+    result.normal = hit.normal;
+    result.position = ray.origin + ray.displacement.cast<double>() * double{hit.fraction};
+    result.isBackFace = hit.isBackFace;
+    return result;
+}
+
+WorldShapeHit ToWorld(const ColliderSearch& search, uint32_t collider, const ShapeHit& hit) {
+    WorldShapeHit result;
+    result.body = search.IdOf(collider);
+    result.subShape = {search.ChildOf(collider), hit.subShape.triangle};
+    result.fraction = hit.fraction;
+    result.normal = hit.normal;
+    result.position = hit.position;
+    result.depth = hit.depth;
+    result.isEarly = hit.isEarly;
+    return result;
+}
+
+bool IsUsable(const Pose& pose) { return IsFinite(pose.position) && IsFinite(pose.rotation); }
+
+// Where the fractions are equal, the deepest first.
+template <class Hit>
+bool ComesFirst(const Hit& a, const Hit& b) {
+    if constexpr (requires { a.depth; }) {
+        return std::tuple(a.fraction, -a.depth, a.body, a.subShape) < std::tuple(b.fraction, -b.depth, b.body, b.subShape);
+    } else {
+        return std::tuple(a.fraction, a.body, a.subShape) < std::tuple(b.fraction, b.body, b.subShape);
+    }
+}
+
+template <class Hit>
+void SortHits(std::vector<Hit>& hits) {
+    std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) { return ComesFirst(a, b); });
+}
+
+// found(collider) for all colliders whose bounds the ray meets up to `limit`, which it may lower.
+template <class Found>
+void AlongRay(const ColliderSearch& search, const TreeRay& ray, float& limit, const Found& found) {
+    search.Run([&](const BoundsTree& tree, const auto& visit) { tree.CastRay(ray, limit, visit); }, found);
+}
+
+TreeRay SweptBounds(const ShapeCaster& caster, const Pose& pose, const Vector3& displacement, const ShapeCastSettings& settings) {
+    const Bounds& bounds = caster.BoundsAboutCentre();
+    const Vector3 centre = bounds.Centre();
+    const float slack = settings.separation + settings.tolerance + 1e-6f * (bounds.HalfExtents().maxCoeff() + Length(displacement));
+    return TreeRay(pose.position + centre.cast<double>(), displacement, bounds.HalfExtents() + Vector3::Constant(slack));
+}
+
+Bounds WorldBounds(const Position& lower, const Position& upper) { return RoundedOutwards(lower, upper); }
+
+Bounds WorldBounds(const Shape& shape, const Pose& centre) {
+    const Bounds turned = BoundsAt({Vector3::Zero(), centre.rotation}, shape.LocalBounds());
+    return WorldBounds(centre.position + turned.lower.cast<double>(), centre.position + turned.upper.cast<double>());
+}
+
+}  // namespace
+
+WorldLock::Shared QueryInterface::Hold() const { return WorldLock::Shared(world_.lock); }
+
+// ---- Rays
+
+bool QueryInterface::CastRay(const Ray& ray, WorldRayHit& hit, const RayCastSettings& settings, const QueryFilter& filter) const {
+    const QueryScope scope(world_);
+    const RayCaster caster(ray);
+    if (!caster.IsValid()) return false;
+    const ColliderSearch search(world_, filter);
+    RayCastSettings upTo = settings;
+    RayHit best;
+    uint32_t bestCollider = ~0u;
+    AlongRay(search, TreeRay(ray.origin, ray.displacement), upTo.maxFraction, [&](uint32_t collider) {
+        RayHit found;
+        if (!caster.CastClosest(search.ShapeOf(collider), search.PoseOf(collider), upTo, found)) return;
+        const bool isTie = bestCollider != ~0u && found.fraction == best.fraction;
+        if (isTie && search.ComesBefore(bestCollider, collider)) return;
+        best = found;
+        bestCollider = collider;
+        upTo.maxFraction = found.fraction;
+    });
+    if (bestCollider == ~0u) return false;
+    hit = ToWorld(search, bestCollider, ray, best);
+    return true;
+}
+
+bool QueryInterface::IsHit(const Ray& ray, const RayCastSettings& settings, const QueryFilter& filter) const {
+    const QueryScope scope(world_);
+    const RayCaster caster(ray);
+    if (!caster.IsValid()) return false;
+    const ColliderSearch search(world_, filter);
+    float limit = settings.maxFraction;
+    bool hit = false;
+    AlongRay(search, TreeRay(ray.origin, ray.displacement), limit, [&](uint32_t collider) {
+        if (hit || !caster.IsHit(search.ShapeOf(collider), search.PoseOf(collider), settings)) return;
+        hit = true;
+        limit = -1;
+    });
+    return hit;
+}
+
+void QueryInterface::VisitRay(const Ray& ray, FunctionRef<float(const WorldRayHit&)> visit, const RayCastSettings& settings,
+                              const QueryFilter& filter) const {
+    const QueryScope scope(world_);
+    const RayCaster caster(ray);
+    if (!caster.IsValid()) return;
+    const ColliderSearch search(world_, filter);
+    RayCastSettings upTo = settings;
+    AlongRay(search, TreeRay(ray.origin, ray.displacement), upTo.maxFraction, [&](uint32_t collider) {
+        if (upTo.maxFraction < 0) return;
+        caster.CastAll(search.ShapeOf(collider), search.PoseOf(collider), upTo, [&](const RayHit& found) {
+            if (found.fraction > upTo.maxFraction) return true;
+            upTo.maxFraction = std::min(upTo.maxFraction, visit(ToWorld(search, collider, ray, found)));
+            return upTo.maxFraction >= 0;
+        });
+    });
+}
+
+void QueryInterface::CastRayAll(const Ray& ray, std::vector<WorldRayHit>& hits, const RayCastSettings& settings,
+                                const QueryFilter& filter) const {
+    hits.clear();
+    VisitRay(ray, [&](const WorldRayHit& hit) { return hits.push_back(hit), settings.maxFraction; }, settings, filter);
+    SortHits(hits);
+}
+
+// ---- Moving shapes
+
+void QueryInterface::VisitShape(const MovingShape& shape, FunctionRef<float(const WorldShapeHit&)> visit,
+                                const ShapeCastSettings& settings, const QueryFilter& filter) const {
+    const QueryScope scope(world_);
+    const ShapeMotion motion{CentrePoseOf(*shape.shape, shape.pose), shape.displacement, shape.turn};
+    const ShapeCaster caster(*shape.shape, motion);
+    if (!caster.IsValid()) return;
+    const ColliderSearch search(world_, filter);
+    ShapeCastSettings upTo = settings;
+    AlongRay(search, SweptBounds(caster, motion.pose, shape.displacement, settings), upTo.maxFraction, [&](uint32_t collider) {
+        if (upTo.maxFraction < 0) return;
+        caster.CastAll(search.ShapeOf(collider), search.PoseOf(collider), upTo, [&](const ShapeHit& found) {
+            if (found.fraction > upTo.maxFraction) return true;
+            upTo.maxFraction = std::min(upTo.maxFraction, visit(ToWorld(search, collider, found)));
+            return upTo.maxFraction >= 0;
+        });
+    });
+}
+
+bool QueryInterface::CastShape(const MovingShape& shape, WorldShapeHit& hit, const ShapeCastSettings& settings,
+                               const QueryFilter& filter) const {
+    const QueryScope scope(world_);
+    const ShapeMotion motion{CentrePoseOf(*shape.shape, shape.pose), shape.displacement, shape.turn};
+    const ShapeCaster caster(*shape.shape, motion);
+    if (!caster.IsValid()) return false;
+    const ColliderSearch search(world_, filter);
+    ShapeCastSettings upTo = settings;
+    bool any = false;
+    AlongRay(search, SweptBounds(caster, motion.pose, shape.displacement, settings), upTo.maxFraction, [&](uint32_t collider) {
+        ShapeHit found;
+        if (!caster.CastClosest(search.ShapeOf(collider), search.PoseOf(collider), upTo, found)) return;
+        const WorldShapeHit here = ToWorld(search, collider, found);
+        if (any && !ComesFirst(here, hit)) return;
+        any = true;
+        hit = here;
+        upTo.maxFraction = here.fraction;
+    });
+    return any;
+}
+
+bool QueryInterface::IsHit(const MovingShape& shape, const ShapeCastSettings& settings, const QueryFilter& filter) const {
+    bool hit = false;
+    VisitShape(shape, [&](const WorldShapeHit&) { return hit = true, -1.0f; }, settings, filter);
+    return hit;
+}
+
+void QueryInterface::CastShapeAll(const MovingShape& shape, std::vector<WorldShapeHit>& hits, const ShapeCastSettings& settings,
+                                  const QueryFilter& filter) const {
+    hits.clear();
+    VisitShape(shape, [&](const WorldShapeHit& hit) { return hits.push_back(hit), settings.maxFraction; }, settings, filter);
+    SortHits(hits);
+}
+
+// ---- Overlaps
+
+void QueryInterface::VisitOverlaps(const PlacedShape& shape, FunctionRef<bool(const OverlapHit&)> visit,
+                                   const QueryFilter& filter) const {
+    const QueryScope scope(world_);
+    const Pose pose = CentrePoseOf(*shape.shape, shape.pose);
+    if (!IsUsable(pose)) return;
+    const ColliderSearch search(world_, filter);
+    const Bounds bounds = WorldBounds(*shape.shape, pose);
+    bool goOn = true;
+    search.Run([&](const BoundsTree& tree, const auto& found) { tree.Query(bounds, found); },
+               [&](uint32_t collider) {
+                   if (!goOn) return;
+                   const RelativePose relative = Relative(search.PoseOf(collider), pose);
+                   if (Overlap(search.ShapeOf(collider), *shape.shape, relative)) goOn = visit(search.HitOf(collider));
+               });
+}
+
+bool QueryInterface::IsOverlapping(const PlacedShape& shape, const QueryFilter& filter) const {
+    bool overlaps = false;
+    VisitOverlaps(shape, [&](const OverlapHit&) { return overlaps = true, false; }, filter);
+    return overlaps;
+}
+
+void QueryInterface::FindOverlaps(const PlacedShape& shape, std::vector<OverlapHit>& hits, const QueryFilter& filter) const {
+    hits.clear();
+    VisitOverlaps(shape, [&](const OverlapHit& hit) { return hits.push_back(hit), true; }, filter);
+    std::sort(hits.begin(), hits.end());
+}
+
+void QueryInterface::FindBodiesAt(const Position& point, std::vector<OverlapHit>& hits, const QueryFilter& filter) const {
+    hits.clear();
+    if (!IsFinite(point)) return;
+    const QueryScope scope(world_);
+    const ColliderSearch search(world_, filter);
+    const Bounds bounds = WorldBounds(point, point);
+    search.Run([&](const BoundsTree& tree, const auto& found) { tree.Query(bounds, found); },
+               [&](uint32_t collider) {
+                   if (Contains(search.ShapeOf(collider), search.PoseOf(collider).InverseTransform(point)))
+                       hits.push_back(search.HitOf(collider));
+               });
+    std::sort(hits.begin(), hits.end());
+}
+
+// ---- Closest
+
+bool QueryInterface::FindClosest(const PlacedShape& shape, float maxDistance, WorldClosest& closest,
+                                 const QueryFilter& filter) const {
+    const QueryScope scope(world_);
+    const Pose pose = CentrePoseOf(*shape.shape, shape.pose);
+    if (!IsUsable(pose) || !(maxDistance >= 0)) return false;
+    const ColliderSearch search(world_, filter);
+    const Bounds bounds = WorldBounds(*shape.shape, pose);
+    float limit = maxDistance;
+    uint32_t bestCollider = ~0u;
+    ClosestPoints best;
+    search.Run([&](const BoundsTree& tree, const auto& found) { tree.VisitNear(bounds, limit, found); },
+               [&](uint32_t collider) {
+                   ClosestPoints found;
+                   const Pose at = search.PoseOf(collider);
+                   if (!FindClosestPoints(search.ShapeOf(collider), *shape.shape, Relative(at, pose), limit, found)) return;
+                   const bool isCloser = bestCollider == ~0u || found.distance < best.distance ||
+                                         (found.distance == best.distance && search.ComesBefore(collider, bestCollider));
+                   if (!isCloser) return;
+                   best = found;
+                   bestCollider = collider;
+                   limit = std::max(best.distance, 0.0f);  // what overlaps is looked at to the end
+               });
+    if (bestCollider == ~0u) return false;
+    const Pose at = search.PoseOf(bestCollider);
+    closest.body = search.IdOf(bestCollider);
+    closest.subShape = {search.ChildOf(bestCollider), best.subShapeOfA.triangle};
+    closest.subShapeOfQuery = best.subShapeOfB;
+    closest.distance = best.distance;
+    closest.normal = Rotate(at.rotation, best.normal);
+    closest.onBody = at.Transform(best.onA);
+    closest.onQuery = at.Transform(best.onB);
+    return true;
+}
+
+bool QueryInterface::FindClosest(const Position& point, float maxDistance, WorldClosest& closest, const QueryFilter& filter) const {
+    const PointCore core;
+    return FindClosest(PlacedShape{&core, {point, {}}}, maxDistance, closest, filter);
+}
+
+// ---- Bounds
+
+void QueryInterface::FindInBox(const Position& lower, const Position& upper, std::vector<OverlapHit>& hits,
+                               const QueryFilter& filter) const {
+    hits.clear();
+    if (!IsFinite(lower) || !IsFinite(upper)) return;
+    const QueryScope scope(world_);
+    const ColliderSearch search(world_, filter);
+    const Bounds bounds = WorldBounds(lower, upper);
+    search.Run([&](const BoundsTree& tree, const auto& found) { tree.Query(bounds, found); },
+               [&](uint32_t collider) { hits.push_back(search.HitOf(collider)); });
+    std::sort(hits.begin(), hits.end());
+}
+
+void QueryInterface::FindOnSweep(const Position& lower, const Position& upper, const Vector3& displacement,
+                                 std::vector<OverlapHit>& hits, const QueryFilter& filter) const {
+    hits.clear();
+    if (!IsFinite(lower) || !IsFinite(upper) || !IsFinite(displacement) || !(lower.array() <= upper.array()).all()) return;
+    const QueryScope scope(world_);
+    const ColliderSearch search(world_, filter);
+    const Position half = (upper - lower) * 0.5;
+    const Vector3 halfExtents(RoundUp(half.x()), RoundUp(half.y()), RoundUp(half.z()));
+    float limit = 1;
+    AlongRay(search, TreeRay(lower + half, displacement, halfExtents), limit,
+             [&](uint32_t collider) { hits.push_back(search.HitOf(collider)); });
+    std::sort(hits.begin(), hits.end());
+}
+
+void QueryInterface::FindOnRay(const Ray& ray, std::vector<OverlapHit>& hits, const QueryFilter& filter) const {
+    FindOnSweep(ray.origin, ray.origin, ray.displacement, hits, filter);
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,155 @@
+// Asks where things are: rays, moving shapes, overlaps, closest points, bounds. From PhysicsSystem::Queries().
+// Any number of threads at once, also while one changes the world through Bodies() and Joints() or steps it: a query then waits,
+// and sees the world before or after, never in between. Bodies are found where they are now. Hold() keeps the world still over
+// several queries, and while their results are looked up in Bodies(). What a query calls back may query, but must not change
+// the world. Input that is not finite finds nothing.
+#pragma once
+
+#include <Fulcrum/Collision/Queries/RayCast.h>
+#include <Fulcrum/Collision/Queries/ShapeCast.h>
+#include <Fulcrum/Jobs/JobSystem.h>
+#include <Fulcrum/Physics/Settings.h>
+#include <Fulcrum/Physics/State/WorldLock.h>
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace fulcrum {
+
+struct WorldState;
+
+// Which bodies a query sees. Batches call the predicates from several threads at once.
+struct QueryFilter {
+    uint32_t layers = 0xFFFFFFFFu;                                    // bit i: bodies of layer i
+    std::span<const BodyId> ignore{};                                 // but not these
+    std::optional<FunctionRef<bool(BodyId)>> accepts{};               // and those it says yes to
+    std::optional<FunctionRef<bool(BodyId, uint32_t child)>> acceptsChild{};  // and their children likewise
+};
+
+// The body is invalid (BodyId{}) where nothing was found.
+struct WorldRayHit {
+    BodyId body;
+    SubShape subShape;
+    float fraction = 0;                    // of the displacement
+    Vector3 normal = Vector3::Zero();      // unit, world space, see RayHit
+    Position position = Position::Zero();  // m
+    bool isBackFace = false;
+};
+
+struct WorldShapeHit {
+    BodyId body;
+    SubShape subShape;                     // of the body
+    float fraction = 0;                    // of the motion
+    Vector3 normal = Vector3::Zero();      // unit, world space, from the body towards the moving shape
+    Position position = Position::Zero();  // m, on the body's surface
+    float depth = 0;                       // m, of an overlap at the start
+    bool isEarly = false;                  // see ShapeHit
+};
+
+struct OverlapHit {
+    BodyId body;
+    uint32_t child = 0;                    // of a compound; else 0
+    friend auto operator<=>(const OverlapHit&, const OverlapHit&) = default;
+};
+
+struct WorldClosest {
+    BodyId body;
+    SubShape subShape, subShapeOfQuery;
+    float distance = 0;                    // m; negative: how deep they overlap
+    Vector3 normal = Vector3::Zero();      // unit, world space, from the body towards the shape or point asked for
+    Position onBody = Position::Zero(), onQuery = Position::Zero();  // m
+};
+
+// A shape somewhere; `pose` is that of the shape's own frame, as the user described it.
+struct PlacedShape {
+    const Shape* shape = nullptr;          // not null
+    Pose pose;
+};
+
+// A convex shape on its way: its centre of mass moves straight, it turns about it at a constant rate.
+struct MovingShape {
+    const ConvexShape* shape = nullptr;         // not null
+    Pose pose;                                  // of the shape's own frame at the start
+    Vector3 displacement = Vector3::Zero();     // m
+    Vector3 turn = Vector3::Zero();             // rad, rotation vector over the whole motion
+};
+
+class QueryInterface {
+public:
+    explicit QueryInterface(WorldState& world) : world_(world) {}
+
+    // Nothing changes as long as the object lives; queries of this thread cost less meanwhile. Changes wait.
+    [[nodiscard]] WorldLock::Shared Hold() const;
+
+    // Rays, see RayCast.h. Of hits equally close the lowest body, child, triangle counts.
+    bool CastRay(const Ray& ray, WorldRayHit& hit, const RayCastSettings& settings = {}, const QueryFilter& filter = {}) const;
+    bool IsHit(const Ray& ray, const RayCastSettings& settings = {}, const QueryFilter& filter = {}) const;
+    // All, by fraction, then body, child, triangle. Replaces what is in `hits`.
+    void CastRayAll(const Ray& ray, std::vector<WorldRayHit>& hits, const RayCastSettings& settings = {},
+                    const QueryFilter& filter = {}) const;
+    // In no order. `visit` returns up to which fraction hits are of interest still: 1 for all of them, its own for closer ones,
+    // less than 0 to end the search.
+    void VisitRay(const Ray& ray, FunctionRef<float(const WorldRayHit&)> visit, const RayCastSettings& settings = {},
+                  const QueryFilter& filter = {}) const;
+
+    // The same for moving shapes, see ShapeCast.h. Of what overlaps at the start the deepest counts.
+    bool CastShape(const MovingShape& shape, WorldShapeHit& hit, const ShapeCastSettings& settings = {},
+                   const QueryFilter& filter = {}) const;
+    bool IsHit(const MovingShape& shape, const ShapeCastSettings& settings = {}, const QueryFilter& filter = {}) const;
+    void CastShapeAll(const MovingShape& shape, std::vector<WorldShapeHit>& hits, const ShapeCastSettings& settings = {},
+                      const QueryFilter& filter = {}) const;
+    void VisitShape(const MovingShape& shape, FunctionRef<float(const WorldShapeHit&)> visit,
+                    const ShapeCastSettings& settings = {}, const QueryFilter& filter = {}) const;
+
+    // What the shape overlaps, touching included, by body and child.
+    bool IsOverlapping(const PlacedShape& shape, const QueryFilter& filter = {}) const;
+    void FindOverlaps(const PlacedShape& shape, std::vector<OverlapHit>& hits, const QueryFilter& filter = {}) const;
+    // In no order, until `visit` returns false.
+    void VisitOverlaps(const PlacedShape& shape, FunctionRef<bool(const OverlapHit&)> visit, const QueryFilter& filter = {}) const;
+    // What a point is inside of; nothing is inside a mesh or a height field.
+    void FindBodiesAt(const Position& point, std::vector<OverlapHit>& hits, const QueryFilter& filter = {}) const;
+
+    // The body closest to a point or shape within `maxDistance` m, >= 0; of those that overlap the shape, the deepest.
+    bool FindClosest(const Position& point, float maxDistance, WorldClosest& closest, const QueryFilter& filter = {}) const;
+    bool FindClosest(const PlacedShape& shape, float maxDistance, WorldClosest& closest, const QueryFilter& filter = {}) const;
+
+    // The broad phase alone: bodies and children whose bounds, which are a little larger than they, meet a box, a ray, or a box
+    // on its way. Fast; by body and child.
+    void FindInBox(const Position& lower, const Position& upper, std::vector<OverlapHit>& hits, const QueryFilter& filter = {}) const;
+    void FindOnRay(const Ray& ray, std::vector<OverlapHit>& hits, const QueryFilter& filter = {}) const;
+    void FindOnSweep(const Position& lower, const Position& upper, const Vector3& displacement, std::vector<OverlapHit>& hits,
+                     const QueryFilter& filter = {}) const;
+
+    // Batches, over the world's job system: answer i is that of the single query i, the same bits. Results of another length
+    // than the queries: only what both have is done. A list of results is given their length and keeps its lists' memory.
+    void CastRays(std::span<const Ray> rays, std::span<WorldRayHit> hits, const RayCastSettings& settings = {},
+                  const QueryFilter& filter = {}) const;
+    void AreHit(std::span<const Ray> rays, std::span<uint8_t> hits, const RayCastSettings& settings = {},
+                const QueryFilter& filter = {}) const;
+    void CastRaysAll(std::span<const Ray> rays, std::vector<std::vector<WorldRayHit>>& hits, const RayCastSettings& settings = {},
+                     const QueryFilter& filter = {}) const;
+    void CastShapes(std::span<const MovingShape> shapes, std::span<WorldShapeHit> hits, const ShapeCastSettings& settings = {},
+                    const QueryFilter& filter = {}) const;
+    void AreHit(std::span<const MovingShape> shapes, std::span<uint8_t> hits, const ShapeCastSettings& settings = {},
+                const QueryFilter& filter = {}) const;
+    void CastShapesAll(std::span<const MovingShape> shapes, std::vector<std::vector<WorldShapeHit>>& hits,
+                       const ShapeCastSettings& settings = {}, const QueryFilter& filter = {}) const;
+    void AreOverlapping(std::span<const PlacedShape> shapes, std::span<uint8_t> hits, const QueryFilter& filter = {}) const;
+    void FindOverlaps(std::span<const PlacedShape> shapes, std::vector<std::vector<OverlapHit>>& hits,
+                      const QueryFilter& filter = {}) const;
+    void FindBodiesAt(std::span<const Position> points, std::vector<std::vector<OverlapHit>>& hits,
+                      const QueryFilter& filter = {}) const;
+    void FindClosest(std::span<const Position> points, float maxDistance, std::span<WorldClosest> closest,
+                     const QueryFilter& filter = {}) const;
+    void FindClosest(std::span<const PlacedShape> shapes, float maxDistance, std::span<WorldClosest> closest,
+                     const QueryFilter& filter = {}) const;
+
+private:
+    template <class Item>
+    void ForEach(size_t count, uint32_t minimumRange, const Item& item) const;
+
+    WorldState& world_;
+};
+
+}  // namespace fulcrum

@@ -1,0 +1,28 @@
+#include <Fulcrum/Physics/State/Strays.h>
+
+#include <Fulcrum/Physics/Stages/Stages.h>
+
+namespace fulcrum {
+
+void Strays::Forget(uint32_t collider) {
+    if (tree_.Contains(collider)) tree_.Remove(collider);
+}
+
+void Strays::Refresh(const WorldState& world) {
+    if (isFresh_.load(std::memory_order_acquire)) return;
+    const std::lock_guard<std::mutex> guard(refreshing_);
+    if (isFresh_.load(std::memory_order_relaxed)) return;
+    tree_.Clear();
+    // Those that fell asleep were brought home then.
+    for (const uint32_t body : world.bodies.awake) {
+        const BodyCold& cold = world.bodies.cold[body];
+        for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i) {
+            const Bounds bounds = TightBoundsOf(world, i);
+            if (!world.colliders.colliders[i].fat.Contains(bounds)) tree_.Insert(i, bounds);
+        }
+    }
+    if (tree_.Size() > 8) tree_.Rebuild();
+    isFresh_.store(true, std::memory_order_release);
+}
+
+}  // namespace fulcrum

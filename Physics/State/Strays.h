@@ -1,0 +1,33 @@
+// Colliders that the last step moved out of their fat bounds, which the trees learn only at the beginning of the next: the
+// queries find them here. Made by the first query after a step, so that worlds without queries pay nothing; an index alone,
+// which influences no step. Refresh may be called by many readers at once, all else by the one writer.
+#pragma once
+
+#include <Fulcrum/Collision/BroadPhase/BoundsTree.h>
+
+#include <atomic>
+#include <mutex>
+#include <vector>
+
+namespace fulcrum {
+
+struct WorldState;
+
+class Strays {
+public:
+    void MarkStale() { isFresh_.store(false, std::memory_order_relaxed); }  // after a step
+    void Forget(uint32_t collider);                                         // it was removed, or its bounds set anew
+    void Refresh(const WorldState& world);                                  // before a query
+
+    bool IsEmpty() const { return tree_.Size() == 0; }
+    bool Contains(uint32_t collider) const { return tree_.Contains(collider); }
+    const BoundsTree& Tree() const { return tree_; }
+    size_t MemoryUsed() const { return tree_.MemoryUsed(); }
+
+private:
+    std::atomic<bool> isFresh_{true};
+    std::mutex refreshing_;
+    BoundsTree tree_;
+};
+
+}  // namespace fulcrum
