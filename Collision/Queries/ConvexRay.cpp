@@ -151,14 +151,18 @@ ChordAnswer ChordOf(const ConvexShape& shape, const LinePiece& line, Chord& chor
     }
 }
 
+// `to`: where the line has left the shape for sure. What the piece leaves out of that only cuts the search short: the answer is
+// the same bits.
 LineResult EnterBetween(const ConvexShape& shape, const LinePiece& line, float from, float to) {
     LineResult result;
-    if (!(from <= to)) return result;
+    if (!(from <= std::min(to, line.to))) return result;
     const PointCore point;
     CoreMotion motion;
     motion.position = line.point.cast<double>() + line.direction.cast<double>() * double{from};
     motion.displacement = line.direction * (to - from);
-    const CoreCastResult cast = CastLinear(shape, point, motion, {});
+    CoreCastLimits limits;
+    if (line.to < to) limits.maxFraction = (line.to - from) / (to - from);
+    const CoreCastResult cast = CastLinear(shape, point, motion, limits);
     if (!cast.IsHit()) return result;
     result.hit = true;
     result.startsInside = cast.status == CoreCastResult::Status::AtStart && from == line.from;
@@ -172,7 +176,7 @@ LineResult EnterBetween(const ConvexShape& shape, const LinePiece& line, float f
 LineResult EnterBySupport(const ConvexShape& shape, const LinePiece& line) {
     Chord chord;
     if (!ChordOfBall(Vector3::Zero(), shape.OuterRadius() * 1.00001f, line, chord)) return {};
-    return EnterBetween(shape, line, std::max(line.from, chord.in.distance), std::min(line.to, chord.out.distance));
+    return EnterBetween(shape, line, std::max(line.from, chord.in.distance), chord.out.distance);
 }
 
 LineResult EnterConvex(const ConvexShape& shape, const LinePiece& line) {

@@ -211,12 +211,14 @@ CoreCastResult Advance(const ConvexShape& b, const CoreMotion& motion, const Cor
             const Separated& known = now.coresOverlap ? last : now;
             return HitAt(i == 0 ? Outcome::AtStart : Outcome::Hit, fraction, known.axis.template cast<double>(), known.onA);
         }
-        const double remaining = limits.maxFraction - fraction;
+        // Not shorter where only the beginning is asked for: the answer is the same bits.
+        const double remaining = 1 - fraction;
         // To half the tolerance from touching: there it ends, and is not asked again and again.
         const AxisAdvance advance(b, motion, now.axis, motion.RotationAt(fraction), now.gap - 0.5 * tolerance);
         const double step = advance.Step(remaining);
         if (step >= remaining) return {};
         fraction += step;
+        if (fraction > double{limits.maxFraction}) return {};
         last = now;
     }
     return HitAt(Outcome::Early, fraction, last.axis.cast<double>(), last.onA);

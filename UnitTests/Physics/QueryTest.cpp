@@ -35,6 +35,12 @@ std::vector<ShapePtr> Shapes() {
             CompoundOf({{SphereOf(0.3f), Vector3(0.6f, 0, 0), {}, 1}, {BoxOf(0.2f, 0.6f, 0.2f), Vector3(-0.3f, 0.2f, 0), {}, 1}})};
 }
 
+SystemSettings Weightless() {
+    SystemSettings settings;
+    settings.gravity.setZero();
+    return settings;
+}
+
 // 300 bodies of all shapes and kinds of motion about `origin`, gravity off.
 struct Crowd {
     TestWorld world;
@@ -43,7 +49,7 @@ struct Crowd {
     std::vector<ShapePtr> shapes = Shapes();
 
     explicit Crowd(const Position& where = Position::Zero(), uint32_t threads = 1, float speed = 0, int count = 300)
-        : world({.gravity = Vector3::Zero()}, threads), origin(where) {
+        : world(Weightless(), threads), origin(where) {
         Random random(1);
         for (int i = 0; i < count; ++i) {
             BodySettings s;
@@ -227,8 +233,11 @@ TEST(Query, BodiesAreFoundWhereTheyAreNow) {
         const BodyId moved = crowd.ids[static_cast<size_t>(step * 3 + 2)];
         ASSERT_TRUE(crowd.world.Bodies().SetPose(moved, Position(0, 500, step), {}));
         WorldRayHit hit;
-        ASSERT_TRUE(crowd.Queries().CastRay({crowd.world.Bodies().GetCentreOfMass(moved) + Position(0, 9, 0), Vector3(0, -9, 0)}, hit));
-        EXPECT_EQ(hit.body, moved);
+        if (crowd.world.Bodies().GetShape(moved)->IsConvex()) {
+            const Position centre = crowd.world.Bodies().GetCentreOfMass(moved);
+            ASSERT_TRUE(crowd.Queries().CastRay({centre + Position(0, 9, 0), Vector3(0, -9, 0)}, hit));
+            EXPECT_EQ(hit.body, moved);
+        }
         const BodyId asleep = crowd.ids[static_cast<size_t>(step * 3 + 65)];
         ASSERT_TRUE(crowd.world.Bodies().Sleep(asleep));
         crowd.Queries().CastRayAll({crowd.world.Bodies().GetCentreOfMass(asleep) - Position(3, 0, 0), Vector3(6, 0, 0)}, hits);
