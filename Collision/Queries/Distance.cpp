@@ -82,8 +82,10 @@ bool ClosestToPlane(const Plane& plane, const Shape& other, const RelativePose& 
     return search.Found();
 }
 
-ClosestPoints Swapped(const ClosestPoints& found, const RelativePose& aInB) {
-    return {found.distance, Rotate(aInB.rotation, Vector3(-found.normal)), aInB.Transform(found.onB), aInB.Transform(found.onA),
+// What was found in the frame of the second shape, from the first one's side.
+ClosestPoints Swapped(const ClosestPoints& found, const RelativePose& secondInFirst) {
+    return {found.distance, Rotate(secondInFirst.rotation, Vector3(-found.normal)), secondInFirst.Transform(found.onB),
+            secondInFirst.Transform(found.onA),
             found.subShapeOfB, found.subShapeOfA};
 }
 
