@@ -73,7 +73,7 @@ TEST_F(BoundsTreeCasts, RaysAndMovingBoxesFindAllThatALoopFinds) {
             }
         }
         // What a rounding brings in is rare; at 10^5 m floats are 0.008 m apart.
-        EXPECT_GT(found, 10000u);
+        EXPECT_GT(found, 3000u);
         EXPECT_LT(extra, found / (origin.x() == 0 ? 1000 : 10));
     }
 }
