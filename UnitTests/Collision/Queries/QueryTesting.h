@@ -12,9 +12,9 @@
 namespace fulcrum::testing {
 
 // Curved everywhere. EnterBySupport and the casts take it; it is no type of the shape table.
-class Ellipsoid final : public ConvexShape {
+class RoundedEllipsoid final : public ConvexShape {
 public:
-    explicit Ellipsoid(const Vector3& radii, float rounding = 0) : ConvexShape(ShapeType::ConvexHull), radii_(radii) {
+    explicit RoundedEllipsoid(const Vector3& radii, float rounding = 0) : ConvexShape(ShapeType::Custom), radii_(radii) {
         convexRadius_ = rounding;
         innerRadius_ = radii.minCoeff() + rounding;
         outerRadius_ = radii.maxCoeff() + rounding;

@@ -68,7 +68,7 @@ TEST(RayCast, TheHitIsTheFirstPointOfTheShape) {
 TEST(RayCast, ShapesKnownBySupportAreHitAsTheirFormulaSays) {
     Random random(6);
     const Vector3 radii(0.3f, 0.6f, 0.9f);
-    const Ellipsoid shape(radii);
+    const RoundedEllipsoid shape(radii);
     for (int i = 0; i < 100000; ++i) {
         const Ray ray = RayNear(random);
         const float length = Length(ray.displacement);

@@ -80,9 +80,9 @@ TEST(ShapeCast, MovesUpToTheFirstTouch) { ExpectFirstTouch(QueryShapes(), false,
 TEST(ShapeCast, TurnsUpToTheFirstTouch) { ExpectFirstTouch(QueryShapes(), true, 500, 8e-5); }
 
 TEST(ShapeCast, CurvedShapesTouchToo) {
-    const std::vector<NamedShape> shapes = {{"ellipsoid", std::make_shared<Ellipsoid>(Vector3(0.3f, 0.6f, 0.9f))},
-                                            {"disc", std::make_shared<Ellipsoid>(Vector3(0.5f, 0.01f, 0.5f))},
-                                            {"soft", std::make_shared<Ellipsoid>(Vector3(0.2f, 0.3f, 0.1f), 0.2f)}};
+    const std::vector<NamedShape> shapes = {{"ellipsoid", std::make_shared<RoundedEllipsoid>(Vector3(0.3f, 0.6f, 0.9f))},
+                                            {"disc", std::make_shared<RoundedEllipsoid>(Vector3(0.5f, 0.01f, 0.5f))},
+                                            {"soft", std::make_shared<RoundedEllipsoid>(Vector3(0.2f, 0.3f, 0.1f), 0.2f)}};
     ExpectFirstTouch(shapes, false, 1000, 8e-5);
     ExpectFirstTouch(shapes, true, 300, 8e-5);
 }
