@@ -2,7 +2,7 @@
 // know nothing of the code under test.
 #pragma once
 
-#include "../NarrowPhase/NarrowPhaseTesting.h"
+#include <Fulcrum/UnitTests/Collision/NarrowPhase/NarrowPhaseTesting.h>
 
 #include <Fulcrum/Collision/Shapes/Compound.h>
 #include <Fulcrum/Collision/Shapes/SurfaceShape.h>

@@ -194,6 +194,37 @@ TEST(ShapeCast, DegenerateMotions) {
     EXPECT_FALSE(ShapeCaster(*b, still).CastClosest(*a, {}, {}, hit));
 }
 
+// Against a box so large that its top is the plane, and by the lowest point at the time found.
+TEST(ShapeCast, MeetsAPlaneAsItMeetsALargeBox) {
+    Random random(16);
+    const ConvexPtr ground = MakeBox(Vector3(50, 1, 50));
+    for (const NamedShape& b : QueryShapes()) {
+        for (int i = 0; i < 400; ++i) {
+            ShapeMotion motion = MotionNear(random, i % 2 == 0);
+            motion.pose.position.y() = random.Between(1, 6);
+            ShapeHit onBox;
+            const bool found = ShapeCaster(*b.shape, motion).CastClosest(*ground, {}, {}, onBox);
+            const CoreMotion core{motion.pose.position, motion.pose.rotation, motion.displacement, motion.turn};
+            const CoreCastResult onPlane = CastToPlane(Vector3(0, 1, 0), 1, *b.shape, core, {});
+            const auto height = [&](double fraction) {
+                const RelativePose pose = PoseAt(motion, fraction);
+                const Vector3 down = InverseRotate(pose.rotation, Vector3(0, -1, 0));
+                return pose.Transform(b.shape->Support(down)).y() - 1;
+            };
+            if (!found || !onPlane.IsHit()) {
+                EXPECT_EQ(found, onPlane.IsHit()) << b.name << i << " " << height(1);
+                continue;
+            }
+            EXPECT_EQ(onPlane.status == CoreCastResult::Status::AtStart, height(0) <= 1e-5f) << b.name << i;
+            // Of the box's 50 m, 4e-6 for those that turn.
+            if (onPlane.status == CoreCastResult::Status::Hit) {
+                EXPECT_NEAR(height(onPlane.fraction), 0, 1e-5f) << b.name << i;
+                EXPECT_NEAR(height(double{onBox.fraction}), 0, 3e-4f) << b.name << i;
+            }
+        }
+    }
+}
+
 TEST(ShapeCast, KeepsADistance) {
     const ConvexPtr a = MakeBox(Vector3(1, 1, 1)), b = MakeSphere(0.5f);
     ShapeMotion motion;
