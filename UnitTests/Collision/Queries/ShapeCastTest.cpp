@@ -216,10 +216,11 @@ TEST(ShapeCast, MeetsAPlaneAsItMeetsALargeBox) {
                 continue;
             }
             EXPECT_EQ(onPlane.status == CoreCastResult::Status::AtStart, height(0) <= 1e-5f) << b.name << i;
-            // Of the box's 50 m, 4e-6 for those that turn.
+            // Of the box's 50 m, 1e-5 for those that turn, and early rather than late.
             if (onPlane.status == CoreCastResult::Status::Hit) {
                 EXPECT_NEAR(height(onPlane.fraction), 0, 1e-5f) << b.name << i;
-                EXPECT_NEAR(height(double{onBox.fraction}), 0, 3e-4f) << b.name << i;
+                EXPECT_GT(height(double{onBox.fraction}), -2e-5f) << b.name << i;
+                EXPECT_LT(height(double{onBox.fraction}), 5e-4f) << b.name << i;
             }
         }
     }
