@@ -1,8 +1,10 @@
 #include <Fulcrum/Samples/Runner/Recorder.h>
 
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
+#include <Fulcrum/Collision/Shapes/Plane.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
 #include <Fulcrum/Collision/Shapes/SampledSurface.h>
+#include <Fulcrum/Collision/Shapes/SurfaceShape.h>
 
 #include <algorithm>
 #include <cmath>
@@ -55,6 +57,36 @@ RecordedShape RecordedSurface(const ConvexShape& source) {
     return shape;
 }
 
+RecordedShape RecordedTriangles(const SurfaceShape& source) {
+    RecordedShape shape;
+    shape.kind = RecordedShapeKind::Hull;
+    shape.name = ShapeTypeName(source.Type());
+    std::map<uint32_t, uint32_t> known;
+    source.VisitTriangles(source.LocalBounds(), [&](uint32_t id) {
+        const TriangleView view = source.GetTriangle(id);
+        std::array<uint32_t, 3> corners;
+        for (size_t i = 0; i < 3; ++i) {
+            const auto [at, isNew] = known.emplace(view.vertexIds[i], static_cast<uint32_t>(shape.vertices.size()));
+            if (isNew) shape.vertices.push_back(view.vertices[i]);
+            corners[i] = at->second;
+        }
+        shape.triangles.push_back(corners);
+    });
+    return shape;
+}
+
+// A square of it around the point nearest to its origin.
+RecordedShape RecordedPlane(const Plane& plane) {
+    constexpr float kHalf = 100;  // m
+    RecordedShape shape;
+    shape.kind = RecordedShapeKind::Hull;
+    shape.name = ShapeTypeName(plane.Type());
+    const Vector3 centre = plane.Normal() * plane.Offset(), u = Perpendicular(plane.Normal()) * kHalf, v = Cross<float>(plane.Normal(), u);
+    shape.vertices = {centre - u - v, centre + u - v, centre + u + v, centre - u + v};
+    shape.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return shape;
+}
+
 RecordedShape RecordedPrimitive(const Shape& source) {
     RecordedShape shape;
     if (const auto* sphere = dynamic_cast<const Sphere*>(&source)) {
@@ -71,6 +103,10 @@ RecordedShape RecordedPrimitive(const Shape& source) {
         return RecordedHull(*hull);
     } else if (const auto* convex = dynamic_cast<const ConvexShape*>(&source)) {
         return RecordedSurface(*convex);
+    } else if (const auto* surface = dynamic_cast<const SurfaceShape*>(&source)) {
+        return RecordedTriangles(*surface);
+    } else if (const auto* plane = dynamic_cast<const Plane*>(&source)) {
+        return RecordedPlane(*plane);
     } else {
         shape.kind = RecordedShapeKind::Compound;  // of nothing
     }

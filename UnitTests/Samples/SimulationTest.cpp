@@ -91,6 +91,25 @@ TEST(Recorder, KeepsEveryStepOfASmallWorld) {
     EXPECT_FALSE(recording.frames[10].contacts.empty());
 }
 
+TEST(Recorder, KeepsEveryTriangleOfAMesh) {
+    const auto world = Build("convex_on_mesh");
+    ASSERT_TRUE(world);
+    const Recorder recorder(*world, 1, 1.0 / 60);
+    const RecordedShape& mesh = recorder.recording.shapes[0];
+    EXPECT_EQ(mesh.name, "triangle mesh");
+    ASSERT_EQ(mesh.triangles.size(), 20000u);
+    EXPECT_EQ(mesh.vertices.size(), 101u * 101u);
+    // Seen from above 300 m x 300 m, once, with the front upwards.
+    double area = 0;
+    for (const auto& t : mesh.triangles) {
+        const Vector3 u = mesh.vertices[t[1]] - mesh.vertices[t[0]], v = mesh.vertices[t[2]] - mesh.vertices[t[0]];
+        const double up = 0.5 * double(Cross<float>(u, v).y());
+        EXPECT_GT(up, 0);
+        area += up;
+    }
+    EXPECT_NEAR(area, 300 * 300, 1);
+}
+
 TEST(Recorder, ShortStepsShareAFrame) {
     const auto world = Build("tower");
     ASSERT_TRUE(world);
