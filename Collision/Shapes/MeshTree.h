@@ -55,11 +55,11 @@ using Lanes = Wide<kStep>;
 // rounding, that of the origins here and that of the triangles' own test are at most 2^-22 of the coordinates and distances that
 // take part: a pad of 2^-20 of them covers it, and what remains, the last product's, a factor of 1 + 2^-18. So no leaf of a
 // triangle that the exact test finds is missed.
-struct TreeRay {
+struct MeshTreeRay {
     Vector3 nearOrigin, farOrigin;          // for the planes where it enters boxes and where it leaves them
     Vector3 nearInverse, farInverse;        // 1 / displacement, bounded
 
-    TreeRay(const Vector3& origin, const Vector3& inverse, float pad)
+    MeshTreeRay(const Vector3& origin, const Vector3& inverse, float pad)
         : nearInverse(inverse), farInverse(inverse * (1.0f + 0x1p-18f)) {
         for (int axis = 0; axis < 3; ++axis) {
             const float outwards = inverse[axis] >= 0 ? pad : -pad;
@@ -115,7 +115,7 @@ struct MeshTree {
     // Calls leaf(begin, end), which returns the largest fraction that is still of interest, for the leaves that a ray
     // meets, nearly in the order of their distance; negative ends the search.
     template <class Leaf>
-    void SearchRay(const TreeRay& ray, float maxFraction, Leaf&& leaf) const;
+    void SearchRay(const MeshTreeRay& ray, float maxFraction, Leaf&& leaf) const;
 };
 
 // Writes the tree's pages, indices and triangleCount for these corners, three a triangle. At most 2^27 triangles.
@@ -169,7 +169,7 @@ struct MetChildren {
     alignas(32) float entry[MeshNode::kWidth];
 };
 
-inline void MeetChildren(const MeshNode& node, const TreeRay& ray, float maxFraction, MetChildren& met) {
+inline void MeetChildren(const MeshNode& node, const MeshTreeRay& ray, float maxFraction, MetChildren& met) {
     using mesh_lanes::Lanes, mesh_lanes::kStep;
     const uint8_t* nearBytes[3];
     const uint8_t* farBytes[3];
@@ -200,7 +200,7 @@ inline void MeetChildren(const MeshNode& node, const TreeRay& ray, float maxFrac
 }
 
 template <class Leaf>
-void MeshTree::SearchRay(const TreeRay& ray, float maxFraction, Leaf&& leaf) const {
+void MeshTree::SearchRay(const MeshTreeRay& ray, float maxFraction, Leaf&& leaf) const {
     // A node; or a leaf: its first triangle, and how many.
     struct Entry {
         float fraction;

@@ -93,7 +93,7 @@ void TriangleMesh::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& 
         const Vector3 size = scale_.cwiseAbs();
         relativePad *= size.maxCoeff() / size.minCoeff();
     }
-    const TreeRay inTree(origin, BoundedInverse(displacement), relativePad * (treeExtent_ + Largest(origin)));
+    const MeshTreeRay inTree(origin, BoundedInverse(displacement), relativePad * (treeExtent_ + Largest(origin)));
     const MeshTree& tree = *tree_;
     tree.SearchRay(inTree, maxFraction, [&](uint32_t begin, uint32_t end) {
         Vec3<Wide<8>> corners[3];
