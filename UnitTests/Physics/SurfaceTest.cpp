@@ -3,6 +3,7 @@
 #include <Fulcrum/Collision/Shapes/HeightField.h>
 #include <Fulcrum/Collision/Shapes/RoundShapes.h>
 #include <Fulcrum/Collision/Shapes/TriangleMesh.h>
+#include <Fulcrum/UnitTests/Support/AllocationCounter.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
 #include <cmath>
@@ -229,6 +230,21 @@ TEST(Surface, AMovingMeshCarriesWhatStandsOnIt) {
     world.Run(3);
     EXPECT_NEAR(world.PositionOf(box).y() - world.PositionOf(lift).y(), 0.25, 5e-3);
     EXPECT_NEAR(world.VelocityOf(box).x(), 0.5, 0.01);
+}
+
+TEST(Surface, ASettledStepAllocatesNothing) {
+    TestWorld world(NoSleep());
+    AddGround(world, Grid(20, 0.5f, -5, -5).Mesh());
+    AddGround(world, FieldOf(21, 0.5f, {5, 0, -5}));
+    const auto cylinder = Cylinder::Create(0.2f, 0.2f);
+    ASSERT_TRUE(cylinder);
+    const ShapePtr shapes[] = {CubeOf(0.2f), SphereOf(0.2f), CapsuleOf(0.2f, 0.15f), cylinder.Value()};
+    for (int i = 0; i < 64; ++i) world.Add({.shape = shapes[i % 4], .position = {-4.0 + 2 * (i % 8), 1, -3.5 + i / 8}});
+    world.Steps(400);
+    const uint64_t before = AllocationCount();
+    for (int i = 0; i < 100; ++i) ASSERT_TRUE(world.System().Update(kStep));
+    EXPECT_EQ(AllocationCount() - before, 0u);
+    EXPECT_GE(world.Report().contacts, 64u);
 }
 
 TEST(Surface, ADynamicBodyCannotBeASurface) {
