@@ -4,46 +4,79 @@
 #include <Fulcrum/Collision/NarrowPhase/Features.h>
 #include <Fulcrum/Collision/NarrowPhase/ManifoldReduction.h>
 #include <Fulcrum/Collision/NarrowPhase/Polyhedron.h>
+#include <Fulcrum/Collision/Shapes/SupportingFace.h>
 
 namespace fulcrum {
+
+namespace {
+
+// Vertices of a core near the plane, in the shape's frame.
+struct NearVertices {
+    FlatPoints<256> points;
+    Vector3 positions[256];
+    uint32_t names[256];
+    Vector3 tangentU, tangentV;
+
+    explicit NearVertices(const Vector3& down) : tangentU(Perpendicular(down)), tangentV(Cross<float>(down, tangentU)) {}
+    void Add(const Vector3& vertex, uint32_t name, float separation) {
+        positions[points.count] = vertex;
+        names[points.count] = name;
+        points.Add(Dot(tangentU, vertex), Dot(tangentV, vertex), separation);
+    }
+};
+
+// Those of a polyhedron whose depth along `down` is at least `least`; `outside`: how far the shape's centre is from the plane.
+void AddVertices(const Polyhedron& core, const Vector3& down, float outside, float least, NearVertices& near) {
+    const Wide<8> x(down.x()), y(down.y()), z(down.z()), lowest(least);
+    for (int block = 0; block < core.laneCount; block += 8) {
+        const Wide<8> depth = x * Wide<8>::Load(core.x + block) + y * Wide<8>::Load(core.y + block) +
+                              z * Wide<8>::Load(core.z + block);
+        for (uint32_t bits = (depth >= lowest).ToBits(); bits != 0; bits &= bits - 1) {
+            const int i = __builtin_ctz(bits);
+            if (block + i >= core.vertexCount) break;
+            near.Add(core.vertices[block + i], static_cast<uint32_t>(block + i), outside - depth[i] - core.radius);
+        }
+    }
+}
+
+// Of a curved core, the flat face, straight edge or point that it turns to the plane.
+void AddSupportingFace(const ConvexShape& shape, const Vector3& down, float outside, float least, NearVertices& near) {
+    SupportingFace face;
+    shape.FindSupportingFace(down, face);
+    for (int i = 0; i < face.count; ++i) {
+        const float depth = Dot(down, face.vertices[i]);
+        if (depth >= least) near.Add(face.vertices[i], face.names[i], outside - depth - shape.ConvexRadius());
+    }
+}
+
+}  // namespace
 
 void CollidePlane(const Plane& plane, const ConvexShape& shape, const RelativePose& bInA, const CollideSettings& settings,
                   Manifold& manifold) {
     manifold.pointCount = 0;
-    const float outside = plane.Distance(bInA.position);
+    const float outside = plane.Distance(bInA.position), radius = shape.ConvexRadius();
     if (outside - shape.OuterRadius() > settings.speculativeDistance) return;
-    PolyhedronStorage storage;
-    const Polyhedron core = CoreOf(shape, storage);
 
     // The plane in the shape's frame: the core's vertices need no turning.
     const Vector3 down = InverseRotate(bInA.rotation, Vector3(-plane.Normal()));
-    const Vector3 tangentU = Perpendicular(down), tangentV = Cross<float>(down, tangentU);
-    const float reach = settings.speculativeDistance + core.radius;
-    FlatPoints<256> points;
-    uint8_t vertices[256];
-    const Wide<8> x(down.x()), y(down.y()), z(down.z()), least(outside - reach);
-    for (int block = 0; block < core.laneCount; block += 8) {
-        const Wide<8> depth = x * Wide<8>::Load(core.x + block) + y * Wide<8>::Load(core.y + block) +
-                              z * Wide<8>::Load(core.z + block);
-        for (uint32_t bits = (depth >= least).ToBits(); bits != 0; bits &= bits - 1) {
-            const int i = __builtin_ctz(bits);
-            if (block + i >= core.vertexCount) break;
-            const Vector3& vertex = core.vertices[block + i];
-            vertices[points.count] = static_cast<uint8_t>(block + i);
-            points.Add(Dot(tangentU, vertex), Dot(tangentV, vertex), outside - depth[i] - core.radius);
-        }
+    const float least = outside - (settings.speculativeDistance + radius);
+    NearVertices near(down);
+    if (HasPolyhedralCore(shape.Type())) {
+        PolyhedronStorage storage;
+        AddVertices(CoreOf(shape, storage), down, outside, least, near);
+    } else {
+        AddSupportingFace(shape, down, outside, least, near);
     }
-    if (points.count == 0) return;
-    const ContactTolerances tolerances(core.innerRadius, core.radius, settings);
+    if (near.points.count == 0) return;
+    const ContactTolerances tolerances(Max(0.0f, shape.InnerRadius() - radius), radius, settings);
     int chosen[4];
-    const int count = ChooseFour(points, tolerances.prefer, chosen);
+    const int count = ChooseFour(near.points, tolerances.prefer, chosen);
     manifold.normal = plane.Normal();
     for (int i = 0; i < count; ++i) {
-        const uint32_t vertex = vertices[chosen[i]];
-        const Vector3 corner = bInA.Transform(core.vertices[vertex]);
-        const float separation = points.separation[chosen[i]];
-        const Vector3 onPlane = corner - plane.Normal() * (separation + core.radius);
-        manifold.points[manifold.pointCount++] = {onPlane, separation, VertexFeature(false, vertex)};
+        const Vector3 corner = bInA.Transform(near.positions[chosen[i]]);
+        const float separation = near.points.separation[chosen[i]];
+        const Vector3 onPlane = corner - plane.Normal() * (separation + radius);
+        manifold.points[manifold.pointCount++] = {onPlane, separation, VertexFeature(false, near.names[chosen[i]])};
     }
 }
 

@@ -1,6 +1,7 @@
 // Bodies on triangle meshes and height fields: they rest, slide and roll as on solid ground, and edges between triangles that
 // are no edges of the surface are not felt.
 #include <Fulcrum/Collision/Shapes/HeightField.h>
+#include <Fulcrum/Collision/Shapes/Plane.h>
 #include <Fulcrum/Collision/Shapes/RoundShapes.h>
 #include <Fulcrum/Collision/Shapes/TriangleMesh.h>
 #include <Fulcrum/UnitTests/Support/AllocationCounter.h>
@@ -149,6 +150,21 @@ TEST(Surface, EveryShapeRestsOnAMeshAsOnABox) {
         world.Run(3);
         EXPECT_NEAR(world.PositionOf(body).y(), c.height, 2e-3) << ShapeTypeName(c.shape->Type());
         EXPECT_LT(Length(world.VelocityOf(body)), 0.01f) << ShapeTypeName(c.shape->Type());
+    }
+}
+
+TEST(Plane, EveryShapeRestsOnIt) {
+    const auto plane = Plane::Create(Vector3(0, 1, 0), 2);
+    const auto cylinder = Cylinder::Create(0.4f, 0.3f), rounded = Cylinder::Create(0.4f, 0.3f, 0.05f);
+    const auto cone = Cylinder::CreateCone(0.4f, 0.3f);
+    ASSERT_TRUE(plane && cylinder && rounded && cone);
+    for (const ShapePtr& shape : {SphereOf(0.4f), CubeOf(0.4f), ShapePtr(cylinder.Value()), ShapePtr(rounded.Value()), ShapePtr(cone.Value())}) {
+        TestWorld world(NoSleep());
+        AddGround(world, plane.Value());
+        const BodyId body = world.Add({.shape = shape, .position = {3, 2.5, 1}});
+        world.Run(3);
+        EXPECT_NEAR(world.PositionOf(body).y(), 2.4, 1e-3) << ShapeTypeName(shape->Type());
+        EXPECT_LT(Length(world.VelocityOf(body)), 0.01f) << ShapeTypeName(shape->Type());
     }
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr uint64_t kGoldenHash = 0xa67676adb03e396dull;
 constexpr uint64_t kGoldenHashOfJoints = 0x3fd1e84fc3bb448full;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x482d06e86a4191e3ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0xda48f8f257c9bde1ull;
 
 std::string Hex(uint64_t number) {
     char text[24];
