@@ -19,12 +19,9 @@ Result<std::shared_ptr<const Plane>> Plane::Create(const Vector3& normal, float 
     // A normal that is a unit vector as well as floats can say stays as it is.
     plane->normal_ = std::fabs(length - 1) < 0x1p-23 ? normal : Vector3((exact / length).cast<float>());
     plane->offset_ = offset;
+    // Also where it ends along an axis: the middle and the extent of such a box would lose that end in rounding.
     plane->bounds_.lower.setConstant(-kUnboundedExtent);
     plane->bounds_.upper.setConstant(kUnboundedExtent);
-    for (int axis = 0; axis < 3; ++axis) {
-        if (plane->normal_[axis] == 1) plane->bounds_.upper[axis] = offset;
-        if (plane->normal_[axis] == -1) plane->bounds_.lower[axis] = -offset;
-    }
     plane->outerRadius_ = kUnboundedExtent;
     return std::shared_ptr<const Plane>(plane);
 }
