@@ -61,7 +61,7 @@ void WriteManifolds(WorldState& world, const PairView& view, uint32_t first, flo
     for (uint32_t m : left) {
         while (next < places.size() && places[next] == kTaken) ++next;
         if (next == places.size()) {
-            findings.more.push_back({first, found[m]});
+            findings.more.push_back({first, m, found[m]});
             continue;
         }
         Write(world, view, places[next], found[m], dt);
@@ -108,8 +108,9 @@ void AddMoreManifolds(WorldState& world, float dt) {
         findings.more.clear();
     }
     if (all.empty()) return;
-    // A pair's own are in order, whichever worker found them.
-    std::stable_sort(all.begin(), all.end(), [](const MoreManifold& a, const MoreManifold& b) { return a.pair < b.pair; });
+    std::sort(all.begin(), all.end(), [](const MoreManifold& a, const MoreManifold& b) {
+        return a.pair < b.pair || (a.pair == b.pair && a.order < b.order);
+    });
     for (const MoreManifold& more : all) {
         const uint32_t index = world.pairs.AddMore(more.pair);
         world.changes.resize(std::max(world.changes.size(), world.pairs.pairs.size()), PairChange::None);

@@ -25,6 +25,7 @@ namespace fulcrum {
 // A manifold that a pair with a surface has beyond those it had.
 struct MoreManifold {
     uint32_t pair;
+    uint32_t order;  // among those of the pair
     SurfaceManifold contact;
 };
 
