@@ -97,7 +97,7 @@ Polyhedron CoreOf(const Box& box, PolyhedronStorage& storage) {
     return p;
 }
 
-Polyhedron TriangleCore(const Vector3 (&corners)[3], const Vector3& n, float radius, PolyhedronStorage& storage) {
+Polyhedron CoreOf(const Vector3 (&corners)[3], const Vector3& n, float radius, PolyhedronStorage& storage) {
     for (int i = 0; i < 3; ++i) storage.vertices[i] = corners[i];
     for (int i = 0; i < 2; ++i) {
         ConvexHull::Face& face = storage.faces[i];
@@ -128,7 +128,7 @@ Polyhedron TriangleCore(const Vector3 (&corners)[3], const Vector3& n, float rad
 
 Polyhedron CoreOf(const Triangle& triangle, PolyhedronStorage& storage) {
     const Vector3 corners[3] = {triangle.Corner(0), triangle.Corner(1), triangle.Corner(2)};
-    return TriangleCore(corners, triangle.Normal(), triangle.ConvexRadius(), storage);
+    return CoreOf(corners, triangle.Normal(), triangle.ConvexRadius(), storage);
 }
 
 Polyhedron CoreOf(const Capsule& capsule, PolyhedronStorage& storage) {

@@ -45,7 +45,7 @@ Polyhedron CoreOf(const ConvexHull& hull);
 // Vertex i lies at the positive x, y, z side where bit 0, 1, 2 of i is set. Faces: +x, -x, +y, -y, +z, -z.
 Polyhedron CoreOf(const class Box& box, PolyhedronStorage& storage);
 // Two faces back to back; 0 is the one that `normal` points out of. The corners are about their centroid, m.
-Polyhedron TriangleCore(const Vector3 (&corners)[3], const Vector3& normal, float radius, PolyhedronStorage& storage);
+Polyhedron CoreOf(const Vector3 (&corners)[3], const Vector3& normal, float radius, PolyhedronStorage& storage);
 Polyhedron CoreOf(const class Triangle& triangle, PolyhedronStorage& storage);
 Polyhedron CoreOf(const class Capsule& capsule, PolyhedronStorage& storage);
 Polyhedron CoreOf(const class Sphere& sphere, PolyhedronStorage& storage);

@@ -132,7 +132,7 @@ private:
     void CollidePolyhedron(uint32_t index, const Vector3 (&corners)[3], const RelativePose& pose) {
         const TriangleView& view = contacts_.views_[index];
         PolyhedronStorage storage;
-        const PolyhedronPair pair(core_, TriangleCore(corners, view.normal, 0, storage), pose);
+        const PolyhedronPair pair(core_, CoreOf(corners, view.normal, 0, storage), pose);
         const ContactTolerances tolerances = pair.Tolerances(settings_);
         const ReferenceFace face = MeasureFace(pair, false, 0);
         if (face.separation > tolerances.reach) return;
@@ -355,7 +355,7 @@ private:
 };
 
 void CollideSurface(const ConvexShape& a, const SurfaceShape& b, const RelativePose& bInA, const CollideSettings& settings,
-                    SurfaceContacts& contacts, CollideCounters&) {
+                    SurfaceContacts& contacts) {
     SurfaceCollider(a, b, bInA, settings, contacts).Run();
 }
 

@@ -52,6 +52,6 @@ private:
 // Fills `contacts` with the manifolds of a and the triangles of b within settings.speculativeDistance, in a's centre frame, as
 // Collide does. One-sided triangles push to their front alone, and only what has its centre of mass there.
 void CollideSurface(const ConvexShape& a, const SurfaceShape& b, const RelativePose& bInA, const CollideSettings& settings,
-                    SurfaceContacts& contacts, CollideCounters& counters);
+                    SurfaceContacts& contacts);
 
 }  // namespace fulcrum

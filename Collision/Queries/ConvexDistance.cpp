@@ -7,28 +7,10 @@ namespace fulcrum {
 
 namespace {
 
-// The pair as EPA walks on it, in float: depths are found to no more than floats hold.
-struct DepthPair {
-    struct Vertex {
-        using Real = float;
-        Vector3 w, onA, onB;
-        bool SameAs(const Vertex& v) const { return onA == v.onA && onB == v.onB; }
-    };
-    const SupportPair& pair;
-
-    Vertex Support(const Vector3& n) const { return From(pair.Support(n)); }
-    float Size() const { return pair.Size(); }
-    float DepthTolerance() const { return pair.DepthTolerance(); }
-    static Vertex From(const SupportVertex& v) { return {v.w.cast<float>(), v.onA, v.onB}; }
-};
-
 // The axis of least depth of overlapping cores. A flat or pointed core, as a triangle or a segment, may leave EPA nothing to
 // expand: libccd's answer is held against the centre line's then, and the axis of less depth wins.
 Vector3 AxisOfLeastDepth(const SupportPair& pair, const RelativePose& bInA, const ConvexGjkResult& gjk) {
-    const Simplex<SupportVertex>& simplex = gjk.simplex;
-    Simplex<DepthPair::Vertex> start;
-    for (; start.count < simplex.count; ++start.count) start.vertices[start.count] = DepthPair::From(simplex.vertices[start.count]);
-    const EpaResult epa = Epa(DepthPair{pair}, start);
+    const EpaResult epa = Epa(pair, gjk.simplex);
     Vector3 axis = gjk.axis;
     float depth = -pair.SeparationAlong(axis);
     const auto consider = [&](const Vector3& other) {

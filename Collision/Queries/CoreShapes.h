@@ -23,7 +23,7 @@ class TriangleCore final : public ConvexShape {
 public:
     // `origin`: what becomes zero, in the surface's frame, m.
     TriangleCore(const TriangleView& triangle, const Vector3& origin)
-        : ConvexShape(ShapeType::ConvexHull), normal_(triangle.normal), id_(triangle.id) {
+        : ConvexShape(ShapeType::Custom), normal_(triangle.normal), id_(triangle.id) {
         for (int i = 0; i < 3; ++i) {
             vertices_[i] = triangle.vertices[i] - origin;
             bounds_.Include(vertices_[i]);

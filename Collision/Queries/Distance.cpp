@@ -143,7 +143,7 @@ bool Overlap(const Shape& a, const Shape& b, const RelativePose& bInA) {
 }
 
 bool Contains(const Shape& shape, const Vector3& point) {
-    return !IsSurface(shape) && Overlap(shape, PointCore(), {point, {}});
+    return !shape.IsSurface() && Overlap(shape, PointCore(), {point, {}});
 }
 
 }  // namespace fulcrum

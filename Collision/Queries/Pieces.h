@@ -16,10 +16,6 @@ struct Piece {
     bool isTwoSided = true;                  // of the surface
 };
 
-inline bool IsSurface(const Shape& shape) {
-    return shape.Type() == ShapeType::TriangleMesh || shape.Type() == ShapeType::HeightField;
-}
-
 inline Bounds Inflated(const Bounds& bounds, float by) {
     Bounds b;
     b.lower = bounds.lower - Vector3::Constant(by);
@@ -51,7 +47,7 @@ void VisitPieces(const Shape& shape, const Bounds& box, Visitor&& visit) {
             const Compound::Child& part = compound.Children()[child];
             visit(Piece{*part.shape, part.pose, {child, kNoTriangle}});
         });
-    } else if (IsSurface(shape)) {
+    } else if (shape.IsSurface()) {
         const SurfaceShape& surface = static_cast<const SurfaceShape&>(shape);
         surface.VisitTriangles(box, [&](uint32_t id) {
             const TriangleView view = surface.GetTriangle(id);

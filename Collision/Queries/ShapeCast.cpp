@@ -138,7 +138,7 @@ void ShapeCaster::Search(const Shape& other, const Pose& pose, ShapeCastSettings
         if (CastPiece(piece, pose, settings, hit)) found(context, hit, settings);
     } else if (other.Type() == ShapeType::Plane) {
         if (CastPlane(other, pose, settings, hit)) found(context, hit, settings);
-    } else if (IsSurface(other)) {
+    } else if (other.IsSurface()) {
         SearchSurface(static_cast<const SurfaceShape&>(other), pose, settings, context, found);
     } else {
         const Compound& compound = static_cast<const Compound&>(other);

@@ -188,48 +188,40 @@ Result<std::shared_ptr<const ConvexHull>> ConvexHull::Create(std::span<const Vec
     return HullFinisher::Finish(core.Value(), solid.centre, mass.Value(), settings.convexRadius);
 }
 
-Vector3 ConvexHull::SupportCore(const Vector3& direction) const {
+namespace {
+
+// Of `count` vectors by lanes, a multiple of kLanes and at most 256, the first of those that lie farthest along `direction`; 0
+// where that is not a number. Largest value first, then the first vector that has it: no index is carried through the
+// search, and no branch depends on where it is.
+size_t FirstFarthest(const float* laneX, const float* laneY, const float* laneZ, int count, const Vector3& direction) {
     using Lanes = Wide<kLanes>;
     const Lanes x(direction.x()), y(direction.y()), z(direction.z());
-    const float *const laneX = LaneX(), *const laneY = LaneY(), *const laneZ = LaneZ();
-    // Largest height first, then the first vertex that has it: no index is carried through the search, and no branch
-    // depends on where it is.
-    alignas(64) float heights[256];
+    alignas(64) float values[256];
     Lanes best(-std::numeric_limits<float>::infinity());
-    for (int i = 0; i < paddedCount_; i += kLanes) {
-        const Lanes height = Lanes::Load(laneX + i) * x + Lanes::Load(laneY + i) * y + Lanes::Load(laneZ + i) * z;
-        height.Store(heights + i);
-        best = Max(height, best);
+    for (int i = 0; i < count; i += kLanes) {
+        const Lanes value = Lanes::Load(laneX + i) * x + Lanes::Load(laneY + i) * y + Lanes::Load(laneZ + i) * z;
+        value.Store(values + i);
+        best = Max(value, best);
     }
     const Lanes top(Largest(best));
-    for (int block = 0; block < paddedCount_; block += 64) {
+    for (int block = 0; block < count; block += 64) {
         uint64_t isTop = 0;
-        const int end = std::min(block + 64, paddedCount_);
-        for (int i = block; i < end; i += kLanes) {
-            isTop |= uint64_t{(Lanes::Load(heights + i) == top).ToBits()} << (i - block);
-        }
-        if (isTop != 0) return vertices_[block + std::countr_zero(isTop)];
+        const int end = std::min(block + 64, count);
+        for (int i = block; i < end; i += kLanes) isTop |= uint64_t{(Lanes::Load(values + i) == top).ToBits()} << (i - block);
+        if (isTop != 0) return static_cast<size_t>(block + std::countr_zero(isTop));
     }
-    return vertices_[0];  // the direction is not a number
+    return 0;
+}
+
+}  // namespace
+
+Vector3 ConvexHull::SupportCore(const Vector3& direction) const {
+    return vertices_[FirstFarthest(LaneX(), LaneY(), LaneZ(), paddedCount_, direction)];
 }
 
 void ConvexHull::FindSupportingFace(const Vector3& direction, SupportingFace& face) const {
-    const float *const x = NormalLaneX(), *const y = NormalLaneY(), *const z = NormalLaneZ();
-    using Lanes = Wide<kLanes>;
-    const Lanes dx(direction.x()), dy(direction.y()), dz(direction.z());
-    alignas(64) float along[256];
-    Lanes best(-std::numeric_limits<float>::infinity());
-    for (int i = 0; i < paddedFaceCount_; i += kLanes) {
-        const Lanes value = Lanes::Load(x + i) * dx + Lanes::Load(y + i) * dy + Lanes::Load(z + i) * dz;
-        value.Store(along + i);
-        best = Max(value, best);
-    }
-    const float most = Largest(best);
-    size_t index = 0;
-    while (along[index] != most) ++index;
-
     // Of a face with very many corners as many as fit, evenly spread.
-    const Face& found = faces_[index];
+    const Face& found = faces_[FirstFarthest(NormalLaneX(), NormalLaneY(), NormalLaneZ(), paddedFaceCount_, direction)];
     const int count = std::min(static_cast<int>(found.cornerCount), SupportingFace::kMaxVertices);
     face.count = 0;
     for (int i = 0; i < count; ++i) {

@@ -8,29 +8,6 @@
 namespace fulcrum {
 namespace {
 
-// Integral of x x^T over a solid; the inertia tensor is trace(C) 1 - C.
-using Covariance = Sym3<double>;
-
-void AddOuterProduct(Covariance& c, const Position& v, double weight) {
-    c.xx += weight * v.x() * v.x();
-    c.yy += weight * v.y() * v.y();
-    c.zz += weight * v.z() * v.z();
-    c.xy += weight * v.x() * v.y();
-    c.xz += weight * v.x() * v.z();
-    c.yz += weight * v.y() * v.z();
-}
-
-Sym3<double> InertiaOf(const Covariance& c) {
-    Sym3<double> inertia;
-    inertia.xx = c.yy + c.zz;
-    inertia.yy = c.xx + c.zz;
-    inertia.zz = c.xx + c.yy;
-    inertia.xy = -c.xy;
-    inertia.xz = -c.xz;
-    inertia.yz = -c.yz;
-    return inertia;
-}
-
 Sym3<double> Sum(const Sym3<double>& a, const Sym3<double>& b, double weightOfB) {
     Sym3<double> s = a;
     s.xx += weightOfB * b.xx;
@@ -93,6 +70,26 @@ void JacobiRotate(double& app, double& aqq, double& apq, double& arp, double& ar
 }
 
 }  // namespace
+
+void AddOuterProduct(Covariance& c, const Position& v, double weight) {
+    c.xx += weight * v.x() * v.x();
+    c.yy += weight * v.y() * v.y();
+    c.zz += weight * v.z() * v.z();
+    c.xy += weight * v.x() * v.y();
+    c.xz += weight * v.x() * v.z();
+    c.yz += weight * v.y() * v.z();
+}
+
+Sym3<double> InertiaOf(const Covariance& c) {
+    Sym3<double> inertia;
+    inertia.xx = c.yy + c.zz;
+    inertia.yy = c.xx + c.zz;
+    inertia.zz = c.xx + c.yy;
+    inertia.xy = -c.xy;
+    inertia.xz = -c.xz;
+    inertia.yz = -c.yz;
+    return inertia;
+}
 
 SolidMass PolyhedronMass(std::span<const Position> vertices, std::span<const PolygonRange> polygons,
                          std::span<const int> indices) {

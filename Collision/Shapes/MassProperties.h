@@ -21,6 +21,11 @@ struct PolygonRange {
     int cornerCount;
 };
 
+// Integral of x x^T over a solid, and the inertia tensor that it makes: trace(C) 1 - C.
+using Covariance = Sym3<double>;
+void AddOuterProduct(Covariance& c, const Position& v, double weight);
+Sym3<double> InertiaOf(const Covariance& c);
+
 // Exact integrals over a closed polyhedron by signed tetrahedra from the mean of its vertices, which keeps the sums
 // well conditioned far from the origin. Source: Blow and Binstock, "How to find the inertia tensor (or other mass
 // properties) of a 3D solid body represented by a triangle mesh", 2004.

@@ -16,23 +16,10 @@ SolidMass PlateMass(const Position (&corners)[3], const Position& centre, const 
     SolidMass solid;
     solid.volume = area * thickness;
     solid.centre = centre;
-    Sym3<double> c;
-    const auto add = [&](const Position& v, double weight) {
-        c.xx += weight * v.x() * v.x();
-        c.yy += weight * v.y() * v.y();
-        c.zz += weight * v.z() * v.z();
-        c.xy += weight * v.x() * v.y();
-        c.xz += weight * v.x() * v.z();
-        c.yz += weight * v.y() * v.z();
-    };
-    for (const Position& corner : corners) add(corner, solid.volume / 12);
-    add(normal, solid.volume * thickness * thickness / 12);
-    solid.inertia.xx = c.yy + c.zz;
-    solid.inertia.yy = c.xx + c.zz;
-    solid.inertia.zz = c.xx + c.yy;
-    solid.inertia.xy = -c.xy;
-    solid.inertia.xz = -c.xz;
-    solid.inertia.yz = -c.yz;
+    Covariance c;
+    for (const Position& corner : corners) AddOuterProduct(c, corner, solid.volume / 12);
+    AddOuterProduct(c, normal, solid.volume * thickness * thickness / 12);
+    solid.inertia = InertiaOf(c);
     return solid;
 }
 

@@ -3,38 +3,23 @@
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
 #include <Fulcrum/Physics/PhysicsSystem.h>
+#include <Fulcrum/UnitTests/Support/RandomPoses.h>
 
 #include <benchmark/benchmark.h>
-
-#include <random>
 
 namespace fulcrum {
 namespace {
 
-class Random {
-public:
-    float Between(float low, float high) { return low + (high - low) * static_cast<float>(engine_() >> 8) * 0x1p-24f; }
-    Vector3 InCube() {
-        const float x = Between(-1, 1), y = Between(-1, 1), z = Between(-1, 1);
-        return Vector3(x, y, z);
-    }
-    Quaternion Rotation() {
-        const Vector3 v = InCube();
-        return Normalized(Quaternion{v.x(), v.y(), v.z(), Between(0.1f, 1)});
-    }
+using testing::RandomPoses;
 
-private:
-    std::mt19937 engine_{1};
-};
-
-ShapePtr MakeHull(Random& random, int points) {
+ShapePtr MakeHull(RandomPoses& random, int points) {
     std::vector<Vector3> cloud;
     for (int i = 0; i < points; ++i) cloud.push_back(Normalized(random.InCube()) * 0.5f);
     return ConvexHull::Create(cloud).Value();
 }
 
 std::vector<ShapePtr> Shapes() {
-    Random random;
+    RandomPoses random(1);
     return {Sphere::Create(0.5f).Value(), Box::Create(Vector3(0.5f, 0.4f, 0.3f)).Value(),
             Box::Create(Vector3(0.5f, 0.4f, 0.3f), 0.1f).Value(), Capsule::Create(0.3f, 0.3f).Value(), MakeHull(random, 12),
             MakeHull(random, 32)};
@@ -43,7 +28,7 @@ std::vector<ShapePtr> Shapes() {
 // Most rays meet the shape.
 void RayAtShape(benchmark::State& state) {
     const ShapePtr shape = Shapes()[static_cast<size_t>(state.range(0))];
-    Random random;
+    RandomPoses random(1);
     std::vector<Ray> rays;
     for (int i = 0; i < 1024; ++i) {
         const Vector3 to = random.InCube() * 0.4f, from = Normalized(random.InCube()) * 5;
@@ -63,7 +48,7 @@ void CastAtShape(benchmark::State& state) {
     const std::vector<ShapePtr> shapes = Shapes();
     const ConvexShape& moving = static_cast<const ConvexShape&>(*shapes[static_cast<size_t>(state.range(0))]);
     const bool turns = state.range(1) != 0;
-    Random random;
+    RandomPoses random(1);
     std::vector<ShapeMotion> motions;
     for (int i = 0; i < 1024; ++i) {
         const Vector3 to = random.InCube() * 0.5f, from = Normalized(random.InCube()) * 4;
@@ -87,7 +72,7 @@ struct Field {
     std::vector<BodyId> bodies;
 
     Field() {
-        Random random;
+        RandomPoses random(1);
         const auto add = [&](const ShapePtr& shape, const Position& at, MotionType motion) {
             BodySettings settings;
             settings.shape = shape;

@@ -81,10 +81,8 @@ PairChange CollideWithSurface(WorldState& world, uint32_t first, float reach, fl
         ++findings.kept;
     } else {
         CollideSettings settings;
-        settings.method = world.settings.narrowPhase;
         settings.speculativeDistance = reach;
-        CollideSurface(*view.pair.shapeA, static_cast<const SurfaceShape&>(*view.pair.shapeB), view.bInA, settings, findings.surface,
-                       findings.libccd);
+        CollideSurface(*view.pair.shapeA, static_cast<const SurfaceShape&>(*view.pair.shapeB), view.bInA, settings, findings.surface);
         WriteManifolds(world, view, first, dt, findings);
         view.pair.reference = view.bInA;
     }

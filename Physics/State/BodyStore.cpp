@@ -128,10 +128,6 @@ Vector3 AngularMomentum(const BodyDynamics& d, const Quaternion& rotation, const
     return Rotate(axes, local);
 }
 
-SymmetricMatrix3 InverseInertia(const BodyDynamics& d, const Quaternion& rotation) {
-    return RotatedDiagonal(ToMatrix(rotation * d.PrincipalAxes()), Vector3(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]));
-}
-
 size_t BodyStore::MemoryUsed() const {
     return states.capacity() * sizeof(BodyState) + masses.capacity() * sizeof(BodyMass) +
            poses.capacity() * sizeof(BodyPose) + unconstrained.capacity() * sizeof(UnconstrainedVelocity) +

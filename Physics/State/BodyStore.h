@@ -57,7 +57,6 @@ static_assert(sizeof(BodyDynamics) == 64);
 
 // kg m2/s about the centre of mass, world axes, at the rotation and angular velocity (rad/s).
 Vector3 AngularMomentum(const BodyDynamics& body, const Quaternion& rotation, const Vector3& angularVelocity);
-SymmetricMatrix3 InverseInertia(const BodyDynamics& body, const Quaternion& rotation);
 // The principal axes in world space.
 inline Matrix3 AxesOf(const BodyDynamics& body, const Quaternion& rotation) { return ToMatrix(rotation * body.PrincipalAxes()); }
 // Cold: for the interface.

@@ -37,7 +37,7 @@ RecordedShape RecordedHull(const ConvexHull& hull) {
 }
 
 // Whatever else is convex, as the mesh that its support function spans: of a cylinder's rim, points every 4 degrees.
-RecordedShape RecordedSurface(const ConvexShape& source) {
+RecordedShape RecordedConvex(const ConvexShape& source) {
     RecordedShape shape;
     shape.kind = RecordedShapeKind::Hull;
     shape.name = ShapeTypeName(source.Type());
@@ -102,7 +102,7 @@ RecordedShape RecordedPrimitive(const Shape& source) {
     } else if (const auto* hull = dynamic_cast<const ConvexHull*>(&source)) {
         return RecordedHull(*hull);
     } else if (const auto* convex = dynamic_cast<const ConvexShape*>(&source)) {
-        return RecordedSurface(*convex);
+        return RecordedConvex(*convex);
     } else if (const auto* surface = dynamic_cast<const SurfaceShape*>(&source)) {
         return RecordedTriangles(*surface);
     } else if (const auto* plane = dynamic_cast<const Plane*>(&source)) {

@@ -1,9 +1,8 @@
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
 
-#include <Fulcrum/Collision/Shapes/TriangleMesh.h>
-
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
+#include <Fulcrum/Collision/Shapes/TriangleMesh.h>
 #include <Fulcrum/Math/Trigonometry.h>
 
 #include <algorithm>

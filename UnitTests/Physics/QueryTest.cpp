@@ -1,33 +1,16 @@
 // Queries of the world against a loop over all bodies, one by one, and what makes them fit for games: filters, early ends,
 // batches, threads, bodies that have moved since the trees last heard of them.
+#include <Fulcrum/UnitTests/Support/RandomPoses.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
 #include <Fulcrum/Collision/Queries/Distance.h>
 
 #include <algorithm>
 #include <atomic>
-#include <random>
 #include <thread>
 
 namespace fulcrum::testing {
 namespace {
-
-class Random {
-public:
-    explicit Random(uint32_t seed) : engine_(seed) {}
-    float Between(float low, float high) { return low + (high - low) * static_cast<float>(engine_() >> 8) * 0x1p-24f; }
-    Vector3 InCube() {
-        const float x = Between(-1, 1), y = Between(-1, 1), z = Between(-1, 1);
-        return Vector3(x, y, z);
-    }
-    Quaternion Rotation() {
-        const Vector3 v = InCube();
-        return Normalized(Quaternion{v.x(), v.y(), v.z(), Between(0.1f, 1)});
-    }
-
-private:
-    std::mt19937 engine_;
-};
 
 std::vector<ShapePtr> Shapes() {
     return {SphereOf(0.4f), BoxOf(0.5f, 0.3f, 0.7f), CapsuleOf(0.4f, 0.3f), Box::Create(Vector3(0.5f, 0.4f, 0.3f), 0.1f).Value(),
@@ -50,7 +33,7 @@ struct Crowd {
 
     explicit Crowd(const Position& where = Position::Zero(), uint32_t threads = 1, float speed = 0, int count = 300)
         : world(Weightless(), threads), origin(where) {
-        Random random(1);
+        RandomPoses random(1);
         for (int i = 0; i < count; ++i) {
             BodySettings s;
             s.shape = shapes[static_cast<size_t>(i) % shapes.size()];
@@ -66,11 +49,11 @@ struct Crowd {
     Pose CentrePose(BodyId id) {
         return {world.Bodies().GetCentreOfMass(id), world.Bodies().GetPose(id).rotation};
     }
-    Ray RandomRay(Random& random) const {
+    Ray RandomRay(RandomPoses& random) const {
         const Vector3 from = random.InCube() * 12, to = random.InCube() * 12;
         return {origin + from.cast<double>(), to - from};
     }
-    MovingShape RandomMove(Random& random, bool turns) const {
+    MovingShape RandomMove(RandomPoses& random, bool turns) const {
         const Shape& shape = *shapes[static_cast<size_t>(random.Between(0, 4.99f))];
         const Vector3 from = random.InCube() * 12, to = random.InCube() * 12;
         return {static_cast<const ConvexShape*>(&shape), {origin + from.cast<double>(), random.Rotation()}, (to - from) * 0.5f,
@@ -80,7 +63,7 @@ struct Crowd {
 
 TEST(Query, RaysHitWhatALoopOverAllBodiesHits) {
     Crowd crowd;
-    Random random(2);
+    RandomPoses random(2);
     int hits = 0;
     std::vector<WorldRayHit> all;
     const WorldLock::Shared held = crowd.Queries().Hold();
@@ -119,7 +102,7 @@ TEST(Query, RaysHitWhatALoopOverAllBodiesHits) {
 
 TEST(Query, ShapesHitOverlapAndAreClosestAsALoopOverAllBodiesSays) {
     Crowd crowd;
-    Random random(3);
+    RandomPoses random(3);
     int hits = 0, overlaps = 0;
     std::vector<OverlapHit> found;
     std::vector<WorldShapeHit> all;
@@ -192,7 +175,7 @@ TEST(Query, PointsInside) {
 // 10^7 m away a double is exact to 2e-9 m, and poses are the same to that; so are all answers to a rounding of a float.
 TEST(Query, FarAwayIsAsHere) {
     Crowd here, far(Position(1e7, -1e7, 1e7));
-    Random randomHere(4), randomFar(4);
+    RandomPoses randomHere(4), randomFar(4);
     for (int i = 0; i < 3000; ++i) {
         const Ray rayHere = here.RandomRay(randomHere), rayFar = far.RandomRay(randomFar);
         WorldRayHit a, b;
@@ -213,7 +196,7 @@ TEST(Query, FarAwayIsAsHere) {
 TEST(Query, BodiesAreFoundWhereTheyAreNow) {
     // Fast ones leave their bounds in every step; what the trees know is where they were, and where they were bound for.
     Crowd crowd(Position::Zero(), 1, 60);
-    Random random(5);
+    RandomPoses random(5);
     std::vector<WorldRayHit> hits;
     for (int step = 0; step < 20; ++step) {
         for (size_t i = 2; i < crowd.ids.size(); i += 3) {
@@ -253,7 +236,7 @@ TEST(Query, BodiesAreFoundWhereTheyAreNow) {
 
 TEST(Query, FiltersAndEarlyEnds) {
     Crowd crowd;
-    Random random(6);
+    RandomPoses random(6);
     std::vector<WorldRayHit> all, some;
     for (int i = 0; i < 2000; ++i) {
         const Ray ray = crowd.RandomRay(random);
@@ -298,7 +281,7 @@ TEST(Query, FiltersAndEarlyEnds) {
 
 TEST(Query, BatchesAnswerAsSingleQueriesDoOnAnyNumberOfThreads) {
     Crowd crowd(Position::Zero(), 4);
-    Random random(7);
+    RandomPoses random(7);
     std::vector<Ray> rays;
     std::vector<MovingShape> moves;
     std::vector<PlacedShape> placed;
@@ -361,7 +344,7 @@ TEST(Query, AnyThreadAsksWhileAnotherChangesAndSteps) {
     std::vector<std::thread> threads;
     for (uint32_t t = 0; t < 3; ++t) {
         threads.emplace_back([&, t] {
-            Random random(10 + t);
+            RandomPoses random(10 + t);
             std::vector<WorldRayHit> all, batch(64);
             std::vector<Ray> rays(64);
             while (!stop) {
@@ -382,7 +365,7 @@ TEST(Query, AnyThreadAsksWhileAnotherChangesAndSteps) {
             }
         });
     }
-    Random random(99);
+    RandomPoses random(99);
     for (int step = 0; step < 60 || asked < 30; ++step) {
         ASSERT_TRUE(crowd.world.System().Update(kStep));
         const size_t at = static_cast<size_t>(random.Between(0, 149.9f));

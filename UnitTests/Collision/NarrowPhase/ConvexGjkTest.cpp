@@ -28,7 +28,7 @@ double CoreSeparation(const ConvexShape& a, const ConvexShape& b, const Relative
 }
 
 TEST(ConvexGjk, ItsAxisSeparatesAsFarAsItsPointsAreApart) {
-    Random random(31);
+    RandomPoses random(31);
     int apart = 0, overlapping = 0;
     for (const NamedShape& a : Shapes()) {
         for (const NamedShape& b : Shapes()) {
@@ -68,7 +68,7 @@ TEST(ConvexGjk, ItsAxisSeparatesAsFarAsItsPointsAreApart) {
 }
 
 TEST(ConvexGjk, OverlapIsToldFromDistance) {
-    Random random(7);
+    RandomPoses random(7);
     const ConvexPtr a = MakeEllipsoid(Vector3(0.3f, 0.6f, 0.9f)), b = MakeSphere(1);
     for (int i = 0; i < 2000; ++i) {
         // A sphere's core is a point: inside the ellipsoid or not in closed form.

@@ -17,7 +17,7 @@ TEST(Epa, FindsTheDepthThatTheSearchThroughAllAxesFinds) {
                                             {"capsule", MakeCapsule(0.5f, 0.25f)},
                                             {"hull", MakeRoundHull(32, 0.6f)},
                                             {"prism", MakePrism(8, 0.5f, 0.4f)}};
-    Random random(2);
+    RandomPoses random(2);
     int overlapping = 0, gaveUp = 0;
     for (const NamedShape& a : shapes) {
         for (const NamedShape& b : shapes) {

@@ -89,7 +89,7 @@ TEST_P(FlatBoxes, CrossedKeepMostOfTheArea) {
 
 TEST_P(FlatBoxes, FeaturesAndPointsPersistUnderTinyMotion) {
     const ConvexPtr box = MakeCuboid(Vector3(0.5f, 0.5f, 0.5f));
-    Random random(9);
+    RandomPoses random(9);
     for (const Vector3& offset : {Vector3(0, 0.997f, 0), Vector3(0.25f, 0.997f, 0), Vector3(0.25f, 0.997f, 0.1f)}) {
         PairCache cache;
         const Manifold first = CollideOnce(box, box, {offset, {}}, cache);
@@ -180,7 +180,7 @@ TEST(Manifold, DegenerateOverlapsHaveAWayOut) {
                                             {"hull", MakeRoundHull(32, 0.6f)},
                                             {"big hull", MakeRoundHull(250, 3)},
                                             {"prism", MakePrism(8, 0.5f, 0.4f)}};
-    Random random(1);
+    RandomPoses random(1);
     for (const NamedShape& a : shapes) {
         for (const NamedShape& b : shapes) {
             for (int i = 0; i < 40; ++i) {
@@ -206,7 +206,7 @@ TEST(Manifold, DegenerateOverlapsHaveAWayOut) {
 
 TEST(Manifold, FeaturesOfHullsPersistUnderTinyMotion) {
     const ConvexPtr hull = MakeRoundHull(32, 0.6f);
-    Random random(4);
+    RandomPoses random(4);
     int changed = 0, found = 0;
     for (int i = 0; i < 1000; ++i) {
         RelativePose pose{random.Direction(), random.Rotation()};

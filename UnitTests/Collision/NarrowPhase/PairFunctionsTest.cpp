@@ -37,7 +37,7 @@ const std::vector<NamedShape>& Shapes() {
 }
 
 // Apart within and beyond the speculative distance, touching, shallow, deep, concentric; a third of them with parallel faces.
-RelativePose RandomPose(const ConvexShape& a, const ConvexShape& b, int i, Random& random) {
+RelativePose RandomPose(const ConvexShape& a, const ConvexShape& b, int i, RandomPoses& random) {
     RelativePose pose;
     const bool parallel = i % 3 == 0;
     pose.rotation = parallel ? random.QuarterTurns() : random.Rotation();
@@ -64,7 +64,7 @@ struct Comparison {
 
 Comparison Compare(const ConvexPtr& a, const ConvexPtr& b, uint32_t seed) {
     Comparison result;
-    Random random(seed);
+    RandomPoses random(seed);
     const CollideSettings settings;
     for (int i = 0; i < PosesFor(*a, *b); ++i) {
         const RelativePose pose = RandomPose(*a, *b, i, random);
@@ -180,7 +180,7 @@ double SignedDistance(const ConvexShape& shape, const Vector3& x) {
 }
 
 TEST(PairFunctionsTest, PointsLieOnBothSurfaces) {
-    Random random(5);
+    RandomPoses random(5);
     for (const NamedShape& a : Shapes()) {
         for (const NamedShape& b : Shapes()) {
             double worst = 0;
@@ -204,7 +204,7 @@ TEST(PairFunctionsTest, PointsLieOnBothSurfaces) {
 }
 
 TEST(PairFunctionsTest, MirroredPairsGiveMirroredManifolds) {
-    Random random(11);
+    RandomPoses random(11);
     for (const NamedShape& a : Shapes()) {
         for (const NamedShape& b : Shapes()) {
             if (a.shape->Type() == b.shape->Type()) continue;  // either may provide the reference face
@@ -233,7 +233,7 @@ TEST(PairFunctionsTest, MirroredPairsGiveMirroredManifolds) {
 }
 
 TEST(PairFunctionsTest, TheLibccdMethodServesEveryPair) {
-    Random random(3);
+    RandomPoses random(3);
     const CollideSettings settings{.method = NarrowPhaseMethod::Libccd};
     for (const NamedShape& a : Shapes()) {
         for (const NamedShape& b : Shapes()) {
@@ -257,7 +257,7 @@ TEST(PairFunctionsTest, TheLibccdMethodServesEveryPair) {
 }
 
 TEST(PairFunctionsTest, CachedAndUncachedQueriesAgree) {
-    Random random(23);
+    RandomPoses random(23);
     for (const NamedShape& a : Shapes()) {
         for (const NamedShape& b : Shapes()) {
             for (int i = 0; i < 1000; ++i) {

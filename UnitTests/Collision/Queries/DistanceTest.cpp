@@ -9,7 +9,7 @@ namespace fulcrum::testing {
 namespace {
 
 TEST(Distance, OfConvexShapesIsWhatLibccdAndTheirPointsSay) {
-    Random random(21);
+    RandomPoses random(21);
     int apart = 0, overlapping = 0, shallow = 0;
     for (const NamedShape& a : QueryShapes()) {
         for (const NamedShape& b : QueryShapes()) {
@@ -44,7 +44,7 @@ TEST(Distance, OfConvexShapesIsWhatLibccdAndTheirPointsSay) {
 }
 
 TEST(Distance, OfCompoundsAndSurfacesIsThatOfTheirClosestParts) {
-    Random random(22);
+    RandomPoses random(22);
     const auto compound = MakeCompound(random, 20, 2), second = MakeCompound(random, 6, 1);
     const auto terrain = MakeTerrain(8, 0.6f, [](float x, float z) { return 0.3f * std::sin(3 * x) + 0.2f * z; });
     const std::vector<NamedShape> shapes = QueryShapes();
@@ -83,7 +83,7 @@ TEST(Distance, OfCompoundsAndSurfacesIsThatOfTheirClosestParts) {
 }
 
 TEST(Distance, PointsInsideAreInside) {
-    Random random(23);
+    RandomPoses random(23);
     const ConvexPtr box = MakeBox(Vector3(0.5f, 0.4f, 0.7f));
     const auto terrain = MakeTerrain(4, 1, [](float, float) { return 0.0f; });
     for (int i = 0; i < 20000; ++i) {

@@ -133,7 +133,7 @@ std::shared_ptr<TriangleList> MakeTerrain(int n, float cell, const Height& heigh
     return std::make_shared<TriangleList>(triangles, isTwoSided);
 }
 
-inline std::shared_ptr<const Compound> MakeCompound(Random& random, int count, float spread) {
+inline std::shared_ptr<const Compound> MakeCompound(RandomPoses& random, int count, float spread) {
     std::vector<Compound::ChildSettings> children;
     const std::vector<NamedShape> shapes = QueryShapes();
     for (int i = 0; i < count; ++i)

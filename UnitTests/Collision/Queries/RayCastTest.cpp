@@ -14,13 +14,13 @@ float DistanceOf(const ConvexShape& shape, const Vector3& point) {
 }
 
 // A ray that passes near the shape, from up to 3 m away.
-Ray RayNear(Random& random) {
+Ray RayNear(RandomPoses& random) {
     const Vector3 target = random.InCube() * 0.8f, from = random.Direction() * random.Between(0.1f, 3);
     return {from.cast<double>(), (target - from) * random.Between(0.5f, 2)};
 }
 
 TEST(RayCast, TheHitIsTheFirstPointOfTheShape) {
-    Random random(5);
+    RandomPoses random(5);
     int hits = 0, cases = 0;
     for (const NamedShape& named : QueryShapes()) {
         const ConvexShape& shape = *named.shape;
@@ -66,7 +66,7 @@ TEST(RayCast, TheHitIsTheFirstPointOfTheShape) {
 }
 
 TEST(RayCast, ShapesKnownBySupportAreHitAsTheirFormulaSays) {
-    Random random(6);
+    RandomPoses random(6);
     const Vector3 radii(0.3f, 0.6f, 0.9f);
     const RoundedEllipsoid shape(radii);
     for (int i = 0; i < 100000; ++i) {
@@ -91,7 +91,7 @@ TEST(RayCast, ShapesKnownBySupportAreHitAsTheirFormulaSays) {
 }
 
 TEST(RayCast, FarRaysHitAsNearOnesDo) {
-    Random random(8);
+    RandomPoses random(8);
     for (const NamedShape& named : QueryShapes()) {
         for (int i = 0; i < 2000; ++i) {
             const Vector3 target = random.InCube() * 0.3f, direction = random.Direction();
@@ -137,7 +137,7 @@ TEST(RayCast, DegenerateRaysHitNothing) {
 }
 
 TEST(RayCast, CompoundsAndSurfacesAreHitWhereTheirPartsAre) {
-    Random random(9);
+    RandomPoses random(9);
     const auto compound = MakeCompound(random, 40, 3);
     const auto terrain = MakeTerrain(12, 0.5f, [](float x, float z) { return 0.3f * std::sin(3 * x) + 0.2f * z; });
     int hits = 0;

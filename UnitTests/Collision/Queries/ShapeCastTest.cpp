@@ -15,7 +15,7 @@ RelativePose PoseAt(const ShapeMotion& motion, double fraction) {
             Normalized(RotationFromVector(turn) * motion.pose.rotation)};
 }
 
-ShapeMotion MotionNear(Random& random, bool turns) {
+ShapeMotion MotionNear(RandomPoses& random, bool turns) {
     const Vector3 target = random.InCube(), from = random.Direction() * random.Between(1.0f, 4);
     ShapeMotion motion;
     motion.pose = {from.cast<double>(), random.Rotation()};
@@ -25,7 +25,7 @@ ShapeMotion MotionNear(Random& random, bool turns) {
 }
 
 void ExpectFirstTouch(const std::vector<NamedShape>& shapes, bool turns, int casesPerPair, double touch) {
-    Random random(turns ? 12 : 11);
+    RandomPoses random(turns ? 12 : 11);
     int hits = 0, early = 0, cases = 0;
     for (const NamedShape& a : shapes) {
         for (const NamedShape& b : shapes) {
@@ -88,7 +88,7 @@ TEST(ShapeCast, CurvedShapesTouchToo) {
 }
 
 TEST(ShapeCast, FastShapesDoNotPassThinWalls) {
-    Random random(13);
+    RandomPoses random(13);
     const ConvexPtr wall = MakeBox(Vector3(2, 2, 0.005f));
     const auto sheet = std::make_shared<TriangleList>(
         std::vector<std::array<Vector3, 3>>{{Vector3(-3, -3, 0), Vector3(3, -3, 0), Vector3(0, 5, 0)}});
@@ -111,7 +111,7 @@ TEST(ShapeCast, FastShapesDoNotPassThinWalls) {
 }
 
 TEST(ShapeCast, SpheresMeetWhenTheirCentresAreThatFarApart) {
-    Random random(14);
+    RandomPoses random(14);
     const ConvexPtr a = MakeSphere(0.7f), b = MakeSphere(0.3f);
     for (int i = 0; i < 20000; ++i) {
         const ShapeMotion motion = MotionNear(random, false);
@@ -130,7 +130,7 @@ TEST(ShapeCast, SpheresMeetWhenTheirCentresAreThatFarApart) {
 }
 
 TEST(ShapeCast, CompoundsAndSurfacesAreHitWhereTheirPartsAre) {
-    Random random(15);
+    RandomPoses random(15);
     const auto compound = MakeCompound(random, 25, 3);
     const auto terrain = MakeTerrain(10, 0.6f, [](float x, float z) { return 0.3f * std::sin(3 * x) + 0.2f * z; });
     int hits = 0;
@@ -196,7 +196,7 @@ TEST(ShapeCast, DegenerateMotions) {
 
 // Against a box so large that its top is the plane, and by the lowest point at the time found.
 TEST(ShapeCast, MeetsAPlaneAsItMeetsALargeBox) {
-    Random random(16);
+    RandomPoses random(16);
     const ConvexPtr ground = MakeBox(Vector3(50, 1, 50));
     for (const NamedShape& b : QueryShapes()) {
         for (int i = 0; i < 400; ++i) {
