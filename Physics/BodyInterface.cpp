@@ -33,6 +33,7 @@ void FillDynamics(BodyDynamics& d, const BodySettings& s) {
     d.gyroscopic = s.gyroscopicTorque;
     d.allowSleep = s.allowSleep;
     d.layer = s.layer;
+    d.continuous = s.continuous != ContinuousCollision::Off;
     const Quaternion& q = mass.principalAxes;
     const float axes[4] = {q.x, q.y, q.z, q.w};
     for (int k = 0; k < 4; ++k) d.principalAxes[k] = axes[k];
@@ -103,6 +104,8 @@ Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
     cold.shape = settings.shape;
     cold.material = settings.material;
     cold.userData = settings.userData;
+    cold.continuous = settings.continuous;
+    world_.sweeps.users += settings.continuous != ContinuousCollision::Off;
     FillDynamics(world_.bodies.dynamics[body], settings);
     world_.bodies.SetCentrePose(body, CentrePose(*settings.shape, settings.position, settings.rotation));
     world_.bodies.SetVelocity(body, settings.linearVelocity, settings.angularVelocity);
@@ -127,6 +130,7 @@ Status BodyInterface::Remove(BodyId id) {
     WakeNeighbours(world_, body);
     world_.joints.VisitOf(body, [&](uint32_t joint) { RemoveJoint(world_, joint); });
     BodyCold& cold = world_.bodies.cold[body];
+    world_.sweeps.users -= cold.continuous != ContinuousCollision::Off;
     for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i) {
         world_.colliders.TreeOf(world_.colliders.colliders[i]).Remove(i);
         world_.strays.Forget(i);
@@ -264,6 +268,18 @@ Status BodyInterface::SetGravityFactor(BodyId id, float factor) {
     return Done{};
 }
 
+Status BodyInterface::SetContinuous(BodyId id, ContinuousCollision continuous) {
+    const WorldLock::Exclusive alone(world_.lock);
+    if (!Exists(id)) return Unknown(id);
+    if (MaybeError e = CheckContinuous(continuous, *world_.bodies.cold[id.index].shape)) return *e;
+    constexpr ContinuousCollision kOff = ContinuousCollision::Off;
+    BodyCold& cold = world_.bodies.cold[id.index];
+    world_.sweeps.users += (continuous != kOff) - (cold.continuous != kOff);
+    cold.continuous = continuous;
+    world_.bodies.dynamics[id.index].continuous = continuous != kOff;
+    return Done{};
+}
+
 Status BodyInterface::Wake(BodyId id) {
     const WorldLock::Exclusive alone(world_.lock);
     if (!Exists(id)) return Unknown(id);
@@ -317,6 +333,9 @@ double BodyInterface::GetKineticEnergy(BodyId id) const {
 }
 MotionType BodyInterface::GetMotionType(BodyId id) const {
     return Exists(id) ? world_.bodies.dynamics[id.index].motion : MotionType::Static;
+}
+ContinuousCollision BodyInterface::GetContinuous(BodyId id) const {
+    return Exists(id) ? world_.bodies.cold[id.index].continuous : ContinuousCollision::Off;
 }
 ShapePtr BodyInterface::GetShape(BodyId id) const { return Exists(id) ? world_.bodies.cold[id.index].shape : nullptr; }
 uint64_t BodyInterface::GetUserData(BodyId id) const { return Exists(id) ? world_.bodies.cold[id.index].userData : 0; }

@@ -34,6 +34,7 @@ public:
     Status AddAngularImpulse(BodyId id, const Vector3& impulse);
     Status SetMaterial(BodyId id, const Material& material);
     Status SetGravityFactor(BodyId id, float factor);
+    Status SetContinuous(BodyId id, ContinuousCollision continuous);  // Errors also: OutOfRange, Unsupported (a surface or plane)
     Status Wake(BodyId id);
     // Puts the body, and what it is in touch with, to sleep.
     Status Sleep(BodyId id);
@@ -48,6 +49,7 @@ public:
     Vector3 GetAngularMomentum(BodyId id) const;  // kg m2/s, about the centre of mass, world axes
     double GetKineticEnergy(BodyId id) const;     // J
     MotionType GetMotionType(BodyId id) const;
+    ContinuousCollision GetContinuous(BodyId id) const;
     ShapePtr GetShape(BodyId id) const;
     uint64_t GetUserData(BodyId id) const;
     bool IsAwake(BodyId id) const;

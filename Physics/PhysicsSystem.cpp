@@ -88,7 +88,7 @@ private:
 
 const char* StageName(Stage stage) {
     static constexpr const char* kNames[kStageCount] = {"UpdateBounds", "FindPairs", "Collide", "Color", "BuildIslands",
-                                                        "Prepare", "Solve", "Restitution", "Store", "Sleep"};
+                                                        "Prepare", "Solve", "Restitution", "Store", "Continuous", "Sleep"};
     return kNames[static_cast<size_t>(stage)];
 }
 
@@ -144,6 +144,8 @@ Status PhysicsSystem::Update(double dt) {
     timer.Finished(Stage::Restitution);
     Store(world, step);
     timer.Finished(Stage::Store);
+    Continuous(world, step);
+    timer.Finished(Stage::Continuous);
     Sleep(world);
     timer.Finished(Stage::Sleep);
     timer.FinishedAll();

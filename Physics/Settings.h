@@ -33,6 +33,14 @@ struct Material {
     CombineRule restitutionRule = CombineRule::Maximum;
 };
 
+// Whether a body is cast along its way in steps in which it moves by more than half its thickness, so that it passes through
+// nothing however fast it is. It bounces where it hits, in the middle of the step.
+enum class ContinuousCollision : uint8_t {
+    Off,
+    Linear,            // it is cast without its rotation
+    LinearAndAngular,  // with it: what swings hits what is in the way, too
+};
+
 // Degrees of freedom in world axes; combine with |.
 enum class LockedAxes : uint8_t {
     None = 0,
@@ -71,6 +79,7 @@ struct BodySettings {
     float maxLinearSpeed = 1000.0f;               // m/s, > 0: the step clamps to it
     float maxAngularSpeed = 300.0f;               // rad/s, > 0
     bool gyroscopicTorque = true;                 // conserve angular momentum of bodies whose inertia is not spherical
+    ContinuousCollision continuous = ContinuousCollision::Off;  // not for meshes, height fields and planes
     bool allowSleep = true;
     bool startAsleep = false;                     // dynamic bodies only
     uint8_t layer = 0;                            // 0..31, see SystemSettings::layerCollides

@@ -60,6 +60,13 @@ MaybeError Check(const Material& m) {
                    CheckRange("material.restitution", m.restitution, 0, 1));
 }
 
+MaybeError CheckContinuous(ContinuousCollision continuous, const Shape& shape) {
+    if (MaybeError e = CheckRange("continuous", static_cast<uint8_t>(continuous), 0, 2)) return e;
+    if (continuous != ContinuousCollision::Off && (shape.IsSurface() || shape.Type() == ShapeType::Plane))
+        return Error{ErrorCode::Unsupported, std::string("continuous is set for a ") + ShapeTypeName(shape.Type()) + "; it is for convex shapes and compounds"};
+    return std::nullopt;
+}
+
 // Mass and inertia must have inverses that are normal floats.
 static MaybeError CheckInverses(const BodySettings& s) {
     const auto usable = [](float x) { return std::isnormal(x) && std::isnormal(1.0f / x); };
@@ -96,6 +103,7 @@ MaybeError Check(const BodySettings& s) {
         return Error{ErrorCode::Unsupported, std::string("shape is a ") + ShapeTypeName(s.shape->Type()) + "; a dynamic body needs one with a volume"};
     if (s.motion == MotionType::Dynamic)
         if (MaybeError e = CheckInverses(s)) return e;
+    if (MaybeError e = CheckContinuous(s.continuous, *s.shape)) return e;
     if (s.startAsleep && s.motion != MotionType::Dynamic)
         return Error{ErrorCode::Unsupported, "startAsleep is set for a body that is not dynamic"};
     if (s.motion == MotionType::Static && !(s.linearVelocity.isZero(0) && s.angularVelocity.isZero(0)))

@@ -16,6 +16,7 @@ MaybeError CheckPositive(const char* field, double value);
 MaybeError CheckNotNegative(const char* field, double value);
 MaybeError CheckRotation(const char* field, const Quaternion& value);  // finite, of length 1 within 1e-3
 MaybeError Check(const Material& material);
+MaybeError CheckContinuous(ContinuousCollision continuous, const Shape& shape);
 MaybeError Check(const BodySettings& settings);
 MaybeError Check(const SystemSettings& settings);
 

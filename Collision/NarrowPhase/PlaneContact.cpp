@@ -80,4 +80,14 @@ void CollidePlane(const Plane& plane, const ConvexShape& shape, const RelativePo
     }
 }
 
+void CollideWithPlane(const Plane& plane, const ConvexShape& shape, const RelativePose& planeInShape, const CollideSettings& settings,
+                      Manifold& manifold) {
+    CollidePlane(plane, shape, Inverse(planeInShape), settings, manifold);
+    for (int i = 0; i < manifold.pointCount; ++i) {
+        ManifoldPoint& point = manifold.points[i];
+        point.positionOnA = planeInShape.Transform(point.positionOnA + manifold.normal * point.separation);
+    }
+    manifold.normal = -Rotate(planeInShape.rotation, manifold.normal);
+}
+
 }  // namespace fulcrum

@@ -13,4 +13,8 @@ namespace fulcrum {
 void CollidePlane(const Plane& plane, const ConvexShape& shape, const RelativePose& bInA, const CollideSettings& settings,
                   Manifold& manifold);
 
+// The same with the shape as A and the plane as B.
+void CollideWithPlane(const Plane& plane, const ConvexShape& shape, const RelativePose& planeInShape, const CollideSettings& settings,
+                      Manifold& manifold);
+
 }  // namespace fulcrum

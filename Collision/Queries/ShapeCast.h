@@ -50,6 +50,9 @@ public:
     // false. False: it did.
     template <class Visitor>
     bool CastAll(const Shape& other, const Pose& pose, const ShapeCastSettings& settings, Visitor&& visit) const;
+    // The same, where visit(const ShapeHit&) returns up to which fraction hits are of interest still, less than 0: none.
+    template <class Visitor>
+    void Visit(const Shape& other, const Pose& pose, const ShapeCastSettings& settings, Visitor&& visit) const;
 
 private:
     // Visits hits, and is told through `settings` up to where they are of interest still; false ends the search.
@@ -79,6 +82,14 @@ bool ShapeCaster::CastAll(const Shape& other, const Pose& pose, const ShapeCastS
         return c.goOn = c.visit(hit);
     });
     return all.goOn;
+}
+
+template <class Visitor>
+void ShapeCaster::Visit(const Shape& other, const Pose& pose, const ShapeCastSettings& settings, Visitor&& visit) const {
+    Search(other, pose, settings, &visit, [](void* context, const ShapeHit& hit, ShapeCastSettings& limits) -> bool {
+        limits.maxFraction = std::min(limits.maxFraction, (*static_cast<std::remove_reference_t<Visitor>*>(context))(hit));
+        return limits.maxFraction >= 0;
+    });
 }
 
 }  // namespace fulcrum

@@ -3,8 +3,10 @@
 // is driven into the other by a whole step's motion before it is seen.
 #include <Fulcrum/Collision/NarrowPhase/PlaneContact.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
+#include <Fulcrum/Physics/Stages/SweepCast.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace fulcrum {
 
@@ -22,14 +24,12 @@ bool BallsApart(const WorldState& world, const Pair& pair, float distance) {
     return LengthSquared(between) > reach * reach;
 }
 
-// The contact with a half space, which CollidePlane describes from its side.
-void CollideWithPlane(const PairView& view, const CollideSettings& settings, Manifold& manifold) {
-    CollidePlane(static_cast<const Plane&>(*view.pair.shapeB), *view.pair.shapeA, Inverse(view.bInA), settings, manifold);
-    for (int i = 0; i < manifold.pointCount; ++i) {
-        ManifoldPoint& point = manifold.points[i];
-        point.positionOnA = view.bInA.Transform(point.positionOnA + manifold.normal * point.separation);
-    }
-    manifold.normal = -Rotate(view.bInA.rotation, manifold.normal);
+// m: farther ahead than this the Continuous stage sees to the pair.
+float MotionBeforeCast(const WorldState& world, const Pair& pair) {
+    float motion = std::numeric_limits<float>::infinity();
+    if (world.bodies.dynamics[pair.bodyA].continuous) motion = FreeMotion(pair.shapeA->InnerRadius(), pair.shapeA->OuterRadius());
+    if (world.bodies.dynamics[pair.bodyB].continuous) motion = std::min(motion, FreeMotion(pair.shapeB->InnerRadius(), pair.shapeB->OuterRadius()));
+    return motion;
 }
 
 PairChange CollidePair(WorldState& world, uint32_t index, float dt, WorkerFindings& findings) {
@@ -39,8 +39,9 @@ PairChange CollidePair(WorldState& world, uint32_t index, float dt, WorkerFindin
     const uint32_t now = static_cast<uint32_t>(world.report.step);
     if ((poseA.boundsChangedIn == now || poseB.boundsChangedIn == now) && !Overlap(world, pair)) return PairChange::Dead;
 
-    const float reachAhead = world.settings.speculativeDistance + dt * Length(Vector3(
-        world.bodies.LinearVelocityOf(pair.bodyB) - world.bodies.LinearVelocityOf(pair.bodyA)));
+    float motion = dt * Length(Vector3(world.bodies.LinearVelocityOf(pair.bodyB) - world.bodies.LinearVelocityOf(pair.bodyA)));
+    if (world.sweeps.users > 0) motion = std::min(motion, MotionBeforeCast(world, pair));
+    const float reachAhead = world.settings.speculativeDistance + motion;
     if (pair.surface) return CollideWithSurface(world, index, reachAhead, dt, findings);
     if (pair.pointCount == 0 && !pair.offset && BallsApart(world, pair, reachAhead)) return PairChange::None;
     const PairView view = ViewPair(world, index);
@@ -51,7 +52,7 @@ PairChange CollidePair(WorldState& world, uint32_t index, float dt, WorkerFindin
         settings.method = world.settings.narrowPhase;
         settings.speculativeDistance = reachAhead;
         Manifold manifold;
-        if (pair.shapeB->Type() == ShapeType::Plane) CollideWithPlane(view, settings, manifold);
+        if (pair.shapeB->Type() == ShapeType::Plane) CollideWithPlane(static_cast<const Plane&>(*pair.shapeB), *pair.shapeA, view.bInA, settings, manifold);
         else Collide(*pair.shapeA, static_cast<const ConvexShape&>(*pair.shapeB), view.bInA, settings, pair.cache, manifold, findings.libccd);
         WriteManifold(world, view, manifold, dt);
         pair.reference = view.bInA;

@@ -10,15 +10,6 @@ namespace fulcrum {
 
 namespace {
 
-bool MayCollide(const WorldState& world, uint32_t bodyA, uint32_t bodyB) {
-    const BodyDynamics& a = world.bodies.dynamics[bodyA];
-    const BodyDynamics& b = world.bodies.dynamics[bodyB];
-    if (bodyA == bodyB) return false;
-    if (a.motion != MotionType::Dynamic && b.motion != MotionType::Dynamic) return false;
-    if (!(world.settings.layerCollides[a.layer] >> b.layer & 1u)) return false;
-    return (a.awake || b.awake) && !world.joints.ForbidsContact(bodyA, bodyB);
-}
-
 void Search(const WorldState& world, uint32_t index, std::vector<uint64_t>& found) {
     const ColliderStore& store = world.colliders;
     const Collider& self = store.colliders[index];
@@ -67,21 +58,35 @@ uint32_t MakePair(WorldState& world, uint32_t colliderA, uint32_t colliderB) {
 
 }  // namespace
 
-void CombineMaterials(WorldState& world, uint32_t index) {
-    const Pair& pair = world.pairs.pairs[index];
-    const Material& a = world.bodies.cold[pair.bodyA].material;
-    const Material& b = world.bodies.cold[pair.bodyB].material;
+bool MayCollide(const WorldState& world, uint32_t bodyA, uint32_t bodyB) {
+    const BodyDynamics& a = world.bodies.dynamics[bodyA];
+    const BodyDynamics& b = world.bodies.dynamics[bodyB];
+    if (bodyA == bodyB) return false;
+    if (a.motion != MotionType::Dynamic && b.motion != MotionType::Dynamic) return false;
+    if (!(world.settings.layerCollides[a.layer] >> b.layer & 1u)) return false;
+    return (a.awake || b.awake) && !world.joints.ForbidsContact(bodyA, bodyB);
+}
+
+PairMaterial MaterialOfPair(const WorldState& world, uint32_t bodyA, uint32_t bodyB, const Shape& shapeB, uint8_t material) {
+    const Material& a = world.bodies.cold[bodyA].material;
+    const Material& b = world.bodies.cold[bodyB].material;
     float friction = b.friction, restitution = b.restitution;
-    if (pair.surface) {
-        const std::span<const SurfaceMaterial> palette = static_cast<const SurfaceShape*>(pair.shapeB)->Materials();
-        if (pair.material < palette.size()) {
-            friction = palette[pair.material].friction;
-            restitution = palette[pair.material].restitution;
+    if (shapeB.IsSurface()) {
+        const std::span<const SurfaceMaterial> palette = static_cast<const SurfaceShape&>(shapeB).Materials();
+        if (material < palette.size()) {
+            friction = palette[material].friction;
+            restitution = palette[material].restitution;
         }
     }
-    ContactRecord& record = world.pairs.records[index];
-    record.friction = Combine(std::max(a.frictionRule, b.frictionRule), a.friction, friction);
-    record.restitution = Combine(std::max(a.restitutionRule, b.restitutionRule), a.restitution, restitution);
+    return {Combine(std::max(a.frictionRule, b.frictionRule), a.friction, friction),
+            Combine(std::max(a.restitutionRule, b.restitutionRule), a.restitution, restitution)};
+}
+
+void CombineMaterials(WorldState& world, uint32_t index) {
+    const Pair& pair = world.pairs.pairs[index];
+    const PairMaterial material = MaterialOfPair(world, pair.bodyA, pair.bodyB, *pair.shapeB, pair.material);
+    world.pairs.records[index].friction = material.friction;
+    world.pairs.records[index].restitution = material.restitution;
 }
 
 void FindPairs(WorldState& world) {

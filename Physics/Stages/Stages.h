@@ -24,7 +24,15 @@ void SetFatBounds(WorldState& world, uint32_t collider);
 // Reads trees and the colliders that moved. Adds pairs, sorted by id, and activates resting ones.
 void FindPairs(WorldState& world);
 
-// Writes the combined friction and restitution of a pair into its record.
+// Whether contacts between two bodies, of which one is awake, are wanted.
+bool MayCollide(const WorldState& world, uint32_t bodyA, uint32_t bodyB);
+
+struct PairMaterial {
+    float friction, restitution;
+};
+// Of body A, and of body B where it touches with a shape of which `material` is the index into the palette, if there is one.
+PairMaterial MaterialOfPair(const WorldState& world, uint32_t bodyA, uint32_t bodyB, const Shape& shapeB, uint8_t material);
+// Writes that of a pair into its record.
 void CombineMaterials(WorldState& world, uint32_t pair);
 
 // Reads active pairs, poses, shapes. Writes manifolds into the records, and which pairs changed. Wakes what is hit.
@@ -61,6 +69,9 @@ void Restitution(WorldState& world, const StepContext& step);
 
 // Writes impulses to the records, displacements to the poses; moves bodies that nothing touched; measures slowness; breaks joints.
 void Store(WorldState& world, const StepContext& step);
+
+// Casts what moved far and wants it along its way; what hits something bounces there.
+void Continuous(WorldState& world, const StepContext& step);
 
 // Puts islands that have been slow for long enough to sleep.
 void Sleep(WorldState& world);

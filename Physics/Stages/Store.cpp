@@ -146,6 +146,7 @@ void EndBody(WorldState& world, uint32_t body, const StepContext& step, WorkerFi
     Pose pose = bodies.CentrePoseOf(body);
     Vector3 v = bodies.LinearVelocityOf(body), w = bodies.AngularVelocityOf(body);
     if (d.frozen) return;
+    if (world.sweeps.users > 0) world.sweeps.starts[body] = {pose, world.report.step};
     if (d.motion == MotionType::Kinematic) {
         pose.position += (v * step.dt).cast<double>();
         pose.rotation = Normalized(RotationFromVector(Vector3(w * step.dt)) * pose.rotation);
@@ -231,6 +232,7 @@ void BreakJoints(WorldState& world) {
 
 void Store(WorldState& world, const StepContext& step) {
     StoreImpulses(world, step);
+    if (world.sweeps.users > 0) world.sweeps.starts.resize(world.bodies.Size());
     world.jobs->ParallelFor(static_cast<uint32_t>(world.bodies.awake.size()), 64, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i)
             EndBody(world, world.bodies.awake[i], step, world.findings[range.worker]);

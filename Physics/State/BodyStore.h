@@ -28,6 +28,7 @@ struct alignas(64) BodyDynamics {
     bool allowSleep : 1 = true;
     bool hasForce : 1 = false;     // BodyCold::force or torque is not zero
     bool frozen : 1 = false;
+    bool continuous : 1 = false;   // BodyCold::continuous is not Off
     uint8_t layer = 0;
 
     // Eight numbers each, for lanes.
@@ -69,6 +70,7 @@ struct BodyCold {
     uint32_t generation = 0;
     uint32_t awakePlace = 0;        // index into BodyStore::awake
     uint32_t sleepingIsland = ~0u;  // index into SleepingIslands
+    ContinuousCollision continuous = ContinuousCollision::Off;
     bool exists = false;
     bool removed = false;           // by the interface, its index not yet free
 };

@@ -12,6 +12,7 @@
 #include <Fulcrum/Physics/State/PairStore.h>
 #include <Fulcrum/Physics/State/SolverLayout.h>
 #include <Fulcrum/Physics/State/Strays.h>
+#include <Fulcrum/Physics/State/SweepStore.h>
 #include <Fulcrum/Physics/State/WorldLock.h>
 #include <Fulcrum/Physics/StepReport.h>
 
@@ -36,6 +37,7 @@ struct alignas(64) WorkerFindings {
     SurfaceContacts surface;          // Collide: room to work in
     std::vector<uint32_t> surfacePlaces, surfaceLeft;  // Collide: likewise
     std::vector<MoreManifold> more;   // Collide: what has no place in its pair yet
+    std::vector<SweepHit> sweepHits;  // Continuous
     CollideCounters libccd;
     uint32_t contacts = 0, points = 0, kept = 0;
     float deepest = 0;                // largest penetration, m
@@ -62,6 +64,7 @@ struct WorldState {
     ConstraintColouring colouring;
     SleepingIslands sleeping;
     SolverLayout solver;
+    SweepStore sweeps;
 
     std::vector<JointId> broken;              // in the last step
     std::vector<uint32_t> removed;            // bodies to forget before the next step

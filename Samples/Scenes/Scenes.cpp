@@ -12,6 +12,7 @@ namespace fulcrum {
     scene(JointGrid)          \
     scene(ConvexOnMesh)       \
     scene(Ragdolls)           \
+    scene(HighSpeed)          \
     scene(HullPile)           \
     scene(Drum)               \
     scene(MostlyAsleep)       \

@@ -1,0 +1,100 @@
+#include <Fulcrum/Physics/Stages/Impact.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+namespace {
+
+constexpr int kIterations = 8;
+
+struct Side {
+    SymmetricMatrix3 inertia;  // inverse
+    float mass = 0;            // inverse
+};
+
+class ImpactSolver {
+public:
+    ImpactSolver(const WorldState& world, const SweepHit& hit, ImpactVelocities& velocities) : world_(world), hit_(hit), v_(velocities) {
+        const uint32_t bodies[2] = {hit.body, hit.other};
+        for (int s = 0; s < 2; ++s) {
+            if (!world.bodies.CanMove(bodies[s])) continue;
+            side_[s] = {world.bodies.masses[bodies[s]].InverseInertia(), world.bodies.dynamics[bodies[s]].inverseMass};
+        }
+        const PairMaterial material = MaterialOfPair(world, hit.body, hit.other, *world.colliders.shapes[hit.otherCollider].shape, hit.material);
+        friction_ = material.friction;
+        for (int i = 0; i < hit.pointCount; ++i) {
+            const float approach = Dot<float>(hit.normal, RelativeVelocity(i));
+            away_[i] = approach > world.settings.restitutionSpeed ? material.restitution * approach : 0.0f;
+            approaches_ |= approach > 0;
+        }
+    }
+
+    bool Run() {
+        if (!approaches_) return false;
+        for (int k = 0; k < kIterations; ++k)
+            for (int i = 0; i < hit_.pointCount; ++i) {
+                Push(i);
+                Rub(i);
+            }
+        return true;
+    }
+
+private:
+    // Of the body against the other.
+    Vector3 RelativeVelocity(int i) const {
+        return v_.linear[0] + Cross<float>(v_.angular[0], hit_.arms[i]) - v_.linear[1] - Cross<float>(v_.angular[1], hit_.otherArms[i]);
+    }
+    // What an impulse of 1 N s along a unit vector changes of the relative velocity along it.
+    float Response(int i, const Vector3& axis) const {
+        const Vector3 a = Cross<float>(hit_.arms[i], axis), b = Cross<float>(hit_.otherArms[i], axis);
+        return side_[0].mass + side_[1].mass + Dot<float>(a, Vector3(side_[0].inertia * a)) + Dot<float>(b, Vector3(side_[1].inertia * b));
+    }
+    // On the body; the other gets the opposite.
+    void Apply(int i, const Vector3& impulse) {
+        for (int s = 0; s < 2; ++s) {
+            const Vector3 own = s == 0 ? impulse : Vector3(-impulse);
+            v_.linear[s] += own * side_[s].mass;
+            v_.angular[s] += side_[s].inertia * Cross<float>(s == 0 ? hit_.arms[i] : hit_.otherArms[i], own);
+            const uint32_t body = s == 0 ? hit_.body : hit_.other;
+            if (side_[s].mass > 0) world_.bodies.dynamics[body].Lock(v_.linear[s], v_.angular[s]);
+        }
+    }
+    void Push(int i) {
+        const float response = Response(i, hit_.normal);
+        if (!(response > 0)) return;
+        const float old = pushed_[i];
+        pushed_[i] = std::max(0.0f, old + (Dot<float>(hit_.normal, RelativeVelocity(i)) + away_[i]) / response);
+        Apply(i, hit_.normal * (old - pushed_[i]));
+    }
+    void Rub(int i) {
+        if (friction_ == 0) return;
+        const Vector3 v = RelativeVelocity(i), slip = v - hit_.normal * Dot<float>(hit_.normal, v);
+        const float speed = Length(slip);
+        const float response = speed > 0 ? Response(i, Vector3(slip * (1 / speed))) : 0.0f;
+        if (!(response > 0)) return;
+        const Vector3 old = rubbed_[i];
+        rubbed_[i] = old - slip * (1 / response);
+        const float size = Length(rubbed_[i]), most = friction_ * pushed_[i];
+        if (size > most) rubbed_[i] = rubbed_[i] * (most / size);
+        Apply(i, rubbed_[i] - old);
+    }
+
+    const WorldState& world_;
+    const SweepHit& hit_;
+    ImpactVelocities& v_;
+    Side side_[2];
+    float friction_ = 0;
+    bool approaches_ = false;
+    float away_[SweepHit::kMaxPoints] = {};      // m/s, speed to part with
+    float pushed_[SweepHit::kMaxPoints] = {};    // N s
+    Vector3 rubbed_[SweepHit::kMaxPoints] = {Vector3::Zero(), Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
+};
+
+}  // namespace
+
+bool SolveImpact(const WorldState& world, const SweepHit& hit, ImpactVelocities& velocities) {
+    return ImpactSolver(world, hit, velocities).Run();
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,243 @@
+#include <Fulcrum/Physics/Stages/SweepCast.h>
+
+#include <Fulcrum/Collision/BroadPhase/BoundsTreeCasts.h>
+#include <Fulcrum/Collision/NarrowPhase/PlaneContact.h>
+#include <Fulcrum/Collision/Queries/ShapeCast.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+namespace {
+
+// A body may move by half its thickness before it is cast, and a hit counts once the two would overlap by a quarter.
+constexpr float kFreePart = 0.5f, kDepthPart = 0.25f;
+// What has hardly any thickness counts as that thick, in parts of its size.
+constexpr float kLeastThickness = 0.01f;
+
+float Thickness(const Shape& shape) { return std::max(shape.InnerRadius(), kLeastThickness * shape.OuterRadius()); }
+
+// A piece of a body about the body's centre, so that it turns with it.
+class PlacedConvex final : public ConvexShape {
+public:
+    PlacedConvex(const ConvexShape& shape, const RelativePose& local) : ConvexShape(ShapeType::Custom), shape_(shape), local_(local) {
+        convexRadius_ = shape.ConvexRadius();
+        innerRadius_ = shape.InnerRadius();
+        outerRadius_ = shape.OuterRadius() + Length(local.position);
+        bounds_.lower = Vector3::Constant(-outerRadius_);
+        bounds_.upper = Vector3::Constant(outerRadius_);
+    }
+    Vector3 SupportCore(const Vector3& direction) const override {
+        return local_.Transform(shape_.SupportCore(InverseRotate(local_.rotation, direction)));
+    }
+
+private:
+    const ConvexShape& shape_;
+    RelativePose local_;
+};
+
+Vector3 Between(const Position& from, const Position& to) { return (to - from).cast<float>(); }
+
+// Whether two balls whose centres are `apart` and close in by `motion` come within `reach` of each other.
+bool BallsMeet(const Vector3& apart, const Vector3& motion, float reach) {
+    const float along = -Dot<float>(apart, motion), square = LengthSquared(motion);
+    const float part = square > 0 ? std::clamp(along / square, 0.0f, 1.0f) : 0.0f;
+    return LengthSquared(Vector3(apart + motion * part)) <= reach * reach;
+}
+
+class SweepCaster {
+public:
+    SweepCaster(const WorldState& world, const Sweep& sweep, WorkerFindings& findings, SweepHit& best)
+        : world_(world), sweep_(sweep), findings_(findings), best_(best), isTurning_(sweep.turns && !sweep.turn.isZero(0)) {}
+
+    bool Run() {
+        best_.time = 1;
+        const BodyCold& cold = world_.bodies.cold[sweep_.body];
+        for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i) CastPiece(i);
+        return found_;
+    }
+
+private:
+    void CastPiece(uint32_t collider) {
+        piece_ = &world_.colliders.shapes[collider];
+        shape_ = static_cast<const ConvexShape*>(piece_->shape);
+        const Pose end = sweep_.PoseAt(1);
+        const Pose from = sweep_.start * piece_->local, to = end * piece_->local;
+        motion_ = isTurning_ ? ShapeMotion{sweep_.start, sweep_.displacement, sweep_.turn}
+                             : ShapeMotion{from, Between(from.position, to.position), Vector3::Zero()};
+        const PlacedConvex placed(*shape_, piece_->local);
+        cast_ = isTurning_ && piece_->offset ? &placed : shape_;
+        const ShapeCaster whole(*cast_, motion_);
+        if (!whole.IsValid()) return;
+        const Bounds& about = whole.BoundsAboutCentre();
+        const TreeRay ray(motion_.pose.position + about.Centre().cast<double>(), motion_.displacement, about.HalfExtents());
+        const auto visit = [&](uint32_t other) { CastAgainst(other, whole); };
+        const uint32_t layers = world_.settings.layerCollides[world_.bodies.dynamics[sweep_.body].layer];
+        if (layers & world_.colliders.movingLayers) world_.colliders.movingTree.CastRay(ray, limit_, visit);
+        if (layers & world_.colliders.fixedLayers) world_.colliders.fixedTree.CastRay(ray, limit_, visit);
+    }
+
+    void CastAgainst(uint32_t other, const ShapeCaster& whole) {
+        const uint32_t body = world_.colliders.colliders[other].body;
+        if (!MayCollide(world_, sweep_.body, body)) return;
+        const Sweep course = SweepOf(world_, body);
+        const ColliderShape& piece = world_.colliders.shapes[other];
+        const float start = std::max(sweep_.from, course.from);
+        if (course.displacement.isZero(0) && course.turn.isZero(0) && start == sweep_.from) {
+            CastThrough(whole, motion_, other, course, course.start * piece.local, start);
+            return;
+        }
+        // Seen from the other, which keeps the rotation that it has at the start.
+        const Pose at = course.PoseAt(start) * piece.local, to = course.PoseAt(1) * piece.local;
+        ShapeMotion relative = motion_;
+        const float rest = sweep_.from < 1 ? (1 - start) / (1 - sweep_.from) : 0.0f;
+        const Pose own = sweep_.PoseAt(start);
+        if (isTurning_) relative.pose = own;
+        else relative.pose.position += (motion_.displacement * (1 - rest)).cast<double>();
+        relative.displacement = motion_.displacement * rest - Between(at.position, to.position);
+        relative.turn = motion_.turn * rest;
+        if (!BallsMeet(Between(at.position, relative.pose.position), relative.displacement, cast_->OuterRadius() + piece.shape->OuterRadius())) return;
+        const ShapeCaster caster(*cast_, relative);
+        if (caster.IsValid()) CastThrough(caster, relative, other, course, at, start);
+    }
+
+    // From the time `start` to the end.
+    void CastThrough(const ShapeCaster& caster, const ShapeMotion& motion, uint32_t other, const Sweep& course, const Pose& at, float start) {
+        const Shape& shape = *world_.colliders.shapes[other].shape;
+        const float length = 1 - start;
+        ShapeCastSettings settings;
+        settings.tolerance = 0.02f * Thickness(*shape_);
+        if (length > 0) settings.maxFraction = std::min(1.0f, std::max(0.0f, (best_.time - start) / length));
+        caster.Visit(shape, at, settings, [&](const ShapeHit& found) {
+            SweepHit hit;
+            hit.time = start + found.fraction * length;
+            hit.body = sweep_.body;
+            hit.other = course.body;
+            hit.otherCollider = other;
+            if (ComesBefore(hit) && Counts(motion, found, course, length, hit)) Take(hit);
+            return length > 0 ? (best_.time - start) / length : 0.0f;
+        });
+    }
+
+    bool ComesBefore(const SweepHit& hit) const {
+        return !found_ || hit.time < best_.time || (hit.time == best_.time && hit.otherCollider < best_.otherCollider);
+    }
+
+    void Take(const SweepHit& hit) {
+        best_ = hit;
+        found_ = true;
+        limit_ = sweep_.from < 1 ? std::clamp((hit.time - sweep_.from) / (1 - sweep_.from), 0.0f, 1.0f) : 0.0f;
+    }
+
+    // Per step, of the body's point against the other's at an instant.
+    Vector3 VelocityAt(const Position& point, const Pose& own, const Vector3& linear, const Sweep& course, const Pose& others) const {
+        Vector3 v = linear - Cross<float>(course.TurnRate(), Between(others.position, point));
+        if (isTurning_) v += Cross<float>(sweep_.TurnRate(), Between(own.position, point));
+        return v;
+    }
+
+    // Looks a little ahead, to where the two would overlap by as much as may be: their manifold there says in which direction
+    // they push each other, where the cast knows only what touches first. The sides of flush neighbours, or edges inside a
+    // surface, push nowhere along the way.
+    bool Counts(const ShapeMotion& motion, const ShapeHit& found, const Sweep& course, float length, SweepHit& hit) {
+        const Shape& shape = *world_.colliders.shapes[hit.otherCollider].shape;
+        if (found.isEarly) return found.fraction > 0;
+        const float thickness = shape.IsConvex() ? std::min(Thickness(*shape_), Thickness(shape)) : Thickness(*shape_);
+        const float depth = kDepthPart * thickness, left = 1 - hit.time;
+        const Vector3 linear = length > 0 ? Vector3(motion.displacement * (1 / length)) : Vector3(Vector3::Zero());
+        const float approach = -Dot<float>(found.normal, VelocityAt(found.position, sweep_.PoseAt(hit.time), linear, course, course.PoseAt(hit.time)));
+        if (!(approach * left > depth)) return false;
+        const float later = std::min(1.0f, hit.time + depth / approach);
+        Pose own = sweep_.PoseAt(later);
+        const Pose others = course.PoseAt(later);
+        Pose a = own * piece_->local;
+        if (!isTurning_) a.rotation = motion.pose.rotation;
+        const Pose b = others * world_.colliders.shapes[hit.otherCollider].local;
+        float most = 0;
+        const auto consider = [&](const Manifold& manifold, uint8_t material) {
+            const Vector3 normal = Rotate(a.rotation, manifold.normal);
+            float fastest = 0;
+            for (int i = 0; i < manifold.pointCount; ++i)
+                fastest = std::max(fastest, Dot<float>(normal, VelocityAt(a.Transform(manifold.points[i].positionOnA), own, linear, course, others)));
+            if (!(fastest > most)) return;
+            most = fastest;
+            hit.normal = normal;
+            hit.material = material;
+            hit.pointCount = manifold.pointCount;
+            for (int i = 0; i < manifold.pointCount; ++i) {
+                const Position point = a.Transform(manifold.points[i].positionOnA);
+                hit.arms[i] = Between(own.position, point);
+                hit.otherArms[i] = Between(others.position, point);
+            }
+        };
+        FindManifolds(shape, Relative(a, b), 0.25f * depth, consider);
+        return most * left > depth;
+    }
+
+    template <class Consider>
+    void FindManifolds(const Shape& shape, const RelativePose& bInA, float margin, const Consider& consider) {
+        CollideSettings settings;
+        settings.speculativeDistance = margin;
+        settings.method = world_.settings.narrowPhase;
+        if (shape.IsSurface()) {
+            CollideSurface(*shape_, static_cast<const SurfaceShape&>(shape), bInA, settings, findings_.surface);
+            for (const SurfaceManifold& m : findings_.surface.Manifolds()) consider(m.manifold, m.material);
+            return;
+        }
+        Manifold manifold;
+        if (shape.Type() == ShapeType::Plane) {
+            CollideWithPlane(static_cast<const Plane&>(shape), *shape_, bInA, settings, manifold);
+        } else {
+            PairCache cache;
+            Collide(*shape_, static_cast<const ConvexShape&>(shape), bInA, settings, cache, manifold, findings_.libccd);
+        }
+        consider(manifold, uint8_t{0});
+    }
+
+    const WorldState& world_;
+    const Sweep& sweep_;
+    WorkerFindings& findings_;
+    SweepHit& best_;
+    const bool isTurning_;
+    bool found_ = false;
+    float limit_ = 1;                          // of the sweep, up to where hits are of interest
+    const ColliderShape* piece_ = nullptr;
+    const ConvexShape* shape_ = nullptr;       // of the piece
+    const ConvexShape* cast_ = nullptr;        // that, or it about the body's centre
+    ShapeMotion motion_;
+};
+
+// The rotation vector of q, which may have turned several times, that is nearest to a guess.
+Vector3 TurnNear(const Quaternion& q, const Vector3& guess) {
+    constexpr float kTwoPi = 6.28318530717958647692f;
+    const Vector3 shortest = RotationVectorOf(q);
+    const float angle = Length(guess);
+    if (angle < 0.25f * kTwoPi) return shortest;
+    const Vector3 axis = Normalized(Length(shortest) > 1e-3f ? shortest : guess);
+    const float turns = std::floor((Dot<float>(axis, guess) - Dot<float>(axis, shortest)) / kTwoPi + 0.5f);
+    return shortest + axis * (turns * kTwoPi);
+}
+
+}  // namespace
+
+float FreeMotion(float innerRadius, float outerRadius) { return kFreePart * std::max(innerRadius, kLeastThickness * outerRadius); }
+
+Sweep SweepOf(const WorldState& world, uint32_t body) {
+    const SweepStore& store = world.sweeps;
+    if (body < store.places.size() && store.places[body] != SweepStore::kNone) return store.swept[store.places[body]];
+    Sweep sweep;
+    sweep.body = body;
+    const Pose end = world.bodies.CentrePoseOf(body);
+    sweep.start = end;
+    if (body >= store.starts.size() || store.starts[body].step != world.report.step) return sweep;
+    sweep.start = store.starts[body].pose;
+    sweep.displacement = Between(sweep.start.position, end.position);
+    sweep.turn = TurnNear(end.rotation * sweep.start.rotation.Conjugate(), Vector3(world.bodies.AngularVelocityOf(body) * world.sweeps.dt));
+    return sweep;
+}
+
+bool CastSweep(const WorldState& world, const Sweep& sweep, WorkerFindings& findings, SweepHit& hit) {
+    return SweepCaster(world, sweep, findings, hit).Run();
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,18 @@
+// What a swept body meets first. Called by the Continuous stage, for different bodies from any number of threads at once.
+#pragma once
+
+#include <Fulcrum/Physics/Stages/Stages.h>
+
+namespace fulcrum {
+
+// A body that moved farther than this in a step, in m, is cast; also how far ahead the solver sees contacts of such bodies.
+float FreeMotion(float innerRadius, float outerRadius);
+
+// How a body moves in this step, as far as is decided. Zero motion for one that rests.
+Sweep SweepOf(const WorldState& world, uint32_t body);
+
+// The first hit of the sweep's rest that counts: of what it would overlap by more than a part of its thickness. What it only
+// slides along, or touches and leaves, is left to the solver. False: none.
+bool CastSweep(const WorldState& world, const Sweep& sweep, WorkerFindings& findings, SweepHit& hit);
+
+}  // namespace fulcrum

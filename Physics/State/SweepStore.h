@@ -1,0 +1,68 @@
+// How bodies moved within a step: for continuous collision, which cuts their courses short where they hit something, and for
+// whoever must see what passed in between. Kept only while a body asks for it. Written by Store and Continuous.
+#pragma once
+
+#include <Fulcrum/Math/Trigonometry.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace fulcrum {
+
+// A body's way from some time of the step to its end: its centre of mass moves straight, it turns at a constant rate. Times are
+// fractions of the step, 0 .. 1.
+struct Sweep {
+    Pose start;                                // of the centre frame, at `from`
+    Vector3 displacement = Vector3::Zero();    // m, until the end
+    Vector3 turn = Vector3::Zero();            // rad, rotation vector, until the end
+    float from = 0;
+    uint32_t body = 0;
+    bool turns = false;                        // it is cast with its turn
+    bool isCut = false;                        // something was hit
+    bool changed = false;                      // in the present round
+
+    Pose PoseAt(float time) const {
+        const float part = from < 1 ? (time - from) / (1 - from) : 0.0f;
+        return {start.position + (displacement * part).cast<double>(), Normalized(RotationFromVector(Vector3(turn * part)) * start.rotation)};
+    }
+    // Of a whole step's length.
+    Vector3 DisplacementRate() const { return from < 1 ? Vector3(displacement * (1 / (1 - from))) : Vector3(Vector3::Zero()); }
+    Vector3 TurnRate() const { return from < 1 ? Vector3(turn * (1 / (1 - from))) : Vector3(Vector3::Zero()); }
+};
+
+// Where a swept body first meets another one that it would overlap.
+struct SweepHit {
+    static constexpr int kMaxPoints = 4;
+    float time = 1;
+    uint32_t body = 0, other = 0;
+    uint32_t otherCollider = 0;
+    uint8_t material = 0;                      // of the other's palette
+    int pointCount = 0;                        // 0: the cast was not decided; nothing is touched before `time`
+    Vector3 normal = Vector3::Zero();          // unit, from the body towards the other
+    Vector3 arms[kMaxPoints], otherArms[kMaxPoints];  // m, from the centres of mass to the points, world axes
+};
+
+struct SweepStore {
+    static constexpr uint32_t kNone = ~0u;
+    struct Start {
+        Pose pose;
+        uint64_t step = 0;                     // the one that it is of
+    };
+
+    uint32_t users = 0;                        // bodies for which motions are kept; 0: nothing is
+    float dt = 0;                              // s, of the step
+    std::vector<Start> starts;                 // by body: where it was when the step began
+    std::vector<Sweep> swept;                  // those that moved so far that they are cast
+    std::vector<uint32_t> places;              // by body: index into `swept`, or kNone
+    std::vector<Sweep> ended;                  // courses that a hit has ended, in the order of the hits
+    std::vector<float> endedAt;                // times
+    std::vector<uint32_t> active, next;        // indices into `swept`
+    std::vector<SweepHit> hits;
+
+    size_t MemoryUsed() const {
+        return starts.capacity() * sizeof(Start) + (swept.capacity() + ended.capacity()) * sizeof(Sweep) + hits.capacity() * sizeof(SweepHit) +
+               (places.capacity() + endedAt.capacity() + active.capacity() + next.capacity()) * sizeof(uint32_t);
+    }
+};
+
+}  // namespace fulcrum
