@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <tuple>
 
 namespace fulcrum {
 
@@ -25,28 +26,46 @@ float FreeMotionOf(const WorldState& world, uint32_t body) {
     return least;
 }
 
-// Bounds reach ahead by the velocity that a body had when the step began. One that the solver moved elsewhere is given bounds about
-// its whole way, so that the trees find it there.
-void IncludeWays(WorldState& world) {
-    const float least = 0.5f * world.settings.speculativeDistance;
-    const std::vector<uint32_t>& awake = world.bodies.awake;
-    world.jobs->ParallelFor(static_cast<uint32_t>(awake.size()), 256, [&](JobRange range) {
-        for (uint32_t k = range.begin; k < range.end; ++k) {
-            const uint32_t body = awake[k];
-            const SweepStore::Start& start = world.sweeps.starts[body];
-            if (start.step != world.report.step) continue;
-            const Vector3 moved = (world.bodies.CentreOf(body) - start.pose.position).cast<float>();
-            if (LengthSquared(moved) <= least * least) continue;
-            const BodyCold& cold = world.bodies.cold[body];
-            for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i)
-                if (!world.colliders.colliders[i].fat.Contains(TightBoundsOf(world, i))) world.findings[range.worker].colliders.push_back(i);
-        }
-    });
-    const size_t first = world.colliders.moved.size();
+// Whether the fat bounds of a body's colliders, which reach ahead by the velocity that it had when the step began, hold all its way.
+// Those that do not are noted, to be enlarged.
+bool StaysInBounds(const WorldState& world, uint32_t body, const Vector3& moved, float dt, WorkerFindings& findings) {
+    const float* a = world.bodies.poses[body].acceleration;
+    const float slack = 0.5f * world.settings.speculativeDistance;
+    const bool flewAsForeseen = !world.colouring.IsTouched(body) && LengthSquared(Vector3(a[0], a[1], a[2])) * dt * dt * dt * dt < slack * slack;
+    if (flewAsForeseen || LengthSquared(moved) <= slack * slack) return true;
+    const BodyCold& cold = world.bodies.cold[body];
+    bool stays = true;
+    for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i) {
+        if (world.colliders.colliders[i].fat.Contains(TightBoundsOf(world, i))) continue;
+        findings.colliders.push_back(i);
+        stays = false;
+    }
+    return stays;
+}
+
+void LookAtBody(const WorldState& world, uint32_t body, float dt, WorkerFindings& findings) {
+    using SearchBy = SweepStore::SearchBy;
+    const SweepStore::Start& start = world.sweeps.starts[body];
+    const BodyDynamics& d = world.bodies.dynamics[body];
+    if (start.step != world.report.step || d.frozen) return;
+    const Vector3 moved = (world.bodies.CentreOf(body) - start.pose.position).cast<float>();
+    const bool stays = StaysInBounds(world, body, moved, dt, findings);
+    if (!d.continuous) return;
+    const BodyCold& cold = world.bodies.cold[body];
+    const bool turns = cold.continuous == ContinuousCollision::LinearAndAngular;
+    const float distance = Length(moved) + (turns ? Length(SweepOf(world, body).turn) * d.outerRadius : 0.0f);
+    if (!(distance > FreeMotionOf(world, body))) return;
+    const bool isSimple = !turns && cold.colliderCount == 1 && !world.colliders.shapes[cold.firstCollider].offset;
+    findings.fast.push_back({body, stays && isSimple ? SearchBy::Pairs : SearchBy::Trees});
+}
+
+// What the solver moved elsewhere than its bounds foresaw is given bounds about its whole way, so that the trees find it there.
+void EnlargeBounds(WorldState& world) {
     std::vector<uint32_t>& moved = world.colliders.moved;
+    const size_t first = moved.size();
     for (WorkerFindings& findings : world.findings) {
-        for (uint32_t collider : findings.colliders) world.colliders.Queue(collider);
         for (uint32_t collider : findings.colliders) {
+            world.colliders.Queue(collider);
             Collider& c = world.colliders.colliders[collider];
             c.fat.Include(TightBoundsOf(world, collider));
             world.colliders.TreeOf(c).Update(collider, c.fat);
@@ -56,30 +75,52 @@ void IncludeWays(WorldState& world) {
     std::sort(moved.begin() + static_cast<ptrdiff_t>(first), moved.end());
 }
 
-void FindSwept(WorldState& world) {
+void FindFast(WorldState& world, float dt) {
     SweepStore& store = world.sweeps;
-    store.places.resize(world.bodies.Size(), SweepStore::kNone);
-    for (std::vector<uint32_t>* list : {&store.active, &store.next}) list->reserve(2 * size_t{store.users});
-    store.swept.reserve(store.users);
-    store.hits.reserve(store.users);
-    for (WorkerFindings& findings : world.findings) findings.sweepHits.reserve(store.users);
-    store.swept.clear();
-    store.ended.clear();
-    store.endedAt.clear();
-    for (uint32_t body : world.bodies.awake) {
-        const BodyDynamics& d = world.bodies.dynamics[body];
-        if (!d.continuous || d.frozen || store.starts[body].step != world.report.step) continue;
-        Sweep sweep = SweepOf(world, body);
-        sweep.turns = world.bodies.cold[body].continuous == ContinuousCollision::LinearAndAngular;
-        const float distance = Length(sweep.displacement) + (sweep.turns ? Length(sweep.turn) * d.outerRadius : 0.0f);
-        if (distance > FreeMotionOf(world, body)) store.swept.push_back(sweep);
+    const std::vector<uint32_t>& awake = world.bodies.awake;
+    world.jobs->ParallelFor(static_cast<uint32_t>(awake.size()), 64, [&](JobRange range) {
+        for (uint32_t k = range.begin; k < range.end; ++k) LookAtBody(world, awake[k], dt, world.findings[range.worker]);
+    });
+    EnlargeBounds(world);
+    store.fast.clear();
+    for (WorkerFindings& findings : world.findings) {
+        store.fast.insert(store.fast.end(), findings.fast.begin(), findings.fast.end());
+        findings.fast.clear();
     }
-    // In the order of the bodies: `awake` has none that repeats.
-    std::sort(store.swept.begin(), store.swept.end(), [](const Sweep& a, const Sweep& b) { return a.body < b.body; });
-    for (uint32_t i = 0; i < store.swept.size(); ++i) store.places[store.swept[i].body] = i;
+    std::sort(store.fast.begin(), store.fast.end(), [](const auto& a, const auto& b) { return a.body < b.body; });
+    // To look through all pairs for a few bodies would take longer than their searches.
+    constexpr size_t kPairsPerSearch = 16;
+    const bool few = store.fast.size() * kPairsPerSearch < world.pairs.active.Size();
+    for (SweepStore::FastBody& fast : store.fast) {
+        if (few) fast.by = SweepStore::SearchBy::Trees;
+        store.searchBy[fast.body] = fast.by;
+    }
 }
 
-void CastAll(WorldState& world) {
+// Of the collider of a pair that is to be cast against the other; kNone: neither.
+uint32_t CasterOf(const WorldState& world, const Pair& pair) {
+    using SearchBy = SweepStore::SearchBy;
+    const SearchBy a = world.sweeps.searchBy[pair.bodyA], b = world.sweeps.searchBy[pair.bodyB];
+    if (a == SearchBy::Trees || b == SearchBy::Trees) return SweepStore::kNone;  // finds the other by itself
+    return a == SearchBy::Pairs ? pair.colliderA : b == SearchBy::Pairs ? pair.colliderB : SweepStore::kNone;
+}
+
+void CastPairs(WorldState& world) {
+    const IndexSet& active = world.pairs.active;
+    world.jobs->ParallelFor(active.WordCount(), 1, [&](JobRange range) {
+        WorkerFindings& findings = world.findings[range.worker];
+        for (uint32_t word = range.begin; word < range.end; ++word)
+            active.VisitWord(word, [&](uint32_t index) {
+                const Pair& pair = world.pairs.pairs[index];
+                const uint32_t caster = pair.isMore ? SweepStore::kNone : CasterOf(world, pair);
+                SweepHit hit;
+                if (caster == SweepStore::kNone || !CastPair(world, caster, pair.colliderA ^ pair.colliderB ^ caster, findings, hit)) return;
+                findings.sweepHits.push_back(hit);
+            });
+    });
+}
+
+void CastActive(WorldState& world) {
     SweepStore& store = world.sweeps;
     world.jobs->ParallelFor(static_cast<uint32_t>(store.active.size()), 8, [&](JobRange range) {
         WorkerFindings& findings = world.findings[range.worker];
@@ -88,14 +129,31 @@ void CastAll(WorldState& world) {
             if (CastSweep(world, store.swept[store.active[i]], findings, hit)) findings.sweepHits.push_back(hit);
         }
     });
-    store.hits.clear();
+}
+
+void SortHits(WorldState& world) {
+    std::vector<SweepHit>& hits = world.sweeps.hits;
+    hits.clear();
     for (WorkerFindings& findings : world.findings) {
-        store.hits.insert(store.hits.end(), findings.sweepHits.begin(), findings.sweepHits.end());
+        hits.insert(hits.end(), findings.sweepHits.begin(), findings.sweepHits.end());
         findings.sweepHits.clear();
     }
-    std::sort(store.hits.begin(), store.hits.end(), [](const SweepHit& a, const SweepHit& b) {
-        return a.time < b.time || (a.time == b.time && a.body < b.body);
+    std::sort(hits.begin(), hits.end(), [](const SweepHit& a, const SweepHit& b) {
+        return std::tie(a.time, a.body, a.otherCollider) < std::tie(b.time, b.body, b.otherCollider);
     });
+}
+
+// The place of a fast body's course in `swept`, where it comes to be when it is first asked for.
+uint32_t PlaceOf(WorldState& world, uint32_t body) {
+    SweepStore& store = world.sweeps;
+    if (store.searchBy[body] == SweepStore::SearchBy::None) return SweepStore::kNone;
+    if (store.places[body] == SweepStore::kNone) {
+        Sweep sweep = SweepOf(world, body);
+        sweep.turns = world.bodies.cold[body].continuous == ContinuousCollision::LinearAndAngular;
+        store.places[body] = static_cast<uint32_t>(store.swept.size());
+        store.swept.push_back(sweep);
+    }
+    return store.places[body];
 }
 
 class HitResolver {
@@ -103,13 +161,17 @@ public:
     HitResolver(WorldState& world, const StepContext& step, bool isLast) : world_(world), dt_(step.dt), isLast_(isLast) {}
 
     void Resolve(const SweepHit& hit) {
-        SweepStore& store = world_.sweeps;
-        const uint32_t place = store.places[hit.body], otherPlace = store.places[hit.other];
-        Sweep& sweep = store.swept[place];
-        if (sweep.changed) return;  // it is in the next round already
-        if (otherPlace != SweepStore::kNone && store.swept[otherPlace].changed) {
-            if (isLast_) Stop(sweep, hit.time);
-            else store.next.push_back(place);
+        const uint32_t place = PlaceOf(world_, hit.body), otherPlace = PlaceOf(world_, hit.other);
+        std::vector<Sweep>& swept = world_.sweeps.swept;
+        Sweep& sweep = swept[place];
+        if (sweep.changed) return;  // it is in the next round, or stays where it is
+        if (otherPlace != SweepStore::kNone && swept[otherPlace].changed) {
+            if (isLast_) {
+                Stop(sweep, hit.time);
+            } else {
+                sweep.changed = true;
+                world_.sweeps.next.push_back(place);
+            }
             return;
         }
         ImpactVelocities v;
@@ -120,7 +182,7 @@ public:
             Continue(place, hit.time, v.linear[0], v.angular[0], parts);
         }
         if (parts && otherPlace != SweepStore::kNone) {
-            if (isLast_) Stop(store.swept[otherPlace], hit.time);
+            if (isLast_) Stop(swept[otherPlace], hit.time);
             else Continue(otherPlace, hit.time, v.linear[1], v.angular[1], true);
         }
     }
@@ -191,12 +253,49 @@ private:
     bool isLast_;
 };
 
+// The lists get room by the number of those that may need it.
+void ReserveLists(WorldState& world) {
+    SweepStore& store = world.sweeps;
+    const size_t users = store.users;
+    store.searchBy.resize(world.bodies.Size(), SweepStore::SearchBy::None);
+    store.places.resize(world.bodies.Size(), SweepStore::kNone);
+    store.fast.reserve(users);
+    store.swept.reserve(users);
+    store.hits.reserve(2 * users);
+    for (std::vector<uint32_t>* list : {&store.active, &store.next}) list->reserve(2 * users);
+    for (WorkerFindings& findings : world.findings) {
+        findings.fast.reserve(users);
+        findings.sweepHits.reserve(users);
+    }
+}
+
+void StartCourses(WorldState& world) {
+    SweepStore& store = world.sweeps;
+    store.swept.clear();
+    store.ended.clear();
+    store.endedAt.clear();
+    store.active.clear();
+    for (const SweepStore::FastBody& fast : store.fast)
+        if (fast.by == SweepStore::SearchBy::Trees) store.active.push_back(PlaceOf(world, fast.body));
+    world.report.sweptBodies = static_cast<uint32_t>(store.fast.size());
+}
+
+// Those that hits have changed, or left undecided, are searched in the next round.
+void EndRound(SweepStore& store) {
+    for (Sweep& sweep : store.swept) sweep.changed = false;
+    std::sort(store.next.begin(), store.next.end());
+    store.next.erase(std::unique(store.next.begin(), store.next.end()), store.next.end());
+    store.active.swap(store.next);
+    store.next.clear();
+}
+
 void Finish(WorldState& world) {
     SweepStore& store = world.sweeps;
     for (const Sweep& sweep : store.swept) {
         if (sweep.isCut && world.bodies.CanMove(sweep.body)) world.bodies.SetCentrePose(sweep.body, sweep.PoseAt(1));
         store.places[sweep.body] = SweepStore::kNone;
     }
+    for (const SweepStore::FastBody& fast : store.fast) store.searchBy[fast.body] = SweepStore::SearchBy::None;
 }
 
 }  // namespace
@@ -205,22 +304,18 @@ void Continuous(WorldState& world, const StepContext& step) {
     SweepStore& store = world.sweeps;
     if (store.users == 0) return;
     store.dt = step.dt;
-    IncludeWays(world);
-    FindSwept(world);
-    world.report.sweptBodies = static_cast<uint32_t>(store.swept.size());
-    store.active.resize(store.swept.size());
-    for (uint32_t i = 0; i < store.active.size(); ++i) store.active[i] = i;
-    for (int round = 0; round < kRounds && !store.active.empty(); ++round) {
-        CastAll(world);
-        store.next.clear();
+    ReserveLists(world);
+    FindFast(world, step.dt);
+    if (store.fast.empty()) return;
+    StartCourses(world);
+    const bool usesPairs = store.active.size() < store.fast.size();
+    for (int round = 0; round < kRounds && (!store.active.empty() || (round == 0 && usesPairs)); ++round) {
+        if (round == 0 && usesPairs) CastPairs(world);
+        CastActive(world);
+        SortHits(world);
         HitResolver resolver(world, step, round + 1 == kRounds);
         for (const SweepHit& hit : store.hits) resolver.Resolve(hit);
-        for (const SweepHit& hit : store.hits)
-            for (uint32_t body : {hit.body, hit.other})
-                if (store.places[body] != SweepStore::kNone) store.swept[store.places[body]].changed = false;
-        std::sort(store.next.begin(), store.next.end());
-        store.next.erase(std::unique(store.next.begin(), store.next.end()), store.next.end());
-        store.active.swap(store.next);
+        EndRound(store);
     }
     Finish(world);
 }

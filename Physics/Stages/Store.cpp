@@ -19,45 +19,80 @@ int RotationSubsteps(const BodyDynamics& d, float angle) {
     return static_cast<int>(std::clamp(wandering / kSmall, 0.0f, 63.0f)) + 1;
 }
 
-// Keeps the angular momentum L: the orientation advances with the angular velocity I(q)^-1 L by a method of the fourth order
-// that stays on the rotations, by two exponentials a step (E. Celledoni, A. Marthinsen, B. Owren, Commutator-free Lie group
-// methods, Future Generation Computer Systems 19, 2003). In double: the axis in the middle doubles what it misses every
-// 2 radians or so, and the roundings of many substeps in float were a fiftieth of a turn after ten of them.
-void RotateFreely(const BodyDynamics& d, Quaternion& rotation, Vector3& w, const Vector3& torque, float dt) {
+// The axis about which the two other principal moments are equal; 3: there is none.
+int SymmetryAxis(const BodyDynamics& d) {
+    constexpr float kEqual = 1e-5f;
+    for (int k = 0; k < 3; ++k) {
+        const float a = d.inverseInertia[(k + 1) % 3], b = d.inverseInertia[(k + 2) % 3];
+        if (std::fabs(a - b) <= kEqual * std::min(a, b)) return k;
+    }
+    return 3;
+}
+
+// A body that turns freely about its centre of mass, its angular momentum L (kg m2/s, world axes) given. In double: the axis in the
+// middle doubles what it misses every 2 radians or so, and the roundings of many substeps in float were a fiftieth of a turn after
+// ten of them.
+struct FreeTop {
     using Vector = Vec3<double>;
     using Rotation = Quat<double>;
-    const auto unit = [](const Rotation& q) {
+    Vector inverse;     // of the principal moments
+    Vector momentum;
+    Rotation rotation;  // of the principal axes
+
+    static Rotation Unit(const Rotation& q) {
         const double scale = 1.0 / std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-        return Rotation{q.x * scale, q.y * scale, q.z * scale, q.w * scale};
-    };
-    const auto exact = [&](const Quaternion& q) { return unit({q.x, q.y, q.z, q.w}); };
-    const int substeps = RotationSubsteps(d, Length(w) * dt);
-    const double h = static_cast<double>(dt) / substeps;
-    const Vector inverse(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]);
-    const Rotation principal = exact(d.PrincipalAxes());
-    // The principal axes turn; the frame of the body follows at the end.
-    Rotation q = exact(rotation) * principal;
-    Vector momentum = InverseRotate<double>(q, w.cast<double>());
-    for (int k = 0; k < 3; ++k) momentum[k] = inverse[k] > 0 ? momentum[k] / inverse[k] : 0.0;
-    momentum = Rotate<double>(q, momentum);
-    const auto speedAt = [&](const Rotation& at) {
+        return {q.x * scale, q.y * scale, q.z * scale, q.w * scale};
+    }
+    static Rotation Turned(const Vector& by, const Rotation& at) { return RotationFromVector<double>(by) * at; }
+    Vector VelocityAt(const Rotation& at) const {
         const Mat3<double> axes = ToMatrix<double>(at);
-        return Vector(axes * Vector(axes.TransposeMultiply(momentum).cwiseProduct(inverse)));
-    };
-    const auto turned = [](const Vector& by, const Rotation& at) { return RotationFromVector<double>(by) * at; };
-    for (int i = 0; i < substeps; ++i) {
-        momentum += torque.cast<double>() * h;
-        const Vector w1 = speedAt(q);
-        const Rotation half = turned(w1 * (0.5 * h), q);
-        const Vector w2 = speedAt(half);
-        const Vector w3 = speedAt(turned(w2 * (0.5 * h), q));
-        const Vector w4 = speedAt(turned((w3 - w1 * 0.5) * h, half));
+        return axes * Vector(axes.TransposeMultiply(momentum).cwiseProduct(inverse));
+    }
+
+    // Exact for a body of which the two moments beside `axis` are equal: it turns at constant rates about L and about its own axis,
+    // since L / I and, in the body, the part of L along the axis do not change.
+    void AdvanceSymmetric(int axis, double h) {
+        const double across = inverse[(axis + 1) % 3];
+        Vector spin = Vector::Zero();
+        spin[axis] = InverseRotate<double>(rotation, momentum)[axis] * (inverse[axis] - across) * h;
+        rotation = Unit(Turned(momentum * (across * h), rotation) * RotationFromVector<double>(spin));
+    }
+    // Of the fourth order, on the rotations, by two exponentials (E. Celledoni, A. Marthinsen, B. Owren, Commutator-free Lie group
+    // methods, Future Generation Computer Systems 19, 2003): dq/dt = (I(q)^-1 L) q / 2.
+    void Advance(double h) {
+        const Vector w1 = VelocityAt(rotation);
+        const Rotation half = Turned(w1 * (0.5 * h), rotation);
+        const Vector w2 = VelocityAt(half);
+        const Vector w3 = VelocityAt(Turned(w2 * (0.5 * h), rotation));
+        const Vector w4 = VelocityAt(Turned((w3 - w1 * 0.5) * h, half));
         const Vector middle = (w2 + w3) * 2.0;
         const double part = h / 12.0;
-        q = unit(turned((w4 * 3.0 + middle - w1) * part, turned((w1 * 3.0 + middle - w4) * part, q)));
+        rotation = Unit(Turned((w4 * 3.0 + middle - w1) * part, Turned((w1 * 3.0 + middle - w4) * part, rotation)));
     }
-    w = speedAt(q).cast<float>();
-    q = q * principal.Conjugate();
+};
+
+// Keeps the angular momentum, but for a torque that acts all along.
+void RotateFreely(const BodyDynamics& d, Quaternion& rotation, Vector3& w, const Vector3& torque, float dt) {
+    using Vector = FreeTop::Vector;
+    const auto exact = [&](const Quaternion& q) { return FreeTop::Unit({q.x, q.y, q.z, q.w}); };
+    const FreeTop::Rotation principal = exact(d.PrincipalAxes());
+    // The principal axes turn; the frame of the body follows at the end.
+    FreeTop top{Vector(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]), Vector::Zero(), exact(rotation) * principal};
+    Vector momentum = InverseRotate<double>(top.rotation, w.cast<double>());
+    for (int k = 0; k < 3; ++k) momentum[k] = top.inverse[k] > 0 ? momentum[k] / top.inverse[k] : 0.0;
+    top.momentum = Rotate<double>(top.rotation, momentum);
+    const int symmetry = SymmetryAxis(d);
+    const int substeps = symmetry < 3 ? 1 : RotationSubsteps(d, Length(w) * dt);
+    const double h = static_cast<double>(dt) / substeps;
+    const Vector kick = torque.cast<double>() * (0.5 * h);
+    for (int i = 0; i < substeps; ++i) {
+        top.momentum += kick;
+        if (symmetry < 3) top.AdvanceSymmetric(symmetry, h);
+        else top.Advance(h);
+        top.momentum += kick;
+    }
+    w = top.VelocityAt(top.rotation).cast<float>();
+    const FreeTop::Rotation q = top.rotation * principal.Conjugate();
     rotation = Normalized(Quaternion{static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z), static_cast<float>(q.w)});
 }
 

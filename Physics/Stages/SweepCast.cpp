@@ -50,8 +50,15 @@ public:
     SweepCaster(const WorldState& world, const Sweep& sweep, WorkerFindings& findings, SweepHit& best)
         : world_(world), sweep_(sweep), findings_(findings), best_(best), isTurning_(sweep.turns && !sweep.turn.isZero(0)) {}
 
+    bool RunAgainst(uint32_t collider, uint32_t other) {
+        piece_ = &world_.colliders.shapes[collider];
+        shape_ = cast_ = static_cast<const ConvexShape*>(piece_->shape);
+        motion_ = {sweep_.start, sweep_.displacement, Vector3::Zero()};
+        CastAgainst(other, ShapeCaster(*shape_, motion_));
+        return found_;
+    }
+
     bool Run() {
-        best_.time = 1;
         const BodyCold& cold = world_.bodies.cold[sweep_.body];
         for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i) CastPiece(i);
         return found_;
@@ -84,6 +91,7 @@ private:
         const ColliderShape& piece = world_.colliders.shapes[other];
         const float start = std::max(sweep_.from, course.from);
         if (course.displacement.isZero(0) && course.turn.isZero(0) && start == sweep_.from) {
+            if (!whole.IsValid()) return;
             CastThrough(whole, motion_, other, course, course.start * piece.local, start);
             return;
         }
@@ -195,7 +203,7 @@ private:
     }
 
     const WorldState& world_;
-    const Sweep& sweep_;
+    const Sweep sweep_;
     WorkerFindings& findings_;
     SweepHit& best_;
     const bool isTurning_;
@@ -237,7 +245,22 @@ Sweep SweepOf(const WorldState& world, uint32_t body) {
 }
 
 bool CastSweep(const WorldState& world, const Sweep& sweep, WorkerFindings& findings, SweepHit& hit) {
+    hit.time = 1;
     return SweepCaster(world, sweep, findings, hit).Run();
+}
+
+bool CastPair(const WorldState& world, uint32_t collider, uint32_t other, WorkerFindings& findings, SweepHit& hit) {
+    const ColliderShape& piece = world.colliders.shapes[other];
+    const uint32_t body = world.colliders.colliders[collider].body, otherBody = world.colliders.colliders[other].body;
+    const SweepStore& store = world.sweeps;
+    if (!piece.offset && store.starts[otherBody].step == world.report.step) {
+        const Position &from = store.starts[body].pose.position, &otherFrom = store.starts[otherBody].pose.position;
+        const Vector3 motion = Between(from, world.bodies.CentreOf(body)) - Between(otherFrom, world.bodies.CentreOf(otherBody));
+        const float reach = world.colliders.shapes[collider].shape->OuterRadius() + piece.shape->OuterRadius();
+        if (!BallsMeet(Between(otherFrom, from), motion, reach)) return false;
+    }
+    hit.time = 1;
+    return SweepCaster(world, SweepOf(world, body), findings, hit).RunAgainst(collider, other);
 }
 
 }  // namespace fulcrum

@@ -43,6 +43,16 @@ struct SweepHit {
 };
 
 struct SweepStore {
+    // Where the first round looks for what a fast body may hit.
+    enum class SearchBy : uint8_t {
+        None,
+        Pairs,                                 // its way lies inside its fat bounds: there is a pair for all that it may hit
+        Trees,
+    };
+    struct FastBody {
+        uint32_t body;
+        SearchBy by;
+    };
     static constexpr uint32_t kNone = ~0u;
     struct Start {
         Pose pose;
@@ -52,16 +62,19 @@ struct SweepStore {
     uint32_t users = 0;                        // bodies for which motions are kept; 0: nothing is
     float dt = 0;                              // s, of the step
     std::vector<Start> starts;                 // by body: where it was when the step began
-    std::vector<Sweep> swept;                  // those that moved so far that they are cast
+    std::vector<FastBody> fast;                // continuous ones that moved farther than they may without a cast, by body
+    std::vector<SearchBy> searchBy;            // by body; None for all others
+    std::vector<Sweep> swept;                  // courses that were searched anew, or changed
     std::vector<uint32_t> places;              // by body: index into `swept`, or kNone
     std::vector<Sweep> ended;                  // courses that a hit has ended, in the order of the hits
     std::vector<float> endedAt;                // times
-    std::vector<uint32_t> active, next;        // indices into `swept`
+    std::vector<uint32_t> active, next;        // indices into `swept`, of this round and the next
     std::vector<SweepHit> hits;
 
     size_t MemoryUsed() const {
         return starts.capacity() * sizeof(Start) + (swept.capacity() + ended.capacity()) * sizeof(Sweep) + hits.capacity() * sizeof(SweepHit) +
-               (places.capacity() + endedAt.capacity() + active.capacity() + next.capacity()) * sizeof(uint32_t);
+               (places.capacity() + endedAt.capacity() + active.capacity() + next.capacity()) * sizeof(uint32_t) +
+               fast.capacity() * sizeof(FastBody) + searchBy.capacity();
     }
 };
 

@@ -38,6 +38,7 @@ struct alignas(64) WorkerFindings {
     std::vector<uint32_t> surfacePlaces, surfaceLeft;  // Collide: likewise
     std::vector<MoreManifold> more;   // Collide: what has no place in its pair yet
     std::vector<SweepHit> sweepHits;  // Continuous
+    std::vector<SweepStore::FastBody> fast;  // likewise
     CollideCounters libccd;
     uint32_t contacts = 0, points = 0, kept = 0;
     float deepest = 0;                // largest penetration, m
