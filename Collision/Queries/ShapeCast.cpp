@@ -65,7 +65,7 @@ bool ShapeCaster::CastPiece(const Piece& piece, const Pose& pose, const ShapeCas
     hit.fraction = std::min(static_cast<float>(cast.fraction), settings.maxFraction);
     hit.isEarly = cast.status == CoreCastResult::Status::Early;
     if (cast.status == CoreCastResult::Status::AtStart) {
-        MeasureDepth(piece, at, motion, hit);
+        if (settings.measureDepth) MeasureDepth(piece, at, motion, hit);
         return true;
     }
     if (isOneSided && motion.IsTurning()) {

@@ -24,6 +24,7 @@ struct ShapeCastSettings {
     float maxFraction = 1;   // 0 .. 1, of the motion; only hits up to here
     float separation = 0;    // m, >= 0: shapes this far apart count as touching
     float tolerance = 0;     // m, >= 0: a hit may be found that much too far away; 0: to about 1e-6 of the shapes' size
+    bool measureDepth = true;  // else what overlaps at the start is hit with depth, normal and position zero
 };
 
 struct ShapeHit {

@@ -68,10 +68,11 @@ private:
     void CastPiece(uint32_t collider) {
         piece_ = &world_.colliders.shapes[collider];
         shape_ = static_cast<const ConvexShape*>(piece_->shape);
-        const Pose end = sweep_.PoseAt(1);
-        const Pose from = sweep_.start * piece_->local, to = end * piece_->local;
-        motion_ = isTurning_ ? ShapeMotion{sweep_.start, sweep_.displacement, sweep_.turn}
-                             : ShapeMotion{from, Between(from.position, to.position), Vector3::Zero()};
+        motion_ = {sweep_.start, sweep_.displacement, isTurning_ ? sweep_.turn : Vector3(Vector3::Zero())};
+        if (piece_->offset && !isTurning_) {
+            motion_.pose = sweep_.start * piece_->local;
+            motion_.displacement = Between(motion_.pose.position, (sweep_.PoseAt(1) * piece_->local).position);
+        }
         const PlacedConvex placed(*shape_, piece_->local);
         cast_ = isTurning_ && piece_->offset ? &placed : shape_;
         const ShapeCaster whole(*cast_, motion_);
@@ -96,13 +97,17 @@ private:
             return;
         }
         // Seen from the other, which keeps the rotation that it has at the start.
-        const Pose at = course.PoseAt(start) * piece.local, to = course.PoseAt(1) * piece.local;
+        Pose at = start > course.from ? course.PoseAt(start) : course.start;
+        Vector3 others = course.DisplacementRate() * (1 - start);
+        if (piece.offset) {
+            at = at * piece.local;
+            others = Between(at.position, (course.PoseAt(1) * piece.local).position);
+        }
         ShapeMotion relative = motion_;
         const float rest = sweep_.from < 1 ? (1 - start) / (1 - sweep_.from) : 0.0f;
-        const Pose own = sweep_.PoseAt(start);
-        if (isTurning_) relative.pose = own;
+        if (isTurning_ && start > sweep_.from) relative.pose = sweep_.PoseAt(start);
         else relative.pose.position += (motion_.displacement * (1 - rest)).cast<double>();
-        relative.displacement = motion_.displacement * rest - Between(at.position, to.position);
+        relative.displacement = motion_.displacement * rest - others;
         relative.turn = motion_.turn * rest;
         if (!BallsMeet(Between(at.position, relative.pose.position), relative.displacement, cast_->OuterRadius() + piece.shape->OuterRadius())) return;
         const ShapeCaster caster(*cast_, relative);
@@ -115,6 +120,7 @@ private:
         const float length = 1 - start;
         ShapeCastSettings settings;
         settings.tolerance = 0.02f * Thickness(*shape_);
+        settings.measureDepth = false;
         if (length > 0) settings.maxFraction = std::min(1.0f, std::max(0.0f, (best_.time - start) / length));
         caster.Visit(shape, at, settings, [&](const ShapeHit& found) {
             SweepHit hit;
@@ -148,19 +154,28 @@ private:
     // they push each other, where the cast knows only what touches first. The sides of flush neighbours, or edges inside a
     // surface, push nowhere along the way.
     bool Counts(const ShapeMotion& motion, const ShapeHit& found, const Sweep& course, float length, SweepHit& hit) {
-        const Shape& shape = *world_.colliders.shapes[hit.otherCollider].shape;
         if (found.isEarly) return found.fraction > 0;
+        const Shape& shape = *world_.colliders.shapes[hit.otherCollider].shape;
         const float thickness = shape.IsConvex() ? std::min(Thickness(*shape_), Thickness(shape)) : Thickness(*shape_);
         const float depth = kDepthPart * thickness, left = 1 - hit.time;
         const Vector3 linear = length > 0 ? Vector3(motion.displacement * (1 / length)) : Vector3(Vector3::Zero());
-        const float approach = -Dot<float>(found.normal, VelocityAt(found.position, sweep_.PoseAt(hit.time), linear, course, course.PoseAt(hit.time)));
+        float approach;
+        if (found.normal.isZero(0)) {
+            approach = FindPoints(motion, linear, course, hit.time, depth, hit);
+        } else {
+            const Pose own = sweep_.PoseAt(hit.time), others = course.PoseAt(hit.time);
+            approach = -Dot<float>(found.normal, VelocityAt(found.position, own, linear, course, others));
+        }
         if (!(approach * left > depth)) return false;
-        const float later = std::min(1.0f, hit.time + depth / approach);
-        Pose own = sweep_.PoseAt(later);
-        const Pose others = course.PoseAt(later);
+        return FindPoints(motion, linear, course, std::min(1.0f, hit.time + depth / approach), depth, hit) * left > depth;
+    }
+
+    // Writes the points of the manifold that the two approach fastest at an instant into the hit; how fast, per step.
+    float FindPoints(const ShapeMotion& motion, const Vector3& linear, const Sweep& course, float time, float depth, SweepHit& hit) {
+        const Pose own = sweep_.PoseAt(time), others = course.PoseAt(time);
+        const ColliderShape& piece = world_.colliders.shapes[hit.otherCollider];
         Pose a = own * piece_->local;
         if (!isTurning_) a.rotation = motion.pose.rotation;
-        const Pose b = others * world_.colliders.shapes[hit.otherCollider].local;
         float most = 0;
         const auto consider = [&](const Manifold& manifold, uint8_t material) {
             const Vector3 normal = Rotate(a.rotation, manifold.normal);
@@ -178,8 +193,8 @@ private:
                 hit.otherArms[i] = Between(others.position, point);
             }
         };
-        FindManifolds(shape, Relative(a, b), 0.25f * depth, consider);
-        return most * left > depth;
+        FindManifolds(*piece.shape, Relative(a, others * piece.local), 0.25f * depth, consider);
+        return most;
     }
 
     template <class Consider>
