@@ -37,7 +37,7 @@ struct Material {
 // nothing however fast it is. It bounces where it hits, in the middle of the step.
 enum class ContinuousCollision : uint8_t {
     Off,
-    Linear,            // it is cast without its rotation
+    Linear,            // it is cast without its rotation; compounds are cast with it
     LinearAndAngular,  // with it: what swings hits what is in the way, too
 };
 
@@ -79,10 +79,10 @@ struct BodySettings {
     float maxLinearSpeed = 1000.0f;               // m/s, > 0: the step clamps to it
     float maxAngularSpeed = 300.0f;               // rad/s, > 0
     bool gyroscopicTorque = true;                 // conserve angular momentum of bodies whose inertia is not spherical
-    ContinuousCollision continuous = ContinuousCollision::Off;  // not for meshes, height fields and planes
     bool allowSleep = true;
     bool startAsleep = false;                     // dynamic bodies only
     uint8_t layer = 0;                            // 0..31, see SystemSettings::layerCollides
+    ContinuousCollision continuous = ContinuousCollision::Off;  // not for meshes, height fields and planes
     uint64_t userData = 0;
 };
 

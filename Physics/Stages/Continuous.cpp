@@ -43,6 +43,12 @@ bool StaysInBounds(const WorldState& world, uint32_t body, const Vector3& moved,
     return stays;
 }
 
+// Pieces beside the centre of mass change sides of a wall where the body turns, so that compounds are always cast with their turn.
+bool IsCastTurning(const WorldState& world, uint32_t body) {
+    const BodyCold& cold = world.bodies.cold[body];
+    return cold.continuous == ContinuousCollision::LinearAndAngular || cold.colliderCount > 1 || world.colliders.shapes[cold.firstCollider].offset;
+}
+
 void LookAtBody(const WorldState& world, uint32_t body, float dt, WorkerFindings& findings) {
     using SearchBy = SweepStore::SearchBy;
     const SweepStore::Start& start = world.sweeps.starts[body];
@@ -51,12 +57,11 @@ void LookAtBody(const WorldState& world, uint32_t body, float dt, WorkerFindings
     const Vector3 moved = (world.bodies.CentreOf(body) - start.pose.position).cast<float>();
     const bool stays = StaysInBounds(world, body, moved, dt, findings);
     if (!d.continuous) return;
-    const BodyCold& cold = world.bodies.cold[body];
-    const bool turns = cold.continuous == ContinuousCollision::LinearAndAngular;
+    if (world.bodies.cold[body].colliderCount == 0) return;
+    const bool turns = IsCastTurning(world, body);
     const float distance = Length(moved) + (turns ? Length(SweepOf(world, body).turn) * d.outerRadius : 0.0f);
     if (!(distance > FreeMotionOf(world, body))) return;
-    const bool isSimple = !turns && cold.colliderCount == 1 && !world.colliders.shapes[cold.firstCollider].offset;
-    findings.fast.push_back({body, stays && isSimple ? SearchBy::Pairs : SearchBy::Trees});
+    findings.fast.push_back({body, stays && !turns ? SearchBy::Pairs : SearchBy::Trees});
 }
 
 // What the solver moved elsewhere than its bounds foresaw is given bounds about its whole way, so that the trees find it there.
@@ -149,7 +154,7 @@ uint32_t PlaceOf(WorldState& world, uint32_t body) {
     if (store.searchBy[body] == SweepStore::SearchBy::None) return SweepStore::kNone;
     if (store.places[body] == SweepStore::kNone) {
         Sweep sweep = SweepOf(world, body);
-        sweep.turns = world.bodies.cold[body].continuous == ContinuousCollision::LinearAndAngular;
+        sweep.turns = IsCastTurning(world, body);
         store.places[body] = static_cast<uint32_t>(store.swept.size());
         store.swept.push_back(sweep);
     }
@@ -204,6 +209,8 @@ private:
             gain[s] = Gain(bodies[s], hit.time);
             v.linear[s] = world_.bodies.LinearVelocityOf(bodies[s]) - gain[s];
             v.angular[s] = world_.bodies.AngularVelocityOf(bodies[s]);
+            const BodyDynamics& d = world_.bodies.dynamics[bodies[s]];
+            if (!d.spherical) world_.bodies.UpdateInertia(bodies[s], AxesOf(d, SweepOf(world_, bodies[s]).PoseAt(hit.time).rotation));
         }
         if (!SolveImpact(world_, hit, v)) return false;
         ++world_.report.sweptHits;

@@ -10,16 +10,19 @@ constexpr int kIterations = 8;
 
 struct Side {
     SymmetricMatrix3 inertia;  // inverse
-    float mass = 0;            // inverse
+    Vector3 mass = Vector3::Zero();  // inverse, along the world's axes: zero where a translation is locked
 };
 
 class ImpactSolver {
 public:
-    ImpactSolver(const WorldState& world, const SweepHit& hit, ImpactVelocities& velocities) : world_(world), hit_(hit), v_(velocities) {
+    ImpactSolver(const WorldState& world, const SweepHit& hit, ImpactVelocities& velocities) : hit_(hit), v_(velocities) {
         const uint32_t bodies[2] = {hit.body, hit.other};
         for (int s = 0; s < 2; ++s) {
             if (!world.bodies.CanMove(bodies[s])) continue;
-            side_[s] = {world.bodies.masses[bodies[s]].InverseInertia(), world.bodies.dynamics[bodies[s]].inverseMass};
+            const BodyDynamics& d = world.bodies.dynamics[bodies[s]];
+            side_[s] = {world.bodies.masses[bodies[s]].InverseInertia(), Vector3::Constant(d.inverseMass)};
+            Vector3 none = Vector3::Zero();
+            d.Lock(side_[s].mass, none);
         }
         const PairMaterial material = MaterialOfPair(world, hit.body, hit.other, *world.colliders.shapes[hit.otherCollider].shape, hit.material);
         friction_ = material.friction;
@@ -48,16 +51,15 @@ private:
     // What an impulse of 1 N s along a unit vector changes of the relative velocity along it.
     float Response(int i, const Vector3& axis) const {
         const Vector3 a = Cross<float>(hit_.arms[i], axis), b = Cross<float>(hit_.otherArms[i], axis);
-        return side_[0].mass + side_[1].mass + Dot<float>(a, Vector3(side_[0].inertia * a)) + Dot<float>(b, Vector3(side_[1].inertia * b));
+        const Vector3 mass = side_[0].mass + side_[1].mass;
+        return Dot<float>(axis, Vector3(mass.cwiseProduct(axis))) + Dot<float>(a, Vector3(side_[0].inertia * a)) + Dot<float>(b, Vector3(side_[1].inertia * b));
     }
     // On the body; the other gets the opposite.
     void Apply(int i, const Vector3& impulse) {
         for (int s = 0; s < 2; ++s) {
             const Vector3 own = s == 0 ? impulse : Vector3(-impulse);
-            v_.linear[s] += own * side_[s].mass;
+            v_.linear[s] += own.cwiseProduct(side_[s].mass);
             v_.angular[s] += side_[s].inertia * Cross<float>(s == 0 ? hit_.arms[i] : hit_.otherArms[i], own);
-            const uint32_t body = s == 0 ? hit_.body : hit_.other;
-            if (side_[s].mass > 0) world_.bodies.dynamics[body].Lock(v_.linear[s], v_.angular[s]);
         }
     }
     void Push(int i) {
@@ -80,7 +82,6 @@ private:
         Apply(i, rubbed_[i] - old);
     }
 
-    const WorldState& world_;
     const SweepHit& hit_;
     ImpactVelocities& v_;
     Side side_[2];

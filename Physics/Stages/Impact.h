@@ -10,7 +10,7 @@ struct ImpactVelocities {
     Vector3 linear[2], angular[2];  // of hit.body, hit.other
 };
 
-// Newton's law of restitution at each point that approaches, Coulomb friction, what is locked or does not move held. False: no point
+// By the masses and the world inertia of the bodies as they are. Newton's law of restitution at each point that approaches, Coulomb friction, what is locked or does not move held. False: no point
 // approaches, and nothing has changed.
 bool SolveImpact(const WorldState& world, const SweepHit& hit, ImpactVelocities& velocities);
 

@@ -69,12 +69,8 @@ private:
         piece_ = &world_.colliders.shapes[collider];
         shape_ = static_cast<const ConvexShape*>(piece_->shape);
         motion_ = {sweep_.start, sweep_.displacement, isTurning_ ? sweep_.turn : Vector3(Vector3::Zero())};
-        if (piece_->offset && !isTurning_) {
-            motion_.pose = sweep_.start * piece_->local;
-            motion_.displacement = Between(motion_.pose.position, (sweep_.PoseAt(1) * piece_->local).position);
-        }
         const PlacedConvex placed(*shape_, piece_->local);
-        cast_ = isTurning_ && piece_->offset ? &placed : shape_;
+        cast_ = piece_->offset ? &placed : shape_;
         const ShapeCaster whole(*cast_, motion_);
         if (!whole.IsValid()) return;
         const Bounds& about = whole.BoundsAboutCentre();
@@ -85,15 +81,15 @@ private:
         if (layers & world_.colliders.fixedLayers) world_.colliders.fixedTree.CastRay(ray, limit_, visit);
     }
 
-    void CastAgainst(uint32_t other, const ShapeCaster& whole) {
+    void CastAgainst(uint32_t other, const ShapeCaster& whole, float from = 0) {
         const uint32_t body = world_.colliders.colliders[other].body;
         if (!MayCollide(world_, sweep_.body, body)) return;
         const Sweep course = SweepOf(world_, body);
         const ColliderShape& piece = world_.colliders.shapes[other];
-        const float start = std::max(sweep_.from, course.from);
+        const float start = std::max({sweep_.from, course.from, from});
         if (course.displacement.isZero(0) && course.turn.isZero(0) && start == sweep_.from) {
             if (!whole.IsValid()) return;
-            CastThrough(whole, motion_, other, course, course.start * piece.local, start);
+            CastThrough(whole, motion_, other, course, course.start * piece.local, start, whole);
             return;
         }
         // Seen from the other, which keeps the rotation that it has at the start.
@@ -111,26 +107,62 @@ private:
         relative.turn = motion_.turn * rest;
         if (!BallsMeet(Between(at.position, relative.pose.position), relative.displacement, cast_->OuterRadius() + piece.shape->OuterRadius())) return;
         const ShapeCaster caster(*cast_, relative);
-        if (caster.IsValid()) CastThrough(caster, relative, other, course, at, start);
+        if (caster.IsValid()) CastThrough(caster, relative, other, course, at, start, whole);
     }
 
     // From the time `start` to the end.
-    void CastThrough(const ShapeCaster& caster, const ShapeMotion& motion, uint32_t other, const Sweep& course, const Pose& at, float start) {
+    void CastThrough(const ShapeCaster& caster, const ShapeMotion& motion, uint32_t other, const Sweep& course, const Pose& at, float start,
+                     const ShapeCaster& whole) {
         const Shape& shape = *world_.colliders.shapes[other].shape;
         const float length = 1 - start;
         ShapeCastSettings settings;
         settings.tolerance = 0.02f * Thickness(*shape_);
         settings.measureDepth = false;
         if (length > 0) settings.maxFraction = std::min(1.0f, std::max(0.0f, (best_.time - start) / length));
+        float touched = 1;  // when it touched, but not so that it counts
         caster.Visit(shape, at, settings, [&](const ShapeHit& found) {
-            SweepHit hit;
+            SweepHit hit = HitOf(other, course);
             hit.time = start + found.fraction * length;
-            hit.body = sweep_.body;
-            hit.other = course.body;
-            hit.otherCollider = other;
-            if (ComesBefore(hit) && Counts(motion, found, course, length, hit)) Take(hit);
+            if (ComesBefore(hit)) {
+                if (Counts(motion, found, course, length, hit)) Take(hit);
+                else touched = std::min(touched, hit.time);
+            }
             return length > 0 ? (best_.time - start) / length : 0.0f;
         });
+        // Without a turn what does not push now never will.
+        if (isTurning_ && touched < best_.time) Follow(motion, course, other, length, touched, whole);
+    }
+
+    SweepHit HitOf(uint32_t other, const Sweep& course) const {
+        SweepHit hit;
+        hit.body = sweep_.body;
+        hit.other = course.body;
+        hit.otherCollider = other;
+        return hit;
+    }
+
+    // Steps along with what turns while it touches, by so little that it cannot come through, until it pushes or is free.
+    void Follow(const ShapeMotion& motion, const Sweep& course, uint32_t other, float length, float time, const ShapeCaster& whole) {
+        constexpr int kMostSteps = 64, kMostRestarts = 8;
+        const Shape& shape = *world_.colliders.shapes[other].shape;
+        const Vector3 linear = motion.displacement * (1 / length);
+        const float depth = DepthThatCounts(shape);
+        const float speed = Length(linear) + Length(sweep_.TurnRate()) * cast_->OuterRadius() + Length(course.TurnRate()) * shape.OuterRadius();
+        SweepHit hit = HitOf(other, course);
+        for (int i = 0; i < kMostSteps; ++i) {
+            time += depth / speed;
+            if (!(time < std::min(1.0f, best_.time))) return;
+            const Push push = FindPoints(motion, linear, course, time, depth, hit);
+            hit.time = time;
+            if (hit.pointCount == 0 && restarts_++ < kMostRestarts) return CastAgainst(other, whole, time);
+            if (push.speed > 0 && push.depth > depth) return Take(hit);
+        }
+        hit.pointCount = 0;  // not decided yet
+        Take(hit);
+    }
+
+    float DepthThatCounts(const Shape& other) const {
+        return kDepthPart * (other.IsConvex() ? std::min(Thickness(*shape_), Thickness(other)) : Thickness(*shape_));
     }
 
     bool ComesBefore(const SweepHit& hit) const {
@@ -156,34 +188,42 @@ private:
     bool Counts(const ShapeMotion& motion, const ShapeHit& found, const Sweep& course, float length, SweepHit& hit) {
         if (found.isEarly) return found.fraction > 0;
         const Shape& shape = *world_.colliders.shapes[hit.otherCollider].shape;
-        const float thickness = shape.IsConvex() ? std::min(Thickness(*shape_), Thickness(shape)) : Thickness(*shape_);
-        const float depth = kDepthPart * thickness, left = 1 - hit.time;
+        const float depth = DepthThatCounts(shape), left = 1 - hit.time;
         const Vector3 linear = length > 0 ? Vector3(motion.displacement * (1 / length)) : Vector3(Vector3::Zero());
         float approach;
         if (found.normal.isZero(0)) {
-            approach = FindPoints(motion, linear, course, hit.time, depth, hit);
+            approach = FindPoints(motion, linear, course, hit.time, depth, hit).speed;
         } else {
             const Pose own = sweep_.PoseAt(hit.time), others = course.PoseAt(hit.time);
             approach = -Dot<float>(found.normal, VelocityAt(found.position, own, linear, course, others));
         }
         if (!(approach * left > depth)) return false;
-        return FindPoints(motion, linear, course, std::min(1.0f, hit.time + depth / approach), depth, hit) * left > depth;
+        return FindPoints(motion, linear, course, std::min(1.0f, hit.time + depth / approach), depth, hit).speed * left > depth;
     }
 
-    // Writes the points of the manifold that the two approach fastest at an instant into the hit; how fast, per step.
-    float FindPoints(const ShapeMotion& motion, const Vector3& linear, const Sweep& course, float time, float depth, SweepHit& hit) {
+    struct Push {
+        float speed = 0;  // of approach, per step
+        float depth = 0;  // m
+    };
+
+    // Writes the points of the manifold where the two approach fastest at an instant into the hit; none where they do not touch.
+    Push FindPoints(const ShapeMotion& motion, const Vector3& linear, const Sweep& course, float time, float depth, SweepHit& hit) {
         const Pose own = sweep_.PoseAt(time), others = course.PoseAt(time);
         const ColliderShape& piece = world_.colliders.shapes[hit.otherCollider];
         Pose a = own * piece_->local;
         if (!isTurning_) a.rotation = motion.pose.rotation;
-        float most = 0;
+        Push most;
+        hit.pointCount = 0;
         const auto consider = [&](const Manifold& manifold, uint8_t material) {
             const Vector3 normal = Rotate(a.rotation, manifold.normal);
-            float fastest = 0;
-            for (int i = 0; i < manifold.pointCount; ++i)
-                fastest = std::max(fastest, Dot<float>(normal, VelocityAt(a.Transform(manifold.points[i].positionOnA), own, linear, course, others)));
-            if (!(fastest > most)) return;
-            most = fastest;
+            Push push;
+            for (int i = 0; i < manifold.pointCount; ++i) {
+                const Vector3 v = VelocityAt(a.Transform(manifold.points[i].positionOnA), own, linear, course, others);
+                push.speed = std::max(push.speed, Dot<float>(normal, v));
+                push.depth = std::max(push.depth, -manifold.points[i].separation);
+            }
+            if (hit.pointCount > 0 && !(push.speed > most.speed)) return;
+            most = push;
             hit.normal = normal;
             hit.material = material;
             hit.pointCount = manifold.pointCount;
@@ -223,6 +263,7 @@ private:
     SweepHit& best_;
     const bool isTurning_;
     bool found_ = false;
+    int restarts_ = 0;
     float limit_ = 1;                          // of the sweep, up to where hits are of interest
     const ColliderShape* piece_ = nullptr;
     const ConvexShape* shape_ = nullptr;       // of the piece

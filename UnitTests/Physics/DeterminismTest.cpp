@@ -1,4 +1,5 @@
 // The same scene gives the same bits, however many threads compute it and however often.
+#include <Fulcrum/UnitTests/Support/FastScene.h>
 #include <Fulcrum/UnitTests/Support/JointScene.h>
 #include <Fulcrum/UnitTests/Support/MixedScene.h>
 #include <Fulcrum/UnitTests/Support/SurfaceScene.h>
@@ -41,6 +42,11 @@ TEST(Determinism, SurfacesAreTheSameForAnyNumberOfThreads) {
     const uint64_t one = HashOfSurfaceScene(1);
     EXPECT_EQ(HashOfSurfaceScene(1), one);
     for (uint32_t threads : {2u, 3u, 4u}) EXPECT_EQ(HashOfSurfaceScene(threads), one) << threads;
+}
+
+TEST(Determinism, FastBodiesAreTheSameForAnyNumberOfThreads) {
+    const uint64_t one = HashOfFastScene(1);
+    for (uint32_t threads : {2u, 3u, 4u}) EXPECT_EQ(HashOfFastScene(threads), one) << threads;
 }
 
 TEST(Determinism, EveryStepOfJointsOfThreadsIsThatOfOne) {

@@ -1,5 +1,6 @@
-// What the mixed scene and those of the joints and surfaces come to, as one number each. Every build gives it: scalar, SSE2 and AVX2 lanes, gcc and clang, any number of
-// threads. A change of the engine that is meant to change results writes the new numbers here, which the failure prints.
+// What the mixed scene and those of joints, surfaces and fast bodies come to, as one number each. Every build gives it: scalar,
+// SSE2 and AVX2 lanes, gcc and clang, any number of threads. A change of the engine that is meant to change results writes the new numbers here, which the failure prints.
+#include <Fulcrum/UnitTests/Support/FastScene.h>
 #include <Fulcrum/UnitTests/Support/JointScene.h>
 #include <Fulcrum/UnitTests/Support/MixedScene.h>
 #include <Fulcrum/UnitTests/Support/SurfaceScene.h>
@@ -13,6 +14,7 @@ namespace {
 constexpr uint64_t kGoldenHash = 0xa67676adb03e396dull;
 constexpr uint64_t kGoldenHashOfJoints = 0x3fd1e84fc3bb448full;
 constexpr uint64_t kGoldenHashOfSurfaces = 0xda48f8f257c9bde1ull;
+constexpr uint64_t kGoldenHashOfFastBodies = 0;
 
 std::string Hex(uint64_t number) {
     char text[24];
@@ -33,6 +35,11 @@ TEST(GoldenHash, OfTheJointScene) {
 TEST(GoldenHash, OfTheSurfaceScene) {
     const uint64_t hash = HashOfSurfaceScene(1);
     EXPECT_EQ(hash, kGoldenHashOfSurfaces) << "This build gives kGoldenHashOfSurfaces = " << Hex(hash);
+}
+
+TEST(GoldenHash, OfTheFastScene) {
+    const uint64_t hash = HashOfFastScene(1);
+    EXPECT_EQ(hash, kGoldenHashOfFastBodies) << "This build gives kGoldenHashOfFastBodies = " << Hex(hash);
 }
 
 }  // namespace
