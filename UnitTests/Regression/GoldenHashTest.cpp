@@ -11,10 +11,10 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0xa67676adb03e396dull;
-constexpr uint64_t kGoldenHashOfJoints = 0x3fd1e84fc3bb448full;
-constexpr uint64_t kGoldenHashOfSurfaces = 0xda48f8f257c9bde1ull;
-constexpr uint64_t kGoldenHashOfFastBodies = 0;
+constexpr uint64_t kGoldenHash = 0xf072aa7838e0092full;
+constexpr uint64_t kGoldenHashOfJoints = 0x02738d7493b87251ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0xba580a8fdb578c8bull;
+constexpr uint64_t kGoldenHashOfFastBodies = 0xd3ee0f895eb43c74ull;
 
 std::string Hex(uint64_t number) {
     char text[24];

@@ -58,6 +58,7 @@ uint64_t HashOfFastScene(uint32_t threads) {
     }
     world.Steps(kSteps);
     for (const BodyId body : bodies) {
+        if (world.Bodies().GetContinuous(body) == ContinuousCollision::Off) continue;
         const Position p = world.PositionOf(body);
         EXPECT_LE(p.cwiseAbs().maxCoeff(), double{kRoom}) << body.index;
     }

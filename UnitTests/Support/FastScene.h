@@ -6,7 +6,7 @@
 
 namespace fulcrum::testing {
 
-// Hash of the poses after 90 steps with so many threads. Adds a failure where a body has left the room.
+// Hash of the poses after 90 steps with so many threads. Adds a failure where a body of continuous collision has left the room.
 uint64_t HashOfFastScene(uint32_t threads);
 
 }  // namespace fulcrum::testing
