@@ -176,9 +176,9 @@ private:
     }
 
     // Per step, of the body's point against the other's at an instant.
-    Vector3 VelocityAt(const Position& point, const Pose& own, const Vector3& linear, const Sweep& course, const Pose& others) const {
-        Vector3 v = linear - Cross<float>(course.TurnRate(), Between(others.position, point));
-        if (isTurning_) v += Cross<float>(sweep_.TurnRate(), Between(own.position, point));
+    Vector3 VelocityAt(const Position& point, const Position& own, const Vector3& linear, const Sweep& course, const Position& others) const {
+        Vector3 v = linear - Cross<float>(course.TurnRate(), Between(others, point));
+        if (isTurning_) v += Cross<float>(sweep_.TurnRate(), Between(own, point));
         return v;
     }
 
@@ -194,7 +194,7 @@ private:
         if (found.normal.isZero(0)) {
             approach = FindPoints(motion, linear, course, hit.time, depth, hit).speed;
         } else {
-            const Pose own = sweep_.PoseAt(hit.time), others = course.PoseAt(hit.time);
+            const Position own = sweep_.PositionAt(hit.time), others = course.PositionAt(hit.time);
             approach = -Dot<float>(found.normal, VelocityAt(found.position, own, linear, course, others));
         }
         if (!(approach * left > depth)) return false;
@@ -208,17 +208,16 @@ private:
 
     // Writes the points of the manifold where the two approach fastest at an instant into the hit; none where they do not touch.
     Push FindPoints(const ShapeMotion& motion, const Vector3& linear, const Sweep& course, float time, float depth, SweepHit& hit) {
-        const Pose own = sweep_.PoseAt(time), others = course.PoseAt(time);
+        const Pose own{sweep_.PositionAt(time), isTurning_ ? sweep_.RotationAt(time) : motion.pose.rotation}, others = course.PoseAt(time);
         const ColliderShape& piece = world_.colliders.shapes[hit.otherCollider];
-        Pose a = own * piece_->local;
-        if (!isTurning_) a.rotation = motion.pose.rotation;
+        const Pose a = own * piece_->local;
         Push most;
         hit.pointCount = 0;
         const auto consider = [&](const Manifold& manifold, uint8_t material) {
             const Vector3 normal = Rotate(a.rotation, manifold.normal);
             Push push;
             for (int i = 0; i < manifold.pointCount; ++i) {
-                const Vector3 v = VelocityAt(a.Transform(manifold.points[i].positionOnA), own, linear, course, others);
+                const Vector3 v = VelocityAt(a.Transform(manifold.points[i].positionOnA), own.position, linear, course, others.position);
                 push.speed = std::max(push.speed, Dot<float>(normal, v));
                 push.depth = std::max(push.depth, -manifold.points[i].separation);
             }

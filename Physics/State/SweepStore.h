@@ -21,10 +21,13 @@ struct Sweep {
     bool isCut = false;                        // something was hit
     bool changed = false;                      // in the present round
 
-    Pose PoseAt(float time) const {
-        const float part = from < 1 ? (time - from) / (1 - from) : 0.0f;
-        return {start.position + (displacement * part).cast<double>(), Normalized(RotationFromVector(Vector3(turn * part)) * start.rotation)};
+    float PartAt(float time) const { return from < 1 ? (time - from) / (1 - from) : 0.0f; }
+    Position PositionAt(float time) const { return start.position + (displacement * PartAt(time)).cast<double>(); }
+    Quaternion RotationAt(float time) const {
+        if (turn.isZero(0)) return start.rotation;
+        return Normalized(RotationFromVector(Vector3(turn * PartAt(time))) * start.rotation);
     }
+    Pose PoseAt(float time) const { return {PositionAt(time), RotationAt(time)}; }
     // Of a whole step's length.
     Vector3 DisplacementRate() const { return from < 1 ? Vector3(displacement * (1 / (1 - from))) : Vector3(Vector3::Zero()); }
     Vector3 TurnRate() const { return from < 1 ? Vector3(turn * (1 / (1 - from))) : Vector3(Vector3::Zero()); }
