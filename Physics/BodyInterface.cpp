@@ -46,6 +46,14 @@ void FillDynamics(BodyDynamics& d, const BodySettings& s) {
     d.spherical = spread <= 1e-5f * inertia.maxCoeff();
 }
 
+void SetFilters(WorldState& world, uint32_t body, uint64_t category, uint64_t mask, const CollisionGroup& group) {
+    BodyCold& cold = world.bodies.cold[body];
+    cold.category = category;
+    cold.mask = mask;
+    cold.group = group;
+    world.bodies.dynamics[body].filtered = category != 1 || mask != ~uint64_t(0) || group.filter;
+}
+
 void MakeColliders(WorldState& world, uint32_t body) {
     ColliderStore& store = world.colliders;
     BodyCold& cold = world.bodies.cold[body];
@@ -80,6 +88,14 @@ void WakeNeighbours(WorldState& world, uint32_t body) {
         WakeInside(world, world.colliders.colliders[i].fat);
 }
 
+// Ends the contacts that the body's filters forbid, has those found that they allow.
+void Refilter(WorldState& world, uint32_t body) {
+    RemoveForbiddenPairs(world, body);
+    WakeBody(world, body);
+    WakeNeighbours(world, body);
+    RequeueColliders(world, body);
+}
+
 // Brings everything in line with a pose that was set by hand.
 void Teleported(WorldState& world, uint32_t body) {
     world.bodies.UpdateInertia(body);
@@ -107,6 +123,7 @@ Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
     cold.continuous = settings.continuous;
     world_.sweeps.users += settings.continuous != ContinuousCollision::Off;
     FillDynamics(world_.bodies.dynamics[body], settings);
+    SetFilters(world_, body, settings.category, settings.mask, settings.group);
     world_.bodies.SetCentrePose(body, CentrePose(*settings.shape, settings.position, settings.rotation));
     world_.bodies.SetVelocity(body, settings.linearVelocity, settings.angularVelocity);
     world_.bodies.UpdateInertia(body);
@@ -259,6 +276,23 @@ Status BodyInterface::SetMaterial(BodyId id, const Material& material) {
     return Done{};
 }
 
+Status BodyInterface::SetCategoryAndMask(BodyId id, uint64_t category, uint64_t mask) {
+    const WorldLock::Exclusive alone(world_.lock);
+    if (!Exists(id)) return Unknown(id);
+    SetFilters(world_, id.index, category, mask, world_.bodies.cold[id.index].group);
+    Refilter(world_, id.index);
+    return Done{};
+}
+
+Status BodyInterface::SetGroup(BodyId id, const CollisionGroup& group) {
+    const WorldLock::Exclusive alone(world_.lock);
+    if (!Exists(id)) return Unknown(id);
+    const BodyCold& cold = world_.bodies.cold[id.index];
+    SetFilters(world_, id.index, cold.category, cold.mask, group);
+    Refilter(world_, id.index);
+    return Done{};
+}
+
 Status BodyInterface::SetGravityFactor(BodyId id, float factor) {
     const WorldLock::Exclusive alone(world_.lock);
     if (!Exists(id)) return Unknown(id);
@@ -338,6 +372,11 @@ ContinuousCollision BodyInterface::GetContinuous(BodyId id) const {
     return Exists(id) ? world_.bodies.cold[id.index].continuous : ContinuousCollision::Off;
 }
 ShapePtr BodyInterface::GetShape(BodyId id) const { return Exists(id) ? world_.bodies.cold[id.index].shape : nullptr; }
+uint64_t BodyInterface::GetCategory(BodyId id) const { return Exists(id) ? world_.bodies.cold[id.index].category : 0; }
+uint64_t BodyInterface::GetMask(BodyId id) const { return Exists(id) ? world_.bodies.cold[id.index].mask : 0; }
+CollisionGroup BodyInterface::GetGroup(BodyId id) const {
+    return Exists(id) ? world_.bodies.cold[id.index].group : CollisionGroup{};
+}
 uint64_t BodyInterface::GetUserData(BodyId id) const { return Exists(id) ? world_.bodies.cold[id.index].userData : 0; }
 bool BodyInterface::IsAwake(BodyId id) const { return Exists(id) && world_.bodies.dynamics[id.index].awake; }
 bool BodyInterface::IsFrozen(BodyId id) const { return Exists(id) && world_.bodies.dynamics[id.index].frozen; }

@@ -33,6 +33,9 @@ public:
     Status AddImpulseAt(BodyId id, const Vector3& impulse, const Position& point);
     Status AddAngularImpulse(BodyId id, const Vector3& impulse);
     Status SetMaterial(BodyId id, const Material& material);
+    // What it collides with, see BodySettings. Contacts that no longer may be end; the body and what it touched wake.
+    Status SetCategoryAndMask(BodyId id, uint64_t category, uint64_t mask);
+    Status SetGroup(BodyId id, const CollisionGroup& group);
     Status SetGravityFactor(BodyId id, float factor);
     Status SetContinuous(BodyId id, ContinuousCollision continuous);  // Errors also: OutOfRange, Unsupported (a surface or plane)
     Status Wake(BodyId id);
@@ -51,6 +54,9 @@ public:
     MotionType GetMotionType(BodyId id) const;
     ContinuousCollision GetContinuous(BodyId id) const;
     ShapePtr GetShape(BodyId id) const;
+    uint64_t GetCategory(BodyId id) const;
+    uint64_t GetMask(BodyId id) const;
+    CollisionGroup GetGroup(BodyId id) const;
     uint64_t GetUserData(BodyId id) const;
     bool IsAwake(BodyId id) const;
     bool IsFrozen(BodyId id) const;  // its state turned non-finite; SetPose revives it

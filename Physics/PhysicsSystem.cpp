@@ -1,6 +1,7 @@
 #include <Fulcrum/Physics/PhysicsSystem.h>
 
 #include <Fulcrum/Physics/Islands/UnionFind.h>
+#include <Fulcrum/Physics/Stages/PairView.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/Validation.h>
 
@@ -167,6 +168,11 @@ Status PhysicsSystem::SetSettings(const SystemSettings& settings) {
     return Done{};
 }
 
+void PhysicsSystem::SetContactListener(const ContactListener* listener) {
+    const WorldLock::Exclusive alone(world_->lock);
+    ChangeListener(*world_, listener);
+}
+
 void PhysicsSystem::VisitBodies(FunctionRef<void(BodyId)> visit) const {
     const BodyStore& bodies = world_->bodies;
     for (uint32_t i = 0; i < bodies.Size(); ++i)
@@ -176,22 +182,10 @@ void PhysicsSystem::VisitBodies(FunctionRef<void(BodyId)> visit) const {
 void PhysicsSystem::VisitContacts(FunctionRef<void(const ContactView&)> visit) const {
     const WorldState& world = *world_;
     world.pairs.active.Visit([&](uint32_t index) {
-        const Pair& pair = world.pairs.pairs[index];
-        const ContactRecord& record = world.pairs.records[index];
-        if (!pair.touching) return;
-        const Pose poseA = world.bodies.CentrePoseOf(pair.bodyA);
-        const Pose poseB = world.bodies.CentrePoseOf(pair.bodyB);
-        const Vector3 normal = Rotate(poseA.rotation, Vector3(record.normal[0], record.normal[1], record.normal[2]));
-        ContactView::Point points[ContactRecord::kMaxPoints];
-        const size_t count = static_cast<size_t>(record.pointCount);
-        for (size_t i = 0; i < count; ++i) {
-            const ContactRecord::Point& p = record.points[i];
-            const Position onA = poseA.Transform(Vector3(p.onA[0], p.onA[1], p.onA[2]));
-            const Position onB = poseB.Transform(Vector3(p.onB[0], p.onB[1], p.onB[2]));
-            points[i] = {onA, Dot<float>(normal, Vector3((onB - onA).cast<float>())), record.impulse[i]};
-        }
-        visit({world.bodies.IdOf(pair.bodyA), world.bodies.IdOf(pair.bodyB), normal,
-               std::span<const ContactView::Point>(points, count)});
+        // A seam has taken the points from the records of some.
+        if (!world.pairs.pairs[index].touching || !(world.pairs.records[index].pointCount > 0)) return;
+        ContactView::Point room[ContactRecord::kMaxPoints];
+        visit(ViewContact(world, index, room));
     });
 }
 

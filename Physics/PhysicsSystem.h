@@ -4,6 +4,7 @@
 
 #include <Fulcrum/Jobs/JobSystem.h>
 #include <Fulcrum/Physics/BodyInterface.h>
+#include <Fulcrum/Physics/ContactListener.h>
 #include <Fulcrum/Physics/JointInterface.h>
 #include <Fulcrum/Physics/QueryInterface.h>
 #include <Fulcrum/Physics/StepReport.h>
@@ -12,18 +13,6 @@
 #include <span>
 
 namespace fulcrum {
-
-// One touching pair of convex shapes as it was solved in the last step.
-struct ContactView {
-    BodyId bodyA, bodyB;
-    Vector3 normal;  // unit, from A to B
-    struct Point {
-        Position position;  // on A's surface
-        float separation;   // m, negative where they overlap
-        float impulse;      // N s, along the normal, of the last substep
-    };
-    std::span<const Point> points;
-};
 
 class PhysicsSystem {
 public:
@@ -48,10 +37,13 @@ public:
     const SystemSettings& Settings() const;
     // As for Create. Takes effect at the next step.
     Status SetSettings(const SystemSettings& settings);
+    // Asks it about contacts from now on (not owned, must outlive its use); null: nobody. Pairs that exist are asked about
+    // again, and bodies wake whose contact it forbids.
+    void SetContactListener(const ContactListener* listener);
 
     // All bodies, in the order of their indices.
     void VisitBodies(FunctionRef<void(BodyId)> visit) const;
-    // All awake contacts with at least one point, in a deterministic order.
+    // All awake contacts with at least one point as they were solved in the last step, in a deterministic order.
     void VisitContacts(FunctionRef<void(const ContactView&)> visit) const;
     // Calls visit(id, island) for each dynamic body; islands are numbered from 0 in the order of their smallest body
     // index. Found anew by this call: for viewers and tests.

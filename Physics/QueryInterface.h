@@ -22,6 +22,8 @@ struct WorldState;
 // Which bodies a query sees. Batches call the predicates from several threads at once.
 struct QueryFilter {
     uint32_t layers = 0xFFFFFFFFu;                                    // bit i: bodies of layer i
+    // Those that a body of this category and mask would collide with; 0: whatever their mask, ~0: whatever their category.
+    uint64_t category = 0, mask = ~uint64_t(0);
     std::span<const BodyId> ignore{};                                 // but not these
     std::optional<FunctionRef<bool(BodyId)>> accepts{};               // and those it says yes to
     std::optional<FunctionRef<bool(BodyId, uint32_t child)>> acceptsChild{};  // and their children likewise

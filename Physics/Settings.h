@@ -4,6 +4,7 @@
 #include <Fulcrum/Collision/NarrowPhase/Collide.h>
 #include <Fulcrum/Collision/Shapes/Shape.h>
 #include <Fulcrum/Math/Pose.h>
+#include <Fulcrum/Physics/GroupFilter.h>
 
 #include <array>
 #include <cstdint>
@@ -82,6 +83,9 @@ struct BodySettings {
     bool allowSleep = true;
     bool startAsleep = false;                     // dynamic bodies only
     uint8_t layer = 0;                            // 0..31, see SystemSettings::layerCollides
+    // Two bodies collide only if each has a bit of its category in the other's mask,
+    uint64_t category = 1, mask = ~uint64_t(0);
+    CollisionGroup group{};                       // and only if the filter of a group that both are in lets them
     ContinuousCollision continuous = ContinuousCollision::Off;  // not for meshes, height fields and planes
     uint64_t userData = 0;
 };

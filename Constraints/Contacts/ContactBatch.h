@@ -9,6 +9,10 @@
 // This is the sequence of the axis and angle parts, row after row (the tests compare), at half the arithmetic. The friction
 // rows come first, the normal rows last: non-penetration wins.
 //
+// A surface that moves on its body, as a belt does, changes what friction aims at: along t1, t2 and about n, B's surface has a
+// velocity of its own. Where B is fixed that is part of the motion of its point, and costs nothing; where it moves, batches with
+// such a contact have their own instance of the kernel, which looks it up in the records: batches grow by nothing.
+//
 // The same rows read positions: with displacements since the start of the step in place of velocities, the row gives the
 // change of the separation.
 #pragma once
@@ -44,6 +48,7 @@ struct ContactBatch {
     int32_t count;
     int32_t pointCount;       // largest of the lanes
     bool bounces;             // some lane has restitution
+    const ContactRecord* surfaces;  // where the second bodies move and some lane has a surface velocity: the records; else null
 
     Vec3<Real> normal, tangent1, tangent2;
     Vec3<Real> armA;
@@ -93,7 +98,8 @@ struct ContactSolveSettings {
     void Soften(float frequency, float dampingRatio, float h);
 };
 
-// Fills the batch of `batch.contact[0 .. count)` from the records; bodyB[] are the second bodies.
+// Fills the batch of `batch.contact[0 .. count)` from the records, which it may look at until they are stored; bodyB[] are the
+// second bodies.
 template <int N, bool kFixedB>
 void PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* records, const uint32_t (&bodyB)[N],
                      const SolverBodies& bodies, const ContactPrepareSettings& settings);

@@ -93,6 +93,33 @@ template <int N, bool kFixedB>
     if constexpr (!kFixedB) ApplyWrench<Real>(twists.b, batch.sideB.inverse, batch.sideB.arm, force, torque, Real(1.0f));
 }
 
+template <int N>
+[[gnu::always_inline]] inline void GatherRecordRow(const uint32_t (&index)[N], const ContactRecord* records, int row, Wide<N> (&out)[8]) {
+    const float* rows[N];
+    for (int i = 0; i < N; ++i) rows[i] = reinterpret_cast<const float*>(&records[index[i]]) + 8 * row;
+    GatherRows<N>(rows, out);
+}
+
+// How B's surface moves against A's at c, beyond the motion of the bodies.
+template <class Real>
+struct SurfaceMotion {
+    Real v1, v2;  // m/s along t1 and t2
+    Real spin;    // rad/s about n
+};
+template <int N, bool kFixedB>
+SurfaceMotion<Wide<N>> GatherSurfaceMotion(const ContactBatch<N, kFixedB>& batch, const ContactRecord* records) {
+    using Real = Wide<N>;
+    Real spares[6];
+    for (int i = 0; i < 3; ++i) {
+        Real row[8];
+        GatherRecordRow<N>(batch.contact, records, 2 + i, row);
+        spares[2 * i] = row[3];
+        spares[2 * i + 1] = row[7];
+    }
+    const Vec3<Real> linear(spares[0], spares[1], spares[2]), angular(spares[3], spares[4], spares[5]);
+    return {Dot<Real>(linear, batch.tangent1), Dot<Real>(linear, batch.tangent2), Dot<Real>(angular, batch.normal)};
+}
+
 // Torque about c of normal impulses: sum of (a t1 + b t2) x n l, with sums over a l and b l.
 template <int N, bool kFixedB>
 [[gnu::always_inline]] inline Vec3<Wide<N>> NormalTorque(const ContactBatch<N, kFixedB>& batch, Wide<N> sumA, Wide<N> sumB) {

@@ -13,9 +13,9 @@ struct alignas(32) ContactRecord {
 
     struct Point {
         float onA[3] = {0, 0, 0};  // m, in A's centre frame
-        float spareA = 0;
+        float surfaceA = 0;        // see SetSurfaceVelocity
         float onB[3] = {0, 0, 0};  // m, in B's centre frame; the separation is (onB - onA) . normal at the poses of now
-        float spareB = 0;
+        float surfaceB = 0;
     };
 
     float normal[3] = {0, 1, 0};           // unit, from A to B, in A's centre frame
@@ -23,12 +23,24 @@ struct alignas(32) ContactRecord {
     float friction = 0;                    // Coulomb coefficient
     float restitution = 0;                 // 0..1
     float twistRadius = 0;                 // m: mean distance of the contact patch from its centre
-    float spare = 0;
+    float surfaceMoves = 0;                // 1: it has a surface velocity
     // Second row: impulses of the last substep.
     float impulse[kMaxPoints] = {0, 0, 0, 0};  // N s along the normal, by point
     float frictionImpulse[3] = {0, 0, 0};      // N s, world axes, on B
     float twistImpulse = 0;                    // N m s about the normal
     Point points[kMaxPoints];
+
+    // B's surface moves so against A's, beyond the motion of the bodies: m/s at the contact's centre and rad/s, world axes. Few
+    // contacts have one: it has no row of its own but what is spare in those of the first three points.
+    void SetSurfaceVelocity(const Vector3& linear, const Vector3& angular) {
+        surfaceMoves = linear.isZero(0) && angular.isZero(0) ? 0.0f : 1.0f;
+        float* const spares[6] = {&points[0].surfaceA, &points[0].surfaceB, &points[1].surfaceA,
+                                  &points[1].surfaceB, &points[2].surfaceA, &points[2].surfaceB};
+        for (int k = 0; k < 3; ++k) {
+            *spares[k] = linear[k];
+            *spares[3 + k] = angular[k];
+        }
+    }
 };
 static_assert(sizeof(ContactRecord) == 192);
 

@@ -6,13 +6,6 @@ namespace {
 
 using namespace contacts;
 
-template <int N>
-[[gnu::always_inline]] inline void GatherRecordRow(const uint32_t (&index)[N], const ContactRecord* records, int row, Wide<N> (&out)[8]) {
-    const float* rows[N];
-    for (int i = 0; i < N; ++i) rows[i] = reinterpret_cast<const float*>(&records[index[i]]) + 8 * row;
-    GatherRows<N>(rows, out);
-}
-
 // Sums, over both bodies, what the response matrices are made of.
 template <class Real>
 struct Responses {
@@ -82,6 +75,24 @@ void PrepareBounces(ContactBatch<N, kFixedB>& batch, Wide<N> restitution, const 
     }
 }
 
+// Adds the surface velocities to those of fixed sides. Lanes without one keep every bit, as they do where no lane of their batch
+// has one.
+template <int N>
+void AddSurfaceMotion(ContactBatch<N, true>& batch, Wide<N> moves, const ContactRecord* records) {
+    using Real = Wide<N>;
+    const SurfaceMotion<Real> surface = GatherSurfaceMotion(batch, records);
+    const Vec3<Real> linear = batch.tangent1 * surface.v1 + batch.tangent2 * surface.v2, angular = batch.normal * surface.spin;
+    // What the surface turns with it moves along the arc.
+    const Vec3<Real> inwards = Cross<Real>(angular, linear);
+    const auto has = moves > Real(0.0f);
+    auto& side = batch.sideB;
+    for (int k = 0; k < 3; ++k) {
+        side.velocity.linear[k] = Select(has, side.velocity.linear[k] + linear[k], side.velocity.linear[k]);
+        side.velocity.angular[k] = Select(has, side.velocity.angular[k] + angular[k], side.velocity.angular[k]);
+        side.acceleration[k] = Select(has, side.acceleration[k] + inwards[k], side.acceleration[k]);
+    }
+}
+
 }  // namespace
 
 template <int N, bool kFixedB>
@@ -105,6 +116,8 @@ void PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* recor
     batch.twistRadius = head[6];
     batch.pointCount = static_cast<int32_t>(HorizontalMax(head[3]));
     batch.bounces = HorizontalMax(head[5]) > 0.0f;
+    const bool surfaceMoves = HorizontalMax(head[7]) > 0.0f;
+    batch.surfaces = surfaceMoves && !kFixedB ? records : nullptr;
     batch.relaxedImpulse = zero;
 
     // Points, halfway between the surfaces, and their centre.
@@ -178,6 +191,8 @@ void PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* recor
                                               row.a * other.a * g[5];
         }
     }
+    if constexpr (kFixedB)
+        if (surfaceMoves) AddSurfaceMotion(batch, head[7], records);
     if (batch.bounces) PrepareBounces(batch, head[5], bodyB, bodies, settings);
 }
 

@@ -37,8 +37,15 @@ template <int N, bool kFixedB>
     total[2] = twist;
 }
 
-// All rows of a batch once, on velocities: friction, then the normal rows. A relaxing pass pushes nothing.
-template <bool kRelax, int N, bool kFixedB>
+// Lanes without a surface velocity keep every bit, a negative zero too.
+template <class Real>
+[[gnu::always_inline]] inline Real MoveBy(Real velocity, Real surface) {
+    return Select(surface == Real(0.0f), velocity, velocity + surface);
+}
+
+// All rows of a batch once, on velocities: friction, then the normal rows. A relaxing pass pushes nothing. kSurface: with the
+// surface velocities of a moving second body.
+template <bool kRelax, bool kSurface, int N, bool kFixedB>
 [[gnu::always_inline]] inline void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* states,
                                              const ContactSolveSettings& settings) {
     using Real = Wide<N>;
@@ -50,9 +57,15 @@ template <bool kRelax, int N, bool kFixedB>
     Real w1 = Dot<Real>(relative.angular, batch.tangent1), w2 = Dot<Real>(relative.angular, batch.tangent2);
 
     Real friction[3];
-    SolveFriction<N, kFixedB>(batch, Dot<Real>(relative.linear, batch.tangent1),
-                              Dot<Real>(relative.linear, batch.tangent2), Dot<Real>(relative.angular, batch.normal),
-                              friction);
+    Real v1 = Dot<Real>(relative.linear, batch.tangent1), v2 = Dot<Real>(relative.linear, batch.tangent2);
+    Real wn = Dot<Real>(relative.angular, batch.normal);
+    if constexpr (kSurface) {
+        const SurfaceMotion<Real> surface = GatherSurfaceMotion(batch, batch.surfaces);
+        v1 = MoveBy(v1, surface.v1);
+        v2 = MoveBy(v2, surface.v2);
+        wn = MoveBy(wn, surface.spin);
+    }
+    SolveFriction<N, kFixedB>(batch, v1, v2, wn, friction);
     for (int k = 0; k < 3; ++k) {
         vn += batch.coupling[0][k] * friction[k];
         w1 += batch.coupling[1][k] * friction[k];
@@ -99,6 +112,19 @@ template <bool kRelax, int N, bool kFixedB>
     Scatter(batch, twists);
 }
 
+// Rare, and apart so that it costs the usual instance nothing.
+template <bool kRelax, int N>
+[[gnu::noinline]] void SolveRowsOfMovingSurfaces(ContactBatch<N, false>& batch, BodyState* states, const ContactSolveSettings& settings) {
+    SolveRows<kRelax, true>(batch, states, settings);
+}
+
+template <bool kRelax, int N, bool kFixedB>
+[[gnu::always_inline]] inline void SolveAllRows(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings) {
+    if constexpr (!kFixedB)
+        if (batch.surfaces) return SolveRowsOfMovingSurfaces<kRelax>(batch, states, settings);
+    SolveRows<kRelax, false>(batch, states, settings);
+}
+
 }  // namespace
 
 void ContactSolveSettings::Soften(float frequency, float dampingRatio, float h) {
@@ -129,7 +155,7 @@ void WarmStartContacts(const ContactBatch<N, kFixedB>& batch, BodyState* states)
 
 template <int N, bool kFixedB>
 void SolveContactVelocities(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings) {
-    SolveRows<false>(batch, states, settings);
+    SolveAllRows<false>(batch, states, settings);
 }
 
 template <int N, bool kFixedB>
@@ -149,7 +175,7 @@ void UpdateSeparations(ContactBatch<N, kFixedB>& batch, BodyState* states, const
 template <int N, bool kFixedB>
 void RelaxContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings) {
     UpdateSeparations(batch, states, settings);
-    SolveRows<true>(batch, states, settings);
+    SolveAllRows<true>(batch, states, settings);
 }
 
 template <int N, bool kFixedB>

@@ -13,7 +13,8 @@ class ColliderSearch {
 public:
     ColliderSearch(const WorldState& world, const QueryFilter& filter)
         : world_(world), filter_(filter),
-          seesAll_(filter.layers == 0xFFFFFFFFu && filter.ignore.empty() && !filter.accepts && !filter.acceptsChild) {}
+          seesAll_(filter.layers == 0xFFFFFFFFu && SeesAllCategories(filter) && filter.ignore.empty() && !filter.accepts &&
+                   !filter.acceptsChild) {}
 
     // Traverses the trees whose layers the filter wants: walk(tree, visit), where `visit` calls found(collider) for what is
     // accepted. What strayed from its bounds is found by where it is.
@@ -54,10 +55,17 @@ public:
     }
 
 private:
+    static bool SeesAllCategories(const QueryFilter& filter) { return filter.category == 0 && filter.mask == ~uint64_t(0); }
+
+    bool AcceptsCategory(const BodyCold& body) const {
+        return (filter_.mask == ~uint64_t(0) || (body.category & filter_.mask)) && (filter_.category == 0 || (filter_.category & body.mask));
+    }
+
     bool Accepts(uint32_t collider) const {
         if (seesAll_) return true;
         const uint32_t body = BodyOf(collider);
         if (!(filter_.layers >> world_.bodies.dynamics[body].layer & 1u)) return false;
+        if (!AcceptsCategory(world_.bodies.cold[body])) return false;
         const BodyId id = world_.bodies.IdOf(body);
         for (const BodyId& ignored : filter_.ignore)
             if (ignored == id) return false;

@@ -57,7 +57,7 @@ PairChange CollidePair(WorldState& world, uint32_t index, float dt, WorkerFindin
         WriteManifold(world, view, manifold, dt);
         pair.reference = view.bInA;
     }
-    const PairChange change = NoteTouching(pair, findings);
+    const PairChange change = NoteTouching(world, index, findings);
     return TouchesSleeper(world, pair) ? PairChange::WakesOther : change;
 }
 

@@ -90,7 +90,7 @@ PairChange CollideWithSurface(WorldState& world, uint32_t first, float reach, fl
     bool wakes = false;
     VisitManifolds(world, first, [&](uint32_t index) {
         Pair& pair = world.pairs.pairs[index];
-        const PairChange change = NoteTouching(pair, findings);
+        const PairChange change = NoteTouching(world, index, findings);
         wakes |= TouchesSleeper(world, pair);
         if (index == first) ofFirst = change;
         else world.changes[index] = change;
@@ -113,7 +113,7 @@ void AddMoreManifolds(WorldState& world, float dt) {
         const uint32_t index = world.pairs.AddMore(more.pair);
         world.changes.resize(std::max(world.changes.size(), world.pairs.pairs.size()), PairChange::None);
         Write(world, ViewPair(world, more.pair), index, more.contact, dt);
-        world.changes[index] = NoteTouching(world.pairs.pairs[index], world.findings[0]);
+        world.changes[index] = NoteTouching(world, index, world.findings[0]);
         if (TouchesSleeper(world, world.pairs.pairs[index])) world.changes[more.pair] = PairChange::WakesOther;
     }
 }

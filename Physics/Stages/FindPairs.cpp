@@ -19,7 +19,7 @@ void Search(const WorldState& world, uint32_t index, std::vector<uint64_t>& foun
         if (collider.previous.Overlaps(self.previous)) return;      // they have their pair, or may not have one
         if (!MayCollide(world, self.body, collider.body)) return;
         const uint32_t pair = world.pairs.Find(index, other);
-        if (pair != PairStore::kNone && world.pairs.active.Contains(pair)) return;
+        if (pair == PairStore::kNone ? !ListenerAllows(world, self.body, collider.body) : world.pairs.active.Contains(pair)) return;
         found.push_back(index < other ? uint64_t(index) << 32 | other : uint64_t(other) << 32 | index);
     };
     const uint32_t layers = world.settings.layerCollides[world.bodies.dynamics[self.body].layer];
@@ -64,6 +64,7 @@ bool MayCollide(const WorldState& world, uint32_t bodyA, uint32_t bodyB) {
     if (bodyA == bodyB) return false;
     if (a.motion != MotionType::Dynamic && b.motion != MotionType::Dynamic) return false;
     if (!(world.settings.layerCollides[a.layer] >> b.layer & 1u)) return false;
+    if ((a.filtered || b.filtered) && !FiltersAllow(world, bodyA, bodyB)) return false;
     return (a.awake || b.awake) && !world.joints.ForbidsContact(bodyA, bodyB);
 }
 

@@ -100,11 +100,12 @@ void WriteManifold(const WorldState& world, const PairView& v, const Manifold& m
     if (count > 0) WriteTwistRadius(record);
 }
 
-PairChange NoteTouching(Pair& pair, WorkerFindings& findings) {
+PairChange NoteTouching(WorldState& world, uint32_t index, WorkerFindings& findings) {
+    Pair& pair = world.pairs.pairs[index];
     const bool touched = pair.touching;
-    pair.touching = pair.pointCount > 0;
+    pair.touching = pair.pointCount > 0 && (!world.listener || AskListener(world, index));
     findings.contacts += pair.touching;
-    findings.points += pair.pointCount;
+    findings.points += pair.touching ? pair.pointCount : 0;
     if (pair.touching == touched) return PairChange::None;
     return pair.touching ? PairChange::Began : PairChange::Ended;
 }

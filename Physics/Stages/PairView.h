@@ -2,6 +2,7 @@
 // different pairs from any number of threads at once.
 #pragma once
 
+#include <Fulcrum/Physics/ContactListener.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 
 namespace fulcrum {
@@ -28,8 +29,12 @@ PairChange CollideWithSurface(WorldState& world, uint32_t pair, float reach, flo
 // Makes places for those, serially, in the order of the pairs.
 void AddMoreManifolds(WorldState& world, float dt);
 
-// Notes what a manifold has come to in this step.
-PairChange NoteTouching(Pair& pair, WorkerFindings& findings);
+// Notes what a manifold has come to in this step, once the listener was asked.
+PairChange NoteTouching(WorldState& world, uint32_t pair, WorkerFindings& findings);
+// Asks the listener about a manifold with points and does as it says; false: it is to be ignored.
+bool AskListener(WorldState& world, uint32_t pair);
+// A manifold at the poses of now, its points in `room`.
+ContactView ViewContact(const WorldState& world, uint32_t pair, ContactView::Point (&room)[ContactRecord::kMaxPoints]);
 // Whether one of its bodies sleeps, and is to wake where they touch.
 bool TouchesSleeper(const WorldState& world, const Pair& pair);
 

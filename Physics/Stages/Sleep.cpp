@@ -102,6 +102,12 @@ void Sleep(WorldState& world) {
             if (d.motion != MotionType::Dynamic || d.slowSeconds < world.settings.sleep.seconds || !d.allowSleep)
                 awake[roots[i]] = 1;
         }
+        // What a belt carries, however slowly, does not rest.
+        if (world.listener)
+            world.pairs.active.Visit([&](uint32_t index) {
+                const Pair& pair = world.pairs.pairs[index];
+                if (pair.touching && world.pairs.records[index].surfaceMoves > 0) awake[roots[world.bodies.cold[pair.bodyA].awakePlace]] = 1;
+            });
         // Members of sleeping islands, sorted by island.
         std::span<uint64_t> members = world.scratch.Allocate<uint64_t>(count);
         size_t sleepers = 0;

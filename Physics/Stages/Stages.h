@@ -23,6 +23,14 @@ void SetFatBounds(WorldState& world, uint32_t collider);
 
 // Reads trees and the colliders that moved. Adds pairs, sorted by id, and activates resting ones.
 void FindPairs(WorldState& world);
+// Whether category, mask and group of two bodies let them collide.
+bool FiltersAllow(const WorldState& world, uint32_t bodyA, uint32_t bodyB);
+// Whether the contact listener, if any, lets them.
+bool ListenerAllows(const WorldState& world, uint32_t bodyA, uint32_t bodyB);
+// Removes the pairs of a body that its filters no longer allow; their bodies wake.
+void RemoveForbiddenPairs(WorldState& world, uint32_t body);
+// Has another listener, or none (null), say what collides; all contacts are as the materials give them until it is asked.
+void ChangeListener(WorldState& world, const ContactListener* listener);
 
 // Whether contacts between two bodies, of which one is awake, are wanted.
 bool MayCollide(const WorldState& world, uint32_t bodyA, uint32_t bodyB);

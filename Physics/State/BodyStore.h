@@ -29,6 +29,7 @@ struct alignas(64) BodyDynamics {
     bool hasForce : 1 = false;     // BodyCold::force or torque is not zero
     bool frozen : 1 = false;
     bool continuous : 1 = false;   // BodyCold::continuous is not Off
+    bool filtered : 1 = false;     // BodyCold has a category, a mask or a group of its own: ask FiltersAllow
     uint8_t layer = 0;
 
     // Eight numbers each, for lanes.
@@ -66,6 +67,8 @@ struct BodyCold {
     uint64_t userData = 0;
     Material material;
     Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  // of the next step
+    uint64_t category = 1, mask = ~uint64_t(0);
+    CollisionGroup group;
     uint32_t firstCollider = 0, colliderCount = 0;
     uint32_t generation = 0;
     uint32_t awakePlace = 0;        // index into BodyStore::awake

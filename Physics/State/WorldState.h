@@ -23,6 +23,8 @@
 
 namespace fulcrum {
 
+class ContactListener;
+
 // A manifold that a pair with a surface has beyond those it had.
 struct MoreManifold {
     uint32_t pair;
@@ -57,6 +59,7 @@ struct WorldState {
     SystemSettings settings;
     JobSystem* jobs = nullptr;
     std::unique_ptr<ThreadPool> ownJobs;
+    const ContactListener* listener = nullptr;
 
     BodyStore bodies;
     ColliderStore colliders;

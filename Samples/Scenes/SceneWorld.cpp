@@ -84,6 +84,11 @@ void SceneWorld::AddRagdoll(const RagdollSettings& settings, const Pose& origin,
     else if (!firstError_) firstError_ = ragdoll.GetError();
 }
 
+void SceneWorld::Listen(std::unique_ptr<ContactListener> listener) {
+    listener_ = std::move(listener);
+    system_->SetContactListener(listener_.get());
+}
+
 BodyId SceneWorld::AddFloor(float halfX, float halfZ) {
     return Add({.shape = BoxOf(halfX, 1, halfZ), .motion = MotionType::Static, .position = {0, -1, 0}});
 }

@@ -75,6 +75,8 @@ public:
     }
     // Adds to `ragdolls`. An error of Create where the settings are wrong.
     void AddRagdoll(const RagdollSettings& settings, const Pose& origin, std::optional<MotionType> motion = {});
+    // Has the listener, which the world keeps, asked about contacts.
+    void Listen(std::unique_ptr<ContactListener> listener);
     // Static box, its top at y = 0.
     BodyId AddFloor(float halfX, float halfZ);
     // Four static walls on the floor, their middles at x = -halfX, halfX and z = -halfZ, halfZ, `height` metres high.
@@ -87,6 +89,7 @@ private:
 
     const Scene& scene_;
     SceneInput input_;
+    std::unique_ptr<ContactListener> listener_;
     std::unique_ptr<PhysicsSystem> system_;
     std::optional<Error> firstError_;
     int stepCount_ = 0;

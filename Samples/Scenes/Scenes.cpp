@@ -28,6 +28,7 @@ namespace fulcrum {
     scene(ConvexShapes)       \
     scene(FlatLand)           \
     scene(MovingPlatforms)    \
+    scene(ConveyorBelt)       \
     scene(Layers)             \
     scene(TrapDoor)           \
     scene(RagdollDrive)       \

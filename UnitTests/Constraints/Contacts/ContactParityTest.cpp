@@ -10,10 +10,20 @@ namespace {
 
 constexpr uint32_t kContacts = 61;  // no multiple of any number of lanes
 
+// Every third contact has a surface that moves.
+void MoveSurfaces(RandomContacts& contacts, uint32_t seed) {
+    Random random(seed);
+    for (size_t i = 0; i < contacts.records.size(); i += 3) {
+        const Vector3 linear = random.Vector(2.0f), angular = random.Vector(2.0f);
+        contacts.records[i].SetSurfaceVelocity(linear, angular);
+    }
+}
+
 // The whole life of contacts over two substeps.
 template <int N, bool kFixedB>
-RandomContacts Solved(uint32_t seed) {
+RandomContacts Solved(uint32_t seed, bool surfacesMove) {
     RandomContacts contacts(kContacts, kFixedB, seed);
+    if (surfacesMove) MoveSurfaces(contacts, seed);
     BodyState* states = contacts.states.data();
     for (uint32_t first = 0; first < kContacts; first += N) {
         auto batch = PrepareBatch<N, kFixedB>(contacts, first, {0.9f, 0.5f});
@@ -47,11 +57,11 @@ void ExpectSameBits(const RandomContacts& a, const RandomContacts& b, const char
 }
 
 template <bool kFixedB>
-void ExpectParity(uint32_t seed) {
-    const RandomContacts one = Solved<1, kFixedB>(seed);
-    ExpectSameBits<kFixedB>(one, Solved<4, kFixedB>(seed), "4 lanes");
-    ExpectSameBits<kFixedB>(one, Solved<8, kFixedB>(seed), "8 lanes");
-    ExpectSameBits<kFixedB>(one, Solved<16, kFixedB>(seed), "16 lanes");
+void ExpectParity(uint32_t seed, bool surfacesMove = false) {
+    const RandomContacts one = Solved<1, kFixedB>(seed, surfacesMove);
+    ExpectSameBits<kFixedB>(one, Solved<4, kFixedB>(seed, surfacesMove), "4 lanes");
+    ExpectSameBits<kFixedB>(one, Solved<8, kFixedB>(seed, surfacesMove), "8 lanes");
+    ExpectSameBits<kFixedB>(one, Solved<16, kFixedB>(seed, surfacesMove), "16 lanes");
 }
 
 TEST(ContactParity, OfTwoMovingBodies) {
@@ -60,6 +70,13 @@ TEST(ContactParity, OfTwoMovingBodies) {
 
 TEST(ContactParity, OfAMovingAndAFixedBody) {
     for (uint32_t seed = 1; seed <= 20; ++seed) ExpectParity<true>(seed);
+}
+
+TEST(ContactParity, OfSurfacesThatMove) {
+    for (uint32_t seed = 1; seed <= 20; ++seed) {
+        ExpectParity<false>(seed, true);
+        ExpectParity<true>(seed, true);
+    }
 }
 
 }  // namespace

@@ -1,0 +1,22 @@
+#include <Fulcrum/Physics/ContactListener.h>
+
+namespace fulcrum {
+
+Position ContactView::Centre() const {
+    // As an offset from the first: sums of positions far out would lose digits.
+    Position offset = Position::Zero();
+    for (const Point& point : points) offset += point.position - points.front().position;
+    return points.front().position + offset / static_cast<double>(points.size());
+}
+
+void ContactChange::MoveSurface(const ContactView& contact, BodyId belt, const Vector3& velocity) {
+    surfaceVelocity += belt == contact.bodyB ? velocity : Vector3(-velocity);
+}
+
+void ContactChange::TurnSurface(const ContactView& contact, BodyId belt, const Position& pivot, const Vector3& angularVelocity) {
+    const Vector3 arm = (contact.Centre() - pivot).cast<float>();
+    MoveSurface(contact, belt, Cross<float>(angularVelocity, arm));
+    surfaceTurn += belt == contact.bodyB ? angularVelocity : Vector3(-angularVelocity);
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,27 @@
+#include <Fulcrum/Physics/GroupFilter.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+Result<std::shared_ptr<const GroupFilterTable>> GroupFilterTable::Create(std::span<const Pair> apart) {
+    std::shared_ptr<GroupFilterTable> table(new GroupFilterTable);
+    for (size_t i = 0; i < apart.size(); ++i) {
+        const uint32_t largest = std::max(apart[i].first, apart[i].second);
+        if (largest >= kMaxSubGroups)
+            return Error{ErrorCode::OutOfRange, "apart[" + std::to_string(i) + "] names subgroup " + std::to_string(largest) +
+                                                    "; it must be from 0 to " + std::to_string(kMaxSubGroups - 1)};
+        table->subGroups_ = std::max(table->subGroups_, largest + 1);
+    }
+    const size_t n = table->subGroups_;
+    table->apart_.assign(n * n, false);
+    for (const Pair& pair : apart) table->apart_[pair.first * n + pair.second] = table->apart_[pair.second * n + pair.first] = true;
+    return std::shared_ptr<const GroupFilterTable>(std::move(table));
+}
+
+bool GroupFilterTable::Collides(const Member& a, const Member& b) const {
+    if (a.group != b.group || std::max(a.subGroup, b.subGroup) >= subGroups_) return true;
+    return !apart_[size_t(a.subGroup) * subGroups_ + b.subGroup];
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,57 @@
+// Which bodies of a group collide with one another: the parts of a machine that overlap, a ragdoll's limbs. A filter is shared
+// by the bodies that name it in BodySettings::group; it never changes, so any thread may ask it.
+#pragma once
+
+#include <Fulcrum/Math/Result.h>
+
+#include <cstdint>
+#include <initializer_list>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace fulcrum {
+
+// Two bodies whose group names the same filter object collide only if it says so; all others are none of its business.
+class GroupFilter {
+public:
+    struct Member {
+        uint32_t group = 0;     // for the table: which machine,
+        uint32_t subGroup = 0;  // and which part of it
+    };
+
+    virtual ~GroupFilter() = default;
+    // Asked from several threads at once when two bodies come near: a pure function of its arguments, the same for (b, a).
+    virtual bool Collides(const Member& a, const Member& b) const = 0;
+};
+
+// Pairs of subgroups that do not collide within one group. Members of different groups do, and so does what no pair names.
+class GroupFilterTable final : public GroupFilter {
+public:
+    struct Pair {
+        uint32_t first, second;  // subgroups, 0..1023; the same twice: its members pass through each other
+    };
+    static constexpr uint32_t kMaxSubGroups = 1024;
+
+    // Error: OutOfRange.
+    static Result<std::shared_ptr<const GroupFilterTable>> Create(std::span<const Pair> apart);
+    static Result<std::shared_ptr<const GroupFilterTable>> Create(std::initializer_list<Pair> apart) {
+        return Create(std::span<const Pair>(apart.begin(), apart.size()));
+    }
+
+    bool Collides(const Member& a, const Member& b) const override;
+
+private:
+    GroupFilterTable() = default;
+
+    uint32_t subGroups_ = 0;   // that the table has
+    std::vector<bool> apart_;  // by first * subGroups_ + second, both ways round
+};
+
+// A body's place in a group.
+struct CollisionGroup {
+    std::shared_ptr<const GroupFilter> filter;  // null: collides as far as masks and layers let it
+    uint32_t group = 0, subGroup = 0;           // of GroupFilter::Member
+};
+
+}  // namespace fulcrum

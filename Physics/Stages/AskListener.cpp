@@ -1,0 +1,55 @@
+// The user's say in a contact. Collide asks when it knows the points, and before anything follows from them: a contact that is
+// ignored has no colour, wakes nobody and costs the solver nothing.
+#include <Fulcrum/Physics/ContactListener.h>
+#include <Fulcrum/Physics/Stages/PairView.h>
+
+namespace fulcrum {
+
+namespace {
+
+uint32_t ChildOf(const WorldState& world, uint32_t body, uint32_t collider) { return collider - world.bodies.cold[body].firstCollider; }
+
+void Forget(ContactRecord& record) {
+    for (float& impulse : record.impulse) impulse = 0;
+    for (float& impulse : record.frictionImpulse) impulse = 0;
+    record.twistImpulse = 0;
+}
+
+void Apply(const ContactChange& change, ContactRecord& record) {
+    if (change.friction >= 0 && std::isfinite(change.friction)) record.friction = change.friction;
+    if (change.restitution >= 0 && change.restitution <= 1) record.restitution = change.restitution;
+    const bool finite = IsFinite(change.surfaceVelocity) && IsFinite(change.surfaceTurn);
+    if (finite) record.SetSurfaceVelocity(change.surfaceVelocity, change.surfaceTurn);
+    else record.SetSurfaceVelocity(Vector3::Zero(), Vector3::Zero());
+}
+
+}  // namespace
+
+ContactView ViewContact(const WorldState& world, uint32_t index, ContactView::Point (&room)[ContactRecord::kMaxPoints]) {
+    const Pair& pair = world.pairs.pairs[index];
+    const ContactRecord& record = world.pairs.records[index];
+    const Pose poseA = world.bodies.CentrePoseOf(pair.bodyA), poseB = world.bodies.CentrePoseOf(pair.bodyB);
+    const Vector3 normal = Rotate(poseA.rotation, Vector3(record.normal[0], record.normal[1], record.normal[2]));
+    for (size_t i = 0; i < pair.pointCount; ++i) {
+        const ContactRecord::Point& p = record.points[i];
+        const Position onA = poseA.Transform(Vector3(p.onA[0], p.onA[1], p.onA[2]));
+        const Position onB = poseB.Transform(Vector3(p.onB[0], p.onB[1], p.onB[2]));
+        room[i] = {onA, Dot<float>(normal, Vector3((onB - onA).cast<float>())), record.impulse[i]};
+    }
+    return {world.bodies.IdOf(pair.bodyA), world.bodies.IdOf(pair.bodyB), normal, std::span<const ContactView::Point>(room, pair.pointCount),
+            ChildOf(world, pair.bodyA, pair.colliderA), ChildOf(world, pair.bodyB, pair.colliderB)};
+}
+
+bool AskListener(WorldState& world, uint32_t index) {
+    ContactRecord& record = world.pairs.records[index];
+    ContactView::Point room[ContactRecord::kMaxPoints];
+    const ContactView view = ViewContact(world, index, room);
+    CombineMaterials(world, index);
+    ContactChange change{record.friction, record.restitution};
+    world.listener->ModifyContact(view, change);
+    Apply(change, record);
+    if (change.ignore) Forget(record);
+    return !change.ignore;
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,61 @@
+// Which bodies may collide, beyond layers and joints. The answers make pairs, or none, when FindPairs meets two colliders anew;
+// a pair that exists is never asked about again, so that filters cost a step nothing. Where an answer changes, the pairs that it
+// forbids are removed here, and those that it allows are found by the search that follows.
+#include <Fulcrum/Physics/ContactListener.h>
+#include <Fulcrum/Physics/Stages/Stages.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+namespace {
+
+bool IsForbidden(const WorldState& world, const Pair& pair) {
+    return !FiltersAllow(world, pair.bodyA, pair.bodyB) || !ListenerAllows(world, pair.bodyA, pair.bodyB);
+}
+
+template <class Chooses>
+void RemoveForbidden(WorldState& world, Chooses&& chooses) {
+    for (uint32_t i = 0; i < world.pairs.pairs.size(); ++i) {
+        const Pair& pair = world.pairs.pairs[i];
+        if (!pair.exists || pair.isMore || !chooses(pair) || !IsForbidden(world, pair)) continue;
+        WakeBody(world, pair.bodyA);
+        WakeBody(world, pair.bodyB);
+        RemovePair(world, i);
+    }
+}
+
+}  // namespace
+
+bool FiltersAllow(const WorldState& world, uint32_t bodyA, uint32_t bodyB) {
+    const BodyCold& a = world.bodies.cold[std::min(bodyA, bodyB)];
+    const BodyCold& b = world.bodies.cold[std::max(bodyA, bodyB)];
+    if ((a.category & b.mask) == 0 || (b.category & a.mask) == 0) return false;
+    const GroupFilter* filter = a.group.filter.get();
+    return !filter || filter != b.group.filter.get() ||
+           filter->Collides({a.group.group, a.group.subGroup}, {b.group.group, b.group.subGroup});
+}
+
+bool ListenerAllows(const WorldState& world, uint32_t bodyA, uint32_t bodyB) {
+    if (!world.listener) return true;
+    const auto [low, high] = std::minmax(bodyA, bodyB);
+    return world.listener->ShouldCollide(world.bodies.IdOf(low), world.bodies.IdOf(high));
+}
+
+void RemoveForbiddenPairs(WorldState& world, uint32_t body) {
+    RemoveForbidden(world, [&](const Pair& pair) { return pair.bodyA == body || pair.bodyB == body; });
+}
+
+void ChangeListener(WorldState& world, const ContactListener* listener) {
+    world.listener = listener;
+    RemoveForbidden(world, [](const Pair&) { return true; });
+    // What the last one said of contacts, and of bodies that therefore have no pair.
+    for (uint32_t i = 0; i < world.pairs.pairs.size(); ++i) {
+        if (!world.pairs.pairs[i].exists) continue;
+        CombineMaterials(world, i);
+        world.pairs.records[i].SetSurfaceVelocity(Vector3::Zero(), Vector3::Zero());
+    }
+    for (uint32_t body : world.bodies.awake) RequeueColliders(world, body);
+}
+
+}  // namespace fulcrum
