@@ -4,6 +4,8 @@
 
 #include <Fulcrum/Math/Vector.h>
 
+#include <bit>
+#include <cstdint>
 #include <limits>
 
 namespace fulcrum {
@@ -38,15 +40,19 @@ struct Bounds {
     }
 };
 
+// The next float below f, which is not -infinity; NaN stays one.
+inline float NextBelow(float f) {
+    const auto bits = std::bit_cast<int32_t>(f);
+    if (f == 0.0f) return -std::numeric_limits<float>::denorm_min();
+    return std::bit_cast<float>(bits + (bits < 0 ? 1 : -1));
+}
+
 // The largest float not above x, and the smallest not below.
 inline float RoundDown(double x) {
     const float f = static_cast<float>(x);
-    return f > x ? std::nextafterf(f, -std::numeric_limits<float>::infinity()) : f;
+    return f > x ? NextBelow(f) : f;
 }
-inline float RoundUp(double x) {
-    const float f = static_cast<float>(x);
-    return f < x ? std::nextafterf(f, std::numeric_limits<float>::infinity()) : f;
-}
+inline float RoundUp(double x) { return -RoundDown(-x); }
 
 // The float box around a double one, rounded outwards.
 inline Bounds RoundedOutwards(const Position& lower, const Position& upper) {

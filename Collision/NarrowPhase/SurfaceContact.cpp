@@ -8,9 +8,12 @@
 #include <Fulcrum/Collision/NarrowPhase/Features.h>
 #include <Fulcrum/Collision/NarrowPhase/Gjk.h>
 #include <Fulcrum/Collision/NarrowPhase/ManifoldReduction.h>
+#include <Fulcrum/Collision/NarrowPhase/RoundTriangles.h>
+#include <Fulcrum/Collision/NarrowPhase/TriangleFaceContact.h>
 #include <Fulcrum/Collision/Shapes/Triangle.h>
 
 #include <algorithm>
+#include <bit>
 
 namespace fulcrum {
 
@@ -77,19 +80,14 @@ public:
         contacts_.found_.clear();
         contacts_.manifoldCount_ = 0;
         Collect();
-        for (uint32_t i = 0; i < contacts_.views_.size(); ++i) {
-            TriangleView& view = contacts_.views_[i];
-            if (b_.IsTwoSided() && Height(view) < 0) view = Reversed(view);
-            if (MayReach(view)) CollideTriangle(i);
-        }
+        const SurfaceProbe probe{a_, isPolyhedral_ ? &core_ : nullptr, axes_, centre_, settings_.speculativeDistance, b_.IsTwoSided()};
+        std::vector<TriangleView>& views = contacts_.views_;
+        for (size_t first = 0; first < views.size(); first += 8) CollideBatch(probe, first, std::min<size_t>(views.size() - first, 8));
         if (!contacts_.waiting_.empty()) AddWaiting();
         Join();
     }
 
 private:
-    // Of the shape's centre above the face, m.
-    float Height(const TriangleView& view) const { return Dot(view.normal, Vector3(centre_ - view.vertices[0])); }
-
     void Collect() {
         std::vector<uint32_t>& ids = contacts_.ids_;
         ids.clear();
@@ -98,50 +96,153 @@ private:
         b_.GetTriangles(ids, contacts_.views_.data());
     }
 
-    // Whether the shape may come near the triangle, its centre being in front.
-    bool MayReach(const TriangleView& view) const {
-        const float reach = settings_.speculativeDistance, radius = a_.OuterRadius() + reach, height = Height(view);
-        if (height < 0 || height > radius) return false;
-        for (int i = 0; i < 3; ++i) {
-            const Vector3& from = view.vertices[i];
-            const Vector3 outwards = Cross<float>(Vector3(view.vertices[(i + 1) % 3] - from), view.normal);
-            const float beyond = Dot(outwards, Vector3(centre_ - from));
-            if (beyond <= 0) continue;
-            const float length = Sqrt(Dot(outwards, outwards));
-            if (beyond > radius * length) return false;
-            // The plane through the edge separates the shape from the triangle where it lies beyond as a whole.
-            if (beyond > a_.InnerRadius() * length && beyond - Reach(axes_ * outwards) > (reach + a_.ConvexRadius()) * length) return false;
+    void CollideBatch(const SurfaceProbe& probe, size_t first, size_t count) {
+        TriangleBatch batch;
+        uint32_t reversed;
+        const uint32_t near = batch.Meet(probe, &contacts_.views_[first], static_cast<int>(count), reversed);
+        if (near == 0) return;
+        for (uint32_t bits = reversed & near; bits != 0; bits &= bits - 1) {
+            TriangleView& view = contacts_.views_[first + static_cast<size_t>(std::countr_zero(bits))];
+            view = Reversed(view);
         }
-        return true;
+        const auto index = static_cast<uint32_t>(first);
+        if (a_.Type() == ShapeType::Sphere) return CollideSphere(batch, near, index);
+        if (a_.Type() == ShapeType::Capsule) return CollideCapsule(probe, batch, near, reversed, index);
+        for (uint32_t bits = near; bits != 0; bits &= bits - 1) {
+            const int i = std::countr_zero(bits);
+            if (isPolyhedral_) CollideFaces(batch, i, (reversed >> i & 1) != 0, index + static_cast<uint32_t>(i));
+            else CollideTriangle(index + static_cast<uint32_t>(i));
+        }
     }
 
-    // How far the core extends against a direction in its own frame.
-    float Reach(const Vector3& direction) const {
-        return isPolyhedral_ ? FarthestVertex(core_, -direction).value : -Dot(direction, a_.SupportCore(-direction));
+    void CollideSphere(const TriangleBatch& batch, uint32_t near, uint32_t first) {
+        Manifold none, nearest;
+        for (uint32_t bits = near; bits != 0; bits &= bits - 1) {
+            const int i = std::countr_zero(bits);
+            const uint32_t index = first + static_cast<uint32_t>(i);
+            const float distance = batch.distance[i];
+            Vector3 axis(batch.closest.x()[i], batch.closest.y()[i], batch.closest.z()[i]);
+            // A centre in the surface itself is pushed out through the face.
+            axis = distance > 1e-6f * core_.radius ? Vector3(axis * (1.0f / distance)) : Vector3(-contacts_.views_[index].normal);
+            WriteBallContact(axes_ * axis, distance, core_.radius, nearest);
+            Settle(index, axis, false, none, nearest);
+        }
     }
 
-    void CollideTriangle(uint32_t index) {
+    void CollideCapsule(const SurfaceProbe& probe, const TriangleBatch& batch, uint32_t near, uint32_t reversed, uint32_t first) {
+        const float slop = std::min(0.02f * settings_.speculativeDistance, 0.002f * core_.radius);
+        const SegmentMeeting meeting(probe, batch, near, slop);
+        for (uint32_t bits = near; bits != 0; bits &= bits - 1) {
+            const int i = std::countr_zero(bits);
+            const uint32_t bit = 1u << i, index = first + static_cast<uint32_t>(i);
+            const TriangleView& view = contacts_.views_[index];
+            if (meeting.crossing & bit) {
+                CollideTriangle(index);
+                continue;
+            }
+            if (((meeting.onFace | meeting.onSide) & bit) == 0) continue;
+            Manifold onFace, nearest;
+            if (meeting.before & bit) meeting.WriteFaceContact(i, Vector3(-(axes_ * view.normal)), onFace);
+            if (meeting.onFace & bit) {
+                AddFace(view, onFace);
+                continue;
+            }
+            constexpr uint32_t kOrders[2][3] = {{0, 1, 2}, {2, 1, 0}};
+            meeting.WriteSideContact(i, kOrders[reversed >> i & 1], nearest);
+            Settle(index, meeting.Axis(i), false, onFace, nearest);
+        }
+    }
+
+    // `onFace`: what lies before its face, where that is known and is not all.
+    void CollideTriangle(uint32_t index, const Manifold* onFace = nullptr) {
         const TriangleView& view = contacts_.views_[index];
         const Vector3 middle = (view.vertices[0] + view.vertices[1] + view.vertices[2]) * (1.0f / 3.0f);
         const Vector3 corners[3] = {view.vertices[0] - middle, view.vertices[1] - middle, view.vertices[2] - middle};
         const RelativePose pose{bInA_.Transform(middle), bInA_.rotation};
-        if (isPolyhedral_) CollidePolyhedron(index, corners, pose);
+        if (isPolyhedral_) CollidePolyhedron(index, corners, pose, onFace);
         else CollideCurved(index, corners, pose);
     }
 
-    void CollidePolyhedron(uint32_t index, const Vector3 (&corners)[3], const RelativePose& pose) {
+    // Before the face first: most contacts are there.
+    void CollideFaces(const TriangleBatch& batch, int lane, bool isReversed, uint32_t index) {
+        const TriangleView& view = contacts_.views_[index];
+        const int incident = FaceAlong(core_, -(axes_ * view.normal));
+        if (core_.faces[incident].cornerCount > kMostCorners) return CollideTriangle(index);
+        TriangleInShape triangle;
+        batch.Extract(lane, isReversed, axes_, triangle.corners, triangle.outwards);
+        triangle.normal = axes_ * view.normal;
+        triangle.middle = (triangle.corners[0] + triangle.corners[1] + triangle.corners[2]) * (1.0f / 3.0f);
+        float size = std::numeric_limits<float>::infinity();
+        for (const Vector3& corner : triangle.corners) size = Min(size, LengthSquared(Vector3(corner - triangle.middle)));
+        const ContactTolerances tolerances(core_.size + Sqrt(size), core_.radius, settings_);
+        Manifold onFace;
+        const FaceContact contact = BuildTriangleFaceContact(core_, incident, triangle, batch.separation[lane], tolerances, onFace);
+        const bool found = onFace.pointCount > 0 && contact.touches;
+        if (found && contact.proven) return AddFace(view, onFace);
+        if (MeetsEdges(view, triangle, tolerances.reach)) return CollideTriangle(index, &onFace);
+        if (onFace.pointCount == 0) return;
+        if (found) return AddFace(view, onFace);
+        if (!WaitForNeighbour(index, triangle, tolerances.prefer + 1e-3f * Sqrt(size), onFace)) CollideTriangle(index, &onFace);
+    }
+
+    // Whether there is more to the triangle than its face. A shape without rounding that reaches no active edge lies before the
+    // face, or has nothing to do with it.
+    bool MeetsEdges(const TriangleView& view, const TriangleInShape& triangle, float reach) const {
+        if (core_.radius > 0) return true;
+        for (uint32_t bits = view.activeEdges; bits != 0; bits &= bits - 1) {
+            const int i = std::countr_zero(bits);
+            const float edge = Dot(triangle.outwards[i], triangle.corners[i]);
+            if (FarthestVertex(core_, triangle.outwards[i]).value >= edge - reach) return true;
+        }
+        return false;
+    }
+
+    // What lies before the face is not the deepest part of the shape: that lies beyond an inactive edge or corner, where what is
+    // left comes nearest, and is the neighbour's. False: it is not clear beyond which.
+    bool WaitForNeighbour(uint32_t index, const TriangleInShape& triangle, float slop, const Manifold& onFace) {
+        const TriangleView& view = contacts_.views_[index];
+        int deepest = 0;
+        for (int i = 1; i < onFace.pointCount; ++i)
+            if (onFace.points[i].separation < onFace.points[deepest].separation) deepest = i;
+        const Vector3& point = onFace.points[deepest].positionOnA;
+        int sides[3], count = 0;
+        for (int i = 0; i < 3; ++i)
+            if (Dot(triangle.outwards[i], Vector3(point - triangle.corners[i])) >= -slop) sides[count++] = i;
+        if (count != 1 && count != 2) return false;
+        // Side i ends where side i + 1 begins.
+        const int first = count == 1 ? sides[0] : (sides[1] - sides[0] == 1 ? sides[1] : 0);
+        SurfaceContacts::Waiting waiting;
+        waiting.contact = Named(view, onFace);
+        waiting.triangle = index;
+        waiting.vertices[0] = view.vertexIds[first];
+        waiting.vertices[1] = view.vertexIds[count == 1 ? (first + 1) % 3 : first];
+        waiting.separation = DeepestOf(onFace);
+        waiting.active = false;
+        contacts_.waiting_.push_back(waiting);
+        return true;
+    }
+
+    // A shape without rounding lies before a face, or has nothing to do with one whose edges are inactive.
+    bool FacesAlone(const TriangleView& view) const { return core_.radius <= 0 && view.activeEdges == 0; }
+    bool IsFaceContact(const TriangleView& view, const FaceContact& contact, const Manifold& onFace) const {
+        return onFace.pointCount > 0 && contact.touches && (contact.proven || FacesAlone(view));
+    }
+
+    void CollidePolyhedron(uint32_t index, const Vector3 (&corners)[3], const RelativePose& pose, const Manifold* knownOnFace) {
         const TriangleView& view = contacts_.views_[index];
         PolyhedronStorage storage;
         const PolyhedronPair pair(core_, CoreOf(corners, view.normal, 0, storage), pose);
         const ContactTolerances tolerances = pair.Tolerances(settings_);
-        const ReferenceFace face = MeasureFace(pair, false, 0);
-        if (face.separation > tolerances.reach) return;
         Manifold onFace;
-        const FaceContact contact = BuildFaceContact(pair, face, tolerances, onFace);
-        // A shape without rounding lies before a face, or has nothing to do with one whose edges are inactive.
-        const bool facesAlone = core_.radius <= 0 && view.activeEdges == 0;
-        if (onFace.pointCount == 0 && facesAlone) return;
-        if (onFace.pointCount > 0 && contact.touches && (contact.proven || facesAlone)) return AddFace(view, onFace);
+        if (knownOnFace) {
+            onFace = *knownOnFace;
+        } else {
+            const ReferenceFace face = MeasureFace(pair, false, 0);
+            if (face.separation > tolerances.reach) return;
+            const FaceContact contact = BuildFaceContact(pair, face, tolerances, onFace);
+            if (onFace.pointCount == 0 && FacesAlone(view)) return;
+            if (IsFaceContact(view, contact, onFace)) return AddFace(view, onFace);
+        }
 
         const Vector3 inwards = -(pair.rotation * view.normal);
         const auto gjk = Gjk(pair, inwards, tolerances.reach);

@@ -32,6 +32,18 @@ void WriteTwistRadius(ContactRecord& record) {
     record.twistRadius = MeanDistance(x, y, count);
 }
 
+void ForgetFriction(ContactRecord& record) {
+    record.twistImpulse = 0;
+    for (float& f : record.frictionImpulse) f = 0;
+}
+
+// Nothing touches.
+void Forget(Pair& pair, ContactRecord& record) {
+    if (pair.pointCount == 0) ForgetFriction(record);
+    record.pointCount = 0;
+    pair.pointCount = 0;
+}
+
 }  // namespace
 
 PairView ViewPair(WorldState& world, uint32_t index) {
@@ -57,14 +69,16 @@ bool HardlyMoved(const PairView& v) {
 void WriteManifold(const WorldState& world, const PairView& v, const Manifold& manifold, float dt) {
     Pair& pair = v.pair;
     ContactRecord& record = v.record;
+    const Vector3 normal = pair.offset ? Rotate(world.colliders.shapes[pair.colliderA].local.rotation, manifold.normal)
+                                       : manifold.normal;
+    for (int k = 0; k < 3; ++k) record.normal[k] = normal[k];
+    if (manifold.pointCount == 0) return Forget(pair, record);
     float oldImpulses[Manifold::kMaxPoints];
     std::copy(record.impulse, record.impulse + Manifold::kMaxPoints, oldImpulses);
     const int oldCount = pair.pointCount;
     uint32_t oldFeatures[Manifold::kMaxPoints];
     std::copy(pair.features, pair.features + Manifold::kMaxPoints, oldFeatures);
 
-    const Vector3 normal = pair.offset ? Rotate(world.colliders.shapes[pair.colliderA].local.rotation, manifold.normal)
-                                       : manifold.normal;
     // Velocities of B relative to A, in A's frame.
     const BodyStore& bodies = world.bodies;
     const Quaternion toWorld = bodies.RotationOf(pair.bodyA);
@@ -90,13 +104,9 @@ void WriteManifold(const WorldState& world, const PairView& v, const Manifold& m
             if (oldFeatures[j] == found.feature) record.impulse[count] = oldImpulses[j];
         pair.features[count++] = found.feature;
     }
-    for (int k = 0; k < 3; ++k) record.normal[k] = normal[k];
     record.pointCount = static_cast<float>(count);
     pair.pointCount = static_cast<uint8_t>(count);
-    if (oldCount == 0) {
-        record.twistImpulse = 0;
-        for (float& f : record.frictionImpulse) f = 0;
-    }
+    if (oldCount == 0) ForgetFriction(record);
     if (count > 0) WriteTwistRadius(record);
 }
 
