@@ -23,7 +23,7 @@ struct BenchOptions {
 // Arguments without the program's name. Error OutOfRange as ParseRunnerCommand's.
 Result<BenchOptions> ParseBenchOptions(std::vector<std::string> arguments);
 
-// 1 untimed step, then the timed ones, as benchmarks of other engines do it.
+// 1 untimed step, then the timed ones, as benchmarks of other engines do it; or the scene's batch of queries.
 Result<RunFigures> TimeScene(const Scene& scene, const BenchOptions& options);
 
 // Prints a table line by line, writes the JSON. Returns the exit status.

@@ -130,21 +130,41 @@ private:
     rlimit before_{};
 };
 
+template <class Import>
+auto ReadWithinMemory(const Import& import) {
+    const AddressSpaceLimit limit(rlim_t{8} << 30);
+    return import();
+}
+
+void PrintGround(const std::string& name, const ImportedMesh& ground) {
+    const MeshReport& report = ground.report;
+    std::printf("%s: a mesh of %u triangles and %u vertices; %.4g units are %.4g m here\n", name.c_str(),
+                ground.mesh->TriangleCount(), ground.mesh->VertexCount(), ground.fileSize, ground.scale * ground.fileSize);
+    if (ground.isTwoSided)
+        std::printf("  both sides are solid: %u edges end the surface, at %u others its fronts disagree\n", report.boundaryEdges,
+                    report.irregularEdges);
+    for (const std::string& repair : ground.repairs) std::printf("  repaired: %s\n", repair.c_str());
+}
+
 int Drop(const Command& command, SceneInput input) {
-    Result<ImportedShape> imported = [&] {
-        const AddressSpaceLimit limit(rlim_t{8} << 30);
-        return ImportShape(command.file, kDroppedSize);
-    }();
+    const Result<ImportedShape> imported = ReadWithinMemory([&] { return ImportShape(command.file, kDroppedSize); });
     if (!imported) return Fail(imported.GetError().message);
     const ImportedShape& model = imported.Value();
+    const std::string name = command.file.filename().string();
     for (const std::string& warning : model.warnings) std::fprintf(stderr, "fulcrum: warning: %s\n", warning.c_str());
-    std::printf("%s: %zu points became %zu hull%s of %zu vertices in all; %.4g units are %g m here\n",
-                command.file.filename().c_str(), model.points, model.hulls, model.hulls == 1 ? "" : "s",
-                model.hullVertices, model.fileSize, kDroppedSize);
+    std::printf("%s: %zu points became %zu hull%s of %zu vertices in all; %.4g units are %g m here\n", name.c_str(),
+                model.points, model.hulls, model.hulls == 1 ? "" : "s", model.hullVertices, model.fileSize, kDroppedSize);
     input.shape = model.shape;
     input.count = command.count;
-    return RunJob({*command.scene, input, command.options, "drop_" + command.file.stem().string(),
-                   std::to_string(command.count) + " of " + command.file.filename().string() + " in a heap"});
+    const std::string dropped = std::to_string(command.count) + " of " + name, title = "drop_" + command.file.stem().string();
+    if (command.onto.empty()) return RunJob({*command.scene, input, command.options, title, dropped + " in a heap"});
+
+    const Result<ImportedMesh> ground = ReadWithinMemory([&] { return ImportMesh(command.onto, command.ontoSettings); });
+    if (!ground) return Fail(ground.GetError().message);
+    PrintGround(command.onto.filename().string(), ground.Value());
+    input.ground = ground.Value().mesh;
+    return RunJob({*command.scene, input, command.options, title + "_onto_" + command.onto.stem().string(),
+                   dropped + " dropped onto " + command.onto.filename().string()});
 }
 
 int List() {

@@ -1,10 +1,11 @@
-// Makes a shape of a mesh file, by way of assimp. Called by the runner's drop command; thread-safe. The only file that knows
-// assimp is MeshImport.cpp.
+// Makes shapes of mesh files: hulls to drop, and triangle meshes to drop them onto. Called by the runner's drop command;
+// thread-safe.
 #pragma once
 
-#include <Fulcrum/Collision/Shapes/Shape.h>
+#include <Fulcrum/Collision/Shapes/TriangleMesh.h>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,5 +25,27 @@ struct ImportedShape {
 // warning, and so are the smallest of more than 128. Errors: UnknownId (there is no such file), Unsupported (assimp cannot
 // read it), Degenerate (no mesh in it, or none that has a volume).
 Result<ImportedShape> ImportShape(const std::filesystem::path& path, double size);
+
+// Which way the file's makers had up.
+enum class UpAxis : uint8_t { X, Y, Z, MinusX, MinusY, MinusZ };
+
+struct MeshImportSettings {
+    double size = 20;               // m, > 0: the largest extent, unless `scale` is given
+    std::optional<double> scale{};  // m a unit of the file, > 0
+    UpAxis up = UpAxis::Y;
+};
+
+struct ImportedMesh {
+    std::shared_ptr<const TriangleMesh> mesh;
+    bool isTwoSided = false;           // where the surface is open, or its fronts disagree or point inwards
+    double fileSize = 0;               // largest extent in the file's own unit
+    double scale = 1;                  // m a unit of the file
+    MeshReport report;
+    std::vector<std::string> repairs;  // what was left out or mended, in words
+};
+
+// All triangles of the file, placed by its nodes and welded, as one mesh that stands on y = 0 above the origin, y up. Errors:
+// as ImportShape's; NonPositive (the scale); Degenerate where there is no triangle, or none with an area.
+Result<ImportedMesh> ImportMesh(const std::filesystem::path& path, const MeshImportSettings& settings = {});
 
 }  // namespace fulcrum

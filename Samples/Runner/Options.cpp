@@ -30,6 +30,23 @@ void SetRecord(const std::string& text, RunOptions& options) {
         throw CLI::ValidationError("--record takes html, glb, html,glb or none");
 }
 
+UpAxis ParseUpAxis(const std::string& text) {
+    const std::array<std::string, 6> names{"x", "y", "z", "-x", "-y", "-z"};
+    for (size_t i = 0; i < names.size(); ++i)
+        if (text == names[i]) return static_cast<UpAxis>(i);
+    throw CLI::ValidationError(UnknownName("axis of --onto-up", text, names).message);
+}
+
+void AddOntoOptions(CLI::App& app, Command& command) {
+    CLI::Option* onto = AddText(app, "--onto", "drop them onto the triangles of this mesh, made 20 m large, not onto a floor",
+                                [&](const std::string& text) { command.onto = text; })->type_name("FILE");
+    AddReal(app, "--onto-scale", 1e-6, 1e6, "metres a unit of that file, instead of 20 m in all",
+            [&](double value) { command.ontoSettings.scale = value; })->needs(onto);
+    AddText(app, "--onto-up", "which way is up in that file: x, y (default), z, -x, -y or -z", [&](const std::string& text) {
+        command.ontoSettings.up = ParseUpAxis(text);
+    })->type_name("AXIS")->needs(onto);
+}
+
 void AddRunOptions(CLI::App& app, RunOptions& options) {
     CLI::Option* steps = AddInteger(app, "--steps", 1, kMostSteps, "steps to simulate (default: the scene's own number)",
                                     [&](int value) { options.steps = value; });
@@ -88,6 +105,7 @@ Result<Command> ParseRunnerCommand(std::vector<std::string> arguments) {
     CLI::App* drop = app.add_subcommand("drop", "the same with a heap of the mesh in a file: OBJ, STL, PLY, glTF, ...");
     drop->add_option("file", file, "the mesh; each of its parts becomes a convex hull, the whole 1 m large")->type_name("FILE");
     AddInteger(*drop, "--count", 1, 20'000, "bodies in the heap (default 50)", [&](int value) { command.count = value; });
+    AddOntoOptions(*drop, command);
     AddRunOptions(*drop, command.options);
     CLI::App* list = app.add_subcommand("list", "list the scenes");
 
@@ -109,7 +127,7 @@ Result<Command> ParseRunnerCommand(std::vector<std::string> arguments) {
     } else if (drop->parsed()) {
         command.kind = CommandKind::Drop;
         if (file.empty()) return Error{ErrorCode::OutOfRange, "drop needs a mesh file, for example: ./fulcrum drop teapot.obj"};
-        command.scene = &kDropScene;
+        command.scene = command.onto.empty() ? &kDropScene : &kDropOntoScene;
         command.file = file;
     } else if (list->parsed()) {
         command.kind = CommandKind::List;

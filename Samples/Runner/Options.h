@@ -3,6 +3,7 @@
 
 #include <Fulcrum/Math/Result.h>
 #include <Fulcrum/Physics/Settings.h>
+#include <Fulcrum/Samples/Runner/MeshImport.h>
 #include <Fulcrum/Samples/Scenes/Scene.h>
 
 #include <CLI/App.hpp>
@@ -36,6 +37,8 @@ struct Command {
     const Scene* scene = nullptr; // Run, Drop
     std::filesystem::path file;   // Drop
     int count = 50;               // Drop
+    std::filesystem::path onto;   // Drop; empty: onto a floor
+    MeshImportSettings ontoSettings;
     RunOptions options;           // Run, Drop
 };
 

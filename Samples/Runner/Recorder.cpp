@@ -123,7 +123,8 @@ RecordedMotion MotionOf(MotionType motion) {
 
 }  // namespace
 
-Recorder::Recorder(const SceneWorld& world, int steps, double dt) : world_(world), steps_(steps) {
+Recorder::Recorder(SceneWorld& world, int steps, double dt) : world_(world), steps_(steps) {
+    world.Draw().TurnOn();
     recording.title = world.Definition().name;
     recording.description = world.Definition().description;
     double moving = 0;
@@ -199,7 +200,8 @@ void Recorder::AddFrame() {
     }
     contacts_.clear();
     if (WantsContacts(recording)) CollectContacts();
-    AppendFrame(recording, world_.Time(), states_, contacts_, joints_->Collect(recording.joints));
+    CollectDrawing();
+    AppendFrame(recording, world_.Time(), states_, contacts_, joints_->Collect(recording.joints), {lines_, points_});
 }
 
 std::optional<uint32_t> Recorder::RecordedBodyOf(BodyId id) const {
@@ -230,6 +232,15 @@ void Recorder::CollectContacts() {
                                  .bodyA = recorded_[contact.bodyA.index],
                                  .bodyB = recorded_[contact.bodyB.index]});
     });
+}
+
+void Recorder::CollectDrawing() {
+    lines_.clear();
+    points_.clear();
+    const auto place = [&](const Position& position) { return ToVector(position, recording.origin); };
+    for (const DrawnLine& line : world_.Draw().Lines())
+        lines_.push_back({place(line.from), place(line.to), static_cast<uint32_t>(line.ink)});
+    for (const DrawnPoint& point : world_.Draw().Points()) points_.push_back({place(point.at), static_cast<uint32_t>(point.ink)});
 }
 
 // A recording cannot say that a body is gone: it sinks below everything, where floors hide it.

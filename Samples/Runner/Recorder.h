@@ -15,8 +15,8 @@ class Recorder {
 public:
     // The first frame is the world as it is now. Of `steps` steps of dt seconds, every so many become frames that there are
     // at most 60 a second and that the pages of large worlds stay small; the last step is always one. `world` must outlive
-    // this.
-    Recorder(const SceneWorld& world, int steps, double dt);
+    // this; its drawings are turned on.
+    Recorder(SceneWorld& world, int steps, double dt);
 
     // After every step.
     void AfterStep();
@@ -29,6 +29,7 @@ private:
     void AddFrame();
     void CollectIslands();
     void CollectContacts();
+    void CollectDrawing();
     void HideRemovedBody(uint32_t body, RecordedState state);
     std::optional<uint32_t> RecordedBodyOf(BodyId id) const;
 
@@ -43,6 +44,8 @@ private:
     std::vector<int32_t> firstOfIsland_;
     std::vector<RecordedState> states_;
     std::vector<RecordedContact> contacts_;
+    std::vector<RecordedLine> lines_;
+    std::vector<RecordedPoint> points_;
     std::optional<JointRecorder> joints_;
 };
 

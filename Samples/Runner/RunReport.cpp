@@ -70,6 +70,9 @@ std::vector<ReportLine> ReportLines(const Scene& scene, const RunFigures& figure
     add("Time", "a step, median", Text("%.3f ms", figures.stepMs.median));
     add("Time", "a step, 99th percentile", Text("%.3f ms", figures.stepMs.p99));
     add("Time", "a step, longest", Text("%.3f ms", figures.stepMs.max));
+    if (figures.queryCount > 0)
+        add("Time", "the batch, median", Text("%.3f ms for %d %s, %.3g/s", figures.queryMs.median, figures.queryCount,
+                                              figures.queryName.c_str(), QueriesPerSecond(figures)));
     for (int stage = 0; stage < kStageCount; ++stage)
         add("Stages, median", StageName(static_cast<Stage>(stage)),
             Text("%.3f ms", figures.stageMedianMs[static_cast<size_t>(stage)]));
@@ -101,7 +104,9 @@ nlohmann::ordered_json ReportJson(const std::string& name, const RunFigures& fig
     for (int stage = 0; stage < kStageCount; ++stage)
         stages[StageName(static_cast<Stage>(stage))] = figures.stageMedianMs[static_cast<size_t>(stage)];
     const StepReport& last = figures.last;
-    return {{"engine", "fulcrum"},
+    const Statistics& ms = ComparedMs(figures);
+    nlohmann::ordered_json json{
+            {"engine", "fulcrum"},
             {"version", FULCRUM_VERSION},
             {"scene", name},
             {"threads", figures.threads},
@@ -109,10 +114,10 @@ nlohmann::ordered_json ReportJson(const std::string& name, const RunFigures& fig
             {"contacts", last.contacts},
             {"contact_points", last.contactPoints},
             {"steps", figures.steps},
-            {"median_ms", figures.stepMs.median},
-            {"mean_ms", figures.stepMs.mean},
-            {"p99_ms", figures.stepMs.p99},
-            {"max_ms", figures.stepMs.max},
+            {"median_ms", ms.median},
+            {"mean_ms", ms.mean},
+            {"p99_ms", ms.p99},
+            {"max_ms", ms.max},
             {"steps_per_s", figures.stepMs.mean > 0 ? 1000 / figures.stepMs.mean : 0},
             {"accuracy", JsonNumber(figures.accuracy)},
             {"nonfinite", figures.nonFinite},
@@ -132,6 +137,8 @@ nlohmann::ordered_json ReportJson(const std::string& name, const RunFigures& fig
             {"energy_start_j", JsonNumber(figures.energyAtStart)},
             {"energy_end_j", JsonNumber(figures.energyAtEnd)},
             {"memory_bytes", figures.memoryBytes}};
+    if (figures.queryCount > 0) json[figures.queryName + "_per_s"] = QueriesPerSecond(figures);
+    return json;
 }
 
 }  // namespace fulcrum

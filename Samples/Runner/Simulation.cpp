@@ -1,6 +1,7 @@
 #include <Fulcrum/Samples/Runner/Simulation.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 
 namespace fulcrum {
@@ -33,7 +34,27 @@ void CountBodies(const SceneWorld& world, RunFigures& figures) {
     figures.awakeIslands = static_cast<uint32_t>(std::count(awake.begin(), awake.end(), true));
 }
 
+void TimeQueries(SceneWorld& world, RunFigures& figures) {
+    const Scene& scene = world.Definition();
+    if (!scene.query) return;
+    constexpr int kTimes = 5;
+    std::vector<double> ms;
+    for (int i = 0; i <= kTimes; ++i) {
+        const auto begin = std::chrono::steady_clock::now();
+        scene.query(world);
+        const auto end = std::chrono::steady_clock::now();
+        if (i > 0) ms.push_back(std::chrono::duration<double, std::milli>(end - begin).count());
+    }
+    figures.queryCount = scene.queryCount;
+    figures.queryName = scene.queryName;
+    figures.queryMs = Summarize(std::move(ms));
+}
+
 }  // namespace
+
+double QueriesPerSecond(const RunFigures& figures) {
+    return figures.queryMs.median > 0 ? 1000 * figures.queryCount / figures.queryMs.median : 0;
+}
 
 Statistics Summarize(std::vector<double> samples) {
     Statistics result;
@@ -77,6 +98,7 @@ Result<RunFigures> Simulate(SceneWorld& world, int untimed, int steps, double dt
     figures.stepMs = Summarize(std::move(stepMs));
     for (size_t stage = 0; stage < stageMs.size(); ++stage)
         figures.stageMedianMs[stage] = Summarize(std::move(stageMs[stage])).median;
+    TimeQueries(world, figures);
     figures.last = world.System().Report();
     CountBodies(world, figures);
     figures.energyAtEnd = world.System().GetEnergy();

@@ -23,6 +23,9 @@ struct RunFigures {
     SolverSettings solver;
     Statistics stepMs;
     std::array<double, kStageCount> stageMedianMs{};
+    int queryCount = 0;      // of the scene's batch; 0: it has none
+    std::string queryName;   // what they are
+    Statistics queryMs;      // of the whole batch
     StepReport last;  // of the last step
     size_t bodies = 0, dynamicBodies = 0;
     uint32_t islands = 0, awakeIslands = 0;  // at the end
@@ -38,10 +41,18 @@ struct RunFigures {
     int nonFinite = 0;     // bodies
 };
 
-// Takes `untimed` steps, then `steps` timed ones of dt seconds; `afterStep` is called after each of all of them.
+// Takes `untimed` steps, then `steps` timed ones of dt seconds; `afterStep` is called after each of all of them. A scene's batch
+// of queries is asked once untimed, then timed five times.
 // Errors: those of PhysicsSystem::Update.
 Result<RunFigures> Simulate(SceneWorld& world, int untimed, int steps, double dt, uint32_t threads,
                             FunctionRef<void()> afterStep);
+
+// What a scene is compared by: the batch where it has one, else the step.
+inline const Statistics& ComparedMs(const RunFigures& figures) {
+    return figures.queryCount > 0 ? figures.queryMs : figures.stepMs;
+}
+// Of its batch; 0 where it has none.
+double QueriesPerSecond(const RunFigures& figures);
 
 // 16 hexadecimal digits.
 std::string HashText(uint64_t hash);

@@ -3,16 +3,7 @@
 namespace fulcrum {
 namespace {
 
-void Build(SceneWorld& world) {
-    const Material bouncy{.friction = 0.5f, .restitution = 0.6f};
-    AddWavyGround(world, bouncy);
-    const Vector3 corners[] = {Vector3(0, 1, 0), Vector3(1, 0, 0), Vector3(-1, 0, 0), Vector3(0, 0, 1), Vector3(0, 0, -1)};
-    const ShapePtr shapes[] = {world.BoxOf(0.5f, 0.75f, 1), world.SphereOf(0.5f), world.CapsuleOf(0.75f, 0.5f), world.HullOf(corners)};
-    for (int x = -10; x <= 10; ++x)
-        for (int y = 0; y < 4; ++y)
-            for (int z = -10; z <= 10; ++z)
-                world.Add({.shape = shapes[y], .position = {7.5 * x, 15 + 2.0 * y, 7.5 * z}, .material = bouncy});
-}
+void Build(SceneWorld& world) { AddShapesOverWaves(world); }
 
 double BodiesBelowTheMesh(const SceneWorld& world) {
     double count = 0;

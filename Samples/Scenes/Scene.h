@@ -28,6 +28,13 @@ struct Scene {
     void (*build)(SceneWorld& world) = nullptr;
     // Called before each step, when world.StepCount() steps are done. Null: nothing to do.
     void (*beforeStep)(SceneWorld& world, double dt) = nullptr;
+    // Called after each step, when world.StepCount() counts it: asks queries, draws. Null: nothing to do.
+    void (*afterStep)(SceneWorld& world) = nullptr;
+    // A batch that is timed after the last step, in place of the steps: how many of what one call answers. Null: the steps
+    // are timed.
+    void (*query)(SceneWorld& world) = nullptr;
+    int queryCount = 0;
+    const char* queryName = "";
     // How exact a run was, after its last step, and what that number means. Null where only the run itself can tell.
     double (*accuracy)(const SceneWorld& world) = nullptr;
     const char* accuracyMeaning = "";

@@ -37,6 +37,8 @@ Status SceneWorld::Step(double dt) {
     if (stepCount_ > 0) longestMs_ = std::max(longestMs_, lastMs_);
     ++stepCount_;
     time_ += dt;
+    drawing_.Clear();
+    if (scene_.afterStep) scene_.afterStep(*this);
     return status;
 }
 

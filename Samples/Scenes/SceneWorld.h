@@ -5,6 +5,7 @@
 #include <Fulcrum/Collision/Shapes/Compound.h>
 #include <Fulcrum/Physics/PhysicsSystem.h>
 #include <Fulcrum/Physics/Ragdoll/Ragdoll.h>
+#include <Fulcrum/Samples/Scenes/Drawing.h>
 #include <Fulcrum/Samples/Scenes/Random.h>
 #include <Fulcrum/Samples/Scenes/Scene.h>
 
@@ -18,8 +19,9 @@ namespace fulcrum {
 struct SceneInput {
     uint64_t seed = 1;
     SolverSettings solver;  // the default effort
-    ShapePtr shape;         // of the drop scene
-    int count = 50;         // bodies of the drop scene, >= 1
+    ShapePtr shape;         // of the drop scenes: what falls
+    ShapePtr ground;        // of drop_onto: what it falls onto
+    int count = 50;         // bodies of the drop scenes, >= 1
 };
 
 class SceneWorld {
@@ -29,7 +31,7 @@ public:
     static Result<std::unique_ptr<SceneWorld>> Create(const Scene& scene, const SceneInput& input = {},
                                                       JobSystem* jobs = nullptr);
 
-    // The scene's own doings, then PhysicsSystem::Update. Errors as there.
+    // The scene's own doings before and after PhysicsSystem::Update. Errors as there.
     Status Step(double dt);
 
     const Scene& Definition() const { return scene_; }
@@ -40,6 +42,10 @@ public:
     const BodyInterface& Bodies() const { return system_->Bodies(); }
     JointInterface& Joints() { return system_->Joints(); }
     const JointInterface& Joints() const { return system_->Joints(); }
+    const QueryInterface& Queries() const { return system_->Queries(); }
+    // Of the last step; empty unless it was turned on.
+    Drawing& Draw() { return drawing_; }
+    const Drawing& Draw() const { return drawing_; }
     int StepCount() const { return stepCount_; }
     double Time() const { return time_; }               // s
     double LastStepMs() const { return lastMs_; }        // wall clock of PhysicsSystem::Update alone
@@ -54,6 +60,9 @@ public:
     std::vector<BodyId> watched;  // what the figure looks at, in an order that the scene chooses
     std::vector<JointId> joints;  // likewise
     std::vector<Ragdoll> ragdolls;  // all that AddRagdoll made
+    double figure = 0;            // what the scene's figure adds up over the steps
+    std::vector<Ray> rays;        // of a scene that times a batch of them, and their answers
+    std::vector<WorldRayHit> rayHits;
 
     // Shapes; null, and an error of Create, where the sizes are wrong.
     ShapePtr BoxOf(float halfX, float halfY, float halfZ);
@@ -92,6 +101,7 @@ private:
     std::unique_ptr<ContactListener> listener_;
     std::unique_ptr<PhysicsSystem> system_;
     std::optional<Error> firstError_;
+    Drawing drawing_;
     int stepCount_ = 0;
     double time_ = 0;
     double lastMs_ = 0;

@@ -11,6 +11,7 @@ namespace fulcrum {
     scene(ManyPyramids)       \
     scene(JointGrid)          \
     scene(ConvexOnMesh)       \
+    scene(Rays)               \
     scene(Ragdolls)           \
     scene(HighSpeed)          \
     scene(HullPile)           \
@@ -26,6 +27,12 @@ namespace fulcrum {
     scene(Bowls)              \
     scene(GravityFactors)     \
     scene(ConvexShapes)       \
+    scene(TerrainWithHoles)   \
+    scene(QueryRays)          \
+    scene(QueryCasts)         \
+    scene(QueryOverlaps)      \
+    scene(QueryClosest)       \
+    scene(QueryBounds)        \
     scene(FlatLand)           \
     scene(MovingPlatforms)    \
     scene(ConveyorBelt)       \

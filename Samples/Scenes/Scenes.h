@@ -15,5 +15,7 @@ const Scene* FindScene(std::string_view name);
 
 // Not in the list: drops SceneInput::count bodies of SceneInput::shape in a heap between low walls.
 extern const Scene kDropScene;
+// Nor this: drops them over SceneInput::ground, a mesh that stands on y = 0.
+extern const Scene kDropOntoScene;
 
 }  // namespace fulcrum

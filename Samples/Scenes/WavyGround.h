@@ -14,4 +14,7 @@ double WavyHeight(double x, double z);
 // Static.
 BodyId AddWavyGround(SceneWorld& world, const Material& material);
 
+// The ground, and above it 21 x 4 x 21 boxes, balls, capsules and pyramids that bounce.
+void AddShapesOverWaves(SceneWorld& world);
+
 }  // namespace fulcrum

@@ -1,6 +1,7 @@
 #include <Fulcrum/Samples/Viewer/PageData.h>
 
 #include <Fulcrum/Samples/Viewer/PageColumn.h>
+#include <Fulcrum/Samples/Viewer/PageDrawings.h>
 #include <Fulcrum/Samples/Viewer/PageJoints.h>
 
 #include <nlohmann/json.hpp>
@@ -179,6 +180,7 @@ Json Header(const Recording& recording, double positionStep) {
     header["impulseSteps"] = kImpulseSteps;
     header["impulseUnit"] = kImpulseUnit;
     header["joints"] = JointHeader(recording);
+    header["drawings"] = DrawingHeader(recording, kDrawingSteps * positionStep);
     header["contactInterval"] = recording.contactInterval;
     header["largestContactCut"] = recording.largestContactCut;
     Json &times = header["times"] = Json::array(), &contactFrames = header["contactFrames"] = Json::array();
@@ -216,6 +218,7 @@ std::string EncodePageData(const Recording& recording) {
     std::vector<std::string> columns = states.Columns();
     columns.push_back(contacts.Bytes());
     for (std::string& column : JointColumns(recording)) columns.push_back(std::move(column));
+    columns.push_back(DrawingColumn(recording, kDrawingSteps * positionStep));
 
     Json header = Header(recording, positionStep);
     for (const std::string& column : columns) header["columns"].push_back(column.size());

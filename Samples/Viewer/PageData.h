@@ -2,7 +2,7 @@
 // all frames, deflated as a whole. Called by HtmlWriter. Page/decode.js reads it and is the other half of this format:
 //
 //   u32 length of the header | header | states | positions | rotations | velocities | islands | contacts | joints |
-//   jointStates | jointErrors
+//   jointStates | jointErrors | drawings
 //
 // All numbers of a column are varints (7 bits a byte, low bits first), signed ones in zigzag. A state is stored only where
 // its quantised value differs from the body's last one. Positions are predicted from the two states before, rotations
@@ -16,6 +16,7 @@
 //               body A, body B and point (in kContactPointSteps positionSteps), then normal, separation, and the
 //               impulse as kImpulseSteps log2(1 + impulse / kImpulseUnit)
 //   joint...    PageJoints.h
+//   drawings    PageDrawings.h
 #pragma once
 
 #include <Fulcrum/Samples/Viewer/Recording.h>
@@ -27,6 +28,7 @@ namespace fulcrum {
 inline constexpr double kRotationSteps = 32768;
 inline constexpr double kVelocityStep = 0.005;    // m/s
 inline constexpr double kContactPointSteps = 10;
+inline constexpr double kDrawingSteps = 10;
 inline constexpr double kNormalStep = 0.002;
 inline constexpr double kSeparationStep = 1e-5;   // m
 inline constexpr double kImpulseSteps = 32;       // steps per factor of 2: 1 % each way

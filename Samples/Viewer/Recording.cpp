@@ -48,6 +48,13 @@ void AppendJoints(Recording& recording, const RecordedFrameJoints& joints, Recor
     frame.jointErrors = joints.errors;
 }
 
+void AppendDrawing(const RecordedFrameDrawing& drawing, RecordedFrame& frame) {
+    for (const RecordedLine& line : drawing.lines)
+        if (fulcrum::IsFinite(line.from) && fulcrum::IsFinite(line.to)) frame.lines.push_back(line);
+    for (const RecordedPoint& point : drawing.points)
+        if (fulcrum::IsFinite(point.place)) frame.points.push_back(point);
+}
+
 }  // namespace
 
 bool WantsContacts(const Recording& recording) {
@@ -55,7 +62,8 @@ bool WantsContacts(const Recording& recording) {
 }
 
 void AppendFrame(Recording& recording, double time, std::span<const RecordedState> states,
-                 std::span<const RecordedContact> contacts, const RecordedFrameJoints& joints) {
+                 std::span<const RecordedContact> contacts, const RecordedFrameJoints& joints,
+                 const RecordedFrameDrawing& drawing) {
     RecordedFrame frame;
     frame.time = time;
     const size_t known = recording.latest.size();
@@ -75,6 +83,7 @@ void AppendFrame(Recording& recording, double time, std::span<const RecordedStat
         recording.largestContactCut = std::max(recording.largestContactCut, contacts.size() - frame.contacts.size());
     }
     AppendJoints(recording, joints, frame);
+    AppendDrawing(drawing, frame);
     recording.frames.push_back(std::move(frame));
     ThinContacts(recording);
 }

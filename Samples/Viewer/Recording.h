@@ -1,10 +1,11 @@
-// What a run leaves behind for its pictures: shapes, bodies, joints, their states frame by frame, contacts and the report.
+// What a run leaves behind for its pictures: shapes, bodies, joints, their states frame by frame, contacts, drawings and the report.
 // Filled in by the runner through AppendFrame, read by HtmlWriter and GlbWriter. Knows nothing of the engine but its
 // Math types. One thread at a time.
 #pragma once
 
 #include <Fulcrum/Math/Pose.h>
 #include <Fulcrum/Math/Result.h>
+#include <Fulcrum/Samples/Viewer/RecordedDrawing.h>
 #include <Fulcrum/Samples/Viewer/RecordedJoint.h>
 
 #include <array>
@@ -68,6 +69,8 @@ struct RecordedFrame {
     bool hasContacts = false;
     std::vector<RecordedJointState> joints;  // ascending by joint; only those that changed since the frame before
     RecordedJointErrors jointErrors;
+    std::vector<RecordedLine> lines;         // of this frame alone
+    std::vector<RecordedPoint> points;       // likewise
 };
 
 // A line of the panel beside the picture. Lines of one section follow each other.
@@ -101,9 +104,10 @@ inline constexpr size_t kMostContactsPerFrame = 50'000;
 // frame has named yet counts as resting at the origin; one that is no body of the recording's is dropped. So that no recording outgrows memory, contacts are kept of every
 // frame first, of every second once there are more than kMostContacts, then of every fourth, and so on; of more than
 // kMostContactsPerFrame in one frame an even choice is kept. Of joints too only those need be named that may have changed; one
-// that no frame has named yet counts as switched off.
+// that no frame has named yet counts as switched off. Lines and points that are not finite are dropped.
 void AppendFrame(Recording& recording, double time, std::span<const RecordedState> states,
-                 std::span<const RecordedContact> contacts, const RecordedFrameJoints& joints = {});
+                 std::span<const RecordedContact> contacts, const RecordedFrameJoints& joints = {},
+                 const RecordedFrameDrawing& drawing = {});
 
 // Whether the next frame's contacts would be kept: saves collecting them for nothing.
 bool WantsContacts(const Recording& recording);

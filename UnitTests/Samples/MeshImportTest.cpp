@@ -145,5 +145,150 @@ TEST_F(MeshFiles, AHeapOfOneLandsInItsTray) {
     for (BodyId id : world.Value()->watched) EXPECT_LT(world.Value()->Bodies().GetCentreOfMass(id).y(), 2.5);
 }
 
+// ---- Triangles to drop onto
+
+class MeshGrounds : public MeshFiles {
+protected:
+    ImportedMesh Import(const fs::path& path, const MeshImportSettings& settings = {}) const {
+        const auto mesh = ImportMesh(path, settings);
+        if (mesh) return mesh.Value();
+        ADD_FAILURE() << mesh.GetError().message;
+        return {};
+    }
+    std::string Refusal(const fs::path& path, const MeshImportSettings& settings = {}) const {
+        const auto mesh = ImportMesh(path, settings);
+        if (!mesh) return mesh.GetError().message;
+        ADD_FAILURE() << path << " was read";
+        return {};
+    }
+};
+
+// 2 x 2 squares over x and z, seen from above; one corner higher.
+constexpr const char* kSheet =
+    "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 0 1\nv 1 0.5 1\nv 2 0 1\nv 0 0 2\nv 1 0 2\nv 2 0 2\n"
+    "f 1 4 5 2\nf 2 5 6 3\nf 4 7 8 5\nf 5 8 9 6\n";
+
+TEST_F(MeshGrounds, AClosedBoxStandsOnTheFloorWithOneSide) {
+    const ImportedMesh read = Import(Write("cube.obj", ObjBox("cube", {10, 10, 10}, {14, 12, 14}, 0)));
+    ASSERT_TRUE(read.mesh);
+    EXPECT_EQ(read.mesh->TriangleCount(), 12u);
+    EXPECT_EQ(read.mesh->VertexCount(), 8u);
+    EXPECT_FALSE(read.isTwoSided);
+    EXPECT_DOUBLE_EQ(read.fileSize, 4);
+    EXPECT_DOUBLE_EQ(read.scale, 5);  // 20 m
+    const Bounds box = read.mesh->LocalBounds();
+    EXPECT_LT(Length(box.lower - Vector3(-10, 0, -10)), 1e-4f);
+    EXPECT_LT(Length(box.upper - Vector3(10, 10, 10)), 1e-4f);
+}
+
+TEST_F(MeshGrounds, AnOpenSheetHasTwoSides) {
+    const ImportedMesh read = Import(Write("sheet.obj", kSheet), {.scale = 3});
+    ASSERT_TRUE(read.mesh);
+    EXPECT_TRUE(read.isTwoSided);
+    EXPECT_EQ(read.report.boundaryEdges, 8u);
+    EXPECT_EQ(read.mesh->TriangleCount(), 8u);
+    EXPECT_NEAR(read.mesh->LocalBounds().upper.x(), 3, 1e-5);
+    EXPECT_NEAR(read.mesh->LocalBounds().upper.y(), 1.5, 1e-5);
+}
+
+TEST_F(MeshGrounds, ABoxTurnedInsideOutHasTwoSides) {
+    std::string text = ObjBox("cube", {0, 0, 0}, {1, 1, 1}, 0);
+    // A mirrored vertex list turns every front inwards.
+    for (size_t at = text.find("v "); at != std::string::npos; at = text.find("\nv ", at + 1)) text.insert(text.find(' ', at) + 1, "-");
+    EXPECT_TRUE(Import(Write("inside.obj", text)).isTwoSided);
+}
+
+TEST_F(MeshGrounds, TheAxisThatIsUpBecomesY) {
+    // A wedge whose ridge is up along z in the file, 1 high, 2 long and 3 wide.
+    const fs::path file = Write("wedge.obj", "v 0 0 0\nv 2 0 0\nv 2 3 0\nv 0 3 0\nv 0 1 1\nv 2 1 1\n"
+                                             "f 1 4 3 2\nf 1 2 6 5\nf 3 4 5 6\nf 1 5 4\nf 2 3 6\n");
+    const ImportedMesh up = Import(file, {.scale = 1, .up = UpAxis::Z}), down = Import(file, {.scale = 1, .up = UpAxis::MinusZ});
+    ASSERT_TRUE(up.mesh && down.mesh);
+    EXPECT_FALSE(up.isTwoSided);
+    EXPECT_FALSE(down.isTwoSided);  // turned, not mirrored
+    for (const ImportedMesh& read : {up, down}) EXPECT_NEAR(read.mesh->LocalBounds().upper.y(), 1, 1e-6);
+    // A ray from above meets the ridge of the one, the base of the other.
+    SurfaceHit hit;
+    const auto heightAt = [&](const ImportedMesh& read, float wide) {
+        // y of the file runs along x here, from its middle at 1.5.
+        const bool isHit = read.mesh->CastRay({Vector3(wide, 5, 0.3f), Vector3(0, -10, 0)}, hit);
+        return isHit ? 5 - 10 * hit.fraction : -1.0f;
+    };
+    EXPECT_NEAR(heightAt(up, -0.5f), 1, 1e-5);
+    EXPECT_NEAR(heightAt(up, 1.4f), 0.05, 1e-5);
+    EXPECT_NEAR(heightAt(down, 1.4f), 1, 1e-5);
+}
+
+TEST_F(MeshGrounds, NodesPlaceTheirTrianglesAndMirroredOnesKeepTheirFronts) {
+    // The triangle pyramid of the hulls' test, and beside it its mirror image.
+    const std::string buffer =
+        "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAAC"
+        "AAEAAAABAAMAAAADAAIAAQACAAMA";
+    const std::string text = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1]}],
+      "nodes":[{"mesh":0},{"mesh":0,"translation":[3,0,0],"scale":[-1,1,1]}],
+      "meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
+      "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,1]},
+                   {"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}],
+      "bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":24}],
+      "buffers":[{"byteLength":72,"uri":")" + buffer + R"("}]})";
+    const ImportedMesh read = Import(Write("nodes.gltf", text), {.scale = 1});
+    ASSERT_TRUE(read.mesh);
+    EXPECT_EQ(read.mesh->TriangleCount(), 8u);
+    EXPECT_FALSE(read.isTwoSided);
+    // Both pyramids are met from above, one sided as they are.
+    SurfaceHit hit;
+    for (float x : {-1.3f, 1.3f}) {
+        EXPECT_TRUE(read.mesh->CastRay({Vector3(x, 5, -0.3f), Vector3(0, -10, 0)}, hit)) << x;
+        EXPECT_GT(hit.normal.y(), 0);
+    }
+}
+
+TEST_F(MeshGrounds, WhatIsMendedIsSaid) {
+    // The two squares of a step share no vertices, as in every STL; a face twice; one without area; a line.
+    const ImportedMesh read = Import(Write("mended.obj", "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 1 0 0\nv 2 0.5 0\nv 2 0.5 1\nv 1 0 1\n"
+                                                         "f 1 4 3 2\nf 5 8 7 6\nf 1 4 3\nf 1 2 5\nl 1 2\n"));
+    ASSERT_TRUE(read.mesh);
+    EXPECT_EQ(read.mesh->TriangleCount(), 4u);
+    EXPECT_EQ(read.mesh->VertexCount(), 6u);
+    EXPECT_GT(read.report.weldedVertices.count, 0u);
+    EXPECT_EQ(read.report.duplicateTriangles.count, 1u);
+    EXPECT_EQ(read.report.degenerateTriangles.count, 1u);
+    std::string all;
+    for (const std::string& line : read.repairs) all += line + "\n";
+    for (const char* part : {"welded", "duplicate", "without area", "points and lines"})
+        EXPECT_NE(all.find(part), std::string::npos) << part << " is not in:\n" << all;
+}
+
+TEST_F(MeshGrounds, WhatIsNoGroundIsRefused) {
+    EXPECT_NE(Refusal(folder_ / "absent.obj").find("no file"), std::string::npos);
+    EXPECT_NE(Refusal(Write("text.txt", "no mesh at all")).find("cannot be read"), std::string::npos);
+    const std::string line = Refusal(Write("line.obj", "v 0 0 0\nv 1 0 0\nv 2 1 0\nl 1 2 3\n"));
+    EXPECT_NE(line.find("no triangles"), std::string::npos) << line;
+    const std::string flat = Refusal(Write("needle.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"));
+    EXPECT_NE(flat.find("needle.obj"), std::string::npos) << flat;
+    const std::string point = Refusal(Write("point.obj", "v 2 2 2\nv 2 2 2\nv 2 2 2\nf 1 2 3\n"));
+    EXPECT_NE(point.find("extent"), std::string::npos) << point;
+    EXPECT_NE(Refusal(Write("sheet.obj", kSheet), {.scale = -1}).find("scale"), std::string::npos);
+}
+
+TEST_F(MeshGrounds, BodiesLandOnTheSheet) {
+    const auto shape = ImportShape(Write("cube.obj", ObjBox("cube", {0, 0, 0}, {1, 1, 1}, 0)), 1);
+    ASSERT_TRUE(shape);
+    SceneInput input;
+    input.shape = shape.Value().shape;
+    input.ground = Import(Write("sheet.obj", kSheet), {.size = 10}).mesh;
+    input.count = 9;
+    const auto world = SceneWorld::Create(kDropOntoScene, input);
+    ASSERT_TRUE(world) << world.GetError().message;
+    for (int step = 0; step < 180; ++step) ASSERT_TRUE(world.Value()->Step(1.0 / 60));
+    EXPECT_EQ(world.Value()->watched.size(), 9u);
+    EXPECT_EQ(kDropOntoScene.accuracy(*world.Value()), 0);
+    for (BodyId id : world.Value()->watched) {
+        // Above the sheet at 10 x (1 - distance from its middle), or beside it on the floor; half a cube higher.
+        EXPECT_GT(world.Value()->Bodies().GetCentreOfMass(id).y(), 0.4);
+        EXPECT_LT(Length(world.Value()->Bodies().GetLinearVelocity(id)), 2);
+    }
+}
+
 }  // namespace
 }  // namespace fulcrum

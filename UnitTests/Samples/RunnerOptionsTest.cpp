@@ -1,6 +1,7 @@
 // What ./fulcrum run and drop understand, and how they answer what they do not.
 #include <Fulcrum/Samples/Runner/NearestName.h>
 #include <Fulcrum/Samples/Runner/Options.h>
+#include <Fulcrum/Samples/Scenes/Scenes.h>
 
 #include <gtest/gtest.h>
 
@@ -101,6 +102,20 @@ TEST(RunnerOptions, DropTakesAFileAndACount) {
     EXPECT_EQ(command.file, "some/teapot.obj");
     EXPECT_EQ(command.count, 7);
     EXPECT_EQ(command.options.StepsOf(*command.scene), 3);
+}
+
+TEST(RunnerOptions, DropMayBeOntoAMesh) {
+    const Command command = Parsed("drop teapot.obj --onto bunny.ply --onto-scale 0.5 --onto-up -z");
+    EXPECT_EQ(command.onto, "bunny.ply");
+    ASSERT_TRUE(command.ontoSettings.scale);
+    EXPECT_DOUBLE_EQ(*command.ontoSettings.scale, 0.5);
+    EXPECT_EQ(command.ontoSettings.up, UpAxis::MinusZ);
+    EXPECT_EQ(command.scene, &kDropOntoScene);
+    EXPECT_EQ(Parsed("drop teapot.obj").scene, &kDropScene);
+    EXPECT_FALSE(Parsed("drop teapot.obj --onto bunny.ply").ontoSettings.scale);
+    ExpectComplaint("drop teapot.obj --onto-scale 2", "--onto");
+    ExpectComplaint("drop teapot.obj --onto bunny.ply --onto-scale 0", "nearest valid value is 1e-06");
+    ExpectComplaint("drop teapot.obj --onto bunny.ply --onto-up up", "axis of --onto-up");
 }
 
 TEST(RunnerOptions, ListAndHelp) {

@@ -91,8 +91,9 @@ TEST(Scenes, AreAllInTheTable) {
     size_t files = 0;
     for (const auto& entry : std::filesystem::directory_iterator(FULCRUM_SOURCE_DIR "/Samples/Scenes"))
         if (entry.path().extension() == ".cpp") ++files;
-    // Scenes.cpp, SceneWorld.cpp, Humanoid.cpp and WavyGround.cpp define none, and Drop.cpp's needs a shape from outside.
-    EXPECT_EQ(AllScenes().size(), files - 5);
+    // Scenes.cpp, SceneWorld.cpp, Drawing.cpp, Humanoid.cpp, QueryGround.cpp and WavyGround.cpp define none, and those of
+    // Drop.cpp and DropOnto.cpp need shapes from outside.
+    EXPECT_EQ(AllScenes().size(), files - 8);
 }
 
 TEST(Scenes, AnotherSeedMakesAnotherWorldWhereASceneUsesIt) {
@@ -208,6 +209,24 @@ TEST(PerformanceScenes, MostlyAsleepHas100000SleepersAnd100Balls) {
     EXPECT_TRUE(world->System().Settings().sleep.enabled);
 }
 
+TEST(PerformanceScenes, RaysAre100000StraightDownOntoTheMesh) {
+    const auto world = Build("rays");
+    ASSERT_TRUE(world);
+    EXPECT_EQ(DynamicBodies(*world).size(), 1764u);
+    ASSERT_EQ(world->rays.size(), 100'000u);
+    // The first number of SplitMix64 seeded with 1 is 0x910A2DEC89025CC1: its top 24 bits are 9505325.
+    EXPECT_DOUBLE_EQ(world->rays[0].origin.x(), -150 + 300 * 9505325.0 / 16777216);
+    for (const Ray& ray : world->rays) {
+        ASSERT_EQ(ray.origin.y(), 60);
+        ASSERT_EQ(ray.displacement, Vector3(0, -120, 0));
+        ASSERT_LE(std::max(std::fabs(ray.origin.x()), std::fabs(ray.origin.z())), 150);
+    }
+    EXPECT_EQ(world->Definition().accuracy(*world), 100'000);
+    world->Definition().query(*world);
+    EXPECT_EQ(world->Definition().accuracy(*world), 0);
+    EXPECT_EQ(world->Definition().queryCount, 100'000);
+}
+
 // What the feature scenes claim, after their whole duration.
 void ExpectFigure(const char* name, double lowest, double highest) {
     const auto world = Build(name);
@@ -244,6 +263,14 @@ TEST(SampleScenes, BodiesOfThePlaneStayInIt) { ExpectFigure("flat_land", 0, 1e-6
 TEST(SampleScenes, PlatformsCarryWhatStandsOnThem) { ExpectFigure("moving_platforms", 0, 0.03); }
 TEST(SampleScenes, BeltsCarryAllGoodsRoundTheLoop) { ExpectFigure("conveyor_belt", 0, 0); }
 TEST(SampleScenes, LayersPassOrCatch) { ExpectFigure("layers", 0, 0); }
+TEST(SampleScenes, BodiesFallThroughTheHolesOfTheTerrainAlone) { ExpectFigure("terrain_with_holes", 0, 0); }
+TEST(SampleScenes, RaysAgree) { ExpectFigure("query_rays", 0, 0); }
+// The cast ends, and the distance is measured, within 1e-6 of the shapes' size: that of the ground, 16 m x 16 m, is 23 m.
+TEST(SampleScenes, CastsEndAtATouch) { ExpectFigure("query_casts", 0, 5e-5); }
+TEST(SampleScenes, OverlapsAgreeWithDistances) { ExpectFigure("query_overlaps", 0, 0); }
+// Both ways subtract floats of up to 12 m.
+TEST(SampleScenes, ClosestIsWhatAllBodiesOneByOneGive) { ExpectFigure("query_closest", 0, 5e-6); }
+TEST(SampleScenes, TheBroadPhaseNamesAllThatIsHit) { ExpectFigure("query_bounds", 0, 0); }
 TEST(SampleScenes, ARemovedPillarWakesItsStackAlone) { ExpectFigure("trap_door", 0, 0); }
 
 }  // namespace

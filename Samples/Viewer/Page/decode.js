@@ -3,6 +3,7 @@
 // The result keeps, of every body, the list of its states ("samples"): those of body b have the indices starts[b] up to
 // starts[b + 1], in the order of their frames. A body that rests has few of them however long the recording.
 
+import { decodeDrawings } from './decodeDrawings.js';
 import { decodeJoints } from './decodeJoints.js';
 import { Reader } from './reader.js';
 
@@ -106,9 +107,10 @@ export function decode(bytes) {
   const samples = decodeStates(header, readers);
   const contacts = decodeContacts(header, readers[5]);
   const { joints, jointErrors } = decodeJoints(header, readers.slice(6));
+  const drawings = decodeDrawings(header, readers[9]);
   const movers = [];
   for (let body = 0; body < bodyCount; ++body) if (samples.starts[body + 1] - samples.starts[body] > 1) movers.push(body);
-  return { ...header, bodyCount, frameCount: header.times.length, samples, contacts, joints, jointErrors, movers };
+  return { ...header, bodyCount, frameCount: header.times.length, samples, contacts, joints, jointErrors, drawings, movers };
 }
 
 // `text`: the recording as the page carries it, base64 of zlib's format.

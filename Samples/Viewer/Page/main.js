@@ -1,11 +1,12 @@
 // Puts the page together: unpacks the recording, plays it, answers the controls.
 //
-// The address may say what to show: #frame=120&camera=x,y,z,tx,ty,tz&colour=island&body=7&joints=1&contacts=1&normals=1&bounds=1&bare=1.
+// The address may say what to show: #frame=120&camera=x,y,z,tx,ty,tz&colour=island&body=7&joints=1&drawings=1&contacts=1&normals=1&bounds=1&bare=1.
 // Scripts and tests use window.fulcrum, which is there once the page is ready.
 import { Raycaster, Vector2 } from 'three';
 import { Bodies } from './bodies.js';
 import { MODES, legend, topSpeed } from './colours.js';
 import { unpack } from './decode.js';
+import { Drawings } from './drawings.js';
 import { Joints, MOST_WITH_LIMITS, jointLegend, jointSummary } from './joints.js';
 import { BoundingBoxes, Contacts } from './overlays.js';
 import { bodyInfo, showBody, showJoints, showMessage, showTexts } from './panel.js';
@@ -26,6 +27,7 @@ class Viewer {
     this.contacts = new Contacts(recording, this.stage);
     this.boxes = new BoundingBoxes(recording, this.timeline, this.stage);
     this.joints = new Joints(recording, this.timeline, this.stage);
+    this.drawings = new Drawings(recording, this.stage);
     this.top = topSpeed(recording);
     this.mode = 'island';
     this.selected = -1;
@@ -36,6 +38,7 @@ class Viewer {
     this.#connect();
     this.setSolid(!isEnclosed(recording, this.timeline, subject));
     this.show('joints', recording.joints.length > 0 && recording.joints.length <= MOST_WITH_LIMITS);
+    this.show('drawings', recording.drawings.length > 0);
     this.setMode(this.mode);
   }
 
@@ -53,7 +56,7 @@ class Viewer {
   }
 
   show(what, isShown) {
-    const objects = { joints: this.joints, contacts: this.contacts.points, normals: this.contacts.normals, bounds: this.boxes.object };
+    const objects = { joints: this.joints, drawings: this.drawings, contacts: this.contacts.points, normals: this.contacts.normals, bounds: this.boxes.object };
     if (what === 'grid') this.stage.grid.gridStrength.value = isShown ? 1 : 0;
     else if (what === 'solid') this.bodies.setSolid(isShown);
     else objects[what].visible = isShown;
@@ -100,6 +103,7 @@ class Viewer {
     this.contacts.update(this.timeline.contacts(), 1.2 * this.stage.subject.typical);
     this.boxes.update();
     this.joints.update(this.selected);
+    this.drawings.update(this.timeline.frame);
     this.stage.render();
     showBody(this.selected < 0 ? undefined : bodyInfo(this.recording, this.timeline, this.selected));
     if (this.recording.joints.length > 0) showJoints(jointSummary(this.recording, this.timeline.frame));
@@ -191,7 +195,7 @@ function applyAddress(viewer) {
     viewer.stage.controls.update();
   }
   if (wanted.has('colour')) viewer.setMode(wanted.get('colour'));
-  for (const what of ['joints', 'contacts', 'normals', 'bounds', 'grid', 'solid']) if (wanted.has(what)) viewer.show(what, wanted.get(what) === '1');
+  for (const what of ['joints', 'drawings', 'contacts', 'normals', 'bounds', 'grid', 'solid']) if (wanted.has(what)) viewer.show(what, wanted.get(what) === '1');
   if (wanted.has('body')) viewer.select(Number(wanted.get('body')));
   if (wanted.has('frame')) viewer.seek(Number(wanted.get('frame')));
   else if (!matchMedia('(prefers-reduced-motion: reduce)').matches) viewer.setPlaying(true);

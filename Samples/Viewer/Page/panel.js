@@ -30,6 +30,7 @@ export function showTexts(recording) {
   element('contact-note').textContent = contactNote(recording);
   element('joints').hidden = recording.joints.length === 0;
   document.querySelector('#toggles input[value=joints]').parentElement.hidden = recording.joints.length === 0;
+  document.querySelector('#toggles input[value=drawings]').parentElement.hidden = recording.drawings.length === 0;
   element('joint-note').textContent = jointNote(recording.joints.length);
 }
 

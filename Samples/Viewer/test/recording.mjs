@@ -1,5 +1,5 @@
 // The recording that the tests look at: FULCRUM_RECORDING names it without its ending, out/pyramid of the working folder
-// by default. `./fulcrum run pyramid` makes it. One of the scene hinge is beside it.
+// by default. `./fulcrum run pyramid` makes it. Those of the scenes hinge and query_rays are beside it.
 import { existsSync, readFileSync } from 'node:fs';
 import { dirname, join, resolve } from 'node:path';
 import { unpack } from '../Page/decode.js';
@@ -9,9 +9,10 @@ export const html = `${stem}.html`;
 export const glb = `${stem}.glb`;
 export const screenshot = `${stem}.png`;
 export const hingeHtml = join(dirname(stem), 'hinge.html');
+export const queryHtml = join(dirname(stem), 'query_rays.html');
 
-for (const file of [html, glb, hingeHtml]) {
-  if (!existsSync(file)) throw new Error(`${file} is missing: run ./fulcrum run pyramid and hinge, or name a recording in FULCRUM_RECORDING`);
+for (const file of [html, glb, hingeHtml, queryHtml]) {
+  if (!existsSync(file)) throw new Error(`${file} is missing: run ./fulcrum run pyramid, hinge and query_rays, or name a recording in FULCRUM_RECORDING`);
 }
 
 export async function readRecording(page = html) {

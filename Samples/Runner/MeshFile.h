@@ -1,0 +1,41 @@
+// Reads the meshes of a file, by way of assimp. Called by MeshImport; thread-safe. The only file that knows assimp is
+// MeshFile.cpp.
+#pragma once
+
+#include <Fulcrum/Math/Result.h>
+#include <Fulcrum/Math/Vector.h>
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace fulcrum {
+
+// A mesh as one node of the file places it, in the file's unit.
+struct MeshPart {
+    std::string name;
+    std::vector<Position> points;                    // some may not be finite
+    std::vector<std::array<uint32_t, 3>> triangles;  // counter-clockwise seen from the front; valid indices into `points`
+    size_t otherFaces = 0;                           // points and lines of the file, and faces that name no point
+};
+
+// All meshes as often as the nodes of the file place them; polygons are cut into triangles, and what a node mirrors keeps its
+// fronts. Errors: UnknownId (there is no such file), Unsupported (assimp cannot read it), Degenerate (no mesh in it).
+Result<std::vector<MeshPart>> ReadMeshParts(const std::filesystem::path& path);
+
+// The box around all points that are finite; empty where there are none.
+struct MeshBox {
+    Position lowest, highest;
+    MeshBox();
+    void Include(const Position& point) {
+        lowest = lowest.cwiseMin(point);
+        highest = highest.cwiseMax(point);
+    }
+    double LargestExtent() const { return (highest - lowest).maxCoeff(); }
+    Position Centre() const { return 0.5 * (lowest + highest); }
+};
+MeshBox BoundsOf(const std::vector<MeshPart>& parts);
+
+}  // namespace fulcrum

@@ -1,0 +1,45 @@
+#include <Fulcrum/Samples/Scenes/WavyGround.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+namespace {
+
+constexpr int kRays = 100'000;
+
+// The numbers of the rays are fixed: another seed makes the same ones.
+void Build(SceneWorld& world) {
+    AddShapesOverWaves(world);
+    Random random(1);
+    for (int i = 0; i < kRays; ++i) {
+        const double x = random.Between(-150, 150);
+        const double z = random.Between(-150, 150);
+        world.rays.push_back({.origin = {x, 60, z}, .displacement = {0, -120, 0}});
+    }
+    world.rayHits.resize(world.rays.size());
+}
+
+void Cast(SceneWorld& world) { world.Queries().CastRays(world.rays, world.rayHits); }
+
+double Misses(const SceneWorld& world) {
+    return static_cast<double>(std::count_if(world.rayHits.begin(), world.rayHits.end(),
+                                             [](const WorldRayHit& hit) { return hit.body == BodyId{}; }));
+}
+
+}  // namespace
+
+extern const Scene kRaysScene{
+    .name = "rays",
+    .description = "100,000 rays from above find what is closest, after 2 s of convex_on_mesh; the rays are timed",
+    .kind = SceneKind::Performance,
+    .steps = 120,
+    .sleeping = false,
+    .build = Build,
+    .query = Cast,
+    .queryCount = kRays,
+    .queryName = "rays",
+    .accuracy = Misses,
+    .accuracyMeaning = "rays that hit nothing",
+};
+
+}  // namespace fulcrum
