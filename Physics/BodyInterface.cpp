@@ -1,18 +1,13 @@
 #include <Fulcrum/Physics/BodyInterface.h>
 
-#include <Fulcrum/Collision/Shapes/Compound.h>
 #include <Fulcrum/Math/Trigonometry.h>
+#include <Fulcrum/Physics/BodyColliders.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/Validation.h>
 
 namespace fulcrum {
 
 namespace {
-
-Error Unknown(BodyId id) {
-    return {ErrorCode::UnknownId, "no body has the id (index " + std::to_string(id.index) + ", generation " +
-                                      std::to_string(id.generation) + ")"};
-}
 
 // The centre frame's pose of a body whose own frame is at `position`, `rotation`.
 Pose CentrePose(const Shape& shape, const Position& position, const Quaternion& rotation) {
@@ -34,16 +29,10 @@ void FillDynamics(BodyDynamics& d, const BodySettings& s) {
     d.allowSleep = s.allowSleep;
     d.layer = s.layer;
     d.continuous = s.continuous != ContinuousCollision::Off;
-    const Quaternion& q = mass.principalAxes;
-    const float axes[4] = {q.x, q.y, q.z, q.w};
-    for (int k = 0; k < 4; ++k) d.principalAxes[k] = axes[k];
     if (s.motion != MotionType::Dynamic) return;
     const float kilograms = s.mass > 0 ? s.mass : s.density * mass.volume;
-    d.inverseMass = 1.0f / kilograms;
-    const Vector3 inertia = s.inertia.isZero(0) ? Vector3(mass.principalInertia * (kilograms / mass.volume)) : s.inertia;
-    for (int k = 0; k < 3; ++k) d.inverseInertia[k] = 1.0f / inertia[k];
-    const float spread = inertia.maxCoeff() - inertia.minCoeff();
-    d.spherical = spread <= 1e-5f * inertia.maxCoeff();
+    SetMass(d, mass.principalAxes, kilograms,
+            s.inertia.isZero(0) ? Vector3(mass.principalInertia * (kilograms / mass.volume)) : s.inertia);
 }
 
 void SetFilters(WorldState& world, uint32_t body, uint64_t category, uint64_t mask, const CollisionGroup& group) {
@@ -52,40 +41,6 @@ void SetFilters(WorldState& world, uint32_t body, uint64_t category, uint64_t ma
     cold.mask = mask;
     cold.group = group;
     world.bodies.dynamics[body].filtered = category != 1 || mask != ~uint64_t(0) || group.filter;
-}
-
-void MakeColliders(WorldState& world, uint32_t body) {
-    ColliderStore& store = world.colliders;
-    BodyCold& cold = world.bodies.cold[body];
-    const Shape& shape = *cold.shape;
-    const auto* compound = shape.Type() == ShapeType::Compound ? static_cast<const Compound*>(&shape) : nullptr;
-    cold.colliderCount = compound ? static_cast<uint32_t>(compound->Children().size()) : (shape.Type() == ShapeType::Empty ? 0 : 1);
-    cold.firstCollider = store.Allocate(cold.colliderCount);
-    const bool moving = world.bodies.dynamics[body].motion != MotionType::Static;
-    (moving ? store.movingLayers : store.fixedLayers) |= 1u << world.bodies.dynamics[body].layer;
-    for (uint32_t i = 0; i < cold.colliderCount; ++i) {
-        Collider& collider = store.colliders[cold.firstCollider + i];
-        collider.body = body;
-        collider.moving = moving;
-        ColliderShape& piece = store.shapes[cold.firstCollider + i];
-        if (compound) {
-            const Compound::Child& child = compound->Children()[i];
-            piece.shape = child.shape.get();
-            piece.local = child.pose;
-            piece.offset = true;
-        } else {
-            piece.shape = &shape;
-        }
-        SetFatBounds(world, cold.firstCollider + i);
-        store.TreeOf(collider).Insert(cold.firstCollider + i, collider.fat);
-    }
-}
-
-// Wakes what overlaps the body's fat bounds: what it may rest on, or what may rest on it.
-void WakeNeighbours(WorldState& world, uint32_t body) {
-    const BodyCold& cold = world.bodies.cold[body];
-    for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i)
-        WakeInside(world, world.colliders.colliders[i].fat);
 }
 
 // Ends the contacts that the body's filters forbid, has those found that they allow.
@@ -99,13 +54,12 @@ void Refilter(WorldState& world, uint32_t body) {
 // Brings everything in line with a pose that was set by hand.
 void Teleported(WorldState& world, uint32_t body) {
     world.bodies.UpdateInertia(body);
-    const BodyCold& cold = world.bodies.cold[body];
-    for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i) {
+    VisitColliders(world, body, [&](uint32_t i) {
         SetFatBounds(world, i);
         const Collider& collider = world.colliders.colliders[i];
         world.colliders.TreeOf(collider).Update(i, collider.fat);
         world.strays.Forget(i);
-    }
+    });
     world.bodies.poses[body].boundsChangedIn = static_cast<uint32_t>(world.report.step + 1);
     RequeueColliders(world, body);
 }
@@ -117,13 +71,17 @@ Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
     if (MaybeError error = Check(settings)) return *error;
     const uint32_t body = world_.bodies.Allocate();
     BodyCold& cold = world_.bodies.cold[body];
-    cold.shape = settings.shape;
+    SetShapeOf(world_, body, settings.shape);
     cold.material = settings.material;
     cold.userData = settings.userData;
     cold.continuous = settings.continuous;
     world_.sweeps.users += settings.continuous != ContinuousCollision::Off;
     FillDynamics(world_.bodies.dynamics[body], settings);
     SetFilters(world_, body, settings.category, settings.mask, settings.group);
+    if (cold.children) {
+        const float kilograms = settings.mass > 0 ? settings.mass : settings.density * settings.shape->Mass().volume;
+        cold.children->massUnit = double{kilograms} / RelativeMassOf(*settings.shape);
+    }
     world_.bodies.SetCentrePose(body, CentrePose(*settings.shape, settings.position, settings.rotation));
     world_.bodies.SetVelocity(body, settings.linearVelocity, settings.angularVelocity);
     world_.bodies.UpdateInertia(body);
@@ -148,10 +106,10 @@ Status BodyInterface::Remove(BodyId id) {
     world_.joints.VisitOf(body, [&](uint32_t joint) { RemoveJoint(world_, joint); });
     BodyCold& cold = world_.bodies.cold[body];
     world_.sweeps.users -= cold.continuous != ContinuousCollision::Off;
-    for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i) {
+    VisitColliders(world_, body, [&](uint32_t i) {
         world_.colliders.TreeOf(world_.colliders.colliders[i]).Remove(i);
         world_.strays.Forget(i);
-    }
+    });
     world_.bodies.MarkAsleep(body);
     cold.exists = false;
     cold.removed = true;

@@ -2,6 +2,7 @@
 // time (reading from many is fine). Poses are those of the shape's own frame, as the user described it.
 #pragma once
 
+#include <Fulcrum/Collision/Shapes/MutableCompound.h>
 #include <Fulcrum/Physics/Settings.h>
 
 namespace fulcrum {
@@ -41,6 +42,24 @@ public:
     Status Wake(BodyId id);
     // Puts the body, and what it is in touch with, to sleep.
     Status Sleep(BodyId id);
+
+    // Another shape for the body, whose own frame stays where it is. Mass and inertia follow at the density that the body had,
+    // or stay; the centre of mass becomes that of the shape. Wakes the body and what is near. Errors: UnknownId, Unsupported
+    // (null, or no volume for a dynamic body), OutOfRange (mass or inertia has no inverse).
+    Status SetShape(BodyId id, const ShapePtr& shape, MassUpdate mass = MassUpdate::Update);
+
+    // Children of a body that was made of a MutableCompound, of which it has a copy of its own: several bodies may be made of
+    // one. Places are in the body's own frame, which stays where it is when the centre of mass moves, and material points
+    // keep their velocities. The children left keep their masses. Wakes the body, what touched the child and what it touches
+    // now. Of a body that is not dynamic, neither mass nor centre change. Errors: those of MutableCompound, UnknownId,
+    // Unsupported (the shape is no mutable compound), OutOfRange (mass or inertia has no inverse). Nothing has changed then.
+    Result<ChildId> AddChild(BodyId id, const CompoundShape::ChildSettings& child, MassUpdate mass = MassUpdate::Update);
+    Status SetChild(BodyId id, ChildId child, const CompoundShape::ChildSettings& settings, MassUpdate mass = MassUpdate::Update);
+    Status MoveChild(BodyId id, ChildId child, const Vector3& position, const Quaternion& rotation,
+                     MassUpdate mass = MassUpdate::Update);
+    Status RemoveChild(BodyId id, ChildId child, MassUpdate mass = MassUpdate::Update);
+    // The body's own compound, as it is now; changes with its edits. Null where it has none.
+    const MutableCompound* GetChildren(BodyId id) const;
 
     // Readers return zeros for an unknown id.
     Pose GetPose(BodyId id) const;

@@ -111,15 +111,12 @@ void WakeBoth(WorldState& world, const Joint& joint) {
 
 // The two bodies must not touch any longer.
 void DropPairs(WorldState& world, const Joint& joint) {
-    const BodyCold& a = world.bodies.cold[joint.body[0]];
-    const BodyCold& b = world.bodies.cold[joint.body[1]];
-    for (uint32_t i = a.firstCollider; i < a.firstCollider + a.colliderCount; ++i) {
-        for (uint32_t j = b.firstCollider; j < b.firstCollider + b.colliderCount; ++j) {
+    VisitColliders(world, joint.body[0], [&](uint32_t i) {
+        VisitColliders(world, joint.body[1], [&](uint32_t j) {
             const uint32_t pair = world.pairs.Find(i, j);
-            if (pair == PairStore::kNone) continue;
-            RemovePair(world, pair);
-        }
-    }
+            if (pair != PairStore::kNone) RemovePair(world, pair);
+        });
+    });
 }
 
 // Brings everything in line with `enabled`.

@@ -21,18 +21,24 @@ double Milliseconds(Clock::time_point from, Clock::time_point to) {
 
 // Forgets the bodies that were removed since the last step, and all pairs that they were part of.
 void ForgetRemoved(WorldState& world) {
-    if (world.removed.empty()) return;
-    for (uint32_t i = 0; i < world.pairs.pairs.size(); ++i) {
-        const Pair& pair = world.pairs.pairs[i];
-        if (!pair.exists || pair.isMore || !(world.bodies.cold[pair.bodyA].removed || world.bodies.cold[pair.bodyB].removed)) continue;
-        RemovePair(world, i);
-    }
-    std::erase_if(world.colliders.moved, [&](uint32_t collider) {
-        return world.bodies.cold[world.colliders.colliders[collider].body].removed;
+    if (world.removed.empty() && !world.colliders.movedHasEmpty) return;
+    std::vector<uint32_t> pairs;
+    for (uint32_t body : world.removed)
+        VisitColliders(world, body, [&](uint32_t i) { world.pairs.VisitOf(i, [&](uint32_t pair) { pairs.push_back(pair); }); });
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    for (uint32_t pair : pairs) RemovePair(world, pair);
+    std::erase_if(world.colliders.moved, [&](uint32_t i) {
+        Collider& collider = world.colliders.colliders[i];
+        const bool isGone = !world.colliders.shapes[i].shape || world.bodies.cold[collider.body].removed;
+        if (isGone) collider.queued = false;
+        return isGone;
     });
+    world.colliders.movedHasEmpty = false;
     for (uint32_t body : world.removed) {
         const BodyCold& cold = world.bodies.cold[body];
         world.colliders.Free(cold.firstCollider, cold.colliderCount);
+        world.colliders.FreeRuns(cold.MoreColliders());
         world.bodies.Free(body);
     }
     world.removed.clear();

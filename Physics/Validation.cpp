@@ -67,24 +67,39 @@ MaybeError CheckContinuous(ContinuousCollision continuous, const Shape& shape) {
     return std::nullopt;
 }
 
-// Mass and inertia must have inverses that are normal floats.
-static MaybeError CheckInverses(const BodySettings& s) {
+MaybeError CheckInverses(const char* massField, const char* inertiaField, float mass, const Vector3& inertia) {
     const auto usable = [](float x) { return std::isnormal(x) && std::isnormal(1.0f / x); };
-    const float mass = s.mass > 0 ? s.mass : s.density * s.shape->Mass().volume;
     if (!usable(mass))
-        return Error{ErrorCode::OutOfRange, std::string(s.mass > 0 ? "mass" : "density") + " makes a mass of " + Number(mass) +
+        return Error{ErrorCode::OutOfRange, std::string(massField) + " makes a mass of " + Number(mass) +
                                                 " kg; it and its inverse must be normal floats"};
-    const Vector3 inertia = s.inertia.isZero(0) ? Vector3(s.shape->Mass().principalInertia * (mass / s.shape->Mass().volume)) : s.inertia;
     for (int k = 0; k < 3; ++k)
         if (!usable(inertia[k]))
-            return Error{ErrorCode::OutOfRange, std::string(!s.inertia.isZero(0) ? "inertia" : s.mass > 0 ? "mass" : "density") +
-                                                    " makes a moment of inertia of " + Number(inertia[k]) +
+            return Error{ErrorCode::OutOfRange, std::string(inertiaField) + " makes a moment of inertia of " + Number(inertia[k]) +
                                                     " kg m2; it and its inverse must be normal floats"};
     return std::nullopt;
 }
 
+static MaybeError CheckInverses(const BodySettings& s) {
+    const char* massField = s.mass > 0 ? "mass" : "density";
+    const float mass = s.mass > 0 ? s.mass : s.density * s.shape->Mass().volume;
+    if (!s.inertia.isZero(0)) return CheckInverses(massField, "inertia", mass, s.inertia);
+    return CheckInverses(massField, massField, mass, Vector3(s.shape->Mass().principalInertia * (mass / s.shape->Mass().volume)));
+}
+
+MaybeError CheckShape(const Shape* shape, MotionType motion) {
+    if (!shape) return Error{ErrorCode::Unsupported, "shape is null; a body needs one"};
+    if (motion == MotionType::Dynamic && (shape->IsSurface() || shape->Type() == ShapeType::Plane))
+        return Error{ErrorCode::Unsupported, std::string("shape is a ") + ShapeTypeName(shape->Type()) + "; a dynamic body needs one with a volume"};
+    return std::nullopt;
+}
+
+Error Unknown(BodyId id) {
+    return {ErrorCode::UnknownId, "no body has the id (index " + std::to_string(id.index) + ", generation " +
+                                      std::to_string(id.generation) + ")"};
+}
+
 MaybeError Check(const BodySettings& s) {
-    if (!s.shape) return Error{ErrorCode::Unsupported, "shape is null; a body needs one"};
+    if (MaybeError e = CheckShape(s.shape.get(), s.motion)) return e;
     if (MaybeError e = FirstOf(CheckFinite("position", s.position), CheckRotation("rotation", s.rotation),
                                CheckFinite("linearVelocity", s.linearVelocity),
                                CheckFinite("angularVelocity", s.angularVelocity), CheckPositive("density", s.density),
@@ -99,8 +114,6 @@ MaybeError Check(const BodySettings& s) {
                                CheckPositive("maxAngularSpeed", s.maxAngularSpeed), CheckRange("layer", s.layer, 0, 31),
                                CheckRange("lockedAxes", static_cast<uint8_t>(s.lockedAxes), 0, 63)))
         return e;
-    if (s.motion == MotionType::Dynamic && (s.shape->IsSurface() || s.shape->Type() == ShapeType::Plane))
-        return Error{ErrorCode::Unsupported, std::string("shape is a ") + ShapeTypeName(s.shape->Type()) + "; a dynamic body needs one with a volume"};
     if (s.motion == MotionType::Dynamic)
         if (MaybeError e = CheckInverses(s)) return e;
     if (MaybeError e = CheckContinuous(s.continuous, *s.shape)) return e;

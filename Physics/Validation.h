@@ -15,10 +15,16 @@ MaybeError CheckRange(const char* field, double value, double low, double high);
 MaybeError CheckPositive(const char* field, double value);
 MaybeError CheckNotNegative(const char* field, double value);
 MaybeError CheckRotation(const char* field, const Quaternion& value);  // finite, of length 1 within 1e-3
+// Mass, kg, and moments of inertia, kg m2, must have inverses that are normal floats; the fields are what they come from.
+MaybeError CheckInverses(const char* massField, const char* inertiaField, float mass, const Vector3& inertia);
+// Not null; of a dynamic body, with a volume.
+MaybeError CheckShape(const Shape* shape, MotionType motion);
 MaybeError Check(const Material& material);
 MaybeError CheckContinuous(ContinuousCollision continuous, const Shape& shape);
 MaybeError Check(const BodySettings& settings);
 MaybeError Check(const SystemSettings& settings);
+
+Error Unknown(BodyId id);
 
 // The first error of several checks, none where all are empty.
 template <class... Checks>

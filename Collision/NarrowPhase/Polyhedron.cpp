@@ -159,6 +159,7 @@ Polyhedron CoreOf(const ConvexShape& shape, PolyhedronStorage& storage) {
         case ShapeType::Cylinder:
         case ShapeType::Custom:
         case ShapeType::Compound:
+        case ShapeType::MutableCompound:
         case ShapeType::TriangleMesh:
         case ShapeType::HeightField:
         case ShapeType::Plane:

@@ -4,7 +4,7 @@
 
 #include <Fulcrum/Collision/Queries/CoreShapes.h>
 #include <Fulcrum/Collision/Queries/SubShape.h>
-#include <Fulcrum/Collision/Shapes/Compound.h>
+#include <Fulcrum/Collision/Shapes/CompoundShape.h>
 
 namespace fulcrum {
 
@@ -20,6 +20,16 @@ inline Bounds Inflated(const Bounds& bounds, float by) {
     Bounds b;
     b.lower = bounds.lower - Vector3::Constant(by);
     b.upper = bounds.upper + Vector3::Constant(by);
+    return b;
+}
+
+// The box moved, as wide as rounding may ask for.
+inline Bounds Shifted(const Bounds& bounds, const Vector3& by) {
+    if (by.isZero(0)) return bounds;
+    const float slack = 1e-6f * (by.cwiseAbs().sum() + bounds.lower.cwiseAbs().sum() + bounds.upper.cwiseAbs().sum());
+    Bounds b;
+    b.lower = bounds.lower + by - Vector3::Constant(slack);
+    b.upper = bounds.upper + by + Vector3::Constant(slack);
     return b;
 }
 
@@ -41,11 +51,11 @@ template <class Visitor>
 void VisitPieces(const Shape& shape, const Bounds& box, Visitor&& visit) {
     if (shape.IsConvex()) {
         visit(Piece{static_cast<const ConvexShape&>(shape), {}, {}});
-    } else if (shape.Type() == ShapeType::Compound) {
-        const Compound& compound = static_cast<const Compound&>(shape);
-        compound.Tree().Query(box, [&](uint32_t child) {
-            const Compound::Child& part = compound.Children()[child];
-            visit(Piece{*part.shape, part.pose, {child, kNoTriangle}});
+    } else if (shape.IsCompound()) {
+        const CompoundShape& compound = static_cast<const CompoundShape&>(shape);
+        compound.Tree().Query(Shifted(box, -compound.Origin()), [&](uint32_t child) {
+            const CompoundShape::Child& part = compound.Children()[child];
+            visit(Piece{*part.shape, compound.PoseOf(part), {child, kNoTriangle}});
         });
     } else if (shape.IsSurface()) {
         const SurfaceShape& surface = static_cast<const SurfaceShape&>(shape);

@@ -1,7 +1,7 @@
 #include <Fulcrum/Collision/Queries/RayCast.h>
 
 #include <Fulcrum/Collision/BroadPhase/BoundsTreeCasts.h>
-#include <Fulcrum/Collision/Shapes/Compound.h>
+#include <Fulcrum/Collision/Shapes/CompoundShape.h>
 #include <Fulcrum/Collision/Shapes/Plane.h>
 
 #include <algorithm>
@@ -10,10 +10,10 @@ namespace fulcrum {
 
 namespace {
 
-// The ray in a compound's frame, as wide as its turning is inexact.
-TreeRay InFrameOfTree(const Ray& ray, const Shape& compound, const Pose& pose) {
+// The ray in the frame of a compound's children, as wide as its turning is inexact.
+TreeRay InFrameOfTree(const Ray& ray, const CompoundShape& compound, const Pose& pose) {
     const Quat<double> back{-pose.rotation.x, -pose.rotation.y, -pose.rotation.z, pose.rotation.w};
-    const Position origin = Rotate<double>(back, Position(ray.origin - pose.position));
+    const Position origin = Rotate<double>(back, Position(ray.origin - pose.position)) - compound.Origin().cast<double>();
     const float slack = 1e-6f * (compound.OuterRadius() + Length(ray.displacement) + Length(Vector3(origin.cast<float>())));
     return TreeRay(origin, InverseRotate(pose.rotation, ray.displacement), Vector3::Constant(slack));
 }
@@ -105,16 +105,16 @@ bool RayCaster::CastClosest(const Shape& shape, const Pose& pose, const RayCastS
     if (!IsValid()) return false;
     if (shape.IsConvex()) return CastConvex(static_cast<const ConvexShape&>(shape), pose, settings, hit);
     if (shape.Type() == ShapeType::Plane) return CastPlane(shape, pose, settings, hit);
-    if (shape.Type() != ShapeType::Compound) return CastSurface(static_cast<const SurfaceShape&>(shape), pose, settings, hit);
+    if (!shape.IsCompound()) return CastSurface(static_cast<const SurfaceShape&>(shape), pose, settings, hit);
 
-    const Compound& compound = static_cast<const Compound&>(shape);
-    const TreeRay ray = InFrameOfTree(ray_, shape, pose);
+    const CompoundShape& compound = static_cast<const CompoundShape&>(shape);
+    const TreeRay ray = InFrameOfTree(ray_, compound, pose);
     RayCastSettings shorter = settings;
     bool found = false;
     compound.Tree().CastRay(ray, shorter.maxFraction, [&](uint32_t child) {
-        const Compound::Child& piece = compound.Children()[child];
+        const CompoundShape::Child& piece = compound.Children()[child];
         RayHit here;
-        if (!CastConvex(*piece.shape, pose * piece.pose, shorter, here)) return;
+        if (!CastConvex(*piece.shape, pose * compound.PoseOf(piece), shorter, here)) return;
         if (found && here.fraction == hit.fraction && child > hit.subShape.child) return;
         found = true;
         hit = here;
@@ -125,7 +125,7 @@ bool RayCaster::CastClosest(const Shape& shape, const Pose& pose, const RayCastS
 }
 
 bool RayCaster::IsHit(const Shape& shape, const Pose& pose, const RayCastSettings& settings) const {
-    const bool isSurface = !shape.IsConvex() && shape.Type() != ShapeType::Plane && shape.Type() != ShapeType::Compound;
+    const bool isSurface = !shape.IsConvex() && shape.Type() != ShapeType::Plane && !shape.IsCompound();
     if (IsValid() && isSurface) {
         const SurfaceShape& surface = static_cast<const SurfaceShape&>(shape);
         double skipped = 0;
@@ -148,13 +148,13 @@ bool RayCaster::Search(const Shape& shape, const Pose& pose, const RayCastSettin
     if (shape.IsConvex() || shape.Type() == ShapeType::Plane)
         return !CastClosest(shape, pose, settings, hit) || found(context, hit);
     bool goOn = true;
-    if (shape.Type() == ShapeType::Compound) {
-        const Compound& compound = static_cast<const Compound&>(shape);
-        const TreeRay ray = InFrameOfTree(ray_, shape, pose);
+    if (shape.IsCompound()) {
+        const CompoundShape& compound = static_cast<const CompoundShape&>(shape);
+        const TreeRay ray = InFrameOfTree(ray_, compound, pose);
         float limit = settings.maxFraction;
         compound.Tree().CastRay(ray, limit, [&](uint32_t child) {
-            const Compound::Child& piece = compound.Children()[child];
-            if (!goOn || !CastConvex(*piece.shape, pose * piece.pose, settings, hit)) return;
+            const CompoundShape::Child& piece = compound.Children()[child];
+            if (!goOn || !CastConvex(*piece.shape, pose * compound.PoseOf(piece), settings, hit)) return;
             hit.subShape.child = child;
             goOn = found(context, hit);
             if (!goOn) limit = -1;

@@ -141,17 +141,17 @@ void ShapeCaster::Search(const Shape& other, const Pose& pose, ShapeCastSettings
     } else if (other.IsSurface()) {
         SearchSurface(static_cast<const SurfaceShape&>(other), pose, settings, context, found);
     } else {
-        const Compound& compound = static_cast<const Compound&>(other);
+        const CompoundShape& compound = static_cast<const CompoundShape&>(other);
         const CoreMotion motion = RelativeTo(pose);
         const Bounds turned = motion.IsTurning() ? bounds_ : BoundsAt({Vector3::Zero(), motion.rotation}, shape_.LocalBounds());
         const float slack = settings.separation + settings.tolerance +
                             1e-6f * (other.OuterRadius() + Length(motion.displacement) + Length(Vector3(motion.position.cast<float>())));
-        const TreeRay ray(motion.position + turned.Centre().cast<double>(), motion.displacement,
+        const TreeRay ray(motion.position + turned.Centre().cast<double>() - compound.Origin().cast<double>(), motion.displacement,
                           turned.HalfExtents() + Vector3::Constant(slack));
         float limit = settings.maxFraction;
         compound.Tree().CastRay(ray, limit, [&](uint32_t child) {
-            const Compound::Child& part = compound.Children()[child];
-            if (!CastPiece({*part.shape, part.pose, {child, kNoTriangle}}, pose, settings, hit)) return;
+            const CompoundShape::Child& part = compound.Children()[child];
+            if (!CastPiece({*part.shape, compound.PoseOf(part), {child, kNoTriangle}}, pose, settings, hit)) return;
             limit = found(context, hit, settings) ? settings.maxFraction : -1;
         });
     }

@@ -3,6 +3,7 @@
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
 #include <Fulcrum/Collision/Shapes/CustomConvex.h>
 #include <Fulcrum/Collision/Shapes/Message.h>
+#include <Fulcrum/Collision/Shapes/MutableCompound.h>
 #include <Fulcrum/Collision/Shapes/Plane.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
 #include <Fulcrum/Collision/Shapes/RoundShapes.h>
@@ -124,11 +125,11 @@ bool ChildScale(const Quaternion& r, const Vector3& scale, const Vector3& size, 
     return true;
 }
 
-Result<ShapePtr> ScaledCompound(const Compound& compound, const Vector3& scale, const Vector3& size) {
-    std::vector<Compound::ChildSettings> children = compound.Settings();
+Result<ShapePtr> ScaledCompound(const CompoundShape& compound, const Vector3& scale, const Vector3& size) {
+    std::vector<CompoundShape::ChildSettings> children = compound.Settings();
     Vector3 centre = Vector3::Zero();  // of the children alone; where it is not the compound's, it was offset
     float mass = 0;
-    for (Compound::ChildSettings& child : children) {
+    for (CompoundShape::ChildSettings& child : children) {
         const float childMass = child.density * child.shape->Mass().volume;
         centre += (child.position + Rotate(child.rotation, child.shape->Mass().centreOfMass)) * childMass;
         mass += childMass;
@@ -139,6 +140,7 @@ Result<ShapePtr> ScaledCompound(const Compound& compound, const Vector3& scale, 
         if (!scaled) return scaled.GetError();
         child = {scaled.Value(), child.position.cwiseProduct(scale), rotation, child.density};
     }
+    if (compound.Type() == ShapeType::MutableCompound) return AsShape(MutableCompound::Create(children));
     Vector3 offset = compound.Mass().centreOfMass - centre * (1 / mass);
     if (Length(offset) <= 1e-5f * compound.OuterRadius()) offset = Vector3::Zero();
     return AsShape(Compound::Create(children, offset.cwiseProduct(scale)));
@@ -147,7 +149,7 @@ Result<ShapePtr> ScaledCompound(const Compound& compound, const Vector3& scale, 
 // The shape as children of a compound.
 Result<std::vector<Compound::ChildSettings>> AsChildren(const ShapePtr& shape) {
     if (!shape) return Error{ErrorCode::Unsupported, "shape is null"};
-    if (shape->Type() == ShapeType::Compound) return static_cast<const Compound&>(*shape).Settings();
+    if (shape->IsCompound()) return static_cast<const CompoundShape&>(*shape).Settings();
     return std::vector<Compound::ChildSettings>{{.shape = shape}};
 }
 
@@ -169,7 +171,8 @@ Result<ShapePtr> Scaled(const ShapePtr& shape, const Vector3& scale) {
         case ShapeType::ConvexHull: return ScaledHull(static_cast<const ConvexHull&>(*shape), scale);
         case ShapeType::Triangle: return ScaledTriangle(static_cast<const Triangle&>(*shape), scale, size);
         case ShapeType::Cylinder: return ScaledCylinder(static_cast<const Cylinder&>(*shape), scale, size);
-        case ShapeType::Compound: return ScaledCompound(static_cast<const Compound&>(*shape), scale, size);
+        case ShapeType::Compound:
+        case ShapeType::MutableCompound: return ScaledCompound(static_cast<const CompoundShape&>(*shape), scale, size);
         case ShapeType::Empty: return shape;
         case ShapeType::TriangleMesh: return AsShape(TriangleMesh::Scaled(static_cast<const TriangleMesh&>(*shape), scale));
         case ShapeType::HeightField:

@@ -13,6 +13,7 @@ const char* ShapeTypeName(ShapeType type) {
         case ShapeType::Cylinder: return "cylinder";
         case ShapeType::Custom: return "custom shape";
         case ShapeType::Compound: return "compound";
+        case ShapeType::MutableCompound: return "mutable compound";
         case ShapeType::TriangleMesh: return "triangle mesh";
         case ShapeType::HeightField: return "height field";
         case ShapeType::Plane: return "plane";

@@ -1,4 +1,5 @@
-// The base of all shapes. A shape is immutable once created and shared by any number of bodies and threads.
+// The base of all shapes. A shape is immutable once created and shared by any number of bodies and threads; a
+// MutableCompound, which is edited, belongs to one body.
 // Its geometry is expressed in the centre frame: axes of the frame that the user described it in, origin at the centre
 // of mass of its volume. So a body's internal pose is that of its centre of mass, and no kernel adds an offset.
 #pragma once
@@ -23,6 +24,7 @@ enum class ShapeType : uint8_t {
     Cylinder,  // tapered ones and cones, too
     Custom,    // what users derive from CustomConvex
     Compound,
+    MutableCompound,
     TriangleMesh,
     HeightField,
     Plane,
@@ -45,6 +47,8 @@ public:
 
     ShapeType Type() const { return type_; }
     bool IsConvex() const { return type_ < ShapeType::Compound; }
+    // Made of convex shapes: a CompoundShape.
+    bool IsCompound() const { return type_ == ShapeType::Compound || type_ == ShapeType::MutableCompound; }
     // Made of triangles: a SurfaceShape.
     bool IsSurface() const { return type_ == ShapeType::TriangleMesh || type_ == ShapeType::HeightField; }
     const MassProperties& Mass() const { return mass_; }

@@ -18,8 +18,8 @@ constexpr int kMostNested = 8;
 struct ShapeFormat {
     uint8_t code;  // in files: given once, for ever
     ShapeType type;
-    void (*write)(const Shape& shape, ByteWriter& out);
-    ShapeResult (*read)(ByteReader& in, int depth);
+    void (*write)(const Shape& shape, ByteWriter& out, const ShapeFileScope& scope);
+    ShapeResult (*read)(ByteReader& in, const ShapeFileScope& scope);
 };
 
 template <class T>
@@ -28,76 +28,122 @@ ShapeResult AsShape(const Result<std::shared_ptr<T>>& result) {
     return ShapePtr(result.Value());
 }
 
-void WriteSphere(const Shape& shape, ByteWriter& out) { out.Write(static_cast<const Sphere&>(shape).Radius()); }
-ShapeResult ReadSphere(ByteReader& in, int) { return AsShape(Sphere::Create(in.Get<float>())); }
+void WriteSphere(const Shape& shape, ByteWriter& out, const ShapeFileScope&) { out.Write(static_cast<const Sphere&>(shape).Radius()); }
+ShapeResult ReadSphere(ByteReader& in, const ShapeFileScope&) { return AsShape(Sphere::Create(in.Get<float>())); }
 
-void WriteBox(const Shape& shape, ByteWriter& out) {
+void WriteBox(const Shape& shape, ByteWriter& out, const ShapeFileScope&) {
     const auto& box = static_cast<const Box&>(shape);
     out.Write(box.HalfExtents());
     out.Write(box.ConvexRadius());
 }
-ShapeResult ReadBox(ByteReader& in, int) {
+ShapeResult ReadBox(ByteReader& in, const ShapeFileScope&) {
     Vector3 halfExtents = Vector3::Zero();
     in.Read(halfExtents);
     return AsShape(Box::Create(halfExtents, in.Get<float>()));
 }
 
-void WriteCapsule(const Shape& shape, ByteWriter& out) {
+void WriteCapsule(const Shape& shape, ByteWriter& out, const ShapeFileScope&) {
     const auto& capsule = static_cast<const Capsule&>(shape);
     out.Write(capsule.HalfHeight());
     out.Write(capsule.Radius());
 }
-ShapeResult ReadCapsule(ByteReader& in, int) {
+ShapeResult ReadCapsule(ByteReader& in, const ShapeFileScope&) {
     const float halfHeight = in.Get<float>(), radius = in.Get<float>();
     return AsShape(Capsule::Create(halfHeight, radius));
 }
 
-void WritePlane(const Shape& shape, ByteWriter& out) {
+void WritePlane(const Shape& shape, ByteWriter& out, const ShapeFileScope&) {
     const auto& plane = static_cast<const Plane&>(shape);
     out.Write(plane.Normal());
     out.Write(plane.Offset());
 }
-ShapeResult ReadPlane(ByteReader& in, int) {
+ShapeResult ReadPlane(ByteReader& in, const ShapeFileScope&) {
     Vector3 normal = Vector3::Zero();
     in.Read(normal);
     return AsShape(Plane::Create(normal, in.Get<float>()));
 }
 
-void WriteTaperedCapsule(const Shape& shape, ByteWriter& out) {
+void WriteTaperedCapsule(const Shape& shape, ByteWriter& out, const ShapeFileScope&) {
     const auto& capsule = static_cast<const TaperedCapsule&>(shape);
     out.Write(capsule.HalfHeight());
     out.Write(capsule.TopRadius());
     out.Write(capsule.BottomRadius());
 }
-ShapeResult ReadTaperedCapsule(ByteReader& in, int) {
+ShapeResult ReadTaperedCapsule(ByteReader& in, const ShapeFileScope&) {
     const float halfHeight = in.Get<float>(), top = in.Get<float>(), bottom = in.Get<float>();
     return AsShape(TaperedCapsule::Create(halfHeight, top, bottom));
 }
 
-void WriteCylinder(const Shape& shape, ByteWriter& out) {
+void WriteCylinder(const Shape& shape, ByteWriter& out, const ShapeFileScope&) {
     const auto& cylinder = static_cast<const Cylinder&>(shape);
     out.Write(cylinder.HalfHeight());
     out.Write(cylinder.TopRadius());
     out.Write(cylinder.BottomRadius());
     out.Write(cylinder.ConvexRadius());
 }
-ShapeResult ReadCylinder(ByteReader& in, int) {
+ShapeResult ReadCylinder(ByteReader& in, const ShapeFileScope&) {
     const float halfHeight = in.Get<float>(), top = in.Get<float>(), bottom = in.Get<float>(), radius = in.Get<float>();
     return AsShape(Cylinder::CreateTapered(halfHeight, top, bottom, radius));
 }
 
-void WriteEmpty(const Shape&, ByteWriter&) {}
-ShapeResult ReadEmpty(ByteReader&, int) { return ShapePtr(EmptyShape::Create()); }
+void WriteEmpty(const Shape&, ByteWriter&, const ShapeFileScope&) {}
+ShapeResult ReadEmpty(ByteReader&, const ShapeFileScope&) { return ShapePtr(EmptyShape::Create()); }
 
-void WriteMesh(const Shape& shape, ByteWriter& out) {
+void WriteMesh(const Shape& shape, ByteWriter& out, const ShapeFileScope&) {
     ShapeFileAccess::WriteMesh(static_cast<const TriangleMesh&>(shape), out);
 }
-ShapeResult ReadMesh(ByteReader& in, int) { return ShapeFileAccess::ReadMesh(in); }
+ShapeResult ReadMesh(ByteReader& in, const ShapeFileScope&) { return ShapeFileAccess::ReadMesh(in); }
 
-void WriteField(const Shape& shape, ByteWriter& out) {
+void WriteField(const Shape& shape, ByteWriter& out, const ShapeFileScope&) {
     ShapeFileAccess::WriteField(static_cast<const HeightField&>(shape), out);
 }
-ShapeResult ReadField(ByteReader& in, int) { return ShapeFileAccess::ReadField(in); }
+ShapeResult ReadField(ByteReader& in, const ShapeFileScope&) { return ShapeFileAccess::ReadField(in); }
+
+void WriteTriangle(const Shape& shape, ByteWriter& out, const ShapeFileScope&) {
+    ShapeFileAccess::WriteTriangle(static_cast<const Triangle&>(shape), out);
+}
+ShapeResult ReadTriangle(ByteReader& in, const ShapeFileScope&) { return ShapeFileAccess::ReadTriangle(in); }
+
+void WriteMutableCompound(const Shape& shape, ByteWriter& out, const ShapeFileScope& scope) {
+    ShapeFileAccess::WriteMutableCompound(static_cast<const MutableCompound&>(shape), out, scope);
+}
+ShapeResult ReadMutableCompound(ByteReader& in, const ShapeFileScope& scope) {
+    return ShapeFileAccess::ReadMutableCompound(in, scope);
+}
+
+// The format that knows the shape's class, and what it writes.
+const CustomShapeFormat* FormatOf(const CustomConvex& shape, std::span<const CustomShapeFormat> formats,
+                                  std::vector<uint8_t>& bytes) {
+    for (const CustomShapeFormat& format : formats) {
+        bytes.clear();
+        if (format.write(shape, bytes)) return &format;
+    }
+    return nullptr;
+}
+
+void WriteCustom(const Shape& shape, ByteWriter& out, const ShapeFileScope& scope) {
+    std::vector<uint8_t> bytes;
+    const CustomShapeFormat& format = *FormatOf(static_cast<const CustomConvex&>(shape), scope.custom, bytes);
+    out.Write(static_cast<uint8_t>(format.name.size()));
+    for (const char c : format.name) out.Write(static_cast<uint8_t>(c));
+    out.WriteWithLength([&] { out.WriteAll(std::span<const uint8_t>(bytes)); });
+}
+
+ShapeResult ReadCustom(ByteReader& in, const ShapeFileScope& scope) {
+    std::vector<uint8_t> letters;
+    in.ReadAll(letters, in.Get<uint8_t>());
+    const std::string name(letters.begin(), letters.end());
+    ByteReader part = in.ReadPart();
+    if (in.HasFailed()) return Damaged("a custom shape breaks off");
+    const auto format = std::ranges::find(scope.custom, std::string_view(name), &CustomShapeFormat::name);
+    if (format == scope.custom.end()) {
+        return Error{ErrorCode::Unsupported, Message("no format of the name \"%.100s\" is given, which a custom shape needs", name.c_str())};
+    }
+    ShapeResult shape = format->read(part.Rest());
+    if (shape && !(shape.Value() && shape.Value()->Type() == ShapeType::Custom))
+        return Error{ErrorCode::Unsupported, Message("the format \"%.100s\" reads no custom shape", name.c_str())};
+    return shape;
+}
 
 // A shape that files can hold is a line here.
 constexpr ShapeFormat kFormats[] = {
@@ -112,6 +158,9 @@ constexpr ShapeFormat kFormats[] = {
     {9, ShapeType::TaperedCapsule, WriteTaperedCapsule, ReadTaperedCapsule},
     {10, ShapeType::Cylinder, WriteCylinder, ReadCylinder},
     {11, ShapeType::Empty, WriteEmpty, ReadEmpty},
+    {12, ShapeType::Triangle, WriteTriangle, ReadTriangle},
+    {13, ShapeType::MutableCompound, WriteMutableCompound, ReadMutableCompound},
+    {14, ShapeType::Custom, WriteCustom, ReadCustom},
 };
 
 const ShapeFormat* FormatOf(ShapeType type) {
@@ -119,13 +168,25 @@ const ShapeFormat* FormatOf(ShapeType type) {
     return found == std::end(kFormats) ? nullptr : found;
 }
 
-// The first shape within this one, itself included, that has no line.
-const Shape* Unsupported(const Shape& shape) {
+// The first shape within this one, itself included, that cannot be written.
+const Shape* Unsupported(const Shape& shape, std::span<const CustomShapeFormat> custom) {
     if (!FormatOf(shape.Type())) return &shape;
-    if (shape.Type() != ShapeType::Compound) return nullptr;
-    for (const Compound::Child& child : static_cast<const Compound&>(shape).Children())
-        if (const Shape* inside = Unsupported(*child.shape)) return inside;
+    std::vector<uint8_t> bytes;
+    if (shape.Type() == ShapeType::Custom && !FormatOf(static_cast<const CustomConvex&>(shape), custom, bytes)) return &shape;
+    if (!shape.IsCompound()) return nullptr;
+    for (const CompoundShape::Child& child : static_cast<const CompoundShape&>(shape).Children()) {
+        if (!child.shape) continue;
+        if (const Shape* inside = Unsupported(*child.shape, custom)) return inside;
+    }
     return nullptr;
+}
+
+Status CheckFormats(std::span<const CustomShapeFormat> custom) {
+    for (const CustomShapeFormat& format : custom) {
+        if (format.name.empty() || format.name.size() > 255 || !format.write || !format.read)
+            return Error{ErrorCode::OutOfRange, "a custom format needs a name of 1 to 255 bytes, a writer and a reader"};
+    }
+    return Done{};
 }
 
 // FNV-1a, 64 bits. Source: Fowler, Noll, Vo, draft-eastlake-fnv.
@@ -137,31 +198,33 @@ uint64_t Checksum(std::span<const uint8_t> bytes) {
 
 }  // namespace
 
-void WriteShape(const Shape& shape, ByteWriter& out) {
+void WriteShape(const Shape& shape, ByteWriter& out, const ShapeFileScope& scope) {
     const ShapeFormat& format = *FormatOf(shape.Type());
     out.Write(format.code);
-    out.WriteWithLength([&] { format.write(shape, out); });
+    out.WriteWithLength([&] { format.write(shape, out, scope); });
 }
 
-ShapeResult ReadShape(ByteReader& in, int depth) {
-    if (depth > kMostNested) return Damaged("shapes are nested too deep");
+ShapeResult ReadShape(ByteReader& in, const ShapeFileScope& scope) {
+    if (scope.depth > kMostNested) return Damaged("shapes are nested too deep");
     const uint8_t code = in.Get<uint8_t>();
     ByteReader part = in.ReadPart();
     if (part.HasFailed()) return Damaged("it breaks off");
     const auto format = std::ranges::find(kFormats, code, &ShapeFormat::code);
     if (format == std::end(kFormats)) return Error{ErrorCode::Unsupported, Message("shape code %d is unknown", int{code})};
-    ShapeResult shape = format->read(part, depth);
+    ShapeResult shape = format->read(part, scope);
     if (part.HasFailed()) return Damaged("a shape breaks off");
     if (shape && !part.IsAtEnd()) return Damaged("a shape is followed by more");
     return shape;
 }
 
-Result<std::vector<uint8_t>> SaveShape(const Shape& shape) {
-    if (const Shape* other = Unsupported(shape)) {
-        return Error{ErrorCode::Unsupported, Message("a %s cannot be saved", ShapeTypeName(other->Type()))};
+Result<std::vector<uint8_t>> SaveShape(const Shape& shape, std::span<const CustomShapeFormat> custom) {
+    if (const Status status = CheckFormats(custom); !status) return status.GetError();
+    if (const Shape* other = Unsupported(shape, custom)) {
+        const char* why = other->Type() == ShapeType::Custom ? ": none of the formats given knows its class" : "";
+        return Error{ErrorCode::Unsupported, Message("a %s cannot be saved%s", ShapeTypeName(other->Type()), why)};
     }
     ByteWriter content;
-    WriteShape(shape, content);
+    WriteShape(shape, content, {custom});
     ByteWriter file;
     file.Write(kMagic);
     file.Write(kShapeFileVersion);
@@ -171,7 +234,8 @@ Result<std::vector<uint8_t>> SaveShape(const Shape& shape) {
     return std::move(file.Bytes());
 }
 
-ShapeResult LoadShape(std::span<const uint8_t> bytes) {
+ShapeResult LoadShape(std::span<const uint8_t> bytes, std::span<const CustomShapeFormat> custom) {
+    if (const Status status = CheckFormats(custom); !status) return status.GetError();
     ByteReader in(bytes);
     if (in.Get<uint32_t>() != kMagic || in.HasFailed()) return Error{ErrorCode::Unsupported, "this is no shape file"};
     const uint32_t version = in.Get<uint32_t>();
@@ -181,7 +245,7 @@ ShapeResult LoadShape(std::span<const uint8_t> bytes) {
     const uint64_t length = in.Get<uint64_t>(), checksum = in.Get<uint64_t>();
     if (in.HasFailed() || length != in.Rest().size()) return Damaged("its length is not what it says");
     if (checksum != Checksum(in.Rest())) return Damaged("its checksum is wrong");
-    ShapeResult shape = ReadShape(in, 0);
+    ShapeResult shape = ReadShape(in, {custom});
     if (shape && !in.IsAtEnd()) return Damaged("the shape is followed by more");
     return shape;
 }

@@ -1,4 +1,4 @@
-// Hulls and compounds in shape files.
+// Hulls and mass properties in shape files.
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
 #include <Fulcrum/Collision/Shapes/ShapeFileParts.h>
 
@@ -7,32 +7,7 @@
 namespace fulcrum {
 namespace {
 
-void WriteMass(const MassProperties& mass, ByteWriter& out) {
-    out.Write(mass.volume);
-    out.Write(mass.centreOfMass);
-    out.Write(mass.principalInertia);
-    out.Write(mass.principalAxes);
-}
-
-MassProperties ReadMass(ByteReader& in) {
-    MassProperties mass;
-    in.Read(mass.volume);
-    in.Read(mass.centreOfMass);
-    in.Read(mass.principalInertia);
-    in.Read(mass.principalAxes);
-    return mass;
-}
-
 bool IsUnit(double lengthSquared) { return std::fabs(lengthSquared - 1) < 1e-5; }
-
-// What a solid can have: positive, and no moment of inertia above the sum of the others.
-bool IsPlausible(const MassProperties& mass) {
-    if (!std::isfinite(mass.volume) || !(mass.volume > 0) || !IsFinite(mass.centreOfMass)) return false;
-    const Vector3& inertia = mass.principalInertia;
-    if (!IsFinite(inertia) || !(inertia.minCoeff() > 0) || !IsFinite(mass.principalAxes)) return false;
-    const double sum = double{inertia.x()} + double{inertia.y()} + double{inertia.z()};
-    return double{inertia.maxCoeff()} <= 0.501 * sum && IsUnit(double{LengthSquared(mass.principalAxes)});
-}
 
 // Corners lie in their face's plane, and nothing outside it, to within what floats keep of such a hull.
 bool IsConvexPolyhedron(const HullMesh& mesh) {
@@ -53,7 +28,31 @@ bool IsConvexPolyhedron(const HullMesh& mesh) {
 
 }  // namespace
 
-void WriteHull(const Shape& shape, ByteWriter& out) {
+void WriteMass(const MassProperties& mass, ByteWriter& out) {
+    out.Write(mass.volume);
+    out.Write(mass.centreOfMass);
+    out.Write(mass.principalInertia);
+    out.Write(mass.principalAxes);
+}
+
+MassProperties ReadMass(ByteReader& in) {
+    MassProperties mass;
+    in.Read(mass.volume);
+    in.Read(mass.centreOfMass);
+    in.Read(mass.principalInertia);
+    in.Read(mass.principalAxes);
+    return mass;
+}
+
+bool IsPlausible(const MassProperties& mass) {
+    if (!std::isfinite(mass.volume) || !(mass.volume > 0) || !IsFinite(mass.centreOfMass)) return false;
+    const Vector3& inertia = mass.principalInertia;
+    if (!IsFinite(inertia) || !(inertia.minCoeff() > 0) || !IsFinite(mass.principalAxes)) return false;
+    const double sum = double{inertia.x()} + double{inertia.y()} + double{inertia.z()};
+    return double{inertia.maxCoeff()} <= 0.501 * sum && IsUnit(double{LengthSquared(mass.principalAxes)});
+}
+
+void WriteHull(const Shape& shape, ByteWriter& out, const ShapeFileScope&) {
     const auto& hull = static_cast<const ConvexHull&>(shape);
     WriteMass(hull.Mass(), out);
     out.Write(hull.ConvexRadius());
@@ -67,7 +66,7 @@ void WriteHull(const Shape& shape, ByteWriter& out) {
     }
 }
 
-ShapeResult ReadHull(ByteReader& in, int) {
+ShapeResult ReadHull(ByteReader& in, const ShapeFileScope&) {
     const MassProperties mass = ReadMass(in);
     const float convexRadius = in.Get<float>();
     const uint8_t vertexCount = in.Get<uint8_t>(), faceCount = in.Get<uint8_t>();
@@ -95,42 +94,6 @@ ShapeResult ReadHull(ByteReader& in, int) {
     if (in.HasFailed() || !isRadius || !IsPlausible(mass) || vertexCount < 4 || faceCount < 4 || !IsConvexPolyhedron(mesh))
         return Damaged("a hull that is no closed convex polyhedron, or its mass");
     return ShapeFileAccess::MakeHull(mesh, mass, convexRadius);
-}
-
-void WriteCompound(const Shape& shape, ByteWriter& out) {
-    const auto& compound = static_cast<const Compound&>(shape);
-    WriteMass(compound.Mass(), out);
-    out.Write(static_cast<uint32_t>(compound.Children().size()));
-    for (const Compound::Child& child : compound.Children()) {
-        out.Write(child.pose.position);
-        out.Write(child.pose.rotation);
-        out.Write(child.density);
-        WriteShape(*child.shape, out);
-    }
-}
-
-ShapeResult ReadCompound(ByteReader& in, int depth) {
-    const MassProperties mass = ReadMass(in);
-    const uint32_t count = in.Get<uint32_t>();
-    std::vector<Compound::Child> children;
-    for (uint32_t i = 0; i < count; ++i) {
-        Compound::Child child;
-        in.Read(child.pose.position);
-        in.Read(child.pose.rotation);
-        child.density = in.Get<float>();
-        const ShapeResult shape = ReadShape(in, depth + 1);
-        if (in.HasFailed()) return Damaged("a compound breaks off");
-        if (!shape) return shape.GetError();
-        const bool isPose = IsFinite(child.pose.position) && IsFinite(child.pose.rotation) &&
-                            child.pose.position.cwiseAbs().maxCoeff() < 1e18f &&
-                            IsUnit(double{LengthSquared(child.pose.rotation)});
-        const bool isDensity = std::isnormal(child.density) && child.density > 0;
-        if (!isPose || !isDensity || !shape.Value()->IsConvex()) return Damaged("a child of a compound or its pose");
-        child.shape = std::static_pointer_cast<const ConvexShape>(shape.Value());
-        children.push_back(std::move(child));
-    }
-    if (in.HasFailed() || children.empty() || !IsPlausible(mass)) return Damaged("a compound or its mass");
-    return ShapeFileAccess::MakeCompound(std::move(children), mass);
 }
 
 }  // namespace fulcrum

@@ -6,17 +6,30 @@
 #include <Fulcrum/Collision/Shapes/Compound.h>
 #include <Fulcrum/Collision/Shapes/HeightField.h>
 #include <Fulcrum/Collision/Shapes/HullBuilder.h>
+#include <Fulcrum/Collision/Shapes/MutableCompound.h>
+#include <Fulcrum/Collision/Shapes/ShapeFile.h>
+#include <Fulcrum/Collision/Shapes/Triangle.h>
 #include <Fulcrum/Collision/Shapes/TriangleMesh.h>
 
 namespace fulcrum {
 
 using ShapeResult = Result<ShapePtr>;
 
+// Where in a file a shape is read or written.
+struct ShapeFileScope {
+    std::span<const CustomShapeFormat> custom;
+    int depth = 0;  // of nesting
+};
+
 // Reaches into the shapes whose parts the file holds as they are, so that they come back with the same bits.
 struct ShapeFileAccess {
     // The hull of these faces, or an error where they are no closed convex polyhedron around the origin.
     static ShapeResult MakeHull(const HullMesh& mesh, const MassProperties& mass, float convexRadius);
     static ShapeResult MakeCompound(std::vector<Compound::Child> children, const MassProperties& mass);
+    static void WriteMutableCompound(const MutableCompound& compound, ByteWriter& out, const ShapeFileScope& scope);
+    static ShapeResult ReadMutableCompound(ByteReader& in, const ShapeFileScope& scope);
+    static void WriteTriangle(const Triangle& triangle, ByteWriter& out);
+    static ShapeResult ReadTriangle(ByteReader& in);
     static void WriteMesh(const TriangleMesh& mesh, ByteWriter& out);
     static ShapeResult ReadMesh(ByteReader& in);
     static void WriteField(const HeightField& field, ByteWriter& out);
@@ -24,13 +37,18 @@ struct ShapeFileAccess {
 };
 
 // A shape within another, with its code and length; the depth of nesting is limited.
-void WriteShape(const Shape& shape, ByteWriter& out);
-ShapeResult ReadShape(ByteReader& in, int depth);
+void WriteShape(const Shape& shape, ByteWriter& out, const ShapeFileScope& scope);
+ShapeResult ReadShape(ByteReader& in, const ShapeFileScope& scope);
 
-void WriteHull(const Shape& shape, ByteWriter& out);
-ShapeResult ReadHull(ByteReader& in, int depth);
-void WriteCompound(const Shape& shape, ByteWriter& out);
-ShapeResult ReadCompound(ByteReader& in, int depth);
+void WriteHull(const Shape& shape, ByteWriter& out, const ShapeFileScope& scope);
+ShapeResult ReadHull(ByteReader& in, const ShapeFileScope& scope);
+void WriteCompound(const Shape& shape, ByteWriter& out, const ShapeFileScope& scope);
+ShapeResult ReadCompound(ByteReader& in, const ShapeFileScope& scope);
+
+void WriteMass(const MassProperties& mass, ByteWriter& out);
+MassProperties ReadMass(ByteReader& in);
+// What a solid can have: positive, and no moment of inertia above the sum of the others.
+bool IsPlausible(const MassProperties& mass);
 
 void WriteMaterials(std::span<const SurfaceMaterial> materials, ByteWriter& out);
 std::vector<SurfaceMaterial> ReadMaterials(ByteReader& in);

@@ -50,15 +50,19 @@ Result<std::shared_ptr<const Triangle>> Triangle::Create(const Vector3& a, const
 
     const std::shared_ptr<Triangle> triangle(new Triangle);
     triangle->mass_ = mass.Value();
-    triangle->convexRadius_ = triangle->innerRadius_ = radius;
     triangle->normal_ = normal.cast<float>();
-    for (int i = 0; i < 3; ++i) {
-        triangle->corners_[i] = corners[i].cast<float>();
-        triangle->bounds_.Include(Vector3(triangle->corners_[i] - Vector3::Constant(radius)));
-        triangle->bounds_.Include(Vector3(triangle->corners_[i] + Vector3::Constant(radius)));
-        triangle->outerRadius_ = std::max(triangle->outerRadius_, Length(triangle->corners_[i]) + radius);
-    }
+    for (int i = 0; i < 3; ++i) triangle->corners_[i] = corners[i].cast<float>();
+    triangle->Complete(radius);
     return std::shared_ptr<const Triangle>(triangle);
+}
+
+void Triangle::Complete(float radius) {
+    convexRadius_ = innerRadius_ = radius;
+    for (const Vector3& corner : corners_) {
+        bounds_.Include(Vector3(corner - Vector3::Constant(radius)));
+        bounds_.Include(Vector3(corner + Vector3::Constant(radius)));
+        outerRadius_ = std::max(outerRadius_, Length(corner) + radius);
+    }
 }
 
 Vector3 Triangle::SupportCore(const Vector3& direction) const {

@@ -25,6 +25,9 @@ public:
     void FindSupportingFace(const Vector3& direction, SupportingFace& face) const override;
 
 private:
+    friend struct ShapeFileAccess;
+    void Complete(float radius);  // what follows from corners and radius
+
     Triangle() : ConvexShape(ShapeType::Triangle) {}
     Vector3 corners_[3];
     Vector3 normal_;

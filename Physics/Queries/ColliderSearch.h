@@ -39,19 +39,19 @@ public:
     }
 
     uint32_t BodyOf(uint32_t collider) const { return world_.colliders.colliders[collider].body; }
-    uint32_t ChildOf(uint32_t collider) const { return collider - world_.bodies.cold[BodyOf(collider)].firstCollider; }
+    uint32_t ChildOf(uint32_t collider) const { return fulcrum::ChildOf(world_, collider); }
     BodyId IdOf(uint32_t collider) const { return world_.bodies.IdOf(BodyOf(collider)); }
     OverlapHit HitOf(uint32_t collider) const { return {IdOf(collider), ChildOf(collider)}; }
     const Shape& ShapeOf(uint32_t collider) const { return *world_.colliders.shapes[collider].shape; }
     Pose PoseOf(uint32_t collider) const {
         const ColliderShape& piece = world_.colliders.shapes[collider];
         const Pose body = world_.bodies.CentrePoseOf(BodyOf(collider));
-        return piece.offset ? body * piece.local : body;
+        return piece.offset ? body * LocalOf(world_, collider) : body;
     }
     // The order that breaks ties: by body, then child.
     bool ComesBefore(uint32_t a, uint32_t b) const {
         const uint32_t bodyA = BodyOf(a), bodyB = BodyOf(b);
-        return bodyA != bodyB ? bodyA < bodyB : a < b;
+        return bodyA != bodyB ? bodyA < bodyB : ChildOf(a) < ChildOf(b);
     }
 
 private:

@@ -7,8 +7,6 @@ namespace fulcrum {
 
 namespace {
 
-uint32_t ChildOf(const WorldState& world, uint32_t body, uint32_t collider) { return collider - world.bodies.cold[body].firstCollider; }
-
 void Forget(ContactRecord& record) {
     for (float& impulse : record.impulse) impulse = 0;
     for (float& impulse : record.frictionImpulse) impulse = 0;
@@ -37,7 +35,7 @@ ContactView ViewContact(const WorldState& world, uint32_t index, ContactView::Po
         room[i] = {onA, Dot<float>(normal, Vector3((onB - onA).cast<float>())), record.impulse[i]};
     }
     return {world.bodies.IdOf(pair.bodyA), world.bodies.IdOf(pair.bodyB), normal, std::span<const ContactView::Point>(room, pair.pointCount),
-            ChildOf(world, pair.bodyA, pair.colliderA), ChildOf(world, pair.bodyB, pair.colliderB)};
+            ChildOf(world, pair.colliderA), ChildOf(world, pair.colliderB)};
 }
 
 bool AskListener(WorldState& world, uint32_t index) {

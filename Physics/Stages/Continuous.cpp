@@ -17,12 +17,11 @@ constexpr int kRounds = 8;
 
 // m: a body with continuous collision that moves less in a step is not cast.
 float FreeMotionOf(const WorldState& world, uint32_t body) {
-    const BodyCold& cold = world.bodies.cold[body];
     float least = std::numeric_limits<float>::infinity();
-    for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i) {
+    VisitColliders(world, body, [&](uint32_t i) {
         const Shape& shape = *world.colliders.shapes[i].shape;
         least = std::min(least, FreeMotion(shape.InnerRadius(), shape.OuterRadius()));
-    }
+    });
     return least;
 }
 
@@ -33,20 +32,19 @@ bool StaysInBounds(const WorldState& world, uint32_t body, const Vector3& moved,
     const float slack = 0.5f * world.settings.speculativeDistance;
     const bool flewAsForeseen = !world.colouring.IsTouched(body) && LengthSquared(Vector3(a[0], a[1], a[2])) * dt * dt * dt * dt < slack * slack;
     if (flewAsForeseen || LengthSquared(moved) <= slack * slack) return true;
-    const BodyCold& cold = world.bodies.cold[body];
     bool stays = true;
-    for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i) {
-        if (world.colliders.colliders[i].fat.Contains(TightBoundsOf(world, i))) continue;
+    VisitColliders(world, body, [&](uint32_t i) {
+        if (world.colliders.colliders[i].fat.Contains(TightBoundsOf(world, i))) return;
         findings.colliders.push_back(i);
         stays = false;
-    }
+    });
     return stays;
 }
 
 // Pieces beside the centre of mass change sides of a wall where the body turns, so that compounds are always cast with their turn.
 bool IsCastTurning(const WorldState& world, uint32_t body) {
     const BodyCold& cold = world.bodies.cold[body];
-    return cold.continuous == ContinuousCollision::LinearAndAngular || cold.colliderCount > 1 || world.colliders.shapes[cold.firstCollider].offset;
+    return cold.continuous == ContinuousCollision::LinearAndAngular || !cold.shape->IsConvex();
 }
 
 void LookAtBody(const WorldState& world, uint32_t body, float dt, WorkerFindings& findings) {
@@ -57,7 +55,6 @@ void LookAtBody(const WorldState& world, uint32_t body, float dt, WorkerFindings
     const Vector3 moved = (world.bodies.CentreOf(body) - start.pose.position).cast<float>();
     const bool stays = StaysInBounds(world, body, moved, dt, findings);
     if (!d.continuous) return;
-    if (world.bodies.cold[body].colliderCount == 0) return;
     const bool turns = IsCastTurning(world, body);
     const float distance = Length(moved) + (turns ? Length(SweepOf(world, body).turn) * d.outerRadius : 0.0f);
     if (!(distance > FreeMotionOf(world, body))) return;

@@ -43,7 +43,7 @@ Support Describe(WorldState& world, uint32_t index) {
 // Height of the pair's shape B, of a surface the triangle that touches, above a point of A's frame.
 float HeightOf(WorldState& world, uint32_t index, const Vector3& point, const Vector3& up) {
     const PairView view = ViewPair(world, index);
-    const RelativePose pose = view.bodyBInA * world.colliders.shapes[view.pair.colliderB].local;
+    const RelativePose pose = view.bodyBInA * LocalOf(world, view.pair.colliderB);
     const Vector3 upInB = InverseRotate(pose.rotation, up);
     const Shape& shape = *view.pair.shapeB;
     float height = std::numeric_limits<float>::infinity();

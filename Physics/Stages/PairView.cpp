@@ -13,7 +13,7 @@ constexpr float kKeptAngle = 1e-3f;     // rad
 
 // Points are stored relative to the bodies, the narrow phase speaks of the pieces.
 Vector3 ToBody(const WorldState& world, const Pair& pair, uint32_t collider, const Vector3& point) {
-    return pair.offset ? world.colliders.shapes[collider].local.Transform(point) : point;
+    return pair.offset ? LocalOf(world, collider).Transform(point) : point;
 }
 
 void WriteTwistRadius(ContactRecord& record) {
@@ -50,7 +50,7 @@ PairView ViewPair(WorldState& world, uint32_t index) {
     Pair& pair = world.pairs.pairs[index];
     const RelativePose bodies = Relative(world.bodies.CentrePoseOf(pair.bodyA), world.bodies.CentrePoseOf(pair.bodyB));
     PairView view{pair, world.pairs.records[index], bodies, bodies};
-    if (pair.offset) view.bInA = Inverse(world.colliders.shapes[pair.colliderA].local) * bodies * world.colliders.shapes[pair.colliderB].local;
+    if (pair.offset) view.bInA = Inverse(LocalOf(world, pair.colliderA)) * bodies * LocalOf(world, pair.colliderB);
     return view;
 }
 

@@ -42,16 +42,15 @@ void RestPairs(WorldState& world) {
 
 // What falls asleep outside its fat bounds, because it was fast or the step long, would be found by nobody until it wakes.
 static void BringHome(WorldState& world, uint32_t body) {
-    const BodyCold& cold = world.bodies.cold[body];
-    for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i) {
+    VisitColliders(world, body, [&](uint32_t i) {
         Collider& collider = world.colliders.colliders[i];
-        if (collider.fat.Contains(TightBoundsOf(world, i))) continue;
+        if (collider.fat.Contains(TightBoundsOf(world, i))) return;
         SetFatBounds(world, i);
         world.colliders.TreeOf(collider).Update(i, collider.fat);
         world.strays.Forget(i);
         collider.previous = {};
         world.colliders.Queue(i);
-    }
+    });
 }
 
 void PutToSleep(WorldState& world, std::span<const uint32_t> bodies) {

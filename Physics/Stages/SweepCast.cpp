@@ -52,6 +52,7 @@ public:
 
     bool RunAgainst(uint32_t collider, uint32_t other) {
         piece_ = &world_.colliders.shapes[collider];
+        local_ = LocalOf(world_, collider);
         shape_ = cast_ = static_cast<const ConvexShape*>(piece_->shape);
         motion_ = {sweep_.start, sweep_.displacement, Vector3::Zero()};
         CastAgainst(other, ShapeCaster(*shape_, motion_));
@@ -59,17 +60,17 @@ public:
     }
 
     bool Run() {
-        const BodyCold& cold = world_.bodies.cold[sweep_.body];
-        for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i) CastPiece(i);
+        VisitColliders(world_, sweep_.body, [&](uint32_t i) { CastPiece(i); });
         return found_;
     }
 
 private:
     void CastPiece(uint32_t collider) {
         piece_ = &world_.colliders.shapes[collider];
+        local_ = LocalOf(world_, collider);
         shape_ = static_cast<const ConvexShape*>(piece_->shape);
         motion_ = {sweep_.start, sweep_.displacement, isTurning_ ? sweep_.turn : Vector3(Vector3::Zero())};
-        const PlacedConvex placed(*shape_, piece_->local);
+        const PlacedConvex placed(*shape_, local_);
         cast_ = piece_->offset ? &placed : shape_;
         const ShapeCaster whole(*cast_, motion_);
         if (!whole.IsValid()) return;
@@ -89,15 +90,15 @@ private:
         const float start = std::max({sweep_.from, course.from, from});
         if (course.displacement.isZero(0) && course.turn.isZero(0) && start == sweep_.from) {
             if (!whole.IsValid()) return;
-            CastThrough(whole, motion_, other, course, course.start * piece.local, start, whole);
+            CastThrough(whole, motion_, other, course, course.start * LocalOf(world_, other), start, whole);
             return;
         }
         // Seen from the other, which keeps the rotation that it has at the start.
         Pose at = start > course.from ? course.PoseAt(start) : course.start;
         Vector3 others = course.DisplacementRate() * (1 - start);
         if (piece.offset) {
-            at = at * piece.local;
-            others = Between(at.position, (course.PoseAt(1) * piece.local).position);
+            at = at * LocalOf(world_, other);
+            others = Between(at.position, (course.PoseAt(1) * LocalOf(world_, other)).position);
         }
         ShapeMotion relative = motion_;
         const float rest = sweep_.from < 1 ? (1 - start) / (1 - sweep_.from) : 0.0f;
@@ -210,7 +211,7 @@ private:
     Push FindPoints(const ShapeMotion& motion, const Vector3& linear, const Sweep& course, float time, float depth, SweepHit& hit) {
         const Pose own{sweep_.PositionAt(time), isTurning_ ? sweep_.RotationAt(time) : motion.pose.rotation}, others = course.PoseAt(time);
         const ColliderShape& piece = world_.colliders.shapes[hit.otherCollider];
-        const Pose a = own * piece_->local;
+        const Pose a = own * local_;
         Push most;
         hit.pointCount = 0;
         const auto consider = [&](const Manifold& manifold, uint8_t material) {
@@ -232,7 +233,7 @@ private:
                 hit.otherArms[i] = Between(others.position, point);
             }
         };
-        FindManifolds(*piece.shape, Relative(a, others * piece.local), 0.25f * depth, consider);
+        FindManifolds(*piece.shape, Relative(a, others * LocalOf(world_, hit.otherCollider)), 0.25f * depth, consider);
         return most;
     }
 
@@ -265,6 +266,7 @@ private:
     int restarts_ = 0;
     float limit_ = 1;                          // of the sweep, up to where hits are of interest
     const ColliderShape* piece_ = nullptr;
+    RelativePose local_;                       // of the piece in its body
     const ConvexShape* shape_ = nullptr;       // of the piece
     const ConvexShape* cast_ = nullptr;        // that, or it about the body's centre
     ShapeMotion motion_;

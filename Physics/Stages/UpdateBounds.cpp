@@ -34,25 +34,25 @@ Bounds Reach(const Bounds& tight, const Vector3& motion, float margin) {
 }
 
 void UpdateColliders(WorldState& world, uint32_t body, float dt, WorkerFindings& findings) {
-    const BodyCold& cold = world.bodies.cold[body];
     const Pose pose = world.bodies.CentrePoseOf(body);
     const Matrix3 rotation = ToMatrix(pose.rotation);
     const Vector3 linear = world.bodies.LinearVelocityOf(body), angular = world.bodies.AngularVelocityOf(body);
     bool changed = false;
-    for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i) {
+    VisitColliders(world, body, [&](uint32_t i) {
         Collider& collider = world.colliders.colliders[i];
         const ColliderShape& piece = world.colliders.shapes[i];
         Bounds tight;
         Vector3 motion = linear * dt;
         if (piece.offset) {
-            const Pose at = pose * piece.local;
+            const RelativePose local = LocalOf(world, i);
+            const Pose at = pose * local;
             tight = TightBounds(*piece.shape, at, ToMatrix(at.rotation));
-            motion += Cross<float>(angular, Vector3(rotation * piece.local.position)) * dt;
+            motion += Cross<float>(angular, Vector3(rotation * local.position)) * dt;
         } else {
             tight = TightBounds(*piece.shape, pose, rotation);
         }
         const float speculative = 0.5f * world.settings.speculativeDistance;
-        if (collider.fat.Contains(Reach(tight, motion, speculative))) continue;
+        if (collider.fat.Contains(Reach(tight, motion, speculative))) return;
         const float radius = piece.shape->OuterRadius(), distance = Length(motion);
         const float margin = std::min(world.settings.boundsMargin, kAheadPart * radius);
         if (distance > kFastPart * margin) {
@@ -63,7 +63,7 @@ void UpdateColliders(WorldState& world, uint32_t body, float dt, WorkerFindings&
         }
         findings.colliders.push_back(i);
         changed = true;
-    }
+    });
     if (changed) world.bodies.poses[body].boundsChangedIn = static_cast<uint32_t>(world.report.step);
 }
 
@@ -84,7 +84,7 @@ void ReserveLists(WorldState& world) {
 
 Bounds TightBoundsOf(const WorldState& world, uint32_t index) {
     const ColliderShape& piece = world.colliders.shapes[index];
-    const Pose pose = world.bodies.CentrePoseOf(world.colliders.colliders[index].body) * piece.local;
+    const Pose pose = world.bodies.CentrePoseOf(world.colliders.colliders[index].body) * LocalOf(world, index);
     return TightBounds(*piece.shape, pose, ToMatrix(pose.rotation));
 }
 

@@ -121,6 +121,15 @@ void BodyStore::UpdateInertia(uint32_t index, const Matrix3& axes) {
     m.inverseInertia[5] = i.yz;
 }
 
+void SetMass(BodyDynamics& d, const Quaternion& q, float mass, const Vector3& inertia) {
+    const float axes[4] = {q.x, q.y, q.z, q.w};
+    for (int k = 0; k < 4; ++k) d.principalAxes[k] = axes[k];
+    d.inverseMass = 1.0f / mass;
+    for (int k = 0; k < 3; ++k) d.inverseInertia[k] = 1.0f / inertia[k];
+    const float spread = inertia.maxCoeff() - inertia.minCoeff();
+    d.spherical = spread <= 1e-5f * inertia.maxCoeff();
+}
+
 Vector3 AngularMomentum(const BodyDynamics& d, const Quaternion& rotation, const Vector3& w) {
     const Quaternion axes = rotation * d.PrincipalAxes();
     Vector3 local = InverseRotate(axes, w);

@@ -5,6 +5,7 @@
 #include <Fulcrum/Constraints/Parts/BodyState.h>
 #include <Fulcrum/Physics/Settings.h>
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -59,8 +60,20 @@ static_assert(sizeof(BodyDynamics) == 64);
 
 // kg m2/s about the centre of mass, world axes, at the rotation and angular velocity (rad/s).
 Vector3 AngularMomentum(const BodyDynamics& body, const Quaternion& rotation, const Vector3& angularVelocity);
+// The inverses of mass, kg, and principal moments of inertia, kg m2, along axes that are rotated so in the centre frame.
+void SetMass(BodyDynamics& body, const Quaternion& principalAxes, float mass, const Vector3& inertia);
 // The principal axes in world space.
 inline Matrix3 AxesOf(const BodyDynamics& body, const Quaternion& rotation) { return ToMatrix(rotation * body.PrincipalAxes()); }
+class MutableCompound;
+
+// What only bodies have whose children may be edited.
+struct BodyChildren {
+    MutableCompound* compound = nullptr;    // the body's own: BodyCold::shape
+    Vector3 origin = Vector3::Zero();       // of the children's frame in the centre frame, m
+    double massUnit = 0;                    // kg, of the compound's RelativeMass
+    uint32_t moreColliders = ~0u;           // index into ColliderStore::runs
+};
+
 // Cold: for the interface.
 struct BodyCold {
     ShapePtr shape;
@@ -70,12 +83,15 @@ struct BodyCold {
     uint64_t category = 1, mask = ~uint64_t(0);
     CollisionGroup group;
     uint32_t firstCollider = 0, colliderCount = 0;
+    std::unique_ptr<BodyChildren> children;  // where `shape` is a mutable compound
     uint32_t generation = 0;
     uint32_t awakePlace = 0;        // index into BodyStore::awake
     uint32_t sleepingIsland = ~0u;  // index into SleepingIslands
     ContinuousCollision continuous = ContinuousCollision::Off;
     bool exists = false;
     bool removed = false;           // by the interface, its index not yet free
+
+    uint32_t MoreColliders() const { return children ? children->moreColliders : ~0u; }  // index into ColliderStore::runs
 };
 
 // Velocity without the constraints' share, from which the next substep's warm start follows.

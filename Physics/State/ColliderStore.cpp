@@ -23,4 +23,24 @@ void ColliderStore::Free(uint32_t first, uint32_t count) {
     free_[count].push_back(first);
 }
 
+uint32_t ColliderStore::AddRun(uint32_t count) {
+    uint32_t run = static_cast<uint32_t>(runs.size());
+    if (freeRuns_.empty()) {
+        runs.emplace_back();
+    } else {
+        run = freeRuns_.back();
+        freeRuns_.pop_back();
+    }
+    runs[run] = {Allocate(count), count, kNone};
+    return run;
+}
+
+void ColliderStore::FreeRuns(uint32_t run) {
+    while (run != kNone) {
+        Free(runs[run].first, runs[run].count);
+        freeRuns_.push_back(run);
+        run = runs[run].next;
+    }
+}
+
 }  // namespace fulcrum

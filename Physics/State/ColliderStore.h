@@ -1,5 +1,6 @@
-// Colliders: the pieces of the bodies, as the broad phase sees them. A compound has one per child, consecutive, every other
-// shape one. Two trees keep what moves apart from what never does.
+// Colliders: the pieces of the bodies, as the broad phase sees them. A compound has one per child, in a run of consecutive
+// ones, every other shape one. A mutable compound that outgrows its run gets further ones; a removed child leaves its
+// collider empty, without a shape. Two trees keep what moves apart from what never does.
 #pragma once
 
 #include <Fulcrum/Collision/BroadPhase/BoundsTree.h>
@@ -22,22 +23,34 @@ static_assert(sizeof(Collider) == 64);
 
 // The piece itself.
 struct ColliderShape {
-    const Shape* shape = nullptr;        // no compound; kept alive by the body's shape
-    bool offset = false;                 // `local` is not the identity
-    RelativePose local;                  // of the shape's centre frame in the body's
+    const Shape* shape = nullptr;        // no compound; kept alive by the body's shape; null: empty
+    bool offset = false;                 // not at the body's centre frame
+    bool onOrigin = false;               // `local` is seen from BodyChildren::origin
+    RelativePose local;                  // of the shape's centre frame in the body's: read it by LocalOf (WorldState.h)
+};
+
+// Consecutive colliders of a body.
+struct ColliderRun {
+    uint32_t first = 0, count = 0;
+    uint32_t next = ~0u;                 // index into ColliderStore::runs
 };
 
 class ColliderStore {
 public:
+    static constexpr uint32_t kNone = ~0u;
     std::vector<Collider> colliders;
     std::vector<ColliderShape> shapes;           // same index
     BoundsTree fixedTree, movingTree;
     uint32_t movingLayers = 0, fixedLayers = 0;  // bit i: a body of layer i is, or was, in the tree
     std::vector<uint32_t> moved;                 // whose pairs must be searched
+    bool movedHasEmpty = false;                  // some of them have been removed since
+    std::vector<ColliderRun> runs;               // bodies' further ones
 
     BoundsTree& TreeOf(const Collider& c) { return c.moving ? movingTree : fixedTree; }
     uint32_t Allocate(uint32_t count);           // index of the first of `count` consecutive ones
     void Free(uint32_t first, uint32_t count);
+    uint32_t AddRun(uint32_t count);             // index of a further run
+    void FreeRuns(uint32_t run);                 // this one and those that follow it
     void Queue(uint32_t collider) {
         if (colliders[collider].queued) return;
         colliders[collider].queued = true;
@@ -45,11 +58,12 @@ public:
     }
     size_t MemoryUsed() const {
         return colliders.capacity() * sizeof(Collider) + shapes.capacity() * sizeof(ColliderShape) + fixedTree.MemoryUsed() + movingTree.MemoryUsed() +
-               moved.capacity() * sizeof(uint32_t);
+               (moved.capacity() + freeRuns_.capacity()) * sizeof(uint32_t) + runs.capacity() * sizeof(ColliderRun);
     }
 
 private:
     std::vector<std::vector<uint32_t>> free_;  // by count: first indices of runs that were given back
+    std::vector<uint32_t> freeRuns_;
 };
 
 }  // namespace fulcrum

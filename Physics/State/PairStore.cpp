@@ -39,6 +39,7 @@ uint32_t PairStore::Allocate() {
         index = static_cast<uint32_t>(pairs.size());
         pairs.emplace_back();
         records.emplace_back();
+        links_.emplace_back();
         active.Reserve(index + 1);
         free_.reserve(pairs.capacity());  // so that removing never allocates
     }
@@ -79,7 +80,30 @@ uint32_t PairStore::Add(uint32_t colliderA, uint32_t colliderB) {
     while (table_[i].index != kNone) i = (i + 1) & mask;
     table_[i] = {key, index};
     ++size_;
+    Link(index);
     return index;
+}
+
+void PairStore::Link(uint32_t index) {
+    for (int side = 0; side < 2; ++side) {
+        const uint32_t collider = ColliderOf(index, side);
+        if (collider >= heads_.size()) heads_.resize(collider + 1, kNone);
+        const uint32_t head = heads_[collider];
+        links_[index].next[side] = head;
+        links_[index].previous[side] = kNone;
+        if (head != kNone) links_[head].previous[SideOf(head, collider)] = index;
+        heads_[collider] = index;
+    }
+}
+
+void PairStore::Unlink(uint32_t index) {
+    for (int side = 0; side < 2; ++side) {
+        const uint32_t collider = ColliderOf(index, side);
+        const uint32_t next = links_[index].next[side], previous = links_[index].previous[side];
+        if (next != kNone) links_[next].previous[SideOf(next, collider)] = previous;
+        if (previous != kNone) links_[previous].next[SideOf(previous, collider)] = next;
+        else heads_[collider] = next;
+    }
 }
 
 void PairStore::Remove(uint32_t index) {
@@ -89,6 +113,7 @@ void PairStore::Remove(uint32_t index) {
         free_.push_back(index);
         return;
     }
+    Unlink(index);
     const uint64_t key = Key(pairs[index].colliderA, pairs[index].colliderB);
     const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
     uint32_t hole = Home(key);
@@ -108,7 +133,7 @@ void PairStore::Remove(uint32_t index) {
 
 size_t PairStore::MemoryUsed() const {
     return pairs.capacity() * sizeof(Pair) + records.capacity() * sizeof(ContactRecord) +
-           active.MemoryUsed() + free_.capacity() * sizeof(uint32_t) + table_.capacity() * sizeof(Entry);
+           active.MemoryUsed() + (free_.capacity() + heads_.capacity()) * sizeof(uint32_t) + links_.capacity() * sizeof(Links) + table_.capacity() * sizeof(Entry);
 }
 
 }  // namespace fulcrum

@@ -49,6 +49,16 @@ public:
     uint32_t Add(uint32_t colliderA, uint32_t colliderB);  // not there yet
     // A further manifold of the pair `of`, between the same shapes and bodies. Not found by Find, and not active.
     uint32_t AddMore(uint32_t of);
+    // Calls visit(pair) for all pairs of a collider, active or not, further manifolds left out; the visitor may remove it.
+    template <class Visitor>
+    void VisitOf(uint32_t collider, Visitor&& visit) const {
+        if (collider >= heads_.size()) return;
+        for (uint32_t index = heads_[collider]; index != kNone;) {
+            const uint32_t next = links_[index].next[SideOf(index, collider)];
+            visit(index);
+            index = next;
+        }
+    }
     void Remove(uint32_t index);                           // not coloured; its further manifolds are removed by themselves
     size_t MemoryUsed() const;
 
@@ -56,6 +66,15 @@ private:
     static uint64_t Key(uint32_t a, uint32_t b) {
         return a < b ? (uint64_t(a) << 32 | b) : (uint64_t(b) << 32 | a);
     }
+    // The pairs of each collider as a list, without which whoever removes a collider would have to look at all pairs.
+    struct Links {
+        uint32_t next[2] = {kNone, kNone}, previous[2] = {kNone, kNone};  // in the lists of colliders A and B
+    };
+    int SideOf(uint32_t index, uint32_t collider) const { return pairs[index].colliderB == collider; }
+    uint32_t ColliderOf(uint32_t index, int side) const { return side ? pairs[index].colliderB : pairs[index].colliderA; }
+    void Link(uint32_t index);
+    void Unlink(uint32_t index);
+
     uint32_t Allocate();
     uint32_t Home(uint64_t key) const;
     void Grow();
@@ -67,6 +86,8 @@ private:
     };
     std::vector<Entry> table_;
     std::vector<uint32_t> free_;
+    std::vector<Links> links_;     // by pair
+    std::vector<uint32_t> heads_;  // by collider
     uint32_t size_ = 0;
 };
 

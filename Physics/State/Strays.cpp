@@ -15,11 +15,10 @@ void Strays::Refresh(const WorldState& world) {
     tree_.Clear();
     // Those that fell asleep were brought home then.
     for (const uint32_t body : world.bodies.awake) {
-        const BodyCold& cold = world.bodies.cold[body];
-        for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i) {
+        VisitColliders(world, body, [&](uint32_t i) {
             const Bounds bounds = TightBoundsOf(world, i);
             if (!world.colliders.colliders[i].fat.Contains(bounds)) tree_.Insert(i, bounds);
-        }
+        });
     }
     if (tree_.Size() > 8) tree_.Rebuild();
     isFresh_.store(true, std::memory_order_release);

@@ -21,11 +21,10 @@ void WakeOne(WorldState& world, uint32_t body) {
 }  // namespace
 
 void RequeueColliders(WorldState& world, uint32_t body) {
-    const BodyCold& cold = world.bodies.cold[body];
-    for (uint32_t i = cold.firstCollider; i < cold.firstCollider + cold.colliderCount; ++i) {
+    VisitColliders(world, body, [&](uint32_t i) {
         world.colliders.colliders[i].previous = {};
         world.colliders.Queue(i);
-    }
+    });
 }
 
 void WakeBody(WorldState& world, uint32_t body) {

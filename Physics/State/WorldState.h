@@ -90,6 +90,38 @@ struct WorldState {
     size_t MemoryUsed() const;
 };
 
+// Calls visit(collider) for the pieces of a body.
+template <class Visitor>
+void VisitColliders(const WorldState& world, uint32_t body, Visitor&& visit) {
+    const BodyCold& cold = world.bodies.cold[body];
+    const auto visitRun = [&](uint32_t first, uint32_t count) {
+        for (uint32_t i = first; i < first + count; ++i)
+            if (world.colliders.shapes[i].shape) visit(i);
+    };
+    visitRun(cold.firstCollider, cold.colliderCount);
+    for (uint32_t run = cold.MoreColliders(); run != ColliderStore::kNone; run = world.colliders.runs[run].next)
+        visitRun(world.colliders.runs[run].first, world.colliders.runs[run].count);
+}
+
+// Which piece of its body a collider is.
+inline uint32_t ChildOf(const WorldState& world, uint32_t collider) {
+    const BodyCold& cold = world.bodies.cold[world.colliders.colliders[collider].body];
+    uint32_t before = 0;
+    ColliderRun run{cold.firstCollider, cold.colliderCount, cold.MoreColliders()};
+    while (collider - run.first >= run.count) {
+        before += run.count;
+        run = world.colliders.runs[run.next];
+    }
+    return before + (collider - run.first);
+}
+
+// The piece's centre frame in that of its body.
+inline RelativePose LocalOf(const WorldState& world, uint32_t collider) {
+    const ColliderShape& piece = world.colliders.shapes[collider];
+    if (!piece.onOrigin) return piece.local;
+    return {piece.local.position + world.bodies.cold[world.colliders.colliders[collider].body].children->origin, piece.local.rotation};
+}
+
 // Visits the pairs with a change, in ascending order; in most steps that are few.
 template <class Visitor>
 void VisitChanges(const WorldState& world, Visitor&& visit) {

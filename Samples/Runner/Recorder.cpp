@@ -147,14 +147,10 @@ uint32_t Recorder::RecordShape(const ShapePtr& shape) {
     const auto known = shapes_.find(shape.get());
     if (known != shapes_.end()) return known->second;
     RecordedShape recorded;
-    if (const auto* compound = dynamic_cast<const Compound*>(shape.get())) {
+    if (const auto* compound = dynamic_cast<const CompoundShape*>(shape.get())) {
         recorded.kind = RecordedShapeKind::Compound;
-        for (const Compound::Child& child : compound->Children()) {
-            // From the child's own frame to the compound's, by way of both centres of mass.
-            RelativePose pose = child.pose;
-            pose.position += compound->Mass().centreOfMass - Rotate(pose.rotation, child.shape->Mass().centreOfMass);
-            recorded.children.push_back({RecordShape(child.shape), pose});
-        }
+        for (const CompoundShape::ChildSettings& child : compound->Settings())
+            recorded.children.push_back({RecordShape(child.shape), {child.position, child.rotation}});
     } else {
         recorded = RecordedPrimitive(*shape);
     }
@@ -167,13 +163,38 @@ uint32_t Recorder::RecordShape(const ShapePtr& shape) {
 void Recorder::AddBody(BodyId id) {
     if (recorded_.size() <= id.index) recorded_.resize(id.index + 1);
     recorded_[id.index] = static_cast<uint32_t>(ids_.size());
+    const MutableCompound* compound = world_.Bodies().GetChildren(id);
+    if (!compound) {
+        AddRecordedBody(id, {}, world_.Bodies().GetShape(id));
+        return;
+    }
+    for (uint32_t i = 0; i < compound->Children().size(); ++i)
+        if (const ShapePtr& shape = compound->Children()[i].shape) AddRecordedBody(id, compound->IdOf(i), shape);
+}
+
+void Recorder::AddRecordedBody(BodyId id, ChildId child, const ShapePtr& shape) {
     ids_.push_back(id);
+    children_.push_back(child);
     settled_.push_back(0);
     islands_.push_back(-1);
-    recording.bodies.push_back({.shape = RecordShape(world_.Bodies().GetShape(id)),
+    recording.bodies.push_back({.shape = RecordShape(shape),
                                 .motion = MotionOf(world_.Bodies().GetMotionType(id)),
                                 .mass = world_.Bodies().GetMass(id),
                                 .name = {}});
+}
+
+bool Recorder::IsThere(uint32_t body) const {
+    if (children_[body] == ChildId{}) return world_.Bodies().Exists(ids_[body]);
+    const MutableCompound* compound = world_.Bodies().GetChildren(ids_[body]);
+    return compound && compound->Exists(children_[body]);
+}
+
+Pose Recorder::PoseOf(uint32_t body) const {
+    const Pose pose = world_.Bodies().GetPose(ids_[body]);
+    if (children_[body] == ChildId{}) return pose;
+    const MutableCompound& compound = *world_.Bodies().GetChildren(ids_[body]);
+    const CompoundShape::ChildSettings child = compound.SettingsOf(compound.Children()[children_[body].index]);
+    return pose * RelativePose{child.position, child.rotation};
 }
 
 void Recorder::AddFrame() {
@@ -183,14 +204,16 @@ void Recorder::AddFrame() {
     for (uint32_t body = 0; body < ids_.size(); ++body) {
         const BodyId id = ids_[body];
         if (settled_[body] == kGone) continue;
-        if (!bodies.Exists(id)) {
+        if (!IsThere(body)) {
             HideRemovedBody(body, recording.latest[body]);
             continue;
         }
         const bool awake = bodies.IsAwake(id);
-        if (settled_[body] == 1 && !awake) continue;
+        const Pose pose = PoseOf(body);
+        const bool isMovedChild = children_[body] != ChildId{} && settled_[body] == 1 &&
+                                  ToVector(pose.position, recording.origin) != recording.latest[body].position;
+        if (settled_[body] == 1 && !awake && !isMovedChild) continue;
         settled_[body] = !awake && recording.bodies[body].motion != RecordedMotion::Kinematic;
-        const Pose pose = bodies.GetPose(id);
         states_.push_back({.body = body,
                            .position = ToVector(pose.position, recording.origin),
                            .rotation = pose.rotation,

@@ -26,6 +26,9 @@ public:
 private:
     uint32_t RecordShape(const ShapePtr& shape);
     void AddBody(BodyId id);
+    void AddRecordedBody(BodyId id, ChildId child, const ShapePtr& shape);
+    bool IsThere(uint32_t body) const;
+    Pose PoseOf(uint32_t body) const;
     void AddFrame();
     void CollectIslands();
     void CollectContacts();
@@ -38,6 +41,9 @@ private:
     int interval_ = 1;  // steps a frame
     std::map<const Shape*, uint32_t> shapes_;
     std::vector<BodyId> ids_;          // of the recorded bodies
+    // By recorded body: the children of a mutable compound are bodies of their own, each drawn where it is as long as it is
+    // there. Of all others no child.
+    std::vector<ChildId> children_;
     std::vector<uint32_t> recorded_;   // index of the recorded body by BodyId::index
     std::vector<uint8_t> settled_;     // by recorded body: 1: its resting state is recorded
     std::vector<int32_t> islands_;     // by recorded body

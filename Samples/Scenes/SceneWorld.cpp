@@ -72,6 +72,9 @@ ShapePtr SceneWorld::MeshOf(std::span<const Vector3> vertices, std::span<const u
 ShapePtr SceneWorld::CompoundOf(std::span<const Compound::ChildSettings> children) {
     return Checked(Compound::Create(children));
 }
+ShapePtr SceneWorld::MutableCompoundOf(std::span<const CompoundShape::ChildSettings> children) {
+    return Checked(MutableCompound::Create(children));
+}
 
 BodyId SceneWorld::Add(const BodySettings& settings) {
     Result<BodyId> id = Bodies().Create(settings);

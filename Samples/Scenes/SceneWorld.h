@@ -71,6 +71,7 @@ public:
     ShapePtr HullOf(std::span<const Vector3> points);
     ShapePtr MeshOf(std::span<const Vector3> vertices, std::span<const uint32_t> indices);
     ShapePtr CompoundOf(std::span<const Compound::ChildSettings> children);
+    ShapePtr MutableCompoundOf(std::span<const CompoundShape::ChildSettings> children);
 
     // An error of Create where the settings are wrong.
     BodyId Add(const BodySettings& settings);

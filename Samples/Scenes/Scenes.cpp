@@ -38,6 +38,7 @@ namespace fulcrum {
     scene(ConveyorBelt)       \
     scene(Layers)             \
     scene(TrapDoor)           \
+    scene(CompoundCity)       \
     scene(RagdollDrive)       \
     scene(Hinge)              \
     scene(Slider)             \

@@ -5,7 +5,9 @@
 #include <Fulcrum/Collision/Shapes/Plane.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
 #include <Fulcrum/Collision/Shapes/RoundShapes.h>
+#include <Fulcrum/Collision/Shapes/MutableCompound.h>
 #include <Fulcrum/Collision/Shapes/ShapeFile.h>
+#include <Fulcrum/Collision/Shapes/Triangle.h>
 #include <Fulcrum/UnitTests/Collision/Shapes/SurfaceChecks.h>
 
 #include <cstring>
@@ -20,8 +22,8 @@ ShapePtr RandomHull(int points, float convexRadius, uint32_t seed) {
     return ConvexHull::Create(cloud, {.convexRadius = convexRadius}).Value();
 }
 
-ShapePtr SomeCompound() {
-    Compound::ChildSettings children[4];
+std::vector<Compound::ChildSettings> SomeChildren() {
+    std::vector<Compound::ChildSettings> children(4);
     children[0].shape = Box::Create(Vector3(1, 2, 3), 0.1f).Value();
     children[1].shape = Sphere::Create(0.7f).Value();
     children[1].position = Vector3(3, 1, 0);
@@ -30,8 +32,60 @@ ShapePtr SomeCompound() {
     children[2].rotation = Normalized(Quaternion{0.1f, 0.2f, 0.3f, 0.9f});
     children[3].shape = Capsule::Create(1, 0.25f).Value();
     children[3].rotation = Normalized(Quaternion{0.5f, 0.2f, -0.3f, 0.9f});
-    return Compound::Create(children).Value();
+    return children;
 }
+
+ShapePtr SomeCompound() { return Compound::Create(SomeChildren()).Value(); }
+
+// With free places, further ids and a mass that was kept.
+std::shared_ptr<MutableCompound> SomeMutableCompound() {
+    const std::vector<Compound::ChildSettings> children = SomeChildren();
+    const auto compound = MutableCompound::Create(children).Value();
+    for (int i = 0; i < 8; ++i) EXPECT_TRUE(compound->Add(children[static_cast<size_t>(i) % 4]));
+    for (uint32_t i : {6u, 1u, 9u}) EXPECT_TRUE(compound->Remove({i, 0}));
+    EXPECT_TRUE(compound->Add(children[0]));
+    EXPECT_TRUE(compound->Remove({7, 0}, MassUpdate::Keep));
+    return compound;
+}
+
+// A ball cut off at a height, with the radius and the height as all that it is.
+class Dome final : public CustomConvex {
+public:
+    Dome(float r, float h) : CustomConvex(0.01f), radius(r), height(h) {}
+    Vector3 FarthestPoint(const Vector3& direction) const override {
+        const Vector3 onBall = direction * (radius / Length(direction));
+        if (onBall.y() <= height) return onBall;
+        const float across = std::sqrt(direction.x() * direction.x() + direction.z() * direction.z());
+        const float rim = across > 0 ? std::sqrt(radius * radius - height * height) / across : 0.0f;
+        return Vector3(direction.x() * rim, height, direction.z() * rim);
+    }
+    const float radius, height;
+};
+
+bool WriteDome(const CustomConvex& shape, std::vector<uint8_t>& bytes) {
+    const auto* dome = dynamic_cast<const Dome*>(&shape);
+    if (!dome) return false;
+    bytes.resize(8);
+    std::memcpy(bytes.data(), &dome->radius, 4);
+    std::memcpy(bytes.data() + 4, &dome->height, 4);
+    return true;
+}
+
+Result<ShapePtr> ReadDome(std::span<const uint8_t> bytes) {
+    if (bytes.size() != 8) return Error{ErrorCode::Degenerate, "no dome"};
+    float radius, height;
+    std::memcpy(&radius, bytes.data(), 4);
+    std::memcpy(&height, bytes.data() + 4, 4);
+    if (!(radius > 0.01f && radius < 100 && std::fabs(height) < 0.9f * radius)) return Error{ErrorCode::OutOfRange, "no dome"};
+    const auto dome = CreateCustom<Dome>(radius, height);
+    if (!dome) return dome.GetError();
+    return ShapePtr(dome.Value());
+}
+
+const CustomShapeFormat kFormats[] = {
+    {"nothing", [](const CustomConvex&, std::vector<uint8_t>& bytes) { return bytes.push_back(7), false; },
+     [](std::span<const uint8_t>) { return Result<ShapePtr>(ShapePtr()); }},
+    {"dome", WriteDome, ReadDome}};
 
 ShapePtr SomeMesh(bool withMaterials, const Vector3& scale) {
     const IndexedTriangles terrain = WavyTerrain(12, 1, 1);
@@ -81,7 +135,10 @@ std::vector<ShapePtr> OneOfEach() {
             TaperedCapsule::Create(0.5f, 0.2f, 0.4f).Value(),
             Cylinder::Create(0.5f, 0.3f, 0.02f).Value(),
             Cylinder::CreateTapered(0.7f, 0.1f, 0.4f).Value(),
-            EmptyShape::Create()};
+            EmptyShape::Create(),
+            Triangle::Create(Vector3(5, 1, 2), Vector3(6, 1.5f, 2), Vector3(5.5f, 3, 4)).Value(),
+            Triangle::Create(Vector3(0, 0, 0), Vector3(-1, 0, 0.3f), Vector3(0, 1e-3f, 2), 0.05f).Value(),
+            SomeMutableCompound()};
 }
 
 template <class T>
@@ -150,6 +207,44 @@ TEST(ShapeFile, HullsOfAllSizesComeBack) {
     EXPECT_TRUE(LoadShape(SaveShape(*thin.Value()).Value()));
 }
 
+TEST(ShapeFile, MutableCompoundsGoOnAsBefore) {
+    const auto compound = SomeMutableCompound();
+    const ShapePtr loaded = LoadShape(SaveShape(*compound).Value()).Value();
+    const auto copy = static_cast<const MutableCompound&>(*loaded).Copy();
+    EXPECT_EQ(copy->Count(), compound->Count());
+    EXPECT_EQ(copy->RelativeMass(), compound->RelativeMass());
+    const std::vector<Compound::ChildSettings> children = SomeChildren();
+    for (int i = 0; i < 6; ++i) {
+        const ChildId id = compound->Add(children[2]).Value();
+        EXPECT_EQ(copy->Add(children[2]).Value(), id);
+        EXPECT_EQ(SaveShape(*copy).Value(), SaveShape(*compound).Value());
+    }
+}
+
+TEST(ShapeFile, CustomShapesNeedAFormat) {
+    const ShapePtr dome = CreateCustom<Dome>(0.5f, 0.2f).Value();
+    const Compound::ChildSettings children[] = {{.shape = dome}, {.shape = dome, .position = {1, 2, 3}}};
+    for (const ShapePtr& shape : {dome, ShapePtr(Compound::Create(children).Value()), ShapePtr(MutableCompound::Create(children).Value())}) {
+        const auto refused = SaveShape(*shape);
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.GetError().code, ErrorCode::Unsupported);
+        EXPECT_NE(refused.GetError().message.find("custom shape"), std::string::npos);
+        const std::vector<uint8_t> bytes = SaveShape(*shape, kFormats).Value();
+        const auto unknown = LoadShape(bytes);
+        ASSERT_FALSE(unknown);
+        EXPECT_EQ(unknown.GetError().code, ErrorCode::Unsupported);
+        EXPECT_NE(unknown.GetError().message.find("\"dome\""), std::string::npos);
+        const ShapePtr loaded = LoadShape(bytes, kFormats).Value();
+        EXPECT_EQ(loaded->OuterRadius(), shape->OuterRadius());
+        EXPECT_TRUE(SameBits(loaded->Mass(), shape->Mass()));
+        EXPECT_EQ(SaveShape(*loaded, kFormats).Value(), bytes);
+    }
+    const CustomShapeFormat wrong[] = {{"", WriteDome, ReadDome}};
+    EXPECT_EQ(SaveShape(*dome, wrong).GetError().code, ErrorCode::OutOfRange);
+    const CustomShapeFormat liar[] = {{"dome", WriteDome, [](std::span<const uint8_t>) { return Result<ShapePtr>(ShapePtr()); }}};
+    EXPECT_EQ(LoadShape(SaveShape(*dome, liar).Value(), liar).GetError().code, ErrorCode::Unsupported);
+}
+
 TEST(ShapeFile, RefusesWhatIsNoShapeFile) {
     const std::vector<uint8_t> bytes = SaveShape(*SomeCompound()).Value();
     EXPECT_EQ(LoadShape({}).GetError().code, ErrorCode::Unsupported);
@@ -165,7 +260,7 @@ TEST(ShapeFile, RefusesWhatIsNoShapeFile) {
 }
 
 TEST(ShapeFile, RefusesEveryDamagedBitAndLength) {
-    for (const ShapePtr& shape : {OneOfEach()[2], SomeCompound()}) {
+    for (const ShapePtr& shape : {OneOfEach()[2], SomeCompound(), ShapePtr(SomeMutableCompound()), OneOfEach()[15]}) {
         const std::vector<uint8_t> bytes = SaveShape(*shape).Value();
         for (size_t length = 0; length < bytes.size(); ++length)
             EXPECT_FALSE(LoadShape({bytes.data(), length})) << length;
@@ -208,6 +303,21 @@ void Exercise(const Shape& shape, SurfaceRandom& random) {
         }
     } else if (shape.IsConvex()) {
         EXPECT_TRUE(IsFinite(static_cast<const ConvexShape&>(shape).Support(Vector3(1, 2, 3))));
+    } else if (shape.Type() == ShapeType::MutableCompound) {
+        const auto compound = static_cast<const MutableCompound&>(shape).Copy();
+        compound->Tree().Validate();
+        const ShapePtr ball = Sphere::Create(1).Value();
+        const auto id = compound->Add({.shape = ball});
+        // The mass of what there was may be as large as a float.
+        if (id) {
+            EXPECT_TRUE(compound->Remove(id.Value(), MassUpdate::Keep));
+        }
+        const uint32_t count = static_cast<uint32_t>(compound->Children().size());
+        for (uint32_t i = 0; i < count; ++i) {
+            if (compound->Exists(compound->IdOf(i)) && compound->Count() > 1) {
+                EXPECT_TRUE(compound->Remove(compound->IdOf(i), MassUpdate::Keep));
+            }
+        }
     }
     EXPECT_TRUE(SaveShape(shape));
 }

@@ -1,0 +1,66 @@
+#include <Fulcrum/Collision/Shapes/CompoundShape.h>
+
+#include <Fulcrum/Collision/Shapes/Message.h>
+
+namespace fulcrum {
+
+Status CompoundShape::Check(const ChildSettings& child, const char* name) {
+    if (!child.shape) return Error{ErrorCode::Unsupported, Message("%s has no shape", name)};
+    if (!child.shape->IsConvex()) {
+        return Error{ErrorCode::Unsupported,
+                     Message("%s is a %s: children must be convex", name, ShapeTypeName(child.shape->Type()))};
+    }
+    if (!IsFinite(child.position) || !IsFinite(child.rotation) || !std::isfinite(child.density))
+        return Error{ErrorCode::NonFinite, Message("position, rotation or density of %s is not finite", name)};
+    const double lengthSquared = double{LengthSquared(child.rotation)};
+    if (!(std::fabs(lengthSquared - 1) < 1e-3)) {
+        return Error{ErrorCode::Unnormalized,
+                     Message("the rotation of %s has length %g: it must be 1", name, std::sqrt(lengthSquared))};
+    }
+    if (!(child.density > 0)) {
+        return Error{ErrorCode::NonPositive,
+                     Message("the density of %s is %g: it must be larger than 0", name, double{child.density})};
+    }
+    return Done{};
+}
+
+// By the supports along the axes; rounded outwards by what the rotation of the direction and of the point may lose, a few
+// units in the last place of the child's size.
+Bounds CompoundShape::BoundsOf(const Child& child) {
+    const ConvexShape& shape = *child.shape;
+    const Quaternion& q = child.pose.rotation;
+    const Vector3& at = child.pose.position;
+    const bool turned = q.x != 0 || q.y != 0 || q.z != 0;
+    const double slack = turned ? 0x1p-21 * double{shape.OuterRadius()} : 0;
+    Position lower, upper;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!turned) {
+            lower[axis] = double{at[axis]} + double{shape.LocalBounds().lower[axis]};
+            upper[axis] = double{at[axis]} + double{shape.LocalBounds().upper[axis]};
+            continue;
+        }
+        const Vector3 direction = InverseRotate(q, Vector3(Vector3::Unit(axis)));
+        const Vector3 high = Rotate(q, shape.Support(direction)), low = Rotate(q, shape.Support(Vector3(-direction)));
+        lower[axis] = double{at[axis]} + double{low[axis]} - slack;
+        upper[axis] = double{at[axis]} + double{high[axis]} + slack;
+    }
+    return RoundedOutwards(lower, upper);
+}
+
+CompoundShape::ChildSettings CompoundShape::SettingsOf(const Child& child) const {
+    // From the centre frames to the users'.
+    const Vector3 own = Rotate(child.pose.rotation, child.shape->Mass().centreOfMass);
+    return {.shape = child.shape,
+            .position = child.pose.position + (mass_.centreOfMass + Origin()) - own,
+            .rotation = child.pose.rotation,
+            .density = child.density};
+}
+
+std::vector<CompoundShape::ChildSettings> CompoundShape::Settings() const {
+    std::vector<ChildSettings> settings;
+    for (const Child& child : children_)
+        if (child.shape) settings.push_back(SettingsOf(child));
+    return settings;
+}
+
+}  // namespace fulcrum

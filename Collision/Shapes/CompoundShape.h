@@ -1,0 +1,52 @@
+// What the two compounds have in common: convex shapes, each at a pose of its own, and a tree to find them by. Compound never
+// changes, MutableCompound may. Made by them; read by the queries, the files and the bodies.
+#pragma once
+
+#include <Fulcrum/Collision/BroadPhase/BoundsTree.h>
+#include <Fulcrum/Collision/Shapes/Shape.h>
+
+#include <span>
+#include <vector>
+
+namespace fulcrum {
+
+class CompoundShape : public Shape {
+public:
+    struct ChildSettings {
+        ShapePtr shape;                         // convex
+        Vector3 position = Vector3::Zero();     // of the child's user frame in the compound's user frame, m
+        Quaternion rotation{};                  // unit
+        float density = 1;                      // relative to the other children's, > 0
+    };
+    struct Child {
+        std::shared_ptr<const ConvexShape> shape;  // null: removed
+        RelativePose pose;  // of the child's centre frame in the children's frame
+        float density = 1;  // as it was given
+    };
+
+    // By index; in a mutable compound some may have been removed.
+    std::span<const Child> Children() const { return children_; }
+    // The children's boxes in the children's frame, by index.
+    const BoundsTree& Tree() const { return tree_; }
+    // The origin of the children's frame in the centre frame, m; axes are the same. Zero but for mutable compounds, whose
+    // children stay where they are in the user's frame while the centre of mass moves.
+    Vector3 Origin() const { return type_ == ShapeType::Compound ? Vector3(Vector3::Zero()) : Vector3(-mass_.centreOfMass); }
+    // In the centre frame.
+    RelativePose PoseOf(const Child& child) const { return {child.pose.position + Origin(), child.pose.rotation}; }
+    // How the child would be made again.
+    ChildSettings SettingsOf(const Child& child) const;
+    // What this compound was made of, for making another; removed children are left out.
+    std::vector<ChildSettings> Settings() const;
+
+protected:
+    using Shape::Shape;
+    // Errors: Unsupported (null or not convex), NonFinite, Unnormalized, NonPositive; they begin with `name`.
+    static Status Check(const ChildSettings& child, const char* name);
+    // The child's box in the children's frame.
+    static Bounds BoundsOf(const Child& child);
+
+    std::vector<Child> children_;
+    BoundsTree tree_;
+};
+
+}  // namespace fulcrum

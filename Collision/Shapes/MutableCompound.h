@@ -1,0 +1,80 @@
+// A compound whose children come, go and move at run time. An edit costs in proportion to the children edited, times the
+// logarithm of how many there are. Bodies that are made of one get a copy of their own, which BodyInterface edits (AddChild,
+// MoveChild, ...). Like a container: one thread edits, or any number read.
+#pragma once
+
+#include <Fulcrum/Collision/Shapes/CompoundSums.h>
+
+namespace fulcrum {
+
+// Names a child. Ids of removed children are never valid again: an index is reused with another generation. What queries
+// answer, SubShape::child, is the index; MutableCompound::IdOf says whose it is now.
+struct ChildId {
+    uint32_t index = 0xFFFFFFFFu;
+    uint32_t generation = 0;
+    friend auto operator<=>(const ChildId&, const ChildId&) = default;
+};
+
+// What an edit does to mass, inertia and centre of mass: they become those of the children there are, or stay as they are
+// (until the next edit that updates them).
+enum class MassUpdate : uint8_t { Update, Keep };
+
+class MutableCompound final : public CompoundShape {
+public:
+    // Mass and errors as Compound::Create has them. The children's ids have the indices 0, 1, ... and the generation 0.
+    // Where children move, their own masses stay: density times volume, in units that follow from the whole's at first.
+    // OuterRadius is that of the box around the children: up to 1.7 times as far as they reach. The centre frame moves with
+    // the centre of mass.
+    static Result<std::shared_ptr<MutableCompound>> Create(std::span<const ChildSettings> children);
+    // With the same ids.
+    std::shared_ptr<MutableCompound> Copy() const { return std::shared_ptr<MutableCompound>(new MutableCompound(*this)); }
+
+    uint32_t Count() const { return count_; }  // of children; indices may be larger
+    bool Exists(ChildId id) const;
+    // Whoever has the index now; not valid where nobody has.
+    ChildId IdOf(uint32_t index) const;
+    // The sum of density times volume over the children, as of the last update of the mass.
+    double RelativeMass() const { return relativeMass_; }
+
+    // Nothing has changed where these return an error: those of Create about `child`, UnknownId, Degenerate (the last child
+    // cannot be removed).
+    Result<ChildId> Add(const ChildSettings& child, MassUpdate mass = MassUpdate::Update);
+    Status Set(ChildId id, const ChildSettings& child, MassUpdate mass = MassUpdate::Update);  // all of it
+    Status Move(ChildId id, const Vector3& position, const Quaternion& rotation, MassUpdate mass = MassUpdate::Update);
+    Status Remove(ChildId id, MassUpdate mass = MassUpdate::Update);
+    Status UpdateMass();
+
+    // The same in two steps, for whoever has to know what an edit will do. A plan holds until the next edit.
+    struct Edit {
+        uint32_t index;
+        Child child;             // its shape is null: to be removed
+        CompoundSum sum, total;  // of the child, and of all with it
+        MassProperties mass;     // after the edit
+        double relativeMass;     // after the edit
+    };
+    Result<Edit> PlanAdd(const ChildSettings& child, MassUpdate mass) const;
+    Result<Edit> PlanSet(ChildId id, const ChildSettings& child, MassUpdate mass) const;
+    Result<Edit> PlanMove(ChildId id, const Vector3& position, const Quaternion& rotation, MassUpdate mass) const;
+    Result<Edit> PlanRemove(ChildId id, MassUpdate mass) const;
+    ChildId Commit(const Edit& edit);
+
+private:
+    friend struct ShapeFileAccess;
+    MutableCompound() : CompoundShape(ShapeType::MutableCompound) {}
+    MutableCompound(const MutableCompound&) = default;
+
+    // Checked, in the children's frame.
+    static Result<Child> Posed(const ChildSettings& child, const char* name);
+    Status CheckId(ChildId id) const;
+    Result<Edit> Plan(uint32_t index, Child child, MassUpdate mass) const;
+    void Place(uint32_t index, const Child& child, const CompoundSum& sum);
+    void Refresh(const CompoundSum& total);
+
+    std::vector<uint32_t> generations_;  // by index; grows when the child is removed
+    std::vector<uint32_t> free_;         // indices without a child, the next to be used last
+    CompoundSums sums_;
+    uint32_t count_ = 0;
+    double relativeMass_ = 0;
+};
+
+}  // namespace fulcrum

@@ -1,0 +1,127 @@
+// What BodyInterface does to the shapes of bodies: edits of children, other shapes.
+#include <Fulcrum/Collision/Shapes/MutableCompound.h>
+#include <Fulcrum/Physics/BodyColliders.h>
+#include <Fulcrum/Physics/BodyInterface.h>
+#include <Fulcrum/Physics/Validation.h>
+
+namespace fulcrum {
+
+namespace {
+
+// Takes what the masses follow from: kilograms and the shape's inertia at density 1.
+void ChangeMass(WorldState& world, uint32_t body, const MassProperties& shape, float kilograms) {
+    SetMass(world.bodies.dynamics[body], shape.principalAxes, kilograms,
+            Vector3(shape.principalInertia * (kilograms / shape.volume)));
+    world.bodies.UpdateInertia(body);
+    if (world.joints.HasAny(body)) world.colouring.Touch();
+}
+
+ChildId Commit(WorldState& world, uint32_t body, const MutableCompound::Edit& edit, bool updatesMass) {
+    BodyCold& cold = world.bodies.cold[body];
+    const Vector3 centre = cold.shape->Mass().centreOfMass;
+    BodyChildren& children = *cold.children;
+    const std::span<const CompoundShape::Child> all = children.compound->Children();
+    const ShapePtr before = edit.index < all.size() ? all[edit.index].shape : nullptr;  // pairs name it still
+    WakeBody(world, body);
+    const ChildId id = children.compound->Commit(edit);
+    world.bodies.dynamics[body].outerRadius = cold.shape->OuterRadius();
+    if (updatesMass) {
+        MoveCentreOfMass(world, body, centre, edit.mass.centreOfMass);
+        children.origin = children.compound->Origin();
+        ChangeMass(world, body, edit.mass, static_cast<float>(children.massUnit * edit.relativeMass));
+    }
+    UpdateChildCollider(world, body, edit.index);
+    return id;
+}
+
+// plan(compound, mass) says what is to be done.
+template <class Plan>
+Result<ChildId> EditChildren(WorldState& world, BodyId id, MassUpdate mass, const Plan& plan) {
+    const WorldLock::Exclusive alone(world.lock);
+    if (!world.bodies.Find(id)) return Unknown(id);
+    const BodyCold& cold = world.bodies.cold[id.index];
+    if (!cold.children) {
+        return Error{ErrorCode::Unsupported, std::string("the body's shape is a ") + ShapeTypeName(cold.shape->Type()) +
+                                                 "; only mutable compounds have children to edit"};
+    }
+    // What is not dynamic has no mass that could change, and its centre stays where it is.
+    const bool updates = mass == MassUpdate::Update && world.bodies.dynamics[id.index].motion == MotionType::Dynamic;
+    const Result<MutableCompound::Edit> edit = plan(*cold.children->compound, updates ? mass : MassUpdate::Keep);
+    if (!edit) return edit.GetError();
+    if (updates) {
+        const float kilograms = static_cast<float>(cold.children->massUnit * edit.Value().relativeMass);
+        const MassProperties& shape = edit.Value().mass;
+        if (MaybeError e = CheckInverses("child", "child", kilograms, Vector3(shape.principalInertia * (kilograms / shape.volume))))
+            return *e;
+    }
+    return Commit(world, id.index, edit.Value(), updates);
+}
+
+Status WithoutId(const Result<ChildId>& result) {
+    if (!result) return result.GetError();
+    return Done{};
+}
+
+}  // namespace
+
+double RelativeMassOf(const Shape& shape) {
+    return shape.Type() == ShapeType::MutableCompound ? static_cast<const MutableCompound&>(shape).RelativeMass()
+                                                      : double{shape.Mass().volume};
+}
+
+Result<ChildId> BodyInterface::AddChild(BodyId id, const CompoundShape::ChildSettings& child, MassUpdate mass) {
+    return EditChildren(world_, id, mass, [&](const MutableCompound& c, MassUpdate m) { return c.PlanAdd(child, m); });
+}
+
+Status BodyInterface::SetChild(BodyId id, ChildId child, const CompoundShape::ChildSettings& settings, MassUpdate mass) {
+    return WithoutId(EditChildren(world_, id, mass,
+                                  [&](const MutableCompound& c, MassUpdate m) { return c.PlanSet(child, settings, m); }));
+}
+
+Status BodyInterface::MoveChild(BodyId id, ChildId child, const Vector3& position, const Quaternion& rotation, MassUpdate mass) {
+    return WithoutId(EditChildren(world_, id, mass, [&](const MutableCompound& c, MassUpdate m) {
+        return c.PlanMove(child, position, rotation, m);
+    }));
+}
+
+Status BodyInterface::RemoveChild(BodyId id, ChildId child, MassUpdate mass) {
+    return WithoutId(EditChildren(world_, id, mass, [&](const MutableCompound& c, MassUpdate m) { return c.PlanRemove(child, m); }));
+}
+
+const MutableCompound* BodyInterface::GetChildren(BodyId id) const {
+    const bool has = Exists(id) && world_.bodies.cold[id.index].children;
+    return has ? world_.bodies.cold[id.index].children->compound : nullptr;
+}
+
+Status BodyInterface::SetShape(BodyId id, const ShapePtr& shape, MassUpdate mass) {
+    const WorldLock::Exclusive alone(world_.lock);
+    if (!Exists(id)) return Unknown(id);
+    const uint32_t body = id.index;
+    BodyCold& cold = world_.bodies.cold[body];
+    BodyDynamics& d = world_.bodies.dynamics[body];
+    if (MaybeError e = CheckShape(shape.get(), d.motion)) return *e;
+    const bool updates = mass == MassUpdate::Update && d.motion == MotionType::Dynamic;
+    const MassProperties next = shape->Mass();
+    const double massUnit = cold.children ? cold.children->massUnit : double{GetMass(id)} / RelativeMassOf(*cold.shape);
+    const float kilograms = updates ? static_cast<float>(massUnit * RelativeMassOf(*shape)) : GetMass(id);
+    if (updates) {
+        if (MaybeError e = CheckInverses("shape", "shape", kilograms, Vector3(next.principalInertia * (kilograms / next.volume))))
+            return *e;
+    }
+    WakeBody(world_, body);
+    WakeNeighbours(world_, body);
+    WakeJoined(world_, body);
+    DropColliders(world_, body);
+    const ShapePtr before = cold.shape;
+    SetShapeOf(world_, body, shape);
+    MoveCentreOfMass(world_, body, before->Mass().centreOfMass, next.centreOfMass);
+    d.outerRadius = shape->OuterRadius();
+    if (updates) ChangeMass(world_, body, next, kilograms);
+    if (cold.children) cold.children->massUnit = double{kilograms} / RelativeMassOf(*shape);
+    MakeColliders(world_, body);
+    RequeueColliders(world_, body);
+    WakeNeighbours(world_, body);
+    return Done{};
+}
+
+}  // namespace fulcrum
