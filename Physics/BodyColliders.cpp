@@ -45,8 +45,14 @@ void Insert(WorldState& world, uint32_t body, uint32_t index) {
     Collider& collider = world.colliders.colliders[index];
     collider.body = body;
     collider.moving = world.bodies.dynamics[body].motion != MotionType::Static;
+    collider.sensor = world.bodies.cold[body].isSensor;
     SetFatBounds(world, index);
     world.colliders.TreeOf(collider).Insert(index, collider.fat);
+}
+
+// A sensor holds nothing up.
+void WakeNear(WorldState& world, uint32_t index) {
+    if (!world.colliders.colliders[index].sensor) WakeInside(world, world.colliders.colliders[index].fat);
 }
 
 void Erase(WorldState& world, uint32_t index) {
@@ -97,7 +103,7 @@ void MakeColliders(WorldState& world, uint32_t body) {
     cold.colliderCount = compound ? static_cast<uint32_t>(compound->Children().size()) : (shape.Type() == ShapeType::Empty ? 0 : 1);
     cold.firstCollider = store.Allocate(cold.colliderCount);
     const bool moving = world.bodies.dynamics[body].motion != MotionType::Static;
-    (moving ? store.movingLayers : store.fixedLayers) |= 1u << world.bodies.dynamics[body].layer;
+    if (!cold.isSensor) (moving ? store.movingLayers : store.fixedLayers) |= 1u << world.bodies.dynamics[body].layer;
     for (uint32_t i = 0; i < cold.colliderCount; ++i) {
         const uint32_t index = cold.firstCollider + i;
         if (compound) SetPiece(world, index, *compound, compound->Children()[i]);
@@ -123,10 +129,11 @@ void DropColliders(WorldState& world, uint32_t body) {
 void UpdateChildCollider(WorldState& world, uint32_t body, uint32_t child) {
     const BodyCold& cold = world.bodies.cold[body];
     const CompoundShape::Child& is = cold.children->compound->Children()[child];
+    if (!world.sensors.IsEmpty()) world.sensors.touched.push_back(body);
     const uint32_t index = ColliderOf(world, body, child);
     const Shape* was = world.colliders.shapes[index].shape;
     if (was) {
-        WakeInside(world, world.colliders.colliders[index].fat);
+        WakeNear(world, index);
         if (was != is.shape.get()) RemovePairsOf(world, index);
         else ForgetManifoldsOf(world, index);
     }
@@ -148,10 +155,11 @@ void UpdateChildCollider(WorldState& world, uint32_t body, uint32_t child) {
     }
     world.colliders.colliders[index].previous = {};
     world.colliders.Queue(index);
-    WakeInside(world, world.colliders.colliders[index].fat);
+    WakeNear(world, index);
 }
 
 void WakeNeighbours(WorldState& world, uint32_t body) {
+    if (world.bodies.cold[body].isSensor) return;
     VisitColliders(world, body, [&](uint32_t i) { WakeInside(world, world.colliders.colliders[i].fat); });
 }
 

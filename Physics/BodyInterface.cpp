@@ -51,6 +51,23 @@ void Refilter(WorldState& world, uint32_t body) {
     RequeueColliders(world, body);
 }
 
+// After the body became a sensor, or ceased to be one: what meets it is searched anew.
+void MoveToItsTree(WorldState& world, uint32_t body) {
+    ColliderStore& store = world.colliders;
+    const BodyCold& cold = world.bodies.cold[body];
+    const BodyDynamics& d = world.bodies.dynamics[body];
+    if (!cold.isSensor) (d.motion != MotionType::Static ? store.movingLayers : store.fixedLayers) |= 1u << d.layer;
+    VisitColliders(world, body, [&](uint32_t i) {
+        Collider& collider = store.colliders[i];
+        store.TreeOf(collider).Remove(i);
+        collider.sensor = cold.isSensor;
+        SetFatBounds(world, i);
+        store.TreeOf(collider).Insert(i, collider.fat);
+        world.strays.Forget(i);
+    });
+    RequeueColliders(world, body);
+}
+
 // Brings everything in line with a pose that was set by hand.
 void Teleported(WorldState& world, uint32_t body) {
     world.bodies.UpdateInertia(body);
@@ -76,6 +93,7 @@ Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
     cold.userData = settings.userData;
     cold.continuous = settings.continuous;
     world_.sweeps.users += settings.continuous != ContinuousCollision::Off;
+    cold.isSensor = settings.isSensor;
     FillDynamics(world_.bodies.dynamics[body], settings);
     SetFilters(world_, body, settings.category, settings.mask, settings.group);
     if (cold.children) {
@@ -88,12 +106,14 @@ Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
     MakeColliders(world_, body);
     if (settings.startAsleep) {
         world_.bodies.SetVelocity(body, Vector3::Zero(), Vector3::Zero());
+        if (!world_.sensors.IsEmpty()) world_.sensors.touched.push_back(body);
     } else if (settings.motion != MotionType::Static) {
         world_.bodies.MarkAwake(body);
         RequeueColliders(world_, body);
     } else {
         RequeueColliders(world_, body);
     }
+    if (settings.isSensor) world_.sensors.Add(world_.bodies.IdOf(body), settings.sensorSees, settings.sensorReportsStay);
     return world_.bodies.IdOf(body);
 }
 
@@ -106,6 +126,7 @@ Status BodyInterface::Remove(BodyId id) {
     world_.joints.VisitOf(body, [&](uint32_t joint) { RemoveJoint(world_, joint); });
     BodyCold& cold = world_.bodies.cold[body];
     world_.sweeps.users -= cold.continuous != ContinuousCollision::Off;
+    if (cold.isSensor) world_.sensors.Remove(id);
     VisitColliders(world_, body, [&](uint32_t i) {
         world_.colliders.TreeOf(world_.colliders.colliders[i]).Remove(i);
         world_.strays.Forget(i);
@@ -168,6 +189,12 @@ Status BodyInterface::SetVelocity(BodyId id, const Vector3& linear, const Vector
 }
 
 namespace {
+
+MaybeError CheckIsSensor(const WorldState& world, BodyId id) {
+    if (!world.bodies.Find(id)) return Unknown(id);
+    if (!world.bodies.cold[id.index].isSensor) return Error{ErrorCode::Unsupported, "the body is no sensor"};
+    return std::nullopt;
+}
 
 MaybeError CheckPushable(const WorldState& world, BodyId id) {
     if (!world.bodies.Find(id)) return Unknown(id);
@@ -266,9 +293,46 @@ Status BodyInterface::SetContinuous(BodyId id, ContinuousCollision continuous) {
     if (MaybeError e = CheckContinuous(continuous, *world_.bodies.cold[id.index].shape)) return *e;
     constexpr ContinuousCollision kOff = ContinuousCollision::Off;
     BodyCold& cold = world_.bodies.cold[id.index];
+    if (cold.isSensor && continuous != kOff) return Error{ErrorCode::Unsupported, "a sensor touches nothing, and is not cast"};
     world_.sweeps.users += (continuous != kOff) - (cold.continuous != kOff);
     cold.continuous = continuous;
     world_.bodies.dynamics[id.index].continuous = continuous != kOff;
+    return Done{};
+}
+
+Status BodyInterface::SetSensor(BodyId id, bool isSensor) {
+    const WorldLock::Exclusive alone(world_.lock);
+    if (!Exists(id)) return Unknown(id);
+    BodyCold& cold = world_.bodies.cold[id.index];
+    if (cold.isSensor == isSensor) return Done{};
+    if (cold.continuous != ContinuousCollision::Off)
+        return Error{ErrorCode::Unsupported, "the body has continuous collision; a sensor touches nothing, and is not cast"};
+    WakeBody(world_, id.index);
+    WakeNeighbours(world_, id.index);
+    for (uint32_t i = 0; i < world_.pairs.pairs.size(); ++i) {
+        const Pair& pair = world_.pairs.pairs[i];
+        if (pair.exists && !pair.isMore && (pair.bodyA == id.index || pair.bodyB == id.index)) RemovePair(world_, i);
+    }
+    cold.isSensor = isSensor;
+    MoveToItsTree(world_, id.index);
+    WakeNeighbours(world_, id.index);
+    if (isSensor) world_.sensors.Add(id, SensorSees::Default, true);
+    else world_.sensors.Remove(id);
+    return Done{};
+}
+
+Status BodyInterface::SetSensorSees(BodyId id, SensorSees sees) {
+    const WorldLock::Exclusive alone(world_.lock);
+    if (MaybeError e = CheckIsSensor(world_, id)) return *e;
+    if (MaybeError e = CheckSensor(sees)) return *e;
+    world_.sensors.Add(id, sees, world_.sensors.sensors[world_.sensors.PlaceOf(id)].reportsStay);
+    return Done{};
+}
+
+Status BodyInterface::SetSensorReportsStay(BodyId id, bool reportsStay) {
+    const WorldLock::Exclusive alone(world_.lock);
+    if (MaybeError e = CheckIsSensor(world_, id)) return *e;
+    world_.sensors.sensors[world_.sensors.PlaceOf(id)].reportsStay = reportsStay;
     return Done{};
 }
 
@@ -336,6 +400,7 @@ CollisionGroup BodyInterface::GetGroup(BodyId id) const {
     return Exists(id) ? world_.bodies.cold[id.index].group : CollisionGroup{};
 }
 uint64_t BodyInterface::GetUserData(BodyId id) const { return Exists(id) ? world_.bodies.cold[id.index].userData : 0; }
+bool BodyInterface::IsSensor(BodyId id) const { return Exists(id) && world_.bodies.cold[id.index].isSensor; }
 bool BodyInterface::IsAwake(BodyId id) const { return Exists(id) && world_.bodies.dynamics[id.index].awake; }
 bool BodyInterface::IsFrozen(BodyId id) const { return Exists(id) && world_.bodies.dynamics[id.index].frozen; }
 

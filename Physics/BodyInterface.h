@@ -39,6 +39,11 @@ public:
     Status SetGroup(BodyId id, const CollisionGroup& group);
     Status SetGravityFactor(BodyId id, float factor);
     Status SetContinuous(BodyId id, ContinuousCollision continuous);  // Errors also: OutOfRange, Unsupported (a surface or plane)
+    // Makes it a sensor with default settings, or one that touches others again. Errors also: Unsupported (continuous collision).
+    Status SetSensor(BodyId id, bool isSensor);
+    // Errors also: Unsupported (no sensor), OutOfRange. What it no longer sees leaves it in the next step.
+    Status SetSensorSees(BodyId id, SensorSees sees);
+    Status SetSensorReportsStay(BodyId id, bool reportsStay);
     Status Wake(BodyId id);
     // Puts the body, and what it is in touch with, to sleep.
     Status Sleep(BodyId id);
@@ -77,6 +82,7 @@ public:
     uint64_t GetMask(BodyId id) const;
     CollisionGroup GetGroup(BodyId id) const;
     uint64_t GetUserData(BodyId id) const;
+    bool IsSensor(BodyId id) const;
     bool IsAwake(BodyId id) const;
     bool IsFrozen(BodyId id) const;  // its state turned non-finite; SetPose revives it
 

@@ -49,6 +49,7 @@ void BeginReport(WorldState& world) {
     world.report = {};
     world.report.step = step;
     world.broken.clear();
+    world.sensors.events.clear();
     for (WorkerFindings& f : world.findings) {
         f.libccd = {};
         f.contacts = f.points = f.kept = f.clamped = f.frozen = f.sleepCandidates = 0;
@@ -95,7 +96,7 @@ private:
 
 const char* StageName(Stage stage) {
     static constexpr const char* kNames[kStageCount] = {"UpdateBounds", "FindPairs", "Collide", "Color", "BuildIslands",
-                                                        "Prepare", "Solve", "Restitution", "Store", "Continuous", "Sleep"};
+                                                        "Prepare", "Solve", "Restitution", "Store", "Continuous", "Sense", "Sleep"};
     return kNames[static_cast<size_t>(stage)];
 }
 
@@ -153,6 +154,8 @@ Status PhysicsSystem::Update(double dt) {
     timer.Finished(Stage::Store);
     Continuous(world, step);
     timer.Finished(Stage::Continuous);
+    Sense(world, step);
+    timer.Finished(Stage::Sense);
     Sleep(world);
     timer.Finished(Stage::Sleep);
     timer.FinishedAll();
@@ -164,6 +167,14 @@ Status PhysicsSystem::Update(double dt) {
 
 std::span<const JointId> PhysicsSystem::BrokenJoints() const { return world_->broken; }
 
+std::span<const SensorEvent> PhysicsSystem::SensorEvents() const { return world_->sensors.events; }
+
+std::span<const BodyId> PhysicsSystem::BodiesInside(BodyId sensor) const {
+    const SensorStore& store = world_->sensors;
+    if (!store.Has(sensor)) return {};
+    return store.sensors[store.PlaceOf(sensor)].inside;
+}
+
 const StepReport& PhysicsSystem::Report() const { return world_->report; }
 const SystemSettings& PhysicsSystem::Settings() const { return world_->settings; }
 
@@ -171,6 +182,7 @@ Status PhysicsSystem::SetSettings(const SystemSettings& settings) {
     if (MaybeError error = Check(settings)) return *error;
     const WorldLock::Exclusive alone(world_->lock);
     world_->settings = settings;
+    for (const Sensor& sensor : world_->sensors.sensors) world_->sensors.touched.push_back(sensor.id.index);
     return Done{};
 }
 

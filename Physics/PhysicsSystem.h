@@ -7,6 +7,7 @@
 #include <Fulcrum/Physics/ContactListener.h>
 #include <Fulcrum/Physics/JointInterface.h>
 #include <Fulcrum/Physics/QueryInterface.h>
+#include <Fulcrum/Physics/SensorEvent.h>
 #include <Fulcrum/Physics/StepReport.h>
 
 #include <memory>
@@ -34,6 +35,11 @@ public:
     const StepReport& Report() const;
     // Joints that the last step loaded beyond their strength, in the order of their indices; they are disabled now.
     std::span<const JointId> BrokenJoints() const;
+    // What sensors saw in the last step, sorted by sensor, time, body. Valid until the next.
+    std::span<const SensorEvent> SensorEvents() const;
+    // What was inside a sensor when the last step ended, sorted; bodies removed since then are among them. Valid until the next step
+    // and until a sensor is created. Empty for what is no sensor.
+    std::span<const BodyId> BodiesInside(BodyId sensor) const;
     const SystemSettings& Settings() const;
     // As for Create. Takes effect at the next step.
     Status SetSettings(const SystemSettings& settings);

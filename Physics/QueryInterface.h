@@ -25,6 +25,7 @@ struct QueryFilter {
     // Those that a body of this category and mask would collide with; 0: whatever their mask, ~0: whatever their category.
     uint64_t category = 0, mask = ~uint64_t(0);
     std::span<const BodyId> ignore{};                                 // but not these
+    bool sensors = false;                                             // sensors, too: else queries pass through them
     std::optional<FunctionRef<bool(BodyId)>> accepts{};               // and those it says yes to
     std::optional<FunctionRef<bool(BodyId, uint32_t child)>> acceptsChild{};  // and their children likewise
 };

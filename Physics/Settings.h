@@ -42,6 +42,20 @@ enum class ContinuousCollision : uint8_t {
     LinearAndAngular,  // with it: what swings hits what is in the way, too
 };
 
+// Which bodies a sensor reports; combine with |.
+enum class SensorSees : uint8_t {
+    Nothing = 0,
+    Dynamic = 1, Kinematic = 2, Static = 4,
+    Sleeping = 8,  // dynamic ones that sleep, too; else they leave as they fall asleep
+    Sensors = 16,  // other sensors, too, of the kinds of motion chosen
+    Default = Dynamic | Kinematic | Sleeping,
+    All = 31,
+};
+constexpr SensorSees operator|(SensorSees a, SensorSees b) {
+    return static_cast<SensorSees>(static_cast<uint8_t>(a) | static_cast<uint8_t>(b));
+}
+constexpr bool operator&(SensorSees a, SensorSees b) { return (static_cast<uint8_t>(a) & static_cast<uint8_t>(b)) != 0; }
+
 // Degrees of freedom in world axes; combine with |.
 enum class LockedAxes : uint8_t {
     None = 0,
@@ -88,6 +102,9 @@ struct BodySettings {
     CollisionGroup group{};                       // and only if the filter of a group that both are in lets them
     ContinuousCollision continuous = ContinuousCollision::Off;  // not for meshes, height fields and planes
     uint64_t userData = 0;
+    bool isSensor = false;                        // touches nothing, and reports what is inside: PhysicsSystem::SensorEvents
+    SensorSees sensorSees = SensorSees::Default;  // of those that layerCollides lets its layer meet
+    bool sensorReportsStay = true;                // an event in each step for each body that stays inside
 };
 
 struct SleepSettings {

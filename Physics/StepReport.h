@@ -8,8 +8,8 @@
 namespace fulcrum {
 
 // The stages of a step, in their order; each is a file in Physics/Stages.
-enum class Stage : uint8_t { UpdateBounds, FindPairs, Collide, Color, BuildIslands, Prepare, Solve, Restitution, Store, Continuous, Sleep };
-inline constexpr int kStageCount = 11;
+enum class Stage : uint8_t { UpdateBounds, FindPairs, Collide, Color, BuildIslands, Prepare, Solve, Restitution, Store, Continuous, Sense, Sleep };
+inline constexpr int kStageCount = 12;
 const char* StageName(Stage stage);
 
 struct StepReport {
@@ -32,6 +32,7 @@ struct StepReport {
     uint32_t frozenBodies = 0;                        // bodies stopped because their state turned non-finite
     BodyId firstFrozen;
     uint32_t sweptBodies = 0, sweptHits = 0;          // of continuous collision: bodies that were cast, and what they hit
+    uint32_t sensorTests = 0, sensorEvents = 0;       // pairs of a sensor and a body whose shapes were looked at; events
     uint32_t clampedBodies = 0;                       // bodies that exceeded their speed limits
 };
 

@@ -67,6 +67,10 @@ MaybeError CheckContinuous(ContinuousCollision continuous, const Shape& shape) {
     return std::nullopt;
 }
 
+MaybeError CheckSensor(SensorSees sees) {
+    return CheckRange("sensorSees", static_cast<uint8_t>(sees), 0, static_cast<uint8_t>(SensorSees::All));
+}
+
 MaybeError CheckInverses(const char* massField, const char* inertiaField, float mass, const Vector3& inertia) {
     const auto usable = [](float x) { return std::isnormal(x) && std::isnormal(1.0f / x); };
     if (!usable(mass))
@@ -116,7 +120,9 @@ MaybeError Check(const BodySettings& s) {
         return e;
     if (s.motion == MotionType::Dynamic)
         if (MaybeError e = CheckInverses(s)) return e;
-    if (MaybeError e = CheckContinuous(s.continuous, *s.shape)) return e;
+    if (MaybeError e = FirstOf(CheckContinuous(s.continuous, *s.shape), CheckSensor(s.sensorSees))) return e;
+    if (s.isSensor && s.continuous != ContinuousCollision::Off)
+        return Error{ErrorCode::Unsupported, "continuous is set for a sensor, which touches nothing"};
     if (s.startAsleep && s.motion != MotionType::Dynamic)
         return Error{ErrorCode::Unsupported, "startAsleep is set for a body that is not dynamic"};
     if (s.motion == MotionType::Static && !(s.linearVelocity.isZero(0) && s.angularVelocity.isZero(0)))

@@ -21,6 +21,7 @@ MaybeError CheckInverses(const char* massField, const char* inertiaField, float 
 MaybeError CheckShape(const Shape* shape, MotionType motion);
 MaybeError Check(const Material& material);
 MaybeError CheckContinuous(ContinuousCollision continuous, const Shape& shape);
+MaybeError CheckSensor(SensorSees sees);
 MaybeError Check(const BodySettings& settings);
 MaybeError Check(const SystemSettings& settings);
 

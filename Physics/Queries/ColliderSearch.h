@@ -36,6 +36,7 @@ public:
             }
         }
         if (filter_.layers & store.fixedLayers) walk(store.fixedTree, visit);
+        if (filter_.sensors) walk(store.sensorTree, visit);  // they never stray: Sense sees to it
     }
 
     uint32_t BodyOf(uint32_t collider) const { return world_.colliders.colliders[collider].body; }

@@ -275,9 +275,6 @@ void ReserveLists(WorldState& world) {
 
 void StartCourses(WorldState& world) {
     SweepStore& store = world.sweeps;
-    store.swept.clear();
-    store.ended.clear();
-    store.endedAt.clear();
     store.active.clear();
     for (const SweepStore::FastBody& fast : store.fast)
         if (fast.by == SweepStore::SearchBy::Trees) store.active.push_back(PlaceOf(world, fast.body));
@@ -306,6 +303,9 @@ void Finish(WorldState& world) {
 
 void Continuous(WorldState& world, const StepContext& step) {
     SweepStore& store = world.sweeps;
+    store.swept.clear();
+    store.ended.clear();
+    store.endedAt.clear();
     if (store.users == 0) return;
     store.dt = step.dt;
     ReserveLists(world);

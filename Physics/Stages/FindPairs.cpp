@@ -13,6 +13,7 @@ namespace {
 void Search(const WorldState& world, uint32_t index, std::vector<uint64_t>& found) {
     const ColliderStore& store = world.colliders;
     const Collider& self = store.colliders[index];
+    if (self.sensor) return;
     const auto visit = [&](uint32_t other) {
         const Collider& collider = store.colliders[other];
         if (collider.queued && other < index) return;               // it reports the pair itself
@@ -114,6 +115,7 @@ void FindPairs(WorldState& world) {
         Collider& collider = world.colliders.colliders[index];
         collider.queued = false;
         collider.previous = collider.fat;
+        if (!world.sensors.IsEmpty()) world.sensors.touched.push_back(collider.body);
     }
     moved.clear();
 }

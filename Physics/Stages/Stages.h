@@ -81,6 +81,9 @@ void Store(WorldState& world, const StepContext& step);
 // Casts what moved far and wants it along its way; what hits something bounces there.
 void Continuous(WorldState& world, const StepContext& step);
 
+// Finds what is inside the sensors, and what came in or left, all along the ways of the step.
+void Sense(WorldState& world, const StepContext& step);
+
 // Puts islands that have been slow for long enough to sleep.
 void Sleep(WorldState& world);
 // Makes the bodies, all awake, one sleeping island.

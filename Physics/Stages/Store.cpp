@@ -175,13 +175,16 @@ bool PushIsFinite(const WorldState& world, uint32_t body) {
     return IsFinite(Vector3(a[0], a[1], a[2])) && IsFinite(Vector3(inverse * world.bodies.cold[body].torque));
 }
 
+// Whether somebody asks how bodies move within the step.
+bool KeepsStarts(const WorldState& world) { return world.sweeps.users > 0 || !world.sensors.IsEmpty(); }
+
 void EndBody(WorldState& world, uint32_t body, const StepContext& step, WorkerFindings& findings) {
     BodyStore& bodies = world.bodies;
     BodyDynamics& d = bodies.dynamics[body];
     Pose pose = bodies.CentrePoseOf(body);
     Vector3 v = bodies.LinearVelocityOf(body), w = bodies.AngularVelocityOf(body);
     if (d.frozen) return;
-    if (world.sweeps.users > 0) world.sweeps.starts[body] = {pose, world.report.step};
+    if (KeepsStarts(world)) world.sweeps.starts[body] = {pose, world.report.step};
     if (d.motion == MotionType::Kinematic) {
         pose.position += (v * step.dt).cast<double>();
         pose.rotation = Normalized(RotationFromVector(Vector3(w * step.dt)) * pose.rotation);
@@ -267,7 +270,7 @@ void BreakJoints(WorldState& world) {
 
 void Store(WorldState& world, const StepContext& step) {
     StoreImpulses(world, step);
-    if (world.sweeps.users > 0) world.sweeps.starts.resize(world.bodies.Size());
+    if (KeepsStarts(world)) world.sweeps.starts.resize(world.bodies.Size());
     world.jobs->ParallelFor(static_cast<uint32_t>(world.bodies.awake.size()), 64, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i)
             EndBody(world, world.bodies.awake[i], step, world.findings[range.worker]);

@@ -3,6 +3,7 @@
 #include <Fulcrum/Collision/BroadPhase/BoundsTreeCasts.h>
 #include <Fulcrum/Collision/NarrowPhase/PlaneContact.h>
 #include <Fulcrum/Collision/Queries/ShapeCast.h>
+#include <Fulcrum/Physics/Stages/PlacedConvex.h>
 
 #include <algorithm>
 
@@ -16,25 +17,6 @@ constexpr float kFreePart = 0.5f, kDepthPart = 0.25f;
 constexpr float kLeastThickness = 0.01f;
 
 float Thickness(const Shape& shape) { return std::max(shape.InnerRadius(), kLeastThickness * shape.OuterRadius()); }
-
-// A piece of a body about the body's centre, so that it turns with it.
-class PlacedConvex final : public ConvexShape {
-public:
-    PlacedConvex(const ConvexShape& shape, const RelativePose& local) : ConvexShape(ShapeType::Custom), shape_(shape), local_(local) {
-        convexRadius_ = shape.ConvexRadius();
-        innerRadius_ = shape.InnerRadius();
-        outerRadius_ = shape.OuterRadius() + Length(local.position);
-        bounds_.lower = Vector3::Constant(-outerRadius_);
-        bounds_.upper = Vector3::Constant(outerRadius_);
-    }
-    Vector3 SupportCore(const Vector3& direction) const override {
-        return local_.Transform(shape_.SupportCore(InverseRotate(local_.rotation, direction)));
-    }
-
-private:
-    const ConvexShape& shape_;
-    RelativePose local_;
-};
 
 Vector3 Between(const Position& from, const Position& to) { return (to - from).cast<float>(); }
 

@@ -90,6 +90,7 @@ struct BodyCold {
     ContinuousCollision continuous = ContinuousCollision::Off;
     bool exists = false;
     bool removed = false;           // by the interface, its index not yet free
+    bool isSensor = false;
 
     uint32_t MoreColliders() const { return children ? children->moreColliders : ~0u; }  // index into ColliderStore::runs
 };

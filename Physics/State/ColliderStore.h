@@ -1,6 +1,6 @@
 // Colliders: the pieces of the bodies, as the broad phase sees them. A compound has one per child, in a run of consecutive
 // ones, every other shape one. A mutable compound that outgrows its run gets further ones; a removed child leaves its
-// collider empty, without a shape. Two trees keep what moves apart from what never does.
+// collider empty, without a shape. Trees keep what moves, what never does, and sensors apart.
 #pragma once
 
 #include <Fulcrum/Collision/BroadPhase/BoundsTree.h>
@@ -18,6 +18,7 @@ struct alignas(64) Collider {
     uint32_t body = 0;
     bool moving = false;                 // which tree
     bool queued = false;                 // in ColliderStore::moved
+    bool sensor = false;                 // in a tree of its own, so that nothing but Sense and queries that ask for it meets it
 };
 static_assert(sizeof(Collider) == 64);
 
@@ -40,13 +41,13 @@ public:
     static constexpr uint32_t kNone = ~0u;
     std::vector<Collider> colliders;
     std::vector<ColliderShape> shapes;           // same index
-    BoundsTree fixedTree, movingTree;
+    BoundsTree fixedTree, movingTree, sensorTree;
     uint32_t movingLayers = 0, fixedLayers = 0;  // bit i: a body of layer i is, or was, in the tree
     std::vector<uint32_t> moved;                 // whose pairs must be searched
     bool movedHasEmpty = false;                  // some of them have been removed since
     std::vector<ColliderRun> runs;               // bodies' further ones
 
-    BoundsTree& TreeOf(const Collider& c) { return c.moving ? movingTree : fixedTree; }
+    BoundsTree& TreeOf(const Collider& c) { return c.sensor ? sensorTree : c.moving ? movingTree : fixedTree; }
     uint32_t Allocate(uint32_t count);           // index of the first of `count` consecutive ones
     void Free(uint32_t first, uint32_t count);
     uint32_t AddRun(uint32_t count);             // index of a further run
@@ -58,6 +59,7 @@ public:
     }
     size_t MemoryUsed() const {
         return colliders.capacity() * sizeof(Collider) + shapes.capacity() * sizeof(ColliderShape) + fixedTree.MemoryUsed() + movingTree.MemoryUsed() +
+               sensorTree.MemoryUsed() +
                (moved.capacity() + freeRuns_.capacity()) * sizeof(uint32_t) + runs.capacity() * sizeof(ColliderRun);
     }
 

@@ -10,6 +10,7 @@
 #include <Fulcrum/Physics/State/ColliderStore.h>
 #include <Fulcrum/Physics/State/JointStore.h>
 #include <Fulcrum/Physics/State/PairStore.h>
+#include <Fulcrum/Physics/State/SensorStore.h>
 #include <Fulcrum/Physics/State/SolverLayout.h>
 #include <Fulcrum/Physics/State/Strays.h>
 #include <Fulcrum/Physics/State/SweepStore.h>
@@ -41,6 +42,9 @@ struct alignas(64) WorkerFindings {
     std::vector<MoreManifold> more;   // Collide: what has no place in its pair yet
     std::vector<SweepHit> sweepHits;  // Continuous
     std::vector<SweepStore::FastBody> fast;  // likewise
+    std::vector<uint64_t> sensorCandidates;  // Sense
+    std::vector<SensorVisit> sensorVisits;   // likewise
+    uint32_t sensorTests = 0;                // likewise
     CollideCounters libccd;
     uint32_t contacts = 0, points = 0, kept = 0;
     float deepest = 0;                // largest penetration, m
@@ -69,6 +73,7 @@ struct WorldState {
     SleepingIslands sleeping;
     SolverLayout solver;
     SweepStore sweeps;
+    SensorStore sensors;
 
     std::vector<JointId> broken;              // in the last step
     std::vector<uint32_t> removed;            // bodies to forget before the next step
@@ -120,6 +125,19 @@ inline RelativePose LocalOf(const WorldState& world, uint32_t collider) {
     const ColliderShape& piece = world.colliders.shapes[collider];
     if (!piece.onOrigin) return piece.local;
     return {piece.local.position + world.bodies.cold[world.colliders.colliders[collider].body].children->origin, piece.local.rotation};
+}
+
+// The piece, seen from its body's centre frame.
+inline ColliderShape PieceOf(const WorldState& world, uint32_t collider) {
+    ColliderShape piece = world.colliders.shapes[collider];
+    piece.local = LocalOf(world, collider);
+    return piece;
+}
+
+// Whether a body is a single collider, which stays so.
+inline bool IsOnePiece(const WorldState& world, uint32_t body) {
+    const BodyCold& cold = world.bodies.cold[body];
+    return cold.colliderCount == 1 && !cold.children;
 }
 
 // Visits the pairs with a change, in ascending order; in most steps that are few.

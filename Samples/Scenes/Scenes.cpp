@@ -39,6 +39,7 @@ namespace fulcrum {
     scene(Layers)             \
     scene(TrapDoor)           \
     scene(CompoundCity)       \
+    scene(Sensors)            \
     scene(RagdollDrive)       \
     scene(Hinge)              \
     scene(Slider)             \

@@ -272,6 +272,7 @@ TEST(SampleScenes, OverlapsAgreeWithDistances) { ExpectFigure("query_overlaps", 
 TEST(SampleScenes, ClosestIsWhatAllBodiesOneByOneGive) { ExpectFigure("query_closest", 0, 5e-6); }
 TEST(SampleScenes, TheBroadPhaseNamesAllThatIsHit) { ExpectFigure("query_bounds", 0, 0); }
 TEST(SampleScenes, ARemovedPillarWakesItsStackAlone) { ExpectFigure("trap_door", 0, 0); }
+TEST(SampleScenes, SensorsSeeAndScenesReact) { ExpectFigure("sensors", 0, 0); }
 
 TEST(SampleScenes, ATowerLosesItsPiecesInACityOfCompounds) { ExpectFigure("compound_city", 0, 0); }
 

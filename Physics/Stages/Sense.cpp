@@ -1,0 +1,271 @@
+// Sensors: every body that is awake looks into their tree, along its whole way; sensors that move look for bodies that rest. What rests
+// in a sensor that rests stays in its list, and is looked at by nobody. Candidates are sorted by ids before their shapes are
+// looked at, so that events do not depend on threads.
+#include <Fulcrum/Physics/Stages/SensorVisits.h>
+
+#include <algorithm>
+#include <tuple>
+
+namespace fulcrum {
+
+namespace {
+
+SensorSees KindOf(const BodyDynamics& d) {
+    return d.motion == MotionType::Static ? SensorSees::Static : d.motion == MotionType::Kinematic ? SensorSees::Kinematic : SensorSees::Dynamic;
+}
+
+bool Sees(const WorldState& world, const Sensor& sensor, uint32_t body) {
+    const uint32_t self = sensor.id.index;
+    const BodyDynamics& d = world.bodies.dynamics[body];
+    if (body == self || !(sensor.sees & KindOf(d))) return false;
+    if (d.motion == MotionType::Dynamic && !d.awake && !(sensor.sees & SensorSees::Sleeping)) return false;
+    if (world.bodies.cold[body].isSensor && !(sensor.sees & SensorSees::Sensors)) return false;
+    if (!(world.settings.layerCollides[world.bodies.dynamics[self].layer] >> d.layer & 1u)) return false;
+    if ((d.filtered || world.bodies.dynamics[self].filtered) && !FiltersAllow(world, self, body)) return false;
+    return !world.joints.ForbidsContact(self, body);
+}
+
+bool IsTouched(const WorldState& world, uint32_t body) { return world.sensors.touchedIn[body] == world.report.step; }
+// Whether it is where it was when the last step ended.
+bool Rests(const WorldState& world, uint32_t body) { return !world.bodies.dynamics[body].awake && !IsTouched(world, body); }
+
+void NoteTouched(WorldState& world) {
+    SensorStore& store = world.sensors;
+    store.touchedIn.resize(world.bodies.Size(), 0);
+    for (uint32_t body : store.touched)
+        if (world.bodies.cold[body].exists) store.touchedIn[body] = world.report.step;
+    store.touched.reserve(world.colliders.colliders.capacity());
+    for (WorkerFindings& findings : world.findings) {
+        findings.sensorCandidates.reserve(store.candidates.capacity());
+        findings.sensorVisits.reserve(store.visits.capacity());
+        findings.sensorTests = 0;
+    }
+}
+
+// The parts of the ways that hits have cut, in the order of bodies and times.
+void CollectCutWays(WorldState& world) {
+    const SweepStore& sweeps = world.sweeps;
+    std::vector<WayPart>& cut = world.sensors.cut;
+    cut.clear();
+    for (size_t i = 0; i < sweeps.ended.size(); ++i)
+        if (sweeps.ended[i].from < sweeps.endedAt[i]) cut.push_back({sweeps.ended[i], sweeps.endedAt[i]});
+    for (const Sweep& sweep : sweeps.swept)
+        if (sweep.isCut && sweep.from < 1) cut.push_back({sweep, 1});
+    std::sort(cut.begin(), cut.end(), [](const WayPart& a, const WayPart& b) {
+        return std::tie(a.course.body, a.course.from) < std::tie(b.course.body, b.course.from);
+    });
+}
+
+// Sensors are found wherever they were in this step, and by queries where they are now.
+void EnlargeSensorBounds(WorldState& world) {
+    ColliderStore& colliders = world.colliders;
+    for (const Sensor& sensor : world.sensors.sensors) {
+        const uint32_t body = sensor.id.index;
+        if (sensor.removed || !world.bodies.dynamics[body].awake) continue;
+        const Way way(world, body);
+        VisitColliders(world, body, [&](uint32_t i) {
+            Bounds bounds = PieceBounds(world, way, i);
+            bounds.Include(TightBoundsOf(world, i));
+            Collider& collider = colliders.colliders[i];
+            if (collider.fat.Contains(bounds)) return;
+            collider.fat.Include(bounds);
+            colliders.sensorTree.Update(i, collider.fat);
+        });
+    }
+    colliders.sensorTree.Optimize();
+}
+
+// The body's sphere all along its way.
+Bounds RoundBounds(const WorldState& world, uint32_t body) {
+    const Position reach = Position::Constant(double{world.bodies.dynamics[body].outerRadius});
+    Position lower = world.bodies.CentreOf(body), upper = lower;
+    const auto include = [&](const Position& centre) {
+        lower = lower.cwiseMin(centre);
+        upper = upper.cwiseMax(centre);
+    };
+    const SweepStore::Start* starts = world.sweeps.starts.data();
+    if (body < world.sweeps.starts.size() && starts[body].step == world.report.step) include(starts[body].pose.position);
+    for (const WayPart& part : CutPartsOf(world, body)) include(part.course.start.position);
+    return RoundedOutwards(lower - reach, upper + reach);
+}
+
+void AddCandidate(const WorldState& world, uint32_t sensorBody, uint32_t body, WorkerFindings& findings) {
+    const uint32_t place = world.sensors.PlaceOf(world.bodies.IdOf(sensorBody));
+    if (Sees(world, world.sensors.sensors[place], body)) findings.sensorCandidates.push_back(uint64_t(place) << 32 | body);
+}
+
+void SearchFromBody(const WorldState& world, uint32_t body, WorkerFindings& findings) {
+    const ColliderStore& colliders = world.colliders;
+    colliders.sensorTree.Query(RoundBounds(world, body), [&](uint32_t i) { AddCandidate(world, colliders.colliders[i].body, body, findings); });
+}
+
+// What is awake, or was touched, looks for itself.
+void SearchFromSensor(const WorldState& world, const Sensor& sensor, WorkerFindings& findings) {
+    if (sensor.removed || Rests(world, sensor.id.index)) return;
+    const ColliderStore& colliders = world.colliders;
+    VisitColliders(world, sensor.id.index, [&](uint32_t i) {
+        const auto visit = [&](uint32_t other) {
+            const uint32_t body = colliders.colliders[other].body;
+            if (Rests(world, body)) AddCandidate(world, sensor.id.index, body, findings);
+        };
+        const Bounds& bounds = colliders.colliders[i].fat;
+        colliders.movingTree.Query(bounds, visit);
+        if (sensor.sees & SensorSees::Static) colliders.fixedTree.Query(bounds, visit);
+        if (sensor.sees & SensorSees::Sensors) colliders.sensorTree.Query(bounds, visit);
+    });
+}
+
+void FindCandidates(WorldState& world) {
+    SensorStore& store = world.sensors;
+    const auto forEach = [&](size_t count, uint32_t minimumRange, const auto& search) {
+        world.jobs->ParallelFor(static_cast<uint32_t>(count), minimumRange, [&](JobRange range) {
+            for (uint32_t i = range.begin; i < range.end; ++i) search(i, world.findings[range.worker]);
+        });
+    };
+    const std::vector<uint32_t>& awake = world.bodies.awake;
+    forEach(awake.size(), 128, [&](uint32_t i, WorkerFindings& findings) { SearchFromBody(world, awake[i], findings); });
+    forEach(store.touched.size(), 128, [&](uint32_t i, WorkerFindings& findings) {
+        const uint32_t body = store.touched[i];
+        if (world.bodies.cold[body].exists && !world.bodies.dynamics[body].awake) SearchFromBody(world, body, findings);
+    });
+    forEach(store.sensors.size(), 1, [&](uint32_t i, WorkerFindings& findings) { SearchFromSensor(world, store.sensors[i], findings); });
+
+    store.candidates.clear();
+    for (WorkerFindings& findings : world.findings) {
+        store.candidates.insert(store.candidates.end(), findings.sensorCandidates.begin(), findings.sensorCandidates.end());
+        findings.sensorCandidates.clear();
+    }
+    std::sort(store.candidates.begin(), store.candidates.end());
+    store.candidates.erase(std::unique(store.candidates.begin(), store.candidates.end()), store.candidates.end());
+}
+
+void LookAtCandidate(const WorldState& world, uint64_t candidate, WorkerFindings& findings) {
+    const uint32_t place = static_cast<uint32_t>(candidate >> 32), body = static_cast<uint32_t>(candidate);
+    const Sensor& sensor = world.sensors.sensors[place];
+    AtStart atStart = AtStart::Unknown;
+    if (!IsTouched(world, body) && !IsTouched(world, sensor.id.index)) {
+        const bool wasInside = std::binary_search(sensor.inside.begin(), sensor.inside.end(), world.bodies.IdOf(body));
+        atStart = wasInside ? AtStart::Inside : AtStart::Outside;
+    }
+    ++findings.sensorTests;
+    // Most of what is inside stays there.
+    if (atStart == AtStart::Inside && IsOnePiece(world, body) && IsOnePiece(world, sensor.id.index) && CutPartsOf(world, body).empty() &&
+        OverlapAtEnd(world, sensor.id.index, body)) {
+        findings.sensorVisits.push_back({place, body, 0, 1, true, true});
+        return;
+    }
+    FindVisits(world, place, Way(world, sensor.id.index), Way(world, body), atStart, findings.sensorVisits);
+}
+
+void FindAllVisits(WorldState& world) {
+    SensorStore& store = world.sensors;
+    world.jobs->ParallelFor(static_cast<uint32_t>(store.candidates.size()), 4, [&](JobRange range) {
+        for (uint32_t i = range.begin; i < range.end; ++i) LookAtCandidate(world, store.candidates[i], world.findings[range.worker]);
+    });
+    store.visits.clear();
+    for (WorkerFindings& findings : world.findings) {
+        store.visits.insert(store.visits.end(), findings.sensorVisits.begin(), findings.sensorVisits.end());
+        findings.sensorVisits.clear();
+        world.report.sensorTests += findings.sensorTests;
+    }
+    std::sort(store.visits.begin(), store.visits.end(), [](const SensorVisit& a, const SensorVisit& b) {
+        return std::tie(a.sensor, a.body, a.from) < std::tie(b.sensor, b.body, b.from);
+    });
+}
+
+// Events and the new list of one sensor: what was inside and the candidates, both in the order of bodies, side by side.
+class Reporter {
+public:
+    Reporter(const WorldState& world, Sensor& sensor, uint32_t place) : world_(world), sensor_(sensor) {
+        const SensorStore& store = world.sensors;
+        const uint64_t key = uint64_t(place) << 32;
+        candidate_ = std::lower_bound(store.candidates.begin(), store.candidates.end(), key);
+        lastCandidate_ = std::lower_bound(candidate_, store.candidates.end(), key + (uint64_t(1) << 32));
+        visit_ = std::lower_bound(store.visits.begin(), store.visits.end(), place, [](const SensorVisit& v, uint32_t p) { return v.sensor < p; });
+        lastVisit_ = store.visits.end();
+        place_ = place;
+    }
+
+    void Run() {
+        sensor_.events.clear();
+        sensor_.insideNext.clear();
+        for (const BodyId id : sensor_.inside) {
+            while (candidate_ != lastCandidate_ && Candidate() < id.index) ReportCandidate(false);
+            if (candidate_ != lastCandidate_ && world_.bodies.IdOf(Candidate()) == id) ReportCandidate(true);
+            else if (RestsInside(id)) Keep(id, true);
+            else Report(id, SensorEvent::Kind::End, 0);
+        }
+        while (candidate_ != lastCandidate_) ReportCandidate(false);
+        sensor_.inside.swap(sensor_.insideNext);
+        std::sort(sensor_.events.begin(), sensor_.events.end(), [](const SensorEvent& a, const SensorEvent& b) {
+            return std::tie(a.time, a.body, a.kind) < std::tie(b.time, b.body, b.kind);
+        });
+    }
+
+private:
+    uint32_t Candidate() const { return static_cast<uint32_t>(*candidate_); }
+
+    bool RestsInside(BodyId id) const {
+        if (sensor_.removed || !world_.bodies.Find(id)) return false;
+        return Rests(world_, sensor_.id.index) && Rests(world_, id.index) && Sees(world_, sensor_, id.index);
+    }
+
+    void Report(BodyId id, SensorEvent::Kind kind, float time) { sensor_.events.push_back({sensor_.id, id, kind, time}); }
+
+    void Keep(BodyId id, bool stayed) {
+        sensor_.insideNext.push_back(id);
+        if (stayed && sensor_.reportsStay) Report(id, SensorEvent::Kind::Stay, 1);
+    }
+
+    void ReportCandidate(bool wasInside) {
+        const uint32_t body = Candidate();
+        const BodyId id = world_.bodies.IdOf(body);
+        bool inside = wasInside, stayed = wasInside;
+        for (; visit_ != lastVisit_ && visit_->sensor == place_ && visit_->body == body; ++visit_) {
+            if (!(inside && visit_->atStart)) {
+                if (inside) Report(id, SensorEvent::Kind::End, 0);
+                Report(id, SensorEvent::Kind::Begin, visit_->from);
+                stayed = false;
+            }
+            inside = visit_->atEnd;
+            if (!inside) Report(id, SensorEvent::Kind::End, visit_->until);
+            wasInside = false;
+        }
+        if (wasInside) Report(id, SensorEvent::Kind::End, 0);
+        else if (inside) Keep(id, stayed);
+        ++candidate_;
+    }
+
+    const WorldState& world_;
+    Sensor& sensor_;
+    uint32_t place_;
+    std::vector<uint64_t>::const_iterator candidate_, lastCandidate_;
+    std::vector<SensorVisit>::const_iterator visit_, lastVisit_;
+};
+
+void ReportAll(WorldState& world) {
+    SensorStore& store = world.sensors;
+    world.jobs->ParallelFor(static_cast<uint32_t>(store.sensors.size()), 1, [&](JobRange range) {
+        for (uint32_t i = range.begin; i < range.end; ++i) Reporter(world, store.sensors[i], i).Run();
+    });
+    for (const Sensor& sensor : store.sensors) store.events.insert(store.events.end(), sensor.events.begin(), sensor.events.end());
+    world.report.sensorEvents = static_cast<uint32_t>(store.events.size());
+    std::erase_if(store.sensors, [](const Sensor& sensor) { return sensor.removed; });
+}
+
+}  // namespace
+
+void Sense(WorldState& world, const StepContext& step) {
+    SensorStore& store = world.sensors;
+    if (store.IsEmpty()) return;
+    world.sweeps.dt = step.dt;
+    NoteTouched(world);
+    CollectCutWays(world);
+    EnlargeSensorBounds(world);
+    FindCandidates(world);
+    FindAllVisits(world);
+    ReportAll(world);
+    store.touched.clear();
+}
+
+}  // namespace fulcrum

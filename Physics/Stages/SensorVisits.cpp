@@ -1,0 +1,254 @@
+#include <Fulcrum/Physics/Stages/SensorVisits.h>
+
+#include <Fulcrum/Collision/Queries/Distance.h>
+#include <Fulcrum/Collision/Queries/ShapeCast.h>
+#include <Fulcrum/Collision/Shapes/Primitives.h>
+#include <Fulcrum/Physics/Stages/PlacedConvex.h>
+#include <Fulcrum/Physics/Stages/SweepCast.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+namespace {
+
+// rad: what turns by less is cast without it.
+constexpr float kLeastTurn = 1e-4f;
+// Parts per radian in which the one of two turning pieces that is not cast keeps its rotation.
+constexpr float kPartsPerRadian = 16, kMostParts = 32;
+// Of the step: visits no farther apart are one, as of neighbouring pieces.
+constexpr float kSameTime = 1e-6f;
+
+Vector3 Between(const Position& from, const Position& to) { return (to - from).cast<float>(); }
+
+Bounds BoundsOf(const Shape& shape, const Pose& centre) {
+    const Bounds turned = BoundsAt({Vector3::Zero(), centre.rotation}, shape.LocalBounds());
+    return RoundedOutwards(centre.position + turned.lower.cast<double>(), centre.position + turned.upper.cast<double>());
+}
+
+// A piece of a body on a straight part of its way.
+struct Mover {
+    const Way& way;
+    const WayPart& part;
+    const ColliderShape& piece;
+
+    Pose BodyAt(float time) const { return way.PoseAt(part, time); }
+    Pose PieceAt(float time) const { return piece.offset ? BodyAt(time) * piece.local : BodyAt(time); }
+    bool IsStill() const { return part.course.displacement.isZero(0) && part.course.turn.isZero(0); }
+    // rad; what no one can see of a ball is none.
+    float Angle(float from, float until) const {
+        const bool isRound = piece.shape->Type() == ShapeType::Sphere && !piece.offset;
+        return isRound ? 0.0f : Length(part.course.TurnRate()) * (until - from);
+    }
+    float Radius() const { return piece.shape->OuterRadius() + Length(piece.local.position); }
+    bool IsConvex() const { return piece.shape->IsConvex(); }
+};
+
+struct Touch {
+    bool found = false;
+    bool isSure = true;  // else they are apart up to there, and near each other
+    float time = 0;
+};
+
+// From `start` to `end`, which is earlier where the way is gone back. The other keeps the rotation that it has in the middle.
+Touch Cast(const Mover& caster, const Mover& other, float start, float end) {
+    const ConvexShape& shape = static_cast<const ConvexShape&>(*caster.piece.shape);
+    const float from = std::min(start, end), until = std::max(start, end);
+    const bool turns = caster.Angle(from, until) > kLeastTurn;
+    const PlacedConvex placed(shape, caster.piece.local);
+    ShapeMotion motion;
+    motion.pose = turns ? caster.BodyAt(start) : caster.PieceAt(start);
+    const Pose last = turns ? caster.BodyAt(end) : caster.PieceAt(end);
+    Pose at = other.PieceAt(start);
+    motion.displacement = Between(motion.pose.position, last.position) - Between(at.position, other.PieceAt(end).position);
+    if (turns) motion.turn = caster.part.course.TurnRate() * (end - start);
+    if (other.Angle(from, until) > kLeastTurn) at.rotation = other.PieceAt(0.5f * (start + end)).rotation;
+    const ConvexShape* cast = &shape;
+    if (turns && caster.piece.offset) cast = &placed;
+    ShapeCastSettings settings;
+    settings.backFaces = true;
+    settings.measureDepth = false;
+    ShapeHit hit;
+    if (!ShapeCaster(*cast, motion).CastClosest(*other.piece.shape, at, settings, hit)) return {};
+    return {true, !hit.isEarly, std::clamp(start + hit.fraction * (end - start), from, until)};
+}
+
+// The first time between `start` and `end` at which the two touch.
+Touch FirstTouch(const Mover& sensor, const Mover& body, float start, float end) {
+    if (!sensor.IsConvex() && !body.IsConvex()) return {};
+    const float from = std::min(start, end), until = std::max(start, end);
+    const float sensorAngle = sensor.Angle(from, until), bodyAngle = body.Angle(from, until);
+    const bool castsBody = body.IsConvex() && (!sensor.IsConvex() || bodyAngle * body.Radius() >= sensorAngle * sensor.Radius());
+    const Mover &caster = castsBody ? body : sensor, &other = castsBody ? sensor : body;
+    const float angle = castsBody ? sensorAngle : bodyAngle;
+    const int parts = angle > kLeastTurn ? static_cast<int>(std::clamp(std::ceil(kPartsPerRadian * angle), 1.0f, kMostParts)) : 1;
+    for (int i = 0; i < parts; ++i) {
+        const float a = start + (end - start) * (static_cast<float>(i) / static_cast<float>(parts));
+        const float b = i + 1 == parts ? end : start + (end - start) * (static_cast<float>(i + 1) / static_cast<float>(parts));
+        if (const Touch touch = Cast(caster, other, a, b); touch.found) return touch;
+    }
+    return {};
+}
+
+class PairSearch {
+public:
+    PairSearch(const WorldState& world, uint32_t place, const Way& sensorWay, const Way& bodyWay, std::vector<SensorVisit>& visits)
+        : world_(world), place_(place), sensorWay_(sensorWay), bodyWay_(bodyWay), visits_(visits), first_(visits.size()) {}
+
+    void Run(AtStart atStart) {
+        if (!IsOnePiece(world_, sensorWay_.Body()) || !IsOnePiece(world_, bodyWay_.Body())) atStart = AtStart::Unknown;
+        VisitColliders(world_, bodyWay_.Body(), [&](uint32_t j) {
+            const Bounds bounds = PieceBounds(world_, bodyWay_, j);
+            VisitColliders(world_, sensorWay_.Body(), [&](uint32_t i) {
+                if (bounds.Overlaps(world_.colliders.colliders[i].fat)) RunPieces(i, j, atStart);
+            });
+        });
+        Merge();
+    }
+
+private:
+    void RunPieces(uint32_t sensorCollider, uint32_t bodyCollider, AtStart atStart) {
+        const ColliderShape sensorPiece = PieceOf(world_, sensorCollider), bodyPiece = PieceOf(world_, bodyCollider);
+        const WayPart* a = sensorWay_.Parts().data();
+        const WayPart* b = bodyWay_.Parts().data();
+        bool inside = atStart == AtStart::Inside;
+        if (atStart == AtStart::Unknown) inside = IsOverlap({sensorWay_, *a, sensorPiece}, {bodyWay_, *b, bodyPiece}, 0);
+        for (float from = 0; from < 1;) {
+            const float until = std::min(a->until, b->until);
+            inside = Stretch({sensorWay_, *a, sensorPiece}, {bodyWay_, *b, bodyPiece}, from, until, inside);
+            if (until >= 1) return;
+            if (a->until <= until) ++a;
+            if (b->until <= until) ++b;
+            from = until;
+        }
+    }
+
+    static bool IsOverlap(const Mover& sensor, const Mover& body, float time) {
+        return Overlap(*sensor.piece.shape, *body.piece.shape, Relative(sensor.PieceAt(time), body.PieceAt(time)));
+    }
+
+    // Whether they overlap at its end.
+    bool Stretch(const Mover& sensor, const Mover& body, float from, float until, bool wasInside) {
+        if (sensor.IsStill() && body.IsStill()) {
+            if (wasInside) Add(from, until, wasInside, true);
+            return wasInside;
+        }
+        const bool isInside = IsOverlap(sensor, body, until);
+        if (wasInside && isInside) {
+            Add(from, until, true, true);
+        } else if (wasInside) {
+            const Touch last = FirstTouch(sensor, body, until, from);
+            Add(from, last.found ? last.time : from, true, false);
+        } else {
+            const Touch first = FirstTouch(sensor, body, from, until);
+            if (isInside) {
+                Add(first.found ? first.time : until, until, false, true);
+            } else if (first.found && first.isSure) {
+                const Touch last = FirstTouch(sensor, body, until, from);
+                Add(first.time, last.found ? std::max(first.time, last.time) : first.time, false, false);
+            }
+        }
+        return isInside;
+    }
+
+    void Add(float from, float until, bool inFrom, bool inUntil) {
+        SensorVisit visit;
+        visit.sensor = place_;
+        visit.body = bodyWay_.Body();
+        visit.from = from;
+        visit.until = until;
+        visit.atStart = inFrom && from <= 0;
+        visit.atEnd = inUntil && until >= 1;
+        visits_.push_back(visit);
+    }
+
+    // One visit of what several pieces or parts of the way found at the same time.
+    void Merge() {
+        if (visits_.size() - first_ < 2) return;
+        const auto begin = visits_.begin() + static_cast<ptrdiff_t>(first_);
+        std::sort(begin, visits_.end(), [](const SensorVisit& a, const SensorVisit& b) { return a.from < b.from; });
+        auto last = begin;
+        for (auto next = begin + 1; next != visits_.end(); ++next) {
+            if (next->from > last->until + kSameTime) {
+                *++last = *next;
+                continue;
+            }
+            last->until = std::max(last->until, next->until);
+            last->atStart |= next->atStart;
+            last->atEnd |= next->atEnd;
+        }
+        visits_.erase(last + 1, visits_.end());
+    }
+
+    const WorldState& world_;
+    uint32_t place_;
+    const Way& sensorWay_;
+    const Way& bodyWay_;
+    std::vector<SensorVisit>& visits_;
+    size_t first_;
+};
+
+}  // namespace
+
+std::span<const WayPart> CutPartsOf(const WorldState& world, uint32_t body) {
+    const std::vector<WayPart>& cut = world.sensors.cut;
+    const auto first = std::lower_bound(cut.begin(), cut.end(), body, [](const WayPart& part, uint32_t b) { return part.course.body < b; });
+    auto last = first;
+    while (last != cut.end() && last->course.body == body) ++last;
+    return {first, last};
+}
+
+Way::Way(const WorldState& world, uint32_t body) : body_(body), end_(world.bodies.CentrePoseOf(body)), parts_(CutPartsOf(world, body)) {
+    if (!parts_.empty()) return;
+    own_.course = SweepOf(world, body);
+    parts_ = {&own_, 1};
+}
+
+Pose Way::PoseAt(const WayPart& part, float time) const {
+    if (time >= 1) return end_;
+    return time <= part.course.from ? part.course.start : part.course.PoseAt(time);
+}
+
+namespace {
+
+// Convex shapes hold their centres of mass, and the spheres about them: most of what is well inside is told by that.
+bool CentresTell(const Shape& sensor, const Shape& body, const Vector3& centre) {
+    if (!sensor.IsConvex() || !body.IsConvex()) return false;
+    const float reach = sensor.InnerRadius() + body.InnerRadius();
+    if (LengthSquared(centre) < reach * reach) return true;
+    return sensor.Type() == ShapeType::Box && (centre.cwiseAbs().array() < static_cast<const Box&>(sensor).HalfExtents().array()).all();
+}
+
+}  // namespace
+
+bool OverlapAtEnd(const WorldState& world, uint32_t sensor, uint32_t body) {
+    const auto pieceOf = [&](uint32_t b) -> const ColliderShape& { return world.colliders.shapes[world.bodies.cold[b].firstCollider]; };
+    const auto poseOf = [&](uint32_t b) {
+        const Pose pose = world.bodies.CentrePoseOf(b);
+        return pieceOf(b).offset ? pose * pieceOf(b).local : pose;
+    };
+    const Shape &a = *pieceOf(sensor).shape, &b = *pieceOf(body).shape;
+    const RelativePose relative = Relative(poseOf(sensor), poseOf(body));
+    return CentresTell(a, b, relative.position) || Overlap(a, b, relative);
+}
+
+Bounds PieceBounds(const WorldState& world, const Way& way, uint32_t collider) {
+    Bounds bounds;
+    const ColliderShape piece = PieceOf(world, collider);
+    for (const WayPart& part : way.Parts()) {
+        const Mover mover{way, part, piece};
+        Bounds ends = BoundsOf(*mover.piece.shape, mover.PieceAt(part.course.from));
+        const float angle = mover.Angle(part.course.from, part.until);
+        if (!mover.IsStill()) ends.Include(BoundsOf(*mover.piece.shape, mover.PieceAt(part.until)));
+        // A point at the distance r from the centre leaves the straight line between its ends by at most r (1 - cos(angle / 2)).
+        bounds.Include(Inflated(ends, std::min(0.125f * angle * angle, 2.0f) * mover.Radius()));
+    }
+    return bounds;
+}
+
+void FindVisits(const WorldState& world, uint32_t sensor, const Way& sensorWay, const Way& bodyWay, AtStart atStart,
+                std::vector<SensorVisit>& visits) {
+    PairSearch(world, sensor, sensorWay, bodyWay, visits).Run(atStart);
+}
+
+}  // namespace fulcrum
