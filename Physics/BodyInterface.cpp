@@ -35,14 +35,6 @@ void FillDynamics(BodyDynamics& d, const BodySettings& s) {
             s.inertia.isZero(0) ? Vector3(mass.principalInertia * (kilograms / mass.volume)) : s.inertia);
 }
 
-void SetFilters(WorldState& world, uint32_t body, uint64_t category, uint64_t mask, const CollisionGroup& group) {
-    BodyCold& cold = world.bodies.cold[body];
-    cold.category = category;
-    cold.mask = mask;
-    cold.group = group;
-    world.bodies.dynamics[body].filtered = category != 1 || mask != ~uint64_t(0) || group.filter;
-}
-
 // Ends the contacts that the body's filters forbid, has those found that they allow.
 void Refilter(WorldState& world, uint32_t body) {
     RemoveForbiddenPairs(world, body);
@@ -95,7 +87,7 @@ Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
     world_.sweeps.users += settings.continuous != ContinuousCollision::Off;
     cold.isSensor = settings.isSensor;
     FillDynamics(world_.bodies.dynamics[body], settings);
-    SetFilters(world_, body, settings.category, settings.mask, settings.group);
+    world_.bodies.SetFilter(body, {settings.category, settings.mask, settings.group});
     if (cold.children) {
         const float kilograms = settings.mass > 0 ? settings.mass : settings.density * settings.shape->Mass().volume;
         cold.children->massUnit = double{kilograms} / RelativeMassOf(*settings.shape);
@@ -264,7 +256,7 @@ Status BodyInterface::SetMaterial(BodyId id, const Material& material) {
 Status BodyInterface::SetCategoryAndMask(BodyId id, uint64_t category, uint64_t mask) {
     const WorldLock::Exclusive alone(world_.lock);
     if (!Exists(id)) return Unknown(id);
-    SetFilters(world_, id.index, category, mask, world_.bodies.cold[id.index].group);
+    world_.bodies.SetFilter(id.index, {category, mask, GetGroup(id)});
     Refilter(world_, id.index);
     return Done{};
 }
@@ -272,8 +264,7 @@ Status BodyInterface::SetCategoryAndMask(BodyId id, uint64_t category, uint64_t 
 Status BodyInterface::SetGroup(BodyId id, const CollisionGroup& group) {
     const WorldLock::Exclusive alone(world_.lock);
     if (!Exists(id)) return Unknown(id);
-    const BodyCold& cold = world_.bodies.cold[id.index];
-    SetFilters(world_, id.index, cold.category, cold.mask, group);
+    world_.bodies.SetFilter(id.index, {GetCategory(id), GetMask(id), group});
     Refilter(world_, id.index);
     return Done{};
 }
@@ -394,10 +385,10 @@ ContinuousCollision BodyInterface::GetContinuous(BodyId id) const {
     return Exists(id) ? world_.bodies.cold[id.index].continuous : ContinuousCollision::Off;
 }
 ShapePtr BodyInterface::GetShape(BodyId id) const { return Exists(id) ? world_.bodies.cold[id.index].shape : nullptr; }
-uint64_t BodyInterface::GetCategory(BodyId id) const { return Exists(id) ? world_.bodies.cold[id.index].category : 0; }
-uint64_t BodyInterface::GetMask(BodyId id) const { return Exists(id) ? world_.bodies.cold[id.index].mask : 0; }
+uint64_t BodyInterface::GetCategory(BodyId id) const { return Exists(id) ? world_.bodies.FilterOf(id.index).category : 0; }
+uint64_t BodyInterface::GetMask(BodyId id) const { return Exists(id) ? world_.bodies.FilterOf(id.index).mask : 0; }
 CollisionGroup BodyInterface::GetGroup(BodyId id) const {
-    return Exists(id) ? world_.bodies.cold[id.index].group : CollisionGroup{};
+    return Exists(id) ? world_.bodies.FilterOf(id.index).group : CollisionGroup{};
 }
 uint64_t BodyInterface::GetUserData(BodyId id) const { return Exists(id) ? world_.bodies.cold[id.index].userData : 0; }
 bool BodyInterface::IsSensor(BodyId id) const { return Exists(id) && world_.bodies.cold[id.index].isSensor; }

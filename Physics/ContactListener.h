@@ -54,7 +54,8 @@ public:
 
     // Asked in every step for every contact that touches, or will within the step, with an awake body: also where nothing
     // moved and the points are those of the step before. An answer holds for one step: what it does not set again is as the
-    // materials say. Bodies asleep are not asked about: wake those on a belt that begins to run. What touches a surface that
+    // materials say. Continuous collision asks about what it hits in the middle of the step, when velocities and poses are those
+    // that the step has come to. Bodies asleep are not asked about: wake those on a belt that begins to run. What touches a surface that
     // moves does not fall asleep.
     virtual void ModifyContact(const ContactView&, ContactChange&) const {}
 };

@@ -50,7 +50,7 @@ private:
 
 // A body's place in a group.
 struct CollisionGroup {
-    std::shared_ptr<const GroupFilter> filter;  // null: collides as far as masks and layers let it
+    std::shared_ptr<const GroupFilter> filter;  // null: no group, whatever the numbers
     uint32_t group = 0, subGroup = 0;           // of GroupFilter::Member
 };
 

@@ -58,7 +58,7 @@ public:
 private:
     static bool SeesAllCategories(const QueryFilter& filter) { return filter.category == 0 && filter.mask == ~uint64_t(0); }
 
-    bool AcceptsCategory(const BodyCold& body) const {
+    bool AcceptsCategory(const BodyFilter& body) const {
         return (filter_.mask == ~uint64_t(0) || (body.category & filter_.mask)) && (filter_.category == 0 || (filter_.category & body.mask));
     }
 
@@ -66,7 +66,7 @@ private:
         if (seesAll_) return true;
         const uint32_t body = BodyOf(collider);
         if (!(filter_.layers >> world_.bodies.dynamics[body].layer & 1u)) return false;
-        if (!AcceptsCategory(world_.bodies.cold[body])) return false;
+        if (!AcceptsCategory(world_.bodies.FilterOf(body))) return false;
         const BodyId id = world_.bodies.IdOf(body);
         for (const BodyId& ignored : filter_.ignore)
             if (ignored == id) return false;

@@ -28,8 +28,8 @@ void RemoveForbidden(WorldState& world, Chooses&& chooses) {
 }  // namespace
 
 bool FiltersAllow(const WorldState& world, uint32_t bodyA, uint32_t bodyB) {
-    const BodyCold& a = world.bodies.cold[std::min(bodyA, bodyB)];
-    const BodyCold& b = world.bodies.cold[std::max(bodyA, bodyB)];
+    const BodyFilter& a = world.bodies.FilterOf(std::min(bodyA, bodyB));
+    const BodyFilter& b = world.bodies.FilterOf(std::max(bodyA, bodyB));
     if ((a.category & b.mask) == 0 || (b.category & a.mask) == 0) return false;
     const GroupFilter* filter = a.group.filter.get();
     return !filter || filter != b.group.filter.get() ||

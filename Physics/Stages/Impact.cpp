@@ -24,11 +24,9 @@ public:
             Vector3 none = Vector3::Zero();
             d.Lock(side_[s].mass, none);
         }
-        const PairMaterial material = MaterialOfPair(world, hit.body, hit.other, *world.colliders.shapes[hit.otherCollider].shape, hit.material);
-        friction_ = material.friction;
         for (int i = 0; i < hit.pointCount; ++i) {
             const float approach = Dot<float>(hit.normal, RelativeVelocity(i));
-            away_[i] = approach > world.settings.restitutionSpeed ? material.restitution * approach : 0.0f;
+            away_[i] = approach > world.settings.restitutionSpeed ? hit.restitution * approach : 0.0f;
             approaches_ |= approach > 0;
         }
     }
@@ -70,14 +68,14 @@ private:
         Apply(i, hit_.normal * (old - pushed_[i]));
     }
     void Rub(int i) {
-        if (friction_ == 0) return;
-        const Vector3 v = RelativeVelocity(i), slip = v - hit_.normal * Dot<float>(hit_.normal, v);
+        if (hit_.friction == 0) return;
+        const Vector3 v = RelativeVelocity(i) - hit_.surfaceVelocity, slip = v - hit_.normal * Dot<float>(hit_.normal, v);
         const float speed = Length(slip);
         const float response = speed > 0 ? Response(i, Vector3(slip * (1 / speed))) : 0.0f;
         if (!(response > 0)) return;
         const Vector3 old = rubbed_[i];
         rubbed_[i] = old - slip * (1 / response);
-        const float size = Length(rubbed_[i]), most = friction_ * pushed_[i];
+        const float size = Length(rubbed_[i]), most = hit_.friction * pushed_[i];
         if (size > most) rubbed_[i] = rubbed_[i] * (most / size);
         Apply(i, rubbed_[i] - old);
     }
@@ -85,7 +83,6 @@ private:
     const SweepHit& hit_;
     ImpactVelocities& v_;
     Side side_[2];
-    float friction_ = 0;
     bool approaches_ = false;
     float away_[SweepHit::kMaxPoints] = {};      // m/s, speed to part with
     float pushed_[SweepHit::kMaxPoints] = {};    // N s

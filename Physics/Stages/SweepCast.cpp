@@ -3,6 +3,7 @@
 #include <Fulcrum/Collision/BroadPhase/BoundsTreeCasts.h>
 #include <Fulcrum/Collision/NarrowPhase/PlaneContact.h>
 #include <Fulcrum/Collision/Queries/ShapeCast.h>
+#include <Fulcrum/Physics/ContactListener.h>
 #include <Fulcrum/Physics/Stages/PlacedConvex.h>
 
 #include <algorithm>
@@ -66,7 +67,7 @@ private:
 
     void CastAgainst(uint32_t other, const ShapeCaster& whole, float from = 0) {
         const uint32_t body = world_.colliders.colliders[other].body;
-        if (!MayCollide(world_, sweep_.body, body)) return;
+        if (!MayCollide(world_, sweep_.body, body) || !ListenerAllows(world_, sweep_.body, body)) return;
         const Sweep course = SweepOf(world_, body);
         const ColliderShape& piece = world_.colliders.shapes[other];
         const float start = std::max({sweep_.from, course.from, from});
@@ -107,7 +108,7 @@ private:
             SweepHit hit = HitOf(other, course);
             hit.time = start + found.fraction * length;
             if (ComesBefore(hit)) {
-                if (Counts(motion, found, course, length, hit)) Take(hit);
+                if (Counts(motion, found, course, length, hit) && Behaves(hit)) Take(hit);
                 else touched = std::min(touched, hit.time);
             }
             return length > 0 ? (best_.time - start) / length : 0.0f;
@@ -138,10 +139,38 @@ private:
             const Push push = FindPoints(motion, linear, course, time, depth, hit);
             hit.time = time;
             if (hit.pointCount == 0 && restarts_++ < kMostRestarts) return CastAgainst(other, whole, time);
-            if (push.speed > 0 && push.depth > depth) return Take(hit);
+            if (!(push.speed > 0 && push.depth > depth)) continue;
+            if (Behaves(hit)) Take(hit);
+            return;
         }
         hit.pointCount = 0;  // not decided yet
         Take(hit);
+    }
+
+    // Notes how the contact is to behave, once the listener was asked; false: it is to be ignored.
+    bool Behaves(SweepHit& hit) const {
+        const PairMaterial material = MaterialOfPair(world_, hit.body, hit.other, *world_.colliders.shapes[hit.otherCollider].shape, hit.material);
+        hit.friction = material.friction;
+        hit.restitution = material.restitution;
+        if (!world_.listener || hit.pointCount == 0) return true;
+        // A is dynamic: the other where the body itself is kinematic.
+        const bool swapped = world_.bodies.dynamics[hit.body].motion != MotionType::Dynamic;
+        const uint32_t own = static_cast<uint32_t>(piece_ - world_.colliders.shapes.data());
+        ContactView::Point points[SweepHit::kMaxPoints];
+        for (int i = 0; i < hit.pointCount; ++i) points[i] = {hit.centre + hit.arms[i].cast<double>(), 0, 0};
+        ContactView view{world_.bodies.IdOf(hit.body), world_.bodies.IdOf(hit.other), hit.normal,
+                         std::span<const ContactView::Point>(points, static_cast<size_t>(hit.pointCount)), ChildOf(world_, own), ChildOf(world_, hit.otherCollider)};
+        if (swapped) {
+            std::swap(view.bodyA, view.bodyB);
+            std::swap(view.childA, view.childB);
+            view.normal = -view.normal;
+        }
+        ContactChange change{hit.friction, hit.restitution};
+        world_.listener->ModifyContact(view, change);
+        if (change.friction >= 0 && std::isfinite(change.friction)) hit.friction = change.friction;
+        if (change.restitution >= 0 && change.restitution <= 1) hit.restitution = change.restitution;
+        if (IsFinite(change.surfaceVelocity)) hit.surfaceVelocity = swapped ? Vector3(-change.surfaceVelocity) : change.surfaceVelocity;
+        return !change.ignore;
     }
 
     float DepthThatCounts(const Shape& other) const {
@@ -209,6 +238,7 @@ private:
             hit.normal = normal;
             hit.material = material;
             hit.pointCount = manifold.pointCount;
+            hit.centre = own.position;
             for (int i = 0; i < manifold.pointCount; ++i) {
                 const Position point = a.Transform(manifold.points[i].positionOnA);
                 hit.arms[i] = Between(own.position, point);

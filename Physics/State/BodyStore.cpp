@@ -138,7 +138,9 @@ Vector3 AngularMomentum(const BodyDynamics& d, const Quaternion& rotation, const
 }
 
 size_t BodyStore::MemoryUsed() const {
-    return states.capacity() * sizeof(BodyState) + masses.capacity() * sizeof(BodyMass) +
+    size_t filters = 0;
+    for (const BodyCold& body : cold) filters += body.filter ? sizeof(BodyFilter) : 0;
+    return filters + states.capacity() * sizeof(BodyState) + masses.capacity() * sizeof(BodyMass) +
            poses.capacity() * sizeof(BodyPose) + unconstrained.capacity() * sizeof(UnconstrainedVelocity) +
            dynamics.capacity() * sizeof(BodyDynamics) + cold.capacity() * sizeof(BodyCold) +
            (awake.capacity() + free_.capacity()) * sizeof(uint32_t);

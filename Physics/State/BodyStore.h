@@ -30,7 +30,7 @@ struct alignas(64) BodyDynamics {
     bool hasForce : 1 = false;     // BodyCold::force or torque is not zero
     bool frozen : 1 = false;
     bool continuous : 1 = false;   // BodyCold::continuous is not Off
-    bool filtered : 1 = false;     // BodyCold has a category, a mask or a group of its own: ask FiltersAllow
+    bool filtered : 1 = false;     // it has a BodyFilter: ask FiltersAllow
     uint8_t layer = 0;
 
     // Eight numbers each, for lanes.
@@ -74,14 +74,20 @@ struct BodyChildren {
     uint32_t moreColliders = ~0u;           // index into ColliderStore::runs
 };
 
+// What a body collides with, where that is not everything.
+struct BodyFilter {
+    uint64_t category = 1, mask = ~uint64_t(0);
+    CollisionGroup group;
+    bool IsDefault() const { return category == 1 && mask == ~uint64_t(0) && !group.filter; }
+};
+
 // Cold: for the interface.
 struct BodyCold {
     ShapePtr shape;
     uint64_t userData = 0;
     Material material;
     Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  // of the next step
-    uint64_t category = 1, mask = ~uint64_t(0);
-    CollisionGroup group;
+    std::unique_ptr<BodyFilter> filter;  // null: the default
     uint32_t firstCollider = 0, colliderCount = 0;
     std::unique_ptr<BodyChildren> children;  // where `shape` is a mutable compound
     uint32_t generation = 0;
@@ -121,6 +127,14 @@ public:
         return id.index < cold.size() && cold[id.index].exists && cold[id.index].generation == id.generation;
     }
     BodyId IdOf(uint32_t index) const { return {index, cold[index].generation}; }
+    const BodyFilter& FilterOf(uint32_t index) const {
+        static const BodyFilter kDefault;
+        return cold[index].filter ? *cold[index].filter : kDefault;
+    }
+    void SetFilter(uint32_t index, const BodyFilter& filter) {
+        dynamics[index].filtered = !filter.IsDefault();
+        cold[index].filter = filter.IsDefault() ? nullptr : std::make_unique<BodyFilter>(filter);
+    }
 
     // Whether constraints move it.
     bool CanMove(uint32_t index) const { return dynamics[index].motion == MotionType::Dynamic && !dynamics[index].frozen; }

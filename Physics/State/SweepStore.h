@@ -40,8 +40,11 @@ struct SweepHit {
     uint32_t body = 0, other = 0;
     uint32_t otherCollider = 0;
     uint8_t material = 0;                      // of the other's palette
+    float friction = 0, restitution = 0;
+    Vector3 surfaceVelocity = Vector3::Zero(); // m/s, of the other's surface against its body
     int pointCount = 0;                        // 0: the cast was not decided; nothing is touched before `time`
     Vector3 normal = Vector3::Zero();          // unit, from the body towards the other
+    Position centre = Position::Zero();        // m, of the body's mass, where it touches
     Vector3 arms[kMaxPoints], otherArms[kMaxPoints];  // m, from the centres of mass to the points, world axes
 };
 

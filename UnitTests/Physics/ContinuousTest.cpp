@@ -278,6 +278,30 @@ TEST(Continuous, SettledStepsWithFastBodiesAllocateNothing) {
     }
 }
 
+// A wall that lets pass what flies towards +x, a mask, and a restitution of the listener's own.
+TEST(Continuous, FiltersAndListenersHaveTheirSay) {
+    class OneWay final : public ContactListener {
+    public:
+        void ModifyContact(const ContactView& contact, ContactChange& change) const override {
+            change.ignore = contact.normal.x() > 0;
+            change.restitution = 0.5f;
+        }
+    } oneWay;
+    const auto shoot = [&](float velocity, uint64_t mask, const ContactListener* listener) {
+        TestWorld world(NoGravity());
+        world.System().SetContactListener(listener);
+        world.Add({.shape = BoxOf(0.01f, 5, 5), .motion = MotionType::Static, .material = kDull});
+        const BodyId ball = world.Add({.shape = SphereOf(0.1f), .position = {velocity > 0 ? -8.0 : 8.0, 0, 0}, .linearVelocity = {velocity, 0, 0}, .material = kDull,
+                                       .mask = mask, .continuous = kLinear});
+        world.Steps(3);
+        return world.VelocityOf(ball).x();
+    };
+    EXPECT_NEAR(shoot(500, ~0ull, nullptr), 0, 1e-3);
+    EXPECT_EQ(shoot(500, 2, nullptr), 500);
+    EXPECT_EQ(shoot(500, ~0ull, &oneWay), 500);
+    EXPECT_NEAR(shoot(-500, ~0ull, &oneWay), 250, 1e-2);
+}
+
 TEST(Continuous, RefusesWhatCannotBeCast) {
     TestWorld world;
     const BodySettings plane{.shape = Plane::Create(Vector3(0, 1, 0), 0).Value(), .motion = MotionType::Static, .continuous = kLinear};
