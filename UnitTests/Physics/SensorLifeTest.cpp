@@ -1,5 +1,7 @@
 // What sensors see and what not; what comes and goes between steps; what sleeps; what it all costs.
 #include <Fulcrum/UnitTests/Physics/SensorTest.h>
+
+#include <Fulcrum/Collision/Shapes/MutableCompound.h>
 #include <Fulcrum/UnitTests/Support/AllocationCounter.h>
 #include <Fulcrum/UnitTests/Support/RandomPoses.h>
 
@@ -76,6 +78,24 @@ TEST(SensorSees, WhatItIsToldLater) {
     world.Step();
     ExpectKinds(world, {});
     EXPECT_EQ(InsideOf(world, sensor), std::vector<BodyId>{wall});
+}
+
+TEST(SensorSees, OnlyWhatItsFiltersLetItMeet) {
+    TestWorld world(NoGravity());
+    BodySettings settings = SensorOf(CubeOf(1));
+    settings.mask = ~uint64_t(2);
+    const BodyId sensor = world.Add(settings);
+    BodySettings box{.shape = CubeOf(0.1f), .startAsleep = true};
+    box.category = 2;
+    const BodyId id = world.Add(box);
+    world.Step();
+    EXPECT_TRUE(InsideOf(world, sensor).empty());
+    ASSERT_TRUE(world.Bodies().SetCategoryAndMask(id, 1, ~uint64_t(0)));
+    world.Step();
+    ExpectKinds(world, {kBegin});
+    ASSERT_TRUE(world.Bodies().SetCategoryAndMask(sensor, 1, 0));
+    world.Step();
+    ExpectKinds(world, {kEnd});
 }
 
 TEST(SensorSees, NotTheBodyThatAJointKeepsFromTouchingIt) {
@@ -225,6 +245,24 @@ TEST(Sensor, ABodyMayBecomeOneAndCeaseToBe) {
     world.Run(1);
     EXPECT_NEAR(world.PositionOf(box).y(), 2.75, 0.005);
     ExpectKinds(world, {});
+}
+
+TEST(Sensor, SeesChildrenThatComeAndGo) {
+    TestWorld world(NoGravity());
+    const CompoundShape::ChildSettings here{SphereOf(0.2f), {0, 0, 0}}, there{SphereOf(0.2f), {5, 0, 0}};
+    const CompoundShape::ChildSettings both[] = {here, there};
+    BodySettings settings = SensorOf(CubeOf(0.5f), {5, 0, 0});
+    settings.sensorSees = SensorSees::All;
+    world.Add(settings);
+    const BodyId wall = world.Add({.shape = MutableCompound::Create(both).Value(), .motion = MotionType::Static});
+    world.Step();
+    ExpectKinds(world, {kBegin});
+    ASSERT_TRUE(world.Bodies().RemoveChild(wall, world.Bodies().GetChildren(wall)->IdOf(1)));
+    world.Step();
+    ExpectKinds(world, {kEnd});
+    ASSERT_TRUE(world.Bodies().AddChild(wall, there));
+    world.Step();
+    ExpectKinds(world, {kBegin});
 }
 
 TEST(Sensor, ErrorsSayWhatIsWrong) {
