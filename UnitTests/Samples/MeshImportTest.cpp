@@ -194,7 +194,7 @@ TEST_F(MeshGrounds, AnOpenSheetHasTwoSides) {
 TEST_F(MeshGrounds, ABoxTurnedInsideOutHasTwoSides) {
     std::string text = ObjBox("cube", {0, 0, 0}, {1, 1, 1}, 0);
     // A mirrored vertex list turns every front inwards.
-    for (size_t at = text.find("v "); at != std::string::npos; at = text.find("\nv ", at + 1)) text.insert(text.find(' ', at) + 1, "-");
+    for (size_t at = text.find("v "); at != std::string::npos; at = text.find("\nv ", at + 1)) text.insert(text.find(' ', at) + 1, 1, '-');
     EXPECT_TRUE(Import(Write("inside.obj", text)).isTwoSided);
 }
 
