@@ -166,7 +166,7 @@ void WakeNeighbours(WorldState& world, uint32_t body) {
 void MoveCentreOfMass(WorldState& world, uint32_t body, const Vector3& from, const Vector3& to) {
     if (from == to) return;
     BodyStore& bodies = world.bodies;
-    Pose pose = bodies.CentrePoseOf(body);
+    Pose pose = bodies.ExactCentrePoseOf(body);
     const Position before = pose.position;
     pose.position = before - Rotate(pose.rotation, from).cast<double>() + Rotate(pose.rotation, to).cast<double>();
     bodies.SetCentrePose(body, pose);

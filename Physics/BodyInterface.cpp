@@ -35,6 +35,13 @@ void FillDynamics(BodyDynamics& d, const BodySettings& s) {
             s.inertia.isZero(0) ? Vector3(mass.principalInertia * (kilograms / mass.volume)) : s.inertia);
 }
 
+// For the first body of an empty world.
+void PlaceBoundsOrigin(WorldState& world, uint32_t body) {
+    constexpr double kStep = 1024;  // m
+    const Position centre = world.bodies.CentreOf(body);
+    for (int k = 0; k < 3; ++k) world.colliders.boundsOrigin[k] = std::floor(centre[k] / kStep + 0.5) * kStep;
+}
+
 // Ends the contacts that the body's filters forbid, has those found that they allow.
 void Refilter(WorldState& world, uint32_t body) {
     RemoveForbiddenPairs(world, body);
@@ -95,6 +102,7 @@ Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
     world_.bodies.SetCentrePose(body, CentrePose(*settings.shape, settings.position, settings.rotation));
     world_.bodies.SetVelocity(body, settings.linearVelocity, settings.angularVelocity);
     world_.bodies.UpdateInertia(body);
+    if (world_.bodies.Count() == 1) PlaceBoundsOrigin(world_, body);
     MakeColliders(world_, body);
     if (settings.startAsleep) {
         world_.bodies.SetVelocity(body, Vector3::Zero(), Vector3::Zero());
@@ -156,7 +164,7 @@ Status BodyInterface::MoveKinematic(BodyId id, const Position& position, const Q
         return Error{ErrorCode::Unsupported, "MoveKinematic needs a kinematic body"};
     if (MaybeError e = FirstOf(CheckFinite("position", position), CheckRotation("rotation", rotation), CheckPositive("dt", dt)))
         return *e;
-    const Pose now = world_.bodies.CentrePoseOf(id.index);
+    const Pose now{world_.bodies.ExactCentreOf(id.index), world_.bodies.RotationOf(id.index)};
     const Pose goal = CentrePose(*world_.bodies.cold[id.index].shape, position, rotation);
     const Vector3 linear = Vector3((goal.position - now.position).cast<float>()) * (1.0f / dt);
     const Vector3 angular = RotationVectorOf(goal.rotation * now.rotation.Conjugate()) * (1.0f / dt);
@@ -345,13 +353,13 @@ Status BodyInterface::Sleep(BodyId id) {
 
 Pose BodyInterface::GetPose(BodyId id) const {
     if (!Exists(id)) return {};
-    const Pose centre = world_.bodies.CentrePoseOf(id.index);
+    const Quaternion rotation = world_.bodies.RotationOf(id.index);
     const Vector3 offset = world_.bodies.cold[id.index].shape->Mass().centreOfMass;
-    return {centre.position - Rotate(centre.rotation, offset).cast<double>(), centre.rotation};
+    return {world_.bodies.ExactCentreOf(id.index) - Rotate(rotation, offset).cast<double>(), rotation};
 }
 
 Position BodyInterface::GetCentreOfMass(BodyId id) const {
-    return Exists(id) ? world_.bodies.CentreOf(id.index) : Position(Position::Zero());
+    return Exists(id) ? world_.bodies.ExactCentreOf(id.index) : Position(Position::Zero());
 }
 Vector3 BodyInterface::GetLinearVelocity(BodyId id) const {
     return Exists(id) ? world_.bodies.LinearVelocityOf(id.index) : Vector3(Vector3::Zero());

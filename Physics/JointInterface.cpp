@@ -44,7 +44,7 @@ Quaternion RotationOf(const JointAnchor& anchor) {
 Frame FrameOf(const WorldState& world, uint32_t body, const JointAnchor& anchor, JointSpace space) {
     const Pose centre = world.bodies.CentrePoseOf(body);
     const Quaternion rotation = RotationOf(anchor);
-    if (space == JointSpace::World) return {centre.InverseTransform(anchor.point), centre.rotation.Conjugate() * rotation};
+    if (space == JointSpace::World) return {centre.InverseTransform(OnGrid(anchor.point)), centre.rotation.Conjugate() * rotation};
     const Vector3 offset = world.bodies.cold[body].shape->Mass().centreOfMass;
     return {Vector3(anchor.point.cast<float>()) - offset, rotation};
 }
@@ -70,8 +70,8 @@ std::pair<Frame, Frame> FramesOf(const WorldState& world, const JointSettings& s
         }
         return {a, FrameOf(world, s.bodyB.index, b, s.space)};
     }
-    const Pose centre = world.bodies.CentrePoseOf(s.bodyB.index);
-    return {a, {centre.InverseTransform(pose.position), Normalized(centre.rotation.Conjugate() * pose.rotation)}};
+    const RelativePose bInA = Relative(world.bodies.CentrePoseOf(s.bodyA.index), world.bodies.CentrePoseOf(s.bodyB.index));
+    return {a, {bInA.InverseTransform(a.point), Normalized(bInA.rotation.Conjugate() * a.rotation)}};
 }
 
 void Write(float (&to)[4], const Quaternion& q) {

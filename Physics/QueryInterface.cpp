@@ -56,18 +56,24 @@ void AlongRay(const ColliderSearch& search, const TreeRay& ray, float& limit, co
     search.Run([&](const BoundsTree& tree, const auto& visit) { tree.CastRay(ray, limit, visit); }, found);
 }
 
-TreeRay SweptBounds(const ShapeCaster& caster, const Pose& pose, const Vector3& displacement, const ShapeCastSettings& settings) {
+// What the trees hold is measured from this.
+const Position& OriginOf(const WorldState& world) { return world.colliders.boundsOrigin; }
+
+TreeRay SweptBounds(const WorldState& world, const ShapeCaster& caster, const Pose& pose, const Vector3& displacement,
+                    const ShapeCastSettings& settings) {
     const Bounds& bounds = caster.BoundsAboutCentre();
     const Vector3 centre = bounds.Centre();
     const float slack = settings.separation + settings.tolerance + 1e-6f * (bounds.HalfExtents().maxCoeff() + Length(displacement));
-    return TreeRay(pose.position + centre.cast<double>(), displacement, bounds.HalfExtents() + Vector3::Constant(slack));
+    return TreeRay(pose.position - OriginOf(world) + centre.cast<double>(), displacement, bounds.HalfExtents() + Vector3::Constant(slack));
 }
 
-Bounds WorldBounds(const Position& lower, const Position& upper) { return RoundedOutwards(lower, upper); }
+Bounds TreeBounds(const WorldState& world, const Position& lower, const Position& upper) {
+    return RoundedOutwards(lower - OriginOf(world), upper - OriginOf(world));
+}
 
-Bounds WorldBounds(const Shape& shape, const Pose& centre) {
+Bounds TreeBounds(const WorldState& world, const Shape& shape, const Pose& centre) {
     const Bounds turned = BoundsAt({Vector3::Zero(), centre.rotation}, shape.LocalBounds());
-    return WorldBounds(centre.position + turned.lower.cast<double>(), centre.position + turned.upper.cast<double>());
+    return TreeBounds(world, centre.position + turned.lower.cast<double>(), centre.position + turned.upper.cast<double>());
 }
 
 }  // namespace
@@ -84,7 +90,7 @@ bool QueryInterface::CastRay(const Ray& ray, WorldRayHit& hit, const RayCastSett
     RayCastSettings upTo = settings;
     RayHit best;
     uint32_t bestCollider = ~0u;
-    AlongRay(search, TreeRay(ray.origin, ray.displacement), upTo.maxFraction, [&](uint32_t collider) {
+    AlongRay(search, TreeRay(ray.origin - OriginOf(world_), ray.displacement), upTo.maxFraction, [&](uint32_t collider) {
         RayHit found;
         if (!caster.CastClosest(search.ShapeOf(collider), search.PoseOf(collider), upTo, found)) return;
         const bool isTie = bestCollider != ~0u && found.fraction == best.fraction;
@@ -105,7 +111,7 @@ bool QueryInterface::IsHit(const Ray& ray, const RayCastSettings& settings, cons
     const ColliderSearch search(world_, filter);
     float limit = settings.maxFraction;
     bool hit = false;
-    AlongRay(search, TreeRay(ray.origin, ray.displacement), limit, [&](uint32_t collider) {
+    AlongRay(search, TreeRay(ray.origin - OriginOf(world_), ray.displacement), limit, [&](uint32_t collider) {
         if (hit || !caster.IsHit(search.ShapeOf(collider), search.PoseOf(collider), settings)) return;
         hit = true;
         limit = -1;
@@ -120,7 +126,7 @@ void QueryInterface::VisitRay(const Ray& ray, FunctionRef<float(const WorldRayHi
     if (!caster.IsValid()) return;
     const ColliderSearch search(world_, filter);
     RayCastSettings upTo = settings;
-    AlongRay(search, TreeRay(ray.origin, ray.displacement), upTo.maxFraction, [&](uint32_t collider) {
+    AlongRay(search, TreeRay(ray.origin - OriginOf(world_), ray.displacement), upTo.maxFraction, [&](uint32_t collider) {
         if (upTo.maxFraction < 0) return;
         caster.CastAll(search.ShapeOf(collider), search.PoseOf(collider), upTo, [&](const RayHit& found) {
             if (found.fraction > upTo.maxFraction) return true;
@@ -147,7 +153,7 @@ void QueryInterface::VisitShape(const MovingShape& shape, FunctionRef<float(cons
     if (!caster.IsValid()) return;
     const ColliderSearch search(world_, filter);
     ShapeCastSettings upTo = settings;
-    AlongRay(search, SweptBounds(caster, motion.pose, shape.displacement, settings), upTo.maxFraction, [&](uint32_t collider) {
+    AlongRay(search, SweptBounds(world_, caster, motion.pose, shape.displacement, settings), upTo.maxFraction, [&](uint32_t collider) {
         if (upTo.maxFraction < 0) return;
         caster.CastAll(search.ShapeOf(collider), search.PoseOf(collider), upTo, [&](const ShapeHit& found) {
             if (found.fraction > upTo.maxFraction) return true;
@@ -166,7 +172,7 @@ bool QueryInterface::CastShape(const MovingShape& shape, WorldShapeHit& hit, con
     const ColliderSearch search(world_, filter);
     ShapeCastSettings upTo = settings;
     bool any = false;
-    AlongRay(search, SweptBounds(caster, motion.pose, shape.displacement, settings), upTo.maxFraction, [&](uint32_t collider) {
+    AlongRay(search, SweptBounds(world_, caster, motion.pose, shape.displacement, settings), upTo.maxFraction, [&](uint32_t collider) {
         ShapeHit found;
         if (!caster.CastClosest(search.ShapeOf(collider), search.PoseOf(collider), upTo, found)) return;
         const WorldShapeHit here = ToWorld(search, collider, found);
@@ -199,7 +205,7 @@ void QueryInterface::VisitOverlaps(const PlacedShape& shape, FunctionRef<bool(co
     const Pose pose = CentrePoseOf(*shape.shape, shape.pose);
     if (!IsUsable(pose)) return;
     const ColliderSearch search(world_, filter);
-    const Bounds bounds = WorldBounds(*shape.shape, pose);
+    const Bounds bounds = TreeBounds(world_, *shape.shape, pose);
     bool goOn = true;
     search.Run([&](const BoundsTree& tree, const auto& found) { tree.Query(bounds, found); },
                [&](uint32_t collider) {
@@ -226,7 +232,7 @@ void QueryInterface::FindBodiesAt(const Position& point, std::vector<OverlapHit>
     if (!IsFinite(point)) return;
     const QueryScope scope(world_);
     const ColliderSearch search(world_, filter);
-    const Bounds bounds = WorldBounds(point, point);
+    const Bounds bounds = TreeBounds(world_, point, point);
     search.Run([&](const BoundsTree& tree, const auto& found) { tree.Query(bounds, found); },
                [&](uint32_t collider) {
                    if (Contains(search.ShapeOf(collider), search.PoseOf(collider).InverseTransform(point)))
@@ -243,7 +249,7 @@ bool QueryInterface::FindClosest(const PlacedShape& shape, float maxDistance, Wo
     const Pose pose = CentrePoseOf(*shape.shape, shape.pose);
     if (!IsUsable(pose) || !(maxDistance >= 0)) return false;
     const ColliderSearch search(world_, filter);
-    const Bounds bounds = WorldBounds(*shape.shape, pose);
+    const Bounds bounds = TreeBounds(world_, *shape.shape, pose);
     float limit = maxDistance;
     uint32_t bestCollider = ~0u;
     ClosestPoints best;
@@ -284,7 +290,7 @@ void QueryInterface::FindInBox(const Position& lower, const Position& upper, std
     if (!IsFinite(lower) || !IsFinite(upper)) return;
     const QueryScope scope(world_);
     const ColliderSearch search(world_, filter);
-    const Bounds bounds = WorldBounds(lower, upper);
+    const Bounds bounds = TreeBounds(world_, lower, upper);
     search.Run([&](const BoundsTree& tree, const auto& found) { tree.Query(bounds, found); },
                [&](uint32_t collider) { hits.push_back(search.HitOf(collider)); });
     std::sort(hits.begin(), hits.end());
@@ -299,7 +305,7 @@ void QueryInterface::FindOnSweep(const Position& lower, const Position& upper, c
     const Position half = (upper - lower) * 0.5;
     const Vector3 halfExtents(RoundUp(half.x()), RoundUp(half.y()), RoundUp(half.z()));
     float limit = 1;
-    AlongRay(search, TreeRay(lower + half, displacement, halfExtents), limit,
+    AlongRay(search, TreeRay(lower - OriginOf(world_) + half, displacement, halfExtents), limit,
              [&](uint32_t collider) { hits.push_back(search.HitOf(collider)); });
     std::sort(hits.begin(), hits.end());
 }

@@ -67,6 +67,16 @@ bool AddParallelEdges(const PolyhedronPair& pair, const Segment& onA, const Segm
     return manifold.pointCount > 0;
 }
 
+// Whether a face of A that is nearly perpendicular to the axis meets, between its sides, what gives the axis: an edge of the other
+// that reaches far beyond it on both sides, and may dip below its plane there.
+bool RestsOn(const PolyhedronPair& pair, const ReferenceFace& face, const KnownAxis& known, const ContactTolerances& tolerances,
+             const Manifold& manifold) {
+    if (!face.ofA || Dot(pair.a.faces[face.index].normal, known.axis) < tolerances.faceOfACosine) return false;
+    float least = manifold.points[0].separation;
+    for (int i = 1; i < manifold.pointCount; ++i) least = Min(least, manifold.points[i].separation);
+    return least + pair.RadiusSum() <= known.separation + tolerances.prefer;
+}
+
 // The deepest face contact that is nearly as good as the axis, if any.
 bool TryFaces(const PolyhedronPair& pair, const KnownAxis& known, const ContactTolerances& tolerances, PairCache& cache,
               Manifold& manifold) {
@@ -75,7 +85,8 @@ bool TryFaces(const PolyhedronPair& pair, const KnownAxis& known, const ContactT
     const float enough = known.separation - tolerances.prefer;
     if (pair.a.faceCount > 0) {
         const ReferenceFace face = MeasureFace(pair, true, FaceAlong(pair.a, known.axis));
-        if (face.separation >= enough) faces[count++] = face;
+        const bool isAligned = Dot(pair.a.faces[face.index].normal, known.axis) >= tolerances.faceOfACosine;
+        if (face.separation >= enough || isAligned) faces[count++] = face;
     }
     if (pair.b.faceCount > 0) {
         const ReferenceFace face = MeasureFace(pair, false, FaceAlong(pair.b, -pair.DirectionInB(known.axis)));
@@ -87,7 +98,7 @@ bool TryFaces(const PolyhedronPair& pair, const KnownAxis& known, const ContactT
     }
     for (int i = 0; i < count; ++i) {
         const FaceContact contact = BuildFaceContact(pair, faces[i], tolerances, manifold);
-        if (!contact.touches || manifold.pointCount == 0) continue;
+        if (manifold.pointCount == 0 || !(contact.touches || RestsOn(pair, faces[i], known, tolerances, manifold))) continue;
         cache.kind = faces[i].ofA ? PairCache::Kind::FaceOfA : PairCache::Kind::FaceOfB;
         cache.indexA = static_cast<uint16_t>(faces[i].ofA ? faces[i].index : contact.incidentFace);
         cache.indexB = static_cast<uint16_t>(faces[i].ofA ? contact.incidentFace : faces[i].index);

@@ -10,6 +10,7 @@ struct ContactTolerances {
     float reach;    // m: the cores' separation up to which there are points
     float prefer;   // m: a face contact is taken where its separation is at most this much below the best axis
     float feature;  // m: vertices this close to the extreme one belong to the supporting feature
+    float faceOfACosine = 2;  // or where it is one of A's and the cosine of the angle between its normal and the best axis at least this
 
     // `innerRadii`: the sum of the radii of the balls inside the two cores, or what measures those that are flat; `rounding`: of their convex radii. In m.
     ContactTolerances(float innerRadii, float rounding, const CollideSettings& settings)

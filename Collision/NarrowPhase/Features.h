@@ -7,6 +7,8 @@ namespace fulcrum {
 
 // Two bits of kind above thirty of contents; never 0.
 inline constexpr uint32_t kVertexOfA = 1u << 30, kVertexOfB = 2u << 30, kCrossing = 3u << 30;
+// The ball inside a shape, which is none of its features.
+inline constexpr uint32_t kInnerBall = 1;
 
 // Vertex `v` of A (or B) against a face of the other.
 inline uint32_t VertexFeature(bool ofA, uint32_t v) { return (ofA ? kVertexOfA : kVertexOfB) | v; }

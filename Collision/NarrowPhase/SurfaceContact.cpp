@@ -25,6 +25,11 @@ constexpr float kFaceCosine = 0.9999985f;
 constexpr float kFlatCosine = 0.9945f;
 // Contacts whose directions are this near become one manifold: 2 degrees.
 constexpr float kSameDirection = 0.9994f;
+// A face of the shape that is this near to the direction of an edge rests on it, on two points: 4 degrees, more than a body turns
+// in a step while it rocks from one point to the other.
+constexpr float kRestingCosine = 0.9976f;
+// The ball inside a shape matters where a step takes it farther than this part of its radius.
+constexpr float kFastPart = 0.75f;
 
 // The side of a triangle that a shape is on, as a one-sided triangle.
 TriangleView Reversed(const TriangleView& view) {
@@ -68,9 +73,10 @@ float DeepestOf(const Manifold& manifold) {
 class SurfaceCollider {
 public:
     SurfaceCollider(const ConvexShape& a, const SurfaceShape& b, const RelativePose& bInA, const CollideSettings& settings,
-                    SurfaceContacts& contacts)
+                    const SurfaceApproach& approach, SurfaceContacts& contacts)
         : a_(a), b_(b), bInA_(bInA), settings_(settings), contacts_(contacts), axes_(ToMatrix(bInA.rotation)),
-          centre_(bInA.InverseTransform(Vector3::Zero())), isPolyhedral_(HasPolyhedralCore(a.Type())) {
+          centre_(bInA.InverseTransform(Vector3::Zero())),
+          motion_(InverseRotate(bInA.rotation, approach.motion)), touched_(approach.touched), isPolyhedral_(HasPolyhedralCore(a.Type())) {
         if (isPolyhedral_) core_ = CoreOf(a, storage_);
     }
 
@@ -85,6 +91,8 @@ public:
         for (size_t first = 0; first < views.size(); first += 8) CollideBatch(probe, first, std::min<size_t>(views.size() - first, 8));
         if (!contacts_.waiting_.empty()) AddWaiting();
         Join();
+        const float fast = kFastPart * a_.InnerRadius();
+        if (contacts_.manifoldCount_ > 0 && LengthSquared(motion_) > fast * fast) AddInnerBall(fast);
     }
 
 private:
@@ -100,6 +108,7 @@ private:
         TriangleBatch batch;
         uint32_t reversed;
         const uint32_t near = batch.Meet(probe, &contacts_.views_[first], static_cast<int>(count), reversed);
+        if (!touched_.empty() && !b_.IsTwoSided()) CollidePressed(first, count);
         if (near == 0) return;
         for (uint32_t bits = reversed & near; bits != 0; bits &= bits - 1) {
             TriangleView& view = contacts_.views_[first + static_cast<size_t>(std::countr_zero(bits))];
@@ -114,6 +123,17 @@ private:
             else CollideTriangle(index + static_cast<uint32_t>(i));
         }
     }
+
+    // Those that have the centre behind them, which a batch leaves out, but were touched before.
+    void CollidePressed(size_t first, size_t count) {
+        for (size_t i = first; i < first + count; ++i)
+            if (WasPressedThrough(contacts_.views_[i])) CollideTriangle(static_cast<uint32_t>(i));
+    }
+    // Only over the triangle itself: what tips over its edge gets behind it, too.
+    bool WasPressedThrough(const TriangleView& view) const {
+        return Height(view) < 0 && std::find(touched_.begin(), touched_.end(), view.id) != touched_.end() && IsOver(view, centre_, 0);
+    }
+    float Height(const TriangleView& view) const { return Dot(view.normal, Vector3(centre_ - view.vertices[0])); }
 
     void CollideSphere(const TriangleBatch& batch, uint32_t near, uint32_t first) {
         Manifold none, nearest;
@@ -232,7 +252,8 @@ private:
         const TriangleView& view = contacts_.views_[index];
         PolyhedronStorage storage;
         const PolyhedronPair pair(core_, CoreOf(corners, view.normal, 0, storage), pose);
-        const ContactTolerances tolerances = pair.Tolerances(settings_);
+        ContactTolerances tolerances = pair.Tolerances(settings_);
+        tolerances.faceOfACosine = kRestingCosine;
         Manifold onFace;
         if (knownOnFace) {
             onFace = *knownOnFace;
@@ -372,6 +393,37 @@ private:
         }
     }
 
+    // The contact of the ball inside the shape with the face that it meets first, if it meets one.
+    void AddInnerBall(float fast) {
+        const TriangleView* first = nullptr;
+        float earliest = 1, gap = 0;
+        for (const TriangleView& original : contacts_.views_) {
+            const TriangleView view = b_.IsTwoSided() && Height(original) < 0 ? Reversed(original) : original;
+            const float height = Height(view), approach = -Dot(motion_, view.normal), above = std::max(height - a_.InnerRadius(), 0.0f);
+            if (height < 0 || approach <= fast || above >= earliest * approach || !IsOver(view, centre_ + motion_ * (above / approach), a_.InnerRadius())) continue;
+            earliest = above / approach;
+            gap = height - a_.InnerRadius();
+            first = &original;
+        }
+        if (!first) return;
+        const TriangleView view = b_.IsTwoSided() && Height(*first) < 0 ? Reversed(*first) : *first;
+        SurfaceManifold ball{{}, view.id, view.material};
+        ball.manifold.normal = -(axes_ * view.normal);
+        ball.manifold.pointCount = 1;
+        ball.manifold.points[0] = {ball.manifold.normal * a_.InnerRadius(), gap, kInnerBall};
+        if (contacts_.manifolds_.size() == contacts_.manifoldCount_) contacts_.manifolds_.emplace_back();
+        contacts_.manifolds_[contacts_.manifoldCount_++] = ball;
+    }
+
+    // Whether a ball of that radius is over the triangle, in part at least.
+    static bool IsOver(const TriangleView& view, const Vector3& at, float radius) {
+        for (int i = 0; i < 3; ++i) {
+            const Vector3 edge = view.vertices[(i + 1) % 3] - view.vertices[i];
+            if (Dot(Cross<float>(edge, view.normal), Vector3(at - view.vertices[i])) > radius * Length(edge)) return false;
+        }
+        return true;
+    }
+
     SurfaceManifold JoinInto(std::vector<SurfaceManifold>& found, size_t first) const {
         SurfaceManifold joined = found[first];
         found[first].manifold.pointCount = 0;
@@ -452,12 +504,14 @@ private:
     Polyhedron core_;   // where it is one
     Matrix3 axes_;      // of the surface, in the shape's frame
     Vector3 centre_;    // of the shape, in the surface's frame
+    Vector3 motion_;    // of the centre within the step, likewise
+    std::span<const uint32_t> touched_;
     bool isPolyhedral_;
 };
 
 void CollideSurface(const ConvexShape& a, const SurfaceShape& b, const RelativePose& bInA, const CollideSettings& settings,
-                    SurfaceContacts& contacts) {
-    SurfaceCollider(a, b, bInA, settings, contacts).Run();
+                    const SurfaceApproach& approach, SurfaceContacts& contacts) {
+    SurfaceCollider(a, b, bInA, settings, approach, contacts).Run();
 }
 
 }  // namespace fulcrum

@@ -9,6 +9,11 @@
 //   as known, too;
 // - an inactive edge has no direction of its own: the shape meets the face, if it lies before it.
 // Contacts in nearly the same direction, on the same material, become one manifold of at most four points.
+//
+// A thin body that lands on its edge tumbles so fast that within the step it comes down on what faced away as the step began, and
+// its centre ends up behind the surface. So the ball inside the shape is a contact of its own where the motion of its centre takes
+// it through a face: however the body turns, that ball is part of it. And what touched a face stays before it even if a heavier body
+// presses its centre through.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/Collide.h>
@@ -49,9 +54,14 @@ private:
     size_t manifoldCount_ = 0;
 };
 
+struct SurfaceApproach {
+    Vector3 motion = Vector3::Zero();   // m, of the shape's centre relative to the surface within the step, in its centre frame
+    std::span<const uint32_t> touched;  // triangles that it touched in the last step
+};
+
 // Fills `contacts` with the manifolds of a and the triangles of b within settings.speculativeDistance, in a's centre frame, as
-// Collide does. One-sided triangles push to their front alone, and only what has its centre of mass there.
+// Collide does. One-sided triangles push to their front alone, and only what has its centre of mass there or touched them.
 void CollideSurface(const ConvexShape& a, const SurfaceShape& b, const RelativePose& bInA, const CollideSettings& settings,
-                    SurfaceContacts& contacts);
+                    const SurfaceApproach& approach, SurfaceContacts& contacts);
 
 }  // namespace fulcrum

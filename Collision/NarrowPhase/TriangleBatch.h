@@ -38,7 +38,7 @@ struct TriangleBatch {
     TriangleLanes distance;           // its distance, m
 
     // Sets it up for views[0 .. count), 1 to 8, and returns which of them the shape may reach, a bit each. Those that it leaves out are
-    // certainly farther from it than that. Bits of `reversed`: two-sided ones whose back faces the shape.
+    // certainly farther from it than that, or one-sided with its centre behind. Bits of `reversed`: two-sided ones whose back faces the shape.
     uint32_t Meet(const SurfaceProbe& probe, const TriangleView* views, int viewCount, uint32_t& reversed);
 
     // One of those in the shape's frame: its corners and the unit vectors outwards of its sides, in the order of its

@@ -67,7 +67,7 @@ void ShapeOnSurface(benchmark::State& state, const std::shared_ptr<const ConvexS
     CollideSettings settings;
     size_t i = 0, found = 0;
     for (auto _ : state) {
-        CollideSurface(*shape, *surface, poses[i], settings, contacts);
+        CollideSurface(*shape, *surface, poses[i], settings, {}, contacts);
         found += contacts.Manifolds().size();
         i = i + 1 == poses.size() ? 0 : i + 1;
     }

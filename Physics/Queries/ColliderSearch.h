@@ -46,7 +46,7 @@ public:
     const Shape& ShapeOf(uint32_t collider) const { return *world_.colliders.shapes[collider].shape; }
     Pose PoseOf(uint32_t collider) const {
         const ColliderShape& piece = world_.colliders.shapes[collider];
-        const Pose body = world_.bodies.CentrePoseOf(BodyOf(collider));
+        const Pose body = world_.bodies.ExactCentrePoseOf(BodyOf(collider));
         return piece.offset ? body * LocalOf(world_, collider) : body;
     }
     // The order that breaks ties: by body, then child.

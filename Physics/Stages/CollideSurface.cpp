@@ -31,6 +31,24 @@ void Write(WorldState& world, const PairView& view, uint32_t index, const Surfac
     WriteManifold(world, {pair, world.pairs.records[index], view.bodyBInA, view.bInA}, contact.manifold, dt);
 }
 
+// Of the centre of the convex piece relative to the surface within the step, m, in that piece's frame.
+Vector3 MotionInA(const WorldState& world, const PairView& view, float dt) {
+    const BodyStore& bodies = world.bodies;
+    const uint32_t a = view.pair.bodyA, b = view.pair.bodyB;
+    const Quaternion rotation = bodies.RotationOf(a);
+    Vector3 arm = Vector3::Zero();
+    Quaternion toPiece{};
+    if (view.pair.offset) {
+        const RelativePose piece = LocalOf(world, view.pair.colliderA);
+        arm = Rotate(rotation, piece.position);
+        toPiece = piece.rotation.Conjugate();
+    }
+    const Vector3 armB = arm - Rotate(rotation, view.bodyBInA.position);
+    const Vector3 velocity = bodies.LinearVelocityOf(a) + Cross<float>(bodies.AngularVelocityOf(a), arm) -
+                             bodies.LinearVelocityOf(b) - Cross<float>(bodies.AngularVelocityOf(b), armB);
+    return Rotate(toPiece, InverseRotate(rotation, Vector3(velocity * dt)));
+}
+
 // Gives each manifold the place whose features it shares, then any that is left.
 void WriteManifolds(WorldState& world, const PairView& view, uint32_t first, float dt, WorkerFindings& findings) {
     constexpr uint32_t kTaken = ~0u;
@@ -82,7 +100,13 @@ PairChange CollideWithSurface(WorldState& world, uint32_t first, float reach, fl
     } else {
         CollideSettings settings;
         settings.speculativeDistance = reach;
-        CollideSurface(*view.pair.shapeA, static_cast<const SurfaceShape&>(*view.pair.shapeB), view.bInA, settings, findings.surface);
+        std::vector<uint32_t>& touched = findings.surfaceTouched;
+        touched.clear();
+        VisitManifolds(world, first, [&](uint32_t index) {
+            if (world.pairs.pairs[index].pointCount > 0) touched.push_back(world.pairs.pairs[index].triangle);
+        });
+        CollideSurface(*view.pair.shapeA, static_cast<const SurfaceShape&>(*view.pair.shapeB), view.bInA, settings,
+                       {MotionInA(world, view, dt), touched}, findings.surface);
         WriteManifolds(world, view, first, dt, findings);
         view.pair.reference = view.bInA;
     }

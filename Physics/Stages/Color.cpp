@@ -1,6 +1,10 @@
-// Contacts that began get a colour, those that ended lose it; joints do so when they come and go, wake and sleep. Serial, in the order of the pairs, which depends on the
-// history alone: the same colours for any number of threads.
+// Contacts that began get a colour, those that ended lose it; joints do so when they come and go, wake and sleep. Serial, and in an
+// order that depends on what touches what alone: the same colours for any number of threads, and however coarse the bounds are
+// by which pairs were found, so that a scene far out is solved as at the origin.
 #include <Fulcrum/Physics/Stages/Stages.h>
+
+#include <algorithm>
+#include <tuple>
 
 namespace fulcrum {
 
@@ -75,14 +79,13 @@ void RecolourJointsOf(WorldState& world, uint32_t body) {
 
 void Color(WorldState& world) {
     world.colouring.ReserveBodies(world.bodies.Size());
+    std::vector<uint32_t>& began = world.began;
+    began.clear();
     VisitChanges(world, [&](uint32_t index) {
         const PairChange change = world.changes[index];
         world.changes[index] = PairChange::None;
         switch (change) {
-            case PairChange::Began:
-                ColourPair(world, index);
-                world.pairs.active.Insert(index);
-                break;
+            case PairChange::Began: began.push_back(index); break;
             case PairChange::Ended:
                 UncolourPair(world, index);
                 if (world.pairs.pairs[index].isMore) world.pairs.active.Erase(index);
@@ -92,6 +95,15 @@ void Color(WorldState& world) {
             case PairChange::WakesOther: break;
         }
     });
+    // Indices of pairs tell when their bounds met.
+    std::sort(began.begin(), began.end(), [&](uint32_t x, uint32_t y) {
+        const Pair &a = world.pairs.pairs[x], &b = world.pairs.pairs[y];
+        return std::tie(a.colliderA, a.colliderB, a.features[0], x) < std::tie(b.colliderA, b.colliderB, b.features[0], y);
+    });
+    for (uint32_t index : began) {
+        ColourPair(world, index);
+        world.pairs.active.Insert(index);
+    }
 }
 
 }  // namespace fulcrum

@@ -86,7 +86,8 @@ Bounds RoundBounds(const WorldState& world, uint32_t body) {
     const SweepStore::Start* starts = world.sweeps.starts.data();
     if (body < world.sweeps.starts.size() && starts[body].step == world.report.step) include(starts[body].pose.position);
     for (const WayPart& part : CutPartsOf(world, body)) include(part.course.start.position);
-    return RoundedOutwards(lower - reach, upper + reach);
+    const Position& origin = world.colliders.boundsOrigin;
+    return RoundedOutwards(lower - origin - reach, upper - origin + reach);
 }
 
 void AddCandidate(const WorldState& world, uint32_t sensorBody, uint32_t body, WorkerFindings& findings) {

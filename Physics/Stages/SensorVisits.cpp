@@ -21,9 +21,11 @@ constexpr float kSameTime = 1e-6f;
 
 Vector3 Between(const Position& from, const Position& to) { return (to - from).cast<float>(); }
 
-Bounds BoundsOf(const Shape& shape, const Pose& centre) {
+// As in the trees, measured from `origin`.
+Bounds BoundsOf(const Shape& shape, const Pose& centre, const Position& origin) {
     const Bounds turned = BoundsAt({Vector3::Zero(), centre.rotation}, shape.LocalBounds());
-    return RoundedOutwards(centre.position + turned.lower.cast<double>(), centre.position + turned.upper.cast<double>());
+    const Position at = centre.position - origin;
+    return RoundedOutwards(at + turned.lower.cast<double>(), at + turned.upper.cast<double>());
 }
 
 // A piece of a body on a straight part of its way.
@@ -235,11 +237,12 @@ bool OverlapAtEnd(const WorldState& world, uint32_t sensor, uint32_t body) {
 Bounds PieceBounds(const WorldState& world, const Way& way, uint32_t collider) {
     Bounds bounds;
     const ColliderShape piece = PieceOf(world, collider);
+    const Position& origin = world.colliders.boundsOrigin;
     for (const WayPart& part : way.Parts()) {
         const Mover mover{way, part, piece};
-        Bounds ends = BoundsOf(*mover.piece.shape, mover.PieceAt(part.course.from));
+        Bounds ends = BoundsOf(*mover.piece.shape, mover.PieceAt(part.course.from), origin);
         const float angle = mover.Angle(part.course.from, part.until);
-        if (!mover.IsStill()) ends.Include(BoundsOf(*mover.piece.shape, mover.PieceAt(part.until)));
+        if (!mover.IsStill()) ends.Include(BoundsOf(*mover.piece.shape, mover.PieceAt(part.until), origin));
         // A point at the distance r from the centre leaves the straight line between its ends by at most r (1 - cos(angle / 2)).
         bounds.Include(Inflated(ends, std::min(0.125f * angle * angle, 2.0f) * mover.Radius()));
     }

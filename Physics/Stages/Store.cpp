@@ -96,40 +96,45 @@ void RotateFreely(const BodyDynamics& d, Quaternion& rotation, Vector3& w, const
     rotation = Normalized(Quaternion{static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z), static_cast<float>(q.w)});
 }
 
+// What a body does in the step.
+struct Motion {
+    Vector3 displacement;  // m
+    Quaternion rotation;   // at its end
+};
+
 // A body that no contact touched: x += v t + a t^2 / 2, exact under constant acceleration.
-void FlyFreely(WorldState& world, uint32_t body, const StepContext& step, Pose& pose, Vector3& v, Vector3& w,
+void FlyFreely(WorldState& world, uint32_t body, const StepContext& step, Motion& motion, Vector3& v, Vector3& w,
                WorkerFindings& findings) {
     const BodyDynamics& d = world.bodies.dynamics[body];
     const float* a = world.bodies.poses[body].acceleration;
     const Vector3 before = v;
     v += Vector3(a[0], a[1], a[2]) * step.dt;
     if (d.linearDamping > 0) v *= Exp(-d.linearDamping * step.dt);
-    Vector3 change = (before + v) * (0.5f * step.dt);
+    Vector3& change = motion.displacement;
+    change = (before + v) * (0.5f * step.dt);
     if (d.lockedAxes != LockedAxes::None) {
         d.Lock(v, w);
         d.Lock(change, w);
     }
-    pose.position += change.cast<double>();
-
     const Vector3 torque = d.hasForce ? world.bodies.cold[body].torque : Vector3(Vector3::Zero());
     const bool fastLinear = ClampLength(v, d.maxLinearSpeed), fastAngular = ClampLength(w, d.maxAngularSpeed);
     findings.clamped += fastLinear || fastAngular;
     if (d.FeelsGyroscopicTorque(w)) {
-        RotateFreely(d, pose.rotation, w, torque, step.dt);
+        RotateFreely(d, motion.rotation, w, torque, step.dt);
     } else {
         if (d.hasForce) w += world.bodies.masses[body].InverseInertia() * torque * step.dt;
-        pose.rotation = Normalized(RotationFromVector(Vector3(w * step.dt)) * pose.rotation);
+        motion.rotation = Normalized(RotationFromVector(Vector3(w * step.dt)) * motion.rotation);
     }
     if (d.angularDamping > 0) w *= Exp(-d.angularDamping * step.dt);
 }
 
-void MoveSolved(WorldState& world, uint32_t body, Pose& pose, Vector3& w, float dt) {
+void MoveSolved(WorldState& world, uint32_t body, Motion& motion, Vector3& w, float dt) {
     BodyState& s = world.bodies.states[body];
     const BodyDynamics& d = world.bodies.dynamics[body];
-    pose.position += Vector3(s.deltaPosition[0], s.deltaPosition[1], s.deltaPosition[2]).cast<double>();
-    pose.rotation = Normalized(RotationFromVector(Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2])) * pose.rotation);
+    motion.displacement = Vector3(s.deltaPosition[0], s.deltaPosition[1], s.deltaPosition[2]);
+    motion.rotation = Normalized(RotationFromVector(Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2])) * motion.rotation);
     // With joints every substep has seen to that.
-    if (d.FeelsGyroscopicTorque(w) && !world.joints.HasAny(body)) w = AddGyroscopicTorque<float>(Vector3(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]), AxesOf(d, pose.rotation), w, dt);
+    if (d.FeelsGyroscopicTorque(w) && !world.joints.HasAny(body)) w = AddGyroscopicTorque<float>(Vector3(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]), AxesOf(d, motion.rotation), w, dt);
 }
 
 void ForgetForces(WorldState& world, uint32_t body) {
@@ -148,15 +153,27 @@ void Freeze(WorldState& world, uint32_t body, WorkerFindings& findings) {
     findings.firstFrozen = std::min(findings.firstFrozen, body);
 }
 
-// m/s, of the farthest point of a body that moves and turns so.
-float Speed(const BodyDynamics& d, const Vector3& v, const Vector3& w) { return Length(v) + Length(w) * d.outerRadius; }
+// m/s, of the farthest point of a body that moves by v and turns by w, at most. By its outer ball, or, where that is too fast to
+// sleep, by the corners of its box: a thin rod that turns about its own length hardly moves.
+float FarthestSpeed(const WorldState& world, uint32_t body, const Vector3& v, const Vector3& w) {
+    const float linear = Length(v), simple = linear + Length(w) * world.bodies.dynamics[body].outerRadius;
+    const float slow = world.settings.sleep.linearSpeed;
+    if (simple < slow || linear >= slow) return simple;
+    const Bounds& box = world.bodies.cold[body].shape->LocalBounds();
+    const Vector3 reach = box.lower.cwiseAbs().cwiseMax(box.upper.cwiseAbs());
+    const Vector3 turn = InverseRotate(world.bodies.RotationOf(body), w).cwiseAbs();
+    const Vector3 most(turn.y() * reach.z() + turn.z() * reach.y(), turn.z() * reach.x() + turn.x() * reach.z(),
+                       turn.x() * reach.y() + turn.y() * reach.x());
+    return std::min(simple, linear + Length(most));
+}
 
 // What joints pull together moves without a speed at the step's end: relaxing has taken it out.
 float PulledSpeed(const WorldState& world, uint32_t body, float dt) {
     const BodyState& s = world.bodies.states[body];
     if (!world.settings.sleep.enabled || !world.joints.HasAny(body)) return 0;
-    return Speed(world.bodies.dynamics[body], Vector3(s.deltaPosition[0], s.deltaPosition[1], s.deltaPosition[2]),
-                 Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2])) / dt;
+    const float inverseDt = 1.0f / dt;
+    return FarthestSpeed(world, body, Vector3(s.deltaPosition[0], s.deltaPosition[1], s.deltaPosition[2]) * inverseDt,
+                         Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]) * inverseDt);
 }
 
 void MeasureSlowness(WorldState& world, uint32_t body, float speed, float dt, WorkerFindings& findings) {
@@ -181,29 +198,29 @@ bool KeepsStarts(const WorldState& world) { return world.sweeps.users > 0 || !wo
 void EndBody(WorldState& world, uint32_t body, const StepContext& step, WorkerFindings& findings) {
     BodyStore& bodies = world.bodies;
     BodyDynamics& d = bodies.dynamics[body];
-    Pose pose = bodies.CentrePoseOf(body);
+    Motion motion{Vector3::Zero(), bodies.RotationOf(body)};
     Vector3 v = bodies.LinearVelocityOf(body), w = bodies.AngularVelocityOf(body);
     if (d.frozen) return;
-    if (KeepsStarts(world)) world.sweeps.starts[body] = {pose, world.report.step};
+    if (KeepsStarts(world)) world.sweeps.starts[body] = {bodies.CentrePoseOf(body), world.report.step};
     if (d.motion == MotionType::Kinematic) {
-        pose.position += (v * step.dt).cast<double>();
-        pose.rotation = Normalized(RotationFromVector(Vector3(w * step.dt)) * pose.rotation);
+        motion.displacement = v * step.dt;
+        motion.rotation = Normalized(RotationFromVector(Vector3(w * step.dt)) * motion.rotation);
     } else if (world.colouring.IsTouched(body)) {
-        MoveSolved(world, body, pose, w, step.dt);
+        MoveSolved(world, body, motion, w, step.dt);
     } else {
-        FlyFreely(world, body, step, pose, v, w, findings);
+        FlyFreely(world, body, step, motion, v, w, findings);
     }
     const float pulled = PulledSpeed(world, body, step.dt);
     bodies.states[body] = {};
-    if (!IsFinite(pose.position) || !IsFinite(pose.rotation) || !IsFinite(v) || !IsFinite(w) || !PushIsFinite(world, body)) {
+    if (!IsFinite(motion.displacement) || !IsFinite(motion.rotation) || !IsFinite(v) || !IsFinite(w) || !PushIsFinite(world, body)) {
         Freeze(world, body, findings);
         return;
     }
     bodies.SetVelocity(body, v, w);
-    bodies.SetCentrePose(body, pose);
+    bodies.MoveCentre(body, motion.displacement, motion.rotation);
     if (d.hasForce) ForgetForces(world, body);
     if (world.settings.sleep.enabled && d.motion == MotionType::Dynamic)
-        MeasureSlowness(world, body, std::max(Speed(d, v, w), pulled), step.dt, findings);
+        MeasureSlowness(world, body, std::max(FarthestSpeed(world, body, v, w), pulled), step.dt, findings);
 }
 
 template <int N, bool kFixedB>

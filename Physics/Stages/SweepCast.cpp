@@ -58,7 +58,7 @@ private:
         const ShapeCaster whole(*cast_, motion_);
         if (!whole.IsValid()) return;
         const Bounds& about = whole.BoundsAboutCentre();
-        const TreeRay ray(motion_.pose.position + about.Centre().cast<double>(), motion_.displacement, about.HalfExtents());
+        const TreeRay ray(motion_.pose.position - world_.colliders.boundsOrigin + about.Centre().cast<double>(), motion_.displacement, about.HalfExtents());
         const auto visit = [&](uint32_t other) { CastAgainst(other, whole); };
         const uint32_t layers = world_.settings.layerCollides[world_.bodies.dynamics[sweep_.body].layer];
         if (layers & world_.colliders.movingLayers) world_.colliders.movingTree.CastRay(ray, limit_, visit);
@@ -255,7 +255,7 @@ private:
         settings.speculativeDistance = margin;
         settings.method = world_.settings.narrowPhase;
         if (shape.IsSurface()) {
-            CollideSurface(*shape_, static_cast<const SurfaceShape&>(shape), bInA, settings, findings_.surface);
+            CollideSurface(*shape_, static_cast<const SurfaceShape&>(shape), bInA, settings, {}, findings_.surface);
             for (const SurfaceManifold& m : findings_.surface.Manifolds()) consider(m.manifold, m.material);
             return;
         }

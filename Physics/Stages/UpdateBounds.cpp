@@ -15,7 +15,7 @@ constexpr float kAheadPart = 0.25f;  // of the outer radius
 // What moves by this part of the margin in a step would leave fat bounds so soon that they only cost pairs: it gets tight ones.
 constexpr float kFastPart = 0.5f;
 
-// World bounds of a collider, without any margin. A hull as round as a ball is bounded best by its outer sphere.
+// Bounds of a collider at a pose about the origin of bounds, without any margin. A hull as round as a ball is bounded best by its outer sphere.
 Bounds TightBounds(const Shape& shape, const Pose& pose, const Matrix3& rotation) {
     const Bounds& local = shape.LocalBounds();
     const Vector3 centre = rotation * local.Centre(), half = local.HalfExtents();
@@ -34,7 +34,8 @@ Bounds Reach(const Bounds& tight, const Vector3& motion, float margin) {
 }
 
 void UpdateColliders(WorldState& world, uint32_t body, float dt, WorkerFindings& findings) {
-    const Pose pose = world.bodies.CentrePoseOf(body);
+    Pose pose = world.bodies.CentrePoseOf(body);
+    pose.position -= world.colliders.boundsOrigin;
     const Matrix3 rotation = ToMatrix(pose.rotation);
     const Vector3 linear = world.bodies.LinearVelocityOf(body), angular = world.bodies.AngularVelocityOf(body);
     bool changed = false;
@@ -73,6 +74,7 @@ void ReserveLists(WorldState& world) {
     const size_t colliders = world.colliders.colliders.capacity();
     world.colliders.moved.reserve(colliders);
     world.activated.reserve(colliders);
+    world.began.reserve(colliders);
     world.newPairs.reserve(colliders);
     for (WorkerFindings& findings : world.findings) {
         findings.colliders.reserve(colliders);
@@ -84,7 +86,9 @@ void ReserveLists(WorldState& world) {
 
 Bounds TightBoundsOf(const WorldState& world, uint32_t index) {
     const ColliderShape& piece = world.colliders.shapes[index];
-    const Pose pose = world.bodies.CentrePoseOf(world.colliders.colliders[index].body) * LocalOf(world, index);
+    Pose body = world.bodies.CentrePoseOf(world.colliders.colliders[index].body);
+    body.position -= world.colliders.boundsOrigin;
+    const Pose pose = body * LocalOf(world, index);
     return TightBounds(*piece.shape, pose, ToMatrix(pose.rotation));
 }
 

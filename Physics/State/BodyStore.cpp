@@ -18,6 +18,7 @@ uint32_t BodyStore::Allocate() {
         unconstrained.emplace_back();
         dynamics.emplace_back();
         cold.emplace_back();
+        remainders.emplace_back();
     }
     cold[index].exists = true;
     ++count_;
@@ -53,14 +54,30 @@ void BodyStore::MarkAsleep(uint32_t index) {
     awake.pop_back();
 }
 
+namespace {
+
+void Write(BodyPose& to, const Position& position, const Quaternion& q) {
+    to.rotation[0] = q.x;
+    to.rotation[1] = q.y;
+    to.rotation[2] = q.z;
+    to.rotation[3] = q.w;
+    for (int k = 0; k < 3; ++k) to.position[k] = position[k];
+}
+
+}  // namespace
+
 void BodyStore::SetCentrePose(uint32_t index, const Pose& pose) {
-    BodyPose& p = poses[index];
-    const Quaternion& q = pose.rotation;
-    p.rotation[0] = q.x;
-    p.rotation[1] = q.y;
-    p.rotation[2] = q.z;
-    p.rotation[3] = q.w;
-    for (int k = 0; k < 3; ++k) p.position[k] = pose.position[k];
+    const Position onGrid = OnGrid(pose.position);
+    remainders[index] = {pose.position - onGrid, true};
+    Write(poses[index], onGrid, pose.rotation);
+}
+
+void BodyStore::MoveCentre(uint32_t index, const Vector3& displacement, const Quaternion& rotation) {
+    Position rest = displacement.cast<double>();
+    if (!remainders[index].isGiven) rest += remainders[index].value;
+    const Position step = OnGrid(rest);
+    remainders[index] = {rest - step, false};
+    Write(poses[index], CentreOf(index) + step, rotation);
 }
 
 void BodyStore::SetVelocity(uint32_t index, const Vector3& linear, const Vector3& angular) {
@@ -143,6 +160,7 @@ size_t BodyStore::MemoryUsed() const {
     return filters + states.capacity() * sizeof(BodyState) + masses.capacity() * sizeof(BodyMass) +
            poses.capacity() * sizeof(BodyPose) + unconstrained.capacity() * sizeof(UnconstrainedVelocity) +
            dynamics.capacity() * sizeof(BodyDynamics) + cold.capacity() * sizeof(BodyCold) +
+           remainders.capacity() * sizeof(Remainder) +
            (awake.capacity() + free_.capacity()) * sizeof(uint32_t);
 }
 

@@ -5,6 +5,7 @@
 #include <Fulcrum/Constraints/Parts/BodyState.h>
 #include <Fulcrum/Physics/Settings.h>
 
+#include <cmath>
 #include <memory>
 #include <span>
 #include <vector>
@@ -106,6 +107,24 @@ struct alignas(32) UnconstrainedVelocity {
     float row[8];
 };
 
+// Positions are multiples of this wherever the step reads them, and what is less is carried along: what bodies are to each other
+// does not depend on how far out they are, to the last bit, up to 2^30 m, where double ends at it.
+inline constexpr double kPositionGrid = 0x1p-23;  // m, 0.12 micrometres
+
+// The nearest point of the grid. Beyond 2^29 m doubles lie on it anyway.
+inline Position OnGrid(const Position& position) {
+    Position rounded;
+    for (int k = 0; k < 3; ++k)
+        rounded[k] = std::fabs(position[k]) < 0x1p29 ? std::floor(position[k] * (1 / kPositionGrid) + 0.5) * kPositionGrid : position[k];
+    return rounded;
+}
+
+// The exact position minus the one on the grid.
+struct Remainder {
+    Position value = Position::Zero();  // m
+    bool isGiven = true;                // by the user, far out more coarsely than near: forgotten when the body moves
+};
+
 class BodyStore {
 public:
     // By index; all of the same size.
@@ -115,6 +134,7 @@ public:
     std::vector<UnconstrainedVelocity> unconstrained;
     std::vector<BodyDynamics> dynamics;
     std::vector<BodyCold> cold;
+    std::vector<Remainder> remainders;
 
     std::vector<uint32_t> awake;  // dynamic bodies awake and kinematic ones that move, in no order
 
@@ -145,12 +165,17 @@ public:
         const float* r = poses[index].rotation;
         return {r[0], r[1], r[2], r[3]};
     }
+    // On the grid.
     Position CentreOf(uint32_t index) const {
         const double* p = poses[index].position;
         return Position(p[0], p[1], p[2]);
     }
     Pose CentrePoseOf(uint32_t index) const { return {CentreOf(index), RotationOf(index)}; }
+    Pose ExactCentrePoseOf(uint32_t index) const { return {ExactCentreOf(index), RotationOf(index)}; }
+    Position ExactCentreOf(uint32_t index) const { return CentreOf(index) + remainders[index].value; }
     void SetCentrePose(uint32_t index, const Pose& pose);
+    // Moves the centre by so many m.
+    void MoveCentre(uint32_t index, const Vector3& displacement, const Quaternion& rotation);
     Vector3 LinearVelocityOf(uint32_t index) const {
         const float* v = states[index].linearVelocity;
         return Vector3(v[0], v[1], v[2]);

@@ -12,7 +12,7 @@ namespace fulcrum {
 
 // What the search for pairs reads: one line.
 struct alignas(64) Collider {
-    Bounds fat;                          // world, m: the piece stays inside until it is moved out
+    Bounds fat;                          // m, about ColliderStore::boundsOrigin: the piece stays inside until it is moved out
     // As of the last search. Two colliders whose previous bounds overlap have their pair already. Empty: search for all.
     Bounds previous;
     uint32_t body = 0;
@@ -41,6 +41,9 @@ public:
     static constexpr uint32_t kNone = ~0u;
     std::vector<Collider> colliders;
     std::vector<ColliderShape> shapes;           // same index
+    // m, world: where all bounds are measured from. They are float, fine near it and coarse far from it, so it is near the first
+    // body of an empty world, in steps of a kilometre.
+    Position boundsOrigin = Position::Zero();
     BoundsTree fixedTree, movingTree, sensorTree;
     uint32_t movingLayers = 0, fixedLayers = 0;  // bit i: a body of layer i is, or was, in the tree
     std::vector<uint32_t> moved;                 // whose pairs must be searched

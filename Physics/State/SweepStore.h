@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Fulcrum/Math/Trigonometry.h>
+#include <Fulcrum/Physics/State/BodyStore.h>
 
 #include <cstdint>
 #include <vector>
@@ -10,7 +11,7 @@
 namespace fulcrum {
 
 // A body's way from some time of the step to its end: its centre of mass moves straight, it turns at a constant rate. Times are
-// fractions of the step, 0 .. 1.
+// fractions of the step, 0 .. 1. All positions are on the grid, as those of the step are.
 struct Sweep {
     Pose start;                                // of the centre frame, at `from`
     Vector3 displacement = Vector3::Zero();    // m, until the end
@@ -22,7 +23,7 @@ struct Sweep {
     bool changed = false;                      // in the present round
 
     float PartAt(float time) const { return from < 1 ? (time - from) / (1 - from) : 0.0f; }
-    Position PositionAt(float time) const { return start.position + (displacement * PartAt(time)).cast<double>(); }
+    Position PositionAt(float time) const { return start.position + OnGrid((displacement * PartAt(time)).cast<double>()); }
     Quaternion RotationAt(float time) const {
         if (turn.isZero(0)) return start.rotation;
         return Normalized(RotationFromVector(Vector3(turn * PartAt(time))) * start.rotation);

@@ -38,7 +38,7 @@ struct alignas(64) WorkerFindings {
     std::vector<uint32_t> colliders;  // UpdateBounds: those that left their fat bounds
     std::vector<uint64_t> pairs;      // FindPairs: keys of new or resting pairs
     SurfaceContacts surface;          // Collide: room to work in
-    std::vector<uint32_t> surfacePlaces, surfaceLeft;  // Collide: likewise
+    std::vector<uint32_t> surfacePlaces, surfaceLeft, surfaceTouched;  // Collide: likewise
     std::vector<MoreManifold> more;   // Collide: what has no place in its pair yet
     std::vector<SweepHit> sweepHits;  // Continuous
     std::vector<SweepStore::FastBody> fast;  // likewise
@@ -79,6 +79,7 @@ struct WorldState {
     std::vector<uint32_t> removed;            // bodies to forget before the next step
     std::vector<PairChange> changes;          // by pair, of this step; None for those that are not active
     std::vector<uint32_t> activated;          // pairs that FindPairs made active
+    std::vector<uint32_t> began;              // Color: pairs that began to touch
     std::vector<uint64_t> newPairs;
     std::vector<MoreManifold> moreManifolds;
     std::vector<uint32_t> ghosts;             // pairs that DropGhosts took the points from, in the last step

@@ -34,6 +34,7 @@ namespace fulcrum {
     scene(QueryClosest)       \
     scene(QueryBounds)        \
     scene(FlatLand)           \
+    scene(Thin)               \
     scene(MovingPlatforms)    \
     scene(ConveyorBelt)       \
     scene(Layers)             \

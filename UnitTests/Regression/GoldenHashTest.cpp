@@ -11,10 +11,10 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0xf072aa7838e0092full;
-constexpr uint64_t kGoldenHashOfJoints = 0x02738d7493b87251ull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0xba580a8fdb578c8bull;
-constexpr uint64_t kGoldenHashOfFastBodies = 0xd3ee0f895eb43c74ull;
+constexpr uint64_t kGoldenHash = 0x4cde90ba9dc0db97ull;
+constexpr uint64_t kGoldenHashOfJoints = 0x55646ae6546a6609ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0x77d12a159a425f88ull;
+constexpr uint64_t kGoldenHashOfFastBodies = 0xd0a70785e420f323ull;
 
 std::string Hex(uint64_t number) {
     char text[24];

@@ -1,8 +1,9 @@
-// Every pair function against libccd on random poses: all pairs of types, 10^4 poses each (300 of those with a curved core, for which libccd
-// takes a millisecond each).
+// Every pair function against libccd on random poses: all pairs of types, 10^4 poses each (3000 of two round shapes and 300 of those with
+// a curved core: there libccd builds polytopes of hundreds of facets, up to a millisecond each).
 #include "NarrowPhaseTesting.h"
 
 #include <Fulcrum/Collision/NarrowPhase/Libccd.h>
+#include <Fulcrum/UnitTests/Support/Cases.h>
 
 #include <gtest/gtest.h>
 
@@ -13,7 +14,9 @@ namespace fulcrum::testing {
 namespace {
 
 int PosesFor(const ConvexShape& a, const ConvexShape& b) {
-    return std::max(a.Type(), b.Type()) <= ShapeType::Triangle ? 10000 : 300;
+    const auto isRound = [](const ConvexShape& s) { return s.Type() == ShapeType::Sphere || s.Type() == ShapeType::Capsule; };
+    if (std::max(a.Type(), b.Type()) > ShapeType::Triangle) return Cases(300);
+    return Cases(isRound(a) && isRound(b) ? 3000 : 10000);
 }
 
 // A face contact may be taken in place of an axis that is better by at most this much: 2 % of the speculative distance.
@@ -184,7 +187,7 @@ TEST(PairFunctionsTest, PointsLieOnBothSurfaces) {
     for (const NamedShape& a : Shapes()) {
         for (const NamedShape& b : Shapes()) {
             double worst = 0;
-            for (int i = 0; i < 2000; ++i) {
+            for (int i = 0; i < Cases(2000); ++i) {
                 const RelativePose pose = RandomPose(*a.shape, *b.shape, i, random);
                 const Manifold manifold = CollideCold(a.shape, b.shape, pose);
                 if (DeepestSeparation(manifold) < -0.15f) continue;  // deep inside, a clipped point may leave the other face
@@ -208,7 +211,7 @@ TEST(PairFunctionsTest, MirroredPairsGiveMirroredManifolds) {
     for (const NamedShape& a : Shapes()) {
         for (const NamedShape& b : Shapes()) {
             if (a.shape->Type() == b.shape->Type()) continue;  // either may provide the reference face
-            for (int i = 0; i < 500; ++i) {
+            for (int i = 0; i < Cases(500); ++i) {
                 const RelativePose pose = RandomPose(*a.shape, *b.shape, i, random);
                 const RelativePose inverse = Inverse(pose);
                 const Manifold there = CollideCold(a.shape, b.shape, pose), back = CollideCold(b.shape, a.shape, inverse);
@@ -238,7 +241,7 @@ TEST(PairFunctionsTest, TheLibccdMethodServesEveryPair) {
     for (const NamedShape& a : Shapes()) {
         for (const NamedShape& b : Shapes()) {
             int found = 0, wrong = 0;
-            const int poses = PosesFor(*a.shape, *b.shape) > 300 ? 300 : 60;
+            const int poses = PosesFor(*a.shape, *b.shape) > Cases(300) ? Cases(300) : Cases(60);
             for (int i = 0; i < poses; ++i) {
                 const RelativePose pose = RandomPose(*a.shape, *b.shape, i, random);
                 const Manifold manifold = CollideCold(a.shape, b.shape, pose, settings);
@@ -260,7 +263,7 @@ TEST(PairFunctionsTest, CachedAndUncachedQueriesAgree) {
     RandomPoses random(23);
     for (const NamedShape& a : Shapes()) {
         for (const NamedShape& b : Shapes()) {
-            for (int i = 0; i < 1000; ++i) {
+            for (int i = 0; i < Cases(1000); ++i) {
                 RelativePose pose = RandomPose(*a.shape, *b.shape, i, random);
                 PairCache cache;
                 CollideOnce(a.shape, b.shape, pose, cache);

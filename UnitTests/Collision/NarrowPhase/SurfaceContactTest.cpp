@@ -81,7 +81,7 @@ void FindsTheNearest(const ConvexShape& shape, const std::string& name) {
         if (expected.overlaps) continue;
         CollideSettings settings;
         settings.speculativeDistance = kReach;
-        CollideSurface(shape, *mesh, pose, settings, contacts);
+        CollideSurface(shape, *mesh, pose, settings, {}, contacts);
         const float least = Least(contacts);
         if (expected.separation > kReach + kTolerance) {
             EXPECT_EQ(least, kNone) << name << " " << i;
@@ -123,7 +123,7 @@ protected:
     std::span<const SurfaceManifold> Collide(const ConvexShape& shape, const Vector3& position, const Quaternion& rotation = {}) {
         CollideSettings settings;
         settings.speculativeDistance = kReach;
-        CollideSurface(shape, *mesh_, Inverse(RelativePose{position, rotation}), settings, contacts_);
+        CollideSurface(shape, *mesh_, Inverse(RelativePose{position, rotation}), settings, {}, contacts_);
         return contacts_.Manifolds();
     }
     std::shared_ptr<const TriangleMesh> mesh_;

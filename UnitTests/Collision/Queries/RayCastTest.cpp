@@ -5,6 +5,7 @@
 #include <Fulcrum/Collision/Queries/ConvexDistance.h>
 #include <Fulcrum/Collision/Queries/CoreShapes.h>
 #include <Fulcrum/Collision/Queries/RayCast.h>
+#include <Fulcrum/UnitTests/Support/Cases.h>
 
 namespace fulcrum::testing {
 namespace {
@@ -24,7 +25,7 @@ TEST(RayCast, TheHitIsTheFirstPointOfTheShape) {
     int hits = 0, cases = 0;
     for (const NamedShape& named : QueryShapes()) {
         const ConvexShape& shape = *named.shape;
-        for (int i = 0; i < 15000; ++i, ++cases) {
+        for (int i = 0; i < Cases(15000); ++i, ++cases) {
             const Ray ray = RayNear(random);
             const Vector3 origin = ray.origin.cast<float>();
             RayHit hit;
@@ -61,7 +62,7 @@ TEST(RayCast, TheHitIsTheFirstPointOfTheShape) {
             }
         }
     }
-    EXPECT_GE(cases, 100000);
+    EXPECT_GE(cases, Cases(100000));
     EXPECT_GT(hits, cases / 4);
 }
 

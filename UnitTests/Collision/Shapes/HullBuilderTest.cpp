@@ -2,6 +2,7 @@
 
 #include <Fulcrum/UnitTests/Collision/Shapes/PointSets.h>
 #include <Fulcrum/UnitTests/Collision/Shapes/QhullVolume.h>
+#include <Fulcrum/UnitTests/Support/Cases.h>
 
 #include <gtest/gtest.h>
 
@@ -46,7 +47,7 @@ Deviations Measure(const HullMesh& mesh, std::span<const Position> points) {
 }
 
 TEST(HullBuilder, AgreesWithQhullOnTenThousandPointSets) {
-    constexpr int kSetsPerKind = 800;
+    constexpr int kSetsPerKind = testing::Cases(800);
     int built = 0, refused = 0;
     for (int kind = 0; kind < static_cast<int>(PointSet::Count); ++kind) {
         for (int seed = 0; seed < kSetsPerKind; ++seed) {
