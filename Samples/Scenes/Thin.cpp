@@ -37,7 +37,7 @@ double LostOrAwake(const SceneWorld& world) {
 extern const Scene kThinScene{
     .name = "thin",
     .description = "40 rods of 8 m and 400 plates of 4 cm, 10 cm thick at most, fall on a wavy mesh and come to rest",
-    .steps = 1200,
+    .steps = 1500,
     .usesSeed = true,
     .build = Build,
     .accuracy = LostOrAwake,
