@@ -41,6 +41,7 @@ namespace fulcrum {
     scene(TrapDoor)           \
     scene(CompoundCity)       \
     scene(Sensors)            \
+    scene(Bullets)            \
     scene(RagdollDrive)       \
     scene(Hinge)              \
     scene(Slider)             \
