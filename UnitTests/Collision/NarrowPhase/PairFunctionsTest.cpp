@@ -241,7 +241,8 @@ TEST(PairFunctionsTest, TheLibccdMethodServesEveryPair) {
     for (const NamedShape& a : Shapes()) {
         for (const NamedShape& b : Shapes()) {
             int found = 0, wrong = 0;
-            const int poses = PosesFor(*a.shape, *b.shape) > Cases(300) ? Cases(300) : Cases(60);
+            // Shares need some cases, under the sanitizers, too.
+            const int poses = !kIsSanitized && PosesFor(*a.shape, *b.shape) > 300 ? 300 : 60;
             for (int i = 0; i < poses; ++i) {
                 const RelativePose pose = RandomPose(*a.shape, *b.shape, i, random);
                 const Manifold manifold = CollideCold(a.shape, b.shape, pose, settings);
@@ -252,7 +253,7 @@ TEST(PairFunctionsTest, TheLibccdMethodServesEveryPair) {
                 EXPECT_NEAR(Length(manifold.normal), 1.0f, 1e-5f);
                 if (std::abs(DeepestSeparation(manifold) - DeepestSeparation(expected)) > 2e-3f) ++wrong;
             }
-            EXPECT_GE(found, kIsSanitized ? 0 : poses / 6 + 1);  // a handful of cases has no shares
+            EXPECT_GT(found, poses / 6);
             // libccd takes some deep poses for touching ones and MPR's answer is not the least depth.
             EXPECT_LE(wrong, found / 4) << a.name << " " << b.name;
         }
