@@ -3,6 +3,7 @@
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Physics/BodyColliders.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
+#include <Fulcrum/Physics/State/BodyPairs.h>
 #include <Fulcrum/Physics/Validation.h>
 
 namespace fulcrum {
@@ -252,10 +253,9 @@ Status BodyInterface::SetMaterial(BodyId id, const Material& material) {
     if (!Exists(id)) return Unknown(id);
     if (MaybeError e = Check(material)) return *e;
     world_.bodies.cold[id.index].material = material;
-    for (uint32_t i = 0; i < world_.pairs.pairs.size(); ++i) {
-        const Pair& pair = world_.pairs.pairs[i];
-        if (pair.exists && (pair.bodyA == id.index || pair.bodyB == id.index)) CombineMaterials(world_, i);
-    }
+    VisitPairsOf(world_, {&id.index, 1}, [&](uint32_t first) {
+        for (uint32_t pair = first; pair != PairStore::kNone; pair = world_.pairs.pairs[pair].more) CombineMaterials(world_, pair);
+    });
     WakeBody(world_, id.index);
     WakeNeighbours(world_, id.index);
     return Done{};
@@ -308,10 +308,7 @@ Status BodyInterface::SetSensor(BodyId id, bool isSensor) {
         return Error{ErrorCode::Unsupported, "the body has continuous collision; a sensor touches nothing, and is not cast"};
     WakeBody(world_, id.index);
     WakeNeighbours(world_, id.index);
-    for (uint32_t i = 0; i < world_.pairs.pairs.size(); ++i) {
-        const Pair& pair = world_.pairs.pairs[i];
-        if (pair.exists && !pair.isMore && (pair.bodyA == id.index || pair.bodyB == id.index)) RemovePair(world_, i);
-    }
+    VisitPairsOf(world_, {&id.index, 1}, [&](uint32_t pair) { RemovePair(world_, pair); });
     cold.isSensor = isSensor;
     MoveToItsTree(world_, id.index);
     WakeNeighbours(world_, id.index);

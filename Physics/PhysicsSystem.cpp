@@ -3,6 +3,7 @@
 #include <Fulcrum/Physics/Islands/UnionFind.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
+#include <Fulcrum/Physics/State/BodyPairs.h>
 #include <Fulcrum/Physics/Validation.h>
 
 #include <algorithm>
@@ -22,12 +23,7 @@ double Milliseconds(Clock::time_point from, Clock::time_point to) {
 // Forgets the bodies that were removed since the last step, and all pairs that they were part of.
 void ForgetRemoved(WorldState& world) {
     if (world.removed.empty() && !world.colliders.movedHasEmpty) return;
-    std::vector<uint32_t> pairs;
-    for (uint32_t body : world.removed)
-        VisitColliders(world, body, [&](uint32_t i) { world.pairs.VisitOf(i, [&](uint32_t pair) { pairs.push_back(pair); }); });
-    std::sort(pairs.begin(), pairs.end());
-    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-    for (uint32_t pair : pairs) RemovePair(world, pair);
+    VisitPairsOf(world, world.removed, [&](uint32_t pair) { RemovePair(world, pair); });
     std::erase_if(world.colliders.moved, [&](uint32_t i) {
         Collider& collider = world.colliders.colliders[i];
         const bool isGone = !world.colliders.shapes[i].shape || world.bodies.cold[collider.body].removed;

@@ -3,6 +3,7 @@
 // forbids are removed here, and those that it allows are found by the search that follows.
 #include <Fulcrum/Physics/ContactListener.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
+#include <Fulcrum/Physics/State/BodyPairs.h>
 
 #include <algorithm>
 
@@ -14,15 +15,12 @@ bool IsForbidden(const WorldState& world, const Pair& pair) {
     return !FiltersAllow(world, pair.bodyA, pair.bodyB) || !ListenerAllows(world, pair.bodyA, pair.bodyB);
 }
 
-template <class Chooses>
-void RemoveForbidden(WorldState& world, Chooses&& chooses) {
-    for (uint32_t i = 0; i < world.pairs.pairs.size(); ++i) {
-        const Pair& pair = world.pairs.pairs[i];
-        if (!pair.exists || pair.isMore || !chooses(pair) || !IsForbidden(world, pair)) continue;
-        WakeBody(world, pair.bodyA);
-        WakeBody(world, pair.bodyB);
-        RemovePair(world, i);
-    }
+void RemoveIfForbidden(WorldState& world, uint32_t index) {
+    const Pair& pair = world.pairs.pairs[index];
+    if (!IsForbidden(world, pair)) return;
+    WakeBody(world, pair.bodyA);
+    WakeBody(world, pair.bodyB);
+    RemovePair(world, index);
 }
 
 }  // namespace
@@ -43,12 +41,13 @@ bool ListenerAllows(const WorldState& world, uint32_t bodyA, uint32_t bodyB) {
 }
 
 void RemoveForbiddenPairs(WorldState& world, uint32_t body) {
-    RemoveForbidden(world, [&](const Pair& pair) { return pair.bodyA == body || pair.bodyB == body; });
+    VisitPairsOf(world, {&body, 1}, [&](uint32_t pair) { RemoveIfForbidden(world, pair); });
 }
 
 void ChangeListener(WorldState& world, const ContactListener* listener) {
     world.listener = listener;
-    RemoveForbidden(world, [](const Pair&) { return true; });
+    for (uint32_t i = 0; i < world.pairs.pairs.size(); ++i)
+        if (world.pairs.pairs[i].exists && !world.pairs.pairs[i].isMore) RemoveIfForbidden(world, i);
     // What the last one said of contacts, and of bodies that therefore have no pair.
     for (uint32_t i = 0; i < world.pairs.pairs.size(); ++i) {
         if (!world.pairs.pairs[i].exists) continue;

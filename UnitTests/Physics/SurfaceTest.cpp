@@ -286,5 +286,20 @@ TEST(Surface, WhatLiesInAHoleFallsThrough) {
     EXPECT_NEAR(world.PositionOf(stays).y(), 0.2, 1e-3);
 }
 
+// A ball at rest in a groove keeps its two manifolds, both of one pair. Once it has no friction, a push does not turn it.
+TEST(Surface, AMaterialSetLaterReachesAllManifoldsOfAPair) {
+    TestWorld world(NoSleep());
+    AddGround(world, Grid(8, 1, -4, -4, [](float x, float) { return std::fabs(x); }).Mesh());
+    const BodyId ball = world.Add({.shape = SphereOf(0.3f), .position = {0, 0.3 * std::sqrt(2.0), -3}});
+    world.Steps(30);
+    ASSERT_TRUE(world.Bodies().SetMaterial(ball, {.friction = 0}));
+    ASSERT_TRUE(world.Bodies().SetVelocity(ball, Vector3(0, 0, 1), Vector3::Zero()));
+    world.Step();
+    EXPECT_GT(world.Report().keptManifolds, 0u);
+    world.Steps(30);
+    EXPECT_LT(Length(world.Bodies().GetAngularVelocity(ball)), 1e-3f);
+    EXPECT_NEAR(world.VelocityOf(ball).z(), 1, 1e-3f);
+}
+
 }  // namespace
 }  // namespace fulcrum::testing
