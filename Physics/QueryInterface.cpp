@@ -1,6 +1,7 @@
 #include <Fulcrum/Physics/QueryInterface.h>
 
 #include <Fulcrum/Collision/Queries/Distance.h>
+#include <Fulcrum/Collision/Queries/Pieces.h>
 #include <Fulcrum/Physics/Queries/ColliderSearch.h>
 
 #include <algorithm>
@@ -69,11 +70,6 @@ TreeRay SweptBounds(const WorldState& world, const ShapeCaster& caster, const Po
 
 Bounds TreeBounds(const WorldState& world, const Position& lower, const Position& upper) {
     return RoundedOutwards(lower - OriginOf(world), upper - OriginOf(world));
-}
-
-Bounds TreeBounds(const WorldState& world, const Shape& shape, const Pose& centre) {
-    const Bounds turned = BoundsAt({Vector3::Zero(), centre.rotation}, shape.LocalBounds());
-    return TreeBounds(world, centre.position + turned.lower.cast<double>(), centre.position + turned.upper.cast<double>());
 }
 
 }  // namespace
@@ -205,7 +201,7 @@ void QueryInterface::VisitOverlaps(const PlacedShape& shape, FunctionRef<bool(co
     const Pose pose = CentrePoseOf(*shape.shape, shape.pose);
     if (!IsUsable(pose)) return;
     const ColliderSearch search(world_, filter);
-    const Bounds bounds = TreeBounds(world_, *shape.shape, pose);
+    const Bounds bounds = BoundsAbout(OriginOf(world_), *shape.shape, pose);
     bool goOn = true;
     search.Run([&](const BoundsTree& tree, const auto& found) { tree.Query(bounds, found); },
                [&](uint32_t collider) {
@@ -249,7 +245,7 @@ bool QueryInterface::FindClosest(const PlacedShape& shape, float maxDistance, Wo
     const Pose pose = CentrePoseOf(*shape.shape, shape.pose);
     if (!IsUsable(pose) || !(maxDistance >= 0)) return false;
     const ColliderSearch search(world_, filter);
-    const Bounds bounds = TreeBounds(world_, *shape.shape, pose);
+    const Bounds bounds = BoundsAbout(OriginOf(world_), *shape.shape, pose);
     float limit = maxDistance;
     uint32_t bestCollider = ~0u;
     ClosestPoints best;

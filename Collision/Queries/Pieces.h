@@ -45,6 +45,13 @@ inline Bounds BoundsAt(const RelativePose& pose, const Bounds& bounds) {
     return b;
 }
 
+// Bounds, measured from `origin`, of a shape whose centre frame is at `centre`; rounded outwards.
+inline Bounds BoundsAbout(const Position& origin, const Shape& shape, const Pose& centre) {
+    const Bounds turned = BoundsAt({Vector3::Zero(), centre.rotation}, shape.LocalBounds());
+    const Position at = centre.position - origin;
+    return RoundedOutwards(at + turned.lower.cast<double>(), at + turned.upper.cast<double>());
+}
+
 // Calls visit(const Piece&) for the pieces whose boxes overlap `box`, which is in the shape's frame; a convex shape is its own
 // piece and always visited. Not for half spaces.
 template <class Visitor>

@@ -1,6 +1,7 @@
 #include <Fulcrum/Physics/Stages/SensorVisits.h>
 
 #include <Fulcrum/Collision/Queries/Distance.h>
+#include <Fulcrum/Collision/Queries/Pieces.h>
 #include <Fulcrum/Collision/Queries/ShapeCast.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
 #include <Fulcrum/Physics/Stages/PlacedConvex.h>
@@ -21,12 +22,7 @@ constexpr float kSameTime = 1e-6f;
 
 Vector3 Between(const Position& from, const Position& to) { return (to - from).cast<float>(); }
 
-// As in the trees, measured from `origin`.
-Bounds BoundsOf(const Shape& shape, const Pose& centre, const Position& origin) {
-    const Bounds turned = BoundsAt({Vector3::Zero(), centre.rotation}, shape.LocalBounds());
-    const Position at = centre.position - origin;
-    return RoundedOutwards(at + turned.lower.cast<double>(), at + turned.upper.cast<double>());
-}
+Pose PoseOf(const ColliderShape& piece, const Pose& body) { return piece.offset ? body * piece.local : body; }
 
 // A piece of a body on a straight part of its way.
 struct Mover {
@@ -35,7 +31,7 @@ struct Mover {
     const ColliderShape& piece;
 
     Pose BodyAt(float time) const { return way.PoseAt(part, time); }
-    Pose PieceAt(float time) const { return piece.offset ? BodyAt(time) * piece.local : BodyAt(time); }
+    Pose PieceAt(float time) const { return PoseOf(piece, BodyAt(time)); }
     bool IsStill() const { return part.course.displacement.isZero(0) && part.course.turn.isZero(0); }
     // rad; what no one can see of a ball is none.
     float Angle(float from, float until) const {
@@ -224,14 +220,10 @@ bool CentresTell(const Shape& sensor, const Shape& body, const Vector3& centre) 
 }  // namespace
 
 bool OverlapAtEnd(const WorldState& world, uint32_t sensor, uint32_t body) {
-    const auto pieceOf = [&](uint32_t b) -> const ColliderShape& { return world.colliders.shapes[world.bodies.cold[b].firstCollider]; };
-    const auto poseOf = [&](uint32_t b) {
-        const Pose pose = world.bodies.CentrePoseOf(b);
-        return pieceOf(b).offset ? pose * pieceOf(b).local : pose;
-    };
-    const Shape &a = *pieceOf(sensor).shape, &b = *pieceOf(body).shape;
-    const RelativePose relative = Relative(poseOf(sensor), poseOf(body));
-    return CentresTell(a, b, relative.position) || Overlap(a, b, relative);
+    const ColliderShape a = PieceOf(world, world.bodies.cold[sensor].firstCollider);
+    const ColliderShape b = PieceOf(world, world.bodies.cold[body].firstCollider);
+    const RelativePose relative = Relative(PoseOf(a, world.bodies.CentrePoseOf(sensor)), PoseOf(b, world.bodies.CentrePoseOf(body)));
+    return CentresTell(*a.shape, *b.shape, relative.position) || Overlap(*a.shape, *b.shape, relative);
 }
 
 Bounds PieceBounds(const WorldState& world, const Way& way, uint32_t collider) {
@@ -240,9 +232,9 @@ Bounds PieceBounds(const WorldState& world, const Way& way, uint32_t collider) {
     const Position& origin = world.colliders.boundsOrigin;
     for (const WayPart& part : way.Parts()) {
         const Mover mover{way, part, piece};
-        Bounds ends = BoundsOf(*mover.piece.shape, mover.PieceAt(part.course.from), origin);
+        Bounds ends = BoundsAbout(origin, *mover.piece.shape, mover.PieceAt(part.course.from));
         const float angle = mover.Angle(part.course.from, part.until);
-        if (!mover.IsStill()) ends.Include(BoundsOf(*mover.piece.shape, mover.PieceAt(part.until), origin));
+        if (!mover.IsStill()) ends.Include(BoundsAbout(origin, *mover.piece.shape, mover.PieceAt(part.until)));
         // A point at the distance r from the centre leaves the straight line between its ends by at most r (1 - cos(angle / 2)).
         bounds.Include(Inflated(ends, std::min(0.125f * angle * angle, 2.0f) * mover.Radius()));
     }
