@@ -1,9 +1,11 @@
-// Random places and rotations for tests and kernels: from the engine's bits alone, so the same on every machine. One thread.
+// Random numbers, places and rotations for tests and kernels: from the engine's bits alone, so the same on every machine, unlike
+// the distributions of <random>. One thread.
 #pragma once
 
 #include <Fulcrum/Math/Quaternion.h>
 
 #include <cmath>
+#include <cstdint>
 #include <random>
 
 namespace fulcrum::testing {
@@ -11,13 +13,17 @@ namespace fulcrum::testing {
 class RandomPoses {
 public:
     explicit RandomPoses(uint32_t seed) : engine_(seed) {}
+    // Uniform in [low, high).
     float Between(float low, float high) {
         return low + (high - low) * static_cast<float>(engine_() >> 8) * (1.0f / 16777216.0f);
     }
-    Vector3 InCube() {
-        const float x = Between(-1, 1), y = Between(-1, 1), z = Between(-1, 1);
+    bool Chance(float probability) { return Between(0, 1) < probability; }
+    uint32_t Below(uint32_t count) { return static_cast<uint32_t>(engine_() % count); }
+    Vector3 InBox(float half) {
+        const float x = Between(-half, half), y = Between(-half, half), z = Between(-half, half);
         return Vector3(x, y, z);
     }
+    Vector3 InCube() { return InBox(1); }
     Vector3 Direction() {
         for (;;) {
             const Vector3 v = InCube();

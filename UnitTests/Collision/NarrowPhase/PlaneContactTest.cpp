@@ -1,35 +1,21 @@
 #include <Fulcrum/Collision/NarrowPhase/PlaneContact.h>
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
+#include <Fulcrum/UnitTests/Support/RandomPoses.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
-#include <random>
 #include <vector>
 
 namespace fulcrum {
 namespace {
 
-class Random {
-public:
-    float Between(float low, float high) { return std::uniform_real_distribution<float>(low, high)(engine_); }
-    Vector3 InBox(float half) {
-        const float x = Between(-half, half), y = Between(-half, half), z = Between(-half, half);
-        return Vector3(x, y, z);
-    }
-    Quaternion Rotation() {
-        const Vector3 v = InBox(1);
-        return Normalized(Quaternion{v.x(), v.y(), v.z(), Between(-1, 1) + 0.01f});
-    }
-
-private:
-    std::mt19937 engine_{1};
-};
+using testing::RandomPoses;
 
 std::vector<std::shared_ptr<const ConvexShape>> Shapes() {
-    Random random;
+    RandomPoses random(1);
     std::vector<Vector3> points;
     for (int i = 0; i < 60; ++i) points.push_back(random.InBox(1));
     return {Sphere::Create(0.5f).Value(), Capsule::Create(0.6f, 0.3f).Value(), Box::Create(Vector3(0.5f, 0.75f, 1)).Value(),
@@ -56,7 +42,7 @@ TEST(Plane, IsBoundedByItsSurfaceAlone) {
 // The deepest point is the support point, on every shape in every pose; each point lies on the plane, with the shape's own
 // surface a separation above. Rounding: a few units in the last place of coordinates of up to 5 m, 1e-6 m.
 TEST(PlaneContact, HasTheSupportPointAndPointsOnThePlane) {
-    Random random;
+    RandomPoses random(1);
     const CollideSettings settings;
     for (const auto& shape : Shapes()) {
         int touching = 0, several = 0;

@@ -3,11 +3,11 @@
 
 #include <Fulcrum/Collision/Shapes/RayTriangle.h>
 #include <Fulcrum/Collision/Shapes/TriangleMesh.h>
+#include <Fulcrum/UnitTests/Support/RandomPoses.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <random>
 #include <vector>
 
 namespace fulcrum {
@@ -69,23 +69,14 @@ inline IndexedTriangles BallOf(uint32_t rings, uint32_t sectors, float radius) {
     return mesh;
 }
 
-class SurfaceRandom {
+class SurfaceRandom : public testing::RandomPoses {
 public:
-    explicit SurfaceRandom(uint32_t seed) : engine_(seed) {}
-    float Between(float low, float high) { return std::uniform_real_distribution<float>(low, high)(engine_); }
-    uint32_t Below(uint32_t count) { return std::uniform_int_distribution<uint32_t>(0, count - 1)(engine_); }
-    Vector3 InBox(float half) {
-        const float x = Between(-half, half), y = Between(-half, half), z = Between(-half, half);
-        return Vector3(x, y, z);
-    }
+    using RandomPoses::RandomPoses;
     Vector3 InBounds(const Bounds& b) {
         const float x = Between(b.lower.x(), b.upper.x()), y = Between(b.lower.y(), b.upper.y()),
                     z = Between(b.lower.z(), b.upper.z());
         return Vector3(x, y, z);
     }
-
-private:
-    std::mt19937 engine_;
 };
 
 // Triangles of random sizes anywhere, none sharing a vertex.

@@ -12,9 +12,9 @@ constexpr uint32_t kContacts = 61;  // no multiple of any number of lanes
 
 // Every third contact has a surface that moves.
 void MoveSurfaces(RandomContacts& contacts, uint32_t seed) {
-    Random random(seed);
+    RandomPoses random(seed);
     for (size_t i = 0; i < contacts.records.size(); i += 3) {
-        const Vector3 linear = random.Vector(2.0f), angular = random.Vector(2.0f);
+        const Vector3 linear = random.InBox(2.0f), angular = random.InBox(2.0f);
         contacts.records[i].SetSurfaceVelocity(linear, angular);
     }
 }

@@ -18,11 +18,11 @@ struct RandomContacts {
 
     // fixedB: the second bodies have no mass.
     RandomContacts(uint32_t count, bool fixedB, uint32_t seed) {
-        Random random(seed);
+        RandomPoses random(seed);
         for (uint32_t i = 0; i < count; ++i) {
-            const Vector3 place = random.Vector(5.0f);
+            const Vector3 place = random.InBox(5.0f);
             AddBody(random, place, false);
-            AddBody(random, Vector3(place + random.Direction()), fixedB);
+            AddBody(random, Vector3(place + AnyDirection(random)), fixedB);
             AddRecord(random, 2 * i);
         }
     }
@@ -49,7 +49,7 @@ struct RandomContacts {
     }
 
 private:
-    void AddBody(Random& random, const Vector3& place, bool fixed) {
+    void AddBody(RandomPoses& random, const Vector3& place, bool fixed) {
         const RandomBody body = MakeBody(random);
         BodyState state;
         BodyMass mass;
@@ -66,8 +66,8 @@ private:
             mass.inverseMass = body.mass.mass;
             pose.acceleration[1] = -9.81f;
         }
-        const Vector3 axis = random.Direction();
-        const float w = random.Number(-1.0f, 1.0f);
+        const Vector3 axis = AnyDirection(random);
+        const float w = random.Between(-1.0f, 1.0f);
         const Quaternion q = Normalized(Quaternion{axis.x(), axis.y(), axis.z(), w});
         const float rotation[4] = {q.x, q.y, q.z, q.w};
         for (int k = 0; k < 4; ++k) pose.rotation[k] = rotation[k];
@@ -76,19 +76,19 @@ private:
         poses.push_back(pose);
     }
 
-    void AddRecord(Random& random, uint32_t bodyA) {
+    void AddRecord(RandomPoses& random, uint32_t bodyA) {
         const Pose a = PoseOf(bodyA), b = PoseOf(bodyA + 1);
         const Vector3 between((b.position - a.position).cast<float>());
         const Vector3 normal = Normalized(between), t1 = Perpendicular(normal), t2 = Cross<float>(normal, t1);
         const Vector3 inA = InverseRotate(a.rotation, normal);
         ContactRecord record;
-        const int count = 1 + static_cast<int>(random.Number(0.0f, 3.999f));
+        const int count = 1 + static_cast<int>(random.Between(0.0f, 3.999f));
         record.pointCount = static_cast<float>(count);
-        record.friction = random.Number(0.0f, 1.0f);
-        record.restitution = random.Chance(0.5f) ? random.Number(0.0f, 1.0f) : 0.0f;
-        record.twistRadius = random.Number(0.0f, 0.5f);
+        record.friction = random.Between(0.0f, 1.0f);
+        record.restitution = random.Chance(0.5f) ? random.Between(0.0f, 1.0f) : 0.0f;
+        record.twistRadius = random.Between(0.0f, 0.5f);
         for (int i = 0; i < count; ++i) {
-            const float u = random.Number(-0.5f, 0.5f), v = random.Number(-0.5f, 0.5f), gap = random.Number(-0.02f, 0.02f);
+            const float u = random.Between(-0.5f, 0.5f), v = random.Between(-0.5f, 0.5f), gap = random.Between(-0.02f, 0.02f);
             const Vector3 armA = normal * 0.5f + t1 * u + t2 * v;
             const Vector3 onA = InverseRotate(a.rotation, armA);
             const Vector3 onB = InverseRotate(b.rotation, Vector3(armA + normal * gap - between));
@@ -96,12 +96,12 @@ private:
                 record.points[i].onA[k] = onA[k];
                 record.points[i].onB[k] = onB[k];
             }
-            record.impulse[i] = random.Number(0.0f, 1.0f);
+            record.impulse[i] = random.Between(0.0f, 1.0f);
         }
         for (int k = 0; k < 3; ++k) record.normal[k] = inA[k];
-        const Vector3 friction = t1 * random.Number(-0.3f, 0.3f);
+        const Vector3 friction = t1 * random.Between(-0.3f, 0.3f);
         for (int k = 0; k < 3; ++k) record.frictionImpulse[k] = friction[k];
-        record.twistImpulse = random.Number(-0.1f, 0.1f);
+        record.twistImpulse = random.Between(-0.1f, 0.1f);
         records.push_back(record);
     }
 };

@@ -15,7 +15,7 @@ inline Quaternion About(const Vector3& axis, float angle) { return RotationFromV
 inline Quaternion AboutX(float angle) { return About(Vector3(1, 0, 0), angle); }
 inline Quaternion AboutY(float angle) { return About(Vector3(0, 1, 0), angle); }
 inline Quaternion AboutZ(float angle) { return About(Vector3(0, 0, 1), angle); }
-inline Quaternion RandomRotation(Random& random) { return About(random.Direction(), random.Number(-3.0f, 3.0f)); }
+inline Quaternion RandomRotation(RandomPoses& random) { return About(AnyDirection(random), random.Between(-3.0f, 3.0f)); }
 
 // Bodies A and B, each with an anchor and a frame in its own coordinates.
 struct JointBodies {
@@ -27,12 +27,12 @@ struct JointBodies {
     Vector3 turned[2] = {Vector3::Zero(), Vector3::Zero()};  // rad, in the step before
     float dt = 1.0f / 60.0f;
 
-    static JointBodies AtRandom(Random& random) {
+    static JointBodies AtRandom(RandomPoses& random) {
         JointBodies bodies;
         for (int i = 0; i < 2; ++i) {
-            bodies.place[i] = random.Vector(3.0f).cast<double>();
+            bodies.place[i] = random.InBox(3.0f).cast<double>();
             bodies.rotation[i] = RandomRotation(random);
-            bodies.anchor[i] = random.Vector(1.0f);
+            bodies.anchor[i] = random.InBox(1.0f);
             bodies.frame[i] = RandomRotation(random);
         }
         return bodies;

@@ -27,7 +27,7 @@ TEST(LockJoint, HasLocksAndNoRows) {
 }
 
 TEST(DistanceJoint, RowsAreTheDerivativeOfTheDistance) {
-    Random random(1);
+    RandomPoses random(1);
     for (int i = 0; i < kPoses; ++i) {
         const JointBodies bodies = JointBodies::AtRandom(random);
         const DistanceJoint joint(0.7f, 0.7f, {});
@@ -69,10 +69,10 @@ TEST(DistanceJoint, ARopeThatSwingsFastIsCaughtInTime) {
 }
 
 TEST(HingeJoint, RowsAreTheDerivativeOfTheAngle) {
-    Random random(2);
+    RandomPoses random(2);
     for (int i = 0; i < kPoses; ++i) {
         JointBodies bodies = JointBodies::AtRandom(random);
-        const float angle = random.Number(-3.0f, 3.0f);
+        const float angle = random.Between(-3.0f, 3.0f);
         bodies.PlaceB(Vector3::Zero(), AboutX(angle));
         HingeJoint joint(Driven(MotorMode::ToPosition, 0.5f));
         joint.Start(bodies.Pose());
@@ -86,7 +86,7 @@ TEST(HingeJoint, RowsAreTheDerivativeOfTheAngle) {
 TEST(HingeJoint, CountsAHundredThousandTurnsAtAnySpeed) {
     // Frames that are not the bodies', so that products of rotations round; half a turn a step is 188 rad/s, so that only
     // the way of the step tells the turn. The angle is known to some units of 1e-7, however many turns there were.
-    Random random(3);
+    RandomPoses random(3);
     JointBodies bodies = JointBodies::AtRandom(random);
     HingeJoint joint(Driven(MotorMode::ToPosition, 0.0f));
     bodies.PlaceB(Vector3::Zero(), {});
@@ -136,10 +136,10 @@ TEST(HingeJoint, LimitsAtHalfATurnStopThere) {
 }
 
 TEST(SliderJoint, RowsAreTheDerivativeOfTheWay) {
-    Random random(4);
+    RandomPoses random(4);
     for (int i = 0; i < kPoses; ++i) {
         JointBodies bodies = JointBodies::AtRandom(random);
-        const float way = random.Number(-2.0f, 2.0f);
+        const float way = random.Between(-2.0f, 2.0f);
         bodies.PlaceB(Vector3(way, 0, 0), {});
         const SliderJoint joint(Driven(MotorMode::ToPosition, 0.5f));
         SliderJoint copy = joint;
@@ -149,11 +149,11 @@ TEST(SliderJoint, RowsAreTheDerivativeOfTheWay) {
 }
 
 TEST(ConeJoint, RowsAreTheDerivativeOfTheAngleBetweenTheAxes) {
-    Random random(5);
+    RandomPoses random(5);
     for (int i = 0; i < kPoses; ++i) {
         JointBodies bodies = JointBodies::AtRandom(random);
-        const float angle = random.Number(0.2f, 2.9f);
-        bodies.PlaceB(Vector3::Zero(), AboutX(random.Number(-3, 3)) * AboutY(angle) * AboutX(random.Number(-3, 3)));
+        const float angle = random.Between(0.2f, 2.9f);
+        bodies.PlaceB(Vector3::Zero(), AboutX(random.Between(-3, 3)) * AboutY(angle) * AboutX(random.Between(-3, 3)));
         const ConeJoint joint(0.1f, {});
         ConeJoint copy = joint;
         EXPECT_NEAR(RowsOf(copy, bodies.Pose())[kHigh].error, 0.1f - angle, 1e-5f);
@@ -187,10 +187,10 @@ TEST(ConeJoint, HasOneRowNearItsLimitAndAWayBackFromTheOppositeSide) {
 }
 
 TEST(GearJoint, RowIsTheDerivativeOfThePhase) {
-    Random random(6);
+    RandomPoses random(6);
     for (int i = 0; i < kPoses; ++i) {
         const JointBodies bodies = JointBodies::AtRandom(random);
-        GearJoint joint(random.Number(-3.0f, 3.0f));
+        GearJoint joint(random.Between(-3.0f, 3.0f));
         joint.Start(bodies.Pose());
         ExpectJacobiansOf(joint, bodies);
     }
@@ -198,7 +198,7 @@ TEST(GearJoint, RowIsTheDerivativeOfThePhase) {
 
 TEST(GearJoint, LosesNoTeethOverAHundredThousandTurns) {
     // A turns 1e5 times against B, a wheel of ratio 2.5. The angles round to 4e-7 rad, times the ratio.
-    Random random(7);
+    RandomPoses random(7);
     JointBodies bodies = JointBodies::AtRandom(random);
     const Quaternion start[2] = {bodies.FrameOf(0), bodies.FrameOf(1)};
     GearJoint joint(2.5f);
@@ -238,10 +238,10 @@ TEST(GearJoint, CarryingTheAxesAboutAddsNoTurn) {
 }
 
 TEST(RackAndPinionJoint, RowIsTheDerivativeOfThePhase) {
-    Random random(8);
+    RandomPoses random(8);
     for (int i = 0; i < kPoses; ++i) {
         const JointBodies bodies = JointBodies::AtRandom(random);
-        RackAndPinionJoint joint(random.Number(0.5f, 4.0f));
+        RackAndPinionJoint joint(random.Between(0.5f, 4.0f));
         joint.Start(bodies.Pose());
         ExpectJacobiansOf(joint, bodies, 3e-3f);
     }
@@ -262,10 +262,10 @@ TEST(RackAndPinionJoint, RollsWithoutSlipping) {
 }
 
 TEST(PulleyJoint, RowsAreTheDerivativeOfTheLength) {
-    Random random(9);
+    RandomPoses random(9);
     for (int i = 0; i < kPoses; ++i) {
         const JointBodies bodies = JointBodies::AtRandom(random);
-        const float ratio = random.Number(0.5f, 3.0f);
+        const float ratio = random.Between(0.5f, 3.0f);
         const PulleyJoint joint(Position(-2, 8, 0), Position(2, 8, 0), ratio, 1.0f, 1.0f);
         PulleyJoint copy = joint;
         const double length = (bodies.AnchorOf(0) - Position(-2, 8, 0)).norm() +
@@ -296,11 +296,11 @@ TEST(PulleyJoint, IsTautAtTheLengthItBeganWith) {
 }
 
 TEST(WheelJoint, RowsAreTheDerivativesOfItsAngles) {
-    Random random(10);
+    RandomPoses random(10);
     for (int i = 0; i < kPoses; ++i) {
         JointBodies bodies = JointBodies::AtRandom(random);
-        const float steering = random.Number(-0.6f, 0.6f), tilt = random.Number(-0.3f, 0.3f), spin = random.Number(-3, 3);
-        bodies.PlaceB(Vector3(0, random.Number(-0.2f, 0.2f), 0), AboutY(steering) * AboutZ(tilt) * AboutX(spin));
+        const float steering = random.Between(-0.6f, 0.6f), tilt = random.Between(-0.3f, 0.3f), spin = random.Between(-3, 3);
+        bodies.PlaceB(Vector3(0, random.Between(-0.2f, 0.2f), 0), AboutY(steering) * AboutZ(tilt) * AboutX(spin));
         const AxisControl motor = Driven(MotorMode::ToPosition, 0.0f);
         WheelJoint joint(motor, true, motor, motor);
         joint.Start(bodies.Pose());

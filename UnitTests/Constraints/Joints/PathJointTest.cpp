@@ -120,15 +120,15 @@ void PlaceOnPath(JointBodies& bodies, const Path& path, double t, const Quaterni
 }
 
 TEST(PathJoint, RowsAreTheDerivativesOfWhatIsOffThePath) {
-    Random random(16);
+    RandomPoses random(16);
     AxisControl motor = Driven(MotorMode::ToPosition, 1.0f);
     for (const PathPointer& path : {MakeLoop(), MakeBow()})
         for (const PathRotation rotation : {PathRotation::Free, PathRotation::Tangent, PathRotation::TangentAndNormal})
             for (int i = 0; i < 10; ++i) {
                 JointBodies bodies = JointBodies::AtRandom(random);
-                const double t = static_cast<double>(random.Number(0.2f, 1.7f));
+                const double t = static_cast<double>(random.Between(0.2f, 1.7f));
                 const bool spins = rotation != PathRotation::TangentAndNormal;
-                PlaceOnPath(bodies, *path, t, spins ? AboutX(random.Number(-3, 3)) : Quaternion{});
+                PlaceOnPath(bodies, *path, t, spins ? AboutX(random.Between(-3, 3)) : Quaternion{});
                 PathJoint joint(path, motor, rotation);
                 joint.Start(bodies.Pose());
                 EXPECT_NEAR(joint.Coordinate(JointAxis::LinearX, bodies.Pose()), path->LengthAt(t), 1e-5);

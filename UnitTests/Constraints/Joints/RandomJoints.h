@@ -185,7 +185,7 @@ public:
 private:
     enum class Kind : uint8_t { Dynamic, Kinematic, Static };
 
-    uint32_t Below(uint32_t n) { return std::min(static_cast<uint32_t>(random_.Number(0.0f, static_cast<float>(n))), n - 1); }
+    uint32_t Below(uint32_t n) { return std::min(static_cast<uint32_t>(random_.Between(0.0f, static_cast<float>(n))), n - 1); }
 
     int LocksOf(uint32_t joint) const {
         const JointLocks locks = types[joint]->Locks();
@@ -212,11 +212,11 @@ private:
     }
 
     Vector3 Vector(float size) {
-        const Vector3 v = random_.Vector(size);
+        const Vector3 v = random_.InBox(size);
         return options_.inPlane ? Vector3(v.x(), v.y(), std::copysign(0.0f, v.z())) : v;
     }
     Vector3 Turning(float size) {
-        const Vector3 v = random_.Vector(size);
+        const Vector3 v = random_.InBox(size);
         return options_.inPlane ? Vector3(std::copysign(0.0f, v.x()), std::copysign(0.0f, v.y()), v.z()) : v;
     }
 
@@ -237,18 +237,18 @@ private:
         const float q[4] = {rotation.x, rotation.y, rotation.z, rotation.w};
         std::copy(q, q + 4, pose.rotation);
         if (kind != Kind::Dynamic) return;
-        const float a = random_.Number(2.0f, 9.0f), b = random_.Number(2.0f, 9.0f), c = random_.Number(2.0f, 9.0f);
+        const float a = random_.Between(2.0f, 9.0f), b = random_.Between(2.0f, 9.0f), c = random_.Between(2.0f, 9.0f);
         const SymmetricMatrix3 inertia = RotatedDiagonal(ToMatrix(rotation), Vector3(a, b, c));
         const float rows[6] = {inertia.xx, inertia.yy, inertia.zz, inertia.xy, inertia.xz, inertia.yz};
         std::copy(rows, rows + 6, masses[body].inverseInertia);
-        masses[body].inverseMass = random_.Number(0.5f, 2.0f);
-        masses[body].turns = random_.Number(0.0f, 1.0f) < 0.3f ? 1.0f : 0.0f;
+        masses[body].inverseMass = random_.Between(0.5f, 2.0f);
+        masses[body].turns = random_.Between(0.0f, 1.0f) < 0.3f ? 1.0f : 0.0f;
     }
 
     void Add(uint32_t joint, const JointCase& how) {
         const auto turned = [](const Vector3& v) { return RotationFromVector(v); };
         const uint32_t a = places_[2 * joint], b = places_[2 * joint + 1];
-        const float kind = random_.Number(0.0f, 1.0f);
+        const float kind = random_.Between(0.0f, 1.0f);
         const Kind kindOfB = !options_.someFixed || kind < 0.7f ? Kind::Dynamic : kind < 0.85f ? Kind::Kinematic : Kind::Static;
         const Vector3 anchorA = Vector(0.5f), anchorB = Vector(0.5f);
         const Quaternion rotationA = turned(Turning(2.0f)), inA = turned(Turning(2.0f)), inB = turned(Turning(2.0f));
@@ -273,7 +273,7 @@ private:
         pose.anchorA = Vector3(placeA + armA).cast<double>();
         type.Start(pose);
         if (type.MaxRows() > 0)
-            for (float& impulse : type.impulses) impulse = random_.Number(-0.05f, 0.05f);
+            for (float& impulse : type.impulses) impulse = random_.Between(-0.05f, 0.05f);
 
         JointRecord& record = records[joint];
         const Vector3 force = Vector(0.1f), torque = Turning(0.1f);
@@ -290,7 +290,7 @@ private:
         record.freeAxis = type.Locks().axis;
     }
 
-    Random random_;
+    RandomPoses random_;
     Options options_;
     std::vector<uint32_t> places_;
     std::vector<Kind> kinds_;

@@ -57,12 +57,12 @@ TEST(SwingTwistJoint, WithOneFreeAxisItIsAHingeThatCountsTurns) {
 TEST(SwingTwistJoint, LimitRowsAreTheDerivativesOfTheWayToTheEdge) {
     // Every row is there: flat edges are reached by the speed; curved ones, which are seen from where the swing goes, are near.
     // Edges bend; and the twist's J is exact at its limit only, off by half of the way to it.
-    Random random(11);
+    RandomPoses random(11);
     for (const SwingShape shape : {SwingShape::Ellipse, SwingShape::Pyramid})
         for (int i = 0; i < 30; ++i) {
             JointBodies bodies = JointBodies::AtRandom(random);
             const bool curved = shape == SwingShape::Ellipse;
-            const float edge = 0.8f + random.Number(curved ? -0.02f : -0.05f, 0.15f), side = random.Number(-0.3f, 0.3f);
+            const float edge = 0.8f + random.Between(curved ? -0.02f : -0.05f, 0.15f), side = random.Between(-0.3f, 0.3f);
             bodies.PlaceB(Vector3::Zero(), RotationFromVector(Vector3(0, edge, side)));
             if (!curved) bodies.velocity[1].angular = Vector3(40, 40, 40);
             const SwingTwistJoint joint(Limited(-0.004f, 0.004f), Limited(-0.8f, 0.8f), Limited(-1.2f, 1.2f), shape);
@@ -118,13 +118,13 @@ TEST(SwingTwistJoint, ComesBackFromTheOppositeSide) {
 }
 
 TEST(SwingTwistJoint, PositionMotorsTurnToTheTargetTheShortestWay) {
-    Random random(12);
+    RandomPoses random(12);
     AxisControl motor = Driven(MotorMode::ToPosition, 0.0f);
     for (int i = 0; i < 30; ++i) {
         SwingTwistJoint joint(motor, motor, motor, SwingShape::Ellipse);
         const Quaternion target = RandomRotation(random);
         joint.SetTargetOrientation(target);
-        const Vector3 off = random.Direction() * random.Number(0.01f, 3.0f);
+        const Vector3 off = AnyDirection(random) * random.Between(0.01f, 3.0f);
         JointBodies bodies = JointBodies::AtRandom(random);
         bodies.PlaceB(Vector3::Zero(), target * RotationFromVector(off));
         auto rows = RowsOf(joint, bodies.Pose());
@@ -141,14 +141,14 @@ TEST(SwingTwistJoint, PositionMotorsTurnToTheTargetTheShortestWay) {
 
 TEST(SwingTwistJoint, MotorRowsAreTheDerivativesOfTheErrorNearTheTarget) {
     // To first order in the error, which is 0.01: its half is what J leaves out.
-    Random random(13);
+    RandomPoses random(13);
     AxisControl motor = Driven(MotorMode::ToPosition, 0.0f);
     for (int i = 0; i < 10; ++i) {
         SwingTwistJoint joint(motor, motor, motor, SwingShape::Ellipse);
         const Quaternion target = RandomRotation(random);
         joint.SetTargetOrientation(target);
         JointBodies bodies = JointBodies::AtRandom(random);
-        bodies.PlaceB(Vector3::Zero(), target * RotationFromVector(Vector3(random.Direction() * 0.01f)));
+        bodies.PlaceB(Vector3::Zero(), target * RotationFromVector(Vector3(AnyDirection(random) * 0.01f)));
         ExpectJacobiansOf(joint, bodies, 8e-3f);
     }
 }
@@ -217,10 +217,10 @@ TEST(SixDofJoint, SingleLockedAxesAreRows) {
     SixDofJoint joint({locked, free, free, free, locked, free}, SwingShape::Pyramid);
     EXPECT_EQ(joint.Locks(), (JointLocks{LinearLock::None, AngularLock::None, 0, 0}));
     EXPECT_EQ(joint.MaxRows(), 2u);
-    Random random(14);
+    RandomPoses random(14);
     for (int i = 0; i < 30; ++i) {
         JointBodies bodies = JointBodies::AtRandom(random);
-        bodies.PlaceB(random.Vector(1.0f), AboutZ(random.Number(-1, 1)) * AboutY(0.2f) * AboutX(random.Number(-1, 1)));
+        bodies.PlaceB(random.InBox(1.0f), AboutZ(random.Between(-1, 1)) * AboutY(0.2f) * AboutX(random.Between(-1, 1)));
         JointBodies at = bodies;
         SixDofJoint copy = joint;
         auto rows = RowsOf(copy, at.Pose());
@@ -241,7 +241,7 @@ TEST(SixDofJoint, EverythingAtOnceFitsItsSlots) {
 }
 
 TEST(SixDofJoint, LinearRowsAreTheDerivativesOfTheWay) {
-    Random random(15);
+    RandomPoses random(15);
     const AxisControl motor = Driven(MotorMode::ToPosition, 0.3f);
     for (int i = 0; i < 10; ++i) {
         const JointBodies bodies = JointBodies::AtRandom(random);

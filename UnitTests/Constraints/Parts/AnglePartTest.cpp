@@ -10,10 +10,11 @@
 namespace fulcrum {
 namespace {
 
+using testing::AnyDirection;
 using testing::Bits;
 using testing::MakeBody;
-using testing::Random;
 using testing::RandomBody;
+using testing::RandomPoses;
 using testing::SameBits;
 
 constexpr float kNoLimit = std::numeric_limits<float>::max();
@@ -23,7 +24,7 @@ struct Pair {
     Vector3 axis;
     AnglePart<float> part;
 
-    explicit Pair(Random& random) : a(MakeBody(random)), b(MakeBody(random)), axis(random.Direction()) {}
+    explicit Pair(RandomPoses& random) : a(MakeBody(random)), b(MakeBody(random)), axis(AnyDirection(random)) {}
     void SetUp(float bias) { part.CalculateProperties(a.mass, b.mass, axis, bias); }
     bool Solve(float low = -kNoLimit, float high = kNoLimit) {
         return part.SolveVelocity(a.velocity, b.velocity, a.mass, b.mass, axis, low, high);
@@ -39,7 +40,7 @@ double Along(const SymmetricMatrix3& i, const Vector3& axis) {
 }
 
 TEST(AnglePart, EffectiveMassIsThatOfTheWrittenOutProduct) {
-    Random random(1);
+    RandomPoses random(1);
     for (int i = 0; i < 200; ++i) {
         Pair pair(random);
         pair.SetUp(0.0f);
@@ -49,7 +50,7 @@ TEST(AnglePart, EffectiveMassIsThatOfTheWrittenOutProduct) {
 }
 
 TEST(AnglePart, OneSolveMeetsTheBiasAndTurnsNothingElse) {
-    Random random(2);
+    RandomPoses random(2);
     for (int i = 0; i < 200; ++i) {
         Pair pair(random);
         const RandomBody a = pair.a, b = pair.b;
@@ -68,10 +69,10 @@ TEST(AnglePart, OneSolveMeetsTheBiasAndTurnsNothingElse) {
 }
 
 TEST(AnglePart, TotalImpulseIsClamped) {
-    Random random(3);
+    RandomPoses random(3);
     for (int i = 0; i < 50; ++i) {
         Pair pair(random);
-        pair.SetUp(random.Number(-5.0f, 5.0f));
+        pair.SetUp(random.Between(-5.0f, 5.0f));
         for (int iteration = 0; iteration < 4; ++iteration) pair.Solve(-0.02f, 0.03f);
         EXPECT_GE(pair.part.GetTotalLambda(), -0.02f);
         EXPECT_LE(pair.part.GetTotalLambda(), 0.03f);
@@ -80,7 +81,7 @@ TEST(AnglePart, TotalImpulseIsClamped) {
 
 template <BodySide kSide1, BodySide kSide2>
 void ExpectSideIsDynamicWithZeros(uint32_t seed) {
-    Random random(seed);
+    RandomPoses random(seed);
     for (int i = 0; i < 50; ++i) {
         Pair general(random);
         Pair special = general;
@@ -109,7 +110,7 @@ TEST(AnglePart, StaticAndKinematicSides) {
 
 TEST(AnglePart, SpringIsTheMapOfItsSettings) {
     // w^2 = k K, 2 zeta w = c K: J v' = (J v - w^2 h C) / (1 + 2 zeta w h + (w h)^2).
-    Random random(8);
+    RandomPoses random(8);
     const double h = 1.0 / 120.0;
     for (int i = 0; i < 50; ++i) {
         Pair pair(random);
@@ -125,7 +126,7 @@ TEST(AnglePart, SpringIsTheMapOfItsSettings) {
 }
 
 TEST(AnglePart, PositionPassTakesTheBaumgarteShareOfTheError) {
-    Random random(9);
+    RandomPoses random(9);
     Pair pair(random);
     pair.SetUp(0.0f);
     Twist<float> moved1, moved2;
@@ -136,7 +137,7 @@ TEST(AnglePart, PositionPassTakesTheBaumgarteShareOfTheError) {
 }
 
 TEST(AnglePart, WarmStartStateAndDeactivation) {
-    Random random(10);
+    RandomPoses random(10);
     Pair pair(random);
     pair.SetUp(0.0f);
     pair.part.SetTotalLambda(0.8f);

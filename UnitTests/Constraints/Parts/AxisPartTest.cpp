@@ -15,8 +15,8 @@ namespace {
 using testing::Bits;
 using testing::MakeBody;
 using testing::MakeFrame;
-using testing::Random;
 using testing::RandomBody;
+using testing::RandomPoses;
 using testing::SameBits;
 
 constexpr float kNoLimit = std::numeric_limits<float>::max();
@@ -54,7 +54,7 @@ struct Pair {
     AxisFrame<float> frame;
     AxisPart<float> part;
 
-    explicit Pair(Random& random) : a(MakeBody(random)), b(MakeBody(random)), frame(MakeFrame(random)) {}
+    explicit Pair(RandomPoses& random) : a(MakeBody(random)), b(MakeBody(random)), frame(MakeFrame(random)) {}
     void SetUp(float bias) { part.CalculateProperties(a.mass, b.mass, frame, bias); }
     bool Solve(float low = -kNoLimit, float high = kNoLimit) {
         return part.SolveVelocity(a.velocity, b.velocity, a.mass, b.mass, frame.axis, low, high);
@@ -66,7 +66,7 @@ struct Pair {
 constexpr double kRounding = 2e-5;
 
 TEST(AxisPart, EffectiveMassIsThatOfTheWrittenOutProduct) {
-    Random random(1);
+    RandomPoses random(1);
     for (int i = 0; i < 200; ++i) {
         Pair pair(random);
         pair.SetUp(0.0f);
@@ -79,11 +79,11 @@ TEST(AxisPart, EffectiveMassIsThatOfTheWrittenOutProduct) {
 
 // C = (p2 - p1) . n with n carried by body 1: its derivative is J v, u included.
 TEST(AxisPart, JacobianIsTheDerivativeOfTheConstraint) {
-    Random random(2);
+    RandomPoses random(2);
     for (int i = 0; i < 100; ++i) {
         Pair pair(random);
         const Position x1 = pair.a.position.cast<double>(), x2 = pair.b.position.cast<double>();
-        const Position r1 = random.Vector(1.0f).cast<double>(), r2 = pair.frame.r2.cast<double>();
+        const Position r1 = random.InBox(1.0f).cast<double>(), r2 = pair.frame.r2.cast<double>();
         const Position n = pair.frame.axis.cast<double>();
         pair.frame.r1PlusU = (x2 + r2 - x1).cast<float>();
         const auto error = [&](double t) {
@@ -103,10 +103,10 @@ TEST(AxisPart, JacobianIsTheDerivativeOfTheConstraint) {
 }
 
 TEST(AxisPart, OneSolveMeetsTheBias) {
-    Random random(3);
+    RandomPoses random(3);
     for (int i = 0; i < 200; ++i) {
         Pair pair(random);
-        const float bias = random.Number(-2.0f, 2.0f);
+        const float bias = random.Between(-2.0f, 2.0f);
         pair.SetUp(bias);
         EXPECT_TRUE(pair.Solve());
         EXPECT_NEAR(static_cast<double>(pair.Motion() + bias), 0.0, kRounding);
@@ -114,7 +114,7 @@ TEST(AxisPart, OneSolveMeetsTheBias) {
 }
 
 TEST(AxisPart, ImpulsesKeepMomentum) {
-    Random random(4);
+    RandomPoses random(4);
     for (int i = 0; i < 100; ++i) {
         Pair pair(random);
         pair.frame.r1PlusU = pair.b.position + pair.frame.r2 - pair.a.position;  // both impulses act at p2
@@ -140,10 +140,10 @@ TEST(AxisPart, ImpulsesKeepMomentum) {
 }
 
 TEST(AxisPart, TotalImpulseIsClamped) {
-    Random random(5);
+    RandomPoses random(5);
     for (int i = 0; i < 50; ++i) {
         Pair pair(random);
-        pair.SetUp(random.Number(-5.0f, 5.0f));
+        pair.SetUp(random.Between(-5.0f, 5.0f));
         for (int iteration = 0; iteration < 4; ++iteration) {
             pair.Solve(-0.2f, 0.3f);
             EXPECT_GE(pair.part.GetTotalLambda(), -0.2f);
@@ -161,7 +161,7 @@ TEST(AxisPart, TotalImpulseIsClamped) {
 }
 
 TEST(AxisPart, TwoHalvesGiveTheBitsOfTheWhole) {
-    Random random(6);
+    RandomPoses random(6);
     for (int i = 0; i < 50; ++i) {
         Pair whole(random);
         whole.SetUp(0.4f);
@@ -181,7 +181,7 @@ TEST(AxisPart, TwoHalvesGiveTheBitsOfTheWhole) {
 // A compile-time side must be the dynamic row with zeros in the right places, whatever it is handed there.
 template <BodySide kSide1, BodySide kSide2>
 void ExpectSideIsDynamicWithZeros(uint32_t seed) {
-    Random random(seed);
+    RandomPoses random(seed);
     for (int i = 0; i < 50; ++i) {
         Pair general(random);
         const auto zero = [](RandomBody& body, BodySide side) {
@@ -219,7 +219,7 @@ TEST(AxisPart, StaticAndKinematicSides) {
 }
 
 TEST(AxisPart, KinematicBodyCarriesTheOther) {
-    Random random(12);
+    RandomPoses random(12);
     Pair pair(random);
     const Twist<float> driven = pair.a.velocity;
     pair.part.CalculateProperties<BodySide::Kinematic, BodySide::Dynamic>(pair.a.mass, pair.b.mass, pair.frame, 0.0f);
@@ -259,11 +259,11 @@ TEST(AxisPart, MassOverrideShiftsTheImpulse) {
 }
 
 TEST(AxisPart, PositionPassTakesTheBaumgarteShareOfTheError) {
-    Random random(13);
+    RandomPoses random(13);
     for (int i = 0; i < 50; ++i) {
         Pair pair(random);
         pair.SetUp(0.0f);
-        const float error = random.Number(-0.2f, 0.2f), baumgarte = 0.2f;
+        const float error = random.Between(-0.2f, 0.2f), baumgarte = 0.2f;
         Twist<float> moved1, moved2;
         EXPECT_TRUE(pair.part.SolvePosition(moved1, moved2, pair.a.mass, pair.b.mass, pair.frame.axis, error, baumgarte));
         EXPECT_NEAR(pair.part.RelativeMotion(moved1, moved2, pair.frame.axis), -baumgarte * error, 1e-6f);
@@ -287,7 +287,7 @@ TEST(AxisPart, PositionPassTakesTheBaumgarteShareOfTheError) {
 }
 
 TEST(AxisPart, PositionPassLeavesSpringsAlone) {
-    Random random(14);
+    RandomPoses random(14);
     Pair pair(random);
     Twist<float> moved1, moved2;
     pair.part.CalculateFrequencyProperties(0.01f, pair.a.mass, pair.b.mass, pair.frame, 0.0f, 0.1f, 2.0f, 0.5f);
@@ -299,13 +299,13 @@ TEST(AxisPart, PositionPassLeavesSpringsAlone) {
 
 TEST(AxisPart, SoftSolveIsTheMapOfItsSpring) {
     // J v' = (J v - w^2 h C) / (1 + 2 zeta w h + (w h)^2) by frequency; by stiffness w^2 = k K and 2 zeta w = c K.
-    Random random(15);
+    RandomPoses random(15);
     const double h = 1.0 / 120.0;
     for (int i = 0; i < 50; ++i) {
         Pair pair(random);
         const Vector12 j = Jacobian(pair.frame);
         const double inverse = j.dot(InverseMassMatrix(pair.a.mass, pair.b.mass) * j);
-        const float error = random.Number(-0.5f, 0.5f), k = random.Number(1.0f, 50.0f), c = random.Number(0.0f, 2.0f);
+        const float error = random.Between(-0.5f, 0.5f), k = random.Between(1.0f, 50.0f), c = random.Between(0.0f, 2.0f);
         const double e = static_cast<double>(error);
         pair.part.CalculateStiffnessProperties(static_cast<float>(h), pair.a.mass, pair.b.mass, pair.frame, 0.0f, error, k,
                                                c);
@@ -327,7 +327,7 @@ TEST(AxisPart, SoftSolveIsTheMapOfItsSpring) {
 }
 
 TEST(AxisPart, WarmStartScalesWithTheTimeStep) {
-    Random random(16);
+    RandomPoses random(16);
     Pair pair(random);
     pair.SetUp(0.0f);
     pair.part.SetTotalLambda(0.8f);
@@ -339,7 +339,7 @@ TEST(AxisPart, WarmStartScalesWithTheTimeStep) {
 }
 
 TEST(AxisPart, StateIsRestored) {
-    Random random(17);
+    RandomPoses random(17);
     Pair pair(random);
     pair.SetUp(0.5f);
     pair.Solve();
@@ -351,7 +351,7 @@ TEST(AxisPart, StateIsRestored) {
 }
 
 TEST(AxisPart, WithoutMassesOrDeactivatedDoesNothing) {
-    Random random(18);
+    RandomPoses random(18);
     Pair pair(random);
     pair.SetUp(0.5f);
     pair.part.SetTotalLambda(2.0f);

@@ -24,14 +24,14 @@ struct BlockInputs {
     RowSoftness<Real> softness;
 };
 
-inline BlockInputs<float> MakeInputs(Random& random) {
+inline BlockInputs<float> MakeInputs(RandomPoses& random) {
     BlockInputs<float> inputs;
-    inputs.r1 = random.Vector(1.0f);
-    inputs.r2 = random.Vector(1.0f);
-    inputs.axis1 = random.Direction();
-    inputs.axis2 = Normalized(Cross(inputs.axis1, random.Direction()));
-    inputs.bias = random.Vector(1.0f);
-    inputs.ratio = random.Number(0.3f, 3.0f);
+    inputs.r1 = random.InBox(1.0f);
+    inputs.r2 = random.InBox(1.0f);
+    inputs.axis1 = AnyDirection(random);
+    inputs.axis2 = Normalized(Cross(inputs.axis1, AnyDirection(random)));
+    inputs.bias = random.InBox(1.0f);
+    inputs.ratio = random.Between(0.3f, 3.0f);
     return inputs;
 }
 

@@ -14,8 +14,8 @@ using testing::Lane;
 using testing::MakeBody;
 using testing::MakeInputs;
 using testing::PutLane;
-using testing::Random;
 using testing::RandomBody;
+using testing::RandomPoses;
 using testing::RowOf;
 using testing::SameBits;
 using testing::ToDense;
@@ -29,7 +29,7 @@ struct Pair {
     BlockInputs<float> inputs;
     typename Case::template Part<float> part;
 
-    explicit Pair(Random& random) : a(MakeBody(random)), b(MakeBody(random)), inputs(MakeInputs(random)) {}
+    explicit Pair(RandomPoses& random) : a(MakeBody(random)), b(MakeBody(random)), inputs(MakeInputs(random)) {}
     template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     void SetUp() {
         Case::template SetUp<kSide1, kSide2>(part, a.mass, b.mass, inputs);
@@ -72,7 +72,7 @@ using Cases =
 TYPED_TEST_SUITE(BlockPartTest, Cases);
 
 TYPED_TEST(BlockPartTest, EffectiveMassIsTheInverseOfTheDenseProduct) {
-    Random random(1);
+    RandomPoses random(1);
     for (int i = 0; i < 200; ++i) {
         Pair<TypeParam> pair(random);
         pair.SetUp();
@@ -87,7 +87,7 @@ TYPED_TEST(BlockPartTest, EffectiveMassIsTheInverseOfTheDenseProduct) {
 }
 
 TYPED_TEST(BlockPartTest, OneSolveMeetsTheBias) {
-    Random random(2);
+    RandomPoses random(2);
     for (int i = 0; i < 200; ++i) {
         Pair<TypeParam> pair(random);
         pair.SetUp();
@@ -105,7 +105,7 @@ TYPED_TEST(BlockPartTest, OneSolveMeetsTheBias) {
 
 TYPED_TEST(BlockPartTest, ImpulsesKeepMomentum) {
     if constexpr (TypeParam::kKeepsMomentum) {
-        Random random(3);
+        RandomPoses random(3);
         for (int i = 0; i < 100; ++i) {
             Pair<TypeParam> pair(random);
             pair.inputs.r1 = pair.b.position + pair.inputs.r2 - pair.a.position;  // both impulses act at p2
@@ -131,10 +131,10 @@ TYPED_TEST(BlockPartTest, ImpulsesKeepMomentum) {
 // delta = -s K^-1 (J v + b) - g lambda. With y = K lambda, J v = J v0 + y and r = J v0 + b, so y' = y - s (y + r) - g y: y
 // runs to its fixed point -s r / (s + g) by the factor 1 - s - g, in every row alike.
 TYPED_TEST(BlockPartTest, SoftRowsFollowTheirRecursion) {
-    Random random(4);
+    RandomPoses random(4);
     for (int i = 0; i < 50; ++i) {
         Pair<TypeParam> pair(random);
-        const float s = random.Number(0.1f, 0.8f), g = random.Number(0.05f, 0.2f);
+        const float s = random.Between(0.1f, 0.8f), g = random.Between(0.05f, 0.2f);
         pair.inputs.softness = {s, g};
         pair.SetUp();
         const Eigen::VectorXd r = pair.Motion() + pair.Bias();
@@ -154,7 +154,7 @@ TYPED_TEST(BlockPartTest, SoftRowsFollowTheirRecursion) {
 }
 
 TYPED_TEST(BlockPartTest, PositionPassTakesTheBaumgarteShareOfTheError) {
-    Random random(5);
+    RandomPoses random(5);
     for (int i = 0; i < 50; ++i) {
         Pair<TypeParam> pair(random);
         pair.inputs.softness = {0.5f, 0.1f};  // no matter for positions
@@ -173,7 +173,7 @@ TYPED_TEST(BlockPartTest, PositionPassTakesTheBaumgarteShareOfTheError) {
 // A compile-time side must be the dynamic block with zeros in the right places, whatever it is handed there.
 template <class Case, BodySide kSide1, BodySide kSide2>
 void ExpectSideIsDynamicWithZeros(uint32_t seed) {
-    Random random(seed);
+    RandomPoses random(seed);
     for (int i = 0; i < 50; ++i) {
         Pair<Case> general(random);
         Pair<Case> special = general;
@@ -210,7 +210,7 @@ TYPED_TEST(BlockPartTest, StaticAndKinematicSides) {
 }
 
 TYPED_TEST(BlockPartTest, WarmStartStateAndDeactivation) {
-    Random random(12);
+    RandomPoses random(12);
     Pair<TypeParam> pair(random);
     using Part = decltype(pair.part);
     pair.SetUp();
@@ -249,7 +249,7 @@ TYPED_TEST(BlockPartTest, WarmStartStateAndDeactivation) {
 }
 
 TYPED_TEST(BlockPartTest, NotANumberSpoilsNoBody) {
-    Random random(13);
+    RandomPoses random(13);
     Pair<TypeParam> pair(random);
     pair.SetUp();
     pair.part.SetBias(AllRows<decltype(pair.part)>(std::numeric_limits<float>::quiet_NaN()));
@@ -288,7 +288,7 @@ struct Life {
 };
 
 template <class Case>
-Life<Case, float> MakeLife(Random& random) {
+Life<Case, float> MakeLife(RandomPoses& random) {
     Life<Case, float> life;
     const RandomBody a = MakeBody(random), b = MakeBody(random);
     life.v1 = a.velocity;
@@ -298,7 +298,7 @@ Life<Case, float> MakeLife(Random& random) {
     life.inputs = MakeInputs(random);
     if (random.Chance(0.2f)) life.m1 = {};
     if (random.Chance(0.2f)) life.m2 = {};
-    if (random.Chance(0.5f)) life.inputs.softness = {random.Number(0.2f, 0.9f), random.Number(0.0f, 0.3f)};
+    if (random.Chance(0.5f)) life.inputs.softness = {random.Between(0.2f, 0.9f), random.Between(0.0f, 0.3f)};
     return life;
 }
 
@@ -320,7 +320,7 @@ void PutLife(Life<Case, Wide<N>>& lanes, int lane, const Life<Case, float>& life
 
 template <class Case, int N>
 void ExpectLanesEqualScalar() {
-    Random random(40 + N);
+    RandomPoses random(40 + N);
     for (int batch = 0; batch < 800 / N; ++batch) {
         Life<Case, Wide<N>> lanes{};
         std::vector<Life<Case, float>> expected;
@@ -353,7 +353,7 @@ template <class Case, int N>
 void ExpectInactiveLanesUntouched() {
     const float odd[] = {-0.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1e-42f,
                          0.0f,  -3.5f};
-    Random random(60 + N);
+    RandomPoses random(60 + N);
     for (int batch = 0; batch < 50; ++batch) {
         Life<Case, Wide<N>> lanes{};
         Twist<float> before1[N], before2[N];
@@ -366,8 +366,8 @@ void ExpectInactiveLanesUntouched() {
             if (inactive)
                 for (Twist<float>* twist : {&life.v1, &life.v2})
                     for (int k = 0; k < 3; ++k) {
-                        twist->linear[k] = odd[static_cast<int>(random.Number(0.0f, 5.99f))];
-                        twist->angular[k] = odd[static_cast<int>(random.Number(0.0f, 5.99f))];
+                        twist->linear[k] = odd[static_cast<int>(random.Between(0.0f, 5.99f))];
+                        twist->angular[k] = odd[static_cast<int>(random.Between(0.0f, 5.99f))];
                     }
             before1[i] = life.v1;
             before2[i] = life.v2;

@@ -15,8 +15,8 @@ using testing::BlockInputs;
 using testing::MakeBody;
 using testing::MakeInputs;
 using testing::PutLane;
-using testing::Random;
 using testing::RandomBody;
+using testing::RandomPoses;
 using testing::RowOf;
 using testing::SameBits;
 using testing::ToDense;
@@ -44,7 +44,7 @@ TYPED_TEST(BlockSpringTest, IsTheOscillatorInTheLimitOfSmallSteps) {
     using Rows = typename Part::Rows;
     const double w = 2.0 * 3.14159265358979 * 2.0, zeta = 0.3, h = 1.0 / 4000.0;
     const double damped = w * std::sqrt(1.0 - zeta * zeta), a = h * w * (2.0 * zeta + h * w);
-    Random random(1);
+    RandomPoses random(1);
     for (int i = 0; i < 3; ++i) {
         const InverseMass<float> m1 = MakeBody(random).mass, m2 = MakeBody(random).mass;
         BlockInputs<float> inputs = MakeInputs(random);
@@ -70,7 +70,7 @@ TYPED_TEST(BlockSpringTest, IsTheOscillatorInTheLimitOfSmallSteps) {
 // Body 1 heavier for this constraint only. Set-up and solve see the other mass, and the row is met all the same.
 TYPED_TEST(BlockSpringTest, MassesMayBeOverridden) {
     using Part = typename TypeParam::template Part<float>;
-    Random random(2);
+    RandomPoses random(2);
     for (int i = 0; i < 100; ++i) {
         const RandomBody a = MakeBody(random), b = MakeBody(random);
         const BlockInputs<float> inputs = MakeInputs(random);
@@ -107,7 +107,7 @@ TYPED_TEST(BlockSpringTest, SnapshotsOfLanesGoOnAsBefore) {
     constexpr int N = 8;
     using Real = Wide<N>;
     using Part = typename TypeParam::template Part<Real>;
-    Random random(3);
+    RandomPoses random(3);
     Twist<Real> v1, v2;
     InverseMass<Real> m1, m2;
     BlockInputs<Real> inputs{};

@@ -8,9 +8,10 @@
 namespace fulcrum {
 namespace {
 
+using testing::AnyDirection;
 using testing::MakeBody;
-using testing::Random;
 using testing::RandomBody;
+using testing::RandomPoses;
 
 constexpr float kPi = 3.14159265f;
 
@@ -28,13 +29,13 @@ struct Body {
     }
 };
 
-Quaternion RandomRotation(Random& random) {
-    const Vector3 axis = random.Direction();
-    return RotationFromVector(Vector3(axis * random.Number(-kPi, kPi)));
+Quaternion RandomRotation(RandomPoses& random) {
+    const Vector3 axis = AnyDirection(random);
+    return RotationFromVector(Vector3(axis * random.Between(-kPi, kPi)));
 }
-Body RandomPose(Random& random) {
-    const float a = random.Number(0.5f, 3.0f), b = random.Number(0.5f, 3.0f), c = random.Number(0.5f, 3.0f);
-    return {random.Vector(2.0f), RandomRotation(random), random.Number(0.1f, 2.0f), Vector3(a, b, c)};
+Body RandomPose(RandomPoses& random) {
+    const float a = random.Between(0.5f, 3.0f), b = random.Between(0.5f, 3.0f), c = random.Between(0.5f, 3.0f);
+    return {random.InBox(2.0f), RandomRotation(random), random.Between(0.1f, 2.0f), Vector3(a, b, c)};
 }
 Body Immovable(Body body) {
     body.inverseMass = 0.0f;
@@ -51,11 +52,11 @@ int CountPasses(Pass pass) {
 }
 
 TEST(JointError, PointPartBringsTheAnchorsTogether) {
-    Random random(1);
+    RandomPoses random(1);
     int worst = 0;
     for (int i = 0; i < 200; ++i) {
         Body a = RandomPose(random), b = RandomPose(random);
-        const Vector3 local1 = random.Vector(1.0f), local2 = random.Vector(1.0f);
+        const Vector3 local1 = random.InBox(1.0f), local2 = random.InBox(1.0f);
         worst = std::max(worst, CountPasses([&] {
             const Vector3 r1 = Rotate(a.rotation, local1), r2 = Rotate(b.rotation, local2);
             const Vector3 error = b.position + r2 - a.position - r1;
@@ -72,11 +73,11 @@ TEST(JointError, PointPartBringsTheAnchorsTogether) {
 }
 
 TEST(JointError, DualAxisPartBringsThePointToTheLine) {
-    Random random(2);
+    RandomPoses random(2);
     int worst = 0;
     for (int i = 0; i < 200; ++i) {
         Body a = RandomPose(random), b = RandomPose(random);
-        const Vector3 local1 = random.Vector(1.0f), local2 = random.Vector(1.0f);
+        const Vector3 local1 = random.InBox(1.0f), local2 = random.InBox(1.0f);
         worst = std::max(worst, CountPasses([&] {
             const Vector3 r2 = Rotate(b.rotation, local2), u = b.position + r2 - a.position - Rotate(a.rotation, local1);
             const Vector3 n1 = Rotate(a.rotation, Vector3(1, 0, 0)), n2 = Rotate(a.rotation, Vector3(0, 1, 0));
@@ -108,7 +109,7 @@ int RotationPasses(Body a, Body b, const Quaternion& inverseInitial) {
 }
 
 TEST(JointError, RotationEulerPartTurnsBackFromAnyRotation) {
-    Random random(3);
+    RandomPoses random(3);
     int worst = 0, worstFixed = 0;
     for (int i = 0; i < 300; ++i) {
         const Body a = RandomPose(random), b = RandomPose(random);
@@ -122,10 +123,10 @@ TEST(JointError, RotationEulerPartTurnsBackFromAnyRotation) {
 }
 
 TEST(JointError, RotationErrorIsTheRotationBackByTheShortWay) {
-    Random random(4);
+    RandomPoses random(4);
     for (int i = 0; i < 200; ++i) {
         const Quaternion q1 = RandomRotation(random), q0 = RandomRotation(random);
-        const Vector3 axis = random.Direction();
+        const Vector3 axis = AnyDirection(random);
         // In degrees, 180 among them; beyond it the short way is the other way round.
         for (const float degrees : {0.001f, 1.0f, 90.0f, 179.0f, 180.0f, 181.0f, 270.0f, 359.0f}) {
             const float angle = degrees * kPi / 180.0f;
@@ -145,7 +146,7 @@ TEST(JointError, RotationErrorIsTheRotationBackByTheShortWay) {
 }
 
 TEST(JointError, InitialOrientationFromAxesMakesThemMeet) {
-    Random random(5);
+    RandomPoses random(5);
     for (int i = 0; i < 300; ++i) {
         // Frames of any orientation, those of half a turn among them, seen from both bodies.
         Quaternion frame1 = RandomRotation(random), frame2 = RandomRotation(random);
@@ -191,7 +192,7 @@ HingePasses RunHinge(Body a, Body b) {
 }
 
 TEST(JointError, HingeRotationPartAlignsTheAxesFromAnyAngle) {
-    Random random(6);
+    RandomPoses random(6);
     int worst = 0, worstOpposite = 0;
     for (int i = 0; i < 300; ++i) {
         const Body a = RandomPose(random), b = RandomPose(random);
@@ -200,7 +201,7 @@ TEST(JointError, HingeRotationPartAlignsTheAxesFromAnyAngle) {
         EXPECT_LT(any.misalignment, 3e-6f);
         // Exactly opposite, and a right angle apart.
         Body opposite = b, square = b;
-        opposite.rotation = a.rotation * Quaternion{1, 0, 0, 0} * RotationFromVector(Vector3(0, 0, random.Number(-3, 3)));
+        opposite.rotation = a.rotation * Quaternion{1, 0, 0, 0} * RotationFromVector(Vector3(0, 0, random.Between(-3, 3)));
         square.rotation = a.rotation * RotationFromVector(Vector3(0.5f * kPi, 0, 0));
         for (const Body& other : {opposite, square}) {
             const HingePasses passes = RunHinge(a, other);
@@ -213,10 +214,10 @@ TEST(JointError, HingeRotationPartAlignsTheAxesFromAnyAngle) {
 }
 
 TEST(JointError, HingeErrorIsTheAngleBetweenTheAxes) {
-    Random random(7);
+    RandomPoses random(7);
     for (int i = 0; i < 200; ++i) {
         const Matrix3 frame2 = ToMatrix(RandomRotation(random));
-        const Vector3 way = random.Direction();
+        const Vector3 way = AnyDirection(random);
         const Vector3 across = Normalized(Vector3(way - frame2.z * Dot(way, frame2.z)));
         for (const float angle : {1e-6f, 0.01f, 1.0f, 0.5f * kPi, 3.0f, kPi}) {
             // a1 turned from a2 by the angle.
@@ -231,10 +232,10 @@ TEST(JointError, HingeErrorIsTheAngleBetweenTheAxes) {
 
 // The angle-scaled dot products change as J says: by w2 - w1 across a2, near alignment in any direction.
 TEST(JointError, HingeJacobianIsTheDerivativeOfTheError) {
-    Random random(8);
+    RandomPoses random(8);
     for (int i = 0; i < 100; ++i) {
         const Body a = RandomPose(random), b{Vector3::Zero(), a.rotation, 1.0f, Vector3(1, 1, 1)};
-        const Twist<float> v1{Vector3::Zero(), random.Vector(1e-3f)}, v2{Vector3::Zero(), random.Vector(1e-3f)};
+        const Twist<float> v1{Vector3::Zero(), random.InBox(1e-3f)}, v2{Vector3::Zero(), random.InBox(1e-3f)};
         const Matrix3 m = ToMatrix(b.rotation);
         HingeRotationPart<float> part;
         part.CalculateProperties(a.Mass(), b.Mass(), m.x, m.y, Vec2<float>(0, 0));
@@ -250,13 +251,13 @@ TEST(JointError, HingeJacobianIsTheDerivativeOfTheError) {
 
 // A pivot that vanishes: bodies that can turn about one axis only, or two, in any direction of the world.
 TEST(SymmetricInverse, ActsWhereSomethingCanMove) {
-    Random random(9);
+    RandomPoses random(9);
     for (int i = 0; i < 300; ++i) {
         const Matrix3 axes = ToMatrix(RandomRotation(random));
-        const float a = random.Number(0.1f, 5.0f), b = i % 2 ? random.Number(0.1f, 5.0f) : 0.0f;
+        const float a = random.Between(0.1f, 5.0f), b = i % 2 ? random.Between(0.1f, 5.0f) : 0.0f;
         const SymmetricMatrix3 k = RotatedDiagonal(axes, Vector3(a, b, 0.0f));
         const SymmetricMatrix3 inverse = SymmetricInverse(k);
-        const Vector3 possible = axes.x * random.Number(-1, 1) + axes.y * (b > 0.0f ? random.Number(-1, 1) : 0.0f);
+        const Vector3 possible = axes.x * random.Between(-1, 1) + axes.y * (b > 0.0f ? random.Between(-1, 1) : 0.0f);
         const Vector3 wanted = k * possible, reached = k * (inverse * wanted);
         // Rounding of 6e-8, times a condition of up to 50, times as much again where the first two rows are nearly alike.
         EXPECT_LT(Length(Vector3(reached - wanted)), 1e-3f * Length(wanted)) << i;
@@ -267,7 +268,7 @@ TEST(SymmetricInverse, ActsWhereSomethingCanMove) {
 
 // Eigenvalues 1, 1 and 20000: an anchor one metre beside a thin axle. 6e-8 times the condition, some ten times over.
 TEST(SymmetricInverse, KeepsItsDigitsBesideAThinAxle) {
-    Random random(10);
+    RandomPoses random(10);
     for (int i = 0; i < 300; ++i) {
         const SymmetricMatrix3 k = RotatedDiagonal(ToMatrix(RandomRotation(random)), Vector3(1.0f, 20000.0f, 1.0f));
         const Eigen::MatrixXd expected = testing::ToDense(k).inverse();

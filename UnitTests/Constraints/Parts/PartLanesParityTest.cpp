@@ -15,8 +15,8 @@ using testing::Lane;
 using testing::MakeBody;
 using testing::MakeFrame;
 using testing::PutLane;
-using testing::Random;
 using testing::RandomBody;
+using testing::RandomPoses;
 using testing::SameBits;
 
 // One lane's constraint, solved by the scalar parts.
@@ -30,25 +30,25 @@ struct Row {
 };
 
 // Hard rows and springs of every mode and form, tight and wide limits, bodies without mass.
-Row MakeRow(Random& random) {
+Row MakeRow(RandomPoses& random) {
     Row row{MakeBody(random), MakeBody(random), MakeFrame(random), {}, 0, 0, 0, 0, 0, {}, {}};
     if (random.Chance(0.2f)) row.a.mass = {};
     if (random.Chance(0.2f)) row.b.mass = {};
     if (random.Chance(0.6f)) {
         SpringSettings settings;
         if (random.Chance(0.5f)) settings.mode = SpringMode::StiffnessAndDamping;
-        settings.frequency = random.Number(0.1f, 30.0f);
-        settings.dampingRatio = random.Chance(0.2f) ? 0.0f : random.Number(0.0f, 2.0f);
-        settings.stiffness = random.Number(1.0f, 500.0f);
-        settings.damping = random.Number(0.0f, 20.0f);
-        settings.form = static_cast<SpringForm>(static_cast<int>(random.Number(0.0f, 2.99f)));
+        settings.frequency = random.Between(0.1f, 30.0f);
+        settings.dampingRatio = random.Chance(0.2f) ? 0.0f : random.Between(0.0f, 2.0f);
+        settings.stiffness = random.Between(1.0f, 500.0f);
+        settings.damping = random.Between(0.0f, 20.0f);
+        settings.form = static_cast<SpringForm>(static_cast<int>(random.Between(0.0f, 2.99f)));
         row.spring = ToConstants(settings);
     }
-    row.bias = random.Number(-1.0f, 1.0f);
-    row.error = random.Number(-0.3f, 0.3f);
+    row.bias = random.Between(-1.0f, 1.0f);
+    row.error = random.Between(-0.3f, 0.3f);
     row.high = random.Chance(0.5f) ? 0.05f : 1e30f;
     row.low = random.Chance(0.5f) ? 0.0f : -row.high;
-    row.warmLambda = random.Number(-0.1f, 0.1f);
+    row.warmLambda = random.Between(-0.1f, 0.1f);
     return row;
 }
 
@@ -102,7 +102,7 @@ Outcome RunScalar(const Row& row) {
 template <int N>
 void ExpectLanesEqualScalar() {
     using Real = Wide<N>;
-    Random random(40 + N);
+    RandomPoses random(40 + N);
     for (int batch = 0; batch < 1600 / N; ++batch) {
         Life<Real> life;
         Outcome expected[N];
@@ -144,7 +144,7 @@ TEST(PartLanes, EveryWidthGivesTheBitsOfTheScalar) {
 // The same bits from every compiler and processor. The number changes only with the parts' arithmetic (or that of Exp and
 // Sin), never with the build.
 TEST(PartLanes, EveryBuildGivesTheSameBits) {
-    Random random(70);
+    RandomPoses random(70);
     uint64_t hash = 14695981039346656037ull;  // FNV-1a
     const auto add = [&hash](float x) { hash = (hash ^ Bits(x)) * 1099511628211ull; };
     for (int i = 0; i < 500; ++i) {
@@ -162,7 +162,7 @@ TEST(PartLanes, EveryBuildGivesTheSameBits) {
 
 // A row that is known to be hard gives the bits of a row that might be soft.
 TEST(PartLanes, HardOnlyPartsGiveTheBitsOfHardRows) {
-    Random random(50);
+    RandomPoses random(50);
     for (int i = 0; i < 200; ++i) {
         const Row row = MakeRow(random);
         AxisPart<float, true> general;
@@ -186,7 +186,7 @@ void ExpectInactiveLanesUntouched() {
     using Real = Wide<N>;
     const float odd[] = {-0.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1e-42f,
                          0.0f,  -3.5f};
-    Random random(60 + N);
+    RandomPoses random(60 + N);
     for (int batch = 0; batch < 50; ++batch) {
         Twist<Real> v1, v2;
         InverseMass<Real> m1, m2;
@@ -197,7 +197,7 @@ void ExpectInactiveLanesUntouched() {
         for (int i = 0; i < N; ++i) {
             const Row row = MakeRow(random);
             const bool inactive = i % 2 == 1 || N == 1;
-            const auto pick = [&] { return odd[static_cast<int>(random.Number(0.0f, 5.99f))]; };
+            const auto pick = [&] { return odd[static_cast<int>(random.Between(0.0f, 5.99f))]; };
             before1[i] = row.a.velocity;
             before2[i] = row.b.velocity;
             if (inactive)

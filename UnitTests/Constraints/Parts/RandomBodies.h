@@ -2,30 +2,15 @@
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/AxisPart.h>
+#include <Fulcrum/UnitTests/Support/RandomPoses.h>
 
 #include <cstdint>
 #include <cstring>
-#include <random>
 
 namespace fulcrum::testing {
 
-class Random {
-public:
-    explicit Random(uint32_t seed) : engine_(seed) {}
-    // Uniform in [low, high), from the engine's bits alone: the same on every standard library.
-    float Number(float low, float high) {
-        return low + (high - low) * static_cast<float>(engine_() >> 8) * (1.0f / 16777216.0f);
-    }
-    bool Chance(float probability) { return Number(0.0f, 1.0f) < probability; }
-    Vector3 Vector(float size) {
-        const float x = Number(-size, size), y = Number(-size, size), z = Number(-size, size);
-        return Vector3(x, y, z);
-    }
-    Vector3 Direction() { return Normalized(Vector3(Vector(1.0f) + Vector3(0.01f, 0.02f, 0.03f))); }
-
-private:
-    std::mt19937 engine_;
-};
+// In three draws, whatever they are.
+inline Vector3 AnyDirection(RandomPoses& random) { return Normalized(Vector3(random.InBox(1) + Vector3(0.01f, 0.02f, 0.03f))); }
 
 struct RandomBody {
     Vector3 position;
@@ -33,21 +18,21 @@ struct RandomBody {
     InverseMass<float> mass;
 };
 
-inline RandomBody MakeBody(Random& random) {
+inline RandomBody MakeBody(RandomPoses& random) {
     RandomBody body;
-    body.position = random.Vector(2.0f);
-    body.velocity = {random.Vector(3.0f), random.Vector(3.0f)};
-    body.mass.mass = random.Number(0.1f, 2.0f);
-    const Vector3 axis = random.Direction();
-    const float w = random.Number(-1.0f, 1.0f);
+    body.position = random.InBox(2.0f);
+    body.velocity = {random.InBox(3.0f), random.InBox(3.0f)};
+    body.mass.mass = random.Between(0.1f, 2.0f);
+    const Vector3 axis = AnyDirection(random);
+    const float w = random.Between(-1.0f, 1.0f);
     const Matrix3 rotation = ToMatrix(Normalized(Quaternion{axis.x(), axis.y(), axis.z(), w}));
-    const float a = random.Number(0.2f, 5.0f), b = random.Number(0.2f, 5.0f), c = random.Number(0.2f, 5.0f);
+    const float a = random.Between(0.2f, 5.0f), b = random.Between(0.2f, 5.0f), c = random.Between(0.2f, 5.0f);
     body.mass.inertia = RotatedDiagonal(rotation, Vector3(a, b, c));
     return body;
 }
 
-inline AxisFrame<float> MakeFrame(Random& random) {
-    const Vector3 r1 = random.Vector(1.0f), r2 = random.Vector(1.0f), axis = random.Direction();
+inline AxisFrame<float> MakeFrame(RandomPoses& random) {
+    const Vector3 r1 = random.InBox(1.0f), r2 = random.InBox(1.0f), axis = AnyDirection(random);
     return {r1, r2, axis};
 }
 

@@ -157,11 +157,11 @@ TEST(Spring, ManySpringsOnFewBodiesStayBounded) {
     // 8 masses of 0.03 to 30 kg, 28 undamped springs, a single iteration: the energy of the header never grows by more
     // than what a single iteration leaves unsolved.
     for (const float frequency : {1.0f, 3.0f, 9.0f, 30.0f}) {
-        testing::Random random(3);
+        testing::RandomPoses random(3);
         constexpr int kMasses = 8;
         double inverse[kMasses], v[kMasses] = {}, x[kMasses];
-        for (double& m : inverse) m = std::pow(10.0, static_cast<double>(random.Number(-1.5f, 1.5f)));
-        for (double& p : x) p = static_cast<double>(random.Number(-0.1f, 0.1f));
+        for (double& m : inverse) m = std::pow(10.0, static_cast<double>(random.Between(-1.5f, 1.5f)));
+        for (double& p : x) p = static_cast<double>(random.Between(-0.1f, 0.1f));
         const auto spring = FrequencyConstants(frequency, 0.0f);
         const auto gains = detail::CalculateSpringGains(static_cast<float>(kDt), 1.0f, spring);
         const double stiffness = static_cast<double>(gains.errorGain / gains.softness) / (kDt * kDt);

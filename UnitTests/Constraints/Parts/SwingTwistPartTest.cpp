@@ -14,12 +14,13 @@
 namespace fulcrum {
 namespace {
 
+using testing::AnyDirection;
 using testing::Bits;
 using testing::Lane;
 using testing::MakeBody;
 using testing::PutLane;
-using testing::Random;
 using testing::RandomBody;
+using testing::RandomPoses;
 using testing::SameBits;
 
 constexpr float kPi = 3.14159265f;
@@ -27,18 +28,18 @@ constexpr float kDegree = kPi / 180.0f;
 constexpr float kBoth = -std::numeric_limits<float>::infinity();  // lowest impulse of a locked row
 using Correction = SwingTwistCorrection<float>;
 
-Quaternion RandomRotation(Random& random) {
-    const Vector3 axis = random.Direction();
-    return RotationFromVector(Vector3(axis * random.Number(-kPi, kPi)));
+Quaternion RandomRotation(RandomPoses& random) {
+    const Vector3 axis = AnyDirection(random);
+    return RotationFromVector(Vector3(axis * random.Between(-kPi, kPi)));
 }
 Quaternion Swung(float y, float z, float twist) {
     return RotationFromVector(Vector3(0, y, z)) * RotationFromVector(Vector3(twist, 0, 0));
 }
 
 // `count` rows from the last one down, of random axes.
-SwingTwistRows<float> MakeRows(Random& random, int count, float error, float lowest) {
+SwingTwistRows<float> MakeRows(RandomPoses& random, int count, float error, float lowest) {
     SwingTwistRows<float> rows;
-    for (int i = 3 - count; i < 3; ++i) rows.row[i] = {random.Direction(), error, lowest};
+    for (int i = 3 - count; i < 3; ++i) rows.row[i] = {AnyDirection(random), error, lowest};
     return rows;
 }
 
@@ -47,7 +48,7 @@ struct Pair {
     SwingTwistRows<float> rows;
     SwingTwistPart<float> part;
 
-    explicit Pair(Random& random) : a(MakeBody(random)), b(MakeBody(random)) {}
+    explicit Pair(RandomPoses& random) : a(MakeBody(random)), b(MakeBody(random)) {}
     template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     void SetUp(const Correction& correction) {
         part.CalculateProperties<kSide1, kSide2>(a.mass, b.mass, rows, correction);
@@ -67,7 +68,7 @@ struct Pair {
 };
 
 TEST(SwingTwistPart, EffectiveMassIsThatOfTheWrittenOutProduct) {
-    Random random(1);
+    RandomPoses random(1);
     for (int i = 0; i < 200; ++i) {
         Pair pair(random);
         pair.rows = MakeRows(random, 2, 0.0f, 0.0f);
@@ -83,7 +84,7 @@ TEST(SwingTwistPart, EffectiveMassIsThatOfTheWrittenOutProduct) {
 }
 
 TEST(SwingTwistPart, OneSolveOfOneRowMeetsTheBiasAndKeepsMomentum) {
-    Random random(2);
+    RandomPoses random(2);
     for (int i = 0; i < 200; ++i) {
         Pair pair(random);
         pair.rows = MakeRows(random, 1, 0.2f, kBoth);
@@ -101,7 +102,7 @@ TEST(SwingTwistPart, OneSolveOfOneRowMeetsTheBiasAndKeepsMomentum) {
 }
 
 TEST(SwingTwistPart, IterationsMeetThreeRows) {
-    Random random(3);
+    RandomPoses random(3);
     for (int i = 0; i < 50; ++i) {
         Pair pair(random);
         const Matrix3 axes = ToMatrix(RandomRotation(random));
@@ -114,7 +115,7 @@ TEST(SwingTwistPart, IterationsMeetThreeRows) {
 }
 
 TEST(SwingTwistPart, LimitsPushAndNeverPull) {
-    Random random(4);
+    RandomPoses random(4);
     int pushed = 0;
     for (int i = 0; i < 400; ++i) {
         Pair pair(random);
@@ -141,7 +142,7 @@ TEST(SwingTwistPart, LimitsPushAndNeverPull) {
 
 // C = 0.03 rad away with steps of 0.01 s: faster than 3 rad/s is slowed to that, which meets the limit exactly.
 TEST(SwingTwistPart, LimitsThatAreNearAreMetAndNotBefore) {
-    Random random(5);
+    RandomPoses random(5);
     for (int i = 0; i < 200; ++i) {
         Pair pair(random);
         pair.rows = MakeRows(random, 1, 0.03f, 0.0f);
@@ -154,11 +155,11 @@ TEST(SwingTwistPart, LimitsThatAreNearAreMetAndNotBefore) {
 
 // delta = -s m (J v + b) - g lambda. With y = lambda / m and r = J v0 + b: y runs to -s r / (s + g) by the factor 1 - s - g.
 TEST(SwingTwistPart, SoftRowFollowsItsRecursion) {
-    Random random(6);
+    RandomPoses random(6);
     for (int i = 0; i < 50; ++i) {
         Pair pair(random);
         pair.rows = MakeRows(random, 1, -0.4f, kBoth);
-        const float s = random.Number(0.1f, 0.8f), g = random.Number(0.05f, 0.2f);
+        const float s = random.Between(0.1f, 0.8f), g = random.Between(0.05f, 0.2f);
         pair.SetUp({2.0f, 0.0f, {s, g}});
         const double r = static_cast<double>(pair.Motion(2) - 0.8f), ds = static_cast<double>(s), dg = static_cast<double>(g);
         for (int n = 1; n <= 5; ++n) {
@@ -208,10 +209,10 @@ struct Joint {
     Vector3 inverseInertia1, inverseInertia2;
     SwingTwistLimits limits;
 
-    Joint(Random& random, const Quaternion& relative) : frame1(RandomRotation(random)), frame2(Normalized(frame1 * relative)) {
+    Joint(RandomPoses& random, const Quaternion& relative) : frame1(RandomRotation(random)), frame2(Normalized(frame1 * relative)) {
         for (int k = 0; k < 3; ++k) {
-            inverseInertia1[k] = random.Number(0.5f, 3.0f);
-            inverseInertia2[k] = random.Number(0.5f, 3.0f);
+            inverseInertia1[k] = random.Between(0.5f, 3.0f);
+            inverseInertia2[k] = random.Between(0.5f, 3.0f);
         }
     }
     InverseMass<float> Mass1() const { return {0.7f, RotatedDiagonal(ToMatrix(frame1), inverseInertia1)}; }
@@ -239,20 +240,20 @@ struct Joint {
     }
 };
 
-AngleRange RandomRange(Random& random, float widest) {
-    const float kind = random.Number(0.0f, 1.0f);
+AngleRange RandomRange(RandomPoses& random, float widest) {
+    const float kind = random.Between(0.0f, 1.0f);
     if (kind < 0.2f) return {0.0f, 0.0f};
-    const float low = random.Number(2.0f, widest), high = random.Number(2.0f, widest);
+    const float low = random.Between(2.0f, widest), high = random.Between(2.0f, widest);
     return {-low * kDegree, high * kDegree};
 }
 // Of every third one the x axes start opposite.
-Joint RandomJoint(Random& random, int i) {
-    const float alpha = i % 3 == 0 ? kPi : random.Number(0.0f, kPi), psi = random.Number(-kPi, kPi);
-    return Joint(random, Swung(alpha * Cos(psi), alpha * Sin(psi), random.Number(-kPi, kPi)));
+Joint RandomJoint(RandomPoses& random, int i) {
+    const float alpha = i % 3 == 0 ? kPi : random.Between(0.0f, kPi), psi = random.Between(-kPi, kPi);
+    return Joint(random, Swung(alpha * Cos(psi), alpha * Sin(psi), random.Between(-kPi, kPi)));
 }
 
 TEST(SwingTwistPart, PositionPassesReachTheLimitsFromAnywhere) {
-    Random random(7);
+    RandomPoses random(7);
     int worst = 0, sum = 0;
     constexpr int kJoints = 2000;
     for (int i = 0; i < kJoints; ++i) {
@@ -272,7 +273,7 @@ TEST(SwingTwistPart, PositionPassesReachTheLimitsFromAnywhere) {
 // Up to 180 degrees the swing comes back at once. Near there a turn of the swing's direction is a twist as well, so that a narrow
 // twist and a wide swing push against each other, and some of both are slow.
 TEST(SwingTwistPart, PositionPassesReachSwingLimitsUpToHalfATurn) {
-    Random random(16);
+    RandomPoses random(16);
     int worstAlone = 0, slow = 0;
     constexpr int kJoints = 2000;
     for (int i = 0; i < kJoints; ++i) {
@@ -290,7 +291,7 @@ TEST(SwingTwistPart, PositionPassesReachSwingLimitsUpToHalfATurn) {
 }
 
 TEST(SwingTwistPart, PositionPassTakesTheBaumgarteShareAndLeavesWhatIsKept) {
-    Random random(8);
+    RandomPoses random(8);
     Pair pair(random);
     pair.rows = MakeRows(random, 1, -0.1f, 0.0f);
     pair.SetUp({1.0f, 0.0f, {0.5f, 0.1f}});  // softness is no matter for positions
@@ -305,7 +306,7 @@ TEST(SwingTwistPart, PositionPassTakesTheBaumgarteShareAndLeavesWhatIsKept) {
 
 // Body 1 twice as heavy for this constraint only: it turns half as much for the same impulse, and the row is met all the same.
 TEST(SwingTwistPart, MassesMayBeOverridden) {
-    Random random(9);
+    RandomPoses random(9);
     for (int i = 0; i < 50; ++i) {
         Pair pair(random);
         pair.rows = MakeRows(random, 1, 0.0f, kBoth);
@@ -329,7 +330,7 @@ TEST(SwingTwistPart, MassesMayBeOverridden) {
 // A compile-time side is the dynamic part with zeros in the right places, whatever it is handed there.
 template <BodySide kSide1, BodySide kSide2>
 void ExpectSideIsDynamicWithZeros(uint32_t seed) {
-    Random random(seed);
+    RandomPoses random(seed);
     for (int i = 0; i < 50; ++i) {
         Pair general(random);
         general.rows = MakeRows(random, 3, 0.1f, kBoth);
@@ -366,7 +367,7 @@ TEST(SwingTwistPart, StaticAndKinematicSides) {
 }
 
 TEST(SwingTwistPart, WarmStartStateAndDeactivation) {
-    Random random(14);
+    RandomPoses random(14);
     Pair pair(random);
     pair.rows = MakeRows(random, 3, 0.0f, kBoth);
     pair.SetUp({});
@@ -407,7 +408,7 @@ TEST(SwingTwistPart, WarmStartStateAndDeactivation) {
 }
 
 TEST(SwingTwistPart, NotANumberSpoilsNoBody) {
-    Random random(15);
+    RandomPoses random(15);
     Pair pair(random);
     pair.rows = MakeRows(random, 3, std::numeric_limits<float>::quiet_NaN(), 0.0f);
     pair.SetUp({1.0f, 1.0f, {}});
@@ -455,7 +456,7 @@ struct Life {
     }
 };
 
-Life<float> MakeLife(Random& random) {
+Life<float> MakeLife(RandomPoses& random) {
     Life<float> life;
     const RandomBody a = MakeBody(random), b = MakeBody(random);
     life.v1 = a.velocity;
@@ -464,13 +465,13 @@ Life<float> MakeLife(Random& random) {
     if (!random.Chance(0.2f)) life.m2 = b.mass;
     for (auto& row : life.rows.row)
         if (random.Chance(0.7f)) {
-            const Vector3 axis = random.Direction();
-            const float error = random.Number(-0.3f, 0.3f);
+            const Vector3 axis = AnyDirection(random);
+            const float error = random.Between(-0.3f, 0.3f);
             row = {axis, error, random.Chance(0.5f) ? 0.0f : kBoth};
         }
-    life.warm = random.Vector(0.5f);
-    life.correction = {random.Number(0.0f, 10.0f), random.Number(0.0f, 60.0f), {}};
-    if (random.Chance(0.5f)) life.correction.softness = {random.Number(0.2f, 0.9f), random.Number(0.0f, 0.3f)};
+    life.warm = random.InBox(0.5f);
+    life.correction = {random.Between(0.0f, 10.0f), random.Between(0.0f, 60.0f), {}};
+    if (random.Chance(0.5f)) life.correction.softness = {random.Between(0.2f, 0.9f), random.Between(0.0f, 0.3f)};
     return life;
 }
 
@@ -490,7 +491,7 @@ void PutLife(Life<Wide<N>>& lanes, int lane, const Life<float>& life) {
 
 template <int N>
 void ExpectLanesEqualScalar() {
-    Random random(40 + N);
+    RandomPoses random(40 + N);
     for (int batch = 0; batch < 1600 / N; ++batch) {
         Life<Wide<N>> lanes{};
         std::vector<Life<float>> expected;
@@ -520,7 +521,7 @@ TEST(SwingTwistPart, EveryWidthGivesTheBitsOfTheScalar) {
 template <int N>
 void ExpectInactiveLanesUntouched() {
     const float odd[] = {-0.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1e-42f};
-    Random random(60 + N);
+    RandomPoses random(60 + N);
     for (int batch = 0; batch < 50; ++batch) {
         Life<Wide<N>> lanes{};
         Twist<float> before1[N], before2[N];
@@ -529,10 +530,10 @@ void ExpectInactiveLanesUntouched() {
             const bool inactive = i % 2 == 1 || N == 1;
             Life<float> life = MakeLife(random);
             life.m1 = MakeBody(random).mass;
-            life.rows.row[0] = {random.Direction(), 0.3f, kBoth};
+            life.rows.row[0] = {AnyDirection(random), 0.3f, kBoth};
             if (inactive)
                 for (Twist<float>* twist : {&life.v1, &life.v2})
-                    for (int k = 0; k < 3; ++k) twist->angular[k] = odd[static_cast<int>(random.Number(0.0f, 3.99f))];
+                    for (int k = 0; k < 3; ++k) twist->angular[k] = odd[static_cast<int>(random.Between(0.0f, 3.99f))];
             before1[i] = life.v1;
             before2[i] = life.v2;
             PutLife(lanes, i, life);

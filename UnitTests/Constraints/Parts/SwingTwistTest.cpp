@@ -12,7 +12,8 @@
 namespace fulcrum {
 namespace {
 
-using testing::Random;
+using testing::AnyDirection;
+using testing::RandomPoses;
 
 constexpr float kPi = 3.14159265f;
 constexpr double kPiDouble = 3.14159265358979324;
@@ -22,9 +23,9 @@ constexpr float kDegree = kPi / 180.0f;
 Quaternion Swung(float y, float z, float twist) {
     return RotationFromVector(Vector3(0, y, z)) * RotationFromVector(Vector3(twist, 0, 0));
 }
-Quaternion RandomRotation(Random& random) {
-    const Vector3 axis = random.Direction();
-    return RotationFromVector(Vector3(axis * random.Number(-kPi, kPi)));
+Quaternion RandomRotation(RandomPoses& random) {
+    const Vector3 axis = AnyDirection(random);
+    return RotationFromVector(Vector3(axis * random.Between(-kPi, kPi)));
 }
 float Alike(const Quaternion& a, const Quaternion& b) {
     return std::fabs(a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w);
@@ -38,12 +39,12 @@ SwingTwistLimits Swing(const AngleRange& y, const AngleRange& z, SwingShape shap
     return limits;
 }
 // Half of the angles are of more than a right angle or of less than a degree.
-float HalfAngle(Random& random) {
-    const float kind = random.Number(0.0f, 1.0f);
-    return kDegree * (kind < 0.15f ? random.Number(0.2f, 1.0f) : kind < 0.5f ? random.Number(90.0f, 179.0f)
-                                                                             : random.Number(1.0f, 90.0f));
+float HalfAngle(RandomPoses& random) {
+    const float kind = random.Between(0.0f, 1.0f);
+    return kDegree * (kind < 0.15f ? random.Between(0.2f, 1.0f) : kind < 0.5f ? random.Between(90.0f, 179.0f)
+                                                                             : random.Between(1.0f, 90.0f));
 }
-SwingTwistLimits RandomSwing(Random& random, SwingShape shape) {
+SwingTwistLimits RandomSwing(RandomPoses& random, SwingShape shape) {
     const float y = HalfAngle(random), z = HalfAngle(random);
     if (shape == SwingShape::Ellipse) return Swing({-y, y}, {-z, z}, shape);
     const float y2 = HalfAngle(random), z2 = HalfAngle(random);
@@ -56,10 +57,10 @@ float Least(const RotationLimitList& list) {
 }
 
 TEST(SwingTwist, DecompositionIsUndoneByItsProduct) {
-    Random random(1);
+    RandomPoses random(1);
     for (int i = 0; i < 500; ++i) {
-        const float alpha = i % 5 == 0 ? kPi : random.Number(0.0f, kPi), psi = random.Number(-kPi, kPi);
-        const float y = alpha * Cos(psi), z = alpha * Sin(psi), twist = random.Number(-kPi, kPi);
+        const float alpha = i % 5 == 0 ? kPi : random.Between(0.0f, kPi), psi = random.Between(-kPi, kPi);
+        const float y = alpha * Cos(psi), z = alpha * Sin(psi), twist = random.Between(-kPi, kPi);
         const Quaternion q = Swung(y, z, twist);
         for (const Quaternion& same : {q, Quaternion{-q.x, -q.y, -q.z, -q.w}}) {
             const SwingTwist r = Decompose(same);
@@ -155,12 +156,12 @@ double InsideBy(const SwingTwistLimits& limits, double y, double z) {
 }
 
 void ExpectDistances(SwingShape shape, uint32_t seed) {
-    Random random(seed);
+    RandomPoses random(seed);
     for (int i = 0; i < 600; ++i) {
         const SwingTwistLimits limits = RandomSwing(random, shape);
-        const float alpha = i % 8 == 0 ? kPi : random.Number(0.0f, kPi), psi = random.Number(-kPi, kPi);
+        const float alpha = i % 8 == 0 ? kPi : random.Between(0.0f, kPi), psi = random.Between(-kPi, kPi);
         const double y = static_cast<double>(alpha * Cos(psi)), z = static_cast<double>(alpha * Sin(psi));
-        const Quaternion q = Swung(static_cast<float>(y), static_cast<float>(z), random.Number(-3.0f, 3.0f));
+        const Quaternion q = Swung(static_cast<float>(y), static_cast<float>(z), random.Between(-3.0f, 3.0f));
         const Position d = DirectionOf(std::sqrt(y * y + z * z), y / std::sqrt(y * y + z * z), z / std::sqrt(y * y + z * z));
         const double distance = DistanceToEdge(limits, d);
         const float error = Least(CollectLimits(q, limits));
@@ -178,10 +179,10 @@ TEST(SwingLimit, EllipseIsTheDistanceToItsEdge) { ExpectDistances(SwingShape::El
 TEST(SwingLimit, PyramidIsTheDistanceToItsEdge) { ExpectDistances(SwingShape::Pyramid, 3); }
 
 TEST(SwingLimit, ConeIsTheAngleBetweenTheAxes) {
-    Random random(4);
+    RandomPoses random(4);
     for (int i = 0; i < 500; ++i) {
         const Quaternion q = RandomRotation(random);
-        const float angle = Acos(Rotate(q, Vector3(1, 0, 0)).x()), cone = random.Number(0.0f, kPi);
+        const float angle = Acos(Rotate(q, Vector3(1, 0, 0)).x()), cone = random.Between(0.0f, kPi);
         const RotationLimit limit = ConeLimit(Decompose(q), cone);
         // Acos near 0 and pi is worth the square root of 1e-7.
         EXPECT_NEAR(limit.error, cone - angle, 6e-4f);
@@ -194,12 +195,12 @@ TEST(SwingLimit, ConeIsTheAngleBetweenTheAxes) {
 
 // C is a distance: it changes by no more than d moves, anywhere, at the far end of the sphere too.
 TEST(SwingLimit, ErrorsAreContinuousThroughHalfATurn) {
-    Random random(5);
+    RandomPoses random(5);
     for (int i = 0; i < 200; ++i) {
         const SwingTwistLimits limits = RandomSwing(random, i % 2 ? SwingShape::Ellipse : SwingShape::Pyramid);
         // Round a great circle, of which every second one passes through the opposite of x.
-        const float psi = random.Number(-kPi, kPi);
-        Vector3 axis = i % 4 < 2 ? Vector3(0, Cos(psi), Sin(psi)) : random.Direction();
+        const float psi = random.Between(-kPi, kPi);
+        Vector3 axis = i % 4 < 2 ? Vector3(0, Cos(psi), Sin(psi)) : AnyDirection(random);
         const float step = 2.0f * kPi / 1024.0f;
         const Quaternion start = i % 4 < 2 ? Quaternion{} : RandomRotation(random);
         float before = 0.0f;
@@ -217,7 +218,7 @@ TEST(SwingLimit, ErrorsAreContinuousThroughHalfATurn) {
 // By central differences: a step of 0.005 leaves 1e-7 / 0.005 of rounding, and step^2 / 6 times a third derivative of up to
 // 1 / distance^2. Where the nearest point changes sides C has a kink, which the two halves of the difference show.
 TEST(SwingLimit, AxesAreTheGradientsOfTheErrors) {
-    Random random(6);
+    RandomPoses random(6);
     int checked = 0, kinks = 0;
     for (int i = 0; i < 4000; ++i) {
         SwingTwistLimits limits = RandomSwing(random, i % 2 ? SwingShape::Ellipse : SwingShape::Pyramid);
@@ -227,7 +228,7 @@ TEST(SwingLimit, AxesAreTheGradientsOfTheErrors) {
         if (i % 7 == 3) limits.swingZ = {0, 0};
         const Quaternion q = RandomRotation(random);
         if (i % 7 < 4 && std::fabs(Rotate(q, Vector3(1, 0, 0)).x()) < 0.2f) continue;  // latitudes are poles there
-        const Vector3 turn = random.Direction() * 0.005f;
+        const Vector3 turn = AnyDirection(random) * 0.005f;
         const RotationLimitList here = CollectLimits(q, limits);
         const RotationLimitList on = CollectLimits(RotationFromVector(turn) * q, limits);
         const RotationLimitList back = CollectLimits(RotationFromVector(Vector3(-turn)) * q, limits);
@@ -254,7 +255,7 @@ TEST(SwingLimit, AxesAreTheGradientsOfTheErrors) {
 
 // The great circle to the nearest point of the edge, from any depth: a turn by -C leads there.
 TEST(SwingLimit, TheAxisLeadsToTheEdge) {
-    Random random(7);
+    RandomPoses random(7);
     for (int i = 0; i < 2000; ++i) {
         const SwingShape shape = i % 2 ? SwingShape::Ellipse : SwingShape::Pyramid;
         const SwingTwistLimits limits = RandomSwing(random, shape);
@@ -299,7 +300,7 @@ TEST(SwingLimit, LockedAndFreeAxes) {
     const auto list = [&](const Quaternion& q, const AngleRange& y, const AngleRange& z) {
         return CollectLimits(q, Swing(y, z, SwingShape::Ellipse));
     };
-    Random random(8);
+    RandomPoses random(8);
     for (int i = 0; i < 200; ++i) {
         const Quaternion q = i % 3 == 0 ? Swung(kPi * Cos(float(i)), kPi * Sin(float(i)), 1.0f) : RandomRotation(random);
         const Vector3 d = Rotate(q, Vector3(1, 0, 0));
@@ -358,11 +359,11 @@ TEST(TwistLimit, CountsByTheNearerWay) {
 
 // dtau/dt = t . w / cos(alpha / 2), by central differences; a third derivative of up to 1 / cos^3.
 TEST(TwistLimit, AxisIsTheGradientOfTheTwist) {
-    Random random(9);
+    RandomPoses random(9);
     for (int i = 0; i < 1000; ++i) {
-        const float alpha = random.Number(0.0f, 2.6f), psi = random.Number(-kPi, kPi);
-        const Quaternion q = Swung(alpha * Cos(psi), alpha * Sin(psi), random.Number(-3.0f, 3.0f));
-        const Vector3 turn = random.Direction() * 2e-3f;
+        const float alpha = random.Between(0.0f, 2.6f), psi = random.Between(-kPi, kPi);
+        const Quaternion q = Swung(alpha * Cos(psi), alpha * Sin(psi), random.Between(-3.0f, 3.0f));
+        const Vector3 turn = AnyDirection(random) * 2e-3f;
         const SwingTwist r = Decompose(q);
         const float change = 0.5f * (Decompose(RotationFromVector(turn) * q).twist -
                                      Decompose(RotationFromVector(Vector3(-turn)) * q).twist);
