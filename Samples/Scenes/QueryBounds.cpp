@@ -58,8 +58,6 @@ void Ask(SceneWorld& world) {
     AskSweep(world, {-6 * Sin(0.5 * time), 1.3, -6}, Vector3(4, 0, 12));
 }
 
-double Missed(const SceneWorld& world) { return world.figure; }
-
 }  // namespace
 
 extern const Scene kQueryBoundsScene{
@@ -68,7 +66,7 @@ extern const Scene kQueryBoundsScene{
     .steps = 600,
     .build = AddQueryGround,
     .afterStep = Ask,
-    .accuracy = Missed,
+    .accuracy = FigureOf,
     .accuracyMeaning = "hits that the broad phase did not name",
 };
 

@@ -59,8 +59,6 @@ void Ask(SceneWorld& world) {
                         .turn = {0, static_cast<float>(2 * kPi), 0}});
 }
 
-double LargestGap(const SceneWorld& world) { return world.figure; }
-
 }  // namespace
 
 extern const Scene kQueryCastsScene{
@@ -69,7 +67,7 @@ extern const Scene kQueryCastsScene{
     .steps = 600,
     .build = AddQueryGround,
     .afterStep = Ask,
-    .accuracy = LargestGap,
+    .accuracy = FigureOf,
     .accuracyMeaning = "largest gap or overlap where a cast ends, m",
 };
 

@@ -53,8 +53,6 @@ void Ask(SceneWorld& world) {
     ask(*kPill.Value(), {OverTheGround(time, 0.6, 2.6), Turn(Vector3(0, 0.6f, 0.8f), time)});
 }
 
-double LargestDifference(const SceneWorld& world) { return world.figure; }
-
 }  // namespace
 
 extern const Scene kQueryClosestScene{
@@ -63,7 +61,7 @@ extern const Scene kQueryClosestScene{
     .steps = 600,
     .build = AddQueryGround,
     .afterStep = Ask,
-    .accuracy = LargestDifference,
+    .accuracy = FigureOf,
     .accuracyMeaning = "largest difference to the distance that all bodies one by one give, m",
 };
 

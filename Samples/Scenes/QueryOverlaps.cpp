@@ -56,8 +56,6 @@ void Ask(SceneWorld& world) {
     ProbePoints(world);
 }
 
-double Disagreements(const SceneWorld& world) { return world.figure; }
-
 }  // namespace
 
 extern const Scene kQueryOverlapsScene{
@@ -66,7 +64,7 @@ extern const Scene kQueryOverlapsScene{
     .steps = 600,
     .build = AddQueryGround,
     .afterStep = Ask,
-    .accuracy = Disagreements,
+    .accuracy = FigureOf,
     .accuracyMeaning = "probes whose overlap and distance disagree",
 };
 

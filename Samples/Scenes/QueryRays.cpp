@@ -69,8 +69,6 @@ void Ask(SceneWorld& world) {
     DrawCurtain(world);
 }
 
-double Disagreements(const SceneWorld& world) { return world.figure; }
-
 }  // namespace
 
 extern const Scene kQueryRaysScene{
@@ -79,7 +77,7 @@ extern const Scene kQueryRaysScene{
     .steps = 600,
     .build = AddQueryGround,
     .afterStep = Ask,
-    .accuracy = Disagreements,
+    .accuracy = FigureOf,
     .accuracyMeaning = "rays for which closest, all, any and batch disagree",
 };
 

@@ -109,6 +109,9 @@ private:
     double longestMs_ = 0;
 };
 
+// The figure of scenes that add it up themselves.
+inline double FigureOf(const SceneWorld& world) { return world.figure; }
+
 // A figure of several scenes: dynamic bodies whose centre is below y = 0, or nowhere.
 double BodiesBelowTheFloor(const SceneWorld& world);
 

@@ -102,8 +102,6 @@ void Watch(SceneWorld& world) {
     DrawTheCells(world, *field);
 }
 
-double PassedThrough(const SceneWorld& world) { return world.figure; }
-
 }  // namespace
 
 extern const Scene kTerrainWithHolesScene{
@@ -113,7 +111,7 @@ extern const Scene kTerrainWithHolesScene{
     .build = Build,
     .beforeStep = OpenTheMiddle,
     .afterStep = Watch,
-    .accuracy = PassedThrough,
+    .accuracy = FigureOf,
     .accuracyMeaning = "bodies that passed the surface where it is solid",
 };
 
