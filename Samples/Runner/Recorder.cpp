@@ -1,12 +1,14 @@
 #include <Fulcrum/Samples/Runner/Recorder.h>
 
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
+#include <Fulcrum/Collision/Shapes/HeightField.h>
 #include <Fulcrum/Collision/Shapes/Plane.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
 #include <Fulcrum/Collision/Shapes/SampledSurface.h>
 #include <Fulcrum/Collision/Shapes/SurfaceShape.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -18,7 +20,11 @@ constexpr double kFramesPerSecond = 60;
 // Each is about 10 bytes of a page.
 constexpr double kMostStates = 1.2e6;
 
-constexpr uint8_t kGone = 2;  // of settled_: removed, and hidden already
+// Of all edits of height fields; each is about 40 bytes of a page. The last is recorded in any case, so that a field may look
+// older than it is, but the end of a recording is right.
+constexpr size_t kMostEditedTriangles = 500'000;
+
+constexpr uint8_t kGone = 2;  // of settled_: removed, and recorded as such
 
 Vector3 ToVector(const Position& position, const Position& origin) {
     return Vector3((position - origin).cast<float>());
@@ -113,6 +119,20 @@ RecordedShape RecordedPrimitive(const Shape& source) {
     return shape;
 }
 
+// Changes with every edit of a height field; 0 for all else.
+uint64_t FingerprintOf(const Shape& shape) {
+    if (shape.Type() != ShapeType::HeightField) return 0;
+    const HeightField& field = static_cast<const HeightField&>(shape);
+    uint64_t hash = 0xCBF29CE484222325ull;  // FNV-1a, 64 bits, by words
+    const auto put = [&](uint32_t word) { hash = (hash ^ word) * 0x100000001B3ull; };
+    for (uint32_t z = 0; z <= field.CellCountZ(); ++z)
+        for (uint32_t x = 0; x <= field.CellCountX(); ++x) {
+            put(std::bit_cast<uint32_t>(field.Height(x, z)));
+            if (x < field.CellCountX() && z < field.CellCountZ()) put(field.Cell(x, z));
+        }
+    return hash;
+}
+
 RecordedMotion MotionOf(MotionType motion) {
     switch (motion) {
         case MotionType::Static: return RecordedMotion::Static;
@@ -129,9 +149,9 @@ Recorder::Recorder(SceneWorld& world, int steps, double dt) : world_(world), ste
     recording.description = world.Definition().description;
     double moving = 0;
     world.System().VisitBodies([&](BodyId id) {
-        AddBody(id);
         if (world.Bodies().GetMotionType(id) == MotionType::Dynamic && world.Bodies().IsAwake(id)) ++moving;
     });
+    AddNewBodies();
     joints_.emplace(world.System(), recording.origin, [this](BodyId id) { return RecordedBodyOf(id); });
     const double forRate = 1 / (kFramesPerSecond * dt), forSize = moving * steps / kMostStates;
     interval_ = static_cast<int>(std::max({1.0, std::round(forRate), std::ceil(forSize)}));
@@ -144,8 +164,9 @@ void Recorder::AfterStep() {
 }
 
 uint32_t Recorder::RecordShape(const ShapePtr& shape) {
+    const uint64_t fingerprint = FingerprintOf(*shape);
     const auto known = shapes_.find(shape.get());
-    if (known != shapes_.end()) return known->second;
+    if (known != shapes_.end() && known->second.fingerprint == fingerprint) return known->second.index;
     RecordedShape recorded;
     if (const auto* compound = dynamic_cast<const CompoundShape*>(shape.get())) {
         recorded.kind = RecordedShapeKind::Compound;
@@ -156,37 +177,53 @@ uint32_t Recorder::RecordShape(const ShapePtr& shape) {
     }
     const uint32_t index = static_cast<uint32_t>(recording.shapes.size());
     recording.shapes.push_back(std::move(recorded));
-    shapes_.emplace(shape.get(), index);
+    shapes_[shape.get()] = {shape, index, fingerprint};
     return index;
 }
 
-void Recorder::AddBody(BodyId id) {
-    if (recorded_.size() <= id.index) recorded_.resize(id.index + 1);
-    recorded_[id.index] = static_cast<uint32_t>(ids_.size());
-    const MutableCompound* compound = world_.Bodies().GetChildren(id);
-    if (!compound) {
-        AddRecordedBody(id, {}, world_.Bodies().GetShape(id));
-        return;
-    }
-    for (uint32_t i = 0; i < compound->Children().size(); ++i)
-        if (const ShapePtr& shape = compound->Children()[i].shape) AddRecordedBody(id, compound->IdOf(i), shape);
+// Those that no frame has yet, of mutable compounds the children.
+void Recorder::AddNewBodies() {
+    const BodyInterface& bodies = world_.Bodies();
+    world_.System().VisitBodies([&](BodyId id) {
+        const MutableCompound* compound = bodies.GetChildren(id);
+        if (!compound) {
+            if (!RecordedBodyOf(id)) AddRecordedBody(id, {}, bodies.GetShape(id));
+            return;
+        }
+        for (uint32_t i = 0; i < compound->Children().size(); ++i)
+            if (const ShapePtr& shape = compound->Children()[i].shape)
+                if (!recordedChildren_.contains({id, compound->IdOf(i)})) AddRecordedBody(id, compound->IdOf(i), shape);
+    });
 }
 
 void Recorder::AddRecordedBody(BodyId id, ChildId child, const ShapePtr& shape) {
+    const uint32_t index = static_cast<uint32_t>(ids_.size());
+    if (!RecordedBodyOf(id)) {
+        if (recorded_.size() <= id.index) recorded_.resize(id.index + 1);
+        recorded_[id.index] = index;
+    }
+    if (child != ChildId{}) recordedChildren_[{id, child}] = index;
     ids_.push_back(id);
     children_.push_back(child);
     settled_.push_back(0);
     islands_.push_back(-1);
-    recording.bodies.push_back({.shape = RecordShape(shape),
+    shown_.push_back({shape.get(), RecordShape(shape)});
+    recording.bodies.push_back({.shape = shown_.back().index,
                                 .motion = MotionOf(world_.Bodies().GetMotionType(id)),
                                 .mass = world_.Bodies().GetMass(id),
-                                .name = {}});
+                                .name = {},
+                                .isSensor = world_.Bodies().IsSensor(id)});
 }
 
 bool Recorder::IsThere(uint32_t body) const {
     if (children_[body] == ChildId{}) return world_.Bodies().Exists(ids_[body]);
     const MutableCompound* compound = world_.Bodies().GetChildren(ids_[body]);
     return compound && compound->Exists(children_[body]);
+}
+
+ShapePtr Recorder::ShapeOf(uint32_t body) const {
+    if (children_[body] == ChildId{}) return world_.Bodies().GetShape(ids_[body]);
+    return world_.Bodies().GetChildren(ids_[body])->Children()[children_[body].index].shape;
 }
 
 Pose Recorder::PoseOf(uint32_t body) const {
@@ -198,14 +235,20 @@ Pose Recorder::PoseOf(uint32_t body) const {
 }
 
 void Recorder::AddFrame() {
+    AddNewBodies();
     CollectIslands();
+    CollectShapes();
     states_.clear();
     const BodyInterface& bodies = world_.Bodies();
     for (uint32_t body = 0; body < ids_.size(); ++body) {
         const BodyId id = ids_[body];
         if (settled_[body] == kGone) continue;
         if (!IsThere(body)) {
-            HideRemovedBody(body, recording.latest[body]);
+            settled_[body] = kGone;
+            RecordedState last = recording.latest[body];
+            last.velocity = Vector3::Zero();
+            last.awake = last.isThere = false;
+            states_.push_back(last);
             continue;
         }
         const bool awake = bodies.IsAwake(id);
@@ -224,7 +267,7 @@ void Recorder::AddFrame() {
     contacts_.clear();
     if (WantsContacts(recording)) CollectContacts();
     CollectDrawing();
-    AppendFrame(recording, world_.Time(), states_, contacts_, joints_->Collect(recording.joints), {lines_, points_});
+    AppendFrame(recording, world_.Time(), states_, contacts_, joints_->Collect(recording.joints), {lines_, points_}, shapeChanges_);
 }
 
 std::optional<uint32_t> Recorder::RecordedBodyOf(BodyId id) const {
@@ -266,15 +309,22 @@ void Recorder::CollectDrawing() {
     for (const DrawnPoint& point : world_.Draw().Points()) points_.push_back({place(point.at), static_cast<uint32_t>(point.ink)});
 }
 
-// A recording cannot say that a body is gone: it sinks below everything, where floors hide it.
-void Recorder::HideRemovedBody(uint32_t body, RecordedState state) {
-    settled_[body] = kGone;
-    float lowest = 0;
-    for (const RecordedState& other : recording.latest) lowest = std::min(lowest, other.position.y());
-    state.position.y() = lowest - 1;
-    state.velocity = Vector3::Zero();
-    state.awake = false;
-    states_.push_back(state);
+// Bodies whose shape was exchanged, or edited. What sleeps would have been woken.
+void Recorder::CollectShapes() {
+    shapeChanges_.clear();
+    const bool recordsEdits = editedTriangles_ < kMostEditedTriangles || world_.StepCount() == steps_;
+    for (uint32_t body = 0; body < ids_.size(); ++body) {
+        const bool sleeps = settled_[body] == 1 && recording.bodies[body].motion == RecordedMotion::Dynamic && !world_.Bodies().IsAwake(ids_[body]);
+        if (sleeps || settled_[body] == kGone || !IsThere(body)) continue;
+        const ShapePtr shape = ShapeOf(body);
+        const bool isField = shape->Type() == ShapeType::HeightField;
+        if (shape.get() == shown_[body].shape && !(isField && recordsEdits)) continue;
+        const uint32_t index = RecordShape(shape);
+        if (index == shown_[body].index) continue;
+        if (isField) editedTriangles_ += recording.shapes[index].triangles.size();
+        shown_[body] = {shape.get(), index};
+        shapeChanges_.push_back({body, index});
+    }
 }
 
 }  // namespace fulcrum

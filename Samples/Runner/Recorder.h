@@ -24,27 +24,42 @@ public:
     Recording recording;
 
 private:
+    // A shape, and how it was when it was recorded. Kept, so that no other is taken for it.
+    struct KnownShape {
+        ShapePtr shape;
+        uint32_t index = 0;         // into recording.shapes
+        uint64_t fingerprint = 0;   // of a height field's heights and cells
+    };
+    struct ShownShape {
+        const Shape* shape = nullptr;
+        uint32_t index = 0;         // into recording.shapes
+    };
+
     uint32_t RecordShape(const ShapePtr& shape);
-    void AddBody(BodyId id);
+    void AddNewBodies();
     void AddRecordedBody(BodyId id, ChildId child, const ShapePtr& shape);
+    void CollectShapes();
     bool IsThere(uint32_t body) const;
+    ShapePtr ShapeOf(uint32_t body) const;
     Pose PoseOf(uint32_t body) const;
     void AddFrame();
     void CollectIslands();
     void CollectContacts();
     void CollectDrawing();
-    void HideRemovedBody(uint32_t body, RecordedState state);
     std::optional<uint32_t> RecordedBodyOf(BodyId id) const;
 
     const SceneWorld& world_;
     int steps_;
     int interval_ = 1;  // steps a frame
-    std::map<const Shape*, uint32_t> shapes_;
+    std::map<const Shape*, KnownShape> shapes_;
+    std::vector<ShownShape> shown_;    // by recorded body
+    size_t editedTriangles_ = 0;       // of all edits that were recorded
     std::vector<BodyId> ids_;          // of the recorded bodies
     // By recorded body: the children of a mutable compound are bodies of their own, each drawn where it is as long as it is
     // there. Of all others no child.
     std::vector<ChildId> children_;
-    std::vector<uint32_t> recorded_;   // index of the recorded body by BodyId::index
+    std::vector<uint32_t> recorded_;   // index of the recorded body, or of the first of its children, by BodyId::index
+    std::map<std::pair<BodyId, ChildId>, uint32_t> recordedChildren_;
     std::vector<uint8_t> settled_;     // by recorded body: 1: its resting state is recorded
     std::vector<int32_t> islands_;     // by recorded body
     std::vector<int32_t> firstOfIsland_;
@@ -52,6 +67,7 @@ private:
     std::vector<RecordedContact> contacts_;
     std::vector<RecordedLine> lines_;
     std::vector<RecordedPoint> points_;
+    std::vector<RecordedShapeChange> shapeChanges_;
     std::optional<JointRecorder> joints_;
 };
 

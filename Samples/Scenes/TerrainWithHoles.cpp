@@ -69,8 +69,7 @@ void OpenTheMiddle(SceneWorld& world, double) {
     (void)world.Bodies().SetPose(world.watched[0], Position::Zero(), {});
 }
 
-// Where cells of another kind begin: red for holes, blue for ice, violet for rubber. A recording shows the field as it was at
-// first, so that this is how the opening is seen.
+// Where cells of another kind begin: red for holes, blue for ice, violet for rubber.
 void DrawTheCells(SceneWorld& world, const HeightField& field) {
     if (!world.Draw().IsOn()) return;
     const auto compare = [&](uint8_t a, uint8_t b, const Vector3& from, const Vector3& to) {

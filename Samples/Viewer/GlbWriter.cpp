@@ -88,11 +88,13 @@ bool Moves(const Curve<N>& values, float tolerance) {
 
 class Document {
 public:
-    explicit Document(const Recording& recording) : recording_(recording), keys_(KeysOfBodies(recording)) {
+    explicit Document(const Recording& recording)
+        : recording_(recording), keys_(KeysOfBodies(recording)), presences_(PresencesOf(recording)) {
         AddMaterials();
-        for (size_t body = 0; body < recording.bodies.size(); ++body) AddBody(body);
-        if (!recording.frames.empty())
-            for (size_t body = 0; body < recording.bodies.size(); ++body) Animate(body);
+        if (recording.frames.empty())
+            for (uint32_t body = 0; body < recording.bodies.size(); ++body) presences_.push_back({body, recording.bodies[body].shape, 0, 0});
+        for (size_t node = 0; node < presences_.size(); ++node) AddNode(node);
+        for (size_t node = 0; node < presences_.size(); ++node) Animate(node);
         Finish();
     }
 
@@ -100,7 +102,8 @@ public:
     const std::string& Binary() const { return buffer_.Bytes(); }
 
 private:
-    // One for static bodies, one for kinematic ones, then a few for dynamic ones, of neighbouring bodies different.
+    // One for static bodies, one for kinematic ones, then a few for dynamic ones, of neighbouring bodies different; last glass,
+    // for sensors.
     void AddMaterials() {
         static constexpr std::array<std::array<float, 3>, 7> kColours = {{{0.64f, 0.68f, 0.72f}, {0.32f, 0.38f, 0.45f}, {0.14f, 0.32f, 0.62f},
                                                                           {0.74f, 0.35f, 0.11f}, {0.16f, 0.44f, 0.23f}, {0.62f, 0.14f, 0.16f},
@@ -111,9 +114,17 @@ private:
                                             {"metallicFactor", 0.0f},
                                             {"roughnessFactor", 0.65f}}}});
         dynamicMaterials_ = kColours.size() - 2;
+        const bool hasSensors = std::any_of(recording_.bodies.begin(), recording_.bodies.end(), [](const RecordedBody& body) { return body.isSensor; });
+        if (!hasSensors) return;
+        json_["materials"].push_back({{"name", "glass"},
+                                      {"alphaMode", "BLEND"},
+                                      {"doubleSided", true},
+                                      {"pbrMetallicRoughness",
+                                       {{"baseColorFactor", {0.04f, 0.39f, 0.54f, 0.3f}}, {"metallicFactor", 0.0f}, {"roughnessFactor", 0.2f}}}});
     }
 
     size_t MaterialOf(size_t body) const {
+        if (recording_.bodies[body].isSensor) return 2 + dynamicMaterials_;
         switch (recording_.bodies[body].motion) {
         case RecordedMotion::Static: return 0;
         case RecordedMotion::Kinematic: return 1;
@@ -140,10 +151,14 @@ private:
         return found->second;
     }
 
-    void AddBody(size_t body) {
+    // A node for each shape that a body has in the recording: mostly one.
+    void AddNode(size_t index) {
+        const auto [body, shape, from, until] = presences_[index];
         const RecordedBody& recorded = recording_.bodies[body];
-        Json node = {{"name", recorded.name.empty() ? "body " + std::to_string(body) : recorded.name}};
-        if (!IsEmptyShape(recording_, recorded.shape)) node["mesh"] = MeshOf(recorded.shape, MaterialOf(body));
+        std::string name = recorded.name.empty() ? "body " + std::to_string(body) : recorded.name;
+        if (index > 0 && presences_[index - 1].body == body) name += " from frame " + std::to_string(from);
+        Json node = {{"name", name}};
+        if (!IsEmptyShape(recording_, shape)) node["mesh"] = MeshOf(shape, MaterialOf(body));
         if (!keys_[body].empty()) {
             const Key& first = keys_[body].front();
             node["translation"] = {first.position.x(), first.position.y(), first.position.z()};
@@ -152,21 +167,42 @@ private:
         json_["nodes"].push_back(node);
     }
 
-    void Animate(size_t body) {
+    float TimeOf(size_t frame) const { return static_cast<float>(recording_.frames[frame].time - recording_.frames[0].time); }
+
+    // What is not there has no size.
+    void AnimatePresence(size_t node) {
+        const auto [body, shape, from, until] = presences_[node];
+        if (from == 0 && until >= recording_.frames.size()) return;
+        std::vector<float> times;
+        Curve<3> scales;
+        const auto put = [&](size_t frame, float scale) {
+            times.push_back(TimeOf(frame));
+            scales.push_back({scale, scale, scale});
+        };
+        if (from > 0) put(0, 0);
+        put(from, 1);
+        if (until < recording_.frames.size()) put(until, 0);
+        AddSampler(node, "scale", times, scales, "STEP");
+    }
+
+    void Animate(size_t node) {
+        if (recording_.frames.empty()) return;
+        AnimatePresence(node);
+        const size_t body = presences_[node].body;
         std::vector<float> times;
         Curve<3> positions;
         Curve<4> rotations;
         for (const Key& key : keys_[body]) {
-            times.push_back(static_cast<float>(recording_.frames[key.frame].time - recording_.frames[0].time));
+            times.push_back(TimeOf(key.frame));
             positions.push_back({key.position.x(), key.position.y(), key.position.z()});
             rotations.push_back({key.rotation.x, key.rotation.y, key.rotation.z, key.rotation.w});
         }
-        AddChannel(body, "translation", times, positions, kPositionTolerance);
-        AddChannel(body, "rotation", times, rotations, kRotationTolerance);
+        AddChannel(node, "translation", times, positions, kPositionTolerance);
+        AddChannel(node, "rotation", times, rotations, kRotationTolerance);
     }
 
     template <size_t N>
-    void AddChannel(size_t body, const char* path, const std::vector<float>& times, const Curve<N>& values, float tolerance) {
+    void AddChannel(size_t node, const char* path, const std::vector<float>& times, const Curve<N>& values, float tolerance) {
         if (values.size() < 2 || !Moves(values, tolerance)) return;
         std::vector<float> keptTimes;
         Curve<N> kept;
@@ -174,18 +210,23 @@ private:
             keptTimes.push_back(times[i]);
             kept.push_back(values[i]);
         }
+        AddSampler(node, path, keptTimes, kept, "LINEAR");
+    }
+
+    template <size_t N>
+    void AddSampler(size_t node, const char* path, const std::vector<float>& times, const Curve<N>& values, const char* interpolation) {
         const size_t sampler = samplers_.size();
         // Many bodies have the same key times, those that moved in every frame for one.
-        auto [input, isNew] = inputs_.try_emplace(keptTimes, 0);
-        if (isNew) input->second = buffer_.AddTimes(keptTimes);
-        samplers_.push_back({{"input", input->second}, {"output", buffer_.AddValues(kept)}, {"interpolation", "LINEAR"}});
-        channels_.push_back({{"sampler", sampler}, {"target", {{"node", body}, {"path", path}}}});
+        auto [input, isNew] = inputs_.try_emplace(times, 0);
+        if (isNew) input->second = buffer_.AddTimes(times);
+        samplers_.push_back({{"input", input->second}, {"output", buffer_.AddValues(values)}, {"interpolation", interpolation}});
+        channels_.push_back({{"sampler", sampler}, {"target", {{"node", node}, {"path", path}}}});
     }
 
     void Finish() {
         json_["asset"] = {{"version", "2.0"}, {"generator", "Fulcrum"}};
         Json scene = {{"name", recording_.title}};
-        for (size_t body = 0; body < recording_.bodies.size(); ++body) scene["nodes"].push_back(body);
+        for (size_t node = 0; node < presences_.size(); ++node) scene["nodes"].push_back(node);
         json_["scenes"] = {scene};
         json_["scene"] = 0;
         if (!channels_.empty())
@@ -202,6 +243,7 @@ private:
 
     const Recording& recording_;
     std::vector<std::vector<Key>> keys_;
+    std::vector<RecordedPresence> presences_;  // by node
     GlbBuffer buffer_;
     Json json_, samplers_ = Json::array(), channels_ = Json::array();
     size_t dynamicMaterials_ = 0;

@@ -34,7 +34,7 @@ struct BodyMemory {
     Steps4 rotation = {};
     int64_t island = -1;
     size_t frame = 0;  // that stored it last
-    bool awake = true, isKnown = false;
+    bool awake = true, isThere = true, isKnown = false;
 };
 
 class StateEncoder {
@@ -80,7 +80,7 @@ private:
 
     bool HasChanged(const RecordedState& state) const {
         const BodyMemory& last = memory_[state.body];
-        return !last.isKnown || last.awake != state.awake || last.island != state.island ||
+        return !last.isKnown || last.awake != state.awake || last.isThere != state.isThere || last.island != state.island ||
                last.position != Quantised(state.position, positionStep_) || last.rotation != QuantisedRotation(state) ||
                last.velocity != QuantisedVelocity(state);
     }
@@ -90,7 +90,7 @@ private:
         const Steps3 position = Quantised(state.position, positionStep_), velocity = QuantisedVelocity(state);
         const Steps4 rotation = QuantisedRotation(state);
         const bool isNewIsland = state.island != last.island;
-        flags.PutUnsigned((state.awake ? 1 : 0) | (isNewIsland ? 2 : 0));
+        flags.PutUnsigned((state.awake ? 1 : 0) | (isNewIsland ? 2 : 0) | (state.isThere ? 0 : 4));
         if (isNewIsland) islands_.PutSigned(state.island - last.island);
 
         // Where nothing was stored of the frame before, the body rested then, and no motion is expected to go on.
@@ -108,6 +108,7 @@ private:
         last.island = state.island;
         last.frame = frame;
         last.awake = state.awake;
+        last.isThere = state.isThere;
         last.isKnown = true;
     }
 
@@ -183,22 +184,27 @@ Json Header(const Recording& recording, double positionStep) {
     header["drawings"] = DrawingHeader(recording, kDrawingSteps * positionStep);
     header["contactInterval"] = recording.contactInterval;
     header["largestContactCut"] = recording.largestContactCut;
-    Json &times = header["times"] = Json::array(), &contactFrames = header["contactFrames"] = Json::array();
+    Json times = Json::array(), contactFrames = Json::array(), shapeChanges = Json::array();
     for (size_t i = 0; i < recording.frames.size(); ++i) {
         times.push_back(recording.frames[i].time);
         if (recording.frames[i].hasContacts) contactFrames.push_back(i);
+        for (const RecordedShapeChange& change : recording.frames[i].shapes) shapeChanges.push_back({i, change.body, change.shape});
     }
+    header["times"] = std::move(times);
+    header["contactFrames"] = std::move(contactFrames);
+    header["shapeChanges"] = std::move(shapeChanges);
     Json& shapes = header["shapes"] = Json::array();
     for (const RecordedShape& shape : recording.shapes) shapes.push_back(AsJson(shape));
-    Json bodyShapes = Json::array(), motions = Json::array(), masses = Json::array(), names = Json::object();
+    Json bodyShapes = Json::array(), motions = Json::array(), masses = Json::array(), names = Json::object(), sensors = Json::array();
     for (size_t i = 0; i < recording.bodies.size(); ++i) {
         const RecordedBody& body = recording.bodies[i];
         bodyShapes.push_back(body.shape);
         motions.push_back(static_cast<int>(body.motion));
         masses.push_back(body.motion == RecordedMotion::Dynamic ? body.mass : 0.0f);
         if (!body.name.empty()) names[std::to_string(i)] = body.name;
+        if (body.isSensor) sensors.push_back(i);
     }
-    header["bodies"] = {{"shapes", bodyShapes}, {"motions", motions}, {"masses", masses}, {"names", names}};
+    header["bodies"] = {{"shapes", bodyShapes}, {"motions", motions}, {"masses", masses}, {"names", names}, {"sensors", sensors}};
     Json& report = header["report"] = Json::array();
     for (const ReportLine& line : recording.report) report.push_back({line.section, line.label, line.value});
     return header;

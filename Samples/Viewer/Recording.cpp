@@ -13,7 +13,7 @@ bool IsFinite(const RecordedState& s) {
 bool IsEqual(const RecordedState& a, const RecordedState& b) {
     return a.position == b.position && a.rotation.x == b.rotation.x && a.rotation.y == b.rotation.y &&
            a.rotation.z == b.rotation.z && a.rotation.w == b.rotation.w && a.velocity == b.velocity && a.awake == b.awake &&
-           a.island == b.island;
+           a.island == b.island && a.isThere == b.isThere;
 }
 
 // Halves the number of frames with contacts until they fit.
@@ -63,7 +63,7 @@ bool WantsContacts(const Recording& recording) {
 
 void AppendFrame(Recording& recording, double time, std::span<const RecordedState> states,
                  std::span<const RecordedContact> contacts, const RecordedFrameJoints& joints,
-                 const RecordedFrameDrawing& drawing) {
+                 const RecordedFrameDrawing& drawing, std::span<const RecordedShapeChange> shapes) {
     RecordedFrame frame;
     frame.time = time;
     const size_t known = recording.latest.size();
@@ -84,8 +84,33 @@ void AppendFrame(Recording& recording, double time, std::span<const RecordedStat
     }
     AppendJoints(recording, joints, frame);
     AppendDrawing(drawing, frame);
+    frame.shapes.assign(shapes.begin(), shapes.end());
     recording.frames.push_back(std::move(frame));
     ThinContacts(recording);
+}
+
+std::vector<RecordedPresence> PresencesOf(const Recording& recording) {
+    std::vector<std::vector<RecordedPresence>> ofBody(recording.bodies.size());
+    for (size_t i = 0; i < recording.frames.size(); ++i) {
+        for (const RecordedState& state : recording.frames[i].states) {
+            std::vector<RecordedPresence>& own = ofBody[state.body];
+            if (own.empty()) own.push_back({state.body, recording.bodies[state.body].shape, i, recording.frames.size()});
+            if (!state.isThere) own.back().until = i;
+        }
+        for (const RecordedShapeChange& change : recording.frames[i].shapes) {
+            std::vector<RecordedPresence>& own = ofBody[change.body];
+            if (own.empty() || own.back().until <= i) continue;
+            if (own.back().from < i) {
+                own.back().until = i;
+                own.push_back({change.body, change.shape, i, recording.frames.size()});
+            }
+            own.back().shape = change.shape;
+        }
+    }
+    std::vector<RecordedPresence> all;
+    for (const auto& own : ofBody)
+        std::copy_if(own.begin(), own.end(), std::back_inserter(all), [](const RecordedPresence& one) { return one.from < one.until; });
+    return all;
 }
 
 Status CheckRecording(const Recording& recording) {
@@ -115,6 +140,10 @@ Status CheckRecording(const Recording& recording) {
             return unknown("frame", i, "the joint", joint);
         for (const RecordedState& state : frame.states)
             if (state.body >= recording.bodies.size()) return unknown("frame", i, "the body", state.body);
+        for (const RecordedShapeChange& change : frame.shapes) {
+            if (change.body >= recording.bodies.size()) return unknown("frame", i, "the body", change.body);
+            if (change.shape >= recording.shapes.size()) return unknown("frame", i, "the shape", change.shape);
+        }
         for (const RecordedContact& contact : frame.contacts)
             if (const uint32_t body = std::max(contact.bodyA, contact.bodyB); body >= recording.bodies.size())
                 return unknown("frame", i, "the body", body);

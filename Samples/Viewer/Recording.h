@@ -43,6 +43,7 @@ struct RecordedBody {
     RecordedMotion motion = RecordedMotion::Dynamic;
     float mass = 0;    // kg; counts for dynamic bodies only
     std::string name;  // may be empty
+    bool isSensor = false;
 };
 
 struct RecordedState {
@@ -52,6 +53,12 @@ struct RecordedState {
     Vector3 velocity = Vector3::Zero();    // m/s, linear
     bool awake = true;
     int32_t island = -1;                   // -1: in none
+    bool isThere = true;                   // false: the body was removed, and does not come back
+};
+
+// From its frame on a body has another shape, or the same one as it was edited.
+struct RecordedShapeChange {
+    uint32_t body = 0, shape = 0;          // indices into Recording::bodies and shapes
 };
 
 struct RecordedContact {
@@ -71,6 +78,7 @@ struct RecordedFrame {
     RecordedJointErrors jointErrors;
     std::vector<RecordedLine> lines;         // of this frame alone
     std::vector<RecordedPoint> points;       // likewise
+    std::vector<RecordedShapeChange> shapes;
 };
 
 // A line of the panel beside the picture. Lines of one section follow each other.
@@ -100,14 +108,24 @@ inline constexpr size_t kMostContacts = 400'000;  // of a whole recording: about
 inline constexpr size_t kMostContactsPerFrame = 50'000;
 
 // Adds a frame at `time` seconds. `states` names bodies ascending by index, all of them or, from the second frame on, only
-// those that may have changed; what equals the state before is dropped, and so is a state that is not finite. A body that no
-// frame has named yet counts as resting at the origin; one that is no body of the recording's is dropped. So that no recording outgrows memory, contacts are kept of every
-// frame first, of every second once there are more than kMostContacts, then of every fourth, and so on; of more than
-// kMostContactsPerFrame in one frame an even choice is kept. Of joints too only those need be named that may have changed; one
-// that no frame has named yet counts as switched off. Lines and points that are not finite are dropped.
+// those that may have changed; what equals the state before is dropped, and so is a state that is not finite. A body that was
+// added to the recording since the last frame is there from this one on, at the origin if it is not named; a state of what is
+// no body of the recording's is dropped. So that no recording outgrows memory, contacts are kept of every frame first, of every
+// second once there are more than kMostContacts, then of every fourth, and so on; of more than kMostContactsPerFrame in one
+// frame an even choice is kept. Of joints too only those need be named that may have changed; one that no frame has named yet
+// counts as switched off. Lines and points that are not finite are dropped.
 void AppendFrame(Recording& recording, double time, std::span<const RecordedState> states,
                  std::span<const RecordedContact> contacts, const RecordedFrameJoints& joints = {},
-                 const RecordedFrameDrawing& drawing = {});
+                 const RecordedFrameDrawing& drawing = {}, std::span<const RecordedShapeChange> shapes = {});
+
+// Frames from <= i < until, in which a body is there with one shape.
+struct RecordedPresence {
+    uint32_t body = 0, shape = 0;
+    size_t from = 0, until = 0;
+};
+
+// Of all bodies, ascending by body, then frame; of a body that changes its shape several, of one that no frame has none.
+std::vector<RecordedPresence> PresencesOf(const Recording& recording);
 
 // Whether the next frame's contacts would be kept: saves collecting them for nothing.
 bool WantsContacts(const Recording& recording);

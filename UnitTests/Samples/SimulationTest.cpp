@@ -118,14 +118,91 @@ TEST(Recorder, ShortStepsShareAFrame) {
     EXPECT_EQ(recorder.recording.frames.size(), 4u);  // after 0, 4, 8 and, as the last, 9 steps
 }
 
-TEST(Recorder, ARemovedBodySinksOutOfSight) {
+// The presences of a body, which must be in the recording.
+std::vector<RecordedPresence> PresencesOf(const Recording& recording, uint32_t body) {
+    std::vector<RecordedPresence> own;
+    for (const RecordedPresence& one : PresencesOf(recording))
+        if (one.body == body) own.push_back(one);
+    EXPECT_FALSE(own.empty()) << "body " << body;
+    return own.empty() ? std::vector<RecordedPresence>(1) : own;
+}
+
+TEST(Recorder, ARemovedBodyIsThereUntilItsFrame) {
     const auto world = Build("trap_door");
     ASSERT_TRUE(world);
     const uint32_t pillar = world->watched[0].index;
     Recorder recorder(*world, 200, 1.0 / 60);
-    ASSERT_TRUE(Simulate(*world, 0, 200, 1.0 / 60, 1, [&] { recorder.AfterStep(); }));
-    // The floor's centre is at -1 m and its underside at -2 m.
-    EXPECT_LT(recorder.recording.latest[pillar].position.y(), -1);
+    size_t goneAt = 0;
+    ASSERT_TRUE(Simulate(*world, 0, 200, 1.0 / 60, 1, [&] {
+        recorder.AfterStep();
+        if (goneAt == 0 && !world->Bodies().Exists(world->watched[0])) goneAt = recorder.recording.frames.size() - 1;
+    }));
+    const auto presences = PresencesOf(recorder.recording, pillar);
+    ASSERT_EQ(presences.size(), 1u);
+    EXPECT_EQ(presences[0].from, 0u);
+    EXPECT_GT(goneAt, 0u);
+    EXPECT_EQ(presences[0].until, goneAt);
+    EXPECT_FALSE(recorder.recording.latest[pillar].isThere);
+}
+
+TEST(Recorder, ABodyAddedLaterIsThereFromItsFrame) {
+    const auto world = Build("tower");
+    ASSERT_TRUE(world);
+    Recorder recorder(*world, 4, 1.0 / 60);
+    const auto step = [&] {
+        ASSERT_TRUE(world->Step(1.0 / 60));
+        recorder.AfterStep();
+    };
+    step();
+    ASSERT_TRUE(world->Bodies().Remove(world->watched.back()));
+    step();  // forgets it, so that the next body is given its index
+    const BodyId late = world->Add({.shape = world->SphereOf(0.2f), .position = {5, 3, 0}});
+    EXPECT_EQ(late.index, world->watched.back().index);
+    step();
+    const auto presences = PresencesOf(recorder.recording, 21);
+    EXPECT_EQ(presences[0].from, 3u);
+    EXPECT_EQ(presences[0].until, 4u);
+    EXPECT_EQ(recorder.recording.shapes[presences[0].shape].kind, RecordedShapeKind::Sphere);
+    EXPECT_NEAR(recorder.recording.latest[21].position.x(), 5, 1e-6);
+    EXPECT_EQ(PresencesOf(recorder.recording, world->watched.back().index)[0].until, 2u);
+}
+
+TEST(Recorder, AnEditedHeightFieldIsRecordedAnew) {
+    const auto world = Build("terrain_with_holes");
+    ASSERT_TRUE(world);
+    Recorder recorder(*world, 310, 1.0 / 60);
+    ASSERT_TRUE(Simulate(*world, 0, 310, 1.0 / 60, 1, [&] { recorder.AfterStep(); }));
+    const auto presences = PresencesOf(recorder.recording, world->watched[0].index);
+    ASSERT_EQ(presences.size(), 2u);
+    EXPECT_EQ(presences[1].from, 301u);  // after 5 s
+    const size_t before = recorder.recording.shapes[presences[0].shape].triangles.size();
+    const size_t after = recorder.recording.shapes[presences[1].shape].triangles.size();
+    // A square of 8 x 8 cells opens, of two triangles each.
+    EXPECT_EQ(before - after, 128u);
+}
+
+TEST(Recorder, AnExchangedShapeIsDrawnFromItsFrameOn) {
+    const auto world = Build("tower");
+    ASSERT_TRUE(world);
+    Recorder recorder(*world, 2, 1.0 / 60);
+    ASSERT_TRUE(world->Step(1.0 / 60));
+    recorder.AfterStep();
+    ASSERT_TRUE(world->Bodies().SetShape(world->watched[0], world->SphereOf(0.4f)));
+    ASSERT_TRUE(world->Step(1.0 / 60));
+    recorder.AfterStep();
+    const auto presences = PresencesOf(recorder.recording, world->watched[0].index);
+    ASSERT_EQ(presences.size(), 2u);
+    EXPECT_EQ(presences[0].until, 2u);
+    EXPECT_EQ(recorder.recording.shapes[presences[0].shape].kind, RecordedShapeKind::Box);
+    EXPECT_EQ(recorder.recording.shapes[presences[1].shape].kind, RecordedShapeKind::Sphere);
+}
+
+TEST(Recorder, SaysWhichBodiesAreSensors) {
+    const auto world = Build("sensors");
+    ASSERT_TRUE(world);
+    const Recorder recorder(*world, 1, 1.0 / 60);
+    for (uint32_t i = 0; i < recorder.recording.bodies.size(); ++i)
+        EXPECT_EQ(recorder.recording.bodies[i].isSensor, i >= 1 && i <= 4) << i;  // after the floor
 }
 
 TEST(Recorder, ChildrenThatComeAndGoAreBodiesOfTheirOwn) {
@@ -137,7 +214,7 @@ TEST(Recorder, ChildrenThatComeAndGoAreBodiesOfTheirOwn) {
     const Vector3 first = recorder.recording.latest[25].position, fifth = recorder.recording.latest[29].position;
     EXPECT_LT(Length(first - Vector3(-2, 8.1f, -2)), 1e-5f);
     ASSERT_TRUE(Simulate(*world, 0, 130, 1.0 / 60, 1, [&] { recorder.AfterStep(); }));
-    for (size_t i = 25; i < 29; ++i) EXPECT_LT(recorder.recording.latest[i].position.y(), -1) << i;
+    for (size_t i = 25; i < 29; ++i) EXPECT_FALSE(recorder.recording.latest[i].isThere) << i;
     EXPECT_EQ(recorder.recording.latest[29].position, fifth);
 }
 

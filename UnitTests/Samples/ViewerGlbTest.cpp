@@ -85,6 +85,34 @@ TEST(ViewerGlb, RestTakesTwoKeysHoweverLong) {
     EXPECT_EQ(json["accessors"][sampler["input"].get<size_t>()]["max"][0], 499);
 }
 
+// A ball that comes in frame 1, is another one from frame 2 on and goes in frame 3: two nodes, each with a size while it is there.
+TEST(ViewerGlb, WhatIsNotThereHasNoSize) {
+    Recording recording;
+    recording.shapes.resize(2);
+    recording.shapes[0].radius = 1;
+    recording.shapes[1].radius = 2;
+    AppendFrame(recording, 0, {}, {});
+    recording.bodies.emplace_back().isSensor = true;
+    AppendFrame(recording, 1, {}, {});
+    AppendFrame(recording, 2, {}, {}, {}, {}, std::array{RecordedShapeChange{0, 1}});
+    RecordedState gone;
+    gone.isThere = false;
+    AppendFrame(recording, 3, std::array{gone}, {});
+    const nlohmann::json json = WrittenText(recording, "fulcrum-presence.glb");
+    ASSERT_EQ(json["nodes"].size(), 2u);
+    EXPECT_NE(json["nodes"][0]["mesh"], json["nodes"][1]["mesh"]);
+    const nlohmann::json& animation = json["animations"][0];
+    ASSERT_EQ(animation["channels"].size(), 2u);
+    for (size_t node = 0; node < 2; ++node) {
+        EXPECT_EQ(animation["channels"][node]["target"]["path"], "scale");
+        EXPECT_EQ(animation["samplers"][node]["interpolation"], "STEP");
+        const nlohmann::json& times = json["accessors"][animation["samplers"][node]["input"].get<size_t>()];
+        EXPECT_EQ(times["count"], 3);
+        EXPECT_EQ(times["max"][0], 2.0 + static_cast<double>(node));
+    }
+    EXPECT_EQ(json["materials"].back()["alphaMode"], "BLEND");
+}
+
 TEST(ViewerGlb, NothingMovesIsNoAnimation) {
     FallingStack stack(1);
     stack.AddFrames(1, 1);

@@ -114,6 +114,29 @@ TEST(ViewerPageData, ComesBackWithinItsSteps) {
     for (const Reader* column : {&states, &positions, &rotations, &velocities, &islands}) EXPECT_TRUE(column->IsAtEnd());
 }
 
+TEST(ViewerPageData, SaysWhatIsASensorWhatIsGoneAndWhatHasAnotherShape) {
+    Recording recording;
+    recording.shapes.resize(2);
+    recording.bodies.resize(2);
+    recording.bodies[1].isSensor = true;
+    AppendFrame(recording, 0, {}, {});
+    RecordedState gone;
+    gone.awake = gone.isThere = false;
+    AppendFrame(recording, 1, std::array{gone}, {}, {}, {}, std::array{RecordedShapeChange{1, 1}});
+    const std::string bytes = EncodePageData(recording);
+    EXPECT_NE(bytes.find("\"sensors\":[1]"), std::string::npos);
+    EXPECT_NE(bytes.find("\"shapeChanges\":[[1,1,1]]"), std::string::npos);
+    Decoded decoded = Split(bytes);
+    std::vector<uint64_t> flags;
+    for (int frame = 0; frame < 2; ++frame)
+        for (uint64_t left = decoded.columns[0].Unsigned(); left > 0; --left) {
+            EXPECT_EQ(decoded.columns[0].Unsigned(), 0u);  // no body is left out
+            flags.push_back(decoded.columns[0].Unsigned());
+        }
+    EXPECT_EQ(flags, (std::vector<uint64_t>{1, 1, 4}));
+    EXPECT_TRUE(decoded.columns[0].IsAtEnd());
+}
+
 TEST(ViewerPageData, RestingBodiesCostNoBytesAFrame) {
     FallingStack stack(8);
     Recording recording = stack.Get();

@@ -57,6 +57,30 @@ TEST(ViewerRecording, BodyAddedLaterComesWithItsFirstFrame) {
     EXPECT_EQ(recording.frames[1].states[0].position.x(), 5);
 }
 
+TEST(ViewerRecording, ABodyIsThereFromItsFirstFrameUntilItsLastWithTheShapesItIsGiven) {
+    Recording recording = OneBody();
+    recording.shapes.emplace_back().radius = 2;
+    AppendFrame(recording, 0, {}, {});
+    recording.bodies.emplace_back();
+    AppendFrame(recording, 1, {}, {});
+    AppendFrame(recording, 2, {}, {}, {}, {}, std::array{RecordedShapeChange{1, 1}});
+    RecordedState gone;
+    gone.isThere = false;
+    AppendFrame(recording, 3, std::array{gone}, {});
+    AppendFrame(recording, 4, {}, {});
+    const std::vector<RecordedPresence> all = PresencesOf(recording);
+    ASSERT_EQ(all.size(), 3u);
+    const auto expect = [&](size_t i, uint32_t body, uint32_t shape, size_t from, size_t until) {
+        EXPECT_EQ(all[i].body, body) << i;
+        EXPECT_EQ(all[i].shape, shape) << i;
+        EXPECT_EQ(all[i].from, from) << i;
+        EXPECT_EQ(all[i].until, until) << i;
+    };
+    expect(0, 0, 0, 0, 3);
+    expect(1, 1, 0, 1, 2);
+    expect(2, 1, 1, 2, 5);
+}
+
 TEST(ViewerRecording, StateThatIsNotFiniteLeavesTheLastOne) {
     Recording recording = OneBody();
     AppendFrame(recording, 0, std::array{StateAt(3)}, {});
@@ -93,6 +117,14 @@ TEST(ViewerRecording, CheckNamesWhatIsMissing) {
     ASSERT_FALSE(status);
     EXPECT_EQ(status.GetError().code, ErrorCode::UnknownId);
     EXPECT_NE(status.GetError().message.find("body 0 names the shape 7"), std::string::npos) << status.GetError().message;
+}
+
+TEST(ViewerRecording, CheckNamesAShapeThatABodyIsGivenLater) {
+    Recording recording = OneBody();
+    AppendFrame(recording, 0, {}, {}, {}, {}, std::array{RecordedShapeChange{0, 3}});
+    const Status status = CheckRecording(recording);
+    ASSERT_FALSE(status);
+    EXPECT_NE(status.GetError().message.find("frame 0 names the shape 3"), std::string::npos) << status.GetError().message;
 }
 
 TEST(ViewerRecording, CheckRefusesACompoundInsideItself) {

@@ -1,7 +1,9 @@
-// All bodies as instanced meshes, one for each geometry, moving and fixed bodies apart. Those that move come first in
-// each mesh, so that a frame touches and uploads no more than what moves.
+// All bodies as instanced meshes, one for each geometry, moving bodies, fixed ones and sensors apart. Those that move, come or go
+// come first in each mesh, so that a frame touches and uploads no more than what changes.
 import { Color, InstancedMesh, Matrix4, MeshStandardMaterial, Quaternion, Sphere, Vector3 } from 'three';
 import { SELECTED, colourOf } from './colours.js';
+import { Glass, SENSOR } from './glass.js';
+import { isAlwaysTheSame } from './presence.js';
 import { GeometryChoice, leavesOf } from './shapes.js';
 import { addGrid } from './stage.js';
 
@@ -15,8 +17,12 @@ export class Bodies {
     this.material = new MeshStandardMaterial({ vertexColors: true, roughness: 0.62, metalness: 0.02 });
     this.fixedMaterial = addGrid(new MeshStandardMaterial({ vertexColors: true, roughness: 0.95 }), stage.grid);
     this.drivenMaterial = new MeshStandardMaterial({ vertexColors: true, roughness: 0.7 });
+    this.glass = new Glass(stage);
     this.meshes = this.#build();
-    for (const { mesh } of this.meshes) stage.scene.add(mesh);
+    for (const { mesh, motion } of this.meshes) {
+      stage.scene.add(mesh);
+      if (motion === SENSOR) this.glass.addOutline(mesh);
+    }
     this.#placeAll(true);
   }
 
@@ -28,7 +34,7 @@ export class Bodies {
       material.depthWrite = isSolid;
       material.needsUpdate = true;
     }
-    for (const group of this.meshes) if (group.motion !== 2) group.mesh.castShadow = isSolid && group.castsShadow;
+    for (const group of this.meshes) if (group.motion < 2) group.mesh.castShadow = isSolid && group.castsShadow;
   }
 
   update(mode, top) {
@@ -36,18 +42,27 @@ export class Bodies {
     this.#colourAll(mode, top);
   }
 
-  // The body that the ray meets first, or -1.
+  // The body that the ray meets first, or -1. Through a sensor one picks the dynamic body that is seen in or behind it.
   pick(raycaster) {
+    const { motions } = this.recording.bodies, { isSensor } = this.recording;
     const solid = this.fixedMaterial.opacity === 1;
-    const meshes = this.meshes.filter((group) => solid || group.motion === 2).map((group) => group.mesh);
-    const [hit] = raycaster.intersectObjects(meshes, false);
-    return hit ? hit.object.userData.leaves[hit.instanceId].body : -1;
+    const meshes = this.meshes.filter(({ motion }) => solid || motion >= 2).map((group) => group.mesh);
+    const hits = raycaster.intersectObjects(meshes, false).map((hit) => hit.object.userData.leaves[hit.instanceId])
+      .filter((leaf) => this.#isShown(leaf)).map((leaf) => leaf.body);
+    const seen = hits.find((body) => !isSensor[body]);
+    return (motions[seen] === 2 ? seen : hits[0]) ?? -1;
+  }
+
+  #isShown({ presence }) {
+    const frame = Math.floor(this.timeline.frame);
+    return presence.from <= frame && frame < presence.until;
   }
 
   #build() {
-    const { bodies, bodyCount, shapes, movers } = this.recording;
+    const { bodies, bodyCount, frameCount, shapes, movers, presences, isSensor } = this.recording;
     const isMover = new Uint8Array(bodyCount);
     for (const body of movers) isMover[body] = 1;
+    for (let body = 0; body < bodyCount; ++body) if (!isAlwaysTheSame(presences[body], frameCount)) isMover[body] = 1;
     const leavesOfShape = shapes.map((_, index) => leavesOf(shapes, index));
     const leafCount = bodies.shapes.reduce((sum, shape) => sum + leavesOfShape[shape].length, 0);
     const choice = new GeometryChoice(leafCount, shapes);
@@ -56,16 +71,19 @@ export class Bodies {
     for (const moving of [1, 0]) {
       for (let body = 0; body < bodyCount; ++body) {
         if (isMover[body] !== moving) continue;
-        const motion = bodies.motions[body];
-        for (const leaf of leavesOfShape[bodies.shapes[body]]) {
-          const wanted = motion === 0 ? 'fixed' : 'free';
-          const known = choiceOf.get(leaf) ?? {};
-          const chosen = (known[wanted] ??= choice.of(leaf.shape, motion === 0));
-          choiceOf.set(leaf, known);
-          const byKey = groups.get(chosen.key) ?? groups.set(chosen.key, new Map()).get(chosen.key);
-          const group = byKey.get(motion) ?? byKey.set(motion, { motion, make: chosen.make, leaves: [], moving: 0 }).get(motion);
-          group.leaves.push({ body, position: leaf.position, rotation: leaf.rotation, scale: chosen.scale });
-          group.moving += moving;
+        const motion = isSensor[body] ? SENSOR : bodies.motions[body];
+        const isSharp = motion === 0 || motion === SENSOR;
+        for (const presence of presences[body]) {
+          for (const leaf of leavesOfShape[presence.shape]) {
+            const wanted = isSharp ? 'sharp' : 'bevelled';
+            const known = choiceOf.get(leaf) ?? {};
+            const chosen = (known[wanted] ??= choice.of(leaf.shape, isSharp));
+            choiceOf.set(leaf, known);
+            const byKey = groups.get(chosen.key) ?? groups.set(chosen.key, new Map()).get(chosen.key);
+            const group = byKey.get(motion) ?? byKey.set(motion, { motion, make: chosen.make, leaves: [], moving: 0 }).get(motion);
+            group.leaves.push({ body, presence, position: leaf.position, rotation: leaf.rotation, scale: chosen.scale });
+            group.moving += moving;
+          }
         }
       }
     }
@@ -73,12 +91,12 @@ export class Bodies {
   }
 
   #addMesh(group) {
-    const material = [this.fixedMaterial, this.drivenMaterial, this.material][group.motion];
+    const material = [this.fixedMaterial, this.drivenMaterial, this.material, this.glass.material][group.motion];
     const mesh = new InstancedMesh(group.make(), material, group.leaves.length);
     // Of very many bodies at rest, the shadows would cost as much as the bodies.
-    group.castsShadow = group.moving > 0 || group.leaves.length < RESTING_WITH_SHADOW_AT_MOST;
+    group.castsShadow = group.motion !== SENSOR && (group.moving > 0 || group.leaves.length < RESTING_WITH_SHADOW_AT_MOST);
     mesh.castShadow = group.castsShadow;
-    mesh.receiveShadow = true;
+    mesh.receiveShadow = group.motion !== SENSOR;
     mesh.frustumCulled = false;
     mesh.boundingSphere = new Sphere(new Vector3(), Infinity); // picking asks each instance
     mesh.setColorAt(0, new Color());
@@ -93,6 +111,10 @@ export class Bodies {
       const count = andResting ? leaves.length : moving;
       for (let i = 0; i < count; ++i) {
         const { body, position, rotation, scale } = leaves[i];
+        if (!this.#isShown(leaves[i])) {
+          mesh.instanceMatrix.array.fill(0, 16 * i, 16 * i + 16); // no size at all
+          continue;
+        }
         turn.fromArray(rotations, 4 * body).normalize();
         place.fromArray(positions, 3 * body).add(offset.copy(position).applyQuaternion(turn));
         matrix.compose(place, turn.multiply(rotation), size.fromArray(scale)).toArray(mesh.instanceMatrix.array, 16 * i);

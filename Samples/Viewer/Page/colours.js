@@ -8,6 +8,7 @@ const SPEEDS = ['#86a3c8', '#4fa3cc', '#4fb890', '#dccb4c', '#f0963a', '#d63c2c'
 const ALONE = new Color('#aab2ba');
 const FIXED = new Color('#d3d9de');
 const DRIVEN = new Color('#9aa7b4');
+const GLASS = new Color('#3aa7c2');
 const AWAKE = new Color('#f0ab6b');
 const ASLEEP = new Color('#7d93aa');
 export const SELECTED = new Color('#ff4d1c');
@@ -49,9 +50,10 @@ const byMode = {
 };
 export const MODES = Object.keys(byMode);
 
-// `top`: what topSpeed returns. Static and kinematic bodies keep a colour of their own.
+// `top`: what topSpeed returns. Static and kinematic bodies and sensors keep a colour of their own.
 export function colourOf(mode, timeline, body, top, out) {
   const { recording } = timeline;
+  if (recording.isSensor[body]) return out.copy(GLASS);
   const motion = recording.bodies.motions[body];
   if (motion === 0) return out.copy(FIXED);
   if (motion === 1 && mode !== 'speed') return out.copy(DRIVEN);

@@ -5,6 +5,7 @@
 
 import { decodeDrawings } from './decodeDrawings.js';
 import { decodeJoints } from './decodeJoints.js';
+import { presencesOf } from './presence.js';
 import { Reader } from './reader.js';
 
 function columnsOf(bytes) {
@@ -44,6 +45,7 @@ function decodeStates(header, [states, positions, rotations, velocities, islands
     rotations: new Float32Array(4 * count),
     velocities: new Float32Array(3 * count),
     awake: new Uint8Array(count),
+    gone: new Uint8Array(count),
     islands: new Int32Array(count),
   };
   const next = starts.slice(0, bodyCount);
@@ -70,6 +72,7 @@ function decodeStates(header, [states, positions, rotations, velocities, islands
     if (flags[i] & 2) island[body] += islands.signed();
     result.frames[sample] = frames[i];
     result.awake[sample] = flags[i] & 1;
+    result.gone[sample] = flags[i] >> 2 & 1;
     result.islands[sample] = island[body];
     frameBefore[body] = frames[i];
   }
@@ -108,9 +111,13 @@ export function decode(bytes) {
   const contacts = decodeContacts(header, readers[5]);
   const { joints, jointErrors } = decodeJoints(header, readers.slice(6));
   const drawings = decodeDrawings(header, readers[9]);
+  const recording = { ...header, bodyCount, frameCount: header.times.length, samples, contacts, joints, jointErrors, drawings };
+  const presences = presencesOf(recording);
   const movers = [];
   for (let body = 0; body < bodyCount; ++body) if (samples.starts[body + 1] - samples.starts[body] > 1) movers.push(body);
-  return { ...header, bodyCount, frameCount: header.times.length, samples, contacts, joints, jointErrors, drawings, movers };
+  const isSensor = new Uint8Array(bodyCount);
+  for (const body of header.bodies.sensors) isSensor[body] = 1;
+  return { ...recording, movers, presences, isSensor };
 }
 
 // `text`: the recording as the page carries it, base64 of zlib's format.

@@ -111,7 +111,6 @@ export class BoundingBoxes {
   constructor(recording, timeline, stage) {
     this.timeline = timeline;
     this.leaves = recording.shapes.map((_, index) => leavesOf(recording.shapes, index));
-    this.shapes = recording.bodies.shapes;
     this.bodies = [...recording.bodies.motions.keys()].filter((body) => recording.bodies.motions[body] !== 0);
     const buffer = () => new InstancedBufferAttribute(new Float32Array(3 * this.bodies.length), 3).setUsage(DynamicDrawUsage);
     this.geometry = new InstancedBufferGeometry().setAttribute('position', unitBoxLines())
@@ -141,13 +140,18 @@ export class BoundingBoxes {
     const place = new Vector3(), turn = new Quaternion(), leafPlace = new Vector3(), leafTurn = new Quaternion();
     const lower = new Vector3(), upper = new Vector3(), scratch = new Vector3();
     this.bodies.forEach((body, i) => {
+      const shape = this.timeline.presence(body)?.shape;
+      if (shape === undefined) {
+        halfSize.array.fill(0, 3 * i, 3 * i + 3);
+        return;
+      }
       place.fromArray(this.timeline.positions, 3 * body);
       turn.fromArray(this.timeline.rotations, 4 * body).normalize();
       lower.setScalar(Infinity);
       upper.setScalar(-Infinity);
-      for (const { shape, position, rotation } of this.leaves[this.shapes[body]]) {
+      for (const { shape: leaf, position, rotation } of this.leaves[shape]) {
         leafPlace.copy(position).applyQuaternion(turn).add(place);
-        includeLeaf(shape, leafPlace, leafTurn.copy(turn).multiply(rotation), lower, upper, scratch);
+        includeLeaf(leaf, leafPlace, leafTurn.copy(turn).multiply(rotation), lower, upper, scratch);
       }
       lower.add(upper).multiplyScalar(0.5).toArray(centre.array, 3 * i);
       upper.sub(lower).toArray(halfSize.array, 3 * i);

@@ -65,13 +65,16 @@ const MOTIONS = ['static', 'kinematic', 'dynamic'];
 
 // What is known of a body at the timeline's moment; also what tests read.
 export function bodyInfo(recording, timeline, body) {
-  const shape = recording.shapes[recording.bodies.shapes[body]];
+  const presence = timeline.presence(body);
+  const shape = recording.shapes[presence?.shape ?? recording.bodies.shapes[body]];
   const motion = MOTIONS[recording.bodies.motions[body]];
   return {
     id: body,
     name: recording.bodies.names[body] ?? '',
     shape: shape.name && shape.name !== shape.kind ? `${shape.name}: ${describe(shape)}` : describe(shape),
     motion,
+    sensor: recording.isSensor[body] === 1,
+    there: presence !== undefined,
     mass: motion === 'dynamic' ? recording.bodies.masses[body] : null,
     position: [...timeline.positions.subarray(3 * body, 3 * body + 3)],
     velocity: [...timeline.velocity(body)],
@@ -97,11 +100,12 @@ export function showBody(info) {
   }
   const lines = [['Id', String(info.id)]];
   if (info.name) lines.push(['Name', info.name]);
-  lines.push(['Shape', info.shape], ['Motion', info.motion]);
+  lines.push(['Shape', info.shape], ['Motion', info.sensor ? `${info.motion}, a sensor` : info.motion]);
+  if (!info.there) lines.push(['State', 'not there']);
   if (info.mass !== null) lines.push(['Mass', `${Number(info.mass.toPrecision(4)).toLocaleString('en')} kg`]);
   lines.push(['Position', `${vector(info.position, 3)} m`]);
   if (info.motion !== 'static') lines.push(['Velocity', `${vector(info.velocity, 2)} m/s`], ['Speed', `${info.speed.toFixed(3)} m/s`]);
-  if (info.awake !== null) lines.push(['State', info.awake ? 'awake' : 'asleep']);
+  if (info.there && info.awake !== null) lines.push(['State', info.awake ? 'awake' : 'asleep']);
   lines.push(['Island', info.island < 0 ? 'none' : String(info.island)]);
   const named = info.joints.slice(0, 8).join(', ');
   if (named) lines.push(['Joints', info.joints.length > 8 ? `${named}, and ${info.joints.length - 8} more` : named]);

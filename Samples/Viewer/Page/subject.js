@@ -23,7 +23,9 @@ export function findSubject(recording, timeline) {
   const places = [[], [], []];
   for (const moment of MOMENTS) {
     timeline.seek(moment * timeline.lastFrame);
-    for (const body of bodies) for (let k = 0; k < 3; ++k) places[k].push(timeline.positions[3 * body + k]);
+    for (const body of bodies) {
+      if (timeline.isThere(body)) for (let k = 0; k < 3; ++k) places[k].push(timeline.positions[3 * body + k]);
+    }
   }
   timeline.seek(0);
   const ranges = places.map((values) => (values.length > 0 ? middle(values) : [0, 0]));
@@ -35,12 +37,12 @@ export function findSubject(recording, timeline) {
 // Whether a static body offers a floor to the subject.
 export function hasFloor(recording, subject) {
   const { motions, shapes } = recording.bodies;
-  return motions.some((motion, body) => motion === 0 && outerRadius(recording.shapes, shapes[body]) > 0.8 * subject.radius);
+  return motions.some((motion, body) => motion === 0 && !recording.isSensor[body] && outerRadius(recording.shapes, shapes[body]) > 0.8 * subject.radius);
 }
 
 // Whether what is fixed or driven stands around and above the subject, so that one would not see it.
 export function isEnclosed(recording, timeline, subject) {
-  return recording.bodies.motions.some((motion, body) => motion !== 2 &&
+  return recording.bodies.motions.some((motion, body) => motion !== 2 && !recording.isSensor[body] &&
     timeline.positions[3 * body + 1] > subject.centre[1] + 0.7 * subject.radius &&
     Math.abs(timeline.positions[3 * body] - subject.centre[0]) < subject.radius &&
     Math.abs(timeline.positions[3 * body + 2] - subject.centre[2]) < subject.radius);

@@ -1,4 +1,5 @@
 // The states of all bodies at a moment between frames: what the page draws and what it says of a body.
+import { presenceAt } from './presence.js';
 
 export class Timeline {
   constructor(recording) {
@@ -41,6 +42,12 @@ export class Timeline {
     this.#seekMovers();
   }
 
+  isThere(body) {
+    return this.presence(body) !== undefined;
+  }
+  presence(body) {
+    return presenceAt(this.recording.presences[body], this.frame);
+  }
   isAwake(body) {
     return this.recording.samples.awake[this.sample[body]] === 1;
   }
