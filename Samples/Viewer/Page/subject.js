@@ -1,8 +1,11 @@
-// What the picture is about: the bodies that move, or those that could, or all; without the few that flew far away.
-import { outerRadius } from './shapes.js';
+// What the picture is about: the bodies that move, or those that could, or all, and what stands among them; without the few that
+// flew far away, or left the ground.
+import { Quaternion, Vector3 } from 'three';
+import { includeLeaf, leavesOf, outerRadius } from './shapes.js';
 
 const MOMENTS = [0, 0.25, 0.5, 0.75, 1];
 const LEFT_OUT = 0.01; // of the bodies at either end of each axis
+const AMONG = 3;       // of the radius: what stands farther away from the middle is not meant
 
 function middle(values) {
   const sorted = Float64Array.from(values).sort();
@@ -10,7 +13,32 @@ function middle(values) {
   return [sorted[cut], sorted[sorted.length - 1 - cut]];
 }
 
-// { centre, radius, lowest } in metres, and `typical`: the radius of a body of middle size.
+// The box around all static bodies.
+function boundsOfGround({ bodies, shapes, isSensor }, timeline) {
+  const lower = new Vector3().setScalar(Infinity), upper = new Vector3().setScalar(-Infinity);
+  const place = new Vector3(), turn = new Quaternion(), leafPlace = new Vector3(), leafTurn = new Quaternion(), scratch = new Vector3();
+  bodies.motions.forEach((motion, body) => {
+    if (motion !== 0 || isSensor[body]) return;
+    place.fromArray(timeline.positions, 3 * body);
+    turn.fromArray(timeline.rotations, 4 * body).normalize();
+    for (const { shape, position, rotation } of leavesOf(shapes, bodies.shapes[body])) {
+      leafPlace.copy(position).applyQuaternion(turn).add(place);
+      includeLeaf(shape, leafPlace, leafTurn.copy(turn).multiply(rotation), lower, upper, scratch);
+    }
+  });
+  return { lower, upper };
+}
+
+// Those of the places that are over the ground; all, where they did not begin there.
+function keepOverGround(places, countAtStart, { lower, upper }) {
+  const isOver = ([x, y, z]) => x >= lower.x && x <= upper.x && z >= lower.z && z <= upper.z && y >= lower.y;
+  const over = places.filter(isOver);
+  return 2 * places.slice(0, countAtStart).filter(isOver).length > countAtStart ? over : places;
+}
+
+const rangesOf = (places) => [0, 1, 2].map((k) => (places.length > 0 ? middle(places.map((place) => place[k])) : [0, 0]));
+
+// { centre, half, radius, lowest } in metres, and `typical`: the radius of a body of middle size.
 export function findSubject(recording, timeline) {
   const { motions, shapes } = recording.bodies;
   const dynamic = [...motions.keys()].filter((body) => motions[body] === 2);
@@ -19,19 +47,26 @@ export function findSubject(recording, timeline) {
   const radii = recording.shapes.map((_, index) => outerRadius(recording.shapes, index));
   const sizes = bodies.map((body) => radii[shapes[body]]).sort((a, b) => a - b);
   const typical = sizes[sizes.length >> 1] ?? 1;
+  const placeOf = (body) => [...timeline.positions.subarray(3 * body, 3 * body + 3)];
 
-  const places = [[], [], []];
-  for (const moment of MOMENTS) {
+  const placesAt = (moment) => {
     timeline.seek(moment * timeline.lastFrame);
-    for (const body of bodies) {
-      if (timeline.isThere(body)) for (let k = 0; k < 3; ++k) places[k].push(timeline.positions[3 * body + k]);
-    }
-  }
+    return bodies.filter((body) => timeline.isThere(body)).map(placeOf);
+  };
+  const byMoment = MOMENTS.map(placesAt);
   timeline.seek(0);
-  const ranges = places.map((values) => (values.length > 0 ? middle(values) : [0, 0]));
-  const centre = ranges.map(([low, high]) => (low + high) / 2);
-  const radius = Math.hypot(...ranges.map(([low, high]) => (high - low) / 2)) + typical;
-  return { centre, radius, lowest: ranges[1][0] - typical, typical };
+  const places = keepOverGround(byMoment.flat(), byMoment[0].length, boundsOfGround(recording, timeline));
+  const frame = (ranges) => ({
+    centre: ranges.map(([low, high]) => (low + high) / 2),
+    half: ranges.map(([low, high]) => (high - low) / 2),
+    radius: Math.hypot(...ranges.map(([low, high]) => (high - low) / 2)) + typical,
+  });
+  const mobile = frame(rangesOf(places));
+  const isAmong = (body) => radii[shapes[body]] < mobile.radius &&
+    Math.hypot(...placeOf(body).map((x, k) => x - mobile.centre[k])) < AMONG * mobile.radius;
+  const standing = [...motions.keys()].filter((body) => motions[body] !== 2 && isAmong(body)).map(placeOf);
+  const ranges = rangesOf(places.concat(standing));
+  return { ...frame(ranges), lowest: ranges[1][0] - typical, typical };
 }
 
 // Whether a static body offers a floor to the subject.
@@ -40,10 +75,13 @@ export function hasFloor(recording, subject) {
   return motions.some((motion, body) => motion === 0 && !recording.isSensor[body] && outerRadius(recording.shapes, shapes[body]) > 0.8 * subject.radius);
 }
 
-// Whether what is fixed or driven stands around and above the subject, so that one would not see it.
-export function isEnclosed(recording, timeline, subject) {
-  return recording.bodies.motions.some((motion, body) => motion !== 2 && !recording.isSensor[body] &&
-    timeline.positions[3 * body + 1] > subject.centre[1] + 0.7 * subject.radius &&
-    Math.abs(timeline.positions[3 * body] - subject.centre[0]) < subject.radius &&
-    Math.abs(timeline.positions[3 * body + 2] - subject.centre[2]) < subject.radius);
+// Whether what is fixed or driven stands around and above the subject, so that one would not see it: a roof, or what is high up.
+export function isEnclosed(recording, timeline, { centre, half, radius }) {
+  const { motions, shapes } = recording.bodies;
+  return motions.some((motion, body) => {
+    if (motion === 2 || recording.isSensor[body]) return false;
+    const [x, y, z] = [0, 1, 2].map((k) => timeline.positions[3 * body + k] - centre[k]);
+    const isRoof = y > 0.8 * half[1] && Math.max(Math.abs(x), Math.abs(z)) < 0.5 * radius && outerRadius(recording.shapes, shapes[body]) > 0.8 * radius;
+    return isRoof || (y > 0.7 * radius && Math.abs(x) < radius && Math.abs(z) < radius);
+  });
 }
