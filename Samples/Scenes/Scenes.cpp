@@ -35,6 +35,7 @@ namespace fulcrum {
     scene(QueryBounds)        \
     scene(FlatLand)           \
     scene(Thin)               \
+    scene(EndlessSlope)       \
     scene(MovingPlatforms)    \
     scene(ConveyorBelt)       \
     scene(Layers)             \

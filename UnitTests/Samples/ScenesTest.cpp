@@ -254,6 +254,8 @@ TEST(SampleScenes, BoxesStickOnARampByTheirOwnFriction) { ExpectFigure("friction
 TEST(SampleScenes, ABallOfRestitution1KeepsItsEnergy) { ExpectFigure("restitution_row", -0.05, 0.05); }
 // 1200 steps of 6 substeps, each of which rounds the rotation and the velocity by 6e-8 of them: 9e-4 at most.
 TEST(SampleScenes, TheHandleKeepsItsAngularMomentum) { ExpectFigure("gyroscope", 0, 9e-4); }
+// Velocities lead by half a substep: a t h / 2, a = 5/7 g sin(10 degrees), t = 5 s, h = 1/240 s, make 12.7 mm.
+TEST(SampleScenes, BallsRollDownAPlaneByTheFormula) { ExpectFigure("endless_slope", 0, 0.013); }
 TEST(SampleScenes, BallsStayInTheirBowls) { ExpectFigure("bowls", 0, 0); }
 // Velocities are floats: each of 114 steps rounds a speed of up to 19 m/s by up to 1e-6 of it, 2 s long: 0.1 mm.
 TEST(SampleScenes, FreeBallsFallByTheFormula) { ExpectFigure("gravity_factors", 0, 1e-4); }
