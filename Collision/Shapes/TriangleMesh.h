@@ -1,6 +1,5 @@
 // Triangle mesh: indexed triangles in a tree of eight-way nodes with boxes of 8 bits a coordinate (MeshTree.h). For static and
-// kinematic bodies, or dynamic ones whose mass and inertia the user gives: it has no volume. Immutable; instances of other
-// scales share the data.
+// kinematic bodies: it has no volume. Immutable; instances of other scales share the data.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/MeshRepair.h>

@@ -24,7 +24,7 @@ struct Scene {
     bool usesSeed = false;    // whether another seed makes another world
     // Other settings than the defaults; null: none.
     void (*adjust)(SystemSettings& settings) = nullptr;
-    // Creates all bodies. A scene makes none later, so that recordings know them from the start; it may remove them.
+    // Creates the bodies. A scene may remove some later, and add others: recordings show them as they come and go.
     void (*build)(SceneWorld& world) = nullptr;
     // Called before each step, when world.StepCount() steps are done. Null: nothing to do.
     void (*beforeStep)(SceneWorld& world, double dt) = nullptr;
