@@ -103,7 +103,7 @@ struct BodySettings {
     ContinuousCollision continuous = ContinuousCollision::Off;  // not for meshes, height fields and planes
     uint64_t userData = 0;
     bool isSensor = false;                        // touches nothing, and reports what is inside: PhysicsSystem::SensorEvents
-    SensorSees sensorSees = SensorSees::Default;  // of those that layerCollides lets its layer meet
+    SensorSees sensorSees = SensorSees::Default;  // of those that layers, masks and groups let it meet
     bool sensorReportsStay = true;                // an event in each step for each body that stays inside
 };
 
