@@ -2,7 +2,7 @@
 
 #include <Fulcrum/Collision/Queries/Distance.h>
 #include <Fulcrum/Collision/Queries/Pieces.h>
-#include <Fulcrum/Physics/Queries/ColliderSearch.h>
+#include <Fulcrum/Physics/Queries/RaySearch.h>
 
 #include <algorithm>
 #include <tuple>
@@ -10,17 +10,6 @@
 namespace fulcrum {
 
 namespace {
-
-WorldRayHit ToWorld(const ColliderSearch& search, uint32_t collider, const Ray& ray, const RayHit& hit) {
-    WorldRayHit result;
-    result.body = search.IdOf(collider);
-    result.subShape = {search.ChildOf(collider), hit.subShape.triangle};
-    result.fraction = hit.fraction;
-    result.normal = hit.normal;
-    result.position = ray.origin + ray.displacement.cast<double>() * double{hit.fraction};
-    result.isBackFace = hit.isBackFace;
-    return result;
-}
 
 WorldShapeHit ToWorld(const ColliderSearch& search, uint32_t collider, const ShapeHit& hit) {
     WorldShapeHit result;
@@ -51,12 +40,6 @@ void SortHits(std::vector<Hit>& hits) {
     std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) { return ComesFirst(a, b); });
 }
 
-// found(collider) for all colliders whose bounds the ray meets up to `limit`, which it may lower.
-template <class Found>
-void AlongRay(const ColliderSearch& search, const TreeRay& ray, float& limit, const Found& found) {
-    search.Run([&](const BoundsTree& tree, const auto& visit) { tree.CastRay(ray, limit, visit); }, found);
-}
-
 // What the trees hold is measured from this.
 const Position& OriginOf(const WorldState& world) { return world.colliders.boundsOrigin; }
 
@@ -80,24 +63,7 @@ WorldLock::Shared QueryInterface::Hold() const { return WorldLock::Shared(world_
 
 bool QueryInterface::CastRay(const Ray& ray, WorldRayHit& hit, const RayCastSettings& settings, const QueryFilter& filter) const {
     const QueryScope scope(world_);
-    const RayCaster caster(ray);
-    if (!caster.IsValid()) return false;
-    const ColliderSearch search(world_, filter);
-    RayCastSettings upTo = settings;
-    RayHit best;
-    uint32_t bestCollider = ~0u;
-    AlongRay(search, TreeRay(ray.origin - OriginOf(world_), ray.displacement), upTo.maxFraction, [&](uint32_t collider) {
-        RayHit found;
-        if (!caster.CastClosest(search.ShapeOf(collider), search.PoseOf(collider), upTo, found)) return;
-        const bool isTie = bestCollider != ~0u && found.fraction == best.fraction;
-        if (isTie && search.ComesBefore(bestCollider, collider)) return;
-        best = found;
-        bestCollider = collider;
-        upTo.maxFraction = found.fraction;
-    });
-    if (bestCollider == ~0u) return false;
-    hit = ToWorld(search, bestCollider, ray, best);
-    return true;
+    return CastClosest(ColliderSearch(world_, filter), ray, settings, hit);
 }
 
 bool QueryInterface::IsHit(const Ray& ray, const RayCastSettings& settings, const QueryFilter& filter) const {

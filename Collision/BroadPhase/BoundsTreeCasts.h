@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Fulcrum/Collision/BroadPhase/BoundsTree.h>
+#include <Fulcrum/Collision/BroadPhase/RayLanes.h>
 
 #include <algorithm>
 
@@ -23,16 +24,33 @@ public:
 
 private:
     friend class BoundsTree;
+    friend class TreeRays;
+    // Three roundings of half a unit each, with room: the plane's distance, the inverse and their product.
+    static constexpr float kSlack = 1 + 0x1p-21f;
     float toLower[3], toUpper[3];  // m: what meets the lower and the upper planes of boxes
     float inverse[3];
+};
+
+// Several rays in the same coordinates: which of them meet a box that the tree may give them, by the arithmetic of the tree.
+class TreeRays {
+public:
+    void Add(const TreeRay& ray, float maxFraction) { lanes_.Add(ray.toLower, ray.toUpper, ray.inverse, maxFraction); }
+    void SetLimit(int ray, float maxFraction) { lanes_.limit[ray] = maxFraction; }
+    const float* Limits() const { return lanes_.limit; }
+    float LargestLimit() const { return lanes_.LargestLimit(); }
+    uint32_t Meet(const Bounds& box) const {
+        const float lower[3] = {box.lower.x(), box.lower.y(), box.lower.z()}, upper[3] = {box.upper.x(), box.upper.y(), box.upper.z()};
+        return lanes_.Meet(lower, upper, TreeRay::kSlack);
+    }
+
+private:
+    RayLanes lanes_;
 };
 
 // The slots that the ray meets, and at which fractions. Empty ones may be among them.
 inline uint32_t BoundsTree::CastToSlots(const Node& node, const TreeRay& ray, float maxFraction, float (&nearest)[kWidth]) {
     constexpr int kStep = kLanes >= 8 ? 8 : 4;
     using Lanes = Wide<kStep>;
-    // Three roundings of half a unit each, with room: the plane's distance, the inverse and their product.
-    constexpr float kSlack = 1 + 0x1p-21f;
     uint32_t bits = 0;
     for (int i = 0; i < kWidth; i += kStep) {
         Lanes enter(0.0f), leave(maxFraction);
@@ -43,7 +61,7 @@ inline uint32_t BoundsTree::CastToSlots(const Node& node, const TreeRay& ray, fl
             enter = Max(enter, Min(toLower, toUpper));
             leave = Min(leave, Max(toLower, toUpper));
         }
-        bits |= (enter <= leave * Lanes(kSlack)).ToBits() << i;
+        bits |= (enter <= leave * Lanes(TreeRay::kSlack)).ToBits() << i;
         enter.Store(nearest + i);
     }
     return bits;
@@ -103,7 +121,7 @@ void BoundsTree::VisitInOrder(Test&& test, Limit&& limit, Visitor&& visit) const
 template <class Visitor>
 void BoundsTree::CastRay(const TreeRay& ray, float& maxFraction, Visitor&& visit) const {
     VisitInOrder([&](const Node& node, float (&keys)[kWidth]) { return CastToSlots(node, ray, maxFraction, keys); },
-                 [&] { return maxFraction * (1 + 0x1p-21f); }, visit);
+                 [&] { return maxFraction * TreeRay::kSlack; }, visit);
 }
 
 template <class Visitor>

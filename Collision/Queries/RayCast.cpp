@@ -5,6 +5,7 @@
 #include <Fulcrum/Collision/Shapes/Plane.h>
 
 #include <algorithm>
+#include <bit>
 
 namespace fulcrum {
 
@@ -30,16 +31,18 @@ RayCaster::RayCaster(const Ray& ray) : ray_(ray) {
     direction_ = (displacement * (1 / length_)).cast<float>();
 }
 
-bool RayCaster::CastConvex(const ConvexShape& shape, const Pose& pose, const RayCastSettings& settings, RayHit& hit) const {
+bool RayCaster::CastConvex(const ConvexShape& shape, const Pose& pose, const RayCastSettings& settings, float limit, RayHit& hit) const {
     // The ray's nearest point to the shape's centre is the origin of the line: it is as small as the shape where that is hit.
     const Position origin = ray_.origin - pose.position, displacement = ray_.displacement.cast<double>();
     const double nearest = -Dot<double>(origin, displacement) * inverseSquare_;
     const Vector3 point = (origin + displacement * nearest).cast<float>();
     const float reach = shape.OuterRadius() * 1.0001f;
     if (LengthSquared(point) > reach * reach) return false;
+    // Longer than the limit by more than what follows rounds, so that the limit leaves out nothing within it.
+    const double upTo = (double{limit} * (1 + 0x1p-22) - nearest) * length_ + 0x1p-22 * double{reach};
     const LinePiece line{InverseRotate(pose.rotation, point), InverseRotate(pose.rotation, direction_),
                          static_cast<float>(-nearest * length_),
-                         static_cast<float>((double{settings.maxFraction} - nearest) * length_)};
+                         static_cast<float>(std::min(upTo, (double{settings.maxFraction} - nearest) * length_))};
     if (line.to < -reach || line.from > reach) return false;
     const LineResult found = EnterConvex(shape, line);
     if (!found.hit) return false;
@@ -90,36 +93,68 @@ SurfaceRay RayCaster::InFrameOf(const SurfaceShape& shape, const Pose& pose, boo
             InverseRotate(pose.rotation, ray_.displacement), backFaces};
 }
 
-bool RayCaster::CastSurface(const SurfaceShape& shape, const Pose& pose, const RayCastSettings& settings, RayHit& hit) const {
+float RayCaster::LeftOf(const RayCastSettings& settings, float limit, double skipped) {
+    return static_cast<float>(std::min(double{limit} * (1 + 0x1p-22), double{settings.maxFraction}) - skipped);
+}
+
+RayHit RayCaster::FromSurface(const SurfaceHit& found, const Pose& pose, const RayCastSettings& settings, double skipped) {
+    return {std::min(static_cast<float>(skipped + double{found.fraction}), settings.maxFraction), {0, found.triangle},
+            Rotate(pose.rotation, found.normal), found.isBackFace};
+}
+
+bool RayCaster::CastSurface(const SurfaceShape& shape, const Pose& pose, const RayCastSettings& settings, float limit, RayHit& hit) const {
     double skipped = 0;
     const SurfaceRay ray = InFrameOf(shape, pose, settings.backFaces, skipped);
-    const double left = double{settings.maxFraction} - skipped;
+    const float left = LeftOf(settings, limit, skipped);
     SurfaceHit found;
-    if (left < 0 || !shape.CastRay(ray, found, static_cast<float>(left))) return false;
-    hit = {std::min(static_cast<float>(skipped + double{found.fraction}), settings.maxFraction), {0, found.triangle},
-           Rotate(pose.rotation, found.normal), found.isBackFace};
+    if (left < 0 || !shape.CastRay(ray, found, left)) return false;
+    hit = FromSurface(found, pose, settings, skipped);
     return true;
 }
 
-bool RayCaster::CastClosest(const Shape& shape, const Pose& pose, const RayCastSettings& settings, RayHit& hit) const {
+uint32_t RayCaster::CastClosest(const RayCaster* casters, uint32_t which, const SurfaceShape& shape, const Pose& pose,
+                                const RayCastSettings& settings, const float* limits, RayHit* hits) {
+    SurfaceRay rays[kMostRays];
+    SurfaceHit found[kMostRays];
+    float left[kMostRays];
+    double skipped[kMostRays];
+    uint8_t rayOf[kMostRays];
+    int count = 0;
+    for (uint32_t bits = which; bits != 0; bits &= bits - 1) {
+        const int i = std::countr_zero(bits);
+        if (!casters[i].IsValid()) continue;
+        rays[count] = casters[i].InFrameOf(shape, pose, settings.backFaces, skipped[count]);
+        left[count] = LeftOf(settings, limits[i], skipped[count]);
+        rayOf[count] = static_cast<uint8_t>(i);
+        count += left[count] >= 0 ? 1 : 0;
+    }
+    uint32_t hit = 0;
+    for (uint32_t bits = shape.CastRays({rays, static_cast<size_t>(count)}, found, left); bits != 0; bits &= bits - 1) {
+        const int k = std::countr_zero(bits), i = rayOf[k];
+        hits[i] = FromSurface(found[k], pose, settings, skipped[k]);
+        hit |= 1u << i;
+    }
+    return hit;
+}
+
+bool RayCaster::CastClosest(const Shape& shape, const Pose& pose, const RayCastSettings& settings, float limit, RayHit& hit) const {
     if (!IsValid()) return false;
-    if (shape.IsConvex()) return CastConvex(static_cast<const ConvexShape&>(shape), pose, settings, hit);
+    if (shape.IsConvex()) return CastConvex(static_cast<const ConvexShape&>(shape), pose, settings, limit, hit);
     if (shape.Type() == ShapeType::Plane) return CastPlane(shape, pose, settings, hit);
-    if (!shape.IsCompound()) return CastSurface(static_cast<const SurfaceShape&>(shape), pose, settings, hit);
+    if (!shape.IsCompound()) return CastSurface(static_cast<const SurfaceShape&>(shape), pose, settings, limit, hit);
 
     const CompoundShape& compound = static_cast<const CompoundShape&>(shape);
     const TreeRay ray = InFrameOfTree(ray_, compound, pose);
-    RayCastSettings shorter = settings;
     bool found = false;
-    compound.Tree().CastRay(ray, shorter.maxFraction, [&](uint32_t child) {
+    compound.Tree().CastRay(ray, limit, [&](uint32_t child) {
         const CompoundShape::Child& piece = compound.Children()[child];
         RayHit here;
-        if (!CastConvex(*piece.shape, pose * compound.PoseOf(piece), shorter, here)) return;
+        if (!CastConvex(*piece.shape, pose * compound.PoseOf(piece), settings, limit, here) || here.fraction > limit) return;
         if (found && here.fraction == hit.fraction && child > hit.subShape.child) return;
         found = true;
         hit = here;
         hit.subShape.child = child;
-        shorter.maxFraction = here.fraction;
+        limit = here.fraction;
     });
     return found;
 }
@@ -154,7 +189,7 @@ bool RayCaster::Search(const Shape& shape, const Pose& pose, const RayCastSettin
         float limit = settings.maxFraction;
         compound.Tree().CastRay(ray, limit, [&](uint32_t child) {
             const CompoundShape::Child& piece = compound.Children()[child];
-            if (!goOn || !CastConvex(*piece.shape, pose * compound.PoseOf(piece), settings, hit)) return;
+            if (!goOn || !CastConvex(*piece.shape, pose * compound.PoseOf(piece), settings, settings.maxFraction, hit)) return;
             hit.subShape.child = child;
             goOn = found(context, hit);
             if (!goOn) limit = -1;

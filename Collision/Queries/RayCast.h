@@ -8,6 +8,7 @@
 
 #include <Fulcrum/Collision/Queries/ConvexRay.h>
 #include <Fulcrum/Collision/Queries/SubShape.h>
+#include <Fulcrum/Collision/Shapes/SurfaceShape.h>
 
 namespace fulcrum {
 
@@ -34,13 +35,24 @@ struct RayHit {
 // however far from its origin: only differences become floats.
 class RayCaster {
 public:
+    RayCaster() = default;  // not valid
     explicit RayCaster(const Ray& ray);
     bool IsValid() const { return length_ > 0; }  // else it hits nothing
     const Ray& GetRay() const { return ray_; }
 
     // The closest hit; of equally close ones that of the lowest child, then triangle. `pose` is that of the shape's centre
     // frame. False: none, `hit` is unchanged.
-    bool CastClosest(const Shape& shape, const Pose& pose, const RayCastSettings& settings, RayHit& hit) const;
+    bool CastClosest(const Shape& shape, const Pose& pose, const RayCastSettings& settings, RayHit& hit) const {
+        return CastClosest(shape, pose, settings, settings.maxFraction, hit);
+    }
+    // The same where only hits up to `limit` <= settings.maxFraction are of interest. A hit within it is the same bits for every
+    // limit; one a little farther may be found or not. So what is closest of many shapes does not depend on their order.
+    bool CastClosest(const Shape& shape, const Pose& pose, const RayCastSettings& settings, float limit, RayHit& hit) const;
+    // The same for several rays at a surface, which costs less where they lie close together: for casters[i], limits[i] and
+    // hits[i] where bit i of `which` is set, i < kMostRays. Returns the bits of those that hit; the other hits are unchanged.
+    static constexpr int kMostRays = SurfaceShape::kMostRays;
+    static uint32_t CastClosest(const RayCaster* casters, uint32_t which, const SurfaceShape& shape, const Pose& pose,
+                                const RayCastSettings& settings, const float* limits, RayHit* hits);
     // Whether there is any.
     bool IsHit(const Shape& shape, const Pose& pose, const RayCastSettings& settings) const;
     // Calls visit(const RayHit&) for the hit of each convex shape, child or half space and for all hits of triangles, in no
@@ -50,12 +62,15 @@ public:
 
 private:
     using HitFunction = bool (*)(void* context, const RayHit& hit);
-    bool CastConvex(const ConvexShape& shape, const Pose& pose, const RayCastSettings& settings, RayHit& hit) const;
+    bool CastConvex(const ConvexShape& shape, const Pose& pose, const RayCastSettings& settings, float limit, RayHit& hit) const;
     bool CastPlane(const Shape& shape, const Pose& pose, const RayCastSettings& settings, RayHit& hit) const;
-    bool CastSurface(const SurfaceShape& shape, const Pose& pose, const RayCastSettings& settings, RayHit& hit) const;
+    bool CastSurface(const SurfaceShape& shape, const Pose& pose, const RayCastSettings& settings, float limit, RayHit& hit) const;
     bool Search(const Shape& shape, const Pose& pose, const RayCastSettings& settings, void* context, HitFunction found) const;
     // The ray in the frame of a surface, begun where it may first meet it; how much of it that leaves out.
     SurfaceRay InFrameOf(const SurfaceShape& shape, const Pose& pose, bool backFaces, double& skipped) const;
+    // How far that ray may go, as a fraction of it.
+    static float LeftOf(const RayCastSettings& settings, float limit, double skipped);
+    static RayHit FromSurface(const SurfaceHit& found, const Pose& pose, const RayCastSettings& settings, double skipped);
 
     Ray ray_;
     Vector3 direction_ = Vector3::Zero();  // unit

@@ -59,10 +59,11 @@ struct MeshTreeRay {
     Vector3 nearOrigin, farOrigin;          // for the planes where it enters boxes and where it leaves them
     Vector3 nearInverse, farInverse;        // 1 / displacement, bounded
 
-    MeshTreeRay(const Vector3& origin, const Vector3& inverse, float pad)
+    MeshTreeRay(const Vector3& origin, const Vector3& inverse, float pad) : MeshTreeRay(origin, inverse, Vector3(Vector3::Constant(pad))) {}
+    MeshTreeRay(const Vector3& origin, const Vector3& inverse, const Vector3& pad)
         : nearInverse(inverse), farInverse(inverse * (1.0f + 0x1p-18f)) {
         for (int axis = 0; axis < 3; ++axis) {
-            const float outwards = inverse[axis] >= 0 ? pad : -pad;
+            const float outwards = inverse[axis] >= 0 ? pad[axis] : -pad[axis];
             nearOrigin[axis] = origin[axis] + outwards;
             farOrigin[axis] = origin[axis] - outwards;
         }
@@ -112,7 +113,7 @@ struct MeshTree {
     template <class Leaf>
     void SearchBox(const Bounds& box, Leaf&& leaf) const;
 
-    // Calls leaf(begin, end), which returns the largest fraction that is still of interest, for the leaves that a ray
+    // Calls leaf(node, child), which returns the largest fraction that is still of interest, for the leaves that a ray
     // meets, nearly in the order of their distance; negative ends the search.
     template <class Leaf>
     void SearchRay(const MeshTreeRay& ray, float maxFraction, Leaf&& leaf) const;
@@ -201,27 +202,27 @@ inline void MeetChildren(const MeshNode& node, const MeshTreeRay& ray, float max
 
 template <class Leaf>
 void MeshTree::SearchRay(const MeshTreeRay& ray, float maxFraction, Leaf&& leaf) const {
-    // A node; or a leaf: its first triangle, and how many.
+    // A node; or a leaf: which child of it.
     struct Entry {
         float fraction;
-        uint32_t first;
-        uint32_t triangles;
+        uint32_t node;
+        int leaf;
     };
     constexpr float kSlack = 1.0f + 0x1p-18f;
     Entry stack[kMaxStack];
-    Entry current{0, 0, 0};
+    Entry current{0, 0, -1};
     int top = 0;
     for (;;) {
-        if (current.triangles != 0) {
-            maxFraction = leaf(current.first, current.first + current.triangles);
+        const MeshNode& node = nodes[current.node];
+        if (current.leaf >= 0) {
+            maxFraction = leaf(node, current.leaf);
             if (maxFraction < 0) return;
         } else {
-            const MeshNode& node = nodes[current.first];
             MetChildren met;
             MeetChildren(node, ray, maxFraction * kSlack, met);
             const auto entryOf = [&](int i) {
-                if (i < node.NodeCount()) return Entry{met.entry[i], node.firstChild + static_cast<uint32_t>(i), 0};
-                return Entry{met.entry[i], node.LeafBegin(i), node.LeafEnd(i) - node.LeafBegin(i)};
+                if (i < node.NodeCount()) return Entry{met.entry[i], node.firstChild + static_cast<uint32_t>(i), -1};
+                return Entry{met.entry[i], current.node, i};
             };
             const auto takeLowest = [&] {
                 const int i = __builtin_ctz(met.bits);

@@ -13,6 +13,7 @@ struct ShearedRay {
     int x, y, z;                // which axes
     float shearX, shearY, scale;
 
+    ShearedRay() = default;  // not a ray yet
     // `displacement` is finite and not zero.
     ShearedRay(const Vector3& from, const Vector3& displacement) : origin(from) {
         const Vector3 size = displacement.cwiseAbs();

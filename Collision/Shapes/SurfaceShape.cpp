@@ -13,6 +13,12 @@ uint32_t SurfaceShape::FindTriangles(const Bounds& box, std::span<uint32_t> ids)
     return count;
 }
 
+uint32_t SurfaceShape::CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hits, const float* maxFractions) const {
+    uint32_t hit = 0;
+    for (size_t i = 0; i < rays.size(); ++i) hit |= (CastRay(rays[i], hits[i], maxFractions[i]) ? 1u : 0u) << i;
+    return hit;
+}
+
 Status SurfaceShape::CheckMaterials(std::span<const SurfaceMaterial> materials) {
     if (materials.size() > 255) {
         return Error{ErrorCode::OutOfRange, Message("%zu materials: at most 255", materials.size())};

@@ -3,6 +3,7 @@
 // of threads at once and allocate nothing. The order in which triangles are found depends on the shape's data alone.
 #pragma once
 
+#include <Fulcrum/Collision/BroadPhase/RayLanes.h>
 #include <Fulcrum/Collision/Shapes/Shape.h>
 
 #include <memory>
@@ -67,6 +68,10 @@ public:
     // between two triangles that share an edge or a vertex. False: none, `hit` is unchanged. Rays that are not finite, or of
     // more than 1e18 m, hit nothing.
     virtual bool CastRay(const SurfaceRay& ray, SurfaceHit& hit, float maxFraction = 1) const = 0;
+    // The same for up to kMostRays rays, which costs less where they lie close together: hits[i] for rays[i] up to maxFractions[i].
+    // Returns the bits of those that hit.
+    static constexpr int kMostRays = RayLanes::kMost;
+    virtual uint32_t CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hits, const float* maxFractions) const;
     // Whether there is any.
     virtual bool IsHit(const SurfaceRay& ray, float maxFraction = 1) const = 0;
     // Calls visit(const SurfaceHit&) for every hit, in no order of fractions, until it returns false. A ray through a shared

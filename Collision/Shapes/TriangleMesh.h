@@ -40,6 +40,7 @@ public:
     TriangleView GetTriangle(uint32_t id) const override;
     void GetTriangles(std::span<const uint32_t> ids, TriangleView* views) const override;
     bool CastRay(const SurfaceRay& ray, SurfaceHit& hit, float maxFraction = 1) const override;
+    uint32_t CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hits, const float* maxFractions) const override;
     bool IsHit(const SurfaceRay& ray, float maxFraction = 1) const override;
     size_t MemoryUsed() const override;
 
@@ -56,6 +57,9 @@ private:
     TriangleMesh() : SurfaceShape(ShapeType::TriangleMesh) {}
     void SearchBox(const Bounds& box, void* context, BatchFunction found) const override;
     void SearchRay(const SurfaceRay& ray, void* context, HitFunction found) const override;
+    struct RayInTree;
+    RayInTree InTree(const SurfaceRay& ray) const;
+    void LoadCorners(uint32_t begin, uint32_t end, Vec3<Wide<8>> (&corners)[3]) const;
     template <class Visitor>
     void Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& visit) const;
     void FillView(uint32_t id, TriangleView& view) const;

@@ -78,39 +78,66 @@ void TriangleMesh::SearchBox(const Bounds& box, void* context, BatchFunction fou
     });
 }
 
+// A ray in the unscaled coordinates of the tree, and how much larger its boxes count for it.
+struct TriangleMesh::RayInTree {
+    Vector3 origin, displacement;
+    float pad;
+};
+
+TriangleMesh::RayInTree TriangleMesh::InTree(const SurfaceRay& ray) const {
+    RayInTree inTree{ray.origin, ray.displacement, 0x1p-20f};
+    if (isScaled_) {
+        inTree.origin = ray.origin.cwiseQuotient(scale_);
+        inTree.displacement = ray.displacement.cwiseQuotient(scale_);
+        // Where one axis is stretched, the rounding of the test along it counts for more along the others.
+        const Vector3 size = scale_.cwiseAbs();
+        inTree.pad *= size.maxCoeff() / size.minCoeff();
+    }
+    inTree.pad *= treeExtent_ + Largest(inTree.origin);
+    return inTree;
+}
+
+inline void TriangleMesh::LoadCorners(uint32_t begin, uint32_t end, Vec3<Wide<8>> (&corners)[3]) const {
+    fulcrum::LoadCorners(*tree_, begin, end - begin, corners);
+    if (!isScaled_) return;
+    for (auto& corner : corners)
+        for (int axis = 0; axis < 3; ++axis) corner[axis] = corner[axis] * Wide<8>(scale_[axis]);
+    if (isMirrored_) std::swap(corners[1], corners[2]);
+}
+
+namespace {
+
+// Calls visit(id, fraction, isBackFace), which returns the largest fraction that is still of interest, or a negative one, for the
+// triangles of a leaf that a ray meets; returns the last such fraction.
+template <class Visitor>
+inline float MeetLeaf(const ShearedRay& ray, const Vec3<Wide<8>> (&corners)[3], uint32_t begin, uint32_t end, bool fromBehind,
+                      float maxFraction, Visitor&& visit) {
+    TriangleMeetings meetings;
+    MeetTriangles(ray, corners, fromBehind, maxFraction, meetings);
+    for (uint32_t bits = meetings.met & ((1u << (end - begin)) - 1u); bits != 0; bits &= bits - 1) {
+        const int i = std::countr_zero(bits);
+        if (meetings.fraction[i] > maxFraction) continue;
+        maxFraction = visit(begin + static_cast<uint32_t>(i), meetings.fraction[i], (meetings.backFaces >> i & 1) != 0);
+        if (maxFraction < 0) break;
+    }
+    return maxFraction;
+}
+
+}  // namespace
+
 // Calls visit(id, fraction, isBackFace), which returns the largest fraction that is still of interest, or a negative one.
 template <class Visitor>
 void TriangleMesh::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& visit) const {
     if (!IsUsable(ray.origin, ray.displacement) || !(maxFraction >= 0)) return;
     const ShearedRay sheared(ray.origin, ray.displacement);
     const bool fromBehind = ray.backFaces || isTwoSided_;
-    Vector3 origin = ray.origin, displacement = ray.displacement;
-    float relativePad = 0x1p-20f;
-    if (isScaled_) {
-        origin = origin.cwiseQuotient(scale_);
-        displacement = displacement.cwiseQuotient(scale_);
-        // Where one axis is stretched, the rounding of the test along it counts for more along the others.
-        const Vector3 size = scale_.cwiseAbs();
-        relativePad *= size.maxCoeff() / size.minCoeff();
-    }
-    const MeshTreeRay inTree(origin, BoundedInverse(displacement), relativePad * (treeExtent_ + Largest(origin)));
-    const MeshTree& tree = *tree_;
-    tree.SearchRay(inTree, maxFraction, [&](uint32_t begin, uint32_t end) {
+    const RayInTree inTree = InTree(ray);
+    const MeshTreeRay treeRay(inTree.origin, BoundedInverse(inTree.displacement), inTree.pad);
+    tree_->SearchRay(treeRay, maxFraction, [&](const MeshNode& node, int child) {
+        const uint32_t begin = node.LeafBegin(child), end = node.LeafEnd(child);
         Vec3<Wide<8>> corners[3];
-        LoadCorners(tree, begin, end - begin, corners);
-        if (isScaled_) {
-            for (auto& corner : corners)
-                for (int axis = 0; axis < 3; ++axis) corner[axis] = corner[axis] * Wide<8>(scale_[axis]);
-            if (isMirrored_) std::swap(corners[1], corners[2]);
-        }
-        TriangleMeetings meetings;
-        MeetTriangles(sheared, corners, fromBehind, maxFraction, meetings);
-        for (uint32_t bits = meetings.met & ((1u << (end - begin)) - 1u); bits != 0; bits &= bits - 1) {
-            const int i = std::countr_zero(bits);
-            if (meetings.fraction[i] > maxFraction) continue;
-            maxFraction = visit(begin + static_cast<uint32_t>(i), meetings.fraction[i], (meetings.backFaces >> i & 1) != 0);
-            if (maxFraction < 0) break;
-        }
+        LoadCorners(begin, end, corners);
+        maxFraction = MeetLeaf(sheared, corners, begin, end, fromBehind, maxFraction, visit);
         return maxFraction;
     });
 }
@@ -130,6 +157,67 @@ bool TriangleMesh::CastRay(const SurfaceRay& ray, SurfaceHit& hit, float maxFrac
     if (best.triangle == kNoTriangle) return false;
     hit = best.ToHit(NormalOf(best.triangle));
     return true;
+}
+
+// The tree is searched for the box that contains all rays, begun about the middle of their origins; each of them is held against
+// the boxes of the leaves found, and against their triangles.
+uint32_t TriangleMesh::CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hits, const float* maxFractions) const {
+    constexpr float kSlack = 1.0f + 0x1p-18f;
+    const MeshTree& tree = *tree_;
+    RayLanes lanes;
+    ShearedRay sheared[kMostRays];
+    ClosestHit best[kMostRays];
+    uint8_t rayOf[kMostRays];
+    Bounds origins, displacements;
+    float pad = 0;
+    for (size_t i = 0; i < rays.size(); ++i) {
+        const SurfaceRay& ray = rays[i];
+        if (!IsUsable(ray.origin, ray.displacement) || !(maxFractions[i] >= 0)) continue;
+        const RayInTree inTree = InTree(ray);
+        const Vector3 inverse = BoundedInverse(inTree.displacement);
+        const Vector3 toLower = inTree.origin + Vector3::Constant(inTree.pad), toUpper = inTree.origin - Vector3::Constant(inTree.pad);
+        sheared[lanes.count] = ShearedRay(ray.origin, ray.displacement);
+        best[lanes.count] = {maxFractions[i]};
+        rayOf[lanes.count] = static_cast<uint8_t>(i);
+        lanes.Add({toLower.x(), toLower.y(), toLower.z()}, {toUpper.x(), toUpper.y(), toUpper.z()},
+                  {inverse.x(), inverse.y(), inverse.z()}, maxFractions[i]);
+        origins.Include(inTree.origin);
+        displacements.Include(inTree.displacement);
+        pad = Max(pad, inTree.pad);
+    }
+    if (lanes.count == 0) return 0;
+    const Vector3 displacement = displacements.Centre();
+    const Vector3 reach = origins.HalfExtents() + displacements.HalfExtents() + Vector3::Constant(2 * pad) + displacements.lower.cwiseAbs() * 0x1p-20f;
+    float largest = lanes.LargestLimit();
+    if (!(largest <= 1)) return SurfaceShape::CastRays(rays, hits, maxFractions);  // the box is wide enough for a whole way
+    const MeshTreeRay swept(origins.Centre(), BoundedInverse(displacement), reach);
+    tree.SearchRay(swept, largest, [&](const MeshNode& node, int child) {
+        float lower[3], upper[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            const float step = node.Step(axis);
+            lower[axis] = node.origin[axis] + step * static_cast<float>(node.lower[axis][child]);
+            upper[axis] = node.origin[axis] + step * static_cast<float>(node.upper[axis][child]);
+        }
+        uint32_t met = lanes.Meet(lower, upper, kSlack);
+        if (met == 0) return largest;
+        const uint32_t begin = node.LeafBegin(child), end = node.LeafEnd(child);
+        Vec3<Wide<8>> corners[3];
+        LoadCorners(begin, end, corners);
+        for (; met != 0; met &= met - 1) {
+            const int i = std::countr_zero(met);
+            const bool fromBehind = isTwoSided_ || rays[rayOf[i]].backFaces;
+            lanes.limit[i] = MeetLeaf(sheared[i], corners, begin, end, fromBehind, lanes.limit[i],
+                                      [&](uint32_t id, float fraction, bool isBackFace) { return best[i].Take(id, fraction, isBackFace); });
+        }
+        return largest = lanes.LargestLimit();
+    });
+    uint32_t hit = 0;
+    for (int k = 0; k < lanes.count; ++k) {
+        if (best[k].triangle == kNoTriangle) continue;
+        hits[rayOf[k]] = best[k].ToHit(NormalOf(best[k].triangle));
+        hit |= 1u << rayOf[k];
+    }
+    return hit;
 }
 
 bool TriangleMesh::IsHit(const SurfaceRay& ray, float maxFraction) const {

@@ -39,6 +39,8 @@ public:
         if (filter_.sensors) walk(store.sensorTree, visit);  // they never stray: Sense sees to it
     }
 
+    // What the trees hold is measured from this.
+    const Position& Origin() const { return world_.colliders.boundsOrigin; }
     uint32_t BodyOf(uint32_t collider) const { return world_.colliders.colliders[collider].body; }
     uint32_t ChildOf(uint32_t collider) const { return fulcrum::ChildOf(world_, collider); }
     BodyId IdOf(uint32_t collider) const { return world_.bodies.IdOf(BodyOf(collider)); }

@@ -1,6 +1,7 @@
 // Batches of queries over the world's job system. Each item is the single query, so that the answers are the same bits; the
 // thread that asks holds the world for all of them.
-#include <Fulcrum/Physics/Queries/ColliderSearch.h>
+#include <Fulcrum/Physics/Queries/RayOrder.h>
+#include <Fulcrum/Physics/Queries/RaySearch.h>
 
 #include <algorithm>
 
@@ -10,6 +11,12 @@ namespace {
 // Enough for a job to be worth its while: a few microseconds.
 constexpr uint32_t kRaysPerJob = 64;
 constexpr uint32_t kShapesPerJob = 8;
+
+template <class T>
+void Prefetch(T& item) {
+    __builtin_prefetch(&item, std::is_const_v<T> ? 0 : 1);
+    __builtin_prefetch(reinterpret_cast<const char*>(&item + 1) - 1, std::is_const_v<T> ? 0 : 1);
+}
 }  // namespace
 
 template <class Item>
@@ -23,9 +30,32 @@ void QueryInterface::ForEach(size_t count, uint32_t minimumRange, const Item& it
 
 void QueryInterface::CastRays(std::span<const Ray> rays, std::span<WorldRayHit> hits, const RayCastSettings& settings,
                               const QueryFilter& filter) const {
-    ForEach(std::min(rays.size(), hits.size()), kRaysPerJob, [&](size_t i) {
-        if (!CastRay(rays[i], hits[i], settings, filter)) hits[i] = {};
+    const QueryScope scope(world_);
+    const ColliderSearch search(world_, filter);
+    rays = rays.first(std::min(rays.size(), hits.size()));
+    // Taken for as long as it is in use: what a query calls back may query, too.
+    thread_local RayOrder kept;
+    RayOrder order = std::move(kept);
+    constexpr uint32_t kRays = RayCaster::kMostRays;
+    order.Sort(rays, kRays);
+    const std::span<const uint32_t> numbers = order.Numbers();
+    const uint32_t count = static_cast<uint32_t>(rays.size());
+    const auto packetOf = [&](uint32_t i) {
+        const uint32_t first = std::min(i * kRays, count);
+        return numbers.subspan(first, std::min(kRays, count - first));
+    };
+    world_.jobs->ParallelFor((count + kRays - 1) / kRays, kRaysPerJob / kRays, [&](JobRange range) {
+        const WorldLock::Shared borrowed(world_.lock, WorldLock::Shared::Kind::Borrowed);
+        for (uint32_t i = range.begin; i < range.end; ++i) {
+            // Rays that lie close together are far apart in memory.
+            for (const uint32_t number : packetOf(i + 1)) {
+                Prefetch(rays[number]);
+                Prefetch(hits[number]);
+            }
+            CastClosest(search, rays, packetOf(i), settings, hits);
+        }
     });
+    kept = std::move(order);
 }
 
 void QueryInterface::AreHit(std::span<const Ray> rays, std::span<uint8_t> hits, const RayCastSettings& settings,

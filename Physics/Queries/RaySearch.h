@@ -1,0 +1,53 @@
+// Closest hits of rays in the world: of one ray, and of a packet of rays that lie close together, which are the same bits.
+// Called by QueryInterface under the world's lock. Thread-safe; allocates nothing.
+//
+// A ray's hit of a collider does not depend on what else it hit before; the closest is the least by fraction, body, child. So
+// any order of colliders, and any company that the ray has, gives the same answer.
+#pragma once
+
+#include <Fulcrum/Physics/Queries/ColliderSearch.h>
+
+namespace fulcrum {
+
+inline WorldRayHit ToWorld(const ColliderSearch& search, uint32_t collider, const Ray& ray, const RayHit& hit) {
+    WorldRayHit result;
+    result.body = search.IdOf(collider);
+    result.subShape = {search.ChildOf(collider), hit.subShape.triangle};
+    result.fraction = hit.fraction;
+    result.normal = hit.normal;
+    result.position = ray.origin + ray.displacement.cast<double>() * double{hit.fraction};
+    result.isBackFace = hit.isBackFace;
+    return result;
+}
+
+// found(collider) for all colliders whose bounds the ray meets up to `limit`, which it may lower.
+template <class Found>
+void AlongRay(const ColliderSearch& search, const TreeRay& ray, float& limit, const Found& found) {
+    search.Run([&](const BoundsTree& tree, const auto& visit) { tree.CastRay(ray, limit, visit); }, found);
+}
+
+// The best hit of a ray so far.
+struct ClosestCollider {
+    static constexpr uint32_t kNone = ~0u;
+    RayHit hit;
+    uint32_t collider = kNone;
+
+    // Takes a hit no farther than `limit`, which it lowers, if that comes before what there is.
+    void Take(const ColliderSearch& search, uint32_t of, const RayHit& found, float& limit) {
+        if (found.fraction > limit) return;
+        if (collider != kNone && found.fraction == hit.fraction && search.ComesBefore(collider, of)) return;
+        hit = found;
+        collider = of;
+        limit = found.fraction;
+    }
+};
+
+// False: none, `hit` is unchanged.
+bool CastClosest(const ColliderSearch& search, const Ray& ray, const RayCastSettings& settings, WorldRayHit& hit);
+
+// The rays with the numbers `which`, at most RayCaster::kMostRays, into their hits; {} for none. Fast where they lie close
+// together.
+void CastClosest(const ColliderSearch& search, std::span<const Ray> rays, std::span<const uint32_t> which,
+                 const RayCastSettings& settings, std::span<WorldRayHit> hits);
+
+}  // namespace fulcrum
