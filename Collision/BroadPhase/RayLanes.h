@@ -9,7 +9,7 @@
 namespace fulcrum {
 
 struct RayLanes {
-    static constexpr int kMost = 16;    // rays
+    static constexpr int kMost = 32;    // rays
 
     // Of ray i, in column i: what meets the lower and the upper planes of boxes, and 1 / displacement.
     alignas(32) float toLower[3][kMost] = {}, toUpper[3][kMost] = {}, inverse[3][kMost] = {};
@@ -28,6 +28,16 @@ struct RayLanes {
             inverse[axis][count] = inverses[axis];
         }
         limit[count++] = maxFraction;
+    }
+
+    // Boxes count larger by `pad` m.
+    void Widen(float pad) {
+        for (int axis = 0; axis < 3; ++axis) {
+            for (int i = 0; i < kMost; i += 8) {
+                (Wide<8>::Load(toLower[axis] + i) + Wide<8>(pad)).Store(toLower[axis] + i);
+                (Wide<8>::Load(toUpper[axis] + i) - Wide<8>(pad)).Store(toUpper[axis] + i);
+            }
+        }
     }
 
     float LargestLimit() const {

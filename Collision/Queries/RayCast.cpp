@@ -89,8 +89,10 @@ SurfaceRay RayCaster::InFrameOf(const SurfaceShape& shape, const Pose& pose, boo
     const Position origin = ray_.origin - pose.position, displacement = ray_.displacement.cast<double>();
     const double nearest = -Dot<double>(origin, displacement) * inverseSquare_;
     skipped = std::max(0.0, nearest - 1.0001 * double{shape.OuterRadius()} / length_);
-    return {InverseRotate(pose.rotation, Vector3((origin + displacement * skipped).cast<float>())),
-            InverseRotate(pose.rotation, ray_.displacement), backFaces};
+    const Vector3 begin = (origin + displacement * skipped).cast<float>();
+    const Quaternion& q = pose.rotation;
+    if (q.x == 0 && q.y == 0 && q.z == 0) return {begin, ray_.displacement, backFaces};  // as most surfaces are
+    return {InverseRotate(q, begin), InverseRotate(q, ray_.displacement), backFaces};
 }
 
 float RayCaster::LeftOf(const RayCastSettings& settings, float limit, double skipped) {

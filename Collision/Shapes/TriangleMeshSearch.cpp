@@ -78,23 +78,14 @@ void TriangleMesh::SearchBox(const Bounds& box, void* context, BatchFunction fou
     });
 }
 
-// A ray in the unscaled coordinates of the tree, and how much larger its boxes count for it.
-struct TriangleMesh::RayInTree {
-    Vector3 origin, displacement;
-    float pad;
-};
+// Rays in the unscaled coordinates of the tree.
+inline Vector3 TriangleMesh::InTree(const Vector3& v) const { return isScaled_ ? Vector3(v.cwiseQuotient(scale_)) : v; }
 
-TriangleMesh::RayInTree TriangleMesh::InTree(const SurfaceRay& ray) const {
-    RayInTree inTree{ray.origin, ray.displacement, 0x1p-20f};
-    if (isScaled_) {
-        inTree.origin = ray.origin.cwiseQuotient(scale_);
-        inTree.displacement = ray.displacement.cwiseQuotient(scale_);
-        // Where one axis is stretched, the rounding of the test along it counts for more along the others.
-        const Vector3 size = scale_.cwiseAbs();
-        inTree.pad *= size.maxCoeff() / size.minCoeff();
-    }
-    inTree.pad *= treeExtent_ + Largest(inTree.origin);
-    return inTree;
+// How much larger boxes count for rays from origins of this size, in the tree.
+inline float TriangleMesh::PadFor(float largestOrigin) const {
+    // Where one axis is stretched, the rounding of the test along it counts for more along the others.
+    const Vector3 size = scale_.cwiseAbs();
+    return 0x1p-20f * (isScaled_ ? size.maxCoeff() / size.minCoeff() : 1.0f) * (treeExtent_ + largestOrigin);
 }
 
 inline void TriangleMesh::LoadCorners(uint32_t begin, uint32_t end, Vec3<Wide<8>> (&corners)[3]) const {
@@ -131,8 +122,8 @@ void TriangleMesh::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& 
     if (!IsUsable(ray.origin, ray.displacement) || !(maxFraction >= 0)) return;
     const ShearedRay sheared(ray.origin, ray.displacement);
     const bool fromBehind = ray.backFaces || isTwoSided_;
-    const RayInTree inTree = InTree(ray);
-    const MeshTreeRay treeRay(inTree.origin, BoundedInverse(inTree.displacement), inTree.pad);
+    const Vector3 origin = InTree(ray.origin);
+    const MeshTreeRay treeRay(origin, BoundedInverse(InTree(ray.displacement)), PadFor(Largest(origin)));
     tree_->SearchRay(treeRay, maxFraction, [&](const MeshNode& node, int child) {
         const uint32_t begin = node.LeafBegin(child), end = node.LeafEnd(child);
         Vec3<Wide<8>> corners[3];
@@ -163,34 +154,36 @@ bool TriangleMesh::CastRay(const SurfaceRay& ray, SurfaceHit& hit, float maxFrac
 // the boxes of the leaves found, and against their triangles.
 uint32_t TriangleMesh::CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hits, const float* maxFractions) const {
     constexpr float kSlack = 1.0f + 0x1p-18f;
+    // Leaves that the box may find and no ray meets, for each ray; where there are more, rays do better alone.
+    constexpr int kMostInVain = 2;
     const MeshTree& tree = *tree_;
     RayLanes lanes;
     ShearedRay sheared[kMostRays];
     ClosestHit best[kMostRays];
     uint8_t rayOf[kMostRays];
     Bounds origins, displacements;
-    float pad = 0;
     for (size_t i = 0; i < rays.size(); ++i) {
         const SurfaceRay& ray = rays[i];
         if (!IsUsable(ray.origin, ray.displacement) || !(maxFractions[i] >= 0)) continue;
-        const RayInTree inTree = InTree(ray);
-        const Vector3 inverse = BoundedInverse(inTree.displacement);
-        const Vector3 toLower = inTree.origin + Vector3::Constant(inTree.pad), toUpper = inTree.origin - Vector3::Constant(inTree.pad);
+        const Vector3 origin = InTree(ray.origin), displacement = InTree(ray.displacement), inverse = BoundedInverse(displacement);
+        origins.Include(origin);
+        displacements.Include(displacement);
         sheared[lanes.count] = ShearedRay(ray.origin, ray.displacement);
         best[lanes.count] = {maxFractions[i]};
         rayOf[lanes.count] = static_cast<uint8_t>(i);
-        lanes.Add({toLower.x(), toLower.y(), toLower.z()}, {toUpper.x(), toUpper.y(), toUpper.z()},
-                  {inverse.x(), inverse.y(), inverse.z()}, maxFractions[i]);
-        origins.Include(inTree.origin);
-        displacements.Include(inTree.displacement);
-        pad = Max(pad, inTree.pad);
+        lanes.Add({origin.x(), origin.y(), origin.z()}, {origin.x(), origin.y(), origin.z()}, {inverse.x(), inverse.y(), inverse.z()},
+                  maxFractions[i]);
     }
     if (lanes.count == 0) return 0;
-    const Vector3 displacement = displacements.Centre();
-    const Vector3 reach = origins.HalfExtents() + displacements.HalfExtents() + Vector3::Constant(2 * pad) + displacements.lower.cwiseAbs() * 0x1p-20f;
     float largest = lanes.LargestLimit();
     if (!(largest <= 1)) return SurfaceShape::CastRays(rays, hits, maxFractions);  // the box is wide enough for a whole way
+    const float pad = PadFor(Max(Largest(origins.lower), Largest(origins.upper)));
+    lanes.Widen(pad);
+    const Vector3 displacement = displacements.Centre();
+    const Vector3 reach = origins.HalfExtents() + displacements.HalfExtents() + Vector3::Constant(2 * pad) +
+                          displacements.lower.cwiseAbs().cwiseMax(displacements.upper.cwiseAbs()) * 0x1p-20f;
     const MeshTreeRay swept(origins.Centre(), BoundedInverse(displacement), reach);
+    int inVain = 0;
     tree.SearchRay(swept, largest, [&](const MeshNode& node, int child) {
         float lower[3], upper[3];
         for (int axis = 0; axis < 3; ++axis) {
@@ -199,7 +192,7 @@ uint32_t TriangleMesh::CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hi
             upper[axis] = node.origin[axis] + step * static_cast<float>(node.upper[axis][child]);
         }
         uint32_t met = lanes.Meet(lower, upper, kSlack);
-        if (met == 0) return largest;
+        if (met == 0) return ++inVain > kMostInVain * lanes.count ? -1.0f : largest;
         const uint32_t begin = node.LeafBegin(child), end = node.LeafEnd(child);
         Vec3<Wide<8>> corners[3];
         LoadCorners(begin, end, corners);
@@ -211,6 +204,7 @@ uint32_t TriangleMesh::CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hi
         }
         return largest = lanes.LargestLimit();
     });
+    if (inVain > kMostInVain * lanes.count) return SurfaceShape::CastRays(rays, hits, maxFractions);
     uint32_t hit = 0;
     for (int k = 0; k < lanes.count; ++k) {
         if (best[k].triangle == kNoTriangle) continue;

@@ -128,13 +128,22 @@ void RayAtAllBodies(benchmark::State& state) {
 }
 BENCHMARK(RayAtAllBodies);
 
+// From above, which is cast in packets, and in all directions, which is not.
 void BatchOfRays(benchmark::State& state) {
-    const Field field;
+    Field field;
+    RandomPoses random(2);
+    if (state.range(0) != 0) {
+        for (Ray& ray : field.rays) {
+            ray.origin.y() = 5;
+            ray.displacement = random.Direction() * 50;
+        }
+    }
     std::vector<WorldRayHit> hits(field.rays.size());
     for (auto _ : state) field.world->Queries().CastRays(field.rays, hits);
     state.SetItemsProcessed(state.iterations() * static_cast<int64_t>(hits.size()));
+    state.SetLabel(state.range(0) != 0 ? "in all directions" : "from above");
 }
-BENCHMARK(BatchOfRays);
+BENCHMARK(BatchOfRays)->Arg(0)->Arg(1);
 
 // What a change of a single body pays to keep readers out.
 void ChangeABody(benchmark::State& state) {

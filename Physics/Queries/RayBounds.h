@@ -5,36 +5,40 @@
 #include <Fulcrum/Collision/Queries/RayCast.h>
 #include <Fulcrum/Math/Bounds.h>
 
+#include <algorithm>
+
 namespace fulcrum {
 
 struct RayBounds {
     Position low = Position::Constant(kFar), high = Position::Constant(-kFar);
     Bounds displacements;
 
-    // What is not finite counts as near.
-    void Include(const Ray& ray) {
-        for (int axis = 0; axis < 3; ++axis) {
-            const double at = ray.origin[axis];
-            const float along = ray.displacement[axis];
-            low[axis] = at < low[axis] ? at : low[axis];
-            high[axis] = at > high[axis] ? at : high[axis];
-            displacements.lower[axis] = Min(along, displacements.lower[axis]);
-            displacements.upper[axis] = Max(along, displacements.upper[axis]);
-        }
-    }
-
     // Half the sides of a box that holds all rays on their way, begun in the middle of their origins.
     Vector3 Reach() const { return Vector3(Position((high - low) * 0.5).cast<float>()) + displacements.HalfExtents(); }
     // Whether that box is so small beside its way that it will hardly find more than its rays do.
     bool IsTight() const { return Reach().sum() <= kTight * displacements.Centre().cwiseAbs().sum(); }
 
-    static constexpr float kTight = 0.25f;
+    static constexpr float kTight = 0.6f;
     static constexpr double kFar = 1e300;
 
-    template <class Rays>
-    static RayBounds Of(const Rays& rays) {
+    // Of rayOf(i) for i < count. What is not a number counts as near.
+    template <class RayOf>
+    static RayBounds Of(size_t count, const RayOf& rayOf) {
+        double low[6], high[6];
+        for (int k = 0; k < 6; ++k) low[k] = kFar, high[k] = -kFar;
+        for (size_t i = 0; i < count; ++i) {
+            const Ray& ray = rayOf(i);
+            for (int k = 0; k < 6; ++k) {
+                const double at = k < 3 ? ray.origin[k] : double{ray.displacement[k - 3]};
+                low[k] = std::min(low[k], at);
+                high[k] = std::max(high[k], at);
+            }
+        }
         RayBounds bounds;
-        for (const Ray& ray : rays) bounds.Include(ray);
+        bounds.low = Position(low[0], low[1], low[2]);
+        bounds.high = Position(high[0], high[1], high[2]);
+        bounds.displacements.lower = Position(low[3], low[4], low[5]).cast<float>();
+        bounds.displacements.upper = Position(high[3], high[4], high[5]).cast<float>();
         return bounds;
     }
 };

@@ -17,45 +17,44 @@ class Places {
 public:
     static constexpr int kDigitBits = 11, kBits = 2 * kDigitBits;
 
-    Places(std::span<const Ray> rays, size_t packets) {
-        const RayBounds bounds = RayBounds::Of(rays);
-        double length[kSides];
+    Places(std::span<const Ray> rays, size_t runs)
+        : bounds_(RayBounds::Of(rays.size(), [&](size_t i) -> const Ray& { return rays[i]; })) {
+        double side[kSides];
         for (int axis = 0; axis < 3; ++axis) {
-            low_[axis] = bounds.low[axis];
-            low_[3 + axis] = bounds.displacements.lower[axis];
-            length[axis] = bounds.high[axis] - bounds.low[axis];
-            length[3 + axis] = double{bounds.displacements.upper[axis]} - bounds.displacements.lower[axis];
+            low_[axis] = bounds_.low[axis];
+            low_[3 + axis] = double{bounds_.displacements.lower[axis]};
+            side[axis] = bounds_.high[axis] - bounds_.low[axis];
+            side[3 + axis] = double{bounds_.displacements.upper[axis]} - low_[3 + axis];
         }
-        int bitsOf[kSides] = {};
-        double extent[kSides];
-        std::copy(length, length + kSides, extent);
-        for (int bit = kBits - 1; bit >= 0; --bit) {
-            const int longest = static_cast<int>(std::max_element(length, length + kSides) - length);
-            length[longest] *= 0.5;
-            if (packets > 1) {
-                packets /= 2;
-                if (packets <= 1) isWorthIt_ = IsWorthIt(bounds, length);
-            }
-            // The first bit of a side is the highest of what it is counted in.
-            const int inSide = kSideBits - 1 - bitsOf[longest]++;
-            for (uint32_t byte = 0; inSide >= 0 && byte < 256; ++byte)
-                if (byte >> (inSide & 7) & 1) deal_[longest][inSide >> 3][byte] |= 1u << bit;
-        }
-        for (int k = 0; k < kSides; ++k) {
-            if (bitsOf[k] == 0 || !(extent[k] > 0)) continue;
-            used_[usedCount_] = k;
-            scale_[usedCount_++] = kMostSteps / extent[k];
+        for (int k = 0; k < kSides; ++k) scale_[k] = side[k] > 0 ? kMostSteps / side[k] : 0;
+        for (int& dealt : dealtTo_) {
+            dealt = static_cast<int>(std::max_element(side, side + kSides) - side);
+            side[dealt] *= 0.5;
+            if (runs > 1 && (runs /= 2) == 1) isWorthIt_ = IsTight(side);
         }
     }
 
     // Whether runs of neighbours will be close, if the rays fill their box evenly.
     bool IsWorthIt() const { return isWorthIt_; }
 
+    // To be called before Of.
+    void Deal() {
+        int bitsOf[kSides] = {};
+        for (int bit = 0; bit < kBits; ++bit) {
+            // The first bit of a side is the highest of what it is counted in.
+            const int side = dealtTo_[bit], inSide = kSideBits - 1 - bitsOf[side]++;
+            for (uint32_t byte = 0; inSide >= 0 && byte < 256; ++byte)
+                if (byte >> (inSide & 7) & 1) deal_[side][inSide >> 3][byte] |= 1u << (kBits - 1 - bit);
+        }
+        for (int k = 0; k < kSides; ++k)
+            if (bitsOf[k] > 0 && scale_[k] > 0) used_[usedCount_++] = k;
+    }
+
     uint32_t Of(const Ray& ray) const {
         uint32_t place = 0;
         for (int i = 0; i < usedCount_; ++i) {
             const int k = used_[i];
-            const double at = ((k < 3 ? ray.origin[k] : double{ray.displacement[k - 3]}) - low_[k]) * scale_[i];
+            const double at = ((k < 3 ? ray.origin[k] : double{ray.displacement[k - 3]}) - low_[k]) * scale_[k];
             const uint32_t step = at > 0 ? static_cast<uint32_t>(std::min(at, kMostSteps)) : 0u;
             place |= deal_[k][0][step & 255] | deal_[k][1][step >> 8];
         }
@@ -66,17 +65,18 @@ private:
     static constexpr int kSides = 6, kSideBits = 16;
     static constexpr double kMostSteps = 65535;
 
-    static bool IsWorthIt(const RayBounds& bounds, const double (&side)[kSides]) {
+    bool IsTight(const double (&side)[kSides]) const {
         double reach = 0, way = 0;
         for (int axis = 0; axis < 3; ++axis) {
             reach += 0.5 * (side[axis] + side[3 + axis]);
-            way += std::max(std::fabs(double{bounds.displacements.lower[axis]}), std::fabs(double{bounds.displacements.upper[axis]}));
+            way += std::max(-low_[3 + axis], double{bounds_.displacements.upper[axis]});
         }
         return reach <= RayBounds::kTight * way;
     }
 
-    double low_[kSides];
-    double scale_[kSides];
+    RayBounds bounds_;
+    double low_[kSides], scale_[kSides];
+    int dealtTo_[kBits];                  // the side of each bit of a place, the highest first
     int used_[kSides];
     int usedCount_ = 0;
     bool isWorthIt_ = false;
@@ -88,11 +88,12 @@ private:
 void RayOrder::Sort(std::span<const Ray> rays, uint32_t together) {
     const uint32_t count = static_cast<uint32_t>(rays.size());
     numbers_.resize(count);
-    const Places places(rays, count / together);
+    Places places(rays, count / together);
     if (!places.IsWorthIt()) {
         std::iota(numbers_.begin(), numbers_.end(), 0u);
         return;
     }
+    places.Deal();
     items_.resize(count);
     sorted_.resize(count);
     constexpr uint32_t kDigits = 1u << Places::kDigitBits;

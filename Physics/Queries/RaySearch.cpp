@@ -6,6 +6,8 @@ namespace fulcrum {
 namespace {
 
 constexpr int kMost = RayCaster::kMostRays;
+// Colliders that the box may find and no ray of the packet meets, for each ray; where there are more, rays do better alone.
+constexpr int kMostInVain = 2;
 
 // The rays of a packet that are valid, and the box that sweeps over all of them, in the coordinates of the trees.
 struct Packet {
@@ -34,37 +36,17 @@ TreeRay SweptBox(const ColliderSearch& search, const RayBounds& bounds) {
                    (bounds.Reach() + far.cast<float>()) * (1 + 0x1p-20f) + way * 0x1p-18f);
 }
 
-}  // namespace
-
-bool CastClosest(const ColliderSearch& search, const Ray& ray, const RayCastSettings& settings, WorldRayHit& hit) {
-    const RayCaster caster(ray);
-    if (!caster.IsValid()) return false;
-    float limit = settings.maxFraction;
-    ClosestCollider best;
-    AlongRay(search, TreeRay(ray.origin - search.Origin(), ray.displacement), limit, [&](uint32_t collider) {
-        RayHit found;
-        if (caster.CastClosest(search.ShapeOf(collider), search.PoseOf(collider), settings, limit, found))
-            best.Take(search, collider, found, limit);
-    });
-    if (best.collider == ClosestCollider::kNone) return false;
-    hit = ToWorld(search, best.collider, ray, best.hit);
-    return true;
-}
-
-void CastClosest(const ColliderSearch& search, std::span<const Ray> rays, std::span<const uint32_t> which,
-                 const RayCastSettings& settings, std::span<WorldRayHit> hits) {
-    RayBounds bounds;
-    for (const uint32_t number : which) bounds.Include(rays[number]);
-    if (which.size() < 4 || !(settings.maxFraction <= 1) || !bounds.IsTight()) {
-        for (const uint32_t number : which)
-            if (!CastClosest(search, rays[number], settings, hits[number])) hits[number] = {};
-        return;
-    }
+// False: the rays are not close enough together, and nothing is done.
+bool CastTogether(const ColliderSearch& search, std::span<const Ray> rays, std::span<const uint32_t> which,
+                  const RayCastSettings& settings, std::span<WorldRayHit> hits) {
+    const RayBounds bounds = RayBounds::Of(which.size(), [&](size_t i) -> const Ray& { return rays[which[i]]; });
+    if (which.size() < 4 || !(settings.maxFraction <= 1) || !bounds.IsTight()) return false;
     Packet packet(search, rays, which, settings.maxFraction);
     TreeRays& inTree = packet.inTree;
     ClosestCollider best[kMost];
     float limit = settings.maxFraction;
     uint32_t met = 0;
+    int inVain = 0;
     const auto meet = [&](uint32_t collider) {
         const Shape& shape = search.ShapeOf(collider);
         const Pose pose = search.PoseOf(collider);
@@ -95,10 +77,15 @@ void CastClosest(const ColliderSearch& search, std::span<const Ray> rays, std::s
         [&](const BoundsTree& tree, const auto& visit) {
             tree.CastRay(swept, limit, [&](uint32_t collider) {
                 met = inTree.Meet(tree.GetBounds(collider));
-                if (met != 0) visit(collider);
+                if (met != 0) {
+                    visit(collider);
+                } else if (++inVain > kMostInVain * packet.count) {
+                    limit = -1;
+                }
             });
         },
         meet);
+    if (inVain > kMostInVain * packet.count) return false;
     if (packet.count < static_cast<int>(which.size()))
         for (const uint32_t number : which) hits[number] = {};
     for (int i = 0; i < packet.count; ++i) {
@@ -106,6 +93,31 @@ void CastClosest(const ColliderSearch& search, std::span<const Ray> rays, std::s
         const bool isHit = best[i].collider != ClosestCollider::kNone;
         hits[number] = isHit ? ToWorld(search, best[i].collider, rays[number], best[i].hit) : WorldRayHit{};
     }
+    return true;
+}
+
+}  // namespace
+
+bool CastClosest(const ColliderSearch& search, const Ray& ray, const RayCastSettings& settings, WorldRayHit& hit) {
+    const RayCaster caster(ray);
+    if (!caster.IsValid()) return false;
+    float limit = settings.maxFraction;
+    ClosestCollider best;
+    AlongRay(search, TreeRay(ray.origin - search.Origin(), ray.displacement), limit, [&](uint32_t collider) {
+        RayHit found;
+        if (caster.CastClosest(search.ShapeOf(collider), search.PoseOf(collider), settings, limit, found))
+            best.Take(search, collider, found, limit);
+    });
+    if (best.collider == ClosestCollider::kNone) return false;
+    hit = ToWorld(search, best.collider, ray, best.hit);
+    return true;
+}
+
+void CastClosest(const ColliderSearch& search, std::span<const Ray> rays, std::span<const uint32_t> which,
+                 const RayCastSettings& settings, std::span<WorldRayHit> hits) {
+    if (CastTogether(search, rays, which, settings, hits)) return;
+    for (const uint32_t number : which)
+        if (!CastClosest(search, rays[number], settings, hits[number])) hits[number] = {};
 }
 
 }  // namespace fulcrum
