@@ -18,7 +18,7 @@ struct RayBounds {
     // Whether that box is so small beside its way that it will hardly find more than its rays do.
     bool IsTight() const { return Reach().sum() <= kTight * displacements.Centre().cwiseAbs().sum(); }
 
-    static constexpr float kTight = 0.6f;
+    static constexpr float kTight = 0.45f;
     static constexpr double kFar = 1e300;
 
     // Of rayOf(i) for i < count. What is not a number counts as near.

@@ -64,14 +64,17 @@ public:
 private:
     static constexpr int kSides = 6, kSideBits = 16;
     static constexpr double kMostSteps = 65535;
+    static constexpr double kTight = 0.25;  // less than what RayBounds asks: the order costs something, too
 
     bool IsTight(const double (&side)[kSides]) const {
         double reach = 0, way = 0;
         for (int axis = 0; axis < 3; ++axis) {
             reach += 0.5 * (side[axis] + side[3 + axis]);
-            way += std::max(-low_[3 + axis], double{bounds_.displacements.upper[axis]});
+            // The mean length, whether all go the same way or each another.
+            const double low = low_[3 + axis], high = double{bounds_.displacements.upper[axis]};
+            way += 0.5 * (std::max(-low, high) + std::fabs(0.5 * (low + high)));
         }
-        return reach <= RayBounds::kTight * way;
+        return reach <= kTight * way;
     }
 
     RayBounds bounds_;
