@@ -18,17 +18,6 @@ constexpr double kBuildCostInQueries = 0.3;
 
 // ---- Boxes
 
-BoundsTree::Packed BoundsTree::Pack(const Bounds& b) {
-    return {{b.lower.x(), b.lower.y(), b.lower.z(), 0, -b.upper.x(), -b.upper.y(), -b.upper.z(), 0}};
-}
-
-Bounds BoundsTree::Unpack(const Packed& box) {
-    Bounds bounds;
-    bounds.lower = Vector3(box.lane[0], box.lane[1], box.lane[2]);
-    bounds.upper = Vector3(-box.lane[4], -box.lane[5], -box.lane[6]);
-    return bounds;
-}
-
 BoundsTree::Packed BoundsTree::EmptyBox() {
     return {{kInfinity, kInfinity, kInfinity, kInfinity, kInfinity, kInfinity, kInfinity, kInfinity}};
 }
@@ -44,33 +33,6 @@ double BoundsTree::HalfArea(const Packed& box) {
 
 bool BoundsTree::IsValid(const Bounds& b) {
     return IsFinite(b.lower) && IsFinite(b.upper) && (b.lower.array() <= b.upper.array()).all();
-}
-
-// The box around a node's eight slots; empty ones are inverted and do not count.
-BoundsTree::Packed BoundsTree::Union(const Node& node) {
-    // The fourth rows are anything: their lanes are not read.
-    const float* const rows[8] = {node.lower[0],        node.lower[1],        node.lower[2],        node.lower[2],
-                                  node.negatedUpper[0], node.negatedUpper[1], node.negatedUpper[2], node.negatedUpper[2]};
-    Wide<8> column[8];
-    GatherRows<8>(rows, column);
-    Packed box;
-    Min(Min(Min(column[0], column[1]), Min(column[2], column[3])), Min(Min(column[4], column[5]), Min(column[6], column[7])))
-        .Store(box.lane);
-    return box;
-}
-
-BoundsTree::Packed BoundsTree::SlotBox(uint32_t node, int slot) const {
-    const Node& n = nodes_[node];
-    return {{n.lower[0][slot], n.lower[1][slot], n.lower[2][slot], 0, n.negatedUpper[0][slot], n.negatedUpper[1][slot],
-             n.negatedUpper[2][slot], 0}};
-}
-
-void BoundsTree::SetSlotBox(uint32_t node, int slot, const Packed& box) {
-    Node& n = nodes_[node];
-    for (int axis = 0; axis < 3; ++axis) {
-        n.lower[axis][slot] = box.lane[axis];
-        n.negatedUpper[axis][slot] = box.lane[4 + axis];
-    }
 }
 
 // ---- Nodes
@@ -250,6 +212,11 @@ BoundsTree::Packed BoundsTree::Refit(uint32_t node) {
     }
     nodes_[node].stale = 0;
     return Union(nodes_[node]);
+}
+
+void BoundsTree::NoteUpdated(uint32_t changed) {
+    for (uint32_t node = 0; node < nodeCount_; ++node) nodes_[node].stale = nodes_[node].inner;
+    changesSinceOptimize_ += changed;
 }
 
 void BoundsTree::Optimize() {

@@ -8,6 +8,8 @@
 // - Update writes the leaf's box and enlarges what is above it as far as needed; it only notes what could shrink.
 // - Remove empties the leaf's slot and gives back nodes that became empty.
 // - Optimize tightens the noted boxes, and rebuilds all where that pays (see Optimize).
+// Where most leaves change at once there are ways that cost less a leaf: UpdateLeaves for their boxes, VisitPairs for what
+// they overlap. Both work on ranges of nodes, which any number of threads may share.
 #pragma once
 
 #include <Fulcrum/Math/Bounds.h>
@@ -15,6 +17,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace fulcrum {
@@ -37,6 +40,16 @@ public:
     // taken to be followed by one query. If the shape decays steadily, that is the cheapest moment to rebuild.
     void Optimize();
 
+    // Nodes are 0 .. NodeCount() - 1; any may be without leaves. What works on ranges of them is defined in BoundsTreeBulk.h.
+    uint32_t NodeCount() const { return nodeCount_; }
+    // Writes boundsOf(uint32_t id) into all leaves of the nodes begin .. end - 1. Ranges that share no node may be written at
+    // once. Until all nodes are written and NoteUpdated was called, nothing else may be asked but NodeCount.
+    template <class BoundsOf>
+    void UpdateLeaves(uint32_t begin, uint32_t end, BoundsOf&& boundsOf);
+    // After UpdateLeaves: how many of the leaves changed. The next Optimize, which must follow before any query, makes good
+    // what is above them.
+    void NoteUpdated(uint32_t changed);
+
     // Builds the whole tree anew, top down, each node full but for the last ones; leaves that are large beside the whole,
     // as floors are, hang right below the root.
     void Rebuild();
@@ -48,6 +61,15 @@ public:
     // allowed). Allocates nothing. The visitor must not change the tree.
     template <class Visitor>
     void Query(const Bounds& bounds, Visitor&& visit) const;
+
+    // Calls visit(uint32_t id, uint32_t other) once for each two leaves that overlap, of which the node with the lower number is
+    // among begin .. end - 1: the ranges of all nodes together find all pairs.
+    template <class Visitor>
+    void VisitPairs(uint32_t begin, uint32_t end, Visitor&& visit) const;
+    // Calls visit(const Bounds& all, std::span<const uint32_t> ids) for the leaves of each node among begin .. end - 1 that has
+    // any; `all` contains them.
+    template <class Visitor>
+    void VisitGroups(uint32_t begin, uint32_t end, Visitor&& visit) const;
 
     // These two are defined in BoundsTreeCasts.h, which whoever calls them includes.
     // Calls visit(uint32_t id) for the leaves that the ray, or moving box, meets within `maxFraction` of its way: those of a
@@ -106,6 +128,7 @@ private:
     static Bounds Unpack(const Packed& box);
     static Packed EmptyBox();
     static Packed Union(const Node& node);
+    static void LimitOf(const Packed& box, float (&limit)[6]);
     static double HalfArea(const Packed& box);
     static bool IsValid(const Bounds& bounds);
 
@@ -183,6 +206,44 @@ void BoundsTree::Query(const Bounds& bounds, Visitor&& visit) const {
             visit(node.child[std::countr_zero(leaves)]);
         for (uint32_t inner = hits & node.inner; inner != 0; inner &= inner - 1)
             stack[top++] = node.child[std::countr_zero(inner)];
+    }
+}
+
+inline BoundsTree::Packed BoundsTree::Pack(const Bounds& b) {
+    return {{b.lower.x(), b.lower.y(), b.lower.z(), 0, -b.upper.x(), -b.upper.y(), -b.upper.z(), 0}};
+}
+
+inline Bounds BoundsTree::Unpack(const Packed& box) {
+    Bounds bounds;
+    bounds.lower = Vector3(box.lane[0], box.lane[1], box.lane[2]);
+    bounds.upper = Vector3(-box.lane[4], -box.lane[5], -box.lane[6]);
+    return bounds;
+}
+
+// The box around a node's eight slots; empty ones are inverted and do not count.
+inline BoundsTree::Packed BoundsTree::Union(const Node& node) {
+    // The fourth rows are anything: their lanes are not read.
+    const float* const rows[8] = {node.lower[0],        node.lower[1],        node.lower[2],        node.lower[2],
+                                  node.negatedUpper[0], node.negatedUpper[1], node.negatedUpper[2], node.negatedUpper[2]};
+    Wide<8> column[8];
+    GatherRows<8>(rows, column);
+    Packed box;
+    Min(Min(Min(column[0], column[1]), Min(column[2], column[3])), Min(Min(column[4], column[5]), Min(column[6], column[7])))
+        .Store(box.lane);
+    return box;
+}
+
+inline BoundsTree::Packed BoundsTree::SlotBox(uint32_t node, int slot) const {
+    const Node& n = nodes_[node];
+    return {{n.lower[0][slot], n.lower[1][slot], n.lower[2][slot], 0, n.negatedUpper[0][slot], n.negatedUpper[1][slot],
+             n.negatedUpper[2][slot], 0}};
+}
+
+inline void BoundsTree::SetSlotBox(uint32_t node, int slot, const Packed& box) {
+    Node& n = nodes_[node];
+    for (int axis = 0; axis < 3; ++axis) {
+        n.lower[axis][slot] = box.lane[axis];
+        n.negatedUpper[axis][slot] = box.lane[4 + axis];
     }
 }
 

@@ -13,14 +13,6 @@ void Forget(ContactRecord& record) {
     record.twistImpulse = 0;
 }
 
-void Apply(const ContactChange& change, ContactRecord& record) {
-    if (change.friction >= 0 && std::isfinite(change.friction)) record.friction = change.friction;
-    if (change.restitution >= 0 && change.restitution <= 1) record.restitution = change.restitution;
-    const bool finite = IsFinite(change.surfaceVelocity) && IsFinite(change.surfaceTurn);
-    if (finite) record.SetSurfaceVelocity(change.surfaceVelocity, change.surfaceTurn);
-    else record.SetSurfaceVelocity(Vector3::Zero(), Vector3::Zero());
-}
-
 }  // namespace
 
 ContactView ViewContact(const WorldState& world, uint32_t index, ContactView::Point (&room)[ContactRecord::kMaxPoints]) {
@@ -38,14 +30,27 @@ ContactView ViewContact(const WorldState& world, uint32_t index, ContactView::Po
             ChildOf(world, pair.colliderA), ChildOf(world, pair.colliderB)};
 }
 
+ContactChange AskAbout(const ContactListener& listener, const ContactView& contact, float friction, float restitution) {
+    ContactChange change{friction, restitution};
+    listener.ModifyContact(contact, change);
+    if (!(change.friction >= 0 && std::isfinite(change.friction))) change.friction = friction;
+    if (!(change.restitution >= 0 && change.restitution <= 1)) change.restitution = restitution;
+    if (!IsFinite(change.surfaceVelocity) || !IsFinite(change.surfaceTurn)) {
+        change.surfaceVelocity.setZero();
+        change.surfaceTurn.setZero();
+    }
+    return change;
+}
+
 bool AskListener(WorldState& world, uint32_t index) {
     ContactRecord& record = world.pairs.records[index];
     ContactView::Point room[ContactRecord::kMaxPoints];
     const ContactView view = ViewContact(world, index, room);
     CombineMaterials(world, index);
-    ContactChange change{record.friction, record.restitution};
-    world.listener->ModifyContact(view, change);
-    Apply(change, record);
+    const ContactChange change = AskAbout(*world.listener, view, record.friction, record.restitution);
+    record.friction = change.friction;
+    record.restitution = change.restitution;
+    record.SetSurfaceVelocity(change.surfaceVelocity, change.surfaceTurn);
     if (change.ignore) Forget(record);
     return !change.ignore;
 }

@@ -41,13 +41,8 @@ bool StaysInBounds(const WorldState& world, uint32_t body, const Vector3& moved,
     return stays;
 }
 
-// Pieces beside the centre of mass change sides of a wall where the body turns, so that compounds are always cast with their turn.
-bool IsCastTurning(const WorldState& world, uint32_t body) {
-    const BodyCold& cold = world.bodies.cold[body];
-    return cold.continuous == ContinuousCollision::LinearAndAngular || !cold.shape->IsConvex();
-}
-
-void LookAtBody(const WorldState& world, uint32_t body, float dt, WorkerFindings& findings) {
+// Says how a body that moved far is to be searched.
+void LookAtBody(WorldState& world, uint32_t body, float dt, WorkerFindings& findings) {
     using SearchBy = SweepStore::SearchBy;
     const SweepStore::Start& start = world.sweeps.starts[body];
     const BodyDynamics& d = world.bodies.dynamics[body];
@@ -58,7 +53,7 @@ void LookAtBody(const WorldState& world, uint32_t body, float dt, WorkerFindings
     const bool turns = IsCastTurning(world, body);
     const float distance = Length(moved) + (turns ? Length(SweepOf(world, body).turn) * d.outerRadius : 0.0f);
     if (!(distance > FreeMotionOf(world, body))) return;
-    findings.fast.push_back({body, stays && !turns ? SearchBy::Pairs : SearchBy::Trees});
+    world.sweeps.searchBy[body] = stays && !turns ? SearchBy::Pairs : SearchBy::Trees;
 }
 
 // What the solver moved elsewhere than its bounds foresaw is given bounds about its whole way, so that the trees find it there.
@@ -77,26 +72,22 @@ void EnlargeBounds(WorldState& world) {
     std::sort(moved.begin() + static_cast<ptrdiff_t>(first), moved.end());
 }
 
-void FindFast(WorldState& world, float dt) {
+// Returns how many there are.
+uint32_t FindFast(WorldState& world, float dt) {
+    using SearchBy = SweepStore::SearchBy;
     SweepStore& store = world.sweeps;
+    store.searchBy.assign(world.bodies.Size(), SearchBy::None);
     const std::vector<uint32_t>& awake = world.bodies.awake;
     world.jobs->ParallelFor(static_cast<uint32_t>(awake.size()), 64, [&](JobRange range) {
         for (uint32_t k = range.begin; k < range.end; ++k) LookAtBody(world, awake[k], dt, world.findings[range.worker]);
     });
     EnlargeBounds(world);
-    store.fast.clear();
-    for (WorkerFindings& findings : world.findings) {
-        store.fast.insert(store.fast.end(), findings.fast.begin(), findings.fast.end());
-        findings.fast.clear();
-    }
-    std::sort(store.fast.begin(), store.fast.end(), [](const auto& a, const auto& b) { return a.body < b.body; });
+    const size_t slow = static_cast<size_t>(std::count(store.searchBy.begin(), store.searchBy.end(), SearchBy::None));
+    const size_t fast = store.searchBy.size() - slow;
     // To look through all pairs for a few bodies would take longer than their searches.
     constexpr size_t kPairsPerSearch = 16;
-    const bool few = store.fast.size() * kPairsPerSearch < world.pairs.active.Size();
-    for (SweepStore::FastBody& fast : store.fast) {
-        if (few) fast.by = SweepStore::SearchBy::Trees;
-        store.searchBy[fast.body] = fast.by;
-    }
+    if (fast * kPairsPerSearch < world.pairs.active.Size()) std::replace(store.searchBy.begin(), store.searchBy.end(), SearchBy::Pairs, SearchBy::Trees);
+    return static_cast<uint32_t>(fast);
 }
 
 // Of the collider of a pair that is to be cast against the other; kNone: neither.
@@ -133,24 +124,21 @@ void CastActive(WorldState& world) {
     });
 }
 
-void SortHits(WorldState& world) {
+void GatherHits(WorldState& world) {
     std::vector<SweepHit>& hits = world.sweeps.hits;
     hits.clear();
     for (WorkerFindings& findings : world.findings) {
         hits.insert(hits.end(), findings.sweepHits.begin(), findings.sweepHits.end());
         findings.sweepHits.clear();
     }
-    std::sort(hits.begin(), hits.end(), [](const SweepHit& a, const SweepHit& b) {
-        return std::tie(a.time, a.body, a.otherCollider) < std::tie(b.time, b.body, b.otherCollider);
-    });
 }
 
-// The place of a fast body's course in `swept`, where it comes to be when it is first asked for.
-uint32_t PlaceOf(WorldState& world, uint32_t body) {
+// The place of a fast body's course in `swept`, where it comes to be when it is first asked for: as `course`, if that is known.
+uint32_t PlaceOf(WorldState& world, uint32_t body, const Sweep* course = nullptr) {
     SweepStore& store = world.sweeps;
     if (store.searchBy[body] == SweepStore::SearchBy::None) return SweepStore::kNone;
     if (store.places[body] == SweepStore::kNone) {
-        Sweep sweep = SweepOf(world, body);
+        Sweep sweep = course ? *course : SweepOf(world, body);
         sweep.turns = IsCastTurning(world, body);
         store.places[body] = static_cast<uint32_t>(store.swept.size());
         store.swept.push_back(sweep);
@@ -162,90 +150,94 @@ class HitResolver {
 public:
     HitResolver(WorldState& world, const StepContext& step, bool isLast) : world_(world), dt_(step.dt), isLast_(isLast) {}
 
-    void Resolve(const SweepHit& hit) {
-        const uint32_t place = PlaceOf(world_, hit.body), otherPlace = PlaceOf(world_, hit.other);
+    // In the order of their times. What each would do is found beforehand, in parallel.
+    void ResolveAll() {
+        const std::vector<SweepHit>& hits = world_.sweeps.hits;
+        struct Key {
+            float time;
+            uint32_t body, otherCollider, index;
+            auto Order() const { return std::tie(time, body, otherCollider); }
+        };
+        const std::span<Key> order = world_.scratch.Allocate<Key>(hits.size());
+        const std::span<Impact> impacts = world_.scratch.Allocate<Impact>(hits.size());
+        world_.jobs->ParallelFor(static_cast<uint32_t>(hits.size()), 8, [&](JobRange range) {
+            for (uint32_t i = range.begin; i < range.end; ++i) impacts[i] = FindImpact(world_, hits[i], dt_);
+        });
+        for (uint32_t i = 0; i < hits.size(); ++i) order[i] = {hits[i].time, hits[i].body, hits[i].otherCollider, i};
+        std::sort(order.begin(), order.end(), [](const Key& a, const Key& b) { return a.Order() < b.Order(); });
+        for (const Key& key : order) Resolve(hits[key.index], impacts[key.index]);
+    }
+
+private:
+    void Resolve(const SweepHit& hit, Impact& impact) {
+        const uint32_t place = PlaceOf(world_, hit.body, &impact.courses[0]), otherPlace = PlaceOf(world_, hit.other, &impact.courses[1]);
         std::vector<Sweep>& swept = world_.sweeps.swept;
         Sweep& sweep = swept[place];
         if (sweep.changed) return;  // it is in the next round, or stays where it is
         if (otherPlace != SweepStore::kNone && swept[otherPlace].changed) {
             if (isLast_) {
-                Stop(sweep, hit.time);
+                Stop(sweep, hit.time, impact.poses[0]);
             } else {
                 sweep.changed = true;
                 world_.sweeps.next.push_back(place);
             }
             return;
         }
-        ImpactVelocities v;
-        const bool parts = hit.pointCount > 0 && Part(hit, v);
+        if (hit.pointCount > 0) WakeBody(world_, hit.other);
+        if (!impact.lasts) impact = FindImpact(world_, hit, dt_);
+        const bool parts = impact.parts && Part(hit, impact);
         if (isLast_ || (hit.pointCount > 0 && !parts)) {
-            Stop(sweep, hit.time);
+            Stop(sweep, hit.time, impact.poses[0]);
         } else {
-            Continue(place, hit.time, v.linear[0], v.angular[0], parts);
+            Continue(place, hit.time, impact, 0, parts);
         }
         if (parts && otherPlace != SweepStore::kNone) {
-            if (isLast_) Stop(swept[otherPlace], hit.time);
-            else Continue(otherPlace, hit.time, v.linear[1], v.angular[1], true);
+            if (isLast_) Stop(swept[otherPlace], hit.time, impact.poses[1]);
+            else Continue(otherPlace, hit.time, impact, 1, true);
         }
     }
 
-private:
-    // What gravity and forces add to the velocity from a time on; nothing where the solver has spread it over the step.
-    Vector3 Gain(uint32_t body, float time) const {
-        if (!world_.bodies.CanMove(body) || world_.colouring.IsTouched(body)) return Vector3::Zero();
-        const float* a = world_.bodies.poses[body].acceleration;
-        return Vector3(a[0], a[1], a[2]) * ((1 - time) * dt_);
-    }
-
-    // Gives the bodies the velocities after the hit; `v` becomes those.
-    bool Part(const SweepHit& hit, ImpactVelocities& v) {
+    // Gives the bodies the velocities after the hit; false: they are no numbers.
+    bool Part(const SweepHit& hit, const Impact& impact) {
         const uint32_t bodies[2] = {hit.body, hit.other};
-        WakeBody(world_, hit.other);
-        Vector3 gain[2];
-        for (int s = 0; s < 2; ++s) {
-            gain[s] = Gain(bodies[s], hit.time);
-            v.linear[s] = world_.bodies.LinearVelocityOf(bodies[s]) - gain[s];
-            v.angular[s] = world_.bodies.AngularVelocityOf(bodies[s]);
-            const BodyDynamics& d = world_.bodies.dynamics[bodies[s]];
-            if (!d.spherical) world_.bodies.UpdateInertia(bodies[s], AxesOf(d, SweepOf(world_, bodies[s]).PoseAt(hit.time).rotation));
-        }
-        if (!SolveImpact(world_, hit, v)) return false;
         ++world_.report.sweptHits;
+        for (int s = 0; s < 2; ++s)
+            if (world_.bodies.CanMove(bodies[s]) && (!IsFinite(impact.linear[s]) || !IsFinite(impact.angular[s]))) return false;
         for (int s = 0; s < 2; ++s) {
             if (!world_.bodies.CanMove(bodies[s])) continue;
-            if (!IsFinite(v.linear[s]) || !IsFinite(v.angular[s])) return false;
-            world_.bodies.SetVelocity(bodies[s], v.linear[s] + gain[s], v.angular[s]);
+            world_.bodies.masses[bodies[s]] = impact.masses[s];
+            world_.bodies.SetVelocity(bodies[s], impact.linear[s] + impact.gain[s], impact.angular[s]);
             world_.bodies.dynamics[bodies[s]].slowSeconds = 0;
         }
         return true;
     }
 
-    void End(Sweep& sweep, float time) {
+    void End(Sweep& sweep, float time, const Pose& pose) {
         world_.sweeps.ended.push_back(sweep);
         world_.sweeps.endedAt.push_back(time);
-        sweep.start = sweep.PoseAt(time);
+        sweep.start = pose;
         sweep.from = time;
         sweep.isCut = sweep.changed = true;
     }
 
     // Nothing moves but what can: a kinematic body goes on as it is told.
-    void Stop(Sweep& sweep, float time) {
+    void Stop(Sweep& sweep, float time, const Pose& pose) {
         if (!world_.bodies.CanMove(sweep.body)) return;
-        End(sweep, time);
+        End(sweep, time, pose);
         sweep.displacement.setZero();
         sweep.turn.setZero();
     }
 
-    void Continue(uint32_t place, float time, const Vector3& linear, const Vector3& angular, bool parts) {
+    void Continue(uint32_t place, float time, const Impact& impact, int side, bool parts) {
         Sweep& sweep = world_.sweeps.swept[place];
         const Vector3 displacement = sweep.DisplacementRate() * (1 - time), turn = sweep.TurnRate() * (1 - time);
-        End(sweep, time);
+        End(sweep, time, impact.poses[side]);
         sweep.displacement = displacement;
         sweep.turn = turn;
         if (parts && world_.bodies.CanMove(sweep.body)) {
             const float rest = (1 - time) * dt_;
-            sweep.displacement = (linear + Gain(sweep.body, time) * 0.5f) * rest;
-            sweep.turn = angular * rest;
+            sweep.displacement = (impact.linear[side] + impact.gain[side] * 0.5f) * rest;
+            sweep.turn = impact.angular[side] * rest;
             Vector3 none = Vector3::Zero();
             world_.bodies.dynamics[sweep.body].Lock(sweep.displacement, none);
         }
@@ -261,24 +253,19 @@ private:
 void ReserveLists(WorldState& world) {
     SweepStore& store = world.sweeps;
     const size_t users = store.users;
-    store.searchBy.resize(world.bodies.Size(), SweepStore::SearchBy::None);
+    store.searchBy.reserve(world.bodies.Size());
     store.places.resize(world.bodies.Size(), SweepStore::kNone);
-    store.fast.reserve(users);
     store.swept.reserve(users);
     store.hits.reserve(2 * users);
     for (std::vector<uint32_t>* list : {&store.active, &store.next}) list->reserve(2 * users);
-    for (WorkerFindings& findings : world.findings) {
-        findings.fast.reserve(users);
-        findings.sweepHits.reserve(users);
-    }
+    for (WorkerFindings& findings : world.findings) findings.sweepHits.reserve(users);
 }
 
 void StartCourses(WorldState& world) {
     SweepStore& store = world.sweeps;
     store.active.clear();
-    for (const SweepStore::FastBody& fast : store.fast)
-        if (fast.by == SweepStore::SearchBy::Trees) store.active.push_back(PlaceOf(world, fast.body));
-    world.report.sweptBodies = static_cast<uint32_t>(store.fast.size());
+    for (uint32_t body = 0; body < store.searchBy.size(); ++body)
+        if (store.searchBy[body] == SweepStore::SearchBy::Trees) store.active.push_back(PlaceOf(world, body));
 }
 
 // Those that hits have changed, or left undecided, are searched in the next round.
@@ -292,11 +279,13 @@ void EndRound(SweepStore& store) {
 
 void Finish(WorldState& world) {
     SweepStore& store = world.sweeps;
-    for (const Sweep& sweep : store.swept) {
-        if (sweep.isCut && world.bodies.CanMove(sweep.body)) world.bodies.SetCentrePose(sweep.body, sweep.PoseAt(1));
-        store.places[sweep.body] = SweepStore::kNone;
-    }
-    for (const SweepStore::FastBody& fast : store.fast) store.searchBy[fast.body] = SweepStore::SearchBy::None;
+    world.jobs->ParallelFor(static_cast<uint32_t>(store.swept.size()), 32, [&](JobRange range) {
+        for (uint32_t i = range.begin; i < range.end; ++i) {
+            const Sweep& sweep = store.swept[i];
+            if (sweep.isCut && world.bodies.CanMove(sweep.body)) world.bodies.SetCentrePose(sweep.body, sweep.PoseAt(1));
+            store.places[sweep.body] = SweepStore::kNone;
+        }
+    });
 }
 
 }  // namespace
@@ -309,16 +298,16 @@ void Continuous(WorldState& world, const StepContext& step) {
     if (store.users == 0) return;
     store.dt = step.dt;
     ReserveLists(world);
-    FindFast(world, step.dt);
-    if (store.fast.empty()) return;
+    const uint32_t fast = FindFast(world, step.dt);
+    world.report.sweptBodies = fast;
+    if (fast == 0) return;
     StartCourses(world);
-    const bool usesPairs = store.active.size() < store.fast.size();
+    const bool usesPairs = store.active.size() < fast;
     for (int round = 0; round < kRounds && (!store.active.empty() || (round == 0 && usesPairs)); ++round) {
         if (round == 0 && usesPairs) CastPairs(world);
         CastActive(world);
-        SortHits(world);
-        HitResolver resolver(world, step, round + 1 == kRounds);
-        for (const SweepHit& hit : store.hits) resolver.Resolve(hit);
+        GatherHits(world);
+        HitResolver(world, step, round + 1 == kRounds).ResolveAll();
         EndRound(store);
     }
     Finish(world);

@@ -1,6 +1,7 @@
 // Pairs are found by whoever moved. Workers collect keys, which are sorted before any pair is made: the order of the pairs
 // depends on ids alone, not on threads nor on the shape of the trees. Pairs that exist are recognised by their bounds, most
 // of the time: the table of pairs is asked about new ones only.
+#include <Fulcrum/Collision/BroadPhase/BoundsTreeBulk.h>
 #include <Fulcrum/Collision/Shapes/SurfaceShape.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 
@@ -10,22 +11,77 @@ namespace fulcrum {
 
 namespace {
 
+// Notes a pair that the bounds of two colliders ask for, of which the first has moved.
+void Consider(const WorldState& world, uint32_t index, uint32_t other, std::vector<uint64_t>& found) {
+    const Collider &self = world.colliders.colliders[index], &collider = world.colliders.colliders[other];
+    if (collider.previous.Overlaps(self.previous)) return;  // they have their pair, or may not have one
+    if (!MayCollide(world, self.body, collider.body)) return;
+    const uint32_t pair = world.pairs.Find(index, other);
+    if (pair == PairStore::kNone ? !ListenerAllows(world, self.body, collider.body) : world.pairs.active.Contains(pair)) return;
+    found.push_back(index < other ? uint64_t(index) << 32 | other : uint64_t(other) << 32 | index);
+}
+
+// What one collider meets.
 void Search(const WorldState& world, uint32_t index, std::vector<uint64_t>& found) {
     const ColliderStore& store = world.colliders;
     const Collider& self = store.colliders[index];
     if (self.sensor) return;
     const auto visit = [&](uint32_t other) {
-        const Collider& collider = store.colliders[other];
-        if (collider.queued && other < index) return;               // it reports the pair itself
-        if (collider.previous.Overlaps(self.previous)) return;      // they have their pair, or may not have one
-        if (!MayCollide(world, self.body, collider.body)) return;
-        const uint32_t pair = world.pairs.Find(index, other);
-        if (pair == PairStore::kNone ? !ListenerAllows(world, self.body, collider.body) : world.pairs.active.Contains(pair)) return;
-        found.push_back(index < other ? uint64_t(index) << 32 | other : uint64_t(other) << 32 | index);
+        if (store.colliders[other].queued && other < index) return;  // it reports the pair itself
+        Consider(world, index, other, found);
     };
     const uint32_t layers = world.settings.layerCollides[world.bodies.dynamics[self.body].layer];
     if (layers & store.movingLayers) store.movingTree.Query(self.fat, visit);
     if (self.moving && (layers & store.fixedLayers)) store.fixedTree.Query(self.fat, visit);
+}
+
+void SearchEach(WorldState& world) {
+    const std::vector<uint32_t>& moved = world.colliders.moved;
+    world.jobs->ParallelFor(static_cast<uint32_t>(moved.size()), 16, [&](JobRange range) {
+        for (uint32_t i = range.begin; i < range.end; ++i) Search(world, moved[i], world.findings[range.worker].pairs);
+    });
+}
+
+// The same where most have moved: what moves meets what moves, neighbours with neighbours.
+void SearchTogether(WorldState& world) {
+    const ColliderStore& store = world.colliders;
+    const auto isQueued = [&](uint32_t i) { return store.colliders[i].queued; };
+    world.jobs->ParallelFor(store.movingTree.NodeCount(), 8, [&](JobRange range) {
+        std::vector<uint64_t>& found = world.findings[range.worker].pairs;
+        store.movingTree.VisitPairs(range.begin, range.end, [&](uint32_t a, uint32_t b) {
+            const uint32_t low = std::min(a, b), high = std::max(a, b);
+            if (isQueued(low)) Consider(world, low, high, found);
+            else if (isQueued(high)) Consider(world, high, low, found);
+        });
+        store.movingTree.VisitGroups(range.begin, range.end, [&](const Bounds& all, std::span<const uint32_t> ids) {
+            bool meets = false;
+            store.fixedTree.Query(all, [&](uint32_t) { meets = true; });
+            if (!meets) return;
+            for (uint32_t index : ids) {
+                if (!isQueued(index)) continue;
+                store.fixedTree.Query(store.colliders[index].fat, [&](uint32_t other) {
+                    if (!isQueued(other) || index < other) Consider(world, index, other, found);
+                });
+            }
+        });
+    });
+    for (uint32_t index : store.moved)
+        if (!store.colliders[index].moving) Search(world, index, world.findings[0].pairs);
+}
+
+// The searches of this step are over.
+void ForgetMoved(WorldState& world) {
+    ColliderStore& store = world.colliders;
+    world.jobs->ParallelFor(static_cast<uint32_t>(store.moved.size()), 256, [&](JobRange range) {
+        for (uint32_t i = range.begin; i < range.end; ++i) {
+            Collider& collider = store.colliders[store.moved[i]];
+            collider.queued = false;
+            collider.previous = collider.fat;
+        }
+    });
+    if (!world.sensors.IsEmpty())
+        for (uint32_t index : store.moved) world.sensors.touched.push_back(store.colliders[index].body);
+    store.moved.clear();
 }
 
 float Combine(CombineRule rule, float a, float b) {
@@ -92,12 +148,10 @@ void CombineMaterials(WorldState& world, uint32_t index) {
 }
 
 void FindPairs(WorldState& world) {
-    std::vector<uint32_t>& moved = world.colliders.moved;
     world.activated.clear();
-    if (moved.empty()) return;
-    world.jobs->ParallelFor(static_cast<uint32_t>(moved.size()), 16, [&](JobRange range) {
-        for (uint32_t i = range.begin; i < range.end; ++i) Search(world, moved[i], world.findings[range.worker].pairs);
-    });
+    if (world.colliders.moved.empty()) return;
+    if (world.colliders.MostMoved()) SearchTogether(world);
+    else SearchEach(world);
     std::vector<uint64_t>& found = world.newPairs;
     found.clear();
     for (WorkerFindings& findings : world.findings) {
@@ -111,13 +165,7 @@ void FindPairs(WorldState& world) {
         if (index == PairStore::kNone) index = MakePair(world, a, b);
         if (world.pairs.active.Insert(index)) world.activated.push_back(index);
     }
-    for (uint32_t index : moved) {
-        Collider& collider = world.colliders.colliders[index];
-        collider.queued = false;
-        collider.previous = collider.fat;
-        if (!world.sensors.IsEmpty()) world.sensors.touched.push_back(collider.body);
-    }
-    moved.clear();
+    ForgetMoved(world);
 }
 
 }  // namespace fulcrum

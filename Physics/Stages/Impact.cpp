@@ -1,4 +1,5 @@
 #include <Fulcrum/Physics/Stages/Impact.h>
+#include <Fulcrum/Physics/Stages/SweepCast.h>
 
 #include <algorithm>
 
@@ -15,12 +16,12 @@ struct Side {
 
 class ImpactSolver {
 public:
-    ImpactSolver(const WorldState& world, const SweepHit& hit, ImpactVelocities& velocities) : hit_(hit), v_(velocities) {
+    ImpactSolver(const WorldState& world, const SweepHit& hit, Impact& impact) : hit_(hit), v_(impact) {
         const uint32_t bodies[2] = {hit.body, hit.other};
         for (int s = 0; s < 2; ++s) {
             if (!world.bodies.CanMove(bodies[s])) continue;
             const BodyDynamics& d = world.bodies.dynamics[bodies[s]];
-            side_[s] = {world.bodies.masses[bodies[s]].InverseInertia(), Vector3::Constant(d.inverseMass)};
+            side_[s] = {impact.masses[s].InverseInertia(), Vector3::Constant(d.inverseMass)};
             Vector3 none = Vector3::Zero();
             d.Lock(side_[s].mass, none);
         }
@@ -81,7 +82,7 @@ private:
     }
 
     const SweepHit& hit_;
-    ImpactVelocities& v_;
+    Impact& v_;
     Side side_[2];
     bool approaches_ = false;
     float away_[SweepHit::kMaxPoints] = {};      // m/s, speed to part with
@@ -91,8 +92,28 @@ private:
 
 }  // namespace
 
-bool SolveImpact(const WorldState& world, const SweepHit& hit, ImpactVelocities& velocities) {
-    return ImpactSolver(world, hit, velocities).Run();
+Vector3 GainFrom(const WorldState& world, uint32_t body, float time, float dt) {
+    if (!world.bodies.CanMove(body) || world.colouring.IsTouched(body)) return Vector3::Zero();
+    const float* a = world.bodies.poses[body].acceleration;
+    return Vector3(a[0], a[1], a[2]) * ((1 - time) * dt);
+}
+
+Impact FindImpact(const WorldState& world, const SweepHit& hit, float dt) {
+    const BodyStore& bodies = world.bodies;
+    const uint32_t pair[2] = {hit.body, hit.other};
+    Impact impact;
+    impact.lasts = world.sweeps.searchBy[hit.other] != SweepStore::SearchBy::None || !bodies.CanMove(hit.other);
+    for (int s = 0; s < 2; ++s) {
+        const BodyDynamics& d = bodies.dynamics[pair[s]];
+        impact.courses[s] = SweepOf(world, pair[s]);
+        impact.poses[s] = impact.courses[s].PoseAt(hit.time);
+        impact.masses[s] = d.spherical ? bodies.masses[pair[s]] : bodies.MassAlong(pair[s], AxesOf(d, impact.poses[s].rotation));
+        impact.gain[s] = GainFrom(world, pair[s], hit.time, dt);
+        impact.linear[s] = bodies.LinearVelocityOf(pair[s]) - impact.gain[s];
+        impact.angular[s] = bodies.AngularVelocityOf(pair[s]);
+    }
+    impact.parts = hit.pointCount > 0 && ImpactSolver(world, hit, impact).Run();
+    return impact;
 }
 
 }  // namespace fulcrum

@@ -1,17 +1,26 @@
-// How two bodies part where a sweep hit one of them: impulses at the points of their manifold. Called by the Continuous stage, serially.
+// How two bodies part where a sweep hit one of them: impulses at the points of their manifold. Called by the Continuous stage, for
+// different hits from any number of threads at once.
 #pragma once
 
 #include <Fulcrum/Physics/Stages/Stages.h>
 
 namespace fulcrum {
 
-// The velocities of two bodies at the time of the hit, m/s and rad/s.
-struct ImpactVelocities {
-    Vector3 linear[2], angular[2];  // of hit.body, hit.other
+// What a hit makes of hit.body, 0, and hit.other, 1, if it is the next that happens to them.
+struct Impact {
+    Sweep courses[2];                          // before
+    Pose poses[2];                             // at the time of the hit
+    BodyMass masses[2];                        // likewise
+    Vector3 gain[2];                           // m/s, that gravity and forces still add to the velocity until the end of the step
+    Vector3 linear[2], angular[2];             // m/s, rad/s: velocities after the hit
+    bool parts = false;                        // a point approached; else velocities are those before the hit
+    bool lasts = false;                        // nothing but a change of one of the two courses changes what is said here
 };
 
-// By the masses and the world inertia of the bodies as they are. Newton's law of restitution at each point that approaches, Coulomb friction, what is locked or does not move held. False: no point
-// approaches, and nothing has changed.
-bool SolveImpact(const WorldState& world, const SweepHit& hit, ImpactVelocities& velocities);
+// Newton's law of restitution at each point that approaches, Coulomb friction, what is locked or does not move held. dt, s: of the step.
+Impact FindImpact(const WorldState& world, const SweepHit& hit, float dt);
+
+// What gravity and forces add to a body's velocity, m/s, from a time of the step on; nothing where the solver has spread it over the step.
+Vector3 GainFrom(const WorldState& world, uint32_t body, float time, float dt);
 
 }  // namespace fulcrum

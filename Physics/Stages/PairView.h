@@ -33,6 +33,8 @@ void AddMoreManifolds(WorldState& world, float dt);
 PairChange NoteTouching(WorldState& world, uint32_t pair, WorkerFindings& findings);
 // Asks the listener about a manifold with points and does as it says; false: it is to be ignored.
 bool AskListener(WorldState& world, uint32_t pair);
+// What the listener wants of a contact that would have this friction and restitution. All of it is in range and finite.
+ContactChange AskAbout(const ContactListener& listener, const ContactView& contact, float friction, float restitution);
 // A manifold at the poses of now, its points in `room`.
 ContactView ViewContact(const WorldState& world, uint32_t pair, ContactView::Point (&room)[ContactRecord::kMaxPoints]);
 // Whether one of its bodies sleeps, and is to wake where they touch.

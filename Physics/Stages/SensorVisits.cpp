@@ -20,8 +20,6 @@ constexpr float kPartsPerRadian = 16, kMostParts = 32;
 // Of the step: visits no farther apart are one, as of neighbouring pieces.
 constexpr float kSameTime = 1e-6f;
 
-Vector3 Between(const Position& from, const Position& to) { return (to - from).cast<float>(); }
-
 Pose PoseOf(const ColliderShape& piece, const Pose& body) { return piece.offset ? body * piece.local : body; }
 
 // A piece of a body on a straight part of its way.

@@ -2,6 +2,7 @@
 // exactly. Impulses go back to the records.
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Physics/Stages/Effort.h>
+#include <Fulcrum/Physics/Stages/FreeRotation.h>
 #include <Fulcrum/Physics/Stages/Integrate.h>
 
 #include <algorithm>
@@ -10,131 +11,51 @@ namespace fulcrum {
 
 namespace {
 
-// The axis of rotation wanders the faster the more the principal moments differ: so many substeps that it turns by little
-// in each, for a body that turns by `angle` in the step.
-int RotationSubsteps(const BodyDynamics& d, float angle) {
-    constexpr float kSmall = 0.1f;  // rad: errors of some 1e-8 a substep, as of the float that keeps the rotation
-    const auto [low, high] = std::minmax({d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]});
-    const float wandering = angle * (1.0f - low / high);
-    return static_cast<int>(std::clamp(wandering / kSmall, 0.0f, 63.0f)) + 1;
-}
-
-// The axis about which the two other principal moments are equal; 3: there is none.
-int SymmetryAxis(const BodyDynamics& d) {
-    constexpr float kEqual = 1e-5f;
-    for (int k = 0; k < 3; ++k) {
-        const float a = d.inverseInertia[(k + 1) % 3], b = d.inverseInertia[(k + 2) % 3];
-        if (std::fabs(a - b) <= kEqual * std::min(a, b)) return k;
-    }
-    return 3;
-}
-
-// A body that turns freely about its centre of mass, its angular momentum L (kg m2/s, world axes) given. In double: the axis in the
-// middle doubles what it misses every 2 radians or so, and the roundings of many substeps in float were a fiftieth of a turn after
-// ten of them.
-struct FreeTop {
-    using Vector = Vec3<double>;
-    using Rotation = Quat<double>;
-    Vector inverse;     // of the principal moments
-    Vector momentum;
-    Rotation rotation;  // of the principal axes
-
-    static Rotation Unit(const Rotation& q) {
-        const double scale = 1.0 / std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-        return {q.x * scale, q.y * scale, q.z * scale, q.w * scale};
-    }
-    static Rotation Turned(const Vector& by, const Rotation& at) { return RotationFromVector<double>(by) * at; }
-    Vector VelocityAt(const Rotation& at) const {
-        const Mat3<double> axes = ToMatrix<double>(at);
-        return axes * Vector(axes.TransposeMultiply(momentum).cwiseProduct(inverse));
-    }
-
-    // Exact for a body of which the two moments beside `axis` are equal: it turns at constant rates about L and about its own axis,
-    // since L / I and, in the body, the part of L along the axis do not change.
-    void AdvanceSymmetric(int axis, double h) {
-        const double across = inverse[(axis + 1) % 3];
-        Vector spin = Vector::Zero();
-        spin[axis] = InverseRotate<double>(rotation, momentum)[axis] * (inverse[axis] - across) * h;
-        rotation = Unit(Turned(momentum * (across * h), rotation) * RotationFromVector<double>(spin));
-    }
-    // Of the fourth order, on the rotations, by two exponentials (E. Celledoni, A. Marthinsen, B. Owren, Commutator-free Lie group
-    // methods, Future Generation Computer Systems 19, 2003): dq/dt = (I(q)^-1 L) q / 2.
-    void Advance(double h) {
-        const Vector w1 = VelocityAt(rotation);
-        const Rotation half = Turned(w1 * (0.5 * h), rotation);
-        const Vector w2 = VelocityAt(half);
-        const Vector w3 = VelocityAt(Turned(w2 * (0.5 * h), rotation));
-        const Vector w4 = VelocityAt(Turned((w3 - w1 * 0.5) * h, half));
-        const Vector middle = (w2 + w3) * 2.0;
-        const double part = h / 12.0;
-        rotation = Unit(Turned((w4 * 3.0 + middle - w1) * part, Turned((w1 * 3.0 + middle - w4) * part, rotation)));
-    }
-};
-
-// Keeps the angular momentum, but for a torque that acts all along.
-void RotateFreely(const BodyDynamics& d, Quaternion& rotation, Vector3& w, const Vector3& torque, float dt) {
-    using Vector = FreeTop::Vector;
-    const auto exact = [&](const Quaternion& q) { return FreeTop::Unit({q.x, q.y, q.z, q.w}); };
-    const FreeTop::Rotation principal = exact(d.PrincipalAxes());
-    // The principal axes turn; the frame of the body follows at the end.
-    FreeTop top{Vector(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]), Vector::Zero(), exact(rotation) * principal};
-    Vector momentum = InverseRotate<double>(top.rotation, w.cast<double>());
-    for (int k = 0; k < 3; ++k) momentum[k] = top.inverse[k] > 0 ? momentum[k] / top.inverse[k] : 0.0;
-    top.momentum = Rotate<double>(top.rotation, momentum);
-    const int symmetry = SymmetryAxis(d);
-    const int substeps = symmetry < 3 ? 1 : RotationSubsteps(d, Length(w) * dt);
-    const double h = static_cast<double>(dt) / substeps;
-    const Vector kick = torque.cast<double>() * (0.5 * h);
-    for (int i = 0; i < substeps; ++i) {
-        top.momentum += kick;
-        if (symmetry < 3) top.AdvanceSymmetric(symmetry, h);
-        else top.Advance(h);
-        top.momentum += kick;
-    }
-    w = top.VelocityAt(top.rotation).cast<float>();
-    const FreeTop::Rotation q = top.rotation * principal.Conjugate();
-    rotation = Normalized(Quaternion{static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z), static_cast<float>(q.w)});
-}
-
 // What a body does in the step.
-struct Motion {
-    Vector3 displacement;  // m
-    Quaternion rotation;   // at its end
+struct Ending {
+    uint32_t body = 0;
+    Vector3 displacement = Vector3::Zero();  // m
+    Vector3 v = Vector3::Zero();             // m/s, at its end
+    FreeTurn turn;                           // what is found, where it turns freely, or has been found
+    bool fliesFreely = false;                // nothing touched it
+    float pulled = 0;                        // m/s, see PulledSpeed
 };
 
-// A body that no contact touched: x += v t + a t^2 / 2, exact under constant acceleration.
-void FlyFreely(WorldState& world, uint32_t body, const StepContext& step, Motion& motion, Vector3& v, Vector3& w,
-               WorkerFindings& findings) {
-    const BodyDynamics& d = world.bodies.dynamics[body];
-    const float* a = world.bodies.poses[body].acceleration;
+// A body that no contact touched: x += v t + a t^2 / 2, exact under constant acceleration. Returns whether it is still to be turned,
+// keeping its angular momentum.
+bool FlyFreely(WorldState& world, Ending& ending, const StepContext& step, WorkerFindings& findings) {
+    const BodyDynamics& d = *ending.turn.body;
+    const float* a = world.bodies.poses[ending.body].acceleration;
+    Vector3 &v = ending.v, &w = ending.turn.angularVelocity;
     const Vector3 before = v;
+    ending.fliesFreely = true;
     v += Vector3(a[0], a[1], a[2]) * step.dt;
     if (d.linearDamping > 0) v *= Exp(-d.linearDamping * step.dt);
-    Vector3& change = motion.displacement;
+    Vector3& change = ending.displacement;
     change = (before + v) * (0.5f * step.dt);
     if (d.lockedAxes != LockedAxes::None) {
         d.Lock(v, w);
         d.Lock(change, w);
     }
-    const Vector3 torque = d.hasForce ? world.bodies.cold[body].torque : Vector3(Vector3::Zero());
     const bool fastLinear = ClampLength(v, d.maxLinearSpeed), fastAngular = ClampLength(w, d.maxAngularSpeed);
     findings.clamped += fastLinear || fastAngular;
-    if (d.FeelsGyroscopicTorque(w)) {
-        RotateFreely(d, motion.rotation, w, torque, step.dt);
-    } else {
-        if (d.hasForce) w += world.bodies.masses[body].InverseInertia() * torque * step.dt;
-        motion.rotation = Normalized(RotationFromVector(Vector3(w * step.dt)) * motion.rotation);
-    }
-    if (d.angularDamping > 0) w *= Exp(-d.angularDamping * step.dt);
+    if (d.hasForce) ending.turn.torque = world.bodies.cold[ending.body].torque;
+    if (d.FeelsGyroscopicTorque(w)) return true;
+    if (d.hasForce) w += world.bodies.masses[ending.body].InverseInertia() * ending.turn.torque * step.dt;
+    ending.turn.rotation = Normalized(RotationFromVector(Vector3(w * step.dt)) * ending.turn.rotation);
+    return false;
 }
 
-void MoveSolved(WorldState& world, uint32_t body, Motion& motion, Vector3& w, float dt) {
+void MoveSolved(WorldState& world, Ending& ending, float dt) {
+    const uint32_t body = ending.body;
     BodyState& s = world.bodies.states[body];
     const BodyDynamics& d = world.bodies.dynamics[body];
-    motion.displacement = Vector3(s.deltaPosition[0], s.deltaPosition[1], s.deltaPosition[2]);
-    motion.rotation = Normalized(RotationFromVector(Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2])) * motion.rotation);
+    Quaternion& rotation = ending.turn.rotation;
+    Vector3& w = ending.turn.angularVelocity;
+    ending.displacement = Vector3(s.deltaPosition[0], s.deltaPosition[1], s.deltaPosition[2]);
+    rotation = Normalized(RotationFromVector(Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2])) * rotation);
     // With joints every substep has seen to that.
-    if (d.FeelsGyroscopicTorque(w) && !world.joints.HasAny(body)) w = AddGyroscopicTorque<float>(Vector3(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]), AxesOf(d, motion.rotation), w, dt);
+    if (d.FeelsGyroscopicTorque(w) && !world.joints.HasAny(body)) w = AddGyroscopicTorque<float>(Vector3(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]), AxesOf(d, rotation), w, dt);
 }
 
 void ForgetForces(WorldState& world, uint32_t body) {
@@ -195,32 +116,64 @@ bool PushIsFinite(const WorldState& world, uint32_t body) {
 // Whether somebody asks how bodies move within the step.
 bool KeepsStarts(const WorldState& world) { return world.sweeps.users > 0 || !world.sensors.IsEmpty(); }
 
-void EndBody(WorldState& world, uint32_t body, const StepContext& step, WorkerFindings& findings) {
+// Finds how a body ends the step. False: it has nothing to end. `together`: it is still to be turned, one of several.
+bool BeginEnding(WorldState& world, uint32_t body, const StepContext& step, WorkerFindings& findings, Ending& ending, bool& together) {
     BodyStore& bodies = world.bodies;
-    BodyDynamics& d = bodies.dynamics[body];
-    Motion motion{Vector3::Zero(), bodies.RotationOf(body)};
-    Vector3 v = bodies.LinearVelocityOf(body), w = bodies.AngularVelocityOf(body);
-    if (d.frozen) return;
+    const BodyDynamics& d = bodies.dynamics[body];
+    together = false;
+    if (d.frozen) return false;
+    ending = {.body = body, .v = bodies.LinearVelocityOf(body), .turn = {&d, bodies.RotationOf(body), bodies.AngularVelocityOf(body)}};
     if (KeepsStarts(world)) world.sweeps.starts[body] = {bodies.CentrePoseOf(body), world.report.step};
     if (d.motion == MotionType::Kinematic) {
-        motion.displacement = v * step.dt;
-        motion.rotation = Normalized(RotationFromVector(Vector3(w * step.dt)) * motion.rotation);
+        ending.displacement = ending.v * step.dt;
+        ending.turn.rotation = Normalized(RotationFromVector(Vector3(ending.turn.angularVelocity * step.dt)) * ending.turn.rotation);
     } else if (world.colouring.IsTouched(body)) {
-        MoveSolved(world, body, motion, w, step.dt);
-    } else {
-        FlyFreely(world, body, step, motion, v, w, findings);
+        MoveSolved(world, ending, step.dt);
+    } else if (FlyFreely(world, ending, step, findings)) {
+        together = IsSymmetric(d);
+        if (!together) RotateFreely(ending.turn, step.dt);
     }
-    const float pulled = PulledSpeed(world, body, step.dt);
+    ending.pulled = PulledSpeed(world, body, step.dt);
+    return true;
+}
+
+void FinishEnding(WorldState& world, Ending& ending, const StepContext& step, WorkerFindings& findings) {
+    BodyStore& bodies = world.bodies;
+    const uint32_t body = ending.body;
+    const BodyDynamics& d = bodies.dynamics[body];
+    const Vector3& v = ending.v;
+    Vector3& w = ending.turn.angularVelocity;
+    if (ending.fliesFreely && d.angularDamping > 0) w *= Exp(-d.angularDamping * step.dt);
     bodies.states[body] = {};
-    if (!IsFinite(motion.displacement) || !IsFinite(motion.rotation) || !IsFinite(v) || !IsFinite(w) || !PushIsFinite(world, body)) {
+    if (!IsFinite(ending.displacement) || !IsFinite(ending.turn.rotation) || !IsFinite(v) || !IsFinite(w) || !PushIsFinite(world, body)) {
         Freeze(world, body, findings);
         return;
     }
     bodies.SetVelocity(body, v, w);
-    bodies.MoveCentre(body, motion.displacement, motion.rotation);
+    bodies.MoveCentre(body, ending.displacement, ending.turn.rotation);
     if (d.hasForce) ForgetForces(world, body);
     if (world.settings.sleep.enabled && d.motion == MotionType::Dynamic)
-        MeasureSlowness(world, body, std::max(FarthestSpeed(world, body, v, w), pulled), step.dt, findings);
+        MeasureSlowness(world, body, std::max(FarthestSpeed(world, body, v, w), ending.pulled), step.dt, findings);
+}
+
+void EndBodies(WorldState& world, JobRange range, const StepContext& step) {
+    WorkerFindings& findings = world.findings[range.worker];
+    Ending endings[kTurnsTogether];
+    FreeTurn* const turns[kTurnsTogether] = {&endings[0].turn, &endings[1].turn, &endings[2].turn, &endings[3].turn};
+    int waiting = 0;
+    const auto turnTogether = [&] {
+        RotateTogether(turns, waiting, step.dt);
+        for (int i = 0; i < waiting; ++i) FinishEnding(world, endings[i], step, findings);
+        waiting = 0;
+    };
+    for (uint32_t i = range.begin; i < range.end; ++i) {
+        Ending& ending = endings[waiting];
+        bool together;
+        if (!BeginEnding(world, world.bodies.awake[i], step, findings, ending, together)) continue;
+        if (!together) FinishEnding(world, ending, step, findings);
+        else if (++waiting == kTurnsTogether) turnTogether();
+    }
+    if (waiting > 0) turnTogether();
 }
 
 template <int N, bool kFixedB>
@@ -288,10 +241,7 @@ void BreakJoints(WorldState& world) {
 void Store(WorldState& world, const StepContext& step) {
     StoreImpulses(world, step);
     if (KeepsStarts(world)) world.sweeps.starts.resize(world.bodies.Size());
-    world.jobs->ParallelFor(static_cast<uint32_t>(world.bodies.awake.size()), 64, [&](JobRange range) {
-        for (uint32_t i = range.begin; i < range.end; ++i)
-            EndBody(world, world.bodies.awake[i], step, world.findings[range.worker]);
-    });
+    world.jobs->ParallelFor(static_cast<uint32_t>(world.bodies.awake.size()), 64, [&](JobRange range) { EndBodies(world, range, step); });
     BreakJoints(world);
     world.lastSubstepDt = step.substepDt;
 

@@ -3,7 +3,7 @@
 #include <Fulcrum/Collision/BroadPhase/BoundsTreeCasts.h>
 #include <Fulcrum/Collision/NarrowPhase/PlaneContact.h>
 #include <Fulcrum/Collision/Queries/ShapeCast.h>
-#include <Fulcrum/Physics/ContactListener.h>
+#include <Fulcrum/Physics/Stages/PairView.h>
 #include <Fulcrum/Physics/Stages/PlacedConvex.h>
 
 #include <algorithm>
@@ -19,13 +19,51 @@ constexpr float kLeastThickness = 0.01f;
 
 float Thickness(const Shape& shape) { return std::max(shape.InnerRadius(), kLeastThickness * shape.OuterRadius()); }
 
-Vector3 Between(const Position& from, const Position& to) { return (to - from).cast<float>(); }
-
 // Whether two balls whose centres are `apart` and close in by `motion` come within `reach` of each other.
 bool BallsMeet(const Vector3& apart, const Vector3& motion, float reach) {
     const float along = -Dot<float>(apart, motion), square = LengthSquared(motion);
     const float part = square > 0 ? std::clamp(along / square, 0.0f, 1.0f) : 0.0f;
     return LengthSquared(Vector3(apart + motion * part)) <= reach * reach;
+}
+
+// The rotation vector of q, which may have turned several times, that is nearest to a guess.
+Vector3 TurnNear(const Quaternion& q, const Vector3& guess) {
+    constexpr float kTwoPi = 6.28318530717958647692f;
+    const Vector3 shortest = RotationVectorOf(q);
+    const float angle = Length(guess);
+    if (angle < 0.25f * kTwoPi) return shortest;
+    const Vector3 axis = Normalized(Length(shortest) > 1e-3f ? shortest : guess);
+    const float turns = std::floor((Dot<float>(axis, guess) - Dot<float>(axis, shortest)) / kTwoPi + 0.5f);
+    return shortest + axis * (turns * kTwoPi);
+}
+
+// A sweep of which the turn, half the work to find it, may still be missing.
+struct Course {
+    Sweep sweep;
+    bool hasTurn = true;
+};
+
+Course CourseOf(const WorldState& world, uint32_t body) {
+    const SweepStore& store = world.sweeps;
+    if (body < store.places.size() && store.places[body] != SweepStore::kNone) return {store.swept[store.places[body]]};
+    Course course;
+    Sweep& sweep = course.sweep;
+    sweep.body = body;
+    sweep.start = world.bodies.CentrePoseOf(body);
+    if (body >= store.starts.size() || store.starts[body].step != world.report.step) return course;
+    const Position end = sweep.start.position;
+    sweep.start = store.starts[body].pose;
+    sweep.displacement = Between(sweep.start.position, end);
+    course.hasTurn = false;
+    return course;
+}
+
+void FindTurn(const WorldState& world, Course& course) {
+    if (course.hasTurn) return;
+    const uint32_t body = course.sweep.body;
+    const Quaternion end = world.bodies.RotationOf(body);
+    course.sweep.turn = TurnNear(end * course.sweep.start.rotation.Conjugate(), Vector3(world.bodies.AngularVelocityOf(body) * world.sweeps.dt));
+    course.hasTurn = true;
 }
 
 class SweepCaster {
@@ -68,12 +106,15 @@ private:
     void CastAgainst(uint32_t other, const ShapeCaster& whole, float from = 0) {
         const uint32_t body = world_.colliders.colliders[other].body;
         if (!MayCollide(world_, sweep_.body, body) || !ListenerAllows(world_, sweep_.body, body)) return;
-        const Sweep course = SweepOf(world_, body);
+        Course theirs = CourseOf(world_, body);
+        const Sweep& course = theirs.sweep;
         const ColliderShape& piece = world_.colliders.shapes[other];
         const float start = std::max({sweep_.from, course.from, from});
-        if (course.displacement.isZero(0) && course.turn.isZero(0) && start == sweep_.from) {
+        const bool stays = course.displacement.isZero(0);
+        if (stays || start > course.from || piece.offset || isTurning_) FindTurn(world_, theirs);
+        if (stays && course.turn.isZero(0) && start == sweep_.from) {
             if (!whole.IsValid()) return;
-            CastThrough(whole, motion_, other, course, course.start * LocalOf(world_, other), start, whole);
+            CastThrough(whole, motion_, other, theirs, course.start * LocalOf(world_, other), start, whole);
             return;
         }
         // Seen from the other, which keeps the rotation that it has at the start.
@@ -91,12 +132,13 @@ private:
         relative.turn = motion_.turn * rest;
         if (!BallsMeet(Between(at.position, relative.pose.position), relative.displacement, cast_->OuterRadius() + piece.shape->OuterRadius())) return;
         const ShapeCaster caster(*cast_, relative);
-        if (caster.IsValid()) CastThrough(caster, relative, other, course, at, start, whole);
+        if (caster.IsValid()) CastThrough(caster, relative, other, theirs, at, start, whole);
     }
 
     // From the time `start` to the end.
-    void CastThrough(const ShapeCaster& caster, const ShapeMotion& motion, uint32_t other, const Sweep& course, const Pose& at, float start,
+    void CastThrough(const ShapeCaster& caster, const ShapeMotion& motion, uint32_t other, Course& theirs, const Pose& at, float start,
                      const ShapeCaster& whole) {
+        const Sweep& course = theirs.sweep;
         const Shape& shape = *world_.colliders.shapes[other].shape;
         const float length = 1 - start;
         ShapeCastSettings settings;
@@ -105,6 +147,7 @@ private:
         if (length > 0) settings.maxFraction = std::min(1.0f, std::max(0.0f, (best_.time - start) / length));
         float touched = 1;  // when it touched, but not so that it counts
         caster.Visit(shape, at, settings, [&](const ShapeHit& found) {
+            FindTurn(world_, theirs);
             SweepHit hit = HitOf(other, course);
             hit.time = start + found.fraction * length;
             if (ComesBefore(hit)) {
@@ -165,11 +208,10 @@ private:
             std::swap(view.childA, view.childB);
             view.normal = -view.normal;
         }
-        ContactChange change{hit.friction, hit.restitution};
-        world_.listener->ModifyContact(view, change);
-        if (change.friction >= 0 && std::isfinite(change.friction)) hit.friction = change.friction;
-        if (change.restitution >= 0 && change.restitution <= 1) hit.restitution = change.restitution;
-        if (IsFinite(change.surfaceVelocity)) hit.surfaceVelocity = swapped ? Vector3(-change.surfaceVelocity) : change.surfaceVelocity;
+        const ContactChange change = AskAbout(*world_.listener, view, hit.friction, hit.restitution);
+        hit.friction = change.friction;
+        hit.restitution = change.restitution;
+        hit.surfaceVelocity = swapped ? Vector3(-change.surfaceVelocity) : change.surfaceVelocity;
         return !change.ignore;
     }
 
@@ -284,33 +326,19 @@ private:
     ShapeMotion motion_;
 };
 
-// The rotation vector of q, which may have turned several times, that is nearest to a guess.
-Vector3 TurnNear(const Quaternion& q, const Vector3& guess) {
-    constexpr float kTwoPi = 6.28318530717958647692f;
-    const Vector3 shortest = RotationVectorOf(q);
-    const float angle = Length(guess);
-    if (angle < 0.25f * kTwoPi) return shortest;
-    const Vector3 axis = Normalized(Length(shortest) > 1e-3f ? shortest : guess);
-    const float turns = std::floor((Dot<float>(axis, guess) - Dot<float>(axis, shortest)) / kTwoPi + 0.5f);
-    return shortest + axis * (turns * kTwoPi);
-}
-
 }  // namespace
 
 float FreeMotion(float innerRadius, float outerRadius) { return kFreePart * std::max(innerRadius, kLeastThickness * outerRadius); }
 
+bool IsCastTurning(const WorldState& world, uint32_t body) {
+    const BodyCold& cold = world.bodies.cold[body];
+    return cold.continuous == ContinuousCollision::LinearAndAngular || !cold.shape->IsConvex();
+}
+
 Sweep SweepOf(const WorldState& world, uint32_t body) {
-    const SweepStore& store = world.sweeps;
-    if (body < store.places.size() && store.places[body] != SweepStore::kNone) return store.swept[store.places[body]];
-    Sweep sweep;
-    sweep.body = body;
-    const Pose end = world.bodies.CentrePoseOf(body);
-    sweep.start = end;
-    if (body >= store.starts.size() || store.starts[body].step != world.report.step) return sweep;
-    sweep.start = store.starts[body].pose;
-    sweep.displacement = Between(sweep.start.position, end.position);
-    sweep.turn = TurnNear(end.rotation * sweep.start.rotation.Conjugate(), Vector3(world.bodies.AngularVelocityOf(body) * world.sweeps.dt));
-    return sweep;
+    Course course = CourseOf(world, body);
+    FindTurn(world, course);
+    return course.sweep;
 }
 
 bool CastSweep(const WorldState& world, const Sweep& sweep, WorkerFindings& findings, SweepHit& hit) {
@@ -329,7 +357,7 @@ bool CastPair(const WorldState& world, uint32_t collider, uint32_t other, Worker
         if (!BallsMeet(Between(otherFrom, from), motion, reach)) return false;
     }
     hit.time = 1;
-    return SweepCaster(world, SweepOf(world, body), findings, hit).RunAgainst(collider, other);
+    return SweepCaster(world, CourseOf(world, body).sweep, findings, hit).RunAgainst(collider, other);  // without its turn, as pairs are cast
 }
 
 }  // namespace fulcrum

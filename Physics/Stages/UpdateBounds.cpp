@@ -1,5 +1,6 @@
 // A collider searches for pairs only when it leaves its fat bounds. These reach ahead along the velocity, so that a body in
 // flight leaves them once in several steps.
+#include <Fulcrum/Collision/BroadPhase/BoundsTreeBulk.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 
 #include <algorithm>
@@ -82,6 +83,34 @@ void ReserveLists(WorldState& world) {
     }
 }
 
+// In the order of their ids, so that the shape of the trees repeats from run to run.
+void ListMoved(WorldState& world) {
+    std::vector<uint32_t>& moved = world.colliders.moved;
+    const size_t first = moved.size();
+    for (WorkerFindings& findings : world.findings) {
+        for (uint32_t collider : findings.colliders) world.colliders.Queue(collider);
+        findings.colliders.clear();
+    }
+    std::sort(moved.begin() + static_cast<ptrdiff_t>(first), moved.end());
+}
+
+void UpdateTrees(WorldState& world) {
+    ColliderStore& store = world.colliders;
+    const bool together = store.MostMoved();
+    if (together) {
+        world.jobs->ParallelFor(store.movingTree.NodeCount(), 32, [&](JobRange range) {
+            store.movingTree.UpdateLeaves(range.begin, range.end, [&](uint32_t i) -> const Bounds& { return store.colliders[i].fat; });
+        });
+        store.movingTree.NoteUpdated(static_cast<uint32_t>(store.moved.size()));
+    }
+    for (uint32_t i : store.moved) {
+        const Collider& collider = store.colliders[i];
+        if (!together || !collider.moving || collider.sensor) store.TreeOf(collider).Update(i, collider.fat);
+    }
+    store.movingTree.Optimize();
+    store.fixedTree.Optimize();
+}
+
 }  // namespace
 
 Bounds TightBoundsOf(const WorldState& world, uint32_t index) {
@@ -116,20 +145,8 @@ void UpdateBounds(WorldState& world, const StepContext& step) {
             UpdateColliders(world, body, step.dt, findings);
         }
     });
-    // The trees learn of them in the order of their ids, so that their shape repeats from run to run.
-    size_t first = world.colliders.moved.size();
-    for (WorkerFindings& findings : world.findings) {
-        for (uint32_t collider : findings.colliders) world.colliders.Queue(collider);
-        findings.colliders.clear();
-    }
-    std::vector<uint32_t>& moved = world.colliders.moved;
-    std::sort(moved.begin() + static_cast<ptrdiff_t>(std::min(first, moved.size())), moved.end());
-    for (uint32_t i : moved) {
-        const Collider& collider = world.colliders.colliders[i];
-        world.colliders.TreeOf(collider).Update(i, collider.fat);
-    }
-    world.colliders.movingTree.Optimize();
-    world.colliders.fixedTree.Optimize();
+    ListMoved(world);
+    UpdateTrees(world);
 }
 
 }  // namespace fulcrum

@@ -116,13 +116,10 @@ SymmetricMatrix3 InverseOfFreeAxes(const BodyDynamics& d, const Matrix3& axes) {
 
 }  // namespace
 
-void BodyStore::UpdateInertia(uint32_t index, const Matrix3& axes) {
+BodyMass BodyStore::MassAlong(uint32_t index, const Matrix3& axes) const {
     const BodyDynamics& d = dynamics[index];
-    BodyMass& m = masses[index];
-    if (d.frozen) {
-        m = {};
-        return;
-    }
+    BodyMass m;
+    if (d.frozen) return m;
     m.inverseMass = d.inverseMass;
     m.turns = d.gyroscopic && !d.spherical && !d.LocksRotation() && d.motion == MotionType::Dynamic ? 1.0f : 0.0f;
     const Vector3 inverse(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]);
@@ -136,6 +133,7 @@ void BodyStore::UpdateInertia(uint32_t index, const Matrix3& axes) {
     m.inverseInertia[3] = i.xy;
     m.inverseInertia[4] = i.xz;
     m.inverseInertia[5] = i.yz;
+    return m;
 }
 
 void SetMass(BodyDynamics& d, const Quaternion& q, float mass, const Vector3& inertia) {

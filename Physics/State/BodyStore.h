@@ -187,7 +187,9 @@ public:
     void SetVelocity(uint32_t index, const Vector3& linear, const Vector3& angular);
     // Brings the world inverse inertia of `masses` in line with the rotation, or with principal axes in the middle of a step.
     void UpdateInertia(uint32_t index) { UpdateInertia(index, AxesOf(dynamics[index], RotationOf(index))); }
-    void UpdateInertia(uint32_t index, const Matrix3& axes);
+    void UpdateInertia(uint32_t index, const Matrix3& axes) { masses[index] = MassAlong(index, axes); }
+    // Of a body whose principal axes in the world are these.
+    BodyMass MassAlong(uint32_t index, const Matrix3& axes) const;
     SolverBodies ForSolver() { return {states.data(), masses.data(), poses.data()}; }
     size_t MemoryUsed() const;
 

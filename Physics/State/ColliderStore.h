@@ -60,6 +60,8 @@ public:
         colliders[collider].queued = true;
         moved.push_back(collider);
     }
+    // Whether so many moved that it costs less to look at the whole moving tree than at each of them.
+    bool MostMoved() const { return 2 * moved.size() >= movingTree.Size(); }
     size_t MemoryUsed() const {
         return colliders.capacity() * sizeof(Collider) + shapes.capacity() * sizeof(ColliderShape) + fixedTree.MemoryUsed() + movingTree.MemoryUsed() +
                sensorTree.MemoryUsed() +

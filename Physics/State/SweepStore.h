@@ -10,6 +10,9 @@
 
 namespace fulcrum {
 
+// In float, of which the places themselves are too far from zero for it.
+inline Vector3 Between(const Position& from, const Position& to) { return (to - from).cast<float>(); }
+
 // A body's way from some time of the step to its end: its centre of mass moves straight, it turns at a constant rate. Times are
 // fractions of the step, 0 .. 1. All positions are on the grid, as those of the step are.
 struct Sweep {
@@ -56,10 +59,6 @@ struct SweepStore {
         Pairs,                                 // its way lies inside its fat bounds: there is a pair for all that it may hit
         Trees,
     };
-    struct FastBody {
-        uint32_t body;
-        SearchBy by;
-    };
     static constexpr uint32_t kNone = ~0u;
     struct Start {
         Pose pose;
@@ -69,8 +68,7 @@ struct SweepStore {
     uint32_t users = 0;                        // bodies for which motions are kept; 0: nothing is
     float dt = 0;                              // s, of the step
     std::vector<Start> starts;                 // by body: where it was when the step began
-    std::vector<FastBody> fast;                // continuous ones that moved farther than they may without a cast, by body
-    std::vector<SearchBy> searchBy;            // by body; None for all others
+    std::vector<SearchBy> searchBy;            // by body; None for all but continuous ones that moved farther than they may without a cast
     std::vector<Sweep> swept;                  // courses that were searched anew, or changed
     std::vector<uint32_t> places;              // by body: index into `swept`, or kNone
     std::vector<Sweep> ended;                  // courses that a hit has ended, in the order of the hits
@@ -80,8 +78,7 @@ struct SweepStore {
 
     size_t MemoryUsed() const {
         return starts.capacity() * sizeof(Start) + (swept.capacity() + ended.capacity()) * sizeof(Sweep) + hits.capacity() * sizeof(SweepHit) +
-               (places.capacity() + endedAt.capacity() + active.capacity() + next.capacity()) * sizeof(uint32_t) +
-               fast.capacity() * sizeof(FastBody) + searchBy.capacity();
+               (places.capacity() + endedAt.capacity() + active.capacity() + next.capacity()) * sizeof(uint32_t) + searchBy.capacity();
     }
 };
 

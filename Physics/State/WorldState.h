@@ -41,7 +41,6 @@ struct alignas(64) WorkerFindings {
     std::vector<uint32_t> surfacePlaces, surfaceLeft, surfaceTouched;  // Collide: likewise
     std::vector<MoreManifold> more;   // Collide: what has no place in its pair yet
     std::vector<SweepHit> sweepHits;  // Continuous
-    std::vector<SweepStore::FastBody> fast;  // likewise
     std::vector<uint64_t> sensorCandidates;  // Sense
     std::vector<SensorVisit> sensorVisits;   // likewise
     uint32_t sensorTests = 0;                // likewise
