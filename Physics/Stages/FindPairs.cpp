@@ -65,8 +65,10 @@ void SearchTogether(WorldState& world) {
             }
         });
     });
-    for (uint32_t index : store.moved)
-        if (!store.colliders[index].moving) Search(world, index, world.findings[0].pairs);
+    world.jobs->ParallelFor(static_cast<uint32_t>(store.moved.size()), 256, [&](JobRange range) {
+        for (uint32_t i = range.begin; i < range.end; ++i)
+            if (!store.colliders[store.moved[i]].moving) Search(world, store.moved[i], world.findings[range.worker].pairs);
+    });
 }
 
 // The searches of this step are over.
@@ -95,22 +97,40 @@ float Combine(CombineRule rule, float a, float b) {
     return 0;
 }
 
-uint32_t MakePair(WorldState& world, uint32_t colliderA, uint32_t colliderB) {
-    const auto bodyOf = [&](uint32_t collider) { return world.colliders.colliders[collider].body; };
-    if (world.bodies.dynamics[bodyOf(colliderA)].motion != MotionType::Dynamic) std::swap(colliderA, colliderB);
-    const uint32_t index = world.pairs.Add(colliderA, colliderB);
+uint32_t AddPair(WorldState& world, uint32_t colliderA, uint32_t colliderB) {
+    const uint32_t bodyA = world.colliders.colliders[colliderA].body;
+    if (world.bodies.dynamics[bodyA].motion != MotionType::Dynamic) std::swap(colliderA, colliderB);
+    return world.pairs.Add(colliderA, colliderB);
+}
+
+// Writes what is known of a pair that was added.
+void DescribePair(WorldState& world, uint32_t index) {
     Pair& pair = world.pairs.pairs[index];
-    pair.bodyA = bodyOf(colliderA);
-    pair.bodyB = bodyOf(colliderB);
+    pair.bodyA = world.colliders.colliders[pair.colliderA].body;
+    pair.bodyB = world.colliders.colliders[pair.colliderB].body;
     pair.fixedB = world.bodies.dynamics[pair.bodyB].motion != MotionType::Dynamic;
-    const ColliderShape& a = world.colliders.shapes[colliderA];
-    const ColliderShape& b = world.colliders.shapes[colliderB];
+    const ColliderShape& a = world.colliders.shapes[pair.colliderA];
+    const ColliderShape& b = world.colliders.shapes[pair.colliderB];
     pair.offset = a.offset || b.offset;
     pair.shapeA = static_cast<const ConvexShape*>(a.shape);  // what moves freely has a volume
     pair.shapeB = b.shape;
     pair.surface = b.shape->IsSurface();
     CombineMaterials(world, index);
-    return index;
+}
+
+// Of keys, sorted: pairs that are new, and pairs that rest.
+void ActivatePairs(WorldState& world, const std::vector<uint64_t>& keys) {
+    const std::span<uint32_t> added = world.scratch.Allocate<uint32_t>(keys.size());
+    uint32_t count = 0;
+    for (uint64_t key : keys) {
+        const uint32_t a = static_cast<uint32_t>(key >> 32), b = static_cast<uint32_t>(key);
+        uint32_t index = world.pairs.Find(a, b);
+        if (index == PairStore::kNone) added[count++] = index = AddPair(world, a, b);
+        if (world.pairs.active.Insert(index)) world.activated.push_back(index);
+    }
+    world.jobs->ParallelFor(count, 16, [&](JobRange range) {
+        for (uint32_t i = range.begin; i < range.end; ++i) DescribePair(world, added[i]);
+    });
 }
 
 }  // namespace
@@ -159,12 +179,7 @@ void FindPairs(WorldState& world) {
         findings.pairs.clear();
     }
     std::sort(found.begin(), found.end());
-    for (uint64_t key : found) {
-        const uint32_t a = static_cast<uint32_t>(key >> 32), b = static_cast<uint32_t>(key);
-        uint32_t index = world.pairs.Find(a, b);
-        if (index == PairStore::kNone) index = MakePair(world, a, b);
-        if (world.pairs.active.Insert(index)) world.activated.push_back(index);
-    }
+    ActivatePairs(world, found);
     ForgetMoved(world);
 }
 
