@@ -29,6 +29,7 @@ public:
             const float approach = Dot<float>(hit.normal, RelativeVelocity(i));
             away_[i] = approach > world.settings.restitutionSpeed ? hit.restitution * approach : 0.0f;
             approaches_ |= approach > 0;
+            response_[i] = Response(i, hit.normal);
         }
     }
 
@@ -62,7 +63,7 @@ private:
         }
     }
     void Push(int i) {
-        const float response = Response(i, hit_.normal);
+        const float response = response_[i];
         if (!(response > 0)) return;
         const float old = pushed_[i];
         pushed_[i] = std::max(0.0f, old + (Dot<float>(hit_.normal, RelativeVelocity(i)) + away_[i]) / response);
@@ -86,6 +87,7 @@ private:
     Side side_[2];
     bool approaches_ = false;
     float away_[SweepHit::kMaxPoints] = {};      // m/s, speed to part with
+    float response_[SweepHit::kMaxPoints] = {};  // 1/kg, along the normal
     float pushed_[SweepHit::kMaxPoints] = {};    // N s
     Vector3 rubbed_[SweepHit::kMaxPoints] = {Vector3::Zero(), Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
 };

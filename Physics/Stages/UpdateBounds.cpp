@@ -79,7 +79,8 @@ void UpdateColliders(WorldState& world, uint32_t body, float dt, WorkerFindings&
             const float ahead = kAheadPart * radius / std::max(distance, 1e-6f);
             collider.fat = Reach(tight, motion * std::clamp(ahead, 1.0f, kStepsAhead), speculative + margin);
         }
-        findings.colliders.push_back(i);
+        if (!collider.queued) findings.colliders.push_back(i);
+        collider.queued = true;
         changed = true;
     });
     if (changed) world.bodies.poses[body].boundsChangedIn = static_cast<uint32_t>(world.report.step);
@@ -99,15 +100,16 @@ void ReserveLists(WorldState& world) {
     }
 }
 
-// In the order of their ids, so that the shape of the trees repeats from run to run.
+// In the order of their ids, so that the shape of the trees and the lists of sensors repeat from run to run; neither depends on it
+// where most moved and there are no sensors.
 void ListMoved(WorldState& world) {
     std::vector<uint32_t>& moved = world.colliders.moved;
-    const size_t first = moved.size();
+    const auto first = static_cast<ptrdiff_t>(moved.size());
     for (WorkerFindings& findings : world.findings) {
-        for (uint32_t collider : findings.colliders) world.colliders.Queue(collider);
+        moved.insert(moved.end(), findings.colliders.begin(), findings.colliders.end());
         findings.colliders.clear();
     }
-    std::sort(moved.begin() + static_cast<ptrdiff_t>(first), moved.end());
+    if (!world.colliders.MostMoved() || !world.sensors.IsEmpty()) std::sort(moved.begin() + first, moved.end());
 }
 
 void UpdateTrees(WorldState& world) {
