@@ -119,15 +119,13 @@ CoreCastResult CastLinear(const ConvexShape& a, const ConvexShape& b, const Core
         const bool known = Contains(simplex, vertex);
         // GJK can come no closer: the cores touch as nearly as their supports can tell.
         if (known && !moved) return HitAt(Touching(advanced), fraction, axis, PointOnA(simplex));
-        Simplex<SupportVertex> next = simplex;
-        if (!known) next.vertices[next.count++] = vertex;
-        const Position closest = ClosestOn(next);
+        if (!known) simplex.vertices[simplex.count++] = vertex;
+        const Position closest = ClosestOn(simplex);
         const double distance = std::sqrt(Dot<double>(closest, closest));
-        if (next.count == 4 || distance <= least) {
+        if (simplex.count == 4 || distance <= least) {
             if (!advanced) return CoresOverlapAtStart();
-            return HitAt(Outcome::Hit, fraction, provenAxis, PointOnA(next));
+            return HitAt(Outcome::Hit, fraction, provenAxis, PointOnA(simplex));
         }
-        simplex = next;
         axis = closest * (1 / distance);
         touches = distance - target <= tolerance;
         // So near each other, the cores' closest points tell no direction; the plane that they were advanced to does.
