@@ -40,17 +40,14 @@ struct Bounds {
     }
 };
 
-// The next float below f, which is not -infinity; NaN stays one.
-inline float NextBelow(float f) {
-    const auto bits = std::bit_cast<int32_t>(f);
-    if (f == 0.0f) return -std::numeric_limits<float>::denorm_min();
-    return std::bit_cast<float>(bits + (bits < 0 ? 1 : -1));
-}
-
-// The largest float not above x, and the smallest not below.
+// The largest float not above x, and the smallest not below; NaN stays one. Without branches: half of them would be mispredicted.
 inline float RoundDown(double x) {
     const float f = static_cast<float>(x);
-    return f > x ? NextBelow(f) : f;
+    const auto bits = std::bit_cast<uint32_t>(f);
+    const uint32_t isZero = -static_cast<uint32_t>((bits << 1) == 0), isNegative = -(bits >> 31);  // all bits, or none
+    const uint32_t below = (isZero & 0x80000001u) | (~isZero & (bits - 1u - 2u * isNegative));
+    const uint32_t isAbove = -static_cast<uint32_t>(double{f} > x);
+    return std::bit_cast<float>((isAbove & below) | (~isAbove & bits));
 }
 inline float RoundUp(double x) { return -RoundDown(-x); }
 

@@ -16,22 +16,6 @@ constexpr float kAheadPart = 0.25f;  // of the outer radius
 // What moves by this part of the margin in a step would leave fat bounds so soon that they only cost pairs: it gets tight ones.
 constexpr float kFastPart = 0.5f;
 
-float Down(double x) {
-    const float f = static_cast<float>(x);
-    const auto bits = std::bit_cast<uint32_t>(f);
-    const uint32_t isZero = -static_cast<uint32_t>((bits << 1) == 0), isNegative = -(bits >> 31), isAbove = -static_cast<uint32_t>(f > x);
-    const uint32_t below = (isZero & 0x80000001u) | (~isZero & (bits - 1u - 2u * isNegative));
-    return std::bit_cast<float>((isAbove & below) | (~isAbove & bits));
-}
-float Up(double x) { return -Down(-x); }
-
-Bounds Outwards(const Position& lower, const Position& upper) {
-    Bounds b;
-    b.lower = Vector3(Down(lower.x()), Down(lower.y()), Down(lower.z()));
-    b.upper = Vector3(Up(upper.x()), Up(upper.y()), Up(upper.z()));
-    return b;
-}
-
 // Bounds of a collider at a pose about the origin of bounds, without any margin. A hull as round as a ball is bounded best by its outer sphere.
 Bounds TightBounds(const Shape& shape, const Pose& pose, const Matrix3& rotation) {
     const Bounds& local = shape.LocalBounds();
@@ -39,7 +23,7 @@ Bounds TightBounds(const Shape& shape, const Pose& pose, const Matrix3& rotation
     const Vector3 reach = rotation.x.cwiseAbs() * half.x() + rotation.y.cwiseAbs() * half.y() + rotation.z.cwiseAbs() * half.z();
     const Vector3 sphere = Vector3::Constant(shape.OuterRadius());
     const Vector3 lower = Vector3(centre - reach).cwiseMax(-sphere), upper = Vector3(centre + reach).cwiseMin(sphere);
-    return Outwards(pose.position + lower.cast<double>(), pose.position + upper.cast<double>());
+    return RoundedOutwards(pose.position + lower.cast<double>(), pose.position + upper.cast<double>());
 }
 
 // A step's motion and the speculative distance on both sides.

@@ -302,6 +302,30 @@ TEST(Continuous, FiltersAndListenersHaveTheirSay) {
     EXPECT_NEAR(shoot(-500, ~0ull, &oneWay), 250, 1e-2);
 }
 
+// As between steps: where the turn of a surface is no number, its velocity does not count either.
+TEST(Continuous, ASurfaceOfWhichTheTurnIsNotFiniteStands) {
+    class Belt final : public ContactListener {
+    public:
+        float turn = 0;
+        void ModifyContact(const ContactView&, ContactChange& change) const override {
+            change.surfaceVelocity = Vector3(0, 30, 0);
+            change.surfaceTurn = Vector3(turn, 0, 0);
+        }
+    };
+    const auto shoot = [](const ContactListener* listener) {
+        TestWorld world(NoGravity());
+        world.System().SetContactListener(listener);
+        world.Add({.shape = BoxOf(0.01f, 5, 5), .motion = MotionType::Static, .material = {.friction = 1}});
+        const BodyId ball = world.Add({.shape = SphereOf(0.1f), .position = {-8, 0, 0}, .linearVelocity = {500, 0, 0}, .material = {.friction = 1}, .continuous = kLinear});
+        world.Step();
+        return world.VelocityOf(ball);
+    };
+    Belt runs, wrong;
+    wrong.turn = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_EQ(shoot(&wrong), shoot(nullptr));
+    EXPECT_GT(std::fabs(shoot(&runs).y()), 1);
+}
+
 TEST(Continuous, RefusesWhatCannotBeCast) {
     TestWorld world;
     const BodySettings plane{.shape = Plane::Create(Vector3(0, 1, 0), 0).Value(), .motion = MotionType::Static, .continuous = kLinear};

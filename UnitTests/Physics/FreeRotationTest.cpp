@@ -1,4 +1,6 @@
 // A box that spins about its middle axis of inertia, free of all forces: its motion is that of Euler's equations.
+#include <Fulcrum/Physics/Stages/FreeRotation.h>
+#include <Fulcrum/UnitTests/Support/RandomPoses.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
 #include <cmath>
@@ -103,6 +105,34 @@ TEST(FreeRotation, AFastSpinGainsNoEnergy) {
             most = std::max(most, world.Bodies().GetKineticEnergy(box) / start);
         }
         EXPECT_LE(most, 1.01) << speed << " rad/s";
+    }
+}
+
+// Who is turned beside a body depends on the number of threads: it must not matter.
+TEST(FreeRotation, IsTheSameAloneAndTogether) {
+    RandomPoses random(7);
+    for (int round = 0; round < 500; ++round) {
+        BodyDynamics bodies[kTurnsTogether];
+        FreeTurn together[kTurnsTogether], alone[kTurnsTogether];
+        for (int i = 0; i < kTurnsTogether; ++i) {
+            const float across = random.Between(0.1f, 2), along = random.Between(0.1f, 2);
+            Vector3 inertia = Vector3::Constant(across);
+            inertia[(round + i) % 3] = along;
+            SetMass(bodies[i], random.Rotation(), 1, inertia);
+            ASSERT_TRUE(IsSymmetric(bodies[i]));
+            const Quaternion rotation = random.Rotation();
+            const Vector3 w = random.InCube() * 30.0f, torque = random.InCube();
+            together[i] = alone[i] = {&bodies[i], rotation, w, torque};
+        }
+        const int count = 1 + round % kTurnsTogether;
+        FreeTurn* const turns[kTurnsTogether] = {&together[0], &together[1], &together[2], &together[3]};
+        RotateTogether(turns, count, 1.0f / 60);
+        for (int i = 0; i < count; ++i) {
+            RotateFreely(alone[i], 1.0f / 60);
+            EXPECT_EQ(together[i].angularVelocity, alone[i].angularVelocity);
+            EXPECT_EQ(together[i].rotation.x, alone[i].rotation.x);
+            EXPECT_EQ(together[i].rotation.w, alone[i].rotation.w);
+        }
     }
 }
 
