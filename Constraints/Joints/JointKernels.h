@@ -4,6 +4,8 @@
 #include <Fulcrum/Constraints/BodyLanes.h>
 #include <Fulcrum/Constraints/Joints/JointBatch.h>
 
+#include <cmath>
+
 namespace fulcrum::joints {
 
 // Calls f(std::integral_constant<LinearLock, ...>, std::integral_constant<AngularLock, ...>) with the batch's.
@@ -68,6 +70,12 @@ template <class Real>
     return Vec3<Real>(Real(0.0f), Real(0.0f), Real(0.0f));
 }
 
+inline bool Any(bool mask) { return mask; }
+template <int N>
+[[gnu::always_inline]] inline bool Any(WideMask<N> mask) {
+    return mask.Any();
+}
+
 // The normal without its part along the axis, of length 1: where the axis turns, it turns no more than it must.
 template <class Real>
 [[gnu::always_inline]] inline Vec3<Real> Straightened(const Vec3<Real>& normal, const Vec3<Real>& axis) {
@@ -82,18 +90,25 @@ template <class Lambda, class Real>
     for (int k = 0; k < lambda.size(); ++k) lambda[k] -= Real(0.0f) - answer[k];
 }
 
-// As RotationFromVector, by the first terms of the series where the angle is below a radian, as it nearly always is; the next
-// term is below a digit.
+// sin(a / 2) / a and cos(a / 2) with a = |v|: by the first terms of the series where the angle is below a radian, as it nearly
+// always is; the next term is below a digit.
 template <class Real>
-[[gnu::always_inline]] inline Quat<Real> RotationOf(const Vec3<Real>& v) {
+[[gnu::always_inline]] inline Vec2<Real> HalfTurnOf(const Vec3<Real>& v) {
     const Real square = Dot<Real>(v, v), one(1.0f);
     const Real scale = Real(0.5f) - square * (Real(1.0f / 48) - square * (Real(1.0f / 3840) - square * Real(1.0f / 645120)));
     const Real cosine = one - square * (Real(1.0f / 8) - square * (Real(1.0f / 384) - square * (Real(1.0f / 46080) - square * Real(1.0f / 10321920))));
-    Quat<Real> q{v.x() * scale, v.y() * scale, v.z() * scale, cosine};
     const auto isFar = square > one;
-    if (!isFar.Any()) return q;
-    const Quat<Real> far = RotationFromVector<Real>(v);
-    return {Select(isFar, far.x, q.x), Select(isFar, far.y, q.y), Select(isFar, far.z, q.z), Select(isFar, far.w, q.w)};
+    if (!Any(isFar)) return Vec2<Real>(scale, cosine);
+    const Real angle = Sqrt(square);
+    const SineCosine<Real> half = SinCos<Real>(angle * Real(0.5f));
+    return Vec2<Real>(Select(isFar, Real(half.sine / angle), scale), Select(isFar, half.cosine, cosine));
+}
+
+// As RotationFromVector.
+template <class Real>
+[[gnu::always_inline]] inline Quat<Real> RotationOf(const Vec3<Real>& v) {
+    const Vec2<Real> half = HalfTurnOf<Real>(v);
+    return {v.x() * half.x(), v.y() * half.x(), v.z() * half.x(), half.y()};
 }
 
 // The places and axes of a batch, at the start of the step or displaced.
@@ -425,6 +440,18 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     if constexpr (kAngular == AngularLock::Axis) soften(batch.hinge, errors.hinge);
     if constexpr (kLinear == LinearLock::Point) soften(batch.point, errors.point);
     if constexpr (kLinear == LinearLock::Line) soften(batch.line, errors.line);
+}
+
+// squared: m2 or rad2, by lanes, of which the first `count` are joints with these indices.
+template <int N>
+inline void NoteLargest(const uint32_t (&joints)[N], int count, const Wide<N>& squared, float& largest, uint32_t& joint) {
+    if (!(squared >= Wide<N>(largest * largest)).Any()) return;
+    for (int lane = 0; lane < count; ++lane) {
+        const float error = std::sqrt(squared[lane]);
+        if (!(error >= largest) || (error == largest && joints[lane] >= joint)) continue;
+        largest = error;
+        joint = joints[lane];
+    }
 }
 
 }  // namespace fulcrum::joints

@@ -147,17 +147,6 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
         for (uint32_t i = 0; i < lists[lane].count; ++i) SoftenLane(batch.rows[i], lane, lists[lane].rows[i], settings);
 }
 
-template <int N>
-void NoteLargest(const JointBatch<N>& batch, const Wide<N>& squared, float& largest, uint32_t& joint) {
-    if (!(squared >= Wide<N>(largest * largest)).Any()) return;
-    for (int lane = 0; lane < batch.count; ++lane) {
-        const float error = std::sqrt(squared[lane]);
-        if (!(error >= largest) || (error == largest && batch.joint[lane] >= joint)) continue;
-        largest = error;
-        joint = batch.joint[lane];
-    }
-}
-
 }  // namespace
 
 template <int N>
@@ -203,22 +192,22 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
         const JointErrors<Real> errors = SetUpParts<linear, angular>(batch, place);
         if constexpr (linear == LinearLock::Point) {
             batch.point.SetTotalLambda(linearImpulse);
-            NoteLargest(batch, Dot<Real>(errors.point, errors.point), findings.linearError, findings.linearJoint);
+            NoteLargest<N>(batch.joint, batch.count, Dot<Real>(errors.point, errors.point), findings.linearError, findings.linearJoint);
         }
         if constexpr (linear == LinearLock::Line) {
             const Vec3<Real> n2 = Cross<Real>(place.line, place.lineNormal);
             batch.line.SetTotalLambda(Vec2<Real>(Dot<Real>(linearImpulse, place.lineNormal), Dot<Real>(linearImpulse, n2)));
-            NoteLargest(batch, errors.line.x() * errors.line.x() + errors.line.y() * errors.line.y(), findings.linearError,
+            NoteLargest<N>(batch.joint, batch.count, errors.line.x() * errors.line.x() + errors.line.y() * errors.line.y(), findings.linearError,
                         findings.linearJoint);
         }
         if constexpr (angular == AngularLock::All) {
             batch.rotation.SetTotalLambda(angularImpulse);
-            NoteLargest(batch, Dot<Real>(errors.rotation, errors.rotation), findings.angularError, findings.angularJoint);
+            NoteLargest<N>(batch.joint, batch.count, Dot<Real>(errors.rotation, errors.rotation), findings.angularError, findings.angularJoint);
         }
         if constexpr (angular == AngularLock::Axis) {
             const Vec3<Real> c = Cross<Real>(place.axisB, place.normal);
             batch.hinge.SetTotalLambda(Vec2<Real>(-Dot<Real>(angularImpulse, c), Dot<Real>(angularImpulse, place.normal)));
-            NoteLargest(batch, errors.hinge.x() * errors.hinge.x() + errors.hinge.y() * errors.hinge.y(), findings.angularError,
+            NoteLargest<N>(batch.joint, batch.count, errors.hinge.x() * errors.hinge.x() + errors.hinge.y() * errors.hinge.y(), findings.angularError,
                         findings.angularJoint);
         }
         SetUpCoupling<linear, angular>(batch);

@@ -17,7 +17,9 @@ struct alignas(64) BodyState {
     // Second row: change of pose since the start of the step.
     float deltaPosition[3] = {0, 0, 0};    // m
     float deltaRotation[3] = {0, 0, 0};    // rad, rotation vector in world axes
-    float poseSpare[2] = {0, 0};
+    // sin(a / 2) / a and cos(a / 2) of the angle a = |deltaRotation|: the rotation as a quaternion is that vector times the first, and
+    // the second. Kept up to date where a joint holds the body.
+    float halfTurn[2] = {0.5f, 1};
 
     float* VelocityRow() { return linearVelocity; }
     float* PoseRow() { return deltaPosition; }

@@ -167,7 +167,20 @@ uint32_t GroupOf(const WorldState& world, const Islands& islands, const Entry& e
     return islands.groupOf[world.bodies.cold[MovingBodyOf(entry)].awakePlace];
 }
 
-uint32_t LocksOf(uint32_t kind) { return kind >> 8; }
+// Joints of one kind may share a batch: they have the same locks, or are balls (BallBatch.h), of round bodies or of any.
+enum JointKind : uint32_t { kRoundBall = 9, kBall = 10 };
+uint32_t KindOf(uint32_t kind) { return kind >> 8; }
+bool IsBall(uint32_t kind) { return KindOf(kind) >= kRoundBall; }
+
+uint32_t KindOf(const WorldState& world, const Joint& joint) {
+    if (joint.locks.linear != LinearLock::Point || joint.locks.angular != AngularLock::None || joint.maxRows > 0)
+        return static_cast<uint32_t>(joint.locks.linear) * 3 + static_cast<uint32_t>(joint.locks.angular);
+    const auto isRound = [&](int side) {
+        const BodyDynamics& d = world.bodies.dynamics[joint.body[side]];
+        return joint.still[side] || (d.spherical && !d.LocksRotation());
+    };
+    return isRound(0) && isRound(1) ? kRoundBall : kBall;
+}
 
 // Brings what the layout knows of the joints up to date, and their order within a colour.
 void ListJoints(WorldState& world) {
@@ -187,8 +200,7 @@ void ListJoints(WorldState& world) {
         record.lineAxis = joint.locks.line;
         record.freeAxis = joint.locks.axis;
         if (c == kColours) return;
-        const uint32_t locks = static_cast<uint32_t>(joint.locks.linear) * 3 + static_cast<uint32_t>(joint.locks.angular);
-        layout.listedJoints.push_back({locks << 8 | joint.maxRows, entry.constraint, MovingBodyOf(entry), c});
+        layout.listedJoints.push_back({KindOf(world, joint) << 8 | joint.maxRows, entry.constraint, MovingBodyOf(entry), c});
     });
     std::sort(layout.listedJoints.begin(), layout.listedJoints.end());
 }
@@ -217,12 +229,11 @@ std::span<const SortedJoint> SortJoints(WorldState& world, const Islands& island
     return sorted;
 }
 
-// A batch of the joints, at most N; lanes beyond them repeat the last one and are never written.
-template <int N>
-void FillBatch(const WorldState& world, JointBatch<N>& batch, std::span<const SortedJoint> joints) {
+// What every kind of batch knows of its joints, at most N; lanes beyond them repeat the last one and are never written.
+template <class Batch, size_t N>
+void FillLanes(const WorldState& world, Batch& batch, const uint32_t (&)[N], std::span<const SortedJoint> joints) {
     batch.count = static_cast<int32_t>(joints.size());
     batch.fixedA = batch.fixedB = batch.kinematicA = batch.kinematicB = 0;
-    batch.rowCount = batch.rowRoom = 0;
     for (size_t lane = 0; lane < N; ++lane) {
         const uint32_t index = joints[std::min(lane, joints.size() - 1)].joint;
         const Joint& joint = world.joints.joints[index];
@@ -231,28 +242,63 @@ void FillBatch(const WorldState& world, JointBatch<N>& batch, std::span<const So
         batch.joint[lane] = index;
         batch.bodyA[lane] = joint.body[0];
         batch.bodyB[lane] = joint.body[1];
-        batch.linear = joint.locks.linear;
-        batch.angular = joint.locks.angular;
         batch.fixedA |= bit(joint.still[0]);
         batch.fixedB |= bit(joint.still[1]);
         batch.kinematicA |= bit(isKinematic(0));
         batch.kinematicB |= bit(isKinematic(1));
-        batch.rowRoom = std::max(batch.rowRoom, joint.maxRows);
     }
 }
 
-// Cuts the joints of one colour into batches, from the front of `sorted`.
-void MakeJointBatches(WorldState& world, uint32_t place, std::span<const SortedJoint>& sorted, ColourBatches& colour) {
+template <int N>
+void FillBatch(const WorldState& world, JointBatch<N>& batch, std::span<const SortedJoint> joints) {
+    FillLanes(world, batch, batch.joint, joints);
+    batch.rowCount = batch.rowRoom = 0;
+    for (const SortedJoint& sorted : joints) {
+        const Joint& joint = world.joints.joints[sorted.joint];
+        batch.linear = joint.locks.linear;
+        batch.angular = joint.locks.angular;
+        batch.rowRoom = std::max(batch.rowRoom, joint.maxRows);
+    }
+}
+template <int N>
+void FillBatch(const WorldState& world, BallBatch<N>& batch, std::span<const SortedJoint> joints) {
+    FillLanes(world, batch, batch.joint, joints);
+    batch.round = KindOf(joints.front().kind) == kRoundBall;
+}
+
+template <class Batch>
+Batch& NextBatch(std::vector<Batch>& batches, uint32_t& count) {
+    if (batches.size() == count) batches.resize(count + count / 4 + 1);
+    return batches[count++];
+}
+
+// Cuts the joints of one colour into batches, from the front of `sorted`. Trees know the parts of JointBatch alone.
+void MakeJointBatches(WorldState& world, uint32_t place, bool hasTrees, std::span<const SortedJoint>& sorted, ColourBatches& colour) {
     SolverLayout& layout = world.solver;
     colour.jointsBegin = layout.jointCount;
+    colour.ballsBegin = layout.ballCount;
     while (!sorted.empty() && sorted.front().place == place) {
         size_t n = 1;
-        while (n < kLanes && n < sorted.size() && sorted[n].place == place && LocksOf(sorted[n].kind) == LocksOf(sorted[0].kind)) ++n;
-        if (layout.joints.size() == layout.jointCount) layout.joints.resize(layout.jointCount + layout.jointCount / 4 + 1);
-        FillBatch(world, layout.joints[layout.jointCount++], sorted.first(n));
+        while (n < kLanes && n < sorted.size() && sorted[n].place == place && KindOf(sorted[n].kind) == KindOf(sorted[0].kind)) ++n;
+        if (IsBall(sorted.front().kind) && !hasTrees) FillBatch(world, NextBatch(layout.balls, layout.ballCount), sorted.first(n));
+        else FillBatch(world, NextBatch(layout.joints, layout.jointCount), sorted.first(n));
         sorted = sorted.subspan(n);
     }
     colour.jointsEnd = layout.jointCount;
+    colour.ballsEnd = layout.ballCount;
+}
+
+uint32_t GroupOf(const WorldState& world, const Islands& islands, const JointTrees::Tree& tree) {
+    return islands.groupOf[world.bodies.cold[world.solver.trees.slots[tree.slotsEnd - 1].body].awakePlace];
+}
+
+// By group: whether it is solved with trees. Groups of several islands are not: theirs are parts of islands that are too large.
+std::span<bool> FindGroupsWithTrees(WorldState& world, const Islands& islands) {
+    std::span<bool> hasTrees = world.scratch.Allocate<bool>(islands.groups);
+    std::fill(hasTrees.begin(), hasTrees.end(), false);
+    for (const JointTrees::Tree& tree : world.solver.trees.trees) hasTrees[GroupOf(world, islands, tree)] = true;
+    hasTrees[kLargeGroup] = false;
+    return hasTrees;
 }
 
 // Hands the trees to the groups that solve them, and tells them where the parts of their joints are.
@@ -260,10 +306,9 @@ void PlaceTrees(WorldState& world, const Islands& islands) {
     SolverLayout& layout = world.solver;
     layout.treesByGroup.clear();
     if (layout.trees.trees.empty()) return;
-    const auto groupOf = [&](uint32_t tree) {
-        return islands.groupOf[world.bodies.cold[layout.trees.slots[layout.trees.trees[tree].slotsEnd - 1].body].awakePlace];
-    };
+    const auto groupOf = [&](uint32_t tree) { return GroupOf(world, islands, layout.trees.trees[tree]); };
     std::span<JointPlaceInBatch> places = world.scratch.Allocate<JointPlaceInBatch>(world.joints.joints.size());
+    std::fill(places.begin(), places.end(), JointPlaceInBatch{});  // balls have none, nor do the trees that they are in
     for (uint32_t b = 0; b < layout.jointCount; ++b)
         for (uint32_t lane = 0; lane < static_cast<uint32_t>(layout.joints[b].count); ++lane) places[layout.joints[b].joint[lane]] = {b, lane};
     for (JointTreeSlot& slot : layout.trees.slots)
@@ -309,6 +354,7 @@ void SortConstraints(WorldState& world, const Islands& islands) {
     count(Kind::Moving, moving);
     count(Kind::Fixed, fixed);
     std::span<const SortedJoint> joints = SortJoints(world, islands);
+    const std::span<const bool> hasTrees = FindGroupsWithTrees(world, islands);
     layout.colours.clear();
     uint32_t movingFirst = 0, fixedFirst = 0;
     uint64_t used = 0;
@@ -322,7 +368,7 @@ void SortConstraints(WorldState& world, const Islands& islands) {
             ColourBatches colour;
             colour.moving = MakeRange(movingFirst, m, layout.movingCount);
             colour.fixed = MakeRange(fixedFirst, f, layout.fixedCount);
-            MakeJointBatches(world, key, joints, colour);
+            MakeJointBatches(world, key, hasTrees[g], joints, colour);
             layout.colours.push_back(colour);
             movingFirst += m;
             fixedFirst += f;
@@ -358,7 +404,7 @@ void BuildIslands(WorldState& world) {
     SolverLayout& layout = world.solver;
     if (layout.version == world.colouring.Version()) return;
     layout.version = world.colouring.Version();
-    layout.movingCount = layout.fixedCount = layout.jointCount = 0;
+    layout.movingCount = layout.fixedCount = layout.ballCount = layout.jointCount = 0;
     FindJointTrees(world, layout.trees);
     const Islands islands = FindIslands(world);
     layout.islands = islands.islands;

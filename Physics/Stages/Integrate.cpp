@@ -1,6 +1,7 @@
 #include <Fulcrum/Physics/Stages/Integrate.h>
 
 #include <Fulcrum/Constraints/BodyLanes.h>
+#include <Fulcrum/Constraints/Joints/JointKernels.h>
 #include <Fulcrum/Math/Trigonometry.h>
 
 #include <algorithm>
@@ -94,7 +95,10 @@ void IntegratePose(WorldState& world, uint32_t body, float h) {
         s.deltaPosition[k] += s.linearVelocity[k] * h;
         s.deltaRotation[k] += s.angularVelocity[k] * h;
     }
-    if (isJointed) TurnInertia(world.bodies, body, h);
+    if (!isJointed) return;
+    const Vec2<float> half = joints::HalfTurnOf<float>(Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]));
+    for (int k = 0; k < 2; ++k) s.halfTurn[k] = half[k];
+    TurnInertia(world.bodies, body, h);
 }
 
 // Eight numbers of each of so many bodies, by lanes.
@@ -200,6 +204,10 @@ bool IntegratePosesInLanes(WorldState& world, const Indices& index, int count, f
         }
     }
     rotation += turn;
+    if (isJointed.Any()) {
+        const Vec2<Lanes> half = joints::HalfTurnOf<Lanes>(rotation);
+        for (int k = 0; k < 2; ++k) displacement.at[6 + k] = half[k];
+    }
     displacement.Set(displacement.First() + velocity.First() * Lanes(h), rotation);
     displacement.Write(count);
     Vec3<Lanes> w = velocity.Second();

@@ -120,6 +120,10 @@ public:
         FillRange(world_, layout.moving, moving, layout.movingContacts, contacts_, findings);
         FillRange(world_, layout.fixed, fixed, layout.fixedContacts, contacts_, findings);
     }
+    void FillBalls(uint32_t begin, uint32_t end, WorkerFindings& findings) const {
+        for (uint32_t i = begin; i < end; ++i)
+            PrepareBalls(world_.solver.balls[i], world_.joints.records.data(), world_.bodies.ForSolver(), joints_, findings.joints);
+    }
     void FillJoints(uint32_t begin, uint32_t end, WorkerFindings& findings) const {
         for (uint32_t i = begin; i < end; ++i) FillJoint(world_.solver.joints[i], findings);
     }
@@ -127,6 +131,7 @@ public:
         for (uint32_t c = group.coloursBegin; c < group.coloursEnd; ++c) {
             const ColourBatches& colour = world_.solver.colours[c];
             Fill(colour.moving, colour.fixed, findings);
+            FillBalls(colour.ballsBegin, colour.ballsEnd, findings);
             FillJoints(colour.jointsBegin, colour.jointsEnd, findings);
         }
     }
@@ -161,7 +166,7 @@ void Prepare(WorldState& world, const StepContext& step) {
     const RowFiller filler(world, EffortOf(world, step, large), step);
     const auto piecesOf = [&](uint32_t c) {
         const ColourBatches& colour = layout.colours[c];
-        return (std::max({colour.moving.Count(), colour.fixed.Count(), colour.JointCount()}) + kPiece - 1) / kPiece;
+        return (std::max({colour.moving.Count(), colour.fixed.Count(), colour.JointCount(), colour.BallCount()}) + kPiece - 1) / kPiece;
     };
     uint32_t count = 0;
     for (uint32_t c = large.coloursBegin; c < large.coloursEnd; ++c) count += piecesOf(c);
@@ -175,6 +180,8 @@ void Prepare(WorldState& world, const StepContext& step) {
             const ColourBatches& colour = layout.colours[c];
             WorkerFindings& findings = world.findings[range.worker];
             filler.Fill(Piece(colour.moving, piece), Piece(colour.fixed, piece), findings);
+            filler.FillBalls(std::min(colour.ballsBegin + piece * kPiece, colour.ballsEnd),
+                             std::min(colour.ballsBegin + (piece + 1) * kPiece, colour.ballsEnd), findings);
             filler.FillJoints(std::min(colour.jointsBegin + piece * kPiece, colour.jointsEnd),
                               std::min(colour.jointsBegin + (piece + 1) * kPiece, colour.jointsEnd), findings);
         }

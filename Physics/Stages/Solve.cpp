@@ -151,12 +151,14 @@ private:
         return std::span(layout_.joints).subspan(begin, end - begin);
     }
 
-    // Batches [begin, end) of a colour: joints, moving contacts, fixed ones.
+    // Batches [begin, end) of a colour: balls, other joints, moving contacts, fixed ones.
     void RunBatches(Verb verb, uint8_t substep, const ColourBatches& colour, uint32_t begin, uint32_t end) {
-        const uint32_t joints = colour.JointCount(), contacts = joints + colour.moving.Count();
+        const uint32_t balls = colour.BallCount(), joints = balls + colour.JointCount(), contacts = joints + colour.moving.Count();
         for (uint32_t i = begin; i < end; ++i) {
-            if (i < joints) {
-                RunBatch(verb, substep, layout_.joints[colour.jointsBegin + i]);
+            if (i < balls) {
+                RunBatch(verb, substep, layout_.balls[colour.ballsBegin + i]);
+            } else if (i < joints) {
+                RunBatch(verb, substep, layout_.joints[colour.jointsBegin + i - balls]);
             } else if (i < contacts) {
                 const uint32_t batch = colour.moving.begin + i - joints;
                 if (i + 1 < contacts) Prefetch(layout_.moving[batch + 1]);
@@ -189,10 +191,7 @@ private:
     template <int N>
     void RunBatch(Verb verb, uint8_t substep, JointBatch<N>& batch) {
         BodyState* states = world_.bodies.states.data();
-        JointSolveSettings settings = effort_.joints;
-        settings.elapsed = h_ * static_cast<float>(substep + 1);
-        settings.continues = verb == Verb::FirstVelocities && substep > 0 && !effort_.hasTrees;
-        settings.firstPass = (verb == Verb::FirstRelax || verb == Verb::Separations) && !effort_.hasTrees;
+        const JointSolveSettings settings = JointSettingsAt(verb, substep);
         switch (verb) {
             case Verb::WarmStart: WarmStartJoints(batch, states); break;
             case Verb::FirstVelocities:
@@ -200,15 +199,39 @@ private:
             case Verb::FirstRelax:
             case Verb::Relax: RelaxJoints(batch, world_.bodies.ForSolver(), settings); break;
             case Verb::Separations: UpdateJoints(batch, world_.bodies.ForSolver(), settings); break;
-            case Verb::Rejoin:
-                settings.elapsed = dt_;
-                RelaxJoints(batch, world_.bodies.ForSolver(), settings);
-                break;
+            case Verb::Rejoin: RelaxJoints(batch, world_.bodies.ForSolver(), settings); break;
             case Verb::IntegrateVelocities:
             case Verb::IntegratePoses:
             case Verb::Restitution:
             case Verb::NextSubstep: break;
         }
+    }
+
+    template <int N>
+    void RunBatch(Verb verb, uint8_t substep, BallBatch<N>& batch) {
+        BodyState* states = world_.bodies.states.data();
+        const JointSolveSettings settings = JointSettingsAt(verb, substep);
+        switch (verb) {
+            case Verb::WarmStart: WarmStartBalls(batch, states); break;
+            case Verb::FirstVelocities:
+            case Verb::Velocities: SolveBallVelocities(batch, states, settings); break;
+            case Verb::FirstRelax:
+            case Verb::Relax:
+            case Verb::Rejoin: RelaxBalls(batch, world_.bodies.ForSolver(), settings); break;
+            case Verb::Separations: UpdateBalls(batch, world_.bodies.ForSolver(), settings); break;
+            case Verb::IntegrateVelocities:
+            case Verb::IntegratePoses:
+            case Verb::Restitution:
+            case Verb::NextSubstep: break;
+        }
+    }
+
+    JointSolveSettings JointSettingsAt(Verb verb, uint8_t substep) const {
+        JointSolveSettings settings = effort_.joints;
+        settings.elapsed = verb == Verb::Rejoin ? dt_ : h_ * static_cast<float>(substep + 1);
+        settings.continues = verb == Verb::FirstVelocities && substep > 0 && !effort_.hasTrees;
+        settings.firstPass = (verb == Verb::FirstRelax || verb == Verb::Separations) && !effort_.hasTrees;
+        return settings;
     }
 
     ContactSolveSettings ContactSettingsAt(uint8_t substep, float part) const {
@@ -291,7 +314,7 @@ void Restitution(WorldState& world, const StepContext& step) {
     if (!world.bounces) return;
     // A bounce tears at joints.
     static constexpr Verb kVerbs[] = {Verb::Restitution, Verb::Rejoin};
-    const size_t count = world.solver.jointCount > 0 || !world.solver.overflowJoints.empty() ? 2 : 1;
+    const size_t count = world.solver.HasJoints() ? 2 : 1;
     RunVerbs(world, step, [&](const Effort&) { return std::span<const Verb>(kVerbs, count); });
 }
 

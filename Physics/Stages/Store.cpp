@@ -185,6 +185,11 @@ void StoreBatch(WorldState& world, const JointBatch<N>& batch, float dt, float i
     StoreJoints(batch, world.joints.records.data(), world.joints.types.data(), world.bodies.states.data(), dt, impulseScale);
 }
 
+template <int N>
+void StoreBatch(WorldState& world, const BallBatch<N>& batch, float dt, float impulseScale) {
+    StoreBalls(batch, world.joints.records.data(), dt, impulseScale);
+}
+
 template <class Batch>
 void StoreAll(WorldState& world, const std::vector<Batch>& batches, uint32_t begin, uint32_t end, float dt, float impulseScale) {
     world.jobs->ParallelFor(end - begin, 16, [&](JobRange range) {
@@ -195,23 +200,25 @@ void StoreAll(WorldState& world, const std::vector<Batch>& batches, uint32_t beg
 // Groups lie one after the other: those without an effort of their own are stored together.
 void StoreImpulses(WorldState& world, const StepContext& step) {
     const SolverLayout& layout = world.solver;
-    uint32_t moving = 0, fixed = 0, joints = 0;
-    const auto storeTo = [&](uint32_t movingEnd, uint32_t fixedEnd, uint32_t jointsEnd, float impulseScale) {
+    uint32_t moving = 0, fixed = 0, balls = 0, joints = 0;
+    const auto storeTo = [&](uint32_t movingEnd, uint32_t fixedEnd, uint32_t ballsEnd, uint32_t jointsEnd, float impulseScale) {
         StoreAll(world, layout.moving, moving, movingEnd, step.dt, impulseScale);
         StoreAll(world, layout.fixed, fixed, fixedEnd, step.dt, impulseScale);
+        StoreAll(world, layout.balls, balls, ballsEnd, step.dt, impulseScale);
         StoreAll(world, layout.joints, joints, jointsEnd, step.dt, impulseScale);
         moving = movingEnd;
         fixed = fixedEnd;
+        balls = ballsEnd;
         joints = jointsEnd;
     };
     for (const SolverGroup& group : layout.groups) {
         if (group.effort == SolverSettings{0, 0, 0} || group.coloursBegin == group.coloursEnd) continue;
         const ColourBatches& first = layout.colours[group.coloursBegin];
         const ColourBatches& last = layout.colours[group.coloursEnd - 1];
-        storeTo(first.moving.begin, first.fixed.begin, first.jointsBegin, 1.0f);
-        storeTo(last.moving.end, last.fixed.end, last.jointsEnd, EffortOf(world, step, group).impulseScale);
+        storeTo(first.moving.begin, first.fixed.begin, first.ballsBegin, first.jointsBegin, 1.0f);
+        storeTo(last.moving.end, last.fixed.end, last.ballsEnd, last.jointsEnd, EffortOf(world, step, group).impulseScale);
     }
-    storeTo(layout.movingCount, layout.fixedCount, layout.jointCount, 1.0f);
+    storeTo(layout.movingCount, layout.fixedCount, layout.ballCount, layout.jointCount, 1.0f);
     const auto storeOverflow = [&](const auto& batches) {
         StoreAll(world, batches, 0, static_cast<uint32_t>(batches.size()), step.dt, 1.0f);
     };

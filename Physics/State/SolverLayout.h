@@ -5,7 +5,7 @@
 
 #include <Fulcrum/Constraints/Coloring.h>
 #include <Fulcrum/Constraints/Contacts/ContactBatch.h>
-#include <Fulcrum/Constraints/Joints/JointBatch.h>
+#include <Fulcrum/Constraints/Joints/BallBatch.h>
 #include <Fulcrum/Physics/Islands/JointTrees.h>
 #include <Fulcrum/Physics/Settings.h>
 
@@ -36,13 +36,15 @@ struct BatchRange {
 struct ColourBatches {
     BatchRange moving, fixed;
     uint32_t jointsBegin = 0, jointsEnd = 0;  // batches
+    uint32_t ballsBegin = 0, ballsEnd = 0;    // likewise, of ball joints
     uint32_t JointCount() const { return jointsEnd - jointsBegin; }
-    uint32_t Count() const { return JointCount() + moving.Count() + fixed.Count(); }
+    uint32_t BallCount() const { return ballsEnd - ballsBegin; }
+    uint32_t Count() const { return BallCount() + JointCount() + moving.Count() + fixed.Count(); }
 };
 
 // A coloured joint. Batches have joints of the same locks, and best of as many rows.
 struct ListedJoint {
-    uint32_t kind;    // locks << 8 | rows
+    uint32_t kind;    // how it is solved << 8 | rows
     uint32_t joint;
     uint32_t body;    // one that it moves
     uint32_t colour;
@@ -58,6 +60,7 @@ struct SolverLayout {
     std::vector<ContactBatch<kLanes, true>> fixed;
     std::vector<ContactBatch<1, false>> overflowMoving;             // of the first group: solved one by one, at last
     std::vector<ContactBatch<1, true>> overflowFixed;
+    std::vector<BallBatch<kLanes>> balls;
     std::vector<JointBatch<kLanes>> joints;
     std::vector<JointBatch<1>> overflowJoints;
     std::vector<JointRows<kLanes>> jointRows;                       // room for the batches' rows
@@ -66,11 +69,12 @@ struct SolverLayout {
     uint64_t jointVersion = 0;                                      // of the colouring that this list was made from
     JointTrees trees;
     std::vector<uint32_t> treesByGroup;                             // indices of trees
-    uint32_t movingCount = 0, fixedCount = 0, jointCount = 0;       // batches in use
+    uint32_t movingCount = 0, fixedCount = 0, ballCount = 0, jointCount = 0;       // batches in use
     uint32_t colourCount = 0;                                       // colours in use
     uint32_t islands = 0;
     uint64_t version = 0;                                           // of the colouring that this was made from
 
+    bool HasJoints() const { return ballCount + jointCount > 0 || !overflowJoints.empty(); }
     bool HasOverflow() const { return !overflowMoving.empty() || !overflowFixed.empty() || !overflowJoints.empty(); }
     size_t MemoryUsed() const;
 };

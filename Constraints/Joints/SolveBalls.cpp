@@ -1,0 +1,312 @@
+#include <Fulcrum/Constraints/Joints/BallBatch.h>
+#include <Fulcrum/Constraints/Joints/JointKernels.h>
+
+namespace fulcrum {
+
+namespace {
+
+using namespace joints;
+
+template <class Real>
+[[gnu::always_inline]] inline Vec3<Real> Times(const Real& inertia, const Vec3<Real>& v) {
+    return Vec3<Real>(v * inertia);
+}
+template <class Real>
+[[gnu::always_inline]] inline Vec3<Real> Times(const Sym3<Real>& inertia, const Vec3<Real>& v) {
+    return inertia * v;
+}
+
+// The inverse inertias of a batch: numbers where it is round, else tensors.
+template <bool kRound, int N>
+[[gnu::always_inline]] inline const auto& InertiaOfA(const BallBatch<N>& batch) {
+    if constexpr (kRound) return batch.inverseInertiaA;
+    else return batch.inertiaA;
+}
+template <bool kRound, int N>
+[[gnu::always_inline]] inline const auto& InertiaOfB(const BallBatch<N>& batch) {
+    if constexpr (kRound) return batch.inverseInertiaB;
+    else return batch.inertiaB;
+}
+
+template <bool kRound, int N>
+void GatherMasses(BallBatch<N>& batch, const BodyMass* masses) {
+    InverseMass<Wide<N>> a, b;
+    const auto turning = GatherMass<N>(batch.bodyA, masses, a) | GatherMass<N>(batch.bodyB, masses, b);
+    batch.turning = turning.Any();
+    batch.inverseMassA = a.mass;
+    batch.inverseMassB = b.mass;
+    if constexpr (kRound) {
+        batch.inverseInertiaA = a.inertia.xx;
+        batch.inverseInertiaB = b.inertia.xx;
+    } else {
+        batch.inertiaA = a.inertia;
+        batch.inertiaB = b.inertia;
+    }
+}
+
+// Adds what an impulse at the arms changes of the velocities.
+template <bool kRound, int N>
+[[gnu::always_inline]] inline void AddImpulse(const BallBatch<N>& batch, const Vec3<Wide<N>>& armA, const Vec3<Wide<N>>& armB,
+                                              const Vec3<Wide<N>>& impulse, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
+    using Real = Wide<N>;
+    a.linear -= impulse * batch.inverseMassA;
+    a.angular -= Times<Real>(InertiaOfA<kRound>(batch), Cross<Real>(armA, impulse));
+    b.linear += impulse * batch.inverseMassB;
+    b.angular += Times<Real>(InertiaOfB<kRound>(batch), Cross<Real>(armB, impulse));
+}
+
+// The same of a change of the total impulse; NaN counts as nothing, so that one bad joint spoils no body.
+template <bool kRound, int N>
+[[gnu::always_inline]] inline void Change(BallBatch<N>& batch, const Vec3<Wide<N>>& armA, const Vec3<Wide<N>>& armB,
+                                          const Vec3<Wide<N>>& change, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
+    using Real = Wide<N>;
+    const auto acts = Abs(change.x()) + Abs(change.y()) + Abs(change.z()) > Real(0.0f);
+    const Vec3<Real> impulse = ZeroUnless<Real>(acts, change);
+    batch.impulse += impulse;
+    AddImpulse<kRound>(batch, armA, armB, impulse, a, b);
+}
+
+// Where the joints are, and what they miss.
+template <class Real>
+struct BallPlace {
+    Vec3<Real> armA, armB, offset;
+};
+
+// Impulses act halfway between the anchors, or at that of the only body that moves: angular momentum stays.
+template <int N>
+[[gnu::always_inline]] inline void MeetBetween(const BallBatch<N>& batch, BallPlace<Wide<N>>& place) {
+    using Real = Wide<N>;
+    Real share(0.5f);
+    if ((batch.fixedA | batch.fixedB) != 0)
+        for (int i = 0; i < N; ++i)
+            if ((batch.fixedA | batch.fixedB) >> i & 1u) share.Set(i, batch.fixedA >> i & 1u ? 1.0f : 0.0f);
+    place.armA += place.offset * share;
+    place.armB -= place.offset * (Real(1.0f) - share);
+}
+
+template <bool kRound, int N>
+[[gnu::always_inline]] inline Sym3<Wide<N>> MassAt(const BallBatch<N>& batch, const Vec3<Wide<N>>& armA, const Vec3<Wide<N>>& armB) {
+    using Real = Wide<N>;
+    if constexpr (kRound) {
+        const Vec3<Real> a = armA * batch.inverseInertiaA, b = armB * batch.inverseInertiaB;
+        const Real xx = a.x() * armA.x() + b.x() * armB.x(), yy = a.y() * armA.y() + b.y() * armB.y(), zz = a.z() * armA.z() + b.z() * armB.z();
+        const Real mass = batch.inverseMassA + batch.inverseMassB;
+        Sym3<Real> k;
+        k.xx = mass + (yy + zz);
+        k.yy = mass + (xx + zz);
+        k.zz = mass + (xx + yy);
+        k.xy = -(a.x() * armA.y() + b.x() * armB.y());
+        k.xz = -(a.x() * armA.z() + b.x() * armB.z());
+        k.yz = -(a.y() * armA.z() + b.y() * armB.z());
+        return SymmetricInverse(k);
+    } else {
+        const InverseMass<Real> a{batch.inverseMassA, batch.inertiaA}, b{batch.inverseMassB, batch.inertiaB};
+        return SymmetricInverse(PointInverseMass<BodySide::Dynamic, BodySide::Dynamic>(a, b, armA, armB));
+    }
+}
+
+template <int N>
+[[gnu::always_inline]] inline void SetPush(BallBatch<N>& batch, const Vec3<Wide<N>>& offset, const JointSolveSettings& settings) {
+    using Real = Wide<N>;
+    const Real rate(settings.pushRate), most(settings.maxPushSpeed);
+    for (int k = 0; k < 3; ++k) batch.push[k] = Clamp<Real>(offset[k] * rate, -most, most);
+}
+
+template <class Real>
+[[gnu::always_inline]] inline Vec3<Real> MotionAt(const Twist<Real>& a, const Twist<Real>& b, const Vec3<Real>& armA, const Vec3<Real>& armB) {
+    return PointMotion<BodySide::Dynamic, BodySide::Dynamic>(a, b, armA, armB);
+}
+
+// How far a body turned since the start of the step: see BodyState::halfTurn.
+template <int N>
+[[gnu::always_inline]] inline Quat<Wide<N>> TurnOf(const Motion<N>& pose) {
+    const Wide<N>(&r)[8] = pose.row;
+    return {r[3] * r[6], r[4] * r[6], r[5] * r[6], r[7]};
+}
+
+// The place at the displaced poses.
+template <int N>
+[[gnu::always_inline]] inline BallPlace<Wide<N>> Displaced(const BallBatch<N>& batch, BodyState* states, const Twist<Wide<N>>& velocityA,
+                                                           const Twist<Wide<N>>& velocityB, const JointSolveSettings& settings) {
+    using Real = Wide<N>;
+    Motion<N> poseA, poseB;
+    poseA.template Gather<Of::Displacement>(batch.bodyA, states);
+    poseB.template Gather<Of::Displacement>(batch.bodyB, states);
+    Twist<Real> a = poseA.Get(), b = poseB.Get();
+    Quat<Real> turnA = TurnOf(poseA), turnB = TurnOf(poseB);
+    if ((batch.kinematicA | batch.kinematicB) != 0) {
+        AddKinematicMotion<N>(a, velocityA, batch.kinematicA, settings.elapsed);
+        AddKinematicMotion<N>(b, velocityB, batch.kinematicB, settings.elapsed);
+        turnA = RotationOf<Real>(a.angular);
+        turnB = RotationOf<Real>(b.angular);
+    }
+    BallPlace<Real> place{Rotate<Real>(turnA, batch.startArmA), Rotate<Real>(turnB, batch.startArmB), {}};
+    place.offset = batch.startOffset + (b.linear - a.linear) + (place.armB - batch.startArmB) - (place.armA - batch.startArmA);
+    return place;
+}
+
+// Sets the joints up at the displaced poses; the turn of the impulse is left for the next substep.
+template <bool kRound, int N>
+[[gnu::always_inline]] inline void Follow(BallBatch<N>& batch, const SolverBodies& bodies, const Twist<Wide<N>>& velocityA,
+                                          const Twist<Wide<N>>& velocityB, const JointSolveSettings& settings) {
+    using Real = Wide<N>;
+    BallPlace<Real> place = Displaced(batch, bodies.states, velocityA, velocityB, settings);
+    MeetBetween(batch, place);
+    Vec3<Real> turnedA, turnedB;
+    const auto turnAt = [&](const Vec3<Real>& armA, const Vec3<Real>& armB) {
+        turnedA = -Times<Real>(InertiaOfA<kRound>(batch), Cross<Real>(armA, batch.impulse));
+        turnedB = Times<Real>(InertiaOfB<kRound>(batch), Cross<Real>(armB, batch.impulse));
+    };
+    if constexpr (kRound) {
+        turnAt(place.armA - batch.armA, place.armB - batch.armB);
+    } else {
+        turnAt(batch.armA, batch.armB);
+        const Vec3<Real> beforeA = turnedA, beforeB = turnedB;
+        if (batch.turning) GatherMasses<kRound>(batch, bodies.masses);
+        turnAt(place.armA, place.armB);
+        turnedA -= beforeA;
+        turnedB -= beforeB;
+    }
+    if (!settings.firstPass) {
+        turnedA += batch.turnedA;
+        turnedB += batch.turnedB;
+    }
+    batch.turnedA = turnedA;
+    batch.turnedB = turnedB;
+    batch.armA = place.armA;
+    batch.armB = place.armB;
+    batch.mass = MassAt<kRound>(batch, place.armA, place.armB);
+    SetPush(batch, place.offset, settings);
+}
+
+// Calls change(whether the batch is round, velocities of A, of B), and writes these back.
+template <int N, class Batch, class F>
+[[gnu::always_inline]] inline void ChangeVelocities(Batch& batch, BodyState* states, F&& change) {
+    Motion<N> motionA, motionB;
+    motionA.template Gather<Of::Velocity>(batch.bodyA, states);
+    motionB.template Gather<Of::Velocity>(batch.bodyB, states);
+    Twist<Wide<N>> a = motionA.Get(), b = motionB.Get();
+    change(a, b);
+    motionA.Scatter(a, batch.count, batch.fixedA);
+    motionB.Scatter(b, batch.count, batch.fixedB);
+}
+
+template <bool kRound, int N>
+[[gnu::flatten]] void Solve(BallBatch<N>& batch, BodyState* states, const JointSolveSettings& settings) {
+    using Real = Wide<N>;
+    ChangeVelocities<N>(batch, states, [&](Twist<Real>& a, Twist<Real>& b) __attribute__((always_inline)) {
+        if (settings.continues) {
+            batch.earlier += batch.impulse;
+            a.angular += batch.turnedA;
+            b.angular += batch.turnedB;
+        }
+        const Vec3<Real> miss = MotionAt<Real>(a, b, batch.armA, batch.armB) + batch.push;
+        const Vec3<Real> hard = batch.mass * miss;
+        Change<kRound>(batch, batch.armA, batch.armB,
+                       Vec3<Real>(-(hard * Real(settings.softness.massScale) + batch.impulse * Real(settings.softness.impulseScale))), a, b);
+    });
+}
+
+template <bool kRound, int N>
+[[gnu::flatten]] void Relax(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
+    using Real = Wide<N>;
+    ChangeVelocities<N>(batch, bodies.states, [&](Twist<Real>& a, Twist<Real>& b) __attribute__((always_inline)) {
+        Follow<kRound>(batch, bodies, a, b, settings);
+        const Vec3<Real> hard = batch.mass * MotionAt<Real>(a, b, batch.armA, batch.armB);
+        Change<kRound>(batch, batch.armA, batch.armB, Vec3<Real>(-hard), a, b);
+    });
+}
+
+}  // namespace
+
+template <int N>
+void PrepareBalls(BallBatch<N>& batch, const JointRecord* records, const SolverBodies& bodies, const JointSolveSettings& settings,
+                  JointFindings& findings) {
+    using Real = Wide<N>;
+    const auto gather = [&](int row, Real(&out)[8]) {
+        const float* rows[N];
+        for (int i = 0; i < N; ++i) rows[i] = records[batch.joint[i]].Row(row);
+        GatherRows<N>(rows, out);
+    };
+    Real anchors[8], impulses[8];
+    gather(JointRecord::kAnchors, anchors);
+    gather(JointRecord::kOwn, impulses);
+    BallPlace<Real> place;
+    place.armA = batch.startArmA = Rotate<Real>(GatherRotation<N>(batch.bodyA, bodies.poses), Vec3<Real>(anchors[0], anchors[1], anchors[2]));
+    place.armB = batch.startArmB = Rotate<Real>(GatherRotation<N>(batch.bodyB, bodies.poses), Vec3<Real>(anchors[3], anchors[4], anchors[5]));
+    place.offset = batch.startOffset = GatherOffset<N>(batch.bodyA, batch.bodyB, bodies.poses) + place.armB - place.armA;
+    MeetBetween(batch, place);
+    batch.armA = place.armA;
+    batch.armB = place.armB;
+    batch.earlier = Zero<Real>();
+    if (batch.round) {
+        GatherMasses<true>(batch, bodies.masses);
+        batch.mass = MassAt<true>(batch, place.armA, place.armB);
+    } else {
+        GatherMasses<false>(batch, bodies.masses);
+        batch.mass = MassAt<false>(batch, place.armA, place.armB);
+    }
+    const auto answers = batch.mass.xx + batch.mass.yy + batch.mass.zz > Real(0.0f);
+    batch.impulse = ZeroUnless<Real>(answers, Vec3<Real>(Vec3<Real>(impulses[0], impulses[1], impulses[2]) * Real(settings.impulseScale)));
+    SetPush(batch, place.offset, settings);
+    NoteLargest<N>(batch.joint, batch.count, Dot<Real>(place.offset, place.offset), findings.linearError, findings.linearJoint);
+}
+
+template <int N>
+void WarmStartBalls(const BallBatch<N>& batch, BodyState* states) {
+    ChangeVelocities<N>(batch, states, [&](auto& a, auto& b) {
+        if (batch.round) AddImpulse<true>(batch, batch.armA, batch.armB, batch.impulse, a, b);
+        else AddImpulse<false>(batch, batch.armA, batch.armB, batch.impulse, a, b);
+    });
+}
+
+template <int N>
+void SolveBallVelocities(BallBatch<N>& batch, BodyState* states, const JointSolveSettings& settings) {
+    if (batch.round) Solve<true>(batch, states, settings);
+    else Solve<false>(batch, states, settings);
+}
+
+template <int N>
+void RelaxBalls(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
+    if (batch.round) Relax<true>(batch, bodies, settings);
+    else Relax<false>(batch, bodies, settings);
+}
+
+template <int N>
+void UpdateBalls(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
+    Motion<N> motionA, motionB;
+    motionA.template Gather<Of::Velocity>(batch.bodyA, bodies.states);
+    motionB.template Gather<Of::Velocity>(batch.bodyB, bodies.states);
+    if (batch.round) Follow<true>(batch, bodies, motionA.Get(), motionB.Get(), settings);
+    else Follow<false>(batch, bodies, motionA.Get(), motionB.Get(), settings);
+}
+
+template <int N>
+void StoreBalls(const BallBatch<N>& batch, JointRecord* records, float dt, float impulseScale) {
+    using Real = Wide<N>;
+    const auto write = [&](int row, const Vec3<Real>& v) {
+        float* rows[N];
+        for (int i = 0; i < N; ++i) rows[i] = records[batch.joint[i]].Row(row);
+        const Real zero(0.0f);
+        Real out[8];
+        for (int k = 0; k < 8; ++k) out[k] = k < 3 ? Select(Abs(v[k]) < Real(JointRow::kUnlimited), Real(v[k]), zero) : zero;
+        ScatterRows<N>(rows, out, batch.count);
+    };
+    write(JointRecord::kOwn, Vec3<Real>(batch.impulse * Real(1.0f / impulseScale)));
+    // Nothing but the lock acts.
+    const Vec3<Real> force = (batch.impulse + batch.earlier) * Real(1.0f / dt);
+    write(JointRecord::kLocks, force);
+    write(JointRecord::kTotal, force);
+}
+
+#define FULCRUM_INSTANTIATE(lanes)                                                                                                        \
+    template void PrepareBalls(BallBatch<lanes>&, const JointRecord*, const SolverBodies&, const JointSolveSettings&, JointFindings&);    \
+    template void WarmStartBalls(const BallBatch<lanes>&, BodyState*);                                                                    \
+    template void SolveBallVelocities(BallBatch<lanes>&, BodyState*, const JointSolveSettings&);                                          \
+    template void RelaxBalls(BallBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);                                          \
+    template void UpdateBalls(BallBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);                                         \
+    template void StoreBalls(const BallBatch<lanes>&, JointRecord*, float, float);
+FULCRUM_FOR_EACH_JOINT_BATCH(FULCRUM_INSTANTIATE)
+#undef FULCRUM_INSTANTIATE
+
+}  // namespace fulcrum
