@@ -192,7 +192,7 @@ template <int N, class Batch, class F>
 }
 
 template <bool kRound, int N>
-[[gnu::flatten]] void Solve(BallBatch<N>& batch, BodyState* states, const JointSolveSettings& settings) {
+void Solve(BallBatch<N>& batch, BodyState* states, const JointSolveSettings& settings) {
     using Real = Wide<N>;
     ChangeVelocities<N>(batch, states, [&](Twist<Real>& a, Twist<Real>& b) __attribute__((always_inline)) {
         if (settings.continues) {
@@ -208,7 +208,7 @@ template <bool kRound, int N>
 }
 
 template <bool kRound, int N>
-[[gnu::flatten]] void Relax(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
+void Relax(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
     using Real = Wide<N>;
     ChangeVelocities<N>(batch, bodies.states, [&](Twist<Real>& a, Twist<Real>& b) __attribute__((always_inline)) {
         Follow<kRound>(batch, bodies, a, b, settings);
