@@ -1,8 +1,9 @@
 // Nanoseconds per joint of the joint kernels: each kind with nothing to do beyond its locks and with rows; set up once a step
 // (prepare), and in every substep one velocity iteration (velocity) and one pass that sets the parts up at the displaced poses
 // and takes the push out again (relax). Single-threaded; 1024 joints, which fit the second-level cache, between 2048 bodies
-// whose indices are anywhere. "rows" is the mean number of rows of a joint.
-#include <Fulcrum/UnitTests/Constraints/Joints/RandomJoints.h>
+// whose indices are anywhere. "rows" is the mean number of rows of a joint. Ball joints, which are points with nothing on, have
+// kernels of their own, and faster ones between round bodies.
+#include <Fulcrum/UnitTests/Constraints/Joints/RandomBalls.h>
 
 #include <benchmark/benchmark.h>
 
@@ -55,8 +56,39 @@ private:
 };
 
 template <int N>
-void Run(benchmark::State& state, const JointCase& how, void (PreparedJoints<N>::*verb)()) {
-    PreparedJoints<N> joints(how);
+class PreparedBalls {
+public:
+    explicit PreparedBalls(bool round)
+        : joints_(testing::RandomBalls(kJoints, 1, {round, {}})), settings_(testing::DefaultJointSettings()) {
+        std::vector<JointRows<N>> none;
+        for (const JointBatch<N>& batch : joints_.Batches<N>(none)) batches_.push_back(testing::BallsOf(batch, round));
+        settings_.elapsed = settings_.substepDt;
+        settings_.firstPass = true;
+        Prepare();
+    }
+
+    void Prepare() {
+        JointFindings findings;
+        for (BallBatch<N>& batch : batches_) PrepareBalls(batch, joints_.records.data(), joints_.Bodies(), settings_, findings);
+        benchmark::DoNotOptimize(findings);
+    }
+    void SolveVelocities() {
+        for (BallBatch<N>& batch : batches_) SolveBallVelocities(batch, joints_.states.data(), settings_);
+    }
+    void Relax() {
+        for (BallBatch<N>& batch : batches_) RelaxBalls(batch, joints_.Bodies(), settings_);
+    }
+    double RowsPerJoint() const { return 0; }
+
+private:
+    RandomJoints joints_;
+    std::vector<BallBatch<N>> batches_;
+    JointSolveSettings settings_;
+};
+
+template <class Joints, class How>
+void Run(benchmark::State& state, const How& how, void (Joints::*verb)()) {
+    Joints joints(how);
     for (auto _ : state) {
         (joints.*verb)();
         benchmark::ClobberMemory();
@@ -66,24 +98,29 @@ void Run(benchmark::State& state, const JointCase& how, void (PreparedJoints<N>:
     state.counters["rows"] = joints.RowsPerJoint();
 }
 
-template <int N>
-void Register(const JointCase& how, const std::string& lanes) {
-    using Joints = PreparedJoints<N>;
+template <class Joints, class How>
+void Register(const std::string& kind, const How& how, const std::string& lanes) {
     const auto add = [&](const char* name, void (Joints::*verb)()) {
-        const std::string full = std::string("Joint/") + how.kind + "/" + how.state + "/" + name + "/" + lanes;
-        benchmark::RegisterBenchmark(full.c_str(), [&how, verb](benchmark::State& state) { Run<N>(state, how, verb); });
+        const std::string full = "Joint/" + kind + "/" + name + "/" + lanes;
+        benchmark::RegisterBenchmark(full.c_str(), [&how, verb](benchmark::State& state) { Run<Joints>(state, how, verb); });
     };
     add("prepare", &Joints::Prepare);
     add("velocity", &Joints::SolveVelocities);
     add("relax", &Joints::Relax);
 }
 
+template <template <int> class Joints, class How>
+void RegisterLanes(const std::string& kind, const How& how) {
+    Register<Joints<1>>(kind, how, "scalar");
+    Register<Joints<4>>(kind, how, "4_lanes");
+    Register<Joints<8>>(kind, how, "8_lanes");
+}
+
 [[maybe_unused]] const bool kRegistered = [] {
-    for (const JointCase& how : testing::AllJointCases()) {
-        Register<1>(how, "scalar");
-        Register<4>(how, "4_lanes");
-        Register<8>(how, "8_lanes");
-    }
+    static constexpr bool kRound = true, kAny = false;
+    RegisterLanes<PreparedBalls>("ball/round", kRound);
+    RegisterLanes<PreparedBalls>("ball/any", kAny);
+    for (const JointCase& how : testing::AllJointCases()) RegisterLanes<PreparedJoints>(std::string(how.kind) + "/" + how.state, how);
     return true;
 }();
 

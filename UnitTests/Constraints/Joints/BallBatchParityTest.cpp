@@ -1,57 +1,15 @@
 // Ball joints solved by kernels of their own: the same bits in any number of lanes, the physics of any other joint.
-#include <Fulcrum/Constraints/Joints/BallBatch.h>
 #include <Fulcrum/Constraints/Joints/JointKernels.h>
-#include <Fulcrum/UnitTests/Constraints/Joints/RandomJoints.h>
+#include <Fulcrum/UnitTests/Constraints/Joints/RandomBalls.h>
 
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <string_view>
 
 namespace fulcrum::testing {
 namespace {
 
 constexpr uint32_t kBalls = 4 * 7 + 1;  // no multiple of any number of lanes
-
-struct BallOptions {
-    bool round;
-    RandomJoints::Options joints;
-};
-
-const JointCase& PointCase() {
-    for (const JointCase& how : AllJointCases())
-        if (std::string_view(how.kind) == "point") return how;
-    return AllJointCases().front();
-}
-
-RandomJoints RandomBalls(uint32_t seed, const BallOptions& options) {
-    RandomJoints joints(std::span(&PointCase(), 1), kBalls, seed, options.joints);
-    for (size_t i = 0; i < joints.states.size(); ++i) {
-        BodyState& state = joints.states[i];
-        std::fill(state.deltaPosition, state.deltaPosition + 6, 0.0f);
-        if (!options.round) continue;
-        float(&inertia)[6] = joints.masses[i].inverseInertia;
-        inertia[1] = inertia[2] = inertia[0];
-        inertia[3] = inertia[4] = inertia[5] = 0;
-        joints.masses[i].turns = 0;
-    }
-    return joints;
-}
-
-template <int N>
-BallBatch<N> BallsOf(const JointBatch<N>& joints, bool round) {
-    BallBatch<N> balls{};
-    std::copy(joints.joint, joints.joint + N, balls.joint);
-    std::copy(joints.bodyA, joints.bodyA + N, balls.bodyA);
-    std::copy(joints.bodyB, joints.bodyB + N, balls.bodyB);
-    balls.count = joints.count;
-    balls.fixedA = joints.fixedA;
-    balls.fixedB = joints.fixedB;
-    balls.kinematicA = joints.kinematicA;
-    balls.kinematicB = joints.kinematicB;
-    balls.round = round;
-    return balls;
-}
 
 void Move(RandomJoints& joints, float h) {
     for (size_t body = 0; body < joints.states.size(); ++body) {
@@ -127,7 +85,7 @@ struct LivedBalls {
 
 template <int N>
 LivedBalls LiveAsBalls(uint32_t seed, const BallOptions& options) {
-    RandomJoints joints = RandomBalls(seed, options);
+    RandomJoints joints = RandomBalls(kBalls, seed, options);
     std::vector<JointRows<N>> rows;
     std::vector<BallBatch<N>> batches;
     for (const JointBatch<N>& batch : joints.Batches<N>(rows)) batches.push_back(BallsOf(batch, options.round));
@@ -139,7 +97,7 @@ LivedBalls LiveAsBalls(uint32_t seed, const BallOptions& options) {
 }
 
 LivedBalls LiveAsJoints(uint32_t seed, const BallOptions& options) {
-    RandomJoints joints = RandomBalls(seed, options);
+    RandomJoints joints = RandomBalls(kBalls, seed, options);
     std::vector<JointRows<1>> rows;
     std::vector<JointBatch<1>> batches = joints.Batches<1>(rows);
     LivedBalls lived;
