@@ -36,24 +36,6 @@ Bounds Unscaled(const Bounds& box, const Vector3& scale, bool isScaled) {
 
 float Largest(const Vector3& v) { return Max(Abs(v.x()), Max(Abs(v.y()), Abs(v.z()))); }
 
-// The corners of up to eight triangles by lanes; lanes beyond repeat the first.
-inline void LoadCorners(const MeshTree& tree, uint32_t begin, uint32_t count, Vec3<Wide<8>> (&corners)[3]) {
-    const float* rows[3][8];
-    const Vector3* const vertices = tree.vertices.data();
-    uint32_t ids[3];
-    for (uint32_t i = 0; i < count; ++i) {
-        tree.CornersOf(begin + i, ids);
-        for (int k = 0; k < 3; ++k) rows[k][i] = vertices[ids[k]].data();
-    }
-    for (uint32_t i = count; i < 8; ++i)
-        for (int k = 0; k < 3; ++k) rows[k][i] = rows[k][0];
-    for (int k = 0; k < 3; ++k) {
-        Wide<8> columns[3];
-        GatherPoints<8>(rows[k], columns);
-        for (int axis = 0; axis < 3; ++axis) corners[k][axis] = columns[axis];
-    }
-}
-
 }  // namespace
 
 void TriangleMesh::SearchBox(const Bounds& box, void* context, BatchFunction found) const {
@@ -88,11 +70,22 @@ inline float TriangleMesh::PadFor(float largestOrigin) const {
     return 0x1p-20f * (isScaled_ ? size.maxCoeff() / size.minCoeff() : 1.0f) * (treeExtent_ + largestOrigin);
 }
 
+// Of up to eight triangles by lanes; lanes beyond repeat the first.
 inline void TriangleMesh::LoadCorners(uint32_t begin, uint32_t end, Vec3<Wide<8>> (&corners)[3]) const {
-    fulcrum::LoadCorners(*tree_, begin, end - begin, corners);
-    if (!isScaled_) return;
-    for (auto& corner : corners)
-        for (int axis = 0; axis < 3; ++axis) corner[axis] = corner[axis] * Wide<8>(scale_[axis]);
+    const MeshTree& tree = *tree_;
+    const float* rows[3][8];
+    uint32_t ids[3];
+    for (uint32_t i = 0; i < end - begin; ++i) {
+        tree.CornersOf(begin + i, ids);
+        for (int k = 0; k < 3; ++k) rows[k][i] = tree.vertices[ids[k]].data();
+    }
+    for (uint32_t i = end - begin; i < 8; ++i)
+        for (int k = 0; k < 3; ++k) rows[k][i] = rows[k][0];
+    for (int k = 0; k < 3; ++k) {
+        Wide<8> columns[3];
+        GatherPoints<8>(rows[k], columns);
+        for (int axis = 0; axis < 3; ++axis) corners[k][axis] = isScaled_ ? columns[axis] * Wide<8>(scale_[axis]) : columns[axis];
+    }
     if (isMirrored_) std::swap(corners[1], corners[2]);
 }
 

@@ -31,19 +31,19 @@ struct alignas(64) BallBatch {
     Sym3<Real> inertiaA, inertiaB;       // inverses; where not all are round
 };
 
-// As their namesakes of JointBatch.h. Of bodies that are not kinematic they read how far they turned as BodyState::halfTurn says.
+// As those of JointBatch.h. Of bodies that are not kinematic they read how far they turned as BodyState::halfTurn says.
 template <int N>
-void PrepareBalls(BallBatch<N>& batch, const JointRecord* records, const SolverBodies& bodies, const JointSolveSettings& settings,
+void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const SolverBodies& bodies, const JointSolveSettings& settings,
                   JointFindings& findings);
 template <int N>
-void WarmStartBalls(const BallBatch<N>& batch, BodyState* states);
+void WarmStartJoints(const BallBatch<N>& batch, BodyState* states);
 template <int N>
-void SolveBallVelocities(BallBatch<N>& batch, BodyState* states, const JointSolveSettings& settings);
+void SolveJointVelocities(BallBatch<N>& batch, BodyState* states, const JointSolveSettings& settings);
 template <int N>
-void RelaxBalls(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings);
+void RelaxJoints(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings);
 template <int N>
-void UpdateBalls(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings);
+void UpdateJoints(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings);
 template <int N>
-void StoreBalls(const BallBatch<N>& batch, JointRecord* records, float dt, float impulseScale);
+void StoreJoints(const BallBatch<N>& batch, JointRecord* records, float dt, float impulseScale);
 
 }  // namespace fulcrum

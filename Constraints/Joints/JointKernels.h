@@ -53,6 +53,48 @@ struct Motion {
     }
 };
 
+// Calls change(velocities of A, of B), and writes these back.
+template <int N, class Batch, class F>
+[[gnu::always_inline]] inline void ChangeVelocities(const Batch& batch, BodyState* states, F&& change) {
+    Motion<N> motionA, motionB;
+    motionA.template Gather<Of::Velocity>(batch.bodyA, states);
+    motionB.template Gather<Of::Velocity>(batch.bodyB, states);
+    Twist<Wide<N>> a = motionA.Get(), b = motionB.Get();
+    change(a, b);
+    motionA.Scatter(a, batch.count, batch.fixedA);
+    motionB.Scatter(b, batch.count, batch.fixedB);
+}
+
+template <int N>
+[[gnu::always_inline]] inline void GatherRecordRow(const uint32_t (&joints)[N], const JointRecord* records, int row, Wide<N> (&out)[8]) {
+    const float* rows[N];
+    for (int i = 0; i < N; ++i) rows[i] = records[joints[i]].Row(row);
+    GatherRows<N>(rows, out);
+}
+
+// Writes a row of the first `count` records; what is not finite as zero.
+template <int N>
+[[gnu::always_inline]] inline void ScatterRecordRow(const uint32_t (&joints)[N], int count, JointRecord* records, int row,
+                                                    const Wide<N> (&values)[8]) {
+    using Real = Wide<N>;
+    float* rows[N];
+    for (int i = 0; i < N; ++i) rows[i] = records[joints[i]].Row(row);
+    Real out[8];
+    for (int k = 0; k < 8; ++k) out[k] = Select(Abs(values[k]) < Real(JointRow::kUnlimited), values[k], Real(0.0f));
+    ScatterRows<N>(rows, out, count);
+}
+
+// Where between two anchors a point joint's impulse and the answer to it act, as a part of the way from A's to B's. They act at one
+// point, so that angular momentum stays however far apart the anchors are: halfway, or at the anchor of the only body that moves.
+template <int N>
+[[gnu::always_inline]] inline Wide<N> MeetingShare(uint32_t fixedA, uint32_t fixedB) {
+    Wide<N> share(0.5f);
+    if ((fixedA | fixedB) != 0)
+        for (int i = 0; i < N; ++i)
+            if ((fixedA | fixedB) >> i & 1u) share.Set(i, fixedA >> i & 1u ? 1.0f : 0.0f);
+    return share;
+}
+
 // Of a kinematic body the solver keeps no displacement: it is its velocity times the time.
 template <int N>
 [[gnu::always_inline]] inline void AddKinematicMotion(Twist<Wide<N>>& displacement, const Twist<Wide<N>>& velocity,
@@ -153,12 +195,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
         batch.hinge.CalculateProperties(batch.massA, batch.massB, b, c, none);
     }
     if constexpr (kLinear == LinearLock::Point) {
-        // Impulse and answer act at one point, so that angular momentum stays however far apart the anchors are: halfway
-        // between them, or at that of the only body that moves.
-        Real share(0.5f);
-        if ((batch.fixedA | batch.fixedB) != 0)
-            for (int i = 0; i < N; ++i)
-                if ((batch.fixedA | batch.fixedB) >> i & 1u) share.Set(i, batch.fixedA >> i & 1u ? 1.0f : 0.0f);
+        const Real share = MeetingShare<N>(batch.fixedA, batch.fixedB);
         errors.point = place.offset;
         batch.point.CalculateProperties(batch.massA, batch.massB, Vec3<Real>(place.armA + place.offset * share),
                                         Vec3<Real>(place.armB - place.offset * (Real(1.0f) - share)), Zero<Real>());

@@ -9,13 +9,6 @@ namespace {
 
 using namespace joints;
 
-template <int N>
-void GatherRecordRow(const uint32_t (&index)[N], const JointRecord* records, int row, Wide<N> (&out)[8]) {
-    const float* rows[N];
-    for (int i = 0; i < N; ++i) rows[i] = records[index[i]].Row(row);
-    GatherRows<N>(rows, out);
-}
-
 template <class Real>
 Vec3<Real> Column(const Quat<Real>& rotation, const Real& index) {
     const Mat3<Real> m = ToMatrix(rotation);
@@ -268,21 +261,18 @@ LockImpulses<Wide<N>> StepImpulses(const JointBatch<N>& batch) {
     return sum;
 }
 
-// Writes a wrench times `scale` to a row of the records; what is not finite as zero.
+// Writes a wrench times `scale` to a row of the records.
 template <int N>
-void ScatterRecordRow(const JointBatch<N>& batch, JointRecord* records, int row, const Wrench<N>& wrench, float scale) {
+void ScatterWrench(const JointBatch<N>& batch, JointRecord* records, int row, const Wrench<N>& wrench, float scale) {
     using Real = Wide<N>;
-    const Real zero(0.0f), factor(scale);
-    float* rows[N];
-    for (int i = 0; i < N; ++i) rows[i] = records[batch.joint[i]].Row(row);
-    Real out[8];
-    const auto put = [&](int k, const Real& x) { out[k] = Select(Abs(x) < Real(JointRow::kUnlimited), x, zero); };
+    const Real factor(scale);
+    Real values[8];
     for (int k = 0; k < 3; ++k) {
-        put(k, wrench.force[k] * factor);
-        put(3 + k, wrench.torque[k] * factor);
+        values[k] = wrench.force[k] * factor;
+        values[3 + k] = wrench.torque[k] * factor;
     }
-    out[6] = out[7] = zero;
-    ScatterRows<N>(rows, out, batch.count);
+    values[6] = values[7] = Real(0.0f);
+    ScatterRecordRow<N>(batch.joint, batch.count, records, row, values);
 }
 
 // How far a body turned in the step, rad.
@@ -308,9 +298,9 @@ void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* co
         total.force -= ZeroUnless<Real>(acts, Vec3<Real>(rows.b.linear * -impulse));
         total.torque -= ZeroUnless<Real>(acts, Vec3<Real>((rows.b.angular - Cross<Real>(batch.startArmB, rows.b.linear)) * -impulse));
     }
-    ScatterRecordRow(batch, records, JointRecord::kOwn, own, inverse);
-    ScatterRecordRow(batch, records, JointRecord::kLocks, locks, perSecond);
-    ScatterRecordRow(batch, records, JointRecord::kTotal, total, perSecond);
+    ScatterWrench(batch, records, JointRecord::kOwn, own, inverse);
+    ScatterWrench(batch, records, JointRecord::kLocks, locks, perSecond);
+    ScatterWrench(batch, records, JointRecord::kTotal, total, perSecond);
     if (batch.rowRoom == 0) return;
     for (int lane = 0; lane < batch.count; ++lane) {
         JointType* type = types[batch.joint[lane]];

@@ -72,14 +72,11 @@ struct BallPlace {
     Vec3<Real> armA, armB, offset;
 };
 
-// Impulses act halfway between the anchors, or at that of the only body that moves: angular momentum stays.
+// Moves the arms to where impulses act.
 template <int N>
 [[gnu::always_inline]] inline void MeetBetween(const BallBatch<N>& batch, BallPlace<Wide<N>>& place) {
     using Real = Wide<N>;
-    Real share(0.5f);
-    if ((batch.fixedA | batch.fixedB) != 0)
-        for (int i = 0; i < N; ++i)
-            if ((batch.fixedA | batch.fixedB) >> i & 1u) share.Set(i, batch.fixedA >> i & 1u ? 1.0f : 0.0f);
+    const Real share = MeetingShare<N>(batch.fixedA, batch.fixedB);
     place.armA += place.offset * share;
     place.armB -= place.offset * (Real(1.0f) - share);
 }
@@ -179,18 +176,6 @@ template <bool kRound, int N>
     SetPush(batch, place.offset, settings);
 }
 
-// Calls change(whether the batch is round, velocities of A, of B), and writes these back.
-template <int N, class Batch, class F>
-[[gnu::always_inline]] inline void ChangeVelocities(Batch& batch, BodyState* states, F&& change) {
-    Motion<N> motionA, motionB;
-    motionA.template Gather<Of::Velocity>(batch.bodyA, states);
-    motionB.template Gather<Of::Velocity>(batch.bodyB, states);
-    Twist<Wide<N>> a = motionA.Get(), b = motionB.Get();
-    change(a, b);
-    motionA.Scatter(a, batch.count, batch.fixedA);
-    motionB.Scatter(b, batch.count, batch.fixedB);
-}
-
 template <bool kRound, int N>
 void Solve(BallBatch<N>& batch, BodyState* states, const JointSolveSettings& settings) {
     using Real = Wide<N>;
@@ -220,17 +205,12 @@ void Relax(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSett
 }  // namespace
 
 template <int N>
-void PrepareBalls(BallBatch<N>& batch, const JointRecord* records, const SolverBodies& bodies, const JointSolveSettings& settings,
+void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const SolverBodies& bodies, const JointSolveSettings& settings,
                   JointFindings& findings) {
     using Real = Wide<N>;
-    const auto gather = [&](int row, Real(&out)[8]) {
-        const float* rows[N];
-        for (int i = 0; i < N; ++i) rows[i] = records[batch.joint[i]].Row(row);
-        GatherRows<N>(rows, out);
-    };
     Real anchors[8], impulses[8];
-    gather(JointRecord::kAnchors, anchors);
-    gather(JointRecord::kOwn, impulses);
+    GatherRecordRow<N>(batch.joint, records, JointRecord::kAnchors, anchors);
+    GatherRecordRow<N>(batch.joint, records, JointRecord::kOwn, impulses);
     BallPlace<Real> place;
     place.armA = batch.startArmA = Rotate<Real>(GatherRotation<N>(batch.bodyA, bodies.poses), Vec3<Real>(anchors[0], anchors[1], anchors[2]));
     place.armB = batch.startArmB = Rotate<Real>(GatherRotation<N>(batch.bodyB, bodies.poses), Vec3<Real>(anchors[3], anchors[4], anchors[5]));
@@ -253,7 +233,7 @@ void PrepareBalls(BallBatch<N>& batch, const JointRecord* records, const SolverB
 }
 
 template <int N>
-void WarmStartBalls(const BallBatch<N>& batch, BodyState* states) {
+void WarmStartJoints(const BallBatch<N>& batch, BodyState* states) {
     ChangeVelocities<N>(batch, states, [&](auto& a, auto& b) {
         if (batch.round) AddImpulse<true>(batch, batch.armA, batch.armB, batch.impulse, a, b);
         else AddImpulse<false>(batch, batch.armA, batch.armB, batch.impulse, a, b);
@@ -261,19 +241,19 @@ void WarmStartBalls(const BallBatch<N>& batch, BodyState* states) {
 }
 
 template <int N>
-void SolveBallVelocities(BallBatch<N>& batch, BodyState* states, const JointSolveSettings& settings) {
+void SolveJointVelocities(BallBatch<N>& batch, BodyState* states, const JointSolveSettings& settings) {
     if (batch.round) Solve<true>(batch, states, settings);
     else Solve<false>(batch, states, settings);
 }
 
 template <int N>
-void RelaxBalls(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
+void RelaxJoints(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
     if (batch.round) Relax<true>(batch, bodies, settings);
     else Relax<false>(batch, bodies, settings);
 }
 
 template <int N>
-void UpdateBalls(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
+void UpdateJoints(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
     Motion<N> motionA, motionB;
     motionA.template Gather<Of::Velocity>(batch.bodyA, bodies.states);
     motionB.template Gather<Of::Velocity>(batch.bodyB, bodies.states);
@@ -282,15 +262,11 @@ void UpdateBalls(BallBatch<N>& batch, const SolverBodies& bodies, const JointSol
 }
 
 template <int N>
-void StoreBalls(const BallBatch<N>& batch, JointRecord* records, float dt, float impulseScale) {
+void StoreJoints(const BallBatch<N>& batch, JointRecord* records, float dt, float impulseScale) {
     using Real = Wide<N>;
     const auto write = [&](int row, const Vec3<Real>& v) {
-        float* rows[N];
-        for (int i = 0; i < N; ++i) rows[i] = records[batch.joint[i]].Row(row);
-        const Real zero(0.0f);
-        Real out[8];
-        for (int k = 0; k < 8; ++k) out[k] = k < 3 ? Select(Abs(v[k]) < Real(JointRow::kUnlimited), Real(v[k]), zero) : zero;
-        ScatterRows<N>(rows, out, batch.count);
+        const Real zero(0.0f), values[8] = {v.x(), v.y(), v.z(), zero, zero, zero, zero, zero};
+        ScatterRecordRow<N>(batch.joint, batch.count, records, row, values);
     };
     write(JointRecord::kOwn, Vec3<Real>(batch.impulse * Real(1.0f / impulseScale)));
     // Nothing but the lock acts.
@@ -300,12 +276,12 @@ void StoreBalls(const BallBatch<N>& batch, JointRecord* records, float dt, float
 }
 
 #define FULCRUM_INSTANTIATE(lanes)                                                                                                        \
-    template void PrepareBalls(BallBatch<lanes>&, const JointRecord*, const SolverBodies&, const JointSolveSettings&, JointFindings&);    \
-    template void WarmStartBalls(const BallBatch<lanes>&, BodyState*);                                                                    \
-    template void SolveBallVelocities(BallBatch<lanes>&, BodyState*, const JointSolveSettings&);                                          \
-    template void RelaxBalls(BallBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);                                          \
-    template void UpdateBalls(BallBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);                                         \
-    template void StoreBalls(const BallBatch<lanes>&, JointRecord*, float, float);
+    template void PrepareJoints(BallBatch<lanes>&, const JointRecord*, const SolverBodies&, const JointSolveSettings&, JointFindings&);    \
+    template void WarmStartJoints(const BallBatch<lanes>&, BodyState*);                                                                    \
+    template void SolveJointVelocities(BallBatch<lanes>&, BodyState*, const JointSolveSettings&);                                          \
+    template void RelaxJoints(BallBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);                                          \
+    template void UpdateJoints(BallBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);                                         \
+    template void StoreJoints(const BallBatch<lanes>&, JointRecord*, float, float);
 FULCRUM_FOR_EACH_JOINT_BATCH(FULCRUM_INSTANTIATE)
 #undef FULCRUM_INSTANTIATE
 

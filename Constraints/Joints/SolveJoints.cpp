@@ -208,15 +208,9 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
 
 // Calls change(linear lock, angular lock, velocities of A, of B) for the batch, and writes these back.
 template <int N, class Batch, class F>
-[[gnu::always_inline]] inline void ChangeVelocities(Batch& batch, BodyState* states, F&& change) {
+[[gnu::always_inline]] inline void ChangeLocked(Batch& batch, BodyState* states, F&& change) {
     WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
-        Motion<N> motionA, motionB;
-        motionA.template Gather<Of::Velocity>(batch.bodyA, states);
-        motionB.template Gather<Of::Velocity>(batch.bodyB, states);
-        Twist<Wide<N>> a = motionA.Get(), b = motionB.Get();
-        change(linear, angular, a, b);
-        motionA.Scatter(a, batch.count, batch.fixedA);
-        motionB.Scatter(b, batch.count, batch.fixedB);
+        ChangeVelocities<N>(batch, states, [&](auto& a, auto& b) __attribute__((always_inline)) { change(linear, angular, a, b); });
     });
 }
 
@@ -224,7 +218,7 @@ template <int N, class Batch, class F>
 
 template <int N>
 void WarmStartJoints(const JointBatch<N>& batch, BodyState* states) {
-    ChangeVelocities<N>(batch, states, [&](auto linear, auto angular, auto& a, auto& b) __attribute__((always_inline)) {
+    ChangeLocked<N>(batch, states, [&](auto linear, auto angular, auto& a, auto& b) __attribute__((always_inline)) {
         AddRowImpulses<false>(batch, a, b, 1.0f);
         AddLockImpulses<linear, angular>(batch, a, b, 1.0f);
     });
@@ -232,14 +226,14 @@ void WarmStartJoints(const JointBatch<N>& batch, BodyState* states) {
 
 template <int N>
 void TurnJoints(JointBatch<N>& batch, BodyState* states) {
-    ChangeVelocities<N>(batch, states, [&](auto linear, auto angular, auto& a, auto& b) __attribute__((always_inline)) {
+    ChangeLocked<N>(batch, states, [&](auto linear, auto angular, auto& a, auto& b) __attribute__((always_inline)) {
         Turn<linear, angular>(batch, a, b);
     });
 }
 
 template <int N>
 void SolveJointVelocities(JointBatch<N>& batch, BodyState* states, const JointSolveSettings& settings) {
-    ChangeVelocities<N>(batch, states, [&](auto linear, auto angular, auto& a, auto& b) __attribute__((always_inline)) {
+    ChangeLocked<N>(batch, states, [&](auto linear, auto angular, auto& a, auto& b) __attribute__((always_inline)) {
         if (settings.continues) Turn<linear, angular>(batch, a, b);
         SolveAll<false, linear, angular>(batch, a, b);
     });
@@ -247,7 +241,7 @@ void SolveJointVelocities(JointBatch<N>& batch, BodyState* states, const JointSo
 
 template <int N>
 void RelaxJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
-    ChangeVelocities<N>(batch, bodies.states, [&](auto linear, auto angular, auto& a, auto& b) __attribute__((always_inline)) {
+    ChangeLocked<N>(batch, bodies.states, [&](auto linear, auto angular, auto& a, auto& b) __attribute__((always_inline)) {
         const JointErrors<Wide<N>> errors = Follow<linear, angular>(batch, bodies, a, b, settings);
         SolveAll<true, linear, angular>(batch, a, b);
         Soften<linear, angular>(batch, errors, settings);

@@ -69,14 +69,14 @@ public:
 
     void Prepare() {
         JointFindings findings;
-        for (BallBatch<N>& batch : batches_) PrepareBalls(batch, joints_.records.data(), joints_.Bodies(), settings_, findings);
+        for (BallBatch<N>& batch : batches_) PrepareJoints(batch, joints_.records.data(), joints_.Bodies(), settings_, findings);
         benchmark::DoNotOptimize(findings);
     }
     void SolveVelocities() {
-        for (BallBatch<N>& batch : batches_) SolveBallVelocities(batch, joints_.states.data(), settings_);
+        for (BallBatch<N>& batch : batches_) SolveJointVelocities(batch, joints_.states.data(), settings_);
     }
     void Relax() {
-        for (BallBatch<N>& batch : batches_) RelaxBalls(batch, joints_.Bodies(), settings_);
+        for (BallBatch<N>& batch : batches_) RelaxJoints(batch, joints_.Bodies(), settings_);
     }
     double RowsPerJoint() const { return 0; }
 

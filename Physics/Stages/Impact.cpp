@@ -92,13 +92,14 @@ private:
     Vector3 rubbed_[SweepHit::kMaxPoints] = {Vector3::Zero(), Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
 };
 
-}  // namespace
-
+// What gravity and forces add to a body's velocity, m/s, from a time of the step on; nothing where the solver has spread it over the step.
 Vector3 GainFrom(const WorldState& world, uint32_t body, float time, float dt) {
     if (!world.bodies.CanMove(body) || world.colouring.IsTouched(body)) return Vector3::Zero();
     const float* a = world.bodies.poses[body].acceleration;
     return Vector3(a[0], a[1], a[2]) * ((1 - time) * dt);
 }
+
+}  // namespace
 
 Impact FindImpact(const WorldState& world, const SweepHit& hit, float dt) {
     const BodyStore& bodies = world.bodies;

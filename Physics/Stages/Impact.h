@@ -20,7 +20,4 @@ struct Impact {
 // Newton's law of restitution at each point that approaches, Coulomb friction, what is locked or does not move held. dt, s: of the step.
 Impact FindImpact(const WorldState& world, const SweepHit& hit, float dt);
 
-// What gravity and forces add to a body's velocity, m/s, from a time of the step on; nothing where the solver has spread it over the step.
-Vector3 GainFrom(const WorldState& world, uint32_t body, float time, float dt);
-
 }  // namespace fulcrum

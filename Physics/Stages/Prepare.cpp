@@ -122,7 +122,7 @@ public:
     }
     void FillBalls(uint32_t begin, uint32_t end, WorkerFindings& findings) const {
         for (uint32_t i = begin; i < end; ++i)
-            PrepareBalls(world_.solver.balls[i], world_.joints.records.data(), world_.bodies.ForSolver(), joints_, findings.joints);
+            PrepareJoints(world_.solver.balls[i], world_.joints.records.data(), world_.bodies.ForSolver(), joints_, findings.joints);
     }
     void FillJoints(uint32_t begin, uint32_t end, WorkerFindings& findings) const {
         for (uint32_t i = begin; i < end; ++i) FillJoint(world_.solver.joints[i], findings);

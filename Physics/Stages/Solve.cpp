@@ -188,8 +188,9 @@ private:
         }
     }
 
-    template <int N>
-    void RunBatch(Verb verb, uint8_t substep, JointBatch<N>& batch) {
+    // Of joints, balls or others.
+    template <class Batch>
+    void RunBatch(Verb verb, uint8_t substep, Batch& batch) {
         BodyState* states = world_.bodies.states.data();
         const JointSolveSettings settings = JointSettingsAt(verb, substep);
         switch (verb) {
@@ -197,28 +198,9 @@ private:
             case Verb::FirstVelocities:
             case Verb::Velocities: SolveJointVelocities(batch, states, settings); break;
             case Verb::FirstRelax:
-            case Verb::Relax: RelaxJoints(batch, world_.bodies.ForSolver(), settings); break;
-            case Verb::Separations: UpdateJoints(batch, world_.bodies.ForSolver(), settings); break;
-            case Verb::Rejoin: RelaxJoints(batch, world_.bodies.ForSolver(), settings); break;
-            case Verb::IntegrateVelocities:
-            case Verb::IntegratePoses:
-            case Verb::Restitution:
-            case Verb::NextSubstep: break;
-        }
-    }
-
-    template <int N>
-    void RunBatch(Verb verb, uint8_t substep, BallBatch<N>& batch) {
-        BodyState* states = world_.bodies.states.data();
-        const JointSolveSettings settings = JointSettingsAt(verb, substep);
-        switch (verb) {
-            case Verb::WarmStart: WarmStartBalls(batch, states); break;
-            case Verb::FirstVelocities:
-            case Verb::Velocities: SolveBallVelocities(batch, states, settings); break;
-            case Verb::FirstRelax:
             case Verb::Relax:
-            case Verb::Rejoin: RelaxBalls(batch, world_.bodies.ForSolver(), settings); break;
-            case Verb::Separations: UpdateBalls(batch, world_.bodies.ForSolver(), settings); break;
+            case Verb::Rejoin: RelaxJoints(batch, world_.bodies.ForSolver(), settings); break;
+            case Verb::Separations: UpdateJoints(batch, world_.bodies.ForSolver(), settings); break;
             case Verb::IntegrateVelocities:
             case Verb::IntegratePoses:
             case Verb::Restitution:

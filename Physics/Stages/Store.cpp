@@ -187,7 +187,7 @@ void StoreBatch(WorldState& world, const JointBatch<N>& batch, float dt, float i
 
 template <int N>
 void StoreBatch(WorldState& world, const BallBatch<N>& batch, float dt, float impulseScale) {
-    StoreBalls(batch, world.joints.records.data(), dt, impulseScale);
+    StoreJoints(batch, world.joints.records.data(), dt, impulseScale);
 }
 
 template <class Batch>

@@ -56,12 +56,12 @@ JointFindings Live(RandomJoints& joints, Batches& batches, const Verbs& verbs) {
 struct BallVerbs {
     RandomJoints& joints;
     void prepare(auto& batch, const JointSolveSettings& s, JointFindings& findings) const {
-        PrepareBalls(batch, joints.records.data(), joints.Bodies(), s, findings);
+        PrepareJoints(batch, joints.records.data(), joints.Bodies(), s, findings);
     }
-    void warmStart(auto& batch) const { WarmStartBalls(batch, joints.states.data()); }
-    void solve(auto& batch, const JointSolveSettings& s) const { SolveBallVelocities(batch, joints.states.data(), s); }
-    void relax(auto& batch, const JointSolveSettings& s) const { RelaxBalls(batch, joints.Bodies(), s); }
-    void store(auto& batch, float dt) const { StoreBalls(batch, joints.records.data(), dt, 1.0f); }
+    void warmStart(auto& batch) const { WarmStartJoints(batch, joints.states.data()); }
+    void solve(auto& batch, const JointSolveSettings& s) const { SolveJointVelocities(batch, joints.states.data(), s); }
+    void relax(auto& batch, const JointSolveSettings& s) const { RelaxJoints(batch, joints.Bodies(), s); }
+    void store(auto& batch, float dt) const { StoreJoints(batch, joints.records.data(), dt, 1.0f); }
 };
 
 struct JointVerbs {
