@@ -1,0 +1,185 @@
+// Writes the measured figures of Docs/figures.json into README.md and Docs/*.md, between the marks
+// <!-- figures: NAME --> and <!-- /figures -->. ./fulcrum figures starts it; Docs/Performance.md says how figures get here.
+//   figures.mjs                                writes the documents
+//   figures.mjs --check                        fails where a document does not say what the JSON says
+//   figures.mjs --take BENCH.json ... [--bullet MS.json]
+//                                              first puts what `fulcrum bench --json` wrote into the JSON; MS.json has the ms
+//                                              of Bullet with one thread by scene
+import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
+import { dirname, join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+
+const root = join(dirname(fileURLToPath(import.meta.url)), '..');
+const jsonFile = join(root, 'Docs', 'figures.json');
+const WORDS = ['one thread', 'two threads'];
+
+// ---- Numbers as text --------------------------------------------------------------------------------------------------
+
+const minus = (text) => text.replace('-', '−');
+const ratio = (value) => value.toFixed(3);
+const milliseconds = (value) => value.toFixed(value < 0.1 ? 3 : value < 10 ? 2 : 1);
+const stageTime = (value) => (value >= 0.01 ? value.toFixed(2) : '–');
+const twoDigits = (value) => minus(String(Number(value.toPrecision(2))));
+const accuracyNumber = ({ scale }, value) => (Number.isFinite(value) ? twoDigits(value * scale) : 'none');
+const accuracyText = (scene, value = scene.accuracy.value) => scene.accuracy.text.replace('#', accuracyNumber(scene.accuracy, value));
+const thousands = (value) => value.toLocaleString('en');
+const listed = (words) => (words.length < 2 ? words.join('') : `${words.slice(0, -1).join(', ')} and ${words.at(-1)}`);
+
+function table(heading, rows) {
+  return [heading, heading.map(() => '---'), ...rows].map((cells) => `| ${cells.join(' | ')} |`).join('\n');
+}
+
+// ---- What the marks name ----------------------------------------------------------------------------------------------
+
+function sceneTable({ scenes }) {
+  const hasPenetration = scenes.some((scene) => scene.penetration !== undefined);
+  const rows = scenes.map((scene) => {
+    const [one, two] = [scene.threads[1], scene.threads[2]];
+    const cells = [`\`${scene.name}\``, scene.what.replace('#', thousands(scene.joints ?? 0)), milliseconds(one.ms), milliseconds(two.ms),
+      ratio(one.ratio), ratio(two.ratio), scene.aim.map(ratio).join(', '), accuracyText(scene)];
+    return hasPenetration ? [...cells, scene.penetration === undefined ? '–' : twoDigits(scene.penetration)] : cells;
+  });
+  const heading = ['scene', 'what', '1 thread', '2 threads', 'ratio, 1 thread', 'ratio, 2 threads', 'aim', 'accuracy figure'];
+  return table(hasPenetration ? [...heading, 'largest penetration'] : heading, rows);
+}
+
+// Which scenes are slower than the aim, and by how much.
+function missedAims({ scenes }) {
+  const missed = scenes.map((scene) => {
+    const over = [1, 2].map((threads) => scene.threads[threads].ratio / scene.aim[threads - 1] - 1);
+    const parts = over.map((share, i) => (share > 0 ? `${Math.max(1, Math.round(100 * share))} % with ${WORDS[i]}` : '')).filter(Boolean);
+    return parts.length > 0 ? `\`${scene.name}\` (${parts.join(', ')})` : '';
+  }).filter(Boolean);
+  return missed.length > 0 ? `Over their aims are ${listed(missed)}.` : 'Every scene reaches its aims.';
+}
+
+function bulletTimes({ scenes }) {
+  return listed(scenes.filter((scene) => scene.bullet_ms).map((scene) => `${scene.bullet_ms} ms in \`${scene.name}\``));
+}
+
+function stageTable({ stages, scenes }) {
+  const rows = scenes.flatMap((scene) => Object.entries(scene.threads).filter(([, run]) => run.stages_ms).map(([threads, run], i) => [
+    i === 0 ? `\`${scene.name}\`` : '', threads, ...stages.map((stage) => stageTime(run.stages_ms[stage] ?? 0)), milliseconds(run.ms),
+  ]));
+  return table(['scene', 'threads', ...stages, 'all'], rows);
+}
+
+function settingsTable({ scenes }) {
+  const rows = scenes.filter((scene) => scene.ten_iterations).map((scene) => {
+    const { ratio: ratios, accuracy, remark } = scene.ten_iterations;
+    const usual = [1, 2].map((threads) => ratio(scene.threads[threads].ratio)).join(', ');
+    return [`\`${scene.name}\``, `${usual}; ${accuracyText(scene)}`,
+      `${ratios.map(ratio).join(', ')}; ${accuracyText(scene, accuracy)}${remark ? `, ${remark}` : ''}`];
+  });
+  return table(['scene', '(4, 1, 1), the default', '(1, 10, 2)'], rows);
+}
+
+const BLOCKS = { scenes: sceneTable, stages: stageTable, settings: settingsTable, 'missed aims': missedAims };
+const INLINE = {
+  'times of Bullet': bulletTimes,
+  'joints of joint_grid': ({ scenes }) => thousands(scenes.find(({ name }) => name === 'joint_grid').joints),
+};
+
+// ---- Documents --------------------------------------------------------------------------------------------------------
+
+export function written(text, figures, file) {
+  const opened = text.split('<!-- figures: ').length - 1;
+  let closed = 0;
+  const result = text.replace(/<!-- figures: ([^>]*?) -->[\s\S]*?<!-- \/figures -->/g, (_, name) => {
+    ++closed;
+    const [open, close] = [`<!-- figures: ${name} -->`, '<!-- /figures -->'];
+    if (BLOCKS[name]) return `${open}\n${BLOCKS[name](figures)}\n${close}`;
+    if (INLINE[name]) return `${open}${INLINE[name](figures)}${close}`;
+    throw new Error(`${file}: there are no figures '${name}'; there are ${[...Object.keys(BLOCKS), ...Object.keys(INLINE)].join(', ')}`);
+  });
+  if (opened !== closed) throw new Error(`${file}: a mark of figures has no end`);
+  return result;
+}
+
+const documents = () => ['README.md', ...readdirSync(join(root, 'Docs')).filter((name) => name.endsWith('.md')).map((name) => `Docs/${name}`)];
+
+function writeDocuments(figures, isCheck) {
+  let wrong = 0;
+  const used = new Set();
+  for (const file of documents()) {
+    const text = readFileSync(join(root, file), 'utf8');
+    for (const [, name] of text.matchAll(/<!-- figures: ([^>]*?) -->/g)) used.add(name);
+    const wanted = written(text, figures, file);
+    if (wanted === text) continue;
+    if (!isCheck) {
+      writeFileSync(join(root, file), wanted);
+      console.log(`Wrote ${file}`);
+      continue;
+    }
+    const [is, should] = [text.split('\n'), wanted.split('\n')];
+    const line = should.findIndex((content, i) => content !== is[i]);
+    console.error(`${file}:${line + 1} does not say what Docs/figures.json says; ./fulcrum figures writes it\n  is:     ${is[line]}\n  should: ${should[line]}`);
+    ++wrong;
+  }
+  const unused = [...Object.keys(BLOCKS), ...Object.keys(INLINE)].filter((name) => !used.has(name));
+  if (unused.length > 0) throw new Error(`no document has the figures '${unused.join("', '")}'`);
+  return wrong;
+}
+
+// ---- New figures ------------------------------------------------------------------------------------------------------
+
+const isSetting = ({ settings: s }, substeps, velocity, position) =>
+  s.substeps === substeps && s.velocity_iterations === velocity && s.position_iterations === position;
+
+// One run of the array that fulcrum bench writes.
+export function take(figures, run) {
+  const scene = figures.scenes.find(({ name }) => name === run.scene);
+  if (!scene) throw new Error(`Docs/figures.json has no scene '${run.scene}': add it with "what", "aim" and "accuracy"`);
+  if (run.threads !== 1 && run.threads !== 2) throw new Error(`${run.scene}: a run with ${run.threads} threads; the tables have 1 and 2`);
+  if (!scene.bullet_ms) throw new Error(`${run.scene}: the ratio needs "bullet_ms" (--bullet MS.json)`);
+  const quotient = Number((run.median_ms / scene.bullet_ms).toFixed(4));
+  if (isSetting(run, 4, 1, 1)) {
+    const stages = Object.entries(run.stages_ms).map(([stage, ms]) => [stage, Number(ms.toFixed(4))]).filter(([, ms]) => ms > 0);
+    scene.threads[run.threads] = { ms: Number(run.median_ms.toFixed(4)), ratio: quotient };
+    if (!scene.is_batch) scene.threads[run.threads].stages_ms = Object.fromEntries(stages);
+    if (run.threads === 1) scene.accuracy.value = run.accuracy;
+    if (run.threads === 1 && run.largest_penetration_ratio !== undefined) scene.penetration = run.largest_penetration_ratio;
+  } else if (isSetting(run, 1, 10, 2) && scene.ten_iterations) {
+    scene.ten_iterations.ratio[run.threads - 1] = quotient;
+    if (run.threads === 1) scene.ten_iterations.accuracy = run.accuracy;
+  } else {
+    throw new Error(`${run.scene}: no table has the settings ${JSON.stringify(run.settings)}`);
+  }
+}
+
+// JSON whose small lists and objects have a line each.
+function laidOut(value, indent = '') {
+  const flat = JSON.stringify(value).replaceAll(/("[^"]*")|([,:])/g, (_, text, sign) => text ?? `${sign} `);
+  if (typeof value !== 'object' || value === null || flat.length + indent.length <= 128) return flat;
+  const deeper = `${indent}  `;
+  const parts = Array.isArray(value) ? value.map((item) => laidOut(item, deeper)) : Object.entries(value).map(([key, item]) => `"${key}": ${laidOut(item, deeper)}`);
+  const [open, close] = Array.isArray(value) ? '[]' : '{}';
+  return `${open}\n${parts.map((part) => deeper + part).join(',\n')}\n${indent}${close}`;
+}
+
+function main(options) {
+  const figures = JSON.parse(readFileSync(jsonFile, 'utf8'));
+  const [verb, ...files] = options;
+  if (verb === '--take') {
+    const bullet = files.indexOf('--bullet');
+    if (bullet >= 0) {
+      const times = JSON.parse(readFileSync(files[bullet + 1], 'utf8'));
+      for (const scene of figures.scenes) if (scene.name in times) scene.bullet_ms = times[scene.name];
+      files.splice(bullet, 2);
+    }
+    for (const file of files) for (const run of JSON.parse(readFileSync(file, 'utf8'))) take(figures, run);
+    writeFileSync(jsonFile, `${laidOut(figures)}\n`);
+  } else if (verb !== undefined && verb !== '--check') {
+    throw new Error(`unknown option '${verb}'; there are --check and --take`);
+  }
+  return writeDocuments(figures, verb === '--check') === 0 ? 0 : 1;
+}
+
+if (process.argv[1] === fileURLToPath(import.meta.url)) {
+  try {
+    process.exitCode = main(process.argv.slice(2));
+  } catch (error) {
+    console.error(`fulcrum: ${error.message}`);
+    process.exitCode = 1;
+  }
+}

@@ -1,0 +1,100 @@
+// The documents say what Docs/figures.json says, and whoever changes the one without the other is told so.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { dirname, join } from 'node:path';
+import { after, beforeEach, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+
+const source = join(dirname(fileURLToPath(import.meta.url)), '../..');
+const copy = mkdtempSync(join(tmpdir(), 'fulcrum-figures-'));
+after(() => rmSync(copy, { recursive: true }));
+
+const file = (name) => join(copy, name);
+const read = (name) => readFileSync(file(name), 'utf8');
+const figures = (root, ...options) => spawnSync(process.execPath, [join(root, 'Docs/figures.mjs'), ...options], { encoding: 'utf8' });
+
+function change(name, from, to) {
+  const text = read(name);
+  assert.ok(text.includes(from), `${name} has no '${from}'`);
+  writeFileSync(file(name), text.replace(from, to));
+}
+
+beforeEach(() => {
+  cpSync(join(source, 'README.md'), file('README.md'));
+  cpSync(join(source, 'Docs'), file('Docs'), { recursive: true });
+});
+
+test('the documents of this tree agree with the JSON', () => {
+  const { status, stderr } = figures(source, '--check');
+  assert.equal(status, 0, stderr);
+});
+
+test('a figure that was edited in a document is found, and mended', () => {
+  for (const name of ['README.md', 'Docs/Performance.md']) {
+    change(name, '| `drum` | ', '| `drum` | 1');
+    const { status, stderr } = figures(copy, '--check');
+    assert.equal(status, 1);
+    assert.match(stderr, new RegExp(`^${name}:\\d+ does not say what Docs/figures.json says`));
+    assert.equal(figures(copy).status, 0);
+    assert.equal(figures(copy, '--check').status, 0);
+    assert.equal(read(name), readFileSync(join(source, name), 'utf8'));
+  }
+});
+
+test('a figure that was edited in the JSON is found, in both documents', () => {
+  const json = JSON.parse(read('Docs/figures.json'));
+  const drum = json.scenes.find(({ name }) => name === 'drum');
+  drum.threads[1] = { ...drum.threads[1], ms: 77.7, ratio: 0.777 };
+  writeFileSync(file('Docs/figures.json'), JSON.stringify(json));
+  const { status, stderr } = figures(copy, '--check');
+  assert.equal(status, 1);
+  assert.match(stderr, /README\.md/);
+  assert.match(stderr, /Docs\/Performance\.md/);
+  assert.equal(figures(copy).status, 0);
+  for (const name of ['README.md', 'Docs/Performance.md']) assert.match(read(name), /drum.*77\.7/);
+});
+
+test('a mark that is lost or misspelt is an error', () => {
+  change('README.md', '<!-- figures: scenes -->', '<!-- figures: scene -->');
+  assert.match(figures(copy, '--check').stderr, /there are no figures 'scene'/);
+  change('README.md', '<!-- figures: scene -->', '');
+  assert.match(figures(copy, '--check').stderr, /no document has the figures 'scenes'/);
+});
+
+const run = (scene, threads, values) => ({
+  scene, threads, median_ms: 10, accuracy: 2, stages_ms: { Solve: 4, Sleep: 0 },
+  settings: { substeps: 4, velocity_iterations: 1, position_iterations: 1 }, ...values,
+});
+function take(runs, bullet) {
+  writeFileSync(file('runs.json'), JSON.stringify(runs));
+  writeFileSync(file('bullet.json'), JSON.stringify(bullet));
+  return figures(copy, '--take', file('runs.json'), '--bullet', file('bullet.json'));
+}
+
+test('what the benchmark wrote is taken over', () => {
+  const ten = { median_ms: 30, accuracy: 5, settings: { substeps: 1, velocity_iterations: 10, position_iterations: 2 } };
+  const { status, stderr } = take([run('drum', 1), run('drum', 2, { median_ms: 6 }), run('drum', 1, ten)], { drum: 40 });
+  assert.equal(status, 0, stderr);
+  const [readme, performance] = [read('README.md'), read('Docs/Performance.md')];
+  assert.match(readme, /`drum` \|.*\| 10\.0 \| 6\.00 \| 0\.250 \| 0\.150 \|.*\| 2 through the wall \|/);
+  assert.match(performance, /`drum` \| 1 \| – \| – \| – \| – \| – \| – \| 4\.00 \| – \| – \| 10\.0 \|/);
+  assert.match(performance, /`drum` \| 0\.250, 0\.150; 2 through the wall \| 0\.750, 0\.\d+; 5 through the wall/);
+  assert.equal(figures(copy, '--check').status, 0);
+});
+
+test('what has no place is refused, and nothing is written', () => {
+  const before = read('Docs/figures.json');
+  for (const [runs, bullet, message] of [
+    [[run('drums', 1)], {}, /no scene 'drums'/],
+    [[run('drum', 1)], {}, /the ratio needs "bullet_ms"/],
+    [[run('drum', 4)], { drum: 40 }, /4 threads/],
+    [[run('drum', 1, { settings: { substeps: 3 } })], { drum: 40 }, /no table has the settings/],
+  ]) {
+    const { status, stderr } = take(runs, bullet);
+    assert.equal(status, 1);
+    assert.match(stderr, message);
+    assert.equal(read('Docs/figures.json'), before);
+  }
+});
