@@ -16,7 +16,28 @@
 #include <emmintrin.h>
 #endif
 
+// Where no register holds eight floats GCC and Clang say that functions which take or return them are called otherwise than
+// where one does. No such function is called from one to the other: the name of the namespace below is a part of its name.
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpsabi"
+#endif
+
 namespace fulcrum {
+
+// A program may be compiled for another processor than the library that it links. What is below then differs in alignment, in
+// how it is called and in its instructions, and the linker keeps one copy of an inline function of a name.
+#if defined(FULCRUM_SCALAR_LANES)
+inline namespace scalar_lanes {
+#elif defined(__AVX512F__)
+inline namespace avx512_lanes {
+#elif defined(__AVX2__)
+inline namespace avx2_lanes {
+#elif defined(__AVX__)
+inline namespace avx_lanes {
+#else
+inline namespace vector_lanes {
+#endif
 
 // Lanes of a batch of constraints in this build.
 #if defined(FULCRUM_SCALAR_LANES)
@@ -38,7 +59,7 @@ inline constexpr const char* kSimdName = "SSE2";
 inline constexpr const char* kSimdName = "vector";
 #endif
 
-namespace detail {
+namespace registers {
 // No type is aligned more strictly than a register of this build, which is what Eigen's storage expects too.
 #if defined(__AVX512F__)
 #define FULCRUM_LANES_OF(lanes) __attribute__((vector_size(4 * lanes)))
@@ -73,12 +94,12 @@ struct LaneTypes<16> {
     typedef int32_t Int FULCRUM_LANES_OF(16);
 };
 #undef FULCRUM_LANES_OF
-}  // namespace detail
+}  // namespace registers
 
 // One truth value a lane.
 template <int N>
 struct WideMask {
-    using Int = typename detail::LaneTypes<N>::Int;
+    using Int = typename registers::LaneTypes<N>::Int;
     Int bits;  // -1 true, 0 false
 
     friend WideMask operator&(WideMask a, WideMask b) { return {a.bits & b.bits}; }
@@ -105,8 +126,8 @@ struct WideMask {
 };
 
 template <int N>
-struct alignas(4 * N < detail::kRegisterBytes ? 4 * N : detail::kRegisterBytes) Wide {
-    using Float = typename detail::LaneTypes<N>::Float;
+struct alignas(4 * N < registers::kRegisterBytes ? 4 * N : registers::kRegisterBytes) Wide {
+    using Float = typename registers::LaneTypes<N>::Float;
     using Mask = WideMask<N>;
     static constexpr int kCount = N;
     Float v;
@@ -256,7 +277,7 @@ inline float HorizontalMin(Wide<N> a) {
     return m;
 }
 
-namespace detail {
+namespace registers {
 #if defined(__AVX2__)
 // Rows to columns of an 8x8 block; its own inverse.
 [[gnu::always_inline]] inline void Transpose8(__m256 (&r)[8]) {
@@ -281,7 +302,7 @@ namespace detail {
 #if defined(__SSE2__)
 [[gnu::always_inline]] inline void Transpose4(__m128& r0, __m128& r1, __m128& r2, __m128& r3) { _MM_TRANSPOSE4_PS(r0, r1, r2, r3); }
 #endif
-}  // namespace detail
+}  // namespace registers
 
 // Reads eight floats at rows[lane] for each of N lanes into eight wide values: out[k][lane] = rows[lane][k].
 // The rows are 32-byte aligned.
@@ -291,7 +312,7 @@ template <int N>
     if constexpr (N == 8) {
         __m256 r[8];
         for (int i = 0; i < 8; ++i) r[i] = _mm256_load_ps(rows[i]);
-        detail::Transpose8(r);
+        registers::Transpose8(r);
         for (int i = 0; i < 8; ++i) out[i].v = (typename Wide<N>::Float)r[i];
         return;
     }
@@ -301,7 +322,7 @@ template <int N>
         for (int half = 0; half < 2; ++half) {
             __m128 r0 = _mm_load_ps(rows[0] + 4 * half), r1 = _mm_load_ps(rows[1] + 4 * half);
             __m128 r2 = _mm_load_ps(rows[2] + 4 * half), r3 = _mm_load_ps(rows[3] + 4 * half);
-            detail::Transpose4(r0, r1, r2, r3);
+            registers::Transpose4(r0, r1, r2, r3);
             out[4 * half].v = (typename Wide<N>::Float)r0;
             out[4 * half + 1].v = (typename Wide<N>::Float)r1;
             out[4 * half + 2].v = (typename Wide<N>::Float)r2;
@@ -342,7 +363,7 @@ template <int N>
     if constexpr (N == 8) {
         __m256 r[8];
         for (int i = 0; i < 8; ++i) r[i] = (__m256)in[i].v;
-        detail::Transpose8(r);
+        registers::Transpose8(r);
         if (count == 8) {
             for (int i = 0; i < 8; ++i) _mm256_store_ps(rows[i], r[i]);
         } else {
@@ -356,7 +377,7 @@ template <int N>
         for (int half = 0; half < 2; ++half) {
             __m128 r[4] = {(__m128)in[4 * half].v, (__m128)in[4 * half + 1].v, (__m128)in[4 * half + 2].v,
                            (__m128)in[4 * half + 3].v};
-            detail::Transpose4(r[0], r[1], r[2], r[3]);
+            registers::Transpose4(r[0], r[1], r[2], r[3]);
             for (int i = 0; i < count; ++i) _mm_store_ps(rows[i] + 4 * half, r[i]);
         }
         return;
@@ -366,6 +387,7 @@ template <int N>
         for (int k = 0; k < 8; ++k) rows[i][k] = in[k][i];
 }
 
+}  // inline namespace
 }  // namespace fulcrum
 
 // Lets Eigen's vectors hold lanes.
@@ -378,3 +400,7 @@ struct NumTraits<fulcrum::Wide<N>> : GenericNumTraits<fulcrum::Wide<N>> {
     enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 0, ReadCost = 1, AddCost = 1, MulCost = 1 };
 };
 }  // namespace Eigen
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif

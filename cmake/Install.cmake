@@ -1,16 +1,24 @@
-# Installs the library so that find_package(Fulcrum 0.1) finds it: headers, archives, package files.
+# Installs the library so that find_package(Fulcrum 0.1) and pkg-config find it: headers, libraries, package files, licence.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Fulcrum)
+get_target_property(library_type FulcrumPhysics TYPE)
 
 install(TARGETS FulcrumMath FulcrumJobs FulcrumCollision FulcrumConstraints FulcrumPhysics
   EXPORT FulcrumTargets
-  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(DIRECTORY Math Jobs Collision Constraints Physics
-  DESTINATION include/Fulcrum
-  FILES_MATCHING PATTERN "*.h")
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
+  INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT FulcrumTargets NAMESPACE Fulcrum:: DESTINATION ${package_folder})
+
+# The headers are looked for when they are installed: whatever has been included since the build was configured is among them.
+install(CODE "
+  set(FULCRUM_SOURCE \"${PROJECT_SOURCE_DIR}\")
+  set(FULCRUM_HEADERS \"${CMAKE_INSTALL_INCLUDEDIR}/Fulcrum\")
+  include(\"${PROJECT_SOURCE_DIR}/cmake/InstallHeaders.cmake\")")
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 configure_package_config_file(cmake/FulcrumConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/FulcrumConfig.cmake
   INSTALL_DESTINATION ${package_folder})
@@ -21,3 +29,28 @@ install(FILES
     ${CMAKE_CURRENT_BINARY_DIR}/FulcrumConfig.cmake
     ${CMAKE_CURRENT_BINARY_DIR}/FulcrumConfigVersion.cmake
   DESTINATION ${package_folder})
+
+# Whoever links the static libraries needs what these need; a shared one brings libccd itself.
+if(library_type STREQUAL "STATIC_LIBRARY")
+  set(pkgconfig_requires "eigen3 >= 3.4, ccd")
+  set(pkgconfig_requires_private "")
+else()
+  set(pkgconfig_requires "eigen3 >= 3.4")
+  set(pkgconfig_requires_private "ccd")
+endif()
+# Relative to the file itself, so that the prefix may be chosen when it is installed; absolute folders stay what they are.
+file(RELATIVE_PATH pkgconfig_up /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
+foreach(folder LIBDIR INCLUDEDIR)
+  if(IS_ABSOLUTE ${CMAKE_INSTALL_${folder}})
+    set(pkgconfig_${folder} ${CMAKE_INSTALL_${folder}})
+  else()
+    set(pkgconfig_${folder} "\${prefix}/${CMAKE_INSTALL_${folder}}")
+  endif()
+endforeach()
+if(IS_ABSOLUTE ${CMAKE_INSTALL_LIBDIR})
+  set(pkgconfig_prefix ${CMAKE_INSTALL_PREFIX})
+else()
+  set(pkgconfig_prefix "\${pcfiledir}/${pkgconfig_up}")
+endif()
+configure_file(cmake/fulcrum.pc.in ${CMAKE_CURRENT_BINARY_DIR}/fulcrum.pc @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/fulcrum.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -13,8 +13,24 @@ file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${FULCRUM_INCLUDE_ROOT}/Fulcrum SYM
 function(fulcrum_usage_requirements target scope)
   target_compile_features(${target} ${scope} cxx_std_20)
   target_compile_options(${target} ${scope} $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-ffp-contract=off>)
-  target_include_directories(${target} ${scope}
-    $<BUILD_INTERFACE:${FULCRUM_INCLUDE_ROOT}> $<INSTALL_INTERFACE:include>)
+  target_include_directories(${target} ${scope} $<BUILD_INTERFACE:${FULCRUM_INCLUDE_ROOT}>)
+endfunction()
+
+# Libraries are static, or shared where BUILD_SHARED_LIBS is set. A plugin may link static ones too, so they are
+# position-independent unless CMAKE_POSITION_INDEPENDENT_CODE says otherwise. That costs nothing that could be measured,
+# since GCC is told that no function will be replaced by one of another library: it would inline none of them otherwise.
+function(fulcrum_library_properties target)
+  if(NOT DEFINED CMAKE_POSITION_INDEPENDENT_CODE)
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  endif()
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fno-semantic-interposition>)
+  set_target_properties(${target} PROPERTIES
+    VERSION ${PROJECT_VERSION}
+    SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  # The five find each other wherever they are installed.
+  if(NOT DEFINED CMAKE_INSTALL_RPATH)
+    set_target_properties(${target} PROPERTIES INSTALL_RPATH "$<IF:$<PLATFORM_ID:Darwin>,@loader_path,$ORIGIN>")
+  endif()
 endfunction()
 
 # A folder of headers alone (Math) becomes an interface library.
@@ -22,8 +38,9 @@ function(fulcrum_library folder)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "PUBLIC;PRIVATE")
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
   if(sources)
-    add_library(Fulcrum${folder} STATIC ${sources})
+    add_library(Fulcrum${folder} ${sources})
     fulcrum_compile_options(Fulcrum${folder})
+    fulcrum_library_properties(Fulcrum${folder})
     fulcrum_usage_requirements(Fulcrum${folder} PUBLIC)
     target_link_libraries(Fulcrum${folder} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
   else()

@@ -2,6 +2,7 @@
 
 #include <Fulcrum/Jobs/ThreadPool.h>
 #include <Fulcrum/Samples/Runner/CommandLine.h>
+#include <Fulcrum/Samples/Runner/JsonOutput.h>
 #include <Fulcrum/Samples/Runner/Options.h>
 #include <Fulcrum/Samples/Runner/RunReport.h>
 #include <Fulcrum/Samples/Scenes/Scenes.h>
@@ -9,7 +10,6 @@
 #include <nlohmann/json.hpp>
 
 #include <cstdio>
-#include <fstream>
 #include <optional>
 
 namespace fulcrum {
@@ -58,7 +58,7 @@ Result<BenchOptions> ParseBenchOptions(std::vector<std::string> arguments) {
                [&](int value) { options.runs = value; });
     AddSolverOptions(app, options.solver);
     AddSeed(app, "--seed", "of scenes that use random numbers (default 1)", [&](uint64_t value) { options.seed = value; });
-    AddText(app, "--json", "also write the runs as a JSON array", [&](const std::string& text) {
+    AddText(app, "--json", "also write the runs as a JSON array; -: to standard output, all else to standard error", [&](const std::string& text) {
         options.json = text;
     })->type_name("FILE");
 
@@ -92,9 +92,9 @@ Result<RunFigures> TimeScene(const Scene& scene, const BenchOptions& options) {
 }
 
 int RunBench(const BenchOptions& options) {
-    const std::filesystem::path folder = options.json.parent_path();
-    if (!folder.empty() && !std::filesystem::is_directory(folder))
-        return Fail("--json " + options.json.string() + ": there is no folder " + folder.string());
+    const JsonOutput json(options.json);
+    const std::string trouble = json.Check();
+    if (!trouble.empty()) return Fail(trouble);
 
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
     PrintHeading();
@@ -108,14 +108,8 @@ int RunBench(const BenchOptions& options) {
         PrintRow(*scene, *best);
         rows.push_back(ReportJson(scene->name, *best, options.seed));
     }
-    if (!options.json.empty()) {
-        std::ofstream file(options.json);
-        file << rows.dump(2) << "\n";
-        file.close();
-        if (!file) return Fail("cannot write " + options.json.string());
-        std::printf("Wrote %s\n", options.json.c_str());
-    }
-    return 0;
+    const std::string unwritten = json.IsWanted() ? json.Write(rows) : "";
+    return unwritten.empty() ? 0 : Fail(unwritten);
 }
 
 }  // namespace fulcrum

@@ -1,6 +1,7 @@
 #include <Fulcrum/Samples/Runner/Commands.h>
 
 #include <Fulcrum/Jobs/ThreadPool.h>
+#include <Fulcrum/Samples/Runner/JsonOutput.h>
 #include <Fulcrum/Samples/Runner/MeshImport.h>
 #include <Fulcrum/Samples/Runner/Progress.h>
 #include <Fulcrum/Samples/Runner/Recorder.h>
@@ -15,7 +16,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <optional>
 
 namespace fulcrum {
@@ -34,28 +34,19 @@ struct Job {
     const Scene& scene;
     SceneInput input;
     const RunOptions& options;
+    const JsonOutput& json;
     std::string name;         // of the report and of the files in out/
     std::string description;
 };
 
 // Before the simulation, so that minutes of it are not lost to a misspelt folder. Empty where all is well.
-std::string CheckOutputs(const RunOptions& options) {
+std::string CheckOutputs(const RunOptions& options, const JsonOutput& json) {
     std::error_code error;
     if (options.recordHtml || options.recordGlb) {
         std::filesystem::create_directories(kOutput, error);
         if (error) return std::string("cannot create the folder ") + kOutput + ": " + error.message();
     }
-    const std::filesystem::path folder = options.json.parent_path();
-    if (!folder.empty() && !std::filesystem::is_directory(folder, error))
-        return "--json " + options.json.string() + ": there is no folder " + folder.string();
-    return {};
-}
-
-std::string WriteJson(const std::filesystem::path& path, const nlohmann::ordered_json& json) {
-    std::ofstream file(path);
-    file << json.dump(2) << "\n";
-    file.close();
-    return file ? std::string() : "cannot write " + path.string();
+    return json.Check();
 }
 
 // The files that the options name; empty where all were written, else what went wrong.
@@ -71,15 +62,12 @@ std::string WriteOutputs(const Job& job, const Recorder* recorder, const RunFigu
     std::string trouble;
     if (job.options.recordHtml) trouble = write(".html", WriteHtml);
     if (trouble.empty() && job.options.recordGlb) trouble = write(".glb", WriteGlb);
-    if (trouble.empty() && !job.options.json.empty()) {
-        trouble = WriteJson(job.options.json, ReportJson(job.name, figures, job.input.seed));
-        if (trouble.empty()) std::printf("Wrote %s\n", job.options.json.c_str());
-    }
+    if (trouble.empty() && job.json.IsWanted()) trouble = job.json.Write(ReportJson(job.name, figures, job.input.seed));
     return trouble;
 }
 
 int RunJob(const Job& job) {
-    const std::string trouble = CheckOutputs(job.options);
+    const std::string trouble = CheckOutputs(job.options, job.json);
     if (!trouble.empty()) return Fail(trouble);
 
     std::optional<ThreadPool> pool;
@@ -146,7 +134,7 @@ void PrintGround(const std::string& name, const ImportedMesh& ground) {
     for (const std::string& repair : ground.repairs) std::printf("  repaired: %s\n", repair.c_str());
 }
 
-int Drop(const Command& command, SceneInput input) {
+int Drop(const Command& command, SceneInput input, const JsonOutput& json) {
     const Result<ImportedShape> imported = ReadWithinMemory([&] { return ImportShape(command.file, kDroppedSize); });
     if (!imported) return Fail(imported.GetError().message);
     const ImportedShape& model = imported.Value();
@@ -157,13 +145,13 @@ int Drop(const Command& command, SceneInput input) {
     input.shape = model.shape;
     input.count = command.count;
     const std::string dropped = std::to_string(command.count) + " of " + name, title = "drop_" + command.file.stem().string();
-    if (command.onto.empty()) return RunJob({*command.scene, input, command.options, title, dropped + " in a heap"});
+    if (command.onto.empty()) return RunJob({*command.scene, input, command.options, json, title, dropped + " in a heap"});
 
     const Result<ImportedMesh> ground = ReadWithinMemory([&] { return ImportMesh(command.onto, command.ontoSettings); });
     if (!ground) return Fail(ground.GetError().message);
     PrintGround(command.onto.filename().string(), ground.Value());
     input.ground = ground.Value().mesh;
-    return RunJob({*command.scene, input, command.options, title + "_onto_" + command.onto.stem().string(),
+    return RunJob({*command.scene, input, command.options, json, title + "_onto_" + command.onto.stem().string(),
                    dropped + " dropped onto " + command.onto.filename().string()});
 }
 
@@ -181,13 +169,14 @@ int List() {
 }  // namespace
 
 int Execute(const Command& command) {
+    const JsonOutput json(command.options.json);
     SceneInput input;
     input.seed = command.options.seed;
     input.solver = command.options.solver;
     switch (command.kind) {
         case CommandKind::Run:
-            return RunJob({*command.scene, input, command.options, command.scene->name, command.scene->description});
-        case CommandKind::Drop: return Drop(command, input);
+            return RunJob({*command.scene, input, command.options, json, command.scene->name, command.scene->description});
+        case CommandKind::Drop: return Drop(command, input, json);
         case CommandKind::List: return List();
         default: std::printf("%s", command.help.c_str()); return 0;
     }

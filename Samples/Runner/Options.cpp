@@ -59,7 +59,7 @@ void AddRunOptions(CLI::App& app, RunOptions& options) {
     AddText(app, "--record", "html,glb (default), html, glb or none", [&](const std::string& text) {
         SetRecord(text, options);
     })->type_name("KINDS");
-    AddText(app, "--json", "also write the report as JSON", [&](const std::string& text) {
+    AddText(app, "--json", "also write the report as JSON; -: to standard output, all else to standard error", [&](const std::string& text) {
         options.json = text;
     })->type_name("FILE");
     AddSeed(app, "--seed", "of the random numbers of scenes that use them (default 1)",

@@ -1,5 +1,7 @@
 #include <Fulcrum/Samples/Runner/RunReport.h>
 
+#include <Fulcrum/Version.h>
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -107,7 +109,7 @@ nlohmann::ordered_json ReportJson(const std::string& name, const RunFigures& fig
     const Statistics& ms = ComparedMs(figures);
     nlohmann::ordered_json json{
             {"engine", "fulcrum"},
-            {"version", FULCRUM_VERSION},
+            {"version", FULCRUM_VERSION_STRING},
             {"scene", name},
             {"threads", figures.threads},
             {"bodies", figures.bodies},

@@ -167,8 +167,9 @@ class Viewer {
     this.seek(frames < 0 ? Math.ceil(frame) + frames : Math.floor(frame) + frames);
   }
 
+  // A control that was reached by the keyboard has its own keys: space presses a button, arrows choose among radio buttons.
+  // One that was clicked leaves them to the page, and lets go, so that the key's end is not its own either.
   #onKey(event) {
-    const isTyping = event.target.matches('select, input[type=radio]') || event.ctrlKey || event.metaKey || event.altKey;
     const actions = {
       ' ': () => this.setPlaying(!this.isPlaying),
       ArrowLeft: () => this.step(-1),
@@ -177,9 +178,16 @@ class Viewer {
       End: () => this.seek(this.timeline.lastFrame),
       Escape: () => this.select(-1),
     };
-    if (isTyping || !actions[event.key] || (event.key === ' ' && event.target.matches('button, input'))) return;
+    if (!actions[event.key] || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (this.#hasKey(event.target, event.key)) return;
+    if (event.target.matches('button, input, select') && !event.target.matches(':focus-visible')) event.target.blur();
     event.preventDefault();
     actions[event.key]();
+  }
+
+  #hasKey(control, key) {
+    if (!control.matches(':focus-visible')) return false;
+    return control.matches(key === ' ' ? 'button, input, select' : 'select, input[type=radio]');
   }
 }
 
