@@ -32,6 +32,7 @@ class Viewer {
     this.mode = 'island';
     this.selected = -1;
     this.isPlaying = false;
+    this.hasPointed = false; // since the tabulator key was last pressed
     this.stage.resize();
     this.stage.frameSubject();
     showTexts(recording);
@@ -147,6 +148,7 @@ class Viewer {
       this.draw();
     }).observe(element('view'));
     addEventListener('keydown', (event) => this.#onKey(event));
+    addEventListener('pointerdown', () => (this.hasPointed = true), { capture: true });
     this.#connectClicks();
   }
 
@@ -167,9 +169,10 @@ class Viewer {
     this.seek(frames < 0 ? Math.ceil(frame) + frames : Math.floor(frame) + frames);
   }
 
-  // A control that was reached by the keyboard has its own keys: space presses a button, arrows choose among radio buttons.
+  // A control that was reached by the tabulator key has its own keys: space presses a button, arrows choose among radio buttons.
   // One that was clicked leaves them to the page, and lets go, so that the key's end is not its own either.
   #onKey(event) {
+    if (event.key === 'Tab') this.hasPointed = false;
     const actions = {
       ' ': () => this.setPlaying(!this.isPlaying),
       ArrowLeft: () => this.step(-1),
@@ -179,15 +182,11 @@ class Viewer {
       Escape: () => this.select(-1),
     };
     if (!actions[event.key] || event.ctrlKey || event.metaKey || event.altKey) return;
-    if (this.#hasKey(event.target, event.key)) return;
-    if (event.target.matches('button, input, select') && !event.target.matches(':focus-visible')) event.target.blur();
+    const control = event.target.closest('button, input, select');
+    if (control && this.hasPointed) control.blur();
+    else if (control?.matches(event.key === ' ' ? 'button, input, select' : 'select, input[type=radio]')) return;
     event.preventDefault();
     actions[event.key]();
-  }
-
-  #hasKey(control, key) {
-    if (!control.matches(':focus-visible')) return false;
-    return control.matches(key === ' ' ? 'button, input, select' : 'select, input[type=radio]');
   }
 }
 
