@@ -1,5 +1,8 @@
 # Installs the public headers: Fulcrum.h, what it includes, and what those include. Included by the installation, with
 # FULCRUM_SOURCE and FULCRUM_HEADERS (the folder to put them in, relative to the prefix or absolute).
+# Scripts of installations know no policies of the project.
+cmake_policy(VERSION 3.22)
+
 set(headers Fulcrum.h)
 set(position 0)
 list(LENGTH headers count)

@@ -1,5 +1,7 @@
 # What the packaging tests share. CTest calls each with FULCRUM_SOURCE, FULCRUM_BUILD, WORK (a folder to empty and use),
 # GENERATOR, COMPILER, LAUNCHER, FLAGS, VERSION.
+cmake_policy(VERSION 3.22)
+
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT status EQUAL 0)
