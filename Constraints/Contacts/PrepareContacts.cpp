@@ -150,7 +150,7 @@ void AddSurfaceMotion(ContactBatch<N, true>& batch, Wide<N> moves, const Contact
 }  // namespace
 
 template <int N, bool kFixedB>
-void PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* records, const uint32_t (&bodyB)[N],
+uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* records, const uint32_t (&bodyB)[N],
                      const SolverBodies& bodies, const ContactPrepareSettings& settings) {
     using Real = Wide<N>;
     const Real zero(0.0f);
@@ -250,8 +250,10 @@ void PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* recor
     }
     if constexpr (kFixedB)
         if (surfaceMoves) AddSurfaceMotion(batch, head[7], records);
-    if (const auto finite = FiniteLanes(batch, responses, diagonals); !finite.All()) KeepLanes(batch, finite);
+    const auto finite = FiniteLanes(batch, responses, diagonals);
+    if (!finite.All()) KeepLanes(batch, finite);
     if (batch.bounces) PrepareBounces(batch, head[5], bodyB, bodies, settings);
+    return (~finite).ToBits();
 }
 
 template <int N, bool kFixedB>
@@ -271,7 +273,7 @@ void StoreContacts(const ContactBatch<N, kFixedB>& batch, ContactRecord* records
 }
 
 #define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                              \
-    template void PrepareContacts(ContactBatch<lanes, fixedB>&, const ContactRecord*, const uint32_t(&)[lanes],         \
+    template uint32_t PrepareContacts(ContactBatch<lanes, fixedB>&, const ContactRecord*, const uint32_t(&)[lanes],         \
                                   const SolverBodies&, const ContactPrepareSettings&);                                  \
     template void StoreContacts(const ContactBatch<lanes, fixedB>&, ContactRecord*, float);
 FULCRUM_FOR_EACH_CONTACT_BATCH(FULCRUM_INSTANTIATE)

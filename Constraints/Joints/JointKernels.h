@@ -72,6 +72,13 @@ template <int N>
     GatherRows<N>(rows, out);
 }
 
+// The locks' impulses of the last substep; what is not finite as zero.
+template <int N>
+[[gnu::always_inline]] inline void GatherImpulses(const uint32_t (&joints)[N], const JointRecord* records, Wide<N> (&out)[8]) {
+    GatherRecordRow<N>(joints, records, JointRecord::kOwn, out);
+    for (Wide<N>& x : out) x = Select(Abs(x) < Wide<N>(JointRow::kUnlimited), x, Wide<N>(0.0f));
+}
+
 // Writes a row of the first `count` records; what is not finite as zero.
 template <int N>
 [[gnu::always_inline]] inline void ScatterRecordRow(const uint32_t (&joints)[N], int count, JointRecord* records, int row,

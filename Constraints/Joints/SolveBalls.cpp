@@ -210,7 +210,7 @@ void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const Solver
     using Real = Wide<N>;
     Real anchors[8], impulses[8];
     GatherRecordRow<N>(batch.joint, records, JointRecord::kAnchors, anchors);
-    GatherRecordRow<N>(batch.joint, records, JointRecord::kOwn, impulses);
+    GatherImpulses<N>(batch.joint, records, impulses);
     BallPlace<Real> place;
     place.armA = batch.startArmA = Rotate<Real>(GatherRotation<N>(batch.bodyA, bodies.poses), Vec3<Real>(anchors[0], anchors[1], anchors[2]));
     place.armB = batch.startArmB = Rotate<Real>(GatherRotation<N>(batch.bodyB, bodies.poses), Vec3<Real>(anchors[3], anchors[4], anchors[5]));

@@ -37,9 +37,17 @@ bool FlyFreely(WorldState& world, Ending& ending, const StepContext& step, Worke
     Vector3& change = ending.displacement;
     change = (before + v) * (0.5f * step.dt);
     if (d.lockedAxes != LockedAxes::None) d.Lock(change, w);
-    if (d.hasForce) ending.turn.torque = world.bodies.cold[ending.body].torque;
-    if (d.FeelsGyroscopicTorque(w)) return true;
-    if (d.hasForce) w += world.bodies.masses[ending.body].InverseInertia() * ending.turn.torque * step.dt;
+    const bool feelsTop = d.FeelsGyroscopicTorque(w);
+    if (d.hasForce) {
+        const Vector3 torque = world.bodies.cold[ending.body].torque;
+        Vector3 pushed = w + world.bodies.masses[ending.body].InverseInertia() * torque * step.dt;
+        const bool isLimited = LengthSquared(pushed) > d.maxAngularSpeed * d.maxAngularSpeed;
+        // What a torque spins up to the largest speed is there at once.
+        if (isLimited) findings.clamped += LimitSpeeds(world, ending.body, v, pushed);
+        if (isLimited || !feelsTop) w = pushed;
+        else ending.turn.torque = torque;
+    }
+    if (feelsTop) return true;
     ending.turn.rotation = Normalized(RotationFromVector(Vector3(w * step.dt)) * ending.turn.rotation);
     return false;
 }
