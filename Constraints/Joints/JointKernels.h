@@ -72,6 +72,16 @@ template <int N>
     GatherRows<N>(rows, out);
 }
 
+// Arms and distances of anchors: what is farther along an axis counts as that far. It is pulled no faster for being farther away, and the
+// inertia at the end of a longer arm may be beyond the floats.
+template <class Real>
+[[gnu::always_inline]] inline Vec3<Real> WithinReach(const Vec3<Real>& v) {
+    const Real farthest(1e6f);
+    Vec3<Real> result;
+    for (int k = 0; k < 3; ++k) result[k] = Max(Min(Real(v[k]), farthest), -farthest);
+    return result;
+}
+
 // The locks' impulses of the last substep; what is not finite as zero.
 template <int N>
 [[gnu::always_inline]] inline void GatherImpulses(const uint32_t (&joints)[N], const JointRecord* records, Wide<N> (&out)[8]) {

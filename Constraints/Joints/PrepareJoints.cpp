@@ -160,9 +160,9 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
     const Quat<Real> rotationA = GatherRotation<N>(batch.bodyA, bodies.poses), rotationB = GatherRotation<N>(batch.bodyB, bodies.poses);
 
     JointPlace<Real> place;
-    place.armA = Rotate<Real>(rotationA, Vec3<Real>(head[0], head[1], head[2]));
-    place.armB = Rotate<Real>(rotationB, Vec3<Real>(head[3], head[4], head[5]));
-    place.offset = between + place.armB - place.armA;
+    place.armA = WithinReach<Real>(Rotate<Real>(rotationA, Vec3<Real>(head[0], head[1], head[2])));
+    place.armB = WithinReach<Real>(Rotate<Real>(rotationB, Vec3<Real>(head[3], head[4], head[5])));
+    place.offset = WithinReach<Real>(between + place.armB - place.armA);
     const Quat<Real> frameA = rotationA * Quat<Real>{frames[0], frames[1], frames[2], frames[3]};
     const Quat<Real> frameB = rotationB * Quat<Real>{frames[4], frames[5], frames[6], frames[7]};
     batch.startArmA = place.armA;

@@ -212,9 +212,12 @@ void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const Solver
     GatherRecordRow<N>(batch.joint, records, JointRecord::kAnchors, anchors);
     GatherImpulses<N>(batch.joint, records, impulses);
     BallPlace<Real> place;
-    place.armA = batch.startArmA = Rotate<Real>(GatherRotation<N>(batch.bodyA, bodies.poses), Vec3<Real>(anchors[0], anchors[1], anchors[2]));
-    place.armB = batch.startArmB = Rotate<Real>(GatherRotation<N>(batch.bodyB, bodies.poses), Vec3<Real>(anchors[3], anchors[4], anchors[5]));
-    place.offset = batch.startOffset = GatherOffset<N>(batch.bodyA, batch.bodyB, bodies.poses) + place.armB - place.armA;
+    const auto armAt = [&](const uint32_t(&body)[N], int first) {
+        return WithinReach<Real>(Rotate<Real>(GatherRotation<N>(body, bodies.poses), Vec3<Real>(anchors[first], anchors[first + 1], anchors[first + 2])));
+    };
+    place.armA = batch.startArmA = armAt(batch.bodyA, 0);
+    place.armB = batch.startArmB = armAt(batch.bodyB, 3);
+    place.offset = batch.startOffset = WithinReach<Real>(GatherOffset<N>(batch.bodyA, batch.bodyB, bodies.poses) + place.armB - place.armA);
     MeetBetween(batch, place);
     batch.armA = place.armA;
     batch.armB = place.armB;

@@ -34,9 +34,10 @@ template <class Real>
         end = start + Vec3<Real>(rate.x() * middle.y() * middle.z(), rate.y() * middle.z() * middle.x(), rate.z() * middle.x() * middle.y());
     }
     const Vec3<Real> turned = axes * Vec3<Real>(end * Sqrt(energyOf(start) / energyOf(end)));
-    // A moment without end has no torque.
+    // A moment without end has no torque, and where moments differ by more than floats hold, nothing is known of it.
+    const auto isKnown = (product > Real(0.0f)) & ((turned[0] + turned[1] + turned[2]) * Real(0.0f) == Real(0.0f));
     Vec3<Real> result;
-    for (int k = 0; k < 3; ++k) result[k] = Select(product > Real(0.0f), Real(turned[k]), Real(w[k]));
+    for (int k = 0; k < 3; ++k) result[k] = Select(isKnown, Real(turned[k]), Real(w[k]));
     return result;
 }
 

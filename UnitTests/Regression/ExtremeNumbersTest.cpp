@@ -191,8 +191,8 @@ private:
             const Vector3 v = world_.Bodies().GetLinearVelocity(body.id), w = world_.Bodies().GetAngularVelocity(body.id);
             ASSERT_TRUE(IsFinite(pose.position) && IsFinite(pose.rotation)) << "step " << step << ", body " << body.id.index;
             ASSERT_NEAR(LengthSquared(pose.rotation), 1, 1e-4) << "step " << step << ", body " << body.id.index;
-            ASSERT_LE(Length(v), body.linear * (1 + 1e-6f)) << "step " << step << ", body " << body.id.index;
-            ASSERT_LE(Length(w), body.angular * (1 + 1e-6f)) << "step " << step << ", body " << body.id.index;
+            ASSERT_LE(Length(v), body.linear * (1 + 1e-6f) + 1e-18f) << "step " << step << ", body " << body.id.index;
+            ASSERT_LE(Length(w), body.angular * (1 + 1e-6f) + 1e-18f) << "step " << step << ", body " << body.id.index;
             frozen += world_.Bodies().IsFrozen(body.id);
         }
         world_.System().VisitContacts([&](const ContactView& contact) {
