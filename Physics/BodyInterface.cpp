@@ -2,6 +2,7 @@
 
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Physics/BodyColliders.h>
+#include <Fulcrum/Physics/Stages/BodyLimits.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/State/BodyPairs.h>
 #include <Fulcrum/Physics/Validation.h>
@@ -23,8 +24,8 @@ void FillDynamics(BodyDynamics& d, const BodySettings& s) {
     d.gravityFactor = s.gravityFactor;
     d.linearDamping = s.linearDamping;
     d.angularDamping = s.angularDamping;
-    d.maxLinearSpeed = s.maxLinearSpeed;
-    d.maxAngularSpeed = s.maxAngularSpeed;
+    d.maxLinearSpeed = std::min(s.maxLinearSpeed, kFastestLinear);
+    d.maxAngularSpeed = std::min(s.maxAngularSpeed, kFastestAngular);
     d.outerRadius = s.shape->OuterRadius();
     d.gyroscopic = s.gyroscopicTorque;
     d.allowSleep = s.allowSleep;
@@ -34,6 +35,13 @@ void FillDynamics(BodyDynamics& d, const BodySettings& s) {
     const float kilograms = s.mass > 0 ? s.mass : s.density * mass.volume;
     SetMass(d, mass.principalAxes, kilograms,
             s.inertia.isZero(0) ? Vector3(mass.principalInertia * (kilograms / mass.volume)) : s.inertia);
+}
+
+// What a user may set: any finite velocity, of which what no body can have is cut off.
+void SetVelocityOf(WorldState& world, uint32_t body, Vector3 linear, Vector3 angular) {
+    LimitLength(linear, kFastestLinear);
+    LimitLength(angular, kFastestAngular);
+    world.bodies.SetVelocity(body, linear, angular);
 }
 
 // For the first body of an empty world.
@@ -101,7 +109,7 @@ Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
         cold.children->massUnit = double{kilograms} / RelativeMassOf(*settings.shape);
     }
     world_.bodies.SetCentrePose(body, CentrePose(*settings.shape, settings.position, settings.rotation));
-    world_.bodies.SetVelocity(body, settings.linearVelocity, settings.angularVelocity);
+    SetVelocityOf(world_, body, settings.linearVelocity, settings.angularVelocity);
     world_.bodies.UpdateInertia(body);
     if (world_.bodies.Count() == 1) PlaceBoundsOrigin(world_, body);
     MakeColliders(world_, body);
@@ -185,7 +193,7 @@ Status BodyInterface::SetVelocity(BodyId id, const Vector3& linear, const Vector
         RequeueColliders(world_, id.index);
     }
     if (d.motion == MotionType::Kinematic && !(linear.isZero(0) && angular.isZero(0))) WakeJoined(world_, id.index);
-    world_.bodies.SetVelocity(id.index, linear, angular);
+    SetVelocityOf(world_, id.index, linear, angular);
     return Done{};
 }
 
@@ -226,8 +234,8 @@ Status Kick(WorldState& world, BodyId id, const Vector3& impulse, const Vector3&
         return *e;
     WakeBody(world, id.index);
     const BodyMass& m = world.bodies.masses[id.index];
-    world.bodies.SetVelocity(id.index, world.bodies.LinearVelocityOf(id.index) + impulse * m.inverseMass,
-                             world.bodies.AngularVelocityOf(id.index) + m.InverseInertia() * angularImpulse);
+    SetVelocityOf(world, id.index, world.bodies.LinearVelocityOf(id.index) + LimitedPush(impulse, m.inverseMass) * m.inverseMass,
+                  world.bodies.AngularVelocityOf(id.index) + m.InverseInertia() * LimitedPush(angularImpulse, Trace(m)));
     return Done{};
 }
 

@@ -20,12 +20,16 @@ public:
     Status Remove(BodyId id);
     bool Exists(BodyId id) const;
 
-    // Teleports; wakes it, what rested on it and what it now touches. Errors: UnknownId, NonFinite, Unnormalized.
+    // Teleports; wakes it, what rested on it and what it now touches. A body that is frozen is free again, at rest. Errors: UnknownId,
+    // NonFinite, Unnormalized.
     Status SetPose(BodyId id, const Position& position, const Quaternion& rotation);
-    // Gives a kinematic body the velocity with which it reaches the pose after `dt` seconds (> 0). Errors also: Unsupported.
+    // Gives a kinematic body the velocity with which it reaches the pose after `dt` seconds (> 0), if its largest speeds allow that.
+    // Errors also: Unsupported.
     Status MoveKinematic(BodyId id, const Position& position, const Quaternion& rotation, float dt);
-    Status SetVelocity(BodyId id, const Vector3& linear, const Vector3& angular);  // m/s, rad/s; wakes
-    // Acts during the next step only: N at a world point, N m; wakes. Errors: UnknownId, NonFinite, Unsupported (not dynamic).
+    // m/s, rad/s; wakes. Steps bring it down to the body's largest speeds. Errors: UnknownId, NonFinite, Unsupported (static, frozen).
+    Status SetVelocity(BodyId id, const Vector3& linear, const Vector3& angular);
+    // Acts during the next step only: N at a world point, N m; wakes. However large it is, the body stays within its largest speeds;
+    // where the sum of several is beyond the floats, it is frozen. Errors: UnknownId, NonFinite, Unsupported (not dynamic, frozen).
     Status AddForce(BodyId id, const Vector3& force);
     Status AddForceAt(BodyId id, const Vector3& force, const Position& point);
     Status AddTorque(BodyId id, const Vector3& torque);
@@ -84,7 +88,8 @@ public:
     uint64_t GetUserData(BodyId id) const;
     bool IsSensor(BodyId id) const;
     bool IsAwake(BodyId id) const;
-    bool IsFrozen(BodyId id) const;  // its state turned non-finite; SetPose revives it
+    // Its state turned non-finite: it stands at its last good pose like a static body, with no velocity. SetPose revives it.
+    bool IsFrozen(BodyId id) const;
 
 private:
     WorldState& world_;

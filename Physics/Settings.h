@@ -81,8 +81,8 @@ struct BodySettings {
     MotionType motion = MotionType::Dynamic;
     Position position = Position::Zero();         // m, of the shape's own origin
     Quaternion rotation{};                        // unit within 1e-3; normalised exactly
-    Vector3 linearVelocity = Vector3::Zero();     // m/s, of the centre of mass
-    Vector3 angularVelocity = Vector3::Zero();    // rad/s, world axes
+    Vector3 linearVelocity = Vector3::Zero();     // m/s, of the centre of mass; beyond 3e8 counts as that
+    Vector3 angularVelocity = Vector3::Zero();    // rad/s, world axes; beyond 1e6 counts as that
     float density = 1000.0f;                      // kg/m3, > 0; used where mass is 0
     float mass = 0.0f;                            // kg, >= 0; 0: density times volume
     Vector3 inertia = Vector3::Zero();            // kg m2 about the shape's principal axes; zero: the shape's own
@@ -91,8 +91,9 @@ struct BodySettings {
     float angularDamping = 0.0f;                  // 1/s, >= 0
     float gravityFactor = 1.0f;                   // finite
     LockedAxes lockedAxes = LockedAxes::None;
-    float maxLinearSpeed = 1000.0f;               // m/s, > 0: the step clamps to it
-    float maxAngularSpeed = 300.0f;               // rad/s, > 0
+    // No step leaves the body, dynamic or kinematic, faster than these, whatever pushes it, nor moves it farther than they allow.
+    float maxLinearSpeed = 1000.0f;               // m/s, > 0; more than 3e8 counts as that
+    float maxAngularSpeed = 300.0f;               // rad/s, > 0; more than 1e6 counts as that
     bool gyroscopicTorque = true;                 // conserve angular momentum of bodies whose inertia is not spherical
     bool allowSleep = true;
     bool startAsleep = false;                     // dynamic bodies only
@@ -114,21 +115,21 @@ struct SleepSettings {
 };
 
 struct SystemSettings {
-    Vector3 gravity = Vector3(0, -9.81f, 0);  // m/s2
+    Vector3 gravity = Vector3(0, -9.81f, 0);  // m/s2, up to 1e6 along each axis
     SolverSettings solver;
     SleepSettings sleep;
     NarrowPhaseMethod narrowPhase = NarrowPhaseMethod::Automatic;
-    float speculativeDistance = 0.02f;   // m, > 0: contacts begin at this separation, so that nothing bumps
+    float speculativeDistance = 0.02f;   // m, > 0, at most 1000: contacts begin at this separation, so that nothing bumps
     float penetrationSlop = 0.0f;       // m, >= 0: overlap that is left alone
     float contactFrequency = 60.0f;      // Hz, > 0, of the spring that pushes overlaps apart; a quarter of the substeps' rate at most
-    float contactDampingRatio = 1.0f;    // >= 0
-    float contactPushSpeed = 3.0f;       // m/s, > 0: the fastest push
+    float contactDampingRatio = 1.0f;    // 0..1e6
+    float contactPushSpeed = 3.0f;       // m/s, > 0, at most 1e6: the fastest push
     float jointFrequency = 60.0f;        // Hz, > 0, of the spring that pulls joints together; limited likewise
-    float jointDampingRatio = 1.0f;      // >= 0
+    float jointDampingRatio = 1.0f;      // 0..1e6
     // Joints that carry more than this times the mass of their own bodies are solved exactly, as trees, where they form such;
     // > 0, infinite: never.
     float exactJointLoad = 10.0f;
-    float jointPushSpeed = 20.0f;        // m/s and rad/s, > 0: the fastest pull
+    float jointPushSpeed = 20.0f;        // m/s and rad/s, > 0, at most 1e6: the fastest pull
     float restitutionSpeed = 0.5f;       // m/s, >= 0: slower impacts do not bounce
     float boundsMargin = 0.05f;          // m, > 0: fat bounds exceed the shape's by this
     // Bit j of layerCollides[i]: bodies of layer i and j collide. Must be symmetric.

@@ -29,11 +29,13 @@ struct StepReport {
     float largestPenetration = 0;                     // m, >= 0, as found by Collide
     BodyId deepestA, deepestB;
     CollideCounters libccd;
-    uint32_t frozenBodies = 0;                        // bodies stopped because their state turned non-finite
-    BodyId firstFrozen;
+    // Bodies that were stopped because numbers of theirs were not finite: frozen, where these were their own; where only what constraints
+    // made of their motion was, they are at rest where the step found them, and go on in the next.
+    uint32_t frozenBodies = 0;
+    BodyId firstFrozen;                               // the one with the lowest index
     uint32_t sweptBodies = 0, sweptHits = 0;          // of continuous collision: bodies that were cast, and what they hit
     uint32_t sensorTests = 0, sensorEvents = 0;       // pairs of a sensor and a body whose shapes were looked at; events
-    uint32_t clampedBodies = 0;                       // bodies that exceeded their speed limits
+    uint32_t clampedBodies = 0;                       // bodies that were held to their largest speeds
 };
 
 }  // namespace fulcrum

@@ -131,19 +131,22 @@ MaybeError Check(const BodySettings& s) {
 }
 
 MaybeError Check(const SystemSettings& s) {
-    if (MaybeError e = FirstOf(CheckFinite("gravity", s.gravity), CheckRange("solver.substeps", s.solver.substeps, 1, 64),
+    // Where more makes no sense, and products of it would leave the floats.
+    constexpr double kMost = 1e6;
+    if (MaybeError e = FirstOf(CheckFinite("gravity", s.gravity), CheckRange("gravity", double{s.gravity.cwiseAbs().maxCoeff()}, 0, kMost),
+                               CheckRange("solver.substeps", s.solver.substeps, 1, 64),
                                CheckRange("solver.velocityIterations", s.solver.velocityIterations, 1, 255),
                                CheckRange("solver.positionIterations", s.solver.positionIterations, 0, 255),
                                CheckNotNegative("sleep.seconds", s.sleep.seconds),
                                CheckNotNegative("sleep.linearSpeed", s.sleep.linearSpeed),
-                               CheckPositive("speculativeDistance", s.speculativeDistance),
+                               CheckPositive("speculativeDistance", s.speculativeDistance), CheckRange("speculativeDistance", s.speculativeDistance, 0, 1000),
                                CheckNotNegative("penetrationSlop", s.penetrationSlop),
                                CheckPositive("contactFrequency", s.contactFrequency),
-                               CheckNotNegative("contactDampingRatio", s.contactDampingRatio),
-                               CheckPositive("contactPushSpeed", s.contactPushSpeed),
+                               CheckNotNegative("contactDampingRatio", s.contactDampingRatio), CheckRange("contactDampingRatio", s.contactDampingRatio, 0, kMost),
+                               CheckPositive("contactPushSpeed", s.contactPushSpeed), CheckRange("contactPushSpeed", s.contactPushSpeed, 0, kMost),
                                CheckPositive("jointFrequency", s.jointFrequency),
-                               CheckNotNegative("jointDampingRatio", s.jointDampingRatio),
-                               CheckPositive("jointPushSpeed", s.jointPushSpeed),
+                               CheckNotNegative("jointDampingRatio", s.jointDampingRatio), CheckRange("jointDampingRatio", s.jointDampingRatio, 0, kMost),
+                               CheckPositive("jointPushSpeed", s.jointPushSpeed), CheckRange("jointPushSpeed", s.jointPushSpeed, 0, kMost),
                                s.exactJointLoad == std::numeric_limits<float>::infinity()
                                    ? MaybeError()
                                    : CheckPositive("exactJointLoad", s.exactJointLoad),

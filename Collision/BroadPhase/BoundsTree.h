@@ -26,7 +26,9 @@ class TreeRay;
 
 class BoundsTree {
 public:
-    // Ids are the caller's, dense from 0: memory grows with the largest. Bounds are finite, lower <= upper (asserted).
+    // Ids are the caller's, dense from 0: memory grows with the largest. Bounds have lower <= upper (asserted). What of them lies beyond
+    // +-kFarthest counts as lying there, and NaN as nowhere: no number that comes in can spoil the tree.
+    static constexpr float kFarthest = 1e38f;
     void Insert(uint32_t id, const Bounds& bounds);         // id is not in the tree
     void Remove(uint32_t id);                               // id is in the tree
     void Update(uint32_t id, const Bounds& bounds);         // id is in the tree
@@ -209,8 +211,11 @@ void BoundsTree::Query(const Bounds& bounds, Visitor&& visit) const {
     }
 }
 
+// All boxes of leaves come in by here. The second operand of Min is what NaN becomes.
 inline BoundsTree::Packed BoundsTree::Pack(const Bounds& b) {
-    return {{b.lower.x(), b.lower.y(), b.lower.z(), 0, -b.upper.x(), -b.upper.y(), -b.upper.z(), 0}};
+    Packed box = {{b.lower.x(), b.lower.y(), b.lower.z(), 0, -b.upper.x(), -b.upper.y(), -b.upper.z(), 0}};
+    Max(Min(Wide<8>::Load(box.lane), Wide<8>(kFarthest)), Wide<8>(-kFarthest)).Store(box.lane);
+    return box;
 }
 
 inline Bounds BoundsTree::Unpack(const Packed& box) {

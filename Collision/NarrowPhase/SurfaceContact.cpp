@@ -68,6 +68,9 @@ float DeepestOf(const Manifold& manifold) {
     return least;
 }
 
+// The deepest of so many directions hold any shape; a huge one may touch thousands of triangles, each turned otherwise.
+constexpr size_t kMostManifolds = 128;
+
 }  // namespace
 
 class SurfaceCollider {
@@ -360,12 +363,20 @@ private:
     }
 
     void AddWaiting() {
+        // The vertices of faces that touch; all vertices of what waits; for each of these whether it is known. Sorted, since a large
+        // shape may touch any number of them.
         std::vector<uint32_t>& known = contacts_.known_;
         std::sort(known.begin(), known.end());
-        const ptrdiff_t ofFaces = static_cast<ptrdiff_t>(known.size());
-        const auto isKnown = [&](uint32_t vertex) {
-            return std::binary_search(known.begin(), known.begin() + ofFaces, vertex) ||
-                   std::find(known.begin() + ofFaces, known.end(), vertex) != known.end();
+        const ptrdiff_t faces = static_cast<ptrdiff_t>(known.size());
+        for (const SurfaceContacts::Waiting& waiting : contacts_.waiting_) known.insert(known.end(), waiting.vertices, waiting.vertices + 2);
+        std::sort(known.begin() + faces, known.end());
+        known.erase(std::unique(known.begin() + faces, known.end()), known.end());
+        const ptrdiff_t asked = static_cast<ptrdiff_t>(known.size()) - faces;
+        known.resize(known.size() + static_cast<size_t>(asked));
+        for (ptrdiff_t i = 0; i < asked; ++i)
+            known[static_cast<size_t>(faces + asked + i)] = std::binary_search(known.begin(), known.begin() + faces, known[static_cast<size_t>(faces + i)]);
+        const auto isKnown = [&](uint32_t vertex) -> uint32_t& {
+            return *(std::lower_bound(known.begin() + faces, known.begin() + faces + asked, vertex) + asked);
         };
         std::sort(contacts_.waiting_.begin(), contacts_.waiting_.end(), [](const auto& x, const auto& y) {
             if (x.active != y.active) return x.active;
@@ -374,7 +385,7 @@ private:
         for (const SurfaceContacts::Waiting& waiting : contacts_.waiting_) {
             if (isKnown(waiting.vertices[0]) && isKnown(waiting.vertices[1])) continue;
             contacts_.found_.push_back(waiting.contact);
-            known.insert(known.end(), waiting.vertices, waiting.vertices + 2);
+            isKnown(waiting.vertices[0]) = isKnown(waiting.vertices[1]) = 1;
         }
     }
 
@@ -386,7 +397,7 @@ private:
                 const float dx = DeepestOf(x.manifold), dy = DeepestOf(y.manifold);
                 return dx < dy || (dx == dy && x.triangle < y.triangle);
             });
-        for (size_t i = 0; i < found.size(); ++i) {
+        for (size_t i = 0; i < found.size() && contacts_.manifoldCount_ < kMostManifolds; ++i) {
             if (found[i].manifold.pointCount == 0) continue;  // already part of another
             if (contacts_.manifolds_.size() == contacts_.manifoldCount_) contacts_.manifolds_.emplace_back();
             contacts_.manifolds_[contacts_.manifoldCount_++] = JoinInto(found, i);

@@ -34,6 +34,8 @@ class SurfaceContacts {
 public:
     // Of the last call, in an order that depends on the shapes and poses alone.
     std::span<const SurfaceManifold> Manifolds() const { return {manifolds_.data(), manifoldCount_}; }
+    // Of the surface, that were looked at.
+    size_t TriangleCount() const { return views_.size(); }
 
 private:
     friend class SurfaceCollider;

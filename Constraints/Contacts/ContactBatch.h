@@ -99,9 +99,9 @@ struct ContactSolveSettings {
 };
 
 // Fills the batch of `batch.contact[0 .. count)` from the records, which it may look at until they are stored; bodyB[] are the
-// second bodies.
+// second bodies. Returns the lanes, bit by bit, of which some number came out not finite: these do nothing.
 template <int N, bool kFixedB>
-void PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* records, const uint32_t (&bodyB)[N],
+uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* records, const uint32_t (&bodyB)[N],
                      const SolverBodies& bodies, const ContactPrepareSettings& settings);
 
 // Applies the impulses of the last step.

@@ -117,7 +117,9 @@ SurfaceMotion<Wide<N>> GatherSurfaceMotion(const ContactBatch<N, kFixedB>& batch
         spares[2 * i + 1] = row[7];
     }
     const Vec3<Real> linear(spares[0], spares[1], spares[2]), angular(spares[3], spares[4], spares[5]);
-    return {Dot<Real>(linear, batch.tangent1), Dot<Real>(linear, batch.tangent2), Dot<Real>(angular, batch.normal)};
+    const auto finite = (Dot<Real>(linear, linear) + Dot<Real>(angular, angular)) * Real(0.0f) == Real(0.0f);
+    const auto along = [&](const Vec3<Real>& v, const Vec3<Real>& axis) { return Select(finite, Dot<Real>(v, axis), Real(0.0f)); };
+    return {along(linear, batch.tangent1), along(linear, batch.tangent2), along(angular, batch.normal)};
 }
 
 // Torque about c of normal impulses: sum of (a t1 + b t2) x n l, with sums over a l and b l.

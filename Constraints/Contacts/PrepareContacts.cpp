@@ -1,10 +1,15 @@
 #include <Fulcrum/Constraints/Contacts/ContactKernels.h>
 
+#include <limits>
+
 namespace fulcrum {
 
 namespace {
 
 using namespace contacts;
+
+// Coefficients above this hold as this one does; a limit of force must be a number.
+constexpr float kMostFriction = 1e6f;
 
 // Sums, over both bodies, what the response matrices are made of.
 template <class Real>
@@ -42,6 +47,55 @@ struct Responses {
 template <class Real>
 Real InverseOrZero(Real x) {
     return Select(x > Real(0.0f), Real(1.0f) / Max(x, Real(1e-30f)), Real(0.0f));
+}
+
+// The lanes whose numbers are all finite. Masses, sizes and speeds may each be so extreme that no float holds what they make together.
+template <int N, bool kFixedB>
+[[gnu::always_inline]] inline WideMask<N> FiniteLanes(const ContactBatch<N, kFixedB>& batch, const Responses<Wide<N>>& responses,
+                                                          const Wide<N>& diagonals) {
+    using Real = Wide<N>;
+    const Real zero(0.0f);
+    // Zero times a number is zero if the number is finite, and NaN if it is not. The other responses lie between these.
+    Real odd = (responses.normal[0] + responses.normal[3] + responses.normal[5] + diagonals) * zero;
+    for (int k = 0; k < 3; ++k) odd += (batch.normal[k] + batch.armA[k]) * zero + (responses.friction[k] + batch.frictionImpulse[k]) * zero;
+    for (int i = 0; i < batch.pointCount; ++i)
+        odd += (batch.rows[i].startSeparation + batch.rows[i].impulse + batch.rows[i].a + batch.rows[i].b) * zero;
+    if constexpr (kFixedB) {
+        const auto& side = batch.sideB;
+        for (int k = 0; k < 3; ++k) odd += (side.velocity.linear[k] + side.velocity.angular[k]) * zero + side.acceleration[k] * zero;
+    }
+    return odd == zero;
+}
+
+// Makes the other lanes contacts that do nothing.
+template <int N, bool kFixedB>
+[[gnu::noinline, gnu::cold]] void KeepLanes(ContactBatch<N, kFixedB>& batch, WideMask<N> kept) {
+    using Real = Wide<N>;
+    const auto keep = [&](Real& x) { x = Select(kept, x, Real(0.0f)); };
+    const auto keepVector = [&](Vec3<Real>& v) {
+        for (int k = 0; k < 3; ++k) keep(v[k]);
+    };
+    const auto keepMass = [&](InverseMass<Real>& m) {
+        for (Real* x : {&m.mass, &m.inertia.xx, &m.inertia.yy, &m.inertia.zz, &m.inertia.xy, &m.inertia.xz, &m.inertia.yz}) keep(*x);
+    };
+    for (Vec3<Real>* v : {&batch.normal, &batch.tangent1, &batch.tangent2, &batch.armA}) keepVector(*v);
+    keepMass(batch.inverseA);
+    if constexpr (kFixedB) {
+        for (Vec3<Real>* v : {&batch.sideB.velocity.linear, &batch.sideB.velocity.angular, &batch.sideB.acceleration}) keepVector(*v);
+    } else {
+        keepVector(batch.sideB.arm);
+        keepMass(batch.sideB.inverse);
+    }
+    for (int i = 0; i < batch.pointCount; ++i)
+        for (Real* x : {&batch.rows[i].a, &batch.rows[i].b, &batch.rows[i].inverseResponse, &batch.rows[i].startSeparation, &batch.rows[i].separation,
+                        &batch.rows[i].impulse})
+            keep(*x);
+    for (Real& x : batch.response) keep(x);
+    for (int k = 0; k < 3; ++k) {
+        for (Real* x : {&batch.frictionInverse[k], &batch.frictionResponse[k], &batch.frictionImpulse[k]}) keep(*x);
+        for (Real& x : batch.coupling[k]) keep(x);
+    }
+    for (Real* x : {&batch.friction, &batch.twistRadius, &batch.relaxedImpulse}) keep(*x);
 }
 
 template <int N, bool kFixedB>
@@ -96,13 +150,14 @@ void AddSurfaceMotion(ContactBatch<N, true>& batch, Wide<N> moves, const Contact
 }  // namespace
 
 template <int N, bool kFixedB>
-void PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* records, const uint32_t (&bodyB)[N],
+uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* records, const uint32_t (&bodyB)[N],
                      const SolverBodies& bodies, const ContactPrepareSettings& settings) {
     using Real = Wide<N>;
     const Real zero(0.0f);
     Real head[8], impulses[8];
     GatherRecordRow<N>(batch.contact, records, 0, head);
     GatherRecordRow<N>(batch.contact, records, 1, impulses);
+    head[3] = Select(head[3] <= Real(static_cast<float>(ContactRecord::kMaxPoints)), Max(head[3], zero), zero);
     const Vec3<Real> between = GatherOffset<N>(batch.bodyA, bodyB, bodies.poses);
     const Mat3<Real> rotation = ToMatrix(GatherRotation<N>(batch.bodyA, bodies.poses));
     const Mat3<Real> rotationB = ToMatrix(GatherRotation<N>(bodyB, bodies.poses));
@@ -112,7 +167,7 @@ void PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* recor
     batch.normal = n;
     batch.tangent1 = t1;
     batch.tangent2 = t2;
-    batch.friction = head[4];
+    batch.friction = Min(head[4], Real(kMostFriction));
     batch.twistRadius = head[6];
     batch.pointCount = static_cast<int32_t>(HorizontalMax(head[3]));
     batch.bounces = HorizontalMax(head[5]) > 0.0f;
@@ -172,6 +227,7 @@ void PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* recor
 
     // J of a point: n-row + b t1-row - a t2-row.
     const auto& g = responses.normal;
+    Real diagonals = zero;
     for (int i = 0; i < batch.pointCount; ++i) {
         auto& row = batch.rows[i];
         const Vec3<Real> offset = points[i] - centre;
@@ -180,6 +236,7 @@ void PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* recor
         const Real two(2.0f);
         const Real diagonal = g[0] + two * (row.b * g[1] - row.a * g[2]) + row.b * row.b * g[3] -
                               two * row.a * row.b * g[4] + row.a * row.a * g[5];
+        diagonals += diagonal;
         const auto used = head[3] > Real(static_cast<float>(i));
         row.inverseResponse = Select(used, InverseOrZero(diagonal), zero);
         row.a = Select(used, row.a, zero);
@@ -193,7 +250,10 @@ void PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* recor
     }
     if constexpr (kFixedB)
         if (surfaceMoves) AddSurfaceMotion(batch, head[7], records);
+    const auto finite = FiniteLanes(batch, responses, diagonals);
+    if (!finite.All()) KeepLanes(batch, finite);
     if (batch.bounces) PrepareBounces(batch, head[5], bodyB, bodies, settings);
+    return (~finite).ToBits();
 }
 
 template <int N, bool kFixedB>
@@ -205,13 +265,15 @@ void StoreContacts(const ContactBatch<N, kFixedB>& batch, ContactRecord* records
     row[7] = batch.frictionImpulse[2];
     if (impulseScale != 1.0f)
         for (Wide<N>& x : row) x = x / Wide<N>(impulseScale);
+    // An impulse beyond the floats would push for ever.
+    for (Wide<N>& x : row) x = Select(Abs(x) <= Wide<N>(std::numeric_limits<float>::max()), x, Wide<N>(0.0f));
     float* rows[N];
     for (int lane = 0; lane < N; ++lane) rows[lane] = records[batch.contact[lane]].impulse;
     ScatterRows<N>(rows, row, batch.count);
 }
 
 #define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                              \
-    template void PrepareContacts(ContactBatch<lanes, fixedB>&, const ContactRecord*, const uint32_t(&)[lanes],         \
+    template uint32_t PrepareContacts(ContactBatch<lanes, fixedB>&, const ContactRecord*, const uint32_t(&)[lanes],         \
                                   const SolverBodies&, const ContactPrepareSettings&);                                  \
     template void StoreContacts(const ContactBatch<lanes, fixedB>&, ContactRecord*, float);
 FULCRUM_FOR_EACH_CONTACT_BATCH(FULCRUM_INSTANTIATE)

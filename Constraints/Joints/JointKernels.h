@@ -72,6 +72,23 @@ template <int N>
     GatherRows<N>(rows, out);
 }
 
+// Arms and distances of anchors: what is farther along an axis counts as that far. It is pulled no faster for being farther away, and the
+// inertia at the end of a longer arm may be beyond the floats.
+template <class Real>
+[[gnu::always_inline]] inline Vec3<Real> WithinReach(const Vec3<Real>& v) {
+    const Real farthest(1e6f);
+    Vec3<Real> result;
+    for (int k = 0; k < 3; ++k) result[k] = Max(Min(Real(v[k]), farthest), -farthest);
+    return result;
+}
+
+// The locks' impulses of the last substep; what is not finite as zero.
+template <int N>
+[[gnu::always_inline]] inline void GatherImpulses(const uint32_t (&joints)[N], const JointRecord* records, Wide<N> (&out)[8]) {
+    GatherRecordRow<N>(joints, records, JointRecord::kOwn, out);
+    for (Wide<N>& x : out) x = Select(Abs(x) < Wide<N>(JointRow::kUnlimited), x, Wide<N>(0.0f));
+}
+
 // Writes a row of the first `count` records; what is not finite as zero.
 template <int N>
 [[gnu::always_inline]] inline void ScatterRecordRow(const uint32_t (&joints)[N], int count, JointRecord* records, int row,

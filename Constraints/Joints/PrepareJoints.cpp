@@ -18,6 +18,8 @@ Vec3<Real> Column(const Quat<Real>& rotation, const Real& index) {
     return column;
 }
 
+Vector3 FiniteOrZero(const Vector3& v) { return IsFinite(v) ? v : Vector3(Vector3::Zero()); }
+
 template <int N>
 void SetLane(Vec3<Wide<N>>& v, int lane, const Vector3& value) {
     for (int k = 0; k < 3; ++k) v[k].Set(lane, value[k]);
@@ -68,7 +70,7 @@ void FillLane(JointRows<N>& rows, int lane, const JointRow& row, float previousI
     rows.highest.Set(lane, highest);
     rows.turnsWithA.Set(lane, row.turnsWithA ? 1.0f : 0.0f);
     rows.radial.Set(lane, row.radial ? 1.0f : 0.0f);
-    rows.impulse.Set(lane, Clamp(previousImpulse * s.impulseScale, lowest, highest));
+    rows.impulse.Set(lane, std::isfinite(previousImpulse) ? Clamp(previousImpulse * s.impulseScale, lowest, highest) : 0.0f);
 }
 
 // Springs: after the masses are known. They are not relaxed: their force is what they are for.
@@ -115,8 +117,8 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
         pose.frameB = frameOf(batch.bodyB[lane], record.frameB);
         pose.velocityA = velocityOf(batch.bodyA[lane]);
         pose.velocityB = velocityOf(batch.bodyB[lane]);
-        pose.turnedA = types[batch.joint[lane]]->turnedA;
-        pose.turnedB = types[batch.joint[lane]]->turnedB;
+        pose.turnedA = FiniteOrZero(types[batch.joint[lane]]->turnedA);
+        pose.turnedB = FiniteOrZero(types[batch.joint[lane]]->turnedB);
         pose.dt = settings.dt;
         pose.substepDt = settings.substepDt;
         const BodyPose& a = bodies.poses[batch.bodyA[lane]];
@@ -149,7 +151,7 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
     Real head[8], frames[8], impulses[8];
     GatherRecordRow<N>(batch.joint, records, JointRecord::kAnchors, head);
     GatherRecordRow<N>(batch.joint, records, JointRecord::kFrames, frames);
-    GatherRecordRow<N>(batch.joint, records, JointRecord::kOwn, impulses);
+    GatherImpulses<N>(batch.joint, records, impulses);
     const auto turnsA = GatherMass<N>(batch.bodyA, bodies.masses, batch.massA);
     const auto turnsB = GatherMass<N>(batch.bodyB, bodies.masses, batch.massB);
     batch.turns = Select(turnsA | turnsB, Real(1.0f), Real(0.0f));
@@ -158,9 +160,9 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
     const Quat<Real> rotationA = GatherRotation<N>(batch.bodyA, bodies.poses), rotationB = GatherRotation<N>(batch.bodyB, bodies.poses);
 
     JointPlace<Real> place;
-    place.armA = Rotate<Real>(rotationA, Vec3<Real>(head[0], head[1], head[2]));
-    place.armB = Rotate<Real>(rotationB, Vec3<Real>(head[3], head[4], head[5]));
-    place.offset = between + place.armB - place.armA;
+    place.armA = WithinReach<Real>(Rotate<Real>(rotationA, Vec3<Real>(head[0], head[1], head[2])));
+    place.armB = WithinReach<Real>(Rotate<Real>(rotationB, Vec3<Real>(head[3], head[4], head[5])));
+    place.offset = WithinReach<Real>(between + place.armB - place.armA);
     const Quat<Real> frameA = rotationA * Quat<Real>{frames[0], frames[1], frames[2], frames[3]};
     const Quat<Real> frameB = rotationB * Quat<Real>{frames[4], frames[5], frames[6], frames[7]};
     batch.startArmA = place.armA;
@@ -279,7 +281,7 @@ void ScatterWrench(const JointBatch<N>& batch, JointRecord* records, int row, co
 Vector3 TurnOf(const BodyState& state, bool kinematic, float dt) {
     Vector3 turn;
     for (int k = 0; k < 3; ++k) turn[k] = kinematic ? state.angularVelocity[k] * dt : state.deltaRotation[k];
-    return IsFinite(turn) ? turn : Vector3(Vector3::Zero());
+    return FiniteOrZero(turn);
 }
 
 }  // namespace

@@ -210,11 +210,14 @@ void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const Solver
     using Real = Wide<N>;
     Real anchors[8], impulses[8];
     GatherRecordRow<N>(batch.joint, records, JointRecord::kAnchors, anchors);
-    GatherRecordRow<N>(batch.joint, records, JointRecord::kOwn, impulses);
+    GatherImpulses<N>(batch.joint, records, impulses);
     BallPlace<Real> place;
-    place.armA = batch.startArmA = Rotate<Real>(GatherRotation<N>(batch.bodyA, bodies.poses), Vec3<Real>(anchors[0], anchors[1], anchors[2]));
-    place.armB = batch.startArmB = Rotate<Real>(GatherRotation<N>(batch.bodyB, bodies.poses), Vec3<Real>(anchors[3], anchors[4], anchors[5]));
-    place.offset = batch.startOffset = GatherOffset<N>(batch.bodyA, batch.bodyB, bodies.poses) + place.armB - place.armA;
+    const auto armAt = [&](const uint32_t(&body)[N], int first) {
+        return WithinReach<Real>(Rotate<Real>(GatherRotation<N>(body, bodies.poses), Vec3<Real>(anchors[first], anchors[first + 1], anchors[first + 2])));
+    };
+    place.armA = batch.startArmA = armAt(batch.bodyA, 0);
+    place.armB = batch.startArmB = armAt(batch.bodyB, 3);
+    place.offset = batch.startOffset = WithinReach<Real>(GatherOffset<N>(batch.bodyA, batch.bodyB, bodies.poses) + place.armB - place.armA);
     MeetBetween(batch, place);
     batch.armA = place.armA;
     batch.armB = place.armB;

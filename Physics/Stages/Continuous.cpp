@@ -1,6 +1,7 @@
 // Continuous collision: what moved far in this step is cast along its way. Where it hits, it bounces there and then, and goes on with
 // what is left of the step. In rounds: all casts in parallel; then the hits in the order of their times, as long as both bodies' courses
 // still are those that were cast; what changed its course, or lost its partner, is cast again.
+#include <Fulcrum/Physics/Stages/BodyLimits.h>
 #include <Fulcrum/Physics/Stages/Impact.h>
 #include <Fulcrum/Physics/Stages/SweepCast.h>
 
@@ -206,7 +207,9 @@ private:
         for (int s = 0; s < 2; ++s) {
             if (!world_.bodies.CanMove(bodies[s])) continue;
             world_.bodies.masses[bodies[s]] = impact.masses[s];
-            world_.bodies.SetVelocity(bodies[s], impact.linear[s] + impact.gain[s], impact.angular[s]);
+            Vector3 v = impact.linear[s] + impact.gain[s], w = impact.angular[s];
+            world_.report.clampedBodies += LimitSpeeds(world_, bodies[s], v, w);
+            world_.bodies.SetVelocity(bodies[s], v, w);
             world_.bodies.dynamics[bodies[s]].slowSeconds = 0;
         }
         return true;
@@ -282,7 +285,9 @@ void Finish(WorldState& world) {
     world.jobs->ParallelFor(static_cast<uint32_t>(store.swept.size()), 32, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i) {
             const Sweep& sweep = store.swept[i];
-            if (sweep.isCut && world.bodies.CanMove(sweep.body)) world.bodies.SetCentrePose(sweep.body, sweep.PoseAt(1));
+            const Pose end = sweep.PoseAt(1);
+            if (sweep.isCut && world.bodies.CanMove(sweep.body) && IsFinite(end.position) && IsFinite(end.rotation))
+                world.bodies.SetCentrePose(sweep.body, end);
             store.places[sweep.body] = SweepStore::kNone;
         }
     });

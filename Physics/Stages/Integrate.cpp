@@ -3,6 +3,7 @@
 #include <Fulcrum/Constraints/BodyLanes.h>
 #include <Fulcrum/Constraints/Joints/JointKernels.h>
 #include <Fulcrum/Math/Trigonometry.h>
+#include <Fulcrum/Physics/Stages/BodyLimits.h>
 
 #include <algorithm>
 
@@ -38,8 +39,7 @@ void IntegrateVelocity(WorldState& world, uint32_t body, float h, bool again, Wo
     }
     // What is not finite must not reach the rows: its neighbours go on. Store finds the forces and freezes it.
     if (!IsFinite(v) || !IsFinite(w)) v = w = carryV = carryW = Vector3::Zero();
-    const bool fastLinear = ClampLength(v, d.maxLinearSpeed), fastAngular = ClampLength(w, d.maxAngularSpeed);
-    findings.clamped += fastLinear || fastAngular;
+    findings.clamped += LimitSpeeds(world, body, v, w);
     for (int k = 0; k < 3; ++k) {
         unconstrained[k] = v[k];
         unconstrained[3 + k] = w[k];
@@ -75,9 +75,24 @@ void TurnInertia(BodyStore& bodies, uint32_t body, float h) {
     bodies.UpdateInertia(body, axes);
 }
 
-void IntegratePose(WorldState& world, uint32_t body, float h) {
+// What constraints made of a body's velocity, before it moves with it. What is not finite must not reach the poses either, by which
+// the constraints of its neighbours see it.
+void LimitSolved(WorldState& world, uint32_t body, WorkerFindings& findings) {
+    BodyStore& bodies = world.bodies;
+    Vector3 v = bodies.LinearVelocityOf(body), w = bodies.AngularVelocityOf(body);
+    if (IsFinite(v) && IsFinite(w)) {
+        findings.clamped += LimitSpeeds(world, body, v, w);
+    } else {
+        v = w = Vector3::Zero();
+        bodies.unconstrained[body] = {};
+    }
+    bodies.SetVelocity(body, v, w);
+}
+
+void IntegratePose(WorldState& world, uint32_t body, float h, WorkerFindings& findings) {
     const BodyDynamics& d = world.bodies.dynamics[body];
     if (d.motion != MotionType::Dynamic) return;
+    LimitSolved(world, body, findings);
     BodyState& s = world.bodies.states[body];
     if (d.lockedAxes != LockedAxes::None) {
         Vector3 v = world.bodies.LinearVelocityOf(body), w = world.bodies.AngularVelocityOf(body);
@@ -129,6 +144,12 @@ struct Rows {
     }
 };
 
+// Of velocities and a largest speed; what is not finite is beyond any.
+WideMask<kLanes> IsWithin(const Vec3<Lanes>& v, const Lanes& limit) {
+    const Lanes squared = Dot<Lanes>(v, v);
+    return (squared <= limit * limit) & (squared < Lanes(std::numeric_limits<float>::infinity()));
+}
+
 // Whether that was all there is to do; else nothing is done.
 bool IntegrateVelocitiesInLanes(WorldState& world, const Indices& index, int count, float h, bool again) {
     BodyStore& bodies = world.bodies;
@@ -144,11 +165,7 @@ bool IntegrateVelocitiesInLanes(WorldState& world, const Indices& index, int cou
     const Rows pose(index, [&](uint32_t body) { return bodies.poses[body].rotation; });
     const Vec3<Lanes> acceleration(pose.at[4], pose.at[5], pose.at[6]);
     const Vec3<Lanes> v = velocity.First() + acceleration * Lanes(h), w = velocity.Second();
-    const auto isFine = [&](const Vec3<Lanes>& x, const Lanes& limit) {
-        const Lanes squared = Dot<Lanes>(x, x);
-        return (squared <= limit * limit) & (squared < Lanes(std::numeric_limits<float>::infinity()));
-    };
-    if (!(isFine(v, maxLinear) & isFine(w, maxAngular)).All()) return false;
+    if (!(IsWithin(v, maxLinear) & IsWithin(w, maxAngular)).All()) return false;
     Vec3<Lanes> carryV(zero, zero, zero), carryW(zero, zero, zero);
     if (again) {
         carryV = velocity.First() - unconstrained.First();
@@ -191,6 +208,8 @@ bool IntegratePosesInLanes(WorldState& world, const Indices& index, int count, f
         gyroscopic[i] = d.HasGyroscopicTorque() ? 1.0f : 0.0f;
     }
     Rows velocity(index, [&](uint32_t body) { return bodies.states[body].VelocityRow(); });
+    const Rows limits(index, [&](uint32_t body) { return bodies.dynamics[body].LimitsRow(); });
+    if (!(IsWithin(velocity.First(), limits.at[3]) & IsWithin(velocity.Second(), limits.at[4])).All()) return false;
     Rows displacement(index, [&](uint32_t body) { return bodies.states[body].PoseRow(); });
     const Vec3<Lanes> turn = velocity.Second() * Lanes(h);
     Vec3<Lanes> rotation = displacement.Second();
@@ -240,9 +259,9 @@ void IntegrateVelocities(WorldState& world, std::span<const uint32_t> bodies, fl
                 [&](uint32_t body) { IntegrateVelocity(world, body, h, again, findings); });
 }
 
-void IntegratePoses(WorldState& world, std::span<const uint32_t> bodies, float h) {
+void IntegratePoses(WorldState& world, std::span<const uint32_t> bodies, float h, WorkerFindings& findings) {
     VisitBodies(bodies, [&](const Indices& index, int count) { return IntegratePosesInLanes(world, index, count, h); },
-                [&](uint32_t body) { IntegratePose(world, body, h); });
+                [&](uint32_t body) { IntegratePose(world, body, h, findings); });
 }
 
 }  // namespace fulcrum

@@ -10,8 +10,8 @@ namespace fulcrum {
 // then get the change of velocity that constraints gave them in the last one.
 void IntegrateVelocities(WorldState& world, std::span<const uint32_t> bodies, float h, bool again, WorkerFindings& findings);
 
-// Displacements, for h seconds; of jointed bodies the inertia and the gyroscopic torque, too.
-void IntegratePoses(WorldState& world, std::span<const uint32_t> bodies, float h);
+// Displacements, for h seconds, at the largest speeds at most; of jointed bodies the inertia and the gyroscopic torque, too.
+void IntegratePoses(WorldState& world, std::span<const uint32_t> bodies, float h, WorkerFindings& findings);
 
 // The angular velocity after h seconds of gyroscopic torque, at the principal axes then reached: Euler's equations in the frame
 // of the body, by the implicit midpoint rule. As there, the energy stays, and a body of revolution keeps the spin about its
@@ -34,9 +34,10 @@ template <class Real>
         end = start + Vec3<Real>(rate.x() * middle.y() * middle.z(), rate.y() * middle.z() * middle.x(), rate.z() * middle.x() * middle.y());
     }
     const Vec3<Real> turned = axes * Vec3<Real>(end * Sqrt(energyOf(start) / energyOf(end)));
-    // A moment without end has no torque.
+    // A moment without end has no torque, and where moments differ by more than floats hold, nothing is known of it.
+    const auto isKnown = (product > Real(0.0f)) & ((turned[0] + turned[1] + turned[2]) * Real(0.0f) == Real(0.0f));
     Vec3<Real> result;
-    for (int k = 0; k < 3; ++k) result[k] = Select(product > Real(0.0f), Real(turned[k]), Real(w[k]));
+    for (int k = 0; k < 3; ++k) result[k] = Select(isKnown, Real(turned[k]), Real(w[k]));
     return result;
 }
 

@@ -37,6 +37,11 @@ void ForgetFriction(ContactRecord& record) {
     for (float& f : record.frictionImpulse) f = 0;
 }
 
+bool IsUsable(const Vector3& normal) { return std::fabs(LengthSquared(normal) - 1) < 0.1f; }
+bool IsUsable(const Vector3& normal, const Vector3& onA, float separation) {
+    return IsFinite(onA) && IsFinite(Vector3(onA + normal * separation));
+}
+
 // Nothing touches.
 void Forget(Pair& pair, ContactRecord& record) {
     if (pair.pointCount == 0) ForgetFriction(record);
@@ -71,8 +76,11 @@ void WriteManifold(const WorldState& world, const PairView& v, const Manifold& m
     ContactRecord& record = v.record;
     const Vector3 normal = pair.offset ? Rotate(world.colliders.shapes[pair.colliderA].local.rotation, manifold.normal)
                                        : manifold.normal;
+    // Shapes of extreme sizes, or far apart, can bring any pair function beyond the floats: nothing of that gets into a record.
+    const bool isUsable = manifold.pointCount == 0 || IsUsable(normal);
+    if (!isUsable) pair.cache = {};
+    if (manifold.pointCount == 0 || !isUsable) return Forget(pair, record);
     for (int k = 0; k < 3; ++k) record.normal[k] = normal[k];
-    if (manifold.pointCount == 0) return Forget(pair, record);
     float oldImpulses[Manifold::kMaxPoints];
     std::copy(record.impulse, record.impulse + Manifold::kMaxPoints, oldImpulses);
     const int oldCount = pair.pointCount;
@@ -90,6 +98,7 @@ void WriteManifold(const WorldState& world, const PairView& v, const Manifold& m
     for (int i = 0; i < manifold.pointCount; ++i) {
         const ManifoldPoint& found = manifold.points[i];
         const Vector3 onA = ToBody(world, pair, pair.colliderA, found.positionOnA);
+        if (!IsUsable(normal, onA, found.separation)) continue;
         const Vector3 meets = onA + normal * found.separation;  // on B, in A's frame
         const Vector3 velocity = vB + Cross<float>(wB, Vector3(meets - v.bodyBInA.position)) - vA - Cross<float>(wA, onA);
         const float approach = -Dot<float>(velocity, normal);

@@ -35,6 +35,16 @@ void Prefetch(const WorldState& world, std::span<const Entry> entries) {
     }
 }
 
+// Has the contacts of these lanes, of which numbers are not finite, found anew in the next step.
+template <int N, bool kFixedB>
+[[gnu::cold]] void ForgetContacts(WorldState& world, const ContactBatch<N, kFixedB>& batch, uint32_t lanes) {
+    for (int lane = 0; lane < batch.count; ++lane)
+        if (lanes >> lane & 1u) {
+            world.pairs.pairs[batch.contact[lane]].pointCount = 0;
+            world.pairs.records[batch.contact[lane]].pointCount = 0;
+        }
+}
+
 // Fills the batch with at most N contacts; lanes beyond them repeat the last one and are never written.
 template <int N, bool kFixedB>
 void Fill(WorldState& world, ContactBatch<N, kFixedB>& batch, std::span<const Entry> entries,
@@ -47,7 +57,8 @@ void Fill(WorldState& world, ContactBatch<N, kFixedB>& batch, std::span<const En
         batch.bodyA[lane] = entry.bodyA;
         bodyB[lane] = entry.bodyB;
     }
-    PrepareContacts<N, kFixedB>(batch, world.pairs.records.data(), bodyB, world.bodies.ForSolver(), settings);
+    const uint32_t unusable = PrepareContacts<N, kFixedB>(batch, world.pairs.records.data(), bodyB, world.bodies.ForSolver(), settings);
+    if (unusable != 0) ForgetContacts(world, batch, unusable);
     findings.bounces |= batch.bounces;
     NoteDeepest(batch, findings);
 }

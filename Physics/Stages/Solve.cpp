@@ -99,7 +99,7 @@ private:
     }
 
     void RunBodies(Verb verb, uint8_t substep, std::span<const uint32_t> bodies, WorkerFindings& findings) {
-        if (verb == Verb::IntegratePoses) IntegratePoses(world_, bodies, h_);
+        if (verb == Verb::IntegratePoses) IntegratePoses(world_, bodies, h_, findings);
         else IntegrateVelocities(world_, bodies, h_, substep > 0, findings);
     }
 

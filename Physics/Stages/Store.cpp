@@ -1,6 +1,7 @@
 // Ends the step for each body: what was solved moves by the sum of its substeps, what nothing touched flies freely and
 // exactly. Impulses go back to the records.
 #include <Fulcrum/Math/Trigonometry.h>
+#include <Fulcrum/Physics/Stages/BodyLimits.h>
 #include <Fulcrum/Physics/Stages/Effort.h>
 #include <Fulcrum/Physics/Stages/FreeRotation.h>
 #include <Fulcrum/Physics/Stages/Integrate.h>
@@ -31,17 +32,22 @@ bool FlyFreely(WorldState& world, Ending& ending, const StepContext& step, Worke
     ending.fliesFreely = true;
     v += Vector3(a[0], a[1], a[2]) * step.dt;
     if (d.linearDamping > 0) v *= Exp(-d.linearDamping * step.dt);
+    if (d.lockedAxes != LockedAxes::None) d.Lock(v, w);
+    findings.clamped += LimitSpeeds(world, ending.body, v, w);
     Vector3& change = ending.displacement;
     change = (before + v) * (0.5f * step.dt);
-    if (d.lockedAxes != LockedAxes::None) {
-        d.Lock(v, w);
-        d.Lock(change, w);
+    if (d.lockedAxes != LockedAxes::None) d.Lock(change, w);
+    const bool feelsTop = d.FeelsGyroscopicTorque(w);
+    if (d.hasForce) {
+        const Vector3 torque = world.bodies.cold[ending.body].torque;
+        Vector3 pushed = w + world.bodies.masses[ending.body].InverseInertia() * torque * step.dt;
+        const bool isLimited = LengthSquared(pushed) > d.maxAngularSpeed * d.maxAngularSpeed;
+        // What a torque spins up to the largest speed is there at once.
+        if (isLimited) findings.clamped += LimitSpeeds(world, ending.body, v, pushed);
+        if (isLimited || !feelsTop) w = pushed;
+        else ending.turn.torque = torque;
     }
-    const bool fastLinear = ClampLength(v, d.maxLinearSpeed), fastAngular = ClampLength(w, d.maxAngularSpeed);
-    findings.clamped += fastLinear || fastAngular;
-    if (d.hasForce) ending.turn.torque = world.bodies.cold[ending.body].torque;
-    if (d.FeelsGyroscopicTorque(w)) return true;
-    if (d.hasForce) w += world.bodies.masses[ending.body].InverseInertia() * ending.turn.torque * step.dt;
+    if (feelsTop) return true;
     ending.turn.rotation = Normalized(RotationFromVector(Vector3(w * step.dt)) * ending.turn.rotation);
     return false;
 }
@@ -62,16 +68,6 @@ void ForgetForces(WorldState& world, uint32_t body) {
     world.bodies.cold[body].force.setZero();
     world.bodies.cold[body].torque.setZero();
     world.bodies.dynamics[body].hasForce = false;
-}
-
-// Stops a body whose state is not finite, at its last good pose; it stays there like a static one.
-void Freeze(WorldState& world, uint32_t body, WorkerFindings& findings) {
-    world.bodies.SetVelocity(body, Vector3::Zero(), Vector3::Zero());
-    world.bodies.dynamics[body].frozen = true;
-    world.bodies.UpdateInertia(body);
-    ForgetForces(world, body);
-    ++findings.frozen;
-    findings.firstFrozen = std::min(findings.firstFrozen, body);
 }
 
 // m/s, of the farthest point of a body that moves by v and turns by w, at most. By its outer ball, or, where that is too fast to
@@ -121,7 +117,10 @@ bool BeginEnding(WorldState& world, uint32_t body, const StepContext& step, Work
     BodyStore& bodies = world.bodies;
     const BodyDynamics& d = bodies.dynamics[body];
     together = false;
-    if (d.frozen) return false;
+    if (d.frozen) {
+        bodies.states[body] = {};  // whatever rows have made of it
+        return false;
+    }
     ending = {.body = body, .v = bodies.LinearVelocityOf(body), .turn = {&d, bodies.RotationOf(body), bodies.AngularVelocityOf(body)}};
     if (KeepsStarts(world)) world.sweeps.starts[body] = {bodies.CentrePoseOf(body), world.report.step};
     if (d.motion == MotionType::Kinematic) {
@@ -141,14 +140,14 @@ void FinishEnding(WorldState& world, Ending& ending, const StepContext& step, Wo
     BodyStore& bodies = world.bodies;
     const uint32_t body = ending.body;
     const BodyDynamics& d = bodies.dynamics[body];
-    const Vector3& v = ending.v;
-    Vector3& w = ending.turn.angularVelocity;
+    Vector3 &v = ending.v, &w = ending.turn.angularVelocity;
     if (ending.fliesFreely && d.angularDamping > 0) w *= Exp(-d.angularDamping * step.dt);
-    bodies.states[body] = {};
-    if (!IsFinite(ending.displacement) || !IsFinite(ending.turn.rotation) || !IsFinite(v) || !IsFinite(w) || !PushIsFinite(world, body)) {
-        Freeze(world, body, findings);
-        return;
-    }
+    if (!PushIsFinite(world, body)) return Freeze(world, body, findings);
+    if (!IsFinite(ending.displacement) || !IsFinite(ending.turn.rotation) || !IsFinite(v) || !IsFinite(w)) return Stop(world, body, findings);
+    BodyState& state = bodies.states[body];
+    const float (&kept)[2] = state.velocitySpare;
+    state = {.velocitySpare = {kept[0], kept[1]}};
+    findings.clamped += LimitSpeeds(world, body, v, w);
     bodies.SetVelocity(body, v, w);
     bodies.MoveCentre(body, ending.displacement, ending.turn.rotation);
     if (d.hasForce) ForgetForces(world, body);
@@ -252,16 +251,14 @@ void Store(WorldState& world, const StepContext& step) {
     BreakJoints(world);
     world.lastSubstepDt = step.substepDt;
 
+    SettleStopped(world);
     uint32_t firstFrozen = ~0u;
     for (const WorkerFindings& findings : world.findings) {
         world.report.clampedBodies += findings.clamped;
         world.report.frozenBodies += findings.frozen;
         firstFrozen = std::min(firstFrozen, findings.firstFrozen);
     }
-    if (firstFrozen == ~0u) return;
-    world.report.firstFrozen = world.bodies.IdOf(firstFrozen);
-    for (uint32_t body : world.bodies.awake)
-        if (world.bodies.dynamics[body].frozen) RecolourJointsOf(world, body);
+    if (firstFrozen != ~0u) world.report.firstFrozen = world.bodies.IdOf(firstFrozen);
 }
 
 }  // namespace fulcrum

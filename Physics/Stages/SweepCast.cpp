@@ -14,6 +14,9 @@ namespace {
 
 // A body may move by half its thickness before it is cast, and a hit counts once the two would overlap by a quarter.
 constexpr float kFreePart = 0.5f, kDepthPart = 0.25f;
+// What a shape as large as a surface does with each triangle in turn depends on all of them. A cast that has looked at so many is left
+// to the contacts: its time must not grow with the square of the surface.
+constexpr size_t kMostTriangles = 20000;
 // What has hardly any thickness counts as that thick, in parts of its size.
 constexpr float kLeastThickness = 0.01f;
 
@@ -147,6 +150,7 @@ private:
         if (length > 0) settings.maxFraction = std::min(1.0f, std::max(0.0f, (best_.time - start) / length));
         float touched = 1;  // when it touched, but not so that it counts
         caster.Visit(shape, at, settings, [&](const ShapeHit& found) {
+            if (triangles_ > kMostTriangles) return 0.0f;
             FindTurn(world_, theirs);
             SweepHit hit = HitOf(other, course);
             hit.time = start + found.fraction * length;
@@ -176,7 +180,7 @@ private:
         const float depth = DepthThatCounts(shape);
         const float speed = Length(linear) + Length(sweep_.TurnRate()) * cast_->OuterRadius() + Length(course.TurnRate()) * shape.OuterRadius();
         SweepHit hit = HitOf(other, course);
-        for (int i = 0; i < kMostSteps; ++i) {
+        for (int i = 0; i < kMostSteps && triangles_ <= kMostTriangles; ++i) {
             time += depth / speed;
             if (!(time < std::min(1.0f, best_.time))) return;
             const Push push = FindPoints(motion, linear, course, time, depth, hit);
@@ -298,6 +302,7 @@ private:
         settings.method = world_.settings.narrowPhase;
         if (shape.IsSurface()) {
             CollideSurface(*shape_, static_cast<const SurfaceShape&>(shape), bInA, settings, {}, findings_.surface);
+            triangles_ += findings_.surface.TriangleCount();
             for (const SurfaceManifold& m : findings_.surface.Manifolds()) consider(m.manifold, m.material);
             return;
         }
@@ -318,6 +323,7 @@ private:
     const bool isTurning_;
     bool found_ = false;
     int restarts_ = 0;
+    size_t triangles_ = 0;                     // that were looked at to see what hits do
     float limit_ = 1;                          // of the sweep, up to where hits are of interest
     const ColliderShape* piece_ = nullptr;
     RelativePose local_;                       // of the piece in its body

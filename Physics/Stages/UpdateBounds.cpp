@@ -1,7 +1,7 @@
 // A collider searches for pairs only when it leaves its fat bounds. These reach ahead along the velocity, so that a body in
 // flight leaves them once in several steps.
 #include <Fulcrum/Collision/BroadPhase/BoundsTreeBulk.h>
-#include <Fulcrum/Physics/Stages/Stages.h>
+#include <Fulcrum/Physics/Stages/BodyLimits.h>
 
 #include <algorithm>
 
@@ -136,6 +136,7 @@ void UpdateBounds(WorldState& world, const StepContext& step) {
         WorkerFindings& findings = world.findings[range.worker];
         for (uint32_t i = range.begin; i < range.end; ++i) {
             const uint32_t body = bodies.awake[i];
+            AdmitBody(world, body, findings);
             const BodyDynamics& dynamics = bodies.dynamics[body];
             if (dynamics.motion == MotionType::Dynamic) {
                 if (!dynamics.spherical) bodies.UpdateInertia(body);
@@ -147,6 +148,7 @@ void UpdateBounds(WorldState& world, const StepContext& step) {
             UpdateColliders(world, body, step.dt, findings);
         }
     });
+    SettleStopped(world);
     ListMoved(world);
     UpdateTrees(world);
 }

@@ -100,9 +100,11 @@ SymmetricMatrix3 InverseOfFreeAxes(const BodyDynamics& d, const Matrix3& axes) {
     SymmetricMatrix3 i;
     const auto pair = [](float a, float b, float c, float& ia, float& ib, float& ic) {
         const float determinant = a * b - c * c;
-        ia = b / determinant;
-        ib = a / determinant;
-        ic = -c / determinant;
+        // Products of extreme moments leave the floats where their inverses do not.
+        const double exact = std::isnormal(determinant) ? double{determinant} : double{a} * b - double{c} * c;
+        ia = static_cast<float>(b / exact);
+        ib = static_cast<float>(a / exact);
+        ic = static_cast<float>(-c / exact);
     };
     if (!(d.inverseMass > 0)) return i;
     if (x && y && !z) pair(w.xx, w.yy, w.xy, i.xx, i.yy, i.xy);

@@ -1,0 +1,156 @@
+#include <Fulcrum/Physics/Stages/BodyLimits.h>
+
+#include <Fulcrum/Physics/State/BodyPairs.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace fulcrum {
+
+namespace {
+
+// m/s, m/s2 and so on: more makes the largest speed in any step that moves anything.
+constexpr double kMostChange = 1e18;
+
+// Two floats of BodyState that the solver carries along.
+float& LimitedMark(WorldState& world, uint32_t body) { return world.bodies.states[body].velocitySpare[0]; }
+float& StoppedMark(WorldState& world, uint32_t body) { return world.bodies.states[body].velocitySpare[1]; }
+
+// Zero times a number is zero if the number is finite, and NaN if it is not.
+Wide<8> ZeroTimes(const float* eight) { return Wide<8>::Load(eight) * Wide<8>(0.0f); }
+
+bool IsFiniteState(const BodyStore& bodies, uint32_t body) {
+    const BodyState& state = bodies.states[body];
+    Wide<8> odd = ZeroTimes(bodies.poses[body].rotation) + ZeroTimes(bodies.dynamics[body].LimitsRow());
+    odd.Set(7, 0.0f);  // in both the eighth is no float
+    odd += ZeroTimes(state.linearVelocity) + ZeroTimes(state.deltaPosition) + ZeroTimes(bodies.masses[body].Row()) +
+           ZeroTimes(bodies.dynamics[body].InertiaRow());
+    const Position& rest = bodies.remainders[body].value;
+    double place = 0;
+    for (int k = 0; k < 3; ++k) place += bodies.poses[body].position[k] * 0.0 + rest[k] * 0.0;
+    return (odd == Wide<8>(0.0f)).All() && place == 0;
+}
+
+// The pose is good but where something wrote over it; then the centre of the bounds is what is left of the position.
+void RepairPose(WorldState& world, uint32_t body) {
+    Pose pose = world.bodies.CentrePoseOf(body);
+    const bool isPlaced = IsFinite(pose.position), isTurned = IsFinite(pose.rotation);
+    if (isPlaced && isTurned && IsFinite(world.bodies.remainders[body].value)) return;
+    if (!isTurned) pose.rotation = {};
+    if (!isPlaced) {
+        pose.position = world.colliders.boundsOrigin;
+        Bounds bounds;
+        VisitColliders(world, body, [&](uint32_t i) { bounds.Include(world.colliders.colliders[i].fat); });
+        if (!bounds.IsEmpty() && IsFinite(bounds.Centre())) pose.position += bounds.Centre().cast<double>();
+    }
+    world.bodies.SetCentrePose(body, pose);
+}
+
+// Forces that are finite, but of which no finite acceleration comes. The others Store answers by freezing the body.
+void LimitForces(WorldState& world, uint32_t body) {
+    BodyCold& cold = world.bodies.cold[body];
+    if (!IsFinite(cold.force) || !IsFinite(cold.torque)) return;
+    cold.force = LimitedPush(cold.force, double{world.bodies.dynamics[body].inverseMass});
+    cold.torque = LimitedPush(cold.torque, Trace(world.bodies.masses[body]));
+}
+
+// Nothing moves it.
+void BringToRest(WorldState& world, uint32_t body) {
+    BodyStore& bodies = world.bodies;
+    bodies.states[body] = {};
+    bodies.unconstrained[body] = {};
+    bodies.cold[body].force.setZero();
+    bodies.cold[body].torque.setZero();
+    bodies.dynamics[body].hasForce = false;
+    StoppedMark(world, body) = 1;
+}
+
+void NoteStopped(uint32_t body, WorkerFindings& findings) {
+    ++findings.frozen;
+    findings.firstFrozen = std::min(findings.firstFrozen, body);
+}
+
+void ForgetImpulses(WorldState& world, uint32_t body) {
+    VisitPairsOf(world, {&body, 1}, [&](uint32_t first) {
+        for (uint32_t pair = first; pair != PairStore::kNone; pair = world.pairs.pairs[pair].more) {
+            ContactRecord& record = world.pairs.records[pair];
+            std::fill(std::begin(record.impulse), std::end(record.impulse), 0.0f);
+            std::fill(std::begin(record.frictionImpulse), std::end(record.frictionImpulse), 0.0f);
+            record.twistImpulse = 0;
+        }
+    });
+    world.joints.VisitOf(body, [&](uint32_t joint) { world.joints.Forget(joint); });
+}
+
+}  // namespace
+
+Vector3 LimitedPush(const Vector3& push, double inverse) {
+    const Position exact = push.cast<double>();
+    const double made = std::sqrt(Dot<double>(exact, exact)) * inverse;
+    return made > kMostChange ? Vector3((exact * (kMostChange / made)).cast<float>()) : push;
+}
+
+bool LimitLength(Vector3& v, float limit) {
+    const float squared = LengthSquared(v);
+    if (!(squared > limit * limit)) return false;
+    if (squared <= std::numeric_limits<float>::max()) {
+        v *= limit / std::sqrt(squared);
+    } else {
+        const Position exact = v.cast<double>();
+        v = (exact * (double{limit} / std::sqrt(Dot<double>(exact, exact)))).cast<float>();
+    }
+    return true;
+}
+
+bool LimitSpeeds(WorldState& world, uint32_t body, Vector3& v, Vector3& w) {
+    const BodyDynamics& d = world.bodies.dynamics[body];
+    constexpr float kRounding = 1 + 1e-6f;
+    const auto exceeds = [](const Vector3& x, float limit) { return LengthSquared(x) > limit * limit * kRounding; };
+    const bool counts = exceeds(v, d.maxLinearSpeed) || exceeds(w, d.maxAngularSpeed);
+    LimitLength(v, d.maxLinearSpeed);
+    LimitLength(w, d.maxAngularSpeed);
+    float& mark = LimitedMark(world, body);
+    const bool isFirst = counts && mark == 0;
+    if (isFirst) mark = 1;
+    return isFirst;
+}
+
+void AdmitBody(WorldState& world, uint32_t body, WorkerFindings& findings) {
+    BodyStore& bodies = world.bodies;
+    if (!IsFiniteState(bodies, body)) return Freeze(world, body, findings);
+    LimitedMark(world, body) = 0;
+    const BodyDynamics& d = bodies.dynamics[body];
+    if (d.hasForce) LimitForces(world, body);
+    Vector3 v = bodies.LinearVelocityOf(body), w = bodies.AngularVelocityOf(body);
+    if (!(LengthSquared(v) > d.maxLinearSpeed * d.maxLinearSpeed) && !(LengthSquared(w) > d.maxAngularSpeed * d.maxAngularSpeed)) return;
+    findings.clamped += LimitSpeeds(world, body, v, w);
+    bodies.SetVelocity(body, v, w);
+}
+
+void Freeze(WorldState& world, uint32_t body, WorkerFindings& findings) {
+    BodyDynamics& d = world.bodies.dynamics[body];
+    if (!d.frozen) NoteStopped(body, findings);
+    d.frozen = true;
+    d.slowSeconds = 0;
+    BringToRest(world, body);
+    RepairPose(world, body);
+    std::fill(std::begin(world.bodies.poses[body].acceleration), std::end(world.bodies.poses[body].acceleration), 0.0f);
+    world.bodies.UpdateInertia(body);
+}
+
+void Stop(WorldState& world, uint32_t body, WorkerFindings& findings) {
+    NoteStopped(body, findings);
+    BringToRest(world, body);
+}
+
+void SettleStopped(WorldState& world) {
+    if (std::none_of(world.findings.begin(), world.findings.end(), [](const WorkerFindings& f) { return f.frozen > 0; })) return;
+    for (uint32_t body : world.bodies.awake) {
+        if (StoppedMark(world, body) == 0) continue;
+        StoppedMark(world, body) = 0;
+        ForgetImpulses(world, body);
+        RecolourJointsOf(world, body);
+    }
+}
+
+}  // namespace fulcrum
