@@ -26,17 +26,6 @@ bool BallsMeet(const Vector3& apart, const Vector3& motion, float reach) {
     return LengthSquared(Vector3(apart + motion * part)) <= reach * reach;
 }
 
-// The rotation vector of q, which may have turned several times, that is nearest to a guess.
-Vector3 TurnNear(const Quaternion& q, const Vector3& guess) {
-    constexpr float kTwoPi = 6.28318530717958647692f;
-    const Vector3 shortest = RotationVectorOf(q);
-    const float angle = Length(guess);
-    if (angle < 0.25f * kTwoPi) return shortest;
-    const Vector3 axis = Normalized(Length(shortest) > 1e-3f ? shortest : guess);
-    const float turns = std::floor((Dot<float>(axis, guess) - Dot<float>(axis, shortest)) / kTwoPi + 0.5f);
-    return shortest + axis * (turns * kTwoPi);
-}
-
 // A sweep of which the turn, half the work to find it, may still be missing.
 struct Course {
     Sweep sweep;
@@ -68,8 +57,9 @@ void FindTurn(const WorldState& world, Course& course) {
 
 class SweepCaster {
 public:
-    SweepCaster(const WorldState& world, const Sweep& sweep, WorkerFindings& findings, SweepHit& best)
-        : world_(world), sweep_(sweep), findings_(findings), best_(best), isTurning_(sweep.turns && !sweep.turn.isZero(0)) {}
+    SweepCaster(const WorldState& world, const Course& own, WorkerFindings& findings, SweepHit& best)
+        : world_(world), own_(own), findings_(findings), best_(best), isTurning_(own.sweep.turns && !own.sweep.turn.isZero(0)),
+          isCast_(world.bodies.dynamics[own.sweep.body].continuous) {}
 
     bool RunAgainst(uint32_t collider, uint32_t other) {
         piece_ = &world_.colliders.shapes[collider];
@@ -146,18 +136,42 @@ private:
         settings.measureDepth = false;
         if (length > 0) settings.maxFraction = std::min(1.0f, std::max(0.0f, (best_.time - start) / length));
         float touched = 1;  // when it touched, but not so that it counts
+        bool asksForTurn = false;
         caster.Visit(shape, at, settings, [&](const ShapeHit& found) {
             FindTurn(world_, theirs);
             SweepHit hit = HitOf(other, course);
             hit.time = start + found.fraction * length;
             if (ComesBefore(hit)) {
-                if (Counts(motion, found, course, length, hit) && Behaves(hit)) Take(hit);
+                const bool counts = Counts(motion, found, course, length, hit);
+                if (counts && !isTurning_ && DoesTurn(shape)) {
+                    asksForTurn = true;
+                    return -1.0f;
+                }
+                if (counts && Behaves(hit)) Take(hit);
                 else touched = std::min(touched, hit.time);
             }
             return length > 0 ? (best_.time - start) / length : 0.0f;
         });
+        if (asksForTurn) return CastTurning(other);
         // Without a turn what does not push now never will.
         if (isTurning_ && touched < best_.time) Follow(motion, course, other, length, touched, whole);
+    }
+
+    // Whether the turn makes another hit of one that was found without it: where it moves points by a part of the depth that counts.
+    bool DoesTurn(const Shape& other) {
+        constexpr float kPart = 0.25f;
+        if (shape_->Type() == ShapeType::Sphere) return false;
+        FindTurn(world_, own_);
+        return Length(sweep_.turn) * shape_->OuterRadius() > kPart * DepthThatCounts(other);
+    }
+
+    // What is cast without its turn, and would hit: a rod that topples about its end comes down on it with all its speed, but for its turn.
+    void CastTurning(uint32_t other) {
+        isTurning_ = true;
+        motion_.turn = sweep_.turn;
+        CastAgainst(other, ShapeCaster(*cast_, motion_));
+        motion_.turn.setZero();
+        isTurning_ = false;
     }
 
     SweepHit HitOf(uint32_t other, const Sweep& course) const {
@@ -165,6 +179,7 @@ private:
         hit.body = sweep_.body;
         hit.other = course.body;
         hit.otherCollider = other;
+        hit.isBlocked = !isCast_ && !world_.bodies.dynamics[course.body].continuous;
         return hit;
     }
 
@@ -215,8 +230,10 @@ private:
         return !change.ignore;
     }
 
+    // What is cast only since it was hit leaves to the solver whatever it comes to touch.
     float DepthThatCounts(const Shape& other) const {
-        return kDepthPart * (other.IsConvex() ? std::min(Thickness(*shape_), Thickness(other)) : Thickness(*shape_));
+        const float depth = kDepthPart * (other.IsConvex() ? std::min(Thickness(*shape_), Thickness(other)) : Thickness(*shape_));
+        return isCast_ ? depth : std::min(depth, 0.5f * world_.settings.speculativeDistance);
     }
 
     bool ComesBefore(const SweepHit& hit) const {
@@ -312,10 +329,12 @@ private:
     }
 
     const WorldState& world_;
-    const Sweep sweep_;
+    Course own_;
+    const Sweep& sweep_ = own_.sweep;
     WorkerFindings& findings_;
     SweepHit& best_;
-    const bool isTurning_;
+    bool isTurning_;
+    const bool isCast_;                        // else only since it was hit, in this step
     bool found_ = false;
     int restarts_ = 0;
     float limit_ = 1;                          // of the sweep, up to where hits are of interest
@@ -327,6 +346,16 @@ private:
 };
 
 }  // namespace
+
+Vector3 TurnNear(const Quaternion& q, const Vector3& guess) {
+    constexpr float kTwoPi = 6.28318530717958647692f;
+    const Vector3 shortest = RotationVectorOf(q);
+    const float angle = Length(guess);
+    if (angle < 0.25f * kTwoPi) return shortest;
+    const Vector3 axis = Normalized(Length(shortest) > 1e-3f ? shortest : guess);
+    const float turns = std::floor((Dot<float>(axis, guess) - Dot<float>(axis, shortest)) / kTwoPi + 0.5f);
+    return shortest + axis * (turns * kTwoPi);
+}
 
 float FreeMotion(float innerRadius, float outerRadius) { return kFreePart * std::max(innerRadius, kLeastThickness * outerRadius); }
 
@@ -343,7 +372,7 @@ Sweep SweepOf(const WorldState& world, uint32_t body) {
 
 bool CastSweep(const WorldState& world, const Sweep& sweep, WorkerFindings& findings, SweepHit& hit) {
     hit.time = 1;
-    return SweepCaster(world, sweep, findings, hit).Run();
+    return SweepCaster(world, {sweep}, findings, hit).Run();
 }
 
 bool CastPair(const WorldState& world, uint32_t collider, uint32_t other, WorkerFindings& findings, SweepHit& hit) {
@@ -357,7 +386,7 @@ bool CastPair(const WorldState& world, uint32_t collider, uint32_t other, Worker
         if (!BallsMeet(Between(otherFrom, from), motion, reach)) return false;
     }
     hit.time = 1;
-    return SweepCaster(world, CourseOf(world, body).sweep, findings, hit).RunAgainst(collider, other);  // without its turn, as pairs are cast
+    return SweepCaster(world, CourseOf(world, body), findings, hit).RunAgainst(collider, other);
 }
 
 }  // namespace fulcrum
