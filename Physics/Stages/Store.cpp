@@ -46,6 +46,20 @@ bool FlyFreely(WorldState& world, Ending& ending, const StepContext& step, Worke
     return false;
 }
 
+// The solver changed the angular velocity of a body as it stood at the step's beginning. Impulses on the way let it turn otherwise than
+// about the velocity of the end; the spin of a thin rod about its own axis, left behind in world axes while that turned, is then a turn of
+// the rod itself, with a thousand times the energy. What would gain so is carried along with the body instead.
+Vector3 CarriedAlong(const BodyDynamics& d, const Quaternion& before, const Quaternion& after, const Vector3& w) {
+    constexpr float kGain = 1.0001f;
+    const auto energyAt = [&](const Quaternion& rotation) {
+        const Vector3 local = InverseRotate(rotation * d.PrincipalAxes(), w);
+        float energy = 0;
+        for (int k = 0; k < 3; ++k) energy += d.inverseInertia[k] > 0 ? local[k] * local[k] / d.inverseInertia[k] : 0.0f;
+        return energy;
+    };
+    return energyAt(after) > kGain * energyAt(before) ? Rotate(after, InverseRotate(before, w)) : w;
+}
+
 void MoveSolved(WorldState& world, Ending& ending, float dt) {
     const uint32_t body = ending.body;
     BodyState& s = world.bodies.states[body];
@@ -53,9 +67,12 @@ void MoveSolved(WorldState& world, Ending& ending, float dt) {
     Quaternion& rotation = ending.turn.rotation;
     Vector3& w = ending.turn.angularVelocity;
     ending.displacement = Vector3(s.deltaPosition[0], s.deltaPosition[1], s.deltaPosition[2]);
+    const Quaternion before = rotation;
     rotation = Normalized(RotationFromVector(Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2])) * rotation);
     // With joints every substep has seen to that.
-    if (d.FeelsGyroscopicTorque(w) && !world.joints.HasAny(body)) w = AddGyroscopicTorque<float>(Vector3(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]), AxesOf(d, rotation), w, dt);
+    if (!d.FeelsGyroscopicTorque(w) || world.joints.HasAny(body)) return;
+    w = CarriedAlong(d, before, rotation, w);
+    w = AddGyroscopicTorque<float>(Vector3(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]), AxesOf(d, rotation), w, dt);
 }
 
 void ForgetForces(WorldState& world, uint32_t body) {
