@@ -12,8 +12,9 @@ namespace fulcrum {
 
 namespace {
 
-// A body may move by half its thickness before it is cast, and a hit counts once the two would overlap by a quarter.
-constexpr float kFreePart = 0.5f, kDepthPart = 0.25f;
+// A body may move by half its thickness before it is cast, and a hit counts once the two would overlap by a quarter. Where they close in by
+// more than that in a step, by a twentieth: the solver is to push apart what overlaps, not to stop what is as fast as that.
+constexpr float kFreePart = 0.5f, kDepthPart = 0.25f, kFastDepthPart = 0.05f;
 // What has hardly any thickness counts as that thick, in parts of its size.
 constexpr float kLeastThickness = 0.01f;
 
@@ -259,7 +260,8 @@ private:
     bool Counts(const ShapeMotion& motion, const ShapeHit& found, const Sweep& course, float length, SweepHit& hit) {
         if (found.isEarly) return found.fraction > 0;
         const Shape& shape = *world_.colliders.shapes[hit.otherCollider].shape;
-        const float depth = DepthThatCounts(shape), left = 1 - hit.time;
+        float depth = DepthThatCounts(shape);
+        const float left = 1 - hit.time;
         const Vector3 linear = length > 0 ? Vector3(motion.displacement * (1 / length)) : Vector3(Vector3::Zero());
         float approach;
         if (found.normal.isZero(0)) {
@@ -268,6 +270,7 @@ private:
             const Position own = sweep_.PositionAt(hit.time), others = course.PositionAt(hit.time);
             approach = -Dot<float>(found.normal, VelocityAt(found.position, own, linear, course, others));
         }
+        if (approach > depth) depth *= kFastDepthPart / kDepthPart;
         if (!(approach * left > depth)) return false;
         return FindPoints(motion, linear, course, std::min(1.0f, hit.time + depth / approach), depth, hit).speed * left > depth;
     }
