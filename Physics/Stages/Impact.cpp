@@ -154,6 +154,8 @@ Vector3 AngularVelocityAt(const WorldState& world, const Sweep& course, const Qu
     return Rotate(rotation, InverseRotate(turn.rotation, turn.angularVelocity));
 }
 
+// The course turns at the rate of its beginning: what was just parted would else seem to meet again. Momentum and energy at its end are
+// those of a free rotation, as seen by the body.
 Impact::Rest FlyOn(const WorldState& world, uint32_t body, const Quaternion& rotation, const Vector3& v, const Vector3& w, const Vector3& since, float rest) {
     const BodyDynamics& d = world.bodies.dynamics[body];
     const Vector3 gain = GainUntilEnd(world, body, v, since, rest);
@@ -163,8 +165,7 @@ Impact::Rest FlyOn(const WorldState& world, uint32_t body, const Quaternion& rot
     if (!d.FeelsGyroscopicTorque(w)) return on;
     FreeTurn turn{&d, rotation, w};
     RotateFreely(turn, rest);
-    on.turn = TurnNear(turn.rotation * rotation.Conjugate(), on.turn);
-    on.angular = turn.angularVelocity;
+    on.angular = Rotate(RotationFromVector(on.turn) * rotation, InverseRotate(turn.rotation, turn.angularVelocity));
     return on;
 }
 

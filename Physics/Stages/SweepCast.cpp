@@ -27,6 +27,17 @@ bool BallsMeet(const Vector3& apart, const Vector3& motion, float reach) {
     return LengthSquared(Vector3(apart + motion * part)) <= reach * reach;
 }
 
+// The rotation vector of q, which may have turned several times, that is nearest to a guess.
+Vector3 TurnNear(const Quaternion& q, const Vector3& guess) {
+    constexpr float kTwoPi = 6.28318530717958647692f;
+    const Vector3 shortest = RotationVectorOf(q);
+    const float angle = Length(guess);
+    if (angle < 0.25f * kTwoPi) return shortest;
+    const Vector3 axis = Normalized(Length(shortest) > 1e-3f ? shortest : guess);
+    const float turns = std::floor((Dot<float>(axis, guess) - Dot<float>(axis, shortest)) / kTwoPi + 0.5f);
+    return shortest + axis * (turns * kTwoPi);
+}
+
 // A sweep of which the turn, half the work to find it, may still be missing.
 struct Course {
     Sweep sweep;
@@ -349,16 +360,6 @@ private:
 };
 
 }  // namespace
-
-Vector3 TurnNear(const Quaternion& q, const Vector3& guess) {
-    constexpr float kTwoPi = 6.28318530717958647692f;
-    const Vector3 shortest = RotationVectorOf(q);
-    const float angle = Length(guess);
-    if (angle < 0.25f * kTwoPi) return shortest;
-    const Vector3 axis = Normalized(Length(shortest) > 1e-3f ? shortest : guess);
-    const float turns = std::floor((Dot<float>(axis, guess) - Dot<float>(axis, shortest)) / kTwoPi + 0.5f);
-    return shortest + axis * (turns * kTwoPi);
-}
 
 float FreeMotion(float innerRadius, float outerRadius) { return kFreePart * std::max(innerRadius, kLeastThickness * outerRadius); }
 

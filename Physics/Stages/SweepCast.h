@@ -11,9 +11,6 @@ float FreeMotion(float innerRadius, float outerRadius);
 // Pieces beside the centre of mass change sides of a wall where the body turns, so that compounds are always cast with their turn.
 bool IsCastTurning(const WorldState& world, uint32_t body);
 
-// The rotation vector of q, which may have turned several times, that is nearest to a guess.
-Vector3 TurnNear(const Quaternion& q, const Vector3& guess);
-
 // How a body moves in this step, as far as is decided. Zero motion for one that rests.
 Sweep SweepOf(const WorldState& world, uint32_t body);
 
