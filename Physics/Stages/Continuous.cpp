@@ -12,7 +12,7 @@ namespace fulcrum {
 namespace {
 
 // Whoever hits something in each of so many rounds stays where it hit last until the next step.
-constexpr int kRounds = 8;
+constexpr int kRounds = 16;
 
 // m: a body with continuous collision that moves less in a step is not cast.
 float FreeMotionOf(const WorldState& world, uint32_t body) {

@@ -143,29 +143,34 @@ Vector3 GainUntilEnd(const WorldState& world, uint32_t body, const Vector3& v, c
     return Dot<float>(since, acceleration) > 0 ? since : Vector3(Vector3::Zero());
 }
 
-// What turns keeps its angular momentum and its energy, not its angular velocity. Found by turning back what it does from then on; as seen
-// by the body, so that the energy is the same however exactly the course, which turns at a constant rate, follows the motion.
-Vector3 AngularVelocityAt(const WorldState& world, const Sweep& course, const Quaternion& rotation, float rest) {
-    const BodyDynamics& d = world.bodies.dynamics[course.body];
-    const Vector3 w = world.bodies.AngularVelocityOf(course.body);
-    if (course.waits || d.motion != MotionType::Dynamic || !d.FeelsGyroscopicTorque(w)) return w;
-    FreeTurn turn{&d, course.RotationAt(1), w};
-    RotateFreely(turn, -rest);
-    return Rotate(rotation, InverseRotate(turn.rotation, turn.angularVelocity));
+// What turns keeps its angular momentum and its energy, not its angular velocity. So the angular velocity a while later, or earlier where
+// `seconds` is negative, is that of a free rotation; as seen by the body, so that the energy is the same however exactly the course, which
+// turns at a constant rate to `then`, follows that rotation.
+Vector3 TurnedFreely(const BodyDynamics& d, const Quaternion& rotation, const Vector3& w, float seconds, const Quaternion& then) {
+    if (d.motion != MotionType::Dynamic || !d.FeelsGyroscopicTorque(w)) return w;
+    const auto energyOf = [&](const Vector3& inBody) {
+        const Vector3 local = InverseRotate(d.PrincipalAxes(), inBody);
+        float energy = 0;
+        for (int k = 0; k < 3; ++k) energy += d.inverseInertia[k] > 0 ? local[k] * local[k] / d.inverseInertia[k] : 0.0f;
+        return energy;
+    };
+    FreeTurn turn{&d, rotation, w};
+    RotateFreely(turn, seconds);
+    const Vector3 end = InverseRotate(turn.rotation, turn.angularVelocity);
+    const float before = energyOf(InverseRotate(rotation, w)), after = energyOf(end);
+    return after > 0 ? Rotate(then, Vector3(end * std::sqrt(before / after))) : w;
 }
 
-// The course turns at the rate of its beginning: what was just parted would else seem to meet again. Momentum and energy at its end are
-// those of a free rotation, as seen by the body.
+// The course turns at the rate of its beginning: what was just parted would else seem to meet again.
 Impact::Rest FlyOn(const WorldState& world, uint32_t body, const Quaternion& rotation, const Vector3& v, const Vector3& w, const Vector3& since, float rest) {
     const BodyDynamics& d = world.bodies.dynamics[body];
     const Vector3 gain = GainUntilEnd(world, body, v, since, rest);
     Impact::Rest on{(v + gain * 0.5f) * rest, w * rest, v + gain, w};
     Vector3 none = Vector3::Zero();
     d.Lock(on.displacement, none);
-    if (!d.FeelsGyroscopicTorque(w)) return on;
-    FreeTurn turn{&d, rotation, w};
-    RotateFreely(turn, rest);
-    on.angular = Rotate(RotationFromVector(on.turn) * rotation, InverseRotate(turn.rotation, turn.angularVelocity));
+    on.angular = TurnedFreely(d, rotation, w, rest, RotationFromVector(on.turn) * rotation);
+    ClampLength(on.linear, d.maxLinearSpeed);
+    ClampLength(on.angular, d.maxAngularSpeed);
     return on;
 }
 
@@ -184,12 +189,15 @@ Impact FindImpact(const WorldState& world, const SweepHit& hit, float dt) {
         impact.masses[s] = d.spherical ? bodies.masses[pair[s]] : bodies.MassAlong(pair[s], AxesOf(d, impact.poses[s].rotation));
         since[s] = bodies.CanMove(pair[s]) ? GainSince(world, impact.courses[s], hit.time, dt) : Vector3(Vector3::Zero());
         impact.linear[s] = bodies.LinearVelocityOf(pair[s]) - since[s];
-        impact.angular[s] = AngularVelocityAt(world, impact.courses[s], impact.poses[s].rotation, rest);
+        const Vector3 w = bodies.AngularVelocityOf(pair[s]);
+        impact.angular[s] = impact.courses[s].waits ? w : TurnedFreely(d, impact.courses[s].RotationAt(1), w, -rest, impact.poses[s].rotation);
     }
     impact.parts = hit.pointCount > 0 && !hit.isBlocked && ImpactSolver(world, hit, impact).Run();
     impact.isFinite = true;
     for (int s = 0; s < 2; ++s) {
         if (!bodies.CanMove(pair[s])) continue;
+        ClampLength(impact.linear[s], bodies.dynamics[pair[s]].maxLinearSpeed);
+        ClampLength(impact.angular[s], bodies.dynamics[pair[s]].maxAngularSpeed);
         impact.rests[s] = FlyOn(world, pair[s], impact.poses[s].rotation, impact.linear[s], impact.angular[s], since[s], rest);
         const Impact::Rest& on = impact.rests[s];
         impact.isFinite &= IsFinite(on.linear) && IsFinite(on.angular) && IsFinite(on.displacement) && IsFinite(on.turn);

@@ -44,6 +44,10 @@ private:
             CastAgain(places[0]);
         } else if (isUndecided) {
             Resume(places[0], hit.time, impact.poses[0]);
+        } else if (!impact.parts && (impact.courses[0].waits || impact.courses[1].waits)) {
+            // What goes as fast as the one that waits runs into it, and waits, too.
+            for (int s = 0; s < 2; ++s)
+                if (places[s] != SweepStore::kNone && !impact.courses[s].waits) Wait(places[s], hit.time, impact, s);
         } else {
             Part(hit, impact, places);
         }
