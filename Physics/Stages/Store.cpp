@@ -48,16 +48,21 @@ bool FlyFreely(WorldState& world, Ending& ending, const StepContext& step, Worke
 
 // The solver changed the angular velocity of a body as it stood at the step's beginning. Impulses on the way let it turn otherwise than
 // about the velocity of the end; the spin of a thin rod about its own axis, left behind in world axes while that turned, is then a turn of
-// the rod itself, with a thousand times the energy. What would gain so is carried along with the body instead.
+// the rod itself, with a thousand times the energy. What would gain so is carried along with the body, as far as it takes to gain none.
 Vector3 CarriedAlong(const BodyDynamics& d, const Quaternion& before, const Quaternion& after, const Vector3& w) {
     constexpr float kGain = 1.0001f;
-    const auto energyAt = [&](const Quaternion& rotation) {
-        const Vector3 local = InverseRotate(rotation * d.PrincipalAxes(), w);
+    const auto energyOf = [&](const Quaternion& rotation, const Vector3& velocity) {
+        const Vector3 local = InverseRotate(rotation * d.PrincipalAxes(), velocity);
         float energy = 0;
         for (int k = 0; k < 3; ++k) energy += d.inverseInertia[k] > 0 ? local[k] * local[k] / d.inverseInertia[k] : 0.0f;
         return energy;
     };
-    return energyAt(after) > kGain * energyAt(before) ? Rotate(after, InverseRotate(before, w)) : w;
+    const float wanted = energyOf(before, w), gain = energyOf(after, w) - wanted;
+    if (!(gain > (kGain - 1) * wanted)) return w;
+    // The energy of w + s (carried - w) is a parabola in s that is `wanted` at 1, and at gain / (its curvature).
+    const Vector3 change = Rotate(after, InverseRotate(before, w)) - w;
+    const float curvature = energyOf(after, change);
+    return w + change * (gain < curvature ? gain / curvature : 1.0f);
 }
 
 void MoveSolved(WorldState& world, Ending& ending, float dt) {
