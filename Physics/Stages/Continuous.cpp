@@ -1,20 +1,18 @@
 // Continuous collision: what moved far in this step is cast along its way. Where it hits, it bounces there and then, and goes on with
 // what is left of the step. In rounds: all casts in parallel; then the hits in the order of their times, as long as both bodies' courses
-// still are those that were cast; what changed its course, or lost its partner, is cast again.
-#include <Fulcrum/Physics/Stages/BodyLimits.h>
-#include <Fulcrum/Physics/Stages/Impact.h>
+// still are those that were cast (ResolveHits.h); what changed its course, or lost its partner, is cast again.
+#include <Fulcrum/Physics/Stages/ResolveHits.h>
 #include <Fulcrum/Physics/Stages/SweepCast.h>
 
 #include <algorithm>
 #include <limits>
-#include <tuple>
 
 namespace fulcrum {
 
 namespace {
 
 // Whoever hits something in each of so many rounds stays where it hit last until the next step.
-constexpr int kRounds = 8;
+constexpr int kRounds = 16;
 
 // m: a body with continuous collision that moves less in a step is not cast.
 float FreeMotionOf(const WorldState& world, uint32_t body) {
@@ -134,124 +132,6 @@ void GatherHits(WorldState& world) {
     }
 }
 
-// The place of a fast body's course in `swept`, where it comes to be when it is first asked for: as `course`, if that is known.
-uint32_t PlaceOf(WorldState& world, uint32_t body, const Sweep* course = nullptr) {
-    SweepStore& store = world.sweeps;
-    if (store.searchBy[body] == SweepStore::SearchBy::None) return SweepStore::kNone;
-    if (store.places[body] == SweepStore::kNone) {
-        Sweep sweep = course ? *course : SweepOf(world, body);
-        sweep.turns = IsCastTurning(world, body);
-        store.places[body] = static_cast<uint32_t>(store.swept.size());
-        store.swept.push_back(sweep);
-    }
-    return store.places[body];
-}
-
-class HitResolver {
-public:
-    HitResolver(WorldState& world, const StepContext& step, bool isLast) : world_(world), dt_(step.dt), isLast_(isLast) {}
-
-    // In the order of their times. What each would do is found beforehand, in parallel.
-    void ResolveAll() {
-        const std::vector<SweepHit>& hits = world_.sweeps.hits;
-        struct Key {
-            float time;
-            uint32_t body, otherCollider, index;
-            auto Order() const { return std::tie(time, body, otherCollider); }
-        };
-        const std::span<Key> order = world_.scratch.Allocate<Key>(hits.size());
-        const std::span<Impact> impacts = world_.scratch.Allocate<Impact>(hits.size());
-        world_.jobs->ParallelFor(static_cast<uint32_t>(hits.size()), 8, [&](JobRange range) {
-            for (uint32_t i = range.begin; i < range.end; ++i) impacts[i] = FindImpact(world_, hits[i], dt_);
-        });
-        for (uint32_t i = 0; i < hits.size(); ++i) order[i] = {hits[i].time, hits[i].body, hits[i].otherCollider, i};
-        std::sort(order.begin(), order.end(), [](const Key& a, const Key& b) { return a.Order() < b.Order(); });
-        for (const Key& key : order) Resolve(hits[key.index], impacts[key.index]);
-    }
-
-private:
-    void Resolve(const SweepHit& hit, Impact& impact) {
-        const uint32_t place = PlaceOf(world_, hit.body, &impact.courses[0]), otherPlace = PlaceOf(world_, hit.other, &impact.courses[1]);
-        std::vector<Sweep>& swept = world_.sweeps.swept;
-        Sweep& sweep = swept[place];
-        if (sweep.changed) return;  // it is in the next round, or stays where it is
-        if (otherPlace != SweepStore::kNone && swept[otherPlace].changed) {
-            if (isLast_) {
-                Stop(sweep, hit.time, impact.poses[0]);
-            } else {
-                sweep.changed = true;
-                world_.sweeps.next.push_back(place);
-            }
-            return;
-        }
-        if (hit.pointCount > 0) WakeBody(world_, hit.other);
-        if (!impact.lasts) impact = FindImpact(world_, hit, dt_);
-        const bool parts = impact.parts && Part(hit, impact);
-        if (isLast_ || (hit.pointCount > 0 && !parts)) {
-            Stop(sweep, hit.time, impact.poses[0]);
-        } else {
-            Continue(place, hit.time, impact, 0, parts);
-        }
-        if (parts && otherPlace != SweepStore::kNone) {
-            if (isLast_) Stop(swept[otherPlace], hit.time, impact.poses[1]);
-            else Continue(otherPlace, hit.time, impact, 1, true);
-        }
-    }
-
-    // Gives the bodies the velocities after the hit; false: they are no numbers.
-    bool Part(const SweepHit& hit, const Impact& impact) {
-        const uint32_t bodies[2] = {hit.body, hit.other};
-        ++world_.report.sweptHits;
-        for (int s = 0; s < 2; ++s)
-            if (world_.bodies.CanMove(bodies[s]) && (!IsFinite(impact.linear[s]) || !IsFinite(impact.angular[s]))) return false;
-        for (int s = 0; s < 2; ++s) {
-            if (!world_.bodies.CanMove(bodies[s])) continue;
-            world_.bodies.masses[bodies[s]] = impact.masses[s];
-            Vector3 v = impact.linear[s] + impact.gain[s], w = impact.angular[s];
-            world_.report.clampedBodies += LimitSpeeds(world_, bodies[s], v, w);
-            world_.bodies.SetVelocity(bodies[s], v, w);
-            world_.bodies.dynamics[bodies[s]].slowSeconds = 0;
-        }
-        return true;
-    }
-
-    void End(Sweep& sweep, float time, const Pose& pose) {
-        world_.sweeps.ended.push_back(sweep);
-        world_.sweeps.endedAt.push_back(time);
-        sweep.start = pose;
-        sweep.from = time;
-        sweep.isCut = sweep.changed = true;
-    }
-
-    // Nothing moves but what can: a kinematic body goes on as it is told.
-    void Stop(Sweep& sweep, float time, const Pose& pose) {
-        if (!world_.bodies.CanMove(sweep.body)) return;
-        End(sweep, time, pose);
-        sweep.displacement.setZero();
-        sweep.turn.setZero();
-    }
-
-    void Continue(uint32_t place, float time, const Impact& impact, int side, bool parts) {
-        Sweep& sweep = world_.sweeps.swept[place];
-        const Vector3 displacement = sweep.DisplacementRate() * (1 - time), turn = sweep.TurnRate() * (1 - time);
-        End(sweep, time, impact.poses[side]);
-        sweep.displacement = displacement;
-        sweep.turn = turn;
-        if (parts && world_.bodies.CanMove(sweep.body)) {
-            const float rest = (1 - time) * dt_;
-            sweep.displacement = (impact.linear[side] + impact.gain[side] * 0.5f) * rest;
-            sweep.turn = impact.angular[side] * rest;
-            Vector3 none = Vector3::Zero();
-            world_.bodies.dynamics[sweep.body].Lock(sweep.displacement, none);
-        }
-        world_.sweeps.next.push_back(place);
-    }
-
-    WorldState& world_;
-    float dt_;
-    bool isLast_;
-};
-
 // The lists get room by the number of those that may need it.
 void ReserveLists(WorldState& world) {
     SweepStore& store = world.sweeps;
@@ -271,26 +151,31 @@ void StartCourses(WorldState& world) {
         if (store.searchBy[body] == SweepStore::SearchBy::Trees) store.active.push_back(PlaceOf(world, body));
 }
 
-// Those that hits have changed, or left undecided, are searched in the next round.
-void EndRound(SweepStore& store) {
-    for (Sweep& sweep : store.swept) sweep.changed = false;
-    std::sort(store.next.begin(), store.next.end());
-    store.next.erase(std::unique(store.next.begin(), store.next.end()), store.next.end());
-    store.active.swap(store.next);
-    store.next.clear();
+// What goes on elsewhere than its bounds foresaw is found there by the casts of the others.
+void EnlargeBounds(WorldState& world, const Sweep& sweep) {
+    const Pose end = sweep.PoseAt(1);
+    if (!world.bodies.CanMove(sweep.body) || !IsFinite(end.position) || !IsFinite(end.rotation)) return;
+    world.bodies.SetCentrePose(sweep.body, end);
+    VisitColliders(world, sweep.body, [&](uint32_t i) {
+        Collider& collider = world.colliders.colliders[i];
+        const Bounds tight = TightBoundsOf(world, i);
+        if (collider.fat.Contains(tight)) return;
+        world.colliders.Queue(i);
+        collider.fat.Include(tight);
+        world.colliders.TreeOf(collider).Update(i, collider.fat);
+    });
 }
 
-void Finish(WorldState& world) {
+// Those that hits have changed, or left undecided, are searched in the next round.
+void EndRound(WorldState& world) {
     SweepStore& store = world.sweeps;
-    world.jobs->ParallelFor(static_cast<uint32_t>(store.swept.size()), 32, [&](JobRange range) {
-        for (uint32_t i = range.begin; i < range.end; ++i) {
-            const Sweep& sweep = store.swept[i];
-            const Pose end = sweep.PoseAt(1);
-            if (sweep.isCut && world.bodies.CanMove(sweep.body) && IsFinite(end.position) && IsFinite(end.rotation))
-                world.bodies.SetCentrePose(sweep.body, end);
-            store.places[sweep.body] = SweepStore::kNone;
-        }
-    });
+    for (uint32_t place : store.next) {
+        store.swept[place].changed = false;
+        EnlargeBounds(world, store.swept[place]);
+    }
+    std::sort(store.next.begin(), store.next.end());
+    store.active.swap(store.next);
+    store.next.clear();
 }
 
 }  // namespace
@@ -312,10 +197,10 @@ void Continuous(WorldState& world, const StepContext& step) {
         if (round == 0 && usesPairs) CastPairs(world);
         CastActive(world);
         GatherHits(world);
-        HitResolver(world, step, round + 1 == kRounds).ResolveAll();
-        EndRound(store);
+        ResolveHits(world, step, round + 1 == kRounds);
+        EndRound(world);
     }
-    Finish(world);
+    for (const Sweep& sweep : store.swept) store.places[sweep.body] = SweepStore::kNone;
 }
 
 }  // namespace fulcrum

@@ -3,6 +3,7 @@
 #include <Fulcrum/Math/WideDouble.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fulcrum {
 
@@ -102,7 +103,7 @@ void RotateFreely(FreeTurn& turn, float dt) {
     const Quat<double> principal = Top::Unit(Exact(d.PrincipalAxes()));
     Top top(Position(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]), Top::Unit(Exact(turn.rotation)) * principal,
             turn.angularVelocity.cast<double>());
-    const int substeps = RotationSubsteps(d, Length(turn.angularVelocity) * dt);
+    const int substeps = RotationSubsteps(d, Length(turn.angularVelocity) * std::fabs(dt));
     const double h = static_cast<double>(dt) / substeps;
     const Position kick = turn.torque.cast<double>() * (0.5 * h);
     for (int i = 0; i < substeps; ++i) {

@@ -16,7 +16,7 @@ struct FreeTurn {
 // Whether two of a body's principal moments are equal, so that its motion is known in closed form.
 bool IsSymmetric(const BodyDynamics& body);
 
-// Any body, for dt seconds.
+// Any body, for dt seconds; back in time where dt is negative.
 void RotateFreely(FreeTurn& turn, float dt);
 
 // `count` symmetric bodies, 1 .. kTurnsTogether: little dearer than one, the same bits.

@@ -1,7 +1,10 @@
 #include <Fulcrum/Physics/Stages/Impact.h>
+
+#include <Fulcrum/Physics/Stages/FreeRotation.h>
 #include <Fulcrum/Physics/Stages/SweepCast.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fulcrum {
 
@@ -26,6 +29,7 @@ public:
             d.Lock(side_[s].mass, none);
         }
         for (int i = 0; i < hit.pointCount; ++i) {
+            before_[i] = Slip(i);
             const float approach = Dot<float>(hit.normal, RelativeVelocity(i));
             away_[i] = approach > world.settings.restitutionSpeed ? hit.restitution * approach : 0.0f;
             approaches_ |= approach > 0;
@@ -35,11 +39,17 @@ public:
 
     bool Run() {
         if (!approaches_) return false;
+        const Vector3 linear[2] = {v_.linear[0], v_.linear[1]}, angular[2] = {v_.angular[0], v_.angular[1]};
         for (int k = 0; k < kIterations; ++k)
             for (int i = 0; i < hit_.pointCount; ++i) {
                 Push(i);
                 Rub(i);
             }
+        const float part = PassivePart();
+        for (int s = 0; s < 2 && part < 1; ++s) {
+            v_.linear[s] = linear[s] + (v_.linear[s] - linear[s]) * part;
+            v_.angular[s] = angular[s] + (v_.angular[s] - angular[s]) * part;
+        }
         return true;
     }
 
@@ -47,6 +57,20 @@ private:
     // Of the body against the other.
     Vector3 RelativeVelocity(int i) const {
         return v_.linear[0] + Cross<float>(v_.angular[0], hit_.arms[i]) - v_.linear[1] - Cross<float>(v_.angular[1], hit_.otherArms[i]);
+    }
+    // The same along the other's surface, which may run.
+    Vector3 Slip(int i) const { return RelativeVelocity(i) - hit_.surfaceVelocity; }
+    // Impulses do the work J . (u + u') / 2, u and u' the velocities of the points against each other before and after. Newton's law at
+    // several points, some with friction, may make it positive: then this part of all impulses makes it zero. Else 1.
+    float PassivePart() const {
+        float first = 0, second = 0;  // work = first part + second part^2
+        for (int i = 0; i < hit_.pointCount; ++i) {
+            const Vector3 impulse = rubbed_[i] - hit_.normal * pushed_[i];
+            first += Dot<float>(impulse, before_[i]);
+            second += 0.5f * Dot<float>(impulse, Vector3(Slip(i) - before_[i]));
+        }
+        if (!(first + second > 0)) return 1;
+        return second > 0 ? std::clamp(-first / second, 0.0f, 1.0f) : 0.0f;
     }
     // What an impulse of 1 N s along a unit vector changes of the relative velocity along it.
     float Response(int i, const Vector3& axis) const {
@@ -71,7 +95,7 @@ private:
     }
     void Rub(int i) {
         if (hit_.friction == 0) return;
-        const Vector3 v = RelativeVelocity(i) - hit_.surfaceVelocity, slip = v - hit_.normal * Dot<float>(hit_.normal, v);
+        const Vector3 v = Slip(i), slip = v - hit_.normal * Dot<float>(hit_.normal, v);
         const float speed = Length(slip);
         const float response = speed > 0 ? Response(i, Vector3(slip * (1 / speed))) : 0.0f;
         if (!(response > 0)) return;
@@ -86,17 +110,68 @@ private:
     Impact& v_;
     Side side_[2];
     bool approaches_ = false;
+    Vector3 before_[SweepHit::kMaxPoints];       // m/s, see Slip
     float away_[SweepHit::kMaxPoints] = {};      // m/s, speed to part with
     float response_[SweepHit::kMaxPoints] = {};  // 1/kg, along the normal
     float pushed_[SweepHit::kMaxPoints] = {};    // N s
     Vector3 rubbed_[SweepHit::kMaxPoints] = {Vector3::Zero(), Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
 };
 
-// What gravity and forces add to a body's velocity, m/s, from a time of the step on; nothing where the solver has spread it over the step.
-Vector3 GainFrom(const WorldState& world, uint32_t body, float time, float dt) {
-    if (!world.bodies.CanMove(body) || world.colouring.IsTouched(body)) return Vector3::Zero();
+// m/s, that gravity and forces have given a body since a time of its course. Where the solver moved it, contacts took a part of that: then
+// as much as the way since then has made of it, so that to go back leaves its energy as it was.
+Vector3 GainSince(const WorldState& world, const Sweep& course, float time, float dt) {
+    if (course.waits || !world.sweeps.IsOfStep(course.body, world.report.step)) return Vector3::Zero();
+    const float* a = world.bodies.poses[course.body].acceleration;
+    const Vector3 acceleration(a[0], a[1], a[2]);
+    const float rest = (1 - time) * dt;
+    if (!world.colouring.IsTouched(course.body)) return acceleration * rest;
+    const float work = Dot<float>(acceleration, Vector3(course.DisplacementRate() * (1 - time)));
+    const float along = Dot<float>(acceleration, world.bodies.LinearVelocityOf(course.body)), square = LengthSquared(acceleration);
+    if (!(square > 0) || (work < 0 && along >= 0)) return Vector3::Zero();
+    // |v - a s|^2 = |v|^2 - 2 work: the solution that is nearest to 0; where there is none, the least |v - a s|.
+    const float root = along * along - 2 * square * work;
+    const float seconds = root < 0 ? along / square : 2 * work / (along + std::copysign(std::sqrt(root), along));
+    return acceleration * (std::isfinite(seconds) ? std::clamp(seconds, -rest, rest) : 0.0f);
+}
+
+// m/s, that they will give it until the end. What a contact carried is not dropped, but what flies up is slowed.
+Vector3 GainUntilEnd(const WorldState& world, uint32_t body, const Vector3& v, const Vector3& since, float rest) {
     const float* a = world.bodies.poses[body].acceleration;
-    return Vector3(a[0], a[1], a[2]) * ((1 - time) * dt);
+    const Vector3 acceleration(a[0], a[1], a[2]);
+    const bool carried = world.colouring.IsTouched(body) || !world.sweeps.IsOfStep(body, world.report.step);
+    if (!carried || Dot<float>(v, acceleration) < 0) return acceleration * rest;
+    return Dot<float>(since, acceleration) > 0 ? since : Vector3(Vector3::Zero());
+}
+
+// What turns keeps its angular momentum and its energy, not its angular velocity. So the angular velocity a while later, or earlier where
+// `seconds` is negative, is that of a free rotation; as seen by the body, so that the energy is the same however exactly the course, which
+// turns at a constant rate to `then`, follows that rotation.
+Vector3 TurnedFreely(const BodyDynamics& d, const Quaternion& rotation, const Vector3& w, float seconds, const Quaternion& then) {
+    if (d.motion != MotionType::Dynamic || !d.FeelsGyroscopicTorque(w)) return w;
+    const auto energyOf = [&](const Vector3& inBody) {
+        const Vector3 local = InverseRotate(d.PrincipalAxes(), inBody);
+        float energy = 0;
+        for (int k = 0; k < 3; ++k) energy += d.inverseInertia[k] > 0 ? local[k] * local[k] / d.inverseInertia[k] : 0.0f;
+        return energy;
+    };
+    FreeTurn turn{&d, rotation, w};
+    RotateFreely(turn, seconds);
+    const Vector3 end = InverseRotate(turn.rotation, turn.angularVelocity);
+    const float before = energyOf(InverseRotate(rotation, w)), after = energyOf(end);
+    return after > 0 ? Rotate(then, Vector3(end * std::sqrt(before / after))) : w;
+}
+
+// The course turns at the rate of its beginning: what was just parted would else seem to meet again.
+Impact::Rest FlyOn(const WorldState& world, uint32_t body, const Quaternion& rotation, const Vector3& v, const Vector3& w, const Vector3& since, float rest) {
+    const BodyDynamics& d = world.bodies.dynamics[body];
+    const Vector3 gain = GainUntilEnd(world, body, v, since, rest);
+    Impact::Rest on{(v + gain * 0.5f) * rest, w * rest, v + gain, w};
+    Vector3 none = Vector3::Zero();
+    d.Lock(on.displacement, none);
+    on.angular = TurnedFreely(d, rotation, w, rest, RotationFromVector(on.turn) * rotation);
+    ClampLength(on.linear, d.maxLinearSpeed);
+    ClampLength(on.angular, d.maxAngularSpeed);
+    return on;
 }
 
 }  // namespace
@@ -104,18 +179,29 @@ Vector3 GainFrom(const WorldState& world, uint32_t body, float time, float dt) {
 Impact FindImpact(const WorldState& world, const SweepHit& hit, float dt) {
     const BodyStore& bodies = world.bodies;
     const uint32_t pair[2] = {hit.body, hit.other};
+    const float rest = (1 - hit.time) * dt;
     Impact impact;
-    impact.lasts = world.sweeps.searchBy[hit.other] != SweepStore::SearchBy::None || !bodies.CanMove(hit.other);
+    Vector3 since[2];
     for (int s = 0; s < 2; ++s) {
         const BodyDynamics& d = bodies.dynamics[pair[s]];
         impact.courses[s] = SweepOf(world, pair[s]);
         impact.poses[s] = impact.courses[s].PoseAt(hit.time);
         impact.masses[s] = d.spherical ? bodies.masses[pair[s]] : bodies.MassAlong(pair[s], AxesOf(d, impact.poses[s].rotation));
-        impact.gain[s] = GainFrom(world, pair[s], hit.time, dt);
-        impact.linear[s] = bodies.LinearVelocityOf(pair[s]) - impact.gain[s];
-        impact.angular[s] = bodies.AngularVelocityOf(pair[s]);
+        since[s] = bodies.CanMove(pair[s]) ? GainSince(world, impact.courses[s], hit.time, dt) : Vector3(Vector3::Zero());
+        impact.linear[s] = bodies.LinearVelocityOf(pair[s]) - since[s];
+        const Vector3 w = bodies.AngularVelocityOf(pair[s]);
+        impact.angular[s] = impact.courses[s].waits ? w : TurnedFreely(d, impact.courses[s].RotationAt(1), w, -rest, impact.poses[s].rotation);
     }
-    impact.parts = hit.pointCount > 0 && ImpactSolver(world, hit, impact).Run();
+    impact.parts = hit.pointCount > 0 && !hit.isBlocked && ImpactSolver(world, hit, impact).Run();
+    impact.isFinite = true;
+    for (int s = 0; s < 2; ++s) {
+        if (!bodies.CanMove(pair[s])) continue;
+        ClampLength(impact.linear[s], bodies.dynamics[pair[s]].maxLinearSpeed);
+        ClampLength(impact.angular[s], bodies.dynamics[pair[s]].maxAngularSpeed);
+        impact.rests[s] = FlyOn(world, pair[s], impact.poses[s].rotation, impact.linear[s], impact.angular[s], since[s], rest);
+        const Impact::Rest& on = impact.rests[s];
+        impact.isFinite &= IsFinite(on.linear) && IsFinite(on.angular) && IsFinite(on.displacement) && IsFinite(on.turn);
+    }
     return impact;
 }
 

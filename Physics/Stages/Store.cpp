@@ -52,6 +52,25 @@ bool FlyFreely(WorldState& world, Ending& ending, const StepContext& step, Worke
     return false;
 }
 
+// The solver changed the angular velocity of a body as it stood at the step's beginning. Impulses on the way let it turn otherwise than
+// about the velocity of the end; the spin of a thin rod about its own axis, left behind in world axes while that turned, is then a turn of
+// the rod itself, with a thousand times the energy. What would gain so is carried along with the body, as far as it takes to gain none.
+Vector3 CarriedAlong(const BodyDynamics& d, const Quaternion& before, const Quaternion& after, const Vector3& w) {
+    constexpr float kGain = 1.0001f;
+    const auto energyOf = [&](const Quaternion& rotation, const Vector3& velocity) {
+        const Vector3 local = InverseRotate(rotation * d.PrincipalAxes(), velocity);
+        float energy = 0;
+        for (int k = 0; k < 3; ++k) energy += d.inverseInertia[k] > 0 ? local[k] * local[k] / d.inverseInertia[k] : 0.0f;
+        return energy;
+    };
+    const float wanted = energyOf(before, w), gain = energyOf(after, w) - wanted;
+    if (!(gain > (kGain - 1) * wanted)) return w;
+    // The energy of w + s (carried - w) is a parabola in s that is `wanted` at 1, and at gain / (its curvature).
+    const Vector3 change = Rotate(after, InverseRotate(before, w)) - w;
+    const float curvature = energyOf(after, change);
+    return w + change * (gain < curvature ? gain / curvature : 1.0f);
+}
+
 void MoveSolved(WorldState& world, Ending& ending, float dt) {
     const uint32_t body = ending.body;
     BodyState& s = world.bodies.states[body];
@@ -59,9 +78,12 @@ void MoveSolved(WorldState& world, Ending& ending, float dt) {
     Quaternion& rotation = ending.turn.rotation;
     Vector3& w = ending.turn.angularVelocity;
     ending.displacement = Vector3(s.deltaPosition[0], s.deltaPosition[1], s.deltaPosition[2]);
+    const Quaternion before = rotation;
     rotation = Normalized(RotationFromVector(Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2])) * rotation);
     // With joints every substep has seen to that.
-    if (d.FeelsGyroscopicTorque(w) && !world.joints.HasAny(body)) w = AddGyroscopicTorque<float>(Vector3(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]), AxesOf(d, rotation), w, dt);
+    if (!d.FeelsGyroscopicTorque(w) || world.joints.HasAny(body)) return;
+    w = CarriedAlong(d, before, rotation, w);
+    w = AddGyroscopicTorque<float>(Vector3(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]), AxesOf(d, rotation), w, dt);
 }
 
 void ForgetForces(WorldState& world, uint32_t body) {

@@ -12,8 +12,9 @@ namespace fulcrum {
 
 namespace {
 
-// A body may move by half its thickness before it is cast, and a hit counts once the two would overlap by a quarter.
-constexpr float kFreePart = 0.5f, kDepthPart = 0.25f;
+// A body may move by half its thickness before it is cast, and a hit counts once the two would overlap by a quarter. Where they close in by
+// more than that in a step, by a twentieth: the solver is to push apart what overlaps, not to stop what is as fast as that.
+constexpr float kFreePart = 0.5f, kDepthPart = 0.25f, kFastDepthPart = 0.05f;
 // What a shape as large as a surface does with each triangle in turn depends on all of them. A cast that has looked at so many is left
 // to the contacts: its time must not grow with the square of the surface.
 constexpr size_t kMostTriangles = 20000;
@@ -71,8 +72,9 @@ void FindTurn(const WorldState& world, Course& course) {
 
 class SweepCaster {
 public:
-    SweepCaster(const WorldState& world, const Sweep& sweep, WorkerFindings& findings, SweepHit& best)
-        : world_(world), sweep_(sweep), findings_(findings), best_(best), isTurning_(sweep.turns && !sweep.turn.isZero(0)) {}
+    SweepCaster(const WorldState& world, const Course& own, WorkerFindings& findings, SweepHit& best)
+        : world_(world), own_(own), findings_(findings), best_(best), isTurning_(own.sweep.turns && !own.sweep.turn.isZero(0)),
+          isCast_(world.bodies.dynamics[own.sweep.body].continuous) {}
 
     bool RunAgainst(uint32_t collider, uint32_t other) {
         piece_ = &world_.colliders.shapes[collider];
@@ -149,19 +151,43 @@ private:
         settings.measureDepth = false;
         if (length > 0) settings.maxFraction = std::min(1.0f, std::max(0.0f, (best_.time - start) / length));
         float touched = 1;  // when it touched, but not so that it counts
+        bool asksForTurn = false;
         caster.Visit(shape, at, settings, [&](const ShapeHit& found) {
             if (triangles_ > kMostTriangles) return 0.0f;
             FindTurn(world_, theirs);
             SweepHit hit = HitOf(other, course);
             hit.time = start + found.fraction * length;
             if (ComesBefore(hit)) {
-                if (Counts(motion, found, course, length, hit) && Behaves(hit)) Take(hit);
+                const bool counts = Counts(motion, found, course, length, hit);
+                if (counts && !isTurning_ && DoesTurn(shape)) {
+                    asksForTurn = true;
+                    return -1.0f;
+                }
+                if (counts && Behaves(hit)) Take(hit);
                 else touched = std::min(touched, hit.time);
             }
             return length > 0 ? (best_.time - start) / length : 0.0f;
         });
+        if (asksForTurn) return CastTurning(other);
         // Without a turn what does not push now never will.
         if (isTurning_ && touched < best_.time) Follow(motion, course, other, length, touched, whole);
+    }
+
+    // Whether the turn makes another hit of one that was found without it: where it moves points by a part of the depth that counts.
+    bool DoesTurn(const Shape& other) {
+        constexpr float kPart = 0.25f;
+        if (shape_->Type() == ShapeType::Sphere) return false;
+        FindTurn(world_, own_);
+        return Length(sweep_.turn) * shape_->OuterRadius() > kPart * DepthThatCounts(other);
+    }
+
+    // What is cast without its turn, and would hit: a rod that topples about its end comes down on it with all its speed, but for its turn.
+    void CastTurning(uint32_t other) {
+        isTurning_ = true;
+        motion_.turn = sweep_.turn;
+        CastAgainst(other, ShapeCaster(*cast_, motion_));
+        motion_.turn.setZero();
+        isTurning_ = false;
     }
 
     SweepHit HitOf(uint32_t other, const Sweep& course) const {
@@ -169,6 +195,7 @@ private:
         hit.body = sweep_.body;
         hit.other = course.body;
         hit.otherCollider = other;
+        hit.isBlocked = !isCast_ && !world_.bodies.dynamics[course.body].continuous;
         return hit;
     }
 
@@ -219,8 +246,10 @@ private:
         return !change.ignore;
     }
 
+    // What is cast only since it was hit leaves to the solver whatever it comes to touch.
     float DepthThatCounts(const Shape& other) const {
-        return kDepthPart * (other.IsConvex() ? std::min(Thickness(*shape_), Thickness(other)) : Thickness(*shape_));
+        const float depth = kDepthPart * (other.IsConvex() ? std::min(Thickness(*shape_), Thickness(other)) : Thickness(*shape_));
+        return isCast_ ? depth : std::min(depth, 0.5f * world_.settings.speculativeDistance);
     }
 
     bool ComesBefore(const SweepHit& hit) const {
@@ -246,7 +275,8 @@ private:
     bool Counts(const ShapeMotion& motion, const ShapeHit& found, const Sweep& course, float length, SweepHit& hit) {
         if (found.isEarly) return found.fraction > 0;
         const Shape& shape = *world_.colliders.shapes[hit.otherCollider].shape;
-        const float depth = DepthThatCounts(shape), left = 1 - hit.time;
+        float depth = DepthThatCounts(shape);
+        const float left = 1 - hit.time;
         const Vector3 linear = length > 0 ? Vector3(motion.displacement * (1 / length)) : Vector3(Vector3::Zero());
         float approach;
         if (found.normal.isZero(0)) {
@@ -255,6 +285,7 @@ private:
             const Position own = sweep_.PositionAt(hit.time), others = course.PositionAt(hit.time);
             approach = -Dot<float>(found.normal, VelocityAt(found.position, own, linear, course, others));
         }
+        if (approach > depth) depth *= kFastDepthPart / kDepthPart;
         if (!(approach * left > depth)) return false;
         return FindPoints(motion, linear, course, std::min(1.0f, hit.time + depth / approach), depth, hit).speed * left > depth;
     }
@@ -317,10 +348,12 @@ private:
     }
 
     const WorldState& world_;
-    const Sweep sweep_;
+    Course own_;
+    const Sweep& sweep_ = own_.sweep;
     WorkerFindings& findings_;
     SweepHit& best_;
-    const bool isTurning_;
+    bool isTurning_;
+    const bool isCast_;                        // else only since it was hit, in this step
     bool found_ = false;
     int restarts_ = 0;
     size_t triangles_ = 0;                     // that were looked at to see what hits do
@@ -349,7 +382,7 @@ Sweep SweepOf(const WorldState& world, uint32_t body) {
 
 bool CastSweep(const WorldState& world, const Sweep& sweep, WorkerFindings& findings, SweepHit& hit) {
     hit.time = 1;
-    return SweepCaster(world, sweep, findings, hit).Run();
+    return SweepCaster(world, {sweep}, findings, hit).Run();
 }
 
 bool CastPair(const WorldState& world, uint32_t collider, uint32_t other, WorkerFindings& findings, SweepHit& hit) {
@@ -363,7 +396,7 @@ bool CastPair(const WorldState& world, uint32_t collider, uint32_t other, Worker
         if (!BallsMeet(Between(otherFrom, from), motion, reach)) return false;
     }
     hit.time = 1;
-    return SweepCaster(world, CourseOf(world, body).sweep, findings, hit).RunAgainst(collider, other);  // without its turn, as pairs are cast
+    return SweepCaster(world, CourseOf(world, body), findings, hit).RunAgainst(collider, other);
 }
 
 }  // namespace fulcrum

@@ -23,6 +23,7 @@ struct Sweep {
     uint32_t body = 0;
     bool turns = false;                        // it is cast with its turn
     bool isCut = false;                        // something was hit
+    bool waits = false;                        // stays until the step's end where it was at `from`, with the velocity of then
     bool changed = false;                      // in the present round
 
     float PartAt(float time) const { return from < 1 ? (time - from) / (1 - from) : 0.0f; }
@@ -46,6 +47,7 @@ struct SweepHit {
     uint8_t material = 0;                      // of the other's palette
     float friction = 0, restitution = 0;
     Vector3 surfaceVelocity = Vector3::Zero(); // m/s, of the other's surface against its body
+    bool isBlocked = false;                    // neither has continuous collision; the body is cast since it was hit, and waits for the next step
     int pointCount = 0;                        // 0: the cast was not decided; nothing is touched before `time`
     Vector3 normal = Vector3::Zero();          // unit, from the body towards the other
     Position centre = Position::Zero();        // m, of the body's mass, where it touches
@@ -75,6 +77,9 @@ struct SweepStore {
     std::vector<float> endedAt;                // times
     std::vector<uint32_t> active, next;        // indices into `swept`, of this round and the next
     std::vector<SweepHit> hits;
+
+    // Whether the body's start is that of this step: it was awake as it began.
+    bool IsOfStep(uint32_t body, uint64_t step) const { return body < starts.size() && starts[body].step == step; }
 
     size_t MemoryUsed() const {
         return starts.capacity() * sizeof(Start) + (swept.capacity() + ended.capacity()) * sizeof(Sweep) + hits.capacity() * sizeof(SweepHit) +

@@ -1,0 +1,148 @@
+#include <Fulcrum/Physics/Stages/ResolveHits.h>
+
+#include <Fulcrum/Physics/Stages/BodyLimits.h>
+#include <Fulcrum/Physics/Stages/Impact.h>
+#include <Fulcrum/Physics/Stages/SweepCast.h>
+
+#include <algorithm>
+#include <tuple>
+
+namespace fulcrum {
+
+namespace {
+
+class HitResolver {
+public:
+    HitResolver(WorldState& world, const StepContext& step, bool isLast) : world_(world), dt_(step.dt), isLast_(isLast) {}
+
+    // In the order of their times. What each would do is found beforehand, in parallel: no body is hit twice in a round.
+    void ResolveAll() {
+        const std::vector<SweepHit>& hits = world_.sweeps.hits;
+        struct Key {
+            float time;
+            uint32_t body, otherCollider, index;
+            auto Order() const { return std::tie(time, body, otherCollider); }
+        };
+        const std::span<Key> order = world_.scratch.Allocate<Key>(hits.size());
+        const std::span<Impact> impacts = world_.scratch.Allocate<Impact>(hits.size());
+        world_.jobs->ParallelFor(static_cast<uint32_t>(hits.size()), 8, [&](JobRange range) {
+            for (uint32_t i = range.begin; i < range.end; ++i) impacts[i] = FindImpact(world_, hits[i], dt_);
+        });
+        for (uint32_t i = 0; i < hits.size(); ++i) order[i] = {hits[i].time, hits[i].body, hits[i].otherCollider, i};
+        std::sort(order.begin(), order.end(), [](const Key& a, const Key& b) { return a.Order() < b.Order(); });
+        for (const Key& key : order) Resolve(hits[key.index], impacts[key.index]);
+    }
+
+private:
+    void Resolve(const SweepHit& hit, const Impact& impact) {
+        const uint32_t places[2] = {PlaceOf(world_, hit.body, &impact.courses[0]), PlaceOf(world_, hit.other, &impact.courses[1])};
+        if (Swept(places[0]).changed) return;  // it is in the next round, or waits
+        const bool lostPartner = places[1] != SweepStore::kNone && Swept(places[1]).changed;
+        const bool isUndecided = hit.pointCount == 0 || lostPartner;
+        if (hit.isBlocked || !impact.isFinite || (isLast_ && isUndecided)) {
+            Wait(places[0], hit.time, impact, 0);
+        } else if (lostPartner) {
+            CastAgain(places[0]);
+        } else if (isUndecided) {
+            Resume(places[0], hit.time, impact.poses[0]);
+        } else if (!impact.parts && (impact.courses[0].waits || impact.courses[1].waits)) {
+            // What goes as fast as the one that waits runs into it, and waits, too.
+            for (int s = 0; s < 2; ++s)
+                if (places[s] != SweepStore::kNone && !impact.courses[s].waits) Wait(places[s], hit.time, impact, s);
+        } else {
+            Part(hit, impact, places);
+        }
+    }
+
+    // Both go on with the velocities after the hit. Where nothing approaches, the solver moved them otherwise than those say.
+    void Part(const SweepHit& hit, const Impact& impact, const uint32_t (&places)[2]) {
+        WakeBody(world_, hit.other);
+        world_.report.sweptHits += impact.parts;
+        for (int s = 0; s < 2; ++s) {
+            if (places[s] == SweepStore::kNone) continue;
+            const uint32_t body = Swept(places[s]).body;
+            if (!world_.bodies.CanMove(body)) {
+                if (s == 0 || impact.parts) Resume(places[s], hit.time, impact.poses[s]);
+                continue;
+            }
+            world_.bodies.masses[body] = impact.masses[s];
+            world_.bodies.dynamics[body].slowSeconds = 0;
+            if (isLast_) Wait(places[s], hit.time, impact, s);
+            else Continue(places[s], hit.time, impact, s);
+        }
+    }
+
+    Sweep& Swept(uint32_t place) { return world_.sweeps.swept[place]; }
+
+    void CastAgain(uint32_t place) {
+        Swept(place).changed = true;
+        world_.sweeps.next.push_back(place);
+    }
+
+    void End(uint32_t place, float time, const Pose& pose) {
+        Sweep& sweep = Swept(place);
+        world_.sweeps.ended.push_back(sweep);
+        world_.sweeps.endedAt.push_back(time);
+        sweep.start = pose;
+        sweep.from = time;
+        sweep.isCut = true;
+        CastAgain(place);
+    }
+
+    // The rest of the same course.
+    void Resume(uint32_t place, float time, const Pose& pose) {
+        Sweep& sweep = Swept(place);
+        const Vector3 displacement = sweep.DisplacementRate() * (1 - time), turn = sweep.TurnRate() * (1 - time);
+        End(place, time, pose);
+        sweep.displacement = displacement;
+        sweep.turn = turn;
+    }
+
+    // Stays until the next step; but a kinematic body goes on as it is told. It is in the way of others, who may not know.
+    void Wait(uint32_t place, float time, const Impact& impact, int side) {
+        Sweep& sweep = Swept(place);
+        if (!world_.bodies.CanMove(sweep.body)) return;
+        End(place, time, impact.poses[side]);
+        sweep.displacement.setZero();
+        sweep.turn.setZero();
+        sweep.waits = true;
+        if (impact.isFinite) SetVelocity(sweep.body, impact.linear[side], impact.angular[side]);
+    }
+
+    void Continue(uint32_t place, float time, const Impact& impact, int side) {
+        Sweep& sweep = Swept(place);
+        const Impact::Rest& rest = impact.rests[side];
+        End(place, time, impact.poses[side]);
+        sweep.displacement = rest.displacement;
+        sweep.turn = rest.turn;
+        sweep.waits = false;
+        SetVelocity(sweep.body, rest.linear, rest.angular);
+    }
+
+    void SetVelocity(uint32_t body, Vector3 linear, Vector3 angular) {
+        world_.report.clampedBodies += LimitSpeeds(world_, body, linear, angular);
+        world_.bodies.SetVelocity(body, linear, angular);
+    }
+
+    WorldState& world_;
+    float dt_;
+    bool isLast_;
+};
+
+}  // namespace
+
+uint32_t PlaceOf(WorldState& world, uint32_t body, const Sweep* course) {
+    SweepStore& store = world.sweeps;
+    if (store.searchBy[body] == SweepStore::SearchBy::None && !world.bodies.CanMove(body)) return SweepStore::kNone;
+    if (store.places[body] == SweepStore::kNone) {
+        Sweep sweep = course ? *course : SweepOf(world, body);
+        sweep.turns = IsCastTurning(world, body);
+        store.places[body] = static_cast<uint32_t>(store.swept.size());
+        store.swept.push_back(sweep);
+    }
+    return store.places[body];
+}
+
+void ResolveHits(WorldState& world, const StepContext& step, bool isLast) { HitResolver(world, step, isLast).ResolveAll(); }
+
+}  // namespace fulcrum
