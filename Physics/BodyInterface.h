@@ -20,16 +20,18 @@ public:
     Status Remove(BodyId id);
     bool Exists(BodyId id) const;
 
-    // Teleports; wakes it, what rested on it and what it now touches. Errors: UnknownId, NonFinite, Unnormalized.
+    // Teleports; wakes it, what rested on it and what it now touches. A pose that GetPose gave is taken with its bits.
+    // Errors: UnknownId, NonFinite, OutOfRange (farther out than 1e18 m), Unnormalized.
     Status SetPose(BodyId id, const Position& position, const Quaternion& rotation);
     // Gives a kinematic body the velocity with which it reaches the pose after `dt` seconds (> 0). Errors also: Unsupported.
     Status MoveKinematic(BodyId id, const Position& position, const Quaternion& rotation, float dt);
     Status SetVelocity(BodyId id, const Vector3& linear, const Vector3& angular);  // m/s, rad/s; wakes
-    // Acts during the next step only: N at a world point, N m; wakes. Errors: UnknownId, NonFinite, Unsupported (not dynamic).
+    // Acts during the next step only: N at a world point, N m; wakes. One of zero does nothing, and a body that falls asleep
+    // forgets what it had. Errors: UnknownId, NonFinite, OutOfRange (point), Unsupported (not dynamic).
     Status AddForce(BodyId id, const Vector3& force);
     Status AddForceAt(BodyId id, const Vector3& force, const Position& point);
     Status AddTorque(BodyId id, const Vector3& torque);
-    // Acts at once: N s at the centre of mass or a world point, N m s; wakes.
+    // Acts at once: N s at the centre of mass or a world point, N m s; wakes, unless it is zero.
     Status AddImpulse(BodyId id, const Vector3& impulse);
     Status AddImpulseAt(BodyId id, const Vector3& impulse, const Position& point);
     Status AddAngularImpulse(BodyId id, const Vector3& impulse);
@@ -50,7 +52,7 @@ public:
 
     // Another shape for the body, whose own frame stays where it is. Mass and inertia follow at the density that the body had,
     // or stay; the centre of mass becomes that of the shape. Wakes the body and what is near. Errors: UnknownId, Unsupported
-    // (null, or no volume for a dynamic body), OutOfRange (mass or inertia has no inverse).
+    // (null, no volume for a dynamic body, a surface or plane for one with continuous collision), OutOfRange (mass or inertia has no inverse).
     Status SetShape(BodyId id, const ShapePtr& shape, MassUpdate mass = MassUpdate::Update);
 
     // Children of a body that was made of a MutableCompound, of which it has a copy of its own: several bodies may be made of

@@ -185,6 +185,11 @@ public:
         return Vector3(w[0], w[1], w[2]);
     }
     void SetVelocity(uint32_t index, const Vector3& linear, const Vector3& angular);
+    void ForgetForces(uint32_t index) {
+        if (!dynamics[index].hasForce) return;
+        cold[index].force = cold[index].torque = Vector3::Zero();
+        dynamics[index].hasForce = false;
+    }
     // Brings the world inverse inertia of `masses` in line with the rotation, or with principal axes in the middle of a step.
     void UpdateInertia(uint32_t index) { UpdateInertia(index, AxesOf(dynamics[index], RotationOf(index))); }
     void UpdateInertia(uint32_t index, const Matrix3& axes) { masses[index] = MassAlong(index, axes); }
