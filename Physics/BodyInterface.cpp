@@ -35,7 +35,7 @@ void FillDynamics(BodyDynamics& d, const BodySettings& s) {
     d.outerRadius = s.shape->OuterRadius();
     d.gyroscopic = s.gyroscopicTorque;
     d.allowSleep = s.allowSleep;
-    d.layer = s.layer;
+    d.layer = s.layer & 31u;
     d.continuous = s.continuous != ContinuousCollision::Off;
     if (s.motion != MotionType::Dynamic) return;
     const float kilograms = s.mass > 0 ? s.mass : s.density * mass.volume;

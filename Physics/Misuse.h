@@ -6,8 +6,8 @@
 
 namespace fulcrum {
 
-// Called by the thread that made the call, while that may hold a world: it must not query nor change one. It may throw, or end
-// the program; what it throws out of a job passes through the job system.
+// Called by the thread that made the call, while that may hold a world: it must not query nor change one. It may end
+// the program, but not throw.
 using MisuseHandler = void (*)(const Error& error);
 
 // For all worlds of the program, from any thread. Null: the default, which prints the first 100 errors to standard error.

@@ -58,6 +58,7 @@ PairChange CollidePair(WorldState& world, uint32_t index, float dt, WorkerFindin
         WriteManifold(world, view, manifold, dt);
         pair.reference = view.bInA;
     }
+    if (pair.pointCount > 0) NoteStanding(world, pair, view.bInA, findings);
     const PairChange change = NoteTouching(world, index, findings);
     return TouchesSleeper(world, pair) ? PairChange::WakesOther : change;
 }
@@ -122,6 +123,7 @@ void Collide(WorldState& world, const StepContext& step) {
         CollideActivated(world, step.dt);
         AddMoreManifolds(world, step.dt);
     }
+    NoteCrowd(world);
     StepReport& report = world.report;
     for (const WorkerFindings& f : world.findings) {
         report.contacts += f.contacts;

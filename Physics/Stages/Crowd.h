@@ -14,9 +14,31 @@ Vector3 PlaceInCrowd(uint32_t body);
 // `bInA` of two convex pieces, moved by that hair where their centers coincide.
 RelativePose WithDistinctCenters(const WorldState& world, const Pair& pair, const RelativePose& bInA);
 
-// How near the centers of two colliders are, as a part of the sum of their inner radii; infinite unless both may be pushed. Two
-// that are nearer than this stand in each other, as nothing does that was not put there.
+// Two bodies whose centers are nearer than this, as a part of the sum of their inner radii, stand in each other, as nothing does that
+// was not put there.
 inline constexpr float kDeepNearness = 0.8f;
-float Nearness(const WorldState& world, uint32_t colliderA, uint32_t colliderB);
+
+// A collider as the search for its nearest sees it.
+struct CrowdPlace {
+    Position center = Position::Zero();  // m, a hair from where it is
+    float innerRadius = 0;               // m; negative: what does not stand in others: it is not dynamic
+};
+CrowdPlace CrowdPlaceOf(const WorldState& world, uint32_t collider);
+// How near two colliders are, as a part of the sum of their inner radii; infinite unless both are dynamic.
+float Nearness(const CrowdPlace& a, const CrowdPlace& b);
+
+// Notes in `findings` which bodies of a pair stand in each other, if they do; `bInA` is that of the pieces.
+void NoteStanding(const WorldState& world, const Pair& pair, const RelativePose& bInA, WorkerFindings& findings);
+
+// Marks the bodies that stand in many others, until they overlap nothing. Of those each is pushed by many, all as hard as a single
+// overlap would be, and the sum would shoot it out. So pushes move them no faster than contactPushSpeed, and leave them no more
+// speed than they had without: the solver asks for BodyDynamics::crowded where it integrates.
+void NoteCrowd(WorldState& world);
+
+// `v` with at most the length of `limit`.
+inline Vector3 NoFasterThan(const Vector3& v, const Vector3& limit) {
+    const float squared = LengthSquared(v), most = LengthSquared(limit);
+    return squared > most ? Vector3(v * std::sqrt(most / squared)) : v;
+}
 
 }  // namespace fulcrum

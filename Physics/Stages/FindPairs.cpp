@@ -6,14 +6,14 @@
 #include <Fulcrum/Physics/Stages/Crowd.h>
 
 #include <algorithm>
-#include <tuple>
+#include <utility>
 
 namespace fulcrum {
 
 namespace {
 
-// Of the bodies that stand in one another a collider gets pairs with so many, the nearest, unless the other one is nearer to it than
-// that to its own. Others follow when these are apart: thousands at one point would make millions of pairs, and push no better.
+// A collider that stands in more others than this has pairs with so many alone, the nearest, and with those whose nearest it is. Others
+// follow when these are apart: thousands at one point would make millions of pairs, and be pushed no better.
 constexpr size_t kMostDeep = 16;
 // New pairs of such bodies, from which on that is done.
 constexpr uint32_t kCrowd = 1024;
@@ -31,8 +31,8 @@ uint64_t KeyOf(uint32_t a, uint32_t b) { return a < b ? uint64_t(a) << 32 | b : 
 
 // Notes their pair if it is to be.
 void Consider(const WorldState& world, uint32_t index, uint32_t other, WorkerFindings& findings) {
-    if (!AskForPair(world, index, other)) return;
-    if (Nearness(world, index, other) < kDeepNearness && ++findings.deepPairs > kCrowd) return;  // a crowd: all will be searched again
+    if (findings.deepPairs > kCrowd || !AskForPair(world, index, other)) return;  // in a crowd all will be searched again
+    findings.deepPairs += Nearness(CrowdPlaceOf(world, index), CrowdPlaceOf(world, other)) < kDeepNearness;
     findings.pairs.push_back(KeyOf(index, other));
 }
 
@@ -55,35 +55,34 @@ void Search(const WorldState& world, uint32_t index, WorkerFindings& findings) {
     });
 }
 
-// The same in a crowd. Of two that stand in each other, and both search, each has the other among its nearest or not.
-void SearchInCrowd(const WorldState& world, uint32_t index, WorkerFindings& findings) {
-    struct Near {
-        float nearness;
-        uint32_t collider;
-        bool operator<(const Near& other) const { return std::tie(nearness, collider) < std::tie(other.nearness, other.collider); }
+// The same in a crowd. What is dynamic and searches, too, has the other among its nearest or not: either may ask for the pair.
+void SearchInCrowd(const WorldState& world, uint32_t index, std::span<const CrowdPlace> places, WorkerFindings& findings) {
+    std::vector<std::pair<float, uint32_t>>& near = findings.near;
+    near.clear();
+    const auto ask = [&](uint32_t other) {
+        if (AskForPair(world, index, other)) findings.pairs.push_back(KeyOf(index, other));
     };
-    Near nearest[kMostDeep];
-    size_t count = 0, found = 0;
-    const uint32_t body = world.colliders.colliders[index].body;
+    size_t deep = 0;
     VisitNeighbors(world, index, [&](uint32_t other) {
-        const Collider& collider = world.colliders.colliders[other];
-        const float nearness = collider.queued ? Nearness(world, index, other) : 1.0f;
-        if (!(nearness < kDeepNearness)) {
-            if ((!collider.queued || index < other) && AskForPair(world, index, other)) findings.pairs.push_back(KeyOf(index, other));
-            return;
-        }
-        if (!MayCollide(world, body, collider.body)) return;
-        ++found;
-        const Near here{nearness, other};
-        if (count == kMostDeep && !(here < nearest[count - 1])) return;
-        count = std::min(count + 1, kMostDeep);
-        size_t place = count - 1;
-        for (; place > 0 && here < nearest[place - 1]; --place) nearest[place] = nearest[place - 1];
-        nearest[place] = here;
+        if (!world.colliders.colliders[other].queued) return ask(other);
+        const float nearness = Nearness(places[index], places[other]);
+        near.push_back({nearness, other});
+        deep += nearness < kDeepNearness;
     });
-    for (size_t i = 0; i < count; ++i)
-        if (AskForPair(world, index, nearest[i].collider)) findings.pairs.push_back(KeyOf(index, nearest[i].collider));
-    if (found > count) findings.crowded.push_back(index);
+    if (deep > kMostDeep) {
+        const uint32_t body = world.colliders.colliders[index].body;
+        std::erase_if(near, [&](const auto& other) {
+            return !std::isinf(other.first) && !MayCollide(world, body, world.colliders.colliders[other.second].body);
+        });
+        // What cannot be pushed is not among the nearest, nor may it be left out.
+        const auto pushed = std::partition(near.begin(), near.end(), [](const auto& other) { return std::isinf(other.first); });
+        if (near.end() - pushed > static_cast<ptrdiff_t>(kMostDeep)) {
+            std::nth_element(pushed, pushed + kMostDeep, near.end());
+            near.erase(pushed + kMostDeep, near.end());
+            findings.crowded.push_back(index);
+        }
+    }
+    for (const auto& [nearness, other] : near) ask(other);
 }
 
 void SearchEach(WorldState& world) {
@@ -136,8 +135,10 @@ bool IsCrowded(WorldState& world) {
 
 void SearchAllInCrowd(WorldState& world) {
     const std::vector<uint32_t>& moved = world.colliders.moved;
+    const std::span<CrowdPlace> places = world.scratch.Allocate<CrowdPlace>(world.colliders.colliders.size());
+    for (const uint32_t index : moved) places[index] = CrowdPlaceOf(world, index);
     world.jobs->ParallelFor(static_cast<uint32_t>(moved.size()), 16, [&](JobRange range) {
-        for (uint32_t i = range.begin; i < range.end; ++i) SearchInCrowd(world, moved[i], world.findings[range.worker]);
+        for (uint32_t i = range.begin; i < range.end; ++i) SearchInCrowd(world, moved[i], places, world.findings[range.worker]);
     });
 }
 

@@ -39,6 +39,8 @@ struct alignas(64) WorkerFindings {
     std::vector<uint64_t> pairs;      // FindPairs: keys of new or resting pairs
     uint32_t deepPairs = 0;           // FindPairs: of these, bodies that stand in each other
     std::vector<uint32_t> crowded;    // FindPairs: colliders that are in more others than they have pairs
+    std::vector<std::pair<float, uint32_t>> near;  // FindPairs: room to work in
+    std::vector<uint32_t> standing, overlapping;  // Collide: bodies that stand in another, and crowded ones that overlap one; once for each
     SurfaceContacts surface;          // Collide: room to work in
     std::vector<uint32_t> surfacePlaces, surfaceLeft, surfaceTouched;  // Collide: likewise
     std::vector<MoreManifold> more;   // Collide: what has no place in its pair yet
@@ -83,6 +85,7 @@ struct WorldState {
     std::vector<uint32_t> began;              // Color: pairs that began to touch
     std::vector<uint64_t> newPairs;
     std::vector<MoreManifold> moreManifolds;
+    std::vector<uint32_t> crowd, standing;    // bodies that stand in many others in this step, repeated; in any
     std::vector<uint32_t> ghosts;             // pairs that DropGhosts took the points from, in the last step
     std::vector<WorkerFindings> findings;     // by worker
     ScratchArena scratch;
