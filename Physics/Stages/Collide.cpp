@@ -58,7 +58,7 @@ PairChange CollidePair(WorldState& world, uint32_t index, float dt, WorkerFindin
         WriteManifold(world, view, manifold, dt);
         pair.reference = view.bInA;
     }
-    if (pair.pointCount > 0) NoteStanding(world, pair, view.bInA, findings);
+    if (pair.pointCount > 0) NoteStanding(world, index, view.bInA, findings);
     const PairChange change = NoteTouching(world, index, findings);
     return TouchesSleeper(world, pair) ? PairChange::WakesOther : change;
 }

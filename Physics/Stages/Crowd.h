@@ -28,12 +28,17 @@ CrowdPlace CrowdPlaceOf(const WorldState& world, uint32_t collider);
 float Nearness(const CrowdPlace& a, const CrowdPlace& b);
 
 // Notes in `findings` which bodies of a pair stand in each other, if they do; `bInA` is that of the pieces.
-void NoteStanding(const WorldState& world, const Pair& pair, const RelativePose& bInA, WorkerFindings& findings);
+void NoteStanding(const WorldState& world, uint32_t pair, const RelativePose& bInA, WorkerFindings& findings);
 
 // Marks the bodies that stand in many others, until they overlap nothing. Of those each is pushed by many, all as hard as a single
 // overlap would be, and the sum would shoot it out. So pushes move them no faster than contactPushSpeed, and leave them no more
 // speed than they had without: the solver asks for BodyDynamics::crowded where it integrates.
 void NoteCrowd(WorldState& world);
+
+// Limits the velocity with which a crowded body is about to move for h seconds: pushes may change it by contactPushSpeed, and by less
+// for bodies whose place is near the middle of the ball, so that a crowd grows as a whole and not as a shell. Nor is it
+// pressed into what does not move: the contacts with that are soft, too, and would give way to so many.
+void LimitPush(WorldState& world, uint32_t body, float h);
 
 // `v` with at most the length of `limit`.
 inline Vector3 NoFasterThan(const Vector3& v, const Vector3& limit) {

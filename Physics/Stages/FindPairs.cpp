@@ -59,8 +59,11 @@ void Search(const WorldState& world, uint32_t index, WorkerFindings& findings) {
 void SearchInCrowd(const WorldState& world, uint32_t index, std::span<const CrowdPlace> places, WorkerFindings& findings) {
     std::vector<std::pair<float, uint32_t>>& near = findings.near;
     near.clear();
+    // Also those that exist, so that the others are known from them.
     const auto ask = [&](uint32_t other) {
-        if (AskForPair(world, index, other)) findings.pairs.push_back(KeyOf(index, other));
+        const uint32_t pair = world.pairs.Find(index, other);
+        const bool isActive = pair != PairStore::kNone && world.pairs.active.Contains(pair);
+        if (isActive || AskForPair(world, index, other)) findings.pairs.push_back(KeyOf(index, other));
     };
     size_t deep = 0;
     VisitNeighbors(world, index, [&](uint32_t other) {
@@ -140,6 +143,27 @@ void SearchAllInCrowd(WorldState& world) {
     world.jobs->ParallelFor(static_cast<uint32_t>(moved.size()), 16, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i) SearchInCrowd(world, moved[i], places, world.findings[range.worker]);
     });
+}
+
+// Two that both have enough nearer ones lose the pair that they have from when these were farther away. `found`: all that are to be.
+void RemoveFarPairs(WorldState& world, std::span<const uint64_t> found) {
+    const std::span<uint8_t> isCrowded = world.scratch.Allocate<uint8_t>(world.colliders.colliders.size());
+    std::fill(isCrowded.begin(), isCrowded.end(), uint8_t(0));
+    for (const WorkerFindings& findings : world.findings)
+        for (const uint32_t index : findings.crowded) isCrowded[index] = 1;
+    std::vector<uint32_t> far;
+    for (const WorkerFindings& findings : world.findings)
+        for (const uint32_t index : findings.crowded)
+            world.pairs.VisitOf(index, [&](uint32_t pair) {
+                const uint32_t a = world.pairs.pairs[pair].colliderA, b = world.pairs.pairs[pair].colliderB;
+                if (a != index || !isCrowded[b] || std::binary_search(found.begin(), found.end(), KeyOf(a, b))) return;
+                far.push_back(pair);
+            });
+    std::sort(far.begin(), far.end());
+    for (const uint32_t pair : far) {
+        if (pair < world.changes.size()) world.changes[pair] = PairChange::None;
+        RemovePair(world, pair);
+    }
 }
 
 // Who has not got all pairs searches again in the next step, whatever it knows from this one.
@@ -263,7 +287,10 @@ void FindPairs(WorldState& world) {
         findings.pairs.clear();
     }
     std::sort(found.begin(), found.end());
-    if (isCrowded) found.erase(std::unique(found.begin(), found.end()), found.end());  // both may have found a pair
+    if (isCrowded) {
+        found.erase(std::unique(found.begin(), found.end()), found.end());  // both may have found a pair
+        RemoveFarPairs(world, found);
+    }
     ActivatePairs(world, found);
     ForgetMoved(world);
     if (isCrowded) RequeueCrowded(world);

@@ -82,17 +82,6 @@ void TurnInertia(BodyStore& bodies, uint32_t body, float h) {
     bodies.UpdateInertia(body, axes);
 }
 
-// Of a body that stands in many others.
-void LimitPush(WorldState& world, uint32_t body) {
-    const float* free = world.bodies.unconstrained[body].row;
-    const Vector3 freeV(free[0], free[1], free[2]), freeW(free[3], free[4], free[5]);
-    Vector3 push = world.bodies.LinearVelocityOf(body) - freeV, spin = world.bodies.AngularVelocityOf(body) - freeW;
-    const float fastest = world.settings.contactPushSpeed;
-    ClampLength(push, fastest);
-    ClampLength(spin, fastest / world.bodies.dynamics[body].outerRadius);
-    world.bodies.SetVelocity(body, freeV + push, freeW + spin);
-}
-
 void IntegratePose(WorldState& world, uint32_t body, float h) {
     const BodyDynamics& d = world.bodies.dynamics[body];
     if (d.motion != MotionType::Dynamic) return;
@@ -102,7 +91,7 @@ void IntegratePose(WorldState& world, uint32_t body, float h) {
         d.Lock(v, w);
         world.bodies.SetVelocity(body, v, w);
     }
-    if (d.crowded) LimitPush(world, body);
+    if (d.crowded) LimitPush(world, body, h);
     const bool isJointed = world.joints.HasAny(body);
     const Vector3 before(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]);
     if (isJointed && !(LengthSquared(before) > kFarthestSquared)) {

@@ -14,7 +14,7 @@ namespace {
 struct Burst {
     TestWorld world;
     std::vector<BodyId> ids;
-    double fastest = 0, lowest = 0, farthest = 0;  // m/s; m, of all steps
+    double fastest = 0, lowest = 1e300, farthest = 0;  // m/s; m, of all steps
     size_t mostMemory = 0;
 
     Burst(const SystemSettings& settings, uint32_t threads) : world(settings, threads) {}
