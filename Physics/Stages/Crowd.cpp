@@ -68,6 +68,11 @@ void VisitFixedContacts(const WorldState& world, uint32_t body, const Visit& vis
     });
 }
 
+bool StandsInMany(const WorldState& world, uint32_t body) {
+    const auto [first, last] = std::equal_range(world.standing.begin(), world.standing.end(), body);
+    return static_cast<size_t>(last - first) >= kMany;
+}
+
 }  // namespace
 
 Vector3 PlaceInCrowd(uint32_t body) {
@@ -141,7 +146,8 @@ void LimitPush(WorldState& world, uint32_t body, float h) {
     const float* free = world.bodies.unconstrained[body].row;
     const Vector3 freeV(free[0], free[1], free[2]), freeW(free[3], free[4], free[5]);
     Vector3 push = world.bodies.LinearVelocityOf(body) - freeV, spin = world.bodies.AngularVelocityOf(body) - freeW;
-    const float fastest = world.settings.contactPushSpeed, mine = fastest * std::max(Length(PlaceInCrowd(body)), kSlowest);
+    const float fastest = world.settings.contactPushSpeed;
+    const float mine = StandsInMany(world, body) ? fastest * std::max(Length(PlaceInCrowd(body)), kSlowest) : fastest;
     ClampLength(push, mine);
     ClampLength(spin, mine / world.bodies.dynamics[body].outerRadius);
     Vector3 v = freeV + push;

@@ -35,8 +35,8 @@ void NoteStanding(const WorldState& world, uint32_t pair, const RelativePose& bI
 // speed than they had without: the solver asks for BodyDynamics::crowded where it integrates.
 void NoteCrowd(WorldState& world);
 
-// Limits the velocity with which a crowded body is about to move for h seconds: pushes may change it by contactPushSpeed, and by less
-// for bodies whose place is near the middle of the ball, so that a crowd grows as a whole and not as a shell. Nor is it
+// Limits the velocity with which a crowded body is about to move for h seconds: pushes may change it by contactPushSpeed. While it stands
+// in many, by less if its place is near the middle of the ball: a crowd grows as a whole and not as a shell. Nor is it
 // pressed into what does not move: the contacts with that are soft, too, and would give way to so many.
 void LimitPush(WorldState& world, uint32_t body, float h);
 
