@@ -4,6 +4,8 @@
 
 #include <Fulcrum/Math/Assert.h>
 
+#include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <utility>
 #include <variant>
@@ -19,12 +21,19 @@ enum class ErrorCode {
     Degenerate,          // points without volume, an empty compound and the like
     UnknownId,           // no such body, or it was removed
     Unsupported,         // valid, but not for this kind of body or shape
+    NotAllowedHere,      // a call in what the engine calls back, or under Queries().Hold(), that would have to wait for itself
 };
 
 struct Error {
     ErrorCode code;
     std::string message;  // names the field, its value and what would be valid
 };
+
+// Prints the message to standard error and ends the program: what a Result answers to a question that it has no answer for.
+[[noreturn, gnu::cold, gnu::noinline]] inline void AbortWith(const char* what, const std::string& message) {
+    std::fprintf(stderr, "fulcrum: %s%s\n", what, message.c_str());
+    std::abort();
+}
 
 template <class T>
 class [[nodiscard]] Result {
@@ -33,18 +42,18 @@ public:
     Result(Error error) : content_(std::move(error)) {}
 
     explicit operator bool() const { return content_.index() == 0; }
-    // Only where the result is true.
+    // Only where the result is true: else, in every build, the error's message is printed and the program aborts.
     T& Value() {
-        FULCRUM_ASSERT(content_.index() == 0);
+        if (content_.index() != 0) [[unlikely]] AbortWith("Value() of an error: ", GetError().message);
         return *std::get_if<0>(&content_);
     }
     const T& Value() const {
-        FULCRUM_ASSERT(content_.index() == 0);
+        if (content_.index() != 0) [[unlikely]] AbortWith("Value() of an error: ", GetError().message);
         return *std::get_if<0>(&content_);
     }
-    // Only where the result is false.
+    // Only where the result is false: else the program aborts.
     const Error& GetError() const {
-        FULCRUM_ASSERT(content_.index() == 1);
+        if (content_.index() != 1) [[unlikely]] AbortWith("GetError() of a result without an error", "");
         return *std::get_if<1>(&content_);
     }
 

@@ -11,9 +11,16 @@ namespace fulcrum {
 
 namespace {
 
+// What was read from a body is given back to it, or to another, with its bits: normalizing a rotation again changes them.
+Quaternion NormalizedUnlessItIs(const Quaternion& q) {
+    const double squared = double{q.x} * q.x + double{q.y} * q.y + double{q.z} * q.z + double{q.w} * q.w;
+    constexpr double kRounding = 0x1p-21;  // more than four components, rounded to float, leave
+    return std::fabs(squared - 1) <= kRounding ? q : Normalized(q);
+}
+
 // The centre frame's pose of a body whose own frame is at `position`, `rotation`.
 Pose CentrePose(const Shape& shape, const Position& position, const Quaternion& rotation) {
-    const Quaternion q = Normalized(rotation);
+    const Quaternion q = NormalizedUnlessItIs(rotation);
     return {position + Rotate(q, shape.Mass().centreOfMass).cast<double>(), q};
 }
 
@@ -29,7 +36,7 @@ void FillDynamics(BodyDynamics& d, const BodySettings& s) {
     d.outerRadius = s.shape->OuterRadius();
     d.gyroscopic = s.gyroscopicTorque;
     d.allowSleep = s.allowSleep;
-    d.layer = s.layer;
+    d.layer = s.layer & 31u;
     d.continuous = s.continuous != ContinuousCollision::Off;
     if (s.motion != MotionType::Dynamic) return;
     const float kilograms = s.mass > 0 ? s.mass : s.density * mass.volume;
@@ -93,6 +100,7 @@ void Teleported(WorldState& world, uint32_t body) {
 
 Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
     const WorldLock::Exclusive alone(world_.lock);
+    if (alone.Refusal()) return *alone.Refusal();
     if (MaybeError error = Check(settings)) return *error;
     const uint32_t body = world_.bodies.Allocate();
     BodyCold& cold = world_.bodies.cold[body];
@@ -128,6 +136,7 @@ Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
 
 Status BodyInterface::Remove(BodyId id) {
     const WorldLock::Exclusive alone(world_.lock);
+    if (alone.Refusal()) return *alone.Refusal();
     if (!Exists(id)) return Unknown(id);
     const uint32_t body = id.index;
     WakeBody(world_, body);
@@ -151,8 +160,9 @@ bool BodyInterface::Exists(BodyId id) const { return world_.bodies.Find(id); }
 
 Status BodyInterface::SetPose(BodyId id, const Position& position, const Quaternion& rotation) {
     const WorldLock::Exclusive alone(world_.lock);
+    if (alone.Refusal()) return *alone.Refusal();
     if (!Exists(id)) return Unknown(id);
-    if (MaybeError e = FirstOf(CheckFinite("position", position), CheckRotation("rotation", rotation))) return *e;
+    if (MaybeError e = FirstOf(CheckPosition("position", position), CheckRotation("rotation", rotation))) return *e;
     const uint32_t body = id.index;
     if (world_.bodies.dynamics[body].frozen) {
         world_.bodies.dynamics[body].frozen = false;
@@ -171,7 +181,7 @@ Status BodyInterface::MoveKinematic(BodyId id, const Position& position, const Q
     if (!Exists(id)) return Unknown(id);
     if (world_.bodies.dynamics[id.index].motion != MotionType::Kinematic)
         return Error{ErrorCode::Unsupported, "MoveKinematic needs a kinematic body"};
-    if (MaybeError e = FirstOf(CheckFinite("position", position), CheckRotation("rotation", rotation), CheckPositive("dt", dt)))
+    if (MaybeError e = FirstOf(CheckPosition("position", position), CheckRotation("rotation", rotation), CheckPositive("dt", dt)))
         return *e;
     const Pose now{world_.bodies.ExactCentreOf(id.index), world_.bodies.RotationOf(id.index)};
     const Pose goal = CentrePose(*world_.bodies.cold[id.index].shape, position, rotation);
@@ -182,6 +192,7 @@ Status BodyInterface::MoveKinematic(BodyId id, const Position& position, const Q
 
 Status BodyInterface::SetVelocity(BodyId id, const Vector3& linear, const Vector3& angular) {
     const WorldLock::Exclusive alone(world_.lock);
+    if (alone.Refusal()) return *alone.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (MaybeError e = FirstOf(CheckFinite("linear", linear), CheckFinite("angular", angular))) return *e;
     const BodyDynamics& d = world_.bodies.dynamics[id.index];
@@ -219,7 +230,9 @@ Vector3 ArmTo(const WorldState& world, BodyId id, const Position& point) {
 
 Status Push(WorldState& world, BodyId id, const Vector3& force, const Vector3& torque) {
     const WorldLock::Exclusive alone(world.lock);
+    if (alone.Refusal()) return *alone.Refusal();
     if (MaybeError e = FirstOf(CheckPushable(world, id), CheckFinite("force", force), CheckFinite("torque", torque))) return *e;
+    if (force.isZero(0) && torque.isZero(0)) return Done{};
     WakeBody(world, id.index);
     BodyCold& cold = world.bodies.cold[id.index];
     cold.force += force;
@@ -230,8 +243,10 @@ Status Push(WorldState& world, BodyId id, const Vector3& force, const Vector3& t
 
 Status Kick(WorldState& world, BodyId id, const Vector3& impulse, const Vector3& angularImpulse) {
     const WorldLock::Exclusive alone(world.lock);
+    if (alone.Refusal()) return *alone.Refusal();
     if (MaybeError e = FirstOf(CheckPushable(world, id), CheckFinite("impulse", impulse), CheckFinite("angular impulse", angularImpulse)))
         return *e;
+    if (impulse.isZero(0) && angularImpulse.isZero(0)) return Done{};
     WakeBody(world, id.index);
     const BodyMass& m = world.bodies.masses[id.index];
     SetVelocityOf(world, id.index, world.bodies.LinearVelocityOf(id.index) + LimitedPush(impulse, m.inverseMass) * m.inverseMass,
@@ -244,7 +259,7 @@ Status Kick(WorldState& world, BodyId id, const Vector3& impulse, const Vector3&
 Status BodyInterface::AddForce(BodyId id, const Vector3& force) { return Push(world_, id, force, Vector3::Zero()); }
 Status BodyInterface::AddTorque(BodyId id, const Vector3& torque) { return Push(world_, id, Vector3::Zero(), torque); }
 Status BodyInterface::AddForceAt(BodyId id, const Vector3& force, const Position& point) {
-    if (MaybeError e = FirstOf(CheckPushable(world_, id), CheckFinite("point", point))) return *e;
+    if (MaybeError e = FirstOf(CheckPushable(world_, id), CheckPosition("point", point))) return *e;
     return Push(world_, id, force, Cross<float>(ArmTo(world_, id, point), force));
 }
 Status BodyInterface::AddImpulse(BodyId id, const Vector3& impulse) { return Kick(world_, id, impulse, Vector3::Zero()); }
@@ -252,12 +267,13 @@ Status BodyInterface::AddAngularImpulse(BodyId id, const Vector3& impulse) {
     return Kick(world_, id, Vector3::Zero(), impulse);
 }
 Status BodyInterface::AddImpulseAt(BodyId id, const Vector3& impulse, const Position& point) {
-    if (MaybeError e = FirstOf(CheckPushable(world_, id), CheckFinite("point", point))) return *e;
+    if (MaybeError e = FirstOf(CheckPushable(world_, id), CheckPosition("point", point))) return *e;
     return Kick(world_, id, impulse, Cross<float>(ArmTo(world_, id, point), impulse));
 }
 
 Status BodyInterface::SetMaterial(BodyId id, const Material& material) {
     const WorldLock::Exclusive alone(world_.lock);
+    if (alone.Refusal()) return *alone.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (MaybeError e = Check(material)) return *e;
     world_.bodies.cold[id.index].material = material;
@@ -271,6 +287,7 @@ Status BodyInterface::SetMaterial(BodyId id, const Material& material) {
 
 Status BodyInterface::SetCategoryAndMask(BodyId id, uint64_t category, uint64_t mask) {
     const WorldLock::Exclusive alone(world_.lock);
+    if (alone.Refusal()) return *alone.Refusal();
     if (!Exists(id)) return Unknown(id);
     world_.bodies.SetFilter(id.index, {category, mask, GetGroup(id)});
     Refilter(world_, id.index);
@@ -279,6 +296,7 @@ Status BodyInterface::SetCategoryAndMask(BodyId id, uint64_t category, uint64_t 
 
 Status BodyInterface::SetGroup(BodyId id, const CollisionGroup& group) {
     const WorldLock::Exclusive alone(world_.lock);
+    if (alone.Refusal()) return *alone.Refusal();
     if (!Exists(id)) return Unknown(id);
     world_.bodies.SetFilter(id.index, {GetCategory(id), GetMask(id), group});
     Refilter(world_, id.index);
@@ -287,6 +305,7 @@ Status BodyInterface::SetGroup(BodyId id, const CollisionGroup& group) {
 
 Status BodyInterface::SetGravityFactor(BodyId id, float factor) {
     const WorldLock::Exclusive alone(world_.lock);
+    if (alone.Refusal()) return *alone.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (MaybeError e = CheckRange("gravityFactor", factor, -1e6, 1e6)) return *e;
     world_.bodies.dynamics[id.index].gravityFactor = factor;
@@ -296,6 +315,7 @@ Status BodyInterface::SetGravityFactor(BodyId id, float factor) {
 
 Status BodyInterface::SetContinuous(BodyId id, ContinuousCollision continuous) {
     const WorldLock::Exclusive alone(world_.lock);
+    if (alone.Refusal()) return *alone.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (MaybeError e = CheckContinuous(continuous, *world_.bodies.cold[id.index].shape)) return *e;
     constexpr ContinuousCollision kOff = ContinuousCollision::Off;
@@ -309,6 +329,7 @@ Status BodyInterface::SetContinuous(BodyId id, ContinuousCollision continuous) {
 
 Status BodyInterface::SetSensor(BodyId id, bool isSensor) {
     const WorldLock::Exclusive alone(world_.lock);
+    if (alone.Refusal()) return *alone.Refusal();
     if (!Exists(id)) return Unknown(id);
     BodyCold& cold = world_.bodies.cold[id.index];
     if (cold.isSensor == isSensor) return Done{};
@@ -327,6 +348,7 @@ Status BodyInterface::SetSensor(BodyId id, bool isSensor) {
 
 Status BodyInterface::SetSensorSees(BodyId id, SensorSees sees) {
     const WorldLock::Exclusive alone(world_.lock);
+    if (alone.Refusal()) return *alone.Refusal();
     if (MaybeError e = CheckIsSensor(world_, id)) return *e;
     if (MaybeError e = CheckSensor(sees)) return *e;
     world_.sensors.Add(id, sees, world_.sensors.sensors[world_.sensors.PlaceOf(id)].reportsStay);
@@ -335,6 +357,7 @@ Status BodyInterface::SetSensorSees(BodyId id, SensorSees sees) {
 
 Status BodyInterface::SetSensorReportsStay(BodyId id, bool reportsStay) {
     const WorldLock::Exclusive alone(world_.lock);
+    if (alone.Refusal()) return *alone.Refusal();
     if (MaybeError e = CheckIsSensor(world_, id)) return *e;
     world_.sensors.sensors[world_.sensors.PlaceOf(id)].reportsStay = reportsStay;
     return Done{};
@@ -342,6 +365,7 @@ Status BodyInterface::SetSensorReportsStay(BodyId id, bool reportsStay) {
 
 Status BodyInterface::Wake(BodyId id) {
     const WorldLock::Exclusive alone(world_.lock);
+    if (alone.Refusal()) return *alone.Refusal();
     if (!Exists(id)) return Unknown(id);
     WakeBody(world_, id.index);
     return Done{};
@@ -349,6 +373,7 @@ Status BodyInterface::Wake(BodyId id) {
 
 Status BodyInterface::Sleep(BodyId id) {
     const WorldLock::Exclusive alone(world_.lock);
+    if (alone.Refusal()) return *alone.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (world_.bodies.dynamics[id.index].motion != MotionType::Dynamic)
         return Error{ErrorCode::Unsupported, "only dynamic bodies sleep"};

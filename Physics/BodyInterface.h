@@ -20,20 +20,21 @@ public:
     Status Remove(BodyId id);
     bool Exists(BodyId id) const;
 
-    // Teleports; wakes it, what rested on it and what it now touches. A body that is frozen is free again, at rest. Errors: UnknownId,
-    // NonFinite, Unnormalized.
+    // Teleports; wakes it, what rested on it and what it now touches. A body that is frozen is free again, at rest. A pose that GetPose
+    // gave is taken with its bits. Errors: UnknownId, NonFinite, OutOfRange (farther out than 1e18 m), Unnormalized.
     Status SetPose(BodyId id, const Position& position, const Quaternion& rotation);
     // Gives a kinematic body the velocity with which it reaches the pose after `dt` seconds (> 0), if its largest speeds allow that.
     // Errors also: Unsupported.
     Status MoveKinematic(BodyId id, const Position& position, const Quaternion& rotation, float dt);
     // m/s, rad/s; wakes. Steps bring it down to the body's largest speeds. Errors: UnknownId, NonFinite, Unsupported (static, frozen).
     Status SetVelocity(BodyId id, const Vector3& linear, const Vector3& angular);
-    // Acts during the next step only: N at a world point, N m; wakes. However large it is, the body stays within its largest speeds;
-    // where the sum of several is beyond the floats, it is frozen. Errors: UnknownId, NonFinite, Unsupported (not dynamic, frozen).
+    // Acts during the next step only: N at a world point, N m; wakes. One of zero does nothing, and a body that falls asleep forgets
+    // what it had. However large it is, the body stays within its largest speeds; where the sum of several is beyond the floats, it is
+    // frozen. Errors: UnknownId, NonFinite, OutOfRange (point), Unsupported (not dynamic, frozen).
     Status AddForce(BodyId id, const Vector3& force);
     Status AddForceAt(BodyId id, const Vector3& force, const Position& point);
     Status AddTorque(BodyId id, const Vector3& torque);
-    // Acts at once: N s at the centre of mass or a world point, N m s; wakes.
+    // Acts at once: N s at the centre of mass or a world point, N m s; wakes, unless it is zero.
     Status AddImpulse(BodyId id, const Vector3& impulse);
     Status AddImpulseAt(BodyId id, const Vector3& impulse, const Position& point);
     Status AddAngularImpulse(BodyId id, const Vector3& impulse);
@@ -54,7 +55,7 @@ public:
 
     // Another shape for the body, whose own frame stays where it is. Mass and inertia follow at the density that the body had,
     // or stay; the centre of mass becomes that of the shape. Wakes the body and what is near. Errors: UnknownId, Unsupported
-    // (null, or no volume for a dynamic body), OutOfRange (mass or inertia has no inverse).
+    // (null, no volume for a dynamic body, a surface or plane for one with continuous collision), OutOfRange (mass or inertia has no inverse).
     Status SetShape(BodyId id, const ShapePtr& shape, MassUpdate mass = MassUpdate::Update);
 
     // Children of a body that was made of a MutableCompound, of which it has a copy of its own: several bodies may be made of

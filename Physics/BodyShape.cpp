@@ -38,7 +38,9 @@ ChildId Commit(WorldState& world, uint32_t body, const MutableCompound::Edit& ed
 template <class Plan>
 Result<ChildId> EditChildren(WorldState& world, BodyId id, MassUpdate mass, const Plan& plan) {
     const WorldLock::Exclusive alone(world.lock);
+    if (alone.Refusal()) return *alone.Refusal();
     if (!world.bodies.Find(id)) return Unknown(id);
+    if (MaybeError e = CheckEnum("mass", mass, MassUpdate::Keep)) return *e;
     const BodyCold& cold = world.bodies.cold[id.index];
     if (!cold.children) {
         return Error{ErrorCode::Unsupported, std::string("the body's shape is a ") + ShapeTypeName(cold.shape->Type()) +
@@ -95,11 +97,13 @@ const MutableCompound* BodyInterface::GetChildren(BodyId id) const {
 
 Status BodyInterface::SetShape(BodyId id, const ShapePtr& shape, MassUpdate mass) {
     const WorldLock::Exclusive alone(world_.lock);
+    if (alone.Refusal()) return *alone.Refusal();
     if (!Exists(id)) return Unknown(id);
     const uint32_t body = id.index;
     BodyCold& cold = world_.bodies.cold[body];
     BodyDynamics& d = world_.bodies.dynamics[body];
-    if (MaybeError e = CheckShape(shape.get(), d.motion)) return *e;
+    if (MaybeError e = FirstOf(CheckEnum("mass", mass, MassUpdate::Keep), CheckShape(shape.get(), d.motion))) return *e;
+    if (MaybeError e = CheckContinuous(cold.continuous, *shape)) return *e;
     const bool updates = mass == MassUpdate::Update && d.motion == MotionType::Dynamic;
     const MassProperties next = shape->Mass();
     const double massUnit = cold.children ? cold.children->massUnit : double{GetMass(id)} / RelativeMassOf(*cold.shape);
@@ -120,6 +124,7 @@ Status BodyInterface::SetShape(BodyId id, const ShapePtr& shape, MassUpdate mass
     if (cold.children) cold.children->massUnit = double{kilograms} / RelativeMassOf(*shape);
     MakeColliders(world_, body);
     RequeueColliders(world_, body);
+    if (!world_.sensors.IsEmpty()) world_.sensors.touched.push_back(body);  // also where no collider is left that would tell
     WakeNeighbours(world_, body);
     return Done{};
 }

@@ -2,7 +2,8 @@
 // one kind of tyre. Derive from ContactListener and hand it to PhysicsSystem::SetContactListener. Called within a step, from
 // several threads at once, in no order: everything it answers must follow from its arguments and from what the step does not
 // change (settings of its own, bodies' poses, velocities and user data, which are those at the start of the step). Then the
-// results are the same for any number of threads. It may read Bodies(), but must not query nor change the world.
+// results are the same for any number of threads. It may read Bodies(). Queries find nothing there and are reported (Misuse.h),
+// changes of the world are refused with an error.
 #pragma once
 
 #include <Fulcrum/Physics/Settings.h>

@@ -145,6 +145,7 @@ void RemoveJoint(WorldState& world, uint32_t index) {
 
 Result<JointId> JointInterface::Add(const JointSettings& s, std::unique_ptr<JointType> type) {
     const WorldLock::Exclusive alone(world_.lock);
+    if (alone.Refusal()) return *alone.Refusal();
     const uint32_t index = world_.joints.Allocate();
     Joint& joint = world_.joints.joints[index];
     joint.body[0] = s.bodyA.index;
@@ -190,6 +191,7 @@ FULCRUM_FOR_EACH_JOINT_KIND(FULCRUM_INSTANTIATE)
 
 Status JointInterface::Remove(JointId id) {
     const WorldLock::Exclusive alone(world_.lock);
+    if (alone.Refusal()) return *alone.Refusal();
     if (!Exists(id)) return Unknown(id);
     RemoveJoint(world_, id.index);
     return Done{};
@@ -199,6 +201,7 @@ bool JointInterface::Exists(JointId id) const { return world_.joints.Find(id); }
 
 Status JointInterface::SetEnabled(JointId id, bool enabled) {
     const WorldLock::Exclusive alone(world_.lock);
+    if (alone.Refusal()) return *alone.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (world_.joints.joints[id.index].enabled != enabled) Enable(world_, id.index, enabled);
     return Done{};
@@ -207,13 +210,15 @@ Status JointInterface::SetEnabled(JointId id, bool enabled) {
 bool JointInterface::IsEnabled(JointId id) const { return Exists(id) && world_.joints.joints[id.index].enabled; }
 
 AxisControl* JointInterface::ControlOf(JointId id, JointAxis axis) const {
-    return Exists(id) ? world_.joints.types[id.index]->Control(axis) : nullptr;
+    return Exists(id) && axis <= JointAxis::AngularZ ? world_.joints.types[id.index]->Control(axis) : nullptr;
 }
 
 template <class Change>
 Status JointInterface::ChangeControl(JointId id, JointAxis axis, Change&& change) {
     const WorldLock::Exclusive alone(world_.lock);
+    if (alone.Refusal()) return *alone.Refusal();
     if (!Exists(id)) return Unknown(id);
+    if (MaybeError error = CheckEnum("axis", axis, JointAxis::AngularZ)) return *error;
     AxisControl* control = ControlOf(id, axis);
     if (!control) return Error{ErrorCode::Unsupported, "axis: the joint has neither limits nor motor nor friction there"};
     AxisControl changed = *control;
@@ -241,6 +246,7 @@ Status JointInterface::SetFriction(JointId id, JointAxis axis, float friction) {
 
 Status JointInterface::SetTargetOrientation(JointId id, const Quaternion& target) {
     const WorldLock::Exclusive alone(world_.lock);
+    if (alone.Refusal()) return *alone.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (MaybeError error = CheckRotation("target", target)) return *error;
     const Joint& joint = world_.joints.joints[id.index];
@@ -251,6 +257,7 @@ Status JointInterface::SetTargetOrientation(JointId id, const Quaternion& target
 
 Status JointInterface::SetEffort(JointId id, const SolverSettings& effort) {
     const WorldLock::Exclusive alone(world_.lock);
+    if (alone.Refusal()) return *alone.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (MaybeError error = FirstOf(CheckRange("substeps", effort.substeps, 0, 64),
                                    CheckRange("velocityIterations", effort.velocityIterations, 0, 255),
@@ -266,7 +273,7 @@ Status JointInterface::SetEffort(JointId id, const SolverSettings& effort) {
 const AxisControl* JointInterface::GetControl(JointId id, JointAxis axis) const { return ControlOf(id, axis); }
 
 double JointInterface::GetCoordinate(JointId id, JointAxis axis) const {
-    return Exists(id) ? world_.joints.types[id.index]->Coordinate(axis, PoseOf(world_, id.index)) : 0.0;
+    return Exists(id) && axis <= JointAxis::AngularZ ? world_.joints.types[id.index]->Coordinate(axis, PoseOf(world_, id.index)) : 0.0;
 }
 
 JointError JointInterface::GetError(JointId id) const {

@@ -101,7 +101,11 @@ struct SixDofJointSettings : JointSettings {
     std::array<AxisControl, 6> axes{};
     SwingShape shape = SwingShape::Pyramid;
 
-    AxisControl& operator[](JointAxis axis) { return axes[static_cast<size_t>(axis)]; }
+    // Ends the program where there is no such axis.
+    AxisControl& operator[](JointAxis axis) {
+        if (axis > JointAxis::AngularZ) [[unlikely]] AbortWith("SixDofJointSettings has no axis of this number", "");
+        return axes[static_cast<size_t>(axis)];
+    }
 };
 
 // A turns about anchor A's axis, B about anchor B's, each in a bearing that other joints make to a body at rest; their teeth

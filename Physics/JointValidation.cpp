@@ -58,7 +58,7 @@ MaybeError CheckUnit(const FieldName& field, const Vector3& v) {
 }
 
 MaybeError CheckAnchor(const FieldName& name, const JointAnchor& anchor) {
-    if (MaybeError e = FirstOf(fulcrum::CheckFinite(FieldName(name, ".point").Text().c_str(), anchor.point), CheckUnit({name, ".axis"}, anchor.axis)))
+    if (MaybeError e = FirstOf(CheckPosition(FieldName(name, ".point").Text().c_str(), anchor.point), CheckUnit({name, ".axis"}, anchor.axis)))
         return e;
     if (!anchor.normal) return std::nullopt;
     if (MaybeError e = CheckUnit({name, ".normal"}, *anchor.normal)) return e;
@@ -180,7 +180,7 @@ MaybeError Check(const SixDofJointSettings& s) {
 MaybeError Check(const GearJointSettings& s) { return CheckWith(s, CheckNotZero("ratio", s.ratio)); }
 MaybeError Check(const RackAndPinionJointSettings& s) { return CheckWith(s, CheckNotZero("ratio", s.ratio)); }
 MaybeError Check(const PulleyJointSettings& s) {
-    if (MaybeError e = CheckWith(s, fulcrum::CheckFinite("fixedPointA", s.fixedPointA), fulcrum::CheckFinite("fixedPointB", s.fixedPointB),
+    if (MaybeError e = CheckWith(s, CheckPosition("fixedPointA", s.fixedPointA), CheckPosition("fixedPointB", s.fixedPointB),
                                  CheckPositive("ratio", s.ratio), CheckNotNegative("minLength", s.minLength)))
         return e;
     if (!s.maxLength) return std::nullopt;

@@ -1,6 +1,7 @@
 #include <Fulcrum/Physics/PhysicsSystem.h>
 
 #include <Fulcrum/Physics/Islands/UnionFind.h>
+#include <Fulcrum/Physics/Misuse.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/State/BodyPairs.h>
@@ -104,7 +105,7 @@ Result<std::unique_ptr<PhysicsSystem>> PhysicsSystem::Create(const SystemSetting
         world->ownJobs = std::make_unique<ThreadPool>(1);
         jobs = world->ownJobs.get();
     }
-    world->jobs = jobs;
+    world->jobs = std::make_unique<WorldJobs>(*jobs, world->lock);
     world->findings.resize(jobs->WorkerCount());
     return std::unique_ptr<PhysicsSystem>(new PhysicsSystem(std::move(world)));
 }
@@ -116,6 +117,7 @@ Status PhysicsSystem::Update(double dt) {
     if (MaybeError error = CheckRange("dt", dt, 0, 1)) return *error;
     WorldState& world = *world_;
     const WorldLock::Exclusive alone(world.lock);
+    if (alone.Refusal()) return *alone.Refusal();
     ForgetRemoved(world);
     BeginReport(world);
     if (dt < kShortestStep) {
@@ -177,13 +179,17 @@ const SystemSettings& PhysicsSystem::Settings() const { return world_->settings;
 Status PhysicsSystem::SetSettings(const SystemSettings& settings) {
     if (MaybeError error = Check(settings)) return *error;
     const WorldLock::Exclusive alone(world_->lock);
+    if (alone.Refusal()) return *alone.Refusal();
+    const std::array<uint32_t, 32> before = world_->settings.layerCollides;
     world_->settings = settings;
+    if (settings.layerCollides != before) RefilterLayers(*world_, before);
     for (const Sensor& sensor : world_->sensors.sensors) world_->sensors.touched.push_back(sensor.id.index);
     return Done{};
 }
 
 void PhysicsSystem::SetContactListener(const ContactListener* listener) {
     const WorldLock::Exclusive alone(world_->lock);
+    if (alone.Refusal()) return ReportMisuse(*alone.Refusal());
     ChangeListener(*world_, listener);
 }
 

@@ -41,7 +41,8 @@ public:
     // and until a sensor is created. Empty for what is no sensor.
     std::span<const BodyId> BodiesInside(BodyId sensor) const;
     const SystemSettings& Settings() const;
-    // As for Create. Takes effect at the next step.
+    // As for Create. Takes effect at the next step. Where layerCollides changes, contacts that no longer may be end, those that
+    // now may be are found, and the bodies of these layers wake.
     Status SetSettings(const SystemSettings& settings);
     // Asks it about contacts from now on (not owned, must outlive its use); null: nobody. Pairs that exist are asked about
     // again, and bodies wake whose contact it forbids.

@@ -23,6 +23,11 @@ WorldShapeHit ToWorld(const ColliderSearch& search, uint32_t collider, const Sha
     return result;
 }
 
+bool IsGiven(const Shape* shape) {
+    if (!shape) ReportMisuse({ErrorCode::Unsupported, "the shape of a query is null; it needs one, and found nothing"});
+    return shape;
+}
+
 bool IsUsable(const Pose& pose) { return IsFinite(pose.position) && IsFinite(pose.rotation); }
 
 // Where the fractions are equal, the deepest first.
@@ -57,17 +62,22 @@ Bounds TreeBounds(const WorldState& world, const Position& lower, const Position
 
 }  // namespace
 
-WorldLock::Shared QueryInterface::Hold() const { return WorldLock::Shared(world_.lock); }
+WorldLock::Shared QueryInterface::Hold() const {
+    if (const std::optional<Error> refusal = WorldLock::RefusalOfReading(world_.lock)) ReportMisuse(*refusal);
+    return WorldLock::Shared(world_.lock);
+}
 
 // ---- Rays
 
 bool QueryInterface::CastRay(const Ray& ray, WorldRayHit& hit, const RayCastSettings& settings, const QueryFilter& filter) const {
     const QueryScope scope(world_);
+    if (!scope) return false;
     return CastClosest(ColliderSearch(world_, filter), ray, settings, hit);
 }
 
 bool QueryInterface::IsHit(const Ray& ray, const RayCastSettings& settings, const QueryFilter& filter) const {
     const QueryScope scope(world_);
+    if (!scope) return false;
     const RayCaster caster(ray);
     if (!caster.IsValid()) return false;
     const ColliderSearch search(world_, filter);
@@ -84,6 +94,7 @@ bool QueryInterface::IsHit(const Ray& ray, const RayCastSettings& settings, cons
 void QueryInterface::VisitRay(const Ray& ray, FunctionRef<float(const WorldRayHit&)> visit, const RayCastSettings& settings,
                               const QueryFilter& filter) const {
     const QueryScope scope(world_);
+    if (!scope) return;
     const RayCaster caster(ray);
     if (!caster.IsValid()) return;
     const ColliderSearch search(world_, filter);
@@ -110,6 +121,7 @@ void QueryInterface::CastRayAll(const Ray& ray, std::vector<WorldRayHit>& hits, 
 void QueryInterface::VisitShape(const MovingShape& shape, FunctionRef<float(const WorldShapeHit&)> visit,
                                 const ShapeCastSettings& settings, const QueryFilter& filter) const {
     const QueryScope scope(world_);
+    if (!scope || !IsGiven(shape.shape)) return;
     const ShapeMotion motion{CentrePoseOf(*shape.shape, shape.pose), shape.displacement, shape.turn};
     const ShapeCaster caster(*shape.shape, motion);
     if (!caster.IsValid()) return;
@@ -128,6 +140,7 @@ void QueryInterface::VisitShape(const MovingShape& shape, FunctionRef<float(cons
 bool QueryInterface::CastShape(const MovingShape& shape, WorldShapeHit& hit, const ShapeCastSettings& settings,
                                const QueryFilter& filter) const {
     const QueryScope scope(world_);
+    if (!scope || !IsGiven(shape.shape)) return false;
     const ShapeMotion motion{CentrePoseOf(*shape.shape, shape.pose), shape.displacement, shape.turn};
     const ShapeCaster caster(*shape.shape, motion);
     if (!caster.IsValid()) return false;
@@ -164,6 +177,7 @@ void QueryInterface::CastShapeAll(const MovingShape& shape, std::vector<WorldSha
 void QueryInterface::VisitOverlaps(const PlacedShape& shape, FunctionRef<bool(const OverlapHit&)> visit,
                                    const QueryFilter& filter) const {
     const QueryScope scope(world_);
+    if (!scope || !IsGiven(shape.shape)) return;
     const Pose pose = CentrePoseOf(*shape.shape, shape.pose);
     if (!IsUsable(pose)) return;
     const ColliderSearch search(world_, filter);
@@ -193,6 +207,7 @@ void QueryInterface::FindBodiesAt(const Position& point, std::vector<OverlapHit>
     hits.clear();
     if (!IsFinite(point)) return;
     const QueryScope scope(world_);
+    if (!scope) return;
     const ColliderSearch search(world_, filter);
     const Bounds bounds = TreeBounds(world_, point, point);
     search.Run([&](const BoundsTree& tree, const auto& found) { tree.Query(bounds, found); },
@@ -208,6 +223,7 @@ void QueryInterface::FindBodiesAt(const Position& point, std::vector<OverlapHit>
 bool QueryInterface::FindClosest(const PlacedShape& shape, float maxDistance, WorldClosest& closest,
                                  const QueryFilter& filter) const {
     const QueryScope scope(world_);
+    if (!scope || !IsGiven(shape.shape)) return false;
     const Pose pose = CentrePoseOf(*shape.shape, shape.pose);
     if (!IsUsable(pose) || !(maxDistance >= 0)) return false;
     const ColliderSearch search(world_, filter);
@@ -251,6 +267,7 @@ void QueryInterface::FindInBox(const Position& lower, const Position& upper, std
     hits.clear();
     if (!IsFinite(lower) || !IsFinite(upper)) return;
     const QueryScope scope(world_);
+    if (!scope) return;
     const ColliderSearch search(world_, filter);
     const Bounds bounds = TreeBounds(world_, lower, upper);
     search.Run([&](const BoundsTree& tree, const auto& found) { tree.Query(bounds, found); },
@@ -263,6 +280,7 @@ void QueryInterface::FindOnSweep(const Position& lower, const Position& upper, c
     hits.clear();
     if (!IsFinite(lower) || !IsFinite(upper) || !IsFinite(displacement) || !(lower.array() <= upper.array()).all()) return;
     const QueryScope scope(world_);
+    if (!scope) return;
     const ColliderSearch search(world_, filter);
     const Position half = (upper - lower) * 0.5;
     const Vector3 halfExtents(RoundUp(half.x()), RoundUp(half.y()), RoundUp(half.z()));

@@ -1,13 +1,15 @@
 // Asks where things are: rays, moving shapes, overlaps, closest points, bounds. From PhysicsSystem::Queries().
 // Any number of threads at once, also while one changes the world through Bodies() and Joints() or steps it: a query then waits,
 // and sees the world before or after, never in between. Bodies are found where they are now. Hold() keeps the world still over
-// several queries, and while their results are looked up in Bodies(). What a query calls back may query, but must not change
-// the world. Input that is not finite finds nothing.
+// several queries, and while their results are looked up in Bodies(). What a query calls back may query, but not change
+// the world: that is refused. Within what a step or a change calls back (contact listeners and the like) no query is allowed.
+// Such a query, and one with a null shape, finds nothing and is reported, see Misuse.h. Input that is not finite finds nothing.
 #pragma once
 
 #include <Fulcrum/Collision/Queries/RayCast.h>
 #include <Fulcrum/Collision/Queries/ShapeCast.h>
 #include <Fulcrum/Jobs/JobSystem.h>
+#include <Fulcrum/Physics/Misuse.h>
 #include <Fulcrum/Physics/Settings.h>
 #include <Fulcrum/Physics/State/WorldLock.h>
 
@@ -82,7 +84,8 @@ class QueryInterface {
 public:
     explicit QueryInterface(WorldState& world) : world_(world) {}
 
-    // Nothing changes as long as the object lives; queries of this thread cost less meanwhile. Changes wait.
+    // Nothing changes as long as the object lives; queries of this thread cost less meanwhile. Changes by
+    // other threads wait, those by this one are refused.
     [[nodiscard]] WorldLock::Shared Hold() const;
 
     // Rays, see RayCast.h. Of hits equally close the lowest body, child, triangle counts.
@@ -149,8 +152,8 @@ public:
                      const QueryFilter& filter = {}) const;
 
 private:
-    template <class Item>
-    void ForEach(size_t count, uint32_t minimumRange, const Item& item) const;
+    template <class Hits, class Item>
+    void ForEach(size_t count, Hits&& hits, uint32_t minimumRange, const Item& item) const;
 
     WorldState& world_;
 };

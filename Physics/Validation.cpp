@@ -30,6 +30,14 @@ MaybeError CheckFiniteNumber(const char* field, double x) {
 MaybeError CheckFinite(const char* field, const Vector3& value) { return CheckFiniteVector(field, value); }
 MaybeError CheckFinite(const char* field, const Position& value) { return CheckFiniteVector(field, value); }
 
+MaybeError CheckPosition(const char* field, const Position& value) {
+    constexpr double kFarthest = 1e18;  // m
+    if (MaybeError e = CheckFinite(field, value)) return e;
+    const double farthest = value.cwiseAbs().maxCoeff();
+    if (farthest <= kFarthest) return std::nullopt;
+    return Error{ErrorCode::OutOfRange, std::string(field) + " is " + Number(farthest) + " m along an axis; it must be at most " + Number(kFarthest)};
+}
+
 MaybeError CheckRange(const char* field, double value, double low, double high) {
     if (MaybeError e = CheckFiniteNumber(field, value)) return e;
     if (value >= low && value <= high) return std::nullopt;
@@ -57,18 +65,20 @@ MaybeError CheckRotation(const char* field, const Quaternion& value) {
 
 MaybeError Check(const Material& m) {
     return FirstOf(CheckNotNegative("material.friction", m.friction),
-                   CheckRange("material.restitution", m.restitution, 0, 1));
+                   CheckRange("material.restitution", m.restitution, 0, 1),
+                   CheckEnum("material.frictionRule", m.frictionRule, CombineRule::Maximum),
+                   CheckEnum("material.restitutionRule", m.restitutionRule, CombineRule::Maximum));
 }
 
 MaybeError CheckContinuous(ContinuousCollision continuous, const Shape& shape) {
-    if (MaybeError e = CheckRange("continuous", static_cast<uint8_t>(continuous), 0, 2)) return e;
+    if (MaybeError e = CheckEnum("continuous", continuous, ContinuousCollision::LinearAndAngular)) return e;
     if (continuous != ContinuousCollision::Off && (shape.IsSurface() || shape.Type() == ShapeType::Plane))
         return Error{ErrorCode::Unsupported, std::string("continuous is set for a ") + ShapeTypeName(shape.Type()) + "; it is for convex shapes and compounds"};
     return std::nullopt;
 }
 
 MaybeError CheckSensor(SensorSees sees) {
-    return CheckRange("sensorSees", static_cast<uint8_t>(sees), 0, static_cast<uint8_t>(SensorSees::All));
+    return CheckEnum("sensorSees", sees, SensorSees::All);
 }
 
 MaybeError CheckInverses(const char* massField, const char* inertiaField, float mass, const Vector3& inertia) {
@@ -103,8 +113,9 @@ Error Unknown(BodyId id) {
 }
 
 MaybeError Check(const BodySettings& s) {
+    if (MaybeError e = CheckEnum("motion", s.motion, MotionType::Dynamic)) return e;
     if (MaybeError e = CheckShape(s.shape.get(), s.motion)) return e;
-    if (MaybeError e = FirstOf(CheckFinite("position", s.position), CheckRotation("rotation", s.rotation),
+    if (MaybeError e = FirstOf(CheckPosition("position", s.position), CheckRotation("rotation", s.rotation),
                                CheckFinite("linearVelocity", s.linearVelocity),
                                CheckFinite("angularVelocity", s.angularVelocity), CheckPositive("density", s.density),
                                CheckNotNegative("mass", s.mass), CheckFinite("inertia", s.inertia)))
@@ -137,6 +148,7 @@ MaybeError Check(const SystemSettings& s) {
                                CheckRange("solver.substeps", s.solver.substeps, 1, 64),
                                CheckRange("solver.velocityIterations", s.solver.velocityIterations, 1, 255),
                                CheckRange("solver.positionIterations", s.solver.positionIterations, 0, 255),
+                               CheckEnum("narrowPhase", s.narrowPhase, NarrowPhaseMethod::Libccd),
                                CheckNotNegative("sleep.seconds", s.sleep.seconds),
                                CheckNotNegative("sleep.linearSpeed", s.sleep.linearSpeed),
                                CheckPositive("speculativeDistance", s.speculativeDistance), CheckRange("speculativeDistance", s.speculativeDistance, 0, 1000),

@@ -11,10 +11,17 @@ using MaybeError = std::optional<Error>;
 
 MaybeError CheckFinite(const char* field, const Vector3& value);
 MaybeError CheckFinite(const char* field, const Position& value);
+// Finite, and near enough for floats to hold it, with its squares: 1e18 m.
+MaybeError CheckPosition(const char* field, const Position& value);
 MaybeError CheckRange(const char* field, double value, double low, double high);  // both ends included
 MaybeError CheckPositive(const char* field, double value);
 MaybeError CheckNotNegative(const char* field, double value);
 MaybeError CheckRotation(const char* field, const Quaternion& value);  // finite, of length 1 within 1e-3
+// One of the enumerators, from 0 to `last`; of masks, a combination of them.
+template <class E>
+MaybeError CheckEnum(const char* field, E value, E last) {
+    return CheckRange(field, static_cast<double>(value), 0, static_cast<double>(last));
+}
 // Mass, kg, and moments of inertia, kg m2, must have inverses that are normal floats; the fields are what they come from.
 MaybeError CheckInverses(const char* massField, const char* inertiaField, float mass, const Vector3& inertia);
 // Not null; of a dynamic body, with a volume.

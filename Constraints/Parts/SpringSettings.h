@@ -50,8 +50,12 @@ struct SpringSettings {
     SpringForm form = SpringForm::Automatic;
 };
 
-// Errors: NonFinite, Negative, naming the field. Every field is checked, used by the mode or not.
+// Errors: NonFinite, Negative, OutOfRange, naming the field. Every field is checked, used by the mode or not.
 inline Status Validate(const SpringSettings& settings) {
+    if (settings.mode > SpringMode::StiffnessAndDamping)
+        return Error{ErrorCode::OutOfRange, "spring mode is " + std::to_string(static_cast<int>(settings.mode)) + "; it must be from 0 to 1"};
+    if (settings.form > SpringForm::Implicit)
+        return Error{ErrorCode::OutOfRange, "spring form is " + std::to_string(static_cast<int>(settings.form)) + "; it must be from 0 to 2"};
     const struct {
         const char* name;
         float value;

@@ -2,6 +2,7 @@
 // world's lock. Allocates nothing; thread-safe.
 #pragma once
 
+#include <Fulcrum/Physics/Misuse.h>
 #include <Fulcrum/Physics/QueryInterface.h>
 #include <Fulcrum/Physics/State/WorldState.h>
 
@@ -81,10 +82,14 @@ private:
     bool seesAll_;
 };
 
-// A query's hold on the world, and its trees brought up to date.
+// A query's hold on the world, and its trees brought up to date. False: the query is not allowed here, which was reported.
 class QueryScope {
 public:
-    explicit QueryScope(WorldState& world) : shared_(world.lock) { world.strays.Refresh(world); }
+    explicit QueryScope(WorldState& world) : shared_(world.lock) {
+        if (shared_.Refusal()) ReportMisuse(*shared_.Refusal());
+        else world.strays.Refresh(world);
+    }
+    explicit operator bool() const { return !shared_.Refusal(); }
 
 private:
     WorldLock::Shared shared_;

@@ -1,6 +1,10 @@
 #include <Fulcrum/Physics/Ragdoll/Ragdoll.h>
 
 #include <Fulcrum/Constraints/Joints/JointAngles.h>
+#include <Fulcrum/Physics/JointValidation.h>
+#include <Fulcrum/Physics/Misuse.h>
+
+#include <tuple>
 
 namespace fulcrum {
 
@@ -26,61 +30,94 @@ JointAnchor AnchorAt(const RelativePose& frame) {
     return {frame.position.cast<double>(), Rotate(frame.rotation, Vector3(1, 0, 0)), Rotate(frame.rotation, Vector3(0, 1, 0))};
 }
 
+MaybeError NamedPart(size_t part, const char* field, const MaybeError& error) {
+    if (!error) return error;
+    return Error{error->code, "parts[" + std::to_string(part) + "]." + field + ": " + error->message};
+}
+
 bool CanHaveMotor(const AxisControl* control) {
     return control && !(control->limited && control->limits.min >= control->limits.max);
 }
 
 }  // namespace
 
+// What is to be made of the settings.
+struct Ragdoll::Placed {
+    std::vector<BodySettings> bodies;
+    std::vector<RagdollJointFrames> frames;          // the first part's is not used
+    std::vector<std::optional<RagdollJoint>> joints;  // without their bodies; none for the first part and between two that are not dynamic
+};
+
+Ragdoll::Placed Ragdoll::Place(const RagdollSettings& settings, const Pose& origin, std::optional<MotionType> motion) {
+    const size_t count = settings.parts.size();
+    std::vector<Pose> pose(count);
+    ReferencePose(settings, origin, pose);
+    Placed placed{std::vector<BodySettings>(count), std::vector<RagdollJointFrames>(count), std::vector<std::optional<RagdollJoint>>(count)};
+    for (size_t i = 0; i < count; ++i) {
+        const RagdollPart& part = settings.parts[i];
+        placed.bodies[i] = PlacedBody(part.body, pose[i], origin, motion);
+        if (i == 0) continue;
+        placed.frames[i] = JointFramesOf(settings, i);
+        const auto isDynamic = [&](size_t of) { return placed.bodies[of].motion == MotionType::Dynamic; };
+        if (!isDynamic(static_cast<size_t>(part.parent)) && !isDynamic(i)) continue;
+        JointSettings& common = CommonOf(placed.joints[i].emplace(part.joint));
+        common.space = JointSpace::Body;
+        common.anchorA = AnchorAt(placed.frames[i].inParent);
+        common.anchorB = AnchorAt(placed.frames[i].inPart);
+    }
+    return placed;
+}
+
+// What is right as settings may be wrong where it stands, or as it is to move.
+MaybeError Ragdoll::CheckPlaced(const Placed& placed) {
+    for (size_t i = 0; i < placed.bodies.size(); ++i) {
+        if (MaybeError e = NamedPart(i, "body", Check(placed.bodies[i]))) return e;
+        if (!placed.joints[i]) continue;
+        if (MaybeError e = NamedPart(i, "joint", std::visit([](const auto& joint) { return Check(joint); }, *placed.joints[i]))) return e;
+    }
+    return std::nullopt;
+}
+
 Result<Ragdoll> Ragdoll::Create(PhysicsSystem& system, const RagdollSettings& settings, const Pose& origin,
                                 std::optional<MotionType> motion) {
-    if (MaybeError e = FirstOf(Check(settings), CheckFinite("origin.position", origin.position), CheckRotation("origin.rotation", origin.rotation)))
+    if (MaybeError e = FirstOf(Check(settings), CheckPosition("origin.position", origin.position), CheckRotation("origin.rotation", origin.rotation)))
         return *e;
+    const Placed placed = Place(settings, {origin.position, Normalized(origin.rotation)}, motion);
+    if (MaybeError e = CheckPlaced(placed)) return *e;
     Ragdoll ragdoll(system);
-    if (MaybeError e = ragdoll.Build(settings, {origin.position, Normalized(origin.rotation)}, motion)) {
-        ragdoll.Remove();
-        return *e;
-    }
+    if (MaybeError e = ragdoll.Build(settings, placed)) return *e;
     return ragdoll;
 }
 
-MaybeError Ragdoll::Build(const RagdollSettings& settings, const Pose& origin, std::optional<MotionType> motion) {
-    std::vector<Pose> pose(settings.parts.size());
-    ReferencePose(settings, origin, pose);
+MaybeError Ragdoll::Build(const RagdollSettings& settings, const Placed& placed) {
     const BodySettings& root = settings.parts[0].body;
     originInRoot_ = Inverse({root.position.cast<float>(), Normalized(root.rotation)});
     for (size_t i = 0; i < settings.parts.size(); ++i) {
-        const RagdollPart& part = settings.parts[i];
-        Result<BodyId> body = system_->Bodies().Create(PlacedBody(part.body, pose[i], origin, motion));
-        if (!body) return Error{body.GetError().code, "parts[" + std::to_string(i) + "].body: " + body.GetError().message};
+        // What is checked already is refused for where this is called alone: as the first part, if at all.
+        Result<BodyId> body = system_->Bodies().Create(placed.bodies[i]);
+        if (!body) return body.GetError();
         bodies_.push_back(body.Value());
         joints_.emplace_back();
-        parents_.push_back(part.parent);
-        frames_.push_back(i == 0 ? RagdollJointFrames{} : JointFramesOf(settings, i));
-        gravityFactors_.push_back(part.body.gravityFactor);
+        parents_.push_back(settings.parts[i].parent);
+        frames_.push_back(placed.frames[i]);
+        gravityFactors_.push_back(settings.parts[i].body.gravityFactor);
     }
-    const auto isDynamic = [&](size_t i) { return system_->Bodies().GetMotionType(bodies_[i]) == MotionType::Dynamic; };
     for (size_t i = 1; i < settings.parts.size(); ++i) {
-        const auto parent = static_cast<size_t>(parents_[i]);
-        if (!isDynamic(parent) && !isDynamic(i)) continue;
-        RagdollJoint joint = settings.parts[i].joint;
-        JointSettings& common = CommonOf(joint);
-        common.bodyA = bodies_[parent];
-        common.bodyB = bodies_[i];
-        common.space = JointSpace::Body;
-        common.anchorA = AnchorAt(frames_[i].inParent);
-        common.anchorB = AnchorAt(frames_[i].inPart);
-        Result<JointId> id = std::visit([&](const auto& ofKind) { return system_->Joints().Create(ofKind); }, joint);
-        if (!id) return Error{id.GetError().code, "parts[" + std::to_string(i) + "].joint: " + id.GetError().message};
-        joints_[i] = id.Value();
+        if (!placed.joints[i]) continue;
+        RagdollJoint joint = *placed.joints[i];
+        CommonOf(joint).bodyA = bodies_[static_cast<size_t>(parents_[i])];
+        CommonOf(joint).bodyB = bodies_[i];
+        joints_[i] = std::visit([&](const auto& ofKind) { return system_->Joints().Create(ofKind); }, joint).Value();
     }
     return std::nullopt;
 }
 
 void Ragdoll::Remove() {
     // Their joints go with them.
-    for (BodyId id : bodies_)
-        if (system_->Bodies().Exists(id)) static_cast<void>(system_->Bodies().Remove(id));
+    for (BodyId id : bodies_) {
+        if (!system_->Bodies().Exists(id)) continue;
+        if (Status removed = system_->Bodies().Remove(id); !removed) return ReportMisuse(removed.GetError());
+    }
 }
 
 MaybeError Ragdoll::CheckExists() const {
@@ -96,7 +133,7 @@ MaybeError Ragdoll::CheckPose(std::span<const Pose> pose) const {
         return Error{ErrorCode::OutOfRange, "pose has " + std::to_string(pose.size()) + " elements; it must have " +
                                                 std::to_string(bodies_.size()) + ", one a part"};
     for (size_t i = 0; i < pose.size(); ++i) {
-        const MaybeError e = FirstOf(CheckFinite("position", pose[i].position), CheckRotation("rotation", pose[i].rotation));
+        const MaybeError e = FirstOf(CheckPosition("position", pose[i].position), CheckRotation("rotation", pose[i].rotation));
         if (e) return Error{e->code, "pose[" + std::to_string(i) + "]." + e->message};
     }
     return std::nullopt;
@@ -169,21 +206,34 @@ Status Ragdoll::DriveKinematically(std::span<const Pose> pose, float dt) { retur
 Status Ragdoll::Drive(std::span<const Pose> pose, float dt, bool dynamicToo) {
     if (MaybeError e = CheckDrive(pose, dt)) return *e;
     BodyInterface& bodies = system_->Bodies();
+    // All velocities before any is set: a refusal leaves no part moved.
+    std::vector<std::pair<Vector3, Vector3>> velocities(pose.size());
+    const auto drives = [&](size_t i) {
+        const MotionType motion = bodies.GetMotionType(bodies_[i]);
+        return motion == MotionType::Kinematic || (motion == MotionType::Dynamic && dynamicToo);
+    };
     for (size_t i = 0; i < pose.size(); ++i) {
-        const BodyId id = bodies_[i];
-        const MotionType motion = bodies.GetMotionType(id);
-        if (motion == MotionType::Kinematic) {
-            if (Status moved = bodies.MoveKinematic(id, pose[i].position, pose[i].rotation, dt); !moved) return moved;
-        } else if (motion == MotionType::Dynamic && dynamicToo) {
-            const Quaternion goal = Normalized(pose[i].rotation), now = bodies.GetPose(id).rotation;
-            const Position centre = pose[i].position + Rotate(goal, bodies.GetShape(id)->Mass().centreOfMass).cast<double>();
-            const Vector3 way = (centre - bodies.GetCentreOfMass(id)).cast<float>();
-            const Vector3 fall = system_->Settings().gravity * (gravityFactors_[i] * 0.5f * dt);
-            const Vector3 turn = RotationVectorOf(goal * now.Conjugate()) * (1.0f / dt);
-            if (Status set = bodies.SetVelocity(id, way * (1.0f / dt) - fall, turn); !set) return set;
-        }
+        if (!drives(i)) continue;
+        auto& [linear, angular] = velocities[i];
+        std::tie(linear, angular) = VelocityTo(i, pose[i], dt);
+        const MaybeError e = FirstOf(CheckFinite("the linear velocity that it asks for", linear), CheckFinite("the angular velocity that it asks for", angular));
+        if (e) return Error{e->code, "pose[" + std::to_string(i) + "]: " + e->message};
     }
+    for (size_t i = 0; i < pose.size(); ++i)
+        if (drives(i))
+            if (Status set = bodies.SetVelocity(bodies_[i], velocities[i].first, velocities[i].second); !set) return set;
     return Done{};
+}
+
+std::pair<Vector3, Vector3> Ragdoll::VelocityTo(size_t part, const Pose& pose, float dt) const {
+    const BodyInterface& bodies = system_->Bodies();
+    const BodyId id = bodies_[part];
+    const Quaternion goal = Normalized(pose.rotation), now = bodies.GetPose(id).rotation;
+    const Position centre = pose.position + Rotate(goal, bodies.GetShape(id)->Mass().centreOfMass).cast<double>();
+    const Vector3 way = (centre - bodies.GetCentreOfMass(id)).cast<float>();
+    const bool falls = bodies.GetMotionType(id) == MotionType::Dynamic;
+    const Vector3 fall = falls ? Vector3(system_->Settings().gravity * (gravityFactors_[part] * 0.5f * dt)) : Vector3(Vector3::Zero());
+    return {way * (1.0f / dt) - fall, RotationVectorOf(goal * now.Conjugate()) * (1.0f / dt)};
 }
 
 Status Ragdoll::SetMotors(const JointMotor& motor) {

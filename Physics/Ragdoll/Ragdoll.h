@@ -49,11 +49,16 @@ public:
 
 private:
     explicit Ragdoll(PhysicsSystem& system) : system_(&system) {}
-    MaybeError Build(const RagdollSettings& settings, const Pose& origin, std::optional<MotionType> motion);
+    struct Placed;
+    static Placed Place(const RagdollSettings& settings, const Pose& origin, std::optional<MotionType> motion);
+    static MaybeError CheckPlaced(const Placed& placed);
+    MaybeError Build(const RagdollSettings& settings, const Placed& placed);
     MaybeError CheckExists() const;
     MaybeError CheckPose(std::span<const Pose> pose) const;
     MaybeError CheckDrive(std::span<const Pose> pose, float dt) const;
     Status Drive(std::span<const Pose> pose, float dt, bool dynamicToo);
+    // Linear and angular.
+    std::pair<Vector3, Vector3> VelocityTo(size_t part, const Pose& pose, float dt) const;
     void SetTarget(JointId joint, const RelativePose& target);
 
     PhysicsSystem* system_;

@@ -2,6 +2,7 @@
 // which Prepare brings the separations up to date. Contacts reach as far ahead as the bodies may move within the step, so that nothing
 // is driven into the other by a whole step's motion before it is seen.
 #include <Fulcrum/Collision/NarrowPhase/PlaneContact.h>
+#include <Fulcrum/Physics/Stages/Crowd.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
 #include <Fulcrum/Physics/Stages/SweepCast.h>
 
@@ -53,10 +54,11 @@ PairChange CollidePair(WorldState& world, uint32_t index, float dt, WorkerFindin
         settings.speculativeDistance = reachAhead;
         Manifold manifold;
         if (pair.shapeB->Type() == ShapeType::Plane) CollideWithPlane(static_cast<const Plane&>(*pair.shapeB), *pair.shapeA, view.bInA, settings, manifold);
-        else Collide(*pair.shapeA, static_cast<const ConvexShape&>(*pair.shapeB), view.bInA, settings, pair.cache, manifold, findings.libccd);
+        else Collide(*pair.shapeA, static_cast<const ConvexShape&>(*pair.shapeB), WithDistinctCenters(world, pair, view.bInA), settings, pair.cache, manifold, findings.libccd);
         WriteManifold(world, view, manifold, dt);
         pair.reference = view.bInA;
     }
+    if (pair.pointCount > 0) NoteStanding(world, index, view.bInA, findings);
     const PairChange change = NoteTouching(world, index, findings);
     return TouchesSleeper(world, pair) ? PairChange::WakesOther : change;
 }
@@ -121,6 +123,7 @@ void Collide(WorldState& world, const StepContext& step) {
         CollideActivated(world, step.dt);
         AddMoreManifolds(world, step.dt);
     }
+    NoteCrowd(world);
     StepReport& report = world.report;
     for (const WorkerFindings& f : world.findings) {
         report.contacts += f.contacts;

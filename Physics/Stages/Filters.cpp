@@ -11,8 +11,12 @@ namespace fulcrum {
 
 namespace {
 
+bool LayersAllow(const WorldState& world, const Pair& pair) {
+    return world.settings.layerCollides[world.bodies.dynamics[pair.bodyA].layer] >> world.bodies.dynamics[pair.bodyB].layer & 1u;
+}
+
 bool IsForbidden(const WorldState& world, const Pair& pair) {
-    return !FiltersAllow(world, pair.bodyA, pair.bodyB) || !ListenerAllows(world, pair.bodyA, pair.bodyB);
+    return !LayersAllow(world, pair) || !FiltersAllow(world, pair.bodyA, pair.bodyB) || !ListenerAllows(world, pair.bodyA, pair.bodyB);
 }
 
 void RemoveIfForbidden(WorldState& world, uint32_t index) {
@@ -21,6 +25,11 @@ void RemoveIfForbidden(WorldState& world, uint32_t index) {
     WakeBody(world, pair.bodyA);
     WakeBody(world, pair.bodyB);
     RemovePair(world, index);
+}
+
+void RemoveAllForbiddenPairs(WorldState& world) {
+    for (uint32_t i = 0; i < world.pairs.pairs.size(); ++i)
+        if (world.pairs.pairs[i].exists && !world.pairs.pairs[i].isMore) RemoveIfForbidden(world, i);
 }
 
 }  // namespace
@@ -44,10 +53,19 @@ void RemoveForbiddenPairs(WorldState& world, uint32_t body) {
     VisitPairsOf(world, {&body, 1}, [&](uint32_t pair) { RemoveIfForbidden(world, pair); });
 }
 
+void RefilterLayers(WorldState& world, const std::array<uint32_t, 32>& before) {
+    RemoveAllForbiddenPairs(world);
+    for (uint32_t body = 0; body < world.bodies.Size(); ++body) {
+        const BodyDynamics& d = world.bodies.dynamics[body];
+        if (!world.bodies.cold[body].exists || world.settings.layerCollides[d.layer] == before[d.layer]) continue;
+        WakeBody(world, body);
+        if (d.awake) RequeueColliders(world, body);
+    }
+}
+
 void ChangeListener(WorldState& world, const ContactListener* listener) {
     world.listener = listener;
-    for (uint32_t i = 0; i < world.pairs.pairs.size(); ++i)
-        if (world.pairs.pairs[i].exists && !world.pairs.pairs[i].isMore) RemoveIfForbidden(world, i);
+    RemoveAllForbiddenPairs(world);
     // What the last one said of contacts, and of bodies that therefore have no pair.
     for (uint32_t i = 0; i < world.pairs.pairs.size(); ++i) {
         if (!world.pairs.pairs[i].exists) continue;

@@ -3,42 +3,95 @@
 // of the time: the table of pairs is asked about new ones only.
 #include <Fulcrum/Collision/BroadPhase/BoundsTreeBulk.h>
 #include <Fulcrum/Collision/Shapes/SurfaceShape.h>
-#include <Fulcrum/Physics/Stages/Stages.h>
+#include <Fulcrum/Physics/Stages/Crowd.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace fulcrum {
 
 namespace {
 
-// Notes a pair that the bounds of two colliders ask for, of which the first has moved.
-void Consider(const WorldState& world, uint32_t index, uint32_t other, std::vector<uint64_t>& found) {
+// A collider that stands in more others than this has pairs with so many alone, the nearest, and with those whose nearest it is. Others
+// follow when these are apart: thousands at one point would make millions of pairs, and be pushed no better.
+constexpr size_t kMostDeep = 16;
+// New pairs of such bodies, from which on that is done.
+constexpr uint32_t kCrowd = 1024;
+
+// Whether the bounds of two colliders, of which the first has moved, ask for a pair that is not active.
+bool AskForPair(const WorldState& world, uint32_t index, uint32_t other) {
     const Collider &self = world.colliders.colliders[index], &collider = world.colliders.colliders[other];
-    if (collider.previous.Overlaps(self.previous)) return;  // they have their pair, or may not have one
-    if (!MayCollide(world, self.body, collider.body)) return;
+    if (collider.previous.Overlaps(self.previous)) return false;  // they have their pair, or may not have one
+    if (!MayCollide(world, self.body, collider.body)) return false;
     const uint32_t pair = world.pairs.Find(index, other);
-    if (pair == PairStore::kNone ? !ListenerAllows(world, self.body, collider.body) : world.pairs.active.Contains(pair)) return;
-    found.push_back(index < other ? uint64_t(index) << 32 | other : uint64_t(other) << 32 | index);
+    return pair == PairStore::kNone ? ListenerAllows(world, self.body, collider.body) : !world.pairs.active.Contains(pair);
 }
 
-// What one collider meets.
-void Search(const WorldState& world, uint32_t index, std::vector<uint64_t>& found) {
+uint64_t KeyOf(uint32_t a, uint32_t b) { return a < b ? uint64_t(a) << 32 | b : uint64_t(b) << 32 | a; }
+
+// Notes their pair if it is to be.
+void Consider(const WorldState& world, uint32_t index, uint32_t other, WorkerFindings& findings) {
+    if (findings.deepPairs > kCrowd || !AskForPair(world, index, other)) return;  // in a crowd all will be searched again
+    findings.deepPairs += Nearness(CrowdPlaceOf(world, index), CrowdPlaceOf(world, other)) < kDeepNearness;
+    findings.pairs.push_back(KeyOf(index, other));
+}
+
+// Calls visit(other) for what the bounds of a collider meet.
+template <class Visit>
+void VisitNeighbors(const WorldState& world, uint32_t index, const Visit& visit) {
     const ColliderStore& store = world.colliders;
     const Collider& self = store.colliders[index];
     if (self.sensor) return;
-    const auto visit = [&](uint32_t other) {
-        if (store.colliders[other].queued && other < index) return;  // it reports the pair itself
-        Consider(world, index, other, found);
-    };
     const uint32_t layers = world.settings.layerCollides[world.bodies.dynamics[self.body].layer];
     if (layers & store.movingLayers) store.movingTree.Query(self.fat, visit);
     if (self.moving && (layers & store.fixedLayers)) store.fixedTree.Query(self.fat, visit);
 }
 
+// What one collider meets.
+void Search(const WorldState& world, uint32_t index, WorkerFindings& findings) {
+    VisitNeighbors(world, index, [&](uint32_t other) {
+        if (world.colliders.colliders[other].queued && other < index) return;  // it reports the pair itself
+        Consider(world, index, other, findings);
+    });
+}
+
+// The same in a crowd. What is dynamic and searches, too, has the other among its nearest or not: either may ask for the pair.
+void SearchInCrowd(const WorldState& world, uint32_t index, std::span<const CrowdPlace> places, WorkerFindings& findings) {
+    std::vector<std::pair<float, uint32_t>>& near = findings.near;
+    near.clear();
+    // Also those that exist, so that the others are known from them.
+    const auto ask = [&](uint32_t other) {
+        const uint32_t pair = world.pairs.Find(index, other);
+        const bool isActive = pair != PairStore::kNone && world.pairs.active.Contains(pair);
+        if (isActive || AskForPair(world, index, other)) findings.pairs.push_back(KeyOf(index, other));
+    };
+    size_t deep = 0;
+    VisitNeighbors(world, index, [&](uint32_t other) {
+        if (!world.colliders.colliders[other].queued) return ask(other);
+        const float nearness = Nearness(places[index], places[other]);
+        near.push_back({nearness, other});
+        deep += nearness < kDeepNearness;
+    });
+    if (deep > kMostDeep) {
+        const uint32_t body = world.colliders.colliders[index].body;
+        std::erase_if(near, [&](const auto& other) {
+            return !std::isinf(other.first) && !MayCollide(world, body, world.colliders.colliders[other.second].body);
+        });
+        // What cannot be pushed is not among the nearest, nor may it be left out.
+        const auto pushed = std::partition(near.begin(), near.end(), [](const auto& other) { return std::isinf(other.first); });
+        if (near.end() - pushed > static_cast<ptrdiff_t>(kMostDeep)) {
+            std::nth_element(pushed, pushed + kMostDeep, near.end());
+            near.erase(pushed + kMostDeep, near.end());
+            findings.crowded.push_back(index);
+        }
+    }
+    for (const auto& [nearness, other] : near) ask(other);
+}
+
 void SearchEach(WorldState& world) {
     const std::vector<uint32_t>& moved = world.colliders.moved;
     world.jobs->ParallelFor(static_cast<uint32_t>(moved.size()), 16, [&](JobRange range) {
-        for (uint32_t i = range.begin; i < range.end; ++i) Search(world, moved[i], world.findings[range.worker].pairs);
+        for (uint32_t i = range.begin; i < range.end; ++i) Search(world, moved[i], world.findings[range.worker]);
     });
 }
 
@@ -47,7 +100,7 @@ void SearchTogether(WorldState& world) {
     const ColliderStore& store = world.colliders;
     const auto isQueued = [&](uint32_t i) { return store.colliders[i].queued; };
     world.jobs->ParallelFor(store.movingTree.NodeCount(), 8, [&](JobRange range) {
-        std::vector<uint64_t>& found = world.findings[range.worker].pairs;
+        WorkerFindings& found = world.findings[range.worker];
         store.movingTree.VisitPairs(range.begin, range.end, [&](uint32_t a, uint32_t b) {
             const uint32_t low = std::min(a, b), high = std::max(a, b);
             if (isQueued(low)) Consider(world, low, high, found);
@@ -67,8 +120,61 @@ void SearchTogether(WorldState& world) {
     });
     world.jobs->ParallelFor(static_cast<uint32_t>(store.moved.size()), 256, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i)
-            if (!store.colliders[store.moved[i]].moving) Search(world, store.moved[i], world.findings[range.worker].pairs);
+            if (!store.colliders[store.moved[i]].moving) Search(world, store.moved[i], world.findings[range.worker]);
     });
+}
+
+// Whether so many stand in one another that each is to push its nearest alone; then what was found is forgotten.
+bool IsCrowded(WorldState& world) {
+    uint64_t deep = 0;
+    for (WorkerFindings& findings : world.findings) {
+        deep += findings.deepPairs;
+        findings.deepPairs = 0;
+    }
+    if (deep <= kCrowd) return false;
+    for (WorkerFindings& findings : world.findings) findings.pairs.clear();
+    return true;
+}
+
+void SearchAllInCrowd(WorldState& world) {
+    const std::vector<uint32_t>& moved = world.colliders.moved;
+    const std::span<CrowdPlace> places = world.scratch.Allocate<CrowdPlace>(world.colliders.colliders.size());
+    for (const uint32_t index : moved) places[index] = CrowdPlaceOf(world, index);
+    world.jobs->ParallelFor(static_cast<uint32_t>(moved.size()), 16, [&](JobRange range) {
+        for (uint32_t i = range.begin; i < range.end; ++i) SearchInCrowd(world, moved[i], places, world.findings[range.worker]);
+    });
+}
+
+// Two that both have enough nearer ones lose the pair that they have from when these were farther away. `found`: all that are to be.
+void RemoveFarPairs(WorldState& world, std::span<const uint64_t> found) {
+    const std::span<uint8_t> isCrowded = world.scratch.Allocate<uint8_t>(world.colliders.colliders.size());
+    std::fill(isCrowded.begin(), isCrowded.end(), uint8_t(0));
+    for (const WorkerFindings& findings : world.findings)
+        for (const uint32_t index : findings.crowded) isCrowded[index] = 1;
+    std::vector<uint32_t> far;
+    for (const WorkerFindings& findings : world.findings)
+        for (const uint32_t index : findings.crowded)
+            world.pairs.VisitOf(index, [&](uint32_t pair) {
+                const uint32_t a = world.pairs.pairs[pair].colliderA, b = world.pairs.pairs[pair].colliderB;
+                if (a != index || !isCrowded[b] || std::binary_search(found.begin(), found.end(), KeyOf(a, b))) return;
+                far.push_back(pair);
+            });
+    std::sort(far.begin(), far.end());
+    for (const uint32_t pair : far) {
+        if (pair < world.changes.size()) world.changes[pair] = PairChange::None;
+        RemovePair(world, pair);
+    }
+}
+
+// Who has not got all pairs searches again in the next step, whatever it knows from this one.
+void RequeueCrowded(WorldState& world) {
+    for (WorkerFindings& findings : world.findings) {
+        for (uint32_t index : findings.crowded) {
+            world.colliders.colliders[index].previous = {};
+            world.colliders.Queue(index);
+        }
+        findings.crowded.clear();
+    }
 }
 
 // The searches of this step are over.
@@ -172,6 +278,8 @@ void FindPairs(WorldState& world) {
     if (world.colliders.moved.empty()) return;
     if (world.colliders.MostMoved()) SearchTogether(world);
     else SearchEach(world);
+    const bool isCrowded = IsCrowded(world);
+    if (isCrowded) SearchAllInCrowd(world);
     std::vector<uint64_t>& found = world.newPairs;
     found.clear();
     for (WorkerFindings& findings : world.findings) {
@@ -179,8 +287,13 @@ void FindPairs(WorldState& world) {
         findings.pairs.clear();
     }
     std::sort(found.begin(), found.end());
+    if (isCrowded) {
+        found.erase(std::unique(found.begin(), found.end()), found.end());  // both may have found a pair
+        RemoveFarPairs(world, found);
+    }
     ActivatePairs(world, found);
     ForgetMoved(world);
+    if (isCrowded) RequeueCrowded(world);
 }
 
 }  // namespace fulcrum

@@ -4,6 +4,7 @@
 #include <Fulcrum/Constraints/Joints/JointKernels.h>
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Physics/Stages/BodyLimits.h>
+#include <Fulcrum/Physics/Stages/Crowd.h>
 
 #include <algorithm>
 
@@ -27,8 +28,14 @@ void IntegrateVelocity(WorldState& world, uint32_t body, float h, bool again, Wo
     Vector3 v(row[0], row[1], row[2]), w(row[3], row[4], row[5]);
     Vector3 carryV = Vector3::Zero(), carryW = Vector3::Zero();
     if (again) {
-        carryV = v - Vector3(unconstrained[0], unconstrained[1], unconstrained[2]);
-        carryW = w - Vector3(unconstrained[3], unconstrained[4], unconstrained[5]);
+        const Vector3 freeV(unconstrained[0], unconstrained[1], unconstrained[2]), freeW(unconstrained[3], unconstrained[4], unconstrained[5]);
+        if (d.crowded) {
+            v = NoFasterThan(v, freeV);
+            w = NoFasterThan(w, freeW);
+        } else {
+            carryV = v - freeV;
+            carryW = w - freeW;
+        }
     }
     v = (v + Vector3(a[0], a[1], a[2]) * h) * DampingFactor(d.linearDamping, h);
     w *= DampingFactor(d.angularDamping, h);
@@ -99,6 +106,7 @@ void IntegratePose(WorldState& world, uint32_t body, float h, WorkerFindings& fi
         d.Lock(v, w);
         world.bodies.SetVelocity(body, v, w);
     }
+    if (d.crowded) LimitPush(world, body, h);
     const bool isJointed = world.joints.HasAny(body);
     const Vector3 before(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]);
     if (isJointed && !(LengthSquared(before) > kFarthestSquared)) {
@@ -155,7 +163,7 @@ bool IntegrateVelocitiesInLanes(WorldState& world, const Indices& index, int cou
     BodyStore& bodies = world.bodies;
     for (uint32_t body : index) {
         const BodyDynamics& d = bodies.dynamics[body];
-        if (d.motion != MotionType::Dynamic || d.lockedAxes != LockedAxes::None || d.hasForce) return false;
+        if (d.motion != MotionType::Dynamic || d.lockedAxes != LockedAxes::None || d.hasForce || d.crowded) return false;
     }
     const Rows limits(index, [&](uint32_t body) { return bodies.dynamics[body].LimitsRow(); });
     const Lanes zero(0.0f), linearDamping = limits.at[1], angularDamping = limits.at[2], maxLinear = limits.at[3], maxAngular = limits.at[4];
@@ -203,7 +211,7 @@ bool IntegratePosesInLanes(WorldState& world, const Indices& index, int count, f
     alignas(64) float jointed[kLanes], gyroscopic[kLanes];
     for (int i = 0; i < kLanes; ++i) {
         const BodyDynamics& d = bodies.dynamics[index[i]];
-        if (d.motion != MotionType::Dynamic || d.lockedAxes != LockedAxes::None) return false;
+        if (d.motion != MotionType::Dynamic || d.lockedAxes != LockedAxes::None || d.crowded) return false;
         jointed[i] = world.joints.HasAny(index[i]) ? 1.0f : 0.0f;
         gyroscopic[i] = d.HasGyroscopicTorque() ? 1.0f : 0.0f;
     }

@@ -58,6 +58,7 @@ void PutToSleep(WorldState& world, std::span<const uint32_t> bodies) {
     for (uint32_t body : bodies) {
         world.bodies.cold[body].sleepingIsland = island;
         world.bodies.SetVelocity(body, Vector3::Zero(), Vector3::Zero());
+        world.bodies.ForgetForces(body);
         world.bodies.MarkAsleep(body);
         BringHome(world, body);
     }

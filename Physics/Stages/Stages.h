@@ -29,6 +29,8 @@ bool FiltersAllow(const WorldState& world, uint32_t bodyA, uint32_t bodyB);
 bool ListenerAllows(const WorldState& world, uint32_t bodyA, uint32_t bodyB);
 // Removes the pairs of a body that its filters no longer allow; their bodies wake.
 void RemoveForbiddenPairs(WorldState& world, uint32_t body);
+// After the settings got other layerCollides than `before`: removes pairs that these forbid, has those found that they allow.
+void RefilterLayers(WorldState& world, const std::array<uint32_t, 32>& before);
 // Has another listener, or none (null), say what collides; all contacts are as the materials give them until it is asked.
 void ChangeListener(WorldState& world, const ContactListener* listener);
 

@@ -2,6 +2,7 @@
 // exactly. Impulses go back to the records.
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Physics/Stages/BodyLimits.h>
+#include <Fulcrum/Physics/Stages/Crowd.h>
 #include <Fulcrum/Physics/Stages/Effort.h>
 #include <Fulcrum/Physics/Stages/FreeRotation.h>
 #include <Fulcrum/Physics/Stages/Integrate.h>
@@ -78,6 +79,11 @@ void MoveSolved(WorldState& world, Ending& ending, float dt) {
     Quaternion& rotation = ending.turn.rotation;
     Vector3& w = ending.turn.angularVelocity;
     ending.displacement = Vector3(s.deltaPosition[0], s.deltaPosition[1], s.deltaPosition[2]);
+    if (d.crowded) {
+        const float* free = world.bodies.unconstrained[body].row;
+        ending.v = NoFasterThan(ending.v, Vector3(free[0], free[1], free[2]));
+        w = NoFasterThan(w, Vector3(free[3], free[4], free[5]));
+    }
     const Quaternion before = rotation;
     rotation = Normalized(RotationFromVector(Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2])) * rotation);
     // With joints every substep has seen to that.
@@ -118,7 +124,7 @@ float PulledSpeed(const WorldState& world, uint32_t body, float dt) {
 void MeasureSlowness(WorldState& world, uint32_t body, float speed, float dt, WorkerFindings& findings) {
     BodyDynamics& d = world.bodies.dynamics[body];
     const SleepSettings& sleep = world.settings.sleep;
-    const bool slow = d.allowSleep && speed < sleep.linearSpeed;
+    const bool slow = d.allowSleep && !d.crowded && speed < sleep.linearSpeed;
     d.slowSeconds = slow ? d.slowSeconds + dt : 0.0f;
     findings.sleepCandidates += slow && d.slowSeconds >= sleep.seconds;
 }

@@ -32,7 +32,8 @@ struct alignas(64) BodyDynamics {
     bool frozen : 1 = false;
     bool continuous : 1 = false;   // BodyCold::continuous is not Off
     bool filtered : 1 = false;     // it has a BodyFilter: ask FiltersAllow
-    uint8_t layer = 0;
+    uint8_t layer : 5 = 0;
+    bool crowded : 1 = false;      // it stands in many others in this step, see NoteCrowd
 
     // Eight numbers each, for lanes.
     const float* InertiaRow() const { return inverseInertia; }  // moments, mass, principal axes
@@ -185,6 +186,11 @@ public:
         return Vector3(w[0], w[1], w[2]);
     }
     void SetVelocity(uint32_t index, const Vector3& linear, const Vector3& angular);
+    void ForgetForces(uint32_t index) {
+        if (!dynamics[index].hasForce) return;
+        cold[index].force = cold[index].torque = Vector3::Zero();
+        dynamics[index].hasForce = false;
+    }
     // Brings the world inverse inertia of `masses` in line with the rotation, or with principal axes in the middle of a step.
     void UpdateInertia(uint32_t index) { UpdateInertia(index, AxesOf(dynamics[index], RotationOf(index))); }
     void UpdateInertia(uint32_t index, const Matrix3& axes) { masses[index] = MassAlong(index, axes); }

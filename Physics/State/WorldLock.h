@@ -1,47 +1,85 @@
 // Many readers or one writer: queries share the world, changes and steps have it alone. A reader that arrives while a writer
-// waits lets it go first, once, so that neither starves the other. A thread that holds the lock for reading may take it again;
-// one that holds it in either way must not take it for writing.
+// waits lets it go first, once, so that neither starves the other. Each thread knows what it does with which world already:
+// what it may do again takes no lock, and what would have to wait for itself is refused instead.
 #pragma once
 
+#include <Fulcrum/Jobs/JobSystem.h>
+#include <Fulcrum/Math/Result.h>
+
 #include <atomic>
+#include <optional>
 #include <shared_mutex>
 
 namespace fulcrum {
 
 class WorldLock {
 public:
-    // For the life of the object, which is that of a scope of one thread.
-    class Shared {
-    public:
-        enum class Kind : uint8_t { Own, Borrowed };
-        // Borrowed: another thread holds it on behalf of this one, which only may not wait for it.
-        explicit Shared(WorldLock& lock, Kind kind = Kind::Own);
-        ~Shared();
-        Shared(const Shared&) = delete;
-        Shared& operator=(const Shared&) = delete;
+    enum class Access : uint8_t { None, Reads, Changes };
+    // The most that this thread does with the world of the lock, by itself or for the thread whose job it runs.
+    static Access OfThisThread(const WorldLock& lock);
+    // Why this thread must not read or change the world now; empty where it may.
+    static std::optional<Error> RefusalOfReading(const WorldLock& lock);
+    static std::optional<Error> RefusalOfChanging(const WorldLock& lock);
 
-        static bool IsHeldByThisThread(const WorldLock& lock);
+    // What a thread does for the life of the object, which is that of a scope; it takes no lock: by itself for those that run jobs of
+    // a thread that has it.
+    class Scope {
+    public:
+        Scope(WorldLock& lock, Access access);
+        ~Scope();
+        Scope(const Scope&) = delete;
+        Scope& operator=(const Scope&) = delete;
+
+    protected:
+        WorldLock& lock_;
+        const Access before_;  // of this thread, outside the scope
 
     private:
-        WorldLock& lock_;
-        Shared* outer_;
-        bool isHolder_;
+        friend class WorldLock;
+        Scope* outer_;
+        Access access_;
     };
 
-    class Exclusive {
+    class Shared : public Scope {
+    public:
+        explicit Shared(WorldLock& lock);
+        ~Shared();
+        // Empty unless this thread is changing or stepping the world: then the object does nothing.
+        const std::optional<Error>& Refusal() const { return refusal_; }
+
+    private:
+        Shared(WorldLock& lock, std::optional<Error> refusal);
+        std::optional<Error> refusal_;
+    };
+
+    class Exclusive : public Scope {
     public:
         explicit Exclusive(WorldLock& lock);
         ~Exclusive();
-        Exclusive(const Exclusive&) = delete;
-        Exclusive& operator=(const Exclusive&) = delete;
+        // Empty unless this thread reads or changes the world already: then the object does nothing.
+        const std::optional<Error>& Refusal() const { return refusal_; }
 
     private:
-        WorldLock& lock_;
+        Exclusive(WorldLock& lock, std::optional<Error> refusal);
+        std::optional<Error> refusal_;
     };
 
 private:
     std::shared_mutex mutex_;
     std::atomic<uint32_t> writers_{0};  // that wait or hold
+};
+
+// A job system whose threads know, while they run a world's jobs, what the thread that gave them does with the world.
+class WorldJobs final : public JobSystem {
+public:
+    WorldJobs(JobSystem& jobs, WorldLock& lock) : jobs_(jobs), lock_(lock) {}
+    uint32_t WorkerCount() const override { return jobs_.WorkerCount(); }
+    void ParallelFor(uint32_t count, uint32_t minimumRange, FunctionRef<void(JobRange)> job) override;
+    void RunOnWorkers(FunctionRef<void(uint32_t worker)> job) override;
+
+private:
+    JobSystem& jobs_;
+    WorldLock& lock_;
 };
 
 }  // namespace fulcrum

@@ -37,6 +37,10 @@ struct MoreManifold {
 struct alignas(64) WorkerFindings {
     std::vector<uint32_t> colliders;  // UpdateBounds: those that left their fat bounds
     std::vector<uint64_t> pairs;      // FindPairs: keys of new or resting pairs
+    uint32_t deepPairs = 0;           // FindPairs: of these, bodies that stand in each other
+    std::vector<uint32_t> crowded;    // FindPairs: colliders that are in more others than they have pairs
+    std::vector<std::pair<float, uint32_t>> near;  // FindPairs: room to work in
+    std::vector<uint32_t> standing, overlapping;  // Collide: bodies that stand in another, and crowded ones that overlap one; once for each
     SurfaceContacts surface;          // Collide: room to work in
     std::vector<uint32_t> surfacePlaces, surfaceLeft, surfaceTouched;  // Collide: likewise
     std::vector<MoreManifold> more;   // Collide: what has no place in its pair yet
@@ -60,8 +64,8 @@ enum class PairChange : uint8_t { None, Began, Ended, Dead, WakesOther };
 
 struct WorldState {
     SystemSettings settings;
-    JobSystem* jobs = nullptr;
     std::unique_ptr<ThreadPool> ownJobs;
+    std::unique_ptr<JobSystem> jobs;  // the user's, or our own, as WorldJobs
     const ContactListener* listener = nullptr;
 
     BodyStore bodies;
@@ -81,6 +85,7 @@ struct WorldState {
     std::vector<uint32_t> began;              // Color: pairs that began to touch
     std::vector<uint64_t> newPairs;
     std::vector<MoreManifold> moreManifolds;
+    std::vector<uint32_t> crowd, standing;    // bodies that stand in many others in this step, repeated; in any
     std::vector<uint32_t> ghosts;             // pairs that DropGhosts took the points from, in the last step
     std::vector<WorkerFindings> findings;     // by worker
     ScratchArena scratch;

@@ -1,0 +1,31 @@
+#include <Fulcrum/Physics/Misuse.h>
+
+#include <atomic>
+#include <cstdio>
+
+namespace fulcrum {
+
+namespace {
+
+// A listener that queries would fill a disk with the same line.
+constexpr uint32_t kMostPrinted = 100;
+
+void Print(const Error& error) {
+    static std::atomic<uint32_t> printed{0};
+    const uint32_t before = printed.fetch_add(1, std::memory_order_relaxed);
+    if (before >= kMostPrinted) return;
+    std::fprintf(stderr, "fulcrum: %s%s\n", error.message.c_str(), before + 1 == kMostPrinted ? " (no more such errors are printed)" : "");
+}
+
+std::atomic<MisuseHandler> theHandler{nullptr};
+
+}  // namespace
+
+void SetMisuseHandler(MisuseHandler handler) { theHandler.store(handler, std::memory_order_release); }
+
+void ReportMisuse(const Error& error) {
+    const MisuseHandler handler = theHandler.load(std::memory_order_acquire);
+    (handler ? handler : Print)(error);
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,130 @@
+// Bodies with their centers at one point were all pushed the same way: a column of spheres, hundreds of meters high, and some
+// through the floor. Thousands at one point made millions of pairs and took minutes.
+#include <Fulcrum/Physics/Stages/Crowd.h>
+#include <Fulcrum/UnitTests/Support/TestWorld.h>
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+
+namespace fulcrum::testing {
+namespace {
+
+// What the bodies of a world at one point come to.
+struct Burst {
+    TestWorld world;
+    std::vector<BodyId> ids;
+    double fastest = 0, lowest = 1e300, farthest = 0;  // m/s; m, of all steps
+    size_t mostMemory = 0;
+
+    Burst(const SystemSettings& settings, uint32_t threads) : world(settings, threads) {}
+    void Add(int count, const Position& at, const std::function<BodySettings(int)>& settings) {
+        for (int i = 0; i < count; ++i) {
+            BodySettings each = settings(i);
+            each.position = at;
+            ids.push_back(world.Add(each));
+        }
+    }
+    void Run(double seconds, double dt = kStep) {
+        for (int i = 0; i < static_cast<int>(std::lround(seconds / dt)); ++i) {
+            world.Step(dt);
+            for (const BodyId id : ids) {
+                fastest = std::max<double>(fastest, Length(world.VelocityOf(id)));
+                const Position p = world.PositionOf(id);
+                lowest = std::min(lowest, p.y());
+                farthest = std::max(farthest, p.norm());
+            }
+            mostMemory = std::max(mostMemory, world.System().MemoryUsed());
+        }
+    }
+    // The nearest two centers.
+    double LeastDistance() {
+        std::vector<Position> at;
+        for (const BodyId id : ids) at.push_back(world.PositionOf(id));
+        std::sort(at.begin(), at.end(), [](const Position& a, const Position& b) { return a.x() < b.x(); });
+        double least = 1e300;
+        for (size_t i = 0; i < at.size(); ++i)
+            for (size_t j = i + 1; j < at.size() && at[j].x() - at[i].x() < least; ++j) least = std::min(least, (at[i] - at[j]).norm());
+        return least;
+    }
+};
+
+TEST(CoincidentBodies, PlacesInTheCrowdFillTheBall) {
+    constexpr uint32_t kCount = 20000;
+    Position sum = Position::Zero();
+    double squares = 0;
+    int octants[8] = {};
+    for (uint32_t i = 0; i < kCount; ++i) {
+        const Vector3 place = PlaceInCrowd(i);
+        ASSERT_LE(Length(place), 1);
+        sum += place.cast<double>();
+        squares += double(LengthSquared(place));
+        ++octants[(place.x() > 0) + 2 * (place.y() > 0) + 4 * (place.z() > 0)];
+    }
+    // Uniform in a ball: the mean of r^2 is 3/5; five standard deviations of each mean.
+    EXPECT_NEAR(squares / kCount, 0.6, 5 * 0.262 / std::sqrt(kCount));
+    EXPECT_LT((sum / kCount).cwiseAbs().maxCoeff(), 5 * 0.447 / std::sqrt(kCount));
+    for (const int count : octants) EXPECT_NEAR(count, kCount / 8, 5 * std::sqrt(kCount * 7 / 64.0));
+}
+
+// Of whatever shape, two of a kind part, and the same way whichever was made first.
+TEST(CoincidentBodies, TwoOfAKindPart) {
+    const ShapePtr shapes[] = {SphereOf(0.5f), CubeOf(0.5f), CapsuleOf(0.5f, 0.3f), HullOf({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}),
+                               CompoundOf({{.shape = CubeOf(0.3f), .position = {0.3f, 0, 0}}, {.shape = SphereOf(0.4f)}})};
+    for (const ShapePtr& shape : shapes) {
+        for (const bool turned : {false, true}) {
+            Burst burst(NoGravity(), 1);
+            burst.Add(2, Position::Zero(), [&](int i) {
+                return BodySettings{.shape = shape, .rotation = turned && i ? Turn(Vector3(0.6f, 0, 0.8f), 1.2) : Quaternion{}};
+            });
+            burst.Run(2);
+            EXPECT_LT(burst.world.Report().largestPenetration, 0.01f) << ShapeTypeName(shape->Type());
+            EXPECT_LT(burst.fastest, 5) << ShapeTypeName(shape->Type());
+            const double moved = (burst.world.Bodies().GetCentreOfMass(burst.ids[0]) - burst.world.Bodies().GetCentreOfMass(burst.ids[1])).norm();
+            EXPECT_GT(moved, 0.1) << ShapeTypeName(shape->Type());
+        }
+    }
+}
+
+// Within so many seconds all of them are apart.
+void ExpectApart(int count, float radius, bool isSphere, bool hasFloor, double seconds) {
+    SystemSettings settings;
+    if (!hasFloor) settings.gravity.setZero();
+    Burst burst(settings, 2);
+    if (hasFloor) burst.world.AddFloor();
+    const ShapePtr shape = isSphere ? SphereOf(radius) : CubeOf(radius);
+    burst.Add(count, hasFloor ? Position(0, 2 * radius, 0) : Position(Position::Zero()), [&](int) { return BodySettings{.shape = shape}; });
+    burst.Run(seconds);
+    EXPECT_LT(burst.world.Report().largestPenetration, 0.1f * radius);
+    EXPECT_GT(burst.LeastDistance(), 1.8 * radius);
+    // What falls from the top of the heap is as fast as its way makes it.
+    const double height = 2 * radius * std::cbrt(count) * 1.2, fall = hasFloor ? std::sqrt(2 * kGravity * height) : 0;
+    EXPECT_LT(burst.fastest, std::max(5.0, fall));
+    if (hasFloor) EXPECT_GT(burst.lowest, 0.5 * radius);
+    EXPECT_LT(burst.farthest, 5 * seconds);
+    // A kilobyte for each of fifty contacts that a body may have.
+    EXPECT_LT(burst.mostMemory, 1024.0 * 50 * count + 4e6);
+    EXPECT_TRUE(burst.world.AllFinite());
+}
+
+TEST(CoincidentBodies, HundredSpheresInSpace) { ExpectApart(128, 0.5f, true, false, 4); }
+TEST(CoincidentBodies, HundredSpheresOnAFloor) { ExpectApart(128, 0.5f, true, true, 4); }
+TEST(CoincidentBodies, HundredBoxesInSpace) { ExpectApart(128, 0.5f, false, false, 4); }
+TEST(CoincidentBodies, HundredBoxesOnAFloor) { ExpectApart(128, 0.5f, false, true, 4); }
+TEST(CoincidentBodies, FiveHundredSpheresInSpace) { ExpectApart(512, 0.5f, true, false, 4); }
+TEST(CoincidentBodies, FiveHundredSpheresOnAFloor) { ExpectApart(512, 0.25f, true, true, 4); }
+
+TEST(CoincidentBodies, AreTheSameForAnyNumberOfThreads) {
+    uint64_t hash = 0;
+    for (const uint32_t threads : {1u, 2u, 4u}) {
+        TestWorld world({}, threads);
+        world.AddFloor();
+        for (int i = 0; i < 300; ++i) world.Add({.shape = i % 3 ? SphereOf(0.3f) : CubeOf(0.3f), .position = {0, 2, 0}});
+        world.Steps(60);
+        if (threads == 1) hash = world.System().HashPoses();
+        EXPECT_EQ(world.System().HashPoses(), hash);
+    }
+}
+
+}  // namespace
+}  // namespace fulcrum::testing
