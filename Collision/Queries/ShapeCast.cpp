@@ -140,7 +140,7 @@ void ShapeCaster::Search(const Shape& other, const Pose& pose, ShapeCastSettings
         if (CastPlane(other, pose, settings, hit)) found(context, hit, settings);
     } else if (other.IsSurface()) {
         SearchSurface(static_cast<const SurfaceShape&>(other), pose, settings, context, found);
-    } else {
+    } else if (other.IsCompound()) {
         const CompoundShape& compound = static_cast<const CompoundShape&>(other);
         const CoreMotion motion = RelativeTo(pose);
         const Bounds turned = motion.IsTurning() ? bounds_ : BoundsAt({Vector3::Zero(), motion.rotation}, shape_.LocalBounds());

@@ -15,6 +15,7 @@ void Step(Twin& twin, Values& values, const CallTargets&, Outcome& outcome) {
 }
 
 void SetSettings(Twin& twin, Values& values, const CallTargets&, Outcome& outcome) {
+    if (!values.Style().changeSettings) return;
     SystemSettings settings = twin.system->Settings();
     const auto mostly = [&](float& field, float low, float high) {
         if (values.Chance(0.15f)) field = values.Setting(low, high);
