@@ -70,7 +70,7 @@ void CastRays(Twin& twin, Values& values, const CallTargets& targets, Outcome& o
         std::vector<WorldRayHit> singleAll;
         const bool isHit = queries.CastRay(rays[i], single, settings);
         queries.CastRayAll(rays[i], singleAll, settings);
-        if (isHit != (single.body != BodyId{}) || !AreSame(single, hits[i])) Fail(outcome, "a ray of a batch differs from the ray alone");
+        if (isHit != (single.body != BodyId{}) || !AreSame(single, hits[i])) Fail(outcome, "a ray of a batch differs from the ray alone" + ToText(single) + ToText(hits[i]));
         if (isHit != (any[i] != 0) || isHit != queries.IsHit(rays[i], settings)) Fail(outcome, "whether a ray hits anything differs from its hit");
         if (isHit == singleAll.empty() || singleAll.size() != all[i].size()) Fail(outcome, "the list of all hits differs");
         if (isPlain) Fail(outcome, CompareRay(bodies, rays[i], single));
@@ -108,7 +108,7 @@ void CastShapes(Twin& twin, Values& values, const CallTargets& targets, Outcome&
     for (uint32_t i = 0; i < count; ++i) {
         WorldShapeHit single;
         const bool isHit = queries.CastShape(shapes[i], single, settings);
-        if (isHit != (single.body != BodyId{}) || !AreSame(single, hits[i])) Fail(outcome, "a shape of a batch differs from the shape alone");
+        if (isHit != (single.body != BodyId{}) || !AreSame(single, hits[i])) Fail(outcome, "a shape of a batch differs from the shape alone" + ToText(single) + ToText(hits[i]));
         if (isHit != (any[i] != 0) || isHit != queries.IsHit(shapes[i], settings)) Fail(outcome, "whether a shape hits anything differs from its hit");
         if (isPlain) Fail(outcome, CheckShapeHit(bodies, shapes[i], single));
         outcome.answer.Add(single.body);
@@ -146,7 +146,7 @@ void FindClosest(Twin& twin, Values& values, const CallTargets& targets, Outcome
     for (size_t i = 0; i < shapes.size(); ++i) {
         WorldClosest single;
         const bool isFound = queries.FindClosest(shapes[i], maxDistance, single);
-        if (isFound != (single.body != BodyId{}) || !AreSame(single, closest[i])) Fail(outcome, "the closest of a batch differs from that alone");
+        if (isFound != (single.body != BodyId{}) || !AreSame(single, closest[i])) Fail(outcome, "the closest of a batch differs from that alone" + ToText(single) + ToText(closest[i]));
         if (IsFinite(shapes[i].pose.rotation) && IsFinite(shapes[i].pose.position)) Fail(outcome, CompareClosest(bodies, shapes[i], maxDistance, single));
         outcome.answer.Add(single.body);
         outcome.answer.Add(single.distance);

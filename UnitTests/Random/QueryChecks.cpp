@@ -83,6 +83,17 @@ bool AreSame(const WorldClosest& a, const WorldClosest& b) {
            a.normal == b.normal && a.onBody == b.onBody && a.onQuery == b.onQuery;
 }
 
+std::string ToText(const WorldRayHit& hit) {
+    return Text(" (body ", hit.body.index, " triangle ", hit.subShape.triangle, " fraction ", hit.fraction, " normal ", hit.normal.transpose(), ")");
+}
+std::string ToText(const WorldShapeHit& hit) {
+    return Text(" (body ", hit.body.index, " triangle ", hit.subShape.triangle, " fraction ", hit.fraction, " normal ", hit.normal.transpose(),
+                " position ", hit.position.transpose(), " depth ", hit.depth, ")");
+}
+std::string ToText(const WorldClosest& hit) {
+    return Text(" (body ", hit.body.index, " distance ", hit.distance, " normal ", hit.normal.transpose(), ")");
+}
+
 std::string CompareRay(const std::vector<BodyShape>& bodies, const Ray& ray, const WorldRayHit& hit) {
     const bool isHit = hit.body != BodyId{};
     if (isHit && !(IsUnit(hit.normal) && IsFinite(hit.position) && hit.fraction >= 0 && hit.fraction <= 1))
@@ -131,6 +142,7 @@ std::string CompareClosest(const std::vector<BodyShape>& bodies, const PlacedSha
         ClosestPoints here;
         if (!FindClosestPoints(*body.shape, *placed.shape, Relative(body.pose, centre), maxDistance, here)) continue;
         const double tolerance = ToleranceOf(body, centre.position) + 1e-3 * double{placed.shape->OuterRadius()};
+        if (std::abs(here.distance) > 1e17f) continue;  // beyond what planes reach
         if (!isFound && double{here.distance} < double{maxDistance} - tolerance)
             return Text("no body is found within ", maxDistance, " m, but body ", body.id.index, " is ", here.distance, " m away");
         if (isFound && double{here.distance} < double{closest.distance} - tolerance)

@@ -21,6 +21,9 @@ struct BodyShape {
 std::vector<BodyShape> ShapesOf(const PhysicsSystem& system);
 
 bool AreSame(const WorldRayHit& a, const WorldRayHit& b);
+std::string ToText(const WorldRayHit& hit);
+std::string ToText(const WorldShapeHit& hit);
+std::string ToText(const WorldClosest& hit);
 bool AreSame(const WorldShapeHit& a, const WorldShapeHit& b);
 bool AreSame(const WorldClosest& a, const WorldClosest& b);
 
