@@ -14,7 +14,7 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr int kPrograms = Cases(400);
+constexpr int kPrograms = Cases(300);
 constexpr int kMostFailures = 20;
 
 double FromEnvironment(const char* name, double otherwise) {
