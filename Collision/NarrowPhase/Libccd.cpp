@@ -19,6 +19,11 @@ struct Body {
     Mat3<double> rotation;
     Position position;
     double rounding;  // m
+    mutable int supports = 0;  // asked for so far
+
+    // EPA expands what is nearest until nothing is, and nothing limits it: where a ball's centre lies on a corner of the other shape, all
+    // of the ball's surface is equally near, and its facets are without number. From here on supports lie inside, which ends it.
+    static constexpr int kMostSupports = 400;
 };
 
 Mat3<double> DoubleRotation(const Quaternion& q) {
@@ -27,6 +32,10 @@ Mat3<double> DoubleRotation(const Quaternion& q) {
 
 void Support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* result) {
     const Body& body = *static_cast<const Body*>(object);
+    if (++body.supports > Body::kMostSupports) {
+        ccdVec3Set(result, body.position.x(), body.position.y(), body.position.z());
+        return;
+    }
     const Position d(direction->v[0], direction->v[1], direction->v[2]);
     const double length = std::sqrt(Dot<double>(d, d));
     const Position unit = length > 0 ? Position(d * (1 / length)) : Position(0, 1, 0);
@@ -47,6 +56,11 @@ Vector3 CentreLine(const RelativePose& bInA) { return Normalized(bInA.position);
 
 LibccdResult LibccdPenetration(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA, double margin,
                                LibccdAlgorithm algorithm) {
+    // Where the balls around the shapes do not meet, the shapes do not. libccd would not find it out: its tolerances follow from
+    // the shapes' sizes, and far apart coordinates are rounded by more than that, so that its EPA never ends.
+    const Position between = bInA.position.cast<double>();
+    const double reach = double{a.OuterRadius()} + b.OuterRadius() + margin;
+    if (!(Dot<double>(between, between) <= 1.0001 * reach * reach)) return {LibccdResult::Status::Apart, Position::Zero(), 0, Position::Zero()};
     const Body bodyA{&a, {Position(1, 0, 0), Position(0, 1, 0), Position(0, 0, 1)}, Position::Zero(),
                      a.ConvexRadius() + 0.5 * margin};
     const Body bodyB{&b, DoubleRotation(bInA.rotation), bInA.position.cast<double>(), b.ConvexRadius() + 0.5 * margin};

@@ -10,9 +10,14 @@ namespace {
 // The axis of least depth of overlapping cores. A flat or pointed core, as a triangle or a segment, may leave EPA nothing to
 // expand: libccd's answer is held against the centre line's then, and the axis of less depth wins.
 Vector3 AxisOfLeastDepth(const SupportPair& pair, const RelativePose& bInA, const ConvexGjkResult& gjk) {
-    const EpaResult epa = Epa(pair, gjk.simplex);
     Vector3 axis = gjk.axis;
     float depth = -pair.SeparationAlong(axis);
+    // Far from each other GJK's simplex may seem to be around the origin, by rounding alone: a plane between the cores is a proof,
+    // and what they are apart along it all that floats know.
+    if (depth < 0) return axis;
+    const Vector3 centreLine = Normalized(pair.position);
+    if (pair.SeparationAlong(centreLine) > 0) return centreLine;
+    const EpaResult epa = Epa(pair, gjk.simplex);
     const auto consider = [&](const Vector3& other) {
         const float otherDepth = -pair.SeparationAlong(other);
         if (!(otherDepth < depth)) return;
@@ -21,8 +26,8 @@ Vector3 AxisOfLeastDepth(const SupportPair& pair, const RelativePose& bInA, cons
     };
     if (epa.status != EpaResult::Status::Failed) consider(epa.axis);
     if (epa.status == EpaResult::Status::Found) return axis;
-    consider(Normalized(pair.position));
-    consider(-Normalized(pair.position));
+    consider(centreLine);
+    consider(-centreLine);
     for (const LibccdAlgorithm algorithm : {LibccdAlgorithm::Epa, LibccdAlgorithm::Mpr}) {
         const LibccdResult found = LibccdPenetration(pair.a, pair.b, bInA, 0, algorithm);
         if (found.status == LibccdResult::Status::Found) consider(Normalized(found.normal.cast<float>()));

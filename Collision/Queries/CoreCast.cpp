@@ -156,6 +156,7 @@ public:
         const double speed = approach_ + double{Length(turned_)} * radius_;
         if (speed * remaining <= gap_) return remaining;
         const double sure = gap_ / speed;
+        if (!(sure > 0)) return 0;  // so fast that numbers fail: the search ends early
         double low = sure, high = remaining;
         if (Margin(high) > 0) return high;
         // False position with halving: each turn costs a support.
@@ -163,7 +164,8 @@ public:
         if (!(lowMargin > 0)) return sure;
         for (int i = 0; i < 8 && high - low > 0.02 * low; ++i) {
             const double secant = low + (high - low) * 0.95 * lowMargin / (lowMargin - highMargin);
-            const double middle = i % 2 == 0 ? secant : 0.5 * (low + high);
+            const bool isBetween = secant > low && secant < high;  // not where margins are not finite
+            const double middle = i % 2 == 0 && isBetween ? secant : 0.5 * (low + high);
             const double margin = Margin(middle);
             (margin > 0 ? low : high) = middle;
             (margin > 0 ? lowMargin : highMargin) = margin;

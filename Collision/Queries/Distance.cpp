@@ -90,7 +90,7 @@ ClosestPoints Swapped(const ClosestPoints& found, const RelativePose& secondInFi
 }
 
 bool IsUsable(const RelativePose& pose, float maxDistance) {
-    return IsFinite(pose.position) && IsFinite(pose.rotation) && maxDistance >= 0;
+    return IsWithinReach(pose.position.cast<double>()) && IsTurn(pose.rotation) && maxDistance >= 0;
 }
 
 }  // namespace

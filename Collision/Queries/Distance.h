@@ -15,7 +15,7 @@ struct ClosestPoints {
 };
 
 // Where the two are closest, `bInA` being the pose of b's centre frame in a's; false: farther apart than maxDistance (m, >= 0,
-// may be infinite), or not finite. Of pairs equally close that of the lowest child and triangle of A, then of B. A triangle
+// may be infinite), or not finite, or more than 1e18 m. Of pairs equally close that of the lowest child and triangle of A, then of B. A triangle
 // has no inside. Two half spaces that are not opposite overlap without a depth: the distance is 0.
 bool FindClosestPoints(const Shape& a, const Shape& b, const RelativePose& bInA, float maxDistance, ClosestPoints& result);
 // From a point of the shape's centre frame, which is A.

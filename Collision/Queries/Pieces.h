@@ -16,6 +16,11 @@ struct Piece {
     bool isTwoSided = true;                  // of the surface
 };
 
+// What a float knows the way between two shapes by; farther apart they find nothing. And whether a rotation is one.
+inline constexpr double kFarthestApart = 1e18;  // m
+inline bool IsWithinReach(const Position& between) { return IsFinite(between) && between.cwiseAbs().maxCoeff() < kFarthestApart; }
+inline bool IsTurn(const Quaternion& q) { return IsFinite(q) && Abs(LengthSquared(q) - 1) < 0.01f; }
+
 inline Bounds Inflated(const Bounds& bounds, float by) {
     Bounds b;
     b.lower = bounds.lower - Vector3::Constant(by);

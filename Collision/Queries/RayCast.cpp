@@ -143,7 +143,8 @@ bool RayCaster::CastClosest(const Shape& shape, const Pose& pose, const RayCastS
     if (!IsValid()) return false;
     if (shape.IsConvex()) return CastConvex(static_cast<const ConvexShape&>(shape), pose, settings, limit, hit);
     if (shape.Type() == ShapeType::Plane) return CastPlane(shape, pose, settings, hit);
-    if (!shape.IsCompound()) return CastSurface(static_cast<const SurfaceShape&>(shape), pose, settings, limit, hit);
+    if (shape.IsSurface()) return CastSurface(static_cast<const SurfaceShape&>(shape), pose, settings, limit, hit);
+    if (!shape.IsCompound()) return false;  // empty
 
     const CompoundShape& compound = static_cast<const CompoundShape&>(shape);
     const TreeRay ray = InFrameOfTree(ray_, compound, pose);
@@ -162,8 +163,7 @@ bool RayCaster::CastClosest(const Shape& shape, const Pose& pose, const RayCastS
 }
 
 bool RayCaster::IsHit(const Shape& shape, const Pose& pose, const RayCastSettings& settings) const {
-    const bool isSurface = !shape.IsConvex() && shape.Type() != ShapeType::Plane && !shape.IsCompound();
-    if (IsValid() && isSurface) {
+    if (IsValid() && shape.IsSurface()) {
         const SurfaceShape& surface = static_cast<const SurfaceShape&>(shape);
         double skipped = 0;
         const SurfaceRay ray = InFrameOf(surface, pose, settings.backFaces, skipped);
@@ -198,6 +198,7 @@ bool RayCaster::Search(const Shape& shape, const Pose& pose, const RayCastSettin
         });
         return goOn;
     }
+    if (!shape.IsSurface()) return true;  // empty
     const SurfaceShape& surface = static_cast<const SurfaceShape&>(shape);
     double skipped = 0;
     surface.CastRayAll(InFrameOf(surface, pose, settings.backFaces, skipped), [&](const SurfaceHit& at) {

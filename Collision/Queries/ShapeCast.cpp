@@ -23,7 +23,7 @@ Bounds BoundsOfTurning(const ConvexShape& shape, const ShapeMotion& motion) {
 
 ShapeCaster::ShapeCaster(const ConvexShape& shape, const ShapeMotion& motion)
     : shape_(shape), motion_(motion), bounds_(BoundsOfTurning(shape, motion)) {
-    isValid_ = IsFinite(motion.pose.position) && IsFinite(motion.pose.rotation) && IsFinite(motion.displacement) &&
+    isValid_ = IsFinite(motion.pose.position) && IsTurn(motion.pose.rotation) && IsWithinReach(motion.displacement.cast<double>()) &&
                IsFinite(motion.turn) && IsFinite(bounds_.lower) && IsFinite(bounds_.upper);
 }
 
@@ -56,6 +56,7 @@ void ShapeCaster::MeasureDepth(const Piece& piece, const Pose& at, const CoreMot
 bool ShapeCaster::CastPiece(const Piece& piece, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit) const {
     const Pose at = pose * piece.pose;
     const CoreMotion motion = RelativeTo(at);
+    if (!IsWithinReach(motion.position)) return false;
     const bool isOneSided = piece.triangle && !piece.isTwoSided && !settings.backFaces;
     if (isOneSided && !motion.IsTurning() && Dot(motion.displacement, piece.triangle->Normal()) > 0) return false;
     const CoreCastResult cast = CastCore(piece.shape, shape_, motion, {settings.maxFraction, settings.separation, settings.tolerance});
@@ -81,6 +82,7 @@ bool ShapeCaster::CastPiece(const Piece& piece, const Pose& pose, const ShapeCas
 bool ShapeCaster::CastPlane(const Shape& shape, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit) const {
     const Plane& plane = static_cast<const Plane&>(shape);
     const CoreMotion motion = RelativeTo(pose);
+    if (!IsWithinReach(motion.position)) return false;
     const CoreCastResult cast = CastToPlane(plane.Normal(), double{plane.Offset()}, shape_, motion,
                                             {settings.maxFraction, settings.separation, settings.tolerance});
     if (!cast.IsHit()) return false;
@@ -131,7 +133,8 @@ void ShapeCaster::SearchSurface(const SurfaceShape& surface, const Pose& pose, S
 }
 
 void ShapeCaster::Search(const Shape& other, const Pose& pose, ShapeCastSettings settings, void* context, HitFunction found) const {
-    if (!isValid_) return;
+    const bool isValid = isValid_ && settings.maxFraction >= 0 && IsWithinReach(Position(settings.separation, settings.tolerance, 0));
+    if (!isValid || !IsWithinReach(motion_.pose.position - pose.position)) return;
     ShapeHit hit;
     if (other.IsConvex()) {
         const Piece piece{static_cast<const ConvexShape&>(other), {}, {}};
@@ -140,7 +143,7 @@ void ShapeCaster::Search(const Shape& other, const Pose& pose, ShapeCastSettings
         if (CastPlane(other, pose, settings, hit)) found(context, hit, settings);
     } else if (other.IsSurface()) {
         SearchSurface(static_cast<const SurfaceShape&>(other), pose, settings, context, found);
-    } else {
+    } else if (other.IsCompound()) {
         const CompoundShape& compound = static_cast<const CompoundShape&>(other);
         const CoreMotion motion = RelativeTo(pose);
         const Bounds turned = motion.IsTurning() ? bounds_ : BoundsAt({Vector3::Zero(), motion.rotation}, shape_.LocalBounds());

@@ -3,6 +3,7 @@
 #include <Fulcrum/Collision/Shapes/MassProperties.h>
 #include <Fulcrum/Collision/Shapes/Message.h>
 #include <Fulcrum/Collision/Shapes/ShapeFileParts.h>
+#include <Fulcrum/Collision/Shapes/SizeChecks.h>
 
 #include <algorithm>
 
@@ -37,6 +38,8 @@ Result<std::shared_ptr<const Compound>> Compound::Create(std::span<const ChildSe
     std::vector<Child> posed;
     for (size_t i = 0; i < children.size(); ++i) {
         const Position centre = solids[i].centre - whole.centre;
+        const std::string name = Message("child %d", static_cast<int>(i));
+        if (const Status status = CheckPlace(name.c_str(), centre.cast<float>()); !status) return status.GetError();
         posed.push_back({std::static_pointer_cast<const ConvexShape>(children[i].shape),
                          {centre.cast<float>(), Normalized(children[i].rotation)}, children[i].density});
     }

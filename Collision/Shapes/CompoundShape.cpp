@@ -21,6 +21,10 @@ Status CompoundShape::Check(const ChildSettings& child, const char* name) {
         return Error{ErrorCode::NonPositive,
                      Message("the density of %s is %g: it must be larger than 0", name, double{child.density})};
     }
+    if (!std::isnormal(child.density)) {
+        return Error{ErrorCode::OutOfRange,
+                     Message("the density of %s is %g: it must be a normal float", name, double{child.density})};
+    }
     return Done{};
 }
 

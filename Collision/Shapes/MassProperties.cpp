@@ -1,6 +1,7 @@
 #include <Fulcrum/Collision/Shapes/MassProperties.h>
 
 #include <Fulcrum/Collision/Shapes/Message.h>
+#include <Fulcrum/Collision/Shapes/SizeChecks.h>
 
 #include <limits>
 #include <utility>
@@ -209,6 +210,7 @@ Result<MassProperties> ToMassProperties(const SolidMass& solid) {
                              "choose another unit of length",
                              solid.volume, principal.values.minCoeff(), principal.values.maxCoeff())};
     }
+    if (const Status place = CheckPlace("mass", mass.centreOfMass); !place) return place.GetError();
     return mass;
 }
 

@@ -3,14 +3,12 @@
 #include <Fulcrum/Collision/Shapes/MassProperties.h>
 #include <Fulcrum/Collision/Shapes/Message.h>
 #include <Fulcrum/Collision/Shapes/ShapeFileParts.h>
+#include <Fulcrum/Collision/Shapes/SizeChecks.h>
 
 #include <algorithm>
 
 namespace fulcrum {
 namespace {
-
-// Squares of distances have to stay in range.
-constexpr float kFarthest = 1e18f;  // m
 
 // Of density 1 on average.
 Result<MassProperties> MassOf(const CompoundSum& total) {
@@ -65,11 +63,10 @@ Status MutableCompound::CheckId(ChildId id) const {
 
 Result<MutableCompound::Child> MutableCompound::Posed(const ChildSettings& child, const char* name) {
     if (const Status status = Check(child, name); !status) return status.GetError();
-    if (!(child.position.cwiseAbs().maxCoeff() < kFarthest))
-        return Error{ErrorCode::OutOfRange, Message("the position of %s is farther than %g m", name, double{kFarthest})};
     const Quaternion rotation = Normalized(child.rotation);
     const Quat<double> q{rotation.x, rotation.y, rotation.z, rotation.w};
     const Position centre = child.position.cast<double>() + Rotate<double>(q, child.shape->Mass().centreOfMass.cast<double>());
+    if (const Status status = CheckPlace(name, centre.cast<float>()); !status) return status.GetError();
     return Child{std::static_pointer_cast<const ConvexShape>(child.shape), {centre.cast<float>(), rotation}, child.density};
 }
 

@@ -1,13 +1,12 @@
 // Compounds and triangles in shape files.
 #include <Fulcrum/Collision/Shapes/ShapeFileParts.h>
+#include <Fulcrum/Collision/Shapes/SizeChecks.h>
 
 namespace fulcrum {
 namespace {
 
-constexpr float kFarthest = 1e18f;  // m
-
 bool IsUnit(double lengthSquared) { return std::fabs(lengthSquared - 1) < 1e-5; }
-bool IsNear(const Vector3& v) { return IsFinite(v) && v.cwiseAbs().maxCoeff() < kFarthest; }
+bool IsNear(const Vector3& v) { return IsFinite(v) && v.cwiseAbs().maxCoeff() < kFarthestPlace; }
 
 void WriteChild(const CompoundShape::Child& child, ByteWriter& out, const ShapeFileScope& scope) {
     out.Write(child.pose.position);
@@ -113,7 +112,7 @@ ShapeResult ShapeFileAccess::ReadTriangle(ByteReader& in) {
     const float radius = in.Get<float>();
     const Vector3 &a = triangle->corners_[0], &b = triangle->corners_[1], &c = triangle->corners_[2], &n = triangle->normal_;
     if (in.HasFailed() || !IsPlausible(triangle->mass_) || !IsNear(triangle->mass_.centreOfMass) || !IsNear(a) || !IsNear(b) || !IsNear(c) ||
-        !(std::isfinite(radius) && radius >= 0 && radius < kFarthest))
+        !(std::isfinite(radius) && radius >= 0 && radius < kFarthestPlace))
         return Damaged("a triangle, or its mass");
     // About their middle, on no line, with the normal that they span: to within what floats keep of them.
     const Position ab = (b - a).cast<double>(), ac = (c - a).cast<double>(), cross = Cross<double>(ab, ac);

@@ -22,6 +22,15 @@ inline Status CheckSizeOrZero(const char* name, float size) {
     return Done{};
 }
 
+// Squares of distances have to stay floats.
+inline constexpr float kFarthestPlace = 1e18f;  // m
+
+// Ok where the centre of a part lies within that.
+inline Status CheckPlace(const char* name, const Vector3& centre) {
+    if (IsFinite(centre) && centre.cwiseAbs().maxCoeff() < kFarthestPlace) return Done{};
+    return Error{ErrorCode::OutOfRange, Message("the centre of %s is farther away than %g m", name, double{kFarthestPlace})};
+}
+
 // 0 to `most`, which the message calls `mostName`.
 inline Status CheckConvexRadius(float convexRadius, float most, const char* mostName) {
     if (!std::isfinite(convexRadius)) {

@@ -16,9 +16,13 @@ struct RayBounds {
     // Half the sides of a box that holds all rays on their way, begun in the middle of their origins.
     Vector3 Reach() const { return Vector3(Position((high - low) * 0.5).cast<float>()) + displacements.HalfExtents(); }
     // Whether that box is so small beside its way that it will hardly find more than its rays do.
-    bool IsTight() const { return Reach().sum() <= kTight * displacements.Centre().cwiseAbs().sum(); }
+    // Never where a ray is not finite, or so long that sums overflow: it goes alone, and so do those beside it.
+    bool IsTight() const {
+        const float way = displacements.Centre().cwiseAbs().sum();
+        return way < kLongest && Reach().sum() <= kTight * way;
+    }
 
-    static constexpr float kTight = 0.45f;
+    static constexpr float kTight = 0.45f, kLongest = 1e18f;  // m
     static constexpr double kFar = 1e300;
 
     // Of rayOf(i) for i < count. What is not a number counts as near.

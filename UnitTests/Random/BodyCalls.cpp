@@ -1,0 +1,151 @@
+#include <Fulcrum/UnitTests/Random/Calls.h>
+#include <Fulcrum/UnitTests/Random/RandomShapes.h>
+
+#include <Fulcrum/Collision/Shapes/Plane.h>
+#include <Fulcrum/Collision/Shapes/Primitives.h>
+
+namespace fulcrum::testing {
+
+namespace {
+
+Material RandomMaterial(Values& values) {
+    Material material;
+    material.friction = values.Setting(0, 1);
+    material.restitution = values.Chance(0.5f) ? 0 : values.Setting(0, 1);
+    material.frictionRule = values.One<CombineRule>(5);
+    material.restitutionRule = values.One<CombineRule>(5);
+    return material;
+}
+
+BodySettings RandomBody(Values& values) {
+    BodySettings settings;
+    settings.motion = values.Chance(0.75f) ? MotionType::Dynamic : values.One<MotionType>(3);
+    settings.shape = settings.motion == MotionType::Dynamic ? RandomSolid(values) : RandomShape(values);
+    settings.position = values.Place(3);
+    settings.rotation = values.Rotation();
+    settings.linearVelocity = values.Speeds(values.Chance(0.2f) ? 100.0f : 3.0f);
+    settings.angularVelocity = values.Speeds(values.Chance(0.2f) ? 50.0f : 3.0f);
+    settings.density = values.Chance(0.8f) ? 1000.0f : values.Mass() * 100;
+    if (values.Chance(0.2f)) settings.mass = values.Mass();
+    if (values.Chance(0.1f)) settings.inertia = Vector3(values.Mass(), values.Mass(), values.Mass());
+    settings.material = RandomMaterial(values);
+    if (values.Chance(0.2f)) settings.linearDamping = values.Setting(0, 1), settings.angularDamping = values.Setting(0, 1);
+    if (values.Chance(0.1f)) settings.gravityFactor = values.Setting(-1, 2);
+    if (values.Chance(0.1f)) settings.lockedAxes = static_cast<LockedAxes>(values.Below(64));
+    if (values.Chance(0.1f)) settings.maxLinearSpeed = values.Setting(0.1f, 100);
+    if (values.Chance(0.1f)) settings.maxAngularSpeed = values.Setting(0.1f, 100);
+    settings.gyroscopicTorque = values.Chance(0.8f);
+    settings.allowSleep = values.Chance(0.9f);
+    settings.startAsleep = values.Chance(0.1f);
+    settings.layer = static_cast<uint8_t>(values.IsOdd() ? 32 + values.Below(200) : values.Below(3));
+    if (values.Chance(0.2f)) settings.category = 1u + values.Below(7), settings.mask = values.Below(8);
+    settings.userData = values.Below(1000);
+    if (values.Style().continuous && values.Chance(0.2f)) settings.continuous = values.One<ContinuousCollision>(3);
+    if (values.Style().sensors && values.Chance(0.15f)) {
+        settings.isSensor = true;
+        settings.sensorSees = values.IsOdd() ? static_cast<SensorSees>(values.Below(256)) : static_cast<SensorSees>(values.Below(32));
+        settings.sensorReportsStay = values.Chance(0.5f);
+    }
+    return settings;
+}
+
+void Create(Twin& twin, Values& values, const CallTargets& targets, Outcome& outcome) {
+    const Result<BodyId> id = twin.system->Bodies().Create(RandomBody(values));
+    if (!Note(id, outcome)) return;
+    outcome.answer.Add(id.Value());
+    twin.bodies[targets.bodyA] = id.Value();
+}
+
+void CreateFloor(Twin& twin, Values& values, const CallTargets& targets, Outcome& outcome) {
+    BodySettings settings;
+    const Vector3 half(20, 0.5f, 20);
+    settings.shape = values.Chance(0.3f) ? ShapePtr(Plane::Create().Value()) : ShapePtr(Box::Create(half).Value());
+    settings.motion = MotionType::Static;
+    settings.position = Position(0, settings.shape->Type() == ShapeType::Box ? -0.5 : 0, 0);
+    const Result<BodyId> id = twin.system->Bodies().Create(settings);
+    if (Note(id, outcome)) twin.bodies[targets.bodyA] = id.Value();
+}
+
+// Of a body named by the call.
+template <class Change>
+void Play(Twin& twin, const CallTargets& targets, Outcome& outcome, const Change& change) {
+    Note(change(twin.system->Bodies(), twin.bodies[targets.bodyA]), outcome);
+}
+
+#define FULCRUM_BODY_CALL(name, ...)                                                                                   \
+    void name(Twin& twin, [[maybe_unused]] Values& values, const CallTargets& targets, Outcome& outcome) {             \
+        Play(twin, targets, outcome, [&](BodyInterface& bodies, BodyId id) { return __VA_ARGS__; });                   \
+    }
+
+FULCRUM_BODY_CALL(Remove, bodies.Remove(id))
+FULCRUM_BODY_CALL(SetPose, bodies.SetPose(id, values.Place(3), values.Rotation()))
+FULCRUM_BODY_CALL(MoveKinematic, bodies.MoveKinematic(id, values.Place(2), values.Rotation(), values.Setting(0.01f, 1)))
+FULCRUM_BODY_CALL(SetVelocity, bodies.SetVelocity(id, values.Speeds(10), values.Speeds(10)))
+FULCRUM_BODY_CALL(AddForce, bodies.AddForce(id, values.Forces(3000)))
+FULCRUM_BODY_CALL(AddForceAt, bodies.AddForceAt(id, values.Forces(3000), values.Place(2)))
+FULCRUM_BODY_CALL(AddTorque, bodies.AddTorque(id, values.Forces(500)))
+FULCRUM_BODY_CALL(AddImpulse, bodies.AddImpulse(id, values.Forces(300)))
+FULCRUM_BODY_CALL(AddImpulseAt, bodies.AddImpulseAt(id, values.Forces(100), values.Place(2)))
+FULCRUM_BODY_CALL(AddAngularImpulse, bodies.AddAngularImpulse(id, values.Forces(30)))
+FULCRUM_BODY_CALL(SetMaterial, bodies.SetMaterial(id, RandomMaterial(values)))
+FULCRUM_BODY_CALL(SetCategoryAndMask, bodies.SetCategoryAndMask(id, values.Below(4), values.Below(4)))
+FULCRUM_BODY_CALL(SetGravityFactor, bodies.SetGravityFactor(id, values.Setting(-1, 2)))
+FULCRUM_BODY_CALL(SetContinuous, bodies.SetContinuous(id, values.One<ContinuousCollision>(3)))
+FULCRUM_BODY_CALL(SetSensor, bodies.SetSensor(id, values.Chance(0.4f)))
+FULCRUM_BODY_CALL(SetSensorSees, bodies.SetSensorSees(id, static_cast<SensorSees>(values.Below(values.IsOdd() ? 256 : 32))))
+FULCRUM_BODY_CALL(SetSensorReportsStay, bodies.SetSensorReportsStay(id, values.Chance(0.5f)))
+FULCRUM_BODY_CALL(Wake, bodies.Wake(id))
+FULCRUM_BODY_CALL(Sleep, bodies.Sleep(id))
+FULCRUM_BODY_CALL(SetShape, bodies.SetShape(id, values.Chance(0.8f) ? RandomSolid(values) : RandomShape(values), values.One<MassUpdate>(2)))
+FULCRUM_BODY_CALL(SetShapeOfAnother, bodies.SetShape(id, bodies.GetShape(twin.bodies[targets.bodyB])))
+FULCRUM_BODY_CALL(AddChild, bodies.AddChild(id, {RandomConvex(values), values.Offset(0.5f), values.Rotation(), values.Setting(0.1f, 3)}))
+FULCRUM_BODY_CALL(SetChild, bodies.SetChild(id, {values.Below(4), values.Below(2)}, {RandomConvex(values), values.Offset(0.5f), values.Rotation()}))
+FULCRUM_BODY_CALL(MoveChild, bodies.MoveChild(id, {values.Below(4), values.Below(2)}, values.Offset(0.5f), values.Rotation(), values.One<MassUpdate>(2)))
+FULCRUM_BODY_CALL(RemoveChild, bodies.RemoveChild(id, {values.Below(4), values.Below(2)}, values.One<MassUpdate>(2)))
+
+#undef FULCRUM_BODY_CALL
+
+// Two members of a group, which pass through each other or not.
+void SetGroup(Twin& twin, Values& values, const CallTargets& targets, Outcome& outcome) {
+    const auto filter = GroupFilterTable::Create({{0, 1}, {values.Below(3), 2}}).Value();
+    BodyInterface& bodies = twin.system->Bodies();
+    const Status first = bodies.SetGroup(twin.bodies[targets.bodyA], {filter, 0, values.Below(3)});
+    if (Note(first, outcome)) (void)bodies.SetGroup(twin.bodies[targets.bodyB], {filter, 0, values.Below(3)});
+}
+
+constexpr CallKind kCalls[] = {
+    {"Create", 12, Create},
+    {"CreateFloor", 0.2f, CreateFloor},
+    {"Remove", 1, Remove},
+    {"SetPose", 2, SetPose},
+    {"MoveKinematic", 2, MoveKinematic},
+    {"SetVelocity", 2, SetVelocity},
+    {"AddForce", 1, AddForce},
+    {"AddForceAt", 1, AddForceAt},
+    {"AddTorque", 1, AddTorque},
+    {"AddImpulse", 1, AddImpulse},
+    {"AddImpulseAt", 1, AddImpulseAt},
+    {"AddAngularImpulse", 1, AddAngularImpulse},
+    {"SetMaterial", 0.5f, SetMaterial},
+    {"SetCategoryAndMask", 0.5f, SetCategoryAndMask},
+    {"SetGroup", 0.5f, SetGroup},
+    {"SetGravityFactor", 0.5f, SetGravityFactor},
+    {"SetContinuous", 1, SetContinuous},
+    {"SetSensor", 1, SetSensor},
+    {"SetSensorSees", 0.5f, SetSensorSees},
+    {"SetSensorReportsStay", 0.5f, SetSensorReportsStay},
+    {"Wake", 0.5f, Wake},
+    {"Sleep", 1, Sleep},
+    {"SetShape", 2, SetShape},
+    {"SetShapeOfAnother", 0.5f, SetShapeOfAnother},
+    {"AddChild", 1, AddChild},
+    {"SetChild", 1, SetChild},
+    {"MoveChild", 1, MoveChild},
+    {"RemoveChild", 1, RemoveChild},
+};
+
+}  // namespace
+
+std::span<const CallKind> BodyCalls() { return kCalls; }
+
+}  // namespace fulcrum::testing

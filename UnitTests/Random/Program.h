@@ -1,0 +1,50 @@
+// A random program: calls of the public interface, one after the other, made from a seed, played in several worlds side by side and
+// checked after each call; and a failing one made short. The same seed is the same program for one compiler.
+//
+// The worlds: with one, two and four threads, and one in which calls that were refused are left out. All answer alike and have the
+// same bits in all that can be read, after every call: so neither threads nor refusals leave a trace.
+#pragma once
+
+#include <Fulcrum/UnitTests/Random/Calls.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fulcrum::testing {
+
+struct RandomCall {
+    const CallKind* kind = nullptr;
+    uint32_t seed = 0;  // of its values
+    CallTargets targets;
+};
+
+struct RandomProgram {
+    uint32_t seed = 0;
+    RandomStyle style;
+    std::vector<RandomCall> calls;
+};
+
+struct ProgramFailure {
+    size_t call = 0;   // which
+    std::string what;
+};
+
+class ProgramPlayer {
+public:
+    ProgramPlayer() : two_(2), four_(4) {}
+
+    // Empty: nothing failed.
+    std::optional<ProgramFailure> Play(const RandomProgram& program);
+    // The program without the calls that it fails without.
+    RandomProgram Shrink(RandomProgram program, const ProgramFailure& failure);
+
+private:
+    ThreadPool two_, four_;
+};
+
+RandomProgram MakeProgram(uint32_t seed);
+// Its seed, what failed, its calls.
+std::string Describe(const RandomProgram& program, const ProgramFailure& failure);
+
+}  // namespace fulcrum::testing

@@ -1,0 +1,138 @@
+#include <Fulcrum/UnitTests/Random/Program.h>
+#include <Fulcrum/UnitTests/Random/Watch.h>
+#include <Fulcrum/UnitTests/Support/Cases.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <sstream>
+
+namespace fulcrum::testing {
+
+namespace {
+
+// CPU time, s, that a call may take in one world of a few dozen bodies. Of the process: other programs on the machine do not count.
+constexpr double kLongestCall = kIsSanitized ? 20 : 1;
+
+double Seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+bool IsStep(const RandomCall& call) { return std::string_view(call.kind->name) == "Step"; }
+
+// What a step may add to the kinetic energy, J: gravity, pushes out of overlaps, kinematic bodies, belts. Each is a speed that a
+// body may gain, so this is generous, and still far below what comes of a sign error or of an impulse that is applied twice.
+double EnergyAllowance(const Twin& twin) {
+    const SystemSettings& settings = twin.system->Settings();
+    const BodyInterface& bodies = twin.system->Bodies();
+    double fastest = 0;
+    twin.system->VisitBodies([&](BodyId id) {
+        if (bodies.GetMotionType(id) == MotionType::Dynamic) return;
+        const double size = double{bodies.GetShape(id)->OuterRadius()};  // of a plane that turns: endless
+        fastest = std::max(fastest, double{Length(bodies.GetLinearVelocity(id))} + size * double{Length(bodies.GetAngularVelocity(id))});
+    });
+    double sum = 0;
+    twin.system->VisitBodies([&](BodyId id) {
+        const double gained = double{Length(settings.gravity)} * 0.3 + 2 * double{settings.contactPushSpeed} + 2 * fastest + 2;
+        const double speed = double{Length(bodies.GetLinearVelocity(id))};
+        sum += double{bodies.GetMass(id)} * (0.5 * gained * gained + speed * double{Length(settings.gravity)} * 0.2);
+    });
+    return sum;
+}
+
+class Game {
+public:
+    Game(const RandomProgram& program, JobSystem* two, JobSystem* four) : program_(program) {
+        for (JobSystem* const jobs : {static_cast<JobSystem*>(nullptr), two, four, static_cast<JobSystem*>(nullptr)})
+            twins_.emplace_back(SystemSettings{}, jobs);
+    }
+
+    std::optional<ProgramFailure> Play() {
+        state_ = HashOfState(twins_[0]);
+        for (size_t i = 0; i < program_.calls.size(); ++i) {
+            Watch::Note(program_.seed, i, program_.calls[i].kind->name);
+            const std::string what = PlayCall(program_.calls[i]);
+            if (std::getenv("FULCRUM_RANDOM_TRACE")) Trace(i, program_.calls[i]);
+            if (!what.empty()) return ProgramFailure{i, what};
+        }
+        return std::nullopt;
+    }
+
+private:
+    // All bodies, for whoever looks for the cause of a failure.
+    void Trace(size_t number, const RandomCall& call) {
+        std::printf("%zu %s\n", number, call.kind->name);
+        const BodyInterface& bodies = twins_[0].system->Bodies();
+        twins_[0].system->VisitBodies([&](BodyId id) {
+            const Position at = bodies.GetPose(id).position;
+            const Vector3 v = bodies.GetLinearVelocity(id), w = bodies.GetAngularVelocity(id);
+            std::printf("    body %u %s motion %d mass %g at %g %g %g v %g %g %g w %g %g %g continuous %d awake %d\n", id.index,
+                        ShapeTypeName(bodies.GetShape(id)->Type()), static_cast<int>(bodies.GetMotionType(id)), double{bodies.GetMass(id)},
+                        at.x(), at.y(), at.z(), double{v.x()}, double{v.y()}, double{v.z()}, double{w.x()}, double{w.y()}, double{w.z()},
+                        static_cast<int>(bodies.GetContinuous(id)), bodies.IsAwake(id));
+        });
+    }
+
+    static constexpr size_t kWithoutRefused = 3;
+
+    Outcome PlayIn(Twin& twin, const RandomCall& call) {
+        Outcome outcome;
+        Values values(call.seed, program_.style);
+        call.kind->play(twin, values, call.targets, outcome);
+        return outcome;
+    }
+
+    std::string PlayCall(const RandomCall& call) {
+        const double before = Seconds(), energy = KineticEnergy(twins_[0]), allowance = IsStep(call) ? EnergyAllowance(twins_[0]) : 0;
+        const Outcome first = PlayIn(twins_[0], call);
+        const double took = Seconds() - before;
+        if (!first.failure.empty()) return first.failure;
+        if (std::string wrong = WrongIn(twins_[0]); !wrong.empty()) return wrong;
+        const uint64_t state = HashOfState(twins_[0]);
+        if (first.isRefused && state != state_) return "a call that was refused has changed something";
+        if (std::string wrong = PlayInOthers(call, first, state); !wrong.empty()) return wrong;
+        state_ = state;
+        if (took > kLongestCall) return "a call took " + std::to_string(took) + " s";
+        return CheckEnergy(call, energy, allowance);
+    }
+
+    std::string PlayInOthers(const RandomCall& call, const Outcome& first, uint64_t state) {
+        constexpr const char* kNames[] = {"one thread", "two threads", "four threads", "no calls that are refused"};
+        for (size_t i = 1; i < twins_.size(); ++i) {
+            if (i == kWithoutRefused && first.isRefused) continue;
+            const Outcome outcome = PlayIn(twins_[i], call);
+            if (outcome.answer.Value() != first.answer.Value()) return std::string("another answer with ") + kNames[i];
+            if (twins_[i].system->HashPoses() != twins_[0].system->HashPoses()) return std::string("other poses with ") + kNames[i];
+            if (HashOfState(twins_[i]) != state) return std::string("another state with ") + kNames[i];
+        }
+        return {};
+    }
+
+    // Of programs without extremes and joints, whose springs hold any energy, in steps in which no force is pending.
+    std::string CheckEnergy(const RandomCall& call, double before, double allowance) {
+        const std::string_view name = call.kind->name;
+        if (name.starts_with("AddForce") || name == "AddTorque") isPushed_ = true;
+        if (!IsStep(call) || program_.style.oddChance > 0 || program_.style.joints) return {};
+        const uint64_t poses = twins_[0].system->HashPoses();
+        if (poses == lastPoses_) return {};  // a step of no length, after which forces wait still
+        lastPoses_ = poses;
+        const bool isPushed = isPushed_;
+        isPushed_ = false;
+        const double after = KineticEnergy(twins_[0]);
+        if (isPushed || after <= 2 * before + allowance) return {};
+        std::ostringstream text;
+        text << "kinetic energy rose from " << before << " to " << after << " J in a step, which may add " << allowance;
+        return text.str();
+    }
+
+    const RandomProgram& program_;
+    std::vector<Twin> twins_;
+    uint64_t state_ = 0;
+    uint64_t lastPoses_ = 0;
+    bool isPushed_ = false;
+};
+
+}  // namespace
+
+std::optional<ProgramFailure> ProgramPlayer::Play(const RandomProgram& program) { return Game(program, &two_, &four_).Play(); }
+
+}  // namespace fulcrum::testing

@@ -1,0 +1,171 @@
+#include <Fulcrum/UnitTests/Random/QueryChecks.h>
+
+#include <Fulcrum/Collision/Queries/Distance.h>
+#include <Fulcrum/Collision/Shapes/Plane.h>
+#include <Fulcrum/Physics/Queries/ColliderSearch.h>
+
+#include <algorithm>
+#include <cfloat>
+#include <sstream>
+
+namespace fulcrum::testing {
+
+namespace {
+
+// How far two answers may be apart, m: what floats of the shape's size, and doubles of its place, leave open.
+double ToleranceOf(const BodyShape& body, const Position& from) {
+    const double size = std::min(double{body.shape->OuterRadius()}, body.shape->Type() == ShapeType::Plane ? 1.0 : 1e30);
+    const double away = (body.pose.position - from).cwiseAbs().maxCoeff();
+    return 1e-3 * size + 1e-6 * away + 1e-15 * (from.cwiseAbs().maxCoeff() + body.pose.position.cwiseAbs().maxCoeff());
+}
+
+// The least fraction at which the ray meets the body; 2: it does not.
+double FractionOf(const BodyShape& body, const Ray& ray) {
+    RayHit hit;
+    return RayCaster(ray).CastClosest(*body.shape, body.pose, {}, hit) ? double{hit.fraction} : 2.0;
+}
+
+// The same for a ray moved aside by a little each way: between the least and the largest anything is right.
+std::pair<double, double> FractionsNear(const BodyShape& body, const Ray& ray) {
+    const double by = ToleranceOf(body, ray.origin);
+    std::pair<double, double> range{FractionOf(body, ray), 0};
+    range.second = range.first;
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const double way : {-by, by}) {
+            Ray moved = ray;
+            moved.origin[axis] += way;
+            const double fraction = FractionOf(body, moved);
+            range = {std::min(range.first, fraction), std::max(range.second, fraction)};
+        }
+    }
+    const double slack = by / std::max(double{Length(ray.displacement)}, DBL_MIN) + 1e-6;
+    return {range.first - slack, range.second + slack};
+}
+
+template <class... Parts>
+std::string Text(const Parts&... parts) {
+    std::ostringstream text;
+    text.precision(9);
+    (text << ... << parts);
+    return text.str();
+}
+
+const BodyShape* Find(const std::vector<BodyShape>& bodies, BodyId id) {
+    for (const BodyShape& body : bodies)
+        if (body.id == id) return &body;
+    return nullptr;
+}
+
+bool IsUnit(const Vector3& normal) { return IsFinite(normal) && std::abs(LengthSquared(normal) - 1) < 1e-3f; }
+
+}  // namespace
+
+std::vector<BodyShape> ShapesOf(const PhysicsSystem& system) {
+    std::vector<BodyShape> shapes;
+    system.VisitBodies([&](BodyId id) {
+        const BodyInterface& bodies = system.Bodies();
+        const ShapePtr shape = bodies.GetShape(id);
+        if (!bodies.IsSensor(id)) shapes.push_back({id, shape, CentrePoseOf(*shape, bodies.GetPose(id))});
+    });
+    return shapes;
+}
+
+bool AreSame(const WorldRayHit& a, const WorldRayHit& b) {
+    return a.body == b.body && a.subShape == b.subShape && a.fraction == b.fraction && a.normal == b.normal &&
+           a.position == b.position && a.isBackFace == b.isBackFace;
+}
+bool AreSame(const WorldShapeHit& a, const WorldShapeHit& b) {
+    return a.body == b.body && a.subShape == b.subShape && a.fraction == b.fraction && a.normal == b.normal &&
+           a.position == b.position && a.depth == b.depth && a.isEarly == b.isEarly;
+}
+bool AreSame(const WorldClosest& a, const WorldClosest& b) {
+    return a.body == b.body && a.subShape == b.subShape && a.subShapeOfQuery == b.subShapeOfQuery && a.distance == b.distance &&
+           a.normal == b.normal && a.onBody == b.onBody && a.onQuery == b.onQuery;
+}
+
+std::string ToText(const WorldRayHit& hit) {
+    return Text(" (body ", hit.body.index, " triangle ", hit.subShape.triangle, " fraction ", hit.fraction, " normal ", hit.normal.transpose(), ")");
+}
+std::string ToText(const WorldShapeHit& hit) {
+    return Text(" (body ", hit.body.index, " triangle ", hit.subShape.triangle, " fraction ", hit.fraction, " normal ", hit.normal.transpose(),
+                " position ", hit.position.transpose(), " depth ", hit.depth, ")");
+}
+std::string ToText(const WorldClosest& hit) {
+    return Text(" (body ", hit.body.index, " distance ", hit.distance, " normal ", hit.normal.transpose(), ")");
+}
+
+std::string CompareRay(const std::vector<BodyShape>& bodies, const Ray& ray, const WorldRayHit& hit) {
+    const bool isHit = hit.body != BodyId{};
+    if (isHit && !(IsUnit(hit.normal) && IsFinite(hit.position) && hit.fraction >= 0 && hit.fraction <= 1))
+        return Text("ray hit of body ", hit.body.index, " is not finite, or its normal no unit vector");
+    double closest = 2;
+    for (const BodyShape& body : bodies) {
+        const auto [least, largest] = FractionsNear(body, ray);
+        closest = std::min(closest, largest);
+        if (isHit && body.id == hit.body && (double{hit.fraction} < least || (largest > 1.5 && least > 1.5)))
+            return Text("a ray hits body ", body.id.index, " at ", hit.fraction, ", which by itself it meets from ", least);
+    }
+    const double found = isHit ? double{hit.fraction} : 2;
+    if (found > closest + 1e-6) return Text("a ray hits at ", found, " what by itself is closer, at ", closest);
+    return {};
+}
+
+std::string CheckShapeHit(const std::vector<BodyShape>& bodies, const MovingShape& moving, const WorldShapeHit& hit) {
+    if (hit.body == BodyId{}) return {};
+    if (!(IsUnit(hit.normal) && IsFinite(hit.position) && std::isfinite(hit.depth) && hit.fraction >= 0 && hit.fraction <= 1))
+        return Text("shape hit of body ", hit.body.index, " is not finite, or its normal no unit vector");
+    const BodyShape* const body = Find(bodies, hit.body);
+    if (!body) return "a shape hits what is no body";
+    if (hit.isEarly) return {};
+    const Shape& shape = *moving.shape;
+    Pose centre = CentrePoseOf(shape, moving.pose);
+    centre.position += moving.displacement.cast<double>() * double{hit.fraction};
+    const float angle = Length(moving.turn);
+    if (angle > 100) return {};  // a float's turn about so many radians is not known well enough
+    if (angle > 0) centre.rotation = Normalized(RotationFromVector(Vector3(moving.turn * hit.fraction)) * centre.rotation);
+    ClosestPoints closest;
+    const RelativePose pose = Relative(body->pose, centre);
+    const double size = double{shape.OuterRadius()} + double{Length(moving.displacement)} * 0x1p-23;
+    const double tolerance = ToleranceOf(*body, centre.position) + 2e-3 * size;
+    if (!IsFinite(pose.position) || !FindClosestPoints(*body->shape, shape, pose, FLT_MAX, closest)) return {};
+    if (double{closest.distance} > tolerance)
+        return Text("a shape hits body ", body->id.index, " at ", hit.fraction, ", but is ", closest.distance, " m away there");
+    return {};
+}
+
+std::string CompareClosest(const std::vector<BodyShape>& bodies, const PlacedShape& placed, float maxDistance, const WorldClosest& closest) {
+    const bool isFound = closest.body != BodyId{};
+    if (isFound && !(IsFinite(closest.normal) && std::isfinite(closest.distance) && IsFinite(closest.onBody) && IsFinite(closest.onQuery)))
+        return Text("closest points on body ", closest.body.index, " are not finite");
+    const Pose centre = CentrePoseOf(*placed.shape, placed.pose);
+    for (const BodyShape& body : bodies) {
+        ClosestPoints here;
+        if (!FindClosestPoints(*body.shape, *placed.shape, Relative(body.pose, centre), maxDistance, here)) continue;
+        const double tolerance = ToleranceOf(body, centre.position) + 1e-3 * double{placed.shape->OuterRadius()};
+        if (std::abs(here.distance) > 1e17f) continue;  // beyond what planes reach
+        if (!isFound && double{here.distance} < double{maxDistance} - tolerance)
+            return Text("no body is found within ", maxDistance, " m, but body ", body.id.index, " is ", here.distance, " m away");
+        if (isFound && double{here.distance} < double{closest.distance} - tolerance)
+            return Text("the closest is ", closest.distance, " m away, but body ", body.id.index, " is ", here.distance, " m away");
+    }
+    return {};
+}
+
+std::string CheckClosest(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA, const ClosestPoints& closest) {
+    if (!std::isfinite(closest.distance) || !IsUnit(closest.normal) || !IsFinite(closest.onA) || !IsFinite(closest.onB))
+        return Text("closest points are not finite, or the normal no unit vector: distance ", closest.distance);
+    const Vector3 n = closest.normal;
+    const Vector3 inB = InverseRotate(bInA.rotation, Vector3(-n));
+    const double top = Dot<double>(a.Support(n).cast<double>(), n.cast<double>());
+    const double bottom = Dot<double>((bInA.position.cast<double>() + Rotate(bInA.rotation, b.Support(inB)).cast<double>()).eval(), n.cast<double>());
+    const double size = double{a.OuterRadius()} + double{b.OuterRadius()} + double{Length(bInA.position)};
+    const double along = bottom - top, tolerance = 1e-3 * size * (closest.distance < 0 ? 1 : 0.1) + FLT_MIN;
+    if (std::abs(along - double{closest.distance}) > tolerance)
+        return Text("distance ", closest.distance, ", but along the normal it is ", along, ": ", ShapeTypeName(a.Type()), " and ", ShapeTypeName(b.Type()));
+    const double between = Dot<double>((closest.onB - closest.onA).cast<double>().eval(), n.cast<double>());
+    if (std::abs(between - double{closest.distance}) > tolerance)
+        return Text("distance ", closest.distance, ", but its points are ", between, " apart: ", ShapeTypeName(a.Type()), " and ", ShapeTypeName(b.Type()));
+    return {};
+}
+
+}  // namespace fulcrum::testing

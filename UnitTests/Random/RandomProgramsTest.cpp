@@ -1,0 +1,49 @@
+// Random programs of public calls: whatever a user does, all that can be read stays finite, threads and refusals leave no trace, queries
+// agree with each other, and every call returns. A few seconds of it run with the other tests; for longer:
+//     FULCRUM_RANDOM_SECONDS=3600 FULCRUM_RANDOM_SEED=1000 FulcrumTests --gtest_filter='RandomPrograms.*'
+// FULCRUM_RANDOM_PROGRAMS=1 plays one program, the one of the seed: so a failure is played again.
+#include <Fulcrum/UnitTests/Random/Program.h>
+#include <Fulcrum/UnitTests/Random/Watch.h>
+#include <Fulcrum/UnitTests/Support/Cases.h>
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdlib>
+
+namespace fulcrum::testing {
+namespace {
+
+constexpr int kPrograms = Cases(300);
+constexpr int kMostFailures = 20;
+
+double FromEnvironment(const char* name, double otherwise) {
+    const char* const text = std::getenv(name);
+    return text ? std::atof(text) : otherwise;
+}
+
+TEST(RandomPrograms, HoldWhateverAUserCalls) {
+    const double seconds = FromEnvironment("FULCRUM_RANDOM_SECONDS", 0);
+    const uint32_t firstSeed = static_cast<uint32_t>(FromEnvironment("FULCRUM_RANDOM_SEED", 1));
+    const double programs = FromEnvironment("FULCRUM_RANDOM_PROGRAMS", seconds > 0 ? 1e9 : kPrograms);
+    const auto begin = std::chrono::steady_clock::now();
+    const auto isTimeUp = [&] { return seconds > 0 && std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() > seconds; };
+    const Watch watch(kIsSanitized ? 600 : 60);
+    ProgramPlayer player;
+    int failures = 0;
+    uint32_t played = 0;
+    for (; played < programs && failures < kMostFailures && !isTimeUp(); ++played) {
+        const RandomProgram program = MakeProgram(firstSeed + played);
+        const std::optional<ProgramFailure> failure = player.Play(program);
+        if (!failure) continue;
+        ++failures;
+        const RandomProgram shorter = player.Shrink(program, *failure);
+        const std::optional<ProgramFailure> again = player.Play(shorter);
+        ADD_FAILURE() << Describe(shorter, again ? *again : *failure);
+    }
+    RecordProperty("programs", static_cast<int>(played));
+    EXPECT_GT(played, 0u);
+}
+
+}  // namespace
+}  // namespace fulcrum::testing

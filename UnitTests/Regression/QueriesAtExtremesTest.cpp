@@ -1,0 +1,204 @@
+// Queries and shapes with odd numbers: what random programs of public calls have found, each as small as it could be made.
+#include <Fulcrum/Collision/Queries/Distance.h>
+#include <Fulcrum/Collision/Shapes/EmptyShape.h>
+#include <Fulcrum/Collision/Shapes/HeightField.h>
+#include <Fulcrum/Collision/Shapes/Plane.h>
+#include <Fulcrum/Collision/Shapes/RoundShapes.h>
+#include <Fulcrum/Collision/Shapes/ShapeFile.h>
+#include <Fulcrum/Collision/Shapes/Triangle.h>
+#include <Fulcrum/UnitTests/Random/QueryChecks.h>
+#include <Fulcrum/UnitTests/Support/Cases.h>
+#include <Fulcrum/UnitTests/Support/RandomPoses.h>
+#include <Fulcrum/UnitTests/Support/TestWorld.h>
+
+#include <cfloat>
+#include <ctime>
+
+namespace fulcrum::testing {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+// One ray of a batch must not change what the 31 others meet, whatever its numbers are.
+TEST(QueriesAtExtremes, AnOddRayDoesNotSpoilItsBatch) {
+    TestWorld world;
+    world.AddFloor();
+    world.Add({.shape = SphereOf(1), .motion = MotionType::Static, .position = Position(0, 2, 0)});
+    const QueryInterface& queries = world.System().Queries();
+    for (const float odd : {kInfinity, -kInfinity, kNaN, 3e38f, -3e38f, 1e30f, 1e19f, 0.0f}) {
+        for (int axes = 1; axes < 8; ++axes) {
+            std::vector<Ray> rays;
+            for (int i = 0; i < 32; ++i) rays.push_back({Position(0.01 * i, 10, 0), Vector3(0.001f, -20, 0.002f)});
+            for (int axis = 0; axis < 3; ++axis)
+                if (axes >> axis & 1) rays[7].displacement[axis] = odd;
+            std::vector<WorldRayHit> hits(rays.size());
+            queries.CastRays(rays, hits);
+            for (size_t i = 0; i < rays.size(); ++i) {
+                WorldRayHit alone;
+                const bool isHit = queries.CastRay(rays[i], alone);
+                EXPECT_EQ(isHit, i != 7 || hits[7].body != BodyId{}) << odd << " in axes " << axes << ", ray " << i;
+                EXPECT_TRUE(AreSame(alone, hits[i])) << odd << " in axes " << axes << ", ray " << i;
+            }
+        }
+    }
+}
+
+TEST(QueriesAtExtremes, NothingMeetsTheEmptyShape) {
+    const std::shared_ptr<const EmptyShape> empty = EmptyShape::Create();
+    const RayCaster ray({Position(0, 1, 0), Vector3(0, -2, 0)});
+    RayHit hit;
+    EXPECT_FALSE(ray.CastClosest(*empty, {}, {}, hit));
+    EXPECT_FALSE(ray.IsHit(*empty, {}, {}));
+    int count = 0;
+    EXPECT_TRUE(ray.CastAll(*empty, {}, {}, [&](const RayHit&) { return ++count > 0; }));
+    const auto ball = Sphere::Create(1).Value();
+    const ShapeCaster caster(*ball, {{Position(0, 1, 0), {}}, Vector3(0, -2, 0)});
+    ShapeHit shapeHit;
+    EXPECT_FALSE(caster.CastClosest(*empty, {}, {}, shapeHit));
+    ClosestPoints closest;
+    EXPECT_FALSE(FindClosestPoints(*empty, *ball, {}, 10, closest));
+    EXPECT_FALSE(Overlap(*ball, *empty, {}));
+    EXPECT_FALSE(Contains(*empty, Vector3::Zero()));
+    EXPECT_EQ(count, 0);
+}
+
+TEST(QueriesAtExtremes, FilesLoadEveryCompoundThatCreateMakes) {
+    const ShapePtr ball = SphereOf(0.5f);
+    const float places[] = {0, 1e-30f, 1, 1e6f, 1e11f, 1e15f, 9e17f, 1e18f, 1e20f, 1e30f, FLT_MAX};
+    const float densities[] = {1e-45f, 1e-40f, FLT_MIN, 1e-20f, 1, 1e20f, FLT_MAX};
+    int made = 0;
+    for (const float place : places) {
+        for (const float density : densities) {
+            const CompoundShape::ChildSettings children[] = {{ball, Vector3(place, 0, 0), {}, density}, {ball, Vector3(0, place, 1), {}, 1}};
+            const Result<std::shared_ptr<const Compound>> fixed = Compound::Create(children);
+            const Result<std::shared_ptr<MutableCompound>> edited = MutableCompound::Create(children);
+            std::vector<ShapePtr> shapes;
+            if (fixed) shapes.push_back(fixed.Value());
+            if (edited) shapes.push_back(edited.Value());
+            for (const ShapePtr& shape : shapes) {
+                ++made;
+                const Result<std::vector<uint8_t>> saved = SaveShape(*shape);
+                ASSERT_TRUE(saved);
+                const Result<ShapePtr> loaded = LoadShape(saved.Value());
+                EXPECT_TRUE(loaded) << "children " << place << " m apart, density " << density << ": " << loaded.GetError().message;
+            }
+        }
+    }
+    EXPECT_GT(made, 20);
+}
+
+// A turn of so many radians that its square is no float: the fraction of a hit is one all the same.
+TEST(QueriesAtExtremes, TheTimeOfAHitIsFinite) {
+    const auto capsule = Capsule::Create(0.5f, 0.2f).Value();
+    const ShapePtr box = BoxOf(1, 1, 1);
+    int hits = 0;
+    RandomPoses random(3);
+    for (const float turn : {1e3f, 1e10f, 1e17f, 1e19f, 1e25f, 1e30f, 3e38f}) {
+        for (int i = 0; i < 200; ++i) {
+            Vector3 turns = random.InBox(2), way = random.InBox(4);
+            turns[static_cast<int>(random.Below(3))] = turn;
+            if (random.Chance(0.3f)) way[static_cast<int>(random.Below(3))] = std::min(turn, 1e17f);
+            const ShapeCaster caster(*capsule, {{random.InBox(4).cast<double>(), random.Rotation()}, way, turns});
+            ShapeHit hit;
+            if (!caster.CastClosest(*box, {}, {}, hit)) continue;
+            ++hits;
+            EXPECT_GE(hit.fraction, 0) << turn;
+            EXPECT_LE(hit.fraction, 1) << turn;
+            EXPECT_TRUE(IsFinite(hit.normal) && IsFinite(hit.position)) << turn;
+        }
+    }
+    EXPECT_GT(hits, 0);
+}
+
+ShapePtr Waves() {
+    std::vector<float> heights;
+    for (int i = 0; i < 81; ++i) heights.push_back(0.1f * static_cast<float>(i % 7));
+    return HeightField::Create({.sampleCountX = 9, .sampleCountZ = 9, .heights = heights, .origin = Vector3(-4, 0, -4)}).Value();
+}
+
+// Children so far apart that the box around them holds no digits of the field: found by where they are, in bounded time.
+TEST(QueriesAtExtremes, ACompoundOfFarChildrenMeetsAHeightFieldInBoundedTime) {
+    const ShapePtr ball = SphereOf(0.5f), field = Waves();
+    const double begin = static_cast<double>(std::clock());
+    for (const float apart : {1e3f, 1e6f, 1e9f, 1e11f, 1e15f, 1e17f}) {
+        for (const bool isBalanced : {true, false}) {
+            const float other = isBalanced ? -apart : 0;
+            const CompoundShape::ChildSettings children[] = {{ball, Vector3(apart, 0, 0)}, {ball, Vector3(other, 0, 0)}};
+            const Result<std::shared_ptr<const Compound>> compound = Compound::Create(children);
+            ASSERT_TRUE(compound) << apart;
+            for (const Vector3& at : {Vector3(0, 1, 0), Vector3(-apart, 1, 0), Vector3(0.3f * apart, 2, 5)}) {
+                ClosestPoints closest;
+                EXPECT_TRUE(FindClosestPoints(*compound.Value(), *field, {at, {}}, kInfinity, closest)) << apart;
+                EXPECT_TRUE(FindClosestPoints(*field, *compound.Value(), {at, {}}, kInfinity, closest)) << apart;
+                EXPECT_TRUE(std::isfinite(closest.distance)) << apart;
+                (void)Overlap(*compound.Value(), *field, {at, {}});
+                TestWorld world;
+                world.Add({.shape = compound.Value(), .motion = MotionType::Static});
+                world.Add({.shape = field, .motion = MotionType::Static, .position = at.cast<double>()});
+                std::vector<OverlapHit> hits;
+                const PlacedShape placed{compound.Value().get(), {at.cast<double>(), {}}};
+                world.System().Queries().FindOverlaps(placed, hits);
+                WorldClosest nearest;
+                EXPECT_TRUE(world.System().Queries().FindClosest(placed, kInfinity, nearest));
+            }
+        }
+    }
+    EXPECT_LT((static_cast<double>(std::clock()) - begin) / CLOCKS_PER_SEC, kIsSanitized ? 60 : 3);
+}
+
+TEST(QueriesAtExtremes, ClosestPointsAgreeWithTheSupportsAtEverySize) {
+    for (const float scale : {1e-5f, 1e-3f, 1.0f, 1e3f, 1e5f, 1e6f}) {
+        RandomPoses random(7);
+        for (int i = 0; i < Cases(3000); ++i) {
+            const auto size = [&] {
+                return random.Chance(0.2f) ? std::pow(10.0f, random.Between(-6, 6)) : random.Between(0.1f, 1) * (random.Chance(0.3f) ? 1.0f : scale);
+            };
+            const float halfHeight = size(), radius = size();
+            const auto capsule = Capsule::Create(halfHeight, radius);
+            const float x = size(), y = size(), z = size();
+            const auto box = Box::Create(Vector3(x, y, z));
+            if (!capsule || !box) continue;
+            const float reach = capsule.Value()->OuterRadius() + box.Value()->OuterRadius();
+            const RelativePose pose{random.InBox(reach * (random.Chance(0.5f) ? 1.0f : 0.1f)), random.Chance(0.5f) ? random.Rotation() : random.QuarterTurns()};
+            ClosestPoints closest;
+            ASSERT_TRUE(FindClosestPoints(*capsule.Value(), *box.Value(), pose, FLT_MAX, closest));
+            EXPECT_EQ(CheckClosest(*capsule.Value(), *box.Value(), pose, closest), "") << "size " << scale << ", case " << i;
+        }
+    }
+}
+
+TEST(QueriesAtExtremes, ATriangleThatIsCastTouchesWhatItHits) {
+    RandomPoses random(11);
+    int hits = 0;
+    for (int i = 0; i < Cases(20000); ++i) {
+        const float size = random.Chance(0.5f) ? 1.0f : std::pow(10.0f, random.Between(-5, 5));
+        const auto triangle = Triangle::Create(random.InBox(size), random.InBox(size), random.InBox(size), random.Chance(0.7f) ? 0 : 0.05f * size);
+        if (!triangle) continue;
+        const float other = random.Chance(0.5f) ? size : std::pow(10.0f, random.Between(-5, 5));
+        Result<std::shared_ptr<const Cylinder>> cylinder = Cylinder::Create(other, other);
+        const Result<std::shared_ptr<const Box>> box = Box::Create(Vector3(other, 0.5f * other, 2 * other));
+        const Result<std::shared_ptr<const Triangle>> second = Triangle::Create(random.InBox(other), random.InBox(other), random.InBox(other));
+        std::vector<ShapePtr> shapes;
+        if (cylinder) shapes.push_back(cylinder.Value());
+        if (box) shapes.push_back(box.Value());
+        if (second) shapes.push_back(second.Value());
+        for (const ShapePtr& rest : shapes) {
+            const float reach = triangle.Value()->OuterRadius() + rest->OuterRadius();
+            const BodyShape body{{0, 0}, rest, {Position::Zero(), random.Rotation()}};
+            MovingShape moving{triangle.Value().get(), {random.InBox(2 * reach).cast<double>(), random.Rotation()}, random.InBox(4 * reach)};
+            if (random.Chance(0.3f)) moving.turn = random.InBox(2);
+            ShapeHit hit;
+            const Pose centre{moving.pose.Transform(triangle.Value()->Mass().centreOfMass), moving.pose.rotation};
+            const ShapeCaster caster(*triangle.Value(), {centre, moving.displacement, moving.turn});
+            if (!caster.CastClosest(*rest, body.pose, {}, hit)) continue;
+            ++hits;
+            EXPECT_EQ(CheckShapeHit({body}, moving, {body.id, hit.subShape, hit.fraction, hit.normal, hit.position, hit.depth, hit.isEarly}), "")
+                << "case " << i << " " << ShapeTypeName(rest->Type()) << " sizes " << size << " " << other << (moving.turn.isZero(0) ? " straight" : " turning");
+        }
+    }
+    EXPECT_GT(hits, Cases(2000));
+}
+
+}  // namespace
+}  // namespace fulcrum::testing
