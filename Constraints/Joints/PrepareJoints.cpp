@@ -140,6 +140,35 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
         for (uint32_t i = 0; i < lists[lane].count; ++i) SoftenLane(batch.rows[i], lane, lists[lane].rows[i], settings);
 }
 
+// Which joints are so far apart that their push is at its fastest.
+template <LinearLock kLinear, AngularLock kAngular, int N>
+void FindFar(JointBatch<N>& batch, const JointErrors<Wide<N>>& errors, const JointSolveSettings& settings) {
+    using Real = Wide<N>;
+    Real push(0.0f);
+    const auto note = [&](const auto& error) {
+        for (int k = 0; k < error.size(); ++k) push = Max(push, Abs(error[k]) * Real(settings.pushRate));
+    };
+    if constexpr (kAngular == AngularLock::All) note(errors.rotation);
+    if constexpr (kAngular == AngularLock::Axis) note(errors.hinge);
+    if constexpr (kLinear == LinearLock::Point) note(errors.point);
+    if constexpr (kLinear == LinearLock::Line) note(errors.line);
+    auto isFar = push > Real(settings.maxPushSpeed);
+    for (uint32_t i = 0; i < batch.rowCount; ++i) {
+        const JointRows<N>& row = batch.rows[i];
+        isFar = isFar | ((row.error <= row.openAbove) & (Abs(row.error) * row.pushRate > row.mostPush));
+    }
+    batch.far = isFar.Any();
+    if (!batch.far) return;
+    batch.isFar = Select(isFar, Real(1.0f), Real(0.0f));
+    batch.pullLinear = batch.pullAngular = Zero<Real>();
+    batch.pulledA = batch.pulledB = {};
+    for (uint32_t i = 0; i < batch.rowCount; ++i) {
+        JointRows<N>& row = batch.rows[i];
+        const auto isPulled = isFar & (row.mostPush < Real(JointRow::kUnlimited));
+        row.pushRate = Select(isPulled, Real(0.0f), row.pushRate);
+    }
+}
+
 }  // namespace
 
 template <int N>
@@ -204,8 +233,9 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
                         findings.angularJoint);
         }
         SetUpCoupling<linear, angular>(batch);
-        Soften<linear, angular>(batch, errors, settings);
         FillRows<linear, angular>(batch, records, types, bodies, settings);
+        FindFar<linear, angular>(batch, errors, settings);
+        Soften<linear, angular>(batch, errors, settings);
     });
 }
 

@@ -135,6 +135,58 @@ template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
     }
 }
 
+// The pull of joints that are far apart. Bodies turn by so much in a substep there, with such long levers, that relaxing, which acts
+// along the rows as they then are, would leave part of a push in the velocities: more than the substep before gave, in the end.
+// So the velocities of a pull are counted apart, and taken away again as they were given.
+template <LinearLock kLinear, AngularLock kAngular, int N>
+[[gnu::noinline]] void Pull(JointBatch<N>& batch, const JointSolveSettings& settings) {
+    using Real = Wide<N>;
+    const Real zero(0.0f);
+    Twist<Real>&a = batch.pulledA, &b = batch.pulledB;
+    a = b = {};
+    for (uint32_t i = 0; i < batch.rowCount; ++i) {
+        const JointRows<N>& row = batch.rows[i];
+        const auto acts = (batch.isFar > zero) & (row.mass > zero) & (row.error <= row.openAbove) & (row.mostPush < Real(JointRow::kUnlimited));
+        const Real rate = row.mostPush * Real(settings.pushRate / settings.maxPushSpeed);
+        const Real push = Clamp(Real(rate * row.error), Real(-row.mostPush), row.mostPush);
+        const Real wanted = -(row.mass * (row.massScale * RowMotion<Real>(row, a, b) + push));
+        const Real impulse = Select(acts, Clamp(wanted, row.lowest, row.highest), zero);
+        a.linear += row.responseA.linear * impulse;
+        a.angular += row.responseA.angular * impulse;
+        b.linear += row.responseB.linear * impulse;
+        b.angular += row.responseB.angular * impulse;
+    }
+    if constexpr (kLinear != LinearLock::None || kAngular != AngularLock::None) {
+        LockImpulses<Real> miss = LockMotion<kLinear, kAngular>(batch, a, b);
+        miss.linear += batch.pullLinear;
+        miss.angular += batch.pullAngular;
+        LockImpulses<Real> x = SolveBlock<kLinear, kAngular>(batch, miss.linear, miss.angular);
+        const Real scale = batch.isFar * Real(-settings.softness.massScale);
+        x.linear = x.linear * scale;
+        x.angular = x.angular * scale;
+        AddLockMotion<kLinear, kAngular>(batch, a, b, x);
+    }
+}
+
+// Adds the velocities of the last pull, times `sign`. Lanes without one keep every bit.
+template <int N>
+[[gnu::always_inline]] inline void AddPull(const JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, float sign) {
+    using Real = Wide<N>;
+    const auto isFar = batch.isFar > Real(0.5f);
+    const auto add = [&](Vec3<Real>& to, const Vec3<Real>& pulled) { to -= ZeroUnless<Real>(isFar, Vec3<Real>(pulled * Real(-sign))); };
+    add(a.linear, batch.pulledA.linear);
+    add(a.angular, batch.pulledA.angular);
+    add(b.linear, batch.pulledB.linear);
+    add(b.angular, batch.pulledB.angular);
+}
+
+// Takes it out of the bodies' velocities.
+template <int N>
+[[gnu::noinline]] void TakePullBack(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
+    AddPull(batch, a, b, -1.0f);
+    batch.pulledA = batch.pulledB = {};
+}
+
 template <LinearLock kLinear, AngularLock kAngular, int N>
 [[gnu::always_inline]] inline JointPlace<Wide<N>> Displace(const JointBatch<N>& batch, const Twist<Wide<N>>& a, const Twist<Wide<N>>& b) {
     using Real = Wide<N>;
@@ -235,13 +287,18 @@ template <int N>
 void SolveJointVelocities(JointBatch<N>& batch, BodyState* states, const JointSolveSettings& settings) {
     ChangeLocked<N>(batch, states, [&](auto linear, auto angular, auto& a, auto& b) __attribute__((always_inline)) {
         if (settings.continues) Turn<linear, angular>(batch, a, b);
+        if (batch.far) TakePullBack(batch, a, b);
         SolveAll<false, linear, angular>(batch, a, b);
+        if (!batch.far) return;
+        Pull<linear, angular>(batch, settings);
+        AddPull(batch, a, b, 1.0f);
     });
 }
 
 template <int N>
 void RelaxJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
     ChangeLocked<N>(batch, bodies.states, [&](auto linear, auto angular, auto& a, auto& b) __attribute__((always_inline)) {
+        if (batch.far) TakePullBack(batch, a, b);
         const JointErrors<Wide<N>> errors = Follow<linear, angular>(batch, bodies, a, b, settings);
         SolveAll<true, linear, angular>(batch, a, b);
         Soften<linear, angular>(batch, errors, settings);
@@ -250,6 +307,7 @@ void RelaxJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSo
 
 template <int N>
 void UpdateJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
+    if (batch.far) ChangeVelocities<N>(batch, bodies.states, [&](auto& a, auto& b) { TakePullBack(batch, a, b); });
     WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
         Motion<N> motionA, motionB;
         motionA.template Gather<Of::Velocity>(batch.bodyA, bodies.states);
