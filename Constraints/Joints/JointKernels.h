@@ -458,6 +458,15 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     }
 }
 
+// How fast joints that are far apart are pulled: as fast as any, and from afar so much faster that all are there within some seconds.
+// No harm comes of it, because it is taken back.
+template <class Real>
+[[gnu::always_inline]] inline Real PullSpeed(const Real& error, const JointSolveSettings& settings) {
+    constexpr float kMost = 2.0f, kPerSecond = 0.5f;
+    const Real most = Clamp(Abs(error) * Real(kPerSecond), Real(settings.maxPushSpeed), Real(kMost * settings.maxPushSpeed));
+    return Clamp(Real(error * Real(settings.pushRate)), -most, most);
+}
+
 // The push that the next velocity iterations give; to locks that are far apart none, but a pull.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 [[gnu::always_inline]] inline void Soften(JointBatch<N>& batch, const JointErrors<Wide<N>>& errors, const JointSolveSettings& settings) {
@@ -474,7 +483,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
         if (batch.far)
             for (int k = 0; k < bias.size(); ++k) {
                 const auto isFar = batch.isFar > Real(0.5f);
-                pull[k] = Select(isFar, bias[k], Real(0.0f));
+                pull[k] = Select(isFar, PullSpeed<Real>(error[k], settings), Real(0.0f));
                 bias[k] = Select(isFar, Real(0.0f), bias[k]);
             }
         part.SetBias(bias);

@@ -71,15 +71,39 @@ void FillLane(JointRows<N>& rows, int lane, const JointRow& row, float previousI
     rows.impulse.Set(lane, Clamp(previousImpulse * s.impulseScale, lowest, highest));
 }
 
-// Springs: after the masses are known. They are not relaxed: their force is what they are for.
+// All but what depends on the mass, of a row that is pushed at the locks' rate.
 template <int N>
-void SoftenLane(JointRows<N>& rows, int lane, const JointRow& row, const JointSolveSettings& s) {
+void SetPush(JointRows<N>& rows, int lane, bool yields, const JointSolveSettings& s) {
+    const float massScale = yields ? s.softness.massScale : 1.0f;
+    rows.massScale.Set(lane, massScale);
+    rows.pushRate.Set(lane, massScale * s.pushRate);
+    rows.softness.Set(lane, yields ? s.softness.impulseScale : 0.0f);
+    rows.mostPush.Set(lane, massScale * s.maxPushSpeed);
+}
+
+// Whether a spring is stretched so far that it would speed bodies up beyond what joints are pulled at.
+template <int N>
+bool IsOverstretched(const JointBatch<N>& batch, const JointRow& row, int lane, const SpringConstants<float>& spring,
+                     const JointSolveSettings& s) {
+    constexpr float kFastest = 1.5f;
+    if ((row.error < 0.0f ? row.maxForce : -row.minForce) < JointRow::kUnlimited) return false;
+    if (row.kind == JointRow::Kind::SpringAtLeast && row.error > 0.0f) return false;
+    const float inverse = LengthSquared(row.a.linear) * batch.massA.mass[lane] + LengthSquared(row.b.linear) * batch.massB.mass[lane];
+    const float squared = spring.squaredFrequency > 0.0f ? spring.squaredFrequency : spring.stiffness * inverse;
+    const float fastest = kFastest * s.maxPushSpeed;
+    return inverse > 0.0f && row.error * row.error * squared > fastest * fastest;
+}
+
+// Springs: after the masses are known. They are not relaxed: their force is what they are for. Overstretched ones are pulled as locks are.
+template <int N>
+void SoftenLane(const JointBatch<N>& batch, JointRows<N>& rows, int lane, const JointRow& row, const JointSolveSettings& s) {
     using Kind = JointRow::Kind;
     if (rows.slot[lane] == 0xFF || (row.kind != Kind::Spring && row.kind != Kind::SpringAtLeast)) return;
     const float mass = rows.mass[lane];
     SpringConstants<float> constants = ToConstants(row.spring);
     // As stiff as a spring can be that a substep resolves.
     if (!(constants.squaredFrequency > 0.0f || constants.stiffness > 0.0f)) constants = FrequencyConstants(0.25f * s.inverseDt, 1.0f);
+    if (IsOverstretched(batch, row, lane, constants, s)) return SetPush(rows, lane, true, s);
     const auto gains = detail::CalculateSpringGains<float>(s.substepDt, mass > 0.0f ? 1.0f / mass : 0.0f, constants);
     rows.massScale.Set(lane, gains.massScale);
     rows.softness.Set(lane, gains.softness);
@@ -137,7 +161,7 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
     }
     SetUpRows<kLinear, kAngular>(batch);
     for (int lane = 0; lane < batch.count; ++lane)
-        for (uint32_t i = 0; i < lists[lane].count; ++i) SoftenLane(batch.rows[i], lane, lists[lane].rows[i], settings);
+        for (uint32_t i = 0; i < lists[lane].count; ++i) SoftenLane(batch, batch.rows[i], lane, lists[lane].rows[i], settings);
 }
 
 // Which joints are so far apart that their push is at its fastest.

@@ -136,35 +136,54 @@ template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
 }
 
 // The pull of joints that are far apart. Bodies turn by so much in a substep there, with such long levers, that relaxing, which acts
-// along the rows as they then are, would leave part of a push in the velocities: more than the substep before gave, in the end.
-// So the velocities of a pull are counted apart, and taken away again as they were given.
+// along the rows as they then are, would leave part of a push in the velocities, and the next push would add to it. So a pull's
+// velocities are counted apart, and taken back as they were given. They need not keep momentum, then: what is to move is moved
+// without turning it, and what is to turn is turned about its centre, and no lever makes a small mass of a large one.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 [[gnu::noinline]] void Pull(JointBatch<N>& batch, const JointSolveSettings& settings) {
     using Real = Wide<N>;
-    const Real zero(0.0f);
+    const Real zero(0.0f), one(1.0f), &massA = batch.massA.mass, &massB = batch.massB.mass;
     Twist<Real>&a = batch.pulledA, &b = batch.pulledB;
     a = b = {};
+    const auto isFar = batch.isFar > Real(0.5f);
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         const JointRows<N>& row = batch.rows[i];
-        const auto acts = (batch.isFar > zero) & (row.mass > zero) & (row.error <= row.openAbove) & (row.mostPush < Real(JointRow::kUnlimited));
-        const Real rate = row.mostPush * Real(settings.pushRate / settings.maxPushSpeed);
-        const Real push = Clamp(Real(rate * row.error), Real(-row.mostPush), row.mostPush);
-        const Real wanted = -(row.mass * (row.massScale * RowMotion<Real>(row, a, b) + push));
+        const Real linear = Dot<Real>(row.a.linear, row.a.linear) * massA + Dot<Real>(row.b.linear, row.b.linear) * massB;
+        const auto moves = linear > zero;
+        const Vec3<Real> turnA = batch.massA.inertia * row.a.angular, turnB = batch.massB.inertia * row.b.angular;
+        const Real angular = Dot<Real>(row.a.angular, turnA) + Dot<Real>(row.b.angular, turnB);
+        const Real response = Select(moves, linear, angular);
+        const auto acts = isFar & (row.mass > zero) & (response > zero) & (row.error <= row.openAbove) & (row.mostPush < Real(JointRow::kUnlimited));
+        const Real speed = Select(moves, Real(Dot<Real>(row.b.linear, b.linear) - Dot<Real>(row.a.linear, a.linear)),
+                                  Real(Dot<Real>(row.b.angular, b.angular) - Dot<Real>(row.a.angular, a.angular)));
+        const Real push = PullSpeed<Real>(row.error, settings) * (row.mostPush * Real(1.0f / settings.maxPushSpeed));
+        const Real wanted = -(speed * row.massScale + push) / Select(acts, response, one);
         const Real impulse = Select(acts, Clamp(wanted, row.lowest, row.highest), zero);
-        a.linear += row.responseA.linear * impulse;
-        a.angular += row.responseA.angular * impulse;
-        b.linear += row.responseB.linear * impulse;
-        b.angular += row.responseB.angular * impulse;
+        const Real moving = Select(moves, impulse, zero), turning = Select(moves, zero, impulse);
+        a.linear -= row.a.linear * (massA * moving);
+        b.linear += row.b.linear * (massB * moving);
+        a.angular -= turnA * turning;
+        b.angular += turnB * turning;
     }
-    if constexpr (kLinear != LinearLock::None || kAngular != AngularLock::None) {
-        LockImpulses<Real> miss = LockMotion<kLinear, kAngular>(batch, a, b);
-        miss.linear += batch.pullLinear;
-        miss.angular += batch.pullAngular;
-        LockImpulses<Real> x = SolveBlock<kLinear, kAngular>(batch, miss.linear, miss.angular);
-        const Real scale = batch.isFar * Real(-settings.softness.massScale);
-        x.linear = x.linear * scale;
-        x.angular = x.angular * scale;
-        AddLockMotion<kLinear, kAngular>(batch, a, b, x);
+    const Real scale = batch.isFar * Real(settings.softness.massScale);
+    if constexpr (kAngular != AngularLock::None) {
+        auto& part = AngularPart<kAngular>(batch);
+        auto miss = part.RelativeMotion(a, b);
+        for (int k = 0; k < miss.size(); ++k) miss[k] = -(miss[k] + batch.pullAngular[k]) * scale;
+        part.AddImpulse(a, b, batch.massA, batch.massB, part.GetEffectiveMass() * miss, isFar);
+    }
+    if constexpr (kLinear != LinearLock::None) {
+        Vec3<Real> miss = b.linear - a.linear;
+        if constexpr (kLinear == LinearLock::Line) {
+            const auto& frame = batch.line.GetFrame();
+            miss = frame.axis1 * (Dot<Real>(frame.axis1, miss) + batch.pullLinear[0]) + frame.axis2 * (Dot<Real>(frame.axis2, miss) + batch.pullLinear[1]);
+        } else {
+            miss += batch.pullLinear;
+        }
+        const Real sum = massA + massB;
+        const Vec3<Real> impulse = miss * (-scale / Select(sum > zero, sum, one));
+        a.linear -= impulse * massA;
+        b.linear += impulse * massB;
     }
 }
 
