@@ -462,7 +462,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
 // No harm comes of it, because it is taken back.
 template <class Real>
 [[gnu::always_inline]] inline Real PullSpeed(const Real& error, const JointSolveSettings& settings) {
-    constexpr float kMost = 2.0f, kPerSecond = 0.5f;
+    constexpr float kMost = 3.0f, kPerSecond = 0.75f;
     const Real most = Clamp(Abs(error) * Real(kPerSecond), Real(settings.maxPushSpeed), Real(kMost * settings.maxPushSpeed));
     return Clamp(Real(error * Real(settings.pushRate)), -most, most);
 }

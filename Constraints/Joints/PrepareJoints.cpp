@@ -186,11 +186,15 @@ void FindFar(JointBatch<N>& batch, const JointErrors<Wide<N>>& errors, const Joi
     batch.isFar = Select(isFar, Real(1.0f), Real(0.0f));
     batch.pullLinear = batch.pullAngular = Zero<Real>();
     batch.pulledA = batch.pulledB = {};
+    // Limits are pulled. What drives or holds along a line waits: at the end of a lever as long as the gap it would whirl the bodies about.
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         JointRows<N>& row = batch.rows[i];
-        const auto isPulled = isFar & (row.mostPush < Real(JointRow::kUnlimited));
-        row.pushRate = Select(isPulled, Real(0.0f), row.pushRate);
+        const Real unlimited(JointRow::kUnlimited);
+        const auto waits = isFar & (row.mostPush >= unlimited) & (Dot<Real>(row.b.linear, row.b.linear) > Real(0.0f));
+        row.pushRate = Select(isFar & (row.mostPush < unlimited), Real(0.0f), row.pushRate);
+        for (Real* x : {&row.impulse, &row.lowest, &row.highest}) *x = Select(waits, Real(0.0f), *x);
     }
+    if (batch.rowCount > 0) SetUpRows<kLinear, kAngular>(batch);
 }
 
 }  // namespace

@@ -135,6 +135,31 @@ template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
     }
 }
 
+// Locks of joints that are far apart, before their rows. With levers as long as the gap a row would take what the locks are still to stop
+// for its own motion, and what it does of that, which leaves the locks alone, would add energy.
+template <LinearLock kLinear, AngularLock kAngular, int N>
+[[gnu::noinline]] void HoldFar(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
+    using Real = Wide<N>;
+    if constexpr (kLinear == LinearLock::None && kAngular == AngularLock::None) return;
+    const LockImpulses<Real> miss = LockMotion<kLinear, kAngular>(batch, a, b);
+    const LockImpulses<Real> x = SolveBlock<kLinear, kAngular>(batch, miss.linear, miss.angular);
+    const auto apply = [&](auto& part, const Vec3<Real>& impulse) {
+        auto total = part.GetTotalLambda();
+        auto delta = total;
+        Real size(0.0f);
+        for (int k = 0; k < total.size(); ++k) {
+            delta[k] = -impulse[k];
+            size += Abs(delta[k]);
+        }
+        const auto applied = (size > Real(0.0f)) & (batch.isFar > Real(0.5f));  // NaN is nothing
+        part.AddImpulse(a, b, batch.massA, batch.massB, delta, applied);
+        for (int k = 0; k < total.size(); ++k) total[k] = Select(applied, Real(total[k] + delta[k]), Real(total[k]));
+        part.SetTotalLambda(total);
+    };
+    if constexpr (kAngular != AngularLock::None) apply(AngularPart<kAngular>(batch), x.angular);
+    if constexpr (kLinear != LinearLock::None) apply(LinearPart<kLinear>(batch), x.linear);
+}
+
 // The pull of joints that are far apart. Bodies turn by so much in a substep there, with such long levers, that relaxing, which acts
 // along the rows as they then are, would leave part of a push in the velocities, and the next push would add to it. So a pull's
 // velocities are counted apart, and taken back as they were given. They need not keep momentum, then: what is to move is moved
@@ -306,7 +331,10 @@ template <int N>
 void SolveJointVelocities(JointBatch<N>& batch, BodyState* states, const JointSolveSettings& settings) {
     ChangeLocked<N>(batch, states, [&](auto linear, auto angular, auto& a, auto& b) __attribute__((always_inline)) {
         if (settings.continues) Turn<linear, angular>(batch, a, b);
-        if (batch.far) TakePullBack(batch, a, b);
+        if (batch.far) {
+            TakePullBack(batch, a, b);
+            HoldFar<linear, angular>(batch, a, b);
+        }
         SolveAll<false, linear, angular>(batch, a, b);
         if (!batch.far) return;
         Pull<linear, angular>(batch, settings);
@@ -319,6 +347,7 @@ void RelaxJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSo
     ChangeLocked<N>(batch, bodies.states, [&](auto linear, auto angular, auto& a, auto& b) __attribute__((always_inline)) {
         if (batch.far) TakePullBack(batch, a, b);
         const JointErrors<Wide<N>> errors = Follow<linear, angular>(batch, bodies, a, b, settings);
+        if (batch.far) HoldFar<linear, angular>(batch, a, b);
         SolveAll<true, linear, angular>(batch, a, b);
         Soften<linear, angular>(batch, errors, settings);
     });
