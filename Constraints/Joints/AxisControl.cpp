@@ -40,6 +40,9 @@ void AddMotorRow(const AxisControl& control, const JointRow& motion, double posi
         const double target = control.limited
                                   ? std::clamp(motor.targetPosition, control.limits.min, control.limits.max)
                                   : motor.targetPosition;
+        // Beyond a stop its spring pulls no more than at it.
+        if (control.limited && IsHard(control.limits.spring))
+            position = std::clamp(position, static_cast<double>(control.limits.min - kLimitSlop), static_cast<double>(control.limits.max + kLimitSlop));
         AddLockRow(motor.spring, motion, static_cast<float>(position - target), slot, rows);
         JointRow& row = rows.rows[rows.count - 1];
         row.minForce = motor.minForce;

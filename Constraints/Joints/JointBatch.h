@@ -96,6 +96,13 @@ struct JointBatch {
     Vec3<Real> cross[3];
     Sym3<Real> coupledPoint;             // S^-1
     Sym2<Real> coupledLine;
+
+    // Of the lanes that are far apart (JointKernels.h, Pull): what their locks are pulled by in place of a bias, and the velocities
+    // that this gave the bodies in this substep.
+    bool far;                            // some lane is
+    Real isFar;                          // 1: this one is
+    Vec3<Real> pullLinear, pullAngular;  // m/s, rad/s
+    Twist<Real> pulledA, pulledB;
 };
 
 // Rotation vectors of a step up to this, rad, are put together as rotations, longer ones added.

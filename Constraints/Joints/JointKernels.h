@@ -475,7 +475,16 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     }
 }
 
-// The push that the next velocity iterations give.
+// How fast joints that are far apart are pulled: as fast as any, and from afar so much faster that all are there within some seconds.
+// No harm comes of it, because it is taken back.
+template <class Real>
+[[gnu::always_inline]] inline Real PullSpeed(const Real& error, const JointSolveSettings& settings) {
+    constexpr float kMost = 3.0f, kPerSecond = 0.75f;
+    const Real most = Clamp(Abs(error) * Real(kPerSecond), Real(settings.maxPushSpeed), Real(kMost * settings.maxPushSpeed));
+    return Clamp(Real(error * Real(settings.pushRate)), -most, most);
+}
+
+// The push that the next velocity iterations give; to locks that are far apart none, but a pull.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 [[gnu::always_inline]] inline void Soften(JointBatch<N>& batch, const JointErrors<Wide<N>>& errors, const JointSolveSettings& settings) {
     using Real = Wide<N>;
@@ -486,14 +495,21 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
             bias[k] = Clamp<Real>(error[k] * Real(settings.pushRate), Real(-settings.maxPushSpeed), Real(settings.maxPushSpeed));
         return bias;
     };
-    const auto soften = [&](auto& part, const auto& error) {
-        part.SetBias(push(error));
+    const auto soften = [&](auto& part, const auto& error, Vec3<Real>& pull) {
+        auto bias = push(error);
+        if (batch.far)
+            for (int k = 0; k < bias.size(); ++k) {
+                const auto isFar = batch.isFar > Real(0.5f);
+                pull[k] = Select(isFar, PullSpeed<Real>(error[k], settings), Real(0.0f));
+                bias[k] = Select(isFar, Real(0.0f), bias[k]);
+            }
+        part.SetBias(bias);
         part.SetSoftness(softness);
     };
-    if constexpr (kAngular == AngularLock::All) soften(batch.rotation, errors.rotation);
-    if constexpr (kAngular == AngularLock::Axis) soften(batch.hinge, errors.hinge);
-    if constexpr (kLinear == LinearLock::Point) soften(batch.point, errors.point);
-    if constexpr (kLinear == LinearLock::Line) soften(batch.line, errors.line);
+    if constexpr (kAngular == AngularLock::All) soften(batch.rotation, errors.rotation, batch.pullAngular);
+    if constexpr (kAngular == AngularLock::Axis) soften(batch.hinge, errors.hinge, batch.pullAngular);
+    if constexpr (kLinear == LinearLock::Point) soften(batch.point, errors.point, batch.pullLinear);
+    if constexpr (kLinear == LinearLock::Line) soften(batch.line, errors.line, batch.pullLinear);
 }
 
 // squared: m2 or rad2, by lanes, of which the first `count` are joints with these indices.

@@ -73,15 +73,39 @@ void FillLane(JointRows<N>& rows, int lane, const JointRow& row, float previousI
     rows.impulse.Set(lane, std::isfinite(previousImpulse) ? Clamp(previousImpulse * s.impulseScale, lowest, highest) : 0.0f);
 }
 
-// Springs: after the masses are known. They are not relaxed: their force is what they are for.
+// All but what depends on the mass, of a row that is pushed at the locks' rate.
 template <int N>
-void SoftenLane(JointRows<N>& rows, int lane, const JointRow& row, const JointSolveSettings& s) {
+void SetPush(JointRows<N>& rows, int lane, bool yields, const JointSolveSettings& s) {
+    const float massScale = yields ? s.softness.massScale : 1.0f;
+    rows.massScale.Set(lane, massScale);
+    rows.pushRate.Set(lane, massScale * s.pushRate);
+    rows.softness.Set(lane, yields ? s.softness.impulseScale : 0.0f);
+    rows.mostPush.Set(lane, massScale * s.maxPushSpeed);
+}
+
+// Whether a spring is stretched so far that it would speed bodies up beyond what joints are pulled at.
+template <int N>
+bool IsOverstretched(const JointBatch<N>& batch, const JointRow& row, int lane, const SpringConstants<float>& spring,
+                     const JointSolveSettings& s) {
+    constexpr float kFastest = 1.5f;
+    if ((row.error < 0.0f ? row.maxForce : -row.minForce) < JointRow::kUnlimited) return false;
+    if (row.kind == JointRow::Kind::SpringAtLeast && row.error > 0.0f) return false;
+    const float inverse = LengthSquared(row.a.linear) * batch.massA.mass[lane] + LengthSquared(row.b.linear) * batch.massB.mass[lane];
+    const float squared = spring.squaredFrequency > 0.0f ? spring.squaredFrequency : spring.stiffness * inverse;
+    const float fastest = kFastest * s.maxPushSpeed;
+    return inverse > 0.0f && row.error * row.error * squared > fastest * fastest;
+}
+
+// Springs: after the masses are known. They are not relaxed: their force is what they are for. Overstretched ones are pulled as locks are.
+template <int N>
+void SoftenLane(const JointBatch<N>& batch, JointRows<N>& rows, int lane, const JointRow& row, const JointSolveSettings& s) {
     using Kind = JointRow::Kind;
     if (rows.slot[lane] == 0xFF || (row.kind != Kind::Spring && row.kind != Kind::SpringAtLeast)) return;
     const float mass = rows.mass[lane];
     SpringConstants<float> constants = ToConstants(row.spring);
     // As stiff as a spring can be that a substep resolves.
     if (!(constants.squaredFrequency > 0.0f || constants.stiffness > 0.0f)) constants = FrequencyConstants(0.25f * s.inverseDt, 1.0f);
+    if (IsOverstretched(batch, row, lane, constants, s)) return SetPush(rows, lane, true, s);
     const auto gains = detail::CalculateSpringGains<float>(s.substepDt, mass > 0.0f ? 1.0f / mass : 0.0f, constants);
     rows.massScale.Set(lane, gains.massScale);
     rows.softness.Set(lane, gains.softness);
@@ -139,7 +163,40 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
     }
     SetUpRows<kLinear, kAngular>(batch);
     for (int lane = 0; lane < batch.count; ++lane)
-        for (uint32_t i = 0; i < lists[lane].count; ++i) SoftenLane(batch.rows[i], lane, lists[lane].rows[i], settings);
+        for (uint32_t i = 0; i < lists[lane].count; ++i) SoftenLane(batch, batch.rows[i], lane, lists[lane].rows[i], settings);
+}
+
+// Which joints are so far apart that their push is at its fastest.
+template <LinearLock kLinear, AngularLock kAngular, int N>
+void FindFar(JointBatch<N>& batch, const JointErrors<Wide<N>>& errors, const JointSolveSettings& settings) {
+    using Real = Wide<N>;
+    Real push(0.0f);
+    const auto note = [&](const auto& error) {
+        for (int k = 0; k < error.size(); ++k) push = Max(push, Abs(error[k]) * Real(settings.pushRate));
+    };
+    if constexpr (kAngular == AngularLock::All) note(errors.rotation);
+    if constexpr (kAngular == AngularLock::Axis) note(errors.hinge);
+    if constexpr (kLinear == LinearLock::Point) note(errors.point);
+    if constexpr (kLinear == LinearLock::Line) note(errors.line);
+    auto isFar = push > Real(settings.maxPushSpeed);
+    for (uint32_t i = 0; i < batch.rowCount; ++i) {
+        const JointRows<N>& row = batch.rows[i];
+        isFar = isFar | ((row.error <= row.openAbove) & (Abs(row.error) * row.pushRate > row.mostPush));
+    }
+    batch.far = isFar.Any();
+    if (!batch.far) return;
+    batch.isFar = Select(isFar, Real(1.0f), Real(0.0f));
+    batch.pullLinear = batch.pullAngular = Zero<Real>();
+    batch.pulledA = batch.pulledB = {};
+    // Limits are pulled. What drives or holds along a line waits: at the end of a lever as long as the gap it would whirl the bodies about.
+    for (uint32_t i = 0; i < batch.rowCount; ++i) {
+        JointRows<N>& row = batch.rows[i];
+        const Real unlimited(JointRow::kUnlimited);
+        const auto waits = isFar & (row.mostPush >= unlimited) & (Dot<Real>(row.b.linear, row.b.linear) > Real(0.0f));
+        row.pushRate = Select(isFar & (row.mostPush < unlimited), Real(0.0f), row.pushRate);
+        for (Real* x : {&row.impulse, &row.lowest, &row.highest}) *x = Select(waits, Real(0.0f), *x);
+    }
+    if (batch.rowCount > 0) SetUpRows<kLinear, kAngular>(batch);
 }
 
 }  // namespace
@@ -206,8 +263,9 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
                         findings.angularJoint);
         }
         SetUpCoupling<linear, angular>(batch);
-        Soften<linear, angular>(batch, errors, settings);
         FillRows<linear, angular>(batch, records, types, bodies, settings);
+        FindFar<linear, angular>(batch, errors, settings);
+        Soften<linear, angular>(batch, errors, settings);
     });
 }
 

@@ -135,6 +135,102 @@ template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
     }
 }
 
+// Locks of joints that are far apart, before their rows. With levers as long as the gap a row would take what the locks are still to stop
+// for its own motion, and what it does of that, which leaves the locks alone, would add energy.
+template <LinearLock kLinear, AngularLock kAngular, int N>
+[[gnu::noinline]] void HoldFar(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
+    using Real = Wide<N>;
+    if constexpr (kLinear == LinearLock::None && kAngular == AngularLock::None) return;
+    const LockImpulses<Real> miss = LockMotion<kLinear, kAngular>(batch, a, b);
+    const LockImpulses<Real> x = SolveBlock<kLinear, kAngular>(batch, miss.linear, miss.angular);
+    const auto apply = [&](auto& part, const Vec3<Real>& impulse) {
+        auto total = part.GetTotalLambda();
+        auto delta = total;
+        Real size(0.0f);
+        for (int k = 0; k < total.size(); ++k) {
+            delta[k] = -impulse[k];
+            size += Abs(delta[k]);
+        }
+        const auto applied = (size > Real(0.0f)) & (batch.isFar > Real(0.5f));  // NaN is nothing
+        part.AddImpulse(a, b, batch.massA, batch.massB, delta, applied);
+        for (int k = 0; k < total.size(); ++k) total[k] = Select(applied, Real(total[k] + delta[k]), Real(total[k]));
+        part.SetTotalLambda(total);
+    };
+    if constexpr (kAngular != AngularLock::None) apply(AngularPart<kAngular>(batch), x.angular);
+    if constexpr (kLinear != LinearLock::None) apply(LinearPart<kLinear>(batch), x.linear);
+}
+
+// The pull of joints that are far apart. Bodies turn by so much in a substep there, with such long levers, that relaxing, which acts
+// along the rows as they then are, would leave part of a push in the velocities, and the next push would add to it. So a pull's
+// velocities are counted apart, and taken back as they were given. They need not keep momentum, then: what is to move is moved
+// without turning it, and what is to turn is turned about its centre, and no lever makes a small mass of a large one.
+template <LinearLock kLinear, AngularLock kAngular, int N>
+[[gnu::noinline]] void Pull(JointBatch<N>& batch, const JointSolveSettings& settings) {
+    using Real = Wide<N>;
+    const Real zero(0.0f), one(1.0f), &massA = batch.massA.mass, &massB = batch.massB.mass;
+    Twist<Real>&a = batch.pulledA, &b = batch.pulledB;
+    a = b = {};
+    const auto isFar = batch.isFar > Real(0.5f);
+    for (uint32_t i = 0; i < batch.rowCount; ++i) {
+        const JointRows<N>& row = batch.rows[i];
+        const Real linear = Dot<Real>(row.a.linear, row.a.linear) * massA + Dot<Real>(row.b.linear, row.b.linear) * massB;
+        const auto moves = linear > zero;
+        const Vec3<Real> turnA = batch.massA.inertia * row.a.angular, turnB = batch.massB.inertia * row.b.angular;
+        const Real angular = Dot<Real>(row.a.angular, turnA) + Dot<Real>(row.b.angular, turnB);
+        const Real response = Select(moves, linear, angular);
+        const auto acts = isFar & (row.mass > zero) & (response > zero) & (row.error <= row.openAbove) & (row.mostPush < Real(JointRow::kUnlimited));
+        const Real speed = Select(moves, Real(Dot<Real>(row.b.linear, b.linear) - Dot<Real>(row.a.linear, a.linear)),
+                                  Real(Dot<Real>(row.b.angular, b.angular) - Dot<Real>(row.a.angular, a.angular)));
+        const Real push = PullSpeed<Real>(row.error, settings) * (row.mostPush * Real(1.0f / settings.maxPushSpeed));
+        const Real wanted = -(speed * row.massScale + push) / Select(acts, response, one);
+        const Real impulse = Select(acts, Clamp(wanted, row.lowest, row.highest), zero);
+        const Real moving = Select(moves, impulse, zero), turning = Select(moves, zero, impulse);
+        a.linear -= row.a.linear * (massA * moving);
+        b.linear += row.b.linear * (massB * moving);
+        a.angular -= turnA * turning;
+        b.angular += turnB * turning;
+    }
+    const Real scale = batch.isFar * Real(settings.softness.massScale);
+    if constexpr (kAngular != AngularLock::None) {
+        auto& part = AngularPart<kAngular>(batch);
+        auto miss = part.RelativeMotion(a, b);
+        for (int k = 0; k < miss.size(); ++k) miss[k] = -(miss[k] + batch.pullAngular[k]) * scale;
+        part.AddImpulse(a, b, batch.massA, batch.massB, part.GetEffectiveMass() * miss, isFar);
+    }
+    if constexpr (kLinear != LinearLock::None) {
+        Vec3<Real> miss = b.linear - a.linear;
+        if constexpr (kLinear == LinearLock::Line) {
+            const auto& frame = batch.line.GetFrame();
+            miss = frame.axis1 * (Dot<Real>(frame.axis1, miss) + batch.pullLinear[0]) + frame.axis2 * (Dot<Real>(frame.axis2, miss) + batch.pullLinear[1]);
+        } else {
+            miss += batch.pullLinear;
+        }
+        const Real sum = massA + massB;
+        const Vec3<Real> impulse = miss * (-scale / Select(sum > zero, sum, one));
+        a.linear -= impulse * massA;
+        b.linear += impulse * massB;
+    }
+}
+
+// Adds the velocities of the last pull, times `sign`. Lanes without one keep every bit.
+template <int N>
+[[gnu::always_inline]] inline void AddPull(const JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, float sign) {
+    using Real = Wide<N>;
+    const auto isFar = batch.isFar > Real(0.5f);
+    const auto add = [&](Vec3<Real>& to, const Vec3<Real>& pulled) { to -= ZeroUnless<Real>(isFar, Vec3<Real>(pulled * Real(-sign))); };
+    add(a.linear, batch.pulledA.linear);
+    add(a.angular, batch.pulledA.angular);
+    add(b.linear, batch.pulledB.linear);
+    add(b.angular, batch.pulledB.angular);
+}
+
+// Takes it out of the bodies' velocities.
+template <int N>
+[[gnu::noinline]] void TakePullBack(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
+    AddPull(batch, a, b, -1.0f);
+    batch.pulledA = batch.pulledB = {};
+}
+
 template <LinearLock kLinear, AngularLock kAngular, int N>
 [[gnu::always_inline]] inline JointPlace<Wide<N>> Displace(const JointBatch<N>& batch, const Twist<Wide<N>>& a, const Twist<Wide<N>>& b) {
     using Real = Wide<N>;
@@ -235,14 +331,23 @@ template <int N>
 void SolveJointVelocities(JointBatch<N>& batch, BodyState* states, const JointSolveSettings& settings) {
     ChangeLocked<N>(batch, states, [&](auto linear, auto angular, auto& a, auto& b) __attribute__((always_inline)) {
         if (settings.continues) Turn<linear, angular>(batch, a, b);
+        if (batch.far) {
+            TakePullBack(batch, a, b);
+            HoldFar<linear, angular>(batch, a, b);
+        }
         SolveAll<false, linear, angular>(batch, a, b);
+        if (!batch.far) return;
+        Pull<linear, angular>(batch, settings);
+        AddPull(batch, a, b, 1.0f);
     });
 }
 
 template <int N>
 void RelaxJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
     ChangeLocked<N>(batch, bodies.states, [&](auto linear, auto angular, auto& a, auto& b) __attribute__((always_inline)) {
+        if (batch.far) TakePullBack(batch, a, b);
         const JointErrors<Wide<N>> errors = Follow<linear, angular>(batch, bodies, a, b, settings);
+        if (batch.far) HoldFar<linear, angular>(batch, a, b);
         SolveAll<true, linear, angular>(batch, a, b);
         Soften<linear, angular>(batch, errors, settings);
     });
@@ -250,6 +355,7 @@ void RelaxJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSo
 
 template <int N>
 void UpdateJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
+    if (batch.far) ChangeVelocities<N>(batch, bodies.states, [&](auto& a, auto& b) { TakePullBack(batch, a, b); });
     WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
         Motion<N> motionA, motionB;
         motionA.template Gather<Of::Velocity>(batch.bodyA, bodies.states);
