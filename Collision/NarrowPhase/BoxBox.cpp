@@ -2,9 +2,7 @@
 // face, or of two edges where those separate clearly better.
 // Source of the axes: S. Gottschalk, M. Lin, D. Manocha, OBBTree, SIGGRAPH 1996.
 #include <Fulcrum/Collision/NarrowPhase/BoxFaceContact.h>
-#include <Fulcrum/Collision/NarrowPhase/Features.h>
 #include <Fulcrum/Collision/NarrowPhase/PairFunctions.h>
-#include <Fulcrum/Collision/NarrowPhase/Segments.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
 
 namespace fulcrum {
@@ -12,10 +10,6 @@ namespace fulcrum {
 namespace {
 
 using Four = Wide<4>;
-
-// A face that is this near to the direction of an edge contact all but lies on the edge: 4 degrees, more than a body turns in a step
-// while it rocks.
-constexpr float kRestingCosine = 0.9976f;
 
 Four Lanes(float a, float b, float c) { return Four::Of(Four::Float{a, b, c, a}); }
 Four Lanes(const Vector3& v) { return Lanes(v.x(), v.y(), v.z()); }
@@ -114,77 +108,6 @@ Vector3 EdgeAxis(const BoxPair& pair, int axisA, int axisB) {
     return Dot(n, pair.position) < 0.0f ? Vector3(-n) : n;
 }
 
-// The edge of a box along one of its axes that lies farthest along a direction, and the name of it.
-Segment FarthestEdge(const Vector3& half, int axis, const Vector3& direction, uint32_t& name) {
-    Vector3 from = half;
-    uint32_t vertex = 0;
-    for (int i = 0; i < 3; ++i) {
-        if (i == axis || direction[i] < 0.0f) from[i] = -half[i];
-        else vertex |= 1u << i;
-    }
-    Vector3 to = from;
-    to[axis] = half[axis];
-    name = EdgeName(vertex, vertex | 1u << axis);
-    return {from, to};
-}
-
-// Of the face that turns towards a direction within a few degrees, the edge along `axis` on the other side than the farthest one.
-bool OtherEdge(const Vector3& half, int axis, const Vector3& direction, Segment& edge, uint32_t& name) {
-    int face = (axis + 1) % 3, across = (axis + 2) % 3;
-    if (Abs(direction[across]) > Abs(direction[face])) std::swap(face, across);
-    if (Abs(direction[face]) < kRestingCosine) return false;
-    Vector3 mirrored = direction;
-    mirrored[across] = -direction[across];
-    edge = FarthestEdge(half, axis, mirrored, name);
-    return true;
-}
-
-class EdgeContactBuilder {
-public:
-    EdgeContactBuilder(const BoxPair& pair, const BestEdges& edges, const ContactTolerances& tolerances, Manifold& manifold)
-        : pair_(pair), edges_(edges), tolerances_(tolerances), manifold_(manifold), normal_(EdgeAxis(pair, edges.axisA, edges.axisB)) {}
-
-    // The contact of two crossing edges. False where the points that come closest are ends: no edge axis then. A face that all but
-    // lies on the other's edge is held by two of its edges: by one alone it would rock from one to the other.
-    bool Build() {
-        const Vector3 normalInB = -pair_.rotation.TransposeMultiply(normal_);
-        Segment ofA[2], ofB[2];
-        uint32_t namesA[2], namesB[2];
-        ofA[0] = FarthestEdge(pair_.halfA, edges_.axisA, normal_, namesA[0]);
-        ofB[0] = FarthestEdge(pair_.halfB, edges_.axisB, normalInB, namesB[0]);
-        const int countA = OtherEdge(pair_.halfA, edges_.axisA, normal_, ofA[1], namesA[1]) ? 2 : 1;
-        const int countB = OtherEdge(pair_.halfB, edges_.axisB, normalInB, ofB[1], namesB[1]) ? 2 : 1;
-        manifold_.normal = normal_;
-        manifold_.pointCount = 0;
-        for (int a = 0; a < countA; ++a)
-            for (int b = 0; b < countB; ++b) {
-                const float lowerA = Dot(normal_, Vector3(ofA[0].from - ofA[a].from)), lowerB = Dot(normalInB, Vector3(ofB[0].from - ofB[b].from));
-                const bool found = AddCrossing(ofA[a], ofB[b], edges_.separation + (lowerA + lowerB), CrossingFeature(namesA[a], namesB[b]));
-                if (a == 0 && b == 0 && !found) return false;
-            }
-        return true;
-    }
-
-private:
-    // Where the two edges come closest, if that is within both.
-    bool AddCrossing(const Segment& onA, const Segment& inB, float separation, uint32_t feature) {
-        if (separation > tolerances_.reach) return false;
-        const Segment onB{pair_.rotation * inB.from + pair_.position, pair_.rotation * inB.to + pair_.position};
-        const ClosestParameters closest = ClosestOnSegments(onA, onB);
-        const Vector3 x = onA.At(closest.s);
-        const Vector3 between = onB.At(closest.t) - x;
-        if (LengthSquared(Vector3(between - normal_ * separation)) > tolerances_.prefer * tolerances_.prefer) return false;
-        manifold_.points[manifold_.pointCount++] = {x + normal_ * pair_.radiusA, separation - (pair_.radiusA + pair_.radiusB), feature};
-        return true;
-    }
-
-    const BoxPair& pair_;
-    const BestEdges& edges_;
-    const ContactTolerances& tolerances_;
-    Manifold& manifold_;
-    Vector3 normal_;
-};
-
 // One test of the axis that separated the boxes in the last step.
 bool StillApart(const BoxPair& pair, const PairCache& cache, float reach) {
     switch (cache.kind) {
@@ -221,7 +144,7 @@ void CollideBoxBox(const PairQuery& query, Manifold& manifold) {
     const BestEdges edges = FindBestEdges(pair);
     if (edges.separation > tolerances.reach) return Remember(cache, PairCache::Kind::EdgePair, edges.axisA, edges.axisB);
     if (edges.separation > face.separation + tolerances.prefer) {
-        if (EdgeContactBuilder(pair, edges, tolerances, manifold).Build())
+        if (BuildBoxAxisContact(pair, EdgeAxis(pair, edges.axisA, edges.axisB), edges.separation, tolerances, manifold))
             return Remember(cache, PairCache::Kind::EdgePair, edges.axisA, edges.axisB);
     } else if (BuildBoxFaceContact(pair, face.ofA, faceIndex, face.separation, tolerances, manifold)) {
         return rememberFace();
