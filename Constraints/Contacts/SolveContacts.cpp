@@ -1,10 +1,12 @@
 #include <Fulcrum/Constraints/Contacts/ContactKernels.h>
+#include <cstdlib>
 
 namespace fulcrum {
 
 namespace {
 
 using namespace contacts;
+float gK = getenv("KK") ? (float)atof(getenv("KK")) : 1.0f, gS = getenv("SS") ? (float)atof(getenv("SS")) : 1.0f, gM = getenv("MM") ? (float)atof(getenv("MM")) : 0.125f;
 
 // The friction rows: impulses first clamped to the cone's cross-section (as a vector, so that no heading is preferred),
 // then the torque. The limit is that of the last relaxed normal impulses, where they were larger: those of the soft rows since
@@ -76,10 +78,16 @@ template <bool kRelax, bool kSurface, int N, bool kFixedB>
     // are pushed apart, softly.
     const Real inverseDt(settings.inverseDt), pushRate(settings.pushRate), fastest(-settings.maxPushSpeed);
     Real speed[ContactRecord::kMaxPoints];
+    [[maybe_unused]] Real stiffer[ContactRecord::kMaxPoints];
     for (int i = 0; i < batch.pointCount; ++i) {
         const auto& row = batch.rows[i];
         speed[i] = vn + row.b * w1 - row.a * w2 + Max(row.separation, zero) * inverseDt;
-        if constexpr (!kRelax) speed[i] += Clamp((row.separation + Real(settings.slop)) * pushRate, fastest, zero);
+        if constexpr (!kRelax) {
+            const Real wanted = (row.separation + Real(settings.slop)) * pushRate;
+            const Real push = Clamp(wanted, fastest + Min(speed[i], zero) * Real(gK), zero);
+            speed[i] += push;
+            stiffer[i] = Clamp((push - wanted) * Real(settings.stiffening), zero, Real(settings.mostStiffer));
+        }
     }
     Real sum = zero, sumA = zero, sumB = zero, relaxed = zero;
     for (int i = 0; i < batch.pointCount; ++i) {
@@ -89,8 +97,8 @@ template <bool kRelax, bool kSurface, int N, bool kFixedB>
             wanted = row.impulse - row.inverseResponse * speed[i];
         } else {
             const auto overlaps = row.separation < zero;
-            wanted = Select(overlaps, row.impulse * Real(1.0f - settings.impulseScale), row.impulse) -
-                     row.inverseResponse * Select(overlaps, speed[i] * Real(settings.massScale), speed[i]);
+            wanted = Select(overlaps, row.impulse * (Real(1.0f - settings.impulseScale) + stiffer[i]), row.impulse) -
+                     row.inverseResponse * Select(overlaps, speed[i] * (Real(settings.massScale) + stiffer[i]), speed[i]);
         }
         const Real total = Max(wanted, zero);
         const Real change = total - row.impulse;
@@ -133,6 +141,9 @@ void ContactSolveSettings::Soften(float frequency, float dampingRatio, float h) 
     pushRate = w / (2.0f * dampingRatio + h * w);
     massScale = a / (1.0f + a);
     impulseScale = 1.0f / (1.0f + a);
+    constexpr float kSoftest = 0.125f;  // what is left of the softness at the most
+    (void)kSoftest; mostStiffer = (1 - gM) * impulseScale;
+    stiffening = gS * impulseScale / maxPushSpeed;
 }
 
 template <int N, bool kFixedB>
