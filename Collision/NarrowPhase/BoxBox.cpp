@@ -159,6 +159,27 @@ void HoldBothEnds(const BoxPair& pair, const ContactTolerances& tolerances, Mani
     for (int i = 0; i < count; ++i) manifold.points[i] = found[i];
 }
 
+// Where a corner outside of the other's face, or the end of an edge, comes closest, the faces may follow close behind: adds points of
+// them, those farthest from what is there.
+void AddFacesAround(const BoxPair& pair, const ContactTolerances& tolerances, Manifold& manifold) {
+    Manifold around;
+    if (!BuildBoxAxisContact(pair, manifold.normal, std::numeric_limits<float>::infinity(), tolerances, around)) return;
+    while (manifold.pointCount < Manifold::kMaxPoints) {
+        const ManifoldPoint* next = nullptr;
+        float farthest = tolerances.prefer * tolerances.prefer;
+        for (int i = 0; i < around.pointCount; ++i) {
+            float distance = std::numeric_limits<float>::infinity();
+            for (int k = 0; k < manifold.pointCount; ++k)
+                distance = Min(distance, LengthSquared(Vector3(around.points[i].positionOnA - manifold.points[k].positionOnA)));
+            if (distance <= farthest) continue;
+            farthest = distance;
+            next = &around.points[i];
+        }
+        if (!next) return;
+        manifold.points[manifold.pointCount++] = *next;
+    }
+}
+
 // One test of the axis that separated the boxes in the last step.
 bool StillApart(const BoxPair& pair, const PairCache& cache, float reach) {
     switch (cache.kind) {
@@ -205,6 +226,7 @@ void CollideBoxBox(const PairQuery& query, Manifold& manifold) {
     CollidePolyhedra(query, manifold);
     cache = {};
     if (manifold.pointCount == 1) HoldBothEnds(pair, tolerances, manifold);
+    if (manifold.pointCount > 0) AddFacesAround(pair, tolerances, manifold);
 }
 
 }  // namespace fulcrum

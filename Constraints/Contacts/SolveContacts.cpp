@@ -1,12 +1,10 @@
 #include <Fulcrum/Constraints/Contacts/ContactKernels.h>
-#include <cstdlib>
 
 namespace fulcrum {
 
 namespace {
 
 using namespace contacts;
-float gK = getenv("KK") ? (float)atof(getenv("KK")) : 1.0f, gS = getenv("SS") ? (float)atof(getenv("SS")) : 1.0f, gM = getenv("MM") ? (float)atof(getenv("MM")) : 0.125f;
 
 // The friction rows: impulses first clamped to the cone's cross-section (as a vector, so that no heading is preferred),
 // then the torque. The limit is that of the last relaxed normal impulses, where they were larger: those of the soft rows since
@@ -83,8 +81,7 @@ template <bool kRelax, bool kSurface, int N, bool kFixedB>
         const auto& row = batch.rows[i];
         speed[i] = vn + row.b * w1 - row.a * w2 + Max(row.separation, zero) * inverseDt;
         if constexpr (!kRelax) {
-            const Real wanted = (row.separation + Real(settings.slop)) * pushRate;
-            const Real push = Clamp(wanted, fastest + Min(speed[i], zero) * Real(gK), zero);
+            const Real wanted = (row.separation + Real(settings.slop)) * pushRate, push = Clamp(wanted, fastest, zero);
             speed[i] += push;
             stiffer[i] = Clamp((push - wanted) * Real(settings.stiffening), zero, Real(settings.mostStiffer));
         }
@@ -141,9 +138,10 @@ void ContactSolveSettings::Soften(float frequency, float dampingRatio, float h) 
     pushRate = w / (2.0f * dampingRatio + h * w);
     massScale = a / (1.0f + a);
     impulseScale = 1.0f / (1.0f + a);
-    constexpr float kSoftest = 0.125f;  // what is left of the softness at the most
-    (void)kSoftest; mostStiffer = (1 - gM) * impulseScale;
-    stiffening = gS * impulseScale / maxPushSpeed;
+    constexpr float kSoftest = 1.0f / 32;  // what is always left of the softness: it bounds the load of what can never come apart
+    constexpr float kFullyStiff = 0.25f;   // of the largest speed, that the push falls short by
+    mostStiffer = (1 - kSoftest) * impulseScale;
+    stiffening = impulseScale / (kFullyStiff * maxPushSpeed);
 }
 
 template <int N, bool kFixedB>

@@ -7,7 +7,6 @@
 #include <algorithm>
 
 namespace fulcrum {
-bool ProbeMayCollide(const PhysicsSystem&, BodyId, BodyId);
 namespace {
 
 constexpr double kStartsOverlapped = 0.01;  // of the inner radius
@@ -82,27 +81,44 @@ private:
 
 PenetrationMeter::PenetrationMeter(const SceneWorld& world) : world_(world) { FindAll(true); }
 
-void PenetrationMeter::Measure() { FindAll(false); }
+bool PenetrationMeter::Measure() {
+    const double before = worst_.relative;
+    FindAll(false);
+    return worst_.relative > before;
+}
+
+const PenetrationMeter::Placed& PenetrationMeter::Place(BodyId id) {
+    if (bodies_.size() <= id.index) bodies_.resize(id.index + 1);
+    Placed& body = bodies_[id.index];
+    if (body.seenIn == round_) return body;
+    const BodyInterface& bodies = world_.Bodies();
+    body = {round_, id, bodies.GetShape(id), {bodies.GetCentreOfMass(id), bodies.GetPose(id).rotation}};
+    return body;
+}
+
+bool PenetrationMeter::IsMobile(BodyId id, bool first) const {
+    const BodyInterface& bodies = world_.Bodies();
+    return bodies.GetMotionType(id) == MotionType::Dynamic && (first || bodies.IsAwake(id)) && !bodies.IsSensor(id);
+}
 
 void PenetrationMeter::FindAll(bool first) {
-    const BodyInterface& bodies = world_.Bodies();
-    bodies_.clear();
+    ++round_;
+    mobile_.clear();
     world_.System().VisitBodies([&](BodyId id) {
-        if (bodies_.size() <= id.index) bodies_.resize(id.index + 1);
-        const bool mobile = bodies.GetMotionType(id) == MotionType::Dynamic && (first || bodies.IsAwake(id)) && !bodies.IsSensor(id);
-        bodies_[id.index] = {id, bodies.GetShape(id), {bodies.GetCentreOfMass(id), bodies.GetPose(id).rotation}, mobile};
+        if (!IsMobile(id, first)) return;
+        mobile_.push_back(id);
+        Place(id);
     });
     const auto hold = world_.Queries().Hold();
-    for (const Placed& a : bodies_) {
-        if (!a.mobile) continue;
+    for (const BodyId id : mobile_) {
+        const Placed a = Place(id);
         const Bounds box = BoundsAbout(a.centre.position, *a.shape, a.centre);
         world_.Queries().FindInBox(a.centre.position + box.lower.cast<double>(), a.centre.position + box.upper.cast<double>(), near_);
         BodyId last{};
         for (const OverlapHit& hit : near_) {
-            const Placed& b = bodies_[hit.body.index];
-            if (hit.body == last || hit.body == a.id || (b.mobile && b.id < a.id)) continue;
+            if (hit.body == last || hit.body == id || (hit.body < id && IsMobile(hit.body, first))) continue;
             last = hit.body;
-            MeasurePair(a, b, first);
+            MeasurePair(a, Place(hit.body), first);
         }
     }
 }
@@ -116,7 +132,7 @@ void PenetrationMeter::MeasurePair(const Placed& a, const Placed& b, bool first)
         if (search.Relative() <= 0) overlapped_.erase(overlapped);
         return;
     }
-    if (search.Depth() <= 0 || !ProbeMayCollide(world_.System(), a.id, b.id)) return;
+    if (search.Depth() <= 0 || !world_.Queries().MayCollide(a.id, b.id)) return;
     if (first && search.Relative() > kStartsOverlapped) overlapped_.insert({a.id, b.id});
     else if (search.Relative() > worst_.relative) worst_ = {search.Relative(), search.Depth(), a.id, b.id, world_.StepCount()};
 }

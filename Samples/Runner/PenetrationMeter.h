@@ -25,25 +25,29 @@ public:
     // What overlaps before the first step by more than kStartsOverlapped counts from when it has come apart.
     explicit PenetrationMeter(const SceneWorld& world);
 
-    // Looks at the bodies where they are now.
-    void Measure();
+    // Looks at the bodies where they are now. Returns whether that is the worst so far.
+    bool Measure();
 
     // The largest of all that was measured, relative to the bodies' size.
     const Penetration& Worst() const { return worst_; }
 
 private:
     struct Placed {
+        uint32_t seenIn = 0;  // round of measuring
         BodyId id;
         ShapePtr shape;
-        Pose centre;  // of the shape's centre frame
-        bool mobile;  // dynamic and awake
+        Pose centre;          // of the shape's centre frame
     };
     using Pair = std::pair<BodyId, BodyId>;
 
+    const Placed& Place(BodyId id);
+    bool IsMobile(BodyId id, bool first) const;
     void FindAll(bool first);
     void MeasurePair(const Placed& a, const Placed& b, bool first);
 
     const SceneWorld& world_;
+    uint32_t round_ = 0;
+    std::vector<BodyId> mobile_;      // dynamic and awake
     std::vector<Placed> bodies_;      // by index
     std::vector<OverlapHit> near_;
     std::set<Pair> overlapped_;       // since the start
