@@ -81,7 +81,9 @@ template <bool kRelax, bool kSurface, int N, bool kFixedB>
         const auto& row = batch.rows[i];
         speed[i] = vn + row.b * w1 - row.a * w2 + Max(row.separation, zero) * inverseDt;
         if constexpr (!kRelax) {
-            const Real wanted = (row.separation + Real(settings.slop)) * pushRate, push = Clamp(wanted, fastest, zero);
+            // What approaches in spite of all is pushed faster by as much: in a pile that is hit hard one pass stops no body for good.
+            const Real wanted = (row.separation + Real(settings.slop)) * pushRate;
+            const Real push = Clamp(wanted, fastest + Min(speed[i], zero), zero);
             speed[i] += push;
             stiffer[i] = Clamp((push - wanted) * Real(settings.stiffening), zero, Real(settings.mostStiffer));
         }
@@ -138,10 +140,9 @@ void ContactSolveSettings::Soften(float frequency, float dampingRatio, float h) 
     pushRate = w / (2.0f * dampingRatio + h * w);
     massScale = a / (1.0f + a);
     impulseScale = 1.0f / (1.0f + a);
-    constexpr float kSoftest = 1.0f / 32;  // what is always left of the softness: it bounds the load of what can never come apart
-    constexpr float kFullyStiff = 0.25f;   // of the largest speed, that the push falls short by
+    constexpr float kSoftest = 0.125f;  // what is always left of the softness: it bounds the load of what can never come apart
     mostStiffer = (1 - kSoftest) * impulseScale;
-    stiffening = impulseScale / (kFullyStiff * maxPushSpeed);
+    stiffening = impulseScale / maxPushSpeed;
 }
 
 template <int N, bool kFixedB>
