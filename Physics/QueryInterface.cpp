@@ -3,6 +3,7 @@
 #include <Fulcrum/Collision/Queries/Distance.h>
 #include <Fulcrum/Collision/Queries/Pieces.h>
 #include <Fulcrum/Physics/Queries/RaySearch.h>
+#include <Fulcrum/Physics/Stages/Stages.h>
 
 #include <algorithm>
 #include <tuple>
@@ -273,6 +274,13 @@ void QueryInterface::FindInBox(const Position& lower, const Position& upper, std
     search.Run([&](const BoundsTree& tree, const auto& found) { tree.Query(bounds, found); },
                [&](uint32_t collider) { hits.push_back(search.HitOf(collider)); });
     std::sort(hits.begin(), hits.end());
+}
+
+bool QueryInterface::MayCollide(BodyId a, BodyId b) const {
+    const QueryScope scope(world_);
+    const BodyStore& bodies = world_.bodies;
+    if (!bodies.Find(a) || !bodies.Find(b) || bodies.cold[a.index].isSensor || bodies.cold[b.index].isSensor) return false;
+    return CanCollide(world_, a.index, b.index);
 }
 
 void QueryInterface::FindOnSweep(const Position& lower, const Position& upper, const Vector3& displacement,

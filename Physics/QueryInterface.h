@@ -127,6 +127,10 @@ public:
     void FindOnSweep(const Position& lower, const Position& upper, const Vector3& displacement, std::vector<OverlapHit>& hits,
                      const QueryFilter& filter = {}) const;
 
+    // Whether two bodies collide where they meet: by their kinds of motion, layers, masks, groups and joints. A contact listener is not
+    // asked; sensors, and ids that are not valid, collide with nothing.
+    bool MayCollide(BodyId a, BodyId b) const;
+
     // Batches, over the world's job system: answer i is that of the single query i, the same bits. Results of another length
     // than the queries: only what both have is done. A list of results is given their length and keeps its lists' memory.
     void CastRays(std::span<const Ray> rays, std::span<WorldRayHit> hits, const RayCastSettings& settings = {},

@@ -13,10 +13,6 @@ namespace {
 
 using Four = Wide<4>;
 
-// A face that is this near to the direction of an edge contact all but lies on the edge: 4 degrees, more than a body turns in a step
-// while it rocks.
-constexpr float kRestingCosine = 0.9976f;
-
 Four Lanes(float a, float b, float c) { return Four::Of(Four::Float{a, b, c, a}); }
 Four Lanes(const Vector3& v) { return Lanes(v.x(), v.y(), v.z()); }
 
@@ -128,62 +124,61 @@ Segment FarthestEdge(const Vector3& half, int axis, const Vector3& direction, ui
     return {from, to};
 }
 
-// Of the face that turns towards a direction within a few degrees, the edge along `axis` on the other side than the farthest one.
-bool OtherEdge(const Vector3& half, int axis, const Vector3& direction, Segment& edge, uint32_t& name) {
-    int face = (axis + 1) % 3, across = (axis + 2) % 3;
-    if (Abs(direction[across]) > Abs(direction[face])) std::swap(face, across);
-    if (Abs(direction[face]) < kRestingCosine) return false;
-    Vector3 mirrored = direction;
-    mirrored[across] = -direction[across];
-    edge = FarthestEdge(half, axis, mirrored, name);
-    return true;
+int LeastAlong(const Vector3& direction) {
+    const Vector3 d = direction.cwiseAbs();
+    const int least = d.y() < d.x() ? 1 : 0;
+    return d.z() < d[least] ? 2 : least;
 }
 
-class EdgeContactBuilder {
-public:
-    EdgeContactBuilder(const BoxPair& pair, const BestEdges& edges, const ContactTolerances& tolerances, Manifold& manifold)
-        : pair_(pair), edges_(edges), tolerances_(tolerances), manifold_(manifold), normal_(EdgeAxis(pair, edges.axisA, edges.axisB)) {}
-
-    // The contact of two crossing edges. False where the points that come closest are ends: no edge axis then. A face that all but
-    // lies on the other's edge is held by two of its edges: by one alone it would rock from one to the other.
-    bool Build() {
-        const Vector3 normalInB = -pair_.rotation.TransposeMultiply(normal_);
-        Segment ofA[2], ofB[2];
-        uint32_t namesA[2], namesB[2];
-        ofA[0] = FarthestEdge(pair_.halfA, edges_.axisA, normal_, namesA[0]);
-        ofB[0] = FarthestEdge(pair_.halfB, edges_.axisB, normalInB, namesB[0]);
-        const int countA = OtherEdge(pair_.halfA, edges_.axisA, normal_, ofA[1], namesA[1]) ? 2 : 1;
-        const int countB = OtherEdge(pair_.halfB, edges_.axisB, normalInB, ofB[1], namesB[1]) ? 2 : 1;
-        manifold_.normal = normal_;
-        manifold_.pointCount = 0;
-        for (int a = 0; a < countA; ++a)
-            for (int b = 0; b < countB; ++b) {
-                const float lowerA = Dot(normal_, Vector3(ofA[0].from - ofA[a].from)), lowerB = Dot(normalInB, Vector3(ofB[0].from - ofB[b].from));
-                const bool found = AddCrossing(ofA[a], ofB[b], edges_.separation + (lowerA + lowerB), CrossingFeature(namesA[a], namesB[b]));
-                if (a == 0 && b == 0 && !found) return false;
-            }
-        return true;
+// Where two edges run side by side, more or less, and one end is the closest point, the other end holds them, too: else the first touch
+// turns one edge across the other within the step.
+void HoldBothEnds(const BoxPair& pair, const ContactTolerances& tolerances, Manifold& manifold) {
+    constexpr float kSideBySide = 0.94f;  // cosine: 20 degrees
+    const Vector3 n = manifold.normal, nInB = -pair.rotation.TransposeMultiply(n);
+    const int axisA = LeastAlong(n), axisB = LeastAlong(nInB);
+    if (Abs((&pair.rotation.x)[axisB][axisA]) < kSideBySide) return;
+    uint32_t nameA, nameB;
+    const Segment onA = FarthestEdge(pair.halfA, axisA, n, nameA), inB = FarthestEdge(pair.halfB, axisB, nInB, nameB);
+    const Segment onB{pair.rotation * inB.from + pair.position, pair.rotation * inB.to + pair.position};
+    float ends[2];
+    if (!CommonLength(onA, onB, ends[0], ends[1])) return;
+    const Vector3 alongB = onB.to - onB.from;
+    ManifoldPoint found[2];
+    int count = 0;
+    float least = std::numeric_limits<float>::infinity();
+    for (uint32_t i = 0; i < 2; ++i) {
+        const Vector3 x = onA.At(ends[i]);
+        const Vector3 y = onB.from + alongB * (Dot(alongB, Vector3(x - onB.from)) / Dot(alongB, alongB));
+        const float separation = Dot(n, Vector3(y - x));
+        least = Min(least, separation);
+        if (separation <= tolerances.reach)
+            found[count++] = {x + n * pair.radiusA, separation - (pair.radiusA + pair.radiusB), CrossingFeature(nameA, nameB) + i};
     }
+    if (count < 2 || least > manifold.points[0].separation + (pair.radiusA + pair.radiusB) + tolerances.prefer) return;
+    manifold.pointCount = count;
+    for (int i = 0; i < count; ++i) manifold.points[i] = found[i];
+}
 
-private:
-    // Where the two edges come closest, if that is within both.
-    bool AddCrossing(const Segment& onA, const Segment& inB, float separation, uint32_t feature) {
-        if (separation > tolerances_.reach) return false;
-        const Segment onB{pair_.rotation * inB.from + pair_.position, pair_.rotation * inB.to + pair_.position};
-        const ClosestParameters closest = ClosestOnSegments(onA, onB);
-        const Vector3 x = onA.At(closest.s);
-        const Vector3 between = onB.At(closest.t) - x;
-        if (LengthSquared(Vector3(between - normal_ * separation)) > tolerances_.prefer * tolerances_.prefer) return false;
-        manifold_.points[manifold_.pointCount++] = {x + normal_ * pair_.radiusA, separation - (pair_.radiusA + pair_.radiusB), feature};
-        return true;
+// Where a corner outside of the other's face, or the end of an edge, comes closest, the faces may follow close behind: adds points of
+// them, those farthest from what is there.
+void AddFacesAround(const BoxPair& pair, const ContactTolerances& tolerances, Manifold& manifold) {
+    Manifold around;
+    if (!BuildBoxAxisContact(pair, manifold.normal, std::numeric_limits<float>::infinity(), tolerances, around)) return;
+    while (manifold.pointCount < Manifold::kMaxPoints) {
+        const ManifoldPoint* next = nullptr;
+        float farthest = tolerances.prefer * tolerances.prefer;
+        for (int i = 0; i < around.pointCount; ++i) {
+            float distance = std::numeric_limits<float>::infinity();
+            for (int k = 0; k < manifold.pointCount; ++k)
+                distance = Min(distance, LengthSquared(Vector3(around.points[i].positionOnA - manifold.points[k].positionOnA)));
+            if (distance <= farthest) continue;
+            farthest = distance;
+            next = &around.points[i];
+        }
+        if (!next) return;
+        manifold.points[manifold.pointCount++] = *next;
     }
-
-    const BoxPair& pair_;
-    const BestEdges& edges_;
-    const ContactTolerances& tolerances_;
-    Manifold& manifold_;
-    Vector3 normal_;
-};
+}
 
 // One test of the axis that separated the boxes in the last step.
 bool StillApart(const BoxPair& pair, const PairCache& cache, float reach) {
@@ -221,7 +216,7 @@ void CollideBoxBox(const PairQuery& query, Manifold& manifold) {
     const BestEdges edges = FindBestEdges(pair);
     if (edges.separation > tolerances.reach) return Remember(cache, PairCache::Kind::EdgePair, edges.axisA, edges.axisB);
     if (edges.separation > face.separation + tolerances.prefer) {
-        if (EdgeContactBuilder(pair, edges, tolerances, manifold).Build())
+        if (BuildBoxAxisContact(pair, EdgeAxis(pair, edges.axisA, edges.axisB), edges.separation, tolerances, manifold))
             return Remember(cache, PairCache::Kind::EdgePair, edges.axisA, edges.axisB);
     } else if (BuildBoxFaceContact(pair, face.ofA, faceIndex, face.separation, tolerances, manifold)) {
         return rememberFace();
@@ -230,6 +225,8 @@ void CollideBoxBox(const PairQuery& query, Manifold& manifold) {
     cache = {};
     CollidePolyhedra(query, manifold);
     cache = {};
+    if (manifold.pointCount == 1) HoldBothEnds(pair, tolerances, manifold);
+    if (manifold.pointCount > 0) AddFacesAround(pair, tolerances, manifold);
 }
 
 }  // namespace fulcrum

@@ -138,28 +138,42 @@ void AddCoveredCorners(const Parallelogram& p, float halfU, float halfV, float s
     }
 }
 
-}  // namespace
+// A face of A or B, and the direction in which the other box is seen from it, in the frame of that box.
+struct Reference {
+    bool ofA;
+    int face;
+    Vector3 direction;  // unit
+};
 
-bool BuildBoxFaceContact(const BoxPair& pair, bool ofA, int face, float separation, const ContactTolerances& tolerances,
-                         Manifold& manifold) {
+// Moved along the direction onto the face's plane, the way there in place of the height above it.
+Parallelogram Projected(const Parallelogram& p, const FaceFrame& frame, const Vector3& direction) {
+    const float perHeight = frame.side / direction[frame.normal];
+    const float du = direction[frame.u] * perHeight, dv = direction[frame.v] * perHeight;
+    return {p.u - du * p.w, p.v - dv * p.w, p.w * perHeight, p.u1 - du * p.w1, p.v1 - dv * p.w1, p.w1 * perHeight,
+            p.u2 - du * p.w2, p.v2 - dv * p.w2, p.w2 * perHeight};
+}
+
+bool BuildContact(const BoxPair& pair, const Reference& seen, float separation, const ContactTolerances& tolerances, Manifold& manifold) {
+    const int face = seen.face;
+    const bool ofA = seen.ofA;
     const FaceFrame frame{face / 2, (face / 2 + 1) % 3, (face / 2 + 2) % 3, face % 2 == 0 ? 1.0f : -1.0f};
     const Vector3& half = ofA ? pair.halfA : pair.halfB;
     const Vector3& otherHalf = ofA ? pair.halfB : pair.halfA;
     const Matrix3& axes = ofA ? pair.rotation : pair.transposed;  // the other box's, in this box's frame
     const Vector3 otherCentre = ofA ? pair.position : Vector3(-pair.positionInB);
 
-    // The other box's face that points most nearly against the normal.
-    const float cosines[3] = {axes.x[frame.normal], axes.y[frame.normal], axes.z[frame.normal]};
+    // The other box's face that points most nearly against the direction.
+    const float cosines[3] = {Dot(axes.x, seen.direction), Dot(axes.y, seen.direction), Dot(axes.z, seen.direction)};
     int m = Abs(cosines[1]) > Abs(cosines[0]) ? 1 : 0;
     if (Abs(cosines[2]) > Abs(cosines[m])) m = 2;
     const int m1 = (m + 1) % 3, m2 = (m + 2) % 3;
-    const bool positive = cosines[m] * frame.side < 0.0f;
+    const bool positive = cosines[m] < 0.0f;
     const Vector3* columns = &axes.x;
     const Vector3 middle = otherCentre + columns[m] * (positive ? otherHalf[m] : -otherHalf[m]);
     const Vector3 side1 = columns[m1] * otherHalf[m1], side2 = columns[m2] * otherHalf[m2];
-    const Parallelogram p{middle[frame.u], middle[frame.v], middle[frame.normal] * frame.side - half[frame.normal],
-                          side1[frame.u],  side1[frame.v],  side1[frame.normal] * frame.side,
-                          side2[frame.u],  side2[frame.v],  side2[frame.normal] * frame.side};
+    const Parallelogram p = Projected({middle[frame.u], middle[frame.v], middle[frame.normal] * frame.side - half[frame.normal],
+                                       side1[frame.u],  side1[frame.v],  side1[frame.normal] * frame.side,
+                                       side2[frame.u],  side2[frame.v],  side2[frame.normal] * frame.side}, frame, seen.direction);
 
     const FaceCorners reference(frame.normal, frame.side > 0, frame.u, frame.v), incident(m, positive, m1, m2);
     Candidates found;
@@ -174,8 +188,8 @@ bool BuildBoxFaceContact(const BoxPair& pair, bool ofA, int face, float separati
     const int count = ChooseFour(points, tolerances.prefer, chosen);
     static const Matrix3 kOwn{Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, 0, 1)};
     const Vector3* own = ofA ? &kOwn.x : &pair.rotation.x;  // this box's axes in A's frame
-    const Vector3 normal = own[frame.normal] * frame.side;
-    const Vector3 plane = (ofA ? Vector3(Vector3::Zero()) : pair.position) + normal * half[frame.normal];
+    const Vector3 normal = own[0] * seen.direction[0] + own[1] * seen.direction[1] + own[2] * seen.direction[2];
+    const Vector3 plane = (ofA ? Vector3(Vector3::Zero()) : pair.position) + own[frame.normal] * (frame.side * half[frame.normal]);
     manifold.normal = ofA ? normal : Vector3(-normal);
     manifold.pointCount = count;
     for (int i = 0; i < count; ++i) {
@@ -188,6 +202,22 @@ bool BuildBoxFaceContact(const BoxPair& pair, bool ofA, int face, float separati
         point.feature = FeatureOf(found.origins[c], reference, incident, ofA);
     }
     return true;
+}
+
+}  // namespace
+
+bool BuildBoxFaceContact(const BoxPair& pair, bool ofA, int face, float separation, const ContactTolerances& tolerances,
+                         Manifold& manifold) {
+    Vector3 direction = Vector3::Zero();
+    direction[face / 2] = face % 2 == 0 ? 1.0f : -1.0f;
+    return BuildContact(pair, {ofA, face, direction}, separation, tolerances, manifold);
+}
+
+bool BuildBoxAxisContact(const BoxPair& pair, const Vector3& axis, float separation, const ContactTolerances& tolerances, Manifold& manifold) {
+    const Vector3 steepness = axis.cwiseAbs();
+    int m = steepness.y() > steepness.x() ? 1 : 0;
+    if (steepness.z() > steepness[m]) m = 2;
+    return BuildContact(pair, {true, 2 * m + (axis[m] < 0 ? 1 : 0), axis}, separation, tolerances, manifold);
 }
 
 }  // namespace fulcrum

@@ -22,4 +22,9 @@ struct BoxPair {
 bool BuildBoxFaceContact(const BoxPair& pair, bool ofA, int face, float separation, const ContactTolerances& tolerances,
                          Manifold& manifold);
 
+// The same along an axis that lies aslant to the faces, unit, from A towards B: what two edges give. The two faces that turn to it
+// most are projected onto each other along it, so that there are points all around the edges' own: a body that turns within the step
+// meets the other with its faces.
+bool BuildBoxAxisContact(const BoxPair& pair, const Vector3& axis, float separation, const ContactTolerances& tolerances, Manifold& manifold);
+
 }  // namespace fulcrum

@@ -89,10 +89,14 @@ struct ContactSolveSettings {
     float massScale;         // 0..1: softened effective mass / effective mass
     float impulseScale;      // 0..1: part of the impulse that the row gives way by
     float maxPushSpeed;      // m/s
+    // A soft row gives way in proportion to its load, however deep the overlap; a push that has reached its largest speed would lose
+    // against a heavy one. So the deeper the overlap beyond that, the less the row gives way.
+    float stiffening = 0;    // s/m: by so much of the impulse less for each m/s that the push falls short
+    float mostStiffer = 0;   // 0..1: but never by more than this
     float slop;              // m: overlap that is left alone
 
-    // Sets pushRate, massScale and impulseScale to those of a spring of `frequency` Hz and `dampingRatio` for a substep of
-    // h seconds: with w = 2 pi f, gamma = 1 / (h (c + h k)) and beta = h k / (c + h k) of the soft constraint (k = m w^2,
+    // Asks for maxPushSpeed. Sets pushRate, massScale and impulseScale to those of a spring of `frequency` Hz and `dampingRatio`
+    // for a substep of h seconds: with w = 2 pi f, gamma = 1 / (h (c + h k)) and beta = h k / (c + h k) of the soft constraint (k = m w^2,
     // c = 2 m zeta w), pushRate = beta / h = w / (2 zeta + h w), massScale = a / (1 + a), impulseScale = 1 / (1 + a),
     // a = h w (2 zeta + h w). Source: Catto, "Solver2D", 2024.
     void Soften(float frequency, float dampingRatio, float h);

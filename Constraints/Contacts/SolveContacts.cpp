@@ -76,10 +76,17 @@ template <bool kRelax, bool kSurface, int N, bool kFixedB>
     // are pushed apart, softly.
     const Real inverseDt(settings.inverseDt), pushRate(settings.pushRate), fastest(-settings.maxPushSpeed);
     Real speed[ContactRecord::kMaxPoints];
+    [[maybe_unused]] Real stiffer[ContactRecord::kMaxPoints];
     for (int i = 0; i < batch.pointCount; ++i) {
         const auto& row = batch.rows[i];
         speed[i] = vn + row.b * w1 - row.a * w2 + Max(row.separation, zero) * inverseDt;
-        if constexpr (!kRelax) speed[i] += Clamp((row.separation + Real(settings.slop)) * pushRate, fastest, zero);
+        if constexpr (!kRelax) {
+            // What approaches in spite of all is pushed faster by as much: in a pile that is hit hard one pass stops no body for good.
+            const Real wanted = (row.separation + Real(settings.slop)) * pushRate;
+            const Real push = Clamp(wanted, fastest + Min(speed[i], zero), zero);
+            speed[i] += push;
+            stiffer[i] = Clamp((push - wanted) * Real(settings.stiffening), zero, Real(settings.mostStiffer));
+        }
     }
     Real sum = zero, sumA = zero, sumB = zero, relaxed = zero;
     for (int i = 0; i < batch.pointCount; ++i) {
@@ -89,8 +96,8 @@ template <bool kRelax, bool kSurface, int N, bool kFixedB>
             wanted = row.impulse - row.inverseResponse * speed[i];
         } else {
             const auto overlaps = row.separation < zero;
-            wanted = Select(overlaps, row.impulse * Real(1.0f - settings.impulseScale), row.impulse) -
-                     row.inverseResponse * Select(overlaps, speed[i] * Real(settings.massScale), speed[i]);
+            wanted = Select(overlaps, row.impulse * (Real(1.0f - settings.impulseScale) + stiffer[i]), row.impulse) -
+                     row.inverseResponse * Select(overlaps, speed[i] * (Real(settings.massScale) + stiffer[i]), speed[i]);
         }
         const Real total = Max(wanted, zero);
         const Real change = total - row.impulse;
@@ -133,6 +140,9 @@ void ContactSolveSettings::Soften(float frequency, float dampingRatio, float h) 
     pushRate = w / (2.0f * dampingRatio + h * w);
     massScale = a / (1.0f + a);
     impulseScale = 1.0f / (1.0f + a);
+    constexpr float kSoftest = 0.125f;  // what is always left of the softness: it bounds the load of what can never come apart
+    mostStiffer = (1 - kSoftest) * impulseScale;
+    stiffening = impulseScale / maxPushSpeed;
 }
 
 template <int N, bool kFixedB>

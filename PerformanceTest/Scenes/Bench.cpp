@@ -28,15 +28,15 @@ std::vector<const Scene*> PerformanceScenes() {
 }
 
 void PrintHeading() {
-    std::printf("%-16s %3s %7s %8s %5s  %9s %9s %9s %9s %9s  %11s  %8s  %s\n", "scene", "thr", "bodies", "contacts", "steps",
-                "median ms", "mean ms", "p99 ms", "max ms", "steps/s", "accuracy", "memory", "hash");
+    std::printf("%-16s %3s %7s %8s %5s  %9s %9s %9s %9s %9s  %11s  %7s  %8s  %s\n", "scene", "thr", "bodies", "contacts", "steps",
+                "median ms", "mean ms", "p99 ms", "max ms", "steps/s", "accuracy", "overlap", "memory", "hash");
 }
 
 void PrintRow(const Scene& scene, const RunFigures& run) {
     const Statistics& ms = ComparedMs(run);
-    std::printf("%-16s %3u %7zu %8u %5d  %9.4f %9.4f %9.4f %9.4f %9.1f  %11.5g  %5.0f MB  %s\n", scene.name, run.threads,
+    std::printf("%-16s %3u %7zu %8u %5d  %9.4f %9.4f %9.4f %9.4f %9.1f  %11.5g  %7.4f  %5.0f MB  %s\n", scene.name, run.threads,
                 run.bodies, run.last.contacts, run.steps, ms.median, ms.mean, ms.p99, ms.max, 1000 / run.stepMs.mean,
-                run.accuracy, static_cast<double>(run.memoryBytes) / 1e6, HashText(run.poseHash).c_str());
+                run.accuracy, run.overlap.relative, static_cast<double>(run.memoryBytes) / 1e6, HashText(run.poseHash).c_str());
     if (run.queryCount > 0)
         std::printf("%20s %d %s a batch, which the ms are of: %.4g %s/s\n", "", run.queryCount, run.queryName.c_str(),
                     QueriesPerSecond(run), run.queryName.c_str());

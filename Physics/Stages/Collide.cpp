@@ -25,6 +25,24 @@ bool BallsApart(const WorldState& world, const Pair& pair, float distance) {
     return LengthSquared(between) > reach * reach;
 }
 
+// m: how much closer the balls about two bodies may come within the step, also where something stops one of them at its start.
+float ClosingMotion(const WorldState& world, const Pair& pair, float dt) {
+    const BodyStore& bodies = world.bodies;
+    const Vector3 vA = bodies.LinearVelocityOf(pair.bodyA), vB = bodies.LinearVelocityOf(pair.bodyB);
+    float fastest = std::max(LengthSquared(Vector3(vB - vA)), LengthSquared(vB));
+    if (!pair.fixedB) fastest = std::max(fastest, LengthSquared(vA));
+    return dt * Sqrt(fastest);
+}
+
+// m: how much farther two bodies may reach by turning within the step: no farther than their outer balls.
+float TurningMotion(const WorldState& world, const Pair& pair, float dt) {
+    const auto of = [&](uint32_t body, const Shape& shape) {
+        const float outer = shape.OuterRadius();
+        return std::min(dt * Length(world.bodies.AngularVelocityOf(body)) * outer, outer - shape.InnerRadius());
+    };
+    return of(pair.bodyA, *pair.shapeA) + (pair.fixedB ? 0.0f : of(pair.bodyB, *pair.shapeB));
+}
+
 // m: farther ahead than this the Continuous stage sees to the pair.
 float MotionBeforeCast(const WorldState& world, const Pair& pair) {
     float motion = std::numeric_limits<float>::infinity();
@@ -40,7 +58,7 @@ PairChange CollidePair(WorldState& world, uint32_t index, float dt, WorkerFindin
     const uint32_t now = static_cast<uint32_t>(world.report.step);
     if ((poseA.boundsChangedIn == now || poseB.boundsChangedIn == now) && !Overlap(world, pair)) return PairChange::Dead;
 
-    float motion = dt * Length(Vector3(world.bodies.LinearVelocityOf(pair.bodyB) - world.bodies.LinearVelocityOf(pair.bodyA)));
+    float motion = ClosingMotion(world, pair, dt);
     if (world.sweeps.users > 0) motion = std::min(motion, MotionBeforeCast(world, pair));
     const float reachAhead = world.settings.speculativeDistance + motion;
     if (pair.surface) return CollideWithSurface(world, index, reachAhead, dt, findings);
@@ -51,7 +69,7 @@ PairChange CollidePair(WorldState& world, uint32_t index, float dt, WorkerFindin
     } else {
         CollideSettings settings;
         settings.method = world.settings.narrowPhase;
-        settings.speculativeDistance = reachAhead;
+        settings.speculativeDistance = reachAhead + TurningMotion(world, pair, dt);
         Manifold manifold;
         if (pair.shapeB->Type() == ShapeType::Plane) CollideWithPlane(static_cast<const Plane&>(*pair.shapeB), *pair.shapeA, view.bInA, settings, manifold);
         else Collide(*pair.shapeA, static_cast<const ConvexShape&>(*pair.shapeB), WithDistinctCenters(world, pair, view.bInA), settings, pair.cache, manifold, findings.libccd);

@@ -241,14 +241,18 @@ void ActivatePairs(WorldState& world, const std::vector<uint64_t>& keys) {
 
 }  // namespace
 
-bool MayCollide(const WorldState& world, uint32_t bodyA, uint32_t bodyB) {
+bool CanCollide(const WorldState& world, uint32_t bodyA, uint32_t bodyB) {
     const BodyDynamics& a = world.bodies.dynamics[bodyA];
     const BodyDynamics& b = world.bodies.dynamics[bodyB];
     if (bodyA == bodyB) return false;
     if (a.motion != MotionType::Dynamic && b.motion != MotionType::Dynamic) return false;
     if (!(world.settings.layerCollides[a.layer] >> b.layer & 1u)) return false;
     if ((a.filtered || b.filtered) && !FiltersAllow(world, bodyA, bodyB)) return false;
-    return (a.awake || b.awake) && !world.joints.ForbidsContact(bodyA, bodyB);
+    return !world.joints.ForbidsContact(bodyA, bodyB);
+}
+
+bool MayCollide(const WorldState& world, uint32_t bodyA, uint32_t bodyB) {
+    return (world.bodies.dynamics[bodyA].awake || world.bodies.dynamics[bodyB].awake) && CanCollide(world, bodyA, bodyB);
 }
 
 PairMaterial MaterialOfPair(const WorldState& world, uint32_t bodyA, uint32_t bodyB, const Shape& shapeB, uint8_t material) {

@@ -100,8 +100,10 @@ void WriteManifold(const WorldState& world, const PairView& v, const Manifold& m
         const Vector3 onA = ToBody(world, pair, pair.colliderA, found.positionOnA);
         if (!IsUsable(normal, onA, found.separation)) continue;
         const Vector3 meets = onA + normal * found.separation;  // on B, in A's frame
-        const Vector3 velocity = vB + Cross<float>(wB, Vector3(meets - v.bodyBInA.position)) - vA - Cross<float>(wA, onA);
-        const float approach = -Dot<float>(velocity, normal);
+        const float ofA = Dot<float>(normal, Vector3(vA + Cross<float>(wA, onA)));
+        const float ofB = -Dot<float>(normal, Vector3(vB + Cross<float>(wB, Vector3(meets - v.bodyBInA.position))));
+        // Something else may stop one of the two.
+        const float approach = std::max(ofA + ofB, std::max(ofB, pair.fixedB ? 0.0f : ofA));
         if (found.separation > world.settings.speculativeDistance + std::max(approach, 0.0f) * dt) continue;
         const Vector3 onB = v.bodyBInA.InverseTransform(meets);
         for (int k = 0; k < 3; ++k) {

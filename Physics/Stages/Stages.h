@@ -34,7 +34,9 @@ void RefilterLayers(WorldState& world, const std::array<uint32_t, 32>& before);
 // Has another listener, or none (null), say what collides; all contacts are as the materials give them until it is asked.
 void ChangeListener(WorldState& world, const ContactListener* listener);
 
-// Whether contacts between two bodies, of which one is awake, are wanted.
+// Whether contacts between two bodies are wanted,
+bool CanCollide(const WorldState& world, uint32_t bodyA, uint32_t bodyB);
+// and one of them is awake.
 bool MayCollide(const WorldState& world, uint32_t bodyA, uint32_t bodyB);
 
 struct PairMaterial {

@@ -82,6 +82,10 @@ std::vector<ReportLine> ReportLines(const Scene& scene, const RunFigures& figure
         figures.deepestPair.empty() ? "none"
                                     : Text("%.2f mm, %s at step %d", 1000.0 * static_cast<double>(figures.largestPenetration),
                                            figures.deepestPair.c_str(), figures.deepestStep));
+    add("Result", "deepest for its size",
+        figures.overlapPair.empty() ? "none"
+                                    : Text("%.3g of the inner radius, %.2f mm, %s at step %d", figures.overlap.relative, 1000 * figures.overlap.depth,
+                                           figures.overlapPair.c_str(), figures.overlap.step));
     add("Result", "energy", Energy(figures.energyAtStart) + " to " + Energy(figures.energyAtEnd));
     if (scene.accuracy) add("Result", "accuracy", Text("%.6g (%s)", figures.accuracy, scene.accuracyMeaning));
     add("Result", "pose hash", HashText(figures.poseHash));
@@ -136,6 +140,10 @@ nlohmann::ordered_json ReportJson(const std::string& name, const RunFigures& fig
             {"awake_bodies", last.awakeBodies},
             {"largest_penetration_m", figures.largestPenetration},
             {"deepest_pair", figures.deepestPair},
+            {"largest_relative_penetration", figures.overlap.relative},
+            {"relative_penetration_m", figures.overlap.depth},
+            {"relative_penetration_pair", figures.overlapPair},
+            {"relative_penetration_step", figures.overlap.step},
             {"energy_start_j", JsonNumber(figures.energyAtStart)},
             {"energy_end_j", JsonNumber(figures.energyAtEnd)},
             {"memory_bytes", figures.memoryBytes}};

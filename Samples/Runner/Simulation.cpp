@@ -78,6 +78,7 @@ Result<RunFigures> Simulate(SceneWorld& world, int untimed, int steps, double dt
     figures.solver = world.System().Settings().solver;
     figures.energyAtStart = world.System().GetEnergy();
 
+    PenetrationMeter meter(world);
     std::vector<double> stepMs;
     std::array<std::vector<double>, kStageCount> stageMs;
     for (int step = 0; step < untimed + steps; ++step) {
@@ -89,6 +90,7 @@ Result<RunFigures> Simulate(SceneWorld& world, int untimed, int steps, double dt
             for (size_t stage = 0; stage < stageMs.size(); ++stage) stageMs[stage].push_back(report.stageMs[stage]);
         }
         NotePenetration(world, figures);
+        if (meter.Measure()) figures.overlapPair = BodyText(world, meter.Worst().bodyA) + " and " + BodyText(world, meter.Worst().bodyB);
         figures.largestContacts = std::max(figures.largestContacts, report.contacts);
         figures.libccdFailures += report.libccd.epaFailures;
         figures.libccdFallbacks += report.libccd.centreLineFallbacks;
@@ -98,6 +100,7 @@ Result<RunFigures> Simulate(SceneWorld& world, int untimed, int steps, double dt
     figures.stepMs = Summarize(std::move(stepMs));
     for (size_t stage = 0; stage < stageMs.size(); ++stage)
         figures.stageMedianMs[stage] = Summarize(std::move(stageMs[stage])).median;
+    figures.overlap = meter.Worst();
     TimeQueries(world, figures);
     figures.last = world.System().Report();
     CountBodies(world, figures);

@@ -1,7 +1,7 @@
 // Runs a scene step by step and measures it. Used by the runner and the benchmark; one thread.
 #pragma once
 
-#include <Fulcrum/Samples/Scenes/SceneWorld.h>
+#include <Fulcrum/Samples/Runner/PenetrationMeter.h>
 
 #include <array>
 #include <string>
@@ -29,9 +29,11 @@ struct RunFigures {
     StepReport last;  // of the last step
     size_t bodies = 0, dynamicBodies = 0;
     uint32_t islands = 0, awakeIslands = 0;  // at the end
-    float largestPenetration = 0;
+    float largestPenetration = 0;  // m, of all contacts
     std::string deepestPair;    // "box 12 and hull 15"; empty where nothing touched
     int deepestStep = 0;
+    Penetration overlap;        // the largest for its size, by the shapes alone
+    std::string overlapPair;    // empty where nothing overlapped
     uint32_t largestContacts = 0;
     uint32_t libccdFailures = 0, libccdFallbacks = 0;  // of all steps
     double energyAtStart = 0, energyAtEnd = 0;  // J
