@@ -17,8 +17,9 @@ function(fulcrum_usage_requirements target scope)
 endfunction()
 
 # Libraries are static, or shared where BUILD_SHARED_LIBS is set. A plugin may link static ones too, so they are
-# position-independent unless CMAKE_POSITION_INDEPENDENT_CODE says otherwise. That costs nothing that could be measured,
-# since GCC is told that no function will be replaced by one of another library: it would inline none of them otherwise.
+# position-independent unless CMAKE_POSITION_INDEPENDENT_CODE says otherwise. A program executes the same number of
+# instructions as without, since GCC is told that no function will be replaced by one of another library: it would inline none
+# of them otherwise.
 function(fulcrum_library_properties target)
   if(NOT DEFINED CMAKE_POSITION_INDEPENDENT_CODE)
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)

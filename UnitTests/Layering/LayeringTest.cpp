@@ -104,6 +104,9 @@ private:
 
         if (header.starts_with("Fulcrum/")) {
             const std::string target = header.substr(8, header.find('/', 8) - 8);
+            // Of the two headers beside the folders the version is everybody's, the other one the programs'.
+            const bool isOfTheRoot = header.find('/', 8) == std::string::npos;
+            if (isOfTheRoot && (target == "Version.h" || (target == "Fulcrum.h" && !library))) return;
             if (target != folder && !Contains(kAllowedFolders.at(folder), target))
                 violations_.push_back(place + folder + " must not include " + target);
         } else if (library && header.starts_with("ccd/")) {
@@ -187,6 +190,13 @@ TEST_F(Layering, NamesEveryUpwardEdge) {
         for (const std::string& target : targets)
             EXPECT_EQ(Join(CheckTree({{folder + "/Sub/File.h", "\n#include <Fulcrum/" + target + "/X.h>\n"}})),
                       folder + "/Sub/File.h:2: " + folder + " must not include " + target + "\n");
+}
+
+TEST_F(Layering, LeavesTheHeaderOfAllHeadersToPrograms) {
+    const std::string all = "#include <Fulcrum/Fulcrum.h>\n";
+    EXPECT_EQ(CheckTree({{"UnitTests/A.cpp", all}, {"Samples/A.cpp", all}, {"Math/A.h", "#include <Fulcrum/Version.h>\n"}}).size(), 0u);
+    for (const std::string& folder : kLibraryFolders) EXPECT_EQ(CheckTree({{folder + "/A.h", all}}).size(), 1u) << folder;
+    EXPECT_EQ(CheckTree({{"Samples/A.cpp", "#include <Fulcrum/Other.h>\n"}}).size(), 1u);
 }
 
 TEST_F(Layering, RejectsForeignLibraries) {

@@ -2,7 +2,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/Common.cmake)
 # Without optimisation: the whole library is compiled again.
 configure(${CMAKE_CURRENT_LIST_DIR}/Consumer ${WORK}/build "${strict}" -DFULCRUM_SOURCE=${FULCRUM_SOURCE}
   -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DBUILD_SHARED_LIBS=ON -DFULCRUM_INSTALL=ON
-  -DCMAKE_INSTALL_LIBDIR=libraries -DCMAKE_INSTALL_INCLUDEDIR=headers)
+  -DCMAKE_INSTALL_LIBDIR=lib -DCMAKE_INSTALL_INCLUDEDIR=headers)
 
 # Whoever adds Fulcrum gets the library alone.
 run(${CMAKE_COMMAND} --build ${WORK}/build --target help)
@@ -14,8 +14,8 @@ run(${WORK}/build/consumer)
 expect_pyramid()
 
 run(${CMAKE_COMMAND} --install ${WORK}/build --prefix ${WORK}/prefix)
-file(GLOB archives ${WORK}/prefix/libraries/*.a)
-file(GLOB libraries ${WORK}/prefix/libraries/libFulcrumPhysics.so*)
+file(GLOB archives ${WORK}/prefix/lib/*.a)
+file(GLOB libraries ${WORK}/prefix/lib/libFulcrumPhysics.so*)
 if(archives OR NOT libraries)
   message(FATAL_ERROR "BUILD_SHARED_LIBS was not obeyed: ${archives} ${libraries}")
 endif()
@@ -26,5 +26,5 @@ endif()
 file(RENAME ${WORK}/build ${WORK}/moved)
 set(ENV{LD_LIBRARY_PATH} "")
 build_consumer(${WORK}/prefix ${WORK}/installed -DCMAKE_BUILD_TYPE=Debug)
-build_with_pkg_config(${WORK}/prefix/libraries ${WORK}/by-hand)
+build_with_pkg_config(${WORK}/prefix/lib ${WORK}/by-hand)
 build_plugin(${WORK}/prefix ${WORK}/plugin -DCMAKE_BUILD_TYPE=Debug)
