@@ -11,16 +11,15 @@ namespace fulcrum {
 
 namespace {
 
-// What was read from a body is given back to it, or to another, with its bits: normalizing a rotation again changes them.
+// What GetPose gave is taken back with its bits: normalizing a rotation again changes them.
 Quaternion NormalizedUnlessItIs(const Quaternion& q) {
     const double squared = double{q.x} * q.x + double{q.y} * q.y + double{q.z} * q.z + double{q.w} * q.w;
     constexpr double kRounding = 0x1p-21;  // more than four components, rounded to float, leave
     return std::fabs(squared - 1) <= kRounding ? q : Normalized(q);
 }
 
-// The centre frame's pose of a body whose own frame is at `position`, `rotation`.
-Pose CentrePose(const Shape& shape, const Position& position, const Quaternion& rotation) {
-    const Quaternion q = NormalizedUnlessItIs(rotation);
+// The centre frame's pose of a body whose own frame is at `position`, `q`, which is normalized.
+Pose CentrePose(const Shape& shape, const Position& position, const Quaternion& q) {
     return {position + Rotate(q, shape.Mass().centreOfMass).cast<double>(), q};
 }
 
@@ -116,7 +115,7 @@ Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
         const float kilograms = settings.mass > 0 ? settings.mass : settings.density * settings.shape->Mass().volume;
         cold.children->massUnit = double{kilograms} / RelativeMassOf(*settings.shape);
     }
-    world_.bodies.SetCentrePose(body, CentrePose(*settings.shape, settings.position, settings.rotation));
+    world_.bodies.SetCentrePose(body, CentrePose(*settings.shape, settings.position, Normalized(settings.rotation)));
     SetVelocityOf(world_, body, settings.linearVelocity, settings.angularVelocity);
     world_.bodies.UpdateInertia(body);
     if (world_.bodies.Count() == 1) PlaceBoundsOrigin(world_, body);
@@ -171,7 +170,7 @@ Status BodyInterface::SetPose(BodyId id, const Position& position, const Quatern
     WakeBody(world_, body);
     WakeNeighbours(world_, body);
     WakeJoined(world_, body);
-    world_.bodies.SetCentrePose(body, CentrePose(*world_.bodies.cold[body].shape, position, rotation));
+    world_.bodies.SetCentrePose(body, CentrePose(*world_.bodies.cold[body].shape, position, NormalizedUnlessItIs(rotation)));
     Teleported(world_, body);
     WakeNeighbours(world_, body);
     return Done{};
@@ -184,7 +183,7 @@ Status BodyInterface::MoveKinematic(BodyId id, const Position& position, const Q
     if (MaybeError e = FirstOf(CheckPosition("position", position), CheckRotation("rotation", rotation), CheckPositive("dt", dt)))
         return *e;
     const Pose now{world_.bodies.ExactCentreOf(id.index), world_.bodies.RotationOf(id.index)};
-    const Pose goal = CentrePose(*world_.bodies.cold[id.index].shape, position, rotation);
+    const Pose goal = CentrePose(*world_.bodies.cold[id.index].shape, position, Normalized(rotation));
     const Vector3 linear = Vector3((goal.position - now.position).cast<float>()) * (1.0f / dt);
     const Vector3 angular = RotationVectorOf(goal.rotation * now.rotation.Conjugate()) * (1.0f / dt);
     return SetVelocity(id, linear, angular);
