@@ -35,14 +35,6 @@ inline Vector3 Normalized(const Vector3& v, const Vector3& fallback = Vector3(0,
     return length > 1e-12f ? Vector3(v * (1.0f / length)) : fallback;
 }
 
-// Shortens v to `limit` if it is longer, and says so. A v that is not finite stays.
-inline bool ClampLength(Vector3& v, float limit) {
-    const float squared = LengthSquared(v);
-    if (!(squared > limit * limit)) return false;
-    v *= limit / std::sqrt(squared);
-    return true;
-}
-
 // A unit vector perpendicular to the unit vector n, continuous but for two seams.
 // Source: Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 2017.
 inline Vector3 Perpendicular(const Vector3& n) {

@@ -78,7 +78,7 @@ template <class Real>
 [[gnu::always_inline]] inline Vec3<Real> WithinReach(const Vec3<Real>& v) {
     const Real farthest(1e6f);
     Vec3<Real> result;
-    for (int k = 0; k < 3; ++k) result[k] = Max(Min(Real(v[k]), farthest), -farthest);
+    for (int k = 0; k < 3; ++k) result[k] = Clamp(Real(v[k]), -farthest, farthest);
     return result;
 }
 

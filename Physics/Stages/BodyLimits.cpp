@@ -102,7 +102,7 @@ bool LimitLength(Vector3& v, float limit) {
     return true;
 }
 
-bool LimitSpeeds(WorldState& world, uint32_t body, Vector3& v, Vector3& w) {
+bool ShortenSpeeds(WorldState& world, uint32_t body, Vector3& v, Vector3& w) {
     const BodyDynamics& d = world.bodies.dynamics[body];
     constexpr float kRounding = 1 + 1e-6f;
     const auto exceeds = [](const Vector3& x, float limit) { return LengthSquared(x) > limit * limit * kRounding; };
@@ -122,8 +122,8 @@ void AdmitBody(WorldState& world, uint32_t body, WorkerFindings& findings) {
     const BodyDynamics& d = bodies.dynamics[body];
     if (d.hasForce) LimitForces(world, body);
     Vector3 v = bodies.LinearVelocityOf(body), w = bodies.AngularVelocityOf(body);
-    if (!(LengthSquared(v) > d.maxLinearSpeed * d.maxLinearSpeed) && !(LengthSquared(w) > d.maxAngularSpeed * d.maxAngularSpeed)) return;
-    findings.clamped += LimitSpeeds(world, body, v, w);
+    if (IsWithinSpeeds(d, v, w)) return;
+    findings.clamped += ShortenSpeeds(world, body, v, w);
     bodies.SetVelocity(body, v, w);
 }
 

@@ -24,7 +24,14 @@ inline double Trace(const BodyMass& mass) {
 
 // Shortens a body's velocities, both finite, to its largest speeds. Returns whether the body is to be counted for it: once a step,
 // where that took more than a rounding.
-[[nodiscard]] bool LimitSpeeds(WorldState& world, uint32_t body, Vector3& v, Vector3& w);
+[[nodiscard]] bool ShortenSpeeds(WorldState& world, uint32_t body, Vector3& v, Vector3& w);
+// False for what is not finite.
+inline bool IsWithinSpeeds(const BodyDynamics& d, const Vector3& v, const Vector3& w) {
+    return LengthSquared(v) <= d.maxLinearSpeed * d.maxLinearSpeed && LengthSquared(w) <= d.maxAngularSpeed * d.maxAngularSpeed;
+}
+[[nodiscard]] inline bool LimitSpeeds(WorldState& world, uint32_t body, Vector3& v, Vector3& w) {
+    return !IsWithinSpeeds(world.bodies.dynamics[body], v, w) && ShortenSpeeds(world, body, v, w);
+}
 
 // The first look at an awake body in a step: freezes what is not finite, shortens velocities and forces.
 void AdmitBody(WorldState& world, uint32_t body, WorkerFindings& findings);

@@ -87,8 +87,9 @@ void TurnInertia(BodyStore& bodies, uint32_t body, float h) {
 void LimitSolved(WorldState& world, uint32_t body, WorkerFindings& findings) {
     BodyStore& bodies = world.bodies;
     Vector3 v = bodies.LinearVelocityOf(body), w = bodies.AngularVelocityOf(body);
+    if (IsWithinSpeeds(bodies.dynamics[body], v, w)) return;
     if (IsFinite(v) && IsFinite(w)) {
-        findings.clamped += LimitSpeeds(world, body, v, w);
+        findings.clamped += ShortenSpeeds(world, body, v, w);
     } else {
         v = w = Vector3::Zero();
         bodies.unconstrained[body] = {};

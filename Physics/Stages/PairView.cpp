@@ -38,9 +38,6 @@ void ForgetFriction(ContactRecord& record) {
 }
 
 bool IsUsable(const Vector3& normal) { return std::fabs(LengthSquared(normal) - 1) < 0.1f; }
-bool IsUsable(const Vector3& normal, const Vector3& onA, float separation) {
-    return IsFinite(onA) && IsFinite(Vector3(onA + normal * separation));
-}
 
 // Nothing touches.
 void Forget(Pair& pair, ContactRecord& record) {
@@ -98,8 +95,8 @@ void WriteManifold(const WorldState& world, const PairView& v, const Manifold& m
     for (int i = 0; i < manifold.pointCount; ++i) {
         const ManifoldPoint& found = manifold.points[i];
         const Vector3 onA = ToBody(world, pair, pair.colliderA, found.positionOnA);
-        if (!IsUsable(normal, onA, found.separation)) continue;
         const Vector3 meets = onA + normal * found.separation;  // on B, in A's frame
+        if (!IsFinite(meets)) continue;
         const float ofA = Dot<float>(normal, Vector3(vA + Cross<float>(wA, onA)));
         const float ofB = -Dot<float>(normal, Vector3(vB + Cross<float>(wB, Vector3(meets - v.bodyBInA.position))));
         // Something else may stop one of the two.

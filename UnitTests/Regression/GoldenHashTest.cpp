@@ -14,7 +14,7 @@ namespace {
 constexpr uint64_t kGoldenHash = 0x4cde90ba9dc0db97ull;
 constexpr uint64_t kGoldenHashOfJoints = 0x14174bbc5dd65dc7ull;
 constexpr uint64_t kGoldenHashOfSurfaces = 0x77d12a159a425f88ull;
-constexpr uint64_t kGoldenHashOfFastBodies = 0xd0a70785e420f323ull;
+constexpr uint64_t kGoldenHashOfFastBodies = 0x7c4caa46288aa86cull;
 
 std::string Hex(uint64_t number) {
     char text[24];
