@@ -55,9 +55,10 @@ bool FlyFreely(WorldState& world, Ending& ending, const StepContext& step, Worke
 
 // The solver changed the angular velocity of a body as it stood at the step's beginning. Impulses on the way let it turn otherwise than
 // about the velocity of the end; the spin of a thin rod about its own axis, left behind in world axes while that turned, is then a turn of
-// the rod itself, with a thousand times the energy. What would gain so is carried along with the body, as far as it takes to gain none.
+// the rod itself, with a thousand times the energy. What would gain a twentieth is carried along with the body, as far as it takes to gain none;
+// not what rocks as it comes to rest, which its support damps.
 Vector3 CarriedAlong(const BodyDynamics& d, const Quaternion& before, const Quaternion& after, const Vector3& w) {
-    constexpr float kGain = 1.0001f;
+    constexpr float kGain = 1.05f;
     const auto energyOf = [&](const Quaternion& rotation, const Vector3& velocity) {
         const Vector3 local = InverseRotate(rotation * d.PrincipalAxes(), velocity);
         float energy = 0;

@@ -159,7 +159,7 @@ private:
             hit.time = start + found.fraction * length;
             if (ComesBefore(hit)) {
                 const bool counts = Counts(motion, found, course, length, hit);
-                if (counts && !isTurning_ && DoesTurn(shape)) {
+                if (counts && !isTurning_ && DoesTurn(shape) && !ApproachesTurning(hit, course, DepthThatCounts(shape))) {
                     asksForTurn = true;
                     return -1.0f;
                 }
@@ -181,7 +181,18 @@ private:
         return Length(sweep_.turn) * shape_->OuterRadius() > kPart * DepthThatCounts(other);
     }
 
-    // What is cast without its turn, and would hit: a rod that topples about its end comes down on it with all its speed, but for its turn.
+    // Whether the points of a hit that was found without the turn come so near with it, too, in what is left of the step.
+    bool ApproachesTurning(const SweepHit& hit, const Sweep& course, float depth) const {
+        const Position own = sweep_.PositionAt(hit.time), others = course.PositionAt(hit.time);
+        float speed = 0;
+        for (int i = 0; i < hit.pointCount; ++i) {
+            const Vector3 v = VelocityAt(own + hit.arms[i].cast<double>(), own, sweep_.DisplacementRate() - course.DisplacementRate(), course, others);
+            speed = std::max(speed, Dot<float>(hit.normal, Vector3(v + Cross<float>(sweep_.TurnRate(), hit.arms[i]))));
+        }
+        return speed * (1 - hit.time) > depth;
+    }
+
+    // What is cast without its turn, and would hit, but not so with it: a rod that topples about its end comes down on it with all its speed, but for its turn.
     void CastTurning(uint32_t other) {
         isTurning_ = true;
         motion_.turn = sweep_.turn;

@@ -11,10 +11,10 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0x4cde90ba9dc0db97ull;
+constexpr uint64_t kGoldenHash = 0xc533033c59054b41ull;
 constexpr uint64_t kGoldenHashOfJoints = 0x14174bbc5dd65dc7ull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x77d12a159a425f88ull;
-constexpr uint64_t kGoldenHashOfFastBodies = 0x7c4caa46288aa86cull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0x26fdd719afb6569eull;
+constexpr uint64_t kGoldenHashOfFastBodies = 0x5c21c18356c52665ull;
 
 std::string Hex(uint64_t number) {
     char text[24];
