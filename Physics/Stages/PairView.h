@@ -15,10 +15,9 @@ struct PairView {
 };
 PairView ViewPair(WorldState& world, uint32_t pair);
 
-// A body that hits the ground with one end turns about there, so that its other end comes on faster than it did: a rod's by up to
-// twice. Contacts are seen so many times as far ahead as the bodies move within the step; between moving bodies, which give way, once:
-// those are far more.
-inline float LookAhead(const Pair& pair) { return pair.fixedB ? 2.0f : 1.0f; }
+// A body that is hit at one end turns about there, so that its other end comes on faster than it did: a rod's by up to twice. Contacts
+// are seen so many times as far ahead as bodies move within the step.
+inline constexpr float kFarEnd = 2;
 
 // Whether the manifolds that were found at pair.reference still do.
 bool HardlyMoved(const PairView& view);
