@@ -58,10 +58,10 @@ PairChange CollidePair(WorldState& world, uint32_t index, float dt, WorkerFindin
     const uint32_t now = static_cast<uint32_t>(world.report.step);
     if ((poseA.boundsChangedIn == now || poseB.boundsChangedIn == now) && !Overlap(world, pair)) return PairChange::Dead;
 
-    float motion = ClosingMotion(world, pair, dt);
+    float motion = kFarEnd * ClosingMotion(world, pair, dt);
     if (world.sweeps.users > 0) motion = std::min(motion, MotionBeforeCast(world, pair));
     const float reachAhead = world.settings.speculativeDistance + motion;
-    if (pair.surface) return CollideWithSurface(world, index, reachAhead, dt, findings);
+    if (pair.surface) return CollideWithSurface(world, index, reachAhead + TurningMotion(world, pair, dt), dt, findings);
     if (pair.pointCount == 0 && !pair.offset && BallsApart(world, pair, reachAhead)) return PairChange::None;
     const PairView view = ViewPair(world, index);
     if (pair.pointCount > 0 && HardlyMoved(view)) {

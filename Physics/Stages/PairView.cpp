@@ -101,7 +101,7 @@ void WriteManifold(const WorldState& world, const PairView& v, const Manifold& m
         const float ofB = -Dot<float>(normal, Vector3(vB + Cross<float>(wB, Vector3(meets - v.bodyBInA.position))));
         // Something else may stop one of the two.
         const float approach = std::max(ofA + ofB, std::max(ofB, pair.fixedB ? 0.0f : ofA));
-        if (found.separation > world.settings.speculativeDistance + std::max(approach, 0.0f) * dt) continue;
+        if (found.separation > world.settings.speculativeDistance + kFarEnd * std::max(approach, 0.0f) * dt) continue;
         const Vector3 onB = v.bodyBInA.InverseTransform(meets);
         for (int k = 0; k < 3; ++k) {
             record.points[count].onA[k] = onA[k];

@@ -15,6 +15,10 @@ struct PairView {
 };
 PairView ViewPair(WorldState& world, uint32_t pair);
 
+// A body that is hit at one end turns about there, so that its other end comes on faster than it did: a rod's by up to twice. Contacts
+// are seen so many times as far ahead as bodies move within the step.
+inline constexpr float kFarEnd = 2;
+
 // Whether the manifolds that were found at pair.reference still do.
 bool HardlyMoved(const PairView& view);
 

@@ -1,0 +1,100 @@
+// Boxes passed through each other: a body was not seen by another that moved along with it until something stopped one of the two;
+// two edges that met had a single point, about which the boxes turned into each other; and the softness of a contact gave way under
+// a heavy load faster than its push, which has a largest speed, could follow.
+#include <Fulcrum/Collision/Queries/Distance.h>
+#include <Fulcrum/Samples/Runner/PenetrationMeter.h>
+#include <Fulcrum/Samples/Scenes/Scenes.h>
+#include <Fulcrum/UnitTests/Support/RandomPoses.h>
+#include <Fulcrum/UnitTests/Support/TestWorld.h>
+
+#include <algorithm>
+
+namespace fulcrum::testing {
+namespace {
+
+constexpr float kHalf = 0.2f;  // m, of the cubes
+
+// m, by the shapes alone.
+float DepthOf(TestWorld& world, BodyId a, BodyId b) {
+    const auto centre = [&](BodyId id) { return Pose{world.Bodies().GetCentreOfMass(id), world.Bodies().GetPose(id).rotation}; };
+    ClosestPoints closest;
+    const bool overlap = FindClosestPoints(*world.Bodies().GetShape(a), *world.Bodies().GetShape(b), Relative(centre(a), centre(b)), 0, closest);
+    return overlap ? -closest.distance : 0.0f;
+}
+
+TEST(PassThrough, WhatFallsTogetherIsSeenWhenTheGroundStopsTheFirst) {
+    for (const double gap : {0.03, 0.06, 0.1, 0.15, 0.2, 0.25}) {
+        TestWorld world;
+        world.AddFloor();
+        const BodyId lower = world.Add({.shape = CubeOf(kHalf), .position = {0, 0.25, 0}, .linearVelocity = {0, -16, 0}});
+        const BodyId upper = world.Add({.shape = CubeOf(kHalf), .position = {0.03, 0.65 + gap, 0.02}, .linearVelocity = {0, -16, 0}});
+        float deepest = 0;
+        for (int step = 0; step < 30; ++step) {
+            world.Step();
+            deepest = std::max(deepest, DepthOf(world, lower, upper));
+        }
+        EXPECT_LT(deepest, 0.25f * kHalf) << "gap " << gap;
+    }
+}
+
+TEST(PassThrough, EdgesThatMeetDoNotTurnTheFacesIntoEachOther) {
+    float deepest = 0;
+    for (uint32_t seed = 1; seed <= 200; ++seed) {
+        RandomPoses random(seed);
+        TestWorld world(NoGravity());
+        const BodyId a = world.Add({.shape = CubeOf(kHalf), .position = {0, 0, 0}, .rotation = random.Rotation()});
+        const BodyId b = world.Add({.shape = CubeOf(kHalf), .position = {0.15, 0.9, -0.1}, .rotation = random.Rotation(), .linearVelocity = {0, -10, 0}});
+        for (int step = 0; step < 20; ++step) {
+            world.Step();
+            deepest = std::max(deepest, DepthOf(world, a, b));
+        }
+    }
+    EXPECT_LT(deepest, 0.5f * kHalf);
+}
+
+TEST(PassThrough, NoCubeOfTheDrumIsHalfInsideAnother) {
+    Result<std::unique_ptr<SceneWorld>> drum = SceneWorld::Create(*FindScene("drum"));
+    ASSERT_TRUE(drum);
+    PenetrationMeter meter(*drum.Value());
+    for (int step = 0; step < 120; ++step) {
+        ASSERT_TRUE(drum.Value()->Step(kStep));
+        meter.Measure();
+    }
+    EXPECT_LT(meter.Worst().relative, 0.5) << "bodies " << meter.Worst().bodyA.index << " and " << meter.Worst().bodyB.index << " at step "
+                                           << meter.Worst().step;
+}
+
+TEST(PassThrough, AStackThatFallsIsNotSquashed) {
+    Result<std::unique_ptr<SceneWorld>> trapDoor = SceneWorld::Create(*FindScene("trap_door"));
+    ASSERT_TRUE(trapDoor);
+    PenetrationMeter meter(*trapDoor.Value());
+    for (int step = 0; step < 360; ++step) {
+        ASSERT_TRUE(trapDoor.Value()->Step(kStep));
+        meter.Measure();
+    }
+    EXPECT_LT(meter.Worst().relative, 0.1);
+}
+
+TEST(PassThrough, TheMeterSeesWhatNoContactSays) {
+    const auto noGravity = [](SystemSettings& settings) { settings.gravity.setZero(); };
+    static Scene scene{.name = "overlapped", .description = ""};
+    scene.adjust = noGravity;
+    scene.build = [](SceneWorld& world) {
+        const ShapePtr ball = world.SphereOf(0.5f);
+        world.Add({.shape = ball, .position = {0, 0, 0}});
+        world.Add({.shape = ball, .position = {2, 0, 0}});
+    };
+    Result<std::unique_ptr<SceneWorld>> world = SceneWorld::Create(scene);
+    ASSERT_TRUE(world);
+    PenetrationMeter meter(*world.Value());
+    EXPECT_FALSE(meter.Measure());
+    std::vector<BodyId> ids;
+    world.Value()->System().VisitBodies([&](BodyId id) { ids.push_back(id); });
+    ASSERT_TRUE(world.Value()->Bodies().SetPose(ids[1], {0.75, 0, 0}, {}));
+    EXPECT_TRUE(meter.Measure());
+    EXPECT_NEAR(meter.Worst().depth, 0.25, 1e-4);
+    EXPECT_NEAR(meter.Worst().relative, 0.5, 1e-3);
+}
+
+}  // namespace
+}  // namespace fulcrum::testing
