@@ -259,13 +259,13 @@ void ExpectAllToRecover(Kind kind, uint32_t count) {
     }
 }
 
-class JointsFarApart : public ::testing::TestWithParam<Kind> {};
-INSTANTIATE_TEST_SUITE_P(Every, JointsFarApart, ::testing::Range(Kind::Point, Kind::Count),
-                         [](const auto& kind) { return std::string(kNames[static_cast<size_t>(kind.param)]); });
+class JointsFarApart : public ::testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Every, JointsFarApart, ::testing::Range(0, static_cast<int>(Kind::Count)),
+                         [](const auto& kind) { return std::string(kNames[kind.param]); });
 
-TEST_P(JointsFarApart, ComeTogetherWithoutAnExplosion) { ExpectAllToRecover(GetParam(), 30); }
+TEST_P(JointsFarApart, ComeTogetherWithoutAnExplosion) { ExpectAllToRecover(static_cast<Kind>(GetParam()), 30); }
 // The gate in full: minutes for each kind.
-TEST_P(JointsFarApart, DISABLED_TenThousandComeTogetherWithoutAnExplosion) { ExpectAllToRecover(GetParam(), 10000); }
+TEST_P(JointsFarApart, DISABLED_TenThousandComeTogetherWithoutAnExplosion) { ExpectAllToRecover(static_cast<Kind>(GetParam()), 10000); }
 
 // The chassis of a car alone is put elsewhere: its wheels follow, and it stands on them in the end.
 TEST(CarFarApart, FollowsItsChassis) {
