@@ -129,7 +129,8 @@ struct SystemSettings {
     // Joints that carry more than this times the mass of their own bodies are solved exactly, as trees, where they form such;
     // > 0, infinite: never.
     float exactJointLoad = 10.0f;
-    float jointPushSpeed = 20.0f;        // m/s and rad/s, > 0, at most 1e6: the fastest pull
+    // m/s and rad/s, > 0, at most 1e6: the fastest pull; from afar up to three times that (Docs/Joints.md).
+    float jointPushSpeed = 20.0f;
     float restitutionSpeed = 0.5f;       // m/s, >= 0: slower impacts do not bounce
     float boundsMargin = 0.05f;          // m, > 0: fat bounds exceed the shape's by this
     // Bit j of layerCollides[i]: bodies of layer i and j collide. Must be symmetric.

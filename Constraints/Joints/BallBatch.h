@@ -29,6 +29,11 @@ struct alignas(64) BallBatch {
     Real inverseInertiaA, inverseInertiaB;  // where all are round
     Vec3<Real> startArmA, startArmB, startOffset;
     Sym3<Real> inertiaA, inertiaB;       // inverses; where not all are round
+
+    // Of lanes that are far apart, as in JointBatch.
+    bool far;                            // some lane is
+    Real isFar;                          // 1: this one is
+    Vec3<Real> pull, pulled;             // m/s; N s: the impulse of it in this substep
 };
 
 // As those of JointBatch.h. Of bodies that are not kinematic they read how far they turned as BodyState::halfTurn says.

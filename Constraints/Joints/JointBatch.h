@@ -97,7 +97,7 @@ struct JointBatch {
     Sym3<Real> coupledPoint;             // S^-1
     Sym2<Real> coupledLine;
 
-    // Of the lanes that are far apart (JointKernels.h, Pull): what their locks are pulled by in place of a bias, and the velocities
+    // Of the lanes that are far apart (SolveJoints.cpp, Pull): what their locks are pulled by in place of a bias, and the velocities
     // that this gave the bodies in this substep.
     bool far;                            // some lane is
     Real isFar;                          // 1: this one is

@@ -83,13 +83,14 @@ void SetPush(JointRows<N>& rows, int lane, bool yields, const JointSolveSettings
     rows.mostPush.Set(lane, massScale * s.maxPushSpeed);
 }
 
-// Whether a spring is stretched so far that it would speed bodies up beyond what joints are pulled at.
+// Whether a spring is stretched so far that it would speed bodies up beyond what joints are pulled at; farther than locks are when far apart.
 template <int N>
 bool IsOverstretched(const JointBatch<N>& batch, const JointRow& row, int lane, const SpringConstants<float>& spring,
                      const JointSolveSettings& s) {
     constexpr float kFastest = 1.5f;
     if ((row.error < 0.0f ? row.maxForce : -row.minForce) < JointRow::kUnlimited) return false;
     if (row.kind == JointRow::Kind::SpringAtLeast && row.error > 0.0f) return false;
+    if (row.error * row.error * s.pushRate * s.pushRate <= s.maxPushSpeed * s.maxPushSpeed) return false;
     const float inverse = LengthSquared(row.a.linear) * batch.massA.mass[lane] + LengthSquared(row.b.linear) * batch.massB.mass[lane];
     const float squared = spring.squaredFrequency > 0.0f ? spring.squaredFrequency : spring.stiffness * inverse;
     const float fastest = kFastest * s.maxPushSpeed;

@@ -20,18 +20,23 @@ void PulleyJoint::Start(const JointPose& pose) {
 void PulleyJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     const Vector3 ropeA = (pose.anchorA - fixedPointA_).cast<float>();
     const Vector3 ropeB = (pose.anchorA + pose.offset.cast<double>() - fixedPointB_).cast<float>();
-    const Vector3 axisA = Normalized(ropeA, Vector3::Zero()), axisB = Normalized(ropeB, Vector3::Zero()) * ratio_;
+    const float lengthA = Length(ropeA), lengthB = Length(ropeB), length = lengthA + ratio_ * lengthB;
+    Vector3 axisA = Normalized(ropeA, Vector3::Zero()), axisB = Normalized(ropeB, Vector3::Zero()) * ratio_;
+    // A side that is all pulled in while much of the other is to come has nothing more to give: it would swing to and fro.
+    constexpr float kShort = 0.5f;  // m
+    const bool isFar = length - control_.limits.max > 2.0f * kShort * std::max(1.0f, ratio_);
+    if (isFar && lengthA < kShort) axisA = Vector3::Zero();
+    if (isFar && lengthB < kShort) axisB = Vector3::Zero();
     JointRow motion;
     motion.a = {-axisA, -Cross(pose.armA, axisA)};
     motion.b = {axisB, Cross(pose.armB, axisB)};
-    const float lengthA = Length(ropeA), lengthB = Length(ropeB);
     // Swinging lengthens the rope as well, as in DistanceJoint.
-    const auto across = [&](const Twist<float>& velocity, const Vector3& arm, float length) {
+    const auto across = [&](const Twist<float>& velocity, const Vector3& arm, float rope) {
         const float speed = Length(Vector3(velocity.linear + Cross(velocity.angular, arm)));
-        return speed * std::min(1.0f, speed * pose.dt / std::max(length, 1e-6f));
+        return speed * std::min(1.0f, speed * pose.dt / std::max(rope, 1e-6f));
     };
     const float slack = across(pose.velocityA, pose.armA, lengthA) + ratio_ * across(pose.velocityB, pose.armB, lengthB);
-    AddControlRows(control_, pose, motion, lengthA + ratio_ * lengthB, kLinearSlackSpeed + slack, 0, rows);
+    AddControlRows(control_, pose, motion, length, kLinearSlackSpeed + slack, 0, rows);
 }
 
 double PulleyJoint::Coordinate(JointAxis axis, const JointPose& pose) const {

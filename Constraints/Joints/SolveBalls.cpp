@@ -107,6 +107,47 @@ template <int N>
     using Real = Wide<N>;
     const Real rate(settings.pushRate), most(settings.maxPushSpeed);
     for (int k = 0; k < 3; ++k) batch.push[k] = Clamp<Real>(offset[k] * rate, -most, most);
+    if (!batch.far) return;
+    const auto isFar = batch.isFar > Real(0.5f);
+    for (int k = 0; k < 3; ++k) {
+        batch.push[k] = Select(isFar, Real(0.0f), batch.push[k]);
+        batch.pull[k] = Select(isFar, PullSpeed<Real>(offset[k], settings), Real(0.0f));
+    }
+}
+
+template <int N>
+[[gnu::always_inline]] inline void FindFar(BallBatch<N>& batch, const Vec3<Wide<N>>& offset, const JointSolveSettings& settings) {
+    using Real = Wide<N>;
+    const Real most(settings.maxPushSpeed), rate(settings.pushRate);
+    const auto isFar = Max(Max(Abs(offset.x()), Abs(offset.y())), Abs(offset.z())) * rate > most;
+    batch.far = isFar.Any();
+    if (!batch.far) return;
+    batch.isFar = Select(isFar, Real(1.0f), Real(0.0f));
+    batch.pulled = Zero<Real>();
+}
+
+// Adds the velocities of the last pull, times `sign`. Lanes without one keep every bit.
+template <int N>
+[[gnu::noinline]] void AddPull(const BallBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, float sign) {
+    using Real = Wide<N>;
+    const auto isFar = batch.isFar > Real(0.5f);
+    a.linear -= ZeroUnless<Real>(isFar, Vec3<Real>(batch.pulled * (batch.inverseMassA * Real(sign))));
+    b.linear -= ZeroUnless<Real>(isFar, Vec3<Real>(batch.pulled * (batch.inverseMassB * Real(-sign))));
+}
+
+template <int N>
+[[gnu::noinline]] void TakePullBack(BallBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
+    AddPull(batch, a, b, -1.0f);
+    batch.pulled = Zero<Wide<N>>();
+}
+
+// See Pull in SolveJoints.cpp: what is to move is moved without turning it.
+template <int N>
+[[gnu::noinline]] void Pull(BallBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, const JointSolveSettings& settings) {
+    using Real = Wide<N>;
+    const Real sum = batch.inverseMassA + batch.inverseMassB;
+    batch.pulled = batch.pull * (Real(-settings.softness.massScale) / Select(sum > Real(0.0f), sum, Real(1.0f)));
+    AddPull(batch, a, b, 1.0f);
 }
 
 template <class Real>
@@ -185,10 +226,12 @@ void Solve(BallBatch<N>& batch, BodyState* states, const JointSolveSettings& set
             a.angular += batch.turnedA;
             b.angular += batch.turnedB;
         }
+        if (batch.far) TakePullBack(batch, a, b);
         const Vec3<Real> miss = MotionAt<Real>(a, b, batch.armA, batch.armB) + batch.push;
         const Vec3<Real> hard = batch.mass * miss;
         Change<kRound>(batch, batch.armA, batch.armB,
                        Vec3<Real>(-(hard * Real(settings.softness.massScale) + batch.impulse * Real(settings.softness.impulseScale))), a, b);
+        if (batch.far) Pull(batch, a, b, settings);
     });
 }
 
@@ -196,6 +239,7 @@ template <bool kRound, int N>
 void Relax(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
     using Real = Wide<N>;
     ChangeVelocities<N>(batch, bodies.states, [&](Twist<Real>& a, Twist<Real>& b) __attribute__((always_inline)) {
+        if (batch.far) TakePullBack(batch, a, b);
         Follow<kRound>(batch, bodies, a, b, settings);
         const Vec3<Real> hard = batch.mass * MotionAt<Real>(a, b, batch.armA, batch.armB);
         Change<kRound>(batch, batch.armA, batch.armB, Vec3<Real>(-hard), a, b);
@@ -231,6 +275,7 @@ void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const Solver
     }
     const auto answers = batch.mass.xx + batch.mass.yy + batch.mass.zz > Real(0.0f);
     batch.impulse = ZeroUnless<Real>(answers, Vec3<Real>(Vec3<Real>(impulses[0], impulses[1], impulses[2]) * Real(settings.impulseScale)));
+    FindFar(batch, place.offset, settings);
     SetPush(batch, place.offset, settings);
     NoteLargest<N>(batch.joint, batch.count, Dot<Real>(place.offset, place.offset), findings.linearError, findings.linearJoint);
 }
@@ -257,6 +302,7 @@ void RelaxJoints(BallBatch<N>& batch, const SolverBodies& bodies, const JointSol
 
 template <int N>
 void UpdateJoints(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
+    if (batch.far) ChangeVelocities<N>(batch, bodies.states, [&](auto& a, auto& b) { TakePullBack(batch, a, b); });
     Motion<N> motionA, motionB;
     motionA.template Gather<Of::Velocity>(batch.bodyA, bodies.states);
     motionB.template Gather<Of::Velocity>(batch.bodyB, bodies.states);
