@@ -4,8 +4,6 @@
 #include <Fulcrum/Physics/JointValidation.h>
 #include <Fulcrum/Physics/Misuse.h>
 
-#include <tuple>
-
 namespace fulcrum {
 
 namespace {
@@ -206,22 +204,22 @@ Status Ragdoll::DriveKinematically(std::span<const Pose> pose, float dt) { retur
 Status Ragdoll::Drive(std::span<const Pose> pose, float dt, bool dynamicToo) {
     if (MaybeError e = CheckDrive(pose, dt)) return *e;
     BodyInterface& bodies = system_->Bodies();
-    // All velocities before any is set: a refusal leaves no part moved.
-    std::vector<std::pair<Vector3, Vector3>> velocities(pose.size());
     const auto drives = [&](size_t i) {
         const MotionType motion = bodies.GetMotionType(bodies_[i]);
         return motion == MotionType::Kinematic || (motion == MotionType::Dynamic && dynamicToo);
     };
+    // All are checked before any is set: a refusal leaves no part moved.
     for (size_t i = 0; i < pose.size(); ++i) {
         if (!drives(i)) continue;
-        auto& [linear, angular] = velocities[i];
-        std::tie(linear, angular) = VelocityTo(i, pose[i], dt);
+        const auto [linear, angular] = VelocityTo(i, pose[i], dt);
         const MaybeError e = FirstOf(CheckFinite("the linear velocity that it asks for", linear), CheckFinite("the angular velocity that it asks for", angular));
         if (e) return Error{e->code, "pose[" + std::to_string(i) + "]: " + e->message};
     }
-    for (size_t i = 0; i < pose.size(); ++i)
-        if (drives(i))
-            if (Status set = bodies.SetVelocity(bodies_[i], velocities[i].first, velocities[i].second); !set) return set;
+    for (size_t i = 0; i < pose.size(); ++i) {
+        if (!drives(i)) continue;
+        const auto [linear, angular] = VelocityTo(i, pose[i], dt);
+        if (Status set = bodies.SetVelocity(bodies_[i], linear, angular); !set) return set;
+    }
     return Done{};
 }
 
