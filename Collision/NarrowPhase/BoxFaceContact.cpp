@@ -143,6 +143,7 @@ struct Reference {
     bool ofA;
     int face;
     Vector3 direction;  // unit
+    float slop;         // m, by which the face is taken for larger
 };
 
 // Moved along the direction onto the face's plane, the way there in place of the height above it.
@@ -177,7 +178,7 @@ bool BuildContact(const BoxPair& pair, const Reference& seen, float separation, 
 
     const FaceCorners reference(frame.normal, frame.side > 0, frame.u, frame.v), incident(m, positive, m1, m2);
     Candidates found;
-    AddCutSides(p, half[frame.u], half[frame.v], tolerances.prefer, tolerances.reach, found);
+    AddCutSides(p, half[frame.u], half[frame.v], seen.slop, tolerances.reach, found);
     AddCoveredCorners(p, half[frame.u], half[frame.v], tolerances.prefer, tolerances.reach, found);
     FlatPoints<16>& points = found.points;
     float least = std::numeric_limits<float>::infinity();
@@ -210,14 +211,14 @@ bool BuildBoxFaceContact(const BoxPair& pair, bool ofA, int face, float separati
                          Manifold& manifold) {
     Vector3 direction = Vector3::Zero();
     direction[face / 2] = face % 2 == 0 ? 1.0f : -1.0f;
-    return BuildContact(pair, {ofA, face, direction}, separation, tolerances, manifold);
+    return BuildContact(pair, {ofA, face, direction, tolerances.prefer}, separation, tolerances, manifold);
 }
 
 bool BuildBoxAxisContact(const BoxPair& pair, const Vector3& axis, float separation, const ContactTolerances& tolerances, Manifold& manifold) {
     const Vector3 steepness = axis.cwiseAbs();
     int m = steepness.y() > steepness.x() ? 1 : 0;
     if (steepness.z() > steepness[m]) m = 2;
-    return BuildContact(pair, {true, 2 * m + (axis[m] < 0 ? 1 : 0), axis}, separation, tolerances, manifold);
+    return BuildContact(pair, {true, 2 * m + (axis[m] < 0 ? 1 : 0), axis, 0}, separation, tolerances, manifold);
 }
 
 }  // namespace fulcrum

@@ -133,7 +133,7 @@ TEST(Manifold, CornersApartSeeEachOther) {
     const float gap = 0.01f;
     const Vector3 diagonal = Vector3::Constant(1 / std::sqrt(3.0f));
     const Manifold m = CollideCold(box, box, {Vector3::Ones() + diagonal * gap, {}});
-    ASSERT_EQ(m.pointCount, 1);
+    ASSERT_GE(m.pointCount, 1);  // the corners, and where the faces follow
     EXPECT_NEAR(m.points[0].separation, gap, 1e-6f);
     EXPECT_GT(Dot(m.normal, diagonal), 0.9999f);
 }
