@@ -85,7 +85,11 @@ CoreCastResult CoresOverlapAtStart() {
 }  // namespace
 
 Quaternion CoreMotion::RotationAt(double fraction) const {
-    return Normalized(RotationFromVector(Vector3(turn * static_cast<float>(fraction))) * rotation);
+    // Of a turn through more radians a float knows no direction: any rotation is as right.
+    constexpr float kFarthestTurn = 1e6f;
+    const Vector3 turned = turn * static_cast<float>(fraction);
+    if (!(turned.cwiseAbs().maxCoeff() < kFarthestTurn)) return rotation;
+    return Normalized(RotationFromVector(turned) * rotation);
 }
 
 CoreCastResult CastLinear(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion, const CoreCastLimits& limits) {

@@ -24,7 +24,7 @@ Bounds BoundsOfTurning(const ConvexShape& shape, const ShapeMotion& motion) {
 ShapeCaster::ShapeCaster(const ConvexShape& shape, const ShapeMotion& motion)
     : shape_(shape), motion_(motion), bounds_(BoundsOfTurning(shape, motion)) {
     isValid_ = IsFinite(motion.pose.position) && IsTurn(motion.pose.rotation) && IsWithinReach(motion.displacement.cast<double>()) &&
-               IsFinite(motion.turn) && IsFinite(bounds_.lower) && IsFinite(bounds_.upper);
+               IsWithinReach(motion.turn.cast<double>()) && IsFinite(bounds_.lower) && IsFinite(bounds_.upper);
 }
 
 CoreMotion ShapeCaster::RelativeTo(const Pose& pose) const {

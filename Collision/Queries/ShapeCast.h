@@ -4,7 +4,7 @@
 //
 // Nothing that is touched is missed, however thin or fast. What overlaps at the start is hit at fraction 0, with the depth and
 // the normal of the least move that parts the two. One-sided triangles are hit from the front alone: a shape that moves along
-// their normal, or comes to touch them from behind, passes. A motion that is not finite, or of more than 1e18 m, or from
+// their normal, or comes to touch them from behind, passes. A motion that is not finite, or of more than 1e18 m or rad, or from
 // farther away, hits nothing; one of no length hits what overlaps it.
 #pragma once
 

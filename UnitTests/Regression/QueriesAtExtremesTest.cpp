@@ -101,7 +101,8 @@ TEST(QueriesAtExtremes, TheTimeOfAHitIsFinite) {
             if (random.Chance(0.3f)) way[static_cast<int>(random.Below(3))] = std::min(turn, 1e17f);
             const ShapeCaster caster(*capsule, {{random.InBox(4).cast<double>(), random.Rotation()}, way, turns});
             ShapeHit hit;
-            if (!caster.CastClosest(*box, {}, {}, hit)) continue;
+            const std::shared_ptr<const Plane> plane = Plane::Create().Value();
+            if (!caster.CastClosest(random.Chance(0.5f) ? *box : static_cast<const Shape&>(*plane), {Position::Zero(), random.Rotation()}, {}, hit)) continue;
             ++hits;
             EXPECT_GE(hit.fraction, 0) << turn;
             EXPECT_LE(hit.fraction, 1) << turn;
