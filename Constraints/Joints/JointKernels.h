@@ -475,6 +475,9 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     }
 }
 
+// Joints are far apart where they are to be pushed at more than this part of the fastest push.
+inline constexpr float kFarPush = 0.5f;
+
 // How fast joints that are far apart are pulled: as fast as any, and from afar so much faster that all are there within some seconds.
 // No harm comes of it, because it is taken back.
 template <class Real>

@@ -167,7 +167,7 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
         for (uint32_t i = 0; i < lists[lane].count; ++i) SoftenLane(batch, batch.rows[i], lane, lists[lane].rows[i], settings);
 }
 
-// Which joints are so far apart that their push is at its fastest.
+// Which joints are so far apart that they are pulled, see Pull.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 void FindFar(JointBatch<N>& batch, const JointErrors<Wide<N>>& errors, const JointSolveSettings& settings) {
     using Real = Wide<N>;
@@ -179,10 +179,10 @@ void FindFar(JointBatch<N>& batch, const JointErrors<Wide<N>>& errors, const Joi
     if constexpr (kAngular == AngularLock::Axis) note(errors.hinge);
     if constexpr (kLinear == LinearLock::Point) note(errors.point);
     if constexpr (kLinear == LinearLock::Line) note(errors.line);
-    auto isFar = push > Real(settings.maxPushSpeed);
+    auto isFar = push > Real(kFarPush * settings.maxPushSpeed);
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         const JointRows<N>& row = batch.rows[i];
-        isFar = isFar | ((row.error <= row.openAbove) & (Abs(row.error) * row.pushRate > row.mostPush));
+        isFar = isFar | ((row.error <= row.openAbove) & (Abs(row.error) * row.pushRate > row.mostPush * Real(kFarPush)));
     }
     batch.far = isFar.Any();
     if (!batch.far) return;

@@ -119,7 +119,7 @@ template <int N>
 [[gnu::always_inline]] inline void FindFar(BallBatch<N>& batch, const Vec3<Wide<N>>& offset, const JointSolveSettings& settings) {
     using Real = Wide<N>;
     const Real most(settings.maxPushSpeed), rate(settings.pushRate);
-    const auto isFar = Max(Max(Abs(offset.x()), Abs(offset.y())), Abs(offset.z())) * rate > most;
+    const auto isFar = Max(Max(Abs(offset.x()), Abs(offset.y())), Abs(offset.z())) * rate > most * Real(kFarPush);
     batch.far = isFar.Any();
     if (!batch.far) return;
     batch.isFar = Select(isFar, Real(1.0f), Real(0.0f));
@@ -143,10 +143,10 @@ template <int N>
 
 // See Pull in SolveJoints.cpp: what is to move is moved without turning it.
 template <int N>
-[[gnu::noinline]] void Pull(BallBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, const JointSolveSettings& settings) {
+[[gnu::noinline]] void Pull(BallBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
     using Real = Wide<N>;
     const Real sum = batch.inverseMassA + batch.inverseMassB;
-    batch.pulled = batch.pull * (Real(-settings.softness.massScale) / Select(sum > Real(0.0f), sum, Real(1.0f)));
+    batch.pulled = batch.pull * (Real(-1.0f) / Select(sum > Real(0.0f), sum, Real(1.0f)));
     AddPull(batch, a, b, 1.0f);
 }
 
@@ -231,7 +231,7 @@ void Solve(BallBatch<N>& batch, BodyState* states, const JointSolveSettings& set
         const Vec3<Real> hard = batch.mass * miss;
         Change<kRound>(batch, batch.armA, batch.armB,
                        Vec3<Real>(-(hard * Real(settings.softness.massScale) + batch.impulse * Real(settings.softness.impulseScale))), a, b);
-        if (batch.far) Pull(batch, a, b, settings);
+        if (batch.far) Pull(batch, a, b);
     });
 }
 

@@ -181,8 +181,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
         const auto acts = isFar & (row.mass > zero) & (response > zero) & (row.error <= row.openAbove) & (row.mostPush < Real(JointRow::kUnlimited));
         const Real speed = Select(moves, Real(Dot<Real>(row.b.linear, b.linear) - Dot<Real>(row.a.linear, a.linear)),
                                   Real(Dot<Real>(row.b.angular, b.angular) - Dot<Real>(row.a.angular, a.angular)));
-        const Real push = PullSpeed<Real>(row.error, settings) * (row.mostPush * Real(1.0f / settings.maxPushSpeed));
-        const Real wanted = -(speed * row.massScale + push) / Select(acts, response, one);
+        const Real wanted = -(speed + PullSpeed<Real>(row.error, settings)) / Select(acts, response, one);
         const Real impulse = Select(acts, Clamp(wanted, row.lowest, row.highest), zero);
         const Real moving = Select(moves, impulse, zero), turning = Select(moves, zero, impulse);
         a.linear -= row.a.linear * (massA * moving);
@@ -190,11 +189,10 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
         a.angular -= turnA * turning;
         b.angular += turnB * turning;
     }
-    const Real scale = batch.isFar * Real(settings.softness.massScale);
     if constexpr (kAngular != AngularLock::None) {
         auto& part = AngularPart<kAngular>(batch);
         auto miss = part.RelativeMotion(a, b);
-        for (int k = 0; k < miss.size(); ++k) miss[k] = -(miss[k] + batch.pullAngular[k]) * scale;
+        for (int k = 0; k < miss.size(); ++k) miss[k] = -(miss[k] + batch.pullAngular[k]) * batch.isFar;
         part.AddImpulse(a, b, batch.massA, batch.massB, part.GetEffectiveMass() * miss, isFar);
     }
     if constexpr (kLinear != LinearLock::None) {
@@ -206,7 +204,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
             miss += batch.pullLinear;
         }
         const Real sum = massA + massB;
-        const Vec3<Real> impulse = miss * (-scale / Select(sum > zero, sum, one));
+        const Vec3<Real> impulse = miss * (-batch.isFar / Select(sum > zero, sum, one));
         a.linear -= impulse * massA;
         b.linear += impulse * massB;
     }
