@@ -1,5 +1,7 @@
 #include <Fulcrum/Physics/Stages/Crowd.h>
 
+#include <Fulcrum/Physics/Stages/BodyLimits.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -148,8 +150,8 @@ void LimitPush(WorldState& world, uint32_t body, float h) {
     Vector3 push = world.bodies.LinearVelocityOf(body) - freeV, spin = world.bodies.AngularVelocityOf(body) - freeW;
     const float fastest = world.settings.contactPushSpeed;
     const float mine = StandsInMany(world, body) ? fastest * std::max(Length(PlaceInCrowd(body)), kSlowest) : fastest;
-    ClampLength(push, mine);
-    ClampLength(spin, mine / world.bodies.dynamics[body].outerRadius);
+    LimitLength(push, mine);
+    LimitLength(spin, mine / world.bodies.dynamics[body].outerRadius);
     Vector3 v = freeV + push;
     const float(&moved)[3] = world.bodies.states[body].deltaPosition;
     VisitFixedContacts(world, body, [&](uint32_t pair) {

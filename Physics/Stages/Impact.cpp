@@ -1,5 +1,6 @@
 #include <Fulcrum/Physics/Stages/Impact.h>
 
+#include <Fulcrum/Physics/Stages/BodyLimits.h>
 #include <Fulcrum/Physics/Stages/FreeRotation.h>
 #include <Fulcrum/Physics/Stages/SweepCast.h>
 
@@ -40,7 +41,9 @@ public:
     bool Run() {
         if (!approaches_) return false;
         const Vector3 linear[2] = {v_.linear[0], v_.linear[1]}, angular[2] = {v_.angular[0], v_.angular[1]};
-        for (int k = 0; k < kIterations; ++k)
+        // A single row is solved in one go.
+        const int iterations = hit_.pointCount == 1 && hit_.friction == 0 ? 1 : kIterations;
+        for (int k = 0; k < iterations; ++k)
             for (int i = 0; i < hit_.pointCount; ++i) {
                 Push(i);
                 Rub(i);
@@ -169,8 +172,8 @@ Impact::Rest FlyOn(const WorldState& world, uint32_t body, const Quaternion& rot
     Vector3 none = Vector3::Zero();
     d.Lock(on.displacement, none);
     on.angular = TurnedFreely(d, rotation, w, rest, RotationFromVector(on.turn) * rotation);
-    ClampLength(on.linear, d.maxLinearSpeed);
-    ClampLength(on.angular, d.maxAngularSpeed);
+    LimitLength(on.linear, d.maxLinearSpeed);
+    LimitLength(on.angular, d.maxAngularSpeed);
     return on;
 }
 
@@ -196,8 +199,8 @@ Impact FindImpact(const WorldState& world, const SweepHit& hit, float dt) {
     impact.isFinite = true;
     for (int s = 0; s < 2; ++s) {
         if (!bodies.CanMove(pair[s])) continue;
-        ClampLength(impact.linear[s], bodies.dynamics[pair[s]].maxLinearSpeed);
-        ClampLength(impact.angular[s], bodies.dynamics[pair[s]].maxAngularSpeed);
+        LimitLength(impact.linear[s], bodies.dynamics[pair[s]].maxLinearSpeed);
+        LimitLength(impact.angular[s], bodies.dynamics[pair[s]].maxAngularSpeed);
         impact.rests[s] = FlyOn(world, pair[s], impact.poses[s].rotation, impact.linear[s], impact.angular[s], since[s], rest);
         const Impact::Rest& on = impact.rests[s];
         impact.isFinite &= IsFinite(on.linear) && IsFinite(on.angular) && IsFinite(on.displacement) && IsFinite(on.turn);
