@@ -72,7 +72,9 @@ public:
         }
         EXPECT_LT(fastest, kFastest);
         EXPECT_TRUE(world_.AllFinite());
-        if (kind_ != Kind::Gear && kind_ != Kind::RackAndPinion) EXPECT_LT(error, kTogether);
+        if (kind_ != Kind::Gear && kind_ != Kind::RackAndPinion) {
+            EXPECT_LT(error, kTogether);
+        }
         if (inFull && !how_.isDriven && !how_.hasFloor && LengthSquared(how_.settings.gravity) == 0.0f) {
             EXPECT_GE(least, 0);
             EXPECT_LT(greatest, 1.05 * least + 1);

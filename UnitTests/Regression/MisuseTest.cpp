@@ -12,6 +12,14 @@
 namespace fulcrum::testing {
 namespace {
 
+// A hit of some body, to be overwritten.
+template <class Hit>
+Hit Touching() {
+    Hit hit;
+    hit.body = {7, 7};
+    return hit;
+}
+
 constexpr double kDeadline = 60;  // s
 
 // What was reported while it lives.
@@ -139,7 +147,7 @@ TEST(Misuse, BatchesInAListenerFindNothing) {
         std::atomic<int> found{0};
         const Listener listener([&] {
             const std::vector<Ray> rays(100, Ray{{0, 10, 0}, {0, -20, 0}});
-            std::vector<WorldRayHit> hits(rays.size(), WorldRayHit{.body = {7, 7}});
+            std::vector<WorldRayHit> hits(rays.size(), Touching<WorldRayHit>());
             std::vector<uint8_t> isHit(rays.size(), 1);
             world.System().Queries().CastRays(rays, hits);
             world.System().Queries().AreHit(rays, isHit);
@@ -274,7 +282,8 @@ TEST(Misuse, NullShapesInQueriesFindNothingAndAreReported) {
     WorldClosest closest;
     std::vector<WorldShapeHit> hits(1);
     std::vector<OverlapHit> overlaps(1);
-    const MovingShape moving{.displacement = {0, -1, 0}};
+    MovingShape moving;
+    moving.displacement = {0, -1, 0};
     const PlacedShape placed;
     EXPECT_FALSE(queries.CastShape(moving, hit));
     EXPECT_FALSE(queries.IsHit(moving));
@@ -289,8 +298,8 @@ TEST(Misuse, NullShapesInQueriesFindNothingAndAreReported) {
     EXPECT_EQ(reports.Take().size(), 8u);
 
     std::vector<uint8_t> flags(1, 1);
-    std::vector<WorldShapeHit> shapeHits(1, {.body = {7, 7}});
-    std::vector<WorldClosest> nearest(1, {.body = {7, 7}});
+    std::vector<WorldShapeHit> shapeHits(1, Touching<WorldShapeHit>());
+    std::vector<WorldClosest> nearest(1, Touching<WorldClosest>());
     std::vector<std::vector<OverlapHit>> lists;
     std::vector<std::vector<WorldShapeHit>> shapeLists;
     queries.CastShapes({&moving, 1}, shapeHits);
@@ -311,7 +320,9 @@ TEST(Misuse, NullShapesInQueriesFindNothingAndAreReported) {
 
 TEST(MisuseDeathTest, TheValueOfAnErrorEndsTheProgramWithItsMessage) {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
-    EXPECT_DEATH(static_cast<void>(PhysicsSystem::Create({.boundsMargin = -1}).Value()), "Value\\(\\) of an error: boundsMargin is -1");
+    SystemSettings settings;
+    settings.boundsMargin = -1;
+    EXPECT_DEATH(static_cast<void>(PhysicsSystem::Create(settings).Value()), "Value\\(\\) of an error: boundsMargin is -1");
     const Status done = Done{};
     EXPECT_DEATH(static_cast<void>(done.GetError()), "GetError\\(\\) of a result without an error");
 }
