@@ -20,13 +20,35 @@ struct FlatPoints {
     }
 };
 
+// Of the points outside of the triangle of three of them, the one that adds most area, weighted; kMost if there is none.
+template <int kMost>
+int FarthestOutside(const FlatPoints<kMost>& points, const float (&weights)[kMost], const int (&corner)[4], float nothing) {
+    constexpr float kNearly = 0.99f;
+    const auto area = [&](int a, int b, int c) {
+        return (points.u[b] - points.u[a]) * (points.v[c] - points.v[a]) - (points.v[b] - points.v[a]) * (points.u[c] - points.u[a]);
+    };
+    const float side = area(corner[0], corner[1], corner[2]) < 0.0f ? -1.0f : 1.0f;
+    float gains[kMost], most = nothing;
+    for (int i = 0; i < points.count; ++i) {
+        gains[i] = 0;
+        for (int k = 0; k < 3; ++k) gains[i] = Max(gains[i], -side * area(corner[k], corner[(k + 1) % 3], i) * weights[i]);
+        most = Max(most, gains[i]);
+    }
+    for (int i = 0; i < points.count; ++i)
+        if (gains[i] > nothing && gains[i] >= kNearly * most) return i;
+    return kMost;
+}
+
 // Writes the chosen indices in increasing order and returns how many: first a deepest point, then the point farthest
-// from it, then those that span the largest area on each side of the line of the two. The first point that is as good as
+// from it, then those that span the largest area on each side of the line of the two; where all are on one side, another there. Distances and areas count less for points that
+// do not touch yet, down to kLeastWeight: what a shape rests on must not be left out for what is farther out but above, or it
+// rocks. What counts as above is a matter of the angle by which the shape would have to tilt. The first point that is as good as
 // the best to within `depthSlop` metres, or a hundredth of the distance or area, is taken, so that rounding and tiny
 // motions change nothing.
 template <int kMost>
 int ChooseFour(FlatPoints<kMost>& points, float depthSlop, int (&chosen)[4]) {
-    constexpr float kNearly = 0.99f;
+    constexpr float kNearly = 0.99f, kLeastWeight = 0.3f;
+    constexpr float kTilt = 0.002f;  // rad: halfway to kLeastWeight
     const int count = points.count;
     if (count <= 4) {
         for (int i = 0; i < count; ++i) chosen[i] = i;
@@ -55,14 +77,22 @@ int ChooseFour(FlatPoints<kMost>& points, float depthSlop, int (&chosen)[4]) {
         chosen[0] = first;
         return 1;
     }
-    const Wide<8> far(kNearly * farthest);
+    Wide<8> weights[kMost / 8];
+    const Wide<8> touching(Max(points.separation[first], 0.0f)), perTilt(1.0f / (kTilt * Sqrt(farthest)));
+    best = Wide<8>(0.0f);
+    for (int k = 0; k < blocks; ++k) {
+        const Wide<8> above = Max(Wide<8>::Load(points.separation + 8 * k) - touching, Wide<8>(0.0f));
+        weights[k] = Wide<8>(kLeastWeight) + Wide<8>(1 - kLeastWeight) / (Wide<8>(1.0f) + above * perTilt);
+        best = Max(best, values[k] = values[k] * (weights[k] * weights[k]));
+    }
+    const Wide<8> far(kNearly * Largest(best));
     const int second = FirstWhere(values, blocks, [&](Wide<8> x) { return x >= far; });
 
     const Wide<8> alongU(points.u[second] - points.u[first]), alongV(points.v[second] - points.v[first]);
     Wide<8> most(0.0f), least(0.0f);
     for (int k = 0; k < blocks; ++k) {
         const Wide<8> du = Wide<8>::Load(points.u + 8 * k) - u0, dv = Wide<8>::Load(points.v + 8 * k) - v0;
-        values[k] = alongU * dv - alongV * du;
+        values[k] = (alongU * dv - alongV * du) * weights[k];
         most = Max(most, values[k]);
         least = Min(least, values[k]);
     }
@@ -77,6 +107,12 @@ int ChooseFour(FlatPoints<kMost>& points, float depthSlop, int (&chosen)[4]) {
     if (right < -nothing) {
         const Wide<8> wanted(kNearly * right);
         pick[found++] = FirstWhere(values, blocks, [&](Wide<8> x) { return x <= wanted; });
+    }
+    if (found == 3) {
+        alignas(32) float weightOf[kMost];
+        for (int k = 0; k < blocks; ++k) weights[k].Store(weightOf + 8 * k);
+        const int fourth = FarthestOutside(points, weightOf, pick, nothing);
+        if (fourth < kMost) pick[found++] = fourth;
     }
     for (int i = 0; i < found; ++i) {  // by insertion
         int at = i;

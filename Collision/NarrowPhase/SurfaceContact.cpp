@@ -235,7 +235,7 @@ private:
         // Side i ends where side i + 1 begins.
         const int first = count == 1 ? sides[0] : (sides[1] - sides[0] == 1 ? sides[1] : 0);
         SurfaceContacts::Waiting waiting;
-        waiting.contact = Named(view, onFace);
+        waiting.contact = waiting.onFace = Named(view, onFace);
         waiting.triangle = index;
         waiting.vertices[0] = view.vertexIds[first];
         waiting.vertices[1] = view.vertexIds[count == 1 ? (first + 1) % 3 : first];
@@ -347,7 +347,8 @@ private:
         waiting.vertices[0] = view.vertexIds[nearest[0]];
         waiting.vertices[1] = view.vertexIds[nearest[count >= 2 ? 1 : 0]];
         waiting.triangle = index;
-        waiting.contact = Named(view, waiting.active ? manifold : onFace);
+        waiting.onFace = Named(view, onFace);
+        waiting.contact = waiting.active ? Named(view, manifold) : waiting.onFace;
         waiting.separation = DeepestOf(waiting.contact.manifold);
         contacts_.waiting_.push_back(waiting);
     }
@@ -383,8 +384,10 @@ private:
             return x.separation < y.separation || (x.separation == y.separation && x.contact.triangle < y.contact.triangle);
         });
         for (const SurfaceContacts::Waiting& waiting : contacts_.waiting_) {
-            if (isKnown(waiting.vertices[0]) && isKnown(waiting.vertices[1])) continue;
-            contacts_.found_.push_back(waiting.contact);
+            const bool isOfOther = isKnown(waiting.vertices[0]) && isKnown(waiting.vertices[1]);
+            // What lies before a face rests on it, though the neighbor is nearer: without it a shape across two faces would rock.
+            if (!isOfOther) contacts_.found_.push_back(waiting.contact);
+            else if (waiting.onFace.manifold.pointCount > 0) contacts_.found_.push_back(waiting.onFace);
             isKnown(waiting.vertices[0]) = isKnown(waiting.vertices[1]) = 1;
         }
     }

@@ -42,6 +42,7 @@ private:
     // An edge or corner of a triangle that waits.
     struct Waiting {
         SurfaceManifold contact;
+        SurfaceManifold onFace;  // what lies before the face
         uint32_t triangle;        // index into views_
         uint32_t vertices[2];     // ids; the same twice for a corner
         float separation;         // m, of the deepest point

@@ -58,18 +58,19 @@ PairChange CollidePair(WorldState& world, uint32_t index, float dt, WorkerFindin
     const uint32_t now = static_cast<uint32_t>(world.report.step);
     if ((poseA.boundsChangedIn == now || poseB.boundsChangedIn == now) && !Overlap(world, pair)) return PairChange::Dead;
 
-    float motion = kFarEnd * ClosingMotion(world, pair, dt);
-    if (world.sweeps.users > 0) motion = std::min(motion, MotionBeforeCast(world, pair));
-    const float reachAhead = world.settings.speculativeDistance + motion;
-    if (pair.surface) return CollideWithSurface(world, index, reachAhead + TurningMotion(world, pair, dt), dt, findings);
-    if (pair.pointCount == 0 && !pair.offset && BallsApart(world, pair, reachAhead)) return PairChange::None;
+    const float closing = FarEndFactor(world, pair) * ClosingMotion(world, pair, dt);
+    const float mostMotion = world.sweeps.users > 0 ? MotionBeforeCast(world, pair) : std::numeric_limits<float>::infinity();
+    const auto reachOf = [&](float motion) { return world.settings.speculativeDistance + std::min(motion, mostMotion); };
+    if (!pair.surface && pair.pointCount == 0 && !pair.offset && BallsApart(world, pair, reachOf(closing))) return PairChange::None;
+    const float reachAhead = reachOf(closing + TurningMotion(world, pair, dt));
+    if (pair.surface) return CollideWithSurface(world, index, reachAhead, dt, findings);
     const PairView view = ViewPair(world, index);
     if (pair.pointCount > 0 && HardlyMoved(view)) {
         ++findings.kept;
     } else {
         CollideSettings settings;
         settings.method = world.settings.narrowPhase;
-        settings.speculativeDistance = reachAhead + TurningMotion(world, pair, dt);
+        settings.speculativeDistance = reachAhead;
         Manifold manifold;
         if (pair.shapeB->Type() == ShapeType::Plane) CollideWithPlane(static_cast<const Plane&>(*pair.shapeB), *pair.shapeA, view.bInA, settings, manifold);
         else Collide(*pair.shapeA, static_cast<const ConvexShape&>(*pair.shapeB), WithDistinctCenters(world, pair, view.bInA), settings, pair.cache, manifold, findings.libccd);

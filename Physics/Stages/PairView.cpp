@@ -68,6 +68,11 @@ bool HardlyMoved(const PairView& v) {
     return LengthSquared(d) <= 0.25f * kKeptAngle * kKeptAngle;
 }
 
+float FarEndFactor(const WorldState& world, const Pair& pair) {
+    const bool touches = world.colouring.IsTouched(pair.bodyA) || (!pair.fixedB && world.colouring.IsTouched(pair.bodyB));
+    return touches ? 2.0f : 1.0f;
+}
+
 void WriteManifold(const WorldState& world, const PairView& v, const Manifold& manifold, float dt) {
     Pair& pair = v.pair;
     ContactRecord& record = v.record;
@@ -91,6 +96,7 @@ void WriteManifold(const WorldState& world, const PairView& v, const Manifold& m
     const Vector3 vA = inA(bodies.LinearVelocityOf(pair.bodyA)), wA = inA(bodies.AngularVelocityOf(pair.bodyA));
     const Vector3 vB = inA(bodies.LinearVelocityOf(pair.bodyB)), wB = inA(bodies.AngularVelocityOf(pair.bodyB));
 
+    const float farEnd = FarEndFactor(world, pair);
     int count = 0;
     for (int i = 0; i < manifold.pointCount; ++i) {
         const ManifoldPoint& found = manifold.points[i];
@@ -101,7 +107,7 @@ void WriteManifold(const WorldState& world, const PairView& v, const Manifold& m
         const float ofB = -Dot<float>(normal, Vector3(vB + Cross<float>(wB, Vector3(meets - v.bodyBInA.position))));
         // Something else may stop one of the two.
         const float approach = std::max(ofA + ofB, std::max(ofB, pair.fixedB ? 0.0f : ofA));
-        if (found.separation > world.settings.speculativeDistance + kFarEnd * std::max(approach, 0.0f) * dt) continue;
+        if (found.separation > world.settings.speculativeDistance + farEnd * std::max(approach, 0.0f) * dt) continue;
         const Vector3 onB = v.bodyBInA.InverseTransform(meets);
         for (int k = 0; k < 3; ++k) {
             record.points[count].onA[k] = onA[k];

@@ -16,8 +16,9 @@ struct PairView {
 PairView ViewPair(WorldState& world, uint32_t pair);
 
 // A body that is hit at one end turns about there, so that its other end comes on faster than it did: a rod's by up to twice. Contacts
-// are seen so many times as far ahead as bodies move within the step.
-inline constexpr float kFarEnd = 2;
+// of bodies that touch something are looked for so many times as far ahead as they move within the step; those of others once, so that
+// what flies freely does so, exactly, up to the step in which it hits.
+float FarEndFactor(const WorldState& world, const Pair& pair);
 
 // Whether the manifolds that were found at pair.reference still do.
 bool HardlyMoved(const PairView& view);

@@ -201,7 +201,7 @@ TEST(Sensor, SeesABodyOfSeveralPiecesOnce) {
     // Three balls in a row, 0.4 m apart, of 0.25 m: as long as any of them is inside, the body is.
     const ShapePtr ball = SphereOf(0.25f);
     const ShapePtr row = CompoundOf({{ball, {-0.4f, 0, 0}}, {ball, {0, 0, 0}}, {ball, {0.4f, 0, 0}}});
-    world.Add({.shape = row, .position = {-10, 0, 0}, .linearVelocity = {1200, 0, 0}});  // 20 m
+    world.Add({.shape = row, .position = {-10, 0, 0}, .linearVelocity = {1200, 0, 0}, .maxLinearSpeed = 2000});  // 20 m
     world.Step();
     ExpectKinds(world, {kBegin, kEnd});
     EXPECT_NEAR(EventsOf(world)[0].time, (10 - 0.5 - 0.65) / 20, 1e-6);
@@ -213,7 +213,7 @@ TEST(Sensor, SeesABodyWithAGapTwice) {
     TestWorld world(NoGravity());
     world.Add(SensorOf(BoxOf(0.1f, 1, 1)));
     const ShapePtr ball = SphereOf(0.25f);
-    world.Add({.shape = CompoundOf({{ball, {-1, 0, 0}}, {ball, {1, 0, 0}}}), .position = {-10, 0, 0}, .linearVelocity = {1200, 0, 0}});
+    world.Add({.shape = CompoundOf({{ball, {-1, 0, 0}}, {ball, {1, 0, 0}}}), .position = {-10, 0, 0}, .linearVelocity = {1200, 0, 0}, .maxLinearSpeed = 2000});
     world.Step();
     ExpectKinds(world, {kBegin, kEnd, kBegin, kEnd});
     const double at[] = {10 - 1 - 0.35, 10 - 1 + 0.35, 10 + 1 - 0.35, 10 + 1 + 0.35};
@@ -228,7 +228,7 @@ TEST(Sensor, MayBeACompoundAPlaneOrAMesh) {
     const Vector3 corners[] = {{5, -9, -9}, {5, 9, -9}, {5, 9, 9}, {5, -9, 9}};
     const uint32_t triangles[] = {0, 1, 2, 0, 2, 3};
     const BodyId mesh = world.Add(SensorOf(TriangleMesh::Create({.vertices = corners, .indices = triangles}).Value()));
-    const BodyId there = world.Add({.shape = SphereOf(0.1f), .position = {-10, 0, 0}, .linearVelocity = {1200, 0, 0}});
+    const BodyId there = world.Add({.shape = SphereOf(0.1f), .position = {-10, 0, 0}, .linearVelocity = {1200, 0, 0}, .maxLinearSpeed = 2000});
     world.Step();
     std::vector<SensorEvent> events = EventsOf(world);
     ASSERT_EQ(events.size(), 6u) << ::testing::PrintToString(events);

@@ -19,7 +19,8 @@ nlohmann::json Figures() {
 
 TEST(Figures, AreThoseOfThePerformanceScenes) {
     std::set<std::string> told, known;
-    for (const nlohmann::json& scene : Figures()["scenes"]) told.insert(scene["name"].get<std::string>());
+    const nlohmann::json figures = Figures();
+    for (const nlohmann::json& scene : figures["scenes"]) told.insert(scene["name"].get<std::string>());
     for (const Scene* scene : AllScenes())
         if (scene->kind == SceneKind::Performance) known.insert(scene->name);
     EXPECT_EQ(told, known);
@@ -32,7 +33,8 @@ TEST(Figures, JointGridHasAsManyJoints) {
     uint32_t count = 0;
     world.Value()->Joints().Visit([&](JointId) { ++count; });
     EXPECT_EQ(count, 100u * 99u + 99u * 99u);
-    for (const nlohmann::json& scene : Figures()["scenes"])
+    const nlohmann::json figures = Figures();
+    for (const nlohmann::json& scene : figures["scenes"])
         if (scene["name"] == "joint_grid") { EXPECT_EQ(scene["joints"], count); }
 }
 

@@ -184,17 +184,28 @@ TEST(BoundsTree, VisitsLessThanOneNodeMoreBecauseOfAFloor) {
 }
 
 // Points on a line whose distances span all of the floats: no equal halves in space, no area, sums beyond the floats.
+TEST(BoundsTree, WhatLiesBeyondCountsAsLyingAtTheFarthest) {
+    const float infinite = std::numeric_limits<float>::infinity();
+    BoundsTree tree;
+    tree.Insert(0, Box(Vector3::Constant(3e38f), Vector3::Constant(infinite)));
+    tree.Insert(1, Box(Vector3::Constant(-infinite), Vector3::Constant(-2e38f)));
+    tree.Optimize();
+    tree.Validate();
+    EXPECT_EQ(Found(tree, Box(Vector3::Constant(BoundsTree::kFarthest), Vector3::Constant(BoundsTree::kFarthest))), std::vector<uint32_t>{0});
+    EXPECT_EQ(Found(tree, Box(Vector3::Constant(-BoundsTree::kFarthest), Vector3::Zero())), std::vector<uint32_t>{1});
+}
+
 TEST(BoundsTree, FindsPointsAtAllScales) {
     Reference reference;
     uint32_t id = 0;
-    for (float x = 3e38f; x > 1e-44f; x *= 0.5f) {
+    for (float x = BoundsTree::kFarthest; x > 1e-44f; x *= 0.5f) {
         reference.Insert(id++, Box(Vector3::Constant(x), Vector3::Constant(x)));
         reference.Insert(id++, Box(Vector3::Constant(-x), Vector3::Constant(-x)));
         reference.Insert(id++, Box(Vector3(x, 0, 0), Vector3(x, 0, 0)));
     }
     for (int build = 0; build < 3; ++build) {
         reference.tree.Validate();
-        for (float x = 3e38f; x > 1e-44f; x *= 0.25f) {
+        for (float x = BoundsTree::kFarthest; x > 1e-44f; x *= 0.25f) {
             reference.ExpectSame(Box(Vector3::Constant(x), Vector3::Constant(x)));
             reference.ExpectSame(Box(Vector3::Constant(-x), Vector3(x, 0, 0)));
         }
