@@ -39,16 +39,18 @@ int FarthestOutside(const FlatPoints<kMost>& points, const float (&weights)[kMos
     return kMost;
 }
 
+// Of points on a surface's triangles, which lie in several planes.
+inline constexpr float kLeastWeightOnSurfaces = 0.3f;
+
 // Writes the chosen indices in increasing order and returns how many: first a deepest point, then the point farthest
 // from it, then those that span the largest area on each side of the line of the two; where all are on one side, another there. Distances and areas count less for points that
-// do not touch yet, down to kLeastWeight: what a shape rests on must not be left out for what is farther out but above, or it
+// do not touch yet, down to `leastWeight`: what a shape rests on must not be left out for what is farther out but above, or it
 // rocks. What counts as above is a matter of the angle by which the shape would have to tilt. The first point that is as good as
 // the best to within `depthSlop` metres, or a hundredth of the distance or area, is taken, so that rounding and tiny
 // motions change nothing.
 template <int kMost>
-int ChooseFour(FlatPoints<kMost>& points, float depthSlop, int (&chosen)[4]) {
-    constexpr float kNearly = 0.99f, kLeastWeight = 0.3f;
-    constexpr float kTilt = 0.002f;  // rad: halfway to kLeastWeight
+int ChooseFour(FlatPoints<kMost>& points, float depthSlop, int (&chosen)[4], float leastWeight = 1.0f) {
+    constexpr float kNearly = 0.99f, kTilt = 0.002f;  // rad: halfway to leastWeight
     const int count = points.count;
     if (count <= 4) {
         for (int i = 0; i < count; ++i) chosen[i] = i;
@@ -82,7 +84,7 @@ int ChooseFour(FlatPoints<kMost>& points, float depthSlop, int (&chosen)[4]) {
     best = Wide<8>(0.0f);
     for (int k = 0; k < blocks; ++k) {
         const Wide<8> above = Max(Wide<8>::Load(points.separation + 8 * k) - touching, Wide<8>(0.0f));
-        weights[k] = Wide<8>(kLeastWeight) + Wide<8>(1 - kLeastWeight) / (Wide<8>(1.0f) + above * perTilt);
+        weights[k] = Wide<8>(leastWeight) + Wide<8>(1 - leastWeight) / (Wide<8>(1.0f) + above * perTilt);
         best = Max(best, values[k] = values[k] * (weights[k] * weights[k]));
     }
     const Wide<8> far(kNearly * Largest(best));

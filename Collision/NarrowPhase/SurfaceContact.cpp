@@ -497,7 +497,7 @@ private:
                 flat.Add(Dot(u_, point.positionOnA), Dot(v_, point.positionOnA), point.separation);
             }
             int chosen[4];
-            count_ = ChooseFour(flat, slop_, chosen);
+            count_ = ChooseFour(flat, slop_, chosen, kLeastWeightOnSurfaces);
             ManifoldPoint kept[4];
             for (int i = 0; i < count_; ++i) kept[i] = points_[order[chosen[i]]];
             std::copy(kept, kept + count_, points_);

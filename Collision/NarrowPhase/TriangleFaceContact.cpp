@@ -112,7 +112,7 @@ FaceContact BuildTriangleFaceContact(const Polyhedron& core, int incidentFace, c
         const Vector3 u = Perpendicular(normal), v = Cross<float>(normal, u);
         for (int i = 0; i < nearCount; ++i)
             points.Add(Dot(u, face.current[near[i]].position), Dot(v, face.current[near[i]].position), separations[near[i]]);
-        count = ChooseFour(points, tolerances.prefer, chosen);
+        count = ChooseFour(points, tolerances.prefer, chosen, kLeastWeightOnSurfaces);
     }
     manifold.pointCount = count;
     for (int i = 0; i < count; ++i) {

@@ -266,8 +266,9 @@ TEST(ListenerCost, ASettledStepAllocatesNothing) {
         Asking listener;
         TestWorld world(NoSleep(), threads);
         const BodyId floor = world.AddFloor();
-        for (int i = 0; i < 12; ++i)
-            for (int row = 0; row < 3; ++row) world.Add({.shape = CubeOf(0.25f), .position = {i - 6.0, 0.25 + 0.5 * row, 0}});
+        // No farther out than 5 m: the jerk at the start throws a column over that begins at 1.2 m/s.
+        for (int i = 0; i < 11; ++i)
+            for (int row = 0; row < 3; ++row) world.Add({.shape = CubeOf(0.25f), .position = {i - 5.0, 0.25 + 0.5 * row, 0}});
         // A turntable: all boxes circle for ever.
         listener.modify = [&](const ContactView& contact, ContactChange& change) {
             change.friction = 0.9f;
@@ -281,7 +282,7 @@ TEST(ListenerCost, ASettledStepAllocatesNothing) {
             if (!status) ADD_FAILURE();
         }
         EXPECT_EQ(AllocationCount() - before, 0u) << threads << " threads";
-        EXPECT_EQ(world.Report().contacts, 36u);
+        EXPECT_EQ(world.Report().contacts, 33u);
     }
 }
 

@@ -11,10 +11,10 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0xc533033c59054b41ull;
-constexpr uint64_t kGoldenHashOfJoints = 0x14174bbc5dd65dc7ull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x26fdd719afb6569eull;
-constexpr uint64_t kGoldenHashOfFastBodies = 0x5c21c18356c52665ull;
+constexpr uint64_t kGoldenHash = 0xa6145c9b1b738d2eull;
+constexpr uint64_t kGoldenHashOfJoints = 0x1248f739d1b49d55ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0x336ee66c011184e6ull;
+constexpr uint64_t kGoldenHashOfFastBodies = 0x8c0382adc34a2e2eull;
 
 std::string Hex(uint64_t number) {
     char text[24];
