@@ -42,7 +42,7 @@ find_program(NINJA ninja)
 if(NINJA)
   set(GENERATOR "Ninja Multi-Config")
   configure_consumer(multi "" -DCMAKE_DEFAULT_BUILD_TYPE=Debug)
-  expect(engine "INTDIR=[^ ]*Debug[^ ]* +-g ")
+  expect(engine "INTDIR=[^ ]*Debug[^ ]* +-I[^ ]+ +-isystem +[^ ]+ +-g ")
 endif()
 
 # Tests of the engine without samples ask for none of the packages that samples and benchmarks need.
