@@ -3,6 +3,8 @@
 
 #include <Fulcrum/Collision/NarrowPhase/LaneSearch.h>
 
+#include <algorithm>
+
 namespace fulcrum {
 
 // Contact points as the choice sees them: two coordinates in the contact plane, and the separation. By lanes: the arrays
@@ -43,11 +45,11 @@ int FarthestOutside(const FlatPoints<kMost>& points, const float (&weights)[kMos
 inline constexpr float kLeastWeightOnSurfaces = 0.3f;
 
 // Writes the chosen indices in increasing order and returns how many: first a deepest point, then the point farthest
-// from it, then those that span the largest area on each side of the line of the two; where all are on one side, another there. Distances and areas count less for points that
-// do not touch yet, down to `leastWeight`: what a shape rests on must not be left out for what is farther out but above, or it
-// rocks. What counts as above is a matter of the angle by which the shape would have to tilt. The first point that is as good as
-// the best to within `depthSlop` metres, or a hundredth of the distance or area, is taken, so that rounding and tiny
-// motions change nothing.
+// from it, then those that span the largest area on each side of the line of the two; where all are on one side, another
+// there. Distances and areas count less for points that do not touch yet, down to `leastWeight`: what a shape rests on must
+// not be left out for what is farther out but above, or it rocks. What counts as above is a matter of the angle by which the
+// shape would have to tilt. The first point that is as good as the best to within `depthSlop` metres, or a hundredth of the
+// distance or area, is taken, so that rounding and tiny motions change nothing.
 template <int kMost>
 int ChooseFour(FlatPoints<kMost>& points, float depthSlop, int (&chosen)[4], float leastWeight = 1.0f) {
     constexpr float kNearly = 0.99f, kTilt = 0.002f;  // rad: halfway to leastWeight
@@ -80,14 +82,19 @@ int ChooseFour(FlatPoints<kMost>& points, float depthSlop, int (&chosen)[4], flo
         return 1;
     }
     Wide<8> weights[kMost / 8];
-    const Wide<8> touching(Max(points.separation[first], 0.0f)), perTilt(1.0f / (kTilt * Sqrt(farthest)));
-    best = Wide<8>(0.0f);
-    for (int k = 0; k < blocks; ++k) {
-        const Wide<8> above = Max(Wide<8>::Load(points.separation + 8 * k) - touching, Wide<8>(0.0f));
-        weights[k] = Wide<8>(leastWeight) + Wide<8>(1 - leastWeight) / (Wide<8>(1.0f) + above * perTilt);
-        best = Max(best, values[k] = values[k] * (weights[k] * weights[k]));
+    std::fill_n(weights, blocks, Wide<8>(1.0f));
+    float farthestWeighted = farthest;
+    if (leastWeight < 1.0f) {
+        const Wide<8> touching(Max(points.separation[first], 0.0f)), perTilt(1.0f / (kTilt * Sqrt(farthest)));
+        best = Wide<8>(0.0f);
+        for (int k = 0; k < blocks; ++k) {
+            const Wide<8> above = Max(Wide<8>::Load(points.separation + 8 * k) - touching, Wide<8>(0.0f));
+            weights[k] = Wide<8>(leastWeight) + Wide<8>(1 - leastWeight) / (Wide<8>(1.0f) + above * perTilt);
+            best = Max(best, values[k] = values[k] * (weights[k] * weights[k]));
+        }
+        farthestWeighted = Largest(best);
     }
-    const Wide<8> far(kNearly * Largest(best));
+    const Wide<8> far(kNearly * farthestWeighted);
     const int second = FirstWhere(values, blocks, [&](Wide<8> x) { return x >= far; });
 
     const Wide<8> alongU(points.u[second] - points.u[first]), alongV(points.v[second] - points.v[first]);
