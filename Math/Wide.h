@@ -41,11 +41,20 @@ inline namespace vector_lanes {
 
 // Lanes of a batch of constraints in this build.
 #if defined(FULCRUM_SCALAR_LANES)
-inline constexpr int kLanes = 1;
+#define FULCRUM_LANES 1
 #elif defined(__AVX2__)
-inline constexpr int kLanes = 8;
+#define FULCRUM_LANES 8
 #else
-inline constexpr int kLanes = 4;
+#define FULCRUM_LANES 4
+#endif
+inline constexpr int kLanes = FULCRUM_LANES;
+
+// Calls a macro of (lanes, ...) for the lanes that kernels are compiled for: one, and those of this build.
+#if FULCRUM_LANES == 1
+#define FULCRUM_FOR_EACH_WIDTH(instantiate, ...) instantiate(1 __VA_OPT__(, ) __VA_ARGS__)
+#else
+#define FULCRUM_FOR_EACH_WIDTH(instantiate, ...) \
+    instantiate(1 __VA_OPT__(, ) __VA_ARGS__) instantiate(FULCRUM_LANES __VA_OPT__(, ) __VA_ARGS__)
 #endif
 
 // "scalar", "SSE2", "AVX2" or "vector": what this build was compiled for.

@@ -36,11 +36,6 @@ struct Frame {
     Quaternion rotation;
 };
 
-Quaternion RotationOf(const JointAnchor& anchor) {
-    const Vector3 axis = Normalized(anchor.axis);
-    return RotationFromAxesXY(axis, anchor.normal ? *anchor.normal : Perpendicular(axis));
-}
-
 Frame FrameOf(const WorldState& world, uint32_t body, const JointAnchor& anchor, JointSpace space) {
     const Pose centre = world.bodies.CentrePoseOf(body);
     const Quaternion rotation = RotationOf(anchor);

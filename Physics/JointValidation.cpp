@@ -33,7 +33,7 @@ MaybeError CheckNotNaN(const FieldName& field, double x) {
     return Error{ErrorCode::NonFinite, field.Text() + " is NaN; it must be a number"};
 }
 
-MaybeError CheckFinite(const FieldName& field, double x) {
+MaybeError CheckFiniteField(const FieldName& field, double x) {
     if (std::isfinite(x)) return std::nullopt;
     return Error{ErrorCode::NonFinite, field.Text() + " is " + Number(x) + "; it must be finite"};
 }
@@ -97,8 +97,8 @@ MaybeError CheckLimits(const FieldName& name, const JointLimits& limits) {
 
 MaybeError CheckMotor(const FieldName& name, const JointMotor& motor) {
     return FirstOf(CheckEnum({name, ".mode"}, motor.mode, MotorMode::ToPosition),
-                   CheckFinite({name, ".targetSpeed"}, motor.targetSpeed),
-                   CheckFinite({name, ".targetPosition"}, motor.targetPosition),
+                   CheckFiniteField({name, ".targetSpeed"}, motor.targetSpeed),
+                   CheckFiniteField({name, ".targetPosition"}, motor.targetPosition),
                    CheckSpring({name, ".spring"}, motor.spring), CheckBetween({name, ".minForce"}, motor.minForce, -kEndless, 0.0),
                    CheckBetween({name, ".maxForce"}, motor.maxForce, 0.0, kEndless));
 }
@@ -110,7 +110,7 @@ MaybeError CheckFriction(const FieldName& field, float x) {
 
 // A ratio of gears and the like.
 MaybeError CheckNotZero(const FieldName& field, float x) {
-    if (MaybeError e = CheckFinite(field, x)) return e;
+    if (MaybeError e = CheckFiniteField(field, x)) return e;
     if (x != 0.0f) return std::nullopt;
     return Error{ErrorCode::OutOfRange, field.Text() + " is 0; it must not be"};
 }
@@ -141,6 +141,11 @@ MaybeError CheckWith(const JointSettings& settings, Checks&&... checks) {
 }
 
 }  // namespace
+
+Quaternion RotationOf(const JointAnchor& anchor) {
+    const Vector3 axis = Normalized(anchor.axis);
+    return RotationFromAxesXY(axis, anchor.normal ? *anchor.normal : Perpendicular(axis));
+}
 
 MaybeError CheckCommon(const JointSettings& s) {
     return FirstOf(CheckEnum("space", s.space, JointSpace::Body), CheckAnchor("anchorA", s.anchorA),

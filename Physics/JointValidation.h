@@ -23,6 +23,9 @@ private:
     const char* name_;
 };
 
+// Of an anchor's frame, X along its axis, in the space that it is given in.
+Quaternion RotationOf(const JointAnchor& anchor);
+
 // What all joints share.
 MaybeError CheckCommon(const JointSettings& settings);
 // Of an axis; limits may be infinite where the bounds are. Allocates nothing where nothing is wrong.

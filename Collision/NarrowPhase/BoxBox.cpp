@@ -13,8 +13,8 @@ namespace {
 
 using Four = Wide<4>;
 
-Four Lanes(float a, float b, float c) { return Four::Of(Four::Float{a, b, c, a}); }
-Four Lanes(const Vector3& v) { return Lanes(v.x(), v.y(), v.z()); }
+Four FourOf(float a, float b, float c) { return Four::Of(Four::Float{a, b, c, a}); }
+Four FourOf(const Vector3& v) { return FourOf(v.x(), v.y(), v.z()); }
 
 BoxPair MakePair(const Box& a, const Box& b, const RelativePose& bInA) {
     BoxPair pair;
@@ -50,13 +50,13 @@ struct BestFace {
 // The six face axes, three at once. Among equals A's come first, or what the cache holds.
 BestFace FindBestFace(const BoxPair& pair, const PairCache& cache, float prefer) {
     const Matrix3 &r = pair.rotation, &t = pair.transposed;
-    const Four halfA = Lanes(pair.halfA), halfB = Lanes(pair.halfB);
-    const Four ofA = Abs(Lanes(pair.position)) - halfA -
-                     (Abs(Lanes(r.x)) * Four(pair.halfB.x()) + Abs(Lanes(r.y)) * Four(pair.halfB.y()) +
-                      Abs(Lanes(r.z)) * Four(pair.halfB.z()));
-    const Four ofB = Abs(Lanes(pair.positionInB)) - halfB -
-                     (Abs(Lanes(t.x)) * Four(pair.halfA.x()) + Abs(Lanes(t.y)) * Four(pair.halfA.y()) +
-                      Abs(Lanes(t.z)) * Four(pair.halfA.z()));
+    const Four halfA = FourOf(pair.halfA), halfB = FourOf(pair.halfB);
+    const Four ofA = Abs(FourOf(pair.position)) - halfA -
+                     (Abs(FourOf(r.x)) * Four(pair.halfB.x()) + Abs(FourOf(r.y)) * Four(pair.halfB.y()) +
+                      Abs(FourOf(r.z)) * Four(pair.halfB.z()));
+    const Four ofB = Abs(FourOf(pair.positionInB)) - halfB -
+                     (Abs(FourOf(t.x)) * Four(pair.halfA.x()) + Abs(FourOf(t.y)) * Four(pair.halfA.y()) +
+                      Abs(FourOf(t.z)) * Four(pair.halfA.z()));
     int a = ofA[1] > ofA[0] ? 1 : 0, b = ofB[1] > ofB[0] ? 1 : 0;
     if (ofA[2] > ofA[a]) a = 2;
     if (ofB[2] > ofB[b]) b = 2;
@@ -84,12 +84,12 @@ BestEdges FindBestEdges(const BoxPair& pair) {
     const Matrix3& t = pair.transposed;
     const Vector3* rows = &t.x;
     const Vector3 &p = pair.position, &a = pair.halfA, &b = pair.halfB;
-    const Four bm = Lanes(b.y(), b.z(), b.x()), bn = Lanes(b.z(), b.x(), b.y());
+    const Four bm = FourOf(b.y(), b.z(), b.x()), bn = FourOf(b.z(), b.x(), b.y());
     BestEdges best{-std::numeric_limits<float>::infinity(), 0, 0};
     for (int i = 0; i < 3; ++i) {
         const int j = i == 2 ? 0 : i + 1, k = i == 0 ? 2 : i - 1;
-        const Four rowJ = Lanes(rows[j]), rowK = Lanes(rows[k]);
-        const Four rowM = Lanes(rows[i].y(), rows[i].z(), rows[i].x()), rowN = Lanes(rows[i].z(), rows[i].x(), rows[i].y());
+        const Four rowJ = FourOf(rows[j]), rowK = FourOf(rows[k]);
+        const Four rowM = FourOf(rows[i].y(), rows[i].z(), rows[i].x()), rowN = FourOf(rows[i].z(), rows[i].x(), rows[i].y());
         const Four distance = Abs(Four(p[k]) * rowJ - Four(p[j]) * rowK);
         const Four reachA = Four(a[j]) * Abs(rowK) + Four(a[k]) * Abs(rowJ);
         const Four reachB = bm * Abs(rowN) + bn * Abs(rowM);

@@ -9,7 +9,7 @@ namespace {
 
 using Four = Wide<4>;
 
-Four Lanes(float a, float b, float c, float d) { return Four::Of(Four::Float{a, b, c, d}); }
+Four FourOf(float a, float b, float c, float d) { return Four::Of(Four::Float{a, b, c, d}); }
 
 // The other box's face as a parallelogram over the reference face: middle and half sides in the coordinates (u, v) along
 // the reference face and its separation w from the plane of it.
@@ -71,12 +71,12 @@ uint32_t FeatureOf(const Origin& origin, const FaceCorners& reference, const Fac
 // Concept and Method for Line Clipping, ACM TOG 3(1), 1984). The rectangle is larger by the slop, so that sides that lie on
 // each other stay whole under tiny motions. Each side gives its entry point, if cut there, and its exit or end.
 void AddCutSides(const Parallelogram& p, float halfU, float halfV, float slop, float reach, Candidates& out) {
-    const Four sign1 = Lanes(1, -1, -1, 1), sign2 = Lanes(1, 1, -1, -1);
+    const Four sign1 = FourOf(1, -1, -1, 1), sign2 = FourOf(1, 1, -1, -1);
     const Four u = Four(p.u) + sign1 * Four(p.u1) + sign2 * Four(p.u2);
     const Four v = Four(p.v) + sign1 * Four(p.v1) + sign2 * Four(p.v2);
     const Four w = Four(p.w) + sign1 * Four(p.w1) + sign2 * Four(p.w2);
     // From corner k to the next: -2 along the first side, -2 along the second, and back.
-    const Four step1 = Lanes(-2, 0, 2, 0), step2 = Lanes(0, -2, 0, 2);
+    const Four step1 = FourOf(-2, 0, 2, 0), step2 = FourOf(0, -2, 0, 2);
     const Four du = step1 * Four(p.u1) + step2 * Four(p.u2), dv = step1 * Four(p.v1) + step2 * Four(p.v2);
     const Four dw = step1 * Four(p.w1) + step2 * Four(p.w2);
 
@@ -122,7 +122,7 @@ void AddCoveredCorners(const Parallelogram& p, float halfU, float halfV, float s
     const float determinant = p.u1 * p.v2 - p.u2 * p.v1;
     if (Abs(determinant) <= 1e-12f * (halfU * halfV)) return;  // seen edge on
     const float scale = 1.0f / determinant;
-    const Four u = Lanes(halfU, -halfU, -halfU, halfU), v = Lanes(halfV, halfV, -halfV, -halfV);
+    const Four u = FourOf(halfU, -halfU, -halfU, halfU), v = FourOf(halfV, halfV, -halfV, -halfV);
     const Four du = u - Four(p.u), dv = v - Four(p.v);
     const Four along1 = (du * Four(p.v2) - dv * Four(p.u2)) * Four(scale);
     const Four along2 = (dv * Four(p.u1) - du * Four(p.v1)) * Four(scale);
@@ -139,7 +139,7 @@ void AddCoveredCorners(const Parallelogram& p, float halfU, float halfV, float s
 }
 
 // A face of A or B, and the direction in which the other box is seen from it, in the frame of that box.
-struct Reference {
+struct ReferenceBoxFace {
     bool ofA;
     int face;
     Vector3 direction;  // unit
@@ -154,7 +154,7 @@ Parallelogram Projected(const Parallelogram& p, const FaceFrame& frame, const Ve
             p.u2 - du * p.w2, p.v2 - dv * p.w2, p.w2 * perHeight};
 }
 
-bool BuildContact(const BoxPair& pair, const Reference& seen, float separation, const ContactTolerances& tolerances, Manifold& manifold) {
+bool BuildContact(const BoxPair& pair, const ReferenceBoxFace& seen, float separation, const ContactTolerances& tolerances, Manifold& manifold) {
     const int face = seen.face;
     const bool ofA = seen.ofA;
     const FaceFrame frame{face / 2, (face / 2 + 1) % 3, (face / 2 + 2) % 3, face % 2 == 0 ? 1.0f : -1.0f};

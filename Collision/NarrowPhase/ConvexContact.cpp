@@ -23,15 +23,15 @@ void FindFace(const SupportPair& pair, bool ofA, const Vector3& direction, Suppo
     if (face.count > 2) face.normal = pair.rotation * face.normal;
 }
 
-struct Reference {
+struct ReferenceSide {
     bool ofA;
     SupportingFace face;
     Vector3 axis;      // from A towards B: the face's normal, or against it
     float separation;  // m, of the cores along the axis
 };
 
-Reference MakeReference(const SupportPair& pair, bool ofA, const SupportingFace& face) {
-    Reference reference{ofA, face, ofA ? face.normal : Vector3(-face.normal), 0};
+ReferenceSide MakeReference(const SupportPair& pair, bool ofA, const SupportingFace& face) {
+    ReferenceSide reference{ofA, face, ofA ? face.normal : Vector3(-face.normal), 0};
     reference.separation = pair.SeparationAlong(reference.axis);
     return reference;
 }
@@ -54,7 +54,7 @@ struct Clipped {
     int count = 0;
 
     void Clip(const SupportingFace& reference, float slop);
-    uint32_t Feature(int i, const Reference& reference) const;
+    uint32_t Feature(int i, const ReferenceSide& reference) const;
 };
 
 void Clipped::Clip(const SupportingFace& reference, float slop) {
@@ -87,7 +87,7 @@ uint32_t NameOfEdge(const SupportingFace& face, uint32_t i) {
     return from < to ? from | to << 16 : to | from << 16;
 }
 
-uint32_t Clipped::Feature(int i, const Reference& reference) const {
+uint32_t Clipped::Feature(int i, const ReferenceSide& reference) const {
     const auto crossing = [&](uint32_t incidentEdge, uint32_t side) {
         const uint32_t referenceEdge = NameOfEdge(reference.face, side);
         return reference.ofA ? CrossingFeature(referenceEdge, incidentEdge) : CrossingFeature(incidentEdge, referenceEdge);
@@ -109,7 +109,7 @@ uint32_t Clipped::Feature(int i, const Reference& reference) const {
 
 // How far inside all sides of the face the middle of the deepest points lies: a disc of that radius about it, in the
 // reference face's plane, belongs to the Minkowski difference.
-float DiscRadius(const Reference& reference, const Clipped& clipped, float offset, float deepEnough) {
+float DiscRadius(const ReferenceSide& reference, const Clipped& clipped, float offset, float deepEnough) {
     Vector3 middle = Vector3::Zero();
     float count = 0;
     for (int i = 0; i < clipped.count; ++i) {
@@ -131,7 +131,7 @@ struct Built {
     bool proven = false;   // no axis separates the cores by more than the face does
 };
 
-Built BuildFromFace(const SupportPair& pair, const Reference& reference, const ContactTolerances& tolerances, Manifold& manifold) {
+Built BuildFromFace(const SupportPair& pair, const ReferenceSide& reference, const ContactTolerances& tolerances, Manifold& manifold) {
     const Vector3& normal = reference.face.normal;
     Clipped clipped;
     FindFace(pair, !reference.ofA, Vector3(-normal), clipped.incident);
@@ -182,7 +182,7 @@ void Remember(PairCache::Kind kind, const Vector3& axis, PairCache& cache) {
 // The best face that is nearly as good an axis as the known one, if any.
 bool TryFaces(const SupportPair& pair, const KnownContact& known, const SupportingFace& faceA, const SupportingFace& faceB,
               const ContactTolerances& tolerances, PairCache& cache, Manifold& manifold) {
-    Reference references[2];
+    ReferenceSide references[2];
     int order[2] = {0, 1}, count = 0;
     const float enough = known.separation - tolerances.prefer;
     if (faceA.count > 2) {
@@ -198,7 +198,7 @@ bool TryFaces(const SupportPair& pair, const KnownContact& known, const Supporti
         if (references[1].separation > references[0].separation + bias) std::swap(order[0], order[1]);
     }
     for (int i = 0; i < count; ++i) {
-        const Reference& reference = references[order[i]];
+        const ReferenceSide& reference = references[order[i]];
         if (!BuildFromFace(pair, reference, tolerances, manifold).touches || manifold.pointCount == 0) continue;
         const Vector3& normal = reference.face.normal;
         Remember(reference.ofA ? PairCache::Kind::FaceOfA : PairCache::Kind::FaceOfB,
@@ -287,7 +287,7 @@ CachedFace TryCachedFace(const SupportPair& pair, const ContactTolerances& toler
     FindFace(pair, ofA, ofA ? stored : Vector3(pair.rotation * stored), face);
     CachedFace result{false, ofA ? stored : Vector3(-(pair.rotation * stored))};
     if (face.count < 3) return result;
-    const Reference reference = MakeReference(pair, ofA, face);
+    const ReferenceSide reference = MakeReference(pair, ofA, face);
     if (reference.separation > tolerances.reach) {
         manifold.normal = reference.axis;
         manifold.pointCount = 0;

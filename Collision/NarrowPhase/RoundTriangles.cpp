@@ -10,7 +10,6 @@ namespace {
 using Lanes = TriangleLanes;
 using Vector = Vec3<TriangleLanes>;
 
-Lanes Along(const Vector& a, const Vector& b) { return Dot<Lanes>(a, b); }
 Vector3 At(const Vector& v, int lane) { return Vector3(v.x()[lane], v.y()[lane], v.z()[lane]); }
 Vector Spread(const Vector3& v) { return Vector(Lanes(v.x()), Lanes(v.y()), Lanes(v.z())); }
 

@@ -147,7 +147,7 @@ private:
             Vector3 axis(batch.closest.x()[i], batch.closest.y()[i], batch.closest.z()[i]);
             // A centre in the surface itself is pushed out through the face.
             axis = distance > 1e-6f * core_.radius ? Vector3(axis * (1.0f / distance)) : Vector3(-contacts_.views_[index].normal);
-            WriteBallContact(axes_ * axis, distance, core_.radius, nearest);
+            WriteBallContact(Vector3(axes_ * axis), distance, core_.radius, nearest);
             Settle(index, axis, false, none, nearest);
         }
     }

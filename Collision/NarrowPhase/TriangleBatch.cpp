@@ -11,8 +11,6 @@ namespace {
 using Lanes = TriangleLanes;
 using Vector = Vec3<TriangleLanes>;
 
-Lanes Along(const Vector& a, const Vector& b) { return Dot<Lanes>(a, b); }
-
 // In the shape's frame: by lanes over the directions, one vertex after the other.
 Lanes FarthestOfFew(const Polyhedron& core, const Vector& direction) {
     const auto value = [&](int i) {

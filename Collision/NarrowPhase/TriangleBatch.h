@@ -10,6 +10,8 @@ namespace fulcrum {
 
 using TriangleLanes = Wide<8>;
 
+inline TriangleLanes Along(const Vec3<TriangleLanes>& a, const Vec3<TriangleLanes>& b) { return Dot<TriangleLanes>(a, b); }
+
 // The shape, seen from the surface.
 struct SurfaceProbe {
     const ConvexShape& shape;

@@ -102,20 +102,20 @@ Lane Best(const Wide<8>& values, const Wide<8>& faces, float sign) {
 // Between the last plane that the line enters and the first that it leaves; eight faces at once. `grown`: m, by which the faces
 // are moved outwards.
 bool ChordOfFaces(const ConvexHull& hull, float grown, const LinePiece& line, Chord& chord) {
-    using Lanes = Wide<8>;
-    const Lanes px(line.point.x()), py(line.point.y()), pz(line.point.z());
-    const Lanes dx(line.direction.x()), dy(line.direction.y()), dz(line.direction.z());
-    const Lanes zero(0.0f), infinity(kInfinity), more(grown);
-    Lanes in = -infinity, out = infinity, inFace = zero, outFace = zero;
+    using Eight = Wide<8>;
+    const Eight px(line.point.x()), py(line.point.y()), pz(line.point.z());
+    const Eight dx(line.direction.x()), dy(line.direction.y()), dz(line.direction.z());
+    const Eight zero(0.0f), infinity(kInfinity), more(grown);
+    Eight in = -infinity, out = infinity, inFace = zero, outFace = zero;
     float first[8] = {0, 1, 2, 3, 4, 5, 6, 7};
-    Lanes faces = Lanes::Load(first);
+    Eight faces = Eight::Load(first);
     auto outside = zero < zero;
     for (int i = 0; i < hull.PaddedFaceCount(); i += 8) {
-        const Lanes nx = Lanes::Load(hull.NormalLaneX() + i), ny = Lanes::Load(hull.NormalLaneY() + i),
-                    nz = Lanes::Load(hull.NormalLaneZ() + i);
-        const Lanes speed = nx * dx + ny * dy + nz * dz;
-        const Lanes height = Lanes::Load(hull.OffsetLane() + i) + more - (nx * px + ny * py + nz * pz);
-        const Lanes distance = height / speed;
+        const Eight nx = Eight::Load(hull.NormalLaneX() + i), ny = Eight::Load(hull.NormalLaneY() + i),
+                    nz = Eight::Load(hull.NormalLaneZ() + i);
+        const Eight speed = nx * dx + ny * dy + nz * dz;
+        const Eight height = Eight::Load(hull.OffsetLane() + i) + more - (nx * px + ny * py + nz * pz);
+        const Eight distance = height / speed;
         const auto enters = speed < zero, leaves = speed > zero;
         outside = outside | (~(enters | leaves) & (height < zero));
         const auto later = enters & (distance > in), earlier = leaves & (distance < out);
@@ -123,7 +123,7 @@ bool ChordOfFaces(const ConvexHull& hull, float grown, const LinePiece& line, Ch
         inFace = Select(later, faces, inFace);
         out = Select(earlier, distance, out);
         outFace = Select(earlier, faces, outFace);
-        faces += Lanes(8.0f);
+        faces += Eight(8.0f);
     }
     if (outside.Any()) return false;
     const Lane entry = Best(in, inFace, 1), exit = Best(out, outFace, -1);

@@ -10,12 +10,11 @@ namespace fulcrum {
 
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 Bounds Everywhere() {
     Bounds bounds;
-    bounds.lower = Vector3::Constant(-kInfinity);
-    bounds.upper = Vector3::Constant(kInfinity);
+    bounds.lower = Vector3::Constant(-std::numeric_limits<float>::infinity());
+    bounds.upper = Vector3::Constant(std::numeric_limits<float>::infinity());
     return bounds;
 }
 

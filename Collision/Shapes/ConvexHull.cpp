@@ -33,7 +33,7 @@ Status CheckInput(std::span<const Vector3> points, const ConvexHullSettings& set
 }
 
 // By halves, which waits a third as long as lane after lane. The order makes no difference to a maximum.
-float Largest(const Wide<kLanes>& wide) {
+float LargestOf(const Wide<kLanes>& wide) {
     if constexpr (kLanes < 4) return HorizontalMax(wide);
     alignas(64) float lanes[kLanes < 4 ? 4 : kLanes];
     wide.Store(lanes);
@@ -203,7 +203,7 @@ size_t FirstFarthest(const float* laneX, const float* laneY, const float* laneZ,
         value.Store(values + i);
         best = Max(value, best);
     }
-    const Lanes top(Largest(best));
+    const Lanes top(LargestOf(best));
     for (int block = 0; block < count; block += 64) {
         uint64_t isTop = 0;
         const int end = std::min(block + 64, count);

@@ -34,7 +34,7 @@ struct PaddedRay {
     }
 };
 
-float Largest(const Vector3& v) { return Max(Abs(v.x()), Max(Abs(v.y()), Abs(v.z()))); }
+float LargestCoordinate(const Vector3& v) { return Max(Abs(v.x()), Max(Abs(v.y()), Abs(v.z()))); }
 
 uint32_t CellAt(float place, float origin, float size, uint32_t first, uint32_t last) {
     const float cell = (place - origin) / size;
@@ -51,7 +51,7 @@ void HeightField::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& v
     const ShearedRay sheared(ray.origin, ray.displacement);
     const bool fromBehind = ray.backFaces || isTwoSided_;
     const PaddedRay padded{ray.origin, ray.displacement, BoundedInverse(ray.displacement),
-                           0x1p-20f * (Largest(bounds_.lower) + Largest(bounds_.upper) + Largest(ray.origin))};
+                           0x1p-20f * (LargestCoordinate(bounds_.lower) + LargestCoordinate(bounds_.upper) + LargestCoordinate(ray.origin))};
 
     const auto meetBox = [&](CellRange x, CellRange z, float low, float high, Interval within) {
         within = padded.Between(0, X(x.first), X(x.last + 1), within);

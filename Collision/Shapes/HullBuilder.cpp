@@ -7,7 +7,7 @@
 namespace fulcrum {
 namespace {
 
-constexpr int kNone = -1;
+constexpr int kNoIndex = -1;
 
 // Groups the triangles of a hull into polygons for one tolerance. Grouping and vertices that become superfluous only ever
 // leave things out, so the result is either a proper polyhedron or found not to be: then the caller lowers the tolerance,
@@ -58,7 +58,7 @@ int Merger::Opposite(int triangle, int other) const {
     const TriangleHull::Triangle& t = hull_.triangles[other];
     for (int e = 0; e < 3; ++e)
         if (t.neighbour[e] == triangle) return t.corner[(e + 2) % 3];
-    return kNone;
+    return kNoIndex;
 }
 
 void Merger::Merge(int a, int b) {
@@ -143,7 +143,7 @@ Merger::Loop Merger::Boundary(int group) const {
     int at = edges[0].first;
     do {
         loop.push_back(at);
-        at = std::lower_bound(edges.begin(), edges.end(), std::pair<int, int>(at, kNone))->second;
+        at = std::lower_bound(edges.begin(), edges.end(), std::pair<int, int>(at, kNoIndex))->second;
     } while (at != edges[0].first);
     if (loop.size() != edges.size()) loop.clear();
     return loop;
@@ -164,7 +164,7 @@ bool Merger::IsConvex(const Loop& loop, const Position& normal) const {
 
 bool Merger::Trace(HullMesh& mesh) {
     std::vector<std::pair<Position, Loop>> loops;
-    std::vector<int> degree(points_.size(), 0), newIndex(points_.size(), kNone);
+    std::vector<int> degree(points_.size(), 0), newIndex(points_.size(), kNoIndex);
     for (size_t g = 0; g < groups_.size(); ++g) {
         if (groups_[g].triangles.empty()) continue;
         const Position& sum = groups_[g].areaNormal;

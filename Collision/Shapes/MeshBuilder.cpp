@@ -7,7 +7,7 @@
 namespace fulcrum {
 namespace {
 
-constexpr uint32_t kNone = ~0u;
+constexpr uint32_t kNoNode = ~0u;
 constexpr int kWidth = MeshNode::kWidth;
 constexpr uint32_t kLeaf = MeshNode::kMaxLeaf;
 constexpr uint32_t kBottom = kWidth * kLeaf;   // triangles that fit a node whose children are leaves
@@ -17,8 +17,8 @@ constexpr int kFreeDepth = 18;                 // below, sets are halved, which 
 struct DraftNode {
     struct Child {
         BoxSet set;
-        uint32_t node = kNone;   // in the same list; none: a leaf, or the root of a task's list
-        uint32_t task = kNone;
+        uint32_t node = kNoNode;   // in the same list; none: a leaf, or the root of a task's list
+        uint32_t task = kNoNode;
     };
     Child children[kWidth];
     int childCount = 0;
@@ -147,7 +147,7 @@ private:
     }
 
     const DraftNodes& ListOf(const DraftNodes& nodes, const DraftNode::Child& child) const {
-        return child.task == kNone ? nodes : tasks_[child.task].nodes;
+        return child.task == kNoNode ? nodes : tasks_[child.task].nodes;
     }
 
     // Writes a node in its place, gives its leaves' triangles their numbers, and goes on to its children that are nodes.
@@ -157,7 +157,7 @@ private:
         int nodeCount = 0, count = 0;
         for (int pass = 0; pass < 2; ++pass) {  // nodes first
             for (int i = 0; i < draft.childCount; ++i) {
-                const bool isLeaf = draft.children[i].node == kNone && draft.children[i].task == kNone;
+                const bool isLeaf = draft.children[i].node == kNoNode && draft.children[i].task == kNoNode;
                 if (isLeaf == (pass == 1)) children[count++] = &draft.children[i];
             }
             if (pass == 0) nodeCount = count;
@@ -177,7 +177,7 @@ private:
         tree_.nodes[to] = node;
         tree_.nodes.resize(tree_.nodes.size() + static_cast<size_t>(nodeCount));
         for (int i = 0; i < nodeCount; ++i) {
-            const uint32_t first = children[i]->task == kNone ? children[i]->node : 0;
+            const uint32_t first = children[i]->task == kNoNode ? children[i]->node : 0;
             WriteNode(ListOf(nodes, *children[i]), first, node.firstChild + static_cast<uint32_t>(i));
         }
     }
@@ -185,13 +185,13 @@ private:
     // Numbers the vertices in the order of their first use, and packs the indices.
     void WriteTriangles() {
         const uint32_t count = static_cast<uint32_t>(order_.size());
-        std::vector<uint32_t> newIds(mesh_.vertices.size(), kNone), corners;
+        std::vector<uint32_t> newIds(mesh_.vertices.size(), kNoNode), corners;
         corners.reserve(3 * count);
         tree_.vertices.reserve(mesh_.vertices.size() + 1);
         for (const uint32_t triangle : order_) {
             for (uint32_t k = 0; k < 3; ++k) {
                 const uint32_t old = mesh_.indices[3 * triangle + k];
-                if (newIds[old] == kNone) {
+                if (newIds[old] == kNoNode) {
                     newIds[old] = static_cast<uint32_t>(tree_.vertices.size());
                     tree_.vertices.push_back(mesh_.vertices[old]);
                 }

@@ -27,7 +27,7 @@ Integer3 IntegerCross(const Integer3& a, const Integer3& b) {
 // Distances below this many grid steps are decided in integers. Rounding of a distance in double: the unit normal, the
 // products and the sums lose at most 8 units of 2^-53 of |p - a| <= sqrt(3) 2^41 steps, 0.004 steps.
 constexpr double kUncertain = 0.01;
-constexpr int kNone = -1;
+constexpr int kNoIndex = -1;
 
 class Builder {
 public:
@@ -49,8 +49,8 @@ public:
 private:
     struct Face {
         TriangleHull::Triangle triangle;
-        int firstPoint = kNone;  // list of points outside this face, by nextPoint_
-        int farthestPoint = kNone;
+        int firstPoint = kNoIndex;  // list of points outside this face, by nextPoint_
+        int farthestPoint = kNoIndex;
         bool alive = false;
         bool visible = false;    // from the point that is being added
     };
@@ -80,8 +80,8 @@ private:
             hull_.gridPoints.push_back(
                 Position(std::floor(g.x() + 0.5), std::floor(g.y() + 0.5), std::floor(g.z() + 0.5)));
         }
-        nextPoint_.assign(points.size(), kNone);
-        newFaceFrom_.assign(points.size(), kNone);
+        nextPoint_.assign(points.size(), kNoIndex);
+        newFaceFrom_.assign(points.size(), kNoIndex);
     }
 
     const Position& Point(int i) const { return hull_.gridPoints[i]; }
@@ -209,7 +209,7 @@ int Builder::AddFace(int a, int b, int c) {
     FULCRUM_ASSERT(area > 0);
     Face& face = faces_[slot];
     face = Face{};
-    face.triangle = {{a, b, c}, {kNone, kNone, kNone}, normal * (1 / area), area};
+    face.triangle = {{a, b, c}, {kNoIndex, kNoIndex, kNoIndex}, normal * (1 / area), area};
     face.alive = true;
     farthestDistance_[slot] = 0;
     return slot;
@@ -218,7 +218,7 @@ int Builder::AddFace(int a, int b, int c) {
 // Puts the point on the list of the face that it lies farthest outside of; drops it where it is outside of none.
 void Builder::Offer(int point, std::span<const int> faces) {
     double distance = tolerance_;
-    int best = kNone;
+    int best = kNoIndex;
     for (int f : faces) {
         const double d = Distance(faces_[f], point);
         if (d > distance) {
@@ -226,7 +226,7 @@ void Builder::Offer(int point, std::span<const int> faces) {
             best = f;
         }
     }
-    if (best == kNone) return;
+    if (best == kNoIndex) return;
     Face& face = faces_[best];
     nextPoint_[point] = face.firstPoint;
     face.firstPoint = point;
@@ -285,7 +285,7 @@ bool Builder::Grow() {
     for (int gone : visible_) {
         faces_[gone].alive = false;
         farthestDistance_[gone] = 0;
-        for (int point = faces_[gone].firstPoint; point != kNone;) {
+        for (int point = faces_[gone].firstPoint; point != kNoIndex;) {
             const int next = nextPoint_[point];
             if (point != eye) Offer(point, newFaces_);
             point = next;
@@ -306,7 +306,7 @@ bool Builder::FindForgottenPoints() {
 }
 
 void Builder::Finish() {
-    std::vector<int> newIndex(faces_.size(), kNone);
+    std::vector<int> newIndex(faces_.size(), kNoIndex);
     for (size_t f = 0; f < faces_.size(); ++f) {
         if (!faces_[f].alive) continue;
         newIndex[f] = static_cast<int>(hull_.triangles.size());

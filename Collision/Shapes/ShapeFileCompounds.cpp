@@ -5,7 +5,6 @@
 namespace fulcrum {
 namespace {
 
-bool IsUnit(double lengthSquared) { return std::fabs(lengthSquared - 1) < 1e-5; }
 bool IsNear(const Vector3& v) { return IsFinite(v) && v.cwiseAbs().maxCoeff() < kFarthestPlace; }
 
 void WriteChild(const CompoundShape::Child& child, ByteWriter& out, const ShapeFileScope& scope) {

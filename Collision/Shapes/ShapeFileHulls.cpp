@@ -7,7 +7,6 @@
 namespace fulcrum {
 namespace {
 
-bool IsUnit(double lengthSquared) { return std::fabs(lengthSquared - 1) < 1e-5; }
 
 // Corners lie in their face's plane, and nothing outside it, to within what floats keep of such a hull.
 bool IsConvexPolyhedron(const HullMesh& mesh) {

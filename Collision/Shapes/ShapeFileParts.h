@@ -11,9 +11,13 @@
 #include <Fulcrum/Collision/Shapes/Triangle.h>
 #include <Fulcrum/Collision/Shapes/TriangleMesh.h>
 
+#include <cmath>
+
 namespace fulcrum {
 
 using ShapeResult = Result<ShapePtr>;
+
+inline bool IsUnit(double lengthSquared) { return std::fabs(lengthSquared - 1) < 1e-5; }
 
 // Where in a file a shape is read or written.
 struct ShapeFileScope {

@@ -34,7 +34,7 @@ Bounds Unscaled(const Bounds& box, const Vector3& scale, bool isScaled) {
     return result;
 }
 
-float Largest(const Vector3& v) { return Max(Abs(v.x()), Max(Abs(v.y()), Abs(v.z()))); }
+float LargestCoordinate(const Vector3& v) { return Max(Abs(v.x()), Max(Abs(v.y()), Abs(v.z()))); }
 
 }  // namespace
 
@@ -116,7 +116,7 @@ void TriangleMesh::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& 
     const ShearedRay sheared(ray.origin, ray.displacement);
     const bool fromBehind = ray.backFaces || isTwoSided_;
     const Vector3 origin = InTree(ray.origin);
-    const MeshTreeRay treeRay(origin, BoundedInverse(InTree(ray.displacement)), PadFor(Largest(origin)));
+    const MeshTreeRay treeRay(origin, BoundedInverse(InTree(ray.displacement)), PadFor(LargestCoordinate(origin)));
     tree_->SearchRay(treeRay, maxFraction, [&](const MeshNode& node, int child) {
         const uint32_t begin = node.LeafBegin(child), end = node.LeafEnd(child);
         Vec3<Wide<8>> corners[3];
@@ -170,7 +170,7 @@ uint32_t TriangleMesh::CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hi
     if (lanes.count == 0) return 0;
     float largest = lanes.LargestLimit();
     if (!(largest <= 1)) return SurfaceShape::CastRays(rays, hits, maxFractions);  // the box is wide enough for a whole way
-    const float pad = PadFor(Max(Largest(origins.lower), Largest(origins.upper)));
+    const float pad = PadFor(Max(LargestCoordinate(origins.lower), LargestCoordinate(origins.upper)));
     lanes.Widen(pad);
     const Vector3 displacement = displacements.Centre();
     const Vector3 reach = origins.HalfExtents() + displacements.HalfExtents() + Vector3::Constant(2 * pad) +

@@ -4,12 +4,6 @@
 #include <Fulcrum/Constraints/BodyLanes.h>
 #include <Fulcrum/Constraints/Contacts/ContactBatch.h>
 
-// Calls a macro of (lanes, fixedB) for every kind of batch: those that any build or test asks for.
-#define FULCRUM_FOR_EACH_CONTACT_BATCH(instantiate)                           \
-    instantiate(1, false) instantiate(1, true) instantiate(4, false)          \
-    instantiate(4, true) instantiate(8, false) instantiate(8, true)           \
-    instantiate(16, false) instantiate(16, true)
-
 namespace fulcrum::contacts {
 
 // The two bodies' twists in lanes; kept whole so that the spare floats of a row survive the scatter.

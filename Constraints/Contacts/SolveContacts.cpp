@@ -232,7 +232,8 @@ void RestituteContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, float
     template void RelaxContacts(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);                 \
     template void UpdateSeparations(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);             \
     template void RestituteContacts(ContactBatch<lanes, fixedB>&, BodyState*, float);
-FULCRUM_FOR_EACH_CONTACT_BATCH(FULCRUM_INSTANTIATE)
+FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, false)
+FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, true)
 #undef FULCRUM_INSTANTIATE
 
 }  // namespace fulcrum

@@ -13,7 +13,7 @@ AngleRange RangeOf(const AxisControl& control) {
 }
 
 // Which block could hold: locked at zero, and hard.
-bool IsLockedAtZero(const AxisControl& control) {
+bool HoldsZeroAngle(const AxisControl& control) {
     const AngleRange range = RangeOf(control);
     return control.limited && range.IsLocked() && Abs(range.Centre()) < AngleRange::kNegligible && IsHard(control.limits.spring);
 }
@@ -58,7 +58,7 @@ struct AngularControls::Motion {
 AngularControls::AngularControls(const std::array<AxisControl, 3>& axes, SwingShape shape) : axes_(axes), shape_(shape) {
     int count = 0;
     for (uint8_t k = 0; k < 3; ++k) {
-        if (IsLockedAtZero(axes_[k])) ++count;
+        if (HoldsZeroAngle(axes_[k])) ++count;
         else freeAxis_ = k;
     }
     if (count < 2) freeAxis_ = 0;

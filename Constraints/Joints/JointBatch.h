@@ -158,6 +158,4 @@ template <int N>
 void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* const* types, const BodyState* states, float dt,
                  float impulseScale);
 
-#define FULCRUM_FOR_EACH_JOINT_BATCH(instantiate) instantiate(1) instantiate(4) instantiate(8) instantiate(16)
-
 }  // namespace fulcrum

@@ -8,7 +8,7 @@ namespace fulcrum {
 
 namespace {
 
-struct Slots {
+struct PathSlots {
     static constexpr uint32_t kAcross = 0, kAlong = 2, kRotation = 6;
 };
 
@@ -20,7 +20,7 @@ double WayOf(const Path& path, double parameter, const PathSample& at, const Vec
 
 }  // namespace
 
-uint32_t PathJoint::FirstSlot(JointAxis axis) const { return axis == JointAxis::LinearX ? Slots::kAlong : 0; }
+uint32_t PathJoint::FirstSlot(JointAxis axis) const { return axis == JointAxis::LinearX ? PathSlots::kAlong : 0; }
 
 PathJoint::PathJoint(std::shared_ptr<const Path> path, const AxisControl& along, PathRotation rotation)
     : path_(std::move(path)), along_(along), rotation_(rotation) {}
@@ -49,10 +49,10 @@ void PathJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     JointRow along;
     pose.SetAlong(along, Rotate(pose.frameA, at.tangent));
     const double way = WayOf(*path_, parameter_, at, local);
-    AddControlRows(Bounded(), pose, along, way, kLinearSlackSpeed, Slots::kAlong, rows);
+    AddControlRows(Bounded(), pose, along, way, kLinearSlackSpeed, PathSlots::kAlong, rows);
     if (rotation_ == PathRotation::Tangent || rotation_ == PathRotation::TangentAndNormal) AddRotationRows(pose, at, along, rows);
     const Vector3 away = local - at.position;
-    uint32_t slot = Slots::kAcross;
+    uint32_t slot = PathSlots::kAcross;
     for (const Vector3& normal : {at.normal, at.binormal}) {
         JointRow& row = rows.Add(slot++, JointRow::Kind::Equal);
         pose.SetAlong(row, Rotate(pose.frameA, normal));
@@ -76,7 +76,7 @@ void PathJoint::AddRotationRows(const JointPose& pose, const PathSample& at, con
     }
     const Vector3 axes[3] = {at.tangent, at.normal, at.binormal};
     for (int k = rotation_ == PathRotation::Tangent ? 1 : 0; k < 3; ++k) {
-        JointRow& row = rows.Add(Slots::kRotation + static_cast<uint32_t>(k), JointRow::Kind::Equal);
+        JointRow& row = rows.Add(PathSlots::kRotation + static_cast<uint32_t>(k), JointRow::Kind::Equal);
         pose.SetAbout(row, Rotate(pose.frameA, axes[k]));
         const float turn = Dot(axes[k], at.turn);
         row.a.linear -= along.a.linear * turn;

@@ -331,7 +331,7 @@ void StoreJoints(const BallBatch<N>& batch, JointRecord* records, float dt, floa
     template void RelaxJoints(BallBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);                                          \
     template void UpdateJoints(BallBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);                                         \
     template void StoreJoints(const BallBatch<lanes>&, JointRecord*, float, float);
-FULCRUM_FOR_EACH_JOINT_BATCH(FULCRUM_INSTANTIATE)
+FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE)
 #undef FULCRUM_INSTANTIATE
 
 }  // namespace fulcrum

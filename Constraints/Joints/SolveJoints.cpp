@@ -254,8 +254,8 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
 
 // Brings the parts and the rows' errors to the displaced poses; the turn of the locks' impulses is left for the next substep.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-[[gnu::always_inline]] inline JointErrors<Wide<N>> Follow(JointBatch<N>& batch, const SolverBodies& bodies, const Twist<Wide<N>>& velocityA,
-                                                          const Twist<Wide<N>>& velocityB, const JointSolveSettings& settings) {
+[[gnu::noinline]] JointErrors<Wide<N>> Follow(JointBatch<N>& batch, const SolverBodies& bodies, const Twist<Wide<N>>& velocityA,
+                                                const Twist<Wide<N>>& velocityB, const JointSolveSettings& settings) {
     using Real = Wide<N>;
     Motion<N> motionA, motionB;
     motionA.template Gather<Of::Displacement>(batch.bodyA, bodies.states);
@@ -303,8 +303,8 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
 // Calls change(linear lock, angular lock, velocities of A, of B) for the batch, and writes these back.
 template <int N, class Batch, class F>
 [[gnu::always_inline]] inline void ChangeLocked(Batch& batch, BodyState* states, F&& change) {
-    WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
-        ChangeVelocities<N>(batch, states, [&](auto& a, auto& b) __attribute__((always_inline)) { change(linear, angular, a, b); });
+    ChangeVelocities<N>(batch, states, [&](auto& a, auto& b) __attribute__((always_inline)) {
+        WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) __attribute__((always_inline)) { change(linear, angular, a, b); });
     });
 }
 
@@ -368,7 +368,7 @@ void UpdateJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointS
     template void SolveJointVelocities(JointBatch<lanes>&, BodyState*, const JointSolveSettings&);     \
     template void RelaxJoints(JointBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);     \
     template void UpdateJoints(JointBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);
-FULCRUM_FOR_EACH_JOINT_BATCH(FULCRUM_INSTANTIATE)
+FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE)
 #undef FULCRUM_INSTANTIATE
 
 }  // namespace fulcrum

@@ -6,7 +6,7 @@ namespace fulcrum {
 
 namespace {
 
-struct Slots {
+struct WheelSlots {
     static constexpr uint32_t kSuspension = 0, kSteering = 4, kSpin = 8, kTilt = 12;
 };
 
@@ -52,18 +52,18 @@ void WheelJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     JointRow motion;
     pose.SetAbout(motion, angles.spinAxis);
     turns_.Advance(angles.spin, pose.TurnedAbout(angles.spinAxis));
-    AddControlRows(spin_, pose, motion, turns_.Angle(), kAngularSlackSpeed, Slots::kSpin, rows);
+    AddControlRows(spin_, pose, motion, turns_.Angle(), kAngularSlackSpeed, WheelSlots::kSpin, rows);
     if (isSteered_) {
         pose.SetAbout(motion, angles.steeringAxis);
-        AddControlRows(steering_, pose, motion, angles.steering, kAngularSlackSpeed, Slots::kSteering, rows);
-        JointRow& tilt = rows.Add(Slots::kTilt, JointRow::Kind::Equal);
+        AddControlRows(steering_, pose, motion, angles.steering, kAngularSlackSpeed, WheelSlots::kSteering, rows);
+        JointRow& tilt = rows.Add(WheelSlots::kTilt, JointRow::Kind::Equal);
         pose.SetAbout(tilt, angles.tiltAxis);
         tilt.error = angles.tilt;
     }
     JointRow slide;
     const Vector3 axis = ToMatrix(pose.frameA).y;
     pose.SetAlong(slide, axis);
-    AddControlRows(suspension_, pose, slide, Dot(pose.offset, axis), kLinearSlackSpeed, Slots::kSuspension, rows);
+    AddControlRows(suspension_, pose, slide, Dot(pose.offset, axis), kLinearSlackSpeed, WheelSlots::kSuspension, rows);
 }
 
 AxisControl* WheelJoint::Control(JointAxis axis) {
@@ -73,7 +73,7 @@ AxisControl* WheelJoint::Control(JointAxis axis) {
 }
 
 uint32_t WheelJoint::FirstSlot(JointAxis axis) const {
-    return axis == JointAxis::AngularY ? Slots::kSteering : axis == JointAxis::AngularX ? Slots::kSpin : Slots::kSuspension;
+    return axis == JointAxis::AngularY ? WheelSlots::kSteering : axis == JointAxis::AngularX ? WheelSlots::kSpin : WheelSlots::kSuspension;
 }
 
 double WheelJoint::Coordinate(JointAxis axis, const JointPose& pose) const {

@@ -112,8 +112,7 @@ void Register(const std::string& kind, const How& how, const std::string& lanes)
 template <template <int> class Joints, class How>
 void RegisterLanes(const std::string& kind, const How& how) {
     Register<Joints<1>>(kind, how, "scalar");
-    Register<Joints<4>>(kind, how, "4_lanes");
-    Register<Joints<8>>(kind, how, "8_lanes");
+    if constexpr (kLanes > 1) Register<Joints<kLanes>>(kind, how, std::to_string(kLanes) + "_lanes");
 }
 
 [[maybe_unused]] const bool kRegistered = [] {

@@ -30,11 +30,6 @@ MaybeError Named(const RagdollSettings& settings, size_t part, const char* field
 
 Pose PoseOf(const RagdollPart& part) { return {part.body.position, Normalized(part.body.rotation)}; }
 
-Quaternion RotationOf(const JointAnchor& anchor) {
-    const Vector3 axis = Normalized(anchor.axis);
-    return RotationFromAxesXY(axis, anchor.normal ? *anchor.normal : Perpendicular(axis));
-}
-
 // An anchor as a frame, in the space it is given in.
 Pose FrameOf(const JointAnchor& anchor) { return {anchor.point, RotationOf(anchor)}; }
 

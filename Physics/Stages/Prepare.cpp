@@ -78,7 +78,7 @@ void FillRange(WorldState& world, std::vector<Batch>& batches, const BatchRange&
 
 // A part of a colour, for the large group, whose colours are cut into pieces of so many batches.
 constexpr uint32_t kPiece = 16;
-BatchRange Piece(const BatchRange& range, uint32_t piece) {
+BatchRange PieceOf(const BatchRange& range, uint32_t piece) {
     const uint32_t skipped = std::min(piece * kPiece, range.Count());
     BatchRange part;
     part.begin = range.begin + skipped;
@@ -190,7 +190,7 @@ void Prepare(WorldState& world, const StepContext& step) {
             const auto [c, piece] = pieces[i];
             const ColourBatches& colour = layout.colours[c];
             WorkerFindings& findings = world.findings[range.worker];
-            filler.Fill(Piece(colour.moving, piece), Piece(colour.fixed, piece), findings);
+            filler.Fill(PieceOf(colour.moving, piece), PieceOf(colour.fixed, piece), findings);
             filler.FillBalls(std::min(colour.ballsBegin + piece * kPiece, colour.ballsEnd),
                              std::min(colour.ballsBegin + (piece + 1) * kPiece, colour.ballsEnd), findings);
             filler.FillJoints(std::min(colour.jointsBegin + piece * kPiece, colour.jointsEnd),

@@ -341,11 +341,9 @@ void ExpectLanesEqualScalar() {
     }
 }
 
-TYPED_TEST(BlockPartTest, EveryWidthGivesTheBitsOfTheScalar) {
+TYPED_TEST(BlockPartTest, LanesGiveTheBitsOfTheScalar) {
     ExpectLanesEqualScalar<TypeParam, 1>();
-    ExpectLanesEqualScalar<TypeParam, 4>();
-    ExpectLanesEqualScalar<TypeParam, 8>();
-    ExpectLanesEqualScalar<TypeParam, 16>();
+    ExpectLanesEqualScalar<TypeParam, kLanes>();
 }
 
 // Odd lanes are deactivated, and their bodies hold what arithmetic would disturb.
@@ -401,9 +399,7 @@ void ExpectInactiveLanesUntouched() {
 
 TYPED_TEST(BlockPartTest, InactiveLanesAreUntouched) {
     ExpectInactiveLanesUntouched<TypeParam, 1>();
-    ExpectInactiveLanesUntouched<TypeParam, 4>();
-    ExpectInactiveLanesUntouched<TypeParam, 8>();
-    ExpectInactiveLanesUntouched<TypeParam, 16>();
+    ExpectInactiveLanesUntouched<TypeParam, kLanes>();
 }
 
 }  // namespace

@@ -104,7 +104,7 @@ TYPED_TEST(BlockSpringTest, MassesMayBeOverridden) {
 
 // A step that goes on from a snapshot is the step that it was taken from, in every lane.
 TYPED_TEST(BlockSpringTest, SnapshotsOfLanesGoOnAsBefore) {
-    constexpr int N = 8;
+    constexpr int N = kLanes;
     using Real = Wide<N>;
     using Part = typename TypeParam::template Part<Real>;
     RandomPoses random(3);

@@ -134,11 +134,9 @@ void ExpectLanesEqualScalar() {
     }
 }
 
-TEST(PartLanes, EveryWidthGivesTheBitsOfTheScalar) {
+TEST(PartLanes, LanesGiveTheBitsOfTheScalar) {
     ExpectLanesEqualScalar<1>();
-    ExpectLanesEqualScalar<4>();
-    ExpectLanesEqualScalar<8>();
-    ExpectLanesEqualScalar<16>();
+    ExpectLanesEqualScalar<kLanes>();
 }
 
 // The same bits from every compiler and processor. The number changes only with the parts' arithmetic (or that of Exp and
@@ -246,9 +244,7 @@ void ExpectInactiveLanesUntouched() {
 
 TEST(PartLanes, InactiveLanesAreUntouched) {
     ExpectInactiveLanesUntouched<1>();
-    ExpectInactiveLanesUntouched<4>();
-    ExpectInactiveLanesUntouched<8>();
-    ExpectInactiveLanesUntouched<16>();
+    ExpectInactiveLanesUntouched<kLanes>();
 }
 
 }  // namespace

@@ -510,11 +510,9 @@ void ExpectLanesEqualScalar() {
     }
 }
 
-TEST(SwingTwistPart, EveryWidthGivesTheBitsOfTheScalar) {
+TEST(SwingTwistPart, LanesGiveTheBitsOfTheScalar) {
     ExpectLanesEqualScalar<1>();
-    ExpectLanesEqualScalar<4>();
-    ExpectLanesEqualScalar<8>();
-    ExpectLanesEqualScalar<16>();
+    ExpectLanesEqualScalar<kLanes>();
 }
 
 // Odd lanes are deactivated, and their bodies hold what arithmetic would disturb.
@@ -562,9 +560,7 @@ void ExpectInactiveLanesUntouched() {
 
 TEST(SwingTwistPart, InactiveLanesAreUntouched) {
     ExpectInactiveLanesUntouched<1>();
-    ExpectInactiveLanesUntouched<4>();
-    ExpectInactiveLanesUntouched<8>();
-    ExpectInactiveLanesUntouched<16>();
+    ExpectInactiveLanesUntouched<kLanes>();
 }
 
 }  // namespace
