@@ -15,6 +15,7 @@ JointRow& AddRow(const JointRow& motion, float sign, uint32_t slot, JointRow::Ki
     row.b = {motion.b.linear * sign, motion.b.angular * sign};
     row.turnsWithA = motion.turnsWithA;
     row.radial = motion.radial;
+    row.about = motion.about;
     return row;
 }
 

@@ -56,6 +56,7 @@ struct JointRows {
     Real mass;                           // kg or kg m2 that the row meets; 0: no row
     Real turnsWithA;                     // 1: J turns with A from substep to substep
     Real radial;                         // 1: the row acts along the line between the anchors and turns with it
+    Real about;                          // 1: its error is an angle
     uint8_t slot[N];                     // 0xFF: no row
 };
 
@@ -100,6 +101,7 @@ struct JointBatch {
     // Of the lanes that are far apart (SolveJoints.cpp, Pull): what their locks are pulled by in place of a bias, and the velocities
     // that this gave the bodies in this substep.
     bool far;                            // some lane is
+    bool isPulled;                       // the bodies' velocities are those with the pull
     Real isFar;                          // 1: this one is
     Vec3<Real> pullLinear, pullAngular;  // m/s, rad/s
     Twist<Real> pulledA, pulledB;

@@ -31,6 +31,7 @@ struct JointRow {
     float speed = 0;          // m/s or rad/s
     bool yields = true;       // softly, as the locks of joints do; not where a motor presses against it
     bool turnsWithA = false;  // all of J does, from substep to substep; else it stays as it is
+    bool about = false;       // C is an angle, though bodies' places may count too; set by SetAbout
     bool radial = false;      // acts along the line from A's anchor to B's and follows it as it turns
     float minForce = -kUnlimited, maxForce = kUnlimited;  // N or N m
     SpringSettings spring;

@@ -67,11 +67,12 @@ struct JointPose {
     // turn with A.
     void SetAlong(JointRow& row, const Vector3& n) const {
         row.turnsWithA = true;
+        row.about = false;
         row.a = {n, Cross<float>(Vector3(armA + offset), n)};
         row.b = {n, Cross<float>(armB, n)};
     }
     static void SetAbout(JointRow& row, const Vector3& axis) {
-        row.turnsWithA = true;
+        row.turnsWithA = row.about = true;
         row.a.angular = row.b.angular = axis;
     }
     // How fast the row's C changes now: J v.

@@ -46,16 +46,22 @@ void PathJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     const Vector3 local = InverseRotate(pose.frameA, pose.offset);
     parameter_ = path_->Closest(local, parameter_);
     const PathSample at = path_->Sample(parameter_);
+    const Vector3 away = local - at.position;
+    // Far from the path, where B is along it says nothing of how it is to turn, and what moves B acts on A where it is to be: with a
+    // lever as long as the gap it would whirl them about.
+    constexpr float kNear = 0.1f;  // m
+    const bool isNear = LengthSquared(away) < kNear * kNear;
+    JointPose acting = pose;
+    if (!isNear) acting.armA -= Rotate(pose.frameA, away);
     JointRow along;
-    pose.SetAlong(along, Rotate(pose.frameA, at.tangent));
+    acting.SetAlong(along, Rotate(pose.frameA, at.tangent));
     const double way = WayOf(*path_, parameter_, at, local);
     AddControlRows(Bounded(), pose, along, way, kLinearSlackSpeed, PathSlots::kAlong, rows);
-    if (rotation_ == PathRotation::Tangent || rotation_ == PathRotation::TangentAndNormal) AddRotationRows(pose, at, along, rows);
-    const Vector3 away = local - at.position;
+    if (rotation_ == PathRotation::Tangent || rotation_ == PathRotation::TangentAndNormal) AddRotationRows(pose, at, isNear ? along : JointRow(), rows);
     uint32_t slot = PathSlots::kAcross;
     for (const Vector3& normal : {at.normal, at.binormal}) {
         JointRow& row = rows.Add(slot++, JointRow::Kind::Equal);
-        pose.SetAlong(row, Rotate(pose.frameA, normal));
+        acting.SetAlong(row, Rotate(pose.frameA, normal));
         row.error = Dot(away, normal);
     }
 }

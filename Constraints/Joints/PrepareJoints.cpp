@@ -34,7 +34,7 @@ void ClearLane(JointRows<N>& rows, int lane) {
     }
     for (Wide<N>* x : {&rows.startError, &rows.error, &rows.speed, &rows.impulse, &rows.earlier, &rows.lowest, &rows.highest, &rows.massScale,
                        &rows.pushRate, &rows.softness, &rows.mostPush, &rows.openAbove, &rows.hardScale, &rows.gapRate,
-                       &rows.openSoftness, &rows.turnsWithA, &rows.radial})
+                       &rows.openSoftness, &rows.turnsWithA, &rows.radial, &rows.about})
         x->Set(lane, 0.0f);
     rows.slot[lane] = 0xFF;
 }
@@ -70,6 +70,7 @@ void FillLane(JointRows<N>& rows, int lane, const JointRow& row, float previousI
     rows.highest.Set(lane, highest);
     rows.turnsWithA.Set(lane, row.turnsWithA ? 1.0f : 0.0f);
     rows.radial.Set(lane, row.radial ? 1.0f : 0.0f);
+    rows.about.Set(lane, row.about ? 1.0f : 0.0f);
     rows.impulse.Set(lane, std::isfinite(previousImpulse) ? Clamp(previousImpulse * s.impulseScale, lowest, highest) : 0.0f);
 }
 
@@ -185,6 +186,7 @@ void FindFar(JointBatch<N>& batch, const JointErrors<Wide<N>>& errors, const Joi
         isFar = isFar | ((row.error <= row.openAbove) & (Abs(row.error) * row.pushRate > row.mostPush * Real(kFarPush)));
     }
     batch.far = isFar.Any();
+    batch.isPulled = false;
     if (!batch.far) return;
     batch.isFar = Select(isFar, Real(1.0f), Real(0.0f));
     batch.pullLinear = batch.pullAngular = Zero<Real>();

@@ -22,11 +22,11 @@ void PulleyJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     const Vector3 ropeB = (pose.anchorA + pose.offset.cast<double>() - fixedPointB_).cast<float>();
     const float lengthA = Length(ropeA), lengthB = Length(ropeB), length = lengthA + ratio_ * lengthB;
     Vector3 axisA = Normalized(ropeA, Vector3::Zero()), axisB = Normalized(ropeB, Vector3::Zero()) * ratio_;
-    // A side that is all pulled in while much of the other is to come has nothing more to give: it would swing to and fro.
+    // A side that is pulled in while more than that of the other is to come has nothing more to give: it would swing to and fro.
     constexpr float kShort = 0.5f;  // m
-    const bool isFar = length - control_.limits.max > 2.0f * kShort * std::max(1.0f, ratio_);
-    if (isFar && lengthA < kShort) axisA = Vector3::Zero();
-    if (isFar && lengthB < kShort) axisB = Vector3::Zero();
+    const float givesNothing = std::min(length - control_.limits.max, kShort);
+    if (lengthA < givesNothing && lengthA <= ratio_ * lengthB) axisA = Vector3::Zero();
+    else if (ratio_ * lengthB < givesNothing) axisB = Vector3::Zero();
     JointRow motion;
     motion.a = {-axisA, -Cross(pose.armA, axisA)};
     motion.b = {axisB, Cross(pose.armB, axisB)};

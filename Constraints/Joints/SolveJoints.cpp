@@ -174,7 +174,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         const JointRows<N>& row = batch.rows[i];
         const Real linear = Dot<Real>(row.a.linear, row.a.linear) * massA + Dot<Real>(row.b.linear, row.b.linear) * massB;
-        const auto moves = linear > zero;
+        const auto moves = (linear > zero) & (row.about <= zero);
         const Vec3<Real> turnA = batch.massA.inertia * row.a.angular, turnB = batch.massB.inertia * row.b.angular;
         const Real angular = Dot<Real>(row.a.angular, turnA) + Dot<Real>(row.b.angular, turnB);
         const Real response = Select(moves, linear, angular);
@@ -300,6 +300,18 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     return errors;
 }
 
+// Notes in the states of the bodies that are pulled whether their velocities are with the pull.
+template <int N>
+[[gnu::cold]] void MarkPulled(JointBatch<N>& batch, BodyState* states, bool isPulled) {
+    if (batch.isPulled == isPulled) return;
+    batch.isPulled = isPulled;
+    for (int i = 0; i < batch.count; ++i) {
+        if (!(batch.isFar[i] > 0.5f)) continue;
+        if (!(batch.fixedA >> i & 1u)) states[batch.bodyA[i]].pulls += isPulled ? 1.0f : -1.0f;
+        if (!(batch.fixedB >> i & 1u)) states[batch.bodyB[i]].pulls += isPulled ? 1.0f : -1.0f;
+    }
+}
+
 // Calls change(linear lock, angular lock, velocities of A, of B) for the batch, and writes these back.
 template <int N, class Batch, class F>
 [[gnu::always_inline]] inline void ChangeLocked(Batch& batch, BodyState* states, F&& change) {
@@ -338,6 +350,7 @@ void SolveJointVelocities(JointBatch<N>& batch, BodyState* states, const JointSo
         Pull<linear, angular>(batch, settings);
         AddPull(batch, a, b, 1.0f);
     });
+    if (batch.far) MarkPulled(batch, states, true);
 }
 
 template <int N>
@@ -349,11 +362,15 @@ void RelaxJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSo
         SolveAll<true, linear, angular>(batch, a, b);
         Soften<linear, angular>(batch, errors, settings);
     });
+    if (batch.far) MarkPulled(batch, bodies.states, false);
 }
 
 template <int N>
 void UpdateJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
-    if (batch.far) ChangeVelocities<N>(batch, bodies.states, [&](auto& a, auto& b) { TakePullBack(batch, a, b); });
+    if (batch.far) {
+        ChangeVelocities<N>(batch, bodies.states, [&](auto& a, auto& b) { TakePullBack(batch, a, b); });
+        MarkPulled(batch, bodies.states, false);
+    }
     WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
         Motion<N> motionA, motionB;
         motionA.template Gather<Of::Velocity>(batch.bodyA, bodies.states);

@@ -12,9 +12,14 @@ namespace {
 // m/s, m/s2 and so on: more makes the largest speed in any step that moves anything.
 constexpr double kMostChange = 1e18;
 
-// Two floats of BodyState that the solver carries along.
-float& LimitedMark(WorldState& world, uint32_t body) { return world.bodies.states[body].velocitySpare[0]; }
-float& StoppedMark(WorldState& world, uint32_t body) { return world.bodies.states[body].velocitySpare[1]; }
+// BodyState::marks: the sum of these.
+enum Mark : int { kLimited = 1, kStopped = 2 };
+bool IsMarked(const WorldState& world, uint32_t body, Mark mark) { return (static_cast<int>(world.bodies.states[body].marks) & mark) != 0; }
+void SetMark(WorldState& world, uint32_t body, Mark mark, bool isSet) {
+    float& marks = world.bodies.states[body].marks;
+    const int others = static_cast<int>(marks) & ~mark;
+    marks = static_cast<float>(isSet ? others | mark : others);
+}
 
 // Zero times a number is zero if the number is finite, and NaN if it is not.
 Wide<8> ZeroTimes(const float* eight) { return Wide<8>::Load(eight) * Wide<8>(0.0f); }
@@ -62,7 +67,7 @@ void BringToRest(WorldState& world, uint32_t body) {
     bodies.cold[body].force.setZero();
     bodies.cold[body].torque.setZero();
     bodies.dynamics[body].hasForce = false;
-    StoppedMark(world, body) = 1;
+    SetMark(world, body, kStopped, true);
 }
 
 void NoteStopped(uint32_t body, WorkerFindings& findings) {
@@ -109,16 +114,15 @@ bool ShortenSpeeds(WorldState& world, uint32_t body, Vector3& v, Vector3& w) {
     const bool counts = exceeds(v, d.maxLinearSpeed) || exceeds(w, d.maxAngularSpeed);
     LimitLength(v, d.maxLinearSpeed);
     LimitLength(w, d.maxAngularSpeed);
-    float& mark = LimitedMark(world, body);
-    const bool isFirst = counts && mark == 0;
-    if (isFirst) mark = 1;
+    const bool isFirst = counts && !IsMarked(world, body, kLimited);
+    if (isFirst) SetMark(world, body, kLimited, true);
     return isFirst;
 }
 
 void AdmitBody(WorldState& world, uint32_t body, WorkerFindings& findings) {
     BodyStore& bodies = world.bodies;
     if (!IsFiniteState(bodies, body)) return Freeze(world, body, findings);
-    LimitedMark(world, body) = 0;
+    SetMark(world, body, kLimited, false);
     const BodyDynamics& d = bodies.dynamics[body];
     if (d.hasForce) LimitForces(world, body);
     Vector3 v = bodies.LinearVelocityOf(body), w = bodies.AngularVelocityOf(body);
@@ -146,8 +150,8 @@ void Stop(WorldState& world, uint32_t body, WorkerFindings& findings) {
 void SettleStopped(WorldState& world) {
     if (std::none_of(world.findings.begin(), world.findings.end(), [](const WorkerFindings& f) { return f.frozen > 0; })) return;
     for (uint32_t body : world.bodies.awake) {
-        if (StoppedMark(world, body) == 0) continue;
-        StoppedMark(world, body) = 0;
+        if (!IsMarked(world, body, kStopped)) continue;
+        SetMark(world, body, kStopped, false);
         ForgetImpulses(world, body);
         RecolourJointsOf(world, body);
     }

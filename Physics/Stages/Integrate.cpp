@@ -74,7 +74,9 @@ void TurnInertia(BodyStore& bodies, uint32_t body, float h) {
     const Vector3 turn(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]);
     const Matrix3 axes = AxesOf(d, RotationFromVector(turn) * bodies.RotationOf(body));
     const float* inverse = d.inverseInertia;
-    const Vector3 change = AddGyroscopicTorque<float>(Vector3(inverse[0], inverse[1], inverse[2]), axes, w, h) - w;
+    // A pull is taken back as it was given, so it feels no torque.
+    const Vector3 change = s.pulls > 0.0f ? Vector3(Vector3::Zero())
+                                          : Vector3(AddGyroscopicTorque<float>(Vector3(inverse[0], inverse[1], inverse[2]), axes, w, h) - w);
     for (int k = 0; k < 3; ++k) {
         s.angularVelocity[k] += change[k];
         bodies.unconstrained[body].row[3 + k] += change[k];
@@ -189,14 +191,15 @@ bool IntegrateVelocitiesInLanes(WorldState& world, const Indices& index, int cou
 
 // TurnInertia of the lanes that feel it. turn: rotation since the start of the step, rad; w: rad/s, changed.
 [[gnu::always_inline]] inline void TurnInertias(BodyStore& bodies, const Indices& index, int count, WideMask<kLanes> feels,
-                                                const Vec3<Lanes>& turn, Vec3<Lanes>& w, float h) {
+                                                const Vec3<Lanes>& turn, const Lanes& pulls, Vec3<Lanes>& w, float h) {
     const uint32_t lanes = feels.ToBits();
     const Rows pose(index, [&](uint32_t body) { return bodies.poses[body].rotation; });
     const Rows inertia(index, [&](uint32_t body) { return bodies.dynamics[body].InertiaRow(); });
     Rows unconstrained(index, [&](uint32_t body) { return bodies.unconstrained[body].row; });
     const Quat<Lanes> rotation = RotationFromVector<Lanes>(turn) * Quat<Lanes>{pose.at[0], pose.at[1], pose.at[2], pose.at[3]};
     const Mat3<Lanes> axes = ToMatrix<Lanes>(rotation * Quat<Lanes>{inertia.at[4], inertia.at[5], inertia.at[6], inertia.at[7]});
-    const Vec3<Lanes> change = AddGyroscopicTorque<Lanes>(inertia.First(), axes, w, Lanes(h)) - w;
+    Vec3<Lanes> change = AddGyroscopicTorque<Lanes>(inertia.First(), axes, w, Lanes(h)) - w;
+    for (int k = 0; k < 3; ++k) change[k] = Select(pulls > Lanes(0.0f), Lanes(0.0f), Lanes(change[k]));
     for (int k = 0; k < 3; ++k) w[k] = Select(feels, Lanes(w[k] + change[k]), Lanes(w[k]));
     unconstrained.Set(unconstrained.First(), unconstrained.Second() + change);
     unconstrained.Write(count, lanes);
@@ -242,7 +245,7 @@ bool IntegratePosesInLanes(WorldState& world, const Indices& index, int count, f
     constexpr float kLeast = BodyDynamics::kLeastGyroscopicSpeed * BodyDynamics::kLeastGyroscopicSpeed;
     const auto feels = isJointed & (Lanes::Load(gyroscopic) > Lanes(0.0f)) & (Dot<Lanes>(w, w) > Lanes(kLeast));
     if (!feels.Any()) return true;
-    TurnInertias(bodies, index, count, feels, rotation, w, h);
+    TurnInertias(bodies, index, count, feels, rotation, velocity.at[6], w, h);
     velocity.Set(velocity.First(), w);
     velocity.Write(count);
     return true;

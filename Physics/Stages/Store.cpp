@@ -174,8 +174,7 @@ void FinishEnding(WorldState& world, Ending& ending, const StepContext& step, Wo
     if (!PushIsFinite(world, body)) return Freeze(world, body, findings);
     if (!IsFinite(ending.displacement) || !IsFinite(ending.turn.rotation) || !IsFinite(v) || !IsFinite(w)) return Stop(world, body, findings);
     BodyState& state = bodies.states[body];
-    const float (&kept)[2] = state.velocitySpare;
-    state = {.velocitySpare = {kept[0], kept[1]}};
+    state = {.marks = state.marks};
     findings.clamped += LimitSpeeds(world, body, v, w);
     bodies.SetVelocity(body, v, w);
     bodies.MoveCentre(body, ending.displacement, ending.turn.rotation);

@@ -12,7 +12,7 @@ namespace fulcrum::testing {
 namespace {
 
 constexpr uint64_t kGoldenHash = 0xa6145c9b1b738d2eull;
-constexpr uint64_t kGoldenHashOfJoints = 0x1248f739d1b49d55ull;
+constexpr uint64_t kGoldenHashOfJoints = 0x01b2dfe8a9d1e0ebull;
 constexpr uint64_t kGoldenHashOfSurfaces = 0x336ee66c011184e6ull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0x8c0382adc34a2e2eull;
 
