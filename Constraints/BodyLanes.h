@@ -10,13 +10,13 @@ namespace fulcrum {
 enum class Of { Velocity, Displacement };
 
 template <Of kOf>
-[[gnu::always_inline]] inline float* RowOf(BodyState& state) {
+FULCRUM_FORCE_INLINE float* RowOf(BodyState& state) {
     return kOf == Of::Velocity ? state.VelocityRow() : state.PoseRow();
 }
 
 // Returns the lanes whose inertia turns.
 template <int N>
-[[gnu::always_inline]] inline auto GatherMass(const uint32_t (&index)[N], const BodyMass* masses, InverseMass<Wide<N>>& out) {
+FULCRUM_FORCE_INLINE auto GatherMass(const uint32_t (&index)[N], const BodyMass* masses, InverseMass<Wide<N>>& out) {
     const float* rows[N];
     for (int i = 0; i < N; ++i) rows[i] = masses[index[i]].Row();
     Wide<N> r[8];
@@ -27,7 +27,7 @@ template <int N>
 }
 
 template <int N>
-[[gnu::always_inline]] inline Quat<Wide<N>> GatherRotation(const uint32_t (&index)[N], const BodyPose* poses) {
+FULCRUM_FORCE_INLINE Quat<Wide<N>> GatherRotation(const uint32_t (&index)[N], const BodyPose* poses) {
     const float* rows[N];
     for (int i = 0; i < N; ++i) rows[i] = poses[index[i]].rotation;
     Wide<N> r[8];
@@ -37,7 +37,7 @@ template <int N>
 
 // From A's centre of mass to B's, m.
 template <int N>
-[[gnu::always_inline]] inline Vec3<Wide<N>> GatherOffset(const uint32_t (&bodyA)[N], const uint32_t (&bodyB)[N], const BodyPose* poses) {
+FULCRUM_FORCE_INLINE Vec3<Wide<N>> GatherOffset(const uint32_t (&bodyA)[N], const uint32_t (&bodyB)[N], const BodyPose* poses) {
     alignas(64) float offsets[3][N];
     for (int i = 0; i < N; ++i)
         for (int k = 0; k < 3; ++k)

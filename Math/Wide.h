@@ -4,6 +4,7 @@
 // compilers' own code for an operation is poor.
 #pragma once
 
+#include <Fulcrum/Math/ForceInline.h>
 #include <Fulcrum/Math/Vector.h>
 
 #include <cmath>
@@ -289,7 +290,7 @@ inline float HorizontalMin(Wide<N> a) {
 namespace registers {
 #if defined(__AVX2__)
 // Rows to columns of an 8x8 block; its own inverse.
-[[gnu::always_inline]] inline void Transpose8(__m256 (&r)[8]) {
+FULCRUM_FORCE_INLINE void Transpose8(__m256 (&r)[8]) {
     const __m256 a0 = _mm256_unpacklo_ps(r[0], r[1]), a1 = _mm256_unpackhi_ps(r[0], r[1]);
     const __m256 a2 = _mm256_unpacklo_ps(r[2], r[3]), a3 = _mm256_unpackhi_ps(r[2], r[3]);
     const __m256 a4 = _mm256_unpacklo_ps(r[4], r[5]), a5 = _mm256_unpackhi_ps(r[4], r[5]);
@@ -309,14 +310,14 @@ namespace registers {
 }
 #endif
 #if defined(__SSE2__)
-[[gnu::always_inline]] inline void Transpose4(__m128& r0, __m128& r1, __m128& r2, __m128& r3) { _MM_TRANSPOSE4_PS(r0, r1, r2, r3); }
+FULCRUM_FORCE_INLINE void Transpose4(__m128& r0, __m128& r1, __m128& r2, __m128& r3) { _MM_TRANSPOSE4_PS(r0, r1, r2, r3); }
 #endif
 }  // namespace registers
 
 // Reads eight floats at rows[lane] for each of N lanes into eight wide values: out[k][lane] = rows[lane][k].
 // The rows are 32-byte aligned.
 template <int N>
-[[gnu::always_inline]] inline void GatherRows(const float* const (&rows)[N], Wide<N> (&out)[8]) {
+FULCRUM_FORCE_INLINE void GatherRows(const float* const (&rows)[N], Wide<N> (&out)[8]) {
 #if defined(__AVX2__)
     if constexpr (N == 8) {
         __m256 r[8];
@@ -347,7 +348,7 @@ template <int N>
 // Reads points: the first three of four readable floats at rows[lane], for each of N lanes, into three wide values:
 // out[k][lane] = rows[lane][k]. Rows at any address.
 template <int N>
-[[gnu::always_inline]] inline void GatherPoints(const float* const (&rows)[N], Wide<N> (&out)[3]) {
+FULCRUM_FORCE_INLINE void GatherPoints(const float* const (&rows)[N], Wide<N> (&out)[3]) {
 #if defined(__AVX2__)
     if constexpr (N == 8) {
         __m256 r[4];  // rows i and i + 4
@@ -367,7 +368,7 @@ template <int N>
 
 // The reverse of GatherRows, for the first `count` lanes: rows[lane][k] = in[k][lane].
 template <int N>
-[[gnu::always_inline]] inline void ScatterRows(float* const (&rows)[N], const Wide<N> (&in)[8], int count) {
+FULCRUM_FORCE_INLINE void ScatterRows(float* const (&rows)[N], const Wide<N> (&in)[8], int count) {
 #if defined(__AVX2__)
     if constexpr (N == 8) {
         __m256 r[8];

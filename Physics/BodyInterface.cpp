@@ -411,9 +411,9 @@ Vector3 BodyInterface::GetAngularMomentum(BodyId id) const {
 }
 double BodyInterface::GetKineticEnergy(BodyId id) const {
     if (!Exists(id) || world_.bodies.dynamics[id.index].motion != MotionType::Dynamic) return 0;
-    const Position v = GetLinearVelocity(id).cast<double>(), w = GetAngularVelocity(id).cast<double>();
-    const Position momentum = GetAngularMomentum(id).cast<double>();
-    return 0.5 * (double(GetMass(id)) * Dot<double>(v, v) + Dot<double>(w, momentum));
+    const Position v = GetLinearVelocity(id).cast<double>();
+    return 0.5 * double{GetMass(id)} * Dot<double>(v, v) +
+           RotationalEnergy(world_.bodies.dynamics[id.index], world_.bodies.RotationOf(id.index), GetAngularVelocity(id));
 }
 MotionType BodyInterface::GetMotionType(BodyId id) const {
     return Exists(id) ? world_.bodies.dynamics[id.index].motion : MotionType::Static;

@@ -181,6 +181,9 @@ Status PhysicsSystem::SetSettings(const SystemSettings& settings) {
     const WorldLock::Exclusive alone(world_->lock);
     if (alone.Refusal()) return *alone.Refusal();
     const std::array<uint32_t, 32> before = world_->settings.layerCollides;
+    // What one method notes of a pair means nothing to the other.
+    if (settings.narrowPhase != world_->settings.narrowPhase)
+        for (Pair& pair : world_->pairs.pairs) pair.cache = {};
     world_->settings = settings;
     if (settings.layerCollides != before) RefilterLayers(*world_, before);
     for (const Sensor& sensor : world_->sensors.sensors) world_->sensors.touched.push_back(sensor.id.index);

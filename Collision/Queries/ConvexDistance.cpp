@@ -50,7 +50,7 @@ ConvexSeparation MeasureConvex(const ConvexShape& a, const ConvexShape& b, const
         result.normal = gjk.axis;
         result.onA = gjk.onA + gjk.axis * a.ConvexRadius();
         result.onB = gjk.onB - gjk.axis * b.ConvexRadius();
-        result.isBeyond = result.separation > reach;
+        result.isBeyond = !(result.separation <= reach) || !IsFinite(result.onA) || !IsFinite(result.onB);
         return result;
     }
     result.normal = AxisOfLeastDepth(pair, bInA, gjk);
@@ -59,6 +59,7 @@ ConvexSeparation MeasureConvex(const ConvexShape& a, const ConvexShape& b, const
     const Vector3 deepest = pair.PointOfB(b.SupportCore(-pair.DirectionInB(result.normal)));
     result.onB = deepest - result.normal * b.ConvexRadius();
     result.onA = result.onB - result.normal * result.separation;
+    result.isBeyond = !IsFinite(result.normal) || !IsFinite(result.onA);  // of shapes beyond the floats
     return result;
 }
 

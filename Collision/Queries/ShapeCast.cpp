@@ -5,6 +5,7 @@
 #include <Fulcrum/Collision/Shapes/Plane.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fulcrum {
 
@@ -53,6 +54,15 @@ void ShapeCaster::MeasureDepth(const Piece& piece, const Pose& at, const CoreMot
     hit.position = at.Transform(onA);
 }
 
+namespace {
+
+// Shapes of extreme sizes, or far away, can bring a hit beyond the floats: that is no hit.
+bool IsWithinFloats(const ShapeHit& hit) {
+    return std::fabs(LengthSquared(hit.normal) - 1) < 1e-3f && IsFinite(hit.position) && std::isfinite(hit.depth);
+}
+
+}  // namespace
+
 bool ShapeCaster::CastPiece(const Piece& piece, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit) const {
     const Pose at = pose * piece.pose;
     const CoreMotion motion = RelativeTo(at);
@@ -67,7 +77,7 @@ bool ShapeCaster::CastPiece(const Piece& piece, const Pose& pose, const ShapeCas
     hit.isEarly = cast.status == CoreCastResult::Status::Early;
     if (cast.status == CoreCastResult::Status::AtStart) {
         if (settings.measureDepth) MeasureDepth(piece, at, motion, hit);
-        return true;
+        return !settings.measureDepth || IsWithinFloats(hit);
     }
     if (isOneSided && motion.IsTurning()) {
         // What swings may touch an open edge from any side: where its centre is tells where it comes from.
@@ -76,7 +86,7 @@ bool ShapeCaster::CastPiece(const Piece& piece, const Pose& pose, const ShapeCas
     }
     hit.normal = Rotate(at.rotation, cast.normal);
     hit.position = at.Transform(cast.onA + cast.normal * piece.shape.ConvexRadius());
-    return true;
+    return IsWithinFloats(hit);
 }
 
 bool ShapeCaster::CastPlane(const Shape& shape, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit) const {

@@ -16,7 +16,7 @@ struct Twists {
 };
 
 template <Of kOf, int N, bool kFixedB>
-[[gnu::always_inline]] inline void Gather(const ContactBatch<N, kFixedB>& batch, BodyState* states, Twists<N, kFixedB>& twists) {
+FULCRUM_FORCE_INLINE void Gather(const ContactBatch<N, kFixedB>& batch, BodyState* states, Twists<N, kFixedB>& twists) {
     for (int i = 0; i < N; ++i) twists.rowsA[i] = RowOf<kOf>(states[batch.bodyA[i]]);
     GatherRows<N>(reinterpret_cast<const float* const(&)[N]>(twists.rowsA), twists.a);
     if constexpr (!kFixedB) {
@@ -26,23 +26,23 @@ template <Of kOf, int N, bool kFixedB>
 }
 
 template <int N, bool kFixedB>
-[[gnu::always_inline]] inline void Scatter(const ContactBatch<N, kFixedB>& batch, const Twists<N, kFixedB>& twists) {
+FULCRUM_FORCE_INLINE void Scatter(const ContactBatch<N, kFixedB>& batch, const Twists<N, kFixedB>& twists) {
     ScatterRows<N>(twists.rowsA, twists.a, batch.count);
     if constexpr (!kFixedB) ScatterRows<N>(twists.rowsB, twists.b, batch.count);
 }
 
 template <class Real>
-[[gnu::always_inline]] inline Vec3<Real> Linear(const Real (&row)[8]) {
+FULCRUM_FORCE_INLINE Vec3<Real> Linear(const Real (&row)[8]) {
     return Vec3<Real>(row[0], row[1], row[2]);
 }
 template <class Real>
-[[gnu::always_inline]] inline Vec3<Real> Angular(const Real (&row)[8]) {
+FULCRUM_FORCE_INLINE Vec3<Real> Angular(const Real (&row)[8]) {
     return Vec3<Real>(row[3], row[4], row[5]);
 }
 
 // Adds sign * M^-1 (F, r x F + T) to a row.
 template <class Real>
-[[gnu::always_inline]] inline void ApplyWrench(Real (&row)[8], const InverseMass<Real>& inverse, const Vec3<Real>& arm, const Vec3<Real>& force,
+FULCRUM_FORCE_INLINE void ApplyWrench(Real (&row)[8], const InverseMass<Real>& inverse, const Vec3<Real>& arm, const Vec3<Real>& force,
                         const Vec3<Real>& torque, Real sign) {
     const Vec3<Real> dv = force * (inverse.mass * sign);
     const Vec3<Real> dw = inverse.inertia * Vec3<Real>((Cross<Real>(arm, force) + torque) * sign);
@@ -56,7 +56,7 @@ template <class Real>
 
 // The relative twist at c, of the velocities or of the displacements, `elapsed` seconds after the start of the step.
 template <Of kOf, int N, bool kFixedB>
-[[gnu::always_inline]] inline Twist<Wide<N>> RelativeTwist(const ContactBatch<N, kFixedB>& batch, const Twists<N, kFixedB>& twists,
+FULCRUM_FORCE_INLINE Twist<Wide<N>> RelativeTwist(const ContactBatch<N, kFixedB>& batch, const Twists<N, kFixedB>& twists,
                                                            float elapsed) {
     using Real = Wide<N>;
     Twist<Real> relative;
@@ -80,7 +80,7 @@ template <Of kOf, int N, bool kFixedB>
 
 // Applies the wrench of the impulses: `force` = n sum + t1 f1 + t2 f2 at c, and the torque about c.
 template <int N, bool kFixedB>
-[[gnu::always_inline]] inline void ApplyToBoth(const ContactBatch<N, kFixedB>& batch, Twists<N, kFixedB>& twists, const Vec3<Wide<N>>& force,
+FULCRUM_FORCE_INLINE void ApplyToBoth(const ContactBatch<N, kFixedB>& batch, Twists<N, kFixedB>& twists, const Vec3<Wide<N>>& force,
                         const Vec3<Wide<N>>& torque) {
     using Real = Wide<N>;
     ApplyWrench<Real>(twists.a, batch.inverseA, batch.armA, force, torque, Real(-1.0f));
@@ -88,7 +88,7 @@ template <int N, bool kFixedB>
 }
 
 template <int N>
-[[gnu::always_inline]] inline void GatherRecordRow(const uint32_t (&index)[N], const ContactRecord* records, int row, Wide<N> (&out)[8]) {
+FULCRUM_FORCE_INLINE void GatherRecordRow(const uint32_t (&index)[N], const ContactRecord* records, int row, Wide<N> (&out)[8]) {
     const float* rows[N];
     for (int i = 0; i < N; ++i) rows[i] = reinterpret_cast<const float*>(&records[index[i]]) + 8 * row;
     GatherRows<N>(rows, out);
@@ -118,7 +118,7 @@ SurfaceMotion<Wide<N>> GatherSurfaceMotion(const ContactBatch<N, kFixedB>& batch
 
 // Torque about c of normal impulses: sum of (a t1 + b t2) x n l, with sums over a l and b l.
 template <int N, bool kFixedB>
-[[gnu::always_inline]] inline Vec3<Wide<N>> NormalTorque(const ContactBatch<N, kFixedB>& batch, Wide<N> sumA, Wide<N> sumB) {
+FULCRUM_FORCE_INLINE Vec3<Wide<N>> NormalTorque(const ContactBatch<N, kFixedB>& batch, Wide<N> sumA, Wide<N> sumB) {
     return batch.tangent1 * sumB - batch.tangent2 * sumA;
 }
 

@@ -18,7 +18,7 @@ struct Responses {
     Real friction[6] = {};           // t1 t1, t2 t2, nn, t1 t2, t1 n, t2 n
     Real coupling[3][3] = {};
 
-    [[gnu::always_inline]] void Add(const InverseMass<Real>& inverse, const Vec3<Real>& arm, const Vec3<Real>& n, const Vec3<Real>& t1,
+    FULCRUM_FORCE_INLINE void Add(const InverseMass<Real>& inverse, const Vec3<Real>& arm, const Vec3<Real>& n, const Vec3<Real>& t1,
              const Vec3<Real>& t2) {
         const Vec3<Real> jn = Cross<Real>(arm, n), j1 = Cross<Real>(arm, t1), j2 = Cross<Real>(arm, t2);
         const Vec3<Real> in = inverse.inertia * jn, i1 = inverse.inertia * j1, i2 = inverse.inertia * j2;
@@ -51,7 +51,7 @@ Real InverseOrZero(Real x) {
 
 // The lanes whose numbers are all finite. Masses, sizes and speeds may each be so extreme that no float holds what they make together.
 template <int N, bool kFixedB>
-[[gnu::always_inline]] inline WideMask<N> FiniteLanes(const ContactBatch<N, kFixedB>& batch, const Responses<Wide<N>>& responses,
+FULCRUM_FORCE_INLINE WideMask<N> FiniteLanes(const ContactBatch<N, kFixedB>& batch, const Responses<Wide<N>>& responses,
                                                           const Wide<N>& diagonals) {
     using Real = Wide<N>;
     const Real zero(0.0f);

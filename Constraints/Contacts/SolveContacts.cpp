@@ -11,7 +11,7 @@ using namespace contacts;
 // give way, and would let friction lose its grip for as long as an overlap builds up. Returns the change of impulse of t1, t2
 // and twist.
 template <int N, bool kFixedB>
-[[gnu::always_inline]] inline void SolveFriction(ContactBatch<N, kFixedB>& batch, Wide<N> v1, Wide<N> v2, Wide<N> wn, Wide<N> (&change)[3]) {
+FULCRUM_FORCE_INLINE void SolveFriction(ContactBatch<N, kFixedB>& batch, Wide<N> v1, Wide<N> v2, Wide<N> wn, Wide<N> (&change)[3]) {
     using Real = Wide<N>;
     Real sum(0.0f);
     for (int i = 0; i < batch.pointCount; ++i) sum += batch.rows[i].impulse;
@@ -39,14 +39,14 @@ template <int N, bool kFixedB>
 
 // Lanes without a surface velocity keep every bit, a negative zero too.
 template <class Real>
-[[gnu::always_inline]] inline Real MoveBy(Real velocity, Real surface) {
+FULCRUM_FORCE_INLINE Real MoveBy(Real velocity, Real surface) {
     return Select(surface == Real(0.0f), velocity, velocity + surface);
 }
 
 // All rows of a batch once, on velocities: friction, then the normal rows. A relaxing pass pushes nothing. kSurface: with the
 // surface velocities of a moving second body.
 template <bool kRelax, bool kSurface, int N, bool kFixedB>
-[[gnu::always_inline]] inline void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* states,
+FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* states,
                                              const ContactSolveSettings& settings) {
     using Real = Wide<N>;
     const Real zero(0.0f);
@@ -126,7 +126,7 @@ template <bool kRelax, int N>
 }
 
 template <bool kRelax, int N, bool kFixedB>
-[[gnu::always_inline]] inline void SolveAllRows(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings) {
+FULCRUM_FORCE_INLINE void SolveAllRows(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings) {
     if constexpr (!kFixedB)
         if (batch.surfaces) return SolveRowsOfMovingSurfaces<kRelax>(batch, states, settings);
     SolveRows<kRelax, false>(batch, states, settings);

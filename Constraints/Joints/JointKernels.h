@@ -10,7 +10,7 @@ namespace fulcrum::joints {
 
 // Calls f(std::integral_constant<LinearLock, ...>, std::integral_constant<AngularLock, ...>) with the batch's.
 template <class F>
-[[gnu::always_inline]] inline void WithLocks(LinearLock linear, AngularLock angular, F&& f) {
+FULCRUM_FORCE_INLINE void WithLocks(LinearLock linear, AngularLock angular, F&& f) {
     const auto withAngular = [&](auto l) {
         switch (angular) {
             case AngularLock::None: f(l, std::integral_constant<AngularLock, AngularLock::None>()); break;
@@ -32,15 +32,15 @@ struct Motion {
     Real row[8];
 
     template <Of kOf>
-    [[gnu::always_inline]] void Gather(const uint32_t (&bodies)[N], BodyState* states) {
+    FULCRUM_FORCE_INLINE void Gather(const uint32_t (&bodies)[N], BodyState* states) {
         for (int i = 0; i < N; ++i) rows[i] = RowOf<kOf>(states[bodies[i]]);
         GatherRows<N>(reinterpret_cast<const float* const(&)[N]>(rows), row);
     }
-    [[gnu::always_inline]] Twist<Real> Get() const {
+    FULCRUM_FORCE_INLINE Twist<Real> Get() const {
         return {Vec3<Real>(row[0], row[1], row[2]), Vec3<Real>(row[3], row[4], row[5])};
     }
     // Lanes of bodies that are not dynamic are written nowhere.
-    [[gnu::always_inline]] void Scatter(const Twist<Real>& motion, int count, uint32_t fixed) {
+    FULCRUM_FORCE_INLINE void Scatter(const Twist<Real>& motion, int count, uint32_t fixed) {
         for (int k = 0; k < 3; ++k) {
             row[k] = motion.linear[k];
             row[3 + k] = motion.angular[k];
@@ -55,7 +55,7 @@ struct Motion {
 
 // Calls change(velocities of A, of B), and writes these back.
 template <int N, class Batch, class F>
-[[gnu::always_inline]] inline void ChangeVelocities(const Batch& batch, BodyState* states, F&& change) {
+FULCRUM_FORCE_INLINE void ChangeVelocities(const Batch& batch, BodyState* states, F&& change) {
     Motion<N> motionA, motionB;
     motionA.template Gather<Of::Velocity>(batch.bodyA, states);
     motionB.template Gather<Of::Velocity>(batch.bodyB, states);
@@ -66,7 +66,7 @@ template <int N, class Batch, class F>
 }
 
 template <int N>
-[[gnu::always_inline]] inline void GatherRecordRow(const uint32_t (&joints)[N], const JointRecord* records, int row, Wide<N> (&out)[8]) {
+FULCRUM_FORCE_INLINE void GatherRecordRow(const uint32_t (&joints)[N], const JointRecord* records, int row, Wide<N> (&out)[8]) {
     const float* rows[N];
     for (int i = 0; i < N; ++i) rows[i] = records[joints[i]].Row(row);
     GatherRows<N>(rows, out);
@@ -75,7 +75,7 @@ template <int N>
 // Arms and distances of anchors: what is farther along an axis counts as that far. It is pulled no faster for being farther away, and the
 // inertia at the end of a longer arm may be beyond the floats.
 template <class Real>
-[[gnu::always_inline]] inline Vec3<Real> WithinReach(const Vec3<Real>& v) {
+FULCRUM_FORCE_INLINE Vec3<Real> WithinReach(const Vec3<Real>& v) {
     const Real farthest(1e6f);
     Vec3<Real> result;
     for (int k = 0; k < 3; ++k) result[k] = Clamp(Real(v[k]), -farthest, farthest);
@@ -84,14 +84,14 @@ template <class Real>
 
 // The locks' impulses of the last substep; what is not finite as zero.
 template <int N>
-[[gnu::always_inline]] inline void GatherImpulses(const uint32_t (&joints)[N], const JointRecord* records, Wide<N> (&out)[8]) {
+FULCRUM_FORCE_INLINE void GatherImpulses(const uint32_t (&joints)[N], const JointRecord* records, Wide<N> (&out)[8]) {
     GatherRecordRow<N>(joints, records, JointRecord::kOwn, out);
     for (Wide<N>& x : out) x = Select(Abs(x) < Wide<N>(JointRow::kUnlimited), x, Wide<N>(0.0f));
 }
 
 // Writes a row of the first `count` records; what is not finite as zero.
 template <int N>
-[[gnu::always_inline]] inline void ScatterRecordRow(const uint32_t (&joints)[N], int count, JointRecord* records, int row,
+FULCRUM_FORCE_INLINE void ScatterRecordRow(const uint32_t (&joints)[N], int count, JointRecord* records, int row,
                                                     const Wide<N> (&values)[8]) {
     using Real = Wide<N>;
     float* rows[N];
@@ -104,7 +104,7 @@ template <int N>
 // Where between two anchors a point joint's impulse and the answer to it act, as a part of the way from A's to B's. They act at one
 // point, so that angular momentum stays however far apart the anchors are: halfway, or at the anchor of the only body that moves.
 template <int N>
-[[gnu::always_inline]] inline Wide<N> MeetingShare(uint32_t fixedA, uint32_t fixedB) {
+FULCRUM_FORCE_INLINE Wide<N> MeetingShare(uint32_t fixedA, uint32_t fixedB) {
     Wide<N> share(0.5f);
     if ((fixedA | fixedB) != 0)
         for (int i = 0; i < N; ++i)
@@ -114,7 +114,7 @@ template <int N>
 
 // Of a kinematic body the solver keeps no displacement: it is its velocity times the time.
 template <int N>
-[[gnu::always_inline]] inline void AddKinematicMotion(Twist<Wide<N>>& displacement, const Twist<Wide<N>>& velocity,
+FULCRUM_FORCE_INLINE void AddKinematicMotion(Twist<Wide<N>>& displacement, const Twist<Wide<N>>& velocity,
                                                       uint32_t kinematic, float elapsed) {
     if (kinematic == 0) return;
     Wide<N> time(0.0f);
@@ -125,19 +125,19 @@ template <int N>
 }
 
 template <class Real>
-[[gnu::always_inline]] inline Vec3<Real> Zero() {
+FULCRUM_FORCE_INLINE Vec3<Real> Zero() {
     return Vec3<Real>(Real(0.0f), Real(0.0f), Real(0.0f));
 }
 
 inline bool Any(bool mask) { return mask; }
 template <int N>
-[[gnu::always_inline]] inline bool Any(WideMask<N> mask) {
+FULCRUM_FORCE_INLINE bool Any(WideMask<N> mask) {
     return mask.Any();
 }
 
 // The normal without its part along the axis, of length 1: where the axis turns, it turns no more than it must.
 template <class Real>
-[[gnu::always_inline]] inline Vec3<Real> Straightened(const Vec3<Real>& normal, const Vec3<Real>& axis) {
+FULCRUM_FORCE_INLINE Vec3<Real> Straightened(const Vec3<Real>& normal, const Vec3<Real>& axis) {
     const Vec3<Real> flat = normal - axis * Dot<Real>(axis, normal);
     return flat * (Real(1.0f) / Sqrt(Max(Dot<Real>(flat, flat), Real(1e-12f))));
 }
@@ -145,14 +145,14 @@ template <class Real>
 // The locks' own impulses with their answer to the rows. In lanes without rows, whose answer is +0, every bit stays as it is in a
 // batch without rows; adding that zero would turn -0 into +0.
 template <class Lambda, class Real>
-[[gnu::always_inline]] inline void AddAnswer(Lambda& lambda, const Vec3<Real>& answer) {
+FULCRUM_FORCE_INLINE void AddAnswer(Lambda& lambda, const Vec3<Real>& answer) {
     for (int k = 0; k < lambda.size(); ++k) lambda[k] -= Real(0.0f) - answer[k];
 }
 
 // sin(a / 2) / a and cos(a / 2) with a = |v|: by the first terms of the series where the angle is below a radian, as it nearly
 // always is; the next term is below a digit.
 template <class Real>
-[[gnu::always_inline]] inline Vec2<Real> HalfTurnOf(const Vec3<Real>& v) {
+FULCRUM_FORCE_INLINE Vec2<Real> HalfTurnOf(const Vec3<Real>& v) {
     const Real square = Dot<Real>(v, v), one(1.0f);
     const Real scale = Real(0.5f) - square * (Real(1.0f / 48) - square * (Real(1.0f / 3840) - square * Real(1.0f / 645120)));
     const Real cosine = one - square * (Real(1.0f / 8) - square * (Real(1.0f / 384) - square * (Real(1.0f / 46080) - square * Real(1.0f / 10321920))));
@@ -165,7 +165,7 @@ template <class Real>
 
 // As RotationFromVector.
 template <class Real>
-[[gnu::always_inline]] inline Quat<Real> RotationOf(const Vec3<Real>& v) {
+FULCRUM_FORCE_INLINE Quat<Real> RotationOf(const Vec3<Real>& v) {
     const Vec2<Real> half = HalfTurnOf<Real>(v);
     return {v.x() * half.x(), v.y() * half.x(), v.z() * half.x(), half.y()};
 }
@@ -190,14 +190,14 @@ struct JointErrors {
 
 // J of a row applied to velocities or displacements.
 template <class Real>
-[[gnu::always_inline]] inline Real RowMotion(const JointRows<Real::kCount>& row, const Twist<Real>& a, const Twist<Real>& b) {
+FULCRUM_FORCE_INLINE Real RowMotion(const JointRows<Real::kCount>& row, const Twist<Real>& a, const Twist<Real>& b) {
     return Dot<Real>(row.b.linear, b.linear) + Dot<Real>(row.b.angular, b.angular) - Dot<Real>(row.a.linear, a.linear) -
            Dot<Real>(row.a.angular, a.angular);
 }
 
 // Sets the parts up, hard and without bias, and returns the errors.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-[[gnu::always_inline]] inline JointErrors<Wide<N>> SetUpParts(JointBatch<N>& batch, const JointPlace<Wide<N>>& place) {
+FULCRUM_FORCE_INLINE JointErrors<Wide<N>> SetUpParts(JointBatch<N>& batch, const JointPlace<Wide<N>>& place) {
     using Real = Wide<N>;
     const Vec2<Real> none(Real(0.0f), Real(0.0f));
     JointErrors<Real> errors;
@@ -228,7 +228,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
 
 // Calls f(axis, index) for the axes about which the angular lock's rows act.
 template <AngularLock kAngular, int N, class F>
-[[gnu::always_inline]] inline void VisitAngularRows(const JointBatch<N>& batch, F&& f) {
+FULCRUM_FORCE_INLINE void VisitAngularRows(const JointBatch<N>& batch, F&& f) {
     using Real = Wide<N>;
     const Real zero(0.0f), one(1.0f);
     if constexpr (kAngular == AngularLock::All) {
@@ -246,19 +246,19 @@ template <LinearLock kLinear, AngularLock kAngular>
 inline constexpr bool kCoupled = kLinear != LinearLock::None && kAngular != AngularLock::None;
 
 template <LinearLock kLinear, class Batch>
-[[gnu::always_inline]] inline auto& LinearPart(Batch& batch) {
+FULCRUM_FORCE_INLINE auto& LinearPart(Batch& batch) {
     if constexpr (kLinear == LinearLock::Line) return batch.line;
     else return batch.point;
 }
 template <AngularLock kAngular, class Batch>
-[[gnu::always_inline]] inline auto& AngularPart(Batch& batch) {
+FULCRUM_FORCE_INLINE auto& AngularPart(Batch& batch) {
     if constexpr (kAngular == AngularLock::Axis) return batch.hinge;
     else return batch.rotation;
 }
 
 // After SetUpParts: what couples the two locks.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-[[gnu::always_inline]] inline void SetUpCoupling(JointBatch<N>& batch) {
+FULCRUM_FORCE_INLINE void SetUpCoupling(JointBatch<N>& batch) {
     using Real = Wide<N>;
     if constexpr (kCoupled<kLinear, kAngular>) {
         constexpr int kColumns = kAngular == AngularLock::All ? 3 : 2;
@@ -325,7 +325,7 @@ struct LockImpulses {
 
 // K^-1 (linear, angular) with K of both locks. Unused components are zero.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-[[gnu::always_inline]] inline LockImpulses<Wide<N>> SolveBlock(JointBatch<N>& batch, const Vec3<Wide<N>>& linear, const Vec3<Wide<N>>& angular) {
+FULCRUM_FORCE_INLINE LockImpulses<Wide<N>> SolveBlock(JointBatch<N>& batch, const Vec3<Wide<N>>& linear, const Vec3<Wide<N>>& angular) {
     using Real = Wide<N>;
     LockImpulses<Real> x;
     const auto timesAngular = [&](const Vec3<Real>& v) {
@@ -366,14 +366,14 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
 }
 
 template <class Rows, class Real>
-[[gnu::always_inline]] inline Vec3<Real> Widened(const Rows& rows, Real zero) {
+FULCRUM_FORCE_INLINE Vec3<Real> Widened(const Rows& rows, Real zero) {
     if constexpr (Rows::SizeAtCompileTime == 3) return rows;
     else return Vec3<Real>(rows.x(), rows.y(), zero);
 }
 
 // What the locks see of a motion: L v.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-[[gnu::always_inline]] inline LockImpulses<Wide<N>> LockMotion(JointBatch<N>& batch, const Twist<Wide<N>>& a, const Twist<Wide<N>>& b) {
+FULCRUM_FORCE_INLINE LockImpulses<Wide<N>> LockMotion(JointBatch<N>& batch, const Twist<Wide<N>>& a, const Twist<Wide<N>>& b) {
     using Real = Wide<N>;
     LockImpulses<Real> motion;
     if constexpr (kLinear != LinearLock::None) motion.linear = Widened(LinearPart<kLinear>(batch).RelativeMotion(a, b), Real(0.0f));
@@ -383,7 +383,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
 
 // Adds M^-1 L^T impulses.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-[[gnu::always_inline]] inline void AddLockMotion(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, const LockImpulses<Wide<N>>& x) {
+FULCRUM_FORCE_INLINE void AddLockMotion(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, const LockImpulses<Wide<N>>& x) {
     using Real = Wide<N>;
     const auto add = [&](const auto& part, const Vec3<Real>& impulse) {
         auto rows = part.GetTotalLambda();
@@ -397,7 +397,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
 // The rows' errors and directions after the bodies moved on. Displacements are counted in pieces: of a body that turns fast their
 // sum is no rotation, and a direction that stayed behind would come to act against the locks.
 template <int N>
-[[gnu::always_inline]] inline void MoveRows(JointBatch<N>& batch, const Twist<Wide<N>>& a, const Twist<Wide<N>>& b) {
+FULCRUM_FORCE_INLINE void MoveRows(JointBatch<N>& batch, const Twist<Wide<N>>& a, const Twist<Wide<N>>& b) {
     using Real = Wide<N>;
     // The rotation from one rotation vector to another, to the second order where those are put together by a series.
     const auto between = [](const Vec3<Real>& from, const Vec3<Real>& to) {
@@ -423,7 +423,7 @@ template <int N>
 
 // The line between the anchors, where they are apart; else as it was.
 template <int N>
-[[gnu::always_inline]] inline void TurnRadialRow(const JointBatch<N>& batch, JointRows<N>& row, const JointPlace<Wide<N>>& place) {
+FULCRUM_FORCE_INLINE void TurnRadialRow(const JointBatch<N>& batch, JointRows<N>& row, const JointPlace<Wide<N>>& place) {
     using Real = Wide<N>;
     const Real squared = Dot<Real>(place.offset, place.offset), one(1.0f);
     const auto turns = (row.radial > Real(0.5f)) & (squared > Real(1e-10f));
@@ -446,7 +446,7 @@ template <int N>
 
 // After the parts were set up: responses and masses of the rows, and the locks' answer to their impulses.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-[[gnu::always_inline]] inline void SetUpRows(JointBatch<N>& batch) {
+FULCRUM_FORCE_INLINE void SetUpRows(JointBatch<N>& batch) {
     using Real = Wide<N>;
     const Real zero(0.0f);
     batch.answerLinear = batch.answerAngular = Zero<Real>();
@@ -481,7 +481,7 @@ inline constexpr float kFarPush = 0.5f;
 // How fast joints that are far apart are pulled: as fast as any, and from afar so much faster that all are there within some seconds.
 // No harm comes of it, because it is taken back.
 template <class Real>
-[[gnu::always_inline]] inline Real PullSpeed(const Real& error, const JointSolveSettings& settings) {
+FULCRUM_FORCE_INLINE Real PullSpeed(const Real& error, const JointSolveSettings& settings) {
     constexpr float kMost = 3.0f, kPerSecond = 0.75f;
     const Real most = Clamp(Abs(error) * Real(kPerSecond), Real(settings.maxPushSpeed), Real(kMost * settings.maxPushSpeed));
     return Clamp(Real(error * Real(settings.pushRate)), -most, most);
@@ -489,7 +489,7 @@ template <class Real>
 
 // The push that the next velocity iterations give; to locks that are far apart none, but a pull.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-[[gnu::always_inline]] inline void Soften(JointBatch<N>& batch, const JointErrors<Wide<N>>& errors, const JointSolveSettings& settings) {
+FULCRUM_FORCE_INLINE void Soften(JointBatch<N>& batch, const JointErrors<Wide<N>>& errors, const JointSolveSettings& settings) {
     using Real = Wide<N>;
     const RowSoftness<Real> softness{Real(settings.softness.massScale), Real(settings.softness.impulseScale)};
     const auto push = [&](const auto& error) {

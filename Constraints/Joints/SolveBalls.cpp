@@ -8,22 +8,22 @@ namespace {
 using namespace joints;
 
 template <class Real>
-[[gnu::always_inline]] inline Vec3<Real> Times(const Real& inertia, const Vec3<Real>& v) {
+FULCRUM_FORCE_INLINE Vec3<Real> Times(const Real& inertia, const Vec3<Real>& v) {
     return Vec3<Real>(v * inertia);
 }
 template <class Real>
-[[gnu::always_inline]] inline Vec3<Real> Times(const Sym3<Real>& inertia, const Vec3<Real>& v) {
+FULCRUM_FORCE_INLINE Vec3<Real> Times(const Sym3<Real>& inertia, const Vec3<Real>& v) {
     return inertia * v;
 }
 
 // The inverse inertias of a batch: numbers where it is round, else tensors.
 template <bool kRound, int N>
-[[gnu::always_inline]] inline const auto& InertiaOfA(const BallBatch<N>& batch) {
+FULCRUM_FORCE_INLINE const auto& InertiaOfA(const BallBatch<N>& batch) {
     if constexpr (kRound) return batch.inverseInertiaA;
     else return batch.inertiaA;
 }
 template <bool kRound, int N>
-[[gnu::always_inline]] inline const auto& InertiaOfB(const BallBatch<N>& batch) {
+FULCRUM_FORCE_INLINE const auto& InertiaOfB(const BallBatch<N>& batch) {
     if constexpr (kRound) return batch.inverseInertiaB;
     else return batch.inertiaB;
 }
@@ -46,7 +46,7 @@ void GatherMasses(BallBatch<N>& batch, const BodyMass* masses) {
 
 // Adds what an impulse at the arms changes of the velocities.
 template <bool kRound, int N>
-[[gnu::always_inline]] inline void AddImpulse(const BallBatch<N>& batch, const Vec3<Wide<N>>& armA, const Vec3<Wide<N>>& armB,
+FULCRUM_FORCE_INLINE void AddImpulse(const BallBatch<N>& batch, const Vec3<Wide<N>>& armA, const Vec3<Wide<N>>& armB,
                                               const Vec3<Wide<N>>& impulse, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
     using Real = Wide<N>;
     a.linear -= impulse * batch.inverseMassA;
@@ -57,7 +57,7 @@ template <bool kRound, int N>
 
 // The same of a change of the total impulse; NaN counts as nothing, so that one bad joint spoils no body.
 template <bool kRound, int N>
-[[gnu::always_inline]] inline void Change(BallBatch<N>& batch, const Vec3<Wide<N>>& armA, const Vec3<Wide<N>>& armB,
+FULCRUM_FORCE_INLINE void Change(BallBatch<N>& batch, const Vec3<Wide<N>>& armA, const Vec3<Wide<N>>& armB,
                                           const Vec3<Wide<N>>& change, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
     using Real = Wide<N>;
     const auto acts = Abs(change.x()) + Abs(change.y()) + Abs(change.z()) > Real(0.0f);
@@ -74,7 +74,7 @@ struct BallPlace {
 
 // Moves the arms to where impulses act.
 template <int N>
-[[gnu::always_inline]] inline void MeetBetween(const BallBatch<N>& batch, BallPlace<Wide<N>>& place) {
+FULCRUM_FORCE_INLINE void MeetBetween(const BallBatch<N>& batch, BallPlace<Wide<N>>& place) {
     using Real = Wide<N>;
     const Real share = MeetingShare<N>(batch.fixedA, batch.fixedB);
     place.armA += place.offset * share;
@@ -82,7 +82,7 @@ template <int N>
 }
 
 template <bool kRound, int N>
-[[gnu::always_inline]] inline Sym3<Wide<N>> MassAt(const BallBatch<N>& batch, const Vec3<Wide<N>>& armA, const Vec3<Wide<N>>& armB) {
+FULCRUM_FORCE_INLINE Sym3<Wide<N>> MassAt(const BallBatch<N>& batch, const Vec3<Wide<N>>& armA, const Vec3<Wide<N>>& armB) {
     using Real = Wide<N>;
     if constexpr (kRound) {
         const Vec3<Real> a = armA * batch.inverseInertiaA, b = armB * batch.inverseInertiaB;
@@ -103,7 +103,7 @@ template <bool kRound, int N>
 }
 
 template <int N>
-[[gnu::always_inline]] inline void SetPush(BallBatch<N>& batch, const Vec3<Wide<N>>& offset, const JointSolveSettings& settings) {
+FULCRUM_FORCE_INLINE void SetPush(BallBatch<N>& batch, const Vec3<Wide<N>>& offset, const JointSolveSettings& settings) {
     using Real = Wide<N>;
     const Real rate(settings.pushRate), most(settings.maxPushSpeed);
     for (int k = 0; k < 3; ++k) batch.push[k] = Clamp<Real>(offset[k] * rate, -most, most);
@@ -116,7 +116,7 @@ template <int N>
 }
 
 template <int N>
-[[gnu::always_inline]] inline void FindFar(BallBatch<N>& batch, const Vec3<Wide<N>>& offset, const JointSolveSettings& settings) {
+FULCRUM_FORCE_INLINE void FindFar(BallBatch<N>& batch, const Vec3<Wide<N>>& offset, const JointSolveSettings& settings) {
     using Real = Wide<N>;
     const Real most(settings.maxPushSpeed), rate(settings.pushRate);
     const auto isFar = Max(Max(Abs(offset.x()), Abs(offset.y())), Abs(offset.z())) * rate > most * Real(kFarPush);
@@ -151,20 +151,20 @@ template <int N>
 }
 
 template <class Real>
-[[gnu::always_inline]] inline Vec3<Real> MotionAt(const Twist<Real>& a, const Twist<Real>& b, const Vec3<Real>& armA, const Vec3<Real>& armB) {
+FULCRUM_FORCE_INLINE Vec3<Real> MotionAt(const Twist<Real>& a, const Twist<Real>& b, const Vec3<Real>& armA, const Vec3<Real>& armB) {
     return PointMotion<BodySide::Dynamic, BodySide::Dynamic>(a, b, armA, armB);
 }
 
 // How far a body turned since the start of the step: see BodyState::halfTurn.
 template <int N>
-[[gnu::always_inline]] inline Quat<Wide<N>> TurnOf(const Motion<N>& pose) {
+FULCRUM_FORCE_INLINE Quat<Wide<N>> TurnOf(const Motion<N>& pose) {
     const Wide<N>(&r)[8] = pose.row;
     return {r[3] * r[6], r[4] * r[6], r[5] * r[6], r[7]};
 }
 
 // The place at the displaced poses.
 template <int N>
-[[gnu::always_inline]] inline BallPlace<Wide<N>> Displaced(const BallBatch<N>& batch, BodyState* states, const Twist<Wide<N>>& velocityA,
+FULCRUM_FORCE_INLINE BallPlace<Wide<N>> Displaced(const BallBatch<N>& batch, BodyState* states, const Twist<Wide<N>>& velocityA,
                                                            const Twist<Wide<N>>& velocityB, const JointSolveSettings& settings) {
     using Real = Wide<N>;
     Motion<N> poseA, poseB;
@@ -185,7 +185,7 @@ template <int N>
 
 // Sets the joints up at the displaced poses; the turn of the impulse is left for the next substep.
 template <bool kRound, int N>
-[[gnu::always_inline]] inline void Follow(BallBatch<N>& batch, const SolverBodies& bodies, const Twist<Wide<N>>& velocityA,
+FULCRUM_FORCE_INLINE void Follow(BallBatch<N>& batch, const SolverBodies& bodies, const Twist<Wide<N>>& velocityA,
                                           const Twist<Wide<N>>& velocityB, const JointSolveSettings& settings) {
     using Real = Wide<N>;
     BallPlace<Real> place = Displaced(batch, bodies.states, velocityA, velocityB, settings);
@@ -220,7 +220,7 @@ template <bool kRound, int N>
 template <bool kRound, int N>
 void Solve(BallBatch<N>& batch, BodyState* states, const JointSolveSettings& settings) {
     using Real = Wide<N>;
-    ChangeVelocities<N>(batch, states, [&](Twist<Real>& a, Twist<Real>& b) __attribute__((always_inline)) {
+    ChangeVelocities<N>(batch, states, [&](Twist<Real>& a, Twist<Real>& b) FULCRUM_FORCE_INLINE_LAMBDA {
         if (settings.continues) {
             batch.earlier += batch.impulse;
             a.angular += batch.turnedA;
@@ -238,7 +238,7 @@ void Solve(BallBatch<N>& batch, BodyState* states, const JointSolveSettings& set
 template <bool kRound, int N>
 void Relax(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
     using Real = Wide<N>;
-    ChangeVelocities<N>(batch, bodies.states, [&](Twist<Real>& a, Twist<Real>& b) __attribute__((always_inline)) {
+    ChangeVelocities<N>(batch, bodies.states, [&](Twist<Real>& a, Twist<Real>& b) FULCRUM_FORCE_INLINE_LAMBDA {
         if (batch.far) TakePullBack(batch, a, b);
         Follow<kRound>(batch, bodies, a, b, settings);
         const Vec3<Real> hard = batch.mass * MotionAt<Real>(a, b, batch.armA, batch.armB);

@@ -8,7 +8,7 @@ using namespace joints;
 
 // Adds the total impulses of the locks to the velocities, times `sign`.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-[[gnu::always_inline]] inline void AddLockImpulses(const JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, float sign) {
+FULCRUM_FORCE_INLINE void AddLockImpulses(const JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, float sign) {
     using Real = Wide<N>;
     const auto add = [&](const auto& part, const Vec3<Real>& answer) {
         auto lambda = part.GetTotalLambda();
@@ -25,7 +25,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
 // The same of the rows' own, without the locks' answer; kTurning: of those alone whose direction or mass changes within the
 // step, whatever lanes beside them do.
 template <bool kTurning, int N>
-[[gnu::always_inline]] inline void AddRowImpulses(const JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, float sign) {
+FULCRUM_FORCE_INLINE void AddRowImpulses(const JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, float sign) {
     using Real = Wide<N>;
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         const JointRows<N>& row = batch.rows[i];
@@ -40,7 +40,7 @@ template <bool kTurning, int N>
 
 // Adds the impulses of the substep that is over to the step's.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-[[gnu::always_inline]] inline void SumImpulses(JointBatch<N>& batch) {
+FULCRUM_FORCE_INLINE void SumImpulses(JointBatch<N>& batch) {
     using Real = Wide<N>;
     const auto add = [&](Vec3<Real>& sum, const auto& part, const Vec3<Real>& answer) {
         const auto lambda = part.GetTotalLambda();
@@ -55,7 +55,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
 
 // Ends a substep: what the turning of the parts in it changes of their impulses.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-[[gnu::always_inline]] inline void Turn(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
+FULCRUM_FORCE_INLINE void Turn(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
     SumImpulses<kLinear, kAngular>(batch);
     a.angular += batch.turnedA.angular;
     b.angular += batch.turnedB.angular;
@@ -66,7 +66,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
 }
 
 template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
-[[gnu::always_inline]] inline void SolveRow(JointBatch<N>& batch, JointRows<N>& row, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
+FULCRUM_FORCE_INLINE void SolveRow(JointBatch<N>& batch, JointRows<N>& row, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
     using Real = Wide<N>;
     const Real zero(0.0f);
     const Real speed = RowMotion<Real>(row, a, b);
@@ -96,7 +96,7 @@ template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
 
 // Both locks as one block. A relaxing pass is hard and pushes nothing; the parts are set up that way then.
 template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
-[[gnu::always_inline]] inline void SolveBoth(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
+FULCRUM_FORCE_INLINE void SolveBoth(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
     using Real = Wide<N>;
     auto& linearPart = LinearPart<kLinear>(batch);
     auto& angularPart = AngularPart<kAngular>(batch);
@@ -125,7 +125,7 @@ template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
 }
 
 template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
-[[gnu::always_inline]] inline void SolveAll(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
+FULCRUM_FORCE_INLINE void SolveAll(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
     for (uint32_t i = 0; i < batch.rowCount; ++i) SolveRow<kRelax, kLinear, kAngular>(batch, batch.rows[i], a, b);
     if constexpr (!kCoupled<kLinear, kAngular>) {
         if constexpr (kAngular != AngularLock::None) AngularPart<kAngular>(batch).SolveVelocity(a, b, batch.massA, batch.massB);
@@ -212,7 +212,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
 
 // Adds the velocities of the last pull, times `sign`. Lanes without one keep every bit.
 template <int N>
-[[gnu::always_inline]] inline void AddPull(const JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, float sign) {
+FULCRUM_FORCE_INLINE void AddPull(const JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, float sign) {
     using Real = Wide<N>;
     const auto isFar = batch.isFar > Real(0.5f);
     const auto add = [&](Vec3<Real>& to, const Vec3<Real>& pulled) { to -= ZeroUnless<Real>(isFar, Vec3<Real>(pulled * Real(-sign))); };
@@ -230,7 +230,7 @@ template <int N>
 }
 
 template <LinearLock kLinear, AngularLock kAngular, int N>
-[[gnu::always_inline]] inline JointPlace<Wide<N>> Displace(const JointBatch<N>& batch, const Twist<Wide<N>>& a, const Twist<Wide<N>>& b) {
+FULCRUM_FORCE_INLINE JointPlace<Wide<N>> Displace(const JointBatch<N>& batch, const Twist<Wide<N>>& a, const Twist<Wide<N>>& b) {
     using Real = Wide<N>;
     JointPlace<Real> place;
     const Quat<Real> turnA = RotationOf<Real>(a.angular), turnB = RotationOf<Real>(b.angular);
@@ -314,9 +314,9 @@ template <int N>
 
 // Calls change(linear lock, angular lock, velocities of A, of B) for the batch, and writes these back.
 template <int N, class Batch, class F>
-[[gnu::always_inline]] inline void ChangeLocked(Batch& batch, BodyState* states, F&& change) {
-    ChangeVelocities<N>(batch, states, [&](auto& a, auto& b) __attribute__((always_inline)) {
-        WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) __attribute__((always_inline)) { change(linear, angular, a, b); });
+FULCRUM_FORCE_INLINE void ChangeLocked(Batch& batch, BodyState* states, F&& change) {
+    ChangeVelocities<N>(batch, states, [&](auto& a, auto& b) FULCRUM_FORCE_INLINE_LAMBDA {
+        WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) FULCRUM_FORCE_INLINE_LAMBDA { change(linear, angular, a, b); });
     });
 }
 
@@ -324,7 +324,7 @@ template <int N, class Batch, class F>
 
 template <int N>
 void WarmStartJoints(const JointBatch<N>& batch, BodyState* states) {
-    ChangeLocked<N>(batch, states, [&](auto linear, auto angular, auto& a, auto& b) __attribute__((always_inline)) {
+    ChangeLocked<N>(batch, states, [&](auto linear, auto angular, auto& a, auto& b) FULCRUM_FORCE_INLINE_LAMBDA {
         AddRowImpulses<false>(batch, a, b, 1.0f);
         AddLockImpulses<linear, angular>(batch, a, b, 1.0f);
     });
@@ -332,14 +332,14 @@ void WarmStartJoints(const JointBatch<N>& batch, BodyState* states) {
 
 template <int N>
 void TurnJoints(JointBatch<N>& batch, BodyState* states) {
-    ChangeLocked<N>(batch, states, [&](auto linear, auto angular, auto& a, auto& b) __attribute__((always_inline)) {
+    ChangeLocked<N>(batch, states, [&](auto linear, auto angular, auto& a, auto& b) FULCRUM_FORCE_INLINE_LAMBDA {
         Turn<linear, angular>(batch, a, b);
     });
 }
 
 template <int N>
 void SolveJointVelocities(JointBatch<N>& batch, BodyState* states, const JointSolveSettings& settings) {
-    ChangeLocked<N>(batch, states, [&](auto linear, auto angular, auto& a, auto& b) __attribute__((always_inline)) {
+    ChangeLocked<N>(batch, states, [&](auto linear, auto angular, auto& a, auto& b) FULCRUM_FORCE_INLINE_LAMBDA {
         if (settings.continues) Turn<linear, angular>(batch, a, b);
         if (batch.far) {
             TakePullBack(batch, a, b);
@@ -355,7 +355,7 @@ void SolveJointVelocities(JointBatch<N>& batch, BodyState* states, const JointSo
 
 template <int N>
 void RelaxJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
-    ChangeLocked<N>(batch, bodies.states, [&](auto linear, auto angular, auto& a, auto& b) __attribute__((always_inline)) {
+    ChangeLocked<N>(batch, bodies.states, [&](auto linear, auto angular, auto& a, auto& b) FULCRUM_FORCE_INLINE_LAMBDA {
         if (batch.far) TakePullBack(batch, a, b);
         const JointErrors<Wide<N>> errors = Follow<linear, angular>(batch, bodies, a, b, settings);
         if (batch.far) HoldFar<linear, angular>(batch, a, b);

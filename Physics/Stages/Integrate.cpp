@@ -59,7 +59,7 @@ void IntegrateVelocity(WorldState& world, uint32_t body, float h, bool again, Wo
 // Hausdorff), as far as they are small; this is what comes to their sum. Without it a step's error is that of the whole step,
 // however many substeps there are.
 template <class Real>
-[[gnu::always_inline]] inline Vec3<Real> MoreThanTheSum(const Vec3<Real>& before, const Vec3<Real>& turn) {
+FULCRUM_FORCE_INLINE Vec3<Real> MoreThanTheSum(const Vec3<Real>& before, const Vec3<Real>& turn) {
     const Vec3<Real> across = Cross<Real>(turn, before);
     return across * Real(0.5f) + Cross<Real>(Vec3<Real>(turn - before), across) * Real(1.0f / 12.0f);
 }
@@ -133,7 +133,7 @@ struct Rows {
     Lanes at[8];
 
     template <class RowOf>
-    [[gnu::always_inline]] Rows(const Indices& bodies, RowOf&& rowOf) {
+    FULCRUM_FORCE_INLINE Rows(const Indices& bodies, RowOf&& rowOf) {
         for (int i = 0; i < kLanes; ++i) rows[i] = const_cast<float*>(rowOf(bodies[i]));
         GatherRows<kLanes>(reinterpret_cast<const float* const(&)[kLanes]>(rows), at);
     }
@@ -190,7 +190,7 @@ bool IntegrateVelocitiesInLanes(WorldState& world, const Indices& index, int cou
 }
 
 // TurnInertia of the lanes that feel it. turn: rotation since the start of the step, rad; w: rad/s, changed.
-[[gnu::always_inline]] inline void TurnInertias(BodyStore& bodies, const Indices& index, int count, WideMask<kLanes> feels,
+FULCRUM_FORCE_INLINE void TurnInertias(BodyStore& bodies, const Indices& index, int count, WideMask<kLanes> feels,
                                                 const Vec3<Lanes>& turn, const Lanes& pulls, Vec3<Lanes>& w, float h) {
     const uint32_t lanes = feels.ToBits();
     const Rows pose(index, [&](uint32_t body) { return bodies.poses[body].rotation; });

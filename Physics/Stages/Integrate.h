@@ -18,7 +18,7 @@ void IntegratePoses(WorldState& world, std::span<const uint32_t> bodies, float h
 // axis; a rule that keeps the momentum in world axes lets the spin of a thin rod grow without end.
 // inverseInertia: principal, 1/(kg m2). Real: float, or lanes.
 template <class Real>
-[[gnu::always_inline]] inline Vec3<Real> AddGyroscopicTorque(const Vec3<Real>& inverseInertia, const Mat3<Real>& axes, const Vec3<Real>& w, Real h) {
+FULCRUM_FORCE_INLINE Vec3<Real> AddGyroscopicTorque(const Vec3<Real>& inverseInertia, const Mat3<Real>& axes, const Vec3<Real>& w, Real h) {
     // Of the moments only ratios count: (1 / iy - 1 / iz) ix = ix^2 (iz - iy) / (ix iy iz), and so on.
     const Vec3<Real> i = inverseInertia * (Real(1.0f) / Max(Max(inverseInertia.x(), inverseInertia.y()), inverseInertia.z()));
     const Real product = i[0] * i[1] * i[2];

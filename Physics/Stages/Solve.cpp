@@ -34,7 +34,7 @@ struct Phase {
 
 // Batches are streamed: the next one is on its way while this one is solved.
 template <class Batch>
-[[gnu::always_inline]] inline void Prefetch(const Batch& batch) {
+FULCRUM_FORCE_INLINE void Prefetch(const Batch& batch) {
     const char* bytes = reinterpret_cast<const char*>(&batch);
     for (size_t line = 0; line < offsetof(Batch, bounceSpeed); line += 64) __builtin_prefetch(bytes + line);
 }

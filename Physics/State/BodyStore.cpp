@@ -151,7 +151,16 @@ Vector3 AngularMomentum(const BodyDynamics& d, const Quaternion& rotation, const
     const Quaternion axes = rotation * d.PrincipalAxes();
     Vector3 local = InverseRotate(axes, w);
     for (int k = 0; k < 3; ++k) local[k] = d.inverseInertia[k] > 0 ? local[k] / d.inverseInertia[k] : 0.0f;
-    return Rotate(axes, local);
+    constexpr float kMost = 1e38f;  // their sum is a float, too
+    return Rotate(axes, Vector3(local.cwiseMax(-kMost).cwiseMin(kMost)));
+}
+
+double RotationalEnergy(const BodyDynamics& d, const Quaternion& rotation, const Vector3& w) {
+    const Vector3 local = InverseRotate(rotation * d.PrincipalAxes(), w);
+    double twice = 0;
+    for (int k = 0; k < 3; ++k)
+        if (d.inverseInertia[k] > 0) twice += double{local[k]} * double{local[k]} / double{d.inverseInertia[k]};
+    return 0.5 * twice;
 }
 
 size_t BodyStore::MemoryUsed() const {

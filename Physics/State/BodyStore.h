@@ -62,6 +62,8 @@ static_assert(sizeof(BodyDynamics) == 64);
 
 // kg m2/s about the centre of mass, world axes, at the rotation and angular velocity (rad/s).
 Vector3 AngularMomentum(const BodyDynamics& body, const Quaternion& rotation, const Vector3& angularVelocity);
+// J, in double: of extreme bodies it is beyond the floats.
+double RotationalEnergy(const BodyDynamics& body, const Quaternion& rotation, const Vector3& angularVelocity);
 // The inverses of mass, kg, and principal moments of inertia, kg m2, along axes that are rotated so in the centre frame.
 void SetMass(BodyDynamics& body, const Quaternion& principalAxes, float mass, const Vector3& inertia);
 // The principal axes in world space.

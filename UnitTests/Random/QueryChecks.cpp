@@ -42,14 +42,6 @@ std::pair<double, double> FractionsNear(const BodyShape& body, const Ray& ray) {
     return {range.first - slack, range.second + slack};
 }
 
-template <class... Parts>
-std::string Text(const Parts&... parts) {
-    std::ostringstream text;
-    text.precision(9);
-    (text << ... << parts);
-    return text.str();
-}
-
 const BodyShape* Find(const std::vector<BodyShape>& bodies, BodyId id) {
     for (const BodyShape& body : bodies)
         if (body.id == id) return &body;
@@ -103,7 +95,9 @@ std::string CompareRay(const std::vector<BodyShape>& bodies, const Ray& ray, con
         const auto [least, largest] = FractionsNear(body, ray);
         closest = std::min(closest, largest);
         if (isHit && body.id == hit.body && (double{hit.fraction} < least || (largest > 1.5 && least > 1.5)))
-            return Text("a ray hits body ", body.id.index, " at ", hit.fraction, ", which by itself it meets from ", least);
+            return Text("a ray hits body ", body.id.index, " at ", hit.fraction, ", which by itself it meets from ", least, ": a ",
+                        ShapeTypeName(body.shape->Type()), " of ", body.shape->OuterRadius(), " at ", body.pose.position.transpose(), ", ray from ",
+                        ray.origin.transpose(), " by ", ray.displacement.transpose());
     }
     const double found = isHit ? double{hit.fraction} : 2;
     if (found > closest + 1e-6) return Text("a ray hits at ", found, " what by itself is closer, at ", closest);
@@ -113,7 +107,7 @@ std::string CompareRay(const std::vector<BodyShape>& bodies, const Ray& ray, con
 std::string CheckShapeHit(const std::vector<BodyShape>& bodies, const MovingShape& moving, const WorldShapeHit& hit) {
     if (hit.body == BodyId{}) return {};
     if (!(IsUnit(hit.normal) && IsFinite(hit.position) && std::isfinite(hit.depth) && hit.fraction >= 0 && hit.fraction <= 1))
-        return Text("shape hit of body ", hit.body.index, " is not finite, or its normal no unit vector");
+        return Text("shape hit is not finite, or its normal no unit vector", ToText(hit));
     const BodyShape* const body = Find(bodies, hit.body);
     if (!body) return "a shape hits what is no body";
     if (hit.isEarly) return {};
@@ -136,7 +130,7 @@ std::string CheckShapeHit(const std::vector<BodyShape>& bodies, const MovingShap
 std::string CompareClosest(const std::vector<BodyShape>& bodies, const PlacedShape& placed, float maxDistance, const WorldClosest& closest) {
     const bool isFound = closest.body != BodyId{};
     if (isFound && !(IsFinite(closest.normal) && std::isfinite(closest.distance) && IsFinite(closest.onBody) && IsFinite(closest.onQuery)))
-        return Text("closest points on body ", closest.body.index, " are not finite");
+        return Text("closest points are not finite", ToText(closest), " of ", closest.onBody.transpose(), " and ", closest.onQuery.transpose());
     const Pose centre = CentrePoseOf(*placed.shape, placed.pose);
     for (const BodyShape& body : bodies) {
         ClosestPoints here;

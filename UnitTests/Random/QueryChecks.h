@@ -6,6 +6,7 @@
 #include <Fulcrum/Physics/PhysicsSystem.h>
 #include <Fulcrum/UnitTests/Random/Twin.h>
 
+#include <sstream>
 #include <string>
 
 namespace fulcrum::testing {
@@ -21,6 +22,14 @@ struct BodyShape {
 std::vector<BodyShape> ShapesOf(const PhysicsSystem& system);
 
 bool AreSame(const WorldRayHit& a, const WorldRayHit& b);
+// All parts, one after the other.
+template <class... Parts>
+std::string Text(const Parts&... parts) {
+    std::ostringstream text;
+    text.precision(9);
+    (text << ... << parts);
+    return text.str();
+}
 std::string ToText(const WorldRayHit& hit);
 std::string ToText(const WorldShapeHit& hit);
 std::string ToText(const WorldClosest& hit);

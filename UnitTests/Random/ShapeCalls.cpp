@@ -30,11 +30,14 @@ void MeasureDistance(Twin&, Values& values, const CallTargets&, Outcome& outcome
     const ShapePtr a = RandomConvex(values), b = RandomConvex(values);
     if (!a || !b) return;
     const float reach = a->OuterRadius() + b->OuterRadius();
+    if (!std::isfinite(reach)) return;  // a user's own shape may be anything
     const RelativePose pose{values.Random().InBox(values.Chance(0.1f) ? reach * 10 : reach), values.Rotation()};
     if (!(std::abs(LengthSquared(pose.rotation) - 1) < 1e-3f)) return;
     ClosestPoints closest;
     if (!FindClosestPoints(*a, *b, pose, FLT_MAX, closest)) {
-        outcome.failure = "no closest points of two convex shapes";
+        const Quaternion& q = pose.rotation;
+        outcome.failure = Text("no closest points of a ", ShapeTypeName(a->Type()), " of ", a->OuterRadius(), " and a ", ShapeTypeName(b->Type()),
+                               " of ", b->OuterRadius(), " at ", pose.position.transpose(), " turned by ", q.x, " ", q.y, " ", q.z, " ", q.w);
         return;
     }
     outcome.failure = CheckClosest(static_cast<const ConvexShape&>(*a), static_cast<const ConvexShape&>(*b), pose, closest);
