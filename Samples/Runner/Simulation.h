@@ -1,7 +1,7 @@
 // Runs a scene step by step and measures it. Used by the runner and the benchmark; one thread.
 #pragma once
 
-#include <Fulcrum/Samples/Runner/PenetrationMeter.h>
+#include <Fulcrum/Samples/Scenes/PenetrationMeter.h>
 
 #include <array>
 #include <string>

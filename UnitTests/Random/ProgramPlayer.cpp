@@ -83,6 +83,7 @@ private:
 
     std::string PlayCall(const RandomCall& call) {
         const double before = Seconds(), energy = KineticEnergy(twins_[0]), allowance = IsStep(call) ? EnergyAllowance(twins_[0]) : 0;
+        posesBefore_ = twins_[0].system->HashPoses();
         const Outcome first = PlayIn(twins_[0], call);
         const double took = Seconds() - before;
         if (!first.failure.empty()) return first.failure;
@@ -112,9 +113,7 @@ private:
         const std::string_view name = call.kind->name;
         if (name.starts_with("AddForce") || name == "AddTorque") isPushed_ = true;
         if (!IsStep(call) || program_.style.oddChance > 0 || program_.style.joints) return {};
-        const uint64_t poses = twins_[0].system->HashPoses();
-        if (poses == lastPoses_) return {};  // a step of no length, after which forces wait still
-        lastPoses_ = poses;
+        if (twins_[0].system->HashPoses() == posesBefore_) return {};  // a step of no length, after which forces wait still
         const bool isPushed = isPushed_;
         isPushed_ = false;
         const double after = KineticEnergy(twins_[0]);
@@ -127,7 +126,7 @@ private:
     const RandomProgram& program_;
     std::vector<Twin> twins_;
     uint64_t state_ = 0;
-    uint64_t lastPoses_ = 0;
+    uint64_t posesBefore_ = 0;
     bool isPushed_ = false;
 };
 

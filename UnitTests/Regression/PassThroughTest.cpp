@@ -2,7 +2,7 @@
 // two edges that met had a single point, about which the boxes turned into each other; and the softness of a contact gave way under
 // a heavy load faster than its push, which has a largest speed, could follow.
 #include <Fulcrum/Collision/Queries/Distance.h>
-#include <Fulcrum/Samples/Runner/PenetrationMeter.h>
+#include <Fulcrum/Samples/Scenes/PenetrationMeter.h>
 #include <Fulcrum/Samples/Scenes/Scenes.h>
 #include <Fulcrum/UnitTests/Support/RandomPoses.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>

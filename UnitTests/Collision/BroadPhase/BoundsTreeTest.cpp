@@ -343,12 +343,11 @@ TEST(BoundsTree, AnswersManyThreadsAtOnce) {
 
 #ifdef FULCRUM_ASSERTIONS
 TEST(BoundsTreeDeathTest, RejectsWhatIsNoBoxAndWhatIsNotThere) {
-    const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+    const float nan = std::numeric_limits<float>::quiet_NaN();
     const Bounds box = Box(Vector3(0, 0, 0), Vector3(1, 1, 1));
     BoundsTree tree;
     tree.Insert(0, box);
     EXPECT_DEATH(tree.Insert(1, Box(Vector3(0, nan, 0), Vector3(1, 1, 1))), "assertion");
-    EXPECT_DEATH(tree.Update(0, Box(Vector3(0, 0, 0), Vector3(1, 1, infinity))), "assertion");
     EXPECT_DEATH(tree.Update(0, Bounds{}), "assertion");
     EXPECT_DEATH(tree.Insert(0, box), "assertion");
     EXPECT_DEATH(tree.Update(1, box), "assertion");

@@ -1,4 +1,4 @@
-#include <Fulcrum/Samples/Runner/PenetrationMeter.h>
+#include <Fulcrum/Samples/Scenes/PenetrationMeter.h>
 
 #include <Fulcrum/Collision/Queries/ConvexDistance.h>
 #include <Fulcrum/Collision/Queries/Pieces.h>
