@@ -104,6 +104,10 @@ MaybeError CheckShape(const Shape* shape, MotionType motion) {
     if (!shape) return Error{ErrorCode::Unsupported, "shape is null; a body needs one"};
     if (motion == MotionType::Dynamic && (shape->IsSurface() || shape->Type() == ShapeType::Plane))
         return Error{ErrorCode::Unsupported, std::string("shape is a ") + ShapeTypeName(shape->Type()) + "; a dynamic body needs one with a volume"};
+    // Of a custom shape, or with one inside: all others are checked when they are made.
+    const Bounds& box = shape->LocalBounds();
+    if (shape->Type() != ShapeType::Plane && shape->Type() != ShapeType::Empty && !(IsFinite(box.lower) && IsFinite(box.upper)))
+        return Error{ErrorCode::NonFinite, std::string("shape is a ") + ShapeTypeName(shape->Type()) + " whose bounds are not finite"};
     return std::nullopt;
 }
 
