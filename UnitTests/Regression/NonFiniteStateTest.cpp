@@ -1,6 +1,7 @@
 // A frozen body kept whatever the rows of its contacts made of its velocity, NaN included; that passed from body to body, and the next
 // build of a tree read beyond an array. Here NaN and infinity are written over every number of the bodies' state, of contacts, joints
 // and what they carry, one at a time.
+#include <Fulcrum/UnitTests/Support/Cases.h>
 #include <Fulcrum/UnitTests/Support/WorldAccess.h>
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 
@@ -173,9 +174,11 @@ void Spoil(const Place& place, double value, BodyId mayFreeze) {
 }
 
 void SpoilAll(const std::vector<Place>& places, BodyId mayFreeze) {
-    for (const Place& place : places)
+    for (size_t i = 0; i < places.size(); ++i)
         for (float value : {kNaN, -kInfinity}) {
-            Spoil(place, value, mayFreeze);
+            // The sanitizers, which take minutes of it, see one of the two in turn.
+            if (kIsSanitized && (i % 2 == 0) != std::isnan(value)) continue;
+            Spoil(places[i], value, mayFreeze);
             if (::testing::Test::HasFailure()) return;
         }
 }
