@@ -50,3 +50,9 @@ function(fulcrum_compile_options target)
     target_compile_definitions(${target} PRIVATE FULCRUM_ASSERTIONS)
   endif()
 endfunction()
+
+# For what builds scenes, writes reports and tests: it runs once, and compiles in two thirds of the time with few optimisations.
+# The engine keeps its own; so does every configuration but Release.
+function(fulcrum_optimise_little target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()

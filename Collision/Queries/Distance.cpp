@@ -4,12 +4,12 @@
 #include <Fulcrum/Collision/Shapes/Plane.h>
 
 #include <algorithm>
+#include <limits>
 #include <tuple>
 
 namespace fulcrum {
 
 namespace {
-
 
 Bounds Everywhere() {
     Bounds bounds;

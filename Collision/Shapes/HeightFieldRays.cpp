@@ -34,8 +34,6 @@ struct PaddedRay {
     }
 };
 
-float LargestCoordinate(const Vector3& v) { return Max(Abs(v.x()), Max(Abs(v.y()), Abs(v.z()))); }
-
 uint32_t CellAt(float place, float origin, float size, uint32_t first, uint32_t last) {
     const float cell = (place - origin) / size;
     if (!(cell > static_cast<float>(first))) return first;

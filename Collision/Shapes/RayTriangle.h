@@ -7,6 +7,9 @@
 
 namespace fulcrum {
 
+// The largest absolute value of three: what the rounding of a ray's meeting grows with.
+inline float LargestCoordinate(const Vector3& v) { return Max(Abs(v.x()), Max(Abs(v.y()), Abs(v.z()))); }
+
 // A ray in a frame whose z axis runs along the ray's largest component and in which the ray is z itself, by shearing.
 struct ShearedRay {
     Vector3 origin;

@@ -34,8 +34,6 @@ Bounds Unscaled(const Bounds& box, const Vector3& scale, bool isScaled) {
     return result;
 }
 
-float LargestCoordinate(const Vector3& v) { return Max(Abs(v.x()), Max(Abs(v.y()), Abs(v.z()))); }
-
 }  // namespace
 
 void TriangleMesh::SearchBox(const Bounds& box, void* context, BatchFunction found) const {

@@ -19,7 +19,7 @@ JointRow& AddRow(const JointRow& motion, float sign, uint32_t slot, JointRow::Ki
     return row;
 }
 
-bool IsFixed(const AxisControl& control) { return control.limited && control.limits.min >= control.limits.max; }
+bool LimitsLock(const AxisControl& control) { return control.limited && control.limits.min >= control.limits.max; }
 
 // How far the axis may get within the step in the direction of `sign`.
 float Reach(const AxisControl& control, double position, float speed, float sign, float slackSpeed, float dt) {
@@ -91,14 +91,14 @@ void AddLockRow(const SpringSettings& spring, const JointRow& motion, float erro
 }
 
 uint32_t MaxControlRows(const AxisControl& control) {
-    if (IsFixed(control)) return 1;
+    if (LimitsLock(control)) return 1;
     return (control.limited ? 2u : 0u) + (control.motor.mode != MotorMode::Off ? 1u : 0u) + (control.friction > 0.0f ? 1u : 0u);
 }
 
 void AddControlRows(const AxisControl& control, const JointPose& pose, const JointRow& motion, double position,
                     float slackSpeed, uint32_t firstSlot, JointRowList& rows) {
     const JointLimits& limits = control.limits;
-    if (IsFixed(control)) {
+    if (LimitsLock(control)) {
         const auto error = static_cast<float>(position - limits.min);
         return AddLockRow(limits.spring, motion, error, firstSlot + ControlSlots::kLowLimit, rows);
     }

@@ -152,10 +152,7 @@ Vector3 GainUntilEnd(const WorldState& world, uint32_t body, const Vector3& v, c
 Vector3 TurnedFreely(const BodyDynamics& d, const Quaternion& rotation, const Vector3& w, float seconds, const Quaternion& then) {
     if (d.motion != MotionType::Dynamic || !d.FeelsGyroscopicTorque(w)) return w;
     const auto energyOf = [&](const Vector3& inBody) {
-        const Vector3 local = InverseRotate(d.PrincipalAxes(), inBody);
-        float energy = 0;
-        for (int k = 0; k < 3; ++k) energy += d.inverseInertia[k] > 0 ? local[k] * local[k] / d.inverseInertia[k] : 0.0f;
-        return energy;
+        return TwiceRotationalEnergy<float>(d, InverseRotate(d.PrincipalAxes(), inBody));
     };
     FreeTurn turn{&d, rotation, w};
     RotateFreely(turn, seconds);

@@ -60,10 +60,7 @@ bool FlyFreely(WorldState& world, Ending& ending, const StepContext& step, Worke
 Vector3 CarriedAlong(const BodyDynamics& d, const Quaternion& before, const Quaternion& after, const Vector3& w) {
     constexpr float kGain = 1.05f;
     const auto energyOf = [&](const Quaternion& rotation, const Vector3& velocity) {
-        const Vector3 local = InverseRotate(rotation * d.PrincipalAxes(), velocity);
-        float energy = 0;
-        for (int k = 0; k < 3; ++k) energy += d.inverseInertia[k] > 0 ? local[k] * local[k] / d.inverseInertia[k] : 0.0f;
-        return energy;
+        return TwiceRotationalEnergy<float>(d, InverseRotate(rotation * d.PrincipalAxes(), velocity));
     };
     const float wanted = energyOf(before, w), gain = energyOf(after, w) - wanted;
     if (!(gain > (kGain - 1) * wanted)) return w;

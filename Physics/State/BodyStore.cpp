@@ -156,11 +156,7 @@ Vector3 AngularMomentum(const BodyDynamics& d, const Quaternion& rotation, const
 }
 
 double RotationalEnergy(const BodyDynamics& d, const Quaternion& rotation, const Vector3& w) {
-    const Vector3 local = InverseRotate(rotation * d.PrincipalAxes(), w);
-    double twice = 0;
-    for (int k = 0; k < 3; ++k)
-        if (d.inverseInertia[k] > 0) twice += double{local[k]} * double{local[k]} / double{d.inverseInertia[k]};
-    return 0.5 * twice;
+    return 0.5 * TwiceRotationalEnergy<double>(d, InverseRotate(rotation * d.PrincipalAxes(), w));
 }
 
 size_t BodyStore::MemoryUsed() const {

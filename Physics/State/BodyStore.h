@@ -64,6 +64,13 @@ static_assert(sizeof(BodyDynamics) == 64);
 Vector3 AngularMomentum(const BodyDynamics& body, const Quaternion& rotation, const Vector3& angularVelocity);
 // J, in double: of extreme bodies it is beyond the floats.
 double RotationalEnergy(const BodyDynamics& body, const Quaternion& rotation, const Vector3& angularVelocity);
+// Twice the energy, J, of a body that turns at this angular velocity (rad/s, along the principal axes), summed in Real.
+template <class Real>
+Real TwiceRotationalEnergy(const BodyDynamics& body, const Vector3& w) {
+    Real sum = 0;
+    for (int k = 0; k < 3; ++k) sum += body.inverseInertia[k] > 0 ? Real{w[k]} * Real{w[k]} / Real{body.inverseInertia[k]} : Real{0};
+    return sum;
+}
 // The inverses of mass, kg, and principal moments of inertia, kg m2, along axes that are rotated so in the centre frame.
 void SetMass(BodyDynamics& body, const Quaternion& principalAxes, float mass, const Vector3& inertia);
 // The principal axes in world space.

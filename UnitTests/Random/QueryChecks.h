@@ -11,6 +11,15 @@
 
 namespace fulcrum::testing {
 
+// All parts, one after the other.
+template <class... Parts>
+std::string Text(const Parts&... parts) {
+    std::ostringstream text;
+    text.precision(9);
+    (text << ... << parts);
+    return text.str();
+}
+
 // A shape where its body has it: `pose` is that of the shape's centre frame.
 struct BodyShape {
     BodyId id;
@@ -22,14 +31,6 @@ struct BodyShape {
 std::vector<BodyShape> ShapesOf(const PhysicsSystem& system);
 
 bool AreSame(const WorldRayHit& a, const WorldRayHit& b);
-// All parts, one after the other.
-template <class... Parts>
-std::string Text(const Parts&... parts) {
-    std::ostringstream text;
-    text.precision(9);
-    (text << ... << parts);
-    return text.str();
-}
 std::string ToText(const WorldRayHit& hit);
 std::string ToText(const WorldShapeHit& hit);
 std::string ToText(const WorldClosest& hit);
