@@ -138,7 +138,7 @@ export function take(figures, run) {
     scene.threads[run.threads] = { ms: Number(run.median_ms.toFixed(4)), ratio: quotient };
     if (!scene.is_batch) scene.threads[run.threads].stages_ms = Object.fromEntries(stages);
     if (run.threads === 1) scene.accuracy.value = run.accuracy;
-    if (run.threads === 1 && run.largest_penetration_ratio !== undefined) scene.penetration = run.largest_penetration_ratio;
+    if (run.threads === 1 && run.largest_relative_penetration !== undefined) scene.penetration = run.largest_relative_penetration;
   } else if (isSetting(run, 1, 10, 2) && scene.ten_iterations) {
     scene.ten_iterations.ratio[run.threads - 1] = quotient;
     if (run.threads === 1) scene.ten_iterations.accuracy = run.accuracy;

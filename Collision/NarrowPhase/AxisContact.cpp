@@ -130,11 +130,8 @@ Vector3 CrossingNormal(const Segment& onA, const Segment& onB, const Vector3& to
     return Dot(n, towards) < 0.0f ? Vector3(-n) : n;
 }
 
-}  // namespace
-
-void BuildContactFromAxis(const PolyhedronPair& pair, const KnownAxis& known, const ContactTolerances& tolerances,
-                          PairCache& cache, Manifold& manifold) {
-    if (TryFaces(pair, known, tolerances, cache, manifold)) return;
+// The manifold of edges and vertices.
+void BuildFromEdges(const PolyhedronPair& pair, const KnownAxis& known, const ContactTolerances& tolerances, PairCache& cache, Manifold& manifold) {
     manifold.normal = known.axis;
     manifold.pointCount = 0;
     RememberAxis(known.axis, cache);
@@ -168,6 +165,15 @@ void BuildContactFromAxis(const PolyhedronPair& pair, const KnownAxis& known, co
     if (separation <= tolerances.reach) AddPoint(pair, x, separation, feature, manifold);
 }
 
+}  // namespace
+
+void BuildContactFromAxis(const PolyhedronPair& pair, const KnownAxis& known, const ContactTolerances& tolerances,
+                          PairCache& cache, Manifold& manifold) {
+    if (TryFaces(pair, known, tolerances, cache, manifold)) return;
+    BuildFromEdges(pair, known, tolerances, cache, manifold);
+    AddFacesAhead(pair, tolerances, manifold);
+}
+
 EdgeContact TryCachedEdges(const PolyhedronPair& pair, const ContactTolerances& tolerances, const PairCache& cache,
                            Manifold& manifold) {
     const uint8_t a[2] = {static_cast<uint8_t>(cache.indexA), static_cast<uint8_t>(cache.indexA >> 8)};
@@ -194,6 +200,7 @@ EdgeContact TryCachedEdges(const PolyhedronPair& pair, const ContactTolerances& 
     result.proven = NoBetterAxis(pair, normal, -separation, inside) && inside > 0;
     if (!result.proven) return result;
     BuildCrossing(pair, onA, onB, normal, CrossingFeature(cache.indexA, cache.indexB), tolerances.reach, manifold);
+    AddFacesAhead(pair, tolerances, manifold);
     return result;
 }
 

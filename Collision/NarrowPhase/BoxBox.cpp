@@ -2,9 +2,7 @@
 // face, or of two edges where those separate clearly better.
 // Source of the axes: S. Gottschalk, M. Lin, D. Manocha, OBBTree, SIGGRAPH 1996.
 #include <Fulcrum/Collision/NarrowPhase/BoxFaceContact.h>
-#include <Fulcrum/Collision/NarrowPhase/Features.h>
 #include <Fulcrum/Collision/NarrowPhase/PairFunctions.h>
-#include <Fulcrum/Collision/NarrowPhase/Segments.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
 
 namespace fulcrum {
@@ -110,76 +108,6 @@ Vector3 EdgeAxis(const BoxPair& pair, int axisA, int axisB) {
     return Dot(n, pair.position) < 0.0f ? Vector3(-n) : n;
 }
 
-// The edge of a box along one of its axes that lies farthest along a direction, and the name of it.
-Segment FarthestEdge(const Vector3& half, int axis, const Vector3& direction, uint32_t& name) {
-    Vector3 from = half;
-    uint32_t vertex = 0;
-    for (int i = 0; i < 3; ++i) {
-        if (i == axis || direction[i] < 0.0f) from[i] = -half[i];
-        else vertex |= 1u << i;
-    }
-    Vector3 to = from;
-    to[axis] = half[axis];
-    name = EdgeName(vertex, vertex | 1u << axis);
-    return {from, to};
-}
-
-int LeastAlong(const Vector3& direction) {
-    const Vector3 d = direction.cwiseAbs();
-    const int least = d.y() < d.x() ? 1 : 0;
-    return d.z() < d[least] ? 2 : least;
-}
-
-// Where two edges run side by side, more or less, and one end is the closest point, the other end holds them, too: else the first touch
-// turns one edge across the other within the step.
-void HoldBothEnds(const BoxPair& pair, const ContactTolerances& tolerances, Manifold& manifold) {
-    constexpr float kSideBySide = 0.94f;  // cosine: 20 degrees
-    const Vector3 n = manifold.normal, nInB = -pair.rotation.TransposeMultiply(n);
-    const int axisA = LeastAlong(n), axisB = LeastAlong(nInB);
-    if (Abs((&pair.rotation.x)[axisB][axisA]) < kSideBySide) return;
-    uint32_t nameA, nameB;
-    const Segment onA = FarthestEdge(pair.halfA, axisA, n, nameA), inB = FarthestEdge(pair.halfB, axisB, nInB, nameB);
-    const Segment onB{pair.rotation * inB.from + pair.position, pair.rotation * inB.to + pair.position};
-    float ends[2];
-    if (!CommonLength(onA, onB, ends[0], ends[1])) return;
-    const Vector3 alongB = onB.to - onB.from;
-    ManifoldPoint found[2];
-    int count = 0;
-    float least = std::numeric_limits<float>::infinity();
-    for (uint32_t i = 0; i < 2; ++i) {
-        const Vector3 x = onA.At(ends[i]);
-        const Vector3 y = onB.from + alongB * (Dot(alongB, Vector3(x - onB.from)) / Dot(alongB, alongB));
-        const float separation = Dot(n, Vector3(y - x));
-        least = Min(least, separation);
-        if (separation <= tolerances.reach)
-            found[count++] = {x + n * pair.radiusA, separation - (pair.radiusA + pair.radiusB), CrossingFeature(nameA, nameB) + i};
-    }
-    if (count < 2 || least > manifold.points[0].separation + (pair.radiusA + pair.radiusB) + tolerances.prefer) return;
-    manifold.pointCount = count;
-    for (int i = 0; i < count; ++i) manifold.points[i] = found[i];
-}
-
-// Where a corner outside of the other's face, or the end of an edge, comes closest, the faces may follow close behind: adds points of
-// them, those farthest from what is there.
-void AddFacesAround(const BoxPair& pair, const ContactTolerances& tolerances, Manifold& manifold) {
-    Manifold around;
-    if (!BuildBoxAxisContact(pair, manifold.normal, std::numeric_limits<float>::infinity(), tolerances, around)) return;
-    while (manifold.pointCount < Manifold::kMaxPoints) {
-        const ManifoldPoint* next = nullptr;
-        float farthest = tolerances.prefer * tolerances.prefer;
-        for (int i = 0; i < around.pointCount; ++i) {
-            float distance = std::numeric_limits<float>::infinity();
-            for (int k = 0; k < manifold.pointCount; ++k)
-                distance = Min(distance, LengthSquared(Vector3(around.points[i].positionOnA - manifold.points[k].positionOnA)));
-            if (distance <= farthest) continue;
-            farthest = distance;
-            next = &around.points[i];
-        }
-        if (!next) return;
-        manifold.points[manifold.pointCount++] = *next;
-    }
-}
-
 // One test of the axis that separated the boxes in the last step.
 bool StillApart(const BoxPair& pair, const PairCache& cache, float reach) {
     switch (cache.kind) {
@@ -225,8 +153,6 @@ void CollideBoxBox(const PairQuery& query, Manifold& manifold) {
     cache = {};
     CollidePolyhedra(query, manifold);
     cache = {};
-    if (manifold.pointCount == 1) HoldBothEnds(pair, tolerances, manifold);
-    if (manifold.pointCount > 0) AddFacesAround(pair, tolerances, manifold);
 }
 
 }  // namespace fulcrum

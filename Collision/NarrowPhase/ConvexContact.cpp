@@ -3,7 +3,7 @@
 #include <Fulcrum/Collision/NarrowPhase/AxisProof.h>
 #include <Fulcrum/Collision/NarrowPhase/Clipping.h>
 #include <Fulcrum/Collision/NarrowPhase/Features.h>
-#include <Fulcrum/Collision/NarrowPhase/ManifoldReduction.h>
+#include <Fulcrum/Collision/NarrowPhase/PointsAhead.h>
 #include <Fulcrum/Collision/NarrowPhase/Segments.h>
 #include <Fulcrum/Collision/Shapes/SupportingFace.h>
 
@@ -264,6 +264,29 @@ bool TryParallelEdges(const SupportPair& pair, const SupportingFace& faceA, cons
     return manifold.pointCount > 0;
 }
 
+// To the points of edges or vertices, those of the faces beside them that lie within reach along the manifold's normal.
+void AddFacesAhead(const SupportPair& pair, const SupportingFace& faceA, const SupportingFace& faceB, const ContactTolerances& tolerances,
+                   Manifold& manifold) {
+    const Vector3 n = manifold.normal;
+    const float cosineA = faceA.count > 2 ? Dot(faceA.normal, n) : 0, cosineB = faceB.count > 2 ? -Dot(faceB.normal, n) : 0;
+    const float cosine = Max(cosineA, cosineB);
+    if (!(cosine > kLeastCosineAhead)) return;
+    const bool ofA = cosineA >= cosineB;
+    const SupportingFace& reference = ofA ? faceA : faceB;
+    const ReferenceSide side{ofA, reference, n, 0};
+    Clipped clipped;
+    clipped.incident = ofA ? faceB : faceA;
+    clipped.Clip(reference, tolerances.prefer);
+    const float offset = Dot(reference.normal, reference.vertices[0]);
+    const auto pointAt = [&](int i) {
+        const Vector3& x = clipped.current[i].position;
+        const float separation = (Dot(reference.normal, x) - offset) / cosine;
+        const Vector3 onCore = ofA ? Vector3(x - n * separation) : x;
+        return ManifoldPoint{onCore + n * pair.a.ConvexRadius(), separation - pair.RadiusSum(), clipped.Feature(i, side)};
+    };
+    AddPointsAhead<kMostClipped>(clipped.count, pointAt, tolerances.reach - pair.RadiusSum(), tolerances.Apart(), tolerances.prefer, manifold);
+}
+
 }  // namespace
 
 void BuildConvexContact(const SupportPair& pair, const KnownContact& known, const ContactTolerances& tolerances,
@@ -276,8 +299,9 @@ void BuildConvexContact(const SupportPair& pair, const KnownContact& known, cons
     manifold.pointCount = 0;
     Remember(PairCache::Kind::Axis, known.axis, cache);
     if (known.separation > tolerances.reach) return;
-    if (TryParallelEdges(pair, faceA, faceB, known, tolerances, manifold)) return;
-    AddPoint(pair, known.onA, known.separation, VertexFeature(true, 0), manifold);
+    if (!TryParallelEdges(pair, faceA, faceB, known, tolerances, manifold))
+        AddPoint(pair, known.onA, known.separation, VertexFeature(true, 0), manifold);
+    if (tolerances.facesAhead && manifold.pointCount > 0) AddFacesAhead(pair, faceA, faceB, tolerances, manifold);
 }
 
 CachedFace TryCachedFace(const SupportPair& pair, const ContactTolerances& tolerances, const PairCache& cache, Manifold& manifold) {

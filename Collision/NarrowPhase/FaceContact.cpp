@@ -3,7 +3,7 @@
 #include <Fulcrum/Collision/NarrowPhase/AxisProof.h>
 #include <Fulcrum/Collision/NarrowPhase/Clipping.h>
 #include <Fulcrum/Collision/NarrowPhase/Features.h>
-#include <Fulcrum/Collision/NarrowPhase/ManifoldReduction.h>
+#include <Fulcrum/Collision/NarrowPhase/PointsAhead.h>
 
 #include <algorithm>
 
@@ -218,6 +218,36 @@ FaceContact BuildFaceContact(const PolyhedronPair& pair, const ReferenceFace& fa
         point.feature = feature.Feature(near[c], face.ofA);
     }
     return result;
+}
+
+void AddFacesAhead(const PolyhedronPair& pair, const ContactTolerances& tolerances, Manifold& manifold) {
+    if (!tolerances.facesAhead || manifold.pointCount == 0 || manifold.pointCount > 2) return;
+    const Vector3 n = manifold.normal;
+    float cosine = kLeastCosineAhead;
+    ReferenceFace face{false, -1, 0};
+    for (const bool ofA : {true, false}) {
+        const Polyhedron& p = ofA ? pair.a : pair.b;
+        if (p.faceCount == 0) continue;
+        const Vector3 towards = ofA ? n : Vector3(-pair.DirectionInB(n));
+        const int index = FaceAlong(p, towards);
+        const float cosineOfThis = Dot(p.faces[index].normal, towards);
+        if (!(cosineOfThis > cosine)) continue;
+        cosine = cosineOfThis;
+        face = {ofA, index, 0};
+    }
+    if (face.index < 0) return;
+
+    const FaceView view(pair, face);
+    const FaceSides sides(view);
+    const ClippedFeature feature(view, sides, tolerances.prefer);
+    // Points of the clipped feature, projected along n.
+    const auto pointAt = [&](int i) {
+        const Vector3& x = feature[i].position;
+        const float separation = (Dot(view.face.normal, x) - view.face.offset) / cosine;
+        const Vector3 onCore = face.ofA ? Vector3(x - n * separation) : Vector3(pair.rotation * x + pair.position);
+        return ManifoldPoint{onCore + n * pair.a.radius, separation - pair.RadiusSum(), feature.Feature(i, face.ofA)};
+    };
+    AddPointsAhead<kMaxClipVertices>(feature.Count(), pointAt, tolerances.reach - pair.RadiusSum(), tolerances.Apart(), tolerances.prefer, manifold);
 }
 
 }  // namespace fulcrum

@@ -257,6 +257,7 @@ private:
         const PolyhedronPair pair(core_, CoreOf(corners, view.normal, 0, storage), pose);
         ContactTolerances tolerances = pair.Tolerances(settings_);
         tolerances.faceOfACosine = kRestingCosine;
+        tolerances.facesAhead = false;
         Manifold onFace;
         if (knownOnFace) {
             onFace = *knownOnFace;
@@ -289,7 +290,8 @@ private:
         const TriangleView& view = contacts_.views_[index];
         const Triangle triangle(corners, view.normal);
         const SupportPair pair(a_, triangle, pose);
-        const ContactTolerances tolerances(pair.InnerRadii(), pair.RadiusSum(), settings_);
+        ContactTolerances tolerances(pair.InnerRadii(), pair.RadiusSum(), settings_);
+        tolerances.facesAhead = false;
         const Vector3 inwards = -(pair.rotation * view.normal);
         const ConvexGjkResult gjk = ConvexGjk(pair, inwards, tolerances.reach);
         if (gjk.status == GjkStatus::BeyondReach) return;

@@ -3,6 +3,8 @@
 #include <Fulcrum/Collision/NarrowPhase/Epa.h>
 #include <Fulcrum/Collision/NarrowPhase/Libccd.h>
 
+#include <cmath>
+
 namespace fulcrum {
 
 namespace {
@@ -28,6 +30,18 @@ Vector3 AxisOfLeastDepth(const SupportPair& pair, const RelativePose& bInA, cons
     if (epa.status == EpaResult::Status::Found) return axis;
     consider(centreLine);
     consider(-centreLine);
+    // Against a shape so much larger that the cores overlap by no more than it rounds, GJK's simplex is all that tells the surface.
+    using Real = SupportVertex::Real;
+    const auto& simplex = gjk.simplex;
+    for (int i = 0; simplex.count >= 3 && i < simplex.count; ++i) {
+        const Vec3<Real> first = simplex.vertices[i].w, second = simplex.vertices[(i + 1) % simplex.count].w, third = simplex.vertices[(i + 2) % simplex.count].w;
+        const Vec3<Real> normal = Cross<Real>(Vec3<Real>(second - first), Vec3<Real>(third - first));
+        const Real length = std::sqrt(Dot<Real>(normal, normal));
+        if (!(length > 0)) continue;
+        const Vector3 face = Vec3<Real>(normal * (1 / length)).template cast<float>();
+        consider(face);
+        consider(-face);
+    }
     for (const LibccdAlgorithm algorithm : {LibccdAlgorithm::Epa, LibccdAlgorithm::Mpr}) {
         const LibccdResult found = LibccdPenetration(pair.a, pair.b, bInA, 0, algorithm);
         if (found.status == LibccdResult::Status::Found) consider(Normalized(found.normal.cast<float>()));

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 
 namespace fulcrum {
 
@@ -14,9 +15,13 @@ namespace {
 // The ray in the frame of a compound's children, as wide as its turning is inexact.
 TreeRay InFrameOfTree(const Ray& ray, const CompoundShape& compound, const Pose& pose) {
     const Quat<double> back{-pose.rotation.x, -pose.rotation.y, -pose.rotation.z, pose.rotation.w};
+    const Position displacement = ray.displacement.cast<double>();
     const Position origin = Rotate<double>(back, Position(ray.origin - pose.position)) - compound.Origin().cast<double>();
-    const float slack = 1e-6f * (compound.OuterRadius() + Length(ray.displacement) + Length(Vector3(origin.cast<float>())));
-    return TreeRay(origin, InverseRotate(pose.rotation, ray.displacement), Vector3::Constant(slack));
+    // Beyond the compound it does not matter how far a long ray strays.
+    const double reach = double{compound.OuterRadius()} + std::sqrt(Dot<double>(origin, origin));
+    const float slack = static_cast<float>(1e-6 * (reach + std::min(reach, std::sqrt(Dot<double>(displacement, displacement)))));
+    constexpr double kMost = std::numeric_limits<float>::max();
+    return TreeRay(origin, Vector3(Rotate<double>(back, displacement).cwiseMax(-kMost).cwiseMin(kMost).cast<float>()), Vector3::Constant(slack));
 }
 
 }  // namespace

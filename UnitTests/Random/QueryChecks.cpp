@@ -140,7 +140,8 @@ std::string CompareClosest(const std::vector<BodyShape>& bodies, const PlacedSha
         if (!isFound && double{here.distance} < double{maxDistance} - tolerance)
             return Text("no body is found within ", maxDistance, " m, but body ", body.id.index, " is ", here.distance, " m away");
         if (isFound && double{here.distance} < double{closest.distance} - tolerance)
-            return Text("the closest is ", closest.distance, " m away, but body ", body.id.index, " is ", here.distance, " m away");
+            return Text("the closest to a ", ShapeTypeName(placed.shape->Type()), " of ", placed.shape->OuterRadius(), " is", ToText(closest), ", but body ",
+                        body.id.index, ", a ", ShapeTypeName(body.shape->Type()), " of ", body.shape->OuterRadius(), ", is ", here.distance, " m away");
     }
     return {};
 }

@@ -11,10 +11,10 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0xa6145c9b1b738d2eull;
+constexpr uint64_t kGoldenHash = 0xee26f78fe7643711ull;
 constexpr uint64_t kGoldenHashOfJoints = 0x01b2dfe8a9d1e0ebull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x336ee66c011184e6ull;
-constexpr uint64_t kGoldenHashOfFastBodies = 0x8c0382adc34a2e2eull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0xdd62b4447c9c99daull;
+constexpr uint64_t kGoldenHashOfFastBodies = 0x391a3291e8b056f6ull;
 
 std::string Hex(uint64_t number) {
     char text[24];

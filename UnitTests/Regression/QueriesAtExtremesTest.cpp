@@ -44,6 +44,21 @@ TEST(QueriesAtExtremes, AnOddRayDoesNotSpoilItsBatch) {
     }
 }
 
+// Whatever the length, where it meets a turned compound is a matter of its direction.
+TEST(QueriesAtExtremes, ALongRayMeetsATurnedCompoundWhereAShortOneDoes) {
+    const ShapePtr ball = SphereOf(1);
+    const CompoundShape::ChildSettings children[] = {{ball, Vector3(0, 3, 0), {}, 1}, {ball, Vector3(0, -3, 0), {}, 1}};
+    const auto compound = Compound::Create(children).Value();
+    const Pose pose{Position(2, 1, 0), RotationFromVector(Vector3(0, 0, 0.7f))};
+    const Position middle = Rotate<double>({pose.rotation.x, pose.rotation.y, pose.rotation.z, pose.rotation.w}, Position(0, 3, 0)) + pose.position;
+    for (const float length : {10.0f, 1e3f, 1e10f, 1e19f, 1e20f, 1e30f, 3e38f}) {
+        RayHit hit;
+        ASSERT_TRUE(RayCaster({middle - Position(4, 0, 0), Vector3(length, 0, 0)}).CastClosest(*compound, pose, {}, hit)) << length;
+        EXPECT_NEAR(double{hit.fraction} * double{length}, 3, 1e-5) << length;
+        EXPECT_FALSE(RayCaster({middle - Position(4, 2, 0), Vector3(length, 0, 0)}).CastClosest(*compound, pose, {}, hit)) << length;
+    }
+}
+
 TEST(QueriesAtExtremes, NothingMeetsTheEmptyShape) {
     const std::shared_ptr<const EmptyShape> empty = EmptyShape::Create();
     const RayCaster ray({Position(0, 1, 0), Vector3(0, -2, 0)});
