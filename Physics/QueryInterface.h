@@ -35,7 +35,7 @@ struct QueryFilter {
 // The body is invalid (BodyId{}) where nothing was found.
 struct WorldRayHit {
     BodyId body;
-    SubShape subShape;
+    SubShape subShape{};
     float fraction = 0;                    // of the displacement
     Vector3 normal = Vector3::Zero();      // unit, world space, see RayHit
     Position position = Position::Zero();  // m
@@ -44,7 +44,7 @@ struct WorldRayHit {
 
 struct WorldShapeHit {
     BodyId body;
-    SubShape subShape;                     // of the body
+    SubShape subShape{};                   // of the body
     float fraction = 0;                    // of the motion
     Vector3 normal = Vector3::Zero();      // unit, world space, from the body towards the moving shape
     Position position = Position::Zero();  // m, on the body's surface
@@ -60,7 +60,7 @@ struct OverlapHit {
 
 struct WorldClosest {
     BodyId body;
-    SubShape subShape, subShapeOfQuery;
+    SubShape subShape{}, subShapeOfQuery{};
     float distance = 0;                    // m; negative: how deep they overlap
     Vector3 normal = Vector3::Zero();      // unit, world space, from the body towards the shape or point asked for
     Position onBody = Position::Zero(), onQuery = Position::Zero();  // m
@@ -69,13 +69,13 @@ struct WorldClosest {
 // A shape somewhere; `pose` is that of the shape's own frame, as the user described it.
 struct PlacedShape {
     const Shape* shape = nullptr;          // not null
-    Pose pose;
+    Pose pose{};
 };
 
 // A convex shape on its way: its centre of mass moves straight, it turns about it at a constant rate.
 struct MovingShape {
     const ConvexShape* shape = nullptr;         // not null
-    Pose pose;                                  // of the shape's own frame at the start
+    Pose pose{};                                // of the shape's own frame at the start
     Vector3 displacement = Vector3::Zero();     // m
     Vector3 turn = Vector3::Zero();             // rad, rotation vector over the whole motion
 };

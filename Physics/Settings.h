@@ -116,8 +116,8 @@ struct SleepSettings {
 
 struct SystemSettings {
     Vector3 gravity = Vector3(0, -9.81f, 0);  // m/s2, up to 1e6 along each axis
-    SolverSettings solver;
-    SleepSettings sleep;
+    SolverSettings solver{};
+    SleepSettings sleep{};
     NarrowPhaseMethod narrowPhase = NarrowPhaseMethod::Automatic;
     float speculativeDistance = 0.02f;   // m, > 0, at most 1000: contacts begin at this separation, so that nothing bumps
     float penetrationSlop = 0.0f;       // m, >= 0: overlap that is left alone

@@ -11,7 +11,7 @@ struct ClosestPoints {
     Vector3 normal = Vector3::Zero();  // unit, from A towards B, A's frame
     Vector3 onA = Vector3::Zero();     // m, A's frame
     Vector3 onB = Vector3::Zero();
-    SubShape subShapeOfA, subShapeOfB;
+    SubShape subShapeOfA{}, subShapeOfB{};
 };
 
 // Where the two are closest, `bInA` being the pose of b's centre frame in a's; false: farther apart than maxDistance (m, >= 0,

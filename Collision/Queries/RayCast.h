@@ -26,7 +26,7 @@ struct RayCastSettings {
 
 struct RayHit {
     float fraction = 0;                // of the displacement
-    SubShape subShape;
+    SubShape subShape{};
     Vector3 normal = Vector3::Zero();  // unit, outwards; against the ray where that came from behind or began inside
     bool isBackFace = false;
 };
