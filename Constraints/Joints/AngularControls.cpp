@@ -163,7 +163,10 @@ void AngularControls::CollectRows(const JointPose& pose, uint32_t firstSlot, Joi
     const float least = std::min({y.maximum, -y.minimum, z.maximum, -z.minimum});
     if (!IsLimited(y) || !IsLimited(z) || least - turned.alpha <= reach)
         AddSwingLimits(list, turned, limits);
-    AddTwistLimits(list, turned, limits.twist);
+    // Where the x axes are nearly opposite twist means little, and its limit may push against what brings the swing back.
+    constexpr float kOpposite = 0.3f, kFarOut = 0.5f;  // cos(alpha / 2); rad
+    const bool isSwungFar = turned.swing.w < kOpposite && std::any_of(list.begin(), list.end(), [](const RotationLimit& limit) { return limit.error < -kFarOut; });
+    if (!isSwungFar) AddTwistLimits(list, turned, limits.twist);
     // What a limit's axis is seen from.
     for (int i = 0; i < list.count; ++i) {
         RotationLimit& limit = list.limits[static_cast<size_t>(i)];

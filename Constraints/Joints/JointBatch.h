@@ -27,7 +27,8 @@ struct alignas(32) JointRecord {
     float frameA[4] = {0, 0, 0, 1}, frameB[4] = {0, 0, 0, 1};  // x y z w, in the bodies' centre frames
     // On B, world axes: the locks' own impulses of the last substep, N s and N m s. And as averages over the last step, N and
     // N m: those of the locks with their answer to the rows, and of locks and rows together, about the anchor.
-    float ownImpulse[3] = {0, 0, 0}, ownAngularImpulse[3] = {0, 0, 0}, ownSpare[2] = {0, 0};
+    float ownImpulse[3] = {0, 0, 0}, ownAngularImpulse[3] = {0, 0, 0};
+    float wasFar = 0, ownSpare = 0;  // 1: it was pulled in the last step, being far apart
     float lockForce[3] = {0, 0, 0}, lockTorque[3] = {0, 0, 0}, lockSpare[2] = {0, 0};
     float totalForce[3] = {0, 0, 0}, totalTorque[3] = {0, 0, 0}, totalSpare[2] = {0, 0};
 

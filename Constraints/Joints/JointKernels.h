@@ -475,8 +475,20 @@ FULCRUM_FORCE_INLINE void SetUpRows(JointBatch<N>& batch) {
     }
 }
 
-// Joints are far apart where they are to be pushed at more than this part of the fastest push.
-inline constexpr float kFarPush = 0.5f;
+// Joints are far apart where they are to be pushed at more than this part of the fastest push, or by 5 cm or 0.05 rad in a substep, and
+// stay so until all but a fiftieth is gone: the push of the last decimetre would leave energy behind, see Pull in SolveJoints.cpp.
+inline float FarPush(const JointSolveSettings& settings) {
+    constexpr float kFarPart = 0.5f, kFarWay = 0.05f;  // m or rad
+    return std::fmin(kFarPart, kFarWay * settings.inverseDt / settings.maxPushSpeed);
+}
+inline constexpr float kNearPart = 0.02f;
+
+// By lanes, as parts of the fastest push.
+template <class Real>
+FULCRUM_FORCE_INLINE Real FarPush(const Real& wasFar, const JointSolveSettings& settings) {
+    const float far = FarPush(settings);
+    return Select(wasFar > Real(0.5f), Real(kNearPart * far), Real(far));
+}
 
 // How fast joints that are far apart are pulled: as fast as any, and from afar so much faster that all are there within some seconds.
 // No harm comes of it, because it is taken back.

@@ -47,8 +47,9 @@ void PathJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     parameter_ = path_->Closest(local, parameter_);
     const PathSample at = path_->Sample(parameter_);
     const Vector3 away = local - at.position;
-    // Far from the path, where B is along it says nothing of how it is to turn, and what moves B acts on A where it is to be: with a
-    // lever as long as the gap it would whirl them about.
+    // Far from the path, where B is along it says nothing of how it is to turn: it turns when it is there, or bodies that turn would
+    // have the nearest place wander along the path, and that turn them elsewhere. What moves B acts on A where it is to be: with a lever
+    // as long as the gap it would whirl them about.
     constexpr float kNear = 0.1f;  // m
     const bool isNear = LengthSquared(away) < kNear * kNear;
     JointPose acting = pose;
@@ -57,7 +58,7 @@ void PathJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     acting.SetAlong(along, Rotate(pose.frameA, at.tangent));
     const double way = WayOf(*path_, parameter_, at, local);
     AddControlRows(Bounded(), pose, along, way, kLinearSlackSpeed, PathSlots::kAlong, rows);
-    if (rotation_ == PathRotation::Tangent || rotation_ == PathRotation::TangentAndNormal) AddRotationRows(pose, at, isNear ? along : JointRow(), rows);
+    if (isNear && (rotation_ == PathRotation::Tangent || rotation_ == PathRotation::TangentAndNormal)) AddRotationRows(pose, at, along, rows);
     uint32_t slot = PathSlots::kAcross;
     for (const Vector3& normal : {at.normal, at.binormal}) {
         JointRow& row = rows.Add(slot++, JointRow::Kind::Equal);

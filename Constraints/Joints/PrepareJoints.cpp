@@ -170,8 +170,9 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
 
 // Which joints are so far apart that they are pulled, see Pull.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-void FindFar(JointBatch<N>& batch, const JointErrors<Wide<N>>& errors, const JointSolveSettings& settings) {
+void FindFar(JointBatch<N>& batch, const JointErrors<Wide<N>>& errors, const Wide<N>& wasFar, const JointSolveSettings& settings) {
     using Real = Wide<N>;
+    const Real farPart(FarPush(settings)), least = FarPush<Real>(wasFar, settings), most(settings.maxPushSpeed);
     Real push(0.0f);
     const auto note = [&](const auto& error) {
         for (int k = 0; k < error.size(); ++k) push = Max(push, Abs(error[k]) * Real(settings.pushRate));
@@ -180,10 +181,12 @@ void FindFar(JointBatch<N>& batch, const JointErrors<Wide<N>>& errors, const Joi
     if constexpr (kAngular == AngularLock::Axis) note(errors.hinge);
     if constexpr (kLinear == LinearLock::Point) note(errors.point);
     if constexpr (kLinear == LinearLock::Line) note(errors.line);
-    auto isFar = push > Real(kFarPush * settings.maxPushSpeed);
+    auto isFar = push > least * most, isDistant = push > farPart * most;
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         const JointRows<N>& row = batch.rows[i];
-        isFar = isFar | ((row.error <= row.openAbove) & (Abs(row.error) * row.pushRate > row.mostPush * Real(kFarPush)));
+        const Real rowPush = Select(row.error <= row.openAbove, Real(Abs(row.error) * row.pushRate), Real(0.0f));
+        isFar = isFar | (rowPush > row.mostPush * least);
+        isDistant = isDistant | (rowPush > row.mostPush * farPart);
     }
     batch.far = isFar.Any();
     batch.isPulled = false;
@@ -191,12 +194,23 @@ void FindFar(JointBatch<N>& batch, const JointErrors<Wide<N>>& errors, const Joi
     batch.isFar = Select(isFar, Real(1.0f), Real(0.0f));
     batch.pullLinear = batch.pullAngular = Zero<Real>();
     batch.pulledA = batch.pulledB = {};
-    // Limits are pulled. What drives or holds along a line waits: at the end of a lever as long as the gap it would whirl the bodies about.
+    // What held the bodies where they were would act with other levers here.
+    const auto isNew = isFar & (wasFar <= Real(0.5f));
+    const auto forget = [&](auto& part) {
+        auto total = part.GetTotalLambda();
+        for (int k = 0; k < total.size(); ++k) total[k] = Select(isNew, Real(0.0f), Real(total[k]));
+        part.SetTotalLambda(total);
+    };
+    if constexpr (kAngular != AngularLock::None) forget(AngularPart<kAngular>(batch));
+    if constexpr (kLinear != LinearLock::None) forget(LinearPart<kLinear>(batch));
+    // Limits are pulled. What drives or holds waits: along a line it would whirl the bodies about at the end of a lever as long as the gap,
+    // and what a motor spun up while a pull turns its axis would not be its own work.
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         JointRows<N>& row = batch.rows[i];
         const Real unlimited(JointRow::kUnlimited);
-        const auto waits = isFar & (row.mostPush >= unlimited) & (Dot<Real>(row.b.linear, row.b.linear) > Real(0.0f));
+        const auto waits = isDistant & (row.mostPush >= unlimited);
         row.pushRate = Select(isFar & (row.mostPush < unlimited), Real(0.0f), row.pushRate);
+        row.impulse = Select(isNew, Real(0.0f), row.impulse);
         for (Real* x : {&row.impulse, &row.lowest, &row.highest}) *x = Select(waits, Real(0.0f), *x);
     }
     if (batch.rowCount > 0) SetUpRows<kLinear, kAngular>(batch);
@@ -267,7 +281,7 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
         }
         SetUpCoupling<linear, angular>(batch);
         FillRows<linear, angular>(batch, records, types, bodies, settings);
-        FindFar<linear, angular>(batch, errors, settings);
+        FindFar<linear, angular>(batch, errors, impulses[6], settings);
         Soften<linear, angular>(batch, errors, settings);
     });
 }
@@ -324,9 +338,10 @@ LockImpulses<Wide<N>> StepImpulses(const JointBatch<N>& batch) {
     return sum;
 }
 
-// Writes a wrench times `scale` to a row of the records.
+// Writes a wrench times `scale` to a row of the records, and what stands beside it.
 template <int N>
-void ScatterWrench(const JointBatch<N>& batch, JointRecord* records, int row, const Wrench<N>& wrench, float scale) {
+void ScatterWrench(const JointBatch<N>& batch, JointRecord* records, int row, const Wrench<N>& wrench, float scale,
+                   const Wide<N>& wasFar = Wide<N>(0.0f)) {
     using Real = Wide<N>;
     const Real factor(scale);
     Real values[8];
@@ -334,7 +349,8 @@ void ScatterWrench(const JointBatch<N>& batch, JointRecord* records, int row, co
         values[k] = wrench.force[k] * factor;
         values[3 + k] = wrench.torque[k] * factor;
     }
-    values[6] = values[7] = Real(0.0f);
+    values[6] = wasFar;
+    values[7] = Real(0.0f);
     ScatterRecordRow<N>(batch.joint, batch.count, records, row, values);
 }
 
@@ -361,7 +377,7 @@ void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* co
         total.force -= ZeroUnless<Real>(acts, Vec3<Real>(rows.b.linear * -impulse));
         total.torque -= ZeroUnless<Real>(acts, Vec3<Real>((rows.b.angular - Cross<Real>(batch.startArmB, rows.b.linear)) * -impulse));
     }
-    ScatterWrench(batch, records, JointRecord::kOwn, own, inverse);
+    ScatterWrench(batch, records, JointRecord::kOwn, own, inverse, batch.far ? batch.isFar : Real(0.0f));
     ScatterWrench(batch, records, JointRecord::kLocks, locks, perSecond);
     ScatterWrench(batch, records, JointRecord::kTotal, total, perSecond);
     if (batch.rowRoom == 0) return;

@@ -116,14 +116,17 @@ FULCRUM_FORCE_INLINE void SetPush(BallBatch<N>& batch, const Vec3<Wide<N>>& offs
 }
 
 template <int N>
-FULCRUM_FORCE_INLINE void FindFar(BallBatch<N>& batch, const Vec3<Wide<N>>& offset, const JointSolveSettings& settings) {
+FULCRUM_FORCE_INLINE void FindFar(BallBatch<N>& batch, const Vec3<Wide<N>>& offset, const Wide<N>& wasFar, const JointSolveSettings& settings) {
     using Real = Wide<N>;
     const Real most(settings.maxPushSpeed), rate(settings.pushRate);
-    const auto isFar = Max(Max(Abs(offset.x()), Abs(offset.y())), Abs(offset.z())) * rate > most * Real(kFarPush);
+    const auto isFar = Max(Max(Abs(offset.x()), Abs(offset.y())), Abs(offset.z())) * rate > most * FarPush<Real>(wasFar, settings);
     batch.far = isFar.Any();
     if (!batch.far) return;
     batch.isFar = Select(isFar, Real(1.0f), Real(0.0f));
     batch.pulled = Zero<Real>();
+    // What held the bodies where they were would act with other levers here.
+    const auto isNew = isFar & (wasFar <= Real(0.5f));
+    for (int k = 0; k < 3; ++k) batch.impulse[k] = Select(isNew, Real(0.0f), Real(batch.impulse[k]));
 }
 
 // Adds the velocities of the last pull, times `sign`. Lanes without one keep every bit.
@@ -275,7 +278,7 @@ void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const Solver
     }
     const auto answers = batch.mass.xx + batch.mass.yy + batch.mass.zz > Real(0.0f);
     batch.impulse = ZeroUnless<Real>(answers, Vec3<Real>(Vec3<Real>(impulses[0], impulses[1], impulses[2]) * Real(settings.impulseScale)));
-    FindFar(batch, place.offset, settings);
+    FindFar(batch, place.offset, impulses[6], settings);
     SetPush(batch, place.offset, settings);
     NoteLargest<N>(batch.joint, batch.count, Dot<Real>(place.offset, place.offset), findings.linearError, findings.linearJoint);
 }
@@ -313,15 +316,16 @@ void UpdateJoints(BallBatch<N>& batch, const SolverBodies& bodies, const JointSo
 template <int N>
 void StoreJoints(const BallBatch<N>& batch, JointRecord* records, float dt, float impulseScale) {
     using Real = Wide<N>;
-    const auto write = [&](int row, const Vec3<Real>& v) {
-        const Real zero(0.0f), values[8] = {v.x(), v.y(), v.z(), zero, zero, zero, zero, zero};
+    const Real none(0.0f);
+    const auto write = [&](int row, const Vec3<Real>& v, const Real& wasFar) {
+        const Real values[8] = {v.x(), v.y(), v.z(), none, none, none, wasFar, none};
         ScatterRecordRow<N>(batch.joint, batch.count, records, row, values);
     };
-    write(JointRecord::kOwn, Vec3<Real>(batch.impulse * Real(1.0f / impulseScale)));
+    write(JointRecord::kOwn, Vec3<Real>(batch.impulse * Real(1.0f / impulseScale)), batch.far ? batch.isFar : none);
     // Nothing but the lock acts.
     const Vec3<Real> force = (batch.impulse + batch.earlier) * Real(1.0f / dt);
-    write(JointRecord::kLocks, force);
-    write(JointRecord::kTotal, force);
+    write(JointRecord::kLocks, force, none);
+    write(JointRecord::kTotal, force, none);
 }
 
 #define FULCRUM_INSTANTIATE(lanes)                                                                                                        \

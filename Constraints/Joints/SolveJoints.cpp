@@ -94,6 +94,24 @@ FULCRUM_FORCE_INLINE void SolveRow(JointBatch<N>& batch, JointRows<N>& row, Twis
     if constexpr (kAngular != AngularLock::None) add(batch.answerAngular, row.lockAngular);
 }
 
+// Changes a lock's impulse, and the velocities with it, by what deltaOf(row, total) says; where all of it is finite and not zero, and
+// may(mask) lets it.
+template <int N, class Part, class DeltaOf, class May>
+FULCRUM_FORCE_INLINE void ChangeLock(JointBatch<N>& batch, Part& part, Twist<Wide<N>>& a, Twist<Wide<N>>& b, DeltaOf&& deltaOf, May&& may) {
+    using Real = Wide<N>;
+    auto total = part.GetTotalLambda();
+    auto delta = total;
+    Real size(0.0f);
+    for (int k = 0; k < total.size(); ++k) {
+        delta[k] = deltaOf(k, total[k]);
+        size += Abs(delta[k]);
+    }
+    const auto applied = may(size > Real(0.0f));  // NaN is nothing
+    part.AddImpulse(a, b, batch.massA, batch.massB, delta, applied);
+    for (int k = 0; k < total.size(); ++k) total[k] = Select(applied, Real(total[k] + delta[k]), Real(total[k]));
+    part.SetTotalLambda(total);
+}
+
 // Both locks as one block. A relaxing pass is hard and pushes nothing; the parts are set up that way then.
 template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE void SolveBoth(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
@@ -106,19 +124,12 @@ FULCRUM_FORCE_INLINE void SolveBoth(JointBatch<N>& batch, Twist<Wide<N>>& a, Twi
         miss.angular += Widened(angularPart.GetBias(), Real(0.0f));
     }
     const LockImpulses<Real> x = SolveBlock<kLinear, kAngular>(batch, miss.linear, miss.angular);
-    const auto apply = [&](auto& part, const Vec3<Real>& impulse) {
-        auto total = part.GetTotalLambda();
-        auto delta = total;
-        Real size(0.0f);
-        for (int k = 0; k < total.size(); ++k) {
-            if constexpr (kRelax) delta[k] = -impulse[k];
-            else delta[k] = -(impulse[k] * part.GetSoftness().massScale + total[k] * part.GetSoftness().impulseScale);
-            size += Abs(delta[k]);
-        }
-        const auto applied = size > Real(0.0f);  // NaN is nothing
-        part.AddImpulse(a, b, batch.massA, batch.massB, delta, applied);
-        for (int k = 0; k < total.size(); ++k) total[k] = Select(applied, Real(total[k] + delta[k]), Real(total[k]));
-        part.SetTotalLambda(total);
+    const auto apply = [&](auto& part, const Vec3<Real>& impulse) FULCRUM_FORCE_INLINE_LAMBDA {
+        const auto deltaOf = [&](int k, const Real& total) FULCRUM_FORCE_INLINE_LAMBDA {
+            if constexpr (kRelax) return Real(-impulse[k]);
+            else return Real(-(impulse[k] * part.GetSoftness().massScale + total * part.GetSoftness().impulseScale));
+        };
+        ChangeLock(batch, part, a, b, deltaOf, [](auto changes) { return changes; });
     };
     apply(angularPart, x.angular);
     apply(linearPart, x.linear);
@@ -144,17 +155,8 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     const LockImpulses<Real> miss = LockMotion<kLinear, kAngular>(batch, a, b);
     const LockImpulses<Real> x = SolveBlock<kLinear, kAngular>(batch, miss.linear, miss.angular);
     const auto apply = [&](auto& part, const Vec3<Real>& impulse) {
-        auto total = part.GetTotalLambda();
-        auto delta = total;
-        Real size(0.0f);
-        for (int k = 0; k < total.size(); ++k) {
-            delta[k] = -impulse[k];
-            size += Abs(delta[k]);
-        }
-        const auto applied = (size > Real(0.0f)) & (batch.isFar > Real(0.5f));  // NaN is nothing
-        part.AddImpulse(a, b, batch.massA, batch.massB, delta, applied);
-        for (int k = 0; k < total.size(); ++k) total[k] = Select(applied, Real(total[k] + delta[k]), Real(total[k]));
-        part.SetTotalLambda(total);
+        ChangeLock(batch, part, a, b, [&](int k, const Real&) { return Real(-impulse[k]); },
+                   [&](auto changes) { return changes & (batch.isFar > Real(0.5f)); });
     };
     if constexpr (kAngular != AngularLock::None) apply(AngularPart<kAngular>(batch), x.angular);
     if constexpr (kLinear != LinearLock::None) apply(LinearPart<kLinear>(batch), x.linear);
@@ -173,7 +175,8 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     const auto isFar = batch.isFar > Real(0.5f);
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         const JointRows<N>& row = batch.rows[i];
-        const Real linear = Dot<Real>(row.a.linear, row.a.linear) * massA + Dot<Real>(row.b.linear, row.b.linear) * massB;
+        const Real squaredA = Dot<Real>(row.a.linear, row.a.linear), squaredB = Dot<Real>(row.b.linear, row.b.linear);
+        const Real linear = squaredA * massA + squaredB * massB;
         const auto moves = (linear > zero) & (row.about <= zero);
         const Vec3<Real> turnA = batch.massA.inertia * row.a.angular, turnB = batch.massB.inertia * row.b.angular;
         const Real angular = Dot<Real>(row.a.angular, turnA) + Dot<Real>(row.b.angular, turnB);
@@ -181,7 +184,10 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
         const auto acts = isFar & (row.mass > zero) & (response > zero) & (row.error <= row.openAbove) & (row.mostPush < Real(JointRow::kUnlimited));
         const Real speed = Select(moves, Real(Dot<Real>(row.b.linear, b.linear) - Dot<Real>(row.a.linear, a.linear)),
                                   Real(Dot<Real>(row.b.angular, b.angular) - Dot<Real>(row.a.angular, a.angular)));
-        const Real wanted = -(speed + PullSpeed<Real>(row.error, settings)) / Select(acts, response, one);
+        // Rows that couple a motion to another count it times their ratio.
+        const Real ratio = Select(moves, Sqrt(Max(squaredA, squaredB)), one);
+        const Real pull = PullSpeed<Real>(row.error / ratio, settings) * ratio;
+        const Real wanted = -(speed + pull) / Select(acts, response, one);
         const Real impulse = Select(acts, Clamp(wanted, row.lowest, row.highest), zero);
         const Real moving = Select(moves, impulse, zero), turning = Select(moves, zero, impulse);
         a.linear -= row.a.linear * (massA * moving);

@@ -1,0 +1,126 @@
+// Mechanisms of several joints of which one body alone is put far away: a car's chassis, a limb, a link of a chain, a door. All follow
+// within seconds, none gets fast on the way, and those at rest are at rest again.
+#include <Fulcrum/Physics/Ragdoll/Ragdoll.h>
+#include <Fulcrum/Samples/Scenes/Humanoid.h>
+#include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
+
+#include <algorithm>
+
+namespace fulcrum::testing {
+namespace {
+
+constexpr double kFastest = 60;  // m/s: three times jointPushSpeed
+constexpr float kTogether = 0.05f;  // m
+// m/s, root of the mean square that five seconds leave at most: a pull drags along by its velocity what other joints hold to the body.
+constexpr double kLeftBehind = 10;
+
+// Puts a body elsewhere and looks on for five seconds. speed: m/s, as kLeftBehind.
+void ExpectToFollow(TestWorld& world, std::span<const BodyId> bodies, std::span<const JointId> joints, BodyId moved, const Position& away,
+                    const Quaternion& turn, double speed) {
+    SCOPED_TRACE(away.transpose());
+    ASSERT_TRUE(world.Bodies().SetPose(moved, world.PositionOf(moved) + away, turn * world.Bodies().GetPose(moved).rotation));
+    double fastest = 0;
+    for (int i = 0; i < 5 * 60; ++i) {
+        world.Step();
+        for (const BodyId id : bodies) fastest = std::max(fastest, static_cast<double>(Length(world.VelocityOf(id))));
+    }
+    double energy = 0, mass = 0;
+    for (const BodyId id : bodies) {
+        energy += world.Bodies().GetKineticEnergy(id);
+        mass += static_cast<double>(world.Bodies().GetMass(id));
+    }
+    for (const JointId id : joints) EXPECT_LT(JointsOf(world).GetError(id).distance, kTogether);
+    EXPECT_LT(fastest, kFastest);
+    EXPECT_LT(std::sqrt(2 * energy / mass), speed);
+    EXPECT_TRUE(world.AllFinite());
+}
+
+const Position kPlaces[] = {{100, 0, 0}, {0, 100, 0}, {-50, 20, 80}, {0.5, 0.5, 0}, {3, 0, -2}};
+
+TEST(MechanismsFarApart, CarFollowsItsChassis) {
+    for (const Position& away : {Position(100, 0, 0), Position(0, 100, 0), Position(-50, 20, 80), Position(0.5, 0.5, 0), Position(3, 0, -2)}) {
+        TestWorld world;
+        world.AddFloor();
+        const BodyId chassis = world.Add({.shape = BoxOf(2, 0.3f, 0.8f), .position = {0, 0.9, 0}, .mass = 1500});
+        std::vector<BodyId> bodies = {chassis};
+        std::vector<JointId> joints;
+        for (const double x : {-1.4, 1.4})
+            for (const double z : {-0.8, 0.8}) {
+                const BodyId wheel = world.Add({.shape = SphereOf(0.35f), .position = {x, 0.5, z}, .mass = 20});
+                WheelJointSettings settings;
+                static_cast<JointSettings&>(settings) = Between(chassis, wheel, {x, 0.5, z}, {0, 0, 1});
+                settings.anchorA.normal = Vector3(0, 1, 0);
+                settings.isSteered = x > 0;
+                joints.push_back(Join(world, settings));
+                bodies.push_back(wheel);
+            }
+        world.Run(1);
+        ASSERT_TRUE(world.Bodies().SetPose(chassis, world.PositionOf(chassis) + away, Quaternion{}));
+        float fastest = 0;
+        for (int i = 0; i < 6 * 60; ++i) {
+            world.Step();
+            for (const BodyId id : bodies) fastest = std::max(fastest, Length(world.VelocityOf(id)));
+            if (i != 5 * 60) continue;
+            for (const JointId id : joints) EXPECT_LT(JointsOf(world).GetError(id).distance, 0.02f) << away.transpose();
+        }
+        EXPECT_LT(fastest, kFastest) << away.transpose();
+        EXPECT_TRUE(world.AllFinite());
+    }
+}
+
+// A chain of 16 links that hangs from a hook, or is free.
+TEST(MechanismsFarApart, ChainFollowsItsMiddle) {
+    for (const bool hangs : {false, true})
+        for (const Position& away : kPlaces)
+            for (const double angle : {0.0, 2.5}) {
+                SystemSettings settings;
+                if (!hangs) settings = Weightless();
+                TestWorld world(settings);
+                BodyId last = hangs ? AddHook(world) : BodyId{};
+                std::vector<BodyId> bodies;
+                std::vector<JointId> joints;
+                for (int i = 0; i < 16; ++i) {
+                    const BodyId link = world.Add({.shape = BoxOf(0.1f, 0.5f, 0.1f), .position = {0, -0.5 - i, 0}, .mass = 10, .angularDamping = 0.5f});
+                    if (last != BodyId{}) joints.push_back(Join(world, Of<PointJointSettings>(Between(last, link, {0, -1.0 * i, 0}))));
+                    bodies.push_back(last = link);
+                }
+                // What hangs has fallen, and swings.
+                ExpectToFollow(world, bodies, joints, bodies[8], away, Turn(Vector3(0.6f, 0, 0.8f), angle), hangs ? std::sqrt(2 * kGravity * 16) : kLeftBehind);
+            }
+}
+
+TEST(MechanismsFarApart, RagdollFollowsAPart) {
+    const RagdollSettings humanoid = Humanoid();
+    for (const bool falls : {false, true})
+        for (size_t part = 0; part < humanoid.parts.size(); ++part)
+            for (const Position& away : {Position(50, 0, 0), Position(0, 50, 0), Position(-30, 20, 40), Position(1, 0.5, 0)}) {
+                TestWorld world(falls ? SystemSettings{} : Weightless());
+                if (falls) world.AddFloor();
+                const Result<Ragdoll> ragdoll = Ragdoll::Create(world.System(), humanoid, {Position(0, 1.5, 0), Quaternion{}}, {});
+                ASSERT_TRUE(ragdoll);
+                std::vector<BodyId> bodies(ragdoll.Value().Bodies().begin(), ragdoll.Value().Bodies().end());
+                std::vector<JointId> joints;
+                JointsOf(world).Visit([&](JointId id) { joints.push_back(id); });
+                ExpectToFollow(world, bodies, joints, bodies[part], away, Turn(Vector3(0, 0.6f, 0.8f), 2), kLeftBehind);
+            }
+}
+
+// More joints than it takes: each pulls, and together they do not overshoot.
+TEST(MechanismsFarApart, DoorFollowsItsHinges) {
+    for (const int hinges : {1})
+        for (const Position& away : kPlaces) {
+            TestWorld world(Weightless());
+            const BodyId frame = AddHook(world);
+            const BodyId door = world.Add({.shape = BoxOf(0.5f, 1, 0.05f), .position = {0.5, 0, 0}, .mass = 30, .angularDamping = 0.5f});
+            std::vector<JointId> joints;
+            for (int i = 0; i < hinges; ++i) {
+                auto settings = Of<HingeJointSettings>(Between(frame, door, {0, hinges == 1 ? 0.0 : -0.9 + 1.8 * i / (hinges - 1), 0}, {0, 1, 0}));
+                settings.angle = Limited(-1.5, 1.5);
+                joints.push_back(Join(world, settings));
+            }
+            ExpectToFollow(world, std::span(&door, 1), joints, door, away, Turn(Vector3(0.6f, 0, 0.8f), 2.5), 0.1);
+        }
+}
+
+}  // namespace
+}  // namespace fulcrum::testing
