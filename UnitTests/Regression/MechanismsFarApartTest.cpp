@@ -105,21 +105,16 @@ TEST(MechanismsFarApart, RagdollFollowsAPart) {
             }
 }
 
-// More joints than it takes: each pulls, and together they do not overshoot.
-TEST(MechanismsFarApart, DoorFollowsItsHinges) {
-    for (const int hinges : {1})
-        for (const Position& away : kPlaces) {
-            TestWorld world(Weightless());
-            const BodyId frame = AddHook(world);
-            const BodyId door = world.Add({.shape = BoxOf(0.5f, 1, 0.05f), .position = {0.5, 0, 0}, .mass = 30, .angularDamping = 0.5f});
-            std::vector<JointId> joints;
-            for (int i = 0; i < hinges; ++i) {
-                auto settings = Of<HingeJointSettings>(Between(frame, door, {0, hinges == 1 ? 0.0 : -0.9 + 1.8 * i / (hinges - 1), 0}, {0, 1, 0}));
-                settings.angle = Limited(-1.5, 1.5);
-                joints.push_back(Join(world, settings));
-            }
-            ExpectToFollow(world, std::span(&door, 1), joints, door, away, Turn(Vector3(0.6f, 0, 0.8f), 2.5), 0.1);
-        }
+TEST(MechanismsFarApart, DoorFollowsItsHinge) {
+    for (const Position& away : kPlaces) {
+        TestWorld world(Weightless());
+        const BodyId frame = AddHook(world);
+        const BodyId door = world.Add({.shape = BoxOf(0.5f, 1, 0.05f), .position = {0.5, 0, 0}, .mass = 30, .angularDamping = 0.5f});
+        auto settings = Of<HingeJointSettings>(Between(frame, door, Position::Zero(), {0, 1, 0}));
+        settings.angle = Limited(-1.5, 1.5);
+        const JointId joint = Join(world, settings);
+        ExpectToFollow(world, std::span(&door, 1), std::span(&joint, 1), door, away, Turn(Vector3(0.6f, 0, 0.8f), 2.5), 0.1);
+    }
 }
 
 }  // namespace
