@@ -55,7 +55,7 @@ uint32_t ConstraintColouring::Remove(Kind kind, const Entry& entry, ColourSlot p
 }
 
 size_t ConstraintColouring::MemoryUsed() const {
-    size_t bytes = used_.capacity() * sizeof(uint64_t) + overflows_.capacity() * sizeof(uint16_t);
+    size_t bytes = used_.capacity() * sizeof(uint64_t) + overflows_.capacity() * sizeof(uint32_t);
     for (const Colour& c : colours_)
         for (const std::vector<Entry>& list : c.lists) bytes += list.capacity() * sizeof(Entry);
     return bytes;

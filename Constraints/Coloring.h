@@ -68,7 +68,7 @@ private:
 
     std::vector<Colour> colours_ = std::vector<Colour>(kColours + 1);
     std::vector<uint64_t> used_;       // by body: bit c is set where a constraint of colour c moves it
-    std::vector<uint16_t> overflows_;  // by body: its constraints without a colour
+    std::vector<uint32_t> overflows_;  // by body: its constraints without a colour
     uint32_t size_ = 0;
     uint64_t version_ = 1, jointVersion_ = 1;
 };

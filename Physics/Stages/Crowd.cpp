@@ -1,8 +1,13 @@
 #include <Fulcrum/Physics/Stages/Crowd.h>
 
+#include <Fulcrum/Collision/BroadPhase/BoundsTreeCasts.h>
+#include <Fulcrum/Collision/NarrowPhase/Collide.h>
+#include <Fulcrum/Physics/Islands/UnionFind.h>
 #include <Fulcrum/Physics/Stages/BodyLimits.h>
+#include <Fulcrum/Physics/State/BodyPairs.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -12,13 +17,20 @@ namespace {
 
 // The hair, as a part of the sum of the inner radii.
 constexpr float kHair = 1e-3f;
-
+// Two whose centers are nearer than this part of the sum of their inner radii stand in each other.
+constexpr float kDeepNearness = 0.8f;
 // So many others are many. What is packed as densely as balls can be has twelve neighbors, and stands in none of them.
 constexpr size_t kMany = 6;
-// And overlapping by more than this part of the sum of the inner radii they are in it still.
+// Fewer are hardly any.
+constexpr size_t kFew = 2;
+// So many fill a ball by a plan; fewer take ways at random, since they may come one by one.
+constexpr size_t kWhole = 32;
+// The part of the ball's volume that they fill, as far as one can tell beforehand.
+constexpr double kPacking = 0.6;
+// The speed at the surface of the ball, as a multiple of contactPushSpeed.
+constexpr float kSpread = 1.5f;
+// Those that have dispersed are crowded as long as they overlap by more than this part of the sum of the inner radii.
 constexpr float kOverlap = 0.01f;
-// What a body in the middle of the ball may be pushed by, as a part of one at its surface.
-constexpr float kSlowest = 0.2f;
 // The part of an overlap with what does not move that goes within a substep.
 constexpr float kPushedOut = 0.125f;
 
@@ -38,6 +50,21 @@ Position CenterOf(const WorldState& world, uint32_t collider) {
     const Position center = world.bodies.CentreOf(body);
     if (!world.colliders.shapes[collider].offset) return center;
     return center + Rotate(world.bodies.RotationOf(body), LocalOf(world, collider).position).cast<double>();
+}
+
+bool AreDynamic(const WorldState& world, uint32_t collider, uint32_t other) {
+    const auto isDynamic = [&](uint32_t index) { return world.bodies.dynamics[world.colliders.colliders[index].body].motion == MotionType::Dynamic; };
+    return isDynamic(collider) && isDynamic(other);
+}
+
+// m^2, of the centers.
+float SquareBetween(const WorldState& world, uint32_t collider, uint32_t other) {
+    return LengthSquared(Vector3((CenterOf(world, other) - CenterOf(world, collider)).cast<float>()));
+}
+
+Pose PoseOf(const WorldState& world, uint32_t collider) {
+    const Pose body = world.bodies.CentrePoseOf(world.colliders.colliders[collider].body);
+    return world.colliders.shapes[collider].offset ? body * LocalOf(world, collider) : body;
 }
 
 // World space, from A to B.
@@ -70,9 +97,165 @@ void VisitFixedContacts(const WorldState& world, uint32_t body, const Visit& vis
     });
 }
 
-bool StandsInMany(const WorldState& world, uint32_t body) {
-    const auto [first, last] = std::equal_range(world.standing.begin(), world.standing.end(), body);
-    return static_cast<size_t>(last - first) >= kMany;
+// Whether it is a body that can disperse at all.
+bool MovesFreely(const WorldState& world, uint32_t body) {
+    const BodyDynamics& d = world.bodies.dynamics[body];
+    const BodyCold& cold = world.bodies.cold[body];
+    return cold.exists && !cold.removed && !cold.isSensor && d.awake && !d.frozen && d.motion == MotionType::Dynamic;
+}
+
+// Of bodies that joints hold together, the one with the lowest index. Such a structure goes one way, and what stands in itself was
+// made so.
+class Structures {
+public:
+    explicit Structures(WorldState& world) {
+        if (world.joints.Count() == 0) return;
+        roots_ = world.scratch.Allocate<uint32_t>(world.bodies.Size());
+        UnionFind sets(roots_);
+        for (const Joint& joint : world.joints.joints)
+            if (joint.exists && joint.enabled && !joint.still[0] && !joint.still[1]) sets.Unite(joint.body[0], joint.body[1]);
+        for (uint32_t body = 0; body < roots_.size(); ++body) roots_[body] = sets.Find(body);
+    }
+    uint32_t RootOf(uint32_t body) const { return roots_.empty() ? body : roots_[body]; }
+
+private:
+    std::span<uint32_t> roots_;
+};
+
+// Whether two colliders, both convex, overlap.
+bool Overlap(const WorldState& world, uint32_t collider, uint32_t other) {
+    if (!AreDynamic(world, collider, other)) return false;
+    const ConvexShape& a = static_cast<const ConvexShape&>(*world.colliders.shapes[collider].shape);
+    const ConvexShape& b = static_cast<const ConvexShape&>(*world.colliders.shapes[other].shape);
+    const float square = SquareBetween(world, collider, other), inner = InnerRadii(a, b), outer = a.OuterRadius() + b.OuterRadius();
+    if (square < inner * inner || square >= outer * outer) return square < inner * inner;
+    Manifold manifold;
+    PairCache cache;
+    CollideCounters counters;
+    Collide(a, b, Relative(PoseOf(world, collider), PoseOf(world, other)), {.method = world.settings.narrowPhase}, cache, manifold, counters);
+    return std::any_of(manifold.points, manifold.points + manifold.pointCount, [](const ManifoldPoint& point) { return point.separation < 0; });
+}
+
+// Of the bodies that a body is near to, in the way of `IsNear`, the number, up to kMost.
+template <size_t kMost, bool (*IsNear)(const WorldState&, uint32_t, uint32_t)>
+size_t CountNear(const WorldState& world, const Structures& structures, uint32_t body) {
+    std::array<uint32_t, kMost> others;
+    size_t count = 0;
+    const auto counts = [&](uint32_t collider, uint32_t index) {
+        const uint32_t other = world.colliders.colliders[index].body;
+        if (!IsNear(world, collider, index) || structures.RootOf(other) == structures.RootOf(body)) return false;
+        if (std::find(others.data(), others.data() + count, other) != others.data() + count) return false;
+        return CanCollide(world, body, other) && (world.pairs.Find(collider, index) != PairStore::kNone || ListenerAllows(world, body, other));
+    };
+    VisitColliders(world, body, [&](uint32_t collider) {
+        float distance = 0;  // below zero ends the search
+        if (count == kMost) return;
+        world.colliders.movingTree.VisitNear(TightBoundsOf(world, collider), distance, [&](uint32_t index) {
+            if (counts(collider, index)) others[count++] = world.colliders.colliders[index].body;
+            if (count == kMost) distance = -1;
+        });
+    });
+    return count;
+}
+
+// The bodies of which isSo(body) is true, asked by all workers; `bodies` in ascending order, which they keep.
+template <class Test>
+std::vector<uint32_t> Select(WorldState& world, std::span<const uint32_t> bodies, const Test& isSo) {
+    const std::span<uint8_t> is = world.scratch.Allocate<uint8_t>(bodies.size());
+    world.jobs->ParallelFor(static_cast<uint32_t>(bodies.size()), 16, [&](JobRange range) {
+        for (uint32_t i = range.begin; i < range.end; ++i) is[i] = isSo(bodies[i]);
+    });
+    std::vector<uint32_t> selected;
+    for (size_t i = 0; i < bodies.size(); ++i)
+        if (is[i]) selected.push_back(bodies[i]);
+    return selected;
+}
+
+// m: the radius of a ball with as much room as they take.
+double RadiusOfAll(const WorldState& world, std::span<const uint32_t> bodies) {
+    double cubes = 0;
+    for (const uint32_t body : bodies) {
+        const double radius = double{world.bodies.dynamics[body].outerRadius};
+        cubes += radius * radius * radius;
+    }
+    return std::cbrt(cubes / kPacking);
+}
+
+// In the order of their size: small ones, that have room sooner, inside. Where all start within a part of the ball that they will fill,
+// their ways lead to its places whatever theirs are now.
+void FindWaysToPlaces(const WorldState& world, std::vector<uint32_t>& bodies, std::vector<Disperser>& ways) {
+    std::sort(bodies.begin(), bodies.end(), [&](uint32_t a, uint32_t b) {
+        return std::pair(world.bodies.dynamics[a].outerRadius, a) < std::pair(world.bodies.dynamics[b].outerRadius, b);
+    });
+    const std::vector<Vector3> places = PlacesInBall(static_cast<uint32_t>(bodies.size()));
+    const double radius = RadiusOfAll(world, bodies);
+    Position middle = Position::Zero();
+    for (const uint32_t body : bodies) middle += world.bodies.CentreOf(body) / static_cast<double>(bodies.size());
+    const bool isSmall = std::all_of(bodies.begin(), bodies.end(), [&](uint32_t body) { return (world.bodies.CentreOf(body) - middle).norm() < 0.5 * radius; });
+    for (size_t i = 0; i < bodies.size(); ++i) {
+        Vector3 way = places[i];
+        if (isSmall) way += Vector3(((middle - world.bodies.CentreOf(bodies[i])) / radius).cast<float>());
+        LimitLength(way, 1);
+        ways.push_back({bodies[i], way});
+    }
+}
+
+std::vector<Disperser> FindWays(const WorldState& world, const Structures& structures, std::span<const uint32_t> bodies) {
+    std::vector<Disperser> ways;
+    std::vector<uint32_t> single;
+    for (const uint32_t body : bodies) {
+        if (world.joints.HasAny(body)) ways.push_back({body, PlaceInCrowd(structures.RootOf(body))});
+        else single.push_back(body);
+    }
+    if (single.size() >= kWhole) FindWaysToPlaces(world, single, ways);
+    else for (const uint32_t body : single) ways.push_back({body, PlaceInCrowd(body)});
+    return ways;
+}
+
+void RemoveDynamicPairs(WorldState& world, std::span<const uint32_t> bodies) {
+    VisitPairsOf(world, bodies, [&](uint32_t pair) {
+        if (world.pairs.pairs[pair].fixedB) return;
+        if (pair < world.changes.size()) world.changes[pair] = PairChange::None;
+        RemovePair(world, pair);
+    });
+}
+
+// What does not move turns the way back.
+void Reflect(const WorldState& world, Disperser& disperser) {
+    VisitFixedContacts(world, disperser.body, [&](uint32_t pair) {
+        const Vector3 normal = NormalOf(world, pair);
+        const float into = Dot<float>(normal, disperser.way);
+        if (into > 0) disperser.way -= normal * (2 * into);
+    });
+}
+
+void Push(WorldState& world, Disperser& disperser) {
+    const BodyDynamics& d = world.bodies.dynamics[disperser.body];
+    Reflect(world, disperser);
+    Vector3 turn = Vector3::Zero();
+    disperser.push = disperser.way * (kSpread * world.settings.contactPushSpeed);
+    LimitLength(disperser.push, d.maxLinearSpeed);
+    d.Lock(disperser.push, turn);
+    disperser.own = world.bodies.LinearVelocityOf(disperser.body);
+    world.bodies.SetVelocity(disperser.body, disperser.own + disperser.push, world.bodies.AngularVelocityOf(disperser.body));
+}
+
+// Those that were removed, put to sleep, frozen or made kinematic meanwhile.
+void ForgetStopped(WorldState& world) {
+    std::erase_if(world.dispersing, [&](const Disperser& disperser) {
+        BodyDynamics& d = world.bodies.dynamics[disperser.body];
+        d.dispersing &= MovesFreely(world, disperser.body);
+        return !d.dispersing;
+    });
+}
+
+void Gather(WorldState& world, std::vector<uint32_t> WorkerFindings::* list, std::vector<uint32_t>& all) {
+    all.clear();
+    for (WorkerFindings& findings : world.findings) {
+        all.insert(all.end(), (findings.*list).begin(), (findings.*list).end());
+        (findings.*list).clear();
+    }
+    std::sort(all.begin(), all.end());
 }
 
 }  // namespace
@@ -87,6 +270,30 @@ Vector3 PlaceInCrowd(uint32_t body) {
     }
 }
 
+// Those of a face-centered cubic lattice (integers of which the sum is even) that are nearest to the middle of a cube, so that a mirror
+// at which half of them turn back completes it to a cubic lattice.
+std::vector<Vector3> PlacesInBall(uint32_t count) {
+    struct Point {
+        int64_t square;
+        int32_t x, y, z;  // twice the distance from the middle
+        auto operator<=>(const Point&) const = default;
+    };
+    const int reach = static_cast<int>(std::cbrt(count * 0.5)) + 3;  // a unit of volume has half a point
+    std::vector<Point> points;
+    for (int x = -reach; x <= reach; ++x)
+        for (int y = -reach; y <= reach; ++y)
+            for (int z = -reach + ((x + y + reach) & 1); z <= reach; z += 2) {
+                const int64_t dx = 2 * x - 1, dy = 2 * y - 1, dz = 2 * z - 1;
+                points.push_back({dx * dx + dy * dy + dz * dz, 2 * x - 1, 2 * y - 1, 2 * z - 1});
+            }
+    std::sort(points.begin(), points.end());
+    std::vector<Vector3> places;
+    const float inverse = 1.0f / std::sqrt(static_cast<float>(points[count - 1].square));
+    for (uint32_t i = 0; i < count; ++i)
+        places.push_back(Vector3(static_cast<float>(points[i].x), static_cast<float>(points[i].y), static_cast<float>(points[i].z)) * inverse);
+    return places;
+}
+
 RelativePose WithDistinctCenters(const WorldState& world, const Pair& pair, const RelativePose& bInA) {
     const float hair = kHair * InnerRadii(*pair.shapeA, *pair.shapeB);
     if (LengthSquared(bInA.position) > hair * hair) return bInA;
@@ -96,17 +303,60 @@ RelativePose WithDistinctCenters(const WorldState& world, const Pair& pair, cons
     return {bInA.position + Normalized(away, Vector3(0, 1, 0)) * hair, bInA.rotation};
 }
 
-CrowdPlace CrowdPlaceOf(const WorldState& world, uint32_t collider) {
-    const uint32_t body = world.colliders.colliders[collider].body;
-    if (world.bodies.dynamics[body].motion != MotionType::Dynamic) return {.innerRadius = -1};
-    const float radius = world.colliders.shapes[collider].shape->InnerRadius();
-    return {CenterOf(world, collider) + (PlaceInCrowd(body) * (2 * kHair * radius)).cast<double>(), radius};
+void PushDispersing(WorldState& world) {
+    if (world.dispersing.empty()) return;
+    ForgetStopped(world);
+    world.jobs->ParallelFor(static_cast<uint32_t>(world.dispersing.size()), 64, [&](JobRange range) {
+        for (uint32_t i = range.begin; i < range.end; ++i) Push(world, world.dispersing[i]);
+    });
 }
 
-float Nearness(const CrowdPlace& a, const CrowdPlace& b) {
-    const float radii = a.innerRadius + b.innerRadius;
-    if (!(a.innerRadius >= 0 && b.innerRadius >= 0 && radii > 0)) return std::numeric_limits<float>::infinity();
-    return Length(Vector3((b.center - a.center).cast<float>())) / radii;
+Vector3 OwnVelocity(const WorldState& world, uint32_t body, const Vector3& v, float dt) {
+    const auto disperser = std::lower_bound(world.dispersing.begin(), world.dispersing.end(), body,
+                                            [](const Disperser& d, uint32_t index) { return d.body < index; });
+    const float* a = world.bodies.poses[body].acceleration;
+    return NoFasterThan(v - disperser->push, disperser->own + Vector3(a[0], a[1], a[2]) * dt);
+}
+
+bool StandInEachOther(const WorldState& world, uint32_t collider, uint32_t other) {
+    if (!AreDynamic(world, collider, other)) return false;
+    const float reach = kDeepNearness * InnerRadii(*world.colliders.shapes[collider].shape, *world.colliders.shapes[other].shape);
+    return SquareBetween(world, collider, other) < reach * reach;
+}
+
+void StartDispersing(WorldState& world, std::vector<uint32_t>& bodies) {
+    std::sort(bodies.begin(), bodies.end());
+    bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+    const Structures structures(world);
+    std::vector<uint32_t> starting = Select(world, bodies, [&](uint32_t body) {
+        return MovesFreely(world, body) && !world.bodies.dynamics[body].dispersing && CountNear<kMany, StandInEachOther>(world, structures, body) >= kMany;
+    });
+    RemoveDynamicPairs(world, starting);
+    for (const Disperser& disperser : FindWays(world, structures, starting)) {
+        BodyDynamics& d = world.bodies.dynamics[disperser.body];
+        d.dispersing = d.crowded = true;
+        world.dispersing.push_back(disperser);
+        world.dispersing.back().own = world.bodies.LinearVelocityOf(disperser.body);
+    }
+    std::sort(world.dispersing.begin(), world.dispersing.end(), [](const Disperser& a, const Disperser& b) { return a.body < b.body; });
+}
+
+void EndDispersing(WorldState& world) {
+    if (world.dispersing.empty()) return;
+    const Structures structures(world);
+    std::vector<uint32_t> bodies;
+    for (const Disperser& disperser : world.dispersing) bodies.push_back(disperser.body);
+    const std::vector<uint32_t> ending =
+        Select(world, bodies, [&](uint32_t body) { return CountNear<kFew, Overlap>(world, structures, body) < kFew; });
+    for (const uint32_t body : ending) world.bodies.dynamics[body].dispersing = false;
+    std::erase_if(world.dispersing, [&](const Disperser& disperser) {
+        if (world.bodies.dynamics[disperser.body].dispersing) return false;
+        const Vector3 gravity = world.settings.gravity * world.bodies.dynamics[disperser.body].gravityFactor;
+        for (int k = 0; k < 3; ++k) world.bodies.poses[disperser.body].acceleration[k] += gravity[k];
+        world.bodies.SetVelocity(disperser.body, disperser.own, world.bodies.AngularVelocityOf(disperser.body));
+        RequeueColliders(world, disperser.body);
+        return true;
+    });
 }
 
 void NoteStanding(const WorldState& world, uint32_t index, const RelativePose& bInA, WorkerFindings& findings) {
@@ -123,25 +373,18 @@ void NoteStanding(const WorldState& world, uint32_t index, const RelativePose& b
 }
 
 void NoteCrowd(WorldState& world) {
-    const auto gather = [&](std::vector<uint32_t> WorkerFindings::* list, std::vector<uint32_t>& all) {
-        all.clear();
-        for (WorkerFindings& findings : world.findings) {
-            all.insert(all.end(), (findings.*list).begin(), (findings.*list).end());
-            (findings.*list).clear();
-        }
-        std::sort(all.begin(), all.end());
-    };
-    for (const uint32_t body : world.crowd) world.bodies.dynamics[body].crowded = false;
-    std::vector<uint32_t>& crowd = world.crowd;
-    gather(&WorkerFindings::overlapping, crowd);
-    crowd.erase(std::unique(crowd.begin(), crowd.end()), crowd.end());
+    for (const uint32_t body : world.crowded) world.bodies.dynamics[body].crowded = false;
+    Gather(world, &WorkerFindings::overlapping, world.crowded);
+    for (const Disperser& disperser : world.dispersing) world.crowded.push_back(disperser.body);
+    for (const uint32_t body : world.crowded) world.bodies.dynamics[body].crowded = true;
     std::vector<uint32_t>& standing = world.standing;
-    gather(&WorkerFindings::standing, standing);
+    Gather(world, &WorkerFindings::standing, standing);
+    size_t many = 0;
     for (size_t begin = 0, end = 0; begin < standing.size(); begin = end) {
         while (end < standing.size() && standing[end] == standing[begin]) ++end;
-        if (end - begin >= kMany) crowd.push_back(standing[begin]);
+        if (end - begin >= kMany) standing[many++] = standing[begin];
     }
-    for (const uint32_t body : crowd) world.bodies.dynamics[body].crowded = true;
+    standing.resize(many);
 }
 
 void LimitPush(WorldState& world, uint32_t body, float h) {
@@ -149,9 +392,8 @@ void LimitPush(WorldState& world, uint32_t body, float h) {
     const Vector3 freeV(free[0], free[1], free[2]), freeW(free[3], free[4], free[5]);
     Vector3 push = world.bodies.LinearVelocityOf(body) - freeV, spin = world.bodies.AngularVelocityOf(body) - freeW;
     const float fastest = world.settings.contactPushSpeed;
-    const float mine = StandsInMany(world, body) ? fastest * std::max(Length(PlaceInCrowd(body)), kSlowest) : fastest;
-    LimitLength(push, mine);
-    LimitLength(spin, mine / world.bodies.dynamics[body].outerRadius);
+    LimitLength(push, fastest);
+    LimitLength(spin, fastest / world.bodies.dynamics[body].outerRadius);
     Vector3 v = freeV + push;
     const float(&moved)[3] = world.bodies.states[body].deltaPosition;
     VisitFixedContacts(world, body, [&](uint32_t pair) {

@@ -1,5 +1,10 @@
-// Bodies that stand in one another, hundreds at one point even: which way each goes, and which of them push each other first.
-// Used by FindPairs and Collide, from any number of threads at once.
+// Bodies that stand in one another, thousands at one point even. A few are parted by their contacts; where many stand in each other
+// no contact tells which way is out, all pairs of n bodies are n^2, and the sum of their pushes would shoot everything out. So a
+// body that stands in many others disperses: it meets no dynamic body, does not fall, and moves at a bounded speed of its own along
+// a way of its own, until it stands in hardly any. Ways fill a ball: bodies that all start at one point fill a ball evenly, that grows
+// until they have room; what does not move reflects them. From then on contacts part them, and push no faster than a bounded speed
+// until nothing overlaps.
+// Used by UpdateBounds, FindPairs, Collide, Solve and Store. Costs nothing where nobody disperses.
 #pragma once
 
 #include <Fulcrum/Physics/Stages/Stages.h>
@@ -14,29 +19,30 @@ Vector3 PlaceInCrowd(uint32_t body);
 // `bInA` of two convex pieces, moved by that hair where their centers coincide.
 RelativePose WithDistinctCenters(const WorldState& world, const Pair& pair, const RelativePose& bInA);
 
-// Two bodies whose centers are nearer than this, as a part of the sum of their inner radii, stand in each other, as nothing does that
-// was not put there.
-inline constexpr float kDeepNearness = 0.8f;
+// So many points that fill the unit ball as densely as balls can be packed, from the innermost to the outermost.
+std::vector<Vector3> PlacesInBall(uint32_t count);
 
-// A collider as the search for its nearest sees it.
-struct CrowdPlace {
-    Position center = Position::Zero();  // m, a hair from where it is
-    float innerRadius = 0;               // m; negative: what does not stand in others: it is not dynamic
-};
-CrowdPlace CrowdPlaceOf(const WorldState& world, uint32_t collider);
-// How near two colliders are, as a part of the sum of their inner radii; infinite unless both are dynamic.
-float Nearness(const CrowdPlace& a, const CrowdPlace& b);
+// As the step begins, before bounds: what disperses gets the velocity with which it moves in this step.
+void PushDispersing(WorldState& world);
+// As it ends: the velocity of a body that disperses, without that.
+Vector3 OwnVelocity(const WorldState& world, uint32_t body, const Vector3& v, float dt);
+
+// Whether two colliders of dynamic bodies stand in each other, as nothing does that was not put there: their centers are far nearer
+// than the sum of their inner radii.
+bool StandInEachOther(const WorldState& world, uint32_t collider, uint32_t other);
+
+// Of `bodies`, in any order, those that stand in many others start to disperse. They lose their pairs with dynamic bodies.
+void StartDispersing(WorldState& world, std::vector<uint32_t>& bodies);
+// Those that stand in hardly any other have dispersed. They search for their pairs.
+void EndDispersing(WorldState& world);
 
 // Notes in `findings` which bodies of a pair stand in each other, if they do; `bInA` is that of the pieces.
 void NoteStanding(const WorldState& world, uint32_t pair, const RelativePose& bInA, WorkerFindings& findings);
-
-// Marks the bodies that stand in many others, until they overlap nothing. Of those each is pushed by many, all as hard as a single
-// overlap would be, and the sum would shoot it out. So pushes move them no faster than contactPushSpeed, and leave them no more
-// speed than they had without: the solver asks for BodyDynamics::crowded where it integrates.
+// Gathers what was noted. Pushes of bodies that disperse, or have dispersed and still overlap something, move them no faster than
+// contactPushSpeed, and leave them no more speed than they had without: the solver asks for BodyDynamics::crowded where it integrates.
 void NoteCrowd(WorldState& world);
 
-// Limits the velocity with which a crowded body is about to move for h seconds: pushes may change it by contactPushSpeed. While it stands
-// in many, by less if its place is near the middle of the ball: a crowd grows as a whole and not as a shell. Nor is it
+// Limits the velocity with which a crowded body is about to move for h seconds: pushes may change it by contactPushSpeed. Nor is it
 // pressed into what does not move: the contacts with that are soft, too, and would give way to so many.
 void LimitPush(WorldState& world, uint32_t body, float h);
 

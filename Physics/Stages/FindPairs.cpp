@@ -12,11 +12,9 @@ namespace fulcrum {
 
 namespace {
 
-// A collider that stands in more others than this has pairs with so many alone, the nearest, and with those whose nearest it is. Others
-// follow when these are apart: thousands at one point would make millions of pairs, and be pushed no better.
-constexpr size_t kMostDeep = 16;
-// New pairs of such bodies, from which on that is done.
+// New pairs of bodies that stand in each other, from which on those that stand in many disperse before the others have pairs.
 constexpr uint32_t kCrowd = 1024;
+constexpr uint32_t kAnyNumber = ~0u;
 
 // Whether the bounds of two colliders, of which the first has moved, ask for a pair that is not active.
 bool AskForPair(const WorldState& world, uint32_t index, uint32_t other) {
@@ -29,10 +27,10 @@ bool AskForPair(const WorldState& world, uint32_t index, uint32_t other) {
 
 uint64_t KeyOf(uint32_t a, uint32_t b) { return a < b ? uint64_t(a) << 32 | b : uint64_t(b) << 32 | a; }
 
-// Notes their pair if it is to be.
-void Consider(const WorldState& world, uint32_t index, uint32_t other, WorkerFindings& findings) {
-    if (findings.deepPairs > kCrowd || !AskForPair(world, index, other)) return;  // in a crowd all will be searched again
-    findings.deepPairs += Nearness(CrowdPlaceOf(world, index), CrowdPlaceOf(world, other)) < kDeepNearness;
+// Notes their pair if it is to be. Beyond so many deep ones all is given up.
+void Consider(const WorldState& world, uint32_t index, uint32_t other, uint32_t mostDeep, WorkerFindings& findings) {
+    if (findings.deepPairs > mostDeep || !AskForPair(world, index, other)) return;
+    findings.deepPairs += StandInEachOther(world, index, other);
     findings.pairs.push_back(KeyOf(index, other));
 }
 
@@ -43,68 +41,37 @@ void VisitNeighbors(const WorldState& world, uint32_t index, const Visit& visit)
     const Collider& self = store.colliders[index];
     if (self.sensor) return;
     const uint32_t layers = world.settings.layerCollides[world.bodies.dynamics[self.body].layer];
-    if (layers & store.movingLayers) store.movingTree.Query(self.fat, visit);
+    if ((layers & store.movingLayers) && !world.bodies.dynamics[self.body].dispersing) store.movingTree.Query(self.fat, visit);
     if (self.moving && (layers & store.fixedLayers)) store.fixedTree.Query(self.fat, visit);
 }
 
 // What one collider meets.
-void Search(const WorldState& world, uint32_t index, WorkerFindings& findings) {
+void Search(const WorldState& world, uint32_t index, uint32_t mostDeep, WorkerFindings& findings) {
+    if (findings.deepPairs > mostDeep) return;
     VisitNeighbors(world, index, [&](uint32_t other) {
         if (world.colliders.colliders[other].queued && other < index) return;  // it reports the pair itself
-        Consider(world, index, other, findings);
+        Consider(world, index, other, mostDeep, findings);
     });
 }
 
-// The same in a crowd. What is dynamic and searches, too, has the other among its nearest or not: either may ask for the pair.
-void SearchInCrowd(const WorldState& world, uint32_t index, std::span<const CrowdPlace> places, WorkerFindings& findings) {
-    std::vector<std::pair<float, uint32_t>>& near = findings.near;
-    near.clear();
-    // Also those that exist, so that the others are known from them.
-    const auto ask = [&](uint32_t other) {
-        const uint32_t pair = world.pairs.Find(index, other);
-        const bool isActive = pair != PairStore::kNone && world.pairs.active.Contains(pair);
-        if (isActive || AskForPair(world, index, other)) findings.pairs.push_back(KeyOf(index, other));
-    };
-    size_t deep = 0;
-    VisitNeighbors(world, index, [&](uint32_t other) {
-        if (!world.colliders.colliders[other].queued) return ask(other);
-        const float nearness = Nearness(places[index], places[other]);
-        near.push_back({nearness, other});
-        deep += nearness < kDeepNearness;
-    });
-    if (deep > kMostDeep) {
-        const uint32_t body = world.colliders.colliders[index].body;
-        std::erase_if(near, [&](const auto& other) {
-            return !std::isinf(other.first) && !MayCollide(world, body, world.colliders.colliders[other.second].body);
-        });
-        // What cannot be pushed is not among the nearest, nor may it be left out.
-        const auto pushed = std::partition(near.begin(), near.end(), [](const auto& other) { return std::isinf(other.first); });
-        if (near.end() - pushed > static_cast<ptrdiff_t>(kMostDeep)) {
-            std::nth_element(pushed, pushed + kMostDeep, near.end());
-            near.erase(pushed + kMostDeep, near.end());
-            findings.crowded.push_back(index);
-        }
-    }
-    for (const auto& [nearness, other] : near) ask(other);
-}
-
-void SearchEach(WorldState& world) {
+void SearchEach(WorldState& world, uint32_t mostDeep) {
     const std::vector<uint32_t>& moved = world.colliders.moved;
     world.jobs->ParallelFor(static_cast<uint32_t>(moved.size()), 16, [&](JobRange range) {
-        for (uint32_t i = range.begin; i < range.end; ++i) Search(world, moved[i], world.findings[range.worker]);
+        for (uint32_t i = range.begin; i < range.end; ++i) Search(world, moved[i], mostDeep, world.findings[range.worker]);
     });
 }
 
 // The same where most have moved: what moves meets what moves, neighbours with neighbours.
-void SearchTogether(WorldState& world) {
+void SearchTogether(WorldState& world, uint32_t mostDeep) {
     const ColliderStore& store = world.colliders;
     const auto isQueued = [&](uint32_t i) { return store.colliders[i].queued; };
     world.jobs->ParallelFor(store.movingTree.NodeCount(), 8, [&](JobRange range) {
         WorkerFindings& found = world.findings[range.worker];
+        if (found.deepPairs > mostDeep) return;
         store.movingTree.VisitPairs(range.begin, range.end, [&](uint32_t a, uint32_t b) {
             const uint32_t low = std::min(a, b), high = std::max(a, b);
-            if (isQueued(low)) Consider(world, low, high, found);
-            else if (isQueued(high)) Consider(world, high, low, found);
+            if (isQueued(low)) Consider(world, low, high, mostDeep, found);
+            else if (isQueued(high)) Consider(world, high, low, mostDeep, found);
         });
         store.movingTree.VisitGroups(range.begin, range.end, [&](const Bounds& all, std::span<const uint32_t> ids) {
             bool meets = false;
@@ -113,68 +80,53 @@ void SearchTogether(WorldState& world) {
             for (uint32_t index : ids) {
                 if (!isQueued(index)) continue;
                 store.fixedTree.Query(store.colliders[index].fat, [&](uint32_t other) {
-                    if (!isQueued(other) || index < other) Consider(world, index, other, found);
+                    if (!isQueued(other) || index < other) Consider(world, index, other, mostDeep, found);
                 });
             }
         });
     });
     world.jobs->ParallelFor(static_cast<uint32_t>(store.moved.size()), 256, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i)
-            if (!store.colliders[store.moved[i]].moving) Search(world, store.moved[i], world.findings[range.worker]);
+            if (!store.colliders[store.moved[i]].moving) Search(world, store.moved[i], mostDeep, world.findings[range.worker]);
     });
 }
 
-// Whether so many stand in one another that each is to push its nearest alone; then what was found is forgotten.
-bool IsCrowded(WorldState& world) {
-    uint64_t deep = 0;
-    for (WorkerFindings& findings : world.findings) {
-        deep += findings.deepPairs;
-        findings.deepPairs = 0;
+// Kinematic bodies search for those that disperse, which do not look at the moving tree themselves: there they would meet each other.
+void SearchForDispersing(WorldState& world) {
+    if (world.dispersing.empty()) return;
+    const ColliderStore& store = world.colliders;
+    WorkerFindings& findings = world.findings.front();
+    for (uint32_t body = 0; body < world.bodies.Size(); ++body) {
+        if (!world.bodies.cold[body].exists || world.bodies.dynamics[body].motion != MotionType::Kinematic) continue;
+        VisitColliders(world, body, [&](uint32_t index) {
+            if (store.colliders[index].sensor) return;
+            store.movingTree.Query(store.colliders[index].fat, [&](uint32_t other) {
+                if (world.bodies.dynamics[store.colliders[other].body].dispersing) Consider(world, other, index, kAnyNumber, findings);
+            });
+        });
     }
-    if (deep <= kCrowd) return false;
+}
+
+void SearchAll(WorldState& world, uint32_t mostDeep) {
+    if (world.colliders.MostMoved() && world.dispersing.empty()) SearchTogether(world, mostDeep);
+    else SearchEach(world, mostDeep);
+    SearchForDispersing(world);
+}
+
+// Whether more than so many pairs of bodies that stand in each other were found; then all that was found is forgotten.
+bool FoundTooDeep(WorldState& world, uint64_t mostDeep) {
+    uint64_t deep = 0;
+    for (WorkerFindings& findings : world.findings) deep += std::exchange(findings.deepPairs, 0);
+    if (deep <= mostDeep) return false;
     for (WorkerFindings& findings : world.findings) findings.pairs.clear();
     return true;
 }
 
-void SearchAllInCrowd(WorldState& world) {
-    const std::vector<uint32_t>& moved = world.colliders.moved;
-    const std::span<CrowdPlace> places = world.scratch.Allocate<CrowdPlace>(world.colliders.colliders.size());
-    for (const uint32_t index : moved) places[index] = CrowdPlaceOf(world, index);
-    world.jobs->ParallelFor(static_cast<uint32_t>(moved.size()), 16, [&](JobRange range) {
-        for (uint32_t i = range.begin; i < range.end; ++i) SearchInCrowd(world, moved[i], places, world.findings[range.worker]);
-    });
-}
-
-// Two that both have enough nearer ones lose the pair that they have from when these were farther away. `found`: all that are to be.
-void RemoveFarPairs(WorldState& world, std::span<const uint64_t> found) {
-    const std::span<uint8_t> isCrowded = world.scratch.Allocate<uint8_t>(world.colliders.colliders.size());
-    std::fill(isCrowded.begin(), isCrowded.end(), uint8_t(0));
-    for (const WorkerFindings& findings : world.findings)
-        for (const uint32_t index : findings.crowded) isCrowded[index] = 1;
-    std::vector<uint32_t> far;
-    for (const WorkerFindings& findings : world.findings)
-        for (const uint32_t index : findings.crowded)
-            world.pairs.VisitOf(index, [&](uint32_t pair) {
-                const uint32_t a = world.pairs.pairs[pair].colliderA, b = world.pairs.pairs[pair].colliderB;
-                if (a != index || !isCrowded[b] || std::binary_search(found.begin(), found.end(), KeyOf(a, b))) return;
-                far.push_back(pair);
-            });
-    std::sort(far.begin(), far.end());
-    for (const uint32_t pair : far) {
-        if (pair < world.changes.size()) world.changes[pair] = PairChange::None;
-        RemovePair(world, pair);
-    }
-}
-
-// Who has not got all pairs searches again in the next step, whatever it knows from this one.
-void RequeueCrowded(WorldState& world) {
-    for (WorkerFindings& findings : world.findings) {
-        for (uint32_t index : findings.crowded) {
-            world.colliders.colliders[index].previous = {};
-            world.colliders.Queue(index);
-        }
-        findings.crowded.clear();
-    }
+// Those that have searched start to disperse, as far as they stand in many.
+void DisperseMoved(WorldState& world) {
+    std::vector<uint32_t> bodies;
+    for (const uint32_t index : world.colliders.moved) bodies.push_back(world.colliders.colliders[index].body);
+    StartDispersing(world, bodies);
 }
 
 // The searches of this step are over.
@@ -252,7 +204,10 @@ bool CanCollide(const WorldState& world, uint32_t bodyA, uint32_t bodyB) {
 }
 
 bool MayCollide(const WorldState& world, uint32_t bodyA, uint32_t bodyB) {
-    return (world.bodies.dynamics[bodyA].awake || world.bodies.dynamics[bodyB].awake) && CanCollide(world, bodyA, bodyB);
+    const BodyDynamics& a = world.bodies.dynamics[bodyA];
+    const BodyDynamics& b = world.bodies.dynamics[bodyB];
+    if ((a.dispersing && b.motion == MotionType::Dynamic) || (b.dispersing && a.motion == MotionType::Dynamic)) return false;
+    return (a.awake || b.awake) && CanCollide(world, bodyA, bodyB);
 }
 
 PairMaterial MaterialOfPair(const WorldState& world, uint32_t bodyA, uint32_t bodyB, const Shape& shapeB, uint8_t material) {
@@ -279,11 +234,16 @@ void CombineMaterials(WorldState& world, uint32_t index) {
 
 void FindPairs(WorldState& world) {
     world.activated.clear();
+    EndDispersing(world);
+    if (!world.standing.empty()) StartDispersing(world, world.standing);
+    world.standing.clear();
     if (world.colliders.moved.empty()) return;
-    if (world.colliders.MostMoved()) SearchTogether(world);
-    else SearchEach(world);
-    const bool isCrowded = IsCrowded(world);
-    if (isCrowded) SearchAllInCrowd(world);
+    SearchAll(world, kCrowd);
+    if (FoundTooDeep(world, kCrowd)) {
+        DisperseMoved(world);
+        SearchAll(world, kAnyNumber);
+        FoundTooDeep(world, kAnyNumber);
+    }
     std::vector<uint64_t>& found = world.newPairs;
     found.clear();
     for (WorkerFindings& findings : world.findings) {
@@ -291,13 +251,8 @@ void FindPairs(WorldState& world) {
         findings.pairs.clear();
     }
     std::sort(found.begin(), found.end());
-    if (isCrowded) {
-        found.erase(std::unique(found.begin(), found.end()), found.end());  // both may have found a pair
-        RemoveFarPairs(world, found);
-    }
     ActivatePairs(world, found);
     ForgetMoved(world);
-    if (isCrowded) RequeueCrowded(world);
 }
 
 }  // namespace fulcrum

@@ -36,7 +36,7 @@ void ChangeListener(WorldState& world, const ContactListener* listener);
 
 // Whether contacts between two bodies are wanted,
 bool CanCollide(const WorldState& world, uint32_t bodyA, uint32_t bodyB);
-// and one of them is awake.
+// and one of them is awake, and neither disperses while the other is dynamic (Crowd.h).
 bool MayCollide(const WorldState& world, uint32_t bodyA, uint32_t bodyB);
 
 struct PairMaterial {

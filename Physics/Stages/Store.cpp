@@ -172,6 +172,7 @@ void FinishEnding(WorldState& world, Ending& ending, const StepContext& step, Wo
     if (!IsFinite(ending.displacement) || !IsFinite(ending.turn.rotation) || !IsFinite(v) || !IsFinite(w)) return Stop(world, body, findings);
     BodyState& state = bodies.states[body];
     state = {.marks = state.marks};
+    if (d.dispersing) v = OwnVelocity(world, body, v, step.dt);
     findings.clamped += LimitSpeeds(world, body, v, w);
     bodies.SetVelocity(body, v, w);
     bodies.MoveCentre(body, ending.displacement, ending.turn.rotation);

@@ -2,6 +2,7 @@
 // flight leaves them once in several steps.
 #include <Fulcrum/Collision/BroadPhase/BoundsTreeBulk.h>
 #include <Fulcrum/Physics/Stages/BodyLimits.h>
+#include <Fulcrum/Physics/Stages/Crowd.h>
 
 #include <algorithm>
 
@@ -130,6 +131,7 @@ void SetFatBounds(WorldState& world, uint32_t index) {
 
 void UpdateBounds(WorldState& world, const StepContext& step) {
     ReserveLists(world);
+    PushDispersing(world);
     BodyStore& bodies = world.bodies;
     const Vector3 gravity = world.settings.gravity;
     world.jobs->ParallelFor(static_cast<uint32_t>(bodies.awake.size()), 64, [&](JobRange range) {
@@ -140,7 +142,7 @@ void UpdateBounds(WorldState& world, const StepContext& step) {
             const BodyDynamics& dynamics = bodies.dynamics[body];
             if (dynamics.motion == MotionType::Dynamic) {
                 if (!dynamics.spherical) bodies.UpdateInertia(body);
-                Vector3 acceleration = gravity * dynamics.gravityFactor;
+                Vector3 acceleration = gravity * (dynamics.dispersing ? 0.0f : dynamics.gravityFactor);
                 if (dynamics.hasForce) acceleration += bodies.cold[body].force * dynamics.inverseMass;
                 if (dynamics.frozen) acceleration.setZero();
                 for (int k = 0; k < 3; ++k) bodies.poses[body].acceleration[k] = acceleration[k];

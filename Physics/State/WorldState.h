@@ -38,8 +38,6 @@ struct alignas(64) WorkerFindings {
     std::vector<uint32_t> colliders;  // UpdateBounds: those that left their fat bounds
     std::vector<uint64_t> pairs;      // FindPairs: keys of new or resting pairs
     uint32_t deepPairs = 0;           // FindPairs: of these, bodies that stand in each other
-    std::vector<uint32_t> crowded;    // FindPairs: colliders that are in more others than they have pairs
-    std::vector<std::pair<float, uint32_t>> near;  // FindPairs: room to work in
     std::vector<uint32_t> standing, overlapping;  // Collide: bodies that stand in another, and crowded ones that overlap one; once for each
     SurfaceContacts surface;          // Collide: room to work in
     std::vector<uint32_t> surfacePlaces, surfaceLeft, surfaceTouched;  // Collide: likewise
@@ -57,6 +55,14 @@ struct alignas(64) WorkerFindings {
     uint32_t sleepCandidates = 0;     // bodies that have been slow for long enough
     bool bounces = false;             // Prepare: some contact has restitution
     JointFindings joints;             // Prepare
+};
+
+// A body that leaves a crowd: it stood in many others. Until it stands in hardly any it meets no dynamic body, does not fall, and
+// moves along its way on top of its own velocity.
+struct Disperser {
+    uint32_t body;
+    Vector3 way;  // in the unit ball: how fast and where to, see Crowd.h
+    Vector3 push = Vector3::Zero(), own = Vector3::Zero();  // m/s, of this step: its velocity along the way; without it
 };
 
 // What Collide found out about an active pair that the rest of the world must hear of.
@@ -85,7 +91,9 @@ struct WorldState {
     std::vector<uint32_t> began;              // Color: pairs that began to touch
     std::vector<uint64_t> newPairs;
     std::vector<MoreManifold> moreManifolds;
-    std::vector<uint32_t> crowd, standing;    // bodies that stand in many others in this step, repeated; in any
+    std::vector<uint32_t> standing;           // bodies that stood in many others as Collide saw them last
+    std::vector<Disperser> dispersing;        // by body, ascending
+    std::vector<uint32_t> crowded;            // these, and those that have dispersed and still overlap something
     std::vector<uint32_t> ghosts;             // pairs that DropGhosts took the points from, in the last step
     std::vector<WorkerFindings> findings;     // by worker
     ScratchArena scratch;
