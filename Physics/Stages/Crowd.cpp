@@ -2,6 +2,7 @@
 
 #include <Fulcrum/Collision/BroadPhase/BoundsTreeCasts.h>
 #include <Fulcrum/Collision/NarrowPhase/Collide.h>
+#include <Fulcrum/Collision/Queries/RayCast.h>
 #include <Fulcrum/Physics/Islands/UnionFind.h>
 #include <Fulcrum/Physics/Stages/BodyLimits.h>
 #include <Fulcrum/Physics/State/BodyPairs.h>
@@ -10,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace fulcrum {
 
@@ -21,12 +23,16 @@ constexpr float kHair = 1e-3f;
 constexpr float kDeepNearness = 0.8f;
 // So many others are many. What is packed as densely as balls can be has twelve neighbors, and stands in none of them.
 constexpr size_t kMany = 6;
-// Fewer are hardly any.
-constexpr size_t kFew = 2;
 // So many fill a ball by a plan; fewer take ways at random, since they may come one by one.
 constexpr size_t kWhole = 32;
 // The part of the ball's volume that they fill, as far as one can tell beforehand.
 constexpr double kPacking = 0.6;
+// Walls that leave less of the ball than this allows, as a multiple of its radius, are not foreseen.
+constexpr double kMostCut = 2;
+// Those that start together wait for each other for so many times as long as it should take.
+constexpr float kPatience = 1.5f;
+// And until one of so many overlaps somebody.
+constexpr uint32_t kNearlyAll = 32;
 // The speed at the surface of the ball, as a multiple of contactPushSpeed.
 constexpr float kSpread = 1.5f;
 // Those that have dispersed are crowded as long as they overlap by more than this part of the sum of the inner radii.
@@ -171,14 +177,44 @@ std::vector<uint32_t> Select(WorldState& world, std::span<const uint32_t> bodies
     return selected;
 }
 
-// m: the radius of a ball with as much room as they take.
-double RadiusOfAll(const WorldState& world, std::span<const uint32_t> bodies) {
-    double cubes = 0;
-    for (const uint32_t body : bodies) {
-        const double radius = double{world.bodies.dynamics[body].outerRadius};
-        cubes += radius * radius * radius;
-    }
-    return std::cbrt(cubes / kPacking);
+// The nearest of what does not move that a ray from `middle` meets, as a limit of places in a ball of such a radius, m, of bodies
+// of radius `margin`, m.
+bool FindLimit(const WorldState& world, uint32_t body, const Position& middle, const Vector3& ray, double radius, double margin, PlaceLimit& limit) {
+    const RayCaster caster({middle, ray});
+    RayHit closest;
+    uint32_t met = ~0u;
+    float most = 1;
+    world.colliders.fixedTree.CastRay(TreeRay(middle - world.colliders.boundsOrigin, ray), most, [&](uint32_t index) {
+        RayHit hit;
+        if (!CanCollide(world, body, world.colliders.colliders[index].body)) return;
+        if (!caster.CastClosest(*world.colliders.shapes[index].shape, PoseOf(world, index), {}, hit)) return;
+        if (std::pair(hit.fraction, index) >= std::pair(closest.fraction, met) && met != ~0u) return;
+        closest = hit;
+        met = index;
+        most = std::min(most, hit.fraction);
+    });
+    const double height = -double{closest.fraction} * Dot<double>(closest.normal.cast<double>(), ray.cast<double>());
+    limit = {closest.normal, static_cast<float>((margin - height) / radius)};
+    return met != ~0u;
+}
+
+// Looks for floor and walls in all directions.
+std::vector<PlaceLimit> FindLimits(const WorldState& world, uint32_t body, const Position& middle, double radius, double margin) {
+    std::vector<PlaceLimit> limits;
+    for (int x = -1; x <= 1; ++x)
+        for (int y = -1; y <= 1; ++y)
+            for (int z = -1; z <= 1; ++z) {
+                const Vector3 direction(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
+                PlaceLimit limit;
+                if (direction.isZero(0)) continue;
+                if (FindLimit(world, body, middle, direction * static_cast<float>(kMostCut * radius), radius, margin, limit)) limits.push_back(limit);
+            }
+    return limits;
+}
+
+double CubeOfRadius(const WorldState& world, uint32_t body) {
+    const double radius = double{world.bodies.dynamics[body].outerRadius};
+    return radius * radius * radius;
 }
 
 // In the order of their size: small ones, that have room sooner, inside. Where all start within a part of the ball that they will fill,
@@ -187,16 +223,25 @@ void FindWaysToPlaces(const WorldState& world, std::vector<uint32_t>& bodies, st
     std::sort(bodies.begin(), bodies.end(), [&](uint32_t a, uint32_t b) {
         return std::pair(world.bodies.dynamics[a].outerRadius, a) < std::pair(world.bodies.dynamics[b].outerRadius, b);
     });
-    const std::vector<Vector3> places = PlacesInBall(static_cast<uint32_t>(bodies.size()));
-    const double radius = RadiusOfAll(world, bodies);
+    const uint32_t count = static_cast<uint32_t>(bodies.size());
+    double cubes = 0;
     Position middle = Position::Zero();
-    for (const uint32_t body : bodies) middle += world.bodies.CentreOf(body) / static_cast<double>(bodies.size());
+    for (const uint32_t body : bodies) {
+        cubes += CubeOfRadius(world, body);
+        middle += world.bodies.CentreOf(body) / static_cast<double>(count);
+    }
+    const double radius = std::cbrt(cubes / kPacking);
     const bool isSmall = std::all_of(bodies.begin(), bodies.end(), [&](uint32_t body) { return (world.bodies.CentreOf(body) - middle).norm() < 0.5 * radius; });
-    for (size_t i = 0; i < bodies.size(); ++i) {
-        Vector3 way = places[i];
-        if (isSmall) way += Vector3(((middle - world.bodies.CentreOf(bodies[i])) / radius).cast<float>());
-        LimitLength(way, 1);
-        ways.push_back({bodies[i], way});
+    std::vector<Vector3> places;
+    if (isSmall) places = PlacesInBall(count, FindLimits(world, bodies[0], middle, radius, std::cbrt(cubes / count)));
+    if (places.empty()) places = PlacesInBall(count);
+    const double whole = radius * std::max(1.0, double{Length(places.back())});
+    const float speed = kSpread * world.settings.contactPushSpeed;
+    for (uint32_t i = 0; i < count; ++i) {
+        Position way = places[i].cast<double>() * radius;
+        if (isSmall) way += middle - world.bodies.CentreOf(bodies[i]);
+        ways.push_back({bodies[i], (way / whole).cast<float>(), kPatience * static_cast<float>(whole) / speed});
+        LimitLength(ways.back().way, 1);
     }
 }
 
@@ -219,6 +264,16 @@ void RemoveDynamicPairs(WorldState& world, std::span<const uint32_t> bodies) {
         RemovePair(world, pair);
     });
 }
+
+// Those that started to disperse in one step.
+struct Together {
+    uint32_t count = 0, overlapping = 0;
+    void Add(bool overlaps) {
+        ++count;
+        overlapping += overlaps;
+    }
+    bool HaveRoom() const { return overlapping * kNearlyAll <= count; }
+};
 
 // What does not move turns the way back.
 void Reflect(const WorldState& world, Disperser& disperser) {
@@ -270,27 +325,30 @@ Vector3 PlaceInCrowd(uint32_t body) {
     }
 }
 
-// Those of a face-centered cubic lattice (integers of which the sum is even) that are nearest to the middle of a cube, so that a mirror
-// at which half of them turn back completes it to a cubic lattice.
-std::vector<Vector3> PlacesInBall(uint32_t count) {
+// Those of a face-centered cubic lattice (integers of which the sum is even) that are nearest to the middle of a cube.
+std::vector<Vector3> PlacesInBall(uint32_t count, std::span<const PlaceLimit> limits) {
     struct Point {
-        int64_t square;
-        int32_t x, y, z;  // twice the distance from the middle
+        int32_t square, x, y, z;  // twice the distance from the middle
         auto operator<=>(const Point&) const = default;
+        Vector3 Place() const { return Vector3(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)) * 0.5f; }
     };
-    const int reach = static_cast<int>(std::cbrt(count * 0.5)) + 3;  // a unit of volume has half a point
+    constexpr double kBall = 4.18879;  // of radius one
+    const double whole = std::cbrt(2 * count / kBall);  // a unit of volume has half a point
+    const int reach = static_cast<int>(limits.empty() ? whole : kMostCut * whole) + 2;
+    const float scale = static_cast<float>(1 / whole);
     std::vector<Point> points;
     for (int x = -reach; x <= reach; ++x)
         for (int y = -reach; y <= reach; ++y)
             for (int z = -reach + ((x + y + reach) & 1); z <= reach; z += 2) {
-                const int64_t dx = 2 * x - 1, dy = 2 * y - 1, dz = 2 * z - 1;
-                points.push_back({dx * dx + dy * dy + dz * dz, 2 * x - 1, 2 * y - 1, 2 * z - 1});
+                const int dx = 2 * x - 1, dy = 2 * y - 1, dz = 2 * z - 1;
+                const Point point = {dx * dx + dy * dy + dz * dz, dx, dy, dz};
+                const auto allows = [&](const PlaceLimit& limit) { return Dot<float>(limit.normal, point.Place()) * scale >= limit.offset; };
+                if (point.square <= 4 * reach * reach && std::all_of(limits.begin(), limits.end(), allows)) points.push_back(point);
             }
+    if (points.size() < count) return {};
     std::sort(points.begin(), points.end());
     std::vector<Vector3> places;
-    const float inverse = 1.0f / std::sqrt(static_cast<float>(points[count - 1].square));
-    for (uint32_t i = 0; i < count; ++i)
-        places.push_back(Vector3(static_cast<float>(points[i].x), static_cast<float>(points[i].y), static_cast<float>(points[i].z)) * inverse);
+    for (uint32_t i = 0; i < count; ++i) places.push_back(points[i].Place() * scale);
     return places;
 }
 
@@ -303,11 +361,14 @@ RelativePose WithDistinctCenters(const WorldState& world, const Pair& pair, cons
     return {bInA.position + Normalized(away, Vector3(0, 1, 0)) * hair, bInA.rotation};
 }
 
-void PushDispersing(WorldState& world) {
+void PushDispersing(WorldState& world, float dt) {
     if (world.dispersing.empty()) return;
     ForgetStopped(world);
     world.jobs->ParallelFor(static_cast<uint32_t>(world.dispersing.size()), 64, [&](JobRange range) {
-        for (uint32_t i = range.begin; i < range.end; ++i) Push(world, world.dispersing[i]);
+        for (uint32_t i = range.begin; i < range.end; ++i) {
+            Push(world, world.dispersing[i]);
+            world.dispersing[i].seconds -= dt;
+        }
     });
 }
 
@@ -337,6 +398,7 @@ void StartDispersing(WorldState& world, std::vector<uint32_t>& bodies) {
         d.dispersing = d.crowded = true;
         world.dispersing.push_back(disperser);
         world.dispersing.back().own = world.bodies.LinearVelocityOf(disperser.body);
+        world.dispersing.back().start = world.report.step;
     }
     std::sort(world.dispersing.begin(), world.dispersing.end(), [](const Disperser& a, const Disperser& b) { return a.body < b.body; });
 }
@@ -344,11 +406,17 @@ void StartDispersing(WorldState& world, std::vector<uint32_t>& bodies) {
 void EndDispersing(WorldState& world) {
     if (world.dispersing.empty()) return;
     const Structures structures(world);
-    std::vector<uint32_t> bodies;
-    for (const Disperser& disperser : world.dispersing) bodies.push_back(disperser.body);
-    const std::vector<uint32_t> ending =
-        Select(world, bodies, [&](uint32_t body) { return CountNear<kFew, Overlap>(world, structures, body) < kFew; });
-    for (const uint32_t body : ending) world.bodies.dynamics[body].dispersing = false;
+    const std::span<uint8_t> overlaps = world.scratch.Allocate<uint8_t>(world.dispersing.size());
+    world.jobs->ParallelFor(static_cast<uint32_t>(overlaps.size()), 16, [&](JobRange range) {
+        for (uint32_t i = range.begin; i < range.end; ++i) overlaps[i] = CountNear<1, Overlap>(world, structures, world.dispersing[i].body) > 0;
+    });
+    std::map<uint64_t, Together> all;
+    for (size_t i = 0; i < overlaps.size(); ++i) all[world.dispersing[i].start].Add(overlaps[i]);
+    for (size_t i = 0; i < overlaps.size(); ++i) {
+        const Disperser& disperser = world.dispersing[i];
+        const bool hasDispersed = all[disperser.start].HaveRoom() || (disperser.seconds <= 0 && !overlaps[i]);
+        world.bodies.dynamics[disperser.body].dispersing = !hasDispersed;
+    }
     std::erase_if(world.dispersing, [&](const Disperser& disperser) {
         if (world.bodies.dynamics[disperser.body].dispersing) return false;
         const Vector3 gravity = world.settings.gravity * world.bodies.dynamics[disperser.body].gravityFactor;

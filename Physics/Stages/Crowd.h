@@ -1,9 +1,9 @@
 // Bodies that stand in one another, thousands at one point even. A few are parted by their contacts; where many stand in each other
 // no contact tells which way is out, all pairs of n bodies are n^2, and the sum of their pushes would shoot everything out. So a
 // body that stands in many others disperses: it meets no dynamic body, does not fall, and moves at a bounded speed of its own along
-// a way of its own, until it stands in hardly any. Ways fill a ball: bodies that all start at one point fill a ball evenly, that grows
-// until they have room; what does not move reflects them. From then on contacts part them, and push no faster than a bounded speed
-// until nothing overlaps.
+// a way of its own. Ways lead to places in a ball, or what the floor leaves of it, that grows until nearly all that started together
+// overlap nobody; those in between would only be in each other's way. What is not foreseen, as moving platforms, reflects ways. From
+// then on contacts part what is left, and push no faster than a bounded speed until nothing overlaps.
 // Used by UpdateBounds, FindPairs, Collide, Solve and Store. Costs nothing where nobody disperses.
 #pragma once
 
@@ -19,11 +19,17 @@ Vector3 PlaceInCrowd(uint32_t body);
 // `bInA` of two convex pieces, moved by that hair where their centers coincide.
 RelativePose WithDistinctCenters(const WorldState& world, const Pair& pair, const RelativePose& bInA);
 
-// So many points that fill the unit ball as densely as balls can be packed, from the innermost to the outermost.
-std::vector<Vector3> PlacesInBall(uint32_t count);
+// What does not move, seen from the middle of a ball: places have normal . place > offset.
+struct PlaceLimit {
+    Vector3 normal;
+    float offset;  // as a part of the radius of a ball with all places
+};
+// So many points that fill a ball about the origin as densely as balls can be packed, from the innermost to the outermost; its radius is
+// one where there are no limits, and more where these leave no room for some. Empty: they leave too little.
+std::vector<Vector3> PlacesInBall(uint32_t count, std::span<const PlaceLimit> limits = {});
 
 // As the step begins, before bounds: what disperses gets the velocity with which it moves in this step.
-void PushDispersing(WorldState& world);
+void PushDispersing(WorldState& world, float dt);
 // As it ends: the velocity of a body that disperses, without that.
 Vector3 OwnVelocity(const WorldState& world, uint32_t body, const Vector3& v, float dt);
 
@@ -33,7 +39,7 @@ bool StandInEachOther(const WorldState& world, uint32_t collider, uint32_t other
 
 // Of `bodies`, in any order, those that stand in many others start to disperse. They lose their pairs with dynamic bodies.
 void StartDispersing(WorldState& world, std::vector<uint32_t>& bodies);
-// Those that stand in hardly any other have dispersed. They search for their pairs.
+// Those that started together have dispersed when nearly all of them have room, and search for their pairs.
 void EndDispersing(WorldState& world);
 
 // Notes in `findings` which bodies of a pair stand in each other, if they do; `bInA` is that of the pieces.

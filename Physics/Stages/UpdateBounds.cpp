@@ -131,7 +131,7 @@ void SetFatBounds(WorldState& world, uint32_t index) {
 
 void UpdateBounds(WorldState& world, const StepContext& step) {
     ReserveLists(world);
-    PushDispersing(world);
+    PushDispersing(world, step.dt);
     BodyStore& bodies = world.bodies;
     const Vector3 gravity = world.settings.gravity;
     world.jobs->ParallelFor(static_cast<uint32_t>(bodies.awake.size()), 64, [&](JobRange range) {

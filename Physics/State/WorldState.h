@@ -57,11 +57,13 @@ struct alignas(64) WorkerFindings {
     JointFindings joints;             // Prepare
 };
 
-// A body that leaves a crowd: it stood in many others. Until it stands in hardly any it meets no dynamic body, does not fall, and
-// moves along its way on top of its own velocity.
+// A body that leaves a crowd: it stood in many others. Until they have room it meets no dynamic body, does not fall, and moves along its
+// way on top of its own velocity.
 struct Disperser {
     uint32_t body;
-    Vector3 way;  // in the unit ball: how fast and where to, see Crowd.h
+    Vector3 way;         // in the unit ball: how fast and where to, see Crowd.h
+    float seconds = 0;   // for which it waits until all that started with it have room
+    uint64_t start = 0;  // the step in which it started
     Vector3 push = Vector3::Zero(), own = Vector3::Zero();  // m/s, of this step: its velocity along the way; without it
 };
 
