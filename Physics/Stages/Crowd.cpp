@@ -12,6 +12,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <tuple>
 
 namespace fulcrum {
 
@@ -27,6 +28,8 @@ constexpr size_t kMany = 6;
 constexpr size_t kWhole = 32;
 // The part of the ball's volume that they fill, as far as one can tell beforehand.
 constexpr double kPacking = 0.6;
+// Those that all start within so many radii of the ball that they will fill go to its very places.
+constexpr double kNear = 1.5;
 // Walls that leave less of the ball than this allows, as a multiple of its radius, are not foreseen.
 constexpr double kMostCut = 2;
 // Those that start together wait for each other for so many times as long as it should take.
@@ -217,12 +220,28 @@ double CubeOfRadius(const WorldState& world, uint32_t body) {
     return radius * radius * radius;
 }
 
-// In the order of their size: small ones, that have room sooner, inside. Where all start within a part of the ball that they will fill,
-// their ways lead to its places whatever theirs are now.
+// Gives each body a place on its side of the others: halves of the bodies to halves of the places, and so on. What coincides is told
+// apart by its index.
+void Match(const WorldState& world, std::span<uint32_t> bodies, std::span<Vector3> places) {
+    if (bodies.size() < 2) return;
+    Vector3 lower = places[0], upper = places[0];
+    for (const Vector3& place : places) {
+        lower = lower.cwiseMin(place);
+        upper = upper.cwiseMax(place);
+    }
+    Eigen::Index axis;
+    Vector3(upper - lower).maxCoeff(&axis);
+    const size_t half = bodies.size() / 2;
+    const auto bodyKey = [&](uint32_t body) { return std::pair(world.bodies.poses[body].position[axis], body); };
+    const auto placeKey = [&](const Vector3& p) { return std::tuple(p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]); };
+    std::nth_element(bodies.begin(), bodies.begin() + half, bodies.end(), [&](uint32_t x, uint32_t y) { return bodyKey(x) < bodyKey(y); });
+    std::nth_element(places.begin(), places.begin() + half, places.end(), [&](const Vector3& x, const Vector3& y) { return placeKey(x) < placeKey(y); });
+    Match(world, bodies.first(half), places.first(half));
+    Match(world, bodies.subspan(half), places.subspan(half));
+}
+
+// Where all start near enough to each other their ways lead to the places, whatever theirs are now; else they go that way.
 void FindWaysToPlaces(const WorldState& world, std::vector<uint32_t>& bodies, std::vector<Disperser>& ways) {
-    std::sort(bodies.begin(), bodies.end(), [&](uint32_t a, uint32_t b) {
-        return std::pair(world.bodies.dynamics[a].outerRadius, a) < std::pair(world.bodies.dynamics[b].outerRadius, b);
-    });
     const uint32_t count = static_cast<uint32_t>(bodies.size());
     double cubes = 0;
     Position middle = Position::Zero();
@@ -231,17 +250,23 @@ void FindWaysToPlaces(const WorldState& world, std::vector<uint32_t>& bodies, st
         middle += world.bodies.CentreOf(body) / static_cast<double>(count);
     }
     const double radius = std::cbrt(cubes / kPacking);
-    const bool isSmall = std::all_of(bodies.begin(), bodies.end(), [&](uint32_t body) { return (world.bodies.CentreOf(body) - middle).norm() < 0.5 * radius; });
+    const bool areNear = std::all_of(bodies.begin(), bodies.end(), [&](uint32_t body) { return (world.bodies.CentreOf(body) - middle).norm() < kNear * radius; });
     std::vector<Vector3> places;
-    if (isSmall) places = PlacesInBall(count, FindLimits(world, bodies[0], middle, radius, std::cbrt(cubes / count)));
+    if (areNear) places = PlacesInBall(count, FindLimits(world, bodies[0], middle, radius, std::cbrt(cubes / count)));
     if (places.empty()) places = PlacesInBall(count);
-    const double whole = radius * std::max(1.0, double{Length(places.back())});
-    const float speed = kSpread * world.settings.contactPushSpeed;
+    Match(world, bodies, places);
+    double longest = 0;
+    const size_t first = ways.size();
     for (uint32_t i = 0; i < count; ++i) {
         Position way = places[i].cast<double>() * radius;
-        if (isSmall) way += middle - world.bodies.CentreOf(bodies[i]);
-        ways.push_back({bodies[i], (way / whole).cast<float>(), kPatience * static_cast<float>(whole) / speed});
-        LimitLength(ways.back().way, 1);
+        if (areNear) way += middle - world.bodies.CentreOf(bodies[i]);
+        longest = std::max(longest, way.norm());
+        ways.push_back({bodies[i], way.cast<float>()});
+    }
+    const float seconds = static_cast<float>(longest) / (kSpread * world.settings.contactPushSpeed);
+    for (Disperser& disperser : std::span(ways).subspan(first)) {
+        disperser.way *= static_cast<float>(1 / longest);
+        disperser.seconds = kPatience * seconds;
     }
 }
 
