@@ -32,9 +32,9 @@ constexpr double kPacking = 0.6;
 constexpr double kNear = 1.5;
 // Walls that leave less of the ball than this allows, as a multiple of its radius, are not foreseen.
 constexpr double kMostCut = 2;
-// Those that start together wait for each other for so many times as long as it should take.
-constexpr float kPatience = 1.5f;
-// And until one of so many overlaps somebody.
+// s, that they wait at their places for the last to come.
+constexpr float kPatience = 0.5f;
+// Those that start together have room when no more than one of so many overlaps somebody.
 constexpr uint32_t kNearlyAll = 32;
 // The speed at the surface of the ball, as a multiple of contactPushSpeed.
 constexpr float kSpread = 1.5f;
@@ -167,6 +167,10 @@ size_t CountNear(const WorldState& world, const Structures& structures, uint32_t
     return count;
 }
 
+bool StandInDisperser(const WorldState& world, uint32_t collider, uint32_t other) {
+    return world.bodies.dynamics[world.colliders.colliders[other].body].dispersing && StandInEachOther(world, collider, other);
+}
+
 // The bodies of which isSo(body) is true, asked by all workers; `bodies` in ascending order, which they keep.
 template <class Test>
 std::vector<uint32_t> Select(WorldState& world, std::span<const uint32_t> bodies, const Test& isSo) {
@@ -215,9 +219,13 @@ std::vector<PlaceLimit> FindLimits(const WorldState& world, uint32_t body, const
     return limits;
 }
 
-double CubeOfRadius(const WorldState& world, uint32_t body) {
-    const double radius = double{world.bodies.dynamics[body].outerRadius};
-    return radius * radius * radius;
+// m: the outer radius that only few exceed.
+float NearlyLargest(const WorldState& world, std::span<const uint32_t> bodies) {
+    std::vector<float> radii;
+    for (const uint32_t body : bodies) radii.push_back(world.bodies.dynamics[body].outerRadius);
+    const auto large = radii.end() - 1 - static_cast<ptrdiff_t>(radii.size() / kNearlyAll);
+    std::nth_element(radii.begin(), large, radii.end());
+    return *large;
 }
 
 // Gives each body a place on its side of the others: halves of the bodies to halves of the places, and so on. What coincides is told
@@ -243,31 +251,23 @@ void Match(const WorldState& world, std::span<uint32_t> bodies, std::span<Vector
 // Where all start near enough to each other their ways lead to the places, whatever theirs are now; else they go that way.
 void FindWaysToPlaces(const WorldState& world, std::vector<uint32_t>& bodies, std::vector<Disperser>& ways) {
     const uint32_t count = static_cast<uint32_t>(bodies.size());
-    double cubes = 0;
+    const double large = double{NearlyLargest(world, bodies)}, radius = large * std::cbrt(count / kPacking);
     Position middle = Position::Zero();
-    for (const uint32_t body : bodies) {
-        cubes += CubeOfRadius(world, body);
-        middle += world.bodies.CentreOf(body) / static_cast<double>(count);
-    }
-    const double radius = std::cbrt(cubes / kPacking);
+    for (const uint32_t body : bodies) middle += world.bodies.CentreOf(body) / static_cast<double>(count);
     const bool areNear = std::all_of(bodies.begin(), bodies.end(), [&](uint32_t body) { return (world.bodies.CentreOf(body) - middle).norm() < kNear * radius; });
     std::vector<Vector3> places;
-    if (areNear) places = PlacesInBall(count, FindLimits(world, bodies[0], middle, radius, std::cbrt(cubes / count)));
+    if (areNear) places = PlacesInBall(count, FindLimits(world, bodies[0], middle, radius, large));
     if (places.empty()) places = PlacesInBall(count);
     Match(world, bodies, places);
     double longest = 0;
     const size_t first = ways.size();
     for (uint32_t i = 0; i < count; ++i) {
-        Position way = places[i].cast<double>() * radius;
-        if (areNear) way += middle - world.bodies.CentreOf(bodies[i]);
-        longest = std::max(longest, way.norm());
-        ways.push_back({bodies[i], way.cast<float>()});
+        const Position center = world.bodies.CentreOf(bodies[i]), place = (areNear ? middle : center) + places[i].cast<double>() * radius;
+        longest = std::max(longest, (place - center).norm());
+        ways.push_back({.body = bodies[i], .way = PlaceInCrowd(bodies[i]), .hasPlace = true, .place = place});
     }
     const float seconds = static_cast<float>(longest) / (kSpread * world.settings.contactPushSpeed);
-    for (Disperser& disperser : std::span(ways).subspan(first)) {
-        disperser.way *= static_cast<float>(1 / longest);
-        disperser.seconds = kPatience * seconds;
-    }
+    for (Disperser& disperser : std::span(ways).subspan(first)) disperser.seconds = seconds;
 }
 
 std::vector<Disperser> FindWays(const WorldState& world, const Structures& structures, std::span<const uint32_t> bodies) {
@@ -293,12 +293,14 @@ void RemoveDynamicPairs(WorldState& world, std::span<const uint32_t> bodies) {
 // Those that started to disperse in one step.
 struct Together {
     uint32_t count = 0, overlapping = 0;
-    void Add(bool overlaps) {
-        ++count;
-        overlapping += overlaps;
-    }
-    bool HaveRoom() const { return overlapping * kNearlyAll <= count; }
+    bool isBlocked = false;  // one of them overlaps many
+    bool HaveRoom() const { return !isBlocked && overlapping * kNearlyAll <= count; }
 };
+
+void AddGravity(WorldState& world, uint32_t body, float factor) {
+    const Vector3 gravity = world.settings.gravity * (factor * world.bodies.dynamics[body].gravityFactor);
+    for (int k = 0; k < 3; ++k) world.bodies.poses[body].acceleration[k] += gravity[k];
+}
 
 // What does not move turns the way back.
 void Reflect(const WorldState& world, Disperser& disperser) {
@@ -309,14 +311,21 @@ void Reflect(const WorldState& world, Disperser& disperser) {
     });
 }
 
-void Push(WorldState& world, Disperser& disperser) {
+void Push(WorldState& world, Disperser& disperser, float dt) {
     const BodyDynamics& d = world.bodies.dynamics[disperser.body];
-    Reflect(world, disperser);
     Vector3 turn = Vector3::Zero();
-    disperser.push = disperser.way * (kSpread * world.settings.contactPushSpeed);
-    LimitLength(disperser.push, d.maxLinearSpeed);
-    d.Lock(disperser.push, turn);
+    const float fastest = kSpread * world.settings.contactPushSpeed;
     disperser.own = world.bodies.LinearVelocityOf(disperser.body);
+    if (disperser.hasPlace) {
+        const Position left = disperser.place - world.bodies.CentreOf(disperser.body);
+        disperser.push = (left / double{std::max(disperser.seconds, dt)}).cast<float>();
+        disperser.place += (disperser.own * dt).cast<double>();
+    } else {
+        Reflect(world, disperser);
+        disperser.push = disperser.way * fastest;
+    }
+    LimitLength(disperser.push, std::min(fastest, d.maxLinearSpeed));
+    d.Lock(disperser.push, turn);
     world.bodies.SetVelocity(disperser.body, disperser.own + disperser.push, world.bodies.AngularVelocityOf(disperser.body));
 }
 
@@ -391,8 +400,11 @@ void PushDispersing(WorldState& world, float dt) {
     ForgetStopped(world);
     world.jobs->ParallelFor(static_cast<uint32_t>(world.dispersing.size()), 64, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i) {
-            Push(world, world.dispersing[i]);
-            world.dispersing[i].seconds -= dt;
+            Disperser& disperser = world.dispersing[i];
+            Push(world, disperser, dt);
+            disperser.seconds -= dt;
+            // Who finds no room at its place looks for it elsewhere.
+            disperser.hasPlace &= disperser.seconds > -kPatience;
         }
     });
 }
@@ -414,13 +426,22 @@ void StartDispersing(WorldState& world, std::vector<uint32_t>& bodies) {
     std::sort(bodies.begin(), bodies.end());
     bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
     const Structures structures(world);
-    std::vector<uint32_t> starting = Select(world, bodies, [&](uint32_t body) {
-        return MovesFreely(world, body) && !world.bodies.dynamics[body].dispersing && CountNear<kMany, StandInEachOther>(world, structures, body) >= kMany;
-    });
+    const auto mayStart = [&](uint32_t body) { return MovesFreely(world, body) && !world.bodies.dynamics[body].dispersing; };
+    std::vector<uint32_t> starting =
+        Select(world, bodies, [&](uint32_t body) { return mayStart(body) && CountNear<kMany, StandInEachOther>(world, structures, body) == kMany; });
+    for (const uint32_t body : starting) world.bodies.dynamics[body].dispersing = true;
+    // What stands in few of them, or of these, would only be in their way.
+    for (std::vector<uint32_t> joining = starting; !joining.empty();) {
+        joining = Select(world, bodies, [&](uint32_t body) { return mayStart(body) && CountNear<1, StandInDisperser>(world, structures, body) > 0; });
+        for (const uint32_t body : joining) world.bodies.dynamics[body].dispersing = true;
+        starting.insert(starting.end(), joining.begin(), joining.end());
+    }
+    std::sort(starting.begin(), starting.end());
     RemoveDynamicPairs(world, starting);
     for (const Disperser& disperser : FindWays(world, structures, starting)) {
         BodyDynamics& d = world.bodies.dynamics[disperser.body];
         d.dispersing = d.crowded = true;
+        AddGravity(world, disperser.body, -1);
         world.dispersing.push_back(disperser);
         world.dispersing.back().own = world.bodies.LinearVelocityOf(disperser.body);
         world.dispersing.back().start = world.report.step;
@@ -436,16 +457,23 @@ void EndDispersing(WorldState& world) {
         for (uint32_t i = range.begin; i < range.end; ++i) overlaps[i] = CountNear<1, Overlap>(world, structures, world.dispersing[i].body) > 0;
     });
     std::map<uint64_t, Together> all;
-    for (size_t i = 0; i < overlaps.size(); ++i) all[world.dispersing[i].start].Add(overlaps[i]);
+    for (size_t i = 0; i < overlaps.size(); ++i) {
+        Together& together = all[world.dispersing[i].start];
+        ++together.count;
+        together.overlapping += overlaps[i];
+    }
+    for (size_t i = 0; i < overlaps.size(); ++i) {
+        Together& together = all[world.dispersing[i].start];
+        if (overlaps[i] && together.HaveRoom()) together.isBlocked = CountNear<kMany, Overlap>(world, structures, world.dispersing[i].body) == kMany;
+    }
     for (size_t i = 0; i < overlaps.size(); ++i) {
         const Disperser& disperser = world.dispersing[i];
-        const bool hasDispersed = all[disperser.start].HaveRoom() || (disperser.seconds <= 0 && !overlaps[i]);
+        const bool hasDispersed = all[disperser.start].HaveRoom() || (!disperser.hasPlace && !overlaps[i]);
         world.bodies.dynamics[disperser.body].dispersing = !hasDispersed;
     }
     std::erase_if(world.dispersing, [&](const Disperser& disperser) {
         if (world.bodies.dynamics[disperser.body].dispersing) return false;
-        const Vector3 gravity = world.settings.gravity * world.bodies.dynamics[disperser.body].gravityFactor;
-        for (int k = 0; k < 3; ++k) world.bodies.poses[disperser.body].acceleration[k] += gravity[k];
+        AddGravity(world, disperser.body, 1);
         world.bodies.SetVelocity(disperser.body, disperser.own, world.bodies.AngularVelocityOf(disperser.body));
         RequeueColliders(world, disperser.body);
         return true;
@@ -472,12 +500,12 @@ void NoteCrowd(WorldState& world) {
     for (const uint32_t body : world.crowded) world.bodies.dynamics[body].crowded = true;
     std::vector<uint32_t>& standing = world.standing;
     Gather(world, &WorkerFindings::standing, standing);
-    size_t many = 0;
+    size_t most = 0;
     for (size_t begin = 0, end = 0; begin < standing.size(); begin = end) {
         while (end < standing.size() && standing[end] == standing[begin]) ++end;
-        if (end - begin >= kMany) standing[many++] = standing[begin];
+        most = std::max(most, end - begin);
     }
-    standing.resize(many);
+    if (most < kMany) standing.clear();
 }
 
 void LimitPush(WorldState& world, uint32_t body, float h) {

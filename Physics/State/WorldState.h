@@ -61,8 +61,10 @@ struct alignas(64) WorkerFindings {
 // way on top of its own velocity.
 struct Disperser {
     uint32_t body;
-    Vector3 way;         // in the unit ball: how fast and where to, see Crowd.h
-    float seconds = 0;   // for which it waits until all that started with it have room
+    Vector3 way;         // in the unit ball: how fast and where to, for one that has no place
+    bool hasPlace = false;
+    Position place = Position::Zero();  // m, where it is to be
+    float seconds = 0;   // in so many, or was so long ago
     uint64_t start = 0;  // the step in which it started
     Vector3 push = Vector3::Zero(), own = Vector3::Zero();  // m/s, of this step: its velocity along the way; without it
 };
@@ -93,7 +95,7 @@ struct WorldState {
     std::vector<uint32_t> began;              // Color: pairs that began to touch
     std::vector<uint64_t> newPairs;
     std::vector<MoreManifold> moreManifolds;
-    std::vector<uint32_t> standing;           // bodies that stood in many others as Collide saw them last
+    std::vector<uint32_t> standing;           // bodies that stood in others as Collide saw them last, if one did in many; repeated
     std::vector<Disperser> dispersing;        // by body, ascending
     std::vector<uint32_t> crowded;            // these, and those that have dispersed and still overlap something
     std::vector<uint32_t> ghosts;             // pairs that DropGhosts took the points from, in the last step

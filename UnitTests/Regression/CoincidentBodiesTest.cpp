@@ -114,6 +114,77 @@ TEST(CoincidentBodies, HundredBoxesOnAFloor) { ExpectApart(128, 0.5f, false, tru
 TEST(CoincidentBodies, FiveHundredSpheresInSpace) { ExpectApart(512, 0.5f, true, false, 4); }
 TEST(CoincidentBodies, FiveHundredSpheresOnAFloor) { ExpectApart(512, 0.25f, true, true, 4); }
 
+// Thousands of any shape, within a part of their radius of each other: all bodies of an index stand in all others at first. Memory and
+// time grow with their number: a pile of the same bodies has as many contacts.
+void ExpectThousandsApart(const std::function<BodySettings(int)>& settings, double spread, bool hasFloor) {
+#ifdef FULCRUM_ASSERTIONS
+    constexpr int kCount = 512;
+#else
+    constexpr int kCount = 4096;
+#endif
+    SystemSettings system;
+    if (!hasFloor) system.gravity.setZero();
+    uint64_t hashes[2];
+    for (const uint32_t threads : {1u, 2u}) {
+        Burst burst(system, threads);
+        if (hasFloor) burst.world.AddFloor();
+        burst.Add(kCount, Position::Zero(), settings);
+        for (int i = 0; i < kCount; ++i) {
+            const Position at = PlaceInCrowd(static_cast<uint32_t>(i)).cast<double>() * spread + Position(0, hasFloor ? 1 + spread : 0, 0);
+            ASSERT_TRUE(burst.world.Bodies().SetPose(burst.ids[static_cast<size_t>(i)], at, {}));
+        }
+        burst.Run(4);
+        EXPECT_TRUE(burst.world.AllFinite());
+        EXPECT_LT(burst.world.Report().largestPenetration, 0.05f);
+        EXPECT_GT(burst.LeastDistance(), 0.9);
+        // A heap as high as it came to be falls together.
+        EXPECT_LT(burst.fastest, hasFloor ? std::sqrt(2 * kGravity * burst.farthest) : 5.0);
+        EXPECT_LT(burst.farthest, 5 * 4.0);
+        EXPECT_GT(burst.lowest, hasFloor ? 0.4 : -5 * 4.0);
+        EXPECT_LT(burst.mostMemory, 10e3 * kCount + 4e6);
+        hashes[threads - 1] = burst.world.System().HashPoses();
+    }
+    EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+BodySettings OfShape(const ShapePtr& shape) { return {.shape = shape}; }
+
+TEST(CoincidentBodies, ThousandsOfSpheresInSpace) {
+    ExpectThousandsApart([shape = SphereOf(0.5f)](int) { return OfShape(shape); }, 0, false);
+}
+TEST(CoincidentBodies, ThousandsOfSpheresOnAFloor) {
+    ExpectThousandsApart([shape = SphereOf(0.5f)](int) { return OfShape(shape); }, 0, true);
+}
+TEST(CoincidentBodies, ThousandsOfSpheresWithinAMillimeter) {
+    ExpectThousandsApart([shape = SphereOf(0.5f)](int) { return OfShape(shape); }, 1e-3, false);
+}
+TEST(CoincidentBodies, ThousandsOfSpheresWithinARadius) {
+    ExpectThousandsApart([shape = SphereOf(0.5f)](int) { return OfShape(shape); }, 0.5, false);
+}
+TEST(CoincidentBodies, ThousandsOfBoxesInSpace) {
+    ExpectThousandsApart([shape = CubeOf(0.5f)](int) { return OfShape(shape); }, 0, false);
+}
+TEST(CoincidentBodies, ThousandsOfShapesInSpace) {
+    const ShapePtr shapes[] = {SphereOf(0.6f), CubeOf(0.5f), CapsuleOf(0.3f, 0.5f), CubeOf(0.55f)};
+    ExpectThousandsApart([&](int i) { return OfShape(shapes[i % 4]); }, 0, false);
+}
+
+TEST(CoincidentBodies, PlacesInTheBallAreApart) {
+    for (const uint32_t count : {1u, 32u, 500u}) {
+        const PlaceLimit floor{Vector3(0, 1, 0), -0.1f};
+        for (const std::span<const PlaceLimit> limits : {std::span<const PlaceLimit>(), std::span(&floor, 1)}) {
+            const std::vector<Vector3> places = PlacesInBall(count, limits);
+            ASSERT_EQ(places.size(), count);
+            // The nearest of a face-centered lattice with a unit ball's volume for so many, packed to sqrt(1/2) pi/3.
+            const float nearest = 2 * static_cast<float>(std::cbrt(std::sqrt(0.5) * kPi / 3 / count));
+            for (size_t i = 0; i < places.size(); ++i) {
+                EXPECT_GE(places[i].y(), limits.empty() ? -1.001f : -0.1f);
+                for (size_t j = i + 1; j < places.size(); ++j) EXPECT_GT(Length(Vector3(places[i] - places[j])), 0.99f * nearest);
+            }
+        }
+    }
+}
+
 TEST(CoincidentBodies, AreTheSameForAnyNumberOfThreads) {
     uint64_t hash = 0;
     for (const uint32_t threads : {1u, 2u, 4u}) {
