@@ -74,6 +74,8 @@ struct ContactBatch {
     // Only where `bounces`.
     Real bounceSpeed[kPoints];      // m/s that the point must leave with; 0: none
     Real largestImpulse[kPoints];   // N s over the substeps: the point was hit where it is positive
+    Real closing;                   // m/s2 that gravity and forces press the bodies together by, along the normal
+    Real work;                      // J that the normal impulses of the step have done on the bodies: where negative, what a bounce may give back
 };
 
 struct ContactPrepareSettings {
@@ -110,7 +112,12 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
 
 // Applies the impulses of the last step.
 template <int N, bool kFixedB>
-void WarmStartContacts(const ContactBatch<N, kFixedB>& batch, BodyState* states);
+void WarmStartContacts(ContactBatch<N, kFixedB>& batch, BodyState* states);
+
+// Where bodies start a substep with the impulses of the last one, notes what those of the batch have done. `states` have their
+// velocities now, `freeRows` the same without these impulses, eight floats a body.
+template <int N, bool kFixedB>
+void NoteCarriedWork(ContactBatch<N, kFixedB>& batch, BodyState* states, const float* freeRows, float elapsed);
 
 template <int N, bool kFixedB>
 void SolveContactVelocities(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
@@ -124,7 +131,12 @@ void RelaxContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const Con
 template <int N, bool kFixedB>
 void UpdateSeparations(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
 
-// Makes the points that were hit leave with their bounce speed, at the end of a step of `elapsed` seconds.
+// Notes what impulses have done against gravity and forces, where bodies have just moved with them for a substep of `h` seconds.
+template <int N, bool kFixedB>
+void NoteLift(ContactBatch<N, kFixedB>& batch, float h);
+
+// Makes the points that were hit leave with their bounce speed, at the end of a step of `elapsed` seconds; but with no more energy than
+// the contact has taken.
 template <int N, bool kFixedB>
 void RestituteContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, float elapsed);
 

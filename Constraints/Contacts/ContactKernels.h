@@ -122,6 +122,51 @@ FULCRUM_FORCE_INLINE Vec3<Wide<N>> NormalTorque(const ContactBatch<N, kFixedB>& 
     return batch.tangent1 * sumB - batch.tangent2 * sumA;
 }
 
+// Impulses of the normal rows, put together: their sum, and that of each times its place along t1 and t2.
+template <class Real>
+struct NormalImpulses {
+    Real sum{0.0f}, sumA{0.0f}, sumB{0.0f};
+
+    template <class Row>
+    FULCRUM_FORCE_INLINE void Add(const Row& row, Real impulse) {
+        sum += impulse;
+        sumA += row.a * impulse;
+        sumB += row.b * impulse;
+    }
+};
+
+// The motion that the normal rows see: J v of a point is linear + b angular1 - a angular2.
+template <class Real>
+struct NormalMotion {
+    Real linear, angular1, angular2;
+};
+template <int N, bool kFixedB>
+FULCRUM_FORCE_INLINE NormalMotion<Wide<N>> NormalMotionOf(const ContactBatch<N, kFixedB>& batch, const Twist<Wide<N>>& relative) {
+    using Real = Wide<N>;
+    return {Dot<Real>(relative.linear, batch.normal), Dot<Real>(relative.angular, batch.tangent1), Dot<Real>(relative.angular, batch.tangent2)};
+}
+
+// J that normal impulses do on both bodies, or the rate of it, where these move like this.
+template <class Real>
+FULCRUM_FORCE_INLINE Real WorkOf(const NormalImpulses<Real>& impulses, const NormalMotion<Real>& motion) {
+    return impulses.sum * motion.linear + impulses.sumB * motion.angular1 - impulses.sumA * motion.angular2;
+}
+
+// All impulses of the normal rows.
+template <int N, bool kFixedB>
+FULCRUM_FORCE_INLINE NormalImpulses<Wide<N>> TotalOf(const ContactBatch<N, kFixedB>& batch) {
+    NormalImpulses<Wide<N>> total;
+    for (int i = 0; i < batch.pointCount; ++i) total.Add(batch.rows[i], batch.rows[i].impulse);
+    return total;
+}
+
+// Notes the work of impulses that changed the motion from one to the other: that of its mean.
+template <int N, bool kFixedB>
+FULCRUM_FORCE_INLINE void NoteWork(ContactBatch<N, kFixedB>& batch, const NormalImpulses<Wide<N>>& impulses, const NormalMotion<Wide<N>>& before,
+                                   const NormalMotion<Wide<N>>& after) {
+    batch.work += Wide<N>(0.5f) * (WorkOf(impulses, before) + WorkOf(impulses, after));
+}
+
 // Index into `response` of the pair i < j.
 constexpr int PairIndex(int i, int j) { return i == 0 ? j - 1 : i + j; }
 

@@ -115,7 +115,8 @@ void PrepareBounces(ContactBatch<N, kFixedB>& batch, Wide<N> restitution, const 
         for (int k = 0; k < 3; ++k) differences[k][i] = a.acceleration[k] - b.acceleration[k];
     }
     const Vec3<Real> acceleration(Real::Load(differences[0]), Real::Load(differences[1]), Real::Load(differences[2]));
-    const Real closing = Dot<Real>(acceleration, batch.normal);
+    const Real closing = batch.closing = Dot<Real>(acceleration, batch.normal);
+    batch.work = Real(0.0f);
     for (int i = 0; i < batch.pointCount; ++i) {
         auto& row = batch.rows[i];
         const Real approach = vn + row.b * w1 - row.a * w2;

@@ -43,6 +43,14 @@ FULCRUM_FORCE_INLINE Real MoveBy(Real velocity, Real surface) {
     return Select(surface == Real(0.0f), velocity, velocity + surface);
 }
 
+// What restitution asks for: which points were hit, and the work of these impulses. Apart, as few contacts have any.
+template <int N, bool kFixedB>
+[[gnu::noinline]] void NoteHits(ContactBatch<N, kFixedB>& batch, const NormalImpulses<Wide<N>>& changes, const NormalMotion<Wide<N>>& before,
+                                const Twists<N, kFixedB>& after, float elapsed) {
+    for (int i = 0; i < batch.pointCount; ++i) batch.largestImpulse[i] = Max(batch.largestImpulse[i], batch.rows[i].impulse);
+    NoteWork(batch, changes, before, NormalMotionOf(batch, RelativeTwist<Of::Velocity>(batch, after, elapsed)));
+}
+
 // All rows of a batch once, on velocities: friction, then the normal rows. A relaxing pass pushes nothing. kSurface: with the
 // surface velocities of a moving second body.
 template <bool kRelax, bool kSurface, int N, bool kFixedB>
@@ -88,7 +96,8 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
             stiffer[i] = Clamp((push - wanted) * Real(settings.stiffening), zero, Real(settings.mostStiffer));
         }
     }
-    Real sum = zero, sumA = zero, sumB = zero, relaxed = zero;
+    NormalImpulses<Real> changes;
+    Real relaxed = zero;
     for (int i = 0; i < batch.pointCount; ++i) {
         auto& row = batch.rows[i];
         Real wanted;
@@ -103,19 +112,15 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
         const Real change = total - row.impulse;
         row.impulse = total;
         for (int j = i + 1; j < batch.pointCount; ++j) speed[j] += batch.response[PairIndex(i, j)] * change;
-        sum += change;
-        sumA += row.a * change;
-        sumB += row.b * change;
+        changes.Add(row, change);
         relaxed += total;
     }
     if constexpr (kRelax) batch.relaxedImpulse = relaxed;
-    if (batch.bounces)
-        for (int i = 0; i < batch.pointCount; ++i)
-            batch.largestImpulse[i] = Max(batch.largestImpulse[i], batch.rows[i].impulse);
 
     ApplyToBoth<N, kFixedB>(batch, twists,
-                            batch.normal * sum + batch.tangent1 * friction[0] + batch.tangent2 * friction[1],
-                            NormalTorque(batch, sumA, sumB) + batch.normal * friction[2]);
+                            batch.normal * changes.sum + batch.tangent1 * friction[0] + batch.tangent2 * friction[1],
+                            NormalTorque(batch, changes.sumA, changes.sumB) + batch.normal * friction[2]);
+    if (batch.bounces) NoteHits(batch, changes, {vn, w1, w2}, twists, settings.elapsed);
     Scatter(batch, twists);
 }
 
@@ -146,20 +151,17 @@ void ContactSolveSettings::Soften(float frequency, float dampingRatio, float h) 
 }
 
 template <int N, bool kFixedB>
-void WarmStartContacts(const ContactBatch<N, kFixedB>& batch, BodyState* states) {
+void WarmStartContacts(ContactBatch<N, kFixedB>& batch, BodyState* states) {
     using Real = Wide<N>;
     Twists<N, kFixedB> twists;
     Gather<Of::Velocity>(batch, states, twists);
-    Real sum(0.0f), sumA(0.0f), sumB(0.0f);
-    for (int i = 0; i < batch.pointCount; ++i) {
-        const auto& row = batch.rows[i];
-        sum += row.impulse;
-        sumA += row.a * row.impulse;
-        sumB += row.b * row.impulse;
-    }
+    const NormalImpulses<Real> normal = TotalOf(batch);
     const Real* f = batch.frictionImpulse;
-    ApplyToBoth<N, kFixedB>(batch, twists, batch.normal * sum + batch.tangent1 * f[0] + batch.tangent2 * f[1],
-                            NormalTorque(batch, sumA, sumB) + batch.normal * f[2]);
+    NormalMotion<Real> before;
+    if (batch.bounces) before = NormalMotionOf(batch, RelativeTwist<Of::Velocity>(batch, twists, 0));
+    ApplyToBoth<N, kFixedB>(batch, twists, batch.normal * normal.sum + batch.tangent1 * f[0] + batch.tangent2 * f[1],
+                            NormalTorque(batch, normal.sumA, normal.sumB) + batch.normal * f[2]);
+    if (batch.bounces) NoteWork(batch, normal, before, NormalMotionOf(batch, RelativeTwist<Of::Velocity>(batch, twists, 0)));
     Scatter(batch, twists);
 }
 
@@ -188,50 +190,11 @@ void RelaxContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const Con
     SolveAllRows<true>(batch, states, settings);
 }
 
-template <int N, bool kFixedB>
-void RestituteContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, float elapsed) {
-    if (!batch.bounces) return;
-    using Real = Wide<N>;
-    const Real zero(0.0f);
-    Twists<N, kFixedB> twists;
-    Gather<Of::Velocity>(batch, states, twists);
-    const Twist<Real> relative = RelativeTwist<Of::Velocity>(batch, twists, elapsed);
-    const Real vn = Dot<Real>(relative.linear, batch.normal);
-    const Real w1 = Dot<Real>(relative.angular, batch.tangent1), w2 = Dot<Real>(relative.angular, batch.tangent2);
-    Real speed[ContactRecord::kMaxPoints];
-    for (int i = 0; i < batch.pointCount; ++i) {
-        const auto& row = batch.rows[i];
-        speed[i] = vn + row.b * w1 - row.a * w2;
-    }
-    Real sum = zero, sumA = zero, sumB = zero;
-    for (int i = 0; i < batch.pointCount; ++i) {
-        auto& row = batch.rows[i];
-        const auto hit = (batch.bounceSpeed[i] > zero) & (batch.largestImpulse[i] > zero);
-        const Real total = Max(row.impulse - row.inverseResponse * (speed[i] - batch.bounceSpeed[i]), zero);
-        const Real change = Select(hit, total - row.impulse, zero);
-        row.impulse += change;
-        for (int j = i + 1; j < batch.pointCount; ++j) speed[j] += batch.response[PairIndex(i, j)] * change;
-        sum += change;
-        sumA += row.a * change;
-        sumB += row.b * change;
-    }
-    // Lanes without a bounce keep every bit, as they do where their batch has no bouncing neighbour.
-    const Twists<N, kFixedB> before = twists;
-    ApplyToBoth<N, kFixedB>(batch, twists, batch.normal * sum, NormalTorque(batch, sumA, sumB));
-    const auto still = sum == zero;
-    for (int k = 0; k < 6; ++k) {
-        twists.a[k] = Select(still, before.a[k], twists.a[k]);
-        if constexpr (!kFixedB) twists.b[k] = Select(still, before.b[k], twists.b[k]);
-    }
-    Scatter(batch, twists);
-}
-
 #define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                              \
-    template void WarmStartContacts(const ContactBatch<lanes, fixedB>&, BodyState*);                                    \
+    template void WarmStartContacts(ContactBatch<lanes, fixedB>&, BodyState*);                                          \
     template void SolveContactVelocities(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);        \
     template void RelaxContacts(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);                 \
-    template void UpdateSeparations(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);             \
-    template void RestituteContacts(ContactBatch<lanes, fixedB>&, BodyState*, float);
+    template void UpdateSeparations(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, false)
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, true)
 #undef FULCRUM_INSTANTIATE

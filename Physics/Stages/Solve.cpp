@@ -176,10 +176,15 @@ private:
             case Verb::WarmStart: WarmStartContacts(batch, states); break;
             // Poses move with these velocities from the beginning of the substep to its end: they are those of its middle.
             case Verb::FirstVelocities:
+                if (batch.bounces && substep > 0) NoteCarriedWork(batch, states, world_.bodies.unconstrained.data()->row, ContactSettingsAt(substep, 0.5f).elapsed);
+                [[fallthrough]];
             case Verb::Velocities: SolveContactVelocities(batch, states, ContactSettingsAt(substep, 0.5f)); break;
-            case Verb::FirstRelax:
+            case Verb::FirstRelax: NoteLift(batch, h_); [[fallthrough]];
             case Verb::Relax: RelaxContacts(batch, states, ContactSettingsAt(substep, 1)); break;
-            case Verb::Separations: UpdateSeparations(batch, states, ContactSettingsAt(substep, 1)); break;
+            case Verb::Separations:
+                NoteLift(batch, h_);
+                UpdateSeparations(batch, states, ContactSettingsAt(substep, 1));
+                break;
             case Verb::Restitution: RestituteContacts(batch, states, dt_); break;
             case Verb::IntegrateVelocities:
             case Verb::IntegratePoses:

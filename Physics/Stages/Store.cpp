@@ -58,7 +58,7 @@ bool FlyFreely(WorldState& world, Ending& ending, const StepContext& step, Worke
 // the rod itself, with a thousand times the energy. What would gain a twentieth is carried along with the body, as far as it takes to gain none;
 // not what rocks as it comes to rest, which its support damps.
 Vector3 CarriedAlong(const BodyDynamics& d, const Quaternion& before, const Quaternion& after, const Vector3& w) {
-    constexpr float kGain = 1.05f;
+    constexpr float kGain = 1.0001f;
     const auto energyOf = [&](const Quaternion& rotation, const Vector3& velocity) {
         return TwiceRotationalEnergy<float>(d, InverseRotate(rotation * d.PrincipalAxes(), velocity));
     };

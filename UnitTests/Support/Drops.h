@@ -1,0 +1,39 @@
+// Random rods, plates, boxes and hulls that fall onto something or onto each other, and the energy that they have meanwhile: without what
+// drives them it only falls. Of the public interface alone. One thread.
+#pragma once
+
+#include <Fulcrum/Physics/PhysicsSystem.h>
+
+#include <string>
+
+namespace fulcrum::testing {
+
+enum class DropGround { Floor, Mesh, Hills, Air };
+
+// One kind of drops.
+struct DropSettings {
+    DropGround ground = DropGround::Floor;
+    int together = 1;  // bodies that are dropped onto each other
+    ContinuousCollision kind = ContinuousCollision::Off;
+    float restitution = 0, friction = 0.6f;
+    int substeps = 4;
+    double dt = 1.0 / 60;  // s
+};
+
+// "Floor, 1 of Linear, restitution 0.5, ...".
+std::string NameOf(const DropSettings& settings);
+
+// What is largest of the energies of groups that are dropped, relative to what each began with; its potential counts from the ground.
+struct DropEnergy {
+    double most = 0;          // at any time
+    double gain = 0;          // above the least before
+    uint32_t drop = 0;        // which of them has the most,
+    uint32_t step = 0;        // and when
+    uint32_t gainingDrop = 0; // which gains the most
+    bool finite = true;
+};
+
+// Drops as many groups as `drops`, each of its own random numbers `first`, `first` + 1, ...; for `seconds` each.
+DropEnergy EnergyOfDrops(const DropSettings& settings, uint32_t first, uint32_t drops, double seconds = 3);
+
+}  // namespace fulcrum::testing
