@@ -22,7 +22,7 @@ constexpr uint32_t kBatchesPerBlock = 4;
 constexpr uint32_t kBodiesPerBlock = 128;
 
 enum class Verb : uint8_t {
-    IntegrateVelocities, WarmStart, FirstVelocities, Velocities, IntegratePoses, FirstRelax, Relax, Separations, Restitution,
+    IntegrateVelocities, WarmStart, CarriedWork, FirstVelocities, Velocities, IntegratePoses, FirstRelax, Relax, Separations, Restitution,
     Rejoin, NextSubstep
 };
 
@@ -138,6 +138,7 @@ private:
             case Verb::Relax:
             case Verb::Rejoin: solve(true); break;
             case Verb::IntegrateVelocities:
+            case Verb::CarriedWork:
             case Verb::IntegratePoses:
             case Verb::Restitution:
             case Verb::NextSubstep: break;
@@ -174,10 +175,9 @@ private:
         BodyState* states = world_.bodies.states.data();
         switch (verb) {
             case Verb::WarmStart: WarmStartContacts(batch, states); break;
+            case Verb::CarriedWork: NoteCarriedWork(batch, states, world_.bodies.unconstrained.data()->row, ContactSettingsAt(substep, 0.5f).elapsed); break;
             // Poses move with these velocities from the beginning of the substep to its end: they are those of its middle.
             case Verb::FirstVelocities:
-                if (batch.bounces && substep > 0) NoteCarriedWork(batch, states, world_.bodies.unconstrained.data()->row, ContactSettingsAt(substep, 0.5f).elapsed);
-                [[fallthrough]];
             case Verb::Velocities: SolveContactVelocities(batch, states, ContactSettingsAt(substep, 0.5f)); break;
             case Verb::FirstRelax: NoteLift(batch, h_); [[fallthrough]];
             case Verb::Relax: RelaxContacts(batch, states, ContactSettingsAt(substep, 1)); break;
@@ -207,6 +207,7 @@ private:
             case Verb::Rejoin: RelaxJoints(batch, world_.bodies.ForSolver(), settings); break;
             case Verb::Separations: UpdateJoints(batch, world_.bodies.ForSolver(), settings); break;
             case Verb::IntegrateVelocities:
+            case Verb::CarriedWork:
             case Verb::IntegratePoses:
             case Verb::Restitution:
             case Verb::NextSubstep: break;
@@ -234,14 +235,15 @@ private:
 };
 
 // The solver loop as the sequence of its verbs.
-std::span<const Verb> LoopOf(const SolverSettings& settings, ScratchArena& scratch) {
-    const size_t longest = static_cast<size_t>(settings.velocityIterations + settings.positionIterations + 5);
+std::span<const Verb> LoopOf(const SolverSettings& settings, bool bounces, ScratchArena& scratch) {
+    const size_t longest = static_cast<size_t>(settings.velocityIterations + settings.positionIterations + 6);
     std::span<Verb> verbs = scratch.Allocate<Verb>(longest * static_cast<size_t>(settings.substeps));
     size_t n = 0;
     for (int substep = 0; substep < settings.substeps; ++substep) {
         if (substep > 0) verbs[n++] = Verb::NextSubstep;
         verbs[n++] = Verb::IntegrateVelocities;
         if (substep == 0) verbs[n++] = Verb::WarmStart;
+        else if (bounces) verbs[n++] = Verb::CarriedWork;
         for (int i = 0; i < settings.velocityIterations; ++i) verbs[n++] = i == 0 ? Verb::FirstVelocities : Verb::Velocities;
         verbs[n++] = Verb::IntegratePoses;
         for (int i = 0; i < settings.positionIterations; ++i) verbs[n++] = i == 0 ? Verb::FirstRelax : Verb::Relax;
@@ -294,7 +296,7 @@ void RunVerbs(WorldState& world, const StepContext& step, LoopOfEffort&& loopOf)
 
 void Solve(WorldState& world, const StepContext& step) {
     if (world.colouring.Size() == 0) return;
-    RunVerbs(world, step, [&](const Effort& effort) { return LoopOf(effort.solver, world.scratch); });
+    RunVerbs(world, step, [&](const Effort& effort) { return LoopOf(effort.solver, world.bounces, world.scratch); });
 }
 
 void Restitution(WorldState& world, const StepContext& step) {
