@@ -120,6 +120,17 @@ private:
     Vector3 rubbed_[SweepHit::kMaxPoints] = {Vector3::Zero(), Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
 };
 
+// Whether what gravity and forces have given a body since a time of its course is not simply their acceleration: contacts took a part.
+bool IsCarried(const WorldState& world, const Sweep& course) {
+    return !course.waits && world.sweeps.IsOfStep(course.body, world.report.step) && world.colouring.IsTouched(course.body);
+}
+
+// m2/s2, the work per kilogram of gravity and forces since a time of a course.
+float WorkSince(const WorldState& world, const Sweep& course, float time) {
+    const float* a = world.bodies.poses[course.body].acceleration;
+    return Dot<float>(Vector3(a[0], a[1], a[2]), Vector3(course.DisplacementRate() * (1 - time)));
+}
+
 // m/s, that gravity and forces have given a body since a time of its course. Where the solver moved it, contacts took a part of that: then
 // as much as the way since then has made of it, so that to go back leaves its energy as it was.
 Vector3 GainSince(const WorldState& world, const Sweep& course, float time, float dt) {
@@ -127,14 +138,29 @@ Vector3 GainSince(const WorldState& world, const Sweep& course, float time, floa
     const float* a = world.bodies.poses[course.body].acceleration;
     const Vector3 acceleration(a[0], a[1], a[2]);
     const float rest = (1 - time) * dt;
-    if (!world.colouring.IsTouched(course.body)) return acceleration * rest;
-    const float work = Dot<float>(acceleration, Vector3(course.DisplacementRate() * (1 - time)));
+    if (!IsCarried(world, course)) return acceleration * rest;
+    const float work = WorkSince(world, course, time);
     const float along = Dot<float>(acceleration, world.bodies.LinearVelocityOf(course.body)), square = LengthSquared(acceleration);
     if (!(square > 0) || (work < 0 && along >= 0)) return Vector3::Zero();
     // |v - a s|^2 = |v|^2 - 2 work: the solution that is nearest to 0; where there is none, the least |v - a s|.
     const float root = along * along - 2 * square * work;
     const float seconds = root < 0 ? along / square : 2 * work / (along + std::copysign(std::sqrt(root), along));
     return acceleration * (std::isfinite(seconds) ? std::clamp(seconds, -rest, rest) : 0.0f);
+}
+
+// What `since` did not take of that work is taken from the whole motion: an impact that the solver found at the end of a long way leaves a
+// body little speed along it.
+void TakeWork(const WorldState& world, const Sweep& course, float time, Impact& impact, int side) {
+    constexpr float kNotRounding = 1e-4f;
+    const BodyDynamics& d = world.bodies.dynamics[course.body];
+    const float wanted = LengthSquared(world.bodies.LinearVelocityOf(course.body)) - 2 * WorkSince(world, course, time);
+    const float linear = LengthSquared(impact.linear[side]), excess = linear - wanted;
+    const Vector3 inBody = InverseRotate(impact.poses[side].rotation * d.PrincipalAxes(), impact.angular[side]);
+    const float all = linear + TwiceRotationalEnergy<float>(d, inBody) * d.inverseMass;
+    if (!(excess > kNotRounding * all)) return;
+    const float part = std::sqrt(std::max(0.0f, 1 - excess / all));
+    impact.linear[side] *= part;
+    impact.angular[side] *= part;
 }
 
 // m/s, that they will give it until the end. What a contact carried is not dropped, but what flies up is slowed.
@@ -191,6 +217,7 @@ Impact FindImpact(const WorldState& world, const SweepHit& hit, float dt) {
         impact.linear[s] = bodies.LinearVelocityOf(pair[s]) - since[s];
         const Vector3 w = bodies.AngularVelocityOf(pair[s]);
         impact.angular[s] = impact.courses[s].waits ? w : TurnedFreely(d, impact.courses[s].RotationAt(1), w, -rest, impact.poses[s].rotation);
+        if (bodies.CanMove(pair[s]) && IsCarried(world, impact.courses[s])) TakeWork(world, impact.courses[s], hit.time, impact, s);
     }
     impact.parts = hit.pointCount > 0 && !hit.isBlocked && ImpactSolver(world, hit, impact).Run();
     impact.isFinite = true;
