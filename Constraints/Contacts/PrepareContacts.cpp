@@ -117,6 +117,7 @@ void PrepareBounces(ContactBatch<N, kFixedB>& batch, Wide<N> restitution, const 
     const Vec3<Real> acceleration(Real::Load(differences[0]), Real::Load(differences[1]), Real::Load(differences[2]));
     const Real closing = batch.closing = Dot<Real>(acceleration, batch.normal);
     batch.work = Real(0.0f);
+    Real left(0.0f);
     for (int i = 0; i < batch.pointCount; ++i) {
         auto& row = batch.rows[i];
         const Real approach = vn + row.b * w1 - row.a * w2;
@@ -127,7 +128,14 @@ void PrepareBounces(ContactBatch<N, kFixedB>& batch, Wide<N> restitution, const 
                                    restitution * speed, Real(0.0f));
         batch.bounceSpeed[i] = bounce;
         batch.largestImpulse[i] = Real(0.0f);
+        // What has bounced off carries no load: its last impulses would throw it off again, and not all of that would be taken back.
+        const auto parts = (restitution > Real(0.0f)) & (approach > Real(settings.restitutionSpeed));
+        row.impulse = Select(parts, Real(0.0f), row.impulse);
+        left += row.impulse;
     }
+    const auto parts = (restitution > Real(0.0f)) & (left == Real(0.0f));
+    batch.relaxedImpulse = Select(restitution > Real(0.0f), left, batch.relaxedImpulse);
+    for (Real& impulse : batch.frictionImpulse) impulse = Select(parts, Real(0.0f), impulse);
 }
 
 // Adds the surface velocities to those of fixed sides. Lanes without one keep every bit, as they do where no lane of their batch
