@@ -9,7 +9,7 @@ namespace {
 
 using namespace contacts;
 
-constexpr int kPasses = 8;
+constexpr int kPasses = 8;  // whatever the number of points: lanes of a batch have more or fewer
 
 // The changes of impulses that make the points which were hit part with their bounce speeds, all of a contact at once.
 template <int N, bool kFixedB>
@@ -23,7 +23,7 @@ FULCRUM_FORCE_INLINE void FindBounces(const ContactBatch<N, kFixedB>& batch, con
         missing[i] = motion.linear + row.b * motion.angular1 - row.a * motion.angular2 - batch.bounceSpeed[i];
         changes[i] = zero;
     }
-    for (int pass = 0; pass < (batch.pointCount > 1 ? kPasses : 1); ++pass)
+    for (int pass = 0; pass < kPasses; ++pass)
         for (int i = 0; i < batch.pointCount; ++i) {
             const auto& row = batch.rows[i];
             const auto hit = (batch.bounceSpeed[i] > zero) & (batch.largestImpulse[i] > zero);
@@ -68,10 +68,14 @@ void NoteCarriedWork(ContactBatch<N, kFixedB>& batch, BodyState* states, const f
 
 // Gravity does m a (v + a h / 2) h on a body that falls at v, but it moves with the impulse's change dv of its velocity as well, and
 // loses m a (v + a h + dv) h of its potential. As if it had been hit at the beginning of the substep, it is higher than it should be: by an
-// energy of -m a dv h, of both bodies `closing` h times the impulse.
+// energy of -m a dv h, of both bodies `closing` h times the impulse. The other m a^2 h^2 / 2 is lost in any case; the first point's
+// effective mass is no more than that of the bodies.
 template <int N, bool kFixedB>
 void NoteLift(ContactBatch<N, kFixedB>& batch, float h) {
-    if (batch.bounces) batch.work += batch.closing * TotalOf(batch).sum * Wide<N>(h);
+    if (!batch.bounces) return;
+    using Real = Wide<N>;
+    const Real gain = batch.closing * Real(h);
+    batch.work += gain * (TotalOf(batch).sum - Real(0.5f) * batch.rows[0].inverseResponse * gain);
 }
 
 template <int N, bool kFixedB>
