@@ -42,7 +42,7 @@ int FarthestOutside(const FlatPoints<kMost>& points, const float (&weights)[kMos
 }
 
 // Of points on a surface's triangles, which lie in several planes.
-inline constexpr float kLeastWeightOnSurfaces = 0.3f;
+inline constexpr float kLeastWeightOnSurfaces = 0.02f;
 
 // Writes the chosen indices in increasing order and returns how many: first a deepest point, then the point farthest
 // from it, then those that span the largest area on each side of the line of the two; where all are on one side, another
@@ -52,7 +52,7 @@ inline constexpr float kLeastWeightOnSurfaces = 0.3f;
 // distance or area, is taken, so that rounding and tiny motions change nothing.
 template <int kMost>
 int ChooseFour(FlatPoints<kMost>& points, float depthSlop, int (&chosen)[4], float leastWeight = 1.0f) {
-    constexpr float kNearly = 0.99f, kTilt = 0.002f;  // rad: halfway to leastWeight
+    constexpr float kNearly = 0.99f, kTilt = 0.0001f;  // rad: halfway to leastWeight
     const int count = points.count;
     if (count <= 4) {
         for (int i = 0; i < count; ++i) chosen[i] = i;
