@@ -179,10 +179,12 @@ private:
             // Poses move with these velocities from the beginning of the substep to its end: they are those of its middle.
             case Verb::FirstVelocities:
             case Verb::Velocities: SolveContactVelocities(batch, states, ContactSettingsAt(substep, 0.5f)); break;
-            case Verb::FirstRelax: NoteLift(batch, h_); [[fallthrough]];
+            case Verb::FirstRelax:
+                if (batch.bounces) NoteLift(batch, h_);
+                [[fallthrough]];
             case Verb::Relax: RelaxContacts(batch, states, ContactSettingsAt(substep, 1)); break;
             case Verb::Separations:
-                NoteLift(batch, h_);
+                if (batch.bounces) NoteLift(batch, h_);
                 UpdateSeparations(batch, states, ContactSettingsAt(substep, 1));
                 break;
             case Verb::Restitution: RestituteContacts(batch, states, dt_); break;

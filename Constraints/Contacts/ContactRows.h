@@ -1,0 +1,150 @@
+// The rows of contacts: the kernels that SolveContacts.cpp makes of the usual contacts and SolveRareContacts.cpp of those with restitution
+// or a surface that moves. Two files, as a compiler inlines only so much in one.
+#pragma once
+
+#include <Fulcrum/Constraints/Contacts/ContactKernels.h>
+
+namespace fulcrum::contacts {
+
+// The friction rows: impulses first clamped to the cone's cross-section (as a vector, so that no heading is preferred),
+// then the torque. The limit is that of the last relaxed normal impulses, where they were larger: those of the soft rows since
+// give way, and would let friction lose its grip for as long as an overlap builds up. Returns the change of impulse of t1, t2
+// and twist.
+template <int N, bool kFixedB>
+FULCRUM_FORCE_INLINE void SolveFriction(ContactBatch<N, kFixedB>& batch, Wide<N> v1, Wide<N> v2, Wide<N> wn, Wide<N> (&change)[3]) {
+    using Real = Wide<N>;
+    Real sum(0.0f);
+    for (int i = 0; i < batch.pointCount; ++i) sum += batch.rows[i].impulse;
+    const Real limit = batch.friction * Max(sum, batch.relaxedImpulse);
+
+    Real* total = batch.frictionImpulse;
+    const Real* inverse = batch.frictionInverse;
+    const Real* response = batch.frictionResponse;
+    const Real step1 = -inverse[0] * v1;
+    const Real step2 = -inverse[1] * (v2 + response[0] * step1);
+    const Real wanted1 = total[0] + step1, wanted2 = total[1] + step2;
+    const Real lengthSquared = wanted1 * wanted1 + wanted2 * wanted2;
+    const Real scale = Select(lengthSquared <= limit * limit, Real(1.0f), limit / Sqrt(Max(lengthSquared, Real(1e-30f))));
+    change[0] = wanted1 * scale - total[0];
+    change[1] = wanted2 * scale - total[1];
+    total[0] = wanted1 * scale;
+    total[1] = wanted2 * scale;
+
+    const Real twistLimit = limit * batch.twistRadius;
+    const Real spin = wn + response[1] * change[0] + response[2] * change[1];
+    const Real twist = Clamp(total[2] - inverse[2] * spin, -twistLimit, twistLimit);
+    change[2] = twist - total[2];
+    total[2] = twist;
+}
+
+// Lanes without a surface velocity keep every bit, a negative zero too.
+template <class Real>
+FULCRUM_FORCE_INLINE Real MoveBy(Real velocity, Real surface) {
+    return Select(surface == Real(0.0f), velocity, velocity + surface);
+}
+
+// What restitution asks for: which points were hit, and the work of these impulses.
+template <int N, bool kFixedB>
+void NoteHits(ContactBatch<N, kFixedB>& batch, const NormalImpulses<Wide<N>>& changes, const NormalMotion<Wide<N>>& before,
+              const Twists<N, kFixedB>& after, float elapsed) {
+    for (int i = 0; i < batch.pointCount; ++i) batch.largestImpulse[i] = Max(batch.largestImpulse[i], batch.rows[i].impulse);
+    NoteWork(batch, changes, before, NormalMotionOf(batch, RelativeTwist<Of::Velocity>(batch, after, elapsed)));
+}
+
+// All rows of a batch once, on velocities: friction, then the normal rows. A relaxing pass pushes nothing. kRare: it may have the
+// surface velocities of a moving second body, or restitution.
+template <bool kRelax, bool kRare, int N, bool kFixedB>
+FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* states,
+                                             const ContactSolveSettings& settings) {
+    using Real = Wide<N>;
+    const Real zero(0.0f);
+    Twists<N, kFixedB> twists;
+    Gather<Of::Velocity>(batch, states, twists);
+    const Twist<Real> relative = RelativeTwist<Of::Velocity>(batch, twists, settings.elapsed);
+    Real vn = Dot<Real>(relative.linear, batch.normal);
+    Real w1 = Dot<Real>(relative.angular, batch.tangent1), w2 = Dot<Real>(relative.angular, batch.tangent2);
+
+    Real friction[3];
+    Real v1 = Dot<Real>(relative.linear, batch.tangent1), v2 = Dot<Real>(relative.linear, batch.tangent2);
+    Real wn = Dot<Real>(relative.angular, batch.normal);
+    if constexpr (kRare && !kFixedB)
+        if (batch.surfaces) {
+            const SurfaceMotion<Real> surface = GatherSurfaceMotion(batch, batch.surfaces);
+            v1 = MoveBy(v1, surface.v1);
+            v2 = MoveBy(v2, surface.v2);
+            wn = MoveBy(wn, surface.spin);
+        }
+    SolveFriction<N, kFixedB>(batch, v1, v2, wn, friction);
+    for (int k = 0; k < 3; ++k) {
+        vn += batch.coupling[0][k] * friction[k];
+        w1 += batch.coupling[1][k] * friction[k];
+        w2 += batch.coupling[2][k] * friction[k];
+    }
+
+    // Points that are apart may close their gap within the substep; those that touch may not approach; those that overlap
+    // are pushed apart, softly.
+    const Real inverseDt(settings.inverseDt), pushRate(settings.pushRate), fastest(-settings.maxPushSpeed);
+    Real speed[ContactRecord::kMaxPoints];
+    [[maybe_unused]] Real stiffer[ContactRecord::kMaxPoints];
+    for (int i = 0; i < batch.pointCount; ++i) {
+        const auto& row = batch.rows[i];
+        speed[i] = vn + row.b * w1 - row.a * w2 + Max(row.separation, zero) * inverseDt;
+        if constexpr (!kRelax) {
+            // What approaches in spite of all is pushed faster by as much: in a pile that is hit hard one pass stops no body for good.
+            const Real wanted = (row.separation + Real(settings.slop)) * pushRate;
+            const Real push = Clamp(wanted, fastest + Min(speed[i], zero), zero);
+            speed[i] += push;
+            stiffer[i] = Clamp((push - wanted) * Real(settings.stiffening), zero, Real(settings.mostStiffer));
+        }
+    }
+    NormalImpulses<Real> changes;
+    Real relaxed = zero;
+    for (int i = 0; i < batch.pointCount; ++i) {
+        auto& row = batch.rows[i];
+        Real wanted;
+        if constexpr (kRelax) {
+            wanted = row.impulse - row.inverseResponse * speed[i];
+        } else {
+            const auto overlaps = row.separation < zero;
+            wanted = Select(overlaps, row.impulse * (Real(1.0f - settings.impulseScale) + stiffer[i]), row.impulse) -
+                     row.inverseResponse * Select(overlaps, speed[i] * (Real(settings.massScale) + stiffer[i]), speed[i]);
+        }
+        const Real total = Max(wanted, zero);
+        const Real change = total - row.impulse;
+        row.impulse = total;
+        for (int j = i + 1; j < batch.pointCount; ++j) speed[j] += batch.response[PairIndex(i, j)] * change;
+        changes.Add(row, change);
+        relaxed += total;
+    }
+    if constexpr (kRelax) batch.relaxedImpulse = relaxed;
+
+    ApplyToBoth<N, kFixedB>(batch, twists,
+                            batch.normal * changes.sum + batch.tangent1 * friction[0] + batch.tangent2 * friction[1],
+                            NormalTorque(batch, changes.sumA, changes.sumB) + batch.normal * friction[2]);
+    if constexpr (kRare)
+        if (batch.bounces) NoteHits(batch, changes, {vn, w1, w2}, twists, settings.elapsed);
+    Scatter(batch, twists);
+}
+
+template <bool kBounces, int N, bool kFixedB>
+FULCRUM_FORCE_INLINE void WarmStartRows(ContactBatch<N, kFixedB>& batch, BodyState* states) {
+    Twists<N, kFixedB> twists;
+    Gather<Of::Velocity>(batch, states, twists);
+    const NormalImpulses<Wide<N>> normal = TotalOf(batch);
+    const auto motion = [&] { return NormalMotionOf(batch, RelativeTwist<Of::Velocity>(batch, twists, 0)); };
+    [[maybe_unused]] NormalMotion<Wide<N>> before;
+    if constexpr (kBounces) before = motion();
+    const auto* f = batch.frictionImpulse;
+    ApplyToBoth<N, kFixedB>(batch, twists, batch.normal * normal.sum + batch.tangent1 * f[0] + batch.tangent2 * f[1],
+                            NormalTorque(batch, normal.sumA, normal.sumB) + batch.normal * f[2]);
+    if constexpr (kBounces) NoteWork(batch, normal, before, motion());
+    Scatter(batch, twists);
+}
+
+// Of batches that have restitution, or a surface velocity where both bodies move.
+template <bool kRelax, int N, bool kFixedB>
+void SolveRareRows(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
+template <int N, bool kFixedB>
+void WarmStartRareRows(ContactBatch<N, kFixedB>& batch, BodyState* states);
+
+}  // namespace fulcrum::contacts
