@@ -180,6 +180,45 @@ TEST(ContactBatch, KeepsLinearAndAngularMomentum) {
     }
 }
 
+double KineticEnergy(const RandomContacts& contacts, uint32_t contact) {
+    double sum = 0;
+    for (uint32_t body = 2 * contact; body < 2 * contact + 2; ++body) {
+        const Twist<float> v = contacts.VelocityOf(body);
+        const InverseMass<float> m = contacts.MassOf(body);
+        Eigen::Matrix3d inverse;
+        const auto& i = m.inertia;
+        inverse << double(i.xx), double(i.xy), double(i.xz), double(i.xy), double(i.yy), double(i.yz), double(i.xz), double(i.yz), double(i.zz);
+        const Position w = v.angular.cast<double>();
+        sum += 0.5 * v.linear.cast<double>().squaredNorm() / double(m.mass) + 0.5 * w.dot(inverse.inverse() * w);
+    }
+    return sum;
+}
+
+// Up to four points and friction: Newton's law alone would gain in a quarter of these.
+TEST(ContactBatch, ABounceGivesBackNoMoreThanTheContactTook) {
+    RandomContacts contacts(256, false, 6);
+    for (ContactRecord& record : contacts.records) {
+        record.restitution = 1;
+        for (float& impulse : record.impulse) impulse = 0;
+        for (float& impulse : record.frictionImpulse) impulse = 0;
+        record.twistImpulse = 0;
+    }
+    int bounced = 0;
+    for (uint32_t i = 0; i < 256; ++i) {
+        auto batch = PrepareBatch<1, false>(contacts, i, kPrepare);
+        const double before = KineticEnergy(contacts, i);
+        WarmStartContacts(batch, contacts.states.data());
+        for (int k = 0; k < 3; ++k) SolveContactVelocities(batch, contacts.states.data(), kSolve);
+        const double solved = KineticEnergy(contacts, i);
+        RestituteContacts(batch, contacts.states.data(), 0);
+        const double after = KineticEnergy(contacts, i);
+        bounced += after > 1.001 * solved;
+        // Sums of some ten numbers of size 10, in floats.
+        EXPECT_LE(after, before * (1 + 1e-5)) << i;
+    }
+    EXPECT_GT(bounced, 20);
+}
+
 TEST(ContactBatch, LeavesNoApproachBehind) {
     // One point, without friction: after one solve the gap at most closes.
     RandomContacts contacts(64, false, 9);
