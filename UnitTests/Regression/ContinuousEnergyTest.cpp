@@ -181,6 +181,25 @@ TEST(ContinuousEnergy, WhatABulletHitsMovesOnInTheSameStep) {
         }
 }
 
+// Of a stack that sleeps, too: the one in the middle is gone from between the others, which friction has not moved yet.
+TEST(ContinuousEnergy, WhatABulletHitsInAStackMovesOnInTheSameStep) {
+    for (const ContinuousCollision kind : kKinds) {
+        TestWorld world;
+        world.AddFloor();
+        const Material dull{.friction = 0.5f, .restitution = 0};
+        std::vector<BodyId> stack;
+        for (int i = 0; i < 3; ++i) stack.push_back(world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5 + i, 0}, .mass = 30, .material = dull, .startAsleep = true, .continuous = kind}));
+        world.Add({.shape = SphereOf(0.05f), .position = {-0.55 - 5, 1.5, 0}, .linearVelocity = {600, 0, 0}, .mass = 1, .material = dull, .gravityFactor = 0, .continuous = ContinuousCollision::Linear});
+        world.Step();
+        const double v = 600 / 31.0;
+        EXPECT_NEAR(world.VelocityOf(stack[1]).x(), v, 0.02 * v) << int(kind);
+        EXPECT_NEAR(world.PositionOf(stack[1]).x(), v * 0.5 * kStep, 0.02 * v * 0.5 * kStep) << int(kind);
+        for (const int i : {0, 2}) EXPECT_NEAR(world.PositionOf(stack[static_cast<size_t>(i)]).x(), 0, 1e-3) << int(kind);
+        world.Run(2);
+        for (const BodyId id : stack) EXPECT_GT(world.PositionOf(id).y(), 0.4) << int(kind);
+    }
+}
+
 // But not into what stands behind it.
 TEST(ContinuousEnergy, WhatABulletHitsStopsAtItsNeighbour) {
     TestWorld world;
