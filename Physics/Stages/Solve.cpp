@@ -8,6 +8,7 @@
 // The warm start of every substep but the first costs nothing per constraint: the impulses of the last substep give each body
 // the same change of velocity again, and that is its velocity at the substep's end minus what it was without constraints. Rows
 // of contacts do not change within a step; joints add what the turning of their parts changes.
+#include <Fulcrum/Constraints/Contacts/BounceDebts.h>
 #include <Fulcrum/Jobs/Phases.h>
 #include <Fulcrum/Physics/Stages/Effort.h>
 #include <Fulcrum/Physics/Stages/Integrate.h>
@@ -22,8 +23,8 @@ constexpr uint32_t kBatchesPerBlock = 4;
 constexpr uint32_t kBodiesPerBlock = 128;
 
 enum class Verb : uint8_t {
-    IntegrateVelocities, WarmStart, CarriedWork, FirstVelocities, Velocities, IntegratePoses, FirstRelax, Relax, Separations, Restitution,
-    Rejoin, NextSubstep
+    IntegrateVelocities, WarmStart, CarriedWork, FirstVelocities, Velocities, IntegratePoses, FirstRelax, Relax, Separations, ForgetDebts,
+    NoteDebts, PayDebts, Restitution, Rejoin, NextSubstep
 };
 
 struct Phase {
@@ -140,6 +141,9 @@ private:
             case Verb::IntegrateVelocities:
             case Verb::CarriedWork:
             case Verb::IntegratePoses:
+            case Verb::ForgetDebts:
+            case Verb::NoteDebts:
+            case Verb::PayDebts:
             case Verb::Restitution:
             case Verb::NextSubstep: break;
         }
@@ -187,6 +191,11 @@ private:
                 if (batch.bounces) NoteLift(batch, h_);
                 UpdateSeparations(batch, states, ContactSettingsAt(substep, 1));
                 break;
+            case Verb::ForgetDebts: ForgetDebts(batch, world_.bodies.unconstrained.data()->row); break;
+            case Verb::NoteDebts: NoteDebts(batch, world_.bodies.unconstrained.data()->row); break;
+            case Verb::PayDebts:
+                if (batch.bounces) PayDebts(batch, world_.bodies.unconstrained.data()->row);
+                break;
             case Verb::Restitution: RestituteContacts(batch, states, dt_); break;
             case Verb::IntegrateVelocities:
             case Verb::IntegratePoses:
@@ -211,6 +220,9 @@ private:
             case Verb::IntegrateVelocities:
             case Verb::CarriedWork:
             case Verb::IntegratePoses:
+            case Verb::ForgetDebts:
+            case Verb::NoteDebts:
+            case Verb::PayDebts:
             case Verb::Restitution:
             case Verb::NextSubstep: break;
         }
@@ -304,8 +316,8 @@ void Solve(WorldState& world, const StepContext& step) {
 void Restitution(WorldState& world, const StepContext& step) {
     if (!world.bounces) return;
     // A bounce tears at joints.
-    static constexpr Verb kVerbs[] = {Verb::Restitution, Verb::Rejoin};
-    const size_t count = world.solver.HasJoints() ? 2 : 1;
+    static constexpr Verb kVerbs[] = {Verb::ForgetDebts, Verb::NoteDebts, Verb::PayDebts, Verb::Restitution, Verb::Rejoin};
+    const size_t count = world.solver.HasJoints() ? 5 : 4;
     RunVerbs(world, step, [&](const Effort&) { return std::span<const Verb>(kVerbs, count); });
 }
 
