@@ -218,6 +218,8 @@ Impact FindImpact(const WorldState& world, const SweepHit& hit, float dt) {
         const Vector3 w = bodies.AngularVelocityOf(pair[s]);
         impact.angular[s] = impact.courses[s].waits ? w : TurnedFreely(d, impact.courses[s].RotationAt(1), w, -rest, impact.poses[s].rotation);
         if (bodies.CanMove(pair[s]) && IsCarried(world, impact.courses[s])) TakeWork(world, impact.courses[s], hit.time, impact, s);
+        impact.arrivingLinear[s] = impact.linear[s];
+        impact.arrivingAngular[s] = impact.angular[s];
     }
     impact.parts = hit.pointCount > 0 && !hit.isBlocked && ImpactSolver(world, hit, impact).Run();
     impact.isFinite = true;

@@ -16,6 +16,8 @@ struct Impact {
     Pose poses[2];                             // at the time of the hit
     BodyMass masses[2];                        // likewise
     Vector3 linear[2], angular[2];             // m/s, rad/s: velocities at the time of the hit, after it
+    Vector3 arrivingLinear[2];                 // m/s, and
+    Vector3 arrivingAngular[2];                // rad/s: before it
     Rest rests[2];                             // of what can move
     bool parts = false;                        // a point approached
     bool isFinite = false;

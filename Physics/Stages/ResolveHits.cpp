@@ -40,7 +40,8 @@ private:
         const bool lostPartner = places[1] != SweepStore::kNone && Swept(places[1]).changed;
         const bool isUndecided = hit.pointCount == 0 || lostPartner;
         if (hit.isBlocked || !impact.isFinite || (isLast_ && isUndecided)) {
-            Wait(places[0], hit.time, impact, 0);
+            // As it came: the impulses of a hit that only one of the two feels would make energy.
+            Wait(places[0], hit.time, impact, 0, impact.arrivingLinear[0], impact.arrivingAngular[0]);
         } else if (lostPartner) {
             CastAgain(places[0]);
         } else if (isUndecided) {
@@ -48,7 +49,8 @@ private:
         } else if (!impact.parts && (impact.courses[0].waits || impact.courses[1].waits)) {
             // What goes as fast as the one that waits runs into it, and waits, too.
             for (int s = 0; s < 2; ++s)
-                if (places[s] != SweepStore::kNone && !impact.courses[s].waits) Wait(places[s], hit.time, impact, s);
+                if (places[s] != SweepStore::kNone && !impact.courses[s].waits)
+                    Wait(places[s], hit.time, impact, s, impact.linear[s], impact.angular[s]);
         } else {
             Part(hit, impact, places);
         }
@@ -67,7 +69,7 @@ private:
             }
             world_.bodies.masses[body] = impact.masses[s];
             world_.bodies.dynamics[body].slowSeconds = 0;
-            if (isLast_) Wait(places[s], hit.time, impact, s);
+            if (isLast_) Wait(places[s], hit.time, impact, s, impact.linear[s], impact.angular[s]);
             else Continue(places[s], hit.time, impact, s);
         }
     }
@@ -99,14 +101,14 @@ private:
     }
 
     // Stays until the next step; but a kinematic body goes on as it is told. It is in the way of others, who may not know.
-    void Wait(uint32_t place, float time, const Impact& impact, int side) {
+    void Wait(uint32_t place, float time, const Impact& impact, int side, const Vector3& linear, const Vector3& angular) {
         Sweep& sweep = Swept(place);
         if (!world_.bodies.CanMove(sweep.body)) return;
         End(place, time, impact.poses[side]);
         sweep.displacement.setZero();
         sweep.turn.setZero();
         sweep.waits = true;
-        if (impact.isFinite) SetVelocity(sweep.body, impact.linear[side], impact.angular[side]);
+        if (impact.isFinite) SetVelocity(sweep.body, linear, angular);
     }
 
     void Continue(uint32_t place, float time, const Impact& impact, int side) {
