@@ -8,7 +8,7 @@
 // The warm start of every substep but the first costs nothing per constraint: the impulses of the last substep give each body
 // the same change of velocity again, and that is its velocity at the substep's end minus what it was without constraints. Rows
 // of contacts do not change within a step; joints add what the turning of their parts changes.
-#include <Fulcrum/Constraints/Contacts/BounceDebts.h>
+#include <Fulcrum/Constraints/Contacts/PushWork.h>
 #include <Fulcrum/Jobs/Phases.h>
 #include <Fulcrum/Physics/Stages/Effort.h>
 #include <Fulcrum/Physics/Stages/Integrate.h>
@@ -23,8 +23,8 @@ constexpr uint32_t kBatchesPerBlock = 4;
 constexpr uint32_t kBodiesPerBlock = 128;
 
 enum class Verb : uint8_t {
-    IntegrateVelocities, WarmStart, CarriedWork, FirstVelocities, Velocities, IntegratePoses, FirstRelax, Relax, Separations, ForgetDebts,
-    NoteDebts, PayDebts, Restitution, Rejoin, NextSubstep
+    IntegrateVelocities, WarmStart, CarriedWork, FirstVelocities, Velocities, IntegratePoses, FirstRelax, Relax, Separations, ClearPushWork,
+    AddPushWork, SubtractPushWork, Restitution, Rejoin, NextSubstep
 };
 
 struct Phase {
@@ -141,9 +141,9 @@ private:
             case Verb::IntegrateVelocities:
             case Verb::CarriedWork:
             case Verb::IntegratePoses:
-            case Verb::ForgetDebts:
-            case Verb::NoteDebts:
-            case Verb::PayDebts:
+            case Verb::ClearPushWork:
+            case Verb::AddPushWork:
+            case Verb::SubtractPushWork:
             case Verb::Restitution:
             case Verb::NextSubstep: break;
         }
@@ -191,10 +191,10 @@ private:
                 if (batch.bounces) NoteLift(batch, h_);
                 UpdateSeparations(batch, states, ContactSettingsAt(substep, 1));
                 break;
-            case Verb::ForgetDebts: ForgetDebts(batch, world_.bodies.unconstrained.data()->row); break;
-            case Verb::NoteDebts: NoteDebts(batch, world_.bodies.unconstrained.data()->row); break;
-            case Verb::PayDebts:
-                if (batch.bounces) PayDebts(batch, world_.bodies.unconstrained.data()->row);
+            case Verb::ClearPushWork: ClearPushWork(batch, world_.bodies.unconstrained.data()->row); break;
+            case Verb::AddPushWork: AddPushWork(batch, world_.bodies.unconstrained.data()->row); break;
+            case Verb::SubtractPushWork:
+                if (batch.bounces) SubtractPushWork(batch, world_.bodies.unconstrained.data()->row);
                 break;
             case Verb::Restitution: RestituteContacts(batch, states, dt_); break;
             case Verb::IntegrateVelocities:
@@ -220,9 +220,9 @@ private:
             case Verb::IntegrateVelocities:
             case Verb::CarriedWork:
             case Verb::IntegratePoses:
-            case Verb::ForgetDebts:
-            case Verb::NoteDebts:
-            case Verb::PayDebts:
+            case Verb::ClearPushWork:
+            case Verb::AddPushWork:
+            case Verb::SubtractPushWork:
             case Verb::Restitution:
             case Verb::NextSubstep: break;
         }
@@ -316,7 +316,7 @@ void Solve(WorldState& world, const StepContext& step) {
 void Restitution(WorldState& world, const StepContext& step) {
     if (!world.bounces) return;
     // A bounce tears at joints.
-    static constexpr Verb kVerbs[] = {Verb::ForgetDebts, Verb::NoteDebts, Verb::PayDebts, Verb::Restitution, Verb::Rejoin};
+    static constexpr Verb kVerbs[] = {Verb::ClearPushWork, Verb::AddPushWork, Verb::SubtractPushWork, Verb::Restitution, Verb::Rejoin};
     const size_t count = world.solver.HasJoints() ? 5 : 4;
     RunVerbs(world, step, [&](const Effort&) { return std::span<const Verb>(kVerbs, count); });
 }
