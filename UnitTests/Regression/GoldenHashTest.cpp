@@ -11,10 +11,10 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0xee26f78fe7643711ull;
-constexpr uint64_t kGoldenHashOfJoints = 0x01b2dfe8a9d1e0ebull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0xdd62b4447c9c99daull;
-constexpr uint64_t kGoldenHashOfFastBodies = 0x391a3291e8b056f6ull;
+constexpr uint64_t kGoldenHash = 0x4a3c189d8fe6502aull;
+constexpr uint64_t kGoldenHashOfJoints = 0xfd8aaecf6dee0546ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0x66c22f5e3b879275ull;
+constexpr uint64_t kGoldenHashOfFastBodies = 0xb00990b7bc663b12ull;
 
 std::string Hex(uint64_t number) {
     char text[24];
