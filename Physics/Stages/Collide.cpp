@@ -2,7 +2,7 @@
 // which Prepare brings the separations up to date. Contacts reach as far ahead as the bodies may move within the step, so that nothing
 // is driven into the other by a whole step's motion before it is seen.
 #include <Fulcrum/Collision/NarrowPhase/PlaneContact.h>
-#include <Fulcrum/Physics/Stages/Crowd.h>
+#include <Fulcrum/Physics/Stages/CrowdContacts.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
 #include <Fulcrum/Physics/Stages/SweepCast.h>
 
@@ -77,7 +77,7 @@ PairChange CollidePair(WorldState& world, uint32_t index, float dt, WorkerFindin
         WriteManifold(world, view, manifold, dt);
         pair.reference = view.bInA;
     }
-    if (pair.pointCount > 0) NoteStanding(world, index, view.bInA, findings);
+    if (pair.pointCount > 0) NoteOverlap(world, index, view.bInA, findings);
     const PairChange change = NoteTouching(world, index, findings);
     return TouchesSleeper(world, pair) ? PairChange::WakesOther : change;
 }
@@ -142,7 +142,7 @@ void Collide(WorldState& world, const StepContext& step) {
         CollideActivated(world, step.dt);
         AddMoreManifolds(world, step.dt);
     }
-    NoteCrowd(world);
+    GatherCrowd(world);
     StepReport& report = world.report;
     for (const WorkerFindings& f : world.findings) {
         report.contacts += f.contacts;

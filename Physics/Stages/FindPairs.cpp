@@ -4,6 +4,7 @@
 #include <Fulcrum/Collision/BroadPhase/BoundsTreeBulk.h>
 #include <Fulcrum/Collision/Shapes/SurfaceShape.h>
 #include <Fulcrum/Physics/Stages/Crowd.h>
+#include <Fulcrum/Physics/Stages/CrowdOverlaps.h>
 
 #include <algorithm>
 #include <utility>
@@ -12,8 +13,9 @@ namespace fulcrum {
 
 namespace {
 
-// New pairs of bodies that stand in each other, from which on those that stand in many disperse before the others have pairs.
-constexpr uint32_t kCrowd = 1024;
+// New pairs that overlap deeply. Where a step finds more, the search is given up, bodies that deeply overlap many others start to disperse,
+// and pairs are searched for anew, without those of the crowd, which would be n^2. Crowds with fewer pairs are left to Collide to find.
+constexpr uint32_t kMostDeepPairs = 1024;
 constexpr uint32_t kAnyNumber = ~0u;
 
 // Whether the bounds of two colliders, of which the first has moved, ask for a pair that is not active.
@@ -27,10 +29,10 @@ bool AskForPair(const WorldState& world, uint32_t index, uint32_t other) {
 
 uint64_t KeyOf(uint32_t a, uint32_t b) { return a < b ? uint64_t(a) << 32 | b : uint64_t(b) << 32 | a; }
 
-// Notes their pair if it is to be. Beyond so many deep ones all is given up.
+// Notes their pair if they are to have one, until more than mostDeep of those found overlap deeply.
 void Consider(const WorldState& world, uint32_t index, uint32_t other, uint32_t mostDeep, WorkerFindings& findings) {
     if (findings.deepPairs > mostDeep || !AskForPair(world, index, other)) return;
-    findings.deepPairs += StandInEachOther(world, index, other);
+    findings.deepPairs += OverlapDeeply(world, index, other);
     findings.pairs.push_back(KeyOf(index, other));
 }
 
@@ -91,7 +93,7 @@ void SearchTogether(WorldState& world, uint32_t mostDeep) {
     });
 }
 
-// Kinematic bodies search for those that disperse, which do not look at the moving tree themselves: there they would meet each other.
+// Kinematic bodies search for dispersing ones. These do not search the tree of what moves themselves: each would find all of the crowd.
 void SearchForDispersing(WorldState& world) {
     if (world.dispersing.empty()) return;
     const ColliderStore& store = world.colliders;
@@ -113,7 +115,7 @@ void SearchAll(WorldState& world, uint32_t mostDeep) {
     SearchForDispersing(world);
 }
 
-// Whether more than so many pairs of bodies that stand in each other were found; then all that was found is forgotten.
+// Whether more than mostDeep pairs that overlap deeply were found; then all that was found is dropped.
 bool FoundTooDeep(WorldState& world, uint64_t mostDeep) {
     uint64_t deep = 0;
     for (WorkerFindings& findings : world.findings) deep += std::exchange(findings.deepPairs, 0);
@@ -122,7 +124,7 @@ bool FoundTooDeep(WorldState& world, uint64_t mostDeep) {
     return true;
 }
 
-// Those that have searched start to disperse, as far as they stand in many.
+// Bodies that have moved start to disperse, as far as they overlap many others deeply.
 void DisperseMoved(WorldState& world) {
     std::vector<uint32_t> bodies;
     for (const uint32_t index : world.colliders.moved) bodies.push_back(world.colliders.colliders[index].body);
@@ -235,11 +237,11 @@ void CombineMaterials(WorldState& world, uint32_t index) {
 void FindPairs(WorldState& world) {
     world.activated.clear();
     EndDispersing(world);
-    if (!world.standing.empty()) StartDispersing(world, world.standing);
-    world.standing.clear();
+    if (!world.deepOverlaps.empty()) StartDispersing(world, world.deepOverlaps);
+    world.deepOverlaps.clear();
     if (world.colliders.moved.empty()) return;
-    SearchAll(world, kCrowd);
-    if (FoundTooDeep(world, kCrowd)) {
+    SearchAll(world, kMostDeepPairs);
+    if (FoundTooDeep(world, kMostDeepPairs)) {
         DisperseMoved(world);
         SearchAll(world, kAnyNumber);
         FoundTooDeep(world, kAnyNumber);

@@ -4,7 +4,7 @@
 #include <Fulcrum/Constraints/Joints/JointKernels.h>
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Physics/Stages/BodyLimits.h>
-#include <Fulcrum/Physics/Stages/Crowd.h>
+#include <Fulcrum/Physics/Stages/CrowdContacts.h>
 
 #include <algorithm>
 

@@ -104,7 +104,7 @@ private:
         const TreeRay ray(motion_.pose.position - world_.colliders.boundsOrigin + about.Centre().cast<double>(), motion_.displacement, about.HalfExtents());
         const auto visit = [&](uint32_t other) { CastAgainst(other, whole); };
         const uint32_t layers = world_.settings.layerCollides[world_.bodies.dynamics[sweep_.body].layer];
-        // Those that disperse meet no dynamic body; to visit all that they stand in would take n^2.
+        // Dispersing bodies do not collide with dynamic ones; to visit all that they overlap would cost n^2.
         if ((layers & world_.colliders.movingLayers) && !world_.bodies.dynamics[sweep_.body].dispersing) world_.colliders.movingTree.CastRay(ray, limit_, visit);
         if (layers & world_.colliders.fixedLayers) world_.colliders.fixedTree.CastRay(ray, limit_, visit);
     }

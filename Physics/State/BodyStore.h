@@ -33,8 +33,8 @@ struct alignas(64) BodyDynamics {
     bool continuous : 1 = false;   // BodyCold::continuous is not Off
     bool filtered : 1 = false;     // it has a BodyFilter: ask FiltersAllow
     uint8_t layer : 5 = 0;
-    bool crowded : 1 = false;      // what pushes it is limited, see NoteCrowd
-    bool dispersing : 1 = false;   // it leaves a crowd, see Disperser
+    bool crowded : 1 = false;      // contacts push it at a limited speed, see CrowdContacts.h
+    bool dispersing : 1 = false;   // see Crowd.h
 
     // Eight numbers each, for lanes.
     const float* InertiaRow() const { return inverseInertia; }  // moments, mass, principal axes

@@ -79,7 +79,7 @@ size_t WorldState::MemoryUsed() const {
     size_t bytes = sizeof(*this) + bodies.MemoryUsed() + colliders.MemoryUsed() + strays.MemoryUsed() + pairs.MemoryUsed() +
                    joints.MemoryUsed() + sweeps.MemoryUsed() + sensors.MemoryUsed() + colouring.MemoryUsed() + sleeping.MemoryUsed() + solver.MemoryUsed() + scratch.CapacityInBytes() +
                    changes.capacity() + (activated.capacity() + began.capacity()) * sizeof(uint32_t) + newPairs.capacity() * sizeof(uint64_t) +
-                   dispersing.capacity() * sizeof(Disperser) + (standing.capacity() + crowded.capacity()) * sizeof(uint32_t);
+                   dispersing.capacity() * sizeof(DispersingBody) + (deepOverlaps.capacity() + crowded.capacity()) * sizeof(uint32_t);
     for (const WorkerFindings& f : findings)
         bytes += sizeof(f) + f.colliders.capacity() * sizeof(uint32_t) + f.pairs.capacity() * sizeof(uint64_t) + f.sweepHits.capacity() * sizeof(SweepHit) +
                  f.sensorCandidates.capacity() * sizeof(uint64_t) + f.sensorVisits.capacity() * sizeof(SensorVisit);

@@ -37,8 +37,9 @@ struct MoreManifold {
 struct alignas(64) WorkerFindings {
     std::vector<uint32_t> colliders;  // UpdateBounds: those that left their fat bounds
     std::vector<uint64_t> pairs;      // FindPairs: keys of new or resting pairs
-    uint32_t deepPairs = 0;           // FindPairs: of these, bodies that stand in each other
-    std::vector<uint32_t> standing, overlapping;  // Collide: bodies that stand in another, and crowded ones that overlap one; once for each
+    uint32_t deepPairs = 0;           // FindPairs: how many of these pairs overlap deeply
+    std::vector<uint32_t> deepOverlaps;      // Collide: bodies that overlap another deeply, once for each such overlap
+    std::vector<uint32_t> crowdedOverlaps;   // Collide: crowded bodies that overlap another, likewise
     SurfaceContacts surface;          // Collide: room to work in
     std::vector<uint32_t> surfacePlaces, surfaceLeft, surfaceTouched;  // Collide: likewise
     std::vector<MoreManifold> more;   // Collide: what has no place in its pair yet
@@ -57,16 +58,16 @@ struct alignas(64) WorkerFindings {
     JointFindings joints;             // Prepare
 };
 
-// A body that leaves a crowd: it stood in many others. Until they have room it meets no dynamic body, does not fall, and moves along its
-// way on top of its own velocity.
-struct Disperser {
+// A body that deeply overlapped many others and disperses (Stages/Crowd.h): until there is room it does not collide with dynamic bodies
+// and gravity does not act on it, and it moves with `push` on top of its own velocity.
+struct DispersingBody {
     uint32_t body;
-    Vector3 way;         // in the unit ball: how fast and where to, for one that has no place
-    bool hasPlace = false;
-    Position place = Position::Zero();  // m, where it is to be
-    float seconds = 0;   // in so many, or was so long ago
-    uint64_t start = 0;  // the step in which it started
-    Vector3 push = Vector3::Zero(), own = Vector3::Zero();  // m/s, of this step: its velocity along the way; without it
+    Vector3 direction;       // of the push without a place, of length 1 at most: a part of the fastest push
+    bool hasPlace = false;   // it moves to `place`
+    Position place = Position::Zero();  // m
+    float secondsLeft = 0;   // until it is to be there; below zero since then
+    uint64_t startStep = 0;  // the step in which it started
+    Vector3 push = Vector3::Zero(), ownVelocity = Vector3::Zero();  // m/s, of this step
 };
 
 // What Collide found out about an active pair that the rest of the world must hear of.
@@ -95,9 +96,9 @@ struct WorldState {
     std::vector<uint32_t> began;              // Color: pairs that began to touch
     std::vector<uint64_t> newPairs;
     std::vector<MoreManifold> moreManifolds;
-    std::vector<uint32_t> standing;           // bodies that stood in others as Collide saw them last, if one did in many; repeated
-    std::vector<Disperser> dispersing;        // by body, ascending
-    std::vector<uint32_t> crowded;            // these, and those that have dispersed and still overlap something
+    std::vector<uint32_t> deepOverlaps;       // Collide: bodies, ascending, once for each deep overlap; empty if none has many
+    std::vector<DispersingBody> dispersing;   // by body, ascending
+    std::vector<uint32_t> crowded;            // these, and those that have dispersed and still overlap something; repeated
     std::vector<uint32_t> ghosts;             // pairs that DropGhosts took the points from, in the last step
     std::vector<WorkerFindings> findings;     // by worker
     ScratchArena scratch;
@@ -142,6 +143,12 @@ inline RelativePose LocalOf(const WorldState& world, uint32_t collider) {
     const ColliderShape& piece = world.colliders.shapes[collider];
     if (!piece.onOrigin) return piece.local;
     return {piece.local.position + world.bodies.cold[world.colliders.colliders[collider].body].children->origin, piece.local.rotation};
+}
+
+// World space, of the piece's own frame.
+inline Pose ColliderPoseOf(const WorldState& world, uint32_t collider) {
+    const Pose body = world.bodies.CentrePoseOf(world.colliders.colliders[collider].body);
+    return world.colliders.shapes[collider].offset ? body * LocalOf(world, collider) : body;
 }
 
 // The piece, seen from its body's centre frame.

@@ -1,6 +1,6 @@
 // Bodies with their centers at one point were all pushed the same way: a column of spheres, hundreds of meters high, and some
 // through the floor. Thousands at one point made millions of pairs and took minutes.
-#include <Fulcrum/Physics/Stages/Crowd.h>
+#include <Fulcrum/Physics/Stages/CrowdPlaces.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
 #include <algorithm>
@@ -49,13 +49,13 @@ struct Burst {
     }
 };
 
-TEST(CoincidentBodies, PlacesInTheCrowdFillTheBall) {
+TEST(CoincidentBodies, PointsOfAllIndicesFillTheBall) {
     constexpr uint32_t kCount = 20000;
     Position sum = Position::Zero();
     double squares = 0;
     int octants[8] = {};
     for (uint32_t i = 0; i < kCount; ++i) {
-        const Vector3 place = PlaceInCrowd(i);
+        const Vector3 place = PointInBall(i);
         ASSERT_LE(Length(place), 1);
         sum += place.cast<double>();
         squares += double(LengthSquared(place));
@@ -114,7 +114,7 @@ TEST(CoincidentBodies, HundredBoxesOnAFloor) { ExpectApart(128, 0.5f, false, tru
 TEST(CoincidentBodies, FiveHundredSpheresInSpace) { ExpectApart(512, 0.5f, true, false, 4); }
 TEST(CoincidentBodies, FiveHundredSpheresOnAFloor) { ExpectApart(512, 0.25f, true, true, 4); }
 
-// Thousands of any shape, within a part of their radius of each other: all bodies of an index stand in all others at first. Memory and
+// Thousands of any shape, within a part of their radius of each other: all bodies overlap all others deeply at first. Memory and
 // time grow with their number: a pile of the same bodies has as many contacts.
 void ExpectThousandsApart(const std::function<BodySettings(int)>& settings, double spread, bool hasFloor) {
 #ifdef FULCRUM_ASSERTIONS
@@ -130,7 +130,7 @@ void ExpectThousandsApart(const std::function<BodySettings(int)>& settings, doub
         if (hasFloor) burst.world.AddFloor();
         burst.Add(kCount, Position::Zero(), settings);
         for (int i = 0; i < kCount; ++i) {
-            const Position at = PlaceInCrowd(static_cast<uint32_t>(i)).cast<double>() * spread + Position(0, hasFloor ? 1 + spread : 0, 0);
+            const Position at = PointInBall(static_cast<uint32_t>(i)).cast<double>() * spread + Position(0, hasFloor ? 1 + spread : 0, 0);
             ASSERT_TRUE(burst.world.Bodies().SetPose(burst.ids[static_cast<size_t>(i)], at, {}));
         }
         burst.Run(4);
