@@ -69,12 +69,15 @@ void SearchTogether(WorldState& world, uint32_t mostDeep) {
     const auto isQueued = [&](uint32_t i) { return store.colliders[i].queued; };
     world.jobs->ParallelFor(store.movingTree.NodeCount(), 8, [&](JobRange range) {
         WorkerFindings& found = world.findings[range.worker];
-        if (found.deepPairs > mostDeep) return;
-        store.movingTree.VisitPairs(range.begin, range.end, [&](uint32_t a, uint32_t b) {
+        const auto consider = [&](uint32_t a, uint32_t b) {
             const uint32_t low = std::min(a, b), high = std::max(a, b);
             if (isQueued(low)) Consider(world, low, high, mostDeep, found);
             else if (isQueued(high)) Consider(world, high, low, mostDeep, found);
-        });
+        };
+        // Node by node, since one thread alone gets all of them as one range: a search that is given up must not go on to visit n^2 pairs.
+        for (uint32_t node = range.begin; node < range.end && found.deepPairs <= mostDeep; ++node)
+            store.movingTree.VisitPairs(node, node + 1, consider);
+        if (found.deepPairs > mostDeep) return;
         store.movingTree.VisitGroups(range.begin, range.end, [&](const Bounds& all, std::span<const uint32_t> ids) {
             bool meets = false;
             store.fixedTree.Query(all, [&](uint32_t) { meets = true; });
