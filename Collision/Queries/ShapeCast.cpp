@@ -106,7 +106,7 @@ bool ShapeCaster::CastPlane(const Shape& shape, const Pose& pose, const ShapeCas
         const double height = Dot<double>(plane.Normal().cast<double>(), Position(motion.position + lowest.cast<double>()));
         hit.depth = std::max(0.0f, static_cast<float>(double{plane.Offset()} - height));
     }
-    return true;
+    return IsWithinFloats(hit);
 }
 
 // A long way is cut into pieces hardly longer than the shape, so that the boxes that are searched hold few triangles beside
