@@ -30,7 +30,7 @@ float SquaredDistance(const WorldState& world, uint32_t colliderA, uint32_t coll
 }
 
 // Whether two colliders belong to dynamic bodies, whose shapes are convex, and overlap.
-bool Overlap(const WorldState& world, uint32_t colliderA, uint32_t colliderB) {
+bool ShapesOverlap(const WorldState& world, uint32_t colliderA, uint32_t colliderB) {
     if (!AreDynamic(world, colliderA, colliderB)) return false;
     const ConvexShape& a = static_cast<const ConvexShape&>(*world.colliders.shapes[colliderA].shape);
     const ConvexShape& b = static_cast<const ConvexShape&>(*world.colliders.shapes[colliderB].shape);
@@ -88,11 +88,11 @@ bool OverlapDeeply(const WorldState& world, uint32_t colliderA, uint32_t collide
 }
 
 bool OverlapsAnother(const WorldState& world, const JointedGroups& groups, uint32_t body) {
-    return OverlapsAtLeast<1>(world, groups, body, Overlap);
+    return OverlapsAtLeast<1>(world, groups, body, ShapesOverlap);
 }
 
 bool OverlapsMany(const WorldState& world, const JointedGroups& groups, uint32_t body) {
-    return OverlapsAtLeast<kManyOverlaps>(world, groups, body, Overlap);
+    return OverlapsAtLeast<kManyOverlaps>(world, groups, body, ShapesOverlap);
 }
 
 bool OverlapsManyDeeply(const WorldState& world, const JointedGroups& groups, uint32_t body) {
