@@ -72,6 +72,7 @@ struct ContactBatch {
     Real relaxedImpulse;            // N s, sum of the normal impulses after the last relaxing pass
 
     // Only where `bounces`.
+    Real restitution;               // 0..1
     Real bounceSpeed[kPoints];      // m/s that the point must leave with; 0: none
     Real largestImpulse[kPoints];   // N s over the substeps: the point was hit where it is positive
     Real closing;                   // m/s2 that gravity and forces press the bodies together by, along the normal

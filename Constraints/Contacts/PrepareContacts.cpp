@@ -116,6 +116,7 @@ void PrepareBounces(ContactBatch<N, kFixedB>& batch, Wide<N> restitution, const 
     }
     const Vec3<Real> acceleration(Real::Load(differences[0]), Real::Load(differences[1]), Real::Load(differences[2]));
     const Real closing = batch.closing = Dot<Real>(acceleration, batch.normal);
+    batch.restitution = restitution;
     batch.work = Real(0.0f);
     Real left(0.0f);
     for (int i = 0; i < batch.pointCount; ++i) {

@@ -11,11 +11,12 @@ namespace fulcrum {
 
 inline constexpr size_t kPushWork = 7;
 
-// Calls visit(lane, push work of A, of B or null) for the contacts of a batch with restitution.
+// Calls visit(lane, push work of A, of B or null) for the contacts of a batch with restitution, whatever others share it.
 template <int N, bool kFixedB, class Visit>
 void VisitPushWork(const ContactBatch<N, kFixedB>& batch, float* rows, Visit&& visit) {
     if (!batch.bounces) return;
     for (int i = 0; i < batch.count; ++i) {
+        if (!(batch.restitution[i] > 0.0f)) continue;
         float* ofB = nullptr;
         if constexpr (!kFixedB) ofB = rows + 8 * size_t(batch.sideB.body[i]) + kPushWork;
         visit(i, rows + 8 * size_t(batch.bodyA[i]) + kPushWork, ofB);

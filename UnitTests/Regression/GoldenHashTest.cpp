@@ -11,9 +11,9 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0x4a3c189d8fe6502aull;
+constexpr uint64_t kGoldenHash = 0xcea5d77860fd8fbdull;
 constexpr uint64_t kGoldenHashOfJoints = 0xfd8aaecf6dee0546ull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x66c22f5e3b879275ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0xe873fa8a8a6a892eull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0xb00990b7bc663b12ull;
 
 std::string Hex(uint64_t number) {
