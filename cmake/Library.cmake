@@ -31,8 +31,8 @@ function(fulcrum_library_properties target)
     SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   if(FULCRUM_UNITY)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 10)
-    # Clang says where a local name in a header shadows one of a file before it; GCC, which does not, goes on asking.
-    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:Clang,AppleClang>:-Wno-shadow>)
+    # A local name would shadow one that another file of the same unit has at namespace scope.
+    target_compile_options(${target} PRIVATE -Wno-shadow)
   endif()
   # The five find each other wherever they are installed.
   if(NOT DEFINED CMAKE_INSTALL_RPATH)

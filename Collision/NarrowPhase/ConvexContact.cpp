@@ -267,6 +267,7 @@ bool TryParallelEdges(const SupportPair& pair, const SupportingFace& faceA, cons
 // To the points of edges or vertices, those of the faces beside them that lie within reach along the manifold's normal.
 void AddFacesAhead(const SupportPair& pair, const SupportingFace& faceA, const SupportingFace& faceB, const ContactTolerances& tolerances,
                    Manifold& manifold) {
+    if (!tolerances.facesAhead || manifold.pointCount == 0) return;
     const Vector3 n = manifold.normal;
     const float cosineA = faceA.count > 2 ? Dot(faceA.normal, n) : 0, cosineB = faceB.count > 2 ? -Dot(faceB.normal, n) : 0;
     const float cosine = Max(cosineA, cosineB);
@@ -301,7 +302,7 @@ void BuildConvexContact(const SupportPair& pair, const KnownContact& known, cons
     if (known.separation > tolerances.reach) return;
     if (!TryParallelEdges(pair, faceA, faceB, known, tolerances, manifold))
         AddPoint(pair, known.onA, known.separation, VertexFeature(true, 0), manifold);
-    if (tolerances.facesAhead && manifold.pointCount > 0) AddFacesAhead(pair, faceA, faceB, tolerances, manifold);
+    AddFacesAhead(pair, faceA, faceB, tolerances, manifold);
 }
 
 CachedFace TryCachedFace(const SupportPair& pair, const ContactTolerances& tolerances, const PairCache& cache, Manifold& manifold) {

@@ -33,7 +33,8 @@ Vector3 AxisOfLeastDepth(const SupportPair& pair, const RelativePose& bInA, cons
     // Against a shape so much larger that the cores overlap by no more than it rounds, GJK's simplex is all that tells the surface.
     using Real = SupportVertex::Real;
     const auto& simplex = gjk.simplex;
-    for (int i = 0; simplex.count >= 3 && i < simplex.count; ++i) {
+    const int faces = simplex.count == 4 ? 4 : simplex.count == 3 ? 1 : 0;
+    for (int i = 0; i < faces; ++i) {
         const Vec3<Real> first = simplex.vertices[i].w, second = simplex.vertices[(i + 1) % simplex.count].w, third = simplex.vertices[(i + 2) % simplex.count].w;
         const Vec3<Real> normal = Cross<Real>(Vec3<Real>(second - first), Vec3<Real>(third - first));
         const Real length = std::sqrt(Dot<Real>(normal, normal));

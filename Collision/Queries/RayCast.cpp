@@ -13,15 +13,15 @@ namespace fulcrum {
 namespace {
 
 // The ray in the frame of a compound's children, as wide as its turning is inexact.
-TreeRay InFrameOfTree(const Ray& ray, const CompoundShape& compound, const Pose& pose) {
+TreeRay InFrameOfTree(const Ray& ray, double length, const CompoundShape& compound, const Pose& pose) {
     const Quat<double> back{-pose.rotation.x, -pose.rotation.y, -pose.rotation.z, pose.rotation.w};
-    const Position displacement = ray.displacement.cast<double>();
     const Position origin = Rotate<double>(back, Position(ray.origin - pose.position)) - compound.Origin().cast<double>();
     // Beyond the compound it does not matter how far a long ray strays.
     const double reach = double{compound.OuterRadius()} + std::sqrt(Dot<double>(origin, origin));
-    const float slack = static_cast<float>(1e-6 * (reach + std::min(reach, std::sqrt(Dot<double>(displacement, displacement)))));
+    const float slack = static_cast<float>(1e-6 * (reach + std::min(reach, length)));
     constexpr double kMost = std::numeric_limits<float>::max();
-    return TreeRay(origin, Vector3(Rotate<double>(back, displacement).cwiseMax(-kMost).cwiseMin(kMost).cast<float>()), Vector3::Constant(slack));
+    const Position displacement = Rotate<double>(back, ray.displacement.cast<double>()).cwiseMax(-kMost).cwiseMin(kMost);
+    return TreeRay(origin, displacement.cast<float>(), Vector3::Constant(slack));
 }
 
 }  // namespace
@@ -152,7 +152,7 @@ bool RayCaster::CastClosest(const Shape& shape, const Pose& pose, const RayCastS
     if (!shape.IsCompound()) return false;  // empty
 
     const CompoundShape& compound = static_cast<const CompoundShape&>(shape);
-    const TreeRay ray = InFrameOfTree(ray_, compound, pose);
+    const TreeRay ray = InFrameOfTree(ray_, length_, compound, pose);
     bool found = false;
     compound.Tree().CastRay(ray, limit, [&](uint32_t child) {
         const CompoundShape::Child& piece = compound.Children()[child];
@@ -192,7 +192,7 @@ bool RayCaster::Search(const Shape& shape, const Pose& pose, const RayCastSettin
     bool goOn = true;
     if (shape.IsCompound()) {
         const CompoundShape& compound = static_cast<const CompoundShape&>(shape);
-        const TreeRay ray = InFrameOfTree(ray_, compound, pose);
+        const TreeRay ray = InFrameOfTree(ray_, length_, compound, pose);
         float limit = settings.maxFraction;
         compound.Tree().CastRay(ray, limit, [&](uint32_t child) {
             const CompoundShape::Child& piece = compound.Children()[child];

@@ -29,7 +29,7 @@ struct ShapeCastSettings {
 
 struct ShapeHit {
     float fraction = 0;                     // of the motion
-    SubShape subShape{};                      // of the shape at rest
+    SubShape subShape{};                    // of the shape at rest
     Vector3 normal = Vector3::Zero();       // unit, from the shape at rest towards the one that moves
     Position position = Position::Zero();   // m, on the surface of the shape at rest
     float depth = 0;                        // m, >= 0: how far they overlap at the start

@@ -44,6 +44,7 @@ void AddPushWork(const ContactBatch<N, kFixedB>& batch, float* rows) {
 // From what contacts have taken, and may give back.
 template <int N, bool kFixedB>
 void SubtractPushWork(ContactBatch<N, kFixedB>& batch, float* rows) {
+    if (!batch.bounces) return;
     alignas(64) float work[N];
     batch.work.Store(work);
     VisitPushWork(batch, rows, [&](int i, float* a, float* b) {

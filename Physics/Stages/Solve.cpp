@@ -184,18 +184,16 @@ private:
             case Verb::FirstVelocities:
             case Verb::Velocities: SolveContactVelocities(batch, states, ContactSettingsAt(substep, 0.5f)); break;
             case Verb::FirstRelax:
-                if (batch.bounces) NoteLift(batch, h_);
+                NoteLift(batch, h_);
                 [[fallthrough]];
             case Verb::Relax: RelaxContacts(batch, states, ContactSettingsAt(substep, 1)); break;
             case Verb::Separations:
-                if (batch.bounces) NoteLift(batch, h_);
+                NoteLift(batch, h_);
                 UpdateSeparations(batch, states, ContactSettingsAt(substep, 1));
                 break;
             case Verb::ClearPushWork: ClearPushWork(batch, world_.bodies.unconstrained.data()->row); break;
             case Verb::AddPushWork: AddPushWork(batch, world_.bodies.unconstrained.data()->row); break;
-            case Verb::SubtractPushWork:
-                if (batch.bounces) SubtractPushWork(batch, world_.bodies.unconstrained.data()->row);
-                break;
+            case Verb::SubtractPushWork: SubtractPushWork(batch, world_.bodies.unconstrained.data()->row); break;
             case Verb::Restitution: RestituteContacts(batch, states, dt_); break;
             case Verb::IntegrateVelocities:
             case Verb::IntegratePoses:

@@ -1,8 +1,8 @@
 // Continuous collision moves a body back to where it hit. Its velocities must be those of that time, and a hit must be one of the body
 // that turns: else every hit makes energy.
 #include <Fulcrum/Collision/Shapes/Plane.h>
-#include <Fulcrum/Collision/Shapes/TriangleMesh.h>
 #include <Fulcrum/UnitTests/Support/Cases.h>
+#include <Fulcrum/UnitTests/Support/Drops.h>
 #include <Fulcrum/UnitTests/Support/RandomPoses.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
@@ -29,19 +29,6 @@ std::vector<Case> Cases() {
         {HullOf({{0.4f, -0.2f, 0}, {-0.3f, -0.2f, 0.3f}, {-0.3f, -0.2f, -0.3f}, {0, 0.4f, 0}}), 0},
         {HullOf({{0.5f, 0, 0}, {-0.5f, 0, 0.1f}, {0, 0, 0.6f}, {0, 0.04f, -0.5f}, {0.1f, -0.05f, 0}}), 0},
     };
-}
-
-ShapePtr HillsOf(double height) {
-    constexpr uint32_t kCells = 40;
-    std::vector<Vector3> vertices;
-    std::vector<uint32_t> indices;
-    for (uint32_t i = 0; i <= kCells; ++i)
-        for (uint32_t k = 0; k <= kCells; ++k) {
-            vertices.emplace_back(2.0f * static_cast<float>(i) - kCells, (i + 2 * k) % 5 == 0 ? static_cast<float>(height) : 0.0f, 2.0f * static_cast<float>(k) - kCells);
-            const uint32_t a = i * (kCells + 1) + k, b = a + kCells + 1;
-            if (i < kCells && k < kCells) indices.insert(indices.end(), {a, a + 1, b, b, a + 1, b + 1});
-        }
-    return TriangleMesh::Create({.vertices = vertices, .indices = indices}).Value();
 }
 
 double EnergyOf(TestWorld& world, BodyId id, double least) {
@@ -80,7 +67,7 @@ double MostEnergy(const ShapePtr& ground, const Case& dropped, ContinuousCollisi
 }
 
 TEST(ContinuousEnergy, NothingDroppedGainsAny) {
-    const ShapePtr grounds[] = {BoxOf(100, 1, 100), Plane::Create(Vector3(0, 1, 0), 0).Value(), HillsOf(0), HillsOf(0.5)};
+    const ShapePtr grounds[] = {BoxOf(100, 1, 100), Plane::Create(Vector3(0, 1, 0), 0).Value(), HillyGround(0), HillyGround(0.5f)};
     for (const ShapePtr& ground : grounds)
         for (const Case& dropped : Cases()) {
             // The box has its top at 1 m, so that all there is is above the reference.

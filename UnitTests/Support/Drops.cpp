@@ -25,6 +25,9 @@ T Must(Result<T> result) {
     if (!result) std::abort();
     return std::move(result.Value());
 }
+void Must(const Status& status) {
+    if (!status) std::abort();
+}
 
 // `longest`: times this for rods.
 ShapePtr RandomShape(RandomPoses& random, float longest) {
@@ -43,21 +46,6 @@ ShapePtr RandomShape(RandomPoses& random, float longest) {
     return Must(ConvexHull::Create(points));
 }
 
-// Cells of 2 m, of which some corners stand up.
-ShapePtr Ground(bool hilly) {
-    constexpr uint32_t kCells = 40;
-    std::vector<Vector3> vertices;
-    std::vector<uint32_t> indices;
-    for (uint32_t i = 0; i <= kCells; ++i)
-        for (uint32_t k = 0; k <= kCells; ++k) {
-            const float height = hilly && (i + 2 * k) % 5 == 0 ? 0.5f : 0.0f;
-            vertices.emplace_back(2.0f * static_cast<float>(i) - kHalfGround, height, 2.0f * static_cast<float>(k) - kHalfGround);
-            const uint32_t a = i * (kCells + 1) + k, b = a + kCells + 1;
-            if (i < kCells && k < kCells) indices.insert(indices.end(), {a, a + 1, b, b, a + 1, b + 1});
-        }
-    return Must(TriangleMesh::Create({.vertices = vertices, .indices = indices}));
-}
-
 class DropWorld {
 public:
     explicit DropWorld(const DropSettings& settings) : settings_(settings), material_{.friction = settings.friction, .restitution = settings.restitution} {
@@ -68,7 +56,7 @@ public:
         system_ = Must(PhysicsSystem::Create(system, nullptr));
         if (settings.ground == DropGround::Air) return;
         const bool isFloor = settings.ground == DropGround::Floor;
-        const ShapePtr shape = isFloor ? ShapePtr(Must(Box::Create(Vector3(kHalfGround, 1, kHalfGround)))) : Ground(settings.ground == DropGround::Hills);
+        const ShapePtr shape = isFloor ? ShapePtr(Must(Box::Create(Vector3(kHalfGround, 1, kHalfGround)))) : HillyGround(settings.ground == DropGround::Hills ? 0.5f : 0.0f);
         Must(system_->Bodies().Create({.shape = shape, .motion = MotionType::Static, .position = {0, isFloor ? -1.0 : 0.0, 0}, .material = material_}));
     }
 
@@ -97,14 +85,6 @@ public:
     }
 
 private:
-    static void Must(const Status& status) {
-        if (!status) std::abort();
-    }
-    template <class T>
-    static T Must(Result<T> result) {
-        return testing::Must(std::move(result));
-    }
-
     // In the air all fly towards the middle of their group; else they start one above the other.
     // Groups do not see each other.
     BodyId AddBody(RandomPoses& random, const Position& middle, int i) {
@@ -150,6 +130,19 @@ private:
 };
 
 }  // namespace
+
+ShapePtr HillyGround(float height) {
+    constexpr uint32_t kCells = 40;
+    std::vector<Vector3> vertices;
+    std::vector<uint32_t> indices;
+    for (uint32_t i = 0; i <= kCells; ++i)
+        for (uint32_t k = 0; k <= kCells; ++k) {
+            vertices.emplace_back(2.0f * static_cast<float>(i) - kHalfGround, (i + 2 * k) % 5 == 0 ? height : 0.0f, 2.0f * static_cast<float>(k) - kHalfGround);
+            const uint32_t a = i * (kCells + 1) + k, b = a + kCells + 1;
+            if (i < kCells && k < kCells) indices.insert(indices.end(), {a, a + 1, b, b, a + 1, b + 1});
+        }
+    return Must(TriangleMesh::Create({.vertices = vertices, .indices = indices}));
+}
 
 std::string NameOf(const DropSettings& s) {
     constexpr const char *kGrounds[] = {"floor", "mesh", "hills", "air"}, *kKinds[] = {"Off", "Linear", "LinearAndAngular"};

@@ -149,18 +149,22 @@ TEST(ContactBatch, IsTheSequenceOfItsPartsAgainstAFixedBody) {
     for (uint32_t seed = 1; seed <= 10; ++seed) CompareWithParts<true>(seed);
 }
 
+Eigen::Matrix3d InertiaOf(const InverseMass<float>& mass) {
+    Eigen::Matrix3d inverse;
+    const auto& i = mass.inertia;
+    inverse << double(i.xx), double(i.xy), double(i.xz), double(i.xy), double(i.yy), double(i.yz), double(i.xz), double(i.yz), double(i.zz);
+    return inverse.inverse();
+}
+
 // Momentum of both bodies about the world's origin, in double.
 void Momentum(const RandomContacts& contacts, uint32_t contact, Position& linear, Position& angular) {
     linear = angular = Position::Zero();
     for (uint32_t body = 2 * contact; body < 2 * contact + 2; ++body) {
         const Twist<float> v = contacts.VelocityOf(body);
         const InverseMass<float> m = contacts.MassOf(body);
-        Eigen::Matrix3d inverse;
-        const auto& i = m.inertia;
-        inverse << double(i.xx), double(i.xy), double(i.xz), double(i.xy), double(i.yy), double(i.yz), double(i.xz), double(i.yz), double(i.zz);
         const Position p = v.linear.cast<double>() / double(m.mass);
         linear += p;
-        angular += inverse.inverse() * v.angular.cast<double>() + contacts.PoseOf(body).position.cross(p);
+        angular += InertiaOf(m) * v.angular.cast<double>() + contacts.PoseOf(body).position.cross(p);
     }
 }
 
@@ -185,11 +189,8 @@ double KineticEnergy(const RandomContacts& contacts, uint32_t contact) {
     for (uint32_t body = 2 * contact; body < 2 * contact + 2; ++body) {
         const Twist<float> v = contacts.VelocityOf(body);
         const InverseMass<float> m = contacts.MassOf(body);
-        Eigen::Matrix3d inverse;
-        const auto& i = m.inertia;
-        inverse << double(i.xx), double(i.xy), double(i.xz), double(i.xy), double(i.yy), double(i.yz), double(i.xz), double(i.yz), double(i.zz);
         const Position w = v.angular.cast<double>();
-        sum += 0.5 * v.linear.cast<double>().squaredNorm() / double(m.mass) + 0.5 * w.dot(inverse.inverse() * w);
+        sum += 0.5 * v.linear.cast<double>().squaredNorm() / double(m.mass) + 0.5 * w.dot(InertiaOf(m) * w);
     }
     return sum;
 }
