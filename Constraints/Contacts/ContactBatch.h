@@ -132,6 +132,12 @@ void RelaxContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const Con
 template <int N, bool kFixedB>
 void UpdateSeparations(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
 
+// One pass over the pseudo-velocities, in the velocities' place in `pseudo`, by which joints that are far apart are pulled together
+// (PullJoints): points may close their gaps within the substep and approach no further.
+// Sets BodyState::nearFixed where the second bodies are fixed.
+template <int N, bool kFixedB>
+void PullContacts(const ContactBatch<N, kFixedB>& batch, BodyState* pseudo, const ContactSolveSettings& settings);
+
 // Notes what impulses have done against gravity and forces, where bodies have just moved with them for a substep of `h` seconds.
 template <int N, bool kFixedB>
 void NoteLift(ContactBatch<N, kFixedB>& batch, float h);

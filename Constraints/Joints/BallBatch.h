@@ -32,8 +32,8 @@ struct alignas(64) BallBatch {
 
     // Of lanes that are far apart, as in JointBatch.
     bool far;                            // some lane is
-    Real isFar;                          // 1: this one is
-    Vec3<Real> pull, pulled;             // m/s; N s: the impulse of it in this substep
+    Real isFar, follows;                 // 1: this one is; 0.5: its bodies are pulled, be it by others
+    Vec3<Real> pull;                     // m/s
 };
 
 // As those of JointBatch.h. Of bodies that are not kinematic they read how far they turned as BodyState::halfTurn says.
@@ -48,6 +48,9 @@ template <int N>
 void RelaxJoints(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings);
 template <int N>
 void UpdateJoints(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings);
+// The same with the pseudo-velocities of joints that are far apart.
+template <int N>
+void PullJoints(BallBatch<N>& batch, BodyState* pseudo, const JointSolveSettings& settings);
 template <int N>
 void StoreJoints(const BallBatch<N>& batch, JointRecord* records, float dt, float impulseScale);
 

@@ -28,7 +28,7 @@ struct alignas(32) JointRecord {
     // On B, world axes: the locks' own impulses of the last substep, N s and N m s. And as averages over the last step, N and
     // N m: those of the locks with their answer to the rows, and of locks and rows together, about the anchor.
     float ownImpulse[3] = {0, 0, 0}, ownAngularImpulse[3] = {0, 0, 0};
-    float wasFar = 0, ownSpare = 0;  // 1: it was pulled in the last step, being far apart
+    float wasPulled = 0, ownSpare = 0;  // 1: it was far apart in the last step; 0.5: it was pulled along by others that were
     float lockForce[3] = {0, 0, 0}, lockTorque[3] = {0, 0, 0}, lockSpare[2] = {0, 0};
     float totalForce[3] = {0, 0, 0}, totalTorque[3] = {0, 0, 0}, totalSpare[2] = {0, 0};
 
@@ -58,6 +58,7 @@ struct JointRows {
     Real turnsWithA;                     // 1: J turns with A from substep to substep
     Real radial;                         // 1: the row acts along the line between the anchors and turns with it
     Real about;                          // 1: its error is an angle
+    Real pulled;                         // N s or N m s that changed pseudo-velocities, see PullJoints
     uint8_t slot[N];                     // 0xFF: no row
 };
 
@@ -99,13 +100,11 @@ struct JointBatch {
     Sym3<Real> coupledPoint;             // S^-1
     Sym2<Real> coupledLine;
 
-    // Of the lanes that are far apart (SolveJoints.cpp, Pull): what their locks are pulled by in place of a bias, and the velocities
-    // that this gave the bodies in this substep.
+    // Of the lanes that are far apart: what their locks are pulled by in place of a bias, see PullJoints.
     bool far;                            // some lane is
-    bool isPulled;                       // the bodies' velocities are those with the pull
     Real isFar;                          // 1: this one is
+    Real follows;                        // 0.5: its bodies are pulled, be it by others
     Vec3<Real> pullLinear, pullAngular;  // m/s, rad/s
-    Twist<Real> pulledA, pulledB;
 };
 
 // Rotation vectors of a step up to this, rad, are put together as rotations, longer ones added.
@@ -123,13 +122,14 @@ struct JointSolveSettings {
     RowSoftness<float> softness;
     float maxPushSpeed;      // m/s and rad/s
     bool continues;          // the first velocity iteration of a substep that is not the first of its step
-    bool firstPass;          // the first relaxing pass of a substep
+    bool firstPass;          // the first relaxing pass of a substep, or the first of PullJoints
 };
 
 // What Prepare noticed.
 struct JointFindings {
     float linearError = 0, angularError = 0;  // m, rad: the largest
     uint32_t linearJoint = ~0u, angularJoint = ~0u;
+    bool far = false;                           // some are pulled, see PullJoints
 };
 
 // Fills the batch whose lanes, fixed and kinematic bits, locks and room for rows are set.
@@ -155,6 +155,11 @@ void RelaxJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSo
 // The set-up of RelaxJoints alone, for solves without position iterations.
 template <int N>
 void UpdateJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings);
+
+// One pass over the pseudo-velocities, in the velocities' place in `pseudo`, by which joints that are far apart are pulled together: these
+// give them, the others hold against them.
+template <int N>
+void PullJoints(JointBatch<N>& batch, BodyState* pseudo, const JointSolveSettings& settings);
 
 // Writes the impulses back, divided by `impulseScale`, the forces of the step, dt seconds long, and how far bodies turned.
 template <int N>

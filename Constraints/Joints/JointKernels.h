@@ -102,7 +102,7 @@ FULCRUM_FORCE_INLINE void ScatterRecordRow(const uint32_t (&joints)[N], int coun
 }
 
 // Where between two anchors a point joint's impulse and the answer to it act, as a part of the way from A's to B's. They act at one
-// point, so that angular momentum stays however far apart the anchors are: halfway, or at the anchor of the only body that moves.
+// point, so that angular momentum stays: halfway, or at the anchor of the only body that moves.
 template <int N>
 FULCRUM_FORCE_INLINE Wide<N> MeetingShare(uint32_t fixedA, uint32_t fixedB) {
     Wide<N> share(0.5f);
@@ -195,7 +195,8 @@ FULCRUM_FORCE_INLINE Real RowMotion(const JointRows<Real::kCount>& row, const Tw
            Dot<Real>(row.a.angular, a.angular);
 }
 
-// Sets the parts up, hard and without bias, and returns the errors.
+// Sets the parts up, hard and without bias, and returns the errors. Where joints are far apart their velocities are held as if the
+// anchors were at one place: with levers as long as the gap they would whirl small bodies about.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE JointErrors<Wide<N>> SetUpParts(JointBatch<N>& batch, const JointPlace<Wide<N>>& place) {
     using Real = Wide<N>;
@@ -214,14 +215,19 @@ FULCRUM_FORCE_INLINE JointErrors<Wide<N>> SetUpParts(JointBatch<N>& batch, const
     if constexpr (kLinear == LinearLock::Point) {
         const Real share = MeetingShare<N>(batch.fixedA, batch.fixedB);
         errors.point = place.offset;
-        batch.point.CalculateProperties(batch.massA, batch.massB, Vec3<Real>(place.armA + place.offset * share),
-                                        Vec3<Real>(place.armB - place.offset * (Real(1.0f) - share)), Zero<Real>());
+        const Vec3<Real> between = batch.far ? ZeroUnless<Real>(batch.isFar <= Real(0.5f), place.offset) : place.offset;
+        batch.point.CalculateProperties(batch.massA, batch.massB, Vec3<Real>(place.armA + between * share),
+                                        Vec3<Real>(place.armB - between * (Real(1.0f) - share)), Zero<Real>());
     }
     if constexpr (kLinear == LinearLock::Line) {
         const Vec3<Real> n1 = Straightened<Real>(place.lineNormal, place.line);
         const Vec3<Real> n2 = Cross<Real>(place.line, n1);
         errors.line = Vec2<Real>(Dot<Real>(place.offset, n1), Dot<Real>(place.offset, n2));
-        batch.line.CalculateProperties(batch.massA, batch.massB, {Vec3<Real>(place.armA + place.offset), place.armB, n1, n2}, none);
+        const Vec3<Real> along = place.line * Dot<Real>(place.offset, place.line);
+        Vec3<Real> reach = place.offset;
+        if (batch.far)
+            for (int k = 0; k < 3; ++k) reach[k] = Select(batch.isFar > Real(0.5f), along[k], reach[k]);
+        batch.line.CalculateProperties(batch.massA, batch.massB, {Vec3<Real>(place.armA + reach), place.armB, n1, n2}, none);
     }
     return errors;
 }
@@ -475,23 +481,28 @@ FULCRUM_FORCE_INLINE void SetUpRows(JointBatch<N>& batch) {
     }
 }
 
-// Joints are far apart where they are to be pushed at more than this part of the fastest push, or by 5 cm or 0.05 rad in a substep, and
-// stay so until all but a fiftieth is gone: the push of the last decimetre would leave energy behind, see Pull in SolveJoints.cpp.
+// Joints are far apart where a distance asks for more than this part of the fastest push, or for 5 cm in a substep, and stay so until all but
+// a fiftieth of it is gone, and as much of their angles: the push of the last decimetre would leave energy behind. Joints that are pulled
+// along by others are far apart from a fifth on.
 inline float FarPush(const JointSolveSettings& settings) {
-    constexpr float kFarPart = 0.5f, kFarWay = 0.05f;  // m or rad
+    constexpr float kFarPart = 0.5f, kFarWay = 0.05f;  // m
     return std::fmin(kFarPart, kFarWay * settings.inverseDt / settings.maxPushSpeed);
 }
-inline constexpr float kNearPart = 0.02f;
+inline constexpr float kNearPart = 0.02f, kFollowPart = 0.2f;
+
+// JointRecord::wasPulled.
+inline constexpr float kWasFar = 1.0f, kFollowed = 0.5f;
 
 // By lanes, as parts of the fastest push.
 template <class Real>
-FULCRUM_FORCE_INLINE Real FarPush(const Real& wasFar, const JointSolveSettings& settings) {
+FULCRUM_FORCE_INLINE Real FarPush(const Real& wasPulled, const JointSolveSettings& settings) {
     const float far = FarPush(settings);
-    return Select(wasFar > Real(0.5f), Real(kNearPart * far), Real(far));
+    const Real following = Select(wasPulled >= Real(kFollowed), Real(kFollowPart * far), Real(far));
+    return Select(wasPulled >= Real(kWasFar), Real(kNearPart * far), following);
 }
 
 // How fast joints that are far apart are pulled: as fast as any, and from afar so much faster that all are there within some seconds.
-// No harm comes of it, because it is taken back.
+// No harm comes of it, because no velocity sees it.
 template <class Real>
 FULCRUM_FORCE_INLINE Real PullSpeed(const Real& error, const JointSolveSettings& settings) {
     constexpr float kMost = 3.0f, kPerSecond = 0.75f;

@@ -168,34 +168,40 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
         for (uint32_t i = 0; i < lists[lane].count; ++i) SoftenLane(batch, batch.rows[i], lane, lists[lane].rows[i], settings);
 }
 
-// Which joints are so far apart that they are pulled, see Pull.
+// Which joints are so far apart that they are pulled, see PullJoints.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-void FindFar(JointBatch<N>& batch, const JointErrors<Wide<N>>& errors, const Wide<N>& wasFar, const JointSolveSettings& settings) {
+void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const JointErrors<Wide<N>>& errors, const Wide<N>& wasPulled,
+             const JointSolveSettings& settings) {
     using Real = Wide<N>;
-    const Real farPart(FarPush(settings)), least = FarPush<Real>(wasFar, settings), most(settings.maxPushSpeed);
-    Real push(0.0f);
-    const auto note = [&](const auto& error) {
-        for (int k = 0; k < error.size(); ++k) push = Max(push, Abs(error[k]) * Real(settings.pushRate));
+    const Real farPart(FarPush(settings)), least = FarPush<Real>(wasPulled, settings), zero(0.0f);
+    // Parts of the fastest push that distances and angles ask for.
+    Real distance(0.0f), angle(0.0f);
+    const Real rate(settings.pushRate / settings.maxPushSpeed);
+    const auto note = [&](Real& push, const auto& error) {
+        for (int k = 0; k < error.size(); ++k) push = Max(push, Abs(error[k]) * rate);
     };
-    if constexpr (kAngular == AngularLock::All) note(errors.rotation);
-    if constexpr (kAngular == AngularLock::Axis) note(errors.hinge);
-    if constexpr (kLinear == LinearLock::Point) note(errors.point);
-    if constexpr (kLinear == LinearLock::Line) note(errors.line);
-    auto isFar = push > least * most, isDistant = push > farPart * most;
+    if constexpr (kLinear == LinearLock::Point) note(distance, errors.point);
+    if constexpr (kLinear == LinearLock::Line) note(distance, errors.line);
+    if constexpr (kAngular == AngularLock::All) note(angle, errors.rotation);
+    if constexpr (kAngular == AngularLock::Axis) note(angle, errors.hinge);
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         const JointRows<N>& row = batch.rows[i];
-        const Real rowPush = Select(row.error <= row.openAbove, Real(Abs(row.error) * row.pushRate), Real(0.0f));
-        isFar = isFar | (rowPush > row.mostPush * least);
-        isDistant = isDistant | (rowPush > row.mostPush * farPart);
+        const Real linear = Dot<Real>(row.a.linear, row.a.linear) + Dot<Real>(row.b.linear, row.b.linear);
+        const auto moves = (linear > zero) & (row.about <= zero), acts = (row.error <= row.openAbove) & (row.mostPush > zero);
+        const Real push = Select(acts, Abs(row.error) * row.pushRate / Select(acts, row.mostPush, Real(1.0f)), zero);
+        distance = Max(distance, Select(moves, push, zero));
+        angle = Max(angle, Select(moves, zero, push));
     }
+    // Angles alone are no reason: no lever grows with them, and in a pile hinges bend beyond their limits.
+    const auto isFar = (distance > least) | ((angle > least) & (wasPulled >= Real(kWasFar))), isDistant = Max(distance, angle) > farPart;
     batch.far = isFar.Any();
-    batch.isPulled = false;
     if (!batch.far) return;
     batch.isFar = Select(isFar, Real(1.0f), Real(0.0f));
     batch.pullLinear = batch.pullAngular = Zero<Real>();
-    batch.pulledA = batch.pulledB = {};
+    SetUpParts<kLinear, kAngular>(batch, place);
+    SetUpCoupling<kLinear, kAngular>(batch);
     // What held the bodies where they were would act with other levers here.
-    const auto isNew = isFar & (wasFar <= Real(0.5f));
+    const auto isNew = isFar & (wasPulled < Real(kFollowed));
     const auto forget = [&](auto& part) {
         auto total = part.GetTotalLambda();
         for (int k = 0; k < total.size(); ++k) total[k] = Select(isNew, Real(0.0f), Real(total[k]));
@@ -243,6 +249,8 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
     batch.startArmB = place.armB;
     batch.startOffset = place.offset;
     batch.earlierLinear = batch.earlierAngular = Zero<Real>();
+    batch.far = false;
+    batch.follows = Real(0.0f);
     const Real scale(settings.impulseScale);
     const Vec3<Real> linearImpulse = Vec3<Real>(impulses[0], impulses[1], impulses[2]) * scale;
     const Vec3<Real> angularImpulse = Vec3<Real>(impulses[3], impulses[4], impulses[5]) * scale;
@@ -281,7 +289,8 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
         }
         SetUpCoupling<linear, angular>(batch);
         FillRows<linear, angular>(batch, records, types, bodies, settings);
-        FindFar<linear, angular>(batch, errors, impulses[6], settings);
+        FindFar<linear, angular>(batch, place, errors, impulses[6], settings);
+        findings.far |= batch.far;
         Soften<linear, angular>(batch, errors, settings);
     });
 }
@@ -341,7 +350,7 @@ LockImpulses<Wide<N>> StepImpulses(const JointBatch<N>& batch) {
 // Writes a wrench times `scale` to a row of the records, and what stands beside it.
 template <int N>
 void ScatterWrench(const JointBatch<N>& batch, JointRecord* records, int row, const Wrench<N>& wrench, float scale,
-                   const Wide<N>& wasFar = Wide<N>(0.0f)) {
+                   const Wide<N>& wasPulled = Wide<N>(0.0f)) {
     using Real = Wide<N>;
     const Real factor(scale);
     Real values[8];
@@ -349,7 +358,7 @@ void ScatterWrench(const JointBatch<N>& batch, JointRecord* records, int row, co
         values[k] = wrench.force[k] * factor;
         values[3 + k] = wrench.torque[k] * factor;
     }
-    values[6] = wasFar;
+    values[6] = wasPulled;
     values[7] = Real(0.0f);
     ScatterRecordRow<N>(batch.joint, batch.count, records, row, values);
 }
@@ -377,7 +386,7 @@ void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* co
         total.force -= ZeroUnless<Real>(acts, Vec3<Real>(rows.b.linear * -impulse));
         total.torque -= ZeroUnless<Real>(acts, Vec3<Real>((rows.b.angular - Cross<Real>(batch.startArmB, rows.b.linear)) * -impulse));
     }
-    ScatterWrench(batch, records, JointRecord::kOwn, own, inverse, batch.far ? batch.isFar : Real(0.0f));
+    ScatterWrench(batch, records, JointRecord::kOwn, own, inverse, batch.far ? Max(batch.isFar, batch.follows) : batch.follows);
     ScatterWrench(batch, records, JointRecord::kLocks, locks, perSecond);
     ScatterWrench(batch, records, JointRecord::kTotal, total, perSecond);
     if (batch.rowRoom == 0) return;

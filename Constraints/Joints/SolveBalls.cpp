@@ -72,13 +72,14 @@ struct BallPlace {
     Vec3<Real> armA, armB, offset;
 };
 
-// Moves the arms to where impulses act.
+// Moves the arms to where impulses act: where joints are far apart, as if the anchors were at one place.
 template <int N>
 FULCRUM_FORCE_INLINE void MeetBetween(const BallBatch<N>& batch, BallPlace<Wide<N>>& place) {
     using Real = Wide<N>;
     const Real share = MeetingShare<N>(batch.fixedA, batch.fixedB);
-    place.armA += place.offset * share;
-    place.armB -= place.offset * (Real(1.0f) - share);
+    const Vec3<Real> between = batch.far ? ZeroUnless<Real>(batch.isFar <= Real(0.5f), place.offset) : place.offset;
+    place.armA += between * share;
+    place.armB -= between * (Real(1.0f) - share);
 }
 
 template <bool kRound, int N>
@@ -115,42 +116,23 @@ FULCRUM_FORCE_INLINE void SetPush(BallBatch<N>& batch, const Vec3<Wide<N>>& offs
     }
 }
 
+// Which joints are so far apart that they are pulled, see PullJoints.
 template <int N>
-FULCRUM_FORCE_INLINE void FindFar(BallBatch<N>& batch, const Vec3<Wide<N>>& offset, const Wide<N>& wasFar, const JointSolveSettings& settings) {
+FULCRUM_FORCE_INLINE void FindFar(BallBatch<N>& batch, const Vec3<Wide<N>>& offset, const Wide<N>& wasPulled, const JointSolveSettings& settings) {
     using Real = Wide<N>;
     const Real most(settings.maxPushSpeed), rate(settings.pushRate);
-    const auto isFar = Max(Max(Abs(offset.x()), Abs(offset.y())), Abs(offset.z())) * rate > most * FarPush<Real>(wasFar, settings);
+    const auto isFar = Max(Max(Abs(offset.x()), Abs(offset.y())), Abs(offset.z())) * rate > most * FarPush<Real>(wasPulled, settings);
     batch.far = isFar.Any();
+    if (batch.far) batch.isFar = Select(isFar, Real(1.0f), Real(0.0f));
+}
+
+template <int N>
+FULCRUM_FORCE_INLINE void ForgetWhereNewlyFar(BallBatch<N>& batch, const Wide<N>& wasPulled) {
+    using Real = Wide<N>;
     if (!batch.far) return;
-    batch.isFar = Select(isFar, Real(1.0f), Real(0.0f));
-    batch.pulled = Zero<Real>();
     // What held the bodies where they were would act with other levers here.
-    const auto isNew = isFar & (wasFar <= Real(0.5f));
+    const auto isNew = (batch.isFar > Real(0.5f)) & (wasPulled < Real(kFollowed));
     for (int k = 0; k < 3; ++k) batch.impulse[k] = Select(isNew, Real(0.0f), Real(batch.impulse[k]));
-}
-
-// Adds the velocities of the last pull, times `sign`. Lanes without one keep every bit.
-template <int N>
-[[gnu::noinline]] void AddPull(const BallBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, float sign) {
-    using Real = Wide<N>;
-    const auto isFar = batch.isFar > Real(0.5f);
-    a.linear -= ZeroUnless<Real>(isFar, Vec3<Real>(batch.pulled * (batch.inverseMassA * Real(sign))));
-    b.linear -= ZeroUnless<Real>(isFar, Vec3<Real>(batch.pulled * (batch.inverseMassB * Real(-sign))));
-}
-
-template <int N>
-[[gnu::noinline]] void TakePullBack(BallBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
-    AddPull(batch, a, b, -1.0f);
-    batch.pulled = Zero<Wide<N>>();
-}
-
-// See Pull in SolveJoints.cpp: what is to move is moved without turning it.
-template <int N>
-[[gnu::noinline]] void Pull(BallBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
-    using Real = Wide<N>;
-    const Real sum = batch.inverseMassA + batch.inverseMassB;
-    batch.pulled = batch.pull * (Real(-1.0f) / Select(sum > Real(0.0f), sum, Real(1.0f)));
-    AddPull(batch, a, b, 1.0f);
 }
 
 template <class Real>
@@ -229,12 +211,10 @@ void Solve(BallBatch<N>& batch, BodyState* states, const JointSolveSettings& set
             a.angular += batch.turnedA;
             b.angular += batch.turnedB;
         }
-        if (batch.far) TakePullBack(batch, a, b);
         const Vec3<Real> miss = MotionAt<Real>(a, b, batch.armA, batch.armB) + batch.push;
         const Vec3<Real> hard = batch.mass * miss;
         Change<kRound>(batch, batch.armA, batch.armB,
                        Vec3<Real>(-(hard * Real(settings.softness.massScale) + batch.impulse * Real(settings.softness.impulseScale))), a, b);
-        if (batch.far) Pull(batch, a, b);
     });
 }
 
@@ -242,7 +222,6 @@ template <bool kRound, int N>
 void Relax(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
     using Real = Wide<N>;
     ChangeVelocities<N>(batch, bodies.states, [&](Twist<Real>& a, Twist<Real>& b) FULCRUM_FORCE_INLINE_LAMBDA {
-        if (batch.far) TakePullBack(batch, a, b);
         Follow<kRound>(batch, bodies, a, b, settings);
         const Vec3<Real> hard = batch.mass * MotionAt<Real>(a, b, batch.armA, batch.armB);
         Change<kRound>(batch, batch.armA, batch.armB, Vec3<Real>(-hard), a, b);
@@ -265,10 +244,13 @@ void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const Solver
     place.armA = batch.startArmA = armAt(batch.bodyA, 0);
     place.armB = batch.startArmB = armAt(batch.bodyB, 3);
     place.offset = batch.startOffset = WithinReach<Real>(GatherOffset<N>(batch.bodyA, batch.bodyB, bodies.poses) + place.armB - place.armA);
+    FindFar(batch, place.offset, impulses[6], settings);
+    findings.far |= batch.far;
     MeetBetween(batch, place);
     batch.armA = place.armA;
     batch.armB = place.armB;
     batch.earlier = Zero<Real>();
+    batch.follows = Real(0.0f);
     if (batch.round) {
         GatherMasses<true>(batch, bodies.masses);
         batch.mass = MassAt<true>(batch, place.armA, place.armB);
@@ -278,7 +260,7 @@ void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const Solver
     }
     const auto answers = batch.mass.xx + batch.mass.yy + batch.mass.zz > Real(0.0f);
     batch.impulse = ZeroUnless<Real>(answers, Vec3<Real>(Vec3<Real>(impulses[0], impulses[1], impulses[2]) * Real(settings.impulseScale)));
-    FindFar(batch, place.offset, impulses[6], settings);
+    ForgetWhereNewlyFar(batch, impulses[6]);
     SetPush(batch, place.offset, settings);
     NoteLargest<N>(batch.joint, batch.count, Dot<Real>(place.offset, place.offset), findings.linearError, findings.linearJoint);
 }
@@ -305,7 +287,6 @@ void RelaxJoints(BallBatch<N>& batch, const SolverBodies& bodies, const JointSol
 
 template <int N>
 void UpdateJoints(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
-    if (batch.far) ChangeVelocities<N>(batch, bodies.states, [&](auto& a, auto& b) { TakePullBack(batch, a, b); });
     Motion<N> motionA, motionB;
     motionA.template Gather<Of::Velocity>(batch.bodyA, bodies.states);
     motionB.template Gather<Of::Velocity>(batch.bodyB, bodies.states);
@@ -317,11 +298,11 @@ template <int N>
 void StoreJoints(const BallBatch<N>& batch, JointRecord* records, float dt, float impulseScale) {
     using Real = Wide<N>;
     const Real none(0.0f);
-    const auto write = [&](int row, const Vec3<Real>& v, const Real& wasFar) {
-        const Real values[8] = {v.x(), v.y(), v.z(), none, none, none, wasFar, none};
+    const auto write = [&](int row, const Vec3<Real>& v, const Real& wasPulled) {
+        const Real values[8] = {v.x(), v.y(), v.z(), none, none, none, wasPulled, none};
         ScatterRecordRow<N>(batch.joint, batch.count, records, row, values);
     };
-    write(JointRecord::kOwn, Vec3<Real>(batch.impulse * Real(1.0f / impulseScale)), batch.far ? batch.isFar : none);
+    write(JointRecord::kOwn, Vec3<Real>(batch.impulse * Real(1.0f / impulseScale)), batch.far ? Max(batch.isFar, batch.follows) : batch.follows);
     // Nothing but the lock acts.
     const Vec3<Real> force = (batch.impulse + batch.earlier) * Real(1.0f / dt);
     write(JointRecord::kLocks, force, none);

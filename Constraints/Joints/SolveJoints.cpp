@@ -162,79 +162,6 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     if constexpr (kLinear != LinearLock::None) apply(LinearPart<kLinear>(batch), x.linear);
 }
 
-// The pull of joints that are far apart. Bodies turn by so much in a substep there, with such long levers, that relaxing, which acts
-// along the rows as they then are, would leave part of a push in the velocities, and the next push would add to it. So a pull's
-// velocities are counted apart, and taken back as they were given. They need not keep momentum, then: what is to move is moved
-// without turning it, and what is to turn is turned about its centre, and no lever makes a small mass of a large one.
-template <LinearLock kLinear, AngularLock kAngular, int N>
-[[gnu::noinline]] void Pull(JointBatch<N>& batch, const JointSolveSettings& settings) {
-    using Real = Wide<N>;
-    const Real zero(0.0f), one(1.0f), &massA = batch.massA.mass, &massB = batch.massB.mass;
-    Twist<Real>&a = batch.pulledA, &b = batch.pulledB;
-    a = b = {};
-    const auto isFar = batch.isFar > Real(0.5f);
-    for (uint32_t i = 0; i < batch.rowCount; ++i) {
-        const JointRows<N>& row = batch.rows[i];
-        const Real squaredA = Dot<Real>(row.a.linear, row.a.linear), squaredB = Dot<Real>(row.b.linear, row.b.linear);
-        const Real linear = squaredA * massA + squaredB * massB;
-        const auto moves = (linear > zero) & (row.about <= zero);
-        const Vec3<Real> turnA = batch.massA.inertia * row.a.angular, turnB = batch.massB.inertia * row.b.angular;
-        const Real angular = Dot<Real>(row.a.angular, turnA) + Dot<Real>(row.b.angular, turnB);
-        const Real response = Select(moves, linear, angular);
-        const auto acts = isFar & (row.mass > zero) & (response > zero) & (row.error <= row.openAbove) & (row.mostPush < Real(JointRow::kUnlimited));
-        const Real speed = Select(moves, Real(Dot<Real>(row.b.linear, b.linear) - Dot<Real>(row.a.linear, a.linear)),
-                                  Real(Dot<Real>(row.b.angular, b.angular) - Dot<Real>(row.a.angular, a.angular)));
-        // Rows that couple a motion to another count it times their ratio.
-        const Real ratio = Select(moves, Sqrt(Max(squaredA, squaredB)), one);
-        const Real pull = PullSpeed<Real>(row.error / ratio, settings) * ratio;
-        const Real wanted = -(speed + pull) / Select(acts, response, one);
-        const Real impulse = Select(acts, Clamp(wanted, row.lowest, row.highest), zero);
-        const Real moving = Select(moves, impulse, zero), turning = Select(moves, zero, impulse);
-        a.linear -= row.a.linear * (massA * moving);
-        b.linear += row.b.linear * (massB * moving);
-        a.angular -= turnA * turning;
-        b.angular += turnB * turning;
-    }
-    if constexpr (kAngular != AngularLock::None) {
-        auto& part = AngularPart<kAngular>(batch);
-        auto miss = part.RelativeMotion(a, b);
-        for (int k = 0; k < miss.size(); ++k) miss[k] = -(miss[k] + batch.pullAngular[k]) * batch.isFar;
-        part.AddImpulse(a, b, batch.massA, batch.massB, part.GetEffectiveMass() * miss, isFar);
-    }
-    if constexpr (kLinear != LinearLock::None) {
-        Vec3<Real> miss = b.linear - a.linear;
-        if constexpr (kLinear == LinearLock::Line) {
-            const auto& frame = batch.line.GetFrame();
-            miss = frame.axis1 * (Dot<Real>(frame.axis1, miss) + batch.pullLinear[0]) + frame.axis2 * (Dot<Real>(frame.axis2, miss) + batch.pullLinear[1]);
-        } else {
-            miss += batch.pullLinear;
-        }
-        const Real sum = massA + massB;
-        const Vec3<Real> impulse = miss * (-batch.isFar / Select(sum > zero, sum, one));
-        a.linear -= impulse * massA;
-        b.linear += impulse * massB;
-    }
-}
-
-// Adds the velocities of the last pull, times `sign`. Lanes without one keep every bit.
-template <int N>
-FULCRUM_FORCE_INLINE void AddPull(const JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, float sign) {
-    using Real = Wide<N>;
-    const auto isFar = batch.isFar > Real(0.5f);
-    const auto add = [&](Vec3<Real>& to, const Vec3<Real>& pulled) { to -= ZeroUnless<Real>(isFar, Vec3<Real>(pulled * Real(-sign))); };
-    add(a.linear, batch.pulledA.linear);
-    add(a.angular, batch.pulledA.angular);
-    add(b.linear, batch.pulledB.linear);
-    add(b.angular, batch.pulledB.angular);
-}
-
-// Takes it out of the bodies' velocities.
-template <int N>
-[[gnu::noinline]] void TakePullBack(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
-    AddPull(batch, a, b, -1.0f);
-    batch.pulledA = batch.pulledB = {};
-}
-
 template <LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE JointPlace<Wide<N>> Displace(const JointBatch<N>& batch, const Twist<Wide<N>>& a, const Twist<Wide<N>>& b) {
     using Real = Wide<N>;
@@ -306,18 +233,6 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     return errors;
 }
 
-// Notes in the states of the bodies that are pulled whether their velocities are with the pull.
-template <int N>
-[[gnu::cold]] void MarkPulled(JointBatch<N>& batch, BodyState* states, bool isPulled) {
-    if (batch.isPulled == isPulled) return;
-    batch.isPulled = isPulled;
-    for (int i = 0; i < batch.count; ++i) {
-        if (!(batch.isFar[i] > 0.5f)) continue;
-        if (!(batch.fixedA >> i & 1u)) states[batch.bodyA[i]].pulls += isPulled ? 1.0f : -1.0f;
-        if (!(batch.fixedB >> i & 1u)) states[batch.bodyB[i]].pulls += isPulled ? 1.0f : -1.0f;
-    }
-}
-
 // Calls change(linear lock, angular lock, velocities of A, of B) for the batch, and writes these back.
 template <int N, class Batch, class F>
 FULCRUM_FORCE_INLINE void ChangeLocked(Batch& batch, BodyState* states, F&& change) {
@@ -347,36 +262,23 @@ template <int N>
 void SolveJointVelocities(JointBatch<N>& batch, BodyState* states, const JointSolveSettings& settings) {
     ChangeLocked<N>(batch, states, [&](auto linear, auto angular, auto& a, auto& b) FULCRUM_FORCE_INLINE_LAMBDA {
         if (settings.continues) Turn<linear, angular>(batch, a, b);
-        if (batch.far) {
-            TakePullBack(batch, a, b);
-            HoldFar<linear, angular>(batch, a, b);
-        }
+        if (batch.far) HoldFar<linear, angular>(batch, a, b);
         SolveAll<false, linear, angular>(batch, a, b);
-        if (!batch.far) return;
-        Pull<linear, angular>(batch, settings);
-        AddPull(batch, a, b, 1.0f);
     });
-    if (batch.far) MarkPulled(batch, states, true);
 }
 
 template <int N>
 void RelaxJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
     ChangeLocked<N>(batch, bodies.states, [&](auto linear, auto angular, auto& a, auto& b) FULCRUM_FORCE_INLINE_LAMBDA {
-        if (batch.far) TakePullBack(batch, a, b);
         const JointErrors<Wide<N>> errors = Follow<linear, angular>(batch, bodies, a, b, settings);
         if (batch.far) HoldFar<linear, angular>(batch, a, b);
         SolveAll<true, linear, angular>(batch, a, b);
         Soften<linear, angular>(batch, errors, settings);
     });
-    if (batch.far) MarkPulled(batch, bodies.states, false);
 }
 
 template <int N>
 void UpdateJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
-    if (batch.far) {
-        ChangeVelocities<N>(batch, bodies.states, [&](auto& a, auto& b) { TakePullBack(batch, a, b); });
-        MarkPulled(batch, bodies.states, false);
-    }
     WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
         Motion<N> motionA, motionB;
         motionA.template Gather<Of::Velocity>(batch.bodyA, bodies.states);

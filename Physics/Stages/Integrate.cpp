@@ -74,9 +74,7 @@ void TurnInertia(BodyStore& bodies, uint32_t body, float h) {
     const Vector3 turn(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]);
     const Matrix3 axes = AxesOf(d, RotationFromVector(turn) * bodies.RotationOf(body));
     const float* inverse = d.inverseInertia;
-    // A pull is taken back as it was given, so it feels no torque.
-    const Vector3 change = s.pulls > 0.0f ? Vector3(Vector3::Zero())
-                                          : Vector3(AddGyroscopicTorque<float>(Vector3(inverse[0], inverse[1], inverse[2]), axes, w, h) - w);
+    const Vector3 change = AddGyroscopicTorque<float>(Vector3(inverse[0], inverse[1], inverse[2]), axes, w, h) - w;
     for (int k = 0; k < 3; ++k) {
         s.angularVelocity[k] += change[k];
         bodies.unconstrained[body].row[3 + k] += change[k];
@@ -99,7 +97,45 @@ void LimitSolved(WorldState& world, uint32_t body, WorkerFindings& findings) {
     bodies.SetVelocity(body, v, w);
 }
 
-void IntegratePose(WorldState& world, uint32_t body, float h, WorkerFindings& findings) {
+// m/s and rad/s, by which joints that are far apart move a body.
+Twist<float> PullOf(const BodyDynamics& d, const BodyState& pseudo) {
+    const float* row = pseudo.linearVelocity;
+    Twist<float> pull{Vector3(row[0], row[1], row[2]), Vector3(row[3], row[4], row[5])};
+    if (!IsFinite(pull.linear) || !IsFinite(pull.angular)) return {};
+    d.Lock(pull.linear, pull.angular);
+    return pull;
+}
+
+// What moves against a pull, near something fixed, loses so much of its speed: held in its place by the pull it would fall faster and
+// faster, as no contact stops it. In the air bodies fall together.
+Vector3 LostTo(const Vector3& pull, const Vector3& v) {
+    const float against = -Dot(v, pull);
+    return against > 0.0f ? Vector3(pull * Min(against / LengthSquared(pull), 1.0f)) : Vector3(Vector3::Zero());
+}
+
+void SlowDown(BodyStore& bodies, uint32_t body, const Twist<float>& pull, Twist<float>& motion) {
+    const Vector3 linear = LostTo(pull.linear, motion.linear), angular = LostTo(pull.angular, motion.angular);
+    float* unconstrained = bodies.unconstrained[body].row;
+    for (int n = 0; n < 3; ++n) {
+        unconstrained[n] += linear[n];
+        unconstrained[3 + n] += angular[n];
+    }
+    motion.linear += linear;
+    motion.angular += angular;
+    bodies.SetVelocity(body, motion.linear, motion.angular);
+}
+
+// Adds the pull to the motion, and takes from the body's velocities what is lost to it.
+void AddPull(BodyStore& bodies, uint32_t body, const BodyState& pseudo, Twist<float>& motion) {
+    const Twist<float> pull = PullOf(bodies.dynamics[body], pseudo);
+    if (pseudo.nearFixed > 0.0f) SlowDown(bodies, body, pull, motion);
+    motion.linear += pull.linear;
+    motion.angular += pull.angular;
+    LimitLength(motion.linear, bodies.dynamics[body].maxLinearSpeed);
+    LimitLength(motion.angular, bodies.dynamics[body].maxAngularSpeed);
+}
+
+void IntegratePose(WorldState& world, uint32_t body, float h, const BodyState* pseudo, WorkerFindings& findings) {
     const BodyDynamics& d = world.bodies.dynamics[body];
     if (d.motion != MotionType::Dynamic) return;
     LimitSolved(world, body, findings);
@@ -110,16 +146,17 @@ void IntegratePose(WorldState& world, uint32_t body, float h, WorkerFindings& fi
         world.bodies.SetVelocity(body, v, w);
     }
     if (d.crowded) LimitPush(world, body, h);
+    Twist<float> motion{world.bodies.LinearVelocityOf(body), world.bodies.AngularVelocityOf(body)};
+    if (pseudo) AddPull(world.bodies, body, pseudo[body], motion);
     const bool isJointed = world.joints.HasAny(body);
     const Vector3 before(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]);
     if (isJointed && !(LengthSquared(before) > kFarthestSquared)) {
-        const Vector3 turn = Vector3(s.angularVelocity[0], s.angularVelocity[1], s.angularVelocity[2]) * h;
-        const Vector3 more = MoreThanTheSum<float>(before, turn);
+        const Vector3 more = MoreThanTheSum<float>(before, Vector3(motion.angular * h));
         for (int k = 0; k < 3; ++k) s.deltaRotation[k] += more[k];
     }
     for (int k = 0; k < 3; ++k) {
-        s.deltaPosition[k] += s.linearVelocity[k] * h;
-        s.deltaRotation[k] += s.angularVelocity[k] * h;
+        s.deltaPosition[k] += motion.linear[k] * h;
+        s.deltaRotation[k] += motion.angular[k] * h;
     }
     if (!isJointed) return;
     const Vec2<float> half = joints::HalfTurnOf<float>(Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]));
@@ -191,15 +228,14 @@ bool IntegrateVelocitiesInLanes(WorldState& world, const Indices& index, int cou
 
 // TurnInertia of the lanes that feel it. turn: rotation since the start of the step, rad; w: rad/s, changed.
 FULCRUM_FORCE_INLINE void TurnInertias(BodyStore& bodies, const Indices& index, int count, WideMask<kLanes> feels,
-                                                const Vec3<Lanes>& turn, const Lanes& pulls, Vec3<Lanes>& w, float h) {
+                                                const Vec3<Lanes>& turn, Vec3<Lanes>& w, float h) {
     const uint32_t lanes = feels.ToBits();
     const Rows pose(index, [&](uint32_t body) { return bodies.poses[body].rotation; });
     const Rows inertia(index, [&](uint32_t body) { return bodies.dynamics[body].InertiaRow(); });
     Rows unconstrained(index, [&](uint32_t body) { return bodies.unconstrained[body].row; });
     const Quat<Lanes> rotation = RotationFromVector<Lanes>(turn) * Quat<Lanes>{pose.at[0], pose.at[1], pose.at[2], pose.at[3]};
     const Mat3<Lanes> axes = ToMatrix<Lanes>(rotation * Quat<Lanes>{inertia.at[4], inertia.at[5], inertia.at[6], inertia.at[7]});
-    Vec3<Lanes> change = AddGyroscopicTorque<Lanes>(inertia.First(), axes, w, Lanes(h)) - w;
-    for (int k = 0; k < 3; ++k) change[k] = Select(pulls > Lanes(0.0f), Lanes(0.0f), Lanes(change[k]));
+    const Vec3<Lanes> change = AddGyroscopicTorque<Lanes>(inertia.First(), axes, w, Lanes(h)) - w;
     for (int k = 0; k < 3; ++k) w[k] = Select(feels, Lanes(w[k] + change[k]), Lanes(w[k]));
     unconstrained.Set(unconstrained.First(), unconstrained.Second() + change);
     unconstrained.Write(count, lanes);
@@ -245,7 +281,7 @@ bool IntegratePosesInLanes(WorldState& world, const Indices& index, int count, f
     constexpr float kLeast = BodyDynamics::kLeastGyroscopicSpeed * BodyDynamics::kLeastGyroscopicSpeed;
     const auto feels = isJointed & (Lanes::Load(gyroscopic) > Lanes(0.0f)) & (Dot<Lanes>(w, w) > Lanes(kLeast));
     if (!feels.Any()) return true;
-    TurnInertias(bodies, index, count, feels, rotation, velocity.at[6], w, h);
+    TurnInertias(bodies, index, count, feels, rotation, w, h);
     velocity.Set(velocity.First(), w);
     velocity.Write(count);
     return true;
@@ -271,9 +307,9 @@ void IntegrateVelocities(WorldState& world, std::span<const uint32_t> bodies, fl
                 [&](uint32_t body) { IntegrateVelocity(world, body, h, again, findings); });
 }
 
-void IntegratePoses(WorldState& world, std::span<const uint32_t> bodies, float h, WorkerFindings& findings) {
-    VisitBodies(bodies, [&](const Indices& index, int count) { return IntegratePosesInLanes(world, index, count, h); },
-                [&](uint32_t body) { IntegratePose(world, body, h, findings); });
+void IntegratePoses(WorldState& world, std::span<const uint32_t> bodies, float h, const BodyState* pseudo, WorkerFindings& findings) {
+    VisitBodies(bodies, [&](const Indices& index, int count) { return !pseudo && IntegratePosesInLanes(world, index, count, h); },
+                [&](uint32_t body) { IntegratePose(world, body, h, pseudo, findings); });
 }
 
 }  // namespace fulcrum

@@ -11,7 +11,8 @@ namespace fulcrum {
 void IntegrateVelocities(WorldState& world, std::span<const uint32_t> bodies, float h, bool again, WorkerFindings& findings);
 
 // Displacements, for h seconds, at the largest speeds at most; of jointed bodies the inertia and the gyroscopic torque, too.
-void IntegratePoses(WorldState& world, std::span<const uint32_t> bodies, float h, WorkerFindings& findings);
+// pseudo: by body, what moves it besides its velocity (PullJoints), likewise at the largest speeds at most; or null.
+void IntegratePoses(WorldState& world, std::span<const uint32_t> bodies, float h, const BodyState* pseudo, WorkerFindings& findings);
 
 // The angular velocity after h seconds of gyroscopic torque, at the principal axes then reached: Euler's equations in the frame
 // of the body, by the implicit midpoint rule. As there, the energy stays, and a body of revolution keeps the spin about its

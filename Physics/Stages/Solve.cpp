@@ -23,7 +23,7 @@ constexpr uint32_t kBatchesPerBlock = 4;
 constexpr uint32_t kBodiesPerBlock = 128;
 
 enum class Verb : uint8_t {
-    IntegrateVelocities, WarmStart, CarriedWork, FirstVelocities, Velocities, IntegratePoses, FirstRelax, Relax, Separations, ClearPushWork,
+    IntegrateVelocities, WarmStart, CarriedWork, FirstVelocities, Velocities, ClearPulls, FirstPull, Pull, StopPulls, IntegratePoses, FirstRelax, Relax, Separations, ClearPushWork,
     AddPushWork, SubtractPushWork, Restitution, Rejoin, NextSubstep
 };
 
@@ -40,10 +40,15 @@ FULCRUM_FORCE_INLINE void Prefetch(const Batch& batch) {
     for (size_t line = 0; line < offsetof(Batch, bounceSpeed); line += 64) __builtin_prefetch(bytes + line);
 }
 
+bool IsOverBodies(Verb verb) {
+    return verb == Verb::IntegrateVelocities || verb == Verb::ClearPulls || verb == Verb::IntegratePoses;
+}
+
 class StepSolver {
 public:
-    StepSolver(WorldState& world, const StepContext& step, const Effort& effort)
-        : world_(world), layout_(world.solver), effort_(effort), h_(effort.substepDt), dt_(step.dt) {}
+    // pseudo: room for the pseudo-velocities of all bodies, zero; null where no group has joints that are far apart.
+    StepSolver(WorldState& world, const StepContext& step, const Effort& effort, BodyState* pseudo)
+        : world_(world), layout_(world.solver), effort_(effort), pseudo_(pseudo), h_(effort.substepDt), dt_(step.dt) {}
 
     // The large group: all workers, phase by phase.
     void RunTogether(std::span<const Phase> phases) {
@@ -73,7 +78,7 @@ public:
     }
 
 private:
-    static bool IsOverBodies(Verb verb) { return verb == Verb::IntegrateVelocities || verb == Verb::IntegratePoses; }
+
 
     uint32_t BlockCount(const Phase& phase) const {
         const SolverGroup& large = layout_.groups.front();
@@ -100,8 +105,10 @@ private:
     }
 
     void RunBodies(Verb verb, uint8_t substep, std::span<const uint32_t> bodies, WorkerFindings& findings) {
-        if (verb == Verb::IntegratePoses) IntegratePoses(world_, bodies, h_, findings);
-        else IntegrateVelocities(world_, bodies, h_, substep > 0, findings);
+        if (verb == Verb::IntegratePoses) IntegratePoses(world_, bodies, h_, pseudo_, findings);
+        else if (verb == Verb::IntegrateVelocities) IntegrateVelocities(world_, bodies, h_, substep > 0, findings);
+        else
+            for (const uint32_t body : bodies) pseudo_[body] = {};
     }
 
     // What the trees of a group do before its batches take their turn.
@@ -140,6 +147,10 @@ private:
             case Verb::Rejoin: solve(true); break;
             case Verb::IntegrateVelocities:
             case Verb::CarriedWork:
+            case Verb::ClearPulls:
+            case Verb::FirstPull:
+            case Verb::Pull:
+            case Verb::StopPulls:
             case Verb::IntegratePoses:
             case Verb::ClearPushWork:
             case Verb::AddPushWork:
@@ -183,6 +194,9 @@ private:
             // Poses move with these velocities from the beginning of the substep to its end: they are those of its middle.
             case Verb::FirstVelocities:
             case Verb::Velocities: SolveContactVelocities(batch, states, ContactSettingsAt(substep, 0.5f)); break;
+            case Verb::FirstPull:
+            case Verb::Pull:
+            case Verb::StopPulls: PullContacts(batch, pseudo_, effort_.contacts); break;
             case Verb::FirstRelax:
                 NoteLift(batch, h_);
                 [[fallthrough]];
@@ -196,6 +210,7 @@ private:
             case Verb::SubtractPushWork: SubtractPushWork(batch, world_.bodies.unconstrained.data()->row); break;
             case Verb::Restitution: RestituteContacts(batch, states, dt_); break;
             case Verb::IntegrateVelocities:
+            case Verb::ClearPulls:
             case Verb::IntegratePoses:
             case Verb::Rejoin:
             case Verb::NextSubstep: break;
@@ -211,12 +226,16 @@ private:
             case Verb::WarmStart: WarmStartJoints(batch, states); break;
             case Verb::FirstVelocities:
             case Verb::Velocities: SolveJointVelocities(batch, states, settings); break;
+            case Verb::FirstPull:
+            case Verb::Pull: PullJoints(batch, pseudo_, settings); break;
             case Verb::FirstRelax:
             case Verb::Relax:
             case Verb::Rejoin: RelaxJoints(batch, world_.bodies.ForSolver(), settings); break;
             case Verb::Separations: UpdateJoints(batch, world_.bodies.ForSolver(), settings); break;
             case Verb::IntegrateVelocities:
             case Verb::CarriedWork:
+            case Verb::ClearPulls:
+            case Verb::StopPulls:
             case Verb::IntegratePoses:
             case Verb::ClearPushWork:
             case Verb::AddPushWork:
@@ -230,7 +249,7 @@ private:
         JointSolveSettings settings = effort_.joints;
         settings.elapsed = verb == Verb::Rejoin ? dt_ : h_ * static_cast<float>(substep + 1);
         settings.continues = verb == Verb::FirstVelocities && substep > 0 && !effort_.hasTrees;
-        settings.firstPass = (verb == Verb::FirstRelax || verb == Verb::Separations) && !effort_.hasTrees;
+        settings.firstPass = verb == Verb::FirstPull || ((verb == Verb::FirstRelax || verb == Verb::Separations) && !effort_.hasTrees);
         return settings;
     }
 
@@ -243,12 +262,18 @@ private:
     WorldState& world_;
     SolverLayout& layout_;
     const Effort& effort_;
+    BodyState* pseudo_;
     float h_, dt_;  // s, of a substep and of the step
 };
 
-// The solver loop as the sequence of its verbs.
-std::span<const Verb> LoopOf(const SolverSettings& settings, bool bounces, ScratchArena& scratch) {
-    const size_t longest = static_cast<size_t>(settings.velocityIterations + settings.positionIterations + 6);
+// Passes over the pseudo-velocities of a group in which joints are far apart, in each substep.
+constexpr int kPullIterations = 4;
+// And further ones over contacts alone: non-penetration wins.
+constexpr int kStopIterations = 2;
+
+// The solver loop as the sequence of its verbs. pulls: some joints are far apart.
+std::span<const Verb> LoopOf(const SolverSettings& settings, bool bounces, bool pulls, ScratchArena& scratch) {
+    const size_t longest = static_cast<size_t>(settings.velocityIterations + settings.positionIterations + kPullIterations + kStopIterations + 7);
     std::span<Verb> verbs = scratch.Allocate<Verb>(longest * static_cast<size_t>(settings.substeps));
     size_t n = 0;
     for (int substep = 0; substep < settings.substeps; ++substep) {
@@ -257,6 +282,11 @@ std::span<const Verb> LoopOf(const SolverSettings& settings, bool bounces, Scrat
         if (substep == 0) verbs[n++] = Verb::WarmStart;
         else if (bounces) verbs[n++] = Verb::CarriedWork;
         for (int i = 0; i < settings.velocityIterations; ++i) verbs[n++] = i == 0 ? Verb::FirstVelocities : Verb::Velocities;
+        if (pulls) {
+            verbs[n++] = Verb::ClearPulls;
+            for (int i = 0; i < kPullIterations; ++i) verbs[n++] = i == 0 ? Verb::FirstPull : Verb::Pull;
+            for (int i = 0; i < kStopIterations; ++i) verbs[n++] = Verb::StopPulls;
+        }
         verbs[n++] = Verb::IntegratePoses;
         for (int i = 0; i < settings.positionIterations; ++i) verbs[n++] = i == 0 ? Verb::FirstRelax : Verb::Relax;
         // The next substep must know how far apart the points are, whether or not they are relaxed.
@@ -275,31 +305,49 @@ std::span<const Phase> PhasesOf(std::span<const Verb> verbs, WorldState& world) 
     uint8_t substep = 0;
     for (Verb verb : verbs) {
         if (verb == Verb::NextSubstep) ++substep;
-        else if (verb == Verb::IntegrateVelocities || verb == Verb::IntegratePoses) phases[n++] = {verb, substep, 0};
+        else if (IsOverBodies(verb)) phases[n++] = {verb, substep, 0};
         else
             for (size_t c = 0; c < colours; ++c) phases[n++] = {verb, substep, static_cast<uint16_t>(c)};
     }
     return phases.first(n);
 }
 
-// Runs the verbs that loopOf(effort) names over every group.
+// Whether joints of the group are far apart.
+bool PullsJoints(const WorldState& world, const SolverGroup& group) {
+    const SolverLayout& layout = world.solver;
+    const auto isFar = [](const auto& batch) { return batch.far; };
+    for (uint32_t c = group.coloursBegin; c < group.coloursEnd; ++c) {
+        const ColourBatches& colour = layout.colours[c];
+        if (std::ranges::any_of(std::span(layout.balls).subspan(colour.ballsBegin, colour.BallCount()), isFar)) return true;
+        if (std::ranges::any_of(std::span(layout.joints).subspan(colour.jointsBegin, colour.JointCount()), isFar)) return true;
+    }
+    return &group == &layout.groups.front() && std::ranges::any_of(layout.overflowJoints, isFar);
+}
+
+// Runs the verbs that loopOf(effort, whether joints are pulled) names over every group.
 template <class LoopOfEffort>
 void RunVerbs(WorldState& world, const StepContext& step, LoopOfEffort&& loopOf) {
     const std::span<const SolverGroup> groups = world.solver.groups;
+    const bool far = std::ranges::any_of(world.findings, [](const WorkerFindings& findings) { return findings.joints.far; });
+    const std::span<BodyState> pseudo = world.scratch.Allocate<BodyState>(far ? world.bodies.states.size() : 0);
+    std::ranges::fill(pseudo, BodyState{});
+    // Per group: its loop, and whether joints of it are pulled.
+    std::span<bool> pulls = world.scratch.Allocate<bool>(groups.size());
+    for (size_t g = 0; g < groups.size(); ++g) pulls[g] = far && PullsJoints(world, groups[g]);
+    const auto pseudoOf = [&](size_t g) { return pulls[g] ? pseudo.data() : nullptr; };
     const Effort common = EffortOf(world, step, groups.front());
-    const std::span<const Verb> verbs = loopOf(common);
-    StepSolver solver(world, step, common);
+    const std::span<const Verb> verbs = loopOf(common, pulls[0]), usual = pulls[0] ? loopOf(common, false) : verbs;
+    StepSolver solver(world, step, common, pseudoOf(0));
     const std::span<const Phase> phases = PhasesOf(verbs, world);
     if (!phases.empty()) solver.RunTogether(phases);
-    // Groups with an effort of their own, which have a loop of their own.
     std::span<std::span<const Verb>> loops = world.scratch.Allocate<std::span<const Verb>>(groups.size());
     for (size_t g = 1; g < groups.size(); ++g) {
-        loops[g] = groups[g].IsOwn() ? loopOf(EffortOf(world, step, groups[g])) : verbs;
+        loops[g] = groups[g].IsOwn() || pulls[g] ? loopOf(EffortOf(world, step, groups[g]), pulls[g]) : usual;
     }
     world.jobs->ParallelFor(static_cast<uint32_t>(groups.size()) - 1, 1, [&](JobRange range) {
         for (uint32_t g = range.begin + 1; g < range.end + 1; ++g) {
             const Effort effort = EffortOf(world, step, groups[g]);
-            StepSolver(world, step, effort).RunAlone(groups[g], loops[g], world.findings[range.worker]);
+            StepSolver(world, step, effort, pseudoOf(g)).RunAlone(groups[g], loops[g], world.findings[range.worker]);
         }
     });
 }
@@ -308,7 +356,7 @@ void RunVerbs(WorldState& world, const StepContext& step, LoopOfEffort&& loopOf)
 
 void Solve(WorldState& world, const StepContext& step) {
     if (world.colouring.Size() == 0) return;
-    RunVerbs(world, step, [&](const Effort& effort) { return LoopOf(effort.solver, world.bounces, world.scratch); });
+    RunVerbs(world, step, [&](const Effort& effort, bool pulls) { return LoopOf(effort.solver, world.bounces, pulls, world.scratch); });
 }
 
 void Restitution(WorldState& world, const StepContext& step) {
@@ -316,7 +364,7 @@ void Restitution(WorldState& world, const StepContext& step) {
     // A bounce tears at joints.
     static constexpr Verb kVerbs[] = {Verb::ClearPushWork, Verb::AddPushWork, Verb::SubtractPushWork, Verb::Restitution, Verb::Rejoin};
     const size_t count = world.solver.HasJoints() ? 5 : 4;
-    RunVerbs(world, step, [&](const Effort&) { return std::span<const Verb>(kVerbs, count); });
+    RunVerbs(world, step, [&](const Effort&, bool) { return std::span<const Verb>(kVerbs, count); });
 }
 
 }  // namespace fulcrum

@@ -111,7 +111,7 @@ float FarthestSpeed(const WorldState& world, uint32_t body, const Vector3& v, co
     return std::min(simple, linear + Length(most));
 }
 
-// What joints pull together moves without a speed at the step's end: relaxing has taken it out.
+// What joints pull together moves without a speed at the step's end: pseudo-velocities are none, and relaxing has taken pushes out.
 float PulledSpeed(const WorldState& world, uint32_t body, float dt) {
     const BodyState& s = world.bodies.states[body];
     if (!world.settings.sleep.enabled || !world.joints.HasAny(body)) return 0;

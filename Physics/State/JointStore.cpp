@@ -40,7 +40,7 @@ void JointStore::Forget(uint32_t index) {
     JointRecord& record = records[index];
     for (float(*impulse)[3] : {&record.ownImpulse, &record.ownAngularImpulse, &record.lockForce, &record.lockTorque, &record.totalForce, &record.totalTorque})
         std::fill(std::begin(*impulse), std::end(*impulse), 0.0f);
-    record.wasFar = 0;
+    record.wasPulled = 0;
     types[index]->impulses.fill(0.0f);
     types[index]->forces.fill(0.0f);
 }

@@ -170,6 +170,9 @@ private:
                 settings.twist = Control(kTurnX, -0.8, 0.6);
                 settings.swingY = Control(kTurnY, -0.8, 0.8);
                 settings.swingZ = Control(kTurnZ, -0.5, 0.5);
+                // An ellipse is one limit, as soft as either.
+                if (settings.shape == SwingShape::Ellipse && !(IsHard(settings.swingY.limits.spring) && IsHard(settings.swingZ.limits.spring)))
+                    std::erase_if(limited_, [](JointAxis axis) { return axis == kTurnY || axis == kTurnZ; });
                 joint_ = Join(world_, settings);
                 break;
             }
@@ -370,7 +373,7 @@ inline Case CaseOf(uint32_t i) {
         how.dt /= 4;
     }
     if (i % 3 == 1) how.settings.gravity = Vector3(0, -9.81f, 0);
-    how.hasFloor = i % 6 == 1;
+    how.hasFloor = i % 6 == 1 || i % 12 == 4;
     return how;
 }
 

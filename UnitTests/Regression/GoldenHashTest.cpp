@@ -12,7 +12,7 @@ namespace fulcrum::testing {
 namespace {
 
 constexpr uint64_t kGoldenHash = 0xcea5d77860fd8fbdull;
-constexpr uint64_t kGoldenHashOfJoints = 0xfd8aaecf6dee0546ull;
+constexpr uint64_t kGoldenHashOfJoints = 0x5d9113157295e539ull;
 constexpr uint64_t kGoldenHashOfSurfaces = 0xe873fa8a8a6a892eull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0xb00990b7bc663b12ull;
 

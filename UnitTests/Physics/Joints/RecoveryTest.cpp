@@ -163,8 +163,8 @@ TEST(Contradiction, TwoFixedJointsThatDisagreeShareTheErrorAndStayCalm) {
     EXPECT_NEAR(world.PositionOf(bystander).y(), -0.5 * kGravity * 100, 1e-2);
 }
 
-// In the first step the joint that is solved last has its way for the most part, in whichever order the two were made. Both pull at
-// what can move: a joint to a hook would count as high. In the end they hold the box halfway.
+// In whichever order the two were made: the joint that is solved last has its way for the most part, and where the other one is far
+// apart for that, altogether. Both pull at what can move: a joint to a hook would count as high.
 TEST(Contradiction, TheJointOfHigherPriorityWins) {
     for (const bool highFirst : {true, false}) {
         TestWorld world(NoGravity());
@@ -178,7 +178,7 @@ TEST(Contradiction, TheJointOfHigherPriorityWins) {
         world.Step();
         EXPECT_GT(world.PositionOf(box).x(), 0.03) << highFirst;
         world.Run(2);
-        EXPECT_NEAR(world.PositionOf(box).x(), 0, 1e-3);
+        EXPECT_NEAR(world.PositionOf(box).x(), 0.1, 1e-3);
     }
 }
 

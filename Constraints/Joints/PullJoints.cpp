@@ -1,0 +1,155 @@
+// Joints that are far apart are pulled together by pseudo-velocities (split impulses): poses move with them, velocities never see them.
+// All joints and contacts of the bodies have a say in them, so that what hangs on a pulled body comes along, and stops at the ground.
+#include <Fulcrum/Constraints/Joints/BallBatch.h>
+#include <Fulcrum/Constraints/Joints/JointKernels.h>
+
+namespace fulcrum {
+
+namespace {
+
+using namespace joints;
+
+// Adds an impulse to what a row has given in this substep, within its limits. Returns what was added.
+template <class Rows, class Real>
+FULCRUM_FORCE_INLINE Real AddWithinLimits(Rows& row, const Real& impulse) {
+    const Real total = Clamp(Real(row.pulled + impulse), row.lowest, row.highest), added = total - row.pulled;
+    row.pulled = total;
+    return added;
+}
+
+// Which lanes are pulled along at more than a trifle.
+template <class Real>
+FULCRUM_FORCE_INLINE Real Follows(const Real& before, const Twist<Real>& a, const Twist<Real>& b, const JointSolveSettings& settings) {
+    const Real fast(kNearPart * settings.maxPushSpeed);
+    const auto isPulled = [&](const Twist<Real>& v) {
+        return Dot<Real>(v.linear, v.linear) + Dot<Real>(v.angular, v.angular) > fast * fast;
+    };
+    return Select(isPulled(a) | isPulled(b), Real(kFollowed), before);
+}
+
+// Those of the lanes that are far apart. They need not keep momentum: what is to move is moved without turning it, and what is to turn is
+// turned about its centre, so that no lever as long as the gap makes a small mass of a large one.
+template <LinearLock kLinear, AngularLock kAngular, int N>
+[[gnu::noinline]] void PullFar(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, const JointSolveSettings& settings) {
+    using Real = Wide<N>;
+    const Real zero(0.0f), one(1.0f), &massA = batch.massA.mass, &massB = batch.massB.mass;
+    const auto isFar = batch.isFar > Real(0.5f);
+    for (uint32_t i = 0; i < batch.rowCount; ++i) {
+        JointRows<N>& row = batch.rows[i];
+        const Real squaredA = Dot<Real>(row.a.linear, row.a.linear), squaredB = Dot<Real>(row.b.linear, row.b.linear);
+        const Real linear = squaredA * massA + squaredB * massB;
+        const auto moves = (linear > zero) & (row.about <= zero);
+        const Vec3<Real> turnA = batch.massA.inertia * row.a.angular, turnB = batch.massB.inertia * row.b.angular;
+        const Real angular = Dot<Real>(row.a.angular, turnA) + Dot<Real>(row.b.angular, turnB);
+        const Real response = Select(moves, linear, angular);
+        const auto acts = isFar & (row.mass > zero) & (response > zero) & (row.error <= row.openAbove) & (row.mostPush < Real(JointRow::kUnlimited));
+        const Real speed = Select(moves, Real(Dot<Real>(row.b.linear, b.linear) - Dot<Real>(row.a.linear, a.linear)),
+                                  Real(Dot<Real>(row.b.angular, b.angular) - Dot<Real>(row.a.angular, a.angular)));
+        // Rows that couple a motion to another count it times their ratio.
+        const Real ratio = Select(moves, Sqrt(Max(squaredA, squaredB)), one);
+        const Real pull = PullSpeed<Real>(row.error / ratio, settings) * ratio;
+        const Real wanted = -(speed + pull) / Select(acts, response, one);
+        const Real impulse = AddWithinLimits(row, Select(acts, wanted, zero));
+        const Real moving = Select(moves, impulse, zero), turning = Select(moves, zero, impulse);
+        a.linear -= row.a.linear * (massA * moving);
+        b.linear += row.b.linear * (massB * moving);
+        a.angular -= turnA * turning;
+        b.angular += turnB * turning;
+    }
+    if constexpr (kAngular != AngularLock::None) {
+        auto& part = AngularPart<kAngular>(batch);
+        auto miss = part.RelativeMotion(a, b);
+        for (int k = 0; k < miss.size(); ++k) miss[k] = -(miss[k] + batch.pullAngular[k]) * batch.isFar;
+        part.AddImpulse(a, b, batch.massA, batch.massB, part.GetEffectiveMass() * miss, isFar);
+    }
+    if constexpr (kLinear != LinearLock::None) {
+        Vec3<Real> miss = b.linear - a.linear;
+        if constexpr (kLinear == LinearLock::Line) {
+            const auto& frame = batch.line.GetFrame();
+            miss = frame.axis1 * (Dot<Real>(frame.axis1, miss) + batch.pullLinear[0]) + frame.axis2 * (Dot<Real>(frame.axis2, miss) + batch.pullLinear[1]);
+        } else {
+            miss += batch.pullLinear;
+        }
+        const Real sum = massA + massB;
+        const Vec3<Real> impulse = miss * (-batch.isFar / Select(sum > zero, sum, one));
+        a.linear -= impulse * massA;
+        b.linear += impulse * massB;
+    }
+}
+
+// The other lanes hold what they hold: locks and limits, as in a relaxing pass. Motors and springs have no part in pseudo-velocities.
+template <LinearLock kLinear, AngularLock kAngular, int N>
+[[gnu::noinline]] void HoldNear(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
+    using Real = Wide<N>;
+    const Real zero(0.0f), isFar = batch.far ? batch.isFar : zero;
+    const auto isNear = isFar <= Real(0.5f);
+    for (uint32_t i = 0; i < batch.rowCount; ++i) {
+        JointRows<N>& row = batch.rows[i];
+        const Real wanted = -row.mass * (RowMotion<Real>(row, a, b) + Max(row.error, zero) * row.gapRate);
+        const auto acts = isNear & (row.mass > zero) & (row.mostPush < Real(JointRow::kUnlimited));
+        const Real impulse = AddWithinLimits(row, Select(acts, wanted, zero));
+        a.linear += row.responseA.linear * impulse;
+        a.angular += row.responseA.angular * impulse;
+        b.linear += row.responseB.linear * impulse;
+        b.angular += row.responseB.angular * impulse;
+    }
+    if constexpr (kLinear != LinearLock::None || kAngular != AngularLock::None) {
+        const LockImpulses<Real> motion = LockMotion<kLinear, kAngular>(batch, a, b);
+        LockImpulses<Real> impulses = SolveBlock<kLinear, kAngular>(batch, motion.linear, motion.angular);
+        for (int k = 0; k < 3; ++k) {
+            impulses.linear[k] = Select(isNear, Real(-impulses.linear[k]), zero);
+            impulses.angular[k] = Select(isNear, Real(-impulses.angular[k]), zero);
+        }
+        AddLockMotion<kLinear, kAngular>(batch, a, b, impulses);
+    }
+}
+
+}  // namespace
+
+template <int N>
+void PullJoints(JointBatch<N>& batch, BodyState* pseudo, const JointSolveSettings& settings) {
+    if (settings.firstPass)
+        for (uint32_t i = 0; i < batch.rowCount; ++i) batch.rows[i].pulled = Wide<N>(0.0f);
+    ChangeVelocities<N>(batch, pseudo, [&](auto& a, auto& b) {
+        batch.follows = Follows<Wide<N>>(batch.follows, a, b, settings);
+        WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
+            if (batch.far) PullFar<linear, angular>(batch, a, b, settings);
+            HoldNear<linear, angular>(batch, a, b);
+        });
+    });
+}
+
+template <int N>
+void PullJoints(BallBatch<N>& batch, BodyState* pseudo, const JointSolveSettings& settings) {
+    using Real = Wide<N>;
+    const Real zero(0.0f), one(1.0f), isFar = batch.far ? batch.isFar : zero;
+    const auto far = isFar > Real(0.5f);
+    ChangeVelocities<N>(batch, pseudo, [&](Twist<Real>& a, Twist<Real>& b) {
+        batch.follows = Follows<Real>(batch.follows, a, b, settings);
+        const Real sum = batch.inverseMassA + batch.inverseMassB;
+        if (batch.far) {
+            const Vec3<Real> impulse = (b.linear - a.linear + batch.pull) * (-isFar / Select(sum > zero, sum, one));
+            a.linear -= impulse * batch.inverseMassA;
+            b.linear += impulse * batch.inverseMassB;
+        }
+        Vec3<Real> held = batch.mass * PointMotion<BodySide::Dynamic, BodySide::Dynamic>(a, b, batch.armA, batch.armB);
+        for (int k = 0; k < 3; ++k) held[k] = Select(far, zero, Real(-held[k]));
+        const auto turn = [&](const Sym3<Real>& tensor, const Real& number, const Vec3<Real>& arm) {
+            const Vec3<Real> torque = Cross<Real>(arm, held);
+            return batch.round ? Vec3<Real>(torque * number) : Vec3<Real>(tensor * torque);
+        };
+        a.linear -= held * batch.inverseMassA;
+        b.linear += held * batch.inverseMassB;
+        a.angular -= turn(batch.inertiaA, batch.inverseInertiaA, batch.armA);
+        b.angular += turn(batch.inertiaB, batch.inverseInertiaB, batch.armB);
+    });
+}
+
+#define FULCRUM_INSTANTIATE(lanes) template void PullJoints(JointBatch<lanes>&, BodyState*, const JointSolveSettings&);
+FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE)
+#undef FULCRUM_INSTANTIATE
+#define FULCRUM_INSTANTIATE(lanes) template void PullJoints(BallBatch<lanes>&, BodyState*, const JointSolveSettings&);
+FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE)
+#undef FULCRUM_INSTANTIATE
+
+}  // namespace fulcrum
