@@ -19,8 +19,9 @@ double Seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 bool IsStep(const RandomCall& call) { return std::string_view(call.kind->name) == "Step"; }
 
-// What a step may add to the kinetic energy, J: gravity, pushes out of overlaps, kinematic bodies, belts. Each is a speed that a
-// body may gain, so this is generous, and still far below what comes of a sign error or of an impulse that is applied twice.
+// What a step may add to twice the kinetic energy, J: gravity, pushes out of overlaps, kinematic bodies, belts. Each is a speed that a
+// body may gain: from v to v + g, and (v + g)^2 / 2 <= v^2 + g^2. Generous, and still far below what comes of a sign error or of an
+// impulse that is applied twice.
 double EnergyAllowance(const Twin& twin) {
     const SystemSettings& settings = twin.system->Settings();
     const BodyInterface& bodies = twin.system->Bodies();
@@ -34,7 +35,7 @@ double EnergyAllowance(const Twin& twin) {
     twin.system->VisitBodies([&](BodyId id) {
         const double gained = double{Length(settings.gravity)} * 0.3 + 2 * double{settings.contactPushSpeed} + 2 * fastest + 2;
         const double speed = double{Length(bodies.GetLinearVelocity(id))};
-        sum += double{bodies.GetMass(id)} * (0.5 * gained * gained + speed * double{Length(settings.gravity)} * 0.2);
+        sum += double{bodies.GetMass(id)} * (gained * gained + speed * double{Length(settings.gravity)} * 0.2);
     });
     return sum;
 }
