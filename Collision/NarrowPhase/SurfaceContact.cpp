@@ -525,6 +525,11 @@ private:
     bool isPolyhedral_;
 };
 
+size_t SurfaceContacts::MemoryUsed() const {
+    return (ids_.capacity() + known_.capacity()) * sizeof(uint32_t) + views_.capacity() * sizeof(TriangleView) +
+           waiting_.capacity() * sizeof(Waiting) + (found_.capacity() + manifolds_.capacity()) * sizeof(SurfaceManifold);
+}
+
 void CollideSurface(const ConvexShape& a, const SurfaceShape& b, const RelativePose& bInA, const CollideSettings& settings,
                     const SurfaceApproach& approach, SurfaceContacts& contacts) {
     SurfaceCollider(a, b, bInA, settings, approach, contacts).Run();

@@ -36,6 +36,7 @@ public:
     std::span<const SurfaceManifold> Manifolds() const { return {manifolds_.data(), manifoldCount_}; }
     // Of the surface, that were looked at.
     size_t TriangleCount() const { return views_.size(); }
+    size_t MemoryUsed() const;  // bytes, besides the object itself
 
 private:
     friend class SurfaceCollider;

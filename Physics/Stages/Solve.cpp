@@ -23,8 +23,8 @@ constexpr uint32_t kBatchesPerBlock = 4;
 constexpr uint32_t kBodiesPerBlock = 128;
 
 enum class Verb : uint8_t {
-    IntegrateVelocities, WarmStart, CarriedWork, FirstVelocities, Velocities, ClearPulls, FirstPull, Pull, StopPulls, IntegratePoses, FirstRelax, Relax, Separations, ClearPushWork,
-    AddPushWork, SubtractPushWork, Restitution, Rejoin, NextSubstep
+    IntegrateVelocities, WarmStart, CarriedWork, FirstVelocities, Velocities, ClearPulls, FirstPull, Pull, StopPulls, IntegratePoses,
+    FirstRelax, Relax, Separations, ClearPushWork, AddPushWork, SubtractPushWork, Restitution, Rejoin, NextSubstep
 };
 
 struct Phase {

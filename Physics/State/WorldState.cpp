@@ -75,14 +75,23 @@ void WakeInside(WorldState& world, const Bounds& bounds) {
     for (uint32_t body : found) WakeBody(world, body);
 }
 
+namespace {
+
+template <class... T>
+size_t CapacityInBytes(const std::vector<T>&... vectors) {
+    return (... + (vectors.capacity() * sizeof(T)));
+}
+
+}  // namespace
+
 size_t WorldState::MemoryUsed() const {
     size_t bytes = sizeof(*this) + bodies.MemoryUsed() + colliders.MemoryUsed() + strays.MemoryUsed() + pairs.MemoryUsed() +
-                   joints.MemoryUsed() + sweeps.MemoryUsed() + sensors.MemoryUsed() + colouring.MemoryUsed() + sleeping.MemoryUsed() + solver.MemoryUsed() + scratch.CapacityInBytes() +
-                   changes.capacity() + (activated.capacity() + began.capacity()) * sizeof(uint32_t) + newPairs.capacity() * sizeof(uint64_t) +
-                   dispersing.capacity() * sizeof(DispersingBody) + (deepOverlaps.capacity() + crowded.capacity()) * sizeof(uint32_t);
+                   joints.MemoryUsed() + sweeps.MemoryUsed() + sensors.MemoryUsed() + colouring.MemoryUsed() + sleeping.MemoryUsed() +
+                   solver.MemoryUsed() + scratch.CapacityInBytes() +
+                   CapacityInBytes(broken, removed, changes, activated, began, newPairs, moreManifolds, deepOverlaps, dispersing, crowded, ghosts, findings);
     for (const WorkerFindings& f : findings)
-        bytes += sizeof(f) + f.colliders.capacity() * sizeof(uint32_t) + f.pairs.capacity() * sizeof(uint64_t) + f.sweepHits.capacity() * sizeof(SweepHit) +
-                 f.sensorCandidates.capacity() * sizeof(uint64_t) + f.sensorVisits.capacity() * sizeof(SensorVisit);
+        bytes += f.surface.MemoryUsed() + CapacityInBytes(f.colliders, f.pairs, f.deepOverlaps, f.crowdedOverlaps, f.surfacePlaces, f.surfaceLeft,
+                                                          f.surfaceTouched, f.more, f.sweepHits, f.sensorCandidates, f.sensorVisits);
     return bytes;
 }
 
