@@ -8,6 +8,7 @@
 #include <ccd/quat.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace fulcrum {
 
@@ -19,11 +20,17 @@ struct Body {
     Mat3<double> rotation;
     Position position;
     double rounding;  // m
+    LibccdAlgorithm algorithm;
     mutable int supports = 0;  // asked for so far
 
-    // EPA expands what is nearest until nothing is, and nothing limits it: where a ball's centre lies on a corner of the other shape, all
-    // of the ball's surface is equally near, and its facets are without number. From here on supports lie inside, which ends it.
+    // Nothing limits libccd's loops. EPA expands what is nearest until nothing is: where a ball's centre lies on a corner of the other
+    // shape, all of the ball's surface is equally near, and its facets are without number. MPR refines its portal for ever where
+    // coordinates round by more than the shapes are thick.
     static constexpr int kMostSupports = 400;
+    // From there on supports lie inside, which ends EPA, or are no numbers, which MPR takes for shapes that are apart.
+    Position Last() const {
+        return algorithm == LibccdAlgorithm::Epa ? position : Position(Position::Constant(std::numeric_limits<double>::quiet_NaN()));
+    }
 };
 
 Mat3<double> DoubleRotation(const Quaternion& q) {
@@ -33,7 +40,8 @@ Mat3<double> DoubleRotation(const Quaternion& q) {
 void Support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* result) {
     const Body& body = *static_cast<const Body*>(object);
     if (++body.supports > Body::kMostSupports) {
-        ccdVec3Set(result, body.position.x(), body.position.y(), body.position.z());
+        const Position last = body.Last();
+        ccdVec3Set(result, last.x(), last.y(), last.z());
         return;
     }
     const Position d(direction->v[0], direction->v[1], direction->v[2]);
@@ -62,8 +70,8 @@ LibccdResult LibccdPenetration(const ConvexShape& a, const ConvexShape& b, const
     const double reach = double{a.OuterRadius()} + b.OuterRadius() + margin;
     if (!(Dot<double>(between, between) <= 1.0001 * reach * reach)) return {LibccdResult::Status::Apart, Position::Zero(), 0, Position::Zero()};
     const Body bodyA{&a, {Position(1, 0, 0), Position(0, 1, 0), Position(0, 0, 1)}, Position::Zero(),
-                     a.ConvexRadius() + 0.5 * margin};
-    const Body bodyB{&b, DoubleRotation(bInA.rotation), bInA.position.cast<double>(), b.ConvexRadius() + 0.5 * margin};
+                     a.ConvexRadius() + 0.5 * margin, algorithm};
+    const Body bodyB{&b, DoubleRotation(bInA.rotation), bInA.position.cast<double>(), b.ConvexRadius() + 0.5 * margin, algorithm};
     ccd_t ccd;
     CCD_INIT(&ccd);
     ccd.support1 = ccd.support2 = Support;

@@ -8,6 +8,7 @@
 #include <Fulcrum/Collision/Shapes/Triangle.h>
 #include <Fulcrum/UnitTests/Random/QueryChecks.h>
 #include <Fulcrum/UnitTests/Support/Cases.h>
+#include <Fulcrum/UnitTests/Support/Deadline.h>
 #include <Fulcrum/UnitTests/Support/RandomPoses.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
@@ -41,6 +42,26 @@ TEST(QueriesAtExtremes, AnOddRayDoesNotSpoilItsBatch) {
                 EXPECT_TRUE(AreSame(alone, hits[i])) << odd << " in axes " << axes << ", ray " << i;
             }
         }
+    }
+}
+
+// Where coordinates round by more than the shapes are thick, libccd's MPR refined its portal for ever: one pair of four here.
+TEST(QueriesAtExtremes, ClosestPointsOfFieldsWithAnEndlessSpikeAreFound) {
+    RandomPoses random(1);
+    constexpr float kSpike = 3.3e12f;
+    const auto fieldOf = [&](float corner) {
+        const float heights[] = {random.Between(0, 0.1f), corner, random.Between(0, 0.1f), random.Between(0, 0.1f)};
+        return HeightField::Create({.sampleCountX = 2, .sampleCountZ = 2, .heights = heights}).Value();
+    };
+    for (int i = 0; i < 60; ++i) {
+        const auto flat = fieldOf(0.05f), spiked = fieldOf(kSpike);
+        RelativePose pose;
+        pose.rotation = random.Rotation();
+        pose.position = Rotate<float>(pose.rotation, Vector3(0, -kSpike * random.Between(0, 1), 0));
+        ClosestPoints closest;
+        bool found = false;
+        Within(60, [&] { found = FindClosestPoints(*flat, *spiked, pose, 1e30f, closest); });
+        EXPECT_TRUE(!found || std::isfinite(closest.distance));
     }
 }
 
