@@ -223,10 +223,11 @@ FULCRUM_FORCE_INLINE JointErrors<Wide<N>> SetUpParts(JointBatch<N>& batch, const
         const Vec3<Real> n1 = Straightened<Real>(place.lineNormal, place.line);
         const Vec3<Real> n2 = Cross<Real>(place.line, n1);
         errors.line = Vec2<Real>(Dot<Real>(place.offset, n1), Dot<Real>(place.offset, n2));
-        const Vec3<Real> along = place.line * Dot<Real>(place.offset, place.line);
         Vec3<Real> reach = place.offset;
-        if (batch.far)
+        if (batch.far) {
+            const Vec3<Real> along = place.line * Dot<Real>(place.offset, place.line);
             for (int k = 0; k < 3; ++k) reach[k] = Select(batch.isFar > Real(0.5f), along[k], reach[k]);
+        }
         batch.line.CalculateProperties(batch.massA, batch.massB, {Vec3<Real>(place.armA + reach), place.armB, n1, n2}, none);
     }
     return errors;
@@ -499,6 +500,16 @@ FULCRUM_FORCE_INLINE Real FarPush(const Real& wasPulled, const JointSolveSetting
     const float far = FarPush(settings);
     const Real following = Select(wasPulled >= Real(kFollowed), Real(kFollowPart * far), Real(far));
     return Select(wasPulled >= Real(kWasFar), Real(kNearPart * far), following);
+}
+
+// Which lanes are pulled along at more than a trifle.
+template <class Real>
+FULCRUM_FORCE_INLINE Real Follows(const Real& before, const Twist<Real>& a, const Twist<Real>& b, const JointSolveSettings& settings) {
+    const Real fast(kNearPart * settings.maxPushSpeed);
+    const auto isPulled = [&](const Twist<Real>& v) {
+        return Dot<Real>(v.linear, v.linear) + Dot<Real>(v.angular, v.angular) > fast * fast;
+    };
+    return Select(isPulled(a) | isPulled(b), Real(kFollowed), before);
 }
 
 // How fast joints that are far apart are pulled: as fast as any, and from afar so much faster that all are there within some seconds.

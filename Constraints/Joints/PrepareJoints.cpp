@@ -195,8 +195,8 @@ void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const Joint
     // Angles alone are no reason: no lever grows with them, and in a pile hinges bend beyond their limits.
     const auto isFar = (distance > least) | ((angle > least) & (wasPulled >= Real(kWasFar))), isDistant = Max(distance, angle) > farPart;
     batch.far = isFar.Any();
+    batch.isFar = Select(isFar, Real(1.0f), zero);
     if (!batch.far) return;
-    batch.isFar = Select(isFar, Real(1.0f), Real(0.0f));
     batch.pullLinear = batch.pullAngular = Zero<Real>();
     SetUpParts<kLinear, kAngular>(batch, place);
     SetUpCoupling<kLinear, kAngular>(batch);
@@ -386,7 +386,7 @@ void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* co
         total.force -= ZeroUnless<Real>(acts, Vec3<Real>(rows.b.linear * -impulse));
         total.torque -= ZeroUnless<Real>(acts, Vec3<Real>((rows.b.angular - Cross<Real>(batch.startArmB, rows.b.linear)) * -impulse));
     }
-    ScatterWrench(batch, records, JointRecord::kOwn, own, inverse, batch.far ? Max(batch.isFar, batch.follows) : batch.follows);
+    ScatterWrench(batch, records, JointRecord::kOwn, own, inverse, Max(batch.isFar, batch.follows));
     ScatterWrench(batch, records, JointRecord::kLocks, locks, perSecond);
     ScatterWrench(batch, records, JointRecord::kTotal, total, perSecond);
     if (batch.rowRoom == 0) return;

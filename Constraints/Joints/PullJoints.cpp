@@ -1,6 +1,5 @@
 // Joints that are far apart are pulled together by pseudo-velocities (split impulses): poses move with them, velocities never see them.
-// All joints and contacts of the bodies have a say in them, so that what hangs on a pulled body comes along, and stops at the ground.
-#include <Fulcrum/Constraints/Joints/BallBatch.h>
+// All joints and contacts of the bodies have a say in them, so that what hangs on a pulled body comes along, and stops at the ground. Ball joints: SolveBalls.cpp.
 #include <Fulcrum/Constraints/Joints/JointKernels.h>
 
 namespace fulcrum {
@@ -15,16 +14,6 @@ FULCRUM_FORCE_INLINE Real AddWithinLimits(Rows& row, const Real& impulse) {
     const Real total = Clamp(Real(row.pulled + impulse), row.lowest, row.highest), added = total - row.pulled;
     row.pulled = total;
     return added;
-}
-
-// Which lanes are pulled along at more than a trifle.
-template <class Real>
-FULCRUM_FORCE_INLINE Real Follows(const Real& before, const Twist<Real>& a, const Twist<Real>& b, const JointSolveSettings& settings) {
-    const Real fast(kNearPart * settings.maxPushSpeed);
-    const auto isPulled = [&](const Twist<Real>& v) {
-        return Dot<Real>(v.linear, v.linear) + Dot<Real>(v.angular, v.angular) > fast * fast;
-    };
-    return Select(isPulled(a) | isPulled(b), Real(kFollowed), before);
 }
 
 // Those of the lanes that are far apart. They need not keep momentum: what is to move is moved without turning it, and what is to turn is
@@ -81,8 +70,8 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
 template <LinearLock kLinear, AngularLock kAngular, int N>
 [[gnu::noinline]] void HoldNear(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
     using Real = Wide<N>;
-    const Real zero(0.0f), isFar = batch.far ? batch.isFar : zero;
-    const auto isNear = isFar <= Real(0.5f);
+    const Real zero(0.0f);
+    const auto isNear = batch.isFar <= Real(0.5f);
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         JointRows<N>& row = batch.rows[i];
         const Real wanted = -row.mass * (RowMotion<Real>(row, a, b) + Max(row.error, zero) * row.gapRate);
@@ -119,36 +108,7 @@ void PullJoints(JointBatch<N>& batch, BodyState* pseudo, const JointSolveSetting
     });
 }
 
-template <int N>
-void PullJoints(BallBatch<N>& batch, BodyState* pseudo, const JointSolveSettings& settings) {
-    using Real = Wide<N>;
-    const Real zero(0.0f), one(1.0f), isFar = batch.far ? batch.isFar : zero;
-    const auto far = isFar > Real(0.5f);
-    ChangeVelocities<N>(batch, pseudo, [&](Twist<Real>& a, Twist<Real>& b) {
-        batch.follows = Follows<Real>(batch.follows, a, b, settings);
-        const Real sum = batch.inverseMassA + batch.inverseMassB;
-        if (batch.far) {
-            const Vec3<Real> impulse = (b.linear - a.linear + batch.pull) * (-isFar / Select(sum > zero, sum, one));
-            a.linear -= impulse * batch.inverseMassA;
-            b.linear += impulse * batch.inverseMassB;
-        }
-        Vec3<Real> held = batch.mass * PointMotion<BodySide::Dynamic, BodySide::Dynamic>(a, b, batch.armA, batch.armB);
-        for (int k = 0; k < 3; ++k) held[k] = Select(far, zero, Real(-held[k]));
-        const auto turn = [&](const Sym3<Real>& tensor, const Real& number, const Vec3<Real>& arm) {
-            const Vec3<Real> torque = Cross<Real>(arm, held);
-            return batch.round ? Vec3<Real>(torque * number) : Vec3<Real>(tensor * torque);
-        };
-        a.linear -= held * batch.inverseMassA;
-        b.linear += held * batch.inverseMassB;
-        a.angular -= turn(batch.inertiaA, batch.inverseInertiaA, batch.armA);
-        b.angular += turn(batch.inertiaB, batch.inverseInertiaB, batch.armB);
-    });
-}
-
 #define FULCRUM_INSTANTIATE(lanes) template void PullJoints(JointBatch<lanes>&, BodyState*, const JointSolveSettings&);
-FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE)
-#undef FULCRUM_INSTANTIATE
-#define FULCRUM_INSTANTIATE(lanes) template void PullJoints(BallBatch<lanes>&, BodyState*, const JointSolveSettings&);
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE)
 #undef FULCRUM_INSTANTIATE
 

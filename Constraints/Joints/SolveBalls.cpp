@@ -123,7 +123,7 @@ FULCRUM_FORCE_INLINE void FindFar(BallBatch<N>& batch, const Vec3<Wide<N>>& offs
     const Real most(settings.maxPushSpeed), rate(settings.pushRate);
     const auto isFar = Max(Max(Abs(offset.x()), Abs(offset.y())), Abs(offset.z())) * rate > most * FarPush<Real>(wasPulled, settings);
     batch.far = isFar.Any();
-    if (batch.far) batch.isFar = Select(isFar, Real(1.0f), Real(0.0f));
+    batch.isFar = Select(isFar, Real(1.0f), Real(0.0f));
 }
 
 template <int N>
@@ -228,6 +228,23 @@ void Relax(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSett
     });
 }
 
+// As PullFar and HoldNear in PullJoints.cpp.
+template <bool kRound, int N>
+void Pull(BallBatch<N>& batch, BodyState* pseudo, const JointSolveSettings& settings) {
+    using Real = Wide<N>;
+    ChangeVelocities<N>(batch, pseudo, [&](Twist<Real>& a, Twist<Real>& b) {
+        batch.follows = Follows<Real>(batch.follows, a, b, settings);
+        if (batch.far) {
+            const Real sum = batch.inverseMassA + batch.inverseMassB;
+            const Vec3<Real> impulse = (b.linear - a.linear + batch.pull) * (-batch.isFar / Select(sum > Real(0.0f), sum, Real(1.0f)));
+            a.linear -= impulse * batch.inverseMassA;
+            b.linear += impulse * batch.inverseMassB;
+        }
+        const Vec3<Real> hard = batch.mass * MotionAt<Real>(a, b, batch.armA, batch.armB);
+        AddImpulse<kRound>(batch, batch.armA, batch.armB, ZeroUnless<Real>(batch.isFar <= Real(0.5f), Vec3<Real>(-hard)), a, b);
+    });
+}
+
 }  // namespace
 
 template <int N>
@@ -295,6 +312,12 @@ void UpdateJoints(BallBatch<N>& batch, const SolverBodies& bodies, const JointSo
 }
 
 template <int N>
+void PullJoints(BallBatch<N>& batch, BodyState* pseudo, const JointSolveSettings& settings) {
+    if (batch.round) Pull<true>(batch, pseudo, settings);
+    else Pull<false>(batch, pseudo, settings);
+}
+
+template <int N>
 void StoreJoints(const BallBatch<N>& batch, JointRecord* records, float dt, float impulseScale) {
     using Real = Wide<N>;
     const Real none(0.0f);
@@ -302,7 +325,7 @@ void StoreJoints(const BallBatch<N>& batch, JointRecord* records, float dt, floa
         const Real values[8] = {v.x(), v.y(), v.z(), none, none, none, wasPulled, none};
         ScatterRecordRow<N>(batch.joint, batch.count, records, row, values);
     };
-    write(JointRecord::kOwn, Vec3<Real>(batch.impulse * Real(1.0f / impulseScale)), batch.far ? Max(batch.isFar, batch.follows) : batch.follows);
+    write(JointRecord::kOwn, Vec3<Real>(batch.impulse * Real(1.0f / impulseScale)), Max(batch.isFar, batch.follows));
     // Nothing but the lock acts.
     const Vec3<Real> force = (batch.impulse + batch.earlier) * Real(1.0f / dt);
     write(JointRecord::kLocks, force, none);
@@ -315,6 +338,7 @@ void StoreJoints(const BallBatch<N>& batch, JointRecord* records, float dt, floa
     template void SolveJointVelocities(BallBatch<lanes>&, BodyState*, const JointSolveSettings&);                                          \
     template void RelaxJoints(BallBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);                                          \
     template void UpdateJoints(BallBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);                                         \
+    template void PullJoints(BallBatch<lanes>&, BodyState*, const JointSolveSettings&);                                                    \
     template void StoreJoints(const BallBatch<lanes>&, JointRecord*, float, float);
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE)
 #undef FULCRUM_INSTANTIATE

@@ -125,9 +125,11 @@ void SlowDown(BodyStore& bodies, uint32_t body, const Twist<float>& pull, Twist<
     bodies.SetVelocity(body, motion.linear, motion.angular);
 }
 
-// Adds the pull to the motion, and takes from the body's velocities what is lost to it.
+// Adds the pull to the motion, and takes from the body's velocities what is lost to it. Without a pull every bit stays, whatever joints
+// are solved in the same group.
 void AddPull(BodyStore& bodies, uint32_t body, const BodyState& pseudo, Twist<float>& motion) {
     const Twist<float> pull = PullOf(bodies.dynamics[body], pseudo);
+    if (pull.linear.isZero(0) && pull.angular.isZero(0)) return;
     if (pseudo.nearFixed > 0.0f) SlowDown(bodies, body, pull, motion);
     motion.linear += pull.linear;
     motion.angular += pull.angular;

@@ -46,7 +46,7 @@ bool IsOverBodies(Verb verb) {
 
 class StepSolver {
 public:
-    // pseudo: room for the pseudo-velocities of all bodies, zero; null where no group has joints that are far apart.
+    // pseudo: room for the pseudo-velocities of all bodies, zero; null where the group has no joints that are far apart.
     StepSolver(WorldState& world, const StepContext& step, const Effort& effort, BodyState* pseudo)
         : world_(world), layout_(world.solver), effort_(effort), pseudo_(pseudo), h_(effort.substepDt), dt_(step.dt) {}
 
@@ -78,8 +78,6 @@ public:
     }
 
 private:
-
-
     uint32_t BlockCount(const Phase& phase) const {
         const SolverGroup& large = layout_.groups.front();
         if (IsOverBodies(phase.verb)) return (large.bodiesEnd - large.bodiesBegin + kBodiesPerBlock - 1) / kBodiesPerBlock;
@@ -324,11 +322,10 @@ bool PullsJoints(const WorldState& world, const SolverGroup& group) {
     return &group == &layout.groups.front() && std::ranges::any_of(layout.overflowJoints, isFar);
 }
 
-// Runs the verbs that loopOf(effort, whether joints are pulled) names over every group.
+// Runs the verbs that loopOf(effort, whether joints are pulled) names over every group. far: some joints are far apart, and to be pulled.
 template <class LoopOfEffort>
-void RunVerbs(WorldState& world, const StepContext& step, LoopOfEffort&& loopOf) {
+void RunVerbs(WorldState& world, const StepContext& step, bool far, LoopOfEffort&& loopOf) {
     const std::span<const SolverGroup> groups = world.solver.groups;
-    const bool far = std::ranges::any_of(world.findings, [](const WorkerFindings& findings) { return findings.joints.far; });
     const std::span<BodyState> pseudo = world.scratch.Allocate<BodyState>(far ? world.bodies.states.size() : 0);
     std::ranges::fill(pseudo, BodyState{});
     // Per group: its loop, and whether joints of it are pulled.
@@ -356,7 +353,8 @@ void RunVerbs(WorldState& world, const StepContext& step, LoopOfEffort&& loopOf)
 
 void Solve(WorldState& world, const StepContext& step) {
     if (world.colouring.Size() == 0) return;
-    RunVerbs(world, step, [&](const Effort& effort, bool pulls) { return LoopOf(effort.solver, world.bounces, pulls, world.scratch); });
+    const bool far = std::ranges::any_of(world.findings, [](const WorkerFindings& findings) { return findings.joints.far; });
+    RunVerbs(world, step, far, [&](const Effort& effort, bool pulls) { return LoopOf(effort.solver, world.bounces, pulls, world.scratch); });
 }
 
 void Restitution(WorldState& world, const StepContext& step) {
@@ -364,7 +362,7 @@ void Restitution(WorldState& world, const StepContext& step) {
     // A bounce tears at joints.
     static constexpr Verb kVerbs[] = {Verb::ClearPushWork, Verb::AddPushWork, Verb::SubtractPushWork, Verb::Restitution, Verb::Rejoin};
     const size_t count = world.solver.HasJoints() ? 5 : 4;
-    RunVerbs(world, step, [&](const Effort&, bool) { return std::span<const Verb>(kVerbs, count); });
+    RunVerbs(world, step, false, [&](const Effort&, bool) { return std::span<const Verb>(kVerbs, count); });
 }
 
 }  // namespace fulcrum
