@@ -206,13 +206,14 @@ bool RayCaster::Search(const Shape& shape, const Pose& pose, const RayCastSettin
     if (!shape.IsSurface()) return true;  // empty
     const SurfaceShape& surface = static_cast<const SurfaceShape&>(shape);
     double skipped = 0;
-    surface.CastRayAll(InFrameOf(surface, pose, settings.backFaces, skipped), [&](const SurfaceHit& at) {
-        const float fraction = static_cast<float>(skipped + double{at.fraction});
-        if (fraction > settings.maxFraction) return true;
-        hit = {fraction, {0, at.triangle}, Rotate(pose.rotation, at.normal), at.isBackFace};
+    const SurfaceRay ray = InFrameOf(surface, pose, settings.backFaces, skipped);
+    const float left = LeftOf(settings, settings.maxFraction, skipped);
+    if (left < 0) return true;
+    surface.CastRayAll(ray, [&](const SurfaceHit& at) {
+        hit = FromSurface(at, pose, settings, skipped);
         goOn = found(context, hit);
         return goOn;
-    });
+    }, left);
     return goOn;
 }
 

@@ -74,7 +74,7 @@ private:
     friend struct ShapeFileAccess;
     HeightField() : SurfaceShape(ShapeType::HeightField) {}
     void SearchBox(const Bounds& box, void* context, BatchFunction found) const override;
-    void SearchRay(const SurfaceRay& ray, void* context, HitFunction found) const override;
+    void SearchRay(const SurfaceRay& ray, float maxFraction, void* context, HitFunction found) const override;
 
     // The lowest and highest of the samples of a square of cells. Those of level 0 are kBlock cells wide, those of each
     // further level twice as wide as the one below; the last level has one.

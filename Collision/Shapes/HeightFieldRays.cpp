@@ -165,10 +165,10 @@ bool HeightField::IsHit(const SurfaceRay& ray, float maxFraction) const {
     return isHit;
 }
 
-void HeightField::SearchRay(const SurfaceRay& ray, void* context, HitFunction found) const {
-    Traverse(ray, 1, [&](uint32_t id, float fraction, bool isBackFace) {
+void HeightField::SearchRay(const SurfaceRay& ray, float maxFraction, void* context, HitFunction found) const {
+    Traverse(ray, maxFraction, [&](uint32_t id, float fraction, bool isBackFace) {
         const ClosestHit hit{fraction, id, isBackFace};
-        return found(context, hit.ToHit(NormalOf(id))) ? 1.0f : -1.0f;
+        return found(context, hit.ToHit(NormalOf(id))) ? maxFraction : -1.0f;
     });
 }
 

@@ -74,10 +74,10 @@ public:
     virtual uint32_t CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hits, const float* maxFractions) const;
     // Whether there is any.
     virtual bool IsHit(const SurfaceRay& ray, float maxFraction = 1) const = 0;
-    // Calls visit(const SurfaceHit&) for every hit, in no order of fractions, until it returns false. A ray through a shared
-    // edge may hit both triangles.
+    // Calls visit(const SurfaceHit&) for every hit with a fraction of at most `maxFraction`, in no order of fractions, until it
+    // returns false. A ray through a shared edge may hit both triangles.
     template <class Visitor>
-    void CastRayAll(const SurfaceRay& ray, Visitor&& visit) const;
+    void CastRayAll(const SurfaceRay& ray, Visitor&& visit, float maxFraction = 1) const;
 
     // Two-sided triangles collide and are hit from both sides; one-sided ones from the front alone.
     bool IsTwoSided() const { return isTwoSided_; }
@@ -94,7 +94,7 @@ protected:
     using BatchFunction = void (*)(void* context, const uint32_t* ids, int count);
     using HitFunction = bool (*)(void* context, const SurfaceHit& hit);
     virtual void SearchBox(const Bounds& box, void* context, BatchFunction found) const = 0;
-    virtual void SearchRay(const SurfaceRay& ray, void* context, HitFunction found) const = 0;
+    virtual void SearchRay(const SurfaceRay& ray, float maxFraction, void* context, HitFunction found) const = 0;
 
     // The closest of the hits that a search shows it.
     struct ClosestHit {
@@ -127,8 +127,8 @@ void SurfaceShape::VisitTriangles(const Bounds& box, Visitor&& visit) const {
 }
 
 template <class Visitor>
-void SurfaceShape::CastRayAll(const SurfaceRay& ray, Visitor&& visit) const {
-    SearchRay(ray, const_cast<void*>(static_cast<const void*>(&visit)), [](void* context, const SurfaceHit& hit) -> bool {
+void SurfaceShape::CastRayAll(const SurfaceRay& ray, Visitor&& visit, float maxFraction) const {
+    SearchRay(ray, maxFraction, const_cast<void*>(static_cast<const void*>(&visit)), [](void* context, const SurfaceHit& hit) -> bool {
         return (*static_cast<std::remove_reference_t<Visitor>*>(context))(hit);
     });
 }

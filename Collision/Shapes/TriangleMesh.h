@@ -56,7 +56,7 @@ private:
     friend struct ShapeFileAccess;
     TriangleMesh() : SurfaceShape(ShapeType::TriangleMesh) {}
     void SearchBox(const Bounds& box, void* context, BatchFunction found) const override;
-    void SearchRay(const SurfaceRay& ray, void* context, HitFunction found) const override;
+    void SearchRay(const SurfaceRay& ray, float maxFraction, void* context, HitFunction found) const override;
     Vector3 InTree(const Vector3& v) const;
     float PadFor(float largestOrigin) const;
     void LoadCorners(uint32_t begin, uint32_t end, Vec3<Wide<8>> (&corners)[3]) const;

@@ -214,10 +214,10 @@ bool TriangleMesh::IsHit(const SurfaceRay& ray, float maxFraction) const {
     return isHit;
 }
 
-void TriangleMesh::SearchRay(const SurfaceRay& ray, void* context, HitFunction found) const {
-    Traverse(ray, 1, [&](uint32_t id, float fraction, bool isBackFace) {
+void TriangleMesh::SearchRay(const SurfaceRay& ray, float maxFraction, void* context, HitFunction found) const {
+    Traverse(ray, maxFraction, [&](uint32_t id, float fraction, bool isBackFace) {
         const ClosestHit hit{fraction, id, isBackFace};
-        return found(context, hit.ToHit(NormalOf(id))) ? 1.0f : -1.0f;
+        return found(context, hit.ToHit(NormalOf(id))) ? maxFraction : -1.0f;
     });
 }
 

@@ -28,7 +28,7 @@ void Write(WorldState& world, const PairView& view, uint32_t index, const Surfac
         pair.material = contact.material;
         CombineMaterials(world, index);
     }
-    WriteManifold(world, {pair, world.pairs.records[index], view.bodyBInA, view.bInA}, contact.manifold, dt);
+    WriteManifold(world, {pair, world.pairs.records[index], view.bodyBInA, view.bInA, view.before}, contact.manifold, dt);
 }
 
 // Of the centre of the convex piece relative to the surface within the step, m, in that piece's frame.

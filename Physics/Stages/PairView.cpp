@@ -11,9 +11,16 @@ constexpr float kKeptDistance = 1e-3f;  // m, but at most this part of the small
 constexpr float kKeptPart = 2e-3f;
 constexpr float kKeptAngle = 1e-3f;     // rad
 
+// Impulses are carried on where the cosine of the angle between the normals of two steps is at least this.
+constexpr float kSameNormal = 0.5f;
+
 // Points are stored relative to the bodies, the narrow phase speaks of the pieces.
 Vector3 ToBody(const WorldState& world, const Pair& pair, uint32_t collider, const Vector3& point) {
     return pair.offset ? LocalOf(world, collider).Transform(point) : point;
+}
+
+Vector3 DirectionFromBody(const WorldState& world, const Pair& pair, const Vector3& direction) {
+    return pair.offset ? InverseRotate(LocalOf(world, pair.colliderA).rotation, direction) : direction;
 }
 
 void WriteTwistRadius(ContactRecord& record) {
@@ -39,6 +46,14 @@ void ForgetFriction(ContactRecord& record) {
 
 bool IsUsable(const Vector3& normal) { return std::fabs(LengthSquared(normal) - 1) < 0.1f; }
 
+// Whether the contact pushes in another direction than before: its last impulses, along the new normal, would then be no longer
+// those that balance the bodies' other contacts, and opposite pushes on a body in a thin floor would become one that throws it out. What
+// rolls keeps its normal in the other one's frame. Normals are in the frame of piece A.
+bool NormalTurned(const PairView& v, const Vector3& before, const Vector3& now) {
+    if (Dot<float>(before, now) >= kSameNormal) return false;
+    return Dot<float>(InverseRotate(v.before.rotation, before), InverseRotate(v.bInA.rotation, now)) < kSameNormal;
+}
+
 // Nothing touches.
 void Forget(Pair& pair, ContactRecord& record) {
     if (pair.pointCount == 0) ForgetFriction(record);
@@ -51,7 +66,7 @@ void Forget(Pair& pair, ContactRecord& record) {
 PairView ViewPair(WorldState& world, uint32_t index) {
     Pair& pair = world.pairs.pairs[index];
     const RelativePose bodies = Relative(world.bodies.CentrePoseOf(pair.bodyA), world.bodies.CentrePoseOf(pair.bodyB));
-    PairView view{pair, world.pairs.records[index], bodies, bodies};
+    PairView view{pair, world.pairs.records[index], bodies, bodies, pair.reference};
     if (pair.offset) view.bInA = Inverse(LocalOf(world, pair.colliderA)) * bodies * LocalOf(world, pair.colliderB);
     return view;
 }
@@ -82,10 +97,12 @@ void WriteManifold(const WorldState& world, const PairView& v, const Manifold& m
     const bool isUsable = manifold.pointCount == 0 || IsUsable(normal);
     if (!isUsable) pair.cache = {};
     if (manifold.pointCount == 0 || !isUsable) return Forget(pair, record);
+    const Vector3 oldNormal(record.normal[0], record.normal[1], record.normal[2]);
+    const bool goesOn = pair.pointCount > 0 && !NormalTurned(v, DirectionFromBody(world, pair, oldNormal), manifold.normal);
     for (int k = 0; k < 3; ++k) record.normal[k] = normal[k];
     float oldImpulses[Manifold::kMaxPoints];
     std::copy(record.impulse, record.impulse + Manifold::kMaxPoints, oldImpulses);
-    const int oldCount = pair.pointCount;
+    const int oldCount = goesOn ? pair.pointCount : 0;
     uint32_t oldFeatures[Manifold::kMaxPoints];
     std::copy(pair.features, pair.features + Manifold::kMaxPoints, oldFeatures);
 

@@ -12,6 +12,7 @@ struct PairView {
     ContactRecord& record;
     RelativePose bodyBInA;  // of the bodies' centre frames
     RelativePose bInA;      // of the pieces'
+    const RelativePose& before;  // the same when the manifold was found
 };
 PairView ViewPair(WorldState& world, uint32_t pair);
 

@@ -43,6 +43,14 @@ void AddHit(const WorldRayHit& hit, BitHash& answer) {
     answer.Add(hit.normal);
 }
 
+std::string ListsText(const Ray& ray, const WorldRayHit& single, const std::vector<WorldRayHit>& alone, const std::vector<WorldRayHit>& inBatch) {
+    std::string text = Text(": ray from ", ray.origin.transpose(), " by ", ray.displacement.transpose(), ", closest", ToText(single), ", alone");
+    for (const WorldRayHit& hit : alone) text += ToText(hit);
+    text += ", in a batch";
+    for (const WorldRayHit& hit : inBatch) text += ToText(hit);
+    return text;
+}
+
 // One by one, in a batch, all hits, any hit: the same answers, and those of every body by itself.
 void CastRays(Twin& twin, Values& values, const CallTargets& targets, Outcome& outcome) {
     const QueryInterface& queries = twin.system->Queries();
@@ -72,7 +80,7 @@ void CastRays(Twin& twin, Values& values, const CallTargets& targets, Outcome& o
         queries.CastRayAll(rays[i], singleAll, settings);
         if (isHit != (single.body != BodyId{}) || !AreSame(single, hits[i])) Fail(outcome, "a ray of a batch differs from the ray alone" + ToText(single) + ToText(hits[i]));
         if (isHit != (any[i] != 0) || isHit != queries.IsHit(rays[i], settings)) Fail(outcome, "whether a ray hits anything differs from its hit");
-        if (isHit == singleAll.empty() || singleAll.size() != all[i].size()) Fail(outcome, "the list of all hits differs");
+        if (isHit == singleAll.empty() || singleAll.size() != all[i].size()) Fail(outcome, "the list of all hits differs" + ListsText(rays[i], single, singleAll, all[i]));
         if (isPlain) Fail(outcome, CompareRay(bodies, rays[i], single));
         AddHit(single, outcome.answer);
     }

@@ -19,10 +19,19 @@ double ToleranceOf(const BodyShape& body, const Position& from) {
     return 1e-3 * size + 1e-6 * away + 1e-15 * (from.cwiseAbs().maxCoeff() + body.pose.position.cwiseAbs().maxCoeff());
 }
 
+// Where no body is found any more, since planes end there in a world.
+constexpr double kBeyondPlanes = 0.1 * double{kUnboundedExtent};  // m
+
 // The least fraction at which the ray meets the body; 2: it does not.
 double FractionOf(const BodyShape& body, const Ray& ray) {
     RayHit hit;
     return RayCaster(ray).CastClosest(*body.shape, body.pose, {}, hit) ? double{hit.fraction} : 2.0;
+}
+
+// Whether the ray meets it where planes have their end in a world.
+bool IsBeyondPlanes(const BodyShape& body, const Ray& ray, double fraction) {
+    if (body.shape->Type() != ShapeType::Plane || fraction > 1) return false;
+    return (ray.origin + ray.displacement.cast<double>() * fraction).cwiseAbs().maxCoeff() > kBeyondPlanes;
 }
 
 // The same for a ray moved aside by a little each way: between the least and the largest anything is right.
@@ -93,7 +102,7 @@ std::string CompareRay(const std::vector<BodyShape>& bodies, const Ray& ray, con
     double closest = 2;
     for (const BodyShape& body : bodies) {
         const auto [least, largest] = FractionsNear(body, ray);
-        closest = std::min(closest, largest);
+        if (!IsBeyondPlanes(body, ray, largest)) closest = std::min(closest, largest);
         if (isHit && body.id == hit.body && (double{hit.fraction} < least || (largest > 1.5 && least > 1.5)))
             return Text("a ray hits body ", body.id.index, " at ", hit.fraction, ", which by itself it meets from ", least, ": a ",
                         ShapeTypeName(body.shape->Type()), " of ", body.shape->OuterRadius(), " at ", body.pose.position.transpose(), ", ray from ",
@@ -136,10 +145,13 @@ std::string CompareClosest(const std::vector<BodyShape>& bodies, const PlacedSha
         ClosestPoints here;
         if (!FindClosestPoints(*body.shape, *placed.shape, Relative(body.pose, centre), maxDistance, here)) continue;
         const double tolerance = ToleranceOf(body, centre.position) + 1e-3 * double{placed.shape->OuterRadius()};
-        if (std::abs(here.distance) > 1e17f) continue;  // beyond what planes reach
+        if (std::abs(double{here.distance}) > kBeyondPlanes) continue;
         if (!isFound && double{here.distance} < double{maxDistance} - tolerance)
             return Text("no body is found within ", maxDistance, " m, but body ", body.id.index, " is ", here.distance, " m away");
-        if (isFound && double{here.distance} < double{closest.distance} - tolerance)
+        // Deeper than the thinner shape is thick any axis will do that parts them: EPA ends after so many, the best is taken.
+        const float thickness = 2 * std::min(body.shape->InnerRadius(), placed.shape->InnerRadius());
+        const double depth = std::max(double{here.distance}, -double{thickness});
+        if (isFound && depth < double{closest.distance} - tolerance)
             return Text("the closest to a ", ShapeTypeName(placed.shape->Type()), " of ", placed.shape->OuterRadius(), " is", ToText(closest), ", but body ",
                         body.id.index, ", a ", ShapeTypeName(body.shape->Type()), " of ", body.shape->OuterRadius(), ", is ", here.distance, " m away");
     }

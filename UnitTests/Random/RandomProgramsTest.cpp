@@ -48,5 +48,21 @@ TEST(RandomPrograms, HoldWhateverAUserCalls) {
     EXPECT_GT(played, 0u);
 }
 
+// Programs whose failures led to a change of the engine, as long as the same seeds make the same programs.
+TEST(RandomPrograms, HoldWhereTheyOnceFailed) {
+    const uint32_t seeds[] = {
+        418704,  // opposite pushes on a compound in a thin floor became one as a normal turned: 31 kJ became 813 kJ in a step
+        511883,  // the list of all hits of a mesh ended at fraction 1
+    };
+    const Watch watch(kIsSanitized ? 600 : 60);
+    SetMisuseHandler([](const Error&) {});
+    ProgramPlayer player;
+    for (const uint32_t seed : seeds) {
+        const RandomProgram program = MakeProgram(seed);
+        if (const std::optional<ProgramFailure> failure = player.Play(program)) ADD_FAILURE() << Describe(program, *failure);
+    }
+    SetMisuseHandler(nullptr);
+}
+
 }  // namespace
 }  // namespace fulcrum::testing

@@ -11,10 +11,10 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0xcea5d77860fd8fbdull;
+constexpr uint64_t kGoldenHash = 0xf48a883683301dceull;
 constexpr uint64_t kGoldenHashOfJoints = 0x5d9113157295e539ull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0xe873fa8a8a6a892eull;
-constexpr uint64_t kGoldenHashOfFastBodies = 0xb00990b7bc663b12ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0xe94728a03b48b574ull;
+constexpr uint64_t kGoldenHashOfFastBodies = 0x06beb920f9a88706ull;
 
 std::string Hex(uint64_t number) {
     char text[24];

@@ -6,6 +6,7 @@
 #include <Fulcrum/Collision/Shapes/RoundShapes.h>
 #include <Fulcrum/Collision/Shapes/ShapeFile.h>
 #include <Fulcrum/Collision/Shapes/Triangle.h>
+#include <Fulcrum/Collision/Shapes/TriangleMesh.h>
 #include <Fulcrum/UnitTests/Random/QueryChecks.h>
 #include <Fulcrum/UnitTests/Support/Cases.h>
 #include <Fulcrum/UnitTests/Support/Deadline.h>
@@ -41,6 +42,31 @@ TEST(QueriesAtExtremes, AnOddRayDoesNotSpoilItsBatch) {
                 EXPECT_EQ(isHit, i != 7 || hits[7].body != BodyId{}) << odd << " in axes " << axes << ", ray " << i;
                 EXPECT_TRUE(AreSame(alone, hits[i])) << odd << " in axes " << axes << ", ray " << i;
             }
+        }
+    }
+}
+
+// A fraction may be larger than one: the list of all hits ended at one for meshes and height fields.
+TEST(QueriesAtExtremes, AllHitsAreListedUpToTheFractionThatIsAskedFor) {
+    const float heights[] = {0, 0, 0, 0};
+    const Vector3 corners[] = {{-5, 0, -5}, {-5, 0, 5}, {5, 0, -5}};
+    const uint32_t indices[] = {0, 1, 2};
+    const ShapePtr shapes[] = {HeightField::Create({.sampleCountX = 2, .sampleCountZ = 2, .heights = heights, .cellSizeX = 10, .cellSizeZ = 10, .origin = Vector3(-5, 0, -5)}).Value(),
+                               TriangleMesh::Create({.vertices = corners, .indices = indices}).Value(), BoxOf(5, 0.01f, 5),
+                               Plane::Create(Vector3(0, 1, 0), 0).Value()};
+    for (const ShapePtr& shape : shapes) {
+        TestWorld world;
+        world.Add({.shape = shape, .motion = MotionType::Static});
+        const Ray ray{Position(-0.5, 10, -0.7), Vector3(0, -4, 0)};
+        for (const float maxFraction : {1.0f, 2.0f, 3.0f, 1e10f}) {
+            WorldRayHit closest;
+            std::vector<WorldRayHit> all;
+            const RayCastSettings settings{.maxFraction = maxFraction};
+            const bool isHit = world.System().Queries().CastRay(ray, closest, settings);
+            world.System().Queries().CastRayAll(ray, all, settings);
+            EXPECT_EQ(isHit, maxFraction > 2) << ShapeTypeName(shape->Type()) << " " << maxFraction;
+            ASSERT_EQ(all.size(), isHit ? 1u : 0u) << ShapeTypeName(shape->Type()) << " " << maxFraction;
+            EXPECT_TRUE(!isHit || AreSame(closest, all[0])) << ShapeTypeName(shape->Type()) << " " << maxFraction;
         }
     }
 }

@@ -68,7 +68,7 @@ public:
         bool found = false;
         for (uint32_t id = 0; id < TriangleIdEnd(); ++id) {
             SurfaceHit here;
-            if (!HitTriangle(ray, id, here) || here.fraction > maxFraction || (found && here.fraction >= hit.fraction)) continue;
+            if (!HitTriangle(ray, id, here, maxFraction) || (found && here.fraction >= hit.fraction)) continue;
             found = true;
             hit = here;
         }
@@ -88,13 +88,13 @@ private:
             if (b.Overlaps(box)) found(context, &id, 1);
         }
     }
-    void SearchRay(const SurfaceRay& ray, void* context, HitFunction found) const override {
+    void SearchRay(const SurfaceRay& ray, float maxFraction, void* context, HitFunction found) const override {
         for (uint32_t id = 0; id < TriangleIdEnd(); ++id) {
             SurfaceHit hit;
-            if (HitTriangle(ray, id, hit) && !found(context, hit)) return;
+            if (HitTriangle(ray, id, hit, maxFraction) && !found(context, hit)) return;
         }
     }
-    bool HitTriangle(const SurfaceRay& ray, uint32_t id, SurfaceHit& hit) const {
+    bool HitTriangle(const SurfaceRay& ray, uint32_t id, SurfaceHit& hit, float maxFraction) const {
         const Position o = ray.origin.cast<double>(), d = ray.displacement.cast<double>();
         const Position a = triangles_[id][0].cast<double>(), b = triangles_[id][1].cast<double>(), c = triangles_[id][2].cast<double>();
         const Position n = Cross<double>(b - a, c - a);
@@ -102,7 +102,7 @@ private:
         const bool back = speed > 0;
         if (speed == 0 || (back && !isTwoSided_ && !ray.backFaces)) return false;
         const double t = Dot<double>(n, Position(a - o)) / speed;
-        if (!(t >= 0 && t <= 1)) return false;
+        if (!(t >= 0 && t <= double{maxFraction})) return false;
         const Position p = o + d * t;
         const auto inside = [&](const Position& from, const Position& to) {
             return Dot<double>(n, Cross<double>(Position(to - from), Position(p - from))) >= 0;
