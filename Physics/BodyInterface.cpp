@@ -147,6 +147,10 @@ Status BodyInterface::Remove(BodyId id) {
     VisitColliders(world_, body, [&](uint32_t i) {
         world_.colliders.TreeOf(world_.colliders.colliders[i]).Remove(i);
         world_.strays.Forget(i);
+        // It touches nothing from now on. Its pairs are removed with the next step, in one go with those of other bodies.
+        world_.pairs.VisitOf(i, [&](uint32_t pair) {
+            for (; pair != PairStore::kNone; pair = world_.pairs.pairs[pair].more) world_.pairs.pairs[pair].touching = false;
+        });
     });
     world_.bodies.MarkAsleep(body);
     cold.exists = false;

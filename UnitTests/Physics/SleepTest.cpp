@@ -171,6 +171,31 @@ TEST(Sleep, IsPutToSleepByHandWithWhatItTouches) {
     EXPECT_TRUE(AllAwake(world, stack));
 }
 
+// Its pairs were there until the next step: to fall asleep read the place of a body that had none any more, a crash.
+TEST(Sleep, WhatWasRemovedTouchesNothingAtOnce) {
+    for (int removed = 0; removed < 3; ++removed) {
+        TestWorld world;
+        world.AddFloor();
+        std::vector<BodyId> stack = AddStack(world, 3);
+        world.Steps(5);
+        const BodyId gone = stack[static_cast<size_t>(removed)];
+        ASSERT_TRUE(world.Bodies().Remove(gone));
+        stack.erase(stack.begin() + removed);
+        world.System().VisitContacts([&](const ContactView& contact) {
+            EXPECT_TRUE(contact.bodyA != gone && contact.bodyB != gone);
+        });
+        std::vector<uint32_t> islands;
+        world.System().VisitIslands([&](BodyId, uint32_t island) { islands.push_back(island); });
+        ASSERT_EQ(islands.size(), 2u);
+        EXPECT_EQ(islands[0] == islands[1], removed != 1);
+        ASSERT_TRUE(world.Bodies().Sleep(stack[0]));
+        EXPECT_FALSE(world.Bodies().IsAwake(stack[0]));
+        EXPECT_EQ(world.Bodies().IsAwake(stack[1]), removed == 1);
+        world.Steps(5);
+        EXPECT_TRUE(world.AllFinite());
+    }
+}
+
 TEST(Sleep, AWokenStackStandsAsBefore) {
     TestWorld world(NoSleep());
     world.AddFloor();

@@ -51,6 +51,11 @@ std::pair<double, double> FractionsNear(const BodyShape& body, const Ray& ray) {
     return {range.first - slack, range.second + slack};
 }
 
+std::string ToText(const BodyShape& body, const Ray& ray) {
+    return Text(": a ", ShapeTypeName(body.shape->Type()), " of ", body.shape->OuterRadius(), " at ", body.pose.position.transpose(), ", ray from ",
+                ray.origin.transpose(), " by ", ray.displacement.transpose());
+}
+
 const BodyShape* Find(const std::vector<BodyShape>& bodies, BodyId id) {
     for (const BodyShape& body : bodies)
         if (body.id == id) return &body;
@@ -100,16 +105,22 @@ std::string CompareRay(const std::vector<BodyShape>& bodies, const Ray& ray, con
     if (isHit && !(IsUnit(hit.normal) && IsFinite(hit.position) && hit.fraction >= 0 && hit.fraction <= 1))
         return Text("ray hit of body ", hit.body.index, " is not finite, or its normal no unit vector");
     double closest = 2;
+    const BodyShape* closestBody = nullptr;
     for (const BodyShape& body : bodies) {
         const auto [least, largest] = FractionsNear(body, ray);
-        if (!IsBeyondPlanes(body, ray, largest)) closest = std::min(closest, largest);
+        if (largest < closest && !IsBeyondPlanes(body, ray, largest)) {
+            closest = largest;
+            closestBody = &body;
+        }
         if (isHit && body.id == hit.body && (double{hit.fraction} < least || (largest > 1.5 && least > 1.5)))
-            return Text("a ray hits body ", body.id.index, " at ", hit.fraction, ", which by itself it meets from ", least, ": a ",
-                        ShapeTypeName(body.shape->Type()), " of ", body.shape->OuterRadius(), " at ", body.pose.position.transpose(), ", ray from ",
-                        ray.origin.transpose(), " by ", ray.displacement.transpose());
+            return Text("a ray hits body ", body.id.index, " at ", hit.fraction, ", which by itself it meets from ", least, ToText(body, ray));
     }
+    // A tree knows nothing smaller than doubles do so far apart.
+    constexpr double kFarthestApart = 1e15;  // m
+    for (const BodyShape& body : bodies)
+        if ((body.pose.position - bodies.front().pose.position).cwiseAbs().maxCoeff() > kFarthestApart) return {};
     const double found = isHit ? double{hit.fraction} : 2;
-    if (found > closest + 1e-6) return Text("a ray hits at ", found, " what by itself is closer, at ", closest);
+    if (found > closest + 1e-6) return Text("a ray hits at ", found, " what by itself is closer, at ", closest, ToText(*closestBody, ray));
     return {};
 }
 
