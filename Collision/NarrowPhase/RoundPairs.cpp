@@ -1,12 +1,15 @@
 // Pair functions of spheres and capsules among themselves: closest points of points and segments.
 #include <Fulcrum/Collision/NarrowPhase/Features.h>
 #include <Fulcrum/Collision/NarrowPhase/PairFunctions.h>
+#include <Fulcrum/Collision/NarrowPhase/PointsAhead.h>
 #include <Fulcrum/Collision/NarrowPhase/Segments.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
 
 namespace fulcrum {
 
 namespace {
+
+constexpr float kFastReach = 0.5f;  // of the smaller radius
 
 // The point between two rounded cores, from the closest points of the cores. `known` (unit) is the normal where it is
 // certain or those points coincide but for rounding.
@@ -51,6 +54,29 @@ bool BuildParallel(const Segment& onA, const Segment& onB, float radiusA, float 
     return manifold.pointCount > 0;
 }
 
+// Where capsules are fast, their ends too: one that turns about the closest point within the step meets the other with an end.
+void AddEnds(const Segment& onA, const Segment& onB, float radiusA, float radiusB, float reach, Manifold& manifold) {
+    const float smaller = Min(radiusA, radiusB);
+    if (reach <= kFastReach * smaller) return;
+    constexpr int kEnds = 4;
+    ManifoldPoint ends[kEnds];
+    int count = 0;
+    for (int i = 0; i < kEnds; ++i) {
+        const bool isOfA = i < 2;
+        const Segment& own = isOfA ? onA : onB;
+        const Segment& other = isOfA ? onB : onA;
+        const Vector3 end = i % 2 == 0 ? own.from : own.to;
+        const Segment point{end, end};
+        const Vector3 between = other.At(ClosestOnSegments(point, other).t) - end;  // out of the end
+        const float distance = Length(between);
+        if (Dot(manifold.normal, isOfA ? between : Vector3(-between)) < kLeastCosineAhead * distance) continue;
+        const float separation = distance - (radiusA + radiusB);
+        const Vector3 onEnd = end + manifold.normal * (isOfA ? radiusA : -radiusB);
+        ends[count++] = {isOfA ? onEnd : Vector3(onEnd - manifold.normal * separation), separation, CrossingFeature(1, static_cast<uint32_t>(i))};
+    }
+    AddPointsAhead<8>(count, [&](int i) { return ends[i]; }, reach, smaller, 0.01f * smaller, manifold);
+}
+
 }  // namespace
 
 void CollideSphereSphere(const PairQuery& query, Manifold& manifold) {
@@ -88,6 +114,7 @@ void CollideCapsuleCapsule(const PairQuery& query, Manifold& manifold) {
     if (Dot(crossing, Vector3(y - x)) < 0.0f) crossing = -crossing;
     const bool cross = !parallel && closest.s > 0 && closest.s < 1 && closest.t > 0 && closest.t < 1;
     BuildPoint(x, y, a.Radius(), b.Radius(), crossing, cross, query.settings.speculativeDistance, manifold);
+    if (manifold.pointCount > 0) AddEnds(onA, onB, a.Radius(), b.Radius(), query.settings.speculativeDistance, manifold);
 }
 
 }  // namespace fulcrum

@@ -32,7 +32,7 @@ struct alignas(64) BallBatch {
 
     // Of lanes that are far apart, as in JointBatch.
     bool far;                            // some lane is
-    Real isFar, follows;                 // 1: this one is; 0.5: its bodies are pulled, be it by others
+    Real isFar, isDistant, follows;
     Vec3<Real> pull;                     // m/s
 };
 

@@ -28,7 +28,7 @@ struct alignas(32) JointRecord {
     // On B, world axes: the locks' own impulses of the last substep, N s and N m s. And as averages over the last step, N and
     // N m: those of the locks with their answer to the rows, and of locks and rows together, about the anchor.
     float ownImpulse[3] = {0, 0, 0}, ownAngularImpulse[3] = {0, 0, 0};
-    float wasPulled = 0, ownSpare = 0;  // 1: it was far apart in the last step; 0.5: it was pulled along by others that were
+    float wasPulled = 0, ownSpare = 0;  // 1 and more: it was far apart in the last step; 0.5: it was pulled along by others that were
     float lockForce[3] = {0, 0, 0}, lockTorque[3] = {0, 0, 0}, lockSpare[2] = {0, 0};
     float totalForce[3] = {0, 0, 0}, totalTorque[3] = {0, 0, 0}, totalSpare[2] = {0, 0};
 
@@ -102,7 +102,8 @@ struct JointBatch {
 
     // Of the lanes that are far apart: what their locks are pulled by in place of a bias, see PullJoints.
     bool far;                            // some lane is
-    Real isFar;                          // 1: this one is
+    Real isFar;                          // 1 and more: this one is, see JointRecord::wasPulled
+    Real isDistant;                      // 1: by so much that a lever would be as long as the gap
     Real follows;                        // 0.5: its bodies are pulled, be it by others
     Vec3<Real> pullLinear, pullAngular;  // m/s, rad/s
 };

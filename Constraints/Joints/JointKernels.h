@@ -491,8 +491,16 @@ inline float FarPush(const JointSolveSettings& settings) {
 }
 inline constexpr float kNearPart = 0.02f, kFollowPart = 0.2f;
 
-// JointRecord::wasPulled.
+// JointRecord::wasPulled. What is far apart notes for how many seconds it has been no more distant, too.
 inline constexpr float kWasFar = 1.0f, kFollowed = 0.5f;
+
+// Since when a joint that is far apart has not been distant, s, if it is not now. A pull ends after as long as it could move by 100 m or
+// turn by 100 rad in: what is still apart then is kept apart, by a pile on it, say, and would jitter.
+template <class Real, class Mask>
+FULCRUM_FORCE_INLINE Real SecondsNear(const Real& wasPulled, const Mask& isDistant, const JointSolveSettings& settings) {
+    return Select(isDistant, Real(0.0f), Max(wasPulled - Real(kWasFar), Real(0.0f)) + Real(settings.dt));
+}
+inline float LongestNear(const JointSolveSettings& settings) { return 100.0f / settings.maxPushSpeed; }
 
 // By lanes, as parts of the fastest push.
 template <class Real>

@@ -193,9 +193,12 @@ void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const Joint
         angle = Max(angle, Select(moves, zero, push));
     }
     // Angles alone are no reason: no lever grows with them, and in a pile hinges bend beyond their limits.
-    const auto isFar = (distance > least) | ((angle > least) & (wasPulled >= Real(kWasFar))), isDistant = Max(distance, angle) > farPart;
+    const auto isDistant = distance > farPart, isMuch = Max(distance, angle) > farPart;
+    const Real near = SecondsNear(wasPulled, isDistant, settings);
+    const auto isFar = ((distance > least) | ((angle > least) & (wasPulled >= Real(kWasFar)))) & (near <= Real(LongestNear(settings)));
     batch.far = isFar.Any();
-    batch.isFar = Select(isFar, Real(1.0f), zero);
+    batch.isFar = Select(isFar, Real(kWasFar) + near, zero);
+    batch.isDistant = Select(isDistant, Real(1.0f), zero);
     if (!batch.far) return;
     batch.pullLinear = batch.pullAngular = Zero<Real>();
     SetUpParts<kLinear, kAngular>(batch, place);
@@ -214,7 +217,7 @@ void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const Joint
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         JointRows<N>& row = batch.rows[i];
         const Real unlimited(JointRow::kUnlimited);
-        const auto waits = isDistant & (row.mostPush >= unlimited);
+        const auto waits = isMuch & (row.mostPush >= unlimited);
         row.pushRate = Select(isFar & (row.mostPush < unlimited), Real(0.0f), row.pushRate);
         row.impulse = Select(isNew, Real(0.0f), row.impulse);
         for (Real* x : {&row.impulse, &row.lowest, &row.highest}) *x = Select(waits, Real(0.0f), *x);

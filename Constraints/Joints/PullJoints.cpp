@@ -16,13 +16,23 @@ FULCRUM_FORCE_INLINE Real AddWithinLimits(Rows& row, const Real& impulse) {
     return added;
 }
 
-// Those of the lanes that are far apart. They need not keep momentum: what is to move is moved without turning it, and what is to turn is
-// turned about its centre, so that no lever as long as the gap makes a small mass of a large one.
+// How fast a row is pulled. Rows that couple a motion to another count it times their ratio.
+template <int N>
+FULCRUM_FORCE_INLINE Wide<N> PullSpeedOf(const JointRows<N>& row, const JointSolveSettings& settings) {
+    using Real = Wide<N>;
+    const Real squaredA = Dot<Real>(row.a.linear, row.a.linear), squaredB = Dot<Real>(row.b.linear, row.b.linear);
+    const auto moves = (Max(squaredA, squaredB) > Real(0.0f)) & (row.about <= Real(0.0f));
+    const Real ratio = Select(moves, Sqrt(Max(squaredA, squaredB)), Real(1.0f));
+    return PullSpeed<Real>(row.error / ratio, settings) * ratio;
+}
+
+// Those of the distant lanes. They need not keep momentum: what is to move is moved without turning it, and what is to turn is turned
+// about its centre, so that no lever as long as the gap makes a small mass of a large one.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-[[gnu::noinline]] void PullFar(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, const JointSolveSettings& settings) {
+[[gnu::noinline]] void PullDistant(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, const JointSolveSettings& settings) {
     using Real = Wide<N>;
     const Real zero(0.0f), one(1.0f), &massA = batch.massA.mass, &massB = batch.massB.mass;
-    const auto isFar = batch.isFar > Real(0.5f);
+    const auto isDistant = batch.isDistant > Real(0.5f);
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         JointRows<N>& row = batch.rows[i];
         const Real squaredA = Dot<Real>(row.a.linear, row.a.linear), squaredB = Dot<Real>(row.b.linear, row.b.linear);
@@ -31,13 +41,10 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
         const Vec3<Real> turnA = batch.massA.inertia * row.a.angular, turnB = batch.massB.inertia * row.b.angular;
         const Real angular = Dot<Real>(row.a.angular, turnA) + Dot<Real>(row.b.angular, turnB);
         const Real response = Select(moves, linear, angular);
-        const auto acts = isFar & (row.mass > zero) & (response > zero) & (row.error <= row.openAbove) & (row.mostPush < Real(JointRow::kUnlimited));
+        const auto acts = isDistant & (row.mass > zero) & (response > zero) & (row.error <= row.openAbove) & (row.mostPush < Real(JointRow::kUnlimited));
         const Real speed = Select(moves, Real(Dot<Real>(row.b.linear, b.linear) - Dot<Real>(row.a.linear, a.linear)),
                                   Real(Dot<Real>(row.b.angular, b.angular) - Dot<Real>(row.a.angular, a.angular)));
-        // Rows that couple a motion to another count it times their ratio.
-        const Real ratio = Select(moves, Sqrt(Max(squaredA, squaredB)), one);
-        const Real pull = PullSpeed<Real>(row.error / ratio, settings) * ratio;
-        const Real wanted = -(speed + pull) / Select(acts, response, one);
+        const Real wanted = -(speed + PullSpeedOf(row, settings)) / Select(acts, response, one);
         const Real impulse = AddWithinLimits(row, Select(acts, wanted, zero));
         const Real moving = Select(moves, impulse, zero), turning = Select(moves, zero, impulse);
         a.linear -= row.a.linear * (massA * moving);
@@ -48,8 +55,8 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     if constexpr (kAngular != AngularLock::None) {
         auto& part = AngularPart<kAngular>(batch);
         auto miss = part.RelativeMotion(a, b);
-        for (int k = 0; k < miss.size(); ++k) miss[k] = -(miss[k] + batch.pullAngular[k]) * batch.isFar;
-        part.AddImpulse(a, b, batch.massA, batch.massB, part.GetEffectiveMass() * miss, isFar);
+        for (int k = 0; k < miss.size(); ++k) miss[k] = -(miss[k] + batch.pullAngular[k]) * batch.isDistant;
+        part.AddImpulse(a, b, batch.massA, batch.massB, part.GetEffectiveMass() * miss, isDistant);
     }
     if constexpr (kLinear != LinearLock::None) {
         Vec3<Real> miss = b.linear - a.linear;
@@ -60,21 +67,25 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
             miss += batch.pullLinear;
         }
         const Real sum = massA + massB;
-        const Vec3<Real> impulse = miss * (-batch.isFar / Select(sum > zero, sum, one));
+        const Vec3<Real> impulse = miss * (-batch.isDistant / Select(sum > zero, sum, one));
         a.linear -= impulse * massA;
         b.linear += impulse * massB;
     }
 }
 
-// The other lanes hold what they hold: locks and limits, as in a relaxing pass. Motors and springs have no part in pseudo-velocities.
+// The other lanes hold what they hold: locks and limits, as in a relaxing pass, those that were far apart with what is left of their pull:
+// turned about their centres they would miss each other by what that turns their anchors, and whirl. Motors and springs have no part in
+// pseudo-velocities.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-[[gnu::noinline]] void HoldNear(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
+[[gnu::noinline]] void HoldNear(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, const JointSolveSettings& settings) {
     using Real = Wide<N>;
     const Real zero(0.0f);
-    const auto isNear = batch.isFar <= Real(0.5f);
+    const auto isNear = batch.isDistant <= Real(0.5f), isPulled = isNear & (batch.isFar > Real(0.5f));
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         JointRows<N>& row = batch.rows[i];
-        const Real wanted = -row.mass * (RowMotion<Real>(row, a, b) + Max(row.error, zero) * row.gapRate);
+        Real speed = Max(row.error, zero) * row.gapRate;
+        if (batch.far) speed = Select(isPulled & (row.error <= row.openAbove), PullSpeedOf(row, settings), speed);
+        const Real wanted = -row.mass * (RowMotion<Real>(row, a, b) + speed);
         const auto acts = isNear & (row.mass > zero) & (row.mostPush < Real(JointRow::kUnlimited));
         const Real impulse = AddWithinLimits(row, Select(acts, wanted, zero));
         a.linear += row.responseA.linear * impulse;
@@ -83,7 +94,11 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
         b.angular += row.responseB.angular * impulse;
     }
     if constexpr (kLinear != LinearLock::None || kAngular != AngularLock::None) {
-        const LockImpulses<Real> motion = LockMotion<kLinear, kAngular>(batch, a, b);
+        LockImpulses<Real> motion = LockMotion<kLinear, kAngular>(batch, a, b);
+        if (batch.far) {
+            motion.linear += ZeroUnless<Real>(isPulled, batch.pullLinear);
+            motion.angular += ZeroUnless<Real>(isPulled, batch.pullAngular);
+        }
         LockImpulses<Real> impulses = SolveBlock<kLinear, kAngular>(batch, motion.linear, motion.angular);
         for (int k = 0; k < 3; ++k) {
             impulses.linear[k] = Select(isNear, Real(-impulses.linear[k]), zero);
@@ -102,8 +117,8 @@ void PullJoints(JointBatch<N>& batch, BodyState* pseudo, const JointSolveSetting
     ChangeVelocities<N>(batch, pseudo, [&](auto& a, auto& b) {
         batch.follows = Follows<Wide<N>>(batch.follows, a, b, settings);
         WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
-            if (batch.far) PullFar<linear, angular>(batch, a, b, settings);
-            HoldNear<linear, angular>(batch, a, b);
+            if (batch.far) PullDistant<linear, angular>(batch, a, b, settings);
+            HoldNear<linear, angular>(batch, a, b, settings);
         });
     });
 }

@@ -121,9 +121,13 @@ template <int N>
 FULCRUM_FORCE_INLINE void FindFar(BallBatch<N>& batch, const Vec3<Wide<N>>& offset, const Wide<N>& wasPulled, const JointSolveSettings& settings) {
     using Real = Wide<N>;
     const Real most(settings.maxPushSpeed), rate(settings.pushRate);
-    const auto isFar = Max(Max(Abs(offset.x()), Abs(offset.y())), Abs(offset.z())) * rate > most * FarPush<Real>(wasPulled, settings);
+    const Real missing = Max(Max(Abs(offset.x()), Abs(offset.y())), Abs(offset.z())) * (rate / most);
+    const auto isDistant = missing > Real(FarPush(settings));
+    const Real near = SecondsNear(wasPulled, isDistant, settings);
+    const auto isFar = (missing > FarPush<Real>(wasPulled, settings)) & (near <= Real(LongestNear(settings)));
     batch.far = isFar.Any();
-    batch.isFar = Select(isFar, Real(1.0f), Real(0.0f));
+    batch.isFar = Select(isFar, Real(kWasFar) + near, Real(0.0f));
+    batch.isDistant = Select(isDistant, Real(1.0f), Real(0.0f));
 }
 
 template <int N>
@@ -236,12 +240,13 @@ void Pull(BallBatch<N>& batch, BodyState* pseudo, const JointSolveSettings& sett
         batch.follows = Follows<Real>(batch.follows, a, b, settings);
         if (batch.far) {
             const Real sum = batch.inverseMassA + batch.inverseMassB;
-            const Vec3<Real> impulse = (b.linear - a.linear + batch.pull) * (-batch.isFar / Select(sum > Real(0.0f), sum, Real(1.0f)));
+            const Vec3<Real> impulse = (b.linear - a.linear + batch.pull) * (-batch.isDistant / Select(sum > Real(0.0f), sum, Real(1.0f)));
             a.linear -= impulse * batch.inverseMassA;
             b.linear += impulse * batch.inverseMassB;
         }
-        const Vec3<Real> hard = batch.mass * MotionAt<Real>(a, b, batch.armA, batch.armB);
-        AddImpulse<kRound>(batch, batch.armA, batch.armB, ZeroUnless<Real>(batch.isFar <= Real(0.5f), Vec3<Real>(-hard)), a, b);
+        Vec3<Real> miss = MotionAt<Real>(a, b, batch.armA, batch.armB);
+        if (batch.far) miss += ZeroUnless<Real>(batch.isFar > Real(0.5f), batch.pull);
+        AddImpulse<kRound>(batch, batch.armA, batch.armB, ZeroUnless<Real>(batch.isDistant <= Real(0.5f), Vec3<Real>(-(batch.mass * miss))), a, b);
     });
 }
 

@@ -11,10 +11,10 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0xf48a883683301dceull;
-constexpr uint64_t kGoldenHashOfJoints = 0x5d9113157295e539ull;
+constexpr uint64_t kGoldenHash = 0x1658f85c6c509ffdull;
+constexpr uint64_t kGoldenHashOfJoints = 0x24e34186216ac978ull;
 constexpr uint64_t kGoldenHashOfSurfaces = 0xe94728a03b48b574ull;
-constexpr uint64_t kGoldenHashOfFastBodies = 0x06beb920f9a88706ull;
+constexpr uint64_t kGoldenHashOfFastBodies = 0xf819304887d308fdull;
 
 std::string Hex(uint64_t number) {
     char text[24];
