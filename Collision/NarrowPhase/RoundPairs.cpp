@@ -9,7 +9,7 @@ namespace fulcrum {
 
 namespace {
 
-constexpr float kFastReach = 0.5f;  // of the smaller radius
+constexpr float kFastReach = 2.0f;  // of the smaller radius
 
 // The point between two rounded cores, from the closest points of the cores. `known` (unit) is the normal where it is
 // certain or those points coincide but for rounding.

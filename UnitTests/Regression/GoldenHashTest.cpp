@@ -11,8 +11,8 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0x1658f85c6c509ffdull;
-constexpr uint64_t kGoldenHashOfJoints = 0x24e34186216ac978ull;
+constexpr uint64_t kGoldenHash = 0xdac43cda63839ae3ull;
+constexpr uint64_t kGoldenHashOfJoints = 0xa6192097862924acull;
 constexpr uint64_t kGoldenHashOfSurfaces = 0xe94728a03b48b574ull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0xf819304887d308fdull;
 
