@@ -95,9 +95,9 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     }
     if constexpr (kLinear != LinearLock::None || kAngular != AngularLock::None) {
         LockImpulses<Real> motion = LockMotion<kLinear, kAngular>(batch, a, b);
-        if (batch.far) {
-            motion.linear += ZeroUnless<Real>(isPulled, batch.pullLinear);
-            motion.angular += ZeroUnless<Real>(isPulled, batch.pullAngular);
+        for (int k = 0; batch.far && k < 3; ++k) {
+            motion.linear[k] = Select(isPulled, motion.linear[k] + batch.pullLinear[k], motion.linear[k]);
+            motion.angular[k] = Select(isPulled, motion.angular[k] + batch.pullAngular[k], motion.angular[k]);
         }
         LockImpulses<Real> impulses = SolveBlock<kLinear, kAngular>(batch, motion.linear, motion.angular);
         for (int k = 0; k < 3; ++k) {

@@ -245,7 +245,8 @@ void Pull(BallBatch<N>& batch, BodyState* pseudo, const JointSolveSettings& sett
             b.linear += impulse * batch.inverseMassB;
         }
         Vec3<Real> miss = MotionAt<Real>(a, b, batch.armA, batch.armB);
-        if (batch.far) miss += ZeroUnless<Real>(batch.isFar > Real(0.5f), batch.pull);
+        if (batch.far)
+            for (int k = 0; k < 3; ++k) miss[k] = Select(batch.isFar > Real(0.5f), miss[k] + batch.pull[k], miss[k]);
         AddImpulse<kRound>(batch, batch.armA, batch.armB, ZeroUnless<Real>(batch.isDistant <= Real(0.5f), Vec3<Real>(-(batch.mass * miss))), a, b);
     });
 }
