@@ -27,5 +27,5 @@
 #include <Fulcrum/Physics/Ragdoll/Ragdoll.h>
 #include <Fulcrum/Physics/Ragdoll/RagdollSettings.h>
 #include <Fulcrum/Physics/Ragdoll/SkeletonMapping.h>
-#include <Fulcrum/Physics/Ragdoll/Stabilise.h>
+#include <Fulcrum/Physics/Ragdoll/Stabilize.h>
 #include <Fulcrum/Version.h>

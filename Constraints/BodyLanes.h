@@ -7,11 +7,11 @@
 namespace fulcrum {
 
 // Which row of a body's solver state.
-enum class Of { Velocity, Displacement };
+enum class BodyRow { Velocity, Displacement };
 
-template <Of kOf>
+template <BodyRow kRow>
 FULCRUM_FORCE_INLINE float* RowOf(BodyState& state) {
-    return kOf == Of::Velocity ? state.VelocityRow() : state.PoseRow();
+    return kRow == BodyRow::Velocity ? state.VelocityRow() : state.PoseRow();
 }
 
 // Returns the lanes whose inertia turns.
@@ -35,7 +35,7 @@ FULCRUM_FORCE_INLINE Quat<Wide<N>> GatherRotation(const uint32_t (&index)[N], co
     return {r[0], r[1], r[2], r[3]};
 }
 
-// From A's centre of mass to B's, m.
+// From A's center of mass to B's, m.
 template <int N>
 FULCRUM_FORCE_INLINE Vec3<Wide<N>> GatherOffset(const uint32_t (&bodyA)[N], const uint32_t (&bodyB)[N], const BodyPose* poses) {
     alignas(64) float offsets[3][N];

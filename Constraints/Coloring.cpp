@@ -6,30 +6,30 @@
 
 namespace fulcrum {
 
-void ConstraintColouring::ReserveBodies(uint32_t count) {
+void ConstraintColoring::ReserveBodies(uint32_t count) {
     if (count <= used_.size()) return;
     used_.resize(count, 0);
     overflows_.resize(count, 0);
 }
 
 template <class Visit>
-void ConstraintColouring::VisitMoving(const Entry& entry, Visit&& visit) {
+void ConstraintColoring::VisitMoving(const Entry& entry, Visit&& visit) {
     if (!entry.stillA) visit(entry.bodyA);
     if (!entry.stillB) visit(entry.bodyB);
 }
 
-ColourSlot ConstraintColouring::Add(Kind kind, const Entry& entry, bool late) {
+ColorSlot ConstraintColoring::Add(Kind kind, const Entry& entry, bool late) {
     uint64_t used = 0;
     VisitMoving(entry, [&](uint32_t body) { used |= used_[body]; });
-    ColourSlot place;
+    ColorSlot place;
     if (used == ~uint64_t(0)) {
-        place.colour = kOverflow;
+        place.color = kOverflow;
         VisitMoving(entry, [&](uint32_t body) { ++overflows_[body]; });
     } else {
-        place.colour = static_cast<uint8_t>(late ? 63 - std::countl_one(used) : std::countr_one(used));
-        VisitMoving(entry, [&](uint32_t body) { used_[body] |= uint64_t(1) << place.colour; });
+        place.color = static_cast<uint8_t>(late ? 63 - std::countl_one(used) : std::countr_one(used));
+        VisitMoving(entry, [&](uint32_t body) { used_[body] |= uint64_t(1) << place.color; });
     }
-    std::vector<Entry>& list = List(place.colour, kind);
+    std::vector<Entry>& list = List(place.color, kind);
     place.slot = static_cast<uint32_t>(list.size());
     list.push_back(entry);
     ++size_;
@@ -38,12 +38,12 @@ ColourSlot ConstraintColouring::Add(Kind kind, const Entry& entry, bool late) {
     return place;
 }
 
-uint32_t ConstraintColouring::Remove(Kind kind, const Entry& entry, ColourSlot place) {
+uint32_t ConstraintColoring::Remove(Kind kind, const Entry& entry, ColorSlot place) {
     VisitMoving(entry, [&](uint32_t body) {
-        if (place.colour == kOverflow) --overflows_[body];
-        else used_[body] &= ~(uint64_t(1) << place.colour);
+        if (place.color == kOverflow) --overflows_[body];
+        else used_[body] &= ~(uint64_t(1) << place.color);
     });
-    std::vector<Entry>& list = List(place.colour, kind);
+    std::vector<Entry>& list = List(place.color, kind);
     FULCRUM_ASSERT(entry.constraint == list[place.slot].constraint);
     const Entry moved = list.back();
     list[place.slot] = moved;
@@ -54,9 +54,9 @@ uint32_t ConstraintColouring::Remove(Kind kind, const Entry& entry, ColourSlot p
     return moved.constraint;
 }
 
-size_t ConstraintColouring::MemoryUsed() const {
+size_t ConstraintColoring::MemoryUsed() const {
     size_t bytes = used_.capacity() * sizeof(uint64_t) + overflows_.capacity() * sizeof(uint32_t);
-    for (const Colour& c : colours_)
+    for (const Color& c : colors_)
         for (const std::vector<Entry>& list : c.lists) bytes += list.capacity() * sizeof(Entry);
     return bytes;
 }

@@ -1,7 +1,7 @@
-// Colours contacts and joints so that no two of a colour share a moving body: those of a colour are solved at the same time,
+// Colors contacts and joints so that no two of a color share a moving body: those of a color are solved at the same time,
 // in lanes and on any number of threads, and the result does not depend on their order. Kept from step to step: only what
-// begins or ends is coloured. Called by the Color stage and where joints come and go. Serial; the same calls give the same
-// colours.
+// begins or ends is colored. Called by the Color stage and where joints come and go. Serial; the same calls give the same
+// colors.
 #pragma once
 
 #include <array>
@@ -11,15 +11,15 @@
 
 namespace fulcrum {
 
-struct ColourSlot {
-    uint8_t colour = 0xFF;  // index into ConstraintColouring::Colours(); kOverflow where none was free
-    uint32_t slot = 0;      // index into the colour's list
+struct ColorSlot {
+    uint8_t color = 0xFF;  // index into ConstraintColoring::Colors(); kOverflow where none was free
+    uint32_t slot = 0;      // index into the color's list
 };
 
-class ConstraintColouring {
+class ConstraintColoring {
 public:
-    static constexpr int kColours = 64;
-    static constexpr uint8_t kOverflow = kColours;  // constraints of bodies that have more than 64: solved one after the other
+    static constexpr int kColors = 64;
+    static constexpr uint8_t kOverflow = kColors;  // constraints of bodies that have more than 64: solved one after the other
 
     struct Entry {
         uint32_t constraint, bodyA, bodyB;
@@ -31,31 +31,31 @@ public:
         Joint,   // either body may be still
     };
     static constexpr size_t kKinds = 3;
-    struct Colour {
+    struct Color {
         std::array<std::vector<Entry>, kKinds> lists;
         const std::vector<Entry>& Of(Kind kind) const { return lists[static_cast<size_t>(kind)]; }
         bool Empty() const { return lists[0].empty() && lists[1].empty() && lists[2].empty(); }
     };
 
-    // Colours are solved in ascending order: what is to win comes `late`.
-    ColourSlot Add(Kind kind, const Entry& entry, bool late);
+    // Colors are solved in ascending order: what is to win comes `late`.
+    ColorSlot Add(Kind kind, const Entry& entry, bool late);
 
     // The same entry again. Returns the constraint of its kind that now has its place, or itself where it was the last.
-    uint32_t Remove(Kind kind, const Entry& entry, ColourSlot place);
+    uint32_t Remove(Kind kind, const Entry& entry, ColorSlot place);
 
-    // Says that what was derived from the colours holds no longer.
-    void Touch() {
+    // Says that what was derived from the colors holds no longer.
+    void Invalidate() {
         ++version_;
         ++jointVersion_;
     }
 
-    // Whether any coloured constraint touches the body.
+    // Whether any colored constraint touches the body.
     bool IsTouched(uint32_t body) const { return body < used_.size() && (used_[body] != 0 || overflows_[body] != 0); }
 
-    const Colour& At(int colour) const { return colours_[static_cast<size_t>(colour)]; }
+    const Color& At(int color) const { return colors_[static_cast<size_t>(color)]; }
     uint32_t Size() const { return size_; }
-    bool HasOverflow() const { return !colours_[kOverflow].Empty(); }
-    // Grows with every change: what was derived from the colours holds as long as it stays.
+    bool HasOverflow() const { return !colors_[kOverflow].Empty(); }
+    // Grows with every change: what was derived from the colors holds as long as it stays.
     uint64_t Version() const { return version_; }
     uint64_t JointVersion() const { return jointVersion_; }  // the same, of joints alone
     void ReserveBodies(uint32_t count);
@@ -64,11 +64,11 @@ public:
 private:
     template <class Visit>
     static void VisitMoving(const Entry& entry, Visit&& visit);
-    std::vector<Entry>& List(uint8_t colour, Kind kind) { return colours_[colour].lists[static_cast<size_t>(kind)]; }
+    std::vector<Entry>& List(uint8_t color, Kind kind) { return colors_[color].lists[static_cast<size_t>(kind)]; }
 
-    std::vector<Colour> colours_ = std::vector<Colour>(kColours + 1);
-    std::vector<uint64_t> used_;       // by body: bit c is set where a constraint of colour c moves it
-    std::vector<uint32_t> overflows_;  // by body: its constraints without a colour
+    std::vector<Color> colors_ = std::vector<Color>(kColors + 1);
+    std::vector<uint64_t> used_;       // by body: bit c is set where a constraint of color c moves it
+    std::vector<uint32_t> overflows_;  // by body: its constraints without a color
     uint32_t size_ = 0;
     uint64_t version_ = 1, jointVersion_ = 1;
 };

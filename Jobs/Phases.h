@@ -1,4 +1,4 @@
-// Many short parallel phases with a cheap barrier between each and the next: the solver's colours.
+// Many short parallel phases with a cheap barrier between each and the next: the solver's colors.
 // Called by the Solve stage on the thread that steps. Threads come from any JobSystem; nothing is allocated.
 #pragma once
 

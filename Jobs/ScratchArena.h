@@ -18,7 +18,7 @@ public:
     // Reserves nothing before the first Allocate.
     ScratchArena() = default;
 
-    // Uninitialised room for `count` objects, aligned to kAlignment, valid until Reset. Empty for a count of 0.
+    // Uninitialized room for `count` objects, aligned to kAlignment, valid until Reset. Empty for a count of 0.
     // Pieces of different calls share no cache line. Throws std::bad_alloc where memory has run out.
     template <class T>
         requires(std::is_trivially_destructible_v<T> && alignof(T) <= kAlignment)

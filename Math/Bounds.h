@@ -15,7 +15,7 @@ struct Bounds {
     Vector3 upper = Vector3::Constant(-std::numeric_limits<float>::infinity());
 
     bool IsEmpty() const { return !(lower.x() <= upper.x()); }
-    Vector3 Centre() const { return (lower + upper) * 0.5f; }
+    Vector3 Center() const { return (lower + upper) * 0.5f; }
     Vector3 HalfExtents() const { return (upper - lower) * 0.5f; }
     void Include(const Vector3& p) {
         lower = lower.cwiseMin(p);

@@ -19,7 +19,7 @@ struct Pose {
     }
 };
 
-// A pose near another: float is exact enough between neighbours. Frame b seen from frame a.
+// A pose near another: float is exact enough between neighbors. Frame b seen from frame a.
 struct RelativePose {
     Vector3 position = Vector3::Zero();  // m
     Quaternion rotation;                 // unit

@@ -49,7 +49,7 @@ inline Real Polynomial(const Real& x, const Scalar (&c)[N]) {
     return sum;
 }
 
-// The coefficients below minimise the largest relative error (Remez exchange), which stays under 2^-30 for float and
+// The coefficients below minimize the largest relative error (Remez exchange), which stays under 2^-30 for float and
 // 2^-57 for double. (sin r - r) / r^3 and (cos r - 1 + r^2 / 2) / r^4 in r^2, |r| <= 0.786 (0.83 for float):
 inline constexpr float kSineFloat[] = {0x1.6c3b3ap-19f, -0x1.a00ce4p-13f, 0x1.111106p-7f, -0x1.555556p-3f};
 inline constexpr float kCosineFloat[] = {0x1.9930d2p-16f, -0x1.6c098cp-10f, 0x1.555546p-5f};

@@ -57,7 +57,7 @@ void WakeNear(WorldState& world, uint32_t index) {
 
 void Erase(WorldState& world, uint32_t index) {
     world.colliders.TreeOf(world.colliders.colliders[index]).Remove(index);
-    world.strays.Forget(index);
+    world.outsideFatBounds.Forget(index);
 }
 
 void RemovePairsOf(WorldState& world, uint32_t collider) {
@@ -148,7 +148,7 @@ void UpdateChildCollider(WorldState& world, uint32_t body, uint32_t child) {
         SetFatBounds(world, index);
         const Collider& collider = world.colliders.colliders[index];
         world.colliders.TreeOf(collider).Update(index, collider.fat);
-        world.strays.Forget(index);
+        world.outsideFatBounds.Forget(index);
         world.bodies.poses[body].boundsChangedIn = static_cast<uint32_t>(world.report.step + 1);
     } else {
         Insert(world, body, index);
@@ -158,18 +158,18 @@ void UpdateChildCollider(WorldState& world, uint32_t body, uint32_t child) {
     WakeNear(world, index);
 }
 
-void WakeNeighbours(WorldState& world, uint32_t body) {
+void WakeNeighbors(WorldState& world, uint32_t body) {
     if (world.bodies.cold[body].isSensor) return;
     VisitColliders(world, body, [&](uint32_t i) { WakeInside(world, world.colliders.colliders[i].fat); });
 }
 
-void MoveCentreOfMass(WorldState& world, uint32_t body, const Vector3& from, const Vector3& to) {
+void MoveCenterOfMass(WorldState& world, uint32_t body, const Vector3& from, const Vector3& to) {
     if (from == to) return;
     BodyStore& bodies = world.bodies;
-    Pose pose = bodies.ExactCentrePoseOf(body);
+    Pose pose = bodies.ExactCenterPoseOf(body);
     const Position before = pose.position;
     pose.position = before - Rotate(pose.rotation, from).cast<double>() + Rotate(pose.rotation, to).cast<double>();
-    bodies.SetCentrePose(body, pose);
+    bodies.SetCenterPose(body, pose);
     const Vector3 moved = (pose.position - before).cast<float>();
     const Vector3 angular = bodies.AngularVelocityOf(body);
     bodies.SetVelocity(body, bodies.LinearVelocityOf(body) + Cross<float>(angular, moved), angular);

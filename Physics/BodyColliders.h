@@ -20,10 +20,10 @@ void UpdateChildCollider(WorldState& world, uint32_t body, uint32_t child);
 double RelativeMassOf(const Shape& shape);
 
 // Wakes what overlaps the body's fat bounds: what it may rest on, or what may rest on it.
-void WakeNeighbours(WorldState& world, uint32_t body);
+void WakeNeighbors(WorldState& world, uint32_t body);
 
-// Moves the centre of mass from one place in the body's own frame to another. Material points, joints and contacts keep
+// Moves the center of mass from one place in the body's own frame to another. Material points, joints and contacts keep
 // their places, material points their velocities, forces their lines.
-void MoveCentreOfMass(WorldState& world, uint32_t body, const Vector3& from, const Vector3& to);
+void MoveCenterOfMass(WorldState& world, uint32_t body, const Vector3& from, const Vector3& to);
 
 }  // namespace fulcrum

@@ -18,9 +18,9 @@ Quaternion NormalizedUnlessItIs(const Quaternion& q) {
     return std::fabs(squared - 1) <= kRounding ? q : Normalized(q);
 }
 
-// The centre frame's pose of a body whose own frame is at `position`, `q`, which is normalized.
-Pose CentrePose(const Shape& shape, const Position& position, const Quaternion& q) {
-    return {position + Rotate(q, shape.Mass().centreOfMass).cast<double>(), q};
+// The center frame's pose of a body whose own frame is at `position`, `q`, which is normalized.
+Pose CenterPose(const Shape& shape, const Position& position, const Quaternion& q) {
+    return {position + Rotate(q, shape.Mass().centerOfMass).cast<double>(), q};
 }
 
 void FillDynamics(BodyDynamics& d, const BodySettings& s) {
@@ -53,15 +53,15 @@ void SetVelocityOf(WorldState& world, uint32_t body, Vector3 linear, Vector3 ang
 // For the first body of an empty world.
 void PlaceBoundsOrigin(WorldState& world, uint32_t body) {
     constexpr double kStep = 1024;  // m
-    const Position centre = world.bodies.CentreOf(body);
-    for (int k = 0; k < 3; ++k) world.colliders.boundsOrigin[k] = std::floor(centre[k] / kStep + 0.5) * kStep;
+    const Position center = world.bodies.CenterOf(body);
+    for (int k = 0; k < 3; ++k) world.colliders.boundsOrigin[k] = std::floor(center[k] / kStep + 0.5) * kStep;
 }
 
 // Ends the contacts that the body's filters forbid, has those found that they allow.
 void Refilter(WorldState& world, uint32_t body) {
     RemoveForbiddenPairs(world, body);
     WakeBody(world, body);
-    WakeNeighbours(world, body);
+    WakeNeighbors(world, body);
     RequeueColliders(world, body);
 }
 
@@ -77,7 +77,7 @@ void MoveToItsTree(WorldState& world, uint32_t body) {
         collider.sensor = cold.isSensor;
         SetFatBounds(world, i);
         store.TreeOf(collider).Insert(i, collider.fat);
-        world.strays.Forget(i);
+        world.outsideFatBounds.Forget(i);
     });
     RequeueColliders(world, body);
 }
@@ -89,7 +89,7 @@ void Teleported(WorldState& world, uint32_t body) {
         SetFatBounds(world, i);
         const Collider& collider = world.colliders.colliders[i];
         world.colliders.TreeOf(collider).Update(i, collider.fat);
-        world.strays.Forget(i);
+        world.outsideFatBounds.Forget(i);
     });
     world.bodies.poses[body].boundsChangedIn = static_cast<uint32_t>(world.report.step + 1);
     RequeueColliders(world, body);
@@ -115,7 +115,7 @@ Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
         const float kilograms = settings.mass > 0 ? settings.mass : settings.density * settings.shape->Mass().volume;
         cold.children->massUnit = double{kilograms} / RelativeMassOf(*settings.shape);
     }
-    world_.bodies.SetCentrePose(body, CentrePose(*settings.shape, settings.position, Normalized(settings.rotation)));
+    world_.bodies.SetCenterPose(body, CenterPose(*settings.shape, settings.position, Normalized(settings.rotation)));
     SetVelocityOf(world_, body, settings.linearVelocity, settings.angularVelocity);
     world_.bodies.UpdateInertia(body);
     if (world_.bodies.Count() == 1) PlaceBoundsOrigin(world_, body);
@@ -139,14 +139,14 @@ Status BodyInterface::Remove(BodyId id) {
     if (!Exists(id)) return Unknown(id);
     const uint32_t body = id.index;
     WakeBody(world_, body);
-    WakeNeighbours(world_, body);
+    WakeNeighbors(world_, body);
     world_.joints.VisitOf(body, [&](uint32_t joint) { RemoveJoint(world_, joint); });
     BodyCold& cold = world_.bodies.cold[body];
     world_.sweeps.users -= cold.continuous != ContinuousCollision::Off;
     if (cold.isSensor) world_.sensors.Remove(id);
     VisitColliders(world_, body, [&](uint32_t i) {
         world_.colliders.TreeOf(world_.colliders.colliders[i]).Remove(i);
-        world_.strays.Forget(i);
+        world_.outsideFatBounds.Forget(i);
         // It touches nothing from now on. Its pairs are removed with the next step, in one go with those of other bodies.
         world_.pairs.VisitOf(i, [&](uint32_t pair) {
             for (; pair != PairStore::kNone; pair = world_.pairs.pairs[pair].more) world_.pairs.pairs[pair].touching = false;
@@ -169,14 +169,14 @@ Status BodyInterface::SetPose(BodyId id, const Position& position, const Quatern
     const uint32_t body = id.index;
     if (world_.bodies.dynamics[body].frozen) {
         world_.bodies.dynamics[body].frozen = false;
-        RecolourJointsOf(world_, body);
+        RecolorJointsOf(world_, body);
     }
     WakeBody(world_, body);
-    WakeNeighbours(world_, body);
+    WakeNeighbors(world_, body);
     WakeJoined(world_, body);
-    world_.bodies.SetCentrePose(body, CentrePose(*world_.bodies.cold[body].shape, position, NormalizedUnlessItIs(rotation)));
+    world_.bodies.SetCenterPose(body, CenterPose(*world_.bodies.cold[body].shape, position, NormalizedUnlessItIs(rotation)));
     Teleported(world_, body);
-    WakeNeighbours(world_, body);
+    WakeNeighbors(world_, body);
     return Done{};
 }
 
@@ -186,8 +186,8 @@ Status BodyInterface::MoveKinematic(BodyId id, const Position& position, const Q
         return Error{ErrorCode::Unsupported, "MoveKinematic needs a kinematic body"};
     if (MaybeError e = FirstOf(CheckPosition("position", position), CheckRotation("rotation", rotation), CheckPositive("dt", dt)))
         return *e;
-    const Pose now{world_.bodies.ExactCentreOf(id.index), world_.bodies.RotationOf(id.index)};
-    const Pose goal = CentrePose(*world_.bodies.cold[id.index].shape, position, Normalized(rotation));
+    const Pose now{world_.bodies.ExactCenterOf(id.index), world_.bodies.RotationOf(id.index)};
+    const Pose goal = CenterPose(*world_.bodies.cold[id.index].shape, position, Normalized(rotation));
     const Vector3 linear = Vector3((goal.position - now.position).cast<float>()) * (1.0f / dt);
     const Vector3 angular = RotationVectorOf(goal.rotation * now.rotation.Conjugate()) * (1.0f / dt);
     return SetVelocity(id, linear, angular);
@@ -228,7 +228,7 @@ MaybeError CheckPushable(const WorldState& world, BodyId id) {
 }
 
 Vector3 ArmTo(const WorldState& world, BodyId id, const Position& point) {
-    return (point - world.bodies.CentreOf(id.index)).cast<float>();
+    return (point - world.bodies.CenterOf(id.index)).cast<float>();
 }
 
 Status Push(WorldState& world, BodyId id, const Vector3& force, const Vector3& torque) {
@@ -244,7 +244,7 @@ Status Push(WorldState& world, BodyId id, const Vector3& force, const Vector3& t
     return Done{};
 }
 
-Status Kick(WorldState& world, BodyId id, const Vector3& impulse, const Vector3& angularImpulse) {
+Status ApplyImpulse(WorldState& world, BodyId id, const Vector3& impulse, const Vector3& angularImpulse) {
     const WorldLock::Exclusive alone(world.lock);
     if (alone.Refusal()) return *alone.Refusal();
     if (MaybeError e = FirstOf(CheckPushable(world, id), CheckFinite("impulse", impulse), CheckFinite("angular impulse", angularImpulse)))
@@ -265,13 +265,13 @@ Status BodyInterface::AddForceAt(BodyId id, const Vector3& force, const Position
     if (MaybeError e = FirstOf(CheckPushable(world_, id), CheckPosition("point", point))) return *e;
     return Push(world_, id, force, Cross<float>(ArmTo(world_, id, point), force));
 }
-Status BodyInterface::AddImpulse(BodyId id, const Vector3& impulse) { return Kick(world_, id, impulse, Vector3::Zero()); }
+Status BodyInterface::AddImpulse(BodyId id, const Vector3& impulse) { return ApplyImpulse(world_, id, impulse, Vector3::Zero()); }
 Status BodyInterface::AddAngularImpulse(BodyId id, const Vector3& impulse) {
-    return Kick(world_, id, Vector3::Zero(), impulse);
+    return ApplyImpulse(world_, id, Vector3::Zero(), impulse);
 }
 Status BodyInterface::AddImpulseAt(BodyId id, const Vector3& impulse, const Position& point) {
     if (MaybeError e = FirstOf(CheckPushable(world_, id), CheckPosition("point", point))) return *e;
-    return Kick(world_, id, impulse, Cross<float>(ArmTo(world_, id, point), impulse));
+    return ApplyImpulse(world_, id, impulse, Cross<float>(ArmTo(world_, id, point), impulse));
 }
 
 Status BodyInterface::SetMaterial(BodyId id, const Material& material) {
@@ -284,7 +284,7 @@ Status BodyInterface::SetMaterial(BodyId id, const Material& material) {
         for (uint32_t pair = first; pair != PairStore::kNone; pair = world_.pairs.pairs[pair].more) CombineMaterials(world_, pair);
     });
     WakeBody(world_, id.index);
-    WakeNeighbours(world_, id.index);
+    WakeNeighbors(world_, id.index);
     return Done{};
 }
 
@@ -339,11 +339,11 @@ Status BodyInterface::SetSensor(BodyId id, bool isSensor) {
     if (cold.continuous != ContinuousCollision::Off)
         return Error{ErrorCode::Unsupported, "the body has continuous collision; a sensor touches nothing, and is not cast"};
     WakeBody(world_, id.index);
-    WakeNeighbours(world_, id.index);
+    WakeNeighbors(world_, id.index);
     VisitPairsOf(world_, {&id.index, 1}, [&](uint32_t pair) { RemovePair(world_, pair); });
     cold.isSensor = isSensor;
     MoveToItsTree(world_, id.index);
-    WakeNeighbours(world_, id.index);
+    WakeNeighbors(world_, id.index);
     if (isSensor) world_.sensors.Add(id, SensorSees::Default, true);
     else world_.sensors.Remove(id);
     return Done{};
@@ -387,12 +387,12 @@ Status BodyInterface::Sleep(BodyId id) {
 Pose BodyInterface::GetPose(BodyId id) const {
     if (!Exists(id)) return {};
     const Quaternion rotation = world_.bodies.RotationOf(id.index);
-    const Vector3 offset = world_.bodies.cold[id.index].shape->Mass().centreOfMass;
-    return {world_.bodies.ExactCentreOf(id.index) - Rotate(rotation, offset).cast<double>(), rotation};
+    const Vector3 offset = world_.bodies.cold[id.index].shape->Mass().centerOfMass;
+    return {world_.bodies.ExactCenterOf(id.index) - Rotate(rotation, offset).cast<double>(), rotation};
 }
 
-Position BodyInterface::GetCentreOfMass(BodyId id) const {
-    return Exists(id) ? world_.bodies.ExactCentreOf(id.index) : Position(Position::Zero());
+Position BodyInterface::GetCenterOfMass(BodyId id) const {
+    return Exists(id) ? world_.bodies.ExactCenterOf(id.index) : Position(Position::Zero());
 }
 Vector3 BodyInterface::GetLinearVelocity(BodyId id) const {
     return Exists(id) ? world_.bodies.LinearVelocityOf(id.index) : Vector3(Vector3::Zero());

@@ -34,7 +34,7 @@ public:
     Status AddForce(BodyId id, const Vector3& force);
     Status AddForceAt(BodyId id, const Vector3& force, const Position& point);
     Status AddTorque(BodyId id, const Vector3& torque);
-    // Acts at once: N s at the centre of mass or a world point, N m s; wakes, unless it is zero.
+    // Acts at once: N s at the center of mass or a world point, N m s; wakes, unless it is zero.
     Status AddImpulse(BodyId id, const Vector3& impulse);
     Status AddImpulseAt(BodyId id, const Vector3& impulse, const Position& point);
     Status AddAngularImpulse(BodyId id, const Vector3& impulse);
@@ -54,14 +54,14 @@ public:
     Status Sleep(BodyId id);
 
     // Another shape for the body, whose own frame stays where it is. Mass and inertia follow at the density that the body had,
-    // or stay; the centre of mass becomes that of the shape. Wakes the body and what is near. Errors: UnknownId, Unsupported
+    // or stay; the center of mass becomes that of the shape. Wakes the body and what is near. Errors: UnknownId, Unsupported
     // (null, no volume for a dynamic body, a surface or plane for one with continuous collision), OutOfRange (mass or inertia has no inverse).
     Status SetShape(BodyId id, const ShapePtr& shape, MassUpdate mass = MassUpdate::Update);
 
     // Children of a body that was made of a MutableCompound, of which it has a copy of its own: several bodies may be made of
-    // one. Places are in the body's own frame, which stays where it is when the centre of mass moves, and material points
+    // one. Places are in the body's own frame, which stays where it is when the center of mass moves, and material points
     // keep their velocities. The children left keep their masses. Wakes the body, what touched the child and what it touches
-    // now. Of a body that is not dynamic, neither mass nor centre change. Errors: those of MutableCompound, UnknownId,
+    // now. Of a body that is not dynamic, neither mass nor center change. Errors: those of MutableCompound, UnknownId,
     // Unsupported (the shape is no mutable compound), OutOfRange (mass or inertia has no inverse). Nothing has changed then.
     Result<ChildId> AddChild(BodyId id, const CompoundShape::ChildSettings& child, MassUpdate mass = MassUpdate::Update);
     Status SetChild(BodyId id, ChildId child, const CompoundShape::ChildSettings& settings, MassUpdate mass = MassUpdate::Update);
@@ -73,12 +73,12 @@ public:
 
     // Readers return zeros for an unknown id.
     Pose GetPose(BodyId id) const;
-    Position GetCentreOfMass(BodyId id) const;
-    Vector3 GetLinearVelocity(BodyId id) const;   // m/s, of the centre of mass
+    Position GetCenterOfMass(BodyId id) const;
+    Vector3 GetLinearVelocity(BodyId id) const;   // m/s, of the center of mass
     Vector3 GetAngularVelocity(BodyId id) const;  // rad/s, world axes
     Vector3 GetVelocityAt(BodyId id, const Position& point) const;
     float GetMass(BodyId id) const;               // kg; 0 for a body that is not dynamic
-    Vector3 GetAngularMomentum(BodyId id) const;  // kg m2/s, about the centre of mass, world axes
+    Vector3 GetAngularMomentum(BodyId id) const;  // kg m2/s, about the center of mass, world axes
     double GetKineticEnergy(BodyId id) const;     // J
     MotionType GetMotionType(BodyId id) const;
     ContinuousCollision GetContinuous(BodyId id) const;

@@ -13,12 +13,12 @@ void ChangeMass(WorldState& world, uint32_t body, const MassProperties& shape, f
     SetMass(world.bodies.dynamics[body], shape.principalAxes, kilograms,
             Vector3(shape.principalInertia * (kilograms / shape.volume)));
     world.bodies.UpdateInertia(body);
-    if (world.joints.HasAny(body)) world.colouring.Touch();
+    if (world.joints.HasAny(body)) world.coloring.Invalidate();
 }
 
 ChildId Commit(WorldState& world, uint32_t body, const MutableCompound::Edit& edit, bool updatesMass) {
     BodyCold& cold = world.bodies.cold[body];
-    const Vector3 centre = cold.shape->Mass().centreOfMass;
+    const Vector3 center = cold.shape->Mass().centerOfMass;
     BodyChildren& children = *cold.children;
     const std::span<const CompoundShape::Child> all = children.compound->Children();
     const ShapePtr before = edit.index < all.size() ? all[edit.index].shape : nullptr;  // pairs name it still
@@ -26,7 +26,7 @@ ChildId Commit(WorldState& world, uint32_t body, const MutableCompound::Edit& ed
     const ChildId id = children.compound->Commit(edit);
     world.bodies.dynamics[body].outerRadius = cold.shape->OuterRadius();
     if (updatesMass) {
-        MoveCentreOfMass(world, body, centre, edit.mass.centreOfMass);
+        MoveCenterOfMass(world, body, center, edit.mass.centerOfMass);
         children.origin = children.compound->Origin();
         ChangeMass(world, body, edit.mass, static_cast<float>(children.massUnit * edit.relativeMass));
     }
@@ -46,7 +46,7 @@ Result<ChildId> EditChildren(WorldState& world, BodyId id, MassUpdate mass, cons
         return Error{ErrorCode::Unsupported, std::string("the body's shape is a ") + ShapeTypeName(cold.shape->Type()) +
                                                  "; only mutable compounds have children to edit"};
     }
-    // What is not dynamic has no mass that could change, and its centre stays where it is.
+    // What is not dynamic has no mass that could change, and its center stays where it is.
     const bool updates = mass == MassUpdate::Update && world.bodies.dynamics[id.index].motion == MotionType::Dynamic;
     const Result<MutableCompound::Edit> edit = plan(*cold.children->compound, updates ? mass : MassUpdate::Keep);
     if (!edit) return edit.GetError();
@@ -113,19 +113,19 @@ Status BodyInterface::SetShape(BodyId id, const ShapePtr& shape, MassUpdate mass
             return *e;
     }
     WakeBody(world_, body);
-    WakeNeighbours(world_, body);
+    WakeNeighbors(world_, body);
     WakeJoined(world_, body);
     DropColliders(world_, body);
     const ShapePtr before = cold.shape;
     SetShapeOf(world_, body, shape);
-    MoveCentreOfMass(world_, body, before->Mass().centreOfMass, next.centreOfMass);
+    MoveCenterOfMass(world_, body, before->Mass().centerOfMass, next.centerOfMass);
     d.outerRadius = shape->OuterRadius();
     if (updates) ChangeMass(world_, body, next, kilograms);
     if (cold.children) cold.children->massUnit = double{kilograms} / RelativeMassOf(*shape);
     MakeColliders(world_, body);
     RequeueColliders(world_, body);
     if (!world_.sensors.IsEmpty()) world_.sensors.touched.push_back(body);  // also where no collider is left that would tell
-    WakeNeighbours(world_, body);
+    WakeNeighbors(world_, body);
     return Done{};
 }
 

@@ -2,7 +2,7 @@
 
 namespace fulcrum {
 
-Position ContactView::Centre() const {
+Position ContactView::Center() const {
     // As an offset from the first: sums of positions far out would lose digits.
     Position offset = Position::Zero();
     for (const Point& point : points) offset += point.position - points.front().position;
@@ -14,7 +14,7 @@ void ContactChange::MoveSurface(const ContactView& contact, BodyId belt, const V
 }
 
 void ContactChange::TurnSurface(const ContactView& contact, BodyId belt, const Position& pivot, const Vector3& angularVelocity) {
-    const Vector3 arm = (contact.Centre() - pivot).cast<float>();
+    const Vector3 arm = (contact.Center() - pivot).cast<float>();
     MoveSurface(contact, belt, Cross<float>(angularVelocity, arm));
     surfaceTurn += belt == contact.bodyB ? angularVelocity : Vector3(-angularVelocity);
 }

@@ -25,14 +25,14 @@ struct ContactView {
     uint32_t childA = 0, childB = 0;   // the pieces of compounds; else 0
 
     // m; the mean of the points.
-    Position Centre() const;
+    Position Center() const;
 };
 
 // How a contact is to behave in this step.
 struct ContactChange {
     // As the two materials give them in every step anew. A value out of range, or not finite, changes nothing.
     float friction, restitution;  // >= 0; 0..1
-    // B's surface moves against A's beyond the motion of the bodies: so fast at the contact's centre (m/s, world axes), and turning
+    // B's surface moves against A's beyond the motion of the bodies: so fast at the contact's center (m/s, world axes), and turning
     // so fast (rad/s, world axes). Friction makes what touches keep up with it. Only the part along the contact counts, and the
     // turn about the normal. Not finite: none.
     Vector3 surfaceVelocity = Vector3::Zero(), surfaceTurn = Vector3::Zero();

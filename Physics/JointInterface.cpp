@@ -30,23 +30,23 @@ MaybeError CheckBodies(const WorldState& world, const JointSettings& settings) {
     return std::nullopt;
 }
 
-// A place and a frame, in the world or in a body's centre frame.
+// A place and a frame, in the world or in a body's center frame.
 struct Frame {
-    Vector3 point;  // m, in the centre frame
+    Vector3 point;  // m, in the center frame
     Quaternion rotation;
 };
 
 Frame FrameOf(const WorldState& world, uint32_t body, const JointAnchor& anchor, JointSpace space) {
-    const Pose centre = world.bodies.CentrePoseOf(body);
+    const Pose center = world.bodies.CenterPoseOf(body);
     const Quaternion rotation = RotationOf(anchor);
-    if (space == JointSpace::World) return {centre.InverseTransform(OnGrid(anchor.point)), centre.rotation.Conjugate() * rotation};
-    const Vector3 offset = world.bodies.cold[body].shape->Mass().centreOfMass;
+    if (space == JointSpace::World) return {center.InverseTransform(OnGrid(anchor.point)), center.rotation.Conjugate() * rotation};
+    const Vector3 offset = world.bodies.cold[body].shape->Mass().centerOfMass;
     return {Vector3(anchor.point.cast<float>()) - offset, rotation};
 }
 
 Pose WorldFrameOf(const WorldState& world, uint32_t body, const Frame& frame) {
-    const Pose centre = world.bodies.CentrePoseOf(body);
-    return {centre.Transform(frame.point), centre.rotation * frame.rotation};
+    const Pose center = world.bodies.CenterPoseOf(body);
+    return {center.Transform(frame.point), center.rotation * frame.rotation};
 }
 
 // The frames of a joint: B's is where A's is in the world unless it is given; a normal that is left out follows A's.
@@ -65,7 +65,7 @@ std::pair<Frame, Frame> FramesOf(const WorldState& world, const JointSettings& s
         }
         return {a, FrameOf(world, s.bodyB.index, b, s.space)};
     }
-    const RelativePose bInA = Relative(world.bodies.CentrePoseOf(s.bodyA.index), world.bodies.CentrePoseOf(s.bodyB.index));
+    const RelativePose bInA = Relative(world.bodies.CenterPoseOf(s.bodyA.index), world.bodies.CenterPoseOf(s.bodyB.index));
     return {a, {bInA.InverseTransform(a.point), Normalized(bInA.rotation.Conjugate() * a.rotation)}};
 }
 
@@ -87,8 +87,8 @@ JointPose PoseOf(const WorldState& world, uint32_t index) {
     const Pose a = WorldFrameOf(world, joint.body[0], Read(record.anchorA, record.frameA));
     const Pose b = WorldFrameOf(world, joint.body[1], Read(record.anchorB, record.frameB));
     JointPose pose;
-    pose.armA = (a.position - world.bodies.CentreOf(joint.body[0])).cast<float>();
-    pose.armB = (b.position - world.bodies.CentreOf(joint.body[1])).cast<float>();
+    pose.armA = (a.position - world.bodies.CenterOf(joint.body[0])).cast<float>();
+    pose.armB = (b.position - world.bodies.CenterOf(joint.body[1])).cast<float>();
     pose.offset = (b.position - a.position).cast<float>();
     pose.frameA = a.rotation;
     pose.frameB = b.rotation;
@@ -121,10 +121,10 @@ void Enable(WorldState& world, uint32_t index, bool enabled) {
     if (enabled) {
         if (!joint.collideConnected) DropPairs(world, joint);
         WakeBoth(world, joint);
-        ColourJoint(world, index);
+        ColorJoint(world, index);
     } else {
         WakeBoth(world, joint);
-        UncolourJoint(world, index);
+        UncolorJoint(world, index);
         world.joints.Forget(index);
         for (uint32_t body : joint.body) RequeueColliders(world, body);
     }
@@ -221,7 +221,7 @@ Status JointInterface::ChangeControl(JointId id, JointAxis axis, Change&& change
     if (MaybeError error = CheckControl("axis", changed, world_.joints.types[id.index]->BoundsOf(axis))) return *error;
     *control = changed;
     Joint& joint = world_.joints.joints[id.index];
-    if (joint.type->MaxRows() != joint.maxRows || !(joint.type->Locks() == joint.locks)) world_.colouring.Touch();
+    if (joint.type->MaxRows() != joint.maxRows || !(joint.type->Locks() == joint.locks)) world_.coloring.Invalidate();
     if (joint.enabled) WakeBoth(world_, joint);
     return Done{};
 }
@@ -260,7 +260,7 @@ Status JointInterface::SetEffort(JointId id, const SolverSettings& effort) {
         return *error;
     Joint& joint = world_.joints.joints[id.index];
     joint.effort = effort;
-    world_.colouring.Touch();
+    world_.coloring.Invalidate();
     if (joint.enabled) WakeBoth(world_, joint);
     return Done{};
 }

@@ -69,8 +69,8 @@ void CountBodies(WorldState& world) {
     world.report.awakeBodies = static_cast<uint32_t>(world.bodies.awake.size());
     world.report.islands = world.solver.islands;
     world.report.pairs = static_cast<uint32_t>(world.pairs.active.Size());
-    for (int c = 0; c <= ConstraintColouring::kColours; ++c)
-        world.report.joints += static_cast<uint32_t>(world.colouring.At(c).Of(ConstraintColouring::Kind::Joint).size());
+    for (int c = 0; c <= ConstraintColoring::kColors; ++c)
+        world.report.joints += static_cast<uint32_t>(world.coloring.At(c).Of(ConstraintColoring::Kind::Joint).size());
 }
 
 // Runs the stages one after the other and notes how long each took.
@@ -157,7 +157,7 @@ Status PhysicsSystem::Update(double dt) {
     Sleep(world);
     timer.Finished(Stage::Sleep);
     timer.FinishedAll();
-    world.strays.MarkStale();
+    world.outsideFatBounds.MarkStale();
 
     CountBodies(world);
     return Done{};
@@ -246,7 +246,7 @@ double PhysicsSystem::GetEnergy() const {
         if (!bodies.cold[i].exists || bodies.dynamics[i].motion != MotionType::Dynamic) continue;
         const BodyId id = bodies.IdOf(i);
         energy += bodies_.GetKineticEnergy(id) -
-                  double(bodies_.GetMass(id)) * double(bodies.dynamics[i].gravityFactor) * Dot<double>(gravity, bodies.CentreOf(i));
+                  double(bodies_.GetMass(id)) * double(bodies.dynamics[i].gravityFactor) * Dot<double>(gravity, bodies.CenterOf(i));
     }
     return energy;
 }

@@ -51,10 +51,10 @@ const Position& OriginOf(const WorldState& world) { return world.colliders.bound
 
 TreeRay SweptBounds(const WorldState& world, const ShapeCaster& caster, const Pose& pose, const Vector3& displacement,
                     const ShapeCastSettings& settings) {
-    const Bounds& bounds = caster.BoundsAboutCentre();
-    const Vector3 centre = bounds.Centre();
+    const Bounds& bounds = caster.BoundsAboutCenter();
+    const Vector3 center = bounds.Center();
     const float slack = settings.separation + settings.tolerance + 1e-6f * (bounds.HalfExtents().maxCoeff() + Length(displacement));
-    return TreeRay(pose.position - OriginOf(world) + centre.cast<double>(), displacement, bounds.HalfExtents() + Vector3::Constant(slack));
+    return TreeRay(pose.position - OriginOf(world) + center.cast<double>(), displacement, bounds.HalfExtents() + Vector3::Constant(slack));
 }
 
 Bounds TreeBounds(const WorldState& world, const Position& lower, const Position& upper) {
@@ -123,7 +123,7 @@ void QueryInterface::VisitShape(const MovingShape& shape, FunctionRef<float(cons
                                 const ShapeCastSettings& settings, const QueryFilter& filter) const {
     const QueryScope scope(world_);
     if (!scope || !IsGiven(shape.shape)) return;
-    const ShapeMotion motion{CentrePoseOf(*shape.shape, shape.pose), shape.displacement, shape.turn};
+    const ShapeMotion motion{CenterPoseOf(*shape.shape, shape.pose), shape.displacement, shape.turn};
     const ShapeCaster caster(*shape.shape, motion);
     if (!caster.IsValid()) return;
     const ColliderSearch search(world_, filter);
@@ -142,7 +142,7 @@ bool QueryInterface::CastShape(const MovingShape& shape, WorldShapeHit& hit, con
                                const QueryFilter& filter) const {
     const QueryScope scope(world_);
     if (!scope || !IsGiven(shape.shape)) return false;
-    const ShapeMotion motion{CentrePoseOf(*shape.shape, shape.pose), shape.displacement, shape.turn};
+    const ShapeMotion motion{CenterPoseOf(*shape.shape, shape.pose), shape.displacement, shape.turn};
     const ShapeCaster caster(*shape.shape, motion);
     if (!caster.IsValid()) return false;
     const ColliderSearch search(world_, filter);
@@ -179,7 +179,7 @@ void QueryInterface::VisitOverlaps(const PlacedShape& shape, FunctionRef<bool(co
                                    const QueryFilter& filter) const {
     const QueryScope scope(world_);
     if (!scope || !IsGiven(shape.shape)) return;
-    const Pose pose = CentrePoseOf(*shape.shape, shape.pose);
+    const Pose pose = CenterPoseOf(*shape.shape, shape.pose);
     if (!IsUsable(pose)) return;
     const ColliderSearch search(world_, filter);
     const Bounds bounds = BoundsAbout(OriginOf(world_), *shape.shape, pose);
@@ -225,7 +225,7 @@ bool QueryInterface::FindClosest(const PlacedShape& shape, float maxDistance, Wo
                                  const QueryFilter& filter) const {
     const QueryScope scope(world_);
     if (!scope || !IsGiven(shape.shape)) return false;
-    const Pose pose = CentrePoseOf(*shape.shape, shape.pose);
+    const Pose pose = CenterPoseOf(*shape.shape, shape.pose);
     if (!IsUsable(pose) || !(maxDistance >= 0)) return false;
     const ColliderSearch search(world_, filter);
     const Bounds bounds = BoundsAbout(OriginOf(world_), *shape.shape, pose);

@@ -72,7 +72,7 @@ struct PlacedShape {
     Pose pose{};
 };
 
-// A convex shape on its way: its centre of mass moves straight, it turns about it at a constant rate.
+// A convex shape on its way: its center of mass moves straight, it turns about it at a constant rate.
 struct MovingShape {
     const ConvexShape* shape = nullptr;         // not null
     Pose pose{};                                // of the shape's own frame at the start

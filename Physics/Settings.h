@@ -80,8 +80,8 @@ struct BodySettings {
     ShapePtr shape;
     MotionType motion = MotionType::Dynamic;
     Position position = Position::Zero();         // m, of the shape's own origin; 1e18 along an axis at most
-    Quaternion rotation{};                        // unit within 1e-3; normalised exactly
-    Vector3 linearVelocity = Vector3::Zero();     // m/s, of the centre of mass; beyond 3e8 counts as that
+    Quaternion rotation{};                        // unit within 1e-3; normalized exactly
+    Vector3 linearVelocity = Vector3::Zero();     // m/s, of the center of mass; beyond 3e8 counts as that
     Vector3 angularVelocity = Vector3::Zero();    // rad/s, world axes; beyond 1e6 counts as that
     float density = 1000.0f;                      // kg/m3, > 0; used where mass is 0
     float mass = 0.0f;                            // kg, >= 0; 0: density times volume

@@ -24,7 +24,7 @@ struct StepReport {
     float largestJointError = 0;                      // m, >= 0: between the anchors of locks, as the step began
     float largestJointAngle = 0;                      // rad, >= 0
     JointId worstJoint, mostTurnedJoint;
-    uint32_t colours = 0, overflowConstraints = 0;    // overflow: fitted no colour, solved one by one
+    uint32_t colors = 0, overflowConstraints = 0;    // overflow: fitted no color, solved one by one
     uint32_t islands = 0;                             // awake ones that something touches
     float largestPenetration = 0;                     // m, >= 0, as found by Collide
     BodyId deepestA, deepestB;

@@ -51,8 +51,8 @@ function(fulcrum_compile_options target)
   endif()
 endfunction()
 
-# For what builds scenes, writes reports and tests: it runs once, and compiles in two thirds of the time with few optimisations.
+# For what builds scenes, writes reports and tests: it runs once, and compiles in two thirds of the time with few optimizations.
 # The engine keeps its own; so does every configuration but Release.
-function(fulcrum_optimise_little target)
+function(fulcrum_optimize_little target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()

@@ -48,8 +48,8 @@ public:
     // once. Until all nodes are written and NoteUpdated was called, nothing else may be asked but NodeCount.
     template <class BoundsOf>
     void UpdateLeaves(uint32_t begin, uint32_t end, BoundsOf&& boundsOf);
-    // After UpdateLeaves: how many of the leaves changed. The next Optimize, which must follow before any query, makes good
-    // what is above them.
+    // After UpdateLeaves: how many of the leaves changed. The next Optimize, which must follow before any query, refits
+    // their ancestors.
     void NoteUpdated(uint32_t changed);
 
     // Builds the whole tree anew, top down, each node full but for the last ones; leaves that are large beside the whole,

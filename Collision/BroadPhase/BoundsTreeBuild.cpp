@@ -1,4 +1,4 @@
-// The bulk build of a BoundsTree: top down, splitting at medians along the longest axis of the centres, at multiples of a
+// The bulk build of a BoundsTree: top down, splitting at medians along the longest axis of the centers, at multiples of a
 // power of eight, so that all nodes but the last of each height are full.
 #include <Fulcrum/Collision/BroadPhase/BoundsTree.h>
 
@@ -15,31 +15,31 @@ constexpr int kIdLane = 3;
 constexpr int kBins = 128;
 constexpr uint32_t kSmallSplit = 64;
 
-// Twice a leaf's centre.
-inline float Centre(const float* leaf, int axis) { return leaf[axis] - leaf[4 + axis]; }
+// Twice a leaf's center.
+inline float Center(const float* leaf, int axis) { return leaf[axis] - leaf[4 + axis]; }
 
 struct Spread {
     int axis;
     float lowest, extent;
-    // False where all centres coincide or lie beyond the floats, and any split is as good as another.
+    // False where all centers coincide or lie beyond the floats, and any split is as good as another.
     bool IsUsable() const { return extent > 1e-30f && extent < std::numeric_limits<float>::max(); }
 };
 
-// The axis along which the centres lie farthest apart.
+// The axis along which the centers lie farthest apart.
 template <class Leaf>
 Spread LongestSpread(const Leaf* leaves, uint32_t count) {
     // The fourth lane is an id's bits: no product here, those of denormal numbers are slow.
     using Lanes = Wide<4>;
     constexpr uint32_t kChains = 4;  // that do not wait for each other
-    const auto centre = [&](uint32_t i) { return Lanes::Load(leaves[i].lane) - Lanes::Load(leaves[i].lane + 4); };
-    Lanes lowest = centre(0), highest = lowest;
+    const auto center = [&](uint32_t i) { return Lanes::Load(leaves[i].lane) - Lanes::Load(leaves[i].lane + 4); };
+    Lanes lowest = center(0), highest = lowest;
     uint32_t i = 1;
     if (count >= kChains) {
         Lanes low[kChains], high[kChains];
-        for (uint32_t k = 0; k < kChains; ++k) low[k] = high[k] = centre(k);
+        for (uint32_t k = 0; k < kChains; ++k) low[k] = high[k] = center(k);
         for (i = kChains; i + kChains <= count; i += kChains) {
             for (uint32_t k = 0; k < kChains; ++k) {
-                const Lanes c = centre(i + k);
+                const Lanes c = center(i + k);
                 low[k] = Min(low[k], c);
                 high[k] = Max(high[k], c);
             }
@@ -48,8 +48,8 @@ Spread LongestSpread(const Leaf* leaves, uint32_t count) {
         highest = Max(Max(high[0], high[1]), Max(high[2], high[3]));
     }
     for (; i < count; ++i) {
-        lowest = Min(lowest, centre(i));
-        highest = Max(highest, centre(i));
+        lowest = Min(lowest, center(i));
+        highest = Max(highest, center(i));
     }
     const Lanes extent = highest - lowest;
     int axis = extent[1] > extent[0] ? 1 : 0;
@@ -84,7 +84,7 @@ void SplitByRank(Leaf* leaves, uint32_t count, uint32_t left, const Spread& spre
     alignas(32) float keys[kSmallSplit];
     const float scale = 1.0f / spread.extent;
     for (uint32_t i = 0; i < count; ++i) {
-        const float key = 1.0f + (Centre(leaves[i].lane, spread.axis) - spread.lowest) * scale;
+        const float key = 1.0f + (Center(leaves[i].lane, spread.axis) - spread.lowest) * scale;
         keys[i] = std::bit_cast<float>((std::bit_cast<uint32_t>(key) & ~(kSmallSplit - 1)) | i);
     }
     for (uint32_t i = count; i % kStep != 0; ++i) keys[i] = std::numeric_limits<float>::infinity();
@@ -192,8 +192,8 @@ void BoundsTree::BuildChildren(uint32_t node, uint32_t first, uint32_t count, ui
     Min(Wide<8>::Load(total.lane), Wide<8>::Load(box.lane)).Store(total.lane);
 }
 
-// Reorders a range so that its first `left` leaves have the smaller centres, along the axis on which the centres lie
-// farthest apart. Leaves with the same centre may go to either side.
+// Reorders a range so that its first `left` leaves have the smaller centers, along the axis on which the centers lie
+// farthest apart. Leaves with the same center may go to either side.
 void BoundsTree::SplitAt(uint32_t first, uint32_t count, uint32_t left) {
     while (left > 0 && left < count) {
         const Spread spread = LongestSpread(&gathered_[first], count);
@@ -204,7 +204,7 @@ void BoundsTree::SplitAt(uint32_t first, uint32_t count, uint32_t left) {
         }
         // A histogram tells the slab in which the median lies; what is left of the problem is inside it.
         const float scale = static_cast<float>(kBins) / spread.extent;
-        const auto place = [&](const Packed& leaf) { return (Centre(leaf.lane, spread.axis) - spread.lowest) * scale; };
+        const auto place = [&](const Packed& leaf) { return (Center(leaf.lane, spread.axis) - spread.lowest) * scale; };
         uint32_t histogram[kBins] = {};
         for (uint32_t i = first; i < first + count; ++i) ++histogram[std::min(static_cast<int>(place(gathered_[i])), kBins - 1)];
         int bin = 0;

@@ -29,7 +29,7 @@ BoxPair MakePair(const Box& a, const Box& b, const RelativePose& bInA) {
     return pair;
 }
 
-// Separation along the axis of one face, of A or B, on the side where the other box's centre is.
+// Separation along the axis of one face, of A or B, on the side where the other box's center is.
 float FaceSeparation(const BoxPair& pair, bool ofA, int axis) {
     const Vector3& column = ofA ? (&pair.transposed.x)[axis] : (&pair.rotation.x)[axis];
     const Vector3& half = ofA ? pair.halfA : pair.halfB;

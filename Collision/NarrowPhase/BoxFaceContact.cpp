@@ -161,7 +161,7 @@ bool BuildContact(const BoxPair& pair, const ReferenceBoxFace& seen, float separ
     const Vector3& half = ofA ? pair.halfA : pair.halfB;
     const Vector3& otherHalf = ofA ? pair.halfB : pair.halfA;
     const Matrix3& axes = ofA ? pair.rotation : pair.transposed;  // the other box's, in this box's frame
-    const Vector3 otherCentre = ofA ? pair.position : Vector3(-pair.positionInB);
+    const Vector3 otherCenter = ofA ? pair.position : Vector3(-pair.positionInB);
 
     // The other box's face that points most nearly against the direction.
     const float cosines[3] = {Dot(axes.x, seen.direction), Dot(axes.y, seen.direction), Dot(axes.z, seen.direction)};
@@ -170,7 +170,7 @@ bool BuildContact(const BoxPair& pair, const ReferenceBoxFace& seen, float separ
     const int m1 = (m + 1) % 3, m2 = (m + 2) % 3;
     const bool positive = cosines[m] < 0.0f;
     const Vector3* columns = &axes.x;
-    const Vector3 middle = otherCentre + columns[m] * (positive ? otherHalf[m] : -otherHalf[m]);
+    const Vector3 middle = otherCenter + columns[m] * (positive ? otherHalf[m] : -otherHalf[m]);
     const Vector3 side1 = columns[m1] * otherHalf[m1], side2 = columns[m2] * otherHalf[m2];
     const Parallelogram p = Projected({middle[frame.u], middle[frame.v], middle[frame.normal] * frame.side - half[frame.normal],
                                        side1[frame.u],  side1[frame.v],  side1[frame.normal] * frame.side,

@@ -13,7 +13,7 @@ struct BoxPair {
     float radiusA, radiusB;
     Matrix3 rotation;       // B's axes in A's frame
     Matrix3 transposed;     // A's axes in B's frame
-    Vector3 position;       // B's centre in A's frame
+    Vector3 position;       // B's center in A's frame
     Vector3 positionInB;    // the same vector in B's frame
 };
 

@@ -1,4 +1,4 @@
-// Pair function of a box and a sphere: the point of the box's core closest to the sphere's centre.
+// Pair function of a box and a sphere: the point of the box's core closest to the sphere's center.
 #include <Fulcrum/Collision/NarrowPhase/Features.h>
 #include <Fulcrum/Collision/NarrowPhase/PairFunctions.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
@@ -11,9 +11,9 @@ void CollideBoxSphere(const PairQuery& query, Manifold& manifold) {
     const auto& sphere = static_cast<const Sphere&>(query.b);
     const float rounding = box.ConvexRadius();
     const Vector3 half = box.HalfExtents() - Vector3::Constant(rounding);
-    const Vector3 centre = query.bInA.position;
-    Vector3 closest = centre.cwiseMax(-half).cwiseMin(half);
-    Vector3 between = centre - closest;
+    const Vector3 center = query.bInA.position;
+    Vector3 closest = center.cwiseMax(-half).cwiseMin(half);
+    Vector3 between = center - closest;
     const float squared = LengthSquared(between);
     const float reach = rounding + sphere.Radius() + query.settings.speculativeDistance;
     manifold.pointCount = 0;
@@ -23,14 +23,14 @@ void CollideBoxSphere(const PairQuery& query, Manifold& manifold) {
     if (distance > 1e-6f * (half.x() + half.y() + half.z())) {
         manifold.normal = between * (1.0f / distance);
     } else {
-        // The centre is inside: out through the nearest face.
+        // The center is inside: out through the nearest face.
         int axis = 0;
         for (int i = 1; i < 3; ++i)
-            if (half[i] - Abs(centre[i]) < half[axis] - Abs(centre[axis])) axis = i;
-        const float side = centre[axis] < 0 ? -1.0f : 1.0f;
+            if (half[i] - Abs(center[i]) < half[axis] - Abs(center[axis])) axis = i;
+        const float side = center[axis] < 0 ? -1.0f : 1.0f;
         manifold.normal = Vector3::Zero();
         manifold.normal[axis] = side;
-        distance = Abs(centre[axis]) - half[axis];
+        distance = Abs(center[axis]) - half[axis];
         closest[axis] = side * half[axis];
     }
     manifold.pointCount = 1;

@@ -18,7 +18,7 @@ void TryAxis(const SupportPair& pair, const Vector3& axis, KnownContact& known) 
     known.separation = separation;
 }
 
-// Both shapes' axes and the line between their centres: where EPA gives up, one of them is a start to polish.
+// Both shapes' axes and the line between their centers: where EPA gives up, one of them is a start to polish.
 void TryPlainAxes(const SupportPair& pair, KnownContact& known) {
     TryAxis(pair, Normalized(pair.position), known);
     for (int i = 0; i < 3; ++i) {

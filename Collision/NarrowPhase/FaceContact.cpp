@@ -16,7 +16,7 @@ struct FaceView {
     const Polyhedron& reference;
     const Polyhedron& incident;
     Matrix3 rotation;  // the incident polyhedron's axes
-    Vector3 position;  // its centre
+    Vector3 position;  // its center
     const ConvexHull::Face& face;
     const uint8_t* corners;
 

@@ -23,7 +23,7 @@ struct Body {
     LibccdAlgorithm algorithm;
     mutable int supports = 0;  // asked for so far
 
-    // Nothing limits libccd's loops. EPA expands what is nearest until nothing is: where a ball's centre lies on a corner of the other
+    // Nothing limits libccd's loops. EPA expands what is nearest until nothing is: where a ball's center lies on a corner of the other
     // shape, all of the ball's surface is equally near, and its facets are without number. MPR refines its portal for ever where
     // coordinates round by more than the shapes are thick.
     static constexpr int kMostSupports = 400;
@@ -53,12 +53,12 @@ void Support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* result
     ccdVec3Set(result, point.x(), point.y(), point.z());
 }
 
-void Centre(const void* object, ccd_vec3_t* result) {
+void Center(const void* object, ccd_vec3_t* result) {
     const Body& body = *static_cast<const Body*>(object);
     ccdVec3Set(result, body.position.x(), body.position.y(), body.position.z());
 }
 
-Vector3 CentreLine(const RelativePose& bInA) { return Normalized(bInA.position); }
+Vector3 CenterLine(const RelativePose& bInA) { return Normalized(bInA.position); }
 
 }  // namespace
 
@@ -75,7 +75,7 @@ LibccdResult LibccdPenetration(const ConvexShape& a, const ConvexShape& b, const
     ccd_t ccd;
     CCD_INIT(&ccd);
     ccd.support1 = ccd.support2 = Support;
-    ccd.center1 = ccd.center2 = Centre;
+    ccd.center1 = ccd.center2 = Center;
     ccd.max_iterations = 200;
     // Flat shapes have no inside: their tolerance must not be 0, or EPA never ends.
     const double size = std::max(static_cast<double>(a.InnerRadius()) + b.InnerRadius(),
@@ -109,7 +109,7 @@ LibccdResult LibccdPenetration(const ConvexShape& a, const ConvexShape& b, const
 
 namespace {
 
-// The axis that libccd finds, and MPR's or the centre line where it contradicts itself. Pair: any that can measure itself.
+// The axis that libccd finds, and MPR's or the center line where it contradicts itself. Pair: any that can measure itself.
 struct LibccdAxis {
     bool apart;
     Vector3 axis;
@@ -131,8 +131,8 @@ LibccdAxis FindAxis(const PairQuery& query, const Pair& pair) {
         ++query.counters.epaFailures;
         const LibccdResult mpr = LibccdPenetration(query.a, query.b, query.bInA, margin, LibccdAlgorithm::Mpr);
         const bool mprFound = mpr.status == LibccdResult::Status::Found;
-        if (!mprFound) ++query.counters.centreLineFallbacks;
-        const Vector3 other = mprFound ? Vector3(mpr.normal.cast<float>()) : CentreLine(query.bInA);
+        if (!mprFound) ++query.counters.centerLineFallbacks;
+        const Vector3 other = mprFound ? Vector3(mpr.normal.cast<float>()) : CenterLine(query.bInA);
         const float otherSeparation = pair.SeparationAlong(other);
         if (result.status == LibccdResult::Status::Failed || otherSeparation > found.separation) {
             found.axis = other;

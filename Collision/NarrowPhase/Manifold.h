@@ -1,4 +1,4 @@
-// What the narrow phase finds for a pair of convex shapes. All in the centre frame of shape A.
+// What the narrow phase finds for a pair of convex shapes. All in the center frame of shape A.
 #pragma once
 
 #include <Fulcrum/Math/Vector.h>

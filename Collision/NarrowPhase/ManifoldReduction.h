@@ -48,7 +48,7 @@ inline constexpr float kLeastWeightOnSurfaces = 0.02f;
 // from it, then those that span the largest area on each side of the line of the two; where all are on one side, another
 // there. Distances and areas count less for points that do not touch yet, down to `leastWeight`: what a shape rests on must
 // not be left out for what is farther out but above, or it rocks. What counts as above is a matter of the angle by which the
-// shape would have to tilt. The first point that is as good as the best to within `depthSlop` metres, or a hundredth of the
+// shape would have to tilt. The first point that is as good as the best to within `depthSlop` meters, or a hundredth of the
 // distance or area, is taken, so that rounding and tiny motions change nothing.
 template <int kMost>
 int ChooseFour(FlatPoints<kMost>& points, float depthSlop, int (&chosen)[4], float leastWeight = 1.0f) {

@@ -25,7 +25,7 @@ struct NearVertices {
     }
 };
 
-// Those of a polyhedron whose depth along `down` is at least `least`; `outside`: how far the shape's centre is from the plane.
+// Those of a polyhedron whose depth along `down` is at least `least`; `outside`: how far the shape's center is from the plane.
 void AddVertices(const Polyhedron& core, const Vector3& down, float outside, float least, NearVertices& near) {
     const Wide<8> x(down.x()), y(down.y()), z(down.z()), lowest(least);
     for (int block = 0; block < core.laneCount; block += 8) {

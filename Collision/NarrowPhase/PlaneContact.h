@@ -7,7 +7,7 @@
 
 namespace fulcrum {
 
-// Writes the manifold of the plane (A) and the shape (B), `bInA` being the pose of the shape's centre frame in the plane's
+// Writes the manifold of the plane (A) and the shape (B), `bInA` being the pose of the shape's center frame in the plane's
 // frame. The normal is the plane's. At most 4 points, chosen for area and depth of all vertices of the core (Polyhedron.h)
 // that lie within the speculative distance; of a curved core, of those of the face, edge or point that it turns to the plane.
 void CollidePlane(const Plane& plane, const ConvexShape& shape, const RelativePose& bInA, const CollideSettings& settings,

@@ -11,7 +11,7 @@ namespace fulcrum {
 inline constexpr float kLeastCosineAhead = 0.5f;
 
 // Adds to a manifold of one or two points those of `count` others, pointAt(0) to pointAt(count - 1), whose separation is at most `reach`,
-// m; at most four in all. What lies within `apart` metres of a point that was there adds nothing.
+// m; at most four in all. What lies within `apart` meters of a point that was there adds nothing.
 template <int kMost, class PointAt>
 void AddPointsAhead(int count, const PointAt& pointAt, float reach, float apart, float depthSlop, Manifold& manifold) {
     const Vector3 tangentU = Perpendicular(manifold.normal), tangentV = Cross<float>(manifold.normal, tangentU);

@@ -21,7 +21,7 @@ struct PolyhedronPair {
 
     Polyhedron a, b;
     Matrix3 rotation;  // B's axes in A's frame
-    Vector3 position;  // B's centre in A's frame
+    Vector3 position;  // B's center in A's frame
 
     PolyhedronPair(const Polyhedron& coreA, const Polyhedron& coreB, const RelativePose& bInA)
         : a(coreA), b(coreB), rotation(ToMatrix(bInA.rotation)), position(bInA.position) {}

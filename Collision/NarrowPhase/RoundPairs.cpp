@@ -89,9 +89,9 @@ void CollideSphereSphere(const PairQuery& query, Manifold& manifold) {
 void CollideCapsuleSphere(const PairQuery& query, Manifold& manifold) {
     const auto& a = static_cast<const Capsule&>(query.a);
     const auto& b = static_cast<const Sphere&>(query.b);
-    const Vector3 centre = query.bInA.position;
-    const Vector3 onCore(0, Clamp(centre.y(), -a.HalfHeight(), a.HalfHeight()), 0);
-    BuildPoint(onCore, centre, a.Radius(), b.Radius(), Vector3(1, 0, 0), false,
+    const Vector3 center = query.bInA.position;
+    const Vector3 onCore(0, Clamp(center.y(), -a.HalfHeight(), a.HalfHeight()), 0);
+    BuildPoint(onCore, center, a.Radius(), b.Radius(), Vector3(1, 0, 0), false,
                query.settings.speculativeDistance, manifold);
 }
 

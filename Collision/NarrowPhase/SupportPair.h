@@ -24,7 +24,7 @@ struct SupportPair {
     const ConvexShape& a;
     const ConvexShape& b;
     Matrix3 rotation;  // B's axes in A's frame
-    Vector3 position;  // B's centre in A's frame
+    Vector3 position;  // B's center in A's frame
 
     SupportPair(const ConvexShape& shapeA, const ConvexShape& shapeB, const RelativePose& bInA)
         : a(shapeA), b(shapeB), rotation(ToMatrix(bInA.rotation)), position(bInA.position) {}

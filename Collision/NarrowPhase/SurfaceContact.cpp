@@ -45,12 +45,12 @@ TriangleView Reversed(const TriangleView& view) {
 Bounds BoundsInSurface(const ConvexShape& a, const RelativePose& bInA, float reach) {
     const Matrix3 axes = ToMatrix(bInA.rotation.Conjugate());
     const Vector3 origin = -(axes * bInA.position), half = a.LocalBounds().HalfExtents();
-    const Vector3 centre = axes * a.LocalBounds().Centre();
+    const Vector3 center = axes * a.LocalBounds().Center();
     const Vector3 extent = axes.x.cwiseAbs() * half.x() + axes.y.cwiseAbs() * half.y() + axes.z.cwiseAbs() * half.z();
     const Vector3 sphere = Vector3::Constant(a.OuterRadius()), margin = Vector3::Constant(reach);
     Bounds bounds;
-    bounds.lower = origin + Vector3(centre - extent).cwiseMax(-sphere) - margin;
-    bounds.upper = origin + Vector3(centre + extent).cwiseMin(sphere) + margin;
+    bounds.lower = origin + Vector3(center - extent).cwiseMax(-sphere) - margin;
+    bounds.upper = origin + Vector3(center + extent).cwiseMin(sphere) + margin;
     return bounds;
 }
 
@@ -78,21 +78,21 @@ public:
     SurfaceCollider(const ConvexShape& a, const SurfaceShape& b, const RelativePose& bInA, const CollideSettings& settings,
                     const SurfaceApproach& approach, SurfaceContacts& contacts)
         : a_(a), b_(b), bInA_(bInA), settings_(settings), contacts_(contacts), axes_(ToMatrix(bInA.rotation)),
-          centre_(bInA.InverseTransform(Vector3::Zero())),
+          center_(bInA.InverseTransform(Vector3::Zero())),
           motion_(InverseRotate(bInA.rotation, approach.motion)), touched_(approach.touched), isPolyhedral_(HasPolyhedralCore(a.Type())) {
         if (isPolyhedral_) core_ = CoreOf(a, storage_);
     }
 
     void Run() {
-        contacts_.waiting_.clear();
+        contacts_.deferred_.clear();
         contacts_.known_.clear();
         contacts_.found_.clear();
         contacts_.manifoldCount_ = 0;
         Collect();
-        const SurfaceProbe probe{a_, isPolyhedral_ ? &core_ : nullptr, axes_, centre_, settings_.speculativeDistance, b_.IsTwoSided()};
+        const SurfaceProbe probe{a_, isPolyhedral_ ? &core_ : nullptr, axes_, center_, settings_.speculativeDistance, b_.IsTwoSided()};
         std::vector<TriangleView>& views = contacts_.views_;
         for (size_t first = 0; first < views.size(); first += 8) CollideBatch(probe, first, std::min<size_t>(views.size() - first, 8));
-        if (!contacts_.waiting_.empty()) AddWaiting();
+        if (!contacts_.deferred_.empty()) AddDeferredEdgeContacts();
         Join();
         const float fast = kFastPart * a_.InnerRadius();
         if (contacts_.manifoldCount_ > 0 && LengthSquared(motion_) > fast * fast) AddInnerBall(fast);
@@ -127,16 +127,16 @@ private:
         }
     }
 
-    // Those that have the centre behind them, which a batch leaves out, but were touched before.
+    // Those that have the center behind them, which a batch leaves out, but were touched before.
     void CollidePressed(size_t first, size_t count) {
         for (size_t i = first; i < first + count; ++i)
             if (WasPressedThrough(contacts_.views_[i])) CollideTriangle(static_cast<uint32_t>(i));
     }
     // Only over the triangle itself: what tips over its edge gets behind it, too.
     bool WasPressedThrough(const TriangleView& view) const {
-        return Height(view) < 0 && std::find(touched_.begin(), touched_.end(), view.id) != touched_.end() && IsOver(view, centre_, 0);
+        return Height(view) < 0 && std::find(touched_.begin(), touched_.end(), view.id) != touched_.end() && IsOver(view, center_, 0);
     }
-    float Height(const TriangleView& view) const { return Dot(view.normal, Vector3(centre_ - view.vertices[0])); }
+    float Height(const TriangleView& view) const { return Dot(view.normal, Vector3(center_ - view.vertices[0])); }
 
     void CollideSphere(const TriangleBatch& batch, uint32_t near, uint32_t first) {
         Manifold none, nearest;
@@ -145,10 +145,10 @@ private:
             const uint32_t index = first + static_cast<uint32_t>(i);
             const float distance = batch.distance[i];
             Vector3 axis(batch.closest.x()[i], batch.closest.y()[i], batch.closest.z()[i]);
-            // A centre in the surface itself is pushed out through the face.
+            // A center in the surface itself is pushed out through the face.
             axis = distance > 1e-6f * core_.radius ? Vector3(axis * (1.0f / distance)) : Vector3(-contacts_.views_[index].normal);
             WriteBallContact(Vector3(axes_ * axis), distance, core_.radius, nearest);
-            Settle(index, axis, false, none, nearest);
+            ResolveTriangleContact(index, axis, false, none, nearest);
         }
     }
 
@@ -172,7 +172,7 @@ private:
             }
             constexpr uint32_t kOrders[2][3] = {{0, 1, 2}, {2, 1, 0}};
             meeting.WriteSideContact(i, kOrders[reversed >> i & 1], nearest);
-            Settle(index, meeting.Axis(i), false, onFace, nearest);
+            ResolveTriangleContact(index, meeting.Axis(i), false, onFace, nearest);
         }
     }
 
@@ -205,7 +205,7 @@ private:
         if (MeetsEdges(view, triangle, tolerances.reach)) return CollideTriangle(index, &onFace);
         if (onFace.pointCount == 0) return;
         if (found) return AddFace(view, onFace);
-        if (!WaitForNeighbour(index, triangle, tolerances.prefer + 1e-3f * Sqrt(size), onFace)) CollideTriangle(index, &onFace);
+        if (!WaitForNeighbor(index, triangle, tolerances.prefer + 1e-3f * Sqrt(size), onFace)) CollideTriangle(index, &onFace);
     }
 
     // Whether there is more to the triangle than its face. A shape without rounding that reaches no active edge lies before the
@@ -221,8 +221,8 @@ private:
     }
 
     // What lies before the face is not the deepest part of the shape: that lies beyond an inactive edge or corner, where what is
-    // left comes nearest, and is the neighbour's. False: it is not clear beyond which.
-    bool WaitForNeighbour(uint32_t index, const TriangleInShape& triangle, float slop, const Manifold& onFace) {
+    // left comes nearest, and is the neighbor's. False: it is not clear beyond which.
+    bool WaitForNeighbor(uint32_t index, const TriangleInShape& triangle, float slop, const Manifold& onFace) {
         const TriangleView& view = contacts_.views_[index];
         int deepest = 0;
         for (int i = 1; i < onFace.pointCount; ++i)
@@ -234,14 +234,14 @@ private:
         if (count != 1 && count != 2) return false;
         // Side i ends where side i + 1 begins.
         const int first = count == 1 ? sides[0] : (sides[1] - sides[0] == 1 ? sides[1] : 0);
-        SurfaceContacts::Waiting waiting;
-        waiting.contact = waiting.onFace = Named(view, onFace);
-        waiting.triangle = index;
-        waiting.vertices[0] = view.vertexIds[first];
-        waiting.vertices[1] = view.vertexIds[count == 1 ? (first + 1) % 3 : first];
-        waiting.separation = DeepestOf(onFace);
-        waiting.active = false;
-        contacts_.waiting_.push_back(waiting);
+        SurfaceContacts::DeferredEdgeContact deferred;
+        deferred.contact = deferred.onFace = Named(view, onFace);
+        deferred.triangle = index;
+        deferred.vertices[0] = view.vertexIds[first];
+        deferred.vertices[1] = view.vertexIds[count == 1 ? (first + 1) % 3 : first];
+        deferred.separation = DeepestOf(onFace);
+        deferred.active = false;
+        contacts_.deferred_.push_back(deferred);
         return true;
     }
 
@@ -283,7 +283,7 @@ private:
         Manifold nearest;
         PairCache none;
         BuildContactFromAxis(pair, known, tolerances, none, nearest);
-        Settle(index, pair.DirectionInB(known.axis), overlaps, onFace, nearest);
+        ResolveTriangleContact(index, pair.DirectionInB(known.axis), overlaps, onFace, nearest);
     }
 
     void CollideCurved(uint32_t index, const Vector3 (&corners)[3], const RelativePose& pose) {
@@ -307,12 +307,12 @@ private:
         }
         none = {};
         BuildConvexContact(pair, known, tolerances, none, nearest);
-        Settle(index, pair.DirectionInB(known.axis), overlaps, onFace, nearest);
+        ResolveTriangleContact(index, pair.DirectionInB(known.axis), overlaps, onFace, nearest);
     }
 
     // Decides what a triangle's contact is: before its face, or at what is nearest along `axis` (towards the triangle, in the
     // surface's frame).
-    void Settle(uint32_t index, const Vector3& axis, bool overlaps, const Manifold& onFace, const Manifold& nearest) {
+    void ResolveTriangleContact(uint32_t index, const Vector3& axis, bool overlaps, const Manifold& onFace, const Manifold& nearest) {
         const TriangleView& view = contacts_.views_[index];
         if (Dot(axis, view.normal) > 0) {
             // Out through the back is no way out of a surface.
@@ -336,23 +336,23 @@ private:
         int nearest[3], count = 0;
         for (int i = 0; i < 3; ++i)
             if (along[i] <= nearly) nearest[count++] = i;
-        SurfaceContacts::Waiting waiting;
+        SurfaceContacts::DeferredEdgeContact deferred;
         const auto isActive = [&](int edge) { return (view.activeEdges >> edge & 1) != 0; };
         if (count >= 2) {
             // Corners 0 and 1 are edge 0, 1 and 2 edge 1, 2 and 0 edge 2.
-            waiting.active = isActive(nearest[1] - nearest[0] == 1 ? nearest[0] : 2);
+            deferred.active = isActive(nearest[1] - nearest[0] == 1 ? nearest[0] : 2);
         } else {
-            waiting.active = isActive(nearest[0]) || isActive((nearest[0] + 2) % 3);
+            deferred.active = isActive(nearest[0]) || isActive((nearest[0] + 2) % 3);
         }
-        waiting.active |= -Dot(axis, view.normal) > kFlatCosine;
-        if (!waiting.active && onFace.pointCount == 0) return;
-        waiting.vertices[0] = view.vertexIds[nearest[0]];
-        waiting.vertices[1] = view.vertexIds[nearest[count >= 2 ? 1 : 0]];
-        waiting.triangle = index;
-        waiting.onFace = Named(view, onFace);
-        waiting.contact = waiting.active ? Named(view, manifold) : waiting.onFace;
-        waiting.separation = DeepestOf(waiting.contact.manifold);
-        contacts_.waiting_.push_back(waiting);
+        deferred.active |= -Dot(axis, view.normal) > kFlatCosine;
+        if (!deferred.active && onFace.pointCount == 0) return;
+        deferred.vertices[0] = view.vertexIds[nearest[0]];
+        deferred.vertices[1] = view.vertexIds[nearest[count >= 2 ? 1 : 0]];
+        deferred.triangle = index;
+        deferred.onFace = Named(view, onFace);
+        deferred.contact = deferred.active ? Named(view, manifold) : deferred.onFace;
+        deferred.separation = DeepestOf(deferred.contact.manifold);
+        contacts_.deferred_.push_back(deferred);
     }
 
     SurfaceManifold Named(const TriangleView& view, const Manifold& manifold) const {
@@ -365,13 +365,13 @@ private:
         contacts_.known_.insert(contacts_.known_.end(), view.vertexIds, view.vertexIds + 3);
     }
 
-    void AddWaiting() {
+    void AddDeferredEdgeContacts() {
         // The vertices of faces that touch; all vertices of what waits; for each of these whether it is known. Sorted, since a large
         // shape may touch any number of them.
         std::vector<uint32_t>& known = contacts_.known_;
         std::sort(known.begin(), known.end());
         const ptrdiff_t faces = static_cast<ptrdiff_t>(known.size());
-        for (const SurfaceContacts::Waiting& waiting : contacts_.waiting_) known.insert(known.end(), waiting.vertices, waiting.vertices + 2);
+        for (const SurfaceContacts::DeferredEdgeContact& deferred : contacts_.deferred_) known.insert(known.end(), deferred.vertices, deferred.vertices + 2);
         std::sort(known.begin() + faces, known.end());
         known.erase(std::unique(known.begin() + faces, known.end()), known.end());
         const ptrdiff_t asked = static_cast<ptrdiff_t>(known.size()) - faces;
@@ -381,16 +381,16 @@ private:
         const auto isKnown = [&](uint32_t vertex) -> uint32_t& {
             return *(std::lower_bound(known.begin() + faces, known.begin() + faces + asked, vertex) + asked);
         };
-        std::sort(contacts_.waiting_.begin(), contacts_.waiting_.end(), [](const auto& x, const auto& y) {
+        std::sort(contacts_.deferred_.begin(), contacts_.deferred_.end(), [](const auto& x, const auto& y) {
             if (x.active != y.active) return x.active;
             return x.separation < y.separation || (x.separation == y.separation && x.contact.triangle < y.contact.triangle);
         });
-        for (const SurfaceContacts::Waiting& waiting : contacts_.waiting_) {
-            const bool isOfOther = isKnown(waiting.vertices[0]) && isKnown(waiting.vertices[1]);
+        for (const SurfaceContacts::DeferredEdgeContact& deferred : contacts_.deferred_) {
+            const bool isOfOther = isKnown(deferred.vertices[0]) && isKnown(deferred.vertices[1]);
             // What lies before a face rests on it, though the neighbor is nearer: without it a shape across two faces would rock.
-            if (!isOfOther) contacts_.found_.push_back(waiting.contact);
-            else if (waiting.onFace.manifold.pointCount > 0) contacts_.found_.push_back(waiting.onFace);
-            isKnown(waiting.vertices[0]) = isKnown(waiting.vertices[1]) = 1;
+            if (!isOfOther) contacts_.found_.push_back(deferred.contact);
+            else if (deferred.onFace.manifold.pointCount > 0) contacts_.found_.push_back(deferred.onFace);
+            isKnown(deferred.vertices[0]) = isKnown(deferred.vertices[1]) = 1;
         }
     }
 
@@ -416,7 +416,7 @@ private:
         for (const TriangleView& original : contacts_.views_) {
             const TriangleView view = b_.IsTwoSided() && Height(original) < 0 ? Reversed(original) : original;
             const float height = Height(view), approach = -Dot(motion_, view.normal), above = std::max(height - a_.InnerRadius(), 0.0f);
-            if (height < 0 || approach <= fast || above >= earliest * approach || !IsOver(view, centre_ + motion_ * (above / approach), a_.InnerRadius())) continue;
+            if (height < 0 || approach <= fast || above >= earliest * approach || !IsOver(view, center_ + motion_ * (above / approach), a_.InnerRadius())) continue;
             earliest = above / approach;
             gap = height - a_.InnerRadius();
             first = &original;
@@ -519,15 +519,15 @@ private:
     PolyhedronStorage storage_;
     Polyhedron core_;   // where it is one
     Matrix3 axes_;      // of the surface, in the shape's frame
-    Vector3 centre_;    // of the shape, in the surface's frame
-    Vector3 motion_;    // of the centre within the step, likewise
+    Vector3 center_;    // of the shape, in the surface's frame
+    Vector3 motion_;    // of the center within the step, likewise
     std::span<const uint32_t> touched_;
     bool isPolyhedral_;
 };
 
 size_t SurfaceContacts::MemoryUsed() const {
     return (ids_.capacity() + known_.capacity()) * sizeof(uint32_t) + views_.capacity() * sizeof(TriangleView) +
-           waiting_.capacity() * sizeof(Waiting) + (found_.capacity() + manifolds_.capacity()) * sizeof(SurfaceManifold);
+           deferred_.capacity() * sizeof(DeferredEdgeContact) + (found_.capacity() + manifolds_.capacity()) * sizeof(SurfaceManifold);
 }
 
 void CollideSurface(const ConvexShape& a, const SurfaceShape& b, const RelativePose& bInA, const CollideSettings& settings,

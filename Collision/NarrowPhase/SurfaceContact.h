@@ -11,9 +11,9 @@
 // Contacts in nearly the same direction, on the same material, become one manifold of at most four points.
 //
 // A thin body that lands on its edge tumbles so fast that within the step it comes down on what faced away as the step began, and
-// its centre ends up behind the surface. So the ball inside the shape is a contact of its own where the motion of its centre takes
+// its center ends up behind the surface. So the ball inside the shape is a contact of its own where the motion of its center takes
 // it through a face: however the body turns, that ball is part of it. And what touched a face stays before it even if a heavier body
-// presses its centre through.
+// presses its center through.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/Collide.h>
@@ -41,7 +41,7 @@ public:
 private:
     friend class SurfaceCollider;
     // An edge or corner of a triangle that waits.
-    struct Waiting {
+    struct DeferredEdgeContact {
         SurfaceManifold contact;
         SurfaceManifold onFace;  // what lies before the face
         uint32_t triangle;        // index into views_
@@ -51,7 +51,7 @@ private:
     };
     std::vector<uint32_t> ids_;
     std::vector<TriangleView> views_;
-    std::vector<Waiting> waiting_;
+    std::vector<DeferredEdgeContact> deferred_;
     std::vector<uint32_t> known_;      // ids of vertices
     std::vector<SurfaceManifold> found_;
     std::vector<SurfaceManifold> manifolds_;
@@ -59,12 +59,12 @@ private:
 };
 
 struct SurfaceApproach {
-    Vector3 motion = Vector3::Zero();   // m, of the shape's centre relative to the surface within the step, in its centre frame
+    Vector3 motion = Vector3::Zero();   // m, of the shape's center relative to the surface within the step, in its center frame
     std::span<const uint32_t> touched;  // triangles that it touched in the last step
 };
 
-// Fills `contacts` with the manifolds of a and the triangles of b within settings.speculativeDistance, in a's centre frame, as
-// Collide does. One-sided triangles push to their front alone, and only what has its centre of mass there or touched them.
+// Fills `contacts` with the manifolds of a and the triangles of b within settings.speculativeDistance, in a's center frame, as
+// Collide does. One-sided triangles push to their front alone, and only what has its center of mass there or touched them.
 void CollideSurface(const ConvexShape& a, const SurfaceShape& b, const RelativePose& bInA, const CollideSettings& settings,
                     const SurfaceApproach& approach, SurfaceContacts& contacts);
 

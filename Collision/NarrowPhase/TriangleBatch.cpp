@@ -57,13 +57,13 @@ void TriangleBatch::Load(const SurfaceProbe& probe, const TriangleView* views) {
     Lanes columns[3];
     for (int k = 0; k < 3; ++k) {
         GatherPoints<8>(rows[k], columns);
-        for (int axis = 0; axis < 3; ++axis) corners[k][axis] = columns[axis] - Lanes(probe.centre[axis]);
+        for (int axis = 0; axis < 3; ++axis) corners[k][axis] = columns[axis] - Lanes(probe.center[axis]);
     }
     GatherPoints<8>(rows[3], columns);
     for (int axis = 0; axis < 3; ++axis) normal[axis] = columns[axis];
 }
 
-// Before the face it is the foot of the centre, else it lies on a side.
+// Before the face it is the foot of the center, else it lies on a side.
 void TriangleBatch::FindClosest() {
     const auto inside = (beyond[0] <= Lanes(0.0f)) & (beyond[1] <= Lanes(0.0f)) & (beyond[2] <= Lanes(0.0f));
     Lanes least(0.0f);
@@ -118,7 +118,7 @@ uint32_t TriangleBatch::Meet(const SurfaceProbe& probe, const TriangleView* view
     }
     bits &= near.ToBits();
     if (bits == 0) return 0;
-    // Or the one through the point that lies closest to the centre, at right angles to the way there.
+    // Or the one through the point that lies closest to the center, at right angles to the way there.
     FindClosest();
     near = near & ((distance * distance) - probe.Extent(closest, bits) <= coreReach * distance);
     return bits & near.ToBits();

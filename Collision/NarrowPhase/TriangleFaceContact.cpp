@@ -70,7 +70,7 @@ float DiscRadius(const TriangleInShape& triangle, const float (&offsets)[3], con
 }
 
 // What the proof asks of a pair.
-struct CentresAndRadii {
+struct CentersAndRadii {
     Vector3 position;
     float inner;
     float InnerRadii() const { return inner; }
@@ -102,7 +102,7 @@ FaceContact BuildTriangleFaceContact(const Polyhedron& core, int incidentFace, c
     result.touches = least <= separation + tolerances.prefer;
     if (result.touches) {
         const float radius = separation >= 0 ? 0 : DiscRadius(triangle, offsets, face, separations, least + tolerances.prefer);
-        result.proven = NoBetterAxis(CentresAndRadii{triangle.middle, core.innerRadius}, manifold.normal, -separation, radius);
+        result.proven = NoBetterAxis(CentersAndRadii{triangle.middle, core.innerRadius}, manifold.normal, -separation, radius);
     }
 
     int chosen[4] = {0, 1, 2, 3};

@@ -10,15 +10,15 @@ namespace fulcrum {
 namespace {
 
 // The axis of least depth of overlapping cores. A flat or pointed core, as a triangle or a segment, may leave EPA nothing to
-// expand: libccd's answer is held against the centre line's then, and the axis of less depth wins.
+// expand: libccd's answer is held against the center line's then, and the axis of less depth wins.
 Vector3 AxisOfLeastDepth(const SupportPair& pair, const RelativePose& bInA, const ConvexGjkResult& gjk) {
     Vector3 axis = gjk.axis;
     float depth = -pair.SeparationAlong(axis);
     // Far from each other GJK's simplex may seem to be around the origin, by rounding alone: a plane between the cores is a proof,
     // and what they are apart along it all that floats know.
     if (depth < 0) return axis;
-    const Vector3 centreLine = Normalized(pair.position);
-    if (pair.SeparationAlong(centreLine) > 0) return centreLine;
+    const Vector3 centerLine = Normalized(pair.position);
+    if (pair.SeparationAlong(centerLine) > 0) return centerLine;
     const EpaResult epa = Epa(pair, gjk.simplex);
     const auto consider = [&](const Vector3& other) {
         const float otherDepth = -pair.SeparationAlong(other);
@@ -28,8 +28,8 @@ Vector3 AxisOfLeastDepth(const SupportPair& pair, const RelativePose& bInA, cons
     };
     if (epa.status != EpaResult::Status::Failed) consider(epa.axis);
     if (epa.status == EpaResult::Status::Found) return axis;
-    consider(centreLine);
-    consider(-centreLine);
+    consider(centerLine);
+    consider(-centerLine);
     // Against a shape so much larger that the cores overlap by no more than it rounds, GJK's simplex is all that tells the surface.
     using Real = SupportVertex::Real;
     const auto& simplex = gjk.simplex;

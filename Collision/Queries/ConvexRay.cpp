@@ -18,10 +18,10 @@ struct Chord {
     LineHit in, out;
 };
 
-bool ChordOfBall(const Vector3& centre, float radius, const LinePiece& line, Chord& chord) {
-    const Vector3 from = line.point - centre;
+bool ChordOfBall(const Vector3& center, float radius, const LinePiece& line, Chord& chord) {
+    const Vector3 from = line.point - center;
     const float along = Dot(from, line.direction);
-    // The square of the distance from the centre, free of cancellation.
+    // The square of the distance from the center, free of cancellation.
     const Vector3 across = from - line.direction * along;
     const float square = radius * radius - LengthSquared(across);
     if (square < 0) return false;

@@ -5,10 +5,10 @@
 
 namespace fulcrum {
 
-// A piece of a line, by its distance s along it: point + s direction, from <= s <= to. `point` lies near the shape's centre, so
+// A piece of a line, by its distance s along it: point + s direction, from <= s <= to. `point` lies near the shape's center, so
 // that floats are exact enough however far away the piece begins.
 struct LinePiece {
-    Vector3 point;      // m, in the shape's centre frame
+    Vector3 point;      // m, in the shape's center frame
     Vector3 direction;  // unit
     float from, to;     // m
 };

@@ -143,7 +143,7 @@ namespace {
 
 // How long no point of a turning shape comes nearer than the wanted distance along an axis. All points of B follow
 //   n . x(t + s) >= n . (c + r) + s (n . d + r . (n x w)) - s^2 / 2 |w|^2 R,
-// r from B's centre, R the radius of its core, w the turn: the linear part is smallest for the support of B along
+// r from B's center, R the radius of its core, w the turn: the linear part is smallest for the support of B along
 // n + s (n x w), and as a minimum of linear functions it is concave in s. So where the bound holds at the end of an interval
 // and the shapes are apart at its beginning, it holds in between.
 class AxisAdvance {

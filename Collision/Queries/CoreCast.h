@@ -11,10 +11,10 @@
 
 namespace fulcrum {
 
-// How shape B moves in the frame of shape A, which is at rest. The centre moves straight; B turns at a constant rate about an
+// How shape B moves in the frame of shape A, which is at rest. The center moves straight; B turns at a constant rate about an
 // axis through it.
 struct CoreMotion {
-    Position position;                        // of B's centre at the start, m
+    Position position;                        // of B's center at the start, m
     Quaternion rotation{};                    // at the start, unit
     Vector3 displacement = Vector3::Zero();   // m, over the whole motion
     Vector3 turn = Vector3::Zero();           // rad, over the whole motion; along the axis, in A's frame

@@ -14,16 +14,16 @@ struct ClosestPoints {
     SubShape subShapeOfA{}, subShapeOfB{};
 };
 
-// Where the two are closest, `bInA` being the pose of b's centre frame in a's; false: farther apart than maxDistance (m, >= 0,
+// Where the two are closest, `bInA` being the pose of b's center frame in a's; false: farther apart than maxDistance (m, >= 0,
 // may be infinite), or not finite, or more than 1e18 m. Of pairs equally close that of the lowest child and triangle of A, then of B. A triangle
 // has no inside. Two half spaces that are not opposite overlap without a depth: the distance is 0.
 bool FindClosestPoints(const Shape& a, const Shape& b, const RelativePose& bInA, float maxDistance, ClosestPoints& result);
-// From a point of the shape's centre frame, which is A.
+// From a point of the shape's center frame, which is A.
 bool FindClosestPoint(const Shape& shape, const Vector3& point, float maxDistance, ClosestPoints& result);
 
 // Whether the two have a point in common; touching counts.
 bool Overlap(const Shape& a, const Shape& b, const RelativePose& bInA);
-// Whether a point of the shape's centre frame is inside it, or on its surface. Nothing is inside a mesh or a height field.
+// Whether a point of the shape's center frame is inside it, or on its surface. Nothing is inside a mesh or a height field.
 bool Contains(const Shape& shape, const Vector3& point);
 
 }  // namespace fulcrum

@@ -41,19 +41,19 @@ inline Bounds Shifted(const Bounds& bounds, const Vector3& by) {
 // The box, in another frame, around a box that `pose` places there; as wide as rounding may ask for.
 inline Bounds BoundsAt(const RelativePose& pose, const Bounds& bounds) {
     const Matrix3 r = ToMatrix(pose.rotation);
-    const Vector3 half = bounds.HalfExtents(), centre = pose.Transform(bounds.Centre());
+    const Vector3 half = bounds.HalfExtents(), center = pose.Transform(bounds.Center());
     const Vector3 reach = r.x.cwiseAbs() * half.x() + r.y.cwiseAbs() * half.y() + r.z.cwiseAbs() * half.z();
-    const float slack = 1e-6f * (reach.sum() + centre.cwiseAbs().sum());
+    const float slack = 1e-6f * (reach.sum() + center.cwiseAbs().sum());
     Bounds b;
-    b.lower = centre - reach - Vector3::Constant(slack);
-    b.upper = centre + reach + Vector3::Constant(slack);
+    b.lower = center - reach - Vector3::Constant(slack);
+    b.upper = center + reach + Vector3::Constant(slack);
     return b;
 }
 
-// Bounds, measured from `origin`, of a shape whose centre frame is at `centre`; rounded outwards.
-inline Bounds BoundsAbout(const Position& origin, const Shape& shape, const Pose& centre) {
-    const Bounds turned = BoundsAt({Vector3::Zero(), centre.rotation}, shape.LocalBounds());
-    const Position at = centre.position - origin;
+// Bounds, measured from `origin`, of a shape whose center frame is at `center`; rounded outwards.
+inline Bounds BoundsAbout(const Position& origin, const Shape& shape, const Pose& center) {
+    const Bounds turned = BoundsAt({Vector3::Zero(), center.rotation}, shape.LocalBounds());
+    const Position at = center.position - origin;
     return RoundedOutwards(at + turned.lower.cast<double>(), at + turned.upper.cast<double>());
 }
 

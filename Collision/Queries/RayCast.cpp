@@ -16,7 +16,7 @@ namespace {
 TreeRay InFrameOfTree(const Ray& ray, double length, const CompoundShape& compound, const Pose& pose) {
     const Quat<double> back{-pose.rotation.x, -pose.rotation.y, -pose.rotation.z, pose.rotation.w};
     const Position origin = Rotate<double>(back, Position(ray.origin - pose.position)) - compound.Origin().cast<double>();
-    // Beyond the compound it does not matter how far a long ray strays.
+    // Beyond the compound it does not matter how far a long ray outsideFatBounds.
     const double reach = double{compound.OuterRadius()} + std::sqrt(Dot<double>(origin, origin));
     const float slack = static_cast<float>(1e-6 * (reach + std::min(reach, length)));
     constexpr double kMost = std::numeric_limits<float>::max();
@@ -37,7 +37,7 @@ RayCaster::RayCaster(const Ray& ray) : ray_(ray) {
 }
 
 bool RayCaster::CastConvex(const ConvexShape& shape, const Pose& pose, const RayCastSettings& settings, float limit, RayHit& hit) const {
-    // The ray's nearest point to the shape's centre is the origin of the line: it is as small as the shape where that is hit.
+    // The ray's nearest point to the shape's center is the origin of the line: it is as small as the shape where that is hit.
     const Position origin = ray_.origin - pose.position, displacement = ray_.displacement.cast<double>();
     const double nearest = -Dot<double>(origin, displacement) * inverseSquare_;
     const Vector3 point = (origin + displacement * nearest).cast<float>();

@@ -40,7 +40,7 @@ public:
     bool IsValid() const { return length_ > 0; }  // else it hits nothing
     const Ray& GetRay() const { return ray_; }
 
-    // The closest hit; of equally close ones that of the lowest child, then triangle. `pose` is that of the shape's centre
+    // The closest hit; of equally close ones that of the lowest child, then triangle. `pose` is that of the shape's center
     // frame. False: none, `hit` is unchanged.
     bool CastClosest(const Shape& shape, const Pose& pose, const RayCastSettings& settings, RayHit& hit) const {
         return CastClosest(shape, pose, settings, settings.maxFraction, hit);

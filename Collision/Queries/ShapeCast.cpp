@@ -80,9 +80,9 @@ bool ShapeCaster::CastPiece(const Piece& piece, const Pose& pose, const ShapeCas
         return !settings.measureDepth || IsWithinFloats(hit);
     }
     if (isOneSided && motion.IsTurning()) {
-        // What swings may touch an open edge from any side: where its centre is tells where it comes from.
-        const Position centre = motion.PositionAt(cast.fraction) - piece.triangle->SupportCore(Vector3(1, 0, 0)).cast<double>();
-        if (Dot<double>(centre, piece.triangle->Normal().cast<double>()) < 0) return false;
+        // What swings may touch an open edge from any side: where its center is tells where it comes from.
+        const Position center = motion.PositionAt(cast.fraction) - piece.triangle->SupportCore(Vector3(1, 0, 0)).cast<double>();
+        if (Dot<double>(center, piece.triangle->Normal().cast<double>()) < 0) return false;
     }
     hit.normal = Rotate(at.rotation, cast.normal);
     hit.position = at.Transform(cast.onA + cast.normal * piece.shape.ConvexRadius());
@@ -127,9 +127,9 @@ void ShapeCaster::SearchSurface(const SurfaceShape& surface, const Pose& pose, S
         if (from > settings.maxFraction) return;
         Bounds box;
         for (const float fraction : {from, to}) {
-            const Vector3 centre = motion.PositionAt(double{fraction}).cast<float>();
-            box.Include(Vector3(centre + turned.lower));
-            box.Include(Vector3(centre + turned.upper));
+            const Vector3 center = motion.PositionAt(double{fraction}).cast<float>();
+            box.Include(Vector3(center + turned.lower));
+            box.Include(Vector3(center + turned.upper));
         }
         const float slack = 1e-3f * size + settings.separation + settings.tolerance + 1e-6f * box.lower.cwiseAbs().maxCoeff();
         VisitPieces(surface, Inflated(box, slack), [&](const Piece& piece) {
@@ -159,7 +159,7 @@ void ShapeCaster::Search(const Shape& other, const Pose& pose, ShapeCastSettings
         const Bounds turned = motion.IsTurning() ? bounds_ : BoundsAt({Vector3::Zero(), motion.rotation}, shape_.LocalBounds());
         const float slack = settings.separation + settings.tolerance +
                             1e-6f * (other.OuterRadius() + Length(motion.displacement) + Length(Vector3(motion.position.cast<float>())));
-        const TreeRay ray(motion.position + turned.Centre().cast<double>() - compound.Origin().cast<double>(), motion.displacement,
+        const TreeRay ray(motion.position + turned.Center().cast<double>() - compound.Origin().cast<double>(), motion.displacement,
                           turned.HalfExtents() + Vector3::Constant(slack));
         float limit = settings.maxFraction;
         compound.Tree().CastRay(ray, limit, [&](uint32_t child) {

@@ -14,9 +14,9 @@
 namespace fulcrum {
 
 struct ShapeMotion {
-    Pose pose{};                              // of the shape's centre frame at the start
-    Vector3 displacement = Vector3::Zero();   // m, of the centre, over the whole motion
-    Vector3 turn = Vector3::Zero();           // rad, over the whole motion: the rotation vector, about the centre
+    Pose pose{};                              // of the shape's center frame at the start
+    Vector3 displacement = Vector3::Zero();   // m, of the center, over the whole motion
+    Vector3 turn = Vector3::Zero();           // rad, over the whole motion: the rotation vector, about the center
 };
 
 struct ShapeCastSettings {
@@ -41,11 +41,11 @@ class ShapeCaster {
 public:
     ShapeCaster(const ConvexShape& shape, const ShapeMotion& motion);
     bool IsValid() const { return isValid_; }  // else it hits nothing
-    // The box about the shape's centre that holds the shape all along, relative to where the centre is.
-    const Bounds& BoundsAboutCentre() const { return bounds_; }
+    // The box about the shape's center that holds the shape all along, relative to where the center is.
+    const Bounds& BoundsAboutCenter() const { return bounds_; }
 
     // The closest hit; of equally close ones the deepest, then that of the lowest child and triangle. `pose` is that of the other shape's
-    // centre frame. False: none, `hit` is unchanged.
+    // center frame. False: none, `hit` is unchanged.
     bool CastClosest(const Shape& other, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit) const;
     // Calls visit(const ShapeHit&) for the first touch of each convex shape, child, triangle or half space, in no order, until it returns
     // false. False: it did.

@@ -10,7 +10,7 @@
 namespace fulcrum {
 
 Result<std::shared_ptr<const Compound>> Compound::Create(std::span<const ChildSettings> children,
-                                                           const Vector3& centreOffset) {
+                                                           const Vector3& centerOffset) {
     if (children.empty()) return Error{ErrorCode::Degenerate, "a compound needs at least one child"};
 
     std::vector<SolidMass> solids;
@@ -22,10 +22,10 @@ Result<std::shared_ptr<const Compound>> Compound::Create(std::span<const ChildSe
                                      child.position.cast<double>()));
         densities.push_back(double{child.density});
     }
-    if (!IsFinite(centreOffset)) return Error{ErrorCode::NonFinite, "centreOffset is not finite"};
+    if (!IsFinite(centerOffset)) return Error{ErrorCode::NonFinite, "centerOffset is not finite"};
     SolidMass whole = CombinedMass(solids, densities);
-    const Position d = centreOffset.cast<double>();
-    whole.centre += d;
+    const Position d = centerOffset.cast<double>();
+    whole.center += d;
     whole.inertia.xx += whole.volume * (d.y() * d.y() + d.z() * d.z());
     whole.inertia.yy += whole.volume * (d.x() * d.x() + d.z() * d.z());
     whole.inertia.zz += whole.volume * (d.x() * d.x() + d.y() * d.y());
@@ -37,18 +37,18 @@ Result<std::shared_ptr<const Compound>> Compound::Create(std::span<const ChildSe
 
     std::vector<Child> posed;
     for (size_t i = 0; i < children.size(); ++i) {
-        const Position centre = solids[i].centre - whole.centre;
+        const Position center = solids[i].center - whole.center;
         const std::string name = Message("child %d", static_cast<int>(i));
-        if (const Status status = CheckPlace(name.c_str(), centre.cast<float>()); !status) return status.GetError();
+        if (const Status status = CheckPlace(name.c_str(), center.cast<float>()); !status) return status.GetError();
         posed.push_back({std::static_pointer_cast<const ConvexShape>(children[i].shape),
-                         {centre.cast<float>(), Normalized(children[i].rotation)}, children[i].density});
+                         {center.cast<float>(), Normalized(children[i].rotation)}, children[i].density});
     }
     const std::shared_ptr<Compound> compound(new Compound);
     compound->Assemble(std::move(posed), mass.Value());
     return std::shared_ptr<const Compound>(compound);
 }
 
-// What follows from children in the centre frame and the mass of all.
+// What follows from children in the center frame and the mass of all.
 void Compound::Assemble(std::vector<Child> children, const MassProperties& mass) {
     children_ = std::move(children);
     mass_ = mass;

@@ -9,12 +9,12 @@ namespace fulcrum {
 class Compound final : public CompoundShape {
 public:
     // Mass is the sum of the children's (overlaps count twice), scaled so that the whole has density 1 on average.
-    // `centreOffset`, m, moves the centre of mass from there, as ballast would; the inertia is then that about the new centre
+    // `centerOffset`, m, moves the center of mass from there, as ballast would; the inertia is then that about the new center
     // (parallel axes). InnerRadius is the smallest child's: no child may pass through a surface unseen.
     // Errors: Degenerate (no child), Unsupported (null or not convex child), NonFinite, Unnormalized, NonPositive,
     // OutOfRange (the inertia is no normal float).
     static Result<std::shared_ptr<const Compound>> Create(std::span<const ChildSettings> children,
-                                                          const Vector3& centreOffset = Vector3::Zero());
+                                                          const Vector3& centerOffset = Vector3::Zero());
 
 private:
     friend struct ShapeFileAccess;

@@ -52,10 +52,10 @@ Bounds CompoundShape::BoundsOf(const Child& child) {
 }
 
 CompoundShape::ChildSettings CompoundShape::SettingsOf(const Child& child) const {
-    // From the centre frames to the users'.
-    const Vector3 own = Rotate(child.pose.rotation, child.shape->Mass().centreOfMass);
+    // From the center frames to the users'.
+    const Vector3 own = Rotate(child.pose.rotation, child.shape->Mass().centerOfMass);
     return {.shape = child.shape,
-            .position = child.pose.position + (mass_.centreOfMass + Origin()) - own,
+            .position = child.pose.position + (mass_.centerOfMass + Origin()) - own,
             .rotation = child.pose.rotation,
             .density = child.density};
 }

@@ -20,7 +20,7 @@ public:
     };
     struct Child {
         std::shared_ptr<const ConvexShape> shape;  // null: removed
-        RelativePose pose;  // of the child's centre frame in the children's frame
+        RelativePose pose;  // of the child's center frame in the children's frame
         float density = 1;  // as it was given
     };
 
@@ -28,10 +28,10 @@ public:
     std::span<const Child> Children() const { return children_; }
     // The children's boxes in the children's frame, by index.
     const BoundsTree& Tree() const { return tree_; }
-    // The origin of the children's frame in the centre frame, m; axes are the same. Zero but for mutable compounds, whose
-    // children stay where they are in the user's frame while the centre of mass moves.
-    Vector3 Origin() const { return type_ == ShapeType::Compound ? Vector3(Vector3::Zero()) : Vector3(-mass_.centreOfMass); }
-    // In the centre frame.
+    // The origin of the children's frame in the center frame, m; axes are the same. Zero but for mutable compounds, whose
+    // children stay where they are in the user's frame while the center of mass moves.
+    Vector3 Origin() const { return type_ == ShapeType::Compound ? Vector3(Vector3::Zero()) : Vector3(-mass_.centerOfMass); }
+    // In the center frame.
     RelativePose PoseOf(const Child& child) const { return {child.pose.position + Origin(), child.pose.rotation}; }
     // How the child would be made again.
     ChildSettings SettingsOf(const Child& child) const;

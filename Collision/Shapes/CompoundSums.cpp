@@ -12,8 +12,8 @@ CompoundSum CompoundSum::operator+(const CompoundSum& other) const {
     CompoundSum sum;
     sum.mass = mass + other.mass;
     sum.volume = volume + other.volume;
-    const Position d = other.centre - centre;
-    sum.centre = centre + d * (other.mass / sum.mass);
+    const Position d = other.center - center;
+    sum.center = center + d * (other.mass / sum.mass);
     const double reduced = mass * (other.mass / sum.mass);
     const auto add = [](double a, double b, double steiner) { return (a + b) + steiner; };
     const Sym3<double>&i = inertia, &j = other.inertia;
@@ -32,14 +32,14 @@ CompoundSum CompoundSum::operator+(const CompoundSum& other) const {
 CompoundSum CompoundSums::Of(const CompoundShape::Child& child, const Bounds& bounds) {
     if (!child.shape) return {};
     SolidMass solid = ToSolidMass(child.shape->Mass());
-    solid.centre = Position::Zero();
+    solid.center = Position::Zero();
     solid = Transformed(solid, child.pose.rotation, child.pose.position.cast<double>());
     const double density{child.density};
     const Sym3<double>& i = solid.inertia;
     CompoundSum sum;
     sum.mass = density * solid.volume;
     sum.volume = solid.volume;
-    sum.centre = solid.centre;
+    sum.center = solid.center;
     sum.inertia = {density * i.xx, density * i.yy, density * i.zz, density * i.xy, density * i.xz, density * i.yz};
     sum.bounds = bounds;
     sum.innerRadius = child.shape->InnerRadius();

@@ -1,4 +1,4 @@
-// What a compound is as a whole, kept up to date as single children change: mass, centre, inertia, box and smallest radius.
+// What a compound is as a whole, kept up to date as single children change: mass, center, inertia, box and smallest radius.
 // Used by MutableCompound. Partial sums of eight, of eight of these, and so on: a change costs the logarithm of the number of
 // children, and the result depends on the children and their indices alone, in all its bits, not on how they came about.
 #pragma once
@@ -11,12 +11,12 @@ namespace fulcrum {
 struct CompoundSum {
     double mass = 0;                     // 0: nothing
     double volume = 0;                   // m3
-    Position centre = Position::Zero();  // of mass, in the children's frame, m
-    Sym3<double> inertia;                // about the centre, kg m2
+    Position center = Position::Zero();  // of mass, in the children's frame, m
+    Sym3<double> inertia;                // about the center, kg m2
     Bounds bounds;                       // in the children's frame
     float innerRadius = 0;               // the smallest child's
 
-    // Parallel axes: the two and m1 m2 / (m1 + m2) (|d|^2 1 - d d^T), d from centre to centre.
+    // Parallel axes: the two and m1 m2 / (m1 + m2) (|d|^2 1 - d d^T), d from center to center.
     CompoundSum operator+(const CompoundSum& other) const;
 };
 

@@ -51,42 +51,42 @@ double DistanceToSurface(const HullMesh& mesh, const Position& inside) {
     return distance;
 }
 
-// The hull with all planes moved inwards by `radius`, by polar duality about `centre`: the planes n . x = d are the points
+// The hull with all planes moved inwards by `radius`, by polar duality about `center`: the planes n . x = d are the points
 // n / d, and the planes of those points' hull are the vertices of the intersection.
-Result<HullMesh> ShrunkHull(const HullMesh& mesh, const Position& centre, double radius, int maxVertices) {
+Result<HullMesh> ShrunkHull(const HullMesh& mesh, const Position& center, double radius, int maxVertices) {
     std::vector<Position> dualPoints, vertices;
     for (const HullMesh::Face& face : mesh.faces) {
-        dualPoints.push_back(face.normal * (1 / (face.offset - Dot<double>(face.normal, centre) - radius)));
+        dualPoints.push_back(face.normal * (1 / (face.offset - Dot<double>(face.normal, center) - radius)));
     }
     constexpr int unlimited = std::numeric_limits<int>::max();
     const Result<HullMesh> dual = BuildHull(dualPoints, {unlimited, unlimited, 0x1p-46});
     if (!dual) return dual.GetError();
-    for (const HullMesh::Face& face : dual.Value().faces) vertices.push_back(centre + face.normal * (1 / face.offset));
+    for (const HullMesh::Face& face : dual.Value().faces) vertices.push_back(center + face.normal * (1 / face.offset));
     return BuildHull(vertices, {.maxVertices = maxVertices});
 }
 
 }  // namespace
 
-// Turns the builder's mesh into a shape's arrays, in floats about the centre of mass.
+// Turns the builder's mesh into a shape's arrays, in floats about the center of mass.
 class HullFinisher {
 public:
-    static Result<std::shared_ptr<const ConvexHull>> Finish(const HullMesh& mesh, const Position& centre,
+    static Result<std::shared_ptr<const ConvexHull>> Finish(const HullMesh& mesh, const Position& center,
                                                             const MassProperties& mass, float convexRadius) {
         const std::shared_ptr<ConvexHull> hull(new ConvexHull);
         hull->mass_ = mass;
         hull->convexRadius_ = convexRadius;
-        AddVertices(*hull, mesh, centre);
+        AddVertices(*hull, mesh, center);
         if (!AddFaces(*hull, mesh)) {
-            return Error{ErrorCode::OutOfRange, "the convexRadius leaves a core without the centre of mass"};
+            return Error{ErrorCode::OutOfRange, "the convexRadius leaves a core without the center of mass"};
         }
         AddEdges(*hull);
         return std::shared_ptr<const ConvexHull>(hull);
     }
 
 private:
-    static void AddVertices(ConvexHull& hull, const HullMesh& mesh, const Position& centre) {
+    static void AddVertices(ConvexHull& hull, const HullMesh& mesh, const Position& center) {
         for (const Position& v : mesh.vertices) {
-            hull.vertices_.push_back((v - centre).cast<float>());
+            hull.vertices_.push_back((v - center).cast<float>());
             hull.bounds_.Include(hull.vertices_.back());
             hull.outerRadius_ = std::max(hull.outerRadius_, Length(hull.vertices_.back()));
         }
@@ -104,7 +104,7 @@ private:
         }
     }
 
-    // Planes support the vertices as rounded. False where one does not pass outside the centre.
+    // Planes support the vertices as rounded. False where one does not pass outside the center.
     static bool AddFaces(ConvexHull& hull, const HullMesh& mesh) {
         float smallestOffset = std::numeric_limits<float>::infinity();
         for (const HullMesh::Face& from : mesh.faces) {
@@ -176,16 +176,16 @@ Result<std::shared_ptr<const ConvexHull>> ConvexHull::Create(std::span<const Vec
     const SolidMass solid = mesh.Value().Mass();
     const Result<MassProperties> mass = ToMassProperties(solid);
     if (!mass) return mass.GetError();
-    if (settings.convexRadius == 0) return HullFinisher::Finish(mesh.Value(), solid.centre, mass.Value(), 0);
+    if (settings.convexRadius == 0) return HullFinisher::Finish(mesh.Value(), solid.center, mass.Value(), 0);
 
-    const double radius = settings.convexRadius, innerRadius = DistanceToSurface(mesh.Value(), solid.centre);
+    const double radius = settings.convexRadius, innerRadius = DistanceToSurface(mesh.Value(), solid.center);
     const Error tooLarge{ErrorCode::OutOfRange,
                          Message("convexRadius is %g m: it must be smaller than the hull's inner radius, %g m", radius,
                                  innerRadius)};
     if (radius >= innerRadius) return tooLarge;
-    const Result<HullMesh> core = ShrunkHull(mesh.Value(), solid.centre, radius, settings.maxVertices);
+    const Result<HullMesh> core = ShrunkHull(mesh.Value(), solid.center, radius, settings.maxVertices);
     if (!core) return tooLarge;
-    return HullFinisher::Finish(core.Value(), solid.centre, mass.Value(), settings.convexRadius);
+    return HullFinisher::Finish(core.Value(), solid.center, mass.Value(), settings.convexRadius);
 }
 
 namespace {

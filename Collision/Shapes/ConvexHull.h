@@ -1,4 +1,4 @@
-// Convex hull of a point set: polygonal faces, in the centre frame. Created from any points by Create (quickhull with
+// Convex hull of a point set: polygonal faces, in the center frame. Created from any points by Create (quickhull with
 // merging of coplanar faces, HullBuilder); immutable afterwards.
 #pragma once
 
@@ -28,7 +28,7 @@ public:
         uint8_t left, right;   // faces: `left` runs from -> to counter-clockwise
     };
 
-    // Hull of at least 4 points that span a volume, coordinates in metres. Points are dropped and faces merged where
+    // Hull of at least 4 points that span a volume, coordinates in meters. Points are dropped and faces merged where
     // that moves the surface by less than about 2e-7 of the largest coordinates, or a thousandth of the thickness.
     // At most 255 faces: a hull with more is simplified too.
     // Errors: NonFinite, Degenerate (fewer than 4 points, coincident, collinear or coplanar: the message says which),

@@ -23,7 +23,7 @@ double Extrapolated(double fine, double coarse) { return fine + (fine - coarse) 
 SolidMass Extrapolated(const SolidMass& fine, const SolidMass& coarse) {
     SolidMass solid;
     solid.volume = Extrapolated(fine.volume, coarse.volume);
-    for (int i = 0; i < 3; ++i) solid.centre[i] = Extrapolated(fine.centre[i], coarse.centre[i]);
+    for (int i = 0; i < 3; ++i) solid.center[i] = Extrapolated(fine.center[i], coarse.center[i]);
     const Sym3<double> &f = fine.inertia, &c = coarse.inertia;
     solid.inertia = {Extrapolated(f.xx, c.xx), Extrapolated(f.yy, c.yy), Extrapolated(f.zz, c.zz),
                      Extrapolated(f.xy, c.xy), Extrapolated(f.xz, c.xz), Extrapolated(f.yz, c.yz)};
@@ -55,7 +55,7 @@ Status CheckSupports(const ConvexShape& shape, const SampledSurface& surface) {
 
 Status CustomConvex::Complete() {
     if (const Status size = CheckSizeOrZero("convexRadius", convexRadius_); !size) return size.GetError();
-    mass_.centreOfMass = Vector3::Zero();
+    mass_.centerOfMass = Vector3::Zero();
     if (const Status status = CheckSupports(*this, SampleSurface(*this, 6)); !status) return status.GetError();
 
     constexpr int kDivisions = 128;
@@ -70,10 +70,10 @@ Status CustomConvex::Complete() {
     // Out by the rounding of the subtraction, a few units in the last place.
     outerRadius_ = 0;
     for (Vector3& v : surface.vertices) {
-        v -= mass_.centreOfMass;
+        v -= mass_.centerOfMass;
         outerRadius_ = std::max(outerRadius_, Length(v));
     }
-    const float slack = 1e-6f * (outerRadius_ + Length(mass_.centreOfMass));
+    const float slack = 1e-6f * (outerRadius_ + Length(mass_.centerOfMass));
     bounds_ = {};
     for (int axis = 0; axis < 3; ++axis) {
         const Vector3 direction = Vector3::Unit(axis);

@@ -21,7 +21,7 @@ public:
     // function, called by many threads at once; the same bits everywhere where it keeps to + - * / and std::sqrt.
     virtual Vector3 FarthestPoint(const Vector3& direction) const = 0;
 
-    Vector3 SupportCore(const Vector3& direction) const final { return FarthestPoint(direction) - mass_.centreOfMass; }
+    Vector3 SupportCore(const Vector3& direction) const final { return FarthestPoint(direction) - mass_.centerOfMass; }
 
     // Fills bounds, radii and mass; called by CreateCustom, once.
     // Errors: NonFinite (convexRadius, or a point), Negative (convexRadius), Degenerate (no volume; or the points are not

@@ -35,7 +35,7 @@ Status HeightField::CheckGrid(const HeightFieldSettings& s) {
                                                     double{s.lowestHeight}, double{s.highestHeight},
                                                     double{kLargestCoordinate})};
     }
-    // Neighbouring grid lines must differ as floats by several units.
+    // Neighboring grid lines must differ as floats by several units.
     const double sizes[2] = {double{s.cellSizeX}, double{s.cellSizeZ}};
     const double ends[2] = {std::fabs(double{s.origin.x()}) + sizes[0] * s.sampleCountX,
                             std::fabs(double{s.origin.z()}) + sizes[1] * s.sampleCountZ};

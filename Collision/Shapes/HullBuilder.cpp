@@ -57,7 +57,7 @@ private:
 int Merger::Opposite(int triangle, int other) const {
     const TriangleHull::Triangle& t = hull_.triangles[other];
     for (int e = 0; e < 3; ++e)
-        if (t.neighbour[e] == triangle) return t.corner[(e + 2) % 3];
+        if (t.neighbor[e] == triangle) return t.corner[(e + 2) % 3];
     return kNoIndex;
 }
 
@@ -74,7 +74,7 @@ void Merger::MergeCoplanar() {
     const std::vector<Position>& grid = hull_.gridPoints;
     for (int t = 0; t < static_cast<int>(hull_.triangles.size()); ++t) {
         const TriangleHull::Triangle& triangle = hull_.triangles[t];
-        for (int other : triangle.neighbour) {
+        for (int other : triangle.neighbor) {
             if (other < t) continue;
             const int* c = triangle.corner;
             if (ExactOrientation(grid[c[0]], grid[c[1]], grid[c[2]], grid[Opposite(t, other)]) == 0) {
@@ -93,7 +93,7 @@ void Merger::MergeNearlyCoplanar() {
         return std::fabs(Dot<double>(triangle.normal, d)) * hull_.gridStep;
     };
     for (int t = 0; t < static_cast<int>(hull_.triangles.size()); ++t) {
-        for (int other : hull_.triangles[t].neighbour) {
+        for (int other : hull_.triangles[t].neighbor) {
             if (other < t || groupOf_[t] == groupOf_[other]) continue;
             // The smaller of both: a sliver's plane says nothing of the large triangle beside it.
             const double smaller = std::min(height(t, other), height(other, t));
@@ -131,7 +131,7 @@ Merger::Loop Merger::Boundary(int group) const {
     for (int t : groups_[group].triangles) {
         const TriangleHull::Triangle& triangle = hull_.triangles[t];
         for (int e = 0; e < 3; ++e) {
-            if (groupOf_[triangle.neighbour[e]] == group) continue;
+            if (groupOf_[triangle.neighbor[e]] == group) continue;
             edges.emplace_back(triangle.corner[e], triangle.corner[(e + 1) % 3]);
         }
     }
@@ -149,7 +149,7 @@ Merger::Loop Merger::Boundary(int group) const {
     return loop;
 }
 
-// Whether no corner lies deeper than the tolerance inside the line of its neighbours.
+// Whether no corner lies deeper than the tolerance inside the line of its neighbors.
 bool Merger::IsConvex(const Loop& loop, const Position& normal) const {
     const size_t count = loop.size();
     for (size_t i = 0; i < count; ++i) {

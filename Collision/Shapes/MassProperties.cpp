@@ -119,7 +119,7 @@ SolidMass PolyhedronMass(std::span<const Position> vertices, std::span<const Pol
     SolidMass solid;
     solid.volume = sixfoldVolume / 6;
     const Position shift = moment * (1 / (4 * sixfoldVolume));
-    solid.centre = reference + shift;
+    solid.center = reference + shift;
     solid.inertia = InertiaOf(covariance);
     Covariance steiner;
     AddOuterProduct(steiner, shift, 1);
@@ -134,15 +134,15 @@ SolidMass CombinedMass(std::span<const SolidMass> parts, std::span<const double>
     for (size_t i = 0; i < parts.size(); ++i) {
         whole.volume += parts[i].volume;
         mass += densities[i] * parts[i].volume;
-        moment += parts[i].centre * (densities[i] * parts[i].volume);
+        moment += parts[i].center * (densities[i] * parts[i].volume);
     }
-    whole.centre = moment * (1 / mass);
+    whole.center = moment * (1 / mass);
 
     const double toDensityOne = whole.volume / mass;
     for (size_t i = 0; i < parts.size(); ++i) {
         const double density = densities[i] * toDensityOne;
         Covariance steiner;
-        AddOuterProduct(steiner, parts[i].centre - whole.centre, 1);
+        AddOuterProduct(steiner, parts[i].center - whole.center, 1);
         whole.inertia = Sum(whole.inertia, parts[i].inertia, density);
         whole.inertia = Sum(whole.inertia, InertiaOf(steiner), density * parts[i].volume);
     }
@@ -153,7 +153,7 @@ SolidMass Transformed(const SolidMass& solid, const Quaternion& rotation, const 
     const Mat3<double> r = ToMatrix(ToDouble(rotation));
     SolidMass result;
     result.volume = solid.volume;
-    result.centre = r * solid.centre + translation;
+    result.center = r * solid.center + translation;
     // R I R^T, column by column: I R^T's columns are I times the rows of R.
     const Sym3<double>& i = solid.inertia;
     const Position rowX(r.x.x(), r.y.x(), r.z.x()), rowY(r.x.y(), r.y.y(), r.z.y()), rowZ(r.x.z(), r.y.z(), r.z.z());
@@ -170,7 +170,7 @@ SolidMass Transformed(const SolidMass& solid, const Quaternion& rotation, const 
 SolidMass ToSolidMass(const MassProperties& mass) {
     SolidMass solid;
     solid.volume = mass.volume;
-    solid.centre = mass.centreOfMass.cast<double>();
+    solid.center = mass.centerOfMass.cast<double>();
     solid.inertia = RotatedDiagonal(ToMatrix(ToDouble(mass.principalAxes)), Position(mass.principalInertia.cast<double>()));
     return solid;
 }
@@ -197,7 +197,7 @@ Result<MassProperties> ToMassProperties(const SolidMass& solid) {
     const PrincipalAxes principal = Diagonalized(solid.inertia);
     MassProperties mass;
     mass.volume = static_cast<float>(solid.volume);
-    mass.centreOfMass = solid.centre.cast<float>();
+    mass.centerOfMass = solid.center.cast<float>();
     mass.principalInertia = principal.values.cast<float>();
     mass.principalAxes = principal.rotation;
 
@@ -210,7 +210,7 @@ Result<MassProperties> ToMassProperties(const SolidMass& solid) {
                              "choose another unit of length",
                              solid.volume, principal.values.minCoeff(), principal.values.maxCoeff())};
     }
-    if (const Status place = CheckPlace("mass", mass.centreOfMass); !place) return place.GetError();
+    if (const Status place = CheckPlace("mass", mass.centerOfMass); !place) return place.GetError();
     return mass;
 }
 

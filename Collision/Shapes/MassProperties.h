@@ -1,5 +1,5 @@
-// Volume, centre of mass and inertia of solids, in double. Called by the Create functions of the shapes; pure functions.
-// Everything is for density 1 kg/m3; inertia is about the centre of mass.
+// Volume, center of mass and inertia of solids, in double. Called by the Create functions of the shapes; pure functions.
+// Everything is for density 1 kg/m3; inertia is about the center of mass.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/Shape.h>
@@ -10,7 +10,7 @@ namespace fulcrum {
 
 struct SolidMass {
     double volume = 0;                       // m3
-    Position centre = Position::Zero();      // m
+    Position center = Position::Zero();      // m
     Sym3<double> inertia;                    // kg m2
 };
 

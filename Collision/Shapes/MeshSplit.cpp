@@ -22,11 +22,11 @@ struct Bins {
     }
 };
 
-// How centres fall into bins; the same expression sorts the boxes to their sides.
+// How centers fall into bins; the same expression sorts the boxes to their sides.
 struct Binning {
     float from[3], scale[3];
     int BinOf(const TriangleBox& box, int axis) const {
-        return std::min(kBins - 1, static_cast<int>((box.Centre(axis) - from[axis]) * scale[axis]));
+        return std::min(kBins - 1, static_cast<int>((box.Center(axis) - from[axis]) * scale[axis]));
     }
 };
 
@@ -51,20 +51,20 @@ T OverChunks(std::span<const TriangleBox> boxes, const ParallelLoop& parallel, F
 }
 
 Binning BinningOf(std::span<const TriangleBox> boxes, const ParallelLoop& parallel) {
-    const BoxUnion centres = OverChunks<BoxUnion>(boxes, parallel, [](BoxUnion& sum, const TriangleBox& box) {
+    const BoxUnion centers = OverChunks<BoxUnion>(boxes, parallel, [](BoxUnion& sum, const TriangleBox& box) {
         const Wide<8> lanes = Wide<8>::Load(box.lane);
-        TriangleBox centre;
+        TriangleBox center;
         for (int axis = 0; axis < 3; ++axis) {
-            centre.lane[axis] = lanes[axis] - lanes[4 + axis];
-            centre.lane[4 + axis] = -centre.lane[axis];
+            center.lane[axis] = lanes[axis] - lanes[4 + axis];
+            center.lane[4 + axis] = -center.lane[axis];
         }
-        centre.lane[3] = centre.lane[7] = 0;
-        sum.Include(centre);
+        center.lane[3] = center.lane[7] = 0;
+        sum.Include(center);
     });
     Binning binning;
     for (int axis = 0; axis < 3; ++axis) {
-        const float extent = -centres.v[4 + axis] - centres.v[axis];
-        binning.from[axis] = centres.v[axis];
+        const float extent = -centers.v[4 + axis] - centers.v[axis];
+        binning.from[axis] = centers.v[axis];
         // So small an extent that its inverse is no float counts as none.
         binning.scale[axis] = extent > 1e-30f ? kBins * (1 - 1e-6f) / extent : 0.0f;
     }
@@ -102,7 +102,7 @@ Choice BestSplit(const Bins& bins, const Binning& binning, const SplitRules& rul
     return best;
 }
 
-// Where no plane between bins is allowed: along the longest axis of the centres, by count. `leaf` many fill the left leaves.
+// Where no plane between bins is allowed: along the longest axis of the centers, by count. `leaf` many fill the left leaves.
 uint32_t SplitByCount(std::span<TriangleBox> boxes, const Binning& binning, const SplitRules& rules) {
     int axis = 0;
     float best = -1;
@@ -111,7 +111,7 @@ uint32_t SplitByCount(std::span<TriangleBox> boxes, const Binning& binning, cons
         if (extent > best) best = extent, axis = i;
     }
     std::sort(boxes.begin(), boxes.end(), [&](const TriangleBox& a, const TriangleBox& b) {
-        const float x = a.Centre(axis), y = b.Centre(axis);
+        const float x = a.Center(axis), y = b.Center(axis);
         return x != y ? x < y : a.Id() < b.Id();
     });
     const uint32_t count = static_cast<uint32_t>(boxes.size());

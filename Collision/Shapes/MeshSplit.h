@@ -15,8 +15,8 @@ namespace fulcrum {
 struct alignas(32) TriangleBox {
     float lane[8];
     uint32_t Id() const { return std::bit_cast<uint32_t>(lane[3]); }
-    // Twice the centre.
-    float Centre(int axis) const { return lane[axis] - lane[4 + axis]; }
+    // Twice the center.
+    float Center(int axis) const { return lane[axis] - lane[4 + axis]; }
 };
 
 // A union of boxes in the same form.

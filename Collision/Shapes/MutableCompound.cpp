@@ -16,7 +16,7 @@ Result<MassProperties> MassOf(const CompoundSum& total) {
     const Sym3<double>& i = total.inertia;
     SolidMass whole;
     whole.volume = total.volume;
-    whole.centre = total.centre;
+    whole.center = total.center;
     whole.inertia = {i.xx * scale, i.yy * scale, i.zz * scale, i.xy * scale, i.xz * scale, i.yz * scale};
     return ToMassProperties(whole);
 }
@@ -65,9 +65,9 @@ Result<MutableCompound::Child> MutableCompound::Posed(const ChildSettings& child
     if (const Status status = Check(child, name); !status) return status.GetError();
     const Quaternion rotation = Normalized(child.rotation);
     const Quat<double> q{rotation.x, rotation.y, rotation.z, rotation.w};
-    const Position centre = child.position.cast<double>() + Rotate<double>(q, child.shape->Mass().centreOfMass.cast<double>());
-    if (const Status status = CheckPlace(name, centre.cast<float>()); !status) return status.GetError();
-    return Child{std::static_pointer_cast<const ConvexShape>(child.shape), {centre.cast<float>(), rotation}, child.density};
+    const Position center = child.position.cast<double>() + Rotate<double>(q, child.shape->Mass().centerOfMass.cast<double>());
+    if (const Status status = CheckPlace(name, center.cast<float>()); !status) return status.GetError();
+    return Child{std::static_pointer_cast<const ConvexShape>(child.shape), {center.cast<float>(), rotation}, child.density};
 }
 
 Result<MutableCompound::Edit> MutableCompound::Plan(uint32_t index, Child child, MassUpdate mass) const {
@@ -122,10 +122,10 @@ void MutableCompound::Place(uint32_t index, const Child& child, const CompoundSu
     count_ += is ? (was ? 0 : 1) : (was ? ~0u : 0);
 }
 
-// What follows from the children and the centre of mass.
+// What follows from the children and the center of mass.
 void MutableCompound::Refresh(const CompoundSum& total) {
-    bounds_ = RoundedOutwards(total.bounds.lower.cast<double>() - mass_.centreOfMass.cast<double>(),
-                              total.bounds.upper.cast<double>() - mass_.centreOfMass.cast<double>());
+    bounds_ = RoundedOutwards(total.bounds.lower.cast<double>() - mass_.centerOfMass.cast<double>(),
+                              total.bounds.upper.cast<double>() - mass_.centerOfMass.cast<double>());
     outerRadius_ = Length(Vector3(bounds_.lower.cwiseAbs().cwiseMax(bounds_.upper.cwiseAbs()))) * 1.000001f;
     innerRadius_ = total.innerRadius;
 }

@@ -15,7 +15,7 @@ struct ChildId {
     friend auto operator<=>(const ChildId&, const ChildId&) = default;
 };
 
-// What an edit does to mass, inertia and centre of mass: they become those of the children there are, or stay as they are
+// What an edit does to mass, inertia and center of mass: they become those of the children there are, or stay as they are
 // (until the next edit that updates them).
 enum class MassUpdate : uint8_t { Update, Keep };
 
@@ -23,8 +23,8 @@ class MutableCompound final : public CompoundShape {
 public:
     // Mass and errors as Compound::Create has them. The children's ids have the indices 0, 1, ... and the generation 0.
     // Where children move, their own masses stay: density times volume, in units that follow from the whole's at first.
-    // OuterRadius is that of the box around the children: up to 1.7 times as far as they reach. The centre frame moves with
-    // the centre of mass.
+    // OuterRadius is that of the box around the children: up to 1.7 times as far as they reach. The center frame moves with
+    // the center of mass.
     static Result<std::shared_ptr<MutableCompound>> Create(std::span<const ChildSettings> children);
     // With the same ids.
     std::shared_ptr<MutableCompound> Copy() const { return std::shared_ptr<MutableCompound>(new MutableCompound(*this)); }

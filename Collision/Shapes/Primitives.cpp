@@ -86,7 +86,7 @@ void Box::FindSupportingFace(const Vector3& direction, SupportingFace& face) con
 Result<std::shared_ptr<const Capsule>> Capsule::Create(float halfHeight, float radius) {
     if (const Status size = CheckSize("halfHeight", halfHeight); !size) return size.GetError();
     if (const Status size = CheckSize("radius", radius); !size) return size.GetError();
-    // Cylinder of length 2h and two hemispheres, whose centres of mass lie 3r/8 beyond the ends of the segment:
+    // Cylinder of length 2h and two hemispheres, whose centers of mass lie 3r/8 beyond the ends of the segment:
     // across, 2r^2/5 + h^2 + 3hr/4 per unit of the hemispheres' mass (parallel axes).
     const double h = halfHeight, r = radius;
     const double cylinder = 2 * kPi * r * r * h, ball = 4.0 / 3.0 * kPi * r * r * r;

@@ -5,7 +5,7 @@
 
 namespace fulcrum {
 
-// Ball of `radius` metres, > 0. Errors: NonFinite, NonPositive, OutOfRange (the inertia is no normal float: sizes of about
+// Ball of `radius` meters, > 0. Errors: NonFinite, NonPositive, OutOfRange (the inertia is no normal float: sizes of about
 // 1e-7 m or 1e7 m; so for all shapes).
 class Sphere final : public ConvexShape {
 public:
@@ -18,7 +18,7 @@ private:
     Sphere() : ConvexShape(ShapeType::Sphere) {}
 };
 
-// Box of half extents `halfExtents` metres, each > 0. `convexRadius` (0 .. smallest half extent) rounds its edges within
+// Box of half extents `halfExtents` meters, each > 0. `convexRadius` (0 .. smallest half extent) rounds its edges within
 // those extents; 0, the default, keeps them sharp. The mass is that of the sharp box. Errors: NonFinite, NonPositive, OutOfRange.
 class Box final : public ConvexShape {
 public:
@@ -32,7 +32,7 @@ private:
     Vector3 halfExtents_ = Vector3::Zero();
 };
 
-// Capsule along y: a segment of half length `halfHeight` metres (> 0) and radius `radius` (> 0) about it.
+// Capsule along y: a segment of half length `halfHeight` meters (> 0) and radius `radius` (> 0) about it.
 // Errors: NonFinite, NonPositive, OutOfRange.
 class Capsule final : public ConvexShape {
 public:

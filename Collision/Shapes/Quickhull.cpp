@@ -67,7 +67,7 @@ private:
             largest = largest.cwiseMax(p.cwiseAbs());
         }
         if (points.empty()) return;
-        const Position extent = upper - lower, centre = lower + extent * 0.5;
+        const Position extent = upper - lower, center = lower + extent * 0.5;
         // frexp and ldexp are exact: the scale is a power of two with extent * scale <= 2^41.
         int exponent = 0;
         std::frexp(extent.maxCoeff(), &exponent);
@@ -76,7 +76,7 @@ private:
         noise_ = 4 * settings_.inputRounding * (largest.x() + largest.y() + largest.z()) * scale;
         hull_.gridPoints.reserve(points.size());
         for (const Position& p : points) {
-            const Position g = (p - centre) * scale;
+            const Position g = (p - center) * scale;
             hull_.gridPoints.push_back(
                 Position(std::floor(g.x() + 0.5), std::floor(g.y() + 0.5), std::floor(g.z() + 0.5)));
         }
@@ -130,7 +130,7 @@ private:
 };
 
 Status Builder::StartWithTetrahedron() {
-    const double metres = hull_.gridStep, least = std::max(noise_, 4.0);
+    const double meters = hull_.gridStep, least = std::max(noise_, 4.0);
     const size_t count = hull_.gridPoints.size();
     // Of the extreme points along the axes, the two that lie farthest apart.
     int extremes[6], a = 0, b = 0;
@@ -154,7 +154,7 @@ Status Builder::StartWithTetrahedron() {
     length = std::sqrt(length);
     if (!(length > least)) {
         return Error{ErrorCode::Degenerate, Message("the %zu points coincide: they span %g m, at least %g m is needed", count,
-                                                    length * metres, least * metres)};
+                                                    length * meters, least * meters)};
     }
 
     const Position origin = Point(a), along = (Point(b) - origin) * (1 / length);
@@ -168,7 +168,7 @@ Status Builder::StartWithTetrahedron() {
     width = std::sqrt(width);
     if (!(width > least)) {
         return Error{ErrorCode::Degenerate, Message("the %zu points are collinear: within %g m of a line, at least %g m is needed",
-                                                    count, width * metres, least * metres)};
+                                                    count, width * meters, least * meters)};
     }
 
     const Position cross = ExactNormal(origin, Point(b), Point(c));
@@ -177,20 +177,20 @@ Status Builder::StartWithTetrahedron() {
     const int d = Farthest([&](const Position& p) { return std::fabs(Dot<double>(normal, p - origin)); }, height);
     if (!(height > least)) {
         return Error{ErrorCode::Degenerate, Message("the %zu points are coplanar: within %g m of a plane, at least %g m is needed",
-                                                    count, height * metres, least * metres)};
+                                                    count, height * meters, least * meters)};
     }
 
     // Never below a grid step: a point farther out than that is outside beyond the rounding of its distance.
     tolerance_ = std::max(std::min(0.75 * noise_, 1e-3 * height), 1.0);
-    hull_.thickness = height * metres;
+    hull_.thickness = height * meters;
     const bool above = ExactOrientation(origin, Point(b), Point(c), Point(d)) > 0;
     const int v[4] = {a, above ? c : b, above ? b : c, d};  // v[3] below the plane of v[0], v[1], v[2]
     hull_.vertices.assign(v, v + 4);
     const int start[4] = {AddFace(v[0], v[1], v[2]), AddFace(v[0], v[3], v[1]), AddFace(v[1], v[3], v[2]),
                           AddFace(v[2], v[3], v[0])};
-    const int neighbours[4][3] = {{1, 2, 3}, {3, 2, 0}, {1, 3, 0}, {2, 1, 0}};
+    const int neighbors[4][3] = {{1, 2, 3}, {3, 2, 0}, {1, 3, 0}, {2, 1, 0}};
     for (int f = 0; f < 4; ++f)
-        for (int e = 0; e < 3; ++e) faces_[start[f]].triangle.neighbour[e] = start[neighbours[f][e]];
+        for (int e = 0; e < 3; ++e) faces_[start[f]].triangle.neighbor[e] = start[neighbors[f][e]];
     for (int i = 0; i < static_cast<int>(count); ++i) Offer(i, start);
     return Done{};
 }
@@ -237,7 +237,7 @@ void Builder::Offer(int point, std::span<const int> faces) {
 }
 
 // The faces that `eye` sees, from one of them, and the loop of edges around them. They are one disc: the polytope is
-// convex and its planes are exact, so the visible normals at any vertex are neighbours of one another.
+// convex and its planes are exact, so the visible normals at any vertex are neighbors of one another.
 void Builder::CollectVisible(int face, int eye) {
     visible_.assign(1, face);
     horizon_.clear();
@@ -245,7 +245,7 @@ void Builder::CollectVisible(int face, int eye) {
     for (size_t i = 0; i < visible_.size(); ++i) {
         const TriangleHull::Triangle& triangle = faces_[visible_[i]].triangle;
         for (int e = 0; e < 3; ++e) {
-            const int other = triangle.neighbour[e];
+            const int other = triangle.neighbor[e];
             if (faces_[other].visible) continue;
             if (Sees(eye, faces_[other])) {
                 faces_[other].visible = true;
@@ -271,16 +271,16 @@ bool Builder::Grow() {
         const int added = AddFace(edge.from, edge.to, eye);
         newFaces_.push_back(added);
         newFaceFrom_[edge.from] = added;
-        faces_[added].triangle.neighbour[0] = edge.outside;
+        faces_[added].triangle.neighbor[0] = edge.outside;
         TriangleHull::Triangle& outside = faces_[edge.outside].triangle;
         for (int e = 0; e < 3; ++e)
-            if (outside.corner[e] == edge.to && outside.corner[(e + 1) % 3] == edge.from) outside.neighbour[e] = added;
+            if (outside.corner[e] == edge.to && outside.corner[(e + 1) % 3] == edge.from) outside.neighbor[e] = added;
     }
     for (int added : newFaces_) {
         TriangleHull::Triangle& triangle = faces_[added].triangle;
         const int next = newFaceFrom_[triangle.corner[1]];
-        triangle.neighbour[1] = next;
-        faces_[next].triangle.neighbour[2] = added;
+        triangle.neighbor[1] = next;
+        faces_[next].triangle.neighbor[2] = added;
     }
     for (int gone : visible_) {
         faces_[gone].alive = false;
@@ -313,7 +313,7 @@ void Builder::Finish() {
         hull_.triangles.push_back(faces_[f].triangle);
     }
     for (TriangleHull::Triangle& triangle : hull_.triangles)
-        for (int& neighbour : triangle.neighbour) neighbour = newIndex[neighbour];
+        for (int& neighbor : triangle.neighbor) neighbor = newIndex[neighbor];
     hull_.tolerance = tolerance_ * hull_.gridStep;
 }
 

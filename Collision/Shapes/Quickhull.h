@@ -22,7 +22,7 @@ Position ExactNormal(const Position& a, const Position& b, const Position& c);
 struct TriangleHull {
     struct Triangle {
         int corner[3];     // points, counter-clockwise seen from outside
-        int neighbour[3];  // the triangle across the edge corner[i] -> corner[i + 1]
+        int neighbor[3];  // the triangle across the edge corner[i] -> corner[i + 1]
         Position normal;   // unit, outwards
         double area;       // twice the area, in grid steps squared
     };

@@ -4,8 +4,8 @@
 
 namespace fulcrum {
 
-RevolutionPiece BallSlice(double from, double to, double centre, double radius) {
-    const double below = from - centre;
+RevolutionPiece BallSlice(double from, double to, double center, double radius) {
+    const double below = from - center;
     return {from, to, (radius - below) * (radius + below), -2 * below, -1};
 }
 
@@ -31,11 +31,11 @@ SolidMass RevolutionMass(std::span<const RevolutionPiece> pieces) {
                                                              l * (p.c1 * p.c2 / 2 + l * p.c2 * p.c2 / 5))));
     }
     SolidMass solid;
-    const double centre = first / area;
+    const double center = first / area;
     solid.volume = kPi * area;
-    solid.centre = Position(0, centre, 0);
+    solid.center = Position(0, center, 0);
     solid.inertia.yy = kPi / 2 * fourth;
-    solid.inertia.xx = solid.inertia.zz = kPi * (fourth / 4 + second - centre * first);
+    solid.inertia.xx = solid.inertia.zz = kPi * (fourth / 4 + second - center * first);
     return solid;
 }
 

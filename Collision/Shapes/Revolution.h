@@ -11,8 +11,8 @@ struct RevolutionPiece {
     double c0, c1, c2;  // squared radius = c0 + c1 t + c2 t^2
 };
 
-// The slice of a ball of `radius` about the height `centre`.
-RevolutionPiece BallSlice(double from, double to, double centre, double radius);
+// The slice of a ball of `radius` about the height `center`.
+RevolutionPiece BallSlice(double from, double to, double center, double radius);
 // A cone's frustum, of radius `lower` at `from` and `upper` at `to`.
 RevolutionPiece Frustum(double from, double to, double lower, double upper);
 

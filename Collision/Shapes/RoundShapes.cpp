@@ -52,7 +52,7 @@ Result<std::shared_ptr<const TaperedCapsule>> TaperedCapsule::Create(float halfH
     if (!mass) return mass.GetError();
 
     const std::shared_ptr<TaperedCapsule> capsule(new TaperedCapsule);
-    const double centre = solid.centre.y();
+    const double center = solid.center.y();
     capsule->mass_ = mass.Value();
     capsule->halfHeight_ = halfHeight;
     capsule->topRadius_ = topRadius;
@@ -60,13 +60,13 @@ Result<std::shared_ptr<const TaperedCapsule>> TaperedCapsule::Create(float halfH
     capsule->convexRadius_ = std::min(topRadius, bottomRadius);
     capsule->ballRadius_ = std::max(topRadius, bottomRadius) - capsule->convexRadius_;
     const bool ballOnTop = topRadius > bottomRadius;
-    capsule->ballY_ = static_cast<float>((ballOnTop ? h : -h) - centre);
-    capsule->pointY_ = static_cast<float>((ballOnTop ? -h : h) - centre);
-    capsule->bounds_ = BoundsAboutY(std::max(topRadius, bottomRadius), static_cast<float>(-h - bottom - centre),
-                                    static_cast<float>(h + top - centre));
+    capsule->ballY_ = static_cast<float>((ballOnTop ? h : -h) - center);
+    capsule->pointY_ = static_cast<float>((ballOnTop ? -h : h) - center);
+    capsule->bounds_ = BoundsAboutY(std::max(topRadius, bottomRadius), static_cast<float>(-h - bottom - center),
+                                    static_cast<float>(h + top - center));
     // The hull of two balls is the union of the balls in between.
-    capsule->innerRadius_ = static_cast<float>(bottom + (top - bottom) * (centre + h) / (2 * h));
-    capsule->outerRadius_ = static_cast<float>(std::max(h + top - centre, h + bottom + centre));
+    capsule->innerRadius_ = static_cast<float>(bottom + (top - bottom) * (center + h) / (2 * h));
+    capsule->outerRadius_ = static_cast<float>(std::max(h + top - center, h + bottom + center));
     return std::shared_ptr<const TaperedCapsule>(capsule);
 }
 
@@ -129,7 +129,7 @@ Result<std::shared_ptr<const Cylinder>> Cylinder::Make(float halfHeight, float t
     if (!mass) return mass.GetError();
 
     const std::shared_ptr<Cylinder> cylinder(new Cylinder);
-    const double centre = solid.centre.y();
+    const double center = solid.center.y();
     cylinder->mass_ = mass.Value();
     cylinder->convexRadius_ = convexRadius;
     cylinder->halfHeight_ = halfHeight;
@@ -142,14 +142,14 @@ Result<std::shared_ptr<const Cylinder>> Cylinder::Make(float halfHeight, float t
     const auto coreRadiusAt = [&](double y) { return radiusAt(y) - rounding * sideLength; };
     if (coreRadiusAt(coreTop) < 0) coreTop = std::max(coreBottom, (rounding * sideLength - (top + bottom) / 2) / slope);
     if (coreRadiusAt(coreBottom) < 0) coreBottom = std::min(coreTop, (rounding * sideLength - (top + bottom) / 2) / slope);
-    cylinder->coreTopY_ = static_cast<float>(coreTop - centre);
-    cylinder->coreBottomY_ = static_cast<float>(coreBottom - centre);
+    cylinder->coreTopY_ = static_cast<float>(coreTop - center);
+    cylinder->coreBottomY_ = static_cast<float>(coreBottom - center);
     cylinder->coreTopRadius_ = static_cast<float>(std::max(0.0, coreRadiusAt(coreTop)));
     cylinder->coreBottomRadius_ = static_cast<float>(std::max(0.0, coreRadiusAt(coreBottom)));
     const float widest = std::max(cylinder->coreTopRadius_, cylinder->coreBottomRadius_) + convexRadius;
-    cylinder->bounds_ = BoundsAboutY(widest, static_cast<float>(coreBottom - rounding - centre),
-                                     static_cast<float>(coreTop + rounding - centre));
-    cylinder->innerRadius_ = static_cast<float>(std::min({h - centre, h + centre, radiusAt(centre) / sideLength}));
+    cylinder->bounds_ = BoundsAboutY(widest, static_cast<float>(coreBottom - rounding - center),
+                                     static_cast<float>(coreTop + rounding - center));
+    cylinder->innerRadius_ = static_cast<float>(std::min({h - center, h + center, radiusAt(center) / sideLength}));
     const auto rim = [](float y, float radius) { return std::sqrt(y * y + radius * radius); };
     cylinder->outerRadius_ = std::max(rim(cylinder->coreTopY_, cylinder->coreTopRadius_),
                                       rim(cylinder->coreBottomY_, cylinder->coreBottomRadius_)) + convexRadius;
@@ -161,7 +161,7 @@ Vector3 Cylinder::SupportCore(const Vector3& direction) const {
     const Azimuth azimuth(direction);
     const float y = direction.y();
     const bool top = y * coreTopY_ + azimuth.across * coreTopRadius_ >= y * coreBottomY_ + azimuth.across * coreBottomRadius_;
-    // Straight up or down any point of the disc will do; its centre depends on no rounding.
+    // Straight up or down any point of the disc will do; its center depends on no rounding.
     const float radius = azimuth.across > 0 ? (top ? coreTopRadius_ : coreBottomRadius_) : 0.0f;
     return Vector3(azimuth.x * radius, top ? coreTopY_ : coreBottomY_, azimuth.z * radius);
 }

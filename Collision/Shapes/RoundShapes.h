@@ -6,7 +6,7 @@
 
 namespace fulcrum {
 
-// Hull of two balls on y: of `topRadius` about (0, halfHeight, 0) and `bottomRadius` about (0, -halfHeight, 0), metres, all
+// Hull of two balls on y: of `topRadius` about (0, halfHeight, 0) and `bottomRadius` about (0, -halfHeight, 0), meters, all
 // > 0. Errors: NonFinite, NonPositive, Degenerate (one ball inside the other: that is a Sphere of the larger radius),
 // OutOfRange.
 class TaperedCapsule final : public ConvexShape {
@@ -16,7 +16,7 @@ public:
     float HalfHeight() const { return halfHeight_; }
     float TopRadius() const { return topRadius_; }
     float BottomRadius() const { return bottomRadius_; }
-    // The core is what remains of the larger ball without the smaller radius, and the smaller ball's centre.
+    // The core is what remains of the larger ball without the smaller radius, and the smaller ball's center.
     Vector3 SupportCore(const Vector3& direction) const override;
     void FindSupportingFace(const Vector3& direction, SupportingFace& face) const override;
 
@@ -24,12 +24,12 @@ private:
     TaperedCapsule() : ConvexShape(ShapeType::TaperedCapsule) {}
 
     float halfHeight_ = 0, topRadius_ = 0, bottomRadius_ = 0;
-    // In the centre frame.
+    // In the center frame.
     float ballY_ = 0, pointY_ = 0;  // of the core's ball and of its point, m
     float ballRadius_ = 0;          // m, >= 0
 };
 
-// Solid between two discs about y: of `topRadius` at y = halfHeight and of `bottomRadius` at y = -halfHeight, metres; one of
+// Solid between two discs about y: of `topRadius` at y = halfHeight and of `bottomRadius` at y = -halfHeight, meters; one of
 // the two may be 0, which makes a cone. `convexRadius` rounds the rims within those sizes, and a cone's tip, which then ends
 // below its height; 0, the default, keeps them sharp: contacts are as exact and a little slower (their cores overlap). At most
 // that of the largest ball inside. The mass is that of the sharp solid.
@@ -58,7 +58,7 @@ private:
     void AddDisc(const Vector3& direction, SupportingFace& face) const;
 
     float halfHeight_ = 0, topRadius_ = 0, bottomRadius_ = 0;
-    // Of the core, in the centre frame.
+    // Of the core, in the center frame.
     float coreTopY_ = 0, coreBottomY_ = 0, coreTopRadius_ = 0, coreBottomRadius_ = 0;
     float sideOut_ = 1, sideUp_ = 0;  // the side's unit normal: outwards and upwards
 };

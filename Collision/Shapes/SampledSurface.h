@@ -9,7 +9,7 @@
 namespace fulcrum {
 
 struct SampledSurface {
-    std::vector<Vector3> vertices;  // in the shape's centre frame, m
+    std::vector<Vector3> vertices;  // in the shape's center frame, m
     std::vector<int> indices;       // three a triangle, counter-clockwise seen from outside; some have no area
 };
 

@@ -45,14 +45,14 @@ Result<ShapePtr> ScaledHull(const ConvexHull& hull, const Vector3& scale) {
         return Error{ErrorCode::Unsupported, "a hull with a convex radius cannot be scaled: make one of the scaled points"};
     }
     std::vector<Vector3> points;
-    for (const Vector3& v : hull.Vertices()) points.push_back(Vector3(v + hull.Mass().centreOfMass).cwiseProduct(scale));
+    for (const Vector3& v : hull.Vertices()) points.push_back(Vector3(v + hull.Mass().centerOfMass).cwiseProduct(scale));
     return AsShape(ConvexHull::Create(points, {.maxVertices = 255}));
 }
 
 Result<ShapePtr> ScaledTriangle(const Triangle& triangle, const Vector3& scale, const Vector3& size) {
     if (triangle.ConvexRadius() > 0 && !IsUniform(size)) return NotThat(triangle, scale, NearestUniform(scale));
-    const Vector3 centre = triangle.Mass().centreOfMass;
-    const auto corner = [&](int i) { return Vector3(Vector3(triangle.Corner(i) + centre).cwiseProduct(scale)); };
+    const Vector3 center = triangle.Mass().centerOfMass;
+    const auto corner = [&](int i) { return Vector3(Vector3(triangle.Corner(i) + center).cwiseProduct(scale)); };
     return AsShape(Triangle::Create(corner(0), corner(1), corner(2), triangle.ConvexRadius() * size.minCoeff()));
 }
 
@@ -76,7 +76,7 @@ SolidMass ScaledMass(const SolidMass& solid, const Position& s) {
                  zz = (half - i.zz) * s.z() * s.z() * volume;
     SolidMass result;
     result.volume = solid.volume * volume;
-    result.centre = solid.centre.cwiseProduct(s);
+    result.center = solid.center.cwiseProduct(s);
     result.inertia = {yy + zz, xx + zz, xx + yy, i.xy * s.x() * s.y() * volume, i.xz * s.x() * s.z() * volume,
                       i.yz * s.y() * s.z() * volume};
     return result;
@@ -127,11 +127,11 @@ bool ChildScale(const Quaternion& r, const Vector3& scale, const Vector3& size, 
 
 Result<ShapePtr> ScaledCompound(const CompoundShape& compound, const Vector3& scale, const Vector3& size) {
     std::vector<CompoundShape::ChildSettings> children = compound.Settings();
-    Vector3 centre = Vector3::Zero();  // of the children alone; where it is not the compound's, it was offset
+    Vector3 center = Vector3::Zero();  // of the children alone; where it is not the compound's, it was offset
     float mass = 0;
     for (CompoundShape::ChildSettings& child : children) {
         const float childMass = child.density * child.shape->Mass().volume;
-        centre += (child.position + Rotate(child.rotation, child.shape->Mass().centreOfMass)) * childMass;
+        center += (child.position + Rotate(child.rotation, child.shape->Mass().centerOfMass)) * childMass;
         mass += childMass;
         Vector3 childScale;
         Quaternion rotation;
@@ -141,7 +141,7 @@ Result<ShapePtr> ScaledCompound(const CompoundShape& compound, const Vector3& sc
         child = {scaled.Value(), child.position.cwiseProduct(scale), rotation, child.density};
     }
     if (compound.Type() == ShapeType::MutableCompound) return AsShape(MutableCompound::Create(children));
-    Vector3 offset = compound.Mass().centreOfMass - centre * (1 / mass);
+    Vector3 offset = compound.Mass().centerOfMass - center * (1 / mass);
     if (Length(offset) <= 1e-5f * compound.OuterRadius()) offset = Vector3::Zero();
     return AsShape(Compound::Create(children, offset.cwiseProduct(scale)));
 }
@@ -213,7 +213,7 @@ Result<ShapePtr> RotatedTranslated(const ShapePtr& shape, const Vector3& positio
     return AsShape(Compound::Create(children.Value()));
 }
 
-Result<ShapePtr> OffsetCentreOfMass(const ShapePtr& shape, const Vector3& offset) {
+Result<ShapePtr> OffsetCenterOfMass(const ShapePtr& shape, const Vector3& offset) {
     const Result<std::vector<Compound::ChildSettings>> children = AsChildren(shape);
     if (!children) return children.GetError();
     return AsShape(Compound::Create(children.Value(), offset));

@@ -1,4 +1,4 @@
-// New shapes from given ones: scaled, mirrored, moved, rotated, with another centre of mass. The results are ordinary shapes,
+// New shapes from given ones: scaled, mirrored, moved, rotated, with another center of mass. The results are ordinary shapes,
 // their sizes computed once. Pure functions.
 #pragma once
 
@@ -16,8 +16,8 @@ Result<ShapePtr> Scaled(const ShapePtr& shape, const Vector3& scale);
 // The shape at a pose in its user's frame: a compound of one, or of the same children. Errors: those of Compound::Create.
 Result<ShapePtr> RotatedTranslated(const ShapePtr& shape, const Vector3& position, const Quaternion& rotation);
 
-// The shape with its centre of mass moved by `offset` metres (user's frame), as ballast would; the inertia is that about the
-// new centre. Errors: those of Compound::Create.
-Result<ShapePtr> OffsetCentreOfMass(const ShapePtr& shape, const Vector3& offset);
+// The shape with its center of mass moved by `offset` meters (user's frame), as ballast would; the inertia is that about the
+// new center. Errors: those of Compound::Create.
+Result<ShapePtr> OffsetCenterOfMass(const ShapePtr& shape, const Vector3& offset);
 
 }  // namespace fulcrum

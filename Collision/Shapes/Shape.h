@@ -1,7 +1,7 @@
 // The base of all shapes. A shape is immutable once created and shared by any number of bodies and threads; a
 // MutableCompound, which is edited, belongs to one body.
-// Its geometry is expressed in the centre frame: axes of the frame that the user described it in, origin at the centre
-// of mass of its volume. So a body's internal pose is that of its centre of mass, and no kernel adds an offset.
+// Its geometry is expressed in the center frame: axes of the frame that the user described it in, origin at the center
+// of mass of its volume. So a body's internal pose is that of its center of mass, and no kernel adds an offset.
 #pragma once
 
 #include <Fulcrum/Math/Bounds.h>
@@ -33,10 +33,10 @@ enum class ShapeType : uint8_t {
 inline constexpr int kConvexShapeTypes = static_cast<int>(ShapeType::Compound);  // those before it
 const char* ShapeTypeName(ShapeType type);
 
-// Of a solid of density 1 kg/m3, about its centre of mass. All zero for a shape without volume or without end.
+// Of a solid of density 1 kg/m3, about its center of mass. All zero for a shape without volume or without end.
 struct MassProperties {
     float volume = 0;                                // m3
-    Vector3 centreOfMass = Vector3::Zero();          // m, in the user's frame
+    Vector3 centerOfMass = Vector3::Zero();          // m, in the user's frame
     Vector3 principalInertia = Vector3::Zero();      // kg m2 at density 1, along the principal axes
     Quaternion principalAxes;                        // rotation from the principal frame to the shape's frame
 };
@@ -52,11 +52,11 @@ public:
     // Made of triangles: a SurfaceShape.
     bool IsSurface() const { return type_ == ShapeType::TriangleMesh || type_ == ShapeType::HeightField; }
     const MassProperties& Mass() const { return mass_; }
-    // In the centre frame.
+    // In the center frame.
     const Bounds& LocalBounds() const { return bounds_; }
-    // Radius of the largest sphere about the centre of mass that fits inside: a fast body is one that moves farther.
+    // Radius of the largest sphere about the center of mass that fits inside: a fast body is one that moves farther.
     float InnerRadius() const { return innerRadius_; }
-    // Distance of the farthest point from the centre of mass.
+    // Distance of the farthest point from the center of mass.
     float OuterRadius() const { return outerRadius_; }
 
 protected:
@@ -78,7 +78,7 @@ using ShapePtr = std::shared_ptr<const Shape>;
 class ConvexShape : public Shape {
 public:
     float ConvexRadius() const { return convexRadius_; }
-    // The point of the core that lies farthest along `direction` (any length > 0), in the centre frame.
+    // The point of the core that lies farthest along `direction` (any length > 0), in the center frame.
     virtual Vector3 SupportCore(const Vector3& direction) const = 0;
     // The point of the whole shape that lies farthest along `direction`.
     Vector3 Support(const Vector3& direction) const {

@@ -69,7 +69,7 @@ ShapeResult ShapeFileAccess::ReadMutableCompound(ByteReader& in, const ShapeFile
     const std::shared_ptr<MutableCompound> compound(new MutableCompound);
     compound->mass_ = ReadMass(in);
     compound->relativeMass_ = std::bit_cast<double>(in.Get<uint64_t>());
-    const bool isMass = IsPlausible(compound->mass_) && IsNear(compound->mass_.centreOfMass) &&
+    const bool isMass = IsPlausible(compound->mass_) && IsNear(compound->mass_.centerOfMass) &&
                         std::isnormal(compound->relativeMass_) && compound->relativeMass_ > 0;
     const uint32_t count = in.Get<uint32_t>();
     for (uint32_t i = 0; i < count; ++i) {
@@ -110,16 +110,16 @@ ShapeResult ShapeFileAccess::ReadTriangle(ByteReader& in) {
     in.Read(triangle->normal_);
     const float radius = in.Get<float>();
     const Vector3 &a = triangle->corners_[0], &b = triangle->corners_[1], &c = triangle->corners_[2], &n = triangle->normal_;
-    if (in.HasFailed() || !IsPlausible(triangle->mass_) || !IsNear(triangle->mass_.centreOfMass) || !IsNear(a) || !IsNear(b) || !IsNear(c) ||
+    if (in.HasFailed() || !IsPlausible(triangle->mass_) || !IsNear(triangle->mass_.centerOfMass) || !IsNear(a) || !IsNear(b) || !IsNear(c) ||
         !(std::isfinite(radius) && radius >= 0 && radius < kFarthestPlace))
         return Damaged("a triangle, or its mass");
     // About their middle, on no line, with the normal that they span: to within what floats keep of them.
     const Position ab = (b - a).cast<double>(), ac = (c - a).cast<double>(), cross = Cross<double>(ab, ac);
     const double twiceArea = std::sqrt(Dot<double>(cross, cross));
     const double longest = std::max(Dot<double>(ab, ab), Dot<double>(ac, ac));
-    const bool isCentred = double{Vector3(a + b + c).cwiseAbs().maxCoeff()} <= 1e-5 * std::sqrt(longest);
+    const bool isCentered = double{Vector3(a + b + c).cwiseAbs().maxCoeff()} <= 1e-5 * std::sqrt(longest);
     const bool isNormal = IsFinite(n) && IsUnit(double{LengthSquared(n)}) && Dot<double>(cross, n.cast<double>()) >= 0.99 * twiceArea;
-    if (!isCentred || !isNormal || !(twiceArea > 1e-6 * longest)) return Damaged("the corners of a triangle");
+    if (!isCentered || !isNormal || !(twiceArea > 1e-6 * longest)) return Damaged("the corners of a triangle");
     triangle->Complete(radius);
     return ShapePtr(triangle);
 }

@@ -29,7 +29,7 @@ bool IsConvexPolyhedron(const HullMesh& mesh) {
 
 void WriteMass(const MassProperties& mass, ByteWriter& out) {
     out.Write(mass.volume);
-    out.Write(mass.centreOfMass);
+    out.Write(mass.centerOfMass);
     out.Write(mass.principalInertia);
     out.Write(mass.principalAxes);
 }
@@ -37,14 +37,14 @@ void WriteMass(const MassProperties& mass, ByteWriter& out) {
 MassProperties ReadMass(ByteReader& in) {
     MassProperties mass;
     in.Read(mass.volume);
-    in.Read(mass.centreOfMass);
+    in.Read(mass.centerOfMass);
     in.Read(mass.principalInertia);
     in.Read(mass.principalAxes);
     return mass;
 }
 
 bool IsPlausible(const MassProperties& mass) {
-    if (!std::isfinite(mass.volume) || !(mass.volume > 0) || !IsFinite(mass.centreOfMass)) return false;
+    if (!std::isfinite(mass.volume) || !(mass.volume > 0) || !IsFinite(mass.centerOfMass)) return false;
     const Vector3& inertia = mass.principalInertia;
     if (!IsFinite(inertia) || !(inertia.minCoeff() > 0) || !IsFinite(mass.principalAxes)) return false;
     const double sum = double{inertia.x()} + double{inertia.y()} + double{inertia.z()};

@@ -25,10 +25,10 @@ inline Status CheckSizeOrZero(const char* name, float size) {
 // Squares of distances have to stay floats.
 inline constexpr float kFarthestPlace = 1e18f;  // m
 
-// Ok where the centre of a part lies within that.
-inline Status CheckPlace(const char* name, const Vector3& centre) {
-    if (IsFinite(centre) && centre.cwiseAbs().maxCoeff() < kFarthestPlace) return Done{};
-    return Error{ErrorCode::OutOfRange, Message("the centre of %s is farther away than %g m", name, double{kFarthestPlace})};
+// Ok where the center of a part lies within that.
+inline Status CheckPlace(const char* name, const Vector3& center) {
+    if (IsFinite(center) && center.cwiseAbs().maxCoeff() < kFarthestPlace) return Done{};
+    return Error{ErrorCode::OutOfRange, Message("the center of %s is farther away than %g m", name, double{kFarthestPlace})};
 }
 
 // 0 to `most`, which the message calls `mostName`.

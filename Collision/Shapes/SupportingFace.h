@@ -10,7 +10,7 @@ struct SupportingFace {
     static constexpr int kMaxVertices = 32;
 
     int count = 0;  // 1: a point, 2: an edge, more: a face, counter-clockwise seen from outside
-    Vector3 vertices[kMaxVertices];  // of the core, in the shape's centre frame, m
+    Vector3 vertices[kMaxVertices];  // of the core, in the shape's center frame, m
     uint16_t names[kMaxVertices];    // of the vertices: the same from step to step while the same feature touches
     Vector3 normal;                  // unit, outwards; of a face only
 

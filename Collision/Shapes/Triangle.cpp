@@ -12,10 +12,10 @@ namespace {
 constexpr double kNominalThickness = 0.001;  // m
 
 // A plate about its centroid: over the triangle, the mean of x x^T is the sum of those of the corners / 12.
-SolidMass PlateMass(const Position (&corners)[3], const Position& centre, const Position& normal, double area, double thickness) {
+SolidMass PlateMass(const Position (&corners)[3], const Position& center, const Position& normal, double area, double thickness) {
     SolidMass solid;
     solid.volume = area * thickness;
-    solid.centre = centre;
+    solid.center = center;
     Covariance c;
     for (const Position& corner : corners) AddOuterProduct(c, corner, solid.volume / 12);
     AddOuterProduct(c, normal, solid.volume * thickness * thickness / 12);
@@ -31,9 +31,9 @@ Result<std::shared_ptr<const Triangle>> Triangle::Create(const Vector3& a, const
         if (!IsFinite(given[i])) return Error{ErrorCode::NonFinite, Message("corner %c is not finite", 'a' + i)};
     if (const Status size = CheckSizeOrZero("radius", radius); !size) return size.GetError();
 
-    const Position centre = (a.cast<double>() + b.cast<double>() + c.cast<double>()) * (1.0 / 3);
+    const Position center = (a.cast<double>() + b.cast<double>() + c.cast<double>()) * (1.0 / 3);
     Position corners[3];
-    for (int i = 0; i < 3; ++i) corners[i] = given[i].cast<double>() - centre;
+    for (int i = 0; i < 3; ++i) corners[i] = given[i].cast<double>() - center;
     const Position ab = corners[1] - corners[0], ac = corners[2] - corners[0], bc = corners[2] - corners[1];
     const Position cross = Cross<double>(ab, ac);
     const double twiceArea = std::sqrt(Dot<double>(cross, cross));
@@ -45,7 +45,7 @@ Result<std::shared_ptr<const Triangle>> Triangle::Create(const Vector3& a, const
     }
     const Position normal = cross * (1 / twiceArea);
     const double thickness = radius > 0 ? 2 * double{radius} : kNominalThickness;
-    const Result<MassProperties> mass = ToMassProperties(PlateMass(corners, centre, normal, twiceArea / 2, thickness));
+    const Result<MassProperties> mass = ToMassProperties(PlateMass(corners, center, normal, twiceArea / 2, thickness));
     if (!mass) return mass.GetError();
 
     const std::shared_ptr<Triangle> triangle(new Triangle);

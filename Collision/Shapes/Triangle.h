@@ -5,7 +5,7 @@
 
 namespace fulcrum {
 
-// Corners in metres. `radius` >= 0 makes a plate of it, rounded all around; 0, the default, has no thickness at all: both
+// Corners in meters. `radius` >= 0 makes a plate of it, rounded all around; 0, the default, has no thickness at all: both
 // sides collide, and nothing is inside. The mass properties are those of a flat plate of thickness 2 radius, or of 1 mm where
 // the radius is 0: a body of such a triangle had better be static or be given its mass.
 // Errors: NonFinite, Negative, Degenerate (corners on a line), OutOfRange.

@@ -170,10 +170,10 @@ uint32_t TriangleMesh::CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hi
     if (!(largest <= 1)) return SurfaceShape::CastRays(rays, hits, maxFractions);  // the box is wide enough for a whole way
     const float pad = PadFor(Max(LargestCoordinate(origins.lower), LargestCoordinate(origins.upper)));
     lanes.Widen(pad);
-    const Vector3 displacement = displacements.Centre();
+    const Vector3 displacement = displacements.Center();
     const Vector3 reach = origins.HalfExtents() + displacements.HalfExtents() + Vector3::Constant(2 * pad) +
                           displacements.lower.cwiseAbs().cwiseMax(displacements.upper.cwiseAbs()) * 0x1p-20f;
-    const MeshTreeRay swept(origins.Centre(), BoundedInverse(displacement), reach);
+    const MeshTreeRay swept(origins.Center(), BoundedInverse(displacement), reach);
     int inVain = 0;
     tree.SearchRay(swept, largest, [&](const MeshNode& node, int child) {
         float lower[3], upper[3];

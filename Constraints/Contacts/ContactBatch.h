@@ -1,6 +1,6 @@
 // N contacts side by side: the rows of their manifolds, solved in lanes. No two contacts of a batch share a moving body.
 //
-// A manifold has one axis row per point along the normal n, two axis rows for friction along t1 and t2 at its centre c, and
+// A manifold has one axis row per point along the normal n, two axis rows for friction along t1 and t2 at its center c, and
 // one angle row about n. All of them look at nothing but the relative twist of the two bodies at c,
 //     V = (v2 + w2 x r2) - (v1 + w1 x r1),   W = w2 - w1,
 // and with a point at c + a t1 + b t2 its row is J v = V.n + b W.t1 - a W.t2. So a batch reads the twist once, relaxes all its
@@ -27,7 +27,7 @@ template <int N>
 struct MovingSide {
     using Real = Wide<N>;
     uint32_t body[N];
-    Vec3<Real> arm;  // m, from its centre of mass to c
+    Vec3<Real> arm;  // m, from its center of mass to c
     InverseMass<Real> inverse;
 };
 // or one that is not (static, kinematic): the motion of its point at c is all there is to know.
@@ -88,7 +88,7 @@ struct ContactSolveSettings {
     float inverseDt;         // 1/s, of the substep
     float elapsed;           // s since the start of the step: where fixed sides are
     // Points that overlap are pushed apart by a soft row, see Soften.
-    float pushRate;          // 1/s: speed of the push per metre of overlap
+    float pushRate;          // 1/s: speed of the push per meter of overlap
     float massScale;         // 0..1: softened effective mass / effective mass
     float impulseScale;      // 0..1: part of the impulse that the row gives way by
     float maxPushSpeed;      // m/s

@@ -1,4 +1,4 @@
-// Shared by the contact kernels: reading and writing the twists of a batch, and the twist at the manifold's centre.
+// Shared by the contact kernels: reading and writing the twists of a batch, and the twist at the manifold's center.
 #pragma once
 
 #include <Fulcrum/Constraints/BodyLanes.h>
@@ -15,12 +15,12 @@ struct Twists {
     Real a[8], b[8];
 };
 
-template <Of kOf, int N, bool kFixedB>
+template <BodyRow kRow, int N, bool kFixedB>
 FULCRUM_FORCE_INLINE void Gather(const ContactBatch<N, kFixedB>& batch, BodyState* states, Twists<N, kFixedB>& twists) {
-    for (int i = 0; i < N; ++i) twists.rowsA[i] = RowOf<kOf>(states[batch.bodyA[i]]);
+    for (int i = 0; i < N; ++i) twists.rowsA[i] = RowOf<kRow>(states[batch.bodyA[i]]);
     GatherRows<N>(reinterpret_cast<const float* const(&)[N]>(twists.rowsA), twists.a);
     if constexpr (!kFixedB) {
-        for (int i = 0; i < N; ++i) twists.rowsB[i] = RowOf<kOf>(states[batch.sideB.body[i]]);
+        for (int i = 0; i < N; ++i) twists.rowsB[i] = RowOf<kRow>(states[batch.sideB.body[i]]);
         GatherRows<N>(reinterpret_cast<const float* const(&)[N]>(twists.rowsB), twists.b);
     }
 }
@@ -55,7 +55,7 @@ FULCRUM_FORCE_INLINE void ApplyWrench(Real (&row)[8], const InverseMass<Real>& i
 }
 
 // The relative twist at c, of the velocities or of the displacements, `elapsed` seconds after the start of the step.
-template <Of kOf, int N, bool kFixedB>
+template <BodyRow kRow, int N, bool kFixedB>
 FULCRUM_FORCE_INLINE Twist<Wide<N>> RelativeTwist(const ContactBatch<N, kFixedB>& batch, const Twists<N, kFixedB>& twists,
                                                            float elapsed) {
     using Real = Wide<N>;
@@ -64,7 +64,7 @@ FULCRUM_FORCE_INLINE Twist<Wide<N>> RelativeTwist(const ContactBatch<N, kFixedB>
     if constexpr (kFixedB) {
         const auto& side = batch.sideB;
         const Real t(elapsed);
-        if constexpr (kOf == Of::Velocity) {
+        if constexpr (kRow == BodyRow::Velocity) {
             relative.linear = side.velocity.linear + side.acceleration * t - atA;
             relative.angular = side.velocity.angular - Angular(twists.a);
         } else {

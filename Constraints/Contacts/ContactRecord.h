@@ -12,17 +12,17 @@ struct alignas(32) ContactRecord {
     static constexpr int kMaxPoints = 4;
 
     struct Point {
-        float onA[3] = {0, 0, 0};  // m, in A's centre frame
+        float onA[3] = {0, 0, 0};  // m, in A's center frame
         float surfaceA = 0;        // see SetSurfaceVelocity
-        float onB[3] = {0, 0, 0};  // m, in B's centre frame; the separation is (onB - onA) . normal at the poses of now
+        float onB[3] = {0, 0, 0};  // m, in B's center frame; the separation is (onB - onA) . normal at the poses of now
         float surfaceB = 0;
     };
 
-    float normal[3] = {0, 1, 0};           // unit, from A to B, in A's centre frame
+    float normal[3] = {0, 1, 0};           // unit, from A to B, in A's center frame
     float pointCount = 0;                  // 0..4
     float friction = 0;                    // Coulomb coefficient
     float restitution = 0;                 // 0..1
-    float twistRadius = 0;                 // m: mean distance of the contact patch from its centre
+    float twistRadius = 0;                 // m: mean distance of the contact patch from its center
     float surfaceMoves = 0;                // 1: it has a surface velocity
     // Second row: impulses of the last substep.
     float impulse[kMaxPoints] = {0, 0, 0, 0};  // N s along the normal, by point
@@ -30,7 +30,7 @@ struct alignas(32) ContactRecord {
     float twistImpulse = 0;                    // N m s about the normal
     Point points[kMaxPoints];
 
-    // B's surface moves so against A's, beyond the motion of the bodies: m/s at the contact's centre and rad/s, world axes. Few
+    // B's surface moves so against A's, beyond the motion of the bodies: m/s at the contact's center and rad/s, world axes. Few
     // contacts have one: it has no row of its own but what is spare in those of the first three points.
     void SetSurfaceVelocity(const Vector3& linear, const Vector3& angular) {
         surfaceMoves = linear.isZero(0) && angular.isZero(0) ? 0.0f : 1.0f;

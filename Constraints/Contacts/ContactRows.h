@@ -48,7 +48,7 @@ template <int N, bool kFixedB>
 void NoteHits(ContactBatch<N, kFixedB>& batch, const NormalImpulses<Wide<N>>& changes, const NormalMotion<Wide<N>>& before,
               const Twists<N, kFixedB>& after, float elapsed) {
     for (int i = 0; i < batch.pointCount; ++i) batch.largestImpulse[i] = Max(batch.largestImpulse[i], batch.rows[i].impulse);
-    NoteWork(batch, changes, before, NormalMotionOf(batch, RelativeTwist<Of::Velocity>(batch, after, elapsed)));
+    NoteWork(batch, changes, before, NormalMotionOf(batch, RelativeTwist<BodyRow::Velocity>(batch, after, elapsed)));
 }
 
 // All rows of a batch once, on velocities: friction, then the normal rows. A relaxing pass pushes nothing. kRare: it may have the
@@ -59,8 +59,8 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
     using Real = Wide<N>;
     const Real zero(0.0f);
     Twists<N, kFixedB> twists;
-    Gather<Of::Velocity>(batch, states, twists);
-    const Twist<Real> relative = RelativeTwist<Of::Velocity>(batch, twists, settings.elapsed);
+    Gather<BodyRow::Velocity>(batch, states, twists);
+    const Twist<Real> relative = RelativeTwist<BodyRow::Velocity>(batch, twists, settings.elapsed);
     Real vn = Dot<Real>(relative.linear, batch.normal);
     Real w1 = Dot<Real>(relative.angular, batch.tangent1), w2 = Dot<Real>(relative.angular, batch.tangent2);
 
@@ -129,9 +129,9 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
 template <bool kBounces, int N, bool kFixedB>
 FULCRUM_FORCE_INLINE void WarmStartRows(ContactBatch<N, kFixedB>& batch, BodyState* states) {
     Twists<N, kFixedB> twists;
-    Gather<Of::Velocity>(batch, states, twists);
+    Gather<BodyRow::Velocity>(batch, states, twists);
     const NormalImpulses<Wide<N>> normal = TotalOf(batch);
-    const auto motion = [&] { return NormalMotionOf(batch, RelativeTwist<Of::Velocity>(batch, twists, 0)); };
+    const auto motion = [&] { return NormalMotionOf(batch, RelativeTwist<BodyRow::Velocity>(batch, twists, 0)); };
     [[maybe_unused]] NormalMotion<Wide<N>> before;
     if constexpr (kBounces) before = motion();
     const auto* f = batch.frictionImpulse;

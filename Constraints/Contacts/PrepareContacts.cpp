@@ -103,8 +103,8 @@ void PrepareBounces(ContactBatch<N, kFixedB>& batch, Wide<N> restitution, const 
                     const SolverBodies& bodies, const ContactPrepareSettings& settings) {
     using Real = Wide<N>;
     Twists<N, kFixedB> twists;
-    Gather<Of::Velocity>(batch, bodies.states, twists);
-    const Twist<Real> relative = RelativeTwist<Of::Velocity>(batch, twists, 0);
+    Gather<BodyRow::Velocity>(batch, bodies.states, twists);
+    const Twist<Real> relative = RelativeTwist<BodyRow::Velocity>(batch, twists, 0);
     const Real vn = Dot<Real>(relative.linear, batch.normal);
     const Real w1 = Dot<Real>(relative.angular, batch.tangent1), w2 = Dot<Real>(relative.angular, batch.tangent2);
     // How fast the gap closes ever faster: minus the relative acceleration along n.
@@ -185,9 +185,9 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
     batch.surfaces = surfaceMoves && !kFixedB ? records : nullptr;
     batch.relaxedImpulse = zero;
 
-    // Points, halfway between the surfaces, and their centre.
+    // Points, halfway between the surfaces, and their center.
     Vec3<Real> points[ContactRecord::kMaxPoints];
-    Vec3<Real> centre(zero, zero, zero);
+    Vec3<Real> center(zero, zero, zero);
     for (int i = 0; i < batch.pointCount; ++i) {
         Real p[8];
         GatherRecordRow<N>(batch.contact, records, 2 + i, p);
@@ -199,15 +199,15 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
         batch.rows[i].startSeparation = batch.rows[i].separation = Select(used, separation, zero);
         batch.rows[i].impulse = Select(used, impulses[i] * Real(settings.impulseScale), zero);
         batch.relaxedImpulse += batch.rows[i].impulse;
-        for (int k = 0; k < 3; ++k) centre[k] += Select(used, points[i][k], zero);
+        for (int k = 0; k < 3; ++k) center[k] += Select(used, points[i][k], zero);
     }
-    centre = centre * (Real(1.0f) / Max(head[3], Real(1.0f)));
-    batch.armA = centre;
+    center = center * (Real(1.0f) / Max(head[3], Real(1.0f)));
+    batch.armA = center;
 
     Responses<Real> responses;
     GatherMass<N>(batch.bodyA, bodies.masses, batch.inverseA);
     responses.Add(batch.inverseA, batch.armA, n, t1, t2);
-    const Vec3<Real> armB = centre - between;
+    const Vec3<Real> armB = center - between;
     if constexpr (kFixedB) {
         const float* rows[N];
         for (int i = 0; i < N; ++i) rows[i] = bodies.states[bodyB[i]].VelocityRow();
@@ -240,7 +240,7 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
     Real diagonals = zero;
     for (int i = 0; i < batch.pointCount; ++i) {
         auto& row = batch.rows[i];
-        const Vec3<Real> offset = points[i] - centre;
+        const Vec3<Real> offset = points[i] - center;
         row.a = Dot<Real>(offset, t1);
         row.b = Dot<Real>(offset, t2);
         const Real two(2.0f);

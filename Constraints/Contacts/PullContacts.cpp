@@ -9,9 +9,9 @@ void PullContacts(const ContactBatch<N, kFixedB>& batch, BodyState* pseudo, cons
     using Real = Wide<N>;
     const Real zero(0.0f), inverseDt(settings.inverseDt);
     Twists<N, kFixedB> twists;
-    Gather<Of::Velocity>(batch, pseudo, twists);
+    Gather<BodyRow::Velocity>(batch, pseudo, twists);
     // What is fixed has no pseudo-velocity: it is as displaced as at the start of the step.
-    const NormalMotion<Real> motion = NormalMotionOf(batch, RelativeTwist<Of::Displacement>(batch, twists, 0));
+    const NormalMotion<Real> motion = NormalMotionOf(batch, RelativeTwist<BodyRow::Displacement>(batch, twists, 0));
     Real speed[ContactRecord::kMaxPoints];
     for (int i = 0; i < batch.pointCount; ++i) {
         const auto& row = batch.rows[i];

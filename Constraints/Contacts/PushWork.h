@@ -1,5 +1,5 @@
 // Energy that pushes at one contact of a body gave must not be given a second time by bounces at its others: these have so much less to
-// give back. Called by Solve before restitution, a colour after the other, each function over all batches before the next. `rows` has
+// give back. Called by Solve before restitution, a color after the other, each function over all batches before the next. `rows` has
 // eight floats a body, of which the last holds what pushes gave and no bounce has left out yet, J.
 #pragma once
 

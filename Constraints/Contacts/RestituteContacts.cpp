@@ -52,7 +52,7 @@ void NoteCarriedWork(ContactBatch<N, kFixedB>& batch, BodyState* states, const f
     if (!batch.bounces) return;
     const auto freeRow = [&](uint32_t body) { return freeRows + 8 * size_t(body); };
     Twists<N, kFixedB> carried, free;
-    Gather<Of::Velocity>(batch, states, carried);
+    Gather<BodyRow::Velocity>(batch, states, carried);
     const float* rows[N];
     for (int i = 0; i < N; ++i) rows[i] = freeRow(batch.bodyA[i]);
     GatherRows<N>(rows, free.a);
@@ -61,7 +61,7 @@ void NoteCarriedWork(ContactBatch<N, kFixedB>& batch, BodyState* states, const f
         GatherRows<N>(rows, free.b);
     }
     const auto motionOf = [&](const Twists<N, kFixedB>& twists) {
-        return NormalMotionOf(batch, RelativeTwist<Of::Velocity>(batch, twists, elapsed));
+        return NormalMotionOf(batch, RelativeTwist<BodyRow::Velocity>(batch, twists, elapsed));
     };
     NoteWork(batch, TotalOf(batch), motionOf(free), motionOf(carried));
 }
@@ -84,8 +84,8 @@ void RestituteContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, float
     using Real = Wide<N>;
     const Real zero(0.0f);
     Twists<N, kFixedB> twists;
-    Gather<Of::Velocity>(batch, states, twists);
-    const auto motionOf = [&](const Twists<N, kFixedB>& of) { return NormalMotionOf(batch, RelativeTwist<Of::Velocity>(batch, of, elapsed)); };
+    Gather<BodyRow::Velocity>(batch, states, twists);
+    const auto motionOf = [&](const Twists<N, kFixedB>& of) { return NormalMotionOf(batch, RelativeTwist<BodyRow::Velocity>(batch, of, elapsed)); };
     const NormalMotion<Real> motion = motionOf(twists);
     Real changes[ContactRecord::kMaxPoints];
     FindBounces(batch, motion, changes);
@@ -97,7 +97,7 @@ void RestituteContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, float
     const Real rate = WorkOf(bounce, motion), work = Real(0.5f) * (rate + WorkOf(bounce, motionOf(all)));
     const Real part = PartWithin(Max(-batch.work, zero), rate, work);
     for (int i = 0; i < batch.pointCount; ++i) batch.rows[i].impulse = Max(batch.rows[i].impulse + changes[i] * part, zero);
-    // Lanes without a bounce keep every bit, as they do where their batch has no bouncing neighbour.
+    // Lanes without a bounce keep every bit, as they do where their batch has no bouncing neighbor.
     const auto still = bounce.sum == zero;
     for (int k = 0; k < 6; ++k) {
         all.a[k] = Select(still, twists.a[k], twists.a[k] + (all.a[k] - twists.a[k]) * part);

@@ -40,8 +40,8 @@ template <int N, bool kFixedB>
 void UpdateSeparations(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings) {
     using Real = Wide<N>;
     Twists<N, kFixedB> twists;
-    Gather<Of::Displacement>(batch, states, twists);
-    const Twist<Real> relative = RelativeTwist<Of::Displacement>(batch, twists, settings.elapsed);
+    Gather<BodyRow::Displacement>(batch, states, twists);
+    const Twist<Real> relative = RelativeTwist<BodyRow::Displacement>(batch, twists, settings.elapsed);
     const Real xn = Dot<Real>(relative.linear, batch.normal);
     const Real w1 = Dot<Real>(relative.angular, batch.tangent1), w2 = Dot<Real>(relative.angular, batch.tangent2);
     for (int i = 0; i < batch.pointCount; ++i) {

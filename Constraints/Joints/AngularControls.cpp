@@ -15,7 +15,7 @@ AngleRange RangeOf(const AxisControl& control) {
 // Which block could hold: locked at zero, and hard.
 bool HoldsZeroAngle(const AxisControl& control) {
     const AngleRange range = RangeOf(control);
-    return control.limited && range.IsLocked() && Abs(range.Centre()) < AngleRange::kNegligible && IsHard(control.limits.spring);
+    return control.limited && range.IsLocked() && Abs(range.Center()) < AngleRange::kNegligible && IsHard(control.limits.spring);
 }
 
 size_t AxisOfLimit(RotationLimit::Slot slot) {

@@ -21,7 +21,7 @@ struct alignas(64) BallBatch {
 
     Vec3<Real> impulse;                  // on B, of this substep, N s
     Vec3<Real> push;                     // m/s
-    Vec3<Real> armA, armB;               // from the centres to the point at which impulses act, m
+    Vec3<Real> armA, armB;               // from the centers to the point at which impulses act, m
     Sym3<Real> mass;                     // K^-1, see PointPart.h
     Vec3<Real> turnedA, turnedB;         // rad/s: what the turning of the arms changed of the impulse
     Vec3<Real> earlier;                  // impulses of the substeps before, summed

@@ -7,7 +7,7 @@
 //  - A body keeps its constraints' share of velocity from substep to substep, in place of a warm start (Solve stage). What the
 //    turning of a part changes of its impulse is added then: `turnedA` and `turnedB`.
 //  - A joint that locks translation and rotation solves both as one block.
-//  - A row's impulse takes the locks' answer with it. Its response is M^-1 (J^T - L^T (L M^-1 L^T)^-1 L M^-1 J^T) with L the
+//  - A row's impulse takes the reaction of the locks with it. Its response is M^-1 (J^T - L^T (L M^-1 L^T)^-1 L M^-1 J^T) with L the
 //    locks' Jacobian: it disturbs no lock, and a spring or a motor meets the mass that it really moves. What the locks answer,
 //    `lockLinear` and `lockAngular` per unit of impulse, is kept apart from their own impulses: softness takes none of it back.
 #pragma once
@@ -22,11 +22,11 @@ namespace fulcrum {
 
 // What a joint keeps from step to step, rows of eight floats.
 struct alignas(32) JointRecord {
-    float anchorA[3] = {0, 0, 0}, anchorB[3] = {0, 0, 0};  // m, in the bodies' centre frames
+    float anchorA[3] = {0, 0, 0}, anchorB[3] = {0, 0, 0};  // m, in the bodies' center frames
     float lineAxis = 0, freeAxis = 0;                      // JointLocks::line and ::axis
-    float frameA[4] = {0, 0, 0, 1}, frameB[4] = {0, 0, 0, 1};  // x y z w, in the bodies' centre frames
+    float frameA[4] = {0, 0, 0, 1}, frameB[4] = {0, 0, 0, 1};  // x y z w, in the bodies' center frames
     // On B, world axes: the locks' own impulses of the last substep, N s and N m s. And as averages over the last step, N and
-    // N m: those of the locks with their answer to the rows, and of locks and rows together, about the anchor.
+    // N m: those of the locks with their reaction to the rows, and of locks and rows together, about the anchor.
     float ownImpulse[3] = {0, 0, 0}, ownAngularImpulse[3] = {0, 0, 0};
     float wasPulled = 0, ownSpare = 0;  // 1 and more: it was far apart in the last step; 0.5: it was pulled along by others that were
     float lockForce[3] = {0, 0, 0}, lockTorque[3] = {0, 0, 0}, lockSpare[2] = {0, 0};
@@ -82,9 +82,9 @@ struct JointBatch {
     PointPart<Real> point;
     Vec3<Real> startArmA, startArmB, startOffset;
     Twist<Real> turnedA, turnedB;
-    Vec3<Real> earlierLinear, earlierAngular;  // impulses and answers of the locks, summed over the substeps before
+    Vec3<Real> earlierLinear, earlierAngular;  // impulses and reactions of the locks, summed over the substeps before
     Real turns;                          // 1: those of this lane do
-    Vec3<Real> answerLinear, answerAngular;  // of the locks to the rows; only where there are rows
+    Vec3<Real> reactionLinear, reactionAngular;  // of the locks to the rows; only where there are rows
     Twist<Real> wayA, wayB;              // displacements at which rows were set up last
 
     RotationEulerPart<Real> rotation;

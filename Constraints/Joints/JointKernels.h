@@ -31,9 +31,9 @@ struct Motion {
     float* rows[N];
     Real row[8];
 
-    template <Of kOf>
+    template <BodyRow kRow>
     FULCRUM_FORCE_INLINE void Gather(const uint32_t (&bodies)[N], BodyState* states) {
-        for (int i = 0; i < N; ++i) rows[i] = RowOf<kOf>(states[bodies[i]]);
+        for (int i = 0; i < N; ++i) rows[i] = RowOf<kRow>(states[bodies[i]]);
         GatherRows<N>(reinterpret_cast<const float* const(&)[N]>(rows), row);
     }
     FULCRUM_FORCE_INLINE Twist<Real> Get() const {
@@ -57,8 +57,8 @@ struct Motion {
 template <int N, class Batch, class F>
 FULCRUM_FORCE_INLINE void ChangeVelocities(const Batch& batch, BodyState* states, F&& change) {
     Motion<N> motionA, motionB;
-    motionA.template Gather<Of::Velocity>(batch.bodyA, states);
-    motionB.template Gather<Of::Velocity>(batch.bodyB, states);
+    motionA.template Gather<BodyRow::Velocity>(batch.bodyA, states);
+    motionB.template Gather<BodyRow::Velocity>(batch.bodyB, states);
     Twist<Wide<N>> a = motionA.Get(), b = motionB.Get();
     change(a, b);
     motionA.Scatter(a, batch.count, batch.fixedA);
@@ -142,11 +142,11 @@ FULCRUM_FORCE_INLINE Vec3<Real> Straightened(const Vec3<Real>& normal, const Vec
     return flat * (Real(1.0f) / Sqrt(Max(Dot<Real>(flat, flat), Real(1e-12f))));
 }
 
-// The locks' own impulses with their answer to the rows. In lanes without rows, whose answer is +0, every bit stays as it is in a
+// The locks' own impulses with their reaction to the rows. In lanes without rows, whose reaction is +0, every bit stays as it is in a
 // batch without rows; adding that zero would turn -0 into +0.
 template <class Lambda, class Real>
-FULCRUM_FORCE_INLINE void AddAnswer(Lambda& lambda, const Vec3<Real>& answer) {
-    for (int k = 0; k < lambda.size(); ++k) lambda[k] -= Real(0.0f) - answer[k];
+FULCRUM_FORCE_INLINE void AddReaction(Lambda& lambda, const Vec3<Real>& reaction) {
+    for (int k = 0; k < lambda.size(); ++k) lambda[k] -= Real(0.0f) - reaction[k];
 }
 
 // sin(a / 2) / a and cos(a / 2) with a = |v|: by the first terms of the series where the angle is below a radian, as it nearly
@@ -451,12 +451,12 @@ FULCRUM_FORCE_INLINE void TurnRadialRow(const JointBatch<N>& batch, JointRows<N>
     row.error = Select(turns, row.startError + sign * (squared * inverse - start), row.error);
 }
 
-// After the parts were set up: responses and masses of the rows, and the locks' answer to their impulses.
+// After the parts were set up: responses and masses of the rows, and the reaction of the locks to their impulses.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE void SetUpRows(JointBatch<N>& batch) {
     using Real = Wide<N>;
     const Real zero(0.0f);
-    batch.answerLinear = batch.answerAngular = Zero<Real>();
+    batch.reactionLinear = batch.reactionAngular = Zero<Real>();
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         JointRows<N>& row = batch.rows[i];
         row.responseA = {row.a.linear * -batch.massA.mass, -(batch.massA.inertia * row.a.angular)};
@@ -477,13 +477,13 @@ FULCRUM_FORCE_INLINE void SetUpRows(JointBatch<N>& batch) {
         // What the locks determine alone is left to them.
         const auto acts = together > alone * Real(1e-5f);
         row.mass = Select(acts, Real(1.0f) / Select(acts, together, Real(1.0f)), zero);
-        batch.answerLinear += row.lockLinear * row.impulse;
-        batch.answerAngular += row.lockAngular * row.impulse;
+        batch.reactionLinear += row.lockLinear * row.impulse;
+        batch.reactionAngular += row.lockAngular * row.impulse;
     }
 }
 
 // Joints are far apart where a distance asks for more than this part of the fastest push, or for 5 cm in a substep, and stay so until all but
-// a fiftieth of it is gone, and as much of their angles: the push of the last decimetre would leave energy behind. Joints that are pulled
+// a fiftieth of it is gone, and as much of their angles: the push of the last decimeter would leave energy behind. Joints that are pulled
 // along by others are far apart from a fifth on.
 inline float FarPush(const JointSolveSettings& settings) {
     constexpr float kFarPart = 0.5f, kFarWay = 0.05f;  // m

@@ -196,60 +196,60 @@ void FactorizeTree(const JointTree& tree, const JointBatch<kLanes>* batches, con
         for (int i = 0; i < slot.rows; ++i)
             for (int j = 0; j < slot.rows; ++j)
                 for (int k = 0; k < 6; ++k) compliance(i, j) += slot.own(i, k) * slot.response(k, j);
-        slot.answer = Inverse(compliance, slot.rows);
-        if (!tree.slots[slot.parent].still) AddSquare(tree.slots[slot.parent].mass, slot.other, slot.answer, slot.rows);
+        slot.effectiveMass = Inverse(compliance, slot.rows);
+        if (!tree.slots[slot.parent].still) AddSquare(tree.slots[slot.parent].mass, slot.other, slot.effectiveMass, slot.rows);
     }
 }
 
 void SolveTree(const JointTree& tree, JointBatch<kLanes>* batches, BodyState* states, bool relax) {
-    const auto missOf = [&](const JointPlaceInBatch& place, const Matrix6& own, const Matrix6* other, uint32_t body, uint32_t otherBody,
+    const auto residualOf = [&](const JointPlaceInBatch& place, const Matrix6& own, const Matrix6* other, uint32_t body, uint32_t otherBody,
                             int rows) {
         const Batch& batch = batches[place.batch];
-        Vector6 miss = relax ? Vector6(Vector6::Zero()) : Vector6(-BiasOf(batch, place.lane));
-        miss -= Times(own, VelocityOf(states[body]), rows);
+        Vector6 residual = relax ? Vector6(Vector6::Zero()) : Vector6(-BiasOf(batch, place.lane));
+        residual -= Times(own, VelocityOf(states[body]), rows);
         if (other) {
-            miss -= Times(*other, VelocityOf(states[otherBody]), rows);
+            residual -= Times(*other, VelocityOf(states[otherBody]), rows);
         } else {
             // What does not move may be kinematic: its own rows are those of the other side.
             const Rows all = RowsOf(batch, place.lane);
             const bool isA = batch.bodyA[place.lane] == body;
-            miss -= Times(isA ? all.b : Matrix6(-all.a), VelocityOf(states[otherBody]), rows);
+            residual -= Times(isA ? all.b : Matrix6(-all.a), VelocityOf(states[otherBody]), rows);
         }
-        return miss;
+        return residual;
     };
     for (JointTreeSlot& slot : tree.slots) slot.load = Vector6::Zero();
     for (JointTreeAnchor& anchor : tree.anchors) {
         JointTreeSlot& slot = tree.slots[anchor.slot];
         const Batch& batch = batches[anchor.place.batch];
         const uint32_t still = anchor.isA ? batch.bodyB[anchor.place.lane] : batch.bodyA[anchor.place.lane];
-        anchor.miss = missOf(anchor.place, anchor.own, nullptr, slot.body, still, anchor.rows);
-        AddTransposed(slot.load, anchor.own, Vector6(anchor.miss * anchor.stiffness), anchor.rows);
+        anchor.residual = residualOf(anchor.place, anchor.own, nullptr, slot.body, still, anchor.rows);
+        AddTransposed(slot.load, anchor.own, Vector6(anchor.residual * anchor.stiffness), anchor.rows);
     }
     for (size_t s = tree.slots.size(); s-- > 0;) {
         JointTreeSlot& slot = tree.slots[s];
-        slot.drift = Times(slot.inverse, slot.load);
+        slot.velocityChange = Times(slot.inverse, slot.load);
         if (slot.parent == JointTreeSlot::kNone) continue;
         JointTreeSlot& parent = tree.slots[slot.parent];
-        slot.miss = missOf(slot.place, slot.own, &slot.other, slot.body, parent.body, slot.rows) - Times(slot.own, slot.drift, slot.rows);
-        AddTransposed(parent.load, slot.other, Times(slot.answer, slot.miss, slot.rows), slot.rows);
+        slot.residual = residualOf(slot.place, slot.own, &slot.other, slot.body, parent.body, slot.rows) - Times(slot.own, slot.velocityChange, slot.rows);
+        AddTransposed(parent.load, slot.other, Times(slot.effectiveMass, slot.residual, slot.rows), slot.rows);
     }
-    // `drift` becomes the change of velocity. Blocks of fewer rows have zeros beyond them.
+    // `velocityChange` becomes the change of velocity. Blocks of fewer rows have zeros beyond them.
     for (JointTreeSlot& slot : tree.slots) {
         if (slot.parent != JointTreeSlot::kNone) {
             const Vector6 impulse =
-                Times(slot.answer, Vector6(slot.miss - Times(slot.other, tree.slots[slot.parent].drift, slot.rows)), slot.rows);
-            slot.drift += Times(slot.response, impulse);
+                Times(slot.effectiveMass, Vector6(slot.residual - Times(slot.other, tree.slots[slot.parent].velocityChange, slot.rows)), slot.rows);
+            slot.velocityChange += Times(slot.response, impulse);
             AddImpulses(batches[slot.place.batch], slot.place.lane, impulse);
         }
         if (slot.still) continue;
         BodyState& state = states[slot.body];
         for (int k = 0; k < 3; ++k) {
-            state.linearVelocity[k] += static_cast<float>(slot.drift[k]);
-            state.angularVelocity[k] += static_cast<float>(slot.drift[3 + k]);
+            state.linearVelocity[k] += static_cast<float>(slot.velocityChange[k]);
+            state.angularVelocity[k] += static_cast<float>(slot.velocityChange[3 + k]);
         }
     }
     for (JointTreeAnchor& anchor : tree.anchors) {
-        const Vector6 left = anchor.miss - Times(anchor.own, tree.slots[anchor.slot].drift, anchor.rows);
+        const Vector6 left = anchor.residual - Times(anchor.own, tree.slots[anchor.slot].velocityChange, anchor.rows);
         AddImpulses(batches[anchor.place.batch], anchor.place.lane, Vector6(left * anchor.stiffness));
     }
 }

@@ -40,8 +40,8 @@ struct JointTreeSlot {
     Matrix6 own, other;        // Jacobian of the joint's locks for `body` and for the parent, `rows` rows
     Matrix6 mass;              // of the body with all that hangs on it; factor and inverse are kept beside
     Matrix6 inverse, response; // mass^-1, mass^-1 own^T
-    Matrix6 answer;            // (own response)^-1
-    Vector6 load, drift, miss; // force on the body, its answer, what the joint misses
+    Matrix6 effectiveMass;     // (own response)^-1
+    Vector6 load, velocityChange, residual;  // force on the body, what it does, error of the velocity rows
 };
 
 // A further joint of a body of the tree with one that does not move.
@@ -52,7 +52,7 @@ struct JointTreeAnchor {
     int rows = 0;
     JointTreeSlot::Matrix6 own;
     double stiffness = 0;      // 1 / compliance
-    JointTreeSlot::Vector6 miss;
+    JointTreeSlot::Vector6 residual;
 };
 
 struct JointTree {

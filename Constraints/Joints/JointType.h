@@ -38,10 +38,10 @@ struct JointLocks {
 // The bodies as a step begins, world axes. Frame A is the joint's frame as it moves with body A, frame B as with body B; they
 // coincide where all is locked.
 struct JointPose {
-    Vector3 armA, armB;         // m, from the centre of mass to the anchor
+    Vector3 armA, armB;         // m, from the center of mass to the anchor
     Vector3 offset;             // m, from A's anchor to B's
     Quaternion frameA, frameB;
-    Twist<float> velocityA, velocityB;  // m/s of the centres of mass, rad/s
+    Twist<float> velocityA, velocityB;  // m/s of the centers of mass, rad/s
     float dt = 0, substepDt = 0;        // s
     Position anchorA = Position::Zero();  // m, world space
     Vector3 turnedA = Vector3::Zero(), turnedB = Vector3::Zero();  // rad: rotation of the bodies in the step before

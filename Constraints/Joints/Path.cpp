@@ -83,7 +83,7 @@ double Path::LengthAt(double t) const {
 }
 
 // The distance's square has the slope P' . (P - x), and that P'' . (P - x) + |P'|^2. Where this is small or negative, near a
-// centre of curvature, the second term alone leads down the slope.
+// center of curvature, the second term alone leads down the slope.
 double Path::Closest(const Vector3& point, double from) const {
     double t = Bounded(from);
     for (int i = 0; i < 16; ++i) {

@@ -5,7 +5,7 @@
 //   P    on a segment, with u = t - its number, the cubic of Hermite between points p0, p1 with derivatives m0, m1:
 //        P(u) = (2u^3 - 3u^2 + 1) p0 + (u^3 - 2u^2 + u) m0 + (3u^2 - 2u^3) p1 + (u^3 - u^2) m1
 //   T    P' / |P'|;   N  the interpolated normal without its part along T, of length 1;   B  T x N
-//   turn rate at which the frame turns per metre, as a rotation vector: T x T_s + (B . N_s) T, with _s = d/ds = d/dt / |P'|
+//   turn rate at which the frame turns per meter, as a rotation vector: T x T_s + (B . N_s) T, with _s = d/ds = d/dt / |P'|
 #pragma once
 
 #include <Fulcrum/Math/Result.h>

@@ -337,13 +337,13 @@ LockImpulses<Wide<N>> OwnImpulses(const JointBatch<N>& batch) {
     return own;
 }
 
-// Those of all substeps, with their answer to the rows.
+// Those of all substeps, with their reaction to the rows.
 template <int N>
 LockImpulses<Wide<N>> StepImpulses(const JointBatch<N>& batch) {
     LockImpulses<Wide<N>> sum = OwnImpulses(batch);
     if (batch.rowCount > 0) {
-        AddAnswer(sum.linear, batch.answerLinear);
-        AddAnswer(sum.angular, batch.answerAngular);
+        AddReaction(sum.linear, batch.reactionLinear);
+        AddReaction(sum.angular, batch.reactionAngular);
     }
     sum.linear += batch.earlierLinear;
     sum.angular += batch.earlierAngular;

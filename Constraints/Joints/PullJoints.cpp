@@ -27,7 +27,7 @@ FULCRUM_FORCE_INLINE Wide<N> PullSpeedOf(const JointRows<N>& row, const JointSol
 }
 
 // Those of the distant lanes. They need not keep momentum: what is to move is moved without turning it, and what is to turn is turned
-// about its centre, so that no lever as long as the gap makes a small mass of a large one.
+// about its center, so that no lever as long as the gap makes a small mass of a large one.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 [[gnu::noinline]] void PullDistant(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, const JointSolveSettings& settings) {
     using Real = Wide<N>;
@@ -74,7 +74,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
 }
 
 // The other lanes hold what they hold: locks and limits, as in a relaxing pass, those that were far apart with what is left of their pull:
-// turned about their centres they would miss each other by what that turns their anchors, and whirl. Motors and springs have no part in
+// turned about their centers they would miss each other by what that turns their anchors, and whirl. Motors and springs have no part in
 // pseudo-velocities.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 [[gnu::noinline]] void HoldNear(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, const JointSolveSettings& settings) {

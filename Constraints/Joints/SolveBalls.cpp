@@ -157,8 +157,8 @@ FULCRUM_FORCE_INLINE BallPlace<Wide<N>> Displaced(const BallBatch<N>& batch, Bod
                                                            const Twist<Wide<N>>& velocityB, const JointSolveSettings& settings) {
     using Real = Wide<N>;
     Motion<N> poseA, poseB;
-    poseA.template Gather<Of::Displacement>(batch.bodyA, states);
-    poseB.template Gather<Of::Displacement>(batch.bodyB, states);
+    poseA.template Gather<BodyRow::Displacement>(batch.bodyA, states);
+    poseB.template Gather<BodyRow::Displacement>(batch.bodyB, states);
     Twist<Real> a = poseA.Get(), b = poseB.Get();
     Quat<Real> turnA = TurnOf(poseA), turnB = TurnOf(poseB);
     if ((batch.kinematicA | batch.kinematicB) != 0) {
@@ -311,8 +311,8 @@ void RelaxJoints(BallBatch<N>& batch, const SolverBodies& bodies, const JointSol
 template <int N>
 void UpdateJoints(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
     Motion<N> motionA, motionB;
-    motionA.template Gather<Of::Velocity>(batch.bodyA, bodies.states);
-    motionB.template Gather<Of::Velocity>(batch.bodyB, bodies.states);
+    motionA.template Gather<BodyRow::Velocity>(batch.bodyA, bodies.states);
+    motionB.template Gather<BodyRow::Velocity>(batch.bodyB, bodies.states);
     if (batch.round) Follow<true>(batch, bodies, motionA.Get(), motionB.Get(), settings);
     else Follow<false>(batch, bodies, motionA.Get(), motionB.Get(), settings);
 }

@@ -10,19 +10,19 @@ using namespace joints;
 template <LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE void AddLockImpulses(const JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, float sign) {
     using Real = Wide<N>;
-    const auto add = [&](const auto& part, const Vec3<Real>& answer) {
+    const auto add = [&](const auto& part, const Vec3<Real>& reaction) {
         auto lambda = part.GetTotalLambda();
-        if (batch.rowCount > 0) AddAnswer<decltype(lambda), Real>(lambda, answer);
+        if (batch.rowCount > 0) AddReaction<decltype(lambda), Real>(lambda, reaction);
         for (int k = 0; k < lambda.size(); ++k) lambda[k] = lambda[k] * Real(sign);
         part.AddImpulse(a, b, batch.massA, batch.massB, lambda, Real(0.0f) < Real(1.0f));
     };
-    if constexpr (kAngular == AngularLock::All) add(batch.rotation, batch.answerAngular);
-    if constexpr (kAngular == AngularLock::Axis) add(batch.hinge, batch.answerAngular);
-    if constexpr (kLinear == LinearLock::Point) add(batch.point, batch.answerLinear);
-    if constexpr (kLinear == LinearLock::Line) add(batch.line, batch.answerLinear);
+    if constexpr (kAngular == AngularLock::All) add(batch.rotation, batch.reactionAngular);
+    if constexpr (kAngular == AngularLock::Axis) add(batch.hinge, batch.reactionAngular);
+    if constexpr (kLinear == LinearLock::Point) add(batch.point, batch.reactionLinear);
+    if constexpr (kLinear == LinearLock::Line) add(batch.line, batch.reactionLinear);
 }
 
-// The same of the rows' own, without the locks' answer; kTurning: of those alone whose direction or mass changes within the
+// The same of the rows' own, without the reaction of the locks; kTurning: of those alone whose direction or mass changes within the
 // step, whatever lanes beside them do.
 template <bool kTurning, int N>
 FULCRUM_FORCE_INLINE void AddRowImpulses(const JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, float sign) {
@@ -42,14 +42,14 @@ FULCRUM_FORCE_INLINE void AddRowImpulses(const JointBatch<N>& batch, Twist<Wide<
 template <LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE void SumImpulses(JointBatch<N>& batch) {
     using Real = Wide<N>;
-    const auto add = [&](Vec3<Real>& sum, const auto& part, const Vec3<Real>& answer) {
+    const auto add = [&](Vec3<Real>& sum, const auto& part, const Vec3<Real>& reaction) {
         const auto lambda = part.GetTotalLambda();
         for (int k = 0; k < lambda.size(); ++k) sum[k] += lambda[k];
         if (batch.rowCount > 0)
-            for (int k = 0; k < lambda.size(); ++k) sum[k] += answer[k];
+            for (int k = 0; k < lambda.size(); ++k) sum[k] += reaction[k];
     };
-    if constexpr (kLinear != LinearLock::None) add(batch.earlierLinear, LinearPart<kLinear>(batch), batch.answerLinear);
-    if constexpr (kAngular != AngularLock::None) add(batch.earlierAngular, AngularPart<kAngular>(batch), batch.answerAngular);
+    if constexpr (kLinear != LinearLock::None) add(batch.earlierLinear, LinearPart<kLinear>(batch), batch.reactionLinear);
+    if constexpr (kAngular != AngularLock::None) add(batch.earlierAngular, AngularPart<kAngular>(batch), batch.reactionAngular);
     for (uint32_t i = 0; i < batch.rowCount; ++i) batch.rows[i].earlier += batch.rows[i].impulse;
 }
 
@@ -90,8 +90,8 @@ FULCRUM_FORCE_INLINE void SolveRow(JointBatch<N>& batch, JointRows<N>& row, Twis
     add(a.angular, row.responseA.angular);
     add(b.linear, row.responseB.linear);
     add(b.angular, row.responseB.angular);
-    if constexpr (kLinear != LinearLock::None) add(batch.answerLinear, row.lockLinear);
-    if constexpr (kAngular != AngularLock::None) add(batch.answerAngular, row.lockAngular);
+    if constexpr (kLinear != LinearLock::None) add(batch.reactionLinear, row.lockLinear);
+    if constexpr (kAngular != AngularLock::None) add(batch.reactionAngular, row.lockAngular);
 }
 
 // Changes a lock's impulse, and the velocities with it, by what deltaOf(row, total) says; where all of it is finite and not zero, and
@@ -191,8 +191,8 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
                                                 const Twist<Wide<N>>& velocityB, const JointSolveSettings& settings) {
     using Real = Wide<N>;
     Motion<N> motionA, motionB;
-    motionA.template Gather<Of::Displacement>(batch.bodyA, bodies.states);
-    motionB.template Gather<Of::Displacement>(batch.bodyB, bodies.states);
+    motionA.template Gather<BodyRow::Displacement>(batch.bodyA, bodies.states);
+    motionB.template Gather<BodyRow::Displacement>(batch.bodyB, bodies.states);
     Twist<Real> a = motionA.Get(), b = motionB.Get();
     AddKinematicMotion<N>(a, velocityA, batch.kinematicA, settings.elapsed);
     AddKinematicMotion<N>(b, velocityB, batch.kinematicB, settings.elapsed);
@@ -281,8 +281,8 @@ template <int N>
 void UpdateJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
     WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
         Motion<N> motionA, motionB;
-        motionA.template Gather<Of::Velocity>(batch.bodyA, bodies.states);
-        motionB.template Gather<Of::Velocity>(batch.bodyB, bodies.states);
+        motionA.template Gather<BodyRow::Velocity>(batch.bodyA, bodies.states);
+        motionB.template Gather<BodyRow::Velocity>(batch.bodyB, bodies.states);
         Soften<linear, angular>(batch, Follow<linear, angular>(batch, bodies, motionA.Get(), motionB.Get(), settings), settings);
     });
 }

@@ -2,7 +2,7 @@
 // contacts and joints, which gather the bodies' lanes before and scatter them after. One thread per part.
 //
 // Source: D. Chappuis, "Constraints Derivation for Rigid Body Simulation in 3D" (contact and slider limits).
-//   x1, x2  centres of mass             p1, p2  anchor points in world space
+//   x1, x2  centers of mass             p1, p2  anchor points in world space
 //   r1 = p1 - x1, r2 = p2 - x2          u = p2 - p1          n  unit axis, world space, moving with body 1
 //   Constraint:  C = (p2 - p1) . n
 //   Derivative:  dn/dt = w1 x n, so with u kept, dC/dt = (v2 + w2 x r2 - v1 - w1 x r1) . n + u . (w1 x n)

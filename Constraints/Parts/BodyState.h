@@ -11,7 +11,7 @@ namespace fulcrum {
 
 struct alignas(64) BodyState {
     // First row: the velocity.
-    float linearVelocity[3] = {0, 0, 0};   // m/s, of the centre of mass
+    float linearVelocity[3] = {0, 0, 0};   // m/s, of the center of mass
     float angularVelocity[3] = {0, 0, 0};  // rad/s, world axes
     float nearFixed = 0;                   // of pseudo-velocities: 1 where a contact with something fixed has a say, see PullContacts
     float marks = 0;                       // of whoever steps the bodies; constraints leave them alone
@@ -41,12 +41,12 @@ struct alignas(32) BodyMass {
 };
 static_assert(sizeof(BodyMass) == 32);
 
-// Pose of the centre frame at the start of the step, and the acceleration that gravity and forces give.
+// Pose of the center frame at the start of the step, and the acceleration that gravity and forces give.
 struct alignas(64) BodyPose {
     float rotation[4] = {0, 0, 0, 1};   // x y z w
     float acceleration[3] = {0, 0, 0};  // m/s2
     uint32_t boundsChangedIn = 0;       // the step in which fat bounds of it last changed: its pairs must be checked
-    double position[3] = {0, 0, 0};     // m, of the centre of mass
+    double position[3] = {0, 0, 0};     // m, of the center of mass
     double positionSpare = 0;
 };
 static_assert(sizeof(BodyPose) == 64);

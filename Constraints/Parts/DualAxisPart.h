@@ -2,7 +2,7 @@
 // points on lines. Called by joints, which gather the bodies' lanes before and scatter them after. One thread per part.
 //
 // Source: D. Chappuis, "Constraints Derivation for Rigid Body Simulation in 3D" (slider joint).
-//   x1, x2  centres of mass             p1, p2  anchor points in world space        r1 = p1 - x1, r2 = p2 - x2
+//   x1, x2  centers of mass             p1, p2  anchor points in world space        r1 = p1 - x1, r2 = p2 - x2
 //   u = p2 - p1                         n1, n2  orthonormal axes in world space, moving with body 1
 //   Constraint:  C = (u . n1, u . n2)
 //   Derivative:  with u kept (see AxisPart.h), dC_i/dt = n_i . (v2 + w2 x r2 - v1 - w1 x (r1 + u))

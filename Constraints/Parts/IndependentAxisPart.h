@@ -3,7 +3,7 @@
 //
 // Own derivation.
 //   p1, p2  points of the bodies where the rope is tied         f1, f2  fixed points over which it runs
-//   n1 = (p1 - f1) / |p1 - f1|, n2 likewise, world space        r1 = p1 - x1, r2 = p2 - x2 from the centres of mass
+//   n1 = (p1 - f1) / |p1 - f1|, n2 likewise, world space        r1 = p1 - x1, r2 = p2 - x2 from the centers of mass
 //   ratio   of the block and tackle at body 2                   L  length of the rope
 //   Constraint:  C = |p1 - f1| + ratio |p2 - f2| - L
 //   Derivative:  dC/dt = n1 . (v1 + w1 x r1) + ratio n2 . (v2 + w2 x r2)

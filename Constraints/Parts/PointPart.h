@@ -2,7 +2,7 @@
 // joints, which gather the bodies' lanes before and scatter them after. One thread per part.
 //
 // Source: D. Chappuis, "Constraints Derivation for Rigid Body Simulation in 3D" (ball-and-socket joint).
-//   x1, x2  centres of mass             p1, p2  anchor points in world space
+//   x1, x2  centers of mass             p1, p2  anchor points in world space
 //   r1 = p1 - x1, r2 = p2 - x2          [r]x  the matrix with [r]x v = r x v
 //   Constraint:  C = p2 - p1 = x2 + r2 - x1 - r1
 //   Derivative:  dC/dt = v2 + w2 x r2 - v1 - w1 x r1

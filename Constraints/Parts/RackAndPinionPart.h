@@ -2,8 +2,8 @@
 // winches. Called by joints, which gather the bodies' lanes before and scatter them after. One thread per part.
 //
 // Own derivation.
-//   a  unit axis of the pinion, n  unit direction of the rack, world space      ratio  rad that the pinion turns per metre
-//   theta  angle turned by the pinion about a                                   d  way of the rack's centre along n
+//   a  unit axis of the pinion, n  unit direction of the rack, world space      ratio  rad that the pinion turns per meter
+//   theta  angle turned by the pinion about a                                   d  way of the rack's center along n
 //   Constraint:  C = theta - ratio d - C0
 //   Derivative:  dC/dt = w1 . a - ratio v2 . n
 //   Jacobian:    J = [0, a, -ratio n, 0]

@@ -48,7 +48,7 @@ struct AngleRange {
 
     bool IsLocked() const { return maximum - minimum < kNegligible; }
     bool IsFree() const { return maximum - minimum > 2.0f * kHalfTurn - kNegligible; }
-    float Centre() const { return 0.5f * (minimum + maximum); }
+    float Center() const { return 0.5f * (minimum + maximum); }
 };
 
 // The ranges of the swing contain 0 (a locked one is 0). The half angles of an ellipse are the maxima.
@@ -121,17 +121,17 @@ namespace detail {
 inline Vector3 ToSwingPlane(const Vector3& v) { return Vector3(v.x(), -v.z(), v.y()); }
 inline Vector3 FromSwingPlane(const Vector3& v) { return Vector3(v.x(), v.z(), -v.y()); }
 
-// The angle by whole turns nearest to the centre, both rad.
-inline float Unwrapped(float angle, float centre) {
-    const float turn = 2.0f * AngleRange::kHalfTurn, apart = angle - centre;
+// The angle by whole turns nearest to the center, both rad.
+inline float Unwrapped(float angle, float center) {
+    const float turn = 2.0f * AngleRange::kHalfTurn, apart = angle - center;
     return apart > AngleRange::kHalfTurn ? angle - turn : apart < -AngleRange::kHalfTurn ? angle + turn : angle;
 }
 
 // Both ends of a range of an angle that grows by rotation about the unit axis, at the rate 1 / scale.
 inline void AddRange(RotationLimitList& list, RotationLimit::Slot slot, float angle, float scale, const Vector3& axis,
                      const AngleRange& range) {
-    const float here = Unwrapped(angle, range.Centre());
-    if (range.IsLocked()) return list.Add(slot, scale * (here - range.Centre()), axis, true);
+    const float here = Unwrapped(angle, range.Center());
+    if (range.IsLocked()) return list.Add(slot, scale * (here - range.Center()), axis, true);
     list.Add(slot, scale * (range.maximum - here), -axis);
     list.Add(static_cast<RotationLimit::Slot>(slot + 1), scale * (here - range.minimum), axis);
 }

@@ -2,7 +2,7 @@
 // block parts at every set-up. Free functions, no state.
 //
 // By elimination, K = L D L^T and K^-1 = L^-T D^-1 L^-1. Cofactors over the determinant would need one division instead of
-// three, but lose twice the digits: K of an anchor one metre beside a thin axle has eigenvalues 1, 1, 20000, and its
+// three, but lose twice the digits: K of an anchor one meter beside a thin axle has eigenvalues 1, 1, 20000, and its
 // determinant drowns in the rounding of products of 20000^3.
 // A pivot that is nothing but rounding counts as a direction that no body can move in; it gets the inverse zero. What is
 // left is a generalised inverse G (K G K = K): wherever the other rows can meet J v + b = 0, they do. K = 0 has G = 0.

@@ -13,10 +13,10 @@ namespace {
 
 constexpr float kMargin = 0.05f;
 
-Bounds Cube(const Vector3& centre, float half) {
+Bounds Cube(const Vector3& center, float half) {
     Bounds bounds;
-    bounds.lower = centre - Vector3::Constant(half);
-    bounds.upper = centre + Vector3::Constant(half);
+    bounds.lower = center - Vector3::Constant(half);
+    bounds.upper = center + Vector3::Constant(half);
     return bounds;
 }
 
@@ -36,22 +36,22 @@ private:
 
 // Cubes of half 0.2, turned, at random in the volume that the lattice of `drum` fills: a 0.8 m cell each.
 struct Gas {
-    std::vector<Vector3> centres, velocities;
+    std::vector<Vector3> centers, velocities;
     float range;
     Random random;
 
     explicit Gas(int count) : range(0.4f * std::cbrt(static_cast<float>(count))) {
         for (int i = 0; i < count; ++i) {
-            centres.push_back(random.Vector(range));
+            centers.push_back(random.Vector(range));
             velocities.push_back(random.Vector(2.0f));
         }
     }
-    static Bounds Fat(const Vector3& centre) { return Cube(centre, 0.3f + kMargin); }
+    static Bounds Fat(const Vector3& center) { return Cube(center, 0.3f + kMargin); }
 };
 
 std::vector<Bounds> GasBoxes(int count) {
     std::vector<Bounds> boxes;
-    for (const Vector3& centre : Gas(count).centres) boxes.push_back(Gas::Fat(centre));
+    for (const Vector3& center : Gas(count).centers) boxes.push_back(Gas::Fat(center));
     return boxes;
 }
 
@@ -148,10 +148,10 @@ void UpdateAll(benchmark::State& state, Layout layout) {
 // query. The counters are microseconds a step.
 void GasStep(benchmark::State& state) {
     Gas gas(static_cast<int>(state.range(0)));
-    const size_t count = gas.centres.size();
-    std::vector<Vector3> fatCentres = gas.centres;
+    const size_t count = gas.centers.size();
+    std::vector<Vector3> fatCenters = gas.centers;
     BoundsTree tree;
-    for (size_t i = 0; i < count; ++i) tree.Insert(static_cast<uint32_t>(i), Gas::Fat(fatCentres[i]));
+    for (size_t i = 0; i < count; ++i) tree.Insert(static_cast<uint32_t>(i), Gas::Fat(fatCenters[i]));
     tree.Optimize();
     std::vector<uint32_t> moved;
     uint64_t found = 0, queries = 0;
@@ -160,18 +160,18 @@ void GasStep(benchmark::State& state) {
         moved.clear();
         for (size_t i = 0; i < count; ++i) {
             for (int axis = 0; axis < 3; ++axis)
-                if (std::fabs(gas.centres[i][axis]) > gas.range)
-                    gas.velocities[i][axis] = std::copysign(gas.velocities[i][axis], -gas.centres[i][axis]);
-            gas.centres[i] += gas.velocities[i] / 60.0f;
-            if ((gas.centres[i] - fatCentres[i]).cwiseAbs().maxCoeff() <= kMargin) continue;
-            fatCentres[i] = gas.centres[i];
+                if (std::fabs(gas.centers[i][axis]) > gas.range)
+                    gas.velocities[i][axis] = std::copysign(gas.velocities[i][axis], -gas.centers[i][axis]);
+            gas.centers[i] += gas.velocities[i] / 60.0f;
+            if ((gas.centers[i] - fatCenters[i]).cwiseAbs().maxCoeff() <= kMargin) continue;
+            fatCenters[i] = gas.centers[i];
             moved.push_back(static_cast<uint32_t>(i));
         }
         state.ResumeTiming();
-        for (uint32_t id : moved) tree.Update(id, Gas::Fat(fatCentres[id]));
+        for (uint32_t id : moved) tree.Update(id, Gas::Fat(fatCenters[id]));
         tree.Optimize();
         for (uint32_t id : moved)
-            tree.Query(Gas::Fat(fatCentres[id]), [&](uint32_t other) { found += other != id; });
+            tree.Query(Gas::Fat(fatCenters[id]), [&](uint32_t other) { found += other != id; });
         queries += moved.size();
     }
     state.counters["queries"] = static_cast<double>(queries) / static_cast<double>(state.iterations());

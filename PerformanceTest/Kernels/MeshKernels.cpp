@@ -67,10 +67,10 @@ std::vector<Bounds> RestingBoxes(const SurfaceShape& shape) {
         const float x = place(engine), z = place(engine);
         SurfaceHit hit;
         if (!shape.CastRay({Vector3(x, 60, z), Vector3(0, -120, 0)}, hit)) continue;
-        const Vector3 centre(x, 60 - 120 * hit.fraction + 0.5f, z);
+        const Vector3 center(x, 60 - 120 * hit.fraction + 0.5f, z);
         Bounds box;
-        box.lower = centre - Vector3(0.75f, 0.75f, 0.75f);
-        box.upper = centre + Vector3(0.75f, 0.75f, 0.75f);
+        box.lower = center - Vector3(0.75f, 0.75f, 0.75f);
+        box.upper = center + Vector3(0.75f, 0.75f, 0.75f);
         boxes.push_back(box);
     }
     return boxes;

@@ -56,7 +56,7 @@ ConvexPtr FibonacciHull(int count, float radius) {
     return ConvexHull::Create(points).Value();
 }
 
-// Signed distance along `direction` from A's centre at which the two shapes just touch, by bisection with libccd.
+// Signed distance along `direction` from A's center at which the two shapes just touch, by bisection with libccd.
 float TouchingDistance(const ConvexShape& a, const ConvexShape& b, const Quaternion& rotation, const Vector3& direction) {
     float low = 0, high = a.OuterRadius() + b.OuterRadius();
     for (int i = 0; i < 24; ++i) {

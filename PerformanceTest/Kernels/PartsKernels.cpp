@@ -11,7 +11,7 @@
 namespace fulcrum {
 namespace {
 
-constexpr int kRows = 1024;  // fits the second-level cache, as one colour's share of a thread does
+constexpr int kRows = 1024;  // fits the second-level cache, as one color's share of a thread does
 constexpr int kBodies = 2 * kRows;
 
 template <class Real>

@@ -120,7 +120,7 @@ void RayAtAllBodies(benchmark::State& state) {
         RayCastSettings settings;
         RayHit hit;
         for (const BodyId id : field.bodies) {
-            const Pose pose{field.world->Bodies().GetCentreOfMass(id), field.world->Bodies().GetPose(id).rotation};
+            const Pose pose{field.world->Bodies().GetCenterOfMass(id), field.world->Bodies().GetPose(id).rotation};
             if (caster.CastClosest(*field.world->Bodies().GetShape(id), pose, settings, hit)) settings.maxFraction = hit.fraction;
         }
         benchmark::DoNotOptimize(hit);

@@ -33,8 +33,8 @@ public:
     }
 
     void Find() {
-        for (int c = 0; c <= ConstraintColouring::kColours; ++c)
-            for (const auto& entry : world_.colouring.At(c).Of(ConstraintColouring::Kind::Joint)) {
+        for (int c = 0; c <= ConstraintColoring::kColors; ++c)
+            for (const auto& entry : world_.coloring.At(c).Of(ConstraintColoring::Kind::Joint)) {
                 const uint32_t body = entry.stillA ? entry.bodyB : entry.bodyA;
                 if (!seen_[body]) AddTree(ComponentOf(body));
             }
@@ -46,7 +46,7 @@ private:
     void VisitJoints(uint32_t body, Visit&& visit) const {
         world_.joints.VisitOf(body, [&](uint32_t index) {
             const Joint& joint = world_.joints.joints[index];
-            if (joint.colour.colour != 0xFF && joint.colour.colour != ConstraintColouring::kOverflow && HasLocks(joint))
+            if (joint.color.color != 0xFF && joint.color.color != ConstraintColoring::kOverflow && HasLocks(joint))
                 visit(index, joint, joint.SideOf(body));
         });
     }
@@ -166,8 +166,8 @@ private:
 }  // namespace
 
 void FindJointTrees(WorldState& world, JointTrees& trees) {
-    if (trees.version == world.colouring.JointVersion()) return;
-    trees.version = world.colouring.JointVersion();
+    if (trees.version == world.coloring.JointVersion()) return;
+    trees.version = world.coloring.JointVersion();
     trees.trees.clear();
     trees.slots.clear();
     trees.anchors.clear();

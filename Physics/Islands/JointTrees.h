@@ -30,7 +30,7 @@ struct JointTrees {
     }
 };
 
-// Brings the trees in line with the coloured joints.
+// Brings the trees in line with the colored joints.
 void FindJointTrees(WorldState& world, JointTrees& trees);
 
 }  // namespace fulcrum

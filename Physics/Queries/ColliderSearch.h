@@ -22,17 +22,17 @@ public:
     template <class Walk, class Found>
     void Run(const Walk& walk, const Found& found) const {
         const ColliderStore& store = world_.colliders;
-        const Strays& strays = world_.strays;
+        const CollidersOutsideFatBounds& outsideFatBounds = world_.outsideFatBounds;
         const auto visit = [&](uint32_t collider) {
             if (Accepts(collider)) found(collider);
         };
         if (filter_.layers & store.movingLayers) {
-            if (strays.IsEmpty()) {
+            if (outsideFatBounds.IsEmpty()) {
                 walk(store.movingTree, visit);
             } else {
-                walk(strays.Tree(), visit);
+                walk(outsideFatBounds.Tree(), visit);
                 walk(store.movingTree, [&](uint32_t collider) {
-                    if (!strays.Contains(collider)) visit(collider);
+                    if (!outsideFatBounds.Contains(collider)) visit(collider);
                 });
             }
         }
@@ -49,7 +49,7 @@ public:
     const Shape& ShapeOf(uint32_t collider) const { return *world_.colliders.shapes[collider].shape; }
     Pose PoseOf(uint32_t collider) const {
         const ColliderShape& piece = world_.colliders.shapes[collider];
-        const Pose body = world_.bodies.ExactCentrePoseOf(BodyOf(collider));
+        const Pose body = world_.bodies.ExactCenterPoseOf(BodyOf(collider));
         return piece.offset ? body * LocalOf(world_, collider) : body;
     }
     // The order that breaks ties: by body, then child.
@@ -87,7 +87,7 @@ class QueryScope {
 public:
     explicit QueryScope(WorldState& world) : shared_(world.lock) {
         if (shared_.Refusal()) ReportMisuse(*shared_.Refusal());
-        else world.strays.Refresh(world);
+        else world.outsideFatBounds.Refresh(world);
     }
     explicit operator bool() const { return !shared_.Refusal(); }
 
@@ -95,9 +95,9 @@ private:
     WorldLock::Shared shared_;
 };
 
-// The pose of a shape's centre frame from that of its own.
-inline Pose CentrePoseOf(const Shape& shape, const Pose& pose) {
-    return {pose.Transform(shape.Mass().centreOfMass), pose.rotation};
+// The pose of a shape's center frame from that of its own.
+inline Pose CenterPoseOf(const Shape& shape, const Pose& pose) {
+    return {pose.Transform(shape.Mass().centerOfMass), pose.rotation};
 }
 
 }  // namespace fulcrum

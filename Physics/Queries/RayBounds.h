@@ -18,7 +18,7 @@ struct RayBounds {
     // Whether that box is so small beside its way that it will hardly find more than its rays do.
     // Never where a ray is not finite, or so long that sums overflow: it goes alone, and so do those beside it.
     bool IsTight() const {
-        const float way = displacements.Centre().cwiseAbs().sum();
+        const float way = displacements.Center().cwiseAbs().sum();
         return way < kLongest && Reach().sum() <= kTight * way;
     }
 

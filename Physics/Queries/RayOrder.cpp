@@ -34,7 +34,7 @@ public:
         }
     }
 
-    // Whether runs of neighbours will be close, if the rays fill their box evenly.
+    // Whether runs of neighbors will be close, if the rays fill their box evenly.
     bool IsWorthIt() const { return isWorthIt_; }
 
     // To be called before Of.

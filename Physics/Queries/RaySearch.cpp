@@ -29,10 +29,10 @@ struct Packet {
 // The box that sweeps over rays in bounds of this kind, in the coordinates of the trees. As wide as rounding may ask for: 2^-50 of
 // positions, and 2^-18 of the way, because of the fractions at which the tree has boxes met.
 TreeRay SweptBox(const ColliderSearch& search, const RayBounds& bounds) {
-    const Position centre = (bounds.low + bounds.high) * 0.5;
+    const Position center = (bounds.low + bounds.high) * 0.5;
     const Vector3 way = bounds.displacements.lower.cwiseAbs().cwiseMax(bounds.displacements.upper.cwiseAbs());
     const Position far = (bounds.low.cwiseAbs() + bounds.high.cwiseAbs() + search.Origin().cwiseAbs()) * 0x1p-50;
-    return TreeRay(centre - search.Origin(), bounds.displacements.Centre(),
+    return TreeRay(center - search.Origin(), bounds.displacements.Center(),
                    (bounds.Reach() + far.cast<float>()) * (1 + 0x1p-20f) + way * 0x1p-18f);
 }
 

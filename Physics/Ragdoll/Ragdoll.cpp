@@ -227,8 +227,8 @@ std::pair<Vector3, Vector3> Ragdoll::VelocityTo(size_t part, const Pose& pose, f
     const BodyInterface& bodies = system_->Bodies();
     const BodyId id = bodies_[part];
     const Quaternion goal = Normalized(pose.rotation), now = bodies.GetPose(id).rotation;
-    const Position centre = pose.position + Rotate(goal, bodies.GetShape(id)->Mass().centreOfMass).cast<double>();
-    const Vector3 way = (centre - bodies.GetCentreOfMass(id)).cast<float>();
+    const Position center = pose.position + Rotate(goal, bodies.GetShape(id)->Mass().centerOfMass).cast<double>();
+    const Vector3 way = (center - bodies.GetCenterOfMass(id)).cast<float>();
     const bool falls = bodies.GetMotionType(id) == MotionType::Dynamic;
     const Vector3 fall = falls ? Vector3(system_->Settings().gravity * (gravityFactors_[part] * 0.5f * dt)) : Vector3(Vector3::Zero());
     return {way * (1.0f / dt) - fall, RotationVectorOf(goal * now.Conjugate()) * (1.0f / dt)};

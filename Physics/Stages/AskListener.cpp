@@ -1,5 +1,5 @@
 // The user's say in a contact. Collide asks when it knows the points, and before anything follows from them: a contact that is
-// ignored has no colour, wakes nobody and costs the solver nothing.
+// ignored has no color, wakes nobody and costs the solver nothing.
 #include <Fulcrum/Physics/ContactListener.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
 
@@ -18,7 +18,7 @@ void Forget(ContactRecord& record) {
 ContactView ViewContact(const WorldState& world, uint32_t index, ContactView::Point (&room)[ContactRecord::kMaxPoints]) {
     const Pair& pair = world.pairs.pairs[index];
     const ContactRecord& record = world.pairs.records[index];
-    const Pose poseA = world.bodies.CentrePoseOf(pair.bodyA), poseB = world.bodies.CentrePoseOf(pair.bodyB);
+    const Pose poseA = world.bodies.CenterPoseOf(pair.bodyA), poseB = world.bodies.CenterPoseOf(pair.bodyB);
     const Vector3 normal = Rotate(poseA.rotation, Vector3(record.normal[0], record.normal[1], record.normal[2]));
     for (size_t i = 0; i < pair.pointCount; ++i) {
         const ContactRecord::Point& p = record.points[i];

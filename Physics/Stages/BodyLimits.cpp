@@ -36,9 +36,9 @@ bool IsFiniteState(const BodyStore& bodies, uint32_t body) {
     return (odd == Wide<8>(0.0f)).All() && place == 0;
 }
 
-// The pose is good but where something wrote over it; then the centre of the bounds is what is left of the position.
+// The pose is good but where something wrote over it; then the center of the bounds is what is left of the position.
 void RepairPose(WorldState& world, uint32_t body) {
-    Pose pose = world.bodies.CentrePoseOf(body);
+    Pose pose = world.bodies.CenterPoseOf(body);
     const bool isPlaced = IsFinite(pose.position), isTurned = IsFinite(pose.rotation);
     if (isPlaced && isTurned && IsFinite(world.bodies.remainders[body].value)) return;
     if (!isTurned) pose.rotation = {};
@@ -46,9 +46,9 @@ void RepairPose(WorldState& world, uint32_t body) {
         pose.position = world.colliders.boundsOrigin;
         Bounds bounds;
         VisitColliders(world, body, [&](uint32_t i) { bounds.Include(world.colliders.colliders[i].fat); });
-        if (!bounds.IsEmpty() && IsFinite(bounds.Centre())) pose.position += bounds.Centre().cast<double>();
+        if (!bounds.IsEmpty() && IsFinite(bounds.Center())) pose.position += bounds.Center().cast<double>();
     }
-    world.bodies.SetCentrePose(body, pose);
+    world.bodies.SetCenterPose(body, pose);
 }
 
 // Forces that are finite, but of which no finite acceleration comes. The others Store answers by freezing the body.
@@ -153,7 +153,7 @@ void SettleStopped(WorldState& world) {
         if (!IsMarked(world, body, kStopped)) continue;
         SetMark(world, body, kStopped, false);
         ForgetImpulses(world, body);
-        RecolourJointsOf(world, body);
+        RecolorJointsOf(world, body);
     }
 }
 

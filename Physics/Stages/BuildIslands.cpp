@@ -1,4 +1,4 @@
-// Sorts the coloured constraints into groups of islands. Small islands are packed into groups that fit a worker's cache and
+// Sorts the colored constraints into groups of islands. Small islands are packed into groups that fit a worker's cache and
 // are solved there whole; that saves them all barriers and most of the memory traffic. Done only in steps in which a
 // constraint began or ended. Serial; the islands follow from the constraints alone.
 #include <Fulcrum/Physics/Islands/UnionFind.h>
@@ -13,11 +13,11 @@ namespace {
 
 constexpr uint32_t kLargeIsland = 768;  // constraints: from here on all workers solve it together
 constexpr uint32_t kSmallGroup = 192;   // constraints that a group of small islands has at least, about 60 KB of rows
-constexpr uint32_t kColours = ConstraintColouring::kColours;
+constexpr uint32_t kColors = ConstraintColoring::kColors;
 constexpr uint32_t kLargeGroup = 0;
 
-using Entry = ConstraintColouring::Entry;
-using Kind = ConstraintColouring::Kind;
+using Entry = ConstraintColoring::Entry;
+using Kind = ConstraintColoring::Kind;
 
 struct Islands {
     std::span<uint32_t> groupOf;  // by place in bodies.awake: the group, or kNone where no constraint touches
@@ -28,8 +28,8 @@ struct Islands {
 
 template <class Visit>
 void VisitEntries(const WorldState& world, Kind kind, Visit&& visit) {
-    for (uint32_t c = 0; c <= kColours; ++c)
-        for (const Entry& entry : world.colouring.At(static_cast<int>(c)).Of(kind)) visit(c, entry);
+    for (uint32_t c = 0; c <= kColors; ++c)
+        for (const Entry& entry : world.coloring.At(static_cast<int>(c)).Of(kind)) visit(c, entry);
 }
 
 uint32_t MovingBodyOf(const Entry& entry) { return entry.stillA ? entry.bodyB : entry.bodyA; }
@@ -71,10 +71,10 @@ Islands FindIslands(WorldState& world) {
     };
     VisitEntries(world, Kind::Moving, unite);
     VisitEntries(world, Kind::Joint, unite);
-    // A body beyond all colours makes its island a large one.
+    // A body beyond all colors makes its island a large one.
     for (Kind kind : {Kind::Moving, Kind::Fixed, Kind::Joint})
         VisitEntries(world, kind, [&](uint32_t c, const Entry& entry) {
-            sizes[sets.Find(placeOf(MovingBodyOf(entry)))] += c == kColours ? kLargeIsland : 1;
+            sizes[sets.Find(placeOf(MovingBodyOf(entry)))] += c == kColors ? kLargeIsland : 1;
         });
     const std::span<const SolverSettings> efforts = FindEfforts(world, sets, count);
     std::span<float> treeLoads = world.scratch.Allocate<float>(count);
@@ -99,7 +99,7 @@ Islands FindIslands(WorldState& world) {
         result.groupOf[i] = Islands::kNone;
         if (sizes[i] == 0) continue;
         ++result.islands;
-        const bool large = sizes[i] >= kLargeIsland, overflows = world.colouring.HasOverflow() && large;
+        const bool large = sizes[i] >= kLargeIsland, overflows = world.coloring.HasOverflow() && large;
         const bool hasTree = treeLoads[i] > 0;
         SolverSettings effort = efforts.empty() ? SolverSettings{0, 0, 0} : efforts[i];
         const bool ownEffort = !(effort == SolverSettings{0, 0, 0});
@@ -128,7 +128,7 @@ Islands FindIslands(WorldState& world) {
 }
 
 // Turns counts into the index of the first of each, in order; returns the sum.
-uint32_t FirstOfEach(std::span<uint32_t> counts) {
+uint32_t ExclusivePrefixSum(std::span<uint32_t> counts) {
     uint32_t sum = 0;
     for (uint32_t& count : counts) {
         const uint32_t n = count;
@@ -144,7 +144,7 @@ void SortBodies(WorldState& world, const Islands& islands) {
     std::fill(next.begin(), next.end(), 0u);
     for (uint32_t group : islands.groupOf)
         if (group != Islands::kNone) ++next[group];
-    layout.bodies.resize(FirstOfEach(next));
+    layout.bodies.resize(ExclusivePrefixSum(next));
     for (uint32_t g = 0; g < islands.groups; ++g) layout.groups[g].bodiesBegin = next[g];
     for (size_t i = 0; i < islands.groupOf.size(); ++i)
         if (islands.groupOf[i] != Islands::kNone) layout.bodies[next[islands.groupOf[i]]++] = world.bodies.awake[i];
@@ -182,7 +182,7 @@ uint32_t KindOf(const WorldState& world, const Joint& joint) {
     return isRound(0) && isRound(1) ? kRoundBall : kBall;
 }
 
-// Brings what the layout knows of the joints up to date, and their order within a colour.
+// Brings what the layout knows of the joints up to date, and their order within a color.
 void ListJoints(WorldState& world) {
     SolverLayout& layout = world.solver;
     layout.listedJoints.clear();
@@ -199,13 +199,13 @@ void ListJoints(WorldState& world) {
         JointRecord& record = world.joints.records[entry.constraint];
         record.lineAxis = joint.locks.line;
         record.freeAxis = joint.locks.axis;
-        if (c == kColours) return;
+        if (c == kColors) return;
         layout.listedJoints.push_back({KindOf(world, joint) << 8 | joint.maxRows, entry.constraint, MovingBodyOf(entry), c});
     });
     std::sort(layout.listedJoints.begin(), layout.listedJoints.end());
 }
 
-// A joint with its place: group * kColours + colour.
+// A joint with its place: group * kColors + color.
 struct SortedJoint {
     uint32_t place, kind, joint;
 };
@@ -213,18 +213,18 @@ struct SortedJoint {
 // By place, and within each in the order of the list.
 std::span<const SortedJoint> SortJoints(WorldState& world, const Islands& islands) {
     SolverLayout& layout = world.solver;
-    if (layout.jointVersion != world.colouring.JointVersion()) ListJoints(world);
-    layout.jointVersion = world.colouring.JointVersion();
+    if (layout.jointVersion != world.coloring.JointVersion()) ListJoints(world);
+    layout.jointVersion = world.coloring.JointVersion();
     const size_t count = layout.listedJoints.size();
     std::span<SortedJoint> placed = world.scratch.Allocate<SortedJoint>(count), sorted = world.scratch.Allocate<SortedJoint>(count);
-    std::span<uint32_t> next = world.scratch.Allocate<uint32_t>(size_t(islands.groups) * kColours);
+    std::span<uint32_t> next = world.scratch.Allocate<uint32_t>(size_t(islands.groups) * kColors);
     std::fill(next.begin(), next.end(), 0u);
     for (size_t i = 0; i < count; ++i) {
         const ListedJoint& listed = layout.listedJoints[i];
-        placed[i] = {islands.groupOf[world.bodies.cold[listed.body].awakePlace] * kColours + listed.colour, listed.kind, listed.joint};
+        placed[i] = {islands.groupOf[world.bodies.cold[listed.body].awakePlace] * kColors + listed.color, listed.kind, listed.joint};
         ++next[placed[i].place];
     }
-    FirstOfEach(next);
+    ExclusivePrefixSum(next);
     for (const SortedJoint& joint : placed) sorted[next[joint.place]++] = joint;
     return sorted;
 }
@@ -272,11 +272,11 @@ Batch& NextBatch(std::vector<Batch>& batches, uint32_t& count) {
     return batches[count++];
 }
 
-// Cuts the joints of one colour into batches, from the front of `sorted`. Trees know the parts of JointBatch alone.
-void MakeJointBatches(WorldState& world, uint32_t place, bool hasTrees, std::span<const SortedJoint>& sorted, ColourBatches& colour) {
+// Cuts the joints of one color into batches, from the front of `sorted`. Trees know the parts of JointBatch alone.
+void MakeJointBatches(WorldState& world, uint32_t place, bool hasTrees, std::span<const SortedJoint>& sorted, ColorBatches& color) {
     SolverLayout& layout = world.solver;
-    colour.jointsBegin = layout.jointCount;
-    colour.ballsBegin = layout.ballCount;
+    color.jointsBegin = layout.jointCount;
+    color.ballsBegin = layout.ballCount;
     while (!sorted.empty() && sorted.front().place == place) {
         size_t n = 1;
         while (n < kLanes && n < sorted.size() && sorted[n].place == place && KindOf(sorted[n].kind) == KindOf(sorted[0].kind)) ++n;
@@ -284,8 +284,8 @@ void MakeJointBatches(WorldState& world, uint32_t place, bool hasTrees, std::spa
         else FillBatch(world, NextBatch(layout.joints, layout.jointCount), sorted.first(n));
         sorted = sorted.subspan(n);
     }
-    colour.jointsEnd = layout.jointCount;
-    colour.ballsEnd = layout.ballCount;
+    color.jointsEnd = layout.jointCount;
+    color.ballsEnd = layout.ballCount;
 }
 
 uint32_t GroupOf(const WorldState& world, const Islands& islands, const JointTrees::Tree& tree) {
@@ -342,44 +342,44 @@ void ShareRows(std::span<JointBatch<N>> batches, std::vector<JointRows<N>>& rows
 
 void SortConstraints(WorldState& world, const Islands& islands) {
     SolverLayout& layout = world.solver;
-    const auto keyOf = [&](uint32_t colour, const Entry& entry) { return GroupOf(world, islands, entry) * kColours + colour; };
-    const size_t keys = size_t(islands.groups) * kColours;
+    const auto keyOf = [&](uint32_t color, const Entry& entry) { return GroupOf(world, islands, entry) * kColors + color; };
+    const size_t keys = size_t(islands.groups) * kColors;
     std::span<uint32_t> moving = world.scratch.Allocate<uint32_t>(keys), fixed = world.scratch.Allocate<uint32_t>(keys);
     const auto count = [&](Kind kind, std::span<uint32_t> counts) {
         std::fill(counts.begin(), counts.end(), 0u);
         VisitEntries(world, kind, [&](uint32_t c, const Entry& entry) {
-            if (c < kColours) ++counts[keyOf(c, entry)];
+            if (c < kColors) ++counts[keyOf(c, entry)];
         });
     };
     count(Kind::Moving, moving);
     count(Kind::Fixed, fixed);
     std::span<const SortedJoint> joints = SortJoints(world, islands);
     const std::span<const bool> hasTrees = FindGroupsWithTrees(world, islands);
-    layout.colours.clear();
+    layout.colors.clear();
     uint32_t movingFirst = 0, fixedFirst = 0;
     uint64_t used = 0;
     for (uint32_t g = 0; g < islands.groups; ++g) {
-        layout.groups[g].coloursBegin = static_cast<uint32_t>(layout.colours.size());
-        for (uint32_t c = 0; c < kColours; ++c) {
-            const uint32_t key = g * kColours + c;
+        layout.groups[g].colorsBegin = static_cast<uint32_t>(layout.colors.size());
+        for (uint32_t c = 0; c < kColors; ++c) {
+            const uint32_t key = g * kColors + c;
             const uint32_t m = moving[key], f = fixed[key];
             if (m + f == 0 && (joints.empty() || joints.front().place != key)) continue;
             used |= uint64_t(1) << c;
-            ColourBatches colour;
-            colour.moving = MakeRange(movingFirst, m, layout.movingCount);
-            colour.fixed = MakeRange(fixedFirst, f, layout.fixedCount);
-            MakeJointBatches(world, key, hasTrees[g], joints, colour);
-            layout.colours.push_back(colour);
+            ColorBatches color;
+            color.moving = MakeRange(movingFirst, m, layout.movingCount);
+            color.fixed = MakeRange(fixedFirst, f, layout.fixedCount);
+            MakeJointBatches(world, key, hasTrees[g], joints, color);
+            layout.colors.push_back(color);
             movingFirst += m;
             fixedFirst += f;
         }
-        layout.groups[g].coloursEnd = static_cast<uint32_t>(layout.colours.size());
+        layout.groups[g].colorsEnd = static_cast<uint32_t>(layout.colors.size());
     }
-    layout.colourCount = static_cast<uint32_t>(std::popcount(used));
+    layout.colorCount = static_cast<uint32_t>(std::popcount(used));
     const auto sort = [&](Kind kind, std::span<uint32_t> next, std::vector<Entry>& sorted) {
-        sorted.resize(FirstOfEach(next));
+        sorted.resize(ExclusivePrefixSum(next));
         VisitEntries(world, kind, [&](uint32_t c, const Entry& entry) {
-            if (c < kColours) sorted[next[keyOf(c, entry)]++] = entry;
+            if (c < kColors) sorted[next[keyOf(c, entry)]++] = entry;
         });
     };
     sort(Kind::Moving, moving, layout.movingContacts);
@@ -388,7 +388,7 @@ void SortConstraints(WorldState& world, const Islands& islands) {
 
 void MakeOverflow(WorldState& world) {
     SolverLayout& layout = world.solver;
-    const ConstraintColouring::Colour& overflow = world.colouring.At(ConstraintColouring::kOverflow);
+    const ConstraintColoring::Color& overflow = world.coloring.At(ConstraintColoring::kOverflow);
     layout.overflowMoving.resize(overflow.Of(Kind::Moving).size());
     layout.overflowFixed.resize(overflow.Of(Kind::Fixed).size());
     layout.overflowJoints.resize(overflow.Of(Kind::Joint).size());
@@ -402,8 +402,8 @@ void MakeOverflow(WorldState& world) {
 
 void BuildIslands(WorldState& world) {
     SolverLayout& layout = world.solver;
-    if (layout.version == world.colouring.Version()) return;
-    layout.version = world.colouring.Version();
+    if (layout.version == world.coloring.Version()) return;
+    layout.version = world.coloring.Version();
     layout.movingCount = layout.fixedCount = layout.ballCount = layout.jointCount = 0;
     FindJointTrees(world, layout.trees);
     const Islands islands = FindIslands(world);

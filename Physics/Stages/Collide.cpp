@@ -20,7 +20,7 @@ bool Overlap(const WorldState& world, const Pair& pair) {
 
 // Whether the outer spheres of two bodies are farther apart than `distance`.
 bool BallsApart(const WorldState& world, const Pair& pair, float distance) {
-    const Vector3 between = (world.bodies.CentreOf(pair.bodyB) - world.bodies.CentreOf(pair.bodyA)).cast<float>();
+    const Vector3 between = (world.bodies.CenterOf(pair.bodyB) - world.bodies.CenterOf(pair.bodyA)).cast<float>();
     const float reach = pair.shapeA->OuterRadius() + pair.shapeB->OuterRadius() + distance;
     return LengthSquared(between) > reach * reach;
 }
@@ -149,7 +149,7 @@ void Collide(WorldState& world, const StepContext& step) {
         report.contactPoints += f.points;
         report.keptManifolds += f.kept;
         report.libccd.epaFailures += f.libccd.epaFailures;
-        report.libccd.centreLineFallbacks += f.libccd.centreLineFallbacks;
+        report.libccd.centerLineFallbacks += f.libccd.centerLineFallbacks;
     }
 }
 

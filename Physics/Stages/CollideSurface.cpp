@@ -31,7 +31,7 @@ void Write(WorldState& world, const PairView& view, uint32_t index, const Surfac
     WriteManifold(world, {pair, world.pairs.records[index], view.bodyBInA, view.bInA, view.before}, contact.manifold, dt);
 }
 
-// Of the centre of the convex piece relative to the surface within the step, m, in that piece's frame.
+// Of the center of the convex piece relative to the surface within the step, m, in that piece's frame.
 Vector3 MotionInA(const WorldState& world, const PairView& view, float dt) {
     const BodyStore& bodies = world.bodies;
     const uint32_t a = view.pair.bodyA, b = view.pair.bodyB;

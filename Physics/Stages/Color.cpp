@@ -1,5 +1,5 @@
-// Contacts that began get a colour, those that ended lose it; joints do so when they come and go, wake and sleep. Serial, and in an
-// order that depends on what touches what alone: the same colours for any number of threads, and however coarse the bounds are
+// Contacts that began get a color, those that ended lose it; joints do so when they come and go, wake and sleep. Serial, and in an
+// order that depends on what touches what alone: the same colors for any number of threads, and however coarse the bounds are
 // by which pairs were found, so that a scene far out is solved as at the origin.
 #include <Fulcrum/Physics/Stages/Stages.h>
 
@@ -10,35 +10,35 @@ namespace fulcrum {
 
 namespace {
 
-using Colouring = ConstraintColouring;
+using Coloring = ConstraintColoring;
 
-Colouring::Kind KindOf(const Pair& pair) { return pair.fixedB ? Colouring::Kind::Fixed : Colouring::Kind::Moving; }
-Colouring::Entry EntryOf(const Joint& joint, uint32_t index) {
+Coloring::Kind KindOf(const Pair& pair) { return pair.fixedB ? Coloring::Kind::Fixed : Coloring::Kind::Moving; }
+Coloring::Entry EntryOf(const Joint& joint, uint32_t index) {
     return {index, joint.body[0], joint.body[1], joint.still[0], joint.still[1]};
 }
-Colouring::Entry EntryOf(const Pair& pair, uint32_t index) { return {index, pair.bodyA, pair.bodyB, false, pair.fixedB}; }
+Coloring::Entry EntryOf(const Pair& pair, uint32_t index) { return {index, pair.bodyA, pair.bodyB, false, pair.fixedB}; }
 
 }  // namespace
 
-void ColourPair(WorldState& world, uint32_t index) {
+void ColorPair(WorldState& world, uint32_t index) {
     Pair& pair = world.pairs.pairs[index];
-    if (pair.colour.colour != 0xFF) return;
+    if (pair.color.color != 0xFF) return;
     // Contacts with what does not move come last: they must win.
-    pair.colour = world.colouring.Add(KindOf(pair), EntryOf(pair, index), pair.fixedB);
+    pair.color = world.coloring.Add(KindOf(pair), EntryOf(pair, index), pair.fixedB);
 }
 
-void UncolourPair(WorldState& world, uint32_t index) {
+void UncolorPair(WorldState& world, uint32_t index) {
     Pair& pair = world.pairs.pairs[index];
-    if (pair.colour.colour == 0xFF) return;
-    const uint32_t moved = world.colouring.Remove(KindOf(pair), EntryOf(pair, index), pair.colour);
-    world.pairs.pairs[moved].colour.slot = pair.colour.slot;
-    pair.colour = {};
+    if (pair.color.color == 0xFF) return;
+    const uint32_t moved = world.coloring.Remove(KindOf(pair), EntryOf(pair, index), pair.color);
+    world.pairs.pairs[moved].color.slot = pair.color.slot;
+    pair.color = {};
 }
 
 void RemovePair(WorldState& world, uint32_t index) {
     while (index != PairStore::kNone) {
         const uint32_t next = world.pairs.pairs[index].more;
-        UncolourPair(world, index);
+        UncolorPair(world, index);
         world.pairs.Remove(index);
         index = next;
     }
@@ -50,35 +50,35 @@ bool MovesAwake(const WorldState& world, uint32_t index) {
     return isAwake(0) || isAwake(1);
 }
 
-void ColourJoint(WorldState& world, uint32_t index) {
+void ColorJoint(WorldState& world, uint32_t index) {
     Joint& joint = world.joints.joints[index];
-    if (joint.colour.colour != 0xFF || !joint.enabled || !MovesAwake(world, index)) return;
-    world.colouring.ReserveBodies(world.bodies.Size());
+    if (joint.color.color != 0xFF || !joint.enabled || !MovesAwake(world, index)) return;
+    world.coloring.ReserveBodies(world.bodies.Size());
     const bool late = joint.priority == JointPriority::High || joint.still[0] || joint.still[1];
-    joint.colour = world.colouring.Add(Colouring::Kind::Joint, EntryOf(joint, index), late);
+    joint.color = world.coloring.Add(Coloring::Kind::Joint, EntryOf(joint, index), late);
 }
 
-void UncolourJoint(WorldState& world, uint32_t index) {
+void UncolorJoint(WorldState& world, uint32_t index) {
     Joint& joint = world.joints.joints[index];
-    if (joint.colour.colour == 0xFF) return;
-    const uint32_t moved = world.colouring.Remove(Colouring::Kind::Joint, EntryOf(joint, index), joint.colour);
-    world.joints.joints[moved].colour.slot = joint.colour.slot;
-    joint.colour = {};
+    if (joint.color.color == 0xFF) return;
+    const uint32_t moved = world.coloring.Remove(Coloring::Kind::Joint, EntryOf(joint, index), joint.color);
+    world.joints.joints[moved].color.slot = joint.color.slot;
+    joint.color = {};
 }
 
-void RecolourJointsOf(WorldState& world, uint32_t body) {
+void RecolorJointsOf(WorldState& world, uint32_t body) {
     world.joints.VisitOf(body, [&](uint32_t index) {
         Joint& joint = world.joints.joints[index];
         bool& still = joint.still[joint.SideOf(body)];
         if (still == !world.bodies.CanMove(body)) return;
-        UncolourJoint(world, index);
+        UncolorJoint(world, index);
         still = !still;
-        ColourJoint(world, index);
+        ColorJoint(world, index);
     });
 }
 
 void Color(WorldState& world) {
-    world.colouring.ReserveBodies(world.bodies.Size());
+    world.coloring.ReserveBodies(world.bodies.Size());
     std::vector<uint32_t>& began = world.began;
     began.clear();
     VisitChanges(world, [&](uint32_t index) {
@@ -87,7 +87,7 @@ void Color(WorldState& world) {
         switch (change) {
             case PairChange::Began: began.push_back(index); break;
             case PairChange::Ended:
-                UncolourPair(world, index);
+                UncolorPair(world, index);
                 if (world.pairs.pairs[index].isMore) world.pairs.active.Erase(index);
                 break;
             case PairChange::Dead: RemovePair(world, index); break;
@@ -101,7 +101,7 @@ void Color(WorldState& world) {
         return std::tie(a.colliderA, a.colliderB, a.features[0], x) < std::tie(b.colliderA, b.colliderB, b.features[0], y);
     });
     for (uint32_t index : began) {
-        ColourPair(world, index);
+        ColorPair(world, index);
         world.pairs.active.Insert(index);
     }
 }

@@ -29,7 +29,7 @@ float FreeMotionOf(const WorldState& world, uint32_t body) {
 bool StaysInBounds(const WorldState& world, uint32_t body, const Vector3& moved, float dt, WorkerFindings& findings) {
     const float* a = world.bodies.poses[body].acceleration;
     const float slack = 0.5f * world.settings.speculativeDistance;
-    const bool flewAsForeseen = !world.colouring.IsTouched(body) && LengthSquared(Vector3(a[0], a[1], a[2])) * dt * dt * dt * dt < slack * slack;
+    const bool flewAsForeseen = !world.coloring.IsTouched(body) && LengthSquared(Vector3(a[0], a[1], a[2])) * dt * dt * dt * dt < slack * slack;
     if (flewAsForeseen || LengthSquared(moved) <= slack * slack) return true;
     bool stays = true;
     VisitColliders(world, body, [&](uint32_t i) {
@@ -46,7 +46,7 @@ void LookAtBody(WorldState& world, uint32_t body, float dt, WorkerFindings& find
     const SweepStore::Start& start = world.sweeps.starts[body];
     const BodyDynamics& d = world.bodies.dynamics[body];
     if (start.step != world.report.step || d.frozen) return;
-    const Vector3 moved = (world.bodies.CentreOf(body) - start.pose.position).cast<float>();
+    const Vector3 moved = (world.bodies.CenterOf(body) - start.pose.position).cast<float>();
     const bool stays = StaysInBounds(world, body, moved, dt, findings);
     if (!d.continuous) return;
     const bool turns = IsCastTurning(world, body);
@@ -155,7 +155,7 @@ void StartCourses(WorldState& world) {
 void EnlargeBounds(WorldState& world, const Sweep& sweep) {
     const Pose end = sweep.PoseAt(1);
     if (!world.bodies.CanMove(sweep.body) || !IsFinite(end.position) || !IsFinite(end.rotation)) return;
-    world.bodies.SetCentrePose(sweep.body, end);
+    world.bodies.SetCenterPose(sweep.body, end);
     VisitColliders(world, sweep.body, [&](uint32_t i) {
         Collider& collider = world.colliders.colliders[i];
         const Bounds tight = TightBoundsOf(world, i);

@@ -107,7 +107,7 @@ void Push(WorldState& world, DispersingBody& dispersing, float dt) {
     const float fastest = DispersingSpeed(world);
     dispersing.ownVelocity = world.bodies.LinearVelocityOf(dispersing.body);
     if (dispersing.hasPlace) {
-        const Position left = dispersing.place - world.bodies.CentreOf(dispersing.body);
+        const Position left = dispersing.place - world.bodies.CenterOf(dispersing.body);
         dispersing.push = (left / double{std::max(dispersing.secondsLeft, dt)}).cast<float>();
         dispersing.place += (dispersing.ownVelocity * dt).cast<double>();
     } else {

@@ -20,7 +20,7 @@ constexpr float kFixedOverlapRemoved = 0.125f;
 // m, as the step began: the least of a manifold's points, below zero where they overlap.
 float SeparationOf(const WorldState& world, uint32_t index, const Vector3& normal) {
     const Pair& pair = world.pairs.pairs[index];
-    const Pose a = world.bodies.CentrePoseOf(pair.bodyA), b = world.bodies.CentrePoseOf(pair.bodyB);
+    const Pose a = world.bodies.CenterPoseOf(pair.bodyA), b = world.bodies.CenterPoseOf(pair.bodyB);
     float least = std::numeric_limits<float>::infinity();
     for (int i = 0; i < pair.pointCount; ++i) {
         const ContactRecord::Point& p = world.pairs.records[index].points[i];

@@ -12,9 +12,9 @@ namespace fulcrum {
 
 namespace {
 
-Position CenterOf(const WorldState& world, uint32_t collider) {
+Position ColliderCenterOf(const WorldState& world, uint32_t collider) {
     const uint32_t body = world.colliders.colliders[collider].body;
-    const Position center = world.bodies.CentreOf(body);
+    const Position center = world.bodies.CenterOf(body);
     if (!world.colliders.shapes[collider].offset) return center;
     return center + Rotate(world.bodies.RotationOf(body), LocalOf(world, collider).position).cast<double>();
 }
@@ -26,7 +26,7 @@ bool AreDynamic(const WorldState& world, uint32_t colliderA, uint32_t colliderB)
 
 // m^2
 float SquaredDistance(const WorldState& world, uint32_t colliderA, uint32_t colliderB) {
-    return LengthSquared(Vector3((CenterOf(world, colliderB) - CenterOf(world, colliderA)).cast<float>()));
+    return LengthSquared(Vector3((ColliderCenterOf(world, colliderB) - ColliderCenterOf(world, colliderA)).cast<float>()));
 }
 
 // Whether two colliders belong to dynamic bodies, whose shapes are convex, and overlap.

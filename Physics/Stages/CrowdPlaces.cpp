@@ -147,8 +147,8 @@ void AssignPlaces(const WorldState& world, std::span<uint32_t> bodies, std::vect
     const uint32_t count = static_cast<uint32_t>(bodies.size());
     const double margin = double{NearlyLargestRadius(world, bodies)}, radius = margin * std::cbrt(count / kPacking);
     Position middle = Position::Zero();
-    for (const uint32_t body : bodies) middle += world.bodies.CentreOf(body) / static_cast<double>(count);
-    const bool areNear = std::all_of(bodies.begin(), bodies.end(), [&](uint32_t body) { return (world.bodies.CentreOf(body) - middle).norm() < kNear * radius; });
+    for (const uint32_t body : bodies) middle += world.bodies.CenterOf(body) / static_cast<double>(count);
+    const bool areNear = std::all_of(bodies.begin(), bodies.end(), [&](uint32_t body) { return (world.bodies.CenterOf(body) - middle).norm() < kNear * radius; });
     std::vector<Vector3> places;
     if (areNear) places = PlacesInBall(count, FindLimits(world, bodies[0], {middle, radius, margin}));
     if (places.empty()) places = PlacesInBall(count);
@@ -156,7 +156,7 @@ void AssignPlaces(const WorldState& world, std::span<uint32_t> bodies, std::vect
     double longest = 0;
     const size_t first = dispersing.size();
     for (uint32_t i = 0; i < count; ++i) {
-        const Position center = world.bodies.CentreOf(bodies[i]), place = (areNear ? middle : center) + places[i].cast<double>() * radius;
+        const Position center = world.bodies.CenterOf(bodies[i]), place = (areNear ? middle : center) + places[i].cast<double>() * radius;
         longest = std::max(longest, (place - center).norm());
         dispersing.push_back({.body = bodies[i], .direction = PointInBall(bodies[i]), .hasPlace = true, .place = place});
     }

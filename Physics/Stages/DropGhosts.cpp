@@ -10,13 +10,13 @@ namespace fulcrum {
 
 namespace {
 
-using Kind = ConstraintColouring::Kind;
+using Kind = ConstraintColoring::Kind;
 
 constexpr float kFlush = 1e-3f;           // m: what rises less above a plane does not rise, but at most this part of the body:
 constexpr float kFlushPart = 0.01f;
 constexpr float kSameDirection = 0.9998f;  // 1 degree
 
-// A contact in the centre frame of its body A.
+// A contact in the center frame of its body A.
 struct Support {
     uint32_t pair;
     float separation;  // m, of the deepest point
@@ -94,7 +94,7 @@ void DropAmong(WorldState& world, std::span<Support> supports) {
 template <class Visit>
 void VisitFixed(const WorldState& world, int from, int to, Visit&& visit) {
     for (int c = from; c <= to; ++c)
-        for (const ConstraintColouring::Entry& entry : world.colouring.At(c).Of(Kind::Fixed)) visit(entry);
+        for (const ConstraintColoring::Entry& entry : world.coloring.At(c).Of(Kind::Fixed)) visit(entry);
 }
 
 }  // namespace
@@ -103,18 +103,18 @@ void DropGhosts(WorldState& world) {
     for (uint32_t index : world.ghosts)
         if (world.pairs.pairs[index].exists) world.pairs.records[index].pointCount = world.pairs.pairs[index].pointCount;
     world.ghosts.clear();
-    // Contacts with fixed bodies take the highest colour that is free: few bodies have one in any other.
-    constexpr int kHighest = ConstraintColouring::kColours - 1;
-    size_t others = world.colouring.At(ConstraintColouring::kOverflow).Of(Kind::Fixed).size();
-    for (int c = 0; c < kHighest; ++c) others += world.colouring.At(c).Of(Kind::Fixed).size();
+    // Contacts with fixed bodies take the highest color that is free: few bodies have one in any other.
+    constexpr int kHighest = ConstraintColoring::kColors - 1;
+    size_t others = world.coloring.At(ConstraintColoring::kOverflow).Of(Kind::Fixed).size();
+    for (int c = 0; c < kHighest; ++c) others += world.coloring.At(c).Of(Kind::Fixed).size();
     if (others == 0) return;
     std::span<uint8_t> several = world.scratch.Allocate<uint8_t>(world.bodies.Size());
     std::fill(several.begin(), several.end(), uint8_t(0));
     VisitFixed(world, 0, kHighest - 1, [&](const auto& entry) { several[entry.bodyA] = 1; });
-    VisitFixed(world, ConstraintColouring::kOverflow, ConstraintColouring::kOverflow, [&](const auto& entry) { several[entry.bodyA] = 1; });
-    std::span<uint64_t> contacts = world.scratch.Allocate<uint64_t>(others + world.colouring.At(kHighest).Of(Kind::Fixed).size());
+    VisitFixed(world, ConstraintColoring::kOverflow, ConstraintColoring::kOverflow, [&](const auto& entry) { several[entry.bodyA] = 1; });
+    std::span<uint64_t> contacts = world.scratch.Allocate<uint64_t>(others + world.coloring.At(kHighest).Of(Kind::Fixed).size());
     size_t count = 0;
-    VisitFixed(world, 0, ConstraintColouring::kOverflow, [&](const auto& entry) {
+    VisitFixed(world, 0, ConstraintColoring::kOverflow, [&](const auto& entry) {
         if (several[entry.bodyA]) contacts[count++] = uint64_t(entry.bodyA) << 32 | entry.constraint;
     });
     contacts = contacts.first(count);

@@ -1,5 +1,5 @@
 // Pairs are found by whoever moved. Workers collect keys, which are sorted before any pair is made: the order of the pairs
-// depends on ids alone, not on threads nor on the shape of the trees. Pairs that exist are recognised by their bounds, most
+// depends on ids alone, not on threads nor on the shape of the trees. Pairs that exist are recognized by their bounds, most
 // of the time: the table of pairs is asked about new ones only.
 #include <Fulcrum/Collision/BroadPhase/BoundsTreeBulk.h>
 #include <Fulcrum/Collision/Shapes/SurfaceShape.h>
@@ -63,7 +63,7 @@ void SearchEach(WorldState& world, uint32_t mostDeep) {
     });
 }
 
-// The same where most have moved: what moves meets what moves, neighbours with neighbours.
+// The same where most have moved: what moves meets what moves, neighbors with neighbors.
 void SearchTogether(WorldState& world, uint32_t mostDeep) {
     const ColliderStore& store = world.colliders;
     const auto isQueued = [&](uint32_t i) { return store.colliders[i].queued; };

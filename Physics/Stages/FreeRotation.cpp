@@ -30,7 +30,7 @@ int SymmetryAxis(const BodyDynamics& d) {
     return 3;
 }
 
-// A body that turns freely about its centre of mass, its angular momentum L (kg m2/s, world axes) given. In double: the axis in the
+// A body that turns freely about its center of mass, its angular momentum L (kg m2/s, world axes) given. In double: the axis in the
 // middle doubles what it misses every 2 radians or so, and the roundings of many substeps in float were a fiftieth of a turn after
 // ten of them.
 template <class Real>

@@ -1,4 +1,4 @@
-// Bodies that turn freely about their centre of mass for a step and keep their angular momentum. Called by the Store stage, for
+// Bodies that turn freely about their center of mass for a step and keep their angular momentum. Called by the Store stage, for
 // different bodies from any number of threads at once.
 #pragma once
 

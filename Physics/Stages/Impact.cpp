@@ -46,7 +46,7 @@ public:
         for (int k = 0; k < iterations; ++k)
             for (int i = 0; i < hit_.pointCount; ++i) {
                 Push(i);
-                Rub(i);
+                SolveFriction(i);
             }
         const float part = PassivePart();
         for (int s = 0; s < 2 && part < 1; ++s) {
@@ -96,7 +96,7 @@ private:
         pushed_[i] = std::max(0.0f, old + (Dot<float>(hit_.normal, RelativeVelocity(i)) + away_[i]) / response);
         Apply(i, hit_.normal * (old - pushed_[i]));
     }
-    void Rub(int i) {
+    void SolveFriction(int i) {
         if (hit_.friction == 0) return;
         const Vector3 v = Slip(i), slip = v - hit_.normal * Dot<float>(hit_.normal, v);
         const float speed = Length(slip);
@@ -122,7 +122,7 @@ private:
 
 // Whether what gravity and forces have given a body since a time of its course is not simply their acceleration: contacts took a part.
 bool IsCarried(const WorldState& world, const Sweep& course) {
-    return !course.waits && world.sweeps.IsOfStep(course.body, world.report.step) && world.colouring.IsTouched(course.body);
+    return !course.waits && world.sweeps.IsOfStep(course.body, world.report.step) && world.coloring.IsTouched(course.body);
 }
 
 // m2/s2, the work per kilogram of gravity and forces since a time of a course.
@@ -167,7 +167,7 @@ void TakeWork(const WorldState& world, const Sweep& course, float time, Impact& 
 Vector3 GainUntilEnd(const WorldState& world, uint32_t body, const Vector3& v, const Vector3& since, float rest) {
     const float* a = world.bodies.poses[body].acceleration;
     const Vector3 acceleration(a[0], a[1], a[2]);
-    const bool carried = world.colouring.IsTouched(body) || !world.sweeps.IsOfStep(body, world.report.step);
+    const bool carried = world.coloring.IsTouched(body) || !world.sweeps.IsOfStep(body, world.report.step);
     if (!carried || Dot<float>(v, acceleration) < 0) return acceleration * rest;
     return Dot<float>(since, acceleration) > 0 ? since : Vector3(Vector3::Zero());
 }

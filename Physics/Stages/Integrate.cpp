@@ -44,7 +44,7 @@ void IntegrateVelocity(WorldState& world, uint32_t body, float h, bool again, Wo
         d.Lock(v, w);
         d.Lock(carryV, carryW);
     }
-    // What is not finite must not reach the rows: its neighbours go on. Store finds the forces and freezes it.
+    // What is not finite must not reach the rows: its neighbors go on. Store finds the forces and freezes it.
     if (!IsFinite(v) || !IsFinite(w)) v = w = carryV = carryW = Vector3::Zero();
     findings.clamped += LimitSpeeds(world, body, v, w);
     for (int k = 0; k < 3; ++k) {
@@ -59,7 +59,7 @@ void IntegrateVelocity(WorldState& world, uint32_t body, float h, bool again, Wo
 // Hausdorff), as far as they are small; this is what comes to their sum. Without it a step's error is that of the whole step,
 // however many substeps there are.
 template <class Real>
-FULCRUM_FORCE_INLINE Vec3<Real> MoreThanTheSum(const Vec3<Real>& before, const Vec3<Real>& turn) {
+FULCRUM_FORCE_INLINE Vec3<Real> BchCorrection(const Vec3<Real>& before, const Vec3<Real>& turn) {
     const Vec3<Real> across = Cross<Real>(turn, before);
     return across * Real(0.5f) + Cross<Real>(Vec3<Real>(turn - before), across) * Real(1.0f / 12.0f);
 }
@@ -83,7 +83,7 @@ void TurnInertia(BodyStore& bodies, uint32_t body, float h) {
 }
 
 // What constraints made of a body's velocity, before it moves with it. What is not finite must not reach the poses either, by which
-// the constraints of its neighbours see it.
+// the constraints of its neighbors see it.
 void LimitSolved(WorldState& world, uint32_t body, WorkerFindings& findings) {
     BodyStore& bodies = world.bodies;
     Vector3 v = bodies.LinearVelocityOf(body), w = bodies.AngularVelocityOf(body);
@@ -153,7 +153,7 @@ void IntegratePose(WorldState& world, uint32_t body, float h, const BodyState* p
     const bool isJointed = world.joints.HasAny(body);
     const Vector3 before(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]);
     if (isJointed && !(LengthSquared(before) > kFarthestSquared)) {
-        const Vector3 more = MoreThanTheSum<float>(before, Vector3(motion.angular * h));
+        const Vector3 more = BchCorrection<float>(before, Vector3(motion.angular * h));
         for (int k = 0; k < 3; ++k) s.deltaRotation[k] += more[k];
     }
     for (int k = 0; k < 3; ++k) {
@@ -265,7 +265,7 @@ bool IntegratePosesInLanes(WorldState& world, const Indices& index, int count, f
     Vec3<Lanes> rotation = displacement.Second();
     const auto isJointed = Lanes::Load(jointed) > Lanes(0.0f);
     if (isJointed.Any()) {
-        const Vec3<Lanes> more = MoreThanTheSum<Lanes>(rotation, turn);
+        const Vec3<Lanes> more = BchCorrection<Lanes>(rotation, turn);
         const auto isFar = Dot<Lanes>(rotation, rotation) > Lanes(kFarthestSquared);
         for (int k = 0; k < 3; ++k) {
             const Lanes composed = Select(isFar, Lanes(rotation[k]), Lanes(rotation[k] + more[k]));

@@ -27,12 +27,12 @@ void WriteTwistRadius(ContactRecord& record) {
     const Vector3 normal(record.normal[0], record.normal[1], record.normal[2]);
     const Vector3 t1 = Perpendicular(normal), t2 = Cross<float>(normal, t1);
     const int count = static_cast<int>(record.pointCount);
-    Vector3 centre = Vector3::Zero();
-    for (int i = 0; i < count; ++i) centre += Vector3(record.points[i].onA[0], record.points[i].onA[1], record.points[i].onA[2]);
-    centre = centre * (1.0f / static_cast<float>(count));
+    Vector3 center = Vector3::Zero();
+    for (int i = 0; i < count; ++i) center += Vector3(record.points[i].onA[0], record.points[i].onA[1], record.points[i].onA[2]);
+    center = center * (1.0f / static_cast<float>(count));
     float x[ContactRecord::kMaxPoints], y[ContactRecord::kMaxPoints];
     for (int i = 0; i < count; ++i) {
-        const Vector3 r = Vector3(record.points[i].onA[0], record.points[i].onA[1], record.points[i].onA[2]) - centre;
+        const Vector3 r = Vector3(record.points[i].onA[0], record.points[i].onA[1], record.points[i].onA[2]) - center;
         x[i] = Dot<float>(r, t1);
         y[i] = Dot<float>(r, t2);
     }
@@ -65,7 +65,7 @@ void Forget(Pair& pair, ContactRecord& record) {
 
 PairView ViewPair(WorldState& world, uint32_t index) {
     Pair& pair = world.pairs.pairs[index];
-    const RelativePose bodies = Relative(world.bodies.CentrePoseOf(pair.bodyA), world.bodies.CentrePoseOf(pair.bodyB));
+    const RelativePose bodies = Relative(world.bodies.CenterPoseOf(pair.bodyA), world.bodies.CenterPoseOf(pair.bodyB));
     PairView view{pair, world.pairs.records[index], bodies, bodies, pair.reference};
     if (pair.offset) view.bInA = Inverse(LocalOf(world, pair.colliderA)) * bodies * LocalOf(world, pair.colliderB);
     return view;
@@ -84,7 +84,7 @@ bool HardlyMoved(const PairView& v) {
 }
 
 float FarEndFactor(const WorldState& world, const Pair& pair) {
-    const bool touches = world.colouring.IsTouched(pair.bodyA) || (!pair.fixedB && world.colouring.IsTouched(pair.bodyB));
+    const bool touches = world.coloring.IsTouched(pair.bodyA) || (!pair.fixedB && world.coloring.IsTouched(pair.bodyB));
     return touches ? 2.0f : 1.0f;
 }
 

@@ -10,7 +10,7 @@ namespace fulcrum {
 struct PairView {
     Pair& pair;
     ContactRecord& record;
-    RelativePose bodyBInA;  // of the bodies' centre frames
+    RelativePose bodyBInA;  // of the bodies' center frames
     RelativePose bInA;      // of the pieces'
     const RelativePose& before;  // the same when the manifold was found
 };

@@ -1,4 +1,4 @@
-// A piece of a body as a shape about the body's centre. Used by the casts of Continuous and Sense; any number of threads.
+// A piece of a body as a shape about the body's center. Used by the casts of Continuous and Sense; any number of threads.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/Shape.h>

@@ -7,7 +7,7 @@ namespace fulcrum {
 
 namespace {
 
-using Entry = ConstraintColouring::Entry;
+using Entry = ConstraintColoring::Entry;
 
 template <int N, bool kFixedB>
 void NoteDeepest(const ContactBatch<N, kFixedB>& batch, WorkerFindings& findings) {
@@ -76,7 +76,7 @@ void FillRange(WorldState& world, std::vector<Batch>& batches, const BatchRange&
     }
 }
 
-// A part of a colour, for the large group, whose colours are cut into pieces of so many batches.
+// A part of a color, for the large group, whose colors are cut into pieces of so many batches.
 constexpr uint32_t kPiece = 16;
 BatchRange PieceOf(const BatchRange& range, uint32_t piece) {
     const uint32_t skipped = std::min(piece * kPiece, range.Count());
@@ -139,15 +139,15 @@ public:
         for (uint32_t i = begin; i < end; ++i) FillJoint(world_.solver.joints[i], findings);
     }
     void FillGroup(const SolverGroup& group, WorkerFindings& findings) const {
-        for (uint32_t c = group.coloursBegin; c < group.coloursEnd; ++c) {
-            const ColourBatches& colour = world_.solver.colours[c];
-            Fill(colour.moving, colour.fixed, findings);
-            FillBalls(colour.ballsBegin, colour.ballsEnd, findings);
-            FillJoints(colour.jointsBegin, colour.jointsEnd, findings);
+        for (uint32_t c = group.colorsBegin; c < group.colorsEnd; ++c) {
+            const ColorBatches& color = world_.solver.colors[c];
+            Fill(color.moving, color.fixed, findings);
+            FillBalls(color.ballsBegin, color.ballsEnd, findings);
+            FillJoints(color.jointsBegin, color.jointsEnd, findings);
         }
     }
-    void FillOverflow(const ConstraintColouring::Colour& overflow, WorkerFindings& findings) const {
-        using Kind = ConstraintColouring::Kind;
+    void FillOverflow(const ConstraintColoring::Color& overflow, WorkerFindings& findings) const {
+        using Kind = ConstraintColoring::Kind;
         SolverLayout& layout = world_.solver;
         for (size_t i = 0; i < layout.overflowMoving.size(); ++i)
             fulcrum::Fill(world_, layout.overflowMoving[i], std::span(&overflow.Of(Kind::Moving)[i], 1), contacts_, findings);
@@ -172,41 +172,41 @@ private:
 void Prepare(WorldState& world, const StepContext& step) {
     SolverLayout& layout = world.solver;
     world.bounces = false;
-    if (world.colouring.Size() == 0) return;
+    if (world.coloring.Size() == 0) return;
     const SolverGroup& large = layout.groups.front();
     const RowFiller filler(world, EffortOf(world, step, large), step);
     const auto piecesOf = [&](uint32_t c) {
-        const ColourBatches& colour = layout.colours[c];
-        return (std::max({colour.moving.Count(), colour.fixed.Count(), colour.JointCount(), colour.BallCount()}) + kPiece - 1) / kPiece;
+        const ColorBatches& color = layout.colors[c];
+        return (std::max({color.moving.Count(), color.fixed.Count(), color.JointCount(), color.BallCount()}) + kPiece - 1) / kPiece;
     };
     uint32_t count = 0;
-    for (uint32_t c = large.coloursBegin; c < large.coloursEnd; ++c) count += piecesOf(c);
+    for (uint32_t c = large.colorsBegin; c < large.colorsEnd; ++c) count += piecesOf(c);
     std::span<std::pair<uint32_t, uint32_t>> pieces = world.scratch.Allocate<std::pair<uint32_t, uint32_t>>(count);
     count = 0;
-    for (uint32_t c = large.coloursBegin; c < large.coloursEnd; ++c)
+    for (uint32_t c = large.colorsBegin; c < large.colorsEnd; ++c)
         for (uint32_t i = 0; i < piecesOf(c); ++i) pieces[count++] = {c, i};
     world.jobs->ParallelFor(count, 1, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i) {
             const auto [c, piece] = pieces[i];
-            const ColourBatches& colour = layout.colours[c];
+            const ColorBatches& color = layout.colors[c];
             WorkerFindings& findings = world.findings[range.worker];
-            filler.Fill(PieceOf(colour.moving, piece), PieceOf(colour.fixed, piece), findings);
-            filler.FillBalls(std::min(colour.ballsBegin + piece * kPiece, colour.ballsEnd),
-                             std::min(colour.ballsBegin + (piece + 1) * kPiece, colour.ballsEnd), findings);
-            filler.FillJoints(std::min(colour.jointsBegin + piece * kPiece, colour.jointsEnd),
-                              std::min(colour.jointsBegin + (piece + 1) * kPiece, colour.jointsEnd), findings);
+            filler.Fill(PieceOf(color.moving, piece), PieceOf(color.fixed, piece), findings);
+            filler.FillBalls(std::min(color.ballsBegin + piece * kPiece, color.ballsEnd),
+                             std::min(color.ballsBegin + (piece + 1) * kPiece, color.ballsEnd), findings);
+            filler.FillJoints(std::min(color.jointsBegin + piece * kPiece, color.jointsEnd),
+                              std::min(color.jointsBegin + (piece + 1) * kPiece, color.jointsEnd), findings);
         }
     });
     world.jobs->ParallelFor(static_cast<uint32_t>(layout.groups.size()) - 1, 1, [&](JobRange range) {
         for (uint32_t g = range.begin + 1; g < range.end + 1; ++g)
             RowFiller(world, EffortOf(world, step, layout.groups[g]), step).FillGroup(layout.groups[g], world.findings[range.worker]);
     });
-    filler.FillOverflow(world.colouring.At(ConstraintColouring::kOverflow), world.findings[0]);
+    filler.FillOverflow(world.coloring.At(ConstraintColoring::kOverflow), world.findings[0]);
 
     for (const WorkerFindings& findings : world.findings) world.bounces |= findings.bounces;
     FindDeepest(world);
     FindWorstJoints(world);
-    world.report.colours = layout.colourCount;
+    world.report.colors = layout.colorCount;
     world.report.overflowConstraints =
         static_cast<uint32_t>(layout.overflowMoving.size() + layout.overflowFixed.size() + layout.overflowJoints.size());
 }

@@ -45,13 +45,13 @@ void NoteTouched(WorldState& world) {
 // The parts of the ways that hits have cut, in the order of bodies and times.
 void CollectCutWays(WorldState& world) {
     const SweepStore& sweeps = world.sweeps;
-    std::vector<WayPart>& cut = world.sensors.cut;
+    std::vector<MotionSegment>& cut = world.sensors.cut;
     cut.clear();
     for (size_t i = 0; i < sweeps.ended.size(); ++i)
         if (sweeps.ended[i].from < sweeps.endedAt[i]) cut.push_back({sweeps.ended[i], sweeps.endedAt[i]});
     for (const Sweep& sweep : sweeps.swept)
         if (sweep.isCut && sweep.from < 1) cut.push_back({sweep, 1});
-    std::sort(cut.begin(), cut.end(), [](const WayPart& a, const WayPart& b) {
+    std::sort(cut.begin(), cut.end(), [](const MotionSegment& a, const MotionSegment& b) {
         return std::tie(a.course.body, a.course.from) < std::tie(b.course.body, b.course.from);
     });
 }
@@ -78,14 +78,14 @@ void EnlargeSensorBounds(WorldState& world) {
 // The body's sphere all along its way.
 Bounds RoundBounds(const WorldState& world, uint32_t body) {
     const Position reach = Position::Constant(double{world.bodies.dynamics[body].outerRadius});
-    Position lower = world.bodies.CentreOf(body), upper = lower;
-    const auto include = [&](const Position& centre) {
-        lower = lower.cwiseMin(centre);
-        upper = upper.cwiseMax(centre);
+    Position lower = world.bodies.CenterOf(body), upper = lower;
+    const auto include = [&](const Position& center) {
+        lower = lower.cwiseMin(center);
+        upper = upper.cwiseMax(center);
     };
     const SweepStore::Start* starts = world.sweeps.starts.data();
     if (body < world.sweeps.starts.size() && starts[body].step == world.report.step) include(starts[body].pose.position);
-    for (const WayPart& part : CutPartsOf(world, body)) include(part.course.start.position);
+    for (const MotionSegment& part : CutSegmentsOf(world, body)) include(part.course.start.position);
     const Position& origin = world.colliders.boundsOrigin;
     return RoundedOutwards(lower - origin - reach, upper - origin + reach);
 }
@@ -150,7 +150,7 @@ void LookAtCandidate(const WorldState& world, uint64_t candidate, WorkerFindings
     }
     ++findings.sensorTests;
     // Most of what is inside stays there.
-    if (atStart == AtStart::Inside && IsOnePiece(world, body) && IsOnePiece(world, sensor.id.index) && CutPartsOf(world, body).empty() &&
+    if (atStart == AtStart::Inside && IsOnePiece(world, body) && IsOnePiece(world, sensor.id.index) && CutSegmentsOf(world, body).empty() &&
         OverlapAtEnd(world, sensor.id.index, body)) {
         findings.sensorVisits.push_back({place, body, 0, 1, true, true});
         return;

@@ -17,7 +17,7 @@ namespace {
 constexpr float kLeastTurn = 1e-4f;
 // Parts per radian in which the one of two turning pieces that is not cast keeps its rotation.
 constexpr float kPartsPerRadian = 16, kMostParts = 32;
-// Of the step: visits no farther apart are one, as of neighbouring pieces.
+// Of the step: visits no farther apart are one, as of neighboring pieces.
 constexpr float kSameTime = 1e-6f;
 
 Pose PoseOf(const ColliderShape& piece, const Pose& body) { return piece.offset ? body * piece.local : body; }
@@ -25,7 +25,7 @@ Pose PoseOf(const ColliderShape& piece, const Pose& body) { return piece.offset 
 // A piece of a body on a straight part of its way.
 struct Mover {
     const Way& way;
-    const WayPart& part;
+    const MotionSegment& part;
     const ColliderShape& piece;
 
     Pose BodyAt(float time) const { return way.PoseAt(part, time); }
@@ -105,8 +105,8 @@ public:
 private:
     void RunPieces(uint32_t sensorCollider, uint32_t bodyCollider, AtStart atStart) {
         const ColliderShape sensorPiece = PieceOf(world_, sensorCollider), bodyPiece = PieceOf(world_, bodyCollider);
-        const WayPart* a = sensorWay_.Parts().data();
-        const WayPart* b = bodyWay_.Parts().data();
+        const MotionSegment* a = sensorWay_.Parts().data();
+        const MotionSegment* b = bodyWay_.Parts().data();
         bool inside = atStart == AtStart::Inside;
         if (atStart == AtStart::Unknown) inside = IsOverlap({sensorWay_, *a, sensorPiece}, {bodyWay_, *b, bodyPiece}, 0);
         for (float from = 0; from < 1;) {
@@ -186,33 +186,33 @@ private:
 
 }  // namespace
 
-std::span<const WayPart> CutPartsOf(const WorldState& world, uint32_t body) {
-    const std::vector<WayPart>& cut = world.sensors.cut;
-    const auto first = std::lower_bound(cut.begin(), cut.end(), body, [](const WayPart& part, uint32_t b) { return part.course.body < b; });
+std::span<const MotionSegment> CutSegmentsOf(const WorldState& world, uint32_t body) {
+    const std::vector<MotionSegment>& cut = world.sensors.cut;
+    const auto first = std::lower_bound(cut.begin(), cut.end(), body, [](const MotionSegment& part, uint32_t b) { return part.course.body < b; });
     auto last = first;
     while (last != cut.end() && last->course.body == body) ++last;
     return {first, last};
 }
 
-Way::Way(const WorldState& world, uint32_t body) : body_(body), end_(world.bodies.CentrePoseOf(body)), parts_(CutPartsOf(world, body)) {
+Way::Way(const WorldState& world, uint32_t body) : body_(body), end_(world.bodies.CenterPoseOf(body)), parts_(CutSegmentsOf(world, body)) {
     if (!parts_.empty()) return;
     own_.course = SweepOf(world, body);
     parts_ = {&own_, 1};
 }
 
-Pose Way::PoseAt(const WayPart& part, float time) const {
+Pose Way::PoseAt(const MotionSegment& part, float time) const {
     if (time >= 1) return end_;
     return time <= part.course.from ? part.course.start : part.course.PoseAt(time);
 }
 
 namespace {
 
-// Convex shapes hold their centres of mass, and the spheres about them: most of what is well inside is told by that.
-bool CentresTell(const Shape& sensor, const Shape& body, const Vector3& centre) {
+// Convex shapes hold their centers of mass, and the spheres about them: most of what is well inside is told by that.
+bool CentersTell(const Shape& sensor, const Shape& body, const Vector3& center) {
     if (!sensor.IsConvex() || !body.IsConvex()) return false;
     const float reach = sensor.InnerRadius() + body.InnerRadius();
-    if (LengthSquared(centre) < reach * reach) return true;
-    return sensor.Type() == ShapeType::Box && (centre.cwiseAbs().array() < static_cast<const Box&>(sensor).HalfExtents().array()).all();
+    if (LengthSquared(center) < reach * reach) return true;
+    return sensor.Type() == ShapeType::Box && (center.cwiseAbs().array() < static_cast<const Box&>(sensor).HalfExtents().array()).all();
 }
 
 }  // namespace
@@ -220,20 +220,20 @@ bool CentresTell(const Shape& sensor, const Shape& body, const Vector3& centre) 
 bool OverlapAtEnd(const WorldState& world, uint32_t sensor, uint32_t body) {
     const ColliderShape a = PieceOf(world, world.bodies.cold[sensor].firstCollider);
     const ColliderShape b = PieceOf(world, world.bodies.cold[body].firstCollider);
-    const RelativePose relative = Relative(PoseOf(a, world.bodies.CentrePoseOf(sensor)), PoseOf(b, world.bodies.CentrePoseOf(body)));
-    return CentresTell(*a.shape, *b.shape, relative.position) || Overlap(*a.shape, *b.shape, relative);
+    const RelativePose relative = Relative(PoseOf(a, world.bodies.CenterPoseOf(sensor)), PoseOf(b, world.bodies.CenterPoseOf(body)));
+    return CentersTell(*a.shape, *b.shape, relative.position) || Overlap(*a.shape, *b.shape, relative);
 }
 
 Bounds PieceBounds(const WorldState& world, const Way& way, uint32_t collider) {
     Bounds bounds;
     const ColliderShape piece = PieceOf(world, collider);
     const Position& origin = world.colliders.boundsOrigin;
-    for (const WayPart& part : way.Parts()) {
+    for (const MotionSegment& part : way.Parts()) {
         const Mover mover{way, part, piece};
         Bounds ends = BoundsAbout(origin, *mover.piece.shape, mover.PieceAt(part.course.from));
         const float angle = mover.Angle(part.course.from, part.until);
         if (!mover.IsStill()) ends.Include(BoundsAbout(origin, *mover.piece.shape, mover.PieceAt(part.until)));
-        // A point at the distance r from the centre leaves the straight line between its ends by at most r (1 - cos(angle / 2)).
+        // A point at the distance r from the center leaves the straight line between its ends by at most r (1 - cos(angle / 2)).
         bounds.Include(Inflated(ends, std::min(0.125f * angle * angle, 2.0f) * mover.Radius()));
     }
     return bounds;

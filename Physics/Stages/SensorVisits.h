@@ -9,7 +9,7 @@
 namespace fulcrum {
 
 // The parts of the way of a body that continuous collision made bounce in this step; empty for all others.
-std::span<const WayPart> CutPartsOf(const WorldState& world, uint32_t body);
+std::span<const MotionSegment> CutSegmentsOf(const WorldState& world, uint32_t body);
 
 // A body's way in this step: one straight part, or several where continuous collision made it bounce.
 class Way {
@@ -19,15 +19,15 @@ public:
     Way& operator=(const Way&) = delete;
 
     uint32_t Body() const { return body_; }
-    std::span<const WayPart> Parts() const { return parts_; }
-    // Of the centre frame; the time is within the part.
-    Pose PoseAt(const WayPart& part, float time) const;
+    std::span<const MotionSegment> Parts() const { return parts_; }
+    // Of the center frame; the time is within the part.
+    Pose PoseAt(const MotionSegment& part, float time) const;
 
 private:
     uint32_t body_;
     Pose end_;
-    WayPart own_;
-    std::span<const WayPart> parts_;
+    MotionSegment own_;
+    std::span<const MotionSegment> parts_;
 };
 
 // Whether a body of one piece overlaps a sensor of one piece where they are at the end of the step.

@@ -18,8 +18,8 @@ std::span<uint32_t> AwakeIslands(WorldState& world) {
         if (!pair.touching || pair.fixedB) return;
         sets.Unite(world.bodies.cold[pair.bodyA].awakePlace, world.bodies.cold[pair.bodyB].awakePlace);
     });
-    for (int c = 0; c <= ConstraintColouring::kColours; ++c)
-        for (const ConstraintColouring::Entry& entry : world.colouring.At(c).Of(ConstraintColouring::Kind::Joint))
+    for (int c = 0; c <= ConstraintColoring::kColors; ++c)
+        for (const ConstraintColoring::Entry& entry : world.coloring.At(c).Of(ConstraintColoring::Kind::Joint))
             if (!entry.stillA && !entry.stillB)
                 sets.Unite(world.bodies.cold[entry.bodyA].awakePlace, world.bodies.cold[entry.bodyB].awakePlace);
     for (uint32_t i = 0; i < parents.size(); ++i) parents[i] = sets.Find(i);
@@ -32,7 +32,7 @@ void RestPairs(WorldState& world) {
     world.pairs.active.Visit([&](uint32_t index) {
         Pair& pair = world.pairs.pairs[index];
         if (awake(pair.bodyA) || awake(pair.bodyB)) return;
-        UncolourPair(world, index);
+        UncolorPair(world, index);
         pair.touching = false;
         world.pairs.active.Erase(index);
     });
@@ -41,13 +41,13 @@ void RestPairs(WorldState& world) {
 }  // namespace
 
 // What falls asleep outside its fat bounds, because it was fast or the step long, would be found by nobody until it wakes.
-static void BringHome(WorldState& world, uint32_t body) {
+static void RefitFatBounds(WorldState& world, uint32_t body) {
     VisitColliders(world, body, [&](uint32_t i) {
         Collider& collider = world.colliders.colliders[i];
         if (collider.fat.Contains(TightBoundsOf(world, i))) return;
         SetFatBounds(world, i);
         world.colliders.TreeOf(collider).Update(i, collider.fat);
-        world.strays.Forget(i);
+        world.outsideFatBounds.Forget(i);
         collider.previous = {};
         world.colliders.Queue(i);
     });
@@ -60,11 +60,11 @@ void PutToSleep(WorldState& world, std::span<const uint32_t> bodies) {
         world.bodies.SetVelocity(body, Vector3::Zero(), Vector3::Zero());
         world.bodies.ForgetForces(body);
         world.bodies.MarkAsleep(body);
-        BringHome(world, body);
+        RefitFatBounds(world, body);
     }
     for (uint32_t body : bodies)
         world.joints.VisitOf(body, [&](uint32_t joint) {
-            if (!MovesAwake(world, joint)) UncolourJoint(world, joint);
+            if (!MovesAwake(world, joint)) UncolorJoint(world, joint);
         });
 }
 

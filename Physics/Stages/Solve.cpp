@@ -1,6 +1,6 @@
 // The solver loop is a sequence of verbs. Groups of small islands run it whole, each on one worker. The large islands run it
-// as a sequence of short parallel phases: one per colour, iteration and substep, and two over the bodies per substep.
-// Colours come in ascending order, what fitted no colour after them, one by one. Within a colour joints come before contacts:
+// as a sequence of short parallel phases: one per color, iteration and substep, and two over the bodies per substep.
+// Colors come in ascending order, what fitted no color after them, one by one. Within a color joints come before contacts:
 // non-penetration wins.
 //
 // Only bodies that a constraint touches take part; the others are moved by Store, in one go.
@@ -24,13 +24,13 @@ constexpr uint32_t kBodiesPerBlock = 128;
 
 enum class Verb : uint8_t {
     IntegrateVelocities, WarmStart, CarriedWork, FirstVelocities, Velocities, ClearPulls, FirstPull, Pull, StopPulls, IntegratePoses,
-    FirstRelax, Relax, Separations, ClearPushWork, AddPushWork, SubtractPushWork, Restitution, Rejoin, NextSubstep
+    FirstRelax, Relax, Separations, ClearPushWork, AddPushWork, SubtractPushWork, Restitution, RelaxJointsAfterRestitution, NextSubstep
 };
 
 struct Phase {
     Verb verb;
     uint8_t substep;
-    uint16_t colour;  // of the large group, from 0; the number of its colours means the overflow
+    uint16_t color;  // of the large group, from 0; the number of its colors means the overflow
 };
 
 // Batches are streamed: the next one is on its way while this one is solved.
@@ -72,8 +72,8 @@ public:
                 continue;
             }
             if (group.HasTrees()) RunTrees(group, verb, substep);
-            for (uint32_t c = group.coloursBegin; c < group.coloursEnd; ++c)
-                RunBatches(verb, substep, layout_.colours[c], 0, layout_.colours[c].Count());
+            for (uint32_t c = group.colorsBegin; c < group.colorsEnd; ++c)
+                RunBatches(verb, substep, layout_.colors[c], 0, layout_.colors[c].Count());
         }
     }
 
@@ -81,8 +81,8 @@ private:
     uint32_t BlockCount(const Phase& phase) const {
         const SolverGroup& large = layout_.groups.front();
         if (IsOverBodies(phase.verb)) return (large.bodiesEnd - large.bodiesBegin + kBodiesPerBlock - 1) / kBodiesPerBlock;
-        if (phase.colour == large.coloursEnd - large.coloursBegin) return 1;
-        return (layout_.colours[large.coloursBegin + phase.colour].Count() + kBatchesPerBlock - 1) / kBatchesPerBlock;
+        if (phase.color == large.colorsEnd - large.colorsBegin) return 1;
+        return (layout_.colors[large.colorsBegin + phase.color].Count() + kBatchesPerBlock - 1) / kBatchesPerBlock;
     }
 
     void RunBlock(const Phase& phase, uint32_t block, WorkerFindings& findings) {
@@ -91,14 +91,14 @@ private:
             const uint32_t begin = large.bodiesBegin + block * kBodiesPerBlock;
             const uint32_t count = std::min(kBodiesPerBlock, large.bodiesEnd - begin);
             RunBodies(phase.verb, phase.substep, std::span(layout_.bodies).subspan(begin, count), findings);
-        } else if (phase.colour == large.coloursEnd - large.coloursBegin) {
+        } else if (phase.color == large.colorsEnd - large.colorsBegin) {
             for (auto& batch : layout_.overflowJoints) RunBatch(phase.verb, phase.substep, batch);
             for (auto& batch : layout_.overflowMoving) RunBatch(phase.verb, phase.substep, batch);
             for (auto& batch : layout_.overflowFixed) RunBatch(phase.verb, phase.substep, batch);
         } else {
-            const ColourBatches& colour = layout_.colours[large.coloursBegin + phase.colour];
-            RunBatches(phase.verb, phase.substep, colour, block * kBatchesPerBlock,
-                       std::min((block + 1) * kBatchesPerBlock, colour.Count()));
+            const ColorBatches& color = layout_.colors[large.colorsBegin + phase.color];
+            RunBatches(phase.verb, phase.substep, color, block * kBatchesPerBlock,
+                       std::min((block + 1) * kBatchesPerBlock, color.Count()));
         }
     }
 
@@ -142,7 +142,7 @@ private:
                 break;
             }
             case Verb::Relax:
-            case Verb::Rejoin: solve(true); break;
+            case Verb::RelaxJointsAfterRestitution: solve(true); break;
             case Verb::IntegrateVelocities:
             case Verb::CarriedWork:
             case Verb::ClearPulls:
@@ -158,27 +158,27 @@ private:
         }
     }
 
-    // Those of a group's colours lie one after the other.
+    // Those of a group's colors lie one after the other.
     std::span<JointBatch<kLanes>> JointBatchesOf(const SolverGroup& group) const {
-        if (group.coloursBegin == group.coloursEnd) return {};
-        const uint32_t begin = layout_.colours[group.coloursBegin].jointsBegin, end = layout_.colours[group.coloursEnd - 1].jointsEnd;
+        if (group.colorsBegin == group.colorsEnd) return {};
+        const uint32_t begin = layout_.colors[group.colorsBegin].jointsBegin, end = layout_.colors[group.colorsEnd - 1].jointsEnd;
         return std::span(layout_.joints).subspan(begin, end - begin);
     }
 
-    // Batches [begin, end) of a colour: balls, other joints, moving contacts, fixed ones.
-    void RunBatches(Verb verb, uint8_t substep, const ColourBatches& colour, uint32_t begin, uint32_t end) {
-        const uint32_t balls = colour.BallCount(), joints = balls + colour.JointCount(), contacts = joints + colour.moving.Count();
+    // Batches [begin, end) of a color: balls, other joints, moving contacts, fixed ones.
+    void RunBatches(Verb verb, uint8_t substep, const ColorBatches& color, uint32_t begin, uint32_t end) {
+        const uint32_t balls = color.BallCount(), joints = balls + color.JointCount(), contacts = joints + color.moving.Count();
         for (uint32_t i = begin; i < end; ++i) {
             if (i < balls) {
-                RunBatch(verb, substep, layout_.balls[colour.ballsBegin + i]);
+                RunBatch(verb, substep, layout_.balls[color.ballsBegin + i]);
             } else if (i < joints) {
-                RunBatch(verb, substep, layout_.joints[colour.jointsBegin + i - balls]);
+                RunBatch(verb, substep, layout_.joints[color.jointsBegin + i - balls]);
             } else if (i < contacts) {
-                const uint32_t batch = colour.moving.begin + i - joints;
+                const uint32_t batch = color.moving.begin + i - joints;
                 if (i + 1 < contacts) Prefetch(layout_.moving[batch + 1]);
                 RunBatch(verb, substep, layout_.moving[batch]);
             } else {
-                RunBatch(verb, substep, layout_.fixed[colour.fixed.begin + i - contacts]);
+                RunBatch(verb, substep, layout_.fixed[color.fixed.begin + i - contacts]);
             }
         }
     }
@@ -210,7 +210,7 @@ private:
             case Verb::IntegrateVelocities:
             case Verb::ClearPulls:
             case Verb::IntegratePoses:
-            case Verb::Rejoin:
+            case Verb::RelaxJointsAfterRestitution:
             case Verb::NextSubstep: break;
         }
     }
@@ -228,7 +228,7 @@ private:
             case Verb::Pull: PullJoints(batch, pseudo_, settings); break;
             case Verb::FirstRelax:
             case Verb::Relax:
-            case Verb::Rejoin: RelaxJoints(batch, world_.bodies.ForSolver(), settings); break;
+            case Verb::RelaxJointsAfterRestitution: RelaxJoints(batch, world_.bodies.ForSolver(), settings); break;
             case Verb::Separations: UpdateJoints(batch, world_.bodies.ForSolver(), settings); break;
             case Verb::IntegrateVelocities:
             case Verb::CarriedWork:
@@ -245,7 +245,7 @@ private:
 
     JointSolveSettings JointSettingsAt(Verb verb, uint8_t substep) const {
         JointSolveSettings settings = effort_.joints;
-        settings.elapsed = verb == Verb::Rejoin ? dt_ : h_ * static_cast<float>(substep + 1);
+        settings.elapsed = verb == Verb::RelaxJointsAfterRestitution ? dt_ : h_ * static_cast<float>(substep + 1);
         settings.continues = verb == Verb::FirstVelocities && substep > 0 && !effort_.hasTrees;
         settings.firstPass = verb == Verb::FirstPull || ((verb == Verb::FirstRelax || verb == Verb::Separations) && !effort_.hasTrees);
         return settings;
@@ -293,19 +293,19 @@ std::span<const Verb> LoopOf(const SolverSettings& settings, bool bounces, bool 
     return verbs.first(n);
 }
 
-// The same for the large group: a phase per colour.
+// The same for the large group: a phase per color.
 std::span<const Phase> PhasesOf(std::span<const Verb> verbs, WorldState& world) {
     const SolverGroup& large = world.solver.groups.front();
-    const size_t colours = large.coloursEnd - large.coloursBegin + (world.solver.HasOverflow() ? 1u : 0u);
+    const size_t colors = large.colorsEnd - large.colorsBegin + (world.solver.HasOverflow() ? 1u : 0u);
     if (large.bodiesBegin == large.bodiesEnd) return {};
-    std::span<Phase> phases = world.scratch.Allocate<Phase>(verbs.size() * std::max<size_t>(colours, 1));
+    std::span<Phase> phases = world.scratch.Allocate<Phase>(verbs.size() * std::max<size_t>(colors, 1));
     size_t n = 0;
     uint8_t substep = 0;
     for (Verb verb : verbs) {
         if (verb == Verb::NextSubstep) ++substep;
         else if (IsOverBodies(verb)) phases[n++] = {verb, substep, 0};
         else
-            for (size_t c = 0; c < colours; ++c) phases[n++] = {verb, substep, static_cast<uint16_t>(c)};
+            for (size_t c = 0; c < colors; ++c) phases[n++] = {verb, substep, static_cast<uint16_t>(c)};
     }
     return phases.first(n);
 }
@@ -314,10 +314,10 @@ std::span<const Phase> PhasesOf(std::span<const Verb> verbs, WorldState& world) 
 bool PullsJoints(const WorldState& world, const SolverGroup& group) {
     const SolverLayout& layout = world.solver;
     const auto isFar = [](const auto& batch) { return batch.far; };
-    for (uint32_t c = group.coloursBegin; c < group.coloursEnd; ++c) {
-        const ColourBatches& colour = layout.colours[c];
-        if (std::ranges::any_of(std::span(layout.balls).subspan(colour.ballsBegin, colour.BallCount()), isFar)) return true;
-        if (std::ranges::any_of(std::span(layout.joints).subspan(colour.jointsBegin, colour.JointCount()), isFar)) return true;
+    for (uint32_t c = group.colorsBegin; c < group.colorsEnd; ++c) {
+        const ColorBatches& color = layout.colors[c];
+        if (std::ranges::any_of(std::span(layout.balls).subspan(color.ballsBegin, color.BallCount()), isFar)) return true;
+        if (std::ranges::any_of(std::span(layout.joints).subspan(color.jointsBegin, color.JointCount()), isFar)) return true;
     }
     return &group == &layout.groups.front() && std::ranges::any_of(layout.overflowJoints, isFar);
 }
@@ -352,7 +352,7 @@ void RunVerbs(WorldState& world, const StepContext& step, bool far, LoopOfEffort
 }  // namespace
 
 void Solve(WorldState& world, const StepContext& step) {
-    if (world.colouring.Size() == 0) return;
+    if (world.coloring.Size() == 0) return;
     const bool far = std::ranges::any_of(world.findings, [](const WorkerFindings& findings) { return findings.joints.far; });
     RunVerbs(world, step, far, [&](const Effort& effort, bool pulls) { return LoopOf(effort.solver, world.bounces, pulls, world.scratch); });
 }
@@ -360,7 +360,7 @@ void Solve(WorldState& world, const StepContext& step) {
 void Restitution(WorldState& world, const StepContext& step) {
     if (!world.bounces) return;
     // A bounce tears at joints.
-    static constexpr Verb kVerbs[] = {Verb::ClearPushWork, Verb::AddPushWork, Verb::SubtractPushWork, Verb::Restitution, Verb::Rejoin};
+    static constexpr Verb kVerbs[] = {Verb::ClearPushWork, Verb::AddPushWork, Verb::SubtractPushWork, Verb::Restitution, Verb::RelaxJointsAfterRestitution};
     const size_t count = world.solver.HasJoints() ? 5 : 4;
     RunVerbs(world, step, false, [&](const Effort&, bool) { return std::span<const Verb>(kVerbs, count); });
 }

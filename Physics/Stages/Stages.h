@@ -50,24 +50,24 @@ void CombineMaterials(WorldState& world, uint32_t pair);
 // Reads active pairs, poses, shapes. Writes manifolds into the records, and which pairs changed. Wakes what is hit.
 void Collide(WorldState& world, const StepContext& step);
 
-// Applies the changes: colours contacts that began, uncolours those that ended, removes dead pairs.
+// Applies the changes: colors contacts that began, uncolors those that ended, removes dead pairs.
 void Color(WorldState& world);
 // Takes the points from contacts that only a seam between two fixed bodies makes.
 void DropGhosts(WorldState& world);
 // Whether a joint has a body that is awake and can move.
 bool MovesAwake(const WorldState& world, uint32_t joint);
-// Gives a pair's contact a colour, or takes it away; nothing where it has one, or none.
-void ColourPair(WorldState& world, uint32_t pair);
-void UncolourPair(WorldState& world, uint32_t pair);
-// Uncolours and removes a pair with all its manifolds.
+// Gives a pair's contact a color, or takes it away; nothing where it has one, or none.
+void ColorPair(WorldState& world, uint32_t pair);
+void UncolorPair(WorldState& world, uint32_t pair);
+// Uncolors and removes a pair with all its manifolds.
 void RemovePair(WorldState& world, uint32_t pair);
-// The same for a joint; only one that is enabled and moves awake gets a colour.
-void ColourJoint(WorldState& world, uint32_t joint);
-void UncolourJoint(WorldState& world, uint32_t joint);
+// The same for a joint; only one that is enabled and moves awake gets a color.
+void ColorJoint(WorldState& world, uint32_t joint);
+void UncolorJoint(WorldState& world, uint32_t joint);
 // Has the joints of a body see whether it can move: after it was frozen, or revived.
-void RecolourJointsOf(WorldState& world, uint32_t body);
+void RecolorJointsOf(WorldState& world, uint32_t body);
 
-// Sorts the coloured constraints into the solver's groups and batches, where they changed.
+// Sorts the colored constraints into the solver's groups and batches, where they changed.
 void BuildIslands(WorldState& world);
 
 // Reads records, poses, masses. Writes batches of rows.

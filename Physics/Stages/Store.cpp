@@ -149,11 +149,11 @@ bool BeginEnding(WorldState& world, uint32_t body, const StepContext& step, Work
         return false;
     }
     ending = {.body = body, .v = bodies.LinearVelocityOf(body), .turn = {&d, bodies.RotationOf(body), bodies.AngularVelocityOf(body)}};
-    if (KeepsStarts(world)) world.sweeps.starts[body] = {bodies.CentrePoseOf(body), world.report.step};
+    if (KeepsStarts(world)) world.sweeps.starts[body] = {bodies.CenterPoseOf(body), world.report.step};
     if (d.motion == MotionType::Kinematic) {
         ending.displacement = ending.v * step.dt;
         ending.turn.rotation = Normalized(RotationFromVector(Vector3(ending.turn.angularVelocity * step.dt)) * ending.turn.rotation);
-    } else if (world.colouring.IsTouched(body)) {
+    } else if (world.coloring.IsTouched(body)) {
         MoveSolved(world, ending, step.dt);
     } else if (FlyFreely(world, ending, step, findings)) {
         together = IsSymmetric(d);
@@ -176,7 +176,7 @@ void FinishEnding(WorldState& world, Ending& ending, const StepContext& step, Wo
     if (d.dispersing) v = OwnVelocity(world, body, v, step.dt);
     findings.clamped += LimitSpeeds(world, body, v, w);
     bodies.SetVelocity(body, v, w);
-    bodies.MoveCentre(body, ending.displacement, ending.turn.rotation);
+    bodies.MoveCenter(body, ending.displacement, ending.turn.rotation);
     if (d.hasForce) ForgetForces(world, body);
     if (world.settings.sleep.enabled && d.motion == MotionType::Dynamic)
         MeasureSlowness(world, body, std::max(FarthestSpeed(world, body, v, w), ending.pulled), step.dt, findings);
@@ -238,9 +238,9 @@ void StoreImpulses(WorldState& world, const StepContext& step) {
         joints = jointsEnd;
     };
     for (const SolverGroup& group : layout.groups) {
-        if (group.effort == SolverSettings{0, 0, 0} || group.coloursBegin == group.coloursEnd) continue;
-        const ColourBatches& first = layout.colours[group.coloursBegin];
-        const ColourBatches& last = layout.colours[group.coloursEnd - 1];
+        if (group.effort == SolverSettings{0, 0, 0} || group.colorsBegin == group.colorsEnd) continue;
+        const ColorBatches& first = layout.colors[group.colorsBegin];
+        const ColorBatches& last = layout.colors[group.colorsEnd - 1];
         storeTo(first.moving.begin, first.fixed.begin, first.ballsBegin, first.jointsBegin, 1.0f);
         storeTo(last.moving.end, last.fixed.end, last.ballsEnd, last.jointsEnd, EffortOf(world, step, group).impulseScale);
     }
@@ -257,13 +257,13 @@ void StoreImpulses(WorldState& world, const StepContext& step) {
 void BreakJoints(WorldState& world) {
     world.joints.breakable.Visit([&](uint32_t index) {
         Joint& joint = world.joints.joints[index];
-        if (joint.colour.colour == 0xFF) return;
+        if (joint.color.color == 0xFF) return;
         const JointRecord& record = world.joints.records[index];
         const auto length = [](const float (&v)[3]) { return Length(Vector3(v[0], v[1], v[2])); };
         if (length(record.totalForce) <= joint.breakForce && length(record.totalTorque) <= joint.breakTorque) return;
         joint.enabled = false;
         world.joints.Forget(index);
-        UncolourJoint(world, index);
+        UncolorJoint(world, index);
         for (uint32_t body : joint.body) RequeueColliders(world, body);
         world.broken.push_back(world.joints.IdOf(index));
     });

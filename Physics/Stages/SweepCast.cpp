@@ -14,7 +14,7 @@ namespace {
 
 // A body may move by half its thickness before it is cast, and a hit counts once the two would overlap by a quarter. Where they close in by
 // more than that in a step, by a twentieth: the solver is to push apart what overlaps, not to stop what is as fast as that.
-constexpr float kFreePart = 0.5f, kDepthPart = 0.25f, kFastDepthPart = 0.05f;
+constexpr float kFreeFraction = 0.5f, kDepthFraction = 0.25f, kFastDepthFraction = 0.05f;
 // What a shape as large as a surface does with each triangle in turn depends on all of them. A cast that has looked at so many is left
 // to the contacts: its time must not grow with the square of the surface.
 constexpr size_t kMostTriangles = 20000;
@@ -23,7 +23,7 @@ constexpr float kLeastThickness = 0.01f;
 
 float Thickness(const Shape& shape) { return std::max(shape.InnerRadius(), kLeastThickness * shape.OuterRadius()); }
 
-// Whether two balls whose centres are `apart` and close in by `motion` come within `reach` of each other.
+// Whether two balls whose centers are `apart` and close in by `motion` come within `reach` of each other.
 bool BallsMeet(const Vector3& apart, const Vector3& motion, float reach) {
     const float along = -Dot<float>(apart, motion), square = LengthSquared(motion);
     const float part = square > 0 ? std::clamp(along / square, 0.0f, 1.0f) : 0.0f;
@@ -53,7 +53,7 @@ Course CourseOf(const WorldState& world, uint32_t body) {
     Course course;
     Sweep& sweep = course.sweep;
     sweep.body = body;
-    sweep.start = world.bodies.CentrePoseOf(body);
+    sweep.start = world.bodies.CenterPoseOf(body);
     if (body >= store.starts.size() || store.starts[body].step != world.report.step) return course;
     const Position end = sweep.start.position;
     sweep.start = store.starts[body].pose;
@@ -100,8 +100,8 @@ private:
         cast_ = piece_->offset ? &placed : shape_;
         const ShapeCaster whole(*cast_, motion_);
         if (!whole.IsValid()) return;
-        const Bounds& about = whole.BoundsAboutCentre();
-        const TreeRay ray(motion_.pose.position - world_.colliders.boundsOrigin + about.Centre().cast<double>(), motion_.displacement, about.HalfExtents());
+        const Bounds& about = whole.BoundsAboutCenter();
+        const TreeRay ray(motion_.pose.position - world_.colliders.boundsOrigin + about.Center().cast<double>(), motion_.displacement, about.HalfExtents());
         const auto visit = [&](uint32_t other) { CastAgainst(other, whole); };
         const uint32_t layers = world_.settings.layerCollides[world_.bodies.dynamics[sweep_.body].layer];
         // Dispersing bodies do not collide with dynamic ones; to visit all that they overlap would cost n^2.
@@ -243,7 +243,7 @@ private:
         const bool swapped = world_.bodies.dynamics[hit.body].motion != MotionType::Dynamic;
         const uint32_t own = static_cast<uint32_t>(piece_ - world_.colliders.shapes.data());
         ContactView::Point points[SweepHit::kMaxPoints];
-        for (int i = 0; i < hit.pointCount; ++i) points[i] = {hit.centre + hit.arms[i].cast<double>(), 0, 0};
+        for (int i = 0; i < hit.pointCount; ++i) points[i] = {hit.center + hit.arms[i].cast<double>(), 0, 0};
         ContactView view{world_.bodies.IdOf(hit.body), world_.bodies.IdOf(hit.other), hit.normal,
                          std::span<const ContactView::Point>(points, static_cast<size_t>(hit.pointCount)), ChildOf(world_, own), ChildOf(world_, hit.otherCollider)};
         if (swapped) {
@@ -260,7 +260,7 @@ private:
 
     // What is cast only since it was hit leaves to the solver whatever it comes to touch.
     float DepthThatCounts(const Shape& other) const {
-        const float depth = kDepthPart * (other.IsConvex() ? std::min(Thickness(*shape_), Thickness(other)) : Thickness(*shape_));
+        const float depth = kDepthFraction * (other.IsConvex() ? std::min(Thickness(*shape_), Thickness(other)) : Thickness(*shape_));
         return isCast_ ? depth : std::min(depth, 0.5f * world_.settings.speculativeDistance);
     }
 
@@ -282,7 +282,7 @@ private:
     }
 
     // Looks a little ahead, to where the two would overlap by as much as may be: their manifold there says in which direction
-    // they push each other, where the cast knows only what touches first. The sides of flush neighbours, or edges inside a
+    // they push each other, where the cast knows only what touches first. The sides of flush neighbors, or edges inside a
     // surface, push nowhere along the way.
     bool Counts(const ShapeMotion& motion, const ShapeHit& found, const Sweep& course, float length, SweepHit& hit) {
         if (found.isEarly) return found.fraction > 0;
@@ -297,7 +297,7 @@ private:
             const Position own = sweep_.PositionAt(hit.time), others = course.PositionAt(hit.time);
             approach = -Dot<float>(found.normal, VelocityAt(found.position, own, linear, course, others));
         }
-        if (approach > depth) depth *= kFastDepthPart / kDepthPart;
+        if (approach > depth) depth *= kFastDepthFraction / kDepthFraction;
         if (!(approach * left > depth)) return false;
         return FindPoints(motion, linear, course, std::min(1.0f, hit.time + depth / approach), depth, hit).speed * left > depth;
     }
@@ -327,7 +327,7 @@ private:
             hit.normal = normal;
             hit.material = material;
             hit.pointCount = manifold.pointCount;
-            hit.centre = own.position;
+            hit.center = own.position;
             for (int i = 0; i < manifold.pointCount; ++i) {
                 const Position point = a.Transform(manifold.points[i].positionOnA);
                 hit.arms[i] = Between(own.position, point);
@@ -373,13 +373,13 @@ private:
     const ColliderShape* piece_ = nullptr;
     RelativePose local_;                       // of the piece in its body
     const ConvexShape* shape_ = nullptr;       // of the piece
-    const ConvexShape* cast_ = nullptr;        // that, or it about the body's centre
+    const ConvexShape* cast_ = nullptr;        // that, or it about the body's center
     ShapeMotion motion_;
 };
 
 }  // namespace
 
-float FreeMotion(float innerRadius, float outerRadius) { return kFreePart * std::max(innerRadius, kLeastThickness * outerRadius); }
+float FreeMotion(float innerRadius, float outerRadius) { return kFreeFraction * std::max(innerRadius, kLeastThickness * outerRadius); }
 
 bool IsCastTurning(const WorldState& world, uint32_t body) {
     const BodyCold& cold = world.bodies.cold[body];
@@ -403,7 +403,7 @@ bool CastPair(const WorldState& world, uint32_t collider, uint32_t other, Worker
     const SweepStore& store = world.sweeps;
     if (!piece.offset && store.starts[otherBody].step == world.report.step) {
         const Position &from = store.starts[body].pose.position, &otherFrom = store.starts[otherBody].pose.position;
-        const Vector3 motion = Between(from, world.bodies.CentreOf(body)) - Between(otherFrom, world.bodies.CentreOf(otherBody));
+        const Vector3 motion = Between(from, world.bodies.CenterOf(body)) - Between(otherFrom, world.bodies.CenterOf(otherBody));
         const float reach = world.colliders.shapes[collider].shape->OuterRadius() + piece.shape->OuterRadius();
         if (!BallsMeet(Between(otherFrom, from), motion, reach)) return false;
     }

@@ -8,7 +8,7 @@ namespace fulcrum {
 // A body that moved farther than this in a step, in m, is cast; also how far ahead the solver sees contacts of such bodies.
 float FreeMotion(float innerRadius, float outerRadius);
 
-// Pieces beside the centre of mass change sides of a wall where the body turns, so that compounds are always cast with their turn.
+// Pieces beside the center of mass change sides of a wall where the body turns, so that compounds are always cast with their turn.
 bool IsCastTurning(const WorldState& world, uint32_t body);
 
 // How a body moves in this step, as far as is decided. Zero motion for one that rests.

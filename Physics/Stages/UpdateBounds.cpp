@@ -13,17 +13,17 @@ namespace {
 // Fat bounds reach so many steps along the velocity, but hardly farther than the body is large: every pair too many costs
 // more than a search.
 constexpr float kStepsAhead = 4;
-constexpr float kAheadPart = 0.25f;  // of the outer radius
+constexpr float kAheadFraction = 0.25f;  // of the outer radius
 // What moves by this part of the margin in a step would leave fat bounds so soon that they only cost pairs: it gets tight ones.
 constexpr float kFastPart = 0.5f;
 
 // Bounds of a collider at a pose about the origin of bounds, without any margin. A hull as round as a ball is bounded best by its outer sphere.
 Bounds TightBounds(const Shape& shape, const Pose& pose, const Matrix3& rotation) {
     const Bounds& local = shape.LocalBounds();
-    const Vector3 centre = rotation * local.Centre(), half = local.HalfExtents();
+    const Vector3 center = rotation * local.Center(), half = local.HalfExtents();
     const Vector3 reach = rotation.x.cwiseAbs() * half.x() + rotation.y.cwiseAbs() * half.y() + rotation.z.cwiseAbs() * half.z();
     const Vector3 sphere = Vector3::Constant(shape.OuterRadius());
-    const Vector3 lower = Vector3(centre - reach).cwiseMax(-sphere), upper = Vector3(centre + reach).cwiseMin(sphere);
+    const Vector3 lower = Vector3(center - reach).cwiseMax(-sphere), upper = Vector3(center + reach).cwiseMin(sphere);
     return RoundedOutwards(pose.position + lower.cast<double>(), pose.position + upper.cast<double>());
 }
 
@@ -36,7 +36,7 @@ Bounds Reach(const Bounds& tight, const Vector3& motion, float margin) {
 }
 
 void UpdateColliders(WorldState& world, uint32_t body, float dt, WorkerFindings& findings) {
-    Pose pose = world.bodies.CentrePoseOf(body);
+    Pose pose = world.bodies.CenterPoseOf(body);
     pose.position -= world.colliders.boundsOrigin;
     const Matrix3 rotation = ToMatrix(pose.rotation);
     const Vector3 linear = world.bodies.LinearVelocityOf(body), angular = world.bodies.AngularVelocityOf(body);
@@ -57,11 +57,11 @@ void UpdateColliders(WorldState& world, uint32_t body, float dt, WorkerFindings&
         const float speculative = 0.5f * world.settings.speculativeDistance;
         if (collider.fat.Contains(Reach(tight, motion, speculative))) return;
         const float radius = piece.shape->OuterRadius(), distance = Length(motion);
-        const float margin = std::min(world.settings.boundsMargin, kAheadPart * radius);
+        const float margin = std::min(world.settings.boundsMargin, kAheadFraction * radius);
         if (distance > kFastPart * margin) {
             collider.fat = Reach(tight, motion, speculative);
         } else {
-            const float ahead = kAheadPart * radius / std::max(distance, 1e-6f);
+            const float ahead = kAheadFraction * radius / std::max(distance, 1e-6f);
             collider.fat = Reach(tight, motion * std::clamp(ahead, 1.0f, kStepsAhead), speculative + margin);
         }
         if (!collider.queued) findings.colliders.push_back(i);
@@ -118,7 +118,7 @@ void UpdateTrees(WorldState& world) {
 
 Bounds TightBoundsOf(const WorldState& world, uint32_t index) {
     const ColliderShape& piece = world.colliders.shapes[index];
-    Pose body = world.bodies.CentrePoseOf(world.colliders.colliders[index].body);
+    Pose body = world.bodies.CenterPoseOf(world.colliders.colliders[index].body);
     body.position -= world.colliders.boundsOrigin;
     const Pose pose = body * LocalOf(world, index);
     return TightBounds(*piece.shape, pose, ToMatrix(pose.rotation));

@@ -66,18 +66,18 @@ void Write(BodyPose& to, const Position& position, const Quaternion& q) {
 
 }  // namespace
 
-void BodyStore::SetCentrePose(uint32_t index, const Pose& pose) {
+void BodyStore::SetCenterPose(uint32_t index, const Pose& pose) {
     const Position onGrid = OnGrid(pose.position);
     remainders[index] = {pose.position - onGrid, true};
     Write(poses[index], onGrid, pose.rotation);
 }
 
-void BodyStore::MoveCentre(uint32_t index, const Vector3& displacement, const Quaternion& rotation) {
+void BodyStore::MoveCenter(uint32_t index, const Vector3& displacement, const Quaternion& rotation) {
     Position rest = displacement.cast<double>();
     if (!remainders[index].isGiven) rest += remainders[index].value;
     const Position step = OnGrid(rest);
     remainders[index] = {rest - step, false};
-    Write(poses[index], CentreOf(index) + step, rotation);
+    Write(poses[index], CenterOf(index) + step, rotation);
 }
 
 void BodyStore::SetVelocity(uint32_t index, const Vector3& linear, const Vector3& angular) {

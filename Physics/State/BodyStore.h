@@ -16,7 +16,7 @@ namespace fulcrum {
 struct alignas(64) BodyDynamics {
     float inverseInertia[3] = {0, 0, 0};   // 1/(kg m2), principal axes
     float inverseMass = 0;                 // 1/kg
-    float principalAxes[4] = {0, 0, 0, 1}; // x y z w: from the principal frame to the centre frame
+    float principalAxes[4] = {0, 0, 0, 1}; // x y z w: from the principal frame to the center frame
     float gravityFactor = 1;
     float linearDamping = 0, angularDamping = 0;        // 1/s
     float maxLinearSpeed = 0, maxAngularSpeed = 0;      // m/s, rad/s
@@ -61,7 +61,7 @@ struct alignas(64) BodyDynamics {
 };
 static_assert(sizeof(BodyDynamics) == 64);
 
-// kg m2/s about the centre of mass, world axes, at the rotation and angular velocity (rad/s).
+// kg m2/s about the center of mass, world axes, at the rotation and angular velocity (rad/s).
 Vector3 AngularMomentum(const BodyDynamics& body, const Quaternion& rotation, const Vector3& angularVelocity);
 // J, in double: of extreme bodies it is beyond the floats.
 double RotationalEnergy(const BodyDynamics& body, const Quaternion& rotation, const Vector3& angularVelocity);
@@ -72,7 +72,7 @@ Real TwiceRotationalEnergy(const BodyDynamics& body, const Vector3& w) {
     for (int k = 0; k < 3; ++k) sum += body.inverseInertia[k] > 0 ? Real{w[k]} * Real{w[k]} / Real{body.inverseInertia[k]} : Real{0};
     return sum;
 }
-// The inverses of mass, kg, and principal moments of inertia, kg m2, along axes that are rotated so in the centre frame.
+// The inverses of mass, kg, and principal moments of inertia, kg m2, along axes that are rotated so in the center frame.
 void SetMass(BodyDynamics& body, const Quaternion& principalAxes, float mass, const Vector3& inertia);
 // The principal axes in world space.
 inline Matrix3 AxesOf(const BodyDynamics& body, const Quaternion& rotation) { return ToMatrix(rotation * body.PrincipalAxes()); }
@@ -81,7 +81,7 @@ class MutableCompound;
 // What only bodies have whose children may be edited.
 struct BodyChildren {
     MutableCompound* compound = nullptr;    // the body's own: BodyCold::shape
-    Vector3 origin = Vector3::Zero();       // of the children's frame in the centre frame, m
+    Vector3 origin = Vector3::Zero();       // of the children's frame in the center frame, m
     double massUnit = 0;                    // kg, of the compound's RelativeMass
     uint32_t moreColliders = ~0u;           // index into ColliderStore::runs
 };
@@ -120,7 +120,7 @@ struct alignas(32) UnconstrainedVelocity {
 
 // Positions are multiples of this wherever the step reads them, and what is less is carried along: what bodies are to each other
 // does not depend on how far out they are, to the last bit, up to 2^30 m, where double ends at it.
-inline constexpr double kPositionGrid = 0x1p-23;  // m, 0.12 micrometres
+inline constexpr double kPositionGrid = 0x1p-23;  // m, 0.12 micrometers
 
 // The nearest point of the grid. Beyond 2^29 m doubles lie on it anyway.
 inline Position OnGrid(const Position& position) {
@@ -177,16 +177,16 @@ public:
         return {r[0], r[1], r[2], r[3]};
     }
     // On the grid.
-    Position CentreOf(uint32_t index) const {
+    Position CenterOf(uint32_t index) const {
         const double* p = poses[index].position;
         return Position(p[0], p[1], p[2]);
     }
-    Pose CentrePoseOf(uint32_t index) const { return {CentreOf(index), RotationOf(index)}; }
-    Pose ExactCentrePoseOf(uint32_t index) const { return {ExactCentreOf(index), RotationOf(index)}; }
-    Position ExactCentreOf(uint32_t index) const { return CentreOf(index) + remainders[index].value; }
-    void SetCentrePose(uint32_t index, const Pose& pose);
-    // Moves the centre by so many m.
-    void MoveCentre(uint32_t index, const Vector3& displacement, const Quaternion& rotation);
+    Pose CenterPoseOf(uint32_t index) const { return {CenterOf(index), RotationOf(index)}; }
+    Pose ExactCenterPoseOf(uint32_t index) const { return {ExactCenterOf(index), RotationOf(index)}; }
+    Position ExactCenterOf(uint32_t index) const { return CenterOf(index) + remainders[index].value; }
+    void SetCenterPose(uint32_t index, const Pose& pose);
+    // Moves the center by so many m.
+    void MoveCenter(uint32_t index, const Vector3& displacement, const Quaternion& rotation);
     Vector3 LinearVelocityOf(uint32_t index) const {
         const float* v = states[index].linearVelocity;
         return Vector3(v[0], v[1], v[2]);

@@ -25,9 +25,9 @@ static_assert(sizeof(Collider) == 64);
 // The piece itself.
 struct ColliderShape {
     const Shape* shape = nullptr;        // no compound; kept alive by the body's shape; null: empty
-    bool offset = false;                 // not at the body's centre frame
+    bool offset = false;                 // not at the body's center frame
     bool onOrigin = false;               // `local` is seen from BodyChildren::origin
-    RelativePose local;                  // of the shape's centre frame in the body's: read it by LocalOf (WorldState.h)
+    RelativePose local;                  // of the shape's center frame in the body's: read it by LocalOf (WorldState.h)
 };
 
 // Consecutive colliders of a body.
@@ -42,7 +42,7 @@ public:
     std::vector<Collider> colliders;
     std::vector<ColliderShape> shapes;           // same index
     // m, world: where all bounds are measured from. They are float, fine near it and coarse far from it, so it is near the first
-    // body of an empty world, in steps of a kilometre.
+    // body of an empty world, in steps of a kilometer.
     Position boundsOrigin = Position::Zero();
     BoundsTree fixedTree, movingTree, sensorTree;
     uint32_t movingLayers = 0, fixedLayers = 0;  // bit i: a body of layer i is, or was, in the tree

@@ -18,7 +18,7 @@ struct Joint {
     std::unique_ptr<JointType> type;
     JointLocks locks;                 // of the type, as the layout has them
     uint32_t maxRows = 0;             // likewise
-    ColourSlot colour;
+    ColorSlot color;
     uint32_t generation = 0;
     bool exists = false;
     bool enabled = true;
@@ -45,7 +45,7 @@ public:
 
     uint32_t Count() const { return count_; }
     uint32_t Allocate();        // an index with fresh values; exists is set
-    void Free(uint32_t index);  // not linked, not coloured
+    void Free(uint32_t index);  // not linked, not colored
     bool Find(JointId id) const {
         return id.index < joints.size() && joints[id.index].exists && joints[id.index].generation == id.generation;
     }

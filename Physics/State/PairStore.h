@@ -1,5 +1,5 @@
 // Pairs of colliders whose fat bounds overlap, with their manifolds; a pair lives as long as the overlap lasts. Pairs keep
-// their index, so pairs, records and colours refer to each other by it. A pair is active while one of its bodies is awake.
+// their index, so pairs, records and colors refer to each other by it. A pair is active while one of its bodies is awake.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/Manifold.h>
@@ -23,7 +23,7 @@ struct alignas(64) Pair {
     uint8_t pointCount = 0;      // of the record, as found at `reference`
     bool exists : 1 = false;
     bool fixedB : 1 = false;     // B's body is not dynamic
-    bool offset : 1 = false;     // a piece is not at its body's centre frame (child of a compound)
+    bool offset : 1 = false;     // a piece is not at its body's center frame (child of a compound)
     bool surface : 1 = false;    // B is a surface
     bool touching : 1 = false;   // was active, with points, in the last step
     bool isMore = false;         // of a surface: a further manifold of a pair that has others
@@ -31,7 +31,7 @@ struct alignas(64) Pair {
     // Second line.
     PairCache cache;
     uint32_t features[Manifold::kMaxPoints] = {0, 0, 0, 0};
-    ColourSlot colour;
+    ColorSlot color;
     uint32_t more = ~0u;         // of a surface: the index of the next manifold of these two colliders
     uint32_t triangle = 0;       // of a surface: the one of the deepest point
 };
@@ -59,7 +59,7 @@ public:
             index = next;
         }
     }
-    void Remove(uint32_t index);                           // not coloured; its further manifolds are removed by themselves
+    void Remove(uint32_t index);                           // not colored; its further manifolds are removed by themselves
     size_t MemoryUsed() const;
 
 private:

@@ -28,7 +28,7 @@ struct SensorVisit {
 };
 
 // A straight part of a body's way: its course, from course.from until then.
-struct WayPart {
+struct MotionSegment {
     Sweep course;
     float until = 1;
 };
@@ -39,7 +39,7 @@ struct SensorStore {
     std::vector<uint64_t> touchedIn;     // by body: the last step whose list had it
     std::vector<uint64_t> candidates;    // place of a sensor, index of a body that may overlap it in this step; sorted
     std::vector<SensorVisit> visits;     // sorted
-    std::vector<WayPart> cut;            // ways of several parts, by body and time
+    std::vector<MotionSegment> cut;            // ways of several parts, by body and time
     std::vector<SensorEvent> events;     // of the last step
 
     bool IsEmpty() const { return sensors.empty(); }
@@ -68,7 +68,7 @@ struct SensorStore {
     size_t MemoryUsed() const {
         size_t bytes = sensors.capacity() * sizeof(Sensor) + touched.capacity() * sizeof(uint32_t) +
                        (touchedIn.capacity() + candidates.capacity()) * sizeof(uint64_t) + visits.capacity() * sizeof(SensorVisit) +
-                       cut.capacity() * sizeof(WayPart) + events.capacity() * sizeof(SensorEvent);
+                       cut.capacity() * sizeof(MotionSegment) + events.capacity() * sizeof(SensorEvent);
         for (const Sensor& s : sensors)
             bytes += (s.inside.capacity() + s.insideNext.capacity()) * sizeof(BodyId) + s.events.capacity() * sizeof(SensorEvent);
         return bytes;

@@ -1,4 +1,4 @@
-// The coloured constraints as the solver runs them: groups of islands, in each group colour after colour, in each colour
+// The colored constraints as the solver runs them: groups of islands, in each group color after color, in each color
 // batches of lanes, joints before contacts. Written by the BuildIslands stage where constraints began or ended; rows are
 // filled by Prepare.
 #pragma once
@@ -14,11 +14,11 @@
 namespace fulcrum {
 
 // Islands that are solved together. The first group holds the large islands, which are solved
-// colour by colour on all workers. Each of the others is a handful of small islands that one worker solves from beginning
+// color by color on all workers. Each of the others is a handful of small islands that one worker solves from beginning
 // to end, in its own cache and without a barrier. Which islands share a group has no influence on any result.
 // An island that is to be solved with an effort of its own, or that has trees of joints, has a group of its own.
 struct SolverGroup {
-    uint32_t coloursBegin = 0, coloursEnd = 0;  // into SolverLayout::colours
+    uint32_t colorsBegin = 0, colorsEnd = 0;  // into SolverLayout::colors
     uint32_t bodiesBegin = 0, bodiesEnd = 0;    // into SolverLayout::bodies
     SolverSettings effort{0, 0, 0};             // 0: the system's
     uint32_t treesBegin = 0, treesEnd = 0;      // into SolverLayout::treesByGroup
@@ -33,7 +33,7 @@ struct BatchRange {
     uint32_t Count() const { return end - begin; }
 };
 
-struct ColourBatches {
+struct ColorBatches {
     BatchRange moving, fixed;
     uint32_t jointsBegin = 0, jointsEnd = 0;  // batches
     uint32_t ballsBegin = 0, ballsEnd = 0;    // likewise, of ball joints
@@ -42,20 +42,20 @@ struct ColourBatches {
     uint32_t Count() const { return BallCount() + JointCount() + moving.Count() + fixed.Count(); }
 };
 
-// A coloured joint. Batches have joints of the same locks, and best of as many rows.
+// A colored joint. Batches have joints of the same locks, and best of as many rows.
 struct ListedJoint {
     uint32_t kind;    // how it is solved << 8 | rows
     uint32_t joint;
     uint32_t body;    // one that it moves
-    uint32_t colour;
+    uint32_t color;
     friend auto operator<=>(const ListedJoint&, const ListedJoint&) = default;
 };
 
 struct SolverLayout {
     std::vector<SolverGroup> groups;                                // empty: nothing to solve
-    std::vector<ColourBatches> colours;
+    std::vector<ColorBatches> colors;
     std::vector<uint32_t> bodies;                                   // dynamic ones that a constraint touches, by group
-    std::vector<ConstraintColouring::Entry> movingContacts, fixedContacts;  // by group and colour
+    std::vector<ConstraintColoring::Entry> movingContacts, fixedContacts;  // by group and color
     std::vector<ContactBatch<kLanes, false>> moving;
     std::vector<ContactBatch<kLanes, true>> fixed;
     std::vector<ContactBatch<1, false>> overflowMoving;             // of the first group: solved one by one, at last
@@ -66,13 +66,13 @@ struct SolverLayout {
     std::vector<JointRows<kLanes>> jointRows;                       // room for the batches' rows
     std::vector<JointRows<1>> overflowRows;
     std::vector<ListedJoint> listedJoints;                          // in order
-    uint64_t jointVersion = 0;                                      // of the colouring that this list was made from
+    uint64_t jointVersion = 0;                                      // of the coloring that this list was made from
     JointTrees trees;
     std::vector<uint32_t> treesByGroup;                             // indices of trees
     uint32_t movingCount = 0, fixedCount = 0, ballCount = 0, jointCount = 0;       // batches in use
-    uint32_t colourCount = 0;                                       // colours in use
+    uint32_t colorCount = 0;                                       // colors in use
     uint32_t islands = 0;
-    uint64_t version = 0;                                           // of the colouring that this was made from
+    uint64_t version = 0;                                           // of the coloring that this was made from
 
     bool HasJoints() const { return ballCount + jointCount > 0 || !overflowJoints.empty(); }
     bool HasOverflow() const { return !overflowMoving.empty() || !overflowFixed.empty() || !overflowJoints.empty(); }

@@ -13,10 +13,10 @@ namespace fulcrum {
 // In float, of which the places themselves are too far from zero for it.
 inline Vector3 Between(const Position& from, const Position& to) { return (to - from).cast<float>(); }
 
-// A body's way from some time of the step to its end: its centre of mass moves straight, it turns at a constant rate. Times are
+// A body's way from some time of the step to its end: its center of mass moves straight, it turns at a constant rate. Times are
 // fractions of the step, 0 .. 1. All positions are on the grid, as those of the step are.
 struct Sweep {
-    Pose start;                                // of the centre frame, at `from`
+    Pose start;                                // of the center frame, at `from`
     Vector3 displacement = Vector3::Zero();    // m, until the end
     Vector3 turn = Vector3::Zero();            // rad, rotation vector, until the end
     float from = 0;
@@ -50,8 +50,8 @@ struct SweepHit {
     bool isBlocked = false;                    // neither has continuous collision; the body is cast since it was hit, and waits for the next step
     int pointCount = 0;                        // 0: the cast was not decided; nothing is touched before `time`
     Vector3 normal = Vector3::Zero();          // unit, from the body towards the other
-    Position centre = Position::Zero();        // m, of the body's mass, where it touches
-    Vector3 arms[kMaxPoints], otherArms[kMaxPoints];  // m, from the centres of mass to the points, world axes
+    Position center = Position::Zero();        // m, of the body's mass, where it touches
+    Vector3 arms[kMaxPoints], otherArms[kMaxPoints];  // m, from the centers of mass to the points, world axes
 };
 
 struct SweepStore {

@@ -42,7 +42,7 @@ void WakeBody(WorldState& world, uint32_t body) {
         world.joints.VisitOf(member, [&](uint32_t index) {
             const Joint& joint = world.joints.joints[index];
             if (!joint.enabled) return;
-            ColourJoint(world, index);
+            ColorJoint(world, index);
             pending.push_back(joint.body[1 - joint.SideOf(member)]);
         });
     };
@@ -85,8 +85,8 @@ size_t CapacityInBytes(const std::vector<T>&... vectors) {
 }  // namespace
 
 size_t WorldState::MemoryUsed() const {
-    size_t bytes = sizeof(*this) + bodies.MemoryUsed() + colliders.MemoryUsed() + strays.MemoryUsed() + pairs.MemoryUsed() +
-                   joints.MemoryUsed() + sweeps.MemoryUsed() + sensors.MemoryUsed() + colouring.MemoryUsed() + sleeping.MemoryUsed() +
+    size_t bytes = sizeof(*this) + bodies.MemoryUsed() + colliders.MemoryUsed() + outsideFatBounds.MemoryUsed() + pairs.MemoryUsed() +
+                   joints.MemoryUsed() + sweeps.MemoryUsed() + sensors.MemoryUsed() + coloring.MemoryUsed() + sleeping.MemoryUsed() +
                    solver.MemoryUsed() + scratch.CapacityInBytes() +
                    CapacityInBytes(broken, removed, changes, activated, began, newPairs, moreManifolds, deepOverlaps, dispersing, crowded, ghosts, findings);
     for (const WorkerFindings& f : findings)

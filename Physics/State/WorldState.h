@@ -12,7 +12,7 @@
 #include <Fulcrum/Physics/State/PairStore.h>
 #include <Fulcrum/Physics/State/SensorStore.h>
 #include <Fulcrum/Physics/State/SolverLayout.h>
-#include <Fulcrum/Physics/State/Strays.h>
+#include <Fulcrum/Physics/State/CollidersOutsideFatBounds.h>
 #include <Fulcrum/Physics/State/SweepStore.h>
 #include <Fulcrum/Physics/State/WorldLock.h>
 #include <Fulcrum/Physics/StepReport.h>
@@ -83,7 +83,7 @@ struct WorldState {
     ColliderStore colliders;
     PairStore pairs;
     JointStore joints;
-    ConstraintColouring colouring;
+    ConstraintColoring coloring;
     SleepingIslands sleeping;
     SolverLayout solver;
     SweepStore sweeps;
@@ -108,7 +108,7 @@ struct WorldState {
 
     // For the queries.
     WorldLock lock;
-    Strays strays;
+    CollidersOutsideFatBounds outsideFatBounds;
 
     size_t MemoryUsed() const;
 };
@@ -138,7 +138,7 @@ inline uint32_t ChildOf(const WorldState& world, uint32_t collider) {
     return before + (collider - run.first);
 }
 
-// The piece's centre frame in that of its body.
+// The piece's center frame in that of its body.
 inline RelativePose LocalOf(const WorldState& world, uint32_t collider) {
     const ColliderShape& piece = world.colliders.shapes[collider];
     if (!piece.onOrigin) return piece.local;
@@ -147,11 +147,11 @@ inline RelativePose LocalOf(const WorldState& world, uint32_t collider) {
 
 // World space, of the piece's own frame.
 inline Pose ColliderPoseOf(const WorldState& world, uint32_t collider) {
-    const Pose body = world.bodies.CentrePoseOf(world.colliders.colliders[collider].body);
+    const Pose body = world.bodies.CenterPoseOf(world.colliders.colliders[collider].body);
     return world.colliders.shapes[collider].offset ? body * LocalOf(world, collider) : body;
 }
 
-// The piece, seen from its body's centre frame.
+// The piece, seen from its body's center frame.
 inline ColliderShape PieceOf(const WorldState& world, uint32_t collider) {
     ColliderShape piece = world.colliders.shapes[collider];
     piece.local = LocalOf(world, collider);

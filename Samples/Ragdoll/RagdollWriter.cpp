@@ -60,7 +60,7 @@ Json ShapeWritten(const Shape& shape) {
         fields.Field("kind", std::string("ConvexHull"));
         fields.node["points"] = Json::array();
         for (const Vector3& vertex : static_cast<const ConvexHull&>(shape).Vertices())
-            fields.node["points"].push_back(Written(Vector3(vertex + shape.Mass().centreOfMass)));
+            fields.node["points"].push_back(Written(Vector3(vertex + shape.Mass().centerOfMass)));
     }
     return fields.node;
 }

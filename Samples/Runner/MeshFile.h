@@ -34,7 +34,7 @@ struct MeshBox {
         highest = highest.cwiseMax(point);
     }
     double LargestExtent() const { return (highest - lowest).maxCoeff(); }
-    Position Centre() const { return 0.5 * (lowest + highest); }
+    Position Center() const { return 0.5 * (lowest + highest); }
 };
 MeshBox BoundsOf(const std::vector<MeshPart>& parts);
 

@@ -14,10 +14,10 @@ constexpr size_t kMostHulls = 128;
 
 Result<std::shared_ptr<const ConvexHull>> HullOf(const MeshPart& part, const MeshBox& box, double size) {
     const double scale = size / box.LargestExtent();
-    const Position centre = box.Centre();
+    const Position center = box.Center();
     std::vector<Vector3> points;
     points.reserve(part.points.size());
-    for (const Position& point : part.points) points.push_back(((point - centre) * scale).cast<float>());
+    for (const Position& point : part.points) points.push_back(((point - center) * scale).cast<float>());
     return ConvexHull::Create(points);
 }
 
@@ -127,7 +127,7 @@ Result<ImportedMesh> ImportMesh(const std::filesystem::path& path, const MeshImp
         return Error{ErrorCode::Degenerate, path.string() + " has no extent: all its triangles lie in one point"};
 
     // On y = 0, above the origin.
-    const Position middle(box.Centre().x(), box.lowest.y(), box.Centre().z());
+    const Position middle(box.Center().x(), box.lowest.y(), box.Center().z());
     std::vector<Vector3> vertices;
     vertices.reserve(all.points.size());
     for (const Position& point : all.points) vertices.push_back(((point - middle) * imported.scale).cast<float>());

@@ -21,7 +21,7 @@ struct ImportedShape {
 };
 
 // The convex hull (at most 64 vertices) of each mesh of the file, placed by the file's nodes, as one shape whose largest
-// extent is `size` metres, > 0, and whose bounds are centred on its origin. Meshes without a volume are left out with a
+// extent is `size` meters, > 0, and whose bounds are centered on its origin. Meshes without a volume are left out with a
 // warning, and so are the smallest of more than 128. Errors: UnknownId (there is no such file), Unsupported (assimp cannot
 // read it), Degenerate (no mesh in it, or none that has a volume).
 Result<ImportedShape> ImportShape(const std::filesystem::path& path, double size);

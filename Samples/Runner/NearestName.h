@@ -7,7 +7,7 @@
 
 namespace fulcrum {
 
-// The fewest single characters to add, remove, replace or swap with their neighbour that turn `a` into `b`.
+// The fewest single characters to add, remove, replace or swap with their neighbor that turn `a` into `b`.
 // Source: Damerau, "A technique for computer detection and correction of spelling errors", 1964 (optimal alignment).
 int EditDistance(std::string_view a, std::string_view b);
 

@@ -40,7 +40,7 @@ UpAxis ParseUpAxis(const std::string& text) {
 void AddOntoOptions(CLI::App& app, Command& command) {
     CLI::Option* onto = AddText(app, "--onto", "drop them onto the triangles of this mesh, made 20 m large, not onto a floor",
                                 [&](const std::string& text) { command.onto = text; })->type_name("FILE");
-    AddReal(app, "--onto-scale", 1e-6, 1e6, "metres a unit of that file, instead of 20 m in all",
+    AddReal(app, "--onto-scale", 1e-6, 1e6, "meters a unit of that file, instead of 20 m in all",
             [&](double value) { command.ontoSettings.scale = value; })->needs(onto);
     AddText(app, "--onto-up", "which way is up in that file: x, y (default), z, -x, -y or -z", [&](const std::string& text) {
         command.ontoSettings.up = ParseUpAxis(text);

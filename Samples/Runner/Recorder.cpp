@@ -33,8 +33,8 @@ Vector3 ToVector(const Position& position, const Position& origin) {
 RecordedShape RecordedHull(const ConvexHull& hull) {
     RecordedShape shape;
     shape.kind = RecordedShapeKind::Hull;
-    // The recording speaks of the shape's own frame, the hull of its centre of mass.
-    for (const Vector3& vertex : hull.Vertices()) shape.vertices.push_back(vertex + hull.Mass().centreOfMass);
+    // The recording speaks of the shape's own frame, the hull of its center of mass.
+    for (const Vector3& vertex : hull.Vertices()) shape.vertices.push_back(vertex + hull.Mass().centerOfMass);
     for (const ConvexHull::Face& face : hull.Faces()) {
         const auto corners = hull.Indices().subspan(face.firstIndex, face.cornerCount);
         for (size_t i = 2; i < corners.size(); ++i) shape.triangles.push_back({corners[0], corners[i - 1], corners[i]});
@@ -52,7 +52,7 @@ RecordedShape RecordedConvex(const ConvexShape& source) {
     std::vector<uint32_t> indices;
     for (const Vector3& v : surface.vertices) {
         const auto [at, isNew] = known.emplace(std::tuple(v.x(), v.y(), v.z()), static_cast<uint32_t>(shape.vertices.size()));
-        if (isNew) shape.vertices.push_back(v + source.Mass().centreOfMass);
+        if (isNew) shape.vertices.push_back(v + source.Mass().centerOfMass);
         indices.push_back(at->second);
     }
     for (size_t i = 0; i < surface.indices.size(); i += 3) {
@@ -87,8 +87,8 @@ RecordedShape RecordedPlane(const Plane& plane) {
     RecordedShape shape;
     shape.kind = RecordedShapeKind::Hull;
     shape.name = ShapeTypeName(plane.Type());
-    const Vector3 centre = plane.Normal() * plane.Offset(), u = Perpendicular(plane.Normal()) * kHalf, v = Cross<float>(plane.Normal(), u);
-    shape.vertices = {centre - u - v, centre + u - v, centre + u + v, centre - u + v};
+    const Vector3 center = plane.Normal() * plane.Offset(), u = Perpendicular(plane.Normal()) * kHalf, v = Cross<float>(plane.Normal(), u);
+    shape.vertices = {center - u - v, center + u - v, center + u + v, center - u + v};
     shape.triangles = {{0, 1, 2}, {0, 2, 3}};
     return shape;
 }
@@ -276,7 +276,7 @@ std::optional<uint32_t> Recorder::RecordedBodyOf(BodyId id) const {
     return body < ids_.size() && ids_[body] == id ? std::optional(body) : std::nullopt;
 }
 
-// An island is known by its first body, so that its number, and with it its colour, stays when others merge.
+// An island is known by its first body, so that its number, and with it its color, stays when others merge.
 void Recorder::CollectIslands() {
     firstOfIsland_.clear();
     world_.System().VisitIslands([&](BodyId id, uint32_t island) {

@@ -46,8 +46,8 @@ void AddRemarks(const RunFigures& figures, std::vector<ReportLine>& lines) {
     };
     add("bodies frozen, not finite", static_cast<uint64_t>(figures.nonFinite));
     add("libccd: EPA gave up", figures.libccdFailures);
-    add("libccd: centre line taken", figures.libccdFallbacks);
-    add("constraints without a colour", figures.last.overflowConstraints);
+    add("libccd: center line taken", figures.libccdFallbacks);
+    add("constraints without a color", figures.last.overflowConstraints);
     add("bodies at their speed limit", figures.last.clampedBodies);
 }
 

@@ -93,7 +93,7 @@ Result<RunFigures> Simulate(SceneWorld& world, int untimed, int steps, double dt
         if (meter.Measure()) figures.overlapPair = BodyText(world, meter.Worst().bodyA) + " and " + BodyText(world, meter.Worst().bodyB);
         figures.largestContacts = std::max(figures.largestContacts, report.contacts);
         figures.libccdFailures += report.libccd.epaFailures;
-        figures.libccdFallbacks += report.libccd.centreLineFallbacks;
+        figures.libccdFallbacks += report.libccd.centerLineFallbacks;
         afterStep();
     }
 

@@ -11,7 +11,7 @@ constexpr int kBands = 5, kSectors = 24;
 constexpr double kRim = 55 * kDegree;         // from the bottom
 constexpr std::array<float, 4> kDamping{0, 0.1f, 0.5f, 3};
 
-Position BowlCentre(size_t bowl) { return {4.2 * (static_cast<double>(bowl) - 1.5), kOuter, 0}; }
+Position BowlCenter(size_t bowl) { return {4.2 * (static_cast<double>(bowl) - 1.5), kOuter, 0}; }
 
 // The lower part of a hollow ball, of convex pieces: bands from the bottom to the rim, each cut into sectors.
 ShapePtr Bowl(SceneWorld& world) {
@@ -36,11 +36,11 @@ void Build(SceneWorld& world) {
     world.AddFloor(12, 12);
     const ShapePtr bowl = Bowl(world), ball = world.SphereOf(0.2f), capsule = world.CapsuleOf(0.2f, 0.12f);
     for (size_t i = 0; i < kDamping.size(); ++i) {
-        const Position centre = BowlCentre(i);
-        world.Add({.shape = bowl, .motion = MotionType::Static, .position = centre});
+        const Position center = BowlCenter(i);
+        world.Add({.shape = bowl, .motion = MotionType::Static, .position = center});
         const auto addMoving = [&](const ShapePtr& shape, const Position& place) {
             world.watched.push_back(world.Add({.shape = shape,
-                                               .position = centre + place,
+                                               .position = center + place,
                                                .linearDamping = kDamping[i],
                                                .angularDamping = kDamping[i]}));
         };
@@ -53,7 +53,7 @@ void Build(SceneWorld& world) {
 double Accuracy(const SceneWorld& world) {
     int outside = 0;
     for (size_t i = 0; i < world.watched.size(); ++i) {
-        const Position place = world.Bodies().GetPose(world.watched[i]).position - BowlCentre(i / 3);
+        const Position place = world.Bodies().GetPose(world.watched[i]).position - BowlCenter(i / 3);
         if (!(place.norm() < kInner)) ++outside;
     }
     return outside;

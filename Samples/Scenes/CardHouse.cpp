@@ -11,7 +11,7 @@ constexpr int kStoreys = 4;
 
 // Two cards that lean against each other over x = middle, their feet at height `ground`. Returns the height of their
 // upper edges: of a card turned by kLean, half the height is L cos + t sin, and its inner upper edge is t cos + L sin
-// beside the centre.
+// beside the center.
 double AddTent(SceneWorld& world, const ShapePtr& card, double middle, double ground, const Material& material) {
     const double sine = Sin(kLean), cosine = Cos(kLean);
     const double halfHeight = kHalfLength * cosine + kHalfThickness * sine;

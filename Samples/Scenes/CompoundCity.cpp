@@ -14,7 +14,7 @@ constexpr int kBuildings = 12;      // of a district, along each side
 constexpr double kStreet = 4;       // m, from building to building
 constexpr double kDistrict = kBuildings * kStreet;
 
-// The tower: storeys of 16 cubes of a metre around a shaft, under a roof of 25 slabs. It loses all but its lowest storeys,
+// The tower: storeys of 16 cubes of a meter around a shaft, under a roof of 25 slabs. It loses all but its lowest storeys,
 // from the roof down; each piece goes on as a body of its own, which waited under the ground.
 constexpr int kStoreys = 8, kStoreysLeft = 2;
 constexpr int kLost = 25 + 16 * (kStoreys - kStoreysLeft);
@@ -45,7 +45,7 @@ void AddDistricts(SceneWorld& world) {
             const ShapePtr& shape = kinds[static_cast<size_t>(world.random.Between(0, 7.999))];
             if (!shape) return;
             // All stand on the ground; hulls have their origin there, boxes in their middle.
-            const float foot = shape->LocalBounds().lower.y() + shape->Mass().centreOfMass.y();
+            const float foot = shape->LocalBounds().lower.y() + shape->Mass().centerOfMass.y();
             buildings.push_back({.shape = shape,
                                  .position = Vector3(static_cast<float>((i % kBuildings + 0.5) * kStreet), -foot,
                                                      static_cast<float>((i / kBuildings + 0.5) * kStreet)),
@@ -130,7 +130,7 @@ double Accuracy(const SceneWorld& world) {
     const int lost = LostAfter(world.StepCount() - 1);
     int wrong = std::abs(static_cast<int>(world.Bodies().GetChildren(world.watched[0])->Count()) - (25 + 16 * kStoreys - lost));
     for (size_t i = 1; i <= kOnTheRoof; ++i)
-        if (lost == kLost && world.Bodies().GetCentreOfMass(world.watched[i]).y() > kTop - 2) ++wrong;
+        if (lost == kLost && world.Bodies().GetCenterOfMass(world.watched[i]).y() > kTop - 2) ++wrong;
     return wrong + BodiesBelowTheFloor(world) - (kLost - lost);
 }
 

@@ -34,7 +34,7 @@ void Build(SceneWorld& world) {
     world.Add({.shape = world.BoxOf(4, 0.1f, 6), .motion = MotionType::Static, .position = {-7, 1.5, 0}, .rotation = tilt});
     for (int i = 0; i < kKinds; ++i) {
         const double z = kSpacing * (i - 0.5 * (kKinds - 1));
-        const double foot = -double{shapes[i]->LocalBounds().lower.y()} - double{shapes[i]->Mass().centreOfMass.y()};
+        const double foot = -double{shapes[i]->LocalBounds().lower.y()} - double{shapes[i]->Mass().centerOfMass.y()};
         world.watched.push_back(world.Add({.shape = shapes[i], .position = {5, foot, z}}));
         // On its side, its axis along z.
         const double radius = double{shapes[i]->LocalBounds().upper.x()};

@@ -5,7 +5,7 @@
 namespace fulcrum {
 namespace {
 
-// Two rods on hinges, and beside them the same pair, half a millimetre aside at the start: soon they go different ways.
+// Two rods on hinges, and beside them the same pair, half a millimeter aside at the start: soon they go different ways.
 void Build(SceneWorld& world) {
     const ShapePtr rod = world.BoxOf(0.5f, 0.05f, 0.05f);
     for (const double aside : {0.0, 5e-4}) {
@@ -27,7 +27,7 @@ double EnergyChange(const SceneWorld& world) {
 
 extern const Scene kDoublePendulumScene{
     .name = "double_pendulum",
-    .description = "two double pendulums that start half a millimetre apart",
+    .description = "two double pendulums that start half a millimeter apart",
     .steps = 600,
     .sleeping = false,
     .build = Build,

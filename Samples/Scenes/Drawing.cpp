@@ -24,17 +24,17 @@ void VisitBoxEdges(const Vector3& half, const Visit& visit) {
 
 void Drawing::Box(const Position& lower, const Position& upper, Ink ink) {
     if (!isOn_) return;
-    const Position centre = 0.5 * (lower + upper);
+    const Position center = 0.5 * (lower + upper);
     VisitBoxEdges((0.5 * (upper - lower)).cast<float>(), [&](const Vector3& from, const Vector3& to) {
-        Line(centre + from.cast<double>(), centre + to.cast<double>(), ink);
+        Line(center + from.cast<double>(), center + to.cast<double>(), ink);
     });
 }
 
 void Drawing::Outline(const ConvexShape& shape, const Pose& pose, Ink ink) {
     if (!isOn_) return;
-    const Vector3 centre = shape.Mass().centreOfMass;
+    const Vector3 center = shape.Mass().centerOfMass;
     const auto line = [&](const Vector3& from, const Vector3& to) {
-        Line(pose.Transform(centre + from), pose.Transform(centre + to), ink);
+        Line(pose.Transform(center + from), pose.Transform(center + to), ink);
     };
     if (const auto* box = dynamic_cast<const fulcrum::Box*>(&shape)) {
         VisitBoxEdges(box->HalfExtents(), line);

@@ -12,7 +12,7 @@
 
 namespace fulcrum {
 
-// What something means, and its colour: 0xRRGGBB.
+// What something means, and its color: 0xRRGGBB.
 enum class Ink : uint32_t {
     Path = 0x2f6fb4,    // of a ray or a shape that looks for something
     Hit = 0xd7263d,     // what it found
@@ -46,7 +46,7 @@ public:
     void Point(const Position& at, Ink ink) {
         if (isOn_) points_.push_back({at, ink});
     }
-    // A point with a line of `length` metres along a unit vector.
+    // A point with a line of `length` meters along a unit vector.
     void Normal(const Position& at, const Vector3& normal, double length = 0.5) {
         Line(at, at + normal.cast<double>() * length, Ink::Normal);
         Point(at, Ink::Hit);

@@ -21,14 +21,14 @@ void Build(SceneWorld& world) {
     world.AddWalls(tray, tray, static_cast<float>(0.5 * spacing));
     for (int i = 0; i < count; ++i) {
         const int layer = i / (side * side), row = i / side % side, column = i % side;
-        const Position centre(spacing * (column - 0.5 * (side - 1)), spacing * (layer + 0.75),
+        const Position center(spacing * (column - 0.5 * (side - 1)), spacing * (layer + 0.75),
                               spacing * (row - 0.5 * (side - 1)));
         const double height = world.random.Between(-1, 1), around = world.random.Between(0, 2 * kPi);
         const double turn = world.random.Between(0, 2 * kPi), flat = std::sqrt(1 - height * height);
         const Vector3 axis = Position(flat * Cos(around), height, flat * Sin(around)).cast<float>();
         const Quaternion rotation = Turn(axis, turn);
-        // The grid places centres of mass, the body's position is its shape's own origin.
-        const Position origin = centre - Rotate(rotation, shape->Mass().centreOfMass).cast<double>();
+        // The grid places centers of mass, the body's position is its shape's own origin.
+        const Position origin = center - Rotate(rotation, shape->Mass().centerOfMass).cast<double>();
         world.watched.push_back(world.Add({.shape = shape, .position = origin, .rotation = rotation}));
     }
 }

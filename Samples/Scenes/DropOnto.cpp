@@ -17,15 +17,15 @@ std::vector<Position> PlacesAbove(const SceneWorld& world, const Bounds& box, do
         return std::clamp(static_cast<int>(extent / spacing), 1, 200);
     };
     const int rows = count(0), columns = count(2);
-    const Position centre(double{box.Centre().x()}, top, double{box.Centre().z()});
+    const Position center(double{box.Center().x()}, top, double{box.Center().z()});
     for (int i = 0; i < rows; ++i)
         for (int j = 0; j < columns; ++j) {
-            const Position place = centre + Position(spacing * (i - 0.5 * (rows - 1)), 0, spacing * (j - 0.5 * (columns - 1)));
+            const Position place = center + Position(spacing * (i - 0.5 * (rows - 1)), 0, spacing * (j - 0.5 * (columns - 1)));
             WorldRayHit hit;
             const Vector3 down(0, static_cast<float>(double{box.lower.y()} - top - 1), 0);
             if (world.Queries().CastRay({place, down}, hit, {.backFaces = true})) places.push_back(hit.position + Position(0, spacing, 0));
         }
-    if (places.empty()) places.push_back(centre);
+    if (places.empty()) places.push_back(center);
     return places;
 }
 
@@ -50,7 +50,7 @@ void Build(SceneWorld& world) {
         const double turn = world.random.Between(0, 2 * kPi);
         const double flat = std::sqrt(1 - height * height);
         const Quaternion rotation = Turn(Position(flat * Cos(around), height, flat * Sin(around)).cast<float>(), turn);
-        const Position origin = place - Rotate(rotation, shape->Mass().centreOfMass).cast<double>();
+        const Position origin = place - Rotate(rotation, shape->Mass().centerOfMass).cast<double>();
         world.watched.push_back(world.Add({.shape = shape, .position = origin, .rotation = rotation}));
         place.y() += spacing;
     }

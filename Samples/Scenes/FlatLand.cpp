@@ -29,7 +29,7 @@ void Build(SceneWorld& world) {
 
 double Accuracy(const SceneWorld& world) {
     double worst = 0;
-    for (BodyId id : world.watched) worst = std::max(worst, std::fabs(world.Bodies().GetCentreOfMass(id).z()));
+    for (BodyId id : world.watched) worst = std::max(worst, std::fabs(world.Bodies().GetCenterOfMass(id).z()));
     return worst;
 }
 
@@ -42,7 +42,7 @@ extern const Scene kFlatLandScene{
     .usesSeed = true,
     .build = Build,
     .accuracy = Accuracy,
-    .accuracyMeaning = "largest distance of a body's centre from the plane, m",
+    .accuracyMeaning = "largest distance of a body's center from the plane, m",
 };
 
 }  // namespace fulcrum

@@ -5,7 +5,7 @@
 
 namespace fulcrum {
 
-// `base` cubes of 1 m in the lowest row, one fewer in each above, touching one another; the base is centred on x = shiftX.
+// `base` cubes of 1 m in the lowest row, one fewer in each above, touching one another; the base is centered on x = shiftX.
 // Watches the top cube.
 inline void AddFlatPyramid(SceneWorld& world, const ShapePtr& cube, int base, double shiftX, double z) {
     for (int i = 0; i < base; ++i)

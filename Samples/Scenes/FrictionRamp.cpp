@@ -10,7 +10,7 @@ constexpr double kSlope = 25 * kDegree;  // its tangent is 0.466
 constexpr std::array<float, 9> kFriction{0.1f, 0.2f, 0.3f, 0.4f, 0.44f, 0.49f, 0.55f, 0.65f, 0.8f};
 constexpr double kHalfLength = 9;
 
-// `along` metres downhill (+x) of the ramp's middle, `above` metres off its surface.
+// `along` meters downhill (+x) of the ramp's middle, `above` meters off its surface.
 Position OnRamp(double along, double above, double z) {
     const double sine = Sin(kSlope), cosine = Cos(kSlope);
     return {along * cosine + above * sine, 5 - along * sine + above * cosine, z};

@@ -22,13 +22,13 @@ ShapePtr WheelOf(SceneWorld& world, int teeth) {
 void Build(SceneWorld& world) {
     constexpr size_t kCount = std::size(kTeeth);
     const BodyId plate = world.Add({.shape = world.BoxOf(6, 2.5f, 0.02f), .motion = MotionType::Static, .position = {0, 3, -0.5}});
-    Position centre(-4.5, 2.5, 0);
+    Position center(-4.5, 2.5, 0);
     double height = 0;
     for (size_t i = 0; i < kCount; ++i) {
         const bool isOnTheSameAxle = i > 0 && i % 2 == 0;
-        if (i % 2) centre += Position(0.03 * (kTeeth[i - 1] + kTeeth[i]), 0, 0);
+        if (i % 2) center += Position(0.03 * (kTeeth[i - 1] + kTeeth[i]), 0, 0);
         if (isOnTheSameAxle) height += 0.2;
-        const Position place = centre + Position(0, 0, height);
+        const Position place = center + Position(0, 0, height);
         const BodyId wheel = world.Add({.shape = WheelOf(world, kTeeth[i]), .position = place, .density = 500, .layer = 1});
         world.watched.push_back(wheel);
         if (isOnTheSameAxle) {

@@ -51,7 +51,7 @@ extern const Scene kHullPileScene{
     .sleeping = false,
     .build = Build,
     .accuracy = Accuracy,
-    .accuracyMeaning = "smallest height of a body's centre minus 1.8 m, where negative",
+    .accuracyMeaning = "smallest height of a body's center minus 1.8 m, where negative",
 };
 
 }  // namespace fulcrum

@@ -12,11 +12,11 @@ namespace {
 
 enum class Along { X, Y, Z };
 
-// Lengths in metres, angles in degrees. A swing of zero makes the joint a hinge about x.
+// Lengths in meters, angles in degrees. A swing of zero makes the joint a hinge about x.
 struct Bone {
     const char* name;
     float halfHeight, radius;
-    Position centre;
+    Position center;
     Along along;
     int parent;
     Position joint;
@@ -52,7 +52,7 @@ RagdollJoint JointOf(const Bone& bone) {
         return joint;
     }
     // The twist axis points from the joint along the part's capsule; all of these are along y.
-    const float side = bone.centre.y() > bone.joint.y() ? 1.0f : -1.0f;
+    const float side = bone.center.y() > bone.joint.y() ? 1.0f : -1.0f;
     SwingTwistJointSettings joint;
     joint.anchorA = {.point = bone.joint, .axis = {0, side, 0}, .normal = Vector3(1, 0, 0)};
     joint.twist = Range(bone.low, bone.high);
@@ -91,7 +91,7 @@ RagdollSettings Humanoid() {
     for (const Bone& bone : kBones) {
         RagdollPart part{.name = bone.name, .parent = bone.parent, .body = {}, .joint = JointOf(bone)};
         part.body.shape = Capsule::Create(bone.halfHeight, bone.radius).Value();
-        part.body.position = bone.centre;
+        part.body.position = bone.center;
         if (bone.along == Along::X) part.body.rotation = Turn(Vector3(0, 0, 1), -0.5 * kPi);
         if (bone.along == Along::Z) part.body.rotation = Turn(Vector3(1, 0, 0), 0.5 * kPi);
         settings.parts.push_back(std::move(part));

@@ -24,7 +24,7 @@ Pose PlatformPose(size_t platform, double time) {
 
 struct Carried {
     Platform platform;
-    Position offset;  // of the centre of a cube of half 0.3 m, from the platform's
+    Position offset;  // of the center of a cube of half 0.3 m, from the platform's
 };
 constexpr double kOnTop = 0.15 + 0.3;
 const std::array<Carried, 11> kCarried{{{kLift, {0, kOnTop, 0}}, {kLift, {0, kOnTop + 0.6, 0}},

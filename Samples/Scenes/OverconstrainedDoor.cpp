@@ -29,7 +29,7 @@ extern const Scene kOverconstrainedDoorScene{
     .sleeping = false,
     .build = Build,
     .accuracy = LargestJointGap,
-    .accuracyMeaning = "largest distance between the two anchors of a joint, m; a third of a centimetre cannot be helped",
+    .accuracyMeaning = "largest distance between the two anchors of a joint, m; a third of a centimeter cannot be helped",
 };
 
 }  // namespace fulcrum

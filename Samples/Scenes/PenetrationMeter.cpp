@@ -92,7 +92,7 @@ const PenetrationMeter::Placed& PenetrationMeter::Place(BodyId id) {
     Placed& body = bodies_[id.index];
     if (body.seenIn == round_) return body;
     const BodyInterface& bodies = world_.Bodies();
-    body = {round_, id, bodies.GetShape(id), {bodies.GetCentreOfMass(id), bodies.GetPose(id).rotation}};
+    body = {round_, id, bodies.GetShape(id), {bodies.GetCenterOfMass(id), bodies.GetPose(id).rotation}};
     return body;
 }
 
@@ -112,8 +112,8 @@ void PenetrationMeter::FindAll(bool first) {
     const auto hold = world_.Queries().Hold();
     for (const BodyId id : mobile_) {
         const Placed a = Place(id);
-        const Bounds box = BoundsAbout(a.centre.position, *a.shape, a.centre);
-        world_.Queries().FindInBox(a.centre.position + box.lower.cast<double>(), a.centre.position + box.upper.cast<double>(), near_);
+        const Bounds box = BoundsAbout(a.center.position, *a.shape, a.center);
+        world_.Queries().FindInBox(a.center.position + box.lower.cast<double>(), a.center.position + box.upper.cast<double>(), near_);
         BodyId last{};
         for (const OverlapHit& hit : near_) {
             if (hit.body == last || hit.body == id || (hit.body < id && IsMobile(hit.body, first))) continue;
@@ -127,7 +127,7 @@ void PenetrationMeter::MeasurePair(const Placed& a, const Placed& b, bool first)
     const auto overlapped = overlapped_.find({a.id, b.id});
     const bool since = overlapped != overlapped_.end();
     DepthSearch search(first || since ? 0 : worst_.relative);
-    search.Search(*a.shape, *b.shape, Relative(a.centre, b.centre));
+    search.Search(*a.shape, *b.shape, Relative(a.center, b.center));
     if (since) {
         if (search.Relative() <= 0) overlapped_.erase(overlapped);
         return;

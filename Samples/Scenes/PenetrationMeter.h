@@ -2,8 +2,8 @@
 // Simulation after each step, outside of what is timed; one thread.
 //
 // The measure is the least move that parts two bodies, over the inner radius of the smaller one: that of the largest ball that fits
-// inside. 1 means that a ball inside one body has its centre on the other's surface; beyond that nobody knows any more on which
-// side it belongs. A body whose centre is behind a mesh or height field has sunk by as much as it must rise.
+// inside. 1 means that a ball inside one body has its center on the other's surface; beyond that nobody knows any more on which
+// side it belongs. A body whose center is behind a mesh or height field has sunk by as much as it must rise.
 #pragma once
 
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
@@ -36,7 +36,7 @@ private:
         uint32_t seenIn = 0;  // round of measuring
         BodyId id;
         ShapePtr shape;
-        Pose centre;          // of the shape's centre frame
+        Pose center;          // of the shape's center frame
     };
     using Pair = std::pair<BodyId, BodyId>;
 

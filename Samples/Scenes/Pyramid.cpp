@@ -5,7 +5,7 @@ namespace {
 
 constexpr int kLayers = 15;
 
-// 1240 cubes of 2 m, half a metre apart in height: the pyramid falls together, each layer on the one below.
+// 1240 cubes of 2 m, half a meter apart in height: the pyramid falls together, each layer on the one below.
 void Build(SceneWorld& world) {
     world.AddFloor(50, 50);
     const ShapePtr cube = world.BoxOf(1, 1, 1);

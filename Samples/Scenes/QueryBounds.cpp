@@ -11,19 +11,19 @@ const Position kHalf(1.5, 0.8, 1);  // m, of the box
 
 void Mark(SceneWorld& world, const std::vector<OverlapHit>& hits, Ink ink) {
     for (const OverlapHit& hit : hits)
-        if (world.Bodies().GetMotionType(hit.body) == MotionType::Dynamic) world.Draw().Point(world.Bodies().GetCentreOfMass(hit.body), ink);
+        if (world.Bodies().GetMotionType(hit.body) == MotionType::Dynamic) world.Draw().Point(world.Bodies().GetCenterOfMass(hit.body), ink);
 }
 
 bool Has(const std::vector<OverlapHit>& hits, const OverlapHit& hit) { return std::binary_search(hits.begin(), hits.end(), hit); }
 
 // What a box overlaps must be among what its bounds find, for there nothing but bounds are compared.
-void AskBox(SceneWorld& world, const Position& centre) {
+void AskBox(SceneWorld& world, const Position& center) {
     static const auto kBox = Box::Create(kHalf.cast<float>());
     std::vector<OverlapHit> near, inside;
-    world.Queries().FindInBox(centre - kHalf, centre + kHalf, near);
-    world.Queries().FindOverlaps(PlacedShape{kBox.Value().get(), {centre, {}}}, inside);
+    world.Queries().FindInBox(center - kHalf, center + kHalf, near);
+    world.Queries().FindOverlaps(PlacedShape{kBox.Value().get(), {center, {}}}, inside);
     for (const OverlapHit& hit : inside) world.figure += Has(near, hit) ? 0 : 1;
-    world.Draw().Box(centre - kHalf, centre + kHalf, Ink::Shape);
+    world.Draw().Box(center - kHalf, center + kHalf, Ink::Shape);
     Mark(world, near, Ink::Path);
     Mark(world, inside, Ink::Hit);
 }
@@ -39,13 +39,13 @@ void AskRay(SceneWorld& world, const Ray& ray) {
     Mark(world, near, Ink::Path);
 }
 
-void AskSweep(SceneWorld& world, const Position& centre, const Vector3& way) {
-    const Position half(0.3, 0.3, 0.3), end = centre + way.cast<double>();
+void AskSweep(SceneWorld& world, const Position& center, const Vector3& way) {
+    const Position half(0.3, 0.3, 0.3), end = center + way.cast<double>();
     std::vector<OverlapHit> near;
-    world.Queries().FindOnSweep(centre - half, centre + half, way, near);
-    world.Draw().Box(centre - half, centre + half, Ink::Normal);
+    world.Queries().FindOnSweep(center - half, center + half, way, near);
+    world.Draw().Box(center - half, center + half, Ink::Normal);
     world.Draw().Box(end - half, end + half, Ink::Normal);
-    world.Draw().Line(centre, end, Ink::Normal);
+    world.Draw().Line(center, end, Ink::Normal);
     Mark(world, near, Ink::Normal);
 }
 

@@ -19,7 +19,7 @@ Pose PoseAt(const MovingShape& shape, double fraction) {
     return pose;
 }
 
-// How far from touching the shape is where the cast ends, m. The shapes here have their centre of mass at their origin.
+// How far from touching the shape is where the cast ends, m. The shapes here have their center of mass at their origin.
 double GapAt(SceneWorld& world, const MovingShape& shape, const WorldShapeHit& hit) {
     WorldClosest closest;
     const Pose pose = PoseAt(shape, double{hit.fraction});

@@ -12,14 +12,14 @@ namespace {
 constexpr float kReach = 6;  // m
 constexpr int kPoints = 24;
 
-// The same without the trees: the least distance to the bodies one by one. A shape's own frame is its centre frame here.
+// The same without the trees: the least distance to the bodies one by one. A shape's own frame is its center frame here.
 double LeastDistance(SceneWorld& world, const Position& point) {
     double least = double{kReach};
     world.System().VisitBodies([&](BodyId id) {
         const ShapePtr shape = world.Bodies().GetShape(id);
         const Pose pose = world.Bodies().GetPose(id);
         ClosestPoints found;
-        const Vector3 local = pose.InverseTransform(point) - shape->Mass().centreOfMass;
+        const Vector3 local = pose.InverseTransform(point) - shape->Mass().centerOfMass;
         if (FindClosestPoint(*shape, local, kReach, found)) least = std::min(least, double{found.distance});
     });
     return least;

@@ -20,9 +20,9 @@ void Probe(SceneWorld& world, const ConvexShape& shape, const Pose& pose) {
     world.Queries().FindOverlaps(probe, hits, movers);
     world.Draw().Outline(shape, pose, hits.empty() ? Ink::Miss : Ink::Hit);
     for (const OverlapHit& hit : hits) {
-        const Position centre = world.Bodies().GetCentreOfMass(hit.body);
-        world.Draw().Line(pose.position, centre, Ink::Shape);
-        world.Draw().Point(centre, Ink::Hit);
+        const Position center = world.Bodies().GetCenterOfMass(hit.body);
+        world.Draw().Line(pose.position, center, Ink::Shape);
+        world.Draw().Point(center, Ink::Hit);
     }
     WorldClosest closest;
     const bool isNear = world.Queries().FindClosest(probe, 1, closest, movers);

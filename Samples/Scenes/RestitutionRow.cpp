@@ -3,7 +3,7 @@
 namespace fulcrum {
 namespace {
 
-constexpr double kStart = 5;  // m, of the balls' centres
+constexpr double kStart = 5;  // m, of the balls' centers
 constexpr float kRadius = 0.4f;
 
 void Build(SceneWorld& world) {

@@ -120,7 +120,7 @@ double BodiesBelowTheFloor(const SceneWorld& world) {
     int count = 0;
     world.System().VisitBodies([&](BodyId id) {
         const bool dynamic = world.Bodies().GetMotionType(id) == MotionType::Dynamic;
-        if (dynamic && !(world.Bodies().GetCentreOfMass(id).y() >= 0)) ++count;
+        if (dynamic && !(world.Bodies().GetCenterOfMass(id).y() >= 0)) ++count;
     });
     return count;
 }

@@ -89,7 +89,7 @@ public:
     void Listen(std::unique_ptr<ContactListener> listener);
     // Static box, its top at y = 0.
     BodyId AddFloor(float halfX, float halfZ);
-    // Four static walls on the floor, their middles at x = -halfX, halfX and z = -halfZ, halfZ, `height` metres high.
+    // Four static walls on the floor, their middles at x = -halfX, halfX and z = -halfZ, halfZ, `height` meters high.
     void AddWalls(float halfX, float halfZ, float height);
 
 private:
@@ -112,7 +112,7 @@ private:
 // The figure of scenes that add it up themselves.
 inline double FigureOf(const SceneWorld& world) { return world.figure; }
 
-// A figure of several scenes: dynamic bodies whose centre is below y = 0, or nowhere.
+// A figure of several scenes: dynamic bodies whose center is below y = 0, or nowhere.
 double BodiesBelowTheFloor(const SceneWorld& world);
 
 // The same: the largest distance between the two anchors of a joint, m.

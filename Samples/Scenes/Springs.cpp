@@ -12,7 +12,7 @@ constexpr std::array<double, 5> kFrequencies{0.5, 1, 2, 3, 5};           // Hz, 
 constexpr std::array<double, 5> kDampings{0.05, 0.1, 0.2, 0.4, 0.65};    // ratios, from front to back
 constexpr double kStart = 0.5;                                           // m
 
-// A table of weights on springs, all let go half a metre up.
+// A table of weights on springs, all let go half a meter up.
 void Build(SceneWorld& world) {
     const ShapePtr cube = world.BoxOf(0.2f, 0.2f, 0.2f);
     for (size_t i = 0; i < kFrequencies.size(); ++i)

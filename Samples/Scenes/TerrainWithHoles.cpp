@@ -86,11 +86,11 @@ void DrawTheCells(SceneWorld& world, const HeightField& field) {
         }
 }
 
-// Counts bodies whose centre passes the surface where it is solid. Where the field is and its own frame are the world's.
+// Counts bodies whose center passes the surface where it is solid. Where the field is and its own frame are the world's.
 void Watch(SceneWorld& world) {
     const auto field = FieldOf(world);
     for (size_t i = 1; i < world.watched.size(); ++i) {
-        const Position now = world.Bodies().GetCentreOfMass(world.watched[i]);
+        const Position now = world.Bodies().GetCenterOfMass(world.watched[i]);
         const double before = now.y() - double{world.Bodies().GetLinearVelocity(world.watched[i]).y()} / 60;
         SurfaceHit hit;
         const SurfaceRay down{Vector3(static_cast<float>(now.x()), 20, static_cast<float>(now.z())), Vector3(0, -20, 0), false};

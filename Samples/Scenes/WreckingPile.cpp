@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kGateOpens = 240;           // step
 constexpr double kSlope = 30 * kDegree;   // of the ramp, which falls towards +x
-const Position kRampCentre(-14, 4, 0);
+const Position kRampCenter(-14, 4, 0);
 constexpr float kBallRadius = 1.2f;
 
 ShapePtr Jack(SceneWorld& world) {
@@ -30,15 +30,15 @@ ShapePtr Rock(SceneWorld& world) {
     return world.HullOf(points);
 }
 
-// Places along the ramp: `along` metres downhill of its centre, `above` metres off its surface.
+// Places along the ramp: `along` meters downhill of its center, `above` meters off its surface.
 Position OnRamp(double along, double above) {
     const double sine = Sin(kSlope), cosine = Cos(kSlope), lift = above + 0.3;
-    return kRampCentre + Position(along * cosine + lift * sine, -along * sine + lift * cosine, 0);
+    return kRampCenter + Position(along * cosine + lift * sine, -along * sine + lift * cosine, 0);
 }
 
 void AddRampAndBall(SceneWorld& world) {
     const Quaternion tilt = Turn(Vector3(0, 0, 1), -kSlope);
-    world.Add({.shape = world.BoxOf(7, 0.3f, 2), .motion = MotionType::Static, .position = kRampCentre, .rotation = tilt});
+    world.Add({.shape = world.BoxOf(7, 0.3f, 2), .motion = MotionType::Static, .position = kRampCenter, .rotation = tilt});
     for (double side : {-1.0, 1.0})
         world.Add({.shape = world.BoxOf(7, 0.5f, 0.1f),
                    .motion = MotionType::Static,

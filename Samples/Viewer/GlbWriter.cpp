@@ -102,18 +102,18 @@ public:
     const std::string& Binary() const { return buffer_.Bytes(); }
 
 private:
-    // One for static bodies, one for kinematic ones, then a few for dynamic ones, of neighbouring bodies different; last glass,
+    // One for static bodies, one for kinematic ones, then a few for dynamic ones, of neighboring bodies different; last glass,
     // for sensors.
     void AddMaterials() {
-        static constexpr std::array<std::array<float, 3>, 7> kColours = {{{0.64f, 0.68f, 0.72f}, {0.32f, 0.38f, 0.45f}, {0.14f, 0.32f, 0.62f},
+        static constexpr std::array<std::array<float, 3>, 7> kColors = {{{0.64f, 0.68f, 0.72f}, {0.32f, 0.38f, 0.45f}, {0.14f, 0.32f, 0.62f},
                                                                           {0.74f, 0.35f, 0.11f}, {0.16f, 0.44f, 0.23f}, {0.62f, 0.14f, 0.16f},
                                                                           {0.30f, 0.22f, 0.58f}}};
-        for (const auto& colour : kColours)
+        for (const auto& color : kColors)
             json_["materials"].push_back({{"pbrMetallicRoughness",
-                                           {{"baseColorFactor", {colour[0], colour[1], colour[2], 1.0f}},
+                                           {{"baseColorFactor", {color[0], color[1], color[2], 1.0f}},
                                             {"metallicFactor", 0.0f},
                                             {"roughnessFactor", 0.65f}}}});
-        dynamicMaterials_ = kColours.size() - 2;
+        dynamicMaterials_ = kColors.size() - 2;
         const bool hasSensors = std::any_of(recording_.bodies.begin(), recording_.bodies.end(), [](const RecordedBody& body) { return body.isSensor; });
         if (!hasSensors) return;
         json_["materials"].push_back({{"name", "glass"},

@@ -30,7 +30,7 @@ private:
 
 using Steps3 = std::array<int64_t, 3>;
 
-inline Steps3 Quantised(const Vector3& v, double step) {
+inline Steps3 Quantized(const Vector3& v, double step) {
     return {std::llround(v.x() / step), std::llround(v.y() / step), std::llround(v.z() / step)};
 }
 

@@ -62,7 +62,7 @@ public:
 
 private:
     // A quaternion and its negative are the same rotation: the nearer one to the last has the smaller differences.
-    Steps4 QuantisedRotation(const RecordedState& state) const {
+    Steps4 QuantizedRotation(const RecordedState& state) const {
         const Quaternion& q = state.rotation;
         Steps4 steps = {std::llround(q.x * kRotationSteps), std::llround(q.y * kRotationSteps),
                         std::llround(q.z * kRotationSteps), std::llround(q.w * kRotationSteps)};
@@ -73,22 +73,22 @@ private:
         return steps;
     }
 
-    Steps3 QuantisedVelocity(const RecordedState& state) const {
+    Steps3 QuantizedVelocity(const RecordedState& state) const {
         const float limit = static_cast<float>(kMostSpeed);
-        return Quantised(state.velocity.cwiseMax(-limit).cwiseMin(limit), kVelocityStep);
+        return Quantized(state.velocity.cwiseMax(-limit).cwiseMin(limit), kVelocityStep);
     }
 
     bool HasChanged(const RecordedState& state) const {
         const BodyMemory& last = memory_[state.body];
         return !last.isKnown || last.awake != state.awake || last.isThere != state.isThere || last.island != state.island ||
-               last.position != Quantised(state.position, positionStep_) || last.rotation != QuantisedRotation(state) ||
-               last.velocity != QuantisedVelocity(state);
+               last.position != Quantized(state.position, positionStep_) || last.rotation != QuantizedRotation(state) ||
+               last.velocity != QuantizedVelocity(state);
     }
 
     void PutState(size_t frame, const RecordedState& state, Column& flags) {
         BodyMemory& last = memory_[state.body];
-        const Steps3 position = Quantised(state.position, positionStep_), velocity = QuantisedVelocity(state);
-        const Steps4 rotation = QuantisedRotation(state);
+        const Steps3 position = Quantized(state.position, positionStep_), velocity = QuantizedVelocity(state);
+        const Steps4 rotation = QuantizedRotation(state);
         const bool isNewIsland = state.island != last.island;
         flags.PutUnsigned((state.awake ? 1 : 0) | (isNewIsland ? 2 : 0) | (state.isThere ? 0 : 4));
         if (isNewIsland) islands_.PutSigned(state.island - last.island);
@@ -122,11 +122,11 @@ void PutContacts(const std::vector<RecordedContact>& contacts, double step, Colu
     int64_t bodyA = 0, bodyB = 0;
     Steps3 point = {};
     for (const RecordedContact& contact : contacts) {
-        const Steps3 newPoint = Quantised(contact.point, step);
+        const Steps3 newPoint = Quantized(contact.point, step);
         column.PutSigned(contact.bodyA - bodyA);
         column.PutSigned(contact.bodyB - bodyB);
         column.PutDifference(newPoint, point);
-        column.PutDifference(Quantised(contact.normal, kNormalStep), Steps3{});
+        column.PutDifference(Quantized(contact.normal, kNormalStep), Steps3{});
         column.PutSigned(std::llround(contact.separation / kSeparationStep));
         // 1 % of the impulse, whatever its size: steps of a logarithm.
         column.PutUnsigned(static_cast<uint64_t>(

@@ -5,10 +5,10 @@
 //   jointStates | jointErrors | drawings
 //
 // All numbers of a column are varints (7 bits a byte, low bits first), signed ones in zigzag. A state is stored only where
-// its quantised value differs from the body's last one. Positions are predicted from the two states before, rotations
+// its quantized value differs from the body's last one. Positions are predicted from the two states before, rotations
 // and velocities from the one before; what is stored is the difference, which is mostly 0 in a pile at rest.
 //   states      per frame: number of states; per state: gap to the body before, flags (1 awake, 2 new island, 4 removed)
-//   positions   per state: x y z in steps of header.positionStep metres
+//   positions   per state: x y z in steps of header.positionStep meters
 //   rotations   per state: x y z w in steps of 1 / kRotationSteps, of the sign nearest to the rotation before
 //   velocities  per state: x y z in steps of kVelocityStep m/s
 //   islands     per state with flag 2: difference to the body's last island

@@ -23,21 +23,21 @@ Most MostOfAFrame(const Recording& recording) {
 template <size_t Places>
 struct Steps {
     std::array<int64_t, 3 * Places> places{};
-    int64_t colour = 0;
+    int64_t color = 0;
 };
 
 // Coordinates that are wilder count as this, so that 53 bits hold their steps.
 Steps3 PlaceSteps(const Vector3& place, double step) {
     constexpr float kMost = 1e9f;  // m
-    return Quantised(place.cwiseMax(-kMost).cwiseMin(kMost), step);
+    return Quantized(place.cwiseMax(-kMost).cwiseMin(kMost), step);
 }
 
 Steps<2> StepsOf(const RecordedLine& line, double step) {
     const Steps3 from = PlaceSteps(line.from, step), to = PlaceSteps(line.to, step);
-    return {{from[0], from[1], from[2], to[0], to[1], to[2]}, line.colour};
+    return {{from[0], from[1], from[2], to[0], to[1], to[2]}, line.color};
 }
 
-Steps<1> StepsOf(const RecordedPoint& point, double step) { return {PlaceSteps(point.place, step), point.colour}; }
+Steps<1> StepsOf(const RecordedPoint& point, double step) { return {PlaceSteps(point.place, step), point.color}; }
 
 // `latest`: those of the frame before; then those of this one.
 template <class Item, size_t Places>
@@ -50,7 +50,7 @@ void Put(const std::vector<Item>& items, double step, std::vector<Steps<Places>>
             for (size_t k = 3; k < 3 * Places; ++k) before.places[k] = before.places[k - 3];
             latest.push_back(before);
         }
-        column.PutSigned(now.colour - latest[i].colour);
+        column.PutSigned(now.color - latest[i].color);
         column.PutDifference(now.places, latest[i].places);
         latest[i] = before = now;
     }

@@ -24,7 +24,7 @@ struct RecordedChild {
     RelativePose pose;   // in the compound's frame
 };
 
-// Only the members of its kind count. Lengths in metres.
+// Only the members of its kind count. Lengths in meters.
 struct RecordedShape {
     RecordedShapeKind kind = RecordedShapeKind::Sphere;
     std::string name;                                // for people; the kind's name where empty

@@ -1,4 +1,4 @@
-// Contacts of one colour never share a moving body, whatever came and went before.
+// Contacts of one color never share a moving body, whatever came and went before.
 #include <Fulcrum/Constraints/Coloring.h>
 
 #include <gtest/gtest.h>
@@ -11,40 +11,40 @@
 namespace fulcrum {
 namespace {
 
-ConstraintColouring::Kind KindOf(bool fixed) {
-    return fixed ? ConstraintColouring::Kind::Fixed : ConstraintColouring::Kind::Moving;
+ConstraintColoring::Kind KindOf(bool fixed) {
+    return fixed ? ConstraintColoring::Kind::Fixed : ConstraintColoring::Kind::Moving;
 }
-size_t MovingOf(const ConstraintColouring& colouring, int colour) {
-    return colouring.At(colour).Of(ConstraintColouring::Kind::Moving).size();
+size_t MovingOf(const ConstraintColoring& coloring, int color) {
+    return coloring.At(color).Of(ConstraintColoring::Kind::Moving).size();
 }
 
 struct Contact {
     uint32_t a, b;
     bool fixedB;
-    ColourSlot place;
+    ColorSlot place;
 };
 
 // Contacts by their numbers, kept as the engine keeps them.
-class Coloured {
+class Colored {
 public:
-    explicit Coloured(uint32_t bodies) { colouring.ReserveBodies(bodies); }
+    explicit Colored(uint32_t bodies) { coloring.ReserveBodies(bodies); }
 
     void Add(uint32_t contact, uint32_t a, uint32_t b, bool fixedB) {
-        contacts[contact] = {a, b, fixedB, colouring.Add(KindOf(fixedB), {contact, a, b, false, fixedB}, fixedB)};
+        contacts[contact] = {a, b, fixedB, coloring.Add(KindOf(fixedB), {contact, a, b, false, fixedB}, fixedB)};
     }
     void Remove(uint32_t contact) {
         const Contact c = contacts.at(contact);
-        const uint32_t moved = colouring.Remove(KindOf(c.fixedB), {contact, c.a, c.b, false, c.fixedB}, c.place);
+        const uint32_t moved = coloring.Remove(KindOf(c.fixedB), {contact, c.a, c.b, false, c.fixedB}, c.place);
         contacts.at(moved).place.slot = c.place.slot;
         contacts.erase(contact);
     }
     void Check() const {
-        ASSERT_EQ(colouring.Size(), contacts.size());
+        ASSERT_EQ(coloring.Size(), contacts.size());
         size_t listed = 0;
         std::set<uint32_t> touched;
-        for (int colour = 0; colour <= ConstraintColouring::kColours; ++colour) {
+        for (int color = 0; color <= ConstraintColoring::kColors; ++color) {
             std::set<uint32_t> moved;
-            const ConstraintColouring::Colour& lists = colouring.At(colour);
+            const ConstraintColoring::Color& lists = coloring.At(color);
             for (bool fixed : {false, true}) {
                 const auto& list = lists.Of(KindOf(fixed));
                 listed += list.size();
@@ -52,32 +52,32 @@ public:
                     const auto found = contacts.find(list[slot].constraint);
                     ASSERT_NE(found, contacts.end());
                     const Contact& c = found->second;
-                    ASSERT_EQ(c.place.colour, colour);
+                    ASSERT_EQ(c.place.color, color);
                     ASSERT_EQ(c.place.slot, slot);
                     ASSERT_EQ(c.fixedB, fixed);
                     ASSERT_EQ(list[slot].bodyA, c.a);
                     ASSERT_EQ(list[slot].bodyB, c.b);
                     touched.insert(c.a);
                     if (!fixed) touched.insert(c.b);
-                    if (colour == ConstraintColouring::kOverflow) continue;
-                    ASSERT_TRUE(moved.insert(c.a).second) << "body " << c.a << " twice in colour " << colour;
+                    if (color == ConstraintColoring::kOverflow) continue;
+                    ASSERT_TRUE(moved.insert(c.a).second) << "body " << c.a << " twice in color " << color;
                     if (fixed) continue;
-                    ASSERT_TRUE(moved.insert(c.b).second) << "body " << c.b << " twice in colour " << colour;
+                    ASSERT_TRUE(moved.insert(c.b).second) << "body " << c.b << " twice in color " << color;
                 }
             }
         }
         ASSERT_EQ(listed, contacts.size());
-        for (uint32_t body = 0; body < 400; ++body) ASSERT_EQ(colouring.IsTouched(body), touched.count(body) > 0) << body;
+        for (uint32_t body = 0; body < 400; ++body) ASSERT_EQ(coloring.IsTouched(body), touched.count(body) > 0) << body;
     }
 
-    ConstraintColouring colouring;
+    ConstraintColoring coloring;
     std::map<uint32_t, Contact> contacts;
 };
 
-TEST(Colouring, NeverSharesAMovingBodyWithinAColour) {
+TEST(Coloring, NeverSharesAMovingBodyWithinAColor) {
     std::mt19937 engine(3);
     const auto random = [&] { return static_cast<uint32_t>(engine()); };
-    Coloured world(200);
+    Colored world(200);
     uint32_t next = 0;
     for (int round = 0; round < 60; ++round) {
         for (int i = 0; i < 50; ++i) {
@@ -98,43 +98,43 @@ TEST(Colouring, NeverSharesAMovingBodyWithinAColour) {
     world.Check();
 }
 
-TEST(Colouring, OverflowsWhereABodyTouchesMoreThanThereAreColours) {
-    Coloured world(200);
+TEST(Coloring, OverflowsWhereABodyTouchesMoreThanThereAreColors) {
+    Colored world(200);
     for (uint32_t i = 0; i < 100; ++i) world.Add(i, 0, i + 1, false);
     world.Check();
-    EXPECT_EQ(MovingOf(world.colouring, ConstraintColouring::kOverflow), 36u);
-    for (int colour = 0; colour < ConstraintColouring::kColours; ++colour) EXPECT_EQ(MovingOf(world.colouring, colour), 1u);
+    EXPECT_EQ(MovingOf(world.coloring, ConstraintColoring::kOverflow), 36u);
+    for (int color = 0; color < ConstraintColoring::kColors; ++color) EXPECT_EQ(MovingOf(world.coloring, color), 1u);
     // What becomes free is used again.
     world.Remove(10);
     world.Add(200, 0, 150, false);
     world.Check();
-    EXPECT_EQ(MovingOf(world.colouring, ConstraintColouring::kOverflow), 36u);
+    EXPECT_EQ(MovingOf(world.coloring, ConstraintColoring::kOverflow), 36u);
 }
 
-TEST(Colouring, TheFixedSideMayBeSharedByAll) {
-    Coloured world(200);
-    // A hundred bodies on one floor need one colour.
+TEST(Coloring, TheFixedSideMayBeSharedByAll) {
+    Colored world(200);
+    // A hundred bodies on one floor need one color.
     for (uint32_t i = 0; i < 100; ++i) world.Add(i, i, 150, true);
     world.Check();
-    int colours = 0;
-    for (int colour = 0; colour < ConstraintColouring::kColours; ++colour) colours += !world.colouring.At(colour).Empty();
-    EXPECT_EQ(colours, 1);
-    EXPECT_FALSE(world.colouring.IsTouched(150));
+    int colors = 0;
+    for (int color = 0; color < ConstraintColoring::kColors; ++color) colors += !world.coloring.At(color).Empty();
+    EXPECT_EQ(colors, 1);
+    EXPECT_FALSE(world.coloring.IsTouched(150));
 }
 
-TEST(Colouring, FixedContactsAreSolvedAfterMovingOnes) {
-    Coloured world(10);
+TEST(Coloring, FixedContactsAreSolvedAfterMovingOnes) {
+    Colored world(10);
     world.Add(0, 1, 9, true);
     world.Add(1, 1, 2, false);
-    EXPECT_GT(world.contacts.at(0).place.colour, world.contacts.at(1).place.colour);
+    EXPECT_GT(world.contacts.at(0).place.color, world.contacts.at(1).place.color);
 }
 
-TEST(Colouring, TheSameCallsGiveTheSameColours) {
-    Coloured a(50), b(50);
+TEST(Coloring, TheSameCallsGiveTheSameColors) {
+    Colored a(50), b(50);
     for (uint32_t i = 0; i < 300; ++i) {
         a.Add(i, i % 50, (i * 7 + 1) % 50, i % 5 == 0);
         b.Add(i, i % 50, (i * 7 + 1) % 50, i % 5 == 0);
-        EXPECT_EQ(a.contacts.at(i).place.colour, b.contacts.at(i).place.colour);
+        EXPECT_EQ(a.contacts.at(i).place.color, b.contacts.at(i).place.color);
         EXPECT_EQ(a.contacts.at(i).place.slot, b.contacts.at(i).place.slot);
     }
 }

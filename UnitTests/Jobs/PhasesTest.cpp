@@ -58,8 +58,8 @@ struct Relay {
     void Run(uint32_t phase, uint32_t block) {
         const std::vector<uint64_t>& from = values_[phase % 2];
         std::vector<uint64_t>& to = values_[(phase + 1) % 2];
-        const uint64_t neighbour = from[(block * 7 + phase) % from.size()];
-        to[block] = Mix(Mix(to[block], from[block]), neighbour);
+        const uint64_t neighbor = from[(block * 7 + phase) % from.size()];
+        to[block] = Mix(Mix(to[block], from[block]), neighbor);
     }
     std::span<const uint32_t> counts_;
     std::vector<uint64_t> values_[2];

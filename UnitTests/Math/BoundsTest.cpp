@@ -11,7 +11,7 @@ TEST(Bounds, AreEmptyUntilSomethingIsIncluded) {
     EXPECT_FALSE(bounds.Overlaps(bounds));
     bounds.Include(Vector3(1, 2, 3));
     EXPECT_FALSE(bounds.IsEmpty());
-    EXPECT_EQ(bounds.Centre(), Vector3(1, 2, 3));
+    EXPECT_EQ(bounds.Center(), Vector3(1, 2, 3));
     EXPECT_EQ(bounds.HalfExtents(), Vector3(0, 0, 0));
 }
 
@@ -19,7 +19,7 @@ TEST(Bounds, GrowToWhatTheyInclude) {
     Bounds bounds;
     bounds.Include(Vector3(1, -2, 3));
     bounds.Include(Vector3(-1, 2, 5));
-    EXPECT_EQ(bounds.Centre(), Vector3(0, 0, 4));
+    EXPECT_EQ(bounds.Center(), Vector3(0, 0, 4));
     EXPECT_EQ(bounds.HalfExtents(), Vector3(1, 2, 1));
     EXPECT_EQ(bounds.HalfArea(), 2.0f * 4.0f + 4.0f * 2.0f + 2.0f * 2.0f);
     Bounds other;

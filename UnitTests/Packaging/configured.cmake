@@ -24,7 +24,7 @@ macro(expect_no command pattern)
   endif()
 endmacro()
 
-# Nothing was chosen: the engine is optimised, the program is as its own build has it.
+# Nothing was chosen: the engine is optimized, the program is as its own build has it.
 configure_consumer(nothing "")
 expect(engine " -O3 -DNDEBUG ")
 expect(engine " -fPIC ")

@@ -1,9 +1,9 @@
 include(${CMAKE_CURRENT_LIST_DIR}/Common.cmake)
 run(${CMAKE_COMMAND} --install ${FULCRUM_BUILD} --prefix ${WORK}/prefix)
 
-file(GLOB_RECURSE licence ${WORK}/prefix/LICENSE)
-if(NOT licence)
-  message(FATAL_ERROR "The licence is not installed")
+file(GLOB_RECURSE license ${WORK}/prefix/LICENSE)
+if(NOT license)
+  message(FATAL_ERROR "The license is not installed")
 endif()
 set(folder ${WORK}/prefix/include/Fulcrum)
 foreach(header Fulcrum.h Version.h Physics/PhysicsSystem.h Collision/Shapes/Primitives.h Math/Vector.h)

@@ -1,5 +1,5 @@
 include(${CMAKE_CURRENT_LIST_DIR}/Common.cmake)
-# Without optimisation: the whole library is compiled again.
+# Without optimization: the whole library is compiled again.
 configure(${CMAKE_CURRENT_LIST_DIR}/Consumer ${WORK}/build "${strict}" -DFULCRUM_SOURCE=${FULCRUM_SOURCE}
   -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DFULCRUM_UNITY=ON -DBUILD_SHARED_LIBS=ON -DFULCRUM_INSTALL=ON
   -DCMAKE_INSTALL_LIBDIR=lib -DCMAKE_INSTALL_INCLUDEDIR=headers)

@@ -82,7 +82,7 @@ TEST(Kinematic, ArrivesWhereItIsMoved) {
     const Quaternion turned = Turn({0, 1, 0}, 0.1);
     ASSERT_TRUE(world.Bodies().MoveKinematic(lift, {0.5, 0.25, -0.125}, turned, static_cast<float>(kStep)));
     world.Step();
-    // Half a metre in one step, in float.
+    // Half a meter in one step, in float.
     EXPECT_LT((world.PositionOf(lift) - Position(0.5, 0.25, -0.125)).norm(), 1e-6);
     EXPECT_NEAR(world.Bodies().GetPose(lift).rotation.y, turned.y, 1e-6);
     EXPECT_NEAR(world.Bodies().GetPose(lift).rotation.w, turned.w, 1e-6);
@@ -189,19 +189,19 @@ TEST(Bodies, AnAddedAndRemovedBodyLeavesTheOthersBitsAlone) {
 
 TEST(Bodies, AreReadAsTheyWereDescribed) {
     TestWorld world;
-    // The centre of mass of this hull is not its origin.
+    // The center of mass of this hull is not its origin.
     const ShapePtr hull = HullOf({{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}});
     const Quaternion turned = Turn({0, 1, 0}, 0.5);
     const BodyId id = world.Add({.shape = hull, .position = {10, 20, 30}, .rotation = turned, .density = 2, .userData = 42});
     EXPECT_LT((world.PositionOf(id) - Position(10, 20, 30)).norm(), 1e-6);
-    EXPECT_GT((world.Bodies().GetCentreOfMass(id) - Position(10, 20, 30)).norm(), 0.5);
+    EXPECT_GT((world.Bodies().GetCenterOfMass(id) - Position(10, 20, 30)).norm(), 0.5);
     EXPECT_NEAR(world.Bodies().GetMass(id), 2 * 8.0 / 6, 1e-5);
     EXPECT_EQ(world.Bodies().GetUserData(id), 42u);
     EXPECT_EQ(world.Bodies().GetShape(id), hull);
     EXPECT_EQ(world.Bodies().GetMotionType(id), MotionType::Dynamic);
 }
 
-TEST(Bodies, ASlightlyLongRotationIsNormalised) {
+TEST(Bodies, ASlightlyLongRotationIsNormalized) {
     TestWorld world;
     const BodyId id = world.Add({.shape = CubeOf(1), .rotation = {0, 0, 0, 1.0005f}});
     EXPECT_EQ(world.Bodies().GetPose(id).rotation.w, 1);

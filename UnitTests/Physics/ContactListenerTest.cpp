@@ -87,7 +87,7 @@ TEST(ModifyContact, IsAskedInEveryStepAboutKeptManifoldsToo) {
             EXPECT_NEAR(std::fabs(point.position.x()), 0.5, 1e-3);
             EXPECT_NEAR(point.separation, 0, 1e-3);
         }
-        EXPECT_LT((contact.Centre() - Position(0, 0, 0)).norm(), 1e-3);
+        EXPECT_LT((contact.Center() - Position(0, 0, 0)).norm(), 1e-3);
         EXPECT_EQ(change.friction, std::sqrt(0.8f * 0.5f));
         EXPECT_EQ(change.restitution, 0.25f);
         change.friction = 0.1f;  // forgotten by the next step
@@ -244,7 +244,7 @@ TEST(ListenerDeterminism, OneThatChangesNothingChangesNoBit) {
 // All that an answer can be, from the ids and the place.
 void AnswerByIds(const ContactView& contact, ContactChange& change) {
     const uint32_t sum = contact.bodyA.index + contact.bodyB.index;
-    const Vector3 place = contact.Centre().cast<float>();
+    const Vector3 place = contact.Center().cast<float>();
     if (sum % 3 == 0) change.friction = 0.1f * static_cast<float>(sum % 7);
     if (sum % 5 == 0) change.restitution = 0.3f;
     if (sum % 2 == 0) change.MoveSurface(contact, contact.bodyB, {0.5f, 0, 0.1f * place.x()});

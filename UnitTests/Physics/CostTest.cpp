@@ -67,7 +67,7 @@ TEST(Cost, SleepersAreNoWork) {
     EXPECT_EQ(world.Report().awakeBodies, 0u);
     EXPECT_EQ(world.Report().pairs, 0u);
     EXPECT_EQ(world.Report().contacts, 0u);
-    EXPECT_EQ(world.Report().colours, 0u);
+    EXPECT_EQ(world.Report().colors, 0u);
 }
 
 }  // namespace

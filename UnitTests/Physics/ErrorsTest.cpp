@@ -204,7 +204,7 @@ TEST(Frozen, ABodyThatTurnsNonFiniteStopsAtItsLastGoodPose) {
     EXPECT_NEAR(world.PositionOf(bad).y(), 5 - 0.5 * kGravity * 0.25, 1e-3);
 }
 
-TEST(Frozen, NeighboursInTouchGoOn) {
+TEST(Frozen, NeighborsInTouchGoOn) {
     TestWorld world(NoSleep());
     world.AddFloor();
     const BodyId below = world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5, 0}});

@@ -1,4 +1,4 @@
-// Far away, no time, changing time steps, many bodies at one point, more contacts than colours.
+// Far away, no time, changing time steps, many bodies at one point, more contacts than colors.
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
 #include <cmath>
@@ -29,11 +29,11 @@ Outcome StackAt(const Position& origin) {
 TEST(FarAway, AStackBehavesAsAtTheOrigin) {
     const Outcome near = StackAt({0, 0, 0});
     ASSERT_NE(near.sleepStep, 0u);
-    for (double kilometres : {10.0, 1000.0, 10000.0}) {
-        const Outcome far = StackAt(Position(1, 0, 0) * kilometres * 1000);
-        EXPECT_EQ(far.sleepStep, near.sleepStep) << kilometres << " km";
+    for (double kilometers : {10.0, 1000.0, 10000.0}) {
+        const Outcome far = StackAt(Position(1, 0, 0) * kilometers * 1000);
+        EXPECT_EQ(far.sleepStep, near.sleepStep) << kilometers << " km";
         for (size_t i = 0; i < near.positions.size(); ++i)
-            EXPECT_LT((far.positions[i] - near.positions[i]).norm(), 1e-3) << kilometres << " km, box " << i;
+            EXPECT_LT((far.positions[i] - near.positions[i]).norm(), 1e-3) << kilometers << " km, box " << i;
     }
 }
 
@@ -124,7 +124,7 @@ TEST(Coincident, SpheresAtOnePointComeApart) {
     for (BodyId id : spheres) EXPECT_LT((world.PositionOf(id) - Position(1, 2, 3)).norm(), 3);
 }
 
-TEST(Colours, APlateWithMoreBodiesThanColoursHoldsThemAll) {
+TEST(Colors, APlateWithMoreBodiesThanColorsHoldsThemAll) {
     TestWorld world(NoSleep());
     const BodyId floor = world.AddFloor();
     const BodyId plate = world.Add({.shape = BoxOf(6, 0.25f, 6), .position = {0, 0.25, 0}, .mass = 1000});
@@ -133,7 +133,7 @@ TEST(Colours, APlateWithMoreBodiesThanColoursHoldsThemAll) {
         boxes.push_back(world.Add({.shape = CubeOf(0.4f), .position = {i % 10 * 1.0 - 4.5, 0.9, i / 10 * 1.0 - 4.5}, .mass = 10}));
     world.Run(3);
     EXPECT_GT(world.Report().overflowConstraints, 0u);
-    EXPECT_LE(world.Report().colours, 64u);
+    EXPECT_LE(world.Report().colors, 64u);
     for (BodyId id : boxes) {
         EXPECT_NEAR(world.PositionOf(id).y(), 0.9, 0.005);
         EXPECT_NEAR(world.ForceBetween(plate, id), 10 * kGravity, 0.01 * 10 * kGravity);

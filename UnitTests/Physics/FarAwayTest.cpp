@@ -16,7 +16,7 @@ constexpr double kDistances[] = {1e4, 1e6, 1e7, 1e9};  // m
 
 using Ids = std::vector<BodyId>;
 
-// Grounds, their surface at y = 0. Meshes and height fields have cells of half a metre.
+// Grounds, their surface at y = 0. Meshes and height fields have cells of half a meter.
 constexpr uint32_t kCells = 24;
 
 ShapePtr MeshGround() {

@@ -104,7 +104,7 @@ TEST(Groups, TakeFiltersOfTheUsersOwn) {
             EXPECT_EQ(ContactsOf({.group = Member(filter, i, i)}, {.group = Member(filter, 0, j)}), (i + j) % 2 == 0 ? 1u : 0u);
 }
 
-// A chain whose balls overlap their neighbours, held together by joints that forbid nothing.
+// A chain whose balls overlap their neighbors, held together by joints that forbid nothing.
 std::vector<BodyId> AddChain(TestWorld& world, const Position& top, std::shared_ptr<const GroupFilter> filter, uint32_t group) {
     std::vector<BodyId> balls;
     for (uint32_t i = 0; i < 5; ++i) {
@@ -126,16 +126,16 @@ std::vector<BodyId> AddChain(TestWorld& world, const Position& top, std::shared_
 }
 
 TEST(Groups, LetThePartsOfARagdollOverlapAndMeetOthers) {
-    const auto neighbours = Table({{0, 1}, {1, 2}, {2, 3}, {3, 4}});
+    const auto neighbors = Table({{0, 1}, {1, 2}, {2, 3}, {3, 4}});
     TestWorld world;
-    const std::vector<BodyId> one = AddChain(world, {0, 5, 0}, neighbours, 1);
+    const std::vector<BodyId> one = AddChain(world, {0, 5, 0}, neighbors, 1);
     world.Run(1);
     EXPECT_EQ(world.Report().contacts, 0u);
     // Joints carry like springs of w = 2 pi 60/s on the reduced mass m / 2: four of them, below each at most four balls.
     const double sag = 4 * 4 * 2 * kGravity / (120 * kPi * 120 * kPi);
     for (size_t i = 0; i < one.size(); ++i) EXPECT_NEAR(world.PositionOf(one[i]).y(), 5 - 0.3 * static_cast<double>(i), sag);
     // Another of the same kind beside it: each ball overlaps that at its side, and those above and below it not quite.
-    AddChain(world, {0.35, 5, 0}, neighbours, 2);
+    AddChain(world, {0.35, 5, 0}, neighbors, 2);
     world.Step();
     EXPECT_EQ(world.Report().contacts, 4u);  // the uppermost are static
 }

@@ -40,7 +40,7 @@ TEST(Incline, HoldsWhatItsFrictionCanHold) {
     world.Run(5);
     const Position settled = world.PositionOf(box);
     world.Run(55);
-    // Doubles are stored at each step, and the solver's impulses are exact to 1e-7: a hundredth of a millimetre a minute.
+    // Doubles are stored at each step, and the solver's impulses are exact to 1e-7: a hundredth of a millimeter a minute.
     EXPECT_LT((world.PositionOf(box) - settled).norm(), 1e-5);
 }
 

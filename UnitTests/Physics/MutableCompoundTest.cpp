@@ -19,15 +19,15 @@ ShapePtr RowOf(int count, float spacing = 1) {
     return MutableOf(children);
 }
 
-TEST(MutableCompoundBody, MassInertiaAndCentreAreThoseOfTheChildren) {
+TEST(MutableCompoundBody, MassInertiaAndCenterAreThoseOfTheChildren) {
     TestWorld world(NoGravity());
     const ShapePtr cube = CubeOf(0.5f);
     const BodyId id = world.Add({.shape = RowOf(1), .position = {10, 20, 30}, .rotation = Turn({0, 0, 1}, 90 * kDegree), .density = 100});
     EXPECT_FLOAT_EQ(world.Bodies().GetMass(id), 100);
     const ChildId second = world.Bodies().AddChild(id, {.shape = cube, .position = {3, 0, 0}, .density = 2}).Value();
-    // 100 kg at 0 and 200 kg at 3 m: the centre at 2 m, which the body's rotation turns upwards.
+    // 100 kg at 0 and 200 kg at 3 m: the center at 2 m, which the body's rotation turns upwards.
     EXPECT_NEAR(world.Bodies().GetMass(id), 300, 1e-3);
-    EXPECT_LT(Position(world.Bodies().GetCentreOfMass(id) - Position(10, 22, 30)).norm(), 1e-5);
+    EXPECT_LT(Position(world.Bodies().GetCenterOfMass(id) - Position(10, 22, 30)).norm(), 1e-5);
     EXPECT_LT(Position(world.PositionOf(id) - Position(10, 20, 30)).norm(), 1e-6);
     // About the vertical axis, along the row: m (1 + 1) / 12; about the others also 100 2^2 + 200 1^2.
     ASSERT_TRUE(world.Bodies().SetVelocity(id, Vector3::Zero(), {0, 1, 0}));
@@ -37,11 +37,11 @@ TEST(MutableCompoundBody, MassInertiaAndCentreAreThoseOfTheChildren) {
     // Without the first the second keeps its 200 kg.
     ASSERT_TRUE(world.Bodies().RemoveChild(id, {0, 0}));
     EXPECT_NEAR(world.Bodies().GetMass(id), 200, 1e-3);
-    EXPECT_LT(Position(world.Bodies().GetCentreOfMass(id) - Position(10, 23, 30)).norm(), 1e-5);
-    // Mass and centre may stay.
+    EXPECT_LT(Position(world.Bodies().GetCenterOfMass(id) - Position(10, 23, 30)).norm(), 1e-5);
+    // Mass and center may stay.
     ASSERT_TRUE(world.Bodies().MoveChild(id, second, {7, 0, 0}, {}, MassUpdate::Keep));
     EXPECT_NEAR(world.Bodies().GetMass(id), 200, 1e-3);
-    EXPECT_LT(Position(world.Bodies().GetCentreOfMass(id) - Position(10, 23, 30)).norm(), 1e-5);
+    EXPECT_LT(Position(world.Bodies().GetCenterOfMass(id) - Position(10, 23, 30)).norm(), 1e-5);
 }
 
 TEST(MutableCompoundBody, MaterialPointsKeepTheirVelocities) {
@@ -58,7 +58,7 @@ TEST(MutableCompoundBody, MaterialPointsKeepTheirVelocities) {
 }
 
 TEST(MutableCompoundBody, ForcesKeepTheirLines) {
-    // A force through what becomes the centre of mass turns nothing.
+    // A force through what becomes the center of mass turns nothing.
     TestWorld world(NoGravity());
     const BodyId id = world.Add({.shape = RowOf(3)});
     ASSERT_TRUE(world.Bodies().AddForceAt(id, {0, 3000, 0}, {0.5, 0, 0}));
@@ -80,7 +80,7 @@ TEST(MutableCompoundBody, WhatRestedOnAChildWakesAndFalls) {
     EXPECT_TRUE(world.Bodies().IsAwake(boxes[2]) && world.Bodies().IsAwake(boxes[6]));
     EXPECT_FALSE(world.Bodies().IsAwake(boxes[0]) || world.Bodies().IsAwake(boxes[4]) || world.Bodies().IsAwake(boxes[8]));
     world.Run(2);
-    // 2 s of fall are 19.6 m, but for what the edges of the neighbours, 0.2 m away, hold up: nothing.
+    // 2 s of fall are 19.6 m, but for what the edges of the neighbors, 0.2 m away, hold up: nothing.
     for (int i : {2, 6}) EXPECT_NEAR(world.PositionOf(boxes[static_cast<size_t>(i)]).y(), 0.8 - 19.62, 0.4) << i;
     for (int i : {0, 1, 3, 4, 5, 7, 8}) EXPECT_NEAR(world.PositionOf(boxes[static_cast<size_t>(i)]).y(), 0.8, 0.01) << i;
 }
@@ -254,7 +254,7 @@ TEST(MutableCompoundBody, EditsThatAreTakenBackLeaveNoBitBehind) {
     TestWorld never, edited;
     build(never);
     const BodyId id = build(edited);
-    // Kept mass properties: not even the centre of mass goes there and back.
+    // Kept mass properties: not even the center of mass goes there and back.
     for (int i = 0; i < 20; ++i) {
         const ChildId child = edited.Bodies().AddChild(id, {.shape = SphereOf(0.5f), .position = {0, 2, 0}}, MassUpdate::Keep).Value();
         ASSERT_TRUE(edited.Bodies().MoveChild(id, {2, 0}, {9, 9, 9}, {}, MassUpdate::Keep));
@@ -277,14 +277,14 @@ TEST(MutableCompoundBody, QueriesSeeTheEditsAndNameTheChild) {
         scene.EditAndStep();
         scene.Edit(scene.raft, scene.ofRaft, 1);
         const Pose pose = scene.world.Bodies().GetPose(scene.raft);
-        const Position centre = scene.world.Bodies().GetCentreOfMass(scene.raft);
+        const Position center = scene.world.Bodies().GetCenterOfMass(scene.raft);
         const Vector3 from = random.Direction() * 5;
-        const Ray ray{centre + from.cast<double>(), from * -1.5f + random.InCube() * 1.5f};
+        const Ray ray{center + from.cast<double>(), from * -1.5f + random.InCube() * 1.5f};
         std::vector<WorldRayHit> all;
         scene.world.System().Queries().CastRayAll(ray, all);
         const auto mine = std::find_if(all.begin(), all.end(), [&](const WorldRayHit& hit) { return hit.body == scene.raft; });
         RayHit expected;
-        const bool isHit = RayCaster(ray).CastClosest(*scene.world.Bodies().GetShape(scene.raft), {centre, pose.rotation}, {}, expected);
+        const bool isHit = RayCaster(ray).CastClosest(*scene.world.Bodies().GetShape(scene.raft), {center, pose.rotation}, {}, expected);
         ASSERT_EQ(mine != all.end(), isHit) << i;
         if (!isHit) continue;
         ++hits;
@@ -301,7 +301,7 @@ TEST(MutableCompoundBody, ASettledStepAllocatesNothing) {
     SystemSettings settings = scene.world.System().Settings();
     settings.sleep.enabled = false;
     ASSERT_TRUE(scene.world.System().SetSettings(settings));
-    scene.world.Steps(1000);  // the last contacts to settle may be the first of their colour
+    scene.world.Steps(1000);  // the last contacts to settle may be the first of their color
     const uint64_t before = AllocationCount();
     for (int i = 0; i < 50; ++i) {
         const Status status = scene.world.System().Update(kStep);

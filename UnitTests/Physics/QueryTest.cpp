@@ -47,8 +47,8 @@ struct Crowd {
         }
     }
     const QueryInterface& Queries() { return world.System().Queries(); }
-    Pose CentrePose(BodyId id) {
-        return {world.Bodies().GetCentreOfMass(id), world.Bodies().GetPose(id).rotation};
+    Pose CenterPose(BodyId id) {
+        return {world.Bodies().GetCenterOfMass(id), world.Bodies().GetPose(id).rotation};
     }
     Ray RandomRay(RandomPoses& random) const {
         const Vector3 from = random.InCube() * 12, to = random.InCube() * 12;
@@ -78,8 +78,8 @@ TEST(Query, RaysHitWhatALoopOverAllBodiesHits) {
         for (BodyId id : crowd.ids) {
             RayHit here;
             const Shape& shape = *crowd.world.Bodies().GetShape(id);
-            caster.CastAll(shape, crowd.CentrePose(id), {}, [&](const RayHit&) { return ++count, true; });
-            if (!caster.CastClosest(shape, crowd.CentrePose(id), {}, here)) continue;
+            caster.CastAll(shape, crowd.CenterPose(id), {}, [&](const RayHit&) { return ++count, true; });
+            if (!caster.CastClosest(shape, crowd.CenterPose(id), {}, here)) continue;
             if (bestBody != BodyId{} && here.fraction >= best.fraction) continue;
             best = here;
             bestBody = id;
@@ -110,23 +110,23 @@ TEST(Query, ShapesHitOverlapAndAreClosestAsALoopOverAllBodiesSays) {
     std::vector<WorldShapeHit> all;
     for (int i = 0; i < 2000; ++i) {
         const MovingShape move = crowd.RandomMove(random, i % 4 == 0);
-        const Pose centre{move.pose.Transform(move.shape->Mass().centreOfMass), move.pose.rotation};
-        const ShapeCaster caster(*move.shape, {centre, move.displacement, move.turn});
+        const Pose center{move.pose.Transform(move.shape->Mass().centerOfMass), move.pose.rotation};
+        const ShapeCaster caster(*move.shape, {center, move.displacement, move.turn});
         float best = 2, closest = 1e9f;
         size_t count = 0, expectedOverlaps = 0;
         for (BodyId id : crowd.ids) {
             ShapeHit here;
             const Shape& shape = *crowd.world.Bodies().GetShape(id);
-            const Pose pose = crowd.CentrePose(id);
+            const Pose pose = crowd.CenterPose(id);
             caster.CastAll(shape, pose, {}, [&](const ShapeHit&) { return ++count, true; });
             if (caster.CastClosest(shape, pose, {}, here)) best = std::min(best, here.fraction);
             ClosestPoints points;
-            if (FindClosestPoints(shape, *move.shape, Relative(pose, centre), 1000, points)) closest = std::min(closest, points.distance);
+            if (FindClosestPoints(shape, *move.shape, Relative(pose, center), 1000, points)) closest = std::min(closest, points.distance);
             if (shape.IsConvex()) {
-                expectedOverlaps += Overlap(shape, *move.shape, Relative(pose, centre));
+                expectedOverlaps += Overlap(shape, *move.shape, Relative(pose, center));
             } else {
                 for (const Compound::Child& child : static_cast<const Compound&>(shape).Children())
-                    expectedOverlaps += Overlap(*child.shape, *move.shape, Relative(pose * child.pose, centre));
+                    expectedOverlaps += Overlap(*child.shape, *move.shape, Relative(pose * child.pose, center));
             }
         }
         WorldShapeHit hit;
@@ -151,9 +151,9 @@ TEST(Query, ShapesHitOverlapAndAreClosestAsALoopOverAllBodiesSays) {
         // What overlaps is among what the broad phase says.
         std::vector<OverlapHit> box;
         const Vector3 reach = Vector3::Constant(move.shape->OuterRadius());
-        crowd.Queries().FindInBox(centre.position - reach.cast<double>(), centre.position + reach.cast<double>(), box);
+        crowd.Queries().FindInBox(center.position - reach.cast<double>(), center.position + reach.cast<double>(), box);
         EXPECT_TRUE(std::includes(box.begin(), box.end(), found.begin(), found.end()));
-        crowd.Queries().FindOnSweep(centre.position - reach.cast<double>(), centre.position + reach.cast<double>(), move.displacement, box);
+        crowd.Queries().FindOnSweep(center.position - reach.cast<double>(), center.position + reach.cast<double>(), move.displacement, box);
         for (const WorldShapeHit& h : all)
             EXPECT_TRUE(std::binary_search(box.begin(), box.end(), OverlapHit{h.body, h.subShape.child})) << i;
     }
@@ -167,7 +167,7 @@ TEST(Query, PointsInside) {
     for (BodyId id : crowd.ids) {
         const Compound* compound = dynamic_cast<const Compound*>(crowd.world.Bodies().GetShape(id).get());
         if (compound) continue;
-        crowd.Queries().FindBodiesAt(crowd.world.Bodies().GetCentreOfMass(id), found);
+        crowd.Queries().FindBodiesAt(crowd.world.Bodies().GetCenterOfMass(id), found);
         EXPECT_TRUE(std::find(found.begin(), found.end(), OverlapHit{id, 0}) != found.end());
     }
     crowd.Queries().FindBodiesAt(Position(100, 0, 0), found);
@@ -207,7 +207,7 @@ TEST(Query, BodiesAreFoundWhereTheyAreNow) {
         }
         ASSERT_TRUE(crowd.world.System().Update(kStep));
         for (BodyId id : crowd.ids) {
-            const Position at = crowd.world.Bodies().GetCentreOfMass(id);
+            const Position at = crowd.world.Bodies().GetCenterOfMass(id);
             const Shape& shape = *crowd.world.Bodies().GetShape(id);
             if (!shape.IsConvex()) continue;
             crowd.Queries().CastRayAll({at - Position(3, 0, 0), Vector3(6, 0, 0)}, hits);
@@ -219,18 +219,18 @@ TEST(Query, BodiesAreFoundWhereTheyAreNow) {
         ASSERT_TRUE(crowd.world.Bodies().SetPose(moved, Position(0, 500, step), {}));
         WorldRayHit hit;
         if (crowd.world.Bodies().GetShape(moved)->IsConvex()) {
-            const Position centre = crowd.world.Bodies().GetCentreOfMass(moved);
-            ASSERT_TRUE(crowd.Queries().CastRay({centre + Position(0, 9, 0), Vector3(0, -9, 0)}, hit));
+            const Position center = crowd.world.Bodies().GetCenterOfMass(moved);
+            ASSERT_TRUE(crowd.Queries().CastRay({center + Position(0, 9, 0), Vector3(0, -9, 0)}, hit));
             EXPECT_EQ(hit.body, moved);
         }
         const BodyId asleep = crowd.ids[static_cast<size_t>(step * 3 + 65)];
         ASSERT_TRUE(crowd.world.Bodies().Sleep(asleep));
-        crowd.Queries().CastRayAll({crowd.world.Bodies().GetCentreOfMass(asleep) - Position(3, 0, 0), Vector3(6, 0, 0)}, hits);
+        crowd.Queries().CastRayAll({crowd.world.Bodies().GetCenterOfMass(asleep) - Position(3, 0, 0), Vector3(6, 0, 0)}, hits);
         EXPECT_TRUE(std::any_of(hits.begin(), hits.end(), [&](const auto& h) { return h.body == asleep; }) ||
                     !crowd.world.Bodies().GetShape(asleep)->IsConvex());
     }
     const BodyId removed = crowd.ids[5];
-    const Position at = crowd.world.Bodies().GetCentreOfMass(removed);
+    const Position at = crowd.world.Bodies().GetCenterOfMass(removed);
     ASSERT_TRUE(crowd.world.Bodies().Remove(removed));
     crowd.Queries().CastRayAll({at - Position(3, 0, 0), Vector3(6, 0, 0)}, hits);
     EXPECT_TRUE(std::none_of(hits.begin(), hits.end(), [&](const auto& h) { return h.body == removed; }));

@@ -83,7 +83,7 @@ TEST(Restitution, OneLosesNothingInTenSeconds) {
         least = std::min(least, world.System().GetEnergy());
         most = std::max(most, world.System().GetEnergy());
     }
-    // About 8 bounces, each at a depth that differs from the last by no more than half a millimetre.
+    // About 8 bounces, each at a depth that differs from the last by no more than half a millimeter.
     const double tolerance = mass * kGravity * 8 * 0.5e-3;
     EXPECT_GT(least, start - tolerance);
     EXPECT_LT(most, start + tolerance);

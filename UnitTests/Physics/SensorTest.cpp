@@ -13,7 +13,7 @@
 namespace fulcrum::testing {
 namespace {
 
-// A step's fraction is a float of times that were found to 1e-6 of the shapes' sizes; those are metres, and so are the ways.
+// A step's fraction is a float of times that were found to 1e-6 of the shapes' sizes; those are meters, and so are the ways.
 constexpr double kTimeError = 1e-5;
 
 TEST(Sensor, ReportsABallThatFliesThroughWithTheTimesOfItsFlight) {
@@ -263,8 +263,8 @@ Sampled SampleOverlaps(const BodySettings& a, const BodySettings& b, int samples
         const double time = static_cast<double>(i) / samples;
         const auto poseOf = [&](const BodySettings& s) {
             const Quaternion turn = RotationFromVector(Vector3(s.angularVelocity * static_cast<float>(time * kStep)));
-            const Position centre = s.position + Rotate(s.rotation, s.shape->Mass().centreOfMass).cast<double>();
-            return Pose{centre + s.linearVelocity.cast<double>() * (time * kStep), Normalized(turn * s.rotation)};
+            const Position center = s.position + Rotate(s.rotation, s.shape->Mass().centerOfMass).cast<double>();
+            return Pose{center + s.linearVelocity.cast<double>() * (time * kStep), Normalized(turn * s.rotation)};
         };
         if (!Overlap(*a.shape, *b.shape, Relative(poseOf(a), poseOf(b)))) continue;
         result.first = std::min(result.first, time);
@@ -293,7 +293,7 @@ TEST(Sensor, AgreesWithSamplesOfWhatTumblesThroughIt) {
         world.Add(body);
         world.Step();
         const std::vector<SensorEvent> events = EventsOf(world);
-        // One sample beside the true times; a cast ends 2e-5 m early, at speeds of some metres a step.
+        // One sample beside the true times; a cast ends 2e-5 m early, at speeds of some meters a step.
         constexpr double kNear = 2.0 / kSamples;
         if (expected.last - expected.first < kNear) continue;  // hardly touched, or not at all
         ASSERT_FALSE(events.empty()) << "case " << i;

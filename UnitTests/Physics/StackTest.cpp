@@ -129,7 +129,7 @@ TEST(Stack, AnOverlapIsResolvedGently) {
 }
 
 TEST(Stack, NothingMovesInAStackAtRest) {
-    // No jitter: awake, at rest, each body's position over a second stays within a tenth of a millimetre.
+    // No jitter: awake, at rest, each body's position over a second stays within a tenth of a millimeter.
     TestWorld world(NoSleep());
     world.AddFloor();
     std::vector<BodyId> stack;

@@ -14,7 +14,7 @@
 namespace fulcrum::testing {
 namespace {
 
-// A grid of cells x cells squares of `size` metres over x and z from (x0, z0), two triangles each.
+// A grid of cells x cells squares of `size` meters over x and z from (x0, z0), two triangles each.
 struct Grid {
     std::vector<Vector3> vertices;
     std::vector<uint32_t> indices;

@@ -174,12 +174,12 @@ void FindByPoint(Twin& twin, Values& values, const CallTargets& targets, Outcome
 
 void FindByBounds(Twin& twin, Values& values, const CallTargets& targets, Outcome& outcome) {
     const QueryInterface& queries = twin.system->Queries();
-    const Position centre = Aim(twin, values, targets);
+    const Position center = Aim(twin, values, targets);
     const Position half(double{values.Size()}, double{values.Size()}, double{values.Size()});
     std::vector<OverlapHit> hits, onRay, onSweep;
-    queries.FindInBox(centre - half, centre + half, hits);
+    queries.FindInBox(center - half, center + half, hits);
     queries.FindOnRay(RandomRay(twin, values, targets), onRay);
-    queries.FindOnSweep(centre - half, centre + half, values.Offset(3), onSweep);
+    queries.FindOnSweep(center - half, center + half, values.Offset(3), onSweep);
     for (const std::vector<OverlapHit>& list : {hits, onRay, onSweep})
         for (const OverlapHit& hit : list) outcome.answer.Add(hit.body);
 }

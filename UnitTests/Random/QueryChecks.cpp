@@ -71,7 +71,7 @@ std::vector<BodyShape> ShapesOf(const PhysicsSystem& system) {
     system.VisitBodies([&](BodyId id) {
         const BodyInterface& bodies = system.Bodies();
         const ShapePtr shape = bodies.GetShape(id);
-        if (!bodies.IsSensor(id)) shapes.push_back({id, shape, CentrePoseOf(*shape, bodies.GetPose(id))});
+        if (!bodies.IsSensor(id)) shapes.push_back({id, shape, CenterPoseOf(*shape, bodies.GetPose(id))});
     });
     return shapes;
 }
@@ -132,15 +132,15 @@ std::string CheckShapeHit(const std::vector<BodyShape>& bodies, const MovingShap
     if (!body) return "a shape hits what is no body";
     if (hit.isEarly) return {};
     const Shape& shape = *moving.shape;
-    Pose centre = CentrePoseOf(shape, moving.pose);
-    centre.position += moving.displacement.cast<double>() * double{hit.fraction};
+    Pose center = CenterPoseOf(shape, moving.pose);
+    center.position += moving.displacement.cast<double>() * double{hit.fraction};
     const float angle = Length(moving.turn);
     if (angle > 100) return {};  // a float's turn about so many radians is not known well enough
-    if (angle > 0) centre.rotation = Normalized(RotationFromVector(Vector3(moving.turn * hit.fraction)) * centre.rotation);
+    if (angle > 0) center.rotation = Normalized(RotationFromVector(Vector3(moving.turn * hit.fraction)) * center.rotation);
     ClosestPoints closest;
-    const RelativePose pose = Relative(body->pose, centre);
+    const RelativePose pose = Relative(body->pose, center);
     const double size = double{shape.OuterRadius()} + double{Length(moving.displacement)} * 0x1p-23;
-    const double tolerance = ToleranceOf(*body, centre.position) + 2e-3 * size;
+    const double tolerance = ToleranceOf(*body, center.position) + 2e-3 * size;
     if (!IsFinite(pose.position) || !FindClosestPoints(*body->shape, shape, pose, FLT_MAX, closest)) return {};
     if (double{closest.distance} > tolerance)
         return Text("a shape hits body ", body->id.index, " at ", hit.fraction, ", but is ", closest.distance, " m away there");
@@ -151,11 +151,11 @@ std::string CompareClosest(const std::vector<BodyShape>& bodies, const PlacedSha
     const bool isFound = closest.body != BodyId{};
     if (isFound && !(IsFinite(closest.normal) && std::isfinite(closest.distance) && IsFinite(closest.onBody) && IsFinite(closest.onQuery)))
         return Text("closest points are not finite", ToText(closest), " of ", closest.onBody.transpose(), " and ", closest.onQuery.transpose());
-    const Pose centre = CentrePoseOf(*placed.shape, placed.pose);
+    const Pose center = CenterPoseOf(*placed.shape, placed.pose);
     for (const BodyShape& body : bodies) {
         ClosestPoints here;
-        if (!FindClosestPoints(*body.shape, *placed.shape, Relative(body.pose, centre), maxDistance, here)) continue;
-        const double tolerance = ToleranceOf(body, centre.position) + 1e-3 * double{placed.shape->OuterRadius()};
+        if (!FindClosestPoints(*body.shape, *placed.shape, Relative(body.pose, center), maxDistance, here)) continue;
+        const double tolerance = ToleranceOf(body, center.position) + 1e-3 * double{placed.shape->OuterRadius()};
         if (std::abs(double{here.distance}) > kBeyondPlanes) continue;
         if (!isFound && double{here.distance} < double{maxDistance} - tolerance)
             return Text("no body is found within ", maxDistance, " m, but body ", body.id.index, " is ", here.distance, " m away");

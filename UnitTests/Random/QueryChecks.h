@@ -20,7 +20,7 @@ std::string Text(const Parts&... parts) {
     return text.str();
 }
 
-// A shape where its body has it: `pose` is that of the shape's centre frame.
+// A shape where its body has it: `pose` is that of the shape's center frame.
 struct BodyShape {
     BodyId id;
     ShapePtr shape;

@@ -113,7 +113,7 @@ ShapePtr Changed(Values& values, const ShapePtr& shape) {
     switch (values.Below(3)) {
         case 0: return OrNull(Scaled(shape, Vector3(s, s, s)));
         case 1: return OrNull(RotatedTranslated(shape, values.Offset(0.5f), values.Rotation()));
-        default: return OrNull(OffsetCentreOfMass(shape, values.Offset(0.1f)));
+        default: return OrNull(OffsetCenterOfMass(shape, values.Offset(0.1f)));
     }
 }
 

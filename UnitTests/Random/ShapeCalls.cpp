@@ -59,8 +59,8 @@ void CastAtShape(Twin&, Values& values, const CallTargets&, Outcome& outcome) {
     motion.displacement = values.Random().InBox(3 * reach);
     if (values.Chance(0.4f)) motion.turn = values.Random().InBox(2);
     ShapeHit hit;
-    const Position centre = motion.pose.Transform(moving->Mass().centreOfMass);
-    const ShapeCaster caster(*motion.shape, {{centre, motion.pose.rotation}, motion.displacement, motion.turn});
+    const Position center = motion.pose.Transform(moving->Mass().centerOfMass);
+    const ShapeCaster caster(*motion.shape, {{center, motion.pose.rotation}, motion.displacement, motion.turn});
     if (!caster.CastClosest(*rest, body.pose, {}, hit)) return;
     outcome.answer.Add(hit.fraction);
     outcome.failure = CheckShapeHit({body}, motion, {body.id, hit.subShape, hit.fraction, hit.normal, hit.position, hit.depth, hit.isEarly});

@@ -9,7 +9,7 @@ namespace {
 void AddBody(const BodyInterface& bodies, BodyId id, BitHash& hash) {
     hash.Add(id);
     hash.Add(bodies.GetPose(id));
-    hash.Add(bodies.GetCentreOfMass(id));
+    hash.Add(bodies.GetCenterOfMass(id));
     hash.Add(bodies.GetLinearVelocity(id));
     hash.Add(bodies.GetAngularVelocity(id));
     hash.Add(bodies.GetAngularMomentum(id));
@@ -28,7 +28,7 @@ void AddBody(const BodyInterface& bodies, BodyId id, BitHash& hash) {
         hash.Add(shape->Type());
         hash.Add(shape->LocalBounds().lower);
         hash.Add(shape->LocalBounds().upper);
-        hash.Add(shape->Mass().centreOfMass);
+        hash.Add(shape->Mass().centerOfMass);
     }
     if (const MutableCompound* children = bodies.GetChildren(id)) hash.Add(children->Count());
 }
@@ -106,7 +106,7 @@ void CheckBodies(const Twin& twin, Complaints& complaints) {
         complaints.Finite("body: position", id.index, pose.position);
         complaints.Finite("body: rotation", id.index, pose.rotation);
         complaints.Holds("body: rotation is no unit quaternion", id.index, std::abs(LengthSquared(pose.rotation) - 1) < 1e-4f);
-        complaints.Finite("body: centre of mass", id.index, bodies.GetCentreOfMass(id));
+        complaints.Finite("body: center of mass", id.index, bodies.GetCenterOfMass(id));
         complaints.Finite("body: linear velocity", id.index, bodies.GetLinearVelocity(id));
         complaints.Finite("body: angular velocity", id.index, bodies.GetAngularVelocity(id));
         complaints.Finite("body: kinetic energy", id.index, bodies.GetKineticEnergy(id));

@@ -80,7 +80,7 @@ TEST(CoincidentBodies, TwoOfAKindPart) {
             burst.Run(2);
             EXPECT_LT(burst.world.Report().largestPenetration, 0.01f) << ShapeTypeName(shape->Type());
             EXPECT_LT(burst.fastest, 5) << ShapeTypeName(shape->Type());
-            const double moved = (burst.world.Bodies().GetCentreOfMass(burst.ids[0]) - burst.world.Bodies().GetCentreOfMass(burst.ids[1])).norm();
+            const double moved = (burst.world.Bodies().GetCenterOfMass(burst.ids[0]) - burst.world.Bodies().GetCenterOfMass(burst.ids[1])).norm();
             EXPECT_GT(moved, 0.1) << ShapeTypeName(shape->Type());
         }
     }

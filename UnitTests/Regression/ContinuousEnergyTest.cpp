@@ -17,7 +17,7 @@ constexpr int kDrops = kIsSanitized ? 4 : 24;
 
 struct Case {
     ShapePtr shape;
-    double least;  // m, of the centre above the ground
+    double least;  // m, of the center above the ground
 };
 
 std::vector<Case> Cases() {
@@ -33,7 +33,7 @@ std::vector<Case> Cases() {
 
 double EnergyOf(TestWorld& world, BodyId id, double least) {
     const BodyInterface& bodies = world.Bodies();
-    return bodies.GetKineticEnergy(id) + double{bodies.GetMass(id)} * kGravity * (bodies.GetCentreOfMass(id).y() - least);
+    return bodies.GetKineticEnergy(id) + double{bodies.GetMass(id)} * kGravity * (bodies.GetCenterOfMass(id).y() - least);
 }
 
 BodySettings Thrown(RandomPoses& random, const ShapePtr& shape, const Position& at, ContinuousCollision kind) {
@@ -188,7 +188,7 @@ TEST(ContinuousEnergy, WhatABulletHitsInAStackMovesOnInTheSameStep) {
 }
 
 // But not into what stands behind it.
-TEST(ContinuousEnergy, WhatABulletHitsStopsAtItsNeighbour) {
+TEST(ContinuousEnergy, WhatABulletHitsStopsAtItsNeighbor) {
     TestWorld world;
     world.AddFloor();
     std::vector<BodyId> row;

@@ -109,7 +109,7 @@ TEST(MechanismsFarApart, RagdollFollowsAPart) {
             }
 }
 
-// Ragdolls that fall on each other from 15 m: joints that the fall tears open are pulled while the pile keeps them centimetres apart. Moved
+// Ragdolls that fall on each other from 15 m: joints that the fall tears open are pulled while the pile keeps them centimeters apart. Moved
 // without turning to the end, as from afar, limbs whirled by up to two turns a step, and joints were 0.25 to 0.5 m open.
 TEST(MechanismsFarApart, LimbsUnderAPileAreNotWhirled) {
     SceneInput input;

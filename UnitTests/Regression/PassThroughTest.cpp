@@ -19,9 +19,9 @@ constexpr float kHalf = 0.2f;  // m, of the cubes
 
 // m, by the shapes alone.
 float DepthOf(TestWorld& world, BodyId a, BodyId b) {
-    const auto centre = [&](BodyId id) { return Pose{world.Bodies().GetCentreOfMass(id), world.Bodies().GetPose(id).rotation}; };
+    const auto center = [&](BodyId id) { return Pose{world.Bodies().GetCenterOfMass(id), world.Bodies().GetPose(id).rotation}; };
     ClosestPoints closest;
-    const bool overlap = FindClosestPoints(*world.Bodies().GetShape(a), *world.Bodies().GetShape(b), Relative(centre(a), centre(b)), 0, closest);
+    const bool overlap = FindClosestPoints(*world.Bodies().GetShape(a), *world.Bodies().GetShape(b), Relative(center(a), center(b)), 0, closest);
     return overlap ? -closest.distance : 0.0f;
 }
 

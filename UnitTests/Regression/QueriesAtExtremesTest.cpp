@@ -252,8 +252,8 @@ TEST(QueriesAtExtremes, ATriangleThatIsCastTouchesWhatItHits) {
             MovingShape moving{triangle.Value().get(), {random.InBox(2 * reach).cast<double>(), random.Rotation()}, random.InBox(4 * reach)};
             if (random.Chance(0.3f)) moving.turn = random.InBox(2);
             ShapeHit hit;
-            const Pose centre{moving.pose.Transform(triangle.Value()->Mass().centreOfMass), moving.pose.rotation};
-            const ShapeCaster caster(*triangle.Value(), {centre, moving.displacement, moving.turn});
+            const Pose center{moving.pose.Transform(triangle.Value()->Mass().centerOfMass), moving.pose.rotation};
+            const ShapeCaster caster(*triangle.Value(), {center, moving.displacement, moving.turn});
             if (!caster.CastClosest(*rest, body.pose, {}, hit)) continue;
             ++hits;
             EXPECT_EQ(CheckShapeHit({body}, moving, {body.id, hit.subShape, hit.fraction, hit.normal, hit.position, hit.depth, hit.isEarly}), "")

@@ -20,12 +20,12 @@ struct Limited {
 
 // After each step: no speed above its limit, no way longer than it allows, and no more bodies counted than there are.
 void StepAndCheck(TestWorld& world, std::vector<Limited>& bodies, double dt = kStep) {
-    for (Limited& body : bodies) body.before = world.Bodies().GetCentreOfMass(body.id);
+    for (Limited& body : bodies) body.before = world.Bodies().GetCenterOfMass(body.id);
     world.Step(dt);
     for (const Limited& body : bodies) {
         EXPECT_LE(Length(world.VelocityOf(body.id)), body.linear * kRounding) << "step " << world.Report().step << ", body " << body.id.index;
         EXPECT_LE(Length(world.Bodies().GetAngularVelocity(body.id)), body.angular * kRounding) << "step " << world.Report().step << ", body " << body.id.index;
-        const double way = (world.Bodies().GetCentreOfMass(body.id) - body.before).norm();
+        const double way = (world.Bodies().GetCenterOfMass(body.id) - body.before).norm();
         // Positions lie on a grid of 2^-23 m.
         EXPECT_LE(way, double{body.linear} * dt * (1 + 1e-5) + 1e-6) << "step " << world.Report().step << ", body " << body.id.index;
     }
@@ -63,7 +63,7 @@ TEST(SpeedLimits, HoldForWhatJointsPull) {
     std::vector<Limited> bodies;
     BodyId before = AddHook(world);
     for (int i = 0; i < 8; ++i) {
-        // Apart by metres: pulled together at up to 20 m/s.
+        // Apart by meters: pulled together at up to 20 m/s.
         const BodyId link = world.Add({.shape = CubeOf(0.1f), .position = {2.0 * i, 3, 0}, .maxLinearSpeed = 3, .maxAngularSpeed = 5});
         PointJointSettings joint;
         static_cast<JointSettings&>(joint) = Between(before, link, {0, 0, 0});

@@ -128,7 +128,7 @@ TEST_F(JointRecording, RodThatIsTooShortIsAnErrorAndASpringIsNot) {
     rod.anchorB = AnchorAt({1, 5, 0});
     rod.minDistance = rod.maxDistance = 1.5f;
     const JointId id = Join(world_, rod);
-    // Half a metre, within rounding of the places.
+    // Half a meter, within rounding of the places.
     EXPECT_NEAR(Collect().errors.distance, 0.5f, 1e-5f);
     ASSERT_TRUE(JointsOf(world_).Remove(id));
     rod.spring.frequency = 1;

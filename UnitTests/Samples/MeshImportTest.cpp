@@ -69,7 +69,7 @@ TEST_F(MeshFiles, ACubeBecomesAHullOf8VerticesAnd1m) {
     ASSERT_TRUE(hull);
     EXPECT_EQ(hull->Vertices().size(), 8u);
     EXPECT_NEAR(hull->Mass().volume, 1, 1e-5);
-    EXPECT_LT(Length(hull->Mass().centreOfMass), 1e-5f);  // centred on its bounds
+    EXPECT_LT(Length(hull->Mass().centerOfMass), 1e-5f);  // centered on its bounds
     EXPECT_DOUBLE_EQ(read.Value().fileSize, 4);
     EXPECT_TRUE(read.Value().warnings.empty());
 }
@@ -142,7 +142,7 @@ TEST_F(MeshFiles, AHeapOfOneLandsInItsTray) {
     EXPECT_EQ(world.Value()->watched.size(), 12u);
     EXPECT_EQ(world.Value()->NonFiniteBodies(), 0);
     EXPECT_EQ(kDropScene.accuracy(*world.Value()), 0);
-    for (BodyId id : world.Value()->watched) EXPECT_LT(world.Value()->Bodies().GetCentreOfMass(id).y(), 2.5);
+    for (BodyId id : world.Value()->watched) EXPECT_LT(world.Value()->Bodies().GetCenterOfMass(id).y(), 2.5);
 }
 
 // ---- Triangles to drop onto
@@ -285,7 +285,7 @@ TEST_F(MeshGrounds, BodiesLandOnTheSheet) {
     EXPECT_EQ(kDropOntoScene.accuracy(*world.Value()), 0);
     for (BodyId id : world.Value()->watched) {
         // Above the sheet at 10 x (1 - distance from its middle), or beside it on the floor; half a cube higher.
-        EXPECT_GT(world.Value()->Bodies().GetCentreOfMass(id).y(), 0.4);
+        EXPECT_GT(world.Value()->Bodies().GetCenterOfMass(id).y(), 0.4);
         EXPECT_LT(Length(world.Value()->Bodies().GetLinearVelocity(id)), 2);
     }
 }

@@ -165,7 +165,7 @@ TEST(RagdollJson, ErrorsNameThePath) {
     ExpectError("/parts/3", 3, "parts[3]: it must be an object");
     ExpectError("/parts/3/name", 3, "parts[3].name: of type number; it must be a string");
     ExpectError("/parts/2/name", nullptr, "parts[2].name is empty");
-    ExpectError("/parts/3/colour", "red", "parts[3].colour: an unknown name");
+    ExpectError("/parts/3/color", "red", "parts[3].color: an unknown name");
     ExpectError("/parts/3/parent", "tail", "parts[3].parent: no part before has the name \"tail\"");
     ExpectError("/parts/0/parent", "head", "parts[0].parent: no part before");
     ExpectError("/parts/3/parent", nullptr, "parts[3].parent is -1");

@@ -76,9 +76,9 @@ TEST(ViewerDrawings, ColumnIsAsTheHeaderDescribesIt) {
     Recording recording;
     Append(recording, {{{1, 0, 0}, {1, 2, 0}, 3}, {{1, 0, -1}, {0, 0, 0}, 3}}, {{{0, 5, 0}, 1}});
     Append(recording, {{{1, 0, 0}, {1, 3, 0}, 2}}, {});
-    // In steps of 1 m, zigzag. Frame 0: two lines. The first is expected at the origin with the colour 0: colour 3, from
-    // (1, 0, 0), to (1, 2, 0). The second with the colour of the first and both ends where that begins: colour 0, from
-    // (0, 0, -1), to (-1, 0, 0). One point. Frame 1: one line, by the first of frame 0: colour -1, to (0, 1, 0).
+    // In steps of 1 m, zigzag. Frame 0: two lines. The first is expected at the origin with the color 0: color 3, from
+    // (1, 0, 0), to (1, 2, 0). The second with the color of the first and both ends where that begins: color 0, from
+    // (0, 0, -1), to (-1, 0, 0). One point. Frame 1: one line, by the first of frame 0: color -1, to (0, 1, 0).
     EXPECT_EQ(DrawingColumn(recording, 1), Bytes({2, 6, 2, 0, 0, 2, 4, 0, 0, 0, 0, 1, 1, 0, 0, 1, 2, 0, 10, 0,
                                                   1, 1, 0, 0, 0, 0, 2, 0, 0}));
     const auto header = DrawingHeader(recording, 1);
@@ -123,7 +123,7 @@ TEST(Recorder, TakesWhatTheSceneDrewInEachFrame) {
     // Two boxes, a ray, two boxes and a line of the sweep.
     EXPECT_EQ(frames[1].lines.size(), 2 * 12 + 1 + 2 * 12 + 1u);
     EXPECT_EQ(frames[2].lines.size(), frames[1].lines.size());
-    EXPECT_EQ(frames[1].lines[24].colour, static_cast<uint32_t>(Ink::Path));
+    EXPECT_EQ(frames[1].lines[24].color, static_cast<uint32_t>(Ink::Path));
     EXPECT_LT(Length(frames[1].lines[24].from - Vector3(-7, 1.2f, frames[1].lines[24].to.z())), 1e-5f);
 }
 

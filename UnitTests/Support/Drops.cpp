@@ -117,7 +117,7 @@ private:
     double EnergyOf(size_t group) const {
         const BodyInterface& bodies = system_->Bodies();
         double sum = 0;
-        for (const BodyId id : groups_[group]) sum += bodies.GetKineticEnergy(id) + double{bodies.GetMass(id)} * gravity_ * bodies.GetCentreOfMass(id).y();
+        for (const BodyId id : groups_[group]) sum += bodies.GetKineticEnergy(id) + double{bodies.GetMass(id)} * gravity_ * bodies.GetCenterOfMass(id).y();
         return sum;
     }
 

@@ -20,7 +20,7 @@ struct DropSettings {
     double dt = 1.0 / 60;  // s
 };
 
-// A mesh of 80 m by 80 m about the origin, its cells 2 m; of its corners every fifth or so stands up by `height` metres.
+// A mesh of 80 m by 80 m about the origin, its cells 2 m; of its corners every fifth or so stands up by `height` meters.
 ShapePtr HillyGround(float height);
 
 // "Floor, 1 of Linear, restitution 0.5, ...".

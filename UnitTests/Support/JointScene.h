@@ -10,7 +10,7 @@ inline constexpr int kJointSceneSteps = 240;
 
 // Fills the world; call BeforeStep before each step of kStep seconds. Mechanisms of all kinds with limits, motors, friction and
 // springs, some in a plane; a chain whose load makes it a tree; a curtain large enough that all workers share it; a body with
-// more joints than there are colours; ragdolls and a car on the floor; what sleeps until it is hit. Joints break, are removed,
+// more joints than there are colors; ragdolls and a car on the floor; what sleeps until it is hit. Joints break, are removed,
 // and are switched off and on.
 class JointScene {
 public:

@@ -217,7 +217,7 @@ void JointScene::AddCurtain() {
     world_.Add({.shape = SphereOf(0.5f), .position = {24, 5, 2}, .linearVelocity = {0, 3, 9}, .density = 300});
 }
 
-// More springs than colours.
+// More springs than colors.
 void JointScene::AddHub() {
     hub_ = AddPart(world_, SphereOf(0.5f), {-16, 5, -8}, 50);
     for (int i = 0; i < 68; ++i) {

@@ -1,7 +1,7 @@
 // All bodies as instanced meshes, one for each geometry, moving bodies, fixed ones and sensors apart. Those that move, come or go
 // come first in each mesh, so that a frame touches and uploads no more than what changes.
 import { Color, InstancedMesh, Matrix4, MeshStandardMaterial, Quaternion, Sphere, Vector3 } from 'three';
-import { SELECTED, colourOf } from './colours.js';
+import { SELECTED, colorOf } from './colors.js';
 import { Glass, SENSOR } from './glass.js';
 import { isAlwaysTheSame } from './presence.js';
 import { GeometryChoice, leavesOf } from './shapes.js';
@@ -39,7 +39,7 @@ export class Bodies {
 
   update(mode, top) {
     this.#placeAll(false);
-    this.#colourAll(mode, top);
+    this.#colorAll(mode, top);
   }
 
   // The body that the ray meets first, or -1. Through a sensor one picks the dynamic body that is seen in or behind it.
@@ -123,19 +123,19 @@ export class Bodies {
     }
   }
 
-  // Resting bodies need a colour only when the mode or the selection changes.
-  #colourAll(mode, top) {
-    const colour = new Color();
+  // Resting bodies need a color only when the mode or the selection changes.
+  #colorAll(mode, top) {
+    const color = new Color();
     const state = `${mode} ${this.selected}`;
-    const andResting = state !== this.colouredFor;
-    this.colouredFor = state;
+    const andResting = state !== this.coloredFor;
+    this.coloredFor = state;
     for (const { mesh, leaves, moving } of this.meshes) {
       const count = andResting ? leaves.length : moving;
       for (let i = 0; i < count; ++i) {
         const { body } = leaves[i];
-        if (body === this.selected) colour.copy(SELECTED);
-        else colourOf(mode, this.timeline, body, top, colour);
-        colour.toArray(mesh.instanceColor.array, 3 * i);
+        if (body === this.selected) color.copy(SELECTED);
+        else colorOf(mode, this.timeline, body, top, color);
+        color.toArray(mesh.instanceColor.array, 3 * i);
       }
       if (count > 0) this.#upload(mesh.instanceColor, 3 * count);
     }

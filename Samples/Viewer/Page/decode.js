@@ -103,7 +103,7 @@ function decodeContacts(header, reader) {
   });
 }
 
-// `bytes`: the recording, inflated. Lengths in metres, times in seconds.
+// `bytes`: the recording, inflated. Lengths in meters, times in seconds.
 export function decode(bytes) {
   const { header, readers } = columnsOf(bytes);
   const bodyCount = header.bodies.shapes.length;

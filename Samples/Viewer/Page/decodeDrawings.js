@@ -4,21 +4,21 @@
 function decodeKind(reader, places, latest, step) {
   const count = reader.unsigned();
   latest.length = Math.min(latest.length, count);
-  const result = { count, places: new Float32Array(places * count), colours: new Uint32Array(count) };
+  const result = { count, places: new Float32Array(places * count), colors: new Uint32Array(count) };
   for (let i = 0; i < count; ++i) {
     if (i === latest.length) {
-      const before = latest[i - 1] ?? { colour: 0, steps: new Float64Array(places) };
-      latest.push({ colour: before.colour, steps: before.steps.map((_, k) => before.steps[k % 3]) });
+      const before = latest[i - 1] ?? { color: 0, steps: new Float64Array(places) };
+      latest.push({ color: before.color, steps: before.steps.map((_, k) => before.steps[k % 3]) });
     }
     const item = latest[i];
-    item.colour += reader.signed();
+    item.color += reader.signed();
     for (let k = 0; k < places; ++k) result.places[places * i + k] = (item.steps[k] += reader.signed()) * step;
-    result.colours[i] = item.colour;
+    result.colors[i] = item.color;
   }
   return result;
 }
 
-// One of each frame: lines (six numbers a place) and points (three), metres, with colours 0xRRGGBB. Empty where nothing is
+// One of each frame: lines (six numbers a place) and points (three), meters, with colors 0xRRGGBB. Empty where nothing is
 // drawn in any frame.
 export function decodeDrawings(header, reader) {
   const { step, mostLines, mostPoints } = header.drawings;

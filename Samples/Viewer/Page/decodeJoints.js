@@ -50,7 +50,7 @@ function decodeStates(joints, frameCount, step, reader) {
   }
 }
 
-// `readers`: of the three columns. Errors are in metres and radians, one a frame.
+// `readers`: of the three columns. Errors are in meters and radians, one a frame.
 export function decodeJoints(header, [constants, states, errors]) {
   const { count, step, errorStep } = header.joints;
   if (count === 0) return { joints: [], jointErrors: [] };

@@ -1,4 +1,4 @@
-// What the scene drew into a frame: lines and points with colours of their own.
+// What the scene drew into a frame: lines and points with colors of their own.
 import { Color, Vector3 } from 'three';
 import { Dots, Lines } from './strokes.js';
 
@@ -18,11 +18,11 @@ export class Drawings {
     this.shown = drawing;
     this.lines.begin();
     this.dots.begin();
-    const from = new Vector3(), to = new Vector3(), colour = new Color();
+    const from = new Vector3(), to = new Vector3(), color = new Color();
     const { lines, points } = drawing;
     for (let i = 0; i < lines.count; ++i)
-      this.lines.line(from.fromArray(lines.places, 6 * i), to.fromArray(lines.places, 6 * i + 3), colour.set(lines.colours[i]));
-    for (let i = 0; i < points.count; ++i) this.dots.dot(from.fromArray(points.places, 3 * i), colour.set(points.colours[i]));
+      this.lines.line(from.fromArray(lines.places, 6 * i), to.fromArray(lines.places, 6 * i + 3), color.set(lines.colors[i]));
+    for (let i = 0; i < points.count; ++i) this.dots.dot(from.fromArray(points.places, 3 * i), color.set(points.colors[i]));
     this.lines.end();
     this.dots.end();
   }

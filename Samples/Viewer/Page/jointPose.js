@@ -75,7 +75,7 @@ export function lengthOf(joint, pose) {
   return joint.kind === 'pulley' ? ropeLength(joint, pose) : pose.offset.length();
 }
 
-// { distance, angle } in metres and radians, of what the joint locks; of a rod or rope how far it is out of its range.
+// { distance, angle } in meters and radians, of what the joint locks; of a rod or rope how far it is out of its range.
 export function errorOf(joint, pose, limits) {
   let distance = 0, angle = 0;
   const { offset, relative } = pose;

@@ -28,9 +28,9 @@ class Part {
   }
   // A small cross where a range along `axis` ends.
   tick(axis, at, size) {
-    const centre = AXES[axis].map((n) => n * at);
+    const center = AXES[axis].map((n) => n * at);
     for (const other of [(axis + 1) % 3, (axis + 2) % 3]) {
-      const end = (side) => centre.map((n, k) => n + side * size * AXES[other][k]);
+      const end = (side) => center.map((n, k) => n + side * size * AXES[other][k]);
       this.line(end(-1), end(1));
     }
   }
@@ -55,12 +55,12 @@ function sector(part, u, v, range, radius, shift = 0) {
     part.strip(arc(u, v, radius, 0, FULL, shift));
     return;
   }
-  const edge = arc(u, v, radius, range[0], range[1], shift), centre = [0, 0, 0];
-  centre[3 - u - v] = shift;
+  const edge = arc(u, v, radius, range[0], range[1], shift), center = [0, 0, 0];
+  center[3 - u - v] = shift;
   part.strip(edge);
-  part.line(centre, edge[0]);
-  part.line(centre, edge[edge.length - 1]);
-  part.fan(centre, edge);
+  part.line(center, edge[0]);
+  part.line(center, edge[edge.length - 1]);
+  part.fan(center, edge);
 }
 
 // The range of a way along an axis: a line with a tick at each end that there is. An endless side goes on for a bit.
@@ -191,7 +191,7 @@ const byKind = {
   },
 };
 
-// `size`: radius of arcs and cones, metres. `pose`: as the joint is when it is first drawn.
+// `size`: radius of arcs and cones, meters. `pose`: as the joint is when it is first drawn.
 export function limitShape(joint, limits, size, pose) {
   const shape = {};
   byKind[joint.kind]?.((frame) => (shape[frame] ??= new Part()), joint, limits, size, pose);

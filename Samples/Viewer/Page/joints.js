@@ -12,7 +12,7 @@ const NEEDLE = new Color('#161a22');
 const AT_LIMIT = new Color('#f05a00');
 const SLACK = new Color('#7d8894');
 const ERRORS = ['#2a9d4a', '#f0c419', '#d00000'].map((hex) => new Color(hex));
-const LEAST_ERROR = 3e-4, LARGEST_ERROR = 3e-2; // m or rad, the ends of the colours' scale
+const LEAST_ERROR = 3e-4, LARGEST_ERROR = 3e-2; // m or rad, the ends of the colors' scale
 
 // Of more joints than these only the dots and gaps are drawn, or those and the frames; of the selected body's all.
 export const MOST_WITH_LIMITS = 200, MOST_WITH_FRAMES = 3000;
@@ -21,13 +21,13 @@ const CROSS = [0, 1, 2].map((axis) => [0, 0, 0, ...[0, 1, 2].map((k) => (k === a
 const ONE = new Vector3(1, 1, 1);
 const X = new Vector3(1, 0, 0);
 
-export function errorColour({ distance, angle }, out) {
+export function errorColor({ distance, angle }, out) {
   const error = Math.max(distance, angle, 1e-9);
   const at = 2 * Math.min(1, Math.max(0, Math.log(error / LEAST_ERROR) / Math.log(LARGEST_ERROR / LEAST_ERROR)));
   return at < 1 ? out.lerpColors(ERRORS[0], ERRORS[1], at) : out.lerpColors(ERRORS[1], ERRORS[2], at - 1);
 }
 
-// How large each joint is drawn, metres: as the smaller of its moving bodies, less where joints of a body are close together.
+// How large each joint is drawn, meters: as the smaller of its moving bodies, less where joints of a body are close together.
 function sizesOf(recording, timeline, subject) {
   const { bodies, shapes, joints } = recording;
   const radii = shapes.map((_, index) => outerRadius(shapes, index));
@@ -191,13 +191,13 @@ export class Joints {
     draw[joint.kind]?.();
   }
 
-  // The dot at B's anchor and the line from A's, in the colour of the error; ropes and rods as they are.
+  // The dot at B's anchor and the line from A's, in the color of the error; ropes and rods as they are.
   #drawConnection(joint, limits, pose) {
-    const { a, b } = pose, colour = errorColour(this.error(joint, limits), new Color());
+    const { a, b } = pose, color = errorColor(this.error(joint, limits), new Color());
     const isRope = joint.kind === 'distance' || joint.kind === 'pulley';
     if (isRope) {
       const isTaut = !joint.isHardLength || lengthOf(joint, pose) > limits[0][1] * 0.999;
-      const rope = isTaut ? colour : SLACK;
+      const rope = isTaut ? color : SLACK;
       const knots = joint.points.map((point) => new Vector3().fromArray(point));
       const places = [a.position, ...knots, b.position];
       for (let i = 0; i + 1 < places.length; ++i) (knots.length > 0 && i === 1 ? this.fine : this.bold).line(places[i], places[i + 1], rope);
@@ -207,11 +207,11 @@ export class Joints {
       if (joint.linearLock === 'line') foot.setComponent(joint.line, pose.offset.getComponent(joint.line));
       foot.applyQuaternion(a.rotation).add(a.position);
       // A shorter one is behind the dot.
-      if (foot.distanceTo(b.position) > 0.01 * this.sizes[joint.id]) this.bold.line(foot, b.position, colour);
+      if (foot.distanceTo(b.position) > 0.01 * this.sizes[joint.id]) this.bold.line(foot, b.position, color);
     } else if (joint.kind !== 'path') {
       this.fine.line(a.position, b.position, SLACK);
     }
-    this.dots.dot(b.position, colour);
+    this.dots.dot(b.position, color);
   }
 }
 
@@ -222,7 +222,7 @@ export function jointSummary(recording, frame) {
   return { count: recording.joints.length, enabled, ...recording.jointErrors[whole] };
 }
 
-const byHex = (colour) => `#${colour.getHexString()}`;
+const byHex = (color) => `#${color.getHexString()}`;
 
 export function jointLegend() {
   return `<div>joint error, mm or mrad</div><div class="scale" style="background:linear-gradient(90deg,${ERRORS.map(byHex).join(',')})"></div>` +

@@ -1,10 +1,10 @@
 // Puts the page together: unpacks the recording, plays it, answers the controls.
 //
-// The address may say what to show: #frame=120&camera=x,y,z,tx,ty,tz&colour=island&body=7&joints=1&drawings=1&contacts=1&normals=1&bounds=1&bare=1.
+// The address may say what to show: #frame=120&camera=x,y,z,tx,ty,tz&color=island&body=7&joints=1&drawings=1&contacts=1&normals=1&bounds=1&bare=1.
 // Scripts and tests use window.fulcrum, which is there once the page is ready.
 import { Raycaster, Vector2 } from 'three';
 import { Bodies } from './bodies.js';
-import { MODES, legend, topSpeed } from './colours.js';
+import { MODES, legend, topSpeed } from './colors.js';
 import { unpack } from './decode.js';
 import { Drawings } from './drawings.js';
 import { Joints, MOST_WITH_LIMITS, jointLegend, jointSummary } from './joints.js';
@@ -51,7 +51,7 @@ class Viewer {
 
   setMode(mode) {
     this.mode = MODES.includes(mode) ? mode : 'island';
-    document.querySelector(`input[name=colour][value=${this.mode}]`).checked = true;
+    document.querySelector(`input[name=color][value=${this.mode}]`).checked = true;
     this.#showLegend();
     this.draw();
   }
@@ -140,7 +140,7 @@ class Viewer {
     element('play').addEventListener('click', () => this.setPlaying(!this.isPlaying));
     element('back').addEventListener('click', () => this.step(-1));
     element('forward').addEventListener('click', () => this.step(1));
-    element('colours').addEventListener('change', (event) => this.setMode(event.target.value));
+    element('colors').addEventListener('change', (event) => this.setMode(event.target.value));
     element('toggles').addEventListener('change', (event) => this.show(event.target.value, event.target.checked));
     this.stage.controls.addEventListener('change', () => this.draw());
     new ResizeObserver(() => {
@@ -201,7 +201,7 @@ function applyAddress(viewer) {
     viewer.stage.controls.target.set(...camera.slice(3));
     viewer.stage.controls.update();
   }
-  if (wanted.has('colour')) viewer.setMode(wanted.get('colour'));
+  if (wanted.has('color')) viewer.setMode(wanted.get('color'));
   for (const what of ['joints', 'drawings', 'contacts', 'normals', 'bounds', 'grid', 'solid']) if (wanted.has(what)) viewer.show(what, wanted.get(what) === '1');
   if (wanted.has('body')) viewer.select(Number(wanted.get('body')));
   if (wanted.has('frame')) viewer.seek(Number(wanted.get('frame')));
@@ -217,7 +217,7 @@ function publish(viewer) {
     get playing() { return viewer.isPlaying; },
     seek(frame) { viewer.seek(frame); viewer.drawNow(); },
     play() { viewer.setPlaying(true); },
-    colour(mode) { viewer.setMode(mode); viewer.drawNow(); },
+    color(mode) { viewer.setMode(mode); viewer.drawNow(); },
     show(what, isShown) { viewer.show(what, isShown); viewer.drawNow(); },
     pick(x, y) { return viewer.pick(x, y); },
     body(id) { return bodyInfo(recording, timeline, id); },

@@ -68,24 +68,24 @@ export class Contacts {
     this.normals = new SeenThrough(stage, lines(IN_SIGHT, 1), lines(HIDDEN, 0.1));
   }
 
-  // `length`: of the normal of the largest impulse, metres.
+  // `length`: of the normal of the largest impulse, meters.
   update(contacts, length) {
     if (contacts === this.shown || (!this.points.visible && !this.normals.visible)) return;
     this.shown = contacts;
     const count = contacts?.count ?? 0;
-    const places = this.geometry.attributes.position, colours = this.geometry.attributes.color, ends = this.lineGeometry.attributes.position;
+    const places = this.geometry.attributes.position, colors = this.geometry.attributes.color, ends = this.lineGeometry.attributes.position;
     if (count > 0) places.array.set(contacts.points);
-    const colour = new Color();
+    const color = new Color();
     const largest = count > 0 ? contacts.impulses.reduce((a, b) => Math.max(a, b), 1e-9) : 1;
     for (let i = 0; i < count; ++i) {
-      colour.lerpColors(TOUCHING, OVERLAPPING, Math.min(1, Math.max(0, -contacts.separations[i] / OVERLAP_SHOWN_RED))).toArray(colours.array, 3 * i);
+      color.lerpColors(TOUCHING, OVERLAPPING, Math.min(1, Math.max(0, -contacts.separations[i] / OVERLAP_SHOWN_RED))).toArray(colors.array, 3 * i);
       const reach = length * (0.3 + 0.7 * Math.sqrt(contacts.impulses[i] / largest));
       for (let k = 0; k < 3; ++k) {
         ends.array[6 * i + k] = contacts.points[3 * i + k];
         ends.array[6 * i + 3 + k] = contacts.points[3 * i + k] + reach * contacts.normals[3 * i + k];
       }
     }
-    for (const attribute of [places, colours, ends]) attribute.needsUpdate = true;
+    for (const attribute of [places, colors, ends]) attribute.needsUpdate = true;
     this.geometry.setDrawRange(0, count);
     this.lineGeometry.setDrawRange(0, 2 * count);
   }
@@ -114,13 +114,13 @@ export class BoundingBoxes {
     this.bodies = [...recording.bodies.motions.keys()].filter((body) => recording.bodies.motions[body] !== 0);
     const buffer = () => new InstancedBufferAttribute(new Float32Array(3 * this.bodies.length), 3).setUsage(DynamicDrawUsage);
     this.geometry = new InstancedBufferGeometry().setAttribute('position', unitBoxLines())
-      .setAttribute('centre', buffer()).setAttribute('halfSize', buffer());
+      .setAttribute('center', buffer()).setAttribute('halfSize', buffer());
     this.geometry.instanceCount = this.bodies.length;
     const material = new ShaderMaterial({
       uniforms: { tint: { value: new Color('#b0357a') } },
       vertexShader: `
-        attribute vec3 centre, halfSize;
-        void main() { gl_Position = projectionMatrix * viewMatrix * vec4(centre + position * halfSize, 1.0); }`,
+        attribute vec3 center, halfSize;
+        void main() { gl_Position = projectionMatrix * viewMatrix * vec4(center + position * halfSize, 1.0); }`,
       fragmentShader: `
         uniform vec3 tint;
         void main() {
@@ -136,7 +136,7 @@ export class BoundingBoxes {
 
   update() {
     if (!this.object.visible) return;
-    const { centre, halfSize } = this.geometry.attributes;
+    const { center, halfSize } = this.geometry.attributes;
     const place = new Vector3(), turn = new Quaternion(), leafPlace = new Vector3(), leafTurn = new Quaternion();
     const lower = new Vector3(), upper = new Vector3(), scratch = new Vector3();
     this.bodies.forEach((body, i) => {
@@ -153,10 +153,10 @@ export class BoundingBoxes {
         leafPlace.copy(position).applyQuaternion(turn).add(place);
         includeLeaf(leaf, leafPlace, leafTurn.copy(turn).multiply(rotation), lower, upper, scratch);
       }
-      lower.add(upper).multiplyScalar(0.5).toArray(centre.array, 3 * i);
+      lower.add(upper).multiplyScalar(0.5).toArray(center.array, 3 * i);
       upper.sub(lower).toArray(halfSize.array, 3 * i);
     });
-    centre.needsUpdate = true;
+    center.needsUpdate = true;
     halfSize.needsUpdate = true;
   }
 }

@@ -51,7 +51,7 @@ function jointNote(count) {
 export function showJoints({ count, enabled, distance, distanceJoint, angle, angleJoint }) {
   const worst = (error, joint, text) => (error > 0 ? `${text(error)}, joint ${joint}` : 'none');
   const digits = (value) => Number(value.toPrecision(3));
-  const length = (metres) => (metres < 0.1 ? `${digits(1000 * metres)} mm` : `${digits(metres)} m`);
+  const length = (meters) => (meters < 0.1 ? `${digits(1000 * meters)} mm` : `${digits(meters)} m`);
   const angleText = (radians) => (radians < 0.1 ? `${digits(1000 * radians)} mrad` : `${digits(radians)} rad`);
   const number = (value) => value.toLocaleString('en');
   element('joint-errors').replaceChildren(list([

@@ -61,11 +61,11 @@ export function outerRadius(shapes, index) {
 }
 
 export function describe(shape) {
-  const metres = (...values) => values.map((value) => Number(value.toPrecision(3))).join(' × ') + ' m';
+  const meters = (...values) => values.map((value) => Number(value.toPrecision(3))).join(' × ') + ' m';
   switch (shape.kind) {
-    case 'sphere': return `sphere, radius ${metres(shape.radius)}`;
-    case 'box': return `box, ${metres(...shape.halfExtents.map((half) => 2 * half))}`;
-    case 'capsule': return `capsule, radius ${metres(shape.radius)}, length ${metres(2 * (shape.halfHeight + shape.radius))}`;
+    case 'sphere': return `sphere, radius ${meters(shape.radius)}`;
+    case 'box': return `box, ${meters(...shape.halfExtents.map((half) => 2 * half))}`;
+    case 'capsule': return `capsule, radius ${meters(shape.radius)}, length ${meters(2 * (shape.halfHeight + shape.radius))}`;
     case 'hull': return `hull of ${shape.vertices.length} points`;
     default: return `compound of ${shape.children.length} shapes`;
   }
@@ -75,15 +75,15 @@ export function describe(shape) {
 function paint(geometry, isRound) {
   const flat = geometry.index ? geometry.toNonIndexed() : geometry;
   const places = flat.attributes.position;
-  const colours = new Float32Array(3 * places.count).fill(1);
+  const colors = new Float32Array(3 * places.count).fill(1);
   if (isRound) {
     for (let i = 0; i < places.count; i += 3) {
       const sum = (read) => read(i) + read(i + 1) + read(i + 2);
       const sign = sum((k) => places.getX(k)) * sum((k) => places.getY(k)) * sum((k) => places.getZ(k));
-      if (sign < 0) colours.fill(0.68, 3 * i, 3 * i + 9);
+      if (sign < 0) colors.fill(0.68, 3 * i, 3 * i + 9);
     }
   }
-  flat.setAttribute('color', new BufferAttribute(colours, 3));
+  flat.setAttribute('color', new BufferAttribute(colors, 3));
   flat.deleteAttribute('uv');
   return flat;
 }

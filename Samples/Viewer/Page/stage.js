@@ -34,7 +34,7 @@ function makeSky() {
   return sky;
 }
 
-// Adds lines every `cell` metres, and stronger ones every ten cells, to what faces upwards.
+// Adds lines every `cell` meters, and stronger ones every ten cells, to what faces upwards.
 export function addGrid(material, grid) {
   material.onBeforeCompile = (shader) => {
     Object.assign(shader.uniforms, grid);
@@ -69,7 +69,7 @@ export function addGrid(material, grid) {
 }
 
 export class Stage {
-  // `subject`: { centre: [x, y, z], radius, lowest } in metres, what the picture is about.
+  // `subject`: { center: [x, y, z], radius, lowest } in meters, what the picture is about.
   constructor(canvas, subject) {
     this.subject = subject;
     this.renderer = new WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
@@ -90,22 +90,22 @@ export class Stage {
 
   // A floor for a scene that has none: it only shows the grid and the shadows.
   addGround() {
-    const { centre, radius, lowest } = this.subject;
+    const { center, radius, lowest } = this.subject;
     const material = addGrid(new MeshStandardMaterial({ color: '#cfd6dc', roughness: 1 }), this.grid);
     const ground = new Mesh(new PlaneGeometry(80 * radius, 80 * radius).rotateX(-Math.PI / 2), material);
-    ground.position.set(centre[0], lowest - 0.02 * radius, centre[2]);
+    ground.position.set(center[0], lowest - 0.02 * radius, center[2]);
     ground.receiveShadow = true;
     this.scene.add(ground);
   }
 
   // From the front, the right and a little above, so that the subject fills the picture.
   frameSubject() {
-    const { centre, radius } = this.subject;
+    const { center, radius } = this.subject;
     const half = (this.camera.fov * Math.PI) / 360;
     const narrowest = Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect));
     const distance = radius / Math.sin(narrowest);
     // The controls take some of the lower edge.
-    this.controls.target.set(centre[0], centre[1] - 0.1 * radius, centre[2]);
+    this.controls.target.set(center[0], center[1] - 0.1 * radius, center[2]);
     this.camera.position.set(0.62, 0.42, 1).normalize().multiplyScalar(distance).add(this.controls.target);
     this.controls.update();
   }
@@ -129,10 +129,10 @@ export class Stage {
   }
 
   #addLights() {
-    const { centre, radius } = this.subject;
+    const { center, radius } = this.subject;
     this.scene.add(new HemisphereLight('#ffffff', '#cfc8be', 2.1));
     const sun = new DirectionalLight('#fff4e2', 2.2);
-    sun.target.position.set(...centre);
+    sun.target.position.set(...center);
     sun.position.copy(LIGHT_DIRECTION).multiplyScalar(4 * radius).add(sun.target.position);
     sun.castShadow = true;
     sun.shadow.mapSize.set(2048, 2048);
@@ -142,7 +142,7 @@ export class Stage {
     sun.shadow.bias = -0.0002;
     sun.shadow.radius = 3;
     this.scene.add(sun, sun.target);
-    // From the other side, so that nothing seen from the front is flat grey.
+    // From the other side, so that nothing seen from the front is flat gray.
     const fill = new DirectionalLight('#dbe8ff', 0.6);
     fill.position.set(0.9, 0.3, 0.2);
     this.scene.add(fill);

@@ -29,26 +29,26 @@ class Growing {
 class Strokes {
   constructor() {
     this.places = new Growing(600);
-    this.colours = new Growing(600);
+    this.colors = new Growing(600);
   }
   get visible() { return this.pair.visible; }
   set visible(isVisible) { this.pair.visible = isVisible; }
   begin() {
-    this.places.count = this.colours.count = 0;
+    this.places.count = this.colors.count = 0;
   }
   // `points`: x y z of each, as many as the kind takes at a time; a matrix' elements put them into the world.
-  add(points, matrix, colour) {
+  add(points, matrix, color) {
     this.places.room(points.length);
-    this.colours.room(points.length);
+    this.colors.room(points.length);
     for (let i = 0; i < points.length; i += 3) {
       const x = points[i], y = points[i + 1], z = points[i + 2], m = matrix;
       this.places.three(m[0] * x + m[4] * y + m[8] * z + m[12], m[1] * x + m[5] * y + m[9] * z + m[13], m[2] * x + m[6] * y + m[10] * z + m[14]);
-      this.colours.three(colour.r, colour.g, colour.b);
+      this.colors.three(color.r, color.g, color.b);
     }
   }
 }
 
-// Lines of `pixels` width, however far away; with a rim of `rim` pixels they are seen on any colour.
+// Lines of `pixels` width, however far away; with a rim of `rim` pixels they are seen on any color.
 export class Lines extends Strokes {
   constructor(stage, order, pixels, rim = 0) {
     super();
@@ -65,12 +65,12 @@ export class Lines extends Strokes {
       this.pair.objects.push(behind);
     }
   }
-  line(from, to, colour) {
+  line(from, to, color) {
     this.places.room(6);
-    this.colours.room(6);
+    this.colors.room(6);
     for (const end of [from, to]) {
       this.places.three(end.x, end.y, end.z);
-      this.colours.three(colour.r, colour.g, colour.b);
+      this.colors.three(color.r, color.g, color.b);
     }
   }
   end() {
@@ -82,7 +82,7 @@ export class Lines extends Strokes {
   #reserve() {
     this.geometry.dispose();
     this.reserved = this.places.array;
-    this.geometry.setPositions(this.places.array).setColors(this.colours.array);
+    this.geometry.setPositions(this.places.array).setColors(this.colors.array);
     for (const name of ['instanceStart', 'instanceColorStart']) this.geometry.attributes[name].data.setUsage(DynamicDrawUsage);
   }
 }
@@ -103,7 +103,7 @@ class Corners extends Strokes {
     this.geometry.dispose();
     this.reserved = this.places.array;
     this.geometry.setAttribute('position', new BufferAttribute(this.places.array, 3).setUsage(DynamicDrawUsage));
-    this.geometry.setAttribute('color', new BufferAttribute(this.colours.array, 3).setUsage(DynamicDrawUsage));
+    this.geometry.setAttribute('color', new BufferAttribute(this.colors.array, 3).setUsage(DynamicDrawUsage));
   }
 }
 
@@ -114,11 +114,11 @@ export class Dots extends Corners {
     this.pair = new SeenThrough(stage, new Points(this.geometry, pointMaterial(IN_SIGHT, 1, width)),
       new Points(this.geometry, pointMaterial(HIDDEN, 0.75, width)), order);
   }
-  dot(place, colour) {
+  dot(place, color) {
     this.places.room(3);
-    this.colours.room(3);
+    this.colors.room(3);
     this.places.three(place.x, place.y, place.z);
-    this.colours.three(colour.r, colour.g, colour.b);
+    this.colors.three(color.r, color.g, color.b);
   }
 }
 

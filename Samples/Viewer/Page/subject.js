@@ -38,7 +38,7 @@ function keepOverGround(places, countAtStart, { lower, upper }) {
 
 const rangesOf = (places) => [0, 1, 2].map((k) => (places.length > 0 ? middle(places.map((place) => place[k])) : [0, 0]));
 
-// { centre, half, radius, lowest } in metres, and `typical`: the radius of a body of middle size.
+// { center, half, radius, lowest } in meters, and `typical`: the radius of a body of middle size.
 export function findSubject(recording, timeline) {
   const { motions, shapes } = recording.bodies;
   const dynamic = [...motions.keys()].filter((body) => motions[body] === 2);
@@ -57,13 +57,13 @@ export function findSubject(recording, timeline) {
   timeline.seek(0);
   const places = keepOverGround(byMoment.flat(), byMoment[0].length, boundsOfGround(recording, timeline));
   const frame = (ranges) => ({
-    centre: ranges.map(([low, high]) => (low + high) / 2),
+    center: ranges.map(([low, high]) => (low + high) / 2),
     half: ranges.map(([low, high]) => (high - low) / 2),
     radius: Math.hypot(...ranges.map(([low, high]) => (high - low) / 2)) + typical,
   });
   const mobile = frame(rangesOf(places));
   const isAmong = (body) => radii[shapes[body]] < mobile.radius &&
-    Math.hypot(...placeOf(body).map((x, k) => x - mobile.centre[k])) < AMONG * mobile.radius;
+    Math.hypot(...placeOf(body).map((x, k) => x - mobile.center[k])) < AMONG * mobile.radius;
   const standing = [...motions.keys()].filter((body) => motions[body] !== 2 && isAmong(body)).map(placeOf);
   const ranges = rangesOf(places.concat(standing));
   return { ...frame(ranges), lowest: ranges[1][0] - typical, typical };
@@ -76,11 +76,11 @@ export function hasFloor(recording, subject) {
 }
 
 // Whether what is fixed or driven stands around and above the subject, so that one would not see it: a roof, or what is high up.
-export function isEnclosed(recording, timeline, { centre, half, radius }) {
+export function isEnclosed(recording, timeline, { center, half, radius }) {
   const { motions, shapes } = recording.bodies;
   return motions.some((motion, body) => {
     if (motion === 2 || recording.isSensor[body]) return false;
-    const [x, y, z] = [0, 1, 2].map((k) => timeline.positions[3 * body + k] - centre[k]);
+    const [x, y, z] = [0, 1, 2].map((k) => timeline.positions[3 * body + k] - center[k]);
     const isRoof = y > 0.8 * half[1] && Math.max(Math.abs(x), Math.abs(z)) < 0.5 * radius && outerRadius(recording.shapes, shapes[body]) > 0.8 * radius;
     return isRoof || (y > 0.7 * radius && Math.abs(x) < radius && Math.abs(z) < radius);
   });

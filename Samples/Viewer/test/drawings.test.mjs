@@ -14,10 +14,10 @@ test('columns are decoded as they are encoded', () => {
   const [first, second] = decodeDrawings(header, reader);
   assert.equal(reader.at, bytes.length);
   assert.deepEqual([...first.lines.places], [1, 0, 0, 1, 2, 0, 1, 0, -1, 0, 0, 0]);
-  assert.deepEqual([...first.lines.colours], [3, 3]);
+  assert.deepEqual([...first.lines.colors], [3, 3]);
   assert.deepEqual([...first.points.places], [0, 5, 0]);
   assert.deepEqual([...second.lines.places], [1, 0, 0, 1, 3, 0]);
-  assert.deepEqual([...second.lines.colours], [2]);
+  assert.deepEqual([...second.lines.colors], [2]);
   assert.equal(second.points.count, 0);
 });
 

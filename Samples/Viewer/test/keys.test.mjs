@@ -50,11 +50,11 @@ test('after a click on a switch, which stays as it was set', async () => {
   }
 });
 
-test('after a click on a colouring, which stays chosen', async () => {
+test('after a click on a coloring, which stays chosen', async () => {
   for (const mode of ['plain', 'speed', 'awake', 'island']) {
-    await page.locator(`#colours label:has(input[value=${mode}])`).click();
+    await page.locator(`#colors label:has(input[value=${mode}])`).click();
     await expectPageKeys(mode);
-    assert.ok(await isChecked(`#colours input[value=${mode}]`), `a key chose another colouring than ${mode}`);
+    assert.ok(await isChecked(`#colors input[value=${mode}]`), `a key chose another coloring than ${mode}`);
   }
 });
 
@@ -86,9 +86,9 @@ test('what was reached by the keyboard keeps its keys', async () => {
   await page.keyboard.press('Space');
   assert.equal(await frame(), 21, 'space does not press the button');
   assert.ok(!(await isPlaying()));
-  await focus('#colours input[value=island]');
+  await focus('#colors input[value=island]');
   await page.keyboard.press('ArrowRight');
-  assert.ok(await isChecked('#colours input[value=speed]'), 'the arrow does not choose');
+  assert.ok(await isChecked('#colors input[value=speed]'), 'the arrow does not choose');
   assert.equal(await frame(), 21);
-  await page.locator('#colours input[value=island]').check();
+  await page.locator('#colors input[value=island]').check();
 });

@@ -43,17 +43,17 @@ test('loads without a complaint and asks for nothing but itself', async () => {
   assert.notEqual(await page.locator('#title').textContent(), '');
 });
 
-test('shows bodies in colour before a pale ground', async () => {
+test('shows bodies in color before a pale ground', async () => {
   await seek(0);
   const share = await page.evaluate(() => {
     const pixels = window.pictureNow();
-    let coloured = 0;
+    let colored = 0;
     for (let i = 0; i < pixels.length; i += 4) {
-      if (Math.max(pixels[i], pixels[i + 1], pixels[i + 2]) - Math.min(pixels[i], pixels[i + 1], pixels[i + 2]) > 40) ++coloured;
+      if (Math.max(pixels[i], pixels[i + 1], pixels[i + 2]) - Math.min(pixels[i], pixels[i + 1], pixels[i + 2]) > 40) ++colored;
     }
-    return coloured / (pixels.length / 4);
+    return colored / (pixels.length / 4);
   });
-  assert.ok(share > 0.02, `${share} of the picture is coloured`);
+  assert.ok(share > 0.02, `${share} of the picture is colored`);
 });
 
 test('the slider changes the frame and the picture', async () => {
@@ -97,15 +97,15 @@ test('slow motion shows moments between the frames', async () => {
   await page.locator('#speed').selectOption('1');
 });
 
-test('each way to colour makes another picture', async () => {
+test('each way to color makes another picture', async () => {
   await seek(Math.floor((await lastFrame()) / 3));
   for (const [first, second] of [['plain', 'speed'], ['speed', 'awake'], ['awake', 'plain']]) {
-    await page.locator(`#colours input[value=${first}]`).check();
+    await page.locator(`#colors input[value=${first}]`).check();
     await keepPicture();
-    await page.locator(`#colours input[value=${second}]`).check();
+    await page.locator(`#colors input[value=${second}]`).check();
     assert.ok((await difference()) > 0.01, `${first} and ${second} look the same`);
   }
-  await page.locator('#colours input[value=island]').check();
+  await page.locator('#colors input[value=island]').check();
 });
 
 test('each switch changes the picture and changes it back', async () => {

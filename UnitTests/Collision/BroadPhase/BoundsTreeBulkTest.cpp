@@ -15,10 +15,10 @@ using testing::RandomPoses;
 using Pair = std::pair<uint32_t, uint32_t>;
 
 Bounds RandomBox(RandomPoses& random, float range, float largest) {
-    const Vector3 centre = random.InCube() * range, half = random.InCube().cwiseAbs() * largest;
+    const Vector3 center = random.InCube() * range, half = random.InCube().cwiseAbs() * largest;
     Bounds box;
-    box.lower = centre - half;
-    box.upper = centre + half;
+    box.lower = center - half;
+    box.upper = center + half;
     return box;
 }
 

@@ -19,8 +19,8 @@ protected:
     // Built, with recent arrivals and holes.
     void Fill(int count, const Position& origin) {
         for (int i = 0; i < count; ++i) {
-            const Vector3 centre = InCube(10), half = InCube(0.5f).cwiseAbs();
-            boxes_.push_back(RoundedOutwards(origin + Position((centre - half).cast<double>()), origin + Position((centre + half).cast<double>())));
+            const Vector3 center = InCube(10), half = InCube(0.5f).cwiseAbs();
+            boxes_.push_back(RoundedOutwards(origin + Position((center - half).cast<double>()), origin + Position((center + half).cast<double>())));
             tree_.Insert(static_cast<uint32_t>(i), boxes_.back());
             if (i == count / 2) tree_.Rebuild();
         }

@@ -26,9 +26,9 @@ public:
     }
     Bounds Box(float range, float largest) {
         Bounds box;
-        const Vector3 centre = Vector(-range, range), half = Vector(0, largest);
-        box.lower = centre - half;
-        box.upper = centre + half;
+        const Vector3 center = Vector(-range, range), half = Vector(0, largest);
+        box.lower = center - half;
+        box.upper = center + half;
         return box;
     }
 
@@ -285,20 +285,20 @@ TEST(BoundsTree, TellsTheBoundsOfALeafAndOfAll) {
 // 0.3, so none larger remains; two builds of the same leaves differ by less than 0.1.
 TEST(BoundsTree, StaysAlmostAsGoodAsNewWhileAllLeavesMove) {
     Random random;
-    std::vector<Vector3> centres, velocities;
+    std::vector<Vector3> centers, velocities;
     BoundsTree tree;
-    const auto boxAt = [](const Vector3& centre) {
-        return Box(centre - Vector3::Constant(0.3f), centre + Vector3::Constant(0.3f));
+    const auto boxAt = [](const Vector3& center) {
+        return Box(center - Vector3::Constant(0.3f), center + Vector3::Constant(0.3f));
     };
     for (uint32_t id = 0; id < 4000; ++id) {
-        centres.push_back(random.Vector(-6, 6));
+        centers.push_back(random.Vector(-6, 6));
         velocities.push_back(random.Vector(-1, 1));
-        tree.Insert(id, boxAt(centres[id]));
+        tree.Insert(id, boxAt(centers[id]));
     }
     for (int step = 0; step < 60; ++step) {
         for (uint32_t id = 0; id < 4000; ++id) {
-            centres[id] += 0.1f * velocities[id];
-            tree.Update(id, boxAt(centres[id]));
+            centers[id] += 0.1f * velocities[id];
+            tree.Update(id, boxAt(centers[id]));
         }
         tree.Optimize();
     }

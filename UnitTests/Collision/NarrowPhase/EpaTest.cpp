@@ -57,7 +57,7 @@ TEST(Epa, FindsTheDepthThatTheSearchThroughAllAxesFinds) {
 }
 
 // GJK ends with fewer than four vertices where the origin lies on them: a corner, the middle of a diagonal, a triangle with that for a
-// side. EPA adds what is missing. Two boxes of half sizes h about one centre: their difference is a box of 2 h, its least depth that of
+// side. EPA adds what is missing. Two boxes of half sizes h about one center: their difference is a box of 2 h, its least depth that of
 // the smallest, and v and -v are corners of it.
 TEST(Epa, GrowsASimplexOfFewerThanFourVertices) {
     const Vector3 half(0.5f, 0.4f, 0.7f);

@@ -153,7 +153,7 @@ double SignedDistance(const ConvexShape& shape, const Vector3& x) {
             const auto& drop = static_cast<const TaperedCapsule&>(shape);
             double least = 1e30;
             for (int i = 0; i <= 10000; ++i) {
-                const double t = i * 1e-4, y = (2 * t - 1) * drop.HalfHeight() - drop.Mass().centreOfMass.y();
+                const double t = i * 1e-4, y = (2 * t - 1) * drop.HalfHeight() - drop.Mass().centerOfMass.y();
                 const double radius = drop.BottomRadius() + t * (drop.TopRadius() - drop.BottomRadius());
                 least = std::min(least, Length(Vector3(x - Vector3(0, static_cast<float>(y), 0))) - radius);
             }
@@ -161,7 +161,7 @@ double SignedDistance(const ConvexShape& shape, const Vector3& x) {
         }
         case ShapeType::Cylinder: {
             const auto& c = static_cast<const Cylinder&>(shape);
-            const double y = x.y() + c.Mass().centreOfMass.y(), h = c.HalfHeight();
+            const double y = x.y() + c.Mass().centerOfMass.y(), h = c.HalfHeight();
             const double slope = (c.TopRadius() - c.BottomRadius()) / (2 * h), length = std::sqrt(1 + slope * slope);
             const double side = std::sqrt(x.x() * x.x() + x.z() * x.z()) - (c.TopRadius() + c.BottomRadius()) / 2 - slope * y;
             const double sharp = std::max(std::abs(y) - h, side / length);

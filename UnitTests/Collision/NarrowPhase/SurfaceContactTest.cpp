@@ -33,14 +33,14 @@ struct Nearest {
     bool overlaps = false;  // a core: its depth is another matter
 };
 
-// By GJK, of the triangles that have the shape's centre before them and the shape's nearest point, too.
+// By GJK, of the triangles that have the shape's center before them and the shape's nearest point, too.
 Nearest NearestByGjk(const ConvexShape& shape, const TriangleMesh& mesh, const RelativePose& pose) {
     Nearest nearest;
-    const Vector3 centre = pose.InverseTransform(Vector3::Zero());
+    const Vector3 center = pose.InverseTransform(Vector3::Zero());
     for (uint32_t id = 0; id < mesh.TriangleCount(); ++id) {
         const TriangleView view = mesh.GetTriangle(id);
         Vector3 normal = view.normal;
-        if (Dot(normal, Vector3(centre - view.vertices[0])) < 0) {
+        if (Dot(normal, Vector3(center - view.vertices[0])) < 0) {
             if (!mesh.IsTwoSided()) continue;
             normal = -normal;
         }
@@ -130,7 +130,7 @@ protected:
     SurfaceContacts contacts_;
 };
 
-TEST_F(AboveATriangle, ASphereTouchesBelowItsCentre) {
+TEST_F(AboveATriangle, ASphereTouchesBelowItsCenter) {
     const auto found = Collide(*MakeSphere(0.5f), Vector3(0.3f, 0.45f, -1));
     ASSERT_EQ(found.size(), 1u);
     ASSERT_EQ(found[0].manifold.pointCount, 1);
@@ -139,7 +139,7 @@ TEST_F(AboveATriangle, ASphereTouchesBelowItsCentre) {
     EXPECT_NEAR(Length(Vector3(found[0].manifold.points[0].positionOnA - Vector3(0, -0.5f, 0))), 0, 1e-6);
 }
 
-// Beyond the side at z = -5, by 0.3, and 0.4 above: half a metre from it, three fifths of the way sideways.
+// Beyond the side at z = -5, by 0.3, and 0.4 above: half a meter from it, three fifths of the way sideways.
 TEST_F(AboveATriangle, ASphereBesideItTouchesItsSide) {
     const auto found = Collide(*MakeSphere(0.55f), Vector3(1, 0.4f, -5.3f));
     ASSERT_EQ(found.size(), 1u);

@@ -111,7 +111,7 @@ TEST(ShapeCast, FastShapesDoNotPassThinWalls) {
     }
 }
 
-TEST(ShapeCast, SpheresMeetWhenTheirCentresAreThatFarApart) {
+TEST(ShapeCast, SpheresMeetWhenTheirCentersAreThatFarApart) {
     RandomPoses random(14);
     const ConvexPtr a = MakeSphere(0.7f), b = MakeSphere(0.3f);
     for (int i = 0; i < 20000; ++i) {

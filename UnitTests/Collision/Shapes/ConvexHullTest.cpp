@@ -150,12 +150,12 @@ TEST(ConvexHull, SupportIsTheFarthestVertexAndTheFirstOfEquals) {
     EXPECT_TRUE(IsFinite(box->SupportCore(Vector3(kNaN, 0, 0))));
 }
 
-TEST(ConvexHull, CentreFrameIsTheUsersFrameMovedToTheCentreOfMass) {
+TEST(ConvexHull, CenterFrameIsTheUsersFrameMovedToTheCenterOfMass) {
     const Vector3 offset(10, -20, 5);
     std::vector<Vector3> points = test::BoxCorners(Vector3(1, 2, 3));
     for (Vector3& p : points) p += offset;
     const auto hull = ConvexHull::Create(points).Value();
-    EXPECT_LT(Length(hull->Mass().centreOfMass - offset), 1e-5f);
+    EXPECT_LT(Length(hull->Mass().centerOfMass - offset), 1e-5f);
     for (const Vector3& v : hull->Vertices()) EXPECT_LT(Length(v.cwiseAbs() - Vector3(1, 2, 3)), 1e-5f);
     EXPECT_LT(Length(hull->LocalBounds().upper - Vector3(1, 2, 3)), 1e-5f);
     EXPECT_NEAR(hull->InnerRadius(), 1, 1e-5);
@@ -178,7 +178,7 @@ TEST(ConvexHull, ConvexRadiusRoundsWithinTheSharpHull) {
         for (const Vector3& v : hull.Vertices())
             for (const ConvexHull::Face& face : sharp->Faces())
                 EXPECT_LE(Dot(face.normal, v) + radius, face.offset + 2e-6f);
-        // The sphere about the centre touches the same face before and after.
+        // The sphere about the center touches the same face before and after.
         EXPECT_NEAR(hull.InnerRadius(), sharp->InnerRadius(), 2e-6f);
         EXPECT_LE(hull.OuterRadius(), sharp->OuterRadius() + 1e-6f);
         EXPECT_TRUE(sharp->LocalBounds().upper.x() + 1e-6f >= hull.LocalBounds().upper.x());

@@ -187,9 +187,9 @@ TEST(Degenerate, ShapesOfNoSizeAreRefusedWithTheReason) {
         {"triangle of one point", [] { return AnswerOf(Triangle::Create({1, 1, 1}, {1, 1, 1}, {1, 1, 1})); }, ErrorCode::Degenerate, ""},
         {"plane without a direction", [] { return AnswerOf(Plane::Create(Vector3(0, 0, 0), 1)); }, ErrorCode::Degenerate, "normal"},
         {"compound of nothing", [] { return AnswerOf(Compound::Create({})); }, ErrorCode::Degenerate, ""},
-        {"sphere of a micrometre", [] { return AnswerOf(Sphere::Create(1e-6f)); }, {}},
-        {"sphere of a thousand kilometres", [] { return AnswerOf(Sphere::Create(1e6f)); }, {}},
-        {"plate of a tenth of a millimetre", [] { return AnswerOf(Box::Create(Vector3(10, 5e-5f, 10))); }, {}},
+        {"sphere of a micrometer", [] { return AnswerOf(Sphere::Create(1e-6f)); }, {}},
+        {"sphere of a thousand kilometers", [] { return AnswerOf(Sphere::Create(1e6f)); }, {}},
+        {"plate of a tenth of a millimeter", [] { return AnswerOf(Box::Create(Vector3(10, 5e-5f, 10))); }, {}},
     });
 }
 

@@ -100,7 +100,7 @@ TEST(MassProperties, OfARegularTetrahedron) {
     ExpectRelative(hull->Mass().volume, 8.0 / 3, kFloat);
     for (int i = 0; i < 3; ++i) ExpectRelative(hull->Mass().principalInertia[i], 8.0 / 3 * 8 / 20, 2 * kFloat);
     ExpectIdentity(hull->Mass().principalAxes);
-    EXPECT_LT(Length(hull->Mass().centreOfMass), 1e-7f);
+    EXPECT_LT(Length(hull->Mass().centerOfMass), 1e-7f);
     // The insphere has radius a / (2 sqrt 6), the circumsphere three times that.
     ExpectRelative(hull->InnerRadius(), 1 / std::sqrt(3.0), 2 * kFloat);
     ExpectRelative(hull->OuterRadius(), std::sqrt(3.0), 2 * kFloat);
@@ -131,7 +131,7 @@ TEST(MassProperties, OfATurnedAndMovedHullAreTheSameTurnedAndMoved) {
         const MassProperties &m = a.Value()->Mass(), &n = b.Value()->Mass();
         // Coordinates of up to 11 m have a spacing of 1e-6 m, on bodies 0.1 m thick or more.
         ExpectRelative(n.volume, double{m.volume}, 1e-4);
-        EXPECT_LT(Length(n.centreOfMass - (Rotate(turn, m.centreOfMass) + shift)), 1e-5f);
+        EXPECT_LT(Length(n.centerOfMass - (Rotate(turn, m.centerOfMass) + shift)), 1e-5f);
         const std::array<float, 3> x = Sorted(m.principalInertia), y = Sorted(n.principalInertia);
         for (int i = 0; i < 3; ++i) EXPECT_NEAR(x[i], y[i], 1e-4f * x[2]);
     }
@@ -143,7 +143,7 @@ TEST(MassProperties, OfTheThirtyTwoPointSphereOfTheHullPile) {
     EXPECT_EQ(hull->Vertices().size(), 32u);
     EXPECT_EQ(hull->Edges().size(), hull->Vertices().size() + hull->Faces().size() - 2);
     ExpectRelative(hull->Mass().volume, test::QhullSize(test::ToPositions(points))->volume, kFloat);
-    EXPECT_LT(Length(hull->Mass().centreOfMass), 1e-3f);
+    EXPECT_LT(Length(hull->Mass().centerOfMass), 1e-3f);
     EXPECT_LE(hull->OuterRadius(), 2.001f);
 }
 
@@ -157,7 +157,7 @@ TEST(MassProperties, OfTwoHalvesAreThoseOfTheWholeBox) {
     ExpectRelative(compound->Mass().volume, double{whole->Mass().volume}, kFloat);
     ExpectSameTensor(compound->Mass(), whole->Mass(), 3e-7f);
     ExpectIdentity(compound->Mass().principalAxes);
-    EXPECT_LT(Length(compound->Mass().centreOfMass - Vector3(5, 1, -2)), 1e-6f);
+    EXPECT_LT(Length(compound->Mass().centerOfMass - Vector3(5, 1, -2)), 1e-6f);
 }
 
 TEST(MassProperties, OfATurnedChildAreThoseOfItsHull) {
@@ -175,12 +175,12 @@ TEST(MassProperties, OfATurnedChildAreThoseOfItsHull) {
     }
 }
 
-TEST(MassProperties, HeavierChildDrawsTheCentre) {
+TEST(MassProperties, HeavierChildDrawsTheCenter) {
     const auto sphere = Sphere::Create(1).Value();
     const std::vector<Compound::ChildSettings> children{{.shape = sphere, .position = {0, 0, 0}, .rotation = {}, .density = 3},
                                                         {.shape = sphere, .position = {4, 0, 0}, .rotation = {}, .density = 1}};
     const auto compound = Compound::Create(children).Value();
-    EXPECT_NEAR(compound->Mass().centreOfMass.x(), 1, 1e-6);
+    EXPECT_NEAR(compound->Mass().centerOfMass.x(), 1, 1e-6);
     // Mean density 1: masses 1.5 V and 0.5 V at 1 m and 3 m.
     const double volume = 4.0 / 3 * kPi;
     ExpectRelative(compound->Mass().principalInertia.y(), volume * (2 * 0.4 + 1.5 * 1 + 0.5 * 9), 3e-7);

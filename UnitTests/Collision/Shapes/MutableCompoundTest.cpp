@@ -52,7 +52,7 @@ Sym3<double> InertiaOfShape(const Shape& shape) { return ToSolidMass(shape.Mass(
 void ExpectSameMass(const Shape& a, const Shape& b) {
     const double size = double{b.OuterRadius()};
     EXPECT_NEAR(double{a.Mass().volume}, double{b.Mass().volume}, 1e-6 * double{b.Mass().volume});
-    EXPECT_LT(Length(Vector3(a.Mass().centreOfMass - b.Mass().centreOfMass)), 1e-6 * size);
+    EXPECT_LT(Length(Vector3(a.Mass().centerOfMass - b.Mass().centerOfMass)), 1e-6 * size);
     const Sym3<double> i = InertiaOfShape(a), j = InertiaOfShape(b);
     const double tolerance = 3e-6 * std::max({i.xx, i.yy, i.zz});
     const double differences[] = {i.xx - j.xx, i.yy - j.yy, i.zz - j.zz, i.xy - j.xy, i.xz - j.xz, i.yz - j.yz};
@@ -83,13 +83,13 @@ TEST(MutableCompound, IsWhatTheStaticCompoundOfItsChildrenIs) {
     }
 }
 
-// The answers of a shape's queries by place in space, whatever its centre.
+// The answers of a shape's queries by place in space, whatever its center.
 void ExpectSameQueries(const MutableCompound& compound, const std::map<ChildId, ChildSettings>& children, RandomPoses& random) {
     const Pose user{Position(1, 2, 3), random.Rotation()};
-    const Pose pose{user.Transform(compound.Mass().centreOfMass), user.rotation};
-    const auto centreOf = [&](const ChildSettings& child) {
+    const Pose pose{user.Transform(compound.Mass().centerOfMass), user.rotation};
+    const auto centerOf = [&](const ChildSettings& child) {
         const RelativePose at{child.position, child.rotation};
-        return user * RelativePose{at.Transform(child.shape->Mass().centreOfMass), child.rotation};
+        return user * RelativePose{at.Transform(child.shape->Mass().centerOfMass), child.rotation};
     };
     for (int i = 0; i < 3; ++i) {
         const Vector3 from = random.InCube() * 15, to = random.InCube() * 10;
@@ -99,12 +99,12 @@ void ExpectSameQueries(const MutableCompound& compound, const std::map<ChildId, 
         ChildId bestChild;
         RayCastSettings upTo;
         for (const auto& [id, child] : children) {
-            if (!caster.CastClosest(*child.shape, centreOf(child), upTo, best)) continue;
+            if (!caster.CastClosest(*child.shape, centerOf(child), upTo, best)) continue;
             upTo.maxFraction = best.fraction;
             bestChild = id;
         }
         const bool isHit = caster.CastClosest(compound, pose, {}, hit);
-        // Rays within rounding of a silhouette may be told either way, or name the neighbour at the same place.
+        // Rays within rounding of a silhouette may be told either way, or name the neighbor at the same place.
         if (isHit != (bestChild.index != ~0u)) continue;
         if (!isHit) continue;
         EXPECT_NEAR(double{hit.fraction}, double{upTo.maxFraction}, 1e-4);
@@ -118,11 +118,11 @@ void ExpectSameQueries(const MutableCompound& compound, const std::map<ChildId, 
     for (const auto& [id, child] : children) {
         ClosestPoints found;
         const RelativePose own{child.position, child.rotation};
-        const Vector3 inChild = own.InverseTransform(point) - child.shape->Mass().centreOfMass;
+        const Vector3 inChild = own.InverseTransform(point) - child.shape->Mass().centerOfMass;
         if (FindClosestPoint(*child.shape, inChild, 1e9f, found)) closest = std::min(closest, found.distance);
     }
     ClosestPoints found;
-    ASSERT_TRUE(FindClosestPoint(compound, point - compound.Mass().centreOfMass, 1e9f, found));
+    ASSERT_TRUE(FindClosestPoint(compound, point - compound.Mass().centerOfMass, 1e9f, found));
     EXPECT_NEAR(found.distance, closest, 2e-5f);
 }
 
@@ -190,7 +190,7 @@ TEST(MutableCompound, KeepsNoTraceOfEditsThatWereTakenBack) {
         ASSERT_TRUE(compound->Remove(added));
     }
     EXPECT_EQ(compound->Mass().volume, never->Mass().volume);
-    EXPECT_EQ(compound->Mass().centreOfMass, never->Mass().centreOfMass);
+    EXPECT_EQ(compound->Mass().centerOfMass, never->Mass().centerOfMass);
     EXPECT_EQ(compound->Mass().principalInertia, never->Mass().principalInertia);
     EXPECT_EQ(compound->RelativeMass(), never->RelativeMass());
     EXPECT_EQ(compound->OuterRadius(), never->OuterRadius());
@@ -204,7 +204,7 @@ TEST(MutableCompound, TheMassMayStay) {
     const MassProperties before = compound->Mass();
     ASSERT_TRUE(compound->Remove({3, 0}, MassUpdate::Keep));
     ASSERT_TRUE(compound->Move({5, 0}, {1, 1, 1}, {}, MassUpdate::Keep));
-    EXPECT_EQ(compound->Mass().centreOfMass, before.centreOfMass);
+    EXPECT_EQ(compound->Mass().centerOfMass, before.centerOfMass);
     EXPECT_EQ(compound->Mass().principalInertia, before.principalInertia);
     ASSERT_TRUE(compound->UpdateMass());
     ExpectSameMass(*compound, *Compound::Create(compound->Settings()).Value());
@@ -243,7 +243,7 @@ TEST(MutableCompound, BadEditsAreRefusedAndChangeNothing) {
     EXPECT_EQ(code(compound->Move({0, 1}, {0, 0, 0}, {})), ErrorCode::UnknownId);
     EXPECT_EQ(code(compound->Move({2, 0}, {0, 0, 0}, {})), ErrorCode::UnknownId);
     EXPECT_EQ(code(compound->Move({0, 0}, {0, 0, 0}, {0, 0, 0, NAN})), ErrorCode::NonFinite);
-    EXPECT_EQ(compound->Mass().centreOfMass, before.centreOfMass);
+    EXPECT_EQ(compound->Mass().centerOfMass, before.centerOfMass);
     EXPECT_EQ(compound->Count(), 2u);
     ASSERT_TRUE(compound->Remove({0, 0}));
     EXPECT_EQ(code(compound->Remove({0, 0})), ErrorCode::UnknownId);

@@ -16,7 +16,7 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
 
 struct Integral {
-    double volume = 0, centreY = 0, across = 0, along = 0;  // about the centre of mass
+    double volume = 0, centerY = 0, across = 0, along = 0;  // about the center of mass
 };
 
 // A solid of revolution about y by 10^6 rings: the middles of 1000 x 1000 cells of height and radius.
@@ -30,13 +30,13 @@ Integral Revolve(double low, double high, double widest, const std::function<dou
         for (int k = 0; k < kCells; ++k) {
             const double r = (k + 0.5) / kCells * radius, volume = 2 * kPi * r * dy * radius / kCells;
             sum.volume += volume;
-            sum.centreY += volume * y;
+            sum.centerY += volume * y;
             second += volume * y * y;
             sum.along += volume * r * r;
         }
     }
-    sum.centreY /= sum.volume;
-    sum.across = sum.along / 2 + second - sum.volume * sum.centreY * sum.centreY;
+    sum.centerY /= sum.volume;
+    sum.across = sum.along / 2 + second - sum.volume * sum.centerY * sum.centerY;
     return sum;
 }
 
@@ -44,9 +44,9 @@ Integral Revolve(double low, double high, double widest, const std::function<dou
 void ExpectMass(const ConvexShape& shape, const Integral& expected, double relative = 2e-5) {
     const MassProperties& mass = shape.Mass();
     EXPECT_NEAR(mass.volume, expected.volume, relative * expected.volume);
-    EXPECT_NEAR(mass.centreOfMass.y(), expected.centreY, relative * shape.OuterRadius());
-    EXPECT_EQ(mass.centreOfMass.x(), 0);
-    EXPECT_EQ(mass.centreOfMass.z(), 0);
+    EXPECT_NEAR(mass.centerOfMass.y(), expected.centerY, relative * shape.OuterRadius());
+    EXPECT_EQ(mass.centerOfMass.x(), 0);
+    EXPECT_EQ(mass.centerOfMass.z(), 0);
     EXPECT_NEAR(mass.principalInertia.x(), expected.across, relative * expected.across);
     EXPECT_NEAR(mass.principalInertia.y(), expected.along, relative * expected.along);
     EXPECT_NEAR(mass.principalInertia.z(), expected.across, relative * expected.across);
@@ -126,7 +126,7 @@ TEST(Cylinder, HasTheMassOfTheClosedForm) {
 
 TEST(Cone, HasTheMassOfTheClosedForm) {
     const auto cone = Cylinder::CreateCone(0.6f, 0.4f).Value();
-    // Centre of mass at a quarter of the height; 3/10 m r^2 about the axis, 3/80 m (4 r^2 + H^2) across.
+    // Center of mass at a quarter of the height; 3/10 m r^2 about the axis, 3/80 m (4 r^2 + H^2) across.
     const double height = 2 * double{0.6f}, r = 0.4f, volume = kPi * r * r * height / 3;
     ExpectMass(*cone, {volume, -height / 4, volume * 3 / 80 * (4 * r * r + height * height), volume * 0.3 * r * r}, 1e-6);
     ExpectMass(*cone, Revolve(-height / 2, height / 2, 1, [&](double y) { return r * (0.5 - y / height); }));
@@ -183,7 +183,7 @@ TEST(Triangle, HasTheMassOfAThinPlate) {
     const auto triangle = Triangle::Create(corners[0], corners[1], corners[2], 0.05f).Value();
     // 1000 x 1000 cells of the parallelogram, folded onto the triangle, in ten layers of the thickness.
     const Position a = corners[0].cast<double>(), ab = corners[1].cast<double>() - a, ac = corners[2].cast<double>() - a;
-    const Position cross = Cross<double>(ab, ac), normal = cross * (1 / cross.norm()), centre = a + (ab + ac) * (1.0 / 3);
+    const Position cross = Cross<double>(ab, ac), normal = cross * (1 / cross.norm()), center = a + (ab + ac) * (1.0 / 3);
     const double volume = cross.norm() / 2 * double{0.05f} * 2;
     double second[3] = {0, 0, 0}, trace = 0;
     constexpr int kCells = 1000;
@@ -194,14 +194,14 @@ TEST(Triangle, HasTheMassOfAThinPlate) {
                 u = 1 - u;
                 v = 1 - v;
             }
-            const Position x = a + ab * u + ac * v - centre;
+            const Position x = a + ab * u + ac * v - center;
             for (int axis = 0; axis < 3; ++axis) second[axis] += x[axis] * x[axis] / (kCells * kCells) * volume;
         }
     }
     const double layer = double{0.05f} * double{0.05f} / 3 * volume;  // t^2 / 12
     for (int axis = 0; axis < 3; ++axis) trace += second[axis] += layer * normal[axis] * normal[axis];
     EXPECT_NEAR(triangle->Mass().volume, volume, 1e-6 * volume);
-    EXPECT_LE((triangle->Mass().centreOfMass - centre.cast<float>()).norm(), 1e-6);
+    EXPECT_LE((triangle->Mass().centerOfMass - center.cast<float>()).norm(), 1e-6);
     const SolidMass solid = ToSolidMass(triangle->Mass());
     const double diagonal[3] = {solid.inertia.xx, solid.inertia.yy, solid.inertia.zz};
     for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(diagonal[axis], trace - second[axis], 1e-4 * trace);
@@ -252,7 +252,7 @@ TEST(CustomConvex, FindsItsMassFromTheSupportFunctionAlone) {
     const double x = 0.3f, y = 0.5f, z = 0.8f, volume = 4.0 / 3 * kPi * x * y * z;
     // What Richardson's extrapolation leaves of an inscribed mesh: the fourth power of a spacing of 1/64.
     EXPECT_NEAR(egg->Mass().volume, volume, 1e-5 * volume);
-    EXPECT_LE((egg->Mass().centreOfMass - Vector3(1, 2, 3)).norm(), 1e-5f);
+    EXPECT_LE((egg->Mass().centerOfMass - Vector3(1, 2, 3)).norm(), 1e-5f);
     EXPECT_NEAR(egg->Mass().principalInertia.x(), volume / 5 * (y * y + z * z), 2e-5 * volume);
     EXPECT_NEAR(egg->Mass().principalInertia.y(), volume / 5 * (x * x + z * z), 2e-5 * volume);
     EXPECT_NEAR(egg->Mass().principalInertia.z(), volume / 5 * (x * x + y * y), 2e-5 * volume);

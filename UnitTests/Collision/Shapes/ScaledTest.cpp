@@ -25,12 +25,12 @@ public:
 float Reach(const Shape& shape, const Vector3& d) {
     if (shape.IsConvex()) {
         const auto& convex = static_cast<const ConvexShape&>(shape);
-        return Dot(d, Vector3(convex.Support(d) + shape.Mass().centreOfMass));
+        return Dot(d, Vector3(convex.Support(d) + shape.Mass().centerOfMass));
     }
     float most = -std::numeric_limits<float>::infinity();
     for (const Compound::Child& child : static_cast<const Compound&>(shape).Children()) {
         const Vector3 local = InverseRotate(child.pose.rotation, d);
-        most = std::max(most, Dot(d, Vector3(child.pose.Transform(child.shape->Support(local)) + shape.Mass().centreOfMass)));
+        most = std::max(most, Dot(d, Vector3(child.pose.Transform(child.shape->Support(local)) + shape.Mass().centerOfMass)));
     }
     return most;
 }
@@ -40,7 +40,7 @@ void ExpectImage(const ShapePtr& shape, const Vector3& scale) {
     ASSERT_TRUE(scaled) << scaled.GetError().message;
     const float factor = std::fabs(scale.x() * scale.y() * scale.z());
     EXPECT_NEAR(scaled.Value()->Mass().volume, shape->Mass().volume * factor, 1e-4f * factor * shape->Mass().volume);
-    EXPECT_LE(Length(Vector3(scaled.Value()->Mass().centreOfMass - shape->Mass().centreOfMass.cwiseProduct(scale))), 1e-4f);
+    EXPECT_LE(Length(Vector3(scaled.Value()->Mass().centerOfMass - shape->Mass().centerOfMass.cwiseProduct(scale))), 1e-4f);
     for (int i = 0; i < 200; ++i) {
         const double y = 1 - (2 * i + 1.0) / 200, r = std::sqrt(1 - y * y), angle = i * 2.399963229728653;
         const Vector3 d = Position(r * std::cos(angle), y, r * std::sin(angle)).cast<float>();
@@ -106,17 +106,17 @@ TEST(RotatedTranslated, MovesTheShapeInItsUsersFrame) {
     const Quaternion q = Normalized(Quaternion{0.1f, 0.2f, 0.3f, 0.9f});
     const ShapePtr moved = RotatedTranslated(Hull(), Vector3(1, 2, 3), q).Value();
     const ShapePtr again = RotatedTranslated(moved, Vector3(0, 0, 1), Quaternion{}).Value();
-    const Vector3 expected = Rotate(q, Hull()->Mass().centreOfMass) + Vector3(1, 2, 4);
-    EXPECT_LE(Length(Vector3(again->Mass().centreOfMass - expected)), 1e-5f);
+    const Vector3 expected = Rotate(q, Hull()->Mass().centerOfMass) + Vector3(1, 2, 4);
+    EXPECT_LE(Length(Vector3(again->Mass().centerOfMass - expected)), 1e-5f);
 }
 
-TEST(OffsetCentreOfMass, MovesTheCentreAndLeavesTheGeometry) {
+TEST(OffsetCenterOfMass, MovesTheCenterAndLeavesTheGeometry) {
     const ShapePtr box = Box::Create(Vector3(1, 1, 1)).Value();
-    const ShapePtr low = OffsetCentreOfMass(box, Vector3(0, -0.5f, 0)).Value();
-    EXPECT_EQ(low->Mass().centreOfMass, Vector3(0, -0.5f, 0));
+    const ShapePtr low = OffsetCenterOfMass(box, Vector3(0, -0.5f, 0)).Value();
+    EXPECT_EQ(low->Mass().centerOfMass, Vector3(0, -0.5f, 0));
     EXPECT_NEAR(Reach(*low, Vector3(0, 1, 0)), 1, 1e-6);
     EXPECT_NEAR(Reach(*low, Vector3(0, -1, 0)), 1, 1e-6);
-    // 8 (1 + 1) / 3 about the old centre, 8 / 4 more across.
+    // 8 (1 + 1) / 3 about the old center, 8 / 4 more across.
     EXPECT_NEAR(low->Mass().principalInertia.x(), 16.0 / 3 + 2, 1e-5);
     EXPECT_NEAR(low->Mass().principalInertia.y(), 16.0 / 3, 1e-5);
     ExpectImage(low, Vector3(2, 2, 2));

@@ -15,10 +15,10 @@ inline std::vector<uint32_t> Found(const SurfaceShape& shape, const Bounds& box)
 }
 
 inline Bounds RandomBox(SurfaceRandom& random, const Bounds& within, float largest) {
-    const Vector3 centre = random.InBounds(within), half = random.InBox(largest).cwiseAbs();
+    const Vector3 center = random.InBounds(within), half = random.InBox(largest).cwiseAbs();
     Bounds box;
-    box.lower = centre - half;
-    box.upper = centre + half;
+    box.lower = center - half;
+    box.upper = center + half;
     return box;
 }
 

@@ -84,11 +84,11 @@ inline IndexedTriangles Soup(uint32_t count, float half, float size, uint32_t se
     IndexedTriangles mesh;
     SurfaceRandom random(seed);
     for (uint32_t i = 0; i < count; ++i) {
-        const Vector3 centre = random.InBox(half);
+        const Vector3 center = random.InBox(half);
         const float own = size * random.Between(0.01f, 1.0f);
         for (int k = 0; k < 3; ++k) {
             mesh.indices.push_back(static_cast<uint32_t>(mesh.vertices.size()));
-            mesh.vertices.push_back(centre + random.InBox(own));
+            mesh.vertices.push_back(center + random.InBox(own));
         }
     }
     return mesh;

@@ -172,7 +172,7 @@ TEST(TriangleMesh, ViewsInBatchesAreTheSame) {
     for (const uint32_t id : ids) {
         EXPECT_EQ(views[id].normal, mesh->GetTriangle(id).normal);
         EXPECT_EQ(views[id].id, id);
-        // Fronts outwards: the normal points away from the centre.
+        // Fronts outwards: the normal points away from the center.
         EXPECT_GT(Dot(views[id].normal, views[id].vertices[0]), 0);
     }
 }

@@ -27,14 +27,14 @@ public:
         normal_ = Rotate(a.rotation, Vector3(record_.normal[0], record_.normal[1], record_.normal[2]));
         t1_ = Perpendicular(normal_);
         t2_ = Cross<float>(normal_, t1_);
-        Vector3 points[4], centre = Vector3::Zero();
+        Vector3 points[4], center = Vector3::Zero();
         for (int i = 0; i < count_; ++i) {
             const ContactRecord::Point& p = record_.points[i];
             const Vector3 onA = Rotate(a.rotation, Vector3(p.onA[0], p.onA[1], p.onA[2]));
             const Vector3 onB = between + Rotate(b.rotation, Vector3(p.onB[0], p.onB[1], p.onB[2]));
             separation_[i] = Dot<float>(normal_, Vector3(onB - onA));
             points[i] = onA + normal_ * (0.5f * separation_[i]);
-            centre += points[i] / static_cast<float>(count_);
+            center += points[i] / static_cast<float>(count_);
         }
         const auto frame = [&](const Vector3& point, const Vector3& axis) { return AxisFrame<float>{point, Vector3(point - between), axis}; };
         for (int i = 0; i < count_; ++i) {
@@ -42,8 +42,8 @@ public:
             point_[i].SetTotalLambda(record_.impulse[i]);
         }
         const Vector3 friction(record_.frictionImpulse[0], record_.frictionImpulse[1], record_.frictionImpulse[2]);
-        tangent1_.template CalculateProperties<BodySide::Dynamic, kSideB>(mass1_, mass2_, frame(centre, t1_), 0.0f);
-        tangent2_.template CalculateProperties<BodySide::Dynamic, kSideB>(mass1_, mass2_, frame(centre, t2_), 0.0f);
+        tangent1_.template CalculateProperties<BodySide::Dynamic, kSideB>(mass1_, mass2_, frame(center, t1_), 0.0f);
+        tangent2_.template CalculateProperties<BodySide::Dynamic, kSideB>(mass1_, mass2_, frame(center, t2_), 0.0f);
         twist_.template CalculateProperties<BodySide::Dynamic, kSideB>(mass1_, mass2_, normal_, 0.0f);
         tangent1_.SetTotalLambda(Dot<float>(friction, t1_));
         tangent2_.SetTotalLambda(Dot<float>(friction, t2_));
@@ -263,7 +263,7 @@ TEST(ContactBatch, SeparationsFollowTheDisplacements) {
         BodyState& b = contacts.states[2 * i + 1];
         for (int k = 0; k < 3; ++k) b.deltaPosition[k] = 0.25f * normal[k];
         UpdateSeparations(batch, contacts.states.data(), kSolve);
-        // A quarter of a metre along the normal opens every gap by as much; rounded at a size of 10.
+        // A quarter of a meter along the normal opens every gap by as much; rounded at a size of 10.
         for (int p = 0; p < batch.pointCount; ++p)
             EXPECT_NEAR(batch.rows[p].separation[0], batch.rows[p].startSeparation[0] + 0.25f, 1e-5f);
     }
@@ -271,7 +271,7 @@ TEST(ContactBatch, SeparationsFollowTheDisplacements) {
 
 TEST(ContactSolveSettings, SoftenIsTheSoftConstraintOfTheSpring) {
     // k = m w^2, c = 2 m zeta w with m = 1: gamma = 1 / (h (c + h k)), beta = h k / (c + h k). The row's effective mass is
-    // 1 / (1 + gamma), the part of the impulse that it gives way by gamma / (1 + gamma), its push beta / h per metre.
+    // 1 / (1 + gamma), the part of the impulse that it gives way by gamma / (1 + gamma), its push beta / h per meter.
     const double f = 60, zeta = 10, h = 1.0 / 240, w = 2 * M_PI * f, k = w * w, c = 2 * zeta * w;
     const double gamma = 1 / (h * (c + h * k)), beta = h * k / (c + h * k);
     ContactSolveSettings settings = kSolve;
@@ -282,7 +282,7 @@ TEST(ContactSolveSettings, SoftenIsTheSoftConstraintOfTheSpring) {
 }
 
 TEST(MeanDistance, OfASquareIsItsClosedForm) {
-    // Mean distance from the centre of a square of half side 1: (sqrt 2 + ln(1 + sqrt 2)) / 3 = 0.7652.
+    // Mean distance from the center of a square of half side 1: (sqrt 2 + ln(1 + sqrt 2)) / 3 = 0.7652.
     const float x[4] = {1, -1, -1, 1}, y[4] = {1, 1, -1, -1};
     EXPECT_NEAR(MeanDistance(x, y, 4), (std::sqrt(2.0) + std::log(1 + std::sqrt(2.0))) / 3, 1e-3);
     // Corners come in any order.

@@ -9,7 +9,7 @@
 
 namespace fulcrum::testing {
 
-// Contact i is between body 2 i and body 2 i + 1, a metre or so apart, with 1 to 4 points.
+// Contact i is between body 2 i and body 2 i + 1, a meter or so apart, with 1 to 4 points.
 struct RandomContacts {
     std::vector<BodyState> states;
     std::vector<BodyMass> masses;

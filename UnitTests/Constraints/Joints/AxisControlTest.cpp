@@ -32,7 +32,7 @@ TEST(AxisControl, LimitsHaveARowOnceTheyMayBeReachedWithinTheStep) {
     EXPECT_EQ(rows[kHigh].kind, Kind::AtLeast);
     EXPECT_NEAR(rows[kHigh].error, 0.01f, 1e-6f);
     EXPECT_EQ(rows[kHigh].b.linear, Vector3(-1, 0, 0));
-    // At 30 m/s half a metre is covered in a step; away from the limit there is none.
+    // At 30 m/s half a meter is covered in a step; away from the limit there is none.
     EXPECT_TRUE(RowsAt(Limited(-1, 1), 0.5f, 30.0f).contains(kHigh));
     EXPECT_TRUE(RowsAt(Limited(-1, 1), 0.5f, -30.0f).empty());
     // Beyond it there is one at any speed.

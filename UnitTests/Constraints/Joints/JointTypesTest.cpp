@@ -248,7 +248,7 @@ TEST(RackAndPinionJoint, RowIsTheDerivativeOfThePhase) {
 }
 
 TEST(RackAndPinionJoint, RollsWithoutSlipping) {
-    // A pinion of radius 0.25 m about z: 4 rad a metre.
+    // A pinion of radius 0.25 m about z: 4 rad a meter.
     JointBodies bodies;
     bodies.frame[0] = AboutY(-0.5f * kPi);  // its x is z of the body
     bodies.anchor[1] = Vector3(0, 0.25f, 0);

@@ -8,7 +8,7 @@ namespace {
 
 using PathPointer = std::shared_ptr<const Path>;
 
-// Half a metre high at one side, of about 2 m radius.
+// Half a meter high at one side, of about 2 m radius.
 PathPointer MakeLoop() {
     std::vector<Vector3> positions, normals;
     for (int i = 0; i < 8; ++i) {

@@ -269,7 +269,7 @@ TEST(AxisPart, PositionPassTakesTheBaumgarteShareOfTheError) {
         EXPECT_NEAR(pair.part.RelativeMotion(moved1, moved2, pair.frame.axis), -baumgarte * error, 1e-6f);
         EXPECT_FALSE(pair.part.SolvePosition(moved1, moved2, pair.a.mass, pair.b.mass, pair.frame.axis, 0.0f, 0.2f));
     }
-    // Along an axis through both centres nothing turns, so the constraint itself shrinks by exactly that factor.
+    // Along an axis through both centers nothing turns, so the constraint itself shrinks by exactly that factor.
     RandomBody a, b;
     a.mass.mass = 1.0f;
     b.mass.mass = 0.5f;

@@ -145,7 +145,7 @@ TYPED_TEST(BlockSpringTest, SnapshotsOfLanesGoOnAsBefore) {
     }
 }
 
-// A rack that a pinion pulls over 100000 turns, its caller counting both: 10 rad per metre, so some 63 km.
+// A rack that a pinion pulls over 100000 turns, its caller counting both: 10 rad per meter, so some 63 km.
 TEST(RackAndPinionPart, KeepsItsPhaseOverManyTurns) {
     InverseMass<float> pinion, rack;
     pinion.inertia.zz = 0.7f;

@@ -266,7 +266,7 @@ TEST(SymmetricInverse, ActsWhereSomethingCanMove) {
     EXPECT_EQ(none.xx + none.yy + none.zz + none.xy + none.xz + none.yz, 0.0f);
 }
 
-// Eigenvalues 1, 1 and 20000: an anchor one metre beside a thin axle. 6e-8 times the condition, some ten times over.
+// Eigenvalues 1, 1 and 20000: an anchor one meter beside a thin axle. 6e-8 times the condition, some ten times over.
 TEST(SymmetricInverse, KeepsItsDigitsBesideAThinAxle) {
     RandomPoses random(10);
     for (int i = 0; i < 300; ++i) {
@@ -326,7 +326,7 @@ TEST(IndependentAxisPart, RopePullsAndNeverPushes) {
     EXPECT_EQ(v1.linear.y(), 1.0f);
 }
 
-// A pinion of radius 0.1 m turns 10 rad per metre of rack: m v = -lambda ratio and I w = lambda, from w = 5 and v = 0.
+// A pinion of radius 0.1 m turns 10 rad per meter of rack: m v = -lambda ratio and I w = lambda, from w = 5 and v = 0.
 TEST(RackAndPinionPart, RackTakesTheSpeedOfTheTeeth) {
     InverseMass<float> pinion, rack;
     pinion.inertia.zz = 1.0f / 0.02f;

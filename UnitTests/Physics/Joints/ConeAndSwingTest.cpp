@@ -18,8 +18,8 @@ TEST_P(Cone, ABodyThatIsThrownAboutStaysWithin) {
     const double limit = GetParam() * kDegree;
     for (const bool fromTheEnd : {false, true}) {
         TestWorld world(NoSleep());
-        const Position centre = fromTheEnd ? Position(0.5, 0, 0) : Position(0, 0, 0);
-        const BodyId rod = world.Add({.shape = BoxOf(0.5f, 0.3f, 0.3f), .position = centre, .mass = 2});
+        const Position center = fromTheEnd ? Position(0.5, 0, 0) : Position(0, 0, 0);
+        const BodyId rod = world.Add({.shape = BoxOf(0.5f, 0.3f, 0.3f), .position = center, .mass = 2});
         ConeJointSettings settings{Between(AddHook(world), rod, {0, 0, 0})};
         settings.halfAngle = static_cast<float>(limit);
         const JointId cone = Join(world, settings);

@@ -164,7 +164,7 @@ void ExpectMomentumIsKept() {
         linear = angular = Position::Zero();
         for (const BodyId id : bodies) {
             const Position p = world.VelocityOf(id).template cast<double>() * double(world.Bodies().GetMass(id));
-            const Position x = world.Bodies().GetCentreOfMass(id);
+            const Position x = world.Bodies().GetCenterOfMass(id);
             linear += p;
             angular += Position(x.y() * p.z() - x.z() * p.y(), x.z() * p.x() - x.x() * p.z(), x.x() * p.y() - x.y() * p.x()) +
                        world.Bodies().GetAngularMomentum(id).template cast<double>();

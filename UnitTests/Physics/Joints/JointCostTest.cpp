@@ -78,9 +78,9 @@ private:
         // Two gears.
         BodyId gears[2];
         for (int i = 0; i < 2; ++i) {
-            const Position centre = at + Position(i, 1, 1.5);
-            gears[i] = world_.Add({.shape = SphereOf(0.3f), .position = centre, .angularVelocity = {0, 0, i ? 3.0f : 0.0f}});
-            Join(world_, HingeJointSettings{Between(hook, gears[i], centre, {0, 0, 1})});
+            const Position center = at + Position(i, 1, 1.5);
+            gears[i] = world_.Add({.shape = SphereOf(0.3f), .position = center, .angularVelocity = {0, 0, i ? 3.0f : 0.0f}});
+            Join(world_, HingeJointSettings{Between(hook, gears[i], center, {0, 0, 1})});
         }
         GearJointSettings gear{Between(gears[0], gears[1], at + Position(0, 1, 1.5), {0, 0, 1})};
         gear.anchorB = AnchorAt(at + Position(1, 1, 1.5), {0, 0, 1});
@@ -250,7 +250,7 @@ TEST(JointEffort, MayBeTakenBack) {
 }
 
 TEST(JointOverflow, AHubOfManyJointsStaysTogether) {
-    // More joints at one body than there are colours.
+    // More joints at one body than there are colors.
     TestWorld world(NoSleep());
     const BodyId hub = world.Add({.shape = SphereOf(1), .mass = 500});
     Join(world, FixedJointSettings{Between(AddHook(world), hub, {0, 0, 0})});

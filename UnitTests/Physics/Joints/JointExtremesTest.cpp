@@ -4,7 +4,7 @@
 namespace fulcrum::testing {
 namespace {
 
-// Rods of a metre on ball joints, from a hook at `origin` along x.
+// Rods of a meter on ball joints, from a hook at `origin` along x.
 struct RodChain {
     std::vector<BodyId> bodies;
     std::vector<JointId> joints;
@@ -25,7 +25,7 @@ double LargestGap(TestWorld& world, const RodChain& chain) {
     return gap;
 }
 
-TEST(JointExtremes, NeighboursOfAFrozenBodyGoOn) {
+TEST(JointExtremes, NeighborsOfAFrozenBodyGoOn) {
     TestWorld world(NoSleep());
     const RodChain chain = AddRodChain(world, 5);
     world.Run(0.2);
@@ -99,7 +99,7 @@ TEST(JointExtremes, TimeStepsOfAnyLength) {
     for (int i = 0; i < 350; ++i) {
         world.Step(steps[i % 7]);
         ASSERT_TRUE(world.AllFinite()) << "step " << i;
-        // In a twentieth of a second the end moves by half a metre: what that leaves apart is pulled together within the next steps.
+        // In a twentieth of a second the end moves by half a meter: what that leaves apart is pulled together within the next steps.
         ASSERT_LT(world.PositionOf(chain.bodies[6]).norm(), 9) << "step " << i;
     }
     world.Run(1);

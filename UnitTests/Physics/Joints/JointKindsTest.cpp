@@ -238,7 +238,7 @@ TEST(WheelJoint, SteersAndSpinsAndDrives) {
     EXPECT_NEAR(axle.z(), std::cos(0.4), 3e-3);
 }
 
-// A nut on a thread: it turns about x by `lead` rad a metre. Made of public parts alone, as a user would.
+// A nut on a thread: it turns about x by `lead` rad a meter. Made of public parts alone, as a user would.
 class Screw final : public JointType {
 public:
     explicit Screw(float lead) : lead_(lead) {}

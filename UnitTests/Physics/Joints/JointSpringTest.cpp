@@ -91,7 +91,7 @@ TEST_P(JointSpring, OfAMotorOfASlider) {
     }
 }
 
-TEST_P(JointSpring, OfAHingeThroughTheCentre) {
+TEST_P(JointSpring, OfAHingeThroughTheCenter) {
     // I = 2/5 m r^2 = 0.4.
     for (const SpringSettings& spring : {ByFrequency(), ByStiffness(0.4)}) {
         TestWorld world(Weightless());

@@ -71,7 +71,7 @@ TEST(Pendulum, MassAndHeadingDoNotMatter) {
 }
 
 TEST(Pendulum, WhereItHangsDoesNotMatter) {
-    // 10000 km from the origin, where a float would have steps of a metre.
+    // 10000 km from the origin, where a float would have steps of a meter.
     TestWorld near(NoSleep()), far(NoSleep());
     std::vector<BodyId> rods;
     for (auto [world, origin] : {std::pair<TestWorld*, Position>(&near, {0, 0, 0}), {&far, {1e7, 0, -1e7}}}) {

@@ -1,10 +1,10 @@
-// Joints made metres or half a turn out of place pull together without an explosion, on any kind of body.
+// Joints made meters or half a turn out of place pull together without an explosion, on any kind of body.
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 
 namespace fulcrum::testing {
 namespace {
 
-// jointPushSpeed, the fastest pull, 20 m/s and 20 rad/s; a body that is turned about an anchor half a metre off moves faster by
+// jointPushSpeed, the fastest pull, 20 m/s and 20 rad/s; a body that is turned about an anchor half a meter off moves faster by
 // half of that, and two pulls may add up.
 constexpr float kFastest = 65;
 
@@ -34,7 +34,7 @@ struct Pair {
                 fastest = std::max({fastest, Length(world.VelocityOf(id)), Length(world.Bodies().GetAngularVelocity(id))});
         }
         const JointError error = JointsOf(world).GetError(joint);
-        // Of what still turns, a substep leaves the arc of half a metre by r (w h)^2 / 2, and the push takes back 0.37 of a gap.
+        // Of what still turns, a substep leaves the arc of half a meter by r (w h)^2 / 2, and the push takes back 0.37 of a gap.
         float spin = 0;
         for (const BodyId id : {a, b}) spin = std::max(spin, Length(world.Bodies().GetAngularVelocity(id)) * static_cast<float>(kStep / 4));
         EXPECT_LT(error.distance, 1e-3f + 0.25f / 0.37f * spin * spin);
@@ -82,7 +82,7 @@ TEST_P(Recovery, ASliderHalfATurnOutOfPlace) {
     }
 }
 
-TEST(RecoveryFromAfar, JointsToTheWorldMetresOutOfPlace) {
+TEST(RecoveryFromAfar, JointsToTheWorldMetersOutOfPlace) {
     for (const MotionType motion : {MotionType::Static, MotionType::Kinematic})
         for (const Position& away : kAway) {
             // At 20 m/s.

@@ -55,21 +55,21 @@ double JointAngleError(const RagdollSettings& settings, const Poses& pose, const
 }
 
 struct Momentum {
-    Position linear = Position::Zero(), angular = Position::Zero();  // kg m/s; kg m2/s about the centre of mass
+    Position linear = Position::Zero(), angular = Position::Zero();  // kg m/s; kg m2/s about the center of mass
     double linearOfParts = 0, angularOfParts = 0;                    // sums of lengths
 };
 Momentum MomentumOf(TestWorld& world, const Ragdoll& ragdoll) {
-    Position centre = Position::Zero();
+    Position center = Position::Zero();
     double mass = 0;
     for (BodyId id : ragdoll.Bodies()) {
-        centre += world.Bodies().GetMass(id) * world.Bodies().GetCentreOfMass(id);
+        center += world.Bodies().GetMass(id) * world.Bodies().GetCenterOfMass(id);
         mass += world.Bodies().GetMass(id);
     }
-    centre /= mass;
+    center /= mass;
     Momentum sum;
     for (BodyId id : ragdoll.Bodies()) {
         const Position linear = world.Bodies().GetMass(id) * world.VelocityOf(id).cast<double>();
-        const Position arm = world.Bodies().GetCentreOfMass(id) - centre;
+        const Position arm = world.Bodies().GetCenterOfMass(id) - center;
         const Position angular = world.Bodies().GetAngularMomentum(id).cast<double>() + Cross<double>(arm, linear);
         sum.linear += linear;
         sum.angular += angular;
@@ -96,7 +96,7 @@ TEST(RagdollDrive, MotorsReachThePoseButForTheirSagUnderTheWeight) {
             for (size_t j = i; j < kParts; ++j) {
                 size_t above = j;
                 while (above > i) above = static_cast<size_t>(settings.parts[above].parent);
-                const Position arm = world.Bodies().GetCentreOfMass(ragdoll.Bodies()[j]) - anchor;
+                const Position arm = world.Bodies().GetCenterOfMass(ragdoll.Bodies()[j]) - anchor;
                 if (above == i) torque += world.Bodies().GetMass(ragdoll.Bodies()[j]) * kGravity * arm.norm();
             }
             // What the joint locks yields, too. Another 5e-4 for what still swings after 2 s.
@@ -148,7 +148,7 @@ TEST(RagdollDrive, AFallingRagdollDoesNotBeginToSpin) {
     Ragdoll ragdoll = Add(world, Passive());
     world.Run(2);
     const Momentum now = MomentumOf(world, ragdoll);
-    EXPECT_LT(now.angular.norm(), 1e-4 * now.linear.norm());  // kg m2/s to kg m/s, of a body of about a metre
+    EXPECT_LT(now.angular.norm(), 1e-4 * now.linear.norm());  // kg m2/s to kg m/s, of a body of about a meter
     const Poses pose = PoseOf(ragdoll), start = PoseAt(0);
     // It fell freely for T = 2 s, in substeps h of 1/240 s as all that is joined does, and nothing else happened to it.
     const double fall = 0.5 * kGravity * 2 * (2 + kStep / 4);

@@ -1,7 +1,7 @@
 // Ragdolls: what is created where, what is refused, and how they fall.
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Physics/Ragdoll/Ragdoll.h>
-#include <Fulcrum/Physics/Ragdoll/Stabilise.h>
+#include <Fulcrum/Physics/Ragdoll/Stabilize.h>
 #include <Fulcrum/Samples/Scenes/Humanoid.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
@@ -45,7 +45,7 @@ TEST(Ragdoll, StandsWhereItsFrameIsPut) {
     EXPECT_EQ(JointCount(world), 11);
     // A quarter turn about y takes x to -z: the left arm, at x = 0.24, is there.
     const Position arm = world.PositionOf(ragdoll.Bodies()[static_cast<size_t>(HumanoidPart::UpperArmLeft)]) - origin.position;
-    // Float numbers in the ragdoll's frame, about 1e-7 of a metre.
+    // Float numbers in the ragdoll's frame, about 1e-7 of a meter.
     EXPECT_LT((arm - Position(0, 0.36, -0.24)).norm(), 1e-6);
     EXPECT_LT(LargestGap(world), 1e-6);
     EXPECT_LT((ragdoll.Origin().position - origin.position).norm(), 1e-6);
@@ -229,10 +229,10 @@ Pose Above(const RagdollSettings& settings, double x, double z, double height, c
 TEST(Ragdoll, TenFallOnAFloorHoldTogetherAndComeToRest) {
     TestWorld world;
     world.AddFloor({.friction = 0.8f});
-    // As made for games: stabilised, and with the effort for their islands that a fall onto a single foot asks for.
+    // As made for games: stabilized, and with the effort for their islands that a fall onto a single foot asks for.
     RagdollSettings settings = WithFriction(Humanoid(), 1);
-    ASSERT_TRUE(StabiliseMasses(settings, {.smallest = 0.5f, .largest = 1}));
-    ASSERT_TRUE(StabiliseInertia(settings));
+    ASSERT_TRUE(StabilizeMasses(settings, {.smallest = 0.5f, .largest = 1}));
+    ASSERT_TRUE(StabilizeInertia(settings));
     for (RagdollPart& part : settings.parts) CommonOf(part.joint).substeps = 8;
     for (int i = 0; i < 10; ++i) {
         const Quaternion turn = Turn(Normalized(Vector3(1, 0.5f * static_cast<float>(i), -1)), 0.6 * i);

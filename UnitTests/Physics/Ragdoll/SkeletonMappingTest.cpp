@@ -70,7 +70,7 @@ std::vector<RelativePose> Animated(const SkeletonMapping& mapping) {
     return locals;
 }
 
-// Of lengths of about a metre, through up to eight products of float rotations: 1e-6 each.
+// Of lengths of about a meter, through up to eight products of float rotations: 1e-6 each.
 constexpr double kRounding = 1e-5;
 
 void ExpectSame(const Pose& a, const Pose& b, const std::string& what, double tolerance = kRounding) {
@@ -140,7 +140,7 @@ TEST(SkeletonMapping, UnmappedPartsFollowTheirParents) {
 }
 
 TEST(SkeletonMapping, AChainBendsTowardsItsEndAndStretchesEvenly) {
-    // A base, four joints without parts half a metre apart, a hand.
+    // A base, four joints without parts half a meter apart, a hand.
     RagdollSettings ragdoll;
     ragdoll.parts.push_back({.name = "base", .body = {.shape = CubeOf(0.1f)}, .joint = {}});
     ragdoll.parts.push_back({.name = "hand", .parent = 0, .body = {.shape = CubeOf(0.1f), .position = Position(2.5, 0, 0)}, .joint = {}});

@@ -1,6 +1,6 @@
 // The rules that masses and inertias of a ragdoll are brought under, and what that is good for.
 #include <Fulcrum/Physics/Ragdoll/Ragdoll.h>
-#include <Fulcrum/Physics/Ragdoll/Stabilise.h>
+#include <Fulcrum/Physics/Ragdoll/Stabilize.h>
 #include <Fulcrum/Samples/Scenes/Humanoid.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
@@ -30,58 +30,58 @@ double TotalMass(const RagdollSettings& settings) {
     return sum;
 }
 
-TEST(StabiliseMasses, KeepsWhatObeysTheRule) {
+TEST(StabilizeMasses, KeepsWhatObeysTheRule) {
     RagdollSettings settings = Chain({10, 10, 5, 1});
-    ASSERT_TRUE(StabiliseMasses(settings));
+    ASSERT_TRUE(StabilizeMasses(settings));
     const float masses[] = {10, 10, 5, 1};
     for (size_t i = 0; i < 4; ++i) EXPECT_FLOAT_EQ(settings.parts[i].body.mass, masses[i]);
 }
 
-TEST(StabiliseMasses, ClampsFromTheRootAndKeepsTheWhole) {
+TEST(StabilizeMasses, ClampsFromTheRootAndKeepsTheWhole) {
     // 100 becomes 10, then 2 is a fifth of it; 200 becomes 2. All times 310 / 24.
     RagdollSettings settings = Chain({10, 100, 0.1f, 200});
-    ASSERT_TRUE(StabiliseMasses(settings, {.smallest = 0.2f, .largest = 1.0f}));
+    ASSERT_TRUE(StabilizeMasses(settings, {.smallest = 0.2f, .largest = 1.0f}));
     const double factor = 310.1 / 24;
     const double masses[] = {10, 10, 2, 2};
     for (size_t i = 0; i < 4; ++i) EXPECT_NEAR(settings.parts[i].body.mass, masses[i] * factor, 1e-4 * factor);
     EXPECT_NEAR(TotalMass(settings), 310.1, 1e-3);
 }
 
-TEST(StabiliseMasses, ScalesInertiasAlong) {
+TEST(StabilizeMasses, ScalesInertiasAlong) {
     RagdollSettings settings = Chain({10, 100});
     settings.parts[1].body.inertia = Vector3(1, 2, 3);
-    ASSERT_TRUE(StabiliseMasses(settings));
+    ASSERT_TRUE(StabilizeMasses(settings));
     EXPECT_FLOAT_EQ(settings.parts[1].body.mass, 55);
     EXPECT_TRUE(settings.parts[1].body.inertia.isApprox(Vector3(0.55f, 1.1f, 1.65f), 1e-6f));
     // The shape's own: m (2 h)^2 / 6 of a cube.
     EXPECT_NEAR(InertiaOf(settings.parts[0].body).x(), 55 * 0.04 / 6, 1e-6);
 }
 
-TEST(StabiliseMasses, LeavesPartsBelowAFixedOneAlone) {
+TEST(StabilizeMasses, LeavesPartsBelowAFixedOneAlone) {
     RagdollSettings settings = Chain({1, 100, 200});
     settings.parts[0].body.motion = MotionType::Static;
-    ASSERT_TRUE(StabiliseMasses(settings));
+    ASSERT_TRUE(StabilizeMasses(settings));
     EXPECT_FLOAT_EQ(settings.parts[0].body.mass, 1);
     EXPECT_FLOAT_EQ(settings.parts[1].body.mass, 150);
     EXPECT_FLOAT_EQ(settings.parts[2].body.mass, 150);
 }
 
-TEST(StabiliseInertia, RaisesMomentsToTheRuleAndNoFurther) {
+TEST(StabilizeInertia, RaisesMomentsToTheRuleAndNoFurther) {
     RagdollSettings settings = Chain({10, 10, 10});
     settings.parts[0].body.inertia = Vector3(1, 9, 9.5f);
     settings.parts[1].body.inertia = Vector3(0.3f, 0.2f, 0.4f);
     settings.parts[2].body.inertia = Vector3(0.5f, 6, 6);
-    ASSERT_TRUE(StabiliseInertia(settings, {.principalRatio = 3, .childRatio = 2}));
+    ASSERT_TRUE(StabilizeInertia(settings, {.principalRatio = 3, .childRatio = 2}));
     EXPECT_TRUE(settings.parts[2].body.inertia.isApprox(Vector3(2, 6, 6)));           // 6 / 3
     EXPECT_TRUE(settings.parts[1].body.inertia.isApprox(Vector3(3, 3, 3)));           // 6 / 2 of its child
     EXPECT_TRUE(settings.parts[0].body.inertia.isApprox(Vector3(9.5f / 3, 9, 9.5f)));  // its own spread; the child asks for 1.5
     for (const RagdollPart& part : settings.parts) EXPECT_EQ(part.body.mass, 10);
 }
 
-TEST(StabiliseInertia, HoldsForTheHumanoid) {
+TEST(StabilizeInertia, HoldsForTheHumanoid) {
     RagdollSettings settings = Humanoid();
     const InertiaRule rule;
-    ASSERT_TRUE(StabiliseInertia(settings, rule));
+    ASSERT_TRUE(StabilizeInertia(settings, rule));
     for (const RagdollPart& part : settings.parts) {
         const Vector3 inertia = InertiaOf(part.body);
         EXPECT_LE(inertia.maxCoeff(), rule.principalRatio * inertia.minCoeff() * 1.0001f) << part.name;
@@ -91,11 +91,11 @@ TEST(StabiliseInertia, HoldsForTheHumanoid) {
     }
     // Obeyed already: nothing more to do.
     RagdollSettings again = settings;
-    ASSERT_TRUE(StabiliseInertia(again, rule));
+    ASSERT_TRUE(StabilizeInertia(again, rule));
     for (size_t i = 0; i < again.parts.size(); ++i) EXPECT_TRUE(again.parts[i].body.inertia.isApprox(settings.parts[i].body.inertia, 1e-6f));
 }
 
-TEST(Stabilise, ErrorsNameTheFieldAndChangeNothing) {
+TEST(Stabilize, ErrorsNameTheFieldAndChangeNothing) {
     RagdollSettings settings = Chain({10, 100});
     const auto expect = [&](const Status& status, ErrorCode code, const char* start) {
         ASSERT_FALSE(status);
@@ -104,13 +104,13 @@ TEST(Stabilise, ErrorsNameTheFieldAndChangeNothing) {
         EXPECT_EQ(settings.parts[1].body.mass, 100);
         EXPECT_TRUE(settings.parts[1].body.inertia.isZero(0));
     };
-    expect(StabiliseMasses(settings, {.smallest = 0, .largest = 1}), ErrorCode::NonPositive, "smallest");
-    expect(StabiliseMasses(settings, {.smallest = 2, .largest = 1}), ErrorCode::OutOfRange, "smallest");
-    expect(StabiliseInertia(settings, {.principalRatio = 0.5f, .childRatio = 1}), ErrorCode::OutOfRange, "principalRatio");
-    expect(StabiliseInertia(settings, {.principalRatio = 2, .childRatio = -1}), ErrorCode::NonPositive, "childRatio");
+    expect(StabilizeMasses(settings, {.smallest = 0, .largest = 1}), ErrorCode::NonPositive, "smallest");
+    expect(StabilizeMasses(settings, {.smallest = 2, .largest = 1}), ErrorCode::OutOfRange, "smallest");
+    expect(StabilizeInertia(settings, {.principalRatio = 0.5f, .childRatio = 1}), ErrorCode::OutOfRange, "principalRatio");
+    expect(StabilizeInertia(settings, {.principalRatio = 2, .childRatio = -1}), ErrorCode::NonPositive, "childRatio");
     settings.parts[0].name.clear();
-    expect(StabiliseMasses(settings), ErrorCode::Degenerate, "parts[0].name");
-    expect(StabiliseInertia(settings), ErrorCode::Degenerate, "parts[0].name");
+    expect(StabilizeMasses(settings), ErrorCode::Degenerate, "parts[0].name");
+    expect(StabilizeInertia(settings), ErrorCode::Degenerate, "parts[0].name");
 }
 
 // A heavy end on light links, hung up and let go sideways: the gap of the joints where they are solved by iteration alone.
@@ -129,12 +129,12 @@ double GapOf(const RagdollSettings& settings) {
     return largest;
 }
 
-TEST(Stabilise, HoldsAHeavyEndOnLightLinks) {
+TEST(Stabilize, HoldsAHeavyEndOnLightLinks) {
     RagdollSettings settings = Chain({1, 1, 1, 1, 1, 200});
     settings.parts[0].body.motion = MotionType::Static;
     const double before = GapOf(settings);
-    ASSERT_TRUE(StabiliseMasses(settings));
-    ASSERT_TRUE(StabiliseInertia(settings));
+    ASSERT_TRUE(StabilizeMasses(settings));
+    ASSERT_TRUE(StabilizeInertia(settings));
     const double after = GapOf(settings);
     EXPECT_LT(after, 0.25 * before);
 }

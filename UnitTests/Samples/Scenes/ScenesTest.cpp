@@ -45,8 +45,8 @@ std::vector<Placed> DynamicBodies(const SceneWorld& world) {
     return placed;
 }
 
-// Positions are given in double and may pass through the centre of mass and back: 1e-6 m is generous for boxes and balls,
-// whose centre is their origin, and for a hull whose centre is a few millimetres off it.
+// Positions are given in double and may pass through the center of mass and back: 1e-6 m is generous for boxes and balls,
+// whose center is their origin, and for a hull whose center is a few millimeters off it.
 void ExpectBodies(const std::vector<Placed>& placed, const std::vector<Position>& expected, double mass) {
     ASSERT_EQ(placed.size(), expected.size());
     for (size_t i = 0; i < expected.size(); ++i) {
@@ -111,7 +111,7 @@ TEST(Scenes, AnotherSeedMakesAnotherWorldWhereASceneUsesIt) {
     }
 }
 
-TEST(PerformanceScenes, PyramidHas1240CubesOf2mHalfAMetreApart) {
+TEST(PerformanceScenes, PyramidHas1240CubesOf2mHalfAMeterApart) {
     const auto world = Build("pyramid");
     ASSERT_TRUE(world);
     std::vector<Position> expected;
@@ -184,7 +184,7 @@ TEST(PerformanceScenes, DrumTurnsAt25DegreesASecondAbout8000Cubes) {
         const auto drum = std::dynamic_pointer_cast<const Compound>(world->Bodies().GetShape(id));
         ASSERT_TRUE(drum);
         EXPECT_EQ(drum->Children().size(), 40u);
-        // The ring's corners are at 18 m; the paddles' mass moves the centre nowhere, since four of them balance.
+        // The ring's corners are at 18 m; the paddles' mass moves the center nowhere, since four of them balance.
         EXPECT_NEAR(drum->LocalBounds().upper.x(), 18, 1e-3);
         EXPECT_NEAR(drum->LocalBounds().upper.z(), 10, 1e-4);
     });

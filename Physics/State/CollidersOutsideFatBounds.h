@@ -13,7 +13,7 @@ namespace fulcrum {
 
 struct WorldState;
 
-class Strays {
+class CollidersOutsideFatBounds {
 public:
     void MarkStale() { isFresh_.store(false, std::memory_order_relaxed); }  // after a step
     void Forget(uint32_t collider);                                         // it was removed, or its bounds set anew

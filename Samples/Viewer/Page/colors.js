@@ -1,4 +1,4 @@
-// The colours of bodies, by what the user wants to see in them.
+// The colors of bodies, by what the user wants to see in them.
 import { Color } from 'three';
 
 const PLAIN = ['#6c9bd0', '#e2a35c', '#73b58a', '#c98aa8', '#9a8fd0'].map((hex) => new Color(hex));
@@ -13,17 +13,17 @@ const AWAKE = new Color('#f0ab6b');
 const ASLEEP = new Color('#7d93aa');
 export const SELECTED = new Color('#ff4d1c');
 
-// The same number for the same id, with neighbouring ids far apart: the fractions of the golden ratio.
+// The same number for the same id, with neighboring ids far apart: the fractions of the golden ratio.
 const scattered = (id) => (id * 0.6180339887498949) % 1;
 
-function ramp(colours, fraction, out) {
-  const at = Math.min(1, Math.max(0, fraction)) * (colours.length - 1);
-  const low = Math.min(colours.length - 2, Math.floor(at));
-  return out.lerpColors(colours[low], colours[low + 1], at - low);
+function ramp(colors, fraction, out) {
+  const at = Math.min(1, Math.max(0, fraction)) * (colors.length - 1);
+  const low = Math.min(colors.length - 2, Math.floor(at));
+  return out.lerpColors(colors[low], colors[low + 1], at - low);
 }
 
-// Neighbours of one colour are told apart by a little light.
-const shade = (colour, body) => colour.multiplyScalar(0.9 + 0.2 * scattered(body + 1));
+// Neighbors of one color are told apart by a little light.
+const shade = (color, body) => color.multiplyScalar(0.9 + 0.2 * scattered(body + 1));
 
 // The speed that the scale ends at: 99 % of the moving samples are slower.
 export function topSpeed({ samples }) {
@@ -50,8 +50,8 @@ const byMode = {
 };
 export const MODES = Object.keys(byMode);
 
-// `top`: what topSpeed returns. Static and kinematic bodies and sensors keep a colour of their own.
-export function colourOf(mode, timeline, body, top, out) {
+// `top`: what topSpeed returns. Static and kinematic bodies and sensors keep a color of their own.
+export function colorOf(mode, timeline, body, top, out) {
   const { recording } = timeline;
   if (recording.isSensor[body]) return out.copy(GLASS);
   const motion = recording.bodies.motions[body];
@@ -60,15 +60,15 @@ export function colourOf(mode, timeline, body, top, out) {
   return byMode[mode](timeline, body, recording, top, out);
 }
 
-const key = (colour, text) => `<div class="key"><i style="background:#${colour.getHexString()}"></i>${text}</div>`;
+const key = (color, text) => `<div class="key"><i style="background:#${color.getHexString()}"></i>${text}</div>`;
 
 export function legend(mode, top) {
   if (mode === 'speed') {
-    const stops = SPEEDS.map((colour) => `#${colour.getHexString()}`).join(',');
+    const stops = SPEEDS.map((color) => `#${color.getHexString()}`).join(',');
     return `<div class="scale" style="background:linear-gradient(90deg,${stops})"></div>` +
       `<div class="ends"><span>0</span><span>${Number(top.toPrecision(3))} m/s</span></div>`;
   }
   if (mode === 'awake') return key(AWAKE, 'awake') + key(ASLEEP, 'asleep');
-  if (mode === 'island') return key(ALONE, 'in no island') + 'one colour an island';
+  if (mode === 'island') return key(ALONE, 'in no island') + 'one color an island';
   return '';
 }

@@ -1,14 +1,14 @@
-#include <Fulcrum/Physics/State/Strays.h>
+#include <Fulcrum/Physics/State/CollidersOutsideFatBounds.h>
 
 #include <Fulcrum/Physics/Stages/Stages.h>
 
 namespace fulcrum {
 
-void Strays::Forget(uint32_t collider) {
+void CollidersOutsideFatBounds::Forget(uint32_t collider) {
     if (tree_.Contains(collider)) tree_.Remove(collider);
 }
 
-void Strays::Refresh(const WorldState& world) {
+void CollidersOutsideFatBounds::Refresh(const WorldState& world) {
     if (isFresh_.load(std::memory_order_acquire)) return;
     const std::lock_guard<std::mutex> guard(refreshing_);
     if (isFresh_.load(std::memory_order_relaxed)) return;

@@ -1,4 +1,4 @@
-#include <Fulcrum/Physics/Ragdoll/Stabilise.h>
+#include <Fulcrum/Physics/Ragdoll/Stabilize.h>
 
 #include <algorithm>
 
@@ -25,7 +25,7 @@ Vector3 InertiaOf(const BodySettings& body) {
     return shape.principalInertia * (MassOf(body) / shape.volume);
 }
 
-Status StabiliseMasses(RagdollSettings& settings, const MassRule& rule) {
+Status StabilizeMasses(RagdollSettings& settings, const MassRule& rule) {
     if (MaybeError e = FirstOf(Check(settings), CheckPositive("smallest", rule.smallest), CheckPositive("largest", rule.largest),
                                CheckRange("smallest", rule.smallest, 0.0, rule.largest)))
         return *e;
@@ -57,7 +57,7 @@ Status StabiliseMasses(RagdollSettings& settings, const MassRule& rule) {
     return Done{};
 }
 
-Status StabiliseInertia(RagdollSettings& settings, const InertiaRule& rule) {
+Status StabilizeInertia(RagdollSettings& settings, const InertiaRule& rule) {
     if (MaybeError e = FirstOf(Check(settings), CheckPositive("principalRatio", rule.principalRatio), CheckPositive("childRatio", rule.childRatio)))
         return *e;
     if (rule.principalRatio < 1.0f)
