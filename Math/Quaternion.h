@@ -1,6 +1,7 @@
 // Rotation as a unit quaternion, over one scalar or over lanes. Products are spelled out for the sake of equal bits.
 #pragma once
 
+#include <Fulcrum/Math/ForceInline.h>
 #include <Fulcrum/Math/Vector.h>
 
 namespace fulcrum {
@@ -22,15 +23,16 @@ inline Quat<Real> operator*(const Quat<Real>& a, const Quat<Real>& b) {
             a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
 }
 
+// Inlined by force: calls that pass both through memory are a tenth of the narrow phase.
 template <class Real>
-inline Vec3<Real> Rotate(const Quat<Real>& q, const Vec3<Real>& v) {
+FULCRUM_FORCE_INLINE Vec3<Real> Rotate(const Quat<Real>& q, const Vec3<Real>& v) {
     const Vec3<Real> u = q.Imaginary();
     const Vec3<Real> t = Cross<Real>(u, v) * Real(2.0f);
     return v + t * q.w + Cross<Real>(u, t);
 }
 
 template <class Real>
-inline Vec3<Real> InverseRotate(const Quat<Real>& q, const Vec3<Real>& v) {
+FULCRUM_FORCE_INLINE Vec3<Real> InverseRotate(const Quat<Real>& q, const Vec3<Real>& v) {
     return Rotate(q.Conjugate(), v);
 }
 

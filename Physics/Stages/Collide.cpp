@@ -1,6 +1,6 @@
 // Manifolds of all active pairs. A pair whose bodies hardly moved relative to each other keeps its manifold, of
 // which Prepare brings the separations up to date. Contacts reach as far ahead as the bodies may move within the step, so that nothing
-// is driven into the other by a whole step's motion before it is seen.
+// is driven into the other by a whole step's motion before it is seen: in every direction, since what is hit is deflected and turned.
 #include <Fulcrum/Collision/NarrowPhase/PlaneContact.h>
 #include <Fulcrum/Physics/Stages/CrowdContacts.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
@@ -25,10 +25,17 @@ bool BallsApart(const WorldState& world, const Pair& pair, float distance) {
     return LengthSquared(between) > reach * reach;
 }
 
-// m: how much closer the balls about two bodies may come within the step, also where something stops one of them at its start.
+// m: how much closer the balls about two pieces may come within the step, also where something stops one of them at its start.
 float ClosingMotion(const WorldState& world, const Pair& pair, float dt) {
     const BodyStore& bodies = world.bodies;
-    const Vector3 vA = bodies.LinearVelocityOf(pair.bodyA), vB = bodies.LinearVelocityOf(pair.bodyB);
+    Vector3 vA = bodies.LinearVelocityOf(pair.bodyA), vB = bodies.LinearVelocityOf(pair.bodyB);
+    if (pair.offset) {
+        const auto ofArm = [&](uint32_t body, uint32_t collider) {
+            return Cross<float>(bodies.AngularVelocityOf(body), Rotate(bodies.RotationOf(body), LocalOf(world, collider).position));
+        };
+        vA += ofArm(pair.bodyA, pair.colliderA);
+        vB += ofArm(pair.bodyB, pair.colliderB);
+    }
     float fastest = std::max(LengthSquared(Vector3(vB - vA)), LengthSquared(vB));
     if (!pair.fixedB) fastest = std::max(fastest, LengthSquared(vA));
     return dt * Sqrt(fastest);

@@ -11,6 +11,7 @@
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fulcrum::testing {
 namespace {
@@ -38,6 +39,23 @@ TEST(PassThrough, WhatFallsTogetherIsSeenWhenTheGroundStopsTheFirst) {
         }
         EXPECT_LT(deepest, 0.25f * kHalf) << "gap " << gap;
     }
+}
+
+// Paddles at the ends of arms of 5 m move by 1.7 m a step while the center of their body rests: what is in their way is seen by the speed
+// of the piece, not of the body.
+TEST(PassThrough, WhatALongArmSweepsIsHit) {
+    constexpr float kArm = 5, kSpin = 20;  // m, rad/s
+    const ShapePtr paddles = CompoundOf({{.shape = CubeOf(0.25f), .position = {kArm, 0, 0}}, {.shape = CubeOf(0.25f), .position = {-kArm, 0, 0}}});
+    for (const MotionType motion : {MotionType::Kinematic, MotionType::Dynamic})
+        for (const double steps : {0.35, 0.5, 0.65, 1.5, 2.4}) {
+            TestWorld world(NoGravity());
+            world.Add({.shape = paddles, .motion = motion, .angularVelocity = {0, 0, kSpin}, .mass = 1e4f});
+            const double angle = steps * kSpin * kStep;
+            const Vector3 outwards(static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), 0), along(-outwards.y(), outwards.x(), 0);
+            const BodyId target = world.Add({.shape = CubeOf(0.25f), .position = (outwards * kArm).cast<double>(), .rotation = Turn(Vector3(0, 0, 1), angle)});
+            world.Steps(4);
+            EXPECT_GT(Dot(world.VelocityOf(target), along), 0.5f * kSpin * kArm) << "dynamic: " << (motion == MotionType::Dynamic) << ", after " << steps << " steps";
+        }
 }
 
 TEST(PassThrough, EdgesThatMeetDoNotTurnTheFacesIntoEachOther) {
