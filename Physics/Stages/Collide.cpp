@@ -41,13 +41,21 @@ float ClosingMotion(const WorldState& world, const Pair& pair, float dt) {
     return dt * Sqrt(fastest);
 }
 
-// m: how much farther two bodies may reach by turning within the step: no farther than their outer balls.
+// m: how much farther two pieces may reach by turning within the step: convex ones no farther than their outer balls. Of a surface that turns
+// it is what is near the other that counts.
 float TurningMotion(const WorldState& world, const Pair& pair, float dt) {
-    const auto of = [&](uint32_t body, const Shape& shape) {
+    const auto angleOf = [&](uint32_t body) { return dt * Length(world.bodies.AngularVelocityOf(body)); };
+    const auto ofConvex = [&](uint32_t body, const Shape& shape) {
         const float outer = shape.OuterRadius();
-        return std::min(dt * Length(world.bodies.AngularVelocityOf(body)) * outer, outer - shape.InnerRadius());
+        return std::min(angleOf(body) * outer, outer - shape.InnerRadius());
     };
-    return of(pair.bodyA, *pair.shapeA) + (pair.fixedB ? 0.0f : of(pair.bodyB, *pair.shapeB));
+    const float ofA = ofConvex(pair.bodyA, *pair.shapeA);
+    if (!pair.fixedB) return ofA + ofConvex(pair.bodyB, *pair.shapeB);
+    const float angle = angleOf(pair.bodyB);
+    if (!(angle > 0)) return ofA;
+    if (!pair.surface && pair.shapeB->Type() != ShapeType::Plane) return ofA + ofConvex(pair.bodyB, *pair.shapeB);
+    const Vector3 between = (world.bodies.CenterOf(pair.bodyB) - world.bodies.CenterOf(pair.bodyA)).cast<float>();
+    return ofA + angle * std::min(pair.shapeB->OuterRadius(), Length(between) + pair.shapeA->OuterRadius());
 }
 
 // m: farther ahead than this the Continuous stage sees to the pair.

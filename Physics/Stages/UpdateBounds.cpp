@@ -27,6 +27,20 @@ Bounds TightBounds(const Shape& shape, const Pose& pose, const Matrix3& rotation
     return RoundedOutwards(pose.position + lower.cast<double>(), pose.position + upper.cast<double>());
 }
 
+// Bounds about a pose's position, larger by how far the body's turn within the step, a rotation vector in rad, takes what is inside of them:
+// |d x p| along each axis, of points p up to as far out as the bounds reach by then; never beyond the outer sphere. What turns so slowly that its
+// ends do not leave where they were passes through nothing, and keeps its bounds.
+Bounds WithTurn(const Bounds& tight, const Shape& shape, const Position& position, const Vector3& turn) {
+    const float outer = shape.OuterRadius(), angle = Length(turn);
+    if (!(angle * outer > shape.InnerRadius())) return tight;
+    const Vector3 lower = (tight.lower.cast<double>() - position).cast<float>(), upper = (tight.upper.cast<double>() - position).cast<float>();
+    const Vector3 sphere = Vector3::Constant(outer);
+    const Vector3 far = Vector3(lower.cwiseAbs().cwiseMax(upper.cwiseAbs()) + sphere * angle).cwiseMin(sphere), rate = turn.cwiseAbs();
+    const Vector3 sweep(rate.y() * far.z() + rate.z() * far.y(), rate.z() * far.x() + rate.x() * far.z(), rate.x() * far.y() + rate.y() * far.x());
+    const Vector3 low = Vector3(lower - sweep).cwiseMax(-sphere).cwiseMin(lower), high = Vector3(upper + sweep).cwiseMin(sphere).cwiseMax(upper);
+    return RoundedOutwards(position + low.cast<double>(), position + high.cast<double>());
+}
+
 // A step's motion and the speculative distance on both sides.
 Bounds Reach(const Bounds& tight, const Vector3& motion, float margin) {
     Bounds b;
@@ -40,6 +54,7 @@ void UpdateColliders(WorldState& world, uint32_t body, float dt, WorkerFindings&
     pose.position -= world.colliders.boundsOrigin;
     const Matrix3 rotation = ToMatrix(pose.rotation);
     const Vector3 linear = world.bodies.LinearVelocityOf(body), angular = world.bodies.AngularVelocityOf(body);
+    const Vector3 turn = angular * dt;
     bool changed = false;
     VisitColliders(world, body, [&](uint32_t i) {
         Collider& collider = world.colliders.colliders[i];
@@ -49,10 +64,10 @@ void UpdateColliders(WorldState& world, uint32_t body, float dt, WorkerFindings&
         if (piece.offset) {
             const RelativePose local = LocalOf(world, i);
             const Pose at = pose * local;
-            tight = TightBounds(*piece.shape, at, ToMatrix(at.rotation));
+            tight = WithTurn(TightBounds(*piece.shape, at, ToMatrix(at.rotation)), *piece.shape, at.position, turn);
             motion += Cross<float>(angular, Vector3(rotation * local.position)) * dt;
         } else {
-            tight = TightBounds(*piece.shape, pose, rotation);
+            tight = WithTurn(TightBounds(*piece.shape, pose, rotation), *piece.shape, pose.position, turn);
         }
         const float speculative = 0.5f * world.settings.speculativeDistance;
         if (collider.fat.Contains(Reach(tight, motion, speculative))) return;

@@ -11,10 +11,10 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0x6fbf8022f1a79eedull;
+constexpr uint64_t kGoldenHash = 0x095559e749781e0bull;
 constexpr uint64_t kGoldenHashOfJoints = 0xa6192097862924acull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x8339b5841b547cdcull;
-constexpr uint64_t kGoldenHashOfFastBodies = 0x569c2d0f78fe82ecull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0xd8af03bc70271babull;
+constexpr uint64_t kGoldenHashOfFastBodies = 0x994ffb6497699e6aull;
 
 std::string Hex(uint64_t number) {
     char text[24];

@@ -5,6 +5,7 @@
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
 #include <Fulcrum/Collision/Shapes/RoundShapes.h>
+#include <Fulcrum/Collision/Shapes/TriangleMesh.h>
 #include <Fulcrum/Samples/Scenes/PenetrationMeter.h>
 #include <Fulcrum/Samples/Scenes/Scenes.h>
 #include <Fulcrum/UnitTests/Support/RandomPoses.h>
@@ -41,21 +42,35 @@ TEST(PassThrough, WhatFallsTogetherIsSeenWhenTheGroundStopsTheFirst) {
     }
 }
 
-// Paddles at the ends of arms of 5 m move by 1.7 m a step while the center of their body rests: what is in their way is seen by the speed
-// of the piece, not of the body.
-TEST(PassThrough, WhatALongArmSweepsIsHit) {
+// What turns at 20 rad/s moves by 1.7 m a step, 5 m out, while its center rests. What is in its way there is hit, and leaves with at least
+// half the speed of the place where it was hit.
+TEST(PassThrough, WhatTurnsFastHitsWhatIsInItsWay) {
     constexpr float kArm = 5, kSpin = 20;  // m, rad/s
-    const ShapePtr paddles = CompoundOf({{.shape = CubeOf(0.25f), .position = {kArm, 0, 0}}, {.shape = CubeOf(0.25f), .position = {-kArm, 0, 0}}});
-    for (const MotionType motion : {MotionType::Kinematic, MotionType::Dynamic})
-        for (const double steps : {0.35, 0.5, 0.65, 1.5, 2.4}) {
-            TestWorld world(NoGravity());
-            world.Add({.shape = paddles, .motion = motion, .angularVelocity = {0, 0, kSpin}, .mass = 1e4f});
-            const double angle = steps * kSpin * kStep;
-            const Vector3 outwards(static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), 0), along(-outwards.y(), outwards.x(), 0);
-            const BodyId target = world.Add({.shape = CubeOf(0.25f), .position = (outwards * kArm).cast<double>(), .rotation = Turn(Vector3(0, 0, 1), angle)});
-            world.Steps(4);
-            EXPECT_GT(Dot(world.VelocityOf(target), along), 0.5f * kSpin * kArm) << "dynamic: " << (motion == MotionType::Dynamic) << ", after " << steps << " steps";
-        }
+    const Vector3 corners[] = {{0, 0, -1}, {kArm + 0.5f, 0, -1}, {kArm + 0.5f, 0, 1}, {0, 0, 1}};
+    const uint32_t indices[] = {0, 2, 1, 0, 3, 2};
+    const struct {
+        const char* what;
+        ShapePtr shape;
+        MotionType motion;
+    } turning[] = {
+        {"paddles, kinematic", CompoundOf({{.shape = CubeOf(0.25f), .position = {kArm, 0, 0}}, {.shape = CubeOf(0.25f), .position = {-kArm, 0, 0}}}), MotionType::Kinematic},
+        {"paddles", CompoundOf({{.shape = CubeOf(0.25f), .position = {kArm, 0, 0}}, {.shape = CubeOf(0.25f), .position = {-kArm, 0, 0}}}), MotionType::Dynamic},
+        {"rod, kinematic", BoxOf(kArm + 0.25f, 0.25f, 0.25f), MotionType::Kinematic},
+        {"rod", BoxOf(kArm + 0.25f, 0.25f, 0.25f), MotionType::Dynamic},
+        {"blade of triangles", TriangleMesh::Create({.vertices = corners, .indices = indices}).Value(), MotionType::Kinematic},
+    };
+    for (const auto& t : turning)
+        for (const ShapePtr& shape : {CubeOf(0.25f), SphereOf(0.25f), CapsuleOf(0.2f, 0.2f), CubeOf(0.05f)})
+            for (const double steps : {0.35, 0.5, 0.65, 1.5, 2.4}) {
+                TestWorld world(NoGravity());
+                world.Add({.shape = t.shape, .motion = t.motion, .angularVelocity = {0, 0, kSpin}, .mass = 1e5f});
+                const double angle = steps * kSpin * kStep;
+                const Vector3 outwards(static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), 0), along(-outwards.y(), outwards.x(), 0);
+                const BodyId target = world.Add({.shape = shape, .position = (outwards * kArm).cast<double>(), .rotation = Turn(Vector3(0, 0, 1), angle)});
+                world.Steps(4);
+                EXPECT_GT(Dot(world.VelocityOf(target), along), 0.5f * kSpin * kArm)
+                    << t.what << " and " << shape->OuterRadius() << " m, after " << steps << " steps";
+            }
 }
 
 TEST(PassThrough, EdgesThatMeetDoNotTurnTheFacesIntoEachOther) {
