@@ -38,9 +38,9 @@ public:
     void SetLimit(int ray, float maxFraction) { lanes_.limit[ray] = maxFraction; }
     const float* Limits() const { return lanes_.limit; }
     float LargestLimit() const { return lanes_.LargestLimit(); }
-    uint32_t Meet(const Bounds& box) const {
+    uint32_t Intersecting(const Bounds& box) const {
         const float lower[3] = {box.lower.x(), box.lower.y(), box.lower.z()}, upper[3] = {box.upper.x(), box.upper.y(), box.upper.z()};
-        return lanes_.Meet(lower, upper, TreeRay::kSlack);
+        return lanes_.Intersecting(lower, upper, TreeRay::kSlack);
     }
 
 private:

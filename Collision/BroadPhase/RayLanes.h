@@ -47,7 +47,7 @@ struct RayLanes {
     }
 
     // The rays that meet the box. `slack`: a factor of the fraction at which they leave it, for what is rounded.
-    uint32_t Meet(const float (&low)[3], const float (&high)[3], float slack) const {
+    uint32_t Intersecting(const float (&low)[3], const float (&high)[3], float slack) const {
         constexpr int kStep = kLanes >= 8 ? 8 : 4;
         using Lanes = Wide<kStep>;
         uint32_t bits = 0;

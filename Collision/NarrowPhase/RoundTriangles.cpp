@@ -21,7 +21,7 @@ void WriteBallContact(const Vector3& normal, float distance, float radius, Manif
     manifold.points[0] = {normal * radius, distance - radius, VertexFeature(true, 0)};
 }
 
-SegmentMeeting::SegmentMeeting(const SurfaceProbe& probe, const TriangleBatch& batch, uint32_t asked, float slop)
+SegmentContact::SegmentContact(const SurfaceProbe& probe, const TriangleBatch& batch, uint32_t asked, float slop)
     : probe_(probe), batch_(batch), halfHeight_(probe.core->vertices[1].y()), radius_(probe.core->radius),
       half_(probe.axes.TransposeMultiply(probe.core->vertices[1])) {
     const Lanes rise = Along(batch.normal, Spread(half_));
@@ -36,7 +36,7 @@ SegmentMeeting::SegmentMeeting(const SurfaceProbe& probe, const TriangleBatch& b
 }
 
 // By each side, as a convex polygon clips. An end less than the slop beyond a side stays.
-void SegmentMeeting::Clip(const TriangleBatch& batch, float slop) {
+void SegmentContact::Clip(const TriangleBatch& batch, float slop) {
     from_ = Lanes(0.0f);
     to_ = Lanes(1.0f);
     fromSide_ = toSide_ = Lanes(-1.0f);
@@ -60,7 +60,7 @@ void SegmentMeeting::Clip(const TriangleBatch& batch, float slop) {
 }
 
 // The least of the distances from the three sides. Source: C. Ericson, Real-Time Collision Detection, 5.1.9.
-void SegmentMeeting::FindSide(const TriangleBatch& batch, uint32_t asked) {
+void SegmentContact::FindSide(const TriangleBatch& batch, uint32_t asked) {
     const Lanes zero(0.0f), one(1.0f), tiny(1e-30f);
     const Vector d1 = Spread(half_ * 2.0f), start = Spread(-half_);
     const Lanes a = Max(Along(d1, d1), tiny);
@@ -93,7 +93,7 @@ void SegmentMeeting::FindSide(const TriangleBatch& batch, uint32_t asked) {
     onSide = (squared_ <= Lanes(reach * reach)).ToBits() & asked;
 }
 
-void SegmentMeeting::WriteFaceContact(int i, const Vector3& normal, Manifold& manifold) const {
+void SegmentContact::WriteFaceContact(int i, const Vector3& normal, Manifold& manifold) const {
     manifold.normal = normal;
     manifold.pointCount = 0;
     const float low = lowHeight_[i], high = highHeight_[i];
@@ -108,11 +108,11 @@ void SegmentMeeting::WriteFaceContact(int i, const Vector3& normal, Manifold& ma
     }
 }
 
-Vector3 SegmentMeeting::Axis(int i) const {
+Vector3 SegmentContact::Axis(int i) const {
     return Normalized(At(between_, i), Vector3(-At(batch_.normal, i)));
 }
 
-void SegmentMeeting::WriteSideContact(int i, const uint32_t (&vertexOf)[3], Manifold& manifold) const {
+void SegmentContact::WriteSideContact(int i, const uint32_t (&vertexOf)[3], Manifold& manifold) const {
     const auto side = static_cast<uint32_t>(side_[i]), next = side == 2 ? 0u : side + 1;
     const uint32_t crossingFeature = CrossingFeature(EdgeName(0, 1), EdgeName(vertexOf[side], vertexOf[next]));
     const Vector3 normal = probe_.axes * Axis(i);
@@ -128,7 +128,7 @@ void SegmentMeeting::WriteSideContact(int i, const uint32_t (&vertexOf)[3], Mani
 }
 
 // Two points where the capsule lies along the side.
-bool SegmentMeeting::WriteParallel(int i, const Vector3& normal, uint32_t feature, Manifold& manifold) const {
+bool SegmentContact::WriteParallel(int i, const Vector3& normal, uint32_t feature, Manifold& manifold) const {
     const int side = static_cast<int>(side_[i]);
     const Segment core{-half_, half_}, edge{At(batch_.corners[side], i), At(batch_.corners[(side + 1) % 3], i)};
     float from, to;

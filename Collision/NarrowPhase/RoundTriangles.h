@@ -12,8 +12,8 @@ void WriteBallContact(const Vector3& normal, float distance, float radius, Manif
 
 // How the segment from (0, -halfHeight, 0) to (0, halfHeight, 0) of the probe's frame, the core of a capsule, meets the
 // triangles of a batch. Bit i, or lane i, is triangle i.
-struct SegmentMeeting {
-    SegmentMeeting(const SurfaceProbe& probe, const TriangleBatch& batch, uint32_t asked, float slop);
+struct SegmentContact {
+    SegmentContact(const SurfaceProbe& probe, const TriangleBatch& batch, uint32_t asked, float slop);
 
     uint32_t crossing;   // the segment ends behind the face: nothing else is said of these
     uint32_t before;     // a part of it, from .. to, lies before the face

@@ -110,8 +110,8 @@ private:
     void CollideBatch(const SurfaceProbe& probe, size_t first, size_t count) {
         TriangleBatch batch;
         uint32_t reversed;
-        const uint32_t near = batch.Meet(probe, &contacts_.views_[first], static_cast<int>(count), reversed);
-        if (!touched_.empty() && !b_.IsTwoSided()) CollidePressed(first, count);
+        const uint32_t near = batch.FindInReach(probe, &contacts_.views_[first], static_cast<int>(count), reversed);
+        if (!touched_.empty() && !b_.IsTwoSided()) CollideTunneled(first, count);
         if (near == 0) return;
         for (uint32_t bits = reversed & near; bits != 0; bits &= bits - 1) {
             TriangleView& view = contacts_.views_[first + static_cast<size_t>(std::countr_zero(bits))];
@@ -127,13 +127,13 @@ private:
         }
     }
 
-    // Those that have the center behind them, which a batch leaves out, but were touched before.
-    void CollidePressed(size_t first, size_t count) {
+    // Those that the center has tunneled through: it is behind them, for which a batch leaves them out, but they were touched before.
+    void CollideTunneled(size_t first, size_t count) {
         for (size_t i = first; i < first + count; ++i)
-            if (WasPressedThrough(contacts_.views_[i])) CollideTriangle(static_cast<uint32_t>(i));
+            if (HasTunneled(contacts_.views_[i])) CollideTriangle(static_cast<uint32_t>(i));
     }
     // Only over the triangle itself: what tips over its edge gets behind it, too.
-    bool WasPressedThrough(const TriangleView& view) const {
+    bool HasTunneled(const TriangleView& view) const {
         return Height(view) < 0 && std::find(touched_.begin(), touched_.end(), view.id) != touched_.end() && IsOver(view, center_, 0);
     }
     float Height(const TriangleView& view) const { return Dot(view.normal, Vector3(center_ - view.vertices[0])); }
@@ -154,25 +154,25 @@ private:
 
     void CollideCapsule(const SurfaceProbe& probe, const TriangleBatch& batch, uint32_t near, uint32_t reversed, uint32_t first) {
         const float slop = std::min(0.02f * settings_.speculativeDistance, 0.002f * core_.radius);
-        const SegmentMeeting meeting(probe, batch, near, slop);
+        const SegmentContact segment(probe, batch, near, slop);
         for (uint32_t bits = near; bits != 0; bits &= bits - 1) {
             const int i = std::countr_zero(bits);
             const uint32_t bit = 1u << i, index = first + static_cast<uint32_t>(i);
             const TriangleView& view = contacts_.views_[index];
-            if (meeting.crossing & bit) {
+            if (segment.crossing & bit) {
                 CollideTriangle(index);
                 continue;
             }
-            if (((meeting.onFace | meeting.onSide) & bit) == 0) continue;
+            if (((segment.onFace | segment.onSide) & bit) == 0) continue;
             Manifold onFace, nearest;
-            if (meeting.before & bit) meeting.WriteFaceContact(i, Vector3(-(axes_ * view.normal)), onFace);
-            if (meeting.onFace & bit) {
+            if (segment.before & bit) segment.WriteFaceContact(i, Vector3(-(axes_ * view.normal)), onFace);
+            if (segment.onFace & bit) {
                 AddFace(view, onFace);
                 continue;
             }
             constexpr uint32_t kOrders[2][3] = {{0, 1, 2}, {2, 1, 0}};
-            meeting.WriteSideContact(i, kOrders[reversed >> i & 1], nearest);
-            ResolveTriangleContact(index, meeting.Axis(i), false, onFace, nearest);
+            segment.WriteSideContact(i, kOrders[reversed >> i & 1], nearest);
+            ResolveTriangleContact(index, segment.Axis(i), false, onFace, nearest);
         }
     }
 

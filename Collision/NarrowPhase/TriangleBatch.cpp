@@ -80,7 +80,7 @@ void TriangleBatch::FindClosest() {
     distance = Select(inside, height, Sqrt(least));
 }
 
-uint32_t TriangleBatch::Meet(const SurfaceProbe& probe, const TriangleView* views, int viewCount, uint32_t& reversed) {
+uint32_t TriangleBatch::FindInReach(const SurfaceProbe& probe, const TriangleView* views, int viewCount, uint32_t& reversed) {
     count = viewCount;
     Load(probe, views);
     const ConvexShape& shape = probe.shape;

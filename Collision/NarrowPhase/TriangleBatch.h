@@ -41,7 +41,7 @@ struct TriangleBatch {
 
     // Sets it up for views[0 .. count), 1 to 8, and returns which of them the shape may reach, a bit each. Those that it leaves out are
     // certainly farther from it than that, or one-sided with its center behind. Bits of `reversed`: two-sided ones whose back faces the shape.
-    uint32_t Meet(const SurfaceProbe& probe, const TriangleView* views, int viewCount, uint32_t& reversed);
+    uint32_t FindInReach(const SurfaceProbe& probe, const TriangleView* views, int viewCount, uint32_t& reversed);
 
     // One of those in the shape's frame: its corners and the unit vectors outwards of its sides, in the order of its
     // view, which may have been reversed.

@@ -76,8 +76,8 @@ void HeightField::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& v
         for (uint32_t half = 0; half < 2 && maxFraction >= 0; ++half) {
             float fraction;
             bool isBack;
-            const bool isMet = half == 0 ? MeetTriangle(sheared, others[0], atC, atB, fromBehind, maxFraction, fraction, isBack)
-                                         : MeetTriangle(sheared, atB, atC, others[1], fromBehind, maxFraction, fraction, isBack);
+            const bool isMet = half == 0 ? IntersectTriangle(sheared, others[0], atC, atB, fromBehind, maxFraction, fraction, isBack)
+                                         : IntersectTriangle(sheared, atB, atC, others[1], fromBehind, maxFraction, fraction, isBack);
             if (isMet) maxFraction = visit(2 * cell + half, fraction, isBack);
         }
     };

@@ -7,7 +7,7 @@
 
 namespace fulcrum {
 
-// The largest absolute value of three: what the rounding of a ray's meeting grows with.
+// The largest absolute value of three: what the rounding of a ray's hit grows with.
 inline float LargestCoordinate(const Vector3& v) { return Max(Abs(v.x()), Max(Abs(v.y()), Abs(v.z()))); }
 
 // A ray in a frame whose z axis runs along the ray's largest component and in which the ray is z itself, by shearing.
@@ -33,7 +33,7 @@ struct ShearedRay {
 
 // Where a ray meets triangles, by lanes. Front faces have a positive determinant.
 template <class Real>
-struct TriangleMeeting {
+struct TriangleHit {
     Real u, v, w;               // not all of one sign: missed
     Real determinant;
     Real height;                // fraction times determinant
@@ -54,25 +54,25 @@ struct ShearedCorner {
 // The functions of the edges opposite a, b and c.
 template <class Real>
 void EdgeFunctions(const ShearedCorner<Real>& a, const ShearedCorner<Real>& b, const ShearedCorner<Real>& c,
-                   TriangleMeeting<Real>& meeting) {
-    meeting.u = b.x * c.y - b.y * c.x;
-    meeting.v = c.x * a.y - c.y * a.x;
-    meeting.w = a.x * b.y - a.y * b.x;
+                   TriangleHit<Real>& hit) {
+    hit.u = b.x * c.y - b.y * c.x;
+    hit.v = c.x * a.y - c.y * a.x;
+    hit.w = a.x * b.y - a.y * b.x;
 }
 
 template <class Real>
 void Complete(const ShearedCorner<Real>& a, const ShearedCorner<Real>& b, const ShearedCorner<Real>& c,
-              TriangleMeeting<Real>& meeting) {
-    meeting.determinant = meeting.u + meeting.v + meeting.w;
-    meeting.height = meeting.u * a.z + meeting.v * b.z + meeting.w * c.z;
+              TriangleHit<Real>& hit) {
+    hit.determinant = hit.u + hit.v + hit.w;
+    hit.height = hit.u * a.z + hit.v * b.z + hit.w * c.z;
 }
 
 // The fraction at which the ray meets the triangle abc (counter-clockwise seen from the front); false: it does not between 0
 // and maxFraction, or lies in its plane. Exact to the sign where an edge function rounds to zero.
-inline bool MeetTriangle(const ShearedRay& ray, const Vector3& a, const Vector3& b, const Vector3& c, bool fromBehind,
+inline bool IntersectTriangle(const ShearedRay& ray, const Vector3& a, const Vector3& b, const Vector3& c, bool fromBehind,
                          float maxFraction, float& fraction, bool& isBackFace) {
     const ShearedCorner<float> p(ray, a), q(ray, b), r(ray, c);
-    TriangleMeeting<float> m;
+    TriangleHit<float> m;
     EdgeFunctions(p, q, r, m);
     if ((m.u == 0) | (m.v == 0) | (m.w == 0)) {
         // Products of floats are exact in double, so that the differences have the right sign.
@@ -90,37 +90,37 @@ inline bool MeetTriangle(const ShearedRay& ray, const Vector3& a, const Vector3&
 }
 
 // The same for eight triangles at once: the lanes that are met, their fractions and which are met from behind. The same bits.
-struct TriangleMeetings {
+struct TriangleHits {
     uint32_t met, backFaces;
     alignas(32) float fraction[8];
 };
-inline void MeetTriangles(const ShearedRay& ray, const Vec3<Wide<8>> (&corners)[3], bool fromBehind, float maxFraction,
-                          TriangleMeetings& meetings) {
+inline void IntersectTriangles(const ShearedRay& ray, const Vec3<Wide<8>> (&corners)[3], bool fromBehind, float maxFraction,
+                          TriangleHits& hits) {
     using Lanes = Wide<8>;
     const ShearedCorner<Lanes> p(ray, corners[0]), q(ray, corners[1]), r(ray, corners[2]);
-    TriangleMeeting<Lanes> m;
+    TriangleHit<Lanes> m;
     EdgeFunctions(p, q, r, m);
     const Lanes zero(0.0f);
     const auto isFront = (m.u >= zero) & (m.v >= zero) & (m.w >= zero);
     const auto isBack = (m.u <= zero) & (m.v <= zero) & (m.w <= zero);
     const auto isUnsure = (m.u == zero) | (m.v == zero) | (m.w == zero);
-    meetings.met = isFront.ToBits() | (fromBehind ? isBack.ToBits() : 0u);
+    hits.met = isFront.ToBits() | (fromBehind ? isBack.ToBits() : 0u);
     const uint32_t unsure = isUnsure.ToBits();
-    if ((meetings.met | unsure) == 0) return;
+    if ((hits.met | unsure) == 0) return;
     Complete(p, q, r, m);
     const Lanes fraction = m.height / m.determinant;
-    fraction.Store(meetings.fraction);
-    meetings.backFaces = (m.determinant < zero).ToBits();
-    meetings.met &= ((fraction >= zero) & (fraction <= Lanes(maxFraction))).ToBits() & ~unsure;
+    fraction.Store(hits.fraction);
+    hits.backFaces = (m.determinant < zero).ToBits();
+    hits.met &= ((fraction >= zero) & (fraction <= Lanes(maxFraction))).ToBits() & ~unsure;
     for (uint32_t bits = unsure; bits != 0; bits &= bits - 1) {
         const int i = __builtin_ctz(bits);
         Vector3 corner[3];
         for (int k = 0; k < 3; ++k) corner[k] = Vector3(corners[k].x()[i], corners[k].y()[i], corners[k].z()[i]);
         bool isBackFace = false;
-        const bool isMet = MeetTriangle(ray, corner[0], corner[1], corner[2], fromBehind, maxFraction, meetings.fraction[i],
+        const bool isMet = IntersectTriangle(ray, corner[0], corner[1], corner[2], fromBehind, maxFraction, hits.fraction[i],
                                         isBackFace);
-        meetings.met |= (isMet ? 1u : 0u) << i;
-        meetings.backFaces = (meetings.backFaces & ~(1u << i)) | (isBackFace ? 1u : 0u) << i;
+        hits.met |= (isMet ? 1u : 0u) << i;
+        hits.backFaces = (hits.backFaces & ~(1u << i)) | (isBackFace ? 1u : 0u) << i;
     }
 }
 

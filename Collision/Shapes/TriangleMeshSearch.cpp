@@ -94,12 +94,12 @@ namespace {
 template <class Visitor>
 inline float MeetLeaf(const ShearedRay& ray, const Vec3<Wide<8>> (&corners)[3], uint32_t begin, uint32_t end, bool fromBehind,
                       float maxFraction, Visitor&& visit) {
-    TriangleMeetings meetings;
-    MeetTriangles(ray, corners, fromBehind, maxFraction, meetings);
-    for (uint32_t bits = meetings.met & ((1u << (end - begin)) - 1u); bits != 0; bits &= bits - 1) {
+    TriangleHits hits;
+    IntersectTriangles(ray, corners, fromBehind, maxFraction, hits);
+    for (uint32_t bits = hits.met & ((1u << (end - begin)) - 1u); bits != 0; bits &= bits - 1) {
         const int i = std::countr_zero(bits);
-        if (meetings.fraction[i] > maxFraction) continue;
-        maxFraction = visit(begin + static_cast<uint32_t>(i), meetings.fraction[i], (meetings.backFaces >> i & 1) != 0);
+        if (hits.fraction[i] > maxFraction) continue;
+        maxFraction = visit(begin + static_cast<uint32_t>(i), hits.fraction[i], (hits.backFaces >> i & 1) != 0);
         if (maxFraction < 0) break;
     }
     return maxFraction;
@@ -182,7 +182,7 @@ uint32_t TriangleMesh::CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hi
             lower[axis] = node.origin[axis] + step * static_cast<float>(node.lower[axis][child]);
             upper[axis] = node.origin[axis] + step * static_cast<float>(node.upper[axis][child]);
         }
-        uint32_t met = lanes.Meet(lower, upper, kSlack);
+        uint32_t met = lanes.Intersecting(lower, upper, kSlack);
         if (met == 0) return ++inVain > kMostInVain * lanes.count ? -1.0f : largest;
         const uint32_t begin = node.LeafBegin(child), end = node.LeafEnd(child);
         Vec3<Wide<8>> corners[3];

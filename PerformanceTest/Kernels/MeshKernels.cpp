@@ -140,7 +140,7 @@ void RayByBruteForce(benchmark::State& state) {
         for (size_t t = 0; t < terrain.indices.size(); t += 3) {
             float fraction;
             bool isBack;
-            if (MeetTriangle(sheared, terrain.vertices[terrain.indices[t]], terrain.vertices[terrain.indices[t + 1]],
+            if (IntersectTriangle(sheared, terrain.vertices[terrain.indices[t]], terrain.vertices[terrain.indices[t + 1]],
                              terrain.vertices[terrain.indices[t + 2]], false, best, fraction, isBack))
                 best = fraction;
         }

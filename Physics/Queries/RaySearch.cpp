@@ -76,7 +76,7 @@ bool CastTogether(const ColliderSearch& search, std::span<const Ray> rays, std::
     search.Run(
         [&](const BoundsTree& tree, const auto& visit) {
             tree.CastRay(swept, limit, [&](uint32_t collider) {
-                met = inTree.Meet(tree.GetBounds(collider));
+                met = inTree.Intersecting(tree.GetBounds(collider));
                 if (met != 0) {
                     visit(collider);
                 } else if (++inVain > kMostInVain * packet.count) {

@@ -1,6 +1,6 @@
 // Continuous collision: what moved far in this step is cast along its way. Where it hits, it bounces there and then, and goes on with
-// what is left of the step. In rounds: all casts in parallel; then the hits in the order of their times, as long as both bodies' courses
-// still are those that were cast (ResolveHits.h); what changed its course, or lost its partner, is cast again.
+// what is left of the step. In rounds: all casts in parallel; then the hits in the order of their times, as long as both bodies' sweeps
+// still are those that were cast (ResolveHits.h); what changed its sweep, or lost its partner, is cast again.
 #include <Fulcrum/Physics/Stages/ResolveHits.h>
 #include <Fulcrum/Physics/Stages/SweepCast.h>
 

@@ -120,27 +120,27 @@ private:
     Vector3 rubbed_[SweepHit::kMaxPoints] = {Vector3::Zero(), Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
 };
 
-// Whether what gravity and forces have given a body since a time of its course is not simply their acceleration: contacts took a part.
-bool IsCarried(const WorldState& world, const Sweep& course) {
-    return !course.waits && world.sweeps.IsOfStep(course.body, world.report.step) && world.coloring.IsTouched(course.body);
+// Whether what gravity and forces have given a body since a time of its sweep is not simply their acceleration: contacts took a part.
+bool IsCarried(const WorldState& world, const Sweep& sweep) {
+    return !sweep.waits && world.sweeps.IsOfStep(sweep.body, world.report.step) && world.coloring.IsTouched(sweep.body);
 }
 
-// m2/s2, the work per kilogram of gravity and forces since a time of a course.
-float WorkSince(const WorldState& world, const Sweep& course, float time) {
-    const float* a = world.bodies.poses[course.body].acceleration;
-    return Dot<float>(Vector3(a[0], a[1], a[2]), Vector3(course.DisplacementRate() * (1 - time)));
+// m2/s2, the work per kilogram of gravity and forces since a time of a sweep.
+float WorkSince(const WorldState& world, const Sweep& sweep, float time) {
+    const float* a = world.bodies.poses[sweep.body].acceleration;
+    return Dot<float>(Vector3(a[0], a[1], a[2]), Vector3(sweep.DisplacementRate() * (1 - time)));
 }
 
-// m/s, that gravity and forces have given a body since a time of its course. Where the solver moved it, contacts took a part of that: then
+// m/s, that gravity and forces have given a body since a time of its sweep. Where the solver moved it, contacts took a part of that: then
 // as much as the way since then has made of it, so that to go back leaves its energy as it was.
-Vector3 GainSince(const WorldState& world, const Sweep& course, float time, float dt) {
-    if (course.waits || !world.sweeps.IsOfStep(course.body, world.report.step)) return Vector3::Zero();
-    const float* a = world.bodies.poses[course.body].acceleration;
+Vector3 GainSince(const WorldState& world, const Sweep& sweep, float time, float dt) {
+    if (sweep.waits || !world.sweeps.IsOfStep(sweep.body, world.report.step)) return Vector3::Zero();
+    const float* a = world.bodies.poses[sweep.body].acceleration;
     const Vector3 acceleration(a[0], a[1], a[2]);
     const float rest = (1 - time) * dt;
-    if (!IsCarried(world, course)) return acceleration * rest;
-    const float work = WorkSince(world, course, time);
-    const float along = Dot<float>(acceleration, world.bodies.LinearVelocityOf(course.body)), square = LengthSquared(acceleration);
+    if (!IsCarried(world, sweep)) return acceleration * rest;
+    const float work = WorkSince(world, sweep, time);
+    const float along = Dot<float>(acceleration, world.bodies.LinearVelocityOf(sweep.body)), square = LengthSquared(acceleration);
     if (!(square > 0) || (work < 0 && along >= 0)) return Vector3::Zero();
     // |v - a s|^2 = |v|^2 - 2 work: the solution that is nearest to 0; where there is none, the least |v - a s|.
     const float root = along * along - 2 * square * work;
@@ -150,10 +150,10 @@ Vector3 GainSince(const WorldState& world, const Sweep& course, float time, floa
 
 // What `since` did not take of that work is taken from the whole motion: an impact that the solver found at the end of a long way leaves a
 // body little speed along it.
-void TakeWork(const WorldState& world, const Sweep& course, float time, Impact& impact, int side) {
+void TakeWork(const WorldState& world, const Sweep& sweep, float time, Impact& impact, int side) {
     constexpr float kNotRounding = 1e-4f;
-    const BodyDynamics& d = world.bodies.dynamics[course.body];
-    const float wanted = LengthSquared(world.bodies.LinearVelocityOf(course.body)) - 2 * WorkSince(world, course, time);
+    const BodyDynamics& d = world.bodies.dynamics[sweep.body];
+    const float wanted = LengthSquared(world.bodies.LinearVelocityOf(sweep.body)) - 2 * WorkSince(world, sweep, time);
     const float linear = LengthSquared(impact.linear[side]), excess = linear - wanted;
     const Vector3 inBody = InverseRotate(impact.poses[side].rotation * d.PrincipalAxes(), impact.angular[side]);
     const float all = linear + TwiceRotationalEnergy<float>(d, inBody) * d.inverseMass;
@@ -173,7 +173,7 @@ Vector3 GainUntilEnd(const WorldState& world, uint32_t body, const Vector3& v, c
 }
 
 // What turns keeps its angular momentum and its energy, not its angular velocity. So the angular velocity a while later, or earlier where
-// `seconds` is negative, is that of a free rotation; as seen by the body, so that the energy is the same however exactly the course, which
+// `seconds` is negative, is that of a free rotation; as seen by the body, so that the energy is the same however exactly the sweep, which
 // turns at a constant rate to `then`, follows that rotation.
 Vector3 TurnedFreely(const BodyDynamics& d, const Quaternion& rotation, const Vector3& w, float seconds, const Quaternion& then) {
     if (d.motion != MotionType::Dynamic || !d.FeelsGyroscopicTorque(w)) return w;
@@ -187,7 +187,7 @@ Vector3 TurnedFreely(const BodyDynamics& d, const Quaternion& rotation, const Ve
     return after > 0 ? Rotate(then, Vector3(end * std::sqrt(before / after))) : w;
 }
 
-// The course turns at the rate of its beginning: what was just parted would else seem to meet again.
+// The sweep turns at the rate of its beginning: what was just parted would else seem to meet again.
 Impact::Rest FlyOn(const WorldState& world, uint32_t body, const Quaternion& rotation, const Vector3& v, const Vector3& w, const Vector3& since, float rest) {
     const BodyDynamics& d = world.bodies.dynamics[body];
     const Vector3 gain = GainUntilEnd(world, body, v, since, rest);
@@ -210,14 +210,14 @@ Impact FindImpact(const WorldState& world, const SweepHit& hit, float dt) {
     Vector3 since[2];
     for (int s = 0; s < 2; ++s) {
         const BodyDynamics& d = bodies.dynamics[pair[s]];
-        impact.courses[s] = SweepOf(world, pair[s]);
-        impact.poses[s] = impact.courses[s].PoseAt(hit.time);
+        impact.sweeps[s] = SweepOf(world, pair[s]);
+        impact.poses[s] = impact.sweeps[s].PoseAt(hit.time);
         impact.masses[s] = d.spherical ? bodies.masses[pair[s]] : bodies.MassAlong(pair[s], AxesOf(d, impact.poses[s].rotation));
-        since[s] = bodies.CanMove(pair[s]) ? GainSince(world, impact.courses[s], hit.time, dt) : Vector3(Vector3::Zero());
+        since[s] = bodies.CanMove(pair[s]) ? GainSince(world, impact.sweeps[s], hit.time, dt) : Vector3(Vector3::Zero());
         impact.linear[s] = bodies.LinearVelocityOf(pair[s]) - since[s];
         const Vector3 w = bodies.AngularVelocityOf(pair[s]);
-        impact.angular[s] = impact.courses[s].waits ? w : TurnedFreely(d, impact.courses[s].RotationAt(1), w, -rest, impact.poses[s].rotation);
-        if (bodies.CanMove(pair[s]) && IsCarried(world, impact.courses[s])) TakeWork(world, impact.courses[s], hit.time, impact, s);
+        impact.angular[s] = impact.sweeps[s].waits ? w : TurnedFreely(d, impact.sweeps[s].RotationAt(1), w, -rest, impact.poses[s].rotation);
+        if (bodies.CanMove(pair[s]) && IsCarried(world, impact.sweeps[s])) TakeWork(world, impact.sweeps[s], hit.time, impact, s);
         impact.arrivingLinear[s] = impact.linear[s];
         impact.arrivingAngular[s] = impact.angular[s];
     }

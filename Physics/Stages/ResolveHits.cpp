@@ -35,7 +35,7 @@ public:
 
 private:
     void Resolve(const SweepHit& hit, const Impact& impact) {
-        const uint32_t places[2] = {PlaceOf(world_, hit.body, &impact.courses[0]), PlaceOf(world_, hit.other, &impact.courses[1])};
+        const uint32_t places[2] = {PlaceOf(world_, hit.body, &impact.sweeps[0]), PlaceOf(world_, hit.other, &impact.sweeps[1])};
         if (Swept(places[0]).changed) return;  // it is in the next round, or waits
         const bool lostPartner = places[1] != SweepStore::kNone && Swept(places[1]).changed;
         const bool isUndecided = hit.pointCount == 0 || lostPartner;
@@ -46,10 +46,10 @@ private:
             CastAgain(places[0]);
         } else if (isUndecided) {
             Resume(places[0], hit.time, impact.poses[0]);
-        } else if (!impact.parts && (impact.courses[0].waits || impact.courses[1].waits)) {
+        } else if (!impact.parts && (impact.sweeps[0].waits || impact.sweeps[1].waits)) {
             // What goes as fast as the one that waits runs into it, and waits, too.
             for (int s = 0; s < 2; ++s)
-                if (places[s] != SweepStore::kNone && !impact.courses[s].waits)
+                if (places[s] != SweepStore::kNone && !impact.sweeps[s].waits)
                     Wait(places[s], hit.time, impact, s, impact.linear[s], impact.angular[s]);
         } else {
             Part(hit, impact, places);
@@ -91,7 +91,7 @@ private:
         CastAgain(place);
     }
 
-    // The rest of the same course.
+    // The rest of the same sweep.
     void Resume(uint32_t place, float time, const Pose& pose) {
         Sweep& sweep = Swept(place);
         const Vector3 displacement = sweep.DisplacementRate() * (1 - time), turn = sweep.TurnRate() * (1 - time);
@@ -133,11 +133,11 @@ private:
 
 }  // namespace
 
-uint32_t PlaceOf(WorldState& world, uint32_t body, const Sweep* course) {
+uint32_t PlaceOf(WorldState& world, uint32_t body, const Sweep* known) {
     SweepStore& store = world.sweeps;
     if (store.searchBy[body] == SweepStore::SearchBy::None && !world.bodies.CanMove(body)) return SweepStore::kNone;
     if (store.places[body] == SweepStore::kNone) {
-        Sweep sweep = course ? *course : SweepOf(world, body);
+        Sweep sweep = known ? *known : SweepOf(world, body);
         sweep.turns = IsCastTurning(world, body);
         store.places[body] = static_cast<uint32_t>(store.swept.size());
         store.swept.push_back(sweep);

@@ -52,7 +52,7 @@ void CollectCutWays(WorldState& world) {
     for (const Sweep& sweep : sweeps.swept)
         if (sweep.isCut && sweep.from < 1) cut.push_back({sweep, 1});
     std::sort(cut.begin(), cut.end(), [](const MotionSegment& a, const MotionSegment& b) {
-        return std::tie(a.course.body, a.course.from) < std::tie(b.course.body, b.course.from);
+        return std::tie(a.sweep.body, a.sweep.from) < std::tie(b.sweep.body, b.sweep.from);
     });
 }
 
@@ -85,7 +85,7 @@ Bounds RoundBounds(const WorldState& world, uint32_t body) {
     };
     const SweepStore::Start* starts = world.sweeps.starts.data();
     if (body < world.sweeps.starts.size() && starts[body].step == world.report.step) include(starts[body].pose.position);
-    for (const MotionSegment& part : CutSegmentsOf(world, body)) include(part.course.start.position);
+    for (const MotionSegment& part : CutSegmentsOf(world, body)) include(part.sweep.start.position);
     const Position& origin = world.colliders.boundsOrigin;
     return RoundedOutwards(lower - origin - reach, upper - origin + reach);
 }

@@ -30,11 +30,11 @@ struct Mover {
 
     Pose BodyAt(float time) const { return way.PoseAt(part, time); }
     Pose PieceAt(float time) const { return PoseOf(piece, BodyAt(time)); }
-    bool IsStill() const { return part.course.displacement.isZero(0) && part.course.turn.isZero(0); }
+    bool IsStill() const { return part.sweep.displacement.isZero(0) && part.sweep.turn.isZero(0); }
     // rad; what no one can see of a ball is none.
     float Angle(float from, float until) const {
         const bool isRound = piece.shape->Type() == ShapeType::Sphere && !piece.offset;
-        return isRound ? 0.0f : Length(part.course.TurnRate()) * (until - from);
+        return isRound ? 0.0f : Length(part.sweep.TurnRate()) * (until - from);
     }
     float Radius() const { return piece.shape->OuterRadius() + Length(piece.local.position); }
     bool IsConvex() const { return piece.shape->IsConvex(); }
@@ -57,7 +57,7 @@ Touch Cast(const Mover& caster, const Mover& other, float start, float end) {
     const Pose last = turns ? caster.BodyAt(end) : caster.PieceAt(end);
     Pose at = other.PieceAt(start);
     motion.displacement = Between(motion.pose.position, last.position) - Between(at.position, other.PieceAt(end).position);
-    if (turns) motion.turn = caster.part.course.TurnRate() * (end - start);
+    if (turns) motion.turn = caster.part.sweep.TurnRate() * (end - start);
     if (other.Angle(from, until) > kLeastTurn) at.rotation = other.PieceAt(0.5f * (start + end)).rotation;
     const ConvexShape* cast = &shape;
     if (turns && caster.piece.offset) cast = &placed;
@@ -188,21 +188,21 @@ private:
 
 std::span<const MotionSegment> CutSegmentsOf(const WorldState& world, uint32_t body) {
     const std::vector<MotionSegment>& cut = world.sensors.cut;
-    const auto first = std::lower_bound(cut.begin(), cut.end(), body, [](const MotionSegment& part, uint32_t b) { return part.course.body < b; });
+    const auto first = std::lower_bound(cut.begin(), cut.end(), body, [](const MotionSegment& part, uint32_t b) { return part.sweep.body < b; });
     auto last = first;
-    while (last != cut.end() && last->course.body == body) ++last;
+    while (last != cut.end() && last->sweep.body == body) ++last;
     return {first, last};
 }
 
 Way::Way(const WorldState& world, uint32_t body) : body_(body), end_(world.bodies.CenterPoseOf(body)), parts_(CutSegmentsOf(world, body)) {
     if (!parts_.empty()) return;
-    own_.course = SweepOf(world, body);
+    own_.sweep = SweepOf(world, body);
     parts_ = {&own_, 1};
 }
 
 Pose Way::PoseAt(const MotionSegment& part, float time) const {
     if (time >= 1) return end_;
-    return time <= part.course.from ? part.course.start : part.course.PoseAt(time);
+    return time <= part.sweep.from ? part.sweep.start : part.sweep.PoseAt(time);
 }
 
 namespace {
@@ -230,8 +230,8 @@ Bounds PieceBounds(const WorldState& world, const Way& way, uint32_t collider) {
     const Position& origin = world.colliders.boundsOrigin;
     for (const MotionSegment& part : way.Parts()) {
         const Mover mover{way, part, piece};
-        Bounds ends = BoundsAbout(origin, *mover.piece.shape, mover.PieceAt(part.course.from));
-        const float angle = mover.Angle(part.course.from, part.until);
+        Bounds ends = BoundsAbout(origin, *mover.piece.shape, mover.PieceAt(part.sweep.from));
+        const float angle = mover.Angle(part.sweep.from, part.until);
         if (!mover.IsStill()) ends.Include(BoundsAbout(origin, *mover.piece.shape, mover.PieceAt(part.until)));
         // A point at the distance r from the center leaves the straight line between its ends by at most r (1 - cos(angle / 2)).
         bounds.Include(Inflated(ends, std::min(0.125f * angle * angle, 2.0f) * mover.Radius()));

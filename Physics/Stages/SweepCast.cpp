@@ -42,37 +42,37 @@ Vector3 TurnNear(const Quaternion& q, const Vector3& guess) {
 }
 
 // A sweep of which the turn, half the work to find it, may still be missing.
-struct Course {
+struct LazySweep {
     Sweep sweep;
     bool hasTurn = true;
 };
 
-Course CourseOf(const WorldState& world, uint32_t body) {
+LazySweep LazySweepOf(const WorldState& world, uint32_t body) {
     const SweepStore& store = world.sweeps;
     if (body < store.places.size() && store.places[body] != SweepStore::kNone) return {store.swept[store.places[body]]};
-    Course course;
-    Sweep& sweep = course.sweep;
+    LazySweep lazy;
+    Sweep& sweep = lazy.sweep;
     sweep.body = body;
     sweep.start = world.bodies.CenterPoseOf(body);
-    if (body >= store.starts.size() || store.starts[body].step != world.report.step) return course;
+    if (body >= store.starts.size() || store.starts[body].step != world.report.step) return lazy;
     const Position end = sweep.start.position;
     sweep.start = store.starts[body].pose;
     sweep.displacement = Between(sweep.start.position, end);
-    course.hasTurn = false;
-    return course;
+    lazy.hasTurn = false;
+    return lazy;
 }
 
-void FindTurn(const WorldState& world, Course& course) {
-    if (course.hasTurn) return;
-    const uint32_t body = course.sweep.body;
+void FindTurn(const WorldState& world, LazySweep& lazy) {
+    if (lazy.hasTurn) return;
+    const uint32_t body = lazy.sweep.body;
     const Quaternion end = world.bodies.RotationOf(body);
-    course.sweep.turn = TurnNear(end * course.sweep.start.rotation.Conjugate(), Vector3(world.bodies.AngularVelocityOf(body) * world.sweeps.dt));
-    course.hasTurn = true;
+    lazy.sweep.turn = TurnNear(end * lazy.sweep.start.rotation.Conjugate(), Vector3(world.bodies.AngularVelocityOf(body) * world.sweeps.dt));
+    lazy.hasTurn = true;
 }
 
 class SweepCaster {
 public:
-    SweepCaster(const WorldState& world, const Course& own, WorkerFindings& findings, SweepHit& best)
+    SweepCaster(const WorldState& world, const LazySweep& own, WorkerFindings& findings, SweepHit& best)
         : world_(world), own_(own), findings_(findings), best_(best), isTurning_(own.sweep.turns && !own.sweep.turn.isZero(0)),
           isCast_(world.bodies.dynamics[own.sweep.body].continuous) {}
 
@@ -112,23 +112,23 @@ private:
     void CastAgainst(uint32_t other, const ShapeCaster& whole, float from = 0) {
         const uint32_t body = world_.colliders.colliders[other].body;
         if (!MayCollide(world_, sweep_.body, body) || !ListenerAllows(world_, sweep_.body, body)) return;
-        Course theirs = CourseOf(world_, body);
-        const Sweep& course = theirs.sweep;
+        LazySweep theirs = LazySweepOf(world_, body);
+        const Sweep& theirSweep = theirs.sweep;
         const ColliderShape& piece = world_.colliders.shapes[other];
-        const float start = std::max({sweep_.from, course.from, from});
-        const bool stays = course.displacement.isZero(0);
-        if (stays || start > course.from || piece.offset || isTurning_) FindTurn(world_, theirs);
-        if (stays && course.turn.isZero(0) && start == sweep_.from) {
+        const float start = std::max({sweep_.from, theirSweep.from, from});
+        const bool stays = theirSweep.displacement.isZero(0);
+        if (stays || start > theirSweep.from || piece.offset || isTurning_) FindTurn(world_, theirs);
+        if (stays && theirSweep.turn.isZero(0) && start == sweep_.from) {
             if (!whole.IsValid()) return;
-            CastThrough(whole, motion_, other, theirs, course.start * LocalOf(world_, other), start, whole);
+            CastThrough(whole, motion_, other, theirs, theirSweep.start * LocalOf(world_, other), start, whole);
             return;
         }
         // Seen from the other, which keeps the rotation that it has at the start.
-        Pose at = start > course.from ? course.PoseAt(start) : course.start;
-        Vector3 others = course.DisplacementRate() * (1 - start);
+        Pose at = start > theirSweep.from ? theirSweep.PoseAt(start) : theirSweep.start;
+        Vector3 others = theirSweep.DisplacementRate() * (1 - start);
         if (piece.offset) {
             at = at * LocalOf(world_, other);
-            others = Between(at.position, (course.PoseAt(1) * LocalOf(world_, other)).position);
+            others = Between(at.position, (theirSweep.PoseAt(1) * LocalOf(world_, other)).position);
         }
         ShapeMotion relative = motion_;
         const float rest = sweep_.from < 1 ? (1 - start) / (1 - sweep_.from) : 0.0f;
@@ -142,9 +142,9 @@ private:
     }
 
     // From the time `start` to the end.
-    void CastThrough(const ShapeCaster& caster, const ShapeMotion& motion, uint32_t other, Course& theirs, const Pose& at, float start,
+    void CastThrough(const ShapeCaster& caster, const ShapeMotion& motion, uint32_t other, LazySweep& theirs, const Pose& at, float start,
                      const ShapeCaster& whole) {
-        const Sweep& course = theirs.sweep;
+        const Sweep& theirSweep = theirs.sweep;
         const Shape& shape = *world_.colliders.shapes[other].shape;
         const float length = 1 - start;
         ShapeCastSettings settings;
@@ -156,11 +156,11 @@ private:
         caster.Visit(shape, at, settings, [&](const ShapeHit& found) {
             if (triangles_ > kMostTriangles) return 0.0f;
             FindTurn(world_, theirs);
-            SweepHit hit = HitOf(other, course);
+            SweepHit hit = HitOf(other, theirSweep);
             hit.time = start + found.fraction * length;
             if (ComesBefore(hit)) {
-                const bool counts = Counts(motion, found, course, length, hit);
-                if (counts && !isTurning_ && DoesTurn(shape) && !ApproachesTurning(hit, course, DepthThatCounts(shape))) {
+                const bool counts = Counts(motion, found, theirSweep, length, hit);
+                if (counts && !isTurning_ && DoesTurn(shape) && !ApproachesTurning(hit, theirSweep, DepthThatCounts(shape))) {
                     asksForTurn = true;
                     return -1.0f;
                 }
@@ -171,7 +171,7 @@ private:
         });
         if (asksForTurn) return CastTurning(other);
         // Without a turn what does not push now never will.
-        if (isTurning_ && touched < best_.time) Follow(motion, course, other, length, touched, whole);
+        if (isTurning_ && touched < best_.time) Follow(motion, theirSweep, other, length, touched, whole);
     }
 
     // Whether the turn makes another hit of one that was found without it: where it moves points by a part of the depth that counts.
@@ -183,11 +183,11 @@ private:
     }
 
     // Whether the points of a hit that was found without the turn come so near with it, too, in what is left of the step.
-    bool ApproachesTurning(const SweepHit& hit, const Sweep& course, float depth) const {
-        const Position own = sweep_.PositionAt(hit.time), others = course.PositionAt(hit.time);
+    bool ApproachesTurning(const SweepHit& hit, const Sweep& theirSweep, float depth) const {
+        const Position own = sweep_.PositionAt(hit.time), others = theirSweep.PositionAt(hit.time);
         float speed = 0;
         for (int i = 0; i < hit.pointCount; ++i) {
-            const Vector3 v = VelocityAt(own + hit.arms[i].cast<double>(), own, sweep_.DisplacementRate() - course.DisplacementRate(), course, others);
+            const Vector3 v = VelocityAt(own + hit.arms[i].cast<double>(), own, sweep_.DisplacementRate() - theirSweep.DisplacementRate(), theirSweep, others);
             speed = std::max(speed, Dot<float>(hit.normal, Vector3(v + Cross<float>(sweep_.TurnRate(), hit.arms[i]))));
         }
         return speed * (1 - hit.time) > depth;
@@ -202,27 +202,27 @@ private:
         isTurning_ = false;
     }
 
-    SweepHit HitOf(uint32_t other, const Sweep& course) const {
+    SweepHit HitOf(uint32_t other, const Sweep& theirSweep) const {
         SweepHit hit;
         hit.body = sweep_.body;
-        hit.other = course.body;
+        hit.other = theirSweep.body;
         hit.otherCollider = other;
-        hit.isBlocked = !isCast_ && !world_.bodies.dynamics[course.body].continuous;
+        hit.isBlocked = !isCast_ && !world_.bodies.dynamics[theirSweep.body].continuous;
         return hit;
     }
 
     // Steps along with what turns while it touches, by so little that it cannot come through, until it pushes or is free.
-    void Follow(const ShapeMotion& motion, const Sweep& course, uint32_t other, float length, float time, const ShapeCaster& whole) {
+    void Follow(const ShapeMotion& motion, const Sweep& theirSweep, uint32_t other, float length, float time, const ShapeCaster& whole) {
         constexpr int kMostSteps = 64, kMostRestarts = 8;
         const Shape& shape = *world_.colliders.shapes[other].shape;
         const Vector3 linear = motion.displacement * (1 / length);
         const float depth = DepthThatCounts(shape);
-        const float speed = Length(linear) + Length(sweep_.TurnRate()) * cast_->OuterRadius() + Length(course.TurnRate()) * shape.OuterRadius();
-        SweepHit hit = HitOf(other, course);
+        const float speed = Length(linear) + Length(sweep_.TurnRate()) * cast_->OuterRadius() + Length(theirSweep.TurnRate()) * shape.OuterRadius();
+        SweepHit hit = HitOf(other, theirSweep);
         for (int i = 0; i < kMostSteps && triangles_ <= kMostTriangles; ++i) {
             time += depth / speed;
             if (!(time < std::min(1.0f, best_.time))) return;
-            const Push push = FindPoints(motion, linear, course, time, depth, hit);
+            const Push push = FindPoints(motion, linear, theirSweep, time, depth, hit);
             hit.time = time;
             if (hit.pointCount == 0 && restarts_++ < kMostRestarts) return CastAgainst(other, whole, time);
             if (!(push.speed > 0 && push.depth > depth)) continue;
@@ -275,8 +275,8 @@ private:
     }
 
     // Per step, of the body's point against the other's at an instant.
-    Vector3 VelocityAt(const Position& point, const Position& own, const Vector3& linear, const Sweep& course, const Position& others) const {
-        Vector3 v = linear - Cross<float>(course.TurnRate(), Between(others, point));
+    Vector3 VelocityAt(const Position& point, const Position& own, const Vector3& linear, const Sweep& theirSweep, const Position& others) const {
+        Vector3 v = linear - Cross<float>(theirSweep.TurnRate(), Between(others, point));
         if (isTurning_) v += Cross<float>(sweep_.TurnRate(), Between(own, point));
         return v;
     }
@@ -284,7 +284,7 @@ private:
     // Looks a little ahead, to where the two would overlap by as much as may be: their manifold there says in which direction
     // they push each other, where the cast knows only what touches first. The sides of flush neighbors, or edges inside a
     // surface, push nowhere along the way.
-    bool Counts(const ShapeMotion& motion, const ShapeHit& found, const Sweep& course, float length, SweepHit& hit) {
+    bool Counts(const ShapeMotion& motion, const ShapeHit& found, const Sweep& theirSweep, float length, SweepHit& hit) {
         if (found.isEarly) return found.fraction > 0;
         const Shape& shape = *world_.colliders.shapes[hit.otherCollider].shape;
         float depth = DepthThatCounts(shape);
@@ -292,14 +292,14 @@ private:
         const Vector3 linear = length > 0 ? Vector3(motion.displacement * (1 / length)) : Vector3(Vector3::Zero());
         float approach;
         if (found.normal.isZero(0)) {
-            approach = FindPoints(motion, linear, course, hit.time, depth, hit).speed;
+            approach = FindPoints(motion, linear, theirSweep, hit.time, depth, hit).speed;
         } else {
-            const Position own = sweep_.PositionAt(hit.time), others = course.PositionAt(hit.time);
-            approach = -Dot<float>(found.normal, VelocityAt(found.position, own, linear, course, others));
+            const Position own = sweep_.PositionAt(hit.time), others = theirSweep.PositionAt(hit.time);
+            approach = -Dot<float>(found.normal, VelocityAt(found.position, own, linear, theirSweep, others));
         }
         if (approach > depth) depth *= kFastDepthFraction / kDepthFraction;
         if (!(approach * left > depth)) return false;
-        return FindPoints(motion, linear, course, std::min(1.0f, hit.time + depth / approach), depth, hit).speed * left > depth;
+        return FindPoints(motion, linear, theirSweep, std::min(1.0f, hit.time + depth / approach), depth, hit).speed * left > depth;
     }
 
     struct Push {
@@ -308,8 +308,8 @@ private:
     };
 
     // Writes the points of the manifold where the two approach fastest at an instant into the hit; none where they do not touch.
-    Push FindPoints(const ShapeMotion& motion, const Vector3& linear, const Sweep& course, float time, float depth, SweepHit& hit) {
-        const Pose own{sweep_.PositionAt(time), isTurning_ ? sweep_.RotationAt(time) : motion.pose.rotation}, others = course.PoseAt(time);
+    Push FindPoints(const ShapeMotion& motion, const Vector3& linear, const Sweep& theirSweep, float time, float depth, SweepHit& hit) {
+        const Pose own{sweep_.PositionAt(time), isTurning_ ? sweep_.RotationAt(time) : motion.pose.rotation}, others = theirSweep.PoseAt(time);
         const ColliderShape& piece = world_.colliders.shapes[hit.otherCollider];
         const Pose a = own * local_;
         Push most;
@@ -318,7 +318,7 @@ private:
             const Vector3 normal = Rotate(a.rotation, manifold.normal);
             Push push;
             for (int i = 0; i < manifold.pointCount; ++i) {
-                const Vector3 v = VelocityAt(a.Transform(manifold.points[i].positionOnA), own.position, linear, course, others.position);
+                const Vector3 v = VelocityAt(a.Transform(manifold.points[i].positionOnA), own.position, linear, theirSweep, others.position);
                 push.speed = std::max(push.speed, Dot<float>(normal, v));
                 push.depth = std::max(push.depth, -manifold.points[i].separation);
             }
@@ -360,7 +360,7 @@ private:
     }
 
     const WorldState& world_;
-    Course own_;
+    LazySweep own_;
     const Sweep& sweep_ = own_.sweep;
     WorkerFindings& findings_;
     SweepHit& best_;
@@ -387,9 +387,9 @@ bool IsCastTurning(const WorldState& world, uint32_t body) {
 }
 
 Sweep SweepOf(const WorldState& world, uint32_t body) {
-    Course course = CourseOf(world, body);
-    FindTurn(world, course);
-    return course.sweep;
+    LazySweep lazy = LazySweepOf(world, body);
+    FindTurn(world, lazy);
+    return lazy.sweep;
 }
 
 bool CastSweep(const WorldState& world, const Sweep& sweep, WorkerFindings& findings, SweepHit& hit) {
@@ -408,7 +408,7 @@ bool CastPair(const WorldState& world, uint32_t collider, uint32_t other, Worker
         if (!BallsMeet(Between(otherFrom, from), motion, reach)) return false;
     }
     hit.time = 1;
-    return SweepCaster(world, CourseOf(world, body), findings, hit).RunAgainst(collider, other);
+    return SweepCaster(world, LazySweepOf(world, body), findings, hit).RunAgainst(collider, other);
 }
 
 }  // namespace fulcrum

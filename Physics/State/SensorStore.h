@@ -27,9 +27,9 @@ struct SensorVisit {
     bool atStart = false, atEnd = false;
 };
 
-// A straight part of a body's way: its course, from course.from until then.
+// A straight part of a body's way: its sweep, from sweep.from until then.
 struct MotionSegment {
-    Sweep course;
+    Sweep sweep;
     float until = 1;
 };
 

@@ -1,4 +1,4 @@
-// How bodies moved within a step: for continuous collision, which cuts their courses short where they hit something, and for
+// How bodies moved within a step: for continuous collision, which cuts their sweeps short where they hit something, and for
 // whoever must see what passed in between. Kept only while a body asks for it. Written by Store and Continuous.
 #pragma once
 
@@ -71,9 +71,9 @@ struct SweepStore {
     float dt = 0;                              // s, of the step
     std::vector<Start> starts;                 // by body: where it was when the step began
     std::vector<SearchBy> searchBy;            // by body; None for all but continuous ones that moved farther than they may without a cast
-    std::vector<Sweep> swept;                  // courses that were searched anew, or changed
+    std::vector<Sweep> swept;                  // sweeps that were searched anew, or changed
     std::vector<uint32_t> places;              // by body: index into `swept`, or kNone
-    std::vector<Sweep> ended;                  // courses that a hit has ended, in the order of the hits
+    std::vector<Sweep> ended;                  // sweeps that a hit has ended, in the order of the hits
     std::vector<float> endedAt;                // times
     std::vector<uint32_t> active, next;        // indices into `swept`, of this round and the next
     std::vector<SweepHit> hits;

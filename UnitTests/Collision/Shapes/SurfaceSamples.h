@@ -126,7 +126,7 @@ inline std::vector<SurfaceHit> BruteForceRay(const std::vector<TriangleView>& tr
     for (const TriangleView& t : triangles) {
         float fraction;
         bool isBack;
-        if (MeetTriangle(sheared, t.vertices[0], t.vertices[1], t.vertices[2], ray.backFaces || isTwoSided, 1, fraction, isBack))
+        if (IntersectTriangle(sheared, t.vertices[0], t.vertices[1], t.vertices[2], ray.backFaces || isTwoSided, 1, fraction, isBack))
             hits.push_back({fraction, t.id, isBack ? Vector3(-t.normal) : t.normal, isBack});
     }
     return hits;
