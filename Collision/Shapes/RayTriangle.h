@@ -70,7 +70,7 @@ void Complete(const ShearedCorner<Real>& a, const ShearedCorner<Real>& b, const 
 // The fraction at which the ray meets the triangle abc (counter-clockwise seen from the front); false: it does not between 0
 // and maxFraction, or lies in its plane. Exact to the sign where an edge function rounds to zero.
 inline bool IntersectTriangle(const ShearedRay& ray, const Vector3& a, const Vector3& b, const Vector3& c, bool fromBehind,
-                         float maxFraction, float& fraction, bool& isBackFace) {
+                              float maxFraction, float& fraction, bool& isBackFace) {
     const ShearedCorner<float> p(ray, a), q(ray, b), r(ray, c);
     TriangleHit<float> m;
     EdgeFunctions(p, q, r, m);
@@ -95,7 +95,7 @@ struct TriangleHits {
     alignas(32) float fraction[8];
 };
 inline void IntersectTriangles(const ShearedRay& ray, const Vec3<Wide<8>> (&corners)[3], bool fromBehind, float maxFraction,
-                          TriangleHits& hits) {
+                               TriangleHits& hits) {
     using Lanes = Wide<8>;
     const ShearedCorner<Lanes> p(ray, corners[0]), q(ray, corners[1]), r(ray, corners[2]);
     TriangleHit<Lanes> m;
@@ -118,7 +118,7 @@ inline void IntersectTriangles(const ShearedRay& ray, const Vec3<Wide<8>> (&corn
         for (int k = 0; k < 3; ++k) corner[k] = Vector3(corners[k].x()[i], corners[k].y()[i], corners[k].z()[i]);
         bool isBackFace = false;
         const bool isMet = IntersectTriangle(ray, corner[0], corner[1], corner[2], fromBehind, maxFraction, hits.fraction[i],
-                                        isBackFace);
+                                             isBackFace);
         hits.met |= (isMet ? 1u : 0u) << i;
         hits.backFaces = (hits.backFaces & ~(1u << i)) | (isBackFace ? 1u : 0u) << i;
     }

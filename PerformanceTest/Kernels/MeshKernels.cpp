@@ -141,7 +141,7 @@ void RayByBruteForce(benchmark::State& state) {
             float fraction;
             bool isBack;
             if (IntersectTriangle(sheared, terrain.vertices[terrain.indices[t]], terrain.vertices[terrain.indices[t + 1]],
-                             terrain.vertices[terrain.indices[t + 2]], false, best, fraction, isBack))
+                                  terrain.vertices[terrain.indices[t + 2]], false, best, fraction, isBack))
                 best = fraction;
         }
         benchmark::DoNotOptimize(best);

@@ -50,10 +50,9 @@ float TurningMotion(const WorldState& world, const Pair& pair, float dt) {
         return std::min(angleOf(body) * outer, outer - shape.InnerRadius());
     };
     const float ofA = ofConvex(pair.bodyA, *pair.shapeA);
-    if (!pair.fixedB) return ofA + ofConvex(pair.bodyB, *pair.shapeB);
+    if (pair.shapeB->IsConvex()) return ofA + ofConvex(pair.bodyB, *pair.shapeB);
     const float angle = angleOf(pair.bodyB);
     if (!(angle > 0)) return ofA;
-    if (!pair.surface && pair.shapeB->Type() != ShapeType::Plane) return ofA + ofConvex(pair.bodyB, *pair.shapeB);
     const Vector3 between = (world.bodies.CenterOf(pair.bodyB) - world.bodies.CenterOf(pair.bodyA)).cast<float>();
     return ofA + angle * std::min(pair.shapeB->OuterRadius(), Length(between) + pair.shapeA->OuterRadius());
 }

@@ -12,7 +12,7 @@ struct Impact {
         Vector3 displacement, turn;            // m, rotation vector in rad
         Vector3 linear, angular;               // m/s, rad/s, at its end
     };
-    Sweep sweeps[2];                          // before
+    Sweep sweeps[2];                           // before
     Pose poses[2];                             // at the time of the hit
     BodyMass masses[2];                        // likewise
     Vector3 linear[2], angular[2];             // m/s, rad/s: velocities at the time of the hit, after it

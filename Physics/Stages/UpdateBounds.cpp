@@ -17,28 +17,29 @@ constexpr float kAheadFraction = 0.25f;  // of the outer radius
 // What moves by this part of the margin in a step would leave fat bounds so soon that they only cost pairs: it gets tight ones.
 constexpr float kFastPart = 0.5f;
 
-// Bounds of a collider at a pose about the origin of bounds, without any margin. A hull as round as a ball is bounded best by its outer sphere.
-Bounds TightBounds(const Shape& shape, const Pose& pose, const Matrix3& rotation) {
+// Makes bounds about the center of a shape larger by how far a turn, a rotation vector in rad, takes what is inside of them: |turn x p| along
+// each axis, of points p up to as far out as the bounds reach by then; never beyond the outer sphere. What turns so slowly that its ends do
+// not leave where they were passes through nothing, and keeps its bounds.
+void ExtendByTurn(const Shape& shape, const Vector3& turn, Vector3& lower, Vector3& upper) {
+    const float outer = shape.OuterRadius(), angle = Length(turn);
+    if (!(angle * outer > shape.InnerRadius())) return;
+    const Vector3 sphere = Vector3::Constant(outer), rate = turn.cwiseAbs();
+    const Vector3 far = Vector3(lower.cwiseAbs().cwiseMax(upper.cwiseAbs()) + sphere * angle).cwiseMin(sphere);
+    const Vector3 swept(rate.y() * far.z() + rate.z() * far.y(), rate.z() * far.x() + rate.x() * far.z(), rate.x() * far.y() + rate.y() * far.x());
+    lower = Vector3(lower - swept).cwiseMax(-sphere);
+    upper = Vector3(upper + swept).cwiseMin(sphere);
+}
+
+// Bounds of a collider at a pose about the origin of bounds while it turns by a rotation vector in rad, without any margin. A hull as round
+// as a ball is bounded best by its outer sphere.
+Bounds TightBounds(const Shape& shape, const Pose& pose, const Matrix3& rotation, const Vector3& turn) {
     const Bounds& local = shape.LocalBounds();
     const Vector3 center = rotation * local.Center(), half = local.HalfExtents();
     const Vector3 reach = rotation.x.cwiseAbs() * half.x() + rotation.y.cwiseAbs() * half.y() + rotation.z.cwiseAbs() * half.z();
     const Vector3 sphere = Vector3::Constant(shape.OuterRadius());
-    const Vector3 lower = Vector3(center - reach).cwiseMax(-sphere), upper = Vector3(center + reach).cwiseMin(sphere);
+    Vector3 lower = Vector3(center - reach).cwiseMax(-sphere), upper = Vector3(center + reach).cwiseMin(sphere);
+    ExtendByTurn(shape, turn, lower, upper);
     return RoundedOutwards(pose.position + lower.cast<double>(), pose.position + upper.cast<double>());
-}
-
-// Bounds about a pose's position, larger by how far the body's turn within the step, a rotation vector in rad, takes what is inside of them:
-// |d x p| along each axis, of points p up to as far out as the bounds reach by then; never beyond the outer sphere. What turns so slowly that its
-// ends do not leave where they were passes through nothing, and keeps its bounds.
-Bounds WithTurn(const Bounds& tight, const Shape& shape, const Position& position, const Vector3& turn) {
-    const float outer = shape.OuterRadius(), angle = Length(turn);
-    if (!(angle * outer > shape.InnerRadius())) return tight;
-    const Vector3 lower = (tight.lower.cast<double>() - position).cast<float>(), upper = (tight.upper.cast<double>() - position).cast<float>();
-    const Vector3 sphere = Vector3::Constant(outer);
-    const Vector3 far = Vector3(lower.cwiseAbs().cwiseMax(upper.cwiseAbs()) + sphere * angle).cwiseMin(sphere), rate = turn.cwiseAbs();
-    const Vector3 sweep(rate.y() * far.z() + rate.z() * far.y(), rate.z() * far.x() + rate.x() * far.z(), rate.x() * far.y() + rate.y() * far.x());
-    const Vector3 low = Vector3(lower - sweep).cwiseMax(-sphere).cwiseMin(lower), high = Vector3(upper + sweep).cwiseMin(sphere).cwiseMax(upper);
-    return RoundedOutwards(position + low.cast<double>(), position + high.cast<double>());
 }
 
 // A step's motion and the speculative distance on both sides.
@@ -64,10 +65,10 @@ void UpdateColliders(WorldState& world, uint32_t body, float dt, WorkerFindings&
         if (piece.offset) {
             const RelativePose local = LocalOf(world, i);
             const Pose at = pose * local;
-            tight = WithTurn(TightBounds(*piece.shape, at, ToMatrix(at.rotation)), *piece.shape, at.position, turn);
+            tight = TightBounds(*piece.shape, at, ToMatrix(at.rotation), turn);
             motion += Cross<float>(angular, Vector3(rotation * local.position)) * dt;
         } else {
-            tight = WithTurn(TightBounds(*piece.shape, pose, rotation), *piece.shape, pose.position, turn);
+            tight = TightBounds(*piece.shape, pose, rotation, turn);
         }
         const float speculative = 0.5f * world.settings.speculativeDistance;
         if (collider.fat.Contains(Reach(tight, motion, speculative))) return;
@@ -136,7 +137,7 @@ Bounds TightBoundsOf(const WorldState& world, uint32_t index) {
     Pose body = world.bodies.CenterPoseOf(world.colliders.colliders[index].body);
     body.position -= world.colliders.boundsOrigin;
     const Pose pose = body * LocalOf(world, index);
-    return TightBounds(*piece.shape, pose, ToMatrix(pose.rotation));
+    return TightBounds(*piece.shape, pose, ToMatrix(pose.rotation), Vector3::Zero());
 }
 
 void SetFatBounds(WorldState& world, uint32_t index) {

@@ -40,13 +40,13 @@ double EnergyAllowance(const Twin& twin) {
     return sum;
 }
 
-// Whether a body is pushed out of deep overlaps in opposite directions. At two points a short way apart that turns it, as fast as the
-// pushes are over their distance: a compound in a slab half as thick, pushed out on both sides. What that adds has no bound by speeds.
-// Looked at when the step is over, in which one of the two may have come out.
+// Whether a body is pushed out of another in opposite directions. At two points a short way apart that turns it, as fast as the pushes are
+// over their distance: a compound in a slab half as thick, pushed out on both sides. What that adds has no bound by speeds. Looked at when
+// the step is over, in which one of the two may have come out.
 bool IsSqueezed(const Twin& twin) {
     struct Push {
-        uint32_t body;
-        Vector3 direction;
+        BodyId bodyA, bodyB;
+        Vector3 normal;
         bool isDeep;
     };
     std::vector<Push> pushes;
@@ -56,15 +56,13 @@ bool IsSqueezed(const Twin& twin) {
             impulse += point.impulse;
             separation = std::min(separation, point.separation);
         }
-        const auto radius = [&](BodyId id) { return twin.system->Bodies().GetShape(id)->InnerRadius(); };
         if (!(impulse > 0)) return;
-        const bool isDeep = -separation > 0.25f * std::min(radius(contact.bodyA), radius(contact.bodyB));
-        pushes.push_back({contact.bodyA.index, -contact.normal, isDeep});
-        pushes.push_back({contact.bodyB.index, contact.normal, isDeep});
+        const auto radius = [&](BodyId id) { return twin.system->Bodies().GetShape(id)->InnerRadius(); };
+        pushes.push_back({contact.bodyA, contact.bodyB, contact.normal, -separation > 0.25f * std::min(radius(contact.bodyA), radius(contact.bodyB))});
     });
     for (const Push& one : pushes)
         for (const Push& other : pushes)
-            if (one.isDeep && one.body == other.body && Dot(one.direction, other.direction) < -0.5f) return true;
+            if (one.isDeep && one.bodyA == other.bodyA && one.bodyB == other.bodyB && Dot(one.normal, other.normal) < -0.5f) return true;
     return false;
 }
 

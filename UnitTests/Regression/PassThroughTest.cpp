@@ -48,15 +48,16 @@ TEST(PassThrough, WhatTurnsFastHitsWhatIsInItsWay) {
     constexpr float kArm = 5, kSpin = 20;  // m, rad/s
     const Vector3 corners[] = {{0, 0, -1}, {kArm + 0.5f, 0, -1}, {kArm + 0.5f, 0, 1}, {0, 0, 1}};
     const uint32_t indices[] = {0, 2, 1, 0, 3, 2};
+    const ShapePtr paddles = CompoundOf({{.shape = CubeOf(0.25f), .position = {kArm, 0, 0}}, {.shape = CubeOf(0.25f), .position = {-kArm, 0, 0}}}), rod = BoxOf(kArm + 0.25f, 0.25f, 0.25f);
     const struct {
         const char* what;
         ShapePtr shape;
         MotionType motion;
     } turning[] = {
-        {"paddles, kinematic", CompoundOf({{.shape = CubeOf(0.25f), .position = {kArm, 0, 0}}, {.shape = CubeOf(0.25f), .position = {-kArm, 0, 0}}}), MotionType::Kinematic},
-        {"paddles", CompoundOf({{.shape = CubeOf(0.25f), .position = {kArm, 0, 0}}, {.shape = CubeOf(0.25f), .position = {-kArm, 0, 0}}}), MotionType::Dynamic},
-        {"rod, kinematic", BoxOf(kArm + 0.25f, 0.25f, 0.25f), MotionType::Kinematic},
-        {"rod", BoxOf(kArm + 0.25f, 0.25f, 0.25f), MotionType::Dynamic},
+        {"paddles, kinematic", paddles, MotionType::Kinematic},
+        {"paddles", paddles, MotionType::Dynamic},
+        {"rod, kinematic", rod, MotionType::Kinematic},
+        {"rod", rod, MotionType::Dynamic},
         {"blade of triangles", TriangleMesh::Create({.vertices = corners, .indices = indices}).Value(), MotionType::Kinematic},
     };
     for (const auto& t : turning)
