@@ -169,7 +169,7 @@ void FindByPoint(Twin& twin, Values& values, const CallTargets& targets, Outcome
     for (const OverlapHit& hit : hits) outcome.answer.Add(hit.body);
     WorldClosest closest;
     if (queries.FindClosest(point, values.Number(0, 5, true), closest)) outcome.answer.Add(closest.body);
-    if (!hits.empty() && closest.body != BodyId{} && closest.distance > 0.01f) Fail(outcome, "a point is inside a body and away from all");
+    Fail(outcome, CheckClosestInside(ShapesOf(*twin.system), hits, point, closest));
 }
 
 void FindByBounds(Twin& twin, Values& values, const CallTargets& targets, Outcome& outcome) {

@@ -12,13 +12,6 @@ namespace fulcrum::testing {
 
 namespace {
 
-// How far two answers may be apart, m: what floats of the shape's size, and doubles of its place, leave open.
-double ToleranceOf(const BodyShape& body, const Position& from) {
-    const double size = std::min(double{body.shape->OuterRadius()}, body.shape->Type() == ShapeType::Plane ? 1.0 : 1e30);
-    const double away = (body.pose.position - from).cwiseAbs().maxCoeff();
-    return 1e-3 * size + 1e-6 * away + 1e-15 * (from.cwiseAbs().maxCoeff() + body.pose.position.cwiseAbs().maxCoeff());
-}
-
 // Where no body is found any more, since planes end there in a world.
 constexpr double kBeyondPlanes = 0.1 * double{kUnboundedExtent};  // m
 
@@ -66,6 +59,12 @@ bool IsUnit(const Vector3& normal) { return IsFinite(normal) && std::abs(LengthS
 
 }  // namespace
 
+double ToleranceOf(const BodyShape& body, const Position& from) {
+    const double size = std::min(double{body.shape->OuterRadius()}, body.shape->Type() == ShapeType::Plane ? 1.0 : 1e30);
+    const double away = (body.pose.position - from).cwiseAbs().maxCoeff();
+    return 1e-3 * size + 1e-6 * away + 1e-15 * (from.cwiseAbs().maxCoeff() + body.pose.position.cwiseAbs().maxCoeff());
+}
+
 std::vector<BodyShape> ShapesOf(const PhysicsSystem& system) {
     std::vector<BodyShape> shapes;
     system.VisitBodies([&](BodyId id) {
@@ -74,6 +73,17 @@ std::vector<BodyShape> ShapesOf(const PhysicsSystem& system) {
         if (!bodies.IsSensor(id)) shapes.push_back({id, shape, CenterPoseOf(*shape, bodies.GetPose(id))});
     });
     return shapes;
+}
+
+std::string CheckClosestInside(const std::vector<BodyShape>& bodies, const std::vector<OverlapHit>& inside, const Position& point, const WorldClosest& closest) {
+    if (closest.body == BodyId{}) return {};
+    for (const OverlapHit& hit : inside) {
+        const BodyShape* const body = Find(bodies, hit.body);
+        if (body && closest.distance > std::max(0.01, ToleranceOf(*body, point)))
+            return Text("a point is inside body ", hit.body.index, ", a ", ShapeTypeName(body->shape->Type()), " of ", body->shape->OuterRadius(),
+                        ", and away from all", ToText(closest));
+    }
+    return {};
 }
 
 bool AreSame(const WorldRayHit& a, const WorldRayHit& b) {

@@ -27,6 +27,10 @@ struct BodyShape {
     Pose pose;
 };
 
+// How far two answers about the body, asked from `from`, may be apart, m: what floats of the shape's size, and doubles of its place,
+// leave open.
+double ToleranceOf(const BodyShape& body, const Position& from);
+
 // All that queries without a filter see.
 std::vector<BodyShape> ShapesOf(const PhysicsSystem& system);
 
@@ -39,6 +43,8 @@ bool AreSame(const WorldClosest& a, const WorldClosest& b);
 
 // The closest hit of a ray against that of every body by itself; a ray that grazes may hit or not.
 std::string CompareRay(const std::vector<BodyShape>& bodies, const Ray& ray, const WorldRayHit& hit);
+// The closest body to a point that lies in the bodies of `inside`: none of them may be farther than what floats of its size leave open.
+std::string CheckClosestInside(const std::vector<BodyShape>& bodies, const std::vector<OverlapHit>& inside, const Position& point, const WorldClosest& closest);
 // Whether the shape touches the body where it is hit, and the hit is finite.
 std::string CheckShapeHit(const std::vector<BodyShape>& bodies, const MovingShape& moving, const WorldShapeHit& hit);
 // The closest body against that of every body by itself.
