@@ -265,6 +265,12 @@ inline Quat<Real> RotationFromVector(const Vec3<Real>& v) {
 }
 inline Quaternion RotationFromVector(const Vector3& v) { return RotationFromVector<float>(v); }
 
+// The rotation by `angle` radians about a unit axis.
+inline Quaternion RotationAbout(const Vector3& axis, double angle) {
+    const Vector3 imaginary = axis * static_cast<float>(Sin(0.5 * angle));
+    return {imaginary.x(), imaginary.y(), imaginary.z(), static_cast<float>(Cos(0.5 * angle))};
+}
+
 // The shortest vector with RotationFromVector(v) = q or -q, |v| <= pi; q's length need not be exactly 1. The logarithm map.
 template <class Real>
 inline Vec3<Real> RotationVectorOf(const Quat<Real>& q) {

@@ -1,29 +1,150 @@
-// The engine's vectors: Eigen's, in three coordinates. Vector3 (float) is for everything relative to a body, a pair or a
-// cell; Position (double) for places in the world. Kernels are templates over Real: float, or Wide<N> for N lanes.
+// The engine's vectors, of three coordinates. Vector3 (float) is for everything relative to a body, a pair or a cell; Position
+// (double) for places in the world. Kernels are templates over Real: float, double, or Wide<N> for N lanes.
+//
+// A class of our own and not Eigen's: its header alone takes a second to compile, and its expressions most of the time of every file
+// that adds two vectors (Docs/Building.md). Members that Eigen has, too, have its names and its meaning. Vectors convert implicitly
+// from Eigen's expressions, and to Eigen's vectors in copies and assignments (Eigen::Vector3f e = v), wherever Eigen is included.
 #pragma once
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
-
+#include <algorithm>
 #include <cmath>
+#include <type_traits>
+
+namespace Eigen {
+template <class Derived>
+class MatrixBase;
+template <class Scalar, int kRows, int kColumns, int kOptions, int kMaxRows, int kMaxColumns>
+class Matrix;
+}  // namespace Eigen
 
 namespace fulcrum {
 
+// Not initialized by its default constructor.
 template <class Real>
-using Vec3 = Eigen::Matrix<Real, 3, 1>;
+class Vec3 {
+public:
+    Vec3() = default;
+    Vec3(const Real& x, const Real& y, const Real& z) : v_{x, y, z} {}
+    template <class Derived>
+    Vec3(const Eigen::MatrixBase<Derived>& m) : Vec3(FromEigen(typename Eigen::MatrixBase<Derived>::PlainObject(m))) {}
+
+    static Vec3 Constant(const Real& value) { return {value, value, value}; }
+    static Vec3 Zero() { return Constant(Real(0.0f)); }
+    static Vec3 Ones() { return Constant(Real(1.0f)); }
+    static Vec3 UnitX() { return {Real(1.0f), Real(0.0f), Real(0.0f)}; }
+    static Vec3 UnitY() { return {Real(0.0f), Real(1.0f), Real(0.0f)}; }
+    static Vec3 UnitZ() { return {Real(0.0f), Real(0.0f), Real(1.0f)}; }
+    // The unit vector of an axis, 0 to 2.
+    static Vec3 Unit(int axis) {
+        Vec3 v = Zero();
+        v[axis] = Real(1.0f);
+        return v;
+    }
+
+    Real& x() { return v_[0]; }
+    Real& y() { return v_[1]; }
+    Real& z() { return v_[2]; }
+    const Real& x() const { return v_[0]; }
+    const Real& y() const { return v_[1]; }
+    const Real& z() const { return v_[2]; }
+    static constexpr int size() { return 3; }
+    // axis: 0 to 2.
+    template <class Index>
+    Real& operator[](Index axis) { return v_[axis]; }
+    template <class Index>
+    const Real& operator[](Index axis) const { return v_[axis]; }
+    Real* data() { return v_; }
+    const Real* data() const { return v_; }
+    void setZero() { *this = Zero(); }
+
+    friend Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.v_[0] + b.v_[0], a.v_[1] + b.v_[1], a.v_[2] + b.v_[2]}; }
+    friend Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.v_[0] - b.v_[0], a.v_[1] - b.v_[1], a.v_[2] - b.v_[2]}; }
+    friend Vec3 operator*(const Vec3& a, const Real& s) { return {a.v_[0] * s, a.v_[1] * s, a.v_[2] * s}; }
+    friend Vec3 operator*(const Real& s, const Vec3& a) { return {s * a.v_[0], s * a.v_[1], s * a.v_[2]}; }
+    friend Vec3 operator/(const Vec3& a, const Real& s) { return {a.v_[0] / s, a.v_[1] / s, a.v_[2] / s}; }
+    Vec3 operator-() const { return {-v_[0], -v_[1], -v_[2]}; }
+    Vec3& operator+=(const Vec3& b) { return *this = *this + b; }
+    Vec3& operator-=(const Vec3& b) { return *this = *this - b; }
+    Vec3& operator*=(const Real& s) { return *this = *this * s; }
+    Vec3& operator/=(const Real& s) { return *this = *this / s; }
+    friend bool operator==(const Vec3& a, const Vec3& b) { return a.v_[0] == b.v_[0] && a.v_[1] == b.v_[1] && a.v_[2] == b.v_[2]; }
+
+    template <class Other>
+    Vec3<Other> cast() const { return {static_cast<Other>(v_[0]), static_cast<Other>(v_[1]), static_cast<Other>(v_[2])}; }
+
+    Vec3 cwiseAbs() const {
+        using std::abs;
+        return {abs(v_[0]), abs(v_[1]), abs(v_[2])};
+    }
+    Vec3 cwiseProduct(const Vec3& b) const { return {v_[0] * b.v_[0], v_[1] * b.v_[1], v_[2] * b.v_[2]}; }
+    Vec3 cwiseQuotient(const Vec3& b) const { return {v_[0] / b.v_[0], v_[1] / b.v_[1], v_[2] / b.v_[2]}; }
+    // Where a coordinate of b is not a number, that of this vector stays.
+    Vec3 cwiseMin(const Vec3& b) const { return {Min(v_[0], b.v_[0]), Min(v_[1], b.v_[1]), Min(v_[2], b.v_[2])}; }
+    Vec3 cwiseMax(const Vec3& b) const { return {Max(v_[0], b.v_[0]), Max(v_[1], b.v_[1]), Max(v_[2], b.v_[2])}; }
+    Vec3 cwiseMin(const Real& limit) const { return cwiseMin(Constant(limit)); }
+    Vec3 cwiseMax(const Real& limit) const { return cwiseMax(Constant(limit)); }
+    Real minCoeff() const { return Min(v_[0], Min(v_[1], v_[2])); }
+    Real maxCoeff() const { return Max(v_[0], Max(v_[1], v_[2])); }
+    Real sum() const { return v_[0] + (v_[1] + v_[2]); }
+    // Whether each coordinate is at most `tolerance` from 0.
+    bool isZero(const Real& tolerance) const { return cwiseAbs().isAtMost(Constant(tolerance)); }
+    // Whether no coordinate is above, or not below, that of b.
+    bool isAtMost(const Vec3& b) const { return v_[0] <= b.v_[0] && v_[1] <= b.v_[1] && v_[2] <= b.v_[2]; }
+    bool isBelow(const Vec3& b) const { return v_[0] < b.v_[0] && v_[1] < b.v_[1] && v_[2] < b.v_[2]; }
+
+    Real dot(const Vec3& b) const { return v_[0] * b.v_[0] + v_[1] * b.v_[1] + v_[2] * b.v_[2]; }
+    Vec3 cross(const Vec3& b) const {
+        return {v_[1] * b.v_[2] - v_[2] * b.v_[1], v_[2] * b.v_[0] - v_[0] * b.v_[2], v_[0] * b.v_[1] - v_[1] * b.v_[0]};
+    }
+    Real squaredNorm() const { return dot(*this); }
+    Real norm() const {
+        using std::sqrt;
+        return sqrt(squaredNorm());
+    }
+    Vec3 normalized() const { return *this / norm(); }
+
+    template <class EigenVector>
+        requires std::is_same_v<EigenVector, Eigen::Matrix<Real, 3, 1, 0, 3, 1>>
+    operator EigenVector() const { return EigenVector(v_[0], v_[1], v_[2]); }
+
+    // "x y z", to any stream.
+    template <class Stream>
+    friend Stream& operator<<(Stream& stream, const Vec3& v) {
+        stream << v.v_[0] << ' ' << v.v_[1] << ' ' << v.v_[2];
+        return stream;
+    }
+
+private:
+    template <class Plain>
+    static Vec3 FromEigen(const Plain& m) {
+        static_assert(Plain::RowsAtCompileTime == 3 && Plain::ColsAtCompileTime == 1 && std::is_same_v<typename Plain::Scalar, Real>,
+                      "a vector of three coordinates of the same type is needed");
+        return {m.coeff(0), m.coeff(1), m.coeff(2)};
+    }
+    static Real Min(const Real& a, const Real& b) {
+        using std::min;
+        return min(a, b);
+    }
+    static Real Max(const Real& a, const Real& b) {
+        using std::max;
+        return max(a, b);
+    }
+
+    Real v_[3];
+};
 
 using Vector3 = Vec3<float>;
 using Position = Vec3<double>;
 
-// Products are spelled out, so that no build of Eigen may choose another order of the sums.
+// The order of these sums is part of the engine's results.
 template <class Real>
 inline Real Dot(const Vec3<Real>& a, const Vec3<Real>& b) {
-    return a.x() * b.x() + a.y() * b.y() + a.z() * b.z();
+    return a.dot(b);
 }
 
 template <class Real>
 inline Vec3<Real> Cross(const Vec3<Real>& a, const Vec3<Real>& b) {
-    return Vec3<Real>(a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(), a.x() * b.y() - a.y() * b.x());
+    return a.cross(b);
 }
 
 inline float LengthSquared(const Vector3& v) { return Dot(v, v); }

@@ -400,17 +400,6 @@ FULCRUM_FORCE_INLINE void ScatterRows(float* const (&rows)[N], const Wide<N> (&i
 }  // inline namespace
 }  // namespace fulcrum
 
-// Lets Eigen's vectors hold lanes.
-namespace Eigen {
-template <int N>
-struct NumTraits<fulcrum::Wide<N>> : GenericNumTraits<fulcrum::Wide<N>> {
-    using Real = fulcrum::Wide<N>;
-    using NonInteger = fulcrum::Wide<N>;
-    using Nested = fulcrum::Wide<N>;
-    enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 0, ReadCost = 1, AddCost = 1, MulCost = 1 };
-};
-}  // namespace Eigen
-
 #if defined(__GNUC__)
 #pragma GCC diagnostic pop
 #endif

@@ -57,13 +57,3 @@ inline constexpr bool kIsDouble<WideDouble> = true;
 
 }  // namespace fulcrum
 
-// Lets Eigen's vectors hold them.
-namespace Eigen {
-template <>
-struct NumTraits<fulcrum::WideDouble> : GenericNumTraits<fulcrum::WideDouble> {
-    using Real = fulcrum::WideDouble;
-    using NonInteger = fulcrum::WideDouble;
-    using Nested = fulcrum::WideDouble;
-    enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 0, ReadCost = 1, AddCost = 1, MulCost = 1 };
-};
-}  // namespace Eigen

@@ -67,7 +67,7 @@ void RemovePairsOf(WorldState& world, uint32_t collider) {
 // Has what touches the collider looked at anew, however little it moved; impulses go on.
 void ForgetManifoldsOf(WorldState& world, uint32_t collider) {
     world.pairs.VisitOf(collider, [&](uint32_t pair) {
-        world.pairs.pairs[pair].reference.position.setConstant(std::numeric_limits<float>::infinity());
+        world.pairs.pairs[pair].reference.position = Vector3::Constant(std::numeric_limits<float>::infinity());
     });
 }
 

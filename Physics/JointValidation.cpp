@@ -108,11 +108,12 @@ MaybeError CheckFriction(const FieldName& field, float x) {
     return CheckNotNegative(field.Text().c_str(), x);
 }
 
-// A ratio of gears and the like.
-MaybeError CheckNotZero(const FieldName& field, float x) {
+// A ratio of gears and the like, of either sign. Times the largest lengths it is still a float, and so is its inverse.
+MaybeError CheckRatio(const FieldName& field, float x) {
+    constexpr float kLeast = 1e-9f, kLargest = 1e9f;
     if (MaybeError e = CheckFiniteField(field, x)) return e;
-    if (x != 0.0f) return std::nullopt;
-    return Error{ErrorCode::OutOfRange, field.Text() + " is 0; it must not be"};
+    if (std::fabs(x) >= kLeast && std::fabs(x) <= kLargest) return std::nullopt;
+    return Error{ErrorCode::OutOfRange, field.Text() + " is " + Number(x) + "; without its sign it must be from " + Number(kLeast) + " to " + Number(kLargest)};
 }
 
 MaybeError CheckBounds(const FieldName& name, const JointLimits& limits, const LimitBounds& bounds) {
@@ -182,11 +183,11 @@ MaybeError Check(const SixDofJointSettings& s) {
         return e;
     return CheckSwingTwist({"axes[AngularX]", "axes[AngularY]", "axes[AngularZ]"}, {s.axes[3], s.axes[4], s.axes[5]}, s.shape);
 }
-MaybeError Check(const GearJointSettings& s) { return CheckWith(s, CheckNotZero("ratio", s.ratio)); }
-MaybeError Check(const RackAndPinionJointSettings& s) { return CheckWith(s, CheckNotZero("ratio", s.ratio)); }
+MaybeError Check(const GearJointSettings& s) { return CheckWith(s, CheckRatio("ratio", s.ratio)); }
+MaybeError Check(const RackAndPinionJointSettings& s) { return CheckWith(s, CheckRatio("ratio", s.ratio)); }
 MaybeError Check(const PulleyJointSettings& s) {
     if (MaybeError e = CheckWith(s, CheckPosition("fixedPointA", s.fixedPointA), CheckPosition("fixedPointB", s.fixedPointB),
-                                 CheckPositive("ratio", s.ratio), CheckNotNegative("minLength", s.minLength)))
+                                 CheckPositive("ratio", s.ratio), CheckRatio("ratio", s.ratio), CheckNotNegative("minLength", s.minLength)))
         return e;
     if (!s.maxLength) return std::nullopt;
     return FirstOf(CheckBetween("maxLength", *s.maxLength, 0.0, kEndless), CheckOrder("minLength", s.minLength, "maxLength", *s.maxLength));

@@ -286,7 +286,7 @@ bool QueryInterface::MayCollide(BodyId a, BodyId b) const {
 void QueryInterface::FindOnSweep(const Position& lower, const Position& upper, const Vector3& displacement,
                                  std::vector<OverlapHit>& hits, const QueryFilter& filter) const {
     hits.clear();
-    if (!IsFinite(lower) || !IsFinite(upper) || !IsFinite(displacement) || !(lower.array() <= upper.array()).all()) return;
+    if (!IsFinite(lower) || !IsFinite(upper) || !IsFinite(displacement) || !lower.isAtMost(upper)) return;
     const QueryScope scope(world_);
     if (!scope) return;
     const ColliderSearch search(world_, filter);

@@ -32,7 +32,7 @@ double BoundsTree::HalfArea(const Packed& box) {
 }
 
 bool BoundsTree::IsValid(const Bounds& b) {
-    return (b.lower.array() <= b.upper.array()).all();
+    return b.lower.isAtMost(b.upper);
 }
 
 // ---- Nodes

@@ -151,7 +151,7 @@ void HeightField::DescendInto(uint32_t level, uint32_t blockX, uint32_t blockZ, 
 
 void HeightField::SearchBox(const Bounds& box, void* context, BatchFunction found) const {
     CellRange x, z;
-    if (!(box.lower.array() <= box.upper.array()).all() || !FindCells(box, x, z)) return;
+    if (!box.lower.isAtMost(box.upper) || !FindCells(box, x, z)) return;
     const float low = box.lower.y(), high = box.upper.y();
     uint32_t ids[kMaxBatch];
     int count = 0;

@@ -20,8 +20,8 @@ Result<std::shared_ptr<const Plane>> Plane::Create(const Vector3& normal, float 
     plane->normal_ = std::fabs(length - 1) < 0x1p-23 ? normal : Vector3((exact / length).cast<float>());
     plane->offset_ = offset;
     // Also where it ends along an axis: the middle and the extent of such a box would lose that end in rounding.
-    plane->bounds_.lower.setConstant(-kUnboundedExtent);
-    plane->bounds_.upper.setConstant(kUnboundedExtent);
+    plane->bounds_.lower = Vector3::Constant(-kUnboundedExtent);
+    plane->bounds_.upper = Vector3::Constant(kUnboundedExtent);
     plane->outerRadius_ = kUnboundedExtent;
     return std::shared_ptr<const Plane>(plane);
 }

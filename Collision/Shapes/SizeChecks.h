@@ -8,22 +8,31 @@ namespace fulcrum {
 
 inline constexpr double kPi = 3.14159265358979323846;
 
-// Ok where the size is finite and positive; an Error that names it otherwise.
+// Squares of distances have to stay floats.
+inline constexpr float kFarthestPlace = 1e18f;  // m
+
+namespace detail {
+
+inline Status CheckNotTooLarge(const char* name, float size) {
+    if (size <= kFarthestPlace) return Done{};
+    return Error{ErrorCode::OutOfRange, Message("%s is %g m: it must be at most %g m", name, double{size}, double{kFarthestPlace})};
+}
+
+}  // namespace detail
+
+// Ok where the size is positive and not beyond that; an Error that names it otherwise.
 inline Status CheckSize(const char* name, float size) {
     if (!std::isfinite(size)) return Error{ErrorCode::NonFinite, Message("%s is %g: it must be finite", name, double{size})};
     if (!(size > 0)) return Error{ErrorCode::NonPositive, Message("%s is %g m: it must be larger than 0", name, double{size})};
-    return Done{};
+    return detail::CheckNotTooLarge(name, size);
 }
 
 // The same for a size that may be 0.
 inline Status CheckSizeOrZero(const char* name, float size) {
     if (!std::isfinite(size)) return Error{ErrorCode::NonFinite, Message("%s is %g: it must be finite", name, double{size})};
     if (!(size >= 0)) return Error{ErrorCode::Negative, Message("%s is %g m: it must be 0 or more", name, double{size})};
-    return Done{};
+    return detail::CheckNotTooLarge(name, size);
 }
-
-// Squares of distances have to stay floats.
-inline constexpr float kFarthestPlace = 1e18f;  // m
 
 // Ok where the center of a part lies within that.
 inline Status CheckPlace(const char* name, const Vector3& center) {

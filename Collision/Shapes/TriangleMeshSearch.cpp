@@ -37,7 +37,7 @@ Bounds Unscaled(const Bounds& box, const Vector3& scale, bool isScaled) {
 }  // namespace
 
 void TriangleMesh::SearchBox(const Bounds& box, void* context, BatchFunction found) const {
-    if (!(box.lower.array() <= box.upper.array()).all()) return;
+    if (!box.lower.isAtMost(box.upper)) return;
     const MeshTree& tree = *tree_;
     const Wide<4> lower = Wide<4>::Load(std::array{box.lower.x(), box.lower.y(), box.lower.z(), -kInfinity}.data());
     const Wide<4> upper = Wide<4>::Load(std::array{box.upper.x(), box.upper.y(), box.upper.z(), kInfinity}.data());

@@ -374,7 +374,7 @@ FULCRUM_FORCE_INLINE LockImpulses<Wide<N>> SolveBlock(JointBatch<N>& batch, cons
 
 template <class Rows, class Real>
 FULCRUM_FORCE_INLINE Vec3<Real> Widened(const Rows& rows, Real zero) {
-    if constexpr (Rows::SizeAtCompileTime == 3) return rows;
+    if constexpr (Rows::size() == 3) return rows;
     else return Vec3<Real>(rows.x(), rows.y(), zero);
 }
 

@@ -14,6 +14,8 @@
 
 #include <Fulcrum/Constraints/Joints/JointBatch.h>
 
+#include <Eigen/Core>
+
 #include <span>
 
 namespace fulcrum {

@@ -12,8 +12,33 @@
 
 namespace fulcrum {
 
+// Two coordinates, not initialized by the default constructor.
 template <class Real>
-using Vec2 = Eigen::Matrix<Real, 2, 1>;
+class Vec2 {
+public:
+    Vec2() = default;
+    Vec2(const Real& x, const Real& y) : v_{x, y} {}
+    static Vec2 Zero() { return {Real(0.0f), Real(0.0f)}; }
+
+    Real& x() { return v_[0]; }
+    Real& y() { return v_[1]; }
+    const Real& x() const { return v_[0]; }
+    const Real& y() const { return v_[1]; }
+    static constexpr int size() { return 2; }
+    Real& operator[](int axis) { return v_[axis]; }
+    const Real& operator[](int axis) const { return v_[axis]; }
+
+    friend Vec2 operator+(const Vec2& a, const Vec2& b) { return {a.v_[0] + b.v_[0], a.v_[1] + b.v_[1]}; }
+    friend Vec2 operator-(const Vec2& a, const Vec2& b) { return {a.v_[0] - b.v_[0], a.v_[1] - b.v_[1]}; }
+    friend Vec2 operator*(const Vec2& a, const Real& s) { return {a.v_[0] * s, a.v_[1] * s}; }
+    Vec2 operator-() const { return {-v_[0], -v_[1]}; }
+    friend bool operator==(const Vec2& a, const Vec2& b) { return a.v_[0] == b.v_[0] && a.v_[1] == b.v_[1]; }
+    Vec2& operator+=(const Vec2& b) { return *this = *this + b; }
+    Vec2& operator*=(const Real& s) { return *this = *this * s; }
+
+private:
+    Real v_[2];
+};
 
 // Symmetric 2x2 matrix.
 template <class Real>

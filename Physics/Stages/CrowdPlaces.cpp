@@ -93,8 +93,8 @@ void MatchPlaces(const WorldState& world, std::span<uint32_t> bodies, std::span<
         lower = lower.cwiseMin(place);
         upper = upper.cwiseMax(place);
     }
-    Eigen::Index axis;
-    Vector3(upper - lower).maxCoeff(&axis);
+    const Vector3 extent = upper - lower;
+    const int axis = static_cast<int>(std::max_element(extent.data(), extent.data() + 3) - extent.data());
     const size_t half = bodies.size() / 2;
     const auto bodyKey = [&](uint32_t body) { return std::pair(world.bodies.poses[body].position[axis], body); };
     const auto placeKey = [&](const Vector3& p) { return std::tuple(p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]); };

@@ -212,7 +212,7 @@ bool CentersTell(const Shape& sensor, const Shape& body, const Vector3& center) 
     if (!sensor.IsConvex() || !body.IsConvex()) return false;
     const float reach = sensor.InnerRadius() + body.InnerRadius();
     if (LengthSquared(center) < reach * reach) return true;
-    return sensor.Type() == ShapeType::Box && (center.cwiseAbs().array() < static_cast<const Box&>(sensor).HalfExtents().array()).all();
+    return sensor.Type() == ShapeType::Box && center.cwiseAbs().isBelow(static_cast<const Box&>(sensor).HalfExtents());
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <Fulcrum/Samples/Runner/MeshFile.h>
 
+#include <Eigen/LU>
 #include <assimp/Importer.hpp>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>

@@ -19,7 +19,7 @@ double AddTent(SceneWorld& world, const ShapePtr& card, double middle, double gr
     for (double side : {-1.0, 1.0})
         world.Add({.shape = card,
                    .position = {middle + side * aside, ground + halfHeight, 0},
-                   .rotation = Turn(Vector3(0, 0, 1), side * kLean),
+                   .rotation = RotationAbout(Vector3(0, 0, 1), side * kLean),
                    .material = material});
     return ground + 2 * halfHeight;
 }

@@ -49,7 +49,7 @@ void AddDistricts(SceneWorld& world) {
             buildings.push_back({.shape = shape,
                                  .position = Vector3(static_cast<float>((i % kBuildings + 0.5) * kStreet), -foot,
                                                      static_cast<float>((i / kBuildings + 0.5) * kStreet)),
-                                 .rotation = Turn(Vector3(0, 1, 0), world.random.Between(0, kPi / 2))});
+                                 .rotation = RotationAbout(Vector3(0, 1, 0), world.random.Between(0, kPi / 2))});
         }
         const double x = (district % kDistricts - 0.5 * kDistricts) * kDistrict, z = (district / kDistricts - 0.5 * kDistricts) * kDistrict;
         world.Add({.shape = world.CompoundOf(buildings), .motion = MotionType::Static, .position = {x, 0, z}});
@@ -97,7 +97,7 @@ void AddRain(SceneWorld& world) {
     for (int i = 0; i < kAcross * kAcross; ++i) {
         const double x = world.random.Between(-1, 1), y = world.random.Between(14, 30), z = world.random.Between(-1, 1);
         const Position at(kStreet * (i % kAcross - kAcross / 2 + 0.5) + x, y, kStreet * (i / kAcross - kAcross / 2 + 0.5) + z);
-        world.Add({.shape = kinds[static_cast<size_t>(i % 4)], .position = at, .rotation = Turn(Vector3(0.6f, 0, 0.8f), y)});
+        world.Add({.shape = kinds[static_cast<size_t>(i % 4)], .position = at, .rotation = RotationAbout(Vector3(0.6f, 0, 0.8f), y)});
     }
 }
 

@@ -30,7 +30,7 @@ void Build(SceneWorld& world) {
     const ShapePtr shapes[] = {drum.Value(), cone.Value(), cup.Value(), puck.Value(), skittle.Value(), plate.Value(), egg.Value()};
     constexpr int kKinds = static_cast<int>(std::size(shapes));
 
-    const Quaternion tilt = Turn(Vector3(0, 0, 1), -kSlope);
+    const Quaternion tilt = RotationAbout(Vector3(0, 0, 1), -kSlope);
     world.Add({.shape = world.BoxOf(4, 0.1f, 6), .motion = MotionType::Static, .position = {-7, 1.5, 0}, .rotation = tilt});
     for (int i = 0; i < kKinds; ++i) {
         const double z = kSpacing * (i - 0.5 * (kKinds - 1));
@@ -40,11 +40,11 @@ void Build(SceneWorld& world) {
         const double radius = double{shapes[i]->LocalBounds().upper.x()};
         const Position top = Position(-7, 1.5, 0) + Rotate(tilt, Vector3(-3, 0.12f + static_cast<float>(radius), 0)).cast<double>();
         world.watched.push_back(world.Add({.shape = shapes[i], .position = top + Position(0, 0, z),
-                                           .rotation = tilt * Turn(Vector3(1, 0, 0), 90 * kDegree)}));
+                                           .rotation = tilt * RotationAbout(Vector3(1, 0, 0), 90 * kDegree)}));
     }
     for (int i = 0; i < 5 * kKinds; ++i) {
         const Position place(1 + 0.9 * (i % 3), 1.5 + 0.35 * i, 0.9 * (i / 3 % 3 - 1));
-        world.watched.push_back(world.Add({.shape = shapes[i % kKinds], .position = place, .rotation = Turn(Vector3(0.6f, 0, 0.8f), 0.7 * i)}));
+        world.watched.push_back(world.Add({.shape = shapes[i % kKinds], .position = place, .rotation = RotationAbout(Vector3(0.6f, 0, 0.8f), 0.7 * i)}));
     }
 }
 

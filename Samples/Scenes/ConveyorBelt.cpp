@@ -61,7 +61,7 @@ std::vector<Belt> AddLoop(SceneWorld& world) {
 // From the floor up to the edge of the loop's belt at z > 0, which it overlooks a little.
 Belt AddFeeder(SceneWorld& world) {
     constexpr double kHalf = 3.5;
-    const Quaternion tilt = Turn(Vector3(1, 0, 0), kSlope);
+    const Quaternion tilt = RotationAbout(Vector3(1, 0, 0), kSlope);
     const Position end(0, kTop + 0.1, kRadius + double{kHalfWidth});
     const Position along = Rotate(tilt, Vector3(0, 0, 1)).cast<double>(), up = Rotate(tilt, Vector3(0, 1, 0)).cast<double>();
     return {.body = world.Add({.shape = world.BoxOf(kHalfWidth, kHalfThickness, kHalf),

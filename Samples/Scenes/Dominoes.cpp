@@ -24,7 +24,7 @@ void Build(SceneWorld& world) {
         const double angle = i * kStep;
         world.watched.push_back(world.Add({.shape = domino,
                                            .position = OnCircle(angle, kRadius - 0.012 * i, 0.25),
-                                           .rotation = Turn(Vector3(0, 1, 0), angle)}));
+                                           .rotation = RotationAbout(Vector3(0, 1, 0), angle)}));
     }
     world.Add({.shape = world.SphereOf(0.15f),
                .position = Position(kRadius, 0.15, 0.8),

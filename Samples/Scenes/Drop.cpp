@@ -26,7 +26,7 @@ void Build(SceneWorld& world) {
         const double height = world.random.Between(-1, 1), around = world.random.Between(0, 2 * kPi);
         const double turn = world.random.Between(0, 2 * kPi), flat = std::sqrt(1 - height * height);
         const Vector3 axis = Position(flat * Cos(around), height, flat * Sin(around)).cast<float>();
-        const Quaternion rotation = Turn(axis, turn);
+        const Quaternion rotation = RotationAbout(axis, turn);
         // The grid places centers of mass, the body's position is its shape's own origin.
         const Position origin = center - Rotate(rotation, shape->Mass().centerOfMass).cast<double>();
         world.watched.push_back(world.Add({.shape = shape, .position = origin, .rotation = rotation}));

@@ -49,7 +49,7 @@ void Build(SceneWorld& world) {
         const double around = world.random.Between(0, 2 * kPi);
         const double turn = world.random.Between(0, 2 * kPi);
         const double flat = std::sqrt(1 - height * height);
-        const Quaternion rotation = Turn(Position(flat * Cos(around), height, flat * Sin(around)).cast<float>(), turn);
+        const Quaternion rotation = RotationAbout(Position(flat * Cos(around), height, flat * Sin(around)).cast<float>(), turn);
         const Position origin = place - Rotate(rotation, shape->Mass().centerOfMass).cast<double>();
         world.watched.push_back(world.Add({.shape = shape, .position = origin, .rotation = rotation}));
         place.y() += spacing;

@@ -23,7 +23,7 @@ void Build(SceneWorld& world) {
     const auto slope = Plane::Create(kNormal.cast<float>());
     world.Add({.shape = slope.Value(), .motion = MotionType::Static, .position = kTop});
     const ShapePtr ball = world.SphereOf(kRadius), crate = world.BoxOf(0.4f, 0.3f, 0.4f), seat = world.BoxOf(0.5f, 0.05f, 0.25f);
-    const Quaternion tilt = Turn(Vector3(0, 0, 1), -kSlope);
+    const Quaternion tilt = RotationAbout(Vector3(0, 0, 1), -kSlope);
     for (int i = 0; i < kBalls; ++i)
         world.watched.push_back(world.Add({.shape = ball, .position = OnSlope(0, double{kRadius}, 2.0 * i - 5)}));
     for (int i = 0; i < kBalls; ++i)

@@ -22,7 +22,7 @@ void Build(SceneWorld& world) {
             const double angle = world.random.Between(-kPi, kPi);
             world.watched.push_back(world.Add({.shape = shapes[static_cast<size_t>(row + column) % shapes.size()],
                                                .position = {1.2 * (column - 4) + shift, 1 + 1.3 * row, 0},
-                                               .rotation = Turn(Vector3(0, 0, 1), angle),
+                                               .rotation = RotationAbout(Vector3(0, 0, 1), angle),
                                                .lockedAxes = LockedAxes::Plane2D}));
         }
 }

@@ -22,7 +22,7 @@ Position StartOf(size_t box) { return OnRamp(2 - kHalfLength, 0.4, 1.2 * (static
 void Build(SceneWorld& world) {
     world.AddFloor(20, 10);
     world.AddWalls(19, 9, 1);
-    const Quaternion tilt = Turn(Vector3(0, 0, 1), -kSlope);
+    const Quaternion tilt = RotationAbout(Vector3(0, 0, 1), -kSlope);
     world.Add({.shape = world.BoxOf(kHalfLength, 0.2f, 6),
                .motion = MotionType::Static,
                .position = OnRamp(0, -0.2, 0),

@@ -92,8 +92,8 @@ RagdollSettings Humanoid() {
         RagdollPart part{.name = bone.name, .parent = bone.parent, .body = {}, .joint = JointOf(bone)};
         part.body.shape = Capsule::Create(bone.halfHeight, bone.radius).Value();
         part.body.position = bone.center;
-        if (bone.along == Along::X) part.body.rotation = Turn(Vector3(0, 0, 1), -0.5 * kPi);
-        if (bone.along == Along::Z) part.body.rotation = Turn(Vector3(1, 0, 0), 0.5 * kPi);
+        if (bone.along == Along::X) part.body.rotation = RotationAbout(Vector3(0, 0, 1), -0.5 * kPi);
+        if (bone.along == Along::Z) part.body.rotation = RotationAbout(Vector3(1, 0, 0), 0.5 * kPi);
         settings.parts.push_back(std::move(part));
     }
     return settings;

@@ -16,9 +16,9 @@ Pose PlatformPose(size_t platform, double time) {
         case kShuttle: return {Position(-1 - 1.5 * Cos(2 * kPi * time / 5), 0.5, 4), {}};
         case kTurntable: {
             const double turned = time < 3 ? 0.2 * time * time : 1.2 * time - 1.8;  // up to 1.2 rad/s within 3 s
-            return {Position(0, 0.5, -1), Turn(Vector3(0, 1, 0), turned)};
+            return {Position(0, 0.5, -1), RotationAbout(Vector3(0, 1, 0), turned)};
         }
-        default: return {Position(6, 0.5, 0), Turn(Vector3(0, 1, 0), 0.4 * time * std::min(time, 2.0))};
+        default: return {Position(6, 0.5, 0), RotationAbout(Vector3(0, 1, 0), 0.4 * time * std::min(time, 2.0))};
     }
 }
 

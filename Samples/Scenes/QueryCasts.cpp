@@ -15,7 +15,7 @@ Pose PoseAt(const MovingShape& shape, double fraction) {
     const float angle = Length(shape.turn);
     Pose pose = shape.pose;
     pose.position += shape.displacement.cast<double>() * fraction;
-    if (angle > 0) pose.rotation = Turn(shape.turn / angle, double{angle} * fraction) * pose.rotation;
+    if (angle > 0) pose.rotation = RotationAbout(shape.turn / angle, double{angle} * fraction) * pose.rotation;
     return pose;
 }
 
@@ -48,9 +48,9 @@ void Ask(SceneWorld& world) {
     // Straight down, and level between the walls.
     CastAndDraw(world, {.shape = kBall.Value().get(), .pose = {OverTheGround(time, 0, 5), {}}, .displacement = {0, -6, 0}});
     CastAndDraw(world, {.shape = kPill.Value().get(),
-                        .pose = {OverTheGround(time, 0.5, 5), Turn(Vector3(1, 0, 0), time)}, .displacement = {0, -6, 0}});
+                        .pose = {OverTheGround(time, 0.5, 5), RotationAbout(Vector3(1, 0, 0), time)}, .displacement = {0, -6, 0}});
     const double z = 5.5 * Sin(0.6 * time);
-    CastAndDraw(world, {.shape = kBox.Value().get(), .pose = {{-6, 1.6, z}, Turn(Vector3(0, 1, 0), 0.5 * time)},
+    CastAndDraw(world, {.shape = kBox.Value().get(), .pose = {{-6, 1.6, z}, RotationAbout(Vector3(0, 1, 0), 0.5 * time)},
                         .displacement = {13, -0.4f, 0}});
     // A rod that makes a turn and a half on its way down, and one that turns on the spot like a clock's hand.
     CastAndDraw(world, {.shape = kRod.Value().get(), .pose = {OverTheGround(time, 0.25, 5), {}}, .displacement = {1, -5, 0},

@@ -49,8 +49,8 @@ void Ask(SceneWorld& world) {
         world.Draw().Outline(shape, pose, Ink::Shape);
         if (world.Queries().FindClosest(PlacedShape{&shape, pose}, kReach, closest)) Draw(world, closest);
     };
-    ask(*kBox.Value(), {OverTheGround(time, 0.1, 2.6), Turn(Vector3(0.6f, 0.8f, 0), time)});
-    ask(*kPill.Value(), {OverTheGround(time, 0.6, 2.6), Turn(Vector3(0, 0.6f, 0.8f), time)});
+    ask(*kBox.Value(), {OverTheGround(time, 0.1, 2.6), RotationAbout(Vector3(0.6f, 0.8f, 0), time)});
+    ask(*kPill.Value(), {OverTheGround(time, 0.6, 2.6), RotationAbout(Vector3(0, 0.6f, 0.8f), time)});
 }
 
 }  // namespace

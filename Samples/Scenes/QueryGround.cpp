@@ -41,7 +41,7 @@ void AddQueryGround(SceneWorld& world) {
     const ShapePtr bar = world.BoxOf(3, 0.35f, 0.15f);
     for (double side : {-1.0, 1.0})
         world.Add({.shape = bar, .motion = MotionType::Kinematic, .position = {side * 3.4, 1.4, 0},
-                   .rotation = Turn(Vector3(0, 1, 0), 0.4 * side), .angularVelocity = {0, static_cast<float>(0.7 * side), 0}});
+                   .rotation = RotationAbout(Vector3(0, 1, 0), 0.4 * side), .angularVelocity = {0, static_cast<float>(0.7 * side), 0}});
     const std::array<Vector3, 6> octahedron{
         {{0.5f, 0, 0}, {-0.5f, 0, 0}, {0, 0.6f, 0}, {0, -0.6f, 0}, {0, 0, 0.5f}, {0, 0, -0.5f}}};
     const auto cylinder = Cylinder::Create(0.3f, 0.35f);
@@ -50,7 +50,7 @@ void AddQueryGround(SceneWorld& world) {
     for (int i = 0; i < 70; ++i) {
         const Position place(1.8 * (i % 8 - 3.5), 2 + 1.2 * (i / 32), 2.8 * (i / 8 % 4 - 1.5) + 0.4 * (i % 3));
         world.watched.push_back(world.Add({.shape = shapes[static_cast<size_t>(i) % shapes.size()], .position = place,
-                                           .rotation = Turn(Vector3(0.6f, 0, 0.8f), 0.5 * i)}));
+                                           .rotation = RotationAbout(Vector3(0.6f, 0, 0.8f), 0.5 * i)}));
     }
 }
 

@@ -50,9 +50,9 @@ void Ask(SceneWorld& world) {
     static const auto kTetrahedron = ConvexHull::Create(kCorners);
     const double time = world.Time();
     Probe(world, *kBall.Value(), {OverTheGround(time, 0, 1.5), {}});
-    Probe(world, *kBox.Value(), {OverTheGround(time, 0.2, 1.5), Turn(Vector3(0, 1, 0), time)});
-    Probe(world, *kPill.Value(), {OverTheGround(time, 0.4, 1.5), Turn(Vector3(1, 0, 0), 0.7 * time)});
-    Probe(world, *kTetrahedron.Value(), {OverTheGround(time, 0.8, 1.8), Turn(Vector3(0, 0, 1), 0.5 * time)});
+    Probe(world, *kBox.Value(), {OverTheGround(time, 0.2, 1.5), RotationAbout(Vector3(0, 1, 0), time)});
+    Probe(world, *kPill.Value(), {OverTheGround(time, 0.4, 1.5), RotationAbout(Vector3(1, 0, 0), 0.7 * time)});
+    Probe(world, *kTetrahedron.Value(), {OverTheGround(time, 0.8, 1.8), RotationAbout(Vector3(0, 0, 1), 0.5 * time)});
     ProbePoints(world);
 }
 

@@ -14,7 +14,7 @@ void Build(SceneWorld& world) {
             for (int i = 0; i < kRagdollsPerPile; ++i) {
                 const double x = 4 * (column - 1.5), z = 4 * (row - 1.5);
                 const Position origin(x, WavyHeight(x, z) + 1 + 1.5 * i, z);
-                world.AddRagdoll(humanoid, {origin, Turn(Vector3(0, 1, 0), 2 * kPi * i / kRagdollsPerPile)});
+                world.AddRagdoll(humanoid, {origin, RotationAbout(Vector3(0, 1, 0), 2 * kPi * i / kRagdollsPerPile)});
             }
 }
 

@@ -125,9 +125,4 @@ double BodiesBelowTheFloor(const SceneWorld& world) {
     return count;
 }
 
-Quaternion Turn(const Vector3& axis, double angle) {
-    const Vector3 imaginary = axis * static_cast<float>(Sin(0.5 * angle));
-    return {imaginary.x(), imaginary.y(), imaginary.z(), static_cast<float>(Cos(0.5 * angle))};
-}
-
 }  // namespace fulcrum

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/Compound.h>
+#include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Physics/PhysicsSystem.h>
 #include <Fulcrum/Physics/Ragdoll/Ragdoll.h>
 #include <Fulcrum/Samples/Scenes/Drawing.h>
@@ -117,9 +118,6 @@ double BodiesBelowTheFloor(const SceneWorld& world);
 
 // The same: the largest distance between the two anchors of a joint, m.
 double LargestJointGap(const SceneWorld& world);
-
-// The rotation by `angle` radians about a unit axis.
-Quaternion Turn(const Vector3& axis, double angle);
 
 inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr double kDegree = kPi / 180;

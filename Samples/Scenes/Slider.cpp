@@ -25,7 +25,7 @@ void Build(SceneWorld& world) {
     const Vector3 down(static_cast<float>(Cos(kSlope)), static_cast<float>(-Sin(kSlope)), 0);
     for (const float friction : {60.0f, 30.0f}) {  // 10 kg on the slope: 47 N
         const Position place(0, 3, friction > 50 ? -1 : 1);
-        const BodyId cart = world.Add({.shape = world.BoxOf(0.3f, 0.15f, 0.2f), .position = place, .rotation = Turn({0, 0, 1}, -kSlope), .mass = 10});
+        const BodyId cart = world.Add({.shape = world.BoxOf(0.3f, 0.15f, 0.2f), .position = place, .rotation = RotationAbout({0, 0, 1}, -kSlope), .mass = 10});
         auto rail = JointOf<SliderJointSettings>(AddHook(world, place), cart, place, down);
         rail.slide = Limited(0, 3);
         rail.slide.friction = friction;

@@ -12,7 +12,7 @@ constexpr size_t kDriven = 0;
 
 // Targets of the driven arm, against the pose in which it points along x.
 Quaternion TargetOf(int step) {
-    const Quaternion targets[kPoses] = {Turn({0, 0, 1}, 0.8), Turn({0, 1, 0}, -0.7) * Turn({1, 0, 0}, 0.5), Turn({0, 0, 1}, -0.6) * Turn({1, 0, 0}, -0.5)};
+    const Quaternion targets[kPoses] = {RotationAbout({0, 0, 1}, 0.8), RotationAbout({0, 1, 0}, -0.7) * RotationAbout({1, 0, 0}, 0.5), RotationAbout({0, 0, 1}, -0.6) * RotationAbout({1, 0, 0}, -0.5)};
     return targets[step / kHold % kPoses];
 }
 

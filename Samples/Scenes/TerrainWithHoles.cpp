@@ -52,7 +52,7 @@ void Build(SceneWorld& world) {
     for (int i = 0; i < 144; ++i) {
         const double x = 2.4 * (i % 12 - 5.5), z = 2.4 * (i / 12 - 5.5);
         world.watched.push_back(world.Add({.shape = shapes[static_cast<size_t>(i + i / 12) % shapes.size()],
-                                           .position = {x, 11 + 0.2 * (i % 5), z}, .rotation = Turn(Vector3(0.6f, 0, 0.8f), 0.7 * i)}));
+                                           .position = {x, 11 + 0.2 * (i % 5), z}, .rotation = RotationAbout(Vector3(0.6f, 0, 0.8f), 0.7 * i)}));
     }
 }
 

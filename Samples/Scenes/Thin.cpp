@@ -13,7 +13,7 @@ void Toss(SceneWorld& world, const ShapePtr& shape, double x, double z, double h
     const double angle = world.random.Between(0, 2 * kPi);
     const Vector3 axis = Position(axisX, axisY, axisZ).cast<float>();
     const Vector3 unit = Length(axis) > 0.01f ? Normalized(axis) : Vector3(0, 1, 0);
-    world.watched.push_back(world.Add({.shape = shape, .position = {x, WavyHeight(x, z) + height, z}, .rotation = Turn(unit, angle)}));
+    world.watched.push_back(world.Add({.shape = shape, .position = {x, WavyHeight(x, z) + height, z}, .rotation = RotationAbout(unit, angle)}));
 }
 
 void Build(SceneWorld& world) {

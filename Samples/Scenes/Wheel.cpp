@@ -15,7 +15,7 @@ void Build(SceneWorld& world) {
     world.Add({.shape = world.BoxOf(60, 1, 20), .motion = MotionType::Static, .position = {40, -1, 0}, .material = {.friction = 1}});
     for (int i = 0; i < 6; ++i)
         world.Add({.shape = world.CapsuleOf(1.5f, 0.05f), .motion = MotionType::Static,
-                   .position = {4.0 + 1.5 * i, 0, i % 2 ? 1.2 : -1.2}, .rotation = Turn({1, 0, 0}, kPi / 2)});
+                   .position = {4.0 + 1.5 * i, 0, i % 2 ? 1.2 : -1.2}, .rotation = RotationAbout({1, 0, 0}, kPi / 2)});
     const BodyId chassis = world.Add({.shape = world.BoxOf(1.6f, 0.25f, 0.7f), .position = {0, 0.75, 0}, .mass = 600});
     world.watched.push_back(chassis);
     const ShapePtr wheel = world.SphereOf(kRadius);

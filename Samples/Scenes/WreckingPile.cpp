@@ -37,7 +37,7 @@ Position OnRamp(double along, double above) {
 }
 
 void AddRampAndBall(SceneWorld& world) {
-    const Quaternion tilt = Turn(Vector3(0, 0, 1), -kSlope);
+    const Quaternion tilt = RotationAbout(Vector3(0, 0, 1), -kSlope);
     world.Add({.shape = world.BoxOf(7, 0.3f, 2), .motion = MotionType::Static, .position = kRampCenter, .rotation = tilt});
     for (double side : {-1.0, 1.0})
         world.Add({.shape = world.BoxOf(7, 0.5f, 0.1f),

@@ -12,7 +12,7 @@ namespace {
 constexpr float kTolerance = 2e-6f;
 
 void ExpectNear(const Vector3& a, const Vector3& b, float tolerance = kTolerance) {
-    EXPECT_LE(Length(a - b), tolerance) << a.transpose() << " against " << b.transpose();
+    EXPECT_LE(Length(a - b), tolerance) << a << " against " << b;
 }
 
 // A quarter turn about an axis, exact but for the root of a half.

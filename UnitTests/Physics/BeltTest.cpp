@@ -73,7 +73,7 @@ TEST(Belt, RollsABallThatItCannotHold) {
 
 TEST(Belt, HoldsABoxAgainstASlopeAndCarriesItUp) {
     TestWorld world(NoSleep());
-    const Quaternion tilt = Turn({0, 0, 1}, 15 * kDegree);
+    const Quaternion tilt = RotationAbout({0, 0, 1}, 15 * kDegree);
     const Vector3 along = Rotate(tilt, Vector3(1, 0, 0)), up = Rotate(tilt, Vector3(0, 1, 0));
     OneBelt belt;
     belt.body = world.Add({.shape = BoxOf(50, 1, 5), .motion = MotionType::Static, .position = (up * -1.0f).cast<double>(), .rotation = tilt, .material = {.friction = 0.8f}});

@@ -32,7 +32,7 @@ TEST(LockedAxes, TheFreeAxisTurnsWithItsOwnInertia) {
     TestWorld world(NoGravity());
     // A rod that leans: its inertia about y alone is I_yy, not one over the y-y element of the inverse of the whole.
     const double angle = 30 * kDegree;
-    const BodyId rod = world.Add({.shape = BoxOf(0.05f, 1, 0.05f), .rotation = Turn({0, 0, 1}, angle), .mass = 3,
+    const BodyId rod = world.Add({.shape = BoxOf(0.05f, 1, 0.05f), .rotation = RotationAbout({0, 0, 1}, angle), .mass = 3,
                                   .lockedAxes = LockedAxes::RotationX | LockedAxes::RotationZ});
     const double along = 3 * (0.0025 + 0.0025) / 3, across = 3 * (1 + 0.0025) / 3;
     const double inertia = along * std::cos(angle) * std::cos(angle) + across * std::sin(angle) * std::sin(angle);
@@ -79,7 +79,7 @@ TEST(Layers, OnlyThoseThatCollideMeet) {
 TEST(Kinematic, ArrivesWhereItIsMoved) {
     TestWorld world;
     const BodyId lift = world.Add({.shape = BoxOf(2, 0.5f, 2), .motion = MotionType::Kinematic});
-    const Quaternion turned = Turn({0, 1, 0}, 0.1);
+    const Quaternion turned = RotationAbout({0, 1, 0}, 0.1);
     ASSERT_TRUE(world.Bodies().MoveKinematic(lift, {0.5, 0.25, -0.125}, turned, static_cast<float>(kStep)));
     world.Step();
     // Half a meter in one step, in float.
@@ -175,7 +175,7 @@ TEST(Bodies, AnAddedAndRemovedBodyLeavesTheOthersBitsAlone) {
     const auto run = [](bool visitor) {
         TestWorld world;
         world.AddFloor();
-        const BodyId box = world.Add({.shape = CubeOf(0.5f), .position = {0, 2, 0}, .rotation = Turn({0, 0, 1}, 0.3)});
+        const BodyId box = world.Add({.shape = CubeOf(0.5f), .position = {0, 2, 0}, .rotation = RotationAbout({0, 0, 1}, 0.3)});
         world.Steps(20);
         if (visitor) {
             const BodyId far = world.Add({.shape = CubeOf(0.5f), .position = {50, 2, 0}});
@@ -191,7 +191,7 @@ TEST(Bodies, AreReadAsTheyWereDescribed) {
     TestWorld world;
     // The center of mass of this hull is not its origin.
     const ShapePtr hull = HullOf({{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}});
-    const Quaternion turned = Turn({0, 1, 0}, 0.5);
+    const Quaternion turned = RotationAbout({0, 1, 0}, 0.5);
     const BodyId id = world.Add({.shape = hull, .position = {10, 20, 30}, .rotation = turned, .density = 2, .userData = 42});
     EXPECT_LT((world.PositionOf(id) - Position(10, 20, 30)).norm(), 1e-6);
     EXPECT_GT((world.Bodies().GetCenterOfMass(id) - Position(10, 20, 30)).norm(), 0.5);

@@ -173,7 +173,7 @@ TEST(Continuous, ATurningRodDoesNotPassAPost) {
             TestWorld world(NoGravity());
             const Material material{.friction = 0, .restitution = restitution};
             world.Add({.shape = CapsuleOf(1, 0.02f), .motion = MotionType::Static, .position = {0, 0, -0.7}, .material = material});
-            const BodyId rod = world.Add({.shape = BoxOf(1, 0.02f, 0.02f), .rotation = Turn({0, 1, 0}, 10 * kDegree), .angularVelocity = {0, 100, 0},
+            const BodyId rod = world.Add({.shape = BoxOf(1, 0.02f, 0.02f), .rotation = RotationAbout({0, 1, 0}, 10 * kDegree), .angularVelocity = {0, 100, 0},
                                           .mass = 3, .material = material, .continuous = continuous});
             world.Step();
             v = world.VelocityOf(rod);
@@ -202,7 +202,7 @@ TEST(Continuous, AThousandRodsNeverSweepOverThinPosts) {
         const Position middle(5.0 * (i % 40), 0, 5.0 * (i / 40));
         world.Add({.shape = CapsuleOf(1, 0.01f), .motion = MotionType::Static, .position = middle + Position(double{at}, 0, 0), .material = kBouncy});
         // Turns down onto the post from the side of -z; an end-point of it, at first at angle `angle`, comes to 0.
-        rods.push_back(world.Add({.shape = BoxOf(1, 0.01f, 0.01f), .position = middle, .rotation = Turn({0, 1, 0}, double{angle}), .angularVelocity = {0, -speed, 0},
+        rods.push_back(world.Add({.shape = BoxOf(1, 0.01f, 0.01f), .position = middle, .rotation = RotationAbout({0, 1, 0}, double{angle}), .angularVelocity = {0, -speed, 0},
                                   .material = kBouncy, .lockedAxes = kAllButYaw, .layer = 1,
                                   .continuous = kTurning}));
     }

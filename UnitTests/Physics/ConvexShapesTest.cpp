@@ -20,7 +20,7 @@ TEST(ConvexShapes, AColumnOfCylindersStands) {
     const ShapePtr drum = Cylinder::Create(0.25f, 0.5f).Value();
     std::vector<BodyId> drums;
     for (int i = 0; i < 5; ++i) {
-        drums.push_back(world.Add({.shape = drum, .position = {0, 0.25 + 0.5 * i, 0}, .rotation = Turn(Vector3(0, 1, 0), 0.3 * i)}));
+        drums.push_back(world.Add({.shape = drum, .position = {0, 0.25 + 0.5 * i, 0}, .rotation = RotationAbout(Vector3(0, 1, 0), 0.3 * i)}));
     }
     world.Run(10);
     for (size_t i = 0; i < drums.size(); ++i) {
@@ -38,13 +38,13 @@ TEST(ConvexShapes, ACylinderRollsDownASlopeAsTheClosedFormSays) {
     constexpr double kAngle = 15 * kDegree;
     for (const float rounding : {0.0f, 0.05f}) {
         TestWorld world;
-        const Quaternion slope = Turn(Vector3(0, 0, 1), -kAngle);
+        const Quaternion slope = RotationAbout(Vector3(0, 0, 1), -kAngle);
         world.Add({.shape = BoxOf(30, 0.5f, 5), .motion = MotionType::Static, .rotation = slope, .material = {.friction = 1}});
         const Position up(std::sin(kAngle), std::cos(kAngle), 0), along(std::cos(kAngle), -std::sin(kAngle), 0);
         // Its axis is y: laid along z.
         const Position start = up * (0.5 + 0.5) - along * 15.0;
         const BodyId wheel = world.Add({.shape = Cylinder::Create(0.4f, 0.5f, rounding).Value(), .position = start,
-                                        .rotation = slope * Turn(Vector3(1, 0, 0), 90 * kDegree), .material = {.friction = 1}});
+                                        .rotation = slope * RotationAbout(Vector3(1, 0, 0), 90 * kDegree), .material = {.friction = 1}});
         world.Run(1);
         const double v1 = Dot<double>(world.VelocityOf(wheel).cast<double>(), along);
         world.Run(2);
@@ -88,7 +88,7 @@ TEST(ConvexShapes, AllKindsFallIntoAPileAndStayAboveTheFloor) {
     std::vector<BodyId> ids;
     for (int i = 0; i < 72; ++i) {
         ids.push_back(world.Add({.shape = shapes[i % 9], .position = {0.35 * (i % 3), 0.5 + 0.4 * i, 0.3 * (i / 3 % 2)},
-                                 .rotation = Turn(Vector3(0.6f, 0, 0.8f), 0.7 * i)}));
+                                 .rotation = RotationAbout(Vector3(0.6f, 0, 0.8f), 0.7 * i)}));
     }
     world.Run(15);
     EXPECT_TRUE(world.AllFinite());

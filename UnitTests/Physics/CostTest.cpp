@@ -44,7 +44,7 @@ TEST(Cost, SettledHullsCapsulesAndOverflowAllocateNothing) {
     for (int i = 0; i < 100; ++i) {
         const double x = i % 10 * 1.0 - 4.5, z = i / 10 * 1.0 - 4.5;
         if (i % 2) world.Add({.shape = hull, .position = {x, 0.9, z}});
-        else world.Add({.shape = CapsuleOf(0.3f, 0.2f), .position = {x, 0.7, z}, .rotation = Turn({0, 0, 1}, kPi / 2)});
+        else world.Add({.shape = CapsuleOf(0.3f, 0.2f), .position = {x, 0.7, z}, .rotation = RotationAbout({0, 0, 1}, kPi / 2)});
     }
     EXPECT_EQ(AllocationsOfSettledSteps(world), 0u);
     EXPECT_GT(world.Report().overflowConstraints, 0u);

@@ -90,7 +90,7 @@ TEST(Errors, RefusedCallsDoNotChangeTheFuture) {
     const auto run = [](bool spoil) {
         TestWorld world;
         const BodyId floor = world.AddFloor();
-        const BodyId box = world.Add({.shape = CubeOf(0.5f), .position = {0, 1, 0}, .rotation = Turn({1, 0, 0}, 0.2)});
+        const BodyId box = world.Add({.shape = CubeOf(0.5f), .position = {0, 1, 0}, .rotation = RotationAbout({1, 0, 0}, 0.2)});
         for (int i = 0; i < 100; ++i) {
             if (spoil) {
                 BodyInterface& b = world.Bodies();

@@ -53,7 +53,7 @@ TEST(FarAway, AFastBallBouncesAsAtTheOrigin) {
 TEST(TimeStep, ZeroChangesNothing) {
     TestWorld world;
     world.AddFloor();
-    const BodyId box = world.Add({.shape = CubeOf(0.5f), .position = {0, 0.6, 0}, .rotation = Turn({0, 0, 1}, 0.1), .angularVelocity = {1, 2, 3}});
+    const BodyId box = world.Add({.shape = CubeOf(0.5f), .position = {0, 0.6, 0}, .rotation = RotationAbout({0, 0, 1}, 0.1), .angularVelocity = {1, 2, 3}});
     world.Steps(10);
     const BodyBits before = BitsOf(world, box);
     world.Steps(10, 0);
@@ -65,7 +65,7 @@ TEST(TimeStep, ZeroDoesNotChangeTheFuture) {
     const auto run = [](int pauses) {
         TestWorld world;
         world.AddFloor();
-        const BodyId box = world.Add({.shape = CubeOf(0.5f), .position = {0, 1, 0}, .rotation = Turn({0, 0, 1}, 0.1)});
+        const BodyId box = world.Add({.shape = CubeOf(0.5f), .position = {0, 1, 0}, .rotation = RotationAbout({0, 0, 1}, 0.1)});
         world.Steps(30);
         world.Steps(pauses, 0);
         world.Steps(60);

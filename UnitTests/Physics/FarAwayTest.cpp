@@ -57,7 +57,7 @@ Ids AddChain(TestWorld& world, const Position& origin) {
     Ids links;
     BodyId last = world.Add({.shape = SphereOf(0.02f), .motion = MotionType::Static, .position = origin + Position(-1, 1, 0)});
     for (int i = 0; i < 12; ++i) {
-        const BodyId link = world.Add({.shape = CapsuleOf(0.07f, 0.04f), .position = origin + Position(-0.9 + 0.2 * i, 1, 0), .rotation = Turn(Vector3(0, 0, 1), kPi / 2), .mass = 0.5f, .linearDamping = 0.5f, .angularDamping = 0.5f});
+        const BodyId link = world.Add({.shape = CapsuleOf(0.07f, 0.04f), .position = origin + Position(-0.9 + 0.2 * i, 1, 0), .rotation = RotationAbout(Vector3(0, 0, 1), kPi / 2), .mass = 0.5f, .linearDamping = 0.5f, .angularDamping = 0.5f});
         PointJointSettings joint;
         joint.bodyA = last;
         joint.bodyB = link;
@@ -69,7 +69,7 @@ Ids AddChain(TestWorld& world, const Position& origin) {
 }
 
 Ids AddRagdoll(TestWorld& world, const Position& origin) {
-    const auto ragdoll = Ragdoll::Create(world.System(), Humanoid(), {origin + Position(0, 1.2, 0), Turn(Vector3(1, 0, 0), 0.3)});
+    const auto ragdoll = Ragdoll::Create(world.System(), Humanoid(), {origin + Position(0, 1.2, 0), RotationAbout(Vector3(1, 0, 0), 0.3)});
     EXPECT_TRUE(ragdoll);
     if (!ragdoll) return {};
     return {ragdoll.Value().Bodies().begin(), ragdoll.Value().Bodies().end()};

@@ -9,7 +9,7 @@ namespace {
 
 // A plane that rises along x, through the origin, and the rotation of what lies on it.
 Quaternion AddIncline(TestWorld& world, double angle, float friction) {
-    const Quaternion rotation = Turn({0, 0, 1}, angle);
+    const Quaternion rotation = RotationAbout({0, 0, 1}, angle);
     const Position below = Rotate(rotation, Vector3(0, -1, 0)).cast<double>();
     world.Add({.shape = BoxOf(200, 1, 20), .motion = MotionType::Static, .position = below, .rotation = rotation, .material = {.friction = friction}});
     return rotation;

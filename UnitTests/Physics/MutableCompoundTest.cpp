@@ -22,7 +22,7 @@ ShapePtr RowOf(int count, float spacing = 1) {
 TEST(MutableCompoundBody, MassInertiaAndCenterAreThoseOfTheChildren) {
     TestWorld world(NoGravity());
     const ShapePtr cube = CubeOf(0.5f);
-    const BodyId id = world.Add({.shape = RowOf(1), .position = {10, 20, 30}, .rotation = Turn({0, 0, 1}, 90 * kDegree), .density = 100});
+    const BodyId id = world.Add({.shape = RowOf(1), .position = {10, 20, 30}, .rotation = RotationAbout({0, 0, 1}, 90 * kDegree), .density = 100});
     EXPECT_FLOAT_EQ(world.Bodies().GetMass(id), 100);
     const ChildId second = world.Bodies().AddChild(id, {.shape = cube, .position = {3, 0, 0}, .density = 2}).Value();
     // 100 kg at 0 and 200 kg at 3 m: the center at 2 m, which the body's rotation turns upwards.
@@ -249,7 +249,7 @@ TEST(MutableCompoundBody, AnEditedWorldIsOneMadeInItsFinalState) {
 TEST(MutableCompoundBody, EditsThatAreTakenBackLeaveNoBitBehind) {
     const auto build = [](TestWorld& world) {
         world.AddFloor();
-        return world.Add({.shape = RowOf(5, 0.9f), .position = {0, 3, 0}, .rotation = Turn({0.6f, 0, 0.8f}, 0.5), .angularVelocity = {1, 2, 3}});
+        return world.Add({.shape = RowOf(5, 0.9f), .position = {0, 3, 0}, .rotation = RotationAbout({0.6f, 0, 0.8f}, 0.5), .angularVelocity = {1, 2, 3}});
     };
     TestWorld never, edited;
     build(never);

@@ -57,7 +57,7 @@ TEST(Thin, ARodAcrossARidgeComesToRest) {
     // Its square section lies on the ridge and would rock from one of its edges to the other.
     TestWorld world;
     world.Add({.shape = RoofOf(0.5f), .motion = MotionType::Static});
-    const BodyId rod = world.Add({.shape = BoxOf(0.05f, 4, 0.05f), .position = {0, 0.07, 0}, .rotation = Turn(Vector3(0, 0, 1), kPi / 2) * Turn(Vector3(0, 1, 0), 0.03)});
+    const BodyId rod = world.Add({.shape = BoxOf(0.05f, 4, 0.05f), .position = {0, 0.07, 0}, .rotation = RotationAbout(Vector3(0, 0, 1), kPi / 2) * RotationAbout(Vector3(0, 1, 0), 0.03)});
     world.Run(3);
     EXPECT_FALSE(world.Bodies().IsAwake(rod));
     EXPECT_NEAR(world.PositionOf(rod).y(), 0.05, 1e-3);
@@ -67,10 +67,10 @@ TEST(Thin, CrossedRodsComeToRest) {
     TestWorld world;
     world.AddFloor();
     const ShapePtr rod = BoxOf(0.05f, 2, 0.05f);
-    const Quaternion alongX = Turn(Vector3(0, 0, 1), kPi / 2);
+    const Quaternion alongX = RotationAbout(Vector3(0, 0, 1), kPi / 2);
     world.Add({.shape = rod, .position = {0, 0.05, -1}, .rotation = alongX});
-    world.Add({.shape = rod, .position = {0, 0.08, 1}, .rotation = alongX * Turn(Vector3(0, 1, 0), kPi / 4)});
-    const BodyId upper = world.Add({.shape = rod, .position = {0, 0.25, 0}, .rotation = Turn(Vector3(1, 0, 0), kPi / 2) * Turn(Vector3(0, 1, 0), 0.02)});
+    world.Add({.shape = rod, .position = {0, 0.08, 1}, .rotation = alongX * RotationAbout(Vector3(0, 1, 0), kPi / 4)});
+    const BodyId upper = world.Add({.shape = rod, .position = {0, 0.25, 0}, .rotation = RotationAbout(Vector3(1, 0, 0), kPi / 2) * RotationAbout(Vector3(0, 1, 0), 0.02)});
     world.Run(6);
     EXPECT_EQ(world.Report().awakeBodies, 0u);
     EXPECT_GT(world.PositionOf(upper).y(), 0.14);

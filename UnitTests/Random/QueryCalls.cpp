@@ -44,7 +44,7 @@ void AddHit(const WorldRayHit& hit, BitHash& answer) {
 }
 
 std::string ListsText(const Ray& ray, const WorldRayHit& single, const std::vector<WorldRayHit>& alone, const std::vector<WorldRayHit>& inBatch) {
-    std::string text = Text(": ray from ", ray.origin.transpose(), " by ", ray.displacement.transpose(), ", closest", ToText(single), ", alone");
+    std::string text = Text(": ray from ", ray.origin, " by ", ray.displacement, ", closest", ToText(single), ", alone");
     for (const WorldRayHit& hit : alone) text += ToText(hit);
     text += ", in a batch";
     for (const WorldRayHit& hit : inBatch) text += ToText(hit);

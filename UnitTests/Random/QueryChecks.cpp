@@ -45,8 +45,8 @@ std::pair<double, double> FractionsNear(const BodyShape& body, const Ray& ray) {
 }
 
 std::string ToText(const BodyShape& body, const Ray& ray) {
-    return Text(": a ", ShapeTypeName(body.shape->Type()), " of ", body.shape->OuterRadius(), " at ", body.pose.position.transpose(), ", ray from ",
-                ray.origin.transpose(), " by ", ray.displacement.transpose());
+    return Text(": a ", ShapeTypeName(body.shape->Type()), " of ", body.shape->OuterRadius(), " at ", body.pose.position, ", ray from ",
+                ray.origin, " by ", ray.displacement);
 }
 
 const BodyShape* Find(const std::vector<BodyShape>& bodies, BodyId id) {
@@ -100,14 +100,14 @@ bool AreSame(const WorldClosest& a, const WorldClosest& b) {
 }
 
 std::string ToText(const WorldRayHit& hit) {
-    return Text(" (body ", hit.body.index, " triangle ", hit.subShape.triangle, " fraction ", hit.fraction, " normal ", hit.normal.transpose(), ")");
+    return Text(" (body ", hit.body.index, " triangle ", hit.subShape.triangle, " fraction ", hit.fraction, " normal ", hit.normal, ")");
 }
 std::string ToText(const WorldShapeHit& hit) {
-    return Text(" (body ", hit.body.index, " triangle ", hit.subShape.triangle, " fraction ", hit.fraction, " normal ", hit.normal.transpose(),
-                " position ", hit.position.transpose(), " depth ", hit.depth, ")");
+    return Text(" (body ", hit.body.index, " triangle ", hit.subShape.triangle, " fraction ", hit.fraction, " normal ", hit.normal,
+                " position ", hit.position, " depth ", hit.depth, ")");
 }
 std::string ToText(const WorldClosest& hit) {
-    return Text(" (body ", hit.body.index, " distance ", hit.distance, " normal ", hit.normal.transpose(), ")");
+    return Text(" (body ", hit.body.index, " distance ", hit.distance, " normal ", hit.normal, ")");
 }
 
 std::string CompareRay(const std::vector<BodyShape>& bodies, const Ray& ray, const WorldRayHit& hit) {
@@ -160,7 +160,7 @@ std::string CheckShapeHit(const std::vector<BodyShape>& bodies, const MovingShap
 std::string CompareClosest(const std::vector<BodyShape>& bodies, const PlacedShape& placed, float maxDistance, const WorldClosest& closest) {
     const bool isFound = closest.body != BodyId{};
     if (isFound && !(IsFinite(closest.normal) && std::isfinite(closest.distance) && IsFinite(closest.onBody) && IsFinite(closest.onQuery)))
-        return Text("closest points are not finite", ToText(closest), " of ", closest.onBody.transpose(), " and ", closest.onQuery.transpose());
+        return Text("closest points are not finite", ToText(closest), " of ", closest.onBody, " and ", closest.onQuery);
     const Pose center = CenterPoseOf(*placed.shape, placed.pose);
     for (const BodyShape& body : bodies) {
         ClosestPoints here;
@@ -185,12 +185,12 @@ std::string CheckClosest(const ConvexShape& a, const ConvexShape& b, const Relat
     const Vector3 n = closest.normal;
     const Vector3 inB = InverseRotate(bInA.rotation, Vector3(-n));
     const double top = Dot<double>(a.Support(n).cast<double>(), n.cast<double>());
-    const double bottom = Dot<double>((bInA.position.cast<double>() + Rotate(bInA.rotation, b.Support(inB)).cast<double>()).eval(), n.cast<double>());
+    const double bottom = Dot<double>((bInA.position.cast<double>() + Rotate(bInA.rotation, b.Support(inB)).cast<double>()), n.cast<double>());
     const double size = double{a.OuterRadius()} + double{b.OuterRadius()} + double{Length(bInA.position)};
     const double along = bottom - top, tolerance = 1e-3 * size * (closest.distance < 0 ? 1 : 0.1) + FLT_MIN;
     if (std::abs(along - double{closest.distance}) > tolerance)
         return Text("distance ", closest.distance, ", but along the normal it is ", along, ": ", ShapeTypeName(a.Type()), " and ", ShapeTypeName(b.Type()));
-    const double between = Dot<double>((closest.onB - closest.onA).cast<double>().eval(), n.cast<double>());
+    const double between = Dot<double>((closest.onB - closest.onA).cast<double>(), n.cast<double>());
     if (std::abs(between - double{closest.distance}) > tolerance)
         return Text("distance ", closest.distance, ", but its points are ", between, " apart: ", ShapeTypeName(a.Type()), " and ", ShapeTypeName(b.Type()));
     return {};

@@ -37,7 +37,7 @@ void MeasureDistance(Twin&, Values& values, const CallTargets&, Outcome& outcome
     if (!FindClosestPoints(*a, *b, pose, FLT_MAX, closest)) {
         const Quaternion& q = pose.rotation;
         outcome.failure = Text("no closest points of a ", ShapeTypeName(a->Type()), " of ", a->OuterRadius(), " and a ", ShapeTypeName(b->Type()),
-                               " of ", b->OuterRadius(), " at ", pose.position.transpose(), " turned by ", q.x, " ", q.y, " ", q.z, " ", q.w);
+                               " of ", b->OuterRadius(), " at ", pose.position, " turned by ", q.x, " ", q.y, " ", q.z, " ", q.w);
         return;
     }
     outcome.failure = CheckClosest(static_cast<const ConvexShape&>(*a), static_cast<const ConvexShape&>(*b), pose, closest);

@@ -75,7 +75,7 @@ TEST(CoincidentBodies, TwoOfAKindPart) {
         for (const bool turned : {false, true}) {
             Burst burst(NoGravity(), 1);
             burst.Add(2, Position::Zero(), [&](int i) {
-                return BodySettings{.shape = shape, .rotation = turned && i ? Turn(Vector3(0.6f, 0, 0.8f), 1.2) : Quaternion{}};
+                return BodySettings{.shape = shape, .rotation = turned && i ? RotationAbout(Vector3(0.6f, 0, 0.8f), 1.2) : Quaternion{}};
             });
             burst.Run(2);
             EXPECT_LT(burst.world.Report().largestPenetration, 0.01f) << ShapeTypeName(shape->Type());

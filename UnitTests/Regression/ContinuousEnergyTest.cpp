@@ -88,7 +88,7 @@ TEST(ContinuousEnergy, NothingDroppedOntoEachOtherGainsAny) {
             for (int i = 0; i < kBodies; ++i) {
                 const Case& dropped = cases[static_cast<size_t>(i) % cases.size()];
                 BodySettings settings = Thrown(random, dropped.shape, {0.5 * (i % 3), 4.5 + 2.5 * i, 0.5 * (i % 2)}, kind);
-                settings.rotation = i % 6 == 0 ? Turn({0, 0, 1}, 1.4 + 0.02 * i) : settings.rotation;  // long rods lie, or they would overlap
+                settings.rotation = i % 6 == 0 ? RotationAbout({0, 0, 1}, 1.4 + 0.02 * i) : settings.rotation;  // long rods lie, or they would overlap
                 settings.linearVelocity = Vector3(0, -10, 0);
                 bodies.push_back(world.Add(settings));
             }
@@ -142,7 +142,7 @@ TEST(ContinuousEnergy, ARodThatTopplesFallsAsWithoutIt) {
         TestWorld world;
         world.AddFloor({.friction = 1});
         const double tilt = 0.3, c = std::cos(tilt), s = std::sin(tilt);
-        const BodyId rod = world.Add({.shape = BoxOf(0.05f, 4, 0.05f), .position = {0, 4 * c + 0.05 * s + 0.001, 0}, .rotation = Turn({0, 0, 1}, tilt), .material = {.friction = 1}, .continuous = kind});
+        const BodyId rod = world.Add({.shape = BoxOf(0.05f, 4, 0.05f), .position = {0, 4 * c + 0.05 * s + 0.001, 0}, .rotation = RotationAbout({0, 0, 1}, tilt), .material = {.friction = 1}, .continuous = kind});
         world.Steps(75);
         return Rotate(world.Bodies().GetPose(rod).rotation, Vector3(0, 1, 0)).y();
     };

@@ -4,6 +4,7 @@
 #include <Fulcrum/Collision/Shapes/HeightField.h>
 #include <Fulcrum/Collision/Shapes/Plane.h>
 #include <Fulcrum/Collision/Shapes/RoundShapes.h>
+#include <Fulcrum/Collision/Shapes/Triangle.h>
 #include <Fulcrum/Collision/Shapes/TriangleMesh.h>
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 #include <Fulcrum/UnitTests/Support/Cases.h>
@@ -61,7 +62,7 @@ private:
         const double reach = random_() % 6 == 0 ? std::pow(10.0, Uniform(-6, 20)) : 3;
         return Position(Uniform(-reach, reach), Uniform(0, reach), Uniform(-reach, reach));
     }
-    Quaternion Rotation() { return Turn(Direction(), Uniform(-kPi, kPi)); }
+    Quaternion Rotation() { return RotationAbout(Direction(), Uniform(-kPi, kPi)); }
 
     SystemSettings SettingsOf() {
         SystemSettings settings;
@@ -249,6 +250,29 @@ TEST(ExtremeNumbers, SettingsOfWhichNothingSensibleCanFollowAreRefused) {
         EXPECT_EQ(result.GetError().code, ErrorCode::OutOfRange) << bad.field;
         EXPECT_NE(result.GetError().message.find(bad.field), std::string::npos) << result.GetError().message;
     }
+}
+
+// Their squares, and sums of their distances, would not be floats: closest points were at infinity, the length of a rope infinite.
+TEST(ExtremeNumbers, SizesAndRatiosBeyondWhatFloatsCanSquareAreRefused) {
+    const auto triangle = [](float radius) { return Triangle::Create({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, radius); };
+    for (const auto& code : {triangle(3e38f).GetError().code, Sphere::Create(3e38f).GetError().code,
+                             Box::Create(Vector3(1, 3e38f, 1)).GetError().code, Capsule::Create(2e18f, 1).GetError().code})
+        EXPECT_EQ(code, ErrorCode::OutOfRange);
+    TestWorld world({}, 1);
+    const BodyId bodies[] = {world.Add({.shape = CubeOf(0.5f), .position = {0, 10, 0}}), world.Add({.shape = CubeOf(0.5f), .position = {5, 10, 0}})};
+    const auto codeOf = [&](auto settings, float ratio) {
+        settings.bodyA = bodies[0];
+        settings.bodyB = bodies[1];
+        settings.ratio = ratio;
+        const Result<JointId> joint = world.System().Joints().Create(settings);
+        return joint ? std::optional<ErrorCode>() : joint.GetError().code;
+    };
+    for (const float ratio : {3e38f, 1e-38f}) {
+        EXPECT_EQ(codeOf(PulleyJointSettings{}, ratio), ErrorCode::OutOfRange) << ratio;
+        EXPECT_EQ(codeOf(GearJointSettings{}, -ratio), ErrorCode::OutOfRange) << ratio;
+        EXPECT_EQ(codeOf(RackAndPinionJointSettings{}, ratio), ErrorCode::OutOfRange) << ratio;
+    }
+    EXPECT_EQ(codeOf(PulleyJointSettings{}, 1e9f), std::nullopt);
 }
 
 // A ball as large as a rough mesh, thrown at it: each triangle that it touched asked for all the others, and each edge for all edges.

@@ -244,7 +244,7 @@ private:
         const double distance = Between(0, 100);
         Position place = world_.PositionOf(b_) + random_.Direction().cast<double>() * distance;
         if (how_.hasFloor) place.y() = std::max(place.y(), 2 + 0.1 * std::fabs(place.y()));
-        ASSERT_TRUE(world_.Bodies().SetPose(b_, place, Turn(random_.Direction(), Between(0, kPi))));
+        ASSERT_TRUE(world_.Bodies().SetPose(b_, place, RotationAbout(random_.Direction(), Between(0, kPi))));
         for (const BodyId id : {a_, b_}) ASSERT_TRUE(world_.Bodies().SetVelocity(id, Vector3(0, 0, 0), Vector3(0, 0, 0)));
     }
 

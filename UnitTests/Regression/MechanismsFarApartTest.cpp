@@ -21,7 +21,7 @@ constexpr double kLeftBehind = 1.5;
 // Puts a body elsewhere and looks on for five seconds. speed: m/s, as kLeftBehind.
 void ExpectToFollow(TestWorld& world, std::span<const BodyId> bodies, std::span<const JointId> joints, BodyId moved, const Position& away,
                     const Quaternion& turn, double speed) {
-    SCOPED_TRACE(away.transpose());
+    SCOPED_TRACE(away);
     ASSERT_TRUE(world.Bodies().SetPose(moved, world.PositionOf(moved) + away, turn * world.Bodies().GetPose(moved).rotation));
     double fastest = 0;
     for (int i = 0; i < 5 * 60; ++i) {
@@ -65,9 +65,9 @@ TEST(MechanismsFarApart, CarFollowsItsChassis) {
             world.Step();
             for (const BodyId id : bodies) fastest = std::max(fastest, Length(world.VelocityOf(id)));
             if (i != 5 * 60) continue;
-            for (const JointId id : joints) EXPECT_LT(JointsOf(world).GetError(id).distance, 0.02f) << away.transpose();
+            for (const JointId id : joints) EXPECT_LT(JointsOf(world).GetError(id).distance, 0.02f) << away;
         }
-        EXPECT_LT(fastest, kFastest) << away.transpose();
+        EXPECT_LT(fastest, kFastest) << away;
         EXPECT_TRUE(world.AllFinite());
     }
 }
@@ -89,7 +89,7 @@ TEST(MechanismsFarApart, ChainFollowsItsMiddle) {
                     bodies.push_back(last = link);
                 }
                 // What hangs has fallen, and swings.
-                ExpectToFollow(world, bodies, joints, bodies[8], away, Turn(Vector3(0.6f, 0, 0.8f), angle), hangs ? std::sqrt(2 * kGravity * 16) : kLeftBehind);
+                ExpectToFollow(world, bodies, joints, bodies[8], away, RotationAbout(Vector3(0.6f, 0, 0.8f), angle), hangs ? std::sqrt(2 * kGravity * 16) : kLeftBehind);
             }
 }
 
@@ -105,7 +105,7 @@ TEST(MechanismsFarApart, RagdollFollowsAPart) {
                 std::vector<BodyId> bodies(ragdoll.Value().Bodies().begin(), ragdoll.Value().Bodies().end());
                 std::vector<JointId> joints;
                 JointsOf(world).Visit([&](JointId id) { joints.push_back(id); });
-                ExpectToFollow(world, bodies, joints, bodies[part], away, Turn(Vector3(0, 0.6f, 0.8f), 2), kLeftBehind);
+                ExpectToFollow(world, bodies, joints, bodies[part], away, RotationAbout(Vector3(0, 0.6f, 0.8f), 2), kLeftBehind);
             }
 }
 
@@ -146,7 +146,7 @@ TEST(MechanismsFarApart, DoorFollowsItsHinges) {
                         settings.angle = Limited(-1.5, 1.5);
                         joints.push_back(Join(world, settings));
                     }
-                    ExpectToFollow(world, std::vector{frame, door}, joints, door, away, Turn(Vector3(0.6f, 0, 0.8f), 2.5), count == 1 || turns ? 0.01 : 2.5);
+                    ExpectToFollow(world, std::vector{frame, door}, joints, door, away, RotationAbout(Vector3(0.6f, 0, 0.8f), 2.5), count == 1 || turns ? 0.01 : 2.5);
                 }
 }
 

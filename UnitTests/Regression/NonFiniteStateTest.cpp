@@ -40,7 +40,7 @@ struct Scene {
         Add({.shape = dumbbell, .position = {0, 2.2, 0}});
         BodyId before = spoiled;
         for (int i = 0; i < 4; ++i) {
-            const BodyId link = Add({.shape = CapsuleOf(0.1f, 0.08f), .position = {0.6 + 0.3 * i, 0.5, 0.9}, .rotation = Turn({0, 0, 1}, kPi / 2)});
+            const BodyId link = Add({.shape = CapsuleOf(0.1f, 0.08f), .position = {0.6 + 0.3 * i, 0.5, 0.9}, .rotation = RotationAbout({0, 0, 1}, kPi / 2)});
             Join(world, Of<PointJointSettings>(Between(before, link, {0.45 + 0.3 * i, 0.5, 0.9})));
             before = link;
         }

@@ -67,7 +67,7 @@ TEST(PassThrough, WhatTurnsFastHitsWhatIsInItsWay) {
                 world.Add({.shape = t.shape, .motion = t.motion, .angularVelocity = {0, 0, kSpin}, .mass = 1e5f});
                 const double angle = steps * kSpin * kStep;
                 const Vector3 outwards(static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), 0), along(-outwards.y(), outwards.x(), 0);
-                const BodyId target = world.Add({.shape = shape, .position = (outwards * kArm).cast<double>(), .rotation = Turn(Vector3(0, 0, 1), angle)});
+                const BodyId target = world.Add({.shape = shape, .position = (outwards * kArm).cast<double>(), .rotation = RotationAbout(Vector3(0, 0, 1), angle)});
                 world.Steps(4);
                 EXPECT_GT(Dot(world.VelocityOf(target), along), 0.5f * kSpin * kArm)
                     << t.what << " and " << shape->OuterRadius() << " m, after " << steps << " steps";

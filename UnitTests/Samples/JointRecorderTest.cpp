@@ -14,7 +14,7 @@ protected:
     }
 
     BodyId Body(const Position& position, MotionType motion) {
-        bodies_.push_back(world_.Add({.shape = CubeOf(0.1f), .motion = motion, .position = position, .rotation = Turn({0, 0, 1}, 0.3)}));
+        bodies_.push_back(world_.Add({.shape = CubeOf(0.1f), .motion = motion, .position = position, .rotation = RotationAbout({0, 0, 1}, 0.3)}));
         return bodies_.back();
     }
     RecordedFrameJoints Collect() {
@@ -59,7 +59,7 @@ TEST_F(JointRecording, EachKindIsKnown) {
 TEST_F(JointRecording, FramesAreSeenFromTheBodies) {
     const JointId id = Join(world_, HingeJointSettings{Between(hook_, box_, {0.5, 5, 0}, {0, 1, 0})});
     Collect();
-    ASSERT_TRUE(world_.Bodies().SetPose(box_, {3, 2, 1}, Turn({0, 1, 0}, 0.7)));
+    ASSERT_TRUE(world_.Bodies().SetPose(box_, {3, 2, 1}, RotationAbout({0, 1, 0}, 0.7)));
     for (const bool isA : {true, false}) {
         const RelativePose& frame = isA ? joints_[0].frameA : joints_[0].frameB;
         const Pose expected = isA ? JointsOf(world_).GetFrameA(id) : JointsOf(world_).GetFrameB(id);

@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 uint64_t HashAfterAFall(const RagdollSettings& settings) {
     TestWorld world;
     world.AddFloor();
-    EXPECT_TRUE(Ragdoll::Create(world.System(), settings, {Position(0, 1.5, 0), Turn(Vector3(1, 0, 0), 0.3)}));
+    EXPECT_TRUE(Ragdoll::Create(world.System(), settings, {Position(0, 1.5, 0), RotationAbout(Vector3(1, 0, 0), 0.3)}));
     world.Steps(60);
     return world.System().HashPoses();
 }
@@ -74,7 +74,7 @@ RagdollSettings Everything() {
         if (i == 2) part.body.shape = CapsuleOf(0.2f, 0.1f);
         if (i == 3) part.body.shape = HullOf({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
         part.body.position = Position(i, 0.1, -1e5);
-        part.body.rotation = Turn(Vector3(0, 1, 0), 0.3 * i);
+        part.body.rotation = RotationAbout(Vector3(0, 1, 0), 0.3 * i);
         JointSettings& joint = CommonOf(part.joint);
         joint.anchorA = {.point = Position(0.1 * i, 1.0 / 3, 2), .axis = Vector3(0, 1, 0), .normal = Vector3(0, 0, 1)};
         if (i == 2 || i == 3) joint.anchorB = JointAnchor{.point = Position(1, 2, 3), .axis = Vector3(0, 0, 1), .normal = {}};

@@ -42,7 +42,7 @@ public:
         for (int i = 0; i < layers; ++i)
             for (int j = i / 2; j < layers - (i + 1) / 2; ++j)
                 for (int k = i / 2; k < layers - (i + 1) / 2; ++k) {
-                    const Eigen::Vector3i place(-15 + 2 * j + i % 2, 1 + 2 * i, -15 + 2 * k + i % 2);
+                    const Vec3<int> place(-15 + 2 * j + i % 2, 1 + 2 * i, -15 + 2 * k + i % 2);
                     AddBody(1, RecordedMotion::Dynamic, 8000, "", place.cast<float>(), i);
                 }
         for (uint32_t shape = 2; shape < recording_.shapes.size(); ++shape) {

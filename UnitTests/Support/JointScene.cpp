@@ -54,7 +54,7 @@ JointScene::JointScene(TestWorld& world) : world_(world) {
 
 void JointScene::BeforeStep(int step) {
     JointInterface& joints = JointsOf(world_);
-    EXPECT_TRUE(world_.Bodies().MoveKinematic(swing_, {0.8 * Sin(0.05 * step), 8, 0}, Turn({0, 0, 1}, 0.01 * step), static_cast<float>(kStep)));
+    EXPECT_TRUE(world_.Bodies().MoveKinematic(swing_, {0.8 * Sin(0.05 * step), 8, 0}, RotationAbout({0, 0, 1}, 0.01 * step), static_cast<float>(kStep)));
     JointLimits rope;
     rope.max = static_cast<float>(6.2 - 0.004 * step);
     EXPECT_TRUE(joints.SetLimits(winch_, JointAxis::LinearX, rope));
@@ -66,7 +66,7 @@ void JointScene::BeforeStep(int step) {
     EXPECT_TRUE(step != 90 || joints.SetMotor(gate_, JointAxis::LinearX, SpeedMotor(1.5, 4000)));
     EXPECT_TRUE(step != 100 || world_.Bodies().Remove(removedBody_));
     EXPECT_TRUE(step != 110 || joints.SetMotor(driven_, JointAxis::AngularX, SpeedMotor(-4, 200)));
-    EXPECT_TRUE(step != 120 || joints.SetTargetOrientation(shoulder_, Turn({0.6f, 0, 0.8f}, 0.4)));
+    EXPECT_TRUE(step != 120 || joints.SetTargetOrientation(shoulder_, RotationAbout({0.6f, 0, 0.8f}, 0.4)));
     EXPECT_TRUE(step != 150 || joints.SetFriction(gate_, JointAxis::LinearX, 100));
     if (step == kHit) {
         slept_ = !world_.Bodies().IsAwake(sleeper_);

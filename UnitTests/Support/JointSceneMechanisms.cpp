@@ -252,7 +252,7 @@ void JointScene::AddWhatBreaks() {
 void JointScene::AddRagdolls() {
     const RagdollSettings kinds[] = {Humanoid(), HumanoidWithMotors(300, 20, 200)};
     for (int i = 0; i < 2; ++i) {
-        const Pose origin{Position(-20, 1.6 + 0.5 * i, 3.0 * i), Turn({0, 0.6f, 0.8f}, 0.5 + i)};
+        const Pose origin{Position(-20, 1.6 + 0.5 * i, 3.0 * i), RotationAbout({0, 0.6f, 0.8f}, 0.5 + i)};
         EXPECT_TRUE(Ragdoll::Create(world_.System(), kinds[i], origin));
     }
 }

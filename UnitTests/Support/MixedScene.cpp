@@ -4,7 +4,7 @@ namespace fulcrum::testing {
 
 MixedScene::MixedScene(TestWorld& world) : world_(world) {
     world.AddFloor({.friction = 0.6f});
-    world.Add({.shape = BoxOf(4, 0.5f, 4), .motion = MotionType::Static, .position = {6, 1, 0}, .rotation = Turn({0, 0, 1}, 0.4)});
+    world.Add({.shape = BoxOf(4, 0.5f, 4), .motion = MotionType::Static, .position = {6, 1, 0}, .rotation = RotationAbout({0, 0, 1}, 0.4)});
     const ShapePtr shapes[] = {
         SphereOf(0.4f),
         BoxOf(0.4f, 0.3f, 0.5f),
@@ -37,7 +37,7 @@ MixedScene::MixedScene(TestWorld& world) : world_(world) {
 
 void MixedScene::BeforeStep(int step) {
     const double x = -6 + 0.03 * step;
-    EXPECT_TRUE(world_.Bodies().MoveKinematic(sweeper_, {x, 0.6, 0}, Turn({0, 1, 0}, 0.001 * step), static_cast<float>(kStep)));
+    EXPECT_TRUE(world_.Bodies().MoveKinematic(sweeper_, {x, 0.6, 0}, RotationAbout({0, 1, 0}, 0.001 * step), static_cast<float>(kStep)));
     const Position corner = world_.PositionOf(pushed_) + Position(0.1, 0.1, 0);
     EXPECT_TRUE(step >= 60 || world_.Bodies().AddForceAt(pushed_, {300, 100, 50}, corner));
     EXPECT_TRUE(step != 100 || world_.Bodies().Remove(removed_));

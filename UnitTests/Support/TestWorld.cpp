@@ -27,11 +27,6 @@ ShapePtr CompoundOf(std::initializer_list<Compound::ChildSettings> children) {
     return Checked(Compound::Create(std::span<const Compound::ChildSettings>(children.begin(), children.size())));
 }
 
-Quaternion Turn(const Vector3& axis, double angle) {
-    const Vector3 imaginary = axis * static_cast<float>(Sin(0.5 * angle));
-    return {imaginary.x(), imaginary.y(), imaginary.z(), static_cast<float>(Cos(0.5 * angle))};
-}
-
 TestWorld::TestWorld(const SystemSettings& settings, uint32_t threads) {
     if (threads > 1) jobs_ = std::make_unique<ThreadPool>(threads);
     Result<std::unique_ptr<PhysicsSystem>> system = PhysicsSystem::Create(settings, jobs_.get());

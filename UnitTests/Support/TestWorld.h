@@ -5,6 +5,7 @@
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
 #include <Fulcrum/Jobs/ThreadPool.h>
+#include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Physics/PhysicsSystem.h>
 
 #include <gtest/gtest.h>
@@ -27,9 +28,6 @@ inline ShapePtr CubeOf(float half) { return BoxOf(half, half, half); }
 ShapePtr CapsuleOf(float halfHeight, float radius);
 ShapePtr HullOf(std::initializer_list<Vector3> points);
 ShapePtr CompoundOf(std::initializer_list<Compound::ChildSettings> children);
-
-// The rotation by `angle` radians about a unit axis.
-Quaternion Turn(const Vector3& axis, double angle);
 
 class TestWorld {
 public:

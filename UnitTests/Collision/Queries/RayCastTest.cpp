@@ -74,7 +74,7 @@ TEST(RayCast, ShapesKnownBySupportAreHitAsTheirFormulaSays) {
         const Ray ray = RayNear(random);
         const float length = Length(ray.displacement);
         const LineResult found = EnterBySupport(shape, {ray.origin.cast<float>(), ray.displacement / length, 0, length});
-        const Position inverse = radii.cast<double>().cwiseInverse();
+        const Position inverse = Position::Ones().cwiseQuotient(radii.cast<double>());
         const Position o = ray.origin.cwiseProduct(inverse), d = ray.displacement.cast<double>().cwiseProduct(inverse);
         const double a = d.squaredNorm(), b = o.dot(d), c = o.squaredNorm() - 1, root = b * b - a * c;
         const double entry = (-b - std::sqrt(std::max(root, 0.0))) / a;

@@ -34,7 +34,7 @@ TEST(ConvexHull, RefusesPointsWithoutVolumeAndSaysWhy) {
     for (int i = 0; i < 50; ++i) {
         nearly.push_back(Vector3(1, 1, 1) + (random.InCube() * 1e-7).cast<float>());
         line.push_back(Rotate(turn, Vector3(static_cast<float>(random.Symmetric()), 0, 0)) + Vector3(1, 2, 3));
-        plane.push_back(Rotate(turn, random.InCube().cast<float>().cwiseProduct(Vector3(1, 1, 0)).eval()));
+        plane.push_back(Rotate(turn, random.InCube().cast<float>().cwiseProduct(Vector3(1, 1, 0))));
     }
     EXPECT_TRUE(Contains(Refusal(nearly).message, "coincide"));
     EXPECT_TRUE(Contains(Refusal(line).message, "collinear"));

@@ -288,8 +288,8 @@ void Seal(std::vector<uint8_t>& bytes) {
 void Exercise(const Shape& shape, SurfaceRandom& random) {
     if (const auto* surface = dynamic_cast<const SurfaceShape*>(&shape)) {
         Bounds box;
-        box.lower.setConstant(-INFINITY);
-        box.upper.setConstant(INFINITY);
+        box.lower = Vector3::Constant(-INFINITY);
+        box.upper = Vector3::Constant(INFINITY);
         uint32_t count = 0;
         surface->VisitTriangles(box, [&](uint32_t id) {
             ++count;

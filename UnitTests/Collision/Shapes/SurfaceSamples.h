@@ -104,8 +104,8 @@ inline Bounds BoundsOf(const TriangleView& t) {
 inline std::vector<TriangleView> AllTriangles(const SurfaceShape& shape) {
     std::vector<TriangleView> all;
     Bounds everything;
-    everything.lower.setConstant(-INFINITY);
-    everything.upper.setConstant(INFINITY);
+    everything.lower = Vector3::Constant(-INFINITY);
+    everything.upper = Vector3::Constant(INFINITY);
     shape.VisitTriangles(everything, [&](uint32_t id) { all.push_back(shape.GetTriangle(id)); });
     std::sort(all.begin(), all.end(), [](const TriangleView& a, const TriangleView& b) { return a.id < b.id; });
     return all;

@@ -103,7 +103,7 @@ TEST(TriangleMesh, AnswersRaysAndBoxesThatMakeNoSense) {
     EXPECT_FALSE(mesh->IsHit({Vector3(0, 10, 0), Vector3::Zero()}));
     EXPECT_TRUE(Found(*mesh, Bounds{}).empty());
     Bounds bad;
-    bad.lower.setConstant(-1);
+    bad.lower = Vector3::Constant(-1);
     bad.upper = Vector3(1, nan, 1);
     EXPECT_TRUE(Found(*mesh, bad).empty());
     EXPECT_TRUE(mesh->IsHit({Vector3(0, 1e6f, 0), Vector3(0, -2e6f, 0)}));

@@ -3,6 +3,8 @@
 #include <Fulcrum/Constraints/Parts/AxisPart.h>
 #include <Fulcrum/UnitTests/Constraints/Contacts/RandomContacts.h>
 
+#include <Eigen/LU>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -156,6 +158,8 @@ Eigen::Matrix3d InertiaOf(const InverseMass<float>& mass) {
     return inverse.inverse();
 }
 
+Position Times(const Eigen::Matrix3d& m, const Position& v) { return m * Eigen::Vector3d(v.x(), v.y(), v.z()); }
+
 // Momentum of both bodies about the world's origin, in double.
 void Momentum(const RandomContacts& contacts, uint32_t contact, Position& linear, Position& angular) {
     linear = angular = Position::Zero();
@@ -164,7 +168,7 @@ void Momentum(const RandomContacts& contacts, uint32_t contact, Position& linear
         const InverseMass<float> m = contacts.MassOf(body);
         const Position p = v.linear.cast<double>() / double(m.mass);
         linear += p;
-        angular += InertiaOf(m) * v.angular.cast<double>() + contacts.PoseOf(body).position.cross(p);
+        angular += Times(InertiaOf(m), v.angular.cast<double>()) + contacts.PoseOf(body).position.cross(p);
     }
 }
 
@@ -190,7 +194,7 @@ double KineticEnergy(const RandomContacts& contacts, uint32_t contact) {
         const Twist<float> v = contacts.VelocityOf(body);
         const InverseMass<float> m = contacts.MassOf(body);
         const Position w = v.angular.cast<double>();
-        sum += 0.5 * v.linear.cast<double>().squaredNorm() / double(m.mass) + 0.5 * w.dot(InertiaOf(m) * w);
+        sum += 0.5 * v.linear.cast<double>().squaredNorm() / double(m.mass) + 0.5 * w.dot(Times(InertiaOf(m), w));
     }
     return sum;
 }

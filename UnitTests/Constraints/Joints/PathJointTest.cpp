@@ -3,6 +3,8 @@
 
 #include <Fulcrum/Constraints/Joints/PathJoint.h>
 
+#include <Eigen/Geometry>
+
 namespace fulcrum::testing {
 namespace {
 
@@ -114,7 +116,9 @@ TEST(Path, SaysWhatIsWrong) {
 // B on the path at t, turned against the path's frame by `turn`.
 void PlaceOnPath(JointBodies& bodies, const Path& path, double t, const Quaternion& turn) {
     const PathSample at = path.Sample(t);
-    const Eigen::Matrix3f axes = (Eigen::Matrix3f() << at.tangent, at.normal, at.binormal).finished();
+    Eigen::Matrix3f axes;
+    const Eigen::Vector3f tangent = at.tangent, normal = at.normal, binormal = at.binormal;
+    axes << tangent, normal, binormal;
     const Eigen::Quaternionf q(axes);
     bodies.PlaceB(at.position, Quaternion{q.x(), q.y(), q.z(), q.w()} * turn);
 }

@@ -39,13 +39,15 @@ Matrix12 InverseMassMatrix(const InverseMass<float>& mass1, const InverseMass<fl
 }
 Vector12 Jacobian(const AxisFrame<float>& frame) {
     const Position n = frame.axis.cast<double>();
+    const Eigen::Vector3d linear = n, angular1 = frame.r1PlusU.cast<double>().cross(n), angular2 = frame.r2.cast<double>().cross(n);
     Vector12 j;
-    j << -n, -frame.r1PlusU.cast<double>().cross(n), n, frame.r2.cast<double>().cross(n);
+    j << -linear, -angular1, linear, angular2;
     return j;
 }
 Vector12 Stacked(const Twist<float>& a, const Twist<float>& b) {
+    const Eigen::Vector3d va = a.linear.cast<double>(), wa = a.angular.cast<double>(), vb = b.linear.cast<double>(), wb = b.angular.cast<double>();
     Vector12 v;
-    v << a.linear.cast<double>(), a.angular.cast<double>(), b.linear.cast<double>(), b.angular.cast<double>();
+    v << va, wa, vb, wb;
     return v;
 }
 
@@ -89,7 +91,8 @@ TEST(AxisPart, JacobianIsTheDerivativeOfTheConstraint) {
         const auto error = [&](double t) {
             const auto turn = [t](const Vector3& w, const Position& r) {
                 const Position angle = w.cast<double>() * t;
-                return Position(Eigen::AngleAxisd(angle.norm(), angle.normalized()) * r);
+                const Eigen::Vector3d axis = angle.normalized(), arm = r;
+                return Position(Eigen::AngleAxisd(angle.norm(), axis) * arm);
             };
             const Twist<float>&v1 = pair.a.velocity, &v2 = pair.b.velocity;
             const Position p1 = x1 + v1.linear.cast<double>() * t + turn(v1.angular, r1);
@@ -124,8 +127,8 @@ TEST(AxisPart, ImpulsesKeepMomentum) {
             for (const RandomBody* body : {&pair.a, &pair.b}) {
                 const Position p = body->velocity.linear.cast<double>() / static_cast<double>(body->mass.mass);
                 linear += p;
-                angular += body->position.cast<double>().cross(p) +
-                           Inertia(body->mass).inverse() * body->velocity.angular.cast<double>();
+                const Eigen::Vector3d w = body->velocity.angular.cast<double>();
+                angular += body->position.cast<double>().cross(p) + Position(Inertia(body->mass).inverse() * w);
             }
         };
         Position linearBefore, angularBefore, linear, angular;

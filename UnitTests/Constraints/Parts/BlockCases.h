@@ -39,6 +39,11 @@ inline BlockInputs<float> MakeInputs(RandomPoses& random) {
 using DenseRows = Eigen::Matrix<double, Eigen::Dynamic, 12>;
 using Dense3 = Eigen::Matrix3d;
 
+// Vectors as Eigen's columns, so that they take part in products with matrices.
+inline Eigen::Vector3d ToDense(const Position& v) { return v; }
+inline Eigen::VectorXd ToDense(const Vector3& v) { return ToDense(v.cast<double>()); }
+inline Eigen::VectorXd ToDense(const Vec2<float>& v) { return Eigen::Vector2d(static_cast<double>(v.x()), static_cast<double>(v.y())); }
+
 inline Dense3 CrossMatrix(const Vector3& v) {
     const Position r = v.cast<double>();
     Dense3 m;
@@ -72,14 +77,12 @@ inline Eigen::Matrix<double, 12, 12> DenseInverseMass(const InverseMass<float>& 
 }
 inline Eigen::Matrix<double, 12, 1> DenseMotion(const Twist<float>& a, const Twist<float>& b) {
     Eigen::Matrix<double, 12, 1> v;
-    v << a.linear.cast<double>(), a.angular.cast<double>(), b.linear.cast<double>(), b.angular.cast<double>();
+    v << ToDense(a.linear), ToDense(a.angular), ToDense(b.linear), ToDense(b.angular);
     return v;
 }
 
 // Rows and effective masses as dense doubles, and single floats of lanes.
 inline Eigen::VectorXd ToDense(float a) { return Eigen::VectorXd::Constant(1, static_cast<double>(a)); }
-inline Eigen::VectorXd ToDense(const Vec2<float>& a) { return a.cast<double>(); }
-inline Eigen::VectorXd ToDense(const Vec3<float>& a) { return a.cast<double>(); }
 inline Eigen::MatrixXd ToDense(const Sym2<float>& k) {
     Eigen::Matrix2f m;
     m << k.xx, k.xy, k.xy, k.yy;
@@ -147,7 +150,7 @@ struct DualAxisCase {
     }
     static DenseRows Jacobian(const BlockInputs<float>& in) {
         Eigen::Matrix<double, 3, 2> axes;
-        axes << in.axis1.cast<double>(), in.axis2.cast<double>();
+        axes << ToDense(in.axis1), ToDense(in.axis2);
         return axes.transpose() * PointRows(in.r1, in.r2);
     }
 };
@@ -164,7 +167,7 @@ struct HingeRotationCase {
     }
     static DenseRows Jacobian(const BlockInputs<float>& in) {
         Eigen::Matrix<double, 3, 2> axes;
-        axes << -in.axis2.cast<double>(), in.axis1.cast<double>();
+        axes << -ToDense(in.axis2), ToDense(in.axis1);
         return axes.transpose() * AngularRows();
     }
 };
@@ -182,8 +185,8 @@ struct GearCase {
     }
     static DenseRows Jacobian(const BlockInputs<float>& in) {
         DenseRows j = DenseRows::Zero(1, 12);
-        j.block<1, 3>(0, 3) = in.axis1.cast<double>().transpose();
-        j.block<1, 3>(0, 9) = in.axis2.cast<double>().transpose() * static_cast<double>(in.ratio);
+        j.block<1, 3>(0, 3) = ToDense(in.axis1).transpose();
+        j.block<1, 3>(0, 9) = ToDense(in.axis2).transpose() * static_cast<double>(in.ratio);
         return j;
     }
 };
@@ -201,8 +204,8 @@ struct RackAndPinionCase {
     }
     static DenseRows Jacobian(const BlockInputs<float>& in) {
         DenseRows j = DenseRows::Zero(1, 12);
-        j.block<1, 3>(0, 3) = in.axis1.cast<double>().transpose();
-        j.block<1, 3>(0, 6) = in.axis2.cast<double>().transpose() * -static_cast<double>(in.ratio);
+        j.block<1, 3>(0, 3) = ToDense(in.axis1).transpose();
+        j.block<1, 3>(0, 6) = ToDense(in.axis2).transpose() * -static_cast<double>(in.ratio);
         return j;
     }
 };
@@ -221,8 +224,8 @@ struct IndependentAxisCase {
     static DenseRows Jacobian(const BlockInputs<float>& in) {
         const Position n1 = in.axis1.cast<double>(), n2 = in.axis2.cast<double>() * static_cast<double>(in.ratio);
         DenseRows j(1, 12);
-        j << n1.transpose(), in.r1.cast<double>().cross(n1).transpose(), n2.transpose(),
-            in.r2.cast<double>().cross(n2).transpose();
+        j << ToDense(n1).transpose(), ToDense(in.r1.cast<double>().cross(n1)).transpose(), ToDense(n2).transpose(),
+            ToDense(in.r2.cast<double>().cross(n2)).transpose();
         return j;
     }
 };

@@ -27,7 +27,8 @@ constexpr double kRounding = 5e-5;
 template <class Rows>
 Rows FromDense(const Eigen::VectorXd& x) {
     if constexpr (std::is_same_v<Rows, float>) return static_cast<float>(x[0]);
-    else return x.cast<float>();
+    else if constexpr (std::is_same_v<Rows, Vec2<float>>) return {static_cast<float>(x[0]), static_cast<float>(x[1])};
+    else return Vector3(Eigen::Vector3f(x.cast<float>()));
 }
 
 template <class Case>
@@ -49,7 +50,7 @@ TYPED_TEST(BlockSpringTest, IsTheOscillatorInTheLimitOfSmallSteps) {
         const InverseMass<float> m1 = MakeBody(random).mass, m2 = MakeBody(random).mass;
         BlockInputs<float> inputs = MakeInputs(random);
         inputs.softness = {static_cast<float>(a / (1.0 + a)), static_cast<float>(1.0 / (1.0 + a))};
-        const Eigen::VectorXd start = inputs.bias.cast<double>().head(TypeParam::kRows);
+        const Eigen::VectorXd start = ToDense(inputs.bias).head(TypeParam::kRows);
         Eigen::VectorXd error = start;
         Twist<float> v1, v2;
         Part part;
@@ -83,7 +84,7 @@ TYPED_TEST(BlockSpringTest, MassesMayBeOverridden) {
         const Eigen::MatrixXd expected = (j * inverseMass * j.transpose()).inverse();
         EXPECT_LT((ToDense(part.GetEffectiveMass()) - expected).norm(), 3e-5 * expected.norm());
         EXPECT_TRUE(part.SolveVelocity(v1, v2, heavy, b.mass));
-        EXPECT_LT((ToDense(part.RelativeMotion(v1, v2)) + inputs.bias.cast<double>().head(TypeParam::kRows)).norm(), kRounding);
+        EXPECT_LT((ToDense(part.RelativeMotion(v1, v2)) + ToDense(inputs.bias).head(TypeParam::kRows)).norm(), kRounding);
         const Eigen::VectorXd gain = inverseMass * j.transpose() * ToDense(part.GetTotalLambda());
         EXPECT_LT((testing::DenseMotion(v1, v2) - testing::DenseMotion(a.velocity, b.velocity) - gain).norm(), kRounding);
         Twist<float> moved1, moved2;
@@ -98,7 +99,7 @@ TYPED_TEST(BlockSpringTest, MassesMayBeOverridden) {
         TypeParam::template SetUp<BodySide::Dynamic, BodySide::Dynamic>(part, wall, b.mass, inputs);
         part.SolveVelocity(still, v2, wall, b.mass);
         EXPECT_TRUE(SameBits(still, a.velocity));
-        EXPECT_LT((ToDense(part.RelativeMotion(still, v2)) + inputs.bias.cast<double>().head(TypeParam::kRows)).norm(), kRounding);
+        EXPECT_LT((ToDense(part.RelativeMotion(still, v2)) + ToDense(inputs.bias).head(TypeParam::kRows)).norm(), kRounding);
     }
 }
 

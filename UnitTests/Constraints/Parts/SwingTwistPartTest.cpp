@@ -60,7 +60,7 @@ struct Pair {
     float Motion(int row) const { return part.RelativeMotion(a.velocity, b.velocity, row); }
     double K(int row) const {
         const Position axis = rows.row[row].axis.cast<double>();
-        return axis.dot((testing::DenseInertia(a.mass) + testing::DenseInertia(b.mass)) * axis);
+        return axis.dot((testing::DenseInertia(a.mass) + testing::DenseInertia(b.mass)) * testing::ToDense(axis));
     }
     bool IsAs(const Pair& other) const {
         return SameBits(a.velocity, other.a.velocity) && SameBits(b.velocity, other.b.velocity);

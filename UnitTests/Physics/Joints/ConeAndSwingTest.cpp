@@ -141,7 +141,7 @@ TEST(SwingTwist, AMotorTurnsToAnOrientationTheShortestWay) {
     SwingTwistJointSettings settings{UprightBetween(AddHook(world), ball, {0, 0, 0})};
     for (AxisControl* axis : {&settings.twist, &settings.swingY, &settings.swingZ}) axis->motor = PositionMotor(0, FrequencySpring(2, 1));
     const JointId joint = Join(world, settings);
-    for (const Quaternion target : {Turn({0, 0, 1}, 1.2), Normalized(Turn({0, 1, 0}, 0.8) * Turn({1, 0, 0}, -1.0)), Turn({0.6f, 0, 0.8f}, 3.0)}) {
+    for (const Quaternion target : {RotationAbout({0, 0, 1}, 1.2), Normalized(RotationAbout({0, 1, 0}, 0.8) * RotationAbout({1, 0, 0}, -1.0)), RotationAbout({0.6f, 0, 0.8f}, 3.0)}) {
         ASSERT_TRUE(JointsOf(world).SetTargetOrientation(joint, target));
         world.Run(4);
         // Frame and body axes are the same here.

@@ -19,8 +19,8 @@ public:
         for (size_t i = 0; i < doors_.size(); ++i) {
             EXPECT_TRUE(JointsOf(world_).SetMotor(doors_[i], JointAxis::AngularX, SpeedMotor(3 * std::sin(time + double(i)), 20)));
             EXPECT_TRUE(JointsOf(world_).SetMotor(pistons_[i], JointAxis::LinearX, PositionMotor(0.3 * std::sin(2 * time + double(i)), FrequencySpring(3, 1))));
-            EXPECT_TRUE(JointsOf(world_).SetTargetOrientation(shoulders_[i], Turn({0, 0, 1}, 0.5 * std::sin(time))));
-            EXPECT_TRUE(JointsOf(world_).SetTargetOrientation(sixes_[i], Turn({1, 0, 0}, 0.5 * std::sin(time))));
+            EXPECT_TRUE(JointsOf(world_).SetTargetOrientation(shoulders_[i], RotationAbout({0, 0, 1}, 0.5 * std::sin(time))));
+            EXPECT_TRUE(JointsOf(world_).SetTargetOrientation(sixes_[i], RotationAbout({1, 0, 0}, 0.5 * std::sin(time))));
             EXPECT_TRUE(JointsOf(world_).SetMotor(sixes_[i], JointAxis::LinearX, SpeedMotor(0.1 * std::sin(time), 20)));
             EXPECT_TRUE(JointsOf(world_).SetMotor(wheels_[i], JointAxis::AngularX, SpeedMotor(5 * std::sin(time), 20)));
             EXPECT_TRUE(JointsOf(world_).SetMotor(wheels_[i], JointAxis::AngularY, PositionMotor(0.3 * std::sin(time), FrequencySpring(3, 1))));

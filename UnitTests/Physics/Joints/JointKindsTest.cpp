@@ -143,7 +143,7 @@ TEST(PathJoint, ABeadSwingsOnACircleAndStaysThere) {
 
 TEST(PathJoint, AMotorDrivesAroundAndAround) {
     TestWorld world(Weightless());
-    const BodyId cart = world.Add({.shape = BoxOf(0.2f, 0.1f, 0.1f), .position = {2, 0, 0}, .rotation = Turn({0, 0, 1}, kPi / 2), .mass = 2});
+    const BodyId cart = world.Add({.shape = BoxOf(0.2f, 0.1f, 0.1f), .position = {2, 0, 0}, .rotation = RotationAbout({0, 0, 1}, kPi / 2), .mass = 2});
     PathJointSettings settings = OnTheCircle(world, cart, 2, PathRotation::TangentAndNormal);
     settings.anchorB = AnchorAt({2, 0, 0}, {0, 1, 0});
     settings.anchorB->normal = Vector3(0, 0, 1);

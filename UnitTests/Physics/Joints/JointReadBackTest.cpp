@@ -135,7 +135,7 @@ TEST(ReadBack, UnknownJointsReadAsZero) {
 
 TEST(ReadBack, FramesErrorsAndUserDataAreThoseOfTheJoint) {
     TestWorld world(NoGravity());
-    const BodyId hook = AddHook(world), box = world.Add({.shape = CubeOf(0.5f), .position = {2, 0, 0}, .rotation = Turn({0, 1, 0}, 0.4)});
+    const BodyId hook = AddHook(world), box = world.Add({.shape = CubeOf(0.5f), .position = {2, 0, 0}, .rotation = RotationAbout({0, 1, 0}, 0.4)});
     HingeJointSettings settings{Between(hook, box, {1, 2, 3}, {0, 0, 1})};
     settings.anchorB = AnchorAt({1, 2.25, 3}, {0, 1, 0});
     settings.userData = 77;

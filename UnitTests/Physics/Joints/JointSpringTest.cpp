@@ -134,7 +134,7 @@ TEST_P(JointSpring, OfATwistMotorAndOfASixDofAxis) {
         six[JointAxis::AngularZ] = Limited(0, 0, spring);
         const JointId second = Join(world, six);
         ExpectOscillator(world, first, JointAxis::AngularX, 0.5);
-        ASSERT_TRUE(world.Bodies().SetPose(other, {3, 0, 0}, Turn({0, 0, 1}, 0.5)));
+        ASSERT_TRUE(world.Bodies().SetPose(other, {3, 0, 0}, RotationAbout({0, 0, 1}, 0.5)));
         ExpectOscillator(world, second, JointAxis::AngularZ, 0);
     }
 }

@@ -12,7 +12,7 @@ struct Carousel {
     void Step() {
         ++steps;
         const double time = steps * kStep;
-        EXPECT_TRUE(world.Bodies().MoveKinematic(base, {3 * time, 0, 0}, Turn({0, 1, 0}, 2 * time), static_cast<float>(kStep)));
+        EXPECT_TRUE(world.Bodies().MoveKinematic(base, {3 * time, 0, 0}, RotationAbout({0, 1, 0}, 2 * time), static_cast<float>(kStep)));
         world.Step();
     }
 

@@ -26,7 +26,7 @@ struct RodPendulum {
         const double heading = std::atan2(-double(along.z()), double(along.x()));
         const BodyId hook = AddHook(world);
         rod = world.Add({.shape = BoxOf(0.5f, 0.05f, 0.05f), .position = 0.5 * along.cast<double>(),
-                         .rotation = Turn({0, 1, 0}, heading), .mass = static_cast<float>(mass)});
+                         .rotation = RotationAbout({0, 1, 0}, heading), .mass = static_cast<float>(mass)});
         hinge = Join(world, HingeJointSettings{Between(hook, rod, {0, 0, 0}, axis)});
     }
     double Angle() { return JointsOf(world).GetCoordinate(hinge, JointAxis::AngularX); }
@@ -90,7 +90,7 @@ TEST(Pendulum, AShortSwingHasThePeriodOfTheHarmonicOscillator) {
     // From hanging at rest to an amplitude of 5 degrees: w = 2 sin(amplitude / 2) sqrt(m g l / I), where v = w r.
     const double amplitude = 5 * kDegree, frequency = std::sqrt(kGravity * 0.5 / RodPendulum::kInertia);
     const double speed = 2 * std::sin(amplitude / 2) * frequency;
-    ASSERT_TRUE(pendulum.world.Bodies().SetPose(pendulum.rod, {0, -0.5, 0}, Turn({0, 0, 1}, -kPi / 2)));
+    ASSERT_TRUE(pendulum.world.Bodies().SetPose(pendulum.rod, {0, -0.5, 0}, RotationAbout({0, 0, 1}, -kPi / 2)));
     ASSERT_TRUE(pendulum.world.Bodies().SetVelocity(pendulum.rod, {static_cast<float>(0.5 * speed), 0, 0}, {0, 0, static_cast<float>(speed)}));
     ZeroCrossings crossings;
     double highest = 0;

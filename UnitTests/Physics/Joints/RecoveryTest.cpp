@@ -61,7 +61,7 @@ const Vector3 kAxes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.6f, 0, 0.8f}};
 TEST_P(Recovery, AHingeHalfATurnOutOfPlace) {
     for (const Vector3& axis : {kAxes[0], kAxes[1], kAxes[2]}) {
         Pair pair(GetParam());
-        pair.MakeOutOfPlace<HingeJointSettings>(Turn(axis, kPi), kHere);
+        pair.MakeOutOfPlace<HingeJointSettings>(RotationAbout(axis, kPi), kHere);
         pair.ExpectRecovery();
     }
 }
@@ -69,7 +69,7 @@ TEST_P(Recovery, AHingeHalfATurnOutOfPlace) {
 TEST_P(Recovery, AFixedJointHalfATurnOutOfPlace) {
     for (const Vector3& axis : kAxes) {
         Pair pair(GetParam());
-        pair.MakeOutOfPlace<FixedJointSettings>(Turn(axis, kPi), kHere);
+        pair.MakeOutOfPlace<FixedJointSettings>(RotationAbout(axis, kPi), kHere);
         pair.ExpectRecovery();
     }
 }
@@ -77,7 +77,7 @@ TEST_P(Recovery, AFixedJointHalfATurnOutOfPlace) {
 TEST_P(Recovery, ASliderHalfATurnOutOfPlace) {
     for (const Vector3& axis : kAxes) {
         Pair pair(GetParam());
-        pair.MakeOutOfPlace<SliderJointSettings>(Turn(axis, kPi), {0.4, 0.6, 0});
+        pair.MakeOutOfPlace<SliderJointSettings>(RotationAbout(axis, kPi), {0.4, 0.6, 0});
         pair.ExpectRecovery();
     }
 }
@@ -89,11 +89,11 @@ TEST(RecoveryFromAfar, JointsToTheWorldMetersOutOfPlace) {
             const double seconds = 5 + away.norm() / 20;
             // They may sleep, but not before they are there.
             Pair fixed(motion), hinge(motion), slider(motion);
-            fixed.MakeOutOfPlace<FixedJointSettings>(Turn({0, 1, 0}, 1), away);
+            fixed.MakeOutOfPlace<FixedJointSettings>(RotationAbout({0, 1, 0}, 1), away);
             fixed.ExpectRecovery(seconds);
-            hinge.MakeOutOfPlace<HingeJointSettings>(Turn({0, 1, 0}, -2), away);
+            hinge.MakeOutOfPlace<HingeJointSettings>(RotationAbout({0, 1, 0}, -2), away);
             hinge.ExpectRecovery(seconds);
-            slider.MakeOutOfPlace<SliderJointSettings>(Turn({1, 0, 0}, 2), away);
+            slider.MakeOutOfPlace<SliderJointSettings>(RotationAbout({1, 0, 0}, 2), away);
             slider.ExpectRecovery(seconds);
         }
 }
@@ -102,7 +102,7 @@ TEST(RecoveryOfLimits, NarrowHingeLimitsHalfATurnAway) {
     for (const double start : {kPi, -kPi, 3.0, -1.0}) {
         TestWorld world(NoGravity());
         const BodyId rod = world.Add({.shape = BoxOf(0.5f, 0.05f, 0.05f),
-                                      .position = {0.5 * std::cos(start), 0.5 * std::sin(start), 0}, .rotation = Turn({0, 0, 1}, start)});
+                                      .position = {0.5 * std::cos(start), 0.5 * std::sin(start), 0}, .rotation = RotationAbout({0, 0, 1}, start)});
         HingeJointSettings settings{Between(AddHook(world), rod, {0, 0, 0}, {0, 0, 1}), Limited(-0.01, 0.01)};
         settings.anchorA.normal = Vector3(1, 0, 0);
         settings.anchorB = AnchorAt({0, 0, 0}, {0, 0, 1});

@@ -168,7 +168,7 @@ TEST(RagdollDrive, HingeMotorsTakeTheTurnThatIsWithinTheLimits) {
     TestWorld world(NoContacts(NoGravity()));
     Ragdoll ragdoll = Add(world, settings);
     std::array<Quaternion, kParts> rotations{};
-    rotations[9] = Turn(Vector3(1, 0, 0), -100 * kDegree);
+    rotations[9] = RotationAbout(Vector3(1, 0, 0), -100 * kDegree);
     Poses target;
     PoseFromJoints(settings, {Position::Zero(), settings.parts[0].body.rotation}, rotations, target);
     ASSERT_TRUE(ragdoll.DriveByMotors(target));
@@ -187,7 +187,7 @@ TEST(RagdollDrive, SixDofMotorsTakePlaceAndOrientation) {
     settings.parts.push_back({.name = "hand", .parent = 0, .body = {.shape = CubeOf(0.1f), .position = Position(1, 0, 0)}, .joint = joint});
     TestWorld world(NoContacts(NoGravity()));
     Ragdoll ragdoll = Add(world, settings);
-    const std::array<Pose, 2> target{Pose{}, Pose{Position(1.3, 0.2, -0.4), Turn(Normalized(Vector3(1, 2, 3)), 0.8)}};
+    const std::array<Pose, 2> target{Pose{}, Pose{Position(1.3, 0.2, -0.4), RotationAbout(Normalized(Vector3(1, 2, 3)), 0.8)}};
     ASSERT_TRUE(ragdoll.DriveByMotors(target));
     world.Run(3);
     // Critically damped at 4 Hz: e^-75 of the way is left.
@@ -235,7 +235,7 @@ TEST(RagdollDrive, VelocitiesReachThePoseInOneStep) {
         TestWorld world(system);
         Ragdoll ragdoll = Add(world, Passive());
         constexpr double kTurn = 0.1, kArm = 0.3;  // rad, m: about the most of both
-        const Poses target = PoseAt(0.1, {Position(0.05, 0.02, -0.03), Turn(Vector3(0, 1, 0), 0.05) * Humanoid().parts[0].body.rotation});
+        const Poses target = PoseAt(0.1, {Position(0.05, 0.02, -0.03), RotationAbout(Vector3(0, 1, 0), 0.05) * Humanoid().parts[0].body.rotation});
         const Poses start = PoseAt(0);
         for (size_t i = 0; i < kParts; ++i) ASSERT_LT(Length(RotationVectorOf(start[i].rotation.Conjugate() * target[i].rotation)), 0.25) << i;
         ASSERT_TRUE(ragdoll.DriveByVelocities(target, static_cast<float>(kStep)));
@@ -271,7 +271,7 @@ TEST(RagdollDrive, KinematicPartsFollowExactly) {
     Ragdoll ragdoll = Add(world, Passive(), MotionType::Kinematic);
     for (int step = 0; step < 300; ++step) {
         const double time = (step + 1) / 100.0;
-        const Quaternion turn = Turn(Vector3(0, 1, 0), time) * Humanoid().parts[0].body.rotation;
+        const Quaternion turn = RotationAbout(Vector3(0, 1, 0), time) * Humanoid().parts[0].body.rotation;
         const Poses target = PoseAt(time, {Position(time, 0.1 * time * time, 0), turn});
         ASSERT_TRUE(ragdoll.DriveKinematically(target, static_cast<float>(kStep)));
         world.Step();

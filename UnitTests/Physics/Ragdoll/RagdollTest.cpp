@@ -38,7 +38,7 @@ double LargestGap(TestWorld& world) {
 
 TEST(Ragdoll, StandsWhereItsFrameIsPut) {
     TestWorld world;
-    const Pose origin{Position(1e7, -20, 3), Turn(Vector3(0, 1, 0), 90 * kDegree)};
+    const Pose origin{Position(1e7, -20, 3), RotationAbout(Vector3(0, 1, 0), 90 * kDegree)};
     const Ragdoll ragdoll = Add(world, Humanoid(), origin);
     ASSERT_EQ(ragdoll.Bodies().size(), kParts);
     EXPECT_EQ(BodyCount(world), 12);
@@ -81,7 +81,7 @@ TEST(Ragdoll, PosesItsJointsAsTheySayTheyAre) {
     Ragdoll ragdoll = Add(world, settings);
     std::array<Pose, kParts> pose;
     const std::array<Quaternion, kParts> rotations = HumanoidMotion(1.5);
-    PoseFromJoints(settings, {Position(1, 2, 3), Turn(Vector3(0, 0, 1), 1.0)}, rotations, pose);
+    PoseFromJoints(settings, {Position(1, 2, 3), RotationAbout(Vector3(0, 0, 1), 1.0)}, rotations, pose);
     ASSERT_TRUE(ragdoll.SetPose(pose));
     EXPECT_LT(LargestGap(world), 1e-6);
     std::array<Pose, kParts> read;
@@ -235,7 +235,7 @@ TEST(Ragdoll, TenFallOnAFloorHoldTogetherAndComeToRest) {
     ASSERT_TRUE(StabilizeInertia(settings));
     for (RagdollPart& part : settings.parts) CommonOf(part.joint).substeps = 8;
     for (int i = 0; i < 10; ++i) {
-        const Quaternion turn = Turn(Normalized(Vector3(1, 0.5f * static_cast<float>(i), -1)), 0.6 * i);
+        const Quaternion turn = RotationAbout(Normalized(Vector3(1, 0.5f * static_cast<float>(i), -1)), 0.6 * i);
         Add(world, settings, Above(settings, 2.5 * (i % 5), 3.0 * (i / 5), 0.2, turn));
     }
     const auto isAwake = [&] {

@@ -83,7 +83,7 @@ void ExpectSame(const RelativePose& a, const RelativePose& b, const std::string&
 
 TEST(SkeletonMapping, TheReferencePoseOfOneIsThatOfTheOther) {
     const SkeletonMapping mapping = MakeMapping();
-    const Pose origin{Position(3, 4, 5), Turn(Vector3(0, 1, 0), 1)};
+    const Pose origin{Position(3, 4, 5), RotationAbout(Vector3(0, 1, 0), 1)};
     std::vector<Pose> joints(kCount), parts(12), reference(12);
     mapping.PoseJoints(origin, mapping.ReferenceLocals(), joints);
     mapping.ToRagdoll(joints, parts);
@@ -95,7 +95,7 @@ TEST(SkeletonMapping, AnAnimationComesBackWithAllItsDetail) {
     const SkeletonMapping mapping = MakeMapping();
     // Far from the world's origin, too.
     for (const Position& place : {Position(0, 0, 0), Position(1e7, -1e7, 300)}) {
-        const Pose origin{place, Turn(Vector3(0, 1, 0), 1)};
+        const Pose origin{place, RotationAbout(Vector3(0, 1, 0), 1)};
         const std::vector<RelativePose> animation = Animated(mapping);
         std::vector<Pose> joints(kCount), parts(12), back(kCount);
         mapping.PoseJoints(origin, animation, joints);
@@ -112,9 +112,9 @@ TEST(SkeletonMapping, AnAnimationComesBackWithAllItsDetail) {
 TEST(SkeletonMapping, MappedJointsAreExactFromAnyDetail) {
     const SkeletonMapping mapping = MakeMapping();
     const RagdollSettings humanoid = Humanoid();
-    const Pose origin{Position(3, 4, 5), Turn(Vector3(0, 1, 0), 1)};
+    const Pose origin{Position(3, 4, 5), RotationAbout(Vector3(0, 1, 0), 1)};
     std::vector<Pose> parts(12), joints(kCount), again(12), posed(kCount);
-    PoseFromJoints(humanoid, {Position(3.5, 4, 5), Turn(Vector3(0, 0, 1), 0.5)}, HumanoidMotion(2), parts);
+    PoseFromJoints(humanoid, {Position(3.5, 4, 5), RotationAbout(Vector3(0, 0, 1), 0.5)}, HumanoidMotion(2), parts);
     std::vector<RelativePose> locals(mapping.ReferenceLocals().begin(), mapping.ReferenceLocals().end());
     mapping.ToSkeleton(origin, parts, locals, joints);
     mapping.PoseJoints(origin, locals, posed);
@@ -159,15 +159,15 @@ TEST(SkeletonMapping, AChainBendsTowardsItsEndAndStretchesEvenly) {
         return joints;
     };
     // Turned as a whole: straight still.
-    const Quaternion quarter = Turn(Vector3(0, 0, 1), 90 * kDegree);
+    const Quaternion quarter = RotationAbout(Vector3(0, 0, 1), 90 * kDegree);
     std::vector<Pose> joints = jointsFor({Position(0, 2.5, 0), quarter});
     for (int i = 1; i <= 5; ++i) ExpectSame(joints[static_cast<size_t>(i)], {Position(0, 0.5 * i, 0), quarter}, std::to_string(i));
     // Stretched, and its end twisted by 1 rad: each link has its share.
-    joints = jointsFor({Position(3.0, 0, 0), Turn(Vector3(1, 0, 0), 1.0)});
+    joints = jointsFor({Position(3.0, 0, 0), RotationAbout(Vector3(1, 0, 0), 1.0)});
     for (int i = 1; i <= 5; ++i)
-        ExpectSame(joints[static_cast<size_t>(i)], {Position(0.6 * i, 0, 0), Turn(Vector3(1, 0, 0), 0.2 * i)}, std::to_string(i));
+        ExpectSame(joints[static_cast<size_t>(i)], {Position(0.6 * i, 0, 0), RotationAbout(Vector3(1, 0, 0), 0.2 * i)}, std::to_string(i));
     // To the opposite side.
-    joints = jointsFor({Position(-2.5, 0, 0), Turn(Vector3(0, 1, 0), 180 * kDegree)});
+    joints = jointsFor({Position(-2.5, 0, 0), RotationAbout(Vector3(0, 1, 0), 180 * kDegree)});
     for (int i = 1; i <= 5; ++i) EXPECT_LT((joints[static_cast<size_t>(i)].position - Position(-0.5 * i, 0, 0)).norm(), kRounding);
 }
 
