@@ -29,11 +29,7 @@ function(fulcrum_library_properties target)
     DEFINE_SYMBOL ""
     VERSION ${PROJECT_VERSION}
     SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
-  if(FULCRUM_UNITY)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 10)
-    # A local name would shadow one that another file of the same unit has at namespace scope.
-    target_compile_options(${target} PRIVATE -Wno-shadow)
-  endif()
+  fulcrum_unity(${target})
   # The five find each other wherever they are installed.
   if(NOT DEFINED CMAKE_INSTALL_RPATH)
     set_target_properties(${target} PROPERTIES INSTALL_RPATH "$<IF:$<PLATFORM_ID:Darwin>,@loader_path,$ORIGIN>")

@@ -127,7 +127,7 @@ Result<Command> ParseRunnerCommand(std::vector<std::string> arguments) {
     } else if (drop->parsed()) {
         command.kind = CommandKind::Drop;
         if (file.empty()) return Error{ErrorCode::OutOfRange, "drop needs a mesh file, for example: ./fulcrum drop teapot.obj"};
-        command.scene = command.onto.empty() ? &kDropScene : &kDropOntoScene;
+        command.scene = command.onto.empty() ? &DropScene::kScene : &DropOntoScene::kScene;
         command.file = file;
     } else if (list->parsed()) {
         command.kind = CommandKind::List;

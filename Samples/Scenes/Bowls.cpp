@@ -3,7 +3,7 @@
 
 #include <array>
 
-namespace fulcrum {
+namespace fulcrum::BowlsScene {
 namespace {
 
 constexpr double kInner = 2, kOuter = 2.2;  // m, radii of a bowl
@@ -61,7 +61,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kBowlsScene{
+extern const Scene kScene{
     .name = "bowls",
     .description = "balls and capsules roll in four bowls, damped by 0, 0.1, 0.5 and 3 per second",
     .steps = 600,
@@ -70,4 +70,4 @@ extern const Scene kBowlsScene{
     .accuracyMeaning = "bodies outside their bowl",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::BowlsScene

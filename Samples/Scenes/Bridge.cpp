@@ -1,6 +1,6 @@
 #include <Fulcrum/Samples/Scenes/JointShorthands.h>
 
-namespace fulcrum {
+namespace fulcrum::BridgeScene {
 namespace {
 
 constexpr int kPlanks = 24;
@@ -30,7 +30,7 @@ void Build(SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kBridgeScene{
+extern const Scene kScene{
     .name = "bridge",
     .description = "a bridge of 24 planks on hinges, with boxes and balls dropped on it",
     .steps = 480,
@@ -39,4 +39,4 @@ extern const Scene kBridgeScene{
     .accuracyMeaning = "largest distance between the two anchors of a joint, m",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::BridgeScene

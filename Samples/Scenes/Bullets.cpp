@@ -1,6 +1,6 @@
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
 
-namespace fulcrum {
+namespace fulcrum::BulletsScene {
 namespace {
 
 constexpr int kRows = 9;
@@ -41,7 +41,7 @@ double BallsBehindTheWalls(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kBulletsScene{
+extern const Scene kScene{
     .name = "bullets",
     .description = "balls at 200 to 1000 m/s at walls of 1 and 10 cm, rods at 100 rad/s between posts of 6 cm",
     .steps = 240,
@@ -50,4 +50,4 @@ extern const Scene kBulletsScene{
     .accuracyMeaning = "balls behind the walls",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::BulletsScene

@@ -1,7 +1,7 @@
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
 
-namespace fulcrum {
+namespace fulcrum::CardHouseScene {
 namespace {
 
 constexpr double kHalfLength = 0.5, kHalfWidth = 0.35, kHalfThickness = 0.02;  // m, of a leaning card
@@ -58,7 +58,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kCardHouseScene{
+extern const Scene kScene{
     .name = "card_house",
     .description = "a house of cards of four storeys that stands by friction alone",
     .steps = 600,
@@ -67,4 +67,4 @@ extern const Scene kCardHouseScene{
     .accuracyMeaning = "height of the highest flat card minus where it was laid, m",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::CardHouseScene

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-namespace fulcrum {
+namespace fulcrum::CompoundCityScene {
 namespace {
 
 // The city: districts of streets, a compound each; the one in the middle is a square with the tower.
@@ -136,7 +136,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kCompoundCityScene{
+extern const Scene kScene{
     .name = "compound_city",
     .description = "bodies fall on 3456 buildings, children of 24 compounds; a tower loses its, children of one that changes",
     .steps = 720,
@@ -147,4 +147,4 @@ extern const Scene kCompoundCityScene{
     .accuracyMeaning = "pieces of the tower, bodies on its roof and bodies in the ground that are where they should not be",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::CompoundCityScene

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace fulcrum {
+namespace fulcrum::ConeScene {
 namespace {
 
 constexpr double kAngles[] = {0, 15, 45, 90, 150, 180};  // degrees
@@ -31,7 +31,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kConeScene{
+extern const Scene kScene{
     .name = "cone",
     .description = "clubs thrown about in cones of 0, 15, 45, 90, 150 and 180 degrees",
     .steps = 300,
@@ -41,4 +41,4 @@ extern const Scene kConeScene{
     .accuracyMeaning = "largest angle beyond a cone, rad",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::ConeScene

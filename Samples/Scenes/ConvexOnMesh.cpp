@@ -1,6 +1,6 @@
 #include <Fulcrum/Samples/Scenes/WavyGround.h>
 
-namespace fulcrum {
+namespace fulcrum::ConvexOnMeshScene {
 namespace {
 
 void Build(SceneWorld& world) { AddShapesOverWaves(world); }
@@ -15,7 +15,7 @@ double BodiesBelowTheMesh(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kConvexOnMeshScene{
+extern const Scene kScene{
     .name = "convex_on_mesh",
     .description = "1764 boxes, balls, capsules and pyramids bounce on a wavy mesh of 20,000 triangles",
     .kind = SceneKind::Performance,
@@ -26,4 +26,4 @@ extern const Scene kConvexOnMeshScene{
     .accuracyMeaning = "bodies more than 1 m below the lowest point of the mesh",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::ConvexOnMeshScene

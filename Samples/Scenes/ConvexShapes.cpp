@@ -3,7 +3,7 @@
 #include <Fulcrum/Collision/Shapes/Triangle.h>
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
 
-namespace fulcrum {
+namespace fulcrum::ConvexShapesScene {
 namespace {
 
 // What a user writes to make a shape of his own: an egg, blunt below and pointed above.
@@ -50,7 +50,7 @@ void Build(SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kConvexShapesScene{
+extern const Scene kScene{
     .name = "convex_shapes",
     .description = "cylinders, cones, tapered capsules, plates and a user's egg stand, roll and fall",
     .build = Build,
@@ -58,4 +58,4 @@ extern const Scene kConvexShapesScene{
     .accuracyMeaning = "bodies that fell through the floor",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::ConvexShapesScene

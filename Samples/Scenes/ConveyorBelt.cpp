@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace fulcrum {
+namespace fulcrum::ConveyorBeltScene {
 namespace {
 
 // A body whose surface runs straight ahead, or round a pivot where it turns.
@@ -106,7 +106,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kConveyorBeltScene{
+extern const Scene kScene{
     .name = "conveyor_belt",
     .description = "boxes, cylinders and hulls ride round a loop of belts with two bends, fed by a belt that climbs",
     .steps = 1500,
@@ -115,4 +115,4 @@ extern const Scene kConveyorBeltScene{
     .accuracyMeaning = "goods that do not ride on the loop",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::ConveyorBeltScene

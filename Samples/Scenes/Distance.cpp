@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fulcrum {
+namespace fulcrum::DistanceScene {
 namespace {
 
 constexpr double kFrequency = 1;  // Hz, of the spring
@@ -37,7 +37,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kDistanceScene{
+extern const Scene kScene{
     .name = "distance",
     .description = "distance joints: a rod, a rope, a spring that carries a weight, a ball kept between two distances",
     .steps = 480,
@@ -47,4 +47,4 @@ extern const Scene kDistanceScene{
     .accuracyMeaning = "largest error of a length, m",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::DistanceScene

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace fulcrum {
+namespace fulcrum::DominoesScene {
 namespace {
 
 constexpr int kDominoes = 72;
@@ -41,7 +41,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kDominoesScene{
+extern const Scene kScene{
     .name = "dominoes",
     .description = "a ball topples a curved row of 72 dominoes",
     .steps = 720,
@@ -50,4 +50,4 @@ extern const Scene kDominoesScene{
     .accuracyMeaning = "dominoes left standing",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::DominoesScene

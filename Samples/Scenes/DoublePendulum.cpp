@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace fulcrum {
+namespace fulcrum::DoublePendulumScene {
 namespace {
 
 // Two rods on hinges, and beside them the same pair, half a millimeter aside at the start: soon they go different ways.
@@ -25,7 +25,7 @@ double EnergyChange(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kDoublePendulumScene{
+extern const Scene kScene{
     .name = "double_pendulum",
     .description = "two double pendulums that start half a millimeter apart",
     .steps = 600,
@@ -35,4 +35,4 @@ extern const Scene kDoublePendulumScene{
     .accuracyMeaning = "change of the energy, % of that of the fall",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::DoublePendulumScene

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace fulcrum {
+namespace fulcrum::DropScene {
 namespace {
 
 // Layers of a square grid above a shallow tray, each body turned at random. Spaced by the shape's diameter, so that none
@@ -35,7 +35,7 @@ void Build(SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kDropScene{
+extern const Scene kScene{
     .name = "drop",
     .description = "a heap of one shape, given by a mesh file, in a shallow tray",
     .steps = 480,
@@ -45,4 +45,4 @@ extern const Scene kDropScene{
     .accuracyMeaning = "bodies that fell through the floor",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::DropScene

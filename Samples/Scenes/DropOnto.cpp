@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fulcrum {
+namespace fulcrum::DropOntoScene {
 namespace {
 
 // Just above the ground, over a grid of the places that have ground below.
@@ -63,7 +63,7 @@ void Build(SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kDropOntoScene{
+extern const Scene kScene{
     .name = "drop_onto",
     .description = "bodies of one shape, given by a mesh file, fall onto the triangles of another",
     .steps = 600,
@@ -73,4 +73,4 @@ extern const Scene kDropOntoScene{
     .accuracyMeaning = "bodies that fell through the floor",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::DropOntoScene

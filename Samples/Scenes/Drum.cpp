@@ -1,7 +1,7 @@
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
 
-namespace fulcrum {
+namespace fulcrum::DrumScene {
 namespace {
 
 constexpr double kHeight = 21;  // m, of the drum's axis
@@ -50,7 +50,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kDrumScene{
+extern const Scene kScene{
     .name = "drum",
     .description = "8000 boxes tumble in a turning drum with four paddles",
     .kind = SceneKind::Performance,
@@ -61,4 +61,4 @@ extern const Scene kDrumScene{
     .accuracyMeaning = "boxes that went through the drum's wall",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::DrumScene

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fulcrum {
+namespace fulcrum::EndlessSlopeScene {
 namespace {
 
 constexpr double kSlope = 10 * kDegree;
@@ -47,7 +47,7 @@ double LargestError(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kEndlessSlopeScene{
+extern const Scene kScene{
     .name = "endless_slope",
     .description = "balls roll down a half space that has no end, crates stay; swings hang from bodies without a shape",
     .build = Build,
@@ -55,4 +55,4 @@ extern const Scene kEndlessSlopeScene{
     .accuracyMeaning = "largest distance of a ball from where rolling takes it, m",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::EndlessSlopeScene

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace fulcrum {
+namespace fulcrum::FlatLandScene {
 namespace {
 
 void Build(SceneWorld& world) {
@@ -35,7 +35,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kFlatLandScene{
+extern const Scene kScene{
     .name = "flat_land",
     .description = "126 bodies locked to the x-y plane pile up between two walls",
     .steps = 480,
@@ -45,4 +45,4 @@ extern const Scene kFlatLandScene{
     .accuracyMeaning = "largest distance of a body's center from the plane, m",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::FlatLandScene

@@ -3,7 +3,7 @@
 
 #include <array>
 
-namespace fulcrum {
+namespace fulcrum::FrictionRampScene {
 namespace {
 
 constexpr double kSlope = 25 * kDegree;  // its tangent is 0.466
@@ -50,7 +50,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kFrictionRampScene{
+extern const Scene kScene{
     .name = "friction_ramp",
     .description = "nine boxes on a ramp of 25 degrees: those with a friction above its tangent, 0.466, stick",
     .steps = 300,
@@ -59,4 +59,4 @@ extern const Scene kFrictionRampScene{
     .accuracyMeaning = "boxes that slide but should stick, or stick but should slide",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::FrictionRampScene

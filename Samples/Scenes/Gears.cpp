@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fulcrum {
+namespace fulcrum::GearsScene {
 namespace {
 
 constexpr float kSpeed = 6;                                 // rad/s of the first wheel
@@ -61,7 +61,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kGearsScene{
+extern const Scene kScene{
     .name = "gears",
     .description = "a clockwork of eight gears on five axles, 144 turns of the first for one of the last",
     .steps = 900,
@@ -72,4 +72,4 @@ extern const Scene kGearsScene{
     .accuracyMeaning = "largest angle by which two gears are out of step, rad of the smaller one",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::GearsScene

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace fulcrum {
+namespace fulcrum::GravityFactorsScene {
 namespace {
 
 constexpr double kStart = 20;  // m
@@ -37,7 +37,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kGravityFactorsScene{
+extern const Scene kScene{
     .name = "gravity_factors",
     .description = "ten balls fall from one height: gravity factors -0.2 to 1, dampings, speed limits",
     .steps = 114,
@@ -47,4 +47,4 @@ extern const Scene kGravityFactorsScene{
     .accuracyMeaning = "largest error of a free ball's height against g t^2 / 2, m",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::GravityFactorsScene

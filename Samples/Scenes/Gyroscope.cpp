@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace fulcrum {
+namespace fulcrum::GyroscopeScene {
 namespace {
 
 const Vector3 kSpin(0.01f, 6, 0.01f);  // rad/s, almost about y
@@ -29,7 +29,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kGyroscopeScene{
+extern const Scene kScene{
     .name = "gyroscope",
     .description = "a T-handle spins without gravity and flips over every few seconds",
     .steps = 1200,
@@ -40,4 +40,4 @@ extern const Scene kGyroscopeScene{
     .accuracyMeaning = "change of angular momentum, relative",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::GyroscopeScene

@@ -1,6 +1,6 @@
 #include <Fulcrum/Samples/Scenes/JointShorthands.h>
 
-namespace fulcrum {
+namespace fulcrum::HeavyChainScene {
 namespace {
 
 constexpr int kLinks = 16;
@@ -31,7 +31,7 @@ double Stretch(const SceneWorld& world) {
 }  // namespace
 
 // The ball passes the lowest point, where the chain carries the most, after T / 4 = 2.3678 s sqrt(16.5) / 4 = 144 steps.
-extern const Scene kHeavyChainScene{
+extern const Scene kScene{
     .name = "heavy_chain",
     .description = "a chain of 16 links of 1 kg with a ball of 100 kg, swung from horizontal",
     .steps = 144,
@@ -42,4 +42,4 @@ extern const Scene kHeavyChainScene{
     .accuracyMeaning = "stretch of the chain, % of its length",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::HeavyChainScene

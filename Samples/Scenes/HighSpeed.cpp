@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace fulcrum {
+namespace fulcrum::HighSpeedScene {
 namespace {
 
 constexpr double kSide = 50;   // m, half
@@ -62,7 +62,7 @@ double EscapedBodies(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kHighSpeedScene{
+extern const Scene kScene{
     .name = "high_speed",
     .description = "5000 balls, boxes and rods at 250 m/s in a room of walls 40 cm thick",
     .kind = SceneKind::Performance,
@@ -74,4 +74,4 @@ extern const Scene kHighSpeedScene{
     .accuracyMeaning = "bodies outside the room",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::HighSpeedScene

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fulcrum {
+namespace fulcrum::HingeScene {
 namespace {
 
 constexpr int kSwing = 120;     // steps in which the first door is driven to one side
@@ -51,7 +51,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kHingeScene{
+extern const Scene kScene{
     .name = "hinge",
     .description = "doors on hinges: driven between limits, following a target, with friction, soft stops; a fan",
     .steps = 480,
@@ -62,4 +62,4 @@ extern const Scene kHingeScene{
     .accuracyMeaning = "worst of: driven door off its limit, rad; fan's change of speed, parts; rubbing door's speed, rad/s",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::HingeScene

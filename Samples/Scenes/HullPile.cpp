@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace fulcrum {
+namespace fulcrum::HullPileScene {
 namespace {
 
 constexpr int kPoints = 32;
@@ -43,7 +43,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kHullPileScene{
+extern const Scene kScene{
     .name = "hull_pile",
     .description = "2560 hulls of 32 points in columns that collapse into a pile",
     .kind = SceneKind::Performance,
@@ -54,4 +54,4 @@ extern const Scene kHullPileScene{
     .accuracyMeaning = "smallest height of a body's center minus 1.8 m, where negative",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::HullPileScene

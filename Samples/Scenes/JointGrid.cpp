@@ -1,6 +1,6 @@
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
 
-namespace fulcrum {
+namespace fulcrum::JointGridScene {
 namespace {
 
 constexpr int kSide = 100;
@@ -28,7 +28,7 @@ void NoContacts(SystemSettings& settings) { settings.layerCollides[1] &= ~2u; }
 
 }  // namespace
 
-extern const Scene kJointGridScene{
+extern const Scene kScene{
     .name = "joint_grid",
     .description = "a curtain of 100 x 100 balls, held together by 19701 ball joints",
     .kind = SceneKind::Performance,
@@ -40,4 +40,4 @@ extern const Scene kJointGridScene{
     .accuracyMeaning = "largest distance between the two anchors of a joint, m",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::JointGridScene

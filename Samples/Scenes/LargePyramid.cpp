@@ -1,6 +1,6 @@
 #include <Fulcrum/Samples/Scenes/FlatPyramid.h>
 
-namespace fulcrum {
+namespace fulcrum::LargePyramidScene {
 namespace {
 
 void Build(SceneWorld& world) {
@@ -12,7 +12,7 @@ double Accuracy(const SceneWorld& world) { return WorstHeightError(world, 99.5);
 
 }  // namespace
 
-extern const Scene kLargePyramidScene{
+extern const Scene kScene{
     .name = "large_pyramid",
     .description = "5050 boxes in a wall of 100 layers that tapers to one box",
     .kind = SceneKind::Performance,
@@ -23,4 +23,4 @@ extern const Scene kLargePyramidScene{
     .accuracyMeaning = "height of the top box minus 99.5 m, that of a perfect stack",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::LargePyramidScene

@@ -1,6 +1,6 @@
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
 
-namespace fulcrum {
+namespace fulcrum::LayersScene {
 namespace {
 
 enum Layer : uint8_t { kGround, kSolid, kGhost, kSieve };
@@ -41,7 +41,7 @@ void LetGhostsPass(SystemSettings& settings) {
 
 }  // namespace
 
-extern const Scene kLayersScene{
+extern const Scene kScene{
     .name = "layers",
     .description = "a platform that catches cubes and lets balls of another layer fall through",
     .steps = 240,
@@ -51,4 +51,4 @@ extern const Scene kLayersScene{
     .accuracyMeaning = "bodies on the wrong floor",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::LayersScene

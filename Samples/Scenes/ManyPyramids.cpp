@@ -1,6 +1,6 @@
 #include <Fulcrum/Samples/Scenes/FlatPyramid.h>
 
-namespace fulcrum {
+namespace fulcrum::ManyPyramidsScene {
 namespace {
 
 constexpr int kRows = 14;
@@ -17,7 +17,7 @@ double Accuracy(const SceneWorld& world) { return WorstHeightError(world, 9.5); 
 
 }  // namespace
 
-extern const Scene kManyPyramidsScene{
+extern const Scene kScene{
     .name = "many_pyramids",
     .description = "196 separate walls of 55 boxes: many islands",
     .kind = SceneKind::Performance,
@@ -28,4 +28,4 @@ extern const Scene kManyPyramidsScene{
     .accuracyMeaning = "largest difference of a top box's height from 9.5 m",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::ManyPyramidsScene

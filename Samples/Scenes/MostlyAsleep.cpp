@@ -1,6 +1,6 @@
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
 
-namespace fulcrum {
+namespace fulcrum::MostlyAsleepScene {
 namespace {
 
 void Build(SceneWorld& world) {
@@ -18,7 +18,7 @@ double Accuracy(const SceneWorld& world) { return world.LongestStepMs(); }
 
 }  // namespace
 
-extern const Scene kMostlyAsleepScene{
+extern const Scene kScene{
     .name = "mostly_asleep",
     .description = "100,000 sleeping boxes on a plain, 100 balls dropped among them",
     .kind = SceneKind::Performance,
@@ -28,4 +28,4 @@ extern const Scene kMostlyAsleepScene{
     .accuracyMeaning = "longest step but the first, ms: what sleeps must cost nothing",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::MostlyAsleepScene

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-namespace fulcrum {
+namespace fulcrum::MovingPlatformsScene {
 namespace {
 
 enum Platform : size_t { kLift, kShuttle, kTurntable, kSweeper, kPlatforms };
@@ -85,7 +85,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kMovingPlatformsScene{
+extern const Scene kScene{
     .name = "moving_platforms",
     .description = "a lift, a shuttle and a turntable carry boxes, a turning bar sweeps others away",
     .steps = 720,
@@ -95,4 +95,4 @@ extern const Scene kMovingPlatformsScene{
     .accuracyMeaning = "farthest that a box slid on what carries it, m",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::MovingPlatformsScene

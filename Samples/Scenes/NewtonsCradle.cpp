@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace fulcrum {
+namespace fulcrum::NewtonsCradleScene {
 namespace {
 
 constexpr int kBalls = 5;
@@ -32,7 +32,7 @@ double EnergyChange(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kNewtonsCradleScene{
+extern const Scene kScene{
     .name = "newtons_cradle",
     .description = "Newton's cradle of five balls, there and back",
     .steps = 230,
@@ -42,4 +42,4 @@ extern const Scene kNewtonsCradleScene{
     .accuracyMeaning = "change of the energy, % of what the first ball was lifted by",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::NewtonsCradleScene

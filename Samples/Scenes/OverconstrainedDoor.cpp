@@ -1,6 +1,6 @@
 #include <Fulcrum/Samples/Scenes/JointShorthands.h>
 
-namespace fulcrum {
+namespace fulcrum::OverconstrainedDoorScene {
 namespace {
 
 constexpr double kAskew = 0.01;  // m: how far the middle hinge is out of line
@@ -22,7 +22,7 @@ void Build(SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kOverconstrainedDoorScene{
+extern const Scene kScene{
     .name = "overconstrained_door",
     .description = "doors on three hinges, the middle one of the first 1 cm out of line, each hit by a ball",
     .steps = 480,
@@ -32,4 +32,4 @@ extern const Scene kOverconstrainedDoorScene{
     .accuracyMeaning = "largest distance between the two anchors of a joint, m; a third of a centimeter cannot be helped",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::OverconstrainedDoorScene

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace fulcrum {
+namespace fulcrum::PathScene {
 namespace {
 
 constexpr int kCars = 6;
@@ -61,7 +61,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kPathScene{
+extern const Scene kScene{
     .name = "path",
     .description = "cars that motors drive along a hilly track, and a bead that slides on it",
     .steps = 600,
@@ -72,4 +72,4 @@ extern const Scene kPathScene{
     .accuracyMeaning = "largest distance of a car or the bead from the track, m",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::PathScene

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace fulcrum {
+namespace fulcrum::PulleyScene {
 namespace {
 
 constexpr double kJib = 6;    // m, height of the jib
@@ -49,7 +49,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kPulleyScene{
+extern const Scene kScene{
     .name = "pulley",
     .description = "a crane whose winch lifts a load by a block and tackle, and two weights on a rope over a pulley",
     .steps = 480,
@@ -60,4 +60,4 @@ extern const Scene kPulleyScene{
     .accuracyMeaning = "how much longer than it is a rope is stretched, m",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::PulleyScene

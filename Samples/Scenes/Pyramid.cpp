@@ -1,6 +1,6 @@
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
 
-namespace fulcrum {
+namespace fulcrum::PyramidScene {
 namespace {
 
 constexpr int kLayers = 15;
@@ -24,7 +24,7 @@ double Accuracy(const SceneWorld& world) { return world.Bodies().GetPose(world.w
 
 }  // namespace
 
-extern const Scene kPyramidScene{
+extern const Scene kScene{
     .name = "pyramid",
     .description = "1240 boxes fall into a square pyramid of 15 layers, one large island",
     .kind = SceneKind::Performance,
@@ -35,4 +35,4 @@ extern const Scene kPyramidScene{
     .accuracyMeaning = "height of the top box minus 29 m, that of a perfect stack",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::PyramidScene

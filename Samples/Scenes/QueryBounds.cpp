@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace fulcrum {
+namespace fulcrum::QueryBoundsScene {
 namespace {
 
 const Position kHalf(1.5, 0.8, 1);  // m, of the box
@@ -60,7 +60,7 @@ void Ask(SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kQueryBoundsScene{
+extern const Scene kScene{
     .name = "query_bounds",
     .description = "boxes, a ray and a box on its way ask the broad phase alone; red: what really overlaps",
     .steps = 600,
@@ -70,4 +70,4 @@ extern const Scene kQueryBoundsScene{
     .accuracyMeaning = "hits that the broad phase did not name",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::QueryBoundsScene

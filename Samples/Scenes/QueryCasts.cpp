@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fulcrum {
+namespace fulcrum::QueryCastsScene {
 namespace {
 
 constexpr int kGhosts = 4;  // outlines along the way
@@ -61,7 +61,7 @@ void Ask(SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kQueryCastsScene{
+extern const Scene kScene{
     .name = "query_casts",
     .description = "shapes on their way, straight and turning, up to the first touch among stirred bodies",
     .steps = 600,
@@ -71,4 +71,4 @@ extern const Scene kQueryCastsScene{
     .accuracyMeaning = "largest gap or overlap where a cast ends, m",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::QueryCastsScene

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fulcrum {
+namespace fulcrum::QueryClosestScene {
 namespace {
 
 constexpr float kReach = 6;  // m
@@ -55,7 +55,7 @@ void Ask(SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kQueryClosestScene{
+extern const Scene kScene{
     .name = "query_closest",
     .description = "points, a box and a capsule over stirred bodies, each with a line to what is closest to it",
     .steps = 600,
@@ -65,4 +65,4 @@ extern const Scene kQueryClosestScene{
     .accuracyMeaning = "largest difference to the distance that all bodies one by one give, m",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::QueryClosestScene

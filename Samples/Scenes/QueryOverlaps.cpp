@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-namespace fulcrum {
+namespace fulcrum::QueryOverlapsScene {
 namespace {
 
 // A line from the probe to each body it overlaps. Overlap and the distance to the closest body must say the same; within
@@ -58,7 +58,7 @@ void Ask(SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kQueryOverlapsScene{
+extern const Scene kScene{
     .name = "query_overlaps",
     .description = "shapes and a cloud of points drift through stirred bodies and mark what they overlap",
     .steps = 600,
@@ -68,4 +68,4 @@ extern const Scene kQueryOverlapsScene{
     .accuracyMeaning = "probes whose overlap and distance disagree",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::QueryOverlapsScene

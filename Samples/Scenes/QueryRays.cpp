@@ -1,7 +1,7 @@
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Samples/Scenes/QueryGround.h>
 
-namespace fulcrum {
+namespace fulcrum::QueryRaysScene {
 namespace {
 
 constexpr int kFan = 90, kColumns = 12;
@@ -71,7 +71,7 @@ void Ask(SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kQueryRaysScene{
+extern const Scene kScene{
     .name = "query_rays",
     .description = "rays among stirred bodies: closest hits (blue), all hits (violet), any hit (a curtain, red where blocked)",
     .steps = 600,
@@ -81,4 +81,4 @@ extern const Scene kQueryRaysScene{
     .accuracyMeaning = "rays for which closest, all, any and batch disagree",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::QueryRaysScene

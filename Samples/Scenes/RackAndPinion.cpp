@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fulcrum {
+namespace fulcrum::RackAndPinionScene {
 namespace {
 
 constexpr double kRadius = 0.5;   // m, of the pinions
@@ -55,7 +55,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kRackAndPinionScene{
+extern const Scene kScene{
     .name = "rack_and_pinion",
     .description = "a pinion drives its rack to and fro between stops; the weight of another rack spins its pinion",
     .steps = 480,
@@ -67,4 +67,4 @@ extern const Scene kRackAndPinionScene{
     .accuracyMeaning = "how far a rack is from its pinion's angle times the radius, or beyond a stop, m",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::RackAndPinionScene

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-namespace fulcrum {
+namespace fulcrum::RagdollDriveScene {
 namespace {
 
 constexpr size_t kParts = 12;
@@ -67,7 +67,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kRagdollDriveScene{
+extern const Scene kScene{
     .name = "ragdoll_drive",
     .description = "three poses: by motors hung up and floating, by velocities, kinematically",
     .steps = 300,
@@ -77,4 +77,4 @@ extern const Scene kRagdollDriveScene{
     .accuracyMeaning = "largest angle between a joint's rotation and the pose's, degrees",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::RagdollDriveScene

@@ -1,7 +1,7 @@
 #include <Fulcrum/Samples/Scenes/Humanoid.h>
 #include <Fulcrum/Samples/Scenes/WavyGround.h>
 
-namespace fulcrum {
+namespace fulcrum::RagdollsScene {
 namespace {
 
 constexpr int kPilesPerSide = 4, kRagdollsPerPile = 10;
@@ -20,7 +20,7 @@ void Build(SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kRagdollsScene{
+extern const Scene kScene{
     .name = "ragdolls",
     .description = "16 piles of 10 ragdolls, each of 12 capsules and 11 joints, that start overlapped",
     .kind = SceneKind::Performance,
@@ -31,4 +31,4 @@ extern const Scene kRagdollsScene{
     .accuracyMeaning = "largest distance between the two anchors of a joint, m",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::RagdollsScene

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace fulcrum {
+namespace fulcrum::RaysScene {
 namespace {
 
 constexpr int kRays = 100'000;
@@ -28,7 +28,7 @@ double Misses(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kRaysScene{
+extern const Scene kScene{
     .name = "rays",
     .description = "100,000 rays from above find what is closest, after 2 s of convex_on_mesh; the rays are timed",
     .kind = SceneKind::Performance,
@@ -42,4 +42,4 @@ extern const Scene kRaysScene{
     .accuracyMeaning = "rays that hit nothing",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::RaysScene

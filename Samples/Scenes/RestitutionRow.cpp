@@ -1,6 +1,6 @@
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
 
-namespace fulcrum {
+namespace fulcrum::RestitutionRowScene {
 namespace {
 
 constexpr double kStart = 5;  // m, of the balls' centers
@@ -24,7 +24,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kRestitutionRowScene{
+extern const Scene kScene{
     .name = "restitution_row",
     .description = "eleven balls with restitution 0 to 1 bounce side by side",
     .steps = 600,
@@ -33,4 +33,4 @@ extern const Scene kRestitutionRowScene{
     .accuracyMeaning = "energy height of the ball with restitution 1 minus its start, m",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::RestitutionRowScene

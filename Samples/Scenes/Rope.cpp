@@ -1,6 +1,6 @@
 #include <Fulcrum/Samples/Scenes/JointShorthands.h>
 
-namespace fulcrum {
+namespace fulcrum::RopeScene {
 namespace {
 
 constexpr int kLinks = 40;
@@ -23,7 +23,7 @@ void Build(SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kRopeScene{
+extern const Scene kScene{
     .name = "rope",
     .description = "a rope of 40 capsules with a box at its end, swung against a bar",
     .steps = 480,
@@ -33,4 +33,4 @@ extern const Scene kRopeScene{
     .accuracyMeaning = "largest distance between the two anchors of a joint, m",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::RopeScene

@@ -4,7 +4,8 @@
 
 namespace fulcrum {
 
-// A line a scene; each is defined in the file of its name as `const Scene kNameScene`.
+// A line a scene; each is `NameScene::kScene`, defined in the file of its name. A namespace a file, so that several can be
+// compiled at once.
 #define FULCRUM_SCENES(scene) \
     scene(Pyramid)            \
     scene(LargePyramid)       \
@@ -63,13 +64,16 @@ namespace fulcrum {
     scene(Springs)            \
     scene(OverconstrainedDoor)
 
-#define FULCRUM_DECLARE(Name) extern const Scene k##Name##Scene;
+#define FULCRUM_DECLARE(Name)  \
+    namespace Name##Scene {    \
+    extern const Scene kScene; \
+    }
 FULCRUM_SCENES(FULCRUM_DECLARE)
 #undef FULCRUM_DECLARE
 
 namespace {
 
-#define FULCRUM_LIST(Name) &k##Name##Scene,
+#define FULCRUM_LIST(Name) &Name##Scene::kScene,
 const Scene* const kScenes[] = {FULCRUM_SCENES(FULCRUM_LIST)};
 #undef FULCRUM_LIST
 #undef FULCRUM_SCENES

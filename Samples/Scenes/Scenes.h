@@ -14,8 +14,12 @@ std::span<const Scene* const> AllScenes();
 const Scene* FindScene(std::string_view name);
 
 // Not in the list: drops SceneInput::count bodies of SceneInput::shape in a heap between low walls.
-extern const Scene kDropScene;
+namespace DropScene {
+extern const Scene kScene;
+}
 // Nor this: drops them over SceneInput::ground, a mesh that stands on y = 0.
-extern const Scene kDropOntoScene;
+namespace DropOntoScene {
+extern const Scene kScene;
+}
 
 }  // namespace fulcrum

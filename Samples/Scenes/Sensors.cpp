@@ -1,6 +1,6 @@
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
 
-namespace fulcrum {
+namespace fulcrum::SensorsScene {
 namespace {
 
 // The bodies in the order of `watched`, after the four sensors.
@@ -74,7 +74,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kSensorsScene{
+extern const Scene kScene{
     .name = "sensors",
     .description = "a force field, a gate that takes balls away, a scanner that kicks sleepers, a thin target for bullets",
     .build = Build,
@@ -83,4 +83,4 @@ extern const Scene kSensorsScene{
     .accuracyMeaning = "crates not held up, balls and bullets not caught, sleepers not found",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::SensorsScene

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fulcrum {
+namespace fulcrum::SixDofScene {
 namespace {
 
 constexpr double kRate = 1.5;   // rad/s of the stage's circle
@@ -58,7 +58,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kSixDofScene{
+extern const Scene kScene{
     .name = "six_dof",
     .description = "joints of six axes: a stage driven in a circle, a table on springs, a box loose within limits",
     .steps = 480,
@@ -69,4 +69,4 @@ extern const Scene kSixDofScene{
     .accuracyMeaning = "stage off its circle, or the box beyond a limit, m",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::SixDofScene

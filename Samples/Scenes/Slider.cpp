@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fulcrum {
+namespace fulcrum::SliderScene {
 namespace {
 
 constexpr int kLift = 180;        // steps up, and as many down
@@ -51,7 +51,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kSliderScene{
+extern const Scene kScene{
     .name = "slider",
     .description = "sliders: an elevator with freight, two carts on a slope of which friction holds one, a soft stop",
     .steps = 540,
@@ -62,4 +62,4 @@ extern const Scene kSliderScene{
     .accuracyMeaning = "how far the elevator, the cart that holds and the cart that slides are from where they belong, m",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::SliderScene

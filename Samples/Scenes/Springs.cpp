@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace fulcrum {
+namespace fulcrum::SpringsScene {
 namespace {
 
 constexpr std::array<double, 5> kFrequencies{0.5, 1, 2, 3, 5};           // Hz, from left to right
@@ -42,7 +42,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kSpringsScene{
+extern const Scene kScene{
     .name = "springs",
     .description = "a table of 25 weights on springs: five frequencies by five damping ratios",
     .steps = 150,
@@ -53,4 +53,4 @@ extern const Scene kSpringsScene{
     .accuracyMeaning = "largest distance of a weight from where the continuous oscillator is, m",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::SpringsScene

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fulcrum {
+namespace fulcrum::SwingTwistScene {
 namespace {
 
 constexpr int kPoses = 3, kHold = 180;  // steps for each pose
@@ -53,7 +53,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kSwingTwistScene{
+extern const Scene kScene{
     .name = "swing_twist",
     .description = "arms in shoulders: driven from pose to pose, falling in an ellipse and in a pyramid, braked",
     .steps = 540,
@@ -64,4 +64,4 @@ extern const Scene kSwingTwistScene{
     .accuracyMeaning = "driven arm off its pose (its weight alone: 0.01 or so), or a twist beyond its limit, rad",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::SwingTwistScene

@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-namespace fulcrum {
+namespace fulcrum::TerrainWithHolesScene {
 namespace {
 
 constexpr uint32_t kCells = 64;
@@ -103,7 +103,7 @@ void Watch(SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kTerrainWithHolesScene{
+extern const Scene kScene{
     .name = "terrain_with_holes",
     .description = "bodies roll down a height field of grass, ice and rubber into its holes; in the middle one opens after 5 s",
     .steps = 600,
@@ -114,4 +114,4 @@ extern const Scene kTerrainWithHolesScene{
     .accuracyMeaning = "bodies that passed the surface where it is solid",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::TerrainWithHolesScene

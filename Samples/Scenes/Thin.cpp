@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace fulcrum {
+namespace fulcrum::ThinScene {
 namespace {
 
 constexpr int kRodsPerSide = 8, kRods = 40, kPlatesPerSide = 20;
@@ -34,7 +34,7 @@ double LostOrAwake(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kThinScene{
+extern const Scene kScene{
     .name = "thin",
     .description = "40 rods of 8 m and 400 plates of 4 cm, 10 cm thick at most, fall on a wavy mesh and come to rest",
     .steps = 1500,
@@ -44,4 +44,4 @@ extern const Scene kThinScene{
     .accuracyMeaning = "bodies that fell through the ground or do not sleep yet",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::ThinScene

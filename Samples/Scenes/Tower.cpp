@@ -1,6 +1,6 @@
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
 
-namespace fulcrum {
+namespace fulcrum::TowerScene {
 namespace {
 
 constexpr int kBoxes = 20;
@@ -20,7 +20,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kTowerScene{
+extern const Scene kScene{
     .name = "tower",
     .description = "20 boxes stacked up to 1 cm out of line: the tower stands and falls asleep",
     .steps = 600,
@@ -30,4 +30,4 @@ extern const Scene kTowerScene{
     .accuracyMeaning = "height of the top box minus 19.5 m, that of a perfect stack",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::TowerScene

@@ -1,6 +1,6 @@
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
 
-namespace fulcrum {
+namespace fulcrum::TrapDoorScene {
 namespace {
 
 constexpr int kRemovedAt = 180;   // step: both stacks have slept for long
@@ -42,7 +42,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kTrapDoorScene{
+extern const Scene kScene{
     .name = "trap_door",
     .description = "two stacks sleep on pillars; one pillar vanishes: its stack wakes and falls, the other sleeps on",
     .steps = 360,
@@ -52,4 +52,4 @@ extern const Scene kTrapDoorScene{
     .accuracyMeaning = "boxes that should have fallen and did not, or should have slept on and did not",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::TrapDoorScene

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace fulcrum {
+namespace fulcrum::WheelScene {
 namespace {
 
 constexpr float kRadius = 0.4f;     // m, of the wheels
@@ -47,7 +47,7 @@ double Accuracy(const SceneWorld& world) {
 
 }  // namespace
 
-extern const Scene kWheelScene{
+extern const Scene kScene{
     .name = "wheel",
     .description = "a rig on four sprung wheels, steered by the front and driven by the rear ones, over sleepers",
     .steps = 540,
@@ -58,4 +58,4 @@ extern const Scene kWheelScene{
     .accuracyMeaning = "how far its speed is from that of its wheels, parts; 1 where it fell over",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::WheelScene

@@ -3,7 +3,7 @@
 
 #include <array>
 
-namespace fulcrum {
+namespace fulcrum::WreckingPileScene {
 namespace {
 
 constexpr int kGateOpens = 240;           // step
@@ -81,7 +81,7 @@ void OpenTheGate(SceneWorld& world, double) {
 
 }  // namespace
 
-extern const Scene kWreckingPileScene{
+extern const Scene kScene{
     .name = "wrecking_pile",
     .description = "a heap of balls, boxes, capsules, rocks and jacks, hit by a ball of 29 t",
     .steps = 600,
@@ -92,4 +92,4 @@ extern const Scene kWreckingPileScene{
     .accuracyMeaning = "bodies that fell through the floor",
 };
 
-}  // namespace fulcrum
+}  // namespace fulcrum::WreckingPileScene

@@ -136,12 +136,12 @@ TEST_F(MeshFiles, AHeapOfOneLandsInItsTray) {
     SceneInput input;
     input.shape = read.Value().shape;
     input.count = 12;
-    const auto world = SceneWorld::Create(kDropScene, input);
+    const auto world = SceneWorld::Create(DropScene::kScene, input);
     ASSERT_TRUE(world) << world.GetError().message;
     for (int step = 0; step < 240; ++step) ASSERT_TRUE(world.Value()->Step(1.0 / 60));
     EXPECT_EQ(world.Value()->watched.size(), 12u);
     EXPECT_EQ(world.Value()->NonFiniteBodies(), 0);
-    EXPECT_EQ(kDropScene.accuracy(*world.Value()), 0);
+    EXPECT_EQ(DropScene::kScene.accuracy(*world.Value()), 0);
     for (BodyId id : world.Value()->watched) EXPECT_LT(world.Value()->Bodies().GetCenterOfMass(id).y(), 2.5);
 }
 
@@ -278,11 +278,11 @@ TEST_F(MeshGrounds, BodiesLandOnTheSheet) {
     input.shape = shape.Value().shape;
     input.ground = Import(Write("sheet.obj", kSheet), {.size = 10}).mesh;
     input.count = 9;
-    const auto world = SceneWorld::Create(kDropOntoScene, input);
+    const auto world = SceneWorld::Create(DropOntoScene::kScene, input);
     ASSERT_TRUE(world) << world.GetError().message;
     for (int step = 0; step < 180; ++step) ASSERT_TRUE(world.Value()->Step(1.0 / 60));
     EXPECT_EQ(world.Value()->watched.size(), 9u);
-    EXPECT_EQ(kDropOntoScene.accuracy(*world.Value()), 0);
+    EXPECT_EQ(DropOntoScene::kScene.accuracy(*world.Value()), 0);
     for (BodyId id : world.Value()->watched) {
         // Above the sheet at 10 x (1 - distance from its middle), or beside it on the floor; half a cube higher.
         EXPECT_GT(world.Value()->Bodies().GetCenterOfMass(id).y(), 0.4);

@@ -110,8 +110,8 @@ TEST(RunnerOptions, DropMayBeOntoAMesh) {
     ASSERT_TRUE(command.ontoSettings.scale);
     EXPECT_DOUBLE_EQ(*command.ontoSettings.scale, 0.5);
     EXPECT_EQ(command.ontoSettings.up, UpAxis::MinusZ);
-    EXPECT_EQ(command.scene, &kDropOntoScene);
-    EXPECT_EQ(Parsed("drop teapot.obj").scene, &kDropScene);
+    EXPECT_EQ(command.scene, &DropOntoScene::kScene);
+    EXPECT_EQ(Parsed("drop teapot.obj").scene, &DropScene::kScene);
     EXPECT_FALSE(Parsed("drop teapot.obj --onto bunny.ply").ontoSettings.scale);
     ExpectComplaint("drop teapot.obj --onto-scale 2", "--onto");
     ExpectComplaint("drop teapot.obj --onto bunny.ply --onto-scale 0", "nearest valid value is 1e-06");
