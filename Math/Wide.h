@@ -50,9 +50,12 @@ inline namespace vector_lanes {
 #endif
 inline constexpr int kLanes = FULCRUM_LANES;
 
-// Lanes that the files of kernels are compiled for; tests compile them once more, for one.
-#if !defined(FULCRUM_KERNEL_LANES)
-#define FULCRUM_KERNEL_LANES FULCRUM_LANES
+// Calls a macro of (lanes, ...) for the lanes that kernels are compiled for: one, and those of this build.
+#if FULCRUM_LANES == 1
+#define FULCRUM_FOR_EACH_WIDTH(instantiate, ...) instantiate(1 __VA_OPT__(, ) __VA_ARGS__)
+#else
+#define FULCRUM_FOR_EACH_WIDTH(instantiate, ...) \
+    instantiate(1 __VA_OPT__(, ) __VA_ARGS__) instantiate(FULCRUM_LANES __VA_OPT__(, ) __VA_ARGS__)
 #endif
 
 // "scalar", "SSE2", "AVX2" or "vector": what this build was compiled for.

@@ -286,8 +286,8 @@ void StoreContacts(const ContactBatch<N, kFixedB>& batch, ContactRecord* records
     template uint32_t PrepareContacts(ContactBatch<lanes, fixedB>&, const ContactRecord*, const uint32_t(&)[lanes],         \
                                   const SolverBodies&, const ContactPrepareSettings&);                                  \
     template void StoreContacts(const ContactBatch<lanes, fixedB>&, ContactRecord*, float);
-FULCRUM_INSTANTIATE(FULCRUM_KERNEL_LANES, false)
-FULCRUM_INSTANTIATE(FULCRUM_KERNEL_LANES, true)
+FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, false)
+FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, true)
 #undef FULCRUM_INSTANTIATE
 
 }  // namespace fulcrum

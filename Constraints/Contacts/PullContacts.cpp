@@ -31,8 +31,8 @@ void PullContacts(const ContactBatch<N, kFixedB>& batch, BodyState* pseudo, cons
 
 #define FULCRUM_INSTANTIATE(lanes, fixedB) \
     template void PullContacts(const ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);
-FULCRUM_INSTANTIATE(FULCRUM_KERNEL_LANES, false)
-FULCRUM_INSTANTIATE(FULCRUM_KERNEL_LANES, true)
+FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, false)
+FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, true)
 #undef FULCRUM_INSTANTIATE
 
 }  // namespace fulcrum

@@ -110,8 +110,8 @@ void RestituteContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, float
     template void NoteCarriedWork(ContactBatch<lanes, fixedB>&, BodyState*, const float*, float);                       \
     template void NoteLift(ContactBatch<lanes, fixedB>&, float);                                                        \
     template void RestituteContacts(ContactBatch<lanes, fixedB>&, BodyState*, float);
-FULCRUM_INSTANTIATE(FULCRUM_KERNEL_LANES, false)
-FULCRUM_INSTANTIATE(FULCRUM_KERNEL_LANES, true)
+FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, false)
+FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, true)
 #undef FULCRUM_INSTANTIATE
 
 }  // namespace fulcrum

@@ -14,6 +14,17 @@ FULCRUM_FORCE_INLINE void SolveAllRows(ContactBatch<N, kFixedB>& batch, BodyStat
 
 }  // namespace
 
+void ContactSolveSettings::Soften(float frequency, float dampingRatio, float h) {
+    const float w = 6.28318531f * frequency;
+    const float a = h * w * (2.0f * dampingRatio + h * w);
+    pushRate = w / (2.0f * dampingRatio + h * w);
+    massScale = a / (1.0f + a);
+    impulseScale = 1.0f / (1.0f + a);
+    constexpr float kSoftest = 0.125f;  // what is always left of the softness: it bounds the load of what can never come apart
+    mostStiffer = (1 - kSoftest) * impulseScale;
+    stiffening = impulseScale / maxPushSpeed;
+}
+
 template <int N, bool kFixedB>
 void WarmStartContacts(ContactBatch<N, kFixedB>& batch, BodyState* states) {
     if (batch.bounces) return WarmStartRareRows(batch, states);
@@ -50,8 +61,8 @@ void RelaxContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const Con
     template void SolveContactVelocities(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);        \
     template void RelaxContacts(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);                 \
     template void UpdateSeparations(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);
-FULCRUM_INSTANTIATE(FULCRUM_KERNEL_LANES, false)
-FULCRUM_INSTANTIATE(FULCRUM_KERNEL_LANES, true)
+FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, false)
+FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, true)
 #undef FULCRUM_INSTANTIATE
 
 }  // namespace fulcrum

@@ -16,8 +16,8 @@ void WarmStartRareRows(ContactBatch<N, kFixedB>& batch, BodyState* states) {
     template void SolveRareRows<false>(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);          \
     template void SolveRareRows<true>(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);           \
     template void WarmStartRareRows(ContactBatch<lanes, fixedB>&, BodyState*);
-FULCRUM_INSTANTIATE(FULCRUM_KERNEL_LANES, false)
-FULCRUM_INSTANTIATE(FULCRUM_KERNEL_LANES, true)
+FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, false)
+FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, true)
 #undef FULCRUM_INSTANTIATE
 
 }  // namespace fulcrum::contacts

@@ -413,7 +413,7 @@ void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* co
     template void PrepareJoints(JointBatch<lanes>&, const JointRecord*, JointType* const*, const SolverBodies&,            \
                                 const JointSolveSettings&, JointFindings&);                                                \
     template void StoreJoints(const JointBatch<lanes>&, JointRecord*, JointType* const*, const BodyState*, float, float);
-FULCRUM_INSTANTIATE(FULCRUM_KERNEL_LANES)
+FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE)
 #undef FULCRUM_INSTANTIATE
 
 }  // namespace fulcrum

@@ -124,7 +124,7 @@ void PullJoints(JointBatch<N>& batch, BodyState* pseudo, const JointSolveSetting
 }
 
 #define FULCRUM_INSTANTIATE(lanes) template void PullJoints(JointBatch<lanes>&, BodyState*, const JointSolveSettings&);
-FULCRUM_INSTANTIATE(FULCRUM_KERNEL_LANES)
+FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE)
 #undef FULCRUM_INSTANTIATE
 
 }  // namespace fulcrum

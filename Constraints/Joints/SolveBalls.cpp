@@ -346,7 +346,7 @@ void StoreJoints(const BallBatch<N>& batch, JointRecord* records, float dt, floa
     template void UpdateJoints(BallBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);                                         \
     template void PullJoints(BallBatch<lanes>&, BodyState*, const JointSolveSettings&);                                                    \
     template void StoreJoints(const BallBatch<lanes>&, JointRecord*, float, float);
-FULCRUM_INSTANTIATE(FULCRUM_KERNEL_LANES)
+FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE)
 #undef FULCRUM_INSTANTIATE
 
 }  // namespace fulcrum

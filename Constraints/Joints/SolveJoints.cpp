@@ -293,7 +293,7 @@ void UpdateJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointS
     template void SolveJointVelocities(JointBatch<lanes>&, BodyState*, const JointSolveSettings&);     \
     template void RelaxJoints(JointBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);     \
     template void UpdateJoints(JointBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);
-FULCRUM_INSTANTIATE(FULCRUM_KERNEL_LANES)
+FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE)
 #undef FULCRUM_INSTANTIATE
 
 }  // namespace fulcrum

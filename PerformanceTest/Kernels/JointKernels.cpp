@@ -111,7 +111,8 @@ void Register(const std::string& kind, const How& how, const std::string& lanes)
 
 template <template <int> class Joints, class How>
 void RegisterLanes(const std::string& kind, const How& how) {
-    Register<Joints<kLanes>>(kind, how, std::to_string(kLanes) + "_lanes");
+    Register<Joints<1>>(kind, how, "scalar");
+    if constexpr (kLanes > 1) Register<Joints<kLanes>>(kind, how, std::to_string(kLanes) + "_lanes");
 }
 
 [[maybe_unused]] const bool kRegistered = [] {

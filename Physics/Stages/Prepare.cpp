@@ -153,7 +153,7 @@ public:
             fulcrum::Fill(world_, layout.overflowMoving[i], std::span(&overflow.Of(Kind::Moving)[i], 1), contacts_, findings);
         for (size_t i = 0; i < layout.overflowFixed.size(); ++i)
             fulcrum::Fill(world_, layout.overflowFixed[i], std::span(&overflow.Of(Kind::Fixed)[i], 1), contacts_, findings);
-        for (JointBatch<kLanes>& batch : layout.overflowJoints) FillJoint(batch, findings);
+        for (JointBatch<1>& batch : layout.overflowJoints) FillJoint(batch, findings);
     }
 
 private:

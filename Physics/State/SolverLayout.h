@@ -58,13 +58,13 @@ struct SolverLayout {
     std::vector<ConstraintColoring::Entry> movingContacts, fixedContacts;  // by group and color
     std::vector<ContactBatch<kLanes, false>> moving;
     std::vector<ContactBatch<kLanes, true>> fixed;
-    std::vector<ContactBatch<kLanes, false>> overflowMoving;            // of the first group: solved one by one, at last; one lane in use
-    std::vector<ContactBatch<kLanes, true>> overflowFixed;
+    std::vector<ContactBatch<1, false>> overflowMoving;             // of the first group: solved one by one, at last
+    std::vector<ContactBatch<1, true>> overflowFixed;
     std::vector<BallBatch<kLanes>> balls;
     std::vector<JointBatch<kLanes>> joints;
-    std::vector<JointBatch<kLanes>> overflowJoints;
+    std::vector<JointBatch<1>> overflowJoints;
     std::vector<JointRows<kLanes>> jointRows;                       // room for the batches' rows
-    std::vector<JointRows<kLanes>> overflowRows;
+    std::vector<JointRows<1>> overflowRows;
     std::vector<ListedJoint> listedJoints;                          // in order
     uint64_t jointVersion = 0;                                      // of the coloring that this list was made from
     JointTrees trees;
