@@ -12,6 +12,9 @@ namespace fulcrum {
 namespace {
 
 constexpr int kIterations = 8;
+// Of the inverse masses: where locked axes leave less response to a push than that, it could part the bodies by a speed along other axes
+// alone, a hundred times the approach. Then the push is left out.
+constexpr float kLeastResponse = 1e-4f;
 
 struct Side {
     SymmetricMatrix3 inertia;  // inverse
@@ -28,6 +31,7 @@ public:
             side_[s] = {impact.masses[s].InverseInertia(), Vector3::Constant(d.inverseMass)};
             Vector3 none = Vector3::Zero();
             d.Lock(side_[s].mass, none);
+            leastResponse_ += kLeastResponse * d.inverseMass;
         }
         for (int i = 0; i < hit.pointCount; ++i) {
             before_[i] = Slip(i);
@@ -91,7 +95,7 @@ private:
     }
     void Push(int i) {
         const float response = response_[i];
-        if (!(response > 0)) return;
+        if (!(response > leastResponse_)) return;
         const float old = pushed_[i];
         pushed_[i] = std::max(0.0f, old + (Dot<float>(hit_.normal, RelativeVelocity(i)) + away_[i]) / response);
         Apply(i, hit_.normal * (old - pushed_[i]));
@@ -113,6 +117,7 @@ private:
     Impact& v_;
     Side side_[2];
     bool approaches_ = false;
+    float leastResponse_ = 0;                    // 1/kg
     Vector3 before_[SweepHit::kMaxPoints];       // m/s, see Slip
     float away_[SweepHit::kMaxPoints] = {};      // m/s, speed to part with
     float response_[SweepHit::kMaxPoints] = {};  // 1/kg, along the normal
@@ -192,8 +197,8 @@ Impact::Rest FlyOn(const WorldState& world, uint32_t body, const Quaternion& rot
     const BodyDynamics& d = world.bodies.dynamics[body];
     const Vector3 gain = GainUntilEnd(world, body, v, since, rest);
     Impact::Rest on{(v + gain * 0.5f) * rest, w * rest, v + gain, w};
-    Vector3 none = Vector3::Zero();
-    d.Lock(on.displacement, none);
+    d.Lock(on.displacement, on.turn);
+    d.Lock(on.linear, on.angular);
     on.angular = TurnedFreely(d, rotation, w, rest, RotationFromVector(on.turn) * rotation);
     LimitLength(on.linear, d.maxLinearSpeed);
     LimitLength(on.angular, d.maxAngularSpeed);
@@ -217,6 +222,8 @@ Impact FindImpact(const WorldState& world, const SweepHit& hit, float dt) {
         impact.linear[s] = bodies.LinearVelocityOf(pair[s]) - since[s];
         const Vector3 w = bodies.AngularVelocityOf(pair[s]);
         impact.angular[s] = impact.sweeps[s].waits ? w : TurnedFreely(d, impact.sweeps[s].RotationAt(1), w, -rest, impact.poses[s].rotation);
+        // What gravity would have given along a locked axis it did not give.
+        if (d.lockedAxes != LockedAxes::None) d.Lock(impact.linear[s], impact.angular[s]);
         if (bodies.CanMove(pair[s]) && IsCarried(world, impact.sweeps[s])) TakeWork(world, impact.sweeps[s], hit.time, impact, s);
         impact.arrivingLinear[s] = impact.linear[s];
         impact.arrivingAngular[s] = impact.angular[s];

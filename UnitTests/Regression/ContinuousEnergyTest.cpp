@@ -137,6 +137,38 @@ TEST(ContinuousEnergy, AHitOfASpinningRodKeepsIt) {
 }
 
 // Standing on its end, tilted: it hits the floor with nothing that moves, and falls as one that is not cast does.
+// Where an axis is locked gravity gives no speed along it, and a push along it moves nothing: a normal that was off it by 3e-7 had all of
+// the approach taken along the other axes, and threw a body of 1.2 t at 95 m/s off at 1000 m/s.
+TEST(ContinuousEnergy, AHitAcrossLockedAxesThrowsNothing) {
+    const ShapePtr shapes[] = {CubeOf(0.3f), CapsuleOf(0.4f, 0.2f),
+                               CompoundOf({{BoxOf(0.2f, 0.6f, 0.2f), {0.4f, 0.1f, 0}}, {CubeOf(0.25f), {-0.3f, -0.2f, 0.2f}}})};
+    constexpr int kThrows = kIsSanitized ? 1 : 6;
+    for (const ContinuousCollision kind : {ContinuousCollision::Linear, ContinuousCollision::LinearAndAngular}) {
+        SystemSettings settings;
+        settings.layerCollides[1] &= ~2u;
+        TestWorld world(settings);
+        world.Add({.shape = BoxOf(500, 1, 500), .motion = MotionType::Static, .position = {0, -1, 0}});
+        RandomPoses random(7);
+        std::vector<BodyId> bodies;
+        std::vector<double> first;
+        for (int locked = 0; locked < 64; ++locked)
+            for (const ShapePtr& shape : shapes)
+                for (int i = 0; i < kThrows; ++i) {
+                    BodySettings thrown = Thrown(random, shape, Position(0, double{random.Between(0.2f, 2)}, 0), kind);
+                    thrown.linearVelocity = Vector3(48, -56, 59) + random.InBox(10);
+                    thrown.lockedAxes = static_cast<LockedAxes>(locked);
+                    bodies.push_back(world.Add(thrown));
+                    first.push_back(EnergyOf(world, bodies.back(), -1));
+                }
+        double most = 0;
+        for (int step = 0; step < 30; ++step) {
+            world.Step();
+            for (size_t i = 0; i < bodies.size(); ++i) most = std::max(most, EnergyOf(world, bodies[i], -1) / first[i]);
+        }
+        EXPECT_LE(most, 1.01) << int(kind);
+    }
+}
+
 TEST(ContinuousEnergy, ARodThatTopplesFallsAsWithoutIt) {
     const auto tiltAfterASecond = [](ContinuousCollision kind) {
         TestWorld world;
