@@ -32,10 +32,10 @@ install(FILES
 
 # Whoever links the static libraries needs what these need; a shared one brings libccd itself.
 if(library_type STREQUAL "STATIC_LIBRARY")
-  set(pkgconfig_requires "eigen3 >= 3.4, ccd")
+  set(pkgconfig_requires "ccd")
   set(pkgconfig_requires_private "")
 else()
-  set(pkgconfig_requires "eigen3 >= 3.4")
+  set(pkgconfig_requires "")
   set(pkgconfig_requires_private "ccd")
 endif()
 # Relative to the file itself, so that the prefix may be chosen when it is installed; absolute folders stay what they are.

@@ -59,14 +59,15 @@ function(fulcrum_library folder)
   set_target_properties(Fulcrum${folder} PROPERTIES EXPORT_NAME ${folder})
 endfunction()
 
-fulcrum_library(Math PUBLIC Eigen3::Eigen)
+# Eigen solves trees of joints. No public header includes it, so programs do without.
+fulcrum_library(Math)
 fulcrum_library(Jobs PUBLIC Threads::Threads)
 fulcrum_library(Collision PUBLIC Fulcrum::Math PRIVATE ccd
   PRECOMPILED <algorithm> <Fulcrum/Collision/NarrowPhase/SurfaceContact.h>)
-fulcrum_library(Constraints PUBLIC Fulcrum::Math
+fulcrum_library(Constraints PUBLIC Fulcrum::Math PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen>
   PRECOMPILED <algorithm> <Fulcrum/Constraints/Joints/JointBatch.h>)
 # The kernels are long enough alone.
 set_source_files_properties(Constraints/Joints/SolveJoints.cpp Constraints/Joints/PrepareJoints.cpp Constraints/Joints/SolveBalls.cpp
   Constraints/Contacts/SolveContacts.cpp Constraints/Contacts/PrepareContacts.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-fulcrum_library(Physics PUBLIC Fulcrum::Collision Fulcrum::Constraints Fulcrum::Jobs
+fulcrum_library(Physics PUBLIC Fulcrum::Collision Fulcrum::Constraints Fulcrum::Jobs PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen>
   PRECOMPILED <Fulcrum/Physics/PhysicsSystem.h> <Fulcrum/Physics/State/WorldState.h>)

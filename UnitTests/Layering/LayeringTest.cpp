@@ -35,6 +35,8 @@ const std::array<std::string, 5> kLibraryFolders = {"Math", "Jobs", "Collision",
 // Jobs stands alone, and a waiting loop needs the processor's hint, which no portable call gives: this file may ask which
 // architecture it is compiled for.
 const std::string kPauseHintFile = "Jobs/Spin.h";
+// The one place of dense matrices; no public header needs it.
+const std::string kEigenFile = "Constraints/Joints/JointTree.h";
 
 bool IsArchitectureName(const std::string& word) {
     return word == "__x86_64__" || word == "__i386__" || word == "__aarch64__";
@@ -112,8 +114,9 @@ private:
         } else if (library && header.starts_with("ccd/")) {
             if (!name.starts_with("Collision/NarrowPhase/") || !name.ends_with(".cpp"))
                 violations_.push_back(place + "libccd belongs in one .cpp file of Collision/NarrowPhase");
-        } else if (library && !header.starts_with("Eigen/") && name != "Math/Wide.h" &&
-                   header.find_first_of("./") != std::string::npos) {
+        } else if (library && header.starts_with("Eigen/")) {
+            if (name != kEigenFile) violations_.push_back(place + "Eigen belongs in " + kEigenFile);
+        } else if (library && name != "Math/Wide.h" && header.find_first_of("./") != std::string::npos) {
             violations_.push_back(place + "<" + header + "> is neither standard C++ nor Eigen");
         }
     }
@@ -167,7 +170,8 @@ TEST_F(Layering, HoldsInThisTree) {
 TEST_F(Layering, AcceptsATreeThatKeepsTheRules) {
     EXPECT_EQ(Join(CheckTree({
                   {"Math/Wide.h", "#include <immintrin.h>\n#ifdef __AVX2__\n#endif\n"},
-                  {"Math/Vector.h", "#include <Eigen/Core>\n#include <cmath>\n// not the __SSE2__ of <immintrin.h>\n"},
+                  {"Constraints/Joints/JointTree.h", "#include <Eigen/Core>\n"},
+                  {"Math/Vector.h", "#include <cmath>\n// not the __SSE2__ of <immintrin.h>\n"},
                   {"Jobs/ThreadPool.cpp", "#include <Fulcrum/Jobs/ThreadPool.h>\n#include <thread>\n"},
                   {"Collision/NarrowPhase/Ccd.cpp", "#include <Fulcrum/Math/Vector.h>\n#include <ccd/ccd.h>\n"},
                   {"Physics/World.h", "#include <Fulcrum/Collision/A.h>\n#include <Fulcrum/Constraints/B.h>\n"},
@@ -203,6 +207,12 @@ TEST_F(Layering, RejectsForeignLibraries) {
     EXPECT_EQ(CheckTree({{"Physics/A.cpp", "#include <nlohmann/json.hpp>\n"}}).size(), 1u);
     EXPECT_EQ(CheckTree({{"Jobs/A.cpp", "#include <pthread.h>\n"}}).size(), 1u);
     EXPECT_EQ(CheckTree({{"Collision/A.cpp", "#  include \"Local.h\"\n"}}).size(), 2u);  // quoted, and not standard
+}
+
+TEST_F(Layering, KeepsEigenInOneFile) {
+    const std::string eigen = "#include <Eigen/Core>\n";
+    EXPECT_EQ(CheckTree({{"Math/Vector.h", eigen}, {"Physics/PhysicsSystem.h", eigen}, {"Constraints/Joints/A.cpp", eigen}}).size(), 3u);
+    EXPECT_EQ(CheckTree({{"UnitTests/A.cpp", eigen}, {"Samples/A.cpp", eigen}}).size(), 0u);
 }
 
 TEST_F(Layering, KeepsLibccdInOneSourceFileOfTheNarrowPhase) {
