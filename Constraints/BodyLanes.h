@@ -1,5 +1,5 @@
-// Bodies' numbers in lanes, for the kernels of contacts and joints: gathered by the indices of a batch. Called where batches
-// are prepared and solved; free functions, no state.
+// Bodies' numbers in lanes, for the kernels of contacts and joints: gathered by the indices of a batch. Called where
+// batches are prepared and solved; free functions, no state.
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/BodyState.h>
@@ -37,7 +37,8 @@ FULCRUM_FORCE_INLINE Quat<Wide<N>> GatherRotation(const uint32_t (&index)[N], co
 
 // From A's center of mass to B's, m.
 template <int N>
-FULCRUM_FORCE_INLINE Vec3<Wide<N>> GatherOffset(const uint32_t (&bodyA)[N], const uint32_t (&bodyB)[N], const BodyPose* poses) {
+FULCRUM_FORCE_INLINE Vec3<Wide<N>> GatherOffset(const uint32_t (&bodyA)[N], const uint32_t (&bodyB)[N],
+                                                const BodyPose* poses) {
     alignas(64) float offsets[3][N];
     for (int i = 0; i < N; ++i)
         for (int k = 0; k < 3; ++k)

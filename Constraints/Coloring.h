@@ -1,7 +1,7 @@
-// Colors contacts and joints so that no two of a color share a moving body: those of a color are solved at the same time,
-// in lanes and on any number of threads, and the result does not depend on their order. Kept from step to step: only what
-// begins or ends is colored. Called by the Color stage and where joints come and go. Serial; the same calls give the same
-// colors.
+// Colors contacts and joints so that no two of a color share a moving body: those of a color are solved at the same
+// time, in lanes and on any number of threads, and the result does not depend on their order. Kept from step to step:
+// only what begins or ends is colored. Called by the Color stage and where joints come and go. Serial; the same calls
+// give the same colors.
 #pragma once
 
 #include <array>
@@ -13,13 +13,14 @@ namespace fulcrum {
 
 struct ColorSlot {
     uint8_t color = 0xFF;  // index into ConstraintColoring::Colors(); kOverflow where none was free
-    uint32_t slot = 0;      // index into the color's list
+    uint32_t slot = 0;     // index into the color's list
 };
 
 class ConstraintColoring {
 public:
     static constexpr int kColors = 64;
-    static constexpr uint8_t kOverflow = kColors;  // constraints of bodies that have more than 64: solved one after the other
+    static constexpr uint8_t kOverflow =
+        kColors;  // constraints of bodies that have more than 64: solved one after the other
 
     struct Entry {
         uint32_t constraint, bodyA, bodyB;

@@ -14,8 +14,7 @@ template <class R, class... Args>
 class FunctionRef<R(Args...)> {
 public:
     template <class F>
-        requires(!std::is_same_v<std::remove_cvref_t<F>, FunctionRef>)
-    FunctionRef(F&& f)
+    requires(!std::is_same_v<std::remove_cvref_t<F>, FunctionRef>) FunctionRef(F&& f)
         : object_(const_cast<void*>(static_cast<const void*>(&f))), call_([](void* o, Args... args) -> R {
               return (*static_cast<std::remove_reference_t<F>*>(o))(std::forward<Args>(args)...);
           }) {}
@@ -26,8 +25,8 @@ private:
     R (*call_)(void*, Args...);
 };
 
-// A range of items and the worker that runs it. `worker` is 0 .. WorkerCount() - 1 and no two ranges that run at the same
-// time have the same one: it selects scratch memory.
+// A range of items and the worker that runs it. `worker` is 0 .. WorkerCount() - 1 and no two ranges that run at the
+// same time have the same one: it selects scratch memory.
 struct JobRange {
     uint32_t begin, end;
     uint32_t worker;
@@ -40,8 +39,8 @@ public:
     // Threads that may run a job at the same time, the caller included. >= 1, constant.
     virtual uint32_t WorkerCount() const = 0;
 
-    // Runs `job` over 0 .. count - 1 in ranges of at least `minimumRange` items (the last may be shorter) and returns when
-    // all are done. The caller takes part. How the range is cut must not influence what the engine computes.
+    // Runs `job` over 0 .. count - 1 in ranges of at least `minimumRange` items (the last may be shorter) and returns
+    // when all are done. The caller takes part. How the range is cut must not influence what the engine computes.
     virtual void ParallelFor(uint32_t count, uint32_t minimumRange, FunctionRef<void(JobRange)> job) = 0;
 
     // Runs `job(worker)` once on every worker that is free, and always on the caller; returns when all that began have

@@ -1,20 +1,23 @@
-// How the workers stay in step. There is one counter, `done`: the blocks finished since the first phase. Block counts are
-// known beforehand, so each worker walks through the phases on its own and knows from `done` alone whether the phase it is
-// at may begin (done has reached the sum of the earlier counts) or is over already. Nobody opens a phase for the others;
-// who finishes the last block has thereby begun the next phase.
+// How the workers stay in step. There is one counter, `done`: the blocks finished since the first phase. Block counts
+// are known beforehand, so each worker walks through the phases on its own and knows from `done` alone whether the
+// phase it is at may begin (done has reached the sum of the earlier counts) or is over already. Nobody opens a phase
+// for the others; who finishes the last block has thereby begun the next phase.
 //
-// Blocks are claimed from shares: one word a worker, with the phase and how many blocks of its share have been taken at the
-// front (by the owner) and at the back (by thieves). A word is never reset: a claim for a later phase than the word's
-// starts it afresh, and a claim for an earlier phase fails. So a worker may stall anywhere, for any time:
-// - before its claim: others take its blocks over, and when it goes on its claim fails, because a phase is only over once
+// Blocks are claimed from shares: one word a worker, with the phase and how many blocks of its share have been taken at
+// the front (by the owner) and at the back (by thieves). A word is never reset: a claim for a later phase than the
+// word's starts it afresh, and a claim for an earlier phase fails. So a worker may stall anywhere, for any time:
+// - before its claim: others take its blocks over, and when it goes on its claim fails, because a phase is only over
+// once
 //   every share's word says that all of the share is taken;
 // - after its claim: the others wait, since only this worker can finish that block.
 //
-// Memory order: a worker adds to `done` with release after its blocks, and begins a phase after an acquiring load saw the
-// sum of all earlier phases. All additions are read-modify-writes (one release sequence) but for the leader's store, and
-// the leader acquired everything before it. Claims need no order: they carry no data, and atomics of one word are coherent.
+// Memory order: a worker adds to `done` with release after its blocks, and begins a phase after an acquiring load saw
+// the sum of all earlier phases. All additions are read-modify-writes (one release sequence) but for the leader's
+// store, and the leader acquired everything before it. Claims need no order: they carry no data, and atomics of one
+// word are coherent.
 //
-// The state is on the caller's stack: RunOnWorkers returns after all that began have returned, and lets nobody in later.
+// The state is on the caller's stack: RunOnWorkers returns after all that began have returned, and lets nobody in
+// later.
 #include <Fulcrum/Jobs/Phases.h>
 #include <Fulcrum/Jobs/Spin.h>
 
@@ -29,8 +32,8 @@ constexpr uint32_t kMaximumShares = 64;       // further workers begin at anothe
 constexpr uint32_t kMaximumBlocks = 1 << 20;  // fewer in a phase, so that a share's two counts fit 20 bits each
 constexpr uint32_t kMaximumPhases = 1 << 24;
 constexpr std::chrono::microseconds kBarrierSpin{100};  // several blocks; afterwards the awaited may need this core
-// A look at another's share takes the cache line away from its owner: 0.1 us on its next claim. So whoever is done first
-// waits a little, which is enough where the load is even.
+// A look at another's share takes the cache line away from its owner: 0.1 us on its next claim. So whoever is done
+// first waits a little, which is enough where the load is even.
 constexpr uint32_t kTurnsBeforeStealing = 16;
 
 struct Claims {

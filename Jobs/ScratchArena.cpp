@@ -11,7 +11,7 @@ constexpr size_t kFirstBlockBytes = 64 * 1024;
 // A block is as large as all before it together: the capacity doubles, so few blocks serve even a step that grows.
 void ScratchArena::AddBlock(size_t minimumBytes) {
     const size_t bytes = std::max({minimumBytes, capacity_, kFirstBlockBytes});
-    blocks_.emplace_back(static_cast<std::byte*>(::operator new(bytes, std::align_val_t{kAlignment})));
+    blocks_.emplace_back(static_cast<std::byte*>(::operator new (bytes, std::align_val_t{kAlignment})));
     next_ = blocks_.back().get();
     left_ = bytes;
     capacity_ += bytes;

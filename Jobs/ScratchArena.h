@@ -21,14 +21,14 @@ public:
     // Uninitialized room for `count` objects, aligned to kAlignment, valid until Reset. Empty for a count of 0.
     // Pieces of different calls share no cache line. Throws std::bad_alloc where memory has run out.
     template <class T>
-        requires(std::is_trivially_destructible_v<T> && alignof(T) <= kAlignment)
-    std::span<T> Allocate(size_t count) {
+    requires(std::is_trivially_destructible_v<T> && alignof(T) <= kAlignment) std::span<T> Allocate(size_t count) {
         if (count > kMaximumBytes / sizeof(T)) throw std::bad_array_new_length();
         return {static_cast<T*>(AllocateBytes(count * sizeof(T))), count};
     }
 
-    // Ends the life of everything allocated and keeps the memory. What had to be split over several blocks since the last
-    // Reset becomes one block that has room for all of it, so steps of like size allocate once or twice and then never.
+    // Ends the life of everything allocated and keeps the memory. What had to be split over several blocks since the
+    // last Reset becomes one block that has room for all of it, so steps of like size allocate once or twice and then
+    // never.
     void Reset();
 
     size_t CapacityInBytes() const { return capacity_; }
@@ -38,7 +38,7 @@ private:
     static constexpr size_t kMaximumBytes = size_t{1} << (8 * sizeof(size_t) - 2);
 
     struct Release {
-        void operator()(std::byte* block) const { ::operator delete(block, std::align_val_t{kAlignment}); }
+        void operator()(std::byte* block) const { ::operator delete (block, std::align_val_t{kAlignment}); }
     };
 
     void* AllocateBytes(size_t bytes) {

@@ -2,14 +2,14 @@
 //
 //     generation (22 bits) | stop (1) | open (1) | helpers inside (8)
 //
-// The caller writes job_ while the gate is shut and empty, opens it under a new generation, does its own share, shuts it,
-// and waits until it is empty. A helper enters by a compare-and-swap that counts it in, which succeeds only while the gate
-// is open: whoever is late finds it shut and never touches the job, which lives on the caller's stack. Each helper enters
-// a generation once.
+// The caller writes job_ while the gate is shut and empty, opens it under a new generation, does its own share, shuts
+// it, and waits until it is empty. A helper enters by a compare-and-swap that counts it in, which succeeds only while
+// the gate is open: whoever is late finds it shut and never touches the job, which lives on the caller's stack. Each
+// helper enters a generation once.
 //
-// The opening store releases job_ and the caller's earlier writes, and the helper's entry acquires them; the helper's exit
-// releases its writes, and the caller acquires them where it shuts the gate or waits. Further entries and exits are
-// read-modify-writes, so they keep the release sequence.
+// The opening store releases job_ and the caller's earlier writes, and the helper's entry acquires them; the helper's
+// exit releases its writes, and the caller acquires them where it shuts the gate or waits. Further entries and exits
+// are read-modify-writes, so they keep the release sequence.
 #include <Fulcrum/Jobs/Spin.h>
 #include <Fulcrum/Jobs/ThreadPool.h>
 
@@ -23,7 +23,8 @@ constexpr uint32_t kInsideMask = 0xff;
 constexpr uint32_t kOpen = 0x100;
 constexpr uint32_t kStop = 0x200;
 constexpr uint32_t kGeneration = 0x400;
-constexpr std::chrono::microseconds kIdleSpin{100};   // a helper without a job: longer than a serial stage of a small step
+constexpr std::chrono::microseconds kIdleSpin{
+    100};  // a helper without a job: longer than a serial stage of a small step
 constexpr std::chrono::microseconds kFinishSpin{50};  // the caller, for helpers that are still inside
 
 uint32_t GenerationOf(uint32_t gate) { return gate / kGeneration; }
@@ -80,10 +81,8 @@ bool ThreadPool::TryTakeHelpers() {
 }
 
 void ThreadPool::RunOnWorkers(FunctionRef<void(uint32_t)> job) {
-    if (TryTakeHelpers())
-        Dispatch(job);
-    else
-        job(CallersWorker());
+    if (TryTakeHelpers()) Dispatch(job);
+    else job(CallersWorker());
 }
 
 void ThreadPool::ParallelFor(uint32_t count, uint32_t minimumRange, FunctionRef<void(JobRange)> job) {
@@ -150,8 +149,8 @@ void ThreadPool::Dispatch(FunctionRef<void(uint32_t)> job) noexcept {
     innermost = &membership;
     job_ = &job;
     const uint32_t opened = (GenerationOf(gate_.load(std::memory_order_relaxed)) + 1) * kGeneration | kOpen;
-    // An exchange, not a store: the full fence keeps it before notify_all's look at who sleeps. Without waiters that look
-    // is all that notify_all costs.
+    // An exchange, not a store: the full fence keeps it before notify_all's look at who sleeps. Without waiters that
+    // look is all that notify_all costs.
     gate_.exchange(opened, std::memory_order_seq_cst);
     gate_.notify_all();
 
@@ -181,7 +180,8 @@ void ThreadPool::RunHelper(uint32_t worker) {
             }
             gate = gate_.load(std::memory_order_relaxed);
         }
-        if (!gate_.compare_exchange_weak(gate, gate + 1, std::memory_order_acquire, std::memory_order_relaxed)) continue;
+        if (!gate_.compare_exchange_weak(gate, gate + 1, std::memory_order_acquire, std::memory_order_relaxed))
+            continue;
         joined = GenerationOf(gate);
         (*job_)(worker);
         gate_.fetch_sub(1, std::memory_order_release);

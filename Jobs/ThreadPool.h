@@ -24,8 +24,8 @@ class ThreadPool final : public JobSystem {
 public:
     static constexpr uint32_t kMaximumWorkers = 64;
 
-    // workers: threads that take part, the caller included, so that 1 starts no thread. Clamped to 1 .. kMaximumWorkers;
-    // fewer where the operating system refuses to start as many (see WorkerCount).
+    // workers: threads that take part, the caller included, so that 1 starts no thread. Clamped to 1 ..
+    // kMaximumWorkers; fewer where the operating system refuses to start as many (see WorkerCount).
     explicit ThreadPool(uint32_t workers);
     ~ThreadPool() override;
     ThreadPool(const ThreadPool&) = delete;

@@ -5,9 +5,10 @@
 #ifdef FULCRUM_ASSERTIONS
 #include <cstdio>
 #include <cstdlib>
-#define FULCRUM_ASSERT(condition)                                                                                      \
-    ((condition) ? void()                                                                                              \
-                 : (std::fprintf(stderr, "%s:%d: assertion failed: %s\n", __FILE__, __LINE__, #condition), std::abort()))
+#define FULCRUM_ASSERT(condition) \
+    ((condition)                  \
+         ? void()                 \
+         : (std::fprintf(stderr, "%s:%d: assertion failed: %s\n", __FILE__, __LINE__, #condition), std::abort()))
 #define FULCRUM_VALIDATE(statement) statement
 #else
 #define FULCRUM_ASSERT(condition) void()

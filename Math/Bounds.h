@@ -40,7 +40,8 @@ struct Bounds {
     }
 };
 
-// The largest float not above x, and the smallest not below; NaN stays one. Without branches: half of them would be mispredicted.
+// The largest float not above x, and the smallest not below; NaN stays one. Without branches: half of them would be
+// mispredicted.
 inline float RoundDown(double x) {
     const float f = static_cast<float>(x);
     const auto bits = std::bit_cast<uint32_t>(f);

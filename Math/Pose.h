@@ -10,9 +10,7 @@ struct Pose {
     Quaternion rotation{};                 // unit
 
     // The world position of a point given in the pose's own frame.
-    Position Transform(const Vector3& local) const {
-        return position + Rotate(rotation, local).cast<double>();
-    }
+    Position Transform(const Vector3& local) const { return position + Rotate(rotation, local).cast<double>(); }
     // A world position in the pose's own frame.
     Vector3 InverseTransform(const Position& world) const {
         return InverseRotate(rotation, Vector3((world - position).cast<float>()));

@@ -13,15 +13,16 @@
 namespace fulcrum {
 
 enum class ErrorCode {
-    NonFinite,           // a number is NaN or infinite
-    NonPositive,         // a size, mass or duration must be larger than zero
-    Negative,            // must be zero or more
-    OutOfRange,          // outside the range named in the message
-    Unnormalized,        // a rotation or a direction is not of length 1
-    Degenerate,          // points without volume, an empty compound and the like
-    UnknownId,           // no such body, or it was removed
-    Unsupported,         // valid, but not for this kind of body or shape
-    NotAllowedHere,      // a call in what the engine calls back, or under Queries().Hold(), that would have to wait for itself
+    NonFinite,       // a number is NaN or infinite
+    NonPositive,     // a size, mass or duration must be larger than zero
+    Negative,        // must be zero or more
+    OutOfRange,      // outside the range named in the message
+    Unnormalized,    // a rotation or a direction is not of length 1
+    Degenerate,      // points without volume, an empty compound and the like
+    UnknownId,       // no such body, or it was removed
+    Unsupported,     // valid, but not for this kind of body or shape
+    NotAllowedHere,  // a call in what the engine calls back, or under Queries().Hold(), that would have to wait for
+                     // itself
 };
 
 struct Error {
@@ -29,7 +30,8 @@ struct Error {
     std::string message;  // names the field, its value and what would be valid
 };
 
-// Prints the message to standard error and ends the program: what a Result answers to a question that it has no answer for.
+// Prints the message to standard error and ends the program: what a Result answers to a question that it has no answer
+// for.
 [[noreturn, gnu::cold, gnu::noinline]] inline void AbortWith(const char* what, const std::string& message) {
     std::fprintf(stderr, "fulcrum: %s%s\n", what, message.c_str());
     std::abort();
@@ -44,16 +46,19 @@ public:
     explicit operator bool() const { return content_.index() == 0; }
     // Only where the result is true: else, in every build, the error's message is printed and the program aborts.
     T& Value() {
-        if (content_.index() != 0) [[unlikely]] AbortWith("Value() of an error: ", GetError().message);
+        if (content_.index() != 0) [[unlikely]]
+            AbortWith("Value() of an error: ", GetError().message);
         return *std::get_if<0>(&content_);
     }
     const T& Value() const {
-        if (content_.index() != 0) [[unlikely]] AbortWith("Value() of an error: ", GetError().message);
+        if (content_.index() != 0) [[unlikely]]
+            AbortWith("Value() of an error: ", GetError().message);
         return *std::get_if<0>(&content_);
     }
     // Only where the result is false: else the program aborts.
     const Error& GetError() const {
-        if (content_.index() != 1) [[unlikely]] AbortWith("GetError() of a result without an error", "");
+        if (content_.index() != 1) [[unlikely]]
+            AbortWith("GetError() of a result without an error", "");
         return *std::get_if<1>(&content_);
     }
 

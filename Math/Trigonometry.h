@@ -1,5 +1,5 @@
-// Sine, arc tangent, exponential and their kin with the same bits on every machine: made of + - * / sqrt, comparisons and
-// bit operations only. Used wherever the engine turns angles into rotations and back. Free functions, no state.
+// Sine, arc tangent, exponential and their kin with the same bits on every machine: made of + - * / sqrt, comparisons
+// and bit operations only. Used wherever the engine turns angles into rotations and back. Free functions, no state.
 //
 // Where not said otherwise a function takes Real = float, double or, for angles, Wide<N>, whose lanes give the bits of
 // float. Arguments must be finite. The errors are the largest measured, in units of the result's last place: over every
@@ -60,10 +60,10 @@ inline constexpr double kCosineDouble[] = {-0x1.8fa30a01d4ad0p-37, 0x1.1ee9d4c16
 // (atan r - r) / r^3 in r^2, |r| <= tan(pi / 8):
 inline constexpr float kArcTangentFloat[] = {-0x1.f1ebf0p-5f, 0x1.b1ebe2p-4f, -0x1.23b51ep-3f, 0x1.999196p-3f,
                                              -0x1.55554ap-2f};
-inline constexpr double kArcTangentDouble[] = {
-    0x1.f1e1a55494a48p-7,  -0x1.1235a3922a33bp-5, 0x1.70ec38bc72975p-5,  -0x1.ab7d3466bd0bbp-5,
-    0x1.e171f2e8857c7p-5,  -0x1.110c721413b33p-4, 0x1.3b136e20734cdp-4,  -0x1.745d14b921679p-4,
-    0x1.c71c71b7465dep-4,  -0x1.249249247566dp-3, 0x1.999999999964bp-3,  -0x1.5555555555554p-2};
+inline constexpr double kArcTangentDouble[] = {0x1.f1e1a55494a48p-7,  -0x1.1235a3922a33bp-5, 0x1.70ec38bc72975p-5,
+                                               -0x1.ab7d3466bd0bbp-5, 0x1.e171f2e8857c7p-5,  -0x1.110c721413b33p-4,
+                                               0x1.3b136e20734cdp-4,  -0x1.745d14b921679p-4, 0x1.c71c71b7465dep-4,
+                                               -0x1.249249247566dp-3, 0x1.999999999964bp-3,  -0x1.5555555555554p-2};
 // (exp r - 1 - r) / r^2 in r, |r| <= ln(2) / 2:
 inline constexpr double kExponential[] = {0x1.1e3d1a4c5f1edp-29, 0x1.af6c0baf497c7p-26, 0x1.27e5b475b2140p-22,
                                           0x1.71ddf00cae3bdp-19, 0x1.a01a01366559ep-16, 0x1.a01a01b38616fp-13,
@@ -88,8 +88,9 @@ inline TwoParts<Real> Difference(const Real& a, const Real& b) {
     return {difference, (a - (difference - back)) - (b + back)};
 }
 
-// x - k pi / 2 for the integer k next to x / (pi / 2). pi / 2 comes in parts of so few digits that k times a part is exact
-// (float: the high and the low half of k times a part), which the reduction needs where x is near a multiple of pi / 2.
+// x - k pi / 2 for the integer k next to x / (pi / 2). pi / 2 comes in parts of so few digits that k times a part is
+// exact (float: the high and the low half of k times a part), which the reduction needs where x is near a multiple of
+// pi / 2.
 template <class Real>
 inline TwoParts<Real> ReduceAngle(const Real& x, Real& k) {
     TwoParts<Real> sum;
@@ -129,8 +130,7 @@ struct SineCosine {
 
 // x in radians, |x| <= 1e6. Error: float 0.83, double 1.1.
 template <class Real>
-    requires(!std::is_integral_v<Real>)
-inline SineCosine<Real> SinCos(const Real& x) {
+requires(!std::is_integral_v<Real>) inline SineCosine<Real> SinCos(const Real& x) {
     Real k;
     const detail::TwoParts<Real> r = detail::ReduceAngle(x, k);
     const Real square = r.high * r.high, half = Real(0.5f) * square, one(1.0f);
@@ -167,8 +167,7 @@ inline Real Cos(const Real& x) {
 // The angle of the point (x, y), -pi .. pi; 0 at the origin. Zeros count as positive, whatever their sign.
 // |x|, |y| below half the largest number. Error: float 2.2, double 2.4.
 template <class Real>
-    requires(!std::is_integral_v<Real>)
-inline Real Atan2(const Real& y, const Real& x) {
+requires(!std::is_integral_v<Real>) inline Real Atan2(const Real& y, const Real& x) {
     using detail::Abs, detail::Max, detail::Min, detail::Select;
     const Real zero(0.0f), one(1.0f);
     const Real absX = Abs(x), absY = Abs(y);
@@ -180,10 +179,8 @@ inline Real Atan2(const Real& y, const Real& x) {
     const Real t = numerator / Select(denominator > zero, denominator, one);
     const Real square = t * t;
     Real tail;
-    if constexpr (detail::kIsDouble<Real>)
-        tail = detail::Polynomial(square, detail::kArcTangentDouble);
-    else
-        tail = detail::Polynomial(square, detail::kArcTangentFloat);
+    if constexpr (detail::kIsDouble<Real>) tail = detail::Polynomial(square, detail::kArcTangentDouble);
+    else tail = detail::Polynomial(square, detail::kArcTangentFloat);
     Real angle = t + t * square * tail;
     // Unfolded to the octant: angle = eighths pi / 4 +- angle.
     Real eighths = Select(isSteep, one, zero);
@@ -195,18 +192,15 @@ inline Real Atan2(const Real& y, const Real& x) {
     angle = Select(isBehind, -angle, angle);
     // pi / 4 in two parts, of which the first has two spare digits: eighths times it is exact.
     Real high, low;
-    if constexpr (detail::kIsDouble<Real>)
-        high = 0x1.921fb54442d18p-1, low = 0x1.1a62633145c07p-55;
-    else
-        high = Real(0x1.921fb8p-1f), low = Real(-0x1.5dde98p-24f);
+    if constexpr (detail::kIsDouble<Real>) high = 0x1.921fb54442d18p-1, low = 0x1.1a62633145c07p-55;
+    else high = Real(0x1.921fb8p-1f), low = Real(-0x1.5dde98p-24f);
     const Real result = eighths * high + (angle + eighths * low);
     return Select(y < zero, -result, result);
 }
 
 // 0 .. pi. Arguments beyond -1 .. 1 count as -1 and 1. Error: float 2.9, double 3.0.
 template <class Real>
-    requires(!std::is_integral_v<Real>)
-inline Real Acos(const Real& x) {
+requires(!std::is_integral_v<Real>) inline Real Acos(const Real& x) {
     const Real one(1.0f);
     const Real cosine = detail::Max(-one, detail::Min(one, x));
     return Atan2(detail::Sqrt((one - cosine) * (one + cosine)), cosine);
@@ -214,8 +208,7 @@ inline Real Acos(const Real& x) {
 
 // -pi/2 .. pi/2. Arguments beyond -1 .. 1 count as -1 and 1. Error: float 2.9, double 3.0.
 template <class Real>
-    requires(!std::is_integral_v<Real>)
-inline Real Asin(const Real& x) {
+requires(!std::is_integral_v<Real>) inline Real Asin(const Real& x) {
     const Real one(1.0f);
     const Real sine = detail::Max(-one, detail::Min(one, x));
     return Atan2(sine, detail::Sqrt((one - sine) * (one + sine)));
@@ -228,13 +221,15 @@ inline double Exp(double x) {
     if (x != x) return x;
     const double k = detail::Round(x * 0x1.71547652b82fep+0);
     const double r = (x - k * 0x1.62e42ffp-1) - k * -0x1.718432a1b0e26p-35;
-    return detail::ScaleByPowerOfTwo(1.0 + (r + r * r * detail::Polynomial(r, detail::kExponential)), static_cast<int>(k));
+    return detail::ScaleByPowerOfTwo(1.0 + (r + r * r * detail::Polynomial(r, detail::kExponential)),
+                                     static_cast<int>(k));
 }
 inline float Exp(float x) { return static_cast<float>(Exp(static_cast<double>(x))); }
 
 // The natural logarithm; -infinite for 0, NaN below. Error: 0.85 (float 0.51).
 inline double Log(double x) {
-    if (!(x > 0.0)) return x == 0.0 ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
+    if (!(x > 0.0))
+        return x == 0.0 ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
     if (x > std::numeric_limits<double>::max()) return x;
     // x = 2^k m, m between sqrt(1/2) and sqrt(2).
     const bool isSubnormal = x < std::numeric_limits<double>::min();
@@ -271,7 +266,8 @@ inline Quaternion RotationAbout(const Vector3& axis, double angle) {
     return {imaginary.x(), imaginary.y(), imaginary.z(), static_cast<float>(Cos(0.5 * angle))};
 }
 
-// The shortest vector with RotationFromVector(v) = q or -q, |v| <= pi; q's length need not be exactly 1. The logarithm map.
+// The shortest vector with RotationFromVector(v) = q or -q, |v| <= pi; q's length need not be exactly 1. The logarithm
+// map.
 template <class Real>
 inline Vec3<Real> RotationVectorOf(const Quat<Real>& q) {
     using detail::Select, detail::Sqrt;

@@ -1,9 +1,10 @@
-// The engine's vectors, of three coordinates. Vector3 (float) is for everything relative to a body, a pair or a cell; Position
-// (double) for places in the world. Kernels are templates over Real: float, double, or Wide<N> for N lanes.
+// The engine's vectors, of three coordinates. Vector3 (float) is for everything relative to a body, a pair or a cell;
+// Position (double) for places in the world. Kernels are templates over Real: float, double, or Wide<N> for N lanes.
 //
-// A class of our own and not Eigen's: its header alone takes a second to compile, and its expressions most of the time of every file
-// that adds two vectors (Docs/Building.md). Members that Eigen has, too, have its names and its meaning. Vectors convert implicitly
-// from Eigen's expressions, and to Eigen's vectors in copies and assignments (Eigen::Vector3f e = v), wherever Eigen is included.
+// A class of our own and not Eigen's: its header alone takes a second to compile, and its expressions most of the time
+// of every file that adds two vectors (Docs/Building.md). Members that Eigen has, too, have its names and its meaning.
+// Vectors convert implicitly from Eigen's expressions, and to Eigen's vectors in copies and assignments
+// (Eigen::Vector3f e = v), wherever Eigen is included.
 #pragma once
 
 #include <algorithm>
@@ -50,15 +51,23 @@ public:
     static constexpr int size() { return 3; }
     // axis: 0 to 2.
     template <class Index>
-    Real& operator[](Index axis) { return v_[axis]; }
+    Real& operator[](Index axis) {
+        return v_[axis];
+    }
     template <class Index>
-    const Real& operator[](Index axis) const { return v_[axis]; }
+    const Real& operator[](Index axis) const {
+        return v_[axis];
+    }
     Real* data() { return v_; }
     const Real* data() const { return v_; }
     void setZero() { *this = Zero(); }
 
-    friend Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.v_[0] + b.v_[0], a.v_[1] + b.v_[1], a.v_[2] + b.v_[2]}; }
-    friend Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.v_[0] - b.v_[0], a.v_[1] - b.v_[1], a.v_[2] - b.v_[2]}; }
+    friend Vec3 operator+(const Vec3& a, const Vec3& b) {
+        return {a.v_[0] + b.v_[0], a.v_[1] + b.v_[1], a.v_[2] + b.v_[2]};
+    }
+    friend Vec3 operator-(const Vec3& a, const Vec3& b) {
+        return {a.v_[0] - b.v_[0], a.v_[1] - b.v_[1], a.v_[2] - b.v_[2]};
+    }
     friend Vec3 operator*(const Vec3& a, const Real& s) { return {a.v_[0] * s, a.v_[1] * s, a.v_[2] * s}; }
     friend Vec3 operator*(const Real& s, const Vec3& a) { return {s * a.v_[0], s * a.v_[1], s * a.v_[2]}; }
     friend Vec3 operator/(const Vec3& a, const Real& s) { return {a.v_[0] / s, a.v_[1] / s, a.v_[2] / s}; }
@@ -67,10 +76,14 @@ public:
     Vec3& operator-=(const Vec3& b) { return *this = *this - b; }
     Vec3& operator*=(const Real& s) { return *this = *this * s; }
     Vec3& operator/=(const Real& s) { return *this = *this / s; }
-    friend bool operator==(const Vec3& a, const Vec3& b) { return a.v_[0] == b.v_[0] && a.v_[1] == b.v_[1] && a.v_[2] == b.v_[2]; }
+    friend bool operator==(const Vec3& a, const Vec3& b) {
+        return a.v_[0] == b.v_[0] && a.v_[1] == b.v_[1] && a.v_[2] == b.v_[2];
+    }
 
     template <class Other>
-    Vec3<Other> cast() const { return {static_cast<Other>(v_[0]), static_cast<Other>(v_[1]), static_cast<Other>(v_[2])}; }
+    Vec3<Other> cast() const {
+        return {static_cast<Other>(v_[0]), static_cast<Other>(v_[1]), static_cast<Other>(v_[2])};
+    }
 
     Vec3 cwiseAbs() const {
         using std::abs;
@@ -94,7 +107,8 @@ public:
 
     Real dot(const Vec3& b) const { return v_[0] * b.v_[0] + v_[1] * b.v_[1] + v_[2] * b.v_[2]; }
     Vec3 cross(const Vec3& b) const {
-        return {v_[1] * b.v_[2] - v_[2] * b.v_[1], v_[2] * b.v_[0] - v_[0] * b.v_[2], v_[0] * b.v_[1] - v_[1] * b.v_[0]};
+        return {v_[1] * b.v_[2] - v_[2] * b.v_[1], v_[2] * b.v_[0] - v_[0] * b.v_[2],
+                v_[0] * b.v_[1] - v_[1] * b.v_[0]};
     }
     Real squaredNorm() const { return dot(*this); }
     Real norm() const {
@@ -104,7 +118,7 @@ public:
     Vec3 normalized() const { return *this / norm(); }
 
     template <class EigenVector>
-        requires std::is_same_v<EigenVector, Eigen::Matrix<Real, 3, 1, 0, 3, 1>>
+    requires std::is_same_v<EigenVector, Eigen::Matrix<Real, 3, 1, 0, 3, 1>>
     operator EigenVector() const { return EigenVector(v_[0], v_[1], v_[2]); }
 
     // "x y z", to any stream.
@@ -117,7 +131,8 @@ public:
 private:
     template <class Plain>
     static Vec3 FromEigen(const Plain& m) {
-        static_assert(Plain::RowsAtCompileTime == 3 && Plain::ColsAtCompileTime == 1 && std::is_same_v<typename Plain::Scalar, Real>,
+        static_assert(Plain::RowsAtCompileTime == 3 && Plain::ColsAtCompileTime == 1 &&
+                          std::is_same_v<typename Plain::Scalar, Real>,
                       "a vector of three coordinates of the same type is needed");
         return {m.coeff(0), m.coeff(1), m.coeff(2)};
     }
@@ -164,11 +179,7 @@ inline Vector3 Perpendicular(const Vector3& n) {
     return Vector3(1.0f + sign * n.x() * n.x() * a, sign * n.x() * n.y() * a, -sign * n.x());
 }
 
-inline bool IsFinite(const Vector3& v) {
-    return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
-}
-inline bool IsFinite(const Position& v) {
-    return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
-}
+inline bool IsFinite(const Vector3& v) { return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z()); }
+inline bool IsFinite(const Position& v) { return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z()); }
 
 }  // namespace fulcrum

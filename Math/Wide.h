@@ -1,6 +1,6 @@
 // Lanes: Wide<N> is N floats (N = 1, 4, 8, 16) that are added, multiplied, compared and selected at once. Kernels are
-// templates over Real = float or Wide<N> and give the same bits for every N. The only file with intrinsics and CPU #ifs.
-// The arithmetic is the compilers' vector extension, so any width works on any CPU; intrinsics are used where the
+// templates over Real = float or Wide<N> and give the same bits for every N. The only file with intrinsics and CPU
+// #ifs. The arithmetic is the compilers' vector extension, so any width works on any CPU; intrinsics are used where the
 // compilers' own code for an operation is poor.
 #pragma once
 
@@ -17,8 +17,9 @@
 #include <emmintrin.h>
 #endif
 
-// Where no register holds eight floats GCC and Clang say that functions which take or return them are called otherwise than
-// where one does. No such function is called from one to the other: the name of the namespace below is a part of its name.
+// Where no register holds eight floats GCC and Clang say that functions which take or return them are called otherwise
+// than where one does. No such function is called from one to the other: the name of the namespace below is a part of
+// its name.
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpsabi"
@@ -26,8 +27,9 @@
 
 namespace fulcrum {
 
-// A program may be compiled for another processor than the library that it links. What is below then differs in alignment, in
-// how it is called and in its instructions, and the linker keeps one copy of an inline function of a name.
+// A program may be compiled for another processor than the library that it links. What is below then differs in
+// alignment, in how it is called and in its instructions, and the linker keeps one copy of an inline function of a
+// name.
 #if defined(FULCRUM_SCALAR_LANES)
 inline namespace scalar_lanes {
 #elif defined(__AVX512F__)
@@ -143,7 +145,7 @@ struct alignas(4 * N < registers::kRegisterBytes ? 4 * N : registers::kRegisterB
     Float v;
 
     Wide() = default;
-    Wide(float x) : v(Float{} + x) {}                          // all lanes x
+    Wide(float x) : v(Float{} + x) {}  // all lanes x
     explicit Wide(int x) : Wide(static_cast<float>(x)) {}
     explicit Wide(double x) : Wide(static_cast<float>(x)) {}
     static Wide Of(Float x) {
@@ -198,11 +200,21 @@ struct alignas(4 * N < registers::kRegisterBytes ? 4 * N : registers::kRegisterB
     Wide& operator-=(Wide b) { return *this = *this - b; }
     Wide& operator*=(Wide b) { return *this = *this * b; }
 
-    friend Mask operator<(Wide a, Wide b) { return Compare(a, b, [](auto x, auto y) { return x < y; }); }
-    friend Mask operator<=(Wide a, Wide b) { return Compare(a, b, [](auto x, auto y) { return x <= y; }); }
-    friend Mask operator>(Wide a, Wide b) { return Compare(a, b, [](auto x, auto y) { return x > y; }); }
-    friend Mask operator>=(Wide a, Wide b) { return Compare(a, b, [](auto x, auto y) { return x >= y; }); }
-    friend Mask operator==(Wide a, Wide b) { return Compare(a, b, [](auto x, auto y) { return x == y; }); }
+    friend Mask operator<(Wide a, Wide b) {
+        return Compare(a, b, [](auto x, auto y) { return x < y; });
+    }
+    friend Mask operator<=(Wide a, Wide b) {
+        return Compare(a, b, [](auto x, auto y) { return x <= y; });
+    }
+    friend Mask operator>(Wide a, Wide b) {
+        return Compare(a, b, [](auto x, auto y) { return x > y; });
+    }
+    friend Mask operator>=(Wide a, Wide b) {
+        return Compare(a, b, [](auto x, auto y) { return x >= y; });
+    }
+    friend Mask operator==(Wide a, Wide b) {
+        return Compare(a, b, [](auto x, auto y) { return x == y; });
+    }
 
 private:
     template <class F>
@@ -310,7 +322,9 @@ FULCRUM_FORCE_INLINE void Transpose8(__m256 (&r)[8]) {
 }
 #endif
 #if defined(__SSE2__)
-FULCRUM_FORCE_INLINE void Transpose4(__m128& r0, __m128& r1, __m128& r2, __m128& r3) { _MM_TRANSPOSE4_PS(r0, r1, r2, r3); }
+FULCRUM_FORCE_INLINE void Transpose4(__m128& r0, __m128& r1, __m128& r2, __m128& r3) {
+    _MM_TRANSPOSE4_PS(r0, r1, r2, r3);
+}
 #endif
 }  // namespace registers
 

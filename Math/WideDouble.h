@@ -1,5 +1,6 @@
-// Four doubles that are added, multiplied, compared and selected at once: for the little that lanes of float are too coarse for.
-// Templates over Real = double or WideDouble give the same bits. The arithmetic is the compilers' vector extension, on any CPU.
+// Four doubles that are added, multiplied, compared and selected at once: for the little that lanes of float are too
+// coarse for. Templates over Real = double or WideDouble give the same bits. The arithmetic is the compilers' vector
+// extension, on any CPU.
 #pragma once
 
 #include <Fulcrum/Math/Trigonometry.h>
@@ -41,7 +42,9 @@ struct WideDouble {
 };
 
 // mask ? a : b
-inline WideDouble Select(WideDouble::Mask mask, const WideDouble& a, const WideDouble& b) { return WideDouble::Of(mask.bits ? a.v : b.v); }
+inline WideDouble Select(WideDouble::Mask mask, const WideDouble& a, const WideDouble& b) {
+    return WideDouble::Of(mask.bits ? a.v : b.v);
+}
 inline WideDouble Abs(const WideDouble& a) { return Select(a < WideDouble(0.0), -a, a); }
 inline WideDouble Sqrt(const WideDouble& a) {
     WideDouble r;
@@ -56,4 +59,3 @@ inline constexpr bool kIsDouble<WideDouble> = true;
 }  // namespace detail
 
 }  // namespace fulcrum
-

@@ -13,8 +13,8 @@ const CompoundShape* AsCompound(const Shape& shape) {
     return shape.IsCompound() ? static_cast<const CompoundShape*>(&shape) : nullptr;
 }
 
-// The collider of a child of a mutable compound; makes room for it. Further runs are as long as all before, so that they
-// are few.
+// The collider of a child of a mutable compound; makes room for it. Further runs are as long as all before, so that
+// they are few.
 uint32_t ColliderOf(WorldState& world, uint32_t body, uint32_t child) {
     constexpr uint32_t kLeast = 8;
     ColliderStore& store = world.colliders;
@@ -100,7 +100,8 @@ void MakeColliders(WorldState& world, uint32_t body) {
     BodyCold& cold = world.bodies.cold[body];
     const Shape& shape = *cold.shape;
     const CompoundShape* compound = AsCompound(shape);
-    cold.colliderCount = compound ? static_cast<uint32_t>(compound->Children().size()) : (shape.Type() == ShapeType::Empty ? 0 : 1);
+    cold.colliderCount =
+        compound ? static_cast<uint32_t>(compound->Children().size()) : (shape.Type() == ShapeType::Empty ? 0 : 1);
     cold.firstCollider = store.Allocate(cold.colliderCount);
     const bool moving = world.bodies.dynamics[body].motion != MotionType::Static;
     if (!cold.isSensor) (moving ? store.movingLayers : store.fixedLayers) |= 1u << world.bodies.dynamics[body].layer;

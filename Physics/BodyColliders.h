@@ -1,5 +1,5 @@
-// The colliders of a body, as its shape and its children's edits ask for. Called by BodyInterface between steps, under the
-// world's lock. Fat bounds and trees are up to date afterwards, pairs at the next FindPairs.
+// The colliders of a body, as its shape and its children's edits ask for. Called by BodyInterface between steps, under
+// the world's lock. Fat bounds and trees are up to date afterwards, pairs at the next FindPairs.
 #pragma once
 
 #include <Fulcrum/Physics/State/WorldState.h>
@@ -12,8 +12,8 @@ void MakeColliders(WorldState& world, uint32_t body);
 // Takes them away again, with their pairs.
 void DropColliders(WorldState& world, uint32_t body);
 
-// Brings the collider of a child of a mutable compound in line with it, new, removed, moved or of another shape. Wakes what
-// was or is near.
+// Brings the collider of a child of a mutable compound in line with it, new, removed, moved or of another shape. Wakes
+// what was or is near.
 void UpdateChildCollider(WorldState& world, uint32_t body, uint32_t child);
 
 // What the children of a shape weigh relative to each other, in all; of shapes without children the volume, m3.

@@ -129,7 +129,8 @@ Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
     } else {
         RequeueColliders(world_, body);
     }
-    if (settings.isSensor) world_.sensors.Add(world_.bodies.IdOf(body), settings.sensorSees, settings.sensorReportsStay);
+    if (settings.isSensor)
+        world_.sensors.Add(world_.bodies.IdOf(body), settings.sensorSees, settings.sensorReportsStay);
     return world_.bodies.IdOf(body);
 }
 
@@ -147,9 +148,11 @@ Status BodyInterface::Remove(BodyId id) {
     VisitColliders(world_, body, [&](uint32_t i) {
         world_.colliders.TreeOf(world_.colliders.colliders[i]).Remove(i);
         world_.outsideFatBounds.Forget(i);
-        // It touches nothing from now on. Its pairs are removed with the next step, in one go with those of other bodies.
+        // It touches nothing from now on. Its pairs are removed with the next step, in one go with those of other
+        // bodies.
         world_.pairs.VisitOf(i, [&](uint32_t pair) {
-            for (; pair != PairStore::kNone; pair = world_.pairs.pairs[pair].more) world_.pairs.pairs[pair].touching = false;
+            for (; pair != PairStore::kNone; pair = world_.pairs.pairs[pair].more)
+                world_.pairs.pairs[pair].touching = false;
         });
     });
     world_.bodies.MarkAsleep(body);
@@ -174,7 +177,8 @@ Status BodyInterface::SetPose(BodyId id, const Position& position, const Quatern
     WakeBody(world_, body);
     WakeNeighbors(world_, body);
     WakeJoined(world_, body);
-    world_.bodies.SetCenterPose(body, CenterPose(*world_.bodies.cold[body].shape, position, NormalizedUnlessItIs(rotation)));
+    world_.bodies.SetCenterPose(body,
+                                CenterPose(*world_.bodies.cold[body].shape, position, NormalizedUnlessItIs(rotation)));
     Teleported(world_, body);
     WakeNeighbors(world_, body);
     return Done{};
@@ -184,7 +188,8 @@ Status BodyInterface::MoveKinematic(BodyId id, const Position& position, const Q
     if (!Exists(id)) return Unknown(id);
     if (world_.bodies.dynamics[id.index].motion != MotionType::Kinematic)
         return Error{ErrorCode::Unsupported, "MoveKinematic needs a kinematic body"};
-    if (MaybeError e = FirstOf(CheckPosition("position", position), CheckRotation("rotation", rotation), CheckPositive("dt", dt)))
+    if (MaybeError e =
+            FirstOf(CheckPosition("position", position), CheckRotation("rotation", rotation), CheckPositive("dt", dt)))
         return *e;
     const Pose now{world_.bodies.ExactCenterOf(id.index), world_.bodies.RotationOf(id.index)};
     const Pose goal = CenterPose(*world_.bodies.cold[id.index].shape, position, Normalized(rotation));
@@ -234,7 +239,8 @@ Vector3 ArmTo(const WorldState& world, BodyId id, const Position& point) {
 Status Push(WorldState& world, BodyId id, const Vector3& force, const Vector3& torque) {
     const WorldLock::Exclusive alone(world.lock);
     if (alone.Refusal()) return *alone.Refusal();
-    if (MaybeError e = FirstOf(CheckPushable(world, id), CheckFinite("force", force), CheckFinite("torque", torque))) return *e;
+    if (MaybeError e = FirstOf(CheckPushable(world, id), CheckFinite("force", force), CheckFinite("torque", torque)))
+        return *e;
     if (force.isZero(0) && torque.isZero(0)) return Done{};
     WakeBody(world, id.index);
     BodyCold& cold = world.bodies.cold[id.index];
@@ -247,13 +253,15 @@ Status Push(WorldState& world, BodyId id, const Vector3& force, const Vector3& t
 Status ApplyImpulse(WorldState& world, BodyId id, const Vector3& impulse, const Vector3& angularImpulse) {
     const WorldLock::Exclusive alone(world.lock);
     if (alone.Refusal()) return *alone.Refusal();
-    if (MaybeError e = FirstOf(CheckPushable(world, id), CheckFinite("impulse", impulse), CheckFinite("angular impulse", angularImpulse)))
+    if (MaybeError e = FirstOf(CheckPushable(world, id), CheckFinite("impulse", impulse),
+                               CheckFinite("angular impulse", angularImpulse)))
         return *e;
     if (impulse.isZero(0) && angularImpulse.isZero(0)) return Done{};
     WakeBody(world, id.index);
     const BodyMass& m = world.bodies.masses[id.index];
-    SetVelocityOf(world, id.index, world.bodies.LinearVelocityOf(id.index) + LimitedPush(impulse, m.inverseMass) * m.inverseMass,
-                  world.bodies.AngularVelocityOf(id.index) + m.InverseInertia() * LimitedPush(angularImpulse, Trace(m)));
+    SetVelocityOf(
+        world, id.index, world.bodies.LinearVelocityOf(id.index) + LimitedPush(impulse, m.inverseMass) * m.inverseMass,
+        world.bodies.AngularVelocityOf(id.index) + m.InverseInertia() * LimitedPush(angularImpulse, Trace(m)));
     return Done{};
 }
 
@@ -265,7 +273,9 @@ Status BodyInterface::AddForceAt(BodyId id, const Vector3& force, const Position
     if (MaybeError e = FirstOf(CheckPushable(world_, id), CheckPosition("point", point))) return *e;
     return Push(world_, id, force, Cross<float>(ArmTo(world_, id, point), force));
 }
-Status BodyInterface::AddImpulse(BodyId id, const Vector3& impulse) { return ApplyImpulse(world_, id, impulse, Vector3::Zero()); }
+Status BodyInterface::AddImpulse(BodyId id, const Vector3& impulse) {
+    return ApplyImpulse(world_, id, impulse, Vector3::Zero());
+}
 Status BodyInterface::AddAngularImpulse(BodyId id, const Vector3& impulse) {
     return ApplyImpulse(world_, id, Vector3::Zero(), impulse);
 }
@@ -281,7 +291,8 @@ Status BodyInterface::SetMaterial(BodyId id, const Material& material) {
     if (MaybeError e = Check(material)) return *e;
     world_.bodies.cold[id.index].material = material;
     VisitPairsOf(world_, {&id.index, 1}, [&](uint32_t first) {
-        for (uint32_t pair = first; pair != PairStore::kNone; pair = world_.pairs.pairs[pair].more) CombineMaterials(world_, pair);
+        for (uint32_t pair = first; pair != PairStore::kNone; pair = world_.pairs.pairs[pair].more)
+            CombineMaterials(world_, pair);
     });
     WakeBody(world_, id.index);
     WakeNeighbors(world_, id.index);
@@ -323,7 +334,8 @@ Status BodyInterface::SetContinuous(BodyId id, ContinuousCollision continuous) {
     if (MaybeError e = CheckContinuous(continuous, *world_.bodies.cold[id.index].shape)) return *e;
     constexpr ContinuousCollision kOff = ContinuousCollision::Off;
     BodyCold& cold = world_.bodies.cold[id.index];
-    if (cold.isSensor && continuous != kOff) return Error{ErrorCode::Unsupported, "a sensor touches nothing, and is not cast"};
+    if (cold.isSensor && continuous != kOff)
+        return Error{ErrorCode::Unsupported, "a sensor touches nothing, and is not cast"};
     world_.sweeps.users += (continuous != kOff) - (cold.continuous != kOff);
     cold.continuous = continuous;
     world_.bodies.dynamics[id.index].continuous = continuous != kOff;
@@ -337,7 +349,8 @@ Status BodyInterface::SetSensor(BodyId id, bool isSensor) {
     BodyCold& cold = world_.bodies.cold[id.index];
     if (cold.isSensor == isSensor) return Done{};
     if (cold.continuous != ContinuousCollision::Off)
-        return Error{ErrorCode::Unsupported, "the body has continuous collision; a sensor touches nothing, and is not cast"};
+        return Error{ErrorCode::Unsupported,
+                     "the body has continuous collision; a sensor touches nothing, and is not cast"};
     WakeBody(world_, id.index);
     WakeNeighbors(world_, id.index);
     VisitPairsOf(world_, {&id.index, 1}, [&](uint32_t pair) { RemovePair(world_, pair); });
@@ -411,13 +424,15 @@ float BodyInterface::GetMass(BodyId id) const {
 }
 Vector3 BodyInterface::GetAngularMomentum(BodyId id) const {
     if (!Exists(id)) return Vector3::Zero();
-    return AngularMomentum(world_.bodies.dynamics[id.index], world_.bodies.RotationOf(id.index), GetAngularVelocity(id));
+    return AngularMomentum(world_.bodies.dynamics[id.index], world_.bodies.RotationOf(id.index),
+                           GetAngularVelocity(id));
 }
 double BodyInterface::GetKineticEnergy(BodyId id) const {
     if (!Exists(id) || world_.bodies.dynamics[id.index].motion != MotionType::Dynamic) return 0;
     const Position v = GetLinearVelocity(id).cast<double>();
-    return 0.5 * double{GetMass(id)} * Dot<double>(v, v) +
-           RotationalEnergy(world_.bodies.dynamics[id.index], world_.bodies.RotationOf(id.index), GetAngularVelocity(id));
+    return 0.5 * double{GetMass(id)} * Dot<double>(v, v) + RotationalEnergy(world_.bodies.dynamics[id.index],
+                                                                            world_.bodies.RotationOf(id.index),
+                                                                            GetAngularVelocity(id));
 }
 MotionType BodyInterface::GetMotionType(BodyId id) const {
     return Exists(id) ? world_.bodies.dynamics[id.index].motion : MotionType::Static;
@@ -426,7 +441,9 @@ ContinuousCollision BodyInterface::GetContinuous(BodyId id) const {
     return Exists(id) ? world_.bodies.cold[id.index].continuous : ContinuousCollision::Off;
 }
 ShapePtr BodyInterface::GetShape(BodyId id) const { return Exists(id) ? world_.bodies.cold[id.index].shape : nullptr; }
-uint64_t BodyInterface::GetCategory(BodyId id) const { return Exists(id) ? world_.bodies.FilterOf(id.index).category : 0; }
+uint64_t BodyInterface::GetCategory(BodyId id) const {
+    return Exists(id) ? world_.bodies.FilterOf(id.index).category : 0;
+}
 uint64_t BodyInterface::GetMask(BodyId id) const { return Exists(id) ? world_.bodies.FilterOf(id.index).mask : 0; }
 CollisionGroup BodyInterface::GetGroup(BodyId id) const {
     return Exists(id) ? world_.bodies.FilterOf(id.index).group : CollisionGroup{};

@@ -1,5 +1,5 @@
-// Adds, removes, moves, pushes and reads bodies. From PhysicsSystem::Bodies(); call it between steps, from one thread at a
-// time (reading from many is fine). Poses are those of the shape's own frame, as the user described it.
+// Adds, removes, moves, pushes and reads bodies. From PhysicsSystem::Bodies(); call it between steps, from one thread
+// at a time (reading from many is fine). Poses are those of the shape's own frame, as the user described it.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/MutableCompound.h>
@@ -13,24 +13,27 @@ class BodyInterface {
 public:
     explicit BodyInterface(WorldState& world) : world_(world) {}
 
-    // Errors name the field: NonFinite, NonPositive, Negative, OutOfRange, Unnormalized, Unsupported (no shape; a dynamic
-    // body asleep that is not dynamic). Nothing is created then.
+    // Errors name the field: NonFinite, NonPositive, Negative, OutOfRange, Unnormalized, Unsupported (no shape; a
+    // dynamic body asleep that is not dynamic). Nothing is created then.
     Result<BodyId> Create(const BodySettings& settings);
     // Wakes what rested on it. Error: UnknownId.
     Status Remove(BodyId id);
     bool Exists(BodyId id) const;
 
-    // Teleports; wakes it, what rested on it and what it now touches. A body that is frozen is free again, at rest. A pose that GetPose
-    // gave is taken with its bits. Errors: UnknownId, NonFinite, OutOfRange (farther out than 1e18 m), Unnormalized.
+    // Teleports; wakes it, what rested on it and what it now touches. A body that is frozen is free again, at rest. A
+    // pose that GetPose gave is taken with its bits. Errors: UnknownId, NonFinite, OutOfRange (farther out than 1e18
+    // m), Unnormalized.
     Status SetPose(BodyId id, const Position& position, const Quaternion& rotation);
-    // Gives a kinematic body the velocity with which it reaches the pose after `dt` seconds (> 0), if its largest speeds allow that.
-    // Errors also: Unsupported.
+    // Gives a kinematic body the velocity with which it reaches the pose after `dt` seconds (> 0), if its largest
+    // speeds allow that. Errors also: Unsupported.
     Status MoveKinematic(BodyId id, const Position& position, const Quaternion& rotation, float dt);
-    // m/s, rad/s; wakes. Steps bring it down to the body's largest speeds. Errors: UnknownId, NonFinite, Unsupported (static, frozen).
+    // m/s, rad/s; wakes. Steps bring it down to the body's largest speeds. Errors: UnknownId, NonFinite, Unsupported
+    // (static, frozen).
     Status SetVelocity(BodyId id, const Vector3& linear, const Vector3& angular);
-    // Acts during the next step only: N at a world point, N m; wakes. One of zero does nothing, and a body that falls asleep forgets
-    // what it had. However large it is, the body stays within its largest speeds; where the sum of several is beyond the floats, it is
-    // frozen. Errors: UnknownId, NonFinite, OutOfRange (point), Unsupported (not dynamic, frozen).
+    // Acts during the next step only: N at a world point, N m; wakes. One of zero does nothing, and a body that falls
+    // asleep forgets what it had. However large it is, the body stays within its largest speeds; where the sum of
+    // several is beyond the floats, it is frozen. Errors: UnknownId, NonFinite, OutOfRange (point), Unsupported (not
+    // dynamic, frozen).
     Status AddForce(BodyId id, const Vector3& force);
     Status AddForceAt(BodyId id, const Vector3& force, const Position& point);
     Status AddTorque(BodyId id, const Vector3& torque);
@@ -43,8 +46,10 @@ public:
     Status SetCategoryAndMask(BodyId id, uint64_t category, uint64_t mask);
     Status SetGroup(BodyId id, const CollisionGroup& group);
     Status SetGravityFactor(BodyId id, float factor);
-    Status SetContinuous(BodyId id, ContinuousCollision continuous);  // Errors also: OutOfRange, Unsupported (a surface or plane)
-    // Makes it a sensor with default settings, or one that touches others again. Errors also: Unsupported (continuous collision).
+    Status SetContinuous(BodyId id,
+                         ContinuousCollision continuous);  // Errors also: OutOfRange, Unsupported (a surface or plane)
+    // Makes it a sensor with default settings, or one that touches others again. Errors also: Unsupported (continuous
+    // collision).
     Status SetSensor(BodyId id, bool isSensor);
     // Errors also: Unsupported (no sensor), OutOfRange. What it no longer sees leaves it in the next step.
     Status SetSensorSees(BodyId id, SensorSees sees);
@@ -53,18 +58,22 @@ public:
     // Puts the body, and what it is in touch with, to sleep.
     Status Sleep(BodyId id);
 
-    // Another shape for the body, whose own frame stays where it is. Mass and inertia follow at the density that the body had,
-    // or stay; the center of mass becomes that of the shape. Wakes the body and what is near. Errors: UnknownId, Unsupported
-    // (null, no volume for a dynamic body, a surface or plane for one with continuous collision), OutOfRange (mass or inertia has no inverse).
+    // Another shape for the body, whose own frame stays where it is. Mass and inertia follow at the density that the
+    // body had, or stay; the center of mass becomes that of the shape. Wakes the body and what is near. Errors:
+    // UnknownId, Unsupported (null, no volume for a dynamic body, a surface or plane for one with continuous
+    // collision), OutOfRange (mass or inertia has no inverse).
     Status SetShape(BodyId id, const ShapePtr& shape, MassUpdate mass = MassUpdate::Update);
 
-    // Children of a body that was made of a MutableCompound, of which it has a copy of its own: several bodies may be made of
-    // one. Places are in the body's own frame, which stays where it is when the center of mass moves, and material points
-    // keep their velocities. The children left keep their masses. Wakes the body, what touched the child and what it touches
-    // now. Of a body that is not dynamic, neither mass nor center change. Errors: those of MutableCompound, UnknownId,
-    // Unsupported (the shape is no mutable compound), OutOfRange (mass or inertia has no inverse). Nothing has changed then.
-    Result<ChildId> AddChild(BodyId id, const CompoundShape::ChildSettings& child, MassUpdate mass = MassUpdate::Update);
-    Status SetChild(BodyId id, ChildId child, const CompoundShape::ChildSettings& settings, MassUpdate mass = MassUpdate::Update);
+    // Children of a body that was made of a MutableCompound, of which it has a copy of its own: several bodies may be
+    // made of one. Places are in the body's own frame, which stays where it is when the center of mass moves, and
+    // material points keep their velocities. The children left keep their masses. Wakes the body, what touched the
+    // child and what it touches now. Of a body that is not dynamic, neither mass nor center change. Errors: those of
+    // MutableCompound, UnknownId, Unsupported (the shape is no mutable compound), OutOfRange (mass or inertia has no
+    // inverse). Nothing has changed then.
+    Result<ChildId> AddChild(BodyId id, const CompoundShape::ChildSettings& child,
+                             MassUpdate mass = MassUpdate::Update);
+    Status SetChild(BodyId id, ChildId child, const CompoundShape::ChildSettings& settings,
+                    MassUpdate mass = MassUpdate::Update);
     Status MoveChild(BodyId id, ChildId child, const Vector3& position, const Quaternion& rotation,
                      MassUpdate mass = MassUpdate::Update);
     Status RemoveChild(BodyId id, ChildId child, MassUpdate mass = MassUpdate::Update);
@@ -89,7 +98,8 @@ public:
     uint64_t GetUserData(BodyId id) const;
     bool IsSensor(BodyId id) const;
     bool IsAwake(BodyId id) const;
-    // Its state turned non-finite: it stands at its last good pose like a static body, with no velocity. SetPose revives it.
+    // Its state turned non-finite: it stands at its last good pose like a static body, with no velocity. SetPose
+    // revives it.
     bool IsFrozen(BodyId id) const;
 
 private:

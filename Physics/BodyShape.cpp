@@ -53,7 +53,8 @@ Result<ChildId> EditChildren(WorldState& world, BodyId id, MassUpdate mass, cons
     if (updates) {
         const float kilograms = static_cast<float>(cold.children->massUnit * edit.Value().relativeMass);
         const MassProperties& shape = edit.Value().mass;
-        if (MaybeError e = CheckInverses("child", "child", kilograms, Vector3(shape.principalInertia * (kilograms / shape.volume))))
+        if (MaybeError e = CheckInverses("child", "child", kilograms,
+                                         Vector3(shape.principalInertia * (kilograms / shape.volume))))
             return *e;
     }
     return Commit(world, id.index, edit.Value(), updates);
@@ -75,19 +76,22 @@ Result<ChildId> BodyInterface::AddChild(BodyId id, const CompoundShape::ChildSet
     return EditChildren(world_, id, mass, [&](const MutableCompound& c, MassUpdate m) { return c.PlanAdd(child, m); });
 }
 
-Status BodyInterface::SetChild(BodyId id, ChildId child, const CompoundShape::ChildSettings& settings, MassUpdate mass) {
-    return WithoutId(EditChildren(world_, id, mass,
-                                  [&](const MutableCompound& c, MassUpdate m) { return c.PlanSet(child, settings, m); }));
+Status BodyInterface::SetChild(BodyId id, ChildId child, const CompoundShape::ChildSettings& settings,
+                               MassUpdate mass) {
+    return WithoutId(EditChildren(
+        world_, id, mass, [&](const MutableCompound& c, MassUpdate m) { return c.PlanSet(child, settings, m); }));
 }
 
-Status BodyInterface::MoveChild(BodyId id, ChildId child, const Vector3& position, const Quaternion& rotation, MassUpdate mass) {
+Status BodyInterface::MoveChild(BodyId id, ChildId child, const Vector3& position, const Quaternion& rotation,
+                                MassUpdate mass) {
     return WithoutId(EditChildren(world_, id, mass, [&](const MutableCompound& c, MassUpdate m) {
         return c.PlanMove(child, position, rotation, m);
     }));
 }
 
 Status BodyInterface::RemoveChild(BodyId id, ChildId child, MassUpdate mass) {
-    return WithoutId(EditChildren(world_, id, mass, [&](const MutableCompound& c, MassUpdate m) { return c.PlanRemove(child, m); }));
+    return WithoutId(
+        EditChildren(world_, id, mass, [&](const MutableCompound& c, MassUpdate m) { return c.PlanRemove(child, m); }));
 }
 
 const MutableCompound* BodyInterface::GetChildren(BodyId id) const {
@@ -109,7 +113,8 @@ Status BodyInterface::SetShape(BodyId id, const ShapePtr& shape, MassUpdate mass
     const double massUnit = cold.children ? cold.children->massUnit : double{GetMass(id)} / RelativeMassOf(*cold.shape);
     const float kilograms = updates ? static_cast<float>(massUnit * RelativeMassOf(*shape)) : GetMass(id);
     if (updates) {
-        if (MaybeError e = CheckInverses("shape", "shape", kilograms, Vector3(next.principalInertia * (kilograms / next.volume))))
+        if (MaybeError e =
+                CheckInverses("shape", "shape", kilograms, Vector3(next.principalInertia * (kilograms / next.volume))))
             return *e;
     }
     WakeBody(world_, body);
@@ -124,7 +129,8 @@ Status BodyInterface::SetShape(BodyId id, const ShapePtr& shape, MassUpdate mass
     if (cold.children) cold.children->massUnit = double{kilograms} / RelativeMassOf(*shape);
     MakeColliders(world_, body);
     RequeueColliders(world_, body);
-    if (!world_.sensors.IsEmpty()) world_.sensors.touched.push_back(body);  // also where no collider is left that would tell
+    if (!world_.sensors.IsEmpty())
+        world_.sensors.touched.push_back(body);  // also where no collider is left that would tell
     WakeNeighbors(world_, body);
     return Done{};
 }

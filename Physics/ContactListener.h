@@ -1,9 +1,9 @@
-// What a user's code has a say in: which bodies make contact, and how a contact behaves: belts, one-way platforms, ice under
-// one kind of tyre. Derive from ContactListener and hand it to PhysicsSystem::SetContactListener. Called within a step, from
-// several threads at once, in no order: everything it answers must follow from its arguments and from what the step does not
-// change (settings of its own, bodies' poses, velocities and user data, which are those at the start of the step). Then the
-// results are the same for any number of threads. It may read Bodies(). Queries find nothing there and are reported (Misuse.h),
-// changes of the world are refused with an error.
+// What a user's code has a say in: which bodies make contact, and how a contact behaves: belts, one-way platforms, ice
+// under one kind of tyre. Derive from ContactListener and hand it to PhysicsSystem::SetContactListener. Called within a
+// step, from several threads at once, in no order: everything it answers must follow from its arguments and from what
+// the step does not change (settings of its own, bodies' poses, velocities and user data, which are those at the start
+// of the step). Then the results are the same for any number of threads. It may read Bodies(). Queries find nothing
+// there and are reported (Misuse.h), changes of the world are refused with an error.
 #pragma once
 
 #include <Fulcrum/Physics/Settings.h>
@@ -21,8 +21,8 @@ struct ContactView {
         float separation;   // m, negative where they overlap
         float impulse;      // N s, along the normal, of the last substep that was solved
     };
-    std::span<const Point> points;     // 1..4
-    uint32_t childA = 0, childB = 0;   // the pieces of compounds; else 0
+    std::span<const Point> points;    // 1..4
+    uint32_t childA = 0, childB = 0;  // the pieces of compounds; else 0
 
     // m; the mean of the points.
     Position Center() const;
@@ -32,14 +32,15 @@ struct ContactView {
 struct ContactChange {
     // As the two materials give them in every step anew. A value out of range, or not finite, changes nothing.
     float friction, restitution;  // >= 0; 0..1
-    // B's surface moves against A's beyond the motion of the bodies: so fast at the contact's center (m/s, world axes), and turning
-    // so fast (rad/s, world axes). Friction makes what touches keep up with it. Only the part along the contact counts, and the
-    // turn about the normal. Not finite: none.
+    // B's surface moves against A's beyond the motion of the bodies: so fast at the contact's center (m/s, world axes),
+    // and turning so fast (rad/s, world axes). Friction makes what touches keep up with it. Only the part along the
+    // contact counts, and the turn about the normal. Not finite: none.
     Vector3 surfaceVelocity = Vector3::Zero(), surfaceTurn = Vector3::Zero();
     // No contact in this step: nothing bounces, wakes or rests.
     bool ignore = false;
 
-    // The surface of `belt`, which is one of the two bodies, moves with the velocity (m/s, world axes) relative to its body.
+    // The surface of `belt`, which is one of the two bodies, moves with the velocity (m/s, world axes) relative to its
+    // body.
     void MoveSurface(const ContactView& contact, BodyId belt, const Vector3& velocity);
     // The same, turning about a pivot (m, world) with the angular velocity (rad/s, world axes): a belt's bend.
     void TurnSurface(const ContactView& contact, BodyId belt, const Position& pivot, const Vector3& angularVelocity);
@@ -49,15 +50,16 @@ class ContactListener {
 public:
     virtual ~ContactListener() = default;
 
-    // Whether two bodies collide at all; a.index < b.index. Asked when their bounds, or those of two pieces of them, come to
-    // overlap, or one of them wakes, but not about two that collide already: to change an answer, call SetContactListener again.
+    // Whether two bodies collide at all; a.index < b.index. Asked when their bounds, or those of two pieces of them,
+    // come to overlap, or one of them wakes, but not about two that collide already: to change an answer, call
+    // SetContactListener again.
     virtual bool ShouldCollide(BodyId, BodyId) const { return true; }
 
-    // Asked in every step for every contact that touches, or will within the step, with an awake body: also where nothing
-    // moved and the points are those of the step before. An answer holds for one step: what it does not set again is as the
-    // materials say. Continuous collision asks about what it hits in the middle of the step, when velocities and poses are those
-    // that the step has come to. Bodies asleep are not asked about: wake those on a belt that begins to run. What touches a surface that
-    // moves does not fall asleep.
+    // Asked in every step for every contact that touches, or will within the step, with an awake body: also where
+    // nothing moved and the points are those of the step before. An answer holds for one step: what it does not set
+    // again is as the materials say. Continuous collision asks about what it hits in the middle of the step, when
+    // velocities and poses are those that the step has come to. Bodies asleep are not asked about: wake those on a belt
+    // that begins to run. What touches a surface that moves does not fall asleep.
     virtual void ModifyContact(const ContactView&, ContactChange&) const {}
 };
 

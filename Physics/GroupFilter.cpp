@@ -9,13 +9,15 @@ Result<std::shared_ptr<const GroupFilterTable>> GroupFilterTable::Create(std::sp
     for (size_t i = 0; i < apart.size(); ++i) {
         const uint32_t largest = std::max(apart[i].first, apart[i].second);
         if (largest >= kMaxSubGroups)
-            return Error{ErrorCode::OutOfRange, "apart[" + std::to_string(i) + "] names subgroup " + std::to_string(largest) +
-                                                    "; it must be from 0 to " + std::to_string(kMaxSubGroups - 1)};
+            return Error{ErrorCode::OutOfRange, "apart[" + std::to_string(i) + "] names subgroup " +
+                                                    std::to_string(largest) + "; it must be from 0 to " +
+                                                    std::to_string(kMaxSubGroups - 1)};
         table->subGroups_ = std::max(table->subGroups_, largest + 1);
     }
     const size_t n = table->subGroups_;
     table->apart_.assign(n * n, false);
-    for (const Pair& pair : apart) table->apart_[pair.first * n + pair.second] = table->apart_[pair.second * n + pair.first] = true;
+    for (const Pair& pair : apart)
+        table->apart_[pair.first * n + pair.second] = table->apart_[pair.second * n + pair.first] = true;
     return std::shared_ptr<const GroupFilterTable>(std::move(table));
 }
 

@@ -1,5 +1,5 @@
-// Which bodies of a group collide with one another: the parts of a machine that overlap, a ragdoll's limbs. A filter is shared
-// by the bodies that name it in BodySettings::group; it never changes, so any thread may ask it.
+// Which bodies of a group collide with one another: the parts of a machine that overlap, a ragdoll's limbs. A filter is
+// shared by the bodies that name it in BodySettings::group; it never changes, so any thread may ask it.
 #pragma once
 
 #include <Fulcrum/Math/Result.h>
@@ -21,11 +21,13 @@ public:
     };
 
     virtual ~GroupFilter() = default;
-    // Asked from several threads at once when two bodies come near: a pure function of its arguments, the same for (b, a).
+    // Asked from several threads at once when two bodies come near: a pure function of its arguments, the same for (b,
+    // a).
     virtual bool Collides(const Member& a, const Member& b) const = 0;
 };
 
-// Pairs of subgroups that do not collide within one group. Members of different groups do, and so does what no pair names.
+// Pairs of subgroups that do not collide within one group. Members of different groups do, and so does what no pair
+// names.
 class GroupFilterTable final : public GroupFilter {
 public:
     struct Pair {

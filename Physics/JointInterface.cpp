@@ -19,11 +19,13 @@ Error Unknown(JointId id) {
 MaybeError CheckBodies(const WorldState& world, const JointSettings& settings) {
     const auto check = [&](const char* field, BodyId id) -> MaybeError {
         if (world.bodies.Find(id)) return std::nullopt;
-        return Error{ErrorCode::UnknownId, std::string(field) + ": no body has the id (index " + std::to_string(id.index) +
-                                               ", generation " + std::to_string(id.generation) + ")"};
+        return Error{ErrorCode::UnknownId, std::string(field) + ": no body has the id (index " +
+                                               std::to_string(id.index) + ", generation " +
+                                               std::to_string(id.generation) + ")"};
     };
     if (MaybeError e = FirstOf(check("bodyA", settings.bodyA), check("bodyB", settings.bodyB))) return e;
-    if (settings.bodyA == settings.bodyB) return Error{ErrorCode::Unsupported, "bodyA and bodyB are the same; a joint needs two bodies"};
+    if (settings.bodyA == settings.bodyB)
+        return Error{ErrorCode::Unsupported, "bodyA and bodyB are the same; a joint needs two bodies"};
     const auto isDynamic = [&](BodyId id) { return world.bodies.dynamics[id.index].motion == MotionType::Dynamic; };
     if (!isDynamic(settings.bodyA) && !isDynamic(settings.bodyB))
         return Error{ErrorCode::Unsupported, "bodyA and bodyB are both not dynamic; a joint needs one that moves"};
@@ -39,7 +41,8 @@ struct Frame {
 Frame FrameOf(const WorldState& world, uint32_t body, const JointAnchor& anchor, JointSpace space) {
     const Pose center = world.bodies.CenterPoseOf(body);
     const Quaternion rotation = RotationOf(anchor);
-    if (space == JointSpace::World) return {center.InverseTransform(OnGrid(anchor.point)), center.rotation.Conjugate() * rotation};
+    if (space == JointSpace::World)
+        return {center.InverseTransform(OnGrid(anchor.point)), center.rotation.Conjugate() * rotation};
     const Vector3 offset = world.bodies.cold[body].shape->Mass().centerOfMass;
     return {Vector3(anchor.point.cast<float>()) - offset, rotation};
 }
@@ -65,7 +68,8 @@ std::pair<Frame, Frame> FramesOf(const WorldState& world, const JointSettings& s
         }
         return {a, FrameOf(world, s.bodyB.index, b, s.space)};
     }
-    const RelativePose bInA = Relative(world.bodies.CenterPoseOf(s.bodyA.index), world.bodies.CenterPoseOf(s.bodyB.index));
+    const RelativePose bInA =
+        Relative(world.bodies.CenterPoseOf(s.bodyA.index), world.bodies.CenterPoseOf(s.bodyB.index));
     return {a, {bInA.InverseTransform(a.point), Normalized(bInA.rotation.Conjugate() * a.rotation)}};
 }
 
@@ -145,8 +149,7 @@ Result<JointId> JointInterface::Add(const JointSettings& s, std::unique_ptr<Join
     Joint& joint = world_.joints.joints[index];
     joint.body[0] = s.bodyA.index;
     joint.body[1] = s.bodyB.index;
-    for (int side = 0; side < 2; ++side)
-        joint.still[side] = !world_.bodies.CanMove(joint.body[side]);
+    for (int side = 0; side < 2; ++side) joint.still[side] = !world_.bodies.CanMove(joint.body[side]);
     joint.collideConnected = s.collideConnected;
     joint.priority = s.priority;
     joint.breakForce = s.breakForce;
@@ -215,7 +218,8 @@ Status JointInterface::ChangeControl(JointId id, JointAxis axis, Change&& change
     if (!Exists(id)) return Unknown(id);
     if (MaybeError error = CheckEnum("axis", axis, JointAxis::AngularZ)) return *error;
     AxisControl* control = ControlOf(id, axis);
-    if (!control) return Error{ErrorCode::Unsupported, "axis: the joint has neither limits nor motor nor friction there"};
+    if (!control)
+        return Error{ErrorCode::Unsupported, "axis: the joint has neither limits nor motor nor friction there"};
     AxisControl changed = *control;
     change(changed);
     if (MaybeError error = CheckControl("axis", changed, world_.joints.types[id.index]->BoundsOf(axis))) return *error;
@@ -268,7 +272,9 @@ Status JointInterface::SetEffort(JointId id, const SolverSettings& effort) {
 const AxisControl* JointInterface::GetControl(JointId id, JointAxis axis) const { return ControlOf(id, axis); }
 
 double JointInterface::GetCoordinate(JointId id, JointAxis axis) const {
-    return Exists(id) && axis <= JointAxis::AngularZ ? world_.joints.types[id.index]->Coordinate(axis, PoseOf(world_, id.index)) : 0.0;
+    return Exists(id) && axis <= JointAxis::AngularZ
+               ? world_.joints.types[id.index]->Coordinate(axis, PoseOf(world_, id.index))
+               : 0.0;
 }
 
 JointError JointInterface::GetError(JointId id) const {
@@ -282,7 +288,8 @@ JointError JointInterface::GetError(JointId id) const {
         const Vector3 line = axisOf(pose.frameA, locks.line);
         error.distance = Length(Vector3(pose.offset - line * Dot(line, pose.offset)));
     }
-    if (locks.angular == AngularLock::All) error.angle = Length(RotationVectorOf<float>(pose.frameB * pose.frameA.Conjugate()));
+    if (locks.angular == AngularLock::All)
+        error.angle = Length(RotationVectorOf<float>(pose.frameB * pose.frameA.Conjugate()));
     if (locks.angular == AngularLock::Axis) {
         const Vector3 b = axisOf(pose.frameB, (locks.axis + 1) % 3), c = axisOf(pose.frameB, (locks.axis + 2) % 3);
         const Vec2<float> hinge = HingeError<float>(axisOf(pose.frameA, locks.axis), b, c);
@@ -330,9 +337,13 @@ BodyId JointInterface::GetBodyA(JointId id) const {
 BodyId JointInterface::GetBodyB(JointId id) const {
     return Exists(id) ? world_.bodies.IdOf(world_.joints.joints[id.index].body[1]) : BodyId{};
 }
-uint64_t JointInterface::GetUserData(JointId id) const { return Exists(id) ? world_.joints.joints[id.index].userData : 0; }
+uint64_t JointInterface::GetUserData(JointId id) const {
+    return Exists(id) ? world_.joints.joints[id.index].userData : 0;
+}
 
-const JointType* JointInterface::GetType(JointId id) const { return Exists(id) ? world_.joints.types[id.index] : nullptr; }
+const JointType* JointInterface::GetType(JointId id) const {
+    return Exists(id) ? world_.joints.types[id.index] : nullptr;
+}
 
 void JointInterface::Visit(FunctionRef<void(JointId)> visit) const {
     for (uint32_t i = 0; i < world_.joints.joints.size(); ++i)
@@ -340,7 +351,8 @@ void JointInterface::Visit(FunctionRef<void(JointId)> visit) const {
 }
 
 void JointInterface::VisitOf(BodyId body, FunctionRef<void(JointId)> visit) const {
-    if (world_.bodies.Find(body)) world_.joints.VisitOf(body.index, [&](uint32_t index) { visit(world_.joints.IdOf(index)); });
+    if (world_.bodies.Find(body))
+        world_.joints.VisitOf(body.index, [&](uint32_t index) { visit(world_.joints.IdOf(index)); });
 }
 
 }  // namespace fulcrum

@@ -1,5 +1,5 @@
-// Adds, removes, drives and reads joints. From PhysicsSystem::Joints(); call it between steps, from one thread at a time
-// (reading from many is fine). What a joint holds together sleeps and wakes together; every change wakes it.
+// Adds, removes, drives and reads joints. From PhysicsSystem::Joints(); call it between steps, from one thread at a
+// time (reading from many is fine). What a joint holds together sleeps and wakes together; every change wakes it.
 #pragma once
 
 #include <Fulcrum/Jobs/JobSystem.h>
@@ -27,9 +27,9 @@ class JointInterface {
 public:
     explicit JointInterface(WorldState& world) : world_(world) {}
 
-    // Settings: those of any kind in JointSettings.h. The bodies may be in any pose: what is out of place is pulled together.
-    // Errors name the field: UnknownId (a body), Unsupported (the same body twice, no dynamic one), NonFinite, NonPositive,
-    // Negative, OutOfRange, Unnormalized. Nothing is created then.
+    // Settings: those of any kind in JointSettings.h. The bodies may be in any pose: what is out of place is pulled
+    // together. Errors name the field: UnknownId (a body), Unsupported (the same body twice, no dynamic one),
+    // NonFinite, NonPositive, Negative, OutOfRange, Unnormalized. Nothing is created then.
     template <class Settings>
     Result<JointId> Create(const Settings& settings);
     // Removing a body removes its joints. Error: UnknownId, as for all that follow.
@@ -39,8 +39,8 @@ public:
     // A joint that is not enabled does nothing, and its bodies collide. Enables one that broke, too.
     Status SetEnabled(JointId id, bool enabled);
     bool IsEnabled(JointId id) const;
-    // Limits, motor and friction of an axis. Errors also: Unsupported (the joint has nothing there), and those of Create.
-    // Another target of a motor that runs already changes no row and allocates nothing.
+    // Limits, motor and friction of an axis. Errors also: Unsupported (the joint has nothing there), and those of
+    // Create. Another target of a motor that runs already changes no row and allocates nothing.
     Status SetLimits(JointId id, JointAxis axis, const std::optional<JointLimits>& limits);
     Status SetMotor(JointId id, JointAxis axis, const JointMotor& motor);
     Status SetFriction(JointId id, JointAxis axis, float friction);
@@ -53,8 +53,8 @@ public:
     const AxisControl* GetControl(JointId id, JointAxis axis) const;  // null: nothing there
     double GetCoordinate(JointId id, JointAxis axis) const;           // m or rad, see the joint's settings
     JointError GetError(JointId id) const;
-    // What the joint, locks and rows together, did to body B on average over the last step: N and N m about B's anchor, world
-    // axes. While it sleeps, what it carried when it fell asleep; disabled, nothing.
+    // What the joint, locks and rows together, did to body B on average over the last step: N and N m about B's anchor,
+    // world axes. While it sleeps, what it carried when it fell asleep; disabled, nothing.
     Vector3 GetForce(JointId id) const;
     Vector3 GetTorque(JointId id) const;
     // The locks' part of it.

@@ -1,4 +1,5 @@
-// What a user sets of a joint: the bodies, where it holds them, and what its kind needs. Every field says its unit and range.
+// What a user sets of a joint: the bodies, where it holds them, and what its kind needs. Every field says its unit and
+// range.
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/JointType.h>
@@ -27,22 +28,23 @@ enum class JointSpace : uint8_t {
 
 // Where a joint holds a body: a place and a frame, whose x axis is the joint's axis (hinge, slide, twist).
 struct JointAnchor {
-    Position point = Position::Zero();      // m
-    Vector3 axis = Vector3(1, 0, 0);        // x of the frame; unit within 1e-3
-    std::optional<Vector3> normal{};          // y of the frame; unit, perpendicular to the axis within 1e-3; left out: any
+    Position point = Position::Zero();  // m
+    Vector3 axis = Vector3(1, 0, 0);    // x of the frame; unit within 1e-3
+    std::optional<Vector3> normal{};    // y of the frame; unit, perpendicular to the axis within 1e-3; left out: any
 };
 
-// Of two joints of a body the one of higher priority is solved later in every iteration, and wins where they disagree. A joint
-// to what does not move counts as High. This is an order, no weight: where few iterations are made the other one still pulls.
+// Of two joints of a body the one of higher priority is solved later in every iteration, and wins where they disagree.
+// A joint to what does not move counts as High. This is an order, no weight: where few iterations are made the other
+// one still pulls.
 enum class JointPriority : uint8_t { Normal, High };
 
 struct JointSettings {
-    BodyId bodyA{}, bodyB{};          // at least one is dynamic
+    BodyId bodyA{}, bodyB{};  // at least one is dynamic
     JointSpace space = JointSpace::World;
     JointAnchor anchorA;
     std::optional<JointAnchor> anchorB{};  // left out: where anchor A is in the world, as the bodies stand now
     bool enabled = true;
-    bool collideConnected = false;    // whether the two bodies collide with each other
+    bool collideConnected = false;  // whether the two bodies collide with each other
     JointPriority priority = JointPriority::Normal;
     // The joint is disabled where it did more on average over a step: a blow of J N s counts as J / dt.
     float breakForce = std::numeric_limits<float>::infinity();   // N, > 0
@@ -62,7 +64,8 @@ struct FixedJointSettings : JointSettings {};
 
 // The distance of the anchors stays in a range: a rod, a rope, a spring.
 struct DistanceJointSettings : JointSettings {
-    // m, 0 <= min <= max, max may be infinite. One left out: 0, infinite. Both left out: as it is when the joint is made.
+    // m, 0 <= min <= max, max may be infinite. One left out: 0, infinite. Both left out: as it is when the joint is
+    // made.
     std::optional<float> minDistance{}, maxDistance{};
     SpringSettings spring{};  // of both ends; where min is max, of the distance itself
 };
@@ -87,8 +90,8 @@ struct ConeJointSettings : JointSettings {
 // A point joint for shoulders: B's axis (x) swings about A's y and z in an ellipse or a pyramid, and B twists about it.
 struct SwingTwistJointSettings : JointSettings {
     SwingShape shape = SwingShape::Ellipse;
-    // rad, N m. Limits within -pi..pi, at pi there is none. Those of the swing, the y and z of its rotation vector, are around
-    // 0, and for an ellipse the same to both sides: -a..a, -b..b.
+    // rad, N m. Limits within -pi..pi, at pi there is none. Those of the swing, the y and z of its rotation vector, are
+    // around 0, and for an ellipse the same to both sides: -a..a, -b..b.
     AxisControl twist{}, swingY{}, swingZ{};
 };
 
@@ -103,21 +106,23 @@ struct SixDofJointSettings : JointSettings {
 
     // Ends the program where there is no such axis.
     AxisControl& operator[](JointAxis axis) {
-        if (axis > JointAxis::AngularZ) [[unlikely]] AbortWith("SixDofJointSettings has no axis of this number", "");
+        if (axis > JointAxis::AngularZ) [[unlikely]]
+            AbortWith("SixDofJointSettings has no axis of this number", "");
         return axes[static_cast<size_t>(axis)];
     }
 };
 
-// A turns about anchor A's axis, B about anchor B's, each in a bearing that other joints make to a body at rest; their teeth
-// mesh. turns of A = -ratio turns of B.
+// A turns about anchor A's axis, B about anchor B's, each in a bearing that other joints make to a body at rest; their
+// teeth mesh. turns of A = -ratio turns of B.
 struct GearJointSettings : JointSettings {
     float ratio = 1.0f;  // not 0, 1e-9..1e9 without its sign; teeth of B / teeth of A, > 0 where they mesh outside
 };
 
-// A, the pinion, turns about anchor A's axis through its point; B, the rack, moves along anchor B's axis. Other joints make
-// bearing and guide.
+// A, the pinion, turns about anchor A's axis through its point; B, the rack, moves along anchor B's axis. Other joints
+// make bearing and guide.
 struct RackAndPinionJointSettings : JointSettings {
-    float ratio = 1.0f;  // rad/m, not 0, 1e-9..1e9 without its sign; 1 / radius of the pinion, negative to move the other way
+    float ratio =
+        1.0f;  // rad/m, not 0, 1e-9..1e9 without its sign; 1 / radius of the pinion, negative to move the other way
 };
 
 // A rope from A's anchor over two fixed points to B's: distance of A + ratio distance of B = its length.
@@ -129,8 +134,9 @@ struct PulleyJointSettings : JointSettings {
     std::optional<float> maxLength{};         // m, >= minLength; left out: as it is when the joint is made
 };
 
-// B's anchor rides on a path that is given in the frame of A's anchor. Where B is to turn with the path, its frame becomes the
-// path's: x along the tangent, y along the normal. So give anchor B: where B is tied, and which of its axes these are.
+// B's anchor rides on a path that is given in the frame of A's anchor. Where B is to turn with the path, its frame
+// becomes the path's: x along the tangent, y along the normal. So give anchor B: where B is tied, and which of its axes
+// these are.
 struct PathJointSettings : JointSettings {
     std::shared_ptr<const Path> path = Path::Straight(1.0f);  // not null
     AxisControl along{};                                      // m from its start, m/s, N
@@ -149,9 +155,8 @@ struct WheelJointSettings : JointSettings {
                   .spring = {.mode = SpringMode::StiffnessAndDamping, .stiffness = 4.0e4f, .damping = 4.0e3f}}};
     bool isSteered = false;
     // rad, N m; used where steered.
-    AxisControl steering = {.limited = true,
-                            .limits = {.min = -0.6f, .max = 0.6f},
-                            .motor = {.mode = MotorMode::ToPosition, .spring = {}}};
+    AxisControl steering = {
+        .limited = true, .limits = {.min = -0.6f, .max = 0.6f}, .motor = {.mode = MotorMode::ToPosition, .spring = {}}};
     AxisControl spin{};  // rad, N m; the motor drives, friction brakes
 };
 
@@ -161,8 +166,8 @@ struct CustomJointSettings : JointSettings {
 };
 
 // Calls a macro with the name of every kind above, without JointSettings.
-#define FULCRUM_FOR_EACH_JOINT_KIND(call)                                                                            \
-    call(Point) call(Fixed) call(Distance) call(Hinge) call(Slider) call(Cone) call(SwingTwist) call(SixDof)         \
-    call(Gear) call(RackAndPinion) call(Pulley) call(Path) call(Wheel) call(Custom)
+#define FULCRUM_FOR_EACH_JOINT_KIND(call)                                                                    \
+    call(Point) call(Fixed) call(Distance) call(Hinge) call(Slider) call(Cone) call(SwingTwist) call(SixDof) \
+        call(Gear) call(RackAndPinion) call(Pulley) call(Path) call(Wheel) call(Custom)
 
 }  // namespace fulcrum

@@ -42,12 +42,14 @@ MaybeError CheckFiniteField(const FieldName& field, double x) {
 MaybeError CheckBetween(const FieldName& field, double x, double low, double high) {
     if (MaybeError e = CheckNotNaN(field, x)) return e;
     if (x >= low && x <= high) return std::nullopt;
-    return Error{ErrorCode::OutOfRange, field.Text() + " is " + Number(x) + "; it must be from " + Number(low) + " to " + Number(high)};
+    return Error{ErrorCode::OutOfRange,
+                 field.Text() + " is " + Number(x) + "; it must be from " + Number(low) + " to " + Number(high)};
 }
 
 MaybeError CheckOrder(const FieldName& lowField, double low, const FieldName& highField, double high) {
     if (low <= high) return std::nullopt;
-    return Error{ErrorCode::OutOfRange, lowField.Text() + " is " + Number(low) + "; it must not be larger than " + highField.Text() + ", which is " + Number(high)};
+    return Error{ErrorCode::OutOfRange, lowField.Text() + " is " + Number(low) + "; it must not be larger than " +
+                                            highField.Text() + ", which is " + Number(high)};
 }
 
 MaybeError CheckUnit(const FieldName& field, const Vector3& v) {
@@ -58,14 +60,15 @@ MaybeError CheckUnit(const FieldName& field, const Vector3& v) {
 }
 
 MaybeError CheckAnchor(const FieldName& name, const JointAnchor& anchor) {
-    if (MaybeError e = FirstOf(CheckPosition(FieldName(name, ".point").Text().c_str(), anchor.point), CheckUnit({name, ".axis"}, anchor.axis)))
+    if (MaybeError e = FirstOf(CheckPosition(FieldName(name, ".point").Text().c_str(), anchor.point),
+                               CheckUnit({name, ".axis"}, anchor.axis)))
         return e;
     if (!anchor.normal) return std::nullopt;
     if (MaybeError e = CheckUnit({name, ".normal"}, *anchor.normal)) return e;
     const float cosine = Dot(anchor.axis, *anchor.normal);
     if (std::fabs(cosine) <= 1e-3f) return std::nullopt;
-    return Error{ErrorCode::Degenerate, name.Text() + ".normal is not perpendicular to " + name.Text() + ".axis: their cosine is " +
-                                            Number(cosine) + "; it must be 0 within 0.001"};
+    return Error{ErrorCode::Degenerate, name.Text() + ".normal is not perpendicular to " + name.Text() +
+                                            ".axis: their cosine is " + Number(cosine) + "; it must be 0 within 0.001"};
 }
 
 MaybeError CheckBreak(const char* field, float x) {
@@ -84,12 +87,14 @@ MaybeError CheckSpring(const FieldName& name, const SpringSettings& spring) {
 template <class E>
 MaybeError CheckEnum(const FieldName& field, E value, E last) {
     if (static_cast<int>(value) <= static_cast<int>(last)) return std::nullopt;
-    return Error{ErrorCode::OutOfRange, field.Text() + " is " + Number(static_cast<int>(value)) + "; it must be from 0 to " + Number(static_cast<int>(last))};
+    return Error{ErrorCode::OutOfRange, field.Text() + " is " + Number(static_cast<int>(value)) +
+                                            "; it must be from 0 to " + Number(static_cast<int>(last))};
 }
 
 MaybeError CheckLimits(const FieldName& name, const JointLimits& limits) {
     if (MaybeError e = FirstOf(CheckNotNaN({name, ".min"}, limits.min), CheckNotNaN({name, ".max"}, limits.max),
-                               CheckOrder({name, ".min"}, limits.min, {name, ".max"}, limits.max), CheckSpring({name, ".spring"}, limits.spring)))
+                               CheckOrder({name, ".min"}, limits.min, {name, ".max"}, limits.max),
+                               CheckSpring({name, ".spring"}, limits.spring)))
         return e;
     if (limits.min < kEndless && limits.max > -kEndless) return std::nullopt;
     return Error{ErrorCode::NonFinite, name.Text() + ".min and " + name.Text() + ".max are the same infinity"};
@@ -99,7 +104,8 @@ MaybeError CheckMotor(const FieldName& name, const JointMotor& motor) {
     return FirstOf(CheckEnum({name, ".mode"}, motor.mode, MotorMode::ToPosition),
                    CheckFiniteField({name, ".targetSpeed"}, motor.targetSpeed),
                    CheckFiniteField({name, ".targetPosition"}, motor.targetPosition),
-                   CheckSpring({name, ".spring"}, motor.spring), CheckBetween({name, ".minForce"}, motor.minForce, -kEndless, 0.0),
+                   CheckSpring({name, ".spring"}, motor.spring),
+                   CheckBetween({name, ".minForce"}, motor.minForce, -kEndless, 0.0),
                    CheckBetween({name, ".maxForce"}, motor.maxForce, 0.0, kEndless));
 }
 
@@ -113,7 +119,8 @@ MaybeError CheckRatio(const FieldName& field, float x) {
     constexpr float kLeast = 1e-9f, kLargest = 1e9f;
     if (MaybeError e = CheckFiniteField(field, x)) return e;
     if (std::fabs(x) >= kLeast && std::fabs(x) <= kLargest) return std::nullopt;
-    return Error{ErrorCode::OutOfRange, field.Text() + " is " + Number(x) + "; without its sign it must be from " + Number(kLeast) + " to " + Number(kLargest)};
+    return Error{ErrorCode::OutOfRange, field.Text() + " is " + Number(x) + "; without its sign it must be from " +
+                                            Number(kLeast) + " to " + Number(kLargest)};
 }
 
 MaybeError CheckBounds(const FieldName& name, const JointLimits& limits, const LimitBounds& bounds) {
@@ -126,7 +133,8 @@ MaybeError CheckBounds(const FieldName& name, const JointLimits& limits, const L
 }
 
 // Rotations limited as swing and twist.
-MaybeError CheckSwingTwist(const std::array<const char*, 3>& names, const std::array<AxisControl, 3>& axes, SwingShape shape) {
+MaybeError CheckSwingTwist(const std::array<const char*, 3>& names, const std::array<AxisControl, 3>& axes,
+                           SwingShape shape) {
     if (MaybeError e = CheckEnum("shape", shape, SwingShape::Pyramid)) return e;
     for (int k = 0; k < 3; ++k) {
         const auto i = static_cast<size_t>(k);
@@ -150,9 +158,10 @@ Quaternion RotationOf(const JointAnchor& anchor) {
 
 MaybeError CheckCommon(const JointSettings& s) {
     return FirstOf(CheckEnum("space", s.space, JointSpace::Body), CheckAnchor("anchorA", s.anchorA),
-                   s.anchorB ? CheckAnchor("anchorB", *s.anchorB) : std::nullopt, CheckEnum("priority", s.priority, JointPriority::High),
-                   CheckBreak("breakForce", s.breakForce), CheckBreak("breakTorque", s.breakTorque),
-                   CheckRange("substeps", s.substeps, 0, 64), CheckRange("velocityIterations", s.velocityIterations, 0, 255),
+                   s.anchorB ? CheckAnchor("anchorB", *s.anchorB) : std::nullopt,
+                   CheckEnum("priority", s.priority, JointPriority::High), CheckBreak("breakForce", s.breakForce),
+                   CheckBreak("breakTorque", s.breakTorque), CheckRange("substeps", s.substeps, 0, 64),
+                   CheckRange("velocityIterations", s.velocityIterations, 0, 255),
                    CheckRange("positionIterations", s.positionIterations, 0, 255));
 }
 
@@ -181,24 +190,30 @@ MaybeError Check(const SixDofJointSettings& s) {
     if (MaybeError e = CheckWith(s, CheckControl("axes[LinearX]", s.axes[0]), CheckControl("axes[LinearY]", s.axes[1]),
                                  CheckControl("axes[LinearZ]", s.axes[2])))
         return e;
-    return CheckSwingTwist({"axes[AngularX]", "axes[AngularY]", "axes[AngularZ]"}, {s.axes[3], s.axes[4], s.axes[5]}, s.shape);
+    return CheckSwingTwist({"axes[AngularX]", "axes[AngularY]", "axes[AngularZ]"}, {s.axes[3], s.axes[4], s.axes[5]},
+                           s.shape);
 }
 MaybeError Check(const GearJointSettings& s) { return CheckWith(s, CheckRatio("ratio", s.ratio)); }
 MaybeError Check(const RackAndPinionJointSettings& s) { return CheckWith(s, CheckRatio("ratio", s.ratio)); }
 MaybeError Check(const PulleyJointSettings& s) {
-    if (MaybeError e = CheckWith(s, CheckPosition("fixedPointA", s.fixedPointA), CheckPosition("fixedPointB", s.fixedPointB),
-                                 CheckPositive("ratio", s.ratio), CheckRatio("ratio", s.ratio), CheckNotNegative("minLength", s.minLength)))
+    if (MaybeError e = CheckWith(s, CheckPosition("fixedPointA", s.fixedPointA),
+                                 CheckPosition("fixedPointB", s.fixedPointB), CheckPositive("ratio", s.ratio),
+                                 CheckRatio("ratio", s.ratio), CheckNotNegative("minLength", s.minLength)))
         return e;
     if (!s.maxLength) return std::nullopt;
-    return FirstOf(CheckBetween("maxLength", *s.maxLength, 0.0, kEndless), CheckOrder("minLength", s.minLength, "maxLength", *s.maxLength));
+    return FirstOf(CheckBetween("maxLength", *s.maxLength, 0.0, kEndless),
+                   CheckOrder("minLength", s.minLength, "maxLength", *s.maxLength));
 }
 MaybeError Check(const PathJointSettings& s) {
-    if (MaybeError e = CheckWith(s, CheckControl("along", s.along), CheckEnum("rotation", s.rotation, PathRotation::Constant))) return e;
+    if (MaybeError e =
+            CheckWith(s, CheckControl("along", s.along), CheckEnum("rotation", s.rotation, PathRotation::Constant)))
+        return e;
     if (s.path) return std::nullopt;
     return Error{ErrorCode::Unsupported, "path is null; the joint needs one"};
 }
 MaybeError Check(const WheelJointSettings& s) {
-    return CheckWith(s, CheckControl("suspension", s.suspension), CheckControl("steering", s.steering), CheckControl("spin", s.spin));
+    return CheckWith(s, CheckControl("suspension", s.suspension), CheckControl("steering", s.steering),
+                     CheckControl("spin", s.spin));
 }
 MaybeError Check(const CustomJointSettings& s) {
     if (MaybeError e = CheckCommon(s)) return e;
@@ -217,17 +232,25 @@ std::unique_ptr<JointType> MakeType(const DistanceJointSettings& s) {
 }
 std::unique_ptr<JointType> MakeType(const HingeJointSettings& s) { return std::make_unique<HingeJoint>(s.angle); }
 std::unique_ptr<JointType> MakeType(const SliderJointSettings& s) { return std::make_unique<SliderJoint>(s.slide); }
-std::unique_ptr<JointType> MakeType(const ConeJointSettings& s) { return std::make_unique<ConeJoint>(s.halfAngle, s.spring); }
+std::unique_ptr<JointType> MakeType(const ConeJointSettings& s) {
+    return std::make_unique<ConeJoint>(s.halfAngle, s.spring);
+}
 std::unique_ptr<JointType> MakeType(const SwingTwistJointSettings& s) {
     return std::make_unique<SwingTwistJoint>(s.twist, s.swingY, s.swingZ, s.shape);
 }
-std::unique_ptr<JointType> MakeType(const SixDofJointSettings& s) { return std::make_unique<SixDofJoint>(s.axes, s.shape); }
+std::unique_ptr<JointType> MakeType(const SixDofJointSettings& s) {
+    return std::make_unique<SixDofJoint>(s.axes, s.shape);
+}
 std::unique_ptr<JointType> MakeType(const GearJointSettings& s) { return std::make_unique<GearJoint>(s.ratio); }
-std::unique_ptr<JointType> MakeType(const RackAndPinionJointSettings& s) { return std::make_unique<RackAndPinionJoint>(s.ratio); }
+std::unique_ptr<JointType> MakeType(const RackAndPinionJointSettings& s) {
+    return std::make_unique<RackAndPinionJoint>(s.ratio);
+}
 std::unique_ptr<JointType> MakeType(const PulleyJointSettings& s) {
     return std::make_unique<PulleyJoint>(s.fixedPointA, s.fixedPointB, s.ratio, s.minLength, s.maxLength);
 }
-std::unique_ptr<JointType> MakeType(const PathJointSettings& s) { return std::make_unique<PathJoint>(s.path, s.along, s.rotation); }
+std::unique_ptr<JointType> MakeType(const PathJointSettings& s) {
+    return std::make_unique<PathJoint>(s.path, s.along, s.rotation);
+}
 std::unique_ptr<JointType> MakeType(const WheelJointSettings& s) {
     return std::make_unique<WheelJoint>(s.suspension, s.isSteered, s.steering, s.spin);
 }

@@ -1,6 +1,6 @@
-// Checks of what callers pass in as settings of a joint, and the joint types made of them. Each check returns an error that
-// names the field, its value and what would be valid; bodies are checked where they are known. Called when a joint is
-// created. Free functions, no threads.
+// Checks of what callers pass in as settings of a joint, and the joint types made of them. Each check returns an error
+// that names the field, its value and what would be valid; bodies are checked where they are known. Called when a joint
+// is created. Free functions, no threads.
 #pragma once
 
 #include <Fulcrum/Physics/JointSettings.h>
@@ -10,8 +10,8 @@
 
 namespace fulcrum {
 
-// A field, or a part of one, as an error names it. Put together only where there is an error: settings are checked in every
-// step that drives a motor. What it is made of must outlive it.
+// A field, or a part of one, as an error names it. Put together only where there is an error: settings are checked in
+// every step that drives a motor. What it is made of must outlive it.
 class FieldName {
 public:
     FieldName(const char* name) : name_(name) {}

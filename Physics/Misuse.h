@@ -1,5 +1,5 @@
-// Where a call is not allowed, or has an argument that it cannot work with, and has no Result to say so in (queries): the error
-// goes to a handler, and the call does nothing.
+// Where a call is not allowed, or has an argument that it cannot work with, and has no Result to say so in (queries):
+// the error goes to a handler, and the call does nothing.
 #pragma once
 
 #include <Fulcrum/Math/Result.h>
@@ -10,7 +10,8 @@ namespace fulcrum {
 // the program, but not throw.
 using MisuseHandler = void (*)(const Error& error);
 
-// For all worlds of the program, from any thread. Null: the default, which prints the first 100 errors to standard error.
+// For all worlds of the program, from any thread. Null: the default, which prints the first 100 errors to standard
+// error.
 void SetMisuseHandler(MisuseHandler handler);
 
 void ReportMisuse(const Error& error);

@@ -60,8 +60,8 @@ void BeginReport(WorldState& world) {
 // A step shorter than this, in seconds, moves nothing that a float could tell; its inverse would only overflow.
 constexpr double kShortestStep = 1e-9;
 
-// Impulses of a short step, scaled up to a long one, are mostly its noise: steps that alternate between 1/240 and 1/30 s
-// threw a stack of six boxes over with no limit, and leave one of ten standing with this one.
+// Impulses of a short step, scaled up to a long one, are mostly its noise: steps that alternate between 1/240 and 1/30
+// s threw a stack of six boxes over with no limit, and leave one of ten standing with this one.
 constexpr float kMostImpulseScale = 2;
 
 void CountBodies(WorldState& world) {
@@ -92,8 +92,9 @@ private:
 }  // namespace
 
 const char* StageName(Stage stage) {
-    static constexpr const char* kNames[kStageCount] = {"UpdateBounds", "FindPairs", "Collide", "Color", "BuildIslands",
-                                                        "Prepare", "Solve", "Restitution", "Store", "Continuous", "Sense", "Sleep"};
+    static constexpr const char* kNames[kStageCount] = {"UpdateBounds", "FindPairs",  "Collide", "Color",
+                                                        "BuildIslands", "Prepare",    "Solve",   "Restitution",
+                                                        "Store",        "Continuous", "Sense",   "Sleep"};
     return kNames[static_cast<size_t>(stage)];
 }
 
@@ -110,7 +111,8 @@ Result<std::unique_ptr<PhysicsSystem>> PhysicsSystem::Create(const SystemSetting
     return std::unique_ptr<PhysicsSystem>(new PhysicsSystem(std::move(world)));
 }
 
-PhysicsSystem::PhysicsSystem(std::unique_ptr<WorldState> world) : world_(std::move(world)), bodies_(*world_), joints_(*world_), queries_(*world_) {}
+PhysicsSystem::PhysicsSystem(std::unique_ptr<WorldState> world)
+    : world_(std::move(world)), bodies_(*world_), joints_(*world_), queries_(*world_) {}
 PhysicsSystem::~PhysicsSystem() = default;
 
 Status PhysicsSystem::Update(double dt) {
@@ -127,7 +129,8 @@ Status PhysicsSystem::Update(double dt) {
     StepContext step;
     step.dt = static_cast<float>(dt);
     step.substepDt = step.dt / static_cast<float>(world.settings.solver.substeps);
-    step.impulseScale = world.lastSubstepDt > 0 ? std::min(step.substepDt / world.lastSubstepDt, kMostImpulseScale) : 1.0f;
+    step.impulseScale =
+        world.lastSubstepDt > 0 ? std::min(step.substepDt / world.lastSubstepDt, kMostImpulseScale) : 1.0f;
     world.scratch.Reset();
 
     StepTimer timer(world.report);
@@ -221,7 +224,8 @@ void PhysicsSystem::VisitIslands(FunctionRef<void(BodyId, uint32_t island)> visi
         if (pair.touching && !pair.fixedB) sets.Unite(pair.bodyA, pair.bodyB);
     });
     for (const Joint& joint : world_->joints.joints)
-        if (joint.exists && joint.enabled && !joint.still[0] && !joint.still[1]) sets.Unite(joint.body[0], joint.body[1]);
+        if (joint.exists && joint.enabled && !joint.still[0] && !joint.still[1])
+            sets.Unite(joint.body[0], joint.body[1]);
     // Sleepers belong together as they fell asleep.
     std::vector<uint32_t> first(bodies.Size(), ~0u);
     for (uint32_t i = 0; i < bodies.Size(); ++i) {
@@ -245,8 +249,9 @@ double PhysicsSystem::GetEnergy() const {
     for (uint32_t i = 0; i < bodies.Size(); ++i) {
         if (!bodies.cold[i].exists || bodies.dynamics[i].motion != MotionType::Dynamic) continue;
         const BodyId id = bodies.IdOf(i);
-        energy += bodies_.GetKineticEnergy(id) -
-                  double(bodies_.GetMass(id)) * double(bodies.dynamics[i].gravityFactor) * Dot<double>(gravity, bodies.CenterOf(i));
+        energy += bodies_.GetKineticEnergy(id) - double(bodies_.GetMass(id)) *
+                                                     double(bodies.dynamics[i].gravityFactor) *
+                                                     Dot<double>(gravity, bodies.CenterOf(i));
     }
     return energy;
 }

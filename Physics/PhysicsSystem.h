@@ -1,5 +1,5 @@
-// A world of rigid bodies. Create it, add bodies through Bodies(), call Update once a frame. One thread at a time changes it;
-// Queries() may be asked by any number of threads at any time.
+// A world of rigid bodies. Create it, add bodies through Bodies(), call Update once a frame. One thread at a time
+// changes it; Queries() may be asked by any number of threads at any time.
 #pragma once
 
 #include <Fulcrum/Jobs/JobSystem.h>
@@ -17,14 +17,16 @@ namespace fulcrum {
 
 class PhysicsSystem {
 public:
-    // `jobs` (not owned, may be null: no threads) must outlive the system. Errors name the field: NonFinite, NonPositive,
-    // Negative, OutOfRange, Unsupported (layerCollides not symmetric).
-    static Result<std::unique_ptr<PhysicsSystem>> Create(const SystemSettings& settings = {}, JobSystem* jobs = nullptr);
+    // `jobs` (not owned, may be null: no threads) must outlive the system. Errors name the field: NonFinite,
+    // NonPositive, Negative, OutOfRange, Unsupported (layerCollides not symmetric).
+    static Result<std::unique_ptr<PhysicsSystem>> Create(const SystemSettings& settings = {},
+                                                         JobSystem* jobs = nullptr);
     ~PhysicsSystem();
     PhysicsSystem(const PhysicsSystem&) = delete;
     PhysicsSystem& operator=(const PhysicsSystem&) = delete;
 
-    // Advances by dt seconds, 0 .. 1; less than a nanosecond changes nothing. Errors: NonFinite, OutOfRange: nothing has happened then.
+    // Advances by dt seconds, 0 .. 1; less than a nanosecond changes nothing. Errors: NonFinite, OutOfRange: nothing
+    // has happened then.
     Status Update(double dt);
 
     BodyInterface& Bodies() { return bodies_; }
@@ -37,15 +39,15 @@ public:
     std::span<const JointId> BrokenJoints() const;
     // What sensors saw in the last step, sorted by sensor, time, body. Valid until the next.
     std::span<const SensorEvent> SensorEvents() const;
-    // What was inside a sensor when the last step ended, sorted; bodies removed since then are among them. Valid until the next step
-    // and until a sensor is created. Empty for what is no sensor.
+    // What was inside a sensor when the last step ended, sorted; bodies removed since then are among them. Valid until
+    // the next step and until a sensor is created. Empty for what is no sensor.
     std::span<const BodyId> BodiesInside(BodyId sensor) const;
     const SystemSettings& Settings() const;
-    // As for Create. Takes effect at the next step. Where layerCollides changes, contacts that no longer may be end, those that
-    // now may be are found, and the bodies of these layers wake.
+    // As for Create. Takes effect at the next step. Where layerCollides changes, contacts that no longer may be end,
+    // those that now may be are found, and the bodies of these layers wake.
     Status SetSettings(const SystemSettings& settings);
-    // Asks it about contacts from now on (not owned, must outlive its use); null: nobody. Pairs that exist are asked about
-    // again, and bodies wake whose contact it forbids.
+    // Asks it about contacts from now on (not owned, must outlive its use); null: nobody. Pairs that exist are asked
+    // about again, and bodies wake whose contact it forbids.
     void SetContactListener(const ContactListener* listener);
 
     // All bodies, in the order of their indices.
@@ -55,7 +57,8 @@ public:
     // Calls visit(id, island) for each dynamic body; islands are numbered from 0 in the order of their smallest body
     // index. Found anew by this call: for viewers and tests.
     void VisitIslands(FunctionRef<void(BodyId, uint32_t island)> visit) const;
-    // Kinetic plus gravitational potential energy of the dynamic bodies, J; the potential is zero at the world's origin.
+    // Kinetic plus gravitational potential energy of the dynamic bodies, J; the potential is zero at the world's
+    // origin.
     double GetEnergy() const;
     // FNV-1a, 64 bits, of all bodies' poses (position, rotation x y z w as doubles) in the order of their indices.
     uint64_t HashPoses() const;

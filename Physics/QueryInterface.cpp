@@ -35,7 +35,8 @@ bool IsUsable(const Pose& pose) { return IsFinite(pose.position) && IsFinite(pos
 template <class Hit>
 bool ComesFirst(const Hit& a, const Hit& b) {
     if constexpr (requires { a.depth; }) {
-        return std::tuple(a.fraction, -a.depth, a.body, a.subShape) < std::tuple(b.fraction, -b.depth, b.body, b.subShape);
+        return std::tuple(a.fraction, -a.depth, a.body, a.subShape) <
+               std::tuple(b.fraction, -b.depth, b.body, b.subShape);
     } else {
         return std::tuple(a.fraction, a.body, a.subShape) < std::tuple(b.fraction, b.body, b.subShape);
     }
@@ -53,8 +54,10 @@ TreeRay SweptBounds(const WorldState& world, const ShapeCaster& caster, const Po
                     const ShapeCastSettings& settings) {
     const Bounds& bounds = caster.BoundsAboutCenter();
     const Vector3 center = bounds.Center();
-    const float slack = settings.separation + settings.tolerance + 1e-6f * (bounds.HalfExtents().maxCoeff() + Length(displacement));
-    return TreeRay(pose.position - OriginOf(world) + center.cast<double>(), displacement, bounds.HalfExtents() + Vector3::Constant(slack));
+    const float slack =
+        settings.separation + settings.tolerance + 1e-6f * (bounds.HalfExtents().maxCoeff() + Length(displacement));
+    return TreeRay(pose.position - OriginOf(world) + center.cast<double>(), displacement,
+                   bounds.HalfExtents() + Vector3::Constant(slack));
 }
 
 Bounds TreeBounds(const WorldState& world, const Position& lower, const Position& upper) {
@@ -70,7 +73,8 @@ WorldLock::Shared QueryInterface::Hold() const {
 
 // ---- Rays
 
-bool QueryInterface::CastRay(const Ray& ray, WorldRayHit& hit, const RayCastSettings& settings, const QueryFilter& filter) const {
+bool QueryInterface::CastRay(const Ray& ray, WorldRayHit& hit, const RayCastSettings& settings,
+                             const QueryFilter& filter) const {
     const QueryScope scope(world_);
     if (!scope) return false;
     return CastClosest(ColliderSearch(world_, filter), ray, settings, hit);
@@ -92,28 +96,30 @@ bool QueryInterface::IsHit(const Ray& ray, const RayCastSettings& settings, cons
     return hit;
 }
 
-void QueryInterface::VisitRay(const Ray& ray, FunctionRef<float(const WorldRayHit&)> visit, const RayCastSettings& settings,
-                              const QueryFilter& filter) const {
+void QueryInterface::VisitRay(const Ray& ray, FunctionRef<float(const WorldRayHit&)> visit,
+                              const RayCastSettings& settings, const QueryFilter& filter) const {
     const QueryScope scope(world_);
     if (!scope) return;
     const RayCaster caster(ray);
     if (!caster.IsValid()) return;
     const ColliderSearch search(world_, filter);
     RayCastSettings upTo = settings;
-    AlongRay(search, TreeRay(ray.origin - OriginOf(world_), ray.displacement), upTo.maxFraction, [&](uint32_t collider) {
-        if (upTo.maxFraction < 0) return;
-        caster.CastAll(search.ShapeOf(collider), search.PoseOf(collider), upTo, [&](const RayHit& found) {
-            if (found.fraction > upTo.maxFraction) return true;
-            upTo.maxFraction = std::min(upTo.maxFraction, visit(ToWorld(search, collider, ray, found)));
-            return upTo.maxFraction >= 0;
-        });
-    });
+    AlongRay(search, TreeRay(ray.origin - OriginOf(world_), ray.displacement), upTo.maxFraction,
+             [&](uint32_t collider) {
+                 if (upTo.maxFraction < 0) return;
+                 caster.CastAll(search.ShapeOf(collider), search.PoseOf(collider), upTo, [&](const RayHit& found) {
+                     if (found.fraction > upTo.maxFraction) return true;
+                     upTo.maxFraction = std::min(upTo.maxFraction, visit(ToWorld(search, collider, ray, found)));
+                     return upTo.maxFraction >= 0;
+                 });
+             });
 }
 
 void QueryInterface::CastRayAll(const Ray& ray, std::vector<WorldRayHit>& hits, const RayCastSettings& settings,
                                 const QueryFilter& filter) const {
     hits.clear();
-    VisitRay(ray, [&](const WorldRayHit& hit) { return hits.push_back(hit), settings.maxFraction; }, settings, filter);
+    VisitRay(
+        ray, [&](const WorldRayHit& hit) { return hits.push_back(hit), settings.maxFraction; }, settings, filter);
     SortHits(hits);
 }
 
@@ -128,14 +134,15 @@ void QueryInterface::VisitShape(const MovingShape& shape, FunctionRef<float(cons
     if (!caster.IsValid()) return;
     const ColliderSearch search(world_, filter);
     ShapeCastSettings upTo = settings;
-    AlongRay(search, SweptBounds(world_, caster, motion.pose, shape.displacement, settings), upTo.maxFraction, [&](uint32_t collider) {
-        if (upTo.maxFraction < 0) return;
-        caster.CastAll(search.ShapeOf(collider), search.PoseOf(collider), upTo, [&](const ShapeHit& found) {
-            if (found.fraction > upTo.maxFraction) return true;
-            upTo.maxFraction = std::min(upTo.maxFraction, visit(ToWorld(search, collider, found)));
-            return upTo.maxFraction >= 0;
-        });
-    });
+    AlongRay(search, SweptBounds(world_, caster, motion.pose, shape.displacement, settings), upTo.maxFraction,
+             [&](uint32_t collider) {
+                 if (upTo.maxFraction < 0) return;
+                 caster.CastAll(search.ShapeOf(collider), search.PoseOf(collider), upTo, [&](const ShapeHit& found) {
+                     if (found.fraction > upTo.maxFraction) return true;
+                     upTo.maxFraction = std::min(upTo.maxFraction, visit(ToWorld(search, collider, found)));
+                     return upTo.maxFraction >= 0;
+                 });
+             });
 }
 
 bool QueryInterface::CastShape(const MovingShape& shape, WorldShapeHit& hit, const ShapeCastSettings& settings,
@@ -148,28 +155,32 @@ bool QueryInterface::CastShape(const MovingShape& shape, WorldShapeHit& hit, con
     const ColliderSearch search(world_, filter);
     ShapeCastSettings upTo = settings;
     bool any = false;
-    AlongRay(search, SweptBounds(world_, caster, motion.pose, shape.displacement, settings), upTo.maxFraction, [&](uint32_t collider) {
-        ShapeHit found;
-        if (!caster.CastClosest(search.ShapeOf(collider), search.PoseOf(collider), upTo, found)) return;
-        const WorldShapeHit here = ToWorld(search, collider, found);
-        if (any && !ComesFirst(here, hit)) return;
-        any = true;
-        hit = here;
-        upTo.maxFraction = here.fraction;
-    });
+    AlongRay(search, SweptBounds(world_, caster, motion.pose, shape.displacement, settings), upTo.maxFraction,
+             [&](uint32_t collider) {
+                 ShapeHit found;
+                 if (!caster.CastClosest(search.ShapeOf(collider), search.PoseOf(collider), upTo, found)) return;
+                 const WorldShapeHit here = ToWorld(search, collider, found);
+                 if (any && !ComesFirst(here, hit)) return;
+                 any = true;
+                 hit = here;
+                 upTo.maxFraction = here.fraction;
+             });
     return any;
 }
 
-bool QueryInterface::IsHit(const MovingShape& shape, const ShapeCastSettings& settings, const QueryFilter& filter) const {
+bool QueryInterface::IsHit(const MovingShape& shape, const ShapeCastSettings& settings,
+                           const QueryFilter& filter) const {
     bool hit = false;
-    VisitShape(shape, [&](const WorldShapeHit&) { return hit = true, -1.0f; }, settings, filter);
+    VisitShape(
+        shape, [&](const WorldShapeHit&) { return hit = true, -1.0f; }, settings, filter);
     return hit;
 }
 
-void QueryInterface::CastShapeAll(const MovingShape& shape, std::vector<WorldShapeHit>& hits, const ShapeCastSettings& settings,
-                                  const QueryFilter& filter) const {
+void QueryInterface::CastShapeAll(const MovingShape& shape, std::vector<WorldShapeHit>& hits,
+                                  const ShapeCastSettings& settings, const QueryFilter& filter) const {
     hits.clear();
-    VisitShape(shape, [&](const WorldShapeHit& hit) { return hits.push_back(hit), settings.maxFraction; }, settings, filter);
+    VisitShape(
+        shape, [&](const WorldShapeHit& hit) { return hits.push_back(hit), settings.maxFraction; }, settings, filter);
     SortHits(hits);
 }
 
@@ -194,17 +205,21 @@ void QueryInterface::VisitOverlaps(const PlacedShape& shape, FunctionRef<bool(co
 
 bool QueryInterface::IsOverlapping(const PlacedShape& shape, const QueryFilter& filter) const {
     bool overlaps = false;
-    VisitOverlaps(shape, [&](const OverlapHit&) { return overlaps = true, false; }, filter);
+    VisitOverlaps(
+        shape, [&](const OverlapHit&) { return overlaps = true, false; }, filter);
     return overlaps;
 }
 
-void QueryInterface::FindOverlaps(const PlacedShape& shape, std::vector<OverlapHit>& hits, const QueryFilter& filter) const {
+void QueryInterface::FindOverlaps(const PlacedShape& shape, std::vector<OverlapHit>& hits,
+                                  const QueryFilter& filter) const {
     hits.clear();
-    VisitOverlaps(shape, [&](const OverlapHit& hit) { return hits.push_back(hit), true; }, filter);
+    VisitOverlaps(
+        shape, [&](const OverlapHit& hit) { return hits.push_back(hit), true; }, filter);
     std::sort(hits.begin(), hits.end());
 }
 
-void QueryInterface::FindBodiesAt(const Position& point, std::vector<OverlapHit>& hits, const QueryFilter& filter) const {
+void QueryInterface::FindBodiesAt(const Position& point, std::vector<OverlapHit>& hits,
+                                  const QueryFilter& filter) const {
     hits.clear();
     if (!IsFinite(point)) return;
     const QueryScope scope(world_);
@@ -236,9 +251,11 @@ bool QueryInterface::FindClosest(const PlacedShape& shape, float maxDistance, Wo
                [&](uint32_t collider) {
                    ClosestPoints found;
                    const Pose at = search.PoseOf(collider);
-                   if (!FindClosestPoints(search.ShapeOf(collider), *shape.shape, Relative(at, pose), limit, found)) return;
-                   const bool isCloser = bestCollider == ~0u || found.distance < best.distance ||
-                                         (found.distance == best.distance && search.ComesBefore(collider, bestCollider));
+                   if (!FindClosestPoints(search.ShapeOf(collider), *shape.shape, Relative(at, pose), limit, found))
+                       return;
+                   const bool isCloser =
+                       bestCollider == ~0u || found.distance < best.distance ||
+                       (found.distance == best.distance && search.ComesBefore(collider, bestCollider));
                    if (!isCloser) return;
                    best = found;
                    bestCollider = collider;
@@ -256,7 +273,8 @@ bool QueryInterface::FindClosest(const PlacedShape& shape, float maxDistance, Wo
     return true;
 }
 
-bool QueryInterface::FindClosest(const Position& point, float maxDistance, WorldClosest& closest, const QueryFilter& filter) const {
+bool QueryInterface::FindClosest(const Position& point, float maxDistance, WorldClosest& closest,
+                                 const QueryFilter& filter) const {
     const PointCore core;
     return FindClosest(PlacedShape{&core, {point, {}}}, maxDistance, closest, filter);
 }
@@ -279,7 +297,8 @@ void QueryInterface::FindInBox(const Position& lower, const Position& upper, std
 bool QueryInterface::MayCollide(BodyId a, BodyId b) const {
     const QueryScope scope(world_);
     const BodyStore& bodies = world_.bodies;
-    if (!bodies.Find(a) || !bodies.Find(b) || bodies.cold[a.index].isSensor || bodies.cold[b.index].isSensor) return false;
+    if (!bodies.Find(a) || !bodies.Find(b) || bodies.cold[a.index].isSensor || bodies.cold[b.index].isSensor)
+        return false;
     return CanCollide(world_, a.index, b.index);
 }
 

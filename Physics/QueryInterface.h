@@ -1,9 +1,10 @@
 // Asks where things are: rays, moving shapes, overlaps, closest points, bounds. From PhysicsSystem::Queries().
-// Any number of threads at once, also while one changes the world through Bodies() and Joints() or steps it: a query then waits,
-// and sees the world before or after, never in between. Bodies are found where they are now. Hold() keeps the world still over
-// several queries, and while their results are looked up in Bodies(). What a query calls back may query, but not change
-// the world: that is refused. Within what a step or a change calls back (contact listeners and the like) no query is allowed.
-// Such a query, and one with a null shape, finds nothing and is reported, see Misuse.h. Input that is not finite finds nothing.
+// Any number of threads at once, also while one changes the world through Bodies() and Joints() or steps it: a query
+// then waits, and sees the world before or after, never in between. Bodies are found where they are now. Hold() keeps
+// the world still over several queries, and while their results are looked up in Bodies(). What a query calls back may
+// query, but not change the world: that is refused. Within what a step or a change calls back (contact listeners and
+// the like) no query is allowed. Such a query, and one with a null shape, finds nothing and is reported, see Misuse.h.
+// Input that is not finite finds nothing.
 #pragma once
 
 #include <Fulcrum/Collision/Queries/RayCast.h>
@@ -23,12 +24,13 @@ struct WorldState;
 
 // Which bodies a query sees. Batches call the predicates from several threads at once.
 struct QueryFilter {
-    uint32_t layers = 0xFFFFFFFFu;                                    // bit i: bodies of layer i
-    // Those that a body of this category and mask would collide with; 0: whatever their mask, ~0: whatever their category.
+    uint32_t layers = 0xFFFFFFFFu;  // bit i: bodies of layer i
+    // Those that a body of this category and mask would collide with; 0: whatever their mask, ~0: whatever their
+    // category.
     uint64_t category = 0, mask = ~uint64_t(0);
-    std::span<const BodyId> ignore{};                                 // but not these
-    bool sensors = false;                                             // sensors, too: else queries pass through them
-    std::optional<FunctionRef<bool(BodyId)>> accepts{};               // and those it says yes to
+    std::span<const BodyId> ignore{};                    // but not these
+    bool sensors = false;                                // sensors, too: else queries pass through them
+    std::optional<FunctionRef<bool(BodyId)>> accepts{};  // and those it says yes to
     std::optional<FunctionRef<bool(BodyId, uint32_t child)>> acceptsChild{};  // and their children likewise
 };
 
@@ -54,30 +56,30 @@ struct WorldShapeHit {
 
 struct OverlapHit {
     BodyId body;
-    uint32_t child = 0;                    // of a compound; else 0
+    uint32_t child = 0;  // of a compound; else 0
     friend auto operator<=>(const OverlapHit&, const OverlapHit&) = default;
 };
 
 struct WorldClosest {
     BodyId body;
     SubShape subShape{}, subShapeOfQuery{};
-    float distance = 0;                    // m; negative: how deep they overlap
-    Vector3 normal = Vector3::Zero();      // unit, world space, from the body towards the shape or point asked for
+    float distance = 0;                // m; negative: how deep they overlap
+    Vector3 normal = Vector3::Zero();  // unit, world space, from the body towards the shape or point asked for
     Position onBody = Position::Zero(), onQuery = Position::Zero();  // m
 };
 
 // A shape somewhere; `pose` is that of the shape's own frame, as the user described it.
 struct PlacedShape {
-    const Shape* shape = nullptr;          // not null
+    const Shape* shape = nullptr;  // not null
     Pose pose{};
 };
 
 // A convex shape on its way: its center of mass moves straight, it turns about it at a constant rate.
 struct MovingShape {
-    const ConvexShape* shape = nullptr;         // not null
-    Pose pose{};                                // of the shape's own frame at the start
-    Vector3 displacement = Vector3::Zero();     // m
-    Vector3 turn = Vector3::Zero();             // rad, rotation vector over the whole motion
+    const ConvexShape* shape = nullptr;      // not null
+    Pose pose{};                             // of the shape's own frame at the start
+    Vector3 displacement = Vector3::Zero();  // m
+    Vector3 turn = Vector3::Zero();          // rad, rotation vector over the whole motion
 };
 
 class QueryInterface {
@@ -89,13 +91,14 @@ public:
     [[nodiscard]] WorldLock::Shared Hold() const;
 
     // Rays, see RayCast.h. Of hits equally close the lowest body, child, triangle counts.
-    bool CastRay(const Ray& ray, WorldRayHit& hit, const RayCastSettings& settings = {}, const QueryFilter& filter = {}) const;
+    bool CastRay(const Ray& ray, WorldRayHit& hit, const RayCastSettings& settings = {},
+                 const QueryFilter& filter = {}) const;
     bool IsHit(const Ray& ray, const RayCastSettings& settings = {}, const QueryFilter& filter = {}) const;
     // All, by fraction, then body, child, triangle. Replaces what is in `hits`.
     void CastRayAll(const Ray& ray, std::vector<WorldRayHit>& hits, const RayCastSettings& settings = {},
                     const QueryFilter& filter = {}) const;
-    // In no order. `visit` returns up to which fraction hits are of interest still: 1 for all of them, its own for closer ones,
-    // less than 0 to end the search.
+    // In no order. `visit` returns up to which fraction hits are of interest still: 1 for all of them, its own for
+    // closer ones, less than 0 to end the search.
     void VisitRay(const Ray& ray, FunctionRef<float(const WorldRayHit&)> visit, const RayCastSettings& settings = {},
                   const QueryFilter& filter = {}) const;
 
@@ -103,8 +106,8 @@ public:
     bool CastShape(const MovingShape& shape, WorldShapeHit& hit, const ShapeCastSettings& settings = {},
                    const QueryFilter& filter = {}) const;
     bool IsHit(const MovingShape& shape, const ShapeCastSettings& settings = {}, const QueryFilter& filter = {}) const;
-    void CastShapeAll(const MovingShape& shape, std::vector<WorldShapeHit>& hits, const ShapeCastSettings& settings = {},
-                      const QueryFilter& filter = {}) const;
+    void CastShapeAll(const MovingShape& shape, std::vector<WorldShapeHit>& hits,
+                      const ShapeCastSettings& settings = {}, const QueryFilter& filter = {}) const;
     void VisitShape(const MovingShape& shape, FunctionRef<float(const WorldShapeHit&)> visit,
                     const ShapeCastSettings& settings = {}, const QueryFilter& filter = {}) const;
 
@@ -112,40 +115,46 @@ public:
     bool IsOverlapping(const PlacedShape& shape, const QueryFilter& filter = {}) const;
     void FindOverlaps(const PlacedShape& shape, std::vector<OverlapHit>& hits, const QueryFilter& filter = {}) const;
     // In no order, until `visit` returns false.
-    void VisitOverlaps(const PlacedShape& shape, FunctionRef<bool(const OverlapHit&)> visit, const QueryFilter& filter = {}) const;
+    void VisitOverlaps(const PlacedShape& shape, FunctionRef<bool(const OverlapHit&)> visit,
+                       const QueryFilter& filter = {}) const;
     // What a point is inside of; nothing is inside a mesh or a height field.
     void FindBodiesAt(const Position& point, std::vector<OverlapHit>& hits, const QueryFilter& filter = {}) const;
 
     // The body closest to a point or shape within `maxDistance` m, >= 0; of those that overlap the shape, the deepest.
-    bool FindClosest(const Position& point, float maxDistance, WorldClosest& closest, const QueryFilter& filter = {}) const;
-    bool FindClosest(const PlacedShape& shape, float maxDistance, WorldClosest& closest, const QueryFilter& filter = {}) const;
-
-    // The broad phase alone: bodies and children whose bounds, which are a little larger than they, meet a box, a ray, or a box
-    // on its way. Fast; by body and child.
-    void FindInBox(const Position& lower, const Position& upper, std::vector<OverlapHit>& hits, const QueryFilter& filter = {}) const;
-    void FindOnRay(const Ray& ray, std::vector<OverlapHit>& hits, const QueryFilter& filter = {}) const;
-    void FindOnSweep(const Position& lower, const Position& upper, const Vector3& displacement, std::vector<OverlapHit>& hits,
+    bool FindClosest(const Position& point, float maxDistance, WorldClosest& closest,
+                     const QueryFilter& filter = {}) const;
+    bool FindClosest(const PlacedShape& shape, float maxDistance, WorldClosest& closest,
                      const QueryFilter& filter = {}) const;
 
-    // Whether two bodies collide where they meet: by their kinds of motion, layers, masks, groups and joints. A contact listener is not
-    // asked; sensors, and ids that are not valid, collide with nothing.
+    // The broad phase alone: bodies and children whose bounds, which are a little larger than they, meet a box, a ray,
+    // or a box on its way. Fast; by body and child.
+    void FindInBox(const Position& lower, const Position& upper, std::vector<OverlapHit>& hits,
+                   const QueryFilter& filter = {}) const;
+    void FindOnRay(const Ray& ray, std::vector<OverlapHit>& hits, const QueryFilter& filter = {}) const;
+    void FindOnSweep(const Position& lower, const Position& upper, const Vector3& displacement,
+                     std::vector<OverlapHit>& hits, const QueryFilter& filter = {}) const;
+
+    // Whether two bodies collide where they meet: by their kinds of motion, layers, masks, groups and joints. A contact
+    // listener is not asked; sensors, and ids that are not valid, collide with nothing.
     bool MayCollide(BodyId a, BodyId b) const;
 
-    // Batches, over the world's job system: answer i is that of the single query i, the same bits. Results of another length
-    // than the queries: only what both have is done. A list of results is given their length and keeps its lists' memory.
+    // Batches, over the world's job system: answer i is that of the single query i, the same bits. Results of another
+    // length than the queries: only what both have is done. A list of results is given their length and keeps its
+    // lists' memory.
     void CastRays(std::span<const Ray> rays, std::span<WorldRayHit> hits, const RayCastSettings& settings = {},
                   const QueryFilter& filter = {}) const;
     void AreHit(std::span<const Ray> rays, std::span<uint8_t> hits, const RayCastSettings& settings = {},
                 const QueryFilter& filter = {}) const;
-    void CastRaysAll(std::span<const Ray> rays, std::vector<std::vector<WorldRayHit>>& hits, const RayCastSettings& settings = {},
-                     const QueryFilter& filter = {}) const;
-    void CastShapes(std::span<const MovingShape> shapes, std::span<WorldShapeHit> hits, const ShapeCastSettings& settings = {},
-                    const QueryFilter& filter = {}) const;
+    void CastRaysAll(std::span<const Ray> rays, std::vector<std::vector<WorldRayHit>>& hits,
+                     const RayCastSettings& settings = {}, const QueryFilter& filter = {}) const;
+    void CastShapes(std::span<const MovingShape> shapes, std::span<WorldShapeHit> hits,
+                    const ShapeCastSettings& settings = {}, const QueryFilter& filter = {}) const;
     void AreHit(std::span<const MovingShape> shapes, std::span<uint8_t> hits, const ShapeCastSettings& settings = {},
                 const QueryFilter& filter = {}) const;
     void CastShapesAll(std::span<const MovingShape> shapes, std::vector<std::vector<WorldShapeHit>>& hits,
                        const ShapeCastSettings& settings = {}, const QueryFilter& filter = {}) const;
-    void AreOverlapping(std::span<const PlacedShape> shapes, std::span<uint8_t> hits, const QueryFilter& filter = {}) const;
+    void AreOverlapping(std::span<const PlacedShape> shapes, std::span<uint8_t> hits,
+                        const QueryFilter& filter = {}) const;
     void FindOverlaps(std::span<const PlacedShape> shapes, std::vector<std::vector<OverlapHit>>& hits,
                       const QueryFilter& filter = {}) const;
     void FindBodiesAt(std::span<const Position> points, std::vector<std::vector<OverlapHit>>& hits,

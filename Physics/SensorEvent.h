@@ -7,9 +7,9 @@ namespace fulcrum {
 
 struct SensorEvent {
     enum class Kind : uint8_t {
-        Begin,       // it came to overlap the sensor
-        Stay,        // it was inside when the step began and when it ended
-        End,         // it overlaps it no longer, or is no longer seen; or the body or the sensor was removed
+        Begin,  // it came to overlap the sensor
+        Stay,   // it was inside when the step began and when it ended
+        End,    // it overlaps it no longer, or is no longer seen; or the body or the sensor was removed
     };
     BodyId sensor, body;
     Kind kind = Kind::Begin;

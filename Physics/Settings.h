@@ -34,8 +34,8 @@ struct Material {
     CombineRule restitutionRule = CombineRule::Maximum;
 };
 
-// Whether a body is cast along its way in steps in which it moves by more than half its thickness, so that it passes through
-// nothing however fast it is. It bounces where it hits, in the middle of the step.
+// Whether a body is cast along its way in steps in which it moves by more than half its thickness, so that it passes
+// through nothing however fast it is. It bounces where it hits, in the middle of the step.
 enum class ContinuousCollision : uint8_t {
     Off,
     Linear,            // it is cast without its rotation; compounds are cast with it
@@ -45,7 +45,9 @@ enum class ContinuousCollision : uint8_t {
 // Which bodies a sensor reports; combine with |.
 enum class SensorSees : uint8_t {
     Nothing = 0,
-    Dynamic = 1, Kinematic = 2, Static = 4,
+    Dynamic = 1,
+    Kinematic = 2,
+    Static = 4,
     Sleeping = 8,  // dynamic ones that sleep, too; else they leave as they fall asleep
     Sensors = 16,  // other sensors, too, of the kinds of motion chosen
     Default = Dynamic | Kinematic | Sleeping,
@@ -54,13 +56,19 @@ enum class SensorSees : uint8_t {
 constexpr SensorSees operator|(SensorSees a, SensorSees b) {
     return static_cast<SensorSees>(static_cast<uint8_t>(a) | static_cast<uint8_t>(b));
 }
-constexpr bool operator&(SensorSees a, SensorSees b) { return (static_cast<uint8_t>(a) & static_cast<uint8_t>(b)) != 0; }
+constexpr bool operator&(SensorSees a, SensorSees b) {
+    return (static_cast<uint8_t>(a) & static_cast<uint8_t>(b)) != 0;
+}
 
 // Degrees of freedom in world axes; combine with |.
 enum class LockedAxes : uint8_t {
     None = 0,
-    TranslationX = 1, TranslationY = 2, TranslationZ = 4,
-    RotationX = 8, RotationY = 16, RotationZ = 32,
+    TranslationX = 1,
+    TranslationY = 2,
+    TranslationZ = 4,
+    RotationX = 8,
+    RotationY = 16,
+    RotationZ = 32,
     Rotation = 8 | 16 | 32,
     Plane2D = 4 | 8 | 16,  // moves in the x-y plane, turns about z
 };
@@ -79,31 +87,32 @@ struct SolverSettings {
 struct BodySettings {
     ShapePtr shape;
     MotionType motion = MotionType::Dynamic;
-    Position position = Position::Zero();         // m, of the shape's own origin; 1e18 along an axis at most
-    Quaternion rotation{};                        // unit within 1e-3; normalized exactly
-    Vector3 linearVelocity = Vector3::Zero();     // m/s, of the center of mass; beyond 3e8 counts as that
-    Vector3 angularVelocity = Vector3::Zero();    // rad/s, world axes; beyond 1e6 counts as that
-    float density = 1000.0f;                      // kg/m3, > 0; used where mass is 0
-    float mass = 0.0f;                            // kg, >= 0; 0: density times volume
-    Vector3 inertia = Vector3::Zero();            // kg m2 about the shape's principal axes; zero: the shape's own
+    Position position = Position::Zero();       // m, of the shape's own origin; 1e18 along an axis at most
+    Quaternion rotation{};                      // unit within 1e-3; normalized exactly
+    Vector3 linearVelocity = Vector3::Zero();   // m/s, of the center of mass; beyond 3e8 counts as that
+    Vector3 angularVelocity = Vector3::Zero();  // rad/s, world axes; beyond 1e6 counts as that
+    float density = 1000.0f;                    // kg/m3, > 0; used where mass is 0
+    float mass = 0.0f;                          // kg, >= 0; 0: density times volume
+    Vector3 inertia = Vector3::Zero();          // kg m2 about the shape's principal axes; zero: the shape's own
     Material material{};
-    float linearDamping = 0.0f;                   // 1/s, >= 0: v' = -damping v
-    float angularDamping = 0.0f;                  // 1/s, >= 0
-    float gravityFactor = 1.0f;                   // finite
+    float linearDamping = 0.0f;   // 1/s, >= 0: v' = -damping v
+    float angularDamping = 0.0f;  // 1/s, >= 0
+    float gravityFactor = 1.0f;   // finite
     LockedAxes lockedAxes = LockedAxes::None;
-    // No step leaves the body, dynamic or kinematic, faster than these, whatever pushes it, nor moves it farther than they allow.
-    float maxLinearSpeed = 1000.0f;               // m/s, > 0; more than 3e8 counts as that
-    float maxAngularSpeed = 300.0f;               // rad/s, > 0; more than 1e6 counts as that
-    bool gyroscopicTorque = true;                 // conserve angular momentum of bodies whose inertia is not spherical
+    // No step leaves the body, dynamic or kinematic, faster than these, whatever pushes it, nor moves it farther than
+    // they allow.
+    float maxLinearSpeed = 1000.0f;  // m/s, > 0; more than 3e8 counts as that
+    float maxAngularSpeed = 300.0f;  // rad/s, > 0; more than 1e6 counts as that
+    bool gyroscopicTorque = true;    // conserve angular momentum of bodies whose inertia is not spherical
     bool allowSleep = true;
-    bool startAsleep = false;                     // dynamic bodies only
-    uint8_t layer = 0;                            // 0..31, see SystemSettings::layerCollides
+    bool startAsleep = false;  // dynamic bodies only
+    uint8_t layer = 0;         // 0..31, see SystemSettings::layerCollides
     // Two bodies collide only if each has a bit of its category in the other's mask,
     uint64_t category = 1, mask = ~uint64_t(0);
-    CollisionGroup group{};                       // and only if the filter of a group that both are in lets them
+    CollisionGroup group{};  // and only if the filter of a group that both are in lets them
     ContinuousCollision continuous = ContinuousCollision::Off;  // not for meshes, height fields and planes
     uint64_t userData = 0;
-    bool isSensor = false;                        // touches nothing, and reports what is inside: PhysicsSystem::SensorEvents
+    bool isSensor = false;  // touches nothing, and reports what is inside: PhysicsSystem::SensorEvents
     SensorSees sensorSees = SensorSees::Default;  // of those that layers, masks and groups let it meet
     bool sensorReportsStay = true;                // an event in each step for each body that stays inside
 };
@@ -119,20 +128,22 @@ struct SystemSettings {
     SolverSettings solver{};
     SleepSettings sleep{};
     NarrowPhaseMethod narrowPhase = NarrowPhaseMethod::Automatic;
-    float speculativeDistance = 0.02f;   // m, > 0, at most 1000: contacts begin at this separation, so that nothing bumps
-    float penetrationSlop = 0.0f;       // m, >= 0: overlap that is left alone
-    float contactFrequency = 60.0f;      // Hz, > 0, of the spring that pushes overlaps apart; a quarter of the substeps' rate at most
-    float contactDampingRatio = 1.0f;    // 0..1e6
-    float contactPushSpeed = 3.0f;       // m/s, > 0, at most 1e6: the fastest push
-    float jointFrequency = 60.0f;        // Hz, > 0, of the spring that pulls joints together; limited likewise
-    float jointDampingRatio = 1.0f;      // 0..1e6
-    // Joints that carry more than this times the mass of their own bodies are solved exactly, as trees, where they form such;
-    // > 0, infinite: never.
+    float speculativeDistance =
+        0.02f;                     // m, > 0, at most 1000: contacts begin at this separation, so that nothing bumps
+    float penetrationSlop = 0.0f;  // m, >= 0: overlap that is left alone
+    float contactFrequency =
+        60.0f;  // Hz, > 0, of the spring that pushes overlaps apart; a quarter of the substeps' rate at most
+    float contactDampingRatio = 1.0f;  // 0..1e6
+    float contactPushSpeed = 3.0f;     // m/s, > 0, at most 1e6: the fastest push
+    float jointFrequency = 60.0f;      // Hz, > 0, of the spring that pulls joints together; limited likewise
+    float jointDampingRatio = 1.0f;    // 0..1e6
+    // Joints that carry more than this times the mass of their own bodies are solved exactly, as trees, where they form
+    // such; > 0, infinite: never.
     float exactJointLoad = 10.0f;
     // m/s and rad/s, > 0, at most 1e6: the fastest pull; from afar up to three times that (Docs/Joints.md).
     float jointPushSpeed = 20.0f;
-    float restitutionSpeed = 0.5f;       // m/s, >= 0: slower impacts do not bounce
-    float boundsMargin = 0.05f;          // m, > 0: fat bounds exceed the shape's by this
+    float restitutionSpeed = 0.5f;  // m/s, >= 0: slower impacts do not bounce
+    float boundsMargin = 0.05f;     // m, > 0: fat bounds exceed the shape's by this
     // Bit j of layerCollides[i]: bodies of layer i and j collide. Must be symmetric.
     std::array<uint32_t, 32> layerCollides = AllLayers();
 

@@ -8,34 +8,48 @@
 namespace fulcrum {
 
 // The stages of a step, in their order; each is a file in Physics/Stages.
-enum class Stage : uint8_t { UpdateBounds, FindPairs, Collide, Color, BuildIslands, Prepare, Solve, Restitution, Store, Continuous, Sense, Sleep };
+enum class Stage : uint8_t {
+    UpdateBounds,
+    FindPairs,
+    Collide,
+    Color,
+    BuildIslands,
+    Prepare,
+    Solve,
+    Restitution,
+    Store,
+    Continuous,
+    Sense,
+    Sleep
+};
 inline constexpr int kStageCount = 12;
 const char* StageName(Stage stage);
 
 struct StepReport {
-    uint64_t step = 0;                                // 1 for the first
-    double totalMs = 0;                               // wall clock
-    std::array<double, kStageCount> stageMs{};        // wall clock by stage
+    uint64_t step = 0;                          // 1 for the first
+    double totalMs = 0;                         // wall clock
+    std::array<double, kStageCount> stageMs{};  // wall clock by stage
     uint32_t bodies = 0, awakeBodies = 0;
-    uint32_t pairs = 0;                               // of colliders whose fat bounds overlap, awake ones
-    uint32_t contacts = 0, contactPoints = 0;         // manifolds with at least one point, awake ones
-    uint32_t keptManifolds = 0;                       // of these, not collided anew
-    uint32_t joints = 0;                              // awake ones
-    float largestJointError = 0;                      // m, >= 0: between the anchors of locks, as the step began
-    float largestJointAngle = 0;                      // rad, >= 0
+    uint32_t pairs = 0;                        // of colliders whose fat bounds overlap, awake ones
+    uint32_t contacts = 0, contactPoints = 0;  // manifolds with at least one point, awake ones
+    uint32_t keptManifolds = 0;                // of these, not collided anew
+    uint32_t joints = 0;                       // awake ones
+    float largestJointError = 0;               // m, >= 0: between the anchors of locks, as the step began
+    float largestJointAngle = 0;               // rad, >= 0
     JointId worstJoint, mostTurnedJoint;
-    uint32_t colors = 0, overflowConstraints = 0;    // overflow: fitted no color, solved one by one
-    uint32_t islands = 0;                             // awake ones that something touches
-    float largestPenetration = 0;                     // m, >= 0, as found by Collide
+    uint32_t colors = 0, overflowConstraints = 0;  // overflow: fitted no color, solved one by one
+    uint32_t islands = 0;                          // awake ones that something touches
+    float largestPenetration = 0;                  // m, >= 0, as found by Collide
     BodyId deepestA, deepestB;
     CollideCounters libccd;
-    // Bodies that were stopped because numbers of theirs were not finite: frozen, where these were their own; where only what constraints
-    // made of their motion was, they are at rest where the step found them, and go on in the next.
+    // Bodies that were stopped because numbers of theirs were not finite: frozen, where these were their own; where
+    // only what constraints made of their motion was, they are at rest where the step found them, and go on in the
+    // next.
     uint32_t frozenBodies = 0;
-    BodyId firstFrozen;                               // the one with the lowest index
-    uint32_t sweptBodies = 0, sweptHits = 0;          // of continuous collision: bodies that were cast, and what they hit
-    uint32_t sensorTests = 0, sensorEvents = 0;       // pairs of a sensor and a body whose shapes were looked at; events
-    uint32_t clampedBodies = 0;                       // bodies that were held to their largest speeds
+    BodyId firstFrozen;                          // the one with the lowest index
+    uint32_t sweptBodies = 0, sweptHits = 0;     // of continuous collision: bodies that were cast, and what they hit
+    uint32_t sensorTests = 0, sensorEvents = 0;  // pairs of a sensor and a body whose shapes were looked at; events
+    uint32_t clampedBodies = 0;                  // bodies that were held to their largest speeds
 };
 
 }  // namespace fulcrum

@@ -35,13 +35,15 @@ MaybeError CheckPosition(const char* field, const Position& value) {
     if (MaybeError e = CheckFinite(field, value)) return e;
     const double farthest = value.cwiseAbs().maxCoeff();
     if (farthest <= kFarthest) return std::nullopt;
-    return Error{ErrorCode::OutOfRange, std::string(field) + " is " + Number(farthest) + " m along an axis; it must be at most " + Number(kFarthest)};
+    return Error{ErrorCode::OutOfRange, std::string(field) + " is " + Number(farthest) +
+                                            " m along an axis; it must be at most " + Number(kFarthest)};
 }
 
 MaybeError CheckRange(const char* field, double value, double low, double high) {
     if (MaybeError e = CheckFiniteNumber(field, value)) return e;
     if (value >= low && value <= high) return std::nullopt;
-    return Error{ErrorCode::OutOfRange, std::string(field) + " is " + Number(value) + "; it must be from " + Number(low) + " to " + Number(high)};
+    return Error{ErrorCode::OutOfRange, std::string(field) + " is " + Number(value) + "; it must be from " +
+                                            Number(low) + " to " + Number(high)};
 }
 
 MaybeError CheckPositive(const char* field, double value) {
@@ -57,7 +59,8 @@ MaybeError CheckNotNegative(const char* field, double value) {
 }
 
 MaybeError CheckRotation(const char* field, const Quaternion& value) {
-    if (!IsFinite(value)) return Error{ErrorCode::NonFinite, std::string(field) + " has a component that is not finite"};
+    if (!IsFinite(value))
+        return Error{ErrorCode::NonFinite, std::string(field) + " has a component that is not finite"};
     const double length = std::sqrt(double(LengthSquared(value)));
     if (std::fabs(length - 1.0) <= 1e-3) return std::nullopt;
     return Error{ErrorCode::Unnormalized, std::string(field) + " has length " + Number(length) + "; it must be 1"};
@@ -73,13 +76,12 @@ MaybeError Check(const Material& m) {
 MaybeError CheckContinuous(ContinuousCollision continuous, const Shape& shape) {
     if (MaybeError e = CheckEnum("continuous", continuous, ContinuousCollision::LinearAndAngular)) return e;
     if (continuous != ContinuousCollision::Off && (shape.IsSurface() || shape.Type() == ShapeType::Plane))
-        return Error{ErrorCode::Unsupported, std::string("continuous is set for a ") + ShapeTypeName(shape.Type()) + "; it is for convex shapes and compounds"};
+        return Error{ErrorCode::Unsupported, std::string("continuous is set for a ") + ShapeTypeName(shape.Type()) +
+                                                 "; it is for convex shapes and compounds"};
     return std::nullopt;
 }
 
-MaybeError CheckSensor(SensorSees sees) {
-    return CheckEnum("sensorSees", sees, SensorSees::All);
-}
+MaybeError CheckSensor(SensorSees sees) { return CheckEnum("sensorSees", sees, SensorSees::All); }
 
 MaybeError CheckInverses(const char* massField, const char* inertiaField, float mass, const Vector3& inertia) {
     const auto usable = [](float x) { return std::isnormal(x) && std::isnormal(1.0f / x); };
@@ -88,7 +90,8 @@ MaybeError CheckInverses(const char* massField, const char* inertiaField, float 
                                                 " kg; it and its inverse must be normal floats"};
     for (int k = 0; k < 3; ++k)
         if (!usable(inertia[k]))
-            return Error{ErrorCode::OutOfRange, std::string(inertiaField) + " makes a moment of inertia of " + Number(inertia[k]) +
+            return Error{ErrorCode::OutOfRange, std::string(inertiaField) + " makes a moment of inertia of " +
+                                                    Number(inertia[k]) +
                                                     " kg m2; it and its inverse must be normal floats"};
     return std::nullopt;
 }
@@ -97,17 +100,21 @@ static MaybeError CheckInverses(const BodySettings& s) {
     const char* massField = s.mass > 0 ? "mass" : "density";
     const float mass = s.mass > 0 ? s.mass : s.density * s.shape->Mass().volume;
     if (!s.inertia.isZero(0)) return CheckInverses(massField, "inertia", mass, s.inertia);
-    return CheckInverses(massField, massField, mass, Vector3(s.shape->Mass().principalInertia * (mass / s.shape->Mass().volume)));
+    return CheckInverses(massField, massField, mass,
+                         Vector3(s.shape->Mass().principalInertia * (mass / s.shape->Mass().volume)));
 }
 
 MaybeError CheckShape(const Shape* shape, MotionType motion) {
     if (!shape) return Error{ErrorCode::Unsupported, "shape is null; a body needs one"};
     if (motion == MotionType::Dynamic && (shape->IsSurface() || shape->Type() == ShapeType::Plane))
-        return Error{ErrorCode::Unsupported, std::string("shape is a ") + ShapeTypeName(shape->Type()) + "; a dynamic body needs one with a volume"};
+        return Error{ErrorCode::Unsupported, std::string("shape is a ") + ShapeTypeName(shape->Type()) +
+                                                 "; a dynamic body needs one with a volume"};
     // Of a custom shape, or with one inside: all others are checked when they are made.
     const Bounds& box = shape->LocalBounds();
-    if (shape->Type() != ShapeType::Plane && shape->Type() != ShapeType::Empty && !(IsFinite(box.lower) && IsFinite(box.upper)))
-        return Error{ErrorCode::NonFinite, std::string("shape is a ") + ShapeTypeName(shape->Type()) + " whose bounds are not finite"};
+    if (shape->Type() != ShapeType::Plane && shape->Type() != ShapeType::Empty &&
+        !(IsFinite(box.lower) && IsFinite(box.upper)))
+        return Error{ErrorCode::NonFinite,
+                     std::string("shape is a ") + ShapeTypeName(shape->Type()) + " whose bounds are not finite"};
     return std::nullopt;
 }
 
@@ -148,26 +155,30 @@ MaybeError Check(const BodySettings& s) {
 MaybeError Check(const SystemSettings& s) {
     // Where more makes no sense, and products of it would leave the floats.
     constexpr double kMost = 1e6;
-    if (MaybeError e = FirstOf(CheckFinite("gravity", s.gravity), CheckRange("gravity", double{s.gravity.cwiseAbs().maxCoeff()}, 0, kMost),
-                               CheckRange("solver.substeps", s.solver.substeps, 1, 64),
-                               CheckRange("solver.velocityIterations", s.solver.velocityIterations, 1, 255),
-                               CheckRange("solver.positionIterations", s.solver.positionIterations, 0, 255),
-                               CheckEnum("narrowPhase", s.narrowPhase, NarrowPhaseMethod::Libccd),
-                               CheckNotNegative("sleep.seconds", s.sleep.seconds),
-                               CheckNotNegative("sleep.linearSpeed", s.sleep.linearSpeed),
-                               CheckPositive("speculativeDistance", s.speculativeDistance), CheckRange("speculativeDistance", s.speculativeDistance, 0, 1000),
-                               CheckNotNegative("penetrationSlop", s.penetrationSlop),
-                               CheckPositive("contactFrequency", s.contactFrequency),
-                               CheckNotNegative("contactDampingRatio", s.contactDampingRatio), CheckRange("contactDampingRatio", s.contactDampingRatio, 0, kMost),
-                               CheckPositive("contactPushSpeed", s.contactPushSpeed), CheckRange("contactPushSpeed", s.contactPushSpeed, 0, kMost),
-                               CheckPositive("jointFrequency", s.jointFrequency),
-                               CheckNotNegative("jointDampingRatio", s.jointDampingRatio), CheckRange("jointDampingRatio", s.jointDampingRatio, 0, kMost),
-                               CheckPositive("jointPushSpeed", s.jointPushSpeed), CheckRange("jointPushSpeed", s.jointPushSpeed, 0, kMost),
-                               s.exactJointLoad == std::numeric_limits<float>::infinity()
-                                   ? MaybeError()
-                                   : CheckPositive("exactJointLoad", s.exactJointLoad),
-                               CheckNotNegative("restitutionSpeed", s.restitutionSpeed),
-                               CheckPositive("boundsMargin", s.boundsMargin)))
+    if (MaybeError e = FirstOf(
+            CheckFinite("gravity", s.gravity), CheckRange("gravity", double{s.gravity.cwiseAbs().maxCoeff()}, 0, kMost),
+            CheckRange("solver.substeps", s.solver.substeps, 1, 64),
+            CheckRange("solver.velocityIterations", s.solver.velocityIterations, 1, 255),
+            CheckRange("solver.positionIterations", s.solver.positionIterations, 0, 255),
+            CheckEnum("narrowPhase", s.narrowPhase, NarrowPhaseMethod::Libccd),
+            CheckNotNegative("sleep.seconds", s.sleep.seconds),
+            CheckNotNegative("sleep.linearSpeed", s.sleep.linearSpeed),
+            CheckPositive("speculativeDistance", s.speculativeDistance),
+            CheckRange("speculativeDistance", s.speculativeDistance, 0, 1000),
+            CheckNotNegative("penetrationSlop", s.penetrationSlop),
+            CheckPositive("contactFrequency", s.contactFrequency),
+            CheckNotNegative("contactDampingRatio", s.contactDampingRatio),
+            CheckRange("contactDampingRatio", s.contactDampingRatio, 0, kMost),
+            CheckPositive("contactPushSpeed", s.contactPushSpeed),
+            CheckRange("contactPushSpeed", s.contactPushSpeed, 0, kMost),
+            CheckPositive("jointFrequency", s.jointFrequency),
+            CheckNotNegative("jointDampingRatio", s.jointDampingRatio),
+            CheckRange("jointDampingRatio", s.jointDampingRatio, 0, kMost),
+            CheckPositive("jointPushSpeed", s.jointPushSpeed), CheckRange("jointPushSpeed", s.jointPushSpeed, 0, kMost),
+            s.exactJointLoad == std::numeric_limits<float>::infinity()
+                ? MaybeError()
+                : CheckPositive("exactJointLoad", s.exactJointLoad),
+            CheckNotNegative("restitutionSpeed", s.restitutionSpeed), CheckPositive("boundsMargin", s.boundsMargin)))
         return e;
     for (size_t i = 0; i < 32; ++i)
         for (size_t j = 0; j < i; ++j)

@@ -22,7 +22,8 @@ template <class E>
 MaybeError CheckEnum(const char* field, E value, E last) {
     return CheckRange(field, static_cast<double>(value), 0, static_cast<double>(last));
 }
-// Mass, kg, and moments of inertia, kg m2, must have inverses that are normal floats; the fields are what they come from.
+// Mass, kg, and moments of inertia, kg m2, must have inverses that are normal floats; the fields are what they come
+// from.
 MaybeError CheckInverses(const char* massField, const char* inertiaField, float mass, const Vector3& inertia);
 // Not null; of a dynamic body, with a volume.
 MaybeError CheckShape(const Shape* shape, MotionType motion);

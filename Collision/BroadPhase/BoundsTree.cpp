@@ -31,9 +31,7 @@ double BoundsTree::HalfArea(const Packed& box) {
     return x * y + y * z + z * x;
 }
 
-bool BoundsTree::IsValid(const Bounds& b) {
-    return b.lower.isAtMost(b.upper);
-}
+bool BoundsTree::IsValid(const Bounds& b) { return b.lower.isAtMost(b.upper); }
 
 // ---- Nodes
 
@@ -236,9 +234,7 @@ void BoundsTree::Clear() {
     area_ = builtArea_ = debt_ = 0;
 }
 
-Bounds BoundsTree::TotalBounds() const {
-    return size_ == 0 ? Bounds{} : Unpack(Union(nodes_[kRoot]));
-}
+Bounds BoundsTree::TotalBounds() const { return size_ == 0 ? Bounds{} : Unpack(Union(nodes_[kRoot])); }
 
 float BoundsTree::Cost() const {
     if (size_ == 0) return 0;
@@ -262,7 +258,8 @@ float BoundsTree::Cost() const {
 }
 
 size_t BoundsTree::MemoryUsed() const {
-    return nodes_.capacity() * sizeof(Node) + places_.capacity() * sizeof(uint32_t) + gathered_.capacity() * sizeof(Packed);
+    return nodes_.capacity() * sizeof(Node) + places_.capacity() * sizeof(uint32_t) +
+           gathered_.capacity() * sizeof(Packed);
 }
 
 }  // namespace fulcrum

@@ -1,15 +1,18 @@
-// A dynamic tree of bounding boxes, eight to a node, that finds the leaves which overlap a box. The broad phase keeps one
-// for moving and one for static colliders. Queries may run on any number of threads at once; everything that is not const
-// is serial. The tree's shape decides the order in which leaves are found, never which: whoever needs an order sorts.
+// A dynamic tree of bounding boxes, eight to a node, that finds the leaves which overlap a box. The broad phase keeps
+// one for moving and one for static colliders. Queries may run on any number of threads at once; everything that is not
+// const is serial. The tree's shape decides the order in which leaves are found, never which: whoever needs an order
+// sorts.
 //
 // Three ways to change it, each cheap on its own, and one call a step that keeps it good:
-// - Insert appends to a tree of recent arrivals, packed eight by eight in the order of their insertion, which hangs in the
-//   last slot of the root. Colliders that are created together mostly lie together, so even this tree is worth searching.
+// - Insert appends to a tree of recent arrivals, packed eight by eight in the order of their insertion, which hangs in
+// the
+//   last slot of the root. Colliders that are created together mostly lie together, so even this tree is worth
+//   searching.
 // - Update writes the leaf's box and enlarges what is above it as far as needed; it only notes what could shrink.
 // - Remove empties the leaf's slot and gives back nodes that became empty.
 // - Optimize tightens the noted boxes, and rebuilds all where that pays (see Optimize).
-// Where most leaves change at once there are ways that cost less a leaf: UpdateLeaves for their boxes, VisitPairs for what
-// they overlap. Both work on ranges of nodes, which any number of threads may share.
+// Where most leaves change at once there are ways that cost less a leaf: UpdateLeaves for their boxes, VisitPairs for
+// what they overlap. Both work on ranges of nodes, which any number of threads may share.
 #pragma once
 
 #include <Fulcrum/Math/Bounds.h>
@@ -26,34 +29,36 @@ class TreeRay;
 
 class BoundsTree {
 public:
-    // Ids are the caller's, dense from 0: memory grows with the largest. Bounds have lower <= upper (asserted). What of them lies beyond
+    // Ids are the caller's, dense from 0: memory grows with the largest. Bounds have lower <= upper (asserted). What of
+    // them lies beyond
     // +-kFarthest counts as lying there, and NaN as nowhere: no number that comes in can spoil the tree.
     static constexpr float kFarthest = 1e38f;
-    void Insert(uint32_t id, const Bounds& bounds);         // id is not in the tree
-    void Remove(uint32_t id);                               // id is in the tree
-    void Update(uint32_t id, const Bounds& bounds);         // id is in the tree
+    void Insert(uint32_t id, const Bounds& bounds);  // id is not in the tree
+    void Remove(uint32_t id);                        // id is in the tree
+    void Update(uint32_t id, const Bounds& bounds);  // id is in the tree
 
     bool Contains(uint32_t id) const { return id < places_.size() && places_[id] != kNowhere; }
     uint32_t Size() const { return size_; }
-    Bounds GetBounds(uint32_t id) const;                    // id is in the tree
+    Bounds GetBounds(uint32_t id) const;  // id is in the tree
 
     // Once a step: tightens the boxes above leaves that changed, and rebuilds the tree when the extra work which its
     // loosened shape has cost the queries since the last build comes to the price of a build. Each Insert and Update is
     // taken to be followed by one query. If the shape decays steadily, that is the cheapest moment to rebuild.
     void Optimize();
 
-    // Nodes are 0 .. NodeCount() - 1; any may be without leaves. What works on ranges of them is defined in BoundsTreeBulk.h.
+    // Nodes are 0 .. NodeCount() - 1; any may be without leaves. What works on ranges of them is defined in
+    // BoundsTreeBulk.h.
     uint32_t NodeCount() const { return nodeCount_; }
-    // Writes boundsOf(uint32_t id) into all leaves of the nodes begin .. end - 1. Ranges that share no node may be written at
-    // once. Until all nodes are written and NoteUpdated was called, nothing else may be asked but NodeCount.
+    // Writes boundsOf(uint32_t id) into all leaves of the nodes begin .. end - 1. Ranges that share no node may be
+    // written at once. Until all nodes are written and NoteUpdated was called, nothing else may be asked but NodeCount.
     template <class BoundsOf>
     void UpdateLeaves(uint32_t begin, uint32_t end, BoundsOf&& boundsOf);
     // After UpdateLeaves: how many of the leaves changed. The next Optimize, which must follow before any query, refits
     // their ancestors.
     void NoteUpdated(uint32_t changed);
 
-    // Builds the whole tree anew, top down, each node full but for the last ones; leaves that are large beside the whole,
-    // as floors are, hang right below the root.
+    // Builds the whole tree anew, top down, each node full but for the last ones; leaves that are large beside the
+    // whole, as floors are, hang right below the root.
     void Rebuild();
 
     // Forgets all leaves and keeps the memory.
@@ -64,18 +69,19 @@ public:
     template <class Visitor>
     void Query(const Bounds& bounds, Visitor&& visit) const;
 
-    // Calls visit(uint32_t id, uint32_t other) once for each two leaves that overlap, of which the node with the lower number is
-    // among begin .. end - 1: the ranges of all nodes together find all pairs.
+    // Calls visit(uint32_t id, uint32_t other) once for each two leaves that overlap, of which the node with the lower
+    // number is among begin .. end - 1: the ranges of all nodes together find all pairs.
     template <class Visitor>
     void VisitPairs(uint32_t begin, uint32_t end, Visitor&& visit) const;
-    // Calls visit(const Bounds& all, std::span<const uint32_t> ids) for the leaves of each node among begin .. end - 1 that has
-    // any; `all` contains them.
+    // Calls visit(const Bounds& all, std::span<const uint32_t> ids) for the leaves of each node among begin .. end - 1
+    // that has any; `all` contains them.
     template <class Visitor>
     void VisitGroups(uint32_t begin, uint32_t end, Visitor&& visit) const;
 
     // These two are defined in BoundsTreeCasts.h, which whoever calls them includes.
-    // Calls visit(uint32_t id) for the leaves that the ray, or moving box, meets within `maxFraction` of its way: those of a
-    // node that is met earlier come first. The visitor may lower maxFraction as it finds hits; below 0 ends the search.
+    // Calls visit(uint32_t id) for the leaves that the ray, or moving box, meets within `maxFraction` of its way: those
+    // of a node that is met earlier come first. The visitor may lower maxFraction as it finds hits; below 0 ends the
+    // search.
     template <class Visitor>
     void CastRay(const TreeRay& ray, float& maxFraction, Visitor&& visit) const;
     // The same for the leaves within `maxDistance` m of a box, nearer nodes first.
@@ -85,14 +91,15 @@ public:
     // A box around all leaves: the tightest after Optimize or Rebuild. Empty without leaves.
     Bounds TotalBounds() const;
 
-    // The nodes that a random line through TotalBounds() is expected to visit (surface area heuristic); 0 without leaves.
+    // The nodes that a random line through TotalBounds() is expected to visit (surface area heuristic); 0 without
+    // leaves.
     float Cost() const;
 
     // Bytes that the tree holds on to.
     size_t MemoryUsed() const;
 
-    // Aborts where the structure is broken: a leaf unreachable or reached twice, a parent that does not contain a child,
-    // a wrong count. For tests; reads the whole tree.
+    // Aborts where the structure is broken: a leaf unreachable or reached twice, a parent that does not contain a
+    // child, a wrong count. For tests; reads the whole tree.
     void Validate() const;
 
 private:
@@ -100,24 +107,24 @@ private:
     static constexpr uint32_t kNowhere = ~0u;
     static constexpr uint32_t kNoNode = ~0u;
     static constexpr uint32_t kRoot = 0;
-    static constexpr int kPendingSlot = kWidth - 1;         // of the root: the tree of recent arrivals
-    static constexpr int kMaxDepth = 24;                    // of nodes; halving 2^32 leaves by eights needs 12
+    static constexpr int kPendingSlot = kWidth - 1;  // of the root: the tree of recent arrivals
+    static constexpr int kMaxDepth = 24;             // of nodes; halving 2^32 leaves by eights needs 12
     static constexpr uint32_t kMaxPendingHeight = 22;
     static constexpr int kMaxStack = (kWidth - 1) * kMaxDepth + 1;
 
-    // Eight boxes, one a column. Upper coordinates are negated, so that a box is eight floats of which the union takes the
-    // smallest, and a query compares "row <= limit" alone. Empty slots are in neither mask; their box is inverted.
+    // Eight boxes, one a column. Upper coordinates are negated, so that a box is eight floats of which the union takes
+    // the smallest, and a query compares "row <= limit" alone. Empty slots are in neither mask; their box is inverted.
     struct alignas(64) Node {
         float lower[3][kWidth];
-        uint32_t child[kWidth];                             // a node, or the id of a leaf
+        uint32_t child[kWidth];  // a node, or the id of a leaf
         float negatedUpper[3][kWidth];
-        uint32_t parent;                                    // kNoNode for the root; the next free node for a free one
+        uint32_t parent;  // kNoNode for the root; the next free node for a free one
         uint8_t parentSlot;
-        uint8_t leaves;                                     // slots that hold leaves
-        uint8_t inner;                                      // slots that hold nodes
-        uint8_t stale;                                      // inner slots whose box may be larger than needed
-        uint8_t appended;                                   // pending nodes: slots used so far
-        uint8_t depthFromLeaves;                            // pending nodes: 0 holds leaves
+        uint8_t leaves;           // slots that hold leaves
+        uint8_t inner;            // slots that hold nodes
+        uint8_t stale;            // inner slots whose box may be larger than needed
+        uint8_t appended;         // pending nodes: slots used so far
+        uint8_t depthFromLeaves;  // pending nodes: 0 holds leaves
     };
     static_assert(sizeof(Node) == 256);
 
@@ -161,19 +168,19 @@ private:
     template <class Test, class Limit, class Visitor>
     void VisitInOrder(Test&& test, Limit&& limit, Visitor&& visit) const;
 
-    std::vector<Node> nodes_;                               // the first nodeCount_ are in use or on the free list
-    std::vector<uint32_t> places_;                          // id -> node * kWidth + slot
-    std::vector<Packed> gathered_;                          // Rebuild's leaves; lane 3 holds the id's bits
-    uint32_t pendingSpine_[kMaxPendingHeight] = {};                 // the pending tree's node being filled, by height
-    uint32_t pendingHeight_ = 0;                            // nodes on the spine
+    std::vector<Node> nodes_;                        // the first nodeCount_ are in use or on the free list
+    std::vector<uint32_t> places_;                   // id -> node * kWidth + slot
+    std::vector<Packed> gathered_;                   // Rebuild's leaves; lane 3 holds the id's bits
+    uint32_t pendingSpine_[kMaxPendingHeight] = {};  // the pending tree's node being filled, by height
+    uint32_t pendingHeight_ = 0;                     // nodes on the spine
     uint32_t nodeCount_ = 0;
     uint32_t freeNode_ = kNoNode;
     uint32_t size_ = 0;
-    uint32_t pendingCount_ = 0;                             // insertions since the last build
+    uint32_t pendingCount_ = 0;  // insertions since the last build
     uint32_t changesSinceOptimize_ = 0;
-    double area_ = 0;                                       // summed half areas of all nodes but the root
-    double builtArea_ = 0;                                  // the same after the last build
-    double debt_ = 0;                                       // queries' worth of work lost since the last build
+    double area_ = 0;       // summed half areas of all nodes but the root
+    double builtArea_ = 0;  // the same after the last build
+    double debt_ = 0;       // queries' worth of work lost since the last build
 };
 
 // The slots whose boxes overlap the query; limit = {upper, -lower}.
@@ -228,12 +235,14 @@ inline Bounds BoundsTree::Unpack(const Packed& box) {
 // The box around a node's eight slots; empty ones are inverted and do not count.
 inline BoundsTree::Packed BoundsTree::Union(const Node& node) {
     // The fourth rows are anything: their lanes are not read.
-    const float* const rows[8] = {node.lower[0],        node.lower[1],        node.lower[2],        node.lower[2],
-                                  node.negatedUpper[0], node.negatedUpper[1], node.negatedUpper[2], node.negatedUpper[2]};
+    const float* const rows[8] = {node.lower[0],        node.lower[1],        node.lower[2],
+                                  node.lower[2],        node.negatedUpper[0], node.negatedUpper[1],
+                                  node.negatedUpper[2], node.negatedUpper[2]};
     Wide<8> column[8];
     GatherRows<8>(rows, column);
     Packed box;
-    Min(Min(Min(column[0], column[1]), Min(column[2], column[3])), Min(Min(column[4], column[5]), Min(column[6], column[7])))
+    Min(Min(Min(column[0], column[1]), Min(column[2], column[3])),
+        Min(Min(column[4], column[5]), Min(column[6], column[7])))
         .Store(box.lane);
     return box;
 }

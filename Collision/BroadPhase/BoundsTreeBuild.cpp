@@ -1,5 +1,5 @@
-// The bulk build of a BoundsTree: top down, splitting at medians along the longest axis of the centers, at multiples of a
-// power of eight, so that all nodes but the last of each height are full.
+// The bulk build of a BoundsTree: top down, splitting at medians along the longest axis of the centers, at multiples of
+// a power of eight, so that all nodes but the last of each height are full.
 #include <Fulcrum/Collision/BroadPhase/BoundsTree.h>
 
 #include <algorithm>
@@ -91,7 +91,8 @@ void SplitByRank(Leaf* leaves, uint32_t count, uint32_t left, const Spread& spre
     uint32_t end = 0;
     for (uint32_t i = 0; i < count; ++i) {
         int rank = 0;
-        for (uint32_t j = 0; j < count; j += kStep) rank += std::popcount((Lanes::Load(keys + j) < Lanes(keys[i])).ToBits());
+        for (uint32_t j = 0; j < count; j += kStep)
+            rank += std::popcount((Lanes::Load(keys + j) < Lanes(keys[i])).ToBits());
         Swap(leaves[i], leaves[end]);
         end += static_cast<uint32_t>(rank) < left;
     }
@@ -150,8 +151,8 @@ uint32_t BoundsTree::MoveLargeLeavesToBack() {
     return large;
 }
 
-// Fills the slots from `slot` to before `end` of a node with the gathered leaves [first, first + count). Returns the box
-// around them.
+// Fills the slots from `slot` to before `end` of a node with the gathered leaves [first, first + count). Returns the
+// box around them.
 BoundsTree::Packed BoundsTree::BuildNode(uint32_t node, uint32_t first, uint32_t count, int slot, int end) {
     Wide<8> total(std::numeric_limits<float>::infinity());
     Packed box;
@@ -172,7 +173,8 @@ BoundsTree::Packed BoundsTree::BuildNode(uint32_t node, uint32_t first, uint32_t
 }
 
 // Halves the range until each part fits a child of the given capacity, and puts the children into the next slots.
-void BoundsTree::BuildChildren(uint32_t node, uint32_t first, uint32_t count, uint32_t capacity, int& slot, Packed& total) {
+void BoundsTree::BuildChildren(uint32_t node, uint32_t first, uint32_t count, uint32_t capacity, int& slot,
+                               Packed& total) {
     if (count > capacity) {
         const uint32_t units = (count - 1) / capacity + 1;
         const uint32_t left = units / 2 * capacity;
@@ -206,7 +208,8 @@ void BoundsTree::SplitAt(uint32_t first, uint32_t count, uint32_t left) {
         const float scale = static_cast<float>(kBins) / spread.extent;
         const auto place = [&](const Packed& leaf) { return (Center(leaf.lane, spread.axis) - spread.lowest) * scale; };
         uint32_t histogram[kBins] = {};
-        for (uint32_t i = first; i < first + count; ++i) ++histogram[std::min(static_cast<int>(place(gathered_[i])), kBins - 1)];
+        for (uint32_t i = first; i < first + count; ++i)
+            ++histogram[std::min(static_cast<int>(place(gathered_[i])), kBins - 1)];
         int bin = 0;
         uint32_t below = 0;
         while (below + histogram[bin] <= left) below += histogram[bin++];

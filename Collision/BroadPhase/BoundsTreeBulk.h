@@ -1,5 +1,6 @@
-// What is asked of most leaves of a BoundsTree at once, node by node: for a step in which nearly everything moved, far cheaper a
-// leaf than one by one, and shared out by ranges of nodes. Used by UpdateBounds and FindPairs. Allocates nothing.
+// What is asked of most leaves of a BoundsTree at once, node by node: for a step in which nearly everything moved, far
+// cheaper a leaf than one by one, and shared out by ranges of nodes. Used by UpdateBounds and FindPairs. Allocates
+// nothing.
 #pragma once
 
 #include <Fulcrum/Collision/BroadPhase/BoundsTree.h>

@@ -1,4 +1,5 @@
-// Rays, moving boxes and nearest boxes in a BoundsTree. Used by the queries; any number of threads at once. Allocates nothing.
+// Rays, moving boxes and nearest boxes in a BoundsTree. Used by the queries; any number of threads at once. Allocates
+// nothing.
 #pragma once
 
 #include <Fulcrum/Collision/BroadPhase/BoundsTree.h>
@@ -8,8 +9,8 @@
 
 namespace fulcrum {
 
-// From `origin` to origin + displacement, and a box about it that moves along. The origin is exact: what a float cannot hold of
-// it widens the box.
+// From `origin` to origin + displacement, and a box about it that moves along. The origin is exact: what a float cannot
+// hold of it widens the box.
 class TreeRay {
 public:
     TreeRay(const Position& origin, const Vector3& displacement, const Vector3& halfExtents = Vector3::Zero()) {
@@ -31,7 +32,8 @@ private:
     float inverse[3];
 };
 
-// Several rays in the same coordinates: which of them meet a box that the tree may give them, by the arithmetic of the tree.
+// Several rays in the same coordinates: which of them meet a box that the tree may give them, by the arithmetic of the
+// tree.
 class TreeRays {
 public:
     void Add(const TreeRay& ray, float maxFraction) { lanes_.Add(ray.toLower, ray.toUpper, ray.inverse, maxFraction); }
@@ -39,7 +41,8 @@ public:
     const float* Limits() const { return lanes_.limit; }
     float LargestLimit() const { return lanes_.LargestLimit(); }
     uint32_t Intersecting(const Bounds& box) const {
-        const float lower[3] = {box.lower.x(), box.lower.y(), box.lower.z()}, upper[3] = {box.upper.x(), box.upper.y(), box.upper.z()};
+        const float lower[3] = {box.lower.x(), box.lower.y(), box.lower.z()},
+                    upper[3] = {box.upper.x(), box.upper.y(), box.upper.z()};
         return lanes_.Intersecting(lower, upper, TreeRay::kSlack);
     }
 
@@ -48,7 +51,8 @@ private:
 };
 
 // The slots that the ray meets, and at which fractions. Empty ones may be among them.
-inline uint32_t BoundsTree::CastToSlots(const Node& node, const TreeRay& ray, float maxFraction, float (&nearest)[kWidth]) {
+inline uint32_t BoundsTree::CastToSlots(const Node& node, const TreeRay& ray, float maxFraction,
+                                        float (&nearest)[kWidth]) {
     constexpr int kStep = kLanes >= 8 ? 8 : 4;
     using Lanes = Wide<kStep>;
     uint32_t bits = 0;
@@ -68,7 +72,8 @@ inline uint32_t BoundsTree::CastToSlots(const Node& node, const TreeRay& ray, fl
 }
 
 // The slots within the distance of a box, by its square; limit = {upper, -lower}.
-inline uint32_t BoundsTree::MeasureSlots(const Node& node, const float (&limit)[6], float maxSquare, float (&square)[kWidth]) {
+inline uint32_t BoundsTree::MeasureSlots(const Node& node, const float (&limit)[6], float maxSquare,
+                                         float (&square)[kWidth]) {
     constexpr int kStep = kLanes >= 8 ? 8 : 4;
     using Lanes = Wide<kStep>;
     constexpr float kSlack = 1 + 0x1p-20f;
@@ -120,15 +125,16 @@ void BoundsTree::VisitInOrder(Test&& test, Limit&& limit, Visitor&& visit) const
 
 template <class Visitor>
 void BoundsTree::CastRay(const TreeRay& ray, float& maxFraction, Visitor&& visit) const {
-    VisitInOrder([&](const Node& node, float (&keys)[kWidth]) { return CastToSlots(node, ray, maxFraction, keys); },
+    VisitInOrder([&](const Node& node, float(&keys)[kWidth]) { return CastToSlots(node, ray, maxFraction, keys); },
                  [&] { return maxFraction * TreeRay::kSlack; }, visit);
 }
 
 template <class Visitor>
 void BoundsTree::VisitNear(const Bounds& box, float& maxDistance, Visitor&& visit) const {
-    const float limit[6] = {box.upper.x(), box.upper.y(), box.upper.z(), -box.lower.x(), -box.lower.y(), -box.lower.z()};
+    const float limit[6] = {box.upper.x(),  box.upper.y(),  box.upper.z(),
+                            -box.lower.x(), -box.lower.y(), -box.lower.z()};
     const auto square = [&] { return maxDistance < 0 ? -1.0f : maxDistance * maxDistance; };
-    VisitInOrder([&](const Node& node, float (&keys)[kWidth]) { return MeasureSlots(node, limit, square(), keys); },
+    VisitInOrder([&](const Node& node, float(&keys)[kWidth]) { return MeasureSlots(node, limit, square(), keys); },
                  [&] { return square() * (1 + 0x1p-20f); }, visit);
 }
 

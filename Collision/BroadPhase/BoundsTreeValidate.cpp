@@ -36,8 +36,9 @@ void BoundsTree::ValidateNode(uint32_t node, int depth, uint32_t& nodes, uint32_
         const Packed box = SlotBox(node, slot);
         if ((n.leaves & bit) != 0) {
             ++leaves;
-            Require(n.child[slot] < places_.size() && places_[n.child[slot]] == node * kWidth + static_cast<uint32_t>(slot),
-                    "a leaf is not where its id says");
+            Require(
+                n.child[slot] < places_.size() && places_[n.child[slot]] == node * kWidth + static_cast<uint32_t>(slot),
+                "a leaf is not where its id says");
             Require(IsValid(Unpack(box)), "a leaf's box is not a box");
         } else if ((n.inner & bit) != 0) {
             const uint32_t child = n.child[slot];

@@ -1,5 +1,5 @@
-// Rays that lie close together, against one box after another: each by a lane. Used by the packets of the queries and by the
-// surfaces. Allocates nothing.
+// Rays that lie close together, against one box after another: each by a lane. Used by the packets of the queries and
+// by the surfaces. Allocates nothing.
 #pragma once
 
 #include <Fulcrum/Math/Wide.h>
@@ -9,13 +9,13 @@
 namespace fulcrum {
 
 struct RayLanes {
-    static constexpr int kMost = 32;    // rays
+    static constexpr int kMost = 32;  // rays
 
     // Of ray i, in column i: what meets the lower and the upper planes of boxes, and 1 / displacement.
     alignas(32) float toLower[3][kMost] = {}, toUpper[3][kMost] = {}, inverse[3][kMost] = {};
     // The fraction up to which it goes; negative: there is no such ray.
     alignas(32) float limit[kMost];
-    int count = 0;                      // lanes that may hold rays
+    int count = 0;  // lanes that may hold rays
 
     RayLanes() {
         for (float& l : limit) l = -1;

@@ -8,8 +8,8 @@ namespace fulcrum {
 
 namespace {
 
-// One or two vertices of a core that lie farthest along a direction; more than two belong to a face or a fan of needles,
-// of which the two first found do.
+// One or two vertices of a core that lie farthest along a direction; more than two belong to a face or a fan of
+// needles, of which the two first found do.
 struct SupportingEdge {
     uint8_t vertices[2];
     int count = 0;
@@ -45,7 +45,8 @@ uint32_t FeatureOf(const SupportingEdge& a, const SupportingEdge& b) {
     return CrossingFeature(EdgeName(a.vertices[0], a.vertices[1]), EdgeName(b.vertices[0], b.vertices[1]));
 }
 
-void AddPoint(const PolyhedronPair& pair, const Vector3& onCoreA, float separation, uint32_t feature, Manifold& manifold) {
+void AddPoint(const PolyhedronPair& pair, const Vector3& onCoreA, float separation, uint32_t feature,
+              Manifold& manifold) {
     ManifoldPoint& point = manifold.points[manifold.pointCount++];
     point.positionOnA = onCoreA + manifold.normal * pair.a.radius;
     point.separation = separation - pair.RadiusSum();
@@ -67,10 +68,10 @@ bool AddParallelEdges(const PolyhedronPair& pair, const Segment& onA, const Segm
     return manifold.pointCount > 0;
 }
 
-// Whether a face of A that is nearly perpendicular to the axis meets, between its sides, what gives the axis: an edge of the other
-// that reaches far beyond it on both sides, and may dip below its plane there.
-bool RestsOn(const PolyhedronPair& pair, const ReferenceFace& face, const KnownAxis& known, const ContactTolerances& tolerances,
-             const Manifold& manifold) {
+// Whether a face of A that is nearly perpendicular to the axis meets, between its sides, what gives the axis: an edge
+// of the other that reaches far beyond it on both sides, and may dip below its plane there.
+bool RestsOn(const PolyhedronPair& pair, const ReferenceFace& face, const KnownAxis& known,
+             const ContactTolerances& tolerances, const Manifold& manifold) {
     if (!face.ofA || Dot(pair.a.faces[face.index].normal, known.axis) < tolerances.faceOfACosine) return false;
     float least = manifold.points[0].separation;
     for (int i = 1; i < manifold.pointCount; ++i) least = Min(least, manifold.points[i].separation);
@@ -98,7 +99,8 @@ bool TryFaces(const PolyhedronPair& pair, const KnownAxis& known, const ContactT
     }
     for (int i = 0; i < count; ++i) {
         const FaceContact contact = BuildFaceContact(pair, faces[i], tolerances, manifold);
-        if (manifold.pointCount == 0 || !(contact.touches || RestsOn(pair, faces[i], known, tolerances, manifold))) continue;
+        if (manifold.pointCount == 0 || !(contact.touches || RestsOn(pair, faces[i], known, tolerances, manifold)))
+            continue;
         cache.kind = faces[i].ofA ? PairCache::Kind::FaceOfA : PairCache::Kind::FaceOfB;
         cache.indexA = static_cast<uint16_t>(faces[i].ofA ? faces[i].index : contact.incidentFace);
         cache.indexB = static_cast<uint16_t>(faces[i].ofA ? contact.incidentFace : faces[i].index);
@@ -131,7 +133,8 @@ Vector3 CrossingNormal(const Segment& onA, const Segment& onB, const Vector3& to
 }
 
 // The manifold of edges and vertices.
-void BuildFromEdges(const PolyhedronPair& pair, const KnownAxis& known, const ContactTolerances& tolerances, PairCache& cache, Manifold& manifold) {
+void BuildFromEdges(const PolyhedronPair& pair, const KnownAxis& known, const ContactTolerances& tolerances,
+                    PairCache& cache, Manifold& manifold) {
     manifold.normal = known.axis;
     manifold.pointCount = 0;
     RememberAxis(known.axis, cache);

@@ -1,5 +1,5 @@
-// Manifolds from a known axis of separation or least depth: faces where one is nearly as good an axis, else the edges or
-// vertices that lie farthest along it. Called by CollidePolyhedra and the libccd pair function. Thread-safe.
+// Manifolds from a known axis of separation or least depth: faces where one is nearly as good an axis, else the edges
+// or vertices that lie farthest along it. Called by CollidePolyhedra and the libccd pair function. Thread-safe.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/FaceContact.h>

@@ -6,8 +6,8 @@ namespace fulcrum {
 
 namespace {
 
-// An edge and the arc between its faces' normals on the unit sphere; a segment has no faces and a whole circle there, a flat
-// polyhedron's edge half a circle, of which `outwards` is the middle.
+// An edge and the arc between its faces' normals on the unit sphere; a segment has no faces and a whole circle there, a
+// flat polyhedron's edge half a circle, of which `outwards` is the middle.
 struct EdgeArc {
     Vector3 from, along, left, right, outwards;
     bool circle, flat;

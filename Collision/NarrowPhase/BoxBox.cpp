@@ -1,6 +1,6 @@
-// Pair function of two boxes: the separating-axis test over the 15 axes of the two, by lanes, then the contact of the best
-// face, or of two edges where those separate clearly better.
-// Source of the axes: S. Gottschalk, M. Lin, D. Manocha, OBBTree, SIGGRAPH 1996.
+// Pair function of two boxes: the separating-axis test over the 15 axes of the two, by lanes, then the contact of the
+// best face, or of two edges where those separate clearly better. Source of the axes: S. Gottschalk, M. Lin, D.
+// Manocha, OBBTree, SIGGRAPH 1996.
 #include <Fulcrum/Collision/NarrowPhase/BoxFaceContact.h>
 #include <Fulcrum/Collision/NarrowPhase/PairFunctions.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
@@ -75,9 +75,9 @@ struct BestEdges {
     int axisA, axisB;
 };
 
-// The nine cross products of an axis of A and one of B: three at once, those of one axis i of A. With the rows R_i of the
-// rotation, i, j, k cyclic, and m, n the two cyclic successors of B's axis: distance |p_k R_j - p_j R_k|, reach of A
-// a_j |R_k| + a_k |R_j|, of B b_m |R_in| + b_n |R_im|, all over the length of the product, sqrt(R_j^2 + R_k^2).
+// The nine cross products of an axis of A and one of B: three at once, those of one axis i of A. With the rows R_i of
+// the rotation, i, j, k cyclic, and m, n the two cyclic successors of B's axis: distance |p_k R_j - p_j R_k|, reach of
+// A a_j |R_k| + a_k |R_j|, of B b_m |R_in| + b_n |R_im|, all over the length of the product, sqrt(R_j^2 + R_k^2).
 BestEdges FindBestEdges(const BoxPair& pair) {
     const Matrix3& t = pair.transposed;
     const Vector3* rows = &t.x;
@@ -87,7 +87,8 @@ BestEdges FindBestEdges(const BoxPair& pair) {
     for (int i = 0; i < 3; ++i) {
         const int j = i == 2 ? 0 : i + 1, k = i == 0 ? 2 : i - 1;
         const Four rowJ = FourOf(rows[j]), rowK = FourOf(rows[k]);
-        const Four rowM = FourOf(rows[i].y(), rows[i].z(), rows[i].x()), rowN = FourOf(rows[i].z(), rows[i].x(), rows[i].y());
+        const Four rowM = FourOf(rows[i].y(), rows[i].z(), rows[i].x()),
+                   rowN = FourOf(rows[i].z(), rows[i].x(), rows[i].y());
         const Four distance = Abs(Four(p[k]) * rowJ - Four(p[j]) * rowK);
         const Four reachA = Four(a[j]) * Abs(rowK) + Four(a[k]) * Abs(rowJ);
         const Four reachB = bm * Abs(rowN) + bn * Abs(rowM);
@@ -142,7 +143,8 @@ void CollideBoxBox(const PairQuery& query, Manifold& manifold) {
     if (face.separation > tolerances.reach) return rememberFace();
 
     const BestEdges edges = FindBestEdges(pair);
-    if (edges.separation > tolerances.reach) return Remember(cache, PairCache::Kind::EdgePair, edges.axisA, edges.axisB);
+    if (edges.separation > tolerances.reach)
+        return Remember(cache, PairCache::Kind::EdgePair, edges.axisA, edges.axisB);
     if (edges.separation > face.separation + tolerances.prefer) {
         if (BuildBoxAxisContact(pair, EdgeAxis(pair, edges.axisA, edges.axisB), edges.separation, tolerances, manifold))
             return Remember(cache, PairCache::Kind::EdgePair, edges.axisA, edges.axisB);

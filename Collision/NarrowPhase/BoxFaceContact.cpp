@@ -11,8 +11,8 @@ using Four = Wide<4>;
 
 Four FourOf(float a, float b, float c, float d) { return Four::Of(Four::Float{a, b, c, d}); }
 
-// The other box's face as a parallelogram over the reference face: middle and half sides in the coordinates (u, v) along
-// the reference face and its separation w from the plane of it.
+// The other box's face as a parallelogram over the reference face: middle and half sides in the coordinates (u, v)
+// along the reference face and its separation w from the plane of it.
 struct Parallelogram {
     float u, v, w;
     float u1, v1, w1;
@@ -68,8 +68,8 @@ uint32_t FeatureOf(const Origin& origin, const FaceCorners& reference, const Fac
 }
 
 // The sides of the parallelogram are cut by the reference rectangle, all four at once (Y. Liang and B. Barsky, A New
-// Concept and Method for Line Clipping, ACM TOG 3(1), 1984). The rectangle is larger by the slop, so that sides that lie on
-// each other stay whole under tiny motions. Each side gives its entry point, if cut there, and its exit or end.
+// Concept and Method for Line Clipping, ACM TOG 3(1), 1984). The rectangle is larger by the slop, so that sides that
+// lie on each other stay whole under tiny motions. Each side gives its entry point, if cut there, and its exit or end.
 void AddCutSides(const Parallelogram& p, float halfU, float halfV, float slop, float reach, Candidates& out) {
     const Four sign1 = FourOf(1, -1, -1, 1), sign2 = FourOf(1, 1, -1, -1);
     const Four u = Four(p.u) + sign1 * Four(p.u1) + sign2 * Four(p.u2);
@@ -112,8 +112,9 @@ void AddCutSides(const Parallelogram& p, float halfU, float halfV, float slop, f
         const int k = __builtin_ctz(left);
         const bool byU = leavesByU >> k & 1, upwards = ((leavesByU & upwardsU) | (~leavesByU & upwardsV)) >> k & 1;
         const bool ends = reachesEnd >> k & 1;
-        out.Add(us[1][k], vs[1][k], ws[1][k], {static_cast<uint8_t>(ends ? (k + 1) & 3 : k),
-                                               ends ? Origin::IncidentCorner : Origin::SideLeaves, byU, upwards});
+        out.Add(us[1][k], vs[1][k], ws[1][k],
+                {static_cast<uint8_t>(ends ? (k + 1) & 3 : k), ends ? Origin::IncidentCorner : Origin::SideLeaves, byU,
+                 upwards});
     }
 }
 
@@ -130,7 +131,8 @@ void AddCoveredCorners(const Parallelogram& p, float halfU, float halfV, float s
     const float margin1 = 1.0f - slop * Sqrt(p.u2 * p.u2 + p.v2 * p.v2) * Abs(scale);
     const float margin2 = 1.0f - slop * Sqrt(p.u1 * p.u1 + p.v1 * p.v1) * Abs(scale);
     const Four w = Four(p.w) + along1 * Four(p.w1) + along2 * Four(p.w2);
-    const uint32_t covered = ((Abs(along1) < Four(margin1)) & (Abs(along2) < Four(margin2)) & (w <= Four(reach))).ToBits();
+    const uint32_t covered =
+        ((Abs(along1) < Four(margin1)) & (Abs(along2) < Four(margin2)) & (w <= Four(reach))).ToBits();
     for (uint32_t left = covered; left != 0; left &= left - 1) {
         const int k = __builtin_ctz(left);
         out.Add(k == 0 || k == 3 ? halfU : -halfU, k < 2 ? halfV : -halfV, w[k],
@@ -150,11 +152,12 @@ struct ReferenceBoxFace {
 Parallelogram Projected(const Parallelogram& p, const FaceFrame& frame, const Vector3& direction) {
     const float perHeight = frame.side / direction[frame.normal];
     const float du = direction[frame.u] * perHeight, dv = direction[frame.v] * perHeight;
-    return {p.u - du * p.w, p.v - dv * p.w, p.w * perHeight, p.u1 - du * p.w1, p.v1 - dv * p.w1, p.w1 * perHeight,
-            p.u2 - du * p.w2, p.v2 - dv * p.w2, p.w2 * perHeight};
+    return {p.u - du * p.w,   p.v - dv * p.w,   p.w * perHeight,  p.u1 - du * p.w1, p.v1 - dv * p.w1,
+            p.w1 * perHeight, p.u2 - du * p.w2, p.v2 - dv * p.w2, p.w2 * perHeight};
 }
 
-bool BuildContact(const BoxPair& pair, const ReferenceBoxFace& seen, float separation, const ContactTolerances& tolerances, Manifold& manifold) {
+bool BuildContact(const BoxPair& pair, const ReferenceBoxFace& seen, float separation,
+                  const ContactTolerances& tolerances, Manifold& manifold) {
     const int face = seen.face;
     const bool ofA = seen.ofA;
     const FaceFrame frame{face / 2, (face / 2 + 1) % 3, (face / 2 + 2) % 3, face % 2 == 0 ? 1.0f : -1.0f};
@@ -172,9 +175,11 @@ bool BuildContact(const BoxPair& pair, const ReferenceBoxFace& seen, float separ
     const Vector3* columns = &axes.x;
     const Vector3 middle = otherCenter + columns[m] * (positive ? otherHalf[m] : -otherHalf[m]);
     const Vector3 side1 = columns[m1] * otherHalf[m1], side2 = columns[m2] * otherHalf[m2];
-    const Parallelogram p = Projected({middle[frame.u], middle[frame.v], middle[frame.normal] * frame.side - half[frame.normal],
-                                       side1[frame.u],  side1[frame.v],  side1[frame.normal] * frame.side,
-                                       side2[frame.u],  side2[frame.v],  side2[frame.normal] * frame.side}, frame, seen.direction);
+    const Parallelogram p =
+        Projected({middle[frame.u], middle[frame.v], middle[frame.normal] * frame.side - half[frame.normal],
+                   side1[frame.u], side1[frame.v], side1[frame.normal] * frame.side, side2[frame.u], side2[frame.v],
+                   side2[frame.normal] * frame.side},
+                  frame, seen.direction);
 
     const FaceCorners reference(frame.normal, frame.side > 0, frame.u, frame.v), incident(m, positive, m1, m2);
     Candidates found;
@@ -190,7 +195,8 @@ bool BuildContact(const BoxPair& pair, const ReferenceBoxFace& seen, float separ
     static const Matrix3 kOwn{Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, 0, 1)};
     const Vector3* own = ofA ? &kOwn.x : &pair.rotation.x;  // this box's axes in A's frame
     const Vector3 normal = own[0] * seen.direction[0] + own[1] * seen.direction[1] + own[2] * seen.direction[2];
-    const Vector3 plane = (ofA ? Vector3(Vector3::Zero()) : pair.position) + own[frame.normal] * (frame.side * half[frame.normal]);
+    const Vector3 plane =
+        (ofA ? Vector3(Vector3::Zero()) : pair.position) + own[frame.normal] * (frame.side * half[frame.normal]);
     manifold.normal = ofA ? normal : Vector3(-normal);
     manifold.pointCount = count;
     for (int i = 0; i < count; ++i) {
@@ -214,7 +220,8 @@ bool BuildBoxFaceContact(const BoxPair& pair, bool ofA, int face, float separati
     return BuildContact(pair, {ofA, face, direction, tolerances.prefer}, separation, tolerances, manifold);
 }
 
-bool BuildBoxAxisContact(const BoxPair& pair, const Vector3& axis, float separation, const ContactTolerances& tolerances, Manifold& manifold) {
+bool BuildBoxAxisContact(const BoxPair& pair, const Vector3& axis, float separation,
+                         const ContactTolerances& tolerances, Manifold& manifold) {
     const Vector3 steepness = axis.cwiseAbs();
     int m = steepness.y() > steepness.x() ? 1 : 0;
     if (steepness.z() > steepness[m]) m = 2;

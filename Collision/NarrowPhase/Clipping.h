@@ -1,5 +1,6 @@
-// Clips a polygon by the sides of another (Sutherland and Hodgman, Reentrant Polygon Clipping, CACM 17(1), 1974), keeping
-// track of which edges each new vertex comes from. Used by the contact builders. Allocates nothing; thread-safe.
+// Clips a polygon by the sides of another (Sutherland and Hodgman, Reentrant Polygon Clipping, CACM 17(1), 1974),
+// keeping track of which edges each new vertex comes from. Used by the contact builders. Allocates nothing;
+// thread-safe.
 #pragma once
 
 #include <Fulcrum/Math/Vector.h>
@@ -26,7 +27,8 @@ struct ClipSide {
 
 // Keeps of the convex polygon `in` what lies inside the side to within `slop`. `outside` says how far each vertex lies
 // beyond it, `label` names it. Returns the number of vertices written to `out`.
-inline int ClipBySide(const ClipVertex* in, int count, const float* outside, uint32_t label, float slop, ClipVertex* out) {
+inline int ClipBySide(const ClipVertex* in, int count, const float* outside, uint32_t label, float slop,
+                      ClipVertex* out) {
     int written = 0;
     const ClipVertex* current = &in[count - 1];
     float currentOutside = outside[count - 1];

@@ -1,4 +1,5 @@
-// The narrow phase: contact manifolds of pairs of convex shapes. Called by the Collide stage, from many threads at once.
+// The narrow phase: contact manifolds of pairs of convex shapes. Called by the Collide stage, from many threads at
+// once.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/Manifold.h>
@@ -16,13 +17,13 @@ struct CollideSettings {
 
 // Counts of what went wrong inside libccd; each worker has its own, the step's report adds them up.
 struct CollideCounters {
-    uint32_t epaFailures = 0;         // EPA gave up and MPR answered
-    uint32_t centerLineFallbacks = 0; // MPR failed too: normal along the center line
+    uint32_t epaFailures = 0;          // EPA gave up and MPR answered
+    uint32_t centerLineFallbacks = 0;  // MPR failed too: normal along the center line
 };
 
-// Writes the manifold of a and b, `bInA` being the pose of b's center frame in a's. At most 4 points, chosen for area and
-// depth, no point with a separation above settings.speculativeDistance. Never fails: the worst case is a center-line
-// normal, counted. Allocates nothing where a special function serves the pair. Thread-safe.
+// Writes the manifold of a and b, `bInA` being the pose of b's center frame in a's. At most 4 points, chosen for area
+// and depth, no point with a separation above settings.speculativeDistance. Never fails: the worst case is a
+// center-line normal, counted. Allocates nothing where a special function serves the pair. Thread-safe.
 void Collide(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA, const CollideSettings& settings,
              PairCache& cache, Manifold& manifold, CollideCounters& counters);
 

@@ -90,7 +90,8 @@ uint32_t NameOfEdge(const SupportingFace& face, uint32_t i) {
 uint32_t Clipped::Feature(int i, const ReferenceSide& reference) const {
     const auto crossing = [&](uint32_t incidentEdge, uint32_t side) {
         const uint32_t referenceEdge = NameOfEdge(reference.face, side);
-        return reference.ofA ? CrossingFeature(referenceEdge, incidentEdge) : CrossingFeature(incidentEdge, referenceEdge);
+        return reference.ofA ? CrossingFeature(referenceEdge, incidentEdge)
+                             : CrossingFeature(incidentEdge, referenceEdge);
     };
     const uint32_t starts = current[i].label;
     if (incident.count <= 2) {
@@ -131,7 +132,8 @@ struct Built {
     bool proven = false;   // no axis separates the cores by more than the face does
 };
 
-Built BuildFromFace(const SupportPair& pair, const ReferenceSide& reference, const ContactTolerances& tolerances, Manifold& manifold) {
+Built BuildFromFace(const SupportPair& pair, const ReferenceSide& reference, const ContactTolerances& tolerances,
+                    Manifold& manifold) {
     const Vector3& normal = reference.face.normal;
     Clipped clipped;
     FindFace(pair, !reference.ofA, Vector3(-normal), clipped.incident);
@@ -180,8 +182,8 @@ void Remember(PairCache::Kind kind, const Vector3& axis, PairCache& cache) {
 }
 
 // The best face that is nearly as good an axis as the known one, if any.
-bool TryFaces(const SupportPair& pair, const KnownContact& known, const SupportingFace& faceA, const SupportingFace& faceB,
-              const ContactTolerances& tolerances, PairCache& cache, Manifold& manifold) {
+bool TryFaces(const SupportPair& pair, const KnownContact& known, const SupportingFace& faceA,
+              const SupportingFace& faceB, const ContactTolerances& tolerances, PairCache& cache, Manifold& manifold) {
     ReferenceSide references[2];
     int order[2] = {0, 1}, count = 0;
     const float enough = known.separation - tolerances.prefer;
@@ -265,11 +267,12 @@ bool TryParallelEdges(const SupportPair& pair, const SupportingFace& faceA, cons
 }
 
 // To the points of edges or vertices, those of the faces beside them that lie within reach along the manifold's normal.
-void AddFacesAhead(const SupportPair& pair, const SupportingFace& faceA, const SupportingFace& faceB, const ContactTolerances& tolerances,
-                   Manifold& manifold) {
+void AddFacesAhead(const SupportPair& pair, const SupportingFace& faceA, const SupportingFace& faceB,
+                   const ContactTolerances& tolerances, Manifold& manifold) {
     if (!tolerances.facesAhead || manifold.pointCount == 0) return;
     const Vector3 n = manifold.normal;
-    const float cosineA = faceA.count > 2 ? Dot(faceA.normal, n) : 0, cosineB = faceB.count > 2 ? -Dot(faceB.normal, n) : 0;
+    const float cosineA = faceA.count > 2 ? Dot(faceA.normal, n) : 0,
+                cosineB = faceB.count > 2 ? -Dot(faceB.normal, n) : 0;
     const float cosine = Max(cosineA, cosineB);
     if (!(cosine > kLeastCosineAhead)) return;
     const bool ofA = cosineA >= cosineB;
@@ -283,9 +286,11 @@ void AddFacesAhead(const SupportPair& pair, const SupportingFace& faceA, const S
         const Vector3& x = clipped.current[i].position;
         const float separation = (Dot(reference.normal, x) - offset) / cosine;
         const Vector3 onCore = ofA ? Vector3(x - n * separation) : x;
-        return ManifoldPoint{onCore + n * pair.a.ConvexRadius(), separation - pair.RadiusSum(), clipped.Feature(i, side)};
+        return ManifoldPoint{onCore + n * pair.a.ConvexRadius(), separation - pair.RadiusSum(),
+                             clipped.Feature(i, side)};
     };
-    AddPointsAhead<kMostClipped>(clipped.count, pointAt, tolerances.reach - pair.RadiusSum(), tolerances.Apart(), tolerances.prefer, manifold);
+    AddPointsAhead<kMostClipped>(clipped.count, pointAt, tolerances.reach - pair.RadiusSum(), tolerances.Apart(),
+                                 tolerances.prefer, manifold);
 }
 
 }  // namespace
@@ -305,7 +310,8 @@ void BuildConvexContact(const SupportPair& pair, const KnownContact& known, cons
     AddFacesAhead(pair, faceA, faceB, tolerances, manifold);
 }
 
-CachedFace TryCachedFace(const SupportPair& pair, const ContactTolerances& tolerances, const PairCache& cache, Manifold& manifold) {
+CachedFace TryCachedFace(const SupportPair& pair, const ContactTolerances& tolerances, const PairCache& cache,
+                         Manifold& manifold) {
     const bool ofA = cache.kind == PairCache::Kind::FaceOfA;
     const Vector3 stored(cache.axis[0], cache.axis[1], cache.axis[2]);
     SupportingFace face;

@@ -14,7 +14,8 @@ Position ClosestWeights(const Simplex<SupportVertex>& s) {
         return Position(1 - along, along, 0);
     }
     const Position f = s.vertices[2].w - s.vertices[0].w;
-    const double ef = Dot<double>(e, f), ff = Dot<double>(f, f), pf = Dot<double>(p, f), determinant = ee * ff - ef * ef;
+    const double ef = Dot<double>(e, f), ff = Dot<double>(f, f), pf = Dot<double>(p, f),
+                 determinant = ee * ff - ef * ef;
     if (!(determinant > 0)) return Position(1, 0, 0);
     const double alongE = std::min(std::max((ff * pe - ef * pf) / determinant, 0.0), 1.0);
     const double alongF = std::min(std::max((ee * pf - ef * pe) / determinant, 0.0), 1 - alongE);

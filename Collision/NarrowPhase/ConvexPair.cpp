@@ -1,6 +1,6 @@
-// The pair function of everything that is known by its support function alone: tapered capsules, cylinders and what users make,
-// among themselves and against all others. What touched in the last step is looked at first. Otherwise GJK finds the closest
-// points of cores that are apart, EPA the axis of least depth of those that overlap.
+// The pair function of everything that is known by its support function alone: tapered capsules, cylinders and what
+// users make, among themselves and against all others. What touched in the last step is looked at first. Otherwise GJK
+// finds the closest points of cores that are apart, EPA the axis of least depth of those that overlap.
 #include <Fulcrum/Collision/NarrowPhase/ConvexContact.h>
 #include <Fulcrum/Collision/NarrowPhase/ConvexGjk.h>
 #include <Fulcrum/Collision/NarrowPhase/Epa.h>
@@ -30,9 +30,10 @@ void TryPlainAxes(const SupportPair& pair, KnownContact& known) {
     }
 }
 
-// Moves B out along the axis until the cores are a little apart: the direction between the closest points is then an axis
-// that separates them at least as far. For n' the new axis, n the old, d the depth along n and m what is left between:
-// separation(n') >= m - n.n' (d + m) >= -d. The axis of least depth near the start stays where it is, in a few rounds.
+// Moves B out along the axis until the cores are a little apart: the direction between the closest points is then an
+// axis that separates them at least as far. For n' the new axis, n the old, d the depth along n and m what is left
+// between: separation(n') >= m - n.n' (d + m) >= -d. The axis of least depth near the start stays where it is, in a few
+// rounds.
 void Polish(const SupportPair& pair, KnownContact& known) {
     constexpr int kRounds = 6;
     const float left = 0.02f * (pair.InnerRadii() + pair.RadiusSum()) + 1e-3f * pair.Size();

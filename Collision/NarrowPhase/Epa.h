@@ -1,6 +1,6 @@
 // Depth of two overlapping cores by expanding a polytope inside their Minkowski difference towards its boundary
-// (G. van den Bergen, Proximity Queries and Penetration Depth Computation on 3D Game Objects, GDC 2001). A template over the
-// pair, as GJK is. Allocates nothing; thread-safe.
+// (G. van den Bergen, Proximity Queries and Penetration Depth Computation on 3D Game Objects, GDC 2001). A template
+// over the pair, as GJK is. Allocates nothing; thread-safe.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/Polytope.h>
@@ -8,7 +8,8 @@
 namespace fulcrum {
 
 struct EpaResult {
-    // Failed: degenerate input, no axis. Approximate: the polytope is full or rounding stopped it, the axis is the best so far.
+    // Failed: degenerate input, no axis. Approximate: the polytope is full or rounding stopped it, the axis is the best
+    // so far.
     enum class Status { Failed, Approximate, Found };
     Status status;
     Vector3 axis;      // unit, from A towards B

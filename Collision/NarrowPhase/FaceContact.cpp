@@ -21,7 +21,9 @@ struct FaceView {
     const uint8_t* corners;
 
     FaceView(const PolyhedronPair& pair, const ReferenceFace& f)
-        : reference(f.ofA ? pair.a : pair.b), incident(f.ofA ? pair.b : pair.a), face(reference.faces[f.index]),
+        : reference(f.ofA ? pair.a : pair.b),
+          incident(f.ofA ? pair.b : pair.a),
+          face(reference.faces[f.index]),
           corners(reference.indices + face.firstIndex) {
         if (f.ofA) {
             rotation = pair.rotation;
@@ -212,7 +214,8 @@ FaceContact BuildFaceContact(const PolyhedronPair& pair, const ReferenceFace& fa
         const int c = chosen[i];
         const Vector3& x = feature[near[c]].position;
         ManifoldPoint& point = manifold.points[i];
-        const Vector3 onCore = face.ofA ? Vector3(x - normal * points.separation[c]) : Vector3(pair.rotation * x + pair.position);
+        const Vector3 onCore =
+            face.ofA ? Vector3(x - normal * points.separation[c]) : Vector3(pair.rotation * x + pair.position);
         point.positionOnA = onCore + manifold.normal * pair.a.radius;
         point.separation = points.separation[c] - pair.RadiusSum();
         point.feature = feature.Feature(near[c], face.ofA);
@@ -247,7 +250,8 @@ void AddFacesAhead(const PolyhedronPair& pair, const ContactTolerances& toleranc
         const Vector3 onCore = face.ofA ? Vector3(x - n * separation) : Vector3(pair.rotation * x + pair.position);
         return ManifoldPoint{onCore + n * pair.a.radius, separation - pair.RadiusSum(), feature.Feature(i, face.ofA)};
     };
-    AddPointsAhead<kMaxClipVertices>(feature.Count(), pointAt, tolerances.reach - pair.RadiusSum(), tolerances.Apart(), tolerances.prefer, manifold);
+    AddPointsAhead<kMaxClipVertices>(feature.Count(), pointAt, tolerances.reach - pair.RadiusSum(), tolerances.Apart(),
+                                     tolerances.prefer, manifold);
 }
 
 }  // namespace fulcrum

@@ -25,8 +25,8 @@ struct FaceContact {
 FaceContact BuildFaceContact(const PolyhedronPair& pair, const ReferenceFace& face, const ContactTolerances& tolerances,
                              Manifold& manifold);
 
-// To the one or two points of a manifold that edges or vertices gave, adds those of the faces beside them that lie within
-// tolerances.reach along its normal. At most 4 points in all.
+// To the one or two points of a manifold that edges or vertices gave, adds those of the faces beside them that lie
+// within tolerances.reach along its normal. At most 4 points in all.
 void AddFacesAhead(const PolyhedronPair& pair, const ContactTolerances& tolerances, Manifold& manifold);
 
 }  // namespace fulcrum

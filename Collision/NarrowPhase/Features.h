@@ -16,8 +16,8 @@ inline uint32_t VertexFeature(bool ofA, uint32_t v) { return (ofA ? kVertexOfA :
 // The edge between two vertices, the same in both directions.
 inline uint32_t EdgeName(uint32_t v0, uint32_t v1) { return v0 < v1 ? v0 | v1 << 8 : v1 | v0 << 8; }
 
-// An edge of A across an edge of B, by their names. The name's bits are spread by odd multipliers and may in principle coincide
-// with another pair's; then two points swap their impulses, no more.
+// An edge of A across an edge of B, by their names. The name's bits are spread by odd multipliers and may in principle
+// coincide with another pair's; then two points swap their impulses, no more.
 inline uint32_t CrossingFeature(uint32_t edgeOfA, uint32_t edgeOfB) {
     return kCrossing | ((edgeOfA * 0x9E3779B1u ^ edgeOfB * 0x85EBCA6Bu) >> 2);
 }

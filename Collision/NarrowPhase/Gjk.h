@@ -1,6 +1,6 @@
-// Distance between two convex cores by the algorithm of Gilbert, Johnson and Keerthi (IEEE J. Robotics and Automation 4(2),
-// 1988), started from a known axis. A template over the pair: PolyhedronPair for CollidePolyhedra, ConvexPair for shapes
-// known by their support functions alone. Allocates nothing; thread-safe.
+// Distance between two convex cores by the algorithm of Gilbert, Johnson and Keerthi (IEEE J. Robotics and Automation
+// 4(2), 1988), started from a known axis. A template over the pair: PolyhedronPair for CollidePolyhedra, ConvexPair for
+// shapes known by their support functions alone. Allocates nothing; thread-safe.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/SimplexSearch.h>

@@ -34,11 +34,13 @@ struct Extreme {
     float value;
 };
 
-// The vector that lies farthest along `direction`; of several, the first. The coordinates are given by lanes, `count` of
-// them, a multiple of 8 and at most 256.
+// The vector that lies farthest along `direction`; of several, the first. The coordinates are given by lanes, `count`
+// of them, a multiple of 8 and at most 256.
 inline Extreme Farthest(const float* x, const float* y, const float* z, int count, const Vector3& direction) {
     const Wide<8> dx(direction.x()), dy(direction.y()), dz(direction.z());
-    const auto value = [&](int i) { return dx * Wide<8>::Load(x + i) + dy * Wide<8>::Load(y + i) + dz * Wide<8>::Load(z + i); };
+    const auto value = [&](int i) {
+        return dx * Wide<8>::Load(x + i) + dy * Wide<8>::Load(y + i) + dz * Wide<8>::Load(z + i);
+    };
     Wide<8> values[256 / 8];
     Wide<8> largest = values[0] = value(0);
     const int blocks = count / 8;

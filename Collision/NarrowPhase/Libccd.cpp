@@ -23,19 +23,19 @@ struct Body {
     LibccdAlgorithm algorithm;
     mutable int supports = 0;  // asked for so far
 
-    // Nothing limits libccd's loops. EPA expands what is nearest until nothing is: where a ball's center lies on a corner of the other
-    // shape, all of the ball's surface is equally near, and its facets are without number. MPR refines its portal for ever where
-    // coordinates round by more than the shapes are thick.
+    // Nothing limits libccd's loops. EPA expands what is nearest until nothing is: where a ball's center lies on a
+    // corner of the other shape, all of the ball's surface is equally near, and its facets are without number. MPR
+    // refines its portal for ever where coordinates round by more than the shapes are thick.
     static constexpr int kMostSupports = 400;
     // From there on supports lie inside, which ends EPA, or are no numbers, which MPR takes for shapes that are apart.
     Position Last() const {
-        return algorithm == LibccdAlgorithm::Epa ? position : Position(Position::Constant(std::numeric_limits<double>::quiet_NaN()));
+        return algorithm == LibccdAlgorithm::Epa
+                   ? position
+                   : Position(Position::Constant(std::numeric_limits<double>::quiet_NaN()));
     }
 };
 
-Mat3<double> DoubleRotation(const Quaternion& q) {
-    return ToMatrix(Quat<double>{q.x, q.y, q.z, q.w});
-}
+Mat3<double> DoubleRotation(const Quaternion& q) { return ToMatrix(Quat<double>{q.x, q.y, q.z, q.w}); }
 
 void Support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* result) {
     const Body& body = *static_cast<const Body*>(object);
@@ -64,14 +64,20 @@ Vector3 CenterLine(const RelativePose& bInA) { return Normalized(bInA.position);
 
 LibccdResult LibccdPenetration(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA, double margin,
                                LibccdAlgorithm algorithm) {
-    // Where the balls around the shapes do not meet, the shapes do not. libccd would not find it out: its tolerances follow from
-    // the shapes' sizes, and far apart coordinates are rounded by more than that, so that its EPA never ends.
+    // Where the balls around the shapes do not meet, the shapes do not. libccd would not find it out: its tolerances
+    // follow from the shapes' sizes, and far apart coordinates are rounded by more than that, so that its EPA never
+    // ends.
     const Position between = bInA.position.cast<double>();
     const double reach = double{a.OuterRadius()} + b.OuterRadius() + margin;
-    if (!(Dot<double>(between, between) <= 1.0001 * reach * reach)) return {LibccdResult::Status::Apart, Position::Zero(), 0, Position::Zero()};
-    const Body bodyA{&a, {Position(1, 0, 0), Position(0, 1, 0), Position(0, 0, 1)}, Position::Zero(),
-                     a.ConvexRadius() + 0.5 * margin, algorithm};
-    const Body bodyB{&b, DoubleRotation(bInA.rotation), bInA.position.cast<double>(), b.ConvexRadius() + 0.5 * margin, algorithm};
+    if (!(Dot<double>(between, between) <= 1.0001 * reach * reach))
+        return {LibccdResult::Status::Apart, Position::Zero(), 0, Position::Zero()};
+    const Body bodyA{&a,
+                     {Position(1, 0, 0), Position(0, 1, 0), Position(0, 0, 1)},
+                     Position::Zero(),
+                     a.ConvexRadius() + 0.5 * margin,
+                     algorithm};
+    const Body bodyB{&b, DoubleRotation(bInA.rotation), bInA.position.cast<double>(), b.ConvexRadius() + 0.5 * margin,
+                     algorithm};
     ccd_t ccd;
     CCD_INIT(&ccd);
     ccd.support1 = ccd.support2 = Support;
@@ -80,8 +86,8 @@ LibccdResult LibccdPenetration(const ConvexShape& a, const ConvexShape& b, const
     // Flat shapes have no inside: their tolerance must not be 0, or EPA never ends.
     const double size = std::max(static_cast<double>(a.InnerRadius()) + b.InnerRadius(),
                                  0.02 * (static_cast<double>(a.OuterRadius()) + b.OuterRadius()));
-    // libccd holds this against squares of lengths. The facets of a curved core are never exact, and their number grows with
-    // the inverse of this.
+    // libccd holds this against squares of lengths. The facets of a curved core are never exact, and their number grows
+    // with the inverse of this.
     const bool curved = !HasPolyhedralCore(a.Type()) || !HasPolyhedralCore(b.Type());
     ccd.epa_tolerance = (curved ? 1e-7 : 1e-9) * size * size;
     ccd.mpr_tolerance = 1e-5 * size;
@@ -109,7 +115,8 @@ LibccdResult LibccdPenetration(const ConvexShape& a, const ConvexShape& b, const
 
 namespace {
 
-// The axis that libccd finds, and MPR's or the center line where it contradicts itself. Pair: any that can measure itself.
+// The axis that libccd finds, and MPR's or the center line where it contradicts itself. Pair: any that can measure
+// itself.
 struct LibccdAxis {
     bool apart;
     Vector3 axis;
@@ -165,9 +172,10 @@ void CollideLibccd(const PairQuery& query, Manifold& manifold) {
     const LibccdAxis found = FindAxis(query, pair);
     if (found.apart) return;
     const ContactTolerances tolerances = pair.Tolerances(query.settings);
-    // The axis is as exact as libccd's tolerance; the separation along it is measured on the cores themselves. The polytope of
-    // rounded shapes has flat facets: its normals are off by about the root of the relative tolerance.
-    BuildContactFromAxis(pair, {found.axis, found.separation, 100 * tolerances.feature}, tolerances, query.cache, manifold);
+    // The axis is as exact as libccd's tolerance; the separation along it is measured on the cores themselves. The
+    // polytope of rounded shapes has flat facets: its normals are off by about the root of the relative tolerance.
+    BuildContactFromAxis(pair, {found.axis, found.separation, 100 * tolerances.feature}, tolerances, query.cache,
+                         manifold);
 }
 
 }  // namespace fulcrum

@@ -7,8 +7,8 @@
 
 namespace fulcrum {
 
-// Contact points as the choice sees them: two coordinates in the contact plane, and the separation. By lanes: the arrays
-// are filled up with copies of the first point to a multiple of eight.
+// Contact points as the choice sees them: two coordinates in the contact plane, and the separation. By lanes: the
+// arrays are filled up with copies of the first point to a multiple of eight.
 template <int kMost>
 struct FlatPoints {
     static_assert(kMost % 8 == 0);
@@ -22,18 +22,22 @@ struct FlatPoints {
     }
 };
 
-// Of the points outside of the triangle of three of them, the one that adds most area, weighted; kMost if there is none.
+// Of the points outside of the triangle of three of them, the one that adds most area, weighted; kMost if there is
+// none.
 template <int kMost>
-int FarthestOutside(const FlatPoints<kMost>& points, const float (&weights)[kMost], const int (&corner)[4], float nothing) {
+int FarthestOutside(const FlatPoints<kMost>& points, const float (&weights)[kMost], const int (&corner)[4],
+                    float nothing) {
     constexpr float kNearly = 0.99f;
     const auto area = [&](int a, int b, int c) {
-        return (points.u[b] - points.u[a]) * (points.v[c] - points.v[a]) - (points.v[b] - points.v[a]) * (points.u[c] - points.u[a]);
+        return (points.u[b] - points.u[a]) * (points.v[c] - points.v[a]) -
+               (points.v[b] - points.v[a]) * (points.u[c] - points.u[a]);
     };
     const float side = area(corner[0], corner[1], corner[2]) < 0.0f ? -1.0f : 1.0f;
     float gains[kMost], most = nothing;
     for (int i = 0; i < points.count; ++i) {
         gains[i] = 0;
-        for (int k = 0; k < 3; ++k) gains[i] = Max(gains[i], -side * area(corner[k], corner[(k + 1) % 3], i) * weights[i]);
+        for (int k = 0; k < 3; ++k)
+            gains[i] = Max(gains[i], -side * area(corner[k], corner[(k + 1) % 3], i) * weights[i]);
         most = Max(most, gains[i]);
     }
     for (int i = 0; i < points.count; ++i)
@@ -45,11 +49,11 @@ int FarthestOutside(const FlatPoints<kMost>& points, const float (&weights)[kMos
 inline constexpr float kLeastWeightOnSurfaces = 0.02f;
 
 // Writes the chosen indices in increasing order and returns how many: first a deepest point, then the point farthest
-// from it, then those that span the largest area on each side of the line of the two; where all are on one side, another
-// there. Distances and areas count less for points that do not touch yet, down to `leastWeight`: what a shape rests on must
-// not be left out for what is farther out but above, or it rocks. What counts as above is a matter of the angle by which the
-// shape would have to tilt. The first point that is as good as the best to within `depthSlop` meters, or a hundredth of the
-// distance or area, is taken, so that rounding and tiny motions change nothing.
+// from it, then those that span the largest area on each side of the line of the two; where all are on one side,
+// another there. Distances and areas count less for points that do not touch yet, down to `leastWeight`: what a shape
+// rests on must not be left out for what is farther out but above, or it rocks. What counts as above is a matter of the
+// angle by which the shape would have to tilt. The first point that is as good as the best to within `depthSlop`
+// meters, or a hundredth of the distance or area, is taken, so that rounding and tiny motions change nothing.
 template <int kMost>
 int ChooseFour(FlatPoints<kMost>& points, float depthSlop, int (&chosen)[4], float leastWeight = 1.0f) {
     constexpr float kNearly = 0.99f, kTilt = 0.0001f;  // rad: halfway to leastWeight

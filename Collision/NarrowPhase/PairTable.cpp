@@ -40,6 +40,7 @@ constexpr PairFunction kPolyhedra = CollidePolyhedra, kConvex = CollideConvex, k
 
 // By the type of A down and of B across. CollideConvex serves any two shapes; a pair is always passed to it
 // the same way round, so that it makes no difference which shape is A.
+// clang-format off
 constexpr PairRow kPairTable[] = {
     //                    Sphere, Box, Capsule, ConvexHull, Triangle, then those with curved cores:
     //                    TaperedCapsule, Cylinder, Custom
@@ -57,6 +58,7 @@ constexpr PairRow kPairTable[] = {
     /* Cylinder       */ Row<kTurned, kTurned, kTurned, kTurned, kTurned, kTurned, kConvex, kConvex>(),
     /* Custom         */ Row<kTurned, kTurned, kTurned, kTurned, kTurned, kTurned, kTurned, kConvex>(),
 };
+// clang-format on
 static_assert(std::size(kPairTable) == kConvexShapeTypes, "every convex shape needs a row in the pair table");
 
 }  // namespace

@@ -17,7 +17,8 @@ struct NearVertices {
     uint32_t names[256];
     Vector3 tangentU, tangentV;
 
-    explicit NearVertices(const Vector3& down) : tangentU(Perpendicular(down)), tangentV(Cross<float>(down, tangentU)) {}
+    explicit NearVertices(const Vector3& down)
+        : tangentU(Perpendicular(down)), tangentV(Cross<float>(down, tangentU)) {}
     void Add(const Vector3& vertex, uint32_t name, float separation) {
         positions[points.count] = vertex;
         names[points.count] = name;
@@ -25,12 +26,13 @@ struct NearVertices {
     }
 };
 
-// Those of a polyhedron whose depth along `down` is at least `least`; `outside`: how far the shape's center is from the plane.
+// Those of a polyhedron whose depth along `down` is at least `least`; `outside`: how far the shape's center is from the
+// plane.
 void AddVertices(const Polyhedron& core, const Vector3& down, float outside, float least, NearVertices& near) {
     const Wide<8> x(down.x()), y(down.y()), z(down.z()), lowest(least);
     for (int block = 0; block < core.laneCount; block += 8) {
-        const Wide<8> depth = x * Wide<8>::Load(core.x + block) + y * Wide<8>::Load(core.y + block) +
-                              z * Wide<8>::Load(core.z + block);
+        const Wide<8> depth =
+            x * Wide<8>::Load(core.x + block) + y * Wide<8>::Load(core.y + block) + z * Wide<8>::Load(core.z + block);
         for (uint32_t bits = (depth >= lowest).ToBits(); bits != 0; bits &= bits - 1) {
             const int i = __builtin_ctz(bits);
             if (block + i >= core.vertexCount) break;
@@ -51,8 +53,8 @@ void AddSupportingFace(const ConvexShape& shape, const Vector3& down, float outs
 
 }  // namespace
 
-void CollidePlane(const Plane& plane, const ConvexShape& shape, const RelativePose& bInA, const CollideSettings& settings,
-                  Manifold& manifold) {
+void CollidePlane(const Plane& plane, const ConvexShape& shape, const RelativePose& bInA,
+                  const CollideSettings& settings, Manifold& manifold) {
     manifold.pointCount = 0;
     const float outside = plane.Distance(bInA.position), radius = shape.ConvexRadius();
     if (outside - shape.OuterRadius() > settings.speculativeDistance) return;
@@ -80,8 +82,8 @@ void CollidePlane(const Plane& plane, const ConvexShape& shape, const RelativePo
     }
 }
 
-void CollideWithPlane(const Plane& plane, const ConvexShape& shape, const RelativePose& planeInShape, const CollideSettings& settings,
-                      Manifold& manifold) {
+void CollideWithPlane(const Plane& plane, const ConvexShape& shape, const RelativePose& planeInShape,
+                      const CollideSettings& settings, Manifold& manifold) {
     CollidePlane(plane, shape, Inverse(planeInShape), settings, manifold);
     for (int i = 0; i < manifold.pointCount; ++i) {
         ManifoldPoint& point = manifold.points[i];

@@ -1,5 +1,5 @@
-// Where edges or vertices touch, the faces beside them may follow close behind: a body that turns within the step meets the other with
-// its faces. Used by the contact builders. Allocates nothing; thread-safe.
+// Where edges or vertices touch, the faces beside them may follow close behind: a body that turns within the step meets
+// the other with its faces. Used by the contact builders. Allocates nothing; thread-safe.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/Manifold.h>
@@ -10,8 +10,8 @@ namespace fulcrum {
 // The least cosine between a face's normal and the manifold's: a face that is steeper lies too far behind.
 inline constexpr float kLeastCosineAhead = 0.5f;
 
-// Adds to a manifold of one or two points those of `count` others, pointAt(0) to pointAt(count - 1), whose separation is at most `reach`,
-// m; at most four in all. What lies within `apart` meters of a point that was there adds nothing.
+// Adds to a manifold of one or two points those of `count` others, pointAt(0) to pointAt(count - 1), whose separation
+// is at most `reach`, m; at most four in all. What lies within `apart` meters of a point that was there adds nothing.
 template <int kMost, class PointAt>
 void AddPointsAhead(int count, const PointAt& pointAt, float reach, float apart, float depthSlop, Manifold& manifold) {
     const Vector3 tangentU = Perpendicular(manifold.normal), tangentV = Cross<float>(manifold.normal, tangentU);
@@ -27,7 +27,8 @@ void AddPointsAhead(int count, const PointAt& pointAt, float reach, float apart,
     for (int i = 0; i < count && points.count < kMost; ++i) {
         const ManifoldPoint point = pointAt(i);
         bool isNew = point.separation <= reach;
-        for (int k = 0; k < knownCount; ++k) isNew = isNew && LengthSquared(Vector3(point.positionOnA - known[k].positionOnA)) > apart * apart;
+        for (int k = 0; k < knownCount; ++k)
+            isNew = isNew && LengthSquared(Vector3(point.positionOnA - known[k].positionOnA)) > apart * apart;
         if (isNew) add(point, i);
     }
     int chosen[Manifold::kMaxPoints];

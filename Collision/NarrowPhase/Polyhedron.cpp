@@ -11,7 +11,8 @@ namespace {
 constexpr uint8_t kBoxIndices[24] = {1, 3, 7, 5, 0, 4, 6, 2, 2, 6, 7, 3, 0, 1, 5, 4, 4, 5, 7, 6, 0, 2, 3, 1};
 
 // The six normals by lanes, filled up with the first.
-alignas(32) constexpr float kBoxNormals[24] = {1, -1, 0, 0, 0, 0, 1, 1, 0, 0, 1, -1, 0, 0, 0, 0, 0, 0, 0, 0, 1, -1, 0, 0};
+alignas(32) constexpr float kBoxNormals[24] = {1, -1, 0, 0, 0, 0, 1, 1, 0, 0,  1, -1,
+                                               0, 0,  0, 0, 0, 0, 0, 0, 1, -1, 0, 0};
 
 // From, to, the face on the left (seen from outside, upwards along the edge) and on the right.
 constexpr ConvexHull::Edge kBoxEdges[12] = {{0, 1, 5, 3}, {2, 3, 2, 5}, {4, 5, 3, 4}, {6, 7, 4, 2},

@@ -1,6 +1,6 @@
 // One view of the cores of all convex shapes that are not curved: a hull, a box, a triangle, a capsule's segment and a
-// sphere's point are polyhedra of many, 8, 3, 2 and 1 vertices. The pair functions of polyhedra work on it. Used by the narrow phase alone; a view lives
-// on the stack of one call.
+// sphere's point are polyhedra of many, 8, 3, 2 and 1 vertices. The pair functions of polyhedra work on it. Used by the
+// narrow phase alone; a view lives on the stack of one call.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/LaneSearch.h>

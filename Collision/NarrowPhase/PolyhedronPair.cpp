@@ -1,7 +1,7 @@
-// The pair function of polyhedra: box-hull, hull-hull, and spheres and capsules against both. What touched in the last step
-// is looked at first, and where it provably still is the closest feature nothing else is. Otherwise GJK finds the closest
-// points of cores that are apart, EPA the axis of least depth of those that overlap, and where EPA
-// gives up, a search through all axes does.
+// The pair function of polyhedra: box-hull, hull-hull, and spheres and capsules against both. What touched in the last
+// step is looked at first, and where it provably still is the closest feature nothing else is. Otherwise GJK finds the
+// closest points of cores that are apart, EPA the axis of least depth of those that overlap, and where EPA gives up, a
+// search through all axes does.
 #include <Fulcrum/Collision/NarrowPhase/AxisContact.h>
 #include <Fulcrum/Collision/NarrowPhase/AxisSearch.h>
 #include <Fulcrum/Collision/NarrowPhase/Epa.h>
@@ -29,8 +29,8 @@ WarmStart TryCache(const PolyhedronPair& pair, const ContactTolerances& toleranc
             const int index = ofA ? cache.indexA : cache.indexB;
             FULCRUM_ASSERT(index < (ofA ? pair.a.faceCount : pair.b.faceCount));
             const ReferenceFace face = MeasureFace(pair, ofA, index);
-            warm.axis = ofA ? pair.a.faces[face.index].normal
-                            : Vector3(-(pair.rotation * pair.b.faces[face.index].normal));
+            warm.axis =
+                ofA ? pair.a.faces[face.index].normal : Vector3(-(pair.rotation * pair.b.faces[face.index].normal));
             if (face.separation > tolerances.reach) {
                 manifold.normal = warm.axis;
                 manifold.pointCount = 0;
@@ -79,7 +79,8 @@ void CollidePolyhedra(const PairQuery& query, Manifold& manifold) {
     }
     if (gjk.status == GjkStatus::Overlapping) {
         const EpaResult epa = Epa(pair, gjk.simplex);
-        const FoundAxis found = epa.status == EpaResult::Status::Found ? FoundAxis{epa.axis, epa.separation} : SearchAllAxes(pair);
+        const FoundAxis found =
+            epa.status == EpaResult::Status::Found ? FoundAxis{epa.axis, epa.separation} : SearchAllAxes(pair);
         known.axis = found.axis;
         known.separation = found.separation;
     }

@@ -31,9 +31,7 @@ struct PolyhedronPair {
     float InnerRadii() const { return a.innerRadius + b.innerRadius; }
     float RadiusSum() const { return a.radius + b.radius; }
     // The scale that rounding errors are measured against, m.
-    float Size() const {
-        return Abs(position.x()) + Abs(position.y()) + Abs(position.z()) + a.size + b.size;
-    }
+    float Size() const { return Abs(position.x()) + Abs(position.y()) + Abs(position.z()) + a.size + b.size; }
     // How far EPA's axis may miss the least depth, m.
     float DepthTolerance() const { return 1e-6f * Size() + 1e-12f; }
 

@@ -1,5 +1,5 @@
-// The polytope that EPA expands inside the Minkowski difference of a pair. A template over the pair, as GJK is. Lives on the
-// stack of one call; allocates nothing.
+// The polytope that EPA expands inside the Minkowski difference of a pair. A template over the pair, as GJK is. Lives
+// on the stack of one call; allocates nothing.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/SimplexSearch.h>

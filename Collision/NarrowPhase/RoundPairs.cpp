@@ -54,7 +54,8 @@ bool BuildParallel(const Segment& onA, const Segment& onB, float radiusA, float 
     return manifold.pointCount > 0;
 }
 
-// Where capsules are fast, their ends too: one that turns about the closest point within the step meets the other with an end.
+// Where capsules are fast, their ends too: one that turns about the closest point within the step meets the other with
+// an end.
 void AddEnds(const Segment& onA, const Segment& onB, float radiusA, float radiusB, float reach, Manifold& manifold) {
     const float smaller = Min(radiusA, radiusB);
     if (reach <= kFastReach * smaller) return;
@@ -72,9 +73,11 @@ void AddEnds(const Segment& onA, const Segment& onB, float radiusA, float radius
         if (Dot(manifold.normal, isOfA ? between : Vector3(-between)) < kLeastCosineAhead * distance) continue;
         const float separation = distance - (radiusA + radiusB);
         const Vector3 onEnd = end + manifold.normal * (isOfA ? radiusA : -radiusB);
-        ends[count++] = {isOfA ? onEnd : Vector3(onEnd - manifold.normal * separation), separation, CrossingFeature(1, static_cast<uint32_t>(i))};
+        ends[count++] = {isOfA ? onEnd : Vector3(onEnd - manifold.normal * separation), separation,
+                         CrossingFeature(1, static_cast<uint32_t>(i))};
     }
-    AddPointsAhead<8>(count, [&](int i) { return ends[i]; }, reach, smaller, 0.01f * smaller, manifold);
+    AddPointsAhead<8>(
+        count, [&](int i) { return ends[i]; }, reach, smaller, 0.01f * smaller, manifold);
 }
 
 }  // namespace
@@ -91,8 +94,8 @@ void CollideCapsuleSphere(const PairQuery& query, Manifold& manifold) {
     const auto& b = static_cast<const Sphere&>(query.b);
     const Vector3 center = query.bInA.position;
     const Vector3 onCore(0, Clamp(center.y(), -a.HalfHeight(), a.HalfHeight()), 0);
-    BuildPoint(onCore, center, a.Radius(), b.Radius(), Vector3(1, 0, 0), false,
-               query.settings.speculativeDistance, manifold);
+    BuildPoint(onCore, center, a.Radius(), b.Radius(), Vector3(1, 0, 0), false, query.settings.speculativeDistance,
+               manifold);
 }
 
 void CollideCapsuleCapsule(const PairQuery& query, Manifold& manifold) {
@@ -109,12 +112,14 @@ void CollideCapsuleCapsule(const PairQuery& query, Manifold& manifold) {
     if (LengthSquared(Vector3(y - x)) > reach * reach) return;
     // Perpendicular to both is the normal where they cross, and the shortest way out of cores that touch.
     const bool parallel = NearlyParallel(onA, onB);
-    if (parallel && BuildParallel(onA, onB, a.Radius(), b.Radius(), query.settings.speculativeDistance, manifold)) return;
+    if (parallel && BuildParallel(onA, onB, a.Radius(), b.Radius(), query.settings.speculativeDistance, manifold))
+        return;
     Vector3 crossing = Normalized(Cross<float>(Vector3(0, 1, 0), half), Vector3(1, 0, 0));
     if (Dot(crossing, Vector3(y - x)) < 0.0f) crossing = -crossing;
     const bool cross = !parallel && closest.s > 0 && closest.s < 1 && closest.t > 0 && closest.t < 1;
     BuildPoint(x, y, a.Radius(), b.Radius(), crossing, cross, query.settings.speculativeDistance, manifold);
-    if (manifold.pointCount > 0) AddEnds(onA, onB, a.Radius(), b.Radius(), query.settings.speculativeDistance, manifold);
+    if (manifold.pointCount > 0)
+        AddEnds(onA, onB, a.Radius(), b.Radius(), query.settings.speculativeDistance, manifold);
 }
 
 }  // namespace fulcrum

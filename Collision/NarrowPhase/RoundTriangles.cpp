@@ -22,7 +22,10 @@ void WriteBallContact(const Vector3& normal, float distance, float radius, Manif
 }
 
 SegmentContact::SegmentContact(const SurfaceProbe& probe, const TriangleBatch& batch, uint32_t asked, float slop)
-    : probe_(probe), batch_(batch), halfHeight_(probe.core->vertices[1].y()), radius_(probe.core->radius),
+    : probe_(probe),
+      batch_(batch),
+      halfHeight_(probe.core->vertices[1].y()),
+      radius_(probe.core->radius),
       half_(probe.axes.TransposeMultiply(probe.core->vertices[1])) {
     const Lanes rise = Along(batch.normal, Spread(half_));
     lowHeight_ = batch.height - rise;
@@ -102,15 +105,15 @@ void SegmentContact::WriteFaceContact(int i, const Vector3& normal, Manifold& ma
         const float separation = low + (high - low) * ends[k] - radius_;
         if (separation > probe_.reach) continue;
         const auto side = static_cast<uint32_t>(sides[k] < 0 ? 0 : sides[k]);
-        const uint32_t feature = sides[k] < 0 ? VertexFeature(true, static_cast<uint32_t>(k))
-                                              : CrossingFeature(EdgeName(0, 1), EdgeName(side, side == 2 ? 0 : side + 1));
-        manifold.points[manifold.pointCount++] = {Vector3(0, halfHeight_ * (2 * ends[k] - 1), 0) + normal * radius_, separation, feature};
+        const uint32_t feature = sides[k] < 0
+                                     ? VertexFeature(true, static_cast<uint32_t>(k))
+                                     : CrossingFeature(EdgeName(0, 1), EdgeName(side, side == 2 ? 0 : side + 1));
+        manifold.points[manifold.pointCount++] = {Vector3(0, halfHeight_ * (2 * ends[k] - 1), 0) + normal * radius_,
+                                                  separation, feature};
     }
 }
 
-Vector3 SegmentContact::Axis(int i) const {
-    return Normalized(At(between_, i), Vector3(-At(batch_.normal, i)));
-}
+Vector3 SegmentContact::Axis(int i) const { return Normalized(At(between_, i), Vector3(-At(batch_.normal, i))); }
 
 void SegmentContact::WriteSideContact(int i, const uint32_t (&vertexOf)[3], Manifold& manifold) const {
     const auto side = static_cast<uint32_t>(side_[i]), next = side == 2 ? 0u : side + 1;
@@ -124,7 +127,8 @@ void SegmentContact::WriteSideContact(int i, const uint32_t (&vertexOf)[3], Mani
     if (at <= 0 || at >= 1) feature = VertexFeature(true, at <= 0 ? 0 : 1);
     else if (sideAt <= 0 || sideAt >= 1) feature = VertexFeature(false, vertexOf[sideAt <= 0 ? side : next]);
     manifold.pointCount = 1;
-    manifold.points[0] = {Vector3(0, halfHeight_ * (2 * at - 1), 0) + normal * radius_, Sqrt(squared_[i]) - radius_, feature};
+    manifold.points[0] = {Vector3(0, halfHeight_ * (2 * at - 1), 0) + normal * radius_, Sqrt(squared_[i]) - radius_,
+                          feature};
 }
 
 // Two points where the capsule lies along the side.
@@ -140,8 +144,8 @@ bool SegmentContact::WriteParallel(int i, const Vector3& normal, uint32_t featur
         const Vector3 x = core.At(at), beside = edge.from + along * (Dot(along, Vector3(x - edge.from)) * scale);
         const float separation = Dot(axis, Vector3(beside - x)) - radius_;
         if (separation > probe_.reach) continue;
-        manifold.points[manifold.pointCount++] = {Vector3(0, halfHeight_ * (2 * at - 1), 0) + normal * radius_, separation,
-                                                  feature + static_cast<uint32_t>(k)};
+        manifold.points[manifold.pointCount++] = {Vector3(0, halfHeight_ * (2 * at - 1), 0) + normal * radius_,
+                                                  separation, feature + static_cast<uint32_t>(k)};
     }
     return manifold.pointCount > 0;
 }

@@ -1,5 +1,6 @@
-// Contacts of a sphere or a capsule with single triangles, in closed form: the point or the segment that is its core before the
-// triangle's face, or else nearest to one of its sides. Called by SurfaceContact for a batch of triangles. Thread-safe.
+// Contacts of a sphere or a capsule with single triangles, in closed form: the point or the segment that is its core
+// before the triangle's face, or else nearest to one of its sides. Called by SurfaceContact for a batch of triangles.
+// Thread-safe.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/Manifold.h>
@@ -7,7 +8,8 @@
 
 namespace fulcrum {
 
-// Of a ball of `radius` m about the frame's origin whose point closest to B lies `distance` m along the unit vector `normal`.
+// Of a ball of `radius` m about the frame's origin whose point closest to B lies `distance` m along the unit vector
+// `normal`.
 void WriteBallContact(const Vector3& normal, float distance, float radius, Manifold& manifold);
 
 // How the segment from (0, -halfHeight, 0) to (0, halfHeight, 0) of the probe's frame, the core of a capsule, meets the
@@ -15,10 +17,10 @@ void WriteBallContact(const Vector3& normal, float distance, float radius, Manif
 struct SegmentContact {
     SegmentContact(const SurfaceProbe& probe, const TriangleBatch& batch, uint32_t asked, float slop);
 
-    uint32_t crossing;   // the segment ends behind the face: nothing else is said of these
-    uint32_t before;     // a part of it, from .. to, lies before the face
-    uint32_t onFace;     // and that is as near as it comes to it, to within the slop
-    uint32_t onSide;     // of the others, those with a side in reach: nearest at `at` along the segment
+    uint32_t crossing;  // the segment ends behind the face: nothing else is said of these
+    uint32_t before;    // a part of it, from .. to, lies before the face
+    uint32_t onFace;    // and that is as near as it comes to it, to within the slop
+    uint32_t onSide;    // of the others, those with a side in reach: nearest at `at` along the segment
 
     // Two points, or one, along the face's normal; in the shape's frame. Features are those of any two polyhedra.
     void WriteFaceContact(int triangle, const Vector3& normal, Manifold& manifold) const;
@@ -36,7 +38,7 @@ private:
     const SurfaceProbe& probe_;
     const TriangleBatch& batch_;
     float halfHeight_, radius_;
-    Vector3 half_;                 // from the middle to the end, in the surface's frame
+    Vector3 half_;                  // from the middle to the end, in the surface's frame
     Lanes lowHeight_, highHeight_;  // of the ends above the face
     Lanes from_, to_;               // 0 .. 1 along the segment
     Lanes fromSide_, toSide_;       // the sides that cut it there; -1: none, it ends

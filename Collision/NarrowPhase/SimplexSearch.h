@@ -1,6 +1,6 @@
-// The point of a simplex that lies closest to the origin. Used by GJK over any kind of pair: a vertex is any struct with a
-// member `w`, a point of the Minkowski difference in float or double (its `Real`), and a function SameAs. Allocates nothing;
-// thread-safe.
+// The point of a simplex that lies closest to the origin. Used by GJK over any kind of pair: a vertex is any struct
+// with a member `w`, a point of the Minkowski difference in float or double (its `Real`), and a function SameAs.
+// Allocates nothing; thread-safe.
 #pragma once
 
 #include <Fulcrum/Math/Wide.h>
@@ -103,7 +103,7 @@ inline Vec3<typename Vertex::Real> ClosestInTetrahedron(Simplex<Vertex>& s) {
     Vec3<Real> closest = Vec3<Real>::Zero();
     Real bestDistance = 0;
     for (const auto& face : kFaces) {
-        const Vec3<Real> &a = s.vertices[face[0]].w, &b = s.vertices[face[1]].w, &c = s.vertices[face[2]].w;
+        const Vec3<Real>&a = s.vertices[face[0]].w, &b = s.vertices[face[1]].w, &c = s.vertices[face[2]].w;
         const Vec3<Real> n = Cross<Real>(Vec3<Real>(b - a), Vec3<Real>(c - a));
         const Vec3<Real> ad = s.vertices[face[3]].w - a;
         const Real opposite = Dot<Real>(n, ad), origin = -Dot<Real>(n, a);

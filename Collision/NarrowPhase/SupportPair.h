@@ -1,5 +1,6 @@
-// Two convex shapes known by their support functions, and the pose of one in the other's frame: the Minkowski difference
-// B - A of their cores, as GJK and EPA walk on it. Used by the narrow phase and the queries; lives on the stack of one call.
+// Two convex shapes known by their support functions, and the pose of one in the other's frame: the Minkowski
+// difference B - A of their cores, as GJK and EPA walk on it. Used by the narrow phase and the queries; lives on the
+// stack of one call.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/Shape.h>
@@ -8,8 +9,8 @@
 
 namespace fulcrum {
 
-// A point of B's core minus a point of A's, in A's frame. In double: the closest points of two curved cores span ever thinner
-// triangles, from which float cannot tell the axis.
+// A point of B's core minus a point of A's, in A's frame. In double: the closest points of two curved cores span ever
+// thinner triangles, from which float cannot tell the axis.
 struct SupportVertex {
     using Real = double;
 

@@ -25,8 +25,8 @@ constexpr float kFaceCosine = 0.9999985f;
 constexpr float kFlatCosine = 0.9945f;
 // Contacts whose directions are this near become one manifold: 2 degrees.
 constexpr float kSameDirection = 0.9994f;
-// A face of the shape that is this near to the direction of an edge rests on it, on two points: 4 degrees, more than a body turns
-// in a step while it rocks from one point to the other.
+// A face of the shape that is this near to the direction of an edge rests on it, on two points: 4 degrees, more than a
+// body turns in a step while it rocks from one point to the other.
 constexpr float kRestingCosine = 0.9976f;
 // The ball inside a shape matters where a step takes it farther than this part of its radius.
 constexpr float kFastPart = 0.75f;
@@ -37,7 +37,8 @@ TriangleView Reversed(const TriangleView& view) {
     std::swap(r.vertices[0], r.vertices[2]);
     std::swap(r.vertexIds[0], r.vertexIds[2]);
     r.normal = -view.normal;
-    r.activeEdges = static_cast<uint8_t>((view.activeEdges & 4) | (view.activeEdges & 1) << 1 | (view.activeEdges >> 1 & 1));
+    r.activeEdges =
+        static_cast<uint8_t>((view.activeEdges & 4) | (view.activeEdges & 1) << 1 | (view.activeEdges >> 1 & 1));
     return r;
 }
 
@@ -54,7 +55,8 @@ Bounds BoundsInSurface(const ConvexShape& a, const RelativePose& bInA, float rea
     return bounds;
 }
 
-// Names that last from step to step: corners of A are the same on every triangle, corners of the surface on all around them.
+// Names that last from step to step: corners of A are the same on every triangle, corners of the surface on all around
+// them.
 uint32_t SurfaceFeature(uint32_t feature, const TriangleView& view) {
     const uint32_t kind = feature & kCrossing;
     if (kind == kVertexOfA) return feature;
@@ -75,11 +77,18 @@ constexpr size_t kMostManifolds = 128;
 
 class SurfaceCollider {
 public:
-    SurfaceCollider(const ConvexShape& a, const SurfaceShape& b, const RelativePose& bInA, const CollideSettings& settings,
-                    const SurfaceApproach& approach, SurfaceContacts& contacts)
-        : a_(a), b_(b), bInA_(bInA), settings_(settings), contacts_(contacts), axes_(ToMatrix(bInA.rotation)),
+    SurfaceCollider(const ConvexShape& a, const SurfaceShape& b, const RelativePose& bInA,
+                    const CollideSettings& settings, const SurfaceApproach& approach, SurfaceContacts& contacts)
+        : a_(a),
+          b_(b),
+          bInA_(bInA),
+          settings_(settings),
+          contacts_(contacts),
+          axes_(ToMatrix(bInA.rotation)),
           center_(bInA.InverseTransform(Vector3::Zero())),
-          motion_(InverseRotate(bInA.rotation, approach.motion)), touched_(approach.touched), isPolyhedral_(HasPolyhedralCore(a.Type())) {
+          motion_(InverseRotate(bInA.rotation, approach.motion)),
+          touched_(approach.touched),
+          isPolyhedral_(HasPolyhedralCore(a.Type())) {
         if (isPolyhedral_) core_ = CoreOf(a, storage_);
     }
 
@@ -89,9 +98,11 @@ public:
         contacts_.found_.clear();
         contacts_.manifoldCount_ = 0;
         Collect();
-        const SurfaceProbe probe{a_, isPolyhedral_ ? &core_ : nullptr, axes_, center_, settings_.speculativeDistance, b_.IsTwoSided()};
+        const SurfaceProbe probe{a_,      isPolyhedral_ ? &core_ : nullptr, axes_,
+                                 center_, settings_.speculativeDistance,    b_.IsTwoSided()};
         std::vector<TriangleView>& views = contacts_.views_;
-        for (size_t first = 0; first < views.size(); first += 8) CollideBatch(probe, first, std::min<size_t>(views.size() - first, 8));
+        for (size_t first = 0; first < views.size(); first += 8)
+            CollideBatch(probe, first, std::min<size_t>(views.size() - first, 8));
         if (!contacts_.deferred_.empty()) AddDeferredEdgeContacts();
         Join();
         const float fast = kFastPart * a_.InnerRadius();
@@ -102,7 +113,8 @@ private:
     void Collect() {
         std::vector<uint32_t>& ids = contacts_.ids_;
         ids.clear();
-        b_.VisitTriangles(BoundsInSurface(a_, bInA_, settings_.speculativeDistance), [&](uint32_t id) { ids.push_back(id); });
+        b_.VisitTriangles(BoundsInSurface(a_, bInA_, settings_.speculativeDistance),
+                          [&](uint32_t id) { ids.push_back(id); });
         contacts_.views_.resize(ids.size());
         b_.GetTriangles(ids, contacts_.views_.data());
     }
@@ -127,14 +139,16 @@ private:
         }
     }
 
-    // Those that the center has tunneled through: it is behind them, for which a batch leaves them out, but they were touched before.
+    // Those that the center has tunneled through: it is behind them, for which a batch leaves them out, but they were
+    // touched before.
     void CollideTunneled(size_t first, size_t count) {
         for (size_t i = first; i < first + count; ++i)
             if (HasTunneled(contacts_.views_[i])) CollideTriangle(static_cast<uint32_t>(i));
     }
     // Only over the triangle itself: what tips over its edge gets behind it, too.
     bool HasTunneled(const TriangleView& view) const {
-        return Height(view) < 0 && std::find(touched_.begin(), touched_.end(), view.id) != touched_.end() && IsOver(view, center_, 0);
+        return Height(view) < 0 && std::find(touched_.begin(), touched_.end(), view.id) != touched_.end() &&
+               IsOver(view, center_, 0);
     }
     float Height(const TriangleView& view) const { return Dot(view.normal, Vector3(center_ - view.vertices[0])); }
 
@@ -146,13 +160,15 @@ private:
             const float distance = batch.distance[i];
             Vector3 axis(batch.closest.x()[i], batch.closest.y()[i], batch.closest.z()[i]);
             // A center in the surface itself is pushed out through the face.
-            axis = distance > 1e-6f * core_.radius ? Vector3(axis * (1.0f / distance)) : Vector3(-contacts_.views_[index].normal);
+            axis = distance > 1e-6f * core_.radius ? Vector3(axis * (1.0f / distance))
+                                                   : Vector3(-contacts_.views_[index].normal);
             WriteBallContact(Vector3(axes_ * axis), distance, core_.radius, nearest);
             ResolveTriangleContact(index, axis, false, none, nearest);
         }
     }
 
-    void CollideCapsule(const SurfaceProbe& probe, const TriangleBatch& batch, uint32_t near, uint32_t reversed, uint32_t first) {
+    void CollideCapsule(const SurfaceProbe& probe, const TriangleBatch& batch, uint32_t near, uint32_t reversed,
+                        uint32_t first) {
         const float slop = std::min(0.02f * settings_.speculativeDistance, 0.002f * core_.radius);
         const SegmentContact segment(probe, batch, near, slop);
         for (uint32_t bits = near; bits != 0; bits &= bits - 1) {
@@ -196,20 +212,23 @@ private:
         triangle.normal = axes_ * view.normal;
         triangle.middle = (triangle.corners[0] + triangle.corners[1] + triangle.corners[2]) * (1.0f / 3.0f);
         float size = std::numeric_limits<float>::infinity();
-        for (const Vector3& corner : triangle.corners) size = Min(size, LengthSquared(Vector3(corner - triangle.middle)));
+        for (const Vector3& corner : triangle.corners)
+            size = Min(size, LengthSquared(Vector3(corner - triangle.middle)));
         const ContactTolerances tolerances(core_.size + Sqrt(size), core_.radius, settings_);
         Manifold onFace;
-        const FaceContact contact = BuildTriangleFaceContact(core_, incident, triangle, batch.separation[lane], tolerances, onFace);
+        const FaceContact contact =
+            BuildTriangleFaceContact(core_, incident, triangle, batch.separation[lane], tolerances, onFace);
         const bool found = onFace.pointCount > 0 && contact.touches;
         if (found && contact.proven) return AddFace(view, onFace);
         if (MeetsEdges(view, triangle, tolerances.reach)) return CollideTriangle(index, &onFace);
         if (onFace.pointCount == 0) return;
         if (found) return AddFace(view, onFace);
-        if (!WaitForNeighbor(index, triangle, tolerances.prefer + 1e-3f * Sqrt(size), onFace)) CollideTriangle(index, &onFace);
+        if (!WaitForNeighbor(index, triangle, tolerances.prefer + 1e-3f * Sqrt(size), onFace))
+            CollideTriangle(index, &onFace);
     }
 
-    // Whether there is more to the triangle than its face. A shape without rounding that reaches no active edge lies before the
-    // face, or has nothing to do with it.
+    // Whether there is more to the triangle than its face. A shape without rounding that reaches no active edge lies
+    // before the face, or has nothing to do with it.
     bool MeetsEdges(const TriangleView& view, const TriangleInShape& triangle, float reach) const {
         if (core_.radius > 0) return true;
         for (uint32_t bits = view.activeEdges; bits != 0; bits &= bits - 1) {
@@ -220,8 +239,8 @@ private:
         return false;
     }
 
-    // What lies before the face is not the deepest part of the shape: that lies beyond an inactive edge or corner, where what is
-    // left comes nearest, and is the neighbor's. False: it is not clear beyond which.
+    // What lies before the face is not the deepest part of the shape: that lies beyond an inactive edge or corner,
+    // where what is left comes nearest, and is the neighbor's. False: it is not clear beyond which.
     bool WaitForNeighbor(uint32_t index, const TriangleInShape& triangle, float slop, const Manifold& onFace) {
         const TriangleView& view = contacts_.views_[index];
         int deepest = 0;
@@ -251,7 +270,8 @@ private:
         return onFace.pointCount > 0 && contact.touches && (contact.proven || FacesAlone(view));
     }
 
-    void CollidePolyhedron(uint32_t index, const Vector3 (&corners)[3], const RelativePose& pose, const Manifold* knownOnFace) {
+    void CollidePolyhedron(uint32_t index, const Vector3 (&corners)[3], const RelativePose& pose,
+                           const Manifold* knownOnFace) {
         const TriangleView& view = contacts_.views_[index];
         PolyhedronStorage storage;
         const PolyhedronPair pair(core_, CoreOf(corners, view.normal, 0, storage), pose);
@@ -276,7 +296,8 @@ private:
         const bool overlaps = gjk.status == GjkStatus::Overlapping;
         if (overlaps) {
             const EpaResult epa = Epa(pair, gjk.simplex);
-            const FoundAxis found = epa.status == EpaResult::Status::Found ? FoundAxis{epa.axis, epa.separation} : SearchAllAxes(pair);
+            const FoundAxis found =
+                epa.status == EpaResult::Status::Found ? FoundAxis{epa.axis, epa.separation} : SearchAllAxes(pair);
             known.axis = found.axis;
             known.separation = found.separation;
         }
@@ -296,7 +317,8 @@ private:
         const ConvexGjkResult gjk = ConvexGjk(pair, inwards, tolerances.reach);
         if (gjk.status == GjkStatus::BeyondReach) return;
         const bool overlaps = gjk.status == GjkStatus::Overlapping;
-        const KnownContact known = overlaps ? FindDepth(pair, gjk.simplex, inwards) : KnownContact{gjk.axis, gjk.separation, gjk.onA};
+        const KnownContact known =
+            overlaps ? FindDepth(pair, gjk.simplex, inwards) : KnownContact{gjk.axis, gjk.separation, gjk.onA};
         Manifold onFace, nearest;
         PairCache none;
         onFace.pointCount = nearest.pointCount = 0;
@@ -310,9 +332,10 @@ private:
         ResolveTriangleContact(index, pair.DirectionInB(known.axis), overlaps, onFace, nearest);
     }
 
-    // Decides what a triangle's contact is: before its face, or at what is nearest along `axis` (towards the triangle, in the
-    // surface's frame).
-    void ResolveTriangleContact(uint32_t index, const Vector3& axis, bool overlaps, const Manifold& onFace, const Manifold& nearest) {
+    // Decides what a triangle's contact is: before its face, or at what is nearest along `axis` (towards the triangle,
+    // in the surface's frame).
+    void ResolveTriangleContact(uint32_t index, const Vector3& axis, bool overlaps, const Manifold& onFace,
+                                const Manifold& nearest) {
         const TriangleView& view = contacts_.views_[index];
         if (Dot(axis, view.normal) > 0) {
             // Out through the back is no way out of a surface.
@@ -357,7 +380,8 @@ private:
 
     SurfaceManifold Named(const TriangleView& view, const Manifold& manifold) const {
         SurfaceManifold named{manifold, view.id, view.material};
-        for (int i = 0; i < manifold.pointCount; ++i) named.manifold.points[i].feature = SurfaceFeature(manifold.points[i].feature, view);
+        for (int i = 0; i < manifold.pointCount; ++i)
+            named.manifold.points[i].feature = SurfaceFeature(manifold.points[i].feature, view);
         return named;
     }
     void AddFace(const TriangleView& view, const Manifold& manifold) {
@@ -366,28 +390,32 @@ private:
     }
 
     void AddDeferredEdgeContacts() {
-        // The vertices of faces that touch; all vertices of what waits; for each of these whether it is known. Sorted, since a large
-        // shape may touch any number of them.
+        // The vertices of faces that touch; all vertices of what waits; for each of these whether it is known. Sorted,
+        // since a large shape may touch any number of them.
         std::vector<uint32_t>& known = contacts_.known_;
         std::sort(known.begin(), known.end());
         const ptrdiff_t faces = static_cast<ptrdiff_t>(known.size());
-        for (const SurfaceContacts::DeferredEdgeContact& deferred : contacts_.deferred_) known.insert(known.end(), deferred.vertices, deferred.vertices + 2);
+        for (const SurfaceContacts::DeferredEdgeContact& deferred : contacts_.deferred_)
+            known.insert(known.end(), deferred.vertices, deferred.vertices + 2);
         std::sort(known.begin() + faces, known.end());
         known.erase(std::unique(known.begin() + faces, known.end()), known.end());
         const ptrdiff_t asked = static_cast<ptrdiff_t>(known.size()) - faces;
         known.resize(known.size() + static_cast<size_t>(asked));
         for (ptrdiff_t i = 0; i < asked; ++i)
-            known[static_cast<size_t>(faces + asked + i)] = std::binary_search(known.begin(), known.begin() + faces, known[static_cast<size_t>(faces + i)]);
+            known[static_cast<size_t>(faces + asked + i)] =
+                std::binary_search(known.begin(), known.begin() + faces, known[static_cast<size_t>(faces + i)]);
         const auto isKnown = [&](uint32_t vertex) -> uint32_t& {
             return *(std::lower_bound(known.begin() + faces, known.begin() + faces + asked, vertex) + asked);
         };
         std::sort(contacts_.deferred_.begin(), contacts_.deferred_.end(), [](const auto& x, const auto& y) {
             if (x.active != y.active) return x.active;
-            return x.separation < y.separation || (x.separation == y.separation && x.contact.triangle < y.contact.triangle);
+            return x.separation < y.separation ||
+                   (x.separation == y.separation && x.contact.triangle < y.contact.triangle);
         });
         for (const SurfaceContacts::DeferredEdgeContact& deferred : contacts_.deferred_) {
             const bool isOfOther = isKnown(deferred.vertices[0]) && isKnown(deferred.vertices[1]);
-            // What lies before a face rests on it, though the neighbor is nearer: without it a shape across two faces would rock.
+            // What lies before a face rests on it, though the neighbor is nearer: without it a shape across two faces
+            // would rock.
             if (!isOfOther) contacts_.found_.push_back(deferred.contact);
             else if (deferred.onFace.manifold.pointCount > 0) contacts_.found_.push_back(deferred.onFace);
             isKnown(deferred.vertices[0]) = isKnown(deferred.vertices[1]) = 1;
@@ -415,8 +443,11 @@ private:
         float earliest = 1, gap = 0;
         for (const TriangleView& original : contacts_.views_) {
             const TriangleView view = b_.IsTwoSided() && Height(original) < 0 ? Reversed(original) : original;
-            const float height = Height(view), approach = -Dot(motion_, view.normal), above = std::max(height - a_.InnerRadius(), 0.0f);
-            if (height < 0 || approach <= fast || above >= earliest * approach || !IsOver(view, center_ + motion_ * (above / approach), a_.InnerRadius())) continue;
+            const float height = Height(view), approach = -Dot(motion_, view.normal),
+                        above = std::max(height - a_.InnerRadius(), 0.0f);
+            if (height < 0 || approach <= fast || above >= earliest * approach ||
+                !IsOver(view, center_ + motion_ * (above / approach), a_.InnerRadius()))
+                continue;
             earliest = above / approach;
             gap = height - a_.InnerRadius();
             first = &original;
@@ -435,7 +466,8 @@ private:
     static bool IsOver(const TriangleView& view, const Vector3& at, float radius) {
         for (int i = 0; i < 3; ++i) {
             const Vector3 edge = view.vertices[(i + 1) % 3] - view.vertices[i];
-            if (Dot(Cross<float>(edge, view.normal), Vector3(at - view.vertices[i])) > radius * Length(edge)) return false;
+            if (Dot(Cross<float>(edge, view.normal), Vector3(at - view.vertices[i])) > radius * Length(edge))
+                return false;
         }
         return true;
     }
@@ -462,7 +494,8 @@ private:
     // Points of several manifolds, along one normal.
     class Points {
     public:
-        Points(const Vector3& normal, float slop) : normal_(normal), u_(Perpendicular(normal)), v_(Cross<float>(normal, u_)), slop_(slop) {}
+        Points(const Vector3& normal, float slop)
+            : normal_(normal), u_(Perpendicular(normal)), v_(Cross<float>(normal, u_)), slop_(slop) {}
 
         void Add(const Manifold& manifold) {
             for (int i = 0; i < manifold.pointCount; ++i) Add(manifold.points[i], manifold.normal);
@@ -487,8 +520,8 @@ private:
             points_[count_++] = point;
         }
         void Reduce() {
-            // Corners of the shape first: the choice prefers what comes first, and they last while it slides from triangle to
-            // triangle.
+            // Corners of the shape first: the choice prefers what comes first, and they last while it slides from
+            // triangle to triangle.
             int order[kRoom], n = 0;
             for (const bool corners : {true, false})
                 for (int i = 0; i < count_; ++i)
@@ -517,21 +550,22 @@ private:
     const CollideSettings& settings_;
     SurfaceContacts& contacts_;
     PolyhedronStorage storage_;
-    Polyhedron core_;   // where it is one
-    Matrix3 axes_;      // of the surface, in the shape's frame
-    Vector3 center_;    // of the shape, in the surface's frame
-    Vector3 motion_;    // of the center within the step, likewise
+    Polyhedron core_;  // where it is one
+    Matrix3 axes_;     // of the surface, in the shape's frame
+    Vector3 center_;   // of the shape, in the surface's frame
+    Vector3 motion_;   // of the center within the step, likewise
     std::span<const uint32_t> touched_;
     bool isPolyhedral_;
 };
 
 size_t SurfaceContacts::MemoryUsed() const {
     return (ids_.capacity() + known_.capacity()) * sizeof(uint32_t) + views_.capacity() * sizeof(TriangleView) +
-           deferred_.capacity() * sizeof(DeferredEdgeContact) + (found_.capacity() + manifolds_.capacity()) * sizeof(SurfaceManifold);
+           deferred_.capacity() * sizeof(DeferredEdgeContact) +
+           (found_.capacity() + manifolds_.capacity()) * sizeof(SurfaceManifold);
 }
 
-void CollideSurface(const ConvexShape& a, const SurfaceShape& b, const RelativePose& bInA, const CollideSettings& settings,
-                    const SurfaceApproach& approach, SurfaceContacts& contacts) {
+void CollideSurface(const ConvexShape& a, const SurfaceShape& b, const RelativePose& bInA,
+                    const CollideSettings& settings, const SurfaceApproach& approach, SurfaceContacts& contacts) {
     SurfaceCollider(a, b, bInA, settings, approach, contacts).Run();
 }
 

@@ -35,7 +35,8 @@ Lanes SurfaceProbe::Extent(const Vector& d, uint32_t lanes) const {
     if (core && core->vertexCount == 2) return Abs(direction.y()) * Lanes(core->vertices[1].y());
     if (core && shape.Type() == ShapeType::Box) {
         const Vector3& half = core->vertices[7];
-        return Abs(direction.x()) * Lanes(half.x()) + Abs(direction.y()) * Lanes(half.y()) + Abs(direction.z()) * Lanes(half.z());
+        return Abs(direction.x()) * Lanes(half.x()) + Abs(direction.y()) * Lanes(half.y()) +
+               Abs(direction.z()) * Lanes(half.z());
     }
     if (core && core->vertexCount <= kFew) return FarthestOfFew(*core, direction);
     Lanes extent(0.0f);
@@ -69,18 +70,21 @@ void TriangleBatch::FindClosest() {
     Lanes least(0.0f);
     for (int i = 0; i < 3; ++i) {
         const Vector along = corners[(i + 1) % 3] - corners[i];
-        const Lanes t = Clamp(-Along(corners[i], along) / Max(length[i] * length[i], Lanes(1e-30f)), Lanes(0.0f), Lanes(1.0f));
+        const Lanes t =
+            Clamp(-Along(corners[i], along) / Max(length[i] * length[i], Lanes(1e-30f)), Lanes(0.0f), Lanes(1.0f));
         const Vector point = corners[i] + along * t;
         const Lanes squared = Along(point, point);
         const auto closer = squared < least;
-        for (int axis = 0; axis < 3; ++axis) closest[axis] = i == 0 ? point[axis] : Select(closer, point[axis], closest[axis]);
+        for (int axis = 0; axis < 3; ++axis)
+            closest[axis] = i == 0 ? point[axis] : Select(closer, point[axis], closest[axis]);
         least = i == 0 ? squared : Min(least, squared);
     }
     for (int axis = 0; axis < 3; ++axis) closest[axis] = Select(inside, -(normal[axis] * height), closest[axis]);
     distance = Select(inside, height, Sqrt(least));
 }
 
-uint32_t TriangleBatch::FindInReach(const SurfaceProbe& probe, const TriangleView* views, int viewCount, uint32_t& reversed) {
+uint32_t TriangleBatch::FindInReach(const SurfaceProbe& probe, const TriangleView* views, int viewCount,
+                                    uint32_t& reversed) {
     count = viewCount;
     Load(probe, views);
     const ConvexShape& shape = probe.shape;

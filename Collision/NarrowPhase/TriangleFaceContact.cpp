@@ -24,7 +24,11 @@ struct ClippedFace {
     ClipVertex buffers[2][kMostClipped];
 
     ClippedFace(const Polyhedron& p, int face)
-        : core(p), corners(p.indices + p.faces[face].firstIndex), cornerCount(p.faces[face].cornerCount), count(cornerCount), current(buffers[0]) {
+        : core(p),
+          corners(p.indices + p.faces[face].firstIndex),
+          cornerCount(p.faces[face].cornerCount),
+          count(cornerCount),
+          current(buffers[0]) {
         for (int i = 0; i < count; ++i) current[i] = {core.vertices[corners[i]], static_cast<uint32_t>(i)};
     }
     void Clip(const TriangleInShape& triangle, const float (&offsets)[3], float slop) {
@@ -41,9 +45,13 @@ struct ClippedFace {
             current = spare;
         }
     }
-    uint32_t Edge(uint32_t i) const { return EdgeName(corners[i], corners[i + 1 == static_cast<uint32_t>(cornerCount) ? 0 : i + 1]); }
+    uint32_t Edge(uint32_t i) const {
+        return EdgeName(corners[i], corners[i + 1 == static_cast<uint32_t>(cornerCount) ? 0 : i + 1]);
+    }
     uint32_t Feature(int i) const {
-        const auto crossing = [](uint32_t edge, uint32_t side) { return CrossingFeature(edge, EdgeName(side, side == 2 ? 0 : side + 1)); };
+        const auto crossing = [](uint32_t edge, uint32_t side) {
+            return CrossingFeature(edge, EdgeName(side, side == 2 ? 0 : side + 1));
+        };
         const uint32_t starts = current[i].label, ends = current[i == 0 ? count - 1 : i - 1].label;
         if (starts < kSideLabel && ends < kSideLabel) return VertexFeature(true, corners[starts]);
         if (starts < kSideLabel) return crossing(Edge(starts), ends - kSideLabel);
@@ -55,7 +63,8 @@ struct ClippedFace {
 };
 
 // As in FaceContact.cpp: how far inside all sides the middle of the deepest points lies.
-float DiscRadius(const TriangleInShape& triangle, const float (&offsets)[3], const ClippedFace& face, const float* separations, float deepEnough) {
+float DiscRadius(const TriangleInShape& triangle, const float (&offsets)[3], const ClippedFace& face,
+                 const float* separations, float deepEnough) {
     Vector3 middle = Vector3::Zero();
     float count = 0;
     for (int i = 0; i < face.count; ++i) {
@@ -78,8 +87,8 @@ struct CentersAndRadii {
 
 }  // namespace
 
-FaceContact BuildTriangleFaceContact(const Polyhedron& core, int incidentFace, const TriangleInShape& triangle, float separation,
-                                     const ContactTolerances& tolerances, Manifold& manifold) {
+FaceContact BuildTriangleFaceContact(const Polyhedron& core, int incidentFace, const TriangleInShape& triangle,
+                                     float separation, const ContactTolerances& tolerances, Manifold& manifold) {
     float offsets[3];
     for (int k = 0; k < 3; ++k) offsets[k] = Dot(triangle.outwards[k], triangle.corners[k]);
     ClippedFace face(core, incidentFace);
@@ -101,8 +110,10 @@ FaceContact BuildTriangleFaceContact(const Polyhedron& core, int incidentFace, c
     }
     result.touches = least <= separation + tolerances.prefer;
     if (result.touches) {
-        const float radius = separation >= 0 ? 0 : DiscRadius(triangle, offsets, face, separations, least + tolerances.prefer);
-        result.proven = NoBetterAxis(CentersAndRadii{triangle.middle, core.innerRadius}, manifold.normal, -separation, radius);
+        const float radius =
+            separation >= 0 ? 0 : DiscRadius(triangle, offsets, face, separations, least + tolerances.prefer);
+        result.proven =
+            NoBetterAxis(CentersAndRadii{triangle.middle, core.innerRadius}, manifold.normal, -separation, radius);
     }
 
     int chosen[4] = {0, 1, 2, 3};
@@ -111,13 +122,15 @@ FaceContact BuildTriangleFaceContact(const Polyhedron& core, int incidentFace, c
         FlatPoints<kMostClipped> points;
         const Vector3 u = Perpendicular(normal), v = Cross<float>(normal, u);
         for (int i = 0; i < nearCount; ++i)
-            points.Add(Dot(u, face.current[near[i]].position), Dot(v, face.current[near[i]].position), separations[near[i]]);
+            points.Add(Dot(u, face.current[near[i]].position), Dot(v, face.current[near[i]].position),
+                       separations[near[i]]);
         count = ChooseFour(points, tolerances.prefer, chosen, kLeastWeightOnSurfaces);
     }
     manifold.pointCount = count;
     for (int i = 0; i < count; ++i) {
         const int c = near[chosen[i]];
-        manifold.points[i] = {face.current[c].position + manifold.normal * core.radius, separations[c] - core.radius, face.Feature(c)};
+        manifold.points[i] = {face.current[c].position + manifold.normal * core.radius, separations[c] - core.radius,
+                              face.Feature(c)};
     }
     return result;
 }

@@ -9,13 +9,13 @@ namespace fulcrum {
 
 namespace {
 
-// The axis of least depth of overlapping cores. A flat or pointed core, as a triangle or a segment, may leave EPA nothing to
-// expand: libccd's answer is held against the center line's then, and the axis of less depth wins.
+// The axis of least depth of overlapping cores. A flat or pointed core, as a triangle or a segment, may leave EPA
+// nothing to expand: libccd's answer is held against the center line's then, and the axis of less depth wins.
 Vector3 AxisOfLeastDepth(const SupportPair& pair, const RelativePose& bInA, const ConvexGjkResult& gjk) {
     Vector3 axis = gjk.axis;
     float depth = -pair.SeparationAlong(axis);
-    // Far from each other GJK's simplex may seem to be around the origin, by rounding alone: a plane between the cores is a proof,
-    // and what they are apart along it all that floats know.
+    // Far from each other GJK's simplex may seem to be around the origin, by rounding alone: a plane between the cores
+    // is a proof, and what they are apart along it all that floats know.
     if (depth < 0) return axis;
     const Vector3 centerLine = Normalized(pair.position);
     if (pair.SeparationAlong(centerLine) > 0) return centerLine;
@@ -30,12 +30,14 @@ Vector3 AxisOfLeastDepth(const SupportPair& pair, const RelativePose& bInA, cons
     if (epa.status == EpaResult::Status::Found) return axis;
     consider(centerLine);
     consider(-centerLine);
-    // Against a shape so much larger that the cores overlap by no more than it rounds, GJK's simplex is all that tells the surface.
+    // Against a shape so much larger that the cores overlap by no more than it rounds, GJK's simplex is all that tells
+    // the surface.
     using Real = SupportVertex::Real;
     const auto& simplex = gjk.simplex;
     const int faces = simplex.count == 4 ? 4 : simplex.count == 3 ? 1 : 0;
     for (int i = 0; i < faces; ++i) {
-        const Vec3<Real> first = simplex.vertices[i].w, second = simplex.vertices[(i + 1) % simplex.count].w, third = simplex.vertices[(i + 2) % simplex.count].w;
+        const Vec3<Real> first = simplex.vertices[i].w, second = simplex.vertices[(i + 1) % simplex.count].w,
+                         third = simplex.vertices[(i + 2) % simplex.count].w;
         const Vec3<Real> normal = Cross<Real>(Vec3<Real>(second - first), Vec3<Real>(third - first));
         const Real length = std::sqrt(Dot<Real>(normal, normal));
         if (!(length > 0)) continue;

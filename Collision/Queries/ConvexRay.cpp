@@ -99,8 +99,8 @@ Lane Best(const Wide<8>& values, const Wide<8>& faces, float sign) {
     return best;
 }
 
-// Between the last plane that the line enters and the first that it leaves; eight faces at once. `grown`: m, by which the faces
-// are moved outwards.
+// Between the last plane that the line enters and the first that it leaves; eight faces at once. `grown`: m, by which
+// the faces are moved outwards.
 bool ChordOfFaces(const ConvexHull& hull, float grown, const LinePiece& line, Chord& chord) {
     using Eight = Wide<8>;
     const Eight px(line.point.x()), py(line.point.y()), pz(line.point.z());
@@ -116,7 +116,7 @@ bool ChordOfFaces(const ConvexHull& hull, float grown, const LinePiece& line, Ch
         const Eight speed = nx * dx + ny * dy + nz * dz;
         const Eight height = Eight::Load(hull.OffsetLane() + i) + more - (nx * px + ny * py + nz * pz);
         const Eight distance = height / speed;
-        const auto enters = speed < zero, leaves = speed > zero;
+        const auto enters = speed<zero, leaves = speed> zero;
         outside = outside | (~(enters | leaves) & (height < zero));
         const auto later = enters & (distance > in), earlier = leaves & (distance < out);
         in = Select(later, distance, in);
@@ -143,16 +143,18 @@ ChordAnswer ChordOf(const ConvexShape& shape, const LinePiece& line, Chord& chor
     const bool isSharp = shape.ConvexRadius() == 0;
     switch (shape.Type()) {
         case ShapeType::Sphere: return answer(ChordOfBall(Vector3::Zero(), shape.ConvexRadius(), line, chord), true);
-        case ShapeType::Box: return answer(ChordOfBox(static_cast<const Box&>(shape).HalfExtents(), line, chord), isSharp);
+        case ShapeType::Box:
+            return answer(ChordOfBox(static_cast<const Box&>(shape).HalfExtents(), line, chord), isSharp);
         case ShapeType::Capsule: return answer(ChordOfCapsule(static_cast<const Capsule&>(shape), line, chord), true);
         case ShapeType::ConvexHull:
-            return answer(ChordOfFaces(static_cast<const ConvexHull&>(shape), shape.ConvexRadius(), line, chord), isSharp);
+            return answer(ChordOfFaces(static_cast<const ConvexHull&>(shape), shape.ConvexRadius(), line, chord),
+                          isSharp);
         default: return answer(ChordOfBall(Vector3::Zero(), shape.OuterRadius(), line, chord), false);
     }
 }
 
-// `to`: where the line has left the shape for sure. What the piece leaves out of that only cuts the search short: the answer is
-// the same bits.
+// `to`: where the line has left the shape for sure. What the piece leaves out of that only cuts the search short: the
+// answer is the same bits.
 LineResult EnterBetween(const ConvexShape& shape, const LinePiece& line, float from, float to) {
     LineResult result;
     if (!(from <= std::min(to, line.to))) return result;

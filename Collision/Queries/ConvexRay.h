@@ -5,8 +5,8 @@
 
 namespace fulcrum {
 
-// A piece of a line, by its distance s along it: point + s direction, from <= s <= to. `point` lies near the shape's center, so
-// that floats are exact enough however far away the piece begins.
+// A piece of a line, by its distance s along it: point + s direction, from <= s <= to. `point` lies near the shape's
+// center, so that floats are exact enough however far away the piece begins.
 struct LinePiece {
     Vector3 point;      // m, in the shape's center frame
     Vector3 direction;  // unit
@@ -24,8 +24,8 @@ struct LineResult {
     LineHit entry;  // where hit and not startsInside
 };
 
-// The entry into the shape, or that the piece begins inside (touching counts). Sphere, box, capsule and hull in closed form,
-// others by EnterBySupport.
+// The entry into the shape, or that the piece begins inside (touching counts). Sphere, box, capsule and hull in closed
+// form, others by EnterBySupport.
 LineResult EnterConvex(const ConvexShape& shape, const LinePiece& line);
 // By GJK on the support function alone.
 LineResult EnterBySupport(const ConvexShape& shape, const LinePiece& line);

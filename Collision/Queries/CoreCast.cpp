@@ -41,7 +41,9 @@ Position StartAxis(const Position& position) {
 
 // The weights of the corners of a tetrahedron around the origin; all zero where it is flat.
 Vec4 WeightsInside(const Simplex<SupportVertex>& s) {
-    const auto volume = [](const Position& a, const Position& b, const Position& c) { return Dot<double>(a, Cross<double>(b, c)); };
+    const auto volume = [](const Position& a, const Position& b, const Position& c) {
+        return Dot<double>(a, Cross<double>(b, c));
+    };
     const Position &a = s.vertices[0].w, &b = s.vertices[1].w, &c = s.vertices[2].w, &d = s.vertices[3].w;
     const Vec4 parts{volume(b, c, d), -volume(a, c, d), volume(a, b, d), -volume(a, b, c)};
     const double sum = parts[0] + parts[1] + parts[2] + parts[3];
@@ -58,7 +60,8 @@ Vector3 PointOnA(const Simplex<SupportVertex>& simplex) {
         for (int i = 0; i < 3; ++i) weights[static_cast<size_t>(i)] = inPlane[i];
     }
     Position point = Position::Zero();
-    for (int i = 0; i < simplex.count; ++i) point += simplex.vertices[i].onA.cast<double>() * weights[static_cast<size_t>(i)];
+    for (int i = 0; i < simplex.count; ++i)
+        point += simplex.vertices[i].onA.cast<double>() * weights[static_cast<size_t>(i)];
     return point.cast<float>();
 }
 
@@ -92,7 +95,8 @@ Quaternion CoreMotion::RotationAt(double fraction) const {
     return Normalized(RotationFromVector(turned) * rotation);
 }
 
-CoreCastResult CastLinear(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion, const CoreCastLimits& limits) {
+CoreCastResult CastLinear(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion,
+                          const CoreCastLimits& limits) {
     using Outcome = CoreCastResult::Status;
     const TurnedPair pair{a, b, ToMatrix(motion.rotation)};
     const double target = double{a.ConvexRadius()} + b.ConvexRadius() + limits.separation;
@@ -133,10 +137,12 @@ CoreCastResult CastLinear(const ConvexShape& a, const ConvexShape& b, const Core
         axis = closest * (1 / distance);
         touches = distance - target <= tolerance;
         // So near each other, the cores' closest points tell no direction; the plane that they were advanced to does.
-        if (touches && advanced && distance <= 100 * least) return HitAt(Outcome::Hit, fraction, provenAxis, PointOnA(simplex));
+        if (touches && advanced && distance <= 100 * least)
+            return HitAt(Outcome::Hit, fraction, provenAxis, PointOnA(simplex));
     }
     if (touches) return HitAt(Touching(advanced), fraction, axis, PointOnA(simplex));
-    return HitAt(advanced ? Outcome::Early : Outcome::AtStart, fraction, advanced ? provenAxis : axis, PointOnA(simplex));
+    return HitAt(advanced ? Outcome::Early : Outcome::AtStart, fraction, advanced ? provenAxis : axis,
+                 PointOnA(simplex));
 }
 
 namespace {
@@ -144,16 +150,22 @@ namespace {
 // How long no point of a turning shape comes nearer than the wanted distance along an axis. All points of B follow
 //   n . x(t + s) >= n . (c + r) + s (n . d + r . (n x w)) - s^2 / 2 |w|^2 R,
 // r from B's center, R the radius of its core, w the turn: the linear part is smallest for the support of B along
-// n + s (n x w), and as a minimum of linear functions it is concave in s. So where the bound holds at the end of an interval
-// and the shapes are apart at its beginning, it holds in between.
+// n + s (n x w), and as a minimum of linear functions it is concave in s. So where the bound holds at the end of an
+// interval and the shapes are apart at its beginning, it holds in between.
 class AxisAdvance {
 public:
     // `gap`: by which B is farther away along the axis now than wanted, > 0.
-    AxisAdvance(const ConvexShape& b, const CoreMotion& motion, const Vector3& axis, const Quaternion& rotation, double gap)
-        : b_(b), axis_(axis), turned_(Cross<float>(axis, motion.turn)), rotation_(ToMatrix(rotation)), gap_(gap),
+    AxisAdvance(const ConvexShape& b, const CoreMotion& motion, const Vector3& axis, const Quaternion& rotation,
+                double gap)
+        : b_(b),
+          axis_(axis),
+          turned_(Cross<float>(axis, motion.turn)),
+          rotation_(ToMatrix(rotation)),
+          gap_(gap),
           approach_(-Dot<double>(axis.cast<double>(), motion.displacement.cast<double>())),
           radius_(b.OuterRadius() - std::min(b.ConvexRadius(), b.OuterRadius())),
-          bending_(0.5 * double{LengthSquared(motion.turn)} * radius_), lowest_(LowestAlong(0)) {}
+          bending_(0.5 * double{LengthSquared(motion.turn)} * radius_),
+          lowest_(LowestAlong(0)) {}
 
     // Proven, in fractions of the motion: `remaining` where it reaches that far.
     double Step(double remaining) const {
@@ -193,8 +205,8 @@ private:
     double gap_, approach_, radius_, bending_, lowest_;
 };
 
-// Advances until GJK, or whatever `separate` is, finds the shapes no farther apart than wanted. separate(fraction) answers
-// {apart by more than wanted along a unit axis, axis, point of A's core, cores overlap}.
+// Advances until GJK, or whatever `separate` is, finds the shapes no farther apart than wanted. separate(fraction)
+// answers {apart by more than wanted along a unit axis, axis, point of A's core, cores overlap}.
 struct Separated {
     double gap;
     Vector3 axis;
@@ -213,7 +225,8 @@ CoreCastResult Advance(const ConvexShape& b, const CoreMotion& motion, const Cor
         if (now.coresOverlap || now.gap <= tolerance) {
             if (now.coresOverlap && i == 0) return CoresOverlapAtStart();
             const Separated& known = now.coresOverlap ? last : now;
-            return HitAt(i == 0 ? Outcome::AtStart : Outcome::Hit, fraction, known.axis.template cast<double>(), known.onA);
+            return HitAt(i == 0 ? Outcome::AtStart : Outcome::Hit, fraction, known.axis.template cast<double>(),
+                         known.onA);
         }
         // Not shorter where only the beginning is asked for: the answer is the same bits.
         const double remaining = 1 - fraction;
@@ -230,7 +243,8 @@ CoreCastResult Advance(const ConvexShape& b, const CoreMotion& motion, const Cor
 
 }  // namespace
 
-CoreCastResult CastTurning(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion, const CoreCastLimits& limits) {
+CoreCastResult CastTurning(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion,
+                           const CoreCastLimits& limits) {
     const double target = double{a.ConvexRadius()} + b.ConvexRadius() + limits.separation;
     const double tolerance = std::max(double{limits.tolerance}, 20 * LeastTolerance(a, b));
     const auto separate = [&](double fraction, const Vector3& guess) -> Separated {

@@ -1,23 +1,23 @@
-// Time of impact of two convex shapes, one moving, known by their support functions alone. Called by the ray casts and shape
-// casts; the base of continuous collision. Allocates nothing; thread-safe.
+// Time of impact of two convex shapes, one moving, known by their support functions alone. Called by the ray casts and
+// shape casts; the base of continuous collision. Allocates nothing; thread-safe.
 //
-// Every advance in time is proven: a plane separates the shapes by more than the wanted distance until then, whatever the
-// shape, so that nothing is stepped over however thin or fast it is. The search ends where a point of each, that far apart up
-// to a tolerance, proves that the time is not early either; should that take too many steps, the time reached is given, which
-// is early rather than late.
+// Every advance in time is proven: a plane separates the shapes by more than the wanted distance until then, whatever
+// the shape, so that nothing is stepped over however thin or fast it is. The search ends where a point of each, that
+// far apart up to a tolerance, proves that the time is not early either; should that take too many steps, the time
+// reached is given, which is early rather than late.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/ConvexGjk.h>
 
 namespace fulcrum {
 
-// How shape B moves in the frame of shape A, which is at rest. The center moves straight; B turns at a constant rate about an
-// axis through it.
+// How shape B moves in the frame of shape A, which is at rest. The center moves straight; B turns at a constant rate
+// about an axis through it.
 struct CoreMotion {
-    Position position;                        // of B's center at the start, m
-    Quaternion rotation{};                    // at the start, unit
-    Vector3 displacement = Vector3::Zero();   // m, over the whole motion
-    Vector3 turn = Vector3::Zero();           // rad, over the whole motion; along the axis, in A's frame
+    Position position;                       // of B's center at the start, m
+    Quaternion rotation{};                   // at the start, unit
+    Vector3 displacement = Vector3::Zero();  // m, over the whole motion
+    Vector3 turn = Vector3::Zero();          // rad, over the whole motion; along the axis, in A's frame
     bool IsTurning() const { return !turn.isZero(0); }
 
     Position PositionAt(double fraction) const { return position + displacement.cast<double>() * fraction; }
@@ -32,10 +32,10 @@ struct CoreCastLimits {
 
 struct CoreCastResult {
     enum class Status : uint8_t {
-        Miss,      // farther apart than the separation until maxFraction
+        Miss,  // farther apart than the separation until maxFraction
         Hit,
-        Early,     // not decided within the limit of iterations: apart until then, near each other at that time
-        AtStart,   // no farther apart than the separation at the start
+        Early,    // not decided within the limit of iterations: apart until then, near each other at that time
+        AtStart,  // no farther apart than the separation at the start
     };
     Status status = Status::Miss;
     double fraction = 0;
@@ -45,19 +45,22 @@ struct CoreCastResult {
     bool IsHit() const { return status != Status::Miss; }
 };
 
-// Source of the search: G. van den Bergen, "Ray Casting against General Convex Objects with Application to Continuous Collision
-// Detection", 2004: GJK on a moving difference, which keeps its simplex from one advance to the next.
-CoreCastResult CastLinear(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion, const CoreCastLimits& limits);
+// Source of the search: G. van den Bergen, "Ray Casting against General Convex Objects with Application to Continuous
+// Collision Detection", 2004: GJK on a moving difference, which keeps its simplex from one advance to the next.
+CoreCastResult CastLinear(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion,
+                          const CoreCastLimits& limits);
 
-// The same for a B that turns, by conservative advancement: GJK at each time, and an advance by a bound of second order on how
-// fast B's points may come nearer along the axis found.
-CoreCastResult CastTurning(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion, const CoreCastLimits& limits);
+// The same for a B that turns, by conservative advancement: GJK at each time, and an advance by a bound of second order
+// on how fast B's points may come nearer along the axis found.
+CoreCastResult CastTurning(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion,
+                           const CoreCastLimits& limits);
 
 // Against the half space of all x with normal . x <= offset, B linear or turning.
 CoreCastResult CastToPlane(const Vector3& normal, double offset, const ConvexShape& b, const CoreMotion& motion,
                            const CoreCastLimits& limits);
 
-inline CoreCastResult CastCore(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion, const CoreCastLimits& limits) {
+inline CoreCastResult CastCore(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion,
+                               const CoreCastLimits& limits) {
     return motion.IsTurning() ? CastTurning(a, b, motion, limits) : CastLinear(a, b, motion, limits);
 }
 

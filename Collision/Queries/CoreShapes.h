@@ -1,5 +1,5 @@
-// Points and triangles as convex shapes, so that all that GJK knows serves them too. Used by the queries; they live on the
-// stack of one call and are bodies' shapes nowhere.
+// Points and triangles as convex shapes, so that all that GJK knows serves them too. Used by the queries; they live on
+// the stack of one call and are bodies' shapes nowhere.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/Shape.h>
@@ -12,9 +12,7 @@ namespace fulcrum {
 // A ball of radius zero at the origin.
 class PointCore final : public ConvexShape {
 public:
-    PointCore() : ConvexShape(ShapeType::Sphere) {
-        bounds_.lower = bounds_.upper = Vector3::Zero();
-    }
+    PointCore() : ConvexShape(ShapeType::Sphere) { bounds_.lower = bounds_.upper = Vector3::Zero(); }
     Vector3 SupportCore(const Vector3&) const override { return Vector3::Zero(); }
 };
 

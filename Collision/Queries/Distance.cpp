@@ -18,14 +18,16 @@ Bounds Everywhere() {
     return bounds;
 }
 
-// Calls visit(pieceOfA, pieceOfB, pose of the latter in the former) for the pairs of pieces whose boxes are within `reach`.
+// Calls visit(pieceOfA, pieceOfB, pose of the latter in the former) for the pairs of pieces whose boxes are within
+// `reach`.
 template <class Visitor>
 void VisitPairs(const Shape& a, const Shape& b, const RelativePose& bInA, float reach, Visitor&& visit) {
     const RelativePose aInB = Inverse(bInA);
     VisitPieces(a, Inflated(BoundsAt(bInA, b.LocalBounds()), reach), [&](const Piece& pieceOfA) {
         const Bounds near = BoundsAt(aInB * pieceOfA.pose, pieceOfA.shape.LocalBounds());
         const RelativePose bInPiece = Inverse(pieceOfA.pose) * bInA;
-        VisitPieces(b, Inflated(near, reach), [&](const Piece& pieceOfB) { visit(pieceOfA, pieceOfB, bInPiece * pieceOfB.pose); });
+        VisitPieces(b, Inflated(near, reach),
+                    [&](const Piece& pieceOfB) { visit(pieceOfA, pieceOfB, bInPiece * pieceOfB.pose); });
     });
 }
 
@@ -36,8 +38,8 @@ public:
     void Consider(const Piece& a, const Piece& b, const RelativePose& bInA) {
         const ConvexSeparation found = MeasureConvex(a.shape, b.shape, bInA, std::max(limit_, 0.0f));
         if (found.isBeyond) return;
-        Consider(found.separation, Rotate(a.pose.rotation, found.normal), a.pose.Transform(found.onA), a.pose.Transform(found.onB),
-                 a.subShape, b.subShape);
+        Consider(found.separation, Rotate(a.pose.rotation, found.normal), a.pose.Transform(found.onA),
+                 a.pose.Transform(found.onB), a.subShape, b.subShape);
     }
     void Consider(float distance, const Vector3& normal, const Vector3& onA, const Vector3& onB, const SubShape& ofA,
                   const SubShape& ofB) {
@@ -83,9 +85,12 @@ bool ClosestToPlane(const Plane& plane, const Shape& other, const RelativePose& 
 
 // What was found in the frame of the second shape, from the first one's side.
 ClosestPoints Swapped(const ClosestPoints& found, const RelativePose& secondInFirst) {
-    return {found.distance, Rotate(secondInFirst.rotation, Vector3(-found.normal)), secondInFirst.Transform(found.onB),
+    return {found.distance,
+            Rotate(secondInFirst.rotation, Vector3(-found.normal)),
+            secondInFirst.Transform(found.onB),
             secondInFirst.Transform(found.onA),
-            found.subShapeOfB, found.subShapeOfA};
+            found.subShapeOfB,
+            found.subShapeOfA};
 }
 
 bool IsUsable(const RelativePose& pose, float maxDistance) {
@@ -94,7 +99,8 @@ bool IsUsable(const RelativePose& pose, float maxDistance) {
 
 }  // namespace
 
-bool FindClosestPoints(const Shape& a, const Shape& b, const RelativePose& bInA, float maxDistance, ClosestPoints& result) {
+bool FindClosestPoints(const Shape& a, const Shape& b, const RelativePose& bInA, float maxDistance,
+                       ClosestPoints& result) {
     if (!IsUsable(bInA, maxDistance)) return false;
     if (a.Type() == ShapeType::Plane) return ClosestToPlane(static_cast<const Plane&>(a), b, bInA, maxDistance, result);
     if (b.Type() == ShapeType::Plane) {

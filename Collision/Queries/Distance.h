@@ -1,5 +1,5 @@
-// Closest points of two shapes, overlap, and points inside. Called by the world's queries and by users who have shapes and no
-// world. Thread-safe; allocates nothing but where the depth of a degenerate overlap is measured.
+// Closest points of two shapes, overlap, and points inside. Called by the world's queries and by users who have shapes
+// and no world. Thread-safe; allocates nothing but where the depth of a degenerate overlap is measured.
 #pragma once
 
 #include <Fulcrum/Collision/Queries/Pieces.h>
@@ -7,23 +7,26 @@
 namespace fulcrum {
 
 struct ClosestPoints {
-    float distance = 0;                // m; negative where convex pieces overlap: the depth of the pair that overlaps the deepest
+    float distance = 0;  // m; negative where convex pieces overlap: the depth of the pair that overlaps the deepest
     Vector3 normal = Vector3::Zero();  // unit, from A towards B, A's frame
     Vector3 onA = Vector3::Zero();     // m, A's frame
     Vector3 onB = Vector3::Zero();
     SubShape subShapeOfA{}, subShapeOfB{};
 };
 
-// Where the two are closest, `bInA` being the pose of b's center frame in a's; false: farther apart than maxDistance (m, >= 0,
-// may be infinite), or not finite, or more than 1e18 m. Of pairs equally close that of the lowest child and triangle of A, then of B. A triangle
-// has no inside. Two half spaces that are not opposite overlap without a depth: the distance is 0.
-bool FindClosestPoints(const Shape& a, const Shape& b, const RelativePose& bInA, float maxDistance, ClosestPoints& result);
+// Where the two are closest, `bInA` being the pose of b's center frame in a's; false: farther apart than maxDistance
+// (m, >= 0, may be infinite), or not finite, or more than 1e18 m. Of pairs equally close that of the lowest child and
+// triangle of A, then of B. A triangle has no inside. Two half spaces that are not opposite overlap without a depth:
+// the distance is 0.
+bool FindClosestPoints(const Shape& a, const Shape& b, const RelativePose& bInA, float maxDistance,
+                       ClosestPoints& result);
 // From a point of the shape's center frame, which is A.
 bool FindClosestPoint(const Shape& shape, const Vector3& point, float maxDistance, ClosestPoints& result);
 
 // Whether the two have a point in common; touching counts.
 bool Overlap(const Shape& a, const Shape& b, const RelativePose& bInA);
-// Whether a point of the shape's center frame is inside it, or on its surface. Nothing is inside a mesh or a height field.
+// Whether a point of the shape's center frame is inside it, or on its surface. Nothing is inside a mesh or a height
+// field.
 bool Contains(const Shape& shape, const Vector3& point);
 
 }  // namespace fulcrum

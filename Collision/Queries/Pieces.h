@@ -10,7 +10,7 @@ namespace fulcrum {
 
 struct Piece {
     const ConvexShape& shape;
-    RelativePose pose;            // in the frame of the shape that it is a piece of
+    RelativePose pose;  // in the frame of the shape that it is a piece of
     SubShape subShape;
     const TriangleCore* triangle = nullptr;  // the piece itself, where it is one
     bool isTwoSided = true;                  // of the surface
@@ -18,7 +18,9 @@ struct Piece {
 
 // What a float knows the way between two shapes by; farther apart they find nothing. And whether a rotation is one.
 inline constexpr double kFarthestApart = 1e18;  // m
-inline bool IsWithinReach(const Position& between) { return IsFinite(between) && between.cwiseAbs().maxCoeff() < kFarthestApart; }
+inline bool IsWithinReach(const Position& between) {
+    return IsFinite(between) && between.cwiseAbs().maxCoeff() < kFarthestApart;
+}
 inline bool IsTurn(const Quaternion& q) { return IsFinite(q) && Abs(LengthSquared(q) - 1) < 0.01f; }
 
 inline Bounds Inflated(const Bounds& bounds, float by) {
@@ -57,8 +59,8 @@ inline Bounds BoundsAbout(const Position& origin, const Shape& shape, const Pose
     return RoundedOutwards(at + turned.lower.cast<double>(), at + turned.upper.cast<double>());
 }
 
-// Calls visit(const Piece&) for the pieces whose boxes overlap `box`, which is in the shape's frame; a convex shape is its own
-// piece and always visited. Not for half spaces.
+// Calls visit(const Piece&) for the pieces whose boxes overlap `box`, which is in the shape's frame; a convex shape is
+// its own piece and always visited. Not for half spaces.
 template <class Visitor>
 void VisitPieces(const Shape& shape, const Bounds& box, Visitor&& visit) {
     if (shape.IsConvex()) {

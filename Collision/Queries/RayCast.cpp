@@ -15,12 +15,14 @@ namespace {
 // The ray in the frame of a compound's children, as wide as its turning is inexact.
 TreeRay InFrameOfTree(const Ray& ray, double length, const CompoundShape& compound, const Pose& pose) {
     const Quat<double> back{-pose.rotation.x, -pose.rotation.y, -pose.rotation.z, pose.rotation.w};
-    const Position origin = Rotate<double>(back, Position(ray.origin - pose.position)) - compound.Origin().cast<double>();
+    const Position origin =
+        Rotate<double>(back, Position(ray.origin - pose.position)) - compound.Origin().cast<double>();
     // Beyond the compound it does not matter how far a long ray outsideFatBounds.
     const double reach = double{compound.OuterRadius()} + std::sqrt(Dot<double>(origin, origin));
     const float slack = static_cast<float>(1e-6 * (reach + std::min(reach, length)));
     constexpr double kMost = std::numeric_limits<float>::max();
-    const Position displacement = Rotate<double>(back, ray.displacement.cast<double>()).cwiseMax(-kMost).cwiseMin(kMost);
+    const Position displacement =
+        Rotate<double>(back, ray.displacement.cast<double>()).cwiseMax(-kMost).cwiseMin(kMost);
     return TreeRay(origin, displacement.cast<float>(), Vector3::Constant(slack));
 }
 
@@ -36,8 +38,10 @@ RayCaster::RayCaster(const Ray& ray) : ray_(ray) {
     direction_ = (displacement * (1 / length_)).cast<float>();
 }
 
-bool RayCaster::CastConvex(const ConvexShape& shape, const Pose& pose, const RayCastSettings& settings, float limit, RayHit& hit) const {
-    // The ray's nearest point to the shape's center is the origin of the line: it is as small as the shape where that is hit.
+bool RayCaster::CastConvex(const ConvexShape& shape, const Pose& pose, const RayCastSettings& settings, float limit,
+                           RayHit& hit) const {
+    // The ray's nearest point to the shape's center is the origin of the line: it is as small as the shape where that
+    // is hit.
     const Position origin = ray_.origin - pose.position, displacement = ray_.displacement.cast<double>();
     const double nearest = -Dot<double>(origin, displacement) * inverseSquare_;
     const Vector3 point = (origin + displacement * nearest).cast<float>();
@@ -66,7 +70,8 @@ bool RayCaster::CastConvex(const ConvexShape& shape, const Pose& pose, const Ray
     }
     LineHit exit;
     if (!settings.backFaces || !LeaveConvex(shape, line, exit)) return false;
-    hit.fraction = std::clamp(static_cast<float>(nearest + double{exit.distance} / length_), 0.0f, settings.maxFraction);
+    hit.fraction =
+        std::clamp(static_cast<float>(nearest + double{exit.distance} / length_), 0.0f, settings.maxFraction);
     hit.normal = Rotate(pose.rotation, Vector3(-exit.normal));
     hit.isBackFace = true;
     return true;
@@ -104,12 +109,16 @@ float RayCaster::LeftOf(const RayCastSettings& settings, float limit, double ski
     return static_cast<float>(std::min(double{limit} * (1 + 0x1p-22), double{settings.maxFraction}) - skipped);
 }
 
-RayHit RayCaster::FromSurface(const SurfaceHit& found, const Pose& pose, const RayCastSettings& settings, double skipped) {
-    return {std::min(static_cast<float>(skipped + double{found.fraction}), settings.maxFraction), {0, found.triangle},
-            Rotate(pose.rotation, found.normal), found.isBackFace};
+RayHit RayCaster::FromSurface(const SurfaceHit& found, const Pose& pose, const RayCastSettings& settings,
+                              double skipped) {
+    return {std::min(static_cast<float>(skipped + double{found.fraction}), settings.maxFraction),
+            {0, found.triangle},
+            Rotate(pose.rotation, found.normal),
+            found.isBackFace};
 }
 
-bool RayCaster::CastSurface(const SurfaceShape& shape, const Pose& pose, const RayCastSettings& settings, float limit, RayHit& hit) const {
+bool RayCaster::CastSurface(const SurfaceShape& shape, const Pose& pose, const RayCastSettings& settings, float limit,
+                            RayHit& hit) const {
     double skipped = 0;
     const SurfaceRay ray = InFrameOf(shape, pose, settings.backFaces, skipped);
     const float left = LeftOf(settings, limit, skipped);
@@ -144,7 +153,8 @@ uint32_t RayCaster::CastClosest(const RayCaster* casters, uint32_t which, const 
     return hit;
 }
 
-bool RayCaster::CastClosest(const Shape& shape, const Pose& pose, const RayCastSettings& settings, float limit, RayHit& hit) const {
+bool RayCaster::CastClosest(const Shape& shape, const Pose& pose, const RayCastSettings& settings, float limit,
+                            RayHit& hit) const {
     if (!IsValid()) return false;
     if (shape.IsConvex()) return CastConvex(static_cast<const ConvexShape&>(shape), pose, settings, limit, hit);
     if (shape.Type() == ShapeType::Plane) return CastPlane(shape, pose, settings, hit);
@@ -157,7 +167,8 @@ bool RayCaster::CastClosest(const Shape& shape, const Pose& pose, const RayCastS
     compound.Tree().CastRay(ray, limit, [&](uint32_t child) {
         const CompoundShape::Child& piece = compound.Children()[child];
         RayHit here;
-        if (!CastConvex(*piece.shape, pose * compound.PoseOf(piece), settings, limit, here) || here.fraction > limit) return;
+        if (!CastConvex(*piece.shape, pose * compound.PoseOf(piece), settings, limit, here) || here.fraction > limit)
+            return;
         if (found && here.fraction == hit.fraction && child > hit.subShape.child) return;
         found = true;
         hit = here;
@@ -196,7 +207,8 @@ bool RayCaster::Search(const Shape& shape, const Pose& pose, const RayCastSettin
         float limit = settings.maxFraction;
         compound.Tree().CastRay(ray, limit, [&](uint32_t child) {
             const CompoundShape::Child& piece = compound.Children()[child];
-            if (!goOn || !CastConvex(*piece.shape, pose * compound.PoseOf(piece), settings, settings.maxFraction, hit)) return;
+            if (!goOn || !CastConvex(*piece.shape, pose * compound.PoseOf(piece), settings, settings.maxFraction, hit))
+                return;
             hit.subShape.child = child;
             goOn = found(context, hit);
             if (!goOn) limit = -1;
@@ -209,11 +221,14 @@ bool RayCaster::Search(const Shape& shape, const Pose& pose, const RayCastSettin
     const SurfaceRay ray = InFrameOf(surface, pose, settings.backFaces, skipped);
     const float left = LeftOf(settings, settings.maxFraction, skipped);
     if (left < 0) return true;
-    surface.CastRayAll(ray, [&](const SurfaceHit& at) {
-        hit = FromSurface(at, pose, settings, skipped);
-        goOn = found(context, hit);
-        return goOn;
-    }, left);
+    surface.CastRayAll(
+        ray,
+        [&](const SurfaceHit& at) {
+            hit = FromSurface(at, pose, settings, skipped);
+            goOn = found(context, hit);
+            return goOn;
+        },
+        left);
     return goOn;
 }
 

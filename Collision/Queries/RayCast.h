@@ -1,9 +1,9 @@
 // Rays against a single shape at a pose. Called by the world's queries and by users who have shapes and no world.
 // Thread-safe; allocates nothing.
 //
-// Convex shapes and half spaces are solid: a ray that starts inside, or on the surface, hits at fraction 0, with a normal
-// against the ray. Hollow ones, on request, are hit from inside only where they are left, and only with `backFaces`. Triangles
-// follow SurfaceShape. A ray that is not finite or has no length hits nothing.
+// Convex shapes and half spaces are solid: a ray that starts inside, or on the surface, hits at fraction 0, with a
+// normal against the ray. Hollow ones, on request, are hit from inside only where they are left, and only with
+// `backFaces`. Triangles follow SurfaceShape. A ray that is not finite or has no length hits nothing.
 #pragma once
 
 #include <Fulcrum/Collision/Queries/ConvexRay.h>
@@ -19,20 +19,20 @@ struct Ray {
 };
 
 struct RayCastSettings {
-    bool backFaces = false;   // triangles are hit from behind, hollow shapes from inside
-    bool hollow = false;      // a ray that starts inside a convex shape or half space does not hit it there
-    float maxFraction = 1;    // >= 0, of the displacement; only hits up to here
+    bool backFaces = false;  // triangles are hit from behind, hollow shapes from inside
+    bool hollow = false;     // a ray that starts inside a convex shape or half space does not hit it there
+    float maxFraction = 1;   // >= 0, of the displacement; only hits up to here
 };
 
 struct RayHit {
-    float fraction = 0;                // of the displacement
+    float fraction = 0;  // of the displacement
     SubShape subShape{};
     Vector3 normal = Vector3::Zero();  // unit, outwards; against the ray where that came from behind or began inside
     bool isBackFace = false;
 };
 
-// A ray, ready to be cast at any number of shapes. Everything is in the frame of the ray, the world's or another, and exact
-// however far from its origin: only differences become floats.
+// A ray, ready to be cast at any number of shapes. Everything is in the frame of the ray, the world's or another, and
+// exact however far from its origin: only differences become floats.
 class RayCaster {
 public:
     RayCaster() = default;  // not valid
@@ -40,37 +40,44 @@ public:
     bool IsValid() const { return length_ > 0; }  // else it hits nothing
     const Ray& GetRay() const { return ray_; }
 
-    // The closest hit; of equally close ones that of the lowest child, then triangle. `pose` is that of the shape's center
-    // frame. False: none, `hit` is unchanged.
+    // The closest hit; of equally close ones that of the lowest child, then triangle. `pose` is that of the shape's
+    // center frame. False: none, `hit` is unchanged.
     bool CastClosest(const Shape& shape, const Pose& pose, const RayCastSettings& settings, RayHit& hit) const {
         return CastClosest(shape, pose, settings, settings.maxFraction, hit);
     }
-    // The same where only hits up to `limit` <= settings.maxFraction are of interest. A hit within it is the same bits for every
-    // limit; one a little farther may be found or not. So what is closest of many shapes does not depend on their order.
-    bool CastClosest(const Shape& shape, const Pose& pose, const RayCastSettings& settings, float limit, RayHit& hit) const;
-    // The same for several rays at a surface, which costs less where they lie close together: for casters[i], limits[i] and
-    // hits[i] where bit i of `which` is set, i < kMostRays. Returns the bits of those that hit; the other hits are unchanged.
+    // The same where only hits up to `limit` <= settings.maxFraction are of interest. A hit within it is the same bits
+    // for every limit; one a little farther may be found or not. So what is closest of many shapes does not depend on
+    // their order.
+    bool CastClosest(const Shape& shape, const Pose& pose, const RayCastSettings& settings, float limit,
+                     RayHit& hit) const;
+    // The same for several rays at a surface, which costs less where they lie close together: for casters[i], limits[i]
+    // and hits[i] where bit i of `which` is set, i < kMostRays. Returns the bits of those that hit; the other hits are
+    // unchanged.
     static constexpr int kMostRays = SurfaceShape::kMostRays;
     static uint32_t CastClosest(const RayCaster* casters, uint32_t which, const SurfaceShape& shape, const Pose& pose,
                                 const RayCastSettings& settings, const float* limits, RayHit* hits);
     // Whether there is any.
     bool IsHit(const Shape& shape, const Pose& pose, const RayCastSettings& settings) const;
-    // Calls visit(const RayHit&) for the hit of each convex shape, child or half space and for all hits of triangles, in no
-    // order, until it returns false. False: it did.
+    // Calls visit(const RayHit&) for the hit of each convex shape, child or half space and for all hits of triangles,
+    // in no order, until it returns false. False: it did.
     template <class Visitor>
     bool CastAll(const Shape& shape, const Pose& pose, const RayCastSettings& settings, Visitor&& visit) const;
 
 private:
     using HitFunction = bool (*)(void* context, const RayHit& hit);
-    bool CastConvex(const ConvexShape& shape, const Pose& pose, const RayCastSettings& settings, float limit, RayHit& hit) const;
+    bool CastConvex(const ConvexShape& shape, const Pose& pose, const RayCastSettings& settings, float limit,
+                    RayHit& hit) const;
     bool CastPlane(const Shape& shape, const Pose& pose, const RayCastSettings& settings, RayHit& hit) const;
-    bool CastSurface(const SurfaceShape& shape, const Pose& pose, const RayCastSettings& settings, float limit, RayHit& hit) const;
-    bool Search(const Shape& shape, const Pose& pose, const RayCastSettings& settings, void* context, HitFunction found) const;
+    bool CastSurface(const SurfaceShape& shape, const Pose& pose, const RayCastSettings& settings, float limit,
+                     RayHit& hit) const;
+    bool Search(const Shape& shape, const Pose& pose, const RayCastSettings& settings, void* context,
+                HitFunction found) const;
     // The ray in the frame of a surface, begun where it may first meet it; how much of it that leaves out.
     SurfaceRay InFrameOf(const SurfaceShape& shape, const Pose& pose, bool backFaces, double& skipped) const;
     // How far that ray may go, as a fraction of it.
     static float LeftOf(const RayCastSettings& settings, float limit, double skipped);
-    static RayHit FromSurface(const SurfaceHit& found, const Pose& pose, const RayCastSettings& settings, double skipped);
+    static RayHit FromSurface(const SurfaceHit& found, const Pose& pose, const RayCastSettings& settings,
+                              double skipped);
 
     Ray ray_;
     Vector3 direction_ = Vector3::Zero();  // unit

@@ -24,8 +24,9 @@ Bounds BoundsOfTurning(const ConvexShape& shape, const ShapeMotion& motion) {
 
 ShapeCaster::ShapeCaster(const ConvexShape& shape, const ShapeMotion& motion)
     : shape_(shape), motion_(motion), bounds_(BoundsOfTurning(shape, motion)) {
-    isValid_ = IsFinite(motion.pose.position) && IsTurn(motion.pose.rotation) && IsWithinReach(motion.displacement.cast<double>()) &&
-               IsWithinReach(motion.turn.cast<double>()) && IsFinite(bounds_.lower) && IsFinite(bounds_.upper);
+    isValid_ = IsFinite(motion.pose.position) && IsTurn(motion.pose.rotation) &&
+               IsWithinReach(motion.displacement.cast<double>()) && IsWithinReach(motion.turn.cast<double>()) &&
+               IsFinite(bounds_.lower) && IsFinite(bounds_.upper);
 }
 
 CoreMotion ShapeCaster::RelativeTo(const Pose& pose) const {
@@ -63,13 +64,15 @@ bool IsWithinFloats(const ShapeHit& hit) {
 
 }  // namespace
 
-bool ShapeCaster::CastPiece(const Piece& piece, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit) const {
+bool ShapeCaster::CastPiece(const Piece& piece, const Pose& pose, const ShapeCastSettings& settings,
+                            ShapeHit& hit) const {
     const Pose at = pose * piece.pose;
     const CoreMotion motion = RelativeTo(at);
     if (!IsWithinReach(motion.position)) return false;
     const bool isOneSided = piece.triangle && !piece.isTwoSided && !settings.backFaces;
     if (isOneSided && !motion.IsTurning() && Dot(motion.displacement, piece.triangle->Normal()) > 0) return false;
-    const CoreCastResult cast = CastCore(piece.shape, shape_, motion, {settings.maxFraction, settings.separation, settings.tolerance});
+    const CoreCastResult cast =
+        CastCore(piece.shape, shape_, motion, {settings.maxFraction, settings.separation, settings.tolerance});
     if (!cast.IsHit()) return false;
     hit = {};
     hit.subShape = piece.subShape;
@@ -81,7 +84,8 @@ bool ShapeCaster::CastPiece(const Piece& piece, const Pose& pose, const ShapeCas
     }
     if (isOneSided && motion.IsTurning()) {
         // What swings may touch an open edge from any side: where its center is tells where it comes from.
-        const Position center = motion.PositionAt(cast.fraction) - piece.triangle->SupportCore(Vector3(1, 0, 0)).cast<double>();
+        const Position center =
+            motion.PositionAt(cast.fraction) - piece.triangle->SupportCore(Vector3(1, 0, 0)).cast<double>();
         if (Dot<double>(center, piece.triangle->Normal().cast<double>()) < 0) return false;
     }
     hit.normal = Rotate(at.rotation, cast.normal);
@@ -89,7 +93,8 @@ bool ShapeCaster::CastPiece(const Piece& piece, const Pose& pose, const ShapeCas
     return IsWithinFloats(hit);
 }
 
-bool ShapeCaster::CastPlane(const Shape& shape, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit) const {
+bool ShapeCaster::CastPlane(const Shape& shape, const Pose& pose, const ShapeCastSettings& settings,
+                            ShapeHit& hit) const {
     const Plane& plane = static_cast<const Plane&>(shape);
     const CoreMotion motion = RelativeTo(pose);
     if (!IsWithinReach(motion.position)) return false;
@@ -102,21 +107,24 @@ bool ShapeCaster::CastPlane(const Shape& shape, const Pose& pose, const ShapeCas
     hit.position = pose.Transform(cast.onA);
     hit.isEarly = cast.status == CoreCastResult::Status::Early;
     if (cast.status == CoreCastResult::Status::AtStart) {
-        const Vector3 lowest = Rotate(motion.rotation, shape_.Support(InverseRotate(motion.rotation, Vector3(-plane.Normal()))));
-        const double height = Dot<double>(plane.Normal().cast<double>(), Position(motion.position + lowest.cast<double>()));
+        const Vector3 lowest =
+            Rotate(motion.rotation, shape_.Support(InverseRotate(motion.rotation, Vector3(-plane.Normal()))));
+        const double height =
+            Dot<double>(plane.Normal().cast<double>(), Position(motion.position + lowest.cast<double>()));
         hit.depth = std::max(0.0f, static_cast<float>(double{plane.Offset()} - height));
     }
     return IsWithinFloats(hit);
 }
 
-// A long way is cut into pieces hardly longer than the shape, so that the boxes that are searched hold few triangles beside
-// those that are met.
-void ShapeCaster::SearchSurface(const SurfaceShape& surface, const Pose& pose, ShapeCastSettings& settings, void* context,
-                                HitFunction found) const {
+// A long way is cut into pieces hardly longer than the shape, so that the boxes that are searched hold few triangles
+// beside those that are met.
+void ShapeCaster::SearchSurface(const SurfaceShape& surface, const Pose& pose, ShapeCastSettings& settings,
+                                void* context, HitFunction found) const {
     constexpr float kLengthOfPart = 4;  // half extents
     constexpr float kMostParts = 256;
     const CoreMotion motion = RelativeTo(pose);
-    const Bounds turned = motion.IsTurning() ? bounds_ : BoundsAt({Vector3::Zero(), motion.rotation}, shape_.LocalBounds());
+    const Bounds turned =
+        motion.IsTurning() ? bounds_ : BoundsAt({Vector3::Zero(), motion.rotation}, shape_.LocalBounds());
     const float size = turned.HalfExtents().maxCoeff();
     const float length = motion.displacement.cwiseAbs().maxCoeff();
     const int parts = static_cast<int>(std::clamp(std::ceil(length / (kLengthOfPart * size)), 1.0f, kMostParts));
@@ -131,7 +139,8 @@ void ShapeCaster::SearchSurface(const SurfaceShape& surface, const Pose& pose, S
             box.Include(Vector3(center + turned.lower));
             box.Include(Vector3(center + turned.upper));
         }
-        const float slack = 1e-3f * size + settings.separation + settings.tolerance + 1e-6f * box.lower.cwiseAbs().maxCoeff();
+        const float slack =
+            1e-3f * size + settings.separation + settings.tolerance + 1e-6f * box.lower.cwiseAbs().maxCoeff();
         VisitPieces(surface, Inflated(box, slack), [&](const Piece& piece) {
             ShapeHit hit;
             if (!goOn || !CastPiece(piece, pose, settings, hit)) return;
@@ -142,8 +151,10 @@ void ShapeCaster::SearchSurface(const SurfaceShape& surface, const Pose& pose, S
     }
 }
 
-void ShapeCaster::Search(const Shape& other, const Pose& pose, ShapeCastSettings settings, void* context, HitFunction found) const {
-    const bool isValid = isValid_ && settings.maxFraction >= 0 && IsWithinReach(Position(settings.separation, settings.tolerance, 0));
+void ShapeCaster::Search(const Shape& other, const Pose& pose, ShapeCastSettings settings, void* context,
+                         HitFunction found) const {
+    const bool isValid =
+        isValid_ && settings.maxFraction >= 0 && IsWithinReach(Position(settings.separation, settings.tolerance, 0));
     if (!isValid || !IsWithinReach(motion_.pose.position - pose.position)) return;
     ShapeHit hit;
     if (other.IsConvex()) {
@@ -156,11 +167,13 @@ void ShapeCaster::Search(const Shape& other, const Pose& pose, ShapeCastSettings
     } else if (other.IsCompound()) {
         const CompoundShape& compound = static_cast<const CompoundShape&>(other);
         const CoreMotion motion = RelativeTo(pose);
-        const Bounds turned = motion.IsTurning() ? bounds_ : BoundsAt({Vector3::Zero(), motion.rotation}, shape_.LocalBounds());
+        const Bounds turned =
+            motion.IsTurning() ? bounds_ : BoundsAt({Vector3::Zero(), motion.rotation}, shape_.LocalBounds());
         const float slack = settings.separation + settings.tolerance +
-                            1e-6f * (other.OuterRadius() + Length(motion.displacement) + Length(Vector3(motion.position.cast<float>())));
-        const TreeRay ray(motion.position + turned.Center().cast<double>() - compound.Origin().cast<double>(), motion.displacement,
-                          turned.HalfExtents() + Vector3::Constant(slack));
+                            1e-6f * (other.OuterRadius() + Length(motion.displacement) +
+                                     Length(Vector3(motion.position.cast<float>())));
+        const TreeRay ray(motion.position + turned.Center().cast<double>() - compound.Origin().cast<double>(),
+                          motion.displacement, turned.HalfExtents() + Vector3::Constant(slack));
         float limit = settings.maxFraction;
         compound.Tree().CastRay(ray, limit, [&](uint32_t child) {
             const CompoundShape::Child& part = compound.Children()[child];
@@ -170,7 +183,8 @@ void ShapeCaster::Search(const Shape& other, const Pose& pose, ShapeCastSettings
     }
 }
 
-bool ShapeCaster::CastClosest(const Shape& other, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit) const {
+bool ShapeCaster::CastClosest(const Shape& other, const Pose& pose, const ShapeCastSettings& settings,
+                              ShapeHit& hit) const {
     struct Best {
         ShapeHit& hit;
         bool found = false;
@@ -178,9 +192,10 @@ bool ShapeCaster::CastClosest(const Shape& other, const Pose& pose, const ShapeC
     Search(other, pose, settings, &best, [](void* context, const ShapeHit& found, ShapeCastSettings& limits) -> bool {
         Best& b = *static_cast<Best*>(context);
         // Of what overlaps at the start the deepest counts.
-        const bool isCloser = !b.found || found.fraction < b.hit.fraction ||
-                              (found.fraction == b.hit.fraction &&
-                               (found.depth > b.hit.depth || (found.depth == b.hit.depth && found.subShape < b.hit.subShape)));
+        const bool isCloser =
+            !b.found || found.fraction < b.hit.fraction ||
+            (found.fraction == b.hit.fraction &&
+             (found.depth > b.hit.depth || (found.depth == b.hit.depth && found.subShape < b.hit.subShape)));
         if (!isCloser) return true;
         b.found = true;
         b.hit = found;

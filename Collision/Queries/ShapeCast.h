@@ -1,11 +1,11 @@
-// A convex shape that moves straight, and may turn at a constant rate, against a single shape at rest at a pose. Called by the
-// world's queries and continuous collision, and by users who have shapes and no world. Thread-safe; allocates nothing, but where the
-// depth of a degenerate overlap is measured.
+// A convex shape that moves straight, and may turn at a constant rate, against a single shape at rest at a pose. Called
+// by the world's queries and continuous collision, and by users who have shapes and no world. Thread-safe; allocates
+// nothing, but where the depth of a degenerate overlap is measured.
 //
-// Nothing that is touched is missed, however thin or fast. What overlaps at the start is hit at fraction 0, with the depth and
-// the normal of the least move that parts the two. One-sided triangles are hit from the front alone: a shape that moves along
-// their normal, or comes to touch them from behind, passes. A motion that is not finite, or of more than 1e18 m or rad, or from
-// farther away, hits nothing; one of no length hits what overlaps it.
+// Nothing that is touched is missed, however thin or fast. What overlaps at the start is hit at fraction 0, with the
+// depth and the normal of the least move that parts the two. One-sided triangles are hit from the front alone: a shape
+// that moves along their normal, or comes to touch them from behind, passes. A motion that is not finite, or of more
+// than 1e18 m or rad, or from farther away, hits nothing; one of no length hits what overlaps it.
 #pragma once
 
 #include <Fulcrum/Collision/Queries/CoreCast.h>
@@ -14,9 +14,9 @@
 namespace fulcrum {
 
 struct ShapeMotion {
-    Pose pose{};                              // of the shape's center frame at the start
-    Vector3 displacement = Vector3::Zero();   // m, of the center, over the whole motion
-    Vector3 turn = Vector3::Zero();           // rad, over the whole motion: the rotation vector, about the center
+    Pose pose{};                             // of the shape's center frame at the start
+    Vector3 displacement = Vector3::Zero();  // m, of the center, over the whole motion
+    Vector3 turn = Vector3::Zero();          // rad, over the whole motion: the rotation vector, about the center
 };
 
 struct ShapeCastSettings {
@@ -28,12 +28,12 @@ struct ShapeCastSettings {
 };
 
 struct ShapeHit {
-    float fraction = 0;                     // of the motion
-    SubShape subShape{};                    // of the shape at rest
-    Vector3 normal = Vector3::Zero();       // unit, from the shape at rest towards the one that moves
-    Position position = Position::Zero();   // m, on the surface of the shape at rest
-    float depth = 0;                        // m, >= 0: how far they overlap at the start
-    bool isEarly = false;                   // the search gave up: they do not touch before, but perhaps later or never
+    float fraction = 0;                    // of the motion
+    SubShape subShape{};                   // of the shape at rest
+    Vector3 normal = Vector3::Zero();      // unit, from the shape at rest towards the one that moves
+    Position position = Position::Zero();  // m, on the surface of the shape at rest
+    float depth = 0;                       // m, >= 0: how far they overlap at the start
+    bool isEarly = false;                  // the search gave up: they do not touch before, but perhaps later or never
 };
 
 // Everything is in the frame of the motion, the world's or another, and exact however far from its origin.
@@ -44,21 +44,23 @@ public:
     // The box about the shape's center that holds the shape all along, relative to where the center is.
     const Bounds& BoundsAboutCenter() const { return bounds_; }
 
-    // The closest hit; of equally close ones the deepest, then that of the lowest child and triangle. `pose` is that of the other shape's
-    // center frame. False: none, `hit` is unchanged.
+    // The closest hit; of equally close ones the deepest, then that of the lowest child and triangle. `pose` is that of
+    // the other shape's center frame. False: none, `hit` is unchanged.
     bool CastClosest(const Shape& other, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit) const;
-    // Calls visit(const ShapeHit&) for the first touch of each convex shape, child, triangle or half space, in no order, until it returns
-    // false. False: it did.
+    // Calls visit(const ShapeHit&) for the first touch of each convex shape, child, triangle or half space, in no
+    // order, until it returns false. False: it did.
     template <class Visitor>
     bool CastAll(const Shape& other, const Pose& pose, const ShapeCastSettings& settings, Visitor&& visit) const;
-    // The same, where visit(const ShapeHit&) returns up to which fraction hits are of interest still, less than 0: none.
+    // The same, where visit(const ShapeHit&) returns up to which fraction hits are of interest still, less than 0:
+    // none.
     template <class Visitor>
     void Visit(const Shape& other, const Pose& pose, const ShapeCastSettings& settings, Visitor&& visit) const;
 
 private:
     // Visits hits, and is told through `settings` up to where they are of interest still; false ends the search.
     using HitFunction = bool (*)(void* context, const ShapeHit& hit, ShapeCastSettings& settings);
-    void Search(const Shape& other, const Pose& pose, ShapeCastSettings settings, void* context, HitFunction found) const;
+    void Search(const Shape& other, const Pose& pose, ShapeCastSettings settings, void* context,
+                HitFunction found) const;
     void SearchSurface(const SurfaceShape& surface, const Pose& pose, ShapeCastSettings& settings, void* context,
                        HitFunction found) const;
     bool CastPiece(const Piece& piece, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit) const;
@@ -73,7 +75,8 @@ private:
 };
 
 template <class Visitor>
-bool ShapeCaster::CastAll(const Shape& other, const Pose& pose, const ShapeCastSettings& settings, Visitor&& visit) const {
+bool ShapeCaster::CastAll(const Shape& other, const Pose& pose, const ShapeCastSettings& settings,
+                          Visitor&& visit) const {
     struct Context {
         std::remove_reference_t<Visitor>& visit;
         bool goOn = true;
@@ -86,9 +89,11 @@ bool ShapeCaster::CastAll(const Shape& other, const Pose& pose, const ShapeCastS
 }
 
 template <class Visitor>
-void ShapeCaster::Visit(const Shape& other, const Pose& pose, const ShapeCastSettings& settings, Visitor&& visit) const {
+void ShapeCaster::Visit(const Shape& other, const Pose& pose, const ShapeCastSettings& settings,
+                        Visitor&& visit) const {
     Search(other, pose, settings, &visit, [](void* context, const ShapeHit& hit, ShapeCastSettings& limits) -> bool {
-        limits.maxFraction = std::min(limits.maxFraction, (*static_cast<std::remove_reference_t<Visitor>*>(context))(hit));
+        limits.maxFraction =
+            std::min(limits.maxFraction, (*static_cast<std::remove_reference_t<Visitor>*>(context))(hit));
         return limits.maxFraction >= 0;
     });
 }

@@ -65,8 +65,7 @@ public:
         value = std::bit_cast<float>(bits);
     }
     template <class T>
-        requires(std::is_unsigned_v<T>)
-    void Read(T& value) {
+    requires(std::is_unsigned_v<T>) void Read(T& value) {
         uint64_t bits = 0;
         for (size_t i = 0; i < sizeof(T) && Has(sizeof(T)); ++i) bits |= uint64_t{bytes_[i]} << (8 * i);
         value = static_cast<T>(bits);

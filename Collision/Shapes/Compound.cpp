@@ -10,7 +10,7 @@
 namespace fulcrum {
 
 Result<std::shared_ptr<const Compound>> Compound::Create(std::span<const ChildSettings> children,
-                                                           const Vector3& centerOffset) {
+                                                         const Vector3& centerOffset) {
     if (children.empty()) return Error{ErrorCode::Degenerate, "a compound needs at least one child"};
 
     std::vector<SolidMass> solids;
@@ -18,8 +18,8 @@ Result<std::shared_ptr<const Compound>> Compound::Create(std::span<const ChildSe
     for (const ChildSettings& child : children) {
         const std::string name = Message("child %d", static_cast<int>(solids.size()));
         if (const Status status = Check(child, name.c_str()); !status) return status.GetError();
-        solids.push_back(Transformed(ToSolidMass(child.shape->Mass()), Normalized(child.rotation),
-                                     child.position.cast<double>()));
+        solids.push_back(
+            Transformed(ToSolidMass(child.shape->Mass()), Normalized(child.rotation), child.position.cast<double>()));
         densities.push_back(double{child.density});
     }
     if (!IsFinite(centerOffset)) return Error{ErrorCode::NonFinite, "centerOffset is not finite"};
@@ -41,7 +41,8 @@ Result<std::shared_ptr<const Compound>> Compound::Create(std::span<const ChildSe
         const std::string name = Message("child %d", static_cast<int>(i));
         if (const Status status = CheckPlace(name.c_str(), center.cast<float>()); !status) return status.GetError();
         posed.push_back({std::static_pointer_cast<const ConvexShape>(children[i].shape),
-                         {center.cast<float>(), Normalized(children[i].rotation)}, children[i].density});
+                         {center.cast<float>(), Normalized(children[i].rotation)},
+                         children[i].density});
     }
     const std::shared_ptr<Compound> compound(new Compound);
     compound->Assemble(std::move(posed), mass.Value());

@@ -1,5 +1,5 @@
-// What the two compounds have in common: convex shapes, each at a pose of its own, and a tree to find them by. Compound never
-// changes, MutableCompound may. Made by them; read by the queries, the files and the bodies.
+// What the two compounds have in common: convex shapes, each at a pose of its own, and a tree to find them by. Compound
+// never changes, MutableCompound may. Made by them; read by the queries, the files and the bodies.
 #pragma once
 
 #include <Fulcrum/Collision/BroadPhase/BoundsTree.h>
@@ -13,24 +13,26 @@ namespace fulcrum {
 class CompoundShape : public Shape {
 public:
     struct ChildSettings {
-        ShapePtr shape;                         // convex
-        Vector3 position = Vector3::Zero();     // of the child's user frame in the compound's user frame, m
-        Quaternion rotation{};                  // unit
-        float density = 1;                      // relative to the other children's, > 0
+        ShapePtr shape;                      // convex
+        Vector3 position = Vector3::Zero();  // of the child's user frame in the compound's user frame, m
+        Quaternion rotation{};               // unit
+        float density = 1;                   // relative to the other children's, > 0
     };
     struct Child {
         std::shared_ptr<const ConvexShape> shape;  // null: removed
-        RelativePose pose;  // of the child's center frame in the children's frame
-        float density = 1;  // as it was given
+        RelativePose pose;                         // of the child's center frame in the children's frame
+        float density = 1;                         // as it was given
     };
 
     // By index; in a mutable compound some may have been removed.
     std::span<const Child> Children() const { return children_; }
     // The children's boxes in the children's frame, by index.
     const BoundsTree& Tree() const { return tree_; }
-    // The origin of the children's frame in the center frame, m; axes are the same. Zero but for mutable compounds, whose
-    // children stay where they are in the user's frame while the center of mass moves.
-    Vector3 Origin() const { return type_ == ShapeType::Compound ? Vector3(Vector3::Zero()) : Vector3(-mass_.centerOfMass); }
+    // The origin of the children's frame in the center frame, m; axes are the same. Zero but for mutable compounds,
+    // whose children stay where they are in the user's frame while the center of mass moves.
+    Vector3 Origin() const {
+        return type_ == ShapeType::Compound ? Vector3(Vector3::Zero()) : Vector3(-mass_.centerOfMass);
+    }
     // In the center frame.
     RelativePose PoseOf(const Child& child) const { return {child.pose.position + Origin(), child.pose.rotation}; }
     // How the child would be made again.

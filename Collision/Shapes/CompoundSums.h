@@ -1,6 +1,7 @@
-// What a compound is as a whole, kept up to date as single children change: mass, center, inertia, box and smallest radius.
-// Used by MutableCompound. Partial sums of eight, of eight of these, and so on: a change costs the logarithm of the number of
-// children, and the result depends on the children and their indices alone, in all its bits, not on how they came about.
+// What a compound is as a whole, kept up to date as single children change: mass, center, inertia, box and smallest
+// radius. Used by MutableCompound. Partial sums of eight, of eight of these, and so on: a change costs the logarithm of
+// the number of children, and the result depends on the children and their indices alone, in all its bits, not on how
+// they came about.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/CompoundShape.h>

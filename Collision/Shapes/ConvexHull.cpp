@@ -18,7 +18,8 @@ Status CheckInput(std::span<const Vector3> points, const ConvexHullSettings& set
         return Error{ErrorCode::OutOfRange, Message("maxVertices is %d: it must be 4 to 255", settings.maxVertices)};
     }
     if (!std::isfinite(settings.convexRadius)) {
-        return Error{ErrorCode::NonFinite, Message("convexRadius is %g: it must be finite", double{settings.convexRadius})};
+        return Error{ErrorCode::NonFinite,
+                     Message("convexRadius is %g: it must be finite", double{settings.convexRadius})};
     }
     if (settings.convexRadius < 0) {
         return Error{ErrorCode::OutOfRange,
@@ -26,8 +27,9 @@ Status CheckInput(std::span<const Vector3> points, const ConvexHullSettings& set
     }
     for (size_t i = 0; i < points.size(); ++i) {
         if (IsFinite(points[i])) continue;
-        return Error{ErrorCode::NonFinite, Message("point %zu is (%g, %g, %g): coordinates must be finite", i,
-                                                   double{points[i].x()}, double{points[i].y()}, double{points[i].z()})};
+        return Error{ErrorCode::NonFinite,
+                     Message("point %zu is (%g, %g, %g): coordinates must be finite", i, double{points[i].x()},
+                             double{points[i].y()}, double{points[i].z()})};
     }
     return Done{};
 }
@@ -51,8 +53,8 @@ double DistanceToSurface(const HullMesh& mesh, const Position& inside) {
     return distance;
 }
 
-// The hull with all planes moved inwards by `radius`, by polar duality about `center`: the planes n . x = d are the points
-// n / d, and the planes of those points' hull are the vertices of the intersection.
+// The hull with all planes moved inwards by `radius`, by polar duality about `center`: the planes n . x = d are the
+// points n / d, and the planes of those points' hull are the vertices of the intersection.
 Result<HullMesh> ShrunkHull(const HullMesh& mesh, const Position& center, double radius, int maxVertices) {
     std::vector<Position> dualPoints, vertices;
     for (const HullMesh::Face& face : mesh.faces) {
@@ -108,8 +110,8 @@ private:
     static bool AddFaces(ConvexHull& hull, const HullMesh& mesh) {
         float smallestOffset = std::numeric_limits<float>::infinity();
         for (const HullMesh::Face& from : mesh.faces) {
-            ConvexHull::Face face{static_cast<uint16_t>(hull.indices_.size()), static_cast<uint16_t>(from.corners.cornerCount),
-                                  from.normal.cast<float>(), 0};
+            ConvexHull::Face face{static_cast<uint16_t>(hull.indices_.size()),
+                                  static_cast<uint16_t>(from.corners.cornerCount), from.normal.cast<float>(), 0};
             double offset = -std::numeric_limits<double>::infinity();
             for (const Vector3& v : hull.vertices_) {
                 offset = std::max(offset, Dot<double>(face.normal.cast<double>(), v.cast<double>()));
@@ -159,7 +161,8 @@ private:
 };
 
 ShapeResult ShapeFileAccess::MakeHull(const HullMesh& mesh, const MassProperties& mass, float convexRadius) {
-    const Result<std::shared_ptr<const ConvexHull>> hull = HullFinisher::Finish(mesh, Position::Zero(), mass, convexRadius);
+    const Result<std::shared_ptr<const ConvexHull>> hull =
+        HullFinisher::Finish(mesh, Position::Zero(), mass, convexRadius);
     if (!hull) return hull.GetError();
     return ShapePtr(hull.Value());
 }
@@ -179,9 +182,9 @@ Result<std::shared_ptr<const ConvexHull>> ConvexHull::Create(std::span<const Vec
     if (settings.convexRadius == 0) return HullFinisher::Finish(mesh.Value(), solid.center, mass.Value(), 0);
 
     const double radius = settings.convexRadius, innerRadius = DistanceToSurface(mesh.Value(), solid.center);
-    const Error tooLarge{ErrorCode::OutOfRange,
-                         Message("convexRadius is %g m: it must be smaller than the hull's inner radius, %g m", radius,
-                                 innerRadius)};
+    const Error tooLarge{
+        ErrorCode::OutOfRange,
+        Message("convexRadius is %g m: it must be smaller than the hull's inner radius, %g m", radius, innerRadius)};
     if (radius >= innerRadius) return tooLarge;
     const Result<HullMesh> core = ShrunkHull(mesh.Value(), solid.center, radius, settings.maxVertices);
     if (!core) return tooLarge;
@@ -190,9 +193,9 @@ Result<std::shared_ptr<const ConvexHull>> ConvexHull::Create(std::span<const Vec
 
 namespace {
 
-// Of `count` vectors by lanes, a multiple of kLanes and at most 256, the first of those that lie farthest along `direction`; 0
-// where that is not a number. Largest value first, then the first vector that has it: no index is carried through the
-// search, and no branch depends on where it is.
+// Of `count` vectors by lanes, a multiple of kLanes and at most 256, the first of those that lie farthest along
+// `direction`; 0 where that is not a number. Largest value first, then the first vector that has it: no index is
+// carried through the search, and no branch depends on where it is.
 size_t FirstFarthest(const float* laneX, const float* laneY, const float* laneZ, int count, const Vector3& direction) {
     using Lanes = Wide<kLanes>;
     const Lanes x(direction.x()), y(direction.y()), z(direction.z());
@@ -207,7 +210,8 @@ size_t FirstFarthest(const float* laneX, const float* laneY, const float* laneZ,
     for (int block = 0; block < count; block += 64) {
         uint64_t isTop = 0;
         const int end = std::min(block + 64, count);
-        for (int i = block; i < end; i += kLanes) isTop |= uint64_t{(Lanes::Load(values + i) == top).ToBits()} << (i - block);
+        for (int i = block; i < end; i += kLanes)
+            isTop |= uint64_t{(Lanes::Load(values + i) == top).ToBits()} << (i - block);
         if (isTop != 0) return static_cast<size_t>(block + std::countr_zero(isTop));
     }
     return 0;

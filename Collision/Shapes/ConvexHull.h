@@ -11,8 +11,8 @@ namespace fulcrum {
 
 struct ConvexHullSettings {
     int maxVertices = 64;    // 4..255; a hull with more is simplified to the most far-flung so many, outside it nowhere
-    float convexRadius = 0;  // m, >= 0: the hull is shrunk by it and rounded again; 0 keeps sharp edges. Vertices, faces
-                             // and edges are then those of the shrunk core; the mass is that of the sharp hull
+    float convexRadius = 0;  // m, >= 0: the hull is shrunk by it and rounded again; 0 keeps sharp edges. Vertices,
+                             // faces and edges are then those of the shrunk core; the mass is that of the sharp hull
 };
 
 class ConvexHull final : public ConvexShape {
@@ -23,9 +23,9 @@ public:
         Vector3 normal;        // unit, outwards
         float offset;          // the face's plane is normal . x = offset, offset > 0
     };
-    struct Edge {              // each edge once
-        uint8_t from, to;      // vertices
-        uint8_t left, right;   // faces: `left` runs from -> to counter-clockwise
+    struct Edge {             // each edge once
+        uint8_t from, to;     // vertices
+        uint8_t left, right;  // faces: `left` runs from -> to counter-clockwise
     };
 
     // Hull of at least 4 points that span a volume, coordinates in meters. Points are dropped and faces merged where

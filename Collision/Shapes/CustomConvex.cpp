@@ -24,7 +24,7 @@ SolidMass Extrapolated(const SolidMass& fine, const SolidMass& coarse) {
     SolidMass solid;
     solid.volume = Extrapolated(fine.volume, coarse.volume);
     for (int i = 0; i < 3; ++i) solid.center[i] = Extrapolated(fine.center[i], coarse.center[i]);
-    const Sym3<double> &f = fine.inertia, &c = coarse.inertia;
+    const Sym3<double>&f = fine.inertia, &c = coarse.inertia;
     solid.inertia = {Extrapolated(f.xx, c.xx), Extrapolated(f.yy, c.yy), Extrapolated(f.zz, c.zz),
                      Extrapolated(f.xy, c.xy), Extrapolated(f.xz, c.xz), Extrapolated(f.yz, c.yz)};
     return solid;
@@ -42,10 +42,12 @@ Status CheckSupports(const ConvexShape& shape, const SampledSurface& surface) {
         const float most = Dot(direction, shape.Support(direction));
         for (const Vector3& other : surface.vertices) {
             if (Dot(direction, other) <= most + 1e-4f * size) continue;
-            return Error{ErrorCode::Degenerate,
-                         Message("FarthestPoint is not that of a convex shape: along (%g, %g, %g) another point lies %g m farther",
-                                 double{direction.x()}, double{direction.y()}, double{direction.z()},
-                                 double{Dot(direction, other) - most})};
+            return Error{
+                ErrorCode::Degenerate,
+                Message(
+                    "FarthestPoint is not that of a convex shape: along (%g, %g, %g) another point lies %g m farther",
+                    double{direction.x()}, double{direction.y()}, double{direction.z()},
+                    double{Dot(direction, other) - most})};
         }
     }
     return Done{};

@@ -1,5 +1,6 @@
-// Convex shapes that users make: a class with a support function, and everything works. It collides with every other shape,
-// has a mass, is found by casts and is drawn. The base class completes it, in CreateCustom; immutable afterwards.
+// Convex shapes that users make: a class with a support function, and everything works. It collides with every other
+// shape, has a mass, is found by casts and is drawn. The base class completes it, in CreateCustom; immutable
+// afterwards.
 //
 //     class Egg final : public CustomConvex {
 //     public:
@@ -17,24 +18,25 @@ namespace fulcrum {
 
 class CustomConvex : public ConvexShape {
 public:
-    // The point of the core that lies farthest along `direction` (any length > 0), in a frame of the user's choice. A pure
-    // function, called by many threads at once; the same bits everywhere where it keeps to + - * / and std::sqrt.
+    // The point of the core that lies farthest along `direction` (any length > 0), in a frame of the user's choice. A
+    // pure function, called by many threads at once; the same bits everywhere where it keeps to + - * / and std::sqrt.
     virtual Vector3 FarthestPoint(const Vector3& direction) const = 0;
 
     Vector3 SupportCore(const Vector3& direction) const final { return FarthestPoint(direction) - mass_.centerOfMass; }
 
     // Fills bounds, radii and mass; called by CreateCustom, once.
-    // Errors: NonFinite (convexRadius, or a point), Negative (convexRadius), Degenerate (no volume; or the points are not
-    // the farthest ones of one convex shape: the message names a direction), OutOfRange (the inertia is no normal float).
+    // Errors: NonFinite (convexRadius, or a point), Negative (convexRadius), Degenerate (no volume; or the points are
+    // not the farthest ones of one convex shape: the message names a direction), OutOfRange (the inertia is no normal
+    // float).
     Status Complete();
 
 protected:
     // `convexRadius`: the shape is the core rounded by it, m, >= 0.
     explicit CustomConvex(float convexRadius = 0) : ConvexShape(ShapeType::Custom) { convexRadius_ = convexRadius; }
 
-    // Of the whole shape at density 1, in the frame of FarthestPoint. Where it is not given it is integrated over a mesh of
-    // 10^5 points and one of a quarter as many, from which the error of curved parts is extrapolated away: to about 1e-6 for
-    // smooth shapes and to rounding for polyhedra.
+    // Of the whole shape at density 1, in the frame of FarthestPoint. Where it is not given it is integrated over a
+    // mesh of 10^5 points and one of a quarter as many, from which the error of curved parts is extrapolated away: to
+    // about 1e-6 for smooth shapes and to rounding for polyhedra.
     virtual std::optional<SolidMass> KnownMass() const { return std::nullopt; }
 };
 

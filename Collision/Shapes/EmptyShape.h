@@ -1,4 +1,5 @@
-// A shape without geometry, for bodies that touch nothing: anchors, frames of reference, what only joints hold. Immutable.
+// A shape without geometry, for bodies that touch nothing: anchors, frames of reference, what only joints hold.
+// Immutable.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/Shape.h>

@@ -15,7 +15,8 @@ Status HeightField::CheckGrid(const HeightFieldSettings& s) {
     }
     if (!std::isfinite(s.cellSizeX) || !std::isfinite(s.cellSizeZ) || !IsFinite(s.origin) ||
         !std::isfinite(s.lowestHeight) || !std::isfinite(s.highestHeight) || !std::isfinite(s.activeEdgeCosine)) {
-        return Error{ErrorCode::NonFinite, "a cell size, the origin, a limit of height or activeEdgeCosine is not finite"};
+        return Error{ErrorCode::NonFinite,
+                     "a cell size, the origin, a limit of height or activeEdgeCosine is not finite"};
     }
     if (!(s.cellSizeX > 0) || !(s.cellSizeZ > 0)) {
         return Error{ErrorCode::NonPositive, Message("the cell size is %g x %g m: it must be larger than 0",
@@ -30,10 +31,10 @@ Status HeightField::CheckGrid(const HeightFieldSettings& s) {
     }
     const float limit = Max(std::fabs(s.lowestHeight), std::fabs(s.highestHeight));
     if (s.lowestHeight > s.highestHeight || !(limit <= kLargestCoordinate)) {
-        return Error{ErrorCode::OutOfRange, Message("lowestHeight is %g m, highestHeight %g m: the first must be the lower, neither "
-                                                    "beyond %g m",
-                                                    double{s.lowestHeight}, double{s.highestHeight},
-                                                    double{kLargestCoordinate})};
+        return Error{ErrorCode::OutOfRange,
+                     Message("lowestHeight is %g m, highestHeight %g m: the first must be the lower, neither "
+                             "beyond %g m",
+                             double{s.lowestHeight}, double{s.highestHeight}, double{kLargestCoordinate})};
     }
     // Neighboring grid lines must differ as floats by several units.
     const double sizes[2] = {double{s.cellSizeX}, double{s.cellSizeZ}};
@@ -54,14 +55,15 @@ Status HeightField::CheckGrid(const HeightFieldSettings& s) {
 
 Status HeightField::CheckHeights(std::span<const float> heights) const {
     const bool isFloat = precision_ == HeightPrecision::Float;
-    const float low = isFloat ? -kLargestCoordinate : lowestHeight_, high = isFloat ? kLargestCoordinate : highestHeight_;
+    const float low = isFloat ? -kLargestCoordinate : lowestHeight_,
+                high = isFloat ? kLargestCoordinate : highestHeight_;
     for (size_t i = 0; i < heights.size(); ++i) {
         if (!std::isfinite(heights[i])) {
             return Error{ErrorCode::NonFinite, Message("height %zu is %g: it must be finite", i, double{heights[i]})};
         }
         if (heights[i] < low || heights[i] > high) {
-            return Error{ErrorCode::OutOfRange, Message("height %zu is %g m: it must be %g to %g m", i, double{heights[i]},
-                                                        double{low}, double{high})};
+            return Error{ErrorCode::OutOfRange, Message("height %zu is %g m: it must be %g to %g m", i,
+                                                        double{heights[i]}, double{low}, double{high})};
         }
     }
     return Done{};
@@ -221,19 +223,22 @@ Bounds HeightField::BoundsOfCells(CellRange x, CellRange z) const {
 
 // ---- Edits
 
-Status HeightField::CheckRectangle(uint32_t x0, uint32_t z0, uint32_t countX, uint32_t countZ, size_t count, uint32_t limitX,
-                                   uint32_t limitZ) const {
-    const bool isInside = countX > 0 && countZ > 0 && uint64_t{x0} + countX <= limitX && uint64_t{z0} + countZ <= limitZ;
+Status HeightField::CheckRectangle(uint32_t x0, uint32_t z0, uint32_t countX, uint32_t countZ, size_t count,
+                                   uint32_t limitX, uint32_t limitZ) const {
+    const bool isInside =
+        countX > 0 && countZ > 0 && uint64_t{x0} + countX <= limitX && uint64_t{z0} + countZ <= limitZ;
     if (!isInside || uint64_t{countX} * countZ != count) {
-        return Error{ErrorCode::OutOfRange, Message("%zu values for (%u, %u) and %u x %u from there: it must be inside %u x %u",
-                                                    count, x0, z0, countX, countZ, limitX, limitZ)};
+        return Error{ErrorCode::OutOfRange,
+                     Message("%zu values for (%u, %u) and %u x %u from there: it must be inside %u x %u", count, x0, z0,
+                             countX, countZ, limitX, limitZ)};
     }
     return Done{};
 }
 
 Result<Bounds> HeightField::SetHeights(uint32_t x0, uint32_t z0, uint32_t countX, uint32_t countZ,
                                        std::span<const float> heights) {
-    if (const Status status = CheckRectangle(x0, z0, countX, countZ, heights.size(), sampleCountX_, sampleCountZ_); !status)
+    if (const Status status = CheckRectangle(x0, z0, countX, countZ, heights.size(), sampleCountX_, sampleCountZ_);
+        !status)
         return status.GetError();
     if (const Status status = CheckHeights(heights); !status) return status.GetError();
     // The cells that touch a changed sample.
@@ -241,7 +246,8 @@ Result<Bounds> HeightField::SetHeights(uint32_t x0, uint32_t z0, uint32_t countX
     const CellRange z{z0 == 0 ? 0 : z0 - 1, std::min(z0 + countZ, CellCountZ()) - 1};
     Bounds changed = BoundsOfCells(x, z);
     for (uint32_t i = 0; i < countZ; ++i)
-        for (uint32_t k = 0; k < countX; ++k) StoreHeight((z0 + i) * sampleCountX_ + x0 + k, heights[size_t{i} * countX + k]);
+        for (uint32_t k = 0; k < countX; ++k)
+            StoreHeight((z0 + i) * sampleCountX_ + x0 + k, heights[size_t{i} * countX + k]);
     changed.Include(BoundsOfCells(x, z));
     UpdateRanges(x, z);
     UpdateBounds();

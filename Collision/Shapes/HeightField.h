@@ -1,6 +1,6 @@
-// Height field: a grid of heights over the x-z plane, two triangles a cell, with holes and a material a cell. For static and
-// kinematic bodies. Queries may run on any number of threads at once. The one shape that can change: SetHeights and SetCells
-// must not run while a step or a query that may see the shape does.
+// Height field: a grid of heights over the x-z plane, two triangles a cell, with holes and a material a cell. For
+// static and kinematic bodies. Queries may run on any number of threads at once. The one shape that can change:
+// SetHeights and SetCells must not run while a step or a query that may see the shape does.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/SurfaceShape.h>
@@ -14,36 +14,37 @@ enum class HeightPrecision : uint8_t { Float, Steps16 };
 inline constexpr uint8_t kHoleCell = 255;
 
 struct HeightFieldSettings {
-    uint32_t sampleCountX = 0;            // >= 2; their product at most 2^30
-    uint32_t sampleCountZ = 0;            // >= 2
-    std::span<const float> heights{};     // m; sample (x, z) is heights[z * sampleCountX + x]
-    float cellSizeX = 1, cellSizeZ = 1;   // m, > 0
-    Vector3 origin = Vector3::Zero();     // m: where sample (0, 0) lies at height 0
+    uint32_t sampleCountX = 0;           // >= 2; their product at most 2^30
+    uint32_t sampleCountZ = 0;           // >= 2
+    std::span<const float> heights{};    // m; sample (x, z) is heights[z * sampleCountX + x]
+    float cellSizeX = 1, cellSizeZ = 1;  // m, > 0
+    Vector3 origin = Vector3::Zero();    // m: where sample (0, 0) lies at height 0
     // One a cell, cell (x, z) at [z * (sampleCountX - 1) + x]: an index into `materials`, or kHoleCell. None: all 0.
     std::span<const uint8_t> cells{};
     std::span<const SurfaceMaterial> materials{};  // the palette, at most 255; none: the body's own material everywhere
     HeightPrecision precision = HeightPrecision::Float;
     // The limits of Steps16, in m; equal: those of `heights`. Float ignores them.
     float lowestHeight = 0, highestHeight = 0;
-    bool isTwoSided = false;              // else hit and touched from above alone
-    float activeEdgeCosine = 0.996f;      // -1 .. 1: edges whose normals have a larger cosine (5 degrees) count as flat
+    bool isTwoSided = false;          // else hit and touched from above alone
+    float activeEdgeCosine = 0.996f;  // -1 .. 1: edges whose normals have a larger cosine (5 degrees) count as flat
 };
 
-// Cell (x, z) has the number z * (sampleCountX - 1) + x. It is cut from sample (x, z + 1) to (x + 1, z): triangle 2 * cell has
-// the corners (x, z), (x, z + 1), (x + 1, z), triangle 2 * cell + 1 the corners (x + 1, z), (x, z + 1), (x + 1, z + 1). The id of
-// a vertex is the number of its sample.
+// Cell (x, z) has the number z * (sampleCountX - 1) + x. It is cut from sample (x, z + 1) to (x + 1, z): triangle 2 *
+// cell has the corners (x, z), (x, z + 1), (x + 1, z), triangle 2 * cell + 1 the corners (x + 1, z), (x, z + 1), (x +
+// 1, z + 1). The id of a vertex is the number of its sample.
 class HeightField final : public SurfaceShape {
 public:
     // The caller may keep the pointer to edit the field; bodies take it as any shape.
-    // Errors: NonFinite (names the sample), NonPositive (a cell size), OutOfRange (counts, lengths of the spans, a material, a
-    // height beyond the limits, coordinates that are no floats), Degenerate (every cell is a hole).
+    // Errors: NonFinite (names the sample), NonPositive (a cell size), OutOfRange (counts, lengths of the spans, a
+    // material, a height beyond the limits, coordinates that are no floats), Degenerate (every cell is a hole).
     static Result<std::shared_ptr<HeightField>> Create(const HeightFieldSettings& settings);
 
-    // Replace the heights of the samples x0 .. x0 + countX - 1, z0 .. z0 + countZ - 1, or the same of cells, row by row along x.
-    // Return the bounds of all that moved, appeared or vanished, before and after: bodies that sleep in it may have lost
-    // their support. LocalBounds() may change. Errors as in Create, and OutOfRange for a rectangle that is not inside; then
-    // nothing has changed. SetCells may leave nothing but holes.
-    Result<Bounds> SetHeights(uint32_t x0, uint32_t z0, uint32_t countX, uint32_t countZ, std::span<const float> heights);
+    // Replace the heights of the samples x0 .. x0 + countX - 1, z0 .. z0 + countZ - 1, or the same of cells, row by row
+    // along x. Return the bounds of all that moved, appeared or vanished, before and after: bodies that sleep in it may
+    // have lost their support. LocalBounds() may change. Errors as in Create, and OutOfRange for a rectangle that is
+    // not inside; then nothing has changed. SetCells may leave nothing but holes.
+    Result<Bounds> SetHeights(uint32_t x0, uint32_t z0, uint32_t countX, uint32_t countZ,
+                              std::span<const float> heights);
     Result<Bounds> SetCells(uint32_t x0, uint32_t z0, uint32_t countX, uint32_t countZ, std::span<const uint8_t> cells);
 
     uint32_t TriangleIdEnd() const override { return 2 * CellCountX() * CellCountZ(); }
@@ -143,9 +144,9 @@ private:
     float lowestHeight_ = 0, highestHeight_ = 0, heightStep_ = 0;
     float activeEdgeCosine_ = 1;
     uint32_t holeCount_ = 0;
-    std::vector<float> heights_;    // one of these two
+    std::vector<float> heights_;  // one of these two
     std::vector<uint16_t> steps_;
-    std::vector<uint8_t> cells_;    // empty: all 0
+    std::vector<uint8_t> cells_;  // empty: all 0
     std::vector<Range> ranges_;
     std::vector<Level> levels_;
 };

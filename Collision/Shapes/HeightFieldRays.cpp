@@ -24,11 +24,13 @@ struct PaddedRay {
     Interval Between(int axis, float low, float high, Interval within) const {
         const bool forward = inverse[axis] >= 0;
         const float first = forward ? low - pad : high + pad, second = forward ? high + pad : low - pad;
-        return {Max(within.from, (first - origin[axis]) * inverse[axis]), Min(within.to, (second - origin[axis]) * inverse[axis])};
+        return {Max(within.from, (first - origin[axis]) * inverse[axis]),
+                Min(within.to, (second - origin[axis]) * inverse[axis])};
     }
     // The coordinates that it has meanwhile.
     void Extent(int axis, Interval interval, float& low, float& high) const {
-        const float a = origin[axis] + displacement[axis] * interval.from, b = origin[axis] + displacement[axis] * interval.to;
+        const float a = origin[axis] + displacement[axis] * interval.from,
+                    b = origin[axis] + displacement[axis] * interval.to;
         low = Min(a, b) - pad;
         high = Max(a, b) + pad;
     }
@@ -42,14 +44,16 @@ uint32_t CellAt(float place, float origin, float size, uint32_t first, uint32_t 
 
 }  // namespace
 
-// Calls visit(id, fraction, isBackFace), which returns the largest fraction that is still of interest, or a negative one.
+// Calls visit(id, fraction, isBackFace), which returns the largest fraction that is still of interest, or a negative
+// one.
 template <class Visitor>
 void HeightField::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& visit) const {
     if (!IsUsable(ray.origin, ray.displacement) || !(maxFraction >= 0)) return;
     const ShearedRay sheared(ray.origin, ray.displacement);
     const bool fromBehind = ray.backFaces || isTwoSided_;
     const PaddedRay padded{ray.origin, ray.displacement, BoundedInverse(ray.displacement),
-                           0x1p-20f * (LargestCoordinate(bounds_.lower) + LargestCoordinate(bounds_.upper) + LargestCoordinate(ray.origin))};
+                           0x1p-20f * (LargestCoordinate(bounds_.lower) + LargestCoordinate(bounds_.upper) +
+                                       LargestCoordinate(ray.origin))};
 
     const auto meetBox = [&](CellRange x, CellRange z, float low, float high, Interval within) {
         within = padded.Between(0, X(x.first), X(x.last + 1), within);
@@ -76,8 +80,9 @@ void HeightField::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& v
         for (uint32_t half = 0; half < 2 && maxFraction >= 0; ++half) {
             float fraction;
             bool isBack;
-            const bool isMet = half == 0 ? IntersectTriangle(sheared, others[0], atC, atB, fromBehind, maxFraction, fraction, isBack)
-                                         : IntersectTriangle(sheared, atB, atC, others[1], fromBehind, maxFraction, fraction, isBack);
+            const bool isMet =
+                half == 0 ? IntersectTriangle(sheared, others[0], atC, atB, fromBehind, maxFraction, fraction, isBack)
+                          : IntersectTriangle(sheared, atB, atC, others[1], fromBehind, maxFraction, fraction, isBack);
             if (isMet) maxFraction = visit(2 * cell + half, fraction, isBack);
         }
     };
@@ -150,7 +155,8 @@ Vector3 HeightField::NormalOf(uint32_t id) const {
 
 bool HeightField::CastRay(const SurfaceRay& ray, SurfaceHit& hit, float maxFraction) const {
     ClosestHit best{maxFraction};
-    Traverse(ray, maxFraction, [&](uint32_t id, float fraction, bool isBackFace) { return best.Take(id, fraction, isBackFace); });
+    Traverse(ray, maxFraction,
+             [&](uint32_t id, float fraction, bool isBackFace) { return best.Take(id, fraction, isBackFace); });
     if (best.triangle == kNoTriangle) return false;
     hit = best.ToHit(NormalOf(best.triangle));
     return true;

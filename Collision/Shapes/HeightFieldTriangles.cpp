@@ -33,14 +33,15 @@ bool HeightField::HasTriangles(int64_t x, int64_t z) const {
            !IsHole(static_cast<uint32_t>(x), static_cast<uint32_t>(z));
 }
 
-// An edge is convex where the slope across it falls. The three edges of the lower half (0) face -x, the diagonal and -z; those
-// of the upper half the diagonal, +z and +x.
+// An edge is convex where the slope across it falls. The three edges of the lower half (0) face -x, the diagonal and
+// -z; those of the upper half the diagonal, +z and +x.
 uint8_t HeightField::ActiveEdges(uint32_t x, uint32_t z, int half) const {
     const Slopes own = SlopesOf(x, z, half);
     const auto isActive = [&](const Slopes& other, bool isConvex) {
         // Normals (-slope x, 1, -slope z), by the cosine of their angle.
         const float dot = 1 + own.x * other.x + own.z * other.z;
-        const float lengths = std::sqrt((1 + own.x * own.x + own.z * own.z) * (1 + other.x * other.x + other.z * other.z));
+        const float lengths =
+            std::sqrt((1 + own.x * own.x + own.z * own.z) * (1 + other.x * other.x + other.z * other.z));
         return dot < activeEdgeCosine_ * lengths && (isTwoSided_ || isConvex);
     };
     const Slopes partner = SlopesOf(x, z, 1 - half);
@@ -97,10 +98,11 @@ void HeightField::GetTriangles(std::span<const uint32_t> ids, TriangleView* view
 
 namespace {
 
-// The first and the last of `count` cells, whose borders `at(0)` .. `at(count)` increase, that touch low .. high: from a guess to
-// the exact comparison. False: none.
+// The first and the last of `count` cells, whose borders `at(0)` .. `at(count)` increase, that touch low .. high: from
+// a guess to the exact comparison. False: none.
 template <class At>
-bool TouchedCells(float low, float high, float origin, float size, uint32_t count, At&& at, uint32_t& first, uint32_t& last) {
+bool TouchedCells(float low, float high, float origin, float size, uint32_t count, At&& at, uint32_t& first,
+                  uint32_t& last) {
     if (!(low <= at(count)) || !(high >= at(0))) return false;
     const auto guess = [&](float place) {
         const double cell = (double{place} - double{origin}) / double{size};
@@ -118,10 +120,12 @@ bool TouchedCells(float low, float high, float origin, float size, uint32_t coun
 }  // namespace
 
 bool HeightField::FindCells(const Bounds& box, CellRange& x, CellRange& z) const {
-    return TouchedCells(box.lower.x(), box.upper.x(), origin_.x(), cellSizeX_, CellCountX(), [this](uint32_t i) { return X(i); },
-                        x.first, x.last) &&
-           TouchedCells(box.lower.z(), box.upper.z(), origin_.z(), cellSizeZ_, CellCountZ(), [this](uint32_t i) { return Z(i); },
-                        z.first, z.last);
+    return TouchedCells(
+               box.lower.x(), box.upper.x(), origin_.x(), cellSizeX_, CellCountX(), [this](uint32_t i) { return X(i); },
+               x.first, x.last) &&
+           TouchedCells(
+               box.lower.z(), box.upper.z(), origin_.z(), cellSizeZ_, CellCountZ(), [this](uint32_t i) { return Z(i); },
+               z.first, z.last);
 }
 
 // The lowest level at which the cells lie in at most two blocks either way.
@@ -133,8 +137,8 @@ uint32_t HeightField::CoarsestNeeded(CellRange x, CellRange z) const {
 
 // Calls block(x, z, cells x, cells z) for all blocks of level 0 below one that hold some of the cells and heights.
 template <class Block>
-void HeightField::DescendInto(uint32_t level, uint32_t blockX, uint32_t blockZ, CellRange x, CellRange z, float low, float high,
-                              Block&& block) const {
+void HeightField::DescendInto(uint32_t level, uint32_t blockX, uint32_t blockZ, CellRange x, CellRange z, float low,
+                              float high, Block&& block) const {
     const Range& range = RangeOf(level, blockX, blockZ);
     if (origin_.y() + range.low > high || origin_.y() + range.high < low) return;
     const uint32_t size = kBlock << level;
@@ -146,7 +150,8 @@ void HeightField::DescendInto(uint32_t level, uint32_t blockX, uint32_t blockZ, 
     }
     const uint32_t half = size / 2;
     for (uint32_t bz = z.first / half; bz <= z.last / half; ++bz)
-        for (uint32_t bx = x.first / half; bx <= x.last / half; ++bx) DescendInto(level - 1, bx, bz, x, z, low, high, block);
+        for (uint32_t bx = x.first / half; bx <= x.last / half; ++bx)
+            DescendInto(level - 1, bx, bz, x, z, low, high, block);
 }
 
 void HeightField::SearchBox(const Bounds& box, void* context, BatchFunction found) const {
@@ -161,8 +166,8 @@ void HeightField::SearchBox(const Bounds& box, void* context, BatchFunction foun
                 const uint32_t cell = cz * CellCountX() + cx, sample = cz * sampleCountX_ + cx;
                 if (CellOf(cell) == kHoleCell) continue;
                 const float y = origin_.y();
-                const float a = y + HeightOf(sample), b = y + HeightOf(sample + 1), c = y + HeightOf(sample + sampleCountX_),
-                            d = y + HeightOf(sample + sampleCountX_ + 1);
+                const float a = y + HeightOf(sample), b = y + HeightOf(sample + 1),
+                            c = y + HeightOf(sample + sampleCountX_), d = y + HeightOf(sample + sampleCountX_ + 1);
                 // Both have the cell's own bounds along x and z.
                 const float edgeLow = std::min(b, c), edgeHigh = std::max(b, c);
                 ids[count] = 2 * cell;
@@ -178,7 +183,8 @@ void HeightField::SearchBox(const Bounds& box, void* context, BatchFunction foun
     };
     const uint32_t level = CoarsestNeeded(x, z), size = kBlock << level;
     for (uint32_t bz = z.first / size; bz <= z.last / size; ++bz)
-        for (uint32_t bx = x.first / size; bx <= x.last / size; ++bx) DescendInto(level, bx, bz, x, z, low, high, searchCells);
+        for (uint32_t bx = x.first / size; bx <= x.last / size; ++bx)
+            DescendInto(level, bx, bz, x, z, low, high, searchCells);
     if (count > 0) found(context, ids, count);
 }
 

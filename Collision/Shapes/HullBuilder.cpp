@@ -9,9 +9,9 @@ namespace {
 
 constexpr int kNoIndex = -1;
 
-// Groups the triangles of a hull into polygons for one tolerance. Grouping and vertices that become superfluous only ever
-// leave things out, so the result is either a proper polyhedron or found not to be: then the caller lowers the tolerance,
-// and at zero only exactly coplanar triangles are merged, for which the result is the exact polytope.
+// Groups the triangles of a hull into polygons for one tolerance. Grouping and vertices that become superfluous only
+// ever leave things out, so the result is either a proper polyhedron or found not to be: then the caller lowers the
+// tolerance, and at zero only exactly coplanar triangles are merged, for which the result is the exact polytope.
 class Merger {
 public:
     Merger(std::span<const Position> points, const TriangleHull& hull, double tolerance)
@@ -115,7 +115,9 @@ bool Merger::IsFlat(const Group& a, const Group& b) const {
     const Position sum = a.areaNormal + b.areaNormal;
     const Position normal = sum * (1 / std::sqrt(Dot<double>(sum, sum)));
     const Position origin = hull_.gridPoints[hull_.triangles[a.triangles[0]].corner[0]];
-    const auto height = [&](int point) { return Dot<double>(normal, hull_.gridPoints[point] - origin) * hull_.gridStep; };
+    const auto height = [&](int point) {
+        return Dot<double>(normal, hull_.gridPoints[point] - origin) * hull_.gridStep;
+    };
     double top = 0;
     for (int v : hull_.vertices) top = std::max(top, height(v));
     for (const Group* group : {&a, &b})
@@ -183,7 +185,8 @@ bool Merger::Trace(HullMesh& mesh) {
     for (auto& [normal, loop] : loops) {
         std::erase_if(loop, [&](int v) { return degree[v] < 3; });
         if (loop.size() < 3 || (tolerance_ > 0 && !IsConvex(loop, normal))) return false;
-        HullMesh::Face face{{static_cast<int>(mesh.indices.size()), static_cast<int>(loop.size())}, normal,
+        HullMesh::Face face{{static_cast<int>(mesh.indices.size()), static_cast<int>(loop.size())},
+                            normal,
                             -std::numeric_limits<double>::infinity()};
         for (const Position& v : mesh.vertices) face.offset = std::max(face.offset, Dot<double>(normal, v));
         for (int v : loop) mesh.indices.push_back(newIndex[v]);
@@ -226,9 +229,9 @@ Result<HullMesh> BuildHull(std::span<const Position> points, const HullLimits& l
 
 bool IsClosedPolyhedron(const HullMesh& mesh) {
     struct HalfEdge {
-        int low, high;   // vertices
-        bool upwards;    // from low to high
-        int left;        // face
+        int low, high;  // vertices
+        bool upwards;   // from low to high
+        int left;       // face
     };
     std::vector<HalfEdge> halves;
     std::vector<int> degree(mesh.vertices.size(), 0);

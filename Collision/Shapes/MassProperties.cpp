@@ -22,7 +22,8 @@ Sym3<double> Sum(const Sym3<double>& a, const Sym3<double>& b, double weightOfB)
 
 Quat<double> ToDouble(const Quaternion& q) { return {q.x, q.y, q.z, q.w}; }
 
-// The rotation matrix as a unit quaternion with w >= 0. Branches on the largest component, which keeps the division safe.
+// The rotation matrix as a unit quaternion with w >= 0. Branches on the largest component, which keeps the division
+// safe.
 Quaternion ToQuaternion(const Mat3<double>& r) {
     const double xx = r.x.x(), yy = r.y.y(), zz = r.z.z();
     double x, y, z, w;
@@ -171,7 +172,8 @@ SolidMass ToSolidMass(const MassProperties& mass) {
     SolidMass solid;
     solid.volume = mass.volume;
     solid.center = mass.centerOfMass.cast<double>();
-    solid.inertia = RotatedDiagonal(ToMatrix(ToDouble(mass.principalAxes)), Position(mass.principalInertia.cast<double>()));
+    solid.inertia =
+        RotatedDiagonal(ToMatrix(ToDouble(mass.principalAxes)), Position(mass.principalInertia.cast<double>()));
     return solid;
 }
 

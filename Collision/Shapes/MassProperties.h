@@ -1,5 +1,5 @@
-// Volume, center of mass and inertia of solids, in double. Called by the Create functions of the shapes; pure functions.
-// Everything is for density 1 kg/m3; inertia is about the center of mass.
+// Volume, center of mass and inertia of solids, in double. Called by the Create functions of the shapes; pure
+// functions. Everything is for density 1 kg/m3; inertia is about the center of mass.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/Shape.h>
@@ -9,9 +9,9 @@
 namespace fulcrum {
 
 struct SolidMass {
-    double volume = 0;                       // m3
-    Position center = Position::Zero();      // m
-    Sym3<double> inertia;                    // kg m2
+    double volume = 0;                   // m3
+    Position center = Position::Zero();  // m
+    Sym3<double> inertia;                // kg m2
 };
 
 // A polyhedron's surface: corners of polygon i are indices[firstIndex .. firstIndex + cornerCount), counter-clockwise
@@ -32,8 +32,8 @@ Sym3<double> InertiaOf(const Covariance& c);
 SolidMass PolyhedronMass(std::span<const Position> vertices, std::span<const PolygonRange> polygons,
                          std::span<const int> indices);
 
-// Sum of solids, part i weighted by densities[i] > 0: `volume` is the sum of the volumes, `inertia` is scaled so that the
-// whole has density 1 on average. Overlaps count twice. Parallel axes: I += m (|d|^2 1 - d d^T).
+// Sum of solids, part i weighted by densities[i] > 0: `volume` is the sum of the volumes, `inertia` is scaled so that
+// the whole has density 1 on average. Overlaps count twice. Parallel axes: I += m (|d|^2 1 - d d^T).
 SolidMass CombinedMass(std::span<const SolidMass> parts, std::span<const double> densities);
 
 // The solid after a rotation (unit) about the origin and a translation.

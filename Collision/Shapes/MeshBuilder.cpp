@@ -10,14 +10,14 @@ namespace {
 constexpr uint32_t kNoNode = ~0u;
 constexpr int kWidth = MeshNode::kWidth;
 constexpr uint32_t kLeaf = MeshNode::kMaxLeaf;
-constexpr uint32_t kBottom = kWidth * kLeaf;   // triangles that fit a node whose children are leaves
-constexpr uint32_t kTask = 4096;               // triangles below which a subtree is one job
-constexpr int kFreeDepth = 18;                 // below, sets are halved, which bounds the depth
+constexpr uint32_t kBottom = kWidth * kLeaf;  // triangles that fit a node whose children are leaves
+constexpr uint32_t kTask = 4096;              // triangles below which a subtree is one job
+constexpr int kFreeDepth = 18;                // below, sets are halved, which bounds the depth
 
 struct DraftNode {
     struct Child {
         BoxSet set;
-        uint32_t node = kNoNode;   // in the same list; none: a leaf, or the root of a task's list
+        uint32_t node = kNoNode;  // in the same list; none: a leaf, or the root of a task's list
         uint32_t task = kNoNode;
     };
     Child children[kWidth];
@@ -33,7 +33,8 @@ struct Task {
 
 class Builder {
 public:
-    Builder(const RepairedMesh& mesh, std::span<const uint8_t> materials, bool keepSources, const ParallelLoop& parallel)
+    Builder(const RepairedMesh& mesh, std::span<const uint8_t> materials, bool keepSources,
+            const ParallelLoop& parallel)
         : mesh_(mesh), materials_(materials), keepSources_(keepSources), parallel_(parallel) {}
 
     MeshTree Build() {
@@ -61,7 +62,8 @@ private:
         RunLoop(parallel_, (count + kChunk - 1) / kChunk, [&](uint32_t chunk) {
             for (uint32_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) {
                 Bounds bounds;
-                for (int k = 0; k < 3; ++k) bounds.Include(mesh_.vertices[mesh_.indices[3 * i + static_cast<uint32_t>(k)]]);
+                for (int k = 0; k < 3; ++k)
+                    bounds.Include(mesh_.vertices[mesh_.indices[3 * i + static_cast<uint32_t>(k)]]);
                 TriangleBox& box = boxes_[i];
                 for (int axis = 0; axis < 3; ++axis) {
                     box.lane[axis] = bounds.lower[axis];
@@ -73,7 +75,8 @@ private:
         });
     }
 
-    // Drafts the node of a set and all below it; with `tasks`, leaves smaller sets to them. Returns its number in `nodes`.
+    // Drafts the node of a set and all below it; with `tasks`, leaves smaller sets to them. Returns its number in
+    // `nodes`.
     uint32_t DraftBelow(DraftNodes& nodes, const BoxSet& set, int depth, std::vector<Task>* tasks) {
         const uint32_t index = static_cast<uint32_t>(nodes.size());
         nodes.emplace_back();
@@ -150,7 +153,8 @@ private:
         return child.task == kNoNode ? nodes : tasks_[child.task].nodes;
     }
 
-    // Writes a node in its place, gives its leaves' triangles their numbers, and goes on to its children that are nodes.
+    // Writes a node in its place, gives its leaves' triangles their numbers, and goes on to its children that are
+    // nodes.
     void WriteNode(const DraftNodes& nodes, uint32_t from, uint32_t to) {
         const DraftNode& draft = nodes[from];
         const DraftNode::Child* children[kWidth];
@@ -171,7 +175,8 @@ private:
         SetBoxes(node, {boxes, static_cast<size_t>(count)});
         for (int i = nodeCount; i < kWidth; ++i) {
             if (i < count)
-                for (uint32_t k = children[i]->set.begin; k < children[i]->set.end; ++k) order_.push_back(boxes_[k].Id());
+                for (uint32_t k = children[i]->set.begin; k < children[i]->set.end; ++k)
+                    order_.push_back(boxes_[k].Id());
             node.leafEnd[i] = static_cast<uint8_t>(order_.size() - node.firstTriangle);
         }
         tree_.nodes[to] = node;

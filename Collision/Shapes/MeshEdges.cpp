@@ -7,10 +7,10 @@ namespace {
 
 // An edge of a triangle, filed under the smaller of its vertices.
 struct EdgeEntry {
-    uint32_t other;      // the larger vertex
+    uint32_t other;  // the larger vertex
     uint32_t triangle;
-    uint8_t edge;        // 0 .. 2
-    bool isUpwards;      // runs from the smaller vertex to the larger
+    uint8_t edge;    // 0 .. 2
+    bool isUpwards;  // runs from the smaller vertex to the larger
 
     bool operator<(const EdgeEntry& e) const {
         return other != e.other ? other < e.other : triangle != e.triangle ? triangle < e.triangle : edge < e.edge;
@@ -20,7 +20,10 @@ struct EdgeEntry {
 class EdgeFinder {
 public:
     EdgeFinder(const MeshTree& tree, const Vector3& scale, float cosine, bool isTwoSided)
-        : tree_(tree), scale_(scale.cast<double>()), cosine_(cosine), isTwoSided_(isTwoSided),
+        : tree_(tree),
+          scale_(scale.cast<double>()),
+          cosine_(cosine),
+          isTwoSided_(isTwoSided),
           isMirrored_((scale.x() < 0) != ((scale.y() < 0) != (scale.z() < 0))) {}
 
     MeshEdges Find() {

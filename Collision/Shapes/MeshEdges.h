@@ -1,4 +1,5 @@
-// Finds which edges of a mesh are active (SurfaceShape.h). Called by TriangleMesh, once a mesh or scaled instance. Pure.
+// Finds which edges of a mesh are active (SurfaceShape.h). Called by TriangleMesh, once a mesh or scaled instance.
+// Pure.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/MeshTree.h>
@@ -10,7 +11,8 @@ struct MeshEdges {
     uint32_t boundaryEdges = 0, irregularEdges = 0;
 };
 
-// Of the vertices times `scale`, fronts kept (where it mirrors, corners 1 and 2 change places, and the edges with them).
+// Of the vertices times `scale`, fronts kept (where it mirrors, corners 1 and 2 change places, and the edges with
+// them).
 MeshEdges FindActiveEdges(const MeshTree& tree, const Vector3& scale, float cosine, bool isTwoSided);
 
 }  // namespace fulcrum

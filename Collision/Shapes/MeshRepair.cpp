@@ -34,12 +34,15 @@ private:
     uint64_t mask_;
 };
 
-// Finds the earliest kept vertex within a distance. Kept vertices are farther apart than that, so that a cell of the hash
-// grid, 16 distances wide, holds a bounded number of them whatever the input.
+// Finds the earliest kept vertex within a distance. Kept vertices are farther apart than that, so that a cell of the
+// hash grid, 16 distances wide, holds a bounded number of them whatever the input.
 class Welder {
 public:
     Welder(std::span<const Vector3> vertices, float distance)
-        : vertices_(vertices), distance_(distance), cell_(std::max(16.0 * distance_, 1e-300)), chains_(vertices.size()) {}
+        : vertices_(vertices),
+          distance_(distance),
+          cell_(std::max(16.0 * distance_, 1e-300)),
+          chains_(vertices.size()) {}
 
     uint32_t FindOrInsert(uint32_t id) {
         const Position p = vertices_[id].cast<double>();
@@ -87,17 +90,18 @@ private:
 
 Status CheckInput(std::span<const Vector3> vertices, std::span<const uint32_t> indices) {
     if (indices.size() % 3 != 0) {
-        return Error{ErrorCode::Degenerate, Message("%zu indices: their number must be a multiple of 3", indices.size())};
+        return Error{ErrorCode::Degenerate,
+                     Message("%zu indices: their number must be a multiple of 3", indices.size())};
     }
     if (vertices.size() >= kNone || indices.size() / 3 > kMostTriangles) {
-        return Error{ErrorCode::OutOfRange, Message("%zu vertices and %zu triangles: at most 2^27 triangles", vertices.size(),
-                                                    indices.size() / 3)};
+        return Error{ErrorCode::OutOfRange, Message("%zu vertices and %zu triangles: at most 2^27 triangles",
+                                                    vertices.size(), indices.size() / 3)};
     }
     for (size_t i = 0; i < vertices.size(); ++i) {
         const Vector3& v = vertices[i];
         if (!IsFinite(v)) {
-            return Error{ErrorCode::NonFinite, Message("vertex %zu is (%g, %g, %g): it must be finite", i, double{v.x()},
-                                                       double{v.y()}, double{v.z()})};
+            return Error{ErrorCode::NonFinite, Message("vertex %zu is (%g, %g, %g): it must be finite", i,
+                                                       double{v.x()}, double{v.y()}, double{v.z()})};
         }
         if (!(v.cwiseAbs().maxCoeff() <= kLargestCoordinate)) {
             return Error{ErrorCode::OutOfRange, Message("vertex %zu is (%g, %g, %g): at most %g m", i, double{v.x()},
@@ -106,8 +110,8 @@ Status CheckInput(std::span<const Vector3> vertices, std::span<const uint32_t> i
     }
     for (size_t i = 0; i < indices.size(); ++i) {
         if (indices[i] < vertices.size()) continue;
-        return Error{ErrorCode::OutOfRange, Message("index %u of triangle %zu: there are %zu vertices", indices[i], i / 3,
-                                                    vertices.size())};
+        return Error{ErrorCode::OutOfRange,
+                     Message("index %u of triangle %zu: there are %zu vertices", indices[i], i / 3, vertices.size())};
     }
     return Done{};
 }
@@ -131,8 +135,8 @@ bool HasArea(const Vector3& a, const Vector3& b, const Vector3& c, double weldDi
     return std::sqrt(Dot(cross, cross)) > longest * std::max(weldDistance, kThinnestTriangle * longest);
 }
 
-Result<RepairedMesh> RepairMesh(std::span<const Vector3> vertices, std::span<const uint32_t> indices, float weldDistance,
-                                MeshReport& report) {
+Result<RepairedMesh> RepairMesh(std::span<const Vector3> vertices, std::span<const uint32_t> indices,
+                                float weldDistance, MeshReport& report) {
     report = {};
     if (const Status status = CheckInput(vertices, indices); !status) return status.GetError();
 
@@ -167,8 +171,8 @@ Result<RepairedMesh> RepairMesh(std::span<const Vector3> vertices, std::span<con
         mesh.sources.push_back(i);
     }
     if (mesh.sources.empty()) {
-        return Error{ErrorCode::Degenerate, Message("no triangle is left of %u: %u have no area", count,
-                                                    report.degenerateTriangles.count)};
+        return Error{ErrorCode::Degenerate,
+                     Message("no triangle is left of %u: %u have no area", count, report.degenerateTriangles.count)};
     }
 
     std::vector<uint32_t> newIds(vertices.size(), kNone);

@@ -20,12 +20,12 @@ struct MeshFinding {
 };
 
 struct MeshReport {
-    MeshFinding weldedVertices;        // made one with an earlier vertex
-    MeshFinding unusedVertices;        // left out: no triangle that is kept uses them
-    MeshFinding degenerateTriangles;   // left out: no area
-    MeshFinding duplicateTriangles;    // left out: the same three vertices the same way round as an earlier one
-    uint32_t boundaryEdges = 0;        // edges of one triangle: where the surface ends
-    uint32_t irregularEdges = 0;       // of more than two, or of two whose fronts disagree
+    MeshFinding weldedVertices;       // made one with an earlier vertex
+    MeshFinding unusedVertices;       // left out: no triangle that is kept uses them
+    MeshFinding degenerateTriangles;  // left out: no area
+    MeshFinding duplicateTriangles;   // left out: the same three vertices the same way round as an earlier one
+    uint32_t boundaryEdges = 0;       // edges of one triangle: where the surface ends
+    uint32_t irregularEdges = 0;      // of more than two, or of two whose fronts disagree
     bool IsClean() const {
         return weldedVertices.count == 0 && unusedVertices.count == 0 && degenerateTriangles.count == 0 &&
                duplicateTriangles.count == 0;
@@ -44,7 +44,7 @@ bool HasArea(const Vector3& a, const Vector3& b, const Vector3& c, double weldDi
 // Vertices within `weldDistance` m of an earlier one become that one. A triangle has no area where its height is below
 // `weldDistance` or 1e-6 of its longest edge.
 // Errors: NonFinite, OutOfRange (an index), Degenerate (nothing left, or indices that three does not divide).
-Result<RepairedMesh> RepairMesh(std::span<const Vector3> vertices, std::span<const uint32_t> indices, float weldDistance,
-                                MeshReport& report);
+Result<RepairedMesh> RepairMesh(std::span<const Vector3> vertices, std::span<const uint32_t> indices,
+                                float weldDistance, MeshReport& report);
 
 }  // namespace fulcrum

@@ -102,7 +102,8 @@ Choice BestSplit(const Bins& bins, const Binning& binning, const SplitRules& rul
     return best;
 }
 
-// Where no plane between bins is allowed: along the longest axis of the centers, by count. `leaf` many fill the left leaves.
+// Where no plane between bins is allowed: along the longest axis of the centers, by count. `leaf` many fill the left
+// leaves.
 uint32_t SplitByCount(std::span<TriangleBox> boxes, const Binning& binning, const SplitRules& rules) {
     int axis = 0;
     float best = -1;

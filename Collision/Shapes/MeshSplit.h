@@ -45,8 +45,8 @@ struct BoxSet {
 
 BoxUnion UnionOf(std::span<const TriangleBox> boxes, const ParallelLoop& parallel);
 
-// What a split may be: at least `smallest` on each side; and if `leaf` is not 0, the leaves of that many which the two sides
-// need are at most `mostLeaves`.
+// What a split may be: at least `smallest` on each side; and if `leaf` is not 0, the leaves of that many which the two
+// sides need are at most `mostLeaves`.
 struct SplitRules {
     uint32_t smallest = 1;
     uint32_t leaf = 0;

@@ -1,7 +1,7 @@
 // The data of a triangle mesh, and the search in it. Used by TriangleMesh alone; read-only once built, so thread-safe.
 //
-// Eight-way nodes of 80 bytes. The boxes of the children are given in 1/255ths of the node's own box, rounded outwards. A
-// child is a node or a leaf of up to eight triangles. Nodes come before their children; a node's leaves are a run of
+// Eight-way nodes of 80 bytes. The boxes of the children are given in 1/255ths of the node's own box, rounded outwards.
+// A child is a node or a leaf of up to eight triangles. Nodes come before their children; a node's leaves are a run of
 // consecutive triangles, so that a child costs one byte more than its box. Vertices are numbered in the order in which
 // the triangles use them first. So the vertices of 64 triangles in a row mostly lie within 65,536 of each other, and an
 // index takes two bytes; where they do not, four.
@@ -19,21 +19,23 @@ namespace fulcrum {
 
 struct MeshNode {
     static constexpr int kWidth = 8;
-    static constexpr int kMaxLeaf = 8;      // triangles
+    static constexpr int kMaxLeaf = 8;  // triangles
 
     float origin[3];
-    uint8_t exponent[3];                    // the grid's step along an axis is 2^(exponent - 127) m
-    uint8_t counts;                         // children that are nodes, plus 16 times all children
-    uint8_t lower[3][kWidth];               // in steps from the origin; children that are nodes first
+    uint8_t exponent[3];       // the grid's step along an axis is 2^(exponent - 127) m
+    uint8_t counts;            // children that are nodes, plus 16 times all children
+    uint8_t lower[3][kWidth];  // in steps from the origin; children that are nodes first
     uint8_t upper[3][kWidth];
-    uint8_t leafEnd[kWidth];                // where the triangles of child i end, from firstTriangle on
-    uint32_t firstChild;                    // child i that is a node has the number firstChild + i
+    uint8_t leafEnd[kWidth];  // where the triangles of child i end, from firstTriangle on
+    uint32_t firstChild;      // child i that is a node has the number firstChild + i
     uint32_t firstTriangle;
 
     int NodeCount() const { return counts & 15; }
     int ChildCount() const { return counts >> 4; }
     float Step(int axis) const { return std::bit_cast<float>(static_cast<uint32_t>(exponent[axis]) << 23); }
-    float InverseStep(int axis) const { return std::bit_cast<float>(static_cast<uint32_t>(254 - exponent[axis]) << 23); }
+    float InverseStep(int axis) const {
+        return std::bit_cast<float>(static_cast<uint32_t>(254 - exponent[axis]) << 23);
+    }
     // The triangles of child i, which is a leaf.
     uint32_t LeafBegin(int i) const { return firstTriangle + (i == NodeCount() ? 0u : leafEnd[i - 1]); }
     uint32_t LeafEnd(int i) const { return firstTriangle + leafEnd[i]; }
@@ -51,15 +53,16 @@ using Lanes = Wide<kStep>;
 
 // A ray in the tree's own coordinates, made for it. Boxes count larger by `pad` m, which is laid into the origins.
 //
-// A plane of a box is met at the fraction byte * (step / direction) + (origin of the grid - origin of the ray) / direction. Its
-// rounding, that of the origins here and that of the triangles' own test are at most 2^-22 of the coordinates and distances that
-// take part: a pad of 2^-20 of them covers it, and what remains, the last product's, a factor of 1 + 2^-18. So no leaf of a
-// triangle that the exact test finds is missed.
+// A plane of a box is met at the fraction byte * (step / direction) + (origin of the grid - origin of the ray) /
+// direction. Its rounding, that of the origins here and that of the triangles' own test are at most 2^-22 of the
+// coordinates and distances that take part: a pad of 2^-20 of them covers it, and what remains, the last product's, a
+// factor of 1 + 2^-18. So no leaf of a triangle that the exact test finds is missed.
 struct MeshTreeRay {
-    Vector3 nearOrigin, farOrigin;          // for the planes where it enters boxes and where it leaves them
-    Vector3 nearInverse, farInverse;        // 1 / displacement, bounded
+    Vector3 nearOrigin, farOrigin;    // for the planes where it enters boxes and where it leaves them
+    Vector3 nearInverse, farInverse;  // 1 / displacement, bounded
 
-    MeshTreeRay(const Vector3& origin, const Vector3& inverse, float pad) : MeshTreeRay(origin, inverse, Vector3(Vector3::Constant(pad))) {}
+    MeshTreeRay(const Vector3& origin, const Vector3& inverse, float pad)
+        : MeshTreeRay(origin, inverse, Vector3(Vector3::Constant(pad))) {}
     MeshTreeRay(const Vector3& origin, const Vector3& inverse, const Vector3& pad)
         : nearInverse(inverse), farInverse(inverse * (1.0f + 0x1p-18f)) {
         for (int axis = 0; axis < 3; ++axis) {
@@ -71,23 +74,23 @@ struct MeshTreeRay {
 };
 
 struct MeshTree {
-    static constexpr int kMaxDepth = 32;                                // of nodes; the builder keeps below
+    static constexpr int kMaxDepth = 32;  // of nodes; the builder keeps below
     static constexpr int kMaxStack = (MeshNode::kWidth - 1) * kMaxDepth + 1;
-    static constexpr uint32_t kPageBits = 6;                            // 64 triangles have a page
+    static constexpr uint32_t kPageBits = 6;  // 64 triangles have a page
     static constexpr uint32_t kWideIndices = ~0u;
 
     // Where the indices of 64 triangles are. Narrow ones count from firstVertex. kWideIndices: whole, low half first.
     struct Page {
         uint32_t firstVertex;
-        uint32_t offset;                                                // in `indices`
+        uint32_t offset;  // in `indices`
     };
 
-    std::vector<Vector3> vertices;                                      // and one more, so that all can be read by fours
-    std::vector<MeshNode> nodes;                                        // the root first
+    std::vector<Vector3> vertices;  // and one more, so that all can be read by fours
+    std::vector<MeshNode> nodes;    // the root first
     std::vector<Page> pages;
     std::vector<uint16_t> indices;
-    std::vector<uint8_t> materials;                                     // a byte a triangle; none: all 0
-    std::vector<uint32_t> sources;                                      // the input's number of each triangle, or none
+    std::vector<uint8_t> materials;  // a byte a triangle; none: all 0
+    std::vector<uint32_t> sources;   // the input's number of each triangle, or none
     uint32_t triangleCount = 0;
 
     uint32_t VertexCount() const { return static_cast<uint32_t>(vertices.size()) - 1; }
@@ -105,8 +108,9 @@ struct MeshTree {
     }
 
     size_t MemoryUsed() const {
-        return vertices.capacity() * sizeof(Vector3) + nodes.capacity() * sizeof(MeshNode) + pages.capacity() * sizeof(Page) +
-               indices.capacity() * sizeof(uint16_t) + materials.capacity() + sources.capacity() * sizeof(uint32_t);
+        return vertices.capacity() * sizeof(Vector3) + nodes.capacity() * sizeof(MeshNode) +
+               pages.capacity() * sizeof(Page) + indices.capacity() * sizeof(uint16_t) + materials.capacity() +
+               sources.capacity() * sizeof(uint32_t);
     }
 
     // Calls leaf(begin, end) for every leaf whose box overlaps `box`, which is finite, and perhaps for some near by.
@@ -122,8 +126,8 @@ struct MeshTree {
 // Writes the tree's pages, indices and triangleCount for these corners, three a triangle. At most 2^27 triangles.
 void PackIndices(MeshTree& tree, std::span<const uint32_t> corners);
 
-// The children of a node that overlap a box. Compared in the node's own grid; the slack is more than the rounding of the
-// way there, 256 * 2^-24 steps.
+// The children of a node that overlap a box. Compared in the node's own grid; the slack is more than the rounding of
+// the way there, 256 * 2^-24 steps.
 inline uint32_t OverlappingChildren(const MeshNode& node, const Bounds& box) {
     using mesh_lanes::Lanes, mesh_lanes::kStep;
     constexpr float kSlack = 0x1p-10f;

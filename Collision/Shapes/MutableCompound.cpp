@@ -56,7 +56,8 @@ ChildId MutableCompound::IdOf(uint32_t index) const {
 
 Status MutableCompound::CheckId(ChildId id) const {
     if (Exists(id)) return Done{};
-    return Error{ErrorCode::UnknownId, Message("no child has the id (index %u, generation %u)", id.index, id.generation)};
+    return Error{ErrorCode::UnknownId,
+                 Message("no child has the id (index %u, generation %u)", id.index, id.generation)};
 }
 
 // ---- Plans
@@ -65,9 +66,11 @@ Result<MutableCompound::Child> MutableCompound::Posed(const ChildSettings& child
     if (const Status status = Check(child, name); !status) return status.GetError();
     const Quaternion rotation = Normalized(child.rotation);
     const Quat<double> q{rotation.x, rotation.y, rotation.z, rotation.w};
-    const Position center = child.position.cast<double>() + Rotate<double>(q, child.shape->Mass().centerOfMass.cast<double>());
+    const Position center =
+        child.position.cast<double>() + Rotate<double>(q, child.shape->Mass().centerOfMass.cast<double>());
     if (const Status status = CheckPlace(name, center.cast<float>()); !status) return status.GetError();
-    return Child{std::static_pointer_cast<const ConvexShape>(child.shape), {center.cast<float>(), rotation}, child.density};
+    return Child{
+        std::static_pointer_cast<const ConvexShape>(child.shape), {center.cast<float>(), rotation}, child.density};
 }
 
 Result<MutableCompound::Edit> MutableCompound::Plan(uint32_t index, Child child, MassUpdate mass) const {
@@ -99,7 +102,8 @@ Result<MutableCompound::Edit> MutableCompound::PlanMove(ChildId id, const Vector
                                                         MassUpdate mass) const {
     if (const Status status = CheckId(id); !status) return status.GetError();
     const Child& child = children_[id.index];
-    return PlanSet(id, {.shape = child.shape, .position = position, .rotation = rotation, .density = child.density}, mass);
+    return PlanSet(id, {.shape = child.shape, .position = position, .rotation = rotation, .density = child.density},
+                   mass);
 }
 
 Result<MutableCompound::Edit> MutableCompound::PlanRemove(ChildId id, MassUpdate mass) const {

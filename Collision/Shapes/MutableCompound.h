@@ -1,33 +1,35 @@
-// A compound whose children come, go and move at run time. An edit costs in proportion to the children edited, times the
-// logarithm of how many there are. Bodies that are made of one get a copy of their own, which BodyInterface edits (AddChild,
-// MoveChild, ...). Like a container: one thread edits, or any number read.
+// A compound whose children come, go and move at run time. An edit costs in proportion to the children edited, times
+// the logarithm of how many there are. Bodies that are made of one get a copy of their own, which BodyInterface edits
+// (AddChild, MoveChild, ...). Like a container: one thread edits, or any number read.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/CompoundSums.h>
 
 namespace fulcrum {
 
-// Names a child. Ids of removed children are never valid again: an index is reused with another generation. What queries
-// answer, SubShape::child, is the index; MutableCompound::IdOf says whose it is now.
+// Names a child. Ids of removed children are never valid again: an index is reused with another generation. What
+// queries answer, SubShape::child, is the index; MutableCompound::IdOf says whose it is now.
 struct ChildId {
     uint32_t index = 0xFFFFFFFFu;
     uint32_t generation = 0;
     friend auto operator<=>(const ChildId&, const ChildId&) = default;
 };
 
-// What an edit does to mass, inertia and center of mass: they become those of the children there are, or stay as they are
-// (until the next edit that updates them).
+// What an edit does to mass, inertia and center of mass: they become those of the children there are, or stay as they
+// are (until the next edit that updates them).
 enum class MassUpdate : uint8_t { Update, Keep };
 
 class MutableCompound final : public CompoundShape {
 public:
     // Mass and errors as Compound::Create has them. The children's ids have the indices 0, 1, ... and the generation 0.
     // Where children move, their own masses stay: density times volume, in units that follow from the whole's at first.
-    // OuterRadius is that of the box around the children: up to 1.7 times as far as they reach. The center frame moves with
-    // the center of mass.
+    // OuterRadius is that of the box around the children: up to 1.7 times as far as they reach. The center frame moves
+    // with the center of mass.
     static Result<std::shared_ptr<MutableCompound>> Create(std::span<const ChildSettings> children);
     // With the same ids.
-    std::shared_ptr<MutableCompound> Copy() const { return std::shared_ptr<MutableCompound>(new MutableCompound(*this)); }
+    std::shared_ptr<MutableCompound> Copy() const {
+        return std::shared_ptr<MutableCompound>(new MutableCompound(*this));
+    }
 
     uint32_t Count() const { return count_; }  // of children; indices may be larger
     bool Exists(ChildId id) const;
@@ -36,8 +38,8 @@ public:
     // The sum of density times volume over the children, as of the last update of the mass.
     double RelativeMass() const { return relativeMass_; }
 
-    // Nothing has changed where these return an error: those of Create about `child`, UnknownId, Degenerate (the last child
-    // cannot be removed).
+    // Nothing has changed where these return an error: those of Create about `child`, UnknownId, Degenerate (the last
+    // child cannot be removed).
     Result<ChildId> Add(const ChildSettings& child, MassUpdate mass = MassUpdate::Update);
     Status Set(ChildId id, const ChildSettings& child, MassUpdate mass = MassUpdate::Update);  // all of it
     Status Move(ChildId id, const Vector3& position, const Quaternion& rotation, MassUpdate mass = MassUpdate::Update);

@@ -6,8 +6,8 @@
 
 namespace fulcrum {
 
-// Runs job(i) once for each i in 0 .. count - 1, on any threads in any order, and returns when all are done. A job system's
-// ParallelFor fits with one line of adapter. Empty: one after the other.
+// Runs job(i) once for each i in 0 .. count - 1, on any threads in any order, and returns when all are done. A job
+// system's ParallelFor fits with one line of adapter. Empty: one after the other.
 using ParallelLoop = std::function<void(uint32_t count, const std::function<void(uint32_t)>& job)>;
 
 inline void RunLoop(const ParallelLoop& parallel, uint32_t count, const std::function<void(uint32_t)>& job) {

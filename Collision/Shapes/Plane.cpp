@@ -12,8 +12,8 @@ Result<std::shared_ptr<const Plane>> Plane::Create(const Vector3& normal, float 
     const double length = std::sqrt(Dot(exact, exact));
     if (!(length > 0)) return Error{ErrorCode::Degenerate, "the normal of a plane is zero: it must be a direction"};
     if (!(std::fabs(offset) <= kUnboundedExtent)) {
-        return Error{ErrorCode::OutOfRange, Message("the offset is %g m: at most %g m", double{offset},
-                                                    double{kUnboundedExtent})};
+        return Error{ErrorCode::OutOfRange,
+                     Message("the offset is %g m: at most %g m", double{offset}, double{kUnboundedExtent})};
     }
     const std::shared_ptr<Plane> plane(new Plane);
     // A normal that is a unit vector as well as floats can say stays as it is.

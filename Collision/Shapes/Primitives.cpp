@@ -70,7 +70,8 @@ Vector3 Box::SupportCore(const Vector3& direction) const {
 
 void Box::FindSupportingFace(const Vector3& direction, SupportingFace& face) const {
     // Of each face, which vertices: bits 0, 1, 2 say the positive x, y, z side. Counter-clockwise seen from outside.
-    static constexpr uint8_t kCorners[6][4] = {{1, 3, 7, 5}, {0, 4, 6, 2}, {2, 6, 7, 3}, {0, 1, 5, 4}, {4, 5, 7, 6}, {0, 2, 3, 1}};
+    static constexpr uint8_t kCorners[6][4] = {{1, 3, 7, 5}, {0, 4, 6, 2}, {2, 6, 7, 3},
+                                               {0, 1, 5, 4}, {4, 5, 7, 6}, {0, 2, 3, 1}};
     int axis = 0;
     for (int i = 1; i < 3; ++i)
         if (std::fabs(direction[i]) > std::fabs(direction[axis])) axis = i;
@@ -78,7 +79,8 @@ void Box::FindSupportingFace(const Vector3& direction, SupportingFace& face) con
     const Vector3 h = halfExtents_ - Vector3::Constant(convexRadius_);
     face.count = 0;
     for (const uint8_t corner : kCorners[2 * axis + (negative ? 1 : 0)])
-        face.Add(Vector3(corner & 1 ? h.x() : -h.x(), corner & 2 ? h.y() : -h.y(), corner & 4 ? h.z() : -h.z()), corner);
+        face.Add(Vector3(corner & 1 ? h.x() : -h.x(), corner & 2 ? h.y() : -h.y(), corner & 4 ? h.z() : -h.z()),
+                 corner);
     face.normal = Vector3::Zero();
     face.normal[axis] = negative ? -1.0f : 1.0f;
 }

@@ -5,8 +5,8 @@
 
 namespace fulcrum {
 
-// Ball of `radius` meters, > 0. Errors: NonFinite, NonPositive, OutOfRange (the inertia is no normal float: sizes of about
-// 1e-7 m or 1e7 m; so for all shapes).
+// Ball of `radius` meters, > 0. Errors: NonFinite, NonPositive, OutOfRange (the inertia is no normal float: sizes of
+// about 1e-7 m or 1e7 m; so for all shapes).
 class Sphere final : public ConvexShape {
 public:
     static Result<std::shared_ptr<const Sphere>> Create(float radius);
@@ -18,8 +18,9 @@ private:
     Sphere() : ConvexShape(ShapeType::Sphere) {}
 };
 
-// Box of half extents `halfExtents` meters, each > 0. `convexRadius` (0 .. smallest half extent) rounds its edges within
-// those extents; 0, the default, keeps them sharp. The mass is that of the sharp box. Errors: NonFinite, NonPositive, OutOfRange.
+// Box of half extents `halfExtents` meters, each > 0. `convexRadius` (0 .. smallest half extent) rounds its edges
+// within those extents; 0, the default, keeps them sharp. The mass is that of the sharp box. Errors: NonFinite,
+// NonPositive, OutOfRange.
 class Box final : public ConvexShape {
 public:
     static Result<std::shared_ptr<const Box>> Create(const Vector3& halfExtents, float convexRadius = 0);

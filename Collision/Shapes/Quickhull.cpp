@@ -31,7 +31,9 @@ constexpr int kNoIndex = -1;
 
 class Builder {
 public:
-    Builder(std::span<const Position> points, const QuickhullSettings& settings) : settings_(settings) { Rasterize(points); }
+    Builder(std::span<const Position> points, const QuickhullSettings& settings) : settings_(settings) {
+        Rasterize(points);
+    }
 
     Result<TriangleHull> Build() {
         if (hull_.gridPoints.size() < 4) {
@@ -52,10 +54,10 @@ private:
         int firstPoint = kNoIndex;  // list of points outside this face, by nextPoint_
         int farthestPoint = kNoIndex;
         bool alive = false;
-        bool visible = false;    // from the point that is being added
+        bool visible = false;  // from the point that is being added
     };
     struct HorizonEdge {
-        int from, to, outside;   // `outside` is the face that stays
+        int from, to, outside;  // `outside` is the face that stays
     };
 
     void Rasterize(std::span<const Position> points) {
@@ -153,8 +155,8 @@ Status Builder::StartWithTetrahedron() {
     }
     length = std::sqrt(length);
     if (!(length > least)) {
-        return Error{ErrorCode::Degenerate, Message("the %zu points coincide: they span %g m, at least %g m is needed", count,
-                                                    length * meters, least * meters)};
+        return Error{ErrorCode::Degenerate, Message("the %zu points coincide: they span %g m, at least %g m is needed",
+                                                    count, length * meters, least * meters)};
     }
 
     const Position origin = Point(a), along = (Point(b) - origin) * (1 / length);
@@ -167,8 +169,9 @@ Status Builder::StartWithTetrahedron() {
         width);
     width = std::sqrt(width);
     if (!(width > least)) {
-        return Error{ErrorCode::Degenerate, Message("the %zu points are collinear: within %g m of a line, at least %g m is needed",
-                                                    count, width * meters, least * meters)};
+        return Error{ErrorCode::Degenerate,
+                     Message("the %zu points are collinear: within %g m of a line, at least %g m is needed", count,
+                             width * meters, least * meters)};
     }
 
     const Position cross = ExactNormal(origin, Point(b), Point(c));
@@ -176,8 +179,9 @@ Status Builder::StartWithTetrahedron() {
     double height;
     const int d = Farthest([&](const Position& p) { return std::fabs(Dot<double>(normal, p - origin)); }, height);
     if (!(height > least)) {
-        return Error{ErrorCode::Degenerate, Message("the %zu points are coplanar: within %g m of a plane, at least %g m is needed",
-                                                    count, height * meters, least * meters)};
+        return Error{ErrorCode::Degenerate,
+                     Message("the %zu points are coplanar: within %g m of a plane, at least %g m is needed", count,
+                             height * meters, least * meters)};
     }
 
     // Never below a grid step: a point farther out than that is outside beyond the rounding of its distance.

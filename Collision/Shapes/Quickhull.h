@@ -12,8 +12,8 @@
 
 namespace fulcrum {
 
-// Positive where d lies on the side of the plane (a, b, c) from which a, b, c run counter-clockwise, 0 in the plane, else
-// negative. Exact. Coordinates: integers of at most 2^40.
+// Positive where d lies on the side of the plane (a, b, c) from which a, b, c run counter-clockwise, 0 in the plane,
+// else negative. Exact. Coordinates: integers of at most 2^40.
 int ExactOrientation(const Position& a, const Position& b, const Position& c, const Position& d);
 
 // Normal (b - a) x (c - a), each component correctly rounded. Coordinates as above.
@@ -21,10 +21,10 @@ Position ExactNormal(const Position& a, const Position& b, const Position& c);
 
 struct TriangleHull {
     struct Triangle {
-        int corner[3];     // points, counter-clockwise seen from outside
+        int corner[3];    // points, counter-clockwise seen from outside
         int neighbor[3];  // the triangle across the edge corner[i] -> corner[i + 1]
-        Position normal;   // unit, outwards
-        double area;       // twice the area, in grid steps squared
+        Position normal;  // unit, outwards
+        double area;      // twice the area, in grid steps squared
     };
     std::vector<Position> gridPoints;  // the input on the grid: integers
     std::vector<int> vertices;         // points, in the order in which the hull grew
@@ -35,7 +35,8 @@ struct TriangleHull {
 };
 
 struct QuickhullSettings {
-    int maxVertices = 255;           // >= 4: growing stops there, so that the hull is the best of so many vertices found greedily
+    int maxVertices =
+        255;  // >= 4: growing stops there, so that the hull is the best of so many vertices found greedily
     double inputRounding = 0x1p-24;  // relative error of the input's coordinates: float
 };
 

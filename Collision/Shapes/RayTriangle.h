@@ -1,5 +1,5 @@
-// Ray against triangle without gaps: of two triangles that share an edge, a ray through it meets at least one, because the
-// sign of an edge's function is the same number for both. Used by the ray casts of meshes and height fields.
+// Ray against triangle without gaps: of two triangles that share an edge, a ray through it meets at least one, because
+// the sign of an edge's function is the same number for both. Used by the ray casts of meshes and height fields.
 // Source: Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
 #pragma once
 
@@ -13,7 +13,7 @@ inline float LargestCoordinate(const Vector3& v) { return Max(Abs(v.x()), Max(Ab
 // A ray in a frame whose z axis runs along the ray's largest component and in which the ray is z itself, by shearing.
 struct ShearedRay {
     Vector3 origin;
-    int x, y, z;                // which axes
+    int x, y, z;  // which axes
     float shearX, shearY, scale;
 
     ShearedRay() = default;  // not a ray yet
@@ -34,9 +34,9 @@ struct ShearedRay {
 // Where a ray meets triangles, by lanes. Front faces have a positive determinant.
 template <class Real>
 struct TriangleHit {
-    Real u, v, w;               // not all of one sign: missed
+    Real u, v, w;  // not all of one sign: missed
     Real determinant;
-    Real height;                // fraction times determinant
+    Real height;  // fraction times determinant
 };
 
 // One corner in the sheared frame.
@@ -67,10 +67,10 @@ void Complete(const ShearedCorner<Real>& a, const ShearedCorner<Real>& b, const 
     hit.height = hit.u * a.z + hit.v * b.z + hit.w * c.z;
 }
 
-// The fraction at which the ray meets the triangle abc (counter-clockwise seen from the front); false: it does not between 0
-// and maxFraction, or lies in its plane. Exact to the sign where an edge function rounds to zero.
-inline bool IntersectTriangle(const ShearedRay& ray, const Vector3& a, const Vector3& b, const Vector3& c, bool fromBehind,
-                              float maxFraction, float& fraction, bool& isBackFace) {
+// The fraction at which the ray meets the triangle abc (counter-clockwise seen from the front); false: it does not
+// between 0 and maxFraction, or lies in its plane. Exact to the sign where an edge function rounds to zero.
+inline bool IntersectTriangle(const ShearedRay& ray, const Vector3& a, const Vector3& b, const Vector3& c,
+                              bool fromBehind, float maxFraction, float& fraction, bool& isBackFace) {
     const ShearedCorner<float> p(ray, a), q(ray, b), r(ray, c);
     TriangleHit<float> m;
     EdgeFunctions(p, q, r, m);
@@ -89,13 +89,14 @@ inline bool IntersectTriangle(const ShearedRay& ray, const Vector3& a, const Vec
     return fraction >= 0 && fraction <= maxFraction;
 }
 
-// The same for eight triangles at once: the lanes that are met, their fractions and which are met from behind. The same bits.
+// The same for eight triangles at once: the lanes that are met, their fractions and which are met from behind. The same
+// bits.
 struct TriangleHits {
     uint32_t met, backFaces;
     alignas(32) float fraction[8];
 };
-inline void IntersectTriangles(const ShearedRay& ray, const Vec3<Wide<8>> (&corners)[3], bool fromBehind, float maxFraction,
-                               TriangleHits& hits) {
+inline void IntersectTriangles(const ShearedRay& ray, const Vec3<Wide<8>> (&corners)[3], bool fromBehind,
+                               float maxFraction, TriangleHits& hits) {
     using Lanes = Wide<8>;
     const ShearedCorner<Lanes> p(ray, corners[0]), q(ray, corners[1]), r(ray, corners[2]);
     TriangleHit<Lanes> m;
@@ -117,14 +118,15 @@ inline void IntersectTriangles(const ShearedRay& ray, const Vec3<Wide<8>> (&corn
         Vector3 corner[3];
         for (int k = 0; k < 3; ++k) corner[k] = Vector3(corners[k].x()[i], corners[k].y()[i], corners[k].z()[i]);
         bool isBackFace = false;
-        const bool isMet = IntersectTriangle(ray, corner[0], corner[1], corner[2], fromBehind, maxFraction, hits.fraction[i],
-                                             isBackFace);
+        const bool isMet = IntersectTriangle(ray, corner[0], corner[1], corner[2], fromBehind, maxFraction,
+                                             hits.fraction[i], isBackFace);
         hits.met |= (isMet ? 1u : 0u) << i;
         hits.backFaces = (hits.backFaces & ~(1u << i)) | (isBackFace ? 1u : 0u) << i;
     }
 }
 
-// Whether the ray can be sheared and its fractions told apart: finite, within the coordinates that shapes may have, not zero.
+// Whether the ray can be sheared and its fractions told apart: finite, within the coordinates that shapes may have, not
+// zero.
 inline bool IsUsable(const Vector3& origin, const Vector3& displacement) {
     constexpr float kFar = 1e18f, kShort = 1e-30f;
     const Vector3 from = origin.cwiseAbs(), along = displacement.cwiseAbs();
@@ -132,7 +134,8 @@ inline bool IsUsable(const Vector3& origin, const Vector3& displacement) {
            along.z() <= kFar && Max(along.x(), Max(along.y(), along.z())) >= kShort;
 }
 
-// 1 / displacement for the planes of boxes, with components of less than 1e-18 m counted as that: fractions stay finite.
+// 1 / displacement for the planes of boxes, with components of less than 1e-18 m counted as that: fractions stay
+// finite.
 inline Vector3 BoundedInverse(const Vector3& displacement) {
     Vector3 inverse;
     for (int axis = 0; axis < 3; ++axis)

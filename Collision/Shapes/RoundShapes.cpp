@@ -30,23 +30,26 @@ Bounds BoundsAboutY(float radius, float bottom, float top) {
 
 }  // namespace
 
-Result<std::shared_ptr<const TaperedCapsule>> TaperedCapsule::Create(float halfHeight, float topRadius, float bottomRadius) {
+Result<std::shared_ptr<const TaperedCapsule>> TaperedCapsule::Create(float halfHeight, float topRadius,
+                                                                     float bottomRadius) {
     if (const Status size = CheckSize("halfHeight", halfHeight); !size) return size.GetError();
     if (const Status size = CheckSize("topRadius", topRadius); !size) return size.GetError();
     if (const Status size = CheckSize("bottomRadius", bottomRadius); !size) return size.GetError();
     const double h = halfHeight, top = topRadius, bottom = bottomRadius;
     if (std::fabs(top - bottom) >= 2 * h) {
-        return Error{ErrorCode::Degenerate,
-                     Message("the ball of %s %g m lies inside the other: make halfHeight larger than half the difference of the "
-                             "radii, %g m, or use a Sphere of radius %g m",
-                             top < bottom ? "topRadius" : "bottomRadius", std::min(top, bottom), std::fabs(top - bottom) / 2,
-                             std::max(top, bottom))};
+        return Error{
+            ErrorCode::Degenerate,
+            Message("the ball of %s %g m lies inside the other: make halfHeight larger than half the difference of the "
+                    "radii, %g m, or use a Sphere of radius %g m",
+                    top < bottom ? "topRadius" : "bottomRadius", std::min(top, bottom), std::fabs(top - bottom) / 2,
+                    std::max(top, bottom))};
     }
     // The cone that touches both balls does so where their normals have the slope `sine`.
     const double sine = (bottom - top) / (2 * h), cosine = std::sqrt(1 - sine * sine);
     const double low = -h + bottom * sine, high = h + top * sine;
     const RevolutionPiece pieces[3] = {BallSlice(-h - bottom, low, -h, bottom),
-                                       Frustum(low, high, bottom * cosine, top * cosine), BallSlice(high, h + top, h, top)};
+                                       Frustum(low, high, bottom * cosine, top * cosine),
+                                       BallSlice(high, h + top, h, top)};
     const SolidMass solid = RevolutionMass(pieces);
     const Result<MassProperties> mass = ToMassProperties(solid);
     if (!mass) return mass.GetError();
@@ -77,8 +80,8 @@ Vector3 TaperedCapsule::SupportCore(const Vector3& direction) const {
 }
 
 void TaperedCapsule::FindSupportingFace(const Vector3& direction, SupportingFace& face) const {
-    // The line from the ball to the point touches both only where the direction is its normal; where it leans by more than
-    // a degree or two, the line would cut into the ball.
+    // The line from the ball to the point touches both only where the direction is its normal; where it leans by more
+    // than a degree or two, the line would cut into the ball.
     constexpr float kLean = 0.03f;
     const Vector3 onBall = Vector3(0, ballY_, 0) + direction * ballRadius_, point(0, pointY_, 0);
     const Vector3 line = point - onBall;
@@ -120,7 +123,8 @@ Result<std::shared_ptr<const Cylinder>> Cylinder::Make(float halfHeight, float t
     // The largest ball inside touches the larger disc and the side, or both discs.
     const double larger = std::max(top, bottom);
     const double largest = std::min(h, larger / (sideLength + std::fabs(slope)));
-    if (const Status status = CheckConvexRadius(convexRadius, static_cast<float>(largest), "the radius of the largest ball inside");
+    if (const Status status =
+            CheckConvexRadius(convexRadius, static_cast<float>(largest), "the radius of the largest ball inside");
         !status)
         return status.GetError();
     const RevolutionPiece piece = Frustum(-h, h, bottom, top);
@@ -137,11 +141,13 @@ Result<std::shared_ptr<const Cylinder>> Cylinder::Make(float halfHeight, float t
     cylinder->bottomRadius_ = bottomRadius;
     cylinder->sideOut_ = static_cast<float>(1 / sideLength);
     cylinder->sideUp_ = static_cast<float>(-slope / sideLength);
-    // All planes moved inwards by the rounding. Where the side's lines meet before the disc, the core ends in a tip there.
+    // All planes moved inwards by the rounding. Where the side's lines meet before the disc, the core ends in a tip
+    // there.
     double coreTop = h - rounding, coreBottom = -h + rounding;
     const auto coreRadiusAt = [&](double y) { return radiusAt(y) - rounding * sideLength; };
     if (coreRadiusAt(coreTop) < 0) coreTop = std::max(coreBottom, (rounding * sideLength - (top + bottom) / 2) / slope);
-    if (coreRadiusAt(coreBottom) < 0) coreBottom = std::min(coreTop, (rounding * sideLength - (top + bottom) / 2) / slope);
+    if (coreRadiusAt(coreBottom) < 0)
+        coreBottom = std::min(coreTop, (rounding * sideLength - (top + bottom) / 2) / slope);
     cylinder->coreTopY_ = static_cast<float>(coreTop - center);
     cylinder->coreBottomY_ = static_cast<float>(coreBottom - center);
     cylinder->coreTopRadius_ = static_cast<float>(std::max(0.0, coreRadiusAt(coreTop)));
@@ -152,15 +158,18 @@ Result<std::shared_ptr<const Cylinder>> Cylinder::Make(float halfHeight, float t
     cylinder->innerRadius_ = static_cast<float>(std::min({h - center, h + center, radiusAt(center) / sideLength}));
     const auto rim = [](float y, float radius) { return std::sqrt(y * y + radius * radius); };
     cylinder->outerRadius_ = std::max(rim(cylinder->coreTopY_, cylinder->coreTopRadius_),
-                                      rim(cylinder->coreBottomY_, cylinder->coreBottomRadius_)) + convexRadius;
-    cylinder->innerRadius_ = std::min(cylinder->innerRadius_, std::min(cylinder->bounds_.upper.y(), -cylinder->bounds_.lower.y()));
+                                      rim(cylinder->coreBottomY_, cylinder->coreBottomRadius_)) +
+                             convexRadius;
+    cylinder->innerRadius_ =
+        std::min(cylinder->innerRadius_, std::min(cylinder->bounds_.upper.y(), -cylinder->bounds_.lower.y()));
     return std::shared_ptr<const Cylinder>(cylinder);
 }
 
 Vector3 Cylinder::SupportCore(const Vector3& direction) const {
     const Azimuth azimuth(direction);
     const float y = direction.y();
-    const bool top = y * coreTopY_ + azimuth.across * coreTopRadius_ >= y * coreBottomY_ + azimuth.across * coreBottomRadius_;
+    const bool top =
+        y * coreTopY_ + azimuth.across * coreTopRadius_ >= y * coreBottomY_ + azimuth.across * coreBottomRadius_;
     // Straight up or down any point of the disc will do; its center depends on no rounding.
     const float radius = azimuth.across > 0 ? (top ? coreTopRadius_ : coreBottomRadius_) : 0.0f;
     return Vector3(azimuth.x * radius, top ? coreTopY_ : coreBottomY_, azimuth.z * radius);
@@ -168,7 +177,8 @@ Vector3 Cylinder::SupportCore(const Vector3& direction) const {
 
 void Cylinder::AddDisc(const Vector3& direction, SupportingFace& face) const {
     // Cosines of the multiples of 30 degrees.
-    static constexpr float kCosines[12] = {1, 0.866025404f, 0.5f, 0, -0.5f, -0.866025404f, -1, -0.866025404f, -0.5f, 0, 0.5f, 0.866025404f};
+    static constexpr float kCosines[12] = {1,  0.866025404f,  0.5f,  0, -0.5f, -0.866025404f,
+                                           -1, -0.866025404f, -0.5f, 0, 0.5f,  0.866025404f};
     constexpr float kLeaning = 3e-4f;  // rad: less is the noise of a cylinder that stands
     const bool top = direction.y() > 0;
     const float radius = top ? coreTopRadius_ : coreBottomRadius_, y = top ? coreTopY_ : coreBottomY_;

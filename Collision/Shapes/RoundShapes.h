@@ -6,9 +6,9 @@
 
 namespace fulcrum {
 
-// Hull of two balls on y: of `topRadius` about (0, halfHeight, 0) and `bottomRadius` about (0, -halfHeight, 0), meters, all
-// > 0. Errors: NonFinite, NonPositive, Degenerate (one ball inside the other: that is a Sphere of the larger radius),
-// OutOfRange.
+// Hull of two balls on y: of `topRadius` about (0, halfHeight, 0) and `bottomRadius` about (0, -halfHeight, 0), meters,
+// all > 0. Errors: NonFinite, NonPositive, Degenerate (one ball inside the other: that is a Sphere of the larger
+// radius), OutOfRange.
 class TaperedCapsule final : public ConvexShape {
 public:
     static Result<std::shared_ptr<const TaperedCapsule>> Create(float halfHeight, float topRadius, float bottomRadius);
@@ -29,11 +29,11 @@ private:
     float ballRadius_ = 0;          // m, >= 0
 };
 
-// Solid between two discs about y: of `topRadius` at y = halfHeight and of `bottomRadius` at y = -halfHeight, meters; one of
-// the two may be 0, which makes a cone. `convexRadius` rounds the rims within those sizes, and a cone's tip, which then ends
-// below its height; 0, the default, keeps them sharp: contacts are as exact and a little slower (their cores overlap). At most
-// that of the largest ball inside. The mass is that of the sharp solid.
-// Errors: NonFinite, NonPositive, Negative, OutOfRange (convexRadius; an inertia that is no normal float).
+// Solid between two discs about y: of `topRadius` at y = halfHeight and of `bottomRadius` at y = -halfHeight, meters;
+// one of the two may be 0, which makes a cone. `convexRadius` rounds the rims within those sizes, and a cone's tip,
+// which then ends below its height; 0, the default, keeps them sharp: contacts are as exact and a little slower (their
+// cores overlap). At most that of the largest ball inside. The mass is that of the sharp solid. Errors: NonFinite,
+// NonPositive, Negative, OutOfRange (convexRadius; an inertia that is no normal float).
 class Cylinder final : public ConvexShape {
 public:
     static Result<std::shared_ptr<const Cylinder>> Create(float halfHeight, float radius, float convexRadius = 0);
@@ -47,8 +47,8 @@ public:
     float BottomRadius() const { return bottomRadius_; }
     Vector3 SupportCore(const Vector3& direction) const override;
     // A disc is given as a polygon of twelve corners that turn with the body, so that a cylinder that stands keeps its
-    // contacts, and where it leans as the rim's farthest point besides, so that one that rolls on its rim rolls on a circle.
-    // The side is a line.
+    // contacts, and where it leans as the rim's farthest point besides, so that one that rolls on its rim rolls on a
+    // circle. The side is a line.
     void FindSupportingFace(const Vector3& direction, SupportingFace& face) const override;
 
 private:

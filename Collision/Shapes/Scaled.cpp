@@ -23,9 +23,9 @@ bool IsUniform(const Vector3& size) { return Same(size.x(), size.y()) && Same(si
 
 Error NotThat(const Shape& shape, const Vector3& scale, const Vector3& nearest) {
     return {ErrorCode::Unsupported,
-            Message("a %s cannot be scaled by (%g, %g, %g); the nearest that it can is (%g, %g, %g)", ShapeTypeName(shape.Type()),
-                    double{scale.x()}, double{scale.y()}, double{scale.z()}, double{nearest.x()}, double{nearest.y()},
-                    double{nearest.z()})};
+            Message("a %s cannot be scaled by (%g, %g, %g); the nearest that it can is (%g, %g, %g)",
+                    ShapeTypeName(shape.Type()), double{scale.x()}, double{scale.y()}, double{scale.z()},
+                    double{nearest.x()}, double{nearest.y()}, double{nearest.z()})};
 }
 
 // With the signs of `scale`, all of the mean size.
@@ -42,10 +42,12 @@ Result<ShapePtr> AsShape(const Result<T>& result) {
 
 Result<ShapePtr> ScaledHull(const ConvexHull& hull, const Vector3& scale) {
     if (hull.ConvexRadius() > 0) {
-        return Error{ErrorCode::Unsupported, "a hull with a convex radius cannot be scaled: make one of the scaled points"};
+        return Error{ErrorCode::Unsupported,
+                     "a hull with a convex radius cannot be scaled: make one of the scaled points"};
     }
     std::vector<Vector3> points;
-    for (const Vector3& v : hull.Vertices()) points.push_back(Vector3(v + hull.Mass().centerOfMass).cwiseProduct(scale));
+    for (const Vector3& v : hull.Vertices())
+        points.push_back(Vector3(v + hull.Mass().centerOfMass).cwiseProduct(scale));
     return AsShape(ConvexHull::Create(points, {.maxVertices = 255}));
 }
 
@@ -59,7 +61,8 @@ Result<ShapePtr> ScaledTriangle(const Triangle& triangle, const Vector3& scale, 
 Result<ShapePtr> ScaledCylinder(const Cylinder& cylinder, const Vector3& scale, const Vector3& size) {
     if (!Same(size.x(), size.z())) {
         const float across = (size.x() + size.z()) / 2;
-        return NotThat(cylinder, scale, Vector3(std::copysign(across, scale.x()), scale.y(), std::copysign(across, scale.z())));
+        return NotThat(cylinder, scale,
+                       Vector3(std::copysign(across, scale.x()), scale.y(), std::copysign(across, scale.z())));
     }
     const float top = cylinder.TopRadius() * size.x(), bottom = cylinder.BottomRadius() * size.x();
     const bool upsideDown = scale.y() < 0;
@@ -77,7 +80,11 @@ SolidMass ScaledMass(const SolidMass& solid, const Position& s) {
     SolidMass result;
     result.volume = solid.volume * volume;
     result.center = solid.center.cwiseProduct(s);
-    result.inertia = {yy + zz, xx + zz, xx + yy, i.xy * s.x() * s.y() * volume, i.xz * s.x() * s.z() * volume,
+    result.inertia = {yy + zz,
+                      xx + zz,
+                      xx + yy,
+                      i.xy * s.x() * s.y() * volume,
+                      i.xz * s.x() * s.z() * volume,
                       i.yz * s.y() * s.z() * volume};
     return result;
 }
@@ -92,7 +99,9 @@ public:
     }
 
 protected:
-    std::optional<SolidMass> KnownMass() const override { return ScaledMass(ToSolidMass(inner_->Mass()), scale_.cast<double>()); }
+    std::optional<SolidMass> KnownMass() const override {
+        return ScaledMass(ToSolidMass(inner_->Mass()), scale_.cast<double>());
+    }
 
 private:
     std::shared_ptr<const CustomConvex> inner_;
@@ -102,10 +111,12 @@ private:
 Vector3 Column(const Quaternion& q, int axis) { return Rotate(q, Vector3(Vector3::Unit(axis))); }
 
 // Where S R = R' S' for a child's rotation R: its scale S' and its rotation R', if there are such.
-bool ChildScale(const Quaternion& r, const Vector3& scale, const Vector3& size, Vector3& childScale, Quaternion& rotation) {
+bool ChildScale(const Quaternion& r, const Vector3& scale, const Vector3& size, Vector3& childScale,
+                Quaternion& rotation) {
     if (IsUniform(size)) {
         // S' = S, and R' = S R S^-1 is a rotation: about the mirrored axis, backwards where the mirror turns the hand.
-        const Vector3 sign(std::copysign(1.0f, scale.x()), std::copysign(1.0f, scale.y()), std::copysign(1.0f, scale.z()));
+        const Vector3 sign(std::copysign(1.0f, scale.x()), std::copysign(1.0f, scale.y()),
+                           std::copysign(1.0f, scale.z()));
         const Vector3 axis = r.Imaginary().cwiseProduct(sign) * (sign.x() * sign.y() * sign.z());
         childScale = scale;
         rotation = {axis.x(), axis.y(), axis.z(), r.w};
@@ -135,7 +146,8 @@ Result<ShapePtr> ScaledCompound(const CompoundShape& compound, const Vector3& sc
         mass += childMass;
         Vector3 childScale;
         Quaternion rotation;
-        if (!ChildScale(child.rotation, scale, size, childScale, rotation)) return NotThat(compound, scale, NearestUniform(scale));
+        if (!ChildScale(child.rotation, scale, size, childScale, rotation))
+            return NotThat(compound, scale, NearestUniform(scale));
         Result<ShapePtr> scaled = Scaled(child.shape, childScale);
         if (!scaled) return scaled.GetError();
         child = {scaled.Value(), child.position.cwiseProduct(scale), rotation, child.density};
@@ -174,9 +186,11 @@ Result<ShapePtr> Scaled(const ShapePtr& shape, const Vector3& scale) {
         case ShapeType::Compound:
         case ShapeType::MutableCompound: return ScaledCompound(static_cast<const CompoundShape&>(*shape), scale, size);
         case ShapeType::Empty: return shape;
-        case ShapeType::TriangleMesh: return AsShape(TriangleMesh::Scaled(static_cast<const TriangleMesh&>(*shape), scale));
+        case ShapeType::TriangleMesh:
+            return AsShape(TriangleMesh::Scaled(static_cast<const TriangleMesh&>(*shape), scale));
         case ShapeType::HeightField:
-            return Error{ErrorCode::Unsupported, "a height field cannot be scaled: make one of other cell sizes and heights"};
+            return Error{ErrorCode::Unsupported,
+                         "a height field cannot be scaled: make one of other cell sizes and heights"};
         case ShapeType::Plane: {
             const auto& plane = static_cast<const Plane&>(*shape);
             const Vector3 normal = plane.Normal().cwiseQuotient(scale);
@@ -192,7 +206,8 @@ Result<ShapePtr> Scaled(const ShapePtr& shape, const Vector3& scale) {
         case ShapeType::TaperedCapsule: break;
     }
     if (!IsUniform(size)) return NotThat(*shape, scale, NearestUniform(scale));
-    if (shape->Type() == ShapeType::Sphere) return AsShape(Sphere::Create(static_cast<const Sphere&>(*shape).Radius() * size.x()));
+    if (shape->Type() == ShapeType::Sphere)
+        return AsShape(Sphere::Create(static_cast<const Sphere&>(*shape).Radius() * size.x()));
     if (shape->Type() == ShapeType::Capsule) {
         const auto& capsule = static_cast<const Capsule&>(*shape);
         return AsShape(Capsule::Create(capsule.HalfHeight() * size.x(), capsule.Radius() * size.x()));
@@ -200,7 +215,8 @@ Result<ShapePtr> Scaled(const ShapePtr& shape, const Vector3& scale) {
     const auto& drop = static_cast<const TaperedCapsule&>(*shape);
     const float top = drop.TopRadius() * size.x(), bottom = drop.BottomRadius() * size.x();
     const bool upsideDown = scale.y() < 0;
-    return AsShape(TaperedCapsule::Create(drop.HalfHeight() * size.x(), upsideDown ? bottom : top, upsideDown ? top : bottom));
+    return AsShape(
+        TaperedCapsule::Create(drop.HalfHeight() * size.x(), upsideDown ? bottom : top, upsideDown ? top : bottom));
 }
 
 Result<ShapePtr> RotatedTranslated(const ShapePtr& shape, const Vector3& position, const Quaternion& rotation) {

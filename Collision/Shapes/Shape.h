@@ -28,17 +28,17 @@ enum class ShapeType : uint8_t {
     TriangleMesh,
     HeightField,
     Plane,
-    Empty,     // no geometry at all
+    Empty,  // no geometry at all
 };
 inline constexpr int kConvexShapeTypes = static_cast<int>(ShapeType::Compound);  // those before it
 const char* ShapeTypeName(ShapeType type);
 
 // Of a solid of density 1 kg/m3, about its center of mass. All zero for a shape without volume or without end.
 struct MassProperties {
-    float volume = 0;                                // m3
-    Vector3 centerOfMass = Vector3::Zero();          // m, in the user's frame
-    Vector3 principalInertia = Vector3::Zero();      // kg m2 at density 1, along the principal axes
-    Quaternion principalAxes;                        // rotation from the principal frame to the shape's frame
+    float volume = 0;                            // m3
+    Vector3 centerOfMass = Vector3::Zero();      // m, in the user's frame
+    Vector3 principalInertia = Vector3::Zero();  // kg m2 at density 1, along the principal axes
+    Quaternion principalAxes;                    // rotation from the principal frame to the shape's frame
 };
 
 class Shape {
@@ -73,8 +73,8 @@ struct SupportingFace;
 
 using ShapePtr = std::shared_ptr<const Shape>;
 
-// A shape that has a support function. `convexRadius` is the part of it that is rounding: the shape is the Minkowski sum
-// of its core and a sphere of that radius (a sphere's core is a point, a capsule's a segment).
+// A shape that has a support function. `convexRadius` is the part of it that is rounding: the shape is the Minkowski
+// sum of its core and a sphere of that radius (a sphere's core is a point, a capsule's a segment).
 class ConvexShape : public Shape {
 public:
     float ConvexRadius() const { return convexRadius_; }
@@ -84,8 +84,8 @@ public:
     Vector3 Support(const Vector3& direction) const {
         return SupportCore(direction) + Normalized(direction) * convexRadius_;
     }
-    // The flat face, straight edge or point of the core that faces the unit vector `direction` most nearly: what contacts
-    // are clipped from (SupportingFace.h). The default probes the support function around the direction.
+    // The flat face, straight edge or point of the core that faces the unit vector `direction` most nearly: what
+    // contacts are clipped from (SupportingFace.h). The default probes the support function around the direction.
     virtual void FindSupportingFace(const Vector3& direction, SupportingFace& face) const;
 
 protected:

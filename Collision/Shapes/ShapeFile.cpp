@@ -28,7 +28,9 @@ ShapeResult AsShape(const Result<std::shared_ptr<T>>& result) {
     return ShapePtr(result.Value());
 }
 
-void WriteSphere(const Shape& shape, ByteWriter& out, const ShapeFileScope&) { out.Write(static_cast<const Sphere&>(shape).Radius()); }
+void WriteSphere(const Shape& shape, ByteWriter& out, const ShapeFileScope&) {
+    out.Write(static_cast<const Sphere&>(shape).Radius());
+}
 ShapeResult ReadSphere(ByteReader& in, const ShapeFileScope&) { return AsShape(Sphere::Create(in.Get<float>())); }
 
 void WriteBox(const Shape& shape, ByteWriter& out, const ShapeFileScope&) {
@@ -137,7 +139,8 @@ ShapeResult ReadCustom(ByteReader& in, const ShapeFileScope& scope) {
     if (in.HasFailed()) return Damaged("a custom shape breaks off");
     const auto format = std::ranges::find(scope.custom, std::string_view(name), &CustomShapeFormat::name);
     if (format == scope.custom.end()) {
-        return Error{ErrorCode::Unsupported, Message("no format of the name \"%.100s\" is given, which a custom shape needs", name.c_str())};
+        return Error{ErrorCode::Unsupported,
+                     Message("no format of the name \"%.100s\" is given, which a custom shape needs", name.c_str())};
     }
     ShapeResult shape = format->read(part.Rest());
     if (shape && !(shape.Value() && shape.Value()->Type() == ShapeType::Custom))
@@ -172,7 +175,8 @@ const ShapeFormat* FormatOf(ShapeType type) {
 const Shape* Unsupported(const Shape& shape, std::span<const CustomShapeFormat> custom) {
     if (!FormatOf(shape.Type())) return &shape;
     std::vector<uint8_t> bytes;
-    if (shape.Type() == ShapeType::Custom && !FormatOf(static_cast<const CustomConvex&>(shape), custom, bytes)) return &shape;
+    if (shape.Type() == ShapeType::Custom && !FormatOf(static_cast<const CustomConvex&>(shape), custom, bytes))
+        return &shape;
     if (!shape.IsCompound()) return nullptr;
     for (const CompoundShape::Child& child : static_cast<const CompoundShape&>(shape).Children()) {
         if (!child.shape) continue;
@@ -184,7 +188,8 @@ const Shape* Unsupported(const Shape& shape, std::span<const CustomShapeFormat> 
 Status CheckFormats(std::span<const CustomShapeFormat> custom) {
     for (const CustomShapeFormat& format : custom) {
         if (format.name.empty() || format.name.size() > 255 || !format.write || !format.read)
-            return Error{ErrorCode::OutOfRange, "a custom format needs a name of 1 to 255 bytes, a writer and a reader"};
+            return Error{ErrorCode::OutOfRange,
+                         "a custom format needs a name of 1 to 255 bytes, a writer and a reader"};
     }
     return Done{};
 }
@@ -210,7 +215,8 @@ ShapeResult ReadShape(ByteReader& in, const ShapeFileScope& scope) {
     ByteReader part = in.ReadPart();
     if (part.HasFailed()) return Damaged("it breaks off");
     const auto format = std::ranges::find(kFormats, code, &ShapeFormat::code);
-    if (format == std::end(kFormats)) return Error{ErrorCode::Unsupported, Message("shape code %d is unknown", int{code})};
+    if (format == std::end(kFormats))
+        return Error{ErrorCode::Unsupported, Message("shape code %d is unknown", int{code})};
     ShapeResult shape = format->read(part, scope);
     if (part.HasFailed()) return Damaged("a shape breaks off");
     if (shape && !part.IsAtEnd()) return Damaged("a shape is followed by more");
@@ -240,7 +246,8 @@ ShapeResult LoadShape(std::span<const uint8_t> bytes, std::span<const CustomShap
     if (in.Get<uint32_t>() != kMagic || in.HasFailed()) return Error{ErrorCode::Unsupported, "this is no shape file"};
     const uint32_t version = in.Get<uint32_t>();
     if (version != kShapeFileVersion) {
-        return Error{ErrorCode::Unsupported, Message("shape file of version %u: this is %u", version, kShapeFileVersion)};
+        return Error{ErrorCode::Unsupported,
+                     Message("shape file of version %u: this is %u", version, kShapeFileVersion)};
     }
     const uint64_t length = in.Get<uint64_t>(), checksum = in.Get<uint64_t>();
     if (in.HasFailed() || length != in.Rest().size()) return Damaged("its length is not what it says");

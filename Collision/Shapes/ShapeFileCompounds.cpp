@@ -22,7 +22,8 @@ Result<CompoundShape::Child> ReadChild(ByteReader& in, const ShapeFileScope& sco
     const ShapeResult shape = ReadShape(in, {scope.custom, scope.depth + 1});
     if (in.HasFailed()) return Damaged("a compound breaks off");
     if (!shape) return shape.GetError();
-    const bool isPose = IsNear(child.pose.position) && IsFinite(child.pose.rotation) && IsUnit(double{LengthSquared(child.pose.rotation)});
+    const bool isPose = IsNear(child.pose.position) && IsFinite(child.pose.rotation) &&
+                        IsUnit(double{LengthSquared(child.pose.rotation)});
     const bool isDensity = std::isnormal(child.density) && child.density > 0;
     if (!isPose || !isDensity || !shape.Value()->IsConvex()) return Damaged("a child of a compound or its pose");
     child.shape = std::static_pointer_cast<const ConvexShape>(shape.Value());
@@ -52,7 +53,8 @@ ShapeResult ReadCompound(ByteReader& in, const ShapeFileScope& scope) {
 }
 
 // With its ids, and the order in which free indices are used next: what is done to the one can be done to the other.
-void ShapeFileAccess::WriteMutableCompound(const MutableCompound& compound, ByteWriter& out, const ShapeFileScope& scope) {
+void ShapeFileAccess::WriteMutableCompound(const MutableCompound& compound, ByteWriter& out,
+                                           const ShapeFileScope& scope) {
     WriteMass(compound.Mass(), out);
     out.Write(std::bit_cast<uint64_t>(compound.relativeMass_));
     out.Write(static_cast<uint32_t>(compound.children_.size()));
@@ -82,13 +84,15 @@ ShapeResult ShapeFileAccess::ReadMutableCompound(ByteReader& in, const ShapeFile
             if (!read) return read.GetError();
             child = std::move(read.Value());
         }
-        compound->Place(i, child, child.shape ? CompoundSums::Of(child, MutableCompound::BoundsOf(child)) : CompoundSum{});
+        compound->Place(i, child,
+                        child.shape ? CompoundSums::Of(child, MutableCompound::BoundsOf(child)) : CompoundSum{});
     }
     in.ReadAll(compound->free_, count - compound->count_);
     if (in.HasFailed() || compound->count_ == 0 || !isMass) return Damaged("a mutable compound or its mass");
     std::vector<bool> isFree(count, false);
     for (const uint32_t index : compound->free_) {
-        if (index >= count || compound->children_[index].shape || isFree[index]) return Damaged("the free places of a compound");
+        if (index >= count || compound->children_[index].shape || isFree[index])
+            return Damaged("the free places of a compound");
         isFree[index] = true;
     }
     compound->tree_.Rebuild();
@@ -109,16 +113,18 @@ ShapeResult ShapeFileAccess::ReadTriangle(ByteReader& in) {
     for (Vector3& corner : triangle->corners_) in.Read(corner);
     in.Read(triangle->normal_);
     const float radius = in.Get<float>();
-    const Vector3 &a = triangle->corners_[0], &b = triangle->corners_[1], &c = triangle->corners_[2], &n = triangle->normal_;
-    if (in.HasFailed() || !IsPlausible(triangle->mass_) || !IsNear(triangle->mass_.centerOfMass) || !IsNear(a) || !IsNear(b) || !IsNear(c) ||
-        !(std::isfinite(radius) && radius >= 0 && radius < kFarthestPlace))
+    const Vector3 &a = triangle->corners_[0], &b = triangle->corners_[1], &c = triangle->corners_[2],
+                  &n = triangle->normal_;
+    if (in.HasFailed() || !IsPlausible(triangle->mass_) || !IsNear(triangle->mass_.centerOfMass) || !IsNear(a) ||
+        !IsNear(b) || !IsNear(c) || !(std::isfinite(radius) && radius >= 0 && radius < kFarthestPlace))
         return Damaged("a triangle, or its mass");
     // About their middle, on no line, with the normal that they span: to within what floats keep of them.
     const Position ab = (b - a).cast<double>(), ac = (c - a).cast<double>(), cross = Cross<double>(ab, ac);
     const double twiceArea = std::sqrt(Dot<double>(cross, cross));
     const double longest = std::max(Dot<double>(ab, ab), Dot<double>(ac, ac));
     const bool isCentered = double{Vector3(a + b + c).cwiseAbs().maxCoeff()} <= 1e-5 * std::sqrt(longest);
-    const bool isNormal = IsFinite(n) && IsUnit(double{LengthSquared(n)}) && Dot<double>(cross, n.cast<double>()) >= 0.99 * twiceArea;
+    const bool isNormal =
+        IsFinite(n) && IsUnit(double{LengthSquared(n)}) && Dot<double>(cross, n.cast<double>()) >= 0.99 * twiceArea;
     if (!isCentered || !isNormal || !(twiceArea > 1e-6 * longest)) return Damaged("the corners of a triangle");
     triangle->Complete(radius);
     return ShapePtr(triangle);

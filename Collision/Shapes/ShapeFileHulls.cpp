@@ -7,7 +7,6 @@
 namespace fulcrum {
 namespace {
 
-
 // Corners lie in their face's plane, and nothing outside it, to within what floats keep of such a hull.
 bool IsConvexPolyhedron(const HullMesh& mesh) {
     double size = 0;
@@ -82,15 +81,16 @@ ShapeResult ReadHull(ByteReader& in, const ShapeFileScope&) {
         std::vector<uint8_t> corners;
         in.ReadAll(corners, in.Get<uint8_t>());
         if (in.HasFailed() || !IsFinite(normal) || corners.size() < 3) return Damaged("a face of a hull");
-        mesh.faces.push_back({{static_cast<int>(mesh.indices.size()), static_cast<int>(corners.size())},
-                              normal.cast<double>(), 0});
+        mesh.faces.push_back(
+            {{static_cast<int>(mesh.indices.size()), static_cast<int>(corners.size())}, normal.cast<double>(), 0});
         for (const uint8_t corner : corners) {
             if (corner >= vertexCount) return Damaged("a face of a hull names a vertex that is not there");
             mesh.indices.push_back(corner);
         }
     }
     const bool isRadius = std::isfinite(convexRadius) && convexRadius >= 0;
-    if (in.HasFailed() || !isRadius || !IsPlausible(mass) || vertexCount < 4 || faceCount < 4 || !IsConvexPolyhedron(mesh))
+    if (in.HasFailed() || !isRadius || !IsPlausible(mass) || vertexCount < 4 || faceCount < 4 ||
+        !IsConvexPolyhedron(mesh))
         return Damaged("a hull that is no closed convex polyhedron, or its mass");
     return ShapeFileAccess::MakeHull(mesh, mass, convexRadius);
 }

@@ -51,13 +51,15 @@ private:
     bool Check(uint32_t index, int depth, Bounds& total) {
         const MeshNode& node = tree_.nodes[index];
         const int nodes = node.NodeCount(), children = node.ChildCount();
-        if (depth >= MeshTree::kMaxDepth || children < 1 || children > MeshNode::kWidth || nodes > children) return false;
+        if (depth >= MeshTree::kMaxDepth || children < 1 || children > MeshNode::kWidth || nodes > children)
+            return false;
         if (node.firstChild != nextNode_ || node.firstTriangle != nextTriangle_ || !IsGrid(node)) return false;
         if (static_cast<uint32_t>(nodes) > tree_.nodes.size() - nextNode_) return false;
         nextNode_ += static_cast<uint32_t>(nodes);
         for (int i = nodes; i < children; ++i) {
             const uint32_t from = i == nodes ? 0u : node.leafEnd[i - 1], to = node.leafEnd[i];
-            if (to <= from || to - from > MeshNode::kMaxLeaf || to - from > tree_.triangleCount - nextTriangle_) return false;
+            if (to <= from || to - from > MeshNode::kMaxLeaf || to - from > tree_.triangleCount - nextTriangle_)
+                return false;
             nextTriangle_ += to - from;
             Bounds box;
             for (uint32_t t = node.LeafBegin(i); t < node.LeafEnd(i); ++t) {
@@ -70,7 +72,8 @@ private:
         }
         for (int i = 0; i < nodes; ++i) {
             Bounds box;
-            if (!Check(node.firstChild + static_cast<uint32_t>(i), depth + 1, box) || !IsInside(box, node, i)) return false;
+            if (!Check(node.firstChild + static_cast<uint32_t>(i), depth + 1, box) || !IsInside(box, node, i))
+                return false;
             total.Include(box);
         }
         return true;
@@ -97,9 +100,8 @@ private:
 };
 
 bool AreVerticesInRange(const MeshTree& tree) {
-    return std::ranges::all_of(tree.vertices, [](const Vector3& v) {
-        return IsFinite(v) && v.cwiseAbs().maxCoeff() <= kLargestCoordinate;
-    });
+    return std::ranges::all_of(
+        tree.vertices, [](const Vector3& v) { return IsFinite(v) && v.cwiseAbs().maxCoeff() <= kLargestCoordinate; });
 }
 
 }  // namespace
@@ -153,8 +155,8 @@ ShapeResult ShapeFileAccess::ReadMesh(ByteReader& in) {
     const uint32_t vertexCount = in.Get<uint32_t>(), triangleCount = in.Get<uint32_t>(), nodeCount = in.Get<uint32_t>();
     const uint8_t has = in.Get<uint8_t>();
     const bool isCosine = std::fabs(mesh->activeEdgeCosine_) <= 1;
-    if (in.HasFailed() || isTwoSided > 1 || has > 3 || !isCosine || triangleCount == 0 || nodeCount == 0 || vertexCount < 3 ||
-        triangleCount > kMostTriangles || nodeCount > triangleCount)
+    if (in.HasFailed() || isTwoSided > 1 || has > 3 || !isCosine || triangleCount == 0 || nodeCount == 0 ||
+        vertexCount < 3 || triangleCount > kMostTriangles || nodeCount > triangleCount)
         return Damaged("the counts or settings of a mesh");
     if (const Status status = TriangleMesh::CheckMaterials(mesh->materials_); !status) return status.GetError();
 
@@ -228,7 +230,8 @@ ShapeResult ShapeFileAccess::ReadField(ByteReader& in) {
     const std::vector<SurfaceMaterial> materials = ReadMaterials(in);
     settings.materials = materials;
     const uint8_t hasCells = in.Get<uint8_t>();
-    if (in.HasFailed() || precision > 1 || isTwoSided > 1 || hasCells > 1) return Damaged("the settings of a height field");
+    if (in.HasFailed() || precision > 1 || isTwoSided > 1 || hasCells > 1)
+        return Damaged("the settings of a height field");
     if (const Status status = HeightField::CheckGrid(settings); !status) return status.GetError();
 
     const uint64_t samples = uint64_t{settings.sampleCountX} * settings.sampleCountZ;

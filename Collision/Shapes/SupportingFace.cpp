@@ -12,8 +12,9 @@ namespace {
 constexpr float kLean = 0.02f;
 
 // Sines of the multiples of 22.5 degrees.
-constexpr float kSines[16] = {0.0f,  0.382683432f,  0.707106781f,  0.923879533f,  1.0f,  0.923879533f,  0.707106781f,  0.382683432f,
-                              -0.0f, -0.382683432f, -0.707106781f, -0.923879533f, -1.0f, -0.923879533f, -0.707106781f, -0.382683432f};
+constexpr float kSines[16] = {0.0f,         0.382683432f,  0.707106781f,  0.923879533f,  1.0f,          0.923879533f,
+                              0.707106781f, 0.382683432f,  -0.0f,         -0.382683432f, -0.707106781f, -0.923879533f,
+                              -1.0f,        -0.923879533f, -0.707106781f, -0.382683432f};
 
 // A vertex is the same point in the core's frame in every step.
 int NameOf(const Vector3& v) {
@@ -48,13 +49,15 @@ void KeepLongest(SupportingFace& face) {
 
 void ConvexShape::FindSupportingFace(const Vector3& direction, SupportingFace& face) const {
     const Vector3 middle = SupportCore(direction), u = Perpendicular(direction), v = Cross<float>(direction, u);
-    const float coreRadius = std::fmax(outerRadius_ - convexRadius_, 1e-3f * outerRadius_), apart = 5 * kLean * coreRadius;
+    const float coreRadius = std::fmax(outerRadius_ - convexRadius_, 1e-3f * outerRadius_),
+                apart = 5 * kLean * coreRadius;
     face.count = 0;
     for (int i = 0; i < 16; ++i) {
         const Vector3 probe = direction + u * (kLean * kSines[(i + 4) % 16]) + v * (kLean * kSines[i]);
         const Vector3 point = SupportCore(probe);
-        const bool isNew = face.count == 0 || (LengthSquared(Vector3(point - face.vertices[face.count - 1])) > apart * apart &&
-                                               LengthSquared(Vector3(point - face.vertices[0])) > apart * apart);
+        const bool isNew =
+            face.count == 0 || (LengthSquared(Vector3(point - face.vertices[face.count - 1])) > apart * apart &&
+                                LengthSquared(Vector3(point - face.vertices[0])) > apart * apart);
         if (isNew) face.Add(point, NameOf(point));
     }
     if (face.count == 1) {

@@ -5,8 +5,8 @@
 
 namespace fulcrum {
 
-inline constexpr float kLargestCoordinate = 1e15f;       // m: products of two sizes and their sums are floats
-inline constexpr double kThinnestTriangle = 1e-6;        // height against the longest edge: below, float knows no normal
+inline constexpr float kLargestCoordinate = 1e15f;  // m: products of two sizes and their sums are floats
+inline constexpr double kThinnestTriangle = 1e-6;   // height against the longest edge: below, float knows no normal
 inline constexpr uint32_t kMostTriangles = 1u << 27;
 
 inline constexpr float kSmallestScale = 1e-6f, kLargestScale = 1e6f;

@@ -1,6 +1,7 @@
 // The base of the hollow shapes that are made of triangles: TriangleMesh and HeightField. What the contact stage, the
-// queries and the casts ask of them, all in the shape's own frame, which is the user's. Const functions may run on any number
-// of threads at once and allocate nothing. The order in which triangles are found depends on the shape's data alone.
+// queries and the casts ask of them, all in the shape's own frame, which is the user's. Const functions may run on any
+// number of threads at once and allocate nothing. The order in which triangles are found depends on the shape's data
+// alone.
 #pragma once
 
 #include <Fulcrum/Collision/BroadPhase/RayLanes.h>
@@ -15,20 +16,20 @@ namespace fulcrum {
 
 // What a surface is made of where it is not the same everywhere. A triangle names an entry of its shape's palette.
 struct SurfaceMaterial {
-    float friction = 0.5f;   // >= 0
-    float restitution = 0;   // 0 .. 1
+    float friction = 0.5f;  // >= 0
+    float restitution = 0;  // 0 .. 1
 };
 
 struct TriangleView {
-    Vector3 vertices[3];     // m; counter-clockwise seen from the front
-    Vector3 normal;          // unit, to the front
-    uint32_t vertexIds[3];   // the shape's own numbers: triangles that share a vertex share its number
+    Vector3 vertices[3];    // m; counter-clockwise seen from the front
+    Vector3 normal;         // unit, to the front
+    uint32_t vertexIds[3];  // the shape's own numbers: triangles that share a vertex share its number
     uint32_t id;
-    // Bit i: contacts on the edge from vertex i to vertex (i + 1) % 3 may have normals other than the face's. Set for open
-    // boundaries, for edges of more than two triangles and for convex edges above the shape's angle; on two-sided shapes for
-    // concave ones too.
+    // Bit i: contacts on the edge from vertex i to vertex (i + 1) % 3 may have normals other than the face's. Set for
+    // open boundaries, for edges of more than two triangles and for convex edges above the shape's angle; on two-sided
+    // shapes for concave ones too.
     uint8_t activeEdges;
-    uint8_t material;        // index into Materials(), where that is not empty
+    uint8_t material;  // index into Materials(), where that is not empty
 };
 
 // From `origin` to origin + displacement.
@@ -41,7 +42,7 @@ struct SurfaceRay {
 inline constexpr uint32_t kNoTriangle = ~0u;
 
 struct SurfaceHit {
-    float fraction = 1;      // of the displacement, 0 .. 1
+    float fraction = 1;  // of the displacement, 0 .. 1
     uint32_t triangle = kNoTriangle;
     Vector3 normal = Vector3::Zero();  // unit; the face's, turned against the ray where that came from behind
     bool isBackFace = false;
@@ -57,25 +58,25 @@ public:
     // A triangle of each id, into views of the same length.
     virtual void GetTriangles(std::span<const uint32_t> ids, TriangleView* views) const = 0;
 
-    // Calls visit(uint32_t id) for every triangle whose bounding box overlaps `box`: touching counts, and so does a triangle
-    // that only its own bounding box brings near. Bounds may be infinite; empty or NaN ones find nothing.
+    // Calls visit(uint32_t id) for every triangle whose bounding box overlaps `box`: touching counts, and so does a
+    // triangle that only its own bounding box brings near. Bounds may be infinite; empty or NaN ones find nothing.
     template <class Visitor>
     void VisitTriangles(const Bounds& box, Visitor&& visit) const;
     // The same into `ids`. Returns how many there are, which may be more than fit: the first ids.size() are written.
     uint32_t FindTriangles(const Bounds& box, std::span<uint32_t> ids) const;
 
     // The closest hit with a fraction of at most `maxFraction`; of hits equally close, the lowest id. A ray never slips
-    // between two triangles that share an edge or a vertex. False: none, `hit` is unchanged. Rays that are not finite, or of
-    // more than 1e18 m, hit nothing.
+    // between two triangles that share an edge or a vertex. False: none, `hit` is unchanged. Rays that are not finite,
+    // or of more than 1e18 m, hit nothing.
     virtual bool CastRay(const SurfaceRay& ray, SurfaceHit& hit, float maxFraction = 1) const = 0;
-    // The same for up to kMostRays rays, which costs less where they lie close together: hits[i] for rays[i] up to maxFractions[i].
-    // Returns the bits of those that hit.
+    // The same for up to kMostRays rays, which costs less where they lie close together: hits[i] for rays[i] up to
+    // maxFractions[i]. Returns the bits of those that hit.
     static constexpr int kMostRays = RayLanes::kMost;
     virtual uint32_t CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hits, const float* maxFractions) const;
     // Whether there is any.
     virtual bool IsHit(const SurfaceRay& ray, float maxFraction = 1) const = 0;
-    // Calls visit(const SurfaceHit&) for every hit with a fraction of at most `maxFraction`, in no order of fractions, until it
-    // returns false. A ray through a shared edge may hit both triangles.
+    // Calls visit(const SurfaceHit&) for every hit with a fraction of at most `maxFraction`, in no order of fractions,
+    // until it returns false. A ray through a shared edge may hit both triangles.
     template <class Visitor>
     void CastRayAll(const SurfaceRay& ray, Visitor&& visit, float maxFraction = 1) const;
 
@@ -120,17 +121,19 @@ protected:
 
 template <class Visitor>
 void SurfaceShape::VisitTriangles(const Bounds& box, Visitor&& visit) const {
-    SearchBox(box, const_cast<void*>(static_cast<const void*>(&visit)), [](void* context, const uint32_t* ids, int count) {
-        auto& call = *static_cast<std::remove_reference_t<Visitor>*>(context);
-        for (int i = 0; i < count; ++i) call(ids[i]);
-    });
+    SearchBox(box, const_cast<void*>(static_cast<const void*>(&visit)),
+              [](void* context, const uint32_t* ids, int count) {
+                  auto& call = *static_cast<std::remove_reference_t<Visitor>*>(context);
+                  for (int i = 0; i < count; ++i) call(ids[i]);
+              });
 }
 
 template <class Visitor>
 void SurfaceShape::CastRayAll(const SurfaceRay& ray, Visitor&& visit, float maxFraction) const {
-    SearchRay(ray, maxFraction, const_cast<void*>(static_cast<const void*>(&visit)), [](void* context, const SurfaceHit& hit) -> bool {
-        return (*static_cast<std::remove_reference_t<Visitor>*>(context))(hit);
-    });
+    SearchRay(ray, maxFraction, const_cast<void*>(static_cast<const void*>(&visit)),
+              [](void* context, const SurfaceHit& hit) -> bool {
+                  return (*static_cast<std::remove_reference_t<Visitor>*>(context))(hit);
+              });
 }
 
 }  // namespace fulcrum

@@ -12,7 +12,8 @@ namespace {
 constexpr double kNominalThickness = 0.001;  // m
 
 // A plate about its centroid: over the triangle, the mean of x x^T is the sum of those of the corners / 12.
-SolidMass PlateMass(const Position (&corners)[3], const Position& center, const Position& normal, double area, double thickness) {
+SolidMass PlateMass(const Position (&corners)[3], const Position& center, const Position& normal, double area,
+                    double thickness) {
     SolidMass solid;
     solid.volume = area * thickness;
     solid.center = center;
@@ -25,7 +26,8 @@ SolidMass PlateMass(const Position (&corners)[3], const Position& center, const 
 
 }  // namespace
 
-Result<std::shared_ptr<const Triangle>> Triangle::Create(const Vector3& a, const Vector3& b, const Vector3& c, float radius) {
+Result<std::shared_ptr<const Triangle>> Triangle::Create(const Vector3& a, const Vector3& b, const Vector3& c,
+                                                         float radius) {
     const Vector3 given[3] = {a, b, c};
     for (int i = 0; i < 3; ++i)
         if (!IsFinite(given[i])) return Error{ErrorCode::NonFinite, Message("corner %c is not finite", 'a' + i)};
@@ -40,8 +42,9 @@ Result<std::shared_ptr<const Triangle>> Triangle::Create(const Vector3& a, const
     const double longest = std::max({Dot<double>(ab, ab), Dot<double>(ac, ac), Dot<double>(bc, bc)});
     // The smallest height must be more than the rounding of the coordinates.
     if (!(twiceArea > 1e-5 * longest)) {
-        return Error{ErrorCode::Degenerate, Message("the corners lie on a line: the triangle is %g m long and %g m high",
-                                                    std::sqrt(longest), longest > 0 ? twiceArea / std::sqrt(longest) : 0.0)};
+        return Error{ErrorCode::Degenerate,
+                     Message("the corners lie on a line: the triangle is %g m long and %g m high", std::sqrt(longest),
+                             longest > 0 ? twiceArea / std::sqrt(longest) : 0.0)};
     }
     const Position normal = cross * (1 / twiceArea);
     const double thickness = radius > 0 ? 2 * double{radius} : kNominalThickness;

@@ -5,13 +5,14 @@
 
 namespace fulcrum {
 
-// Corners in meters. `radius` >= 0 makes a plate of it, rounded all around; 0, the default, has no thickness at all: both
-// sides collide, and nothing is inside. The mass properties are those of a flat plate of thickness 2 radius, or of 1 mm where
-// the radius is 0: a body of such a triangle had better be static or be given its mass.
-// Errors: NonFinite, Negative, Degenerate (corners on a line), OutOfRange.
+// Corners in meters. `radius` >= 0 makes a plate of it, rounded all around; 0, the default, has no thickness at all:
+// both sides collide, and nothing is inside. The mass properties are those of a flat plate of thickness 2 radius, or of
+// 1 mm where the radius is 0: a body of such a triangle had better be static or be given its mass. Errors: NonFinite,
+// Negative, Degenerate (corners on a line), OutOfRange.
 class Triangle final : public ConvexShape {
 public:
-    static Result<std::shared_ptr<const Triangle>> Create(const Vector3& a, const Vector3& b, const Vector3& c, float radius = 0);
+    static Result<std::shared_ptr<const Triangle>> Create(const Vector3& a, const Vector3& b, const Vector3& c,
+                                                          float radius = 0);
 
     // A piece of a surface: corners about their centroid, m, and the unit normal. Without mass properties and radii.
     Triangle(const Vector3 (&corners)[3], const Vector3& normal)

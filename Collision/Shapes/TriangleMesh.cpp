@@ -22,7 +22,8 @@ Status CheckSettings(const TriangleMeshSettings& s) {
                      Message("activeEdgeCosine is %g: it must be -1 to 1", double{s.activeEdgeCosine})};
     }
     if (s.weldDistance < 0) {
-        return Error{ErrorCode::OutOfRange, Message("weldDistance is %g m: it must be 0 or more", double{s.weldDistance})};
+        return Error{ErrorCode::OutOfRange,
+                     Message("weldDistance is %g m: it must be 0 or more", double{s.weldDistance})};
     }
     if (!s.triangleMaterials.empty() && s.triangleMaterials.size() != triangles) {
         return Error{ErrorCode::OutOfRange, Message("%zu triangleMaterials for %zu triangles: one for each, or none",
@@ -38,8 +39,8 @@ Status CheckSettings(const TriangleMeshSettings& s) {
 
 }  // namespace
 
-Result<std::shared_ptr<const TriangleMesh>> TriangleMesh::Create(const TriangleMeshSettings& settings, MeshReport* report,
-                                                                 const ParallelLoop& parallel) {
+Result<std::shared_ptr<const TriangleMesh>> TriangleMesh::Create(const TriangleMeshSettings& settings,
+                                                                 MeshReport* report, const ParallelLoop& parallel) {
     if (const Status status = CheckSettings(settings); !status) return status.GetError();
     if (const Status status = CheckMaterials(settings.materials); !status) return status.GetError();
     MeshReport ownReport;
@@ -52,8 +53,8 @@ Result<std::shared_ptr<const TriangleMesh>> TriangleMesh::Create(const TriangleM
         for (const uint32_t source : repaired.Value().sources) materials.push_back(settings.triangleMaterials[source]);
 
     const std::shared_ptr<TriangleMesh> mesh(new TriangleMesh);
-    mesh->tree_ = std::make_shared<MeshTree>(
-        BuildMeshTree(repaired.Value(), materials, settings.keepSourceTriangles, parallel));
+    mesh->tree_ =
+        std::make_shared<MeshTree>(BuildMeshTree(repaired.Value(), materials, settings.keepSourceTriangles, parallel));
     mesh->materials_.assign(settings.materials.begin(), settings.materials.end());
     mesh->isTwoSided_ = settings.isTwoSided;
     mesh->activeEdgeCosine_ = settings.activeEdgeCosine;
@@ -67,8 +68,9 @@ Result<std::shared_ptr<const TriangleMesh>> TriangleMesh::Scaled(const TriangleM
     for (int axis = 0; axis < 3; ++axis) {
         const float size = std::fabs(whole[axis]);
         if (size >= kSmallestScale && size <= kLargestScale) continue;
-        return Error{ErrorCode::OutOfRange, Message("the scale along axis %d comes to %g: its size must be %g to %g", axis,
-                                                    double{whole[axis]}, double{kSmallestScale}, double{kLargestScale})};
+        return Error{ErrorCode::OutOfRange,
+                     Message("the scale along axis %d comes to %g: its size must be %g to %g", axis,
+                             double{whole[axis]}, double{kSmallestScale}, double{kLargestScale})};
     }
     const std::shared_ptr<TriangleMesh> instance(new TriangleMesh);
     instance->tree_ = mesh.tree_;

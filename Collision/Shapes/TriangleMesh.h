@@ -1,5 +1,5 @@
-// Triangle mesh: indexed triangles in a tree of eight-way nodes with boxes of 8 bits a coordinate (MeshTree.h). For static and
-// kinematic bodies: it has no volume. Immutable; instances of other scales share the data.
+// Triangle mesh: indexed triangles in a tree of eight-way nodes with boxes of 8 bits a coordinate (MeshTree.h). For
+// static and kinematic bodies: it has no volume. Immutable; instances of other scales share the data.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/MeshRepair.h>
@@ -11,28 +11,28 @@ namespace fulcrum {
 struct MeshTree;
 
 struct TriangleMeshSettings {
-    std::span<const Vector3> vertices{};        // m
-    std::span<const uint32_t> indices{};        // three a triangle, counter-clockwise seen from the front
+    std::span<const Vector3> vertices{};           // m
+    std::span<const uint32_t> indices{};           // three a triangle, counter-clockwise seen from the front
     std::span<const uint8_t> triangleMaterials{};  // one a triangle, or none: all 0
     std::span<const SurfaceMaterial> materials{};  // the palette, at most 255; none: the body's own material everywhere
     bool isTwoSided = false;
-    float activeEdgeCosine = 0.996f;  // -1 .. 1: edges whose normals have a larger cosine (5 degrees) count as flat
-    float weldDistance = 1e-7f;       // m, >= 0: vertices this close become one
-    bool keepSourceTriangles = false; // SourceTriangle(), for 4 bytes a triangle
+    float activeEdgeCosine = 0.996f;   // -1 .. 1: edges whose normals have a larger cosine (5 degrees) count as flat
+    float weldDistance = 1e-7f;        // m, >= 0: vertices this close become one
+    bool keepSourceTriangles = false;  // SourceTriangle(), for 4 bytes a triangle
 };
 
 class TriangleMesh final : public SurfaceShape {
 public:
-    // Vertices nearly equal are welded, triangles without area and duplicates dropped; `report` (may be null) says what was
-    // repaired. The result has the same bits for any `parallel`.
-    // Errors: NonFinite (names the vertex), OutOfRange (an index, a material, a setting; more than 2^27 triangles),
-    // Degenerate (nothing left, or a number of indices that three does not divide).
+    // Vertices nearly equal are welded, triangles without area and duplicates dropped; `report` (may be null) says what
+    // was repaired. The result has the same bits for any `parallel`. Errors: NonFinite (names the vertex), OutOfRange
+    // (an index, a material, a setting; more than 2^27 triangles), Degenerate (nothing left, or a number of indices
+    // that three does not divide).
     static Result<std::shared_ptr<const TriangleMesh>> Create(const TriangleMeshSettings& settings,
                                                               MeshReport* report = nullptr,
                                                               const ParallelLoop& parallel = {});
-    // The same mesh with its coordinates multiplied by `scale`, which may be non-uniform and mirror: fronts stay fronts. Shares
-    // tree, vertices and materials with `mesh`; triangles keep their ids. Errors: NonFinite, OutOfRange (a factor whose size
-    // is not 1e-6 to 1e6, all scales of the mesh taken together; a coordinate above 1e15 m).
+    // The same mesh with its coordinates multiplied by `scale`, which may be non-uniform and mirror: fronts stay
+    // fronts. Shares tree, vertices and materials with `mesh`; triangles keep their ids. Errors: NonFinite, OutOfRange
+    // (a factor whose size is not 1e-6 to 1e6, all scales of the mesh taken together; a coordinate above 1e15 m).
     static Result<std::shared_ptr<const TriangleMesh>> Scaled(const TriangleMesh& mesh, const Vector3& scale);
 
     uint32_t TriangleIdEnd() const override;
@@ -70,7 +70,7 @@ private:
     std::vector<uint8_t> activeEdges_;  // a byte a triangle, of the scaled mesh
     Vector3 scale_ = Vector3::Ones();
     float activeEdgeCosine_ = 1;
-    float treeExtent_ = 0;              // m: the largest coordinate, unscaled
+    float treeExtent_ = 0;  // m: the largest coordinate, unscaled
     bool isScaled_ = false, isMirrored_ = false;
 };
 

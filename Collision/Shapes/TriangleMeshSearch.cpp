@@ -48,7 +48,8 @@ void TriangleMesh::SearchBox(const Bounds& box, void* context, BatchFunction fou
         for (uint32_t id = begin; id < end; ++id) {
             uint32_t corner[3];
             tree.CornersOf(id, corner);
-            const Wide<4> a = LoadFour(tree.vertices[corner[0]]) * scale, b = LoadFour(tree.vertices[corner[1]]) * scale,
+            const Wide<4> a = LoadFour(tree.vertices[corner[0]]) * scale,
+                          b = LoadFour(tree.vertices[corner[1]]) * scale,
                           c = LoadFour(tree.vertices[corner[2]]) * scale;
             const auto overlaps = (Min(Min(a, b), c) <= upper) & (Max(Max(a, b), c) >= lower);
             ids[count] = id;
@@ -82,18 +83,19 @@ inline void TriangleMesh::LoadCorners(uint32_t begin, uint32_t end, Vec3<Wide<8>
     for (int k = 0; k < 3; ++k) {
         Wide<8> columns[3];
         GatherPoints<8>(rows[k], columns);
-        for (int axis = 0; axis < 3; ++axis) corners[k][axis] = isScaled_ ? columns[axis] * Wide<8>(scale_[axis]) : columns[axis];
+        for (int axis = 0; axis < 3; ++axis)
+            corners[k][axis] = isScaled_ ? columns[axis] * Wide<8>(scale_[axis]) : columns[axis];
     }
     if (isMirrored_) std::swap(corners[1], corners[2]);
 }
 
 namespace {
 
-// Calls visit(id, fraction, isBackFace), which returns the largest fraction that is still of interest, or a negative one, for the
-// triangles of a leaf that a ray meets; returns the last such fraction.
+// Calls visit(id, fraction, isBackFace), which returns the largest fraction that is still of interest, or a negative
+// one, for the triangles of a leaf that a ray meets; returns the last such fraction.
 template <class Visitor>
-inline float MeetLeaf(const ShearedRay& ray, const Vec3<Wide<8>> (&corners)[3], uint32_t begin, uint32_t end, bool fromBehind,
-                      float maxFraction, Visitor&& visit) {
+inline float MeetLeaf(const ShearedRay& ray, const Vec3<Wide<8>> (&corners)[3], uint32_t begin, uint32_t end,
+                      bool fromBehind, float maxFraction, Visitor&& visit) {
     TriangleHits hits;
     IntersectTriangles(ray, corners, fromBehind, maxFraction, hits);
     for (uint32_t bits = hits.met & ((1u << (end - begin)) - 1u); bits != 0; bits &= bits - 1) {
@@ -107,7 +109,8 @@ inline float MeetLeaf(const ShearedRay& ray, const Vec3<Wide<8>> (&corners)[3], 
 
 }  // namespace
 
-// Calls visit(id, fraction, isBackFace), which returns the largest fraction that is still of interest, or a negative one.
+// Calls visit(id, fraction, isBackFace), which returns the largest fraction that is still of interest, or a negative
+// one.
 template <class Visitor>
 void TriangleMesh::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& visit) const {
     if (!IsUsable(ray.origin, ray.displacement) || !(maxFraction >= 0)) return;
@@ -135,14 +138,15 @@ inline Vector3 TriangleMesh::NormalOf(uint32_t id) const {
 
 bool TriangleMesh::CastRay(const SurfaceRay& ray, SurfaceHit& hit, float maxFraction) const {
     ClosestHit best{maxFraction};
-    Traverse(ray, maxFraction, [&](uint32_t id, float fraction, bool isBackFace) { return best.Take(id, fraction, isBackFace); });
+    Traverse(ray, maxFraction,
+             [&](uint32_t id, float fraction, bool isBackFace) { return best.Take(id, fraction, isBackFace); });
     if (best.triangle == kNoTriangle) return false;
     hit = best.ToHit(NormalOf(best.triangle));
     return true;
 }
 
-// The tree is searched for the box that contains all rays, begun about the middle of their origins; each of them is held against
-// the boxes of the leaves found, and against their triangles.
+// The tree is searched for the box that contains all rays, begun about the middle of their origins; each of them is
+// held against the boxes of the leaves found, and against their triangles.
 uint32_t TriangleMesh::CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hits, const float* maxFractions) const {
     constexpr float kSlack = 1.0f + 0x1p-18f;
     // Leaves that the box may find and no ray meets, for each ray; where there are more, rays do better alone.
@@ -156,18 +160,20 @@ uint32_t TriangleMesh::CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hi
     for (size_t i = 0; i < rays.size(); ++i) {
         const SurfaceRay& ray = rays[i];
         if (!IsUsable(ray.origin, ray.displacement) || !(maxFractions[i] >= 0)) continue;
-        const Vector3 origin = InTree(ray.origin), displacement = InTree(ray.displacement), inverse = BoundedInverse(displacement);
+        const Vector3 origin = InTree(ray.origin), displacement = InTree(ray.displacement),
+                      inverse = BoundedInverse(displacement);
         origins.Include(origin);
         displacements.Include(displacement);
         sheared[lanes.count] = ShearedRay(ray.origin, ray.displacement);
         best[lanes.count] = {maxFractions[i]};
         rayOf[lanes.count] = static_cast<uint8_t>(i);
-        lanes.Add({origin.x(), origin.y(), origin.z()}, {origin.x(), origin.y(), origin.z()}, {inverse.x(), inverse.y(), inverse.z()},
-                  maxFractions[i]);
+        lanes.Add({origin.x(), origin.y(), origin.z()}, {origin.x(), origin.y(), origin.z()},
+                  {inverse.x(), inverse.y(), inverse.z()}, maxFractions[i]);
     }
     if (lanes.count == 0) return 0;
     float largest = lanes.LargestLimit();
-    if (!(largest <= 1)) return SurfaceShape::CastRays(rays, hits, maxFractions);  // the box is wide enough for a whole way
+    if (!(largest <= 1))
+        return SurfaceShape::CastRays(rays, hits, maxFractions);  // the box is wide enough for a whole way
     const float pad = PadFor(Max(LargestCoordinate(origins.lower), LargestCoordinate(origins.upper)));
     lanes.Widen(pad);
     const Vector3 displacement = displacements.Center();
@@ -190,8 +196,9 @@ uint32_t TriangleMesh::CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hi
         for (; met != 0; met &= met - 1) {
             const int i = std::countr_zero(met);
             const bool fromBehind = isTwoSided_ || rays[rayOf[i]].backFaces;
-            lanes.limit[i] = MeetLeaf(sheared[i], corners, begin, end, fromBehind, lanes.limit[i],
-                                      [&](uint32_t id, float fraction, bool isBackFace) { return best[i].Take(id, fraction, isBackFace); });
+            lanes.limit[i] = MeetLeaf(
+                sheared[i], corners, begin, end, fromBehind, lanes.limit[i],
+                [&](uint32_t id, float fraction, bool isBackFace) { return best[i].Take(id, fraction, isBackFace); });
         }
         return largest = lanes.LargestLimit();
     });

@@ -1,20 +1,22 @@
-// N contacts side by side: the rows of their manifolds, solved in lanes. No two contacts of a batch share a moving body.
+// N contacts side by side: the rows of their manifolds, solved in lanes. No two contacts of a batch share a moving
+// body.
 //
-// A manifold has one axis row per point along the normal n, two axis rows for friction along t1 and t2 at its center c, and
-// one angle row about n. All of them look at nothing but the relative twist of the two bodies at c,
+// A manifold has one axis row per point along the normal n, two axis rows for friction along t1 and t2 at its center c,
+// and one angle row about n. All of them look at nothing but the relative twist of the two bodies at c,
 //     V = (v2 + w2 x r2) - (v1 + w1 x r1),   W = w2 - w1,
-// and with a point at c + a t1 + b t2 its row is J v = V.n + b W.t1 - a W.t2. So a batch reads the twist once, relaxes all its
-// rows on six numbers by means of their small response matrices, and applies one wrench (F, T) at the end:
+// and with a point at c + a t1 + b t2 its row is J v = V.n + b W.t1 - a W.t2. So a batch reads the twist once, relaxes
+// all its rows on six numbers by means of their small response matrices, and applies one wrench (F, T) at the end:
 //     v += m^-1 F,  w += I^-1 (r x F + T).
-// This is the sequence of the axis and angle parts, row after row (the tests compare), at half the arithmetic. The friction
-// rows come first, the normal rows last: non-penetration wins.
+// This is the sequence of the axis and angle parts, row after row (the tests compare), at half the arithmetic. The
+// friction rows come first, the normal rows last: non-penetration wins.
 //
-// A surface that moves on its body, as a belt does, changes what friction aims at: along t1, t2 and about n, B's surface has a
-// velocity of its own. Where B is fixed that is part of the motion of its point, and costs nothing; where it moves, batches with
-// such a contact have their own instance of the kernel, which looks it up in the records: batches grow by nothing.
+// A surface that moves on its body, as a belt does, changes what friction aims at: along t1, t2 and about n, B's
+// surface has a velocity of its own. Where B is fixed that is part of the motion of its point, and costs nothing; where
+// it moves, batches with such a contact have their own instance of the kernel, which looks it up in the records:
+// batches grow by nothing.
 //
-// The same rows read positions: with displacements since the start of the step in place of velocities, the row gives the
-// change of the separation.
+// The same rows read positions: with displacements since the start of the step in place of velocities, the row gives
+// the change of the separation.
 #pragma once
 
 #include <Fulcrum/Constraints/Contacts/ContactRecord.h>
@@ -34,8 +36,8 @@ struct MovingSide {
 template <int N>
 struct FixedSide {
     using Real = Wide<N>;
-    Twist<Real> velocity;          // at the start of the step
-    Vec3<Real> acceleration;       // m/s2, w x (w x r): what turns takes its load along the arc, not along its tangent
+    Twist<Real> velocity;     // at the start of the step
+    Vec3<Real> acceleration;  // m/s2, w x (w x r): what turns takes its load along the arc, not along its tangent
 };
 
 template <int N, bool kFixedB>
@@ -43,12 +45,13 @@ struct ContactBatch {
     using Real = Wide<N>;
     static constexpr int kPoints = ContactRecord::kMaxPoints;
 
-    uint32_t contact[N];      // indices of the records; the first `count` lanes are in use
+    uint32_t contact[N];  // indices of the records; the first `count` lanes are in use
     uint32_t bodyA[N];
     int32_t count;
-    int32_t pointCount;       // largest of the lanes
-    bool bounces;             // some lane has restitution
-    const ContactRecord* surfaces;  // where the second bodies move and some lane has a surface velocity: the records; else null
+    int32_t pointCount;  // largest of the lanes
+    bool bounces;        // some lane has restitution
+    const ContactRecord*
+        surfaces;  // where the second bodies move and some lane has a surface velocity: the records; else null
 
     Vec3<Real> normal, tangent1, tangent2;
     Vec3<Real> armA;
@@ -56,27 +59,28 @@ struct ContactBatch {
     std::conditional_t<kFixedB, FixedSide<N>, MovingSide<N>> sideB;
 
     struct Row {
-        Real a, b;                  // place in the manifold, m
-        Real inverseResponse;       // effective mass, kg; 0: no point
-        Real startSeparation;       // m, at the start of the step
-        Real separation;            // m, now
-        Real impulse;               // N s
+        Real a, b;             // place in the manifold, m
+        Real inverseResponse;  // effective mass, kg; 0: no point
+        Real startSeparation;  // m, at the start of the step
+        Real separation;       // m, now
+        Real impulse;          // N s
     };
     Row rows[kPoints];
-    Real response[6];               // J_i M^-1 J_j^T for (i, j) = 01 02 03 12 13 23
-    Real frictionInverse[3];        // effective masses of t1, t2, twist
-    Real frictionResponse[3];       // between t1 and t2, t1 and twist, t2 and twist
-    Real coupling[3][3];            // change of V.n, W.t1, W.t2 by a unit impulse of t1, t2, twist
+    Real response[6];          // J_i M^-1 J_j^T for (i, j) = 01 02 03 12 13 23
+    Real frictionInverse[3];   // effective masses of t1, t2, twist
+    Real frictionResponse[3];  // between t1 and t2, t1 and twist, t2 and twist
+    Real coupling[3][3];       // change of V.n, W.t1, W.t2 by a unit impulse of t1, t2, twist
     Real frictionImpulse[3];
     Real friction, twistRadius;
-    Real relaxedImpulse;            // N s, sum of the normal impulses after the last relaxing pass
+    Real relaxedImpulse;  // N s, sum of the normal impulses after the last relaxing pass
 
     // Only where `bounces`.
-    Real restitution;               // 0..1
-    Real bounceSpeed[kPoints];      // m/s that the point must leave with; 0: none
-    Real largestImpulse[kPoints];   // N s over the substeps: the point was hit where it is positive
-    Real closing;                   // m/s2 that gravity and forces press the bodies together by, along the normal
-    Real work;                      // J that the normal impulses of the step have done on the bodies: where negative, what a bounce may give back
+    Real restitution;              // 0..1
+    Real bounceSpeed[kPoints];     // m/s that the point must leave with; 0: none
+    Real largestImpulse[kPoints];  // N s over the substeps: the point was hit where it is positive
+    Real closing;                  // m/s2 that gravity and forces press the bodies together by, along the normal
+    Real work;  // J that the normal impulses of the step have done on the bodies: where negative, what a bounce may
+                // give back
 };
 
 struct ContactPrepareSettings {
@@ -85,38 +89,38 @@ struct ContactPrepareSettings {
 };
 
 struct ContactSolveSettings {
-    float inverseDt;         // 1/s, of the substep
-    float elapsed;           // s since the start of the step: where fixed sides are
+    float inverseDt;  // 1/s, of the substep
+    float elapsed;    // s since the start of the step: where fixed sides are
     // Points that overlap are pushed apart by a soft row, see Soften.
-    float pushRate;          // 1/s: speed of the push per meter of overlap
-    float massScale;         // 0..1: softened effective mass / effective mass
-    float impulseScale;      // 0..1: part of the impulse that the row gives way by
-    float maxPushSpeed;      // m/s
-    // A soft row gives way in proportion to its load, however deep the overlap; a push that has reached its largest speed would lose
-    // against a heavy one. So the deeper the overlap beyond that, the less the row gives way.
-    float stiffening = 0;    // s/m: by so much of the impulse less for each m/s that the push falls short
-    float mostStiffer = 0;   // 0..1: but never by more than this
-    float slop;              // m: overlap that is left alone
+    float pushRate;      // 1/s: speed of the push per meter of overlap
+    float massScale;     // 0..1: softened effective mass / effective mass
+    float impulseScale;  // 0..1: part of the impulse that the row gives way by
+    float maxPushSpeed;  // m/s
+    // A soft row gives way in proportion to its load, however deep the overlap; a push that has reached its largest
+    // speed would lose against a heavy one. So the deeper the overlap beyond that, the less the row gives way.
+    float stiffening = 0;   // s/m: by so much of the impulse less for each m/s that the push falls short
+    float mostStiffer = 0;  // 0..1: but never by more than this
+    float slop;             // m: overlap that is left alone
 
-    // Asks for maxPushSpeed. Sets pushRate, massScale and impulseScale to those of a spring of `frequency` Hz and `dampingRatio`
-    // for a substep of h seconds: with w = 2 pi f, gamma = 1 / (h (c + h k)) and beta = h k / (c + h k) of the soft constraint (k = m w^2,
-    // c = 2 m zeta w), pushRate = beta / h = w / (2 zeta + h w), massScale = a / (1 + a), impulseScale = 1 / (1 + a),
-    // a = h w (2 zeta + h w). Source: Catto, "Solver2D", 2024.
+    // Asks for maxPushSpeed. Sets pushRate, massScale and impulseScale to those of a spring of `frequency` Hz and
+    // `dampingRatio` for a substep of h seconds: with w = 2 pi f, gamma = 1 / (h (c + h k)) and beta = h k / (c + h k)
+    // of the soft constraint (k = m w^2, c = 2 m zeta w), pushRate = beta / h = w / (2 zeta + h w), massScale = a / (1
+    // + a), impulseScale = 1 / (1 + a), a = h w (2 zeta + h w). Source: Catto, "Solver2D", 2024.
     void Soften(float frequency, float dampingRatio, float h);
 };
 
-// Fills the batch of `batch.contact[0 .. count)` from the records, which it may look at until they are stored; bodyB[] are the
-// second bodies. Returns the lanes, bit by bit, of which some number came out not finite: these do nothing.
+// Fills the batch of `batch.contact[0 .. count)` from the records, which it may look at until they are stored; bodyB[]
+// are the second bodies. Returns the lanes, bit by bit, of which some number came out not finite: these do nothing.
 template <int N, bool kFixedB>
 uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* records, const uint32_t (&bodyB)[N],
-                     const SolverBodies& bodies, const ContactPrepareSettings& settings);
+                         const SolverBodies& bodies, const ContactPrepareSettings& settings);
 
 // Applies the impulses of the last step.
 template <int N, bool kFixedB>
 void WarmStartContacts(ContactBatch<N, kFixedB>& batch, BodyState* states);
 
-// Where bodies start a substep with the impulses of the last one, notes what those of the batch have done. `states` have their
-// velocities now, `freeRows` the same without these impulses, eight floats a body.
+// Where bodies start a substep with the impulses of the last one, notes what those of the batch have done. `states`
+// have their velocities now, `freeRows` the same without these impulses, eight floats a body.
 template <int N, bool kFixedB>
 void NoteCarriedWork(ContactBatch<N, kFixedB>& batch, BodyState* states, const float* freeRows, float elapsed);
 
@@ -132,18 +136,19 @@ void RelaxContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const Con
 template <int N, bool kFixedB>
 void UpdateSeparations(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
 
-// One pass over the pseudo-velocities, in the velocities' place in `pseudo`, by which joints that are far apart are pulled together
-// (PullJoints): points may close their gaps within the substep and approach no further.
-// Sets BodyState::nearFixed where the second bodies are fixed.
+// One pass over the pseudo-velocities, in the velocities' place in `pseudo`, by which joints that are far apart are
+// pulled together (PullJoints): points may close their gaps within the substep and approach no further. Sets
+// BodyState::nearFixed where the second bodies are fixed.
 template <int N, bool kFixedB>
 void PullContacts(const ContactBatch<N, kFixedB>& batch, BodyState* pseudo, const ContactSolveSettings& settings);
 
-// Notes what impulses have done against gravity and forces, where bodies have just moved with them for a substep of `h` seconds.
+// Notes what impulses have done against gravity and forces, where bodies have just moved with them for a substep of `h`
+// seconds.
 template <int N, bool kFixedB>
 void NoteLift(ContactBatch<N, kFixedB>& batch, float h);
 
-// Makes the points that were hit leave with their bounce speed, at the end of a step of `elapsed` seconds; but with no more energy than
-// the contact has taken.
+// Makes the points that were hit leave with their bounce speed, at the end of a step of `elapsed` seconds; but with no
+// more energy than the contact has taken.
 template <int N, bool kFixedB>
 void RestituteContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, float elapsed);
 

@@ -42,8 +42,8 @@ FULCRUM_FORCE_INLINE Vec3<Real> Angular(const Real (&row)[8]) {
 
 // Adds sign * M^-1 (F, r x F + T) to a row.
 template <class Real>
-FULCRUM_FORCE_INLINE void ApplyWrench(Real (&row)[8], const InverseMass<Real>& inverse, const Vec3<Real>& arm, const Vec3<Real>& force,
-                        const Vec3<Real>& torque, Real sign) {
+FULCRUM_FORCE_INLINE void ApplyWrench(Real (&row)[8], const InverseMass<Real>& inverse, const Vec3<Real>& arm,
+                                      const Vec3<Real>& force, const Vec3<Real>& torque, Real sign) {
     const Vec3<Real> dv = force * (inverse.mass * sign);
     const Vec3<Real> dw = inverse.inertia * Vec3<Real>((Cross<Real>(arm, force) + torque) * sign);
     row[0] += dv.x();
@@ -56,8 +56,8 @@ FULCRUM_FORCE_INLINE void ApplyWrench(Real (&row)[8], const InverseMass<Real>& i
 
 // The relative twist at c, of the velocities or of the displacements, `elapsed` seconds after the start of the step.
 template <BodyRow kRow, int N, bool kFixedB>
-FULCRUM_FORCE_INLINE Twist<Wide<N>> RelativeTwist(const ContactBatch<N, kFixedB>& batch, const Twists<N, kFixedB>& twists,
-                                                           float elapsed) {
+FULCRUM_FORCE_INLINE Twist<Wide<N>> RelativeTwist(const ContactBatch<N, kFixedB>& batch,
+                                                  const Twists<N, kFixedB>& twists, float elapsed) {
     using Real = Wide<N>;
     Twist<Real> relative;
     const Vec3<Real> atA = Linear(twists.a) + Cross<Real>(Angular(twists.a), batch.armA);
@@ -80,15 +80,17 @@ FULCRUM_FORCE_INLINE Twist<Wide<N>> RelativeTwist(const ContactBatch<N, kFixedB>
 
 // Applies the wrench of the impulses: `force` = n sum + t1 f1 + t2 f2 at c, and the torque about c.
 template <int N, bool kFixedB>
-FULCRUM_FORCE_INLINE void ApplyToBoth(const ContactBatch<N, kFixedB>& batch, Twists<N, kFixedB>& twists, const Vec3<Wide<N>>& force,
-                        const Vec3<Wide<N>>& torque) {
+FULCRUM_FORCE_INLINE void ApplyToBoth(const ContactBatch<N, kFixedB>& batch, Twists<N, kFixedB>& twists,
+                                      const Vec3<Wide<N>>& force, const Vec3<Wide<N>>& torque) {
     using Real = Wide<N>;
     ApplyWrench<Real>(twists.a, batch.inverseA, batch.armA, force, torque, Real(-1.0f));
-    if constexpr (!kFixedB) ApplyWrench<Real>(twists.b, batch.sideB.inverse, batch.sideB.arm, force, torque, Real(1.0f));
+    if constexpr (!kFixedB)
+        ApplyWrench<Real>(twists.b, batch.sideB.inverse, batch.sideB.arm, force, torque, Real(1.0f));
 }
 
 template <int N>
-FULCRUM_FORCE_INLINE void GatherRecordRow(const uint32_t (&index)[N], const ContactRecord* records, int row, Wide<N> (&out)[8]) {
+FULCRUM_FORCE_INLINE void GatherRecordRow(const uint32_t (&index)[N], const ContactRecord* records, int row,
+                                          Wide<N> (&out)[8]) {
     const float* rows[N];
     for (int i = 0; i < N; ++i) rows[i] = reinterpret_cast<const float*>(&records[index[i]]) + 8 * row;
     GatherRows<N>(rows, out);
@@ -112,7 +114,9 @@ SurfaceMotion<Wide<N>> GatherSurfaceMotion(const ContactBatch<N, kFixedB>& batch
     }
     const Vec3<Real> linear(spares[0], spares[1], spares[2]), angular(spares[3], spares[4], spares[5]);
     const auto finite = (Dot<Real>(linear, linear) + Dot<Real>(angular, angular)) * Real(0.0f) == Real(0.0f);
-    const auto along = [&](const Vec3<Real>& v, const Vec3<Real>& axis) { return Select(finite, Dot<Real>(v, axis), Real(0.0f)); };
+    const auto along = [&](const Vec3<Real>& v, const Vec3<Real>& axis) {
+        return Select(finite, Dot<Real>(v, axis), Real(0.0f));
+    };
     return {along(linear, batch.tangent1), along(linear, batch.tangent2), along(angular, batch.normal)};
 }
 
@@ -141,9 +145,11 @@ struct NormalMotion {
     Real linear, angular1, angular2;
 };
 template <int N, bool kFixedB>
-FULCRUM_FORCE_INLINE NormalMotion<Wide<N>> NormalMotionOf(const ContactBatch<N, kFixedB>& batch, const Twist<Wide<N>>& relative) {
+FULCRUM_FORCE_INLINE NormalMotion<Wide<N>> NormalMotionOf(const ContactBatch<N, kFixedB>& batch,
+                                                          const Twist<Wide<N>>& relative) {
     using Real = Wide<N>;
-    return {Dot<Real>(relative.linear, batch.normal), Dot<Real>(relative.angular, batch.tangent1), Dot<Real>(relative.angular, batch.tangent2)};
+    return {Dot<Real>(relative.linear, batch.normal), Dot<Real>(relative.angular, batch.tangent1),
+            Dot<Real>(relative.angular, batch.tangent2)};
 }
 
 // J that normal impulses do on both bodies, or the rate of it, where these move like this.
@@ -162,8 +168,8 @@ FULCRUM_FORCE_INLINE NormalImpulses<Wide<N>> TotalOf(const ContactBatch<N, kFixe
 
 // Notes the work of impulses that changed the motion from one to the other: that of its mean.
 template <int N, bool kFixedB>
-FULCRUM_FORCE_INLINE void NoteWork(ContactBatch<N, kFixedB>& batch, const NormalImpulses<Wide<N>>& impulses, const NormalMotion<Wide<N>>& before,
-                                   const NormalMotion<Wide<N>>& after) {
+FULCRUM_FORCE_INLINE void NoteWork(ContactBatch<N, kFixedB>& batch, const NormalImpulses<Wide<N>>& impulses,
+                                   const NormalMotion<Wide<N>>& before, const NormalMotion<Wide<N>>& after) {
     batch.work += Wide<N>(0.5f) * (WorkOf(impulses, before) + WorkOf(impulses, after));
 }
 

@@ -1,5 +1,5 @@
-// The rows of contacts: the kernels that SolveContacts.cpp makes of the usual contacts and SolveRareContacts.cpp of those with restitution
-// or a surface that moves. Two files, as a compiler inlines only so much in one.
+// The rows of contacts: the kernels that SolveContacts.cpp makes of the usual contacts and SolveRareContacts.cpp of
+// those with restitution or a surface that moves. Two files, as a compiler inlines only so much in one.
 #pragma once
 
 #include <Fulcrum/Constraints/Contacts/ContactKernels.h>
@@ -7,11 +7,12 @@
 namespace fulcrum::contacts {
 
 // The friction rows: impulses first clamped to the cone's cross-section (as a vector, so that no heading is preferred),
-// then the torque. The limit is that of the last relaxed normal impulses, where they were larger: those of the soft rows since
-// give way, and would let friction lose its grip for as long as an overlap builds up. Returns the change of impulse of t1, t2
-// and twist.
+// then the torque. The limit is that of the last relaxed normal impulses, where they were larger: those of the soft
+// rows since give way, and would let friction lose its grip for as long as an overlap builds up. Returns the change of
+// impulse of t1, t2 and twist.
 template <int N, bool kFixedB>
-FULCRUM_FORCE_INLINE void SolveFriction(ContactBatch<N, kFixedB>& batch, Wide<N> v1, Wide<N> v2, Wide<N> wn, Wide<N> (&change)[3]) {
+FULCRUM_FORCE_INLINE void SolveFriction(ContactBatch<N, kFixedB>& batch, Wide<N> v1, Wide<N> v2, Wide<N> wn,
+                                        Wide<N> (&change)[3]) {
     using Real = Wide<N>;
     Real sum(0.0f);
     for (int i = 0; i < batch.pointCount; ++i) sum += batch.rows[i].impulse;
@@ -24,7 +25,8 @@ FULCRUM_FORCE_INLINE void SolveFriction(ContactBatch<N, kFixedB>& batch, Wide<N>
     const Real step2 = -inverse[1] * (v2 + response[0] * step1);
     const Real wanted1 = total[0] + step1, wanted2 = total[1] + step2;
     const Real lengthSquared = wanted1 * wanted1 + wanted2 * wanted2;
-    const Real scale = Select(lengthSquared <= limit * limit, Real(1.0f), limit / Sqrt(Max(lengthSquared, Real(1e-30f))));
+    const Real scale =
+        Select(lengthSquared <= limit * limit, Real(1.0f), limit / Sqrt(Max(lengthSquared, Real(1e-30f))));
     change[0] = wanted1 * scale - total[0];
     change[1] = wanted2 * scale - total[1];
     total[0] = wanted1 * scale;
@@ -45,17 +47,18 @@ FULCRUM_FORCE_INLINE Real MoveBy(Real velocity, Real surface) {
 
 // What restitution asks for: which points were hit, and the work of these impulses.
 template <int N, bool kFixedB>
-void NoteHits(ContactBatch<N, kFixedB>& batch, const NormalImpulses<Wide<N>>& changes, const NormalMotion<Wide<N>>& before,
-              const Twists<N, kFixedB>& after, float elapsed) {
-    for (int i = 0; i < batch.pointCount; ++i) batch.largestImpulse[i] = Max(batch.largestImpulse[i], batch.rows[i].impulse);
+void NoteHits(ContactBatch<N, kFixedB>& batch, const NormalImpulses<Wide<N>>& changes,
+              const NormalMotion<Wide<N>>& before, const Twists<N, kFixedB>& after, float elapsed) {
+    for (int i = 0; i < batch.pointCount; ++i)
+        batch.largestImpulse[i] = Max(batch.largestImpulse[i], batch.rows[i].impulse);
     NoteWork(batch, changes, before, NormalMotionOf(batch, RelativeTwist<BodyRow::Velocity>(batch, after, elapsed)));
 }
 
-// All rows of a batch once, on velocities: friction, then the normal rows. A relaxing pass pushes nothing. kRare: it may have the
-// surface velocities of a moving second body, or restitution.
+// All rows of a batch once, on velocities: friction, then the normal rows. A relaxing pass pushes nothing. kRare: it
+// may have the surface velocities of a moving second body, or restitution.
 template <bool kRelax, bool kRare, int N, bool kFixedB>
 FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* states,
-                                             const ContactSolveSettings& settings) {
+                                    const ContactSolveSettings& settings) {
     using Real = Wide<N>;
     const Real zero(0.0f);
     Twists<N, kFixedB> twists;
@@ -81,8 +84,8 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
         w2 += batch.coupling[2][k] * friction[k];
     }
 
-    // Points that are apart may close their gap within the substep; those that touch may not approach; those that overlap
-    // are pushed apart, softly.
+    // Points that are apart may close their gap within the substep; those that touch may not approach; those that
+    // overlap are pushed apart, softly.
     const Real inverseDt(settings.inverseDt), pushRate(settings.pushRate), fastest(-settings.maxPushSpeed);
     Real speed[ContactRecord::kMaxPoints];
     [[maybe_unused]] Real stiffer[ContactRecord::kMaxPoints];
@@ -90,7 +93,8 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
         const auto& row = batch.rows[i];
         speed[i] = vn + row.b * w1 - row.a * w2 + Max(row.separation, zero) * inverseDt;
         if constexpr (!kRelax) {
-            // What approaches in spite of all is pushed faster by as much: in a pile that is hit hard one pass stops no body for good.
+            // What approaches in spite of all is pushed faster by as much: in a pile that is hit hard one pass stops no
+            // body for good.
             const Real wanted = (row.separation + Real(settings.slop)) * pushRate;
             const Real push = Clamp(wanted, fastest + Min(speed[i], zero), zero);
             speed[i] += push;
@@ -106,8 +110,9 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
             wanted = row.impulse - row.inverseResponse * speed[i];
         } else {
             const auto overlaps = row.separation < zero;
-            wanted = Select(overlaps, row.impulse * (Real(1.0f - settings.impulseScale) + stiffer[i]), row.impulse) -
-                     row.inverseResponse * Select(overlaps, speed[i] * (Real(settings.massScale) + stiffer[i]), speed[i]);
+            wanted =
+                Select(overlaps, row.impulse * (Real(1.0f - settings.impulseScale) + stiffer[i]), row.impulse) -
+                row.inverseResponse * Select(overlaps, speed[i] * (Real(settings.massScale) + stiffer[i]), speed[i]);
         }
         const Real total = Max(wanted, zero);
         const Real change = total - row.impulse;

@@ -14,12 +14,12 @@ constexpr float kMostFriction = 1e6f;
 // Sums, over both bodies, what the response matrices are made of.
 template <class Real>
 struct Responses {
-    Real normal[6] = {};             // (n, t1-, t2-)-rows: 00 01 02 11 12 22
-    Real friction[6] = {};           // t1 t1, t2 t2, nn, t1 t2, t1 n, t2 n
+    Real normal[6] = {};    // (n, t1-, t2-)-rows: 00 01 02 11 12 22
+    Real friction[6] = {};  // t1 t1, t2 t2, nn, t1 t2, t1 n, t2 n
     Real coupling[3][3] = {};
 
-    FULCRUM_FORCE_INLINE void Add(const InverseMass<Real>& inverse, const Vec3<Real>& arm, const Vec3<Real>& n, const Vec3<Real>& t1,
-             const Vec3<Real>& t2) {
+    FULCRUM_FORCE_INLINE void Add(const InverseMass<Real>& inverse, const Vec3<Real>& arm, const Vec3<Real>& n,
+                                  const Vec3<Real>& t1, const Vec3<Real>& t2) {
         const Vec3<Real> jn = Cross<Real>(arm, n), j1 = Cross<Real>(arm, t1), j2 = Cross<Real>(arm, t2);
         const Vec3<Real> in = inverse.inertia * jn, i1 = inverse.inertia * j1, i2 = inverse.inertia * j2;
         const Vec3<Real> it1 = inverse.inertia * t1, it2 = inverse.inertia * t2, itn = inverse.inertia * n;
@@ -49,20 +49,23 @@ Real InverseOrZero(Real x) {
     return Select(x > Real(0.0f), Real(1.0f) / Max(x, Real(1e-30f)), Real(0.0f));
 }
 
-// The lanes whose numbers are all finite. Masses, sizes and speeds may each be so extreme that no float holds what they make together.
+// The lanes whose numbers are all finite. Masses, sizes and speeds may each be so extreme that no float holds what they
+// make together.
 template <int N, bool kFixedB>
 FULCRUM_FORCE_INLINE WideMask<N> FiniteLanes(const ContactBatch<N, kFixedB>& batch, const Responses<Wide<N>>& responses,
-                                                          const Wide<N>& diagonals) {
+                                             const Wide<N>& diagonals) {
     using Real = Wide<N>;
     const Real zero(0.0f);
     // Zero times a number is zero if the number is finite, and NaN if it is not. The other responses lie between these.
     Real odd = (responses.normal[0] + responses.normal[3] + responses.normal[5] + diagonals) * zero;
-    for (int k = 0; k < 3; ++k) odd += (batch.normal[k] + batch.armA[k]) * zero + (responses.friction[k] + batch.frictionImpulse[k]) * zero;
+    for (int k = 0; k < 3; ++k)
+        odd += (batch.normal[k] + batch.armA[k]) * zero + (responses.friction[k] + batch.frictionImpulse[k]) * zero;
     for (int i = 0; i < batch.pointCount; ++i)
         odd += (batch.rows[i].startSeparation + batch.rows[i].impulse + batch.rows[i].a + batch.rows[i].b) * zero;
     if constexpr (kFixedB) {
         const auto& side = batch.sideB;
-        for (int k = 0; k < 3; ++k) odd += (side.velocity.linear[k] + side.velocity.angular[k]) * zero + side.acceleration[k] * zero;
+        for (int k = 0; k < 3; ++k)
+            odd += (side.velocity.linear[k] + side.velocity.angular[k]) * zero + side.acceleration[k] * zero;
     }
     return odd == zero;
 }
@@ -76,19 +79,22 @@ template <int N, bool kFixedB>
         for (int k = 0; k < 3; ++k) keep(v[k]);
     };
     const auto keepMass = [&](InverseMass<Real>& m) {
-        for (Real* x : {&m.mass, &m.inertia.xx, &m.inertia.yy, &m.inertia.zz, &m.inertia.xy, &m.inertia.xz, &m.inertia.yz}) keep(*x);
+        for (Real* x :
+             {&m.mass, &m.inertia.xx, &m.inertia.yy, &m.inertia.zz, &m.inertia.xy, &m.inertia.xz, &m.inertia.yz})
+            keep(*x);
     };
     for (Vec3<Real>* v : {&batch.normal, &batch.tangent1, &batch.tangent2, &batch.armA}) keepVector(*v);
     keepMass(batch.inverseA);
     if constexpr (kFixedB) {
-        for (Vec3<Real>* v : {&batch.sideB.velocity.linear, &batch.sideB.velocity.angular, &batch.sideB.acceleration}) keepVector(*v);
+        for (Vec3<Real>* v : {&batch.sideB.velocity.linear, &batch.sideB.velocity.angular, &batch.sideB.acceleration})
+            keepVector(*v);
     } else {
         keepVector(batch.sideB.arm);
         keepMass(batch.sideB.inverse);
     }
     for (int i = 0; i < batch.pointCount; ++i)
-        for (Real* x : {&batch.rows[i].a, &batch.rows[i].b, &batch.rows[i].inverseResponse, &batch.rows[i].startSeparation, &batch.rows[i].separation,
-                        &batch.rows[i].impulse})
+        for (Real* x : {&batch.rows[i].a, &batch.rows[i].b, &batch.rows[i].inverseResponse,
+                        &batch.rows[i].startSeparation, &batch.rows[i].separation, &batch.rows[i].impulse})
             keep(*x);
     for (Real& x : batch.response) keep(x);
     for (int k = 0; k < 3; ++k) {
@@ -129,7 +135,8 @@ void PrepareBounces(ContactBatch<N, kFixedB>& batch, Wide<N> restitution, const 
                                    restitution * speed, Real(0.0f));
         batch.bounceSpeed[i] = bounce;
         batch.largestImpulse[i] = Real(0.0f);
-        // What has bounced off carries no load: its last impulses would throw it off again, and not all of that would be taken back.
+        // What has bounced off carries no load: its last impulses would throw it off again, and not all of that would
+        // be taken back.
         const auto parts = (restitution > Real(0.0f)) & (approach > Real(settings.restitutionSpeed));
         row.impulse = Select(parts, Real(0.0f), row.impulse);
         left += row.impulse;
@@ -139,13 +146,14 @@ void PrepareBounces(ContactBatch<N, kFixedB>& batch, Wide<N> restitution, const 
     for (Real& impulse : batch.frictionImpulse) impulse = Select(parts, Real(0.0f), impulse);
 }
 
-// Adds the surface velocities to those of fixed sides. Lanes without one keep every bit, as they do where no lane of their batch
-// has one.
+// Adds the surface velocities to those of fixed sides. Lanes without one keep every bit, as they do where no lane of
+// their batch has one.
 template <int N>
 void AddSurfaceMotion(ContactBatch<N, true>& batch, Wide<N> moves, const ContactRecord* records) {
     using Real = Wide<N>;
     const SurfaceMotion<Real> surface = GatherSurfaceMotion(batch, records);
-    const Vec3<Real> linear = batch.tangent1 * surface.v1 + batch.tangent2 * surface.v2, angular = batch.normal * surface.spin;
+    const Vec3<Real> linear = batch.tangent1 * surface.v1 + batch.tangent2 * surface.v2,
+                     angular = batch.normal * surface.spin;
     // What the surface turns with it moves along the arc.
     const Vec3<Real> inwards = Cross<Real>(angular, linear);
     const auto has = moves > Real(0.0f);
@@ -161,7 +169,7 @@ void AddSurfaceMotion(ContactBatch<N, true>& batch, Wide<N> moves, const Contact
 
 template <int N, bool kFixedB>
 uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* records, const uint32_t (&bodyB)[N],
-                     const SolverBodies& bodies, const ContactPrepareSettings& settings) {
+                         const SolverBodies& bodies, const ContactPrepareSettings& settings) {
     using Real = Wide<N>;
     const Real zero(0.0f);
     Real head[8], impulses[8];
@@ -270,7 +278,8 @@ template <int N, bool kFixedB>
 void StoreContacts(const ContactBatch<N, kFixedB>& batch, ContactRecord* records, float impulseScale) {
     const auto friction = batch.tangent1 * batch.frictionImpulse[0] + batch.tangent2 * batch.frictionImpulse[1];
     Wide<N> row[8];
-    for (int i = 0; i < ContactRecord::kMaxPoints; ++i) row[i] = i < batch.pointCount ? batch.rows[i].impulse : Wide<N>(0.0f);
+    for (int i = 0; i < ContactRecord::kMaxPoints; ++i)
+        row[i] = i < batch.pointCount ? batch.rows[i].impulse : Wide<N>(0.0f);
     for (int k = 0; k < 3; ++k) row[4 + k] = friction[k];
     row[7] = batch.frictionImpulse[2];
     if (impulseScale != 1.0f)
@@ -282,9 +291,9 @@ void StoreContacts(const ContactBatch<N, kFixedB>& batch, ContactRecord* records
     ScatterRows<N>(rows, row, batch.count);
 }
 
-#define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                              \
-    template uint32_t PrepareContacts(ContactBatch<lanes, fixedB>&, const ContactRecord*, const uint32_t(&)[lanes],         \
-                                  const SolverBodies&, const ContactPrepareSettings&);                                  \
+#define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                          \
+    template uint32_t PrepareContacts(ContactBatch<lanes, fixedB>&, const ContactRecord*, const uint32_t(&)[lanes], \
+                                      const SolverBodies&, const ContactPrepareSettings&);                          \
     template void StoreContacts(const ContactBatch<lanes, fixedB>&, ContactRecord*, float);
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, false)
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, true)

@@ -1,6 +1,7 @@
-// Energy that pushes at one contact of a body gave must not be given a second time by bounces at its others: these have so much less to
-// give back. Called by Solve before restitution, a color after the other, each function over all batches before the next. `rows` has
-// eight floats a body, of which the last holds what pushes gave and no bounce has left out yet, J.
+// Energy that pushes at one contact of a body gave must not be given a second time by bounces at its others: these have
+// so much less to give back. Called by Solve before restitution, a color after the other, each function over all
+// batches before the next. `rows` has eight floats a body, of which the last holds what pushes gave and no bounce has
+// left out yet, J.
 #pragma once
 
 #include <Fulcrum/Constraints/Contacts/ContactBatch.h>
@@ -11,7 +12,8 @@ namespace fulcrum {
 
 inline constexpr size_t kPushWork = 7;
 
-// Calls visit(lane, push work of A, of B or null) for the contacts of a batch with restitution, whatever others share it.
+// Calls visit(lane, push work of A, of B or null) for the contacts of a batch with restitution, whatever others share
+// it.
 template <int N, bool kFixedB, class Visit>
 void VisitPushWork(const ContactBatch<N, kFixedB>& batch, float* rows, Visit&& visit) {
     if (!batch.bounces) return;

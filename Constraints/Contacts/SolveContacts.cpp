@@ -7,7 +7,8 @@ namespace {
 using namespace contacts;
 
 template <bool kRelax, int N, bool kFixedB>
-FULCRUM_FORCE_INLINE void SolveAllRows(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings) {
+FULCRUM_FORCE_INLINE void SolveAllRows(ContactBatch<N, kFixedB>& batch, BodyState* states,
+                                       const ContactSolveSettings& settings) {
     if (batch.bounces || (!kFixedB && batch.surfaces)) return SolveRareRows<kRelax>(batch, states, settings);
     SolveRows<kRelax, false>(batch, states, settings);
 }
@@ -20,7 +21,8 @@ void ContactSolveSettings::Soften(float frequency, float dampingRatio, float h) 
     pushRate = w / (2.0f * dampingRatio + h * w);
     massScale = a / (1.0f + a);
     impulseScale = 1.0f / (1.0f + a);
-    constexpr float kSoftest = 0.125f;  // what is always left of the softness: it bounds the load of what can never come apart
+    constexpr float kSoftest =
+        0.125f;  // what is always left of the softness: it bounds the load of what can never come apart
     mostStiffer = (1 - kSoftest) * impulseScale;
     stiffening = impulseScale / maxPushSpeed;
 }
@@ -56,10 +58,10 @@ void RelaxContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const Con
     SolveAllRows<true>(batch, states, settings);
 }
 
-#define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                              \
-    template void WarmStartContacts(ContactBatch<lanes, fixedB>&, BodyState*);                                          \
-    template void SolveContactVelocities(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);        \
-    template void RelaxContacts(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);                 \
+#define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                       \
+    template void WarmStartContacts(ContactBatch<lanes, fixedB>&, BodyState*);                                   \
+    template void SolveContactVelocities(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&); \
+    template void RelaxContacts(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);          \
     template void UpdateSeparations(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, false)
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, true)

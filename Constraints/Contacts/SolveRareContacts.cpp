@@ -12,9 +12,9 @@ void WarmStartRareRows(ContactBatch<N, kFixedB>& batch, BodyState* states) {
     WarmStartRows<true>(batch, states);
 }
 
-#define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                              \
-    template void SolveRareRows<false>(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);          \
-    template void SolveRareRows<true>(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);           \
+#define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                     \
+    template void SolveRareRows<false>(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&); \
+    template void SolveRareRows<true>(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);  \
     template void WarmStartRareRows(ContactBatch<lanes, fixedB>&, BodyState*);
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, false)
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, true)

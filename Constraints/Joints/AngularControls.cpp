@@ -9,13 +9,15 @@ namespace {
 AngleRange RangeOf(const AxisControl& control) {
     if (!control.limited) return {};
     constexpr float kHalfTurn = AngleRange::kHalfTurn;
-    return {std::clamp(control.limits.min, -kHalfTurn, kHalfTurn), std::clamp(control.limits.max, -kHalfTurn, kHalfTurn)};
+    return {std::clamp(control.limits.min, -kHalfTurn, kHalfTurn),
+            std::clamp(control.limits.max, -kHalfTurn, kHalfTurn)};
 }
 
 // Which block could hold: locked at zero, and hard.
 bool HoldsZeroAngle(const AxisControl& control) {
     const AngleRange range = RangeOf(control);
-    return control.limited && range.IsLocked() && Abs(range.Center()) < AngleRange::kNegligible && IsHard(control.limits.spring);
+    return control.limited && range.IsLocked() && Abs(range.Center()) < AngleRange::kNegligible &&
+           IsHard(control.limits.spring);
 }
 
 size_t AxisOfLimit(RotationLimit::Slot slot) {
@@ -23,7 +25,8 @@ size_t AxisOfLimit(RotationLimit::Slot slot) {
 }
 uint32_t SlotOfLimit(RotationLimit::Slot slot) {
     const bool isMaximum = slot % 2 == 0;  // as RotationLimit orders them
-    return static_cast<uint32_t>(AxisOfLimit(slot)) * ControlSlots::kCount + (isMaximum ? ControlSlots::kHighLimit : ControlSlots::kLowLimit);
+    return static_cast<uint32_t>(AxisOfLimit(slot)) * ControlSlots::kCount +
+           (isMaximum ? ControlSlots::kHighLimit : ControlSlots::kLowLimit);
 }
 
 // What is locked has neither motor nor friction.
@@ -48,14 +51,15 @@ Quaternion WithinPyramid(const Quaternion& swing, const SwingTwistLimits& limits
 
 // What the rows of a step share, world space.
 struct AngularControls::Motion {
-    Matrix3 axes;         // of frame B
-    Vector3 toTarget;     // rotation vector from the target, along the axes
-    Vector3 velocity;     // rad/s, of B against A
-    Vector3 motorSpeed;   // rad/s, along the axes; zero where the motor has no target speed
+    Matrix3 axes;        // of frame B
+    Vector3 toTarget;    // rotation vector from the target, along the axes
+    Vector3 velocity;    // rad/s, of B against A
+    Vector3 motorSpeed;  // rad/s, along the axes; zero where the motor has no target speed
     Vector3 motorVelocity;
 };
 
-AngularControls::AngularControls(const std::array<AxisControl, 3>& axes, SwingShape shape) : axes_(axes), shape_(shape) {
+AngularControls::AngularControls(const std::array<AxisControl, 3>& axes, SwingShape shape)
+    : axes_(axes), shape_(shape) {
     int count = 0;
     for (uint8_t k = 0; k < 3; ++k) {
         if (HoldsZeroAngle(axes_[k])) ++count;
@@ -71,7 +75,9 @@ LimitBounds AngularControls::BoundsOf(int axis, SwingShape shape) {
     return {-kHalfTurn, 0.0f, 0.0f, kHalfTurn, shape == SwingShape::Ellipse};
 }
 
-SwingTwistLimits AngularControls::Limits() const { return {RangeOf(axes_[0]), RangeOf(axes_[1]), RangeOf(axes_[2]), shape_}; }
+SwingTwistLimits AngularControls::Limits() const {
+    return {RangeOf(axes_[0]), RangeOf(axes_[1]), RangeOf(axes_[2]), shape_};
+}
 
 uint32_t AngularControls::MaxRows() const {
     if (lock_ == AngularLock::All) return 0;
@@ -96,7 +102,10 @@ void AngularControls::SetTargetOrientation(const Quaternion& target) {
     axes_[2].motor.targetPosition = r.SwingZ();
     if (lock_ == AngularLock::Axis) {
         const Quaternion& q = target;
-        axes_[freeAxis_].motor.targetPosition = TwistAngle({freeAxis_ == 0 ? q.x : freeAxis_ == 1 ? q.y : q.z, 0.0f, 0.0f, q.w});
+        axes_[freeAxis_].motor.targetPosition = TwistAngle({freeAxis_ == 0   ? q.x
+                                                            : freeAxis_ == 1 ? q.y
+                                                                             : q.z,
+                                                            0.0f, 0.0f, q.w});
     }
 }
 
@@ -146,7 +155,8 @@ void AngularControls::CollectRows(const JointPose& pose, uint32_t firstSlot, Joi
         turns_.Advance(AngleAbout(pose, freeAxis_), pose.TurnedAbout(axis));
         AxisControl control = axes_[freeAxis_];
         if (RangeOf(control).IsFree() || IsTilted(pose, freeAxis_)) control.limited = false;
-        return AddControlRows(control, pose, motion, turns_.Angle(), kAngularSlackSpeed, firstSlot + freeAxis_ * ControlSlots::kCount, rows);
+        return AddControlRows(control, pose, motion, turns_.Angle(), kAngularSlackSpeed,
+                              firstSlot + freeAxis_ * ControlSlots::kCount, rows);
     }
     const SwingTwistLimits limits = Limits();
     const Motion motion = MotionOf(pose, limits);
@@ -161,11 +171,13 @@ void AngularControls::CollectRows(const JointPose& pose, uint32_t firstSlot, Joi
     const auto [frameB, time] = curves ? pose.FrameBAhead() : std::pair(pose.frameB, 0.0f);
     const SwingTwist turned = Decompose(pose.frameA.Conjugate() * frameB);
     const float least = std::min({y.maximum, -y.minimum, z.maximum, -z.minimum});
-    if (!IsLimited(y) || !IsLimited(z) || least - turned.alpha <= reach)
-        AddSwingLimits(list, turned, limits);
-    // Where the x axes are nearly opposite twist means little, and its limit may push against what brings the swing back.
+    if (!IsLimited(y) || !IsLimited(z) || least - turned.alpha <= reach) AddSwingLimits(list, turned, limits);
+    // Where the x axes are nearly opposite twist means little, and its limit may push against what brings the swing
+    // back.
     constexpr float kOpposite = 0.3f, kFarOut = 0.5f;  // cos(alpha / 2); rad
-    const bool isSwungFar = turned.swing.w < kOpposite && std::any_of(list.begin(), list.end(), [](const RotationLimit& limit) { return limit.error < -kFarOut; });
+    const bool isSwungFar =
+        turned.swing.w < kOpposite &&
+        std::any_of(list.begin(), list.end(), [](const RotationLimit& limit) { return limit.error < -kFarOut; });
     if (!isSwungFar) AddTwistLimits(list, turned, limits.twist);
     // What a limit's axis is seen from.
     for (int i = 0; i < list.count; ++i) {
@@ -202,13 +214,15 @@ void AngularControls::AddLimitRows(const JointPose& pose, const Motion& motion, 
     }
 }
 
-// As in AddControlRows, a motor asks for no more speed than hard limits allow, and well beyond one does not hold it there.
-void AngularControls::AddMotorRows(const JointPose& pose, const Motion& motion, const RotationLimitList& list, uint32_t firstSlot,
-                                   JointRowList& rows) const {
+// As in AddControlRows, a motor asks for no more speed than hard limits allow, and well beyond one does not hold it
+// there.
+void AngularControls::AddMotorRows(const JointPose& pose, const Motion& motion, const RotationLimitList& list,
+                                   uint32_t firstSlot, JointRowList& rows) const {
     Vector3 allowed = motion.motorVelocity;
     for (const RotationLimit& limit : list) {
         if (limit.isLocked || !IsHard(axes_[AxisOfLimit(limit.slot)].limits.spring)) continue;
-        const float slowest = -std::max(limit.error, -kLimitSlop) / (pose.dt + pose.substepDt), speed = Dot(limit.axis, allowed);
+        const float slowest = -std::max(limit.error, -kLimitSlop) / (pose.dt + pose.substepDt),
+                    speed = Dot(limit.axis, allowed);
         if (speed < slowest) allowed += limit.axis * (slowest - speed);
     }
     for (int k = 0; k < 3; ++k) {
@@ -225,7 +239,9 @@ void AngularControls::AddMotorRows(const JointPose& pose, const Motion& motion, 
         }
         if (motor.mode == MotorMode::Off) continue;
         const bool isPosition = motor.mode == MotorMode::ToPosition;
-        const auto kind = !isPosition ? JointRow::Kind::Speed : IsHard(motor.spring) ? JointRow::Kind::Equal : JointRow::Kind::Spring;
+        const auto kind = !isPosition            ? JointRow::Kind::Speed
+                          : IsHard(motor.spring) ? JointRow::Kind::Equal
+                                                 : JointRow::Kind::Spring;
         JointRow& row = rows.Add(slot + ControlSlots::kMotor, kind);
         pose.SetAbout(row, axis);
         row.minForce = motor.minForce;

@@ -1,13 +1,16 @@
 // Rotation of B against A about three axes, each with limits, motor and friction: what swing-twist and
 // six-degrees-of-freedom joints share. Called by these; no threads.
 //
-//   Coordinates (SwingTwist.h): twist about x, swing about y and z as the rotation vector phi. An axis is free, limited, or,
-//   where its limits are the same, locked. Axes that are locked at zero from the start, and hard, become a block:
+//   Coordinates (SwingTwist.h): twist about x, swing about y and z as the rotation vector phi. An axis is free,
+//   limited, or, where its limits are the same, locked. Axes that are locked at zero from the start, and hard, become a
+//   block:
 //       all three: AngularLock::All           two: AngularLock::Axis; the third then is as in a hinge, and counts turns
 //   Else the rows are:
 //       limits    C and axis from SwingTwist.h
-//       motors    about the axes of B's frame. A target orientation g, made of the three target positions as swing and twist,
-//                 gives q = g exp(c): C = c, a spring along the shortest way from anywhere. A target speed is that about the axis
+//       motors    about the axes of B's frame. A target orientation g, made of the three target positions as swing and
+//       twist,
+//                 gives q = g exp(c): C = c, a spring along the shortest way from anywhere. A target speed is that
+//                 about the axis
 //       friction  about the axes of B's frame
 #pragma once
 
@@ -18,8 +21,8 @@ namespace fulcrum {
 
 class AngularControls {
 public:
-    // x, y, z; rad, N m. Limits as SwingTwistLimits wants them: in -pi..pi, of y and z around 0, for an ellipse the same
-    // to both sides.
+    // x, y, z; rad, N m. Limits as SwingTwistLimits wants them: in -pi..pi, of y and z around 0, for an ellipse the
+    // same to both sides.
     AngularControls(const std::array<AxisControl, 3>& axes, SwingShape shape);
 
     // Of the limits of x, y, z: 0, 1, 2.

@@ -38,12 +38,12 @@ void AddMotorRow(const AxisControl& control, const JointRow& motion, double posi
                  JointRowList& rows) {
     const JointMotor& motor = control.motor;
     if (motor.mode == MotorMode::ToPosition) {
-        const double target = control.limited
-                                  ? std::clamp(motor.targetPosition, control.limits.min, control.limits.max)
-                                  : motor.targetPosition;
+        const double target = control.limited ? std::clamp(motor.targetPosition, control.limits.min, control.limits.max)
+                                              : motor.targetPosition;
         // Beyond a stop its spring pulls no more than at it.
         if (control.limited && IsHard(control.limits.spring))
-            position = std::clamp(position, static_cast<double>(control.limits.min - kLimitSlop), static_cast<double>(control.limits.max + kLimitSlop));
+            position = std::clamp(position, static_cast<double>(control.limits.min - kLimitSlop),
+                                  static_cast<double>(control.limits.max + kLimitSlop));
         AddLockRow(motor.spring, motion, static_cast<float>(position - target), slot, rows);
         JointRow& row = rows.rows[rows.count - 1];
         row.minForce = motor.minForce;
@@ -55,9 +55,9 @@ void AddMotorRow(const AxisControl& control, const JointRow& motion, double posi
     row.minForce = motor.minForce;
     row.maxForce = motor.maxForce;
     if (!control.limited || !IsHard(control.limits.spring)) return;
-    // A motor that pushed on against a hard stop would have both rows' impulses grow without end. It wants no more than the
-    // limit allows at any time of the step, which is to be there a substep later. Well beyond the limit it must not hold
-    // what the limit pushes back.
+    // A motor that pushed on against a hard stop would have both rows' impulses grow without end. It wants no more than
+    // the limit allows at any time of the step, which is to be there a substep later. Well beyond the limit it must not
+    // hold what the limit pushes back.
     const float below = static_cast<float>(control.limits.max - position);
     const float above = static_cast<float>(position - control.limits.min);
     row.speed = std::min(row.speed, std::max(below, -kLimitSlop) / timeToLimit);
@@ -77,7 +77,8 @@ float WayOfSpring(const SpringSettings& spring, float way, float dt) {
 
 JointRow& AddLimitRow(const SpringSettings& spring, const JointRow& motion, float sign, float error, uint32_t slot,
                       JointRowList& rows) {
-    JointRow& row = AddRow(motion, sign, slot, IsHard(spring) ? JointRow::Kind::AtLeast : JointRow::Kind::SpringAtLeast, rows);
+    JointRow& row =
+        AddRow(motion, sign, slot, IsHard(spring) ? JointRow::Kind::AtLeast : JointRow::Kind::SpringAtLeast, rows);
     row.error = error;
     row.spring = spring;
     row.minForce = 0.0f;
@@ -92,7 +93,8 @@ void AddLockRow(const SpringSettings& spring, const JointRow& motion, float erro
 
 uint32_t MaxControlRows(const AxisControl& control) {
     if (LimitsLock(control)) return 1;
-    return (control.limited ? 2u : 0u) + (control.motor.mode != MotorMode::Off ? 1u : 0u) + (control.friction > 0.0f ? 1u : 0u);
+    return (control.limited ? 2u : 0u) + (control.motor.mode != MotorMode::Off ? 1u : 0u) +
+           (control.friction > 0.0f ? 1u : 0u);
 }
 
 void AddControlRows(const AxisControl& control, const JointPose& pose, const JointRow& motion, double position,

@@ -1,5 +1,5 @@
-// What a joint does along one of its free axes: limits, a motor, friction. The user sets it when the joint is made and may
-// change it between steps; joint types turn it into rows in CollectRows. Plain data and free functions, no threads.
+// What a joint does along one of its free axes: limits, a motor, friction. The user sets it when the joint is made and
+// may change it between steps; joint types turn it into rows in CollectRows. Plain data and free functions, no threads.
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/SpringSettings.h>
@@ -19,7 +19,7 @@ enum class JointAxis : uint8_t { LinearX, LinearY, LinearZ, AngularX, AngularY, 
 // m or rad.
 struct JointLimits {
     float min = 0.0f;
-    float max = 0.0f;       // >= min; the same: locked there
+    float max = 0.0f;         // >= min; the same: locked there
     SpringSettings spring{};  // frequency 0 or stiffness 0: a hard stop
 };
 
@@ -33,9 +33,10 @@ struct JointMotor {
     MotorMode mode = MotorMode::Off;
     float targetSpeed = 0.0f;     // m/s or rad/s; a hard limit is approached so that it is met, not hit
     float targetPosition = 0.0f;  // m or rad; beyond the limits: the nearer limit
-    SpringSettings spring = {.frequency = 2.0f, .dampingRatio = 1.0f};  // of ToPosition; hard: as fast as the forces allow
-    float minForce = -std::numeric_limits<float>::infinity();           // N or N m, <= 0
-    float maxForce = std::numeric_limits<float>::infinity();            // N or N m, >= 0
+    SpringSettings spring = {.frequency = 2.0f,
+                             .dampingRatio = 1.0f};            // of ToPosition; hard: as fast as the forces allow
+    float minForce = -std::numeric_limits<float>::infinity();  // N or N m, <= 0
+    float maxForce = std::numeric_limits<float>::infinity();   // N or N m, >= 0
 };
 
 struct AxisControl {
@@ -69,12 +70,13 @@ struct ControlSlots {
 uint32_t MaxControlRows(const AxisControl& control);
 
 // How much faster than now and than its motor wants an axis may move on average before the step is over: what pushes it
-// otherwise is unknown when limits are chosen. 120 m/s2 and 240 rad/s2 at 60 Hz; beyond that a limit is late by one step.
+// otherwise is unknown when limits are chosen. 120 m/s2 and 240 rad/s2 at 60 Hz; beyond that a limit is late by one
+// step.
 inline constexpr float kLinearSlackSpeed = 1.0f;   // m/s
 inline constexpr float kAngularSlackSpeed = 2.0f;  // rad/s
 
-// The farthest way that the spring of a position motor can take an axis within dt, s, from rest `way` m or rad before its
-// target: of an undamped oscillator, way (1 - cos(w dt)).
+// The farthest way that the spring of a position motor can take an axis within dt, s, from rest `way` m or rad before
+// its target: of an undamped oscillator, way (1 - cos(w dt)).
 float WayOfSpring(const SpringSettings& spring, float way, float dt);
 
 // Beyond its limit by less, m or rad, an axis still counts as at it: rounding must not switch motors off and on.
@@ -86,9 +88,9 @@ JointRow& AddLimitRow(const SpringSettings& spring, const JointRow& motion, floa
 // Adds the row that keeps C = 0.
 void AddLockRow(const SpringSettings& spring, const JointRow& motion, float error, uint32_t slot, JointRowList& rows);
 
-// Adds the rows of an axis at `position` (m or rad) whose rate is J v of `motion` (only the Jacobian is read): each limit
-// that may be reached within the step, the motor if it is on, friction if there is any. Limits come last: where rows
-// disagree, they win.
+// Adds the rows of an axis at `position` (m or rad) whose rate is J v of `motion` (only the Jacobian is read): each
+// limit that may be reached within the step, the motor if it is on, friction if there is any. Limits come last: where
+// rows disagree, they win.
 void AddControlRows(const AxisControl& control, const JointPose& pose, const JointRow& motion, double position,
                     float slackSpeed, uint32_t firstSlot, JointRowList& rows);
 

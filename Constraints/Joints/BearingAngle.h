@@ -1,10 +1,11 @@
-// How far a body has turned about an axis that it carries: gears, pinions. Counted over any number of turns without drift,
-// whether the axis stands still or is carried about. Called by the joint types that mesh. A view of five numbers of a
-// joint's state; no threads.
+// How far a body has turned about an axis that it carries: gears, pinions. Counted over any number of turns without
+// drift, whether the axis stands still or is carried about. Called by the joint types that mesh. A view of five numbers
+// of a joint's state; no threads.
 //
-// With frame = reference swing twist (twist first, about x), the angle is that of the twist, up to whole turns, which the
-// way of the last step tells. The swing takes the reference's axis to the frame's along the shortest way and so adds no turn of its own.
-// The reference is kept, so that nothing accumulates, until the axis has left it by some degrees; then the swing joins it.
+// With frame = reference swing twist (twist first, about x), the angle is that of the twist, up to whole turns, which
+// the way of the last step tells. The swing takes the reference's axis to the frame's along the shortest way and so
+// adds no turn of its own. The reference is kept, so that nothing accumulates, until the axis has left it by some
+// degrees; then the swing joins it.
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/JointAngles.h>
@@ -37,7 +38,8 @@ public:
 
 private:
     Quaternion Reference() const {
-        return {static_cast<float>(numbers_[0]), static_cast<float>(numbers_[1]), static_cast<float>(numbers_[2]), static_cast<float>(numbers_[3])};
+        return {static_cast<float>(numbers_[0]), static_cast<float>(numbers_[1]), static_cast<float>(numbers_[2]),
+                static_cast<float>(numbers_[3])};
     }
     void SetReference(const Quaternion& q) {
         numbers_[0] = q.x, numbers_[1] = q.y, numbers_[2] = q.z, numbers_[3] = q.w;

@@ -48,7 +48,8 @@ void ConeJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
 }
 
 double ConeJoint::Coordinate(JointAxis axis, const JointPose& pose) const {
-    return axis == JointAxis::AngularY ? static_cast<double>(SwingOf(pose.frameA, pose.frameB).angle) : JointType::Coordinate(axis, pose);
+    return axis == JointAxis::AngularY ? static_cast<double>(SwingOf(pose.frameA, pose.frameB).angle)
+                                       : JointType::Coordinate(axis, pose);
 }
 
 }  // namespace fulcrum

@@ -1,5 +1,5 @@
-// A cone: B's anchor stays at A's and the x axis of B's frame stays within an angle of A's; B spins about it freely. Solved
-// with the other joints; no threads.
+// A cone: B's anchor stays at A's and the x axis of B's frame stays within an angle of A's; B spins about it freely.
+// Solved with the other joints; no threads.
 //
 //   alpha       angle between the two x axes, 0..pi           e  unit axis from A's x to B's: xA cross xB / sin(alpha)
 //   Locks:      point; for a half angle of zero rotation but about x as well

@@ -4,10 +4,12 @@
 
 namespace fulcrum {
 
-DistanceJoint::DistanceJoint(std::optional<float> minDistance, std::optional<float> maxDistance, const SpringSettings& spring)
+DistanceJoint::DistanceJoint(std::optional<float> minDistance, std::optional<float> maxDistance,
+                             const SpringSettings& spring)
     : isMeasured_(!minDistance && !maxDistance) {
     control_.limited = true;
-    control_.limits = {minDistance.value_or(0.0f), maxDistance.value_or(std::numeric_limits<float>::infinity()), spring};
+    control_.limits = {minDistance.value_or(0.0f), maxDistance.value_or(std::numeric_limits<float>::infinity()),
+                       spring};
 }
 
 void DistanceJoint::Start(const JointPose& pose) {

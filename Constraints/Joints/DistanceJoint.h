@@ -1,4 +1,5 @@
-// A rod, a rope or a spring: the distance of the two anchors stays in a range. Solved with the other joints; no threads.
+// A rod, a rope or a spring: the distance of the two anchors stays in a range. Solved with the other joints; no
+// threads.
 //
 //   u = p2 - p1, d = |u|, n = u / d
 //   Rows:       C = d - ..., J = [-n, -r1 x n, n, r2 x n] (LinearX)
@@ -13,8 +14,8 @@ namespace fulcrum {
 
 class DistanceJoint final : public JointType {
 public:
-    // m, 0 <= min <= max. Left out: 0 and infinite; both left out: a rod as long as the distance is when the joint is made.
-    // The spring is of both ends.
+    // m, 0 <= min <= max. Left out: 0 and infinite; both left out: a rod as long as the distance is when the joint is
+    // made. The spring is of both ends.
     DistanceJoint(std::optional<float> minDistance, std::optional<float> maxDistance, const SpringSettings& spring);
 
     uint32_t MaxRows() const override { return MaxControlRows(control_); }

@@ -1,8 +1,8 @@
-// Two gears that mesh: A and B turn about the x axes of their frames, each in a bearing that other joints make. Solved with
-// the other joints; no threads.
+// Two gears that mesh: A and B turn about the x axes of their frames, each in a bearing that other joints make. Solved
+// with the other joints; no threads.
 //
-//   theta1, theta2  turned by A and by B about their axes a1, a2, since the joint was made     ratio  turns of A per turn of B
-//   Rows:       C = theta1 + ratio theta2, J = [0, a1, 0, ratio a2]
+//   theta1, theta2  turned by A and by B about their axes a1, a2, since the joint was made     ratio  turns of A per
+//   turn of B Rows:       C = theta1 + ratio theta2, J = [0, a1, 0, ratio a2]
 // Both angles are counted without drift (BearingAngle.h), so that no tooth is ever lost.
 #pragma once
 

@@ -1,5 +1,5 @@
-// A hinge: B turns against A about the x axis of the frames, with limits, motor and friction. Solved with the other joints;
-// no threads.
+// A hinge: B turns against A about the x axis of the frames, with limits, motor and friction. Solved with the other
+// joints; no threads.
 //
 //   theta       rotation of frame B against frame A about +x, counted over any number of turns
 //   Locks:      point; rotation but about x

@@ -1,15 +1,19 @@
 // N joints of the same locks side by side, solved in lanes. No two joints of a batch share a moving body.
 //
-// A joint is a linear lock, an angular lock (parts) and scalar rows. Within a joint the rows come first, then the locks: what
-// holds bodies together wins. Four things make few iterations go far:
-//  - The parts are set up anew in every substep from the displacements since the start of the step, so that a joint follows
+// A joint is a linear lock, an angular lock (parts) and scalar rows. Within a joint the rows come first, then the
+// locks: what holds bodies together wins. Four things make few iterations go far:
+//  - The parts are set up anew in every substep from the displacements since the start of the step, so that a joint
+//  follows
 //    the arc that its bodies turn along.
-//  - A body keeps its constraints' share of velocity from substep to substep, in place of a warm start (Solve stage). What the
+//  - A body keeps its constraints' share of velocity from substep to substep, in place of a warm start (Solve stage).
+//  What the
 //    turning of a part changes of its impulse is added then: `turnedA` and `turnedB`.
 //  - A joint that locks translation and rotation solves both as one block.
-//  - A row's impulse takes the reaction of the locks with it. Its response is M^-1 (J^T - L^T (L M^-1 L^T)^-1 L M^-1 J^T) with L the
-//    locks' Jacobian: it disturbs no lock, and a spring or a motor meets the mass that it really moves. What the locks answer,
-//    `lockLinear` and `lockAngular` per unit of impulse, is kept apart from their own impulses: softness takes none of it back.
+//  - A row's impulse takes the reaction of the locks with it. Its response is M^-1 (J^T - L^T (L M^-1 L^T)^-1 L M^-1
+//  J^T) with L the
+//    locks' Jacobian: it disturbs no lock, and a spring or a motor meets the mass that it really moves. What the locks
+//    answer, `lockLinear` and `lockAngular` per unit of impulse, is kept apart from their own impulses: softness takes
+//    none of it back.
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/JointType.h>
@@ -22,13 +26,14 @@ namespace fulcrum {
 
 // What a joint keeps from step to step, rows of eight floats.
 struct alignas(32) JointRecord {
-    float anchorA[3] = {0, 0, 0}, anchorB[3] = {0, 0, 0};  // m, in the bodies' center frames
-    float lineAxis = 0, freeAxis = 0;                      // JointLocks::line and ::axis
+    float anchorA[3] = {0, 0, 0}, anchorB[3] = {0, 0, 0};      // m, in the bodies' center frames
+    float lineAxis = 0, freeAxis = 0;                          // JointLocks::line and ::axis
     float frameA[4] = {0, 0, 0, 1}, frameB[4] = {0, 0, 0, 1};  // x y z w, in the bodies' center frames
-    // On B, world axes: the locks' own impulses of the last substep, N s and N m s. And as averages over the last step, N and
-    // N m: those of the locks with their reaction to the rows, and of locks and rows together, about the anchor.
+    // On B, world axes: the locks' own impulses of the last substep, N s and N m s. And as averages over the last step,
+    // N and N m: those of the locks with their reaction to the rows, and of locks and rows together, about the anchor.
     float ownImpulse[3] = {0, 0, 0}, ownAngularImpulse[3] = {0, 0, 0};
-    float wasPulled = 0, ownSpare = 0;  // 1 and more: it was far apart in the last step; 0.5: it was pulled along by others that were
+    float wasPulled = 0,
+          ownSpare = 0;  // 1 and more: it was far apart in the last step; 0.5: it was pulled along by others that were
     float lockForce[3] = {0, 0, 0}, lockTorque[3] = {0, 0, 0}, lockSpare[2] = {0, 0};
     float totalForce[3] = {0, 0, 0}, totalTorque[3] = {0, 0, 0}, totalSpare[2] = {0, 0};
 
@@ -51,44 +56,45 @@ struct JointRows {
     Real earlier;                        // N s or N m s: the sum of the substeps before
     // delta = -(mass (massScale (J v - speed) + pushRate C) + softness total), see SpringPart.h
     Real massScale, pushRate, softness;
-    Real mostPush;                       // m/s or rad/s: limit of pushRate C
-    // One-sided rows whose error is above `openAbove` are open: delta = -(mass hardScale (J v + gapRate C) + openSoftness total).
+    Real mostPush;  // m/s or rad/s: limit of pushRate C
+    // One-sided rows whose error is above `openAbove` are open: delta = -(mass hardScale (J v + gapRate C) +
+    // openSoftness total).
     Real openAbove, hardScale, gapRate, openSoftness;
-    Real mass;                           // kg or kg m2 that the row meets; 0: no row
-    Real turnsWithA;                     // 1: J turns with A from substep to substep
-    Real radial;                         // 1: the row acts along the line between the anchors and turns with it
-    Real about;                          // 1: its error is an angle
-    Real pulled;                         // N s or N m s that changed pseudo-velocities, see PullJoints
-    uint8_t slot[N];                     // 0xFF: no row
+    Real mass;        // kg or kg m2 that the row meets; 0: no row
+    Real turnsWithA;  // 1: J turns with A from substep to substep
+    Real radial;      // 1: the row acts along the line between the anchors and turns with it
+    Real about;       // 1: its error is an angle
+    Real pulled;      // N s or N m s that changed pseudo-velocities, see PullJoints
+    uint8_t slot[N];  // 0xFF: no row
 };
 
 template <int N>
 struct JointBatch {
     using Real = Wide<N>;
-    uint32_t joint[N];                   // indices of the records; the first `count` lanes are in use
+    uint32_t joint[N];  // indices of the records; the first `count` lanes are in use
     uint32_t bodyA[N], bodyB[N];
     int32_t count;
-    uint32_t fixedA, fixedB;             // bit i: the body of lane i is not dynamic
-    uint32_t kinematicA, kinematicB;     // bit i: but it moves
+    uint32_t fixedA, fixedB;          // bit i: the body of lane i is not dynamic
+    uint32_t kinematicA, kinematicB;  // bit i: but it moves
     LinearLock linear;
     AngularLock angular;
-    uint32_t rowCount;                   // largest of the lanes
-    uint32_t rowRoom;                    // as many as the types may add
-    bool rowsTurnWithA, radial;          // some row of some lane does or is
-    bool turning;                        // inertias of some lane turn from substep to substep: they are read again
+    uint32_t rowCount;           // largest of the lanes
+    uint32_t rowRoom;            // as many as the types may add
+    bool rowsTurnWithA, radial;  // some row of some lane does or is
+    bool turning;                // inertias of some lane turn from substep to substep: they are read again
     JointRows<N>* rows;
 
     InverseMass<Real> massA, massB;
     PointPart<Real> point;
     Vec3<Real> startArmA, startArmB, startOffset;
     Twist<Real> turnedA, turnedB;
-    Vec3<Real> earlierLinear, earlierAngular;  // impulses and reactions of the locks, summed over the substeps before
-    Real turns;                          // 1: those of this lane do
+    Vec3<Real> earlierLinear, earlierAngular;    // impulses and reactions of the locks, summed over the substeps before
+    Real turns;                                  // 1: those of this lane do
     Vec3<Real> reactionLinear, reactionAngular;  // of the locks to the rows; only where there are rows
-    Twist<Real> wayA, wayB;              // displacements at which rows were set up last
+    Twist<Real> wayA, wayB;                      // displacements at which rows were set up last
 
     RotationEulerPart<Real> rotation;
-    Quat<Real> startTwist;               // of B against A, world axes, for AngularLock::All
+    Quat<Real> startTwist;  // of B against A, world axes, for AngularLock::All
     HingeRotationPart<Real> hinge;
     Vec3<Real> startAxisA, startAxisB, startNormal;  // for AngularLock::Axis; the normal is one of B's
     DualAxisPart<Real> line;
@@ -97,7 +103,7 @@ struct JointBatch {
     // Where a joint locks both, its rows are solved as one block: with C = L_linear M^-1 L_angular^T, by columns, and
     // S = K_linear - C K_angular^-1 C^T.
     Vec3<Real> cross[3];
-    Sym3<Real> coupledPoint;             // S^-1
+    Sym3<Real> coupledPoint;  // S^-1
     Sym2<Real> coupledLine;
 
     // Of the lanes that are far apart: what their locks are pulled by in place of a bias, see PullJoints.
@@ -114,35 +120,36 @@ inline constexpr float kFarthestSeries = 1.0f;
 }
 
 struct JointSolveSettings {
-    float dt, substepDt;     // s
-    float inverseDt;         // 1/s, of the substep
-    float elapsed;           // s since the start of the step
-    float impulseScale;      // dt of this substep / dt of the last: scales the warm start
+    float dt, substepDt;  // s
+    float inverseDt;      // 1/s, of the substep
+    float elapsed;        // s since the start of the step
+    float impulseScale;   // dt of this substep / dt of the last: scales the warm start
     // Errors are corrected by a soft block, as overlaps are: see ContactSolveSettings.
     float pushRate;
     RowSoftness<float> softness;
-    float maxPushSpeed;      // m/s and rad/s
-    bool continues;          // the first velocity iteration of a substep that is not the first of its step
-    bool firstPass;          // the first relaxing pass of a substep, or the first of PullJoints
+    float maxPushSpeed;  // m/s and rad/s
+    bool continues;      // the first velocity iteration of a substep that is not the first of its step
+    bool firstPass;      // the first relaxing pass of a substep, or the first of PullJoints
 };
 
 // What Prepare noticed.
 struct JointFindings {
     float linearError = 0, angularError = 0;  // m, rad: the largest
     uint32_t linearJoint = ~0u, angularJoint = ~0u;
-    bool far = false;                           // some are pulled, see PullJoints
+    bool far = false;  // some are pulled, see PullJoints
 };
 
 // Fills the batch whose lanes, fixed and kinematic bits, locks and room for rows are set.
 template <int N>
-void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* const* types, const SolverBodies& bodies,
-                   const JointSolveSettings& settings, JointFindings& findings);
+void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* const* types,
+                   const SolverBodies& bodies, const JointSolveSettings& settings, JointFindings& findings);
 
 // Applies the impulses of the last step.
 template <int N>
 void WarmStartJoints(const JointBatch<N>& batch, BodyState* states);
 
-// Adds what the turning of the parts in the last substep changes of their impulses, where SolveJointVelocities is not told to.
+// Adds what the turning of the parts in the last substep changes of their impulses, where SolveJointVelocities is not
+// told to.
 template <int N>
 void TurnJoints(JointBatch<N>& batch, BodyState* states);
 
@@ -157,14 +164,15 @@ void RelaxJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSo
 template <int N>
 void UpdateJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings);
 
-// One pass over the pseudo-velocities, in the velocities' place in `pseudo`, by which joints that are far apart are pulled together: these
-// give them, the others hold against them.
+// One pass over the pseudo-velocities, in the velocities' place in `pseudo`, by which joints that are far apart are
+// pulled together: these give them, the others hold against them.
 template <int N>
 void PullJoints(JointBatch<N>& batch, BodyState* pseudo, const JointSolveSettings& settings);
 
-// Writes the impulses back, divided by `impulseScale`, the forces of the step, dt seconds long, and how far bodies turned.
+// Writes the impulses back, divided by `impulseScale`, the forces of the step, dt seconds long, and how far bodies
+// turned.
 template <int N>
-void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* const* types, const BodyState* states, float dt,
-                 float impulseScale);
+void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* const* types, const BodyState* states,
+                 float dt, float impulseScale);
 
 }  // namespace fulcrum

@@ -1,4 +1,5 @@
-// Shared by the joint kernels: lanes from and to the bodies, choosing the code by a batch's locks, setting the parts up.
+// Shared by the joint kernels: lanes from and to the bodies, choosing the code by a batch's locks, setting the parts
+// up.
 #pragma once
 
 #include <Fulcrum/Constraints/BodyLanes.h>
@@ -66,14 +67,15 @@ FULCRUM_FORCE_INLINE void ChangeVelocities(const Batch& batch, BodyState* states
 }
 
 template <int N>
-FULCRUM_FORCE_INLINE void GatherRecordRow(const uint32_t (&joints)[N], const JointRecord* records, int row, Wide<N> (&out)[8]) {
+FULCRUM_FORCE_INLINE void GatherRecordRow(const uint32_t (&joints)[N], const JointRecord* records, int row,
+                                          Wide<N> (&out)[8]) {
     const float* rows[N];
     for (int i = 0; i < N; ++i) rows[i] = records[joints[i]].Row(row);
     GatherRows<N>(rows, out);
 }
 
-// Arms and distances of anchors: what is farther along an axis counts as that far. It is pulled no faster for being farther away, and the
-// inertia at the end of a longer arm may be beyond the floats.
+// Arms and distances of anchors: what is farther along an axis counts as that far. It is pulled no faster for being
+// farther away, and the inertia at the end of a longer arm may be beyond the floats.
 template <class Real>
 FULCRUM_FORCE_INLINE Vec3<Real> WithinReach(const Vec3<Real>& v) {
     const Real farthest(1e6f);
@@ -92,7 +94,7 @@ FULCRUM_FORCE_INLINE void GatherImpulses(const uint32_t (&joints)[N], const Join
 // Writes a row of the first `count` records; what is not finite as zero.
 template <int N>
 FULCRUM_FORCE_INLINE void ScatterRecordRow(const uint32_t (&joints)[N], int count, JointRecord* records, int row,
-                                                    const Wide<N> (&values)[8]) {
+                                           const Wide<N> (&values)[8]) {
     using Real = Wide<N>;
     float* rows[N];
     for (int i = 0; i < N; ++i) rows[i] = records[joints[i]].Row(row);
@@ -101,8 +103,8 @@ FULCRUM_FORCE_INLINE void ScatterRecordRow(const uint32_t (&joints)[N], int coun
     ScatterRows<N>(rows, out, count);
 }
 
-// Where between two anchors a point joint's impulse and the answer to it act, as a part of the way from A's to B's. They act at one
-// point, so that angular momentum stays: halfway, or at the anchor of the only body that moves.
+// Where between two anchors a point joint's impulse and the answer to it act, as a part of the way from A's to B's.
+// They act at one point, so that angular momentum stays: halfway, or at the anchor of the only body that moves.
 template <int N>
 FULCRUM_FORCE_INLINE Wide<N> MeetingShare(uint32_t fixedA, uint32_t fixedB) {
     Wide<N> share(0.5f);
@@ -115,7 +117,7 @@ FULCRUM_FORCE_INLINE Wide<N> MeetingShare(uint32_t fixedA, uint32_t fixedB) {
 // Of a kinematic body the solver keeps no displacement: it is its velocity times the time.
 template <int N>
 FULCRUM_FORCE_INLINE void AddKinematicMotion(Twist<Wide<N>>& displacement, const Twist<Wide<N>>& velocity,
-                                                      uint32_t kinematic, float elapsed) {
+                                             uint32_t kinematic, float elapsed) {
     if (kinematic == 0) return;
     Wide<N> time(0.0f);
     for (int i = 0; i < N; ++i)
@@ -142,20 +144,23 @@ FULCRUM_FORCE_INLINE Vec3<Real> Straightened(const Vec3<Real>& normal, const Vec
     return flat * (Real(1.0f) / Sqrt(Max(Dot<Real>(flat, flat), Real(1e-12f))));
 }
 
-// The locks' own impulses with their reaction to the rows. In lanes without rows, whose reaction is +0, every bit stays as it is in a
-// batch without rows; adding that zero would turn -0 into +0.
+// The locks' own impulses with their reaction to the rows. In lanes without rows, whose reaction is +0, every bit stays
+// as it is in a batch without rows; adding that zero would turn -0 into +0.
 template <class Lambda, class Real>
 FULCRUM_FORCE_INLINE void AddReaction(Lambda& lambda, const Vec3<Real>& reaction) {
     for (int k = 0; k < lambda.size(); ++k) lambda[k] -= Real(0.0f) - reaction[k];
 }
 
-// sin(a / 2) / a and cos(a / 2) with a = |v|: by the first terms of the series where the angle is below a radian, as it nearly
-// always is; the next term is below a digit.
+// sin(a / 2) / a and cos(a / 2) with a = |v|: by the first terms of the series where the angle is below a radian, as it
+// nearly always is; the next term is below a digit.
 template <class Real>
 FULCRUM_FORCE_INLINE Vec2<Real> HalfTurnOf(const Vec3<Real>& v) {
     const Real square = Dot<Real>(v, v), one(1.0f);
-    const Real scale = Real(0.5f) - square * (Real(1.0f / 48) - square * (Real(1.0f / 3840) - square * Real(1.0f / 645120)));
-    const Real cosine = one - square * (Real(1.0f / 8) - square * (Real(1.0f / 384) - square * (Real(1.0f / 46080) - square * Real(1.0f / 10321920))));
+    const Real scale =
+        Real(0.5f) - square * (Real(1.0f / 48) - square * (Real(1.0f / 3840) - square * Real(1.0f / 645120)));
+    const Real cosine =
+        one - square * (Real(1.0f / 8) -
+                        square * (Real(1.0f / 384) - square * (Real(1.0f / 46080) - square * Real(1.0f / 10321920))));
     const auto isFar = square > one;
     if (!Any(isFar)) return Vec2<Real>(scale, cosine);
     const Real angle = Sqrt(square);
@@ -195,8 +200,8 @@ FULCRUM_FORCE_INLINE Real RowMotion(const JointRows<Real::kCount>& row, const Tw
            Dot<Real>(row.a.angular, a.angular);
 }
 
-// Sets the parts up, hard and without bias, and returns the errors. Where joints are far apart their velocities are held as if the
-// anchors were at one place: with levers as long as the gap they would whirl small bodies about.
+// Sets the parts up, hard and without bias, and returns the errors. Where joints are far apart their velocities are
+// held as if the anchors were at one place: with levers as long as the gap they would whirl small bodies about.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE JointErrors<Wide<N>> SetUpParts(JointBatch<N>& batch, const JointPlace<Wide<N>>& place) {
     using Real = Wide<N>;
@@ -228,7 +233,8 @@ FULCRUM_FORCE_INLINE JointErrors<Wide<N>> SetUpParts(JointBatch<N>& batch, const
             const Vec3<Real> along = place.line * Dot<Real>(place.offset, place.line);
             for (int k = 0; k < 3; ++k) reach[k] = Select(batch.isFar > Real(0.5f), along[k], reach[k]);
         }
-        batch.line.CalculateProperties(batch.massA, batch.massB, {Vec3<Real>(place.armA + reach), place.armB, n1, n2}, none);
+        batch.line.CalculateProperties(batch.massA, batch.massB, {Vec3<Real>(place.armA + reach), place.armB, n1, n2},
+                                       none);
     }
     return errors;
 }
@@ -250,7 +256,7 @@ FULCRUM_FORCE_INLINE void VisitAngularRows(const JointBatch<N>& batch, F&& f) {
 }
 
 template <LinearLock kLinear, AngularLock kAngular>
-inline constexpr bool kCoupled = kLinear != LinearLock::None && kAngular != AngularLock::None;
+inline constexpr bool kCoupled = kLinear != LinearLock::None&& kAngular != AngularLock::None;
 
 template <LinearLock kLinear, class Batch>
 FULCRUM_FORCE_INLINE auto& LinearPart(Batch& batch) {
@@ -332,7 +338,8 @@ struct LockImpulses {
 
 // K^-1 (linear, angular) with K of both locks. Unused components are zero.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-FULCRUM_FORCE_INLINE LockImpulses<Wide<N>> SolveBlock(JointBatch<N>& batch, const Vec3<Wide<N>>& linear, const Vec3<Wide<N>>& angular) {
+FULCRUM_FORCE_INLINE LockImpulses<Wide<N>> SolveBlock(JointBatch<N>& batch, const Vec3<Wide<N>>& linear,
+                                                      const Vec3<Wide<N>>& angular) {
     using Real = Wide<N>;
     LockImpulses<Real> x;
     const auto timesAngular = [&](const Vec3<Real>& v) {
@@ -380,17 +387,21 @@ FULCRUM_FORCE_INLINE Vec3<Real> Widened(const Rows& rows, Real zero) {
 
 // What the locks see of a motion: L v.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-FULCRUM_FORCE_INLINE LockImpulses<Wide<N>> LockMotion(JointBatch<N>& batch, const Twist<Wide<N>>& a, const Twist<Wide<N>>& b) {
+FULCRUM_FORCE_INLINE LockImpulses<Wide<N>> LockMotion(JointBatch<N>& batch, const Twist<Wide<N>>& a,
+                                                      const Twist<Wide<N>>& b) {
     using Real = Wide<N>;
     LockImpulses<Real> motion;
-    if constexpr (kLinear != LinearLock::None) motion.linear = Widened(LinearPart<kLinear>(batch).RelativeMotion(a, b), Real(0.0f));
-    if constexpr (kAngular != AngularLock::None) motion.angular = Widened(AngularPart<kAngular>(batch).RelativeMotion(a, b), Real(0.0f));
+    if constexpr (kLinear != LinearLock::None)
+        motion.linear = Widened(LinearPart<kLinear>(batch).RelativeMotion(a, b), Real(0.0f));
+    if constexpr (kAngular != AngularLock::None)
+        motion.angular = Widened(AngularPart<kAngular>(batch).RelativeMotion(a, b), Real(0.0f));
     return motion;
 }
 
 // Adds M^-1 L^T impulses.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-FULCRUM_FORCE_INLINE void AddLockMotion(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, const LockImpulses<Wide<N>>& x) {
+FULCRUM_FORCE_INLINE void AddLockMotion(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b,
+                                        const LockImpulses<Wide<N>>& x) {
     using Real = Wide<N>;
     const auto add = [&](const auto& part, const Vec3<Real>& impulse) {
         auto rows = part.GetTotalLambda();
@@ -401,14 +412,15 @@ FULCRUM_FORCE_INLINE void AddLockMotion(JointBatch<N>& batch, Twist<Wide<N>>& a,
     if constexpr (kLinear != LinearLock::None) add(LinearPart<kLinear>(batch), x.linear);
 }
 
-// The rows' errors and directions after the bodies moved on. Displacements are counted in pieces: of a body that turns fast their
-// sum is no rotation, and a direction that stayed behind would come to act against the locks.
+// The rows' errors and directions after the bodies moved on. Displacements are counted in pieces: of a body that turns
+// fast their sum is no rotation, and a direction that stayed behind would come to act against the locks.
 template <int N>
 FULCRUM_FORCE_INLINE void MoveRows(JointBatch<N>& batch, const Twist<Wide<N>>& a, const Twist<Wide<N>>& b) {
     using Real = Wide<N>;
     // The rotation from one rotation vector to another, to the second order where those are put together by a series.
     const auto between = [](const Vec3<Real>& from, const Vec3<Real>& to) {
-        const Real half = Select(Dot<Real>(from, from) > Real(kFarthestSeries * kFarthestSeries), Real(0.0f), Real(0.5f));
+        const Real half =
+            Select(Dot<Real>(from, from) > Real(kFarthestSeries * kFarthestSeries), Real(0.0f), Real(0.5f));
         return Vec3<Real>(to - from - Cross<Real>(to, from) * half);
     };
     const Twist<Real> moreA{a.linear - batch.wayA.linear, between(batch.wayA.angular, a.angular)};
@@ -430,7 +442,8 @@ FULCRUM_FORCE_INLINE void MoveRows(JointBatch<N>& batch, const Twist<Wide<N>>& a
 
 // The line between the anchors, where they are apart; else as it was.
 template <int N>
-FULCRUM_FORCE_INLINE void TurnRadialRow(const JointBatch<N>& batch, JointRows<N>& row, const JointPlace<Wide<N>>& place) {
+FULCRUM_FORCE_INLINE void TurnRadialRow(const JointBatch<N>& batch, JointRows<N>& row,
+                                        const JointPlace<Wide<N>>& place) {
     using Real = Wide<N>;
     const Real squared = Dot<Real>(place.offset, place.offset), one(1.0f);
     const auto turns = (row.radial > Real(0.5f)) & (squared > Real(1e-10f));
@@ -482,9 +495,9 @@ FULCRUM_FORCE_INLINE void SetUpRows(JointBatch<N>& batch) {
     }
 }
 
-// Joints are far apart where a distance asks for more than this part of the fastest push, or for 5 cm in a substep, and stay so until all but
-// a fiftieth of it is gone, and as much of their angles: the push of the last decimeter would leave energy behind. Joints that are pulled
-// along by others are far apart from a fifth on.
+// Joints are far apart where a distance asks for more than this part of the fastest push, or for 5 cm in a substep, and
+// stay so until all but a fiftieth of it is gone, and as much of their angles: the push of the last decimeter would
+// leave energy behind. Joints that are pulled along by others are far apart from a fifth on.
 inline float FarPush(const JointSolveSettings& settings) {
     constexpr float kFarPart = 0.5f, kFarWay = 0.05f;  // m
     return std::fmin(kFarPart, kFarWay * settings.inverseDt / settings.maxPushSpeed);
@@ -494,10 +507,11 @@ inline constexpr float kNearPart = 0.02f, kFollowPart = 0.2f;
 // JointRecord::wasPulled. What is far apart notes for how many seconds it has been no more distant, too.
 inline constexpr float kWasFar = 1.0f, kFollowed = 0.5f;
 
-// Since when a joint that is far apart has not been distant, s, if it is not now. A pull ends after as long as it could move by 100 m or
-// turn by 100 rad in: what is still apart then is kept apart, by a pile on it, say, and would jitter.
+// Since when a joint that is far apart has not been distant, s, if it is not now. A pull ends after as long as it could
+// move by 100 m or turn by 100 rad in: what is still apart then is kept apart, by a pile on it, say, and would jitter.
 template <class Real, class Mask>
-FULCRUM_FORCE_INLINE Real SecondsNear(const Real& wasPulled, const Mask& isDistant, const JointSolveSettings& settings) {
+FULCRUM_FORCE_INLINE Real SecondsNear(const Real& wasPulled, const Mask& isDistant,
+                                      const JointSolveSettings& settings) {
     return Select(isDistant, Real(0.0f), Max(wasPulled - Real(kWasFar), Real(0.0f)) + Real(settings.dt));
 }
 inline float LongestNear(const JointSolveSettings& settings) { return 100.0f / settings.maxPushSpeed; }
@@ -512,7 +526,8 @@ FULCRUM_FORCE_INLINE Real FarPush(const Real& wasPulled, const JointSolveSetting
 
 // Which lanes are pulled along at more than a trifle.
 template <class Real>
-FULCRUM_FORCE_INLINE Real Follows(const Real& before, const Twist<Real>& a, const Twist<Real>& b, const JointSolveSettings& settings) {
+FULCRUM_FORCE_INLINE Real Follows(const Real& before, const Twist<Real>& a, const Twist<Real>& b,
+                                  const JointSolveSettings& settings) {
     const Real fast(kNearPart * settings.maxPushSpeed);
     const auto isPulled = [&](const Twist<Real>& v) {
         return Dot<Real>(v.linear, v.linear) + Dot<Real>(v.angular, v.angular) > fast * fast;
@@ -520,24 +535,27 @@ FULCRUM_FORCE_INLINE Real Follows(const Real& before, const Twist<Real>& a, cons
     return Select(isPulled(a) | isPulled(b), Real(kFollowed), before);
 }
 
-// How fast joints that are far apart are pulled: as fast as any, and from afar so much faster that all are there within some seconds.
-// No harm comes of it, because no velocity sees it.
+// How fast joints that are far apart are pulled: as fast as any, and from afar so much faster that all are there within
+// some seconds. No harm comes of it, because no velocity sees it.
 template <class Real>
 FULCRUM_FORCE_INLINE Real PullSpeed(const Real& error, const JointSolveSettings& settings) {
     constexpr float kMost = 3.0f, kPerSecond = 0.75f;
-    const Real most = Clamp(Abs(error) * Real(kPerSecond), Real(settings.maxPushSpeed), Real(kMost * settings.maxPushSpeed));
+    const Real most =
+        Clamp(Abs(error) * Real(kPerSecond), Real(settings.maxPushSpeed), Real(kMost * settings.maxPushSpeed));
     return Clamp(Real(error * Real(settings.pushRate)), -most, most);
 }
 
 // The push that the next velocity iterations give; to locks that are far apart none, but a pull.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-FULCRUM_FORCE_INLINE void Soften(JointBatch<N>& batch, const JointErrors<Wide<N>>& errors, const JointSolveSettings& settings) {
+FULCRUM_FORCE_INLINE void Soften(JointBatch<N>& batch, const JointErrors<Wide<N>>& errors,
+                                 const JointSolveSettings& settings) {
     using Real = Wide<N>;
     const RowSoftness<Real> softness{Real(settings.softness.massScale), Real(settings.softness.impulseScale)};
     const auto push = [&](const auto& error) {
         auto bias = error;
         for (int k = 0; k < bias.size(); ++k)
-            bias[k] = Clamp<Real>(error[k] * Real(settings.pushRate), Real(-settings.maxPushSpeed), Real(settings.maxPushSpeed));
+            bias[k] = Clamp<Real>(error[k] * Real(settings.pushRate), Real(-settings.maxPushSpeed),
+                                  Real(settings.maxPushSpeed));
         return bias;
     };
     const auto soften = [&](auto& part, const auto& error, Vec3<Real>& pull) {
@@ -559,7 +577,8 @@ FULCRUM_FORCE_INLINE void Soften(JointBatch<N>& batch, const JointErrors<Wide<N>
 
 // squared: m2 or rad2, by lanes, of which the first `count` are joints with these indices.
 template <int N>
-inline void NoteLargest(const uint32_t (&joints)[N], int count, const Wide<N>& squared, float& largest, uint32_t& joint) {
+inline void NoteLargest(const uint32_t (&joints)[N], int count, const Wide<N>& squared, float& largest,
+                        uint32_t& joint) {
     if (!(squared >= Wide<N>(largest * largest)).Any()) return;
     for (int lane = 0; lane < count; ++lane) {
         const float error = std::sqrt(squared[lane]);

@@ -1,5 +1,5 @@
-// What the type of a joint asks for in one step beyond its locks: rows for limits in reach, motors that are on, springs and
-// friction. Filled once a step by the types (JointType.h), solved in lanes (JointBatch.h). Plain data, no threads.
+// What the type of a joint asks for in one step beyond its locks: rows for limits in reach, motors that are on, springs
+// and friction. Filled once a step by the types (JointType.h), solved in lanes (JointBatch.h). Plain data, no threads.
 //
 // A row is one equation between two bodies, with v linear and w angular velocities in world axes:
 //     J v = linearB . vB + angularB . wB - linearA . vA - angularA . wA,     dC/dt = J v
@@ -25,8 +25,8 @@ struct JointRow {
     static constexpr float kUnlimited = std::numeric_limits<float>::infinity();
 
     Kind kind = Kind::Equal;
-    uint8_t slot = 0;      // which of its type's rows it is: its impulse of the last step is kept by that number
-    Twist<float> a, b;     // linearA, angularA; linearB, angularB
+    uint8_t slot = 0;         // which of its type's rows it is: its impulse of the last step is kept by that number
+    Twist<float> a, b;        // linearA, angularA; linearB, angularB
     float error = 0;          // C at the start of the step, m or rad
     float speed = 0;          // m/s or rad/s
     bool yields = true;       // softly, as the locks of joints do; not where a motor presses against it
@@ -37,8 +37,8 @@ struct JointRow {
     SpringSettings spring;
 };
 
-// The rows of one joint in one step. Only rows that were added are ever set: a list is made for every joint with rows in
-// every step, and clearing all its room took ten times as long as most joints need to fill it.
+// The rows of one joint in one step. Only rows that were added are ever set: a list is made for every joint with rows
+// in every step, and clearing all its room took ten times as long as most joints need to fill it.
 struct JointRowList {
     static constexpr uint32_t kMaxRows = 24;  // six axes, each with two limits, a motor and friction
 

@@ -40,11 +40,13 @@ Rows RowsOf(const Batch& batch, uint32_t lane) {
     Rows rows;
     if (batch.linear == LinearLock::Point)
         for (int k = 0; k < 3; ++k)
-            rows.AddLinear(Vector3::Unit(k), LaneOf<kLanes>(batch.point.GetArm1(), lane), LaneOf<kLanes>(batch.point.GetArm2(), lane));
+            rows.AddLinear(Vector3::Unit(k), LaneOf<kLanes>(batch.point.GetArm1(), lane),
+                           LaneOf<kLanes>(batch.point.GetArm2(), lane));
     if (batch.linear == LinearLock::Line) {
         const auto& frame = batch.line.GetFrame();
         for (const auto* axis : {&frame.axis1, &frame.axis2})
-            rows.AddLinear(LaneOf<kLanes>(*axis, lane), LaneOf<kLanes>(frame.r1PlusU, lane), LaneOf<kLanes>(frame.r2, lane));
+            rows.AddLinear(LaneOf<kLanes>(*axis, lane), LaneOf<kLanes>(frame.r1PlusU, lane),
+                           LaneOf<kLanes>(frame.r2, lane));
     }
     if (batch.angular == AngularLock::All)
         for (int k = 0; k < 3; ++k) rows.AddAngular(Vector3::Unit(k));
@@ -78,7 +80,8 @@ void AddImpulses(Batch& batch, uint32_t lane, const Vector6& impulses) {
     VisitParts(batch, [&](auto& part, int count) {
         auto total = part.GetTotalLambda();
         const int i = static_cast<int>(lane);
-        for (int k = 0; k < count; ++k, ++row) total[k].Set(i, static_cast<float>(static_cast<double>(total[k][i]) + impulses[row]));
+        for (int k = 0; k < count; ++k, ++row)
+            total[k].Set(i, static_cast<float>(static_cast<double>(total[k][i]) + impulses[row]));
         part.SetTotalLambda(total);
     });
 }
@@ -197,13 +200,14 @@ void FactorizeTree(const JointTree& tree, const JointBatch<kLanes>* batches, con
             for (int j = 0; j < slot.rows; ++j)
                 for (int k = 0; k < 6; ++k) compliance(i, j) += slot.own(i, k) * slot.response(k, j);
         slot.effectiveMass = Inverse(compliance, slot.rows);
-        if (!tree.slots[slot.parent].still) AddSquare(tree.slots[slot.parent].mass, slot.other, slot.effectiveMass, slot.rows);
+        if (!tree.slots[slot.parent].still)
+            AddSquare(tree.slots[slot.parent].mass, slot.other, slot.effectiveMass, slot.rows);
     }
 }
 
 void SolveTree(const JointTree& tree, JointBatch<kLanes>* batches, BodyState* states, bool relax) {
-    const auto residualOf = [&](const JointPlaceInBatch& place, const Matrix6& own, const Matrix6* other, uint32_t body, uint32_t otherBody,
-                            int rows) {
+    const auto residualOf = [&](const JointPlaceInBatch& place, const Matrix6& own, const Matrix6* other, uint32_t body,
+                                uint32_t otherBody, int rows) {
         const Batch& batch = batches[place.batch];
         Vector6 residual = relax ? Vector6(Vector6::Zero()) : Vector6(-BiasOf(batch, place.lane));
         residual -= Times(own, VelocityOf(states[body]), rows);
@@ -230,14 +234,17 @@ void SolveTree(const JointTree& tree, JointBatch<kLanes>* batches, BodyState* st
         slot.velocityChange = Times(slot.inverse, slot.load);
         if (slot.parent == JointTreeSlot::kNone) continue;
         JointTreeSlot& parent = tree.slots[slot.parent];
-        slot.residual = residualOf(slot.place, slot.own, &slot.other, slot.body, parent.body, slot.rows) - Times(slot.own, slot.velocityChange, slot.rows);
+        slot.residual = residualOf(slot.place, slot.own, &slot.other, slot.body, parent.body, slot.rows) -
+                        Times(slot.own, slot.velocityChange, slot.rows);
         AddTransposed(parent.load, slot.other, Times(slot.effectiveMass, slot.residual, slot.rows), slot.rows);
     }
     // `velocityChange` becomes the change of velocity. Blocks of fewer rows have zeros beyond them.
     for (JointTreeSlot& slot : tree.slots) {
         if (slot.parent != JointTreeSlot::kNone) {
             const Vector6 impulse =
-                Times(slot.effectiveMass, Vector6(slot.residual - Times(slot.other, tree.slots[slot.parent].velocityChange, slot.rows)), slot.rows);
+                Times(slot.effectiveMass,
+                      Vector6(slot.residual - Times(slot.other, tree.slots[slot.parent].velocityChange, slot.rows)),
+                      slot.rows);
             slot.velocityChange += Times(slot.response, impulse);
             AddImpulses(batches[slot.place.batch], slot.place.lane, impulse);
         }

@@ -18,9 +18,10 @@ struct Curve {
 Curve CurveAt(const PathPoint& p, const PathPoint& q, float u) {
     const float uu = u * u, uuu = uu * u;
     Curve c;
-    c.position = p.position * (2 * uuu - 3 * uu + 1) + p.tangent * (uuu - 2 * uu + u) + q.position * (3 * uu - 2 * uuu) +
-                 q.tangent * (uuu - uu);
-    c.first = (p.position - q.position) * (6 * uu - 6 * u) + p.tangent * (3 * uu - 4 * u + 1) + q.tangent * (3 * uu - 2 * u);
+    c.position = p.position * (2 * uuu - 3 * uu + 1) + p.tangent * (uuu - 2 * uu + u) +
+                 q.position * (3 * uu - 2 * uuu) + q.tangent * (uuu - uu);
+    c.first =
+        (p.position - q.position) * (6 * uu - 6 * u) + p.tangent * (3 * uu - 4 * u + 1) + q.tangent * (3 * uu - 2 * u);
     c.second = (p.position - q.position) * (12 * u - 6) + p.tangent * (6 * u - 4) + q.tangent * (6 * u - 2);
     c.normalFirst = q.normal - p.normal;
     c.normal = p.normal + c.normalFirst * u;
@@ -62,16 +63,18 @@ PathSample Path::Sample(double t) const {
 
 // Gauss-Legendre quadrature of |P'|, five points on each of four parts. Source: Abramowitz and Stegun, table 25.4.
 double Path::SegmentLength(size_t segment, double u) const {
-    constexpr double kPlaces[5] = {0.0, -0.5384693101056831, 0.5384693101056831, -0.9061798459386640, 0.9061798459386640};
-    constexpr double kWeights[5] = {0.5688888888888889, 0.4786286704993665, 0.4786286704993665, 0.2369268850561891, 0.2369268850561891};
+    constexpr double kPlaces[5] = {0.0, -0.5384693101056831, 0.5384693101056831, -0.9061798459386640,
+                                   0.9061798459386640};
+    constexpr double kWeights[5] = {0.5688888888888889, 0.4786286704993665, 0.4786286704993665, 0.2369268850561891,
+                                    0.2369268850561891};
     constexpr int kParts = 4;
     const double half = 0.5 * u / kParts;
     double sum = 0;
     for (int part = 0; part < kParts; ++part)
         for (int i = 0; i < 5; ++i) {
             const double at = half * (2 * part + 1 + kPlaces[i]);
-            sum += kWeights[i] *
-                   static_cast<double>(fulcrum::Length(CurveAt(points_[segment], PointAfter(segment), static_cast<float>(at)).first));
+            sum += kWeights[i] * static_cast<double>(fulcrum::Length(
+                                     CurveAt(points_[segment], PointAfter(segment), static_cast<float>(at)).first));
         }
     return sum * half;
 }
@@ -82,8 +85,8 @@ double Path::LengthAt(double t) const {
     return place.laps * Length() + before + SegmentLength(place.segment, place.u);
 }
 
-// The distance's square has the slope P' . (P - x), and that P'' . (P - x) + |P'|^2. Where this is small or negative, near a
-// center of curvature, the second term alone leads down the slope.
+// The distance's square has the slope P' . (P - x), and that P'' . (P - x) + |P'|^2. Where this is small or negative,
+// near a center of curvature, the second term alone leads down the slope.
 double Path::Closest(const Vector3& point, double from) const {
     double t = Bounded(from);
     for (int i = 0; i < 16; ++i) {
@@ -114,7 +117,9 @@ double Path::Closest(const Vector3& point) const {
 }
 
 Result<std::shared_ptr<const Path>> Path::Make(std::vector<PathPoint> points, bool isClosed) {
-    if (points.size() < 2) return Error{ErrorCode::Degenerate, "path has " + std::to_string(points.size()) + " points; it needs 2 or more"};
+    if (points.size() < 2)
+        return Error{ErrorCode::Degenerate,
+                     "path has " + std::to_string(points.size()) + " points; it needs 2 or more"};
     for (size_t i = 0; i < points.size(); ++i)
         if (!IsFinite(points[i].position) || !IsFinite(points[i].tangent) || !IsFinite(points[i].normal))
             return Error{ErrorCode::NonFinite, "path point " + std::to_string(i) + " is not finite"};
@@ -127,11 +132,13 @@ Result<std::shared_ptr<const Path>> Path::Make(std::vector<PathPoint> points, bo
             const Curve c = CurveAt(path->points_[i], path->PointAfter(i), u);
             const float speed = fulcrum::Length(c.first);
             if (!(static_cast<double>(speed) > 1e-3 * length))
-                return Error{ErrorCode::Degenerate, "path stands still" + At(static_cast<double>(i) + static_cast<double>(u)) +
+                return Error{ErrorCode::Degenerate, "path stands still" +
+                                                        At(static_cast<double>(i) + static_cast<double>(u)) +
                                                         "; points must differ and tangents must not be zero"};
             const float flat = fulcrum::Length(Cross(c.normal, Vector3(c.first * (1.0f / speed))));
             if (!(flat > 1e-3f))
-                return Error{ErrorCode::Degenerate, "path normal is zero or along the path" + At(static_cast<double>(i) + static_cast<double>(u))};
+                return Error{ErrorCode::Degenerate, "path normal is zero or along the path" +
+                                                        At(static_cast<double>(i) + static_cast<double>(u))};
         }
     }
     return std::shared_ptr<const Path>(std::move(path));
@@ -146,17 +153,20 @@ std::shared_ptr<const Path> Path::Straight(float length) {
     return Make({{whole * -0.5f, whole}, {whole * 0.5f, whole}}, false).Value();
 }
 
-Result<std::shared_ptr<const Path>> Path::CatmullRom(std::span<const Vector3> positions, std::span<const Vector3> normals, bool isClosed) {
+Result<std::shared_ptr<const Path>> Path::CatmullRom(std::span<const Vector3> positions,
+                                                     std::span<const Vector3> normals, bool isClosed) {
     const size_t count = positions.size();
     if (normals.size() != count && normals.size() != 1)
-        return Error{ErrorCode::OutOfRange, "path has " + std::to_string(normals.size()) + " normals; it needs one, or one for each of its " +
+        return Error{ErrorCode::OutOfRange, "path has " + std::to_string(normals.size()) +
+                                                " normals; it needs one, or one for each of its " +
                                                 std::to_string(count) + " points"};
     std::vector<PathPoint> points(count);
     for (size_t i = 0; i < count; ++i) {
         const bool isFirst = i == 0 && !isClosed, isLast = i + 1 == count && !isClosed;
         const Vector3& before = positions[isFirst ? 0 : (i + count - 1) % count];
         const Vector3& after = positions[isLast ? i : (i + 1) % count];
-        points[i] = {positions[i], (after - before) * (isFirst || isLast ? 1.0f : 0.5f), normals[normals.size() == 1 ? 0 : i]};
+        points[i] = {positions[i], (after - before) * (isFirst || isLast ? 1.0f : 0.5f),
+                     normals[normals.size() == 1 ? 0 : i]};
     }
     return Make(std::move(points), isClosed);
 }

@@ -1,11 +1,12 @@
-// A smooth curve through points, open or closed, with a frame along it: tangent, normal and their cross product. Made by the
-// user, shared by path joints, which sample it. Immutable: any number of threads.
+// A smooth curve through points, open or closed, with a frame along it: tangent, normal and their cross product. Made
+// by the user, shared by path joints, which sample it. Immutable: any number of threads.
 //
 //   t    parameter: the number of the segment plus how far along it, 0..segments; of a closed path any number, in laps
 //   P    on a segment, with u = t - its number, the cubic of Hermite between points p0, p1 with derivatives m0, m1:
 //        P(u) = (2u^3 - 3u^2 + 1) p0 + (u^3 - 2u^2 + u) m0 + (3u^2 - 2u^3) p1 + (u^3 - u^2) m1
 //   T    P' / |P'|;   N  the interpolated normal without its part along T, of length 1;   B  T x N
-//   turn rate at which the frame turns per meter, as a rotation vector: T x T_s + (B . N_s) T, with _s = d/ds = d/dt / |P'|
+//   turn rate at which the frame turns per meter, as a rotation vector: T x T_s + (B . N_s) T, with _s = d/ds = d/dt /
+//   |P'|
 #pragma once
 
 #include <Fulcrum/Math/Result.h>
@@ -18,28 +19,28 @@
 namespace fulcrum {
 
 struct PathPoint {
-    Vector3 position;                     // m
-    Vector3 tangent;                      // m per segment: dP/dt, not zero
-    Vector3 normal = Vector3(0, 1, 0);    // not parallel to the tangent; its length counts where normals are interpolated
+    Vector3 position;                   // m
+    Vector3 tangent;                    // m per segment: dP/dt, not zero
+    Vector3 normal = Vector3(0, 1, 0);  // not parallel to the tangent; its length counts where normals are interpolated
 };
 
 // All in the path's own frame.
 struct PathSample {
-    Vector3 position;                  // m
-    Vector3 first, second;             // dP/dt, d2P/dt2, m
-    Vector3 tangent, normal, binormal; // unit
-    Vector3 turn;                      // rad/m
+    Vector3 position;                   // m
+    Vector3 first, second;              // dP/dt, d2P/dt2, m
+    Vector3 tangent, normal, binormal;  // unit
+    Vector3 turn;                       // rad/m
 };
 
 class Path {
 public:
-    // Two points at least. Errors: NonFinite; Degenerate: too few points, or a place where the curve stands still or the
-    // normal is along it.
+    // Two points at least. Errors: NonFinite; Degenerate: too few points, or a place where the curve stands still or
+    // the normal is along it.
     static Result<std::shared_ptr<const Path>> Hermite(std::span<const PathPoint> points, bool isClosed);
     // Through the positions, with tangents half the way from the point before to the point after (uniform Catmull-Rom);
     // at open ends along the first and the last chord. normals: one a point, or one for all.
-    static Result<std::shared_ptr<const Path>> CatmullRom(std::span<const Vector3> positions, std::span<const Vector3> normals,
-                                                          bool isClosed);
+    static Result<std::shared_ptr<const Path>> CatmullRom(std::span<const Vector3> positions,
+                                                          std::span<const Vector3> normals, bool isClosed);
 
     // Along x, from -length / 2 to length / 2, with the normal y. length: m, > 0, finite.
     static std::shared_ptr<const Path> Straight(float length);

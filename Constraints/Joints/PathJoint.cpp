@@ -36,7 +36,9 @@ AxisControl PathJoint::Bounded() const {
 }
 
 uint32_t PathJoint::MaxRows() const {
-    const uint32_t rotations = rotation_ == PathRotation::Tangent ? 2 : rotation_ == PathRotation::TangentAndNormal ? 3 : 0;
+    const uint32_t rotations = rotation_ == PathRotation::Tangent            ? 2
+                               : rotation_ == PathRotation::TangentAndNormal ? 3
+                                                                             : 0;
     return 2 + MaxControlRows(Bounded()) + rotations;
 }
 
@@ -47,9 +49,9 @@ void PathJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     parameter_ = path_->Closest(local, parameter_);
     const PathSample at = path_->Sample(parameter_);
     const Vector3 away = local - at.position;
-    // Far from the path, where B is along it says nothing of how it is to turn: it turns when it is there, or bodies that turn would
-    // have the nearest place wander along the path, and that turn them elsewhere. What moves B acts on A where it is to be: with a lever
-    // as long as the gap it would whirl them about.
+    // Far from the path, where B is along it says nothing of how it is to turn: it turns when it is there, or bodies
+    // that turn would have the nearest place wander along the path, and that turn them elsewhere. What moves B acts on
+    // A where it is to be: with a lever as long as the gap it would whirl them about.
     constexpr float kNear = 0.1f;  // m
     const bool isNear = LengthSquared(away) < kNear * kNear;
     JointPose acting = pose;
@@ -58,7 +60,8 @@ void PathJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     acting.SetAlong(along, Rotate(pose.frameA, at.tangent));
     const double way = WayOf(*path_, parameter_, at, local);
     AddControlRows(Bounded(), pose, along, way, kLinearSlackSpeed, PathSlots::kAlong, rows);
-    if (isNear && (rotation_ == PathRotation::Tangent || rotation_ == PathRotation::TangentAndNormal)) AddRotationRows(pose, at, along, rows);
+    if (isNear && (rotation_ == PathRotation::Tangent || rotation_ == PathRotation::TangentAndNormal))
+        AddRotationRows(pose, at, along, rows);
     uint32_t slot = PathSlots::kAcross;
     for (const Vector3& normal : {at.normal, at.binormal}) {
         JointRow& row = rows.Add(slot++, JointRow::Kind::Equal);
@@ -67,10 +70,12 @@ void PathJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     }
 }
 
-void PathJoint::AddRotationRows(const JointPose& pose, const PathSample& at, const JointRow& along, JointRowList& rows) const {
+void PathJoint::AddRotationRows(const JointPose& pose, const PathSample& at, const JointRow& along,
+                                JointRowList& rows) const {
     const Quaternion ofPath = RotationFromAxesXY(at.tangent, at.normal);
     const Quaternion ofB = ofPath.Conjugate() * (pose.frameA.Conjugate() * pose.frameB);
-    // What B has too much, seen from the path's frame. Free about the tangent: the turn from the one x axis to the other.
+    // What B has too much, seen from the path's frame. Free about the tangent: the turn from the one x axis to the
+    // other.
     Vector3 error;
     if (rotation_ == PathRotation::TangentAndNormal) {
         error = RotationVectorOf<float>(ofB);

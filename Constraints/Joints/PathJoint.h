@@ -1,5 +1,5 @@
-// B's anchor rides on a path that A's frame carries, driven or free, and B may be made to turn with the path. Solved with
-// the other joints; no threads.
+// B's anchor rides on a path that A's frame carries, driven or free, and B may be made to turn with the path. Solved
+// with the other joints; no threads.
 //
 //   P, T, N, B, turn  of the path at the place nearest to B's anchor (Path.h), world space       u = p2 - p1, e = u - P
 //   s           way along the path, m: its length up to there; beyond the end of an open path e . T more

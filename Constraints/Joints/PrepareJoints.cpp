@@ -32,9 +32,9 @@ void ClearLane(JointRows<N>& rows, int lane) {
         SetLane(twist->linear, lane, Vector3::Zero());
         SetLane(twist->angular, lane, Vector3::Zero());
     }
-    for (Wide<N>* x : {&rows.startError, &rows.error, &rows.speed, &rows.impulse, &rows.earlier, &rows.lowest, &rows.highest, &rows.massScale,
-                       &rows.pushRate, &rows.softness, &rows.mostPush, &rows.openAbove, &rows.hardScale, &rows.gapRate,
-                       &rows.openSoftness, &rows.turnsWithA, &rows.radial, &rows.about})
+    for (Wide<N>* x : {&rows.startError, &rows.error, &rows.speed, &rows.impulse, &rows.earlier, &rows.lowest,
+                       &rows.highest, &rows.massScale, &rows.pushRate, &rows.softness, &rows.mostPush, &rows.openAbove,
+                       &rows.hardScale, &rows.gapRate, &rows.openSoftness, &rows.turnsWithA, &rows.radial, &rows.about})
         x->Set(lane, 0.0f);
     rows.slot[lane] = 0xFF;
 }
@@ -53,7 +53,8 @@ void FillLane(JointRows<N>& rows, int lane, const JointRow& row, float previousI
     using Kind = JointRow::Kind;
     const bool oneSided = row.kind == Kind::AtLeast || row.kind == Kind::SpringAtLeast;
     const float unlimited = JointRow::kUnlimited;
-    const float lowest = Max(row.minForce * s.substepDt, oneSided ? 0.0f : -unlimited), highest = row.maxForce * s.substepDt;
+    const float lowest = Max(row.minForce * s.substepDt, oneSided ? 0.0f : -unlimited),
+                highest = row.maxForce * s.substepDt;
     const bool hard = row.kind == Kind::Equal || row.kind == Kind::AtLeast, yields = hard && row.yields;
     rows.startError.Set(lane, row.error);
     rows.error.Set(lane, row.error);
@@ -71,7 +72,8 @@ void FillLane(JointRows<N>& rows, int lane, const JointRow& row, float previousI
     rows.turnsWithA.Set(lane, row.turnsWithA ? 1.0f : 0.0f);
     rows.radial.Set(lane, row.radial ? 1.0f : 0.0f);
     rows.about.Set(lane, row.about ? 1.0f : 0.0f);
-    rows.impulse.Set(lane, std::isfinite(previousImpulse) ? Clamp(previousImpulse * s.impulseScale, lowest, highest) : 0.0f);
+    rows.impulse.Set(lane,
+                     std::isfinite(previousImpulse) ? Clamp(previousImpulse * s.impulseScale, lowest, highest) : 0.0f);
 }
 
 // All but what depends on the mass, of a row that is pushed at the locks' rate.
@@ -84,7 +86,8 @@ void SetPush(JointRows<N>& rows, int lane, bool yields, const JointSolveSettings
     rows.mostPush.Set(lane, massScale * s.maxPushSpeed);
 }
 
-// Whether a spring is stretched so far that it would speed bodies up beyond what joints are pulled at; farther than locks are when far apart.
+// Whether a spring is stretched so far that it would speed bodies up beyond what joints are pulled at; farther than
+// locks are when far apart.
 template <int N>
 bool IsOverstretched(const JointBatch<N>& batch, const JointRow& row, int lane, const SpringConstants<float>& spring,
                      const JointSolveSettings& s) {
@@ -92,21 +95,25 @@ bool IsOverstretched(const JointBatch<N>& batch, const JointRow& row, int lane, 
     if ((row.error < 0.0f ? row.maxForce : -row.minForce) < JointRow::kUnlimited) return false;
     if (row.kind == JointRow::Kind::SpringAtLeast && row.error > 0.0f) return false;
     if (row.error * row.error * s.pushRate * s.pushRate <= s.maxPushSpeed * s.maxPushSpeed) return false;
-    const float inverse = LengthSquared(row.a.linear) * batch.massA.mass[lane] + LengthSquared(row.b.linear) * batch.massB.mass[lane];
+    const float inverse =
+        LengthSquared(row.a.linear) * batch.massA.mass[lane] + LengthSquared(row.b.linear) * batch.massB.mass[lane];
     const float squared = spring.squaredFrequency > 0.0f ? spring.squaredFrequency : spring.stiffness * inverse;
     const float fastest = kFastest * s.maxPushSpeed;
     return inverse > 0.0f && row.error * row.error * squared > fastest * fastest;
 }
 
-// Springs: after the masses are known. They are not relaxed: their force is what they are for. Overstretched ones are pulled as locks are.
+// Springs: after the masses are known. They are not relaxed: their force is what they are for. Overstretched ones are
+// pulled as locks are.
 template <int N>
-void SoftenLane(const JointBatch<N>& batch, JointRows<N>& rows, int lane, const JointRow& row, const JointSolveSettings& s) {
+void SoftenLane(const JointBatch<N>& batch, JointRows<N>& rows, int lane, const JointRow& row,
+                const JointSolveSettings& s) {
     using Kind = JointRow::Kind;
     if (rows.slot[lane] == 0xFF || (row.kind != Kind::Spring && row.kind != Kind::SpringAtLeast)) return;
     const float mass = rows.mass[lane];
     SpringConstants<float> constants = ToConstants(row.spring);
     // As stiff as a spring can be that a substep resolves.
-    if (!(constants.squaredFrequency > 0.0f || constants.stiffness > 0.0f)) constants = FrequencyConstants(0.25f * s.inverseDt, 1.0f);
+    if (!(constants.squaredFrequency > 0.0f || constants.stiffness > 0.0f))
+        constants = FrequencyConstants(0.25f * s.inverseDt, 1.0f);
     if (IsOverstretched(batch, row, lane, constants, s)) return SetPush(rows, lane, true, s);
     const auto gains = detail::CalculateSpringGains<float>(s.substepDt, mass > 0.0f ? 1.0f / mass : 0.0f, constants);
     rows.massScale.Set(lane, gains.massScale);
@@ -158,20 +165,22 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
         const JointRowList& list = lists[lane];
         for (uint32_t i = list.count; i < batch.rowCount; ++i) ClearLane(batch.rows[i], lane);
         for (uint32_t i = 0; i < list.count; ++i) {
-            FillLane(batch.rows[i], lane, list.rows[i], types[batch.joint[lane]]->impulses[list.rows[i].slot], settings);
+            FillLane(batch.rows[i], lane, list.rows[i], types[batch.joint[lane]]->impulses[list.rows[i].slot],
+                     settings);
             batch.rowsTurnWithA |= list.rows[i].turnsWithA;
             batch.radial |= list.rows[i].radial;
         }
     }
     SetUpRows<kLinear, kAngular>(batch);
     for (int lane = 0; lane < batch.count; ++lane)
-        for (uint32_t i = 0; i < lists[lane].count; ++i) SoftenLane(batch, batch.rows[i], lane, lists[lane].rows[i], settings);
+        for (uint32_t i = 0; i < lists[lane].count; ++i)
+            SoftenLane(batch, batch.rows[i], lane, lists[lane].rows[i], settings);
 }
 
 // Which joints are so far apart that they are pulled, see PullJoints.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const JointErrors<Wide<N>>& errors, const Wide<N>& wasPulled,
-             const JointSolveSettings& settings) {
+void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const JointErrors<Wide<N>>& errors,
+             const Wide<N>& wasPulled, const JointSolveSettings& settings) {
     using Real = Wide<N>;
     const Real farPart(FarPush(settings)), least = FarPush<Real>(wasPulled, settings), zero(0.0f);
     // Parts of the fastest push that distances and angles ask for.
@@ -187,7 +196,8 @@ void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const Joint
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         const JointRows<N>& row = batch.rows[i];
         const Real linear = Dot<Real>(row.a.linear, row.a.linear) + Dot<Real>(row.b.linear, row.b.linear);
-        const auto moves = (linear > zero) & (row.about <= zero), acts = (row.error <= row.openAbove) & (row.mostPush > zero);
+        const auto moves = (linear > zero) & (row.about <= zero),
+                   acts = (row.error <= row.openAbove) & (row.mostPush > zero);
         const Real push = Select(acts, Abs(row.error) * row.pushRate / Select(acts, row.mostPush, Real(1.0f)), zero);
         distance = Max(distance, Select(moves, push, zero));
         angle = Max(angle, Select(moves, zero, push));
@@ -195,7 +205,8 @@ void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const Joint
     // Angles alone are no reason: no lever grows with them, and in a pile hinges bend beyond their limits.
     const auto isDistant = distance > farPart, isMuch = Max(distance, angle) > farPart;
     const Real near = SecondsNear(wasPulled, isDistant, settings);
-    const auto isFar = ((distance > least) | ((angle > least) & (wasPulled >= Real(kWasFar)))) & (near <= Real(LongestNear(settings)));
+    const auto isFar =
+        ((distance > least) | ((angle > least) & (wasPulled >= Real(kWasFar)))) & (near <= Real(LongestNear(settings)));
     batch.far = isFar.Any();
     batch.isFar = Select(isFar, Real(kWasFar) + near, zero);
     batch.isDistant = Select(isDistant, Real(1.0f), zero);
@@ -212,8 +223,8 @@ void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const Joint
     };
     if constexpr (kAngular != AngularLock::None) forget(AngularPart<kAngular>(batch));
     if constexpr (kLinear != LinearLock::None) forget(LinearPart<kLinear>(batch));
-    // Limits are pulled. What drives or holds waits: along a line it would whirl the bodies about at the end of a lever as long as the gap,
-    // and what a motor spun up while a pull turns its axis would not be its own work.
+    // Limits are pulled. What drives or holds waits: along a line it would whirl the bodies about at the end of a lever
+    // as long as the gap, and what a motor spun up while a pull turns its axis would not be its own work.
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         JointRows<N>& row = batch.rows[i];
         const Real unlimited(JointRow::kUnlimited);
@@ -228,8 +239,8 @@ void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const Joint
 }  // namespace
 
 template <int N>
-void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* const* types, const SolverBodies& bodies,
-                   const JointSolveSettings& settings, JointFindings& findings) {
+void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* const* types,
+                   const SolverBodies& bodies, const JointSolveSettings& settings, JointFindings& findings) {
     using Real = Wide<N>;
     Real head[8], frames[8], impulses[8];
     GatherRecordRow<N>(batch.joint, records, JointRecord::kAnchors, head);
@@ -240,7 +251,8 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
     batch.turns = Select(turnsA | turnsB, Real(1.0f), Real(0.0f));
     batch.turning = (turnsA | turnsB).Any();
     const Vec3<Real> between = GatherOffset<N>(batch.bodyA, batch.bodyB, bodies.poses);
-    const Quat<Real> rotationA = GatherRotation<N>(batch.bodyA, bodies.poses), rotationB = GatherRotation<N>(batch.bodyB, bodies.poses);
+    const Quat<Real> rotationA = GatherRotation<N>(batch.bodyA, bodies.poses),
+                     rotationB = GatherRotation<N>(batch.bodyB, bodies.poses);
 
     JointPlace<Real> place;
     place.armA = WithinReach<Real>(Rotate<Real>(rotationA, Vec3<Real>(head[0], head[1], head[2])));
@@ -272,23 +284,29 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
         const JointErrors<Real> errors = SetUpParts<linear, angular>(batch, place);
         if constexpr (linear == LinearLock::Point) {
             batch.point.SetTotalLambda(linearImpulse);
-            NoteLargest<N>(batch.joint, batch.count, Dot<Real>(errors.point, errors.point), findings.linearError, findings.linearJoint);
+            NoteLargest<N>(batch.joint, batch.count, Dot<Real>(errors.point, errors.point), findings.linearError,
+                           findings.linearJoint);
         }
         if constexpr (linear == LinearLock::Line) {
             const Vec3<Real> n2 = Cross<Real>(place.line, place.lineNormal);
-            batch.line.SetTotalLambda(Vec2<Real>(Dot<Real>(linearImpulse, place.lineNormal), Dot<Real>(linearImpulse, n2)));
-            NoteLargest<N>(batch.joint, batch.count, errors.line.x() * errors.line.x() + errors.line.y() * errors.line.y(), findings.linearError,
-                        findings.linearJoint);
+            batch.line.SetTotalLambda(
+                Vec2<Real>(Dot<Real>(linearImpulse, place.lineNormal), Dot<Real>(linearImpulse, n2)));
+            NoteLargest<N>(batch.joint, batch.count,
+                           errors.line.x() * errors.line.x() + errors.line.y() * errors.line.y(), findings.linearError,
+                           findings.linearJoint);
         }
         if constexpr (angular == AngularLock::All) {
             batch.rotation.SetTotalLambda(angularImpulse);
-            NoteLargest<N>(batch.joint, batch.count, Dot<Real>(errors.rotation, errors.rotation), findings.angularError, findings.angularJoint);
+            NoteLargest<N>(batch.joint, batch.count, Dot<Real>(errors.rotation, errors.rotation), findings.angularError,
+                           findings.angularJoint);
         }
         if constexpr (angular == AngularLock::Axis) {
             const Vec3<Real> c = Cross<Real>(place.axisB, place.normal);
-            batch.hinge.SetTotalLambda(Vec2<Real>(-Dot<Real>(angularImpulse, c), Dot<Real>(angularImpulse, place.normal)));
-            NoteLargest<N>(batch.joint, batch.count, errors.hinge.x() * errors.hinge.x() + errors.hinge.y() * errors.hinge.y(), findings.angularError,
-                        findings.angularJoint);
+            batch.hinge.SetTotalLambda(
+                Vec2<Real>(-Dot<Real>(angularImpulse, c), Dot<Real>(angularImpulse, place.normal)));
+            NoteLargest<N>(batch.joint, batch.count,
+                           errors.hinge.x() * errors.hinge.x() + errors.hinge.y() * errors.hinge.y(),
+                           findings.angularError, findings.angularJoint);
         }
         SetUpCoupling<linear, angular>(batch);
         FillRows<linear, angular>(batch, records, types, bodies, settings);
@@ -376,8 +394,8 @@ Vector3 TurnOf(const BodyState& state, bool kinematic, float dt) {
 }  // namespace
 
 template <int N>
-void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* const* types, const BodyState* states, float dt,
-                 float impulseScale) {
+void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* const* types, const BodyState* states,
+                 float dt, float impulseScale) {
     using Real = Wide<N>;
     const float inverse = 1.0f / impulseScale, perSecond = 1.0f / dt;
     const Wrench<N> own(batch, OwnImpulses(batch)), locks(batch, StepImpulses(batch));
@@ -387,7 +405,8 @@ void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* co
         const Real impulse = rows.earlier + rows.impulse;
         const auto acts = Abs(impulse) > Real(0.0f);
         total.force -= ZeroUnless<Real>(acts, Vec3<Real>(rows.b.linear * -impulse));
-        total.torque -= ZeroUnless<Real>(acts, Vec3<Real>((rows.b.angular - Cross<Real>(batch.startArmB, rows.b.linear)) * -impulse));
+        total.torque -= ZeroUnless<Real>(
+            acts, Vec3<Real>((rows.b.angular - Cross<Real>(batch.startArmB, rows.b.linear)) * -impulse));
     }
     ScatterWrench(batch, records, JointRecord::kOwn, own, inverse, Max(batch.isFar, batch.follows));
     ScatterWrench(batch, records, JointRecord::kLocks, locks, perSecond);
@@ -401,7 +420,8 @@ void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* co
         type->forces.fill(0.0f);
         for (uint32_t i = 0; i < batch.rowCount; ++i) {
             const JointRows<N>& rows = batch.rows[i];
-            const float impulse = rows.impulse[lane] * inverse, force = (rows.earlier[lane] + rows.impulse[lane]) * perSecond;
+            const float impulse = rows.impulse[lane] * inverse,
+                        force = (rows.earlier[lane] + rows.impulse[lane]) * perSecond;
             if (rows.slot[lane] == 0xFF || !std::isfinite(impulse) || !std::isfinite(force)) continue;
             type->impulses[rows.slot[lane]] = impulse;
             type->forces[rows.slot[lane]] = force;
@@ -409,10 +429,11 @@ void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* co
     }
 }
 
-#define FULCRUM_INSTANTIATE(lanes)                                                                                         \
-    template void PrepareJoints(JointBatch<lanes>&, const JointRecord*, JointType* const*, const SolverBodies&,            \
-                                const JointSolveSettings&, JointFindings&);                                                \
-    template void StoreJoints(const JointBatch<lanes>&, JointRecord*, JointType* const*, const BodyState*, float, float);
+#define FULCRUM_INSTANTIATE(lanes)                                                                                \
+    template void PrepareJoints(JointBatch<lanes>&, const JointRecord*, JointType* const*, const SolverBodies&,   \
+                                const JointSolveSettings&, JointFindings&);                                       \
+    template void StoreJoints(const JointBatch<lanes>&, JointRecord*, JointType* const*, const BodyState*, float, \
+                              float);
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE)
 #undef FULCRUM_INSTANTIATE
 

@@ -1,5 +1,6 @@
-// Joints that are far apart are pulled together by pseudo-velocities (split impulses): poses move with them, velocities never see them.
-// All joints and contacts of the bodies have a say in them, so that what hangs on a pulled body comes along, and stops at the ground. Ball joints: SolveBalls.cpp.
+// Joints that are far apart are pulled together by pseudo-velocities (split impulses): poses move with them, velocities
+// never see them. All joints and contacts of the bodies have a say in them, so that what hangs on a pulled body comes
+// along, and stops at the ground. Ball joints: SolveBalls.cpp.
 #include <Fulcrum/Constraints/Joints/JointKernels.h>
 
 namespace fulcrum {
@@ -26,10 +27,11 @@ FULCRUM_FORCE_INLINE Wide<N> PullSpeedOf(const JointRows<N>& row, const JointSol
     return PullSpeed<Real>(row.error / ratio, settings) * ratio;
 }
 
-// Those of the distant lanes. They need not keep momentum: what is to move is moved without turning it, and what is to turn is turned
-// about its center, so that no lever as long as the gap makes a small mass of a large one.
+// Those of the distant lanes. They need not keep momentum: what is to move is moved without turning it, and what is to
+// turn is turned about its center, so that no lever as long as the gap makes a small mass of a large one.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-[[gnu::noinline]] void PullDistant(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, const JointSolveSettings& settings) {
+[[gnu::noinline]] void PullDistant(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b,
+                                   const JointSolveSettings& settings) {
     using Real = Wide<N>;
     const Real zero(0.0f), one(1.0f), &massA = batch.massA.mass, &massB = batch.massB.mass;
     const auto isDistant = batch.isDistant > Real(0.5f);
@@ -41,7 +43,8 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
         const Vec3<Real> turnA = batch.massA.inertia * row.a.angular, turnB = batch.massB.inertia * row.b.angular;
         const Real angular = Dot<Real>(row.a.angular, turnA) + Dot<Real>(row.b.angular, turnB);
         const Real response = Select(moves, linear, angular);
-        const auto acts = isDistant & (row.mass > zero) & (response > zero) & (row.error <= row.openAbove) & (row.mostPush < Real(JointRow::kUnlimited));
+        const auto acts = isDistant & (row.mass > zero) & (response > zero) & (row.error <= row.openAbove) &
+                          (row.mostPush < Real(JointRow::kUnlimited));
         const Real speed = Select(moves, Real(Dot<Real>(row.b.linear, b.linear) - Dot<Real>(row.a.linear, a.linear)),
                                   Real(Dot<Real>(row.b.angular, b.angular) - Dot<Real>(row.a.angular, a.angular)));
         const Real wanted = -(speed + PullSpeedOf(row, settings)) / Select(acts, response, one);
@@ -62,7 +65,8 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
         Vec3<Real> miss = b.linear - a.linear;
         if constexpr (kLinear == LinearLock::Line) {
             const auto& frame = batch.line.GetFrame();
-            miss = frame.axis1 * (Dot<Real>(frame.axis1, miss) + batch.pullLinear[0]) + frame.axis2 * (Dot<Real>(frame.axis2, miss) + batch.pullLinear[1]);
+            miss = frame.axis1 * (Dot<Real>(frame.axis1, miss) + batch.pullLinear[0]) +
+                   frame.axis2 * (Dot<Real>(frame.axis2, miss) + batch.pullLinear[1]);
         } else {
             miss += batch.pullLinear;
         }
@@ -73,11 +77,12 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     }
 }
 
-// The other lanes hold what they hold: locks and limits, as in a relaxing pass, those that were far apart with what is left of their pull:
-// turned about their centers they would miss each other by what that turns their anchors, and whirl. Motors and springs have no part in
-// pseudo-velocities.
+// The other lanes hold what they hold: locks and limits, as in a relaxing pass, those that were far apart with what is
+// left of their pull: turned about their centers they would miss each other by what that turns their anchors, and
+// whirl. Motors and springs have no part in pseudo-velocities.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-[[gnu::noinline]] void HoldNear(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, const JointSolveSettings& settings) {
+[[gnu::noinline]] void HoldNear(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b,
+                                const JointSolveSettings& settings) {
     using Real = Wide<N>;
     const Real zero(0.0f);
     const auto isNear = batch.isDistant <= Real(0.5f), isPulled = isNear & (batch.isFar > Real(0.5f));

@@ -22,7 +22,8 @@ void PulleyJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     const Vector3 ropeB = (pose.anchorA + pose.offset.cast<double>() - fixedPointB_).cast<float>();
     const float lengthA = Length(ropeA), lengthB = Length(ropeB), length = lengthA + ratio_ * lengthB;
     Vector3 axisA = Normalized(ropeA, Vector3::Zero()), axisB = Normalized(ropeB, Vector3::Zero()) * ratio_;
-    // A side that is pulled in while more than that of the other is to come has nothing more to give: it would swing to and fro.
+    // A side that is pulled in while more than that of the other is to come has nothing more to give: it would swing to
+    // and fro.
     constexpr float kShort = 0.5f;  // m
     const float givesNothing = std::min(length - control_.limits.max, kShort);
     if (lengthA < givesNothing && lengthA <= ratio_ * lengthB) axisA = Vector3::Zero();
@@ -35,7 +36,8 @@ void PulleyJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
         const float speed = Length(Vector3(velocity.linear + Cross(velocity.angular, arm)));
         return speed * std::min(1.0f, speed * pose.dt / std::max(rope, 1e-6f));
     };
-    const float slack = across(pose.velocityA, pose.armA, lengthA) + ratio_ * across(pose.velocityB, pose.armB, lengthB);
+    const float slack =
+        across(pose.velocityA, pose.armA, lengthA) + ratio_ * across(pose.velocityB, pose.armB, lengthB);
     AddControlRows(control_, pose, motion, length, kLinearSlackSpeed + slack, 0, rows);
 }
 

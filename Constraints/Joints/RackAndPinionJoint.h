@@ -1,5 +1,5 @@
-// A pinion, A, that turns about the x axis of its frame, and a rack, B, that moves along the x axis of its own. Bearing and
-// guide are other joints. Solved with the other joints; no threads.
+// A pinion, A, that turns about the x axis of its frame, and a rack, B, that moves along the x axis of its own. Bearing
+// and guide are other joints. Solved with the other joints; no threads.
 //
 //   theta  turned by the pinion about its axis a, since the joint was made          ratio  rad that it turns per meter
 //   d      way of the rack's anchor from the pinion's along the rack's axis n: u . n with u = p2 - p1

@@ -38,7 +38,8 @@ void SixDofJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
         const Vector3& axis = AxisOf(frame, k);
         JointRow motion;
         pose.SetAlong(motion, axis);
-        AddControlRows(linear_[k], pose, motion, Dot(pose.offset, axis), kLinearSlackSpeed, k * ControlSlots::kCount, rows);
+        AddControlRows(linear_[k], pose, motion, Dot(pose.offset, axis), kLinearSlackSpeed, k * ControlSlots::kCount,
+                       rows);
     }
 }
 

@@ -1,9 +1,10 @@
-// Six axes, each free, limited or locked, hard or soft, with motors and friction. Solved with the other joints; no threads.
+// Six axes, each free, limited or locked, hard or soft, with motors and friction. Solved with the other joints; no
+// threads.
 //
 //   translation  d = way of B's anchor along the axes of A's frame; rows as in SliderJoint.h
 //   rotation     AngularControls.h
-// What is locked at zero and hard from the start becomes a block where blocks exist: all three translations a point, two of
-// them a line, rotations as in AngularControls.h; else a row of its own.
+// What is locked at zero and hard from the start becomes a block where blocks exist: all three translations a point,
+// two of them a line, rotations as in AngularControls.h; else a row of its own.
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/AngularControls.h>
@@ -29,14 +30,17 @@ public:
     uint32_t FirstSlot(JointAxis axis) const override { return static_cast<uint32_t>(axis) * ControlSlots::kCount; }
     void SetTargetOrientation(const Quaternion& target) override { angular_.SetTargetOrientation(target); }
     double Coordinate(JointAxis axis, const JointPose& pose) const override {
-        return axis < JointAxis::AngularX ? JointType::Coordinate(axis, pose) : angular_.Coordinate(static_cast<int>(axis) - 3, pose);
+        return axis < JointAxis::AngularX ? JointType::Coordinate(axis, pose)
+                                          : angular_.Coordinate(static_cast<int>(axis) - 3, pose);
     }
     std::span<double> State() override { return angular_.State(); }
     SwingShape Shape() const { return angular_.Shape(); }
 
 private:
     // Whether the linear axis k has rows of its own.
-    bool HasRows(uint8_t k) const { return linearLock_ == LinearLock::None || (linearLock_ == LinearLock::Line && k == line_); }
+    bool HasRows(uint8_t k) const {
+        return linearLock_ == LinearLock::None || (linearLock_ == LinearLock::Line && k == line_);
+    }
 
     std::array<AxisControl, 3> linear_;
     AngularControls angular_;

@@ -1,5 +1,5 @@
-// A slider: B's anchor moves along the x axis of A's frame and does not turn, with limits, motor and friction. Solved with
-// the other joints; no threads.
+// A slider: B's anchor moves along the x axis of A's frame and does not turn, with limits, motor and friction. Solved
+// with the other joints; no threads.
 //
 //   d           way from A's anchor to B's along x            x  unit axis, moving with A
 //   Locks:      line along x; all rotation

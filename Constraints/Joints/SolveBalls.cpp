@@ -47,7 +47,7 @@ void GatherMasses(BallBatch<N>& batch, const BodyMass* masses) {
 // Adds what an impulse at the arms changes of the velocities.
 template <bool kRound, int N>
 FULCRUM_FORCE_INLINE void AddImpulse(const BallBatch<N>& batch, const Vec3<Wide<N>>& armA, const Vec3<Wide<N>>& armB,
-                                              const Vec3<Wide<N>>& impulse, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
+                                     const Vec3<Wide<N>>& impulse, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
     using Real = Wide<N>;
     a.linear -= impulse * batch.inverseMassA;
     a.angular -= Times<Real>(InertiaOfA<kRound>(batch), Cross<Real>(armA, impulse));
@@ -58,7 +58,7 @@ FULCRUM_FORCE_INLINE void AddImpulse(const BallBatch<N>& batch, const Vec3<Wide<
 // The same of a change of the total impulse; NaN counts as nothing, so that one bad joint spoils no body.
 template <bool kRound, int N>
 FULCRUM_FORCE_INLINE void Change(BallBatch<N>& batch, const Vec3<Wide<N>>& armA, const Vec3<Wide<N>>& armB,
-                                          const Vec3<Wide<N>>& change, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
+                                 const Vec3<Wide<N>>& change, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
     using Real = Wide<N>;
     const auto acts = Abs(change.x()) + Abs(change.y()) + Abs(change.z()) > Real(0.0f);
     const Vec3<Real> impulse = ZeroUnless<Real>(acts, change);
@@ -83,11 +83,13 @@ FULCRUM_FORCE_INLINE void MeetBetween(const BallBatch<N>& batch, BallPlace<Wide<
 }
 
 template <bool kRound, int N>
-FULCRUM_FORCE_INLINE Sym3<Wide<N>> MassAt(const BallBatch<N>& batch, const Vec3<Wide<N>>& armA, const Vec3<Wide<N>>& armB) {
+FULCRUM_FORCE_INLINE Sym3<Wide<N>> MassAt(const BallBatch<N>& batch, const Vec3<Wide<N>>& armA,
+                                          const Vec3<Wide<N>>& armB) {
     using Real = Wide<N>;
     if constexpr (kRound) {
         const Vec3<Real> a = armA * batch.inverseInertiaA, b = armB * batch.inverseInertiaB;
-        const Real xx = a.x() * armA.x() + b.x() * armB.x(), yy = a.y() * armA.y() + b.y() * armB.y(), zz = a.z() * armA.z() + b.z() * armB.z();
+        const Real xx = a.x() * armA.x() + b.x() * armB.x(), yy = a.y() * armA.y() + b.y() * armB.y(),
+                   zz = a.z() * armA.z() + b.z() * armB.z();
         const Real mass = batch.inverseMassA + batch.inverseMassB;
         Sym3<Real> k;
         k.xx = mass + (yy + zz);
@@ -104,7 +106,8 @@ FULCRUM_FORCE_INLINE Sym3<Wide<N>> MassAt(const BallBatch<N>& batch, const Vec3<
 }
 
 template <int N>
-FULCRUM_FORCE_INLINE void SetPush(BallBatch<N>& batch, const Vec3<Wide<N>>& offset, const JointSolveSettings& settings) {
+FULCRUM_FORCE_INLINE void SetPush(BallBatch<N>& batch, const Vec3<Wide<N>>& offset,
+                                  const JointSolveSettings& settings) {
     using Real = Wide<N>;
     const Real rate(settings.pushRate), most(settings.maxPushSpeed);
     for (int k = 0; k < 3; ++k) batch.push[k] = Clamp<Real>(offset[k] * rate, -most, most);
@@ -118,7 +121,8 @@ FULCRUM_FORCE_INLINE void SetPush(BallBatch<N>& batch, const Vec3<Wide<N>>& offs
 
 // Which joints are so far apart that they are pulled, see PullJoints.
 template <int N>
-FULCRUM_FORCE_INLINE void FindFar(BallBatch<N>& batch, const Vec3<Wide<N>>& offset, const Wide<N>& wasPulled, const JointSolveSettings& settings) {
+FULCRUM_FORCE_INLINE void FindFar(BallBatch<N>& batch, const Vec3<Wide<N>>& offset, const Wide<N>& wasPulled,
+                                  const JointSolveSettings& settings) {
     using Real = Wide<N>;
     const Real most(settings.maxPushSpeed), rate(settings.pushRate);
     const Real missing = Max(Max(Abs(offset.x()), Abs(offset.y())), Abs(offset.z())) * (rate / most);
@@ -140,7 +144,8 @@ FULCRUM_FORCE_INLINE void ForgetWhereNewlyFar(BallBatch<N>& batch, const Wide<N>
 }
 
 template <class Real>
-FULCRUM_FORCE_INLINE Vec3<Real> MotionAt(const Twist<Real>& a, const Twist<Real>& b, const Vec3<Real>& armA, const Vec3<Real>& armB) {
+FULCRUM_FORCE_INLINE Vec3<Real> MotionAt(const Twist<Real>& a, const Twist<Real>& b, const Vec3<Real>& armA,
+                                         const Vec3<Real>& armB) {
     return PointMotion<BodySide::Dynamic, BodySide::Dynamic>(a, b, armA, armB);
 }
 
@@ -153,8 +158,9 @@ FULCRUM_FORCE_INLINE Quat<Wide<N>> TurnOf(const Motion<N>& pose) {
 
 // The place at the displaced poses.
 template <int N>
-FULCRUM_FORCE_INLINE BallPlace<Wide<N>> Displaced(const BallBatch<N>& batch, BodyState* states, const Twist<Wide<N>>& velocityA,
-                                                           const Twist<Wide<N>>& velocityB, const JointSolveSettings& settings) {
+FULCRUM_FORCE_INLINE BallPlace<Wide<N>> Displaced(const BallBatch<N>& batch, BodyState* states,
+                                                  const Twist<Wide<N>>& velocityA, const Twist<Wide<N>>& velocityB,
+                                                  const JointSolveSettings& settings) {
     using Real = Wide<N>;
     Motion<N> poseA, poseB;
     poseA.template Gather<BodyRow::Displacement>(batch.bodyA, states);
@@ -168,14 +174,15 @@ FULCRUM_FORCE_INLINE BallPlace<Wide<N>> Displaced(const BallBatch<N>& batch, Bod
         turnB = RotationOf<Real>(b.angular);
     }
     BallPlace<Real> place{Rotate<Real>(turnA, batch.startArmA), Rotate<Real>(turnB, batch.startArmB), {}};
-    place.offset = batch.startOffset + (b.linear - a.linear) + (place.armB - batch.startArmB) - (place.armA - batch.startArmA);
+    place.offset =
+        batch.startOffset + (b.linear - a.linear) + (place.armB - batch.startArmB) - (place.armA - batch.startArmA);
     return place;
 }
 
 // Sets the joints up at the displaced poses; the turn of the impulse is left for the next substep.
 template <bool kRound, int N>
 FULCRUM_FORCE_INLINE void Follow(BallBatch<N>& batch, const SolverBodies& bodies, const Twist<Wide<N>>& velocityA,
-                                          const Twist<Wide<N>>& velocityB, const JointSolveSettings& settings) {
+                                 const Twist<Wide<N>>& velocityB, const JointSolveSettings& settings) {
     using Real = Wide<N>;
     BallPlace<Real> place = Displaced(batch, bodies.states, velocityA, velocityB, settings);
     MeetBetween(batch, place);
@@ -218,7 +225,9 @@ void Solve(BallBatch<N>& batch, BodyState* states, const JointSolveSettings& set
         const Vec3<Real> miss = MotionAt<Real>(a, b, batch.armA, batch.armB) + batch.push;
         const Vec3<Real> hard = batch.mass * miss;
         Change<kRound>(batch, batch.armA, batch.armB,
-                       Vec3<Real>(-(hard * Real(settings.softness.massScale) + batch.impulse * Real(settings.softness.impulseScale))), a, b);
+                       Vec3<Real>(-(hard * Real(settings.softness.massScale) +
+                                    batch.impulse * Real(settings.softness.impulseScale))),
+                       a, b);
     });
 }
 
@@ -240,33 +249,37 @@ void Pull(BallBatch<N>& batch, BodyState* pseudo, const JointSolveSettings& sett
         batch.follows = Follows<Real>(batch.follows, a, b, settings);
         if (batch.far) {
             const Real sum = batch.inverseMassA + batch.inverseMassB;
-            const Vec3<Real> impulse = (b.linear - a.linear + batch.pull) * (-batch.isDistant / Select(sum > Real(0.0f), sum, Real(1.0f)));
+            const Vec3<Real> impulse =
+                (b.linear - a.linear + batch.pull) * (-batch.isDistant / Select(sum > Real(0.0f), sum, Real(1.0f)));
             a.linear -= impulse * batch.inverseMassA;
             b.linear += impulse * batch.inverseMassB;
         }
         Vec3<Real> miss = MotionAt<Real>(a, b, batch.armA, batch.armB);
         if (batch.far)
             for (int k = 0; k < 3; ++k) miss[k] = Select(batch.isFar > Real(0.5f), miss[k] + batch.pull[k], miss[k]);
-        AddImpulse<kRound>(batch, batch.armA, batch.armB, ZeroUnless<Real>(batch.isDistant <= Real(0.5f), Vec3<Real>(-(batch.mass * miss))), a, b);
+        AddImpulse<kRound>(batch, batch.armA, batch.armB,
+                           ZeroUnless<Real>(batch.isDistant <= Real(0.5f), Vec3<Real>(-(batch.mass * miss))), a, b);
     });
 }
 
 }  // namespace
 
 template <int N>
-void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const SolverBodies& bodies, const JointSolveSettings& settings,
-                  JointFindings& findings) {
+void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const SolverBodies& bodies,
+                   const JointSolveSettings& settings, JointFindings& findings) {
     using Real = Wide<N>;
     Real anchors[8], impulses[8];
     GatherRecordRow<N>(batch.joint, records, JointRecord::kAnchors, anchors);
     GatherImpulses<N>(batch.joint, records, impulses);
     BallPlace<Real> place;
     const auto armAt = [&](const uint32_t(&body)[N], int first) {
-        return WithinReach<Real>(Rotate<Real>(GatherRotation<N>(body, bodies.poses), Vec3<Real>(anchors[first], anchors[first + 1], anchors[first + 2])));
+        return WithinReach<Real>(Rotate<Real>(GatherRotation<N>(body, bodies.poses),
+                                              Vec3<Real>(anchors[first], anchors[first + 1], anchors[first + 2])));
     };
     place.armA = batch.startArmA = armAt(batch.bodyA, 0);
     place.armB = batch.startArmB = armAt(batch.bodyB, 3);
-    place.offset = batch.startOffset = WithinReach<Real>(GatherOffset<N>(batch.bodyA, batch.bodyB, bodies.poses) + place.armB - place.armA);
+    place.offset = batch.startOffset =
+        WithinReach<Real>(GatherOffset<N>(batch.bodyA, batch.bodyB, bodies.poses) + place.armB - place.armA);
     FindFar(batch, place.offset, impulses[6], settings);
     findings.far |= batch.far;
     MeetBetween(batch, place);
@@ -282,10 +295,12 @@ void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const Solver
         batch.mass = MassAt<false>(batch, place.armA, place.armB);
     }
     const auto answers = batch.mass.xx + batch.mass.yy + batch.mass.zz > Real(0.0f);
-    batch.impulse = ZeroUnless<Real>(answers, Vec3<Real>(Vec3<Real>(impulses[0], impulses[1], impulses[2]) * Real(settings.impulseScale)));
+    batch.impulse = ZeroUnless<Real>(
+        answers, Vec3<Real>(Vec3<Real>(impulses[0], impulses[1], impulses[2]) * Real(settings.impulseScale)));
     ForgetWhereNewlyFar(batch, impulses[6]);
     SetPush(batch, place.offset, settings);
-    NoteLargest<N>(batch.joint, batch.count, Dot<Real>(place.offset, place.offset), findings.linearError, findings.linearJoint);
+    NoteLargest<N>(batch.joint, batch.count, Dot<Real>(place.offset, place.offset), findings.linearError,
+                   findings.linearJoint);
 }
 
 template <int N>
@@ -338,13 +353,14 @@ void StoreJoints(const BallBatch<N>& batch, JointRecord* records, float dt, floa
     write(JointRecord::kTotal, force, none);
 }
 
-#define FULCRUM_INSTANTIATE(lanes)                                                                                                        \
-    template void PrepareJoints(BallBatch<lanes>&, const JointRecord*, const SolverBodies&, const JointSolveSettings&, JointFindings&);    \
-    template void WarmStartJoints(const BallBatch<lanes>&, BodyState*);                                                                    \
-    template void SolveJointVelocities(BallBatch<lanes>&, BodyState*, const JointSolveSettings&);                                          \
-    template void RelaxJoints(BallBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);                                          \
-    template void UpdateJoints(BallBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);                                         \
-    template void PullJoints(BallBatch<lanes>&, BodyState*, const JointSolveSettings&);                                                    \
+#define FULCRUM_INSTANTIATE(lanes)                                                                                     \
+    template void PrepareJoints(BallBatch<lanes>&, const JointRecord*, const SolverBodies&, const JointSolveSettings&, \
+                                JointFindings&);                                                                       \
+    template void WarmStartJoints(const BallBatch<lanes>&, BodyState*);                                                \
+    template void SolveJointVelocities(BallBatch<lanes>&, BodyState*, const JointSolveSettings&);                      \
+    template void RelaxJoints(BallBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);                      \
+    template void UpdateJoints(BallBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);                     \
+    template void PullJoints(BallBatch<lanes>&, BodyState*, const JointSolveSettings&);                                \
     template void StoreJoints(const BallBatch<lanes>&, JointRecord*, float, float);
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE)
 #undef FULCRUM_INSTANTIATE

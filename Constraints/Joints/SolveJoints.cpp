@@ -8,7 +8,8 @@ using namespace joints;
 
 // Adds the total impulses of the locks to the velocities, times `sign`.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-FULCRUM_FORCE_INLINE void AddLockImpulses(const JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, float sign) {
+FULCRUM_FORCE_INLINE void AddLockImpulses(const JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b,
+                                          float sign) {
     using Real = Wide<N>;
     const auto add = [&](const auto& part, const Vec3<Real>& reaction) {
         auto lambda = part.GetTotalLambda();
@@ -22,14 +23,15 @@ FULCRUM_FORCE_INLINE void AddLockImpulses(const JointBatch<N>& batch, Twist<Wide
     if constexpr (kLinear == LinearLock::Line) add(batch.line, batch.reactionLinear);
 }
 
-// The same of the rows' own, without the reaction of the locks; kTurning: of those alone whose direction or mass changes within the
-// step, whatever lanes beside them do.
+// The same of the rows' own, without the reaction of the locks; kTurning: of those alone whose direction or mass
+// changes within the step, whatever lanes beside them do.
 template <bool kTurning, int N>
 FULCRUM_FORCE_INLINE void AddRowImpulses(const JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, float sign) {
     using Real = Wide<N>;
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         const JointRows<N>& row = batch.rows[i];
-        const Real impulse = row.impulse * (kTurning ? Max(Max(row.radial, row.turnsWithA), batch.turns) * Real(sign) : Real(sign));
+        const Real impulse =
+            row.impulse * (kTurning ? Max(Max(row.radial, row.turnsWithA), batch.turns) * Real(sign) : Real(sign));
         const auto acts = Abs(impulse) > Real(0.0f);
         a.linear -= ZeroUnless<Real>(acts, Vec3<Real>(row.a.linear * (batch.massA.mass * impulse)));
         a.angular -= ZeroUnless<Real>(acts, Vec3<Real>((batch.massA.inertia * row.a.angular) * impulse));
@@ -48,8 +50,10 @@ FULCRUM_FORCE_INLINE void SumImpulses(JointBatch<N>& batch) {
         if (batch.rowCount > 0)
             for (int k = 0; k < lambda.size(); ++k) sum[k] += reaction[k];
     };
-    if constexpr (kLinear != LinearLock::None) add(batch.earlierLinear, LinearPart<kLinear>(batch), batch.reactionLinear);
-    if constexpr (kAngular != AngularLock::None) add(batch.earlierAngular, AngularPart<kAngular>(batch), batch.reactionAngular);
+    if constexpr (kLinear != LinearLock::None)
+        add(batch.earlierLinear, LinearPart<kLinear>(batch), batch.reactionLinear);
+    if constexpr (kAngular != AngularLock::None)
+        add(batch.earlierAngular, AngularPart<kAngular>(batch), batch.reactionAngular);
     for (uint32_t i = 0; i < batch.rowCount; ++i) batch.rows[i].earlier += batch.rows[i].impulse;
 }
 
@@ -85,7 +89,9 @@ FULCRUM_FORCE_INLINE void SolveRow(JointBatch<N>& batch, JointRows<N>& row, Twis
     const Real delta = Select(acts, wanted, zero);
     row.impulse += delta;
     // What a lane without the row has must keep every bit: see ZeroUnless.
-    const auto add = [&](Vec3<Real>& to, const Vec3<Real>& response) { to -= ZeroUnless<Real>(acts, Vec3<Real>(response * -delta)); };
+    const auto add = [&](Vec3<Real>& to, const Vec3<Real>& response) {
+        to -= ZeroUnless<Real>(acts, Vec3<Real>(response * -delta));
+    };
     add(a.linear, row.responseA.linear);
     add(a.angular, row.responseA.angular);
     add(b.linear, row.responseB.linear);
@@ -94,10 +100,11 @@ FULCRUM_FORCE_INLINE void SolveRow(JointBatch<N>& batch, JointRows<N>& row, Twis
     if constexpr (kAngular != AngularLock::None) add(batch.reactionAngular, row.lockAngular);
 }
 
-// Changes a lock's impulse, and the velocities with it, by what deltaOf(row, total) says; where all of it is finite and not zero, and
-// may(mask) lets it.
+// Changes a lock's impulse, and the velocities with it, by what deltaOf(row, total) says; where all of it is finite and
+// not zero, and may(mask) lets it.
 template <int N, class Part, class DeltaOf, class May>
-FULCRUM_FORCE_INLINE void ChangeLock(JointBatch<N>& batch, Part& part, Twist<Wide<N>>& a, Twist<Wide<N>>& b, DeltaOf&& deltaOf, May&& may) {
+FULCRUM_FORCE_INLINE void ChangeLock(JointBatch<N>& batch, Part& part, Twist<Wide<N>>& a, Twist<Wide<N>>& b,
+                                     DeltaOf&& deltaOf, May&& may) {
     using Real = Wide<N>;
     auto total = part.GetTotalLambda();
     auto delta = total;
@@ -139,15 +146,17 @@ template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE void SolveAll(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
     for (uint32_t i = 0; i < batch.rowCount; ++i) SolveRow<kRelax, kLinear, kAngular>(batch, batch.rows[i], a, b);
     if constexpr (!kCoupled<kLinear, kAngular>) {
-        if constexpr (kAngular != AngularLock::None) AngularPart<kAngular>(batch).SolveVelocity(a, b, batch.massA, batch.massB);
-        if constexpr (kLinear != LinearLock::None) LinearPart<kLinear>(batch).SolveVelocity(a, b, batch.massA, batch.massB);
+        if constexpr (kAngular != AngularLock::None)
+            AngularPart<kAngular>(batch).SolveVelocity(a, b, batch.massA, batch.massB);
+        if constexpr (kLinear != LinearLock::None)
+            LinearPart<kLinear>(batch).SolveVelocity(a, b, batch.massA, batch.massB);
     } else {
         SolveBoth<kRelax, kLinear, kAngular>(batch, a, b);
     }
 }
 
-// Locks of joints that are far apart, before their rows. With levers as long as the gap a row would take what the locks are still to stop
-// for its own motion, and what it does of that, which leaves the locks alone, would add energy.
+// Locks of joints that are far apart, before their rows. With levers as long as the gap a row would take what the locks
+// are still to stop for its own motion, and what it does of that, which leaves the locks alone, would add energy.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 [[gnu::noinline]] void HoldFar(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
     using Real = Wide<N>;
@@ -155,22 +164,25 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     const LockImpulses<Real> miss = LockMotion<kLinear, kAngular>(batch, a, b);
     const LockImpulses<Real> x = SolveBlock<kLinear, kAngular>(batch, miss.linear, miss.angular);
     const auto apply = [&](auto& part, const Vec3<Real>& impulse) {
-        ChangeLock(batch, part, a, b, [&](int k, const Real&) { return Real(-impulse[k]); },
-                   [&](auto changes) { return changes & (batch.isFar > Real(0.5f)); });
+        ChangeLock(
+            batch, part, a, b, [&](int k, const Real&) { return Real(-impulse[k]); },
+            [&](auto changes) { return changes & (batch.isFar > Real(0.5f)); });
     };
     if constexpr (kAngular != AngularLock::None) apply(AngularPart<kAngular>(batch), x.angular);
     if constexpr (kLinear != LinearLock::None) apply(LinearPart<kLinear>(batch), x.linear);
 }
 
 template <LinearLock kLinear, AngularLock kAngular, int N>
-FULCRUM_FORCE_INLINE JointPlace<Wide<N>> Displace(const JointBatch<N>& batch, const Twist<Wide<N>>& a, const Twist<Wide<N>>& b) {
+FULCRUM_FORCE_INLINE JointPlace<Wide<N>> Displace(const JointBatch<N>& batch, const Twist<Wide<N>>& a,
+                                                  const Twist<Wide<N>>& b) {
     using Real = Wide<N>;
     JointPlace<Real> place;
     const Quat<Real> turnA = RotationOf<Real>(a.angular), turnB = RotationOf<Real>(b.angular);
     if (kLinear != LinearLock::None || batch.radial) {
         place.armA = Rotate<Real>(turnA, batch.startArmA);
         place.armB = Rotate<Real>(turnB, batch.startArmB);
-        place.offset = batch.startOffset + (b.linear - a.linear) + (place.armB - batch.startArmB) - (place.armA - batch.startArmA);
+        place.offset =
+            batch.startOffset + (b.linear - a.linear) + (place.armB - batch.startArmB) - (place.armA - batch.startArmA);
     }
     if constexpr (kLinear == LinearLock::Line) {
         place.line = Rotate<Real>(turnA, batch.startLine);
@@ -185,10 +197,12 @@ FULCRUM_FORCE_INLINE JointPlace<Wide<N>> Displace(const JointBatch<N>& batch, co
     return place;
 }
 
-// Brings the parts and the rows' errors to the displaced poses; the turn of the locks' impulses is left for the next substep.
+// Brings the parts and the rows' errors to the displaced poses; the turn of the locks' impulses is left for the next
+// substep.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-[[gnu::noinline]] JointErrors<Wide<N>> Follow(JointBatch<N>& batch, const SolverBodies& bodies, const Twist<Wide<N>>& velocityA,
-                                                const Twist<Wide<N>>& velocityB, const JointSolveSettings& settings) {
+[[gnu::noinline]] JointErrors<Wide<N>> Follow(JointBatch<N>& batch, const SolverBodies& bodies,
+                                              const Twist<Wide<N>>& velocityA, const Twist<Wide<N>>& velocityB,
+                                              const JointSolveSettings& settings) {
     using Real = Wide<N>;
     Motion<N> motionA, motionB;
     motionA.template Gather<BodyRow::Displacement>(batch.bodyA, bodies.states);
@@ -237,7 +251,8 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
 template <int N, class Batch, class F>
 FULCRUM_FORCE_INLINE void ChangeLocked(Batch& batch, BodyState* states, F&& change) {
     ChangeVelocities<N>(batch, states, [&](auto& a, auto& b) FULCRUM_FORCE_INLINE_LAMBDA {
-        WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) FULCRUM_FORCE_INLINE_LAMBDA { change(linear, angular, a, b); });
+        WithLocks(batch.linear, batch.angular,
+                  [&](auto linear, auto angular) FULCRUM_FORCE_INLINE_LAMBDA { change(linear, angular, a, b); });
     });
 }
 
@@ -283,15 +298,16 @@ void UpdateJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointS
         Motion<N> motionA, motionB;
         motionA.template Gather<BodyRow::Velocity>(batch.bodyA, bodies.states);
         motionB.template Gather<BodyRow::Velocity>(batch.bodyB, bodies.states);
-        Soften<linear, angular>(batch, Follow<linear, angular>(batch, bodies, motionA.Get(), motionB.Get(), settings), settings);
+        Soften<linear, angular>(batch, Follow<linear, angular>(batch, bodies, motionA.Get(), motionB.Get(), settings),
+                                settings);
     });
 }
 
-#define FULCRUM_INSTANTIATE(lanes)                                                                     \
-    template void WarmStartJoints(const JointBatch<lanes>&, BodyState*);                               \
-    template void TurnJoints(JointBatch<lanes>&, BodyState*);                                          \
-    template void SolveJointVelocities(JointBatch<lanes>&, BodyState*, const JointSolveSettings&);     \
-    template void RelaxJoints(JointBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);     \
+#define FULCRUM_INSTANTIATE(lanes)                                                                 \
+    template void WarmStartJoints(const JointBatch<lanes>&, BodyState*);                           \
+    template void TurnJoints(JointBatch<lanes>&, BodyState*);                                      \
+    template void SolveJointVelocities(JointBatch<lanes>&, BodyState*, const JointSolveSettings&); \
+    template void RelaxJoints(JointBatch<lanes>&, const SolverBodies&, const JointSolveSettings&); \
     template void UpdateJoints(JointBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE)
 #undef FULCRUM_INSTANTIATE

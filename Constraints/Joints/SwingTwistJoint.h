@@ -1,5 +1,5 @@
-// A shoulder: B's anchor stays at A's, B's x axis swings within an ellipse or a pyramid about A's, and B twists about it in a
-// range; motors and friction about all axes. Solved with the other joints; no threads.
+// A shoulder: B's anchor stays at A's, B's x axis swings within an ellipse or a pyramid about A's, and B twists about
+// it in a range; motors and friction about all axes. Solved with the other joints; no threads.
 //   Locks:      point; rotation as far as axes are locked (AngularControls.h)
 //   Rows:       AngularControls.h (AngularX the twist, AngularY and AngularZ the swing)
 #pragma once
@@ -29,7 +29,8 @@ public:
     }
     void SetTargetOrientation(const Quaternion& target) override { angular_.SetTargetOrientation(target); }
     double Coordinate(JointAxis axis, const JointPose& pose) const override {
-        return axis < JointAxis::AngularX ? JointType::Coordinate(axis, pose) : angular_.Coordinate(static_cast<int>(axis) - 3, pose);
+        return axis < JointAxis::AngularX ? JointType::Coordinate(axis, pose)
+                                          : angular_.Coordinate(static_cast<int>(axis) - 3, pose);
     }
     std::span<double> State() override { return angular_.State(); }
     SwingShape Shape() const { return angular_.Shape(); }

@@ -11,8 +11,8 @@ struct WheelSlots {
 };
 
 struct WheelAngles {
-    float steering, tilt, spin;                      // rad
-    Vector3 steeringAxis, tiltAxis, spinAxis;        // J: rates per relative angular velocity
+    float steering, tilt, spin;                // rad
+    Vector3 steeringAxis, tiltAxis, spinAxis;  // J: rates per relative angular velocity
 };
 
 WheelAngles AnglesOf(const JointPose& pose) {
@@ -34,7 +34,8 @@ WheelAngles AnglesOf(const JointPose& pose) {
 
 }  // namespace
 
-WheelJoint::WheelJoint(const AxisControl& suspension, bool isSteered, const AxisControl& steering, const AxisControl& spin)
+WheelJoint::WheelJoint(const AxisControl& suspension, bool isSteered, const AxisControl& steering,
+                       const AxisControl& spin)
     : suspension_(suspension), steering_(steering), spin_(spin), isSteered_(isSteered) {}
 
 JointLocks WheelJoint::Locks() const {
@@ -73,7 +74,9 @@ AxisControl* WheelJoint::Control(JointAxis axis) {
 }
 
 uint32_t WheelJoint::FirstSlot(JointAxis axis) const {
-    return axis == JointAxis::AngularY ? WheelSlots::kSteering : axis == JointAxis::AngularX ? WheelSlots::kSpin : WheelSlots::kSuspension;
+    return axis == JointAxis::AngularY   ? WheelSlots::kSteering
+           : axis == JointAxis::AngularX ? WheelSlots::kSpin
+                                         : WheelSlots::kSuspension;
 }
 
 double WheelJoint::Coordinate(JointAxis axis, const JointPose& pose) const {

@@ -38,9 +38,8 @@ public:
     // zero.
     template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     void CalculateSpringProperties(Real dt, const InverseMass<Real>& mass1, const InverseMass<Real>& mass2,
-                                   const Vector& axis, Real bias, Real error, const SpringConstants<Real>& spring)
-        requires kSoft
-    {
+                                   const Vector& axis, Real bias, Real error,
+                                   const SpringConstants<Real>& spring) requires kSoft {
         spring_.SetSoft(dt, InverseEffectiveMass<kSide1, kSide2>(mass1, mass2, axis), bias, error, spring);
         ForgetInactive();
     }
@@ -48,24 +47,21 @@ public:
     // (N m/rad) and damping (N m s/rad), all >= 0.
     template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     void CalculateSpringProperties(float dt, const InverseMass<float>& mass1, const InverseMass<float>& mass2,
-                                   const Vec3<float>& axis, float bias, float error, const SpringSettings& settings)
-        requires(kSoft && std::is_same_v<Real, float>)
-    {
+                                   const Vec3<float>& axis, float bias, float error,
+                                   const SpringSettings& settings) requires(kSoft&& std::is_same_v<Real, float>) {
         CalculateSpringProperties<kSide1, kSide2>(dt, mass1, mass2, axis, bias, error, ToConstants(settings));
     }
     template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     void CalculateFrequencyProperties(Real dt, const InverseMass<Real>& mass1, const InverseMass<Real>& mass2,
-                                      const Vector& axis, Real bias, Real error, Real frequency, Real dampingRatio)
-        requires kSoft
-    {
+                                      const Vector& axis, Real bias, Real error, Real frequency,
+                                      Real dampingRatio) requires kSoft {
         CalculateSpringProperties<kSide1, kSide2>(dt, mass1, mass2, axis, bias, error,
                                                   FrequencyConstants(frequency, dampingRatio));
     }
     template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     void CalculateStiffnessProperties(Real dt, const InverseMass<Real>& mass1, const InverseMass<Real>& mass2,
-                                      const Vector& axis, Real bias, Real error, Real stiffness, Real damping)
-        requires kSoft
-    {
+                                      const Vector& axis, Real bias, Real error, Real stiffness,
+                                      Real damping) requires kSoft {
         CalculateSpringProperties<kSide1, kSide2>(dt, mass1, mass2, axis, bias, error,
                                                   StiffnessConstants(stiffness, damping));
     }
@@ -96,17 +92,16 @@ public:
     Mask SolveVelocity(Twist<Real>& velocity1, Twist<Real>& velocity2, const InverseMass<Real>& mass1,
                        const InverseMass<Real>& mass2, const Vector& axis, Real minLambda, Real maxLambda) {
         const Real relativeVelocity = RelativeMotion<kSide1, kSide2>(velocity1, velocity2, axis);
-        const Real totalLambda =
-            Clamp(spring_.SolveTotalLambda(relativeVelocity, totalLambda_), minLambda, maxLambda);
+        const Real totalLambda = Clamp(spring_.SolveTotalLambda(relativeVelocity, totalLambda_), minLambda, maxLambda);
         const Real deltaLambda = Select(IsActive(), totalLambda - totalLambda_, Real(0.0f));
-        const Mask applied =
-            ApplyImpulse<kSide1, kSide2>(velocity1, velocity2, mass1, mass2, axis, deltaLambda);
+        const Mask applied = ApplyImpulse<kSide1, kSide2>(velocity1, velocity2, mass1, mass2, axis, deltaLambda);
         totalLambda_ = Select(applied, totalLambda, totalLambda_);
         return applied;
     }
 
     // One position pass: turns the bodies (displacement since the start of the step) by -K^-1 baumgarte C along J.
-    // error: C as the poses are now, rad; zero where it is satisfied. Springs are left alone: their error is their torque.
+    // error: C as the poses are now, rad; zero where it is satisfied. Springs are left alone: their error is their
+    // torque.
     template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     Mask SolvePosition(Twist<Real>& displacement1, Twist<Real>& displacement2, const InverseMass<Real>& mass1,
                        const InverseMass<Real>& mass2, const Vector& axis, Real error, Real baumgarte) const {

@@ -9,8 +9,8 @@
 //                      = n . (v2 - v1) + (r2 x n) . w2 - ((r1 + u) x n) . w1
 //   Jacobian:    J = [-n, -(r1 + u) x n, n, r2 x n]
 //   K = J M^-1 J^T = 1/m1 + ((r1+u) x n) . I1^-1 ((r1+u) x n) + 1/m2 + (r2 x n) . I2^-1 (r2 x n)
-//   A solve changes the impulse by delta lambda = -K^-1 (J v + b) (soft: SpringPart.h), clamps the total to its limits and
-//   adds M^-1 J^T delta lambda to the velocities.
+//   A solve changes the impulse by delta lambda = -K^-1 (J v + b) (soft: SpringPart.h), clamps the total to its limits
+//   and adds M^-1 J^T delta lambda to the velocities.
 //
 // What a part keeps is small, because large scenes are limited by memory: the axis and the masses, which other rows of
 // the same constraint share, are handed in again at every call and must be those of the set-up (another mass may be
@@ -47,40 +47,34 @@ public:
         spring_.SetHard(SetJacobian<kSide1, kSide2>(mass1, mass2, frame), bias);
         ForgetInactive();
     }
-    // Soft. dt > 0, s; error: C, m; the constants come from ToConstants of valid SpringSettings. Hard where those are zero.
+    // Soft. dt > 0, s; error: C, m; the constants come from ToConstants of valid SpringSettings. Hard where those are
+    // zero.
     template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     void CalculateSpringProperties(Real dt, const InverseMass<Real>& mass1, const InverseMass<Real>& mass2,
                                    const AxisFrame<Real>& frame, Real bias, Real error,
-                                   const SpringConstants<Real>& spring)
-        requires kSoft
-    {
+                                   const SpringConstants<Real>& spring) requires kSoft {
         spring_.SetSoft(dt, SetJacobian<kSide1, kSide2>(mass1, mass2, frame), bias, error, spring);
         ForgetInactive();
     }
-    // The same for one constraint, from its settings, from a frequency (Hz) and damping ratio, or from a stiffness (N/m)
-    // and damping (N s/m), all >= 0.
+    // The same for one constraint, from its settings, from a frequency (Hz) and damping ratio, or from a stiffness
+    // (N/m) and damping (N s/m), all >= 0.
     template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     void CalculateSpringProperties(float dt, const InverseMass<float>& mass1, const InverseMass<float>& mass2,
                                    const AxisFrame<float>& frame, float bias, float error,
-                                   const SpringSettings& settings)
-        requires(kSoft && std::is_same_v<Real, float>)
-    {
+                                   const SpringSettings& settings) requires(kSoft&& std::is_same_v<Real, float>) {
         CalculateSpringProperties<kSide1, kSide2>(dt, mass1, mass2, frame, bias, error, ToConstants(settings));
     }
     template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     void CalculateFrequencyProperties(Real dt, const InverseMass<Real>& mass1, const InverseMass<Real>& mass2,
                                       const AxisFrame<Real>& frame, Real bias, Real error, Real frequency,
-                                      Real dampingRatio)
-        requires kSoft
-    {
+                                      Real dampingRatio) requires kSoft {
         CalculateSpringProperties<kSide1, kSide2>(dt, mass1, mass2, frame, bias, error,
                                                   FrequencyConstants(frequency, dampingRatio));
     }
     template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     void CalculateStiffnessProperties(Real dt, const InverseMass<Real>& mass1, const InverseMass<Real>& mass2,
-                                      const AxisFrame<Real>& frame, Real bias, Real error, Real stiffness, Real damping)
-        requires kSoft
-    {
+                                      const AxisFrame<Real>& frame, Real bias, Real error, Real stiffness,
+                                      Real damping) requires kSoft {
         CalculateSpringProperties<kSide1, kSide2>(dt, mass1, mass2, frame, bias, error,
                                                   StiffnessConstants(stiffness, damping));
     }
@@ -124,8 +118,7 @@ public:
     Mask ApplyTotalLambda(Twist<Real>& velocity1, Twist<Real>& velocity2, const InverseMass<Real>& mass1,
                           const InverseMass<Real>& mass2, const Vector& axis, Real totalLambda) {
         const Real deltaLambda = Select(IsActive(), totalLambda - totalLambda_, Real(0.0f));
-        const Mask applied =
-            ApplyImpulse<kSide1, kSide2>(velocity1, velocity2, mass1, mass2, axis, deltaLambda);
+        const Mask applied = ApplyImpulse<kSide1, kSide2>(velocity1, velocity2, mass1, mass2, axis, deltaLambda);
         totalLambda_ = Select(applied, totalLambda, totalLambda_);
         return applied;
     }

@@ -1,13 +1,13 @@
-// The life that parts of one to three rows share: rows solved together as one block, hard or soft, with their impulses and
-// states. A part derives from it and adds its set-up, its Jacobian and the impulses along it. One thread per part.
+// The life that parts of one to three rows share: rows solved together as one block, hard or soft, with their impulses
+// and states. A part derives from it and adds its set-up, its Jacobian and the impulses along it. One thread per part.
 //
 //   K = J M^-1 J^T                       b  bias, m/s or rad/s            C  error, m or rad
 //   A solve changes the impulses by delta lambda = -massScale K^-1 (J v + b) - impulseScale * total lambda and adds
 //   M^-1 J^T delta lambda to the velocities; (1, 0) is the hard block, which reaches J v = -b (RowSoftness.h).
 //   A position pass moves the bodies by -K^-1 baumgarte C along J.
 //
-// The part keeps its Jacobian, the masses are handed in at every call as in the axis part. A block that no body can answer
-// is inactive; a lane that is inactive changes nothing.
+// The part keeps its Jacobian, the masses are handed in at every call as in the axis part. A block that no body can
+// answer is inactive; a lane that is inactive changes nothing.
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/PairMotion.h>
@@ -125,9 +125,7 @@ public:
     // The same for a single row whose total impulse stays in [minLambda, maxLambda].
     template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     Mask SolveVelocity(Twist<Real>& velocity1, Twist<Real>& velocity2, const InverseMass<Real>& mass1,
-                       const InverseMass<Real>& mass2, Real minLambda, Real maxLambda)
-        requires(kRows == 1)
-    {
+                       const InverseMass<Real>& mass2, Real minLambda, Real maxLambda) requires(kRows == 1) {
         const Real candidate = SolveTotalLambda<kSide1, kSide2>(velocity1, velocity2);
         return ApplyTotalLambda<kSide1, kSide2>(velocity1, velocity2, mass1, mass2,
                                                 Clamp(candidate, minLambda, maxLambda));
@@ -174,8 +172,7 @@ private:
     template <BodySide kSide1, BodySide kSide2>
     Mask ApplyTotalLambda(Twist<Real>& velocity1, Twist<Real>& velocity2, const InverseMass<Real>& mass1,
                           const InverseMass<Real>& mass2, const Rows& totalLambda) {
-        const Rows deltaLambda =
-            detail::Choose<Real>(IsActive(), Rows(totalLambda - totalLambda_), Types::Zero());
+        const Rows deltaLambda = detail::Choose<Real>(IsActive(), Rows(totalLambda - totalLambda_), Types::Zero());
         const Mask applied = ApplyImpulse<kSide1, kSide2>(velocity1, velocity2, mass1, mass2, deltaLambda);
         totalLambda_ = detail::Choose<Real>(applied, totalLambda, totalLambda_);
         return applied;

@@ -8,8 +8,8 @@
 
 namespace fulcrum {
 
-// A side that is not Dynamic is neither read nor written where that changes nothing: Static has no velocity and no mass,
-// Kinematic has a velocity, which the row sees, and no mass.
+// A side that is not Dynamic is neither read nor written where that changes nothing: Static has no velocity and no
+// mass, Kinematic has a velocity, which the row sees, and no mass.
 enum class BodySide : uint8_t { Static, Kinematic, Dynamic };
 
 constexpr bool HasVelocity(BodySide side) { return side != BodySide::Static; }
@@ -20,8 +20,8 @@ template <class Real>
 using MaskOf = decltype(Real(0.0f) < Real(0.0f));
 
 // The mass of a body as one constraint is to see it: another inverse mass (1/kg, >= 0) and the inverse inertia scaled
-// (>= 0). A user makes one body heavier for one contact this way. Give the result to set-up, velocity and position solve
-// alike; momentum is then not conserved unless both bodies' scales agree.
+// (>= 0). A user makes one body heavier for one contact this way. Give the result to set-up, velocity and position
+// solve alike; momentum is then not conserved unless both bodies' scales agree.
 template <class Real>
 inline InverseMass<Real> OverrideMass(const InverseMass<Real>& mass, Real inverseMass, Real inverseInertiaScale) {
     InverseMass<Real> result;

@@ -13,13 +13,13 @@ struct alignas(64) BodyState {
     // First row: the velocity.
     float linearVelocity[3] = {0, 0, 0};   // m/s, of the center of mass
     float angularVelocity[3] = {0, 0, 0};  // rad/s, world axes
-    float nearFixed = 0;                   // of pseudo-velocities: 1 where a contact with something fixed has a say, see PullContacts
-    float marks = 0;                       // of whoever steps the bodies; constraints leave them alone
+    float nearFixed = 0;  // of pseudo-velocities: 1 where a contact with something fixed has a say, see PullContacts
+    float marks = 0;      // of whoever steps the bodies; constraints leave them alone
     // Second row: change of pose since the start of the step.
-    float deltaPosition[3] = {0, 0, 0};    // m
-    float deltaRotation[3] = {0, 0, 0};    // rad, rotation vector in world axes
-    // sin(a / 2) / a and cos(a / 2) of the angle a = |deltaRotation|: the rotation as a quaternion is that vector times the first, and
-    // the second. Kept up to date where a joint holds the body.
+    float deltaPosition[3] = {0, 0, 0};  // m
+    float deltaRotation[3] = {0, 0, 0};  // rad, rotation vector in world axes
+    // sin(a / 2) / a and cos(a / 2) of the angle a = |deltaRotation|: the rotation as a quaternion is that vector times
+    // the first, and the second. Kept up to date where a joint holds the body.
     float halfTurn[2] = {0.5f, 1};
 
     float* VelocityRow() { return linearVelocity; }

@@ -1,5 +1,6 @@
-// Two rows that lock the motion of an anchor point along two axes, so that it can only slide along the third: sliders and
-// points on lines. Called by joints, which gather the bodies' lanes before and scatter them after. One thread per part.
+// Two rows that lock the motion of an anchor point along two axes, so that it can only slide along the third: sliders
+// and points on lines. Called by joints, which gather the bodies' lanes before and scatter them after. One thread per
+// part.
 //
 // Source: D. Chappuis, "Constraints Derivation for Rigid Body Simulation in 3D" (slider joint).
 //   x1, x2  centers of mass             p1, p2  anchor points in world space        r1 = p1 - x1, r2 = p2 - x2
@@ -7,7 +8,8 @@
 //   Constraint:  C = (u . n1, u . n2)
 //   Derivative:  with u kept (see AxisPart.h), dC_i/dt = n_i . (v2 + w2 x r2 - v1 - w1 x (r1 + u))
 //   Jacobian:    row i = [-n_i, -(r1 + u) x n_i, n_i, r2 x n_i]
-//   K = J M^-1 J^T = N^T K_p N with N = [n1 n2] and K_p that of the point part at r1 + u and r2: both impulses act at p2.
+//   K = J M^-1 J^T = N^T K_p N with N = [n1 n2] and K_p that of the point part at r1 + u and r2: both impulses act at
+//   p2.
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/BlockPart.h>

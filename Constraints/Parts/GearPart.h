@@ -1,5 +1,5 @@
-// One row that ties the rotation of two bodies about axes of their own: gears. Called by joints, which gather the bodies'
-// lanes before and scatter them after. One thread per part.
+// One row that ties the rotation of two bodies about axes of their own: gears. Called by joints, which gather the
+// bodies' lanes before and scatter them after. One thread per part.
 //
 // Own derivation.
 //   a1, a2  unit axes in world space, each fixed in its body's bearing        ratio  turns of body 1 per turn of body 2

@@ -9,10 +9,10 @@
 //   Jacobian:    d(a1 . b2)/dt = (w2 - w1) . (b2 x a1); where a1 = a2 that is -c2, and b2 for the other row, so
 //                J = [0, c2, 0, -c2; 0, -b2, 0, b2]
 //   K = J M^-1 J^T = T^T (I1^-1 + I2^-1) T with T = [-c2, b2]
-// a1 x a2 theta / sin(theta), the rotation vector from a1 to a2, has C as its components along -c2 and b2 and none along
-// a2: turning by -C about those axes brings a2 back along the shortest way, from any angle. The plain dot products would
-// vanish where the axes are opposite, and their Jacobian where they are perpendicular. At 180 degrees every way is the
-// shortest; C then is (pi, 0).
+// a1 x a2 theta / sin(theta), the rotation vector from a1 to a2, has C as its components along -c2 and b2 and none
+// along a2: turning by -C about those axes brings a2 back along the shortest way, from any angle. The plain dot
+// products would vanish where the axes are opposite, and their Jacobian where they are perpendicular. At 180 degrees
+// every way is the shortest; C then is (pi, 0).
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/BlockPart.h>

@@ -1,5 +1,5 @@
-// One row on two bodies along different axes: pulleys. Called by joints, which gather the bodies' lanes before and scatter
-// them after. One thread per part.
+// One row on two bodies along different axes: pulleys. Called by joints, which gather the bodies' lanes before and
+// scatter them after. One thread per part.
 //
 // Own derivation.
 //   p1, p2  points of the bodies where the rope is tied         f1, f2  fixed points over which it runs

@@ -1,7 +1,8 @@
-// How two bodies move against each other and how impulses move them, at a common point or in rotation alone; shared by the
-// block parts, called from their solves. Sides as in BodySide.h. Free functions, no state.
+// How two bodies move against each other and how impulses move them, at a common point or in rotation alone; shared by
+// the block parts, called from their solves. Sides as in BodySide.h. Free functions, no state.
 //
-//   r1, r2  from the centers of mass to the point at which an impulse acts on each body (the same point, where momentum is
+//   r1, r2  from the centers of mass to the point at which an impulse acts on each body (the same point, where momentum
+//   is
 //           to be kept)
 //   Point:    J v = v2 + w2 x r2 - v1 - w1 x r1,  K = 1/m1 + 1/m2 + sum of [r]x I^-1 [r]x^T
 //   Angular:  J v = w2 - w1,                      K = I1^-1 + I2^-1

@@ -1,5 +1,5 @@
-// Three rows that hold two anchor points together: ball joints, and the translation of fixed and hinge joints. Called by
-// joints, which gather the bodies' lanes before and scatter them after. One thread per part.
+// Three rows that hold two anchor points together: ball joints, and the translation of fixed and hinge joints. Called
+// by joints, which gather the bodies' lanes before and scatter them after. One thread per part.
 //
 // Source: D. Chappuis, "Constraints Derivation for Rigid Body Simulation in 3D" (ball-and-socket joint).
 //   x1, x2  centers of mass             p1, p2  anchor points in world space

@@ -1,13 +1,11 @@
-// One row that ties the rotation of body 1, the pinion, to the translation of body 2, the rack: rack and pinion, screws,
-// winches. Called by joints, which gather the bodies' lanes before and scatter them after. One thread per part.
+// One row that ties the rotation of body 1, the pinion, to the translation of body 2, the rack: rack and pinion,
+// screws, winches. Called by joints, which gather the bodies' lanes before and scatter them after. One thread per part.
 //
 // Own derivation.
-//   a  unit axis of the pinion, n  unit direction of the rack, world space      ratio  rad that the pinion turns per meter
-//   theta  angle turned by the pinion about a                                   d  way of the rack's center along n
-//   Constraint:  C = theta - ratio d - C0
-//   Derivative:  dC/dt = w1 . a - ratio v2 . n
-//   Jacobian:    J = [0, a, -ratio n, 0]
-//   K = J M^-1 J^T = a . I1^-1 a + ratio^2 / m2
+//   a  unit axis of the pinion, n  unit direction of the rack, world space      ratio  rad that the pinion turns per
+//   meter theta  angle turned by the pinion about a                                   d  way of the rack's center along
+//   n Constraint:  C = theta - ratio d - C0 Derivative:  dC/dt = w1 . a - ratio v2 . n Jacobian:    J = [0, a, -ratio
+//   n, 0] K = J M^-1 J^T = a . I1^-1 a + ratio^2 / m2
 // The caller supplies C: only it can count turns. Guide and bearing, which are other parts, take the reaction.
 #pragma once
 

@@ -8,7 +8,8 @@
 //   Derivative:  dC/dt = w2 - w1 for small C and, for any C, for rotations about C itself
 //   Jacobian:    J = [0, -1, 0, 1]
 //   K = J M^-1 J^T = I1^-1 + I2^-1
-// C is the angle itself and not the imaginary part of d, which is half the sine of it: it leads back from 180 degrees too.
+// C is the angle itself and not the imaginary part of d, which is half the sine of it: it leads back from 180 degrees
+// too.
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/BlockPart.h>
@@ -24,26 +25,23 @@ inline Quat<Real> InverseInitialOrientation(const Quat<Real>& rotation1, const Q
 
 namespace detail {
 
-// The rotation with these columns, orthonormal. Source: S. W. Shepperd, "Quaternion from Rotation Matrix", 1978: divides by
-// the largest of the four components.
+// The rotation with these columns, orthonormal. Source: S. W. Shepperd, "Quaternion from Rotation Matrix", 1978:
+// divides by the largest of the four components.
 inline Quaternion RotationFromColumns(const Matrix3& m) {
     const float xx = m.x.x(), yy = m.y.y(), zz = m.z.z(), trace = xx + yy + zz;
     Quaternion q;
     if (trace >= xx && trace >= yy && trace >= zz)
         q = {m.y.z() - m.z.y(), m.z.x() - m.x.z(), m.x.y() - m.y.x(), 1.0f + trace};
-    else if (xx >= yy && xx >= zz)
-        q = {1.0f + xx - yy - zz, m.x.y() + m.y.x(), m.x.z() + m.z.x(), m.y.z() - m.z.y()};
-    else if (yy >= zz)
-        q = {m.x.y() + m.y.x(), 1.0f + yy - zz - xx, m.y.z() + m.z.y(), m.z.x() - m.x.z()};
-    else
-        q = {m.x.z() + m.z.x(), m.y.z() + m.z.y(), 1.0f + zz - xx - yy, m.x.y() - m.y.x()};
+    else if (xx >= yy && xx >= zz) q = {1.0f + xx - yy - zz, m.x.y() + m.y.x(), m.x.z() + m.z.x(), m.y.z() - m.z.y()};
+    else if (yy >= zz) q = {m.x.y() + m.y.x(), 1.0f + yy - zz - xx, m.y.z() + m.z.y(), m.z.x() - m.x.z()};
+    else q = {m.x.z() + m.z.x(), m.y.z() + m.z.y(), 1.0f + zz - xx - yy, m.x.y() - m.y.x()};
     return Normalized(q);
 }
 
 }  // namespace detail
 
-// The rotation that takes the x and y axes to the given ones: unit vectors, perpendicular (y is straightened to be), not
-// parallel. The same from the axes x and z.
+// The rotation that takes the x and y axes to the given ones: unit vectors, perpendicular (y is straightened to be),
+// not parallel. The same from the axes x and z.
 inline Quaternion RotationFromAxesXY(const Vector3& axisX, const Vector3& axisY) {
     const Vector3 z = Normalized(Cross(axisX, axisY));
     return detail::RotationFromColumns({axisX, Cross(z, axisX), z});

@@ -56,7 +56,8 @@ inline SpringGains<float> ExactSpringGains(float squaredAngle, float a, bool aut
     const float twoHalfSineSquared = 2.0f * halfSine * halfSine;  // 1 - cos
     float rootLoss = OneMinusExp(a);                              // 1 - 1 / sqrt(D)
     if (automatic) {
-        // sqrt(D) = sqrt(3 + cos^2) - cos is where D - 1 = K / 2; minus 1 it is 2 (1 - cos) / (sqrt(3 + cos^2) + 1 + cos).
+        // sqrt(D) = sqrt(3 + cos^2) - cos is where D - 1 = K / 2; minus 1 it is 2 (1 - cos) / (sqrt(3 + cos^2) + 1 +
+        // cos).
         const float cosine = 1.0f - twoHalfSineSquared;
         const float least = 2.0f * twoHalfSineSquared / (Sqrt(3.0f + cosine * cosine) + 1.0f + cosine);
         rootLoss = Max(rootLoss, least / (1.0f + least));
@@ -139,9 +140,8 @@ public:
     }
 
     // Soft as the constants say. dt > 0; error: C, m or rad.
-    void SetSoft(Real dt, Real inverseEffectiveMass, Real bias, Real error, const SpringConstants<Real>& spring)
-        requires kSoft
-    {
+    void SetSoft(Real dt, Real inverseEffectiveMass, Real bias, Real error,
+                 const SpringConstants<Real>& spring) requires kSoft {
         const detail::SpringGains<Real> gains = detail::CalculateSpringGains(dt, inverseEffectiveMass, spring);
         const Real mass = EffectiveMass(inverseEffectiveMass);
         effectiveMass_ = mass * gains.massScale;

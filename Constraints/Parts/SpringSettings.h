@@ -1,23 +1,26 @@
-// How soft a constraint is, as its user says it, and the constants that a row makes of that. Validated once where a joint
-// or contact is created; SpringPart.h turns the constants into a row each substep. Plain data, no threads.
+// How soft a constraint is, as its user says it, and the constants that a row makes of that. Validated once where a
+// joint or contact is created; SpringPart.h turns the constants into a row each substep. Plain data, no threads.
 //
 // A soft row that acts alone on a mass with error x maps its velocity, once per substep of length h, as
 //     v' = (v - K x / h) / D,    x' = x + h v'
-// and D and K decide which oscillator x'' + 2 zeta w x' + w^2 x = 0 that is. With a = zeta w h, W = (w h)^2, W >= a^2 or not:
+// and D and K decide which oscillator x'' + 2 zeta w x' + w^2 x = 0 that is. With a = zeta w h, W = (w h)^2, W >= a^2
+// or not:
 //     Implicit:  D = 1 + 2 a + W,  K = W                     damping added at every step: zeta grows by about w h / 2
-//     Exact:     D = e^(2a),       K = 1 + D - 2 sqrt(D) cos(sqrt(W - a^2)), or cosh(sqrt(a^2 - W)): the eigenvalues of the
+//     Exact:     D = e^(2a),       K = 1 + D - 2 sqrt(D) cos(sqrt(W - a^2)), or cosh(sqrt(a^2 - W)): the eigenvalues of
+//     the
 //                oscillator itself, so x is that of the continuum at every step
 // What each costs:
 //  - A constant load F rests at x = F h^2 / (m K): implicit meets F / k, exact is too stiff by about the factor 1 + a.
 //    Implicit is off by w h / (2 zeta) of the damping ratio instead; the two errors are equal at zeta = 1 / sqrt(2).
 //  - With E = sum(m v^2 + m K x^2 / h^2) / 2 over all rows that share bodies, a converged step changes E by at most
-//    -sum m v'^2 (D - 1 - K / 2). Where D - 1 >= K / 2 no system of rows can gain energy, whatever masses meet. Implicit
-//    always satisfies that, exact does not once w h > 4 zeta or so: several such springs on one body can blow up.
+//    -sum m v'^2 (D - 1 - K / 2). Where D - 1 >= K / 2 no system of rows can gain energy, whatever masses meet.
+//    Implicit always satisfies that, exact does not once w h > 4 zeta or so: several such springs on one body can blow
+//    up.
 // Automatic, the default, therefore takes for frequency and damping ratio the exact form where it is the better one
-// (zeta < 1 / sqrt(2)) and a period has six steps or more (w h <= 1, where it is stable with a single iteration too), with D
-// raised to the bound D - 1 = K / 2 where it is below (zeta then acts as w h / 4, the frequency stays exact); elsewhere
-// implicit. Stiffness and damping state a force law, not a motion: there Automatic is implicit, whose force at rest is k x.
-// Source of the implicit form: E. Catto, "Soft Constraints", GDC 2011.
+// (zeta < 1 / sqrt(2)) and a period has six steps or more (w h <= 1, where it is stable with a single iteration too),
+// with D raised to the bound D - 1 = K / 2 where it is below (zeta then acts as w h / 4, the frequency stays exact);
+// elsewhere implicit. Stiffness and damping state a force law, not a motion: there Automatic is implicit, whose force
+// at rest is k x. Source of the implicit form: E. Catto, "Soft Constraints", GDC 2011.
 #pragma once
 
 #include <Fulcrum/Math/Result.h>
@@ -53,9 +56,11 @@ struct SpringSettings {
 // Errors: NonFinite, Negative, OutOfRange, naming the field. Every field is checked, used by the mode or not.
 inline Status Validate(const SpringSettings& settings) {
     if (settings.mode > SpringMode::StiffnessAndDamping)
-        return Error{ErrorCode::OutOfRange, "spring mode is " + std::to_string(static_cast<int>(settings.mode)) + "; it must be from 0 to 1"};
+        return Error{ErrorCode::OutOfRange,
+                     "spring mode is " + std::to_string(static_cast<int>(settings.mode)) + "; it must be from 0 to 1"};
     if (settings.form > SpringForm::Implicit)
-        return Error{ErrorCode::OutOfRange, "spring form is " + std::to_string(static_cast<int>(settings.form)) + "; it must be from 0 to 2"};
+        return Error{ErrorCode::OutOfRange,
+                     "spring form is " + std::to_string(static_cast<int>(settings.form)) + "; it must be from 0 to 2"};
     const struct {
         const char* name;
         float value;
@@ -85,8 +90,8 @@ struct SpringConstants {
     Real form = Real(0.0f);              // SpringForm as a number, so that lanes may differ
 };
 
-// From a frequency (Hz) and damping ratio, and from a stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad). All >= 0.
-// A force law is implicit unless the user asks for something else.
+// From a frequency (Hz) and damping ratio, and from a stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad). All >=
+// 0. A force law is implicit unless the user asks for something else.
 template <class Real>
 inline SpringConstants<Real> FrequencyConstants(Real frequency, Real dampingRatio,
                                                 SpringForm form = SpringForm::Automatic) {

@@ -1,5 +1,6 @@
-// The rotation of one joint frame against another as a swing of its x axis and a twist about it, and how far both are from
-// their limits. Called by joints once a step, and by whoever fills the lanes of the swing-twist part. Free functions, no state.
+// The rotation of one joint frame against another as a swing of its x axis and a twist about it, and how far both are
+// from their limits. Called by joints once a step, and by whoever fills the lanes of the swing-twist part. Free
+// functions, no state.
 //
 //   q      rotation of frame B seen from frame A, q = swing twist (twist first)        x  the twist axis, of frame A
 //   twist  about x, by tau in -pi..pi                  d = swing x    the twist axis of frame B, seen from frame A
@@ -7,26 +8,30 @@
 //   With s = sqrt(x^2 + w^2) = cos(alpha / 2) of the components of q:
 //          twist = (x, 0, 0, w) / s,      swing = (0, w y - x z, w z + x y, s^2) / s
 //
-// A limit is an error C, rad, positive where it is kept, and an axis a of length 1 with dC/dt = a . w, w the angular velocity
-// of B against A; a is seen from frame A, as everything here. Own derivation.
+// A limit is an error C, rad, positive where it is kept, and an axis a of length 1 with dC/dt = a . w, w the angular
+// velocity of B against A; a is seen from frame A, as everything here. Own derivation.
 //
 // Swing limits bound a region of the sphere of directions d. C is the distance on the sphere from d to its edge: it is
-// continuous everywhere, 180 degrees included, and its derivative is exactly of length 1. With D the nearest point of the edge
-// and n the unit tangent there that leads inwards, C = atan2(d . n, d . D) and a = D x n.
+// continuous everywhere, 180 degrees included, and its derivative is exactly of length 1. With D the nearest point of
+// the edge and n the unit tangent there that leads inwards, C = atan2(d . n, d . D) and a = D x n.
 //     cone      the circle alpha = c about x, so C = c - alpha, a = -e
-//     ellipse   phi_y^2 / Y^2 + phi_z^2 / Z^2 = 1. phi is the map of the sphere that keeps distances and directions from x.
+//     ellipse   phi_y^2 / Y^2 + phi_z^2 / Z^2 = 1. phi is the map of the sphere that keeps distances and directions
+//     from x.
 //               D is where d . dD/dt = 0 along the edge D(t), by bracketing
-//     pyramid   swing_y / swing_w between tan(minimum / 2) and tan(maximum / 2), likewise z: on the main planes these are angles.
+//     pyramid   swing_y / swing_w between tan(minimum / 2) and tan(maximum / 2), likewise z: on the main planes these
+//     are angles.
 //               Its faces are circles through -x, so D is closed: the foot on a face, or a corner
-//     one axis free, the other limited: the circles of latitude asin(d . its direction), a band of constant width. (The edges
+//     one axis free, the other limited: the circles of latitude asin(d . its direction), a band of constant width. (The
+//     edges
 //               above would pinch at 180 degrees, where the free axis leads through.)
 //     one axis locked, the other limited: d stays on a great circle, and lambda, its longitude there, in a range
 //     both axes locked: phi = 0, in two rows along the great circle back to x, exact from any angle
-// Twist: dtau/dt = t . w / cos(alpha / 2) with t = (x + d) / |x + d| = (s, swing_z, -swing_y), of length 1 up to 180 degrees.
-// Its C is the way to the end of the range times cos(alpha / 2), with the axis t: exact at C = 0, to first order elsewhere. It
-// fades where the x axes are opposite and twist means nothing. The longitude's C is scaled alike, by the cosine of latitude.
-// Near 180 degrees t is nearly along the edge's a: a twist beyond its range and a swing beyond a wide one of 150 degrees or more
-// then push against each other, and iterations over the rows bring them back slowly. Either alone comes back at once.
+// Twist: dtau/dt = t . w / cos(alpha / 2) with t = (x + d) / |x + d| = (s, swing_z, -swing_y), of length 1 up to 180
+// degrees. Its C is the way to the end of the range times cos(alpha / 2), with the axis t: exact at C = 0, to first
+// order elsewhere. It fades where the x axes are opposite and twist means nothing. The longitude's C is scaled alike,
+// by the cosine of latitude. Near 180 degrees t is nearly along the edge's a: a twist beyond its range and a swing
+// beyond a wide one of 150 degrees or more then push against each other, and iterations over the rows bring them back
+// slowly. Either alone comes back at once.
 #pragma once
 
 #include <Fulcrum/Math/Trigonometry.h>
@@ -38,8 +43,8 @@ namespace fulcrum {
 
 enum class SwingShape : uint8_t { Ellipse, Pyramid };
 
-// Radians, -pi <= minimum <= maximum <= pi. Locked where it is narrower than a hundredth of a degree, free where it leaves out
-// less than that of the full turn.
+// Radians, -pi <= minimum <= maximum <= pi. Locked where it is narrower than a hundredth of a degree, free where it
+// leaves out less than that of the full turn.
 struct AngleRange {
     static constexpr float kHalfTurn = 3.14159265f;
     static constexpr float kNegligible = 1.7e-4f;
@@ -62,10 +67,10 @@ struct RotationLimit {
     enum Slot : uint8_t { SwingYMaximum, SwingYMinimum, SwingZMaximum, SwingZMinimum, TwistMaximum, TwistMinimum };
     static constexpr int kSlots = 6;
 
-    float error = 0.0f;                    // C, rad
-    Vector3 axis = Vector3::Zero();        // a
-    Slot slot = SwingYMaximum;             // an ellipse uses the first
-    bool isLocked = false;                 // C = 0, in the slot of the maximum; else C >= 0
+    float error = 0.0f;              // C, rad
+    Vector3 axis = Vector3::Zero();  // a
+    Slot slot = SwingYMaximum;       // an ellipse uses the first
+    bool isLocked = false;           // C = 0, in the slot of the maximum; else C >= 0
 };
 
 struct RotationLimitList {
@@ -81,10 +86,10 @@ struct RotationLimitList {
 
 // See above.
 struct SwingTwist {
-    Quaternion swing;       // x is 0, w = cos(alpha / 2) >= 0
-    float alpha = 0.0f;     // rad, 0..pi
-    float e1 = 1.0f, e2 = 0.0f;  // e = (0, e1, e2); (0, 1, 0) where alpha is 0
-    float twist = 0.0f;     // rad, -pi..pi
+    Quaternion swing;                      // x is 0, w = cos(alpha / 2) >= 0
+    float alpha = 0.0f;                    // rad, 0..pi
+    float e1 = 1.0f, e2 = 0.0f;            // e = (0, e1, e2); (0, 1, 0) where alpha is 0
+    float twist = 0.0f;                    // rad, -pi..pi
     Vector3 direction = Vector3(1, 0, 0);  // d
 
     float SwingY() const { return alpha * e1; }  // phi_y, rad
@@ -116,8 +121,8 @@ inline SwingTwist Decompose(const Quaternion& q) {
 
 namespace detail {
 
-// Directions as (x, py, pz) with py = -z and pz = y: where rotation about +y and +z takes x. A rotation of the coordinates
-// about x, so that cross products stay what they are.
+// Directions as (x, py, pz) with py = -z and pz = y: where rotation about +y and +z takes x. A rotation of the
+// coordinates about x, so that cross products stay what they are.
 inline Vector3 ToSwingPlane(const Vector3& v) { return Vector3(v.x(), -v.z(), v.y()); }
 inline Vector3 FromSwingPlane(const Vector3& v) { return Vector3(v.x(), v.z(), -v.y()); }
 
@@ -141,8 +146,8 @@ struct Circle {
     Vector3 pole;
     float latitude;  // rad
 };
-// How far d is north of the circle, and the axis that takes it further. `across` is perpendicular to the pole and serves
-// where d is a pole.
+// How far d is north of the circle, and the axis that takes it further. `across` is perpendicular to the pole and
+// serves where d is a pole.
 inline RotationLimit NorthOf(const Circle& circle, const Vector3& d, const Vector3& across) {
     RotationLimit limit;
     const Vector3 axis = Cross(d, circle.pole);
@@ -173,7 +178,8 @@ struct EllipseEdge {
 
     // The point nearest to d, whose coordinates y and z are not negative; it is in the same quadrant, t in 0..pi/2.
     Point Nearest(const Vector3& d) const {
-        // Where the ellipse bends more than the sphere, several points are nearest about them; the best of a few comes first.
+        // Where the ellipse bends more than the sphere, several points are nearest about them; the best of a few comes
+        // first.
         constexpr int kSamples = 6;
         constexpr float kStep = 0.5f * AngleRange::kHalfTurn / kSamples;
         constexpr float kSine[kSamples + 1] = {0.0f, 0.25881905f, 0.5f, 0.70710678f, 0.86602540f, 0.96592583f, 1.0f};
@@ -225,7 +231,8 @@ inline RotationLimit EllipseLimit(const SwingTwist& r, float halfY, float halfZ)
     const detail::EllipseEdge::Point nearest = edge.Nearest(Vector3(d.x(), d.y() * signY, d.z() * signZ));
     // Mirrored back; the edge runs anticlockwise about x, so that D x tangent leads inwards, and a = D x (D x tangent).
     const Vector3 at(nearest.at.x(), nearest.at.y() * signY, nearest.at.z() * signZ);
-    const Vector3 derivative = Vector3(nearest.derivative.x(), nearest.derivative.y() * signY, nearest.derivative.z() * signZ);
+    const Vector3 derivative =
+        Vector3(nearest.derivative.x(), nearest.derivative.y() * signY, nearest.derivative.z() * signZ);
     const Vector3 tangent = Normalized(Vector3(derivative * (signY * signZ)));
     RotationLimit limit;
     limit.error = Atan2(Dot(d, Cross(at, tangent)), Dot(d, at));
@@ -239,7 +246,8 @@ namespace detail {
 struct Pyramid {
     AngleRange range[2];  // y, z
 
-    // Face 0 and 1: maximum and minimum of y, 2 and 3 of z. North of the circle is beyond the maximum, or within the minimum.
+    // Face 0 and 1: maximum and minimum of y, 2 and 3 of z. North of the circle is beyond the maximum, or within the
+    // minimum.
     Circle Face(int face) const {
         const float half = 0.5f * (face % 2 == 0 ? range[face / 2].maximum : range[face / 2].minimum);
         const SineCosine<float> angle = SinCos(half);
@@ -276,12 +284,14 @@ struct Pyramid {
 
     // Whether a swing is beyond a face. By its quaternion, because all the circles meet at -x.
     bool IsBeyond(int face, const Quaternion& swing) const {
-        const SineCosine<float> half = SinCos(0.5f * (face % 2 == 0 ? range[face / 2].maximum : range[face / 2].minimum));
+        const SineCosine<float> half =
+            SinCos(0.5f * (face % 2 == 0 ? range[face / 2].maximum : range[face / 2].minimum));
         const float over = (face < 2 ? swing.y : swing.z) * half.cosine - swing.w * half.sine;
         return face % 2 == 0 ? over > 0.0f : over < 0.0f;
     }
 
-    // The way back to the nearest point of the region from d, which is beyond some of the faces. `slot` is of the worst.
+    // The way back to the nearest point of the region from d, which is beyond some of the faces. `slot` is of the
+    // worst.
     RotationLimit WayBack(const Vector3& d, const RotationLimit (&faces)[4], const bool (&isBeyond)[4],
                           RotationLimit::Slot slot) const {
         RotationLimit best;
@@ -294,7 +304,9 @@ struct Pyramid {
             if (!(error > best.error)) continue;
             best.error = error;
             // At the corner itself a face's axis serves; opposite to it, any that is perpendicular.
-            best.axis = sine > 1e-6f ? Vector3(axis * (1.0f / sine)) : error > -1.0f ? faces[slot].axis : Perpendicular(d);
+            best.axis = sine > 1e-6f    ? Vector3(axis * (1.0f / sine))
+                        : error > -1.0f ? faces[slot].axis
+                                        : Perpendicular(d);
         }
         best.slot = slot;
         return best;
@@ -303,9 +315,11 @@ struct Pyramid {
 
 }  // namespace detail
 
-// Neither range locked nor free. Inside, all four faces; outside, the way back to the nearest point of the pyramid and, as long
-// as that is short, the faces that are kept, so that no corner lets out. The least error is the distance to the edge.
-inline void AddPyramidLimits(RotationLimitList& list, const SwingTwist& r, const AngleRange& rangeY, const AngleRange& rangeZ) {
+// Neither range locked nor free. Inside, all four faces; outside, the way back to the nearest point of the pyramid and,
+// as long as that is short, the faces that are kept, so that no corner lets out. The least error is the distance to the
+// edge.
+inline void AddPyramidLimits(RotationLimitList& list, const SwingTwist& r, const AngleRange& rangeY,
+                             const AngleRange& rangeZ) {
     const detail::Pyramid pyramid{{rangeY, rangeZ}};
     const Vector3 d = detail::ToSwingPlane(r.direction);
     RotationLimit faces[4];
@@ -339,7 +353,8 @@ inline void AddSwingLimits(RotationLimitList& list, const SwingTwist& r, const S
         return;
     }
     // Latitude towards where rotation about the axis takes x; -z for y, y for z.
-    const auto addBand = [&](RotationLimit::Slot slot, const Vector3& pole, const Vector3& across, const AngleRange& range) {
+    const auto addBand = [&](RotationLimit::Slot slot, const Vector3& pole, const Vector3& across,
+                             const AngleRange& range) {
         const RotationLimit north = detail::NorthOf({pole, 0.0f}, d, across);
         constexpr float kQuarterTurn = 0.5f * AngleRange::kHalfTurn;
         if (range.IsLocked()) return list.Add(slot, north.error, north.axis, true);
@@ -348,7 +363,8 @@ inline void AddSwingLimits(RotationLimitList& list, const SwingTwist& r, const S
             list.Add(static_cast<RotationLimit::Slot>(slot + 1), north.error - range.minimum, north.axis);
     };
     // The angle about `axis` at which d is, seen along it; d is at the height d . axis above the circle.
-    const auto addLongitude = [&](RotationLimit::Slot slot, const Vector3& axis, float sideways, const AngleRange& range) {
+    const auto addLongitude = [&](RotationLimit::Slot slot, const Vector3& axis, float sideways,
+                                  const AngleRange& range) {
         if (range.IsFree()) return;
         const float height = Dot(d, axis), scale = Sqrt(d.x() * d.x() + sideways * sideways);
         const Vector3 flat = Normalized(Vector3(d - axis * height), Vector3(1, 0, 0));
@@ -367,8 +383,8 @@ inline void AddSwingLimits(RotationLimitList& list, const SwingTwist& r, const S
 // The axis about which the twist grows, at the rate 1 / cos(alpha / 2).
 inline Vector3 TwistAxis(const SwingTwist& r) { return Vector3(r.swing.w, r.swing.z, -r.swing.y); }
 
-// None where the range is free, one where it is locked, else one for either end. Beyond the ends the nearer one counts, by
-// either way round.
+// None where the range is free, one where it is locked, else one for either end. Beyond the ends the nearer one counts,
+// by either way round.
 inline void AddTwistLimits(RotationLimitList& list, const SwingTwist& r, const AngleRange& range) {
     if (!range.IsFree()) detail::AddRange(list, RotationLimit::TwistMaximum, r.twist, r.swing.w, TwistAxis(r), range);
 }

@@ -1,14 +1,14 @@
-// Up to three rows that limit the rotation of two joint frames: a swing in an ellipse or a pyramid, a twist in a range, each
-// axis locked, limited or free. Called by whoever keeps swing and twist as one part, which gathers the bodies' lanes before and
-// scatters them after. One thread per part.
+// Up to three rows that limit the rotation of two joint frames: a swing in an ellipse or a pyramid, a twist in a range,
+// each axis locked, limited or free. Called by whoever keeps swing and twist as one part, which gathers the bodies'
+// lanes before and scatters them after. One thread per part.
 //
 // SwingTwist.h has the limits and how errors and axes follow from them.
 //   a_i   unit axis of row i in world space           C_i   its error, rad: dC_i/dt = a_i . (w2 - w1)
 //   Constraint:  C_i = 0 where locked, C_i >= 0 where limited
 //   Jacobian:    row i = [0, -a_i, 0, a_i]            K_i = a_i . (I1^-1 + I2^-1) a_i
-//   A solve changes the row's impulse by delta lambda = -massScale K_i^-1 (J v + b_i) - impulseScale * total lambda and keeps the
-//   total at 0 or above where the row is a limit. b_i = C_i biasRate; where a limit is not reached yet b_i = C_i gapRate and the
-//   row is hard: with gapRate = 1 / h the limit is met at the end of the substep and not before.
+//   A solve changes the row's impulse by delta lambda = -massScale K_i^-1 (J v + b_i) - impulseScale * total lambda and
+//   keeps the total at 0 or above where the row is a limit. b_i = C_i biasRate; where a limit is not reached yet b_i =
+//   C_i gapRate and the row is hard: with gapRate = 1 / h the limit is met at the end of the substep and not before.
 // The rows are solved one after another, because each has its own limit.
 #pragma once
 
@@ -27,14 +27,14 @@ struct SwingTwistRows {
     static constexpr int kCount = 3;
     struct Row {
         Vec3<Real> axis = Vec3<Real>(Real(0.0f), Real(0.0f), Real(0.0f));  // world space
-        Real error = Real(0.0f);                                          // rad
-        Real lowest = Real(0.0f);                                         // N m s, of the total impulse: 0 or -infinite
+        Real error = Real(0.0f);                                           // rad
+        Real lowest = Real(0.0f);  // N m s, of the total impulse: 0 or -infinite
     };
     std::array<Row, kCount> row;
 };
 
-// Of the limits whose error is below `reach`, rad, in frame A of this rotation in world space. Of the two ends of one range the
-// nearer one.
+// Of the limits whose error is below `reach`, rad, in frame A of this rotation in world space. Of the two ends of one
+// range the nearer one.
 inline SwingTwistRows<float> RowsOf(const RotationLimitList& list, const Quaternion& frameA,
                                     float reach = std::numeric_limits<float>::infinity()) {
     SwingTwistRows<float> rows;
@@ -112,11 +112,13 @@ public:
         ForgetInactive();
     }
     // Any row, or one of them.
-    Mask IsActive() const { return rows_[0].effectiveMass + rows_[1].effectiveMass + rows_[2].effectiveMass > Real(0.0f); }
+    Mask IsActive() const {
+        return rows_[0].effectiveMass + rows_[1].effectiveMass + rows_[2].effectiveMass > Real(0.0f);
+    }
     Mask IsActive(int row) const { return rows_[row].effectiveMass > Real(0.0f); }
 
-    // Applies the impulses of the step before, scaled by dt / dt of that step. A limit's is along another axis where the swing
-    // has moved along the edge meanwhile; the solve makes up for that.
+    // Applies the impulses of the step before, scaled by dt / dt of that step. A limit's is along another axis where
+    // the swing has moved along the edge meanwhile; the solve makes up for that.
     template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     void WarmStart(Twist<Real>& velocity1, Twist<Real>& velocity2, const InverseMass<Real>& mass1,
                    const InverseMass<Real>& mass2, Real dtRatio) {
@@ -147,9 +149,9 @@ public:
         return any;
     }
 
-    // One position pass: turns the bodies (displacement since the start of the step) by -K^-1 baumgarte C along J, of limits
-    // only where they are exceeded. rows: as the poses are now. Rows that were inactive at set-up take part as well, if the
-    // part is active; the softness is left out.
+    // One position pass: turns the bodies (displacement since the start of the step) by -K^-1 baumgarte C along J, of
+    // limits only where they are exceeded. rows: as the poses are now. Rows that were inactive at set-up take part as
+    // well, if the part is active; the softness is left out.
     template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     Mask SolvePosition(Twist<Real>& displacement1, Twist<Real>& displacement2, const InverseMass<Real>& mass1,
                        const InverseMass<Real>& mass2, const Rows& rows, Real baumgarte) const {

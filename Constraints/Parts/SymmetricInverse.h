@@ -1,11 +1,12 @@
-// Inverses of the small symmetric matrices K = J M^-1 J^T of one to three rows, in lanes and without branches. Called by the
-// block parts at every set-up. Free functions, no state.
+// Inverses of the small symmetric matrices K = J M^-1 J^T of one to three rows, in lanes and without branches. Called
+// by the block parts at every set-up. Free functions, no state.
 //
-// By elimination, K = L D L^T and K^-1 = L^-T D^-1 L^-1. Cofactors over the determinant would need one division instead of
-// three, but lose twice the digits: K of an anchor one meter beside a thin axle has eigenvalues 1, 1, 20000, and its
+// By elimination, K = L D L^T and K^-1 = L^-T D^-1 L^-1. Cofactors over the determinant would need one division instead
+// of three, but lose twice the digits: K of an anchor one meter beside a thin axle has eigenvalues 1, 1, 20000, and its
 // determinant drowns in the rounding of products of 20000^3.
-// A pivot that is nothing but rounding counts as a direction that no body can move in; it gets the inverse zero. What is
-// left is a generalised inverse G (K G K = K): wherever the other rows can meet J v + b = 0, they do. K = 0 has G = 0.
+// A pivot that is nothing but rounding counts as a direction that no body can move in; it gets the inverse zero. What
+// is left is a generalised inverse G (K G K = K): wherever the other rows can meet J v + b = 0, they do. K = 0 has G =
+// 0.
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/BodySide.h>
@@ -52,8 +53,8 @@ struct Sym2 {
 
 namespace detail {
 
-// 1 / pivot. scale: the diagonal, and what was taken from it beyond that on the way; rounding leaves some units of 6e-8 of
-// these.
+// 1 / pivot. scale: the diagonal, and what was taken from it beyond that on the way; rounding leaves some units of 6e-8
+// of these.
 template <class Real>
 inline Real InversePivot(Real pivot, Real scale) {
     const MaskOf<Real> stands = pivot > scale * Real(1e-6f);

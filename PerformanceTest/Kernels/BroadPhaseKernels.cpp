@@ -91,9 +91,8 @@ BoundsTree TreeOf(const std::vector<Bounds>& boxes) {
 }
 
 void ReportEach(benchmark::State& state, int64_t perIteration) {
-    state.counters["each"] =
-        benchmark::Counter(static_cast<double>(perIteration),
-                           benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+    state.counters["each"] = benchmark::Counter(
+        static_cast<double>(perIteration), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 void Rebuild(benchmark::State& state, Layout layout) {
@@ -170,8 +169,7 @@ void GasStep(benchmark::State& state) {
         state.ResumeTiming();
         for (uint32_t id : moved) tree.Update(id, Gas::Fat(fatCenters[id]));
         tree.Optimize();
-        for (uint32_t id : moved)
-            tree.Query(Gas::Fat(fatCenters[id]), [&](uint32_t other) { found += other != id; });
+        for (uint32_t id : moved) tree.Query(Gas::Fat(fatCenters[id]), [&](uint32_t other) { found += other != id; });
         queries += moved.size();
     }
     state.counters["queries"] = static_cast<double>(queries) / static_cast<double>(state.iterations());

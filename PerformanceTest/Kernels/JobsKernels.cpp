@@ -46,14 +46,16 @@ uint32_t StepsOfAMicrosecond() {
         for (int i = 0; i < 20; ++i) {
             const auto start = std::chrono::steady_clock::now();
             Work(kSample);
-            best = std::min(best, std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count());
+            best = std::min(
+                best, std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count());
         }
         return static_cast<uint32_t>(kSample / best);
     }();
     return steps;
 }
 
-// Arguments: workers, blocks a phase, microseconds a block. "barrier" is the time of a phase beyond its share of the work.
+// Arguments: workers, blocks a phase, microseconds a block. "barrier" is the time of a phase beyond its share of the
+// work.
 void Phases(benchmark::State& state) {
     constexpr uint32_t kPhases = 200;
     const auto workers = static_cast<uint32_t>(state.range(0)), blocks = static_cast<uint32_t>(state.range(1));
@@ -71,10 +73,7 @@ void Phases(benchmark::State& state) {
     const uint32_t blocksInSequence = (blocks + workers - 1) / workers;
     state.counters["barrier"] = phase - blocksInSequence * static_cast<double>(state.range(2)) * 1e-6;
 }
-BENCHMARK(Phases)
-    ->ArgNames({"workers", "blocks", "us"})
-    ->ArgsProduct({{1, 2}, {1, 2, 16}, {0, 2, 10}})
-    ->UseRealTime();
+BENCHMARK(Phases)->ArgNames({"workers", "blocks", "us"})->ArgsProduct({{1, 2}, {1, 2, 16}, {0, 2, 10}})->UseRealTime();
 
 void ArenaStep(benchmark::State& state) {
     ScratchArena arena;

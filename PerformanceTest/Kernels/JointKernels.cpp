@@ -1,8 +1,8 @@
-// Nanoseconds per joint of the joint kernels: each kind with nothing to do beyond its locks and with rows; set up once a step
-// (prepare), and in every substep one velocity iteration (velocity) and one pass that sets the parts up at the displaced poses
-// and takes the push out again (relax). Single-threaded; 1024 joints, which fit the second-level cache, between 2048 bodies
-// whose indices are anywhere. "rows" is the mean number of rows of a joint. Ball joints, which are points with nothing on, have
-// kernels of their own, and faster ones between round bodies.
+// Nanoseconds per joint of the joint kernels: each kind with nothing to do beyond its locks and with rows; set up once
+// a step (prepare), and in every substep one velocity iteration (velocity) and one pass that sets the parts up at the
+// displaced poses and takes the push out again (relax). Single-threaded; 1024 joints, which fit the second-level cache,
+// between 2048 bodies whose indices are anywhere. "rows" is the mean number of rows of a joint. Ball joints, which are
+// points with nothing on, have kernels of their own, and faster ones between round bodies.
 #include <Fulcrum/UnitTests/Constraints/Joints/RandomBalls.h>
 
 #include <benchmark/benchmark.h>
@@ -22,7 +22,9 @@ template <int N>
 class PreparedJoints {
 public:
     explicit PreparedJoints(const JointCase& how)
-        : joints_(std::span(&how, 1), kJoints, 1, {}), batches_(joints_.Batches<N>(rows_)), settings_(testing::DefaultJointSettings()) {
+        : joints_(std::span(&how, 1), kJoints, 1, {}),
+          batches_(joints_.Batches<N>(rows_)),
+          settings_(testing::DefaultJointSettings()) {
         settings_.elapsed = settings_.substepDt;
         settings_.firstPass = true;
         Prepare();
@@ -31,7 +33,8 @@ public:
     void Prepare() {
         JointFindings findings;
         for (JointBatch<N>& batch : batches_)
-            PrepareJoints(batch, joints_.records.data(), joints_.typePointers.data(), joints_.Bodies(), settings_, findings);
+            PrepareJoints(batch, joints_.records.data(), joints_.typePointers.data(), joints_.Bodies(), settings_,
+                          findings);
         benchmark::DoNotOptimize(findings);
     }
     void SolveVelocities() {
@@ -69,7 +72,8 @@ public:
 
     void Prepare() {
         JointFindings findings;
-        for (BallBatch<N>& batch : batches_) PrepareJoints(batch, joints_.records.data(), joints_.Bodies(), settings_, findings);
+        for (BallBatch<N>& batch : batches_)
+            PrepareJoints(batch, joints_.records.data(), joints_.Bodies(), settings_, findings);
         benchmark::DoNotOptimize(findings);
     }
     void SolveVelocities() {
@@ -102,7 +106,8 @@ template <class Joints, class How>
 void Register(const std::string& kind, const How& how, const std::string& lanes) {
     const auto add = [&](const char* name, void (Joints::*verb)()) {
         const std::string full = "Joint/" + kind + "/" + name + "/" + lanes;
-        benchmark::RegisterBenchmark(full.c_str(), [&how, verb](benchmark::State& state) { Run<Joints>(state, how, verb); });
+        benchmark::RegisterBenchmark(full.c_str(),
+                                     [&how, verb](benchmark::State& state) { Run<Joints>(state, how, verb); });
     };
     add("prepare", &Joints::Prepare);
     add("velocity", &Joints::SolveVelocities);
@@ -119,7 +124,8 @@ void RegisterLanes(const std::string& kind, const How& how) {
     static constexpr bool kRound = true, kAny = false;
     RegisterLanes<PreparedBalls>("ball/round", kRound);
     RegisterLanes<PreparedBalls>("ball/any", kAny);
-    for (const JointCase& how : testing::AllJointCases()) RegisterLanes<PreparedJoints>(std::string(how.kind) + "/" + how.state, how);
+    for (const JointCase& how : testing::AllJointCases())
+        RegisterLanes<PreparedJoints>(std::string(how.kind) + "/" + how.state, how);
     return true;
 }();
 

@@ -1,5 +1,5 @@
-// Triangle meshes and height fields: time and memory of a build, nanoseconds of a box query, of reading a triangle and of a ray,
-// beside brute force. The terrain is that of the scene convex_on_mesh, 20,000 triangles.
+// Triangle meshes and height fields: time and memory of a build, nanoseconds of a box query, of reading a triangle and
+// of a ray, beside brute force. The terrain is that of the scene convex_on_mesh, 20,000 triangles.
 #include <Fulcrum/Collision/Shapes/HeightField.h>
 #include <Fulcrum/Collision/Shapes/RayTriangle.h>
 #include <Fulcrum/Collision/Shapes/TriangleMesh.h>
@@ -140,8 +140,9 @@ void RayByBruteForce(benchmark::State& state) {
         for (size_t t = 0; t < terrain.indices.size(); t += 3) {
             float fraction;
             bool isBack;
-            if (IntersectTriangle(sheared, terrain.vertices[terrain.indices[t]], terrain.vertices[terrain.indices[t + 1]],
-                                  terrain.vertices[terrain.indices[t + 2]], false, best, fraction, isBack))
+            if (IntersectTriangle(sheared, terrain.vertices[terrain.indices[t]],
+                                  terrain.vertices[terrain.indices[t + 1]], terrain.vertices[terrain.indices[t + 2]],
+                                  false, best, fraction, isBack))
                 best = fraction;
         }
         benchmark::DoNotOptimize(best);

@@ -1,6 +1,6 @@
 // Nanoseconds per narrow-phase query, per pair of shapes, beside libccd on the same poses.
-// Touching pairs overlap by up to 1 cm; apart pairs have 5 to 15 cm between them. Cold: nothing is known of the pair. Warm: the pair's
-// last query was for a pose about 1 mm and 1 mrad away, as in a running simulation.
+// Touching pairs overlap by up to 1 cm; apart pairs have 5 to 15 cm between them. Cold: nothing is known of the pair.
+// Warm: the pair's last query was for a pose about 1 mm and 1 mrad away, as in a running simulation.
 #include <Fulcrum/Collision/NarrowPhase/Collide.h>
 #include <Fulcrum/Collision/NarrowPhase/Libccd.h>
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
@@ -57,7 +57,8 @@ ConvexPtr FibonacciHull(int count, float radius) {
 }
 
 // Signed distance along `direction` from A's center at which the two shapes just touch, by bisection with libccd.
-float TouchingDistance(const ConvexShape& a, const ConvexShape& b, const Quaternion& rotation, const Vector3& direction) {
+float TouchingDistance(const ConvexShape& a, const ConvexShape& b, const Quaternion& rotation,
+                       const Vector3& direction) {
     float low = 0, high = a.OuterRadius() + b.OuterRadius();
     for (int i = 0; i < 24; ++i) {
         const float middle = 0.5f * (low + high);
@@ -112,8 +113,9 @@ void Query(benchmark::State& state, const ConvexPtr& a, const ConvexPtr& b, Plac
     const double queries = static_cast<double>(step) * static_cast<double>(pairs.size());
     state.counters["points"] = static_cast<double>(points) / queries;
     state.SetItemsProcessed(static_cast<int64_t>(state.iterations()) * static_cast<int64_t>(pairs.size()));
-    state.counters["ns"] = benchmark::Counter(static_cast<double>(state.iterations()) * static_cast<double>(pairs.size()) * 1e-9,
-                                              benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+    state.counters["ns"] =
+        benchmark::Counter(static_cast<double>(state.iterations()) * static_cast<double>(pairs.size()) * 1e-9,
+                           benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
 void RawMpr(benchmark::State& state, const ConvexPtr& a, const ConvexPtr& b, Placement placement) {
@@ -121,8 +123,9 @@ void RawMpr(benchmark::State& state, const ConvexPtr& a, const ConvexPtr& b, Pla
     for (auto _ : state)
         for (const PosedPair& pair : pairs)
             benchmark::DoNotOptimize(LibccdPenetration(*a, *b, pair.poses[0], 0.02, LibccdAlgorithm::Mpr));
-    state.counters["ns"] = benchmark::Counter(static_cast<double>(state.iterations()) * static_cast<double>(pairs.size()) * 1e-9,
-                                              benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+    state.counters["ns"] =
+        benchmark::Counter(static_cast<double>(state.iterations()) * static_cast<double>(pairs.size()) * 1e-9,
+                           benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
 struct NamedShape {
@@ -142,7 +145,8 @@ void Register(const NamedShape& a, const NamedShape& b, Placement placement, con
 
 // The sizes are those of the pile scenes: cubes of 1 m, hulls of 32 points on a sphere of radius 2 m.
 const bool kRegistered = [] {
-    const NamedShape sphere{"sphere", Sphere::Create(0.5f).Value()}, capsule{"capsule", Capsule::Create(0.5f, 0.3f).Value()};
+    const NamedShape sphere{"sphere", Sphere::Create(0.5f).Value()},
+        capsule{"capsule", Capsule::Create(0.5f, 0.3f).Value()};
     const NamedShape box{"box", Box::Create(Vector3::Constant(0.5f)).Value()}, hull{"hull32", FibonacciHull(32, 2)};
     const NamedShape floor{"floor", Box::Create(Vector3(50, 1, 50)).Value()};
     const NamedShape* shapes[] = {&sphere, &capsule, &box, &hull};
@@ -158,15 +162,18 @@ const bool kRegistered = [] {
     Register(floor, hull, Placement::Touching, "touching");
     Register(box, capsule, Placement::FaceContact, "stacked");
 
-    const NamedShape cylinder{"cylinder", Cylinder::Create(0.5f, 0.5f).Value()}, cone{"cone", Cylinder::CreateCone(0.5f, 0.5f).Value()};
+    const NamedShape cylinder{"cylinder", Cylinder::Create(0.5f, 0.5f).Value()},
+        cone{"cone", Cylinder::CreateCone(0.5f, 0.5f).Value()};
     const NamedShape rounded{"rounded_cylinder", Cylinder::Create(0.5f, 0.5f, 0.05f).Value()};
     const NamedShape drop{"tapered_capsule", TaperedCapsule::Create(0.5f, 0.2f, 0.4f).Value()};
-    const NamedShape triangle{"triangle", Triangle::Create(Vector3(-1, 0, -1), Vector3(0, 0, 2), Vector3(1, 0, -1)).Value()};
+    const NamedShape triangle{"triangle",
+                              Triangle::Create(Vector3(-1, 0, -1), Vector3(0, 0, 2), Vector3(1, 0, -1)).Value()};
     for (const NamedShape* other : {&sphere, &capsule, &box, &hull, &cylinder, &rounded, &drop, &triangle}) {
         Register(cylinder, *other, Placement::Touching, "touching");
         Register(triangle, *other, Placement::Touching, "touching");
     }
-    for (const NamedShape* standing : {&cylinder, &rounded, &cone, &box}) Register(floor, *standing, Placement::FaceContact, "stacked");
+    for (const NamedShape* standing : {&cylinder, &rounded, &cone, &box})
+        Register(floor, *standing, Placement::FaceContact, "stacked");
     Register(cylinder, cylinder, Placement::FaceContact, "stacked");
     Register(rounded, rounded, Placement::Touching, "touching");
     Register(triangle, box, Placement::FaceContact, "stacked");

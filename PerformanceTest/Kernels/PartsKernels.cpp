@@ -99,8 +99,7 @@ std::vector<Constraint<Real, kSoft>> MakeConstraints(World& world, std::mt19937&
         if constexpr (kSoft)
             constraint.part.CalculateFrequencyProperties(Real(1.0f / 240.0f), mass1, mass2, frame, Real(0.1f),
                                                          Real(0.2f), Real(2.0f), Real(0.1f));
-        else
-            constraint.part.CalculateProperties(mass1, mass2, frame, Real(0.1f));
+        else constraint.part.CalculateProperties(mass1, mass2, frame, Real(0.1f));
     }
     return constraints;
 }

@@ -1,4 +1,5 @@
-// Rays at single shapes and at a world of bodies, against a loop over all of them; moving shapes; what the world's lock costs.
+// Rays at single shapes and at a world of bodies, against a loop over all of them; moving shapes; what the world's lock
+// costs.
 #include <Fulcrum/Collision/Queries/ShapeCast.h>
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
@@ -20,8 +21,11 @@ ShapePtr MakeHull(RandomPoses& random, int points) {
 
 std::vector<ShapePtr> Shapes() {
     RandomPoses random(1);
-    return {Sphere::Create(0.5f).Value(), Box::Create(Vector3(0.5f, 0.4f, 0.3f)).Value(),
-            Box::Create(Vector3(0.5f, 0.4f, 0.3f), 0.1f).Value(), Capsule::Create(0.3f, 0.3f).Value(), MakeHull(random, 12),
+    return {Sphere::Create(0.5f).Value(),
+            Box::Create(Vector3(0.5f, 0.4f, 0.3f)).Value(),
+            Box::Create(Vector3(0.5f, 0.4f, 0.3f), 0.1f).Value(),
+            Capsule::Create(0.3f, 0.3f).Value(),
+            MakeHull(random, 12),
             MakeHull(random, 32)};
 }
 
@@ -52,7 +56,9 @@ void CastAtShape(benchmark::State& state) {
     std::vector<ShapeMotion> motions;
     for (int i = 0; i < 1024; ++i) {
         const Vector3 to = random.InCube() * 0.5f, from = Normalized(random.InCube()) * 4;
-        motions.push_back({{from.cast<double>(), random.Rotation()}, (to - from) * 1.5f, turns ? Vector3(random.InCube()) : Vector3(Vector3::Zero())});
+        motions.push_back({{from.cast<double>(), random.Rotation()},
+                           (to - from) * 1.5f,
+                           turns ? Vector3(random.InCube()) : Vector3(Vector3::Zero())});
     }
     size_t i = 0;
     for (auto _ : state) {
@@ -121,7 +127,8 @@ void RayAtAllBodies(benchmark::State& state) {
         RayHit hit;
         for (const BodyId id : field.bodies) {
             const Pose pose{field.world->Bodies().GetCenterOfMass(id), field.world->Bodies().GetPose(id).rotation};
-            if (caster.CastClosest(*field.world->Bodies().GetShape(id), pose, settings, hit)) settings.maxFraction = hit.fraction;
+            if (caster.CastClosest(*field.world->Bodies().GetShape(id), pose, settings, hit))
+                settings.maxFraction = hit.fraction;
         }
         benchmark::DoNotOptimize(hit);
     }

@@ -1,5 +1,5 @@
-// Contacts of one shape with a surface, in nanoseconds a pair: bodies at rest anywhere on the terrain of the scene convex_on_mesh,
-// turned at random, as a triangle mesh and as a height field.
+// Contacts of one shape with a surface, in nanoseconds a pair: bodies at rest anywhere on the terrain of the scene
+// convex_on_mesh, turned at random, as a triangle mesh and as a height field.
 #include <Fulcrum/Collision/NarrowPhase/SurfaceContact.h>
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
 #include <Fulcrum/Collision/Shapes/HeightField.h>
@@ -30,11 +30,17 @@ std::shared_ptr<const SurfaceShape> MakeSurface(bool isField) {
     for (uint32_t z = 0; z <= kCells; ++z)
         for (uint32_t x = 0; x <= kCells; ++x) {
             heights.push_back(HeightAt(x, z));
-            vertices.push_back(Vector3(kCell * static_cast<float>(x) - kHalf, heights.back(), kCell * static_cast<float>(z) - kHalf));
+            vertices.push_back(
+                Vector3(kCell * static_cast<float>(x) - kHalf, heights.back(), kCell * static_cast<float>(z) - kHalf));
         }
     if (isField)
-        return HeightField::Create({.sampleCountX = kCells + 1, .sampleCountZ = kCells + 1, .heights = heights, .cellSizeX = kCell,
-                                    .cellSizeZ = kCell, .origin = Vector3(-kHalf, 0, -kHalf)}).Value();
+        return HeightField::Create({.sampleCountX = kCells + 1,
+                                    .sampleCountZ = kCells + 1,
+                                    .heights = heights,
+                                    .cellSizeX = kCell,
+                                    .cellSizeZ = kCell,
+                                    .origin = Vector3(-kHalf, 0, -kHalf)})
+            .Value();
     for (uint32_t z = 0; z < kCells; ++z)
         for (uint32_t x = 0; x < kCells; ++x) {
             const uint32_t a = z * (kCells + 1) + x, c = a + kCells + 1;
@@ -76,13 +82,20 @@ void ShapeOnSurface(benchmark::State& state, const std::shared_ptr<const ConvexS
 
 // The four bodies of the scene, and one that is curved.
 void Sphere05(benchmark::State& state, bool isField) { ShapeOnSurface(state, Sphere::Create(0.5f).Value(), isField); }
-void Capsule05(benchmark::State& state, bool isField) { ShapeOnSurface(state, Capsule::Create(0.75f, 0.5f).Value(), isField); }
-void BoxOf4(benchmark::State& state, bool isField) { ShapeOnSurface(state, Box::Create(Vector3(0.5f, 0.75f, 1)).Value(), isField); }
+void Capsule05(benchmark::State& state, bool isField) {
+    ShapeOnSurface(state, Capsule::Create(0.75f, 0.5f).Value(), isField);
+}
+void BoxOf4(benchmark::State& state, bool isField) {
+    ShapeOnSurface(state, Box::Create(Vector3(0.5f, 0.75f, 1)).Value(), isField);
+}
 void Pyramid(benchmark::State& state, bool isField) {
-    const std::vector<Vector3> points{Vector3(0, 1, 0), Vector3(1, 0, 0), Vector3(-1, 0, 0), Vector3(0, 0, 1), Vector3(0, 0, -1)};
+    const std::vector<Vector3> points{Vector3(0, 1, 0), Vector3(1, 0, 0), Vector3(-1, 0, 0), Vector3(0, 0, 1),
+                                      Vector3(0, 0, -1)};
     ShapeOnSurface(state, ConvexHull::Create(points).Value(), isField);
 }
-void Cylinder05(benchmark::State& state, bool isField) { ShapeOnSurface(state, Cylinder::Create(0.75f, 0.5f).Value(), isField); }
+void Cylinder05(benchmark::State& state, bool isField) {
+    ShapeOnSurface(state, Cylinder::Create(0.75f, 0.5f).Value(), isField);
+}
 
 BENCHMARK_CAPTURE(Sphere05, mesh, false)->Name("Surface/sphere/mesh");
 BENCHMARK_CAPTURE(Sphere05, field, true)->Name("Surface/sphere/heightField");

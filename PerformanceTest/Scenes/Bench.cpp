@@ -28,15 +28,17 @@ std::vector<const Scene*> PerformanceScenes() {
 }
 
 void PrintHeading() {
-    std::printf("%-16s %3s %7s %8s %5s  %9s %9s %9s %9s %9s  %11s  %7s  %8s  %s\n", "scene", "thr", "bodies", "contacts", "steps",
-                "median ms", "mean ms", "p99 ms", "max ms", "steps/s", "accuracy", "overlap", "memory", "hash");
+    std::printf("%-16s %3s %7s %8s %5s  %9s %9s %9s %9s %9s  %11s  %7s  %8s  %s\n", "scene", "thr", "bodies",
+                "contacts", "steps", "median ms", "mean ms", "p99 ms", "max ms", "steps/s", "accuracy", "overlap",
+                "memory", "hash");
 }
 
 void PrintRow(const Scene& scene, const RunFigures& run) {
     const Statistics& ms = ComparedMs(run);
-    std::printf("%-16s %3u %7zu %8u %5d  %9.4f %9.4f %9.4f %9.4f %9.1f  %11.5g  %7.4f  %5.0f MB  %s\n", scene.name, run.threads,
-                run.bodies, run.last.contacts, run.steps, ms.median, ms.mean, ms.p99, ms.max, 1000 / run.stepMs.mean,
-                run.accuracy, run.overlap.relative, static_cast<double>(run.memoryBytes) / 1e6, HashText(run.poseHash).c_str());
+    std::printf("%-16s %3u %7zu %8u %5d  %9.4f %9.4f %9.4f %9.4f %9.1f  %11.5g  %7.4f  %5.0f MB  %s\n", scene.name,
+                run.threads, run.bodies, run.last.contacts, run.steps, ms.median, ms.mean, ms.p99, ms.max,
+                1000 / run.stepMs.mean, run.accuracy, run.overlap.relative, static_cast<double>(run.memoryBytes) / 1e6,
+                HashText(run.poseHash).c_str());
     if (run.queryCount > 0)
         std::printf("%20s %d %s a batch, which the ms are of: %.4g %s/s\n", "", run.queryCount, run.queryName.c_str(),
                     QueriesPerSecond(run), run.queryName.c_str());
@@ -50,17 +52,19 @@ Result<BenchOptions> ParseBenchOptions(std::vector<std::string> arguments) {
     std::string name = "all";
     CLI::App app("Times the performance scenes: 1 untimed step, then each step by itself", "./fulcrum bench");
     AddText(app, "--scene", "a scene's name, or all the performance scenes (default all)",
-            [&](const std::string& text) { name = text; })->type_name("SCENE");
+            [&](const std::string& text) { name = text; })
+        ->type_name("SCENE");
     AddInteger(app, "--threads", 1, kMostThreads, "threads (default 1)", [&](int value) { options.threads = value; });
     AddInteger(app, "--steps", 1, kMostSteps, "timed steps (default: the scene's own number)",
                [&](int value) { options.steps = value; });
     AddInteger(app, "--runs", 1, 1000, "runs of each scene; the one with the lowest median counts (default 1)",
                [&](int value) { options.runs = value; });
     AddSolverOptions(app, options.solver);
-    AddSeed(app, "--seed", "of scenes that use random numbers (default 1)", [&](uint64_t value) { options.seed = value; });
-    AddText(app, "--json", "also write the runs as a JSON array; -: to standard output, all else to standard error", [&](const std::string& text) {
-        options.json = text;
-    })->type_name("FILE");
+    AddSeed(app, "--seed", "of scenes that use random numbers (default 1)",
+            [&](uint64_t value) { options.seed = value; });
+    AddText(app, "--json", "also write the runs as a JSON array; -: to standard output, all else to standard error",
+            [&](const std::string& text) { options.json = text; })
+        ->type_name("FILE");
 
     Result<std::string> parsed = ParseCommandLine(app, std::move(arguments));
     if (!parsed) return parsed.GetError();

@@ -26,7 +26,9 @@ bool HasLocks(const Joint& joint) {
 class Finder {
 public:
     Finder(WorldState& world, JointTrees& trees)
-        : world_(world), trees_(trees), slotOf_(world.scratch.Allocate<uint32_t>(world.bodies.Size())),
+        : world_(world),
+          trees_(trees),
+          slotOf_(world.scratch.Allocate<uint32_t>(world.bodies.Size())),
           seen_(world.scratch.Allocate<uint8_t>(world.bodies.Size())) {
         std::fill(slotOf_.begin(), slotOf_.end(), kNone);
         std::fill(seen_.begin(), seen_.end(), uint8_t(0));

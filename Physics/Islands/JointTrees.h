@@ -1,5 +1,5 @@
-// Finds the islands whose joints are to be solved exactly, as trees: those that carry much more than their own bodies' mass.
-// Called by the BuildIslands stage where joints came or went. Serial; the result follows from the joints alone.
+// Finds the islands whose joints are to be solved exactly, as trees: those that carry much more than their own bodies'
+// mass. Called by the BuildIslands stage where joints came or went. Serial; the result follows from the joints alone.
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/JointTree.h>
@@ -19,14 +19,15 @@ struct JointTrees {
     std::vector<Tree> trees;
     std::vector<JointTreeSlot> slots;  // a tree's parents are counted from its first slot
     std::vector<JointTreeAnchor> anchors;
-    uint64_t version = 0;              // of the joints that this was made from
+    uint64_t version = 0;  // of the joints that this was made from
 
     JointTree At(const Tree& tree) {
         return {std::span(slots).subspan(tree.slotsBegin, tree.slotsEnd - tree.slotsBegin),
                 std::span(anchors).subspan(tree.anchorsBegin, tree.anchorsEnd - tree.anchorsBegin)};
     }
     size_t MemoryUsed() const {
-        return trees.capacity() * sizeof(Tree) + slots.capacity() * sizeof(JointTreeSlot) + anchors.capacity() * sizeof(JointTreeAnchor);
+        return trees.capacity() * sizeof(Tree) + slots.capacity() * sizeof(JointTreeSlot) +
+               anchors.capacity() * sizeof(JointTreeAnchor);
     }
 };
 

@@ -1,5 +1,5 @@
-// Disjoint sets over indices. The root of a set is its smallest member, so the result does not depend on the order of the
-// unions. Used by the Sleep stage and the island query.
+// Disjoint sets over indices. The root of a set is its smallest member, so the result does not depend on the order of
+// the unions. Used by the Sleep stage and the island query.
 #pragma once
 
 #include <cstdint>

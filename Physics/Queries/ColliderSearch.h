@@ -1,5 +1,5 @@
-// The colliders that a query has to look at, from the world's trees through its filter. Called by QueryInterface under the
-// world's lock. Allocates nothing; thread-safe.
+// The colliders that a query has to look at, from the world's trees through its filter. Called by QueryInterface under
+// the world's lock. Allocates nothing; thread-safe.
 #pragma once
 
 #include <Fulcrum/Physics/Misuse.h>
@@ -13,12 +13,13 @@ namespace fulcrum {
 class ColliderSearch {
 public:
     ColliderSearch(const WorldState& world, const QueryFilter& filter)
-        : world_(world), filter_(filter),
-          seesAll_(filter.layers == 0xFFFFFFFFu && SeesAllCategories(filter) && filter.ignore.empty() && !filter.accepts &&
-                   !filter.acceptsChild) {}
+        : world_(world),
+          filter_(filter),
+          seesAll_(filter.layers == 0xFFFFFFFFu && SeesAllCategories(filter) && filter.ignore.empty() &&
+                   !filter.accepts && !filter.acceptsChild) {}
 
-    // Traverses the trees whose layers the filter wants: walk(tree, visit), where `visit` calls found(collider) for what is
-    // accepted. What strayed from its bounds is found by where it is.
+    // Traverses the trees whose layers the filter wants: walk(tree, visit), where `visit` calls found(collider) for
+    // what is accepted. What strayed from its bounds is found by where it is.
     template <class Walk, class Found>
     void Run(const Walk& walk, const Found& found) const {
         const ColliderStore& store = world_.colliders;
@@ -59,10 +60,13 @@ public:
     }
 
 private:
-    static bool SeesAllCategories(const QueryFilter& filter) { return filter.category == 0 && filter.mask == ~uint64_t(0); }
+    static bool SeesAllCategories(const QueryFilter& filter) {
+        return filter.category == 0 && filter.mask == ~uint64_t(0);
+    }
 
     bool AcceptsCategory(const BodyFilter& body) const {
-        return (filter_.mask == ~uint64_t(0) || (body.category & filter_.mask)) && (filter_.category == 0 || (filter_.category & body.mask));
+        return (filter_.mask == ~uint64_t(0) || (body.category & filter_.mask)) &&
+               (filter_.category == 0 || (filter_.category & body.mask));
     }
 
     bool Accepts(uint32_t collider) const {
@@ -82,7 +86,8 @@ private:
     bool seesAll_;
 };
 
-// A query's hold on the world, and its trees brought up to date. False: the query is not allowed here, which was reported.
+// A query's hold on the world, and its trees brought up to date. False: the query is not allowed here, which was
+// reported.
 class QueryScope {
 public:
     explicit QueryScope(WorldState& world) : shared_(world.lock) {

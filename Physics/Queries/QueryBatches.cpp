@@ -1,5 +1,5 @@
-// Batches of queries over the world's job system. Each item is the single query, so that the answers are the same bits; the
-// thread that asks holds the world for all of them.
+// Batches of queries over the world's job system. Each item is the single query, so that the answers are the same bits;
+// the thread that asks holds the world for all of them.
 #include <Fulcrum/Physics/Queries/RayOrder.h>
 #include <Fulcrum/Physics/Queries/RaySearch.h>
 
@@ -63,7 +63,8 @@ void QueryInterface::CastRays(std::span<const Ray> rays, std::span<WorldRayHit> 
 
 void QueryInterface::AreHit(std::span<const Ray> rays, std::span<uint8_t> hits, const RayCastSettings& settings,
                             const QueryFilter& filter) const {
-    ForEach(std::min(rays.size(), hits.size()), hits, kRaysPerJob, [&](size_t i) { hits[i] = IsHit(rays[i], settings, filter); });
+    ForEach(std::min(rays.size(), hits.size()), hits, kRaysPerJob,
+            [&](size_t i) { hits[i] = IsHit(rays[i], settings, filter); });
 }
 
 void QueryInterface::CastRaysAll(std::span<const Ray> rays, std::vector<std::vector<WorldRayHit>>& hits,
@@ -79,9 +80,10 @@ void QueryInterface::CastShapes(std::span<const MovingShape> shapes, std::span<W
     });
 }
 
-void QueryInterface::AreHit(std::span<const MovingShape> shapes, std::span<uint8_t> hits, const ShapeCastSettings& settings,
-                            const QueryFilter& filter) const {
-    ForEach(std::min(shapes.size(), hits.size()), hits, kShapesPerJob, [&](size_t i) { hits[i] = IsHit(shapes[i], settings, filter); });
+void QueryInterface::AreHit(std::span<const MovingShape> shapes, std::span<uint8_t> hits,
+                            const ShapeCastSettings& settings, const QueryFilter& filter) const {
+    ForEach(std::min(shapes.size(), hits.size()), hits, kShapesPerJob,
+            [&](size_t i) { hits[i] = IsHit(shapes[i], settings, filter); });
 }
 
 void QueryInterface::CastShapesAll(std::span<const MovingShape> shapes, std::vector<std::vector<WorldShapeHit>>& hits,
@@ -90,8 +92,10 @@ void QueryInterface::CastShapesAll(std::span<const MovingShape> shapes, std::vec
     ForEach(shapes.size(), hits, kShapesPerJob, [&](size_t i) { CastShapeAll(shapes[i], hits[i], settings, filter); });
 }
 
-void QueryInterface::AreOverlapping(std::span<const PlacedShape> shapes, std::span<uint8_t> hits, const QueryFilter& filter) const {
-    ForEach(std::min(shapes.size(), hits.size()), hits, kShapesPerJob, [&](size_t i) { hits[i] = IsOverlapping(shapes[i], filter); });
+void QueryInterface::AreOverlapping(std::span<const PlacedShape> shapes, std::span<uint8_t> hits,
+                                    const QueryFilter& filter) const {
+    ForEach(std::min(shapes.size(), hits.size()), hits, kShapesPerJob,
+            [&](size_t i) { hits[i] = IsOverlapping(shapes[i], filter); });
 }
 
 void QueryInterface::FindOverlaps(std::span<const PlacedShape> shapes, std::vector<std::vector<OverlapHit>>& hits,
@@ -113,8 +117,8 @@ void QueryInterface::FindClosest(std::span<const Position> points, float maxDist
     });
 }
 
-void QueryInterface::FindClosest(std::span<const PlacedShape> shapes, float maxDistance, std::span<WorldClosest> closest,
-                                 const QueryFilter& filter) const {
+void QueryInterface::FindClosest(std::span<const PlacedShape> shapes, float maxDistance,
+                                 std::span<WorldClosest> closest, const QueryFilter& filter) const {
     ForEach(std::min(shapes.size(), closest.size()), closest, kShapesPerJob, [&](size_t i) {
         if (!FindClosest(shapes[i], maxDistance, closest[i], filter)) closest[i] = {};
     });

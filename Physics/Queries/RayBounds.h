@@ -1,5 +1,5 @@
-// The box around the origins of some rays and that around their displacements: how close together they lie. Used by the batches of
-// ray casts. Pure.
+// The box around the origins of some rays and that around their displacements: how close together they lie. Used by the
+// batches of ray casts. Pure.
 #pragma once
 
 #include <Fulcrum/Collision/Queries/RayCast.h>

@@ -10,9 +10,9 @@
 namespace fulcrum {
 namespace {
 
-// A ray is a point in six dimensions: its origin and its displacement. Its place is the path to it from the box around all,
-// halved again and again across its longest side: a Morton code whose bits are dealt out by length. So only what the rays
-// differ in counts, be it where they are, as rays from above, or where they go, as those of a camera.
+// A ray is a point in six dimensions: its origin and its displacement. Its place is the path to it from the box around
+// all, halved again and again across its longest side: a Morton code whose bits are dealt out by length. So only what
+// the rays differ in counts, be it where they are, as rays from above, or where they go, as those of a camera.
 class Places {
 public:
     static constexpr int kDigitBits = 11, kBits = 2 * kDigitBits;
@@ -79,7 +79,7 @@ private:
 
     RayBounds bounds_;
     double low_[kSides], scale_[kSides];
-    int dealtTo_[kBits];                  // the side of each bit of a place, the highest first
+    int dealtTo_[kBits];  // the side of each bit of a place, the highest first
     int used_[kSides];
     int usedCount_ = 0;
     bool isWorthIt_ = false;

@@ -1,5 +1,5 @@
-// Orders the rays of a batch so that those next to each other lie close together. Called by the batches of ray casts. An object
-// is used by one thread at a time and keeps its memory. Nothing but speed depends on the order.
+// Orders the rays of a batch so that those next to each other lie close together. Called by the batches of ray casts.
+// An object is used by one thread at a time and keeps its memory. Nothing but speed depends on the order.
 #pragma once
 
 #include <Fulcrum/Collision/Queries/RayCast.h>

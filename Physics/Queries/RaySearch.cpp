@@ -6,7 +6,8 @@ namespace fulcrum {
 namespace {
 
 constexpr int kMost = RayCaster::kMostRays;
-// Colliders that the box may find and no ray of the packet meets, for each ray; where there are more, rays do better alone.
+// Colliders that the box may find and no ray of the packet meets, for each ray; where there are more, rays do better
+// alone.
 constexpr int kMostInVain = 2;
 
 // The rays of a packet that are valid, and the box that sweeps over all of them, in the coordinates of the trees.
@@ -16,7 +17,8 @@ struct Packet {
     int count = 0;
     TreeRays inTree;
 
-    Packet(const ColliderSearch& search, std::span<const Ray> rays, std::span<const uint32_t> which, float maxFraction) {
+    Packet(const ColliderSearch& search, std::span<const Ray> rays, std::span<const uint32_t> which,
+           float maxFraction) {
         for (const uint32_t number : which) {
             casters[count] = RayCaster(rays[number]);
             if (!casters[count].IsValid()) continue;
@@ -26,8 +28,8 @@ struct Packet {
     }
 };
 
-// The box that sweeps over rays in bounds of this kind, in the coordinates of the trees. As wide as rounding may ask for: 2^-50 of
-// positions, and 2^-18 of the way, because of the fractions at which the tree has boxes met.
+// The box that sweeps over rays in bounds of this kind, in the coordinates of the trees. As wide as rounding may ask
+// for: 2^-50 of positions, and 2^-18 of the way, because of the fractions at which the tree has boxes met.
 TreeRay SweptBox(const ColliderSearch& search, const RayBounds& bounds) {
     const Position center = (bounds.low + bounds.high) * 0.5;
     const Vector3 way = bounds.displacements.lower.cwiseAbs().cwiseMax(bounds.displacements.upper.cwiseAbs());
@@ -57,8 +59,8 @@ bool CastTogether(const ColliderSearch& search, std::span<const Ray> rays, std::
         };
         if (shape.IsSurface()) {
             RayHit found[kMost];
-            for (uint32_t hit = RayCaster::CastClosest(packet.casters, met, static_cast<const SurfaceShape&>(shape), pose, settings,
-                                                       inTree.Limits(), found);
+            for (uint32_t hit = RayCaster::CastClosest(packet.casters, met, static_cast<const SurfaceShape&>(shape),
+                                                       pose, settings, inTree.Limits(), found);
                  hit != 0; hit &= hit - 1) {
                 const int i = std::countr_zero(hit);
                 take(i, found[i]);

@@ -1,8 +1,8 @@
-// Closest hits of rays in the world: of one ray, and of a packet of rays that lie close together, which are the same bits.
-// Called by QueryInterface under the world's lock. Thread-safe; allocates nothing.
+// Closest hits of rays in the world: of one ray, and of a packet of rays that lie close together, which are the same
+// bits. Called by QueryInterface under the world's lock. Thread-safe; allocates nothing.
 //
-// A ray's hit of a collider does not depend on what else it hit before; the closest is the least by fraction, body, child. So
-// any order of colliders, and any company that the ray has, gives the same answer.
+// A ray's hit of a collider does not depend on what else it hit before; the closest is the least by fraction, body,
+// child. So any order of colliders, and any company that the ray has, gives the same answer.
 #pragma once
 
 #include <Fulcrum/Physics/Queries/ColliderSearch.h>
@@ -45,8 +45,8 @@ struct ClosestCollider {
 // False: none, `hit` is unchanged.
 bool CastClosest(const ColliderSearch& search, const Ray& ray, const RayCastSettings& settings, WorldRayHit& hit);
 
-// The rays with the numbers `which`, at most RayCaster::kMostRays, into their hits; {} for none. Fast where they lie close
-// together.
+// The rays with the numbers `which`, at most RayCaster::kMostRays, into their hits; {} for none. Fast where they lie
+// close together.
 void CastClosest(const ColliderSearch& search, std::span<const Ray> rays, std::span<const uint32_t> which,
                  const RayCastSettings& settings, std::span<WorldRayHit> hits);
 

@@ -11,7 +11,8 @@ namespace {
 constexpr JointAxis kLinearAxes[] = {JointAxis::LinearX, JointAxis::LinearY, JointAxis::LinearZ};
 constexpr JointAxis kAngularAxes[] = {JointAxis::AngularX, JointAxis::AngularY, JointAxis::AngularZ};
 
-BodySettings PlacedBody(const BodySettings& settings, const Pose& pose, const Pose& origin, std::optional<MotionType> motion) {
+BodySettings PlacedBody(const BodySettings& settings, const Pose& pose, const Pose& origin,
+                        std::optional<MotionType> motion) {
     BodySettings body = settings;
     body.position = pose.position;
     body.rotation = pose.rotation;
@@ -25,7 +26,8 @@ BodySettings PlacedBody(const BodySettings& settings, const Pose& pose, const Po
 }
 
 JointAnchor AnchorAt(const RelativePose& frame) {
-    return {frame.position.cast<double>(), Rotate(frame.rotation, Vector3(1, 0, 0)), Rotate(frame.rotation, Vector3(0, 1, 0))};
+    return {frame.position.cast<double>(), Rotate(frame.rotation, Vector3(1, 0, 0)),
+            Rotate(frame.rotation, Vector3(0, 1, 0))};
 }
 
 MaybeError NamedPart(size_t part, const char* field, const MaybeError& error) {
@@ -42,15 +44,17 @@ bool CanHaveMotor(const AxisControl* control) {
 // What is to be made of the settings.
 struct Ragdoll::Placed {
     std::vector<BodySettings> bodies;
-    std::vector<RagdollJointFrames> frames;          // the first part's is not used
-    std::vector<std::optional<RagdollJoint>> joints;  // without their bodies; none for the first part and between two that are not dynamic
+    std::vector<RagdollJointFrames> frames;  // the first part's is not used
+    std::vector<std::optional<RagdollJoint>>
+        joints;  // without their bodies; none for the first part and between two that are not dynamic
 };
 
 Ragdoll::Placed Ragdoll::Place(const RagdollSettings& settings, const Pose& origin, std::optional<MotionType> motion) {
     const size_t count = settings.parts.size();
     std::vector<Pose> pose(count);
     ReferencePose(settings, origin, pose);
-    Placed placed{std::vector<BodySettings>(count), std::vector<RagdollJointFrames>(count), std::vector<std::optional<RagdollJoint>>(count)};
+    Placed placed{std::vector<BodySettings>(count), std::vector<RagdollJointFrames>(count),
+                  std::vector<std::optional<RagdollJoint>>(count)};
     for (size_t i = 0; i < count; ++i) {
         const RagdollPart& part = settings.parts[i];
         placed.bodies[i] = PlacedBody(part.body, pose[i], origin, motion);
@@ -71,14 +75,17 @@ MaybeError Ragdoll::CheckPlaced(const Placed& placed) {
     for (size_t i = 0; i < placed.bodies.size(); ++i) {
         if (MaybeError e = NamedPart(i, "body", Check(placed.bodies[i]))) return e;
         if (!placed.joints[i]) continue;
-        if (MaybeError e = NamedPart(i, "joint", std::visit([](const auto& joint) { return Check(joint); }, *placed.joints[i]))) return e;
+        if (MaybeError e =
+                NamedPart(i, "joint", std::visit([](const auto& joint) { return Check(joint); }, *placed.joints[i])))
+            return e;
     }
     return std::nullopt;
 }
 
 Result<Ragdoll> Ragdoll::Create(PhysicsSystem& system, const RagdollSettings& settings, const Pose& origin,
                                 std::optional<MotionType> motion) {
-    if (MaybeError e = FirstOf(Check(settings), CheckPosition("origin.position", origin.position), CheckRotation("origin.rotation", origin.rotation)))
+    if (MaybeError e = FirstOf(Check(settings), CheckPosition("origin.position", origin.position),
+                               CheckRotation("origin.rotation", origin.rotation)))
         return *e;
     const Placed placed = Place(settings, {origin.position, Normalized(origin.rotation)}, motion);
     if (MaybeError e = CheckPlaced(placed)) return *e;
@@ -131,7 +138,8 @@ MaybeError Ragdoll::CheckPose(std::span<const Pose> pose) const {
         return Error{ErrorCode::OutOfRange, "pose has " + std::to_string(pose.size()) + " elements; it must have " +
                                                 std::to_string(bodies_.size()) + ", one a part"};
     for (size_t i = 0; i < pose.size(); ++i) {
-        const MaybeError e = FirstOf(CheckPosition("position", pose[i].position), CheckRotation("rotation", pose[i].rotation));
+        const MaybeError e =
+            FirstOf(CheckPosition("position", pose[i].position), CheckRotation("rotation", pose[i].rotation));
         if (e) return Error{e->code, "pose[" + std::to_string(i) + "]." + e->message};
     }
     return std::nullopt;
@@ -141,7 +149,8 @@ MaybeError Ragdoll::CheckDrive(std::span<const Pose> pose, float dt) const {
     if (MaybeError e = FirstOf(CheckPose(pose), CheckPositive("dt", dt))) return e;
     for (size_t i = 0; i < bodies_.size(); ++i)
         if (system_->Bodies().IsFrozen(bodies_[i]))
-            return Error{ErrorCode::Unsupported, "the body of part " + std::to_string(i) + " is frozen; SetPose revives it"};
+            return Error{ErrorCode::Unsupported,
+                         "the body of part " + std::to_string(i) + " is frozen; SetPose revives it"};
     return std::nullopt;
 }
 
@@ -193,7 +202,8 @@ void Ragdoll::SetTarget(JointId joint, const RelativePose& target) {
         // A hinge counts turns: the target is the one within its limits, or, without any, the nearest.
         const AxisControl& control = *joints.GetControl(joint, JointAxis::AngularX);
         TurnCount turns;
-        turns.Start(NearestTurn(TwistAngle(target.rotation), joints.GetCoordinate(joint, JointAxis::AngularX)), control);
+        turns.Start(NearestTurn(TwistAngle(target.rotation), joints.GetCoordinate(joint, JointAxis::AngularX)),
+                    control);
         setPosition(JointAxis::AngularX, *motor, turns.Angle());
     }
 }
@@ -212,7 +222,8 @@ Status Ragdoll::Drive(std::span<const Pose> pose, float dt, bool dynamicToo) {
     for (size_t i = 0; i < pose.size(); ++i) {
         if (!drives(i)) continue;
         const auto [linear, angular] = VelocityTo(i, pose[i], dt);
-        const MaybeError e = FirstOf(CheckFinite("the linear velocity that it asks for", linear), CheckFinite("the angular velocity that it asks for", angular));
+        const MaybeError e = FirstOf(CheckFinite("the linear velocity that it asks for", linear),
+                                     CheckFinite("the angular velocity that it asks for", angular));
         if (e) return Error{e->code, "pose[" + std::to_string(i) + "]: " + e->message};
     }
     for (size_t i = 0; i < pose.size(); ++i) {
@@ -230,7 +241,8 @@ std::pair<Vector3, Vector3> Ragdoll::VelocityTo(size_t part, const Pose& pose, f
     const Position center = pose.position + Rotate(goal, bodies.GetShape(id)->Mass().centerOfMass).cast<double>();
     const Vector3 way = (center - bodies.GetCenterOfMass(id)).cast<float>();
     const bool falls = bodies.GetMotionType(id) == MotionType::Dynamic;
-    const Vector3 fall = falls ? Vector3(system_->Settings().gravity * (gravityFactors_[part] * 0.5f * dt)) : Vector3(Vector3::Zero());
+    const Vector3 fall =
+        falls ? Vector3(system_->Settings().gravity * (gravityFactors_[part] * 0.5f * dt)) : Vector3(Vector3::Zero());
     return {way * (1.0f / dt) - fall, RotationVectorOf(goal * now.Conjugate()) * (1.0f / dt)};
 }
 

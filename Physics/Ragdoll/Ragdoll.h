@@ -1,5 +1,5 @@
-// A ragdoll in a world: the ids of its bodies and joints, and calls that concern all of them. A plain value: copies name the
-// same bodies, which live until Remove. Call it between steps, from one thread at a time, as BodyInterface.
+// A ragdoll in a world: the ids of its bodies and joints, and calls that concern all of them. A plain value: copies
+// name the same bodies, which live until Remove. Call it between steps, from one thread at a time, as BodyInterface.
 #pragma once
 
 #include <Fulcrum/Physics/PhysicsSystem.h>
@@ -9,10 +9,10 @@ namespace fulcrum {
 
 class Ragdoll {
 public:
-    // In the reference pose, its frame at `origin`. With `motion` all parts move so, whatever their settings say: kinematic
-    // for hard keying. Parts that are joined do not collide, all others do (JointSettings::collideConnected). Two joined parts
-    // of which none is dynamic get no joint. The system must outlive the ragdoll's use.
-    // Errors: those of Check; of `origin` NonFinite, Unnormalized. Nothing is created then.
+    // In the reference pose, its frame at `origin`. With `motion` all parts move so, whatever their settings say:
+    // kinematic for hard keying. Parts that are joined do not collide, all others do (JointSettings::collideConnected).
+    // Two joined parts of which none is dynamic get no joint. The system must outlive the ragdoll's use. Errors: those
+    // of Check; of `origin` NonFinite, Unnormalized. Nothing is created then.
     static Result<Ragdoll> Create(PhysicsSystem& system, const RagdollSettings& settings, const Pose& origin = {},
                                   std::optional<MotionType> motion = {});
 
@@ -30,18 +30,20 @@ public:
     // Teleports; velocities stay as they are.
     Status SetPose(std::span<const Pose> pose);
 
-    // Sets the targets of all position motors to the pose: orientations, and of a SixDof the places along its axes. Where
-    // the whole ragdoll stands is not asked for. Motors that are off, or drive a speed, stay so; removed joints are passed over.
+    // Sets the targets of all position motors to the pose: orientations, and of a SixDof the places along its axes.
+    // Where the whole ragdoll stands is not asked for. Motors that are off, or drive a speed, stay so; removed joints
+    // are passed over.
     Status DriveByMotors(std::span<const Pose> pose);
-    // Soft keying: gives all parts the velocity with which they reach the pose after `dt` seconds (> 0), gravity counted in,
-    // unless contacts and joints stop them on the way. Errors also: NonPositive, Unsupported (a body is frozen).
+    // Soft keying: gives all parts the velocity with which they reach the pose after `dt` seconds (> 0), gravity
+    // counted in, unless contacts and joints stop them on the way. Errors also: NonPositive, Unsupported (a body is
+    // frozen).
     Status DriveByVelocities(std::span<const Pose> pose, float dt);
-    // Hard keying: moves the kinematic parts so that they are in the pose after `dt` seconds (> 0); dynamic parts follow as their
-    // joints say. Errors as for soft keying.
+    // Hard keying: moves the kinematic parts so that they are in the pose after `dt` seconds (> 0); dynamic parts
+    // follow as their joints say. Errors as for soft keying.
     Status DriveKinematically(std::span<const Pose> pose, float dt);
 
-    // Gives every angular axis of the ragdoll's joints that can have one this motor, but for its target position, which stays.
-    // Errors: those of JointInterface::SetMotor.
+    // Gives every angular axis of the ragdoll's joints that can have one this motor, but for its target position, which
+    // stays. Errors: those of JointInterface::SetMotor.
     Status SetMotors(const JointMotor& motor);
 
     // Where the ragdoll's frame is for the first part to be in its reference pose there.

@@ -15,17 +15,20 @@ MaybeError CheckTree(const RagdollSettings& settings, size_t index) {
     if (part.name.empty()) return Error{ErrorCode::Degenerate, PathOf(index) + ".name is empty; a part needs one"};
     for (size_t other = 0; other < index; ++other)
         if (settings.parts[other].name == part.name)
-            return Error{ErrorCode::Degenerate, PathOf(index) + ".name is \"" + part.name + "\", as that of " + PathOf(other) +
-                                                    "; each part needs a name of its own"};
-    const bool isValid = index == 0 ? part.parent == RagdollPart::kNoParent : part.parent >= 0 && static_cast<size_t>(part.parent) < index;
+            return Error{ErrorCode::Degenerate, PathOf(index) + ".name is \"" + part.name + "\", as that of " +
+                                                    PathOf(other) + "; each part needs a name of its own"};
+    const bool isValid = index == 0 ? part.parent == RagdollPart::kNoParent
+                                    : part.parent >= 0 && static_cast<size_t>(part.parent) < index;
     if (isValid) return std::nullopt;
     return Error{ErrorCode::OutOfRange, PathOf(index) + ".parent is " + std::to_string(part.parent) + "; it must be " +
-                                            (index == 0 ? "-1" : "from 0 to " + std::to_string(index - 1)) + " (part \"" + part.name + "\")"};
+                                            (index == 0 ? "-1" : "from 0 to " + std::to_string(index - 1)) +
+                                            " (part \"" + part.name + "\")"};
 }
 
 MaybeError Named(const RagdollSettings& settings, size_t part, const char* field, const MaybeError& error) {
     if (!error) return error;
-    return Error{error->code, PathOf(part) + "." + field + ": " + error->message + " (part \"" + settings.parts[part].name + "\")"};
+    return Error{error->code,
+                 PathOf(part) + "." + field + ": " + error->message + " (part \"" + settings.parts[part].name + "\")"};
 }
 
 Pose PoseOf(const RagdollPart& part) { return {part.body.position, Normalized(part.body.rotation)}; }

@@ -27,8 +27,8 @@ struct RagdollPart {
     int parent = kNoParent;  // of the first part; else the index of a part before this one
     // Pose and velocities are those in the reference pose and in the ragdoll's own frame, whose origin is anywhere.
     BodySettings body;
-    // To the parent, which is its body A, while the part is its body B: bodyA and bodyB are not read. Places and axes in
-    // JointSpace::World are those of the ragdoll's frame in the reference pose. The first part's is not read.
+    // To the parent, which is its body A, while the part is its body B: bodyA and bodyB are not read. Places and axes
+    // in JointSpace::World are those of the ragdoll's frame in the reference pose. The first part's is not read.
     RagdollJoint joint;
 };
 

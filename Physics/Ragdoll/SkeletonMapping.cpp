@@ -14,7 +14,8 @@ MaybeError CheckSkeleton(const Skeleton& skeleton) {
         const std::string name = "joints[" + std::to_string(i) + "]";
         if (joint.parent != SkeletonJoint::kNoParent && (joint.parent < 0 || static_cast<size_t>(joint.parent) >= i))
             return Error{ErrorCode::OutOfRange, name + ".parent is " + std::to_string(joint.parent) +
-                                                    "; it must be -1 or the index of a joint before (joint \"" + joint.name + "\")"};
+                                                    "; it must be -1 or the index of a joint before (joint \"" +
+                                                    joint.name + "\")"};
         const MaybeError e = FirstOf(CheckFinite("reference.position", joint.reference.position),
                                      CheckRotation("reference.rotation", joint.reference.rotation));
         if (e) return Error{e->code, name + "." + e->message + " (joint \"" + joint.name + "\")"};
@@ -27,7 +28,8 @@ template <class Elements>
 Result<int> Find(const Elements& elements, const std::string& name, const char* what) {
     const auto hasName = [&](const auto& element) { return element.name == name; };
     const auto first = std::find_if(elements.begin(), elements.end(), hasName);
-    if (first == elements.end()) return Error{ErrorCode::Unsupported, std::string("no ") + what + " has the name \"" + name + "\""};
+    if (first == elements.end())
+        return Error{ErrorCode::Unsupported, std::string("no ") + what + " has the name \"" + name + "\""};
     if (std::find_if(first + 1, elements.end(), hasName) != elements.end())
         return Error{ErrorCode::Unsupported, std::string("more than one ") + what + " has the name \"" + name + "\""};
     return static_cast<int>(first - elements.begin());
@@ -59,7 +61,8 @@ std::vector<SkeletonPair> PairsByName(const Skeleton& skeleton, const RagdollSet
     return pairs;
 }
 
-Result<SkeletonMapping> SkeletonMapping::Create(const Skeleton& skeleton, const RagdollSettings& ragdoll, std::span<const SkeletonPair> pairs) {
+Result<SkeletonMapping> SkeletonMapping::Create(const Skeleton& skeleton, const RagdollSettings& ragdoll,
+                                                std::span<const SkeletonPair> pairs) {
     if (MaybeError e = FirstOf(Check(ragdoll), CheckSkeleton(skeleton))) return *e;
     SkeletonMapping mapping;
     for (const SkeletonJoint& joint : skeleton.joints) {
@@ -72,19 +75,23 @@ Result<SkeletonMapping> SkeletonMapping::Create(const Skeleton& skeleton, const 
 
     mapping.parts_.resize(parts.size());
     for (const SkeletonPair& pair : pairs) {
-        const Result<int> joint = Find(skeleton.joints, pair.joint, "joint"), part = Find(ragdoll.parts, pair.part, "part");
+        const Result<int> joint = Find(skeleton.joints, pair.joint, "joint"),
+                          part = Find(ragdoll.parts, pair.part, "part");
         if (!joint) return joint.GetError();
         if (!part) return part.GetError();
         const auto j = static_cast<size_t>(joint.Value()), p = static_cast<size_t>(part.Value());
-        if (mapping.joints_[j].part != kNone) return Error{ErrorCode::Unsupported, "the joint \"" + pair.joint + "\" is in two pairs"};
-        if (mapping.parts_[p].joint != kNone) return Error{ErrorCode::Unsupported, "the part \"" + pair.part + "\" is in two pairs"};
+        if (mapping.joints_[j].part != kNone)
+            return Error{ErrorCode::Unsupported, "the joint \"" + pair.joint + "\" is in two pairs"};
+        if (mapping.parts_[p].joint != kNone)
+            return Error{ErrorCode::Unsupported, "the part \"" + pair.part + "\" is in two pairs"};
         mapping.joints_[j].part = part.Value();
         mapping.joints_[j].inPart = Normal(Relative(parts[p], joints[j]));
         mapping.parts_[p].joint = joint.Value();
         mapping.parts_[p].inJoint = Normal(Relative(joints[j], parts[p]));
     }
     if (mapping.parts_[0].joint == kNone)
-        return Error{ErrorCode::Unsupported, "the part \"" + ragdoll.parts[0].name + "\" is in no pair; the first part must be"};
+        return Error{ErrorCode::Unsupported,
+                     "the part \"" + ragdoll.parts[0].name + "\" is in no pair; the first part must be"};
     for (size_t p = 1; p < parts.size(); ++p) {
         Part& part = mapping.parts_[p];
         part.parent = ragdoll.parts[p].parent;
@@ -94,7 +101,8 @@ Result<SkeletonMapping> SkeletonMapping::Create(const Skeleton& skeleton, const 
     std::vector<bool> isPlaced(joints.size());
     for (size_t j = 0; j < joints.size(); ++j) isPlaced[j] = mapping.joints_[j].part != kNone;
     mapping.isInChain_.assign(joints.size(), false);
-    for (const SkeletonPair& pair : pairs) mapping.AddChain(skeleton, Find(skeleton.joints, pair.joint, "joint").Value(), isPlaced);
+    for (const SkeletonPair& pair : pairs)
+        mapping.AddChain(skeleton, Find(skeleton.joints, pair.joint, "joint").Value(), isPlaced);
     return mapping;
 }
 
@@ -107,7 +115,9 @@ void SkeletonMapping::AddChain(const Skeleton& skeleton, int end, std::vector<bo
     }
     if (chain.start == kNone || chain.joints.empty()) return;
     std::reverse(chain.joints.begin(), chain.joints.end());
-    const auto lengthOf = [&](int joint) { return Length(skeleton.joints[static_cast<size_t>(joint)].reference.position); };
+    const auto lengthOf = [&](int joint) {
+        return Length(skeleton.joints[static_cast<size_t>(joint)].reference.position);
+    };
     float way = 0;
     for (int joint : chain.joints) {
         isPlaced[static_cast<size_t>(joint)] = isInChain_[static_cast<size_t>(joint)] = true;
@@ -117,11 +127,13 @@ void SkeletonMapping::AddChain(const Skeleton& skeleton, int end, std::vector<bo
     way += lengthOf(end);
     // Joints in one place share evenly.
     for (size_t i = 0; i < chain.joints.size(); ++i)
-        chain.fractions[i] = way > 1e-6f ? chain.fractions[i] / way : static_cast<float>(i + 1) / static_cast<float>(chain.joints.size() + 1);
+        chain.fractions[i] = way > 1e-6f ? chain.fractions[i] / way
+                                         : static_cast<float>(i + 1) / static_cast<float>(chain.joints.size() + 1);
     chains_.push_back(std::move(chain));
 }
 
-void SkeletonMapping::PoseJoints(const Pose& origin, std::span<const RelativePose> locals, std::span<Pose> joints) const {
+void SkeletonMapping::PoseJoints(const Pose& origin, std::span<const RelativePose> locals,
+                                 std::span<Pose> joints) const {
     FULCRUM_ASSERT(locals.size() == joints_.size() && joints.size() == joints_.size());
     for (size_t j = 0; j < joints_.size(); ++j) {
         const int parent = joints_[j].parent;
@@ -134,13 +146,16 @@ void SkeletonMapping::ToRagdoll(std::span<const Pose> joints, std::span<Pose> pa
     FULCRUM_ASSERT(joints.size() == joints_.size() && parts.size() == parts_.size());
     for (size_t p = 0; p < parts_.size(); ++p) {
         const Part& part = parts_[p];
-        parts[p] = (part.joint != kNone ? joints[static_cast<size_t>(part.joint)] : parts[static_cast<size_t>(part.parent)]) * part.inJoint;
+        parts[p] =
+            (part.joint != kNone ? joints[static_cast<size_t>(part.joint)] : parts[static_cast<size_t>(part.parent)]) *
+            part.inJoint;
         parts[p].rotation = Normalized(parts[p].rotation);
     }
 }
 
 // Poses the chain's joints; its start and end are posed.
-void SkeletonMapping::PlaceChain(const Chain& chain, std::span<const RelativePose> locals, std::span<Pose> joints) const {
+void SkeletonMapping::PlaceChain(const Chain& chain, std::span<const RelativePose> locals,
+                                 std::span<Pose> joints) const {
     const Pose& start = joints[static_cast<size_t>(chain.start)];
     const Pose& goal = joints[static_cast<size_t>(chain.end)];
     Pose led = start;
@@ -150,7 +165,8 @@ void SkeletonMapping::PlaceChain(const Chain& chain, std::span<const RelativePos
     }
     led = led * locals[static_cast<size_t>(chain.end)];
     // First the whole chain turns about its start; then what is missing at its end is shared out.
-    const Quaternion turn = TurnBetween((led.position - start.position).cast<float>(), (goal.position - start.position).cast<float>());
+    const Quaternion turn =
+        TurnBetween((led.position - start.position).cast<float>(), (goal.position - start.position).cast<float>());
     const auto turned = [&](const Pose& pose) {
         const Vector3 way = (pose.position - start.position).cast<float>();
         return Pose{start.position + Rotate(turn, way).cast<double>(), Normalized(turn * pose.rotation)};
@@ -166,7 +182,8 @@ void SkeletonMapping::PlaceChain(const Chain& chain, std::span<const RelativePos
     }
 }
 
-void SkeletonMapping::ToSkeleton(const Pose& origin, std::span<const Pose> parts, std::span<RelativePose> locals, std::span<Pose> joints) const {
+void SkeletonMapping::ToSkeleton(const Pose& origin, std::span<const Pose> parts, std::span<RelativePose> locals,
+                                 std::span<Pose> joints) const {
     FULCRUM_ASSERT(parts.size() == parts_.size() && locals.size() == joints_.size() && joints.size() == joints_.size());
     for (size_t j = 0; j < joints_.size(); ++j) {
         if (joints_[j].part == kNone) continue;

@@ -1,10 +1,12 @@
 // Takes poses of a detailed animation skeleton to the few parts of a ragdoll, and back. Made once from both in their
 // reference poses, used every frame; immutable, so any number of threads may use one.
 //
-// A mapped joint and its part are rigidly connected as they are in the reference pose; so both ways are exact. Every other joint
-// - that lies between two mapped ones, as in a spine of many joints over a torso of one part, keeps its place in that chain:
-//   the chain is turned about its start so that its end points to where the ragdoll has it, and stretched and twisted evenly
-//   for what is missing then. A chain whose ends are where its own local poses lead keeps these, its detail;
+// A mapped joint and its part are rigidly connected as they are in the reference pose; so both ways are exact. Every
+// other joint
+// - that lies between two mapped ones, as in a spine of many joints over a torso of one part, keeps its place in that
+// chain:
+//   the chain is turned about its start so that its end points to where the ragdoll has it, and stretched and twisted
+//   evenly for what is missing then. A chain whose ends are where its own local poses lead keeps these, its detail;
 // - that leads to several mapped ones is of the chain of the one that was paired first;
 // - keeps its local pose otherwise: fingers, hair, a root above the first mapped joint.
 #pragma once
@@ -37,35 +39,39 @@ std::vector<SkeletonPair> PairsByName(const Skeleton& skeleton, const RagdollSet
 
 class SkeletonMapping {
 public:
-    // Errors: those of Check; OutOfRange (a parent), NonFinite, Unnormalized (a reference pose), Unsupported (a pair whose names are
-    // unknown or not unique, a joint or part in two pairs, a first part in none); the message names the joint or part.
-    // Nothing of the arguments is kept but numbers.
-    static Result<SkeletonMapping> Create(const Skeleton& skeleton, const RagdollSettings& ragdoll, std::span<const SkeletonPair> pairs);
+    // Errors: those of Check; OutOfRange (a parent), NonFinite, Unnormalized (a reference pose), Unsupported (a pair
+    // whose names are unknown or not unique, a joint or part in two pairs, a first part in none); the message names the
+    // joint or part. Nothing of the arguments is kept but numbers.
+    static Result<SkeletonMapping> Create(const Skeleton& skeleton, const RagdollSettings& ragdoll,
+                                          std::span<const SkeletonPair> pairs);
 
     size_t JointCount() const { return joints_.size(); }
     size_t PartCount() const { return parts_.size(); }
     // Of the skeleton in its reference pose, one a joint.
     std::span<const RelativePose> ReferenceLocals() const { return references_; }
 
-    // World poses of the joints, by their local poses; joints without a parent are in the frame `origin`. One element a joint.
+    // World poses of the joints, by their local poses; joints without a parent are in the frame `origin`. One element a
+    // joint.
     void PoseJoints(const Pose& origin, std::span<const RelativePose> locals, std::span<Pose> joints) const;
-    // World poses of the parts, one each, by those of the joints. A part that is in no pair follows its parent as in the reference pose.
+    // World poses of the parts, one each, by those of the joints. A part that is in no pair follows its parent as in
+    // the reference pose.
     void ToRagdoll(std::span<const Pose> joints, std::span<Pose> parts) const;
-    // The way back, as said above. `locals` comes in with what joints that the ragdoll does not decide have, the animation's or
-    // ReferenceLocals, and goes out with the local pose of every joint; `joints` with the world poses.
-    void ToSkeleton(const Pose& origin, std::span<const Pose> parts, std::span<RelativePose> locals, std::span<Pose> joints) const;
+    // The way back, as said above. `locals` comes in with what joints that the ragdoll does not decide have, the
+    // animation's or ReferenceLocals, and goes out with the local pose of every joint; `joints` with the world poses.
+    void ToSkeleton(const Pose& origin, std::span<const Pose> parts, std::span<RelativePose> locals,
+                    std::span<Pose> joints) const;
 
 private:
     static constexpr int kNone = -1;
 
     struct Joint {
         int parent = kNone;
-        int part = kNone;         // mapped
-        RelativePose inPart;      // of a mapped joint, in the part's frame
+        int part = kNone;     // mapped
+        RelativePose inPart;  // of a mapped joint, in the part's frame
     };
     struct Part {
-        int joint = kNone;        // mapped
-        RelativePose inJoint;     // in that joint's frame, or, where there is none, in the parent part's
+        int joint = kNone;     // mapped
+        RelativePose inJoint;  // in that joint's frame, or, where there is none, in the parent part's
         int parent = kNone;
     };
     // Joints from below `start` down to the one above `end`; start is mapped or in an earlier chain, end is mapped.

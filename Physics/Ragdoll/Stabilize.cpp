@@ -17,7 +17,9 @@ const RagdollPart* MovingParentOf(const RagdollSettings& settings, const Ragdoll
 
 }  // namespace
 
-float MassOf(const BodySettings& body) { return body.mass > 0.0f ? body.mass : body.density * body.shape->Mass().volume; }
+float MassOf(const BodySettings& body) {
+    return body.mass > 0.0f ? body.mass : body.density * body.shape->Mass().volume;
+}
 
 Vector3 InertiaOf(const BodySettings& body) {
     if (!body.inertia.isZero(0)) return body.inertia;
@@ -26,8 +28,9 @@ Vector3 InertiaOf(const BodySettings& body) {
 }
 
 Status StabilizeMasses(RagdollSettings& settings, const MassRule& rule) {
-    if (MaybeError e = FirstOf(Check(settings), CheckPositive("smallest", rule.smallest), CheckPositive("largest", rule.largest),
-                               CheckRange("smallest", rule.smallest, 0.0, rule.largest)))
+    if (MaybeError e =
+            FirstOf(Check(settings), CheckPositive("smallest", rule.smallest), CheckPositive("largest", rule.largest),
+                    CheckRange("smallest", rule.smallest, 0.0, rule.largest)))
         return *e;
     std::vector<float> masses;
     double before = 0, after = 0;
@@ -58,10 +61,12 @@ Status StabilizeMasses(RagdollSettings& settings, const MassRule& rule) {
 }
 
 Status StabilizeInertia(RagdollSettings& settings, const InertiaRule& rule) {
-    if (MaybeError e = FirstOf(Check(settings), CheckPositive("principalRatio", rule.principalRatio), CheckPositive("childRatio", rule.childRatio)))
+    if (MaybeError e = FirstOf(Check(settings), CheckPositive("principalRatio", rule.principalRatio),
+                               CheckPositive("childRatio", rule.childRatio)))
         return *e;
     if (rule.principalRatio < 1.0f)
-        return Error{ErrorCode::OutOfRange, "principalRatio is " + std::to_string(rule.principalRatio) + "; it must be 1 or more"};
+        return Error{ErrorCode::OutOfRange,
+                     "principalRatio is " + std::to_string(rule.principalRatio) + "; it must be 1 or more"};
     RagdollSettings changed = settings;
     std::vector<float> floors(settings.parts.size(), 0.0f);  // of the moments, by the children
     for (size_t i = settings.parts.size(); i-- > 0;) {

@@ -1,5 +1,5 @@
-// The user's say in a contact. Collide asks when it knows the points, and before anything follows from them: a contact that is
-// ignored has no color, wakes nobody and costs the solver nothing.
+// The user's say in a contact. Collide asks when it knows the points, and before anything follows from them: a contact
+// that is ignored has no color, wakes nobody and costs the solver nothing.
 #include <Fulcrum/Physics/ContactListener.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
 
@@ -15,7 +15,8 @@ void Forget(ContactRecord& record) {
 
 }  // namespace
 
-ContactView ViewContact(const WorldState& world, uint32_t index, ContactView::Point (&room)[ContactRecord::kMaxPoints]) {
+ContactView ViewContact(const WorldState& world, uint32_t index,
+                        ContactView::Point (&room)[ContactRecord::kMaxPoints]) {
     const Pair& pair = world.pairs.pairs[index];
     const ContactRecord& record = world.pairs.records[index];
     const Pose poseA = world.bodies.CenterPoseOf(pair.bodyA), poseB = world.bodies.CenterPoseOf(pair.bodyB);
@@ -26,8 +27,12 @@ ContactView ViewContact(const WorldState& world, uint32_t index, ContactView::Po
         const Position onB = poseB.Transform(Vector3(p.onB[0], p.onB[1], p.onB[2]));
         room[i] = {onA, Dot<float>(normal, Vector3((onB - onA).cast<float>())), record.impulse[i]};
     }
-    return {world.bodies.IdOf(pair.bodyA), world.bodies.IdOf(pair.bodyB), normal, std::span<const ContactView::Point>(room, pair.pointCount),
-            ChildOf(world, pair.colliderA), ChildOf(world, pair.colliderB)};
+    return {world.bodies.IdOf(pair.bodyA),
+            world.bodies.IdOf(pair.bodyB),
+            normal,
+            std::span<const ContactView::Point>(room, pair.pointCount),
+            ChildOf(world, pair.colliderA),
+            ChildOf(world, pair.colliderB)};
 }
 
 ContactChange AskAbout(const ContactListener& listener, const ContactView& contact, float friction, float restitution) {

@@ -14,7 +14,9 @@ constexpr double kMostChange = 1e18;
 
 // BodyState::marks: the sum of these.
 enum Mark : int { kLimited = 1, kStopped = 2 };
-bool IsMarked(const WorldState& world, uint32_t body, Mark mark) { return (static_cast<int>(world.bodies.states[body].marks) & mark) != 0; }
+bool IsMarked(const WorldState& world, uint32_t body, Mark mark) {
+    return (static_cast<int>(world.bodies.states[body].marks) & mark) != 0;
+}
 void SetMark(WorldState& world, uint32_t body, Mark mark, bool isSet) {
     float& marks = world.bodies.states[body].marks;
     const int others = static_cast<int>(marks) & ~mark;
@@ -148,7 +150,9 @@ void Stop(WorldState& world, uint32_t body, WorkerFindings& findings) {
 }
 
 void SettleStopped(WorldState& world) {
-    if (std::none_of(world.findings.begin(), world.findings.end(), [](const WorkerFindings& f) { return f.frozen > 0; })) return;
+    if (std::none_of(world.findings.begin(), world.findings.end(),
+                     [](const WorkerFindings& f) { return f.frozen > 0; }))
+        return;
     for (uint32_t body : world.bodies.awake) {
         if (!IsMarked(world, body, kStopped)) continue;
         SetMark(world, body, kStopped, false);

@@ -1,33 +1,34 @@
-// Keeps the numbers of bodies within bounds, whatever users, contacts and joints make of them: speeds up to the largest, forces
-// that no float can turn into an acceleration, and bodies whose state is not finite, which are frozen. Used by BodyInterface and the
-// stages; for different bodies from any number of threads at once, but for SettleStopped.
+// Keeps the numbers of bodies within bounds, whatever users, contacts and joints make of them: speeds up to the
+// largest, forces that no float can turn into an acceleration, and bodies whose state is not finite, which are frozen.
+// Used by BodyInterface and the stages; for different bodies from any number of threads at once, but for SettleStopped.
 #pragma once
 
 #include <Fulcrum/Physics/Stages/Stages.h>
 
 namespace fulcrum {
 
-// No body is faster, whatever its own limits. Its way in a step still fits the arithmetic of the narrow phase, and its turn is
-// still a number of which more than the whole part is known.
+// No body is faster, whatever its own limits. Its way in a step still fits the arithmetic of the narrow phase, and its
+// turn is still a number of which more than the whole part is known.
 inline constexpr float kFastestLinear = 3e8f;   // m/s
 inline constexpr float kFastestAngular = 1e6f;  // rad/s
 
 // Shortens a finite v to `limit` if it is longer, and says so; |v| may be beyond the floats.
 bool LimitLength(Vector3& v, float limit);
 
-// A finite force, torque or impulse, shortened where times `inverse` (of a mass, or the trace of inertia's) it makes more than any speed
-// or acceleration that counts.
+// A finite force, torque or impulse, shortened where times `inverse` (of a mass, or the trace of inertia's) it makes
+// more than any speed or acceleration that counts.
 Vector3 LimitedPush(const Vector3& push, double inverse);
 inline double Trace(const BodyMass& mass) {
     return double{mass.inverseInertia[0]} + double{mass.inverseInertia[1]} + double{mass.inverseInertia[2]};
 }
 
-// Shortens a body's velocities, both finite, to its largest speeds. Returns whether the body is to be counted for it: once a step,
-// where that took more than a rounding.
+// Shortens a body's velocities, both finite, to its largest speeds. Returns whether the body is to be counted for it:
+// once a step, where that took more than a rounding.
 [[nodiscard]] bool ShortenSpeeds(WorldState& world, uint32_t body, Vector3& v, Vector3& w);
 // False for what is not finite.
 inline bool IsWithinSpeeds(const BodyDynamics& d, const Vector3& v, const Vector3& w) {
-    return LengthSquared(v) <= d.maxLinearSpeed * d.maxLinearSpeed && LengthSquared(w) <= d.maxAngularSpeed * d.maxAngularSpeed;
+    return LengthSquared(v) <= d.maxLinearSpeed * d.maxLinearSpeed &&
+           LengthSquared(w) <= d.maxAngularSpeed * d.maxAngularSpeed;
 }
 [[nodiscard]] inline bool LimitSpeeds(WorldState& world, uint32_t body, Vector3& v, Vector3& w) {
     return !IsWithinSpeeds(world.bodies.dynamics[body], v, w) && ShortenSpeeds(world, body, v, w);

@@ -1,6 +1,6 @@
-// Sorts the colored constraints into groups of islands. Small islands are packed into groups that fit a worker's cache and
-// are solved there whole; that saves them all barriers and most of the memory traffic. Done only in steps in which a
-// constraint began or ended. Serial; the islands follow from the constraints alone.
+// Sorts the colored constraints into groups of islands. Small islands are packed into groups that fit a worker's cache
+// and are solved there whole; that saves them all barriers and most of the memory traffic. Done only in steps in which
+// a constraint began or ended. Serial; the islands follow from the constraints alone.
 #include <Fulcrum/Physics/Islands/UnionFind.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 
@@ -34,8 +34,8 @@ void VisitEntries(const WorldState& world, Kind kind, Visit&& visit) {
 
 uint32_t MovingBodyOf(const Entry& entry) { return entry.stillA ? entry.bodyB : entry.bodyA; }
 
-// A link under the pull of a load swings like a string, the faster the heavier the load: as its square root. Substeps must
-// resolve that, or the chain whips itself apart, however exact its joints. Measured on 16 links of 0.5 m.
+// A link under the pull of a load swings like a string, the faster the heavier the load: as its square root. Substeps
+// must resolve that, or the chain whips itself apart, however exact its joints. Measured on 16 links of 0.5 m.
 int SubstepsUnder(float load) { return std::min(static_cast<int>(std::ceil(0.8f * std::sqrt(load))), 64); }
 
 // What an island is to be solved with: of each number the largest that its joints ask for.
@@ -167,7 +167,8 @@ uint32_t GroupOf(const WorldState& world, const Islands& islands, const Entry& e
     return islands.groupOf[world.bodies.cold[MovingBodyOf(entry)].awakePlace];
 }
 
-// Joints of one kind may share a batch: they have the same locks, or are balls (BallBatch.h), of round bodies or of any.
+// Joints of one kind may share a batch: they have the same locks, or are balls (BallBatch.h), of round bodies or of
+// any.
 enum JointKind : uint32_t { kRoundBall = 9, kBall = 10 };
 uint32_t KindOf(uint32_t kind) { return kind >> 8; }
 bool IsBall(uint32_t kind) { return KindOf(kind) >= kRoundBall; }
@@ -200,7 +201,8 @@ void ListJoints(WorldState& world) {
         record.lineAxis = joint.locks.line;
         record.freeAxis = joint.locks.axis;
         if (c == kColors) return;
-        layout.listedJoints.push_back({KindOf(world, joint) << 8 | joint.maxRows, entry.constraint, MovingBodyOf(entry), c});
+        layout.listedJoints.push_back(
+            {KindOf(world, joint) << 8 | joint.maxRows, entry.constraint, MovingBodyOf(entry), c});
     });
     std::sort(layout.listedJoints.begin(), layout.listedJoints.end());
 }
@@ -216,12 +218,14 @@ std::span<const SortedJoint> SortJoints(WorldState& world, const Islands& island
     if (layout.jointVersion != world.coloring.JointVersion()) ListJoints(world);
     layout.jointVersion = world.coloring.JointVersion();
     const size_t count = layout.listedJoints.size();
-    std::span<SortedJoint> placed = world.scratch.Allocate<SortedJoint>(count), sorted = world.scratch.Allocate<SortedJoint>(count);
+    std::span<SortedJoint> placed = world.scratch.Allocate<SortedJoint>(count),
+                           sorted = world.scratch.Allocate<SortedJoint>(count);
     std::span<uint32_t> next = world.scratch.Allocate<uint32_t>(size_t(islands.groups) * kColors);
     std::fill(next.begin(), next.end(), 0u);
     for (size_t i = 0; i < count; ++i) {
         const ListedJoint& listed = layout.listedJoints[i];
-        placed[i] = {islands.groupOf[world.bodies.cold[listed.body].awakePlace] * kColors + listed.color, listed.kind, listed.joint};
+        placed[i] = {islands.groupOf[world.bodies.cold[listed.body].awakePlace] * kColors + listed.color, listed.kind,
+                     listed.joint};
         ++next[placed[i].place];
     }
     ExclusivePrefixSum(next);
@@ -238,7 +242,9 @@ void FillLanes(const WorldState& world, Batch& batch, const uint32_t (&)[N], std
         const uint32_t index = joints[std::min(lane, joints.size() - 1)].joint;
         const Joint& joint = world.joints.joints[index];
         const auto bit = [&](bool set) { return static_cast<uint32_t>(set) << lane; };
-        const auto isKinematic = [&](int side) { return world.bodies.dynamics[joint.body[side]].motion == MotionType::Kinematic; };
+        const auto isKinematic = [&](int side) {
+            return world.bodies.dynamics[joint.body[side]].motion == MotionType::Kinematic;
+        };
         batch.joint[lane] = index;
         batch.bodyA[lane] = joint.body[0];
         batch.bodyB[lane] = joint.body[1];
@@ -273,14 +279,18 @@ Batch& NextBatch(std::vector<Batch>& batches, uint32_t& count) {
 }
 
 // Cuts the joints of one color into batches, from the front of `sorted`. Trees know the parts of JointBatch alone.
-void MakeJointBatches(WorldState& world, uint32_t place, bool hasTrees, std::span<const SortedJoint>& sorted, ColorBatches& color) {
+void MakeJointBatches(WorldState& world, uint32_t place, bool hasTrees, std::span<const SortedJoint>& sorted,
+                      ColorBatches& color) {
     SolverLayout& layout = world.solver;
     color.jointsBegin = layout.jointCount;
     color.ballsBegin = layout.ballCount;
     while (!sorted.empty() && sorted.front().place == place) {
         size_t n = 1;
-        while (n < kLanes && n < sorted.size() && sorted[n].place == place && KindOf(sorted[n].kind) == KindOf(sorted[0].kind)) ++n;
-        if (IsBall(sorted.front().kind) && !hasTrees) FillBatch(world, NextBatch(layout.balls, layout.ballCount), sorted.first(n));
+        while (n < kLanes && n < sorted.size() && sorted[n].place == place &&
+               KindOf(sorted[n].kind) == KindOf(sorted[0].kind))
+            ++n;
+        if (IsBall(sorted.front().kind) && !hasTrees)
+            FillBatch(world, NextBatch(layout.balls, layout.ballCount), sorted.first(n));
         else FillBatch(world, NextBatch(layout.joints, layout.jointCount), sorted.first(n));
         sorted = sorted.subspan(n);
     }
@@ -292,7 +302,8 @@ uint32_t GroupOf(const WorldState& world, const Islands& islands, const JointTre
     return islands.groupOf[world.bodies.cold[world.solver.trees.slots[tree.slotsEnd - 1].body].awakePlace];
 }
 
-// By group: whether it is solved with trees. Groups of several islands are not: theirs are parts of islands that are too large.
+// By group: whether it is solved with trees. Groups of several islands are not: theirs are parts of islands that are
+// too large.
 std::span<bool> FindGroupsWithTrees(WorldState& world, const Islands& islands) {
     std::span<bool> hasTrees = world.scratch.Allocate<bool>(islands.groups);
     std::fill(hasTrees.begin(), hasTrees.end(), false);
@@ -310,7 +321,8 @@ void PlaceTrees(WorldState& world, const Islands& islands) {
     std::span<JointPlaceInBatch> places = world.scratch.Allocate<JointPlaceInBatch>(world.joints.joints.size());
     std::fill(places.begin(), places.end(), JointPlaceInBatch{});  // balls have none, nor do the trees that they are in
     for (uint32_t b = 0; b < layout.jointCount; ++b)
-        for (uint32_t lane = 0; lane < static_cast<uint32_t>(layout.joints[b].count); ++lane) places[layout.joints[b].joint[lane]] = {b, lane};
+        for (uint32_t lane = 0; lane < static_cast<uint32_t>(layout.joints[b].count); ++lane)
+            places[layout.joints[b].joint[lane]] = {b, lane};
     for (JointTreeSlot& slot : layout.trees.slots)
         if (slot.joint != JointTreeSlot::kNone) slot.place = places[slot.joint];
     for (JointTreeAnchor& anchor : layout.trees.anchors) anchor.place = places[anchor.joint];
@@ -342,7 +354,9 @@ void ShareRows(std::span<JointBatch<N>> batches, std::vector<JointRows<N>>& rows
 
 void SortConstraints(WorldState& world, const Islands& islands) {
     SolverLayout& layout = world.solver;
-    const auto keyOf = [&](uint32_t color, const Entry& entry) { return GroupOf(world, islands, entry) * kColors + color; };
+    const auto keyOf = [&](uint32_t color, const Entry& entry) {
+        return GroupOf(world, islands, entry) * kColors + color;
+    };
     const size_t keys = size_t(islands.groups) * kColors;
     std::span<uint32_t> moving = world.scratch.Allocate<uint32_t>(keys), fixed = world.scratch.Allocate<uint32_t>(keys);
     const auto count = [&](Kind kind, std::span<uint32_t> counts) {

@@ -1,6 +1,7 @@
 // Manifolds of all active pairs. A pair whose bodies hardly moved relative to each other keeps its manifold, of
-// which Prepare brings the separations up to date. Contacts reach as far ahead as the bodies may move within the step, so that nothing
-// is driven into the other by a whole step's motion before it is seen: in every direction, since what is hit is deflected and turned.
+// which Prepare brings the separations up to date. Contacts reach as far ahead as the bodies may move within the step,
+// so that nothing is driven into the other by a whole step's motion before it is seen: in every direction, since what
+// is hit is deflected and turned.
 #include <Fulcrum/Collision/NarrowPhase/PlaneContact.h>
 #include <Fulcrum/Physics/Stages/CrowdContacts.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
@@ -25,13 +26,15 @@ bool BallsApart(const WorldState& world, const Pair& pair, float distance) {
     return LengthSquared(between) > reach * reach;
 }
 
-// m: how much closer the balls about two pieces may come within the step, also where something stops one of them at its start.
+// m: how much closer the balls about two pieces may come within the step, also where something stops one of them at its
+// start.
 float ClosingMotion(const WorldState& world, const Pair& pair, float dt) {
     const BodyStore& bodies = world.bodies;
     Vector3 vA = bodies.LinearVelocityOf(pair.bodyA), vB = bodies.LinearVelocityOf(pair.bodyB);
     if (pair.offset) {
         const auto ofArm = [&](uint32_t body, uint32_t collider) {
-            return Cross<float>(bodies.AngularVelocityOf(body), Rotate(bodies.RotationOf(body), LocalOf(world, collider).position));
+            return Cross<float>(bodies.AngularVelocityOf(body),
+                                Rotate(bodies.RotationOf(body), LocalOf(world, collider).position));
         };
         vA += ofArm(pair.bodyA, pair.colliderA);
         vB += ofArm(pair.bodyB, pair.colliderB);
@@ -41,8 +44,8 @@ float ClosingMotion(const WorldState& world, const Pair& pair, float dt) {
     return dt * Sqrt(fastest);
 }
 
-// m: how much farther two pieces may reach by turning within the step: convex ones no farther than their outer balls. Of a surface that turns
-// it is what is near the other that counts.
+// m: how much farther two pieces may reach by turning within the step: convex ones no farther than their outer balls.
+// Of a surface that turns it is what is near the other that counts.
 float TurningMotion(const WorldState& world, const Pair& pair, float dt) {
     const auto angleOf = [&](uint32_t body) { return dt * Length(world.bodies.AngularVelocityOf(body)); };
     const auto ofConvex = [&](uint32_t body, const Shape& shape) {
@@ -60,8 +63,10 @@ float TurningMotion(const WorldState& world, const Pair& pair, float dt) {
 // m: farther ahead than this the Continuous stage sees to the pair.
 float MotionBeforeCast(const WorldState& world, const Pair& pair) {
     float motion = std::numeric_limits<float>::infinity();
-    if (world.bodies.dynamics[pair.bodyA].continuous) motion = FreeMotion(pair.shapeA->InnerRadius(), pair.shapeA->OuterRadius());
-    if (world.bodies.dynamics[pair.bodyB].continuous) motion = std::min(motion, FreeMotion(pair.shapeB->InnerRadius(), pair.shapeB->OuterRadius()));
+    if (world.bodies.dynamics[pair.bodyA].continuous)
+        motion = FreeMotion(pair.shapeA->InnerRadius(), pair.shapeA->OuterRadius());
+    if (world.bodies.dynamics[pair.bodyB].continuous)
+        motion = std::min(motion, FreeMotion(pair.shapeB->InnerRadius(), pair.shapeB->OuterRadius()));
     return motion;
 }
 
@@ -70,12 +75,17 @@ PairChange CollidePair(WorldState& world, uint32_t index, float dt, WorkerFindin
     const BodyPose& poseA = world.bodies.poses[pair.bodyA];
     const BodyPose& poseB = world.bodies.poses[pair.bodyB];
     const uint32_t now = static_cast<uint32_t>(world.report.step);
-    if ((poseA.boundsChangedIn == now || poseB.boundsChangedIn == now) && !Overlap(world, pair)) return PairChange::Dead;
+    if ((poseA.boundsChangedIn == now || poseB.boundsChangedIn == now) && !Overlap(world, pair))
+        return PairChange::Dead;
 
     const float closing = FarEndFactor(world, pair) * ClosingMotion(world, pair, dt);
-    const float mostMotion = world.sweeps.users > 0 ? MotionBeforeCast(world, pair) : std::numeric_limits<float>::infinity();
-    const auto reachOf = [&](float motion) { return world.settings.speculativeDistance + std::min(motion, mostMotion); };
-    if (!pair.surface && pair.pointCount == 0 && !pair.offset && BallsApart(world, pair, reachOf(closing))) return PairChange::None;
+    const float mostMotion =
+        world.sweeps.users > 0 ? MotionBeforeCast(world, pair) : std::numeric_limits<float>::infinity();
+    const auto reachOf = [&](float motion) {
+        return world.settings.speculativeDistance + std::min(motion, mostMotion);
+    };
+    if (!pair.surface && pair.pointCount == 0 && !pair.offset && BallsApart(world, pair, reachOf(closing)))
+        return PairChange::None;
     const float reachAhead = reachOf(closing + TurningMotion(world, pair, dt));
     if (pair.surface) return CollideWithSurface(world, index, reachAhead, dt, findings);
     const PairView view = ViewPair(world, index);
@@ -86,8 +96,11 @@ PairChange CollidePair(WorldState& world, uint32_t index, float dt, WorkerFindin
         settings.method = world.settings.narrowPhase;
         settings.speculativeDistance = reachAhead;
         Manifold manifold;
-        if (pair.shapeB->Type() == ShapeType::Plane) CollideWithPlane(static_cast<const Plane&>(*pair.shapeB), *pair.shapeA, view.bInA, settings, manifold);
-        else Collide(*pair.shapeA, static_cast<const ConvexShape&>(*pair.shapeB), WithDistinctCenters(world, pair, view.bInA), settings, pair.cache, manifold, findings.libccd);
+        if (pair.shapeB->Type() == ShapeType::Plane)
+            CollideWithPlane(static_cast<const Plane&>(*pair.shapeB), *pair.shapeA, view.bInA, settings, manifold);
+        else
+            Collide(*pair.shapeA, static_cast<const ConvexShape&>(*pair.shapeB),
+                    WithDistinctCenters(world, pair, view.bInA), settings, pair.cache, manifold, findings.libccd);
         WriteManifold(world, view, manifold, dt);
         pair.reference = view.bInA;
     }
@@ -130,8 +143,8 @@ void CollideActivated(WorldState& world, float dt) {
     });
 }
 
-// Wakes the sleeping bodies that were touched. They search for pairs of their own at once: what is hit must not lose its
-// support for a step. Returns whether that made pairs active, which are to be collided too.
+// Wakes the sleeping bodies that were touched. They search for pairs of their own at once: what is hit must not lose
+// its support for a step. Returns whether that made pairs active, which are to be collided too.
 bool WakeTouched(WorldState& world) {
     bool woke = false;
     VisitChanges(world, [&](uint32_t index) {

@@ -1,6 +1,6 @@
-// A pair of a convex shape and a surface has as many manifolds as there are directions in which they touch. The first is the
-// pair's own; the others are pairs of their own, chained to it, which the later stages take for any other. They stay, empty or
-// not, as long as the pair does.
+// A pair of a convex shape and a surface has as many manifolds as there are directions in which they touch. The first
+// is the pair's own; the others are pairs of their own, chained to it, which the later stages take for any other. They
+// stay, empty or not, as long as the pair does.
 #include <Fulcrum/Physics/Stages/PairView.h>
 
 #include <algorithm>
@@ -28,7 +28,8 @@ void Write(WorldState& world, const PairView& view, uint32_t index, const Surfac
         pair.material = contact.material;
         CombineMaterials(world, index);
     }
-    WriteManifold(world, {pair, world.pairs.records[index], view.bodyBInA, view.bInA, view.before}, contact.manifold, dt);
+    WriteManifold(world, {pair, world.pairs.records[index], view.bodyBInA, view.bInA, view.before}, contact.manifold,
+                  dt);
 }
 
 // Of the center of the convex piece relative to the surface within the step, m, in that piece's frame.
@@ -62,7 +63,8 @@ void WriteManifolds(WorldState& world, const PairView& view, uint32_t first, flo
         int most = 0;
         size_t best = places.size();
         for (size_t i = 0; i < places.size(); ++i) {
-            const int common = places[i] == kTaken ? 0 : CommonFeatures(world.pairs.pairs[places[i]], found[m].manifold);
+            const int common =
+                places[i] == kTaken ? 0 : CommonFeatures(world.pairs.pairs[places[i]], found[m].manifold);
             if (common > most) {
                 most = common;
                 best = i;

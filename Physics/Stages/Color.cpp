@@ -1,6 +1,6 @@
-// Contacts that began get a color, those that ended lose it; joints do so when they come and go, wake and sleep. Serial, and in an
-// order that depends on what touches what alone: the same colors for any number of threads, and however coarse the bounds are
-// by which pairs were found, so that a scene far out is solved as at the origin.
+// Contacts that began get a color, those that ended lose it; joints do so when they come and go, wake and sleep.
+// Serial, and in an order that depends on what touches what alone: the same colors for any number of threads, and
+// however coarse the bounds are by which pairs were found, so that a scene far out is solved as at the origin.
 #include <Fulcrum/Physics/Stages/Stages.h>
 
 #include <algorithm>
@@ -16,7 +16,9 @@ Coloring::Kind KindOf(const Pair& pair) { return pair.fixedB ? Coloring::Kind::F
 Coloring::Entry EntryOf(const Joint& joint, uint32_t index) {
     return {index, joint.body[0], joint.body[1], joint.still[0], joint.still[1]};
 }
-Coloring::Entry EntryOf(const Pair& pair, uint32_t index) { return {index, pair.bodyA, pair.bodyB, false, pair.fixedB}; }
+Coloring::Entry EntryOf(const Pair& pair, uint32_t index) {
+    return {index, pair.bodyA, pair.bodyB, false, pair.fixedB};
+}
 
 }  // namespace
 
@@ -98,7 +100,8 @@ void Color(WorldState& world) {
     // Indices of pairs tell when their bounds met.
     std::sort(began.begin(), began.end(), [&](uint32_t x, uint32_t y) {
         const Pair &a = world.pairs.pairs[x], &b = world.pairs.pairs[y];
-        return std::tie(a.colliderA, a.colliderB, a.features[0], x) < std::tie(b.colliderA, b.colliderB, b.features[0], y);
+        return std::tie(a.colliderA, a.colliderB, a.features[0], x) <
+               std::tie(b.colliderA, b.colliderB, b.features[0], y);
     });
     for (uint32_t index : began) {
         ColorPair(world, index);

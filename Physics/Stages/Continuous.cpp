@@ -1,6 +1,7 @@
-// Continuous collision: what moved far in this step is cast along its way. Where it hits, it bounces there and then, and goes on with
-// what is left of the step. In rounds: all casts in parallel; then the hits in the order of their times, as long as both bodies' sweeps
-// still are those that were cast (ResolveHits.h); what changed its sweep, or lost its partner, is cast again.
+// Continuous collision: what moved far in this step is cast along its way. Where it hits, it bounces there and then,
+// and goes on with what is left of the step. In rounds: all casts in parallel; then the hits in the order of their
+// times, as long as both bodies' sweeps still are those that were cast (ResolveHits.h); what changed its sweep, or lost
+// its partner, is cast again.
 #include <Fulcrum/Physics/Stages/ResolveHits.h>
 #include <Fulcrum/Physics/Stages/SweepCast.h>
 
@@ -24,12 +25,13 @@ float FreeMotionOf(const WorldState& world, uint32_t body) {
     return least;
 }
 
-// Whether the fat bounds of a body's colliders, which reach ahead by the velocity that it had when the step began, hold all its way.
-// Those that do not are noted, to be enlarged.
+// Whether the fat bounds of a body's colliders, which reach ahead by the velocity that it had when the step began, hold
+// all its way. Those that do not are noted, to be enlarged.
 bool StaysInBounds(const WorldState& world, uint32_t body, const Vector3& moved, float dt, WorkerFindings& findings) {
     const float* a = world.bodies.poses[body].acceleration;
     const float slack = 0.5f * world.settings.speculativeDistance;
-    const bool flewAsForeseen = !world.coloring.IsTouched(body) && LengthSquared(Vector3(a[0], a[1], a[2])) * dt * dt * dt * dt < slack * slack;
+    const bool flewAsForeseen =
+        !world.coloring.IsTouched(body) && LengthSquared(Vector3(a[0], a[1], a[2])) * dt * dt * dt * dt < slack * slack;
     if (flewAsForeseen || LengthSquared(moved) <= slack * slack) return true;
     bool stays = true;
     VisitColliders(world, body, [&](uint32_t i) {
@@ -55,7 +57,8 @@ void LookAtBody(WorldState& world, uint32_t body, float dt, WorkerFindings& find
     world.sweeps.searchBy[body] = stays && !turns ? SearchBy::Pairs : SearchBy::Trees;
 }
 
-// What the solver moved elsewhere than its bounds foresaw is given bounds about its whole way, so that the trees find it there.
+// What the solver moved elsewhere than its bounds foresaw is given bounds about its whole way, so that the trees find
+// it there.
 void EnlargeBounds(WorldState& world) {
     std::vector<uint32_t>& moved = world.colliders.moved;
     const size_t first = moved.size();
@@ -78,14 +81,16 @@ uint32_t FindFast(WorldState& world, float dt) {
     store.searchBy.assign(world.bodies.Size(), SearchBy::None);
     const std::vector<uint32_t>& awake = world.bodies.awake;
     world.jobs->ParallelFor(static_cast<uint32_t>(awake.size()), 64, [&](JobRange range) {
-        for (uint32_t k = range.begin; k < range.end; ++k) LookAtBody(world, awake[k], dt, world.findings[range.worker]);
+        for (uint32_t k = range.begin; k < range.end; ++k)
+            LookAtBody(world, awake[k], dt, world.findings[range.worker]);
     });
     EnlargeBounds(world);
     const size_t slow = static_cast<size_t>(std::count(store.searchBy.begin(), store.searchBy.end(), SearchBy::None));
     const size_t fast = store.searchBy.size() - slow;
     // To look through all pairs for a few bodies would take longer than their searches.
     constexpr size_t kPairsPerSearch = 16;
-    if (fast * kPairsPerSearch < world.pairs.active.Size()) std::replace(store.searchBy.begin(), store.searchBy.end(), SearchBy::Pairs, SearchBy::Trees);
+    if (fast * kPairsPerSearch < world.pairs.active.Size())
+        std::replace(store.searchBy.begin(), store.searchBy.end(), SearchBy::Pairs, SearchBy::Trees);
     return static_cast<uint32_t>(fast);
 }
 
@@ -106,7 +111,9 @@ void CastPairs(WorldState& world) {
                 const Pair& pair = world.pairs.pairs[index];
                 const uint32_t caster = pair.isMore ? SweepStore::kNone : CasterOf(world, pair);
                 SweepHit hit;
-                if (caster == SweepStore::kNone || !CastPair(world, caster, pair.colliderA ^ pair.colliderB ^ caster, findings, hit)) return;
+                if (caster == SweepStore::kNone ||
+                    !CastPair(world, caster, pair.colliderA ^ pair.colliderB ^ caster, findings, hit))
+                    return;
                 findings.sweepHits.push_back(hit);
             });
     });

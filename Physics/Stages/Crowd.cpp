@@ -13,12 +13,13 @@ namespace fulcrum {
 
 namespace {
 
-// Bodies: so many that start in one step get places in a ball. Fewer move in random directions: bodies that are created one by one at one
-// point start a few at a time, and places in small balls would all be near that point.
+// Bodies: so many that start in one step get places in a ball. Fewer move in random directions: bodies that are created
+// one by one at one point start a few at a time, and places in small balls would all be near that point.
 constexpr size_t kFewestWithPlaces = 32;
 // s, for which bodies that should be at their places wait for room there before they move on.
 constexpr float kPatience = 0.5f;
-// Bodies that started together have room when no more than one in so many of them overlaps another. The contacts separate these few.
+// Bodies that started together have room when no more than one in so many of them overlaps another. The contacts
+// separate these few.
 constexpr uint32_t kNearlyAll = 32;
 
 // Whether a body is one that can disperse at all.
@@ -43,12 +44,17 @@ std::vector<uint32_t> Select(WorldState& world, std::span<const uint32_t> bodies
 
 // Marks those of `bodies` that are to disperse, and returns them in ascending order.
 std::vector<uint32_t> MarkDispersing(WorldState& world, const JointedGroups& groups, std::span<const uint32_t> bodies) {
-    const auto mayStart = [&](uint32_t body) { return MovesFreely(world, body) && !world.bodies.dynamics[body].dispersing; };
-    std::vector<uint32_t> starting = Select(world, bodies, [&](uint32_t body) { return mayStart(body) && OverlapsManyDeeply(world, groups, body); });
+    const auto mayStart = [&](uint32_t body) {
+        return MovesFreely(world, body) && !world.bodies.dynamics[body].dispersing;
+    };
+    std::vector<uint32_t> starting =
+        Select(world, bodies, [&](uint32_t body) { return mayStart(body) && OverlapsManyDeeply(world, groups, body); });
     for (const uint32_t body : starting) world.bodies.dynamics[body].dispersing = true;
     // Those that deeply overlap only a few of these would be in their way.
     for (std::vector<uint32_t> joining = starting; !joining.empty();) {
-        joining = Select(world, bodies, [&](uint32_t body) { return mayStart(body) && OverlapsDispersingDeeply(world, groups, body); });
+        joining = Select(world, bodies, [&](uint32_t body) {
+            return mayStart(body) && OverlapsDispersingDeeply(world, groups, body);
+        });
         for (const uint32_t body : joining) world.bodies.dynamics[body].dispersing = true;
         starting.insert(starting.end(), joining.begin(), joining.end());
     }
@@ -65,7 +71,8 @@ void RemoveDynamicPairs(WorldState& world, std::span<const uint32_t> bodies) {
 }
 
 // Where each body is to move. Bodies with joints move in one direction with those that they are connected to.
-std::vector<DispersingBody> PlanDispersing(const WorldState& world, const JointedGroups& groups, std::span<const uint32_t> bodies) {
+std::vector<DispersingBody> PlanDispersing(const WorldState& world, const JointedGroups& groups,
+                                           std::span<const uint32_t> bodies) {
     std::vector<DispersingBody> planned;
     std::vector<uint32_t> single;
     for (const uint32_t body : bodies) {
@@ -73,7 +80,8 @@ std::vector<DispersingBody> PlanDispersing(const WorldState& world, const Jointe
         else single.push_back(body);
     }
     if (single.size() >= kFewestWithPlaces) AssignPlaces(world, single, planned);
-    else for (const uint32_t body : single) planned.push_back({body, PointInBall(body)});
+    else
+        for (const uint32_t body : single) planned.push_back({body, PointInBall(body)});
     return planned;
 }
 
@@ -116,7 +124,8 @@ void Push(WorldState& world, DispersingBody& dispersing, float dt) {
     }
     LimitLength(dispersing.push, std::min(fastest, d.maxLinearSpeed));
     d.Lock(dispersing.push, turn);
-    world.bodies.SetVelocity(dispersing.body, dispersing.ownVelocity + dispersing.push, world.bodies.AngularVelocityOf(dispersing.body));
+    world.bodies.SetVelocity(dispersing.body, dispersing.ownVelocity + dispersing.push,
+                             world.bodies.AngularVelocityOf(dispersing.body));
 }
 
 // The bodies that started to disperse in one step.
@@ -127,7 +136,8 @@ struct StartedTogether {
 };
 
 // By the step in which they started; overlaps[i]: whether world.dispersing[i] overlaps another body.
-std::map<uint64_t, StartedTogether> GroupByStart(const WorldState& world, const JointedGroups& groups, std::span<const uint8_t> overlaps) {
+std::map<uint64_t, StartedTogether> GroupByStart(const WorldState& world, const JointedGroups& groups,
+                                                 std::span<const uint8_t> overlaps) {
     std::map<uint64_t, StartedTogether> all;
     for (size_t i = 0; i < overlaps.size(); ++i) {
         StartedTogether& together = all[world.dispersing[i].startStep];
@@ -136,7 +146,8 @@ std::map<uint64_t, StartedTogether> GroupByStart(const WorldState& world, const 
     }
     for (size_t i = 0; i < overlaps.size(); ++i) {
         StartedTogether& together = all[world.dispersing[i].startStep];
-        if (overlaps[i] && together.HaveRoom()) together.isBlocked = OverlapsMany(world, groups, world.dispersing[i].body);
+        if (overlaps[i] && together.HaveRoom())
+            together.isBlocked = OverlapsMany(world, groups, world.dispersing[i].body);
     }
     return all;
 }
@@ -158,7 +169,8 @@ void StartDispersing(WorldState& world, std::vector<uint32_t>& bodies) {
         dispersing.startStep = world.report.step;
         world.dispersing.push_back(dispersing);
     }
-    std::sort(world.dispersing.begin(), world.dispersing.end(), [](const DispersingBody& a, const DispersingBody& b) { return a.body < b.body; });
+    std::sort(world.dispersing.begin(), world.dispersing.end(),
+              [](const DispersingBody& a, const DispersingBody& b) { return a.body < b.body; });
 }
 
 void PushDispersing(WorldState& world, float dt) {
@@ -181,24 +193,28 @@ Vector3 OwnVelocity(const WorldState& world, uint32_t body, const Vector3& v, fl
     return NoFasterThan(v - dispersing->push, dispersing->ownVelocity + Vector3(a[0], a[1], a[2]) * dt);
 }
 
-// Those that started together end together. A body whose time at its place is over ends by itself once it overlaps nobody.
+// Those that started together end together. A body whose time at its place is over ends by itself once it overlaps
+// nobody.
 void EndDispersing(WorldState& world) {
     if (world.dispersing.empty()) return;
     const JointedGroups groups(world);
     const std::span<uint8_t> overlaps = world.scratch.Allocate<uint8_t>(world.dispersing.size());
     world.jobs->ParallelFor(static_cast<uint32_t>(overlaps.size()), 16, [&](JobRange range) {
-        for (uint32_t i = range.begin; i < range.end; ++i) overlaps[i] = OverlapsAnother(world, groups, world.dispersing[i].body);
+        for (uint32_t i = range.begin; i < range.end; ++i)
+            overlaps[i] = OverlapsAnother(world, groups, world.dispersing[i].body);
     });
     const std::map<uint64_t, StartedTogether> together = GroupByStart(world, groups, overlaps);
     for (size_t i = 0; i < overlaps.size(); ++i) {
         const DispersingBody& dispersing = world.dispersing[i];
-        const bool hasDispersed = together.at(dispersing.startStep).HaveRoom() || (!dispersing.hasPlace && !overlaps[i]);
+        const bool hasDispersed =
+            together.at(dispersing.startStep).HaveRoom() || (!dispersing.hasPlace && !overlaps[i]);
         world.bodies.dynamics[dispersing.body].dispersing = !hasDispersed;
     }
     std::erase_if(world.dispersing, [&](const DispersingBody& dispersing) {
         if (world.bodies.dynamics[dispersing.body].dispersing) return false;
         AddGravity(world, dispersing.body, 1);
-        world.bodies.SetVelocity(dispersing.body, dispersing.ownVelocity, world.bodies.AngularVelocityOf(dispersing.body));
+        world.bodies.SetVelocity(dispersing.body, dispersing.ownVelocity,
+                                 world.bodies.AngularVelocityOf(dispersing.body));
         RequeueColliders(world, dispersing.body);
         return true;
     });

@@ -1,9 +1,10 @@
-// Crowds: many bodies created in one place, thousands at one point even. A few are separated by their contacts. Among many no contact
-// normal tells which way is out, n bodies have n^2 pairs, and the sum of their pushes would throw them far apart. So a body that deeply
-// overlaps many others disperses: for some time it does not collide with dynamic bodies, gravity does not act on it, and on top of
-// its own velocity it moves, at a bounded speed, to a place of its own in a ball that has room for all, or in what floor and walls
-// leave of that ball. Those that started together end together, when nearly all of them overlap no other. From then on contacts
-// separate what is left, and push no faster than contactPushSpeed until nothing overlaps.
+// Crowds: many bodies created in one place, thousands at one point even. A few are separated by their contacts. Among
+// many no contact normal tells which way is out, n bodies have n^2 pairs, and the sum of their pushes would throw them
+// far apart. So a body that deeply overlaps many others disperses: for some time it does not collide with dynamic
+// bodies, gravity does not act on it, and on top of its own velocity it moves, at a bounded speed, to a place of its
+// own in a ball that has room for all, or in what floor and walls leave of that ball. Those that started together end
+// together, when nearly all of them overlap no other. From then on contacts separate what is left, and push no faster
+// than contactPushSpeed until nothing overlaps.
 //   CrowdOverlaps.h  which bodies overlap many others
 //   CrowdPlaces.h    where bodies disperse to
 //   Crowd.h          start, motion and end of dispersing
@@ -15,13 +16,14 @@
 
 namespace fulcrum {
 
-// Of `bodies`, in any order and sorted here, those that deeply overlap many others start to disperse. They lose their pairs with dynamic
-// bodies.
+// Of `bodies`, in any order and sorted here, those that deeply overlap many others start to disperse. They lose their
+// pairs with dynamic bodies.
 void StartDispersing(WorldState& world, std::vector<uint32_t>& bodies);
 
 // As the step begins, before bounds: dispersing bodies get the velocity with which they move in this step.
 void PushDispersing(WorldState& world, float dt);
-// As it ends, for a dispersing body: its velocity v, m/s, without that push. For different bodies from any number of threads.
+// As it ends, for a dispersing body: its velocity v, m/s, without that push. For different bodies from any number of
+// threads.
 Vector3 OwnVelocity(const WorldState& world, uint32_t body, const Vector3& v, float dt);
 
 // Bodies that have dispersed collide again, and search for their pairs.

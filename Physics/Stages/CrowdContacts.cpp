@@ -12,7 +12,8 @@ namespace fulcrum {
 namespace {
 
 // Parts of the sum of two shapes' inner radii.
-constexpr float kCenterOffset = 1e-3f;  // of coincident centers: a distance that gives a direction, and too short to be seen
+constexpr float kCenterOffset =
+    1e-3f;  // of coincident centers: a distance that gives a direction, and too short to be seen
 constexpr float kCrowdedOverlap = 0.01f;  // by less than this, as bodies at rest on each other do, nothing is crowded
 // The part of an overlap with what does not move that goes within a substep: all at once would throw bodies up.
 constexpr float kFixedOverlapRemoved = 0.125f;
@@ -24,14 +25,15 @@ float SeparationOf(const WorldState& world, uint32_t index, const Vector3& norma
     float least = std::numeric_limits<float>::infinity();
     for (int i = 0; i < pair.pointCount; ++i) {
         const ContactRecord::Point& p = world.pairs.records[index].points[i];
-        const Position onA = a.Transform(Vector3(p.onA[0], p.onA[1], p.onA[2])), onB = b.Transform(Vector3(p.onB[0], p.onB[1], p.onB[2]));
+        const Position onA = a.Transform(Vector3(p.onA[0], p.onA[1], p.onA[2])),
+                       onB = b.Transform(Vector3(p.onB[0], p.onB[1], p.onB[2]));
         least = std::min(least, Dot<float>(normal, Vector3((onB - onA).cast<float>())));
     }
     return least;
 }
 
 // Moves what the workers noted into one list, sorted: the same for any number of threads.
-void Gather(WorldState& world, std::vector<uint32_t> WorkerFindings::* list, std::vector<uint32_t>& all) {
+void Gather(WorldState& world, std::vector<uint32_t> WorkerFindings::*list, std::vector<uint32_t>& all) {
     all.clear();
     for (WorkerFindings& findings : world.findings) {
         all.insert(all.end(), (findings.*list).begin(), (findings.*list).end());
@@ -102,7 +104,8 @@ void LimitPush(WorldState& world, uint32_t body, float h) {
         const Vector3 normal = ContactNormal(world, pair);
         const float gap = SeparationOf(world, pair, normal) - Dot<float>(normal, Vector3(moved[0], moved[1], moved[2]));
         const float most = gap >= 0 ? gap / h : std::max(gap * kFixedOverlapRemoved / h, -fastest);
-        const float into = Dot<float>(normal, Vector3(v - world.bodies.LinearVelocityOf(world.pairs.pairs[pair].bodyB)));
+        const float into =
+            Dot<float>(normal, Vector3(v - world.bodies.LinearVelocityOf(world.pairs.pairs[pair].bodyB)));
         if (into > most) v -= normal * (into - most);
     });
     world.bodies.SetVelocity(body, v, freeW + spin);

@@ -1,6 +1,6 @@
-// Contacts of bodies in a crowd (Crowd.h): which way coincident bodies are pushed, which bodies Collide saw overlap, and how fast
-// contacts may push crowded bodies: those that disperse, or have dispersed and still overlap something. Used by Collide, Solve and
-// Store, for different bodies from any number of threads, but for GatherCrowd.
+// Contacts of bodies in a crowd (Crowd.h): which way coincident bodies are pushed, which bodies Collide saw overlap,
+// and how fast contacts may push crowded bodies: those that disperse, or have dispersed and still overlap something.
+// Used by Collide, Solve and Store, for different bodies from any number of threads, but for GatherCrowd.
 #pragma once
 
 #include <Fulcrum/Physics/State/WorldState.h>
@@ -9,18 +9,21 @@
 
 namespace fulcrum {
 
-// Where the centers of two convex shapes coincide, no direction is better than another to separate them along. Then each body counts as a
-// thousandth of the inner radii away from where it is, towards its PointInBall: all pairs of a crowd agree about that, and its bodies are
-// pushed out in all directions. Returns `bInA`, that of the shapes, with that offset where it is needed.
+// Where the centers of two convex shapes coincide, no direction is better than another to separate them along. Then
+// each body counts as a thousandth of the inner radii away from where it is, towards its PointInBall: all pairs of a
+// crowd agree about that, and its bodies are pushed out in all directions. Returns `bInA`, that of the shapes, with
+// that offset where it is needed.
 RelativePose WithDistinctCenters(const WorldState& world, const Pair& pair, const RelativePose& bInA);
 
-// Notes in `findings` which bodies of a pair overlap deeply, and which crowded ones overlap at all; `bInA` is that of the shapes.
+// Notes in `findings` which bodies of a pair overlap deeply, and which crowded ones overlap at all; `bInA` is that of
+// the shapes.
 void NoteOverlap(const WorldState& world, uint32_t pair, const RelativePose& bInA, WorkerFindings& findings);
 // Gathers what the workers noted into WorldState::deepOverlaps and crowded. One thread.
 void GatherCrowd(WorldState& world);
 
-// Limits the velocity with which a crowded body is about to move for h seconds: contacts and joints change it by no more than
-// contactPushSpeed, and it is not pressed into what does not move, whose soft contacts would give way to the pushes of so many.
+// Limits the velocity with which a crowded body is about to move for h seconds: contacts and joints change it by no
+// more than contactPushSpeed, and it is not pressed into what does not move, whose soft contacts would give way to the
+// pushes of so many.
 void LimitPush(WorldState& world, uint32_t body, float h);
 
 // `v` with at most the length of `limit`: pushes leave a crowded body no more speed than it had without them.

@@ -20,13 +20,16 @@ Position ColliderCenterOf(const WorldState& world, uint32_t collider) {
 }
 
 bool AreDynamic(const WorldState& world, uint32_t colliderA, uint32_t colliderB) {
-    const auto isDynamic = [&](uint32_t index) { return world.bodies.dynamics[world.colliders.colliders[index].body].motion == MotionType::Dynamic; };
+    const auto isDynamic = [&](uint32_t index) {
+        return world.bodies.dynamics[world.colliders.colliders[index].body].motion == MotionType::Dynamic;
+    };
     return isDynamic(colliderA) && isDynamic(colliderB);
 }
 
 // m^2
 float SquaredDistance(const WorldState& world, uint32_t colliderA, uint32_t colliderB) {
-    return LengthSquared(Vector3((ColliderCenterOf(world, colliderB) - ColliderCenterOf(world, colliderA)).cast<float>()));
+    return LengthSquared(
+        Vector3((ColliderCenterOf(world, colliderB) - ColliderCenterOf(world, colliderA)).cast<float>()));
 }
 
 // Whether two colliders belong to dynamic bodies, whose shapes are convex, and overlap.
@@ -40,12 +43,15 @@ bool ShapesOverlap(const WorldState& world, uint32_t colliderA, uint32_t collide
     Manifold manifold;
     PairCache cache;
     CollideCounters counters;
-    Collide(a, b, Relative(ColliderPoseOf(world, colliderA), ColliderPoseOf(world, colliderB)), {.method = world.settings.narrowPhase}, cache, manifold, counters);
-    return std::any_of(manifold.points, manifold.points + manifold.pointCount, [](const ManifoldPoint& point) { return point.separation < 0; });
+    Collide(a, b, Relative(ColliderPoseOf(world, colliderA), ColliderPoseOf(world, colliderB)),
+            {.method = world.settings.narrowPhase}, cache, manifold, counters);
+    return std::any_of(manifold.points, manifold.points + manifold.pointCount,
+                       [](const ManifoldPoint& point) { return point.separation < 0; });
 }
 
 bool OverlapDispersingDeeply(const WorldState& world, uint32_t collider, uint32_t other) {
-    return world.bodies.dynamics[world.colliders.colliders[other].body].dispersing && OverlapDeeply(world, collider, other);
+    return world.bodies.dynamics[world.colliders.colliders[other].body].dispersing &&
+           OverlapDeeply(world, collider, other);
 }
 
 // Whether overlap(world, collider of the body, collider of another) is true for at least kCount other bodies.
@@ -57,7 +63,8 @@ bool OverlapsAtLeast(const WorldState& world, const JointedGroups& groups, uint3
         const uint32_t other = world.colliders.colliders[index].body;
         if (!overlap(world, collider, index) || groups.RootOf(other) == groups.RootOf(body)) return false;
         if (std::find(others.data(), others.data() + count, other) != others.data() + count) return false;
-        return CanCollide(world, body, other) && (world.pairs.Find(collider, index) != PairStore::kNone || ListenerAllows(world, body, other));
+        return CanCollide(world, body, other) &&
+               (world.pairs.Find(collider, index) != PairStore::kNone || ListenerAllows(world, body, other));
     };
     VisitColliders(world, body, [&](uint32_t collider) {
         float distance = 0;  // below zero ends the search
@@ -77,13 +84,15 @@ JointedGroups::JointedGroups(WorldState& world) {
     roots_ = world.scratch.Allocate<uint32_t>(world.bodies.Size());
     UnionFind sets(roots_);
     for (const Joint& joint : world.joints.joints)
-        if (joint.exists && joint.enabled && !joint.still[0] && !joint.still[1]) sets.Unite(joint.body[0], joint.body[1]);
+        if (joint.exists && joint.enabled && !joint.still[0] && !joint.still[1])
+            sets.Unite(joint.body[0], joint.body[1]);
     for (uint32_t body = 0; body < roots_.size(); ++body) roots_[body] = sets.Find(body);
 }
 
 bool OverlapDeeply(const WorldState& world, uint32_t colliderA, uint32_t colliderB) {
     if (!AreDynamic(world, colliderA, colliderB)) return false;
-    const float reach = DeepOverlapDistance(*world.colliders.shapes[colliderA].shape, *world.colliders.shapes[colliderB].shape);
+    const float reach =
+        DeepOverlapDistance(*world.colliders.shapes[colliderA].shape, *world.colliders.shapes[colliderB].shape);
     return SquaredDistance(world, colliderA, colliderB) < reach * reach;
 }
 

@@ -1,5 +1,6 @@
-// Which bodies of a crowd overlap which others (Crowd.h). Each search ends at the first few found, so that its cost does not grow with
-// the crowd. Used by FindPairs, StartDispersing, EndDispersing and NoteDeepOverlap; reads only, from any number of threads.
+// Which bodies of a crowd overlap which others (Crowd.h). Each search ends at the first few found, so that its cost
+// does not grow with the crowd. Used by FindPairs, StartDispersing, EndDispersing and NoteDeepOverlap; reads only, from
+// any number of threads.
 #pragma once
 
 #include <Fulcrum/Physics/State/WorldState.h>
@@ -8,12 +9,12 @@
 
 namespace fulcrum {
 
-// A body that deeply overlaps so many others disperses; contacts still separate fewer. In the densest packing of equal spheres each touches
-// twelve others, and overlaps none of them deeply.
+// A body that deeply overlaps so many others disperses; contacts still separate fewer. In the densest packing of equal
+// spheres each touches twelve others, and overlaps none of them deeply.
 inline constexpr size_t kManyOverlaps = 6;
 
-// Two shapes overlap deeply where their centers are nearer than this, m: a part of the sum of their inner radii. Contacts that give way
-// under load leave far less overlap than that, so bodies that overlap deeply were put there.
+// Two shapes overlap deeply where their centers are nearer than this, m: a part of the sum of their inner radii.
+// Contacts that give way under load leave far less overlap than that, so bodies that overlap deeply were put there.
 inline float DeepOverlapDistance(const Shape& a, const Shape& b) { return 0.8f * (a.InnerRadius() + b.InnerRadius()); }
 
 // Whether two colliders belong to dynamic bodies and overlap deeply.

@@ -12,13 +12,13 @@ namespace fulcrum {
 
 namespace {
 
-// The part of the ball's volume that bodies fill, as spheres about them. Spheres that touch fill 0.74 of it on the lattice of places; with
-// 0.6 their surfaces are 7 % of a diameter apart.
+// The part of the ball's volume that bodies fill, as spheres about them. Spheres that touch fill 0.74 of it on the
+// lattice of places; with 0.6 their surfaces are 7 % of a diameter apart.
 constexpr double kPacking = 0.6;
 // Radii of the ball. Bodies whose centers all are this near to their common middle move to places about that middle.
 constexpr double kNear = 1.5;
-// Radii of the ball: no place is farther from its middle, and no floor or wall beyond is looked for. Half the ball cut off by a floor
-// needs 1.26.
+// Radii of the ball: no place is farther from its middle, and no floor or wall beyond is looked for. Half the ball cut
+// off by a floor needs 1.26.
 constexpr double kFarthestPlace = 2;
 // Places are as large as all bodies but one in so many need; making room for a few large ones would spread all others.
 constexpr size_t kLargeOnes = 32;
@@ -45,16 +45,18 @@ bool FindLimit(const WorldState& world, uint32_t body, const Ball& ball, const V
     RayHit closest;
     uint32_t met = ~0u;
     float most = 1;
-    world.colliders.fixedTree.CastRay(TreeRay(ball.middle - world.colliders.boundsOrigin, ray), most, [&](uint32_t index) {
-        RayHit hit;
-        if (!CanCollide(world, body, world.colliders.colliders[index].body)) return;
-        if (!caster.CastClosest(*world.colliders.shapes[index].shape, ColliderPoseOf(world, index), {}, hit)) return;
-        // Of equally near ones that of the lowest index, whatever the shape of the tree.
-        if (std::pair(hit.fraction, index) >= std::pair(closest.fraction, met) && met != ~0u) return;
-        closest = hit;
-        met = index;
-        most = std::min(most, hit.fraction);
-    });
+    world.colliders.fixedTree.CastRay(
+        TreeRay(ball.middle - world.colliders.boundsOrigin, ray), most, [&](uint32_t index) {
+            RayHit hit;
+            if (!CanCollide(world, body, world.colliders.colliders[index].body)) return;
+            if (!caster.CastClosest(*world.colliders.shapes[index].shape, ColliderPoseOf(world, index), {}, hit))
+                return;
+            // Of equally near ones that of the lowest index, whatever the shape of the tree.
+            if (std::pair(hit.fraction, index) >= std::pair(closest.fraction, met) && met != ~0u) return;
+            closest = hit;
+            met = index;
+            most = std::min(most, hit.fraction);
+        });
     const double height = -double{closest.fraction} * Dot<double>(closest.normal.cast<double>(), ray.cast<double>());
     limit = {closest.normal, static_cast<float>((ball.margin - height) / ball.radius)};
     return met != ~0u;
@@ -69,7 +71,8 @@ std::vector<PlaceLimit> FindLimits(const WorldState& world, uint32_t body, const
                 const Vector3 direction(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
                 PlaceLimit limit;
                 if (direction.isZero(0)) continue;
-                if (FindLimit(world, body, ball, direction * static_cast<float>(kFarthestPlace * ball.radius), limit)) limits.push_back(limit);
+                if (FindLimit(world, body, ball, direction * static_cast<float>(kFarthestPlace * ball.radius), limit))
+                    limits.push_back(limit);
             }
     return limits;
 }
@@ -83,9 +86,9 @@ float NearlyLargestRadius(const WorldState& world, std::span<const uint32_t> bod
     return *large;
 }
 
-// Reorders bodies and places so that body i gets place i, on its side of the others, and few cross: along the axis on which places
-// extend farthest the lower half of the bodies gets the lower half of the places, and so on within each half. Equal coordinates are ordered
-// by the bodies' indices.
+// Reorders bodies and places so that body i gets place i, on its side of the others, and few cross: along the axis on
+// which places extend farthest the lower half of the bodies gets the lower half of the places, and so on within each
+// half. Equal coordinates are ordered by the bodies' indices.
 void MatchPlaces(const WorldState& world, std::span<uint32_t> bodies, std::span<Vector3> places) {
     if (bodies.size() < 2) return;
     Vector3 lower = places[0], upper = places[0];
@@ -98,8 +101,10 @@ void MatchPlaces(const WorldState& world, std::span<uint32_t> bodies, std::span<
     const size_t half = bodies.size() / 2;
     const auto bodyKey = [&](uint32_t body) { return std::pair(world.bodies.poses[body].position[axis], body); };
     const auto placeKey = [&](const Vector3& p) { return std::tuple(p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]); };
-    std::nth_element(bodies.begin(), bodies.begin() + half, bodies.end(), [&](uint32_t x, uint32_t y) { return bodyKey(x) < bodyKey(y); });
-    std::nth_element(places.begin(), places.begin() + half, places.end(), [&](const Vector3& x, const Vector3& y) { return placeKey(x) < placeKey(y); });
+    std::nth_element(bodies.begin(), bodies.begin() + half, bodies.end(),
+                     [&](uint32_t x, uint32_t y) { return bodyKey(x) < bodyKey(y); });
+    std::nth_element(places.begin(), places.begin() + half, places.end(),
+                     [&](const Vector3& x, const Vector3& y) { return placeKey(x) < placeKey(y); });
     MatchPlaces(world, bodies.first(half), places.first(half));
     MatchPlaces(world, bodies.subspan(half), places.subspan(half));
 }
@@ -116,15 +121,19 @@ Vector3 PointInBall(uint32_t body) {
     }
 }
 
-// Points of a face-centered cubic lattice, integers of which the sum is even, that are nearest to the middle of one of its cubes.
+// Points of a face-centered cubic lattice, integers of which the sum is even, that are nearest to the middle of one of
+// its cubes.
 std::vector<Vector3> PlacesInBall(uint32_t count, std::span<const PlaceLimit> limits) {
     struct Point {
         int32_t square, x, y, z;  // twice the point as seen from that middle, and the squared length of that
         auto operator<=>(const Point&) const = default;
-        Vector3 Place() const { return Vector3(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)) * 0.5f; }
+        Vector3 Place() const {
+            return Vector3(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)) * 0.5f;
+        }
     };
     constexpr double kUnitBall = 4.18879;  // its volume
-    const double whole = std::cbrt(2 * count / kUnitBall);  // the radius, in units of the lattice, which has half a point per unit of volume
+    const double whole = std::cbrt(
+        2 * count / kUnitBall);  // the radius, in units of the lattice, which has half a point per unit of volume
     const int reach = static_cast<int>(limits.empty() ? whole : kFarthestPlace * whole) + 2;
     const float scale = static_cast<float>(1 / whole);
     std::vector<Point> points;
@@ -133,8 +142,11 @@ std::vector<Vector3> PlacesInBall(uint32_t count, std::span<const PlaceLimit> li
             for (int z = -reach + ((x + y + reach) & 1); z <= reach; z += 2) {
                 const int dx = 2 * x - 1, dy = 2 * y - 1, dz = 2 * z - 1;
                 const Point point = {dx * dx + dy * dy + dz * dz, dx, dy, dz};
-                const auto allows = [&](const PlaceLimit& limit) { return Dot<float>(limit.normal, point.Place()) * scale >= limit.offset; };
-                if (point.square <= 4 * reach * reach && std::all_of(limits.begin(), limits.end(), allows)) points.push_back(point);
+                const auto allows = [&](const PlaceLimit& limit) {
+                    return Dot<float>(limit.normal, point.Place()) * scale >= limit.offset;
+                };
+                if (point.square <= 4 * reach * reach && std::all_of(limits.begin(), limits.end(), allows))
+                    points.push_back(point);
             }
     if (points.size() < count) return {};
     std::sort(points.begin(), points.end());
@@ -148,7 +160,9 @@ void AssignPlaces(const WorldState& world, std::span<uint32_t> bodies, std::vect
     const double margin = double{NearlyLargestRadius(world, bodies)}, radius = margin * std::cbrt(count / kPacking);
     Position middle = Position::Zero();
     for (const uint32_t body : bodies) middle += world.bodies.CenterOf(body) / static_cast<double>(count);
-    const bool areNear = std::all_of(bodies.begin(), bodies.end(), [&](uint32_t body) { return (world.bodies.CenterOf(body) - middle).norm() < kNear * radius; });
+    const bool areNear = std::all_of(bodies.begin(), bodies.end(), [&](uint32_t body) {
+        return (world.bodies.CenterOf(body) - middle).norm() < kNear * radius;
+    });
     std::vector<Vector3> places;
     if (areNear) places = PlacesInBall(count, FindLimits(world, bodies[0], {middle, radius, margin}));
     if (places.empty()) places = PlacesInBall(count);
@@ -156,9 +170,11 @@ void AssignPlaces(const WorldState& world, std::span<uint32_t> bodies, std::vect
     double longest = 0;
     const size_t first = dispersing.size();
     for (uint32_t i = 0; i < count; ++i) {
-        const Position center = world.bodies.CenterOf(bodies[i]), place = (areNear ? middle : center) + places[i].cast<double>() * radius;
+        const Position center = world.bodies.CenterOf(bodies[i]),
+                       place = (areNear ? middle : center) + places[i].cast<double>() * radius;
         longest = std::max(longest, (place - center).norm());
-        dispersing.push_back({.body = bodies[i], .direction = PointInBall(bodies[i]), .hasPlace = true, .place = place});
+        dispersing.push_back(
+            {.body = bodies[i], .direction = PointInBall(bodies[i]), .hasPlace = true, .place = place});
     }
     const float seconds = static_cast<float>(longest) / DispersingSpeed(world);
     for (DispersingBody& each : std::span(dispersing).subspan(first)) each.secondsLeft = seconds;

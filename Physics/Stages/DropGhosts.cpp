@@ -1,6 +1,7 @@
-// What slides from one fixed body onto the next, flush with it, must not feel the seam. The narrow phase sees pairs alone: to it
-// the next body ends in an edge, or in a side that the first one hides, and both push sideways. Such a contact is dropped: its
-// shape lies as a whole below the plane of another contact on which the body rests, so there is nothing to run into.
+// What slides from one fixed body onto the next, flush with it, must not feel the seam. The narrow phase sees pairs
+// alone: to it the next body ends in an edge, or in a side that the first one hides, and both push sideways. Such a
+// contact is dropped: its shape lies as a whole below the plane of another contact on which the body rests, so there is
+// nothing to run into.
 #include <Fulcrum/Collision/Shapes/SurfaceShape.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
 
@@ -12,7 +13,7 @@ namespace {
 
 using Kind = ConstraintColoring::Kind;
 
-constexpr float kFlush = 1e-3f;           // m: what rises less above a plane does not rise, but at most this part of the body:
+constexpr float kFlush = 1e-3f;  // m: what rises less above a plane does not rise, but at most this part of the body:
 constexpr float kFlushPart = 0.01f;
 constexpr float kSameDirection = 0.9998f;  // 1 degree
 
@@ -27,8 +28,8 @@ struct Support {
 Support Describe(WorldState& world, uint32_t index) {
     const PairView view = ViewPair(world, index);
     const ContactRecord& record = view.record;
-    Support support{index, std::numeric_limits<float>::infinity(), Vector3(record.normal[0], record.normal[1], record.normal[2]),
-                    Vector3::Zero()};
+    Support support{index, std::numeric_limits<float>::infinity(),
+                    Vector3(record.normal[0], record.normal[1], record.normal[2]), Vector3::Zero()};
     for (int i = 0; i < view.pair.pointCount; ++i) {
         const ContactRecord::Point& p = record.points[i];
         const Vector3 onB = view.bodyBInA.Transform(Vector3(p.onB[0], p.onB[1], p.onB[2]));
@@ -83,7 +84,9 @@ void DropAmong(WorldState& world, std::span<Support> supports) {
     });
     for (size_t i = 0; i < supports.size(); ++i) {
         for (size_t j = 0; j < supports.size(); ++j) {
-            if (i == j || world.pairs.records[supports[j].pair].pointCount <= 0 || !Hides(world, supports[j], supports[i])) continue;
+            if (i == j || world.pairs.records[supports[j].pair].pointCount <= 0 ||
+                !Hides(world, supports[j], supports[i]))
+                continue;
             if (i < j && Hides(world, supports[i], supports[j])) continue;
             Drop(world, supports[i].pair);
             break;
@@ -101,7 +104,8 @@ void VisitFixed(const WorldState& world, int from, int to, Visit&& visit) {
 
 void DropGhosts(WorldState& world) {
     for (uint32_t index : world.ghosts)
-        if (world.pairs.pairs[index].exists) world.pairs.records[index].pointCount = world.pairs.pairs[index].pointCount;
+        if (world.pairs.pairs[index].exists)
+            world.pairs.records[index].pointCount = world.pairs.pairs[index].pointCount;
     world.ghosts.clear();
     // Contacts with fixed bodies take the highest color that is free: few bodies have one in any other.
     constexpr int kHighest = ConstraintColoring::kColors - 1;
@@ -111,8 +115,10 @@ void DropGhosts(WorldState& world) {
     std::span<uint8_t> several = world.scratch.Allocate<uint8_t>(world.bodies.Size());
     std::fill(several.begin(), several.end(), uint8_t(0));
     VisitFixed(world, 0, kHighest - 1, [&](const auto& entry) { several[entry.bodyA] = 1; });
-    VisitFixed(world, ConstraintColoring::kOverflow, ConstraintColoring::kOverflow, [&](const auto& entry) { several[entry.bodyA] = 1; });
-    std::span<uint64_t> contacts = world.scratch.Allocate<uint64_t>(others + world.coloring.At(kHighest).Of(Kind::Fixed).size());
+    VisitFixed(world, ConstraintColoring::kOverflow, ConstraintColoring::kOverflow,
+               [&](const auto& entry) { several[entry.bodyA] = 1; });
+    std::span<uint64_t> contacts =
+        world.scratch.Allocate<uint64_t>(others + world.coloring.At(kHighest).Of(Kind::Fixed).size());
     size_t count = 0;
     VisitFixed(world, 0, ConstraintColoring::kOverflow, [&](const auto& entry) {
         if (several[entry.bodyA]) contacts[count++] = uint64_t(entry.bodyA) << 32 | entry.constraint;

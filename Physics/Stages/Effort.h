@@ -1,4 +1,5 @@
-// How a group of islands is solved: the system's settings, or more where its joints ask for it. Used by Prepare, Solve, Store.
+// How a group of islands is solved: the system's settings, or more where its joints ask for it. Used by Prepare, Solve,
+// Store.
 #pragma once
 
 #include <Fulcrum/Physics/Stages/Stages.h>
@@ -9,9 +10,9 @@ namespace fulcrum {
 
 struct Effort {
     SolverSettings solver;
-    float substepDt;            // s
-    bool hasTrees;              // see RunTrees
-    float impulseScale;         // records hold impulses of the system's substeps: times this, they are those of the group's
+    float substepDt;     // s
+    bool hasTrees;       // see RunTrees
+    float impulseScale;  // records hold impulses of the system's substeps: times this, they are those of the group's
     ContactSolveSettings contacts;
     JointSolveSettings joints;
 };

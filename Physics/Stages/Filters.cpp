@@ -1,6 +1,6 @@
-// Which bodies may collide, beyond layers and joints. The answers make pairs, or none, when FindPairs meets two colliders anew;
-// a pair that exists is never asked about again, so that filters cost a step nothing. Where an answer changes, the pairs that it
-// forbids are removed here, and those that it allows are found by the search that follows.
+// Which bodies may collide, beyond layers and joints. The answers make pairs, or none, when FindPairs meets two
+// colliders anew; a pair that exists is never asked about again, so that filters cost a step nothing. Where an answer
+// changes, the pairs that it forbids are removed here, and those that it allows are found by the search that follows.
 #include <Fulcrum/Physics/ContactListener.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/State/BodyPairs.h>
@@ -12,11 +12,14 @@ namespace fulcrum {
 namespace {
 
 bool LayersAllow(const WorldState& world, const Pair& pair) {
-    return world.settings.layerCollides[world.bodies.dynamics[pair.bodyA].layer] >> world.bodies.dynamics[pair.bodyB].layer & 1u;
+    return world.settings.layerCollides[world.bodies.dynamics[pair.bodyA].layer] >>
+               world.bodies.dynamics[pair.bodyB].layer &
+           1u;
 }
 
 bool IsForbidden(const WorldState& world, const Pair& pair) {
-    return !LayersAllow(world, pair) || !FiltersAllow(world, pair.bodyA, pair.bodyB) || !ListenerAllows(world, pair.bodyA, pair.bodyB);
+    return !LayersAllow(world, pair) || !FiltersAllow(world, pair.bodyA, pair.bodyB) ||
+           !ListenerAllows(world, pair.bodyA, pair.bodyB);
 }
 
 void RemoveIfForbidden(WorldState& world, uint32_t index) {

@@ -1,6 +1,6 @@
-// Pairs are found by whoever moved. Workers collect keys, which are sorted before any pair is made: the order of the pairs
-// depends on ids alone, not on threads nor on the shape of the trees. Pairs that exist are recognized by their bounds, most
-// of the time: the table of pairs is asked about new ones only.
+// Pairs are found by whoever moved. Workers collect keys, which are sorted before any pair is made: the order of the
+// pairs depends on ids alone, not on threads nor on the shape of the trees. Pairs that exist are recognized by their
+// bounds, most of the time: the table of pairs is asked about new ones only.
 #include <Fulcrum/Collision/BroadPhase/BoundsTreeBulk.h>
 #include <Fulcrum/Collision/Shapes/SurfaceShape.h>
 #include <Fulcrum/Physics/Stages/Crowd.h>
@@ -13,8 +13,9 @@ namespace fulcrum {
 
 namespace {
 
-// New pairs that overlap deeply. Where a step finds more, the search is given up, bodies that deeply overlap many others start to disperse,
-// and pairs are searched for anew, without those of the crowd, which would be n^2. Crowds with fewer pairs are left to Collide to find.
+// New pairs that overlap deeply. Where a step finds more, the search is given up, bodies that deeply overlap many
+// others start to disperse, and pairs are searched for anew, without those of the crowd, which would be n^2. Crowds
+// with fewer pairs are left to Collide to find.
 constexpr uint32_t kMostDeepPairs = 1024;
 constexpr uint32_t kAnyNumber = ~0u;
 
@@ -24,7 +25,8 @@ bool AskForPair(const WorldState& world, uint32_t index, uint32_t other) {
     if (collider.previous.Overlaps(self.previous)) return false;  // they have their pair, or may not have one
     if (!MayCollide(world, self.body, collider.body)) return false;
     const uint32_t pair = world.pairs.Find(index, other);
-    return pair == PairStore::kNone ? ListenerAllows(world, self.body, collider.body) : !world.pairs.active.Contains(pair);
+    return pair == PairStore::kNone ? ListenerAllows(world, self.body, collider.body)
+                                    : !world.pairs.active.Contains(pair);
 }
 
 uint64_t KeyOf(uint32_t a, uint32_t b) { return a < b ? uint64_t(a) << 32 | b : uint64_t(b) << 32 | a; }
@@ -43,7 +45,8 @@ void VisitNeighbors(const WorldState& world, uint32_t index, const Visit& visit)
     const Collider& self = store.colliders[index];
     if (self.sensor) return;
     const uint32_t layers = world.settings.layerCollides[world.bodies.dynamics[self.body].layer];
-    if ((layers & store.movingLayers) && !world.bodies.dynamics[self.body].dispersing) store.movingTree.Query(self.fat, visit);
+    if ((layers & store.movingLayers) && !world.bodies.dynamics[self.body].dispersing)
+        store.movingTree.Query(self.fat, visit);
     if (self.moving && (layers & store.fixedLayers)) store.fixedTree.Query(self.fat, visit);
 }
 
@@ -59,7 +62,8 @@ void Search(const WorldState& world, uint32_t index, uint32_t mostDeep, WorkerFi
 void SearchEach(WorldState& world, uint32_t mostDeep) {
     const std::vector<uint32_t>& moved = world.colliders.moved;
     world.jobs->ParallelFor(static_cast<uint32_t>(moved.size()), 16, [&](JobRange range) {
-        for (uint32_t i = range.begin; i < range.end; ++i) Search(world, moved[i], mostDeep, world.findings[range.worker]);
+        for (uint32_t i = range.begin; i < range.end; ++i)
+            Search(world, moved[i], mostDeep, world.findings[range.worker]);
     });
 }
 
@@ -74,7 +78,8 @@ void SearchTogether(WorldState& world, uint32_t mostDeep) {
             if (isQueued(low)) Consider(world, low, high, mostDeep, found);
             else if (isQueued(high)) Consider(world, high, low, mostDeep, found);
         };
-        // Node by node, since one thread alone gets all of them as one range: a search that is given up must not go on to visit n^2 pairs.
+        // Node by node, since one thread alone gets all of them as one range: a search that is given up must not go on
+        // to visit n^2 pairs.
         for (uint32_t node = range.begin; node < range.end && found.deepPairs <= mostDeep; ++node)
             store.movingTree.VisitPairs(node, node + 1, consider);
         if (found.deepPairs > mostDeep) return;
@@ -92,11 +97,13 @@ void SearchTogether(WorldState& world, uint32_t mostDeep) {
     });
     world.jobs->ParallelFor(static_cast<uint32_t>(store.moved.size()), 256, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i)
-            if (!store.colliders[store.moved[i]].moving) Search(world, store.moved[i], mostDeep, world.findings[range.worker]);
+            if (!store.colliders[store.moved[i]].moving)
+                Search(world, store.moved[i], mostDeep, world.findings[range.worker]);
     });
 }
 
-// Kinematic bodies search for dispersing ones. These do not search the tree of what moves themselves: each would find all of the crowd.
+// Kinematic bodies search for dispersing ones. These do not search the tree of what moves themselves: each would find
+// all of the crowd.
 void SearchForDispersing(WorldState& world) {
     if (world.dispersing.empty()) return;
     const ColliderStore& store = world.colliders;
@@ -106,7 +113,8 @@ void SearchForDispersing(WorldState& world) {
         VisitColliders(world, body, [&](uint32_t index) {
             if (store.colliders[index].sensor) return;
             store.movingTree.Query(store.colliders[index].fat, [&](uint32_t other) {
-                if (world.bodies.dynamics[store.colliders[other].body].dispersing) Consider(world, other, index, kAnyNumber, findings);
+                if (world.bodies.dynamics[store.colliders[other].body].dispersing)
+                    Consider(world, other, index, kAnyNumber, findings);
             });
         });
     }
@@ -211,11 +219,13 @@ bool CanCollide(const WorldState& world, uint32_t bodyA, uint32_t bodyB) {
 bool MayCollide(const WorldState& world, uint32_t bodyA, uint32_t bodyB) {
     const BodyDynamics& a = world.bodies.dynamics[bodyA];
     const BodyDynamics& b = world.bodies.dynamics[bodyB];
-    if ((a.dispersing && b.motion == MotionType::Dynamic) || (b.dispersing && a.motion == MotionType::Dynamic)) return false;
+    if ((a.dispersing && b.motion == MotionType::Dynamic) || (b.dispersing && a.motion == MotionType::Dynamic))
+        return false;
     return (a.awake || b.awake) && CanCollide(world, bodyA, bodyB);
 }
 
-PairMaterial MaterialOfPair(const WorldState& world, uint32_t bodyA, uint32_t bodyB, const Shape& shapeB, uint8_t material) {
+PairMaterial MaterialOfPair(const WorldState& world, uint32_t bodyA, uint32_t bodyB, const Shape& shapeB,
+                            uint8_t material) {
     const Material& a = world.bodies.cold[bodyA].material;
     const Material& b = world.bodies.cold[bodyB].material;
     float friction = b.friction, restitution = b.restitution;

@@ -9,9 +9,9 @@ namespace fulcrum {
 
 namespace {
 
-// The axis of rotation wanders the faster the more the principal moments differ: so many substeps that it turns by little
-// in each, for a body that turns by `angle` in the step. A step's time must not depend on how fast bodies spin: 256 at most, which
-// serve up to some 1500 rad/s in steps of 1/60 s.
+// The axis of rotation wanders the faster the more the principal moments differ: so many substeps that it turns by
+// little in each, for a body that turns by `angle` in the step. A step's time must not depend on how fast bodies spin:
+// 256 at most, which serve up to some 1500 rad/s in steps of 1/60 s.
 int RotationSubsteps(const BodyDynamics& d, float angle) {
     constexpr float kMost = 256;
     constexpr float kSmall = 0.1f;  // rad: errors of some 1e-8 a substep, as of the float that keeps the rotation
@@ -30,14 +30,14 @@ int SymmetryAxis(const BodyDynamics& d) {
     return 3;
 }
 
-// A body that turns freely about its center of mass, its angular momentum L (kg m2/s, world axes) given. In double: the axis in the
-// middle doubles what it misses every 2 radians or so, and the roundings of many substeps in float were a fiftieth of a turn after
-// ten of them.
+// A body that turns freely about its center of mass, its angular momentum L (kg m2/s, world axes) given. In double: the
+// axis in the middle doubles what it misses every 2 radians or so, and the roundings of many substeps in float were a
+// fiftieth of a turn after ten of them.
 template <class Real>
 struct FreeTop {
     using Vector = Vec3<Real>;
     using Rotation = Quat<Real>;
-    Vector inverse;     // of the principal moments
+    Vector inverse;  // of the principal moments
     Vector momentum;
     Rotation rotation;  // of the principal axes
 
@@ -48,13 +48,16 @@ struct FreeTop {
     }
     static Rotation Turned(const Vector& by, const Rotation& at) { return RotationFromVector<Real>(by) * at; }
     // Component by component: of lanes, Eigen would not know the product.
-    static Vector Scaled(const Vector& v, const Vector& by) { return Vector(v.x() * by.x(), v.y() * by.y(), v.z() * by.z()); }
+    static Vector Scaled(const Vector& v, const Vector& by) {
+        return Vector(v.x() * by.x(), v.y() * by.y(), v.z() * by.z());
+    }
     Vector VelocityAt(const Rotation& at) const {
         const Mat3<Real> axes = ToMatrix<Real>(at);
         return axes * Scaled(axes.TransposeMultiply(momentum), inverse);
     }
 
-    FreeTop(const Vector& inverseMoments, const Rotation& at, const Vector& angularVelocity) : inverse(inverseMoments), rotation(at) {
+    FreeTop(const Vector& inverseMoments, const Rotation& at, const Vector& angularVelocity)
+        : inverse(inverseMoments), rotation(at) {
         using detail::Select;
         momentum = InverseRotate<Real>(rotation, angularVelocity);
         for (int k = 0; k < 3; ++k) {
@@ -63,8 +66,8 @@ struct FreeTop {
         }
         momentum = Rotate<Real>(rotation, momentum);
     }
-    // Exact for a body of which the two moments beside an axis are equal: it turns at constant rates about L and about its own axis,
-    // since L / I and, in the body, the part of L along the axis do not change. `axis`: 1 for it, else 0.
+    // Exact for a body of which the two moments beside an axis are equal: it turns at constant rates about L and about
+    // its own axis, since L / I and, in the body, the part of L along the axis do not change. `axis`: 1 for it, else 0.
     void AdvanceSymmetric(const Vector& axis, const Real& along, const Real& across, const Real& h) {
         using detail::Select;
         const Vector inBody = InverseRotate<Real>(rotation, momentum);
@@ -72,8 +75,8 @@ struct FreeTop {
         for (int k = 0; k < 3; ++k) spin[k] = Select(axis[k] > Real(0.0), inBody[k] * (along - across) * h, Real(0.0));
         rotation = Unit(Turned(momentum * (across * h), rotation) * RotationFromVector<Real>(spin));
     }
-    // Of the fourth order, on the rotations, by two exponentials (E. Celledoni, A. Marthinsen, B. Owren, Commutator-free Lie group
-    // methods, Future Generation Computer Systems 19, 2003): dq/dt = (I(q)^-1 L) q / 2.
+    // Of the fourth order, on the rotations, by two exponentials (E. Celledoni, A. Marthinsen, B. Owren,
+    // Commutator-free Lie group methods, Future Generation Computer Systems 19, 2003): dq/dt = (I(q)^-1 L) q / 2.
     void Advance(const Real& h) {
         const Vector w1 = VelocityAt(rotation);
         const Rotation half = Turned(w1 * (Real(0.5) * h), rotation);
@@ -82,7 +85,8 @@ struct FreeTop {
         const Vector w4 = VelocityAt(Turned((w3 - w1 * Real(0.5)) * h, half));
         const Vector middle = (w2 + w3) * Real(2.0);
         const Real part = h / Real(12.0);
-        rotation = Unit(Turned((w4 * Real(3.0) + middle - w1) * part, Turned((w1 * Real(3.0) + middle - w4) * part, rotation)));
+        rotation = Unit(
+            Turned((w4 * Real(3.0) + middle - w1) * part, Turned((w1 * Real(3.0) + middle - w4) * part, rotation)));
     }
 };
 
@@ -101,8 +105,8 @@ void RotateFreely(FreeTurn& turn, float dt) {
     }
     using Top = FreeTop<double>;
     const Quat<double> principal = Top::Unit(Exact(d.PrincipalAxes()));
-    Top top(Position(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]), Top::Unit(Exact(turn.rotation)) * principal,
-            turn.angularVelocity.cast<double>());
+    Top top(Position(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]),
+            Top::Unit(Exact(turn.rotation)) * principal, turn.angularVelocity.cast<double>());
     const int substeps = RotationSubsteps(d, Length(turn.angularVelocity) * std::fabs(dt));
     const double h = static_cast<double>(dt) / substeps;
     const Position kick = turn.torque.cast<double>() * (0.5 * h);
@@ -113,7 +117,8 @@ void RotateFreely(FreeTurn& turn, float dt) {
     }
     turn.angularVelocity = top.VelocityAt(top.rotation).cast<float>();
     const Quat<double> q = top.rotation * principal.Conjugate();
-    turn.rotation = Normalized(Quaternion{static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z), static_cast<float>(q.w)});
+    turn.rotation = Normalized(
+        Quaternion{static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z), static_cast<float>(q.w)});
 }
 
 void RotateTogether(FreeTurn* const (&turns)[kTurnsTogether], int count, float dt) {
@@ -126,7 +131,8 @@ void RotateTogether(FreeTurn* const (&turns)[kTurnsTogether], int count, float d
         const BodyDynamics& d = *turn.body;
         const Quaternion &r = turn.rotation, p = d.PrincipalAxes();
         const float from[8] = {r.x, r.y, r.z, r.w, p.x, p.y, p.z, p.w};
-        WideDouble* const to[8] = {&rotation.x, &rotation.y, &rotation.z, &rotation.w, &principal.x, &principal.y, &principal.z, &principal.w};
+        WideDouble* const to[8] = {&rotation.x,  &rotation.y,  &rotation.z,  &rotation.w,
+                                   &principal.x, &principal.y, &principal.z, &principal.w};
         for (int k = 0; k < 8; ++k) to[k]->Set(i, double{from[k]});
         const int symmetry = SymmetryAxis(d);
         for (int k = 0; k < 3; ++k) {

@@ -1,5 +1,5 @@
-// Bodies that turn freely about their center of mass for a step and keep their angular momentum. Called by the Store stage, for
-// different bodies from any number of threads at once.
+// Bodies that turn freely about their center of mass for a step and keep their angular momentum. Called by the Store
+// stage, for different bodies from any number of threads at once.
 #pragma once
 
 #include <Fulcrum/Physics/State/BodyStore.h>
@@ -8,9 +8,9 @@ namespace fulcrum {
 
 struct FreeTurn {
     const BodyDynamics* body = nullptr;
-    Quaternion rotation;                     // unit; becomes that at the end
+    Quaternion rotation;                        // unit; becomes that at the end
     Vector3 angularVelocity = Vector3::Zero();  // rad/s; becomes that at the end
-    Vector3 torque = Vector3::Zero();        // N m, all along
+    Vector3 torque = Vector3::Zero();           // N m, all along
 };
 
 // Whether two of a body's principal moments are equal, so that its motion is known in closed form.

@@ -12,12 +12,12 @@ namespace fulcrum {
 namespace {
 
 constexpr int kIterations = 8;
-// Of the inverse masses: where locked axes leave less response to a push than that, it could part the bodies by a speed along other axes
-// alone, a hundred times the approach. Then the push is left out.
+// Of the inverse masses: where locked axes leave less response to a push than that, it could part the bodies by a speed
+// along other axes alone, a hundred times the approach. Then the push is left out.
 constexpr float kLeastResponse = 1e-4f;
 
 struct Side {
-    SymmetricMatrix3 inertia;  // inverse
+    SymmetricMatrix3 inertia;        // inverse
     Vector3 mass = Vector3::Zero();  // inverse, along the world's axes: zero where a translation is locked
 };
 
@@ -63,12 +63,14 @@ public:
 private:
     // Of the body against the other.
     Vector3 RelativeVelocity(int i) const {
-        return v_.linear[0] + Cross<float>(v_.angular[0], hit_.arms[i]) - v_.linear[1] - Cross<float>(v_.angular[1], hit_.otherArms[i]);
+        return v_.linear[0] + Cross<float>(v_.angular[0], hit_.arms[i]) - v_.linear[1] -
+               Cross<float>(v_.angular[1], hit_.otherArms[i]);
     }
     // The same along the other's surface, which may run.
     Vector3 Slip(int i) const { return RelativeVelocity(i) - hit_.surfaceVelocity; }
-    // Impulses do the work J . (u + u') / 2, u and u' the velocities of the points against each other before and after. Newton's law at
-    // several points, some with friction, may make it positive: then this part of all impulses makes it zero. Else 1.
+    // Impulses do the work J . (u + u') / 2, u and u' the velocities of the points against each other before and after.
+    // Newton's law at several points, some with friction, may make it positive: then this part of all impulses makes it
+    // zero. Else 1.
     float PassivePart() const {
         float first = 0, second = 0;  // work = first part + second part^2
         for (int i = 0; i < hit_.pointCount; ++i) {
@@ -83,7 +85,8 @@ private:
     float Response(int i, const Vector3& axis) const {
         const Vector3 a = Cross<float>(hit_.arms[i], axis), b = Cross<float>(hit_.otherArms[i], axis);
         const Vector3 mass = side_[0].mass + side_[1].mass;
-        return Dot<float>(axis, Vector3(mass.cwiseProduct(axis))) + Dot<float>(a, Vector3(side_[0].inertia * a)) + Dot<float>(b, Vector3(side_[1].inertia * b));
+        return Dot<float>(axis, Vector3(mass.cwiseProduct(axis))) + Dot<float>(a, Vector3(side_[0].inertia * a)) +
+               Dot<float>(b, Vector3(side_[1].inertia * b));
     }
     // On the body; the other gets the opposite.
     void Apply(int i, const Vector3& impulse) {
@@ -125,7 +128,8 @@ private:
     Vector3 rubbed_[SweepHit::kMaxPoints] = {Vector3::Zero(), Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
 };
 
-// Whether what gravity and forces have given a body since a time of its sweep is not simply their acceleration: contacts took a part.
+// Whether what gravity and forces have given a body since a time of its sweep is not simply their acceleration:
+// contacts took a part.
 bool IsCarried(const WorldState& world, const Sweep& sweep) {
     return !sweep.waits && world.sweeps.IsOfStep(sweep.body, world.report.step) && world.coloring.IsTouched(sweep.body);
 }
@@ -136,8 +140,8 @@ float WorkSince(const WorldState& world, const Sweep& sweep, float time) {
     return Dot<float>(Vector3(a[0], a[1], a[2]), Vector3(sweep.DisplacementRate() * (1 - time)));
 }
 
-// m/s, that gravity and forces have given a body since a time of its sweep. Where the solver moved it, contacts took a part of that: then
-// as much as the way since then has made of it, so that to go back leaves its energy as it was.
+// m/s, that gravity and forces have given a body since a time of its sweep. Where the solver moved it, contacts took a
+// part of that: then as much as the way since then has made of it, so that to go back leaves its energy as it was.
 Vector3 GainSince(const WorldState& world, const Sweep& sweep, float time, float dt) {
     if (sweep.waits || !world.sweeps.IsOfStep(sweep.body, world.report.step)) return Vector3::Zero();
     const float* a = world.bodies.poses[sweep.body].acceleration;
@@ -145,7 +149,8 @@ Vector3 GainSince(const WorldState& world, const Sweep& sweep, float time, float
     const float rest = (1 - time) * dt;
     if (!IsCarried(world, sweep)) return acceleration * rest;
     const float work = WorkSince(world, sweep, time);
-    const float along = Dot<float>(acceleration, world.bodies.LinearVelocityOf(sweep.body)), square = LengthSquared(acceleration);
+    const float along = Dot<float>(acceleration, world.bodies.LinearVelocityOf(sweep.body)),
+                square = LengthSquared(acceleration);
     if (!(square > 0) || (work < 0 && along >= 0)) return Vector3::Zero();
     // |v - a s|^2 = |v|^2 - 2 work: the solution that is nearest to 0; where there is none, the least |v - a s|.
     const float root = along * along - 2 * square * work;
@@ -153,8 +158,8 @@ Vector3 GainSince(const WorldState& world, const Sweep& sweep, float time, float
     return acceleration * (std::isfinite(seconds) ? std::clamp(seconds, -rest, rest) : 0.0f);
 }
 
-// What `since` did not take of that work is taken from the whole motion: an impact that the solver found at the end of a long way leaves a
-// body little speed along it.
+// What `since` did not take of that work is taken from the whole motion: an impact that the solver found at the end of
+// a long way leaves a body little speed along it.
 void TakeWork(const WorldState& world, const Sweep& sweep, float time, Impact& impact, int side) {
     constexpr float kNotRounding = 1e-4f;
     const BodyDynamics& d = world.bodies.dynamics[sweep.body];
@@ -177,10 +182,11 @@ Vector3 GainUntilEnd(const WorldState& world, uint32_t body, const Vector3& v, c
     return Dot<float>(since, acceleration) > 0 ? since : Vector3(Vector3::Zero());
 }
 
-// What turns keeps its angular momentum and its energy, not its angular velocity. So the angular velocity a while later, or earlier where
-// `seconds` is negative, is that of a free rotation; as seen by the body, so that the energy is the same however exactly the sweep, which
-// turns at a constant rate to `then`, follows that rotation.
-Vector3 TurnedFreely(const BodyDynamics& d, const Quaternion& rotation, const Vector3& w, float seconds, const Quaternion& then) {
+// What turns keeps its angular momentum and its energy, not its angular velocity. So the angular velocity a while
+// later, or earlier where `seconds` is negative, is that of a free rotation; as seen by the body, so that the energy is
+// the same however exactly the sweep, which turns at a constant rate to `then`, follows that rotation.
+Vector3 TurnedFreely(const BodyDynamics& d, const Quaternion& rotation, const Vector3& w, float seconds,
+                     const Quaternion& then) {
     if (d.motion != MotionType::Dynamic || !d.FeelsGyroscopicTorque(w)) return w;
     const auto energyOf = [&](const Vector3& inBody) {
         return TwiceRotationalEnergy<float>(d, InverseRotate(d.PrincipalAxes(), inBody));
@@ -193,7 +199,8 @@ Vector3 TurnedFreely(const BodyDynamics& d, const Quaternion& rotation, const Ve
 }
 
 // The sweep turns at the rate of its beginning: what was just parted would else seem to meet again.
-Impact::Rest FlyOn(const WorldState& world, uint32_t body, const Quaternion& rotation, const Vector3& v, const Vector3& w, const Vector3& since, float rest) {
+Impact::Rest FlyOn(const WorldState& world, uint32_t body, const Quaternion& rotation, const Vector3& v,
+                   const Vector3& w, const Vector3& since, float rest) {
     const BodyDynamics& d = world.bodies.dynamics[body];
     const Vector3 gain = GainUntilEnd(world, body, v, since, rest);
     Impact::Rest on{(v + gain * 0.5f) * rest, w * rest, v + gain, w};
@@ -217,14 +224,19 @@ Impact FindImpact(const WorldState& world, const SweepHit& hit, float dt) {
         const BodyDynamics& d = bodies.dynamics[pair[s]];
         impact.sweeps[s] = SweepOf(world, pair[s]);
         impact.poses[s] = impact.sweeps[s].PoseAt(hit.time);
-        impact.masses[s] = d.spherical ? bodies.masses[pair[s]] : bodies.MassAlong(pair[s], AxesOf(d, impact.poses[s].rotation));
-        since[s] = bodies.CanMove(pair[s]) ? GainSince(world, impact.sweeps[s], hit.time, dt) : Vector3(Vector3::Zero());
+        impact.masses[s] =
+            d.spherical ? bodies.masses[pair[s]] : bodies.MassAlong(pair[s], AxesOf(d, impact.poses[s].rotation));
+        since[s] =
+            bodies.CanMove(pair[s]) ? GainSince(world, impact.sweeps[s], hit.time, dt) : Vector3(Vector3::Zero());
         impact.linear[s] = bodies.LinearVelocityOf(pair[s]) - since[s];
         const Vector3 w = bodies.AngularVelocityOf(pair[s]);
-        impact.angular[s] = impact.sweeps[s].waits ? w : TurnedFreely(d, impact.sweeps[s].RotationAt(1), w, -rest, impact.poses[s].rotation);
+        impact.angular[s] = impact.sweeps[s].waits
+                                ? w
+                                : TurnedFreely(d, impact.sweeps[s].RotationAt(1), w, -rest, impact.poses[s].rotation);
         // What gravity would have given along a locked axis it did not give.
         if (d.lockedAxes != LockedAxes::None) d.Lock(impact.linear[s], impact.angular[s]);
-        if (bodies.CanMove(pair[s]) && IsCarried(world, impact.sweeps[s])) TakeWork(world, impact.sweeps[s], hit.time, impact, s);
+        if (bodies.CanMove(pair[s]) && IsCarried(world, impact.sweeps[s]))
+            TakeWork(world, impact.sweeps[s], hit.time, impact, s);
         impact.arrivingLinear[s] = impact.linear[s];
         impact.arrivingAngular[s] = impact.angular[s];
     }
@@ -234,9 +246,11 @@ Impact FindImpact(const WorldState& world, const SweepHit& hit, float dt) {
         if (!bodies.CanMove(pair[s])) continue;
         LimitLength(impact.linear[s], bodies.dynamics[pair[s]].maxLinearSpeed);
         LimitLength(impact.angular[s], bodies.dynamics[pair[s]].maxAngularSpeed);
-        impact.rests[s] = FlyOn(world, pair[s], impact.poses[s].rotation, impact.linear[s], impact.angular[s], since[s], rest);
+        impact.rests[s] =
+            FlyOn(world, pair[s], impact.poses[s].rotation, impact.linear[s], impact.angular[s], since[s], rest);
         const Impact::Rest& on = impact.rests[s];
-        impact.isFinite &= IsFinite(on.linear) && IsFinite(on.angular) && IsFinite(on.displacement) && IsFinite(on.turn);
+        impact.isFinite &=
+            IsFinite(on.linear) && IsFinite(on.angular) && IsFinite(on.displacement) && IsFinite(on.turn);
     }
     return impact;
 }

@@ -1,5 +1,5 @@
-// How two bodies part where a sweep hit one of them: impulses at the points of their manifold, and how both go on from there. Called by
-// the Continuous stage, for different hits from any number of threads at once.
+// How two bodies part where a sweep hit one of them: impulses at the points of their manifold, and how both go on from
+// there. Called by the Continuous stage, for different hits from any number of threads at once.
 #pragma once
 
 #include <Fulcrum/Physics/Stages/Stages.h>
@@ -8,23 +8,23 @@ namespace fulcrum {
 
 // What a hit makes of hit.body, 0, and hit.other, 1, if it is the next that happens to them.
 struct Impact {
-    struct Rest {                              // of the step, flown freely
-        Vector3 displacement, turn;            // m, rotation vector in rad
-        Vector3 linear, angular;               // m/s, rad/s, at its end
+    struct Rest {                    // of the step, flown freely
+        Vector3 displacement, turn;  // m, rotation vector in rad
+        Vector3 linear, angular;     // m/s, rad/s, at its end
     };
-    Sweep sweeps[2];                           // before
-    Pose poses[2];                             // at the time of the hit
-    BodyMass masses[2];                        // likewise
-    Vector3 linear[2], angular[2];             // m/s, rad/s: velocities at the time of the hit, after it
-    Vector3 arrivingLinear[2];                 // m/s, and
-    Vector3 arrivingAngular[2];                // rad/s: before it
-    Rest rests[2];                             // of what can move
-    bool parts = false;                        // a point approached
+    Sweep sweeps[2];                // before
+    Pose poses[2];                  // at the time of the hit
+    BodyMass masses[2];             // likewise
+    Vector3 linear[2], angular[2];  // m/s, rad/s: velocities at the time of the hit, after it
+    Vector3 arrivingLinear[2];      // m/s, and
+    Vector3 arrivingAngular[2];     // rad/s: before it
+    Rest rests[2];                  // of what can move
+    bool parts = false;             // a point approached
     bool isFinite = false;
 };
 
-// Newton's law of restitution at each point that approaches, Coulomb friction, what is locked or does not move held. Never more energy
-// than before. dt, s: of the step.
+// Newton's law of restitution at each point that approaches, Coulomb friction, what is locked or does not move held.
+// Never more energy than before. dt, s: of the step.
 Impact FindImpact(const WorldState& world, const SweepHit& hit, float dt);
 
 }  // namespace fulcrum

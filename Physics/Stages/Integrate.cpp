@@ -28,7 +28,8 @@ void IntegrateVelocity(WorldState& world, uint32_t body, float h, bool again, Wo
     Vector3 v(row[0], row[1], row[2]), w(row[3], row[4], row[5]);
     Vector3 carryV = Vector3::Zero(), carryW = Vector3::Zero();
     if (again) {
-        const Vector3 freeV(unconstrained[0], unconstrained[1], unconstrained[2]), freeW(unconstrained[3], unconstrained[4], unconstrained[5]);
+        const Vector3 freeV(unconstrained[0], unconstrained[1], unconstrained[2]),
+            freeW(unconstrained[3], unconstrained[4], unconstrained[5]);
         if (d.crowded) {
             v = NoFasterThan(v, freeV);
             w = NoFasterThan(w, freeW);
@@ -55,9 +56,9 @@ void IntegrateVelocity(WorldState& world, uint32_t body, float h, bool again, Wo
     }
 }
 
-// Rotation vectors of one rotation after another, rad, put together to the third order (the series of Baker, Campbell and
-// Hausdorff), as far as they are small; this is what comes to their sum. Without it a step's error is that of the whole step,
-// however many substeps there are.
+// Rotation vectors of one rotation after another, rad, put together to the third order (the series of Baker, Campbell
+// and Hausdorff), as far as they are small; this is what comes to their sum. Without it a step's error is that of the
+// whole step, however many substeps there are.
 template <class Real>
 FULCRUM_FORCE_INLINE Vec3<Real> BchCorrection(const Vec3<Real>& before, const Vec3<Real>& turn) {
     const Vec3<Real> across = Cross<Real>(turn, before);
@@ -65,7 +66,8 @@ FULCRUM_FORCE_INLINE Vec3<Real> BchCorrection(const Vec3<Real>& before, const Ve
 }
 constexpr float kFarthestSquared = joints::kFarthestSeries * joints::kFarthestSeries;
 
-// Joints pull at the ends of bodies, where an inertia that is left behind makes torques of their forces that are not there.
+// Joints pull at the ends of bodies, where an inertia that is left behind makes torques of their forces that are not
+// there.
 void TurnInertia(BodyStore& bodies, uint32_t body, float h) {
     const BodyDynamics& d = bodies.dynamics[body];
     const Vector3 w = bodies.AngularVelocityOf(body);
@@ -82,8 +84,8 @@ void TurnInertia(BodyStore& bodies, uint32_t body, float h) {
     bodies.UpdateInertia(body, axes);
 }
 
-// What constraints made of a body's velocity, before it moves with it. What is not finite must not reach the poses either, by which
-// the constraints of its neighbors see it.
+// What constraints made of a body's velocity, before it moves with it. What is not finite must not reach the poses
+// either, by which the constraints of its neighbors see it.
 void LimitSolved(WorldState& world, uint32_t body, WorkerFindings& findings) {
     BodyStore& bodies = world.bodies;
     Vector3 v = bodies.LinearVelocityOf(body), w = bodies.AngularVelocityOf(body);
@@ -106,8 +108,8 @@ Twist<float> PullOf(const BodyDynamics& d, const BodyState& pseudo) {
     return pull;
 }
 
-// What moves against a pull, near something fixed, loses so much of its speed: held in its place by the pull it would fall faster and
-// faster, as no contact stops it. In the air bodies fall together.
+// What moves against a pull, near something fixed, loses so much of its speed: held in its place by the pull it would
+// fall faster and faster, as no contact stops it. In the air bodies fall together.
 Vector3 LostTo(const Vector3& pull, const Vector3& v) {
     const float against = -Dot(v, pull);
     return against > 0.0f ? Vector3(pull * Min(against / LengthSquared(pull), 1.0f)) : Vector3(Vector3::Zero());
@@ -125,8 +127,8 @@ void SlowDown(BodyStore& bodies, uint32_t body, const Twist<float>& pull, Twist<
     bodies.SetVelocity(body, motion.linear, motion.angular);
 }
 
-// Adds the pull to the motion, and takes from the body's velocities what is lost to it. Without a pull every bit stays, whatever joints
-// are solved in the same group.
+// Adds the pull to the motion, and takes from the body's velocities what is lost to it. Without a pull every bit stays,
+// whatever joints are solved in the same group.
 void AddPull(BodyStore& bodies, uint32_t body, const BodyState& pseudo, Twist<float>& motion) {
     const Twist<float> pull = PullOf(bodies.dynamics[body], pseudo);
     if (pull.linear.isZero(0) && pull.angular.isZero(0)) return;
@@ -161,7 +163,8 @@ void IntegratePose(WorldState& world, uint32_t body, float h, const BodyState* p
         s.deltaRotation[k] += motion.angular[k] * h;
     }
     if (!isJointed) return;
-    const Vec2<float> half = joints::HalfTurnOf<float>(Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]));
+    const Vec2<float> half =
+        joints::HalfTurnOf<float>(Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]));
     for (int k = 0; k < 2; ++k) s.halfTurn[k] = half[k];
     TurnInertia(world.bodies, body, h);
 }
@@ -205,10 +208,12 @@ bool IntegrateVelocitiesInLanes(WorldState& world, const Indices& index, int cou
     BodyStore& bodies = world.bodies;
     for (uint32_t body : index) {
         const BodyDynamics& d = bodies.dynamics[body];
-        if (d.motion != MotionType::Dynamic || d.lockedAxes != LockedAxes::None || d.hasForce || d.crowded) return false;
+        if (d.motion != MotionType::Dynamic || d.lockedAxes != LockedAxes::None || d.hasForce || d.crowded)
+            return false;
     }
     const Rows limits(index, [&](uint32_t body) { return bodies.dynamics[body].LimitsRow(); });
-    const Lanes zero(0.0f), linearDamping = limits.at[1], angularDamping = limits.at[2], maxLinear = limits.at[3], maxAngular = limits.at[4];
+    const Lanes zero(0.0f), linearDamping = limits.at[1], angularDamping = limits.at[2], maxLinear = limits.at[3],
+                            maxAngular = limits.at[4];
     if (((linearDamping > zero) | (angularDamping > zero)).Any()) return false;
     Rows velocity(index, [&](uint32_t body) { return bodies.states[body].VelocityRow(); });
     Rows unconstrained(index, [&](uint32_t body) { return bodies.unconstrained[body].row; });
@@ -230,13 +235,15 @@ bool IntegrateVelocitiesInLanes(WorldState& world, const Indices& index, int cou
 
 // TurnInertia of the lanes that feel it. turn: rotation since the start of the step, rad; w: rad/s, changed.
 FULCRUM_FORCE_INLINE void TurnInertias(BodyStore& bodies, const Indices& index, int count, WideMask<kLanes> feels,
-                                                const Vec3<Lanes>& turn, Vec3<Lanes>& w, float h) {
+                                       const Vec3<Lanes>& turn, Vec3<Lanes>& w, float h) {
     const uint32_t lanes = feels.ToBits();
     const Rows pose(index, [&](uint32_t body) { return bodies.poses[body].rotation; });
     const Rows inertia(index, [&](uint32_t body) { return bodies.dynamics[body].InertiaRow(); });
     Rows unconstrained(index, [&](uint32_t body) { return bodies.unconstrained[body].row; });
-    const Quat<Lanes> rotation = RotationFromVector<Lanes>(turn) * Quat<Lanes>{pose.at[0], pose.at[1], pose.at[2], pose.at[3]};
-    const Mat3<Lanes> axes = ToMatrix<Lanes>(rotation * Quat<Lanes>{inertia.at[4], inertia.at[5], inertia.at[6], inertia.at[7]});
+    const Quat<Lanes> rotation =
+        RotationFromVector<Lanes>(turn) * Quat<Lanes>{pose.at[0], pose.at[1], pose.at[2], pose.at[3]};
+    const Mat3<Lanes> axes =
+        ToMatrix<Lanes>(rotation * Quat<Lanes>{inertia.at[4], inertia.at[5], inertia.at[6], inertia.at[7]});
     const Vec3<Lanes> change = AddGyroscopicTorque<Lanes>(inertia.First(), axes, w, Lanes(h)) - w;
     for (int k = 0; k < 3; ++k) w[k] = Select(feels, Lanes(w[k] + change[k]), Lanes(w[k]));
     unconstrained.Set(unconstrained.First(), unconstrained.Second() + change);
@@ -289,7 +296,8 @@ bool IntegratePosesInLanes(WorldState& world, const Indices& index, int count, f
     return true;
 }
 
-// Calls inLanes(indices, count) for so many bodies at a time, and oneByOne(body) where that declines. Lanes beyond the last body repeat it.
+// Calls inLanes(indices, count) for so many bodies at a time, and oneByOne(body) where that declines. Lanes beyond the
+// last body repeat it.
 template <class InLanes, class OneByOne>
 void VisitBodies(std::span<const uint32_t> bodies, InLanes&& inLanes, OneByOne&& oneByOne) {
     while (!bodies.empty()) {
@@ -304,14 +312,20 @@ void VisitBodies(std::span<const uint32_t> bodies, InLanes&& inLanes, OneByOne&&
 
 }  // namespace
 
-void IntegrateVelocities(WorldState& world, std::span<const uint32_t> bodies, float h, bool again, WorkerFindings& findings) {
-    VisitBodies(bodies, [&](const Indices& index, int count) { return IntegrateVelocitiesInLanes(world, index, count, h, again); },
-                [&](uint32_t body) { IntegrateVelocity(world, body, h, again, findings); });
+void IntegrateVelocities(WorldState& world, std::span<const uint32_t> bodies, float h, bool again,
+                         WorkerFindings& findings) {
+    VisitBodies(
+        bodies,
+        [&](const Indices& index, int count) { return IntegrateVelocitiesInLanes(world, index, count, h, again); },
+        [&](uint32_t body) { IntegrateVelocity(world, body, h, again, findings); });
 }
 
-void IntegratePoses(WorldState& world, std::span<const uint32_t> bodies, float h, const BodyState* pseudo, WorkerFindings& findings) {
-    VisitBodies(bodies, [&](const Indices& index, int count) { return !pseudo && IntegratePosesInLanes(world, index, count, h); },
-                [&](uint32_t body) { IntegratePose(world, body, h, pseudo, findings); });
+void IntegratePoses(WorldState& world, std::span<const uint32_t> bodies, float h, const BodyState* pseudo,
+                    WorkerFindings& findings) {
+    VisitBodies(
+        bodies,
+        [&](const Indices& index, int count) { return !pseudo && IntegratePosesInLanes(world, index, count, h); },
+        [&](uint32_t body) { IntegratePose(world, body, h, pseudo, findings); });
 }
 
 }  // namespace fulcrum

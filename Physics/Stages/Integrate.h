@@ -1,38 +1,47 @@
-// What a substep does to the bodies that constraints touch, apart from the constraints. Called by Solve, for disjoint sets of
-// bodies from any number of threads at once. In lanes where a body has nothing that needs a look of its own.
+// What a substep does to the bodies that constraints touch, apart from the constraints. Called by Solve, for disjoint
+// sets of bodies from any number of threads at once. In lanes where a body has nothing that needs a look of its own.
 #pragma once
 
 #include <Fulcrum/Physics/Stages/Stages.h>
 
 namespace fulcrum {
 
-// Forces, damping, locked axes and largest speeds, for h seconds. `again`: not the first substep of its step; the bodies
-// then get the change of velocity that constraints gave them in the last one.
-void IntegrateVelocities(WorldState& world, std::span<const uint32_t> bodies, float h, bool again, WorkerFindings& findings);
+// Forces, damping, locked axes and largest speeds, for h seconds. `again`: not the first substep of its step; the
+// bodies then get the change of velocity that constraints gave them in the last one.
+void IntegrateVelocities(WorldState& world, std::span<const uint32_t> bodies, float h, bool again,
+                         WorkerFindings& findings);
 
-// Displacements, for h seconds, at the largest speeds at most; of jointed bodies the inertia and the gyroscopic torque, too.
-// pseudo: by body, what moves it besides its velocity (PullJoints), likewise at the largest speeds at most; or null.
-void IntegratePoses(WorldState& world, std::span<const uint32_t> bodies, float h, const BodyState* pseudo, WorkerFindings& findings);
+// Displacements, for h seconds, at the largest speeds at most; of jointed bodies the inertia and the gyroscopic torque,
+// too. pseudo: by body, what moves it besides its velocity (PullJoints), likewise at the largest speeds at most; or
+// null.
+void IntegratePoses(WorldState& world, std::span<const uint32_t> bodies, float h, const BodyState* pseudo,
+                    WorkerFindings& findings);
 
-// The angular velocity after h seconds of gyroscopic torque, at the principal axes then reached: Euler's equations in the frame
-// of the body, by the implicit midpoint rule. As there, the energy stays, and a body of revolution keeps the spin about its
-// axis; a rule that keeps the momentum in world axes lets the spin of a thin rod grow without end.
+// The angular velocity after h seconds of gyroscopic torque, at the principal axes then reached: Euler's equations in
+// the frame of the body, by the implicit midpoint rule. As there, the energy stays, and a body of revolution keeps the
+// spin about its axis; a rule that keeps the momentum in world axes lets the spin of a thin rod grow without end.
 // inverseInertia: principal, 1/(kg m2). Real: float, or lanes.
 template <class Real>
-FULCRUM_FORCE_INLINE Vec3<Real> AddGyroscopicTorque(const Vec3<Real>& inverseInertia, const Mat3<Real>& axes, const Vec3<Real>& w, Real h) {
+FULCRUM_FORCE_INLINE Vec3<Real> AddGyroscopicTorque(const Vec3<Real>& inverseInertia, const Mat3<Real>& axes,
+                                                    const Vec3<Real>& w, Real h) {
     // Of the moments only ratios count: (1 / iy - 1 / iz) ix = ix^2 (iz - iy) / (ix iy iz), and so on.
-    const Vec3<Real> i = inverseInertia * (Real(1.0f) / Max(Max(inverseInertia.x(), inverseInertia.y()), inverseInertia.z()));
+    const Vec3<Real> i =
+        inverseInertia * (Real(1.0f) / Max(Max(inverseInertia.x(), inverseInertia.y()), inverseInertia.z()));
     const Real product = i[0] * i[1] * i[2];
     const Real scale = h / product;
-    const Vec3<Real> rate(scale * (i[0] * i[0] * (i[2] - i[1])), scale * (i[1] * i[1] * (i[0] - i[2])), scale * (i[2] * i[2] * (i[1] - i[0])));
+    const Vec3<Real> rate(scale * (i[0] * i[0] * (i[2] - i[1])), scale * (i[1] * i[1] * (i[0] - i[2])),
+                          scale * (i[2] * i[2] * (i[1] - i[0])));
     const Vec3<Real> inertia(i[1] * i[2], i[2] * i[0], i[0] * i[1]);  // times the product
     const Vec3<Real> start(Dot<Real>(axes.x, w), Dot<Real>(axes.y, w), Dot<Real>(axes.z, w));
-    const auto energyOf = [&](const Vec3<Real>& v) { return inertia.x() * v.x() * v.x() + inertia.y() * v.y() * v.y() + inertia.z() * v.z() * v.z(); };
+    const auto energyOf = [&](const Vec3<Real>& v) {
+        return inertia.x() * v.x() * v.x() + inertia.y() * v.y() * v.y() + inertia.z() * v.z() * v.z();
+    };
     Vec3<Real> end = start;
     constexpr int kIterations = 3;
     for (int n = 0; n < kIterations; ++n) {
         const Vec3<Real> middle = (start + end) * Real(0.5f);
-        end = start + Vec3<Real>(rate.x() * middle.y() * middle.z(), rate.y() * middle.z() * middle.x(), rate.z() * middle.x() * middle.y());
+        end = start + Vec3<Real>(rate.x() * middle.y() * middle.z(), rate.y() * middle.z() * middle.x(),
+                                 rate.z() * middle.x() * middle.y());
     }
     const Vec3<Real> turned = axes * Vec3<Real>(end * Sqrt(energyOf(start) / energyOf(end)));
     // A moment without end has no torque, and where moments differ by more than floats hold, nothing is known of it.

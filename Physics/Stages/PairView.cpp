@@ -9,7 +9,7 @@ namespace {
 // A manifold is kept up to this relative motion since it was found.
 constexpr float kKeptDistance = 1e-3f;  // m, but at most this part of the smaller body:
 constexpr float kKeptPart = 2e-3f;
-constexpr float kKeptAngle = 1e-3f;     // rad
+constexpr float kKeptAngle = 1e-3f;  // rad
 
 // Impulses are carried on where the cosine of the angle between the normals of two steps is at least this.
 constexpr float kSameNormal = 0.5f;
@@ -28,7 +28,8 @@ void WriteTwistRadius(ContactRecord& record) {
     const Vector3 t1 = Perpendicular(normal), t2 = Cross<float>(normal, t1);
     const int count = static_cast<int>(record.pointCount);
     Vector3 center = Vector3::Zero();
-    for (int i = 0; i < count; ++i) center += Vector3(record.points[i].onA[0], record.points[i].onA[1], record.points[i].onA[2]);
+    for (int i = 0; i < count; ++i)
+        center += Vector3(record.points[i].onA[0], record.points[i].onA[1], record.points[i].onA[2]);
     center = center * (1.0f / static_cast<float>(count));
     float x[ContactRecord::kMaxPoints], y[ContactRecord::kMaxPoints];
     for (int i = 0; i < count; ++i) {
@@ -46,9 +47,9 @@ void ForgetFriction(ContactRecord& record) {
 
 bool IsUsable(const Vector3& normal) { return std::fabs(LengthSquared(normal) - 1) < 0.1f; }
 
-// Whether the contact pushes in another direction than before: its last impulses, along the new normal, would then be no longer
-// those that balance the bodies' other contacts, and opposite pushes on a body in a thin floor would become one that throws it out. What
-// rolls keeps its normal in the other one's frame. Normals are in the frame of piece A.
+// Whether the contact pushes in another direction than before: its last impulses, along the new normal, would then be
+// no longer those that balance the bodies' other contacts, and opposite pushes on a body in a thin floor would become
+// one that throws it out. What rolls keeps its normal in the other one's frame. Normals are in the frame of piece A.
 bool NormalTurned(const PairView& v, const Vector3& before, const Vector3& now) {
     if (Dot<float>(before, now) >= kSameNormal) return false;
     return Dot<float>(InverseRotate(v.before.rotation, before), InverseRotate(v.bInA.rotation, now)) < kSameNormal;
@@ -91,14 +92,16 @@ float FarEndFactor(const WorldState& world, const Pair& pair) {
 void WriteManifold(const WorldState& world, const PairView& v, const Manifold& manifold, float dt) {
     Pair& pair = v.pair;
     ContactRecord& record = v.record;
-    const Vector3 normal = pair.offset ? Rotate(world.colliders.shapes[pair.colliderA].local.rotation, manifold.normal)
-                                       : manifold.normal;
-    // Shapes of extreme sizes, or far apart, can bring any pair function beyond the floats: nothing of that gets into a record.
+    const Vector3 normal =
+        pair.offset ? Rotate(world.colliders.shapes[pair.colliderA].local.rotation, manifold.normal) : manifold.normal;
+    // Shapes of extreme sizes, or far apart, can bring any pair function beyond the floats: nothing of that gets into a
+    // record.
     const bool isUsable = manifold.pointCount == 0 || IsUsable(normal);
     if (!isUsable) pair.cache = {};
     if (manifold.pointCount == 0 || !isUsable) return Forget(pair, record);
     const Vector3 oldNormal(record.normal[0], record.normal[1], record.normal[2]);
-    const bool goesOn = pair.pointCount > 0 && !NormalTurned(v, DirectionFromBody(world, pair, oldNormal), manifold.normal);
+    const bool goesOn =
+        pair.pointCount > 0 && !NormalTurned(v, DirectionFromBody(world, pair, oldNormal), manifold.normal);
     for (int k = 0; k < 3; ++k) record.normal[k] = normal[k];
     float oldImpulses[Manifold::kMaxPoints];
     std::copy(record.impulse, record.impulse + Manifold::kMaxPoints, oldImpulses);

@@ -1,5 +1,5 @@
-// A pair as the Collide stage sees it, and how what the narrow phase finds is written down. Used by Collide and CollideSurface, for
-// different pairs from any number of threads at once.
+// A pair as the Collide stage sees it, and how what the narrow phase finds is written down. Used by Collide and
+// CollideSurface, for different pairs from any number of threads at once.
 #pragma once
 
 #include <Fulcrum/Physics/ContactListener.h>
@@ -10,26 +10,27 @@ namespace fulcrum {
 struct PairView {
     Pair& pair;
     ContactRecord& record;
-    RelativePose bodyBInA;  // of the bodies' center frames
-    RelativePose bInA;      // of the pieces'
+    RelativePose bodyBInA;       // of the bodies' center frames
+    RelativePose bInA;           // of the pieces'
     const RelativePose& before;  // the same when the manifold was found
 };
 PairView ViewPair(WorldState& world, uint32_t pair);
 
-// A body that is hit at one end turns about there, so that its other end comes on faster than it did: a rod's by up to twice. Contacts
-// of bodies that touch something are looked for so many times as far ahead as they move within the step; those of others once, so that
-// what flies freely does so, exactly, up to the step in which it hits.
+// A body that is hit at one end turns about there, so that its other end comes on faster than it did: a rod's by up to
+// twice. Contacts of bodies that touch something are looked for so many times as far ahead as they move within the
+// step; those of others once, so that what flies freely does so, exactly, up to the step in which it hits.
 float FarEndFactor(const WorldState& world, const Pair& pair);
 
 // Whether the manifolds that were found at pair.reference still do.
 bool HardlyMoved(const PairView& view);
 
-// Writes what the narrow phase found into the record. Impulses go on where the same features touch. Points that are farther
-// apart than the speculative distance stay only if they can meet within the step of dt seconds.
+// Writes what the narrow phase found into the record. Impulses go on where the same features touch. Points that are
+// farther apart than the speculative distance stay only if they can meet within the step of dt seconds.
 void WriteManifold(const WorldState& world, const PairView& view, const Manifold& manifold, float dt);
 
-// Brings the manifolds of a pair with a surface up to date; `reach`, m: how far apart shapes are seen. Says of each further
-// manifold in world.changes what became of it, and returns that of the first. What has no place goes to findings.more.
+// Brings the manifolds of a pair with a surface up to date; `reach`, m: how far apart shapes are seen. Says of each
+// further manifold in world.changes what became of it, and returns that of the first. What has no place goes to
+// findings.more.
 PairChange CollideWithSurface(WorldState& world, uint32_t pair, float reach, float dt, WorkerFindings& findings);
 
 // Makes places for those, serially, in the order of the pairs.

@@ -1,4 +1,5 @@
-// A piece of a body as a shape about the body's center. Used by the casts of Continuous and Sense; any number of threads.
+// A piece of a body as a shape about the body's center. Used by the casts of Continuous and Sense; any number of
+// threads.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/Shape.h>
@@ -8,7 +9,8 @@ namespace fulcrum {
 // It turns with the body.
 class PlacedConvex final : public ConvexShape {
 public:
-    PlacedConvex(const ConvexShape& shape, const RelativePose& local) : ConvexShape(ShapeType::Custom), shape_(shape), local_(local) {
+    PlacedConvex(const ConvexShape& shape, const RelativePose& local)
+        : ConvexShape(ShapeType::Custom), shape_(shape), local_(local) {
         convexRadius_ = shape.ConvexRadius();
         innerRadius_ = shape.InnerRadius();
         outerRadius_ = shape.OuterRadius() + Length(local.position);

@@ -57,15 +57,16 @@ void Fill(WorldState& world, ContactBatch<N, kFixedB>& batch, std::span<const En
         batch.bodyA[lane] = entry.bodyA;
         bodyB[lane] = entry.bodyB;
     }
-    const uint32_t unusable = PrepareContacts<N, kFixedB>(batch, world.pairs.records.data(), bodyB, world.bodies.ForSolver(), settings);
+    const uint32_t unusable =
+        PrepareContacts<N, kFixedB>(batch, world.pairs.records.data(), bodyB, world.bodies.ForSolver(), settings);
     if (unusable != 0) ForgetContacts(world, batch, unusable);
     findings.bounces |= batch.bounces;
     NoteDeepest(batch, findings);
 }
 
 template <class Batch>
-void FillRange(WorldState& world, std::vector<Batch>& batches, const BatchRange& range,
-               std::span<const Entry> contacts, const ContactPrepareSettings& settings, WorkerFindings& findings) {
+void FillRange(WorldState& world, std::vector<Batch>& batches, const BatchRange& range, std::span<const Entry> contacts,
+               const ContactPrepareSettings& settings, WorkerFindings& findings) {
     contacts = contacts.subspan(range.first, range.contacts);
     for (uint32_t i = range.begin; i < range.end; ++i) {
         const size_t n = std::min(contacts.size(), size_t(kLanes));
@@ -122,7 +123,8 @@ void FindWorstJoints(WorldState& world) {
 
 class RowFiller {
 public:
-    RowFiller(WorldState& world, const Effort& effort, const StepContext& step) : world_(world), joints_(effort.joints) {
+    RowFiller(WorldState& world, const Effort& effort, const StepContext& step)
+        : world_(world), joints_(effort.joints) {
         contacts_.impulseScale = step.impulseScale * effort.impulseScale;
         contacts_.restitutionSpeed = world.settings.restitutionSpeed;
     }
@@ -133,7 +135,8 @@ public:
     }
     void FillBalls(uint32_t begin, uint32_t end, WorkerFindings& findings) const {
         for (uint32_t i = begin; i < end; ++i)
-            PrepareJoints(world_.solver.balls[i], world_.joints.records.data(), world_.bodies.ForSolver(), joints_, findings.joints);
+            PrepareJoints(world_.solver.balls[i], world_.joints.records.data(), world_.bodies.ForSolver(), joints_,
+                          findings.joints);
     }
     void FillJoints(uint32_t begin, uint32_t end, WorkerFindings& findings) const {
         for (uint32_t i = begin; i < end; ++i) FillJoint(world_.solver.joints[i], findings);
@@ -150,16 +153,19 @@ public:
         using Kind = ConstraintColoring::Kind;
         SolverLayout& layout = world_.solver;
         for (size_t i = 0; i < layout.overflowMoving.size(); ++i)
-            fulcrum::Fill(world_, layout.overflowMoving[i], std::span(&overflow.Of(Kind::Moving)[i], 1), contacts_, findings);
+            fulcrum::Fill(world_, layout.overflowMoving[i], std::span(&overflow.Of(Kind::Moving)[i], 1), contacts_,
+                          findings);
         for (size_t i = 0; i < layout.overflowFixed.size(); ++i)
-            fulcrum::Fill(world_, layout.overflowFixed[i], std::span(&overflow.Of(Kind::Fixed)[i], 1), contacts_, findings);
+            fulcrum::Fill(world_, layout.overflowFixed[i], std::span(&overflow.Of(Kind::Fixed)[i], 1), contacts_,
+                          findings);
         for (JointBatch<1>& batch : layout.overflowJoints) FillJoint(batch, findings);
     }
 
 private:
     template <int N>
     void FillJoint(JointBatch<N>& batch, WorkerFindings& findings) const {
-        PrepareJoints(batch, world_.joints.records.data(), world_.joints.types.data(), world_.bodies.ForSolver(), joints_, findings.joints);
+        PrepareJoints(batch, world_.joints.records.data(), world_.joints.types.data(), world_.bodies.ForSolver(),
+                      joints_, findings.joints);
     }
 
     WorldState& world_;
@@ -177,7 +183,9 @@ void Prepare(WorldState& world, const StepContext& step) {
     const RowFiller filler(world, EffortOf(world, step, large), step);
     const auto piecesOf = [&](uint32_t c) {
         const ColorBatches& color = layout.colors[c];
-        return (std::max({color.moving.Count(), color.fixed.Count(), color.JointCount(), color.BallCount()}) + kPiece - 1) / kPiece;
+        return (std::max({color.moving.Count(), color.fixed.Count(), color.JointCount(), color.BallCount()}) + kPiece -
+                1) /
+               kPiece;
     };
     uint32_t count = 0;
     for (uint32_t c = large.colorsBegin; c < large.colorsEnd; ++c) count += piecesOf(c);
@@ -199,7 +207,8 @@ void Prepare(WorldState& world, const StepContext& step) {
     });
     world.jobs->ParallelFor(static_cast<uint32_t>(layout.groups.size()) - 1, 1, [&](JobRange range) {
         for (uint32_t g = range.begin + 1; g < range.end + 1; ++g)
-            RowFiller(world, EffortOf(world, step, layout.groups[g]), step).FillGroup(layout.groups[g], world.findings[range.worker]);
+            RowFiller(world, EffortOf(world, step, layout.groups[g]), step)
+                .FillGroup(layout.groups[g], world.findings[range.worker]);
     });
     filler.FillOverflow(world.coloring.At(ConstraintColoring::kOverflow), world.findings[0]);
 
@@ -207,8 +216,8 @@ void Prepare(WorldState& world, const StepContext& step) {
     FindDeepest(world);
     FindWorstJoints(world);
     world.report.colors = layout.colorCount;
-    world.report.overflowConstraints =
-        static_cast<uint32_t>(layout.overflowMoving.size() + layout.overflowFixed.size() + layout.overflowJoints.size());
+    world.report.overflowConstraints = static_cast<uint32_t>(
+        layout.overflowMoving.size() + layout.overflowFixed.size() + layout.overflowJoints.size());
 }
 
 }  // namespace fulcrum

@@ -13,9 +13,11 @@ namespace {
 
 class HitResolver {
 public:
-    HitResolver(WorldState& world, const StepContext& step, bool isLast) : world_(world), dt_(step.dt), isLast_(isLast) {}
+    HitResolver(WorldState& world, const StepContext& step, bool isLast)
+        : world_(world), dt_(step.dt), isLast_(isLast) {}
 
-    // In the order of their times. What each would do is found beforehand, in parallel: no body is hit twice in a round.
+    // In the order of their times. What each would do is found beforehand, in parallel: no body is hit twice in a
+    // round.
     void ResolveAll() {
         const std::vector<SweepHit>& hits = world_.sweeps.hits;
         struct Key {
@@ -35,7 +37,8 @@ public:
 
 private:
     void Resolve(const SweepHit& hit, const Impact& impact) {
-        const uint32_t places[2] = {PlaceOf(world_, hit.body, &impact.sweeps[0]), PlaceOf(world_, hit.other, &impact.sweeps[1])};
+        const uint32_t places[2] = {PlaceOf(world_, hit.body, &impact.sweeps[0]),
+                                    PlaceOf(world_, hit.other, &impact.sweeps[1])};
         if (Swept(places[0]).changed) return;  // it is in the next round, or waits
         const bool lostPartner = places[1] != SweepStore::kNone && Swept(places[1]).changed;
         const bool isUndecided = hit.pointCount == 0 || lostPartner;
@@ -56,7 +59,8 @@ private:
         }
     }
 
-    // Both go on with the velocities after the hit. Where nothing approaches, the solver moved them otherwise than those say.
+    // Both go on with the velocities after the hit. Where nothing approaches, the solver moved them otherwise than
+    // those say.
     void Part(const SweepHit& hit, const Impact& impact, const uint32_t (&places)[2]) {
         WakeBody(world_, hit.other);
         world_.report.sweptHits += impact.parts;
@@ -100,8 +104,10 @@ private:
         sweep.turn = turn;
     }
 
-    // Stays until the next step; but a kinematic body goes on as it is told. It is in the way of others, who may not know.
-    void Wait(uint32_t place, float time, const Impact& impact, int side, const Vector3& linear, const Vector3& angular) {
+    // Stays until the next step; but a kinematic body goes on as it is told. It is in the way of others, who may not
+    // know.
+    void Wait(uint32_t place, float time, const Impact& impact, int side, const Vector3& linear,
+              const Vector3& angular) {
         Sweep& sweep = Swept(place);
         if (!world_.bodies.CanMove(sweep.body)) return;
         End(place, time, impact.poses[side]);
@@ -145,6 +151,8 @@ uint32_t PlaceOf(WorldState& world, uint32_t body, const Sweep* known) {
     return store.places[body];
 }
 
-void ResolveHits(WorldState& world, const StepContext& step, bool isLast) { HitResolver(world, step, isLast).ResolveAll(); }
+void ResolveHits(WorldState& world, const StepContext& step, bool isLast) {
+    HitResolver(world, step, isLast).ResolveAll();
+}
 
 }  // namespace fulcrum

@@ -1,6 +1,6 @@
-// Sensors: every body that is awake looks into their tree, along its whole way; sensors that move look for bodies that rest. What rests
-// in a sensor that rests stays in its list, and is looked at by nobody. Candidates are sorted by ids before their shapes are
-// looked at, so that events do not depend on threads.
+// Sensors: every body that is awake looks into their tree, along its whole way; sensors that move look for bodies that
+// rest. What rests in a sensor that rests stays in its list, and is looked at by nobody. Candidates are sorted by ids
+// before their shapes are looked at, so that events do not depend on threads.
 #include <Fulcrum/Physics/Stages/SensorVisits.h>
 
 #include <algorithm>
@@ -11,7 +11,9 @@ namespace fulcrum {
 namespace {
 
 SensorSees KindOf(const BodyDynamics& d) {
-    return d.motion == MotionType::Static ? SensorSees::Static : d.motion == MotionType::Kinematic ? SensorSees::Kinematic : SensorSees::Dynamic;
+    return d.motion == MotionType::Static      ? SensorSees::Static
+           : d.motion == MotionType::Kinematic ? SensorSees::Kinematic
+                                               : SensorSees::Dynamic;
 }
 
 bool Sees(const WorldState& world, const Sensor& sensor, uint32_t body) {
@@ -27,7 +29,9 @@ bool Sees(const WorldState& world, const Sensor& sensor, uint32_t body) {
 
 bool IsTouched(const WorldState& world, uint32_t body) { return world.sensors.touchedIn[body] == world.report.step; }
 // Whether it is where it was when the last step ended.
-bool Rests(const WorldState& world, uint32_t body) { return !world.bodies.dynamics[body].awake && !IsTouched(world, body); }
+bool Rests(const WorldState& world, uint32_t body) {
+    return !world.bodies.dynamics[body].awake && !IsTouched(world, body);
+}
 
 void NoteTouched(WorldState& world) {
     SensorStore& store = world.sensors;
@@ -84,7 +88,8 @@ Bounds RoundBounds(const WorldState& world, uint32_t body) {
         upper = upper.cwiseMax(center);
     };
     const SweepStore::Start* starts = world.sweeps.starts.data();
-    if (body < world.sweeps.starts.size() && starts[body].step == world.report.step) include(starts[body].pose.position);
+    if (body < world.sweeps.starts.size() && starts[body].step == world.report.step)
+        include(starts[body].pose.position);
     for (const MotionSegment& part : CutSegmentsOf(world, body)) include(part.sweep.start.position);
     const Position& origin = world.colliders.boundsOrigin;
     return RoundedOutwards(lower - origin - reach, upper - origin + reach);
@@ -92,12 +97,14 @@ Bounds RoundBounds(const WorldState& world, uint32_t body) {
 
 void AddCandidate(const WorldState& world, uint32_t sensorBody, uint32_t body, WorkerFindings& findings) {
     const uint32_t place = world.sensors.PlaceOf(world.bodies.IdOf(sensorBody));
-    if (Sees(world, world.sensors.sensors[place], body)) findings.sensorCandidates.push_back(uint64_t(place) << 32 | body);
+    if (Sees(world, world.sensors.sensors[place], body))
+        findings.sensorCandidates.push_back(uint64_t(place) << 32 | body);
 }
 
 void SearchFromBody(const WorldState& world, uint32_t body, WorkerFindings& findings) {
     const ColliderStore& colliders = world.colliders;
-    colliders.sensorTree.Query(RoundBounds(world, body), [&](uint32_t i) { AddCandidate(world, colliders.colliders[i].body, body, findings); });
+    colliders.sensorTree.Query(RoundBounds(world, body),
+                               [&](uint32_t i) { AddCandidate(world, colliders.colliders[i].body, body, findings); });
 }
 
 // What is awake, or was touched, looks for itself.
@@ -124,16 +131,19 @@ void FindCandidates(WorldState& world) {
         });
     };
     const std::vector<uint32_t>& awake = world.bodies.awake;
-    forEach(awake.size(), 128, [&](uint32_t i, WorkerFindings& findings) { SearchFromBody(world, awake[i], findings); });
+    forEach(awake.size(), 128,
+            [&](uint32_t i, WorkerFindings& findings) { SearchFromBody(world, awake[i], findings); });
     forEach(store.touched.size(), 128, [&](uint32_t i, WorkerFindings& findings) {
         const uint32_t body = store.touched[i];
         if (world.bodies.cold[body].exists && !world.bodies.dynamics[body].awake) SearchFromBody(world, body, findings);
     });
-    forEach(store.sensors.size(), 1, [&](uint32_t i, WorkerFindings& findings) { SearchFromSensor(world, store.sensors[i], findings); });
+    forEach(store.sensors.size(), 1,
+            [&](uint32_t i, WorkerFindings& findings) { SearchFromSensor(world, store.sensors[i], findings); });
 
     store.candidates.clear();
     for (WorkerFindings& findings : world.findings) {
-        store.candidates.insert(store.candidates.end(), findings.sensorCandidates.begin(), findings.sensorCandidates.end());
+        store.candidates.insert(store.candidates.end(), findings.sensorCandidates.begin(),
+                                findings.sensorCandidates.end());
         findings.sensorCandidates.clear();
     }
     std::sort(store.candidates.begin(), store.candidates.end());
@@ -150,8 +160,8 @@ void LookAtCandidate(const WorldState& world, uint64_t candidate, WorkerFindings
     }
     ++findings.sensorTests;
     // Most of what is inside stays there.
-    if (atStart == AtStart::Inside && IsOnePiece(world, body) && IsOnePiece(world, sensor.id.index) && CutSegmentsOf(world, body).empty() &&
-        OverlapAtEnd(world, sensor.id.index, body)) {
+    if (atStart == AtStart::Inside && IsOnePiece(world, body) && IsOnePiece(world, sensor.id.index) &&
+        CutSegmentsOf(world, body).empty() && OverlapAtEnd(world, sensor.id.index, body)) {
         findings.sensorVisits.push_back({place, body, 0, 1, true, true});
         return;
     }
@@ -161,7 +171,8 @@ void LookAtCandidate(const WorldState& world, uint64_t candidate, WorkerFindings
 void FindAllVisits(WorldState& world) {
     SensorStore& store = world.sensors;
     world.jobs->ParallelFor(static_cast<uint32_t>(store.candidates.size()), 4, [&](JobRange range) {
-        for (uint32_t i = range.begin; i < range.end; ++i) LookAtCandidate(world, store.candidates[i], world.findings[range.worker]);
+        for (uint32_t i = range.begin; i < range.end; ++i)
+            LookAtCandidate(world, store.candidates[i], world.findings[range.worker]);
     });
     store.visits.clear();
     for (WorkerFindings& findings : world.findings) {
@@ -182,7 +193,8 @@ public:
         const uint64_t key = uint64_t(place) << 32;
         candidate_ = std::lower_bound(store.candidates.begin(), store.candidates.end(), key);
         lastCandidate_ = std::lower_bound(candidate_, store.candidates.end(), key + (uint64_t(1) << 32));
-        visit_ = std::lower_bound(store.visits.begin(), store.visits.end(), place, [](const SensorVisit& v, uint32_t p) { return v.sensor < p; });
+        visit_ = std::lower_bound(store.visits.begin(), store.visits.end(), place,
+                                  [](const SensorVisit& v, uint32_t p) { return v.sensor < p; });
         lastVisit_ = store.visits.end();
         place_ = place;
     }
@@ -211,7 +223,9 @@ private:
         return Rests(world_, sensor_.id.index) && Rests(world_, id.index) && Sees(world_, sensor_, id.index);
     }
 
-    void Report(BodyId id, SensorEvent::Kind kind, float time) { sensor_.events.push_back({sensor_.id, id, kind, time}); }
+    void Report(BodyId id, SensorEvent::Kind kind, float time) {
+        sensor_.events.push_back({sensor_.id, id, kind, time});
+    }
 
     void Keep(BodyId id, bool stayed) {
         sensor_.insideNext.push_back(id);
@@ -249,7 +263,8 @@ void ReportAll(WorldState& world) {
     world.jobs->ParallelFor(static_cast<uint32_t>(store.sensors.size()), 1, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i) Reporter(world, store.sensors[i], i).Run();
     });
-    for (const Sensor& sensor : store.sensors) store.events.insert(store.events.end(), sensor.events.begin(), sensor.events.end());
+    for (const Sensor& sensor : store.sensors)
+        store.events.insert(store.events.end(), sensor.events.begin(), sensor.events.end());
     world.report.sensorEvents = static_cast<uint32_t>(store.events.size());
     std::erase_if(store.sensors, [](const Sensor& sensor) { return sensor.removed; });
 }

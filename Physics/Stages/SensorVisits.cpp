@@ -46,7 +46,8 @@ struct Touch {
     float time = 0;
 };
 
-// From `start` to `end`, which is earlier where the way is gone back. The other keeps the rotation that it has in the middle.
+// From `start` to `end`, which is earlier where the way is gone back. The other keeps the rotation that it has in the
+// middle.
 Touch Cast(const Mover& caster, const Mover& other, float start, float end) {
     const ConvexShape& shape = static_cast<const ConvexShape&>(*caster.piece.shape);
     const float from = std::min(start, end), until = std::max(start, end);
@@ -56,7 +57,8 @@ Touch Cast(const Mover& caster, const Mover& other, float start, float end) {
     motion.pose = turns ? caster.BodyAt(start) : caster.PieceAt(start);
     const Pose last = turns ? caster.BodyAt(end) : caster.PieceAt(end);
     Pose at = other.PieceAt(start);
-    motion.displacement = Between(motion.pose.position, last.position) - Between(at.position, other.PieceAt(end).position);
+    motion.displacement =
+        Between(motion.pose.position, last.position) - Between(at.position, other.PieceAt(end).position);
     if (turns) motion.turn = caster.part.sweep.TurnRate() * (end - start);
     if (other.Angle(from, until) > kLeastTurn) at.rotation = other.PieceAt(0.5f * (start + end)).rotation;
     const ConvexShape* cast = &shape;
@@ -74,13 +76,16 @@ Touch FirstTouch(const Mover& sensor, const Mover& body, float start, float end)
     if (!sensor.IsConvex() && !body.IsConvex()) return {};
     const float from = std::min(start, end), until = std::max(start, end);
     const float sensorAngle = sensor.Angle(from, until), bodyAngle = body.Angle(from, until);
-    const bool castsBody = body.IsConvex() && (!sensor.IsConvex() || bodyAngle * body.Radius() >= sensorAngle * sensor.Radius());
+    const bool castsBody =
+        body.IsConvex() && (!sensor.IsConvex() || bodyAngle * body.Radius() >= sensorAngle * sensor.Radius());
     const Mover &caster = castsBody ? body : sensor, &other = castsBody ? sensor : body;
     const float angle = castsBody ? sensorAngle : bodyAngle;
-    const int parts = angle > kLeastTurn ? static_cast<int>(std::clamp(std::ceil(kPartsPerRadian * angle), 1.0f, kMostParts)) : 1;
+    const int parts =
+        angle > kLeastTurn ? static_cast<int>(std::clamp(std::ceil(kPartsPerRadian * angle), 1.0f, kMostParts)) : 1;
     for (int i = 0; i < parts; ++i) {
         const float a = start + (end - start) * (static_cast<float>(i) / static_cast<float>(parts));
-        const float b = i + 1 == parts ? end : start + (end - start) * (static_cast<float>(i + 1) / static_cast<float>(parts));
+        const float b =
+            i + 1 == parts ? end : start + (end - start) * (static_cast<float>(i + 1) / static_cast<float>(parts));
         if (const Touch touch = Cast(caster, other, a, b); touch.found) return touch;
     }
     return {};
@@ -88,8 +93,14 @@ Touch FirstTouch(const Mover& sensor, const Mover& body, float start, float end)
 
 class PairSearch {
 public:
-    PairSearch(const WorldState& world, uint32_t place, const Way& sensorWay, const Way& bodyWay, std::vector<SensorVisit>& visits)
-        : world_(world), place_(place), sensorWay_(sensorWay), bodyWay_(bodyWay), visits_(visits), first_(visits.size()) {}
+    PairSearch(const WorldState& world, uint32_t place, const Way& sensorWay, const Way& bodyWay,
+               std::vector<SensorVisit>& visits)
+        : world_(world),
+          place_(place),
+          sensorWay_(sensorWay),
+          bodyWay_(bodyWay),
+          visits_(visits),
+          first_(visits.size()) {}
 
     void Run(AtStart atStart) {
         if (!IsOnePiece(world_, sensorWay_.Body()) || !IsOnePiece(world_, bodyWay_.Body())) atStart = AtStart::Unknown;
@@ -108,7 +119,8 @@ private:
         const MotionSegment* a = sensorWay_.Parts().data();
         const MotionSegment* b = bodyWay_.Parts().data();
         bool inside = atStart == AtStart::Inside;
-        if (atStart == AtStart::Unknown) inside = IsOverlap({sensorWay_, *a, sensorPiece}, {bodyWay_, *b, bodyPiece}, 0);
+        if (atStart == AtStart::Unknown)
+            inside = IsOverlap({sensorWay_, *a, sensorPiece}, {bodyWay_, *b, bodyPiece}, 0);
         for (float from = 0; from < 1;) {
             const float until = std::min(a->until, b->until);
             inside = Stretch({sensorWay_, *a, sensorPiece}, {bodyWay_, *b, bodyPiece}, from, until, inside);
@@ -188,13 +200,15 @@ private:
 
 std::span<const MotionSegment> CutSegmentsOf(const WorldState& world, uint32_t body) {
     const std::vector<MotionSegment>& cut = world.sensors.cut;
-    const auto first = std::lower_bound(cut.begin(), cut.end(), body, [](const MotionSegment& part, uint32_t b) { return part.sweep.body < b; });
+    const auto first = std::lower_bound(cut.begin(), cut.end(), body,
+                                        [](const MotionSegment& part, uint32_t b) { return part.sweep.body < b; });
     auto last = first;
     while (last != cut.end() && last->sweep.body == body) ++last;
     return {first, last};
 }
 
-Way::Way(const WorldState& world, uint32_t body) : body_(body), end_(world.bodies.CenterPoseOf(body)), parts_(CutSegmentsOf(world, body)) {
+Way::Way(const WorldState& world, uint32_t body)
+    : body_(body), end_(world.bodies.CenterPoseOf(body)), parts_(CutSegmentsOf(world, body)) {
     if (!parts_.empty()) return;
     own_.sweep = SweepOf(world, body);
     parts_ = {&own_, 1};
@@ -220,7 +234,8 @@ bool CentersTell(const Shape& sensor, const Shape& body, const Vector3& center) 
 bool OverlapAtEnd(const WorldState& world, uint32_t sensor, uint32_t body) {
     const ColliderShape a = PieceOf(world, world.bodies.cold[sensor].firstCollider);
     const ColliderShape b = PieceOf(world, world.bodies.cold[body].firstCollider);
-    const RelativePose relative = Relative(PoseOf(a, world.bodies.CenterPoseOf(sensor)), PoseOf(b, world.bodies.CenterPoseOf(body)));
+    const RelativePose relative =
+        Relative(PoseOf(a, world.bodies.CenterPoseOf(sensor)), PoseOf(b, world.bodies.CenterPoseOf(body)));
     return CentersTell(*a.shape, *b.shape, relative.position) || Overlap(*a.shape, *b.shape, relative);
 }
 
@@ -233,7 +248,8 @@ Bounds PieceBounds(const WorldState& world, const Way& way, uint32_t collider) {
         Bounds ends = BoundsAbout(origin, *mover.piece.shape, mover.PieceAt(part.sweep.from));
         const float angle = mover.Angle(part.sweep.from, part.until);
         if (!mover.IsStill()) ends.Include(BoundsAbout(origin, *mover.piece.shape, mover.PieceAt(part.until)));
-        // A point at the distance r from the center leaves the straight line between its ends by at most r (1 - cos(angle / 2)).
+        // A point at the distance r from the center leaves the straight line between its ends by at most r (1 -
+        // cos(angle / 2)).
         bounds.Include(Inflated(ends, std::min(0.125f * angle * angle, 2.0f) * mover.Radius()));
     }
     return bounds;

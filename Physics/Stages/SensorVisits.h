@@ -1,5 +1,5 @@
-// When a body overlaps a sensor within a step. Called by the Sense stage, for different pairs from any number of threads at
-// once.
+// When a body overlaps a sensor within a step. Called by the Sense stage, for different pairs from any number of
+// threads at once.
 #pragma once
 
 #include <Fulcrum/Physics/Stages/Stages.h>
@@ -39,10 +39,10 @@ Bounds PieceBounds(const WorldState& world, const Way& way, uint32_t collider);
 // Whether a body overlaps a sensor as the step begins, where that is known.
 enum class AtStart : uint8_t { Unknown, Outside, Inside };
 
-// Appends the stretches of the step during which the two overlap, ascending and apart from each other. `sensor` is a place in
-// SensorStore::sensors. Bounds of the sensor's colliders hold their ways. A convex piece that turns counts as inside from when it
-// first to when it last touches a piece of the sensor in a straight part of its way; a mesh or height field counts as one piece.
-// Of two of these, or half spaces, only the ends of the step are looked at.
+// Appends the stretches of the step during which the two overlap, ascending and apart from each other. `sensor` is a
+// place in SensorStore::sensors. Bounds of the sensor's colliders hold their ways. A convex piece that turns counts as
+// inside from when it first to when it last touches a piece of the sensor in a straight part of its way; a mesh or
+// height field counts as one piece. Of two of these, or half spaces, only the ends of the step are looked at.
 void FindVisits(const WorldState& world, uint32_t sensor, const Way& sensorWay, const Way& bodyWay, AtStart atStart,
                 std::vector<SensorVisit>& visits);
 

@@ -1,5 +1,5 @@
-// Islands are sets of dynamic bodies that touch one another or are joined. They are found only when some body has been slow for long
-// enough: nothing else needs them. An island sleeps when all its bodies are slow.
+// Islands are sets of dynamic bodies that touch one another or are joined. They are found only when some body has been
+// slow for long enough: nothing else needs them. An island sleeps when all its bodies are slow.
 #include <Fulcrum/Physics/Islands/UnionFind.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 
@@ -40,7 +40,8 @@ void RestPairs(WorldState& world) {
 
 }  // namespace
 
-// What falls asleep outside its fat bounds, because it was fast or the step long, would be found by nobody until it wakes.
+// What falls asleep outside its fat bounds, because it was fast or the step long, would be found by nobody until it
+// wakes.
 static void RefitFatBounds(WorldState& world, uint32_t body) {
     VisitColliders(world, body, [&](uint32_t i) {
         Collider& collider = world.colliders.colliders[i];
@@ -106,7 +107,8 @@ void Sleep(WorldState& world) {
         if (world.listener)
             world.pairs.active.Visit([&](uint32_t index) {
                 const Pair& pair = world.pairs.pairs[index];
-                if (pair.touching && world.pairs.records[index].surfaceMoves > 0) awake[roots[world.bodies.cold[pair.bodyA].awakePlace]] = 1;
+                if (pair.touching && world.pairs.records[index].surfaceMoves > 0)
+                    awake[roots[world.bodies.cold[pair.bodyA].awakePlace]] = 1;
             });
         // Members of sleeping islands, sorted by island.
         std::span<uint64_t> members = world.scratch.Allocate<uint64_t>(count);

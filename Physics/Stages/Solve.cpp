@@ -1,13 +1,13 @@
-// The solver loop is a sequence of verbs. Groups of small islands run it whole, each on one worker. The large islands run it
-// as a sequence of short parallel phases: one per color, iteration and substep, and two over the bodies per substep.
-// Colors come in ascending order, what fitted no color after them, one by one. Within a color joints come before contacts:
-// non-penetration wins.
+// The solver loop is a sequence of verbs. Groups of small islands run it whole, each on one worker. The large islands
+// run it as a sequence of short parallel phases: one per color, iteration and substep, and two over the bodies per
+// substep. Colors come in ascending order, what fitted no color after them, one by one. Within a color joints come
+// before contacts: non-penetration wins.
 //
 // Only bodies that a constraint touches take part; the others are moved by Store, in one go.
 //
-// The warm start of every substep but the first costs nothing per constraint: the impulses of the last substep give each body
-// the same change of velocity again, and that is its velocity at the substep's end minus what it was without constraints. Rows
-// of contacts do not change within a step; joints add what the turning of their parts changes.
+// The warm start of every substep but the first costs nothing per constraint: the impulses of the last substep give
+// each body the same change of velocity again, and that is its velocity at the substep's end minus what it was without
+// constraints. Rows of contacts do not change within a step; joints add what the turning of their parts changes.
 #include <Fulcrum/Constraints/Contacts/PushWork.h>
 #include <Fulcrum/Jobs/Phases.h>
 #include <Fulcrum/Physics/Stages/Effort.h>
@@ -23,8 +23,25 @@ constexpr uint32_t kBatchesPerBlock = 4;
 constexpr uint32_t kBodiesPerBlock = 128;
 
 enum class Verb : uint8_t {
-    IntegrateVelocities, WarmStart, CarriedWork, FirstVelocities, Velocities, ClearPulls, FirstPull, Pull, StopPulls, IntegratePoses,
-    FirstRelax, Relax, Separations, ClearPushWork, AddPushWork, SubtractPushWork, Restitution, RelaxJointsAfterRestitution, NextSubstep
+    IntegrateVelocities,
+    WarmStart,
+    CarriedWork,
+    FirstVelocities,
+    Velocities,
+    ClearPulls,
+    FirstPull,
+    Pull,
+    StopPulls,
+    IntegratePoses,
+    FirstRelax,
+    Relax,
+    Separations,
+    ClearPushWork,
+    AddPushWork,
+    SubtractPushWork,
+    Restitution,
+    RelaxJointsAfterRestitution,
+    NextSubstep
 };
 
 struct Phase {
@@ -46,7 +63,8 @@ bool IsOverBodies(Verb verb) {
 
 class StepSolver {
 public:
-    // pseudo: room for the pseudo-velocities of all bodies, zero; null where the group has no joints that are far apart.
+    // pseudo: room for the pseudo-velocities of all bodies, zero; null where the group has no joints that are far
+    // apart.
     StepSolver(WorldState& world, const StepContext& step, const Effort& effort, BodyState* pseudo)
         : world_(world), layout_(world.solver), effort_(effort), pseudo_(pseudo), h_(effort.substepDt), dt_(step.dt) {}
 
@@ -64,7 +82,9 @@ public:
         uint8_t substep = 0;
         for (Verb verb : verbs) {
             if (IsOverBodies(verb)) {
-                RunBodies(verb, substep, std::span(layout_.bodies).subspan(group.bodiesBegin, group.bodiesEnd - group.bodiesBegin), findings);
+                RunBodies(verb, substep,
+                          std::span(layout_.bodies).subspan(group.bodiesBegin, group.bodiesEnd - group.bodiesBegin),
+                          findings);
                 continue;
             }
             if (verb == Verb::NextSubstep) {
@@ -80,7 +100,8 @@ public:
 private:
     uint32_t BlockCount(const Phase& phase) const {
         const SolverGroup& large = layout_.groups.front();
-        if (IsOverBodies(phase.verb)) return (large.bodiesEnd - large.bodiesBegin + kBodiesPerBlock - 1) / kBodiesPerBlock;
+        if (IsOverBodies(phase.verb))
+            return (large.bodiesEnd - large.bodiesBegin + kBodiesPerBlock - 1) / kBodiesPerBlock;
         if (phase.color == large.colorsEnd - large.colorsBegin) return 1;
         return (layout_.colors[large.colorsBegin + phase.color].Count() + kBatchesPerBlock - 1) / kBatchesPerBlock;
     }
@@ -115,7 +136,8 @@ private:
         BodyState* states = world_.bodies.states.data();
         const std::span<JointBatch<kLanes>> own = JointBatchesOf(group);
         const auto forTrees = [&](auto&& run) {
-            for (uint32_t t = group.treesBegin; t < group.treesEnd; ++t) run(layout_.trees.At(layout_.trees.trees[layout_.treesByGroup[t]]));
+            for (uint32_t t = group.treesBegin; t < group.treesEnd; ++t)
+                run(layout_.trees.At(layout_.trees.trees[layout_.treesByGroup[t]]));
         };
         const auto factorize = [&] {
             forTrees([&](const JointTree& tree) { FactorizeTree(tree, batches, world_.bodies.masses.data()); });
@@ -161,13 +183,15 @@ private:
     // Those of a group's colors lie one after the other.
     std::span<JointBatch<kLanes>> JointBatchesOf(const SolverGroup& group) const {
         if (group.colorsBegin == group.colorsEnd) return {};
-        const uint32_t begin = layout_.colors[group.colorsBegin].jointsBegin, end = layout_.colors[group.colorsEnd - 1].jointsEnd;
+        const uint32_t begin = layout_.colors[group.colorsBegin].jointsBegin,
+                       end = layout_.colors[group.colorsEnd - 1].jointsEnd;
         return std::span(layout_.joints).subspan(begin, end - begin);
     }
 
     // Batches [begin, end) of a color: balls, other joints, moving contacts, fixed ones.
     void RunBatches(Verb verb, uint8_t substep, const ColorBatches& color, uint32_t begin, uint32_t end) {
-        const uint32_t balls = color.BallCount(), joints = balls + color.JointCount(), contacts = joints + color.moving.Count();
+        const uint32_t balls = color.BallCount(), joints = balls + color.JointCount(),
+                       contacts = joints + color.moving.Count();
         for (uint32_t i = begin; i < end; ++i) {
             if (i < balls) {
                 RunBatch(verb, substep, layout_.balls[color.ballsBegin + i]);
@@ -188,16 +212,18 @@ private:
         BodyState* states = world_.bodies.states.data();
         switch (verb) {
             case Verb::WarmStart: WarmStartContacts(batch, states); break;
-            case Verb::CarriedWork: NoteCarriedWork(batch, states, world_.bodies.unconstrained.data()->row, ContactSettingsAt(substep, 0.5f).elapsed); break;
-            // Poses move with these velocities from the beginning of the substep to its end: they are those of its middle.
+            case Verb::CarriedWork:
+                NoteCarriedWork(batch, states, world_.bodies.unconstrained.data()->row,
+                                ContactSettingsAt(substep, 0.5f).elapsed);
+                break;
+            // Poses move with these velocities from the beginning of the substep to its end: they are those of its
+            // middle.
             case Verb::FirstVelocities:
             case Verb::Velocities: SolveContactVelocities(batch, states, ContactSettingsAt(substep, 0.5f)); break;
             case Verb::FirstPull:
             case Verb::Pull:
             case Verb::StopPulls: PullContacts(batch, pseudo_, effort_.contacts); break;
-            case Verb::FirstRelax:
-                NoteLift(batch, h_);
-                [[fallthrough]];
+            case Verb::FirstRelax: NoteLift(batch, h_); [[fallthrough]];
             case Verb::Relax: RelaxContacts(batch, states, ContactSettingsAt(substep, 1)); break;
             case Verb::Separations:
                 NoteLift(batch, h_);
@@ -247,7 +273,8 @@ private:
         JointSolveSettings settings = effort_.joints;
         settings.elapsed = verb == Verb::RelaxJointsAfterRestitution ? dt_ : h_ * static_cast<float>(substep + 1);
         settings.continues = verb == Verb::FirstVelocities && substep > 0 && !effort_.hasTrees;
-        settings.firstPass = verb == Verb::FirstPull || ((verb == Verb::FirstRelax || verb == Verb::Separations) && !effort_.hasTrees);
+        settings.firstPass =
+            verb == Verb::FirstPull || ((verb == Verb::FirstRelax || verb == Verb::Separations) && !effort_.hasTrees);
         return settings;
     }
 
@@ -271,7 +298,8 @@ constexpr int kStopIterations = 2;
 
 // The solver loop as the sequence of its verbs. pulls: some joints are far apart.
 std::span<const Verb> LoopOf(const SolverSettings& settings, bool bounces, bool pulls, ScratchArena& scratch) {
-    const size_t longest = static_cast<size_t>(settings.velocityIterations + settings.positionIterations + kPullIterations + kStopIterations + 7);
+    const size_t longest = static_cast<size_t>(settings.velocityIterations + settings.positionIterations +
+                                               kPullIterations + kStopIterations + 7);
     std::span<Verb> verbs = scratch.Allocate<Verb>(longest * static_cast<size_t>(settings.substeps));
     size_t n = 0;
     for (int substep = 0; substep < settings.substeps; ++substep) {
@@ -279,7 +307,8 @@ std::span<const Verb> LoopOf(const SolverSettings& settings, bool bounces, bool 
         verbs[n++] = Verb::IntegrateVelocities;
         if (substep == 0) verbs[n++] = Verb::WarmStart;
         else if (bounces) verbs[n++] = Verb::CarriedWork;
-        for (int i = 0; i < settings.velocityIterations; ++i) verbs[n++] = i == 0 ? Verb::FirstVelocities : Verb::Velocities;
+        for (int i = 0; i < settings.velocityIterations; ++i)
+            verbs[n++] = i == 0 ? Verb::FirstVelocities : Verb::Velocities;
         if (pulls) {
             verbs[n++] = Verb::ClearPulls;
             for (int i = 0; i < kPullIterations; ++i) verbs[n++] = i == 0 ? Verb::FirstPull : Verb::Pull;
@@ -316,13 +345,16 @@ bool PullsJoints(const WorldState& world, const SolverGroup& group) {
     const auto isFar = [](const auto& batch) { return batch.far; };
     for (uint32_t c = group.colorsBegin; c < group.colorsEnd; ++c) {
         const ColorBatches& color = layout.colors[c];
-        if (std::ranges::any_of(std::span(layout.balls).subspan(color.ballsBegin, color.BallCount()), isFar)) return true;
-        if (std::ranges::any_of(std::span(layout.joints).subspan(color.jointsBegin, color.JointCount()), isFar)) return true;
+        if (std::ranges::any_of(std::span(layout.balls).subspan(color.ballsBegin, color.BallCount()), isFar))
+            return true;
+        if (std::ranges::any_of(std::span(layout.joints).subspan(color.jointsBegin, color.JointCount()), isFar))
+            return true;
     }
     return &group == &layout.groups.front() && std::ranges::any_of(layout.overflowJoints, isFar);
 }
 
-// Runs the verbs that loopOf(effort, whether joints are pulled) names over every group. far: some joints are far apart, and to be pulled.
+// Runs the verbs that loopOf(effort, whether joints are pulled) names over every group. far: some joints are far apart,
+// and to be pulled.
 template <class LoopOfEffort>
 void RunVerbs(WorldState& world, const StepContext& step, bool far, LoopOfEffort&& loopOf) {
     const std::span<const SolverGroup> groups = world.solver.groups;
@@ -353,14 +385,18 @@ void RunVerbs(WorldState& world, const StepContext& step, bool far, LoopOfEffort
 
 void Solve(WorldState& world, const StepContext& step) {
     if (world.coloring.Size() == 0) return;
-    const bool far = std::ranges::any_of(world.findings, [](const WorkerFindings& findings) { return findings.joints.far; });
-    RunVerbs(world, step, far, [&](const Effort& effort, bool pulls) { return LoopOf(effort.solver, world.bounces, pulls, world.scratch); });
+    const bool far =
+        std::ranges::any_of(world.findings, [](const WorkerFindings& findings) { return findings.joints.far; });
+    RunVerbs(world, step, far, [&](const Effort& effort, bool pulls) {
+        return LoopOf(effort.solver, world.bounces, pulls, world.scratch);
+    });
 }
 
 void Restitution(WorldState& world, const StepContext& step) {
     if (!world.bounces) return;
     // A bounce tears at joints.
-    static constexpr Verb kVerbs[] = {Verb::ClearPushWork, Verb::AddPushWork, Verb::SubtractPushWork, Verb::Restitution, Verb::RelaxJointsAfterRestitution};
+    static constexpr Verb kVerbs[] = {Verb::ClearPushWork, Verb::AddPushWork, Verb::SubtractPushWork, Verb::Restitution,
+                                      Verb::RelaxJointsAfterRestitution};
     const size_t count = world.solver.HasJoints() ? 5 : 4;
     RunVerbs(world, step, false, [&](const Effort&, bool) { return std::span<const Verb>(kVerbs, count); });
 }

@@ -7,12 +7,13 @@
 namespace fulcrum {
 
 struct StepContext {
-    float dt;         // s, of the step, > 0
-    float substepDt;  // s
+    float dt;            // s, of the step, > 0
+    float substepDt;     // s
     float impulseScale;  // dt of its substeps / dt of the last step's, at most 2: scales the warm start
 };
 
-// Reads poses, velocities, shapes. Writes world inertia and accelerations; fat bounds and trees where a collider left its own.
+// Reads poses, velocities, shapes. Writes world inertia and accelerations; fat bounds and trees where a collider left
+// its own.
 void UpdateBounds(WorldState& world, const StepContext& step);
 
 // World bounds of a collider where its body is now, without any margin.
@@ -29,9 +30,11 @@ bool FiltersAllow(const WorldState& world, uint32_t bodyA, uint32_t bodyB);
 bool ListenerAllows(const WorldState& world, uint32_t bodyA, uint32_t bodyB);
 // Removes the pairs of a body that its filters no longer allow; their bodies wake.
 void RemoveForbiddenPairs(WorldState& world, uint32_t body);
-// After the settings got other layerCollides than `before`: removes pairs that these forbid, has those found that they allow.
+// After the settings got other layerCollides than `before`: removes pairs that these forbid, has those found that they
+// allow.
 void RefilterLayers(WorldState& world, const std::array<uint32_t, 32>& before);
-// Has another listener, or none (null), say what collides; all contacts are as the materials give them until it is asked.
+// Has another listener, or none (null), say what collides; all contacts are as the materials give them until it is
+// asked.
 void ChangeListener(WorldState& world, const ContactListener* listener);
 
 // Whether contacts between two bodies are wanted,
@@ -42,8 +45,10 @@ bool MayCollide(const WorldState& world, uint32_t bodyA, uint32_t bodyB);
 struct PairMaterial {
     float friction, restitution;
 };
-// Of body A, and of body B where it touches with a shape of which `material` is the index into the palette, if there is one.
-PairMaterial MaterialOfPair(const WorldState& world, uint32_t bodyA, uint32_t bodyB, const Shape& shapeB, uint8_t material);
+// Of body A, and of body B where it touches with a shape of which `material` is the index into the palette, if there is
+// one.
+PairMaterial MaterialOfPair(const WorldState& world, uint32_t bodyA, uint32_t bodyB, const Shape& shapeB,
+                            uint8_t material);
 // Writes that of a pair into its record.
 void CombineMaterials(WorldState& world, uint32_t pair);
 
@@ -79,7 +84,8 @@ void Solve(WorldState& world, const StepContext& step);
 // Bounces what was hit.
 void Restitution(WorldState& world, const StepContext& step);
 
-// Writes impulses to the records, displacements to the poses; moves bodies that nothing touched; measures slowness; breaks joints.
+// Writes impulses to the records, displacements to the poses; moves bodies that nothing touched; measures slowness;
+// breaks joints.
 void Store(WorldState& world, const StepContext& step);
 
 // Casts what moved far and wants it along its way; what hits something bounces there.

@@ -24,8 +24,8 @@ struct Ending {
     float pulled = 0;                        // m/s, see PulledSpeed
 };
 
-// A body that no contact touched: x += v t + a t^2 / 2, exact under constant acceleration. Returns whether it is still to be turned,
-// keeping its angular momentum.
+// A body that no contact touched: x += v t + a t^2 / 2, exact under constant acceleration. Returns whether it is still
+// to be turned, keeping its angular momentum.
 bool FlyFreely(WorldState& world, Ending& ending, const StepContext& step, WorkerFindings& findings) {
     const BodyDynamics& d = *ending.turn.body;
     const float* a = world.bodies.poses[ending.body].acceleration;
@@ -54,10 +54,11 @@ bool FlyFreely(WorldState& world, Ending& ending, const StepContext& step, Worke
     return false;
 }
 
-// The solver changed the angular velocity of a body as it stood at the step's beginning. Impulses on the way let it turn otherwise than
-// about the velocity of the end; the spin of a thin rod about its own axis, left behind in world axes while that turned, is then a turn of
-// the rod itself, with a thousand times the energy. What would gain a twentieth is carried along with the body, as far as it takes to gain none;
-// not what rocks as it comes to rest, which its support damps.
+// The solver changed the angular velocity of a body as it stood at the step's beginning. Impulses on the way let it
+// turn otherwise than about the velocity of the end; the spin of a thin rod about its own axis, left behind in world
+// axes while that turned, is then a turn of the rod itself, with a thousand times the energy. What would gain a
+// twentieth is carried along with the body, as far as it takes to gain none; not what rocks as it comes to rest, which
+// its support damps.
 Vector3 CarriedAlong(const BodyDynamics& d, const Quaternion& before, const Quaternion& after, const Vector3& w) {
     constexpr float kGain = 1.0001f;
     const auto energyOf = [&](const Quaternion& rotation, const Vector3& velocity) {
@@ -84,11 +85,13 @@ void MoveSolved(WorldState& world, Ending& ending, float dt) {
         w = NoFasterThan(w, Vector3(free[3], free[4], free[5]));
     }
     const Quaternion before = rotation;
-    rotation = Normalized(RotationFromVector(Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2])) * rotation);
+    rotation =
+        Normalized(RotationFromVector(Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2])) * rotation);
     // With joints every substep has seen to that.
     if (!d.FeelsGyroscopicTorque(w) || world.joints.HasAny(body)) return;
     w = CarriedAlong(d, before, rotation, w);
-    w = AddGyroscopicTorque<float>(Vector3(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]), AxesOf(d, rotation), w, dt);
+    w = AddGyroscopicTorque<float>(Vector3(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]),
+                                   AxesOf(d, rotation), w, dt);
 }
 
 void ForgetForces(WorldState& world, uint32_t body) {
@@ -97,8 +100,8 @@ void ForgetForces(WorldState& world, uint32_t body) {
     world.bodies.dynamics[body].hasForce = false;
 }
 
-// m/s, of the farthest point of a body that moves by v and turns by w, at most. By its outer ball, or, where that is too fast to
-// sleep, by the corners of its box: a thin rod that turns about its own length hardly moves.
+// m/s, of the farthest point of a body that moves by v and turns by w, at most. By its outer ball, or, where that is
+// too fast to sleep, by the corners of its box: a thin rod that turns about its own length hardly moves.
 float FarthestSpeed(const WorldState& world, uint32_t body, const Vector3& v, const Vector3& w) {
     const float linear = Length(v), simple = linear + Length(w) * world.bodies.dynamics[body].outerRadius;
     const float slow = world.settings.sleep.linearSpeed;
@@ -111,7 +114,8 @@ float FarthestSpeed(const WorldState& world, uint32_t body, const Vector3& v, co
     return std::min(simple, linear + Length(most));
 }
 
-// What joints pull together moves without a speed at the step's end: pseudo-velocities are none, and relaxing has taken pushes out.
+// What joints pull together moves without a speed at the step's end: pseudo-velocities are none, and relaxing has taken
+// pushes out.
 float PulledSpeed(const WorldState& world, uint32_t body, float dt) {
     const BodyState& s = world.bodies.states[body];
     if (!world.settings.sleep.enabled || !world.joints.HasAny(body)) return 0;
@@ -140,7 +144,8 @@ bool PushIsFinite(const WorldState& world, uint32_t body) {
 bool KeepsStarts(const WorldState& world) { return world.sweeps.users > 0 || !world.sensors.IsEmpty(); }
 
 // Finds how a body ends the step. False: it has nothing to end. `together`: it is still to be turned, one of several.
-bool BeginEnding(WorldState& world, uint32_t body, const StepContext& step, WorkerFindings& findings, Ending& ending, bool& together) {
+bool BeginEnding(WorldState& world, uint32_t body, const StepContext& step, WorkerFindings& findings, Ending& ending,
+                 bool& together) {
     BodyStore& bodies = world.bodies;
     const BodyDynamics& d = bodies.dynamics[body];
     together = false;
@@ -148,11 +153,14 @@ bool BeginEnding(WorldState& world, uint32_t body, const StepContext& step, Work
         bodies.states[body] = {};  // whatever rows have made of it
         return false;
     }
-    ending = {.body = body, .v = bodies.LinearVelocityOf(body), .turn = {&d, bodies.RotationOf(body), bodies.AngularVelocityOf(body)}};
+    ending = {.body = body,
+              .v = bodies.LinearVelocityOf(body),
+              .turn = {&d, bodies.RotationOf(body), bodies.AngularVelocityOf(body)}};
     if (KeepsStarts(world)) world.sweeps.starts[body] = {bodies.CenterPoseOf(body), world.report.step};
     if (d.motion == MotionType::Kinematic) {
         ending.displacement = ending.v * step.dt;
-        ending.turn.rotation = Normalized(RotationFromVector(Vector3(ending.turn.angularVelocity * step.dt)) * ending.turn.rotation);
+        ending.turn.rotation =
+            Normalized(RotationFromVector(Vector3(ending.turn.angularVelocity * step.dt)) * ending.turn.rotation);
     } else if (world.coloring.IsTouched(body)) {
         MoveSolved(world, ending, step.dt);
     } else if (FlyFreely(world, ending, step, findings)) {
@@ -170,7 +178,8 @@ void FinishEnding(WorldState& world, Ending& ending, const StepContext& step, Wo
     Vector3 &v = ending.v, &w = ending.turn.angularVelocity;
     if (ending.fliesFreely && d.angularDamping > 0) w *= Exp(-d.angularDamping * step.dt);
     if (!PushIsFinite(world, body)) return Freeze(world, body, findings);
-    if (!IsFinite(ending.displacement) || !IsFinite(ending.turn.rotation) || !IsFinite(v) || !IsFinite(w)) return Stop(world, body, findings);
+    if (!IsFinite(ending.displacement) || !IsFinite(ending.turn.rotation) || !IsFinite(v) || !IsFinite(w))
+        return Stop(world, body, findings);
     BodyState& state = bodies.states[body];
     state = {.marks = state.marks};
     if (d.dispersing) v = OwnVelocity(world, body, v, step.dt);
@@ -208,7 +217,8 @@ void StoreBatch(WorldState& world, const ContactBatch<N, kFixedB>& batch, float,
 }
 template <int N>
 void StoreBatch(WorldState& world, const JointBatch<N>& batch, float dt, float impulseScale) {
-    StoreJoints(batch, world.joints.records.data(), world.joints.types.data(), world.bodies.states.data(), dt, impulseScale);
+    StoreJoints(batch, world.joints.records.data(), world.joints.types.data(), world.bodies.states.data(), dt,
+                impulseScale);
 }
 
 template <int N>
@@ -217,7 +227,8 @@ void StoreBatch(WorldState& world, const BallBatch<N>& batch, float dt, float im
 }
 
 template <class Batch>
-void StoreAll(WorldState& world, const std::vector<Batch>& batches, uint32_t begin, uint32_t end, float dt, float impulseScale) {
+void StoreAll(WorldState& world, const std::vector<Batch>& batches, uint32_t begin, uint32_t end, float dt,
+              float impulseScale) {
     world.jobs->ParallelFor(end - begin, 16, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i) StoreBatch(world, batches[begin + i], dt, impulseScale);
     });
@@ -227,7 +238,8 @@ void StoreAll(WorldState& world, const std::vector<Batch>& batches, uint32_t beg
 void StoreImpulses(WorldState& world, const StepContext& step) {
     const SolverLayout& layout = world.solver;
     uint32_t moving = 0, fixed = 0, balls = 0, joints = 0;
-    const auto storeTo = [&](uint32_t movingEnd, uint32_t fixedEnd, uint32_t ballsEnd, uint32_t jointsEnd, float impulseScale) {
+    const auto storeTo = [&](uint32_t movingEnd, uint32_t fixedEnd, uint32_t ballsEnd, uint32_t jointsEnd,
+                             float impulseScale) {
         StoreAll(world, layout.moving, moving, movingEnd, step.dt, impulseScale);
         StoreAll(world, layout.fixed, fixed, fixedEnd, step.dt, impulseScale);
         StoreAll(world, layout.balls, balls, ballsEnd, step.dt, impulseScale);
@@ -242,7 +254,8 @@ void StoreImpulses(WorldState& world, const StepContext& step) {
         const ColorBatches& first = layout.colors[group.colorsBegin];
         const ColorBatches& last = layout.colors[group.colorsEnd - 1];
         storeTo(first.moving.begin, first.fixed.begin, first.ballsBegin, first.jointsBegin, 1.0f);
-        storeTo(last.moving.end, last.fixed.end, last.ballsEnd, last.jointsEnd, EffortOf(world, step, group).impulseScale);
+        storeTo(last.moving.end, last.fixed.end, last.ballsEnd, last.jointsEnd,
+                EffortOf(world, step, group).impulseScale);
     }
     storeTo(layout.movingCount, layout.fixedCount, layout.ballCount, layout.jointCount, 1.0f);
     const auto storeOverflow = [&](const auto& batches) {
@@ -259,7 +272,7 @@ void BreakJoints(WorldState& world) {
         Joint& joint = world.joints.joints[index];
         if (joint.color.color == 0xFF) return;
         const JointRecord& record = world.joints.records[index];
-        const auto length = [](const float (&v)[3]) { return Length(Vector3(v[0], v[1], v[2])); };
+        const auto length = [](const float(&v)[3]) { return Length(Vector3(v[0], v[1], v[2])); };
         if (length(record.totalForce) <= joint.breakForce && length(record.totalTorque) <= joint.breakTorque) return;
         joint.enabled = false;
         world.joints.Forget(index);
@@ -274,7 +287,8 @@ void BreakJoints(WorldState& world) {
 void Store(WorldState& world, const StepContext& step) {
     StoreImpulses(world, step);
     if (KeepsStarts(world)) world.sweeps.starts.resize(world.bodies.Size());
-    world.jobs->ParallelFor(static_cast<uint32_t>(world.bodies.awake.size()), 64, [&](JobRange range) { EndBodies(world, range, step); });
+    world.jobs->ParallelFor(static_cast<uint32_t>(world.bodies.awake.size()), 64,
+                            [&](JobRange range) { EndBodies(world, range, step); });
     BreakJoints(world);
     world.lastSubstepDt = step.substepDt;
 

@@ -12,11 +12,12 @@ namespace fulcrum {
 
 namespace {
 
-// A body may move by half its thickness before it is cast, and a hit counts once the two would overlap by a quarter. Where they close in by
-// more than that in a step, by a twentieth: the solver is to push apart what overlaps, not to stop what is as fast as that.
+// A body may move by half its thickness before it is cast, and a hit counts once the two would overlap by a quarter.
+// Where they close in by more than that in a step, by a twentieth: the solver is to push apart what overlaps, not to
+// stop what is as fast as that.
 constexpr float kFreeFraction = 0.5f, kDepthFraction = 0.25f, kFastDepthFraction = 0.05f;
-// What a shape as large as a surface does with each triangle in turn depends on all of them. A cast that has looked at so many is left
-// to the contacts: its time must not grow with the square of the surface.
+// What a shape as large as a surface does with each triangle in turn depends on all of them. A cast that has looked at
+// so many is left to the contacts: its time must not grow with the square of the surface.
 constexpr size_t kMostTriangles = 20000;
 // What has hardly any thickness counts as that thick, in parts of its size.
 constexpr float kLeastThickness = 0.01f;
@@ -66,14 +67,19 @@ void FindTurn(const WorldState& world, LazySweep& lazy) {
     if (lazy.hasTurn) return;
     const uint32_t body = lazy.sweep.body;
     const Quaternion end = world.bodies.RotationOf(body);
-    lazy.sweep.turn = TurnNear(end * lazy.sweep.start.rotation.Conjugate(), Vector3(world.bodies.AngularVelocityOf(body) * world.sweeps.dt));
+    lazy.sweep.turn = TurnNear(end * lazy.sweep.start.rotation.Conjugate(),
+                               Vector3(world.bodies.AngularVelocityOf(body) * world.sweeps.dt));
     lazy.hasTurn = true;
 }
 
 class SweepCaster {
 public:
     SweepCaster(const WorldState& world, const LazySweep& own, WorkerFindings& findings, SweepHit& best)
-        : world_(world), own_(own), findings_(findings), best_(best), isTurning_(own.sweep.turns && !own.sweep.turn.isZero(0)),
+        : world_(world),
+          own_(own),
+          findings_(findings),
+          best_(best),
+          isTurning_(own.sweep.turns && !own.sweep.turn.isZero(0)),
           isCast_(world.bodies.dynamics[own.sweep.body].continuous) {}
 
     bool RunAgainst(uint32_t collider, uint32_t other) {
@@ -101,11 +107,13 @@ private:
         const ShapeCaster whole(*cast_, motion_);
         if (!whole.IsValid()) return;
         const Bounds& about = whole.BoundsAboutCenter();
-        const TreeRay ray(motion_.pose.position - world_.colliders.boundsOrigin + about.Center().cast<double>(), motion_.displacement, about.HalfExtents());
+        const TreeRay ray(motion_.pose.position - world_.colliders.boundsOrigin + about.Center().cast<double>(),
+                          motion_.displacement, about.HalfExtents());
         const auto visit = [&](uint32_t other) { CastAgainst(other, whole); };
         const uint32_t layers = world_.settings.layerCollides[world_.bodies.dynamics[sweep_.body].layer];
         // Dispersing bodies do not collide with dynamic ones; to visit all that they overlap would cost n^2.
-        if ((layers & world_.colliders.movingLayers) && !world_.bodies.dynamics[sweep_.body].dispersing) world_.colliders.movingTree.CastRay(ray, limit_, visit);
+        if ((layers & world_.colliders.movingLayers) && !world_.bodies.dynamics[sweep_.body].dispersing)
+            world_.colliders.movingTree.CastRay(ray, limit_, visit);
         if (layers & world_.colliders.fixedLayers) world_.colliders.fixedTree.CastRay(ray, limit_, visit);
     }
 
@@ -136,14 +144,16 @@ private:
         else relative.pose.position += (motion_.displacement * (1 - rest)).cast<double>();
         relative.displacement = motion_.displacement * rest - others;
         relative.turn = motion_.turn * rest;
-        if (!BallsMeet(Between(at.position, relative.pose.position), relative.displacement, cast_->OuterRadius() + piece.shape->OuterRadius())) return;
+        if (!BallsMeet(Between(at.position, relative.pose.position), relative.displacement,
+                       cast_->OuterRadius() + piece.shape->OuterRadius()))
+            return;
         const ShapeCaster caster(*cast_, relative);
         if (caster.IsValid()) CastThrough(caster, relative, other, theirs, at, start, whole);
     }
 
     // From the time `start` to the end.
-    void CastThrough(const ShapeCaster& caster, const ShapeMotion& motion, uint32_t other, LazySweep& theirs, const Pose& at, float start,
-                     const ShapeCaster& whole) {
+    void CastThrough(const ShapeCaster& caster, const ShapeMotion& motion, uint32_t other, LazySweep& theirs,
+                     const Pose& at, float start, const ShapeCaster& whole) {
         const Sweep& theirSweep = theirs.sweep;
         const Shape& shape = *world_.colliders.shapes[other].shape;
         const float length = 1 - start;
@@ -160,7 +170,8 @@ private:
             hit.time = start + found.fraction * length;
             if (ComesBefore(hit)) {
                 const bool counts = Counts(motion, found, theirSweep, length, hit);
-                if (counts && !isTurning_ && DoesTurn(shape) && !ApproachesTurning(hit, theirSweep, DepthThatCounts(shape))) {
+                if (counts && !isTurning_ && DoesTurn(shape) &&
+                    !ApproachesTurning(hit, theirSweep, DepthThatCounts(shape))) {
                     asksForTurn = true;
                     return -1.0f;
                 }
@@ -174,7 +185,8 @@ private:
         if (isTurning_ && touched < best_.time) Follow(motion, theirSweep, other, length, touched, whole);
     }
 
-    // Whether the turn makes another hit of one that was found without it: where it moves points by a part of the depth that counts.
+    // Whether the turn makes another hit of one that was found without it: where it moves points by a part of the depth
+    // that counts.
     bool DoesTurn(const Shape& other) {
         constexpr float kPart = 0.25f;
         if (shape_->Type() == ShapeType::Sphere) return false;
@@ -182,18 +194,21 @@ private:
         return Length(sweep_.turn) * shape_->OuterRadius() > kPart * DepthThatCounts(other);
     }
 
-    // Whether the points of a hit that was found without the turn come so near with it, too, in what is left of the step.
+    // Whether the points of a hit that was found without the turn come so near with it, too, in what is left of the
+    // step.
     bool ApproachesTurning(const SweepHit& hit, const Sweep& theirSweep, float depth) const {
         const Position own = sweep_.PositionAt(hit.time), others = theirSweep.PositionAt(hit.time);
         float speed = 0;
         for (int i = 0; i < hit.pointCount; ++i) {
-            const Vector3 v = VelocityAt(own + hit.arms[i].cast<double>(), own, sweep_.DisplacementRate() - theirSweep.DisplacementRate(), theirSweep, others);
+            const Vector3 v = VelocityAt(own + hit.arms[i].cast<double>(), own,
+                                         sweep_.DisplacementRate() - theirSweep.DisplacementRate(), theirSweep, others);
             speed = std::max(speed, Dot<float>(hit.normal, Vector3(v + Cross<float>(sweep_.TurnRate(), hit.arms[i]))));
         }
         return speed * (1 - hit.time) > depth;
     }
 
-    // What is cast without its turn, and would hit, but not so with it: a rod that topples about its end comes down on it with all its speed, but for its turn.
+    // What is cast without its turn, and would hit, but not so with it: a rod that topples about its end comes down on
+    // it with all its speed, but for its turn.
     void CastTurning(uint32_t other) {
         isTurning_ = true;
         motion_.turn = sweep_.turn;
@@ -211,13 +226,16 @@ private:
         return hit;
     }
 
-    // Steps along with what turns while it touches, by so little that it cannot come through, until it pushes or is free.
-    void Follow(const ShapeMotion& motion, const Sweep& theirSweep, uint32_t other, float length, float time, const ShapeCaster& whole) {
+    // Steps along with what turns while it touches, by so little that it cannot come through, until it pushes or is
+    // free.
+    void Follow(const ShapeMotion& motion, const Sweep& theirSweep, uint32_t other, float length, float time,
+                const ShapeCaster& whole) {
         constexpr int kMostSteps = 64, kMostRestarts = 8;
         const Shape& shape = *world_.colliders.shapes[other].shape;
         const Vector3 linear = motion.displacement * (1 / length);
         const float depth = DepthThatCounts(shape);
-        const float speed = Length(linear) + Length(sweep_.TurnRate()) * cast_->OuterRadius() + Length(theirSweep.TurnRate()) * shape.OuterRadius();
+        const float speed = Length(linear) + Length(sweep_.TurnRate()) * cast_->OuterRadius() +
+                            Length(theirSweep.TurnRate()) * shape.OuterRadius();
         SweepHit hit = HitOf(other, theirSweep);
         for (int i = 0; i < kMostSteps && triangles_ <= kMostTriangles; ++i) {
             time += depth / speed;
@@ -235,7 +253,8 @@ private:
 
     // Notes how the contact is to behave, once the listener was asked; false: it is to be ignored.
     bool Behaves(SweepHit& hit) const {
-        const PairMaterial material = MaterialOfPair(world_, hit.body, hit.other, *world_.colliders.shapes[hit.otherCollider].shape, hit.material);
+        const PairMaterial material = MaterialOfPair(world_, hit.body, hit.other,
+                                                     *world_.colliders.shapes[hit.otherCollider].shape, hit.material);
         hit.friction = material.friction;
         hit.restitution = material.restitution;
         if (!world_.listener || hit.pointCount == 0) return true;
@@ -244,8 +263,12 @@ private:
         const uint32_t own = static_cast<uint32_t>(piece_ - world_.colliders.shapes.data());
         ContactView::Point points[SweepHit::kMaxPoints];
         for (int i = 0; i < hit.pointCount; ++i) points[i] = {hit.center + hit.arms[i].cast<double>(), 0, 0};
-        ContactView view{world_.bodies.IdOf(hit.body), world_.bodies.IdOf(hit.other), hit.normal,
-                         std::span<const ContactView::Point>(points, static_cast<size_t>(hit.pointCount)), ChildOf(world_, own), ChildOf(world_, hit.otherCollider)};
+        ContactView view{world_.bodies.IdOf(hit.body),
+                         world_.bodies.IdOf(hit.other),
+                         hit.normal,
+                         std::span<const ContactView::Point>(points, static_cast<size_t>(hit.pointCount)),
+                         ChildOf(world_, own),
+                         ChildOf(world_, hit.otherCollider)};
         if (swapped) {
             std::swap(view.bodyA, view.bodyB);
             std::swap(view.childA, view.childB);
@@ -260,7 +283,8 @@ private:
 
     // What is cast only since it was hit leaves to the solver whatever it comes to touch.
     float DepthThatCounts(const Shape& other) const {
-        const float depth = kDepthFraction * (other.IsConvex() ? std::min(Thickness(*shape_), Thickness(other)) : Thickness(*shape_));
+        const float depth =
+            kDepthFraction * (other.IsConvex() ? std::min(Thickness(*shape_), Thickness(other)) : Thickness(*shape_));
         return isCast_ ? depth : std::min(depth, 0.5f * world_.settings.speculativeDistance);
     }
 
@@ -275,16 +299,18 @@ private:
     }
 
     // Per step, of the body's point against the other's at an instant.
-    Vector3 VelocityAt(const Position& point, const Position& own, const Vector3& linear, const Sweep& theirSweep, const Position& others) const {
+    Vector3 VelocityAt(const Position& point, const Position& own, const Vector3& linear, const Sweep& theirSweep,
+                       const Position& others) const {
         Vector3 v = linear - Cross<float>(theirSweep.TurnRate(), Between(others, point));
         if (isTurning_) v += Cross<float>(sweep_.TurnRate(), Between(own, point));
         return v;
     }
 
-    // Looks a little ahead, to where the two would overlap by as much as may be: their manifold there says in which direction
-    // they push each other, where the cast knows only what touches first. The sides of flush neighbors, or edges inside a
-    // surface, push nowhere along the way.
-    bool Counts(const ShapeMotion& motion, const ShapeHit& found, const Sweep& theirSweep, float length, SweepHit& hit) {
+    // Looks a little ahead, to where the two would overlap by as much as may be: their manifold there says in which
+    // direction they push each other, where the cast knows only what touches first. The sides of flush neighbors, or
+    // edges inside a surface, push nowhere along the way.
+    bool Counts(const ShapeMotion& motion, const ShapeHit& found, const Sweep& theirSweep, float length,
+                SweepHit& hit) {
         if (found.isEarly) return found.fraction > 0;
         const Shape& shape = *world_.colliders.shapes[hit.otherCollider].shape;
         float depth = DepthThatCounts(shape);
@@ -299,7 +325,9 @@ private:
         }
         if (approach > depth) depth *= kFastDepthFraction / kDepthFraction;
         if (!(approach * left > depth)) return false;
-        return FindPoints(motion, linear, theirSweep, std::min(1.0f, hit.time + depth / approach), depth, hit).speed * left > depth;
+        return FindPoints(motion, linear, theirSweep, std::min(1.0f, hit.time + depth / approach), depth, hit).speed *
+                   left >
+               depth;
     }
 
     struct Push {
@@ -307,9 +335,12 @@ private:
         float depth = 0;  // m
     };
 
-    // Writes the points of the manifold where the two approach fastest at an instant into the hit; none where they do not touch.
-    Push FindPoints(const ShapeMotion& motion, const Vector3& linear, const Sweep& theirSweep, float time, float depth, SweepHit& hit) {
-        const Pose own{sweep_.PositionAt(time), isTurning_ ? sweep_.RotationAt(time) : motion.pose.rotation}, others = theirSweep.PoseAt(time);
+    // Writes the points of the manifold where the two approach fastest at an instant into the hit; none where they do
+    // not touch.
+    Push FindPoints(const ShapeMotion& motion, const Vector3& linear, const Sweep& theirSweep, float time, float depth,
+                    SweepHit& hit) {
+        const Pose own{sweep_.PositionAt(time), isTurning_ ? sweep_.RotationAt(time) : motion.pose.rotation},
+            others = theirSweep.PoseAt(time);
         const ColliderShape& piece = world_.colliders.shapes[hit.otherCollider];
         const Pose a = own * local_;
         Push most;
@@ -318,7 +349,8 @@ private:
             const Vector3 normal = Rotate(a.rotation, manifold.normal);
             Push push;
             for (int i = 0; i < manifold.pointCount; ++i) {
-                const Vector3 v = VelocityAt(a.Transform(manifold.points[i].positionOnA), own.position, linear, theirSweep, others.position);
+                const Vector3 v = VelocityAt(a.Transform(manifold.points[i].positionOnA), own.position, linear,
+                                             theirSweep, others.position);
                 push.speed = std::max(push.speed, Dot<float>(normal, v));
                 push.depth = std::max(push.depth, -manifold.points[i].separation);
             }
@@ -365,21 +397,23 @@ private:
     WorkerFindings& findings_;
     SweepHit& best_;
     bool isTurning_;
-    const bool isCast_;                        // else only since it was hit, in this step
+    const bool isCast_;  // else only since it was hit, in this step
     bool found_ = false;
     int restarts_ = 0;
-    size_t triangles_ = 0;                     // that were looked at to see what hits do
-    float limit_ = 1;                          // of the sweep, up to where hits are of interest
+    size_t triangles_ = 0;  // that were looked at to see what hits do
+    float limit_ = 1;       // of the sweep, up to where hits are of interest
     const ColliderShape* piece_ = nullptr;
-    RelativePose local_;                       // of the piece in its body
-    const ConvexShape* shape_ = nullptr;       // of the piece
-    const ConvexShape* cast_ = nullptr;        // that, or it about the body's center
+    RelativePose local_;                  // of the piece in its body
+    const ConvexShape* shape_ = nullptr;  // of the piece
+    const ConvexShape* cast_ = nullptr;   // that, or it about the body's center
     ShapeMotion motion_;
 };
 
 }  // namespace
 
-float FreeMotion(float innerRadius, float outerRadius) { return kFreeFraction * std::max(innerRadius, kLeastThickness * outerRadius); }
+float FreeMotion(float innerRadius, float outerRadius) {
+    return kFreeFraction * std::max(innerRadius, kLeastThickness * outerRadius);
+}
 
 bool IsCastTurning(const WorldState& world, uint32_t body) {
     const BodyCold& cold = world.bodies.cold[body];
@@ -403,7 +437,8 @@ bool CastPair(const WorldState& world, uint32_t collider, uint32_t other, Worker
     const SweepStore& store = world.sweeps;
     if (!piece.offset && store.starts[otherBody].step == world.report.step) {
         const Position &from = store.starts[body].pose.position, &otherFrom = store.starts[otherBody].pose.position;
-        const Vector3 motion = Between(from, world.bodies.CenterOf(body)) - Between(otherFrom, world.bodies.CenterOf(otherBody));
+        const Vector3 motion =
+            Between(from, world.bodies.CenterOf(body)) - Between(otherFrom, world.bodies.CenterOf(otherBody));
         const float reach = world.colliders.shapes[collider].shape->OuterRadius() + piece.shape->OuterRadius();
         if (!BallsMeet(Between(otherFrom, from), motion, reach)) return false;
     }

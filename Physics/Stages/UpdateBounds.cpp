@@ -1,5 +1,5 @@
-// A collider searches for pairs only when it leaves its fat bounds. These reach ahead along the velocity, so that a body in
-// flight leaves them once in several steps.
+// A collider searches for pairs only when it leaves its fat bounds. These reach ahead along the velocity, so that a
+// body in flight leaves them once in several steps.
 #include <Fulcrum/Collision/BroadPhase/BoundsTreeBulk.h>
 #include <Fulcrum/Physics/Stages/BodyLimits.h>
 #include <Fulcrum/Physics/Stages/Crowd.h>
@@ -10,32 +10,35 @@ namespace fulcrum {
 
 namespace {
 
-// Fat bounds reach so many steps along the velocity, but hardly farther than the body is large: every pair too many costs
-// more than a search.
+// Fat bounds reach so many steps along the velocity, but hardly farther than the body is large: every pair too many
+// costs more than a search.
 constexpr float kStepsAhead = 4;
 constexpr float kAheadFraction = 0.25f;  // of the outer radius
-// What moves by this part of the margin in a step would leave fat bounds so soon that they only cost pairs: it gets tight ones.
+// What moves by this part of the margin in a step would leave fat bounds so soon that they only cost pairs: it gets
+// tight ones.
 constexpr float kFastPart = 0.5f;
 
-// Makes bounds about the center of a shape larger by how far a turn, a rotation vector in rad, takes what is inside of them: |turn x p| along
-// each axis, of points p up to as far out as the bounds reach by then; never beyond the outer sphere. What turns so slowly that its ends do
-// not leave where they were passes through nothing, and keeps its bounds.
+// Makes bounds about the center of a shape larger by how far a turn, a rotation vector in rad, takes what is inside of
+// them: |turn x p| along each axis, of points p up to as far out as the bounds reach by then; never beyond the outer
+// sphere. What turns so slowly that its ends do not leave where they were passes through nothing, and keeps its bounds.
 void ExtendByTurn(const Shape& shape, const Vector3& turn, Vector3& lower, Vector3& upper) {
     const float outer = shape.OuterRadius(), angle = Length(turn);
     if (!(angle * outer > shape.InnerRadius())) return;
     const Vector3 sphere = Vector3::Constant(outer), rate = turn.cwiseAbs();
     const Vector3 far = Vector3(lower.cwiseAbs().cwiseMax(upper.cwiseAbs()) + sphere * angle).cwiseMin(sphere);
-    const Vector3 swept(rate.y() * far.z() + rate.z() * far.y(), rate.z() * far.x() + rate.x() * far.z(), rate.x() * far.y() + rate.y() * far.x());
+    const Vector3 swept(rate.y() * far.z() + rate.z() * far.y(), rate.z() * far.x() + rate.x() * far.z(),
+                        rate.x() * far.y() + rate.y() * far.x());
     lower = Vector3(lower - swept).cwiseMax(-sphere);
     upper = Vector3(upper + swept).cwiseMin(sphere);
 }
 
-// Bounds of a collider at a pose about the origin of bounds while it turns by a rotation vector in rad, without any margin. A hull as round
-// as a ball is bounded best by its outer sphere.
+// Bounds of a collider at a pose about the origin of bounds while it turns by a rotation vector in rad, without any
+// margin. A hull as round as a ball is bounded best by its outer sphere.
 Bounds TightBounds(const Shape& shape, const Pose& pose, const Matrix3& rotation, const Vector3& turn) {
     const Bounds& local = shape.LocalBounds();
     const Vector3 center = rotation * local.Center(), half = local.HalfExtents();
-    const Vector3 reach = rotation.x.cwiseAbs() * half.x() + rotation.y.cwiseAbs() * half.y() + rotation.z.cwiseAbs() * half.z();
+    const Vector3 reach =
+        rotation.x.cwiseAbs() * half.x() + rotation.y.cwiseAbs() * half.y() + rotation.z.cwiseAbs() * half.z();
     const Vector3 sphere = Vector3::Constant(shape.OuterRadius());
     Vector3 lower = Vector3(center - reach).cwiseMax(-sphere), upper = Vector3(center + reach).cwiseMin(sphere);
     ExtendByTurn(shape, turn, lower, upper);
@@ -87,8 +90,8 @@ void UpdateColliders(WorldState& world, uint32_t body, float dt, WorkerFindings&
     if (changed) world.bodies.poses[body].boundsChangedIn = static_cast<uint32_t>(world.report.step);
 }
 
-// The lists of what moves and meets get room by the size of the world, so that no step of a settled one allocates, whichever
-// worker does what.
+// The lists of what moves and meets get room by the size of the world, so that no step of a settled one allocates,
+// whichever worker does what.
 void ReserveLists(WorldState& world) {
     const size_t colliders = world.colliders.colliders.capacity();
     world.colliders.moved.reserve(colliders);
@@ -101,8 +104,8 @@ void ReserveLists(WorldState& world) {
     }
 }
 
-// In the order of their ids, so that the shape of the trees and the lists of sensors repeat from run to run; neither depends on it
-// where most moved and there are no sensors.
+// In the order of their ids, so that the shape of the trees and the lists of sensors repeat from run to run; neither
+// depends on it where most moved and there are no sensors.
 void ListMoved(WorldState& world) {
     std::vector<uint32_t>& moved = world.colliders.moved;
     const auto first = static_cast<ptrdiff_t>(moved.size());
@@ -118,7 +121,8 @@ void UpdateTrees(WorldState& world) {
     const bool together = store.MostMoved();
     if (together) {
         world.jobs->ParallelFor(store.movingTree.NodeCount(), 32, [&](JobRange range) {
-            store.movingTree.UpdateLeaves(range.begin, range.end, [&](uint32_t i) -> const Bounds& { return store.colliders[i].fat; });
+            store.movingTree.UpdateLeaves(range.begin, range.end,
+                                          [&](uint32_t i) -> const Bounds& { return store.colliders[i].fat; });
         });
         store.movingTree.NoteUpdated(static_cast<uint32_t>(store.moved.size()));
     }

@@ -9,8 +9,8 @@
 
 namespace fulcrum {
 
-// Calls visit(pair) for each pair of the bodies' colliders, further manifolds left out, in ascending order whatever the order in
-// which the colliders' lists have them. The visitor may remove the pair it is called with.
+// Calls visit(pair) for each pair of the bodies' colliders, further manifolds left out, in ascending order whatever the
+// order in which the colliders' lists have them. The visitor may remove the pair it is called with.
 template <class Visitor>
 void VisitPairsOf(const WorldState& world, std::span<const uint32_t> bodies, Visitor&& visit) {
     std::vector<uint32_t> pairs;

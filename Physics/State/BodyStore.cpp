@@ -165,8 +165,7 @@ size_t BodyStore::MemoryUsed() const {
     return filters + states.capacity() * sizeof(BodyState) + masses.capacity() * sizeof(BodyMass) +
            poses.capacity() * sizeof(BodyPose) + unconstrained.capacity() * sizeof(UnconstrainedVelocity) +
            dynamics.capacity() * sizeof(BodyDynamics) + cold.capacity() * sizeof(BodyCold) +
-           remainders.capacity() * sizeof(Remainder) +
-           (awake.capacity() + free_.capacity()) * sizeof(uint32_t);
+           remainders.capacity() * sizeof(Remainder) + (awake.capacity() + free_.capacity()) * sizeof(uint32_t);
 }
 
 }  // namespace fulcrum

@@ -1,5 +1,5 @@
-// All bodies, as arrays by index: what each stage touches lies together. Indices of removed bodies are reused with another
-// generation. Written by BodyInterface between steps and by the stages during one.
+// All bodies, as arrays by index: what each stage touches lies together. Indices of removed bodies are reused with
+// another generation. Written by BodyInterface between steps and by the stages during one.
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/BodyState.h>
@@ -14,27 +14,27 @@ namespace fulcrum {
 
 // Warm: read once per body and step. Principal inertia, damping, limits.
 struct alignas(64) BodyDynamics {
-    float inverseInertia[3] = {0, 0, 0};   // 1/(kg m2), principal axes
-    float inverseMass = 0;                 // 1/kg
-    float principalAxes[4] = {0, 0, 0, 1}; // x y z w: from the principal frame to the center frame
+    float inverseInertia[3] = {0, 0, 0};    // 1/(kg m2), principal axes
+    float inverseMass = 0;                  // 1/kg
+    float principalAxes[4] = {0, 0, 0, 1};  // x y z w: from the principal frame to the center frame
     float gravityFactor = 1;
-    float linearDamping = 0, angularDamping = 0;        // 1/s
-    float maxLinearSpeed = 0, maxAngularSpeed = 0;      // m/s, rad/s
-    float slowSeconds = 0;                              // how long it has been slow enough to sleep
-    float outerRadius = 0;                              // m
+    float linearDamping = 0, angularDamping = 0;    // 1/s
+    float maxLinearSpeed = 0, maxAngularSpeed = 0;  // m/s, rad/s
+    float slowSeconds = 0;                          // how long it has been slow enough to sleep
+    float outerRadius = 0;                          // m
     MotionType motion = MotionType::Static;
     LockedAxes lockedAxes = LockedAxes::None;
     bool awake : 1 = false;
-    bool spherical : 1 = false;    // all principal moments are equal
+    bool spherical : 1 = false;  // all principal moments are equal
     bool gyroscopic : 1 = false;
     bool allowSleep : 1 = true;
-    bool hasForce : 1 = false;     // BodyCold::force or torque is not zero
+    bool hasForce : 1 = false;  // BodyCold::force or torque is not zero
     bool frozen : 1 = false;
-    bool continuous : 1 = false;   // BodyCold::continuous is not Off
-    bool filtered : 1 = false;     // it has a BodyFilter: ask FiltersAllow
+    bool continuous : 1 = false;  // BodyCold::continuous is not Off
+    bool filtered : 1 = false;    // it has a BodyFilter: ask FiltersAllow
     uint8_t layer : 5 = 0;
-    bool crowded : 1 = false;      // contacts push it at a limited speed, see CrowdContacts.h
-    bool dispersing : 1 = false;   // see Crowd.h
+    bool crowded : 1 = false;     // contacts push it at a limited speed, see CrowdContacts.h
+    bool dispersing : 1 = false;  // see Crowd.h
 
     // Eight numbers each, for lanes.
     const float* InertiaRow() const { return inverseInertia; }  // moments, mass, principal axes
@@ -69,21 +69,25 @@ double RotationalEnergy(const BodyDynamics& body, const Quaternion& rotation, co
 template <class Real>
 Real TwiceRotationalEnergy(const BodyDynamics& body, const Vector3& w) {
     Real sum = 0;
-    for (int k = 0; k < 3; ++k) sum += body.inverseInertia[k] > 0 ? Real{w[k]} * Real{w[k]} / Real{body.inverseInertia[k]} : Real{0};
+    for (int k = 0; k < 3; ++k)
+        sum += body.inverseInertia[k] > 0 ? Real{w[k]} * Real{w[k]} / Real{body.inverseInertia[k]} : Real{0};
     return sum;
 }
-// The inverses of mass, kg, and principal moments of inertia, kg m2, along axes that are rotated so in the center frame.
+// The inverses of mass, kg, and principal moments of inertia, kg m2, along axes that are rotated so in the center
+// frame.
 void SetMass(BodyDynamics& body, const Quaternion& principalAxes, float mass, const Vector3& inertia);
 // The principal axes in world space.
-inline Matrix3 AxesOf(const BodyDynamics& body, const Quaternion& rotation) { return ToMatrix(rotation * body.PrincipalAxes()); }
+inline Matrix3 AxesOf(const BodyDynamics& body, const Quaternion& rotation) {
+    return ToMatrix(rotation * body.PrincipalAxes());
+}
 class MutableCompound;
 
 // What only bodies have whose children may be edited.
 struct BodyChildren {
-    MutableCompound* compound = nullptr;    // the body's own: BodyCold::shape
-    Vector3 origin = Vector3::Zero();       // of the children's frame in the center frame, m
-    double massUnit = 0;                    // kg, of the compound's RelativeMass
-    uint32_t moreColliders = ~0u;           // index into ColliderStore::runs
+    MutableCompound* compound = nullptr;  // the body's own: BodyCold::shape
+    Vector3 origin = Vector3::Zero();     // of the children's frame in the center frame, m
+    double massUnit = 0;                  // kg, of the compound's RelativeMass
+    uint32_t moreColliders = ~0u;         // index into ColliderStore::runs
 };
 
 // What a body collides with, where that is not everything.
@@ -99,7 +103,7 @@ struct BodyCold {
     uint64_t userData = 0;
     Material material;
     Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  // of the next step
-    std::unique_ptr<BodyFilter> filter;  // null: the default
+    std::unique_ptr<BodyFilter> filter;                         // null: the default
     uint32_t firstCollider = 0, colliderCount = 0;
     std::unique_ptr<BodyChildren> children;  // where `shape` is a mutable compound
     uint32_t generation = 0;
@@ -107,10 +111,12 @@ struct BodyCold {
     uint32_t sleepingIsland = ~0u;  // index into SleepingIslands
     ContinuousCollision continuous = ContinuousCollision::Off;
     bool exists = false;
-    bool removed = false;           // by the interface, its index not yet free
+    bool removed = false;  // by the interface, its index not yet free
     bool isSensor = false;
 
-    uint32_t MoreColliders() const { return children ? children->moreColliders : ~0u; }  // index into ColliderStore::runs
+    uint32_t MoreColliders() const {
+        return children ? children->moreColliders : ~0u;
+    }  // index into ColliderStore::runs
 };
 
 // Velocity without the constraints' share, from which the next substep's warm start follows.
@@ -118,15 +124,17 @@ struct alignas(32) UnconstrainedVelocity {
     float row[8];
 };
 
-// Positions are multiples of this wherever the step reads them, and what is less is carried along: what bodies are to each other
-// does not depend on how far out they are, to the last bit, up to 2^30 m, where double ends at it.
+// Positions are multiples of this wherever the step reads them, and what is less is carried along: what bodies are to
+// each other does not depend on how far out they are, to the last bit, up to 2^30 m, where double ends at it.
 inline constexpr double kPositionGrid = 0x1p-23;  // m, 0.12 micrometers
 
 // The nearest point of the grid. Beyond 2^29 m doubles lie on it anyway.
 inline Position OnGrid(const Position& position) {
     Position rounded;
     for (int k = 0; k < 3; ++k)
-        rounded[k] = std::fabs(position[k]) < 0x1p29 ? std::floor(position[k] * (1 / kPositionGrid) + 0.5) * kPositionGrid : position[k];
+        rounded[k] = std::fabs(position[k]) < 0x1p29
+                         ? std::floor(position[k] * (1 / kPositionGrid) + 0.5) * kPositionGrid
+                         : position[k];
     return rounded;
 }
 
@@ -150,9 +158,9 @@ public:
     std::vector<uint32_t> awake;  // dynamic bodies awake and kinematic ones that move, in no order
 
     uint32_t Size() const { return static_cast<uint32_t>(cold.size()); }  // of the arrays
-    uint32_t Count() const { return count_; }                              // of the bodies
-    uint32_t Allocate();           // an index with fresh values; exists is set
-    void Free(uint32_t index);     // after Remove: the index may be reused
+    uint32_t Count() const { return count_; }                             // of the bodies
+    uint32_t Allocate();                                                  // an index with fresh values; exists is set
+    void Free(uint32_t index);                                            // after Remove: the index may be reused
     // Whether the id names a body; then Index is its index.
     bool Find(BodyId id) const {
         return id.index < cold.size() && cold[id.index].exists && cold[id.index].generation == id.generation;
@@ -168,7 +176,9 @@ public:
     }
 
     // Whether constraints move it.
-    bool CanMove(uint32_t index) const { return dynamics[index].motion == MotionType::Dynamic && !dynamics[index].frozen; }
+    bool CanMove(uint32_t index) const {
+        return dynamics[index].motion == MotionType::Dynamic && !dynamics[index].frozen;
+    }
     void MarkAwake(uint32_t index);
     void MarkAsleep(uint32_t index);
 
@@ -201,7 +211,8 @@ public:
         cold[index].force = cold[index].torque = Vector3::Zero();
         dynamics[index].hasForce = false;
     }
-    // Brings the world inverse inertia of `masses` in line with the rotation, or with principal axes in the middle of a step.
+    // Brings the world inverse inertia of `masses` in line with the rotation, or with principal axes in the middle of a
+    // step.
     void UpdateInertia(uint32_t index) { UpdateInertia(index, AxesOf(dynamics[index], RotationOf(index))); }
     void UpdateInertia(uint32_t index, const Matrix3& axes) { masses[index] = MassAlong(index, axes); }
     // Of a body whose principal axes in the world are these.

@@ -1,6 +1,6 @@
-// Colliders that the last step moved out of their fat bounds, which the trees learn only at the beginning of the next: the
-// queries find them here. Made by the first query after a step, so that worlds without queries pay nothing; an index alone,
-// which influences no step. Refresh may be called by many readers at once, all else by the one writer.
+// Colliders that the last step moved out of their fat bounds, which the trees learn only at the beginning of the next:
+// the queries find them here. Made by the first query after a step, so that worlds without queries pay nothing; an
+// index alone, which influences no step. Refresh may be called by many readers at once, all else by the one writer.
 #pragma once
 
 #include <Fulcrum/Collision/BroadPhase/BoundsTree.h>

@@ -38,7 +38,8 @@ void JointStore::Free(uint32_t index) {
 
 void JointStore::Forget(uint32_t index) {
     JointRecord& record = records[index];
-    for (float(*impulse)[3] : {&record.ownImpulse, &record.ownAngularImpulse, &record.lockForce, &record.lockTorque, &record.totalForce, &record.totalTorque})
+    for (float(*impulse)[3] : {&record.ownImpulse, &record.ownAngularImpulse, &record.lockForce, &record.lockTorque,
+                               &record.totalForce, &record.totalTorque})
         std::fill(std::begin(*impulse), std::end(*impulse), 0.0f);
     record.wasPulled = 0;
     types[index]->impulses.fill(0.0f);
@@ -75,8 +76,9 @@ bool JointStore::ForbidsContact(uint32_t bodyA, uint32_t bodyB) const {
 }
 
 size_t JointStore::MemoryUsed() const {
-    return records.capacity() * sizeof(JointRecord) + types.capacity() * sizeof(JointType*) + joints.capacity() * sizeof(Joint) +
-           (first_.capacity() + free_.capacity()) * sizeof(uint32_t) + breakable.MemoryUsed();
+    return records.capacity() * sizeof(JointRecord) + types.capacity() * sizeof(JointType*) +
+           joints.capacity() * sizeof(Joint) + (first_.capacity() + free_.capacity()) * sizeof(uint32_t) +
+           breakable.MemoryUsed();
 }
 
 }  // namespace fulcrum

@@ -1,5 +1,6 @@
-// All joints, by index: what the solver gathers lies together, the rest apart. Indices of removed joints are reused with
-// another generation. Written by JointInterface between steps and by the stages during one. Each body knows its joints.
+// All joints, by index: what the solver gathers lies together, the rest apart. Indices of removed joints are reused
+// with another generation. Written by JointInterface between steps and by the stages during one. Each body knows its
+// joints.
 #pragma once
 
 #include <Fulcrum/Constraints/Coloring.h>
@@ -13,23 +14,25 @@
 namespace fulcrum {
 
 struct Joint {
-    uint32_t body[2] = {0, 0};        // A and B
-    uint32_t next[2] = {~0u, ~0u};    // the next joint of A and of B
+    uint32_t body[2] = {0, 0};      // A and B
+    uint32_t next[2] = {~0u, ~0u};  // the next joint of A and of B
     std::unique_ptr<JointType> type;
-    JointLocks locks;                 // of the type, as the layout has them
-    uint32_t maxRows = 0;             // likewise
+    JointLocks locks;      // of the type, as the layout has them
+    uint32_t maxRows = 0;  // likewise
     ColorSlot color;
     uint32_t generation = 0;
     bool exists = false;
     bool enabled = true;
     bool collideConnected = false;
-    bool still[2] = {false, false};   // the body is not dynamic, or frozen
+    bool still[2] = {false, false};  // the body is not dynamic, or frozen
     JointPriority priority = JointPriority::Normal;
     float breakForce = 0, breakTorque = 0;
-    SolverSettings effort{0, 0, 0};   // 0: the system's
+    SolverSettings effort{0, 0, 0};  // 0: the system's
     uint64_t userData = 0;
 
-    bool HasOwnEffort() const { return effort.substeps > 0 || effort.velocityIterations > 0 || effort.positionIterations > 0; }
+    bool HasOwnEffort() const {
+        return effort.substeps > 0 || effort.velocityIterations > 0 || effort.positionIterations > 0;
+    }
     int SideOf(uint32_t index) const { return body[0] == index ? 0 : 1; }
 };
 

@@ -132,8 +132,9 @@ void PairStore::Remove(uint32_t index) {
 }
 
 size_t PairStore::MemoryUsed() const {
-    return pairs.capacity() * sizeof(Pair) + records.capacity() * sizeof(ContactRecord) +
-           active.MemoryUsed() + (free_.capacity() + heads_.capacity()) * sizeof(uint32_t) + links_.capacity() * sizeof(Links) + table_.capacity() * sizeof(Entry);
+    return pairs.capacity() * sizeof(Pair) + records.capacity() * sizeof(ContactRecord) + active.MemoryUsed() +
+           (free_.capacity() + heads_.capacity()) * sizeof(uint32_t) + links_.capacity() * sizeof(Links) +
+           table_.capacity() * sizeof(Entry);
 }
 
 }  // namespace fulcrum

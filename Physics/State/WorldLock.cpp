@@ -22,9 +22,10 @@ WorldLock::Access WorldLock::OfThisThread(const WorldLock& lock) {
 
 std::optional<Error> WorldLock::RefusalOfReading(const WorldLock& lock) {
     if (OfThisThread(lock) != Access::Changes) return std::nullopt;
-    return Error{ErrorCode::NotAllowedHere,
-                 "queries are not allowed in what a step or a change of the world calls back (contact listeners, group filters, "
-                 "shapes and joints of one's own); ask before or after it"};
+    return Error{
+        ErrorCode::NotAllowedHere,
+        "queries are not allowed in what a step or a change of the world calls back (contact listeners, group filters, "
+        "shapes and joints of one's own); ask before or after it"};
 }
 
 std::optional<Error> WorldLock::RefusalOfChanging(const WorldLock& lock) {
@@ -32,12 +33,15 @@ std::optional<Error> WorldLock::RefusalOfChanging(const WorldLock& lock) {
         case Access::None: break;
         case Access::Reads:
             return Error{ErrorCode::NotAllowedHere,
-                         "the world must not be changed nor stepped by a thread that holds it still (Queries().Hold()), nor in what a "
+                         "the world must not be changed nor stepped by a thread that holds it still "
+                         "(Queries().Hold()), nor in what a "
                          "query calls back; do it when that is over"};
         case Access::Changes:
-            return Error{ErrorCode::NotAllowedHere,
-                         "the world must not be changed nor stepped in what a step or a change of it calls back (contact listeners, "
-                         "group filters, shapes and joints of one's own); note what is to be done, and do it after the step"};
+            return Error{
+                ErrorCode::NotAllowedHere,
+                "the world must not be changed nor stepped in what a step or a change of it calls back (contact "
+                "listeners, "
+                "group filters, shapes and joints of one's own); note what is to be done, and do it after the step"};
     }
     return std::nullopt;
 }
@@ -54,7 +58,8 @@ WorldLock::Scope::~Scope() {
 
 // Refusals are looked for before the scope is this thread's innermost.
 WorldLock::Shared::Shared(WorldLock& lock) : Shared(lock, RefusalOfReading(lock)) {}
-WorldLock::Shared::Shared(WorldLock& lock, std::optional<Error> refusal) : Scope(lock, Access::Reads), refusal_(std::move(refusal)) {
+WorldLock::Shared::Shared(WorldLock& lock, std::optional<Error> refusal)
+    : Scope(lock, Access::Reads), refusal_(std::move(refusal)) {
     if (before_ != Access::None) return;
     const uint32_t writers = lock_.writers_.load(std::memory_order_acquire);
     if (writers != 0) lock_.writers_.wait(writers, std::memory_order_acquire);

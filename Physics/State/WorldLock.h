@@ -1,6 +1,6 @@
-// Many readers or one writer: queries share the world, changes and steps have it alone. A reader that arrives while a writer
-// waits lets it go first, once, so that neither starves the other. Each thread knows what it does with which world already:
-// what it may do again takes no lock, and what would have to wait for itself is refused instead.
+// Many readers or one writer: queries share the world, changes and steps have it alone. A reader that arrives while a
+// writer waits lets it go first, once, so that neither starves the other. Each thread knows what it does with which
+// world already: what it may do again takes no lock, and what would have to wait for itself is refused instead.
 #pragma once
 
 #include <Fulcrum/Jobs/JobSystem.h>
@@ -21,8 +21,8 @@ public:
     static std::optional<Error> RefusalOfReading(const WorldLock& lock);
     static std::optional<Error> RefusalOfChanging(const WorldLock& lock);
 
-    // What a thread does for the life of the object, which is that of a scope; it takes no lock: by itself for those that run jobs of
-    // a thread that has it.
+    // What a thread does for the life of the object, which is that of a scope; it takes no lock: by itself for those
+    // that run jobs of a thread that has it.
     class Scope {
     public:
         Scope(WorldLock& lock, Access access);

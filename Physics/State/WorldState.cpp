@@ -70,7 +70,8 @@ void WakeJoined(WorldState& world, uint32_t body) {
 void WakeInside(WorldState& world, const Bounds& bounds) {
     // Waking changes no tree, but collect first: a query must not see the world change under it.
     std::vector<uint32_t> found;
-    world.colliders.movingTree.Query(bounds, [&](uint32_t collider) { found.push_back(world.colliders.colliders[collider].body); });
+    world.colliders.movingTree.Query(
+        bounds, [&](uint32_t collider) { found.push_back(world.colliders.colliders[collider].body); });
     std::sort(found.begin(), found.end());
     for (uint32_t body : found) WakeBody(world, body);
 }
@@ -85,13 +86,15 @@ size_t CapacityInBytes(const std::vector<T>&... vectors) {
 }  // namespace
 
 size_t WorldState::MemoryUsed() const {
-    size_t bytes = sizeof(*this) + bodies.MemoryUsed() + colliders.MemoryUsed() + outsideFatBounds.MemoryUsed() + pairs.MemoryUsed() +
-                   joints.MemoryUsed() + sweeps.MemoryUsed() + sensors.MemoryUsed() + coloring.MemoryUsed() + sleeping.MemoryUsed() +
-                   solver.MemoryUsed() + scratch.CapacityInBytes() +
-                   CapacityInBytes(broken, removed, changes, activated, began, newPairs, moreManifolds, deepOverlaps, dispersing, crowded, ghosts, findings);
+    size_t bytes = sizeof(*this) + bodies.MemoryUsed() + colliders.MemoryUsed() + outsideFatBounds.MemoryUsed() +
+                   pairs.MemoryUsed() + joints.MemoryUsed() + sweeps.MemoryUsed() + sensors.MemoryUsed() +
+                   coloring.MemoryUsed() + sleeping.MemoryUsed() + solver.MemoryUsed() + scratch.CapacityInBytes() +
+                   CapacityInBytes(broken, removed, changes, activated, began, newPairs, moreManifolds, deepOverlaps,
+                                   dispersing, crowded, ghosts, findings);
     for (const WorkerFindings& f : findings)
-        bytes += f.surface.MemoryUsed() + CapacityInBytes(f.colliders, f.pairs, f.deepOverlaps, f.crowdedOverlaps, f.surfacePlaces, f.surfaceLeft,
-                                                          f.surfaceTouched, f.more, f.sweepHits, f.sensorCandidates, f.sensorVisits);
+        bytes += f.surface.MemoryUsed() + CapacityInBytes(f.colliders, f.pairs, f.deepOverlaps, f.crowdedOverlaps,
+                                                          f.surfacePlaces, f.surfaceLeft, f.surfaceTouched, f.more,
+                                                          f.sweepHits, f.sensorCandidates, f.sensorVisits);
     return bytes;
 }
 

@@ -35,38 +35,38 @@ struct MoreManifold {
 
 // One worker's own findings in a stage; merged in an order that does not depend on who found what.
 struct alignas(64) WorkerFindings {
-    std::vector<uint32_t> colliders;  // UpdateBounds: those that left their fat bounds
-    std::vector<uint64_t> pairs;      // FindPairs: keys of new or resting pairs
-    uint32_t deepPairs = 0;           // FindPairs: how many of these pairs overlap deeply
-    std::vector<uint32_t> deepOverlaps;      // Collide: bodies that overlap another deeply, once for each such overlap
-    std::vector<uint32_t> crowdedOverlaps;   // Collide: crowded bodies that overlap another, likewise
-    SurfaceContacts surface;          // Collide: room to work in
+    std::vector<uint32_t> colliders;        // UpdateBounds: those that left their fat bounds
+    std::vector<uint64_t> pairs;            // FindPairs: keys of new or resting pairs
+    uint32_t deepPairs = 0;                 // FindPairs: how many of these pairs overlap deeply
+    std::vector<uint32_t> deepOverlaps;     // Collide: bodies that overlap another deeply, once for each such overlap
+    std::vector<uint32_t> crowdedOverlaps;  // Collide: crowded bodies that overlap another, likewise
+    SurfaceContacts surface;                // Collide: room to work in
     std::vector<uint32_t> surfacePlaces, surfaceLeft, surfaceTouched;  // Collide: likewise
-    std::vector<MoreManifold> more;   // Collide: what has no place in its pair yet
-    std::vector<SweepHit> sweepHits;  // Continuous
-    std::vector<uint64_t> sensorCandidates;  // Sense
-    std::vector<SensorVisit> sensorVisits;   // likewise
-    uint32_t sensorTests = 0;                // likewise
+    std::vector<MoreManifold> more;                                    // Collide: what has no place in its pair yet
+    std::vector<SweepHit> sweepHits;                                   // Continuous
+    std::vector<uint64_t> sensorCandidates;                            // Sense
+    std::vector<SensorVisit> sensorVisits;                             // likewise
+    uint32_t sensorTests = 0;                                          // likewise
     CollideCounters libccd;
     uint32_t contacts = 0, points = 0, kept = 0;
-    float deepest = 0;                // largest penetration, m
+    float deepest = 0;  // largest penetration, m
     uint32_t deepestPair = ~0u;
     uint32_t clamped = 0, frozen = 0;
     uint32_t firstFrozen = ~0u;
-    uint32_t sleepCandidates = 0;     // bodies that have been slow for long enough
-    bool bounces = false;             // Prepare: some contact has restitution
-    JointFindings joints;             // Prepare
+    uint32_t sleepCandidates = 0;  // bodies that have been slow for long enough
+    bool bounces = false;          // Prepare: some contact has restitution
+    JointFindings joints;          // Prepare
 };
 
-// A body that deeply overlapped many others and disperses (Stages/Crowd.h): until there is room it does not collide with dynamic bodies
-// and gravity does not act on it, and it moves with `push` on top of its own velocity.
+// A body that deeply overlapped many others and disperses (Stages/Crowd.h): until there is room it does not collide
+// with dynamic bodies and gravity does not act on it, and it moves with `push` on top of its own velocity.
 struct DispersingBody {
     uint32_t body;
-    Vector3 direction;       // of the push without a place, of length 1 at most: a part of the fastest push
-    bool hasPlace = false;   // it moves to `place`
+    Vector3 direction;                  // of the push without a place, of length 1 at most: a part of the fastest push
+    bool hasPlace = false;              // it moves to `place`
     Position place = Position::Zero();  // m
-    float secondsLeft = 0;   // until it is to be there; below zero since then
-    uint64_t startStep = 0;  // the step in which it started
+    float secondsLeft = 0;              // until it is to be there; below zero since then
+    uint64_t startStep = 0;             // the step in which it started
     Vector3 push = Vector3::Zero(), ownVelocity = Vector3::Zero();  // m/s, of this step
 };
 
@@ -89,22 +89,23 @@ struct WorldState {
     SweepStore sweeps;
     SensorStore sensors;
 
-    std::vector<JointId> broken;              // in the last step
-    std::vector<uint32_t> removed;            // bodies to forget before the next step
-    std::vector<PairChange> changes;          // by pair, of this step; None for those that are not active
-    std::vector<uint32_t> activated;          // pairs that FindPairs made active
-    std::vector<uint32_t> began;              // Color: pairs that began to touch
+    std::vector<JointId> broken;      // in the last step
+    std::vector<uint32_t> removed;    // bodies to forget before the next step
+    std::vector<PairChange> changes;  // by pair, of this step; None for those that are not active
+    std::vector<uint32_t> activated;  // pairs that FindPairs made active
+    std::vector<uint32_t> began;      // Color: pairs that began to touch
     std::vector<uint64_t> newPairs;
     std::vector<MoreManifold> moreManifolds;
-    std::vector<uint32_t> deepOverlaps;       // Collide: bodies, ascending, once for each deep overlap; empty if none has many
-    std::vector<DispersingBody> dispersing;   // by body, ascending
-    std::vector<uint32_t> crowded;            // these, and those that have dispersed and still overlap something; repeated
-    std::vector<uint32_t> ghosts;             // pairs that DropGhosts took the points from, in the last step
-    std::vector<WorkerFindings> findings;     // by worker
+    std::vector<uint32_t>
+        deepOverlaps;  // Collide: bodies, ascending, once for each deep overlap; empty if none has many
+    std::vector<DispersingBody> dispersing;  // by body, ascending
+    std::vector<uint32_t> crowded;         // these, and those that have dispersed and still overlap something; repeated
+    std::vector<uint32_t> ghosts;          // pairs that DropGhosts took the points from, in the last step
+    std::vector<WorkerFindings> findings;  // by worker
     ScratchArena scratch;
     StepReport report;
-    bool bounces = false;                     // some contact of this step has restitution
-    float lastSubstepDt = 0;                  // s
+    bool bounces = false;     // some contact of this step has restitution
+    float lastSubstepDt = 0;  // s
 
     // For the queries.
     WorldLock lock;
@@ -142,7 +143,8 @@ inline uint32_t ChildOf(const WorldState& world, uint32_t collider) {
 inline RelativePose LocalOf(const WorldState& world, uint32_t collider) {
     const ColliderShape& piece = world.colliders.shapes[collider];
     if (!piece.onOrigin) return piece.local;
-    return {piece.local.position + world.bodies.cold[world.colliders.colliders[collider].body].children->origin, piece.local.rotation};
+    return {piece.local.position + world.bodies.cold[world.colliders.colliders[collider].body].children->origin,
+            piece.local.rotation};
 }
 
 // World space, of the piece's own frame.

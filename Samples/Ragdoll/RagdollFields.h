@@ -15,7 +15,8 @@ inline Error WrongAt(const std::string& path, const std::string& what) {
     return {ErrorCode::Unsupported, (path.empty() ? "the document" : path) + ": " + what};
 }
 
-inline constexpr std::array kJointKindNames = {"Point", "Fixed", "Hinge", "Cone", "SwingTwist", "SixDof"};  // as in RagdollJoint
+inline constexpr std::array kJointKindNames = {"Point", "Fixed",      "Hinge",
+                                               "Cone",  "SwingTwist", "SixDof"};  // as in RagdollJoint
 inline constexpr std::array kCombineRuleNames = {"GeometricMean", "Average", "Minimum", "Multiply", "Maximum"};
 
 template <class Archive>

@@ -1,5 +1,5 @@
-// Ragdolls as JSON: what RagdollSettings.h describes, with the same names of fields, in SI units and radians. A field that is
-// left out has its default. Free functions, any thread.
+// Ragdolls as JSON: what RagdollSettings.h describes, with the same names of fields, in SI units and radians. A field
+// that is left out has its default. Free functions, any thread.
 //
 //   {"parts": [{"name": "pelvis", "body": {"shape": {"kind": "Capsule", "halfHeight": 0.08, "radius": 0.12}}},
 //              {"name": "torso", "parent": "pelvis", "body": {...},
@@ -20,11 +20,11 @@
 
 namespace fulcrum {
 
-// Errors name the path in the document, such as `parts[1].joint.twist.limits.min: a string; it must be a number`: a wrong
-// type, an unknown name, what the settings' own checks find.
+// Errors name the path in the document, such as `parts[1].joint.twist.limits.min: a string; it must be a number`: a
+// wrong type, an unknown name, what the settings' own checks find.
 Result<RagdollSettings> RagdollFromJson(const nlohmann::ordered_json& document);
-// Only what differs from the defaults. Reading it gives the same settings, bit by bit (hulls to rounding). Errors: those of
-// Check; Unsupported (a shape of another kind, a hull with a convex radius).
+// Only what differs from the defaults. Reading it gives the same settings, bit by bit (hulls to rounding). Errors:
+// those of Check; Unsupported (a shape of another kind, a hull with a convex radius).
 Result<nlohmann::ordered_json> RagdollToJson(const RagdollSettings& settings);
 
 // Errors also: what is wrong with the file, or the line where it is no JSON.

@@ -95,7 +95,8 @@ public:
 
 private:
     void Fail(const std::string& path, const char* expected, const Json* node = nullptr) {
-        error_ = WrongAt(path, (node ? std::string("of type ") + node->type_name() + "; it" : std::string("it")) + " must be " + expected);
+        error_ = WrongAt(path, (node ? std::string("of type ") + node->type_name() + "; it" : std::string("it")) +
+                                   " must be " + expected);
     }
 
     template <class T>
@@ -139,7 +140,8 @@ private:
     void ReadMore(const Json& node, const std::string& path, RagdollJoint& value) {
         Reader fields(node, path, error_);
         size_t kind = 0;
-        if (!error_ && !node.contains("kind")) error_ = WrongAt(path, "kind is missing; it must be one of " + ListOf(kJointKindNames));
+        if (!error_ && !node.contains("kind"))
+            error_ = WrongAt(path, "kind is missing; it must be one of " + ListOf(kJointKindNames));
         fields.Choice("kind", kind, kJointKindNames);
         if (error_) return;
         if (kind == 0) value = PointJointSettings{};
@@ -161,7 +163,7 @@ private:
         }
     }
     template <class T>
-        requires requires(Reader& archive, T& value) { Describe(archive, value); }
+    requires requires(Reader& archive, T& value) { Describe(archive, value); }
     void ReadMore(const Json& node, const std::string& path, T& value) {
         Reader fields(node, path, error_);
         Describe(fields, value);
@@ -178,7 +180,8 @@ constexpr std::array kShapeKindNames = {"Sphere", "Box", "Capsule", "ConvexHull"
 
 void Reader::ReadMore(const Json& node, const std::string& path, ShapePtr& value) {
     Reader fields(node, path, error_);
-    if (!error_ && !node.contains("kind")) error_ = WrongAt(path, "kind is missing; it must be one of " + ListOf(kShapeKindNames));
+    if (!error_ && !node.contains("kind"))
+        error_ = WrongAt(path, "kind is missing; it must be one of " + ListOf(kShapeKindNames));
     size_t kind = 0;
     fields.Choice("kind", kind, kShapeKindNames);
     float radius = 0, halfHeight = 0, convexRadius = 0;
@@ -219,7 +222,8 @@ Result<RagdollSettings> RagdollFromJson(const Json& document) {
         if (const Json* parent = fields.Find("parent")) {
             std::string name;
             fields.Read(*parent, fields.PathOf("parent"), name);
-            const auto found = std::find_if(settings.parts.begin(), settings.parts.end(), [&](const RagdollPart& p) { return p.name == name; });
+            const auto found = std::find_if(settings.parts.begin(), settings.parts.end(),
+                                            [&](const RagdollPart& p) { return p.name == name; });
             part.parent = static_cast<int>(found - settings.parts.begin());
             if (found == settings.parts.end() && !error)
                 error = WrongAt(fields.PathOf("parent"), "no part before has the name \"" + name + "\"");

@@ -51,7 +51,8 @@ Json ShapeWritten(const Shape& shape) {
     } else if (shape.Type() == ShapeType::Box) {
         fields.Field("kind", std::string("Box"));
         fields.Field("halfExtents", static_cast<const Box&>(shape).HalfExtents());
-        if (const float radius = static_cast<const Box&>(shape).ConvexRadius(); radius > 0) fields.Field("convexRadius", radius);
+        if (const float radius = static_cast<const Box&>(shape).ConvexRadius(); radius > 0)
+            fields.Field("convexRadius", radius);
     } else if (shape.Type() == ShapeType::Capsule) {
         fields.Field("kind", std::string("Capsule"));
         fields.Field("halfHeight", static_cast<const Capsule&>(shape).HalfHeight());
@@ -136,7 +137,8 @@ Result<Json> RagdollToJson(const RagdollSettings& settings) {
         const std::string path = "parts[" + std::to_string(i) + "].";
         if (!CanBeWritten(*part.body.shape))
             return WrongAt(path + "body.shape", std::string("a ") + ShapeTypeName(part.body.shape->Type()) +
-                                                  (part.body.shape->IsConvex() ? " with a convex radius" : "") + " cannot be written");
+                                                    (part.body.shape->IsConvex() ? " with a convex radius" : "") +
+                                                    " cannot be written");
         Json node = {{"name", part.name}};
         if (i > 0) node["parent"] = settings.parts[static_cast<size_t>(part.parent)].name;
         node["body"] = ShortlyWritten(part.body);

@@ -75,26 +75,29 @@ CLI::Option* AddText(CLI::App& app, const std::string& name, const std::string& 
 
 CLI::Option* AddInteger(CLI::App& app, const std::string& name, int lowest, int highest, const std::string& help,
                         std::function<void(int)> store) {
-    return AddText(app, name, help, [=](const std::string& text) {
-               store(Parse(name, text, lowest, highest, "a whole number"));
-           })->type_name("N");
+    return AddText(app, name, help,
+                   [=](const std::string& text) { store(Parse(name, text, lowest, highest, "a whole number")); })
+        ->type_name("N");
 }
 
 CLI::Option* AddReal(CLI::App& app, const std::string& name, double lowest, double highest, const std::string& help,
                      std::function<void(double)> store) {
-    return AddText(app, name, help, [=](const std::string& text) {
-               store(Parse(name, text, lowest, highest, "a number"));
-           })->type_name("X");
+    return AddText(app, name, help,
+                   [=](const std::string& text) { store(Parse(name, text, lowest, highest, "a number")); })
+        ->type_name("X");
 }
 
-CLI::Option* AddSeed(CLI::App& app, const std::string& name, const std::string& help, std::function<void(uint64_t)> store) {
-    return AddText(app, name, help, [=](const std::string& text) {
-               store(Parse<uint64_t>(name, text, 0, UINT64_MAX, "a whole number"));
-           })->type_name("N");
+CLI::Option* AddSeed(CLI::App& app, const std::string& name, const std::string& help,
+                     std::function<void(uint64_t)> store) {
+    return AddText(
+               app, name, help,
+               [=](const std::string& text) { store(Parse<uint64_t>(name, text, 0, UINT64_MAX, "a whole number")); })
+        ->type_name("N");
 }
 
 Error UnknownName(const std::string& what, const std::string& name, std::span<const std::string> names) {
-    return {ErrorCode::OutOfRange, "unknown " + what + " '" + name + "'; the nearest is '" + NearestName(name, names) + "'"};
+    return {ErrorCode::OutOfRange,
+            "unknown " + what + " '" + name + "'; the nearest is '" + NearestName(name, names) + "'"};
 }
 
 Result<std::string> ParseCommandLine(CLI::App& app, std::vector<std::string> arguments) {
@@ -108,7 +111,8 @@ Result<std::string> ParseCommandLine(CLI::App& app, std::vector<std::string> arg
     } catch (const CLI::ParseError& error) {
         // A value that is missing because an unknown option stands there is best told by that option.
         const std::vector<std::string> rest = app.remaining(true);
-        if (!rest.empty() && dynamic_cast<const CLI::ValidationError*>(&error) == nullptr) return Unexpected(app, rest[0]);
+        if (!rest.empty() && dynamic_cast<const CLI::ValidationError*>(&error) == nullptr)
+            return Unexpected(app, rest[0]);
         return Error{ErrorCode::OutOfRange, error.what() + HelpHint(Chosen(app))};
     }
     const std::vector<std::string> rest = app.remaining(true);

@@ -1,5 +1,5 @@
-// Reads command lines so that every mistake is answered with the nearest valid thing. Used by the runner and the benchmark,
-// on top of CLI11; one thread.
+// Reads command lines so that every mistake is answered with the nearest valid thing. Used by the runner and the
+// benchmark, on top of CLI11; one thread.
 #pragma once
 
 #include <Fulcrum/Math/Result.h>
@@ -14,13 +14,14 @@
 
 namespace fulcrum {
 
-// Options that take one value. A value that is no number, or outside lowest..highest, is an error of ParseCommandLine that
-// names the nearest valid value.
+// Options that take one value. A value that is no number, or outside lowest..highest, is an error of ParseCommandLine
+// that names the nearest valid value.
 CLI::Option* AddInteger(CLI::App& app, const std::string& name, int lowest, int highest, const std::string& help,
                         std::function<void(int)> store);
 CLI::Option* AddReal(CLI::App& app, const std::string& name, double lowest, double highest, const std::string& help,
                      std::function<void(double)> store);
-CLI::Option* AddSeed(CLI::App& app, const std::string& name, const std::string& help, std::function<void(uint64_t)> store);
+CLI::Option* AddSeed(CLI::App& app, const std::string& name, const std::string& help,
+                     std::function<void(uint64_t)> store);
 // `store` may throw CLI::ValidationError.
 CLI::Option* AddText(CLI::App& app, const std::string& name, const std::string& help,
                      std::function<void(const std::string&)> store);

@@ -35,7 +35,7 @@ struct Job {
     SceneInput input;
     const RunOptions& options;
     const JsonOutput& json;
-    std::string name;         // of the report and of the files in out/
+    std::string name;  // of the report and of the files in out/
     std::string description;
 };
 
@@ -100,8 +100,8 @@ int RunJob(const Job& job) {
     return unwritten.empty() ? 0 : Fail(unwritten);
 }
 
-// A broken file may claim to hold more than any memory: while it is read, what exceeds this is an error and not a machine
-// that swaps.
+// A broken file may claim to hold more than any memory: while it is read, what exceeds this is an error and not a
+// machine that swaps.
 class AddressSpaceLimit {
 public:
     explicit AddressSpaceLimit(rlim_t bytes) {
@@ -127,10 +127,11 @@ auto ReadWithinMemory(const Import& import) {
 void PrintGround(const std::string& name, const ImportedMesh& ground) {
     const MeshReport& report = ground.report;
     std::printf("%s: a mesh of %u triangles and %u vertices; %.4g units are %.4g m here\n", name.c_str(),
-                ground.mesh->TriangleCount(), ground.mesh->VertexCount(), ground.fileSize, ground.scale * ground.fileSize);
+                ground.mesh->TriangleCount(), ground.mesh->VertexCount(), ground.fileSize,
+                ground.scale * ground.fileSize);
     if (ground.isTwoSided)
-        std::printf("  both sides are solid: %u edges end the surface, at %u others its fronts disagree\n", report.boundaryEdges,
-                    report.irregularEdges);
+        std::printf("  both sides are solid: %u edges end the surface, at %u others its fronts disagree\n",
+                    report.boundaryEdges, report.irregularEdges);
     for (const std::string& repair : ground.repairs) std::printf("  repaired: %s\n", repair.c_str());
 }
 
@@ -141,13 +142,17 @@ int Drop(const Command& command, SceneInput input, const JsonOutput& json) {
     const std::string name = command.file.filename().string();
     for (const std::string& warning : model.warnings) std::fprintf(stderr, "fulcrum: warning: %s\n", warning.c_str());
     std::printf("%s: %zu points became %zu hull%s of %zu vertices in all; %.4g units are %g m here\n", name.c_str(),
-                model.points, model.hulls, model.hulls == 1 ? "" : "s", model.hullVertices, model.fileSize, kDroppedSize);
+                model.points, model.hulls, model.hulls == 1 ? "" : "s", model.hullVertices, model.fileSize,
+                kDroppedSize);
     input.shape = model.shape;
     input.count = command.count;
-    const std::string dropped = std::to_string(command.count) + " of " + name, title = "drop_" + command.file.stem().string();
-    if (command.onto.empty()) return RunJob({*command.scene, input, command.options, json, title, dropped + " in a heap"});
+    const std::string dropped = std::to_string(command.count) + " of " + name,
+                      title = "drop_" + command.file.stem().string();
+    if (command.onto.empty())
+        return RunJob({*command.scene, input, command.options, json, title, dropped + " in a heap"});
 
-    const Result<ImportedMesh> ground = ReadWithinMemory([&] { return ImportMesh(command.onto, command.ontoSettings); });
+    const Result<ImportedMesh> ground =
+        ReadWithinMemory([&] { return ImportMesh(command.onto, command.ontoSettings); });
     if (!ground) return Fail(ground.GetError().message);
     PrintGround(command.onto.filename().string(), ground.Value());
     input.ground = ground.Value().mesh;
@@ -159,9 +164,11 @@ int List() {
     size_t width = 0;
     for (const Scene* scene : AllScenes()) width = std::max(width, std::string(scene->name).size());
     for (SceneKind kind : {SceneKind::Performance, SceneKind::Sample}) {
-        std::printf("%s\n", kind == SceneKind::Performance ? "Performance scenes, timed by ./fulcrum bench" : "Samples");
+        std::printf("%s\n",
+                    kind == SceneKind::Performance ? "Performance scenes, timed by ./fulcrum bench" : "Samples");
         for (const Scene* scene : AllScenes())
-            if (scene->kind == kind) std::printf("  %-*s  %s\n", static_cast<int>(width), scene->name, scene->description);
+            if (scene->kind == kind)
+                std::printf("  %-*s  %s\n", static_cast<int>(width), scene->name, scene->description);
     }
     return 0;
 }
@@ -175,7 +182,8 @@ int Execute(const Command& command) {
     input.solver = command.options.solver;
     switch (command.kind) {
         case CommandKind::Run:
-            return RunJob({*command.scene, input, command.options, json, command.scene->name, command.scene->description});
+            return RunJob(
+                {*command.scene, input, command.options, json, command.scene->name, command.scene->description});
         case CommandKind::Drop: return Drop(command, input, json);
         case CommandKind::List: return List();
         default: std::printf("%s", command.help.c_str()); return 0;

@@ -5,8 +5,8 @@
 
 namespace fulcrum {
 
-// Prints to stdout, complains on stderr; writes recordings to out/ below the current folder. Returns the exit status: 0, or
-// 1 where something could not be read, simulated or written.
+// Prints to stdout, complains on stderr; writes recordings to out/ below the current folder. Returns the exit status:
+// 0, or 1 where something could not be read, simulated or written.
 int Execute(const Command& command);
 
 }  // namespace fulcrum

@@ -1,5 +1,5 @@
-// Turns the joints of a world into those of a recording: each once, as it is found, and their state frame by frame. Used by
-// Recorder; one thread.
+// Turns the joints of a world into those of a recording: each once, as it is found, and their state frame by frame.
+// Used by Recorder; one thread.
 #pragma once
 
 #include <Fulcrum/Physics/PhysicsSystem.h>
@@ -13,12 +13,14 @@ namespace fulcrum {
 
 class JointRecorder {
 public:
-    // bodyOf: index of the recorded body, none for one that is not recorded: its joints are not either. `system` must outlive
-    // this.
-    JointRecorder(const PhysicsSystem& system, const Position& origin, std::function<std::optional<uint32_t>(BodyId)> bodyOf)
+    // bodyOf: index of the recorded body, none for one that is not recorded: its joints are not either. `system` must
+    // outlive this.
+    JointRecorder(const PhysicsSystem& system, const Position& origin,
+                  std::function<std::optional<uint32_t>(BodyId)> bodyOf)
         : system_(system), origin_(origin), bodyOf_(std::move(bodyOf)) {}
 
-    // The joints as they are now. Appends those that are new to `joints`; what is returned is valid until the next call.
+    // The joints as they are now. Appends those that are new to `joints`; what is returned is valid until the next
+    // call.
     RecordedFrameJoints Collect(std::vector<RecordedJoint>& joints);
 
 private:
@@ -27,8 +29,8 @@ private:
     const PhysicsSystem& system_;
     Position origin_;
     std::function<std::optional<uint32_t>(BodyId)> bodyOf_;
-    std::vector<JointId> ids_;    // of the recorded joints
-    std::vector<JointId> seen_;   // by JointId::index: the last id that was found there
+    std::vector<JointId> ids_;   // of the recorded joints
+    std::vector<JointId> seen_;  // by JointId::index: the last id that was found there
     std::vector<RecordedJointState> states_;
 };
 

@@ -44,7 +44,8 @@ MeshPart Placed(const aiMesh& mesh, const aiNode& node, const Transform& transfo
 
 void CollectParts(const aiScene& scene, const aiNode& node, const Transform& parent, std::vector<MeshPart>& parts) {
     const Transform transform = parent * ToTransform(node.mTransformation);
-    for (unsigned i = 0; i < node.mNumMeshes; ++i) parts.push_back(Placed(*scene.mMeshes[node.mMeshes[i]], node, transform));
+    for (unsigned i = 0; i < node.mNumMeshes; ++i)
+        parts.push_back(Placed(*scene.mMeshes[node.mMeshes[i]], node, transform));
     for (unsigned i = 0; i < node.mNumChildren; ++i) CollectParts(scene, *node.mChildren[i], transform, parts);
 }
 
@@ -62,7 +63,8 @@ MeshBox BoundsOf(const std::vector<MeshPart>& parts) {
 
 Result<std::vector<MeshPart>> ReadMeshParts(const std::filesystem::path& path) {
     std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) return Error{ErrorCode::UnknownId, "there is no file " + path.string()};
+    if (!std::filesystem::exists(path, ignored))
+        return Error{ErrorCode::UnknownId, "there is no file " + path.string()};
     if (!std::filesystem::is_regular_file(path, ignored))
         return Error{ErrorCode::UnknownId, path.string() + " is not a file"};
     Assimp::Importer importer;

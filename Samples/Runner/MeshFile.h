@@ -16,13 +16,15 @@ namespace fulcrum {
 // A mesh as one node of the file places it, in the file's unit.
 struct MeshPart {
     std::string name;
-    std::vector<Position> points;                    // some may not be finite
-    std::vector<std::array<uint32_t, 3>> triangles;  // counter-clockwise seen from the front; valid indices into `points`
-    size_t otherFaces = 0;                           // points and lines of the file, and faces that name no point
+    std::vector<Position> points;  // some may not be finite
+    std::vector<std::array<uint32_t, 3>>
+        triangles;          // counter-clockwise seen from the front; valid indices into `points`
+    size_t otherFaces = 0;  // points and lines of the file, and faces that name no point
 };
 
-// All meshes as often as the nodes of the file place them; polygons are cut into triangles, and what a node mirrors keeps its
-// fronts. Errors: UnknownId (there is no such file), Unsupported (assimp cannot read it), Degenerate (no mesh in it).
+// All meshes as often as the nodes of the file place them; polygons are cut into triangles, and what a node mirrors
+// keeps its fronts. Errors: UnknownId (there is no such file), Unsupported (assimp cannot read it), Degenerate (no mesh
+// in it).
 Result<std::vector<MeshPart>> ReadMeshParts(const std::filesystem::path& path);
 
 // The box around all points that are finite; empty where there are none.

@@ -62,7 +62,8 @@ Triangles Joined(const std::vector<MeshPart>& parts) {
         const size_t first = all.points.size();
         for (const Position& point : part.points) all.points.push_back(IsFinite(point) ? point : Position::Zero());
         for (const auto& triangle : part.triangles) {
-            const bool isFinite = std::all_of(triangle.begin(), triangle.end(), [&](uint32_t i) { return IsFinite(part.points[i]); });
+            const bool isFinite =
+                std::all_of(triangle.begin(), triangle.end(), [&](uint32_t i) { return IsFinite(part.points[i]); });
             all.nonFinite += isFinite ? 0 : 1;
             for (uint32_t corner : triangle)
                 if (isFinite) all.indices.push_back(static_cast<uint32_t>(first + corner));
@@ -107,14 +108,16 @@ std::vector<std::string> Repairs(const MeshReport& report) {
 
 Result<ImportedMesh> ImportMesh(const std::filesystem::path& path, const MeshImportSettings& settings) {
     if (settings.scale && !(*settings.scale > 0 && std::isfinite(*settings.scale)))
-        return Error{ErrorCode::NonPositive, "scale must be finite and above 0, not " + std::to_string(*settings.scale)};
+        return Error{ErrorCode::NonPositive,
+                     "scale must be finite and above 0, not " + std::to_string(*settings.scale)};
     const Result<std::vector<MeshPart>> parts = ReadMeshParts(path);
     if (!parts) return parts.GetError();
     Triangles all = Joined(parts.Value());
     ImportedMesh imported;
     if (all.otherFaces > 0) imported.repairs.push_back(std::to_string(all.otherFaces) + " points and lines left out");
     if (all.nonFinite > 0)
-        imported.repairs.push_back(std::to_string(all.nonFinite) + " triangles with a corner that is not finite left out");
+        imported.repairs.push_back(std::to_string(all.nonFinite) +
+                                   " triangles with a corner that is not finite left out");
     if (all.indices.empty())
         return Error{ErrorCode::Degenerate, path.string() + " has no triangles" +
                                                 (imported.repairs.empty() ? "" : ": " + imported.repairs.front())};
@@ -156,7 +159,8 @@ Result<ImportedShape> ImportShape(const std::filesystem::path& path, double size
     ImportedShape imported;
     const double whole = BoundsOf(parts).LargestExtent();
     if (!(whole > 0 && std::isfinite(whole)))
-        return Error{ErrorCode::Degenerate, path.string() + " has no extent: all its points coincide, or none is finite"};
+        return Error{ErrorCode::Degenerate,
+                     path.string() + " has no extent: all its points coincide, or none is finite"};
     KeepSolids(parts, size, imported.warnings);
     if (parts.empty())
         return Error{ErrorCode::Degenerate, path.string() + " has no part with a volume: " + imported.warnings.front()};

@@ -38,20 +38,26 @@ UpAxis ParseUpAxis(const std::string& text) {
 }
 
 void AddOntoOptions(CLI::App& app, Command& command) {
-    CLI::Option* onto = AddText(app, "--onto", "drop them onto the triangles of this mesh, made 20 m large, not onto a floor",
-                                [&](const std::string& text) { command.onto = text; })->type_name("FILE");
-    AddReal(app, "--onto-scale", 1e-6, 1e6, "meters a unit of that file, instead of 20 m in all",
-            [&](double value) { command.ontoSettings.scale = value; })->needs(onto);
-    AddText(app, "--onto-up", "which way is up in that file: x, y (default), z, -x, -y or -z", [&](const std::string& text) {
-        command.ontoSettings.up = ParseUpAxis(text);
-    })->type_name("AXIS")->needs(onto);
+    CLI::Option* onto =
+        AddText(app, "--onto", "drop them onto the triangles of this mesh, made 20 m large, not onto a floor",
+                [&](const std::string& text) { command.onto = text; })
+            ->type_name("FILE");
+    AddReal(app, "--onto-scale", 1e-6, 1e6, "meters a unit of that file, instead of 20 m in all", [&](double value) {
+        command.ontoSettings.scale = value;
+    })->needs(onto);
+    AddText(app, "--onto-up", "which way is up in that file: x, y (default), z, -x, -y or -z",
+            [&](const std::string& text) { command.ontoSettings.up = ParseUpAxis(text); })
+        ->type_name("AXIS")
+        ->needs(onto);
 }
 
 void AddRunOptions(CLI::App& app, RunOptions& options) {
-    CLI::Option* steps = AddInteger(app, "--steps", 1, kMostSteps, "steps to simulate (default: the scene's own number)",
-                                    [&](int value) { options.steps = value; });
-    AddReal(app, "--seconds", 0.001, 1e6, "simulated time instead of --steps", [&](double value) { options.seconds = value; })
-        ->excludes(steps);
+    CLI::Option* steps =
+        AddInteger(app, "--steps", 1, kMostSteps, "steps to simulate (default: the scene's own number)",
+                   [&](int value) { options.steps = value; });
+    AddReal(app, "--seconds", 0.001, 1e6, "simulated time instead of --steps", [&](double value) {
+        options.seconds = value;
+    })->excludes(steps);
     AddReal(app, "--dt", 1e-5, 1, "seconds a step (default 1/60)", [&](double value) { options.dt = value; });
     AddInteger(app, "--threads", 1, kMostThreads, "threads (default: all of this machine)",
                [&](int value) { options.threads = value; });
@@ -59,9 +65,9 @@ void AddRunOptions(CLI::App& app, RunOptions& options) {
     AddText(app, "--record", "html,glb (default), html, glb or none", [&](const std::string& text) {
         SetRecord(text, options);
     })->type_name("KINDS");
-    AddText(app, "--json", "also write the report as JSON; -: to standard output, all else to standard error", [&](const std::string& text) {
-        options.json = text;
-    })->type_name("FILE");
+    AddText(app, "--json", "also write the report as JSON; -: to standard output, all else to standard error",
+            [&](const std::string& text) { options.json = text; })
+        ->type_name("FILE");
     AddSeed(app, "--seed", "of the random numbers of scenes that use them (default 1)",
             [&](uint64_t value) { options.seed = value; });
 }
@@ -99,12 +105,15 @@ Result<Command> ParseRunnerCommand(std::vector<std::string> arguments) {
     std::string sceneName, file;
 
     CLI::App app("Simulates scenes of Fulcrum", "fulcrum");
-    CLI::App* run = app.add_subcommand("run", "simulate a scene, report, record it to out/SCENE.html and out/SCENE.glb");
+    CLI::App* run =
+        app.add_subcommand("run", "simulate a scene, report, record it to out/SCENE.html and out/SCENE.glb");
     run->add_option("scene", sceneName, "one of ./fulcrum list")->type_name("SCENE");
     AddRunOptions(*run, command.options);
     CLI::App* drop = app.add_subcommand("drop", "the same with a heap of the mesh in a file: OBJ, STL, PLY, glTF, ...");
-    drop->add_option("file", file, "the mesh; each of its parts becomes a convex hull, the whole 1 m large")->type_name("FILE");
-    AddInteger(*drop, "--count", 1, 20'000, "bodies in the heap (default 50)", [&](int value) { command.count = value; });
+    drop->add_option("file", file, "the mesh; each of its parts becomes a convex hull, the whole 1 m large")
+        ->type_name("FILE");
+    AddInteger(*drop, "--count", 1, 20'000, "bodies in the heap (default 50)",
+               [&](int value) { command.count = value; });
     AddOntoOptions(*drop, command);
     AddRunOptions(*drop, command.options);
     CLI::App* list = app.add_subcommand("list", "list the scenes");
@@ -126,7 +135,8 @@ Result<Command> ParseRunnerCommand(std::vector<std::string> arguments) {
         }
     } else if (drop->parsed()) {
         command.kind = CommandKind::Drop;
-        if (file.empty()) return Error{ErrorCode::OutOfRange, "drop needs a mesh file, for example: ./fulcrum drop teapot.obj"};
+        if (file.empty())
+            return Error{ErrorCode::OutOfRange, "drop needs a mesh file, for example: ./fulcrum drop teapot.obj"};
         command.scene = command.onto.empty() ? &DropScene::kScene : &DropOntoScene::kScene;
         command.file = file;
     } else if (list->parsed()) {

@@ -33,13 +33,13 @@ enum class CommandKind { Help, List, Run, Drop };
 
 struct Command {
     CommandKind kind = CommandKind::Help;
-    std::string help;             // Help
-    const Scene* scene = nullptr; // Run, Drop
-    std::filesystem::path file;   // Drop
-    int count = 50;               // Drop
-    std::filesystem::path onto;   // Drop; empty: onto a floor
+    std::string help;              // Help
+    const Scene* scene = nullptr;  // Run, Drop
+    std::filesystem::path file;    // Drop
+    int count = 50;                // Drop
+    std::filesystem::path onto;    // Drop; empty: onto a floor
     MeshImportSettings ontoSettings;
-    RunOptions options;           // Run, Drop
+    RunOptions options;  // Run, Drop
 };
 
 // Arguments without the program's name. Error OutOfRange: one line that says what is wrong and what was probably meant.

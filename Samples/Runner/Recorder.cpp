@@ -20,8 +20,8 @@ constexpr double kFramesPerSecond = 60;
 // Each is about 10 bytes of a page.
 constexpr double kMostStates = 1.2e6;
 
-// Of all edits of height fields; each is about 40 bytes of a page. The last is recorded in any case, so that a field may look
-// older than it is, but the end of a recording is right.
+// Of all edits of height fields; each is about 40 bytes of a page. The last is recorded in any case, so that a field
+// may look older than it is, but the end of a recording is right.
 constexpr size_t kMostEditedTriangles = 500'000;
 
 constexpr uint8_t kGone = 2;  // of settled_: removed, and recorded as such
@@ -51,7 +51,8 @@ RecordedShape RecordedConvex(const ConvexShape& source) {
     std::map<std::tuple<float, float, float>, uint32_t> known;  // many directions share a corner
     std::vector<uint32_t> indices;
     for (const Vector3& v : surface.vertices) {
-        const auto [at, isNew] = known.emplace(std::tuple(v.x(), v.y(), v.z()), static_cast<uint32_t>(shape.vertices.size()));
+        const auto [at, isNew] =
+            known.emplace(std::tuple(v.x(), v.y(), v.z()), static_cast<uint32_t>(shape.vertices.size()));
         if (isNew) shape.vertices.push_back(v + source.Mass().centerOfMass);
         indices.push_back(at->second);
     }
@@ -87,7 +88,8 @@ RecordedShape RecordedPlane(const Plane& plane) {
     RecordedShape shape;
     shape.kind = RecordedShapeKind::Hull;
     shape.name = ShapeTypeName(plane.Type());
-    const Vector3 center = plane.Normal() * plane.Offset(), u = Perpendicular(plane.Normal()) * kHalf, v = Cross<float>(plane.Normal(), u);
+    const Vector3 center = plane.Normal() * plane.Offset(), u = Perpendicular(plane.Normal()) * kHalf,
+                  v = Cross<float>(plane.Normal(), u);
     shape.vertices = {center - u - v, center + u - v, center + u + v, center - u + v};
     shape.triangles = {{0, 1, 2}, {0, 2, 3}};
     return shape;
@@ -267,7 +269,8 @@ void Recorder::AddFrame() {
     contacts_.clear();
     if (WantsContacts(recording)) CollectContacts();
     CollectDrawing();
-    AppendFrame(recording, world_.Time(), states_, contacts_, joints_->Collect(recording.joints), {lines_, points_}, shapeChanges_);
+    AppendFrame(recording, world_.Time(), states_, contacts_, joints_->Collect(recording.joints), {lines_, points_},
+                shapeChanges_);
 }
 
 std::optional<uint32_t> Recorder::RecordedBodyOf(BodyId id) const {
@@ -306,7 +309,8 @@ void Recorder::CollectDrawing() {
     const auto place = [&](const Position& position) { return ToVector(position, recording.origin); };
     for (const DrawnLine& line : world_.Draw().Lines())
         lines_.push_back({place(line.from), place(line.to), static_cast<uint32_t>(line.ink)});
-    for (const DrawnPoint& point : world_.Draw().Points()) points_.push_back({place(point.at), static_cast<uint32_t>(point.ink)});
+    for (const DrawnPoint& point : world_.Draw().Points())
+        points_.push_back({place(point.at), static_cast<uint32_t>(point.ink)});
 }
 
 // Bodies whose shape was exchanged, or edited. What sleeps would have been woken.
@@ -314,7 +318,8 @@ void Recorder::CollectShapes() {
     shapeChanges_.clear();
     const bool recordsEdits = editedTriangles_ < kMostEditedTriangles || world_.StepCount() == steps_;
     for (uint32_t body = 0; body < ids_.size(); ++body) {
-        const bool sleeps = settled_[body] == 1 && recording.bodies[body].motion == RecordedMotion::Dynamic && !world_.Bodies().IsAwake(ids_[body]);
+        const bool sleeps = settled_[body] == 1 && recording.bodies[body].motion == RecordedMotion::Dynamic &&
+                            !world_.Bodies().IsAwake(ids_[body]);
         if (sleeps || settled_[body] == kGone || !IsThere(body)) continue;
         const ShapePtr shape = ShapeOf(body);
         const bool isField = shape->Type() == ShapeType::HeightField;

@@ -13,9 +13,9 @@ namespace fulcrum {
 
 class Recorder {
 public:
-    // The first frame is the world as it is now. Of `steps` steps of dt seconds, every so many become frames that there are
-    // at most 60 a second and that the pages of large worlds stay small; the last step is always one. `world` must outlive
-    // this; its drawings are turned on.
+    // The first frame is the world as it is now. Of `steps` steps of dt seconds, every so many become frames that there
+    // are at most 60 a second and that the pages of large worlds stay small; the last step is always one. `world` must
+    // outlive this; its drawings are turned on.
     Recorder(SceneWorld& world, int steps, double dt);
 
     // After every step.
@@ -27,12 +27,12 @@ private:
     // A shape, and how it was when it was recorded. Kept, so that no other is taken for it.
     struct KnownShape {
         ShapePtr shape;
-        uint32_t index = 0;         // into recording.shapes
-        uint64_t fingerprint = 0;   // of a height field's heights and cells
+        uint32_t index = 0;        // into recording.shapes
+        uint64_t fingerprint = 0;  // of a height field's heights and cells
     };
     struct ShownShape {
         const Shape* shape = nullptr;
-        uint32_t index = 0;         // into recording.shapes
+        uint32_t index = 0;  // into recording.shapes
     };
 
     uint32_t RecordShape(const ShapePtr& shape);
@@ -52,16 +52,16 @@ private:
     int steps_;
     int interval_ = 1;  // steps a frame
     std::map<const Shape*, KnownShape> shapes_;
-    std::vector<ShownShape> shown_;    // by recorded body
-    size_t editedTriangles_ = 0;       // of all edits that were recorded
-    std::vector<BodyId> ids_;          // of the recorded bodies
-    // By recorded body: the children of a mutable compound are bodies of their own, each drawn where it is as long as it is
-    // there. Of all others no child.
+    std::vector<ShownShape> shown_;  // by recorded body
+    size_t editedTriangles_ = 0;     // of all edits that were recorded
+    std::vector<BodyId> ids_;        // of the recorded bodies
+    // By recorded body: the children of a mutable compound are bodies of their own, each drawn where it is as long as
+    // it is there. Of all others no child.
     std::vector<ChildId> children_;
-    std::vector<uint32_t> recorded_;   // index of the recorded body, or of the first of its children, by BodyId::index
+    std::vector<uint32_t> recorded_;  // index of the recorded body, or of the first of its children, by BodyId::index
     std::map<std::pair<BodyId, ChildId>, uint32_t> recordedChildren_;
-    std::vector<uint8_t> settled_;     // by recorded body: 1: its resting state is recorded
-    std::vector<int32_t> islands_;     // by recorded body
+    std::vector<uint8_t> settled_;  // by recorded body: 1: its resting state is recorded
+    std::vector<int32_t> islands_;  // by recorded body
     std::vector<int32_t> firstOfIsland_;
     std::vector<RecordedState> states_;
     std::vector<RecordedContact> contacts_;

@@ -61,8 +61,10 @@ std::vector<ReportLine> ReportLines(const Scene& scene, const RunFigures& figure
         lines.push_back({section, label, std::move(value)});
     };
     const StepReport& last = figures.last;
-    add("World", "bodies", Text("%zu (%zu dynamic, %u awake)", figures.bodies, figures.dynamicBodies, last.awakeBodies));
-    add("World", "contacts", Text("%u (%u points), at most %u", last.contacts, last.contactPoints, figures.largestContacts));
+    add("World", "bodies",
+        Text("%zu (%zu dynamic, %u awake)", figures.bodies, figures.dynamicBodies, last.awakeBodies));
+    add("World", "contacts",
+        Text("%u (%u points), at most %u", last.contacts, last.contactPoints, figures.largestContacts));
     add("World", "islands", Text("%u (%u awake)", figures.islands, figures.awakeIslands));
     add("World", "memory", Bytes(figures.memoryBytes));
     add("Run", "steps", Text("%d of %.5g s", figures.steps, figures.dt));
@@ -73,19 +75,22 @@ std::vector<ReportLine> ReportLines(const Scene& scene, const RunFigures& figure
     add("Time", "a step, 99th percentile", Text("%.3f ms", figures.stepMs.p99));
     add("Time", "a step, longest", Text("%.3f ms", figures.stepMs.max));
     if (figures.queryCount > 0)
-        add("Time", "the batch, median", Text("%.3f ms for %d %s, %.3g/s", figures.queryMs.median, figures.queryCount,
-                                              figures.queryName.c_str(), QueriesPerSecond(figures)));
+        add("Time", "the batch, median",
+            Text("%.3f ms for %d %s, %.3g/s", figures.queryMs.median, figures.queryCount, figures.queryName.c_str(),
+                 QueriesPerSecond(figures)));
     for (int stage = 0; stage < kStageCount; ++stage)
         add("Stages, median", StageName(static_cast<Stage>(stage)),
             Text("%.3f ms", figures.stageMedianMs[static_cast<size_t>(stage)]));
     add("Result", "largest penetration",
-        figures.deepestPair.empty() ? "none"
-                                    : Text("%.2f mm, %s at step %d", 1000.0 * static_cast<double>(figures.largestPenetration),
-                                           figures.deepestPair.c_str(), figures.deepestStep));
+        figures.deepestPair.empty()
+            ? "none"
+            : Text("%.2f mm, %s at step %d", 1000.0 * static_cast<double>(figures.largestPenetration),
+                   figures.deepestPair.c_str(), figures.deepestStep));
     add("Result", "deepest for its size",
-        figures.overlapPair.empty() ? "none"
-                                    : Text("%.3g of the inner radius, %.2f mm, %s at step %d", figures.overlap.relative, 1000 * figures.overlap.depth,
-                                           figures.overlapPair.c_str(), figures.overlap.step));
+        figures.overlapPair.empty()
+            ? "none"
+            : Text("%.3g of the inner radius, %.2f mm, %s at step %d", figures.overlap.relative,
+                   1000 * figures.overlap.depth, figures.overlapPair.c_str(), figures.overlap.step));
     add("Result", "energy", Energy(figures.energyAtStart) + " to " + Energy(figures.energyAtEnd));
     if (scene.accuracy) add("Result", "accuracy", Text("%.6g (%s)", figures.accuracy, scene.accuracyMeaning));
     add("Result", "pose hash", HashText(figures.poseHash));
@@ -111,42 +116,41 @@ nlohmann::ordered_json ReportJson(const std::string& name, const RunFigures& fig
         stages[StageName(static_cast<Stage>(stage))] = figures.stageMedianMs[static_cast<size_t>(stage)];
     const StepReport& last = figures.last;
     const Statistics& ms = ComparedMs(figures);
-    nlohmann::ordered_json json{
-            {"engine", "fulcrum"},
-            {"version", FULCRUM_VERSION_STRING},
-            {"scene", name},
-            {"threads", figures.threads},
-            {"bodies", figures.bodies},
-            {"contacts", last.contacts},
-            {"contact_points", last.contactPoints},
-            {"steps", figures.steps},
-            {"median_ms", ms.median},
-            {"mean_ms", ms.mean},
-            {"p99_ms", ms.p99},
-            {"max_ms", ms.max},
-            {"steps_per_s", figures.stepMs.mean > 0 ? 1000 / figures.stepMs.mean : 0},
-            {"accuracy", JsonNumber(figures.accuracy)},
-            {"nonfinite", figures.nonFinite},
-            {"hash", HashText(figures.poseHash)},
-            {"stages_ms", stages},
-            {"settings",
-             {{"dt", figures.dt},
-              {"substeps", figures.solver.substeps},
-              {"velocity_iterations", figures.solver.velocityIterations},
-              {"position_iterations", figures.solver.positionIterations},
-              {"seed", seed}}},
-            {"islands", figures.islands},
-            {"awake_islands", figures.awakeIslands},
-            {"awake_bodies", last.awakeBodies},
-            {"largest_penetration_m", figures.largestPenetration},
-            {"deepest_pair", figures.deepestPair},
-            {"largest_relative_penetration", figures.overlap.relative},
-            {"relative_penetration_m", figures.overlap.depth},
-            {"relative_penetration_pair", figures.overlapPair},
-            {"relative_penetration_step", figures.overlap.step},
-            {"energy_start_j", JsonNumber(figures.energyAtStart)},
-            {"energy_end_j", JsonNumber(figures.energyAtEnd)},
-            {"memory_bytes", figures.memoryBytes}};
+    nlohmann::ordered_json json{{"engine", "fulcrum"},
+                                {"version", FULCRUM_VERSION_STRING},
+                                {"scene", name},
+                                {"threads", figures.threads},
+                                {"bodies", figures.bodies},
+                                {"contacts", last.contacts},
+                                {"contact_points", last.contactPoints},
+                                {"steps", figures.steps},
+                                {"median_ms", ms.median},
+                                {"mean_ms", ms.mean},
+                                {"p99_ms", ms.p99},
+                                {"max_ms", ms.max},
+                                {"steps_per_s", figures.stepMs.mean > 0 ? 1000 / figures.stepMs.mean : 0},
+                                {"accuracy", JsonNumber(figures.accuracy)},
+                                {"nonfinite", figures.nonFinite},
+                                {"hash", HashText(figures.poseHash)},
+                                {"stages_ms", stages},
+                                {"settings",
+                                 {{"dt", figures.dt},
+                                  {"substeps", figures.solver.substeps},
+                                  {"velocity_iterations", figures.solver.velocityIterations},
+                                  {"position_iterations", figures.solver.positionIterations},
+                                  {"seed", seed}}},
+                                {"islands", figures.islands},
+                                {"awake_islands", figures.awakeIslands},
+                                {"awake_bodies", last.awakeBodies},
+                                {"largest_penetration_m", figures.largestPenetration},
+                                {"deepest_pair", figures.deepestPair},
+                                {"largest_relative_penetration", figures.overlap.relative},
+                                {"relative_penetration_m", figures.overlap.depth},
+                                {"relative_penetration_pair", figures.overlapPair},
+                                {"relative_penetration_step", figures.overlap.step},
+                                {"energy_start_j", JsonNumber(figures.energyAtStart)},
+                                {"energy_end_j", JsonNumber(figures.energyAtEnd)},
+                                {"memory_bytes", figures.memoryBytes}};
     if (figures.queryCount > 0) json[figures.queryName + "_per_s"] = QueriesPerSecond(figures);
     return json;
 }

@@ -90,7 +90,8 @@ Result<RunFigures> Simulate(SceneWorld& world, int untimed, int steps, double dt
             for (size_t stage = 0; stage < stageMs.size(); ++stage) stageMs[stage].push_back(report.stageMs[stage]);
         }
         NotePenetration(world, figures);
-        if (meter.Measure()) figures.overlapPair = BodyText(world, meter.Worst().bodyA) + " and " + BodyText(world, meter.Worst().bodyB);
+        if (meter.Measure())
+            figures.overlapPair = BodyText(world, meter.Worst().bodyA) + " and " + BodyText(world, meter.Worst().bodyB);
         figures.largestContacts = std::max(figures.largestContacts, report.contacts);
         figures.libccdFailures += report.libccd.epaFailures;
         figures.libccdFallbacks += report.libccd.centerLineFallbacks;

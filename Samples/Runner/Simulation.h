@@ -23,29 +23,28 @@ struct RunFigures {
     SolverSettings solver;
     Statistics stepMs;
     std::array<double, kStageCount> stageMedianMs{};
-    int queryCount = 0;      // of the scene's batch; 0: it has none
-    std::string queryName;   // what they are
-    Statistics queryMs;      // of the whole batch
-    StepReport last;  // of the last step
+    int queryCount = 0;     // of the scene's batch; 0: it has none
+    std::string queryName;  // what they are
+    Statistics queryMs;     // of the whole batch
+    StepReport last;        // of the last step
     size_t bodies = 0, dynamicBodies = 0;
     uint32_t islands = 0, awakeIslands = 0;  // at the end
-    float largestPenetration = 0;  // m, of all contacts
-    std::string deepestPair;    // "box 12 and hull 15"; empty where nothing touched
+    float largestPenetration = 0;            // m, of all contacts
+    std::string deepestPair;                 // "box 12 and hull 15"; empty where nothing touched
     int deepestStep = 0;
-    Penetration overlap;        // the largest for its size, by the shapes alone
-    std::string overlapPair;    // empty where nothing overlapped
+    Penetration overlap;      // the largest for its size, by the shapes alone
+    std::string overlapPair;  // empty where nothing overlapped
     uint32_t largestContacts = 0;
     uint32_t libccdFailures = 0, libccdFallbacks = 0;  // of all steps
-    double energyAtStart = 0, energyAtEnd = 0;  // J
+    double energyAtStart = 0, energyAtEnd = 0;         // J
     uint64_t poseHash = 0;
     size_t memoryBytes = 0;
-    double accuracy = 0;   // the scene's figure
-    int nonFinite = 0;     // bodies
+    double accuracy = 0;  // the scene's figure
+    int nonFinite = 0;    // bodies
 };
 
-// Takes `untimed` steps, then `steps` timed ones of dt seconds; `afterStep` is called after each of all of them. A scene's batch
-// of queries is asked once untimed, then timed five times.
-// Errors: those of PhysicsSystem::Update.
+// Takes `untimed` steps, then `steps` timed ones of dt seconds; `afterStep` is called after each of all of them. A
+// scene's batch of queries is asked once untimed, then timed five times. Errors: those of PhysicsSystem::Update.
 Result<RunFigures> Simulate(SceneWorld& world, int untimed, int steps, double dt, uint32_t threads,
                             FunctionRef<void()> afterStep);
 

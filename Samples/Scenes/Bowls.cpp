@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kInner = 2, kOuter = 2.2;  // m, radii of a bowl
 constexpr int kBands = 5, kSectors = 24;
-constexpr double kRim = 55 * kDegree;         // from the bottom
+constexpr double kRim = 55 * kDegree;  // from the bottom
 constexpr std::array<float, 4> kDamping{0, 0.1f, 0.5f, 3};
 
 Position BowlCenter(size_t bowl) { return {4.2 * (static_cast<double>(bowl) - 1.5), kOuter, 0}; }
@@ -23,8 +23,9 @@ ShapePtr Bowl(SceneWorld& world) {
                 const double radius = corner & 1 ? kOuter : kInner;
                 const double polar = kRim * (band + (corner >> 1 & 1)) / kBands;
                 const double around = 2 * kPi * (sector + (corner >> 2)) / kSectors;
-                corners.push_back(Position(radius * Sin(polar) * Cos(around), -radius * Cos(polar),
-                                           radius * Sin(polar) * Sin(around)).cast<float>());
+                corners.push_back(
+                    Position(radius * Sin(polar) * Cos(around), -radius * Cos(polar), radius * Sin(polar) * Sin(around))
+                        .cast<float>());
             }
             pieces.push_back({.shape = world.HullOf(corners)});
         }

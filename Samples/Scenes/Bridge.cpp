@@ -11,7 +11,8 @@ void Build(SceneWorld& world) {
     const double half = 0.5 * kPlanks * 0.5;
     BodyId last;
     for (const double side : {-1.0, 1.0}) {
-        const BodyId tower = world.Add({.shape = world.BoxOf(1, 2, 1.5f), .motion = MotionType::Static, .position = {side * (half + 1), 2, 0}});
+        const BodyId tower = world.Add(
+            {.shape = world.BoxOf(1, 2, 1.5f), .motion = MotionType::Static, .position = {side * (half + 1), 2, 0}});
         if (side < 0) last = tower;
         else world.watched.push_back(tower);
     }
@@ -25,7 +26,9 @@ void Build(SceneWorld& world) {
     world.Join(JointOf<HingeJointSettings>(last, world.watched[0], {half, 3.94, 0}, {0, 0, 1}));
     const ShapePtr cube = world.BoxOf(0.3f, 0.3f, 0.3f), ball = world.SphereOf(0.3f);
     for (int i = 0; i < 12; ++i)
-        world.Add({.shape = i % 3 ? cube : ball, .position = {-3.0 + 0.9 * (i % 6) + 0.2 * (i / 6), 5.0 + i / 6, 0.4 * (i % 3 - 1)}, .mass = 20});
+        world.Add({.shape = i % 3 ? cube : ball,
+                   .position = {-3.0 + 0.9 * (i % 6) + 0.2 * (i / 6), 5.0 + i / 6, 0.4 * (i % 3 - 1)},
+                   .mass = 20});
 }
 
 }  // namespace

@@ -6,15 +6,17 @@ namespace {
 constexpr int kRows = 9;
 constexpr double kWall = 30;  // m: where the fronts of the walls stand
 
-// Balls of 10 cm at 200, 600 and 1000 m/s at walls of 1 and 10 cm; rods that turn at 100 rad/s between thin posts; all must stay on
-// their side.
+// Balls of 10 cm at 200, 600 and 1000 m/s at walls of 1 and 10 cm; rods that turn at 100 rad/s between thin posts; all
+// must stay on their side.
 void Build(SceneWorld& world) {
     world.AddFloor(40, 40);
     const ShapePtr ball = world.SphereOf(0.1f), rod = world.BoxOf(1, 0.03f, 0.03f), post = world.CapsuleOf(1, 0.03f);
     for (int i = 0; i < kRows; ++i) {
         const double z = 3.0 * (i - kRows / 2);
         const float half = i % 2 == 0 ? 0.005f : 0.05f, speed = i % 3 == 0 ? 200.0f : i % 3 == 1 ? 600.0f : 1000.0f;
-        world.Add({.shape = world.BoxOf(half, 1.5f, 1.3f), .motion = MotionType::Static, .position = {kWall + double{half}, 1.5, z}});
+        world.Add({.shape = world.BoxOf(half, 1.5f, 1.3f),
+                   .motion = MotionType::Static,
+                   .position = {kWall + double{half}, 1.5, z}});
         for (int k = 0; k < 5; ++k)
             world.watched.push_back(world.Add({.shape = ball,
                                                .position = {-15 - 4.0 * k, 0.5 + 0.5 * k, z},

@@ -26,10 +26,8 @@ double AddTent(SceneWorld& world, const ShapePtr& card, double middle, double gr
 
 void Build(SceneWorld& world) {
     const Material paper{.friction = 0.7f};
-    world.Add({.shape = world.BoxOf(10, 1, 10),
-               .motion = MotionType::Static,
-               .position = {0, -1, 0},
-               .material = paper});
+    world.Add(
+        {.shape = world.BoxOf(10, 1, 10), .motion = MotionType::Static, .position = {0, -1, 0}, .material = paper});
     const ShapePtr leaning = world.BoxOf(float(kHalfThickness), float(kHalfLength), float(kHalfWidth));
     // Flat cards reach from tent to tent, where two of them meet.
     const ShapePtr flat = world.BoxOf(float(kPitch / 2 - 0.002), float(kHalfThickness), float(kHalfWidth));
@@ -40,9 +38,8 @@ void Build(SceneWorld& world) {
         double top = ground;
         for (int i = 0; i < tents; ++i) top = AddTent(world, leaning, first + kPitch * i, ground, paper);
         for (int i = 0; i + 1 < tents; ++i)
-            world.watched.push_back(world.Add({.shape = flat,
-                                               .position = {first + kPitch * (i + 0.5), top + kHalfThickness, 0},
-                                               .material = paper}));
+            world.watched.push_back(world.Add(
+                {.shape = flat, .position = {first + kPitch * (i + 0.5), top + kHalfThickness, 0}, .material = paper}));
         ground = top + 2 * kHalfThickness;
     }
 }

@@ -9,19 +9,19 @@ namespace fulcrum::CompoundCityScene {
 namespace {
 
 // The city: districts of streets, a compound each; the one in the middle is a square with the tower.
-constexpr int kDistricts = 5;       // along each side
-constexpr int kBuildings = 12;      // of a district, along each side
-constexpr double kStreet = 4;       // m, from building to building
+constexpr int kDistricts = 5;   // along each side
+constexpr int kBuildings = 12;  // of a district, along each side
+constexpr double kStreet = 4;   // m, from building to building
 constexpr double kDistrict = kBuildings * kStreet;
 
-// The tower: storeys of 16 cubes of a meter around a shaft, under a roof of 25 slabs. It loses all but its lowest storeys,
-// from the roof down; each piece goes on as a body of its own, which waited under the ground.
+// The tower: storeys of 16 cubes of a meter around a shaft, under a roof of 25 slabs. It loses all but its lowest
+// storeys, from the roof down; each piece goes on as a body of its own, which waited under the ground.
 constexpr int kStoreys = 8, kStoreysLeft = 2;
 constexpr int kLost = 25 + 16 * (kStoreys - kStoreysLeft);
 constexpr int kFirstStep = 120, kStepsBetween = 3;
 constexpr double kTop = kStoreys + 0.2;  // m
 constexpr size_t kOnTheRoof = 9;
-constexpr double kDepot = -30;           // m
+constexpr double kDepot = -30;  // m
 
 ShapePtr Prism(SceneWorld& world, int sides, float height, float roof) {
     std::vector<Vector3> points;
@@ -35,8 +35,9 @@ ShapePtr Prism(SceneWorld& world, int sides, float height, float roof) {
 }
 
 void AddDistricts(SceneWorld& world) {
-    const std::array<ShapePtr, 8> kinds{world.BoxOf(1.2f, 1.5f, 1.2f), world.BoxOf(1.3f, 3, 0.9f),  world.BoxOf(0.9f, 5, 1.1f),
-                                        world.BoxOf(1.4f, 1, 1.4f),    Prism(world, 6, 6, 0),       Prism(world, 8, 9, 1),
+    const std::array<ShapePtr, 8> kinds{world.BoxOf(1.2f, 1.5f, 1.2f), world.BoxOf(1.3f, 3, 0.9f),
+                                        world.BoxOf(0.9f, 5, 1.1f),    world.BoxOf(1.4f, 1, 1.4f),
+                                        Prism(world, 6, 6, 0),         Prism(world, 8, 9, 1),
                                         Prism(world, 4, 2.5f, 1.5f),   Prism(world, 3, 4, 2)};
     for (int district = 0; district < kDistricts * kDistricts; ++district) {
         if (district == kDistricts * kDistricts / 2) continue;
@@ -51,7 +52,8 @@ void AddDistricts(SceneWorld& world) {
                                                      static_cast<float>((i / kBuildings + 0.5) * kStreet)),
                                  .rotation = RotationAbout(Vector3(0, 1, 0), world.random.Between(0, kPi / 2))});
         }
-        const double x = (district % kDistricts - 0.5 * kDistricts) * kDistrict, z = (district / kDistricts - 0.5 * kDistricts) * kDistrict;
+        const double x = (district % kDistricts - 0.5 * kDistricts) * kDistrict,
+                     z = (district / kDistricts - 0.5 * kDistricts) * kDistrict;
         world.Add({.shape = world.CompoundOf(buildings), .motion = MotionType::Static, .position = {x, 0, z}});
     }
 }
@@ -61,7 +63,8 @@ std::vector<CompoundShape::ChildSettings> PiecesOfTheTower(SceneWorld& world) {
     const ShapePtr cube = world.BoxOf(0.5f, 0.5f, 0.5f), slab = world.BoxOf(0.5f, 0.1f, 0.5f);
     std::vector<CompoundShape::ChildSettings> pieces;
     const auto add = [&](const ShapePtr& shape, int i, float y) {
-        pieces.push_back({.shape = shape, .position = Vector3(static_cast<float>(i % 5 - 2), y, static_cast<float>(i / 5 - 2))});
+        pieces.push_back(
+            {.shape = shape, .position = Vector3(static_cast<float>(i % 5 - 2), y, static_cast<float>(i / 5 - 2))});
     };
     for (int i = 0; i < 25; ++i) add(slab, i, kStoreys + 0.1f);
     for (int storey = kStoreys - 1; storey >= 0; --storey) {
@@ -80,7 +83,8 @@ void AddTower(SceneWorld& world) {
     const ShapePtr barrel = world.CapsuleOf(0.2f, 0.3f), box = world.BoxOf(0.4f, 0.4f, 0.4f);
     for (int i = 0; i < static_cast<int>(kOnTheRoof); ++i) {
         const ShapePtr& shape = i % 2 ? barrel : box;
-        world.watched.push_back(world.Add({.shape = shape, .position = {1.2 * (i % 3) - 1.2, kTop + 0.5, 1.2 * (i / 3) - 1.2}}));
+        world.watched.push_back(
+            world.Add({.shape = shape, .position = {1.2 * (i % 3) - 1.2, kTop + 0.5, 1.2 * (i / 3) - 1.2}}));
     }
     // A little smaller than the gap that they leave.
     const ShapePtr cube = world.BoxOf(0.48f, 0.48f, 0.48f), slab = world.BoxOf(0.48f, 0.09f, 0.48f);
@@ -91,13 +95,16 @@ void AddTower(SceneWorld& world) {
 }
 
 void AddRain(SceneWorld& world) {
-    const std::array<ShapePtr, 4> kinds{world.BoxOf(0.4f, 0.3f, 0.5f), world.SphereOf(0.4f), world.CapsuleOf(0.4f, 0.25f),
-                                        Prism(world, 5, 0.6f, 0.3f)};
+    const std::array<ShapePtr, 4> kinds{world.BoxOf(0.4f, 0.3f, 0.5f), world.SphereOf(0.4f),
+                                        world.CapsuleOf(0.4f, 0.25f), Prism(world, 5, 0.6f, 0.3f)};
     constexpr int kAcross = 20;
     for (int i = 0; i < kAcross * kAcross; ++i) {
         const double x = world.random.Between(-1, 1), y = world.random.Between(14, 30), z = world.random.Between(-1, 1);
-        const Position at(kStreet * (i % kAcross - kAcross / 2 + 0.5) + x, y, kStreet * (i / kAcross - kAcross / 2 + 0.5) + z);
-        world.Add({.shape = kinds[static_cast<size_t>(i % 4)], .position = at, .rotation = RotationAbout(Vector3(0.6f, 0, 0.8f), y)});
+        const Position at(kStreet * (i % kAcross - kAcross / 2 + 0.5) + x, y,
+                          kStreet * (i / kAcross - kAcross / 2 + 0.5) + z);
+        world.Add({.shape = kinds[static_cast<size_t>(i % 4)],
+                   .position = at,
+                   .rotation = RotationAbout(Vector3(0.6f, 0, 0.8f), y)});
     }
 }
 
@@ -108,9 +115,7 @@ void Build(SceneWorld& world) {
     AddRain(world);
 }
 
-int LostAfter(int steps) {
-    return steps < kFirstStep ? 0 : std::min((steps - kFirstStep) / kStepsBetween + 1, kLost);
-}
+int LostAfter(int steps) { return steps < kFirstStep ? 0 : std::min((steps - kFirstStep) / kStepsBetween + 1, kLost); }
 
 void LoseAPiece(SceneWorld& world, double) {
     const int piece = LostAfter(world.StepCount()) - 1;
@@ -124,11 +129,12 @@ void LoseAPiece(SceneWorld& world, double) {
     (void)world.Bodies().SetVelocity(body, Vector3(at.x(), 0, at.z()), Vector3::Zero());
 }
 
-// Pieces that should have gone and are there, or the other way round; what stood on the roof and is still up there once the
-// tower is gone; bodies below the ground.
+// Pieces that should have gone and are there, or the other way round; what stood on the roof and is still up there once
+// the tower is gone; bodies below the ground.
 double Accuracy(const SceneWorld& world) {
     const int lost = LostAfter(world.StepCount() - 1);
-    int wrong = std::abs(static_cast<int>(world.Bodies().GetChildren(world.watched[0])->Count()) - (25 + 16 * kStoreys - lost));
+    int wrong =
+        std::abs(static_cast<int>(world.Bodies().GetChildren(world.watched[0])->Count()) - (25 + 16 * kStoreys - lost));
     for (size_t i = 1; i <= kOnTheRoof; ++i)
         if (lost == kLost && world.Bodies().GetCenterOfMass(world.watched[i]).y() > kTop - 2) ++wrong;
     return wrong + BodiesBelowTheFloor(world) - (kLost - lost);
@@ -138,13 +144,15 @@ double Accuracy(const SceneWorld& world) {
 
 extern const Scene kScene{
     .name = "compound_city",
-    .description = "bodies fall on 3456 buildings, children of 24 compounds; a tower loses its, children of one that changes",
+    .description =
+        "bodies fall on 3456 buildings, children of 24 compounds; a tower loses its, children of one that changes",
     .steps = 720,
     .usesSeed = true,
     .build = Build,
     .beforeStep = LoseAPiece,
     .accuracy = Accuracy,
-    .accuracyMeaning = "pieces of the tower, bodies on its roof and bodies in the ground that are where they should not be",
+    .accuracyMeaning =
+        "pieces of the tower, bodies on its roof and bodies in the ground that are where they should not be",
 };
 
 }  // namespace fulcrum::CompoundCityScene

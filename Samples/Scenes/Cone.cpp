@@ -13,8 +13,11 @@ void Build(SceneWorld& world) {
     double x = -6;
     for (const double angle : kAngles) {
         const Position socket(x, 3, 0);
-        const BodyId club = world.Add({.shape = world.CapsuleOf(0.6f, 0.15f), .position = socket - Position(0, 0.8, 0),
-                                       .linearVelocity = {2, 0, 3}, .angularVelocity = {0, 6, 0}, .mass = 10});
+        const BodyId club = world.Add({.shape = world.CapsuleOf(0.6f, 0.15f),
+                                       .position = socket - Position(0, 0.8, 0),
+                                       .linearVelocity = {2, 0, 3},
+                                       .angularVelocity = {0, 6, 0},
+                                       .mass = 10});
         auto cone = JointOf<ConeJointSettings>(AddHook(world, socket), club, socket, {0, -1, 0});
         cone.halfAngle = static_cast<float>(angle * kDegree);
         world.joints.push_back(world.Join(cone));
@@ -25,7 +28,8 @@ void Build(SceneWorld& world) {
 double Accuracy(const SceneWorld& world) {
     double worst = 0;
     for (size_t i = 0; i < world.joints.size(); ++i)
-        worst = std::max(worst, world.Joints().GetCoordinate(world.joints[i], JointAxis::AngularY) - kAngles[i] * kDegree);
+        worst =
+            std::max(worst, world.Joints().GetCoordinate(world.joints[i], JointAxis::AngularY) - kAngles[i] * kDegree);
     return worst;
 }
 

@@ -8,7 +8,8 @@ void Build(SceneWorld& world) { AddShapesOverWaves(world); }
 double BodiesBelowTheMesh(const SceneWorld& world) {
     double count = 0;
     world.System().VisitBodies([&](BodyId id) {
-        if (world.Bodies().GetMotionType(id) == MotionType::Dynamic) count += !(world.Bodies().GetPose(id).position.y() >= -1);
+        if (world.Bodies().GetMotionType(id) == MotionType::Dynamic)
+            count += !(world.Bodies().GetPose(id).position.y() >= -1);
     });
     return count;
 }

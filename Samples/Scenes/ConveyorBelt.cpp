@@ -13,7 +13,7 @@ struct Belt {
     BodyId body;
     Vector3 velocity = Vector3::Zero();  // m/s
     Position pivot = Position::Zero();
-    Vector3 turning = Vector3::Zero();   // rad/s
+    Vector3 turning = Vector3::Zero();  // rad/s
 };
 
 class Belts final : public ContactListener {
@@ -35,8 +35,8 @@ private:
 // The loop: two straight belts along x and two bends, their tops at one height.
 constexpr double kTop = 1, kHalfLength = 5, kRadius = 2.2;  // m; the radius is that of the bends' middle
 constexpr float kHalfWidth = 0.9f, kHalfThickness = 0.2f;
-constexpr float kSpeed = 1.5f;                              // m/s
-constexpr double kSlope = 12 * kDegree;                     // of the belt that brings goods up to the loop
+constexpr float kSpeed = 1.5f;           // m/s
+constexpr double kSlope = 12 * kDegree;  // of the belt that brings goods up to the loop
 
 BodyId AddBelt(SceneWorld& world, float halfX, float halfZ, const Position& top) {
     return world.Add({.shape = world.BoxOf(halfX, kHalfThickness, halfZ),
@@ -51,9 +51,10 @@ std::vector<Belt> AddLoop(SceneWorld& world) {
     for (double side : {1.0, -1.0}) {
         belts.push_back({.body = AddBelt(world, kHalfLength, kHalfWidth, {0, kTop, side * kRadius}),
                          .velocity = {static_cast<float>(side) * kSpeed, 0, 0}});
-        belts.push_back({.body = AddBelt(world, 0.5f * outer, outer, {side * (kHalfLength + double{0.5f * outer}), kTop, 0}),
-                         .pivot = {side * kHalfLength, kTop, 0},
-                         .turning = {0, kSpeed / static_cast<float>(kRadius), 0}});
+        belts.push_back(
+            {.body = AddBelt(world, 0.5f * outer, outer, {side * (kHalfLength + double{0.5f * outer}), kTop, 0}),
+             .pivot = {side * kHalfLength, kTop, 0},
+             .turning = {0, kSpeed / static_cast<float>(kRadius), 0}});
     }
     return belts;
 }
@@ -63,7 +64,8 @@ Belt AddFeeder(SceneWorld& world) {
     constexpr double kHalf = 3.5;
     const Quaternion tilt = RotationAbout(Vector3(1, 0, 0), kSlope);
     const Position end(0, kTop + 0.1, kRadius + double{kHalfWidth});
-    const Position along = Rotate(tilt, Vector3(0, 0, 1)).cast<double>(), up = Rotate(tilt, Vector3(0, 1, 0)).cast<double>();
+    const Position along = Rotate(tilt, Vector3(0, 0, 1)).cast<double>(),
+                   up = Rotate(tilt, Vector3(0, 1, 0)).cast<double>();
     return {.body = world.Add({.shape = world.BoxOf(kHalfWidth, kHalfThickness, kHalf),
                                .motion = MotionType::Static,
                                .position = end + along * kHalf - up * double{kHalfThickness},
@@ -75,8 +77,8 @@ Belt AddFeeder(SceneWorld& world) {
 void AddGoods(SceneWorld& world, const Position& at, const Quaternion& rotation, int kind) {
     const Vector3 corners[] = {{-0.3f, -0.25f, -0.3f}, {0.3f, -0.25f, -0.3f}, {0, -0.25f, 0.35f},
                                {-0.2f, 0.25f, -0.2f},  {0.2f, 0.25f, -0.2f},  {0, 0.25f, 0.2f}};
-    const ShapePtr shapes[] = {world.BoxOf(0.25f, 0.25f, 0.25f), Cylinder::Create(0.25f, 0.3f).Value(), world.HullOf(corners),
-                               world.BoxOf(0.4f, 0.25f, 0.2f)};
+    const ShapePtr shapes[] = {world.BoxOf(0.25f, 0.25f, 0.25f), Cylinder::Create(0.25f, 0.3f).Value(),
+                               world.HullOf(corners), world.BoxOf(0.4f, 0.25f, 0.2f)};
     world.watched.push_back(world.Add({.shape = shapes[kind % 4], .position = at, .rotation = rotation}));
 }
 
@@ -89,7 +91,8 @@ void Build(SceneWorld& world) {
         for (double side : {1.0, -1.0}) AddGoods(world, {1.6 * i - 4, kTop + 0.3, side * kRadius}, {}, i);
     const Pose feeder = world.Bodies().GetPose(belts.back().body);
     for (int i = 0; i < 4; ++i)
-        AddGoods(world, feeder.Transform(Vector3(0, kHalfThickness + 0.27f, 1.4f * static_cast<float>(i) - 3.0f)), feeder.rotation, i);
+        AddGoods(world, feeder.Transform(Vector3(0, kHalfThickness + 0.27f, 1.4f * static_cast<float>(i) - 3.0f)),
+                 feeder.rotation, i);
 }
 
 // Goods that do not ride on the loop.

@@ -7,8 +7,8 @@ namespace fulcrum::DominoesScene {
 namespace {
 
 constexpr int kDominoes = 72;
-constexpr double kRadius = 4;             // m, of the arc's middle
-constexpr double kStep = 4.2 * kDegree;   // 0.29 m between neighbors, 0.6 of their height
+constexpr double kRadius = 4;            // m, of the arc's middle
+constexpr double kStep = 4.2 * kDegree;  // 0.29 m between neighbors, 0.6 of their height
 
 // Along a circle about the y axis: `angle` 0 is at x = radius, and rises towards -z.
 Position OnCircle(double angle, double radius, double height) {

@@ -13,7 +13,8 @@ constexpr int kSilhouetteCorners = 32;
 template <class Visit>
 void VisitBoxEdges(const Vector3& half, const Visit& visit) {
     const auto corner = [&](int bits) {
-        return Vector3(bits & 1 ? half.x() : -half.x(), bits & 2 ? half.y() : -half.y(), bits & 4 ? half.z() : -half.z());
+        return Vector3(bits & 1 ? half.x() : -half.x(), bits & 2 ? half.y() : -half.y(),
+                       bits & 4 ? half.z() : -half.z());
     };
     for (int bits = 0; bits < 8; ++bits)
         for (int axis = 1; axis < 8; axis *= 2)

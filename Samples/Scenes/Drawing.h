@@ -1,6 +1,6 @@
-// Lines and points that a scene draws into the picture of a step: rays, hits, normals, shapes on their way. Filled in by a
-// scene's afterStep through SceneWorld::Draw(), read by the recorder. Off unless somebody records: a call is a test then.
-// One thread.
+// Lines and points that a scene draws into the picture of a step: rays, hits, normals, shapes on their way. Filled in
+// by a scene's afterStep through SceneWorld::Draw(), read by the recorder. Off unless somebody records: a call is a
+// test then. One thread.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/Shape.h>
@@ -14,11 +14,11 @@ namespace fulcrum {
 
 // What something means, and its color: 0xRRGGBB.
 enum class Ink : uint32_t {
-    Path = 0x2f6fb4,    // of a ray or a shape that looks for something
-    Hit = 0xd7263d,     // what it found
+    Path = 0x2f6fb4,  // of a ray or a shape that looks for something
+    Hit = 0xd7263d,   // what it found
     Normal = 0x0f7a43,
-    Miss = 0x9aa3ad,    // a search that found nothing
-    Shape = 0x7b4fb0,   // a shape that is asked about
+    Miss = 0x9aa3ad,   // a search that found nothing
+    Shape = 0x7b4fb0,  // a shape that is asked about
 };
 
 struct DrawnLine {
@@ -26,7 +26,7 @@ struct DrawnLine {
     Ink ink;
 };
 struct DrawnPoint {
-    Position at;        // m
+    Position at;  // m
     Ink ink;
 };
 

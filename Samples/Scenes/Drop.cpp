@@ -7,8 +7,8 @@
 namespace fulcrum::DropScene {
 namespace {
 
-// Layers of a square grid above a shallow tray, each body turned at random. Spaced by the shape's diameter, so that none
-// overlap whatever their turn.
+// Layers of a square grid above a shallow tray, each body turned at random. Spaced by the shape's diameter, so that
+// none overlap whatever their turn.
 void Build(SceneWorld& world) {
     const ShapePtr shape = world.Input().shape;
     if (!shape) return;

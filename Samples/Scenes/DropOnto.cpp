@@ -20,17 +20,19 @@ std::vector<Position> PlacesAbove(const SceneWorld& world, const Bounds& box, do
     const Position center(double{box.Center().x()}, top, double{box.Center().z()});
     for (int i = 0; i < rows; ++i)
         for (int j = 0; j < columns; ++j) {
-            const Position place = center + Position(spacing * (i - 0.5 * (rows - 1)), 0, spacing * (j - 0.5 * (columns - 1)));
+            const Position place =
+                center + Position(spacing * (i - 0.5 * (rows - 1)), 0, spacing * (j - 0.5 * (columns - 1)));
             WorldRayHit hit;
             const Vector3 down(0, static_cast<float>(double{box.lower.y()} - top - 1), 0);
-            if (world.Queries().CastRay({place, down}, hit, {.backFaces = true})) places.push_back(hit.position + Position(0, spacing, 0));
+            if (world.Queries().CastRay({place, down}, hit, {.backFaces = true}))
+                places.push_back(hit.position + Position(0, spacing, 0));
         }
     if (places.empty()) places.push_back(center);
     return places;
 }
 
-// Turned at random, over places that are spread evenly, each as low as it has room: what falls far is so fast that it passes
-// thin ground. More than one a place fall one after another.
+// Turned at random, over places that are spread evenly, each as low as it has room: what falls far is so fast that it
+// passes thin ground. More than one a place fall one after another.
 void Build(SceneWorld& world) {
     const ShapePtr shape = world.Input().shape, ground = world.Input().ground;
     if (!shape || !ground) return;
@@ -49,7 +51,8 @@ void Build(SceneWorld& world) {
         const double around = world.random.Between(0, 2 * kPi);
         const double turn = world.random.Between(0, 2 * kPi);
         const double flat = std::sqrt(1 - height * height);
-        const Quaternion rotation = RotationAbout(Position(flat * Cos(around), height, flat * Sin(around)).cast<float>(), turn);
+        const Quaternion rotation =
+            RotationAbout(Position(flat * Cos(around), height, flat * Sin(around)).cast<float>(), turn);
         const Position origin = place - Rotate(rotation, shape->Mass().centerOfMass).cast<double>();
         world.watched.push_back(world.Add({.shape = shape, .position = origin, .rotation = rotation}));
         place.y() += spacing;

@@ -5,8 +5,8 @@
 
 namespace fulcrum {
 
-// `base` cubes of 1 m in the lowest row, one fewer in each above, touching one another; the base is centered on x = shiftX.
-// Watches the top cube.
+// `base` cubes of 1 m in the lowest row, one fewer in each above, touching one another; the base is centered on x =
+// shiftX. Watches the top cube.
 inline void AddFlatPyramid(SceneWorld& world, const ShapePtr& cube, int base, double shiftX, double z) {
     for (int i = 0; i < base; ++i)
         for (int j = i; j < base; ++j) {
@@ -16,8 +16,8 @@ inline void AddFlatPyramid(SceneWorld& world, const ShapePtr& cube, int base, do
         }
 }
 
-// The difference of the largest size between a watched body's height and `height`, with its sign; not a number counts as
-// the largest.
+// The difference of the largest size between a watched body's height and `height`, with its sign; not a number counts
+// as the largest.
 inline double WorstHeightError(const SceneWorld& world, double height) {
     double worst = 0;
     for (BodyId id : world.watched) {

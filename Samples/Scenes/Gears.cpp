@@ -14,14 +14,16 @@ ShapePtr WheelOf(SceneWorld& world, int teeth) {
     const double radius = 0.03 * teeth;
     std::vector<Vector3> rim;
     for (int i = 0; i < 16; ++i)
-        for (const double z : {-0.05, 0.05}) rim.push_back(Position(radius * Cos(2 * kPi * i / 16), radius * Sin(2 * kPi * i / 16), z).cast<float>());
+        for (const double z : {-0.05, 0.05})
+            rim.push_back(Position(radius * Cos(2 * kPi * i / 16), radius * Sin(2 * kPi * i / 16), z).cast<float>());
     return world.HullOf(rim);
 }
 
 // A clockwork: each wheel drives a larger one, which turns the next small one on its own axle.
 void Build(SceneWorld& world) {
     constexpr size_t kCount = std::size(kTeeth);
-    const BodyId plate = world.Add({.shape = world.BoxOf(6, 2.5f, 0.02f), .motion = MotionType::Static, .position = {0, 3, -0.5}});
+    const BodyId plate =
+        world.Add({.shape = world.BoxOf(6, 2.5f, 0.02f), .motion = MotionType::Static, .position = {0, 3, -0.5}});
     Position center(-4.5, 2.5, 0);
     double height = 0;
     for (size_t i = 0; i < kCount; ++i) {
@@ -29,7 +31,8 @@ void Build(SceneWorld& world) {
         if (i % 2) center += Position(0.03 * (kTeeth[i - 1] + kTeeth[i]), 0, 0);
         if (isOnTheSameAxle) height += 0.2;
         const Position place = center + Position(0, 0, height);
-        const BodyId wheel = world.Add({.shape = WheelOf(world, kTeeth[i]), .position = place, .density = 500, .layer = 1});
+        const BodyId wheel =
+            world.Add({.shape = WheelOf(world, kTeeth[i]), .position = place, .density = 500, .layer = 1});
         world.watched.push_back(wheel);
         if (isOnTheSameAxle) {
             world.Join(JointOf<FixedJointSettings>(world.watched[i - 1], wheel, place));
@@ -40,7 +43,8 @@ void Build(SceneWorld& world) {
         world.joints.push_back(world.Join(bearing));
         if (i == 0) continue;
         const BodyId driver = world.watched[i - 1];
-        auto gear = JointOfTwo<GearJointSettings>(driver, wheel, world.Bodies().GetPose(driver).position, place, {0, 0, 1});
+        auto gear =
+            JointOfTwo<GearJointSettings>(driver, wheel, world.Bodies().GetPose(driver).position, place, {0, 0, 1});
         gear.ratio = static_cast<float>(kTeeth[i]) / static_cast<float>(kTeeth[i - 1]);
         world.Join(gear);
     }
@@ -54,7 +58,8 @@ double Accuracy(const SceneWorld& world) {
     for (size_t axle = 1; axle < world.joints.size(); ++axle) {
         const double before = world.Joints().GetCoordinate(world.joints[axle - 1], JointAxis::AngularX);
         const double after = world.Joints().GetCoordinate(world.joints[axle], JointAxis::AngularX);
-        worst = std::max(worst, std::fabs(before * kTeeth[2 * axle - 2] + after * kTeeth[2 * axle - 1]) / kTeeth[2 * axle - 2]);
+        worst = std::max(
+            worst, std::fabs(before * kTeeth[2 * axle - 2] + after * kTeeth[2 * axle - 1]) / kTeeth[2 * axle - 2]);
     }
     return worst;
 }

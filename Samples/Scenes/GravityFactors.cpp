@@ -19,10 +19,8 @@ void Build(SceneWorld& world) {
     const auto nextPlace = [&x] { return Position(x += 1.5, kStart, 0); };
     for (float factor : kFactors)
         world.watched.push_back(world.Add({.shape = ball, .position = nextPlace(), .gravityFactor = factor}));
-    for (float damping : kDamping)
-        world.Add({.shape = ball, .position = nextPlace(), .linearDamping = damping});
-    for (float limit : kSpeedLimits)
-        world.Add({.shape = ball, .position = nextPlace(), .maxLinearSpeed = limit});
+    for (float damping : kDamping) world.Add({.shape = ball, .position = nextPlace(), .linearDamping = damping});
+    for (float limit : kSpeedLimits) world.Add({.shape = ball, .position = nextPlace(), .maxLinearSpeed = limit});
 }
 
 // While none has landed yet.

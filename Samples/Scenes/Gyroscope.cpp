@@ -7,7 +7,8 @@ namespace {
 
 const Vector3 kSpin(0.01f, 6, 0.01f);  // rad/s, almost about y
 
-// A T-shaped handle: its moments of inertia are 1.9, 6.0 and 7.5 kg m2 about x, y and z, so that turning about y is unstable.
+// A T-shaped handle: its moments of inertia are 1.9, 6.0 and 7.5 kg m2 about x, y and z, so that turning about y is
+// unstable.
 void Build(SceneWorld& world) {
     const std::array<Compound::ChildSettings, 2> bars{
         {{.shape = world.BoxOf(0.6f, 0.1f, 0.1f)},

@@ -12,7 +12,10 @@ void Build(SceneWorld& world) {
     BodyId last = AddHook(world, {0, 0, 0});
     for (int i = 0; i <= kLinks; ++i) {
         const bool isBall = i == kLinks;
-        const BodyId next = world.Add({.shape = isBall ? world.SphereOf(0.4f) : link, .position = {i + 0.5, 0, 0}, .mass = isBall ? 100.0f : 1.0f, .layer = 1});
+        const BodyId next = world.Add({.shape = isBall ? world.SphereOf(0.4f) : link,
+                                       .position = {i + 0.5, 0, 0},
+                                       .mass = isBall ? 100.0f : 1.0f,
+                                       .layer = 1});
         world.Join(JointOf<PointJointSettings>(last, next, {double(i), 0, 0}));
         last = next;
     }
@@ -24,13 +27,16 @@ void NoContacts(SystemSettings& settings) { settings.layerCollides[1] &= ~2u; }
 // All gaps together, of the length.
 double Stretch(const SceneWorld& world) {
     double sum = 0;
-    world.Joints().Visit([&](JointId id) { sum += (world.Joints().GetFrameB(id).position - world.Joints().GetFrameA(id).position).norm(); });
+    world.Joints().Visit([&](JointId id) {
+        sum += (world.Joints().GetFrameB(id).position - world.Joints().GetFrameA(id).position).norm();
+    });
     return 100 * sum / kLength;
 }
 
 }  // namespace
 
-// The ball passes the lowest point, where the chain carries the most, after T / 4 = 2.3678 s sqrt(16.5) / 4 = 144 steps.
+// The ball passes the lowest point, where the chain carries the most, after T / 4 = 2.3678 s sqrt(16.5) / 4 = 144
+// steps.
 extern const Scene kScene{
     .name = "heavy_chain",
     .description = "a chain of 16 links of 1 kg with a ball of 100 kg, swung from horizontal",

@@ -14,7 +14,8 @@ void NoGravity(SystemSettings& settings) { settings.gravity.setZero(); }
 void AddRoom(SceneWorld& world) {
     const Material wall{.friction = 1, .restitution = 1};
     const auto half = static_cast<float>(kSide);
-    const ShapePtr across[3] = {world.BoxOf(0.2f, half, half), world.BoxOf(half, 0.2f, half), world.BoxOf(half, half, 0.2f)};
+    const ShapePtr across[3] = {world.BoxOf(0.2f, half, half), world.BoxOf(half, 0.2f, half),
+                                world.BoxOf(half, half, 0.2f)};
     for (int axis = 0; axis < 3; ++axis)
         for (const double side : {-kSide, kSide}) {
             Position at = Position::Zero();

@@ -41,7 +41,8 @@ const Bone kBones[] = {
 };
 
 AxisControl Range(double low, double high) {
-    return {.limited = true, .limits = {.min = static_cast<float>(low * kDegree), .max = static_cast<float>(high * kDegree)}};
+    return {.limited = true,
+            .limits = {.min = static_cast<float>(low * kDegree), .max = static_cast<float>(high * kDegree)}};
 }
 
 RagdollJoint JointOf(const Bone& bone) {
@@ -60,8 +61,8 @@ RagdollJoint JointOf(const Bone& bone) {
     return joint;
 }
 
-// Degrees: the twist about the joint's x axis, or the hinge's angle, and the swing about its y and z. A swing about y leads what
-// hangs backwards and what stands forwards, one about z leads both to the left.
+// Degrees: the twist about the joint's x axis, or the hinge's angle, and the swing about its y and z. A swing about y
+// leads what hangs backwards and what stands forwards, one about z leads both to the left.
 struct Turned {
     double twist, swingY, swingZ;
 };
@@ -69,18 +70,50 @@ struct Turned {
 // In the order of kBones.
 const Turned kPoses[3][12] = {
     // A star.
-    {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 70}, {0, 0, -70}, {0, 0, 0}, {0, 0, 0},
-     {0, 0, 35}, {0, 0, -35}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}},
+    {{0, 0, 0},
+     {0, 0, 0},
+     {0, 0, 0},
+     {0, 0, 70},
+     {0, 0, -70},
+     {0, 0, 0},
+     {0, 0, 0},
+     {0, 0, 35},
+     {0, 0, -35},
+     {0, 0, 0},
+     {0, 0, 0},
+     {0, 0, 0}},
     // A long stride.
-    {{0, 0, 0}, {10, 5, 0}, {-30, 0, 0}, {0, 35, 8}, {0, -45, -8}, {-70, 0, 0}, {-80, 0, 0},
-     {0, -42, 4}, {0, 25, -4}, {60, 0, 0}, {30, 0, 0}, {15, 0, 0}},
+    {{0, 0, 0},
+     {10, 5, 0},
+     {-30, 0, 0},
+     {0, 35, 8},
+     {0, -45, -8},
+     {-70, 0, 0},
+     {-80, 0, 0},
+     {0, -42, 4},
+     {0, 25, -4},
+     {60, 0, 0},
+     {30, 0, 0},
+     {15, 0, 0}},
     // Seated, hands raised.
-    {{0, 0, 0}, {0, -10, 0}, {0, 15, 10}, {20, -50, 15}, {-20, -50, -15}, {-110, 0, 0}, {-110, 0, 0},
-     {0, -45, 8}, {0, -45, -8}, {90, 0, 0}, {90, 0, 0}, {-10, 0, 0}},
+    {{0, 0, 0},
+     {0, -10, 0},
+     {0, 15, 10},
+     {20, -50, 15},
+     {-20, -50, -15},
+     {-110, 0, 0},
+     {-110, 0, 0},
+     {0, -45, 8},
+     {0, -45, -8},
+     {90, 0, 0},
+     {90, 0, 0},
+     {-10, 0, 0}},
 };
 
 Quaternion RotationOf(const Turned& turned) {
-    const auto vector = [](double x, double y, double z) { return Vector3((Position(x, y, z) * kDegree).cast<float>()); };
+    const auto vector = [](double x, double y, double z) {
+        return Vector3((Position(x, y, z) * kDegree).cast<float>());
+    };
     return RotationFromVector(vector(0, turned.swingY, turned.swingZ)) * RotationFromVector(vector(turned.twist, 0, 0));
 }
 
@@ -122,8 +155,10 @@ std::array<Quaternion, 12> HumanoidMotion(double time) {
     const auto eased = static_cast<float>(way * way * (3 - 2 * way));
     std::array<Quaternion, 12> rotations;
     for (size_t part = 0; part < rotations.size(); ++part) {
-        const Quaternion from = pose == 0 ? Quaternion{} : RotationOf(kPoses[pose - 1][part]), to = RotationOf(kPoses[pose][part]);
-        rotations[part] = Normalized(from * RotationFromVector(Vector3(RotationVectorOf(from.Conjugate() * to) * eased)));
+        const Quaternion from = pose == 0 ? Quaternion{} : RotationOf(kPoses[pose - 1][part]),
+                         to = RotationOf(kPoses[pose][part]);
+        rotations[part] =
+            Normalized(from * RotationFromVector(Vector3(RotationVectorOf(from.Conjugate() * to) * eased)));
     }
     return rotations;
 }

@@ -18,7 +18,8 @@ Settings JointOf(BodyId a, BodyId b, const Position& point, const Vector3& axis 
 
 // B's anchor somewhere else than A's, with the same axis.
 template <class Settings>
-Settings JointOfTwo(BodyId a, BodyId b, const Position& pointA, const Position& pointB, const Vector3& axis = Vector3(1, 0, 0)) {
+Settings JointOfTwo(BodyId a, BodyId b, const Position& pointA, const Position& pointB,
+                    const Vector3& axis = Vector3(1, 0, 0)) {
     Settings settings = JointOf<Settings>(a, b, pointA, axis);
     settings.anchorB = settings.anchorA;
     settings.anchorB->point = pointB;

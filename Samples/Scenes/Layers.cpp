@@ -28,7 +28,7 @@ double Accuracy(const SceneWorld& world) {
     for (BodyId id : world.watched) {
         const bool ghost = world.Bodies().GetShape(id)->Type() == ShapeType::Sphere;
         const double height = world.Bodies().GetPose(id).position.y();
-        const bool onGround = height > 0 && height < 0.5, onSieve = height > kSieveHeight && height < kSieveHeight + 0.5;
+        const bool onGround = height > 0 && height<0.5, onSieve = height> kSieveHeight && height < kSieveHeight + 0.5;
         if (!(ghost ? onGround : onSieve)) ++wrong;
     }
     return wrong;

@@ -27,11 +27,16 @@ struct Carried {
     Position offset;  // of the center of a cube of half 0.3 m, from the platform's
 };
 constexpr double kOnTop = 0.15 + 0.3;
-const std::array<Carried, 11> kCarried{{{kLift, {0, kOnTop, 0}}, {kLift, {0, kOnTop + 0.6, 0}},
-                                        {kLift, {0, kOnTop + 1.2, 0}}, {kLift, {0, kOnTop + 1.8, 0}},
-                                        {kShuttle, {-0.8, kOnTop, 0}}, {kShuttle, {0, kOnTop, 0}},
-                                        {kShuttle, {0.8, kOnTop, 0}}, {kTurntable, {1.1, kOnTop, 0}},
-                                        {kTurntable, {-1.1, kOnTop, 0}}, {kTurntable, {0, kOnTop, 1.1}},
+const std::array<Carried, 11> kCarried{{{kLift, {0, kOnTop, 0}},
+                                        {kLift, {0, kOnTop + 0.6, 0}},
+                                        {kLift, {0, kOnTop + 1.2, 0}},
+                                        {kLift, {0, kOnTop + 1.8, 0}},
+                                        {kShuttle, {-0.8, kOnTop, 0}},
+                                        {kShuttle, {0, kOnTop, 0}},
+                                        {kShuttle, {0.8, kOnTop, 0}},
+                                        {kTurntable, {1.1, kOnTop, 0}},
+                                        {kTurntable, {-1.1, kOnTop, 0}},
+                                        {kTurntable, {0, kOnTop, 1.1}},
                                         {kTurntable, {0, kOnTop, -1.1}}}};
 
 ShapePtr Disc(SceneWorld& world) {
@@ -56,8 +61,8 @@ void Build(SceneWorld& world) {
     }
     const ShapePtr cube = world.BoxOf(0.3f, 0.3f, 0.3f), ball = world.SphereOf(0.3f);
     for (const Carried& carried : kCarried)
-        world.watched.push_back(world.Add(
-            {.shape = cube, .position = PlatformPose(carried.platform, 0).position + carried.offset}));
+        world.watched.push_back(
+            world.Add({.shape = cube, .position = PlatformPose(carried.platform, 0).position + carried.offset}));
     // What the sweeper pushes about.
     for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 3; ++j)

@@ -8,8 +8,8 @@ namespace {
 
 constexpr int kBalls = 5;
 constexpr double kRadius = 0.25, kRope = 2, kLift = 0.7;  // m, m, rad
-// All contacts of a step are solved at once, so that balls which touch would share a blow. Apart by this, m, each is hit by the
-// one before it; after some blows they are together and share.
+// All contacts of a step are solved at once, so that balls which touch would share a blow. Apart by this, m, each is
+// hit by the one before it; after some blows they are together and share.
 constexpr double kApart = 0.03;
 
 // Five balls that bounce without loss, each on a hinge above it; the first one is let go.
@@ -18,7 +18,8 @@ void Build(SceneWorld& world) {
     for (int i = 0; i < kBalls; ++i) {
         const Position top((2 * kRadius + kApart) * i, 3, 0);
         const Position down = i == 0 ? Position(-kRope * Sin(kLift), -kRope * Cos(kLift), 0) : Position(0, -kRope, 0);
-        const BodyId body = world.Add({.shape = ball, .position = top + down, .mass = 10, .material = {.friction = 0, .restitution = 1}});
+        const BodyId body = world.Add(
+            {.shape = ball, .position = top + down, .mass = 10, .material = {.friction = 0, .restitution = 1}});
         world.Join(JointOf<HingeJointSettings>(AddHook(world, top), body, top, {0, 0, 1}));
         world.watched.push_back(body);
     }

@@ -10,13 +10,17 @@ void Build(SceneWorld& world) {
     world.AddFloor(8, 8);
     for (const double askew : {kAskew, 0.0}) {
         const double x = askew > 0 ? -2 : 2;
-        const BodyId frame = world.Add({.shape = world.BoxOf(0.1f, 1.1f, 0.1f), .motion = MotionType::Static, .position = {x, 1.1, 0}});
-        const BodyId door = world.Add({.shape = world.BoxOf(0.6f, 1, 0.05f), .position = {x + 0.75, 1.1, 0}, .mass = 30});
+        const BodyId frame =
+            world.Add({.shape = world.BoxOf(0.1f, 1.1f, 0.1f), .motion = MotionType::Static, .position = {x, 1.1, 0}});
+        const BodyId door =
+            world.Add({.shape = world.BoxOf(0.6f, 1, 0.05f), .position = {x + 0.75, 1.1, 0}, .mass = 30});
         for (const double y : {0.3, 1.1, 1.9}) {
             const Position place(x + 0.1, y, 0);
-            world.Join(JointOfTwo<HingeJointSettings>(frame, door, place + Position(0, 0, y == 1.1 ? askew : 0), place, {0, 1, 0}));
+            world.Join(JointOfTwo<HingeJointSettings>(frame, door, place + Position(0, 0, y == 1.1 ? askew : 0), place,
+                                                      {0, 1, 0}));
         }
-        world.Add({.shape = world.SphereOf(0.2f), .position = {x + 1.1, 1.3, 3}, .linearVelocity = {0, 1, -8}, .mass = 5});
+        world.Add(
+            {.shape = world.SphereOf(0.2f), .position = {x + 1.1, 1.3, 3}, .linearVelocity = {0, 1, -8}, .mass = 5});
     }
 }
 
@@ -29,7 +33,8 @@ extern const Scene kScene{
     .sleeping = false,
     .build = Build,
     .accuracy = LargestJointGap,
-    .accuracyMeaning = "largest distance between the two anchors of a joint, m; a third of a centimeter cannot be helped",
+    .accuracyMeaning =
+        "largest distance between the two anchors of a joint, m; a third of a centimeter cannot be helped",
 };
 
 }  // namespace fulcrum::OverconstrainedDoorScene

@@ -30,7 +30,11 @@ void Build(SceneWorld& world) {
     const auto add = [&](const ShapePtr& shape, double t, PathRotation rotation) {
         const PathSample at = track->Sample(t);
         const Position place = at.position.cast<double>();
-        const BodyId body = world.Add({.shape = shape, .position = place, .rotation = RotationFromAxesXY(at.tangent, at.normal), .mass = 10, .layer = 1});
+        const BodyId body = world.Add({.shape = shape,
+                                       .position = place,
+                                       .rotation = RotationFromAxesXY(at.tangent, at.normal),
+                                       .mass = 10,
+                                       .layer = 1});
         auto settings = JointOfTwo<PathJointSettings>(ground, body, {0, 0, 0}, place);
         settings.anchorA.normal = Vector3(0, 1, 0);
         settings.anchorB->axis = at.tangent;

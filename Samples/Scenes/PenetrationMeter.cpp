@@ -25,7 +25,8 @@ bool IsBehind(const TriangleView& t, const Vector3& point) {
     if (Dot(t.normal, Vector3(point - t.vertices[0])) >= 0) return false;
     for (int i = 0; i < 3; ++i) {
         const Vector3& from = t.vertices[i];
-        if (Dot(t.normal, Cross<float>(Vector3(t.vertices[(i + 1) % 3] - from), Vector3(point - from))) < 0) return false;
+        if (Dot(t.normal, Cross<float>(Vector3(t.vertices[(i + 1) % 3] - from), Vector3(point - from))) < 0)
+            return false;
     }
     return true;
 }
@@ -38,12 +39,14 @@ public:
     void Search(const Shape& a, const Shape& b, const RelativePose& bInA) {
         const RelativePose aInB = Inverse(bInA);
         VisitPieces(a, BoundsAt(bInA, b.LocalBounds()), [&](const Piece& piece) {
-            if (b.Type() == ShapeType::Plane) return AgainstPlane(piece.shape, aInB * piece.pose, static_cast<const Plane&>(b));
+            if (b.Type() == ShapeType::Plane)
+                return AgainstPlane(piece.shape, aInB * piece.pose, static_cast<const Plane&>(b));
             const RelativePose inB = aInB * piece.pose;
             VisitPieces(b, BoundsAt(inB, piece.shape.LocalBounds()), [&](const Piece& other) {
                 Consider(piece.shape, other, Inverse(inB) * other.pose);
                 if (other.triangle && !other.isTwoSided)
-                    BehindTriangle(piece.shape, inB, static_cast<const SurfaceShape&>(b).GetTriangle(other.subShape.triangle));
+                    BehindTriangle(piece.shape, inB,
+                                   static_cast<const SurfaceShape&>(b).GetTriangle(other.subShape.triangle));
             });
         });
     }
@@ -113,7 +116,8 @@ void PenetrationMeter::FindAll(bool first) {
     for (const BodyId id : mobile_) {
         const Placed a = Place(id);
         const Bounds box = BoundsAbout(a.center.position, *a.shape, a.center);
-        world_.Queries().FindInBox(a.center.position + box.lower.cast<double>(), a.center.position + box.upper.cast<double>(), near_);
+        world_.Queries().FindInBox(a.center.position + box.lower.cast<double>(),
+                                   a.center.position + box.upper.cast<double>(), near_);
         BodyId last{};
         for (const OverlapHit& hit : near_) {
             if (hit.body == last || hit.body == id || (hit.body < id && IsMobile(hit.body, first))) continue;
@@ -134,7 +138,8 @@ void PenetrationMeter::MeasurePair(const Placed& a, const Placed& b, bool first)
     }
     if (search.Depth() <= 0 || !world_.Queries().MayCollide(a.id, b.id)) return;
     if (first && search.Relative() > kStartsOverlapped) overlapped_.insert({a.id, b.id});
-    else if (search.Relative() > worst_.relative) worst_ = {search.Relative(), search.Depth(), a.id, b.id, world_.StepCount()};
+    else if (search.Relative() > worst_.relative)
+        worst_ = {search.Relative(), search.Depth(), a.id, b.id, world_.StepCount()};
 }
 
 }  // namespace fulcrum

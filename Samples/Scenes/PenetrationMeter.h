@@ -1,9 +1,10 @@
-// How deep bodies of a scene overlap, by their shapes and poses alone: what the engine found, or missed, has no say. Used by
-// Simulation after each step, outside of what is timed; one thread.
+// How deep bodies of a scene overlap, by their shapes and poses alone: what the engine found, or missed, has no say.
+// Used by Simulation after each step, outside of what is timed; one thread.
 //
-// The measure is the least move that parts two bodies, over the inner radius of the smaller one: that of the largest ball that fits
-// inside. 1 means that a ball inside one body has its center on the other's surface; beyond that nobody knows any more on which
-// side it belongs. A body whose center is behind a mesh or height field has sunk by as much as it must rise.
+// The measure is the least move that parts two bodies, over the inner radius of the smaller one: that of the largest
+// ball that fits inside. 1 means that a ball inside one body has its center on the other's surface; beyond that nobody
+// knows any more on which side it belongs. A body whose center is behind a mesh or height field has sunk by as much as
+// it must rise.
 #pragma once
 
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
@@ -36,7 +37,7 @@ private:
         uint32_t seenIn = 0;  // round of measuring
         BodyId id;
         ShapePtr shape;
-        Pose center;          // of the shape's center frame
+        Pose center;  // of the shape's center frame
     };
     using Pair = std::pair<BodyId, BodyId>;
 
@@ -47,10 +48,10 @@ private:
 
     const SceneWorld& world_;
     uint32_t round_ = 0;
-    std::vector<BodyId> mobile_;      // dynamic and awake
-    std::vector<Placed> bodies_;      // by index
+    std::vector<BodyId> mobile_;  // dynamic and awake
+    std::vector<Placed> bodies_;  // by index
     std::vector<OverlapHit> near_;
-    std::set<Pair> overlapped_;       // since the start
+    std::set<Pair> overlapped_;  // since the start
     Penetration worst_;
 };
 

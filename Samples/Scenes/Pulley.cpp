@@ -12,7 +12,8 @@ enum : size_t { kWinch, kBalance };
 
 double LengthAt(double time) { return 12.5 - 3 * Sin(0.5 * time); }
 
-// A crane: the winch shortens a rope that runs three times between jib and load. Beside it a rope with a weight at either end.
+// A crane: the winch shortens a rope that runs three times between jib and load. Beside it a rope with a weight at
+// either end.
 void Build(SceneWorld& world) {
     world.AddFloor(12, 6);
     world.Add({.shape = world.BoxOf(0.2f, 3, 0.2f), .motion = MotionType::Static, .position = {-8, 3, 0}});
@@ -43,7 +44,9 @@ void Wind(SceneWorld& world, double dt) {
 }
 
 double Accuracy(const SceneWorld& world) {
-    const auto length = [&](size_t joint) { return world.Joints().GetCoordinate(world.joints[joint], JointAxis::LinearX); };
+    const auto length = [&](size_t joint) {
+        return world.Joints().GetCoordinate(world.joints[joint], JointAxis::LinearX);
+    };
     return std::max(length(kWinch) - LengthAt(world.Time()), length(kBalance) - 8);
 }
 

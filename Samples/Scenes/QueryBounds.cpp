@@ -11,10 +11,13 @@ const Position kHalf(1.5, 0.8, 1);  // m, of the box
 
 void Mark(SceneWorld& world, const std::vector<OverlapHit>& hits, Ink ink) {
     for (const OverlapHit& hit : hits)
-        if (world.Bodies().GetMotionType(hit.body) == MotionType::Dynamic) world.Draw().Point(world.Bodies().GetCenterOfMass(hit.body), ink);
+        if (world.Bodies().GetMotionType(hit.body) == MotionType::Dynamic)
+            world.Draw().Point(world.Bodies().GetCenterOfMass(hit.body), ink);
 }
 
-bool Has(const std::vector<OverlapHit>& hits, const OverlapHit& hit) { return std::binary_search(hits.begin(), hits.end(), hit); }
+bool Has(const std::vector<OverlapHit>& hits, const OverlapHit& hit) {
+    return std::binary_search(hits.begin(), hits.end(), hit);
+}
 
 // What a box overlaps must be among what its bounds find, for there nothing but bounds are compared.
 void AskBox(SceneWorld& world, const Position& center) {

@@ -46,16 +46,22 @@ void Ask(SceneWorld& world) {
     static const auto kPill = Capsule::Create(0.5f, 0.2f);
     const double time = world.Time();
     // Straight down, and level between the walls.
-    CastAndDraw(world, {.shape = kBall.Value().get(), .pose = {OverTheGround(time, 0, 5), {}}, .displacement = {0, -6, 0}});
+    CastAndDraw(world,
+                {.shape = kBall.Value().get(), .pose = {OverTheGround(time, 0, 5), {}}, .displacement = {0, -6, 0}});
     CastAndDraw(world, {.shape = kPill.Value().get(),
-                        .pose = {OverTheGround(time, 0.5, 5), RotationAbout(Vector3(1, 0, 0), time)}, .displacement = {0, -6, 0}});
+                        .pose = {OverTheGround(time, 0.5, 5), RotationAbout(Vector3(1, 0, 0), time)},
+                        .displacement = {0, -6, 0}});
     const double z = 5.5 * Sin(0.6 * time);
-    CastAndDraw(world, {.shape = kBox.Value().get(), .pose = {{-6, 1.6, z}, RotationAbout(Vector3(0, 1, 0), 0.5 * time)},
+    CastAndDraw(world, {.shape = kBox.Value().get(),
+                        .pose = {{-6, 1.6, z}, RotationAbout(Vector3(0, 1, 0), 0.5 * time)},
                         .displacement = {13, -0.4f, 0}});
     // A rod that makes a turn and a half on its way down, and one that turns on the spot like a clock's hand.
-    CastAndDraw(world, {.shape = kRod.Value().get(), .pose = {OverTheGround(time, 0.25, 5), {}}, .displacement = {1, -5, 0},
+    CastAndDraw(world, {.shape = kRod.Value().get(),
+                        .pose = {OverTheGround(time, 0.25, 5), {}},
+                        .displacement = {1, -5, 0},
                         .turn = {0, 0, static_cast<float>(3 * kPi)}});
-    CastAndDraw(world, {.shape = kRod.Value().get(), .pose = {OverTheGround(time, 0.75, 1.7), {}},
+    CastAndDraw(world, {.shape = kRod.Value().get(),
+                        .pose = {OverTheGround(time, 0.75, 1.7), {}},
                         .turn = {0, static_cast<float>(2 * kPi), 0}});
 }
 

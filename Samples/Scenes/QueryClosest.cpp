@@ -12,7 +12,8 @@ namespace {
 constexpr float kReach = 6;  // m
 constexpr int kPoints = 24;
 
-// The same without the trees: the least distance to the bodies one by one. A shape's own frame is its center frame here.
+// The same without the trees: the least distance to the bodies one by one. A shape's own frame is its center frame
+// here.
 double LeastDistance(SceneWorld& world, const Position& point) {
     double least = double{kReach};
     world.System().VisitBodies([&](BodyId id) {
@@ -43,7 +44,8 @@ void Ask(SceneWorld& world) {
         if (isFound) Draw(world, closest);
         const double distance = isFound ? double{closest.distance} : double{kReach};
         // All bodies one by one take long: a quarter of the points in each step.
-        if (i % 4 == world.StepCount() % 4) world.figure = std::max(world.figure, std::fabs(distance - LeastDistance(world, point)));
+        if (i % 4 == world.StepCount() % 4)
+            world.figure = std::max(world.figure, std::fabs(distance - LeastDistance(world, point)));
     }
     const auto ask = [&](const ConvexShape& shape, const Pose& pose) {
         world.Draw().Outline(shape, pose, Ink::Shape);

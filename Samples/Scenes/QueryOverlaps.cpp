@@ -10,8 +10,8 @@
 namespace fulcrum::QueryOverlapsScene {
 namespace {
 
-// A line from the probe to each body it overlaps. Overlap and the distance to the closest body must say the same; within
-// 0.1 mm of touching either answer is right.
+// A line from the probe to each body it overlaps. Overlap and the distance to the closest body must say the same;
+// within 0.1 mm of touching either answer is right.
 void Probe(SceneWorld& world, const ConvexShape& shape, const Pose& pose) {
     std::vector<OverlapHit> hits;
     const PlacedShape probe{&shape, pose};
@@ -46,7 +46,8 @@ void Ask(SceneWorld& world) {
     static const auto kBall = Sphere::Create(1.2f);
     static const auto kBox = Box::Create(Vector3(1.4f, 0.5f, 0.7f));
     static const auto kPill = Capsule::Create(1.2f, 0.4f);
-    static const std::array<Vector3, 4> kCorners{{{1.2f, 0.9f, 0.9f}, {1.2f, -0.9f, -0.9f}, {-1.2f, 0.9f, -0.9f}, {-1.2f, -0.9f, 0.9f}}};
+    static const std::array<Vector3, 4> kCorners{
+        {{1.2f, 0.9f, 0.9f}, {1.2f, -0.9f, -0.9f}, {-1.2f, 0.9f, -0.9f}, {-1.2f, -0.9f, 0.9f}}};
     static const auto kTetrahedron = ConvexHull::Create(kCorners);
     const double time = world.Time();
     Probe(world, *kBall.Value(), {OverTheGround(time, 0, 1.5), {}});

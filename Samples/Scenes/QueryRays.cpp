@@ -73,7 +73,8 @@ void Ask(SceneWorld& world) {
 
 extern const Scene kScene{
     .name = "query_rays",
-    .description = "rays among stirred bodies: closest hits (blue), all hits (violet), any hit (a curtain, red where blocked)",
+    .description =
+        "rays among stirred bodies: closest hits (blue), all hits (violet), any hit (a curtain, red where blocked)",
     .steps = 600,
     .build = AddQueryGround,
     .afterStep = Ask,

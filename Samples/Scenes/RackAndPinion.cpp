@@ -15,14 +15,19 @@ constexpr float kWay = 2;         // m, to either side: the stops
 void Build(SceneWorld& world) {
     std::vector<Vector3> rim;
     for (int i = 0; i < 16; ++i)
-        for (const double z : {-0.1, 0.1}) rim.push_back(Position(kRadius * Cos(2 * kPi * i / 16), kRadius * Sin(2 * kPi * i / 16), z).cast<float>());
+        for (const double z : {-0.1, 0.1})
+            rim.push_back(Position(kRadius * Cos(2 * kPi * i / 16), kRadius * Sin(2 * kPi * i / 16), z).cast<float>());
     const ShapePtr wheel = world.HullOf(rim);
     for (const bool driven : {true, false}) {
-        const Position center(driven ? -3 : 4, 4, 0), edge = center + (driven ? Position(0, -kRadius - 0.1, 0) : Position(kRadius + 0.1, 0, 0));
+        const Position center(driven ? -3 : 4, 4, 0),
+            edge = center + (driven ? Position(0, -kRadius - 0.1, 0) : Position(kRadius + 0.1, 0, 0));
         const Vector3 way = driven ? Vector3(1, 0, 0) : Vector3(0, 1, 0);
         const BodyId frame = AddHook(world, center + Position(0, 0, -0.5));
         const BodyId pinion = world.Add({.shape = wheel, .position = center, .layer = 1});
-        const BodyId rack = world.Add({.shape = driven ? world.BoxOf(2.5f, 0.1f, 0.1f) : world.BoxOf(0.1f, 2.5f, 0.1f), .position = edge, .mass = 20, .layer = 1});
+        const BodyId rack = world.Add({.shape = driven ? world.BoxOf(2.5f, 0.1f, 0.1f) : world.BoxOf(0.1f, 2.5f, 0.1f),
+                                       .position = edge,
+                                       .mass = 20,
+                                       .layer = 1});
         auto bearing = JointOf<HingeJointSettings>(frame, pinion, center, {0, 0, 1});
         if (driven) bearing.angle.motor = MotorToSpeed(3, 500);
         auto guide = JointOf<SliderJointSettings>(frame, rack, edge, way);

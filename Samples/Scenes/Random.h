@@ -1,5 +1,5 @@
-// SplitMix64, the random numbers of all scenes: the same on every machine. Source: Steele, Lea and Flood, "Fast Splittable
-// Pseudorandom Number Generators", 2014.
+// SplitMix64, the random numbers of all scenes: the same on every machine. Source: Steele, Lea and Flood, "Fast
+// Splittable Pseudorandom Number Generators", 2014.
 #pragma once
 
 #include <cstdint>

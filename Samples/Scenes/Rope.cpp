@@ -8,16 +8,21 @@ constexpr int kLinks = 40;
 // A rope of capsules swings over a bar and back, with a box at its end.
 void Build(SceneWorld& world) {
     world.AddFloor(12, 6);
-    world.Add({.shape = world.CapsuleOf(1, 0.5f), .motion = MotionType::Static, .position = {-1, 5, 0}, .rotation = RotationAbout({1, 0, 0}, kPi / 2)});
+    world.Add({.shape = world.CapsuleOf(1, 0.5f),
+               .motion = MotionType::Static,
+               .position = {-1, 5, 0},
+               .rotation = RotationAbout({1, 0, 0}, kPi / 2)});
     const ShapePtr link = world.CapsuleOf(0.07f, 0.05f);
     BodyId last = AddHook(world, {0, 9, 0});
     for (int i = 0; i < kLinks; ++i) {
         const double x = 0.2 * i;
-        const BodyId next = world.Add({.shape = link, .position = {x + 0.1, 9, 0}, .rotation = RotationAbout({0, 0, 1}, kPi / 2), .mass = 0.5f});
+        const BodyId next = world.Add(
+            {.shape = link, .position = {x + 0.1, 9, 0}, .rotation = RotationAbout({0, 0, 1}, kPi / 2), .mass = 0.5f});
         world.Join(JointOf<PointJointSettings>(last, next, {x, 9, 0}));
         last = next;
     }
-    const BodyId box = world.Add({.shape = world.BoxOf(0.2f, 0.2f, 0.2f), .position = {0.2 * kLinks + 0.2, 9, 0}, .mass = 5});
+    const BodyId box =
+        world.Add({.shape = world.BoxOf(0.2f, 0.2f, 0.2f), .position = {0.2 * kLinks + 0.2, 9, 0}, .mass = 5});
     world.Join(JointOf<PointJointSettings>(last, box, {0.2 * kLinks, 9, 0}));
 }
 

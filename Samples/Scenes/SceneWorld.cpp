@@ -100,7 +100,8 @@ BodyId SceneWorld::AddFloor(float halfX, float halfZ) {
 
 void SceneWorld::AddWalls(float halfX, float halfZ, float height) {
     constexpr float kHalfThickness = 0.1f;
-    const ShapePtr alongZ = BoxOf(kHalfThickness, 0.5f * height, halfZ), alongX = BoxOf(halfX, 0.5f * height, kHalfThickness);
+    const ShapePtr alongZ = BoxOf(kHalfThickness, 0.5f * height, halfZ),
+                   alongX = BoxOf(halfX, 0.5f * height, kHalfThickness);
     for (double side : {-1.0, 1.0}) {
         Add({.shape = alongZ, .motion = MotionType::Static, .position = {side * halfX, 0.5 * height, 0}});
         Add({.shape = alongX, .motion = MotionType::Static, .position = {0, 0.5 * height, side * halfZ}});

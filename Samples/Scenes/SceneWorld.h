@@ -1,5 +1,5 @@
-// A physics system filled by a scene, and the helpers with which scenes fill it. Owned by the runner, the benchmark and the
-// tests; one thread at a time.
+// A physics system filled by a scene, and the helpers with which scenes fill it. Owned by the runner, the benchmark and
+// the tests; one thread at a time.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/Compound.h>
@@ -27,8 +27,8 @@ struct SceneInput {
 
 class SceneWorld {
 public:
-    // `jobs` (not owned, may be null) must outlive the world. Errors: those of PhysicsSystem::Create, of the shapes and of
-    // BodyInterface::Create, the first that was met.
+    // `jobs` (not owned, may be null) must outlive the world. Errors: those of PhysicsSystem::Create, of the shapes and
+    // of BodyInterface::Create, the first that was met.
     static Result<std::unique_ptr<SceneWorld>> Create(const Scene& scene, const SceneInput& input = {},
                                                       JobSystem* jobs = nullptr);
 
@@ -48,21 +48,22 @@ public:
     Drawing& Draw() { return drawing_; }
     const Drawing& Draw() const { return drawing_; }
     int StepCount() const { return stepCount_; }
-    double Time() const { return time_; }               // s
+    double Time() const { return time_; }                // s
     double LastStepMs() const { return lastMs_; }        // wall clock of PhysicsSystem::Update alone
     double LongestStepMs() const { return longestMs_; }  // of all but the first step
 
     // Number of bodies with a pose or velocity that is not finite, or frozen for that reason.
     int NonFiniteBodies() const;
 
-    // For scenes. -------------------------------------------------------------------------------------------------------
+    // For scenes.
+    // -------------------------------------------------------------------------------------------------------
 
-    Random random;                // seeded by the input
-    std::vector<BodyId> watched;  // what the figure looks at, in an order that the scene chooses
-    std::vector<JointId> joints;  // likewise
+    Random random;                  // seeded by the input
+    std::vector<BodyId> watched;    // what the figure looks at, in an order that the scene chooses
+    std::vector<JointId> joints;    // likewise
     std::vector<Ragdoll> ragdolls;  // all that AddRagdoll made
-    double figure = 0;            // what the scene's figure adds up over the steps
-    std::vector<Ray> rays;        // of a scene that times a batch of them, and their answers
+    double figure = 0;              // what the scene's figure adds up over the steps
+    std::vector<Ray> rays;          // of a scene that times a batch of them, and their answers
     std::vector<WorldRayHit> rayHits;
 
     // Shapes; null, and an error of Create, where the sizes are wrong.

@@ -4,8 +4,9 @@
 
 namespace fulcrum {
 
-// A line a scene; each is `NameScene::kScene`, defined in the file of its name. A namespace a file, so that several can be
-// compiled at once.
+// A line a scene; each is `NameScene::kScene`, defined in the file of its name. A namespace a file, so that several can
+// be compiled at once.
+// clang-format off
 #define FULCRUM_SCENES(scene) \
     scene(Pyramid)            \
     scene(LargePyramid)       \
@@ -63,10 +64,11 @@ namespace fulcrum {
     scene(DoublePendulum)     \
     scene(Springs)            \
     scene(OverconstrainedDoor)
+// clang-format on
 
-#define FULCRUM_DECLARE(Name)  \
-    namespace Name##Scene {    \
-    extern const Scene kScene; \
+#define FULCRUM_DECLARE(Name)      \
+    namespace Name##Scene {        \
+        extern const Scene kScene; \
     }
 FULCRUM_SCENES(FULCRUM_DECLARE)
 #undef FULCRUM_DECLARE

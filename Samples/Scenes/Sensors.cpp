@@ -6,13 +6,17 @@ namespace {
 // The bodies in the order of `watched`, after the four sensors.
 enum SensorName : size_t { kField, kGate, kScanner, kTarget, kSensors };
 constexpr size_t kFloating = 6, kRolling = 8, kSleeping = 5, kBullets = 4;
-constexpr size_t kFirstRolling = kSensors + kFloating, kFirstSleeping = kFirstRolling + kRolling, kFirstBullet = kFirstSleeping + kSleeping;
-constexpr float kLift = 3;            // times the weight, in the field
-constexpr float kBulletSpeed = 800;   // m/s: 13 m a step
-constexpr double kSleepersAt = 6;     // m, z
+constexpr size_t kFirstRolling = kSensors + kFloating, kFirstSleeping = kFirstRolling + kRolling,
+                 kFirstBullet = kFirstSleeping + kSleeping;
+constexpr float kLift = 3;           // times the weight, in the field
+constexpr float kBulletSpeed = 800;  // m/s: 13 m a step
+constexpr double kSleepersAt = 6;    // m, z
 
-void AddSensor(SceneWorld& world, const ShapePtr& shape, const Position& position, const Vector3& velocity = Vector3::Zero()) {
-    BodySettings settings{.shape = shape, .motion = velocity.isZero(0) ? MotionType::Static : MotionType::Kinematic, .position = position};
+void AddSensor(SceneWorld& world, const ShapePtr& shape, const Position& position,
+               const Vector3& velocity = Vector3::Zero()) {
+    BodySettings settings{.shape = shape,
+                          .motion = velocity.isZero(0) ? MotionType::Static : MotionType::Kinematic,
+                          .position = position};
     settings.linearVelocity = velocity;
     settings.isSensor = true;
     settings.sensorReportsStay = false;
@@ -29,7 +33,8 @@ void Build(SceneWorld& world) {
     const ShapePtr crate = world.BoxOf(0.3f, 0.3f, 0.3f), ball = world.SphereOf(0.3f), bullet = world.SphereOf(0.05f);
     for (size_t i = 0; i < kFloating; ++i) {
         const double k = static_cast<double>(i);
-        world.watched.push_back(world.Add({.shape = crate, .position = {1.2 * k - 3, 3 + 0.2 * k, -6}, .linearDamping = 0.5f}));
+        world.watched.push_back(
+            world.Add({.shape = crate, .position = {1.2 * k - 3, 3 + 0.2 * k, -6}, .linearDamping = 0.5f}));
     }
     for (size_t i = 0; i < kRolling; ++i)
         world.watched.push_back(world.Add({.shape = ball,
@@ -37,15 +42,19 @@ void Build(SceneWorld& world) {
                                            .linearVelocity = {4, 0, 0},
                                            .angularVelocity = {0, 0, -4 / 0.3f}}));
     for (size_t i = 0; i < kSleeping; ++i)
-        world.watched.push_back(world.Add({.shape = crate, .position = {2.5 * static_cast<double>(i) - 5, 0.3, kSleepersAt}, .startAsleep = true}));
+        world.watched.push_back(world.Add(
+            {.shape = crate, .position = {2.5 * static_cast<double>(i) - 5, 0.3, kSleepersAt}, .startAsleep = true}));
     for (size_t i = 0; i < kBullets; ++i) {
         const double k = static_cast<double>(i);
-        world.watched.push_back(world.Add({.shape = bullet, .position = {-1 - 14 * k, 8, 0.4 * k - 0.6}, .linearVelocity = {kBulletSpeed, 0, 0}, .gravityFactor = 0}));
+        world.watched.push_back(world.Add({.shape = bullet,
+                                           .position = {-1 - 14 * k, 8, 0.4 * k - 0.6},
+                                           .linearVelocity = {kBulletSpeed, 0, 0},
+                                           .gravityFactor = 0}));
     }
 }
 
-// The field lifts what is in it, the gate takes away what has passed it, the scanner kicks what it finds aside, the target
-// catches bullets.
+// The field lifts what is in it, the gate takes away what has passed it, the scanner kicks what it finds aside, the
+// target catches bullets.
 void React(SceneWorld& world, double) {
     BodyInterface& bodies = world.Bodies();
     for (const BodyId id : world.System().BodiesInside(world.watched[kField]))
@@ -76,7 +85,8 @@ double Accuracy(const SceneWorld& world) {
 
 extern const Scene kScene{
     .name = "sensors",
-    .description = "a force field, a gate that takes balls away, a scanner that kicks sleepers, a thin target for bullets",
+    .description =
+        "a force field, a gate that takes balls away, a scanner that kicks sleepers, a thin target for bullets",
     .build = Build,
     .beforeStep = React,
     .accuracy = Accuracy,

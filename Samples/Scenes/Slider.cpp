@@ -7,12 +7,13 @@
 namespace fulcrum::SliderScene {
 namespace {
 
-constexpr int kLift = 180;        // steps up, and as many down
-constexpr float kTop = 2;         // m, its upper limit
-constexpr double kSlope = 0.5;    // rad
+constexpr int kLift = 180;      // steps up, and as many down
+constexpr float kTop = 2;       // m, its upper limit
+constexpr double kSlope = 0.5;  // rad
 enum : size_t { kElevator, kHeld, kSliding };
 
-// An elevator with freight between its limits, two carts on a slope of which friction holds one, and a weight on a soft stop.
+// An elevator with freight between its limits, two carts on a slope of which friction holds one, and a weight on a soft
+// stop.
 void Build(SceneWorld& world) {
     world.AddFloor(10, 6);
     const BodyId shaft = AddHook(world, {-4, 3, -1.5});
@@ -20,12 +21,16 @@ void Build(SceneWorld& world) {
     auto elevator = JointOf<SliderJointSettings>(shaft, cabin, {-4, 0.2, 0}, {0, 1, 0});
     elevator.slide = Limited(0, kTop);
     world.joints.push_back(world.Join(elevator));
-    for (int i = 0; i < 3; ++i) world.Add({.shape = world.BoxOf(0.25f, 0.25f, 0.25f), .position = {-4, 0.55 + 0.5 * i, 0}, .mass = 20});
+    for (int i = 0; i < 3; ++i)
+        world.Add({.shape = world.BoxOf(0.25f, 0.25f, 0.25f), .position = {-4, 0.55 + 0.5 * i, 0}, .mass = 20});
 
     const Vector3 down(static_cast<float>(Cos(kSlope)), static_cast<float>(-Sin(kSlope)), 0);
     for (const float friction : {60.0f, 30.0f}) {  // 10 kg on the slope: 47 N
         const Position place(0, 3, friction > 50 ? -1 : 1);
-        const BodyId cart = world.Add({.shape = world.BoxOf(0.3f, 0.15f, 0.2f), .position = place, .rotation = RotationAbout({0, 0, 1}, -kSlope), .mass = 10});
+        const BodyId cart = world.Add({.shape = world.BoxOf(0.3f, 0.15f, 0.2f),
+                                       .position = place,
+                                       .rotation = RotationAbout({0, 0, 1}, -kSlope),
+                                       .mass = 10});
         auto rail = JointOf<SliderJointSettings>(AddHook(world, place), cart, place, down);
         rail.slide = Limited(0, 3);
         rail.slide.friction = friction;
@@ -44,7 +49,9 @@ void Drive(SceneWorld& world, double) {
 }
 
 double Accuracy(const SceneWorld& world) {
-    const auto place = [&](size_t joint) { return world.Joints().GetCoordinate(world.joints[joint], JointAxis::LinearX); };
+    const auto place = [&](size_t joint) {
+        return world.Joints().GetCoordinate(world.joints[joint], JointAxis::LinearX);
+    };
     const double end = (world.StepCount() - 1) / kLift % 2 ? 0 : double(kTop);
     return std::max({std::fabs(place(kElevator) - end), std::fabs(place(kHeld)), std::fabs(place(kSliding) - 3)});
 }
@@ -59,7 +66,8 @@ extern const Scene kScene{
     .build = Build,
     .beforeStep = Drive,
     .accuracy = Accuracy,
-    .accuracyMeaning = "how far the elevator, the cart that holds and the cart that slides are from where they belong, m",
+    .accuracyMeaning =
+        "how far the elevator, the cart that holds and the cart that slides are from where they belong, m",
 };
 
 }  // namespace fulcrum::SliderScene

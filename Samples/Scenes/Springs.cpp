@@ -8,18 +8,20 @@
 namespace fulcrum::SpringsScene {
 namespace {
 
-constexpr std::array<double, 5> kFrequencies{0.5, 1, 2, 3, 5};           // Hz, from left to right
-constexpr std::array<double, 5> kDampings{0.05, 0.1, 0.2, 0.4, 0.65};    // ratios, from front to back
-constexpr double kStart = 0.5;                                           // m
+constexpr std::array<double, 5> kFrequencies{0.5, 1, 2, 3, 5};         // Hz, from left to right
+constexpr std::array<double, 5> kDampings{0.05, 0.1, 0.2, 0.4, 0.65};  // ratios, from front to back
+constexpr double kStart = 0.5;                                         // m
 
 // A table of weights on springs, all let go half a meter up.
 void Build(SceneWorld& world) {
     const ShapePtr cube = world.BoxOf(0.2f, 0.2f, 0.2f);
     for (size_t i = 0; i < kFrequencies.size(); ++i)
         for (size_t k = 0; k < kDampings.size(); ++k) {
-            const Position middle(static_cast<double>(i) - 2, 1.5, static_cast<double>(k) - 2), place = middle + Position(0, kStart, 0);
+            const Position middle(static_cast<double>(i) - 2, 1.5, static_cast<double>(k) - 2),
+                place = middle + Position(0, kStart, 0);
             const BodyId weight = world.Add({.shape = cube, .position = place, .mass = 1.0f + static_cast<float>(k)});
-            auto settings = JointOfTwo<SliderJointSettings>(AddHook(world, middle - Position(0, 1, 0)), weight, middle, place, {0, 1, 0});
+            auto settings = JointOfTwo<SliderJointSettings>(AddHook(world, middle - Position(0, 1, 0)), weight, middle,
+                                                            place, {0, 1, 0});
             settings.slide = Limited(0, 0, static_cast<float>(kFrequencies[i]), static_cast<float>(kDampings[k]));
             world.joints.push_back(world.Join(settings));
         }
@@ -32,9 +34,12 @@ double Accuracy(const SceneWorld& world) {
     double worst = 0;
     for (size_t i = 0; i < kFrequencies.size(); ++i)
         for (size_t k = 0; k < kDampings.size(); ++k) {
-            const double omega = 2 * kPi * kFrequencies[i], zeta = kDampings[k], root = std::sqrt(1 - zeta * zeta), phase = omega * root * world.Time();
-            const double expected = kStart * Exp(-zeta * omega * world.Time()) * (Cos(phase) + zeta / root * Sin(phase));
-            const double found = world.Joints().GetCoordinate(world.joints[i * kDampings.size() + k], JointAxis::LinearX);
+            const double omega = 2 * kPi * kFrequencies[i], zeta = kDampings[k], root = std::sqrt(1 - zeta * zeta),
+                         phase = omega * root * world.Time();
+            const double expected =
+                kStart * Exp(-zeta * omega * world.Time()) * (Cos(phase) + zeta / root * Sin(phase));
+            const double found =
+                world.Joints().GetCoordinate(world.joints[i * kDampings.size() + k], JointAxis::LinearX);
             worst = std::max(worst, std::fabs(found - expected));
         }
     return worst;

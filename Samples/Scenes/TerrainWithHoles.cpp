@@ -40,25 +40,33 @@ void Build(SceneWorld& world) {
             heights.push_back(HeightAt(x, z));
             if (x < kCells && z < kCells) cells.push_back(CellAt(x, z));
         }
-    const std::array<SurfaceMaterial, 3> materials{{{.friction = 0.7f}, {.friction = 0}, {.friction = 0.7f, .restitution = 0.9f}}};
-    const auto field = HeightField::Create({.sampleCountX = kCells + 1, .sampleCountZ = kCells + 1, .heights = heights,
-                                            .cellSizeX = kCell, .cellSizeZ = kCell, .origin = {-kHalf, 0, -kHalf},
-                                            .cells = cells, .materials = materials});
+    const std::array<SurfaceMaterial, 3> materials{
+        {{.friction = 0.7f}, {.friction = 0}, {.friction = 0.7f, .restitution = 0.9f}}};
+    const auto field = HeightField::Create({.sampleCountX = kCells + 1,
+                                            .sampleCountZ = kCells + 1,
+                                            .heights = heights,
+                                            .cellSizeX = kCell,
+                                            .cellSizeZ = kCell,
+                                            .origin = {-kHalf, 0, -kHalf},
+                                            .cells = cells,
+                                            .materials = materials});
     world.watched.push_back(world.Add({.shape = field.Value(), .motion = MotionType::Static}));
     world.AddFloor(kHalf + 8, kHalf + 8);
     world.AddWalls(kHalf + 6, kHalf + 6, 2);
-    const std::array<ShapePtr, 4> shapes{world.SphereOf(0.3f), world.BoxOf(0.3f, 0.25f, 0.35f), world.CapsuleOf(0.25f, 0.2f),
-                                         world.SphereOf(0.4f)};
+    const std::array<ShapePtr, 4> shapes{world.SphereOf(0.3f), world.BoxOf(0.3f, 0.25f, 0.35f),
+                                         world.CapsuleOf(0.25f, 0.2f), world.SphereOf(0.4f)};
     for (int i = 0; i < 144; ++i) {
         const double x = 2.4 * (i % 12 - 5.5), z = 2.4 * (i / 12 - 5.5);
         world.watched.push_back(world.Add({.shape = shapes[static_cast<size_t>(i + i / 12) % shapes.size()],
-                                           .position = {x, 11 + 0.2 * (i % 5), z}, .rotation = RotationAbout(Vector3(0.6f, 0, 0.8f), 0.7 * i)}));
+                                           .position = {x, 11 + 0.2 * (i % 5), z},
+                                           .rotation = RotationAbout(Vector3(0.6f, 0, 0.8f), 0.7 * i)}));
     }
 }
 
 // The scene made the field and may change it; others see it as constant.
 std::shared_ptr<HeightField> FieldOf(const SceneWorld& world) {
-    return std::const_pointer_cast<HeightField>(std::static_pointer_cast<const HeightField>(world.Bodies().GetShape(world.watched[0])));
+    return std::const_pointer_cast<HeightField>(
+        std::static_pointer_cast<const HeightField>(world.Bodies().GetShape(world.watched[0])));
 }
 
 // The middle opens, and what lies there falls. A field that changed is placed anew: that wakes what rested on it.
@@ -86,14 +94,16 @@ void DrawTheCells(SceneWorld& world, const HeightField& field) {
         }
 }
 
-// Counts bodies whose center passes the surface where it is solid. Where the field is and its own frame are the world's.
+// Counts bodies whose center passes the surface where it is solid. Where the field is and its own frame are the
+// world's.
 void Watch(SceneWorld& world) {
     const auto field = FieldOf(world);
     for (size_t i = 1; i < world.watched.size(); ++i) {
         const Position now = world.Bodies().GetCenterOfMass(world.watched[i]);
         const double before = now.y() - double{world.Bodies().GetLinearVelocity(world.watched[i]).y()} / 60;
         SurfaceHit hit;
-        const SurfaceRay down{Vector3(static_cast<float>(now.x()), 20, static_cast<float>(now.z())), Vector3(0, -20, 0), false};
+        const SurfaceRay down{Vector3(static_cast<float>(now.x()), 20, static_cast<float>(now.z())), Vector3(0, -20, 0),
+                              false};
         if (!field->CastRay(down, hit)) continue;
         const double height = 20 - 20 * double{hit.fraction};
         if (now.y() < height && before >= height) ++world.figure;
@@ -105,7 +115,8 @@ void Watch(SceneWorld& world) {
 
 extern const Scene kScene{
     .name = "terrain_with_holes",
-    .description = "bodies roll down a height field of grass, ice and rubber into its holes; in the middle one opens after 5 s",
+    .description =
+        "bodies roll down a height field of grass, ice and rubber into its holes; in the middle one opens after 5 s",
     .steps = 600,
     .build = Build,
     .beforeStep = OpenTheMiddle,

@@ -3,18 +3,20 @@
 namespace fulcrum::TrapDoorScene {
 namespace {
 
-constexpr int kRemovedAt = 180;   // step: both stacks have slept for long
+constexpr int kRemovedAt = 180;  // step: both stacks have slept for long
 constexpr int kStacked = 5;
-constexpr double kPillar = 2;     // m, its height
+constexpr double kPillar = 2;  // m, its height
 
 double StartHeight(int box) { return kPillar + 0.4 + 0.8 * box; }
 
 // Two stacks on pillars; watched are the left pillar, the left stack, the right stack.
 void Build(SceneWorld& world) {
     world.AddFloor(10, 10);
-    const ShapePtr pillar = world.BoxOf(0.6f, static_cast<float>(kPillar / 2), 0.6f), cube = world.BoxOf(0.4f, 0.4f, 0.4f);
+    const ShapePtr pillar = world.BoxOf(0.6f, static_cast<float>(kPillar / 2), 0.6f),
+                   cube = world.BoxOf(0.4f, 0.4f, 0.4f);
     for (double x : {-1.5, 1.5}) {
-        const BodyId support = world.Add({.shape = pillar, .motion = MotionType::Static, .position = {x, kPillar / 2, 0}});
+        const BodyId support =
+            world.Add({.shape = pillar, .motion = MotionType::Static, .position = {x, kPillar / 2, 0}});
         if (x < 0) world.watched.push_back(support);
     }
     for (double x : {-1.5, 1.5})

@@ -13,7 +13,8 @@ double GridHeight(int x, int z) { return 5 + 5 * std::sin(50.0 * x / kWavyCells)
 
 double WavyHeight(double x, double z) {
     const double gridX = x / kWavyCell + kWavyCells / 2, gridZ = z / kWavyCell + kWavyCells / 2;
-    const int cellX = std::clamp(static_cast<int>(gridX), 0, kWavyCells - 1), cellZ = std::clamp(static_cast<int>(gridZ), 0, kWavyCells - 1);
+    const int cellX = std::clamp(static_cast<int>(gridX), 0, kWavyCells - 1),
+              cellZ = std::clamp(static_cast<int>(gridZ), 0, kWavyCells - 1);
     const double u = gridX - cellX, v = gridZ - cellZ;
     const double across = GridHeight(cellX + 1, cellZ), along = GridHeight(cellX, cellZ + 1);
     // Cells are cut from (0, 1) to (1, 0).
@@ -31,19 +32,23 @@ BodyId AddWavyGround(SceneWorld& world, const Material& material) {
     const auto at = [](int x, int z) { return static_cast<uint32_t>(z * (kWavyCells + 1) + x); };
     for (int z = 0; z <= kWavyCells; ++z)
         for (int x = 0; x <= kWavyCells; ++x)
-            vertices.emplace_back(static_cast<float>(kWavyCell * (x - kWavyCells / 2)), static_cast<float>(GridHeight(x, z)),
+            vertices.emplace_back(static_cast<float>(kWavyCell * (x - kWavyCells / 2)),
+                                  static_cast<float>(GridHeight(x, z)),
                                   static_cast<float>(kWavyCell * (z - kWavyCells / 2)));
     for (int z = 0; z < kWavyCells; ++z)
         for (int x = 0; x < kWavyCells; ++x)
-            indices.insert(indices.end(), {at(x, z), at(x, z + 1), at(x + 1, z), at(x + 1, z), at(x, z + 1), at(x + 1, z + 1)});
+            indices.insert(indices.end(),
+                           {at(x, z), at(x, z + 1), at(x + 1, z), at(x + 1, z), at(x, z + 1), at(x + 1, z + 1)});
     return world.Add({.shape = world.MeshOf(vertices, indices), .motion = MotionType::Static, .material = material});
 }
 
 void AddShapesOverWaves(SceneWorld& world) {
     const Material bouncy{.friction = 0.5f, .restitution = 0.6f};
     AddWavyGround(world, bouncy);
-    const Vector3 corners[] = {Vector3(0, 1, 0), Vector3(1, 0, 0), Vector3(-1, 0, 0), Vector3(0, 0, 1), Vector3(0, 0, -1)};
-    const ShapePtr shapes[] = {world.BoxOf(0.5f, 0.75f, 1), world.SphereOf(0.5f), world.CapsuleOf(0.75f, 0.5f), world.HullOf(corners)};
+    const Vector3 corners[] = {Vector3(0, 1, 0), Vector3(1, 0, 0), Vector3(-1, 0, 0), Vector3(0, 0, 1),
+                               Vector3(0, 0, -1)};
+    const ShapePtr shapes[] = {world.BoxOf(0.5f, 0.75f, 1), world.SphereOf(0.5f), world.CapsuleOf(0.75f, 0.5f),
+                               world.HullOf(corners)};
     for (int x = -10; x <= 10; ++x)
         for (int y = 0; y < 4; ++y)
             for (int z = -10; z <= 10; ++z)

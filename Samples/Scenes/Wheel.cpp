@@ -6,16 +6,21 @@
 namespace fulcrum::WheelScene {
 namespace {
 
-constexpr float kRadius = 0.4f;     // m, of the wheels
-constexpr double kSpeed = 5;        // m/s
-constexpr int kStraight = 360;      // steps of slalom before it drives straight on
+constexpr float kRadius = 0.4f;  // m, of the wheels
+constexpr double kSpeed = 5;     // m/s
+constexpr int kStraight = 360;   // steps of slalom before it drives straight on
 
 // A rig of four sprung wheels, of which the front ones steer and the rear ones drive, over sleepers and in a slalom.
 void Build(SceneWorld& world) {
-    world.Add({.shape = world.BoxOf(60, 1, 20), .motion = MotionType::Static, .position = {40, -1, 0}, .material = {.friction = 1}});
+    world.Add({.shape = world.BoxOf(60, 1, 20),
+               .motion = MotionType::Static,
+               .position = {40, -1, 0},
+               .material = {.friction = 1}});
     for (int i = 0; i < 6; ++i)
-        world.Add({.shape = world.CapsuleOf(1.5f, 0.05f), .motion = MotionType::Static,
-                   .position = {4.0 + 1.5 * i, 0, i % 2 ? 1.2 : -1.2}, .rotation = RotationAbout({1, 0, 0}, kPi / 2)});
+        world.Add({.shape = world.CapsuleOf(1.5f, 0.05f),
+                   .motion = MotionType::Static,
+                   .position = {4.0 + 1.5 * i, 0, i % 2 ? 1.2 : -1.2},
+                   .rotation = RotationAbout({1, 0, 0}, kPi / 2)});
     const BodyId chassis = world.Add({.shape = world.BoxOf(1.6f, 0.25f, 0.7f), .position = {0, 0.75, 0}, .mass = 600});
     world.watched.push_back(chassis);
     const ShapePtr wheel = world.SphereOf(kRadius);
@@ -36,7 +41,8 @@ void Build(SceneWorld& world) {
 void Steer(SceneWorld& world, double) {
     const double angle = world.StepCount() < kStraight ? 0.25 * Sin(1.5 * world.Time()) : 0;
     for (size_t i = 0; i < 2; ++i)
-        (void)world.Joints().SetMotor(world.joints[i], JointAxis::AngularY, MotorToPosition(static_cast<float>(angle), 8));
+        (void)world.Joints().SetMotor(world.joints[i], JointAxis::AngularY,
+                                      MotorToPosition(static_cast<float>(angle), 8));
 }
 
 double Accuracy(const SceneWorld& world) {

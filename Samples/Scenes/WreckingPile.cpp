@@ -6,8 +6,8 @@
 namespace fulcrum::WreckingPileScene {
 namespace {
 
-constexpr int kGateOpens = 240;           // step
-constexpr double kSlope = 30 * kDegree;   // of the ramp, which falls towards +x
+constexpr int kGateOpens = 240;          // step
+constexpr double kSlope = 30 * kDegree;  // of the ramp, which falls towards +x
 const Position kRampCenter(-14, 4, 0);
 constexpr float kBallRadius = 1.2f;
 
@@ -38,7 +38,8 @@ Position OnRamp(double along, double above) {
 
 void AddRampAndBall(SceneWorld& world) {
     const Quaternion tilt = RotationAbout(Vector3(0, 0, 1), -kSlope);
-    world.Add({.shape = world.BoxOf(7, 0.3f, 2), .motion = MotionType::Static, .position = kRampCenter, .rotation = tilt});
+    world.Add(
+        {.shape = world.BoxOf(7, 0.3f, 2), .motion = MotionType::Static, .position = kRampCenter, .rotation = tilt});
     for (double side : {-1.0, 1.0})
         world.Add({.shape = world.BoxOf(7, 0.5f, 0.1f),
                    .motion = MotionType::Static,
@@ -58,8 +59,8 @@ void AddRampAndBall(SceneWorld& world) {
 void Build(SceneWorld& world) {
     world.AddFloor(26, 26);
     world.AddWalls(25, 25, 3);
-    const std::array<ShapePtr, 5> shapes{world.SphereOf(0.5f), world.BoxOf(0.5f, 0.4f, 0.3f), world.CapsuleOf(0.4f, 0.3f),
-                                         Rock(world), Jack(world)};
+    const std::array<ShapePtr, 5> shapes{world.SphereOf(0.5f), world.BoxOf(0.5f, 0.4f, 0.3f),
+                                         world.CapsuleOf(0.4f, 0.3f), Rock(world), Jack(world)};
     AddRampAndBall(world);
     for (int layer = 0; layer < 10; ++layer)
         for (int i = 0; i < 5; ++i)

@@ -24,7 +24,8 @@ size_t GlbBuffer::Add(const void* data, size_t size, size_t count, const char* t
 
 size_t GlbBuffer::AddVertices(const std::vector<Vector3>& vertices) {
     static_assert(sizeof(Vector3) == 3 * sizeof(float));
-    const size_t accessor = Add(vertices.data(), vertices.size() * sizeof(Vector3), vertices.size(), "VEC3", Target::Vertices);
+    const size_t accessor =
+        Add(vertices.data(), vertices.size() * sizeof(Vector3), vertices.size(), "VEC3", Target::Vertices);
     Vector3 lower = vertices.front(), upper = vertices.front();
     for (const Vector3& v : vertices) {
         lower = lower.cwiseMin(v);
@@ -47,7 +48,8 @@ size_t GlbBuffer::AddTimes(const std::vector<float>& seconds) {
 }
 
 size_t GlbBuffer::AddValues(const std::vector<std::array<float, 3>>& translations) {
-    return Add(translations.data(), translations.size() * sizeof(translations[0]), translations.size(), "VEC3", Target::None);
+    return Add(translations.data(), translations.size() * sizeof(translations[0]), translations.size(), "VEC3",
+               Target::None);
 }
 
 size_t GlbBuffer::AddValues(const std::vector<std::array<float, 4>>& rotations) {

@@ -43,8 +43,9 @@ std::vector<std::vector<Key>> KeysOfBodies(const Recording& recording) {
 template <size_t N>
 using Curve = std::vector<std::array<float, N>>;
 
-// Indices of the values that a straight line between those kept does not give within the tolerance. A kept value opens a
-// cone of slopes, one interval a component, that all values since must lie in; the value before the first outside is kept.
+// Indices of the values that a straight line between those kept does not give within the tolerance. A kept value opens
+// a cone of slopes, one interval a component, that all values since must lie in; the value before the first outside is
+// kept.
 template <size_t N>
 std::vector<size_t> NeededKeys(const std::vector<float>& times, const Curve<N>& values, float tolerance) {
     std::vector<size_t> needed = {0};
@@ -92,7 +93,8 @@ public:
         : recording_(recording), keys_(KeysOfBodies(recording)), presences_(PresencesOf(recording)) {
         AddMaterials();
         if (recording.frames.empty())
-            for (uint32_t body = 0; body < recording.bodies.size(); ++body) presences_.push_back({body, recording.bodies[body].shape, 0, 0});
+            for (uint32_t body = 0; body < recording.bodies.size(); ++body)
+                presences_.push_back({body, recording.bodies[body].shape, 0, 0});
         for (size_t node = 0; node < presences_.size(); ++node) AddNode(node);
         for (size_t node = 0; node < presences_.size(); ++node) Animate(node);
         Finish();
@@ -102,33 +104,40 @@ public:
     const std::string& Binary() const { return buffer_.Bytes(); }
 
 private:
-    // One for static bodies, one for kinematic ones, then a few for dynamic ones, of neighboring bodies different; last glass,
-    // for sensors.
+    // One for static bodies, one for kinematic ones, then a few for dynamic ones, of neighboring bodies different; last
+    // glass, for sensors.
     void AddMaterials() {
-        static constexpr std::array<std::array<float, 3>, 7> kColors = {{{0.64f, 0.68f, 0.72f}, {0.32f, 0.38f, 0.45f}, {0.14f, 0.32f, 0.62f},
-                                                                          {0.74f, 0.35f, 0.11f}, {0.16f, 0.44f, 0.23f}, {0.62f, 0.14f, 0.16f},
-                                                                          {0.30f, 0.22f, 0.58f}}};
+        static constexpr std::array<std::array<float, 3>, 7> kColors = {{{0.64f, 0.68f, 0.72f},
+                                                                         {0.32f, 0.38f, 0.45f},
+                                                                         {0.14f, 0.32f, 0.62f},
+                                                                         {0.74f, 0.35f, 0.11f},
+                                                                         {0.16f, 0.44f, 0.23f},
+                                                                         {0.62f, 0.14f, 0.16f},
+                                                                         {0.30f, 0.22f, 0.58f}}};
         for (const auto& color : kColors)
             json_["materials"].push_back({{"pbrMetallicRoughness",
                                            {{"baseColorFactor", {color[0], color[1], color[2], 1.0f}},
                                             {"metallicFactor", 0.0f},
                                             {"roughnessFactor", 0.65f}}}});
         dynamicMaterials_ = kColors.size() - 2;
-        const bool hasSensors = std::any_of(recording_.bodies.begin(), recording_.bodies.end(), [](const RecordedBody& body) { return body.isSensor; });
+        const bool hasSensors = std::any_of(recording_.bodies.begin(), recording_.bodies.end(),
+                                            [](const RecordedBody& body) { return body.isSensor; });
         if (!hasSensors) return;
         json_["materials"].push_back({{"name", "glass"},
                                       {"alphaMode", "BLEND"},
                                       {"doubleSided", true},
                                       {"pbrMetallicRoughness",
-                                       {{"baseColorFactor", {0.04f, 0.39f, 0.54f, 0.3f}}, {"metallicFactor", 0.0f}, {"roughnessFactor", 0.2f}}}});
+                                       {{"baseColorFactor", {0.04f, 0.39f, 0.54f, 0.3f}},
+                                        {"metallicFactor", 0.0f},
+                                        {"roughnessFactor", 0.2f}}}});
     }
 
     size_t MaterialOf(size_t body) const {
         if (recording_.bodies[body].isSensor) return 2 + dynamicMaterials_;
         switch (recording_.bodies[body].motion) {
-        case RecordedMotion::Static: return 0;
-        case RecordedMotion::Kinematic: return 1;
-        case RecordedMotion::Dynamic: break;
+            case RecordedMotion::Static: return 0;
+            case RecordedMotion::Kinematic: return 1;
+            case RecordedMotion::Dynamic: break;
         }
         return 2 + body % dynamicMaterials_;
     }
@@ -139,7 +148,8 @@ private:
         if (!isNew) return found->second;
         if (!geometries_.contains(shape)) {
             const ShapeMesh mesh = MeshOfShape(recording_, shape);
-            geometries_[shape] = {buffer_.AddVertices(mesh.positions), buffer_.AddVertices(mesh.normals), buffer_.AddIndices(mesh.indices)};
+            geometries_[shape] = {buffer_.AddVertices(mesh.positions), buffer_.AddVertices(mesh.normals),
+                                  buffer_.AddIndices(mesh.indices)};
         }
         const Geometry& geometry = geometries_[shape];
         Json mesh = {{"primitives",
@@ -167,7 +177,9 @@ private:
         json_["nodes"].push_back(node);
     }
 
-    float TimeOf(size_t frame) const { return static_cast<float>(recording_.frames[frame].time - recording_.frames[0].time); }
+    float TimeOf(size_t frame) const {
+        return static_cast<float>(recording_.frames[frame].time - recording_.frames[0].time);
+    }
 
     // What is not there has no size.
     void AnimatePresence(size_t node) {
@@ -202,7 +214,8 @@ private:
     }
 
     template <size_t N>
-    void AddChannel(size_t node, const char* path, const std::vector<float>& times, const Curve<N>& values, float tolerance) {
+    void AddChannel(size_t node, const char* path, const std::vector<float>& times, const Curve<N>& values,
+                    float tolerance) {
         if (values.size() < 2 || !Moves(values, tolerance)) return;
         std::vector<float> keptTimes;
         Curve<N> kept;
@@ -214,12 +227,14 @@ private:
     }
 
     template <size_t N>
-    void AddSampler(size_t node, const char* path, const std::vector<float>& times, const Curve<N>& values, const char* interpolation) {
+    void AddSampler(size_t node, const char* path, const std::vector<float>& times, const Curve<N>& values,
+                    const char* interpolation) {
         const size_t sampler = samplers_.size();
         // Many bodies have the same key times, those that moved in every frame for one.
         auto [input, isNew] = inputs_.try_emplace(times, 0);
         if (isNew) input->second = buffer_.AddTimes(times);
-        samplers_.push_back({{"input", input->second}, {"output", buffer_.AddValues(values)}, {"interpolation", interpolation}});
+        samplers_.push_back(
+            {{"input", input->second}, {"output", buffer_.AddValues(values)}, {"interpolation", interpolation}});
         channels_.push_back({{"sampler", sampler}, {"target", {{"node", node}, {"path", path}}}});
     }
 
@@ -269,13 +284,15 @@ std::string Padded(std::string bytes, char filler) {
 Status WriteGlb(const Recording& recording, const std::filesystem::path& path) {
     if (Status valid = CheckRecording(recording); !valid) return valid;
     if (recording.bodies.empty())
-        return Error{ErrorCode::OutOfRange, "cannot write " + path.string() + ": the recording has no bodies, and glTF no empty scenes"};
+        return Error{ErrorCode::OutOfRange,
+                     "cannot write " + path.string() + ": the recording has no bodies, and glTF no empty scenes"};
     const Document document(recording);
     const std::string text = Padded(document.Text().dump(-1, ' ', false, Json::error_handler_t::replace), ' ');
     const std::string binary = Padded(document.Binary(), '\0');
     const uint64_t length = 12 + 8 + text.size() + (binary.empty() ? 0 : 8 + binary.size());
     if (length > kLargestFile)
-        return Error{ErrorCode::OutOfRange, "cannot write " + path.string() + ": " + std::to_string(length) + " bytes do not fit into a .glb"};
+        return Error{ErrorCode::OutOfRange,
+                     "cannot write " + path.string() + ": " + std::to_string(length) + " bytes do not fit into a .glb"};
     const std::string header = "glTF" + LittleEndian(2) + LittleEndian(length) + LittleEndian(text.size()) + "JSON";
     const std::string binaryHeader = binary.empty() ? "" : LittleEndian(binary.size()) + std::string("BIN\0", 4);
     return WriteWholeFile(path, {header, text, binaryHeader, binary});

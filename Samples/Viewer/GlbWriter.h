@@ -11,8 +11,8 @@
 namespace fulcrum {
 
 // Creates or replaces `path`: whole or not at all. Key frames that a straight line between their neighbors gives anyway
-// (within 0.2 mm and 0.0005 of a quaternion's part) are left out. Errors as WriteHtml; OutOfRange also where the file would not fit the
-// format's 4 GiB.
+// (within 0.2 mm and 0.0005 of a quaternion's part) are left out. Errors as WriteHtml; OutOfRange also where the file
+// would not fit the format's 4 GiB.
 Status WriteGlb(const Recording& recording, const std::filesystem::path& path);
 
 }  // namespace fulcrum

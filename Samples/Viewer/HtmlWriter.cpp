@@ -26,8 +26,8 @@ Status WriteHtml(const Recording& recording, const std::filesystem::path& path) 
     const std::string page = ReadFile(FULCRUM_VIEWER_PAGE);
     const size_t place = page.find(kPlaceOfRecording);
     if (place == std::string::npos)
-        return Error{ErrorCode::OutOfRange,
-                     "the page's bundle " FULCRUM_VIEWER_PAGE " is missing or damaged: build the target FulcrumViewerPage"};
+        return Error{ErrorCode::OutOfRange, "the page's bundle " FULCRUM_VIEWER_PAGE
+                                            " is missing or damaged: build the target FulcrumViewerPage"};
     const std::string data = Base64(Deflated(EncodePageData(recording)));
     const std::string_view whole = page;
     return WriteWholeFile(path, {whole.substr(0, place), data, whole.substr(place + kPlaceOfRecording.size())});

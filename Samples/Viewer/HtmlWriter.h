@@ -10,8 +10,9 @@
 namespace fulcrum {
 
 // Creates or replaces `path`: whole or not at all, since the page is written beside it first and then renamed.
-// Error OutOfRange, with the path and the system's reason: the page cannot be written there, or the page's template, which
-// the build left at a place of its own, cannot be read. Error UnknownId: the recording names a body or shape that it lacks.
+// Error OutOfRange, with the path and the system's reason: the page cannot be written there, or the page's template,
+// which the build left at a place of its own, cannot be read. Error UnknownId: the recording names a body or shape that
+// it lacks.
 Status WriteHtml(const Recording& recording, const std::filesystem::path& path);
 
 }  // namespace fulcrum

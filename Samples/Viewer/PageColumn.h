@@ -16,7 +16,9 @@ public:
         for (; value >= 128; value >>= 7) bytes_.push_back(static_cast<char>(128 | (value & 127)));
         bytes_.push_back(static_cast<char>(value));
     }
-    void PutSigned(int64_t value) { PutUnsigned(static_cast<uint64_t>(value) << 1 ^ static_cast<uint64_t>(value >> 63)); }
+    void PutSigned(int64_t value) {
+        PutUnsigned(static_cast<uint64_t>(value) << 1 ^ static_cast<uint64_t>(value >> 63));
+    }
     template <size_t N>
     void PutDifference(const std::array<int64_t, N>& value, const std::array<int64_t, N>& expected) {
         for (size_t i = 0; i < N; ++i) PutSigned(value[i] - expected[i]);

@@ -80,9 +80,9 @@ private:
 
     bool HasChanged(const RecordedState& state) const {
         const BodyMemory& last = memory_[state.body];
-        return !last.isKnown || last.awake != state.awake || last.isThere != state.isThere || last.island != state.island ||
-               last.position != Quantized(state.position, positionStep_) || last.rotation != QuantizedRotation(state) ||
-               last.velocity != QuantizedVelocity(state);
+        return !last.isKnown || last.awake != state.awake || last.isThere != state.isThere ||
+               last.island != state.island || last.position != Quantized(state.position, positionStep_) ||
+               last.rotation != QuantizedRotation(state) || last.velocity != QuantizedVelocity(state);
     }
 
     void PutState(size_t frame, const RecordedState& state, Column& flags) {
@@ -143,27 +143,28 @@ Json AsJson(const RecordedShape& shape) {
     Json json;
     if (!shape.name.empty()) json["name"] = shape.name;
     switch (shape.kind) {
-    case RecordedShapeKind::Sphere: json.update({{"kind", "sphere"}, {"radius", shape.radius}}); break;
-    case RecordedShapeKind::Box: json.update({{"kind", "box"}, {"halfExtents", AsJson(shape.halfExtents)}}); break;
-    case RecordedShapeKind::Capsule:
-        json.update({{"kind", "capsule"}, {"radius", shape.radius}, {"halfHeight", shape.halfHeight}});
-        break;
-    case RecordedShapeKind::Hull: {
-        Json vertices = Json::array();
-        for (const Vector3& v : shape.vertices) vertices.push_back(AsJson(v));
-        json.update({{"kind", "hull"}, {"vertices", vertices}, {"triangles", shape.triangles}});
-        break;
-    }
-    case RecordedShapeKind::Compound: {
-        Json children = Json::array();
-        for (const RecordedChild& child : shape.children) {
-            const Quaternion& q = child.pose.rotation;
-            children.push_back(
-                {{"shape", child.shape}, {"position", AsJson(child.pose.position)}, {"rotation", {q.x, q.y, q.z, q.w}}});
+        case RecordedShapeKind::Sphere: json.update({{"kind", "sphere"}, {"radius", shape.radius}}); break;
+        case RecordedShapeKind::Box: json.update({{"kind", "box"}, {"halfExtents", AsJson(shape.halfExtents)}}); break;
+        case RecordedShapeKind::Capsule:
+            json.update({{"kind", "capsule"}, {"radius", shape.radius}, {"halfHeight", shape.halfHeight}});
+            break;
+        case RecordedShapeKind::Hull: {
+            Json vertices = Json::array();
+            for (const Vector3& v : shape.vertices) vertices.push_back(AsJson(v));
+            json.update({{"kind", "hull"}, {"vertices", vertices}, {"triangles", shape.triangles}});
+            break;
         }
-        json.update({{"kind", "compound"}, {"children", children}});
-        break;
-    }
+        case RecordedShapeKind::Compound: {
+            Json children = Json::array();
+            for (const RecordedChild& child : shape.children) {
+                const Quaternion& q = child.pose.rotation;
+                children.push_back({{"shape", child.shape},
+                                    {"position", AsJson(child.pose.position)},
+                                    {"rotation", {q.x, q.y, q.z, q.w}}});
+            }
+            json.update({{"kind", "compound"}, {"children", children}});
+            break;
+        }
     }
     return json;
 }
@@ -188,14 +189,16 @@ Json Header(const Recording& recording, double positionStep) {
     for (size_t i = 0; i < recording.frames.size(); ++i) {
         times.push_back(recording.frames[i].time);
         if (recording.frames[i].hasContacts) contactFrames.push_back(i);
-        for (const RecordedShapeChange& change : recording.frames[i].shapes) shapeChanges.push_back({i, change.body, change.shape});
+        for (const RecordedShapeChange& change : recording.frames[i].shapes)
+            shapeChanges.push_back({i, change.body, change.shape});
     }
     header["times"] = std::move(times);
     header["contactFrames"] = std::move(contactFrames);
     header["shapeChanges"] = std::move(shapeChanges);
     Json& shapes = header["shapes"] = Json::array();
     for (const RecordedShape& shape : recording.shapes) shapes.push_back(AsJson(shape));
-    Json bodyShapes = Json::array(), motions = Json::array(), masses = Json::array(), names = Json::object(), sensors = Json::array();
+    Json bodyShapes = Json::array(), motions = Json::array(), masses = Json::array(), names = Json::object(),
+         sensors = Json::array();
     for (size_t i = 0; i < recording.bodies.size(); ++i) {
         const RecordedBody& body = recording.bodies[i];
         bodyShapes.push_back(body.shape);
@@ -204,7 +207,8 @@ Json Header(const Recording& recording, double positionStep) {
         if (!body.name.empty()) names[std::to_string(i)] = body.name;
         if (body.isSensor) sensors.push_back(i);
     }
-    header["bodies"] = {{"shapes", bodyShapes}, {"motions", motions}, {"masses", masses}, {"names", names}, {"sensors", sensors}};
+    header["bodies"] = {
+        {"shapes", bodyShapes}, {"motions", motions}, {"masses", masses}, {"names", names}, {"sensors", sensors}};
     Json& report = header["report"] = Json::array();
     for (const ReportLine& line : recording.report) report.push_back({line.section, line.label, line.value});
     return header;
@@ -240,8 +244,8 @@ std::string Deflated(const std::string& bytes) {
     uLongf size = compressBound(bytes.size());
     std::string packed(size, '\0');
     // Fails only for want of memory, or of room in `packed`, which compressBound rules out.
-    if (compress2(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(),
-                  Z_DEFAULT_COMPRESSION) != Z_OK)
+    if (compress2(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
+                  bytes.size(), Z_DEFAULT_COMPRESSION) != Z_OK)
         throw std::bad_alloc();
     packed.resize(size);
     return packed;

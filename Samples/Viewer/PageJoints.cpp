@@ -11,9 +11,13 @@ namespace {
 constexpr double kMost = 1e9;  // m or rad; wilder numbers are stored as this, so that 53 bits hold their steps
 
 // What is no number counts as 0.
-int64_t StepsOf(double value, double step) { return value == value ? std::llround(std::clamp(value, -kMost, kMost) / step) : 0; }
+int64_t StepsOf(double value, double step) {
+    return value == value ? std::llround(std::clamp(value, -kMost, kMost) / step) : 0;
+}
 
-Steps3 PlaceSteps(const Vector3& v) { return {StepsOf(v.x(), kJointStep), StepsOf(v.y(), kJointStep), StepsOf(v.z(), kJointStep)}; }
+Steps3 PlaceSteps(const Vector3& v) {
+    return {StepsOf(v.x(), kJointStep), StepsOf(v.y(), kJointStep), StepsOf(v.z(), kJointStep)};
+}
 
 using FrameSteps = std::array<int64_t, 7>;
 
@@ -100,7 +104,9 @@ Column States(const Recording& recording) {
 }
 
 Column Errors(const Recording& recording) {
-    const auto steps = [](float error) { return static_cast<uint64_t>(std::max<int64_t>(0, StepsOf(error, kJointErrorStep))); };
+    const auto steps = [](float error) {
+        return static_cast<uint64_t>(std::max<int64_t>(0, StepsOf(error, kJointErrorStep)));
+    };
     Column column;
     for (const RecordedFrame& frame : recording.frames) {
         const RecordedJointErrors& errors = frame.jointErrors;

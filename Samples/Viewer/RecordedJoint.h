@@ -1,5 +1,6 @@
-// What a recording knows of joints: where they sit in their bodies, what never changes of them, and their state frame by
-// frame. Poses are not repeated: the page has the bodies' and puts the frames onto them. Part of Recording.h; plain data.
+// What a recording knows of joints: where they sit in their bodies, what never changes of them, and their state frame
+// by frame. Poses are not repeated: the page has the bodies' and puts the frames onto them. Part of Recording.h; plain
+// data.
 #pragma once
 
 #include <Fulcrum/Math/Pose.h>
@@ -14,7 +15,20 @@ namespace fulcrum {
 
 // In the order of the page's names for them.
 enum class RecordedJointKind : uint8_t {
-    Point, Fixed, Distance, Hinge, Slider, Cone, SwingTwist, SixDof, Gear, RackAndPinion, Pulley, Path, Wheel, Custom
+    Point,
+    Fixed,
+    Distance,
+    Hinge,
+    Slider,
+    Cone,
+    SwingTwist,
+    SixDof,
+    Gear,
+    RackAndPinion,
+    Pulley,
+    Path,
+    Wheel,
+    Custom
 };
 inline constexpr size_t kRecordedJointKinds = 14;
 
@@ -24,17 +38,17 @@ enum class RecordedAngularLock : uint8_t { None, Axis, All };
 
 struct RecordedJoint {
     RecordedJointKind kind = RecordedJointKind::Point;
-    uint32_t bodyA = 0, bodyB = 0;  // indices into Recording::bodies
+    uint32_t bodyA = 0, bodyB = 0;    // indices into Recording::bodies
     RelativePose frameA{}, frameB{};  // of the joint, in each body's shape frame; x is the joint's axis
     RecordedLinearLock linearLock = RecordedLinearLock::None;
     RecordedAngularLock angularLock = RecordedAngularLock::None;
-    uint8_t line = 0, axis = 0;     // that the locks Line and Axis leave free: 0, 1, 2 for x, y, z
-    bool isPyramid = false;         // swing limits: a pyramid, else an ellipse
-    bool isHardLength = false;      // distance, pulley: beyond its range is an error
-    float ratio = 1;                // gear, rack and pinion, pulley
+    uint8_t line = 0, axis = 0;  // that the locks Line and Axis leave free: 0, 1, 2 for x, y, z
+    bool isPyramid = false;      // swing limits: a pyramid, else an ellipse
+    bool isHardLength = false;   // distance, pulley: beyond its range is an error
+    float ratio = 1;             // gear, rack and pinion, pulley
     // Path: the curve, in frame A, m. Pulley: its two fixed points, m, relative to Recording::origin.
     std::vector<Vector3> points{};
-    bool isClosed = false;          // path
+    bool isClosed = false;  // path
 };
 
 // Limits of an axis, m or rad; an end that is infinite is none.
@@ -45,9 +59,9 @@ struct RecordedRange {
 };
 
 struct RecordedJointState {
-    uint32_t joint = 0;                      // index into Recording::joints
-    bool enabled = true;                     // false: switched off, broken or removed
-    std::array<RecordedRange, 6> limits{};   // way along x y z, rotation about x y z of frame A; of a cone: about y
+    uint32_t joint = 0;                     // index into Recording::joints
+    bool enabled = true;                    // false: switched off, broken or removed
+    std::array<RecordedRange, 6> limits{};  // way along x y z, rotation about x y z of frame A; of a cone: about y
     friend bool operator==(const RecordedJointState&, const RecordedJointState&) = default;
 };
 

@@ -12,8 +12,8 @@ bool IsFinite(const RecordedState& s) {
 
 bool IsEqual(const RecordedState& a, const RecordedState& b) {
     return a.position == b.position && a.rotation.x == b.rotation.x && a.rotation.y == b.rotation.y &&
-           a.rotation.z == b.rotation.z && a.rotation.w == b.rotation.w && a.velocity == b.velocity && a.awake == b.awake &&
-           a.island == b.island && a.isThere == b.isThere;
+           a.rotation.z == b.rotation.z && a.rotation.w == b.rotation.w && a.velocity == b.velocity &&
+           a.awake == b.awake && a.island == b.island && a.isThere == b.isThere;
 }
 
 // Halves the number of frames with contacts until they fit.
@@ -57,9 +57,7 @@ void AppendDrawing(const RecordedFrameDrawing& drawing, RecordedFrame& frame) {
 
 }  // namespace
 
-bool WantsContacts(const Recording& recording) {
-    return recording.frames.size() % recording.contactInterval == 0;
-}
+bool WantsContacts(const Recording& recording) { return recording.frames.size() % recording.contactInterval == 0; }
 
 void AppendFrame(Recording& recording, double time, std::span<const RecordedState> states,
                  std::span<const RecordedContact> contacts, const RecordedFrameJoints& joints,
@@ -67,7 +65,8 @@ void AppendFrame(Recording& recording, double time, std::span<const RecordedStat
     RecordedFrame frame;
     frame.time = time;
     const size_t known = recording.latest.size();
-    for (size_t i = known; i < recording.bodies.size(); ++i) recording.latest.emplace_back().body = static_cast<uint32_t>(i);
+    for (size_t i = known; i < recording.bodies.size(); ++i)
+        recording.latest.emplace_back().body = static_cast<uint32_t>(i);
     for (const RecordedState& state : states) {
         if (state.body >= recording.latest.size() || !IsFinite(state)) continue;
         RecordedState& latest = recording.latest[state.body];
@@ -75,7 +74,8 @@ void AppendFrame(Recording& recording, double time, std::span<const RecordedStat
         latest = state;
     }
     // New bodies come last, and with the frame, whether named or not.
-    frame.states.insert(frame.states.end(), recording.latest.begin() + static_cast<ptrdiff_t>(known), recording.latest.end());
+    frame.states.insert(frame.states.end(), recording.latest.begin() + static_cast<ptrdiff_t>(known),
+                        recording.latest.end());
     if (WantsContacts(recording)) {
         frame.contacts = EvenChoice(contacts);
         frame.hasContacts = true;
@@ -94,7 +94,8 @@ std::vector<RecordedPresence> PresencesOf(const Recording& recording) {
     for (size_t i = 0; i < recording.frames.size(); ++i) {
         for (const RecordedState& state : recording.frames[i].states) {
             std::vector<RecordedPresence>& own = ofBody[state.body];
-            if (own.empty()) own.push_back({state.body, recording.bodies[state.body].shape, i, recording.frames.size()});
+            if (own.empty())
+                own.push_back({state.body, recording.bodies[state.body].shape, i, recording.frames.size()});
             if (!state.isThere) own.back().until = i;
         }
         for (const RecordedShapeChange& change : recording.frames[i].shapes) {
@@ -109,14 +110,15 @@ std::vector<RecordedPresence> PresencesOf(const Recording& recording) {
     }
     std::vector<RecordedPresence> all;
     for (const auto& own : ofBody)
-        std::copy_if(own.begin(), own.end(), std::back_inserter(all), [](const RecordedPresence& one) { return one.from < one.until; });
+        std::copy_if(own.begin(), own.end(), std::back_inserter(all),
+                     [](const RecordedPresence& one) { return one.from < one.until; });
     return all;
 }
 
 Status CheckRecording(const Recording& recording) {
     const auto unknown = [](const char* user, size_t index, const char* used, size_t number) {
-        return Error{ErrorCode::UnknownId, std::string("the recording's ") + user + " " + std::to_string(index) + " names " +
-                                               used + " " + std::to_string(number) + ", which it lacks"};
+        return Error{ErrorCode::UnknownId, std::string("the recording's ") + user + " " + std::to_string(index) +
+                                               " names " + used + " " + std::to_string(number) + ", which it lacks"};
     };
     for (size_t i = 0; i < recording.shapes.size(); ++i) {
         const RecordedShape& shape = recording.shapes[i];
@@ -127,9 +129,11 @@ Status CheckRecording(const Recording& recording) {
                 if (corner >= shape.vertices.size()) return unknown("shape", i, "the vertex", corner);
     }
     for (size_t i = 0; i < recording.bodies.size(); ++i)
-        if (recording.bodies[i].shape >= recording.shapes.size()) return unknown("body", i, "the shape", recording.bodies[i].shape);
+        if (recording.bodies[i].shape >= recording.shapes.size())
+            return unknown("body", i, "the shape", recording.bodies[i].shape);
     for (size_t i = 0; i < recording.joints.size(); ++i)
-        if (const uint32_t body = std::max(recording.joints[i].bodyA, recording.joints[i].bodyB); body >= recording.bodies.size())
+        if (const uint32_t body = std::max(recording.joints[i].bodyA, recording.joints[i].bodyB);
+            body >= recording.bodies.size())
             return unknown("joint", i, "the body", body);
     for (size_t i = 0; i < recording.frames.size(); ++i) {
         const RecordedFrame& frame = recording.frames[i];

@@ -1,6 +1,6 @@
-// What a run leaves behind for its pictures: shapes, bodies, joints, their states frame by frame, contacts, drawings and the report.
-// Filled in by the runner through AppendFrame, read by HtmlWriter and GlbWriter. Knows nothing of the engine but its
-// Math types. One thread at a time.
+// What a run leaves behind for its pictures: shapes, bodies, joints, their states frame by frame, contacts, drawings
+// and the report. Filled in by the runner through AppendFrame, read by HtmlWriter and GlbWriter. Knows nothing of the
+// engine but its Math types. One thread at a time.
 #pragma once
 
 #include <Fulcrum/Math/Pose.h>
@@ -47,18 +47,18 @@ struct RecordedBody {
 };
 
 struct RecordedState {
-    uint32_t body = 0;                     // index into Recording::bodies
-    Vector3 position = Vector3::Zero();    // m, origin of the shape's frame, relative to Recording::origin
-    Quaternion rotation;                   // of the shape's frame
-    Vector3 velocity = Vector3::Zero();    // m/s, linear
+    uint32_t body = 0;                   // index into Recording::bodies
+    Vector3 position = Vector3::Zero();  // m, origin of the shape's frame, relative to Recording::origin
+    Quaternion rotation;                 // of the shape's frame
+    Vector3 velocity = Vector3::Zero();  // m/s, linear
     bool awake = true;
-    int32_t island = -1;                   // -1: in none
-    bool isThere = true;                   // false: the body was removed, and does not come back
+    int32_t island = -1;  // -1: in none
+    bool isThere = true;  // false: the body was removed, and does not come back
 };
 
 // From its frame on a body has another shape, or the same one as it was edited.
 struct RecordedShapeChange {
-    uint32_t body = 0, shape = 0;          // indices into Recording::bodies and shapes
+    uint32_t body = 0, shape = 0;  // indices into Recording::bodies and shapes
 };
 
 struct RecordedContact {
@@ -76,8 +76,8 @@ struct RecordedFrame {
     bool hasContacts = false;
     std::vector<RecordedJointState> joints;  // ascending by joint; only those that changed since the frame before
     RecordedJointErrors jointErrors;
-    std::vector<RecordedLine> lines;         // of this frame alone
-    std::vector<RecordedPoint> points;       // likewise
+    std::vector<RecordedLine> lines;    // of this frame alone
+    std::vector<RecordedPoint> points;  // likewise
     std::vector<RecordedShapeChange> shapes;
 };
 
@@ -99,21 +99,22 @@ struct Recording {
     // Kept by AppendFrame.
     std::vector<RecordedState> latest;  // of every body
     std::vector<RecordedJointState> latestJoints;
-    size_t contactInterval = 1;         // contacts are kept of every so many frames
-    size_t contactCount = 0;            // of all frames
-    size_t largestContactCut = 0;       // most contacts that a frame lost to kMostContactsPerFrame
+    size_t contactInterval = 1;    // contacts are kept of every so many frames
+    size_t contactCount = 0;       // of all frames
+    size_t largestContactCut = 0;  // most contacts that a frame lost to kMostContactsPerFrame
 };
 
 inline constexpr size_t kMostContacts = 400'000;  // of a whole recording: about 5 MB in a page
 inline constexpr size_t kMostContactsPerFrame = 50'000;
 
-// Adds a frame at `time` seconds. `states` names bodies ascending by index, all of them or, from the second frame on, only
-// those that may have changed; what equals the state before is dropped, and so is a state that is not finite. A body that was
-// added to the recording since the last frame is there from this one on, at the origin if it is not named; a state of what is
-// no body of the recording's is dropped. So that no recording outgrows memory, contacts are kept of every frame first, of every
-// second once there are more than kMostContacts, then of every fourth, and so on; of more than kMostContactsPerFrame in one
-// frame an even choice is kept. Of joints too only those need be named that may have changed; one that no frame has named yet
-// counts as switched off. Lines and points that are not finite are dropped.
+// Adds a frame at `time` seconds. `states` names bodies ascending by index, all of them or, from the second frame on,
+// only those that may have changed; what equals the state before is dropped, and so is a state that is not finite. A
+// body that was added to the recording since the last frame is there from this one on, at the origin if it is not
+// named; a state of what is no body of the recording's is dropped. So that no recording outgrows memory, contacts are
+// kept of every frame first, of every second once there are more than kMostContacts, then of every fourth, and so on;
+// of more than kMostContactsPerFrame in one frame an even choice is kept. Of joints too only those need be named that
+// may have changed; one that no frame has named yet counts as switched off. Lines and points that are not finite are
+// dropped.
 void AppendFrame(Recording& recording, double time, std::span<const RecordedState> states,
                  std::span<const RecordedContact> contacts, const RecordedFrameJoints& joints = {},
                  const RecordedFrameDrawing& drawing = {}, std::span<const RecordedShapeChange> shapes = {});
@@ -124,7 +125,8 @@ struct RecordedPresence {
     size_t from = 0, until = 0;
 };
 
-// Of all bodies, ascending by body, then frame; of a body that changes its shape several, of one that no frame has none.
+// Of all bodies, ascending by body, then frame; of a body that changes its shape several, of one that no frame has
+// none.
 std::vector<RecordedPresence> PresencesOf(const Recording& recording);
 
 // Whether the next frame's contacts would be kept: saves collecting them for nothing.

@@ -26,7 +26,8 @@ void AddBox(ShapeMesh& mesh, const Vector3& half) {
             u[(axis + 1) % 3] = 1;
             v[(axis + 2) % 3] = side;  // u x v = normal
             const uint32_t first = static_cast<uint32_t>(mesh.positions.size());
-            for (const Vector3& corner : {Vector3(normal - u - v), Vector3(normal + u - v), Vector3(normal + u + v), Vector3(normal - u + v)}) {
+            for (const Vector3& corner :
+                 {Vector3(normal - u - v), Vector3(normal + u - v), Vector3(normal + u + v), Vector3(normal - u + v)}) {
                 mesh.positions.push_back(corner.cwiseProduct(half));
                 mesh.normals.push_back(normal);
             }
@@ -35,7 +36,8 @@ void AddBox(ShapeMesh& mesh, const Vector3& half) {
     }
 }
 
-// Rings from the upper pole to the lower, the two half spheres drawn apart by the segment of a capsule; a sphere has none.
+// Rings from the upper pole to the lower, the two half spheres drawn apart by the segment of a capsule; a sphere has
+// none.
 void AddRound(ShapeMesh& mesh, float radius, float halfHeight) {
     const uint32_t first = static_cast<uint32_t>(mesh.positions.size());
     const int rings = 2 * (kDown + 1);
@@ -44,7 +46,8 @@ void AddRound(ShapeMesh& mesh, float radius, float halfHeight) {
         const double polar = std::numbers::pi / (2 * kDown) * (isUpper ? ring : ring - 1);
         for (int side = 0; side <= kAround; ++side) {
             const double angle = 2 * std::numbers::pi / kAround * side;
-            const Vector3 normal(static_cast<float>(std::sin(polar) * std::cos(angle)), static_cast<float>(std::cos(polar)),
+            const Vector3 normal(static_cast<float>(std::sin(polar) * std::cos(angle)),
+                                 static_cast<float>(std::cos(polar)),
                                  static_cast<float>(std::sin(polar) * std::sin(angle)));
             mesh.normals.push_back(Normalized(normal));
             mesh.positions.push_back(normal * radius + Vector3(0, isUpper ? halfHeight : -halfHeight, 0));
@@ -64,7 +67,8 @@ void AddRound(ShapeMesh& mesh, float radius, float halfHeight) {
 void AddChild(ShapeMesh& mesh, const ShapeMesh& child, const RelativePose& pose) {
     const uint32_t first = static_cast<uint32_t>(mesh.positions.size());
     for (const Vector3& position : child.positions) mesh.positions.push_back(pose.Transform(position));
-    for (const Vector3& normal : child.normals) mesh.normals.push_back(Normalized(Vector3(Rotate(pose.rotation, normal))));
+    for (const Vector3& normal : child.normals)
+        mesh.normals.push_back(Normalized(Vector3(Rotate(pose.rotation, normal))));
     for (uint32_t index : child.indices) mesh.indices.push_back(first + index);
 }
 
@@ -74,15 +78,17 @@ ShapeMesh MeshOfShape(const Recording& recording, size_t index) {
     const RecordedShape& shape = recording.shapes[index];
     ShapeMesh mesh;
     switch (shape.kind) {
-    case RecordedShapeKind::Sphere: AddRound(mesh, shape.radius, 0); break;
-    case RecordedShapeKind::Capsule: AddRound(mesh, shape.radius, shape.halfHeight); break;
-    case RecordedShapeKind::Box: AddBox(mesh, shape.halfExtents); break;
-    case RecordedShapeKind::Hull:
-        for (const auto& t : shape.triangles) AddTriangle(mesh, shape.vertices[t[0]], shape.vertices[t[1]], shape.vertices[t[2]]);
-        break;
-    case RecordedShapeKind::Compound:
-        for (const RecordedChild& child : shape.children) AddChild(mesh, MeshOfShape(recording, child.shape), child.pose);
-        break;
+        case RecordedShapeKind::Sphere: AddRound(mesh, shape.radius, 0); break;
+        case RecordedShapeKind::Capsule: AddRound(mesh, shape.radius, shape.halfHeight); break;
+        case RecordedShapeKind::Box: AddBox(mesh, shape.halfExtents); break;
+        case RecordedShapeKind::Hull:
+            for (const auto& t : shape.triangles)
+                AddTriangle(mesh, shape.vertices[t[0]], shape.vertices[t[1]], shape.vertices[t[2]]);
+            break;
+        case RecordedShapeKind::Compound:
+            for (const RecordedChild& child : shape.children)
+                AddChild(mesh, MeshOfShape(recording, child.shape), child.pose);
+            break;
     }
     return mesh;
 }

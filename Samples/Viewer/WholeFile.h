@@ -10,8 +10,9 @@
 
 namespace fulcrum {
 
-// Creates or replaces `path` with the parts one after another, and the folders that lead to it. They go to `path` + ".part"
-// first, which is then renamed. Error OutOfRange with the path and the system's reason; a file that was there is still there.
+// Creates or replaces `path` with the parts one after another, and the folders that lead to it. They go to `path` +
+// ".part" first, which is then renamed. Error OutOfRange with the path and the system's reason; a file that was there
+// is still there.
 Status WriteWholeFile(const std::filesystem::path& path, std::initializer_list<std::string_view> parts);
 
 }  // namespace fulcrum

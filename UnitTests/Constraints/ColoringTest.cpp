@@ -67,7 +67,8 @@ public:
             }
         }
         ASSERT_EQ(listed, contacts.size());
-        for (uint32_t body = 0; body < 400; ++body) ASSERT_EQ(coloring.IsTouched(body), touched.count(body) > 0) << body;
+        for (uint32_t body = 0; body < 400; ++body)
+            ASSERT_EQ(coloring.IsTouched(body), touched.count(body) > 0) << body;
     }
 
     ConstraintColoring coloring;

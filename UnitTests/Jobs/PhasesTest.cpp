@@ -82,7 +82,8 @@ void ExpectPhasesInOrder(JobSystem& jobs, std::span<const uint32_t> counts) {
     });
     ASSERT_EQ(early, 0u);
     ASSERT_EQ(clashes, 0u);
-    for (size_t phase = 0; phase < counts.size(); ++phase) ASSERT_EQ(finished[phase], counts[phase]) << "phase " << phase;
+    for (size_t phase = 0; phase < counts.size(); ++phase)
+        ASSERT_EQ(finished[phase], counts[phase]) << "phase " << phase;
     ASSERT_EQ(actual.values_[0], expected.values_[0]);
     ASSERT_EQ(actual.values_[1], expected.values_[1]);
 }

@@ -32,8 +32,8 @@ const std::map<std::string, std::vector<std::string>> kAllowedFolders = {
 
 const std::array<std::string, 5> kLibraryFolders = {"Math", "Jobs", "Collision", "Constraints", "Physics"};
 
-// Jobs stands alone, and a waiting loop needs the processor's hint, which no portable call gives: this file may ask which
-// architecture it is compiled for.
+// Jobs stands alone, and a waiting loop needs the processor's hint, which no portable call gives: this file may ask
+// which architecture it is compiled for.
 const std::string kPauseHintFile = "Jobs/Spin.h";
 // The one place of dense matrices; no public header needs it.
 const std::string kEigenFile = "Constraints/Joints/JointTree.h";
@@ -198,8 +198,12 @@ TEST_F(Layering, NamesEveryUpwardEdge) {
 
 TEST_F(Layering, LeavesTheHeaderOfAllHeadersToPrograms) {
     const std::string all = "#include <Fulcrum/Fulcrum.h>\n";
-    EXPECT_EQ(CheckTree({{"UnitTests/A.cpp", all}, {"Samples/A.cpp", all}, {"Math/A.h", "#include <Fulcrum/Version.h>\n"}}).size(), 0u);
-    for (const std::string& folder : kLibraryFolders) EXPECT_EQ(CheckTree({{folder + "/A.h", all}}).size(), 1u) << folder;
+    EXPECT_EQ(
+        CheckTree({{"UnitTests/A.cpp", all}, {"Samples/A.cpp", all}, {"Math/A.h", "#include <Fulcrum/Version.h>\n"}})
+            .size(),
+        0u);
+    for (const std::string& folder : kLibraryFolders)
+        EXPECT_EQ(CheckTree({{folder + "/A.h", all}}).size(), 1u) << folder;
     EXPECT_EQ(CheckTree({{"Samples/A.cpp", "#include <Fulcrum/Other.h>\n"}}).size(), 1u);
 }
 
@@ -211,7 +215,10 @@ TEST_F(Layering, RejectsForeignLibraries) {
 
 TEST_F(Layering, KeepsEigenInOneFile) {
     const std::string eigen = "#include <Eigen/Core>\n";
-    EXPECT_EQ(CheckTree({{"Math/Vector.h", eigen}, {"Physics/PhysicsSystem.h", eigen}, {"Constraints/Joints/A.cpp", eigen}}).size(), 3u);
+    EXPECT_EQ(
+        CheckTree({{"Math/Vector.h", eigen}, {"Physics/PhysicsSystem.h", eigen}, {"Constraints/Joints/A.cpp", eigen}})
+            .size(),
+        3u);
     EXPECT_EQ(CheckTree({{"UnitTests/A.cpp", eigen}, {"Samples/A.cpp", eigen}}).size(), 0u);
 }
 

@@ -193,10 +193,8 @@ TEST(TrigonometryOfLanes, HasTheBitsOfFloat) {
 TEST(TrigonometryBits, AreTheSameOnEveryMachine) {
     uint64_t hash = 0xcbf29ce484222325u;
     const auto add = [&](auto value) {
-        if constexpr (sizeof(value) == 4)
-            hash = (hash ^ std::bit_cast<uint32_t>(value)) * 0x100000001b3u;
-        else
-            hash = (hash ^ std::bit_cast<uint64_t>(value)) * 0x100000001b3u;
+        if constexpr (sizeof(value) == 4) hash = (hash ^ std::bit_cast<uint32_t>(value)) * 0x100000001b3u;
+        else hash = (hash ^ std::bit_cast<uint64_t>(value)) * 0x100000001b3u;
     };
     const auto addAll = [&](auto x) {
         using Real = decltype(x);

@@ -39,7 +39,8 @@ TEST(WideDouble, ComparesAndSelectsLaneByLane) {
     WideDouble a(1.0), b(2.0);
     a.Set(2, 3.0);
     b.Set(3, 1.0);
-    const WideDouble smaller = Select(a < b, a, b), larger = Select(a > b, a, b), same = Select(a == b, WideDouble(1.0), WideDouble(0.0));
+    const WideDouble smaller = Select(a < b, a, b), larger = Select(a > b, a, b),
+                     same = Select(a == b, WideDouble(1.0), WideDouble(0.0));
     for (int lane = 0; lane < WideDouble::kCount; ++lane) {
         EXPECT_EQ(smaller[lane], std::min(a[lane], b[lane]));
         EXPECT_EQ(larger[lane], std::max(a[lane], b[lane]));

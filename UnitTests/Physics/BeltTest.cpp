@@ -51,7 +51,8 @@ TEST(Belt, TakesABoxAlongAfterItSlidByTheFormula) {
         s.world.Run(4 - (before + 2) * kStep);
         const double slid = 4 * speed - std::fabs(s.world.PositionOf(box).z());
         EXPECT_NEAR(slid, speed * speed / (2 * 0.5 * kGravity) - 0.5 * speed * kStep / 4, 2e-3 * speed);
-        // ... and is carried straight on, upright, exactly as fast as the belt: a float's rounding of v in each of some substeps.
+        // ... and is carried straight on, upright, exactly as fast as the belt: a float's rounding of v in each of some
+        // substeps.
         const Position from = s.world.PositionOf(box);
         s.world.Run(5);
         EXPECT_NEAR(s.world.VelocityOf(box).z(), v, 1e-6 * speed);
@@ -61,8 +62,8 @@ TEST(Belt, TakesABoxAlongAfterItSlidByTheFormula) {
 }
 
 TEST(Belt, RollsABallThatItCannotHold) {
-    // Rolling friction is none: the belt's pull at the bottom ends when the point of contact keeps up. From m v' = F and
-    // (2/5) m r w' = F r the ball ends with v = (2/7) of the belt's speed.
+    // Rolling friction is none: the belt's pull at the bottom ends when the point of contact keeps up. From m v' = F
+    // and (2/5) m r w' = F r the ball ends with v = (2/7) of the belt's speed.
     BeltWorld s;
     s.belt.velocity = {3.5f, 0, 0};
     const BodyId ball = s.world.Add({.shape = SphereOf(0.5f), .position = {0, 0.5, 0}});
@@ -76,10 +77,17 @@ TEST(Belt, HoldsABoxAgainstASlopeAndCarriesItUp) {
     const Quaternion tilt = RotationAbout({0, 0, 1}, 15 * kDegree);
     const Vector3 along = Rotate(tilt, Vector3(1, 0, 0)), up = Rotate(tilt, Vector3(0, 1, 0));
     OneBelt belt;
-    belt.body = world.Add({.shape = BoxOf(50, 1, 5), .motion = MotionType::Static, .position = (up * -1.0f).cast<double>(), .rotation = tilt, .material = {.friction = 0.8f}});
+    belt.body = world.Add({.shape = BoxOf(50, 1, 5),
+                           .motion = MotionType::Static,
+                           .position = (up * -1.0f).cast<double>(),
+                           .rotation = tilt,
+                           .material = {.friction = 0.8f}});
     belt.velocity = along;
     world.System().SetContactListener(&belt);
-    const BodyId box = world.Add({.shape = CubeOf(0.5f), .position = (up * 0.5f).cast<double>(), .rotation = tilt, .material = {.friction = 0.8f}});
+    const BodyId box = world.Add({.shape = CubeOf(0.5f),
+                                  .position = (up * 0.5f).cast<double>(),
+                                  .rotation = tilt,
+                                  .material = {.friction = 0.8f}});
     world.Run(1);
     const Position from = world.PositionOf(box);
     world.Run(10);
@@ -104,7 +112,11 @@ TEST(Belt, ThatTurnsCarriesLikeATurntable) {
     s.belt.turning = {0, 0.8f, 0};
     const Position onBelt = AfterATurn(s.world);
     TestWorld turntable(NoSleep());
-    turntable.Add({.shape = BoxOf(100, 1, 100), .motion = MotionType::Kinematic, .position = {0, -1, 0}, .angularVelocity = {0, 0.8f, 0}, .material = {.friction = 0.9f}});
+    turntable.Add({.shape = BoxOf(100, 1, 100),
+                   .motion = MotionType::Kinematic,
+                   .position = {0, -1, 0},
+                   .angularVelocity = {0, 0.8f, 0},
+                   .material = {.friction = 0.9f}});
     const Position onTurntable = AfterATurn(turntable);
     EXPECT_LT((onBelt - onTurntable).norm(), 1e-3);
     // On the circle, but for a lag of at most half a substep h in a = w^2 r: a h / 2 for 2 pi / w seconds, 31 mm.
@@ -125,8 +137,8 @@ TEST(Belt, ThatTurnsSpinsABoxAtItsPivot) {
     EXPECT_LT((s.world.PositionOf(box) - Position(0, 0.5, 0)).norm(), 1e-3);
 }
 
-// A box on a sledge whose upper surface is a belt, and nothing holds the sledge: they part with the belt's speed, and their
-// momentum stays zero.
+// A box on a sledge whose upper surface is a belt, and nothing holds the sledge: they part with the belt's speed, and
+// their momentum stays zero.
 void ExpectRecoil(bool sledgeFirst) {
     TestWorld world(NoSleep());
     world.AddFloor({.friction = 0, .frictionRule = CombineRule::Multiply});
@@ -151,7 +163,8 @@ void ExpectRecoil(bool sledgeFirst) {
     world.Run(1);
     EXPECT_NEAR(world.VelocityOf(box).x(), 2 * 3.0 / 4, 2e-3);
     EXPECT_NEAR(world.VelocityOf(belt.body).x(), -2 * 1.0 / 4, 2e-3);
-    // The sledge tips by what its springs yield under the load, and the floor's push with it: 1e-5 of the weights for a second.
+    // The sledge tips by what its springs yield under the load, and the floor's push with it: 1e-5 of the weights for a
+    // second.
     EXPECT_NEAR(world.VelocityOf(box).x() + 3 * world.VelocityOf(belt.body).x(), 0, 4 * kGravity * 1e-5);
 }
 
@@ -169,7 +182,8 @@ TEST(Belt, ThatTurnsOnABodyThatMovesConservesAngularMomentum) {
     belt.turning = {0, 3, 0};
     world.System().SetContactListener(&belt);
     world.Run(1);
-    // I = m (a^2 + b^2) / 3: 4/3 of the sledge, 1/6 of the box. The floor's contact has a turning surface too, without friction.
+    // I = m (a^2 + b^2) / 3: 4/3 of the sledge, 1/6 of the box. The floor's contact has a turning surface too, without
+    // friction.
     const double share = (4.0 / 3) / (4.0 / 3 + 1.0 / 6);
     EXPECT_NEAR(world.Bodies().GetAngularVelocity(box).y(), 3 * share, 5e-3);
     EXPECT_NEAR(world.Bodies().GetAngularVelocity(belt.body).y(), -3 * (1 - share), 5e-3);
@@ -202,7 +216,8 @@ TEST(Belt, RunsOnMeshesPlanesAndCompoundsAlike) {
     ASSERT_TRUE(mesh);
     const auto plane = Plane::Create(Vector3(0, 1, 0));
     ASSERT_TRUE(plane);
-    const ShapePtr boxes = CompoundOf({{.shape = BoxOf(10, 0.5f, 5), .position = {-10, -0.5f, 0}}, {.shape = BoxOf(10, 0.5f, 5), .position = {10, -0.5f, 0}}});
+    const ShapePtr boxes = CompoundOf({{.shape = BoxOf(10, 0.5f, 5), .position = {-10, -0.5f, 0}},
+                                       {.shape = BoxOf(10, 0.5f, 5), .position = {10, -0.5f, 0}}});
     for (const ShapePtr& shape : {ShapePtr(mesh.Value()), ShapePtr(plane.Value()), boxes}) {
         TestWorld world(NoSleep());
         OneBelt belt;
@@ -210,7 +225,9 @@ TEST(Belt, RunsOnMeshesPlanesAndCompoundsAlike) {
         belt.velocity = {1.5f, 0, 0};
         world.System().SetContactListener(&belt);
         const BodyId box = world.Add({.shape = CubeOf(0.5f), .position = {-3, 0.5, 0}});
-        const BodyId prism = world.Add({.shape = HullOf({{-0.4f, -0.3f, -0.4f}, {0.4f, -0.3f, -0.4f}, {0, -0.3f, 0.5f}, {0, 0.5f, 0}}), .position = {0, 0.3, 2}});
+        const BodyId prism =
+            world.Add({.shape = HullOf({{-0.4f, -0.3f, -0.4f}, {0.4f, -0.3f, -0.4f}, {0, -0.3f, 0.5f}, {0, 0.5f, 0}}),
+                       .position = {0, 0.3, 2}});
         world.Run(4);
         EXPECT_NEAR(world.VelocityOf(box).x(), 1.5, 1e-4) << ShapeTypeName(shape->Type());
         EXPECT_NEAR(world.VelocityOf(prism).x(), 1.5, 1e-4) << ShapeTypeName(shape->Type());

@@ -10,7 +10,10 @@ namespace {
 
 TEST(LockedAxes, LockedTranslationsStayInPlace) {
     TestWorld world;
-    const BodyId hangs = world.Add({.shape = SphereOf(0.5f), .position = {0, 5, 0}, .linearVelocity = {1, 1, 1}, .lockedAxes = LockedAxes::TranslationY});
+    const BodyId hangs = world.Add({.shape = SphereOf(0.5f),
+                                    .position = {0, 5, 0},
+                                    .linearVelocity = {1, 1, 1},
+                                    .lockedAxes = LockedAxes::TranslationY});
     world.Run(1);
     EXPECT_EQ(world.PositionOf(hangs).y(), 5);
     EXPECT_NEAR(world.PositionOf(hangs).x(), 1, 1e-5);
@@ -19,7 +22,8 @@ TEST(LockedAxes, LockedTranslationsStayInPlace) {
 
 TEST(LockedAxes, LockedRotationsNeitherTurnNorBeginTo) {
     TestWorld world(NoGravity());
-    const BodyId ball = world.Add({.shape = SphereOf(0.5f), .angularVelocity = {1, 2, 3}, .lockedAxes = LockedAxes::Rotation});
+    const BodyId ball =
+        world.Add({.shape = SphereOf(0.5f), .angularVelocity = {1, 2, 3}, .lockedAxes = LockedAxes::Rotation});
     ASSERT_TRUE(world.Bodies().AddTorque(ball, {1000, 1000, 1000}));
     ASSERT_TRUE(world.Bodies().AddAngularImpulse(ball, {1000, 1000, 1000}));
     world.Run(1);
@@ -32,7 +36,9 @@ TEST(LockedAxes, TheFreeAxisTurnsWithItsOwnInertia) {
     TestWorld world(NoGravity());
     // A rod that leans: its inertia about y alone is I_yy, not one over the y-y element of the inverse of the whole.
     const double angle = 30 * kDegree;
-    const BodyId rod = world.Add({.shape = BoxOf(0.05f, 1, 0.05f), .rotation = RotationAbout({0, 0, 1}, angle), .mass = 3,
+    const BodyId rod = world.Add({.shape = BoxOf(0.05f, 1, 0.05f),
+                                  .rotation = RotationAbout({0, 0, 1}, angle),
+                                  .mass = 3,
                                   .lockedAxes = LockedAxes::RotationX | LockedAxes::RotationZ});
     const double along = 3 * (0.0025 + 0.0025) / 3, across = 3 * (1 + 0.0025) / 3;
     const double inertia = along * std::cos(angle) * std::cos(angle) + across * std::sin(angle) * std::sin(angle);
@@ -44,7 +50,10 @@ TEST(LockedAxes, TheFreeAxisTurnsWithItsOwnInertia) {
 TEST(LockedAxes, AnUprightCapsuleDoesNotFallOver) {
     TestWorld world(NoSleep());
     world.AddFloor();
-    const BodyId walker = world.Add({.shape = CapsuleOf(0.5f, 0.3f), .position = {0, 0.8, 0}, .linearVelocity = {3, 0, 0}, .lockedAxes = LockedAxes::Rotation});
+    const BodyId walker = world.Add({.shape = CapsuleOf(0.5f, 0.3f),
+                                     .position = {0, 0.8, 0},
+                                     .linearVelocity = {3, 0, 0},
+                                     .lockedAxes = LockedAxes::Rotation});
     world.Run(3);
     EXPECT_EQ(world.Bodies().GetPose(walker).rotation.w, 1);
     EXPECT_NEAR(world.PositionOf(walker).y(), 0.8, 0.005);
@@ -53,7 +62,8 @@ TEST(LockedAxes, AnUprightCapsuleDoesNotFallOver) {
 
 TEST(LockedAxes, ContactsDoNotPushAlongLockedAxes) {
     TestWorld world(NoSleep());
-    const BodyId rail = world.Add({.shape = CubeOf(0.5f), .position = {0, 0, 0}, .gravityFactor = 0, .lockedAxes = LockedAxes::Plane2D});
+    const BodyId rail = world.Add(
+        {.shape = CubeOf(0.5f), .position = {0, 0, 0}, .gravityFactor = 0, .lockedAxes = LockedAxes::Plane2D});
     world.Add({.shape = SphereOf(0.5f), .position = {0.2, 3, 0.2}});
     world.Run(2);
     EXPECT_EQ(world.PositionOf(rail).z(), 0);
@@ -90,7 +100,8 @@ TEST(Kinematic, ArrivesWhereItIsMoved) {
 
 TEST(Kinematic, FeelsNoForces) {
     TestWorld world;
-    const BodyId platform = world.Add({.shape = BoxOf(2, 0.5f, 2), .motion = MotionType::Kinematic, .linearVelocity = {1, 0, 0}});
+    const BodyId platform =
+        world.Add({.shape = BoxOf(2, 0.5f, 2), .motion = MotionType::Kinematic, .linearVelocity = {1, 0, 0}});
     world.Add({.shape = CubeOf(0.5f), .position = {0, 3, 0}, .mass = 1e5f});
     world.Run(1);
     EXPECT_EQ(world.VelocityOf(platform), Vector3(1, 0, 0));
@@ -100,7 +111,8 @@ TEST(Kinematic, FeelsNoForces) {
 
 TEST(Kinematic, CarriesABoxByFriction) {
     TestWorld world;
-    const BodyId platform = world.Add({.shape = BoxOf(5, 0.5f, 5), .motion = MotionType::Kinematic, .position = {0, -0.5, 0}});
+    const BodyId platform =
+        world.Add({.shape = BoxOf(5, 0.5f, 5), .motion = MotionType::Kinematic, .position = {0, -0.5, 0}});
     const BodyId box = world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5, 0}});
     world.Run(2);
     EXPECT_FALSE(world.Bodies().IsAwake(box));
@@ -120,8 +132,12 @@ TEST(Kinematic, CarriesABoxByFriction) {
 
 TEST(Kinematic, TurnsABoxWithATurntable) {
     TestWorld world(NoSleep());
-    world.Add({.shape = BoxOf(5, 0.5f, 5), .motion = MotionType::Kinematic, .position = {0, -0.5, 0}, .angularVelocity = {0, 1, 0}});
-    const BodyId box = world.Add({.shape = CubeOf(0.5f), .position = {2, 0.5, 0}, .linearVelocity = {0, 0, -2}, .angularVelocity = {0, 1, 0}});
+    world.Add({.shape = BoxOf(5, 0.5f, 5),
+               .motion = MotionType::Kinematic,
+               .position = {0, -0.5, 0},
+               .angularVelocity = {0, 1, 0}});
+    const BodyId box = world.Add(
+        {.shape = CubeOf(0.5f), .position = {2, 0.5, 0}, .linearVelocity = {0, 0, -2}, .angularVelocity = {0, 1, 0}});
     // Half a turn; w^2 r = 2 m/s2 is less than mu g.
     world.Run(kPi);
     const Position expected(2 * std::cos(std::round(kPi * 60) / 60), 0.5, -2 * std::sin(std::round(kPi * 60) / 60));
@@ -157,7 +173,8 @@ TEST(Bodies, ComeAndGoByTheHundred) {
     std::vector<BodyId> ids;
     for (int round = 0; round < 20; ++round) {
         for (int i = 0; i < 30; ++i)
-            ids.push_back(world.Add({.shape = i % 2 ? SphereOf(0.3f) : CubeOf(0.3f), .position = {i % 6 * 0.5, 1.0 + i / 6 * 0.5, 0.1 * i}}));
+            ids.push_back(world.Add({.shape = i % 2 ? SphereOf(0.3f) : CubeOf(0.3f),
+                                     .position = {i % 6 * 0.5, 1.0 + i / 6 * 0.5, 0.1 * i}}));
         world.Steps(5);
         for (size_t i = 0; i < ids.size(); i += 2) {
             ASSERT_TRUE(world.Bodies().Remove(ids[i]));
@@ -175,7 +192,8 @@ TEST(Bodies, AnAddedAndRemovedBodyLeavesTheOthersBitsAlone) {
     const auto run = [](bool visitor) {
         TestWorld world;
         world.AddFloor();
-        const BodyId box = world.Add({.shape = CubeOf(0.5f), .position = {0, 2, 0}, .rotation = RotationAbout({0, 0, 1}, 0.3)});
+        const BodyId box =
+            world.Add({.shape = CubeOf(0.5f), .position = {0, 2, 0}, .rotation = RotationAbout({0, 0, 1}, 0.3)});
         world.Steps(20);
         if (visitor) {
             const BodyId far = world.Add({.shape = CubeOf(0.5f), .position = {50, 2, 0}});
@@ -192,7 +210,8 @@ TEST(Bodies, AreReadAsTheyWereDescribed) {
     // The center of mass of this hull is not its origin.
     const ShapePtr hull = HullOf({{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}});
     const Quaternion turned = RotationAbout({0, 1, 0}, 0.5);
-    const BodyId id = world.Add({.shape = hull, .position = {10, 20, 30}, .rotation = turned, .density = 2, .userData = 42});
+    const BodyId id =
+        world.Add({.shape = hull, .position = {10, 20, 30}, .rotation = turned, .density = 2, .userData = 42});
     EXPECT_LT((world.PositionOf(id) - Position(10, 20, 30)).norm(), 1e-6);
     EXPECT_GT((world.Bodies().GetCenterOfMass(id) - Position(10, 20, 30)).norm(), 0.5);
     EXPECT_NEAR(world.Bodies().GetMass(id), 2 * 8.0 / 6, 1e-5);

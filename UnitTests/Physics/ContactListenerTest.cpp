@@ -74,7 +74,8 @@ TEST(ModifyContact, IsAskedInEveryStepAboutKeptManifoldsToo) {
     Asking listener;
     TestWorld world(NoSleep());
     const BodyId floor = world.AddFloor();
-    const BodyId box = world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5, 0}, .material = {.friction = 0.8f, .restitution = 0.25f}});
+    const BodyId box = world.Add(
+        {.shape = CubeOf(0.5f), .position = {0, 0.5, 0}, .material = {.friction = 0.8f, .restitution = 0.25f}});
     int asked = 0;
     listener.modify = [&](const ContactView& contact, ContactChange& change) {
         ++asked;
@@ -103,7 +104,8 @@ TEST(ModifyContact, KnowsThePiecesOfCompounds) {
     Asking listener;
     TestWorld world(NoSleep());
     world.AddFloor();
-    world.Add({.shape = CompoundOf({{.shape = SphereOf(0.2f), .position = {0, 2, 0}}, {.shape = CubeOf(0.5f)}}), .position = {0, 0.5, 0}});
+    world.Add({.shape = CompoundOf({{.shape = SphereOf(0.2f), .position = {0, 2, 0}}, {.shape = CubeOf(0.5f)}}),
+               .position = {0, 0.5, 0}});
     int asked = 0;
     listener.modify = [&](const ContactView& contact, ContactChange&) {
         ++asked;
@@ -120,7 +122,8 @@ TEST(ModifyContact, StopsASlidingBoxWhereTheNewFrictionSays) {
     listener.modify = [](const ContactView&, ContactChange& change) { change.friction = 0.25f; };
     TestWorld world(NoSleep());
     world.AddFloor({.friction = 0.9f});
-    const BodyId box = world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5, 0}, .linearVelocity = {5, 0, 0}, .material = {.friction = 0.9f}});
+    const BodyId box = world.Add(
+        {.shape = CubeOf(0.5f), .position = {0, 0.5, 0}, .linearVelocity = {5, 0, 0}, .material = {.friction = 0.9f}});
     world.System().SetContactListener(&listener);
     world.Run(3);
     // v^2 / (2 mu g), less v h / 2 of the substep h; 1e-3 for the way in which the contact settles.
@@ -162,8 +165,11 @@ void OneWay(const ContactView& contact, ContactChange& change, const BodyInterfa
 TEST(ModifyContact, MakesAPlatformSolidFromAboveAlone) {
     Asking listener;
     TestWorld world(NoSleep());
-    const BodyId platform = world.Add({.shape = BoxOf(5, 0.1f, 5), .motion = MotionType::Static, .position = {0, 2, 0}});
-    listener.modify = [&](const ContactView& contact, ContactChange& change) { OneWay(contact, change, world.Bodies(), platform); };
+    const BodyId platform =
+        world.Add({.shape = BoxOf(5, 0.1f, 5), .motion = MotionType::Static, .position = {0, 2, 0}});
+    listener.modify = [&](const ContactView& contact, ContactChange& change) {
+        OneWay(contact, change, world.Bodies(), platform);
+    };
     world.System().SetContactListener(&listener);
     const BodyId ball = world.Add({.shape = SphereOf(0.25f), .linearVelocity = {0, 9, 0}});
     double highest = 0;
@@ -171,7 +177,8 @@ TEST(ModifyContact, MakesAPlatformSolidFromAboveAlone) {
         world.Step();
         highest = std::max(highest, world.PositionOf(ball).y());
     }
-    // The apex of free flight, v^2 / 2 g: exact at each step, of which the one closest to it is at most half a step away.
+    // The apex of free flight, v^2 / 2 g: exact at each step, of which the one closest to it is at most half a step
+    // away.
     EXPECT_NEAR(highest, 9 * 9 / (2 * kGravity), 0.5 * kGravity * 0.25 * kStep * kStep + 1e-4);
     world.Run(2);
     EXPECT_NEAR(world.PositionOf(ball).y(), 2 + 0.1 + 0.25, 2e-3);
@@ -180,7 +187,9 @@ TEST(ModifyContact, MakesAPlatformSolidFromAboveAlone) {
 
 TEST(ModifyContact, WhatIsIgnoredWakesNobodyAndIsNoContact) {
     Asking listener;
-    listener.modify = [](const ContactView& contact, ContactChange& change) { change.ignore = contact.bodyB.index + contact.bodyA.index > 1; };
+    listener.modify = [](const ContactView& contact, ContactChange& change) {
+        change.ignore = contact.bodyB.index + contact.bodyA.index > 1;
+    };
     TestWorld world;
     world.AddFloor();
     const BodyId sleeper = world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5, 0}});
@@ -268,7 +277,8 @@ TEST(ListenerCost, ASettledStepAllocatesNothing) {
         const BodyId floor = world.AddFloor();
         // No farther out than 5 m: the jerk at the start throws a column over that begins at 1.2 m/s.
         for (int i = 0; i < 11; ++i)
-            for (int row = 0; row < 3; ++row) world.Add({.shape = CubeOf(0.25f), .position = {i - 5.0, 0.25 + 0.5 * row, 0}});
+            for (int row = 0; row < 3; ++row)
+                world.Add({.shape = CubeOf(0.25f), .position = {i - 5.0, 0.25 + 0.5 * row, 0}});
         // A turntable: all boxes circle for ever.
         listener.modify = [&](const ContactView& contact, ContactChange& change) {
             change.friction = 0.9f;

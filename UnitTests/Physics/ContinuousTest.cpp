@@ -1,5 +1,5 @@
-// Continuous collision: nothing passes through anything, however fast it is; what hits something in the middle of a step bounces there,
-// as mechanics says; what only comes near is left alone.
+// Continuous collision: nothing passes through anything, however fast it is; what hits something in the middle of a
+// step bounces there, as mechanics says; what only comes near is left alone.
 #include <Fulcrum/Collision/Shapes/Plane.h>
 #include <Fulcrum/Collision/Shapes/RoundShapes.h>
 #include <Fulcrum/Collision/Shapes/TriangleMesh.h>
@@ -24,7 +24,8 @@ SystemSettings Shots() {
 }
 
 // Shoots from x = 0 .. 3 at a wall whose front is at x = 10; how many have passed it after so many steps.
-int PassedThrough(const ShapePtr& wall, const ShapePtr& shape, float speed, int shots, ContinuousCollision continuous, double dt = kStep) {
+int PassedThrough(const ShapePtr& wall, const ShapePtr& shape, float speed, int shots, ContinuousCollision continuous,
+                  double dt = kStep) {
     TestWorld world(Shots());
     world.Add({.shape = wall, .motion = MotionType::Static, .position = {10, 0, 0}, .material = kDull});
     RandomPoses random(static_cast<uint32_t>(speed));
@@ -33,9 +34,14 @@ int PassedThrough(const ShapePtr& wall, const ShapePtr& shape, float speed, int 
         const Vector3 from = random.InCube(), to = random.InCube(), spin = random.InCube();
         const Quaternion rotation = random.Rotation();
         const Vector3 start(1.5f + 1.5f * from.x(), 5 * from.y(), 5 * from.z()), aim(10, 8 * to.y(), 8 * to.z());
-        bodies.push_back(world.Add({.shape = shape, .position = start.cast<double>(), .rotation = rotation,
-                                    .linearVelocity = Normalized(Vector3(aim - start)) * speed, .angularVelocity = spin * 20.0f, .material = kBouncy,
-                                    .layer = 1, .continuous = continuous}));
+        bodies.push_back(world.Add({.shape = shape,
+                                    .position = start.cast<double>(),
+                                    .rotation = rotation,
+                                    .linearVelocity = Normalized(Vector3(aim - start)) * speed,
+                                    .angularVelocity = spin * 20.0f,
+                                    .material = kBouncy,
+                                    .layer = 1,
+                                    .continuous = continuous}));
     }
     const int steps = static_cast<int>(20 / (speed * dt)) + 2;
     int passed = 0;
@@ -63,7 +69,8 @@ TEST(Continuous, NoBulletPassesAThinWall) {
     constexpr int kShots = 10000;
     for (const float thickness : {0.1f, 0.01f})
         for (const float speed : {200.0f, 600.0f, 1000.0f})
-            EXPECT_EQ(PassedThrough(WallOf(thickness), SphereOf(0.1f), speed, kShots, kLinear), 0) << speed << " " << thickness;
+            EXPECT_EQ(PassedThrough(WallOf(thickness), SphereOf(0.1f), speed, kShots, kLinear), 0)
+                << speed << " " << thickness;
 }
 
 TEST(Continuous, NoShapePassesWallsSheetsAndPlanes) {
@@ -74,11 +81,13 @@ TEST(Continuous, NoShapePassesWallsSheetsAndPlanes) {
         Cylinder::Create(0.05f, 0.1f).Value(),
         CompoundOf({{.shape = BoxOf(0.2f, 0.02f, 0.02f)}, {.shape = SphereOf(0.05f), .position = {0.2f, 0, 0}}}),
     };
-    const ShapePtr walls[] = {WallOf(0.01f), SheetOf(false), SheetOf(true), Plane::Create(Vector3(-1, 0, 0), 0).Value()};
+    const ShapePtr walls[] = {WallOf(0.01f), SheetOf(false), SheetOf(true),
+                              Plane::Create(Vector3(-1, 0, 0), 0).Value()};
     for (const ShapePtr& shape : shapes)
         for (const ShapePtr& wall : walls)
             for (const ContinuousCollision continuous : {kLinear, kTurning})
-                EXPECT_EQ(PassedThrough(wall, shape, 400, 100, continuous), 0) << ShapeTypeName(shape->Type()) << " " << ShapeTypeName(wall->Type()) << " " << int(continuous);
+                EXPECT_EQ(PassedThrough(wall, shape, 400, 100, continuous), 0)
+                    << ShapeTypeName(shape->Type()) << " " << ShapeTypeName(wall->Type()) << " " << int(continuous);
 }
 
 TEST(Continuous, TheModeCanBeChanged) {
@@ -95,31 +104,41 @@ TEST(Continuous, TheModeCanBeChanged) {
     EXPECT_EQ(world.Report().sweptBodies, 0u);
 }
 
-// A ball between two walls: its way folded up. The cast may stop by a fiftieth of its radius before it touches, at each bounce.
+// A ball between two walls: its way folded up. The cast may stop by a fiftieth of its radius before it touches, at each
+// bounce.
 TEST(Continuous, ABallBetweenWallsIsWhereItsFoldedWayEnds) {
     TestWorld world(NoGravity());
     constexpr double kHalf = 4, kRadius = 0.25, kFree = kHalf - kRadius;
     for (const double side : {-1.0, 1.0})
-        world.Add({.shape = BoxOf(0.5f, 5, 5), .motion = MotionType::Static, .position = {side * (kHalf + 0.5), 0, 0}, .material = kBouncy});
-    const BodyId ball = world.Add({.shape = SphereOf(kRadius), .linearVelocity = {700, 0, 0}, .material = kBouncy, .continuous = kLinear});
+        world.Add({.shape = BoxOf(0.5f, 5, 5),
+                   .motion = MotionType::Static,
+                   .position = {side * (kHalf + 0.5), 0, 0},
+                   .material = kBouncy});
+    const BodyId ball = world.Add(
+        {.shape = SphereOf(kRadius), .linearVelocity = {700, 0, 0}, .material = kBouncy, .continuous = kLinear});
     int bounces = 0;
     for (int step = 1; step <= 120; ++step) {
         world.Step();
         bounces += static_cast<int>(world.Report().sweptHits);
         EXPECT_NEAR(std::fabs(world.VelocityOf(ball).x()), 700, 0.01);
-        const double way = std::fmod(700 * kStep * step + kFree, 4 * kFree), folded = way < 2 * kFree ? way - kFree : 3 * kFree - way;
+        const double way = std::fmod(700 * kStep * step + kFree, 4 * kFree),
+                     folded = way < 2 * kFree ? way - kFree : 3 * kFree - way;
         ASSERT_NEAR(world.PositionOf(ball).x(), folded, 2 * 0.02 * kRadius * bounces + 1e-3) << step;
     }
     EXPECT_EQ(bounces, static_cast<int>((700 * 2.0 + kFree) / (2 * kFree)));
 }
 
-// Energy of a fall with bounces of e = 1: m g h + m v^2 / 2 stays, however the step cuts the fall. The tolerance: the cast
-// may stop 2 % of the radius above the ground, once a bounce.
+// Energy of a fall with bounces of e = 1: m g h + m v^2 / 2 stays, however the step cuts the fall. The tolerance: the
+// cast may stop 2 % of the radius above the ground, once a bounce.
 TEST(Continuous, BouncesKeepTheEnergyUnderGravity) {
     TestWorld world;
     world.AddFloor(kBouncy);
     constexpr float kRadius = 0.02f;
-    const BodyId ball = world.Add({.shape = SphereOf(kRadius), .position = {0, 10, 0}, .linearVelocity = {0, -30, 0}, .material = kBouncy, .continuous = kLinear});
+    const BodyId ball = world.Add({.shape = SphereOf(kRadius),
+                                   .position = {0, 10, 0},
+                                   .linearVelocity = {0, -30, 0},
+                                   .material = kBouncy,
+                                   .continuous = kLinear});
     const auto energy = [&] {
         const double v = world.VelocityOf(ball).y();
         return kGravity * world.PositionOf(ball).y() + 0.5 * v * v;
@@ -136,8 +155,16 @@ TEST(Continuous, BouncesKeepTheEnergyUnderGravity) {
 
 TEST(Continuous, EqualBallsThatMeetInFlightExchangeTheirVelocities) {
     TestWorld world(NoGravity());
-    const BodyId a = world.Add({.shape = SphereOf(0.1f), .position = {-3, 0, 0}, .linearVelocity = {400, 0, 0}, .material = kBouncy, .continuous = kLinear});
-    const BodyId b = world.Add({.shape = SphereOf(0.1f), .position = {3, 0, 0}, .linearVelocity = {-200, 0, 0}, .material = kBouncy, .continuous = kLinear});
+    const BodyId a = world.Add({.shape = SphereOf(0.1f),
+                                .position = {-3, 0, 0},
+                                .linearVelocity = {400, 0, 0},
+                                .material = kBouncy,
+                                .continuous = kLinear});
+    const BodyId b = world.Add({.shape = SphereOf(0.1f),
+                                .position = {3, 0, 0},
+                                .linearVelocity = {-200, 0, 0},
+                                .material = kBouncy,
+                                .continuous = kLinear});
     world.Step();
     EXPECT_NEAR(world.VelocityOf(a).x(), -200, 0.01);
     EXPECT_NEAR(world.VelocityOf(b).x(), 400, 0.01);
@@ -153,7 +180,12 @@ TEST(Continuous, ABulletWakesWhatItHitsAndSharesItsMomentum) {
     TestWorld world;
     world.AddFloor();
     const BodyId box = world.Add({.shape = CubeOf(0.5f), .position = {20, 0.5, 0}, .mass = 100, .startAsleep = true});
-    const BodyId bullet = world.Add({.shape = SphereOf(0.02f), .position = {0, 0.5, 0}, .linearVelocity = {900, 0, 0}, .mass = 0.5f, .gravityFactor = 0, .continuous = kLinear});
+    const BodyId bullet = world.Add({.shape = SphereOf(0.02f),
+                                     .position = {0, 0.5, 0},
+                                     .linearVelocity = {900, 0, 0},
+                                     .mass = 0.5f,
+                                     .gravityFactor = 0,
+                                     .continuous = kLinear});
     world.Step();
     EXPECT_FALSE(world.Bodies().IsAwake(box));
     world.Step();
@@ -166,15 +198,23 @@ TEST(Continuous, ABulletWakesWhatItHitsAndSharesItsMomentum) {
     EXPECT_NEAR(world.VelocityOf(bullet).x(), 450 / 100.5, 0.02);
 }
 
-// A rod of 2 m turns by 96 degrees a step towards a post that stands 0.7 m from its middle. J (1 / m + r^2 / I) = (1 + e) w r.
+// A rod of 2 m turns by 96 degrees a step towards a post that stands 0.7 m from its middle. J (1 / m + r^2 / I) = (1 +
+// e) w r.
 TEST(Continuous, ATurningRodDoesNotPassAPost) {
     for (const float restitution : {0.0f, 1.0f}) {
         const auto turn = [&](ContinuousCollision continuous, Vector3& v, Vector3& w) {
             TestWorld world(NoGravity());
             const Material material{.friction = 0, .restitution = restitution};
-            world.Add({.shape = CapsuleOf(1, 0.02f), .motion = MotionType::Static, .position = {0, 0, -0.7}, .material = material});
-            const BodyId rod = world.Add({.shape = BoxOf(1, 0.02f, 0.02f), .rotation = RotationAbout({0, 1, 0}, 10 * kDegree), .angularVelocity = {0, 100, 0},
-                                          .mass = 3, .material = material, .continuous = continuous});
+            world.Add({.shape = CapsuleOf(1, 0.02f),
+                       .motion = MotionType::Static,
+                       .position = {0, 0, -0.7},
+                       .material = material});
+            const BodyId rod = world.Add({.shape = BoxOf(1, 0.02f, 0.02f),
+                                          .rotation = RotationAbout({0, 1, 0}, 10 * kDegree),
+                                          .angularVelocity = {0, 100, 0},
+                                          .mass = 3,
+                                          .material = material,
+                                          .continuous = continuous});
             world.Step();
             v = world.VelocityOf(rod);
             w = world.Bodies().GetAngularVelocity(rod);
@@ -183,8 +223,10 @@ TEST(Continuous, ATurningRodDoesNotPassAPost) {
         turn(kLinear, v, w);
         EXPECT_NEAR(w.y(), 100, 1e-3);
         turn(kTurning, v, w);
-        // The side of the rod touches, so that the arm is 0.7 m but for the widths of rod and post; I = m (2^2 + 0.04^2) / 12.
-        const double inertia = 3 * (4 + 0.0016) / 12, r = 0.7, impulse = (1 + double{restitution}) * 100 * r / (1 / 3.0 + r * r / inertia);
+        // The side of the rod touches, so that the arm is 0.7 m but for the widths of rod and post; I = m (2^2 +
+        // 0.04^2) / 12.
+        const double inertia = 3 * (4 + 0.0016) / 12, r = 0.7,
+                     impulse = (1 + double{restitution}) * 100 * r / (1 / 3.0 + r * r / inertia);
         EXPECT_NEAR(w.y(), 100 - impulse * r / inertia, 2);
         EXPECT_NEAR(Length(v), impulse / 3, 2);
     }
@@ -192,25 +234,35 @@ TEST(Continuous, ATurningRodDoesNotPassAPost) {
 
 // A post in the way of a rod on a hinge, in any pose: on which side of the post the rod is never changes.
 TEST(Continuous, AThousandRodsNeverSweepOverThinPosts) {
-    constexpr LockedAxes kAllButYaw =
-        LockedAxes::TranslationX | LockedAxes::TranslationY | LockedAxes::TranslationZ | LockedAxes::RotationX | LockedAxes::RotationZ;
+    constexpr LockedAxes kAllButYaw = LockedAxes::TranslationX | LockedAxes::TranslationY | LockedAxes::TranslationZ |
+                                      LockedAxes::RotationX | LockedAxes::RotationZ;
     TestWorld world(Shots());
     RandomPoses random(3);
     std::vector<BodyId> rods;
     for (int i = 0; i < 1000; ++i) {
-        const float at = random.Between(0.3f, 0.9f), angle = random.Between(0.2f, 2.9f), speed = random.Between(50, 250);
+        const float at = random.Between(0.3f, 0.9f), angle = random.Between(0.2f, 2.9f),
+                    speed = random.Between(50, 250);
         const Position middle(5.0 * (i % 40), 0, 5.0 * (i / 40));
-        world.Add({.shape = CapsuleOf(1, 0.01f), .motion = MotionType::Static, .position = middle + Position(double{at}, 0, 0), .material = kBouncy});
+        world.Add({.shape = CapsuleOf(1, 0.01f),
+                   .motion = MotionType::Static,
+                   .position = middle + Position(double{at}, 0, 0),
+                   .material = kBouncy});
         // Turns down onto the post from the side of -z; an end-point of it, at first at angle `angle`, comes to 0.
-        rods.push_back(world.Add({.shape = BoxOf(1, 0.01f, 0.01f), .position = middle, .rotation = RotationAbout({0, 1, 0}, double{angle}), .angularVelocity = {0, -speed, 0},
-                                  .material = kBouncy, .lockedAxes = kAllButYaw, .layer = 1,
+        rods.push_back(world.Add({.shape = BoxOf(1, 0.01f, 0.01f),
+                                  .position = middle,
+                                  .rotation = RotationAbout({0, 1, 0}, double{angle}),
+                                  .angularVelocity = {0, -speed, 0},
+                                  .material = kBouncy,
+                                  .lockedAxes = kAllButYaw,
+                                  .layer = 1,
                                   .continuous = kTurning}));
     }
     for (int step = 0; step < 30; ++step) {
         world.Step();
         for (size_t i = 0; i < rods.size(); ++i) {
             const Vector3 end = Rotate(world.Bodies().GetPose(rods[i]).rotation, Vector3(1, 0, 0));
-            // The half of the rod beyond the post is symmetric: it swings between 0 and 180 degrees, as seen by either end.
+            // The half of the rod beyond the post is symmetric: it swings between 0 and 180 degrees, as seen by either
+            // end.
             ASSERT_LT(end.z(), 0.05f) << "rod " << i << " in step " << step;
         }
     }
@@ -221,7 +273,11 @@ TEST(Continuous, WhatFliesPastAnEdgeIsNotHeldUp) {
     const auto fly = [](bool wall, ContinuousCollision continuous) {
         TestWorld world;
         if (wall) world.Add({.shape = BoxOf(0.05f, 5, 5), .motion = MotionType::Static, .position = {20, -4.9, 0}});
-        const BodyId ball = world.Add({.shape = SphereOf(0.1f), .position = {0, 0.215, 0}, .linearVelocity = {500, 0, 0}, .gravityFactor = 0, .continuous = continuous});
+        const BodyId ball = world.Add({.shape = SphereOf(0.1f),
+                                       .position = {0, 0.215, 0},
+                                       .linearVelocity = {500, 0, 0},
+                                       .gravityFactor = 0,
+                                       .continuous = continuous});
         world.Steps(20);
         return BitsOf(world, ball);
     };
@@ -240,13 +296,25 @@ TEST(Continuous, SlidingFastOverSeamsLosesNothing) {
                 for (uint32_t i = 0; i <= 200; ++i)
                     for (uint32_t k = 0; k < 2; ++k) {
                         vertices.emplace_back(static_cast<float>(i) - 2, 0.0f, k == 0 ? -2.0f : 2.0f);
-                        if (i < 200 && k == 0) indices.insert(indices.end(), {2 * i, 2 * i + 1, 2 * i + 2, 2 * i + 2, 2 * i + 1, 2 * i + 3});
+                        if (i < 200 && k == 0)
+                            indices.insert(indices.end(),
+                                           {2 * i, 2 * i + 1, 2 * i + 2, 2 * i + 2, 2 * i + 1, 2 * i + 3});
                     }
-                world.Add({.shape = TriangleMesh::Create({.vertices = vertices, .indices = indices}).Value(), .motion = MotionType::Static, .material = kDull});
+                world.Add({.shape = TriangleMesh::Create({.vertices = vertices, .indices = indices}).Value(),
+                           .motion = MotionType::Static,
+                           .material = kDull});
             } else {
-                for (int i = 0; i < 200; ++i) world.Add({.shape = BoxOf(0.5f, 0.5f, 2), .motion = MotionType::Static, .position = {i - 1.5, -0.5, 0}, .material = kDull});
+                for (int i = 0; i < 200; ++i)
+                    world.Add({.shape = BoxOf(0.5f, 0.5f, 2),
+                               .motion = MotionType::Static,
+                               .position = {i - 1.5, -0.5, 0},
+                               .material = kDull});
             }
-            const BodyId box = world.Add({.shape = CubeOf(0.2f), .position = {0, 0.2, 0}, .linearVelocity = {100, 0, 0}, .material = kDull, .continuous = continuous});
+            const BodyId box = world.Add({.shape = CubeOf(0.2f),
+                                          .position = {0, 0.2, 0},
+                                          .linearVelocity = {100, 0, 0},
+                                          .material = kDull,
+                                          .continuous = continuous});
             for (int i = 0; i < 90; ++i) {
                 world.Step();
                 ASSERT_NEAR(world.VelocityOf(box).x(), 100, 0.1) << mesh << " step " << i;
@@ -258,7 +326,12 @@ TEST(Continuous, SlidingFastOverSeamsLosesNothing) {
 
 TEST(Continuous, AFastPaddlePushesWhatItWouldPass) {
     TestWorld world(NoGravity());
-    world.Add({.shape = BoxOf(0.02f, 1, 1), .motion = MotionType::Kinematic, .position = {-2, 0, 0}, .linearVelocity = {300, 0, 0}, .material = kDull, .continuous = kLinear});
+    world.Add({.shape = BoxOf(0.02f, 1, 1),
+               .motion = MotionType::Kinematic,
+               .position = {-2, 0, 0},
+               .linearVelocity = {300, 0, 0},
+               .material = kDull,
+               .continuous = kLinear});
     const BodyId ball = world.Add({.shape = SphereOf(0.1f), .material = kDull});
     world.Steps(3);
     EXPECT_NEAR(world.VelocityOf(ball).x(), 300, 0.5);
@@ -267,9 +340,17 @@ TEST(Continuous, AFastPaddlePushesWhatItWouldPass) {
 TEST(Continuous, SettledStepsWithFastBodiesAllocateNothing) {
     for (const uint32_t threads : {1u, 2u}) {
         TestWorld world(NoGravity(), threads);
-        for (const double side : {-1.0, 1.0}) world.Add({.shape = BoxOf(0.1f, 9, 9), .motion = MotionType::Static, .position = {side * 4, 0, 0}, .material = kBouncy});
+        for (const double side : {-1.0, 1.0})
+            world.Add({.shape = BoxOf(0.1f, 9, 9),
+                       .motion = MotionType::Static,
+                       .position = {side * 4, 0, 0},
+                       .material = kBouncy});
         for (int i = 0; i < 64; ++i)
-            world.Add({.shape = SphereOf(0.1f), .position = {0, i % 8 - 3.5, i / 8 - 3.5}, .linearVelocity = {300, 0, 0}, .material = kBouncy, .continuous = i % 2 ? kLinear : kTurning});
+            world.Add({.shape = SphereOf(0.1f),
+                       .position = {0, i % 8 - 3.5, i / 8 - 3.5},
+                       .linearVelocity = {300, 0, 0},
+                       .material = kBouncy,
+                       .continuous = i % 2 ? kLinear : kTurning});
         world.Steps(60);
         const uint64_t before = AllocationCount();
         for (int i = 0; i < 60; ++i) {
@@ -293,8 +374,12 @@ TEST(Continuous, FiltersAndListenersHaveTheirSay) {
         TestWorld world(NoGravity());
         world.System().SetContactListener(listener);
         world.Add({.shape = BoxOf(0.01f, 5, 5), .motion = MotionType::Static, .material = kDull});
-        const BodyId ball = world.Add({.shape = SphereOf(0.1f), .position = {velocity > 0 ? -8.0 : 8.0, 0, 0}, .linearVelocity = {velocity, 0, 0}, .material = kDull,
-                                       .mask = mask, .continuous = kLinear});
+        const BodyId ball = world.Add({.shape = SphereOf(0.1f),
+                                       .position = {velocity > 0 ? -8.0 : 8.0, 0, 0},
+                                       .linearVelocity = {velocity, 0, 0},
+                                       .material = kDull,
+                                       .mask = mask,
+                                       .continuous = kLinear});
         world.Steps(3);
         return world.VelocityOf(ball).x();
     };
@@ -318,7 +403,11 @@ TEST(Continuous, ASurfaceOfWhichTheTurnIsNotFiniteStands) {
         TestWorld world(NoGravity());
         world.System().SetContactListener(listener);
         world.Add({.shape = BoxOf(0.01f, 5, 5), .motion = MotionType::Static, .material = {.friction = 1}});
-        const BodyId ball = world.Add({.shape = SphereOf(0.1f), .position = {-8, 0, 0}, .linearVelocity = {500, 0, 0}, .material = {.friction = 1}, .continuous = kLinear});
+        const BodyId ball = world.Add({.shape = SphereOf(0.1f),
+                                       .position = {-8, 0, 0},
+                                       .linearVelocity = {500, 0, 0},
+                                       .material = {.friction = 1},
+                                       .continuous = kLinear});
         world.Step();
         return world.VelocityOf(ball);
     };
@@ -330,12 +419,14 @@ TEST(Continuous, ASurfaceOfWhichTheTurnIsNotFiniteStands) {
 
 TEST(Continuous, RefusesWhatCannotBeCast) {
     TestWorld world;
-    const BodySettings plane{.shape = Plane::Create(Vector3(0, 1, 0), 0).Value(), .motion = MotionType::Static, .continuous = kLinear};
+    const BodySettings plane{
+        .shape = Plane::Create(Vector3(0, 1, 0), 0).Value(), .motion = MotionType::Static, .continuous = kLinear};
     const Result<BodyId> body = world.Bodies().Create(plane);
     ASSERT_FALSE(body);
     EXPECT_EQ(body.GetError().code, ErrorCode::Unsupported);
     const BodyId ball = world.Add({.shape = SphereOf(1)});
-    EXPECT_EQ(world.Bodies().SetContinuous(ball, static_cast<ContinuousCollision>(7)).GetError().code, ErrorCode::OutOfRange);
+    EXPECT_EQ(world.Bodies().SetContinuous(ball, static_cast<ContinuousCollision>(7)).GetError().code,
+              ErrorCode::OutOfRange);
     EXPECT_EQ(world.Bodies().SetContinuous({99, 0}, kLinear).GetError().code, ErrorCode::UnknownId);
 }
 

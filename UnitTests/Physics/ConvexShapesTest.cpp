@@ -1,4 +1,5 @@
-// Cylinders, cones, tapered capsules and shapes that users make, in the whole engine: they stand, roll and come to rest.
+// Cylinders, cones, tapered capsules and shapes that users make, in the whole engine: they stand, roll and come to
+// rest.
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
 #include <Fulcrum/Collision/Shapes/CustomConvex.h>
@@ -20,7 +21,8 @@ TEST(ConvexShapes, AColumnOfCylindersStands) {
     const ShapePtr drum = Cylinder::Create(0.25f, 0.5f).Value();
     std::vector<BodyId> drums;
     for (int i = 0; i < 5; ++i) {
-        drums.push_back(world.Add({.shape = drum, .position = {0, 0.25 + 0.5 * i, 0}, .rotation = RotationAbout(Vector3(0, 1, 0), 0.3 * i)}));
+        drums.push_back(world.Add(
+            {.shape = drum, .position = {0, 0.25 + 0.5 * i, 0}, .rotation = RotationAbout(Vector3(0, 1, 0), 0.3 * i)}));
     }
     world.Run(10);
     for (size_t i = 0; i < drums.size(); ++i) {
@@ -39,18 +41,24 @@ TEST(ConvexShapes, ACylinderRollsDownASlopeAsTheClosedFormSays) {
     for (const float rounding : {0.0f, 0.05f}) {
         TestWorld world;
         const Quaternion slope = RotationAbout(Vector3(0, 0, 1), -kAngle);
-        world.Add({.shape = BoxOf(30, 0.5f, 5), .motion = MotionType::Static, .rotation = slope, .material = {.friction = 1}});
+        world.Add({.shape = BoxOf(30, 0.5f, 5),
+                   .motion = MotionType::Static,
+                   .rotation = slope,
+                   .material = {.friction = 1}});
         const Position up(std::sin(kAngle), std::cos(kAngle), 0), along(std::cos(kAngle), -std::sin(kAngle), 0);
         // Its axis is y: laid along z.
         const Position start = up * (0.5 + 0.5) - along * 15.0;
-        const BodyId wheel = world.Add({.shape = Cylinder::Create(0.4f, 0.5f, rounding).Value(), .position = start,
-                                        .rotation = slope * RotationAbout(Vector3(1, 0, 0), 90 * kDegree), .material = {.friction = 1}});
+        const BodyId wheel = world.Add({.shape = Cylinder::Create(0.4f, 0.5f, rounding).Value(),
+                                        .position = start,
+                                        .rotation = slope * RotationAbout(Vector3(1, 0, 0), 90 * kDegree),
+                                        .material = {.friction = 1}});
         world.Run(1);
         const double v1 = Dot<double>(world.VelocityOf(wheel).cast<double>(), along);
         world.Run(2);
         const double v3 = Dot<double>(world.VelocityOf(wheel).cast<double>(), along);
         const double expected = 2.0 / 3 * kGravity * std::sin(kAngle);
-        // Peers are within 0.2 %; the contact is a line whose place under the axis is exact to the slop over the radius.
+        // Peers are within 0.2 %; the contact is a line whose place under the axis is exact to the slop over the
+        // radius.
         EXPECT_NEAR((v3 - v1) / 2, expected, 2e-3 * expected) << rounding;
         EXPECT_NEAR(world.PositionOf(wheel).z(), 0, 1e-3);
     }
@@ -59,8 +67,10 @@ TEST(ConvexShapes, ACylinderRollsDownASlopeAsTheClosedFormSays) {
 TEST(ConvexShapes, AConeAndAFrustumStandOnTheirBases) {
     TestWorld world;
     world.AddFloor();
-    const ShapePtr cone = Cylinder::CreateCone(0.5f, 0.4f).Value(), frustum = Cylinder::CreateTapered(0.5f, 0.2f, 0.4f).Value();
-    const BodyId ids[2] = {world.Add({.shape = cone, .position = {0, 0.5, 0}}), world.Add({.shape = frustum, .position = {2, 0.5, 0}})};
+    const ShapePtr cone = Cylinder::CreateCone(0.5f, 0.4f).Value(),
+                   frustum = Cylinder::CreateTapered(0.5f, 0.2f, 0.4f).Value();
+    const BodyId ids[2] = {world.Add({.shape = cone, .position = {0, 0.5, 0}}),
+                           world.Add({.shape = frustum, .position = {2, 0.5, 0}})};
     world.Run(5);
     for (const BodyId id : ids) {
         EXPECT_LE(Lean(world, id), 0.002);
@@ -80,14 +90,20 @@ public:
 TEST(ConvexShapes, AllKindsFallIntoAPileAndStayAboveTheFloor) {
     TestWorld world({}, 2);
     world.AddFloor();
-    const ShapePtr shapes[] = {Cylinder::Create(0.3f, 0.2f).Value(), Cylinder::CreateCone(0.3f, 0.3f).Value(),
-                               Cylinder::CreateTapered(0.3f, 0.15f, 0.3f, 0.03f).Value(),
-                               TaperedCapsule::Create(0.3f, 0.1f, 0.25f).Value(), CreateCustom<Egg>().Value(), CubeOf(0.25f),
-                               SphereOf(0.25f), CapsuleOf(0.2f, 0.15f),
-                               Triangle::Create(Vector3(0, 0, 0), Vector3(0.8f, 0, 0), Vector3(0, 0, 0.6f), 0.03f).Value()};
+    const ShapePtr shapes[] = {
+        Cylinder::Create(0.3f, 0.2f).Value(),
+        Cylinder::CreateCone(0.3f, 0.3f).Value(),
+        Cylinder::CreateTapered(0.3f, 0.15f, 0.3f, 0.03f).Value(),
+        TaperedCapsule::Create(0.3f, 0.1f, 0.25f).Value(),
+        CreateCustom<Egg>().Value(),
+        CubeOf(0.25f),
+        SphereOf(0.25f),
+        CapsuleOf(0.2f, 0.15f),
+        Triangle::Create(Vector3(0, 0, 0), Vector3(0.8f, 0, 0), Vector3(0, 0, 0.6f), 0.03f).Value()};
     std::vector<BodyId> ids;
     for (int i = 0; i < 72; ++i) {
-        ids.push_back(world.Add({.shape = shapes[i % 9], .position = {0.35 * (i % 3), 0.5 + 0.4 * i, 0.3 * (i / 3 % 2)},
+        ids.push_back(world.Add({.shape = shapes[i % 9],
+                                 .position = {0.35 * (i % 3), 0.5 + 0.4 * i, 0.3 * (i / 3 % 2)},
                                  .rotation = RotationAbout(Vector3(0.6f, 0, 0.8f), 0.7 * i)}));
     }
     world.Run(15);
@@ -96,7 +112,8 @@ TEST(ConvexShapes, AllKindsFallIntoAPileAndStayAboveTheFloor) {
         const Position place = world.PositionOf(id);
         EXPECT_GT(place.y(), 0.0) << id.index;
         EXPECT_LT(place.y(), 5.0) << id.index;
-        EXPECT_LT(Length(world.VelocityOf(id)), 15.0f);  // what rolls off the pile rolls on: 24 m/s is all that the height gives
+        EXPECT_LT(Length(world.VelocityOf(id)),
+                  15.0f);  // what rolls off the pile rolls on: 24 m/s is all that the height gives
     }
 }
 

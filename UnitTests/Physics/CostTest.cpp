@@ -8,7 +8,8 @@ namespace {
 void AddPyramid(TestWorld& world, int base) {
     world.AddFloor();
     for (int row = 0; row < base; ++row)
-        for (int i = 0; i < base - row; ++i) world.Add({.shape = CubeOf(0.5f), .position = {i + 0.5 * row, 0.5 + row, 0}});
+        for (int i = 0; i < base - row; ++i)
+            world.Add({.shape = CubeOf(0.5f), .position = {i + 0.5 * row, 0.5 + row, 0}});
 }
 
 uint64_t AllocationsOfSettledSteps(TestWorld& world) {
@@ -39,12 +40,16 @@ TEST(Cost, ASettledStepAllocatesNothing) {
 TEST(Cost, SettledHullsCapsulesAndOverflowAllocateNothing) {
     TestWorld world(NoSleep());
     world.AddFloor();
-    const ShapePtr hull = HullOf({{0.4f, -0.4f, 0.4f}, {-0.4f, -0.4f, 0.4f}, {0.4f, -0.4f, -0.4f}, {-0.4f, -0.4f, -0.4f}, {0, 0.4f, 0}});
+    const ShapePtr hull =
+        HullOf({{0.4f, -0.4f, 0.4f}, {-0.4f, -0.4f, 0.4f}, {0.4f, -0.4f, -0.4f}, {-0.4f, -0.4f, -0.4f}, {0, 0.4f, 0}});
     world.Add({.shape = BoxOf(6, 0.25f, 6), .position = {0, 0.25, 0}, .mass = 1000});
     for (int i = 0; i < 100; ++i) {
         const double x = i % 10 * 1.0 - 4.5, z = i / 10 * 1.0 - 4.5;
         if (i % 2) world.Add({.shape = hull, .position = {x, 0.9, z}});
-        else world.Add({.shape = CapsuleOf(0.3f, 0.2f), .position = {x, 0.7, z}, .rotation = RotationAbout({0, 0, 1}, kPi / 2)});
+        else
+            world.Add({.shape = CapsuleOf(0.3f, 0.2f),
+                       .position = {x, 0.7, z},
+                       .rotation = RotationAbout({0, 0, 1}, kPi / 2)});
     }
     EXPECT_EQ(AllocationsOfSettledSteps(world), 0u);
     EXPECT_GT(world.Report().overflowConstraints, 0u);
@@ -54,7 +59,8 @@ TEST(Cost, SettledHullsCapsulesAndOverflowAllocateNothing) {
 TEST(Cost, ARestingBoxTakesAtMost1600Bytes) {
     TestWorld world(NoSleep());
     world.AddFloor();
-    for (int i = 0; i < 1000; ++i) world.Add({.shape = CubeOf(0.5f), .position = {i % 32 * 2.0 - 32, 0.5, i / 32 * 2.0 - 32}});
+    for (int i = 0; i < 1000; ++i)
+        world.Add({.shape = CubeOf(0.5f), .position = {i % 32 * 2.0 - 32, 0.5, i / 32 * 2.0 - 32}});
     world.Steps(60);
     EXPECT_EQ(world.Report().contacts, 1000u);
     EXPECT_LE(static_cast<double>(world.System().MemoryUsed()) / 1000, 1600.0);

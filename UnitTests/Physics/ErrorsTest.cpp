@@ -22,14 +22,26 @@ std::vector<BadBody> BadBodies() {
     using S = BodySettings;
     std::vector<BadBody> list{
         {"shape", ErrorCode::Unsupported, [](S& s) { s.shape = nullptr; }},
-        {"rotation", ErrorCode::Unnormalized, [](S& s) { s.rotation = {0, 0, 0, 1.1f}; }},
-        {"rotation", ErrorCode::Unnormalized, [](S& s) { s.rotation = {0, 0, 0, 0}; }},
+        {"rotation", ErrorCode::Unnormalized,
+         [](S& s) {
+             s.rotation = {0, 0, 0, 1.1f};
+         }},
+        {"rotation", ErrorCode::Unnormalized,
+         [](S& s) {
+             s.rotation = {0, 0, 0, 0};
+         }},
         {"rotation", ErrorCode::NonFinite, [](S& s) { s.rotation.x = kNaN; }},
         {"density", ErrorCode::NonPositive, [](S& s) { s.density = 0; }},
         {"density", ErrorCode::NonPositive, [](S& s) { s.density = -1; }},
         {"mass", ErrorCode::Negative, [](S& s) { s.mass = -1; }},
-        {"inertia", ErrorCode::NonPositive, [](S& s) { s.inertia = {1, 0, 1}; }},
-        {"inertia", ErrorCode::NonPositive, [](S& s) { s.inertia = {1, -1, 1}; }},
+        {"inertia", ErrorCode::NonPositive,
+         [](S& s) {
+             s.inertia = {1, 0, 1};
+         }},
+        {"inertia", ErrorCode::NonPositive,
+         [](S& s) {
+             s.inertia = {1, -1, 1};
+         }},
         {"friction", ErrorCode::Negative, [](S& s) { s.material.friction = -0.1f; }},
         {"restitution", ErrorCode::OutOfRange, [](S& s) { s.material.restitution = 1.1f; }},
         {"restitution", ErrorCode::OutOfRange, [](S& s) { s.material.restitution = -0.1f; }},
@@ -40,10 +52,16 @@ std::vector<BadBody> BadBodies() {
         {"layer", ErrorCode::OutOfRange, [](S& s) { s.layer = 32; }},
         {"lockedAxes", ErrorCode::OutOfRange, [](S& s) { s.lockedAxes = static_cast<LockedAxes>(64); }},
         {"startAsleep", ErrorCode::Unsupported, [](S& s) { s.startAsleep = true, s.motion = MotionType::Static; }},
-        {"velocity", ErrorCode::Unsupported, [](S& s) { s.motion = MotionType::Static, s.linearVelocity = {1, 0, 0}; }},
+        {"velocity", ErrorCode::Unsupported,
+         [](S& s) {
+             s.motion = MotionType::Static, s.linearVelocity = {1, 0, 0};
+         }},
         // Masses and moments of which no float holds the inverse.
         {"mass", ErrorCode::OutOfRange, [](S& s) { s.mass = 1e-40f; }},
-        {"inertia", ErrorCode::OutOfRange, [](S& s) { s.inertia = {1e-40f, 1, 1}; }},
+        {"inertia", ErrorCode::OutOfRange,
+         [](S& s) {
+             s.inertia = {1e-40f, 1, 1};
+         }},
         {"density", ErrorCode::OutOfRange, [](S& s) { s.density = 1e-44f; }},
         {"density", ErrorCode::OutOfRange, [](S& s) { s.density = 3e38f; }},
     };
@@ -90,7 +108,8 @@ TEST(Errors, RefusedCallsDoNotChangeTheFuture) {
     const auto run = [](bool spoil) {
         TestWorld world;
         const BodyId floor = world.AddFloor();
-        const BodyId box = world.Add({.shape = CubeOf(0.5f), .position = {0, 1, 0}, .rotation = RotationAbout({1, 0, 0}, 0.2)});
+        const BodyId box =
+            world.Add({.shape = CubeOf(0.5f), .position = {0, 1, 0}, .rotation = RotationAbout({1, 0, 0}, 0.2)});
         for (int i = 0; i < 100; ++i) {
             if (spoil) {
                 BodyInterface& b = world.Bodies();
@@ -156,7 +175,8 @@ TEST(Errors, ABadSystemIsNotCreated) {
         {"jointDampingRatio", ErrorCode::Negative, [](S& s) { s.jointDampingRatio = -1; }},
         {"jointPushSpeed", ErrorCode::NonPositive, [](S& s) { s.jointPushSpeed = -1; }},
         {"exactJointLoad", ErrorCode::NonPositive, [](S& s) { s.exactJointLoad = 0; }},
-        {"exactJointLoad", ErrorCode::NonFinite, [](S& s) { s.exactJointLoad = std::numeric_limits<float>::quiet_NaN(); }},
+        {"exactJointLoad", ErrorCode::NonFinite,
+         [](S& s) { s.exactJointLoad = std::numeric_limits<float>::quiet_NaN(); }},
         {"restitutionSpeed", ErrorCode::Negative, [](S& s) { s.restitutionSpeed = -1; }},
         {"boundsMargin", ErrorCode::NonPositive, [](S& s) { s.boundsMargin = 0; }},
         {"layerCollides", ErrorCode::Unsupported, [](S& s) { s.layerCollides[3] = 1; }},
@@ -181,7 +201,8 @@ void PushBeyondAllNumbers(TestWorld& world, BodyId id) {
 
 TEST(Frozen, ABodyThatTurnsNonFiniteStopsAtItsLastGoodPose) {
     TestWorld world;
-    const BodyId bad = world.Add({.shape = SphereOf(0.5f), .position = {1, 2, 3}, .maxLinearSpeed = 3e38f, .maxAngularSpeed = 3e38f});
+    const BodyId bad =
+        world.Add({.shape = SphereOf(0.5f), .position = {1, 2, 3}, .maxLinearSpeed = 3e38f, .maxAngularSpeed = 3e38f});
     const BodyId good = world.Add({.shape = SphereOf(0.5f), .position = {10, 2, 3}});
     PushBeyondAllNumbers(world, bad);
     world.Step();
@@ -208,7 +229,8 @@ TEST(Frozen, NeighborsInTouchGoOn) {
     TestWorld world(NoSleep());
     world.AddFloor();
     const BodyId below = world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5, 0}});
-    const BodyId bad = world.Add({.shape = CubeOf(0.5f), .position = {0, 1.5, 0}, .maxLinearSpeed = 3e38f, .maxAngularSpeed = 3e38f});
+    const BodyId bad =
+        world.Add({.shape = CubeOf(0.5f), .position = {0, 1.5, 0}, .maxLinearSpeed = 3e38f, .maxAngularSpeed = 3e38f});
     const BodyId above = world.Add({.shape = CubeOf(0.5f), .position = {0, 2.5, 0}});
     const BodyId beside = world.Add({.shape = CubeOf(0.5f), .position = {1, 0.5, 0}});
     world.Run(1);

@@ -16,7 +16,9 @@ Outcome StackAt(const Position& origin) {
     TestWorld world;
     world.AddFloor({}, origin);
     std::vector<BodyId> stack;
-    for (int i = 0; i < 6; ++i) stack.push_back(world.Add({.shape = CubeOf(0.5f), .position = origin + Position(0.01 * (i % 2), 0.6 + 1.1 * i, 0)}));
+    for (int i = 0; i < 6; ++i)
+        stack.push_back(
+            world.Add({.shape = CubeOf(0.5f), .position = origin + Position(0.01 * (i % 2), 0.6 + 1.1 * i, 0)}));
     Outcome outcome;
     for (int i = 0; i < 600 && outcome.sleepStep == 0; ++i) {
         world.Step();
@@ -41,7 +43,10 @@ TEST(FarAway, AFastBallBouncesAsAtTheOrigin) {
     const auto after = [](const Position& origin) {
         TestWorld world;
         world.AddFloor({}, origin);
-        const BodyId ball = world.Add({.shape = SphereOf(0.2f), .position = origin + Position(0, 10, 0), .linearVelocity = {0, -10, 0}, .material = {.restitution = 0.8f}});
+        const BodyId ball = world.Add({.shape = SphereOf(0.2f),
+                                       .position = origin + Position(0, 10, 0),
+                                       .linearVelocity = {0, -10, 0},
+                                       .material = {.restitution = 0.8f}});
         world.Run(2.5);
         return Position(world.PositionOf(ball) - origin);
     };
@@ -53,7 +58,10 @@ TEST(FarAway, AFastBallBouncesAsAtTheOrigin) {
 TEST(TimeStep, ZeroChangesNothing) {
     TestWorld world;
     world.AddFloor();
-    const BodyId box = world.Add({.shape = CubeOf(0.5f), .position = {0, 0.6, 0}, .rotation = RotationAbout({0, 0, 1}, 0.1), .angularVelocity = {1, 2, 3}});
+    const BodyId box = world.Add({.shape = CubeOf(0.5f),
+                                  .position = {0, 0.6, 0},
+                                  .rotation = RotationAbout({0, 0, 1}, 0.1),
+                                  .angularVelocity = {1, 2, 3}});
     world.Steps(10);
     const BodyBits before = BitsOf(world, box);
     world.Steps(10, 0);
@@ -65,7 +73,8 @@ TEST(TimeStep, ZeroDoesNotChangeTheFuture) {
     const auto run = [](int pauses) {
         TestWorld world;
         world.AddFloor();
-        const BodyId box = world.Add({.shape = CubeOf(0.5f), .position = {0, 1, 0}, .rotation = RotationAbout({0, 0, 1}, 0.1)});
+        const BodyId box =
+            world.Add({.shape = CubeOf(0.5f), .position = {0, 1, 0}, .rotation = RotationAbout({0, 0, 1}, 0.1)});
         world.Steps(30);
         world.Steps(pauses, 0);
         world.Steps(60);
@@ -81,10 +90,12 @@ TEST(TimeStep, TinyAndAlternatingStepsKeepAStack) {
     for (int i = 0; i < 6; ++i) stack.push_back(world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5 + i, 0}}));
     // Each change of the step shakes the stack a little: it breathes and wanders, but stands, within 5 % of an edge.
     for (int i = 0; i < 300; ++i) world.Step(i % 2 ? 1.0 / 30 : 1.0 / 240);
-    for (size_t i = 0; i < 6; ++i) EXPECT_LT((world.PositionOf(stack[i]) - Position(0, 0.5 + double(i), 0)).norm(), 0.05) << i;
+    for (size_t i = 0; i < 6; ++i)
+        EXPECT_LT((world.PositionOf(stack[i]) - Position(0, 0.5 + double(i), 0)).norm(), 0.05) << i;
     world.Steps(10, 1e-5);
     world.Steps(100);
-    for (size_t i = 0; i < 6; ++i) EXPECT_NEAR(world.PositionOf(stack[i]).y(), 0.5 + static_cast<double>(i), 0.005) << i;
+    for (size_t i = 0; i < 6; ++i)
+        EXPECT_NEAR(world.PositionOf(stack[i]).y(), 0.5 + static_cast<double>(i), 0.005) << i;
 }
 
 TEST(TimeStep, EveryLengthKeepsThingsFinite) {
@@ -105,8 +116,9 @@ TEST(TimeStep, ATenthOfASecondKeepsAStack) {
     BodyId top;
     for (int i = 0; i < 4; ++i) top = world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5 + i, 0}});
     world.Run(10, 0.1);
-    // Substeps of h = 1/40 s bear springs of w = 2 pi / (4 h) and no stiffer. A contact of k boxes above it and itself is pressed
-    // by k g / w^2, twice that between two boxes, whose effective mass is half of one: (4 + 2 (3 + 2 + 1)) g / w^2 = 39.8 mm.
+    // Substeps of h = 1/40 s bear springs of w = 2 pi / (4 h) and no stiffer. A contact of k boxes above it and itself
+    // is pressed by k g / w^2, twice that between two boxes, whose effective mass is half of one: (4 + 2 (3 + 2 + 1)) g
+    // / w^2 = 39.8 mm.
     const double w = 2 * kPi * 10;
     EXPECT_NEAR(world.PositionOf(top).y(), 3.5 - 16 * kGravity / (w * w), 1e-3);
 }
@@ -130,7 +142,8 @@ TEST(Colors, APlateWithMoreBodiesThanColorsHoldsThemAll) {
     const BodyId plate = world.Add({.shape = BoxOf(6, 0.25f, 6), .position = {0, 0.25, 0}, .mass = 1000});
     std::vector<BodyId> boxes;
     for (int i = 0; i < 100; ++i)
-        boxes.push_back(world.Add({.shape = CubeOf(0.4f), .position = {i % 10 * 1.0 - 4.5, 0.9, i / 10 * 1.0 - 4.5}, .mass = 10}));
+        boxes.push_back(
+            world.Add({.shape = CubeOf(0.4f), .position = {i % 10 * 1.0 - 4.5, 0.9, i / 10 * 1.0 - 4.5}, .mass = 10}));
     world.Run(3);
     EXPECT_GT(world.Report().overflowConstraints, 0u);
     EXPECT_LE(world.Report().colors, 64u);

@@ -1,5 +1,6 @@
-// A scene behaves wherever it stands: a stack, a chain and a ragdoll on every kind of ground, at up to 10^9 m from the origin. Positions
-// are double: at 10^9 m their steps are 1.2e-7 m. Bounds are float, rounded outwards: there their steps are 64 m.
+// A scene behaves wherever it stands: a stack, a chain and a ragdoll on every kind of ground, at up to 10^9 m from the
+// origin. Positions are double: at 10^9 m their steps are 1.2e-7 m. Bounds are float, rounded outwards: there their
+// steps are 64 m.
 #include <Fulcrum/Collision/Shapes/HeightField.h>
 #include <Fulcrum/Collision/Shapes/Plane.h>
 #include <Fulcrum/Collision/Shapes/TriangleMesh.h>
@@ -23,7 +24,8 @@ ShapePtr MeshGround() {
     std::vector<Vector3> vertices;
     std::vector<uint32_t> indices;
     for (uint32_t z = 0; z <= kCells; ++z)
-        for (uint32_t x = 0; x <= kCells; ++x) vertices.emplace_back(0.5f * static_cast<float>(x) - 6, 0.0f, 0.5f * static_cast<float>(z) - 6);
+        for (uint32_t x = 0; x <= kCells; ++x)
+            vertices.emplace_back(0.5f * static_cast<float>(x) - 6, 0.0f, 0.5f * static_cast<float>(z) - 6);
     for (uint32_t z = 0; z < kCells; ++z)
         for (uint32_t x = 0; x < kCells; ++x) {
             const uint32_t corner = z * (kCells + 1) + x, next = corner + kCells + 1;
@@ -34,7 +36,13 @@ ShapePtr MeshGround() {
 
 ShapePtr FieldGround() {
     const std::vector<float> heights((kCells + 1) * (kCells + 1), 0.0f);
-    return HeightField::Create({.sampleCountX = kCells + 1, .sampleCountZ = kCells + 1, .heights = heights, .cellSizeX = 0.5f, .cellSizeZ = 0.5f, .origin = {-6, 0, -6}}).Value();
+    return HeightField::Create({.sampleCountX = kCells + 1,
+                                .sampleCountZ = kCells + 1,
+                                .heights = heights,
+                                .cellSizeX = 0.5f,
+                                .cellSizeZ = 0.5f,
+                                .origin = {-6, 0, -6}})
+        .Value();
 }
 
 struct Ground {
@@ -43,21 +51,32 @@ struct Ground {
     Position offset = Position::Zero();
 };
 std::vector<Ground> Grounds() {
-    return {{"box", BoxOf(100, 1, 100), {0, -1, 0}}, {"mesh", MeshGround()}, {"height field", FieldGround()}, {"plane", Plane::Create(Vector3(0, 1, 0), 0).Value()}};
+    return {{"box", BoxOf(100, 1, 100), {0, -1, 0}},
+            {"mesh", MeshGround()},
+            {"height field", FieldGround()},
+            {"plane", Plane::Create(Vector3(0, 1, 0), 0).Value()}};
 }
 
 Ids AddStack(TestWorld& world, const Position& origin) {
     Ids stack;
-    for (int i = 0; i < 6; ++i) stack.push_back(world.Add({.shape = CubeOf(0.5f), .position = origin + Position(0.01 * (i % 2), 0.6 + 1.1 * i, 0.2)}));
+    for (int i = 0; i < 6; ++i)
+        stack.push_back(
+            world.Add({.shape = CubeOf(0.5f), .position = origin + Position(0.01 * (i % 2), 0.6 + 1.1 * i, 0.2)}));
     return stack;
 }
 
 // Twelve capsules, hooked at one end, that swing down from level and come to lie on the ground in part.
 Ids AddChain(TestWorld& world, const Position& origin) {
     Ids links;
-    BodyId last = world.Add({.shape = SphereOf(0.02f), .motion = MotionType::Static, .position = origin + Position(-1, 1, 0)});
+    BodyId last =
+        world.Add({.shape = SphereOf(0.02f), .motion = MotionType::Static, .position = origin + Position(-1, 1, 0)});
     for (int i = 0; i < 12; ++i) {
-        const BodyId link = world.Add({.shape = CapsuleOf(0.07f, 0.04f), .position = origin + Position(-0.9 + 0.2 * i, 1, 0), .rotation = RotationAbout(Vector3(0, 0, 1), kPi / 2), .mass = 0.5f, .linearDamping = 0.5f, .angularDamping = 0.5f});
+        const BodyId link = world.Add({.shape = CapsuleOf(0.07f, 0.04f),
+                                       .position = origin + Position(-0.9 + 0.2 * i, 1, 0),
+                                       .rotation = RotationAbout(Vector3(0, 0, 1), kPi / 2),
+                                       .mass = 0.5f,
+                                       .linearDamping = 0.5f,
+                                       .angularDamping = 0.5f});
         PointJointSettings joint;
         joint.bodyA = last;
         joint.bodyB = link;
@@ -69,7 +88,8 @@ Ids AddChain(TestWorld& world, const Position& origin) {
 }
 
 Ids AddRagdoll(TestWorld& world, const Position& origin) {
-    const auto ragdoll = Ragdoll::Create(world.System(), Humanoid(), {origin + Position(0, 1.2, 0), RotationAbout(Vector3(1, 0, 0), 0.3)});
+    const auto ragdoll = Ragdoll::Create(world.System(), Humanoid(),
+                                         {origin + Position(0, 1.2, 0), RotationAbout(Vector3(1, 0, 0), 0.3)});
     EXPECT_TRUE(ragdoll);
     if (!ragdoll) return {};
     return {ragdoll.Value().Bodies().begin(), ragdoll.Value().Bodies().end()};

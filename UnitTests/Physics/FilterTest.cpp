@@ -17,7 +17,12 @@ uint32_t ContactsOf(const Ball& a, const Ball& b) {
     TestWorld world(NoGravity());
     const ShapePtr shape = SphereOf(0.5f);
     world.Add({.shape = shape, .motion = a.motion, .category = a.category, .mask = a.mask, .group = a.group});
-    world.Add({.shape = shape, .motion = b.motion, .position = {0.9, 0, 0}, .category = b.category, .mask = b.mask, .group = b.group});
+    world.Add({.shape = shape,
+               .motion = b.motion,
+               .position = {0.9, 0, 0},
+               .category = b.category,
+               .mask = b.mask,
+               .group = b.group});
     world.Step();
     return world.Report().contacts;
 }
@@ -39,7 +44,9 @@ TEST(CategoryAndMask, EachMustHaveABitOfItsCategoryInTheOthersMask) {
             for (uint64_t categoryB : {uint64_t(1), uint64_t(2), kHigh})
                 for (uint64_t maskB : {uint64_t(1), uint64_t(3), kHigh}) {
                     const bool expected = (categoryA & maskB) != 0 && (categoryB & maskA) != 0;
-                    EXPECT_EQ(ContactsOf({.category = categoryA, .mask = maskA}, {.category = categoryB, .mask = maskB}), expected ? 1u : 0u)
+                    EXPECT_EQ(
+                        ContactsOf({.category = categoryA, .mask = maskA}, {.category = categoryB, .mask = maskB}),
+                        expected ? 1u : 0u)
                         << categoryA << " " << maskA << " " << categoryB << " " << maskB;
                 }
 }
@@ -64,7 +71,8 @@ TEST(GroupFilterTable, KeepsThePairsApartThatItNames) {
     const auto table = Table({{0, 1}, {2, 2}, {3, 1}});
     for (uint32_t i = 0; i < 6; ++i)
         for (uint32_t j = 0; j < 6; ++j) {
-            const bool apart = (i == 0 && j == 1) || (i == 1 && j == 0) || (i == 2 && j == 2) || (i == 1 && j == 3) || (i == 3 && j == 1);
+            const bool apart = (i == 0 && j == 1) || (i == 1 && j == 0) || (i == 2 && j == 2) || (i == 1 && j == 3) ||
+                               (i == 3 && j == 1);
             EXPECT_EQ(table->Collides({7, i}, {7, j}), !apart) << i << " " << j;
             EXPECT_TRUE(table->Collides({7, i}, {8, j})) << i << " " << j;
         }
@@ -101,11 +109,13 @@ TEST(Groups, TakeFiltersOfTheUsersOwn) {
     const auto filter = std::make_shared<const SameParity>();
     for (uint32_t i = 0; i < 3; ++i)
         for (uint32_t j = 0; j < 3; ++j)
-            EXPECT_EQ(ContactsOf({.group = Member(filter, i, i)}, {.group = Member(filter, 0, j)}), (i + j) % 2 == 0 ? 1u : 0u);
+            EXPECT_EQ(ContactsOf({.group = Member(filter, i, i)}, {.group = Member(filter, 0, j)}),
+                      (i + j) % 2 == 0 ? 1u : 0u);
 }
 
 // A chain whose balls overlap their neighbors, held together by joints that forbid nothing.
-std::vector<BodyId> AddChain(TestWorld& world, const Position& top, std::shared_ptr<const GroupFilter> filter, uint32_t group) {
+std::vector<BodyId> AddChain(TestWorld& world, const Position& top, std::shared_ptr<const GroupFilter> filter,
+                             uint32_t group) {
     std::vector<BodyId> balls;
     for (uint32_t i = 0; i < 5; ++i) {
         const Position at = top - Position(0, 0.3 * i, 0);
@@ -131,9 +141,11 @@ TEST(Groups, LetThePartsOfARagdollOverlapAndMeetOthers) {
     const std::vector<BodyId> one = AddChain(world, {0, 5, 0}, neighbors, 1);
     world.Run(1);
     EXPECT_EQ(world.Report().contacts, 0u);
-    // Joints carry like springs of w = 2 pi 60/s on the reduced mass m / 2: four of them, below each at most four balls.
+    // Joints carry like springs of w = 2 pi 60/s on the reduced mass m / 2: four of them, below each at most four
+    // balls.
     const double sag = 4 * 4 * 2 * kGravity / (120 * kPi * 120 * kPi);
-    for (size_t i = 0; i < one.size(); ++i) EXPECT_NEAR(world.PositionOf(one[i]).y(), 5 - 0.3 * static_cast<double>(i), sag);
+    for (size_t i = 0; i < one.size(); ++i)
+        EXPECT_NEAR(world.PositionOf(one[i]).y(), 5 - 0.3 * static_cast<double>(i), sag);
     // Another of the same kind beside it: each ball overlaps that at its side, and those above and below it not quite.
     AddChain(world, {0.35, 5, 0}, neighbors, 2);
     world.Step();

@@ -6,8 +6,8 @@
 namespace fulcrum::testing {
 namespace {
 
-// Each step rounds the velocity once: half a unit in the last place of the largest speed, in the worst case always to the same
-// side, so that the position is off by the sum of a line.
+// Each step rounds the velocity once: half a unit in the last place of the largest speed, in the worst case always to
+// the same side, so that the position is off by the sum of a line.
 double FlightTolerance(double largestSpeed, double seconds, double dt) {
     const double halfUlp = std::exp2(std::floor(std::log2(largestSpeed))) * std::exp2(-24);
     return halfUlp * (seconds / dt) * seconds / 2;
@@ -55,7 +55,8 @@ TEST(FreeFlight, LinearDampingDecaysExponentially) {
 TEST(FreeFlight, AngularDampingDecaysExponentially) {
     TestWorld world(NoGravity());
     const BodyId ball = world.Add({.shape = SphereOf(0.1f), .angularVelocity = {0, 0, 5}, .angularDamping = 0.5f});
-    const BodyId rod = world.Add({.shape = BoxOf(0.1f, 1, 0.1f), .position = {5, 0, 0}, .angularVelocity = {0, 5, 0}, .angularDamping = 0.5f});
+    const BodyId rod = world.Add(
+        {.shape = BoxOf(0.1f, 1, 0.1f), .position = {5, 0, 0}, .angularVelocity = {0, 5, 0}, .angularDamping = 0.5f});
     world.Run(2);
     EXPECT_NEAR(world.Bodies().GetAngularVelocity(ball).z(), 5 * std::exp(-1.0), 5 * 120 * std::exp2(-23));
     // The rod's angular velocity also goes through its momentum and back, some ten roundings a substep.
@@ -117,8 +118,10 @@ TEST(FreeFlight, ImpulsesActAtOnce) {
 
 TEST(FreeFlight, SpeedsAreHeldToTheirLimits) {
     TestWorld world;
-    const BodyId ball = world.Add({.shape = SphereOf(0.5f), .angularVelocity = {0, 30, 0}, .maxLinearSpeed = 5, .maxAngularSpeed = 10});
-    const BodyId rod = world.Add({.shape = BoxOf(1, 0.1f, 0.1f), .position = {5, 0, 0}, .angularVelocity = {0, 30, 0}, .maxAngularSpeed = 10});
+    const BodyId ball =
+        world.Add({.shape = SphereOf(0.5f), .angularVelocity = {0, 30, 0}, .maxLinearSpeed = 5, .maxAngularSpeed = 10});
+    const BodyId rod = world.Add(
+        {.shape = BoxOf(1, 0.1f, 0.1f), .position = {5, 0, 0}, .angularVelocity = {0, 30, 0}, .maxAngularSpeed = 10});
     world.Run(2);
     EXPECT_LE(Length(world.VelocityOf(ball)), 5 * (1 + 1e-6f));
     EXPECT_NEAR(Length(world.Bodies().GetAngularVelocity(ball)), 10, 1e-4);

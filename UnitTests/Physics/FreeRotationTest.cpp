@@ -40,16 +40,19 @@ TEST(FreeRotation, HardlyChangesTheEnergy) {
         world.Step();
         worst = std::max(worst, std::fabs(world.Bodies().GetKineticEnergy(box) / kEnergy - 1));
     }
-    // Roundings of the velocity, 6e-8 of the energy each, at random: 1.5e-6 after 600 steps. Three times that, and as much again
-    // for what reading the energy back rounds.
+    // Roundings of the velocity, 6e-8 of the energy each, at random: 1.5e-6 after 600 steps. Three times that, and as
+    // much again for what reading the energy back rounds.
     EXPECT_LT(worst, 1e-5);
 }
 
 TEST(FreeRotation, HardlyChangesTheEnergyOfWhatSpinsAsFastAsADrill) {
-    // At 1000 rad/s a step of 1/60 s is 16.7 rad: 132 substeps of a tenth, where at most 64 were made, and the energy rose by 1.7 %.
+    // At 1000 rad/s a step of 1/60 s is 16.7 rad: 132 substeps of a tenth, where at most 64 were made, and the energy
+    // rose by 1.7 %.
     for (float speed : {300.0f, 1000.0f}) {
         TestWorld world(NoGravity());
-        const BodyId box = world.Add({.shape = BoxOf(0.05f, 0.2f, 0.45f), .angularVelocity = {0.02f * speed, speed, 0.02f * speed}, .mass = 10,
+        const BodyId box = world.Add({.shape = BoxOf(0.05f, 0.2f, 0.45f),
+                                      .angularVelocity = {0.02f * speed, speed, 0.02f * speed},
+                                      .mass = 10,
                                       .maxAngularSpeed = 1e4f});
         const double before = world.Bodies().GetKineticEnergy(box);
         double worst = 0;
@@ -76,10 +79,11 @@ TEST(FreeRotation, FlipsWhenEulersEquationsSay) {
     }
     ASSERT_GE(flips.size(), 3u);
     const double expected[3] = {1.166, 4.194, 7.223};
-    // The box starts so near to its middle axis that its energy is only a 2e-5th of itself below that of the separatrix. When it
-    // flips follows from the logarithm of that difference: an error e of the energy shifts a flip by e / 2e-5 / (2 lambda),
-    // lambda = 1.9 / s. Velocities are handed from step to step as floats: 6e-8 of the energy each, at random, which comes to
-    // 6e-8 sqrt(60 t) by the time t, or 6 ms sqrt(t / s). (The method's own error is 0.3 ms.) Three times that:
+    // The box starts so near to its middle axis that its energy is only a 2e-5th of itself below that of the
+    // separatrix. When it flips follows from the logarithm of that difference: an error e of the energy shifts a flip
+    // by e / 2e-5 / (2 lambda), lambda = 1.9 / s. Velocities are handed from step to step as floats: 6e-8 of the energy
+    // each, at random, which comes to 6e-8 sqrt(60 t) by the time t, or 6 ms sqrt(t / s). (The method's own error is
+    // 0.3 ms.) Three times that:
     for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(flips[i], expected[i], 18e-3 * std::sqrt(expected[i])) << i;
 }
 
@@ -113,7 +117,8 @@ TEST(FreeRotation, WithoutGyroscopicTorqueTheAngularVelocityStays) {
 TEST(FreeRotation, AFastSpinGainsNoEnergy) {
     for (float speed : {20.0f, 100.0f, 290.0f}) {
         TestWorld world(NoGravity());
-        const BodyId box = world.Add({.shape = BoxOf(0.05f, 0.2f, 0.45f), .angularVelocity = Vector3(0.02f, 1, 0.02f) * speed, .mass = 10});
+        const BodyId box = world.Add(
+            {.shape = BoxOf(0.05f, 0.2f, 0.45f), .angularVelocity = Vector3(0.02f, 1, 0.02f) * speed, .mass = 10});
         const double start = world.Bodies().GetKineticEnergy(box);
         double most = 0;
         for (int i = 0; i < 600; ++i) {

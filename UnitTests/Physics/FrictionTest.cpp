@@ -11,7 +11,11 @@ namespace {
 Quaternion AddIncline(TestWorld& world, double angle, float friction) {
     const Quaternion rotation = RotationAbout({0, 0, 1}, angle);
     const Position below = Rotate(rotation, Vector3(0, -1, 0)).cast<double>();
-    world.Add({.shape = BoxOf(200, 1, 20), .motion = MotionType::Static, .position = below, .rotation = rotation, .material = {.friction = friction}});
+    world.Add({.shape = BoxOf(200, 1, 20),
+               .motion = MotionType::Static,
+               .position = below,
+               .rotation = rotation,
+               .material = {.friction = friction}});
     return rotation;
 }
 
@@ -40,7 +44,8 @@ TEST(Incline, HoldsWhatItsFrictionCanHold) {
     world.Run(5);
     const Position settled = world.PositionOf(box);
     world.Run(55);
-    // Doubles are stored at each step, and the solver's impulses are exact to 1e-7: a hundredth of a millimeter a minute.
+    // Doubles are stored at each step, and the solver's impulses are exact to 1e-7: a hundredth of a millimeter a
+    // minute.
     EXPECT_LT((world.PositionOf(box) - settled).norm(), 1e-5);
 }
 
@@ -66,7 +71,10 @@ TEST(Friction, StopsBoxesAlikeInAllDirections) {
         const double angle = i * kPi / 16;
         headings.push_back(Vector3(static_cast<float>(std::cos(angle)), 0, static_cast<float>(std::sin(angle))));
         const Vector3 start = headings.back() * 10;
-        boxes.push_back(world.Add({.shape = CubeOf(0.5f), .position = {start.x(), 0.5, start.z()}, .linearVelocity = headings.back() * 25.0f, .material = {.friction = 0.6f}}));
+        boxes.push_back(world.Add({.shape = CubeOf(0.5f),
+                                   .position = {start.x(), 0.5, start.z()},
+                                   .linearVelocity = headings.back() * 25.0f,
+                                   .material = {.friction = 0.6f}}));
     }
     world.Run(6);
     const double expected = 25.0 * 25.0 / (2 * 0.6 * kGravity);  // 53.09 m
@@ -92,12 +100,16 @@ TEST(Friction, StopsBoxesAlikeInAllDirections) {
 TEST(Friction, TurnsSlidingIntoRolling) {
     TestWorld world(NoSleep());
     world.AddFloor({.friction = 0.3f});
-    const BodyId ball = world.Add({.shape = SphereOf(0.5f), .position = {0, 0.5, 0}, .linearVelocity = {10, 0, 0}, .material = {.friction = 0.3f}});
+    const BodyId ball = world.Add({.shape = SphereOf(0.5f),
+                                   .position = {0, 0.5, 0},
+                                   .linearVelocity = {10, 0, 0},
+                                   .material = {.friction = 0.3f}});
     const double dt = 1.0 / 240;
     double time = 0, x = 0;
     for (int i = 0; i < 480; ++i) {
         world.Step(dt);
-        const double slip = double(world.VelocityOf(ball).x()) + 0.5 * double(world.Bodies().GetAngularVelocity(ball).z());
+        const double slip =
+            double(world.VelocityOf(ball).x()) + 0.5 * double(world.Bodies().GetAngularVelocity(ball).z());
         if (time == 0 && slip < 1e-3) {
             time = (i + 1) * dt;
             x = world.PositionOf(ball).x();
@@ -113,7 +125,8 @@ TEST(Friction, StopsASpinningBoxAtItsMeanRadius) {
     const float a = 0.5f, mu = 0.5f;
     TestWorld world(NoSleep());
     world.AddFloor({.friction = mu});
-    const BodyId box = world.Add({.shape = CubeOf(a), .position = {0, 0.5, 0}, .angularVelocity = {0, 10, 0}, .material = {.friction = mu}});
+    const BodyId box = world.Add(
+        {.shape = CubeOf(a), .position = {0, 0.5, 0}, .angularVelocity = {0, 10, 0}, .material = {.friction = mu}});
     // Torque mu m g r with r = 0.7652 a, I = 2/3 m a^2.
     const double slowing = 0.5 * kGravity * 0.7652 * 0.5 / (2.0 / 3 * 0.25);
     world.Run(0.5);
@@ -145,7 +158,8 @@ TEST(Friction, HoldsAgainstATwistThatIsTooWeak) {
 double CombinedFriction(const Material& box, const Material& floor) {
     TestWorld world(NoSleep());
     world.AddFloor(floor);
-    const BodyId id = world.Add({.shape = BoxOf(0.5f, 0.1f, 0.5f), .position = {0, 0.1, 0}, .linearVelocity = {20, 0, 0}, .material = box});
+    const BodyId id = world.Add(
+        {.shape = BoxOf(0.5f, 0.1f, 0.5f), .position = {0, 0.1, 0}, .linearVelocity = {20, 0, 0}, .material = box});
     world.Run(0.25);
     const double before = double(world.VelocityOf(id).x());
     world.Run(0.5);
@@ -155,10 +169,12 @@ double CombinedFriction(const Material& box, const Material& floor) {
 TEST(Friction, CombinesByTheRule) {
     const auto with = [](float mu, CombineRule rule) { return Material{.friction = mu, .frictionRule = rule}; };
     const double tolerance = 2e-3;  // of friction 0.9 at most: the impulses' relative error
-    EXPECT_NEAR(CombinedFriction(with(0.4f, CombineRule::GeometricMean), with(0.9f, CombineRule::GeometricMean)), 0.6, tolerance);
+    EXPECT_NEAR(CombinedFriction(with(0.4f, CombineRule::GeometricMean), with(0.9f, CombineRule::GeometricMean)), 0.6,
+                tolerance);
     EXPECT_NEAR(CombinedFriction(with(0.4f, CombineRule::Average), with(0.9f, CombineRule::Average)), 0.65, tolerance);
     EXPECT_NEAR(CombinedFriction(with(0.4f, CombineRule::Minimum), with(0.9f, CombineRule::Minimum)), 0.4, tolerance);
-    EXPECT_NEAR(CombinedFriction(with(0.4f, CombineRule::Multiply), with(0.9f, CombineRule::Multiply)), 0.36, tolerance);
+    EXPECT_NEAR(CombinedFriction(with(0.4f, CombineRule::Multiply), with(0.9f, CombineRule::Multiply)), 0.36,
+                tolerance);
     EXPECT_NEAR(CombinedFriction(with(0.4f, CombineRule::Maximum), with(0.9f, CombineRule::Maximum)), 0.9, tolerance);
 }
 
@@ -171,7 +187,8 @@ TEST(Friction, TheLaterRuleWins) {
 TEST(Friction, ANewMaterialTakesEffectOnContactsThatExist) {
     TestWorld world(NoSleep());
     world.AddFloor({.friction = 0});
-    const BodyId box = world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5, 0}, .linearVelocity = {5, 0, 0}, .material = {.friction = 0}});
+    const BodyId box = world.Add(
+        {.shape = CubeOf(0.5f), .position = {0, 0.5, 0}, .linearVelocity = {5, 0, 0}, .material = {.friction = 0}});
     world.Run(1);
     // What the box gains by rocking as it settles stays far below what friction will take.
     EXPECT_NEAR(world.VelocityOf(box).x(), 5, 1e-3);

@@ -1,4 +1,5 @@
-// Bodies whose children come, go and move in the world: what is felt of it, by the body itself, by what touches it, by queries.
+// Bodies whose children come, go and move in the world: what is felt of it, by the body itself, by what touches it, by
+// queries.
 #include <Fulcrum/UnitTests/Support/AllocationCounter.h>
 #include <Fulcrum/UnitTests/Support/RandomPoses.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
@@ -15,14 +16,18 @@ ShapePtr MutableOf(const std::vector<ChildSettings>& children) { return MutableC
 // A row of cubes of 1 m along x, the first at the origin.
 ShapePtr RowOf(int count, float spacing = 1) {
     std::vector<ChildSettings> children;
-    for (int i = 0; i < count; ++i) children.push_back({.shape = CubeOf(0.5f), .position = {spacing * static_cast<float>(i), 0, 0}});
+    for (int i = 0; i < count; ++i)
+        children.push_back({.shape = CubeOf(0.5f), .position = {spacing * static_cast<float>(i), 0, 0}});
     return MutableOf(children);
 }
 
 TEST(MutableCompoundBody, MassInertiaAndCenterAreThoseOfTheChildren) {
     TestWorld world(NoGravity());
     const ShapePtr cube = CubeOf(0.5f);
-    const BodyId id = world.Add({.shape = RowOf(1), .position = {10, 20, 30}, .rotation = RotationAbout({0, 0, 1}, 90 * kDegree), .density = 100});
+    const BodyId id = world.Add({.shape = RowOf(1),
+                                 .position = {10, 20, 30},
+                                 .rotation = RotationAbout({0, 0, 1}, 90 * kDegree),
+                                 .density = 100});
     EXPECT_FLOAT_EQ(world.Bodies().GetMass(id), 100);
     const ChildId second = world.Bodies().AddChild(id, {.shape = cube, .position = {3, 0, 0}, .density = 2}).Value();
     // 100 kg at 0 and 200 kg at 3 m: the center at 2 m, which the body's rotation turns upwards.
@@ -54,7 +59,8 @@ TEST(MutableCompoundBody, MaterialPointsKeepTheirVelocities) {
     ASSERT_TRUE(world.Bodies().AddChild(id, {.shape = SphereOf(1), .position = {-5, 3, 0}}));
     ASSERT_TRUE(world.Bodies().MoveChild(id, {1, 0}, {0, 4, 0}, {}));
     // Velocities and arms of some 10, with float's rounding.
-    for (size_t i = 0; i < 3; ++i) EXPECT_LT(Length(Vector3(world.Bodies().GetVelocityAt(id, points[i]) - before[i])), 1e-5f);
+    for (size_t i = 0; i < 3; ++i)
+        EXPECT_LT(Length(Vector3(world.Bodies().GetVelocityAt(id, points[i]) - before[i])), 1e-5f);
 }
 
 TEST(MutableCompoundBody, ForcesKeepTheirLines) {
@@ -78,11 +84,13 @@ TEST(MutableCompoundBody, WhatRestedOnAChildWakesAndFalls) {
     ASSERT_TRUE(world.Bodies().RemoveChild(table, {2, 0}));
     ASSERT_TRUE(world.Bodies().MoveChild(table, {6, 0}, {6, -50, 0}, {}));
     EXPECT_TRUE(world.Bodies().IsAwake(boxes[2]) && world.Bodies().IsAwake(boxes[6]));
-    EXPECT_FALSE(world.Bodies().IsAwake(boxes[0]) || world.Bodies().IsAwake(boxes[4]) || world.Bodies().IsAwake(boxes[8]));
+    EXPECT_FALSE(world.Bodies().IsAwake(boxes[0]) || world.Bodies().IsAwake(boxes[4]) ||
+                 world.Bodies().IsAwake(boxes[8]));
     world.Run(2);
     // 2 s of fall are 19.6 m, but for what the edges of the neighbors, 0.2 m away, hold up: nothing.
     for (int i : {2, 6}) EXPECT_NEAR(world.PositionOf(boxes[static_cast<size_t>(i)]).y(), 0.8 - 19.62, 0.4) << i;
-    for (int i : {0, 1, 3, 4, 5, 7, 8}) EXPECT_NEAR(world.PositionOf(boxes[static_cast<size_t>(i)]).y(), 0.8, 0.01) << i;
+    for (int i : {0, 1, 3, 4, 5, 7, 8})
+        EXPECT_NEAR(world.PositionOf(boxes[static_cast<size_t>(i)]).y(), 0.8, 0.01) << i;
 }
 
 TEST(MutableCompoundBody, WhatComesUnderAFallingBoxHoldsIt) {
@@ -115,7 +123,8 @@ TEST(MutableCompoundBody, AChildOfAKinematicBodyPushes) {
         ASSERT_TRUE(world.Bodies().MoveChild(piston, {0, 0}, {x, 0, 0}, {}));
         world.Step();
     }
-    // Its face ended at 2.5 m. What overlaps is pushed out at 3 m/s, and slides on at less than that: v^2 / (2 mu g) = 2.3 m.
+    // Its face ended at 2.5 m. What overlaps is pushed out at 3 m/s, and slides on at less than that: v^2 / (2 mu g)
+    // = 2.3 m.
     EXPECT_GT(world.PositionOf(box).x(), 2.98);
     EXPECT_LT(world.PositionOf(box).x(), 5.3);
     EXPECT_NEAR(world.PositionOf(box).y(), 0.5, 0.02);
@@ -137,7 +146,8 @@ TEST(MutableCompoundBody, JointsStayWhereTheyAre) {
     EXPECT_LT(Position(world.System().Joints().GetFrameB(joint).position - at).norm(), 1e-5);
     for (int i = 0; i < 120; ++i) {
         world.Step();
-        const Position gap = world.System().Joints().GetFrameB(joint).position - world.System().Joints().GetFrameA(joint).position;
+        const Position gap =
+            world.System().Joints().GetFrameB(joint).position - world.System().Joints().GetFrameA(joint).position;
         ASSERT_LT(gap.norm(), 0.005) << i;
     }
 }
@@ -153,8 +163,10 @@ struct EditedScene {
         world.AddFloor({}, {0, -3, 0});
         std::vector<ChildSettings> slabs, bars;
         for (int i = 0; i < 36; ++i)
-            slabs.push_back({.shape = BoxOf(0.5f, 0.2f, 0.5f), .position = {static_cast<float>(i % 6) - 2.5f, 0, static_cast<float>(i / 6) - 2.5f}});
-        for (int i = 0; i < 5; ++i) bars.push_back({.shape = BoxOf(0.2f, 0.2f, 0.8f), .position = {0.45f * static_cast<float>(i), 0, 0}});
+            slabs.push_back({.shape = BoxOf(0.5f, 0.2f, 0.5f),
+                             .position = {static_cast<float>(i % 6) - 2.5f, 0, static_cast<float>(i / 6) - 2.5f}});
+        for (int i = 0; i < 5; ++i)
+            bars.push_back({.shape = BoxOf(0.2f, 0.2f, 0.8f), .position = {0.45f * static_cast<float>(i), 0, 0}});
         bowl = world.Add({.shape = MutableOf(slabs), .motion = MotionType::Static});
         raft = world.Add({.shape = MutableOf(bars), .position = {-1, 1, 0}});
         for (uint32_t i = 0; i < 36; ++i) ofBowl.push_back({i, 0});
@@ -165,7 +177,8 @@ struct EditedScene {
         }
     }
     uint32_t Below(size_t count) {
-        return std::min(static_cast<uint32_t>(random.Between(0, static_cast<float>(count))), static_cast<uint32_t>(count - 1));
+        return std::min(static_cast<uint32_t>(random.Between(0, static_cast<float>(count))),
+                        static_cast<uint32_t>(count - 1));
     }
     ChildSettings Next(float reach) {
         ChildSettings child{.shape = BoxOf(0.3f, 0.15f, 0.3f)};
@@ -207,7 +220,8 @@ TEST(MutableCompoundBody, EditsGiveTheSameBitsOnAnyNumberOfThreads) {
     for (uint64_t hash : hashes) EXPECT_EQ(hash, hashes[0]);
 }
 
-// Bodies made of what the edits came to stand where the edited ones do, before the first step: from there on they are the same.
+// Bodies made of what the edits came to stand where the edited ones do, before the first step: from there on they are
+// the same.
 TEST(MutableCompoundBody, AnEditedWorldIsOneMadeInItsFinalState) {
     EditedScene edited(1);
     for (int i = 0; i < 100; ++i) {
@@ -217,8 +231,10 @@ TEST(MutableCompoundBody, AnEditedWorldIsOneMadeInItsFinalState) {
     TestWorld fresh;
     edited.world.System().VisitBodies([&](BodyId id) {
         BodyInterface& bodies = edited.world.Bodies();
-        BodySettings s{.shape = bodies.GetShape(id), .motion = bodies.GetMotionType(id), .position = bodies.GetPose(id).position};
-        // Children that came later weigh what they do beside the first: density 1000 on average was true of those alone.
+        BodySettings s{
+            .shape = bodies.GetShape(id), .motion = bodies.GetMotionType(id), .position = bodies.GetPose(id).position};
+        // Children that came later weigh what they do beside the first: density 1000 on average was true of those
+        // alone.
         s.mass = bodies.GetMass(id);
         EXPECT_EQ(fresh.Add(s), id);
     });
@@ -237,7 +253,8 @@ TEST(MutableCompoundBody, AnEditedWorldIsOneMadeInItsFinalState) {
         const Vector3 from = random.InCube() * 4;
         const Ray ray{Position(from.x(), -1.5, from.z()), Vector3(0.1f, 3, 0.2f)};
         WorldRayHit a, b;
-        const bool hitA = edited.world.System().Queries().CastRay(ray, a), hitB = fresh.System().Queries().CastRay(ray, b);
+        const bool hitA = edited.world.System().Queries().CastRay(ray, a),
+                   hitB = fresh.System().Queries().CastRay(ray, b);
         if (!hitA || a.body != edited.bowl || !hitB || b.body != edited.bowl) continue;
         ++hits;
         EXPECT_EQ(a.subShape.child, b.subShape.child);
@@ -249,14 +266,18 @@ TEST(MutableCompoundBody, AnEditedWorldIsOneMadeInItsFinalState) {
 TEST(MutableCompoundBody, EditsThatAreTakenBackLeaveNoBitBehind) {
     const auto build = [](TestWorld& world) {
         world.AddFloor();
-        return world.Add({.shape = RowOf(5, 0.9f), .position = {0, 3, 0}, .rotation = RotationAbout({0.6f, 0, 0.8f}, 0.5), .angularVelocity = {1, 2, 3}});
+        return world.Add({.shape = RowOf(5, 0.9f),
+                          .position = {0, 3, 0},
+                          .rotation = RotationAbout({0.6f, 0, 0.8f}, 0.5),
+                          .angularVelocity = {1, 2, 3}});
     };
     TestWorld never, edited;
     build(never);
     const BodyId id = build(edited);
     // Kept mass properties: not even the center of mass goes there and back.
     for (int i = 0; i < 20; ++i) {
-        const ChildId child = edited.Bodies().AddChild(id, {.shape = SphereOf(0.5f), .position = {0, 2, 0}}, MassUpdate::Keep).Value();
+        const ChildId child =
+            edited.Bodies().AddChild(id, {.shape = SphereOf(0.5f), .position = {0, 2, 0}}, MassUpdate::Keep).Value();
         ASSERT_TRUE(edited.Bodies().MoveChild(id, {2, 0}, {9, 9, 9}, {}, MassUpdate::Keep));
         ASSERT_TRUE(edited.Bodies().MoveChild(id, {2, 0}, {2 * 0.9f, 0, 0}, {}, MassUpdate::Keep));
         ASSERT_TRUE(edited.Bodies().RemoveChild(id, child, MassUpdate::Keep));
@@ -282,9 +303,11 @@ TEST(MutableCompoundBody, QueriesSeeTheEditsAndNameTheChild) {
         const Ray ray{center + from.cast<double>(), from * -1.5f + random.InCube() * 1.5f};
         std::vector<WorldRayHit> all;
         scene.world.System().Queries().CastRayAll(ray, all);
-        const auto mine = std::find_if(all.begin(), all.end(), [&](const WorldRayHit& hit) { return hit.body == scene.raft; });
+        const auto mine =
+            std::find_if(all.begin(), all.end(), [&](const WorldRayHit& hit) { return hit.body == scene.raft; });
         RayHit expected;
-        const bool isHit = RayCaster(ray).CastClosest(*scene.world.Bodies().GetShape(scene.raft), {center, pose.rotation}, {}, expected);
+        const bool isHit = RayCaster(ray).CastClosest(*scene.world.Bodies().GetShape(scene.raft),
+                                                      {center, pose.rotation}, {}, expected);
         ASSERT_EQ(mine != all.end(), isHit) << i;
         if (!isHit) continue;
         ++hits;
@@ -329,7 +352,8 @@ TEST(MutableCompoundBody, BodiesOfOneShapeAreEditedByThemselves) {
 
 TEST(MutableCompoundBody, BadEditsAreRefusedAndChangeNothing) {
     TestWorld world;
-    const BodyId cube = world.Add({.shape = CubeOf(1)}), row = world.Add({.shape = RowOf(2), .position = {0, 5, 0}, .mass = 1});
+    const BodyId cube = world.Add({.shape = CubeOf(1)}),
+                 row = world.Add({.shape = RowOf(2), .position = {0, 5, 0}, .mass = 1});
     const ShapePtr tiny = CubeOf(1e-3f), cubeShape = CubeOf(1);
     const auto code = [](const auto& result) { return result ? ErrorCode(-1) : result.GetError().code; };
     EXPECT_EQ(code(world.Bodies().AddChild({99, 0}, {.shape = tiny})), ErrorCode::UnknownId);

@@ -1,5 +1,5 @@
-// Queries of the world against a loop over all bodies, one by one, and what makes them fit for games: filters, early ends,
-// batches, threads, bodies that have moved since the trees last heard of them.
+// Queries of the world against a loop over all bodies, one by one, and what makes them fit for games: filters, early
+// ends, batches, threads, bodies that have moved since the trees last heard of them.
 #include <Fulcrum/UnitTests/Support/RandomPoses.h>
 #include <Fulcrum/UnitTests/Support/Cases.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
@@ -14,9 +14,13 @@ namespace fulcrum::testing {
 namespace {
 
 std::vector<ShapePtr> Shapes() {
-    return {SphereOf(0.4f), BoxOf(0.5f, 0.3f, 0.7f), CapsuleOf(0.4f, 0.3f), Box::Create(Vector3(0.5f, 0.4f, 0.3f), 0.1f).Value(),
+    return {SphereOf(0.4f),
+            BoxOf(0.5f, 0.3f, 0.7f),
+            CapsuleOf(0.4f, 0.3f),
+            Box::Create(Vector3(0.5f, 0.4f, 0.3f), 0.1f).Value(),
             HullOf({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}}),
-            CompoundOf({{SphereOf(0.3f), Vector3(0.6f, 0, 0), {}, 1}, {BoxOf(0.2f, 0.6f, 0.2f), Vector3(-0.3f, 0.2f, 0), {}, 1}})};
+            CompoundOf({{SphereOf(0.3f), Vector3(0.6f, 0, 0), {}, 1},
+                        {BoxOf(0.2f, 0.6f, 0.2f), Vector3(-0.3f, 0.2f, 0), {}, 1}})};
 }
 
 SystemSettings Weightless() {
@@ -47,9 +51,7 @@ struct Crowd {
         }
     }
     const QueryInterface& Queries() { return world.System().Queries(); }
-    Pose CenterPose(BodyId id) {
-        return {world.Bodies().GetCenterOfMass(id), world.Bodies().GetPose(id).rotation};
-    }
+    Pose CenterPose(BodyId id) { return {world.Bodies().GetCenterOfMass(id), world.Bodies().GetPose(id).rotation}; }
     Ray RandomRay(RandomPoses& random) const {
         const Vector3 from = random.InCube() * 12, to = random.InCube() * 12;
         return {origin + from.cast<double>(), to - from};
@@ -57,7 +59,9 @@ struct Crowd {
     MovingShape RandomMove(RandomPoses& random, bool turns) const {
         const Shape& shape = *shapes[static_cast<size_t>(random.Between(0, 4.99f))];
         const Vector3 from = random.InCube() * 12, to = random.InCube() * 12;
-        return {static_cast<const ConvexShape*>(&shape), {origin + from.cast<double>(), random.Rotation()}, (to - from) * 0.5f,
+        return {static_cast<const ConvexShape*>(&shape),
+                {origin + from.cast<double>(), random.Rotation()},
+                (to - from) * 0.5f,
                 turns ? Vector3(random.InCube() * 2) : Vector3(Vector3::Zero())};
     }
 };
@@ -97,7 +101,8 @@ TEST(Query, RaysHitWhatALoopOverAllBodiesHits) {
         EXPECT_EQ(hit.normal, best.normal);
         ASSERT_FALSE(all.empty());
         EXPECT_EQ(all.front().body, hit.body);
-        EXPECT_TRUE(std::is_sorted(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.fraction < b.fraction; }));
+        EXPECT_TRUE(std::is_sorted(all.begin(), all.end(),
+                                   [](const auto& a, const auto& b) { return a.fraction < b.fraction; }));
     }
     EXPECT_GT(hits, cases / 8);
 }
@@ -121,7 +126,8 @@ TEST(Query, ShapesHitOverlapAndAreClosestAsALoopOverAllBodiesSays) {
             caster.CastAll(shape, pose, {}, [&](const ShapeHit&) { return ++count, true; });
             if (caster.CastClosest(shape, pose, {}, here)) best = std::min(best, here.fraction);
             ClosestPoints points;
-            if (FindClosestPoints(shape, *move.shape, Relative(pose, center), 1000, points)) closest = std::min(closest, points.distance);
+            if (FindClosestPoints(shape, *move.shape, Relative(pose, center), 1000, points))
+                closest = std::min(closest, points.distance);
             if (shape.IsConvex()) {
                 expectedOverlaps += Overlap(shape, *move.shape, Relative(pose, center));
             } else {
@@ -143,7 +149,8 @@ TEST(Query, ShapesHitOverlapAndAreClosestAsALoopOverAllBodiesSays) {
         WorldClosest nearest;
         ASSERT_TRUE(crowd.Queries().FindClosest(PlacedShape{move.shape, move.pose}, 1000, nearest));
         EXPECT_NEAR(nearest.distance, closest, 1e-4f) << i;
-        EXPECT_FALSE(crowd.Queries().FindClosest(PlacedShape{move.shape, move.pose}, 0.9f * closest - 0.01f, nearest) && closest > 0.02f);
+        EXPECT_FALSE(crowd.Queries().FindClosest(PlacedShape{move.shape, move.pose}, 0.9f * closest - 0.01f, nearest) &&
+                     closest > 0.02f);
         crowd.Queries().FindOverlaps({move.shape, move.pose}, found);
         EXPECT_EQ(found.size(), expectedOverlaps) << i;
         EXPECT_EQ(crowd.Queries().IsOverlapping({move.shape, move.pose}), expectedOverlaps > 0);
@@ -153,7 +160,8 @@ TEST(Query, ShapesHitOverlapAndAreClosestAsALoopOverAllBodiesSays) {
         const Vector3 reach = Vector3::Constant(move.shape->OuterRadius());
         crowd.Queries().FindInBox(center.position - reach.cast<double>(), center.position + reach.cast<double>(), box);
         EXPECT_TRUE(std::includes(box.begin(), box.end(), found.begin(), found.end()));
-        crowd.Queries().FindOnSweep(center.position - reach.cast<double>(), center.position + reach.cast<double>(), move.displacement, box);
+        crowd.Queries().FindOnSweep(center.position - reach.cast<double>(), center.position + reach.cast<double>(),
+                                    move.displacement, box);
         for (const WorldShapeHit& h : all)
             EXPECT_TRUE(std::binary_search(box.begin(), box.end(), OverlapHit{h.body, h.subShape.child})) << i;
     }
@@ -187,7 +195,8 @@ TEST(Query, FarAwayIsAsHere) {
         if (a.body != BodyId{}) {
             EXPECT_LT((b.position - far.origin - a.position).norm(), 1e-5);
         }
-        const MovingShape moveHere = here.RandomMove(randomHere, i % 5 == 0), moveFar = far.RandomMove(randomFar, i % 5 == 0);
+        const MovingShape moveHere = here.RandomMove(randomHere, i % 5 == 0),
+                          moveFar = far.RandomMove(randomFar, i % 5 == 0);
         WorldShapeHit c, d;
         ASSERT_EQ(here.Queries().CastShape(moveHere, c), far.Queries().CastShape(moveFar, d)) << i;
         EXPECT_EQ(c.body, d.body) << i;
@@ -196,7 +205,8 @@ TEST(Query, FarAwayIsAsHere) {
 }
 
 TEST(Query, BodiesAreFoundWhereTheyAreNow) {
-    // Fast ones leave their bounds in every step; what the trees know is where they were, and where they were bound for.
+    // Fast ones leave their bounds in every step; what the trees know is where they were, and where they were bound
+    // for.
     Crowd crowd(Position::Zero(), 1, 60);
     RandomPoses random(5);
     std::vector<WorldRayHit> hits;
@@ -225,7 +235,8 @@ TEST(Query, BodiesAreFoundWhereTheyAreNow) {
         }
         const BodyId asleep = crowd.ids[static_cast<size_t>(step * 3 + 65)];
         ASSERT_TRUE(crowd.world.Bodies().Sleep(asleep));
-        crowd.Queries().CastRayAll({crowd.world.Bodies().GetCenterOfMass(asleep) - Position(3, 0, 0), Vector3(6, 0, 0)}, hits);
+        crowd.Queries().CastRayAll({crowd.world.Bodies().GetCenterOfMass(asleep) - Position(3, 0, 0), Vector3(6, 0, 0)},
+                                   hits);
         EXPECT_TRUE(std::any_of(hits.begin(), hits.end(), [&](const auto& h) { return h.body == asleep; }) ||
                     !crowd.world.Bodies().GetShape(asleep)->IsConvex());
     }
@@ -246,7 +257,8 @@ TEST(Query, FiltersAndEarlyEnds) {
         if (all.size() < 3) continue;
         // Without the first two bodies; the third's is then the first.
         const BodyId ignored[] = {all[0].body, all[1].body};
-        const auto third = std::find_if(all.begin(), all.end(), [&](const auto& h) { return h.body != ignored[0] && h.body != ignored[1]; });
+        const auto third = std::find_if(all.begin(), all.end(),
+                                        [&](const auto& h) { return h.body != ignored[0] && h.body != ignored[1]; });
         WorldRayHit hit;
         const bool found = crowd.Queries().CastRay(ray, hit, {}, {.ignore = ignored});
         ASSERT_EQ(found, third != all.end());
@@ -255,10 +267,12 @@ TEST(Query, FiltersAndEarlyEnds) {
         }
         const auto isWanted = [](BodyId id) { return id.index % 2 == 0; };
         crowd.Queries().CastRayAll(ray, some, {}, {.accepts = isWanted});
-        EXPECT_EQ(some.size(), static_cast<size_t>(std::count_if(all.begin(), all.end(), [&](const auto& h) { return isWanted(h.body); })));
+        EXPECT_EQ(some.size(), static_cast<size_t>(std::count_if(all.begin(), all.end(),
+                                                                 [&](const auto& h) { return isWanted(h.body); })));
         const auto isFirst = [](BodyId, uint32_t child) { return child == 0; };
         crowd.Queries().CastRayAll(ray, some, {}, {.acceptsChild = isFirst});
-        EXPECT_EQ(some.size(), static_cast<size_t>(std::count_if(all.begin(), all.end(), [](const auto& h) { return h.subShape.child == 0; })));
+        EXPECT_EQ(some.size(), static_cast<size_t>(std::count_if(all.begin(), all.end(),
+                                                                 [](const auto& h) { return h.subShape.child == 0; })));
         // Body i is of layer i % 5.
         crowd.Queries().CastRayAll(ray, some, {}, {.layers = 0b01010});
         EXPECT_EQ(some.size(), static_cast<size_t>(std::count_if(all.begin(), all.end(), [](const auto& h) {
@@ -371,10 +385,12 @@ TEST(Query, AnyThreadAsksWhileAnotherChangesAndSteps) {
     for (int step = 0; step < 60 || asked < 30; ++step) {
         ASSERT_TRUE(crowd.world.System().Update(kStep));
         const size_t at = static_cast<size_t>(random.Between(0, 149.9f));
-        ASSERT_TRUE(crowd.world.Bodies().SetPose(crowd.ids[at], random.InCube().cast<double>() * 10, random.Rotation()));
+        ASSERT_TRUE(
+            crowd.world.Bodies().SetPose(crowd.ids[at], random.InCube().cast<double>() * 10, random.Rotation()));
         if (step % 7 == 0) {
             ASSERT_TRUE(crowd.world.Bodies().Remove(crowd.ids[at]));
-            crowd.ids[at] = crowd.world.Bodies().Create({.shape = crowd.shapes[1], .linearVelocity = Vector3(1, 2, 3)}).Value();
+            crowd.ids[at] =
+                crowd.world.Bodies().Create({.shape = crowd.shapes[1], .linearVelocity = Vector3(1, 2, 3)}).Value();
         }
     }
     stop = true;

@@ -1,4 +1,5 @@
-// Batches of rays are cast in packets of rays that lie close together: each must be told the bits that it is told alone.
+// Batches of rays are cast in packets of rays that lie close together: each must be told the bits that it is told
+// alone.
 #include <Fulcrum/UnitTests/Support/AllocationCounter.h>
 #include <Fulcrum/UnitTests/Support/Cases.h>
 #include <Fulcrum/UnitTests/Support/RandomPoses.h>
@@ -46,35 +47,43 @@ ShapePtr Field() {
     return HeightField::Create(settings).Value();
 }
 
-// Hills, a smaller, mirrored and tilted copy of them, a height field, a half space below, tiles whose tops are level, a cloud of
-// bodies of all kinds above, and two exactly alike in one place.
+// Hills, a smaller, mirrored and tilted copy of them, a height field, a half space below, tiles whose tops are level, a
+// cloud of bodies of all kinds above, and two exactly alike in one place.
 struct Landscape {
     TestWorld world;
     Position origin;
     std::vector<BodyId> ids;
-    std::vector<ShapePtr> shapes{SphereOf(0.4f), BoxOf(0.5f, 0.3f, 0.7f), CapsuleOf(0.4f, 0.3f),
+    std::vector<ShapePtr> shapes{SphereOf(0.4f),
+                                 BoxOf(0.5f, 0.3f, 0.7f),
+                                 CapsuleOf(0.4f, 0.3f),
                                  Box::Create(Vector3(0.5f, 0.4f, 0.3f), 0.1f).Value(),
                                  HullOf({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}}),
-                                 CompoundOf({{SphereOf(0.3f), Vector3(0.6f, 0, 0), {}, 1}, {BoxOf(0.2f, 0.6f, 0.2f), Vector3(-0.3f, 0.2f, 0), {}, 1}})};
+                                 CompoundOf({{SphereOf(0.3f), Vector3(0.6f, 0, 0), {}, 1},
+                                             {BoxOf(0.2f, 0.6f, 0.2f), Vector3(-0.3f, 0.2f, 0), {}, 1}})};
 
-    explicit Landscape(uint32_t threads = 1, const Position& where = Position::Zero()) : world(NoGravity(), threads), origin(where) {
+    explicit Landscape(uint32_t threads = 1, const Position& where = Position::Zero())
+        : world(NoGravity(), threads), origin(where) {
         RandomPoses random(1);
         const std::shared_ptr<const TriangleMesh> hills = Hills();
         Add(hills, Vector3::Zero(), {}, MotionType::Static);
-        Add(TriangleMesh::Scaled(*hills, Vector3(-0.2f, 0.3f, 0.15f)).Value(), Vector3(3, 8, 2), random.Rotation(), MotionType::Static);
+        Add(TriangleMesh::Scaled(*hills, Vector3(-0.2f, 0.3f, 0.15f)).Value(), Vector3(3, 8, 2), random.Rotation(),
+            MotionType::Static);
         Add(Field(), Vector3(-25, 4, 5), random.Rotation(), MotionType::Static);
         Add(Plane::Create(Vector3(0, 1, 0), 0).Value(), Vector3(0, -6, 0), {}, MotionType::Static);
         for (int i = 0; i < 36; ++i)
-            Add(BoxOf(1, 0.25f, 1), Vector3(static_cast<float>(i % 6) * 2 + 10, 5, static_cast<float>(i / 6) * 2 - 20), {}, MotionType::Static);
+            Add(BoxOf(1, 0.25f, 1), Vector3(static_cast<float>(i % 6) * 2 + 10, 5, static_cast<float>(i / 6) * 2 - 20),
+                {}, MotionType::Static);
         for (int i = 0; i < 2; ++i) Add(BoxOf(2, 1, 2), Vector3(-20, 5, -20), {}, MotionType::Static);
         for (size_t i = 0; i < 300; ++i) {
             const Vector3 at = random.InCube().cwiseProduct(Vector3(28, 4, 28)) + Vector3(0, 5, 0);
             const Quaternion turn = random.Rotation();
-            Add(shapes[i % shapes.size()], at, turn, i % 2 == 0 ? MotionType::Kinematic : MotionType::Dynamic, random.InCube() * 30);
+            Add(shapes[i % shapes.size()], at, turn, i % 2 == 0 ? MotionType::Kinematic : MotionType::Dynamic,
+                random.InCube() * 30);
         }
         world.Step();  // some have strayed from their bounds
     }
-    void Add(const ShapePtr& shape, const Vector3& at, const Quaternion& rotation, MotionType motion, const Vector3& velocity = Vector3::Zero()) {
+    void Add(const ShapePtr& shape, const Vector3& at, const Quaternion& rotation, MotionType motion,
+             const Vector3& velocity = Vector3::Zero()) {
         BodySettings settings;
         settings.shape = shape;
         settings.motion = motion;
@@ -92,11 +101,14 @@ struct Landscape {
 std::vector<std::vector<Ray>> AllRays(const Landscape& land, int count) {
     RandomPoses random(2);
     std::vector<std::vector<Ray>> kinds(8);
-    const auto overGround = [&](float y) { return Vector3(random.InCube().cwiseProduct(Vector3(30, 0, 30)) + Vector3(0, y, 0)); };
+    const auto overGround = [&](float y) {
+        return Vector3(random.InCube().cwiseProduct(Vector3(30, 0, 30)) + Vector3(0, y, 0));
+    };
     for (int i = 0; i < count; ++i) {
         kinds[0].push_back(land.At(overGround(20), Vector3(0, -30, 0)));
         kinds[1].push_back(land.At(overGround(15), Vector3(20, -30, -8)));
-        const float right = static_cast<float>(i % 60) * 0.8f - 24, down = 25 * static_cast<float>(i / 60 * 60) / static_cast<float>(count);
+        const float right = static_cast<float>(i % 60) * 0.8f - 24,
+                    down = 25 * static_cast<float>(i / 60 * 60) / static_cast<float>(count);
         kinds[2].push_back(land.At(Vector3(1, 12, -35), Vector3(right, -down, 60)));
         kinds[3].push_back(land.At(overGround(random.Between(-8, 15)), random.InCube() * 30));
         // Along axes, and on the planes where tiles, cells and boxes meet.
@@ -105,7 +117,8 @@ std::vector<std::vector<Ray>> AllRays(const Landscape& land, int count) {
         const Vector3 grid(std::floor(random.Between(-20, 20)), 5.25f, std::floor(random.Between(-20, 20)));
         kinds[4].push_back(land.At(grid - axis * 0.5f, axis));
         // Nearly the same ray; very long and very short ones; those that end where they hit.
-        kinds[5].push_back(land.At(Vector3(0.1f, 9, 0.2f) + random.InCube() * 1e-4f, Vector3(0, -10, 0) + random.InCube() * 1e-4f));
+        kinds[5].push_back(
+            land.At(Vector3(0.1f, 9, 0.2f) + random.InCube() * 1e-4f, Vector3(0, -10, 0) + random.InCube() * 1e-4f));
         kinds[6].push_back(land.At(overGround(10), random.InCube() * (i % 2 == 0 ? 1e9f : 1e-3f)));
         const float bad[] = {kNan, kInfinity, -kInfinity, 0.0f, 1e30f, -1e-30f};
         Ray odd = land.At(overGround(20), Vector3(0, -30, 0));
@@ -131,8 +144,8 @@ bool SameBits(const WorldRayHit& a, const WorldRayHit& b) {
 }
 
 // How many of them hit.
-size_t ExpectSingleAnswers(const QueryInterface& queries, std::span<const Ray> rays, const RayCastSettings& settings = {},
-                           const QueryFilter& filter = {}) {
+size_t ExpectSingleAnswers(const QueryInterface& queries, std::span<const Ray> rays,
+                           const RayCastSettings& settings = {}, const QueryFilter& filter = {}) {
     WorldRayHit stale;
     stale.fraction = 7;
     std::vector<WorldRayHit> hits(rays.size(), stale);
@@ -142,8 +155,8 @@ size_t ExpectSingleAnswers(const QueryInterface& queries, std::span<const Ray> r
         WorldRayHit hit;
         count += queries.CastRay(rays[i], hit, settings, filter) ? 1 : 0;
         const bool same = SameBits(hits[i], hit);
-        EXPECT_TRUE(same) << i << ": " << hits[i].fraction << " of body " << hits[i].body.index << ", alone " << hit.fraction
-                          << " of " << hit.body.index;
+        EXPECT_TRUE(same) << i << ": " << hits[i].fraction << " of body " << hits[i].body.index << ", alone "
+                          << hit.fraction << " of " << hit.body.index;
         if (!same) break;
     }
     return count;
@@ -168,7 +181,8 @@ TEST(RayPackets, SettingsAndFiltersCountAsAlone) {
     const BodyId ignored[] = {land.ids[0]};
     for (const std::vector<Ray>& rays : AllRays(land, Cases(400))) {
         ExpectSingleAnswers(land.Queries(), rays, {.backFaces = true, .hollow = true});
-        for (const float most : {0.0f, 0.3f, 1.5f, kInfinity}) ExpectSingleAnswers(land.Queries(), rays, {.maxFraction = most});
+        for (const float most : {0.0f, 0.3f, 1.5f, kInfinity})
+            ExpectSingleAnswers(land.Queries(), rays, {.maxFraction = most});
         ExpectSingleAnswers(land.Queries(), rays, {}, {.layers = 0b101, .ignore = ignored, .sensors = true});
         ExpectSingleAnswers(land.Queries(), rays, {}, {.accepts = isWanted, .acceptsChild = isFirst});
     }

@@ -62,7 +62,8 @@ TEST_P(FadingRestitution, ComesToRestAfterTheSumOfAllBounces) {
         if (std::fabs(double(world.VelocityOf(ball).y())) > 0.02) lastMotion = i * dt;
     }
     const double expected = std::sqrt(2 * kDrop / kGravity) * (1 + e) / (1 - e);
-    // A bounce ends with its step: each loses at most one. It has 1 + log(v / 0.01) / log(1 / e) bounces of more than 0.01 m/s.
+    // A bounce ends with its step: each loses at most one. It has 1 + log(v / 0.01) / log(1 / e) bounces of more than
+    // 0.01 m/s.
     const double speed = std::sqrt(2 * kGravity * kDrop);
     const double bounces = e > 0 ? 1 + std::log(speed / 0.01) / std::log(1 / e) : 1;
     EXPECT_NEAR(lastMotion, expected, dt * (bounces + 1));
@@ -93,7 +94,8 @@ TEST(Restitution, SlowImpactsDoNotBounce) {
     TestWorld world(NoSleep());
     world.AddFloor();
     // 0.4 m/s at the floor, below restitutionSpeed.
-    const BodyId ball = world.Add({.shape = SphereOf(0.2f), .position = {0, 0.2 + 0.16 / (2 * kGravity), 0}, .material = {.restitution = 1}});
+    const BodyId ball = world.Add(
+        {.shape = SphereOf(0.2f), .position = {0, 0.2 + 0.16 / (2 * kGravity), 0}, .material = {.restitution = 1}});
     float fastest = 0;
     for (int i = 0; i < 60; ++i) {
         world.Step();
@@ -105,7 +107,8 @@ TEST(Restitution, SlowImpactsDoNotBounce) {
 TEST(Restitution, EqualBallsSwapTheirVelocities) {
     TestWorld world(NoGravity());
     const Material elastic{.friction = 0, .restitution = 1};
-    const BodyId left = world.Add({.shape = SphereOf(0.5f), .position = {-2, 0, 0}, .linearVelocity = {5, 0, 0}, .material = elastic});
+    const BodyId left =
+        world.Add({.shape = SphereOf(0.5f), .position = {-2, 0, 0}, .linearVelocity = {5, 0, 0}, .material = elastic});
     const BodyId right = world.Add({.shape = SphereOf(0.5f), .position = {0, 0, 0}, .material = elastic});
     world.Run(1);
     // Velocities of at most 5 m/s, rounded some ten times.
@@ -116,7 +119,8 @@ TEST(Restitution, EqualBallsSwapTheirVelocities) {
 TEST(Restitution, UnequalBallsKeepMomentumAndEnergy) {
     TestWorld world(NoGravity());
     const Material elastic{.friction = 0, .restitution = 1};
-    const BodyId light = world.Add({.shape = SphereOf(0.5f), .position = {-2, 0, 0}, .linearVelocity = {4, 0, 0}, .mass = 1, .material = elastic});
+    const BodyId light = world.Add(
+        {.shape = SphereOf(0.5f), .position = {-2, 0, 0}, .linearVelocity = {4, 0, 0}, .mass = 1, .material = elastic});
     const BodyId heavy = world.Add({.shape = SphereOf(0.5f), .position = {0, 0, 0}, .mass = 3, .material = elastic});
     world.Run(1);
     // v1' = (m1 - m2) / (m1 + m2) v, v2' = 2 m1 / (m1 + m2) v.
@@ -128,7 +132,10 @@ TEST(Restitution, AFieldOfBallsKeepsItsEnergy) {
     TestWorld world(NoSleep());
     world.AddFloor({.friction = 0});
     for (int i = 0; i < 49; ++i)
-        world.Add({.shape = SphereOf(0.1f), .position = {i % 7 - 3.0, 5.0, i / 7 - 3.0}, .mass = 10, .material = {.friction = 0, .restitution = 1}});
+        world.Add({.shape = SphereOf(0.1f),
+                   .position = {i % 7 - 3.0, 5.0, i / 7 - 3.0},
+                   .mass = 10,
+                   .material = {.friction = 0, .restitution = 1}});
     // 49 balls of 10 kg with 4.9 m to fall, from rest height 0.1 m: 24034.5 J when rest counts as 0.
     const double rest = 49 * 10 * kGravity * 0.1, expected = 24034.5 - 49 * 10 * kGravity * 0.1;
     double squares = 0;

@@ -14,8 +14,14 @@ using enum SensorSees;
 
 TEST(SensorSees, TheKindsOfMotionThatItIsTold) {
     const std::pair<SensorSees, std::vector<size_t>> cases[] = {
-        {Nothing, {}},          {Dynamic, {0}},    {Dynamic | Sleeping, {0, 1}}, {Kinematic, {2}},
-        {Static, {3}},          {Sensors, {}},     {SensorSees::Default, {0, 1, 2}}, {Kinematic | Sensors, {2, 4}},
+        {Nothing, {}},
+        {Dynamic, {0}},
+        {Dynamic | Sleeping, {0, 1}},
+        {Kinematic, {2}},
+        {Static, {3}},
+        {Sensors, {}},
+        {SensorSees::Default, {0, 1, 2}},
+        {Kinematic | Sensors, {2, 4}},
         {SensorSees::All, {0, 1, 2, 3, 4}},
     };
     for (const auto& [sees, expected] : cases) {
@@ -131,7 +137,8 @@ TEST(Sensor, LosesWhatFallsAsleepWhereItDoesNotSeeSleepers) {
 TEST(Sensor, CostsNothingForWhatSleepsInIt) {
     TestWorld world;
     world.AddFloor();
-    for (int i = 0; i < 50; ++i) world.Add({.shape = CubeOf(0.4f), .position = {i % 10 * 1.0, 0.4, i / 10 * 1.0}, .startAsleep = true});
+    for (int i = 0; i < 50; ++i)
+        world.Add({.shape = CubeOf(0.4f), .position = {i % 10 * 1.0, 0.4, i / 10 * 1.0}, .startAsleep = true});
     const BodyId sensor = world.Add(SensorOf(BoxOf(20, 2, 20)));
     world.Step();
     EXPECT_EQ(world.Report().sensorTests, 50u);
@@ -149,7 +156,8 @@ TEST(Sensor, CostsNothingForWhatSleepsInIt) {
 TEST(Sensor, ThatMovesOverSleepersReportsThemAndLetsThemSleep) {
     TestWorld world(NoGravity());
     std::vector<BodyId> sleepers;
-    for (int i = 0; i < 10; ++i) sleepers.push_back(world.Add({.shape = CubeOf(0.25f), .position = {2.0 * i, 0, 0}, .startAsleep = true}));
+    for (int i = 0; i < 10; ++i)
+        sleepers.push_back(world.Add({.shape = CubeOf(0.25f), .position = {2.0 * i, 0, 0}, .startAsleep = true}));
     BodySettings settings = SensorOf(CubeOf(0.5f), {-2, 0, 0}, MotionType::Kinematic);
     settings.linearVelocity = {6, 0, 0};
     settings.sensorReportsStay = false;
@@ -177,7 +185,9 @@ TEST(Sensor, ReportsTheEndOfWhatIsRemovedOrTeleported) {
     TestWorld world(NoGravity());
     const BodyId sensor = world.Add(SensorOf(CubeOf(1)));
     std::vector<BodyId> boxes;
-    for (int i = 0; i < 4; ++i) boxes.push_back(world.Add({.shape = CubeOf(0.1f), .position = {0.4 * i - 0.6, 0, 0}, .startAsleep = i % 2 == 0}));
+    for (int i = 0; i < 4; ++i)
+        boxes.push_back(
+            world.Add({.shape = CubeOf(0.1f), .position = {0.4 * i - 0.6, 0, 0}, .startAsleep = i % 2 == 0}));
     world.Step();
     ExpectKinds(world, {kBegin, kBegin, kBegin, kBegin});
     ASSERT_TRUE(world.Bodies().Remove(boxes[0]));
@@ -273,10 +283,12 @@ TEST(Sensor, ErrorsSayWhatIsWrong) {
     settings.continuous = ContinuousCollision::Off;
     settings.sensorSees = static_cast<SensorSees>(32);
     EXPECT_EQ(world.Bodies().Create(settings).GetError().code, ErrorCode::OutOfRange);
-    const BodyId box = world.Add({.shape = CubeOf(1), .continuous = ContinuousCollision::Linear}), sensor = world.Add(SensorOf(CubeOf(1)));
+    const BodyId box = world.Add({.shape = CubeOf(1), .continuous = ContinuousCollision::Linear}),
+                 sensor = world.Add(SensorOf(CubeOf(1)));
     EXPECT_EQ(world.Bodies().SetSensor(box, true).GetError().code, ErrorCode::Unsupported);
     EXPECT_EQ(world.Bodies().SetSensorSees(box, Dynamic).GetError().code, ErrorCode::Unsupported);
-    EXPECT_EQ(world.Bodies().SetContinuous(sensor, ContinuousCollision::Linear).GetError().code, ErrorCode::Unsupported);
+    EXPECT_EQ(world.Bodies().SetContinuous(sensor, ContinuousCollision::Linear).GetError().code,
+              ErrorCode::Unsupported);
     EXPECT_EQ(world.Bodies().SetSensorSees({7, 7}, Dynamic).GetError().code, ErrorCode::UnknownId);
     EXPECT_EQ(world.Bodies().SetSensorSees(sensor, static_cast<SensorSees>(64)).GetError().code, ErrorCode::OutOfRange);
     EXPECT_TRUE(world.System().BodiesInside(box).empty());
@@ -305,7 +317,8 @@ struct Playground {
         world.AddFloor({.friction = 0.5f, .restitution = 0.5f});
         for (int i = 0; i < 12; ++i) {
             const Vector3 at = random.InCube() * 4.0f;
-            BodySettings settings = SensorOf(i % 3 ? CubeOf(1) : SphereOf(1.2f), {at.x(), 2 + 0.5 * at.y(), at.z()}, i % 4 ? MotionType::Static : MotionType::Kinematic);
+            BodySettings settings = SensorOf(i % 3 ? CubeOf(1) : SphereOf(1.2f), {at.x(), 2 + 0.5 * at.y(), at.z()},
+                                             i % 4 ? MotionType::Static : MotionType::Kinematic);
             settings.rotation = random.Rotation();
             settings.sensorSees = i % 2 ? SensorSees::All : SensorSees::Default;
             sensors.push_back(world.Add(settings));
@@ -313,7 +326,8 @@ struct Playground {
             EXPECT_TRUE(world.Bodies().SetVelocity(sensors.back(), {0.5f, 0, 0.25f}, random.InCube() * 3.0f));
         }
         const ShapePtr ball = SphereOf(0.15f);
-        const ShapePtr shapes[] = {CubeOf(0.2f), ball, CapsuleOf(0.2f, 0.1f), CompoundOf({{ball, {-0.2f, 0, 0}}, {ball, {0.2f, 0, 0}}})};
+        const ShapePtr shapes[] = {CubeOf(0.2f), ball, CapsuleOf(0.2f, 0.1f),
+                                   CompoundOf({{ball, {-0.2f, 0, 0}}, {ball, {0.2f, 0, 0}}})};
         for (int i = 0; i < 80; ++i) {
             const Vector3 at = random.InCube() * 4.0f;
             BodySettings settings{.shape = shapes[i % 4], .position = {at.x(), 4 + at.y(), at.z()}};
@@ -363,10 +377,12 @@ TEST(Sensor, HasInsideWhatOverlapsItAndEventsThatAddUp) {
             const ShapePtr shape = play.world.Bodies().GetShape(sensor);
             const auto wanted = [&](BodyId id) {
                 if (id == sensor) return false;
-                return i % 2 || (play.world.Bodies().GetMotionType(id) != MotionType::Static && !play.world.Bodies().IsSensor(id));
+                return i % 2 || (play.world.Bodies().GetMotionType(id) != MotionType::Static &&
+                                 !play.world.Bodies().IsSensor(id));
             };
             std::vector<OverlapHit> hits;
-            play.world.System().Queries().FindOverlaps({shape.get(), play.world.Bodies().GetPose(sensor)}, hits, {.sensors = true, .accepts = wanted});
+            play.world.System().Queries().FindOverlaps({shape.get(), play.world.Bodies().GetPose(sensor)}, hits,
+                                                       {.sensors = true, .accepts = wanted});
             std::vector<BodyId> overlapping;
             for (const OverlapHit& hit : hits)
                 if (overlapping.empty() || overlapping.back() != hit.body) overlapping.push_back(hit.body);

@@ -13,11 +13,13 @@
 namespace fulcrum::testing {
 namespace {
 
-// A step's fraction is a float of times that were found to 1e-6 of the shapes' sizes; those are meters, and so are the ways.
+// A step's fraction is a float of times that were found to 1e-6 of the shapes' sizes; those are meters, and so are the
+// ways.
 constexpr double kTimeError = 1e-5;
 
 TEST(Sensor, ReportsABallThatFliesThroughWithTheTimesOfItsFlight) {
-    // v = 3 m/s along x from -2: the ball of radius 0.25 meets the box of half width 0.5 at x = -0.75 and leaves it at 0.75.
+    // v = 3 m/s along x from -2: the ball of radius 0.25 meets the box of half width 0.5 at x = -0.75 and leaves it at
+    // 0.75.
     TestWorld world(NoGravity());
     const BodyId sensor = world.Add(SensorOf(CubeOf(0.5f)));
     const BodyId ball = world.Add({.shape = SphereOf(0.25f), .position = {-2, 0, 0}, .linearVelocity = {3, 0, 0}});
@@ -92,7 +94,8 @@ TEST(Sensor, SortsEventsByTimeThenBody) {
     world.Add(SensorOf(BoxOf(0.005f, 5, 5), {10, 0, 0}));
     std::vector<BodyId> bullets;
     for (int i = 0; i < 10; ++i)
-        bullets.push_back(world.Add({.shape = SphereOf(0.01f), .position = {0.5 * (i % 5), 0.3 * i, 0}, .linearVelocity = {1000, 0, 0}}));
+        bullets.push_back(world.Add(
+            {.shape = SphereOf(0.01f), .position = {0.5 * (i % 5), 0.3 * i, 0}, .linearVelocity = {1000, 0, 0}}));
     world.Step();
     const std::vector<SensorEvent> events = EventsOf(world);
     ASSERT_EQ(events.size(), 20u);
@@ -130,8 +133,9 @@ TEST(Sensor, AndABodyThatBothMoveMeetAtTheirRelativeSpeed) {
 }
 
 TEST(Sensor, ThatTurnsSweepsWhatIsInItsWay) {
-    // A rod of 2 m and 2 cm thick turns by a quarter in the step; the ball is at 30 degrees, 0.8 m out. The rod's side, 1 cm from its
-    // middle line, meets the ball when the line is asin((0.01 + 0.05) / 0.8) before it, and leaves it as long after it.
+    // A rod of 2 m and 2 cm thick turns by a quarter in the step; the ball is at 30 degrees, 0.8 m out. The rod's side,
+    // 1 cm from its middle line, meets the ball when the line is asin((0.01 + 0.05) / 0.8) before it, and leaves it as
+    // long after it.
     TestWorld world(NoGravity());
     BodySettings rod = SensorOf(BoxOf(1, 0.01f, 0.01f), {0, 0, 0}, MotionType::Kinematic);
     rod.angularVelocity = {0, 0, static_cast<float>(kPi / 2 / kStep)};
@@ -149,7 +153,8 @@ TEST(Sensor, SeesARodThatSpinsThroughIt) {
     // Neither the rod's bounds at the beginning nor those at the end reach the sensor at 45 degrees.
     TestWorld world(NoGravity());
     world.Add(SensorOf(SphereOf(0.05f), {0.7, 0.7, 0}));
-    BodySettings rod{.shape = BoxOf(1.2f, 0.02f, 0.02f), .angularVelocity = {0, 0, static_cast<float>(kPi / 2 / kStep)}};
+    BodySettings rod{.shape = BoxOf(1.2f, 0.02f, 0.02f),
+                     .angularVelocity = {0, 0, static_cast<float>(kPi / 2 / kStep)}};
     rod.gyroscopicTorque = false;
     world.Add(rod);
     world.Step();
@@ -161,13 +166,18 @@ TEST(Sensor, SeesARodThatSpinsThroughIt) {
 }
 
 TEST(Sensor, SeesABulletThatBouncesBackThroughIt) {
-    // The wall's face at x = 10, the sensor from 7.9 to 8.1, the bullet of 0.05 m at 900 m/s, 15 m a step, from x = 0: it enters at
-    // 7.85, leaves at 8.15, bounces at 9.95, enters at 8.15 on its way back, leaves at 7.85.
+    // The wall's face at x = 10, the sensor from 7.9 to 8.1, the bullet of 0.05 m at 900 m/s, 15 m a step, from x = 0:
+    // it enters at 7.85, leaves at 8.15, bounces at 9.95, enters at 8.15 on its way back, leaves at 7.85.
     TestWorld world(NoGravity());
     const Material elastic{.friction = 0, .restitution = 1};
-    world.Add({.shape = BoxOf(0.5f, 5, 5), .motion = MotionType::Static, .position = {10.5, 0, 0}, .material = elastic});
+    world.Add(
+        {.shape = BoxOf(0.5f, 5, 5), .motion = MotionType::Static, .position = {10.5, 0, 0}, .material = elastic});
     const BodyId sensor = world.Add(SensorOf(BoxOf(0.1f, 5, 5), {8, 0, 0}));
-    world.Add({.shape = SphereOf(0.05f), .position = {0, 0, 0}, .linearVelocity = {900, 0, 0}, .material = elastic, .continuous = ContinuousCollision::Linear});
+    world.Add({.shape = SphereOf(0.05f),
+               .position = {0, 0, 0},
+               .linearVelocity = {900, 0, 0},
+               .material = elastic,
+               .continuous = ContinuousCollision::Linear});
     world.Step();
     ExpectKinds(world, {kBegin, kEnd, kBegin, kEnd});
     const std::vector<SensorEvent> events = EventsOf(world);
@@ -184,9 +194,14 @@ TEST(Sensor, SeesABulletThatBouncesBackThroughIt) {
 TEST(Sensor, SeesABulletThatBouncesInsideAndStays) {
     TestWorld world(NoGravity());
     const Material elastic{.friction = 0, .restitution = 1};
-    world.Add({.shape = BoxOf(0.5f, 5, 5), .motion = MotionType::Static, .position = {10.5, 0, 0}, .material = elastic});
+    world.Add(
+        {.shape = BoxOf(0.5f, 5, 5), .motion = MotionType::Static, .position = {10.5, 0, 0}, .material = elastic});
     const BodyId sensor = world.Add(SensorOf(BoxOf(4, 5, 5), {6, 0, 0}));
-    const BodyId bullet = world.Add({.shape = SphereOf(0.05f), .position = {0, 0, 0}, .linearVelocity = {900, 0, 0}, .material = elastic, .continuous = ContinuousCollision::Linear});
+    const BodyId bullet = world.Add({.shape = SphereOf(0.05f),
+                                     .position = {0, 0, 0},
+                                     .linearVelocity = {900, 0, 0},
+                                     .material = elastic,
+                                     .continuous = ContinuousCollision::Linear});
     world.Step();
     ExpectKinds(world, {kBegin});
     EXPECT_EQ(InsideOf(world, sensor), std::vector<BodyId>{bullet});
@@ -213,7 +228,10 @@ TEST(Sensor, SeesABodyWithAGapTwice) {
     TestWorld world(NoGravity());
     world.Add(SensorOf(BoxOf(0.1f, 1, 1)));
     const ShapePtr ball = SphereOf(0.25f);
-    world.Add({.shape = CompoundOf({{ball, {-1, 0, 0}}, {ball, {1, 0, 0}}}), .position = {-10, 0, 0}, .linearVelocity = {1200, 0, 0}, .maxLinearSpeed = 2000});
+    world.Add({.shape = CompoundOf({{ball, {-1, 0, 0}}, {ball, {1, 0, 0}}}),
+               .position = {-10, 0, 0},
+               .linearVelocity = {1200, 0, 0},
+               .maxLinearSpeed = 2000});
     world.Step();
     ExpectKinds(world, {kBegin, kEnd, kBegin, kEnd});
     const double at[] = {10 - 1 - 0.35, 10 - 1 + 0.35, 10 + 1 - 0.35, 10 + 1 + 0.35};
@@ -228,7 +246,8 @@ TEST(Sensor, MayBeACompoundAPlaneOrAMesh) {
     const Vector3 corners[] = {{5, -9, -9}, {5, 9, -9}, {5, 9, 9}, {5, -9, 9}};
     const uint32_t triangles[] = {0, 1, 2, 0, 2, 3};
     const BodyId mesh = world.Add(SensorOf(TriangleMesh::Create({.vertices = corners, .indices = triangles}).Value()));
-    const BodyId there = world.Add({.shape = SphereOf(0.1f), .position = {-10, 0, 0}, .linearVelocity = {1200, 0, 0}, .maxLinearSpeed = 2000});
+    const BodyId there = world.Add(
+        {.shape = SphereOf(0.1f), .position = {-10, 0, 0}, .linearVelocity = {1200, 0, 0}, .maxLinearSpeed = 2000});
     world.Step();
     std::vector<SensorEvent> events = EventsOf(world);
     ASSERT_EQ(events.size(), 6u) << ::testing::PrintToString(events);
@@ -275,7 +294,8 @@ Sampled SampleOverlaps(const BodySettings& a, const BodySettings& b, int samples
 
 TEST(Sensor, AgreesWithSamplesOfWhatTumblesThroughIt) {
     constexpr int kSamples = 1000;
-    const ShapePtr shapes[] = {BoxOf(0.6f, 0.2f, 0.1f), CapsuleOf(0.5f, 0.1f), HullOf({{0.5f, 0, 0}, {-0.3f, 0.4f, 0}, {-0.3f, -0.4f, 0.1f}, {0, 0, -0.5f}})};
+    const ShapePtr shapes[] = {BoxOf(0.6f, 0.2f, 0.1f), CapsuleOf(0.5f, 0.1f),
+                               HullOf({{0.5f, 0, 0}, {-0.3f, 0.4f, 0}, {-0.3f, -0.4f, 0.1f}, {0, 0, -0.5f}})};
     RandomPoses random(3);
     int passed = 0;
     for (int i = 0; i < 200; ++i) {
@@ -285,8 +305,9 @@ TEST(Sensor, AgreesWithSamplesOfWhatTumblesThroughIt) {
         body.rotation = random.Rotation();
         const Vector3 offset = random.InCube() * 2.0f, aim = random.InCube() * 0.7f;
         body.position = offset.cast<double>();
-        (i % 2 ? sensor : body).linearVelocity = Vector3(aim - offset) * (i % 2 ? -90.0f : 90.0f);  // 1.5 times the distance
-        (i % 4 < 2 ? sensor : body).angularVelocity = random.InCube() * 60.0f;                      // up to a radian
+        (i % 2 ? sensor : body).linearVelocity =
+            Vector3(aim - offset) * (i % 2 ? -90.0f : 90.0f);                   // 1.5 times the distance
+        (i % 4 < 2 ? sensor : body).angularVelocity = random.InCube() * 60.0f;  // up to a radian
         const Sampled expected = SampleOverlaps(sensor, body, kSamples);
         TestWorld world(NoGravity());
         world.Add(sensor);

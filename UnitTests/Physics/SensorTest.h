@@ -9,16 +9,19 @@ namespace fulcrum {
 
 inline std::ostream& operator<<(std::ostream& out, const SensorEvent& e) {
     const char* kinds[] = {"Begin", "Stay", "End"};
-    return out << kinds[static_cast<int>(e.kind)] << " of " << e.body.index << " in " << e.sensor.index << " at " << e.time;
+    return out << kinds[static_cast<int>(e.kind)] << " of " << e.body.index << " in " << e.sensor.index << " at "
+               << e.time;
 }
 
 }  // namespace fulcrum
 
 namespace fulcrum::testing {
 
-inline constexpr SensorEvent::Kind kBegin = SensorEvent::Kind::Begin, kStay = SensorEvent::Kind::Stay, kEnd = SensorEvent::Kind::End;
+inline constexpr SensorEvent::Kind kBegin = SensorEvent::Kind::Begin, kStay = SensorEvent::Kind::Stay,
+                                   kEnd = SensorEvent::Kind::End;
 
-inline BodySettings SensorOf(ShapePtr shape, const Position& position = Position::Zero(), MotionType motion = MotionType::Static) {
+inline BodySettings SensorOf(ShapePtr shape, const Position& position = Position::Zero(),
+                             MotionType motion = MotionType::Static) {
     BodySettings settings;
     settings.shape = std::move(shape);
     settings.motion = motion;

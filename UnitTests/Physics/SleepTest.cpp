@@ -53,7 +53,8 @@ TEST(Sleep, SleepersLieStillToTheBit) {
 TEST(Sleep, RemovingTheSupportWakesTheStack) {
     TestWorld world;
     world.AddFloor();
-    const BodyId support = world.Add({.shape = BoxOf(1, 0.5f, 1), .motion = MotionType::Static, .position = {0, 0.5, 0}});
+    const BodyId support =
+        world.Add({.shape = BoxOf(1, 0.5f, 1), .motion = MotionType::Static, .position = {0, 0.5, 0}});
     const BodyId box = world.Add({.shape = CubeOf(0.5f), .position = {0, 1.5, 0}});
     world.Run(2);
     ASSERT_FALSE(world.Bodies().IsAwake(box));
@@ -77,7 +78,8 @@ TEST(Sleep, RemovingADynamicSupportLetsTheRestFall) {
 
 TEST(Sleep, MovingTheSupportWakesWhatRestedOnIt) {
     TestWorld world;
-    const BodyId support = world.Add({.shape = BoxOf(1, 0.5f, 1), .motion = MotionType::Static, .position = {0, 0.5, 0}});
+    const BodyId support =
+        world.Add({.shape = BoxOf(1, 0.5f, 1), .motion = MotionType::Static, .position = {0, 0.5, 0}});
     const BodyId box = world.Add({.shape = CubeOf(0.5f), .position = {0, 1.5, 0}});
     world.Run(2);
     ASSERT_FALSE(world.Bodies().IsAwake(box));
@@ -123,7 +125,8 @@ TEST(Sleep, IslandsSleepByThemselves) {
     TestWorld world;
     world.AddFloor({.friction = 0});
     const std::vector<BodyId> stack = AddStack(world, 3);
-    const BodyId slides = world.Add({.shape = CubeOf(0.5f), .position = {10, 0.5, 0}, .linearVelocity = {1, 0, 0}, .material = {.friction = 0}});
+    const BodyId slides = world.Add(
+        {.shape = CubeOf(0.5f), .position = {10, 0.5, 0}, .linearVelocity = {1, 0, 0}, .material = {.friction = 0}});
     world.Run(3);
     EXPECT_TRUE(AllAsleep(world, stack));
     EXPECT_TRUE(world.Bodies().IsAwake(slides));
@@ -181,9 +184,8 @@ TEST(Sleep, WhatWasRemovedTouchesNothingAtOnce) {
         const BodyId gone = stack[static_cast<size_t>(removed)];
         ASSERT_TRUE(world.Bodies().Remove(gone));
         stack.erase(stack.begin() + removed);
-        world.System().VisitContacts([&](const ContactView& contact) {
-            EXPECT_TRUE(contact.bodyA != gone && contact.bodyB != gone);
-        });
+        world.System().VisitContacts(
+            [&](const ContactView& contact) { EXPECT_TRUE(contact.bodyA != gone && contact.bodyB != gone); });
         std::vector<uint32_t> islands;
         world.System().VisitIslands([&](BodyId, uint32_t island) { islands.push_back(island); });
         ASSERT_EQ(islands.size(), 2u);

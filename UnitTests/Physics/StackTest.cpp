@@ -27,7 +27,8 @@ TEST(Stack, SpheresPressWithTheirWeight) {
     // The tube that holds them.
     const LockedAxes tube = LockedAxes::TranslationX | LockedAxes::TranslationZ;
     for (int i = 0; i < 8; ++i)
-        stack.push_back(world.Add({.shape = SphereOf(0.05f), .position = {0, 0.05 + 0.1 * i, 0}, .mass = 5, .lockedAxes = tube}));
+        stack.push_back(
+            world.Add({.shape = SphereOf(0.05f), .position = {0, 0.05 + 0.1 * i, 0}, .mass = 5, .lockedAxes = tube}));
     world.Run(0.25, dt);
     EXPECT_LT(WorstWeightError(world, stack, 5 * kGravity, dt), 0.05);
     world.Run(2, dt);
@@ -38,7 +39,8 @@ TEST(Stack, SpheresPressWithTheirWeight) {
 TEST(Stack, BoxesPressWithTheirWeight) {
     TestWorld world(NoSleep());
     std::vector<BodyId> stack{world.AddFloor()};
-    for (int i = 0; i < 8; ++i) stack.push_back(world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5 + i, 0}, .mass = 5}));
+    for (int i = 0; i < 8; ++i)
+        stack.push_back(world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5 + i, 0}, .mass = 5}));
     world.Run(4);
     EXPECT_LT(WorstWeightError(world, stack, 5 * kGravity, kStep), 5e-3);
     EXPECT_LE(world.Report().largestPenetration, kRestingOverlap);

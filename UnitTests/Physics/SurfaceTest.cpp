@@ -1,5 +1,5 @@
-// Bodies on triangle meshes and height fields: they rest, slide and roll as on solid ground, and edges between triangles that
-// are no edges of the surface are not felt.
+// Bodies on triangle meshes and height fields: they rest, slide and roll as on solid ground, and edges between
+// triangles that are no edges of the surface are not felt.
 #include <Fulcrum/Collision/Shapes/HeightField.h>
 #include <Fulcrum/Collision/Shapes/Plane.h>
 #include <Fulcrum/Collision/Shapes/RoundShapes.h>
@@ -19,7 +19,9 @@ struct Grid {
     std::vector<Vector3> vertices;
     std::vector<uint32_t> indices;
 
-    Grid(int cells, float size, float x0, float z0, const std::function<float(float, float)>& height = [](float, float) { return 0.0f; }) {
+    Grid(
+        int cells, float size, float x0, float z0,
+        const std::function<float(float, float)>& height = [](float, float) { return 0.0f; }) {
         const auto at = [&](int x, int z) { return static_cast<uint32_t>(z * (cells + 1) + x); };
         for (int z = 0; z <= cells; ++z)
             for (int x = 0; x <= cells; ++x) {
@@ -28,7 +30,8 @@ struct Grid {
             }
         for (int z = 0; z < cells; ++z)
             for (int x = 0; x < cells; ++x)
-                indices.insert(indices.end(), {at(x, z), at(x, z + 1), at(x + 1, z), at(x + 1, z), at(x, z + 1), at(x + 1, z + 1)});
+                indices.insert(indices.end(),
+                               {at(x, z), at(x, z + 1), at(x + 1, z), at(x + 1, z), at(x, z + 1), at(x + 1, z + 1)});
     }
     std::shared_ptr<const TriangleMesh> Mesh(TriangleMeshSettings settings = {}) const {
         settings.vertices = vertices;
@@ -41,25 +44,36 @@ struct Grid {
 
 std::shared_ptr<HeightField> FieldOf(uint32_t samples, float cell, const Vector3& origin) {
     const std::vector<float> heights(size_t(samples) * samples, 0.0f);
-    auto field = HeightField::Create({.sampleCountX = samples, .sampleCountZ = samples, .heights = heights, .cellSizeX = cell, .cellSizeZ = cell, .origin = origin});
+    auto field = HeightField::Create({.sampleCountX = samples,
+                                      .sampleCountZ = samples,
+                                      .heights = heights,
+                                      .cellSizeX = cell,
+                                      .cellSizeZ = cell,
+                                      .origin = origin});
     EXPECT_TRUE(field);
     return field ? field.Value() : nullptr;
 }
 
-BodyId AddGround(TestWorld& world, const ShapePtr& shape, float friction = 0.5f, const Position& position = Position::Zero()) {
-    return world.Add({.shape = shape, .motion = MotionType::Static, .position = position, .material = {.friction = friction}});
+BodyId AddGround(TestWorld& world, const ShapePtr& shape, float friction = 0.5f,
+                 const Position& position = Position::Zero()) {
+    return world.Add(
+        {.shape = shape, .motion = MotionType::Static, .position = position, .material = {.friction = friction}});
 }
 
 // accuracy.md's gate: a cube of 0.2 m that slides without friction at 3 m/s hardly notices what it slides over.
 void SlidesOver(TestWorld& world, float angle) {
     const Vector3 along(std::cos(angle), 0, std::sin(angle));
-    const BodyId cube = world.Add({.shape = CubeOf(0.1f), .position = (along * -4.0f + Vector3(0, 0.1f, 0)).cast<double>(), .linearVelocity = along * 3, .material = {.friction = 0}});
+    const BodyId cube = world.Add({.shape = CubeOf(0.1f),
+                                   .position = (along * -4.0f + Vector3(0, 0.1f, 0)).cast<double>(),
+                                   .linearVelocity = along * 3,
+                                   .material = {.friction = 0}});
     for (int i = 0; i < 150; ++i) {
         world.Step();
         const Vector3 v = world.VelocityOf(cube);
         const float forward = Dot(v, along);
         ASSERT_LT(std::fabs(v.y()), 0.01f) << "step " << i << " angle " << angle;
-        ASSERT_LT(Length(Vector3(v - along * forward - Vector3(0, v.y(), 0))), 0.01f) << "step " << i << " angle " << angle;
+        ASSERT_LT(Length(Vector3(v - along * forward - Vector3(0, v.y(), 0))), 0.01f)
+            << "step " << i << " angle " << angle;
         ASSERT_NEAR(forward, 3, 0.01) << "step " << i << " angle " << angle;
         ASSERT_NEAR(world.PositionOf(cube).y(), 0.1, 1e-3) << "step " << i << " angle " << angle;
     }
@@ -141,8 +155,11 @@ TEST(Surface, EveryShapeRestsOnAMeshAsOnABox) {
     const auto cylinder = Cylinder::Create(0.4f, 0.3f);
     const auto cone = Cylinder::CreateCone(0.4f, 0.3f);
     ASSERT_TRUE(cylinder && cone);
-    const Case cases[] = {{SphereOf(0.3f), 0.3}, {CubeOf(0.25f), 0.25}, {HullOf({{-1, 0, -1}, {1, 0, -1}, {1, 0, 1}, {-1, 0, 1}, {0, 1, 0}}), 0},
-                          {cylinder.Value(), 0.4}, {cone.Value(), 0.4}};
+    const Case cases[] = {{SphereOf(0.3f), 0.3},
+                          {CubeOf(0.25f), 0.25},
+                          {HullOf({{-1, 0, -1}, {1, 0, -1}, {1, 0, 1}, {-1, 0, 1}, {0, 1, 0}}), 0},
+                          {cylinder.Value(), 0.4},
+                          {cone.Value(), 0.4}};
     for (const Case& c : cases) {
         TestWorld world(NoSleep());
         AddGround(world, Grid(20, 0.37f, -3.7f, -3.7f).Mesh());
@@ -158,7 +175,8 @@ TEST(Plane, EveryShapeRestsOnIt) {
     const auto cylinder = Cylinder::Create(0.4f, 0.3f), rounded = Cylinder::Create(0.4f, 0.3f, 0.05f);
     const auto cone = Cylinder::CreateCone(0.4f, 0.3f);
     ASSERT_TRUE(plane && cylinder && rounded && cone);
-    for (const ShapePtr& shape : {SphereOf(0.4f), CubeOf(0.4f), ShapePtr(cylinder.Value()), ShapePtr(rounded.Value()), ShapePtr(cone.Value())}) {
+    for (const ShapePtr& shape : {SphereOf(0.4f), CubeOf(0.4f), ShapePtr(cylinder.Value()), ShapePtr(rounded.Value()),
+                                  ShapePtr(cone.Value())}) {
         TestWorld world(NoSleep());
         AddGround(world, plane.Value());
         const BodyId body = world.Add({.shape = shape, .position = {3, 2.5, 1}});
@@ -174,7 +192,9 @@ TEST(Surface, ASphereRollsDownAMeshWithFiveSeventhsOfGravity) {
     TestWorld world(NoSleep());
     AddGround(world, Grid(100, 0.5f, -25, -25, [&](float x, float) { return x * slope; }).Mesh(), 0.9f);
     const Vector3 normal(static_cast<float>(-std::sin(angle)), static_cast<float>(std::cos(angle)), 0);
-    const BodyId ball = world.Add({.shape = SphereOf(0.5f), .position = (Vector3(20, 20 * slope, 0.1f) + normal * 0.5f).cast<double>(), .material = {.friction = 0.9f}});
+    const BodyId ball = world.Add({.shape = SphereOf(0.5f),
+                                   .position = (Vector3(20, 20 * slope, 0.1f) + normal * 0.5f).cast<double>(),
+                                   .material = {.friction = 0.9f}});
     world.Run(1);
     const double v1 = double(Length(world.VelocityOf(ball)));
     world.Run(2);
@@ -186,8 +206,12 @@ TEST(Surface, ARidgeCarriesABoxOnItsEdge) {
     // A roof of 30 degrees: its ridge is an edge of the surface. A box held level over it meets the ridge.
     TestWorld world(NoSleep());
     const float slope = static_cast<float>(std::tan(30 * kDegree));
-    const BodyId roof = AddGround(world, Grid(20, 0.5f, -5, -5, [&](float x, float) { return -std::fabs(x) * slope; }).Mesh());
-    const BodyId box = world.Add({.shape = BoxOf(0.5f, 0.25f, 0.5f), .position = {0, 0.26, 0.1}, .lockedAxes = LockedAxes::Rotation | LockedAxes::TranslationX | LockedAxes::TranslationZ});
+    const BodyId roof =
+        AddGround(world, Grid(20, 0.5f, -5, -5, [&](float x, float) { return -std::fabs(x) * slope; }).Mesh());
+    const BodyId box =
+        world.Add({.shape = BoxOf(0.5f, 0.25f, 0.5f),
+                   .position = {0, 0.26, 0.1},
+                   .lockedAxes = LockedAxes::Rotation | LockedAxes::TranslationX | LockedAxes::TranslationZ});
     world.Run(2);
     EXPECT_NEAR(world.PositionOf(box).y(), 0.25, 1e-3);
     const double weight = double(world.Bodies().GetMass(box)) * kGravity;
@@ -198,7 +222,8 @@ TEST(Surface, OneSidedTrianglesLetPassWhatComesFromBehind) {
     for (const bool twoSided : {false, true}) {
         TestWorld world(NoGravity());
         AddGround(world, Grid(10, 1, -5, -5).Mesh({.isTwoSided = twoSided}));
-        const BodyId ball = world.Add({.shape = SphereOf(0.25f), .position = {0.2, -2, 0.3}, .linearVelocity = {0, 3, 0}});
+        const BodyId ball =
+            world.Add({.shape = SphereOf(0.25f), .position = {0.2, -2, 0.3}, .linearVelocity = {0, 3, 0}});
         world.Run(2);
         const double height = world.PositionOf(ball).y();
         EXPECT_TRUE(twoSided ? height < -0.2 : std::fabs(height - 4) < 1e-3) << height;
@@ -218,8 +243,10 @@ TEST(Surface, EachTriangleHasItsOwnFriction) {
     TestWorld world(NoSleep());
     AddGround(world, grid.Mesh({.triangleMaterials = materials, .materials = palette}));
     const Material rough{.friction = 0.4f};
-    const BodyId onIce = world.Add({.shape = CubeOf(0.2f), .position = {-10, 0.2, 5}, .linearVelocity = {0, 0, -4}, .material = rough});
-    const BodyId onRough = world.Add({.shape = CubeOf(0.2f), .position = {10, 0.2, 5}, .linearVelocity = {0, 0, -4}, .material = rough});
+    const BodyId onIce =
+        world.Add({.shape = CubeOf(0.2f), .position = {-10, 0.2, 5}, .linearVelocity = {0, 0, -4}, .material = rough});
+    const BodyId onRough =
+        world.Add({.shape = CubeOf(0.2f), .position = {10, 0.2, 5}, .linearVelocity = {0, 0, -4}, .material = rough});
     world.Run(2);
     EXPECT_NEAR(world.VelocityOf(onIce).z(), -4, 0.01);
     EXPECT_NEAR(5 - world.PositionOf(onRough).z(), 16 / (2 * 0.4 * kGravity), 0.02);
@@ -241,7 +268,8 @@ TEST(Surface, WhatRestsOnAMeshSleepsAndWakes) {
 
 TEST(Surface, AMovingMeshCarriesWhatStandsOnIt) {
     TestWorld world(NoSleep());
-    const BodyId lift = world.Add({.shape = Grid(4, 1, -2, -2).Mesh(), .motion = MotionType::Kinematic, .linearVelocity = {0.5f, 1, 0}});
+    const BodyId lift = world.Add(
+        {.shape = Grid(4, 1, -2, -2).Mesh(), .motion = MotionType::Kinematic, .linearVelocity = {0.5f, 1, 0}});
     const BodyId box = world.Add({.shape = CubeOf(0.25f), .position = {0, 0.26, 0}});
     world.Run(3);
     EXPECT_NEAR(world.PositionOf(box).y() - world.PositionOf(lift).y(), 0.25, 5e-3);
@@ -276,7 +304,8 @@ TEST(Surface, WhatLiesInAHoleFallsThrough) {
     std::vector<uint8_t> cells(10 * 10, 0);
     cells[5 * 10 + 5] = kHoleCell;
     const std::vector<float> heights(11 * 11, 0.0f);
-    auto field = HeightField::Create({.sampleCountX = 11, .sampleCountZ = 11, .heights = heights, .origin = {-5.5f, 0, -5.5f}, .cells = cells});
+    auto field = HeightField::Create(
+        {.sampleCountX = 11, .sampleCountZ = 11, .heights = heights, .origin = {-5.5f, 0, -5.5f}, .cells = cells});
     ASSERT_TRUE(field);
     AddGround(world, field.Value());
     const BodyId falls = world.Add({.shape = SphereOf(0.2f), .position = {0, 0.5, 0}});
@@ -286,7 +315,8 @@ TEST(Surface, WhatLiesInAHoleFallsThrough) {
     EXPECT_NEAR(world.PositionOf(stays).y(), 0.2, 1e-3);
 }
 
-// A ball at rest in a groove keeps its two manifolds, both of one pair. Once it has no friction, a push does not turn it.
+// A ball at rest in a groove keeps its two manifolds, both of one pair. Once it has no friction, a push does not turn
+// it.
 TEST(Surface, AMaterialSetLaterReachesAllManifoldsOfAPair) {
     TestWorld world(NoSleep());
     AddGround(world, Grid(8, 1, -4, -4, [](float x, float) { return std::fabs(x); }).Mesh());

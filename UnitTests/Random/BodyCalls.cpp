@@ -29,7 +29,8 @@ BodySettings RandomBody(Values& values) {
     if (values.Chance(0.2f)) settings.mass = values.Mass();
     if (values.Chance(0.1f)) settings.inertia = Vector3(values.Mass(), values.Mass(), values.Mass());
     settings.material = RandomMaterial(values);
-    if (values.Chance(0.2f)) settings.linearDamping = values.Setting(0, 1), settings.angularDamping = values.Setting(0, 1);
+    if (values.Chance(0.2f))
+        settings.linearDamping = values.Setting(0, 1), settings.angularDamping = values.Setting(0, 1);
     if (values.Chance(0.1f)) settings.gravityFactor = values.Setting(-1, 2);
     if (values.Chance(0.1f)) settings.lockedAxes = static_cast<LockedAxes>(values.Below(64));
     if (values.Chance(0.1f)) settings.maxLinearSpeed = values.Setting(0.1f, 100);
@@ -43,7 +44,8 @@ BodySettings RandomBody(Values& values) {
     if (values.Style().continuous && values.Chance(0.2f)) settings.continuous = values.One<ContinuousCollision>(3);
     if (values.Style().sensors && values.Chance(0.15f)) {
         settings.isSensor = true;
-        settings.sensorSees = values.IsOdd() ? static_cast<SensorSees>(values.Below(256)) : static_cast<SensorSees>(values.Below(32));
+        settings.sensorSees =
+            values.IsOdd() ? static_cast<SensorSees>(values.Below(256)) : static_cast<SensorSees>(values.Below(32));
         settings.sensorReportsStay = values.Chance(0.5f);
     }
     return settings;
@@ -72,9 +74,9 @@ void Play(Twin& twin, const CallTargets& targets, Outcome& outcome, const Change
     Note(change(twin.system->Bodies(), twin.bodies[targets.bodyA]), outcome);
 }
 
-#define FULCRUM_BODY_CALL(name, ...)                                                                                   \
-    void name(Twin& twin, [[maybe_unused]] Values& values, const CallTargets& targets, Outcome& outcome) {             \
-        Play(twin, targets, outcome, [&](BodyInterface& bodies, BodyId id) { return __VA_ARGS__; });                   \
+#define FULCRUM_BODY_CALL(name, ...)                                                                       \
+    void name(Twin& twin, [[maybe_unused]] Values& values, const CallTargets& targets, Outcome& outcome) { \
+        Play(twin, targets, outcome, [&](BodyInterface& bodies, BodyId id) { return __VA_ARGS__; });       \
     }
 
 FULCRUM_BODY_CALL(Remove, bodies.Remove(id))
@@ -92,15 +94,20 @@ FULCRUM_BODY_CALL(SetCategoryAndMask, bodies.SetCategoryAndMask(id, values.Below
 FULCRUM_BODY_CALL(SetGravityFactor, bodies.SetGravityFactor(id, values.Setting(-1, 2)))
 FULCRUM_BODY_CALL(SetContinuous, bodies.SetContinuous(id, values.One<ContinuousCollision>(3)))
 FULCRUM_BODY_CALL(SetSensor, bodies.SetSensor(id, values.Chance(0.4f)))
-FULCRUM_BODY_CALL(SetSensorSees, bodies.SetSensorSees(id, static_cast<SensorSees>(values.Below(values.IsOdd() ? 256 : 32))))
+FULCRUM_BODY_CALL(SetSensorSees,
+                  bodies.SetSensorSees(id, static_cast<SensorSees>(values.Below(values.IsOdd() ? 256 : 32))))
 FULCRUM_BODY_CALL(SetSensorReportsStay, bodies.SetSensorReportsStay(id, values.Chance(0.5f)))
 FULCRUM_BODY_CALL(Wake, bodies.Wake(id))
 FULCRUM_BODY_CALL(Sleep, bodies.Sleep(id))
-FULCRUM_BODY_CALL(SetShape, bodies.SetShape(id, values.Chance(0.8f) ? RandomSolid(values) : RandomShape(values), values.One<MassUpdate>(2)))
+FULCRUM_BODY_CALL(SetShape, bodies.SetShape(id, values.Chance(0.8f) ? RandomSolid(values) : RandomShape(values),
+                                            values.One<MassUpdate>(2)))
 FULCRUM_BODY_CALL(SetShapeOfAnother, bodies.SetShape(id, bodies.GetShape(twin.bodies[targets.bodyB])))
-FULCRUM_BODY_CALL(AddChild, bodies.AddChild(id, {RandomConvex(values), values.Offset(0.5f), values.Rotation(), values.Setting(0.1f, 3)}))
-FULCRUM_BODY_CALL(SetChild, bodies.SetChild(id, {values.Below(4), values.Below(2)}, {RandomConvex(values), values.Offset(0.5f), values.Rotation()}))
-FULCRUM_BODY_CALL(MoveChild, bodies.MoveChild(id, {values.Below(4), values.Below(2)}, values.Offset(0.5f), values.Rotation(), values.One<MassUpdate>(2)))
+FULCRUM_BODY_CALL(AddChild, bodies.AddChild(id, {RandomConvex(values), values.Offset(0.5f), values.Rotation(),
+                                                 values.Setting(0.1f, 3)}))
+FULCRUM_BODY_CALL(SetChild, bodies.SetChild(id, {values.Below(4), values.Below(2)},
+                                            {RandomConvex(values), values.Offset(0.5f), values.Rotation()}))
+FULCRUM_BODY_CALL(MoveChild, bodies.MoveChild(id, {values.Below(4), values.Below(2)}, values.Offset(0.5f),
+                                              values.Rotation(), values.One<MassUpdate>(2)))
 FULCRUM_BODY_CALL(RemoveChild, bodies.RemoveChild(id, {values.Below(4), values.Below(2)}, values.One<MassUpdate>(2)))
 
 #undef FULCRUM_BODY_CALL

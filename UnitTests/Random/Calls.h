@@ -1,5 +1,5 @@
-// The public calls that random programs are made of. One line a call in a table of each file: its name, how often it comes, and
-// what it does in one world. A call draws all its arguments from its values, the same in each world.
+// The public calls that random programs are made of. One line a call in a table of each file: its name, how often it
+// comes, and what it does in one world. A call draws all its arguments from its values, the same in each world.
 #pragma once
 
 #include <Fulcrum/UnitTests/Random/Twin.h>
@@ -20,11 +20,11 @@ struct CallKind {
 };
 
 std::span<const CallKind> BodyCalls();
-std::span<const CallKind> WorldCalls();    // steps, settings, listeners
+std::span<const CallKind> WorldCalls();  // steps, settings, listeners
 std::span<const CallKind> JointCalls();
 std::span<const CallKind> RagdollCalls();
-std::span<const CallKind> QueryCalls();    // change nothing
-std::span<const CallKind> ShapeCalls();    // of no world: files, distances, casts
+std::span<const CallKind> QueryCalls();  // change nothing
+std::span<const CallKind> ShapeCalls();  // of no world: files, distances, casts
 
 template <class T>
 bool Note(const Result<T>& result, Outcome& outcome) {

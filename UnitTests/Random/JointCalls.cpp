@@ -138,20 +138,23 @@ void Create(Twin& twin, Values& values, const CallTargets& targets, Outcome& out
     twin.joints[targets.joint] = id.Value();
 }
 
-#define FULCRUM_JOINT_CALL(name, ...)                                                                                  \
-    void name(Twin& twin, [[maybe_unused]] Values& values, const CallTargets& targets, Outcome& outcome) {             \
-        JointInterface& joints = twin.system->Joints();                                                                \
-        const JointId id = twin.joints[targets.joint];                                                                 \
-        Note(__VA_ARGS__, outcome);                                                                                    \
+#define FULCRUM_JOINT_CALL(name, ...)                                                                      \
+    void name(Twin& twin, [[maybe_unused]] Values& values, const CallTargets& targets, Outcome& outcome) { \
+        JointInterface& joints = twin.system->Joints();                                                    \
+        const JointId id = twin.joints[targets.joint];                                                     \
+        Note(__VA_ARGS__, outcome);                                                                        \
     }
 
 FULCRUM_JOINT_CALL(RemoveJoint, joints.Remove(id))
 FULCRUM_JOINT_CALL(SetEnabled, joints.SetEnabled(id, values.Chance(0.6f)))
-FULCRUM_JOINT_CALL(SetLimits, joints.SetLimits(id, values.One<JointAxis>(6), values.Chance(0.3f) ? std::optional<JointLimits>() : RandomLimits(values)))
+FULCRUM_JOINT_CALL(SetLimits,
+                   joints.SetLimits(id, values.One<JointAxis>(6),
+                                    values.Chance(0.3f) ? std::optional<JointLimits>() : RandomLimits(values)))
 FULCRUM_JOINT_CALL(SetMotor, joints.SetMotor(id, values.One<JointAxis>(6), RandomMotor(values)))
 FULCRUM_JOINT_CALL(SetFriction, joints.SetFriction(id, values.One<JointAxis>(6), values.Setting(0, 100)))
 FULCRUM_JOINT_CALL(SetTargetOrientation, joints.SetTargetOrientation(id, values.Rotation()))
-FULCRUM_JOINT_CALL(SetEffort, joints.SetEffort(id, {static_cast<int>(values.Below(70)), static_cast<int>(values.Below(5)), 1}))
+FULCRUM_JOINT_CALL(SetEffort,
+                   joints.SetEffort(id, {static_cast<int>(values.Below(70)), static_cast<int>(values.Below(5)), 1}))
 
 #undef FULCRUM_JOINT_CALL
 

@@ -93,7 +93,8 @@ RandomProgram MakeProgram(uint32_t seed) {
     const size_t count = 20 + random.Below(kMostCalls - 20);
     const uint32_t bodies = 4 + random.Below(Twin::kBodySlots - 4), joints = 1 + random.Below(Twin::kJointSlots);
     for (size_t i = 0; i < count; ++i) {
-        const CallTargets targets{random.Below(bodies), random.Below(bodies), random.Below(joints), random.Below(Twin::kRagdollSlots)};
+        const CallTargets targets{random.Below(bodies), random.Below(bodies), random.Below(joints),
+                                  random.Below(Twin::kRagdollSlots)};
         const CallKind* kind = i < 6 ? create : menu.Draw(random);
         if (i == 0 && random.Chance(0.8f)) kind = floor;
         program.calls.push_back({kind, static_cast<uint32_t>(random.Below(1u << 30)), targets});
@@ -107,7 +108,8 @@ RandomProgram ProgramPlayer::Shrink(RandomProgram program, const ProgramFailure&
         for (size_t first = 0; first < program.calls.size();) {
             RandomProgram shorter = program;
             const size_t last = std::min(first + length, shorter.calls.size());
-            shorter.calls.erase(shorter.calls.begin() + static_cast<std::ptrdiff_t>(first), shorter.calls.begin() + static_cast<std::ptrdiff_t>(last));
+            shorter.calls.erase(shorter.calls.begin() + static_cast<std::ptrdiff_t>(first),
+                                shorter.calls.begin() + static_cast<std::ptrdiff_t>(last));
             if (FailsAlike(Play(shorter), failure.what)) program = std::move(shorter);
             else first += length;
         }
@@ -122,8 +124,8 @@ std::string Describe(const RandomProgram& program, const ProgramFailure& failure
     text << ": " << failure.what << "\n";
     for (size_t i = 0; i < program.calls.size(); ++i) {
         const RandomCall& call = program.calls[i];
-        text << "    " << i << " " << call.kind->name << " seed " << call.seed << " bodies " << call.targets.bodyA << " "
-             << call.targets.bodyB << " joint " << call.targets.joint << "\n";
+        text << "    " << i << " " << call.kind->name << " seed " << call.seed << " bodies " << call.targets.bodyA
+             << " " << call.targets.bodyB << " joint " << call.targets.joint << "\n";
     }
     return text.str();
 }

@@ -1,8 +1,9 @@
-// A random program: calls of the public interface, one after the other, made from a seed, played in several worlds side by side and
-// checked after each call; and a failing one made short. The same seed is the same program for one compiler.
+// A random program: calls of the public interface, one after the other, made from a seed, played in several worlds side
+// by side and checked after each call; and a failing one made short. The same seed is the same program for one
+// compiler.
 //
-// The worlds: with one, two and four threads, and one in which calls that were refused are left out. All answer alike and have the
-// same bits in all that can be read, after every call: so neither threads nor refusals leave a trace.
+// The worlds: with one, two and four threads, and one in which calls that were refused are left out. All answer alike
+// and have the same bits in all that can be read, after every call: so neither threads nor refusals leave a trace.
 #pragma once
 
 #include <Fulcrum/UnitTests/Random/Calls.h>
@@ -26,7 +27,7 @@ struct RandomProgram {
 };
 
 struct ProgramFailure {
-    size_t call = 0;   // which
+    size_t call = 0;  // which
     std::string what;
 };
 

@@ -12,16 +12,17 @@ namespace fulcrum::testing {
 
 namespace {
 
-// CPU time, s, that a call may take in one world of a few dozen bodies. Of the process: other programs on the machine do not count.
+// CPU time, s, that a call may take in one world of a few dozen bodies. Of the process: other programs on the machine
+// do not count.
 constexpr double kLongestCall = kIsSanitized ? 20 : 1;
 
 double Seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 bool IsStep(const RandomCall& call) { return std::string_view(call.kind->name) == "Step"; }
 
-// What a step may add to twice the kinetic energy, J: gravity, pushes out of overlaps, kinematic bodies, belts. Each is a speed that a
-// body may gain: from v to v + g, and (v + g)^2 / 2 <= v^2 + g^2. Generous, and still far below what comes of a sign error or of an
-// impulse that is applied twice.
+// What a step may add to twice the kinetic energy, J: gravity, pushes out of overlaps, kinematic bodies, belts. Each is
+// a speed that a body may gain: from v to v + g, and (v + g)^2 / 2 <= v^2 + g^2. Generous, and still far below what
+// comes of a sign error or of an impulse that is applied twice.
 double EnergyAllowance(const Twin& twin) {
     const SystemSettings& settings = twin.system->Settings();
     const BodyInterface& bodies = twin.system->Bodies();
@@ -29,20 +30,22 @@ double EnergyAllowance(const Twin& twin) {
     twin.system->VisitBodies([&](BodyId id) {
         if (bodies.GetMotionType(id) == MotionType::Dynamic) return;
         const double size = double{bodies.GetShape(id)->OuterRadius()};  // of a plane that turns: endless
-        fastest = std::max(fastest, double{Length(bodies.GetLinearVelocity(id))} + size * double{Length(bodies.GetAngularVelocity(id))});
+        fastest = std::max(fastest, double{Length(bodies.GetLinearVelocity(id))} +
+                                        size * double{Length(bodies.GetAngularVelocity(id))});
     });
     double sum = 0;
     twin.system->VisitBodies([&](BodyId id) {
-        const double gained = double{Length(settings.gravity)} * 0.3 + 2 * double{settings.contactPushSpeed} + 2 * fastest + 2;
+        const double gained =
+            double{Length(settings.gravity)} * 0.3 + 2 * double{settings.contactPushSpeed} + 2 * fastest + 2;
         const double speed = double{Length(bodies.GetLinearVelocity(id))};
         sum += double{bodies.GetMass(id)} * (gained * gained + speed * double{Length(settings.gravity)} * 0.2);
     });
     return sum;
 }
 
-// Whether a body is pushed out of another in opposite directions. At two points a short way apart that turns it, as fast as the pushes are
-// over their distance: a compound in a slab half as thick, pushed out on both sides. What that adds has no bound by speeds. Looked at when
-// the step is over, in which one of the two may have come out.
+// Whether a body is pushed out of another in opposite directions. At two points a short way apart that turns it, as
+// fast as the pushes are over their distance: a compound in a slab half as thick, pushed out on both sides. What that
+// adds has no bound by speeds. Looked at when the step is over, in which one of the two may have come out.
 bool IsSqueezed(const Twin& twin) {
     struct Push {
         BodyId bodyA, bodyB;
@@ -58,11 +61,14 @@ bool IsSqueezed(const Twin& twin) {
         }
         if (!(impulse > 0)) return;
         const auto radius = [&](BodyId id) { return twin.system->Bodies().GetShape(id)->InnerRadius(); };
-        pushes.push_back({contact.bodyA, contact.bodyB, contact.normal, -separation > 0.25f * std::min(radius(contact.bodyA), radius(contact.bodyB))});
+        pushes.push_back({contact.bodyA, contact.bodyB, contact.normal,
+                          -separation > 0.25f * std::min(radius(contact.bodyA), radius(contact.bodyB))});
     });
     for (const Push& one : pushes)
         for (const Push& other : pushes)
-            if (one.isDeep && one.bodyA == other.bodyA && one.bodyB == other.bodyB && Dot(one.normal, other.normal) < -0.5f) return true;
+            if (one.isDeep && one.bodyA == other.bodyA && one.bodyB == other.bodyB &&
+                Dot(one.normal, other.normal) < -0.5f)
+                return true;
     return false;
 }
 
@@ -92,16 +98,19 @@ private:
         twins_[0].system->VisitBodies([&](BodyId id) {
             const Position at = bodies.GetPose(id).position;
             const Vector3 v = bodies.GetLinearVelocity(id), w = bodies.GetAngularVelocity(id);
-            std::printf("    body %u %s motion %d mass %g at %g %g %g v %g %g %g w %g %g %g continuous %d awake %d\n", id.index,
-                        ShapeTypeName(bodies.GetShape(id)->Type()), static_cast<int>(bodies.GetMotionType(id)), double{bodies.GetMass(id)},
-                        at.x(), at.y(), at.z(), double{v.x()}, double{v.y()}, double{v.z()}, double{w.x()}, double{w.y()}, double{w.z()},
+            std::printf("    body %u %s motion %d mass %g at %g %g %g v %g %g %g w %g %g %g continuous %d awake %d\n",
+                        id.index, ShapeTypeName(bodies.GetShape(id)->Type()),
+                        static_cast<int>(bodies.GetMotionType(id)), double{bodies.GetMass(id)}, at.x(), at.y(), at.z(),
+                        double{v.x()}, double{v.y()}, double{v.z()}, double{w.x()}, double{w.y()}, double{w.z()},
                         static_cast<int>(bodies.GetContinuous(id)), bodies.IsAwake(id));
         });
         twins_[0].system->VisitContacts([&](const ContactView& contact) {
             const Vector3& n = contact.normal;
-            std::printf("    contact %u.%u %u.%u normal %g %g %g", contact.bodyA.index, contact.childA, contact.bodyB.index, contact.childB, double{n.x()}, double{n.y()}, double{n.z()});
+            std::printf("    contact %u.%u %u.%u normal %g %g %g", contact.bodyA.index, contact.childA,
+                        contact.bodyB.index, contact.childB, double{n.x()}, double{n.y()}, double{n.z()});
             for (const ContactView::Point& point : contact.points)
-                std::printf(", at %g %g %g apart %g impulse %g", point.position.x(), point.position.y(), point.position.z(), double{point.separation}, double{point.impulse});
+                std::printf(", at %g %g %g apart %g impulse %g", point.position.x(), point.position.y(),
+                            point.position.z(), double{point.separation}, double{point.impulse});
             std::printf("\n");
         });
     }
@@ -116,7 +125,8 @@ private:
     }
 
     std::string PlayCall(const RandomCall& call) {
-        const double before = Seconds(), energy = KineticEnergy(twins_[0]), allowance = IsStep(call) ? EnergyAllowance(twins_[0]) : 0;
+        const double before = Seconds(), energy = KineticEnergy(twins_[0]),
+                     allowance = IsStep(call) ? EnergyAllowance(twins_[0]) : 0;
         posesBefore_ = twins_[0].system->HashPoses();
         const Outcome first = PlayIn(twins_[0], call);
         const double took = Seconds() - before;
@@ -136,7 +146,8 @@ private:
             if (i == kWithoutRefused && first.isRefused) continue;
             const Outcome outcome = PlayIn(twins_[i], call);
             if (outcome.answer.Value() != first.answer.Value()) return std::string("another answer with ") + kNames[i];
-            if (twins_[i].system->HashPoses() != twins_[0].system->HashPoses()) return std::string("other poses with ") + kNames[i];
+            if (twins_[i].system->HashPoses() != twins_[0].system->HashPoses())
+                return std::string("other poses with ") + kNames[i];
             if (HashOfState(twins_[i]) != state) return std::string("another state with ") + kNames[i];
         }
         return {};
@@ -147,7 +158,8 @@ private:
         const std::string_view name = call.kind->name;
         if (name.starts_with("AddForce") || name == "AddTorque") isPushed_ = true;
         if (!IsStep(call) || program_.style.oddChance > 0 || program_.style.joints) return {};
-        if (twins_[0].system->HashPoses() == posesBefore_) return {};  // a step of no length, after which forces wait still
+        if (twins_[0].system->HashPoses() == posesBefore_)
+            return {};  // a step of no length, after which forces wait still
         const bool isPushed = isPushed_;
         isPushed_ = false;
         const double after = KineticEnergy(twins_[0]);
@@ -166,6 +178,8 @@ private:
 
 }  // namespace
 
-std::optional<ProgramFailure> ProgramPlayer::Play(const RandomProgram& program) { return Game(program, &two_, &four_).Play(); }
+std::optional<ProgramFailure> ProgramPlayer::Play(const RandomProgram& program) {
+    return Game(program, &two_, &four_).Play();
+}
 
 }  // namespace fulcrum::testing

@@ -43,8 +43,10 @@ void AddHit(const WorldRayHit& hit, BitHash& answer) {
     answer.Add(hit.normal);
 }
 
-std::string ListsText(const Ray& ray, const WorldRayHit& single, const std::vector<WorldRayHit>& alone, const std::vector<WorldRayHit>& inBatch) {
-    std::string text = Text(": ray from ", ray.origin, " by ", ray.displacement, ", closest", ToText(single), ", alone");
+std::string ListsText(const Ray& ray, const WorldRayHit& single, const std::vector<WorldRayHit>& alone,
+                      const std::vector<WorldRayHit>& inBatch) {
+    std::string text =
+        Text(": ray from ", ray.origin, " by ", ray.displacement, ", closest", ToText(single), ", alone");
     for (const WorldRayHit& hit : alone) text += ToText(hit);
     text += ", in a batch";
     for (const WorldRayHit& hit : inBatch) text += ToText(hit);
@@ -78,9 +80,12 @@ void CastRays(Twin& twin, Values& values, const CallTargets& targets, Outcome& o
         std::vector<WorldRayHit> singleAll;
         const bool isHit = queries.CastRay(rays[i], single, settings);
         queries.CastRayAll(rays[i], singleAll, settings);
-        if (isHit != (single.body != BodyId{}) || !AreSame(single, hits[i])) Fail(outcome, "a ray of a batch differs from the ray alone" + ToText(single) + ToText(hits[i]));
-        if (isHit != (any[i] != 0) || isHit != queries.IsHit(rays[i], settings)) Fail(outcome, "whether a ray hits anything differs from its hit");
-        if (isHit == singleAll.empty() || singleAll.size() != all[i].size()) Fail(outcome, "the list of all hits differs" + ListsText(rays[i], single, singleAll, all[i]));
+        if (isHit != (single.body != BodyId{}) || !AreSame(single, hits[i]))
+            Fail(outcome, "a ray of a batch differs from the ray alone" + ToText(single) + ToText(hits[i]));
+        if (isHit != (any[i] != 0) || isHit != queries.IsHit(rays[i], settings))
+            Fail(outcome, "whether a ray hits anything differs from its hit");
+        if (isHit == singleAll.empty() || singleAll.size() != all[i].size())
+            Fail(outcome, "the list of all hits differs" + ListsText(rays[i], single, singleAll, all[i]));
         if (isPlain) Fail(outcome, CompareRay(bodies, rays[i], single));
         AddHit(single, outcome.answer);
     }
@@ -99,7 +104,8 @@ void CastShapes(Twin& twin, Values& values, const CallTargets& targets, Outcome&
     if (!shape) return;
     std::vector<MovingShape> shapes;
     const uint32_t count = 1 + values.Below(6);
-    for (uint32_t i = 0; i < count; ++i) shapes.push_back(RandomMotion(twin, values, targets, static_cast<const ConvexShape&>(*shape)));
+    for (uint32_t i = 0; i < count; ++i)
+        shapes.push_back(RandomMotion(twin, values, targets, static_cast<const ConvexShape&>(*shape)));
     ShapeCastSettings settings;
     const bool isPlain = values.Chance(0.6f);
     if (!isPlain) {
@@ -116,8 +122,10 @@ void CastShapes(Twin& twin, Values& values, const CallTargets& targets, Outcome&
     for (uint32_t i = 0; i < count; ++i) {
         WorldShapeHit single;
         const bool isHit = queries.CastShape(shapes[i], single, settings);
-        if (isHit != (single.body != BodyId{}) || !AreSame(single, hits[i])) Fail(outcome, "a shape of a batch differs from the shape alone" + ToText(single) + ToText(hits[i]));
-        if (isHit != (any[i] != 0) || isHit != queries.IsHit(shapes[i], settings)) Fail(outcome, "whether a shape hits anything differs from its hit");
+        if (isHit != (single.body != BodyId{}) || !AreSame(single, hits[i]))
+            Fail(outcome, "a shape of a batch differs from the shape alone" + ToText(single) + ToText(hits[i]));
+        if (isHit != (any[i] != 0) || isHit != queries.IsHit(shapes[i], settings))
+            Fail(outcome, "whether a shape hits anything differs from its hit");
         if (isPlain) Fail(outcome, CheckShapeHit(bodies, shapes[i], single));
         outcome.answer.Add(single.body);
         outcome.answer.Add(single.fraction);
@@ -132,7 +140,8 @@ void FindOverlaps(Twin& twin, Values& values, const CallTargets& targets, Outcom
     const PlacedShape placed{shape.get(), {Aim(twin, values, targets), values.Rotation()}};
     std::vector<OverlapHit> hits;
     queries.FindOverlaps(placed, hits);
-    if (queries.IsOverlapping(placed) == hits.empty()) Fail(outcome, "whether a shape overlaps anything differs from the list");
+    if (queries.IsOverlapping(placed) == hits.empty())
+        Fail(outcome, "whether a shape overlaps anything differs from the list");
     for (const OverlapHit& hit : hits) outcome.answer.Add(hit.body);
     std::vector<OverlapHit> others;
     const BodyId ignored[] = {twin.bodies[targets.bodyA]};
@@ -154,8 +163,10 @@ void FindClosest(Twin& twin, Values& values, const CallTargets& targets, Outcome
     for (size_t i = 0; i < shapes.size(); ++i) {
         WorldClosest single;
         const bool isFound = queries.FindClosest(shapes[i], maxDistance, single);
-        if (isFound != (single.body != BodyId{}) || !AreSame(single, closest[i])) Fail(outcome, "the closest of a batch differs from that alone" + ToText(single) + ToText(closest[i]));
-        if (IsFinite(shapes[i].pose.rotation) && IsFinite(shapes[i].pose.position)) Fail(outcome, CompareClosest(bodies, shapes[i], maxDistance, single));
+        if (isFound != (single.body != BodyId{}) || !AreSame(single, closest[i]))
+            Fail(outcome, "the closest of a batch differs from that alone" + ToText(single) + ToText(closest[i]));
+        if (IsFinite(shapes[i].pose.rotation) && IsFinite(shapes[i].pose.position))
+            Fail(outcome, CompareClosest(bodies, shapes[i], maxDistance, single));
         outcome.answer.Add(single.body);
         outcome.answer.Add(single.distance);
     }
@@ -191,8 +202,8 @@ void AskAboutNothing(Twin& twin, Values& values, const CallTargets&, Outcome& ou
     WorldShapeHit hit;
     WorldClosest closest;
     queries.FindOverlaps(PlacedShape{}, overlaps);
-    const bool found = queries.CastShape(MovingShape{}, hit) || queries.IsHit(MovingShape{}) || queries.IsOverlapping(PlacedShape{}) ||
-                       queries.FindClosest(PlacedShape{}, 1, closest);
+    const bool found = queries.CastShape(MovingShape{}, hit) || queries.IsHit(MovingShape{}) ||
+                       queries.IsOverlapping(PlacedShape{}) || queries.FindClosest(PlacedShape{}, 1, closest);
     if (found || !overlaps.empty()) Fail(outcome, "no shape at all is found somewhere");
 }
 

@@ -55,11 +55,13 @@ void DriveByMotors(Twin& twin, Values& values, const CallTargets& targets, Outco
 }
 void DriveByVelocities(Twin& twin, Values& values, const CallTargets& targets, Outcome& outcome) {
     const float dt = values.Setting(0.01f, 1);
-    Play(twin, targets, outcome, [&](Ragdoll& ragdoll) { return ragdoll.DriveByVelocities(PoseOf(ragdoll, values), dt); });
+    Play(twin, targets, outcome,
+         [&](Ragdoll& ragdoll) { return ragdoll.DriveByVelocities(PoseOf(ragdoll, values), dt); });
 }
 void DriveKinematically(Twin& twin, Values& values, const CallTargets& targets, Outcome& outcome) {
     const float dt = values.Setting(0.01f, 1);
-    Play(twin, targets, outcome, [&](Ragdoll& ragdoll) { return ragdoll.DriveKinematically(PoseOf(ragdoll, values), dt); });
+    Play(twin, targets, outcome,
+         [&](Ragdoll& ragdoll) { return ragdoll.DriveKinematically(PoseOf(ragdoll, values), dt); });
 }
 void SetMotors(Twin& twin, Values& values, const CallTargets& targets, Outcome& outcome) {
     JointMotor motor{.mode = values.One<MotorMode>(3)};

@@ -1,5 +1,6 @@
-// Random programs of public calls: whatever a user does, all that can be read stays finite, threads and refusals leave no trace, queries
-// agree with each other, and every call returns. A few seconds of it run with the other tests; for longer:
+// Random programs of public calls: whatever a user does, all that can be read stays finite, threads and refusals leave
+// no trace, queries agree with each other, and every call returns. A few seconds of it run with the other tests; for
+// longer:
 //     FULCRUM_RANDOM_SECONDS=3600 FULCRUM_RANDOM_SEED=1000 FulcrumTests --gtest_filter='RandomPrograms.*'
 // FULCRUM_RANDOM_PROGRAMS=1 plays one program, the one of the seed: so a failure is played again.
 #include <Fulcrum/Physics/Misuse.h>
@@ -28,7 +29,9 @@ TEST(RandomPrograms, HoldWhateverAUserCalls) {
     const uint32_t firstSeed = static_cast<uint32_t>(FromEnvironment("FULCRUM_RANDOM_SEED", 1));
     const double programs = FromEnvironment("FULCRUM_RANDOM_PROGRAMS", seconds > 0 ? 1e9 : kPrograms);
     const auto begin = std::chrono::steady_clock::now();
-    const auto isTimeUp = [&] { return seconds > 0 && std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() > seconds; };
+    const auto isTimeUp = [&] {
+        return seconds > 0 && std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() > seconds;
+    };
     const Watch watch(kIsSanitized ? 600 : 60);
     SetMisuseHandler([](const Error&) {});  // null shapes of queries are reported; that is tested elsewhere
     ProgramPlayer player;
@@ -51,7 +54,8 @@ TEST(RandomPrograms, HoldWhateverAUserCalls) {
 // Programs whose failures led to a change of the engine, as long as the same seeds make the same programs.
 TEST(RandomPrograms, HoldWhereTheyOnceFailed) {
     const uint32_t seeds[] = {
-        418704,  // opposite pushes on a compound in a thin floor became one as a normal turned: 31 kJ became 813 kJ in a step
+        418704,  // opposite pushes on a compound in a thin floor became one as a normal turned: 31 kJ became 813 kJ in
+                 // a step
         795132,  // a body was put to sleep after another that it touched was removed: a crash
         511883,  // the list of all hits of a mesh ended at fraction 1
     };
@@ -60,7 +64,8 @@ TEST(RandomPrograms, HoldWhereTheyOnceFailed) {
     ProgramPlayer player;
     for (const uint32_t seed : seeds) {
         const RandomProgram program = MakeProgram(seed);
-        if (const std::optional<ProgramFailure> failure = player.Play(program)) ADD_FAILURE() << Describe(program, *failure);
+        if (const std::optional<ProgramFailure> failure = player.Play(program))
+            ADD_FAILURE() << Describe(program, *failure);
     }
     SetMisuseHandler(nullptr);
 }

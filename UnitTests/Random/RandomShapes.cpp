@@ -90,7 +90,8 @@ ShapePtr Mesh(Values& values) {
     for (uint32_t z = 0; z + 1 < kSide; ++z)
         for (uint32_t x = 0; x + 1 < kSide; ++x) {
             const uint32_t a = z * kSide + x;
-            for (const uint32_t index : {a, a + kSide, a + 1, a + 1, a + kSide, a + kSide + 1}) indices.push_back(index);
+            for (const uint32_t index : {a, a + kSide, a + 1, a + 1, a + kSide, a + kSide + 1})
+                indices.push_back(index);
         }
     return OrNull(TriangleMesh::Create({.vertices = vertices, .indices = indices, .isTwoSided = values.Chance(0.5f)}));
 }
@@ -127,7 +128,9 @@ ShapePtr RandomConvex(Values& values) {
         case 3: return TriangleOf(values);
         case 4: return OrNull(TaperedCapsule::Create(values.Size(), values.Size(), values.Size()));
         case 5: return OrNull(Cylinder::CreateTapered(values.Size(), values.Size(), values.Size()));
-        case 6: return OrNull(CreateCustom<Octahedron>(values.Sizes(), values.Chance(0.5f) ? 0 : values.Number(0, 0.05f, true)));
+        case 6:
+            return OrNull(
+                CreateCustom<Octahedron>(values.Sizes(), values.Chance(0.5f) ? 0 : values.Number(0, 0.05f, true)));
         default: return OrNull(Box::Create(values.Sizes(), values.Chance(0.8f) ? 0 : values.Number(0, 0.05f, true)));
     }
 }

@@ -19,7 +19,8 @@ void SaveAndLoad(Twin&, Values& values, const CallTargets&, Outcome& outcome) {
     if (!saved) return;
     const Result<ShapePtr> loaded = LoadShape(saved.Value());
     if (!loaded) {
-        outcome.failure = std::string("a ") + ShapeTypeName(shape->Type()) + " was saved and is not loaded: " + loaded.GetError().message;
+        outcome.failure = std::string("a ") + ShapeTypeName(shape->Type()) +
+                          " was saved and is not loaded: " + loaded.GetError().message;
         return;
     }
     const Result<std::vector<uint8_t>> again = SaveShape(*loaded.Value());
@@ -36,11 +37,13 @@ void MeasureDistance(Twin&, Values& values, const CallTargets&, Outcome& outcome
     ClosestPoints closest;
     if (!FindClosestPoints(*a, *b, pose, FLT_MAX, closest)) {
         const Quaternion& q = pose.rotation;
-        outcome.failure = Text("no closest points of a ", ShapeTypeName(a->Type()), " of ", a->OuterRadius(), " and a ", ShapeTypeName(b->Type()),
-                               " of ", b->OuterRadius(), " at ", pose.position, " turned by ", q.x, " ", q.y, " ", q.z, " ", q.w);
+        outcome.failure = Text("no closest points of a ", ShapeTypeName(a->Type()), " of ", a->OuterRadius(), " and a ",
+                               ShapeTypeName(b->Type()), " of ", b->OuterRadius(), " at ", pose.position, " turned by ",
+                               q.x, " ", q.y, " ", q.z, " ", q.w);
         return;
     }
-    outcome.failure = CheckClosest(static_cast<const ConvexShape&>(*a), static_cast<const ConvexShape&>(*b), pose, closest);
+    outcome.failure =
+        CheckClosest(static_cast<const ConvexShape&>(*a), static_cast<const ConvexShape&>(*b), pose, closest);
     outcome.answer.Add(closest.distance);
     outcome.answer.Add(closest.normal);
     const bool overlap = Overlap(*a, *b, pose);
@@ -54,8 +57,10 @@ void CastAtShape(Twin&, Values& values, const CallTargets&, Outcome& outcome) {
     const ShapePtr moving = RandomConvex(values), rest = RandomShape(values);
     if (!moving || !rest) return;
     const float reach = moving->OuterRadius() + std::min(rest->OuterRadius(), 1e6f);
-    const BodyShape body{{0, 0}, rest, {Position(values.Random().InBox(reach).cast<double>()), values.Random().Rotation()}};
-    MovingShape motion{static_cast<const ConvexShape*>(moving.get()), {Position(values.Random().InBox(2 * reach).cast<double>()), values.Random().Rotation()}};
+    const BodyShape body{
+        {0, 0}, rest, {Position(values.Random().InBox(reach).cast<double>()), values.Random().Rotation()}};
+    MovingShape motion{static_cast<const ConvexShape*>(moving.get()),
+                       {Position(values.Random().InBox(2 * reach).cast<double>()), values.Random().Rotation()}};
     motion.displacement = values.Random().InBox(3 * reach);
     if (values.Chance(0.4f)) motion.turn = values.Random().InBox(2);
     ShapeHit hit;
@@ -63,7 +68,8 @@ void CastAtShape(Twin&, Values& values, const CallTargets&, Outcome& outcome) {
     const ShapeCaster caster(*motion.shape, {{center, motion.pose.rotation}, motion.displacement, motion.turn});
     if (!caster.CastClosest(*rest, body.pose, {}, hit)) return;
     outcome.answer.Add(hit.fraction);
-    outcome.failure = CheckShapeHit({body}, motion, {body.id, hit.subShape, hit.fraction, hit.normal, hit.position, hit.depth, hit.isEarly});
+    outcome.failure = CheckShapeHit(
+        {body}, motion, {body.id, hit.subShape, hit.fraction, hit.normal, hit.position, hit.depth, hit.isEarly});
 }
 
 constexpr CallKind kCalls[] = {

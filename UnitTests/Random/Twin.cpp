@@ -56,7 +56,8 @@ void AddJoint(const JointInterface& joints, JointId id, BitHash& hash) {
     hash.Add(joints.GetError(id).distance);
     for (int axis = 0; axis < 6; ++axis) {
         hash.Add(joints.GetCoordinate(id, static_cast<JointAxis>(axis)));
-        if (const AxisControl* control = joints.GetControl(id, static_cast<JointAxis>(axis))) AddControl(*control, hash);
+        if (const AxisControl* control = joints.GetControl(id, static_cast<JointAxis>(axis)))
+            AddControl(*control, hash);
     }
 }
 
@@ -95,7 +96,9 @@ private:
     static bool IsFine(float value) { return std::isfinite(value); }
     static bool IsFine(double value) { return std::isfinite(value); }
     template <class T>
-    static bool IsFine(const T& value) { return IsFinite(value); }
+    static bool IsFine(const T& value) {
+        return IsFinite(value);
+    }
     std::string text_;
 };
 
@@ -105,14 +108,16 @@ void CheckBodies(const Twin& twin, Complaints& complaints) {
         const Pose pose = bodies.GetPose(id);
         complaints.Finite("body: position", id.index, pose.position);
         complaints.Finite("body: rotation", id.index, pose.rotation);
-        complaints.Holds("body: rotation is no unit quaternion", id.index, std::abs(LengthSquared(pose.rotation) - 1) < 1e-4f);
+        complaints.Holds("body: rotation is no unit quaternion", id.index,
+                         std::abs(LengthSquared(pose.rotation) - 1) < 1e-4f);
         complaints.Finite("body: center of mass", id.index, bodies.GetCenterOfMass(id));
         complaints.Finite("body: linear velocity", id.index, bodies.GetLinearVelocity(id));
         complaints.Finite("body: angular velocity", id.index, bodies.GetAngularVelocity(id));
         complaints.Finite("body: kinetic energy", id.index, bodies.GetKineticEnergy(id));
         complaints.Finite("body: mass", id.index, bodies.GetMass(id));
         complaints.Holds("body: frozen and not at rest", id.index,
-                         !bodies.IsFrozen(id) || (bodies.GetLinearVelocity(id).isZero(0) && bodies.GetAngularVelocity(id).isZero(0)));
+                         !bodies.IsFrozen(id) ||
+                             (bodies.GetLinearVelocity(id).isZero(0) && bodies.GetAngularVelocity(id).isZero(0)));
     });
 }
 
@@ -120,7 +125,8 @@ void CheckContacts(const Twin& twin, Complaints& complaints) {
     twin.system->VisitContacts([&](const ContactView& contact) {
         const uint32_t index = contact.bodyA.index;
         complaints.Finite("contact: normal", index, contact.normal);
-        complaints.Holds("contact: normal is no unit vector", index, std::abs(LengthSquared(contact.normal) - 1) < 1e-3f);
+        complaints.Holds("contact: normal is no unit vector", index,
+                         std::abs(LengthSquared(contact.normal) - 1) < 1e-3f);
         complaints.Holds("contact: number of points", index, !contact.points.empty() && contact.points.size() <= 4);
         for (const ContactView::Point& point : contact.points) {
             complaints.Finite("contact: position", index, point.position);
@@ -183,7 +189,8 @@ std::string WrongIn(const Twin& twin) {
 double KineticEnergy(const Twin& twin) {
     double sum = 0;
     twin.system->VisitBodies([&](BodyId id) {
-        if (twin.system->Bodies().GetMotionType(id) == MotionType::Dynamic) sum += twin.system->Bodies().GetKineticEnergy(id);
+        if (twin.system->Bodies().GetMotionType(id) == MotionType::Dynamic)
+            sum += twin.system->Bodies().GetKineticEnergy(id);
     });
     return sum;
 }

@@ -1,5 +1,6 @@
-// One of several worlds that a program is played in side by side, and the names that its calls use: slots, into which a call
-// puts the body, joint or ragdoll it made, so that a call names the same thing whatever calls were left out before it.
+// One of several worlds that a program is played in side by side, and the names that its calls use: slots, into which a
+// call puts the body, joint or ragdoll it made, so that a call names the same thing whatever calls were left out before
+// it.
 #pragma once
 
 #include <Fulcrum/Jobs/ThreadPool.h>
@@ -24,8 +25,12 @@ public:
         std::memcpy(bytes, &value, sizeof(T));
         for (const unsigned char byte : bytes) hash_ = (hash_ ^ byte) * 1099511628211u;
     }
-    void Add(const Vector3& v) { for (int i = 0; i < 3; ++i) Add(v[i]); }
-    void Add(const Position& v) { for (int i = 0; i < 3; ++i) Add(v[i]); }
+    void Add(const Vector3& v) {
+        for (int i = 0; i < 3; ++i) Add(v[i]);
+    }
+    void Add(const Position& v) {
+        for (int i = 0; i < 3; ++i) Add(v[i]);
+    }
     void Add(const Quaternion& q) { Add(q.x), Add(q.y), Add(q.z), Add(q.w); }
     void Add(const Pose& pose) { Add(pose.position), Add(pose.rotation); }
     void Add(BodyId id) { Add(id.index), Add(id.generation); }

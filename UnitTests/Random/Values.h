@@ -1,5 +1,6 @@
-// Random arguments of calls: ordinary ones, and among them extremes, of which a program's style says how many and which. From
-// the bits of one seed alone, so that a call has the same arguments whatever calls come before it. One thread.
+// Random arguments of calls: ordinary ones, and among them extremes, of which a program's style says how many and
+// which. From the bits of one seed alone, so that a call has the same arguments whatever calls come before it. One
+// thread.
 #pragma once
 
 #include <Fulcrum/Math/Pose.h>
@@ -10,20 +11,20 @@
 
 namespace fulcrum::testing {
 
-// What kinds of arguments a program may have beside ordinary ones. All are on: a kind that is switched off here is a kind of
-// failure that is known and not mended yet.
+// What kinds of arguments a program may have beside ordinary ones. All are on: a kind that is switched off here is a
+// kind of failure that is known and not mended yet.
 struct RandomStyle {
-    float oddChance = 0;             // of each number, to be an extreme one
-    bool notFinite = true;           // NaN and infinity among the extremes
-    bool extremeSpeeds = true;       // m/s and rad/s up to 1e30
-    bool extremeForces = true;       // forces, impulses, masses and inertias up to 1e30
-    bool extremePlaces = true;       // m, up to 1e30
-    bool extremeSizes = true;        // of shapes, 1e-6 .. 1e6 m
-    bool extremeSettings = true;     // of system, materials, springs, limits
-    bool badEnumerators = true;      // values that no enumerator has
-    bool nullShapes = true;          // queries of no shape
+    float oddChance = 0;          // of each number, to be an extreme one
+    bool notFinite = true;        // NaN and infinity among the extremes
+    bool extremeSpeeds = true;    // m/s and rad/s up to 1e30
+    bool extremeForces = true;    // forces, impulses, masses and inertias up to 1e30
+    bool extremePlaces = true;    // m, up to 1e30
+    bool extremeSizes = true;     // of shapes, 1e-6 .. 1e6 m
+    bool extremeSettings = true;  // of system, materials, springs, limits
+    bool badEnumerators = true;   // values that no enumerator has
+    bool nullShapes = true;       // queries of no shape
     bool joints = true, ragdolls = true, sensors = true, continuous = true;
-    bool changeSettings = true;      // SetSettings in the middle
+    bool changeSettings = true;  // SetSettings in the middle
 };
 
 class Values {
@@ -53,9 +54,18 @@ public:
         if (!style_.extremeSizes || !IsOdd()) return Between(0.1f, 0.6f);
         return Chance(0.05f) ? Extreme() : PowerOfTen(-6, 6);
     }
-    Vector3 Sizes() { const float x = Size(), y = Size(); return Vector3(x, y, Size()); }
-    Vector3 Speeds(float most) { const float x = Speed(most), y = Speed(most); return Vector3(x, y, Speed(most)); }
-    Vector3 Forces(float most) { const float x = Force(most), y = Force(most); return Vector3(x, y, Force(most)); }
+    Vector3 Sizes() {
+        const float x = Size(), y = Size();
+        return Vector3(x, y, Size());
+    }
+    Vector3 Speeds(float most) {
+        const float x = Speed(most), y = Speed(most);
+        return Vector3(x, y, Speed(most));
+    }
+    Vector3 Forces(float most) {
+        const float x = Force(most), y = Force(most);
+        return Vector3(x, y, Force(most));
+    }
     double Coordinate(float most) {
         if (!style_.extremePlaces || !IsOdd()) return double{Between(-most, most)};
         return Chance(0.1f) ? double{Extreme()} * 1e60 : double{Extreme()};
@@ -79,7 +89,9 @@ public:
         return static_cast<Enumerator>(bad ? count + Below(256 - count) : Below(count));
     }
 
-    float PowerOfTen(int lowest, int highest) { return std::pow(10.0f, Between(static_cast<float>(lowest), static_cast<float>(highest))); }
+    float PowerOfTen(int lowest, int highest) {
+        return std::pow(10.0f, Between(static_cast<float>(lowest), static_cast<float>(highest)));
+    }
     float Extreme() {
         const float sign = Chance(0.5f) ? -1.0f : 1.0f;
         switch (Below(style_.notFinite ? 8 : 6)) {

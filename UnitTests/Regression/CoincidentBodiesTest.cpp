@@ -1,5 +1,5 @@
-// Bodies with their centers at one point were all pushed the same way: a column of spheres, hundreds of meters high, and some
-// through the floor. Thousands at one point made millions of pairs and took minutes.
+// Bodies with their centers at one point were all pushed the same way: a column of spheres, hundreds of meters high,
+// and some through the floor. Thousands at one point made millions of pairs and took minutes.
 #include <Fulcrum/Physics/Stages/CrowdPlaces.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
@@ -44,7 +44,8 @@ struct Burst {
         std::sort(at.begin(), at.end(), [](const Position& a, const Position& b) { return a.x() < b.x(); });
         double least = 1e300;
         for (size_t i = 0; i < at.size(); ++i)
-            for (size_t j = i + 1; j < at.size() && at[j].x() - at[i].x() < least; ++j) least = std::min(least, (at[i] - at[j]).norm());
+            for (size_t j = i + 1; j < at.size() && at[j].x() - at[i].x() < least; ++j)
+                least = std::min(least, (at[i] - at[j]).norm());
         return least;
     }
 };
@@ -69,18 +70,23 @@ TEST(CoincidentBodies, PointsOfAllIndicesFillTheBall) {
 
 // Of whatever shape, two of a kind part, and the same way whichever was made first.
 TEST(CoincidentBodies, TwoOfAKindPart) {
-    const ShapePtr shapes[] = {SphereOf(0.5f), CubeOf(0.5f), CapsuleOf(0.5f, 0.3f), HullOf({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}),
-                               CompoundOf({{.shape = CubeOf(0.3f), .position = {0.3f, 0, 0}}, {.shape = SphereOf(0.4f)}})};
+    const ShapePtr shapes[] = {
+        SphereOf(0.5f), CubeOf(0.5f), CapsuleOf(0.5f, 0.3f), HullOf({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}),
+        CompoundOf({{.shape = CubeOf(0.3f), .position = {0.3f, 0, 0}}, {.shape = SphereOf(0.4f)}})};
     for (const ShapePtr& shape : shapes) {
         for (const bool turned : {false, true}) {
             Burst burst(NoGravity(), 1);
             burst.Add(2, Position::Zero(), [&](int i) {
-                return BodySettings{.shape = shape, .rotation = turned && i ? RotationAbout(Vector3(0.6f, 0, 0.8f), 1.2) : Quaternion{}};
+                return BodySettings{
+                    .shape = shape,
+                    .rotation = turned && i ? RotationAbout(Vector3(0.6f, 0, 0.8f), 1.2) : Quaternion{}};
             });
             burst.Run(2);
             EXPECT_LT(burst.world.Report().largestPenetration, 0.01f) << ShapeTypeName(shape->Type());
             EXPECT_LT(burst.fastest, 5) << ShapeTypeName(shape->Type());
-            const double moved = (burst.world.Bodies().GetCenterOfMass(burst.ids[0]) - burst.world.Bodies().GetCenterOfMass(burst.ids[1])).norm();
+            const double moved = (burst.world.Bodies().GetCenterOfMass(burst.ids[0]) -
+                                  burst.world.Bodies().GetCenterOfMass(burst.ids[1]))
+                                     .norm();
             EXPECT_GT(moved, 0.1) << ShapeTypeName(shape->Type());
         }
     }
@@ -93,7 +99,8 @@ void ExpectApart(int count, float radius, bool isSphere, bool hasFloor, double s
     Burst burst(settings, 2);
     if (hasFloor) burst.world.AddFloor();
     const ShapePtr shape = isSphere ? SphereOf(radius) : CubeOf(radius);
-    burst.Add(count, hasFloor ? Position(0, 2 * radius, 0) : Position(Position::Zero()), [&](int) { return BodySettings{.shape = shape}; });
+    burst.Add(count, hasFloor ? Position(0, 2 * radius, 0) : Position(Position::Zero()),
+              [&](int) { return BodySettings{.shape = shape}; });
     burst.Run(seconds);
     EXPECT_LT(burst.world.Report().largestPenetration, 0.1f * radius);
     EXPECT_GT(burst.LeastDistance(), 1.8 * radius);
@@ -114,8 +121,8 @@ TEST(CoincidentBodies, HundredBoxesOnAFloor) { ExpectApart(128, 0.5f, false, tru
 TEST(CoincidentBodies, FiveHundredSpheresInSpace) { ExpectApart(512, 0.5f, true, false, 4); }
 TEST(CoincidentBodies, FiveHundredSpheresOnAFloor) { ExpectApart(512, 0.25f, true, true, 4); }
 
-// Thousands of any shape, within a part of their radius of each other: all bodies overlap all others deeply at first. Memory and
-// time grow with their number: a pile of the same bodies has as many contacts.
+// Thousands of any shape, within a part of their radius of each other: all bodies overlap all others deeply at first.
+// Memory and time grow with their number: a pile of the same bodies has as many contacts.
 void ExpectThousandsApart(const std::function<BodySettings(int)>& settings, double spread, bool hasFloor) {
 #ifdef FULCRUM_ASSERTIONS
     constexpr int kCount = 512;
@@ -130,7 +137,8 @@ void ExpectThousandsApart(const std::function<BodySettings(int)>& settings, doub
         if (hasFloor) burst.world.AddFloor();
         burst.Add(kCount, Position::Zero(), settings);
         for (int i = 0; i < kCount; ++i) {
-            const Position at = PointInBall(static_cast<uint32_t>(i)).cast<double>() * spread + Position(0, hasFloor ? 1 + spread : 0, 0);
+            const Position at = PointInBall(static_cast<uint32_t>(i)).cast<double>() * spread +
+                                Position(0, hasFloor ? 1 + spread : 0, 0);
             ASSERT_TRUE(burst.world.Bodies().SetPose(burst.ids[static_cast<size_t>(i)], at, {}));
         }
         burst.Run(4);
@@ -179,7 +187,8 @@ TEST(CoincidentBodies, PlacesInTheBallAreApart) {
             const float nearest = 2 * static_cast<float>(std::cbrt(std::sqrt(0.5) * kPi / 3 / count));
             for (size_t i = 0; i < places.size(); ++i) {
                 EXPECT_GE(places[i].y(), limits.empty() ? -1.001f : -0.1f);
-                for (size_t j = i + 1; j < places.size(); ++j) EXPECT_GT(Length(Vector3(places[i] - places[j])), 0.99f * nearest);
+                for (size_t j = i + 1; j < places.size(); ++j)
+                    EXPECT_GT(Length(Vector3(places[i] - places[j])), 0.99f * nearest);
             }
         }
     }
@@ -190,7 +199,8 @@ TEST(CoincidentBodies, AreTheSameForAnyNumberOfThreads) {
     for (const uint32_t threads : {1u, 2u, 4u}) {
         TestWorld world({}, threads);
         world.AddFloor();
-        for (int i = 0; i < 300; ++i) world.Add({.shape = i % 3 ? SphereOf(0.3f) : CubeOf(0.3f), .position = {0, 2, 0}});
+        for (int i = 0; i < 300; ++i)
+            world.Add({.shape = i % 3 ? SphereOf(0.3f) : CubeOf(0.3f), .position = {0, 2, 0}});
         world.Steps(60);
         if (threads == 1) hash = world.System().HashPoses();
         EXPECT_EQ(world.System().HashPoses(), hash);

@@ -1,5 +1,6 @@
-// What falls, bounces, slides and tumbles without a drive never has more energy than it began with, however it is stepped: Newton's law of
-// restitution at several points, with friction, or at impulses of several substeps made up to three times as much.
+// What falls, bounces, slides and tumbles without a drive never has more energy than it began with, however it is
+// stepped: Newton's law of restitution at several points, with friction, or at impulses of several substeps made up to
+// three times as much.
 #include <Fulcrum/UnitTests/Support/Cases.h>
 #include <Fulcrum/UnitTests/Support/Drops.h>
 
@@ -14,7 +15,8 @@ struct Group {
     DropGround ground;
     int together;
 };
-constexpr Group kGroups[] = {{DropGround::Floor, 1}, {DropGround::Mesh, 1}, {DropGround::Hills, 1}, {DropGround::Air, 2}, {DropGround::Air, 5}, {DropGround::Mesh, 5}};
+constexpr Group kGroups[] = {{DropGround::Floor, 1}, {DropGround::Mesh, 1}, {DropGround::Hills, 1},
+                             {DropGround::Air, 2},   {DropGround::Air, 5},  {DropGround::Mesh, 5}};
 
 void ExpectNoGain(const DropSettings& settings, uint32_t drops, double seconds) {
     const DropEnergy energy = EnergyOfDrops(settings, 1, drops, seconds);
@@ -24,15 +26,18 @@ void ExpectNoGain(const DropSettings& settings, uint32_t drops, double seconds) 
 
 // All kinds of restitution and friction.
 void ExpectNoGain(const Group& group, int substeps, double dt, uint32_t drops, double seconds) {
-    for (const ContinuousCollision kind : {ContinuousCollision::Off, ContinuousCollision::Linear, ContinuousCollision::LinearAndAngular})
+    for (const ContinuousCollision kind :
+         {ContinuousCollision::Off, ContinuousCollision::Linear, ContinuousCollision::LinearAndAngular})
         for (const float restitution : {0.0f, 0.5f, 1.0f})
-            for (const float friction : {0.0f, 0.6f}) ExpectNoGain({group.ground, group.together, kind, restitution, friction, substeps, dt}, drops, seconds);
+            for (const float friction : {0.0f, 0.6f})
+                ExpectNoGain({group.ground, group.together, kind, restitution, friction, substeps, dt}, drops, seconds);
 }
 
 class DropEnergy : public ::testing::TestWithParam<Group> {};
 
 TEST_P(DropEnergy, IsNeverMoreThanAtFirst) {
-    for (const int substeps : {1, 4, 16}) ExpectNoGain(GetParam(), substeps, 1.0 / 60, kIsSanitized ? 2 : 15, kIsSanitized ? 1 : 2);
+    for (const int substeps : {1, 4, 16})
+        ExpectNoGain(GetParam(), substeps, 1.0 / 60, kIsSanitized ? 2 : 15, kIsSanitized ? 1 : 2);
 }
 
 // The gate of a thousand of each; minutes.

@@ -1,6 +1,6 @@
-// Sizes, masses, speeds and forces from one end of the floats to the other, mixed with ordinary ones, put NaN into normals and
-// separations of contacts and made steps last for a minute. Random worlds of such numbers: whatever can be read is finite, no speed
-// exceeds its limit, and the time of a step is bounded by what is in the world.
+// Sizes, masses, speeds and forces from one end of the floats to the other, mixed with ordinary ones, put NaN into
+// normals and separations of contacts and made steps last for a minute. Random worlds of such numbers: whatever can be
+// read is finite, no speed exceeds its limit, and the time of a step is bounded by what is in the world.
 #include <Fulcrum/Collision/Shapes/HeightField.h>
 #include <Fulcrum/Collision/Shapes/Plane.h>
 #include <Fulcrum/Collision/Shapes/RoundShapes.h>
@@ -55,7 +55,8 @@ private:
         return static_cast<float>(std::pow(10.0, Uniform(-most, most)));
     }
     Vector3 Direction() {
-        return Normalized(Vector3(static_cast<float>(Uniform(-1, 1)), static_cast<float>(Uniform(-1, 1)), static_cast<float>(Uniform(-1, 1))));
+        return Normalized(Vector3(static_cast<float>(Uniform(-1, 1)), static_cast<float>(Uniform(-1, 1)),
+                                  static_cast<float>(Uniform(-1, 1))));
     }
     Vector3 Vector(double ordinary, double most) { return Direction() * Magnitude(ordinary, most); }
     Position Place() {
@@ -101,7 +102,8 @@ private:
         if (random_() % 6 != 0) return Convex();
         std::vector<Compound::ChildSettings> children;
         for (int i = 0; i < 3; ++i)
-            if (const ShapePtr child = Convex()) children.push_back({.shape = child, .position = Vector(0.5, 6), .rotation = Rotation()});
+            if (const ShapePtr child = Convex())
+                children.push_back({.shape = child, .position = Vector(0.5, 6), .rotation = Rotation()});
         return OrNone(Compound::Create(children));
     }
     ShapePtr Ground() {
@@ -112,14 +114,19 @@ private:
         const float corner = -0.5f * cell * (kSide - 1);
         switch (random_() % 4) {
             case 0:
-                return OrNone(HeightField::Create({.sampleCountX = kSide, .sampleCountZ = kSide, .heights = heights, .cellSizeX = cell, .cellSizeZ = cell,
+                return OrNone(HeightField::Create({.sampleCountX = kSide,
+                                                   .sampleCountZ = kSide,
+                                                   .heights = heights,
+                                                   .cellSizeX = cell,
+                                                   .cellSizeZ = cell,
                                                    .origin = {corner, 0, corner}}));
             case 1: {
                 std::vector<Vector3> points;
                 std::vector<uint32_t> corners;
                 for (uint32_t z = 0; z < kSide; ++z)
                     for (uint32_t x = 0; x < kSide; ++x) {
-                        points.push_back({corner + cell * static_cast<float>(x), heights[z * kSide + x], corner + cell * static_cast<float>(z)});
+                        points.push_back({corner + cell * static_cast<float>(x), heights[z * kSide + x],
+                                          corner + cell * static_cast<float>(z)});
                         if (x + 1 == kSide || z + 1 == kSide) continue;
                         const uint32_t at = z * kSide + x;
                         corners.insert(corners.end(), {at, at + kSide, at + 1, at + 1, at + kSide, at + kSide + 1});
@@ -132,7 +139,8 @@ private:
     }
 
     void Add(const BodySettings& settings) {
-        if (const Result<BodyId> id = world_.Bodies().Create(settings)) bodies_.push_back({id.Value(), settings.maxLinearSpeed, settings.maxAngularSpeed});
+        if (const Result<BodyId> id = world_.Bodies().Create(settings))
+            bodies_.push_back({id.Value(), settings.maxLinearSpeed, settings.maxAngularSpeed});
     }
     void AddFloor() {
         const ShapePtr ground = Ground();
@@ -149,14 +157,16 @@ private:
         s.linearVelocity = Vector(3, 38);
         s.angularVelocity = Vector(3, 38);
         if (random_() % 2) s.mass = Magnitude(10, 30);
-        s.material = {.friction = random_() % 5 == 0 ? Pick({0.0f, 1e30f, 3e38f}) : 0.5f, .restitution = Pick({0.0f, 0.0f, 1.0f}),
+        s.material = {.friction = random_() % 5 == 0 ? Pick({0.0f, 1e30f, 3e38f}) : 0.5f,
+                      .restitution = Pick({0.0f, 0.0f, 1.0f}),
                       .frictionRule = Pick({CombineRule::GeometricMean, CombineRule::Multiply, CombineRule::Maximum})};
         if (random_() % 8 == 0) s.linearDamping = Magnitude(1, 30);
         if (random_() % 8 == 0) s.angularDamping = Magnitude(1, 30);
         if (random_() % 8 == 0) s.gravityFactor = Pick({-1e6f, 0.0f, 1e6f});
         if (random_() % 4 == 0) s.maxLinearSpeed = Magnitude(10, 38);
         if (random_() % 4 == 0) s.maxAngularSpeed = Magnitude(10, 38);
-        if (random_() % 6 == 0) s.continuous = Pick({ContinuousCollision::Linear, ContinuousCollision::LinearAndAngular});
+        if (random_() % 6 == 0)
+            s.continuous = Pick({ContinuousCollision::Linear, ContinuousCollision::LinearAndAngular});
         if (random_() % 8 == 0) s.lockedAxes = static_cast<LockedAxes>(random_() % 64);
         Add(s);
     }
@@ -191,8 +201,10 @@ private:
     void Check(int step) {
         for (const Limited& body : bodies_) {
             const Pose pose = world_.Bodies().GetPose(body.id);
-            const Vector3 v = world_.Bodies().GetLinearVelocity(body.id), w = world_.Bodies().GetAngularVelocity(body.id);
-            ASSERT_TRUE(IsFinite(pose.position) && IsFinite(pose.rotation)) << "step " << step << ", body " << body.id.index;
+            const Vector3 v = world_.Bodies().GetLinearVelocity(body.id),
+                          w = world_.Bodies().GetAngularVelocity(body.id);
+            ASSERT_TRUE(IsFinite(pose.position) && IsFinite(pose.rotation))
+                << "step " << step << ", body " << body.id.index;
             ASSERT_NEAR(LengthSquared(pose.rotation), 1, 1e-4) << "step " << step << ", body " << body.id.index;
             ASSERT_LE(Length(v), body.linear * (1 + 1e-6f) + 1e-18f) << "step " << step << ", body " << body.id.index;
             ASSERT_LE(Length(w), body.angular * (1 + 1e-6f) + 1e-18f) << "step " << step << ", body " << body.id.index;
@@ -201,7 +213,8 @@ private:
         world_.System().VisitContacts([&](const ContactView& contact) {
             EXPECT_NEAR(LengthSquared(contact.normal), 1, 1e-2) << "step " << step;
             for (const ContactView::Point& p : contact.points)
-                EXPECT_TRUE(IsFinite(p.position) && std::isfinite(p.separation) && std::isfinite(p.impulse)) << "step " << step;
+                EXPECT_TRUE(IsFinite(p.position) && std::isfinite(p.separation) && std::isfinite(p.impulse))
+                    << "step " << step;
         });
         EXPECT_TRUE(std::isfinite(world_.Report().largestPenetration));
     }
@@ -220,7 +233,8 @@ void RunSeeds(uint32_t first, uint32_t last, bool hasJoints) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         Extremes world(seed, hasJoints);
         world.Run(60);
-        // 25 bodies and some hundred triangles: a second where all is as bad as it can be, and the rest for slow machines and builds.
+        // 25 bodies and some hundred triangles: a second where all is as bad as it can be, and the rest for slow
+        // machines and builds.
         EXPECT_LT(world.slowest, 5.0 * kSlowness);
         if (::testing::Test::HasFailure()) return;
     }
@@ -235,7 +249,10 @@ TEST(ExtremeNumbers, SettingsOfWhichNothingSensibleCanFollowAreRefused) {
         void (*spoil)(SystemSettings&);
     };
     const Bad list[] = {
-        {"gravity", [](SystemSettings& s) { s.gravity = {0, -2e6f, 0}; }},
+        {"gravity",
+         [](SystemSettings& s) {
+             s.gravity = {0, -2e6f, 0};
+         }},
         {"speculativeDistance", [](SystemSettings& s) { s.speculativeDistance = 1001; }},
         {"contactDampingRatio", [](SystemSettings& s) { s.contactDampingRatio = 2e6f; }},
         {"contactPushSpeed", [](SystemSettings& s) { s.contactPushSpeed = 2e6f; }},
@@ -252,14 +269,17 @@ TEST(ExtremeNumbers, SettingsOfWhichNothingSensibleCanFollowAreRefused) {
     }
 }
 
-// Their squares, and sums of their distances, would not be floats: closest points were at infinity, the length of a rope infinite.
+// Their squares, and sums of their distances, would not be floats: closest points were at infinity, the length of a
+// rope infinite.
 TEST(ExtremeNumbers, SizesAndRatiosBeyondWhatFloatsCanSquareAreRefused) {
     const auto triangle = [](float radius) { return Triangle::Create({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, radius); };
-    for (const auto& code : {triangle(3e38f).GetError().code, Sphere::Create(3e38f).GetError().code,
-                             Box::Create(Vector3(1, 3e38f, 1)).GetError().code, Capsule::Create(2e18f, 1).GetError().code})
+    for (const auto& code :
+         {triangle(3e38f).GetError().code, Sphere::Create(3e38f).GetError().code,
+          Box::Create(Vector3(1, 3e38f, 1)).GetError().code, Capsule::Create(2e18f, 1).GetError().code})
         EXPECT_EQ(code, ErrorCode::OutOfRange);
     TestWorld world({}, 1);
-    const BodyId bodies[] = {world.Add({.shape = CubeOf(0.5f), .position = {0, 10, 0}}), world.Add({.shape = CubeOf(0.5f), .position = {5, 10, 0}})};
+    const BodyId bodies[] = {world.Add({.shape = CubeOf(0.5f), .position = {0, 10, 0}}),
+                             world.Add({.shape = CubeOf(0.5f), .position = {5, 10, 0}})};
     const auto codeOf = [&](auto settings, float ratio) {
         settings.bodyA = bodies[0];
         settings.bodyB = bodies[1];
@@ -275,7 +295,8 @@ TEST(ExtremeNumbers, SizesAndRatiosBeyondWhatFloatsCanSquareAreRefused) {
     EXPECT_EQ(codeOf(PulleyJointSettings{}, 1e9f), std::nullopt);
 }
 
-// A ball as large as a rough mesh, thrown at it: each triangle that it touched asked for all the others, and each edge for all edges.
+// A ball as large as a rough mesh, thrown at it: each triangle that it touched asked for all the others, and each edge
+// for all edges.
 TEST(ExtremeNumbers, AHugeShapeInASurfaceTakesNoSquareOfItsTriangles) {
     constexpr uint32_t kSide = 121;
     std::mt19937 random(1);
@@ -283,7 +304,8 @@ TEST(ExtremeNumbers, AHugeShapeInASurfaceTakesNoSquareOfItsTriangles) {
     std::vector<uint32_t> corners;
     for (uint32_t z = 0; z < kSide; ++z)
         for (uint32_t x = 0; x < kSide; ++x) {
-            points.push_back({static_cast<float>(x) - 60, std::uniform_real_distribution<float>(-1, 0)(random), static_cast<float>(z) - 60});
+            points.push_back({static_cast<float>(x) - 60, std::uniform_real_distribution<float>(-1, 0)(random),
+                              static_cast<float>(z) - 60});
             if (x + 1 == kSide || z + 1 == kSide) continue;
             const uint32_t at = z * kSide + x;
             corners.insert(corners.end(), {at, at + kSide, at + 1, at + 1, at + kSide, at + kSide + 1});
@@ -293,7 +315,11 @@ TEST(ExtremeNumbers, AHugeShapeInASurfaceTakesNoSquareOfItsTriangles) {
     for (const ContinuousCollision continuous : {ContinuousCollision::Off, ContinuousCollision::LinearAndAngular}) {
         TestWorld world(NoSleep());
         world.Add({.shape = mesh.Value(), .motion = MotionType::Static});
-        world.Add({.shape = BoxOf(60, 0.5f, 60), .position = {0, 0.4, 0}, .linearVelocity = {0, -60, 0}, .angularVelocity = {1, 2, 1}, .continuous = continuous});
+        world.Add({.shape = BoxOf(60, 0.5f, 60),
+                   .position = {0, 0.4, 0},
+                   .linearVelocity = {0, -60, 0},
+                   .angularVelocity = {1, 2, 1},
+                   .continuous = continuous});
         for (int i = 0; i < 3; ++i) {
             const std::clock_t start = std::clock();
             world.Step();

@@ -1,5 +1,5 @@
-// Two bodies whose joint is pulled apart by SetPose, up to 100 m and 180 degrees, of every kind and with everything on, and how they
-// find together. Made from a seed. One thread.
+// Two bodies whose joint is pulled apart by SetPose, up to 100 m and 180 degrees, of every kind and with everything on,
+// and how they find together. Made from a seed. One thread.
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/ConeJoint.h>
@@ -20,15 +20,33 @@
 
 namespace fulcrum::testing::far_apart {
 
-enum class Kind : uint8_t { Point, Fixed, Distance, Hinge, Slider, Cone, SwingTwist, SixDof, Gear, RackAndPinion, Pulley, Path, Wheel, Custom, Count };
-inline constexpr const char* kNames[] = {"Point", "Fixed", "Distance", "Hinge", "Slider", "Cone", "SwingTwist", "SixDof", "Gear", "RackAndPinion",
-                                  "Pulley", "Path", "Wheel", "Custom"};
+enum class Kind : uint8_t {
+    Point,
+    Fixed,
+    Distance,
+    Hinge,
+    Slider,
+    Cone,
+    SwingTwist,
+    SixDof,
+    Gear,
+    RackAndPinion,
+    Pulley,
+    Path,
+    Wheel,
+    Custom,
+    Count
+};
+inline constexpr const char* kNames[] = {"Point",  "Fixed", "Distance",      "Hinge",  "Slider", "Cone",  "SwingTwist",
+                                         "SixDof", "Gear",  "RackAndPinion", "Pulley", "Path",   "Wheel", "Custom"};
 inline constexpr double kFastest = 60;     // m/s: three times jointPushSpeed
 inline constexpr double kTogether = 0.05;  // m or rad
 inline constexpr double kRackRatio = 3;    // rad/m
-inline constexpr double kRounding = 1e-3;  // of the energy of what falls for thousands of substeps, whose speed is a float
-inline constexpr double kUnseen = 0.05;    // of the work of motors and springs, of whose powers only the steps' ends are seen
-inline constexpr double kHeld = 0.25;      // s that they must be together on end
+inline constexpr double kRounding =
+    1e-3;  // of the energy of what falls for thousands of substeps, whose speed is a float
+inline constexpr double kUnseen =
+    0.05;  // of the work of motors and springs, of whose powers only the steps' ends are seen
+inline constexpr double kHeld = 0.25;  // s that they must be together on end
 
 // What became of a joint that was pulled apart.
 struct Recovery {
@@ -92,7 +110,8 @@ public:
         double work = 0, driven = 0;
         for (int i = 0; i < steps; ++i) {
             world_.Step(how_.dt);
-            for (const BodyId id : {a_, b_}) result.fastest = std::max(result.fastest, static_cast<double>(Length(world_.VelocityOf(id))));
+            for (const BodyId id : {a_, b_})
+                result.fastest = std::max(result.fastest, static_cast<double>(Length(world_.VelocityOf(id))));
             result.apart = Error();
             together = result.apart < kTogether ? together + 1 : 0;
             result.together |= together >= held;
@@ -110,9 +129,13 @@ public:
     }
 
 private:
-    double Between(double low, double high) { return static_cast<double>(random_.Between(static_cast<float>(low), static_cast<float>(high))); }
+    double Between(double low, double high) {
+        return static_cast<double>(random_.Between(static_cast<float>(low), static_cast<float>(high)));
+    }
     bool Coin() { return random_.Chance(0.5f); }
-    SpringSettings Soft() { return how_.isDriven && Coin() ? FrequencySpring(Between(1, 6), Between(0.1, 1)) : SpringSettings{}; }
+    SpringSettings Soft() {
+        return how_.isDriven && Coin() ? FrequencySpring(Between(1, 6), Between(0.1, 1)) : SpringSettings{};
+    }
 
     // Everything on, where the case is driven.
     AxisControl Control(JointAxis axis, double low, double high) {
@@ -132,7 +155,8 @@ private:
     }
 
     void Make() {
-        constexpr JointAxis kX = JointAxis::LinearX, kTurnX = JointAxis::AngularX, kTurnY = JointAxis::AngularY, kTurnZ = JointAxis::AngularZ;
+        constexpr JointAxis kX = JointAxis::LinearX, kTurnX = JointAxis::AngularX, kTurnY = JointAxis::AngularY,
+                            kTurnZ = JointAxis::AngularZ;
         switch (kind_) {
             case Kind::Point: joint_ = Join(world_, Of<PointJointSettings>(base_)); break;
             case Kind::Fixed: joint_ = Join(world_, Of<FixedJointSettings>(base_)); break;
@@ -171,7 +195,8 @@ private:
                 settings.swingY = Control(kTurnY, -0.8, 0.8);
                 settings.swingZ = Control(kTurnZ, -0.5, 0.5);
                 // An ellipse is one limit, as soft as either.
-                if (settings.shape == SwingShape::Ellipse && !(IsHard(settings.swingY.limits.spring) && IsHard(settings.swingZ.limits.spring)))
+                if (settings.shape == SwingShape::Ellipse &&
+                    !(IsHard(settings.swingY.limits.spring) && IsHard(settings.swingZ.limits.spring)))
                     std::erase_if(limited_, [](JointAxis axis) { return axis == kTurnY || axis == kTurnZ; });
                 joint_ = Join(world_, settings);
                 break;
@@ -245,7 +270,8 @@ private:
         Position place = world_.PositionOf(b_) + random_.Direction().cast<double>() * distance;
         if (how_.hasFloor) place.y() = std::max(place.y(), 2 + 0.1 * std::fabs(place.y()));
         ASSERT_TRUE(world_.Bodies().SetPose(b_, place, RotationAbout(random_.Direction(), Between(0, kPi))));
-        for (const BodyId id : {a_, b_}) ASSERT_TRUE(world_.Bodies().SetVelocity(id, Vector3(0, 0, 0), Vector3(0, 0, 0)));
+        for (const BodyId id : {a_, b_})
+            ASSERT_TRUE(world_.Bodies().SetVelocity(id, Vector3(0, 0, 0), Vector3(0, 0, 0)));
     }
 
     // m or rad beyond the locks and the hard limits.
@@ -260,9 +286,11 @@ private:
             error = std::max({error, place - static_cast<double>(limits.max), static_cast<double>(limits.min) - place});
         }
         if (kind_ != Kind::Path && kind_ != Kind::Custom) return error;
-        const Vector3 apart = (JointsOf(world_).GetFrameB(joint_).position - JointsOf(world_).GetFrameA(joint_).position).cast<float>();
+        const Vector3 apart =
+            (JointsOf(world_).GetFrameB(joint_).position - JointsOf(world_).GetFrameA(joint_).position).cast<float>();
         const Vector3 local = InverseRotate(JointsOf(world_).GetFrameA(joint_).rotation, apart);
-        if (kind_ == Kind::Custom) return std::max(error, std::hypot(static_cast<double>(local.y()), static_cast<double>(local.z())));
+        if (kind_ == Kind::Custom)
+            return std::max(error, std::hypot(static_cast<double>(local.y()), static_cast<double>(local.z())));
         const Path& path = static_cast<const PathJoint*>(JointsOf(world_).GetType(joint_))->GetPath();
         return std::max(error, static_cast<double>(Length(Vector3(path.Sample(path.Closest(local)).position - local))));
     }
@@ -270,9 +298,9 @@ private:
     // What a step that began now would have: rows in the order of their type, and the rates of what they measure.
     struct RowsNow {
         std::array<Twist<float>, JointRowList::kMaxRows> a{}, b{};  // J by slot
-        double error = 0;                                    // of the first, in its units
-        std::array<double, JointRowList::kMaxRows> rate{};   // m/s or rad/s, by slot
-        std::array<bool, JointRowList::kMaxRows> drives{};   // motors and springs
+        double error = 0;                                           // of the first, in its units
+        std::array<double, JointRowList::kMaxRows> rate{};          // m/s or rad/s, by slot
+        std::array<bool, JointRowList::kMaxRows> drives{};          // motors and springs
     };
     RowsNow CollectRows() {
         const JointType* type = JointsOf(world_).GetType(joint_);
@@ -330,7 +358,8 @@ private:
     Powers PowersNow() {
         Powers powers;
         for (const BodyId id : {a_, b_})
-            powers.gravity += static_cast<double>(world_.Bodies().GetMass(id) * Dot(how_.settings.gravity, world_.VelocityOf(id)));
+            powers.gravity +=
+                static_cast<double>(world_.Bodies().GetMass(id) * Dot(how_.settings.gravity, world_.VelocityOf(id)));
         powers.rows = CollectRows();
         return powers;
     }
@@ -346,7 +375,8 @@ private:
             JointRow row;
             row.a = before.rows.a[slot];
             row.b = before.rows.b[slot];
-            power += static_cast<double>(type.forces[slot]) * (before.rows.rate[slot] + static_cast<double>(end.SpeedOf(row)));
+            power += static_cast<double>(type.forces[slot]) *
+                     (before.rows.rate[slot] + static_cast<double>(end.SpeedOf(row)));
         }
         return power;
     }

@@ -1,12 +1,14 @@
-// Joints whose bodies were put far apart, by SetPose, say: every kind of joint, with limits, motors, springs and friction, pulls its
-// bodies together within seconds, no body gets fast on the way, and the pull leaves no energy behind.
+// Joints whose bodies were put far apart, by SetPose, say: every kind of joint, with limits, motors, springs and
+// friction, pulls its bodies together within seconds, no body gets fast on the way, and the pull leaves no energy
+// behind.
 #include <Fulcrum/UnitTests/Regression/FarApart.h>
 
 namespace fulcrum::testing::far_apart {
 namespace {
 
-// Bodies are at rest in the beginning: what they get is the work of gravity, motors and springs, and the rest of the last push. Not judged:
-// drives on the ground or within the substeps of a step, whose powers nobody sees, and racks on the ground (Docs/Joints.md).
+// Bodies are at rest in the beginning: what they get is the work of gravity, motors and springs, and the rest of the
+// last push. Not judged: drives on the ground or within the substeps of a step, whose powers nobody sees, and racks on
+// the ground (Docs/Joints.md).
 constexpr double kLeftBehind = 2;  // J, of bodies of 0.4 and 1 t
 
 void ExpectAllToRecover(Kind kind, uint32_t count) {
@@ -31,7 +33,9 @@ INSTANTIATE_TEST_SUITE_P(Every, JointsFarApart, ::testing::Range(0, static_cast<
 
 TEST_P(JointsFarApart, ComeTogetherWithoutAnExplosion) { ExpectAllToRecover(static_cast<Kind>(GetParam()), 30); }
 // A quarter of an hour for all kinds.
-TEST_P(JointsFarApart, DISABLED_TenThousandComeTogetherWithoutAnExplosion) { ExpectAllToRecover(static_cast<Kind>(GetParam()), 10000); }
+TEST_P(JointsFarApart, DISABLED_TenThousandComeTogetherWithoutAnExplosion) {
+    ExpectAllToRecover(static_cast<Kind>(GetParam()), 10000);
+}
 
 }  // namespace
 }  // namespace fulcrum::testing::far_apart

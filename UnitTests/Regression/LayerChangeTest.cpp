@@ -17,7 +17,8 @@ struct Stack {
     TestWorld world;
     BodyId floor, box, onTop;
     explicit Stack(bool areApart) : world(Apart(areApart)) {
-        floor = world.Add({.shape = BoxOf(10, 1, 10), .motion = MotionType::Static, .position = {0, -1, 0}, .layer = 1});
+        floor =
+            world.Add({.shape = BoxOf(10, 1, 10), .motion = MotionType::Static, .position = {0, -1, 0}, .layer = 1});
         box = world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5, 0}, .layer = 2});
         onTop = world.Add({.shape = CubeOf(0.5f), .position = {0, 1.5, 0}, .layer = 2});
     }
@@ -52,7 +53,8 @@ TEST(LayerChange, BeginsContactsThatNowMayBe) {
 TEST(LayerChange, WakesWhatOverlapsAsleep) {
     TestWorld world(Apart(true));
     const BodyId a = world.Add({.shape = SphereOf(0.5f), .gravityFactor = 0, .startAsleep = true, .layer = 1});
-    const BodyId b = world.Add({.shape = SphereOf(0.5f), .position = {0.4, 0, 0}, .gravityFactor = 0, .startAsleep = true, .layer = 2});
+    const BodyId b = world.Add(
+        {.shape = SphereOf(0.5f), .position = {0.4, 0, 0}, .gravityFactor = 0, .startAsleep = true, .layer = 2});
     world.Steps(5);
     ASSERT_TRUE(world.System().SetSettings(Apart(false)));
     world.Run(2);

@@ -1,5 +1,5 @@
-// Mechanisms of several joints of which one body alone is put far away: a car's chassis, a limb, a link of a chain, a door. All follow
-// within seconds, none gets fast on the way, and those at rest are at rest again.
+// Mechanisms of several joints of which one body alone is put far away: a car's chassis, a limb, a link of a chain, a
+// door. All follow within seconds, none gets fast on the way, and those at rest are at rest again.
 #include <Fulcrum/Jobs/ThreadPool.h>
 #include <Fulcrum/Physics/Ragdoll/Ragdoll.h>
 #include <Fulcrum/Samples/Scenes/Humanoid.h>
@@ -13,16 +13,17 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr double kFastest = 60;  // m/s: three times jointPushSpeed
+constexpr double kFastest = 60;     // m/s: three times jointPushSpeed
 constexpr float kTogether = 0.05f;  // m
 // m/s, root of the mean square that five seconds leave at most of bodies at rest.
 constexpr double kLeftBehind = 1.5;
 
 // Puts a body elsewhere and looks on for five seconds. speed: m/s, as kLeftBehind.
-void ExpectToFollow(TestWorld& world, std::span<const BodyId> bodies, std::span<const JointId> joints, BodyId moved, const Position& away,
-                    const Quaternion& turn, double speed) {
+void ExpectToFollow(TestWorld& world, std::span<const BodyId> bodies, std::span<const JointId> joints, BodyId moved,
+                    const Position& away, const Quaternion& turn, double speed) {
     SCOPED_TRACE(away);
-    ASSERT_TRUE(world.Bodies().SetPose(moved, world.PositionOf(moved) + away, turn * world.Bodies().GetPose(moved).rotation));
+    ASSERT_TRUE(
+        world.Bodies().SetPose(moved, world.PositionOf(moved) + away, turn * world.Bodies().GetPose(moved).rotation));
     double fastest = 0;
     for (int i = 0; i < 5 * 60; ++i) {
         world.Step();
@@ -42,7 +43,8 @@ void ExpectToFollow(TestWorld& world, std::span<const BodyId> bodies, std::span<
 const Position kPlaces[] = {{100, 0, 0}, {0, 100, 0}, {-50, 20, 80}, {0.5, 0.5, 0}, {3, 0, -2}};
 
 TEST(MechanismsFarApart, CarFollowsItsChassis) {
-    for (const Position& away : {Position(100, 0, 0), Position(0, 100, 0), Position(-50, 20, 80), Position(0.5, 0.5, 0), Position(3, 0, -2)}) {
+    for (const Position& away :
+         {Position(100, 0, 0), Position(0, 100, 0), Position(-50, 20, 80), Position(0.5, 0.5, 0), Position(3, 0, -2)}) {
         TestWorld world;
         world.AddFloor();
         const BodyId chassis = world.Add({.shape = BoxOf(2, 0.3f, 0.8f), .position = {0, 0.9, 0}, .mass = 1500});
@@ -84,12 +86,17 @@ TEST(MechanismsFarApart, ChainFollowsItsMiddle) {
                 std::vector<BodyId> bodies;
                 std::vector<JointId> joints;
                 for (int i = 0; i < 16; ++i) {
-                    const BodyId link = world.Add({.shape = BoxOf(0.1f, 0.5f, 0.1f), .position = {0, -0.5 - i, 0}, .mass = 10, .angularDamping = 0.5f});
-                    if (last != BodyId{}) joints.push_back(Join(world, Of<PointJointSettings>(Between(last, link, {0, -1.0 * i, 0}))));
+                    const BodyId link = world.Add({.shape = BoxOf(0.1f, 0.5f, 0.1f),
+                                                   .position = {0, -0.5 - i, 0},
+                                                   .mass = 10,
+                                                   .angularDamping = 0.5f});
+                    if (last != BodyId{})
+                        joints.push_back(Join(world, Of<PointJointSettings>(Between(last, link, {0, -1.0 * i, 0}))));
                     bodies.push_back(last = link);
                 }
                 // What hangs has fallen, and swings.
-                ExpectToFollow(world, bodies, joints, bodies[8], away, RotationAbout(Vector3(0.6f, 0, 0.8f), angle), hangs ? std::sqrt(2 * kGravity * 16) : kLeftBehind);
+                ExpectToFollow(world, bodies, joints, bodies[8], away, RotationAbout(Vector3(0.6f, 0, 0.8f), angle),
+                               hangs ? std::sqrt(2 * kGravity * 16) : kLeftBehind);
             }
 }
 
@@ -97,20 +104,24 @@ TEST(MechanismsFarApart, RagdollFollowsAPart) {
     const RagdollSettings humanoid = Humanoid();
     for (const bool falls : {false, true})
         for (size_t part = 0; part < humanoid.parts.size(); ++part)
-            for (const Position& away : {Position(50, 0, 0), Position(0, 50, 0), Position(-30, 20, 40), Position(1, 0.5, 0)}) {
+            for (const Position& away :
+                 {Position(50, 0, 0), Position(0, 50, 0), Position(-30, 20, 40), Position(1, 0.5, 0)}) {
                 TestWorld world(falls ? SystemSettings{} : Weightless());
                 if (falls) world.AddFloor();
-                const Result<Ragdoll> ragdoll = Ragdoll::Create(world.System(), humanoid, {Position(0, 1.5, 0), Quaternion{}}, {});
+                const Result<Ragdoll> ragdoll =
+                    Ragdoll::Create(world.System(), humanoid, {Position(0, 1.5, 0), Quaternion{}}, {});
                 ASSERT_TRUE(ragdoll);
                 std::vector<BodyId> bodies(ragdoll.Value().Bodies().begin(), ragdoll.Value().Bodies().end());
                 std::vector<JointId> joints;
                 JointsOf(world).Visit([&](JointId id) { joints.push_back(id); });
-                ExpectToFollow(world, bodies, joints, bodies[part], away, RotationAbout(Vector3(0, 0.6f, 0.8f), 2), kLeftBehind);
+                ExpectToFollow(world, bodies, joints, bodies[part], away, RotationAbout(Vector3(0, 0.6f, 0.8f), 2),
+                               kLeftBehind);
             }
 }
 
-// Ragdolls that fall on each other from 15 m: joints that the fall tears open are pulled while the pile keeps them centimeters apart. Moved
-// without turning to the end, as from afar, limbs whirled by up to two turns a step, and joints were 0.25 to 0.5 m open.
+// Ragdolls that fall on each other from 15 m: joints that the fall tears open are pulled while the pile keeps them
+// centimeters apart. Moved without turning to the end, as from afar, limbs whirled by up to two turns a step, and
+// joints were 0.25 to 0.5 m open.
 TEST(MechanismsFarApart, LimbsUnderAPileAreNotWhirled) {
     SceneInput input;
     input.solver.substeps = 64;
@@ -131,10 +142,13 @@ TEST(MechanismsFarApart, DoorFollowsItsHinges) {
         for (const int count : {1, 2, 3})
             for (const bool isFree : {false, true})
                 for (const bool turns : {false, true}) {
-                    SCOPED_TRACE(std::to_string(count) + (turns ? " hinges" : " ball joints") + (isFree ? ", free" : ""));
+                    SCOPED_TRACE(std::to_string(count) + (turns ? " hinges" : " ball joints") +
+                                 (isFree ? ", free" : ""));
                     TestWorld world(Weightless());
-                    const BodyId frame = isFree ? world.Add({.shape = BoxOf(0.1f, 1, 0.1f), .mass = 60}) : AddHook(world);
-                    const BodyId door = world.Add({.shape = BoxOf(0.5f, 1, 0.05f), .position = {0.6, 0, 0}, .mass = 30});
+                    const BodyId frame =
+                        isFree ? world.Add({.shape = BoxOf(0.1f, 1, 0.1f), .mass = 60}) : AddHook(world);
+                    const BodyId door =
+                        world.Add({.shape = BoxOf(0.5f, 1, 0.05f), .position = {0.6, 0, 0}, .mass = 30});
                     std::vector<JointId> joints;
                     for (int i = 0; i < count; ++i) {
                         const Position place(0.1, count == 1 ? 0 : -0.8 + 1.6 * i / (count - 1), 0);
@@ -146,7 +160,8 @@ TEST(MechanismsFarApart, DoorFollowsItsHinges) {
                         settings.angle = Limited(-1.5, 1.5);
                         joints.push_back(Join(world, settings));
                     }
-                    ExpectToFollow(world, std::vector{frame, door}, joints, door, away, RotationAbout(Vector3(0.6f, 0, 0.8f), 2.5), count == 1 || turns ? 0.01 : 2.5);
+                    ExpectToFollow(world, std::vector{frame, door}, joints, door, away,
+                                   RotationAbout(Vector3(0.6f, 0, 0.8f), 2.5), count == 1 || turns ? 0.01 : 2.5);
                 }
 }
 

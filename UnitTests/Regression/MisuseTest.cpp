@@ -1,5 +1,5 @@
-// Calls that would wait for themselves, for ever, and arguments that crashed: each is refused with an error that says why, and
-// nothing changes.
+// Calls that would wait for themselves, for ever, and arguments that crashed: each is refused with an error that says
+// why, and nothing changes.
 #include <Fulcrum/UnitTests/Support/Deadline.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
@@ -88,12 +88,22 @@ std::vector<std::function<Status()>> Changes(TestWorld& world, BodyId body, Body
         if (!result) return result.GetError();
         return Done{};
     };
-    return {[&, status] { return status(bodies.Create(Ball({0, 50, 0}))); },
+    return {[&, status] {
+                return status(bodies.Create(Ball({0, 50, 0})));
+            },
             [&bodies, body] { return bodies.Remove(body); },
-            [&bodies, body] { return bodies.SetPose(body, {0, 9, 0}, {}); },
-            [&bodies, body] { return bodies.SetVelocity(body, {1, 0, 0}, {0, 0, 0}); },
-            [&bodies, body] { return bodies.AddForce(body, {1, 0, 0}); },
-            [&bodies, body] { return bodies.AddImpulse(body, {1, 0, 0}); },
+            [&bodies, body] {
+                return bodies.SetPose(body, {0, 9, 0}, {});
+            },
+            [&bodies, body] {
+                return bodies.SetVelocity(body, {1, 0, 0}, {0, 0, 0});
+            },
+            [&bodies, body] {
+                return bodies.AddForce(body, {1, 0, 0});
+            },
+            [&bodies, body] {
+                return bodies.AddImpulse(body, {1, 0, 0});
+            },
             [&bodies, body] { return bodies.SetMaterial(body, {}); },
             [&bodies, body] { return bodies.SetCategoryAndMask(body, 2, 2); },
             [&bodies, body] { return bodies.SetShape(body, SphereOf(0.4f)); },
@@ -322,7 +332,8 @@ TEST(MisuseDeathTest, TheValueOfAnErrorEndsTheProgramWithItsMessage) {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     SystemSettings settings;
     settings.boundsMargin = -1;
-    EXPECT_DEATH(static_cast<void>(PhysicsSystem::Create(settings).Value()), "Value\\(\\) of an error: boundsMargin is -1");
+    EXPECT_DEATH(static_cast<void>(PhysicsSystem::Create(settings).Value()),
+                 "Value\\(\\) of an error: boundsMargin is -1");
     const Status done = Done{};
     EXPECT_DEATH(static_cast<void>(done.GetError()), "GetError\\(\\) of a result without an error");
 }

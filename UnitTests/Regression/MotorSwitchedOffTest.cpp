@@ -1,5 +1,5 @@
-// A motor that was switched off kept the force of its last step, and began with it when it was switched on again, unless a
-// joint with rows happened to be beside it in the lanes.
+// A motor that was switched off kept the force of its last step, and began with it when it was switched on again,
+// unless a joint with rows happened to be beside it in the lanes.
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 
 namespace fulcrum::testing {

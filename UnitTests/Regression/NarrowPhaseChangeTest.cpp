@@ -1,4 +1,5 @@
-// The narrow phase may be changed between any two steps: what the one noted of pairs that touch is not taken for the other's.
+// The narrow phase may be changed between any two steps: what the one noted of pairs that touch is not taken for the
+// other's.
 #include <Fulcrum/Collision/Shapes/RoundShapes.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
@@ -15,7 +16,8 @@ TEST(NarrowPhaseChange, LeavesWhatRestsAtRest) {
     for (size_t i = 0; i < std::size(shapes); ++i)
         for (size_t k = 0; k < std::size(shapes); ++k) {
             const double x = 3.0 * static_cast<double>(i), z = 3.0 * static_cast<double>(k);
-            const Quaternion lying = shapes[i]->Type() == ShapeType::Capsule ? RotationAbout(Vector3(0, 0, 1), kPi / 2) : Quaternion{};
+            const Quaternion lying =
+                shapes[i]->Type() == ShapeType::Capsule ? RotationAbout(Vector3(0, 0, 1), kPi / 2) : Quaternion{};
             bodies.push_back(world.Add({.shape = shapes[i], .position = {x, 0.5, z}, .rotation = lying}));
             bodies.push_back(world.Add({.shape = shapes[k], .position = {x + 1.2, 1.2, z + 0.1}}));
         }

@@ -1,6 +1,6 @@
-// A frozen body kept whatever the rows of its contacts made of its velocity, NaN included; that passed from body to body, and the next
-// build of a tree read beyond an array. Here NaN and infinity are written over every number of the bodies' state, of contacts, joints
-// and what they carry, one at a time.
+// A frozen body kept whatever the rows of its contacts made of its velocity, NaN included; that passed from body to
+// body, and the next build of a tree read beyond an array. Here NaN and infinity are written over every number of the
+// bodies' state, of contacts, joints and what they carry, one at a time.
 #include <Fulcrum/UnitTests/Support/Cases.h>
 #include <Fulcrum/UnitTests/Support/WorldAccess.h>
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
@@ -29,9 +29,13 @@ struct Scene {
 
     Scene() {
         world.AddFloor({.restitution = 0.2f});
-        platform = Add({.shape = BoxOf(0.3f, 0.2f, 2), .motion = MotionType::Kinematic, .position = {-2, 0.2, 0}, .linearVelocity = {0.5f, 0, 0},
+        platform = Add({.shape = BoxOf(0.3f, 0.2f, 2),
+                        .motion = MotionType::Kinematic,
+                        .position = {-2, 0.2, 0},
+                        .linearVelocity = {0.5f, 0, 0},
                         .angularVelocity = {0, 0.3f, 0}});
-        const ShapePtr dumbbell = CompoundOf({{.shape = CubeOf(0.2f), .position = {-0.4f, 0, 0}}, {.shape = SphereOf(0.25f), .position = {0.4f, 0, 0}}});
+        const ShapePtr dumbbell = CompoundOf(
+            {{.shape = CubeOf(0.2f), .position = {-0.4f, 0, 0}}, {.shape = SphereOf(0.25f), .position = {0.4f, 0, 0}}});
         spoiled = Add({.shape = BoxOf(0.4f, 0.3f, 0.5f), .position = {0, 0.3, 0}});
         Add({.shape = BoxOf(0.4f, 0.3f, 0.5f), .position = {0.1, 0.9, 0}});
         Add({.shape = CubeOf(0.3f), .position = {0, 1.55, 0.1}, .continuous = ContinuousCollision::LinearAndAngular});
@@ -40,7 +44,9 @@ struct Scene {
         Add({.shape = dumbbell, .position = {0, 2.2, 0}});
         BodyId before = spoiled;
         for (int i = 0; i < 4; ++i) {
-            const BodyId link = Add({.shape = CapsuleOf(0.1f, 0.08f), .position = {0.6 + 0.3 * i, 0.5, 0.9}, .rotation = RotationAbout({0, 0, 1}, kPi / 2)});
+            const BodyId link = Add({.shape = CapsuleOf(0.1f, 0.08f),
+                                     .position = {0.6 + 0.3 * i, 0.5, 0.9},
+                                     .rotation = RotationAbout({0, 0, 1}, kPi / 2)});
             Join(world, Of<PointJointSettings>(Between(before, link, {0.45 + 0.3 * i, 0.5, 0.9})));
             before = link;
         }
@@ -144,13 +150,15 @@ void ExpectSane(Scene& s, const std::string& what) {
     for (BodyId id : s.bodies) {
         const Pose pose = s.world.Bodies().GetPose(id);
         const Vector3 v = s.world.Bodies().GetLinearVelocity(id), w = s.world.Bodies().GetAngularVelocity(id);
-        ASSERT_TRUE(IsFinite(pose.position) && IsFinite(pose.rotation) && IsFinite(v) && IsFinite(w)) << what << ", body " << id.index;
+        ASSERT_TRUE(IsFinite(pose.position) && IsFinite(pose.rotation) && IsFinite(v) && IsFinite(w))
+            << what << ", body " << id.index;
         ASSERT_LT(pose.position.norm(), 2000) << what << ", body " << id.index;  // 1000 m/s for 100 steps
         ASSERT_TRUE(!s.world.Bodies().IsFrozen(id) || (v.isZero(0) && w.isZero(0))) << what;
     }
     s.world.System().VisitContacts([&](const ContactView& contact) {
         EXPECT_TRUE(IsFinite(contact.normal)) << what;
-        for (const ContactView::Point& p : contact.points) EXPECT_TRUE(IsFinite(p.position) && std::isfinite(p.separation) && std::isfinite(p.impulse)) << what;
+        for (const ContactView::Point& p : contact.points)
+            EXPECT_TRUE(IsFinite(p.position) && std::isfinite(p.separation) && std::isfinite(p.impulse)) << what;
     });
 }
 
@@ -164,7 +172,8 @@ void Spoil(const Place& place, double value, BodyId mayFreeze) {
         ExpectSane(s, what + ", step " + std::to_string(i));
         if (::testing::Test::HasFailure()) return;
     }
-    for (BodyId id : s.bodies) EXPECT_TRUE(!s.world.Bodies().IsFrozen(id) || id == mayFreeze) << what << ", body " << id.index;
+    for (BodyId id : s.bodies)
+        EXPECT_TRUE(!s.world.Bodies().IsFrozen(id) || id == mayFreeze) << what << ", body " << id.index;
     if (mayFreeze == BodyId{} || !s.world.Bodies().IsFrozen(mayFreeze)) return;
     ASSERT_TRUE(s.world.Bodies().SetPose(mayFreeze, {5, 3, 5}, {}));
     EXPECT_FALSE(s.world.Bodies().IsFrozen(mayFreeze));
@@ -184,7 +193,9 @@ void SpoilAll(const std::vector<Place>& places, BodyId mayFreeze) {
 }
 
 TEST(NonFiniteState, OfADynamicBodyStaysWithIt) { SpoilAll(PlacesOfBody("box", &Scene::spoiled), Scene().spoiled); }
-TEST(NonFiniteState, OfAKinematicBodyStaysWithIt) { SpoilAll(PlacesOfBody("platform", &Scene::platform), Scene().platform); }
+TEST(NonFiniteState, OfAKinematicBodyStaysWithIt) {
+    SpoilAll(PlacesOfBody("platform", &Scene::platform), Scene().platform);
+}
 TEST(NonFiniteState, OfContactsIsForgotten) { SpoilAll(PlacesOfContacts(), {}); }
 TEST(NonFiniteState, OfJointsIsForgotten) { SpoilAll(PlacesOfJoints(), {}); }
 

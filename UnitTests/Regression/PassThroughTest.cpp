@@ -1,6 +1,6 @@
-// Boxes passed through each other: a body was not seen by another that moved along with it until something stopped one of the two;
-// two edges that met had a single point, about which the boxes turned into each other; and the softness of a contact gave way under
-// a heavy load faster than its push, which has a largest speed, could follow.
+// Boxes passed through each other: a body was not seen by another that moved along with it until something stopped one
+// of the two; two edges that met had a single point, about which the boxes turned into each other; and the softness of
+// a contact gave way under a heavy load faster than its push, which has a largest speed, could follow.
 #include <Fulcrum/Collision/Queries/Distance.h>
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
@@ -21,9 +21,12 @@ constexpr float kHalf = 0.2f;  // m, of the cubes
 
 // m, by the shapes alone.
 float DepthOf(TestWorld& world, BodyId a, BodyId b) {
-    const auto center = [&](BodyId id) { return Pose{world.Bodies().GetCenterOfMass(id), world.Bodies().GetPose(id).rotation}; };
+    const auto center = [&](BodyId id) {
+        return Pose{world.Bodies().GetCenterOfMass(id), world.Bodies().GetPose(id).rotation};
+    };
     ClosestPoints closest;
-    const bool overlap = FindClosestPoints(*world.Bodies().GetShape(a), *world.Bodies().GetShape(b), Relative(center(a), center(b)), 0, closest);
+    const bool overlap = FindClosestPoints(*world.Bodies().GetShape(a), *world.Bodies().GetShape(b),
+                                           Relative(center(a), center(b)), 0, closest);
     return overlap ? -closest.distance : 0.0f;
 }
 
@@ -31,8 +34,10 @@ TEST(PassThrough, WhatFallsTogetherIsSeenWhenTheGroundStopsTheFirst) {
     for (const double gap : {0.03, 0.06, 0.1, 0.15, 0.2, 0.25}) {
         TestWorld world;
         world.AddFloor();
-        const BodyId lower = world.Add({.shape = CubeOf(kHalf), .position = {0, 0.25, 0}, .linearVelocity = {0, -16, 0}});
-        const BodyId upper = world.Add({.shape = CubeOf(kHalf), .position = {0.03, 0.65 + gap, 0.02}, .linearVelocity = {0, -16, 0}});
+        const BodyId lower =
+            world.Add({.shape = CubeOf(kHalf), .position = {0, 0.25, 0}, .linearVelocity = {0, -16, 0}});
+        const BodyId upper =
+            world.Add({.shape = CubeOf(kHalf), .position = {0.03, 0.65 + gap, 0.02}, .linearVelocity = {0, -16, 0}});
         float deepest = 0;
         for (int step = 0; step < 30; ++step) {
             world.Step();
@@ -42,13 +47,15 @@ TEST(PassThrough, WhatFallsTogetherIsSeenWhenTheGroundStopsTheFirst) {
     }
 }
 
-// What turns at 20 rad/s moves by 1.7 m a step, 5 m out, while its center rests. What is in its way there is hit, and leaves with at least
-// half the speed of the place where it was hit.
+// What turns at 20 rad/s moves by 1.7 m a step, 5 m out, while its center rests. What is in its way there is hit, and
+// leaves with at least half the speed of the place where it was hit.
 TEST(PassThrough, WhatTurnsFastHitsWhatIsInItsWay) {
     constexpr float kArm = 5, kSpin = 20;  // m, rad/s
     const Vector3 corners[] = {{0, 0, -1}, {kArm + 0.5f, 0, -1}, {kArm + 0.5f, 0, 1}, {0, 0, 1}};
     const uint32_t indices[] = {0, 2, 1, 0, 3, 2};
-    const ShapePtr paddles = CompoundOf({{.shape = CubeOf(0.25f), .position = {kArm, 0, 0}}, {.shape = CubeOf(0.25f), .position = {-kArm, 0, 0}}}), rod = BoxOf(kArm + 0.25f, 0.25f, 0.25f);
+    const ShapePtr paddles = CompoundOf({{.shape = CubeOf(0.25f), .position = {kArm, 0, 0}},
+                                         {.shape = CubeOf(0.25f), .position = {-kArm, 0, 0}}}),
+                   rod = BoxOf(kArm + 0.25f, 0.25f, 0.25f);
     const struct {
         const char* what;
         ShapePtr shape;
@@ -58,7 +65,8 @@ TEST(PassThrough, WhatTurnsFastHitsWhatIsInItsWay) {
         {"paddles", paddles, MotionType::Dynamic},
         {"rod, kinematic", rod, MotionType::Kinematic},
         {"rod", rod, MotionType::Dynamic},
-        {"blade of triangles", TriangleMesh::Create({.vertices = corners, .indices = indices}).Value(), MotionType::Kinematic},
+        {"blade of triangles", TriangleMesh::Create({.vertices = corners, .indices = indices}).Value(),
+         MotionType::Kinematic},
     };
     for (const auto& t : turning)
         for (const ShapePtr& shape : {CubeOf(0.25f), SphereOf(0.25f), CapsuleOf(0.2f, 0.2f), CubeOf(0.05f)})
@@ -66,8 +74,11 @@ TEST(PassThrough, WhatTurnsFastHitsWhatIsInItsWay) {
                 TestWorld world(NoGravity());
                 world.Add({.shape = t.shape, .motion = t.motion, .angularVelocity = {0, 0, kSpin}, .mass = 1e5f});
                 const double angle = steps * kSpin * kStep;
-                const Vector3 outwards(static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), 0), along(-outwards.y(), outwards.x(), 0);
-                const BodyId target = world.Add({.shape = shape, .position = (outwards * kArm).cast<double>(), .rotation = RotationAbout(Vector3(0, 0, 1), angle)});
+                const Vector3 outwards(static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), 0),
+                    along(-outwards.y(), outwards.x(), 0);
+                const BodyId target = world.Add({.shape = shape,
+                                                 .position = (outwards * kArm).cast<double>(),
+                                                 .rotation = RotationAbout(Vector3(0, 0, 1), angle)});
                 world.Steps(4);
                 EXPECT_GT(Dot(world.VelocityOf(target), along), 0.5f * kSpin * kArm)
                     << t.what << " and " << shape->OuterRadius() << " m, after " << steps << " steps";
@@ -80,7 +91,10 @@ TEST(PassThrough, EdgesThatMeetDoNotTurnTheFacesIntoEachOther) {
         RandomPoses random(seed);
         TestWorld world(NoGravity());
         const BodyId a = world.Add({.shape = CubeOf(kHalf), .position = {0, 0, 0}, .rotation = random.Rotation()});
-        const BodyId b = world.Add({.shape = CubeOf(kHalf), .position = {0.15, 0.9, -0.1}, .rotation = random.Rotation(), .linearVelocity = {0, -10, 0}});
+        const BodyId b = world.Add({.shape = CubeOf(kHalf),
+                                    .position = {0.15, 0.9, -0.1},
+                                    .rotation = random.Rotation(),
+                                    .linearVelocity = {0, -10, 0}});
         for (int step = 0; step < 20; ++step) {
             world.Step();
             deepest = std::max(deepest, DepthOf(world, a, b));
@@ -89,7 +103,8 @@ TEST(PassThrough, EdgesThatMeetDoNotTurnTheFacesIntoEachOther) {
     EXPECT_LT(deepest, 0.5f * kHalf);
 }
 
-// With the closest points of edges alone pyramids were on average 0.14 of their inner radius inside each other, once more than all of it.
+// With the closest points of edges alone pyramids were on average 0.14 of their inner radius inside each other, once
+// more than all of it.
 TEST(PassThrough, EdgesOfOtherShapesThatMeetDoNotTurnTheFacesIntoEachOther) {
     const Vector3 corners[] = {{0, 1, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}};
     const ShapePtr pyramid = ConvexHull::Create(corners).Value(), cylinder = Cylinder::Create(0.2f, 0.5f).Value();
@@ -98,9 +113,10 @@ TEST(PassThrough, EdgesOfOtherShapesThatMeetDoNotTurnTheFacesIntoEachOther) {
         const char* what;
         ShapePtr a, b;
         double most, mean;  // of the smaller inner radius
-    } pairs[] = {{"pyramids", pyramid, pyramid, 0.3, 0.03},       {"pyramid and capsule", pyramid, capsule, 0.65, 0.06},
-                 {"pyramid and box", pyramid, box, 0.3, 0.03},    {"cylinders", cylinder, cylinder, 0.5, 0.06},
-                 {"cylinder and box", cylinder, box, 0.35, 0.04}, {"cylinder and capsule", cylinder, capsule, 0.3, 0.04}};
+    } pairs[] = {
+        {"pyramids", pyramid, pyramid, 0.3, 0.03},       {"pyramid and capsule", pyramid, capsule, 0.65, 0.06},
+        {"pyramid and box", pyramid, box, 0.3, 0.03},    {"cylinders", cylinder, cylinder, 0.5, 0.06},
+        {"cylinder and box", cylinder, box, 0.35, 0.04}, {"cylinder and capsule", cylinder, capsule, 0.3, 0.04}};
     constexpr int kSeeds = 200;
     for (const auto& pair : pairs) {
         double deepest = 0, sum = 0;
@@ -108,7 +124,10 @@ TEST(PassThrough, EdgesOfOtherShapesThatMeetDoNotTurnTheFacesIntoEachOther) {
             RandomPoses random(seed);
             TestWorld world(NoGravity());
             const BodyId a = world.Add({.shape = pair.a, .position = {0, 0, 0}, .rotation = random.Rotation()});
-            const BodyId b = world.Add({.shape = pair.b, .position = {0.15, 2.5, -0.1}, .rotation = random.Rotation(), .linearVelocity = {0, -10, 0}});
+            const BodyId b = world.Add({.shape = pair.b,
+                                        .position = {0.15, 2.5, -0.1},
+                                        .rotation = random.Rotation(),
+                                        .linearVelocity = {0, -10, 0}});
             double worst = 0;
             for (int step = 0; step < 30; ++step) {
                 world.Step();
@@ -131,8 +150,8 @@ TEST(PassThrough, NoCubeOfTheDrumIsHalfInsideAnother) {
         ASSERT_TRUE(drum.Value()->Step(kStep));
         meter.Measure();
     }
-    EXPECT_LT(meter.Worst().relative, 0.5) << "bodies " << meter.Worst().bodyA.index << " and " << meter.Worst().bodyB.index << " at step "
-                                           << meter.Worst().step;
+    EXPECT_LT(meter.Worst().relative, 0.5) << "bodies " << meter.Worst().bodyA.index << " and "
+                                           << meter.Worst().bodyB.index << " at step " << meter.Worst().step;
 }
 
 TEST(PassThrough, AStackThatFallsIsNotSquashed) {

@@ -1,4 +1,5 @@
-// Queries and shapes with odd numbers: what random programs of public calls have found, each as small as it could be made.
+// Queries and shapes with odd numbers: what random programs of public calls have found, each as small as it could be
+// made.
 #include <Fulcrum/Collision/Queries/Distance.h>
 #include <Fulcrum/Collision/Shapes/EmptyShape.h>
 #include <Fulcrum/Collision/Shapes/HeightField.h>
@@ -51,9 +52,15 @@ TEST(QueriesAtExtremes, AllHitsAreListedUpToTheFractionThatIsAskedFor) {
     const float heights[] = {0, 0, 0, 0};
     const Vector3 corners[] = {{-5, 0, -5}, {-5, 0, 5}, {5, 0, -5}};
     const uint32_t indices[] = {0, 1, 2};
-    const ShapePtr shapes[] = {HeightField::Create({.sampleCountX = 2, .sampleCountZ = 2, .heights = heights, .cellSizeX = 10, .cellSizeZ = 10, .origin = Vector3(-5, 0, -5)}).Value(),
-                               TriangleMesh::Create({.vertices = corners, .indices = indices}).Value(), BoxOf(5, 0.01f, 5),
-                               Plane::Create(Vector3(0, 1, 0), 0).Value()};
+    const ShapePtr shapes[] = {HeightField::Create({.sampleCountX = 2,
+                                                    .sampleCountZ = 2,
+                                                    .heights = heights,
+                                                    .cellSizeX = 10,
+                                                    .cellSizeZ = 10,
+                                                    .origin = Vector3(-5, 0, -5)})
+                                   .Value(),
+                               TriangleMesh::Create({.vertices = corners, .indices = indices}).Value(),
+                               BoxOf(5, 0.01f, 5), Plane::Create(Vector3(0, 1, 0), 0).Value()};
     for (const ShapePtr& shape : shapes) {
         TestWorld world;
         world.Add({.shape = shape, .motion = MotionType::Static});
@@ -71,7 +78,8 @@ TEST(QueriesAtExtremes, AllHitsAreListedUpToTheFractionThatIsAskedFor) {
     }
 }
 
-// Where coordinates round by more than the shapes are thick, libccd's MPR refined its portal for ever: one pair of four here.
+// Where coordinates round by more than the shapes are thick, libccd's MPR refined its portal for ever: one pair of four
+// here.
 TEST(QueriesAtExtremes, ClosestPointsOfFieldsWithAnEndlessSpikeAreFound) {
     RandomPoses random(1);
     constexpr float kSpike = 3.3e12f;
@@ -97,12 +105,18 @@ TEST(QueriesAtExtremes, ALongRayMeetsATurnedCompoundWhereAShortOneDoes) {
     const CompoundShape::ChildSettings children[] = {{ball, Vector3(0, 3, 0), {}, 1}, {ball, Vector3(0, -3, 0), {}, 1}};
     const auto compound = Compound::Create(children).Value();
     const Pose pose{Position(2, 1, 0), RotationFromVector(Vector3(0, 0, 0.7f))};
-    const Position middle = Rotate<double>({pose.rotation.x, pose.rotation.y, pose.rotation.z, pose.rotation.w}, Position(0, 3, 0)) + pose.position;
+    const Position middle =
+        Rotate<double>({pose.rotation.x, pose.rotation.y, pose.rotation.z, pose.rotation.w}, Position(0, 3, 0)) +
+        pose.position;
     for (const float length : {10.0f, 1e3f, 1e10f, 1e19f, 1e20f, 1e30f, 3e38f}) {
         RayHit hit;
-        ASSERT_TRUE(RayCaster({middle - Position(4, 0, 0), Vector3(length, 0, 0)}).CastClosest(*compound, pose, {}, hit)) << length;
+        ASSERT_TRUE(
+            RayCaster({middle - Position(4, 0, 0), Vector3(length, 0, 0)}).CastClosest(*compound, pose, {}, hit))
+            << length;
         EXPECT_NEAR(double{hit.fraction} * double{length}, 3, 1e-5) << length;
-        EXPECT_FALSE(RayCaster({middle - Position(4, 2, 0), Vector3(length, 0, 0)}).CastClosest(*compound, pose, {}, hit)) << length;
+        EXPECT_FALSE(
+            RayCaster({middle - Position(4, 2, 0), Vector3(length, 0, 0)}).CastClosest(*compound, pose, {}, hit))
+            << length;
     }
 }
 
@@ -132,7 +146,8 @@ TEST(QueriesAtExtremes, FilesLoadEveryCompoundThatCreateMakes) {
     int made = 0;
     for (const float place : places) {
         for (const float density : densities) {
-            const CompoundShape::ChildSettings children[] = {{ball, Vector3(place, 0, 0), {}, density}, {ball, Vector3(0, place, 1), {}, 1}};
+            const CompoundShape::ChildSettings children[] = {{ball, Vector3(place, 0, 0), {}, density},
+                                                             {ball, Vector3(0, place, 1), {}, 1}};
             const Result<std::shared_ptr<const Compound>> fixed = Compound::Create(children);
             const Result<std::shared_ptr<MutableCompound>> edited = MutableCompound::Create(children);
             std::vector<ShapePtr> shapes;
@@ -143,7 +158,8 @@ TEST(QueriesAtExtremes, FilesLoadEveryCompoundThatCreateMakes) {
                 const Result<std::vector<uint8_t>> saved = SaveShape(*shape);
                 ASSERT_TRUE(saved);
                 const Result<ShapePtr> loaded = LoadShape(saved.Value());
-                EXPECT_TRUE(loaded) << "children " << place << " m apart, density " << density << ": " << loaded.GetError().message;
+                EXPECT_TRUE(loaded) << "children " << place << " m apart, density " << density << ": "
+                                    << loaded.GetError().message;
             }
         }
     }
@@ -164,7 +180,9 @@ TEST(QueriesAtExtremes, TheTimeOfAHitIsFinite) {
             const ShapeCaster caster(*capsule, {{random.InBox(4).cast<double>(), random.Rotation()}, way, turns});
             ShapeHit hit;
             const std::shared_ptr<const Plane> plane = Plane::Create().Value();
-            if (!caster.CastClosest(random.Chance(0.5f) ? *box : static_cast<const Shape&>(*plane), {Position::Zero(), random.Rotation()}, {}, hit)) continue;
+            if (!caster.CastClosest(random.Chance(0.5f) ? *box : static_cast<const Shape&>(*plane),
+                                    {Position::Zero(), random.Rotation()}, {}, hit))
+                continue;
             ++hits;
             EXPECT_GE(hit.fraction, 0) << turn;
             EXPECT_LE(hit.fraction, 1) << turn;
@@ -177,17 +195,20 @@ TEST(QueriesAtExtremes, TheTimeOfAHitIsFinite) {
 ShapePtr Waves() {
     std::vector<float> heights;
     for (int i = 0; i < 81; ++i) heights.push_back(0.1f * static_cast<float>(i % 7));
-    return HeightField::Create({.sampleCountX = 9, .sampleCountZ = 9, .heights = heights, .origin = Vector3(-4, 0, -4)}).Value();
+    return HeightField::Create({.sampleCountX = 9, .sampleCountZ = 9, .heights = heights, .origin = Vector3(-4, 0, -4)})
+        .Value();
 }
 
-// Children so far apart that the box around them holds no digits of the field: found by where they are, in bounded time.
+// Children so far apart that the box around them holds no digits of the field: found by where they are, in bounded
+// time.
 TEST(QueriesAtExtremes, ACompoundOfFarChildrenMeetsAHeightFieldInBoundedTime) {
     const ShapePtr ball = SphereOf(0.5f), field = Waves();
     const double begin = static_cast<double>(std::clock());
     for (const float apart : {1e3f, 1e6f, 1e9f, 1e11f, 1e15f, 1e17f}) {
         for (const bool isBalanced : {true, false}) {
             const float other = isBalanced ? -apart : 0;
-            const CompoundShape::ChildSettings children[] = {{ball, Vector3(apart, 0, 0)}, {ball, Vector3(other, 0, 0)}};
+            const CompoundShape::ChildSettings children[] = {{ball, Vector3(apart, 0, 0)},
+                                                             {ball, Vector3(other, 0, 0)}};
             const Result<std::shared_ptr<const Compound>> compound = Compound::Create(children);
             ASSERT_TRUE(compound) << apart;
             for (const Vector3& at : {Vector3(0, 1, 0), Vector3(-apart, 1, 0), Vector3(0.3f * apart, 2, 5)}) {
@@ -215,7 +236,8 @@ TEST(QueriesAtExtremes, ClosestPointsAgreeWithTheSupportsAtEverySize) {
         RandomPoses random(7);
         for (int i = 0; i < Cases(3000); ++i) {
             const auto size = [&] {
-                return random.Chance(0.2f) ? std::pow(10.0f, random.Between(-6, 6)) : random.Between(0.1f, 1) * (random.Chance(0.3f) ? 1.0f : scale);
+                return random.Chance(0.2f) ? std::pow(10.0f, random.Between(-6, 6))
+                                           : random.Between(0.1f, 1) * (random.Chance(0.3f) ? 1.0f : scale);
             };
             const float halfHeight = size(), radius = size();
             const auto capsule = Capsule::Create(halfHeight, radius);
@@ -223,10 +245,12 @@ TEST(QueriesAtExtremes, ClosestPointsAgreeWithTheSupportsAtEverySize) {
             const auto box = Box::Create(Vector3(x, y, z));
             if (!capsule || !box) continue;
             const float reach = capsule.Value()->OuterRadius() + box.Value()->OuterRadius();
-            const RelativePose pose{random.InBox(reach * (random.Chance(0.5f) ? 1.0f : 0.1f)), random.Chance(0.5f) ? random.Rotation() : random.QuarterTurns()};
+            const RelativePose pose{random.InBox(reach * (random.Chance(0.5f) ? 1.0f : 0.1f)),
+                                    random.Chance(0.5f) ? random.Rotation() : random.QuarterTurns()};
             ClosestPoints closest;
             ASSERT_TRUE(FindClosestPoints(*capsule.Value(), *box.Value(), pose, FLT_MAX, closest));
-            EXPECT_EQ(CheckClosest(*capsule.Value(), *box.Value(), pose, closest), "") << "size " << scale << ", case " << i;
+            EXPECT_EQ(CheckClosest(*capsule.Value(), *box.Value(), pose, closest), "")
+                << "size " << scale << ", case " << i;
         }
     }
 }
@@ -236,12 +260,14 @@ TEST(QueriesAtExtremes, ATriangleThatIsCastTouchesWhatItHits) {
     int hits = 0;
     for (int i = 0; i < Cases(20000); ++i) {
         const float size = random.Chance(0.5f) ? 1.0f : std::pow(10.0f, random.Between(-5, 5));
-        const auto triangle = Triangle::Create(random.InBox(size), random.InBox(size), random.InBox(size), random.Chance(0.7f) ? 0 : 0.05f * size);
+        const auto triangle = Triangle::Create(random.InBox(size), random.InBox(size), random.InBox(size),
+                                               random.Chance(0.7f) ? 0 : 0.05f * size);
         if (!triangle) continue;
         const float other = random.Chance(0.5f) ? size : std::pow(10.0f, random.Between(-5, 5));
         Result<std::shared_ptr<const Cylinder>> cylinder = Cylinder::Create(other, other);
         const Result<std::shared_ptr<const Box>> box = Box::Create(Vector3(other, 0.5f * other, 2 * other));
-        const Result<std::shared_ptr<const Triangle>> second = Triangle::Create(random.InBox(other), random.InBox(other), random.InBox(other));
+        const Result<std::shared_ptr<const Triangle>> second =
+            Triangle::Create(random.InBox(other), random.InBox(other), random.InBox(other));
         std::vector<ShapePtr> shapes;
         if (cylinder) shapes.push_back(cylinder.Value());
         if (box) shapes.push_back(box.Value());
@@ -249,15 +275,21 @@ TEST(QueriesAtExtremes, ATriangleThatIsCastTouchesWhatItHits) {
         for (const ShapePtr& rest : shapes) {
             const float reach = triangle.Value()->OuterRadius() + rest->OuterRadius();
             const BodyShape body{{0, 0}, rest, {Position::Zero(), random.Rotation()}};
-            MovingShape moving{triangle.Value().get(), {random.InBox(2 * reach).cast<double>(), random.Rotation()}, random.InBox(4 * reach)};
+            MovingShape moving{triangle.Value().get(),
+                               {random.InBox(2 * reach).cast<double>(), random.Rotation()},
+                               random.InBox(4 * reach)};
             if (random.Chance(0.3f)) moving.turn = random.InBox(2);
             ShapeHit hit;
             const Pose center{moving.pose.Transform(triangle.Value()->Mass().centerOfMass), moving.pose.rotation};
             const ShapeCaster caster(*triangle.Value(), {center, moving.displacement, moving.turn});
             if (!caster.CastClosest(*rest, body.pose, {}, hit)) continue;
             ++hits;
-            EXPECT_EQ(CheckShapeHit({body}, moving, {body.id, hit.subShape, hit.fraction, hit.normal, hit.position, hit.depth, hit.isEarly}), "")
-                << "case " << i << " " << ShapeTypeName(rest->Type()) << " sizes " << size << " " << other << (moving.turn.isZero(0) ? " straight" : " turning");
+            EXPECT_EQ(
+                CheckShapeHit({body}, moving,
+                              {body.id, hit.subShape, hit.fraction, hit.normal, hit.position, hit.depth, hit.isEarly}),
+                "")
+                << "case " << i << " " << ShapeTypeName(rest->Type()) << " sizes " << size << " " << other
+                << (moving.turn.isZero(0) ? " straight" : " turning");
         }
     }
     EXPECT_GT(hits, Cases(2000));

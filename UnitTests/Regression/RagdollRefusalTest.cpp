@@ -1,4 +1,5 @@
-// A ragdoll's calls that were refused half-way had moved, woken or made some parts: whatever is refused leaves all as it was.
+// A ragdoll's calls that were refused half-way had moved, woken or made some parts: whatever is refused leaves all as
+// it was.
 #include <Fulcrum/Collision/Shapes/Plane.h>
 #include <Fulcrum/Physics/Ragdoll/Ragdoll.h>
 #include <Fulcrum/Samples/Scenes/Humanoid.h>
@@ -63,7 +64,8 @@ TEST(RagdollRefusal, DrivingMovesAllPartsOrNone) {
 
 // Each way in which the last part, or its joint, is wrong only where it is put.
 TEST(RagdollRefusal, CreatingMakesAllOrNothing) {
-    const auto expect = [](const RagdollSettings& settings, const Pose& origin, std::optional<MotionType> motion, const char* message) {
+    const auto expect = [](const RagdollSettings& settings, const Pose& origin, std::optional<MotionType> motion,
+                           const char* message) {
         TestWorld world, twin;
         for (TestWorld* each : {&world, &twin}) {
             each->AddFloor();
@@ -86,7 +88,8 @@ TEST(RagdollRefusal, CreatingMakesAllOrNothing) {
     // A part that may be static alone.
     settings.parts.back().body.motion = MotionType::Static;
     settings.parts.back().body.shape = Plane::Create(Vector3(0, 1, 0), 0).Value();
-    expect(settings, {}, MotionType::Dynamic, ("parts[" + std::to_string(settings.parts.size() - 1) + "].body: shape").c_str());
+    expect(settings, {}, MotionType::Dynamic,
+           ("parts[" + std::to_string(settings.parts.size() - 1) + "].body: shape").c_str());
     // A part whose place is near enough only as long as the origin is.
     settings = Humanoid();
     settings.parts.back().body.position = Position(0, 9e17, 0);

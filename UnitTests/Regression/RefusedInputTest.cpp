@@ -1,5 +1,5 @@
-// Enumerators that are none, positions that no float holds, and shapes that a body's settings forbid were accepted; poses lost bits
-// on the way there and back.
+// Enumerators that are none, positions that no float holds, and shapes that a body's settings forbid were accepted;
+// poses lost bits on the way there and back.
 #include <Fulcrum/Collision/Shapes/TriangleMesh.h>
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 
@@ -64,7 +64,8 @@ TEST(RefusedInput, EnumeratorsOfTheSystem) {
 class JointEnumerators : public ::testing::Test {
 protected:
     TestWorld world_;
-    BodyId a_ = world_.Add({.shape = SphereOf(0.1f)}), b_ = world_.Add({.shape = SphereOf(0.1f), .position = {1, 0, 0}});
+    BodyId a_ = world_.Add({.shape = SphereOf(0.1f)}),
+           b_ = world_.Add({.shape = SphereOf(0.1f), .position = {1, 0, 0}});
 
     template <class Settings, class Spoil>
     void Expect(const char* field, const Spoil& spoil) {
@@ -83,8 +84,10 @@ TEST_F(JointEnumerators, AreChecked) {
     Expect<DistanceJointSettings>("spring.mode", [](auto& s) { s.spring.mode = OutOf<SpringMode>(2); });
     Expect<DistanceJointSettings>("spring.form", [](auto& s) { s.spring.form = OutOf<SpringForm>(3); });
     Expect<ConeJointSettings>("spring.mode", [](auto& s) { s.spring.mode = OutOf<SpringMode>(200); });
-    Expect<HingeJointSettings>("angle.limits.spring.mode", [](auto& s) { s.angle.limits.spring.mode = OutOf<SpringMode>(2); });
-    Expect<HingeJointSettings>("angle.motor.spring.form", [](auto& s) { s.angle.motor.spring.form = OutOf<SpringForm>(9); });
+    Expect<HingeJointSettings>("angle.limits.spring.mode",
+                               [](auto& s) { s.angle.limits.spring.mode = OutOf<SpringMode>(2); });
+    Expect<HingeJointSettings>("angle.motor.spring.form",
+                               [](auto& s) { s.angle.motor.spring.form = OutOf<SpringForm>(9); });
     Expect<HingeJointSettings>("angle.motor.mode", [](auto& s) { s.angle.motor.mode = OutOf<MotorMode>(3); });
     Expect<SwingTwistJointSettings>("shape", [](auto& s) { s.shape = OutOf<SwingShape>(2); });
     Expect<SixDofJointSettings>("shape", [](auto& s) { s.shape = OutOf<SwingShape>(2); });
@@ -116,7 +119,8 @@ TEST(RefusedInput, PositionsThatNoFloatHolds) {
     TestWorld world;
     const BodyId id = world.Add({.shape = SphereOf(1)});
     for (double far : {3.5e38, 1e39, 1e300, -1e39, 1.1e18}) {
-        ExpectRefused("position", ErrorCode::OutOfRange, world.Bodies().Create({.shape = SphereOf(1), .position = {0, far, 0}}));
+        ExpectRefused("position", ErrorCode::OutOfRange,
+                      world.Bodies().Create({.shape = SphereOf(1), .position = {0, far, 0}}));
         ExpectRefused("position", world.Bodies().SetPose(id, {far, 0, 0}, {}));
         ExpectRefused("point", world.Bodies().AddForceAt(id, {1, 0, 0}, {far, 0, 0}));
         ExpectRefused("point", world.Bodies().AddImpulseAt(id, {1, 0, 0}, {far, 0, 0}));
@@ -132,7 +136,8 @@ TEST(RefusedInput, AMeshForABodyWithContinuousCollision) {
     const uint32_t indices[] = {0, 1, 2};
     const ShapePtr mesh = TriangleMesh::Create({.vertices = vertices, .indices = indices}).Value();
     TestWorld world;
-    const BodyId id = world.Add({.shape = SphereOf(1), .motion = MotionType::Kinematic, .continuous = ContinuousCollision::Linear});
+    const BodyId id =
+        world.Add({.shape = SphereOf(1), .motion = MotionType::Kinematic, .continuous = ContinuousCollision::Linear});
     const ShapePtr before = world.Bodies().GetShape(id);
     const Status status = world.Bodies().SetShape(id, mesh);
     ASSERT_FALSE(status);

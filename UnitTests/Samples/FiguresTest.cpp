@@ -26,7 +26,8 @@ TEST(Figures, AreThoseOfThePerformanceScenes) {
     EXPECT_EQ(told, known);
 }
 
-// 99 of the 100 balls in each of 100 columns hang on one above; the 99 rows that move are joined across by 99 joints each.
+// 99 of the 100 balls in each of 100 columns hang on one above; the 99 rows that move are joined across by 99 joints
+// each.
 TEST(Figures, JointGridHasAsManyJoints) {
     const auto world = SceneWorld::Create(*FindScene("joint_grid"), {}, nullptr);
     ASSERT_TRUE(world);
@@ -35,7 +36,9 @@ TEST(Figures, JointGridHasAsManyJoints) {
     EXPECT_EQ(count, 100u * 99u + 99u * 99u);
     const nlohmann::json figures = Figures();
     for (const nlohmann::json& scene : figures["scenes"])
-        if (scene["name"] == "joint_grid") { EXPECT_EQ(scene["joints"], count); }
+        if (scene["name"] == "joint_grid") {
+            EXPECT_EQ(scene["joints"], count);
+        }
 }
 
 }  // namespace

@@ -14,7 +14,10 @@ protected:
     }
 
     BodyId Body(const Position& position, MotionType motion) {
-        bodies_.push_back(world_.Add({.shape = CubeOf(0.1f), .motion = motion, .position = position, .rotation = RotationAbout({0, 0, 1}, 0.3)}));
+        bodies_.push_back(world_.Add({.shape = CubeOf(0.1f),
+                                      .motion = motion,
+                                      .position = position,
+                                      .rotation = RotationAbout({0, 0, 1}, 0.3)}));
         return bodies_.back();
     }
     RecordedFrameJoints Collect() {
@@ -46,7 +49,7 @@ TEST_F(JointRecording, EachKindIsKnown) {
             };
         Join(world_, settings);
     };
-#define FULCRUM_ADD(kind)                         \
+#define FULCRUM_ADD(kind)                           \
     add(std::type_identity<kind##JointSettings>{}); \
     expected.push_back(RecordedJointKind::kind);
     FULCRUM_FOR_EACH_JOINT_KIND(FULCRUM_ADD)

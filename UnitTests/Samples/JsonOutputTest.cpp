@@ -74,7 +74,8 @@ TEST(JsonOutput, DashIsStandardOutputAndAllElseGoesToStandardError) {
 }
 
 TEST(JsonOutput, AFileIsNamedOnStandardOutput) {
-    const std::string file = (std::filesystem::temp_directory_path() / ("fulcrum-" + std::to_string(getpid()) + ".json")).string();
+    const std::string file =
+        (std::filesystem::temp_directory_path() / ("fulcrum-" + std::to_string(getpid()) + ".json")).string();
     Printed printed;
     const JsonOutput json(file);
     EXPECT_TRUE(json.IsWanted());
@@ -91,7 +92,8 @@ TEST(JsonOutput, SaysBeforehandThatTheFolderIsNotThere) {
 }
 
 TEST(JsonOutput, ARunWithADashPrintsJsonAlone) {
-    const auto command = ParseRunnerCommand({"run", "tower", "--steps", "2", "--threads", "1", "--record", "none", "--json", "-"});
+    const auto command =
+        ParseRunnerCommand({"run", "tower", "--steps", "2", "--threads", "1", "--record", "none", "--json", "-"});
     ASSERT_TRUE(command) << command.GetError().message;
     Printed printed;
     const int status = Execute(command.Value());

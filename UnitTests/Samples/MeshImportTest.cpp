@@ -108,7 +108,8 @@ TEST_F(MeshFiles, NodesPlaceTheirMeshes) {
       "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,1]},
                    {"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}],
       "bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":24}],
-      "buffers":[{"byteLength":72,"uri":")" + buffer + R"("}]})";
+      "buffers":[{"byteLength":72,"uri":")" +
+                             buffer + R"("}]})";
     const auto read = ImportShape(Write("nodes.gltf", text), 4);
     ASSERT_TRUE(read) << read.GetError().message;
     EXPECT_EQ(read.Value().hulls, 2u);
@@ -194,15 +195,18 @@ TEST_F(MeshGrounds, AnOpenSheetHasTwoSides) {
 TEST_F(MeshGrounds, ABoxTurnedInsideOutHasTwoSides) {
     std::string text = ObjBox("cube", {0, 0, 0}, {1, 1, 1}, 0);
     // A mirrored vertex list turns every front inwards.
-    for (size_t at = text.find("v "); at != std::string::npos; at = text.find("\nv ", at + 1)) text.insert(text.find(' ', at) + 1, 1, '-');
+    for (size_t at = text.find("v "); at != std::string::npos; at = text.find("\nv ", at + 1))
+        text.insert(text.find(' ', at) + 1, 1, '-');
     EXPECT_TRUE(Import(Write("inside.obj", text)).isTwoSided);
 }
 
 TEST_F(MeshGrounds, TheAxisThatIsUpBecomesY) {
     // A wedge whose ridge is up along z in the file, 1 high, 2 long and 3 wide.
-    const fs::path file = Write("wedge.obj", "v 0 0 0\nv 2 0 0\nv 2 3 0\nv 0 3 0\nv 0 1 1\nv 2 1 1\n"
-                                             "f 1 4 3 2\nf 1 2 6 5\nf 3 4 5 6\nf 1 5 4\nf 2 3 6\n");
-    const ImportedMesh up = Import(file, {.scale = 1, .up = UpAxis::Z}), down = Import(file, {.scale = 1, .up = UpAxis::MinusZ});
+    const fs::path file = Write("wedge.obj",
+                                "v 0 0 0\nv 2 0 0\nv 2 3 0\nv 0 3 0\nv 0 1 1\nv 2 1 1\n"
+                                "f 1 4 3 2\nf 1 2 6 5\nf 3 4 5 6\nf 1 5 4\nf 2 3 6\n");
+    const ImportedMesh up = Import(file, {.scale = 1, .up = UpAxis::Z}),
+                       down = Import(file, {.scale = 1, .up = UpAxis::MinusZ});
     ASSERT_TRUE(up.mesh && down.mesh);
     EXPECT_FALSE(up.isTwoSided);
     EXPECT_FALSE(down.isTwoSided);  // turned, not mirrored
@@ -230,7 +234,8 @@ TEST_F(MeshGrounds, NodesPlaceTheirTrianglesAndMirroredOnesKeepTheirFronts) {
       "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,1]},
                    {"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}],
       "bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":24}],
-      "buffers":[{"byteLength":72,"uri":")" + buffer + R"("}]})";
+      "buffers":[{"byteLength":72,"uri":")" +
+                             buffer + R"("}]})";
     const ImportedMesh read = Import(Write("nodes.gltf", text), {.scale = 1});
     ASSERT_TRUE(read.mesh);
     EXPECT_EQ(read.mesh->TriangleCount(), 8u);
@@ -245,8 +250,10 @@ TEST_F(MeshGrounds, NodesPlaceTheirTrianglesAndMirroredOnesKeepTheirFronts) {
 
 TEST_F(MeshGrounds, WhatIsMendedIsSaid) {
     // The two squares of a step share no vertices, as in every STL; a face twice; one without area; a line.
-    const ImportedMesh read = Import(Write("mended.obj", "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 1 0 0\nv 2 0.5 0\nv 2 0.5 1\nv 1 0 1\n"
-                                                         "f 1 4 3 2\nf 5 8 7 6\nf 1 4 3\nf 1 2 5\nl 1 2\n"));
+    const ImportedMesh read =
+        Import(Write("mended.obj",
+                     "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 1 0 0\nv 2 0.5 0\nv 2 0.5 1\nv 1 0 1\n"
+                     "f 1 4 3 2\nf 5 8 7 6\nf 1 4 3\nf 1 2 5\nl 1 2\n"));
     ASSERT_TRUE(read.mesh);
     EXPECT_EQ(read.mesh->TriangleCount(), 4u);
     EXPECT_EQ(read.mesh->VertexCount(), 6u);

@@ -46,12 +46,20 @@ TEST(RagdollJson, TheFileOfTheHumanoidIsTheHumanoid) {
 
 // Every kind of joint and shape, every field another value than its default.
 RagdollSettings Everything() {
-    const SpringSettings soft{.mode = SpringMode::StiffnessAndDamping, .frequency = 1.5f, .dampingRatio = 0.3f,
-                              .stiffness = 100, .damping = 1.1f, .form = SpringForm::Exact};
+    const SpringSettings soft{.mode = SpringMode::StiffnessAndDamping,
+                              .frequency = 1.5f,
+                              .dampingRatio = 0.3f,
+                              .stiffness = 100,
+                              .damping = 1.1f,
+                              .form = SpringForm::Exact};
     const AxisControl axis{.limited = true,
                            .limits = {.min = -0.7f, .max = 0.7f, .spring = soft},
-                           .motor = {.mode = MotorMode::ToVelocity, .targetSpeed = 0.1f, .targetPosition = 0.2f, .spring = soft,
-                                     .minForce = -3, .maxForce = 1e7f},
+                           .motor = {.mode = MotorMode::ToVelocity,
+                                     .targetSpeed = 0.1f,
+                                     .targetPosition = 0.2f,
+                                     .spring = soft,
+                                     .minForce = -3,
+                                     .maxForce = 1e7f},
                            .friction = 0.123456789f};
     HingeJointSettings hinge;
     hinge.angle = axis;
@@ -68,7 +76,8 @@ RagdollSettings Everything() {
     const RagdollJoint joints[] = {{}, PointJointSettings{}, FixedJointSettings{}, hinge, cone, shoulder, free};
     RagdollSettings settings;
     for (int i = 0; i < 7; ++i) {
-        RagdollPart part{.name = "part " + std::to_string(i), .parent = i == 6 ? 2 : i - 1, .body = {}, .joint = joints[i]};
+        RagdollPart part{
+            .name = "part " + std::to_string(i), .parent = i == 6 ? 2 : i - 1, .body = {}, .joint = joints[i]};
         part.body.shape = BoxOf(0.1f, 0.2f, 0.3f);
         if (i == 1) part.body.shape = SphereOf(0.3f);
         if (i == 2) part.body.shape = CapsuleOf(0.2f, 0.1f);
@@ -77,7 +86,8 @@ RagdollSettings Everything() {
         part.body.rotation = RotationAbout(Vector3(0, 1, 0), 0.3 * i);
         JointSettings& joint = CommonOf(part.joint);
         joint.anchorA = {.point = Position(0.1 * i, 1.0 / 3, 2), .axis = Vector3(0, 1, 0), .normal = Vector3(0, 0, 1)};
-        if (i == 2 || i == 3) joint.anchorB = JointAnchor{.point = Position(1, 2, 3), .axis = Vector3(0, 0, 1), .normal = {}};
+        if (i == 2 || i == 3)
+            joint.anchorB = JointAnchor{.point = Position(1, 2, 3), .axis = Vector3(0, 0, 1), .normal = {}};
         joint.space = JointSpace::Body;
         joint.priority = JointPriority::High;
         joint.collideConnected = true;
@@ -97,7 +107,10 @@ RagdollSettings Everything() {
     body.density = 500;
     body.mass = 7;
     body.inertia = Vector3(1, 2, 2.5f);
-    body.material = {.friction = 0.1f, .restitution = 0.9f, .frictionRule = CombineRule::Minimum, .restitutionRule = CombineRule::Average};
+    body.material = {.friction = 0.1f,
+                     .restitution = 0.9f,
+                     .frictionRule = CombineRule::Minimum,
+                     .restitutionRule = CombineRule::Average};
     body.linearDamping = 0.1f;
     body.angularDamping = 0.2f;
     body.gravityFactor = -1;
@@ -120,7 +133,9 @@ TEST(RagdollJson, WhatIsWrittenReadsTheSame) {
     for (size_t i = 0; i < read.parts.size(); ++i) {
         EXPECT_EQ(read.parts[i].name, settings.parts[i].name);
         EXPECT_EQ(read.parts[i].parent, settings.parts[i].parent);
-        if (i > 0) { EXPECT_EQ(read.parts[i].joint.index(), settings.parts[i].joint.index()); }
+        if (i > 0) {
+            EXPECT_EQ(read.parts[i].joint.index(), settings.parts[i].joint.index());
+        }
         EXPECT_EQ(read.parts[i].body.position, settings.parts[i].body.position);
         EXPECT_EQ(read.parts[i].body.shape->Type(), settings.parts[i].body.shape->Type());
         EXPECT_NEAR(read.parts[i].body.shape->Mass().volume, settings.parts[i].body.shape->Mass().volume, 1e-6);
@@ -141,7 +156,8 @@ TEST(RagdollJson, WhatIsWrittenReadsTheSame) {
 TEST(RagdollJson, DefaultsAreLeftOut) {
     RagdollSettings settings;
     settings.parts.push_back({.name = "one", .body = {.shape = SphereOf(0.5f)}, .joint = {}});
-    settings.parts.push_back({.name = "two", .parent = 0, .body = {.shape = SphereOf(0.1f)}, .joint = FixedJointSettings{}});
+    settings.parts.push_back(
+        {.name = "two", .parent = 0, .body = {.shape = SphereOf(0.1f)}, .joint = FixedJointSettings{}});
     EXPECT_EQ(WrittenOf(settings), Json::parse(R"({"parts": [
         {"name": "one", "body": {"shape": {"kind": "Sphere", "radius": 0.5}}},
         {"name": "two", "parent": "one", "body": {"shape": {"kind": "Sphere", "radius": 0.1}}, "joint": {"kind": "Fixed"}}]})"));
@@ -173,22 +189,30 @@ TEST(RagdollJson, ErrorsNameThePath) {
     ExpectError("/parts/3/joint/kind", nullptr, "parts[3].joint: kind is missing; it must be one of Point, Fixed");
     ExpectError("/parts/3/joint/kind", "Ball", "parts[3].joint.kind: \"Ball\"; it must be one of Point, Fixed");
     ExpectError("/parts/3/joint/twst", 1, "parts[3].joint.twst: an unknown name");
-    ExpectError("/parts/3/joint/twist/limits/min", "low", "parts[3].joint.twist.limits.min: of type string; it must be a number");
+    ExpectError("/parts/3/joint/twist/limits/min", "low",
+                "parts[3].joint.twist.limits.min: of type string; it must be a number");
     ExpectError("/parts/3/joint/twist/limits/min", 1, "parts[3].joint: twist.limits.min is 1; it must not be larger");
-    ExpectError("/parts/3/joint/twist/motor/mode", "On", "parts[3].joint.twist.motor.mode: \"On\"; it must be one of Off, ToVelocity, ToPosition");
+    ExpectError("/parts/3/joint/twist/motor/mode", "On",
+                "parts[3].joint.twist.motor.mode: \"On\"; it must be one of Off, ToVelocity, ToPosition");
     ExpectError("/parts/3/joint/anchorA/point", 1, "parts[3].joint.anchorA.point: it must be an array of 3 numbers");
-    ExpectError("/parts/3/joint/anchorA/point/1", true, "parts[3].joint.anchorA.point[1]: of type boolean; it must be a number");
+    ExpectError("/parts/3/joint/anchorA/point/1", true,
+                "parts[3].joint.anchorA.point[1]: of type boolean; it must be a number");
     ExpectError("/parts/3/joint/anchorA/axis", Json::array({0, 2, 0}), "parts[3].joint: anchorA.axis has length 2");
-    ExpectError("/parts/3/joint/substeps", 1.5, "parts[3].joint.substeps: of type number; it must be a whole number from ");
-    ExpectError("/parts/3/body/layer", 256, "parts[3].body.layer: of type number; it must be a whole number from 0 to 255");
-    ExpectError("/parts/3/body/layer", -1, "parts[3].body.layer: of type number; it must be a whole number from 0 to 255");
+    ExpectError("/parts/3/joint/substeps", 1.5,
+                "parts[3].joint.substeps: of type number; it must be a whole number from ");
+    ExpectError("/parts/3/body/layer", 256,
+                "parts[3].body.layer: of type number; it must be a whole number from 0 to 255");
+    ExpectError("/parts/3/body/layer", -1,
+                "parts[3].body.layer: of type number; it must be a whole number from 0 to 255");
     ExpectError("/parts/3/body/layer", 32, "parts[3].body: layer is 32");
     ExpectError("/parts/3/body/allowSleep", 1, "parts[3].body.allowSleep: it must be true or false");
     ExpectError("/parts/3/body/shape", nullptr, "parts[3].body: shape");
     ExpectError("/parts/3/body/shape/kind", nullptr, "parts[3].body.shape: kind is missing");
-    ExpectError("/parts/3/body/shape/kind", "Sphere", "parts[3].body.shape.halfHeight: an unknown name; known are kind, radius");
+    ExpectError("/parts/3/body/shape/kind", "Sphere",
+                "parts[3].body.shape.halfHeight: an unknown name; known are kind, radius");
     ExpectError("/parts/3/body/shape/radius", -1, "parts[3].body.shape: radius");
-    ExpectError("/parts/3/body/rotation", Json::array({0, 0, 0}), "parts[3].body.rotation: it must be an array of 4 numbers");
+    ExpectError("/parts/3/body/rotation", Json::array({0, 0, 0}),
+                "parts[3].body.rotation: it must be an array of 4 numbers");
     EXPECT_EQ(RagdollFromJson(Json(3)).GetError().message, "the document: it must be an object");
 }
 
@@ -204,7 +228,8 @@ TEST(RagdollJson, ShapesThatCannotBeWrittenAreNamed) {
 }
 
 TEST(RagdollJson, FilesComeBackAndTheirErrorsNameThem) {
-    const std::string file = (std::filesystem::temp_directory_path() / ("ragdoll" + std::to_string(getpid()) + ".json")).string();
+    const std::string file =
+        (std::filesystem::temp_directory_path() / ("ragdoll" + std::to_string(getpid()) + ".json")).string();
     ASSERT_TRUE(WriteRagdoll(file, Humanoid()));
     const Result<RagdollSettings> read = ReadRagdoll(file);
     ASSERT_TRUE(read) << read.GetError().message;

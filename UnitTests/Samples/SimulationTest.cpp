@@ -61,12 +61,12 @@ TEST(Simulation, ReportsForPeopleAndForPrograms) {
     const auto run = Simulate(*world, 0, 5, 1.0 / 60, 1, [] {});
     ASSERT_TRUE(run);
     const std::string text = ReportText(ReportLines(world->Definition(), run.Value(), 1));
-    for (const char* part : {"bodies", "contacts", "islands", "median", "99th", "penetration", "energy", "pose hash", "threads",
-                             "substeps", "seed"})
+    for (const char* part : {"bodies", "contacts", "islands", "median", "99th", "penetration", "energy", "pose hash",
+                             "threads", "substeps", "seed"})
         EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
     const auto json = ReportJson("tower", run.Value(), 1);
-    for (const char* field : {"scene", "threads", "bodies", "contacts", "steps", "median_ms", "mean_ms", "p99_ms", "max_ms",
-                              "steps_per_s", "accuracy", "hash", "stages_ms", "settings"})
+    for (const char* field : {"scene", "threads", "bodies", "contacts", "steps", "median_ms", "mean_ms", "p99_ms",
+                              "max_ms", "steps_per_s", "accuracy", "hash", "stages_ms", "settings"})
         EXPECT_TRUE(json.contains(field)) << field;
     EXPECT_EQ(json["hash"].get<std::string>(), HashText(world->System().HashPoses()));
     EXPECT_EQ(json["stages_ms"].size(), static_cast<size_t>(kStageCount));
@@ -209,7 +209,8 @@ TEST(Recorder, ChildrenThatComeAndGoAreBodiesOfTheirOwn) {
     const auto world = Build("compound_city");
     ASSERT_TRUE(world);
     Recorder recorder(*world, 130, 1.0 / 60);
-    // After the floor and 24 districts: the tower's 153 pieces, of which the first four are lost after 120 to 129 steps.
+    // After the floor and 24 districts: the tower's 153 pieces, of which the first four are lost after 120 to 129
+    // steps.
     ASSERT_GT(recorder.recording.latest.size(), 178u);
     const Vector3 first = recorder.recording.latest[25].position, fifth = recorder.recording.latest[29].position;
     EXPECT_LT(Length(first - Vector3(-2, 8.1f, -2)), 1e-5f);
@@ -222,8 +223,9 @@ TEST(Recorder, PlacesTheChildrenOfACompoundWhereTheirOwnFrameIs) {
     const auto world = Build("gyroscope");
     ASSERT_TRUE(world);
     const Recorder recorder(*world, 1, 1.0 / 60);
-    const auto handle = std::find_if(recorder.recording.shapes.begin(), recorder.recording.shapes.end(),
-                                     [](const RecordedShape& shape) { return shape.kind == RecordedShapeKind::Compound; });
+    const auto handle =
+        std::find_if(recorder.recording.shapes.begin(), recorder.recording.shapes.end(),
+                     [](const RecordedShape& shape) { return shape.kind == RecordedShapeKind::Compound; });
     ASSERT_NE(handle, recorder.recording.shapes.end());
     ASSERT_EQ(handle->children.size(), 2u);
     EXPECT_LT(Length(handle->children[0].pose.position), 1e-6f);

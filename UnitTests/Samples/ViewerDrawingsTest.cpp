@@ -79,8 +79,8 @@ TEST(ViewerDrawings, ColumnIsAsTheHeaderDescribesIt) {
     // In steps of 1 m, zigzag. Frame 0: two lines. The first is expected at the origin with the color 0: color 3, from
     // (1, 0, 0), to (1, 2, 0). The second with the color of the first and both ends where that begins: color 0, from
     // (0, 0, -1), to (-1, 0, 0). One point. Frame 1: one line, by the first of frame 0: color -1, to (0, 1, 0).
-    EXPECT_EQ(DrawingColumn(recording, 1), Bytes({2, 6, 2, 0, 0, 2, 4, 0, 0, 0, 0, 1, 1, 0, 0, 1, 2, 0, 10, 0,
-                                                  1, 1, 0, 0, 0, 0, 2, 0, 0}));
+    EXPECT_EQ(DrawingColumn(recording, 1),
+              Bytes({2, 6, 2, 0, 0, 2, 4, 0, 0, 0, 0, 1, 1, 0, 0, 1, 2, 0, 10, 0, 1, 1, 0, 0, 0, 0, 2, 0, 0}));
     const auto header = DrawingHeader(recording, 1);
     EXPECT_EQ(header["mostLines"], 2);
     EXPECT_EQ(header["mostPoints"], 1);
@@ -100,7 +100,8 @@ TEST(ViewerDrawings, WhatStandsStillCostsNextToNothing) {
     const auto sizeOf = [](int frames) {
         Recording recording;
         std::vector<RecordedLine> lines;
-        for (int i = 0; i < 1000; ++i) lines.push_back({{0.37f * static_cast<float>(i), 1, 2}, {3, 0.11f * static_cast<float>(i), 1}, 0xFF0000});
+        for (int i = 0; i < 1000; ++i)
+            lines.push_back({{0.37f * static_cast<float>(i), 1, 2}, {3, 0.11f * static_cast<float>(i), 1}, 0xFF0000});
         for (int frame = 0; frame < frames; ++frame) Append(recording, lines, {});
         return Deflated(DrawingColumn(recording, 0.001)).size();
     };

@@ -1,5 +1,5 @@
-// A recording made by formula, without the engine: a pyramid of cubes whose layers fall onto each other and come to rest,
-// under a ring of one body of each other shape that fly past, turning. For the tests of the viewer.
+// A recording made by formula, without the engine: a pyramid of cubes whose layers fall onto each other and come to
+// rest, under a ring of one body of each other shape that fly past, turning. For the tests of the viewer.
 #pragma once
 
 #include <Fulcrum/Samples/Viewer/Recording.h>
@@ -11,8 +11,8 @@ namespace fulcrum {
 
 inline constexpr float kFallingStackGravity = 9.81f;
 
-// How far the layer `i` of the pyramid is above its place at rest after `time`: it starts i/2 m above it and bounces once
-// to a sixteenth of that. Velocity in m/s.
+// How far the layer `i` of the pyramid is above its place at rest after `time`: it starts i/2 m above it and bounces
+// once to a sixteenth of that. Velocity in m/s.
 struct Fall {
     float height = 0, velocity = 0;
 };
@@ -98,7 +98,8 @@ private:
         hull.vertices = {Vector3(2, 2, 2), Vector3(2, -2, -2), Vector3(-2, 2, -2), Vector3(-2, -2, 2)};
         hull.triangles = {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}};
         RecordedShape& compound = add(RecordedShapeKind::Compound, "ball and bar");
-        compound.children = {{2, {Vector3(-1.5f, 0, 0), {}}}, {3, {Vector3(1, 0, 0), {0, 0, 0.70710678f, 0.70710678f}}}};
+        compound.children = {{2, {Vector3(-1.5f, 0, 0), {}}},
+                             {3, {Vector3(1, 0, 0), {0, 0, 0.70710678f, 0.70710678f}}}};
     }
 
     void AddBody(uint32_t shape, RecordedMotion motion, float mass, const char* name, const Vector3& place, int layer) {
@@ -118,8 +119,8 @@ private:
             states.push_back(StateAt(body, time));
             if (layers_[body] < 0 || states.back().position != places_[body]) continue;
             for (int corner = 0; corner < 4; ++corner)
-                contacts.push_back({places_[body] + Vector3(corner & 1 ? 1 : -1, -1, corner & 2 ? 1 : -1), Vector3(0, 1, 0),
-                                    -0.001f, 300.0f, 0, body});
+                contacts.push_back({places_[body] + Vector3(corner & 1 ? 1 : -1, -1, corner & 2 ? 1 : -1),
+                                    Vector3(0, 1, 0), -0.001f, 300.0f, 0, body});
         }
         AppendFrame(recording_, time, states, contacts);
     }

@@ -18,7 +18,8 @@ namespace {
 double VolumeOf(const ShapeMesh& mesh) {
     double volume = 0;
     for (size_t i = 0; i < mesh.indices.size(); i += 3) {
-        const Vector3 &a = mesh.positions[mesh.indices[i]], &b = mesh.positions[mesh.indices[i + 1]], &c = mesh.positions[mesh.indices[i + 2]];
+        const Vector3 &a = mesh.positions[mesh.indices[i]], &b = mesh.positions[mesh.indices[i + 1]],
+                      &c = mesh.positions[mesh.indices[i + 2]];
         volume += Dot<float>(a, Cross<float>(b, c)) / 6;
         const Vector3 outwards = Cross<float>(b - a, c - a);
         EXPECT_GT(outwards.norm(), 0);
@@ -33,7 +34,8 @@ TEST(ViewerShapeMesh, EnclosesTheVolumeOfTheShape) {
     const Recording& recording = stack.Get();
     const double pi = std::numbers::pi;
     EXPECT_NEAR(VolumeOf(MeshOfShape(recording, 1)), 8, 1e-5);
-    // An inscribed polyhedron of 24 sides and steps of 15 degrees misses (15 degrees)^2 / 6 or 1.1 % around and 1.7 % along.
+    // An inscribed polyhedron of 24 sides and steps of 15 degrees misses (15 degrees)^2 / 6 or 1.1 % around and 1.7 %
+    // along.
     const double ball = 4.0 / 3 * pi * 1.2 * 1.2 * 1.2, capsule = 4.0 / 3 * pi * 0.343 + 2.4 * pi * 0.49;
     EXPECT_NEAR(VolumeOf(MeshOfShape(recording, 2)), ball, 0.03 * ball);
     EXPECT_NEAR(VolumeOf(MeshOfShape(recording, 3)), capsule, 0.03 * capsule);
@@ -85,7 +87,8 @@ TEST(ViewerGlb, RestTakesTwoKeysHoweverLong) {
     EXPECT_EQ(json["accessors"][sampler["input"].get<size_t>()]["max"][0], 499);
 }
 
-// A ball that comes in frame 1, is another one from frame 2 on and goes in frame 3: two nodes, each with a size while it is there.
+// A ball that comes in frame 1, is another one from frame 2 on and goes in frame 3: two nodes, each with a size while
+// it is there.
 TEST(ViewerGlb, WhatIsNotThereHasNoSize) {
     Recording recording;
     recording.shapes.resize(2);

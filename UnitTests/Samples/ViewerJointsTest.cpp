@@ -13,7 +13,8 @@ Recording WithJoints(size_t count) {
     Recording recording;
     recording.shapes.emplace_back().radius = 1;
     recording.bodies.resize(2);
-    for (size_t i = 0; i < count; ++i) recording.joints.push_back({.kind = RecordedJointKind::Hinge, .bodyA = 0, .bodyB = 1});
+    for (size_t i = 0; i < count; ++i)
+        recording.joints.push_back({.kind = RecordedJointKind::Hinge, .bodyA = 0, .bodyB = 1});
     return recording;
 }
 
@@ -67,7 +68,8 @@ TEST(ViewerJoints, CheckNamesTheBodyThatAJointLacks) {
     const Status status = CheckRecording(recording);
     ASSERT_FALSE(status);
     EXPECT_EQ(status.GetError().code, ErrorCode::UnknownId);
-    EXPECT_NE(status.GetError().message.find("joint 0 names the body 2"), std::string::npos) << status.GetError().message;
+    EXPECT_NE(status.GetError().message.find("joint 0 names the body 2"), std::string::npos)
+        << status.GetError().message;
 }
 
 TEST(ViewerJoints, ColumnsAreEmptyWithoutJoints) {
@@ -88,7 +90,8 @@ TEST(ViewerJoints, ColumnsAreAsTheHeaderDescribesThem) {
     RecordedJointState limited{.joint = 0};
     limited.limits[0].max = 1e-4f;
     const std::vector<RecordedJointState> states = {limited};
-    AppendFrame(recording, 0, {}, {}, {states, {.distance = 1e-5f, .angle = 2e-6f, .distanceJoint = 0, .angleJoint = 0}});
+    AppendFrame(recording, 0, {}, {},
+                {states, {.distance = 1e-5f, .angle = 2e-6f, .distanceJoint = 0, .angleJoint = 0}});
     Append(recording, {{.joint = 0, .enabled = false}});
     const auto bytes = [](std::initializer_list<int> values) {
         std::string text;
@@ -96,13 +99,13 @@ TEST(ViewerJoints, ColumnsAreAsTheHeaderDescribesThem) {
         return text;
     };
     const auto [constants, changes, errors] = JointColumns(recording);
-    // Zigzag: body B is 1, so 2; the ratio is 200000 steps, so 400000 = 128, 181, 24 as a varint; 0.5 m are 50000 steps, so
-    // 100000 = 160, 141, 6; -0.25 m are -25000, so 49999 = 207, 134, 3; the quaternions' 1 and -1 are 2^21 and 2^21 - 1.
-    EXPECT_EQ(constants, bytes({10, 0, 0, 0, 0, 2, 0, 2, 128, 181, 24,
-                                160, 141, 6, 0, 207, 134, 3, 0, 0, 0, 128, 128, 128, 1,
-                                0, 0, 0, 0, 0, 255, 255, 127, 0,
-                                1, 0, 20, 0}));
-    // Frame 0: one state, of joint 0, enabled with other limits: the end 1 is at 10 steps. Frame 1: off, and the end is gone.
+    // Zigzag: body B is 1, so 2; the ratio is 200000 steps, so 400000 = 128, 181, 24 as a varint; 0.5 m are 50000
+    // steps, so 100000 = 160, 141, 6; -0.25 m are -25000, so 49999 = 207, 134, 3; the quaternions' 1 and -1 are 2^21
+    // and 2^21 - 1.
+    EXPECT_EQ(constants, bytes({10, 0, 0,   0,   0,   2, 0, 2, 128, 181, 24, 160, 141, 6,   0, 207, 134, 3,  0,
+                                0,  0, 128, 128, 128, 1, 0, 0, 0,   0,   0,  255, 255, 127, 0, 1,   0,   20, 0}));
+    // Frame 0: one state, of joint 0, enabled with other limits: the end 1 is at 10 steps. Frame 1: off, and the end is
+    // gone.
     EXPECT_EQ(changes, bytes({1, 0, 3, 2, 20, 1, 0, 2, 0}));
     EXPECT_EQ(errors, bytes({10, 0, 2, 0, 0, 0, 0, 0}));
 }

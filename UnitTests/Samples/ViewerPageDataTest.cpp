@@ -102,16 +102,20 @@ TEST(ViewerPageData, ComesBackWithinItsSteps) {
             const std::array<float, 4> parts = {q.x, q.y, q.z, q.w};
             for (size_t k = 0; k < 4; ++k) dot += parts[k] * static_cast<double>(tracked.rotation[k]);
             for (size_t k = 0; k < 4; ++k)
-                ASSERT_NEAR(std::copysign(1.0, dot) * static_cast<double>(tracked.rotation[k]) / kRotationSteps, parts[k], 0.51 / kRotationSteps);
+                ASSERT_NEAR(std::copysign(1.0, dot) * static_cast<double>(tracked.rotation[k]) / kRotationSteps,
+                            parts[k], 0.51 / kRotationSteps);
             for (int k = 0; k < 3; ++k) {
-                ASSERT_NEAR(static_cast<double>(tracked.position[k]) * decoded.positionStep, expected.position[k], 0.51 * decoded.positionStep);
-                ASSERT_NEAR(static_cast<double>(tracked.velocity[k]) * kVelocityStep, expected.velocity[k], 0.51 * kVelocityStep);
+                ASSERT_NEAR(static_cast<double>(tracked.position[k]) * decoded.positionStep, expected.position[k],
+                            0.51 * decoded.positionStep);
+                ASSERT_NEAR(static_cast<double>(tracked.velocity[k]) * kVelocityStep, expected.velocity[k],
+                            0.51 * kVelocityStep);
             }
             ASSERT_EQ(tracked.island, expected.island);
             ASSERT_EQ(tracked.awake, expected.awake);
         }
     }
-    for (const Reader* column : {&states, &positions, &rotations, &velocities, &islands}) EXPECT_TRUE(column->IsAtEnd());
+    for (const Reader* column : {&states, &positions, &rotations, &velocities, &islands})
+        EXPECT_TRUE(column->IsAtEnd());
 }
 
 TEST(ViewerPageData, SaysWhatIsASensorWhatIsGoneAndWhatHasAnotherShape) {
@@ -143,7 +147,8 @@ TEST(ViewerPageData, RestingBodiesCostNoBytesAFrame) {
     AppendFrame(recording, 0, {}, {});
     const size_t before = EncodePageData(recording).size();
     for (int frame = 1; frame <= 1000; ++frame) AppendFrame(recording, frame, recording.latest, {});
-    // A frame takes its time and its number in the list of frames with contacts (up to 7 and 5 letters), and two counts of 0.
+    // A frame takes its time and its number in the list of frames with contacts (up to 7 and 5 letters), and two counts
+    // of 0.
     EXPECT_LE(EncodePageData(recording).size() - before, 1000u * (7 + 5 + 2));
 }
 
@@ -162,7 +167,8 @@ protected:
     ViewerHtml() { std::filesystem::remove_all(folder_); }
     ~ViewerHtml() override { std::filesystem::remove_all(folder_); }
     const std::filesystem::path folder_ =
-        std::filesystem::path(testing::TempDir()) / (std::string("fulcrum-html-") + testing::UnitTest::GetInstance()->current_test_info()->name());
+        std::filesystem::path(testing::TempDir()) /
+        (std::string("fulcrum-html-") + testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 TEST_F(ViewerHtml, WritesOnePageAndNothingElse) {

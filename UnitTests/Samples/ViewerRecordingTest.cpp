@@ -92,7 +92,8 @@ TEST(ViewerRecording, StateThatIsNotFiniteLeavesTheLastOne) {
 TEST(ViewerRecording, ThinsContactsEvenlyRatherThanOutgrowMemory) {
     Recording recording = OneBody();
     const std::vector<RecordedContact> contacts(kMostContactsPerFrame / 2);
-    for (int frame = 0; frame < 100; ++frame) AppendFrame(recording, frame, {}, WantsContacts(recording) ? contacts : std::vector<RecordedContact>());
+    for (int frame = 0; frame < 100; ++frame)
+        AppendFrame(recording, frame, {}, WantsContacts(recording) ? contacts : std::vector<RecordedContact>());
     // 16 frames' contacts fit: of 100 frames every 8th is the densest even choice of a power of two, with 13 of them.
     EXPECT_EQ(recording.contactInterval, 8u);
     EXPECT_LE(recording.contactCount, kMostContacts);
@@ -116,7 +117,8 @@ TEST(ViewerRecording, CheckNamesWhatIsMissing) {
     const Status status = CheckRecording(recording);
     ASSERT_FALSE(status);
     EXPECT_EQ(status.GetError().code, ErrorCode::UnknownId);
-    EXPECT_NE(status.GetError().message.find("body 0 names the shape 7"), std::string::npos) << status.GetError().message;
+    EXPECT_NE(status.GetError().message.find("body 0 names the shape 7"), std::string::npos)
+        << status.GetError().message;
 }
 
 TEST(ViewerRecording, CheckNamesAShapeThatABodyIsGivenLater) {
@@ -124,7 +126,8 @@ TEST(ViewerRecording, CheckNamesAShapeThatABodyIsGivenLater) {
     AppendFrame(recording, 0, {}, {}, {}, {}, std::array{RecordedShapeChange{0, 3}});
     const Status status = CheckRecording(recording);
     ASSERT_FALSE(status);
-    EXPECT_NE(status.GetError().message.find("frame 0 names the shape 3"), std::string::npos) << status.GetError().message;
+    EXPECT_NE(status.GetError().message.find("frame 0 names the shape 3"), std::string::npos)
+        << status.GetError().message;
 }
 
 TEST(ViewerRecording, CheckRefusesACompoundInsideItself) {

@@ -1,5 +1,5 @@
-// How many random cases a test runs: all of them in a normal build, a tenth under the sanitizers, which look for other mistakes than
-// the tenth case in ten finds and take twenty times as long.
+// How many random cases a test runs: all of them in a normal build, a tenth under the sanitizers, which look for other
+// mistakes than the tenth case in ten finds and take twenty times as long.
 #pragma once
 
 #include <algorithm>

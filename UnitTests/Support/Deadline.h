@@ -15,7 +15,8 @@ template <class Call>
 void Within(double seconds, const Call& call) {
     std::future<void> done = std::async(std::launch::async, call);
     if (done.wait_for(std::chrono::duration<double>(seconds)) != std::future_status::ready) {
-        std::fprintf(stderr, "%s did not return within %g s\n", ::testing::UnitTest::GetInstance()->current_test_info()->name(), seconds);
+        std::fprintf(stderr, "%s did not return within %g s\n",
+                     ::testing::UnitTest::GetInstance()->current_test_info()->name(), seconds);
         std::_Exit(EXIT_FAILURE);
     }
     done.get();

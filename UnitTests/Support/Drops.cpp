@@ -48,7 +48,8 @@ ShapePtr RandomShape(RandomPoses& random, float longest) {
 
 class DropWorld {
 public:
-    explicit DropWorld(const DropSettings& settings) : settings_(settings), material_{.friction = settings.friction, .restitution = settings.restitution} {
+    explicit DropWorld(const DropSettings& settings)
+        : settings_(settings), material_{.friction = settings.friction, .restitution = settings.restitution} {
         SystemSettings system;
         system.solver.substeps = settings.substeps;
         if (settings.ground == DropGround::Air) system.gravity.setZero();
@@ -56,8 +57,12 @@ public:
         system_ = Must(PhysicsSystem::Create(system, nullptr));
         if (settings.ground == DropGround::Air) return;
         const bool isFloor = settings.ground == DropGround::Floor;
-        const ShapePtr shape = isFloor ? ShapePtr(Must(Box::Create(Vector3(kHalfGround, 1, kHalfGround)))) : HillyGround(settings.ground == DropGround::Hills ? 0.5f : 0.0f);
-        Must(system_->Bodies().Create({.shape = shape, .motion = MotionType::Static, .position = {0, isFloor ? -1.0 : 0.0, 0}, .material = material_}));
+        const ShapePtr shape = isFloor ? ShapePtr(Must(Box::Create(Vector3(kHalfGround, 1, kHalfGround))))
+                                       : HillyGround(settings.ground == DropGround::Hills ? 0.5f : 0.0f);
+        Must(system_->Bodies().Create({.shape = shape,
+                                       .motion = MotionType::Static,
+                                       .position = {0, isFloor ? -1.0 : 0.0, 0},
+                                       .material = material_}));
     }
 
     void AddGroup(uint32_t place, uint32_t seed) {
@@ -93,7 +98,12 @@ private:
         const Quaternion rotation = random.Rotation();
         const Vector3 velocity = random.InBox(5), axis = random.InCube();
         const float spin = random.Chance(0.5f) ? random.Between(0, 20) : 0.0f;
-        BodySettings body{.shape = shape, .rotation = rotation, .linearVelocity = velocity, .angularVelocity = axis * spin, .material = material_, .continuous = settings_.kind};
+        BodySettings body{.shape = shape,
+                          .rotation = rotation,
+                          .linearVelocity = velocity,
+                          .angularVelocity = axis * spin,
+                          .material = material_,
+                          .continuous = settings_.kind};
         body.category = uint64_t(2) << groups_.size();
         body.mask = body.category | 1;
         if (settings_.ground == DropGround::Air) {
@@ -104,7 +114,8 @@ private:
             body.position = middle + Position(0, height_ + double{reach} + double{random.Between(0.5f, 3)}, 0);
             height_ = body.position.y() + double{reach};
             if (i + 1 == settings_.together) height_ = 1;
-            if (settings_.together > 1) body.linearVelocity = Vector3(0.1f * velocity.x(), -2.0f * static_cast<float>(i), 0.1f * velocity.z());
+            if (settings_.together > 1)
+                body.linearVelocity = Vector3(0.1f * velocity.x(), -2.0f * static_cast<float>(i), 0.1f * velocity.z());
         }
         return Must(system_->Bodies().Create(body));
     }
@@ -117,7 +128,8 @@ private:
     double EnergyOf(size_t group) const {
         const BodyInterface& bodies = system_->Bodies();
         double sum = 0;
-        for (const BodyId id : groups_[group]) sum += bodies.GetKineticEnergy(id) + double{bodies.GetMass(id)} * gravity_ * bodies.GetCenterOfMass(id).y();
+        for (const BodyId id : groups_[group])
+            sum += bodies.GetKineticEnergy(id) + double{bodies.GetMass(id)} * gravity_ * bodies.GetCenterOfMass(id).y();
         return sum;
     }
 
@@ -137,7 +149,8 @@ ShapePtr HillyGround(float height) {
     std::vector<uint32_t> indices;
     for (uint32_t i = 0; i <= kCells; ++i)
         for (uint32_t k = 0; k <= kCells; ++k) {
-            vertices.emplace_back(2.0f * static_cast<float>(i) - kHalfGround, (i + 2 * k) % 5 == 0 ? height : 0.0f, 2.0f * static_cast<float>(k) - kHalfGround);
+            vertices.emplace_back(2.0f * static_cast<float>(i) - kHalfGround, (i + 2 * k) % 5 == 0 ? height : 0.0f,
+                                  2.0f * static_cast<float>(k) - kHalfGround);
             const uint32_t a = i * (kCells + 1) + k, b = a + kCells + 1;
             if (i < kCells && k < kCells) indices.insert(indices.end(), {a, a + 1, b, b, a + 1, b + 1});
         }
@@ -145,10 +158,12 @@ ShapePtr HillyGround(float height) {
 }
 
 std::string NameOf(const DropSettings& s) {
-    constexpr const char *kGrounds[] = {"floor", "mesh", "hills", "air"}, *kKinds[] = {"Off", "Linear", "LinearAndAngular"};
+    constexpr const char *kGrounds[] = {"floor", "mesh", "hills", "air"},
+                         *kKinds[] = {"Off", "Linear", "LinearAndAngular"};
     std::ostringstream name;
-    name << kGrounds[static_cast<int>(s.ground)] << ", " << s.together << " of " << kKinds[static_cast<int>(s.kind)] << ", restitution " << s.restitution
-         << ", friction " << s.friction << ", " << s.substeps << " substeps, dt 1/" << std::lround(1 / s.dt);
+    name << kGrounds[static_cast<int>(s.ground)] << ", " << s.together << " of " << kKinds[static_cast<int>(s.kind)]
+         << ", restitution " << s.restitution << ", friction " << s.friction << ", " << s.substeps << " substeps, dt 1/"
+         << std::lround(1 / s.dt);
     return name.str();
 }
 

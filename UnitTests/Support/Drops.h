@@ -1,5 +1,5 @@
-// Random rods, plates, boxes and hulls that fall onto something or onto each other, and the energy that they have meanwhile: without what
-// drives them it only falls. Of the public interface alone. One thread.
+// Random rods, plates, boxes and hulls that fall onto something or onto each other, and the energy that they have
+// meanwhile: without what drives them it only falls. Of the public interface alone. One thread.
 #pragma once
 
 #include <Fulcrum/Physics/PhysicsSystem.h>
@@ -20,19 +20,21 @@ struct DropSettings {
     double dt = 1.0 / 60;  // s
 };
 
-// A mesh of 80 m by 80 m about the origin, its cells 2 m; of its corners every fifth or so stands up by `height` meters.
+// A mesh of 80 m by 80 m about the origin, its cells 2 m; of its corners every fifth or so stands up by `height`
+// meters.
 ShapePtr HillyGround(float height);
 
 // "Floor, 1 of Linear, restitution 0.5, ...".
 std::string NameOf(const DropSettings& settings);
 
-// What is largest of the energies of groups that are dropped, relative to what each began with; its potential counts from the ground.
+// What is largest of the energies of groups that are dropped, relative to what each began with; its potential counts
+// from the ground.
 struct DropEnergy {
-    double most = 0;          // at any time
-    double gain = 0;          // above the least before
-    uint32_t drop = 0;        // which of them has the most,
-    uint32_t step = 0;        // and when
-    uint32_t gainingDrop = 0; // which gains the most
+    double most = 0;           // at any time
+    double gain = 0;           // above the least before
+    uint32_t drop = 0;         // which of them has the most,
+    uint32_t step = 0;         // and when
+    uint32_t gainingDrop = 0;  // which gains the most
     bool finite = true;
 };
 

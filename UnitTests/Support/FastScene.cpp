@@ -18,14 +18,21 @@ void AddRoom(TestWorld& world) {
             half[axis] = 0.05f;
             Position at = Position::Zero();
             at[axis] = double{side * kRoom};
-            world.Add({.shape = BoxOf(half.x(), half.y(), half.z()), .motion = MotionType::Static, .position = at, .material = wall});
+            world.Add({.shape = BoxOf(half.x(), half.y(), half.z()),
+                       .motion = MotionType::Static,
+                       .position = at,
+                       .material = wall});
         }
     // A roof of two sheets, two-sided.
     const Vector3 corners[] = {{-6, 0, -6}, {6, 0, -6}, {-6, 2, 0}, {6, 2, 0}, {-6, 0, 6}, {6, 0, 6}};
     const uint32_t indices[] = {0, 2, 1, 1, 2, 3, 2, 4, 3, 3, 4, 5};
     const ShapePtr roof = TriangleMesh::Create({.vertices = corners, .indices = indices, .isTwoSided = true}).Value();
     world.Add({.shape = roof, .motion = MotionType::Static, .position = {0, -5, 0}, .material = wall});
-    world.Add({.shape = BoxOf(4, 0.5f, 0.1f), .motion = MotionType::Kinematic, .position = {0, 4, 0}, .angularVelocity = {0, 30, 0}, .material = wall,
+    world.Add({.shape = BoxOf(4, 0.5f, 0.1f),
+               .motion = MotionType::Kinematic,
+               .position = {0, 4, 0},
+               .angularVelocity = {0, 30, 0},
+               .material = wall,
                .continuous = ContinuousCollision::LinearAndAngular});
 }
 
@@ -43,7 +50,9 @@ uint64_t HashOfFastScene(uint32_t threads) {
         CompoundOf({{.shape = BoxOf(0.4f, 0.05f, 0.05f)}, {.shape = SphereOf(0.15f), .position = {0.4f, 0, 0}}}),
     };
     uint32_t random = 815;
-    const auto number = [&] { return static_cast<float>((random = random * 1664525u + 1013904223u) >> 8) / 8388608.0f - 1; };
+    const auto number = [&] {
+        return static_cast<float>((random = random * 1664525u + 1013904223u) >> 8) / 8388608.0f - 1;
+    };
     std::vector<BodyId> bodies;
     for (int i = 0; i < 180; ++i) {
         const float x = number(), y = number(), z = number(), w = number();
@@ -52,9 +61,13 @@ uint64_t HashOfFastScene(uint32_t threads) {
                                                : i % 2 == 0 ? ContinuousCollision::Linear
                                                             : ContinuousCollision::LinearAndAngular;
         const float speed = continuous == ContinuousCollision::Off ? 3.0f : 200.0f;
-        bodies.push_back(world.Add({.shape = shapes[i % 6], .position = Vector3(9 * x, 6.5f + 2.5f * y, 9 * z).cast<double>(),
-                                    .rotation = Normalized(Quaternion{x, y, z, w + 1.1f}), .linearVelocity = Vector3(vx, vy, vz) * speed,
-                                    .angularVelocity = Vector3(z, x, y) * 60.0f, .material = {.restitution = 0.5f}, .continuous = continuous}));
+        bodies.push_back(world.Add({.shape = shapes[i % 6],
+                                    .position = Vector3(9 * x, 6.5f + 2.5f * y, 9 * z).cast<double>(),
+                                    .rotation = Normalized(Quaternion{x, y, z, w + 1.1f}),
+                                    .linearVelocity = Vector3(vx, vy, vz) * speed,
+                                    .angularVelocity = Vector3(z, x, y) * 60.0f,
+                                    .material = {.restitution = 0.5f},
+                                    .continuous = continuous}));
     }
     world.Steps(kSteps);
     for (const BodyId body : bodies) {

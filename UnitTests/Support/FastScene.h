@@ -1,12 +1,13 @@
-// Fast bodies of every convex kind in a room with a mesh floor and a turning paddle: the scene by which builds, threads and versions
-// are held against each other where continuous collision is concerned.
+// Fast bodies of every convex kind in a room with a mesh floor and a turning paddle: the scene by which builds, threads
+// and versions are held against each other where continuous collision is concerned.
 #pragma once
 
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
 namespace fulcrum::testing {
 
-// Hash of the poses after 90 steps with so many threads. Adds a failure where a body of continuous collision has left the room.
+// Hash of the poses after 90 steps with so many threads. Adds a failure where a body of continuous collision has left
+// the room.
 uint64_t HashOfFastScene(uint32_t threads);
 
 }  // namespace fulcrum::testing

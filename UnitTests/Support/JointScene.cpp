@@ -54,7 +54,8 @@ JointScene::JointScene(TestWorld& world) : world_(world) {
 
 void JointScene::BeforeStep(int step) {
     JointInterface& joints = JointsOf(world_);
-    EXPECT_TRUE(world_.Bodies().MoveKinematic(swing_, {0.8 * Sin(0.05 * step), 8, 0}, RotationAbout({0, 0, 1}, 0.01 * step), static_cast<float>(kStep)));
+    EXPECT_TRUE(world_.Bodies().MoveKinematic(swing_, {0.8 * Sin(0.05 * step), 8, 0},
+                                              RotationAbout({0, 0, 1}, 0.01 * step), static_cast<float>(kStep)));
     JointLimits rope;
     rope.max = static_cast<float>(6.2 - 0.004 * step);
     EXPECT_TRUE(joints.SetLimits(winch_, JointAxis::LinearX, rope));

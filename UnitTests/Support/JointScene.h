@@ -1,5 +1,5 @@
-// Joints of every kind at work, in one world: the scene by which builds, threads and versions are held against each other where
-// the mixed scene has nothing to say.
+// Joints of every kind at work, in one world: the scene by which builds, threads and versions are held against each
+// other where the mixed scene has nothing to say.
 #pragma once
 
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
@@ -8,10 +8,10 @@ namespace fulcrum::testing {
 
 inline constexpr int kJointSceneSteps = 240;
 
-// Fills the world; call BeforeStep before each step of kStep seconds. Mechanisms of all kinds with limits, motors, friction and
-// springs, some in a plane; a chain whose load makes it a tree; a curtain large enough that all workers share it; a body with
-// more joints than there are colors; ragdolls and a car on the floor; what sleeps until it is hit. Joints break, are removed,
-// and are switched off and on.
+// Fills the world; call BeforeStep before each step of kStep seconds. Mechanisms of all kinds with limits, motors,
+// friction and springs, some in a plane; a chain whose load makes it a tree; a curtain large enough that all workers
+// share it; a body with more joints than there are colors; ragdolls and a car on the floor; what sleeps until it is
+// hit. Joints break, are removed, and are switched off and on.
 class JointScene {
 public:
     static SystemSettings Settings();

@@ -11,7 +11,8 @@ namespace fulcrum::testing {
 namespace {
 
 template <class Settings>
-Settings BetweenTwo(BodyId a, BodyId b, const Position& pointA, const Position& pointB, const Vector3& axis = Vector3(1, 0, 0)) {
+Settings BetweenTwo(BodyId a, BodyId b, const Position& pointA, const Position& pointB,
+                    const Vector3& axis = Vector3(1, 0, 0)) {
     auto settings = Of<Settings>(Between(a, b, pointA, axis));
     settings.anchorB = AnchorAt(pointB, axis);
     return settings;
@@ -43,15 +44,18 @@ void JointScene::AddChains() {
     swing_ = world_.Add({.shape = BoxOf(0.3f, 0.1f, 0.3f), .motion = MotionType::Kinematic, .position = {0, 8, 0}});
     BodyId last = swing_;
     for (int i = 0; i < 6; ++i) {
-        const BodyId link = world_.Add({.shape = CapsuleOf(0.2f, 0.08f), .position = {0.1 * i, 7.6 - 0.5 * i, 0.03 * i}});
-        const JointId joint = Join(world_, Of<PointJointSettings>(Between(last, link, {0.1 * i, 7.85 - 0.5 * i, 0.03 * i})));
+        const BodyId link =
+            world_.Add({.shape = CapsuleOf(0.2f, 0.08f), .position = {0.1 * i, 7.6 - 0.5 * i, 0.03 * i}});
+        const JointId joint =
+            Join(world_, Of<PointJointSettings>(Between(last, link, {0.1 * i, 7.85 - 0.5 * i, 0.03 * i})));
         if (i == 4) removed_ = joint;
         if (i == 2) removedBody_ = link;
         last = link;
     }
     last = AddHook(world_, {4, 9, 0.01});
     for (int i = 0; i <= 6; ++i) {
-        const BodyId link = AddPart(world_, i == 6 ? SphereOf(0.4f) : BoxOf(0.23f, 0.05f, 0.05f), {4.25 + 0.5 * i, 9, 0}, i == 6 ? 100.0f : 1.0f);
+        const BodyId link = AddPart(world_, i == 6 ? SphereOf(0.4f) : BoxOf(0.23f, 0.05f, 0.05f),
+                                    {4.25 + 0.5 * i, 9, 0}, i == 6 ? 100.0f : 1.0f);
         Join(world_, Of<PointJointSettings>(Between(last, link, {4 + 0.5 * i, 9, 0.01})));
         last = link;
     }
@@ -62,7 +66,8 @@ void JointScene::AddPlane() {
     for (int i = 0; i < 8; ++i) {
         const double x = -3.0 * i;
         const BodyId hook = AddHook(world_, {x, 6, 12});
-        const BodyId arm = AddPart(world_, BoxOf(0.5f, 0.1f, 0.1f), {x + 0.5, 6, 12}), tip = AddPart(world_, SphereOf(0.2f), {x + 1.2, 6, 12});
+        const BodyId arm = AddPart(world_, BoxOf(0.5f, 0.1f, 0.1f), {x + 0.5, 6, 12}),
+                     tip = AddPart(world_, SphereOf(0.2f), {x + 1.2, 6, 12});
         auto hinge = Of<HingeJointSettings>(Between(hook, arm, {x, 6, 12}, {0, 0, 1}));
         if (i % 4 == 1) hinge.angle = Limited(-0.5, 0.4);
         if (i % 4 == 2) hinge.angle.motor = SpeedMotor(3, 200);
@@ -78,21 +83,25 @@ void JointScene::AddSprings() {
     const BodyId hook = AddHook(world_, {-6, 8, 0});
     for (int i = 0; i < 4; ++i) {
         const Position place(-6 + 0.7 * i, 6.5, 0.4 * i);
-        auto distance = BetweenTwo<DistanceJointSettings>(hook, AddPart(world_, CubeOf(0.2f), place), {-6, 8, 0}, place + Position(0.2, 0.2, 0));
+        auto distance = BetweenTwo<DistanceJointSettings>(hook, AddPart(world_, CubeOf(0.2f), place), {-6, 8, 0},
+                                                          place + Position(0.2, 0.2, 0));
         if (i == 1) distance.maxDistance = 1.2f;
         if (i == 2) distance.minDistance = 1.0f, distance.maxDistance = 1.5f, distance.spring = FrequencySpring(3, 0.1);
         if (i == 3) distance.spring = StiffnessSpring(800, 5);
         Join(world_, distance);
     }
-    auto slider = Of<SliderJointSettings>(Between(hook, AddPart(world_, CubeOf(0.25f), {-6, 5, 2}), {-6, 5, 2}, Normalized(Vector3(1, -1, 0.2f))));
+    auto slider = Of<SliderJointSettings>(
+        Between(hook, AddPart(world_, CubeOf(0.25f), {-6, 5, 2}), {-6, 5, 2}, Normalized(Vector3(1, -1, 0.2f))));
     slider.slide = Limited(-0.5, 0.6, FrequencySpring(4, 0.3));
     slider.slide.friction = 5;
     Join(world_, slider);
-    auto piston = Of<SliderJointSettings>(Between(hook, AddPart(world_, CubeOf(0.25f), {-6, 5, 4}), {-6, 5, 4}, {0, 1, 0}));
+    auto piston =
+        Of<SliderJointSettings>(Between(hook, AddPart(world_, CubeOf(0.25f), {-6, 5, 4}), {-6, 5, 4}, {0, 1, 0}));
     piston.slide = Limited(-0.8, 0.8);
     piston.slide.motor = SpeedMotor(-1.5, 4000);
     gate_ = Join(world_, piston);
-    auto screw = Of<CustomJointSettings>(Between(hook, AddPart(world_, BoxOf(0.3f, 0.1f, 0.2f), {-6, 5, 6}), {-6, 5, 6}, {0, 1, 0}));
+    auto screw = Of<CustomJointSettings>(
+        Between(hook, AddPart(world_, BoxOf(0.3f, 0.1f, 0.2f), {-6, 5, 6}), {-6, 5, 6}, {0, 1, 0}));
     screw.make = [] { return std::make_unique<Screw>(); };
     Join(world_, screw);
 }
@@ -100,7 +109,8 @@ void JointScene::AddSprings() {
 void JointScene::AddShoulders() {
     for (int i = 0; i < 6; ++i) {
         const Position place(-12, 6, 1.5 * i);
-        const BodyId hook = AddHook(world_, place), arm = AddPart(world_, BoxOf(0.6f, 0.1f, 0.15f), place + Position(0.6, 0, 0));
+        const BodyId hook = AddHook(world_, place),
+                     arm = AddPart(world_, BoxOf(0.6f, 0.1f, 0.15f), place + Position(0.6, 0, 0));
         if (i < 2) {
             auto cone = Of<ConeJointSettings>(Between(hook, arm, place, {0.6f, -0.8f, 0}));
             cone.halfAngle = 0.5f;
@@ -115,7 +125,8 @@ void JointScene::AddShoulders() {
             ball.swingY = Limited(-0.6, 0.6);
             ball.swingZ = Limited(-0.9, 0.9);
             ball.twist.friction = 1;
-            if (i == 3) ball.twist.motor = ball.swingY.motor = ball.swingZ.motor = PositionMotor(0.2, FrequencySpring(2, 0.5));
+            if (i == 3)
+                ball.twist.motor = ball.swingY.motor = ball.swingZ.motor = PositionMotor(0.2, FrequencySpring(2, 0.5));
             const JointId joint = Join(world_, ball);
             if (i == 3) shoulder_ = joint;
             continue;
@@ -134,7 +145,8 @@ void JointScene::AddShoulders() {
 
 void JointScene::AddGears() {
     const BodyId frame = AddHook(world_, {8, 5, 6});
-    const BodyId first = AddPart(world_, CapsuleOf(0.1f, 0.4f), {8, 5, 6}), second = AddPart(world_, CapsuleOf(0.1f, 0.7f), {9.2, 5, 6});
+    const BodyId first = AddPart(world_, CapsuleOf(0.1f, 0.4f), {8, 5, 6}),
+                 second = AddPart(world_, CapsuleOf(0.1f, 0.7f), {9.2, 5, 6});
     const BodyId rack = AddPart(world_, BoxOf(1.5f, 0.1f, 0.1f), {9.2, 4.2, 6});
     auto bearing = Of<HingeJointSettings>(Between(frame, first, {8, 5, 6}, {0, 0, 1}));
     bearing.angle.motor = SpeedMotor(5, 2000);
@@ -161,11 +173,13 @@ void JointScene::AddPathsAndRopes() {
     const Vector3 up(0, 1, 0);
     const std::shared_ptr<const Path> track = Path::CatmullRom(places, {&up, 1}, true).Value();
     const BodyId hook = AddHook(world_, {16, 5, 0});
-    const PathRotation rotations[] = {PathRotation::Free, PathRotation::Tangent, PathRotation::TangentAndNormal, PathRotation::Constant};
+    const PathRotation rotations[] = {PathRotation::Free, PathRotation::Tangent, PathRotation::TangentAndNormal,
+                                      PathRotation::Constant};
     for (int i = 0; i < 4; ++i) {
         const PathSample at = track->Sample(2.0 * i + 0.3);
         const Position place = Position(16, 5, 0) + at.position.cast<double>();
-        auto settings = BetweenTwo<PathJointSettings>(hook, AddPart(world_, BoxOf(0.3f, 0.1f, 0.2f), place), {16, 5, 0}, place);
+        auto settings =
+            BetweenTwo<PathJointSettings>(hook, AddPart(world_, BoxOf(0.3f, 0.1f, 0.2f), place), {16, 5, 0}, place);
         settings.anchorA.normal = up;
         settings.anchorB->axis = at.tangent;
         settings.anchorB->normal = at.normal;
@@ -175,7 +189,8 @@ void JointScene::AddPathsAndRopes() {
         if (i == 1) settings.along.friction = 20;
         Join(world_, settings);
     }
-    const BodyId light = AddPart(world_, SphereOf(0.3f), {12, 2, -4}, 10), heavy = AddPart(world_, CubeOf(0.3f), {14, 4, -4}, 25);
+    const BodyId light = AddPart(world_, SphereOf(0.3f), {12, 2, -4}, 10),
+                 heavy = AddPart(world_, CubeOf(0.3f), {14, 4, -4}, 25);
     auto pulley = BetweenTwo<PulleyJointSettings>(light, heavy, {12, 2.3, -4}, {14, 4.3, -4.1});
     pulley.fixedPointA = {12, 7, -4};
     pulley.fixedPointB = {14, 7, -4};
@@ -197,7 +212,8 @@ void JointScene::AddCar() {
     }
     // A kerb to drive over, and boxes that are fixed to each other, in the way.
     world_.Add({.shape = BoxOf(0.3f, 0.06f, 2), .motion = MotionType::Static, .position = {-1.5, 0.05, -8}});
-    const BodyId low = world_.Add({.shape = CubeOf(0.3f), .position = {0.5, 0.3, -8}}), high = world_.Add({.shape = CubeOf(0.3f), .position = {0.6, 0.95, -8.1}});
+    const BodyId low = world_.Add({.shape = CubeOf(0.3f), .position = {0.5, 0.3, -8}}),
+                 high = world_.Add({.shape = CubeOf(0.3f), .position = {0.6, 0.95, -8.1}});
     Join(world_, Of<FixedJointSettings>(Between(low, high, {0.5, 0.6, -8})));
 }
 
@@ -208,9 +224,14 @@ void JointScene::AddCurtain() {
     for (int row = 0; row < 20; ++row) {
         for (int i = 0; i < 21; ++i) {
             const bool isHung = row == 0 && i % 5 == 0;
-            now[i] = world_.Add({.shape = ball, .motion = isHung ? MotionType::Static : MotionType::Dynamic, .position = {20 + 0.4 * i, 9 - 0.4 * row, 8}, .layer = 1});
-            if (i > 0) Join(world_, Of<PointJointSettings>(Between(now[i - 1], now[i], {19.8 + 0.4 * i, 9 - 0.4 * row, 8})));
-            if (row > 0) Join(world_, Of<PointJointSettings>(Between(above[i], now[i], {20 + 0.4 * i, 9.2 - 0.4 * row, 8})));
+            now[i] = world_.Add({.shape = ball,
+                                 .motion = isHung ? MotionType::Static : MotionType::Dynamic,
+                                 .position = {20 + 0.4 * i, 9 - 0.4 * row, 8},
+                                 .layer = 1});
+            if (i > 0)
+                Join(world_, Of<PointJointSettings>(Between(now[i - 1], now[i], {19.8 + 0.4 * i, 9 - 0.4 * row, 8})));
+            if (row > 0)
+                Join(world_, Of<PointJointSettings>(Between(above[i], now[i], {20 + 0.4 * i, 9.2 - 0.4 * row, 8})));
         }
         std::copy(now, now + 21, above);
     }
@@ -223,7 +244,8 @@ void JointScene::AddHub() {
     for (int i = 0; i < 68; ++i) {
         const double angle = 2 * kPi * i / 68, height = 5 + 0.3 * (i % 3);
         const Position place(-16 + 1.5 * Cos(angle), height, -8 + 1.5 * Sin(angle));
-        auto spring = BetweenTwo<DistanceJointSettings>(hub_, AddPart(world_, SphereOf(0.1f), place), {-16, 5, -8}, place);
+        auto spring =
+            BetweenTwo<DistanceJointSettings>(hub_, AddPart(world_, SphereOf(0.1f), place), {-16, 5, -8}, place);
         if (i % 4) spring.spring = FrequencySpring(4, 0.2);
         Join(world_, spring);
     }
@@ -242,7 +264,8 @@ void JointScene::AddSleepers() {
 
 // A shelf that a ball tears off.
 void JointScene::AddWhatBreaks() {
-    const BodyId hook = AddHook(world_, {8, 3, -8}), shelf = world_.Add({.shape = BoxOf(0.6f, 0.05f, 0.4f), .position = {8.7, 3, -8}, .mass = 5});
+    const BodyId hook = AddHook(world_, {8, 3, -8}),
+                 shelf = world_.Add({.shape = BoxOf(0.6f, 0.05f, 0.4f), .position = {8.7, 3, -8}, .mass = 5});
     auto bracket = Of<FixedJointSettings>(Between(hook, shelf, {8.1, 3, -8}));
     bracket.breakTorque = 150;
     breaking_ = Join(world_, bracket);

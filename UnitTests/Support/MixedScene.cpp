@@ -4,7 +4,10 @@ namespace fulcrum::testing {
 
 MixedScene::MixedScene(TestWorld& world) : world_(world) {
     world.AddFloor({.friction = 0.6f});
-    world.Add({.shape = BoxOf(4, 0.5f, 4), .motion = MotionType::Static, .position = {6, 1, 0}, .rotation = RotationAbout({0, 0, 1}, 0.4)});
+    world.Add({.shape = BoxOf(4, 0.5f, 4),
+               .motion = MotionType::Static,
+               .position = {6, 1, 0},
+               .rotation = RotationAbout({0, 0, 1}, 0.4)});
     const ShapePtr shapes[] = {
         SphereOf(0.4f),
         BoxOf(0.4f, 0.3f, 0.5f),
@@ -13,13 +16,16 @@ MixedScene::MixedScene(TestWorld& world) : world_(world) {
         CompoundOf({{.shape = BoxOf(0.5f, 0.1f, 0.1f)}, {.shape = SphereOf(0.2f), .position = {0.5f, 0, 0}}}),
     };
     uint32_t random = 12345;
-    const auto number = [&] { return static_cast<float>((random = random * 1664525u + 1013904223u) >> 8) / 16777216.0f; };
+    const auto number = [&] {
+        return static_cast<float>((random = random * 1664525u + 1013904223u) >> 8) / 16777216.0f;
+    };
     for (int i = 0; i < 150; ++i) {
         // One number after the other: arguments are evaluated in any order.
         const float x = number(), y = number(), z = number(), w = number(), bounce = number();
         BodySettings settings;
         settings.shape = shapes[i % 5];
-        settings.position = {i % 5 * 1.2 - 2.4 + 0.2 * double(x), 1.5 + i / 25 * 1.3, i / 5 % 5 * 1.2 - 2.4 + 0.2 * double(z)};
+        settings.position = {i % 5 * 1.2 - 2.4 + 0.2 * double(x), 1.5 + i / 25 * 1.3,
+                             i / 5 % 5 * 1.2 - 2.4 + 0.2 * double(z)};
         settings.rotation = Normalized(Quaternion{x, y, z, w + 0.1f});
         settings.angularVelocity = Vector3(x, y, z) * 4.0f;
         settings.material.restitution = i % 7 == 0 ? bounce : 0;
@@ -37,7 +43,8 @@ MixedScene::MixedScene(TestWorld& world) : world_(world) {
 
 void MixedScene::BeforeStep(int step) {
     const double x = -6 + 0.03 * step;
-    EXPECT_TRUE(world_.Bodies().MoveKinematic(sweeper_, {x, 0.6, 0}, RotationAbout({0, 1, 0}, 0.001 * step), static_cast<float>(kStep)));
+    EXPECT_TRUE(world_.Bodies().MoveKinematic(sweeper_, {x, 0.6, 0}, RotationAbout({0, 1, 0}, 0.001 * step),
+                                              static_cast<float>(kStep)));
     const Position corner = world_.PositionOf(pushed_) + Position(0.1, 0.1, 0);
     EXPECT_TRUE(step >= 60 || world_.Bodies().AddForceAt(pushed_, {300, 100, 50}, corner));
     EXPECT_TRUE(step != 100 || world_.Bodies().Remove(removed_));

@@ -8,8 +8,8 @@ namespace fulcrum::testing {
 inline constexpr int kMixedSceneSteps = 300;
 
 // Fills the world; call BeforeStep before each step of kStep seconds. Spheres, boxes, capsules,
-// hulls and compounds fall on a floor and a ramp, a kinematic bar sweeps them together; some bounce, some are locked, damped,
-// pushed, one is removed.
+// hulls and compounds fall on a floor and a ramp, a kinematic bar sweeps them together; some bounce, some are locked,
+// damped, pushed, one is removed.
 class MixedScene {
 public:
     explicit MixedScene(TestWorld& world);

@@ -1,5 +1,5 @@
-// Random numbers, places and rotations for tests and kernels: from the engine's bits alone, so the same on every machine, unlike
-// the distributions of <random>. One thread.
+// Random numbers, places and rotations for tests and kernels: from the engine's bits alone, so the same on every
+// machine, unlike the distributions of <random>. One thread.
 #pragma once
 
 #include <Fulcrum/Math/Quaternion.h>

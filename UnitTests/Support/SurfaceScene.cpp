@@ -29,7 +29,12 @@ ShapePtr RoughMesh(bool twoSided) {
             materials.insert(materials.end(), {static_cast<uint8_t>(x % 2), static_cast<uint8_t>(z % 2)});
         }
     const SurfaceMaterial palette[] = {{.friction = 0.8f}, {.friction = 0.2f, .restitution = 0.3f}};
-    return TriangleMesh::Create({.vertices = vertices, .indices = indices, .triangleMaterials = materials, .materials = palette, .isTwoSided = twoSided}).Value();
+    return TriangleMesh::Create({.vertices = vertices,
+                                 .indices = indices,
+                                 .triangleMaterials = materials,
+                                 .materials = palette,
+                                 .isTwoSided = twoSided})
+        .Value();
 }
 
 ShapePtr RoughField() {
@@ -38,7 +43,13 @@ ShapePtr RoughField() {
     for (int z = 0; z <= kCells; ++z)
         for (int x = 0; x <= kCells; ++x) heights.push_back(HeightAt(z, x));
     for (int i = 0; i < kCells * kCells; ++i) cells.push_back(i % 97 == 50 ? kHoleCell : uint8_t{0});
-    return HeightField::Create({.sampleCountX = kCells + 1, .sampleCountZ = kCells + 1, .heights = heights, .cellSizeX = 0.5f, .cellSizeZ = 0.5f, .cells = cells}).Value();
+    return HeightField::Create({.sampleCountX = kCells + 1,
+                                .sampleCountZ = kCells + 1,
+                                .heights = heights,
+                                .cellSizeX = 0.5f,
+                                .cellSizeZ = 0.5f,
+                                .cells = cells})
+        .Value();
 }
 
 BodyId AddGrounds(TestWorld& world) {
@@ -51,7 +62,11 @@ BodyId AddGrounds(TestWorld& world) {
     for (int x = 0; x < 12; ++x)
         for (int z = 0; z < 12; ++z) add(BoxOf(0.5f, 0.5f, 0.5f), {36.5 + x, 0, 0.5 + z});
     add(Plane::Create(Vector3(0.05f, 1, 0), -4).Value(), {20, 0, 0});
-    return world.Add({.shape = RoughMesh(false), .motion = MotionType::Kinematic, .position = {-14, 0, 0}, .linearVelocity = {0.3f, 0.2f, 0}, .angularVelocity = {0, 0.1f, 0}});
+    return world.Add({.shape = RoughMesh(false),
+                      .motion = MotionType::Kinematic,
+                      .position = {-14, 0, 0},
+                      .linearVelocity = {0.3f, 0.2f, 0},
+                      .angularVelocity = {0, 0.1f, 0}});
 }
 
 }  // namespace
@@ -70,12 +85,17 @@ uint64_t HashOfSurfaceScene(uint32_t threads) {
         CompoundOf({{.shape = BoxOf(0.4f, 0.1f, 0.1f)}, {.shape = SphereOf(0.2f), .position = {0.4f, 0, 0}}}),
     };
     uint32_t random = 4711;
-    const auto number = [&] { return static_cast<float>((random = random * 1664525u + 1013904223u) >> 8) / 16777216.0f; };
+    const auto number = [&] {
+        return static_cast<float>((random = random * 1664525u + 1013904223u) >> 8) / 16777216.0f;
+    };
     for (int i = 0; i < 160; ++i) {
         const float x = number(), y = number(), z = number(), w = number();
         const double across = -13 + 62 * double(x), along = 1 + 10 * double(z);
-        world.Add({.shape = shapes[i % 8], .position = {across, 1.5 + 2 * double(y), along}, .rotation = Normalized(Quaternion{x, y, z, w + 0.1f}),
-                   .linearVelocity = {4 * w - 2, 0, 3 * y - 1.5f}, .angularVelocity = Vector3(x, y, z) * 4.0f});
+        world.Add({.shape = shapes[i % 8],
+                   .position = {across, 1.5 + 2 * double(y), along},
+                   .rotation = Normalized(Quaternion{x, y, z, w + 0.1f}),
+                   .linearVelocity = {4 * w - 2, 0, 3 * y - 1.5f},
+                   .angularVelocity = Vector3(x, y, z) * 4.0f});
     }
     for (int step = 0; step < kSteps; ++step) {
         EXPECT_TRUE(step != 120 || world.Bodies().SetVelocity(lift, {-0.3f, -0.2f, 0.1f}, {0, -0.1f, 0}));

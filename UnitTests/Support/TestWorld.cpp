@@ -42,7 +42,10 @@ BodyId TestWorld::Add(const BodySettings& settings) {
 }
 
 BodyId TestWorld::AddFloor(const Material& material, const Position& origin) {
-    return Add({.shape = BoxOf(100, 1, 100), .motion = MotionType::Static, .position = origin - Position(0, 1, 0), .material = material});
+    return Add({.shape = BoxOf(100, 1, 100),
+                .motion = MotionType::Static,
+                .position = origin - Position(0, 1, 0),
+                .material = material});
 }
 
 void TestWorld::Step(double dt) {
@@ -74,8 +77,9 @@ bool TestWorld::AllFinite() {
     bool finite = true;
     system_->VisitBodies([&](BodyId id) {
         const Pose pose = Bodies().GetPose(id);
-        finite = finite && IsFinite(pose.position) && IsFinite(pose.rotation) && IsFinite(Bodies().GetLinearVelocity(id)) &&
-                 IsFinite(Bodies().GetAngularVelocity(id)) && !Bodies().IsFrozen(id);
+        finite = finite && IsFinite(pose.position) && IsFinite(pose.rotation) &&
+                 IsFinite(Bodies().GetLinearVelocity(id)) && IsFinite(Bodies().GetAngularVelocity(id)) &&
+                 !Bodies().IsFrozen(id);
     });
     return finite;
 }
@@ -96,7 +100,10 @@ BodyBits BitsOf(TestWorld& world, BodyId id) {
     const Pose pose = world.Bodies().GetPose(id);
     const Vector3 v = world.Bodies().GetLinearVelocity(id), w = world.Bodies().GetAngularVelocity(id);
     const Quaternion& q = pose.rotation;
-    return {{pose.position.x(), pose.position.y(), pose.position.z()}, {q.x, q.y, q.z, q.w}, {v.x(), v.y(), v.z()}, {w.x(), w.y(), w.z()}};
+    return {{pose.position.x(), pose.position.y(), pose.position.z()},
+            {q.x, q.y, q.z, q.w},
+            {v.x(), v.y(), v.z()},
+            {w.x(), w.y(), w.z()}};
 }
 
 }  // namespace fulcrum::testing

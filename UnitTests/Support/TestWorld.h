@@ -17,8 +17,8 @@
 
 namespace fulcrum::testing {
 
-inline constexpr double kGravity = 9.81;      // m/s2, the default
-inline constexpr double kStep = 1.0 / 60.0;   // s
+inline constexpr double kGravity = 9.81;     // m/s2, the default
+inline constexpr double kStep = 1.0 / 60.0;  // s
 inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr double kDegree = kPi / 180;
 

@@ -26,7 +26,8 @@ Bounds RandomBox(RandomPoses& random, float range, float largest) {
 std::vector<Pair> PairsOf(const BoundsTree& tree) {
     std::vector<Pair> pairs;
     for (uint32_t begin = 0; begin < tree.NodeCount(); begin += 3)
-        tree.VisitPairs(begin, std::min(begin + 3, tree.NodeCount()), [&](uint32_t a, uint32_t b) { pairs.push_back(std::minmax(a, b)); });
+        tree.VisitPairs(begin, std::min(begin + 3, tree.NodeCount()),
+                        [&](uint32_t a, uint32_t b) { pairs.push_back(std::minmax(a, b)); });
     std::sort(pairs.begin(), pairs.end());
     return pairs;
 }
@@ -90,7 +91,8 @@ TEST(BoundsTreeBulk, WritesAllLeavesAndStaysWhole) {
         tree.NoteUpdated(static_cast<uint32_t>(boxes.size()));
         tree.Optimize();
         tree.Validate();
-        for (uint32_t id = 0; id < boxes.size(); ++id) ASSERT_TRUE(tree.GetBounds(id).lower == boxes[id].lower && tree.GetBounds(id).upper == boxes[id].upper);
+        for (uint32_t id = 0; id < boxes.size(); ++id)
+            ASSERT_TRUE(tree.GetBounds(id).lower == boxes[id].lower && tree.GetBounds(id).upper == boxes[id].upper);
         ExpectAllPairs(tree, boxes);
     }
 }

@@ -20,7 +20,8 @@ protected:
     void Fill(int count, const Position& origin) {
         for (int i = 0; i < count; ++i) {
             const Vector3 center = InCube(10), half = InCube(0.5f).cwiseAbs();
-            boxes_.push_back(RoundedOutwards(origin + Position((center - half).cast<double>()), origin + Position((center + half).cast<double>())));
+            boxes_.push_back(RoundedOutwards(origin + Position((center - half).cast<double>()),
+                                             origin + Position((center + half).cast<double>())));
             tree_.Insert(static_cast<uint32_t>(i), boxes_.back());
             if (i == count / 2) tree_.Rebuild();
         }
@@ -30,7 +31,8 @@ protected:
     double Entry(size_t box, const Position& o, const Vector3& d, const Vector3& half) const {
         double enter = 0, leave = 1;
         for (int axis = 0; axis < 3; ++axis) {
-            const double lower = double{boxes_[box].lower[axis]} - half[axis], upper = double{boxes_[box].upper[axis]} + half[axis];
+            const double lower = double{boxes_[box].lower[axis]} - half[axis],
+                         upper = double{boxes_[box].upper[axis]} + half[axis];
             if (d[axis] == 0) {
                 if (o[axis] < lower || o[axis] > upper) return -1;
                 continue;
@@ -112,7 +114,8 @@ TEST_F(BoundsTreeCasts, NearBoxesAreFoundByTheirDistance) {
         box.lower = InCube(15);
         box.upper = box.lower + InCube(1).cwiseAbs();
         const auto distance = [&](size_t b) {
-            const Vector3 gap = Vector3(boxes_[b].lower - box.upper).cwiseMax(box.lower - boxes_[b].upper).cwiseMax(0.0f);
+            const Vector3 gap =
+                Vector3(boxes_[b].lower - box.upper).cwiseMax(box.lower - boxes_[b].upper).cwiseMax(0.0f);
             return double{Length(gap)};
         };
         float limit = std::numeric_limits<float>::infinity();

@@ -160,7 +160,8 @@ TEST(BoundsTree, FindsHugeFloorsAmongSmallBoxes) {
     Random random;
     Reference reference;
     for (uint32_t id = 0; id < 2000; ++id)
-        reference.Insert(id, id % 500 == 7 ? Box(Vector3(-1e4f, -1, -1e4f), Vector3(1e4f, 0, 1e4f)) : random.Box(50, 0.5f));
+        reference.Insert(id,
+                         id % 500 == 7 ? Box(Vector3(-1e4f, -1, -1e4f), Vector3(1e4f, 0, 1e4f)) : random.Box(50, 0.5f));
     reference.tree.Optimize();
     reference.tree.Validate();
     for (int i = 0; i < 100; ++i) reference.ExpectSame(random.Box(60, 2));
@@ -191,7 +192,8 @@ TEST(BoundsTree, WhatLiesBeyondCountsAsLyingAtTheFarthest) {
     tree.Insert(1, Box(Vector3::Constant(-infinite), Vector3::Constant(-2e38f)));
     tree.Optimize();
     tree.Validate();
-    EXPECT_EQ(Found(tree, Box(Vector3::Constant(BoundsTree::kFarthest), Vector3::Constant(BoundsTree::kFarthest))), std::vector<uint32_t>{0});
+    EXPECT_EQ(Found(tree, Box(Vector3::Constant(BoundsTree::kFarthest), Vector3::Constant(BoundsTree::kFarthest))),
+              std::vector<uint32_t>{0});
     EXPECT_EQ(Found(tree, Box(Vector3::Constant(-BoundsTree::kFarthest), Vector3::Zero())), std::vector<uint32_t>{1});
 }
 

@@ -1,5 +1,5 @@
-// GJK through support functions: what it finds proves itself. The points it names lie in the cores, so that no distance is
-// smaller than what the axis separates them by, and none larger than what lies between the points.
+// GJK through support functions: what it finds proves itself. The points it names lie in the cores, so that no distance
+// is smaller than what the axis separates them by, and none larger than what lies between the points.
 #include "NarrowPhaseTesting.h"
 
 #include <Fulcrum/Collision/NarrowPhase/ConvexGjk.h>
@@ -58,8 +58,8 @@ TEST(ConvexGjk, ItsAxisSeparatesAsFarAsItsPointsAreApart) {
                     EXPECT_LE(Dot(n, inB), Dot(n, b.shape->SupportCore(n)) + 1e-5f);
                 }
             }
-            // Coordinates of up to 5 m in float have errors of 3e-7 m each; a few of them add up. The descent stops where
-            // a step gains less than that, and a curved core's next step could gain as much again a few times.
+            // Coordinates of up to 5 m in float have errors of 3e-7 m each; a few of them add up. The descent stops
+            // where a step gains less than that, and a curved core's next step could gain as much again a few times.
             EXPECT_LE(worst, 1e-5) << a.name << " " << b.name;
         }
     }

@@ -33,7 +33,8 @@ TEST(Epa, FindsTheDepthThatTheSearchThroughAllAxesFinds) {
                 if (gjk.status != GjkStatus::Overlapping) {
                     // The face and edge axes find no more than the distance, which GJK finds.
                     EXPECT_GT(gjk.separation, -1e-5f);
-                    EXPECT_GE(gjk.separation, std::min(search.separation, 0.02f) - 1e-5f) << a.name << " " << b.name << " " << i;
+                    EXPECT_GE(gjk.separation, std::min(search.separation, 0.02f) - 1e-5f)
+                        << a.name << " " << b.name << " " << i;
                     continue;
                 }
                 ++overlapping;
@@ -56,9 +57,9 @@ TEST(Epa, FindsTheDepthThatTheSearchThroughAllAxesFinds) {
     std::printf("  EPA gave up in %d of %d overlaps\n", gaveUp, overlapping);
 }
 
-// GJK ends with fewer than four vertices where the origin lies on them: a corner, the middle of a diagonal, a triangle with that for a
-// side. EPA adds what is missing. Two boxes of half sizes h about one center: their difference is a box of 2 h, its least depth that of
-// the smallest, and v and -v are corners of it.
+// GJK ends with fewer than four vertices where the origin lies on them: a corner, the middle of a diagonal, a triangle
+// with that for a side. EPA adds what is missing. Two boxes of half sizes h about one center: their difference is a box
+// of 2 h, its least depth that of the smallest, and v and -v are corners of it.
 TEST(Epa, GrowsASimplexOfFewerThanFourVertices) {
     const Vector3 half(0.5f, 0.4f, 0.7f);
     const ConvexPtr box = MakeBox(half);
@@ -97,12 +98,15 @@ TEST(Epa, GrowsASimplexOfFewerThanFourVertices) {
     EXPECT_EQ(Epa(flat, simplex).status, EpaResult::Status::Failed);
 }
 
-// The search is what remains where EPA gives up, most often with something flat: no direction separates better than its axis.
+// The search is what remains where EPA gives up, most often with something flat: no direction separates better than its
+// axis.
 TEST(AxisSearch, FindsTheBestOfAllDirectionsForFlatPolyhedraToo) {
-    const std::vector<NamedShape> shapes = {{"triangle", Triangle::Create(Vector3(-0.6f, 0, -0.5f), Vector3(0.7f, 0.1f, -0.4f), Vector3(0, 0, 0.8f)).Value()},
-                                            {"needle", Triangle::Create(Vector3(-1, 0, 0), Vector3(1, 0, 0), Vector3(0, 0, 1e-3f)).Value()},
-                                            {"plate", MakeBox(Vector3(0.5f, 1e-3f, 0.4f))},
-                                            {"hull", MakeRoundHull(16, 0.6f)}};
+    const std::vector<NamedShape> shapes = {
+        {"triangle",
+         Triangle::Create(Vector3(-0.6f, 0, -0.5f), Vector3(0.7f, 0.1f, -0.4f), Vector3(0, 0, 0.8f)).Value()},
+        {"needle", Triangle::Create(Vector3(-1, 0, 0), Vector3(1, 0, 0), Vector3(0, 0, 1e-3f)).Value()},
+        {"plate", MakeBox(Vector3(0.5f, 1e-3f, 0.4f))},
+        {"hull", MakeRoundHull(16, 0.6f)}};
     RandomPoses random(4);
     for (const NamedShape& a : shapes) {
         for (const NamedShape& b : shapes) {
@@ -113,10 +117,14 @@ TEST(AxisSearch, FindsTheBestOfAllDirectionsForFlatPolyhedraToo) {
                 const PolyhedronPair pair(coreA, coreB, pose);
                 const FoundAxis found = SearchAllAxes(pair);
                 ASSERT_NEAR(Length(found.axis), 1, 1e-5f) << a.name << " " << b.name << " " << i;
-                EXPECT_NEAR(pair.SeparationAlong(found.axis), found.separation, 1e-6f) << a.name << " " << b.name << " " << i;
-                // Of two that are apart it finds the best of the axes of faces and edges, which says no more than that they are.
+                EXPECT_NEAR(pair.SeparationAlong(found.axis), found.separation, 1e-6f)
+                    << a.name << " " << b.name << " " << i;
+                // Of two that are apart it finds the best of the axes of faces and edges, which says no more than that
+                // they are.
                 if (found.separation > 0) continue;
-                for (int k = 0; k < 300; ++k) EXPECT_LE(pair.SeparationAlong(random.Direction()), found.separation + 1e-6f) << a.name << " " << b.name << " " << i;
+                for (int k = 0; k < 300; ++k)
+                    EXPECT_LE(pair.SeparationAlong(random.Direction()), found.separation + 1e-6f)
+                        << a.name << " " << b.name << " " << i;
             }
         }
     }

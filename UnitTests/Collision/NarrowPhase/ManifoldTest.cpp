@@ -24,7 +24,8 @@ bool HasPointNear(const Manifold& manifold, const Vector3& expected, float toler
     return false;
 }
 
-// Sides are clipped where the other face ends, to within 2 % of the speculative distance; aligned ones lie a rounding off.
+// Sides are clipped where the other face ends, to within 2 % of the speculative distance; aligned ones lie a rounding
+// off.
 constexpr float kClipSlop = 1.5f * 0.02f * 0.02f;
 
 // A turn about y, rad.
@@ -37,7 +38,8 @@ protected:
         if (!GetParam()) return MakeBox(half);
         std::vector<Vector3> corners;
         for (int i = 0; i < 8; ++i)
-            corners.push_back(Vector3(i & 1 ? half.x() : -half.x(), i & 2 ? half.y() : -half.y(), i & 4 ? half.z() : -half.z()));
+            corners.push_back(
+                Vector3(i & 1 ? half.x() : -half.x(), i & 2 ? half.y() : -half.y(), i & 4 ? half.z() : -half.z()));
         return MakeHull(corners);
     }
 };
@@ -73,18 +75,21 @@ TEST_P(FlatBoxes, SmallOnLargeTouchInTheSmallOnesCorners) {
 
 // Turned by 45 degrees the overlap of two unit squares is a regular octagon with inner radius 1/2 and area
 // 2 (sqrt 2 - 1) = 0.828. Four of its corners span at least the square on every other one: with the outer radius
-// R^2 = 1/4 + (tan 22.5 deg / 2)^2 = 0.2929 that is 2 R^2 = 0.586. The deepest-first choice may take a farthest point one corner off.
+// R^2 = 1/4 + (tan 22.5 deg / 2)^2 = 0.2929 that is 2 R^2 = 0.586. The deepest-first choice may take a farthest point
+// one corner off.
 TEST_P(FlatBoxes, CrossedKeepMostOfTheArea) {
     const ConvexPtr box = MakeCuboid(Vector3(0.5f, 0.5f, 0.5f));
     const Manifold m = CollideCold(box, box, {Vector3(0, 0.995f, 0), AboutY(0.785398163f)});
     ASSERT_EQ(m.pointCount, 4);
     std::array<Vector3, 4> p;
     for (int i = 0; i < 4; ++i) p[static_cast<size_t>(i)] = m.points[i].positionOnA;
-    std::sort(p.begin(), p.end(), [](const Vector3& a, const Vector3& b) { return std::atan2(a.x(), a.z()) < std::atan2(b.x(), b.z()); });
+    std::sort(p.begin(), p.end(),
+              [](const Vector3& a, const Vector3& b) { return std::atan2(a.x(), a.z()) < std::atan2(b.x(), b.z()); });
     float area = 0;
     for (size_t i = 0; i < 4; ++i) area += 0.5f * Cross<float>(p[i], p[(i + 1) % 4]).y();
     EXPECT_GT(std::abs(area), 0.5f);
-    for (const Vector3& x : p) EXPECT_LE(std::abs(x.x()) + std::abs(x.z()), std::sqrt(0.5f) + 1e-3f);  // inside the turned one
+    for (const Vector3& x : p)
+        EXPECT_LE(std::abs(x.x()) + std::abs(x.z()), std::sqrt(0.5f) + 1e-3f);  // inside the turned one
 }
 
 TEST_P(FlatBoxes, FeaturesAndPointsPersistUnderTinyMotion) {
@@ -94,7 +99,9 @@ TEST_P(FlatBoxes, FeaturesAndPointsPersistUnderTinyMotion) {
         PairCache cache;
         const Manifold first = CollideOnce(box, box, {offset, {}}, cache);
         for (int i = 0; i < 200; ++i) {
-            const RelativePose pose{offset + 1e-5f * random.InCube(), Normalized(Quaternion{1e-5f * random.Between(-1, 1), 1e-5f * random.Between(-1, 1), 0, 1})};
+            const RelativePose pose{
+                offset + 1e-5f * random.InCube(),
+                Normalized(Quaternion{1e-5f * random.Between(-1, 1), 1e-5f * random.Between(-1, 1), 0, 1})};
             const Manifold m = CollideOnce(box, box, pose, cache);
             EXPECT_EQ(Features(m), Features(first));
         }
@@ -127,7 +134,8 @@ TEST(Manifold, EdgesCrossInOnePoint) {
     }
 }
 
-// Two cubes of side 1, gap 0.01, corner over corner along the diagonal: the distance is that of the corners, along the diagonal.
+// Two cubes of side 1, gap 0.01, corner over corner along the diagonal: the distance is that of the corners, along the
+// diagonal.
 TEST(Manifold, CornersApartSeeEachOther) {
     const ConvexPtr box = MakeBox(Vector3(0.5f, 0.5f, 0.5f));
     const float gap = 0.01f;
@@ -194,11 +202,13 @@ TEST(Manifold, DegenerateOverlapsHaveAWayOut) {
                 if (m.pointCount == 0) continue;
                 ASSERT_NEAR(Length(m.normal), 1, 1e-5f) << a.name << " " << b.name << " " << i;
                 for (int k = 0; k < m.pointCount; ++k) {
-                    ASSERT_TRUE(IsFinite(m.points[k].positionOnA) && std::isfinite(m.points[k].separation)) << a.name << " " << b.name << " " << i;
+                    ASSERT_TRUE(IsFinite(m.points[k].positionOnA) && std::isfinite(m.points[k].separation))
+                        << a.name << " " << b.name << " " << i;
                     ASSERT_NE(m.points[k].feature, 0u);
                 }
                 pose.position += m.normal * (1e-5f - DeepestSeparation(m));
-                EXPECT_GT(SeparationAlong(*a.shape, *b.shape, pose, m.normal), -1e-3) << a.name << " " << b.name << " " << i;
+                EXPECT_GT(SeparationAlong(*a.shape, *b.shape, pose, m.normal), -1e-3)
+                    << a.name << " " << b.name << " " << i;
             }
         }
     }
@@ -210,7 +220,8 @@ TEST(Manifold, FeaturesOfHullsPersistUnderTinyMotion) {
     int changed = 0, found = 0;
     for (int i = 0; i < 1000; ++i) {
         RelativePose pose{random.Direction(), random.Rotation()};
-        pose.position *= static_cast<float>(-SeparationAlong(*hull, *hull, {Vector3::Zero(), pose.rotation}, pose.position)) - 0.05f;
+        pose.position *=
+            static_cast<float>(-SeparationAlong(*hull, *hull, {Vector3::Zero(), pose.rotation}, pose.position)) - 0.05f;
         PairCache cache;
         const Manifold first = CollideOnce(hull, hull, pose, cache);
         pose.position += 1e-6f * random.InCube();

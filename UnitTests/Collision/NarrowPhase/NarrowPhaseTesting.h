@@ -1,5 +1,5 @@
-// What the narrow phase's tests share: shapes, random poses and measures in double that know nothing of the code under test
-// but the shapes' support functions.
+// What the narrow phase's tests share: shapes, random poses and measures in double that know nothing of the code under
+// test but the shapes' support functions.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/Collide.h>

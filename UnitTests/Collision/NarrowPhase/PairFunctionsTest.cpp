@@ -1,5 +1,5 @@
-// Every pair function against libccd on random poses: all pairs of types, 10^4 poses each (3000 of two round shapes and 300 of those with
-// a curved core: there libccd builds polytopes of hundreds of facets, up to a millisecond each).
+// Every pair function against libccd on random poses: all pairs of types, 10^4 poses each (3000 of two round shapes and
+// 300 of those with a curved core: there libccd builds polytopes of hundreds of facets, up to a millisecond each).
 #include "NarrowPhaseTesting.h"
 
 #include <Fulcrum/Collision/NarrowPhase/Libccd.h>
@@ -14,7 +14,9 @@ namespace fulcrum::testing {
 namespace {
 
 int PosesFor(const ConvexShape& a, const ConvexShape& b) {
-    const auto isRound = [](const ConvexShape& s) { return s.Type() == ShapeType::Sphere || s.Type() == ShapeType::Capsule; };
+    const auto isRound = [](const ConvexShape& s) {
+        return s.Type() == ShapeType::Sphere || s.Type() == ShapeType::Capsule;
+    };
     if (std::max(a.Type(), b.Type()) > ShapeType::Triangle) return Cases(300);
     return Cases(isRound(a) && isRound(b) ? 3000 : 10000);
 }
@@ -25,21 +27,24 @@ constexpr double kPreference = 0.02 * 0.02;
 constexpr double kRounding = 5e-6;
 
 const std::vector<NamedShape>& Shapes() {
-    static const std::vector<NamedShape> shapes = {{"sphere", MakeSphere(0.5f)},
-                                                   {"box", MakeBox(Vector3(0.5f, 0.4f, 0.7f))},
-                                                   {"capsule", MakeCapsule(0.5f, 0.25f)},
-                                                   {"hull", MakeRoundHull(32, 0.6f)},
-                                                   {"triangle", Triangle::Create(Vector3(-0.6f, 0, -0.5f), Vector3(0.7f, 0.1f, -0.4f), Vector3(0, 0, 0.8f)).Value()},
-                                                   {"drop", TaperedCapsule::Create(0.5f, 0.2f, 0.4f).Value()},
-                                                   {"cylinder", Cylinder::Create(0.5f, 0.4f).Value()},
-                                                   {"puck", Cylinder::Create(0.2f, 0.6f, 0.05f).Value()},
-                                                   {"frustum", Cylinder::CreateTapered(0.4f, 0.2f, 0.5f).Value()},
-                                                   {"cone", Cylinder::CreateCone(0.5f, 0.4f).Value()},
-                                                   {"ellipsoid", MakeEllipsoid(Vector3(0.3f, 0.5f, 0.7f))}};
+    static const std::vector<NamedShape> shapes = {
+        {"sphere", MakeSphere(0.5f)},
+        {"box", MakeBox(Vector3(0.5f, 0.4f, 0.7f))},
+        {"capsule", MakeCapsule(0.5f, 0.25f)},
+        {"hull", MakeRoundHull(32, 0.6f)},
+        {"triangle",
+         Triangle::Create(Vector3(-0.6f, 0, -0.5f), Vector3(0.7f, 0.1f, -0.4f), Vector3(0, 0, 0.8f)).Value()},
+        {"drop", TaperedCapsule::Create(0.5f, 0.2f, 0.4f).Value()},
+        {"cylinder", Cylinder::Create(0.5f, 0.4f).Value()},
+        {"puck", Cylinder::Create(0.2f, 0.6f, 0.05f).Value()},
+        {"frustum", Cylinder::CreateTapered(0.4f, 0.2f, 0.5f).Value()},
+        {"cone", Cylinder::CreateCone(0.5f, 0.4f).Value()},
+        {"ellipsoid", MakeEllipsoid(Vector3(0.3f, 0.5f, 0.7f))}};
     return shapes;
 }
 
-// Apart within and beyond the speculative distance, touching, shallow, deep, concentric; a third of them with parallel faces.
+// Apart within and beyond the speculative distance, touching, shallow, deep, concentric; a third of them with parallel
+// faces.
 RelativePose RandomPose(const ConvexShape& a, const ConvexShape& b, int i, RandomPoses& random) {
     RelativePose pose;
     const bool parallel = i % 3 == 0;
@@ -97,46 +102,52 @@ Comparison Compare(const ConvexPtr& a, const ConvexPtr& b, uint32_t seed) {
 class PairFunctions : public ::testing::TestWithParam<std::pair<int, int>> {};
 
 TEST_P(PairFunctions, FindAnAxisAsGoodAsLibccds) {
-    const NamedShape &a = Shapes()[static_cast<size_t>(GetParam().first)], &b = Shapes()[static_cast<size_t>(GetParam().second)];
+    const NamedShape &a = Shapes()[static_cast<size_t>(GetParam().first)],
+                     &b = Shapes()[static_cast<size_t>(GetParam().second)];
     const int poses = PosesFor(*a.shape, *b.shape);
     const Comparison c = Compare(a.shape, b.shape, 17);
-    std::printf("  %-8s %-8s %d of %d touch; axis worse than libccd's by at most %.1e m, points off their axis %.1e m, "
-                "libccd off by %.1e m, contradicting itself in %d\n",
-                a.name.c_str(), b.name.c_str(), c.found, poses, c.worseAxis, c.pointError, c.libccdError,
-                c.libccdWrong);
+    std::printf(
+        "  %-8s %-8s %d of %d touch; axis worse than libccd's by at most %.1e m, points off their axis %.1e m, "
+        "libccd off by %.1e m, contradicting itself in %d\n",
+        a.name.c_str(), b.name.c_str(), c.found, poses, c.worseAxis, c.pointError, c.libccdError, c.libccdWrong);
     EXPECT_GE(c.found, kIsSanitized ? 1 : poses / 5 + 1);  // a tenth of the cases has no exact shares
     EXPECT_EQ(c.missed, 0);
     EXPECT_EQ(c.notUnit, 0);
-    // No axis separates better than the best, so one that is at least as good as libccd's is the best one or libccd is wrong.
+    // No axis separates better than the best, so one that is at least as good as libccd's is the best one or libccd is
+    // wrong.
     EXPECT_LE(c.worseAxis, kPreference + kRounding);
-    // The clipped feature may miss the depth along the normal by the preference, and the choice of points that depth again.
+    // The clipped feature may miss the depth along the normal by the preference, and the choice of points that depth
+    // again.
     EXPECT_LE(c.pointError, 2 * kPreference + kRounding);
     // libccd stops within about 1e-4 of the size of the shapes.
     EXPECT_LE(c.libccdError, kPreference + 3e-4);
 }
 
-INSTANTIATE_TEST_SUITE_P(AllTypes, PairFunctions,
-                         ::testing::ValuesIn([] {
+INSTANTIATE_TEST_SUITE_P(AllTypes, PairFunctions, ::testing::ValuesIn([] {
                              std::vector<std::pair<int, int>> pairs;
                              for (int i = 0; i < static_cast<int>(Shapes().size()); ++i)
                                  for (int k = 0; k <= i; ++k) pairs.push_back({i, k});
                              return pairs;
                          }()));
 
-// Deep inside each other, curved cores have whole rings of axes that are nearly as good; the polytope has facets of a tenth
-// of a radian there, which miss the depth by half a per cent before they are polished and pick any axis of the ring.
+// Deep inside each other, curved cores have whole rings of axes that are nearly as good; the polytope has facets of a
+// tenth of a radian there, which miss the depth by half a per cent before they are polished and pick any axis of the
+// ring.
 double CurvedError(const NamedShape& a, const NamedShape& b, float separation) {
     return std::max(a.shape->Type(), b.shape->Type()) > ShapeType::Triangle ? 0.006 * std::max(0.0f, -separation) : 0;
 }
 
-// How far x lies outside the shape (inside: negative). Of a hull, the farthest plane: less than the distance near an edge.
+// How far x lies outside the shape (inside: negative). Of a hull, the farthest plane: less than the distance near an
+// edge.
 double SignedDistance(const ConvexShape& shape, const Vector3& x) {
     switch (shape.Type()) {
         case ShapeType::Sphere: return Length(x) - shape.ConvexRadius();
         case ShapeType::Capsule: {
             const float half = static_cast<const Capsule&>(shape).HalfHeight();
-            // A point cut off the middle of a slanting capsule lies one radius along the normal from its axis, a little inside.
-            return std::max(0.0f, Length(Vector3(x - Vector3(0, std::clamp(x.y(), -half, half), 0))) - shape.ConvexRadius());
+            // A point cut off the middle of a slanting capsule lies one radius along the normal from its axis, a little
+            // inside.
+            return std::max(0.0f,
+                            Length(Vector3(x - Vector3(0, std::clamp(x.y(), -half, half), 0))) - shape.ConvexRadius());
         }
         case ShapeType::Box: return (x.cwiseAbs() - static_cast<const Box&>(shape).HalfExtents()).maxCoeff();
         case ShapeType::Triangle: {
@@ -163,9 +174,11 @@ double SignedDistance(const ConvexShape& shape, const Vector3& x) {
             const auto& c = static_cast<const Cylinder&>(shape);
             const double y = x.y() + c.Mass().centerOfMass.y(), h = c.HalfHeight();
             const double slope = (c.TopRadius() - c.BottomRadius()) / (2 * h), length = std::sqrt(1 + slope * slope);
-            const double side = std::sqrt(x.x() * x.x() + x.z() * x.z()) - (c.TopRadius() + c.BottomRadius()) / 2 - slope * y;
+            const double side =
+                std::sqrt(x.x() * x.x() + x.z() * x.z()) - (c.TopRadius() + c.BottomRadius()) / 2 - slope * y;
             const double sharp = std::max(std::abs(y) - h, side / length);
-            // Rims are rounded within: there the surface lies below the planes by at most (sqrt(2) - 1) of the rounding.
+            // Rims are rounded within: there the surface lies below the planes by at most (sqrt(2) - 1) of the
+            // rounding.
             return c.ConvexRadius() > 0 && sharp < 0 ? std::min(0.0, sharp + 0.4143 * c.ConvexRadius()) : sharp;
         }
         case ShapeType::Custom: {
@@ -190,7 +203,8 @@ TEST(PairFunctionsTest, PointsLieOnBothSurfaces) {
             for (int i = 0; i < Cases(2000); ++i) {
                 const RelativePose pose = RandomPose(*a.shape, *b.shape, i, random);
                 const Manifold manifold = CollideCold(a.shape, b.shape, pose);
-                if (DeepestSeparation(manifold) < -0.15f) continue;  // deep inside, a clipped point may leave the other face
+                if (DeepestSeparation(manifold) < -0.15f)
+                    continue;  // deep inside, a clipped point may leave the other face
                 for (int k = 0; k < manifold.pointCount; ++k) {
                     const ManifoldPoint& point = manifold.points[k];
                     const Vector3 onB = point.positionOnA + manifold.normal * point.separation;
@@ -199,8 +213,8 @@ TEST(PairFunctionsTest, PointsLieOnBothSurfaces) {
                     EXPECT_LE(point.separation, CollideSettings{}.speculativeDistance);
                 }
             }
-            // Clipping keeps what lies outside the sides of a face by no more than the preference, and edges may pass each other
-            // by as much.
+            // Clipping keeps what lies outside the sides of a face by no more than the preference, and edges may pass
+            // each other by as much.
             EXPECT_LE(worst, 2 * kPreference + kRounding) << a.name << " " << b.name;
         }
     }
@@ -214,7 +228,8 @@ TEST(PairFunctionsTest, MirroredPairsGiveMirroredManifolds) {
             for (int i = 0; i < Cases(500); ++i) {
                 const RelativePose pose = RandomPose(*a.shape, *b.shape, i, random);
                 const RelativePose inverse = Inverse(pose);
-                const Manifold there = CollideCold(a.shape, b.shape, pose), back = CollideCold(b.shape, a.shape, inverse);
+                const Manifold there = CollideCold(a.shape, b.shape, pose),
+                               back = CollideCold(b.shape, a.shape, inverse);
                 // Where b is placed by `inverse` twice rounded, features at the edge of a tolerance may differ.
                 if (there.pointCount != back.pointCount) continue;
                 if (there.pointCount == 0) continue;

@@ -18,8 +18,11 @@ std::vector<std::shared_ptr<const ConvexShape>> Shapes() {
     RandomPoses random(1);
     std::vector<Vector3> points;
     for (int i = 0; i < 60; ++i) points.push_back(random.InBox(1));
-    return {Sphere::Create(0.5f).Value(), Capsule::Create(0.6f, 0.3f).Value(), Box::Create(Vector3(0.5f, 0.75f, 1)).Value(),
-            Box::Create(Vector3(0.5f, 0.75f, 1), 0.1f).Value(), ConvexHull::Create(points).Value(),
+    return {Sphere::Create(0.5f).Value(),
+            Capsule::Create(0.6f, 0.3f).Value(),
+            Box::Create(Vector3(0.5f, 0.75f, 1)).Value(),
+            Box::Create(Vector3(0.5f, 0.75f, 1), 0.1f).Value(),
+            ConvexHull::Create(points).Value(),
             ConvexHull::Create(points, {.convexRadius = 0.05f}).Value()};
 }
 
@@ -39,8 +42,8 @@ TEST(Plane, IsBoundedByItsSurfaceAlone) {
     EXPECT_EQ(floor->Distance(Vector3(7, 5, 1)), 3);
 }
 
-// The deepest point is the support point, on every shape in every pose; each point lies on the plane, with the shape's own
-// surface a separation above. Rounding: a few units in the last place of coordinates of up to 5 m, 1e-6 m.
+// The deepest point is the support point, on every shape in every pose; each point lies on the plane, with the shape's
+// own surface a separation above. Rounding: a few units in the last place of coordinates of up to 5 m, 1e-6 m.
 TEST(PlaneContact, HasTheSupportPointAndPointsOnThePlane) {
     RandomPoses random(1);
     const CollideSettings settings;

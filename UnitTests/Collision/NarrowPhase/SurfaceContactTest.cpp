@@ -1,5 +1,5 @@
-// Contacts with triangles, culled by lanes and in closed forms, against GJK on each triangle by itself. The triangles share no
-// corners, so that every edge counts and none is hidden by another's contact.
+// Contacts with triangles, culled by lanes and in closed forms, against GJK on each triangle by itself. The triangles
+// share no corners, so that every edge counts and none is hidden by another's contact.
 #include <Fulcrum/Collision/NarrowPhase/ConvexGjk.h>
 #include <Fulcrum/Collision/NarrowPhase/SurfaceContact.h>
 #include <Fulcrum/Collision/Shapes/TriangleMesh.h>
@@ -62,7 +62,8 @@ Nearest NearestByGjk(const ConvexShape& shape, const TriangleMesh& mesh, const R
 float Least(const SurfaceContacts& contacts) {
     float least = kNone;
     for (const SurfaceManifold& found : contacts.Manifolds())
-        for (int i = 0; i < found.manifold.pointCount; ++i) least = std::min(least, found.manifold.points[i].separation);
+        for (int i = 0; i < found.manifold.pointCount; ++i)
+            least = std::min(least, found.manifold.points[i].separation);
     return least;
 }
 
@@ -105,11 +106,15 @@ TEST(SurfaceContact, ABoxFindsTheNearestTriangle) {
     FindsTheNearest(*MakeBox(Vector3(0.2f, 0.3f, 0.4f), 0.1f), "rounded box");
 }
 TEST(SurfaceContact, HullsFindTheNearestTriangle) {
-    FindsTheNearest(*MakeHull({Vector3(0, 0.5f, 0), Vector3(0.5f, 0, 0), Vector3(-0.5f, 0, 0), Vector3(0, 0, 0.5f), Vector3(0, 0, -0.5f)}), "pyramid");
-    FindsTheNearest(*MakeRoundHull(60, 0.4f), "round hull");       // more vertices than go one after the other
-    FindsTheNearest(*MakePrism(20, 0.4f, 0.3f), "prism");          // more corners than the triangles' own clipping takes
+    FindsTheNearest(*MakeHull({Vector3(0, 0.5f, 0), Vector3(0.5f, 0, 0), Vector3(-0.5f, 0, 0), Vector3(0, 0, 0.5f),
+                               Vector3(0, 0, -0.5f)}),
+                    "pyramid");
+    FindsTheNearest(*MakeRoundHull(60, 0.4f), "round hull");  // more vertices than go one after the other
+    FindsTheNearest(*MakePrism(20, 0.4f, 0.3f), "prism");     // more corners than the triangles' own clipping takes
 }
-TEST(SurfaceContact, ACurvedShapeFindsTheNearestTriangle) { FindsTheNearest(*MakeEllipsoid(Vector3(0.2f, 0.3f, 0.5f)), "ellipsoid"); }
+TEST(SurfaceContact, ACurvedShapeFindsTheNearestTriangle) {
+    FindsTheNearest(*MakeEllipsoid(Vector3(0.2f, 0.3f, 0.5f)), "ellipsoid");
+}
 
 // What a mesh of one large triangle says of a shape above it, in closed form.
 class AboveATriangle : public ::testing::Test {
@@ -120,7 +125,8 @@ protected:
         mesh_ = TriangleMesh::Create({.vertices = vertices, .indices = indices}).Value();
     }
     // The shape at `position`, turned by `rotation`.
-    std::span<const SurfaceManifold> Collide(const ConvexShape& shape, const Vector3& position, const Quaternion& rotation = {}) {
+    std::span<const SurfaceManifold> Collide(const ConvexShape& shape, const Vector3& position,
+                                             const Quaternion& rotation = {}) {
         CollideSettings settings;
         settings.speculativeDistance = kReach;
         CollideSurface(shape, *mesh_, Inverse(RelativePose{position, rotation}), settings, {}, contacts_);

@@ -18,7 +18,8 @@ TEST(Distance, OfConvexShapesIsWhatLibccdAndTheirPointsSay) {
                 const RelativePose pose{random.Direction() * random.Between(0.1f, 2.5f), random.Rotation()};
                 ClosestPoints found;
                 ASSERT_TRUE(FindClosestPoints(*a.shape, *b.shape, pose, 100, found));
-                EXPECT_EQ(Overlap(*a.shape, *b.shape, pose), found.distance <= 0) << a.name << b.name << i << " " << found.distance;
+                EXPECT_EQ(Overlap(*a.shape, *b.shape, pose), found.distance <= 0)
+                    << a.name << b.name << i << " " << found.distance;
                 const double along = SeparationAlong(*a.shape, *b.shape, pose, found.normal);
                 EXPECT_NEAR(along, found.distance, 2e-5) << a.name << " " << b.name << " " << i;
                 EXPECT_NEAR(Dot(found.normal, Vector3(found.onB - found.onA)), found.distance, 2e-5);
@@ -27,13 +28,16 @@ TEST(Distance, OfConvexShapesIsWhatLibccdAndTheirPointsSay) {
                     // The points prove that it is not less, the axis that it is not more.
                     EXPECT_NEAR(Length(Vector3(found.onB - found.onA)), found.distance, 2e-5);
                     EXPECT_LT(MeasureConvex(*a.shape, PointCore(), {found.onA, {}}, 100).separation, 1e-5f);
-                    EXPECT_LT(MeasureConvex(*b.shape, PointCore(), {pose.InverseTransform(found.onB), {}}, 100).separation, 1e-5f);
+                    EXPECT_LT(
+                        MeasureConvex(*b.shape, PointCore(), {pose.InverseTransform(found.onB), {}}, 100).separation,
+                        1e-5f);
                 } else {
                     ++overlapping;
                     const LibccdResult ccd = LibccdPenetration(*a.shape, *b.shape, pose, 0, LibccdAlgorithm::Epa);
                     if (ccd.status != LibccdResult::Status::Found) continue;
                     // Its own depth is not always that of its direction; ours is the least to 3e-5 of the size.
-                    shallow += found.distance < SeparationAlong(*a.shape, *b.shape, pose, ccd.normal.cast<float>()) - 2e-4;
+                    shallow +=
+                        found.distance < SeparationAlong(*a.shape, *b.shape, pose, ccd.normal.cast<float>()) - 2e-4;
                 }
             }
         }
@@ -58,7 +62,8 @@ TEST(Distance, OfCompoundsAndSurfacesIsThatOfTheirClosestParts) {
                 return MeasureConvex(*child.shape, other, Inverse(child.pose) * at, 1e6f).separation;
             };
             best = std::min(best, measure(convex, pose));
-            for (const Compound::Child& other : second->Children()) bestOfTwo = std::min(bestOfTwo, measure(*other.shape, pose * other.pose));
+            for (const Compound::Child& other : second->Children())
+                bestOfTwo = std::min(bestOfTwo, measure(*other.shape, pose * other.pose));
         }
         for (uint32_t t = 0; t < terrain->TriangleCount(); ++t) {
             const TriangleCore triangle(terrain->GetTriangle(t), Vector3::Zero());

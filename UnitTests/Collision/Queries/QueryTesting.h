@@ -1,5 +1,5 @@
-// What the tests of the queries share: shapes known by a support function alone, a surface without a tree, and measures that
-// know nothing of the code under test.
+// What the tests of the queries share: shapes known by a support function alone, a surface without a tree, and measures
+// that know nothing of the code under test.
 #pragma once
 
 #include <Fulcrum/UnitTests/Collision/NarrowPhase/NarrowPhaseTesting.h>
@@ -14,7 +14,8 @@ namespace fulcrum::testing {
 // Curved everywhere. EnterBySupport and the casts take it; it is no type of the shape table.
 class RoundedEllipsoid final : public ConvexShape {
 public:
-    explicit RoundedEllipsoid(const Vector3& radii, float rounding = 0) : ConvexShape(ShapeType::Custom), radii_(radii) {
+    explicit RoundedEllipsoid(const Vector3& radii, float rounding = 0)
+        : ConvexShape(ShapeType::Custom), radii_(radii) {
         convexRadius_ = rounding;
         innerRadius_ = radii.minCoeff() + rounding;
         outerRadius_ = radii.maxCoeff() + rounding;
@@ -57,7 +58,8 @@ public:
     TriangleView GetTriangle(uint32_t id) const override {
         TriangleView view{};
         for (int i = 0; i < 3; ++i) view.vertices[i] = triangles_[id][static_cast<size_t>(i)];
-        view.normal = Normalized(Cross<float>(view.vertices[1] - view.vertices[0], view.vertices[2] - view.vertices[0]));
+        view.normal =
+            Normalized(Cross<float>(view.vertices[1] - view.vertices[0], view.vertices[2] - view.vertices[0]));
         view.id = id;
         return view;
     }
@@ -96,7 +98,8 @@ private:
     }
     bool HitTriangle(const SurfaceRay& ray, uint32_t id, SurfaceHit& hit, float maxFraction) const {
         const Position o = ray.origin.cast<double>(), d = ray.displacement.cast<double>();
-        const Position a = triangles_[id][0].cast<double>(), b = triangles_[id][1].cast<double>(), c = triangles_[id][2].cast<double>();
+        const Position a = triangles_[id][0].cast<double>(), b = triangles_[id][1].cast<double>(),
+                       c = triangles_[id][2].cast<double>();
         const Position n = Cross<double>(b - a, c - a);
         const double speed = Dot<double>(n, d);
         const bool back = speed > 0;
@@ -137,7 +140,8 @@ inline std::shared_ptr<const Compound> MakeCompound(RandomPoses& random, int cou
     std::vector<Compound::ChildSettings> children;
     const std::vector<NamedShape> shapes = QueryShapes();
     for (int i = 0; i < count; ++i)
-        children.push_back({shapes[static_cast<size_t>(i) % (shapes.size() - 1)].shape, random.InCube() * spread, random.Rotation(), 1});
+        children.push_back({shapes[static_cast<size_t>(i) % (shapes.size() - 1)].shape, random.InCube() * spread,
+                            random.Rotation(), 1});
     return Compound::Create(children).Value();
 }
 

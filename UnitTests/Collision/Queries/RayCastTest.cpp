@@ -1,5 +1,5 @@
-// Rays against single shapes. What a ray hits is checked by where the hit lies: on the surface, with nothing of the shape before
-// it, both measured by distances of points, which know nothing of rays.
+// Rays against single shapes. What a ray hits is checked by where the hit lies: on the surface, with nothing of the
+// shape before it, both measured by distances of points, which know nothing of rays.
 #include "QueryTesting.h"
 
 #include <Fulcrum/Collision/Queries/ConvexDistance.h>
@@ -38,7 +38,8 @@ TEST(RayCast, TheHitIsTheFirstPointOfTheShape) {
                 // They may differ where the ray grazes the surface, or ends or begins on it.
                 float nearest = std::min(std::abs(least), std::abs(DistanceOf(shape, origin + ray.displacement)));
                 for (int k = 0; k <= 400; ++k)
-                    nearest = std::min(nearest, std::abs(DistanceOf(shape, origin + ray.displacement * (float(k) / 400))));
+                    nearest =
+                        std::min(nearest, std::abs(DistanceOf(shape, origin + ray.displacement * (float(k) / 400))));
                 EXPECT_LT(nearest, 0.02f) << named.name << " " << i;
                 continue;
             }
@@ -73,7 +74,8 @@ TEST(RayCast, ShapesKnownBySupportAreHitAsTheirFormulaSays) {
     for (int i = 0; i < 100000; ++i) {
         const Ray ray = RayNear(random);
         const float length = Length(ray.displacement);
-        const LineResult found = EnterBySupport(shape, {ray.origin.cast<float>(), ray.displacement / length, 0, length});
+        const LineResult found =
+            EnterBySupport(shape, {ray.origin.cast<float>(), ray.displacement / length, 0, length});
         const Position inverse = Position::Ones().cwiseQuotient(radii.cast<double>());
         const Position o = ray.origin.cwiseProduct(inverse), d = ray.displacement.cast<double>().cwiseProduct(inverse);
         const double a = d.squaredNorm(), b = o.dot(d), c = o.squaredNorm() - 1, root = b * b - a * c;
@@ -101,8 +103,8 @@ TEST(RayCast, FarRaysHitAsNearOnesDo) {
             const Ray long_{target.cast<double>() - direction.cast<double>() * 5000, direction * 10000};
             const bool hit = CastRay(*named.shape, short_, {}, near);
             ASSERT_EQ(CastRay(*named.shape, long_, {}, far), hit) << named.name << i;
-            // The fraction is a float: half a unit in its last place is 3e-4 m of 10 km. Its displacement's direction has a
-            // rounding of 6e-8, which moves the ray sideways by as much as 3e-4 m.
+            // The fraction is a float: half a unit in its last place is 3e-4 m of 10 km. Its displacement's direction
+            // has a rounding of 6e-8, which moves the ray sideways by as much as 3e-4 m.
             if (hit) {
                 EXPECT_NEAR(far.fraction * 10000 - 4996, near.fraction * 8, 1e-2) << named.name;
             }
@@ -152,7 +154,9 @@ TEST(RayCast, CompoundsAndSurfacesAreHitWhereTheirPartsAre) {
         for (uint32_t c = 0; c < compound->Children().size(); ++c) {
             const Compound::Child& child = compound->Children()[c];
             RayHit here;
-            if (!caster.CastClosest(*child.shape, pose * child.pose, {}, here) || (any && here.fraction >= best.fraction)) continue;
+            if (!caster.CastClosest(*child.shape, pose * child.pose, {}, here) ||
+                (any && here.fraction >= best.fraction))
+                continue;
             any = true;
             best = here;
             best.subShape.child = c;
@@ -168,7 +172,8 @@ TEST(RayCast, CompoundsAndSurfacesAreHitWhereTheirPartsAre) {
         }
         int all = 0, expected = 0;
         caster.CastAll(*compound, pose, {}, [&](const RayHit&) { return ++all, true; });
-        for (const Compound::Child& child : compound->Children()) expected += caster.IsHit(*child.shape, pose * child.pose, {});
+        for (const Compound::Child& child : compound->Children())
+            expected += caster.IsHit(*child.shape, pose * child.pose, {});
         EXPECT_EQ(all, expected);
 
         SurfaceHit surfaceHit;

@@ -1,4 +1,5 @@
-// Moving shapes. Nothing overlaps before the time of the hit and something touches at it, both by distances at that time.
+// Moving shapes. Nothing overlaps before the time of the hit and something touches at it, both by distances at that
+// time.
 #include "QueryTesting.h"
 
 #include <Fulcrum/Collision/Queries/ConvexDistance.h>
@@ -64,8 +65,11 @@ void ExpectFirstTouch(const std::vector<NamedShape>& shapes, bool turns, int cas
                     << a.name << " " << b.name << " " << i;
                 const Vector3 point = hit.position.cast<float>();
                 EXPECT_NEAR(MeasureConvex(*a.shape, PointCore(), {point, {}}, 1e6f).separation, 0, touch);
-                EXPECT_NEAR(MeasureConvex(*b.shape, PointCore(), {PoseAt(motion, end).InverseTransform(point), {}}, 1e6f).separation, 0,
-                            2 * touch) << a.name << " " << b.name << " " << i;
+                EXPECT_NEAR(
+                    MeasureConvex(*b.shape, PointCore(), {PoseAt(motion, end).InverseTransform(point), {}}, 1e6f)
+                        .separation,
+                    0, 2 * touch)
+                    << a.name << " " << b.name << " " << i;
             }
         }
     }
@@ -81,9 +85,10 @@ TEST(ShapeCast, MovesUpToTheFirstTouch) { ExpectFirstTouch(QueryShapes(), false,
 TEST(ShapeCast, TurnsUpToTheFirstTouch) { ExpectFirstTouch(QueryShapes(), true, Cases(2100), 8e-5); }
 
 TEST(ShapeCast, CurvedShapesTouchToo) {
-    const std::vector<NamedShape> shapes = {{"ellipsoid", std::make_shared<RoundedEllipsoid>(Vector3(0.3f, 0.6f, 0.9f))},
-                                            {"disc", std::make_shared<RoundedEllipsoid>(Vector3(0.5f, 0.01f, 0.5f))},
-                                            {"soft", std::make_shared<RoundedEllipsoid>(Vector3(0.2f, 0.3f, 0.1f), 0.2f)}};
+    const std::vector<NamedShape> shapes = {
+        {"ellipsoid", std::make_shared<RoundedEllipsoid>(Vector3(0.3f, 0.6f, 0.9f))},
+        {"disc", std::make_shared<RoundedEllipsoid>(Vector3(0.5f, 0.01f, 0.5f))},
+        {"soft", std::make_shared<RoundedEllipsoid>(Vector3(0.2f, 0.3f, 0.1f), 0.2f)}};
     ExpectFirstTouch(shapes, false, 1000, 8e-5);
     ExpectFirstTouch(shapes, true, 300, 8e-5);
 }
@@ -123,7 +128,8 @@ TEST(ShapeCast, SpheresMeetWhenTheirCentersAreThatFarApart) {
         const bool found = ShapeCaster(*b, motion).CastClosest(*a, {}, {}, hit);
         if (std::abs(root) < 1e-5 * dd || std::abs(c) < 1e-5 || std::abs(expected - 1) < 1e-5) continue;
         ASSERT_EQ(found, c < 0 || (root > 0 && expected > 0 && expected < 1)) << i;
-        // The radii are floats: 0.7f + 0.3f is 1 to 3e-8; the tolerance in space is 1e-6, along the way larger by the slope.
+        // The radii are floats: 0.7f + 0.3f is 1 to 3e-8; the tolerance in space is 1e-6, along the way larger by the
+        // slope.
         if (found && c > 0) {
             EXPECT_NEAR(hit.fraction, expected, 2e-6 * dd / std::sqrt(root) / std::sqrt(dd) + 1e-6) << i;
         }

@@ -1,5 +1,5 @@
-// Input without volume, without area, without numbers: repaired, with a report of what was, or refused with the reason. A table of
-// each kind; the details are in the tests of the shapes.
+// Input without volume, without area, without numbers: repaired, with a report of what was, or refused with the reason.
+// A table of each kind; the details are in the tests of the shapes.
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
 #include <Fulcrum/Collision/Shapes/HeightField.h>
 #include <Fulcrum/Collision/Shapes/Plane.h>
@@ -47,7 +47,8 @@ void CheckCases(std::initializer_list<Case> cases) {
         const Answer answer = c.create();
         if (!c.refusal) {
             ASSERT_NE(answer.shape, nullptr) << c.name << ": " << answer.message;
-            EXPECT_TRUE(IsFinite(answer.shape->LocalBounds().lower) && IsFinite(answer.shape->LocalBounds().upper)) << c.name;
+            EXPECT_TRUE(IsFinite(answer.shape->LocalBounds().lower) && IsFinite(answer.shape->LocalBounds().upper))
+                << c.name;
             continue;
         }
         ASSERT_EQ(answer.shape, nullptr) << c.name;
@@ -78,27 +79,54 @@ const Points kTetrahedron = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 TEST(Degenerate, HullsWithoutVolumeAreRefusedWithTheReason) {
     CheckCases({
         {"no point", [] { return HullOf({}); }, ErrorCode::Degenerate, "0 points"},
-        {"one point", [] { return HullOf({{1, 2, 3}}); }, ErrorCode::Degenerate, "1 point"},
-        {"two points", [] { return HullOf({{1, 2, 3}, {0, 0, 0}}); }, ErrorCode::Degenerate, "2 points"},
-        {"three points", [] { return HullOf({{1, 2, 3}, {0, 0, 0}, {1, 0, 0}}); }, ErrorCode::Degenerate, "3 points"},
-        {"one point a hundred times", [] { return HullOf(Points(100, Vector3(1, 2, 3))); }, ErrorCode::Degenerate, "coincide"},
+        {"one point",
+         [] {
+             return HullOf({{1, 2, 3}});
+         },
+         ErrorCode::Degenerate, "1 point"},
+        {"two points",
+         [] {
+             return HullOf({{1, 2, 3}, {0, 0, 0}});
+         },
+         ErrorCode::Degenerate, "2 points"},
+        {"three points",
+         [] {
+             return HullOf({{1, 2, 3}, {0, 0, 0}, {1, 0, 0}});
+         },
+         ErrorCode::Degenerate, "3 points"},
+        {"one point a hundred times", [] { return HullOf(Points(100, Vector3(1, 2, 3))); }, ErrorCode::Degenerate,
+         "coincide"},
         {"collinear", [] { return HullOf(Line(20)); }, ErrorCode::Degenerate, "line"},
-        {"coplanar", [] { return HullOf(Disc(20, Vector3(1, 0, 0), Vector3(0, 1, 0))); }, ErrorCode::Degenerate, "plane"},
-        {"coplanar and slanting", [] { return HullOf(Disc(20, Vector3(0.6f, 0.8f, 0), Vector3(0, 0, 1))); }, ErrorCode::Degenerate, "plane"},
-        {"coplanar but for a rounding", [] {
+        {"coplanar", [] { return HullOf(Disc(20, Vector3(1, 0, 0), Vector3(0, 1, 0))); }, ErrorCode::Degenerate,
+         "plane"},
+        {"coplanar and slanting", [] { return HullOf(Disc(20, Vector3(0.6f, 0.8f, 0), Vector3(0, 0, 1))); },
+         ErrorCode::Degenerate, "plane"},
+        {"coplanar but for a rounding",
+         [] {
              Points points = Disc(20, Vector3(1, 0, 0), Vector3(0, 1, 0));
              points[7].z() = 1e-8f;
              return HullOf(points);
-         }, ErrorCode::Degenerate, "plane"},
-        {"not a number", [] { return HullOf({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, kNan, 1}}); }, ErrorCode::NonFinite, "3"},
-        {"infinite", [] { return HullOf({{0, 0, 0}, {1, 0, kInfinite}, {0, 1, 0}, {0, 0, 1}}); }, ErrorCode::NonFinite, "1"},
+         },
+         ErrorCode::Degenerate, "plane"},
+        {"not a number",
+         [] {
+             return HullOf({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, kNan, 1}});
+         },
+         ErrorCode::NonFinite, "3"},
+        {"infinite",
+         [] {
+             return HullOf({{0, 0, 0}, {1, 0, kInfinite}, {0, 1, 0}, {0, 0, 1}});
+         },
+         ErrorCode::NonFinite, "1"},
         {"four points", [] { return HullOf(kTetrahedron); }, {}},
     });
 }
 
 TEST(Degenerate, CopiesOfPointsAtATenMillionthAreRepaired) {
     Points points = kTetrahedron;
-    for (int i = 0; i < 40; ++i) points.push_back(kTetrahedron[static_cast<size_t>(i) % 4] + Vector3(1e-7f, -1e-7f, 1e-7f) * static_cast<float>(i % 3 - 1));
+    for (int i = 0; i < 40; ++i)
+        points.push_back(kTetrahedron[static_cast<size_t>(i) % 4] +
+                         Vector3(1e-7f, -1e-7f, 1e-7f) * static_cast<float>(i % 3 - 1));
     const auto hull = ConvexHull::Create(points);
     ASSERT_TRUE(hull);
     EXPECT_EQ(hull.Value()->Vertices().size(), 4u);
@@ -114,20 +142,52 @@ TEST(Degenerate, MeshesWithNothingLeftAreRefusedWithTheReason) {
     const Points square = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {1, 0, 1}};
     CheckCases({
         {"no triangle", [&] { return MeshOf(square, {}); }, ErrorCode::Degenerate, ""},
-        {"no vertex", [] { return MeshOf({}, {0, 1, 2}); }, ErrorCode::OutOfRange, ""},
-        {"two thirds of a triangle", [&] { return MeshOf(square, {0, 1}); }, ErrorCode::Degenerate, ""},
-        {"an index too large", [&] { return MeshOf(square, {0, 1, 4}); }, ErrorCode::OutOfRange, "4"},
-        {"one vertex three times", [&] { return MeshOf(square, {1, 1, 1}); }, ErrorCode::Degenerate, ""},
-        {"on a line", [] { return MeshOf(Line(3), {0, 1, 2}); }, ErrorCode::Degenerate, ""},
-        {"not a number", [] { return MeshOf({{0, 0, 0}, {1, 0, 0}, {0, kNan, 1}}, {0, 1, 2}); }, ErrorCode::NonFinite, "2"},
-        {"infinite", [] { return MeshOf({{0, kInfinite, 0}, {1, 0, 0}, {0, 0, 1}}, {0, 1, 2}); }, ErrorCode::NonFinite, "0"},
-        {"a square", [&] { return MeshOf(square, {0, 2, 1, 1, 2, 3}); }, {}},
+        {"no vertex",
+         [] {
+             return MeshOf({}, {0, 1, 2});
+         },
+         ErrorCode::OutOfRange, ""},
+        {"two thirds of a triangle",
+         [&] {
+             return MeshOf(square, {0, 1});
+         },
+         ErrorCode::Degenerate, ""},
+        {"an index too large",
+         [&] {
+             return MeshOf(square, {0, 1, 4});
+         },
+         ErrorCode::OutOfRange, "4"},
+        {"one vertex three times",
+         [&] {
+             return MeshOf(square, {1, 1, 1});
+         },
+         ErrorCode::Degenerate, ""},
+        {"on a line",
+         [] {
+             return MeshOf(Line(3), {0, 1, 2});
+         },
+         ErrorCode::Degenerate, ""},
+        {"not a number",
+         [] {
+             return MeshOf({{0, 0, 0}, {1, 0, 0}, {0, kNan, 1}}, {0, 1, 2});
+         },
+         ErrorCode::NonFinite, "2"},
+        {"infinite",
+         [] {
+             return MeshOf({{0, kInfinite, 0}, {1, 0, 0}, {0, 0, 1}}, {0, 1, 2});
+         },
+         ErrorCode::NonFinite, "0"},
+        {"a square",
+         [&] {
+             return MeshOf(square, {0, 2, 1, 1, 2, 3});
+         },
+         {}},
     });
 }
 
 TEST(Degenerate, MeshesAreRepairedAndSayHow) {
-    // A square; below it a triangle without area, a needle of no height, the first triangle again, and one of a vertex that coincides
-    // with another but for a ten-millionth.
+    // A square; below it a triangle without area, a needle of no height, the first triangle again, and one of a vertex
+    // that coincides with another but for a ten-millionth.
     const Points vertices = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {1, 0, 1}, {0.5f, 0, 0}, {0, 0, 1.00000005f}, {7, 7, 7}};
     const std::vector<uint32_t> indices = {0, 2, 1, 1, 2, 3, 0, 0, 1, 0, 4, 1, 2, 1, 0, 0, 5, 1};
     MeshReport report;
@@ -137,7 +197,8 @@ TEST(Degenerate, MeshesAreRepairedAndSayHow) {
     EXPECT_EQ(static_cast<const TriangleMesh&>(*answer.shape).TriangleCount(), 2u);
     EXPECT_EQ(report.degenerateTriangles.count, 2u);
     EXPECT_EQ(report.degenerateTriangles.first, 2u);
-    EXPECT_EQ(report.duplicateTriangles.count, 2u);  // the copy from another corner on, and the one with the welded vertex
+    EXPECT_EQ(report.duplicateTriangles.count,
+              2u);  // the copy from another corner on, and the one with the welded vertex
     EXPECT_EQ(report.duplicateTriangles.first, 4u);
     EXPECT_EQ(report.weldedVertices.count, 1u);
     EXPECT_EQ(report.weldedVertices.first, 5u);
@@ -146,8 +207,14 @@ TEST(Degenerate, MeshesAreRepairedAndSayHow) {
     EXPECT_EQ(report.boundaryEdges, 4u);
 }
 
-Answer FieldOf(uint32_t countX, uint32_t countZ, const std::vector<float>& heights, float cell = 1, const std::vector<uint8_t>& cells = {}) {
-    return AnswerOf(HeightField::Create({.sampleCountX = countX, .sampleCountZ = countZ, .heights = heights, .cellSizeX = cell, .cellSizeZ = cell, .cells = cells}));
+Answer FieldOf(uint32_t countX, uint32_t countZ, const std::vector<float>& heights, float cell = 1,
+               const std::vector<uint8_t>& cells = {}) {
+    return AnswerOf(HeightField::Create({.sampleCountX = countX,
+                                         .sampleCountZ = countZ,
+                                         .heights = heights,
+                                         .cellSizeX = cell,
+                                         .cellSizeZ = cell,
+                                         .cells = cells}));
 }
 
 TEST(Degenerate, HeightFieldsAreRefusedWithTheReason) {
@@ -164,7 +231,8 @@ TEST(Degenerate, HeightFieldsAreRefusedWithTheReason) {
         {"no sample", [] { return FieldOf(0, 0, {}); }, ErrorCode::OutOfRange, "0 x 0 samples"},
         {"too few samples", [&] { return FieldOf(3, 4, flat); }, ErrorCode::OutOfRange, "heights"},
         {"cells of no size", [&] { return FieldOf(3, 3, flat, 0); }, ErrorCode::NonPositive, "cell size"},
-        {"nothing but holes", [&] { return FieldOf(3, 3, flat, 1, std::vector<uint8_t>(4, kHoleCell)); }, ErrorCode::Degenerate, "hole"},
+        {"nothing but holes", [&] { return FieldOf(3, 3, flat, 1, std::vector<uint8_t>(4, kHoleCell)); },
+         ErrorCode::Degenerate, "hole"},
         {"flat", [&] { return FieldOf(3, 3, flat); }, {}},
     });
 }
@@ -177,15 +245,26 @@ TEST(Degenerate, ShapesOfNoSizeAreRefusedWithTheReason) {
         {"sphere whose inertia is 0", [] { return AnswerOf(Sphere::Create(1e-12f)); }, ErrorCode::OutOfRange, ""},
         {"sphere whose inertia is infinite", [] { return AnswerOf(Sphere::Create(1e12f)); }, ErrorCode::OutOfRange, ""},
         {"box without width", [] { return AnswerOf(Box::Create(Vector3(1, 0, 1))); }, ErrorCode::NonPositive, "y"},
-        {"box of infinite height", [] { return AnswerOf(Box::Create(Vector3(1, 1, kInfinite))); }, ErrorCode::NonFinite, "z"},
-        {"box rounded to more than its width", [] { return AnswerOf(Box::Create(Vector3(1, 0.1f, 1), 0.2f)); }, ErrorCode::OutOfRange, "convexRadius"},
+        {"box of infinite height", [] { return AnswerOf(Box::Create(Vector3(1, 1, kInfinite))); }, ErrorCode::NonFinite,
+         "z"},
+        {"box rounded to more than its width", [] { return AnswerOf(Box::Create(Vector3(1, 0.1f, 1), 0.2f)); },
+         ErrorCode::OutOfRange, "convexRadius"},
         {"capsule of radius 0", [] { return AnswerOf(Capsule::Create(1, 0)); }, ErrorCode::NonPositive, "radius"},
         {"cylinder of height 0", [] { return AnswerOf(Cylinder::Create(0, 1)); }, ErrorCode::NonPositive, "halfHeight"},
         {"cone of radius 0", [] { return AnswerOf(Cylinder::CreateCone(1, 0)); }, ErrorCode::NonPositive, "radius"},
         {"drop of radius 0", [] { return AnswerOf(TaperedCapsule::Create(1, 0, 0)); }, ErrorCode::NonPositive, "adius"},
-        {"triangle on a line", [] { return AnswerOf(Triangle::Create({0, 0, 0}, {1, 1, 1}, {2, 2, 2})); }, ErrorCode::Degenerate, "line"},
-        {"triangle of one point", [] { return AnswerOf(Triangle::Create({1, 1, 1}, {1, 1, 1}, {1, 1, 1})); }, ErrorCode::Degenerate, ""},
-        {"plane without a direction", [] { return AnswerOf(Plane::Create(Vector3(0, 0, 0), 1)); }, ErrorCode::Degenerate, "normal"},
+        {"triangle on a line",
+         [] {
+             return AnswerOf(Triangle::Create({0, 0, 0}, {1, 1, 1}, {2, 2, 2}));
+         },
+         ErrorCode::Degenerate, "line"},
+        {"triangle of one point",
+         [] {
+             return AnswerOf(Triangle::Create({1, 1, 1}, {1, 1, 1}, {1, 1, 1}));
+         },
+         ErrorCode::Degenerate, ""},
+        {"plane without a direction", [] { return AnswerOf(Plane::Create(Vector3(0, 0, 0), 1)); },
+         ErrorCode::Degenerate, "normal"},
         {"compound of nothing", [] { return AnswerOf(Compound::Create({})); }, ErrorCode::Degenerate, ""},
         {"sphere of a micrometer", [] { return AnswerOf(Sphere::Create(1e-6f)); }, {}},
         {"sphere of a thousand kilometers", [] { return AnswerOf(Sphere::Create(1e6f)); }, {}},
@@ -197,7 +276,9 @@ TEST(Degenerate, ScalesBeyondNumbersAreRefusedWithTheReason) {
     const ShapePtr box = Box::Create(Vector3(1, 1, 1)).Value();
     const Points square = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {1, 0, 1}};
     const ShapePtr mesh = MeshOf(square, {0, 2, 1, 1, 2, 3}).shape;
-    const auto scaled = [](const ShapePtr& shape, float x, float y, float z) { return AnswerOf(Scaled(shape, Vector3(x, y, z))); };
+    const auto scaled = [](const ShapePtr& shape, float x, float y, float z) {
+        return AnswerOf(Scaled(shape, Vector3(x, y, z)));
+    };
     CheckCases({
         {"a factor of 0", [&] { return scaled(box, 1, 0, 1); }, ErrorCode::OutOfRange, ""},
         {"a factor that is not a number", [&] { return scaled(box, 1, 1, kNan); }, ErrorCode::NonFinite, ""},

@@ -78,7 +78,8 @@ TEST(HeightField, StepsAreWithinHalfAStepOfWhatWasSet) {
             EXPECT_NEAR(double{field->Height(x, z)}, double{samples.heights[z * 20 + x]}, tolerance);
 }
 
-// 2 or 4 bytes a sample, a byte a cell where there are materials or holes, and at most 0.3 for the ranges of the blocks.
+// 2 or 4 bytes a sample, a byte a cell where there are materials or holes, and at most 0.3 for the ranges of the
+// blocks.
 TEST(HeightField, TakesLittleMoreThanItsSamples) {
     const Samples plain = Waves(257, 257, 2), holes = WithHoles(Waves(257, 257, 2), 9);
     HeightFieldSettings settings = plain.Settings();
@@ -101,7 +102,8 @@ TEST(HeightField, RaysFallThroughHolesAlone) {
     EXPECT_TRUE(field->IsHole(4, 3));
     for (uint32_t z = 0; z < 8; ++z) {
         for (uint32_t x = 0; x < 8; ++x) {
-            const SurfaceRay ray{Vector3(static_cast<float>(x) + 0.3f, 1, static_cast<float>(z) + 0.4f), Vector3(0, -2, 0)};
+            const SurfaceRay ray{Vector3(static_cast<float>(x) + 0.3f, 1, static_cast<float>(z) + 0.4f),
+                                 Vector3(0, -2, 0)};
             EXPECT_EQ(field->IsHit(ray), x != 4 || z != 3) << x << ' ' << z;
         }
     }
@@ -166,7 +168,8 @@ TEST(HeightField, EditsChangeWhatTheySay) {
         EXPECT_EQ(field->LocalBounds().lower, fresh->LocalBounds().lower);
         EXPECT_EQ(field->LocalBounds().upper, fresh->LocalBounds().upper);
         for (int i = 0; i < 50; ++i) {
-            const SurfaceRay ray{random.InBounds(field->LocalBounds()) + Vector3(0, 5, 0), Vector3(random.Between(-9, 9), -20, 1)};
+            const SurfaceRay ray{random.InBounds(field->LocalBounds()) + Vector3(0, 5, 0),
+                                 Vector3(random.Between(-9, 9), -20, 1)};
             SurfaceHit a, b;
             ASSERT_EQ(field->CastRay(ray, a), fresh->CastRay(ray, b));
             ASSERT_EQ(a.fraction, b.fraction);

@@ -76,7 +76,8 @@ TEST(HullBuilder, AgreesWithQhullOnTenThousandPointSets) {
             EXPECT_NEAR(volume, expected->volume, (3 * mesh.tolerance + rounding) * expected->area);
         }
     }
-    // Kinds with four random points may be thin by chance, and the flattest have few points that reach out of the plane.
+    // Kinds with four random points may be thin by chance, and the flattest have few points that reach out of the
+    // plane.
     EXPECT_GT(built, 50 * refused);
 }
 

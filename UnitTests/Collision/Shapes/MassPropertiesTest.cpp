@@ -33,7 +33,9 @@ std::array<float, 3> Sorted(const Vector3& v) {
     std::sort(s.begin(), s.end());
     return s;
 }
-SymmetricMatrix3 TensorOf(const MassProperties& m) { return RotatedDiagonal(ToMatrix(m.principalAxes), m.principalInertia); }
+SymmetricMatrix3 TensorOf(const MassProperties& m) {
+    return RotatedDiagonal(ToMatrix(m.principalAxes), m.principalInertia);
+}
 
 void ExpectSameTensor(const MassProperties& a, const MassProperties& b, float tolerance) {
     const SymmetricMatrix3 x = TensorOf(a), y = TensorOf(b);
@@ -68,13 +70,14 @@ TEST(MassProperties, OfABox) {
 TEST(MassProperties, OfACapsuleEqualTheIntegralOverDiscs) {
     const double h = 0.7, r = 0.4;
     const auto capsule = Capsule::Create(static_cast<float>(h), static_cast<float>(r)).Value();
-    // Discs of radius s(y): dV = pi s^2 dy, dI_along = dV s^2 / 2, dI_across = dV (s^2 / 4 + y^2). The midpoint rule over
-    // 20000 discs is off by O(step^2), about 1e-8.
+    // Discs of radius s(y): dV = pi s^2 dy, dI_along = dV s^2 / 2, dI_across = dV (s^2 / 4 + y^2). The midpoint rule
+    // over 20000 discs is off by O(step^2), about 1e-8.
     constexpr int kDiscs = 20000;
     const double top = h + r, step = 2 * top / kDiscs;
     double volume = 0, along = 0, across = 0;
     for (int i = 0; i < kDiscs; ++i) {
-        const double y = -top + (i + 0.5) * step, beyond = std::max(std::fabs(y) - h, 0.0), s2 = r * r - beyond * beyond;
+        const double y = -top + (i + 0.5) * step, beyond = std::max(std::fabs(y) - h, 0.0),
+                     s2 = r * r - beyond * beyond;
         const double disc = kPi * s2 * step;
         volume += disc;
         along += disc * s2 / 2;
@@ -151,8 +154,9 @@ TEST(MassProperties, OfTwoHalvesAreThoseOfTheWholeBox) {
     const auto half = Box::Create(Vector3(0.5f, 0.8f, 0.3f)).Value();
     const auto whole = Box::Create(Vector3(1, 0.8f, 0.3f)).Value();
     // Density is relative: two parts of 3 weigh as two of 1.
-    const std::vector<Compound::ChildSettings> children{{.shape = half, .position = {4.5f, 1, -2}, .rotation = {}, .density = 3},
-                                                        {.shape = half, .position = {5.5f, 1, -2}, .rotation = {}, .density = 3}};
+    const std::vector<Compound::ChildSettings> children{
+        {.shape = half, .position = {4.5f, 1, -2}, .rotation = {}, .density = 3},
+        {.shape = half, .position = {5.5f, 1, -2}, .rotation = {}, .density = 3}};
     const auto compound = Compound::Create(children).Value();
     ExpectRelative(compound->Mass().volume, double{whole->Mass().volume}, kFloat);
     ExpectSameTensor(compound->Mass(), whole->Mass(), 3e-7f);
@@ -177,8 +181,9 @@ TEST(MassProperties, OfATurnedChildAreThoseOfItsHull) {
 
 TEST(MassProperties, HeavierChildDrawsTheCenter) {
     const auto sphere = Sphere::Create(1).Value();
-    const std::vector<Compound::ChildSettings> children{{.shape = sphere, .position = {0, 0, 0}, .rotation = {}, .density = 3},
-                                                        {.shape = sphere, .position = {4, 0, 0}, .rotation = {}, .density = 1}};
+    const std::vector<Compound::ChildSettings> children{
+        {.shape = sphere, .position = {0, 0, 0}, .rotation = {}, .density = 3},
+        {.shape = sphere, .position = {4, 0, 0}, .rotation = {}, .density = 1}};
     const auto compound = Compound::Create(children).Value();
     EXPECT_NEAR(compound->Mass().centerOfMass.x(), 1, 1e-6);
     // Mean density 1: masses 1.5 V and 0.5 V at 1 m and 3 m.

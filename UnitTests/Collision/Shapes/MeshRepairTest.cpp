@@ -36,14 +36,14 @@ TEST(MeshRepair, RefusesWhatItCannotRepair) {
 
 TEST(MeshRepair, ReportsWhatItRepaired) {
     IndexedTriangles mesh;
-    mesh.vertices = {Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 0, 1), Vector3(1, 0, 1), Vector3(1, 5e-8f, 0),
-                     Vector3(9, 9, 9), Vector3(0.5f, 0, 0)};
-    mesh.indices = {0, 2, 1,    // kept
-                    4, 2, 3,    // kept, its vertex 4 is vertex 1
-                    1, 0, 2,    // the first again
-                    0, 6, 1,    // a line
-                    1, 1, 2,    // a point and a line
-                    2, 3, 1};   // the second again
+    mesh.vertices = {Vector3(0, 0, 0),     Vector3(1, 0, 0), Vector3(0, 0, 1),   Vector3(1, 0, 1),
+                     Vector3(1, 5e-8f, 0), Vector3(9, 9, 9), Vector3(0.5f, 0, 0)};
+    mesh.indices = {0, 2, 1,   // kept
+                    4, 2, 3,   // kept, its vertex 4 is vertex 1
+                    1, 0, 2,   // the first again
+                    0, 6, 1,   // a line
+                    1, 1, 2,   // a point and a line
+                    2, 3, 1};  // the second again
     MeshReport report;
     const MeshPtr built = TriangleMesh::Create(mesh.Settings(), &report).Value();
     EXPECT_EQ(built->TriangleCount(), 2u);
@@ -86,11 +86,13 @@ TEST(MeshRepair, SurvivesAnyInput) {
                 const auto bits = static_cast<uint32_t>(engine());
                 std::memcpy(&v[axis], &bits, 4);
                 const bool isTame = round % 4 != 0 || !(std::fabs(v[axis]) < 1e14f);
-                if (isTame) v[axis] = static_cast<float>(static_cast<int>(random.Below(5))) * (round % 3 == 0 ? 1e-7f : 1.0f);
+                if (isTame)
+                    v[axis] = static_cast<float>(static_cast<int>(random.Below(5))) * (round % 3 == 0 ? 1e-7f : 1.0f);
             }
             mesh.vertices.push_back(v);
         }
-        for (uint32_t i = 0; i < indices; ++i) mesh.indices.push_back(random.Below(vertices + (round % 20 == 0 ? 1 : 0)));
+        for (uint32_t i = 0; i < indices; ++i)
+            mesh.indices.push_back(random.Below(vertices + (round % 20 == 0 ? 1 : 0)));
         const auto result = TriangleMesh::Create(mesh.Settings());
         if (!result) continue;
         ++built;

@@ -24,10 +24,12 @@ class RandomChildren {
 public:
     explicit RandomChildren(uint32_t seed) : random(seed) {
         const Vector3 wedge[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
-        shapes = {Sphere::Create(0.4f).Value(), Box::Create(Vector3(0.5f, 0.2f, 0.7f)).Value(), Capsule::Create(0.3f, 0.2f).Value(),
-                  ConvexHull::Create(wedge).Value()};
+        shapes = {Sphere::Create(0.4f).Value(), Box::Create(Vector3(0.5f, 0.2f, 0.7f)).Value(),
+                  Capsule::Create(0.3f, 0.2f).Value(), ConvexHull::Create(wedge).Value()};
     }
-    uint32_t Below(uint32_t count) { return std::min(static_cast<uint32_t>(random.Between(0, static_cast<float>(count))), count - 1); }
+    uint32_t Below(uint32_t count) {
+        return std::min(static_cast<uint32_t>(random.Between(0, static_cast<float>(count))), count - 1);
+    }
     ChildSettings Next() {
         ChildSettings child;
         child.shape = shapes[Below(4)];
@@ -84,7 +86,8 @@ TEST(MutableCompound, IsWhatTheStaticCompoundOfItsChildrenIs) {
 }
 
 // The answers of a shape's queries by place in space, whatever its center.
-void ExpectSameQueries(const MutableCompound& compound, const std::map<ChildId, ChildSettings>& children, RandomPoses& random) {
+void ExpectSameQueries(const MutableCompound& compound, const std::map<ChildId, ChildSettings>& children,
+                       RandomPoses& random) {
     const Pose user{Position(1, 2, 3), random.Rotation()};
     const Pose pose{user.Transform(compound.Mass().centerOfMass), user.rotation};
     const auto centerOf = [&](const ChildSettings& child) {
@@ -230,14 +233,16 @@ TEST(MutableCompound, BadEditsAreRefusedAndChangeNothing) {
     const auto code = [](const auto& result) { return result ? ErrorCode(-1) : result.GetError().code; };
     EXPECT_EQ(code(MutableCompound::Create({})), ErrorCode::Degenerate);
     EXPECT_EQ(code(compound->Add({.shape = nullptr})), ErrorCode::Unsupported);
-    EXPECT_NE(compound->Add({.shape = nested}).GetError().message.find("child is a mutable compound"), std::string::npos);
+    EXPECT_NE(compound->Add({.shape = nested}).GetError().message.find("child is a mutable compound"),
+              std::string::npos);
     EXPECT_EQ(code(compound->Add({.shape = box, .position = {NAN, 0, 0}})), ErrorCode::NonFinite);
     EXPECT_EQ(code(compound->Add({.shape = box, .position = {1e20f, 0, 0}})), ErrorCode::OutOfRange);
     EXPECT_EQ(code(compound->Add({.shape = box, .position = {1e20f, 0, 0}}, MassUpdate::Keep)), ErrorCode::OutOfRange);
     // A reduced mass of 5e5 m3 times the square of 9e17 m is no float.
     const ShapePtr large = Box::Create(Vector3(50, 50, 50)).Value();
     const ChildSettings here[] = {{.shape = large}};
-    EXPECT_EQ(code(MutableCompound::Create(here).Value()->Add({.shape = large, .position = {9e17f, 0, 0}})), ErrorCode::OutOfRange);
+    EXPECT_EQ(code(MutableCompound::Create(here).Value()->Add({.shape = large, .position = {9e17f, 0, 0}})),
+              ErrorCode::OutOfRange);
     EXPECT_EQ(code(compound->Add({.shape = box, .rotation = {0, 0, 0, 2}})), ErrorCode::Unnormalized);
     EXPECT_EQ(code(compound->Add({.shape = box, .density = 0})), ErrorCode::NonPositive);
     EXPECT_EQ(code(compound->Move({0, 1}, {0, 0, 0}, {})), ErrorCode::UnknownId);

@@ -41,8 +41,8 @@ public:
             const Position a = InCube();
             const double w = Symmetric(), squared = a.squaredNorm() + w * w;
             if (squared > 1 || squared < 1e-2) continue;
-            return Normalized(Quaternion{static_cast<float>(a.x()), static_cast<float>(a.y()), static_cast<float>(a.z()),
-                                         static_cast<float>(w)});
+            return Normalized(Quaternion{static_cast<float>(a.x()), static_cast<float>(a.y()),
+                                         static_cast<float>(a.z()), static_cast<float>(w)});
         }
     }
 
@@ -51,8 +51,21 @@ private:
 };
 
 enum class PointSet {
-    InBall, OnSphere, InCube, BoxGrid, TurnedBoxGrid, NoisyGrid, TurnedPrism, Duplicated, Flat1e5, Flat1e6, TurnedFlat1e5,
-    Needle, Tiny, FarAway, Count
+    InBall,
+    OnSphere,
+    InCube,
+    BoxGrid,
+    TurnedBoxGrid,
+    NoisyGrid,
+    TurnedPrism,
+    Duplicated,
+    Flat1e5,
+    Flat1e6,
+    TurnedFlat1e5,
+    Needle,
+    Tiny,
+    FarAway,
+    Count
 };
 
 // One set of the kind: float coordinates of about 1 m, but for the kinds that say otherwise.
@@ -130,7 +143,8 @@ inline std::vector<Vector3> FibonacciSphere(int count, double radius) {
 inline std::vector<Vector3> BoxCorners(const Vector3& halfExtents) {
     std::vector<Vector3> corners;
     for (int i = 0; i < 8; ++i) {
-        corners.push_back(halfExtents.cwiseProduct(Vector3(i & 1 ? 1.f : -1.f, i & 2 ? 1.f : -1.f, i & 4 ? 1.f : -1.f)));
+        corners.push_back(
+            halfExtents.cwiseProduct(Vector3(i & 1 ? 1.f : -1.f, i & 2 ? 1.f : -1.f, i & 4 ? 1.f : -1.f)));
     }
     return corners;
 }

@@ -85,8 +85,9 @@ TEST(Compound, RefusesBadChildren) {
     EXPECT_EQ(create({{.shape = box, .density = kNaN}}), ErrorCode::NonFinite);
     const ShapePtr nested = Compound::Create(Children{{.shape = box}}).Value();
     EXPECT_EQ(create({{.shape = nested}}), ErrorCode::Unsupported);
-    EXPECT_NE(Compound::Create(Children{{.shape = box}, {.shape = nested}}).GetError().message.find("child 1 is a compound"),
-              std::string::npos);
+    EXPECT_NE(
+        Compound::Create(Children{{.shape = box}, {.shape = nested}}).GetError().message.find("child 1 is a compound"),
+        std::string::npos);
 }
 
 TEST(Compound, BoundsAndRadiiHoldAllChildren) {
@@ -97,7 +98,8 @@ TEST(Compound, BoundsAndRadiiHoldAllChildren) {
         std::vector<Compound::ChildSettings> children;
         for (int c = 0; c < 3; ++c) {
             children.push_back({.shape = c == 1 ? ShapePtr(capsule) : ShapePtr(box),
-                                .position = (random.InCube() * 3).cast<float>(), .rotation = random.Rotation()});
+                                .position = (random.InCube() * 3).cast<float>(),
+                                .rotation = random.Rotation()});
         }
         const auto compound = Compound::Create(children).Value();
         EXPECT_EQ(compound->InnerRadius(), 0.25f);

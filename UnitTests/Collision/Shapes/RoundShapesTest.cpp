@@ -89,7 +89,8 @@ void ExpectSizes(const ConvexShape& shape) {
             // Counter-clockwise: Newell's normal is the face's.
             Vector3 sum = Vector3::Zero();
             for (int i = 1; i + 1 < face.count; ++i)
-                sum += Cross<float>(Vector3(face.vertices[i] - face.vertices[0]), Vector3(face.vertices[i + 1] - face.vertices[0]));
+                sum += Cross<float>(Vector3(face.vertices[i] - face.vertices[0]),
+                                    Vector3(face.vertices[i + 1] - face.vertices[0]));
             EXPECT_GT(Dot(Normalized(sum), face.normal), 0.9999f);
         }
     }
@@ -128,7 +129,8 @@ TEST(Cone, HasTheMassOfTheClosedForm) {
     const auto cone = Cylinder::CreateCone(0.6f, 0.4f).Value();
     // Center of mass at a quarter of the height; 3/10 m r^2 about the axis, 3/80 m (4 r^2 + H^2) across.
     const double height = 2 * double{0.6f}, r = 0.4f, volume = kPi * r * r * height / 3;
-    ExpectMass(*cone, {volume, -height / 4, volume * 3 / 80 * (4 * r * r + height * height), volume * 0.3 * r * r}, 1e-6);
+    ExpectMass(*cone, {volume, -height / 4, volume * 3 / 80 * (4 * r * r + height * height), volume * 0.3 * r * r},
+               1e-6);
     ExpectMass(*cone, Revolve(-height / 2, height / 2, 1, [&](double y) { return r * (0.5 - y / height); }));
     ExpectSizes(*cone);
     ExpectSizes(*Cylinder::CreateTapered(0.6f, 0.4f, 0).Value());
@@ -157,7 +159,8 @@ TEST(TaperedCapsule, HasTheMassOfTheIntegral) {
     ExpectSizes(*TaperedCapsule::Create(0.5f, 0.4f, 0.1f).Value());
     // Two equal balls make a capsule.
     const double r = 0.3f, cylinder = 2 * kPi * r * r * double{0.7f}, ball = 4.0 / 3 * kPi * r * r * r;
-    EXPECT_NEAR(TaperedCapsule::Create(0.7f, 0.3f, 0.3f).Value()->Mass().volume, cylinder + ball, 1e-6 * (cylinder + ball));
+    EXPECT_NEAR(TaperedCapsule::Create(0.7f, 0.3f, 0.3f).Value()->Mass().volume, cylinder + ball,
+                1e-6 * (cylinder + ball));
 }
 
 TEST(RoundShapes, NameTheSizeThatIsWrong) {
@@ -182,8 +185,10 @@ TEST(Triangle, HasTheMassOfAThinPlate) {
     const Vector3 corners[3] = {Vector3(1, 2, 3), Vector3(2, 2.5f, 3), Vector3(1.2f, 2.1f, 4)};
     const auto triangle = Triangle::Create(corners[0], corners[1], corners[2], 0.05f).Value();
     // 1000 x 1000 cells of the parallelogram, folded onto the triangle, in ten layers of the thickness.
-    const Position a = corners[0].cast<double>(), ab = corners[1].cast<double>() - a, ac = corners[2].cast<double>() - a;
-    const Position cross = Cross<double>(ab, ac), normal = cross * (1 / cross.norm()), center = a + (ab + ac) * (1.0 / 3);
+    const Position a = corners[0].cast<double>(), ab = corners[1].cast<double>() - a,
+                   ac = corners[2].cast<double>() - a;
+    const Position cross = Cross<double>(ab, ac), normal = cross * (1 / cross.norm()),
+                   center = a + (ab + ac) * (1.0 / 3);
     const double volume = cross.norm() / 2 * double{0.05f} * 2;
     double second[3] = {0, 0, 0}, trace = 0;
     constexpr int kCells = 1000;
@@ -244,7 +249,9 @@ public:
 
 class Flat final : public CustomConvex {
 public:
-    Vector3 FarthestPoint(const Vector3& d) const override { return Vector3(d.x() < 0 ? -1.0f : 1.0f, d.y() < 0 ? -1.0f : 1.0f, 0); }
+    Vector3 FarthestPoint(const Vector3& d) const override {
+        return Vector3(d.x() < 0 ? -1.0f : 1.0f, d.y() < 0 ? -1.0f : 1.0f, 0);
+    }
 };
 
 TEST(CustomConvex, FindsItsMassFromTheSupportFunctionAlone) {

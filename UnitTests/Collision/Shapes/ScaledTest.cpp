@@ -30,7 +30,8 @@ float Reach(const Shape& shape, const Vector3& d) {
     float most = -std::numeric_limits<float>::infinity();
     for (const Compound::Child& child : static_cast<const Compound&>(shape).Children()) {
         const Vector3 local = InverseRotate(child.pose.rotation, d);
-        most = std::max(most, Dot(d, Vector3(child.pose.Transform(child.shape->Support(local)) + shape.Mass().centerOfMass)));
+        most = std::max(most,
+                        Dot(d, Vector3(child.pose.Transform(child.shape->Support(local)) + shape.Mass().centerOfMass)));
     }
     return most;
 }
@@ -40,25 +41,30 @@ void ExpectImage(const ShapePtr& shape, const Vector3& scale) {
     ASSERT_TRUE(scaled) << scaled.GetError().message;
     const float factor = std::fabs(scale.x() * scale.y() * scale.z());
     EXPECT_NEAR(scaled.Value()->Mass().volume, shape->Mass().volume * factor, 1e-4f * factor * shape->Mass().volume);
-    EXPECT_LE(Length(Vector3(scaled.Value()->Mass().centerOfMass - shape->Mass().centerOfMass.cwiseProduct(scale))), 1e-4f);
+    EXPECT_LE(Length(Vector3(scaled.Value()->Mass().centerOfMass - shape->Mass().centerOfMass.cwiseProduct(scale))),
+              1e-4f);
     for (int i = 0; i < 200; ++i) {
         const double y = 1 - (2 * i + 1.0) / 200, r = std::sqrt(1 - y * y), angle = i * 2.399963229728653;
         const Vector3 d = Position(r * std::cos(angle), y, r * std::sin(angle)).cast<float>();
         // The support value of the image along d is that of the shape along S d.
-        EXPECT_NEAR(Reach(*scaled.Value(), d), Reach(*shape, d.cwiseProduct(scale)), 2e-5f * scale.cwiseAbs().maxCoeff());
+        EXPECT_NEAR(Reach(*scaled.Value(), d), Reach(*shape, d.cwiseProduct(scale)),
+                    2e-5f * scale.cwiseAbs().maxCoeff());
     }
 }
 
 ShapePtr Hull() {
-    const Vector3 points[] = {Vector3(0, 0, 0), Vector3(1, 0, 0.2f), Vector3(0, 1.3f, 0), Vector3(0.1f, 0, 0.7f), Vector3(1, 1, 1)};
+    const Vector3 points[] = {Vector3(0, 0, 0), Vector3(1, 0, 0.2f), Vector3(0, 1.3f, 0), Vector3(0.1f, 0, 0.7f),
+                              Vector3(1, 1, 1)};
     return ConvexHull::Create(points).Value();
 }
 
 TEST(Scaled, MakesTheImageOfEveryShape) {
     const Vector3 uniform(2, 2, 2), mirrored(-1.5f, 1.5f, 1.5f), any(0.5f, -2, 3), round(2, -0.7f, -2);
     const ShapePtr sharp[] = {Box::Create(Vector3(1, 2, 3)).Value(), Hull(), CreateCustom<Bean>().Value()};
-    const ShapePtr about[] = {Cylinder::Create(1, 0.5f).Value(), Cylinder::CreateCone(1, 0.5f).Value(), Cylinder::CreateTapered(1, 1, 0.5f).Value()};
-    const ShapePtr ball[] = {Sphere::Create(0.7f).Value(), Capsule::Create(0.5f, 0.2f).Value(), TaperedCapsule::Create(0.5f, 0.2f, 0.4f).Value(),
+    const ShapePtr about[] = {Cylinder::Create(1, 0.5f).Value(), Cylinder::CreateCone(1, 0.5f).Value(),
+                              Cylinder::CreateTapered(1, 1, 0.5f).Value()};
+    const ShapePtr ball[] = {Sphere::Create(0.7f).Value(), Capsule::Create(0.5f, 0.2f).Value(),
+                             TaperedCapsule::Create(0.5f, 0.2f, 0.4f).Value(),
                              Box::Create(Vector3(1, 2, 3), 0.1f).Value(), Cylinder::Create(1, 0.5f, 0.1f).Value()};
     for (const Vector3& scale : {uniform, mirrored, any, round})
         for (const ShapePtr& shape : sharp) ExpectImage(shape, scale);
@@ -66,7 +72,8 @@ TEST(Scaled, MakesTheImageOfEveryShape) {
         for (const ShapePtr& shape : about) ExpectImage(shape, scale);
     for (const Vector3& scale : {uniform, mirrored, Vector3(-uniform)})
         for (const ShapePtr& shape : ball) ExpectImage(shape, scale);
-    const Result<ShapePtr> triangle = Scaled(Triangle::Create(Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0)).Value(), any);
+    const Result<ShapePtr> triangle =
+        Scaled(Triangle::Create(Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0)).Value(), any);
     ASSERT_TRUE(triangle);
     EXPECT_NEAR(triangle.Value()->Mass().volume, 0.5 * 0.5 * 2 * 0.001, 1e-9);
 }
@@ -74,10 +81,12 @@ TEST(Scaled, MakesTheImageOfEveryShape) {
 TEST(Scaled, ScalesCompoundsAsTheirChildrenAreRotated) {
     const float half = std::sqrt(0.5f);
     const ShapePtr box = Box::Create(Vector3(1, 2, 3)).Value(), ball = Sphere::Create(0.5f).Value();
-    const Compound::ChildSettings turned[] = {{.shape = box, .position = Vector3(1, 0, 0), .rotation = {0, 0, half, half}},
-                                              {.shape = Hull(), .position = Vector3(0, 2, 0), .density = 3}};
-    const Compound::ChildSettings tilted[] = {{.shape = box, .position = Vector3(1, 2, 3), .rotation = Normalized(Quaternion{0.1f, 0.2f, 0.3f, 0.9f})},
-                                              {.shape = ball, .position = Vector3(0, -2, 1)}};
+    const Compound::ChildSettings turned[] = {
+        {.shape = box, .position = Vector3(1, 0, 0), .rotation = {0, 0, half, half}},
+        {.shape = Hull(), .position = Vector3(0, 2, 0), .density = 3}};
+    const Compound::ChildSettings tilted[] = {
+        {.shape = box, .position = Vector3(1, 2, 3), .rotation = Normalized(Quaternion{0.1f, 0.2f, 0.3f, 0.9f})},
+        {.shape = ball, .position = Vector3(0, -2, 1)}};
     const ShapePtr a = Compound::Create(turned).Value(), b = Compound::Create(tilted).Value();
     ExpectImage(a, Vector3(2, 3, 4));
     ExpectImage(a, Vector3(-2, 2, 2));
@@ -96,7 +105,8 @@ TEST(Scaled, NamesTheNearestScaleThatIsValid) {
     };
     EXPECT_NE(message(Sphere::Create(1).Value(), Vector3(1, 2, -3)).find("(2, 2, -2)"), std::string::npos);
     EXPECT_NE(message(Cylinder::Create(1, 1).Value(), Vector3(1, 5, 3)).find("(2, 5, 2)"), std::string::npos);
-    EXPECT_NE(message(Box::Create(Vector3(1, 1, 1)).Value(), Vector3(1, 0, 3)).find("no factor may be 0"), std::string::npos);
+    EXPECT_NE(message(Box::Create(Vector3(1, 1, 1)).Value(), Vector3(1, 0, 3)).find("no factor may be 0"),
+              std::string::npos);
     const float nan = std::numeric_limits<float>::quiet_NaN();
     EXPECT_NE(message(Box::Create(Vector3(1, 1, 1)).Value(), Vector3(1, nan, 3)).find("finite"), std::string::npos);
     EXPECT_FALSE(Scaled(nullptr, Vector3(1, 1, 1)));
@@ -137,7 +147,8 @@ TEST(Scaled, APlaneMovesWithItsPoints) {
     ASSERT_TRUE(scaled);
     const auto& result = static_cast<const Plane&>(*scaled.Value());
     // Points of the surface, one inside, one outside: the side that is solid goes with them.
-    for (const Vector3& p : {Vector3(3, 3, 0), Vector3(9, 0, 0), Vector3(1, 1, 3)}) EXPECT_NEAR(result.Distance(p.cwiseProduct(scale)), 0, 1e-5f);
+    for (const Vector3& p : {Vector3(3, 3, 0), Vector3(9, 0, 0), Vector3(1, 1, 3)})
+        EXPECT_NEAR(result.Distance(p.cwiseProduct(scale)), 0, 1e-5f);
     EXPECT_LT(result.Distance(Vector3(0, 0, 0).cwiseProduct(scale)), 0);
     EXPECT_GT(result.Distance(Vector3(5, 5, 5).cwiseProduct(scale)), 0);
 }

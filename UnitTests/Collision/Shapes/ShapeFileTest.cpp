@@ -76,7 +76,8 @@ Result<ShapePtr> ReadDome(std::span<const uint8_t> bytes) {
     float radius, height;
     std::memcpy(&radius, bytes.data(), 4);
     std::memcpy(&height, bytes.data() + 4, 4);
-    if (!(radius > 0.01f && radius < 100 && std::fabs(height) < 0.9f * radius)) return Error{ErrorCode::OutOfRange, "no dome"};
+    if (!(radius > 0.01f && radius < 100 && std::fabs(height) < 0.9f * radius))
+        return Error{ErrorCode::OutOfRange, "no dome"};
     const auto dome = CreateCustom<Dome>(radius, height);
     if (!dome) return dome.GetError();
     return ShapePtr(dome.Value());
@@ -224,7 +225,8 @@ TEST(ShapeFile, MutableCompoundsGoOnAsBefore) {
 TEST(ShapeFile, CustomShapesNeedAFormat) {
     const ShapePtr dome = CreateCustom<Dome>(0.5f, 0.2f).Value();
     const Compound::ChildSettings children[] = {{.shape = dome}, {.shape = dome, .position = {1, 2, 3}}};
-    for (const ShapePtr& shape : {dome, ShapePtr(Compound::Create(children).Value()), ShapePtr(MutableCompound::Create(children).Value())}) {
+    for (const ShapePtr& shape :
+         {dome, ShapePtr(Compound::Create(children).Value()), ShapePtr(MutableCompound::Create(children).Value())}) {
         const auto refused = SaveShape(*shape);
         ASSERT_FALSE(refused);
         EXPECT_EQ(refused.GetError().code, ErrorCode::Unsupported);
@@ -241,7 +243,8 @@ TEST(ShapeFile, CustomShapesNeedAFormat) {
     }
     const CustomShapeFormat wrong[] = {{"", WriteDome, ReadDome}};
     EXPECT_EQ(SaveShape(*dome, wrong).GetError().code, ErrorCode::OutOfRange);
-    const CustomShapeFormat liar[] = {{"dome", WriteDome, [](std::span<const uint8_t>) { return Result<ShapePtr>(ShapePtr()); }}};
+    const CustomShapeFormat liar[] = {
+        {"dome", WriteDome, [](std::span<const uint8_t>) { return Result<ShapePtr>(ShapePtr()); }}};
     EXPECT_EQ(LoadShape(SaveShape(*dome, liar).Value(), liar).GetError().code, ErrorCode::Unsupported);
 }
 
@@ -322,12 +325,14 @@ void Exercise(const Shape& shape, SurfaceRandom& random) {
     EXPECT_TRUE(SaveShape(shape));
 }
 
-// Bytes overwritten, cut, inserted, numbers replaced by extremes, with a checksum that fits: refused or usable, never a crash.
+// Bytes overwritten, cut, inserted, numbers replaced by extremes, with a checksum that fits: refused or usable, never a
+// crash.
 TEST(ShapeFile, SurvivesHostileFiles) {
     std::mt19937 engine(7);
     SurfaceRandom random(7);
     const std::vector<ShapePtr> shapes = OneOfEach();
-    const uint32_t extremes[] = {0, 1, 0x7F800000, 0xFF800000, 0x7FC00000, 0xFFFFFFFF, 0x80000000, 0x7F7FFFFF, 0x00000001, 255};
+    const uint32_t extremes[] = {0,          1,          0x7F800000, 0xFF800000, 0x7FC00000,
+                                 0xFFFFFFFF, 0x80000000, 0x7F7FFFFF, 0x00000001, 255};
     int loadedCount = 0;
     for (int round = 0; round < 22000; ++round) {
         std::vector<uint8_t> bytes = SaveShape(*shapes[static_cast<size_t>(round) % shapes.size()]).Value();
@@ -341,10 +346,13 @@ TEST(ShapeFile, SurvivesHostileFiles) {
                 case 1: bytes[at] ^= static_cast<uint8_t>(1u << random.Below(8)); break;
                 case 2: {
                     const uint32_t value = extremes[random.Below(10)];
-                    for (uint32_t k = 0; k < 4 && at + k < size; ++k) bytes[at + k] = static_cast<uint8_t>(value >> 8 * k);
+                    for (uint32_t k = 0; k < 4 && at + k < size; ++k)
+                        bytes[at + k] = static_cast<uint8_t>(value >> 8 * k);
                     break;
                 }
-                case 3: bytes.erase(bytes.begin() + at, bytes.begin() + std::min(size, at + 1 + random.Below(8))); break;
+                case 3:
+                    bytes.erase(bytes.begin() + at, bytes.begin() + std::min(size, at + 1 + random.Below(8)));
+                    break;
                 default: bytes.insert(bytes.begin() + at, static_cast<uint8_t>(engine())); break;
             }
             if (bytes.size() < 30) break;

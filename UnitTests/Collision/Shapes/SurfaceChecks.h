@@ -29,7 +29,8 @@ inline void ExpectExactBoxes(const SurfaceShape& shape, int count, float largest
     size_t hits = 0;
     for (int i = 0; i < count; ++i) {
         Bounds box = RandomBox(random, shape.LocalBounds(), largest);
-        if (i % 3 == 0) box.lower = box.upper = all[random.Below(static_cast<uint32_t>(all.size()))].vertices[i % 9 / 3];
+        if (i % 3 == 0)
+            box.lower = box.upper = all[random.Below(static_cast<uint32_t>(all.size()))].vertices[i % 9 / 3];
         const std::vector<uint32_t> expected = BruteForceBox(all, box);
         ASSERT_EQ(Found(shape, box), expected) << i;
         hits += expected.size();
@@ -37,8 +38,10 @@ inline void ExpectExactBoxes(const SurfaceShape& shape, int count, float largest
     EXPECT_GT(hits, static_cast<size_t>(count) / 4);
 }
 
-// From anywhere near the shape to anywhere; a third of them at a vertex or the middle of an edge, a third along an axis.
-inline SurfaceRay RandomRay(SurfaceRandom& random, const SurfaceShape& shape, const std::vector<TriangleView>& all, int i) {
+// From anywhere near the shape to anywhere; a third of them at a vertex or the middle of an edge, a third along an
+// axis.
+inline SurfaceRay RandomRay(SurfaceRandom& random, const SurfaceShape& shape, const std::vector<TriangleView>& all,
+                            int i) {
     Bounds around = shape.LocalBounds();
     const Vector3 margin = around.HalfExtents() * 0.5f;
     around.lower -= margin;

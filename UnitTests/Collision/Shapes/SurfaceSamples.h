@@ -51,8 +51,8 @@ inline IndexedTriangles BallOf(uint32_t rings, uint32_t sectors, float radius) {
     for (uint32_t i = 1; i < rings; ++i) {
         for (uint32_t k = 0; k < sectors; ++k) {
             const double a = M_PI * i / rings, b = 2 * M_PI * k / sectors;
-            mesh.vertices.push_back(
-                Vector3(Position(std::sin(a) * std::cos(b), std::cos(a), std::sin(a) * std::sin(b)).cast<float>() * radius));
+            mesh.vertices.push_back(Vector3(
+                Position(std::sin(a) * std::cos(b), std::cos(a), std::sin(a) * std::sin(b)).cast<float>() * radius));
         }
     }
     const uint32_t last = static_cast<uint32_t>(mesh.vertices.size());
@@ -126,7 +126,8 @@ inline std::vector<SurfaceHit> BruteForceRay(const std::vector<TriangleView>& tr
     for (const TriangleView& t : triangles) {
         float fraction;
         bool isBack;
-        if (IntersectTriangle(sheared, t.vertices[0], t.vertices[1], t.vertices[2], ray.backFaces || isTwoSided, 1, fraction, isBack))
+        if (IntersectTriangle(sheared, t.vertices[0], t.vertices[1], t.vertices[2], ray.backFaces || isTwoSided, 1,
+                              fraction, isBack))
             hits.push_back({fraction, t.id, isBack ? Vector3(-t.normal) : t.normal, isBack});
     }
     return hits;
@@ -140,7 +141,8 @@ inline std::optional<SurfaceHit> ClosestOf(const std::vector<SurfaceHit>& hits) 
     return best;
 }
 
-// Moeller and Trumbore in double: a test that shares nothing with the engine's. The smallest fraction, or a negative number.
+// Moeller and Trumbore in double: a test that shares nothing with the engine's. The smallest fraction, or a negative
+// number.
 inline double DoubleFraction(const TriangleView& t, const SurfaceRay& ray) {
     const Position a = t.vertices[0].cast<double>(), e1 = t.vertices[1].cast<double>() - a,
                    e2 = t.vertices[2].cast<double>() - a, d = ray.displacement.cast<double>(),

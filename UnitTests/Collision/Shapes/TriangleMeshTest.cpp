@@ -30,9 +30,9 @@ TEST(TriangleMesh, TwoSidedMeshesAreHitFromBehind) {
     ExpectExactRays(*TriangleMesh::Create(settings).Value(), 10000);
 }
 
-// The engine's test against one in double that shares nothing with it. A hit's place may differ by the rounding of the sheared
-// coordinates, 2^-22 of their size of up to 60 m, over the sine of the angle of incidence: 1e-3 m covers angles down to a
-// degree; rays within that of a triangle's rim may be told apart otherwise and are left out.
+// The engine's test against one in double that shares nothing with it. A hit's place may differ by the rounding of the
+// sheared coordinates, 2^-22 of their size of up to 60 m, over the sine of the angle of incidence: 1e-3 m covers angles
+// down to a degree; rays within that of a triangle's rim may be told apart otherwise and are left out.
 TEST(TriangleMesh, RayCastsAgreeWithDouble) {
     const MeshPtr mesh = MeshOf(WavyTerrain(20, 3, 5));
     const std::vector<TriangleView> all = AllTriangles(*mesh);
@@ -54,7 +54,8 @@ TEST(TriangleMesh, RayCastsAgreeWithDouble) {
     }
 }
 
-// Rays at every vertex and at points along every edge of a closed ball, from inside and outside: each meets the surface.
+// Rays at every vertex and at points along every edge of a closed ball, from inside and outside: each meets the
+// surface.
 TEST(TriangleMesh, NoRaySlipsBetweenTriangles) {
     const MeshPtr mesh = MeshOf(BallOf(24, 32, 3));
     SurfaceRandom random(2);

@@ -15,14 +15,17 @@ namespace {
 
 constexpr ContactPrepareSettings kPrepare{1.0f, 0.5f};
 // Hard rows: nothing is pushed.
-constexpr ContactSolveSettings kSolve{.inverseDt = 240.0f, .elapsed = 0, .pushRate = 0, .massScale = 1, .impulseScale = 0, .maxPushSpeed = 3, .slop = 0};
+constexpr ContactSolveSettings kSolve{
+    .inverseDt = 240.0f, .elapsed = 0, .pushRate = 0, .massScale = 1, .impulseScale = 0, .maxPushSpeed = 3, .slop = 0};
 
 // One contact, row by row: friction along two tangents and about the normal first, then the points.
 template <BodySide kSideB>
 class Rows {
 public:
     Rows(const RandomContacts& contacts, uint32_t contact)
-        : record_(contacts.records[contact]), mass1_(contacts.MassOf(2 * contact)), mass2_(contacts.MassOf(2 * contact + 1)) {
+        : record_(contacts.records[contact]),
+          mass1_(contacts.MassOf(2 * contact)),
+          mass2_(contacts.MassOf(2 * contact + 1)) {
         const Pose a = contacts.PoseOf(2 * contact), b = contacts.PoseOf(2 * contact + 1);
         const Vector3 between((b.position - a.position).cast<float>());
         count_ = static_cast<int>(record_.pointCount);
@@ -38,9 +41,12 @@ public:
             points[i] = onA + normal_ * (0.5f * separation_[i]);
             center += points[i] / static_cast<float>(count_);
         }
-        const auto frame = [&](const Vector3& point, const Vector3& axis) { return AxisFrame<float>{point, Vector3(point - between), axis}; };
+        const auto frame = [&](const Vector3& point, const Vector3& axis) {
+            return AxisFrame<float>{point, Vector3(point - between), axis};
+        };
         for (int i = 0; i < count_; ++i) {
-            point_[i].template CalculateProperties<BodySide::Dynamic, kSideB>(mass1_, mass2_, frame(points[i], normal_), 0.0f);
+            point_[i].template CalculateProperties<BodySide::Dynamic, kSideB>(mass1_, mass2_, frame(points[i], normal_),
+                                                                              0.0f);
             point_[i].SetTotalLambda(record_.impulse[i]);
         }
         const Vector3 friction(record_.frictionImpulse[0], record_.frictionImpulse[1], record_.frictionImpulse[2]);
@@ -56,7 +62,8 @@ public:
         tangent1_.template WarmStart<BodySide::Dynamic, kSideB>(v1, v2, mass1_, mass2_, t1_, 1.0f);
         tangent2_.template WarmStart<BodySide::Dynamic, kSideB>(v1, v2, mass1_, mass2_, t2_, 1.0f);
         twist_.template WarmStart<BodySide::Dynamic, kSideB>(v1, v2, mass1_, mass2_, normal_, 1.0f);
-        for (int i = 0; i < count_; ++i) point_[i].template WarmStart<BodySide::Dynamic, kSideB>(v1, v2, mass1_, mass2_, normal_, 1.0f);
+        for (int i = 0; i < count_; ++i)
+            point_[i].template WarmStart<BodySide::Dynamic, kSideB>(v1, v2, mass1_, mass2_, normal_, 1.0f);
     }
 
     void SolveVelocity(Twist<float>& v1, Twist<float>& v2) {
@@ -112,7 +119,8 @@ template <bool kFixedB>
 void CompareWithParts(uint32_t seed) {
     constexpr BodySide kSideB = kFixedB ? BodySide::Kinematic : BodySide::Dynamic;
     RandomContacts contacts(16, kFixedB, seed);
-    for (ContactRecord& record : contacts.records) record.restitution = 0;  // what bounces off would not be warm started
+    for (ContactRecord& record : contacts.records)
+        record.restitution = 0;  // what bounces off would not be warm started
     for (uint32_t i = 0; i < 16; ++i) {
         Rows<kSideB> rows(contacts, i);
         auto batch = PrepareBatch<1, kFixedB>(contacts, i, kPrepare);
@@ -154,7 +162,8 @@ TEST(ContactBatch, IsTheSequenceOfItsPartsAgainstAFixedBody) {
 Eigen::Matrix3d InertiaOf(const InverseMass<float>& mass) {
     Eigen::Matrix3d inverse;
     const auto& i = mass.inertia;
-    inverse << double(i.xx), double(i.xy), double(i.xz), double(i.xy), double(i.yy), double(i.yz), double(i.xz), double(i.yz), double(i.zz);
+    inverse << double(i.xx), double(i.xy), double(i.xz), double(i.xy), double(i.yy), double(i.yz), double(i.xz),
+        double(i.yz), double(i.zz);
     return inverse.inverse();
 }
 
@@ -182,7 +191,8 @@ TEST(ContactBatch, KeepsLinearAndAngularMomentum) {
         for (int k = 0; k < 4; ++k) SolveContactVelocities(batch, contacts.states.data(), kSolve);
         RestituteContacts(batch, contacts.states.data(), 0);
         Momentum(contacts, i, linearAfter, angularAfter);
-        // Inverse masses and inertias are from 0.1 on: each rounding of a velocity of size 10 is one of 1e-5 of momentum.
+        // Inverse masses and inertias are from 0.1 on: each rounding of a velocity of size 10 is one of 1e-5 of
+        // momentum.
         EXPECT_LT((linearAfter - linear).norm(), 3e-4) << i;
         EXPECT_LT((angularAfter - angular).norm(), 2e-3) << i;
     }
@@ -239,7 +249,8 @@ TEST(ContactBatch, LeavesNoApproachBehind) {
         SolveContactVelocities(batch, contacts.states.data(), kSolve);
         const Twist<float> a = contacts.VelocityOf(2 * i), b = contacts.VelocityOf(2 * i + 1);
         const auto vec = [](const Vec3<Wide<1>>& v) { return Lane<1>(v, 0); };
-        const Vector3 relative = b.linear + Cross<float>(b.angular, vec(batch.sideB.arm)) - a.linear - Cross<float>(a.angular, vec(batch.armA));
+        const Vector3 relative = b.linear + Cross<float>(b.angular, vec(batch.sideB.arm)) - a.linear -
+                                 Cross<float>(a.angular, vec(batch.armA));
         const float allowed = -std::max(batch.rows[0].startSeparation[0], 0.0f) * kSolve.inverseDt;
         EXPECT_GE(Dot<float>(relative, vec(batch.normal)), allowed - 1e-5f) << i;
         EXPECT_GE(batch.rows[0].impulse[0], 0.0f);
@@ -274,8 +285,9 @@ TEST(ContactBatch, SeparationsFollowTheDisplacements) {
 }
 
 TEST(ContactSolveSettings, SoftenIsTheSoftConstraintOfTheSpring) {
-    // k = m w^2, c = 2 m zeta w with m = 1: gamma = 1 / (h (c + h k)), beta = h k / (c + h k). The row's effective mass is
-    // 1 / (1 + gamma), the part of the impulse that it gives way by gamma / (1 + gamma), its push beta / h per meter.
+    // k = m w^2, c = 2 m zeta w with m = 1: gamma = 1 / (h (c + h k)), beta = h k / (c + h k). The row's effective mass
+    // is 1 / (1 + gamma), the part of the impulse that it gives way by gamma / (1 + gamma), its push beta / h per
+    // meter.
     const double f = 60, zeta = 10, h = 1.0 / 240, w = 2 * M_PI * f, k = w * w, c = 2 * zeta * w;
     const double gamma = 1 / (h * (c + h * k)), beta = h * k / (c + h * k);
     ContactSolveSettings settings = kSolve;
@@ -305,8 +317,10 @@ TEST(MeanDistance, OfAPointIsNothing) {
 }
 
 TEST(MeanDistance, OfATriangleScalesWithItsSize) {
-    // Equilateral, circumradius 1, inner radius r = 1/2: two thirds of the mean of sqrt(r^2 + s^2), s from 0 to sqrt(3) / 2.
-    const float x[3] = {1, -0.5f, -0.5f}, y[3] = {0, static_cast<float>(std::sqrt(0.75)), -static_cast<float>(std::sqrt(0.75))};
+    // Equilateral, circumradius 1, inner radius r = 1/2: two thirds of the mean of sqrt(r^2 + s^2), s from 0 to sqrt(3)
+    // / 2.
+    const float x[3] = {1, -0.5f, -0.5f},
+                y[3] = {0, static_cast<float>(std::sqrt(0.75)), -static_cast<float>(std::sqrt(0.75))};
     const double r = 0.5, s = std::sqrt(0.75);
     const double edge = 0.5 * (s * std::sqrt(r * r + s * s) + r * r * std::asinh(s / r)) / s;
     EXPECT_NEAR(MeanDistance(x, y, 3), 2.0 / 3 * edge, 1e-2);

@@ -45,7 +45,8 @@ struct RandomContacts {
     }
     Pose PoseOf(uint32_t body) const {
         const BodyPose& p = poses[body];
-        return {Position(p.position[0], p.position[1], p.position[2]), {p.rotation[0], p.rotation[1], p.rotation[2], p.rotation[3]}};
+        return {Position(p.position[0], p.position[1], p.position[2]),
+                {p.rotation[0], p.rotation[1], p.rotation[2], p.rotation[3]}};
     }
 
 private:
@@ -88,7 +89,8 @@ private:
         record.restitution = random.Chance(0.5f) ? random.Between(0.0f, 1.0f) : 0.0f;
         record.twistRadius = random.Between(0.0f, 0.5f);
         for (int i = 0; i < count; ++i) {
-            const float u = random.Between(-0.5f, 0.5f), v = random.Between(-0.5f, 0.5f), gap = random.Between(-0.02f, 0.02f);
+            const float u = random.Between(-0.5f, 0.5f), v = random.Between(-0.5f, 0.5f),
+                        gap = random.Between(-0.02f, 0.02f);
             const Vector3 armA = normal * 0.5f + t1 * u + t2 * v;
             const Vector3 onA = InverseRotate(a.rotation, armA);
             const Vector3 onB = InverseRotate(b.rotation, Vector3(armA + normal * gap - between));
@@ -108,7 +110,8 @@ private:
 
 // Fills a batch with the contacts first .. first + N - 1; lanes beyond the last repeat it.
 template <int N, bool kFixedB>
-ContactBatch<N, kFixedB> PrepareBatch(RandomContacts& contacts, uint32_t first, const ContactPrepareSettings& settings) {
+ContactBatch<N, kFixedB> PrepareBatch(RandomContacts& contacts, uint32_t first,
+                                      const ContactPrepareSettings& settings) {
     ContactBatch<N, kFixedB> batch;
     const uint32_t left = static_cast<uint32_t>(contacts.records.size()) - first;
     batch.count = static_cast<int32_t>(left < N ? left : N);

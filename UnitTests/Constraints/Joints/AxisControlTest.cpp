@@ -110,7 +110,9 @@ TEST(AxisControl, AMotorComesToAHardLimitButNotBeyond) {
             auto rows = RowsAt(control, position);
             const float now = rows[kMotor].speed;
             // Where it can get there within the step, the limit watches.
-            if (position + now * kDt > 0.9999f) { EXPECT_TRUE(rows.contains(kHigh)); }
+            if (position + now * kDt > 0.9999f) {
+                EXPECT_TRUE(rows.contains(kHigh));
+            }
             position += now * kDt;
             ASSERT_LE(position, 1.0f + 1e-6f);
         }

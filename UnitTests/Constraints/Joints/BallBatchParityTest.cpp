@@ -19,7 +19,8 @@ void Move(RandomJoints& joints, float h) {
             s.deltaPosition[k] += s.linearVelocity[k] * h;
             s.deltaRotation[k] += s.angularVelocity[k] * h;
         }
-        const Vec2<float> half = joints::HalfTurnOf<float>(Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]));
+        const Vec2<float> half =
+            joints::HalfTurnOf<float>(Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]));
         for (int k = 0; k < 2; ++k) s.halfTurn[k] = half[k];
         // As if it had turned.
         BodyMass& mass = joints.masses[body];
@@ -108,8 +109,10 @@ LivedBalls LiveAsJoints(uint32_t seed, const BallOptions& options) {
 }
 
 void ExpectSameBits(const LivedBalls& a, const LivedBalls& b, int lanes) {
-    for (size_t i = 0; i < a.records.size(); ++i) EXPECT_EQ(std::memcmp(&a.records[i], &b.records[i], sizeof(JointRecord)), 0) << lanes << " lanes, joint " << i;
-    for (size_t i = 0; i < a.states.size(); ++i) EXPECT_EQ(std::memcmp(&a.states[i], &b.states[i], sizeof(BodyState)), 0) << lanes << " lanes, body " << i;
+    for (size_t i = 0; i < a.records.size(); ++i)
+        EXPECT_EQ(std::memcmp(&a.records[i], &b.records[i], sizeof(JointRecord)), 0) << lanes << " lanes, joint " << i;
+    for (size_t i = 0; i < a.states.size(); ++i)
+        EXPECT_EQ(std::memcmp(&a.states[i], &b.states[i], sizeof(BodyState)), 0) << lanes << " lanes, body " << i;
     EXPECT_EQ(a.findings.linearError, b.findings.linearError);
     EXPECT_EQ(a.findings.linearJoint, b.findings.linearJoint);
 }
@@ -119,7 +122,8 @@ void ForAllOptions(Test&& test) {
     for (bool round : {false, true})
         for (bool someFixed : {false, true})
             for (bool inPlane : {false, true})
-                for (uint32_t seed = 1; seed <= 3; ++seed) test(seed, BallOptions{round, {.someFixed = someFixed, .inPlane = inPlane}});
+                for (uint32_t seed = 1; seed <= 3; ++seed)
+                    test(seed, BallOptions{round, {.someFixed = someFixed, .inPlane = inPlane}});
 }
 
 TEST(BallBatch, GivesTheSameBitsInLanesAndOneByOne) {
@@ -129,8 +133,8 @@ TEST(BallBatch, GivesTheSameBitsInLanesAndOneByOne) {
     });
 }
 
-// Both are the same mathematics in another order: some twenty roundings of 6e-8 of speeds up to 1 m/s and 10 rad/s, and of forces
-// that are impulses of such speeds and masses of 2 kg, over 1/60 s.
+// Both are the same mathematics in another order: some twenty roundings of 6e-8 of speeds up to 1 m/s and 10 rad/s, and
+// of forces that are impulses of such speeds and masses of 2 kg, over 1/60 s.
 TEST(BallBatch, DoesWhatOtherJointsDo) {
     ForAllOptions([](uint32_t seed, const BallOptions& options) {
         const LivedBalls balls = LiveAsBalls<kLanes>(seed, options), joints = LiveAsJoints(seed, options);

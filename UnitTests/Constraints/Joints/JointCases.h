@@ -15,7 +15,9 @@ inline Quaternion About(const Vector3& axis, float angle) { return RotationFromV
 inline Quaternion AboutX(float angle) { return About(Vector3(1, 0, 0), angle); }
 inline Quaternion AboutY(float angle) { return About(Vector3(0, 1, 0), angle); }
 inline Quaternion AboutZ(float angle) { return About(Vector3(0, 0, 1), angle); }
-inline Quaternion RandomRotation(RandomPoses& random) { return About(AnyDirection(random), random.Between(-3.0f, 3.0f)); }
+inline Quaternion RandomRotation(RandomPoses& random) {
+    return About(AnyDirection(random), random.Between(-3.0f, 3.0f));
+}
 
 // Bodies A and B, each with an anchor and a frame in its own coordinates.
 struct JointBodies {
@@ -41,7 +43,8 @@ struct JointBodies {
     Vector3 ArmOf(int i) const { return Rotate(rotation[i], anchor[i]); }
     Position AnchorOf(int i) const { return place[i] + ArmOf(i).cast<double>(); }
 
-    // Brings B to where its frame is turned by `turn` against A's and its anchor is at `offset`, both seen from A's frame.
+    // Brings B to where its frame is turned by `turn` against A's and its anchor is at `offset`, both seen from A's
+    // frame.
     void PlaceB(const Vector3& offset, const Quaternion& turn) {
         rotation[1] = Normalized(FrameOf(0) * turn * frame[1].Conjugate());
         place[1] = AnchorOf(0) + (Rotate(FrameOf(0), offset) - ArmOf(1)).cast<double>();
@@ -86,9 +89,9 @@ std::map<int, JointRow> RowsOf(Type& type, const JointPose& pose) {
     return rows;
 }
 
-// Every row but those of Speed has a C, and J must be its derivative: by moving each body a little along and about each axis.
-// C is exact to some 1e-7 of its size, so differences over 2 * 4e-3 to some 5e-5; C''' (4e-3)^2 / 6 adds about as much where
-// C bends on a scale of 1 m or 1 rad, and ten times that near poles.
+// Every row but those of Speed has a C, and J must be its derivative: by moving each body a little along and about each
+// axis. C is exact to some 1e-7 of its size, so differences over 2 * 4e-3 to some 5e-5; C''' (4e-3)^2 / 6 adds about as
+// much where C bends on a scale of 1 m or 1 rad, and ten times that near poles.
 template <class Type>
 void ExpectJacobiansOf(const Type& type, const JointBodies& bodies, float tolerance = 1e-3f) {
     constexpr float kWay = 4e-3f;

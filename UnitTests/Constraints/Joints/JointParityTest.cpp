@@ -28,7 +28,8 @@ Solved Solve(std::span<const JointCase> cases, uint32_t seed, const RandomJoints
     JointSolveSettings settings = DefaultJointSettings();
     Solved solved;
     for (JointBatch<N>& batch : batches) {
-        PrepareJoints(batch, joints.records.data(), joints.typePointers.data(), joints.Bodies(), settings, solved.findings);
+        PrepareJoints(batch, joints.records.data(), joints.typePointers.data(), joints.Bodies(), settings,
+                      solved.findings);
         WarmStartJoints(batch, states);
     }
     for (int substep = 1; substep <= 2; ++substep) {

@@ -1,4 +1,5 @@
-// The rows of each type of joint: C and Jacobian at random poses, which rows there are and when, angles over many turns.
+// The rows of each type of joint: C and Jacobian at random poses, which rows there are and when, angles over many
+// turns.
 #include "JointCases.h"
 
 #include <Fulcrum/Constraints/Joints/ConeJoint.h>
@@ -84,8 +85,8 @@ TEST(HingeJoint, RowsAreTheDerivativeOfTheAngle) {
 }
 
 TEST(HingeJoint, CountsAHundredThousandTurnsAtAnySpeed) {
-    // Frames that are not the bodies', so that products of rotations round; half a turn a step is 188 rad/s, so that only
-    // the way of the step tells the turn. The angle is known to some units of 1e-7, however many turns there were.
+    // Frames that are not the bodies', so that products of rotations round; half a turn a step is 188 rad/s, so that
+    // only the way of the step tells the turn. The angle is known to some units of 1e-7, however many turns there were.
     RandomPoses random(3);
     JointBodies bodies = JointBodies::AtRandom(random);
     HingeJoint joint(Driven(MotorMode::ToPosition, 0.0f));
@@ -222,8 +223,8 @@ TEST(GearJoint, LosesNoTeethOverAHundredThousandTurns) {
 }
 
 TEST(GearJoint, CarryingTheAxesAboutAddsNoTurn) {
-    // The axes lean to and fro by half a turn in all, about an axis perpendicular to them, which turns neither gear. Of the
-    // references that follow each rounds by some 1e-7.
+    // The axes lean to and fro by half a turn in all, about an axis perpendicular to them, which turns neither gear. Of
+    // the references that follow each rounds by some 1e-7.
     JointBodies bodies;
     GearJoint joint(1.0f);
     joint.Start(bodies.Pose());
@@ -299,7 +300,8 @@ TEST(WheelJoint, RowsAreTheDerivativesOfItsAngles) {
     RandomPoses random(10);
     for (int i = 0; i < kPoses; ++i) {
         JointBodies bodies = JointBodies::AtRandom(random);
-        const float steering = random.Between(-0.6f, 0.6f), tilt = random.Between(-0.3f, 0.3f), spin = random.Between(-3, 3);
+        const float steering = random.Between(-0.6f, 0.6f), tilt = random.Between(-0.3f, 0.3f),
+                    spin = random.Between(-3, 3);
         bodies.PlaceB(Vector3(0, random.Between(-0.2f, 0.2f), 0), AboutY(steering) * AboutZ(tilt) * AboutX(spin));
         const AxisControl motor = Driven(MotorMode::ToPosition, 0.0f);
         WheelJoint joint(motor, true, motor, motor);

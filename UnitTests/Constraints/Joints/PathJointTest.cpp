@@ -60,7 +60,8 @@ TEST(Path, LengthIsTheSumOfShortChords) {
         const int count = 500 * static_cast<int>(path->End());
         double sum = 0;
         for (int i = 0; i < count; ++i)
-            sum += (path->Sample(static_cast<double>(i + 1) / 500).position - path->Sample(static_cast<double>(i) / 500).position)
+            sum += (path->Sample(static_cast<double>(i + 1) / 500).position -
+                    path->Sample(static_cast<double>(i) / 500).position)
                        .cast<double>()
                        .norm();
         EXPECT_NEAR(path->Length(), sum, 2e-5 * sum);

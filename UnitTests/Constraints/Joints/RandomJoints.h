@@ -1,5 +1,5 @@
-// Joints of every kind between random bodies, as the solver sees them: with nothing to do beyond their locks and with rows.
-// For the tests of the joint kernels and for what times them, so without a test library. One thread.
+// Joints of every kind between random bodies, as the solver sees them: with nothing to do beyond their locks and with
+// rows. For the tests of the joint kernels and for what times them, so without a test library. One thread.
 #pragma once
 
 #include <Fulcrum/Constraints/Contacts/ContactBatch.h>
@@ -62,7 +62,8 @@ std::unique_ptr<JointType> Make(Arguments&&... arguments) {
     return std::make_unique<Type>(std::forward<Arguments>(arguments)...);
 }
 inline std::shared_ptr<const Path> Curve() {
-    const Vector3 places[] = {Vector3(-2, 0, 0), Vector3(-1, 0.5f, 0), Vector3(0, 0, 0.3f), Vector3(1, -0.5f, 0), Vector3(2, 0, 0)};
+    const Vector3 places[] = {Vector3(-2, 0, 0), Vector3(-1, 0.5f, 0), Vector3(0, 0, 0.3f), Vector3(1, -0.5f, 0),
+                              Vector3(2, 0, 0)};
     const Vector3 up(0, 1, 0);
     return Path::CatmullRom(places, std::span(&up, 1), false).Value();
 }
@@ -83,8 +84,14 @@ inline std::span<const JointCase> AllJointCases() {
     using namespace joint_cases;
     using Place3 = const Position&;
     static const JointCase kCases[] = {
-        {"point", "locks", [](Place3) { return Make<LockJoint>(JointLocks{LinearLock::Point, AngularLock::None, 0, 0}); }},
-        {"fixed", "locks", [](Place3) { return Make<LockJoint>(JointLocks{LinearLock::Point, AngularLock::All, 0, 0}); }},
+        {"point", "locks",
+         [](Place3) {
+             return Make<LockJoint>(JointLocks{LinearLock::Point, AngularLock::None, 0, 0});
+         }},
+        {"fixed", "locks",
+         [](Place3) {
+             return Make<LockJoint>(JointLocks{LinearLock::Point, AngularLock::All, 0, 0});
+         }},
         {"distance", "slack", [](Place3) { return Make<DistanceJoint>(0.0f, 2.0f, SpringSettings{}); }, {1, 0, 0}},
         {"distance", "rod", [](Place3) { return Make<DistanceJoint>(1.0f, 1.0f, SpringSettings{}); }, {1, 0, 0}},
         {"hinge", "locks", [](Place3) { return Make<HingeJoint>(AxisControl{}); }},
@@ -94,23 +101,44 @@ inline std::span<const JointCase> AllJointCases() {
         {"cone", "locks", [](Place3) { return Make<ConeJoint>(0.8f, SpringSettings{}); }},
         {"cone", "limit", [](Place3) { return Make<ConeJoint>(0.8f, SpringSettings{}); }, {0, 0, 0}, {0, 0, 0.8f}},
         {"swing-twist", "locks",
-         [](Place3) { return Make<SwingTwistJoint>(Limits(-1, 1), Limits(-1, 1), Limits(-0.7f, 0.7f), SwingShape::Ellipse); }},
-        {"swing-twist", "limits",
-         [](Place3) { return Make<SwingTwistJoint>(Limits(-1, 0), Limits(-1, 1), Limits(-0.7f, 0.7f), SwingShape::Ellipse); },
-         {0, 0, 0}, {0, 0, 0.7f}},
+         [](Place3) {
+             return Make<SwingTwistJoint>(Limits(-1, 1), Limits(-1, 1), Limits(-0.7f, 0.7f), SwingShape::Ellipse);
+         }},
+        {"swing-twist",
+         "limits",
+         [](Place3) {
+             return Make<SwingTwistJoint>(Limits(-1, 0), Limits(-1, 1), Limits(-0.7f, 0.7f), SwingShape::Ellipse);
+         },
+         {0, 0, 0},
+         {0, 0, 0.7f}},
         {"six-dof", "locks", [](Place3) { return Make<SixDofJoint>(Shoulder(false), SwingShape::Pyramid); }},
         {"six-dof", "motors", [](Place3) { return Make<SixDofJoint>(Shoulder(true), SwingShape::Pyramid); }},
         {"gear", "row", [](Place3) { return Make<GearJoint>(2.0f); }, {1, 0, 0}},
         {"rack and pinion", "row", [](Place3) { return Make<RackAndPinionJoint>(4.0f); }, {0, 0.25f, 0}},
-        {"pulley", "slack",
-         [](Place3 a) { return Make<PulleyJoint>(Position(a + Position(0, 3, 0)), Position(a + Position(1, 3, 0)), 1.0f, 0.0f, 8.0f); },
+        {"pulley",
+         "slack",
+         [](Place3 a) {
+             return Make<PulleyJoint>(Position(a + Position(0, 3, 0)), Position(a + Position(1, 3, 0)), 1.0f, 0.0f,
+                                      8.0f);
+         },
          {1, 0, 0}},
-        {"pulley", "taut",
-         [](Place3 a) { return Make<PulleyJoint>(Position(a + Position(0, 3, 0)), Position(a + Position(1, 3, 0)), 1.0f, 0.0f, std::nullopt); },
+        {"pulley",
+         "taut",
+         [](Place3 a) {
+             return Make<PulleyJoint>(Position(a + Position(0, 3, 0)), Position(a + Position(1, 3, 0)), 1.0f, 0.0f,
+                                      std::nullopt);
+         },
          {1, 0, 0}},
-        {"path", "rides", [](Place3) { return Make<PathJoint>(Curve(), AxisControl{}, PathRotation::Free); }, {0.4f, -0.2f, 0.2f}},
-        {"path", "motor", [](Place3) { return Make<PathJoint>(Curve(), Speed(1), PathRotation::Free); }, {0.4f, -0.2f, 0.2f}},
-        {"wheel", "suspension", [](Place3) { return Make<WheelJoint>(Suspension(), false, AxisControl{}, AxisControl{}); }},
+        {"path",
+         "rides",
+         [](Place3) { return Make<PathJoint>(Curve(), AxisControl{}, PathRotation::Free); },
+         {0.4f, -0.2f, 0.2f}},
+        {"path",
+         "motor",
+         [](Place3) { return Make<PathJoint>(Curve(), Speed(1), PathRotation::Free); },
+         {0.4f, -0.2f, 0.2f}},
+        {"wheel", "suspension",
+         [](Place3) { return Make<WheelJoint>(Suspension(), false, AxisControl{}, AxisControl{}); }},
         {"wheel", "steered, driven",
          [](Place3) { return Make<WheelJoint>(Suspension(), true, Place(Limits(-0.6f, 0.6f), 0.1f), Speed(20)); }},
     };
@@ -169,7 +197,8 @@ public:
             for (uint32_t i = 0; i < types.size(); ++i)
                 if (LocksOf(i) == locks) joints.push_back(i);
             for (size_t first = 0; first < joints.size(); first += N)
-                batches.push_back(BatchOf<N>(std::span(joints).subspan(first, std::min<size_t>(N, joints.size() - first))));
+                batches.push_back(
+                    BatchOf<N>(std::span(joints).subspan(first, std::min<size_t>(N, joints.size() - first))));
         }
         size_t count = 0;
         for (const JointBatch<N>& batch : batches) count += batch.rowRoom;
@@ -185,7 +214,9 @@ public:
 private:
     enum class Kind : uint8_t { Dynamic, Kinematic, Static };
 
-    uint32_t Below(uint32_t n) { return std::min(static_cast<uint32_t>(random_.Between(0.0f, static_cast<float>(n))), n - 1); }
+    uint32_t Below(uint32_t n) {
+        return std::min(static_cast<uint32_t>(random_.Between(0.0f, static_cast<float>(n))), n - 1);
+    }
 
     int LocksOf(uint32_t joint) const {
         const JointLocks locks = types[joint]->Locks();
@@ -249,7 +280,9 @@ private:
         const auto turned = [](const Vector3& v) { return RotationFromVector(v); };
         const uint32_t a = places_[2 * joint], b = places_[2 * joint + 1];
         const float kind = random_.Between(0.0f, 1.0f);
-        const Kind kindOfB = !options_.someFixed || kind < 0.7f ? Kind::Dynamic : kind < 0.85f ? Kind::Kinematic : Kind::Static;
+        const Kind kindOfB = !options_.someFixed || kind < 0.7f ? Kind::Dynamic
+                             : kind < 0.85f                     ? Kind::Kinematic
+                                                                : Kind::Static;
         const Vector3 anchorA = Vector(0.5f), anchorB = Vector(0.5f);
         const Quaternion rotationA = turned(Turning(2.0f)), inA = turned(Turning(2.0f)), inB = turned(Turning(2.0f));
         const Quaternion frameA = rotationA * inA;

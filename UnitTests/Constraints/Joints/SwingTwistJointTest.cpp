@@ -48,21 +48,23 @@ TEST(SwingTwistJoint, WithOneFreeAxisItIsAHingeThatCountsTurns) {
             bodies.PlaceB(Vector3::Zero(), About(about, 0.1f * static_cast<float>(i)));
             auto rows = RowsOf(joint, bodies.Pose());
             ASSERT_EQ(rows.size(), 1u);
-            EXPECT_NEAR(rows[SlotOf(joint, name, ControlSlots::kMotor)].error, 0.1f * static_cast<float>(i) - 1.0f, 1e-5f);
+            EXPECT_NEAR(rows[SlotOf(joint, name, ControlSlots::kMotor)].error, 0.1f * static_cast<float>(i) - 1.0f,
+                        1e-5f);
         }
         EXPECT_NEAR(joint.Coordinate(name, bodies.Pose()), 10.0, 1e-5);
     }
 }
 
 TEST(SwingTwistJoint, LimitRowsAreTheDerivativesOfTheWayToTheEdge) {
-    // Every row is there: flat edges are reached by the speed; curved ones, which are seen from where the swing goes, are near.
-    // Edges bend; and the twist's J is exact at its limit only, off by half of the way to it.
+    // Every row is there: flat edges are reached by the speed; curved ones, which are seen from where the swing goes,
+    // are near. Edges bend; and the twist's J is exact at its limit only, off by half of the way to it.
     RandomPoses random(11);
     for (const SwingShape shape : {SwingShape::Ellipse, SwingShape::Pyramid})
         for (int i = 0; i < 30; ++i) {
             JointBodies bodies = JointBodies::AtRandom(random);
             const bool curved = shape == SwingShape::Ellipse;
-            const float edge = 0.8f + random.Between(curved ? -0.02f : -0.05f, 0.15f), side = random.Between(-0.3f, 0.3f);
+            const float edge = 0.8f + random.Between(curved ? -0.02f : -0.05f, 0.15f),
+                        side = random.Between(-0.3f, 0.3f);
             bodies.PlaceB(Vector3::Zero(), RotationFromVector(Vector3(0, edge, side)));
             if (!curved) bodies.velocity[1].angular = Vector3(40, 40, 40);
             const SwingTwistJoint joint(Limited(-0.004f, 0.004f), Limited(-0.8f, 0.8f), Limited(-1.2f, 1.2f), shape);

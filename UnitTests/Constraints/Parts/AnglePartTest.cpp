@@ -35,7 +35,8 @@ struct Pair {
 // a . I^-1 a in double.
 double Along(const SymmetricMatrix3& i, const Vector3& axis) {
     const double m[6] = {i.xx, i.yy, i.zz, i.xy, i.xz, i.yz};
-    const double x = static_cast<double>(axis.x()), y = static_cast<double>(axis.y()), z = static_cast<double>(axis.z());
+    const double x = static_cast<double>(axis.x()), y = static_cast<double>(axis.y()),
+                 z = static_cast<double>(axis.z());
     return m[0] * x * x + m[1] * y * y + m[2] * z * z + 2.0 * (m[3] * x * y + m[4] * x * z + m[5] * y * z);
 }
 

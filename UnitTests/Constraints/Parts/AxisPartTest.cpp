@@ -39,13 +39,15 @@ Matrix12 InverseMassMatrix(const InverseMass<float>& mass1, const InverseMass<fl
 }
 Vector12 Jacobian(const AxisFrame<float>& frame) {
     const Position n = frame.axis.cast<double>();
-    const Eigen::Vector3d linear = n, angular1 = frame.r1PlusU.cast<double>().cross(n), angular2 = frame.r2.cast<double>().cross(n);
+    const Eigen::Vector3d linear = n, angular1 = frame.r1PlusU.cast<double>().cross(n),
+                          angular2 = frame.r2.cast<double>().cross(n);
     Vector12 j;
     j << -linear, -angular1, linear, angular2;
     return j;
 }
 Vector12 Stacked(const Twist<float>& a, const Twist<float>& b) {
-    const Eigen::Vector3d va = a.linear.cast<double>(), wa = a.angular.cast<double>(), vb = b.linear.cast<double>(), wb = b.angular.cast<double>();
+    const Eigen::Vector3d va = a.linear.cast<double>(), wa = a.angular.cast<double>(), vb = b.linear.cast<double>(),
+                          wb = b.angular.cast<double>();
     Vector12 v;
     v << va, wa, vb, wb;
     return v;
@@ -206,8 +208,8 @@ void ExpectSideIsDynamicWithZeros(uint32_t seed) {
         special.part.SolveVelocity<kSide1, kSide2>(special.a.velocity, special.b.velocity, special.a.mass,
                                                    special.b.mass, special.frame.axis, -1.0f, 1.0f);
         EXPECT_EQ(special.part.GetTotalLambda(), general.part.GetTotalLambda());
-        const Twist<float>&expected1 = HasMass(kSide1) ? general.a.velocity : a.velocity;
-        const Twist<float>&expected2 = HasMass(kSide2) ? general.b.velocity : b.velocity;
+        const Twist<float>& expected1 = HasMass(kSide1) ? general.a.velocity : a.velocity;
+        const Twist<float>& expected2 = HasMass(kSide2) ? general.b.velocity : b.velocity;
         EXPECT_TRUE(SameBits(special.a.velocity, expected1));
         EXPECT_TRUE(SameBits(special.b.velocity, expected2));
     }
@@ -268,7 +270,8 @@ TEST(AxisPart, PositionPassTakesTheBaumgarteShareOfTheError) {
         pair.SetUp(0.0f);
         const float error = random.Between(-0.2f, 0.2f), baumgarte = 0.2f;
         Twist<float> moved1, moved2;
-        EXPECT_TRUE(pair.part.SolvePosition(moved1, moved2, pair.a.mass, pair.b.mass, pair.frame.axis, error, baumgarte));
+        EXPECT_TRUE(
+            pair.part.SolvePosition(moved1, moved2, pair.a.mass, pair.b.mass, pair.frame.axis, error, baumgarte));
         EXPECT_NEAR(pair.part.RelativeMotion(moved1, moved2, pair.frame.axis), -baumgarte * error, 1e-6f);
         EXPECT_FALSE(pair.part.SolvePosition(moved1, moved2, pair.a.mass, pair.b.mass, pair.frame.axis, 0.0f, 0.2f));
     }
@@ -308,10 +311,11 @@ TEST(AxisPart, SoftSolveIsTheMapOfItsSpring) {
         Pair pair(random);
         const Vector12 j = Jacobian(pair.frame);
         const double inverse = j.dot(InverseMassMatrix(pair.a.mass, pair.b.mass) * j);
-        const float error = random.Between(-0.5f, 0.5f), k = random.Between(1.0f, 50.0f), c = random.Between(0.0f, 2.0f);
+        const float error = random.Between(-0.5f, 0.5f), k = random.Between(1.0f, 50.0f),
+                    c = random.Between(0.0f, 2.0f);
         const double e = static_cast<double>(error);
-        pair.part.CalculateStiffnessProperties(static_cast<float>(h), pair.a.mass, pair.b.mass, pair.frame, 0.0f, error, k,
-                                               c);
+        pair.part.CalculateStiffnessProperties(static_cast<float>(h), pair.a.mass, pair.b.mass, pair.frame, 0.0f, error,
+                                               k, c);
         const double jv = static_cast<double>(pair.Motion());
         const double w2 = static_cast<double>(k) * inverse, decay = static_cast<double>(c) * inverse;
         pair.Solve();

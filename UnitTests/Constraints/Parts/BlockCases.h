@@ -1,5 +1,5 @@
-// One case a block part: how it is set up from random inputs and what its Jacobian is, written out densely in double. The
-// tests of what all block parts have in common run over the list at the end.
+// One case a block part: how it is set up from random inputs and what its Jacobian is, written out densely in double.
+// The tests of what all block parts have in common run over the list at the end.
 #pragma once
 
 #include "RandomBodies.h"
@@ -42,7 +42,9 @@ using Dense3 = Eigen::Matrix3d;
 // Vectors as Eigen's columns, so that they take part in products with matrices.
 inline Eigen::Vector3d ToDense(const Position& v) { return v; }
 inline Eigen::VectorXd ToDense(const Vector3& v) { return ToDense(v.cast<double>()); }
-inline Eigen::VectorXd ToDense(const Vec2<float>& v) { return Eigen::Vector2d(static_cast<double>(v.x()), static_cast<double>(v.y())); }
+inline Eigen::VectorXd ToDense(const Vec2<float>& v) {
+    return Eigen::Vector2d(static_cast<double>(v.x()), static_cast<double>(v.y()));
+}
 
 inline Dense3 CrossMatrix(const Vector3& v) {
     const Position r = v.cast<double>();
@@ -67,7 +69,8 @@ inline Dense3 DenseInertia(const InverseMass<float>& mass) {
     m << i.xx, i.xy, i.xz, i.xy, i.yy, i.yz, i.xz, i.yz, i.zz;
     return m.cast<double>();
 }
-inline Eigen::Matrix<double, 12, 12> DenseInverseMass(const InverseMass<float>& mass1, const InverseMass<float>& mass2) {
+inline Eigen::Matrix<double, 12, 12> DenseInverseMass(const InverseMass<float>& mass1,
+                                                      const InverseMass<float>& mass2) {
     Eigen::Matrix<double, 12, 12> m = Eigen::Matrix<double, 12, 12>::Zero();
     m.block<3, 3>(0, 0) = Dense3::Identity() * static_cast<double>(mass1.mass);
     m.block<3, 3>(3, 3) = DenseInertia(mass1);
@@ -145,8 +148,8 @@ struct DualAxisCase {
     template <BodySide kSide1, BodySide kSide2, class Real>
     static void SetUp(DualAxisPart<Real>& part, const InverseMass<Real>& m1, const InverseMass<Real>& m2,
                       const BlockInputs<Real>& in) {
-        part.template CalculateProperties<kSide1, kSide2>(m1, m2, {in.r1, in.r2, in.axis1, in.axis2},
-                                                          FirstTwo(in.bias), in.softness);
+        part.template CalculateProperties<kSide1, kSide2>(m1, m2, {in.r1, in.r2, in.axis1, in.axis2}, FirstTwo(in.bias),
+                                                          in.softness);
     }
     static DenseRows Jacobian(const BlockInputs<float>& in) {
         Eigen::Matrix<double, 3, 2> axes;

@@ -20,7 +20,8 @@ using testing::RowOf;
 using testing::SameBits;
 using testing::ToDense;
 
-// Numbers below are of order 10 and go through about 20 roundings of 6e-8, of which the inverse makes some ten times more.
+// Numbers below are of order 10 and go through about 20 roundings of 6e-8, of which the inverse makes some ten times
+// more.
 constexpr double kRounding = 5e-5;
 
 template <class Case>
@@ -98,8 +99,7 @@ TYPED_TEST(BlockPartTest, OneSolveMeetsTheBias) {
         // And the velocities changed by M^-1 J^T lambda.
         const auto after = testing::DenseMotion(pair.a.velocity, pair.b.velocity);
         const Eigen::VectorXd gain = testing::DenseInverseMass(pair.a.mass, pair.b.mass) *
-                                     TypeParam::Jacobian(pair.inputs).transpose() *
-                                     ToDense(pair.part.GetTotalLambda());
+                                     TypeParam::Jacobian(pair.inputs).transpose() * ToDense(pair.part.GetTotalLambda());
         EXPECT_LT((after - before - gain).norm(), kRounding);
     }
 }
@@ -129,8 +129,8 @@ TYPED_TEST(BlockPartTest, ImpulsesKeepMomentum) {
     }
 }
 
-// delta = -s K^-1 (J v + b) - g lambda. With y = K lambda, J v = J v0 + y and r = J v0 + b, so y' = y - s (y + r) - g y: y
-// runs to its fixed point -s r / (s + g) by the factor 1 - s - g, in every row alike.
+// delta = -s K^-1 (J v + b) - g lambda. With y = K lambda, J v = J v0 + y and r = J v0 + b, so y' = y - s (y + r) - g
+// y: y runs to its fixed point -s r / (s + g) by the factor 1 - s - g, in every row alike.
 TYPED_TEST(BlockPartTest, SoftRowsFollowTheirRecursion) {
     RandomPoses random(4);
     for (int i = 0; i < 50; ++i) {
@@ -166,8 +166,8 @@ TYPED_TEST(BlockPartTest, PositionPassTakesTheBaumgarteShareOfTheError) {
         EXPECT_TRUE(pair.part.SolvePosition(moved1, moved2, pair.a.mass, pair.b.mass, error, 0.2f));
         const Eigen::VectorXd change = ToDense(pair.part.RelativeMotion(moved1, moved2));
         EXPECT_LT((change + 0.2 * ToDense(error)).norm(), 1e-6);
-        EXPECT_FALSE(
-            pair.part.SolvePosition(moved1, moved2, pair.a.mass, pair.b.mass, AllRows<decltype(pair.part)>(0.0f), 0.2f));
+        EXPECT_FALSE(pair.part.SolvePosition(moved1, moved2, pair.a.mass, pair.b.mass,
+                                             AllRows<decltype(pair.part)>(0.0f), 0.2f));
     }
 }
 
@@ -196,8 +196,9 @@ void ExpectSideIsDynamicWithZeros(uint32_t seed) {
         EXPECT_TRUE(SameRows(special.part.GetTotalLambda(), general.part.GetTotalLambda(), Case::kRows));
         EXPECT_TRUE(SameBits(special.a.velocity, (HasMass(kSide1) ? general.a : a).velocity));
         EXPECT_TRUE(SameBits(special.b.velocity, (HasMass(kSide2) ? general.b : b).velocity));
-        const Eigen::VectorXd left = ToDense(special.part.template RelativeMotion<kSide1, kSide2>(
-                                         special.a.velocity, special.b.velocity)) + special.Bias();
+        const Eigen::VectorXd left =
+            ToDense(special.part.template RelativeMotion<kSide1, kSide2>(special.a.velocity, special.b.velocity)) +
+            special.Bias();
         EXPECT_LT(left.norm(), kRounding);
     }
 }
@@ -350,8 +351,8 @@ TYPED_TEST(BlockPartTest, LanesGiveTheBitsOfTheScalar) {
 // Odd lanes are deactivated, and their bodies hold what arithmetic would disturb.
 template <class Case, int N>
 void ExpectInactiveLanesUntouched() {
-    const float odd[] = {-0.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1e-42f,
-                         0.0f,  -3.5f};
+    const float odd[] = {
+        -0.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1e-42f, 0.0f, -3.5f};
     RandomPoses random(60 + N);
     for (int batch = 0; batch < 50; ++batch) {
         Life<Case, Wide<N>> lanes{};

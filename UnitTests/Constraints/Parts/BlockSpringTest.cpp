@@ -21,7 +21,8 @@ using testing::RowOf;
 using testing::SameBits;
 using testing::ToDense;
 
-// Numbers below are of order 10 and go through about 20 roundings of 6e-8, of which the inverse makes some ten times more.
+// Numbers below are of order 10 and go through about 20 roundings of 6e-8, of which the inverse makes some ten times
+// more.
 constexpr double kRounding = 5e-5;
 
 template <class Rows>
@@ -38,8 +39,8 @@ using Cases =
                      testing::GearCase, testing::RackAndPinionCase, testing::IndependentAxisCase>;
 TYPED_TEST_SUITE(BlockSpringTest, Cases);
 
-// 2 Hz and damping ratio 0.3 in 2000 steps a period. Every row is an oscillator of its own, whatever the masses couple. The
-// implicit step adds w h / 2 to the damping ratio: 0.5 % of it, of which the motion shows less.
+// 2 Hz and damping ratio 0.3 in 2000 steps a period. Every row is an oscillator of its own, whatever the masses couple.
+// The implicit step adds w h / 2 to the damping ratio: 0.5 % of it, of which the motion shows less.
 TYPED_TEST(BlockSpringTest, IsTheOscillatorInTheLimitOfSmallSteps) {
     using Part = typename TypeParam::template Part<float>;
     using Rows = typename Part::Rows;
@@ -62,7 +63,8 @@ TYPED_TEST(BlockSpringTest, IsTheOscillatorInTheLimitOfSmallSteps) {
             part.SolveVelocity(v1, v2, m1, m2);
             error += h * ToDense(part.RelativeMotion(v1, v2));
             const double t = n * h;
-            const double share = std::exp(-zeta * w * t) * (std::cos(damped * t) + zeta * w / damped * std::sin(damped * t));
+            const double share =
+                std::exp(-zeta * w * t) * (std::cos(damped * t) + zeta * w / damped * std::sin(damped * t));
             ASSERT_LT((error - share * start).norm(), 0.01 * start.norm()) << n;
         }
     }
@@ -84,12 +86,15 @@ TYPED_TEST(BlockSpringTest, MassesMayBeOverridden) {
         const Eigen::MatrixXd expected = (j * inverseMass * j.transpose()).inverse();
         EXPECT_LT((ToDense(part.GetEffectiveMass()) - expected).norm(), 3e-5 * expected.norm());
         EXPECT_TRUE(part.SolveVelocity(v1, v2, heavy, b.mass));
-        EXPECT_LT((ToDense(part.RelativeMotion(v1, v2)) + ToDense(inputs.bias).head(TypeParam::kRows)).norm(), kRounding);
+        EXPECT_LT((ToDense(part.RelativeMotion(v1, v2)) + ToDense(inputs.bias).head(TypeParam::kRows)).norm(),
+                  kRounding);
         const Eigen::VectorXd gain = inverseMass * j.transpose() * ToDense(part.GetTotalLambda());
-        EXPECT_LT((testing::DenseMotion(v1, v2) - testing::DenseMotion(a.velocity, b.velocity) - gain).norm(), kRounding);
+        EXPECT_LT((testing::DenseMotion(v1, v2) - testing::DenseMotion(a.velocity, b.velocity) - gain).norm(),
+                  kRounding);
         Twist<float> moved1, moved2;
         part.SolvePosition(moved1, moved2, heavy, b.mass, part.GetTotalLambda(), 0.2f);
-        EXPECT_LT((ToDense(part.RelativeMotion(moved1, moved2)) + 0.2 * ToDense(part.GetTotalLambda())).norm(), kRounding);
+        EXPECT_LT((ToDense(part.RelativeMotion(moved1, moved2)) + 0.2 * ToDense(part.GetTotalLambda())).norm(),
+                  kRounding);
 
         // Without any mass it is a wall: the row is met by the other body alone.
         const InverseMass<float> wall = OverrideMass(a.mass, 0.0f, 0.0f);
@@ -99,7 +104,8 @@ TYPED_TEST(BlockSpringTest, MassesMayBeOverridden) {
         TypeParam::template SetUp<BodySide::Dynamic, BodySide::Dynamic>(part, wall, b.mass, inputs);
         part.SolveVelocity(still, v2, wall, b.mass);
         EXPECT_TRUE(SameBits(still, a.velocity));
-        EXPECT_LT((ToDense(part.RelativeMotion(still, v2)) + ToDense(inputs.bias).head(TypeParam::kRows)).norm(), kRounding);
+        EXPECT_LT((ToDense(part.RelativeMotion(still, v2)) + ToDense(inputs.bias).head(TypeParam::kRows)).norm(),
+                  kRounding);
     }
 }
 
@@ -167,8 +173,8 @@ TEST(RackAndPinionPart, KeepsItsPhaseOverManyTurns) {
         way += static_cast<double>(v2.linear.x() * h);
         worst = std::max(worst, std::fabs(angle - static_cast<double>(ratio) * way));
     }
-    // One step's rounding of 500 rad/s (3e-5), and of 50 m/s times the ratio (4e-5), for 1 / 240 s, divided by the share of 0.2 that
-    // is fed back, a few times over.
+    // One step's rounding of 500 rad/s (3e-5), and of 50 m/s times the ratio (4e-5), for 1 / 240 s, divided by the
+    // share of 0.2 that is fed back, a few times over.
     EXPECT_LT(worst, 1e-5);
 }
 

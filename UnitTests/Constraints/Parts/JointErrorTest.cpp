@@ -60,16 +60,16 @@ TEST(JointError, PointPartBringsTheAnchorsTogether) {
         Body a = RandomPose(random), b = RandomPose(random);
         const Vector3 local1 = random.InBox(1.0f), local2 = random.InBox(1.0f);
         worst = std::max(worst, CountPasses([&] {
-            const Vector3 r1 = Rotate(a.rotation, local1), r2 = Rotate(b.rotation, local2);
-            const Vector3 error = b.position + r2 - a.position - r1;
-            PointPart<float> part;
-            Twist<float> moved1, moved2;
-            part.CalculateProperties(a.Mass(), b.Mass(), r1, r2, Vector3::Zero());
-            part.SolvePosition(moved1, moved2, a.Mass(), b.Mass(), error, 1.0f);
-            a.Move(moved1);
-            b.Move(moved2);
-            return Length(error);
-        }));
+                             const Vector3 r1 = Rotate(a.rotation, local1), r2 = Rotate(b.rotation, local2);
+                             const Vector3 error = b.position + r2 - a.position - r1;
+                             PointPart<float> part;
+                             Twist<float> moved1, moved2;
+                             part.CalculateProperties(a.Mass(), b.Mass(), r1, r2, Vector3::Zero());
+                             part.SolvePosition(moved1, moved2, a.Mass(), b.Mass(), error, 1.0f);
+                             a.Move(moved1);
+                             b.Move(moved2);
+                             return Length(error);
+                         }));
     }
     EXPECT_LE(worst, 8);
 }
@@ -81,17 +81,20 @@ TEST(JointError, DualAxisPartBringsThePointToTheLine) {
         Body a = RandomPose(random), b = RandomPose(random);
         const Vector3 local1 = random.InBox(1.0f), local2 = random.InBox(1.0f);
         worst = std::max(worst, CountPasses([&] {
-            const Vector3 r2 = Rotate(b.rotation, local2), u = b.position + r2 - a.position - Rotate(a.rotation, local1);
-            const Vector3 n1 = Rotate(a.rotation, Vector3(1, 0, 0)), n2 = Rotate(a.rotation, Vector3(0, 1, 0));
-            const Vec2<float> error(Dot(u, n1), Dot(u, n2));
-            DualAxisPart<float> part;
-            Twist<float> moved1, moved2;
-            part.CalculateProperties(a.Mass(), b.Mass(), {b.position + r2 - a.position, r2, n1, n2}, Vec2<float>(0, 0));
-            part.SolvePosition(moved1, moved2, a.Mass(), b.Mass(), error, 1.0f);
-            a.Move(moved1);
-            b.Move(moved2);
-            return LengthOf(error);
-        }));
+                             const Vector3 r2 = Rotate(b.rotation, local2),
+                                           u = b.position + r2 - a.position - Rotate(a.rotation, local1);
+                             const Vector3 n1 = Rotate(a.rotation, Vector3(1, 0, 0)),
+                                           n2 = Rotate(a.rotation, Vector3(0, 1, 0));
+                             const Vec2<float> error(Dot(u, n1), Dot(u, n2));
+                             DualAxisPart<float> part;
+                             Twist<float> moved1, moved2;
+                             part.CalculateProperties(a.Mass(), b.Mass(), {b.position + r2 - a.position, r2, n1, n2},
+                                                      Vec2<float>(0, 0));
+                             part.SolvePosition(moved1, moved2, a.Mass(), b.Mass(), error, 1.0f);
+                             a.Move(moved1);
+                             b.Move(moved2);
+                             return LengthOf(error);
+                         }));
     }
     EXPECT_LE(worst, 8);
 }
@@ -203,7 +206,8 @@ TEST(JointError, HingeRotationPartAlignsTheAxesFromAnyAngle) {
         EXPECT_LT(any.misalignment, 3e-6f);
         // Exactly opposite, and a right angle apart.
         Body opposite = b, square = b;
-        opposite.rotation = a.rotation * Quaternion{1, 0, 0, 0} * RotationFromVector(Vector3(0, 0, random.Between(-3, 3)));
+        opposite.rotation =
+            a.rotation * Quaternion{1, 0, 0, 0} * RotationFromVector(Vector3(0, 0, random.Between(-3, 3)));
         square.rotation = a.rotation * RotationFromVector(Vector3(0.5f * kPi, 0, 0));
         for (const Body& other : {opposite, square}) {
             const HingePasses passes = RunHinge(a, other);
@@ -261,7 +265,8 @@ TEST(SymmetricInverse, ActsWhereSomethingCanMove) {
         const SymmetricMatrix3 inverse = SymmetricInverse(k);
         const Vector3 possible = axes.x * random.Between(-1, 1) + axes.y * (b > 0.0f ? random.Between(-1, 1) : 0.0f);
         const Vector3 wanted = k * possible, reached = k * (inverse * wanted);
-        // Rounding of 6e-8, times a condition of up to 50, times as much again where the first two rows are nearly alike.
+        // Rounding of 6e-8, times a condition of up to 50, times as much again where the first two rows are nearly
+        // alike.
         EXPECT_LT(Length(Vector3(reached - wanted)), 1e-3f * Length(wanted)) << i;
     }
     const SymmetricMatrix3 none = SymmetricInverse(SymmetricMatrix3());
@@ -300,7 +305,8 @@ TEST(GearPart, KeepsItsPhaseOverManyTurns) {
         angle2 += static_cast<double>(v2.angular.z() * h);
         worst = std::max(worst, std::fabs(angle1 + static_cast<double>(ratio) * angle2));
     }
-    // One step's rounding of 500 rad/s (3e-5) for 1 / 240 s, divided by the share of 0.2 that is fed back, a few times over.
+    // One step's rounding of 500 rad/s (3e-5) for 1 / 240 s, divided by the share of 0.2 that is fed back, a few times
+    // over.
     EXPECT_LT(worst, 1e-5);
 }
 

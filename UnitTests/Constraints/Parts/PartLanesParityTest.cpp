@@ -93,8 +93,8 @@ struct Life {
 };
 
 Outcome RunScalar(const Row& row) {
-    Life<float> life{row.a.velocity, row.b.velocity, row.a.mass, row.b.mass,     row.frame, row.spring, row.bias, row.error,
-                     row.low,        row.high,       row.warmLambda, {}, {}, false};
+    Life<float> life{row.a.velocity, row.b.velocity, row.a.mass, row.b.mass,     row.frame, row.spring, row.bias,
+                     row.error,      row.low,        row.high,   row.warmLambda, {},        {},         false};
     life.Run();
     return {life.v1, life.v2, life.axis.GetTotalLambda(), life.angle.GetTotalLambda(), life.applied};
 }
@@ -139,8 +139,8 @@ TEST(PartLanes, LanesGiveTheBitsOfTheScalar) {
     ExpectLanesEqualScalar<kLanes>();
 }
 
-// The same bits from every compiler and processor. The number changes only with the parts' arithmetic (or that of Exp and
-// Sin), never with the build.
+// The same bits from every compiler and processor. The number changes only with the parts' arithmetic (or that of Exp
+// and Sin), never with the build.
 TEST(PartLanes, EveryBuildGivesTheSameBits) {
     RandomPoses random(70);
     uint64_t hash = 14695981039346656037ull;  // FNV-1a
@@ -177,13 +177,13 @@ TEST(PartLanes, HardOnlyPartsGiveTheBitsOfHardRows) {
     }
 }
 
-// Odd lanes are deactivated. Their bodies hold what arithmetic would disturb (-0, NaN, infinity, denormals), their limits
-// demand an impulse, and the error of the position pass is not zero.
+// Odd lanes are deactivated. Their bodies hold what arithmetic would disturb (-0, NaN, infinity, denormals), their
+// limits demand an impulse, and the error of the position pass is not zero.
 template <int N>
 void ExpectInactiveLanesUntouched() {
     using Real = Wide<N>;
-    const float odd[] = {-0.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1e-42f,
-                         0.0f,  -3.5f};
+    const float odd[] = {
+        -0.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1e-42f, 0.0f, -3.5f};
     RandomPoses random(60 + N);
     for (int batch = 0; batch < 50; ++batch) {
         Twist<Real> v1, v2;

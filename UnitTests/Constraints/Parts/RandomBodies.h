@@ -10,7 +10,9 @@
 namespace fulcrum::testing {
 
 // In three draws, whatever they are.
-inline Vector3 AnyDirection(RandomPoses& random) { return Normalized(Vector3(random.InBox(1) + Vector3(0.01f, 0.02f, 0.03f))); }
+inline Vector3 AnyDirection(RandomPoses& random) {
+    return Normalized(Vector3(random.InBox(1) + Vector3(0.01f, 0.02f, 0.03f)));
+}
 
 struct RandomBody {
     Vector3 position;

@@ -56,9 +56,8 @@ Oscillator OnTheCurve(double frequency, double zeta) {
 
 double LargestError(double frequency, double zeta, SpringForm form, int steps) {
     Oscillator oscillator = OnTheCurve(frequency, zeta);
-    const SpringSettings settings{.frequency = static_cast<float>(frequency),
-                                  .dampingRatio = static_cast<float>(zeta),
-                                  .form = form};
+    const SpringSettings settings{
+        .frequency = static_cast<float>(frequency), .dampingRatio = static_cast<float>(zeta), .form = form};
     double worst = 0.0;
     for (int i = 1; i <= steps; ++i) {
         oscillator.Step(settings);
@@ -86,7 +85,8 @@ TEST(Spring, ExactFormMeetsTheContinuousOscillator) {
     // where little decays; the three gains are wrong by half a unit each (6e-8).
     EXPECT_LT(LargestError(2.0, 0.1, SpringForm::Exact, 600), 1e-5);
     EXPECT_LT(LargestError(2.0, 0.1, SpringForm::Automatic, 600), 1e-5);
-    // Without damping (no softened mass: the row is a pure force) nothing of the error decays: 126 rad, and the gains' error turns it by 1e-5.
+    // Without damping (no softened mass: the row is a pure force) nothing of the error decays: 126 rad, and the gains'
+    // error turns it by 1e-5.
     EXPECT_LT(LargestError(2.0, 0.0, SpringForm::Exact, 600), 3e-5);
     EXPECT_LT(LargestError(11.0, 0.05, SpringForm::Exact, 600), 1e-5);
     EXPECT_LT(LargestError(2.0, 0.9999, SpringForm::Exact, 600), 1e-5);
@@ -145,7 +145,8 @@ TEST(Spring, AutomaticChoosesTheForm) {
 }
 
 TEST(Spring, AutomaticNeverFeedsEnergy) {
-    // The bound D - 1 >= K / 2 divided by D, for every frequency and damping ratio; rounding of the three gains allowed.
+    // The bound D - 1 >= K / 2 divided by D, for every frequency and damping ratio; rounding of the three gains
+    // allowed.
     for (float f = 0.05f; f < 40.0f; f *= 1.07f)
         for (float zeta = 0.0f; zeta < 4.0f; zeta += 0.0371f) {
             const auto gains = Gains(f, zeta, SpringForm::Automatic);

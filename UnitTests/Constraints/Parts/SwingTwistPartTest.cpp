@@ -1,5 +1,5 @@
-// The swing-twist part: its rows against their Jacobian, its solves and springs in closed form, position passes from anywhere,
-// sides, lanes and states.
+// The swing-twist part: its rows against their Jacobian, its solves and springs in closed form, position passes from
+// anywhere, sides, lanes and states.
 #include "BlockCases.h"
 
 #include <Fulcrum/Constraints/Parts/SwingTwistPart.h>
@@ -153,7 +153,8 @@ TEST(SwingTwistPart, LimitsThatAreNearAreMetAndNotBefore) {
     }
 }
 
-// delta = -s m (J v + b) - g lambda. With y = lambda / m and r = J v0 + b: y runs to -s r / (s + g) by the factor 1 - s - g.
+// delta = -s m (J v + b) - g lambda. With y = lambda / m and r = J v0 + b: y runs to -s r / (s + g) by the factor 1 - s
+// - g.
 TEST(SwingTwistPart, SoftRowFollowsItsRecursion) {
     RandomPoses random(6);
     for (int i = 0; i < 50; ++i) {
@@ -161,7 +162,8 @@ TEST(SwingTwistPart, SoftRowFollowsItsRecursion) {
         pair.rows = MakeRows(random, 1, -0.4f, kBoth);
         const float s = random.Between(0.1f, 0.8f), g = random.Between(0.05f, 0.2f);
         pair.SetUp({2.0f, 0.0f, {s, g}});
-        const double r = static_cast<double>(pair.Motion(2) - 0.8f), ds = static_cast<double>(s), dg = static_cast<double>(g);
+        const double r = static_cast<double>(pair.Motion(2) - 0.8f), ds = static_cast<double>(s),
+                     dg = static_cast<double>(g);
         for (int n = 1; n <= 5; ++n) {
             pair.Solve();
             const double y = -ds / (ds + dg) * (1.0 - std::pow(1.0 - ds - dg, n)) * r;
@@ -170,12 +172,13 @@ TEST(SwingTwistPart, SoftRowFollowsItsRecursion) {
     }
 }
 
-// A locked twist of 2 Hz and damping ratio 0.3 in 2000 steps a period, against the oscillator: the implicit step adds w h / 2 to
-// the damping ratio, 0.5 %, and as much to the phase.
+// A locked twist of 2 Hz and damping ratio 0.3 in 2000 steps a period, against the oscillator: the implicit step adds w
+// h / 2 to the damping ratio, 0.5 %, and as much to the phase.
 TEST(SwingTwistPart, SpringIsTheOscillatorInTheLimit) {
     const double w = 2.0 * 3.14159265358979 * 2.0, zeta = 0.3, h = 1.0 / 4000.0, start = 0.4;
     const double c = h * w * (2.0 * zeta + h * w);
-    const Correction spring{static_cast<float>(w / (2.0 * zeta + h * w)), 0.0f,
+    const Correction spring{static_cast<float>(w / (2.0 * zeta + h * w)),
+                            0.0f,
                             {static_cast<float>(c / (1.0 + c)), static_cast<float>(1.0 / (1.0 + c))}};
     SwingTwistLimits limits;
     limits.twist = {0.0f, 0.0f};
@@ -197,8 +200,8 @@ TEST(SwingTwistPart, SpringIsTheOscillatorInTheLimit) {
         part.SolveVelocity(v1, v2, m1, m2);
         angle += h * static_cast<double>(part.RelativeMotion(v1, v2, 2));
         const double t = n * h;
-        const double expected = start * std::exp(-zeta * w * t) *
-                                (std::cos(damped * t) + zeta * w / damped * std::sin(damped * t));
+        const double expected =
+            start * std::exp(-zeta * w * t) * (std::cos(damped * t) + zeta * w / damped * std::sin(damped * t));
         EXPECT_NEAR(angle, expected, 0.01 * start) << n;
     }
 }
@@ -209,7 +212,8 @@ struct Joint {
     Vector3 inverseInertia1, inverseInertia2;
     SwingTwistLimits limits;
 
-    Joint(RandomPoses& random, const Quaternion& relative) : frame1(RandomRotation(random)), frame2(Normalized(frame1 * relative)) {
+    Joint(RandomPoses& random, const Quaternion& relative)
+        : frame1(RandomRotation(random)), frame2(Normalized(frame1 * relative)) {
         for (int k = 0; k < 3; ++k) {
             inverseInertia1[k] = random.Between(0.5f, 3.0f);
             inverseInertia2[k] = random.Between(0.5f, 3.0f);
@@ -270,8 +274,8 @@ TEST(SwingTwistPart, PositionPassesReachTheLimitsFromAnywhere) {
     EXPECT_LE(sum, 5 * kJoints);
 }
 
-// Up to 180 degrees the swing comes back at once. Near there a turn of the swing's direction is a twist as well, so that a narrow
-// twist and a wide swing push against each other, and some of both are slow.
+// Up to 180 degrees the swing comes back at once. Near there a turn of the swing's direction is a twist as well, so
+// that a narrow twist and a wide swing push against each other, and some of both are slow.
 TEST(SwingTwistPart, PositionPassesReachSwingLimitsUpToHalfATurn) {
     RandomPoses random(16);
     int worstAlone = 0, slow = 0;
@@ -304,7 +308,8 @@ TEST(SwingTwistPart, PositionPassTakesTheBaumgarteShareAndLeavesWhatIsKept) {
     EXPECT_TRUE(SameBits(moved1, before1) && SameBits(moved2, before2));
 }
 
-// Body 1 twice as heavy for this constraint only: it turns half as much for the same impulse, and the row is met all the same.
+// Body 1 twice as heavy for this constraint only: it turns half as much for the same impulse, and the row is met all
+// the same.
 TEST(SwingTwistPart, MassesMayBeOverridden) {
     RandomPoses random(9);
     for (int i = 0; i < 50; ++i) {
@@ -346,7 +351,8 @@ void ExpectSideIsDynamicWithZeros(uint32_t seed) {
         special.SetUp<kSide1, kSide2>({1.0f, 0.0f, {}});
         for (Pair* pair : {&general, &special}) pair->part.SetTotalLambda(Vector3(0.1f, -0.2f, 0.3f));
         general.part.WarmStart(general.a.velocity, general.b.velocity, general.a.mass, general.b.mass, 0.5f);
-        special.part.WarmStart<kSide1, kSide2>(special.a.velocity, special.b.velocity, special.a.mass, special.b.mass, 0.5f);
+        special.part.WarmStart<kSide1, kSide2>(special.a.velocity, special.b.velocity, special.a.mass, special.b.mass,
+                                               0.5f);
         EXPECT_TRUE(general.Solve());
         EXPECT_TRUE((special.Solve<kSide1, kSide2>()));
         EXPECT_TRUE(SameBits(special.part.GetTotalLambda(), general.part.GetTotalLambda()));
@@ -354,7 +360,8 @@ void ExpectSideIsDynamicWithZeros(uint32_t seed) {
         EXPECT_TRUE(SameBits(special.b.velocity, (HasMass(kSide2) ? general.b : b).velocity));
         Twist<float> moved[4];
         general.part.SolvePosition(moved[0], moved[1], general.a.mass, general.b.mass, general.rows, 0.2f);
-        special.part.SolvePosition<kSide1, kSide2>(moved[2], moved[3], special.a.mass, special.b.mass, special.rows, 0.2f);
+        special.part.SolvePosition<kSide1, kSide2>(moved[2], moved[3], special.a.mass, special.b.mass, special.rows,
+                                                   0.2f);
         EXPECT_TRUE(SameBits(moved[0], moved[2]) && SameBits(moved[1], moved[3]));
     }
 }
@@ -518,7 +525,8 @@ TEST(SwingTwistPart, LanesGiveTheBitsOfTheScalar) {
 // Odd lanes are deactivated, and their bodies hold what arithmetic would disturb.
 template <int N>
 void ExpectInactiveLanesUntouched() {
-    const float odd[] = {-0.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1e-42f};
+    const float odd[] = {-0.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+                         1e-42f};
     RandomPoses random(60 + N);
     for (int batch = 0; batch < 50; ++batch) {
         Life<Wide<N>> lanes{};

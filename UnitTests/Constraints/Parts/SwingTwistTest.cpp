@@ -1,5 +1,5 @@
-// Swing and twist: the decomposition, and limits as distances on the sphere against dense samples of their edges, as continuous
-// functions through 180 degrees and against their derivatives.
+// Swing and twist: the decomposition, and limits as distances on the sphere against dense samples of their edges, as
+// continuous functions through 180 degrees and against their derivatives.
 #include "RandomBodies.h"
 
 #include <Fulcrum/Constraints/Parts/SwingTwist.h>
@@ -41,8 +41,9 @@ SwingTwistLimits Swing(const AngleRange& y, const AngleRange& z, SwingShape shap
 // Half of the angles are of more than a right angle or of less than a degree.
 float HalfAngle(RandomPoses& random) {
     const float kind = random.Between(0.0f, 1.0f);
-    return kDegree * (kind < 0.15f ? random.Between(0.2f, 1.0f) : kind < 0.5f ? random.Between(90.0f, 179.0f)
-                                                                             : random.Between(1.0f, 90.0f));
+    return kDegree * (kind < 0.15f  ? random.Between(0.2f, 1.0f)
+                      : kind < 0.5f ? random.Between(90.0f, 179.0f)
+                                    : random.Between(1.0f, 90.0f));
 }
 SwingTwistLimits RandomSwing(RandomPoses& random, SwingShape shape) {
     const float y = HalfAngle(random), z = HalfAngle(random);
@@ -100,7 +101,8 @@ Position EdgeAt(const SwingTwistLimits& limits, double t) {
     const auto number = [](float x) { return static_cast<double>(x); };
     if (limits.shape == SwingShape::Ellipse) {
         const double angle = 2.0 * kPiDouble * t;
-        const double y = number(limits.swingY.maximum) * std::cos(angle), z = number(limits.swingZ.maximum) * std::sin(angle);
+        const double y = number(limits.swingY.maximum) * std::cos(angle),
+                     z = number(limits.swingZ.maximum) * std::sin(angle);
         const double alpha = std::sqrt(y * y + z * z);
         return DirectionOf(alpha, y / alpha, z / alpha);
     }
@@ -162,14 +164,15 @@ void ExpectDistances(SwingShape shape, uint32_t seed) {
         const float alpha = i % 8 == 0 ? kPi : random.Between(0.0f, kPi), psi = random.Between(-kPi, kPi);
         const double y = static_cast<double>(alpha * Cos(psi)), z = static_cast<double>(alpha * Sin(psi));
         const Quaternion q = Swung(static_cast<float>(y), static_cast<float>(z), random.Between(-3.0f, 3.0f));
-        const Position d = DirectionOf(std::sqrt(y * y + z * z), y / std::sqrt(y * y + z * z), z / std::sqrt(y * y + z * z));
+        const Position d =
+            DirectionOf(std::sqrt(y * y + z * z), y / std::sqrt(y * y + z * z), z / std::sqrt(y * y + z * z));
         const double distance = DistanceToEdge(limits, d);
         const float error = Least(CollectLimits(q, limits));
         // Rounding of directions and angles of up to pi, a few 2e-7.
         EXPECT_NEAR(std::fabs(static_cast<double>(error)), distance, 3e-6)
             << i << " ranges " << limits.swingY.minimum / kDegree << ".." << limits.swingY.maximum / kDegree << ", "
-            << limits.swingZ.minimum / kDegree << ".." << limits.swingZ.maximum / kDegree << " at " << y / kDegree << " "
-            << z / kDegree;
+            << limits.swingZ.minimum / kDegree << ".." << limits.swingZ.maximum / kDegree << " at " << y / kDegree
+            << " " << z / kDegree;
         if (distance > 1e-5) {
             EXPECT_EQ(error > 0.0f, InsideBy(limits, y, z) > 0.0) << i;
         }
@@ -215,8 +218,9 @@ TEST(SwingLimit, ErrorsAreContinuousThroughHalfATurn) {
     }
 }
 
-// By central differences: a step of 0.005 leaves 1e-7 / 0.005 of rounding, and step^2 / 6 times a third derivative of up to
-// 1 / distance^2. Where the nearest point changes sides C has a kink, which the two halves of the difference show.
+// By central differences: a step of 0.005 leaves 1e-7 / 0.005 of rounding, and step^2 / 6 times a third derivative of
+// up to 1 / distance^2. Where the nearest point changes sides C has a kink, which the two halves of the difference
+// show.
 TEST(SwingLimit, AxesAreTheGradientsOfTheErrors) {
     RandomPoses random(6);
     int checked = 0, kinks = 0;
@@ -261,9 +265,8 @@ TEST(SwingLimit, TheAxisLeadsToTheEdge) {
         const SwingTwistLimits limits = RandomSwing(random, shape);
         const Quaternion q = RandomRotation(random);
         const RotationLimitList list = CollectLimits(q, limits);
-        const RotationLimit* worst = std::min_element(list.begin(), list.end(), [](const auto& a, const auto& b) {
-            return a.error < b.error;
-        });
+        const RotationLimit* worst =
+            std::min_element(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.error < b.error; });
         if (worst->error >= 0.0f) continue;
         const Quaternion there = RotationFromVector(Vector3(worst->axis * -worst->error)) * q;
         // The tips of thin ellipses bend within 1e-5 rad; elsewhere it is a few 1e-6.
@@ -285,7 +288,8 @@ TEST(SwingLimit, PyramidMayBeLopsidedAndShowsAllItsFaces) {
     EXPECT_NEAR(errorOf(straight, RotationLimit::SwingYMaximum), 1.5f, 1e-6f);
     EXPECT_NEAR(errorOf(straight, RotationLimit::SwingYMinimum), 0.5f, 1e-6f);
     EXPECT_NEAR(errorOf(straight, RotationLimit::SwingZMaximum), 0.7f, 1e-6f);
-    const RotationLimitList low = CollectLimits(Swung(-0.55f, 0, 0), limits), high = CollectLimits(Swung(1.55f, 0, 0), limits);
+    const RotationLimitList low = CollectLimits(Swung(-0.55f, 0, 0), limits),
+                            high = CollectLimits(Swung(1.55f, 0, 0), limits);
     EXPECT_NEAR(errorOf(low, RotationLimit::SwingYMinimum), -0.05f, 1e-6f);
     EXPECT_LT(Length(Vector3(low.limits[0].axis - Vector3(0, 1, 0))), 1e-6f);
     EXPECT_NEAR(errorOf(high, RotationLimit::SwingYMaximum), -0.05f, 1e-6f);
@@ -302,7 +306,8 @@ TEST(SwingLimit, LockedAndFreeAxes) {
     };
     RandomPoses random(8);
     for (int i = 0; i < 200; ++i) {
-        const Quaternion q = i % 3 == 0 ? Swung(kPi * Cos(float(i)), kPi * Sin(float(i)), 1.0f) : RandomRotation(random);
+        const Quaternion q =
+            i % 3 == 0 ? Swung(kPi * Cos(float(i)), kPi * Sin(float(i)), 1.0f) : RandomRotation(random);
         const Vector3 d = Rotate(q, Vector3(1, 0, 0));
         EXPECT_EQ(list(q, free, free).count, 0);
         // Both locked: turned by -C along both axes, x is where it was, from any angle.
@@ -384,10 +389,11 @@ TEST(TwistLimit, AxisIsTheGradientOfTheTwist) {
 
 TEST(SwingLimit, NothingIsNotANumberAtAwkwardPoses) {
     const float half = Sqrt(0.5f);
-    const Quaternion poses[] = {{0, 0, 0, 1},       {0, 0, 0, -1},     {1, 0, 0, 0},      {0, 1, 0, 0},
-                                {0, 0, 1, 0},       {0, half, half, 0}, {0, -half, half, 0}, {half, 0, half, 0},
-                                {half, half, 0, 0}, {0, half, 0, half}, {0, 0, half, half}, {0, 1, 0, 1e-20f},
-                                {0, 0, -1, 1e-8f},  {1e-30f, 0, 0, 1}, {0, 1e-30f, 1e-25f, 1}, {0.5f, 0.5f, 0.5f, 0.5f}};
+    const Quaternion poses[] = {
+        {0, 0, 0, 1},       {0, 0, 0, -1},      {1, 0, 0, 0},           {0, 1, 0, 0},
+        {0, 0, 1, 0},       {0, half, half, 0}, {0, -half, half, 0},    {half, 0, half, 0},
+        {half, half, 0, 0}, {0, half, 0, half}, {0, 0, half, half},     {0, 1, 0, 1e-20f},
+        {0, 0, -1, 1e-8f},  {1e-30f, 0, 0, 1},  {0, 1e-30f, 1e-25f, 1}, {0.5f, 0.5f, 0.5f, 0.5f}};
     const float angles[] = {0.0f, 0.1f, 1.0f, 90.0f, 179.0f, 179.9f, 180.0f};
     for (const Quaternion& pose : poses)
         for (const float y : angles)

@@ -9,7 +9,8 @@ using namespace fulcrum;
 
 extern "C" const char* EngineVersion() { return FULCRUM_VERSION_STRING; }
 
-// Where a ray that is cast down meets a ball that was dropped onto a floor two seconds ago, m; negative: something is wrong.
+// Where a ray that is cast down meets a ball that was dropped onto a floor two seconds ago, m; negative: something is
+// wrong.
 extern "C" double TopOfDroppedBall() {
     ThreadPool pool(2);
     auto created = PhysicsSystem::Create({}, &pool);

@@ -17,7 +17,8 @@ TEST(ChainEnergy, RodsOnBallJointsGainNone) {
             BodyId last = AddHook(world);
             std::vector<JointId> joints;
             for (int i = 0; i < count; ++i) {
-                const BodyId next = world.Add({.shape = BoxOf(0.45f, 0.05f, 0.05f), .position = {i + 0.5, 0, 0}, .mass = 1});
+                const BodyId next =
+                    world.Add({.shape = BoxOf(0.45f, 0.05f, 0.05f), .position = {i + 0.5, 0, 0}, .mass = 1});
                 joints.push_back(Join(world, PointJointSettings{Between(last, next, {1.0 * i, 0, 0})}));
                 last = next;
             }
@@ -41,11 +42,14 @@ TEST(ChainEnergy, LinksHungUpBesideTheirAxesUnderAHeavyLoad) {
         SystemSettings settings = NoSleep();
         settings.layerCollides[1] &= ~2u;
         TestWorld world(settings);
-        BodyId last = world.Add({.shape = SphereOf(0.01f), .motion = MotionType::Static, .position = {0, 0, aside}, .layer = 1});
+        BodyId last =
+            world.Add({.shape = SphereOf(0.01f), .motion = MotionType::Static, .position = {0, 0, aside}, .layer = 1});
         std::vector<JointId> joints;
         for (int i = 0; i <= 6; ++i) {
-            const BodyId next = world.Add({.shape = i == 6 ? SphereOf(0.4f) : BoxOf(0.23f, 0.05f, 0.05f), .position = {0.5 * i + 0.25, 0, 0},
-                                           .mass = i == 6 ? 100.0f : 1.0f, .layer = 1});
+            const BodyId next = world.Add({.shape = i == 6 ? SphereOf(0.4f) : BoxOf(0.23f, 0.05f, 0.05f),
+                                           .position = {0.5 * i + 0.25, 0, 0},
+                                           .mass = i == 6 ? 100.0f : 1.0f,
+                                           .layer = 1});
             joints.push_back(Join(world, PointJointSettings{Between(last, next, {0.5 * i, 0, aside})}));
             last = next;
         }

@@ -4,15 +4,20 @@
 namespace fulcrum::testing {
 namespace {
 
-// A row keeps its axis for a step of 1/60 s: turning across it by an angle s in that time widens the swing by s^2 / 2 tan(limit)
-// at most. s is 0.1 at 6 rad/s, about as fast as the bodies are here; 0.01 rad for what limits leak, and for wide ones.
+// A row keeps its axis for a step of 1/60 s: turning across it by an angle s in that time widens the swing by s^2 / 2
+// tan(limit) at most. s is 0.1 at 6 rad/s, about as fast as the bodies are here; 0.01 rad for what limits leak, and for
+// wide ones.
 double Overshoot(double limit) { return 0.01 + 0.1 * 0.1 / (2 * std::max(std::tan(std::min(limit, kPi / 4)), 0.1)); }
 
 class Cone : public ::testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(Degrees, Cone, ::testing::Values(0, 1, 10, 45, 90, 135, 170, 179, 180));
 
-double AngleBetween(const Vector3& a, const Vector3& b) { return std::atan2(double(Length(Cross(a, b))), double(Dot(a, b))); }
-Vector3 AxisOfBody(TestWorld& world, BodyId id) { return Rotate(world.Bodies().GetPose(id).rotation, Vector3(1, 0, 0)); }
+double AngleBetween(const Vector3& a, const Vector3& b) {
+    return std::atan2(double(Length(Cross(a, b))), double(Dot(a, b)));
+}
+Vector3 AxisOfBody(TestWorld& world, BodyId id) {
+    return Rotate(world.Bodies().GetPose(id).rotation, Vector3(1, 0, 0));
+}
 
 TEST_P(Cone, ABodyThatIsThrownAboutStaysWithin) {
     const double limit = GetParam() * kDegree;
@@ -24,7 +29,9 @@ TEST_P(Cone, ABodyThatIsThrownAboutStaysWithin) {
         settings.halfAngle = static_cast<float>(limit);
         const JointId cone = Join(world, settings);
         uint32_t random = 7;
-        const auto number = [&] { return static_cast<float>((random = random * 1664525u + 1013904223u) >> 8) / 8388608.0f - 1; };
+        const auto number = [&] {
+            return static_cast<float>((random = random * 1664525u + 1013904223u) >> 8) / 8388608.0f - 1;
+        };
         double widest = 0, gap = 0;
         Vector3 torque = Vector3::Zero();
         for (int i = 0; i < 900; ++i) {
@@ -58,7 +65,8 @@ TEST_P(Cone, SpinIsFree) {
 
 TEST(Cone, ARodLeansOnItsEdge) {
     TestWorld world(NoSleep());
-    const BodyId rod = world.Add({.shape = BoxOf(0.5f, 0.05f, 0.05f), .position = {0.5, 0, 0}, .mass = 2, .angularDamping = 2});
+    const BodyId rod =
+        world.Add({.shape = BoxOf(0.5f, 0.05f, 0.05f), .position = {0.5, 0, 0}, .mass = 2, .angularDamping = 2});
     ConeJointSettings settings{Between(AddHook(world), rod, {0, 0, 0})};
     settings.halfAngle = static_cast<float>(30 * kDegree);
     const JointId cone = Join(world, settings);
@@ -71,7 +79,8 @@ struct SwingCase {
     SwingShape shape;
     double y, z, twist;  // degrees
     friend std::ostream& operator<<(std::ostream& out, const SwingCase& c) {
-        return out << (c.shape == SwingShape::Ellipse ? "ellipse " : "pyramid ") << c.y << ", " << c.z << ", twist " << c.twist;
+        return out << (c.shape == SwingShape::Ellipse ? "ellipse " : "pyramid ") << c.y << ", " << c.z << ", twist "
+                   << c.twist;
     }
 };
 
@@ -79,11 +88,15 @@ class SwingTwistLimit : public ::testing::TestWithParam<SwingCase> {};
 
 constexpr auto kE = SwingShape::Ellipse, kP = SwingShape::Pyramid;
 INSTANTIATE_TEST_SUITE_P(Shapes, SwingTwistLimit,
-                         ::testing::Values(SwingCase{kE, 30, 30, 20}, SwingCase{kE, 60, 20, 45}, SwingCase{kE, 10, 120, 90}, SwingCase{kE, 5, 5, 5},
-                                           SwingCase{kE, 150, 90, 170}, SwingCase{kE, 170, 170, 180}, SwingCase{kE, 180, 40, 30},
-                                           SwingCase{kE, 180, 180, 30}, SwingCase{kE, 0, 60, 30}, SwingCase{kE, 0, 0, 60}, SwingCase{kE, 45, 45, 0},
-                                           SwingCase{kP, 30, 30, 20}, SwingCase{kP, 60, 20, 45}, SwingCase{kP, 120, 30, 90}, SwingCase{kP, 150, 90, 170},
-                                           SwingCase{kP, 180, 40, 30}, SwingCase{kP, 180, 180, 30}, SwingCase{kP, 0, 60, 30}, SwingCase{kP, 45, 45, 0}));
+                         ::testing::Values(SwingCase{kE, 30, 30, 20}, SwingCase{kE, 60, 20, 45},
+                                           SwingCase{kE, 10, 120, 90}, SwingCase{kE, 5, 5, 5},
+                                           SwingCase{kE, 150, 90, 170}, SwingCase{kE, 170, 170, 180},
+                                           SwingCase{kE, 180, 40, 30}, SwingCase{kE, 180, 180, 30},
+                                           SwingCase{kE, 0, 60, 30}, SwingCase{kE, 0, 0, 60}, SwingCase{kE, 45, 45, 0},
+                                           SwingCase{kP, 30, 30, 20}, SwingCase{kP, 60, 20, 45},
+                                           SwingCase{kP, 120, 30, 90}, SwingCase{kP, 150, 90, 170},
+                                           SwingCase{kP, 180, 40, 30}, SwingCase{kP, 180, 180, 30},
+                                           SwingCase{kP, 0, 60, 30}, SwingCase{kP, 45, 45, 0}));
 
 // How far the rotation vector (0, y, z) of the swing is beyond its limits, rad.
 double Beyond(const SwingCase& c, double y, double z) {
@@ -99,7 +112,8 @@ double Beyond(const SwingCase& c, double y, double z) {
     if (c.y == 0 || c.z == 0) return std::max(std::fabs(y) - a, std::fabs(z) - b);
     if (y * y / (a * a) + z * z / (b * b) <= 1) return 0;
     double nearest = 9;
-    for (int i = 0; i < 720; ++i) nearest = std::min(nearest, std::hypot(y - a * std::cos(i * kDegree / 2), z - b * std::sin(i * kDegree / 2)));
+    for (int i = 0; i < 720; ++i)
+        nearest = std::min(nearest, std::hypot(y - a * std::cos(i * kDegree / 2), z - b * std::sin(i * kDegree / 2)));
     return nearest;
 }
 
@@ -116,7 +130,9 @@ TEST_P(SwingTwistLimit, ABodyThatIsThrownAboutStaysWithin) {
         for (float* end : {&axis->limits.min, &axis->limits.max}) *end = std::clamp(*end, -3.14159265f, 3.14159265f);
     const JointId joint = Join(world, settings);
     uint32_t random = 99;
-    const auto number = [&] { return static_cast<float>((random = random * 1664525u + 1013904223u) >> 8) / 8388608.0f - 1; };
+    const auto number = [&] {
+        return static_cast<float>((random = random * 1664525u + 1013904223u) >> 8) / 8388608.0f - 1;
+    };
     double swing = 0, twist = 0;
     Vector3 torque = Vector3::Zero();
     for (int i = 0; i < 1200; ++i) {
@@ -124,10 +140,13 @@ TEST_P(SwingTwistLimit, ABodyThatIsThrownAboutStaysWithin) {
         if (i % 30 == 0) torque = Vector3(x, y, z) * 6.0f;
         ASSERT_TRUE(world.Bodies().AddTorque(ball, Vector3(torque - world.Bodies().GetAngularVelocity(ball))));
         world.Step();
-        const double ofY = JointsOf(world).GetCoordinate(joint, JointAxis::AngularY), ofZ = JointsOf(world).GetCoordinate(joint, JointAxis::AngularZ);
+        const double ofY = JointsOf(world).GetCoordinate(joint, JointAxis::AngularY),
+                     ofZ = JointsOf(world).GetCoordinate(joint, JointAxis::AngularZ);
         swing = std::max(swing, Beyond(c, ofY, ofZ));
         // Twist means nothing where the axis points back.
-        if (std::hypot(ofY, ofZ) < 3.0) twist = std::max(twist, std::fabs(JointsOf(world).GetCoordinate(joint, JointAxis::AngularX)) - c.twist * kDegree);
+        if (std::hypot(ofY, ofZ) < 3.0)
+            twist = std::max(twist,
+                             std::fabs(JointsOf(world).GetCoordinate(joint, JointAxis::AngularX)) - c.twist * kDegree);
     }
     EXPECT_LE(swing, Overshoot(std::min(c.y, c.z) * kDegree));
     EXPECT_LE(twist, 0.02);
@@ -139,9 +158,12 @@ TEST(SwingTwist, AMotorTurnsToAnOrientationTheShortestWay) {
     TestWorld world(Weightless());
     const BodyId ball = world.Add({.shape = SphereOf(0.5f), .mass = 10});
     SwingTwistJointSettings settings{UprightBetween(AddHook(world), ball, {0, 0, 0})};
-    for (AxisControl* axis : {&settings.twist, &settings.swingY, &settings.swingZ}) axis->motor = PositionMotor(0, FrequencySpring(2, 1));
+    for (AxisControl* axis : {&settings.twist, &settings.swingY, &settings.swingZ})
+        axis->motor = PositionMotor(0, FrequencySpring(2, 1));
     const JointId joint = Join(world, settings);
-    for (const Quaternion target : {RotationAbout({0, 0, 1}, 1.2), Normalized(RotationAbout({0, 1, 0}, 0.8) * RotationAbout({1, 0, 0}, -1.0)), RotationAbout({0.6f, 0, 0.8f}, 3.0)}) {
+    for (const Quaternion target :
+         {RotationAbout({0, 0, 1}, 1.2), Normalized(RotationAbout({0, 1, 0}, 0.8) * RotationAbout({1, 0, 0}, -1.0)),
+          RotationAbout({0.6f, 0, 0.8f}, 3.0)}) {
         ASSERT_TRUE(JointsOf(world).SetTargetOrientation(joint, target));
         world.Run(4);
         // Frame and body axes are the same here.

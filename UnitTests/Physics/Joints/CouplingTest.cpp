@@ -1,4 +1,5 @@
-// Gears, racks and pulleys: ratios, what they share out of an impulse, and that no tooth is lost. Momentum of jointed bodies.
+// Gears, racks and pulleys: ratios, what they share out of an impulse, and that no tooth is lost. Momentum of jointed
+// bodies.
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 
 namespace fulcrum::testing {
@@ -9,18 +10,26 @@ struct Wheel {
     BodyId body;
     JointId bearing;
 };
-Wheel AddWheel(TestWorld& world, BodyId hook, const Position& position, double inertia, double speed, bool driven = false) {
+Wheel AddWheel(TestWorld& world, BodyId hook, const Position& position, double inertia, double speed,
+               bool driven = false) {
     const auto i = static_cast<float>(inertia);
     Wheel wheel;
-    wheel.body = world.Add({.shape = SphereOf(0.1f), .position = position, .angularVelocity = {0, 0, static_cast<float>(speed)},
-                            .mass = 1, .inertia = {i, i, i}});
+    wheel.body = world.Add({.shape = SphereOf(0.1f),
+                            .position = position,
+                            .angularVelocity = {0, 0, static_cast<float>(speed)},
+                            .mass = 1,
+                            .inertia = {i, i, i}});
     HingeJointSettings settings{Between(hook, wheel.body, position, {0, 0, 1})};
     if (driven) settings.angle.motor = SpeedMotor(speed);
     wheel.bearing = Join(world, settings);
     return wheel;
 }
-double SpeedOf(TestWorld& world, const Wheel& wheel) { return double(world.Bodies().GetAngularVelocity(wheel.body).z()); }
-double AngleOf(TestWorld& world, const Wheel& wheel) { return JointsOf(world).GetCoordinate(wheel.bearing, JointAxis::AngularX); }
+double SpeedOf(TestWorld& world, const Wheel& wheel) {
+    return double(world.Bodies().GetAngularVelocity(wheel.body).z());
+}
+double AngleOf(TestWorld& world, const Wheel& wheel) {
+    return JointsOf(world).GetCoordinate(wheel.bearing, JointAxis::AngularX);
+}
 
 TEST(Gear, ShareOutAnImpulseByTheirInertiasAndRatio) {
     // 100 : 400 teeth, I of discs of the same height and density: r^4. The big one turns at 3 rad/s when they mesh.
@@ -101,7 +110,8 @@ TEST(RackAndPinion, AWeightOnTheRackSpinsThePinion) {
     const BodyId hook = AddHook(world);
     const double radius = 0.25, inertia = 0.1, mass = 3;
     const Wheel pinion = AddWheel(world, hook, {0, 0, 0}, inertia, 0);
-    const BodyId rack = world.Add({.shape = BoxOf(0.05f, 1, 0.05f), .position = {0.25, 0, 0}, .mass = static_cast<float>(mass)});
+    const BodyId rack =
+        world.Add({.shape = BoxOf(0.05f, 1, 0.05f), .position = {0.25, 0, 0}, .mass = static_cast<float>(mass)});
     Join(world, SliderJointSettings{Between(hook, rack, {0.25, 0, 0}, {0, 1, 0})});
     RackAndPinionJointSettings settings{Between(pinion.body, rack, {0, 0, 0}, {0, 0, 1})};
     settings.anchorB = AnchorAt({0.25, 0, 0}, {0, 1, 0});
@@ -154,11 +164,16 @@ void ExpectMomentumIsKept() {
     TestWorld world(Weightless());
     std::vector<BodyId> bodies;
     for (int i = 0; i < 8; ++i) {
-        bodies.push_back(world.Add({.shape = BoxOf(0.45f, 0.1f, 0.1f), .position = {1.0 * i, 0, 0}, .mass = 2,
+        bodies.push_back(world.Add({.shape = BoxOf(0.45f, 0.1f, 0.1f),
+                                    .position = {1.0 * i, 0, 0},
+                                    .mass = 2,
                                     .material = {.friction = 0, .restitution = 0.5f}}));
         if (i > 0) Join(world, Settings{Between(bodies[i - 1], bodies[i], {i - 0.5, 0, 0}, {0, 0, 1})});
     }
-    bodies.push_back(world.Add({.shape = SphereOf(0.2f), .position = {7.2, 1, 0.03}, .linearVelocity = {0, -5, 0}, .mass = 10,
+    bodies.push_back(world.Add({.shape = SphereOf(0.2f),
+                                .position = {7.2, 1, 0.03},
+                                .linearVelocity = {0, -5, 0},
+                                .mass = 10,
                                 .material = {.friction = 0, .restitution = 0.5f}}));
     const auto momentum = [&](Position& linear, Position& angular) {
         linear = angular = Position::Zero();
@@ -166,8 +181,9 @@ void ExpectMomentumIsKept() {
             const Position p = world.VelocityOf(id).template cast<double>() * double(world.Bodies().GetMass(id));
             const Position x = world.Bodies().GetCenterOfMass(id);
             linear += p;
-            angular += Position(x.y() * p.z() - x.z() * p.y(), x.z() * p.x() - x.x() * p.z(), x.x() * p.y() - x.y() * p.x()) +
-                       world.Bodies().GetAngularMomentum(id).template cast<double>();
+            angular +=
+                Position(x.y() * p.z() - x.z() * p.y(), x.z() * p.x() - x.x() * p.z(), x.x() * p.y() - x.y() * p.x()) +
+                world.Bodies().GetAngularMomentum(id).template cast<double>();
         }
     };
     Position linear, angular, linearAfter, angularAfter;

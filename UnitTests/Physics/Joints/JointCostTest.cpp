@@ -1,12 +1,13 @@
-// What joints cost and must not: no allocation while motors are driven, no effort for other islands, the same bits for any
-// number of threads.
+// What joints cost and must not: no allocation while motors are driven, no effort for other islands, the same bits for
+// any number of threads.
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 #include <Fulcrum/UnitTests/Support/AllocationCounter.h>
 
 namespace fulcrum::testing {
 namespace {
 
-// Many machines of every kind of joint, thrown together: chains, doors, pistons, ragged figures, gears, pulleys, springs.
+// Many machines of every kind of joint, thrown together: chains, doors, pistons, ragged figures, gears, pulleys,
+// springs.
 class Machines {
 public:
     Machines(TestWorld& world, int count) : world_(world) {
@@ -17,27 +18,40 @@ public:
     void Drive(int step) {
         const double time = step * kStep;
         for (size_t i = 0; i < doors_.size(); ++i) {
-            EXPECT_TRUE(JointsOf(world_).SetMotor(doors_[i], JointAxis::AngularX, SpeedMotor(3 * std::sin(time + double(i)), 20)));
-            EXPECT_TRUE(JointsOf(world_).SetMotor(pistons_[i], JointAxis::LinearX, PositionMotor(0.3 * std::sin(2 * time + double(i)), FrequencySpring(3, 1))));
-            EXPECT_TRUE(JointsOf(world_).SetTargetOrientation(shoulders_[i], RotationAbout({0, 0, 1}, 0.5 * std::sin(time))));
-            EXPECT_TRUE(JointsOf(world_).SetTargetOrientation(sixes_[i], RotationAbout({1, 0, 0}, 0.5 * std::sin(time))));
+            EXPECT_TRUE(JointsOf(world_).SetMotor(doors_[i], JointAxis::AngularX,
+                                                  SpeedMotor(3 * std::sin(time + double(i)), 20)));
+            EXPECT_TRUE(
+                JointsOf(world_).SetMotor(pistons_[i], JointAxis::LinearX,
+                                          PositionMotor(0.3 * std::sin(2 * time + double(i)), FrequencySpring(3, 1))));
+            EXPECT_TRUE(
+                JointsOf(world_).SetTargetOrientation(shoulders_[i], RotationAbout({0, 0, 1}, 0.5 * std::sin(time))));
+            EXPECT_TRUE(
+                JointsOf(world_).SetTargetOrientation(sixes_[i], RotationAbout({1, 0, 0}, 0.5 * std::sin(time))));
             EXPECT_TRUE(JointsOf(world_).SetMotor(sixes_[i], JointAxis::LinearX, SpeedMotor(0.1 * std::sin(time), 20)));
             EXPECT_TRUE(JointsOf(world_).SetMotor(wheels_[i], JointAxis::AngularX, SpeedMotor(5 * std::sin(time), 20)));
-            EXPECT_TRUE(JointsOf(world_).SetMotor(wheels_[i], JointAxis::AngularY, PositionMotor(0.3 * std::sin(time), FrequencySpring(3, 1))));
+            EXPECT_TRUE(JointsOf(world_).SetMotor(wheels_[i], JointAxis::AngularY,
+                                                  PositionMotor(0.3 * std::sin(time), FrequencySpring(3, 1))));
             EXPECT_TRUE(JointsOf(world_).SetMotor(beads_[i], JointAxis::LinearX, SpeedMotor(0.3 * std::sin(time), 20)));
-            EXPECT_TRUE(JointsOf(world_).SetMotor(ropes_[i], JointAxis::LinearX, PositionMotor(2 + 0.2 * std::sin(time), FrequencySpring(3, 1))));
-            EXPECT_TRUE(JointsOf(world_).SetMotor(winches_[i], JointAxis::LinearX, SpeedMotor(0.2 * std::sin(time), 20)));
-            EXPECT_TRUE(JointsOf(world_).SetLimits(doors_[i], JointAxis::AngularX, JointLimits{-2, 1 + 0.1f * static_cast<float>(std::sin(time)), {}}));
+            EXPECT_TRUE(JointsOf(world_).SetMotor(ropes_[i], JointAxis::LinearX,
+                                                  PositionMotor(2 + 0.2 * std::sin(time), FrequencySpring(3, 1))));
+            EXPECT_TRUE(
+                JointsOf(world_).SetMotor(winches_[i], JointAxis::LinearX, SpeedMotor(0.2 * std::sin(time), 20)));
+            EXPECT_TRUE(JointsOf(world_).SetLimits(doors_[i], JointAxis::AngularX,
+                                                   JointLimits{-2, 1 + 0.1f * static_cast<float>(std::sin(time)), {}}));
             EXPECT_TRUE(JointsOf(world_).SetLimits(shoulders_[i], JointAxis::AngularX, JointLimits{-0.5f, 0.6f, {}}));
-            EXPECT_TRUE(JointsOf(world_).SetFriction(doors_[i], JointAxis::AngularX, 0.5f + 0.1f * static_cast<float>(std::sin(time))));
+            EXPECT_TRUE(JointsOf(world_).SetFriction(doors_[i], JointAxis::AngularX,
+                                                     0.5f + 0.1f * static_cast<float>(std::sin(time))));
         }
     }
 
 private:
-    BodyId AddBox(const Position& position) { return world_.Add({.shape = BoxOf(0.3f, 0.1f, 0.1f), .position = position}); }
+    BodyId AddBox(const Position& position) {
+        return world_.Add({.shape = BoxOf(0.3f, 0.1f, 0.1f), .position = position});
+    }
     void AddMachine(const Position& at, int number) {
         const BodyId hook = AddHook(world_, at);
-        const BodyId arm = AddBox(at + Position(0.3, 0, 0)), hand = AddBox(at + Position(0.9, 0, 0)), finger = AddBox(at + Position(1.5, 0, 0));
+        const BodyId arm = AddBox(at + Position(0.3, 0, 0)), hand = AddBox(at + Position(0.9, 0, 0)),
+                     finger = AddBox(at + Position(1.5, 0, 0));
         HingeJointSettings door{Between(hook, arm, at, {0, 0, 1}), Limited(-2, 1)};
         door.angle.motor = SpeedMotor(1, 20);
         door.angle.friction = 0.5f;
@@ -46,7 +60,8 @@ private:
         shoulder.twist = Limited(-0.5, 0.5);
         shoulder.swingY = Limited(-0.8, 0.8);
         shoulder.swingZ = Limited(-0.4, 0.4);
-        for (AxisControl* axis : {&shoulder.twist, &shoulder.swingY, &shoulder.swingZ}) axis->motor = PositionMotor(0, FrequencySpring(3, 0.7));
+        for (AxisControl* axis : {&shoulder.twist, &shoulder.swingY, &shoulder.swingZ})
+            axis->motor = PositionMotor(0, FrequencySpring(3, 0.7));
         shoulders_.push_back(Join(world_, shoulder));
         if (number % 2) Join(world_, ConeJointSettings{Between(hand, finger, at + Position(1.2, 0, 0))});
         else Join(world_, FixedJointSettings{Between(hand, finger, at + Position(1.2, 0, 0))});
@@ -57,7 +72,8 @@ private:
         // A chain of ball joints down to the floor, a weight on a spring, and another one over a pulley.
         BodyId last = hook;
         for (int i = 0; i < 4; ++i) {
-            const BodyId link = world_.Add({.shape = CapsuleOf(0.2f, 0.08f), .position = at + Position(0, -0.3 - 0.6 * i, 0)});
+            const BodyId link =
+                world_.Add({.shape = CapsuleOf(0.2f, 0.08f), .position = at + Position(0, -0.3 - 0.6 * i, 0)});
             Join(world_, PointJointSettings{Between(last, link, at + Position(0, -0.6 * i, 0))});
             last = link;
         }
@@ -79,7 +95,8 @@ private:
         BodyId gears[2];
         for (int i = 0; i < 2; ++i) {
             const Position center = at + Position(i, 1, 1.5);
-            gears[i] = world_.Add({.shape = SphereOf(0.3f), .position = center, .angularVelocity = {0, 0, i ? 3.0f : 0.0f}});
+            gears[i] =
+                world_.Add({.shape = SphereOf(0.3f), .position = center, .angularVelocity = {0, 0, i ? 3.0f : 0.0f}});
             Join(world_, HingeJointSettings{Between(hook, gears[i], center, {0, 0, 1})});
         }
         GearJointSettings gear{Between(gears[0], gears[1], at + Position(0, 1, 1.5), {0, 0, 1})};
@@ -139,11 +156,16 @@ TEST(JointDeterminism, TheSameBitsForAnyNumberOfThreads) {
         for (int k = 0; k < kSide; ++k)
             for (int i = 0; i < kSide; ++i) {
                 const Position place(30 + k, 30 - i, 0);
-                balls.push_back(world.Add({.shape = SphereOf(0.3f), .motion = i == 0 ? MotionType::Static : MotionType::Dynamic,
-                                           .position = place, .linearVelocity = {0, 0, i == 0 ? 0 : static_cast<float>(k % 5)}}));
+                balls.push_back(world.Add({.shape = SphereOf(0.3f),
+                                           .motion = i == 0 ? MotionType::Static : MotionType::Dynamic,
+                                           .position = place,
+                                           .linearVelocity = {0, 0, i == 0 ? 0 : static_cast<float>(k % 5)}}));
                 const size_t last = balls.size() - 1;
-                if (i > 0) Join(world, PointJointSettings{Between(balls[last - 1], balls[last], place + Position(0, 0.5, 0))});
-                if (i > 0 && k > 0) Join(world, PointJointSettings{Between(balls[last - kSide], balls[last], place - Position(0.5, 0, 0))});
+                if (i > 0)
+                    Join(world, PointJointSettings{Between(balls[last - 1], balls[last], place + Position(0, 0.5, 0))});
+                if (i > 0 && k > 0)
+                    Join(world,
+                         PointJointSettings{Between(balls[last - kSide], balls[last], place - Position(0.5, 0, 0))});
             }
         std::vector<uint64_t> hashes;
         for (int step = 0; step < 120; ++step) {
@@ -188,8 +210,11 @@ Chain AddChain(TestWorld& world, double z) {
     for (int i = 0; i < 9; ++i) {
         const Position place(i + 0.5, 0, z);
         const bool isRod = i < 8;
-        chain.bodies.push_back(world.Add({.shape = isRod ? BoxOf(0.45f, 0.05f, 0.05f) : SphereOf(0.3f), .position = place, .mass = isRod ? 1.0f : 50.0f}));
-        chain.joints.push_back(Join(world, PointJointSettings{Between(chain.bodies[i], chain.bodies[i + 1], {double(i), 0, z})}));
+        chain.bodies.push_back(world.Add({.shape = isRod ? BoxOf(0.45f, 0.05f, 0.05f) : SphereOf(0.3f),
+                                          .position = place,
+                                          .mass = isRod ? 1.0f : 50.0f}));
+        chain.joints.push_back(
+            Join(world, PointJointSettings{Between(chain.bodies[i], chain.bodies[i + 1], {double(i), 0, z})}));
     }
     return chain;
 }

@@ -9,13 +9,19 @@ struct RodChain {
     std::vector<BodyId> bodies;
     std::vector<JointId> joints;
 };
-RodChain AddRodChain(TestWorld& world, int count, const Position& origin = Position::Zero(), LockedAxes locked = LockedAxes::None) {
+RodChain AddRodChain(TestWorld& world, int count, const Position& origin = Position::Zero(),
+                     LockedAxes locked = LockedAxes::None) {
     RodChain chain;
     chain.bodies.push_back(AddHook(world, origin));
     for (int i = 0; i < count; ++i) {
-        chain.bodies.push_back(world.Add({.shape = BoxOf(0.45f, 0.05f, 0.05f), .position = origin + Position(i + 0.5, 0, 0),
-                                          .mass = 1, .lockedAxes = locked, .maxLinearSpeed = 3e38f, .maxAngularSpeed = 3e38f}));
-        chain.joints.push_back(Join(world, PointJointSettings{Between(chain.bodies[i], chain.bodies[i + 1], origin + Position(i, 0, 0))}));
+        chain.bodies.push_back(world.Add({.shape = BoxOf(0.45f, 0.05f, 0.05f),
+                                          .position = origin + Position(i + 0.5, 0, 0),
+                                          .mass = 1,
+                                          .lockedAxes = locked,
+                                          .maxLinearSpeed = 3e38f,
+                                          .maxAngularSpeed = 3e38f}));
+        chain.joints.push_back(
+            Join(world, PointJointSettings{Between(chain.bodies[i], chain.bodies[i + 1], origin + Position(i, 0, 0))}));
     }
     return chain;
 }
@@ -80,7 +86,8 @@ TEST(JointExtremes, AFrozenBodyThatSleepsStillHolds) {
     const JointId joint = Join(world, PointJointSettings{Between(a, b, {0, -1, 0})});
     // One more that is kept from its sleep: islands are looked at in every step.
     const BodyId rests = world.Add({.shape = CubeOf(0.1f), .position = {9, 0, 0}, .gravityFactor = 0});
-    const BodyId sleepless = world.Add({.shape = CubeOf(0.1f), .position = {10, 0, 0}, .gravityFactor = 0, .allowSleep = false});
+    const BodyId sleepless =
+        world.Add({.shape = CubeOf(0.1f), .position = {10, 0, 0}, .gravityFactor = 0, .allowSleep = false});
     Join(world, FixedJointSettings{Between(rests, sleepless, {9.5, 0, 0})});
     world.Run(2);
     for (int i = 0; i < 2; ++i) ASSERT_TRUE(world.Bodies().AddForce(a, {3e38f, 3e38f, 0}));
@@ -99,7 +106,8 @@ TEST(JointExtremes, TimeStepsOfAnyLength) {
     for (int i = 0; i < 350; ++i) {
         world.Step(steps[i % 7]);
         ASSERT_TRUE(world.AllFinite()) << "step " << i;
-        // In a twentieth of a second the end moves by half a meter: what that leaves apart is pulled together within the next steps.
+        // In a twentieth of a second the end moves by half a meter: what that leaves apart is pulled together within
+        // the next steps.
         ASSERT_LT(world.PositionOf(chain.bodies[6]).norm(), 9) << "step " << i;
     }
     world.Run(1);
@@ -108,17 +116,23 @@ TEST(JointExtremes, TimeStepsOfAnyLength) {
 
 TEST(JointExtremes, AChainThatHangsStaysCalmWhateverTheTimeSteps) {
     // The impulses of a short step, scaled up to a long one, must not throw it about.
-    for (const std::vector<double>& steps : {std::vector<double>{1.0 / 30, 1.0 / 240, 0, 1e-5, 1.0 / 60, 0.05, 1.0 / 120}, {1.0 / 60, 1e-5}, {0.05, 1.0 / 240}}) {
+    for (const std::vector<double>& steps :
+         {std::vector<double>{1.0 / 30, 1.0 / 240, 0, 1e-5, 1.0 / 60, 0.05, 1.0 / 120},
+          {1.0 / 60, 1e-5},
+          {0.05, 1.0 / 240}}) {
         TestWorld world(NoSleep());
         RodChain chain;
         chain.bodies.push_back(AddHook(world));
         for (int i = 0; i < 6; ++i) {
-            chain.bodies.push_back(world.Add({.shape = BoxOf(0.05f, 0.45f, 0.05f), .position = {0, -i - 0.5, 0}, .mass = 1}));
-            chain.joints.push_back(Join(world, PointJointSettings{Between(chain.bodies[i], chain.bodies[i + 1], {0, -1.0 * i, 0})}));
+            chain.bodies.push_back(
+                world.Add({.shape = BoxOf(0.05f, 0.45f, 0.05f), .position = {0, -i - 0.5, 0}, .mass = 1}));
+            chain.joints.push_back(
+                Join(world, PointJointSettings{Between(chain.bodies[i], chain.bodies[i + 1], {0, -1.0 * i, 0})}));
         }
         for (size_t i = 0; i < 350; ++i) {
             world.Step(steps[i % steps.size()]);
-            // In 0.05 s the topmost joint falls by 1.2 cm; the longest substep leaves half of that, with the weight below it.
+            // In 0.05 s the topmost joint falls by 1.2 cm; the longest substep leaves half of that, with the weight
+            // below it.
             ASSERT_LT(LargestGap(world, chain), 0.01) << "step " << i;
             ASSERT_NEAR(world.PositionOf(chain.bodies[6]).x(), 0, 1e-3) << "step " << i;
         }
@@ -132,7 +146,8 @@ TEST(JointExtremes, AChainFarAwayMovesLikeTheOneAtTheOrigin) {
         const RodChain a = AddRodChain(here, 4), b = AddRodChain(there, 4, origin);
         here.Run(2);
         there.Run(2);
-        // Doubles at 10^9 m have steps of 1.2e-7 m; a chain of four multiplies what differs by some hundred in two seconds.
+        // Doubles at 10^9 m have steps of 1.2e-7 m; a chain of four multiplies what differs by some hundred in two
+        // seconds.
         const double tolerance = 1e-4 + far * 1.2e-16 * 1000;
         for (size_t i = 1; i < a.bodies.size(); ++i)
             EXPECT_LT((there.PositionOf(b.bodies[i]) - origin - here.PositionOf(a.bodies[i])).norm(), tolerance) << far;

@@ -11,15 +11,18 @@ SixDofJointSettings SixDof(const JointSettings& between, std::initializer_list<J
     return settings;
 }
 
-// A box hung up at its corner from a hook, thrown, by two settings in two worlds: after two seconds both are at the same place.
+// A box hung up at its corner from a hook, thrown, by two settings in two worlds: after two seconds both are at the
+// same place.
 template <class First, class Second>
 void ExpectTheSameMotion(const First& first, const Second& second) {
     std::vector<BodyBits> bits;
     const auto run = [&](const auto& settings) {
         TestWorld world(NoSleep());
         const BodyId hook = AddHook(world);
-        const BodyId box = world.Add({.shape = BoxOf(0.4f, 0.2f, 0.3f), .position = {0.4, -0.2, 0.3},
-                                      .linearVelocity = {1, 2, -1}, .angularVelocity = {3, -2, 1}});
+        const BodyId box = world.Add({.shape = BoxOf(0.4f, 0.2f, 0.3f),
+                                      .position = {0.4, -0.2, 0.3},
+                                      .linearVelocity = {1, 2, -1},
+                                      .angularVelocity = {3, -2, 1}});
         auto placed = settings;
         placed.bodyA = hook;
         placed.bodyB = box;
@@ -34,12 +37,19 @@ void ExpectTheSameMotion(const First& first, const Second& second) {
 
 const JointSettings kAtTheOrigin = Between({}, {}, {0, 0, 0}, {0, 1, 0});
 
-TEST(SixDof, AllLockedIsAFixedJoint) { ExpectTheSameMotion(FixedJointSettings{kAtTheOrigin}, SixDof(kAtTheOrigin, {})); }
-TEST(SixDof, FreeToTurnIsABallJoint) {
-    ExpectTheSameMotion(PointJointSettings{kAtTheOrigin}, SixDof(kAtTheOrigin, {JointAxis::AngularX, JointAxis::AngularY, JointAxis::AngularZ}));
+TEST(SixDof, AllLockedIsAFixedJoint) {
+    ExpectTheSameMotion(FixedJointSettings{kAtTheOrigin}, SixDof(kAtTheOrigin, {}));
 }
-TEST(SixDof, FreeToTurnAboutXIsAHinge) { ExpectTheSameMotion(HingeJointSettings{kAtTheOrigin}, SixDof(kAtTheOrigin, {JointAxis::AngularX})); }
-TEST(SixDof, FreeToMoveAlongXIsASlider) { ExpectTheSameMotion(SliderJointSettings{kAtTheOrigin}, SixDof(kAtTheOrigin, {JointAxis::LinearX})); }
+TEST(SixDof, FreeToTurnIsABallJoint) {
+    ExpectTheSameMotion(PointJointSettings{kAtTheOrigin},
+                        SixDof(kAtTheOrigin, {JointAxis::AngularX, JointAxis::AngularY, JointAxis::AngularZ}));
+}
+TEST(SixDof, FreeToTurnAboutXIsAHinge) {
+    ExpectTheSameMotion(HingeJointSettings{kAtTheOrigin}, SixDof(kAtTheOrigin, {JointAxis::AngularX}));
+}
+TEST(SixDof, FreeToMoveAlongXIsASlider) {
+    ExpectTheSameMotion(SliderJointSettings{kAtTheOrigin}, SixDof(kAtTheOrigin, {JointAxis::LinearX}));
+}
 TEST(SixDof, WithLimitsAndMotorOnXIsADrivenHinge) {
     HingeJointSettings hinge{kAtTheOrigin, Limited(-0.5, 0.3)};
     hinge.angle.motor = SpeedMotor(2, 50);
@@ -143,7 +153,10 @@ TEST(PathJoint, ABeadSwingsOnACircleAndStaysThere) {
 
 TEST(PathJoint, AMotorDrivesAroundAndAround) {
     TestWorld world(Weightless());
-    const BodyId cart = world.Add({.shape = BoxOf(0.2f, 0.1f, 0.1f), .position = {2, 0, 0}, .rotation = RotationAbout({0, 0, 1}, kPi / 2), .mass = 2});
+    const BodyId cart = world.Add({.shape = BoxOf(0.2f, 0.1f, 0.1f),
+                                   .position = {2, 0, 0},
+                                   .rotation = RotationAbout({0, 0, 1}, kPi / 2),
+                                   .mass = 2});
     PathJointSettings settings = OnTheCircle(world, cart, 2, PathRotation::TangentAndNormal);
     settings.anchorB = AnchorAt({2, 0, 0}, {0, 1, 0});
     settings.anchorB->normal = Vector3(0, 0, 1);
@@ -190,7 +203,8 @@ WheelJointSettings UprightWheel(const JointSettings& between) {
 
 TEST(WheelJoint, ASuspensionCarriesAWeightAtForceOverStiffness) {
     TestWorld world(NoSleep());
-    const BodyId chassis = world.Add({.shape = BoxOf(1, 0.2f, 0.5f), .position = {0, 1, 0}, .mass = 400, .lockedAxes = LockedAxes::Rotation});
+    const BodyId chassis = world.Add(
+        {.shape = BoxOf(1, 0.2f, 0.5f), .position = {0, 1, 0}, .mass = 400, .lockedAxes = LockedAxes::Rotation});
     const BodyId wheel = AddHook(world, {0, 1, 0});
     const JointId joint = Join(world, UprightWheel(Between(chassis, wheel, {0, 1, 0}, {0, 0, 1})));
     world.Run(4);
@@ -200,7 +214,8 @@ TEST(WheelJoint, ASuspensionCarriesAWeightAtForceOverStiffness) {
 
 TEST(WheelJoint, BouncesAtTheFrequencyOfItsSpring) {
     TestWorld world(Weightless());
-    const BodyId chassis = world.Add({.shape = BoxOf(1, 0.2f, 0.5f), .position = {0, 1.1, 0}, .mass = 400, .lockedAxes = LockedAxes::Rotation});
+    const BodyId chassis = world.Add(
+        {.shape = BoxOf(1, 0.2f, 0.5f), .position = {0, 1.1, 0}, .mass = 400, .lockedAxes = LockedAxes::Rotation});
     const BodyId wheel = AddHook(world, {0, 1, 0});
     auto settings = UprightWheel(Between(chassis, wheel, {0, 1.1, 0}, {0, 0, 1}));
     settings.anchorB = settings.anchorA;
@@ -220,7 +235,8 @@ TEST(WheelJoint, BouncesAtTheFrequencyOfItsSpring) {
 
 TEST(WheelJoint, SteersAndSpinsAndDrives) {
     TestWorld world(NoSleep());
-    const BodyId chassis = world.Add({.shape = BoxOf(1, 0.2f, 0.5f), .motion = MotionType::Static, .position = {0, 1, 0}});
+    const BodyId chassis =
+        world.Add({.shape = BoxOf(1, 0.2f, 0.5f), .motion = MotionType::Static, .position = {0, 1, 0}});
     const BodyId wheel = world.Add({.shape = SphereOf(0.3f), .position = {0, 1, 1}, .mass = 20});
     auto settings = UprightWheel(Between(chassis, wheel, {0, 1, 1}, {0, 0, 1}));
     settings.isSteered = true;

@@ -9,7 +9,8 @@ namespace {
 // A box that hangs from a hook by a joint of a kind.
 template <class Settings = PointJointSettings>
 struct Hanging {
-    explicit Hanging(const SystemSettings& settings = NoSleep(), uint32_t threads = 1) : world(settings, threads), hook(AddHook(world)) {
+    explicit Hanging(const SystemSettings& settings = NoSleep(), uint32_t threads = 1)
+        : world(settings, threads), hook(AddHook(world)) {
         box = world.Add({.shape = CubeOf(0.1f), .position = {0, -0.5, 0}, .mass = 10});
     }
     JointId Hang(const std::function<void(Settings&)>& change = {}) {
@@ -121,7 +122,8 @@ TEST(JointSleep, AChainSleepsAndWakesAsOne) {
 
 TEST(JointSleep, AMotorThatRunsKeepsItsBodyAwake) {
     TestWorld world(NoGravity());
-    const BodyId fan = world.Add({.shape = BoxOf(0.5f, 0.05f, 0.1f)}), slow = world.Add({.shape = BoxOf(0.5f, 0.05f, 0.1f), .position = {0, 0, 3}});
+    const BodyId fan = world.Add({.shape = BoxOf(0.5f, 0.05f, 0.1f)}),
+                 slow = world.Add({.shape = BoxOf(0.5f, 0.05f, 0.1f), .position = {0, 0, 3}});
     HingeJointSettings settings{Between(AddHook(world), fan, {0, 0, 0}, {0, 0, 1})};
     settings.angle.motor = SpeedMotor(5);
     Join(world, settings);
@@ -255,8 +257,8 @@ TEST(JointBreak, AtATorque) {
 }
 
 TEST(JointBreak, ABlowCountsOverTheWholeStep) {
-    // 2 N s in a sixtieth of a second and the weight: 218.1 N, whatever the number of substeps. What the pull on the anchor
-    // takes back later in the step is below a hundredth.
+    // 2 N s in a sixtieth of a second and the weight: 218.1 N, whatever the number of substeps. What the pull on the
+    // anchor takes back later in the step is below a hundredth.
     for (const int substeps : {1, 4, 16})
         for (const float strength : {216.0f, 221.0f}) {
             SystemSettings settings = NoSleep();
@@ -269,7 +271,8 @@ TEST(JointBreak, ABlowCountsOverTheWholeStep) {
             hanging.world.Step();
             EXPECT_EQ(hanging.Joints().IsEnabled(joint), strength > 218.1f) << substeps << " substeps";
             if (strength < 218.1f) continue;
-            EXPECT_NEAR(hanging.Joints().GetForce(joint).y(), 10 * kGravity + 2 / kStep, 2.181) << substeps << " substeps";
+            EXPECT_NEAR(hanging.Joints().GetForce(joint).y(), 10 * kGravity + 2 / kStep, 2.181)
+                << substeps << " substeps";
         }
 }
 

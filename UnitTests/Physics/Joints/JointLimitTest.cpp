@@ -5,8 +5,8 @@
 namespace fulcrum::testing {
 namespace {
 
-// A limit row asks for the speed that ends the way within a substep. What is overshot is what motors near a limit may (the
-// slop of 1e-3, AxisControl.h) and what a soft row leaks in the steps after it arrested a body.
+// A limit row asks for the speed that ends the way within a substep. What is overshot is what motors near a limit may
+// (the slop of 1e-3, AxisControl.h) and what a soft row leaks in the steps after it arrested a body.
 constexpr double kOvershoot = 5e-3;
 
 class LimitAtSpeed : public ::testing::TestWithParam<double> {};
@@ -30,9 +30,13 @@ void ExpectWithin(TestWorld& world, JointId joint, JointAxis axis, double min, d
 TEST_P(LimitAtSpeed, AHingeIsNotDrivenThroughItsLimits) {
     for (const double force : {double(JointRow::kUnlimited), 500.0}) {
         TestWorld world(Weightless());
-        const BodyId rod = world.Add({.shape = BoxOf(0.5f, 0.05f, 0.05f), .position = {0.5, 0, 0}, .mass = 1,
-                                      .maxLinearSpeed = 2000, .maxAngularSpeed = 2000});
-        const JointId hinge = Join(world, HingeJointSettings{Between(AddHook(world), rod, {0, 0, 0}, {0, 0, 1}), Limited(-1, 0.5)});
+        const BodyId rod = world.Add({.shape = BoxOf(0.5f, 0.05f, 0.05f),
+                                      .position = {0.5, 0, 0},
+                                      .mass = 1,
+                                      .maxLinearSpeed = 2000,
+                                      .maxAngularSpeed = 2000});
+        const JointId hinge =
+            Join(world, HingeJointSettings{Between(AddHook(world), rod, {0, 0, 0}, {0, 0, 1}), Limited(-1, 0.5)});
         ExpectWithin(world, hinge, JointAxis::AngularX, -1, 0.5, GetParam(), force);
     }
 }
@@ -41,7 +45,8 @@ TEST_P(LimitAtSpeed, ASliderIsNotDrivenThroughItsLimits) {
     for (const double force : {double(JointRow::kUnlimited), 500.0}) {
         TestWorld world(Weightless());
         const BodyId box = world.Add({.shape = CubeOf(0.1f), .mass = 1, .maxLinearSpeed = 2000});
-        const JointId slider = Join(world, SliderJointSettings{Between(AddHook(world), box, {0, 0, 0}, {0, 1, 0}), Limited(-0.2, 0.5)});
+        const JointId slider =
+            Join(world, SliderJointSettings{Between(AddHook(world), box, {0, 0, 0}, {0, 1, 0}), Limited(-0.2, 0.5)});
         ExpectWithin(world, slider, JointAxis::LinearX, -0.2, 0.5, GetParam(), force);
     }
 }
@@ -58,11 +63,19 @@ TEST_P(LimitAtSpeed, ATwistIsNotDrivenThroughItsLimits) {
 TEST_P(LimitAtSpeed, WhatFliesAgainstAStopStopsThere) {
     TestWorld world(Weightless());
     const auto speed = static_cast<float>(GetParam()), turning = std::min(speed, 100.0f);
-    const BodyId box = world.Add({.shape = CubeOf(0.1f), .linearVelocity = {speed, 0, 0}, .mass = 1, .maxLinearSpeed = 2000});
-    const JointId slider = Join(world, SliderJointSettings{Between(AddHook(world), box, {0, 0, 0}), Limited(-0.2, 0.5)});
-    const BodyId rod = world.Add({.shape = BoxOf(0.5f, 0.05f, 0.05f), .position = {0.5, 5, 0}, .linearVelocity = {0, 0.5f * turning, 0},
-                                  .angularVelocity = {0, 0, turning}, .mass = 1, .maxLinearSpeed = 2000, .maxAngularSpeed = 2000});
-    const JointId hinge = Join(world, HingeJointSettings{Between(AddHook(world, {0, 5, 0}), rod, {0, 5, 0}, {0, 0, 1}), Limited(-1, 0.5)});
+    const BodyId box =
+        world.Add({.shape = CubeOf(0.1f), .linearVelocity = {speed, 0, 0}, .mass = 1, .maxLinearSpeed = 2000});
+    const JointId slider =
+        Join(world, SliderJointSettings{Between(AddHook(world), box, {0, 0, 0}), Limited(-0.2, 0.5)});
+    const BodyId rod = world.Add({.shape = BoxOf(0.5f, 0.05f, 0.05f),
+                                  .position = {0.5, 5, 0},
+                                  .linearVelocity = {0, 0.5f * turning, 0},
+                                  .angularVelocity = {0, 0, turning},
+                                  .mass = 1,
+                                  .maxLinearSpeed = 2000,
+                                  .maxAngularSpeed = 2000});
+    const JointId hinge = Join(
+        world, HingeJointSettings{Between(AddHook(world, {0, 5, 0}), rod, {0, 5, 0}, {0, 0, 1}), Limited(-1, 0.5)});
     for (int i = 0; i < 60; ++i) {
         world.Step();
         ASSERT_LE(JointsOf(world).GetCoordinate(slider, JointAxis::LinearX), 0.5 + kOvershoot);
@@ -75,8 +88,11 @@ TEST_P(LimitAtSpeed, WhatFliesAgainstAStopStopsThere) {
 TEST_P(LimitAtSpeed, ARopeIsNotTornLonger) {
     TestWorld world(Weightless());
     const auto speed = static_cast<float>(GetParam());
-    const BodyId ball = world.Add({.shape = SphereOf(0.1f), .position = {1, 0, 0}, .linearVelocity = {speed, 0.3f * speed, 0},
-                                   .mass = 1, .maxLinearSpeed = 2000});
+    const BodyId ball = world.Add({.shape = SphereOf(0.1f),
+                                   .position = {1, 0, 0},
+                                   .linearVelocity = {speed, 0.3f * speed, 0},
+                                   .mass = 1,
+                                   .maxLinearSpeed = 2000});
     DistanceJointSettings settings{Between(AddHook(world), ball, {0, 0, 0})};
     settings.anchorB = AnchorAt({1, 0, 0});
     settings.maxDistance = 2.0f;
@@ -92,7 +108,8 @@ TEST_P(LimitAtSpeed, ARopeIsNotTornLonger) {
 TEST(Limit, AHingeRestsOnItsLimit) {
     TestWorld world(NoSleep());
     const BodyId rod = world.Add({.shape = BoxOf(0.5f, 0.05f, 0.05f), .position = {0.5, 0, 0}, .mass = 3});
-    const JointId hinge = Join(world, HingeJointSettings{Between(AddHook(world), rod, {0, 0, 0}, {0, 0, 1}), Limited(-0.3, 2)});
+    const JointId hinge =
+        Join(world, HingeJointSettings{Between(AddHook(world), rod, {0, 0, 0}, {0, 0, 1}), Limited(-0.3, 2)});
     world.Run(3);
     EXPECT_NEAR(JointsOf(world).GetCoordinate(hinge, JointAxis::AngularX), -0.3, kOvershoot);
     EXPECT_NEAR(world.Bodies().GetAngularVelocity(rod).z(), 0, 1e-4);
@@ -106,7 +123,8 @@ TEST(Limit, ASoftLimitOfASliderIsASpring) {
     TestWorld world(Weightless());
     const double omega = 2 * kPi * 2;
     const BodyId box = world.Add({.shape = CubeOf(0.1f), .linearVelocity = {1, 0, 0}, .mass = 3});
-    const JointId slider = Join(world, SliderJointSettings{Between(AddHook(world), box, {0, 0, 0}), Limited(-9, 0.5, FrequencySpring(2, 0, SpringForm::Exact))});
+    const JointId slider = Join(world, SliderJointSettings{Between(AddHook(world), box, {0, 0, 0}),
+                                                           Limited(-9, 0.5, FrequencySpring(2, 0, SpringForm::Exact))});
     double farthest = 0;
     for (int i = 0; i < 75; ++i) {
         world.Step();
@@ -121,7 +139,8 @@ TEST(Limit, ASoftLimitOfASliderIsASpring) {
 TEST(Limit, ASoftLimitOfAHingeCarriesAtTorqueOverStiffness) {
     TestWorld world(NoSleep());
     const BodyId rod = world.Add({.shape = BoxOf(0.5f, 0.05f, 0.05f), .position = {0.5, 0, 0}, .mass = 3});
-    const JointId hinge = Join(world, HingeJointSettings{Between(AddHook(world), rod, {0, 0, 0}, {0, 0, 1}), Limited(-0.3, 2, StiffnessSpring(200, 40))});
+    const JointId hinge = Join(world, HingeJointSettings{Between(AddHook(world), rod, {0, 0, 0}, {0, 0, 1}),
+                                                         Limited(-0.3, 2, StiffnessSpring(200, 40))});
     world.Run(6);
     const double angle = JointsOf(world).GetCoordinate(hinge, JointAxis::AngularX);
     EXPECT_NEAR(200 * (-0.3 - angle), 3 * kGravity * 0.5 * std::cos(angle), 0.005 * 3 * kGravity * 0.5);
@@ -169,13 +188,16 @@ TEST(Limit, AHingeCountsAHundredThousandTurns) {
     const double angle = JointsOf(world).GetCoordinate(hinge, JointAxis::AngularX);
     // The speed is held to a part of 1e-6 or so, which is a tenth of a turn.
     EXPECT_NEAR(angle / (2 * kPi), 180 * kStep * steps / (2 * kPi), 0.1);
-    // Not a turn too many: the pose agrees, within what the orientation's own rounding, 1e-7 a step at random, adds up to.
+    // Not a turn too many: the pose agrees, within what the orientation's own rounding, 1e-7 a step at random, adds up
+    // to.
     const Quaternion q = world.Bodies().GetPose(ball).rotation;
     EXPECT_NEAR(std::remainder(angle - 2 * std::atan2(double(q.z), double(q.w)), 2 * kPi), 0, 1e-4);
-    ASSERT_TRUE(JointsOf(world).SetMotor(hinge, JointAxis::AngularX, PositionMotor(turns * 2 * kPi, FrequencySpring(1, 1))));
+    ASSERT_TRUE(
+        JointsOf(world).SetMotor(hinge, JointAxis::AngularX, PositionMotor(turns * 2 * kPi, FrequencySpring(1, 1))));
     world.Run(5);
     // Floats of 6e5 have steps of 1/16: that is how exactly the target can be told.
-    EXPECT_NEAR(JointsOf(world).GetCoordinate(hinge, JointAxis::AngularX), double(static_cast<float>(turns * 2 * kPi)), 1e-3);
+    EXPECT_NEAR(JointsOf(world).GetCoordinate(hinge, JointAxis::AngularX), double(static_cast<float>(turns * 2 * kPi)),
+                1e-3);
 }
 
 }  // namespace

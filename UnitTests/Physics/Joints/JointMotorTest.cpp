@@ -9,7 +9,8 @@ double Rounding(double speed, int steps) { return speed * steps * 4 * 10 * std::
 
 // A box that slides along x, or along y, and nothing pulls at it but what a test adds.
 struct SliderRig {
-    explicit SliderRig(double mass, const AxisControl& slide = {}, const SystemSettings& settings = NoGravity(), const Vector3& axis = Vector3(1, 0, 0))
+    explicit SliderRig(double mass, const AxisControl& slide = {}, const SystemSettings& settings = NoGravity(),
+                       const Vector3& axis = Vector3(1, 0, 0))
         : world(settings), box(world.Add({.shape = CubeOf(0.5f), .mass = static_cast<float>(mass)})) {
         joint = Join(world, SliderJointSettings{Between(AddHook(world), box, {0, 0, 0}, axis), slide});
     }
@@ -28,7 +29,9 @@ struct HingeRig {
     static constexpr double kUnitInertia = (1 + 0.01) / 12 + 0.25;  // m2
 
     explicit HingeRig(double mass, const AxisControl& angle = {}, const SystemSettings& settings = NoGravity())
-        : world(settings), rod(world.Add({.shape = BoxOf(0.5f, 0.05f, 0.05f), .position = {0.5, 0, 0}, .mass = static_cast<float>(mass)})) {
+        : world(settings),
+          rod(world.Add(
+              {.shape = BoxOf(0.5f, 0.05f, 0.05f), .position = {0.5, 0, 0}, .mass = static_cast<float>(mass)})) {
         joint = Join(world, HingeJointSettings{Between(AddHook(world), rod, {0, 0, 0}, {0, 0, 1}), angle});
     }
     JointInterface& Joints() { return JointsOf(world); }
@@ -158,9 +161,11 @@ TEST(Motor, TargetsMayChangeEveryStep) {
     const double rate = 2;
     for (int i = 0; i < 300; ++i) {
         const double time = i * kStep;
-        ASSERT_TRUE(rig.Joints().SetMotor(rig.joint, JointAxis::LinearX, PositionMotor(std::sin(rate * time), FrequencySpring(10, 1))));
+        ASSERT_TRUE(rig.Joints().SetMotor(rig.joint, JointAxis::LinearX,
+                                          PositionMotor(std::sin(rate * time), FrequencySpring(10, 1))));
         rig.world.Step();
-        // 2 zeta / w = 32 ms, and a target that stands still for a step is half a step old: within 1 rad/s * ... of the amplitude.
+        // 2 zeta / w = 32 ms, and a target that stands still for a step is half a step old: within 1 rad/s * ... of the
+        // amplitude.
         const double lag = 2 / (2 * kPi * 10) + kStep / 2;
         if (i > 60) {
             ASSERT_NEAR(rig.Place(), std::sin(rate * (time + kStep - lag)), 0.02) << "step " << i;
@@ -238,7 +243,8 @@ TEST(JointFriction, OfAHingeHoldsARodBelowItsTorqueAndNotAboveIt) {
         HingeRig rig(3, {.friction = static_cast<float>(friction)}, NoSleep());
         rig.world.Run(2);
         if (friction > 14.7) {
-            // It slips while friction is not yet there in the first step: v = g dt / 4 is braked by 0.3 N m. Then it holds.
+            // It slips while friction is not yet there in the first step: v = g dt / 4 is braked by 0.3 N m. Then it
+            // holds.
             EXPECT_NEAR(rig.Angle(), 0, 2e-3);
             const double start = rig.Angle();
             rig.world.Run(20);

@@ -16,9 +16,12 @@ TEST(ReadBack, AJointCarriesTheWeightOfWhatHangsThere) {
     const BodyId other = world.Add({.shape = CubeOf(0.1f), .position = {5, -1, 0}, .mass = 10});
     const JointId third = Join(world, PointJointSettings{Between(other, hook, {5, 0, 0})});
     world.Run(2);
-    EXPECT_LT(Length(Vector3(JointsOf(world).GetForce(first) - Vector3(0, static_cast<float>(15 * kGravity), 0))), 0.002 * 15 * kGravity);
-    EXPECT_LT(Length(Vector3(JointsOf(world).GetForce(second) - Vector3(0, static_cast<float>(5 * kGravity), 0))), 0.002 * 5 * kGravity);
-    EXPECT_LT(Length(Vector3(JointsOf(world).GetForce(third) + Vector3(0, static_cast<float>(10 * kGravity), 0))), 0.002 * 10 * kGravity);
+    EXPECT_LT(Length(Vector3(JointsOf(world).GetForce(first) - Vector3(0, static_cast<float>(15 * kGravity), 0))),
+              0.002 * 15 * kGravity);
+    EXPECT_LT(Length(Vector3(JointsOf(world).GetForce(second) - Vector3(0, static_cast<float>(5 * kGravity), 0))),
+              0.002 * 5 * kGravity);
+    EXPECT_LT(Length(Vector3(JointsOf(world).GetForce(third) + Vector3(0, static_cast<float>(10 * kGravity), 0))),
+              0.002 * 10 * kGravity);
     EXPECT_LT(Length(JointsOf(world).GetTorque(first)), 1e-2f);
     EXPECT_EQ(JointsOf(world).GetForce(first), JointsOf(world).GetLockForce(first));
 }
@@ -43,7 +46,8 @@ TEST(ReadBack, EachRowOfAnAxisHasItsForce) {
     const double weight = 10 * kGravity;
     AxisControl driven, rubbed{.friction = 200};
     driven.motor = SpeedMotor(0);
-    const JointId low = slider(1, Limited(0, 1)), high = slider(2, Limited(-1, 1)), motor = slider(3, driven), friction = slider(4, rubbed);
+    const JointId low = slider(1, Limited(0, 1)), high = slider(2, Limited(-1, 1)), motor = slider(3, driven),
+                  friction = slider(4, rubbed);
     ASSERT_TRUE(JointsOf(world).SetLimits(high, JointAxis::LinearX, JointLimits{-1, 1, {}}));
     for (int i = 0; i < 120; ++i) {
         ASSERT_TRUE(world.Bodies().AddForce(JointsOf(world).GetBodyB(high), {0, static_cast<float>(3 * weight), 0}));
@@ -101,8 +105,8 @@ TEST(ReadBack, ASleepingJointCarriesWhatItDid) {
 }
 
 TEST(ReadBack, AHingeReadsTheRightTurnAtAnySpeed) {
-    // Five radians a step and more: the turn follows from the way of the step. Whoever sets the speed in between, or takes steps of
-    // other lengths, loses none.
+    // Five radians a step and more: the turn follows from the way of the step. Whoever sets the speed in between, or
+    // takes steps of other lengths, loses none.
     for (const double speed : {220.0, -500.0, 1000.0}) {
         TestWorld world(Weightless());
         const BodyId ball = world.Add({.shape = SphereOf(0.2f), .mass = 1, .maxAngularSpeed = 1e4f});
@@ -113,10 +117,12 @@ TEST(ReadBack, AHingeReadsTheRightTurnAtAnySpeed) {
         for (int i = 0; i < 30; ++i) {
             const double dt = i % 3 ? kStep : 0.02, now = i % 10 == 7 ? -0.3 * speed : speed;
             ASSERT_TRUE(world.Bodies().SetVelocity(ball, {0, 0, 0}, {0, 0, static_cast<float>(now)}));
-            EXPECT_NEAR(JointsOf(world).GetCoordinate(hinge, JointAxis::AngularX), angle, 0.01) << speed << " step " << i;
+            EXPECT_NEAR(JointsOf(world).GetCoordinate(hinge, JointAxis::AngularX), angle, 0.01)
+                << speed << " step " << i;
             world.Step(dt);
             angle += now * dt;
-            EXPECT_NEAR(JointsOf(world).GetCoordinate(hinge, JointAxis::AngularX), angle, 0.01) << speed << " step " << i;
+            EXPECT_NEAR(JointsOf(world).GetCoordinate(hinge, JointAxis::AngularX), angle, 0.01)
+                << speed << " step " << i;
         }
     }
 }
@@ -135,7 +141,9 @@ TEST(ReadBack, UnknownJointsReadAsZero) {
 
 TEST(ReadBack, FramesErrorsAndUserDataAreThoseOfTheJoint) {
     TestWorld world(NoGravity());
-    const BodyId hook = AddHook(world), box = world.Add({.shape = CubeOf(0.5f), .position = {2, 0, 0}, .rotation = RotationAbout({0, 1, 0}, 0.4)});
+    const BodyId hook = AddHook(world),
+                 box = world.Add(
+                     {.shape = CubeOf(0.5f), .position = {2, 0, 0}, .rotation = RotationAbout({0, 1, 0}, 0.4)});
     HingeJointSettings settings{Between(hook, box, {1, 2, 3}, {0, 0, 1})};
     settings.anchorB = AnchorAt({1, 2.25, 3}, {0, 1, 0});
     settings.userData = 77;
@@ -196,21 +204,27 @@ TEST_F(JointErrors, OfTheBodies) {
 }
 
 TEST_F(JointErrors, OfEveryKind) {
-    Expect<PointJointSettings>(ErrorCode::NonFinite, "anchorA.point", [](auto& s) { s.anchorA.point.x() = std::numeric_limits<double>::quiet_NaN(); });
-    Expect<FixedJointSettings>(ErrorCode::Unnormalized, "anchorA.axis", [](auto& s) { s.anchorA.axis = Vector3::Zero(); });
+    Expect<PointJointSettings>(ErrorCode::NonFinite, "anchorA.point",
+                               [](auto& s) { s.anchorA.point.x() = std::numeric_limits<double>::quiet_NaN(); });
+    Expect<FixedJointSettings>(ErrorCode::Unnormalized, "anchorA.axis",
+                               [](auto& s) { s.anchorA.axis = Vector3::Zero(); });
     Expect<FixedJointSettings>(ErrorCode::NonPositive, "breakForce", [](auto& s) { s.breakForce = 0; });
-    Expect<DistanceJointSettings>(ErrorCode::OutOfRange, "minDistance", [](auto& s) { s.minDistance = 2.0f, s.maxDistance = 1.0f; });
+    Expect<DistanceJointSettings>(ErrorCode::OutOfRange, "minDistance",
+                                  [](auto& s) { s.minDistance = 2.0f, s.maxDistance = 1.0f; });
     Expect<DistanceJointSettings>(ErrorCode::Negative, "spring.stiffness", [](auto& s) { s.spring.stiffness = -1; });
     Expect<HingeJointSettings>(ErrorCode::OutOfRange, "angle.limits.min", [](auto& s) { s.angle = Limited(1, -1); });
     Expect<SliderJointSettings>(ErrorCode::Negative, "slide.friction", [](auto& s) { s.slide.friction = -1; });
     Expect<ConeJointSettings>(ErrorCode::OutOfRange, "halfAngle", [](auto& s) { s.halfAngle = 4; });
-    Expect<SwingTwistJointSettings>(ErrorCode::OutOfRange, "swingY.limits.min", [](auto& s) { s.swingY = Limited(0.1, 1); });
-    Expect<SixDofJointSettings>(ErrorCode::NonFinite, "axes[LinearX].motor.targetSpeed", [](auto& s) { s.axes[0].motor.targetSpeed = kNaN; });
+    Expect<SwingTwistJointSettings>(ErrorCode::OutOfRange, "swingY.limits.min",
+                                    [](auto& s) { s.swingY = Limited(0.1, 1); });
+    Expect<SixDofJointSettings>(ErrorCode::NonFinite, "axes[LinearX].motor.targetSpeed",
+                                [](auto& s) { s.axes[0].motor.targetSpeed = kNaN; });
     Expect<GearJointSettings>(ErrorCode::OutOfRange, "ratio", [](auto& s) { s.ratio = 0; });
     Expect<RackAndPinionJointSettings>(ErrorCode::NonFinite, "ratio", [](auto& s) { s.ratio = kNaN; });
     Expect<PulleyJointSettings>(ErrorCode::NonPositive, "ratio", [](auto& s) { s.ratio = -1; });
     Expect<PathJointSettings>(ErrorCode::Unsupported, "path", [](auto& s) { s.path = nullptr; });
-    Expect<WheelJointSettings>(ErrorCode::Negative, "suspension.motor.spring.damping", [](auto& s) { s.suspension.motor.spring.damping = -1; });
+    Expect<WheelJointSettings>(ErrorCode::Negative, "suspension.motor.spring.damping",
+                               [](auto& s) { s.suspension.motor.spring.damping = -1; });
     Expect<CustomJointSettings>(ErrorCode::Unsupported, "make", [](auto& s) { s.make = nullptr; });
 }
 
@@ -219,8 +233,10 @@ TEST_F(JointErrors, OfChangesLeaveTheJointAsItWas) {
     settings.angle.motor = SpeedMotor(2);
     const JointId joint = Join(world_, settings);
     JointInterface& joints = JointsOf(world_);
-    EXPECT_EQ(joints.SetLimits(joint, JointAxis::AngularX, JointLimits{2, 1, {}}).GetError().code, ErrorCode::OutOfRange);
-    EXPECT_EQ(joints.SetMotor(joint, JointAxis::AngularX, SpeedMotor(double(kNaN))).GetError().code, ErrorCode::NonFinite);
+    EXPECT_EQ(joints.SetLimits(joint, JointAxis::AngularX, JointLimits{2, 1, {}}).GetError().code,
+              ErrorCode::OutOfRange);
+    EXPECT_EQ(joints.SetMotor(joint, JointAxis::AngularX, SpeedMotor(double(kNaN))).GetError().code,
+              ErrorCode::NonFinite);
     EXPECT_EQ(joints.SetFriction(joint, JointAxis::AngularX, -1).GetError().code, ErrorCode::Negative);
     EXPECT_EQ(joints.SetMotor(joint, JointAxis::LinearY, {}).GetError().code, ErrorCode::Unsupported);
     EXPECT_EQ(joints.SetEffort(joint, {65, 1, 1}).GetError().code, ErrorCode::OutOfRange);
@@ -248,12 +264,13 @@ TEST_F(JointErrors, OfLimitsAreThoseOfCreate) {
         float min, max;
         const char* field;
     };
-    const JointId ofShoulder = Join(world_, shoulder), ofSix = Join(world_, six), ofRope = Join(world_, rope), ofPulley = Join(world_, pulley);
+    const JointId ofShoulder = Join(world_, shoulder), ofSix = Join(world_, six), ofRope = Join(world_, rope),
+                  ofPulley = Join(world_, pulley);
     const Case cases[] = {
-        {ofShoulder, JointAxis::AngularY, 0.1f, 1, "axis.limits.min"},     // not around 0
-        {ofShoulder, JointAxis::AngularZ, -1, -0.1f, "axis.limits.max"},   // not around 0
-        {ofShoulder, JointAxis::AngularY, -0.5f, 1, "axis.limits"},        // an ellipse has two equal sides
-        {ofShoulder, JointAxis::AngularX, -4, 0, "axis.limits.min"},       // beyond pi
+        {ofShoulder, JointAxis::AngularY, 0.1f, 1, "axis.limits.min"},    // not around 0
+        {ofShoulder, JointAxis::AngularZ, -1, -0.1f, "axis.limits.max"},  // not around 0
+        {ofShoulder, JointAxis::AngularY, -0.5f, 1, "axis.limits"},       // an ellipse has two equal sides
+        {ofShoulder, JointAxis::AngularX, -4, 0, "axis.limits.min"},      // beyond pi
         {ofShoulder, JointAxis::AngularX, 0, 4, "axis.limits.max"},
         {ofSix, JointAxis::AngularZ, -1, -0.5f, "axis.limits.max"},
         {ofSix, JointAxis::AngularX, -4, 0, "axis.limits.min"},
@@ -272,7 +289,8 @@ TEST_F(JointErrors, OfLimitsAreThoseOfCreate) {
     }
     // What Create takes is taken: a pyramid need not be even, lengths may be endless.
     EXPECT_TRUE(JointsOf(world_).SetLimits(ofSix, JointAxis::AngularY, JointLimits{-0.2f, 1, {}}));
-    EXPECT_TRUE(JointsOf(world_).SetLimits(ofRope, JointAxis::LinearX, JointLimits{0, std::numeric_limits<float>::infinity(), {}}));
+    EXPECT_TRUE(JointsOf(world_).SetLimits(ofRope, JointAxis::LinearX,
+                                           JointLimits{0, std::numeric_limits<float>::infinity(), {}}));
     EXPECT_TRUE(JointsOf(world_).SetLimits(ofSix, JointAxis::LinearX, JointLimits{-2, -1, {}}));
 }
 

@@ -6,7 +6,9 @@ namespace {
 
 struct SpringCase {
     double frequency, dampingRatio;
-    friend std::ostream& operator<<(std::ostream& out, const SpringCase& c) { return out << c.frequency << " Hz, zeta " << c.dampingRatio; }
+    friend std::ostream& operator<<(std::ostream& out, const SpringCase& c) {
+        return out << c.frequency << " Hz, zeta " << c.dampingRatio;
+    }
 };
 
 class JointSpring : public ::testing::TestWithParam<SpringCase> {
@@ -14,35 +16,39 @@ protected:
     double Frequency() const { return GetParam().frequency; }
     double DampingRatio() const { return GetParam().dampingRatio; }
     double Omega() const { return 2 * kPi * Frequency(); }
-    // Above 1 / sqrt(2) the automatic choice is the implicit form, which rests at F / k and damps by w h / 2 more: who wants the
-    // oscillator there says so.
+    // Above 1 / sqrt(2) the automatic choice is the implicit form, which rests at F / k and damps by w h / 2 more: who
+    // wants the oscillator there says so.
     SpringSettings ByFrequency() const {
-        return FrequencySpring(Frequency(), DampingRatio(), DampingRatio() < 0.7 ? SpringForm::Automatic : SpringForm::Exact);
+        return FrequencySpring(Frequency(), DampingRatio(),
+                               DampingRatio() < 0.7 ? SpringForm::Automatic : SpringForm::Exact);
     }
     // k = m w^2, c = 2 zeta w m.
     SpringSettings ByStiffness(double mass) const {
         return StiffnessSpring(mass * Omega() * Omega(), 2 * DampingRatio() * Omega() * mass, SpringForm::Exact);
     }
 
-    // Runs the world until the motion is a thousandth, 10 s at most, and holds the coordinate, which rests at `rest`, against
-    // the closed form, within 1 % unless told otherwise.
-    void ExpectOscillator(TestWorld& world, JointId joint, JointAxis axis, double rest, double ofFrequency = 0.01, double ofDamping = 0.01) const {
+    // Runs the world until the motion is a thousandth, 10 s at most, and holds the coordinate, which rests at `rest`,
+    // against the closed form, within 1 % unless told otherwise.
+    void ExpectOscillator(TestWorld& world, JointId joint, JointAxis axis, double rest, double ofFrequency = 0.01,
+                          double ofDamping = 0.01) const {
         const double seconds = std::min(10.0, std::log(1000.0) / (DampingRatio() * Omega()));
         std::vector<double> x{JointsOf(world).GetCoordinate(joint, axis) - rest};
         for (int i = 0; i < std::lround(seconds / kStep); ++i) {
             world.Step();
             x.push_back(JointsOf(world).GetCoordinate(joint, axis) - rest);
         }
-        const Oscillator found = FitOscillator(x, kStep, static_cast<size_t>(std::max(1l, std::lround(1 / (Omega() * kStep)))));
+        const Oscillator found =
+            FitOscillator(x, kStep, static_cast<size_t>(std::max(1l, std::lround(1 / (Omega() * kStep)))));
         EXPECT_NEAR(found.frequency, Frequency(), ofFrequency * Frequency());
         EXPECT_NEAR(found.dampingRatio, DampingRatio(), ofDamping * DampingRatio());
     }
 };
 
 INSTANTIATE_TEST_SUITE_P(FrequenciesAndDampings, JointSpring,
-                         ::testing::Values(SpringCase{0.5, 0.05}, SpringCase{0.5, 0.3}, SpringCase{0.5, 1}, SpringCase{2, 0.05},
-                                           SpringCase{2, 0.1}, SpringCase{2, 0.6}, SpringCase{2, 1}, SpringCase{5, 0.05},
-                                           SpringCase{5, 0.2}, SpringCase{5, 0.6}, SpringCase{5, 1}));
+                         ::testing::Values(SpringCase{0.5, 0.05}, SpringCase{0.5, 0.3}, SpringCase{0.5, 1},
+                                           SpringCase{2, 0.05}, SpringCase{2, 0.1}, SpringCase{2, 0.6},
+                                           SpringCase{2, 1}, SpringCase{5, 0.05}, SpringCase{5, 0.2},
+                                           SpringCase{5, 0.6}, SpringCase{5, 1}));
 
 TEST_P(JointSpring, BetweenABodyAndTheWorldAtADistance) {
     for (const SpringSettings& spring : {ByFrequency(), ByStiffness(4)}) {
@@ -75,7 +81,8 @@ TEST_P(JointSpring, OfASliderThatIsLockedSoftly) {
         TestWorld world(Weightless());
         const BodyId hook = AddHook(world);
         const BodyId box = world.Add({.shape = CubeOf(0.2f), .position = {0, 1, 0}, .mass = 4});
-        const JointId slider = Join(world, SliderJointSettings{Between(hook, box, {0, 1, 0}, {0, 1, 0}), Limited(0.5, 0.5, spring)});
+        const JointId slider =
+            Join(world, SliderJointSettings{Between(hook, box, {0, 1, 0}, {0, 1, 0}), Limited(0.5, 0.5, spring)});
         ExpectOscillator(world, slider, JointAxis::LinearX, 0.5);
     }
 }
@@ -113,7 +120,8 @@ TEST_P(JointSpring, OfAHingeAtTheEndOfARodMovesItsWholeInertia) {
             HingeJointSettings settings{Between(hook, rod, {0, 0, 0}, {0, 0, 1})};
             if (isLimit) settings.angle = Limited(0.5, 0.5, spring);
             else settings.angle.motor = PositionMotor(0.5, spring);
-            // A swing at 5 Hz with hardly any damping is fast: the point that holds the end gives way a little, and takes energy.
+            // A swing at 5 Hz with hardly any damping is fast: the point that holds the end gives way a little, and
+            // takes energy.
             const bool isFast = Frequency() > 2 && DampingRatio() < 0.1;
             ExpectOscillator(world, Join(world, settings), JointAxis::AngularX, 0.5, 0.01, isFast ? 0.15 : 0.01);
         }
@@ -144,7 +152,8 @@ TEST(JointSpringAtRest, AStiffnessCarriesAWeightAtForceOverStiffness) {
     const BodyId hook = AddHook(world);
     const BodyId box = world.Add({.shape = CubeOf(0.2f), .position = {0, -1, 0}, .mass = 5});
     const double stiffness = 400;
-    const JointId slider = Join(world, SliderJointSettings{Between(hook, box, {0, -1, 0}, {0, 1, 0}), Limited(0, 0, StiffnessSpring(stiffness, 80))});
+    const JointId slider = Join(world, SliderJointSettings{Between(hook, box, {0, -1, 0}, {0, 1, 0}),
+                                                           Limited(0, 0, StiffnessSpring(stiffness, 80))});
     world.Run(5);
     // What is left of a motion that decays at 8 /s is nothing; float coordinates of 0.1 m have steps of 1e-8.
     EXPECT_NEAR(JointsOf(world).GetCoordinate(slider, JointAxis::LinearX), -5 * kGravity / stiffness, 1e-5);
@@ -167,7 +176,8 @@ TEST(JointSpringAtRest, ACriticallyDampedFrequencyCarriesAWeightAtGOverOmegaSqua
 TEST(JointSpringAtRest, ASpringOfMinAndMaxActsOnlyBeyondThem) {
     TestWorld world(Weightless());
     const BodyId hook = AddHook(world);
-    const BodyId ball = world.Add({.shape = SphereOf(0.1f), .position = {2, 0, 0}, .linearVelocity = {1, 0, 0}, .mass = 2});
+    const BodyId ball =
+        world.Add({.shape = SphereOf(0.1f), .position = {2, 0, 0}, .linearVelocity = {1, 0, 0}, .mass = 2});
     DistanceJointSettings settings{Between(hook, ball, {0, 0, 0})};
     settings.anchorB = AnchorAt({2, 0, 0});
     settings.minDistance = 1.0f;

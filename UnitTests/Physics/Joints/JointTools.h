@@ -1,5 +1,5 @@
-// What tests of joints share: joints in one line, bodies to hang things from, and the oscillator behind a series of samples.
-// Header only; one thread at a time.
+// What tests of joints share: joints in one line, bodies to hang things from, and the oscillator behind a series of
+// samples. Header only; one thread at a time.
 #pragma once
 
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
@@ -112,9 +112,9 @@ struct Oscillator {
     double dampingRatio = 0;  // zeta
 };
 
-// The oscillator that samples of its motion, dt seconds apart, belong to. Samples `lag` apart obey x(n + 2) = a x(n + 1) + b x(n)
-// with a = 2 e^(-zeta w T) cos(w_d T), b = -e^(-2 zeta w T), T = lag dt; a and b by least squares. A lag of about a radian is
-// the least sensitive to rounding.
+// The oscillator that samples of its motion, dt seconds apart, belong to. Samples `lag` apart obey x(n + 2) = a x(n +
+// 1) + b x(n) with a = 2 e^(-zeta w T) cos(w_d T), b = -e^(-2 zeta w T), T = lag dt; a and b by least squares. A lag of
+// about a radian is the least sensitive to rounding.
 inline Oscillator FitOscillator(const std::vector<double>& x, double dt, size_t lag) {
     double s11 = 0, s12 = 0, s22 = 0, t1 = 0, t2 = 0;
     for (size_t i = 0; i + 2 * lag < x.size(); ++i) {
@@ -140,7 +140,8 @@ inline Oscillator FitOscillator(const std::vector<double>& x, double dt, size_t 
 class ZeroCrossings {
 public:
     void Sample(double time, double value) {
-        if (last_ && (*last_ > 0) != (value > 0)) times_.push_back(lastTime_ + (time - lastTime_) * *last_ / (*last_ - value));
+        if (last_ && (*last_ > 0) != (value > 0))
+            times_.push_back(lastTime_ + (time - lastTime_) * *last_ / (*last_ - value));
         last_ = value;
         lastTime_ = time;
     }

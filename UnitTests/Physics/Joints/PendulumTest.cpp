@@ -19,14 +19,17 @@ double EllipticK(double k) {
 struct RodPendulum {
     static constexpr double kInertia = (1 + 0.01) / 12 + 0.25;  // kg m2 about the hinge
 
-    explicit RodPendulum(double mass = 1, const Vector3& along = Vector3(1, 0, 0), const SystemSettings& settings = NoSleep())
+    explicit RodPendulum(double mass = 1, const Vector3& along = Vector3(1, 0, 0),
+                         const SystemSettings& settings = NoSleep())
         : world(settings) {
         const Vector3 axis = Cross(along, Vector3(0, 1, 0));
         // The rod is along its own x: turned about y.
         const double heading = std::atan2(-double(along.z()), double(along.x()));
         const BodyId hook = AddHook(world);
-        rod = world.Add({.shape = BoxOf(0.5f, 0.05f, 0.05f), .position = 0.5 * along.cast<double>(),
-                         .rotation = RotationAbout({0, 1, 0}, heading), .mass = static_cast<float>(mass)});
+        rod = world.Add({.shape = BoxOf(0.5f, 0.05f, 0.05f),
+                         .position = 0.5 * along.cast<double>(),
+                         .rotation = RotationAbout({0, 1, 0}, heading),
+                         .mass = static_cast<float>(mass)});
         hinge = Join(world, HingeJointSettings{Between(hook, rod, {0, 0, 0}, axis)});
     }
     double Angle() { return JointsOf(world).GetCoordinate(hinge, JointAxis::AngularX); }
@@ -52,8 +55,8 @@ void ExpectTheClosedForm(RodPendulum& pendulum, double mass) {
     ASSERT_GE(crossings.Count(), 10u);
     EXPECT_NEAR(crossings.Period(), period, 1e-3 * period);
     EXPECT_LT(energyError, 0.015);
-    // A substep of h moves the end along a tangent of the arc; what it leaves the arc by is r (w h)^2 / 2 with w^2 = m g l / I,
-    // 0.13 mm each, of which the joint's spring takes back a part at once.
+    // A substep of h moves the end along a tangent of the arc; what it leaves the arc by is r (w h)^2 / 2 with w^2 = m
+    // g l / I, 0.13 mm each, of which the joint's spring takes back a part at once.
     const double arc = 0.5 * 0.5 * (kGravity / RodPendulum::kInertia) * kStep * kStep / 16;
     EXPECT_LT(gap, 6 * arc);
 }
@@ -65,7 +68,8 @@ TEST(Pendulum, ARodSwingsWithThePeriodOfTheEllipticIntegral) {
 
 TEST(Pendulum, MassAndHeadingDoNotMatter) {
     for (const double heading : {0.7, 2.0, -2.8}) {
-        RodPendulum pendulum(300, Vector3(static_cast<float>(std::cos(heading)), 0, static_cast<float>(std::sin(heading))));
+        RodPendulum pendulum(300,
+                             Vector3(static_cast<float>(std::cos(heading)), 0, static_cast<float>(std::sin(heading))));
         ExpectTheClosedForm(pendulum, 300);
     }
 }
@@ -91,7 +95,8 @@ TEST(Pendulum, AShortSwingHasThePeriodOfTheHarmonicOscillator) {
     const double amplitude = 5 * kDegree, frequency = std::sqrt(kGravity * 0.5 / RodPendulum::kInertia);
     const double speed = 2 * std::sin(amplitude / 2) * frequency;
     ASSERT_TRUE(pendulum.world.Bodies().SetPose(pendulum.rod, {0, -0.5, 0}, RotationAbout({0, 0, 1}, -kPi / 2)));
-    ASSERT_TRUE(pendulum.world.Bodies().SetVelocity(pendulum.rod, {static_cast<float>(0.5 * speed), 0, 0}, {0, 0, static_cast<float>(speed)}));
+    ASSERT_TRUE(pendulum.world.Bodies().SetVelocity(pendulum.rod, {static_cast<float>(0.5 * speed), 0, 0},
+                                                    {0, 0, static_cast<float>(speed)}));
     ZeroCrossings crossings;
     double highest = 0;
     for (int i = 0; i < 600; ++i) {
@@ -134,9 +139,11 @@ TEST(Pendulum, APointOnARodSwingsWithThePeriodOfTheEllipticIntegral) {
 TEST(Pendulum, ABallJointLeavesAConicalPendulumItsAngle) {
     // cos(a) = g / (w^2 l) for a body whose inertia is that of a sphere.
     TestWorld world(NoSleep());
-    const double length = 1, speed = 5, cosine = kGravity / (speed * speed * length), sine = std::sqrt(1 - cosine * cosine);
+    const double length = 1, speed = 5, cosine = kGravity / (speed * speed * length),
+                 sine = std::sqrt(1 - cosine * cosine);
     const BodyId hook = AddHook(world);
-    const BodyId ball = world.Add({.shape = SphereOf(0.1f), .position = {length * sine, -length * cosine, 0},
+    const BodyId ball = world.Add({.shape = SphereOf(0.1f),
+                                   .position = {length * sine, -length * cosine, 0},
                                    .linearVelocity = {0, 0, static_cast<float>(-speed * length * sine)},
                                    .angularVelocity = {0, static_cast<float>(speed), 0}});
     Join(world, PointJointSettings{Between(hook, ball, {0, 0, 0})});

@@ -4,8 +4,8 @@
 namespace fulcrum::testing {
 namespace {
 
-// jointPushSpeed, the fastest pull, 20 m/s and 20 rad/s; a body that is turned about an anchor half a meter off moves faster by
-// half of that, and two pulls may add up.
+// jointPushSpeed, the fastest pull, 20 m/s and 20 rad/s; a body that is turned about an anchor half a meter off moves
+// faster by half of that, and two pulls may add up.
 constexpr float kFastest = 65;
 
 struct Pair {
@@ -31,12 +31,15 @@ struct Pair {
         for (int i = 0; i < seconds / kStep; ++i) {
             world.Step();
             for (const BodyId id : {a, b})
-                fastest = std::max({fastest, Length(world.VelocityOf(id)), Length(world.Bodies().GetAngularVelocity(id))});
+                fastest =
+                    std::max({fastest, Length(world.VelocityOf(id)), Length(world.Bodies().GetAngularVelocity(id))});
         }
         const JointError error = JointsOf(world).GetError(joint);
-        // Of what still turns, a substep leaves the arc of half a meter by r (w h)^2 / 2, and the push takes back 0.37 of a gap.
+        // Of what still turns, a substep leaves the arc of half a meter by r (w h)^2 / 2, and the push takes back 0.37
+        // of a gap.
         float spin = 0;
-        for (const BodyId id : {a, b}) spin = std::max(spin, Length(world.Bodies().GetAngularVelocity(id)) * static_cast<float>(kStep / 4));
+        for (const BodyId id : {a, b})
+            spin = std::max(spin, Length(world.Bodies().GetAngularVelocity(id)) * static_cast<float>(kStep / 4));
         EXPECT_LT(error.distance, 1e-3f + 0.25f / 0.37f * spin * spin);
         EXPECT_LT(error.angle, 2e-3f);
         EXPECT_LT(fastest, kFastest);
@@ -49,9 +52,12 @@ struct Pair {
 };
 
 class Recovery : public ::testing::TestWithParam<MotionType> {};
-INSTANTIATE_TEST_SUITE_P(OfA, Recovery, ::testing::Values(MotionType::Static, MotionType::Kinematic, MotionType::Dynamic),
+INSTANTIATE_TEST_SUITE_P(OfA, Recovery,
+                         ::testing::Values(MotionType::Static, MotionType::Kinematic, MotionType::Dynamic),
                          [](const auto& motion) {
-                             return motion.param == MotionType::Static ? "Static" : motion.param == MotionType::Kinematic ? "Kinematic" : "Dynamic";
+                             return motion.param == MotionType::Static      ? "Static"
+                                    : motion.param == MotionType::Kinematic ? "Kinematic"
+                                                                            : "Dynamic";
                          });
 
 const Position kHere(0, 0, 0);
@@ -102,7 +108,8 @@ TEST(RecoveryOfLimits, NarrowHingeLimitsHalfATurnAway) {
     for (const double start : {kPi, -kPi, 3.0, -1.0}) {
         TestWorld world(NoGravity());
         const BodyId rod = world.Add({.shape = BoxOf(0.5f, 0.05f, 0.05f),
-                                      .position = {0.5 * std::cos(start), 0.5 * std::sin(start), 0}, .rotation = RotationAbout({0, 0, 1}, start)});
+                                      .position = {0.5 * std::cos(start), 0.5 * std::sin(start), 0},
+                                      .rotation = RotationAbout({0, 0, 1}, start)});
         HingeJointSettings settings{Between(AddHook(world), rod, {0, 0, 0}, {0, 0, 1}), Limited(-0.01, 0.01)};
         settings.anchorA.normal = Vector3(1, 0, 0);
         settings.anchorB = AnchorAt({0, 0, 0}, {0, 0, 1});
@@ -163,12 +170,13 @@ TEST(Contradiction, TwoFixedJointsThatDisagreeShareTheErrorAndStayCalm) {
     EXPECT_NEAR(world.PositionOf(bystander).y(), -0.5 * kGravity * 100, 1e-2);
 }
 
-// In whichever order the two were made: the joint that is solved last has its way for the most part, and where the other one is far
-// apart for that, altogether. Both pull at what can move: a joint to a hook would count as high.
+// In whichever order the two were made: the joint that is solved last has its way for the most part, and where the
+// other one is far apart for that, altogether. Both pull at what can move: a joint to a hook would count as high.
 TEST(Contradiction, TheJointOfHigherPriorityWins) {
     for (const bool highFirst : {true, false}) {
         TestWorld world(NoGravity());
-        const BodyId rock = world.Add({.shape = SphereOf(0.01f), .mass = 1e6f}), box = world.Add({.shape = CubeOf(0.2f)});
+        const BodyId rock = world.Add({.shape = SphereOf(0.01f), .mass = 1e6f}),
+                     box = world.Add({.shape = CubeOf(0.2f)});
         for (const bool high : {highFirst, !highFirst}) {
             PointJointSettings settings{Between(rock, box, {high ? 0.1 : -0.1, 0, 0})};
             settings.anchorB = AnchorAt({0, 0, 0});

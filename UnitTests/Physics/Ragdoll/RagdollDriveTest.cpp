@@ -90,7 +90,8 @@ TEST(RagdollDrive, MotorsReachThePoseButForTheirSagUnderTheWeight) {
         world.Run(2);
         const Poses pose = PoseOf(ragdoll);
         for (size_t i = 1; i < kParts; ++i) {
-            // What hangs on the joint pulls with at most its weight times its distance; the spring yields torque / stiffness.
+            // What hangs on the joint pulls with at most its weight times its distance; the spring yields torque /
+            // stiffness.
             const Position anchor = world.System().Joints().GetFrameA(ragdoll.Joints()[i]).position;
             double torque = 0;
             for (size_t j = i; j < kParts; ++j) {
@@ -138,8 +139,8 @@ TEST(RagdollDrive, MotorsNeitherMoveNorTurnTheWhole) {
     }
     // Impulses are equal and opposite but for rounding: 360 steps of 4 substeps, each to 1e-7 of what the parts have.
     EXPECT_LT(linear, 2e-4 * linearOfParts);
-    // Forces act at arms that are those of the substep's beginning: off by the turn of a substep, 10 rad/s / 240 s at the most,
-    // of which opposite motions of left and right take away at least a half.
+    // Forces act at arms that are those of the substep's beginning: off by the turn of a substep, 10 rad/s / 240 s at
+    // the most, of which opposite motions of left and right take away at least a half.
     EXPECT_LT(angular, 0.02 * angularOfParts);
 }
 
@@ -159,7 +160,8 @@ TEST(RagdollDrive, AFallingRagdollDoesNotBeginToSpin) {
 }
 
 TEST(RagdollDrive, HingeMotorsTakeTheTurnThatIsWithinTheLimits) {
-    // The knee of a humanoid bends from 0 to 130 degrees; limits from 200 to 330 degrees hold what is turned by -160 to -30.
+    // The knee of a humanoid bends from 0 to 130 degrees; limits from 200 to 330 degrees hold what is turned by -160 to
+    // -30.
     RagdollSettings settings = Strong();
     settings.parts[0].body.motion = MotionType::Static;
     auto& knee = std::get<HingeJointSettings>(settings.parts[9].joint);
@@ -172,22 +174,26 @@ TEST(RagdollDrive, HingeMotorsTakeTheTurnThatIsWithinTheLimits) {
     Poses target;
     PoseFromJoints(settings, {Position::Zero(), settings.parts[0].body.rotation}, rotations, target);
     ASSERT_TRUE(ragdoll.DriveByMotors(target));
-    EXPECT_NEAR(world.System().Joints().GetControl(ragdoll.Joints()[9], JointAxis::AngularX)->motor.targetPosition, 260 * kDegree, 1e-5);
+    EXPECT_NEAR(world.System().Joints().GetControl(ragdoll.Joints()[9], JointAxis::AngularX)->motor.targetPosition,
+                260 * kDegree, 1e-5);
     world.Run(2);
     EXPECT_LT(JointAngleError(settings, PoseOf(ragdoll), target, 9), 1e-3);
 }
 
 TEST(RagdollDrive, SixDofMotorsTakePlaceAndOrientation) {
     RagdollSettings settings;
-    settings.parts.push_back({.name = "base", .body = {.shape = CubeOf(0.2f), .motion = MotionType::Static}, .joint = {}});
+    settings.parts.push_back(
+        {.name = "base", .body = {.shape = CubeOf(0.2f), .motion = MotionType::Static}, .joint = {}});
     SixDofJointSettings joint;
     joint.anchorA.point = Position(1, 0, 0);
     for (AxisControl& axis : joint.axes)
         axis.motor = {.mode = MotorMode::ToPosition, .spring = {.frequency = 4, .dampingRatio = 1}};
-    settings.parts.push_back({.name = "hand", .parent = 0, .body = {.shape = CubeOf(0.1f), .position = Position(1, 0, 0)}, .joint = joint});
+    settings.parts.push_back(
+        {.name = "hand", .parent = 0, .body = {.shape = CubeOf(0.1f), .position = Position(1, 0, 0)}, .joint = joint});
     TestWorld world(NoContacts(NoGravity()));
     Ragdoll ragdoll = Add(world, settings);
-    const std::array<Pose, 2> target{Pose{}, Pose{Position(1.3, 0.2, -0.4), RotationAbout(Normalized(Vector3(1, 2, 3)), 0.8)}};
+    const std::array<Pose, 2> target{Pose{},
+                                     Pose{Position(1.3, 0.2, -0.4), RotationAbout(Normalized(Vector3(1, 2, 3)), 0.8)}};
     ASSERT_TRUE(ragdoll.DriveByMotors(target));
     world.Run(3);
     // Critically damped at 4 Hz: e^-75 of the way is left.
@@ -228,16 +234,18 @@ TEST(RagdollDrive, DrivingByVelocitiesAllocatesNothing) {
     EXPECT_EQ(AllocationCount(), before);
 }
 
-// By r of the anchors and turn in a step: where rotations are chords, anchors part by r turn^2 / 2 on the way, which joints take
-// for an error and mend.
+// By r of the anchors and turn in a step: where rotations are chords, anchors part by r turn^2 / 2 on the way, which
+// joints take for an error and mend.
 TEST(RagdollDrive, VelocitiesReachThePoseInOneStep) {
     for (const SystemSettings& system : {NoContacts(), NoContacts(NoGravity())}) {
         TestWorld world(system);
         Ragdoll ragdoll = Add(world, Passive());
         constexpr double kTurn = 0.1, kArm = 0.3;  // rad, m: about the most of both
-        const Poses target = PoseAt(0.1, {Position(0.05, 0.02, -0.03), RotationAbout(Vector3(0, 1, 0), 0.05) * Humanoid().parts[0].body.rotation});
+        const Poses target = PoseAt(0.1, {Position(0.05, 0.02, -0.03),
+                                          RotationAbout(Vector3(0, 1, 0), 0.05) * Humanoid().parts[0].body.rotation});
         const Poses start = PoseAt(0);
-        for (size_t i = 0; i < kParts; ++i) ASSERT_LT(Length(RotationVectorOf(start[i].rotation.Conjugate() * target[i].rotation)), 0.25) << i;
+        for (size_t i = 0; i < kParts; ++i)
+            ASSERT_LT(Length(RotationVectorOf(start[i].rotation.Conjugate() * target[i].rotation)), 0.25) << i;
         ASSERT_TRUE(ragdoll.DriveByVelocities(target, static_cast<float>(kStep)));
         world.Step();
         const Poses pose = PoseOf(ragdoll);
@@ -294,7 +302,8 @@ TEST(RagdollDrive, DynamicPartsHangOnKinematicOnes) {
         const Poses target = PoseAt(0, {Position(step / 120.0, 0, 0), settings.parts[0].body.rotation});
         ASSERT_TRUE(ragdoll.DriveKinematically(target, static_cast<float>(kStep)));
         world.Step();
-        for (size_t i = 2; i < kParts; ++i) ASSERT_LT(world.System().Joints().GetError(ragdoll.Joints()[i]).distance, 5e-3);
+        for (size_t i = 2; i < kParts; ++i)
+            ASSERT_LT(world.System().Joints().GetError(ragdoll.Joints()[i]).distance, 5e-3);
     }
     // Carried along, and below.
     const Poses pose = PoseOf(ragdoll);

@@ -44,7 +44,8 @@ TEST(Ragdoll, StandsWhereItsFrameIsPut) {
     EXPECT_EQ(BodyCount(world), 12);
     EXPECT_EQ(JointCount(world), 11);
     // A quarter turn about y takes x to -z: the left arm, at x = 0.24, is there.
-    const Position arm = world.PositionOf(ragdoll.Bodies()[static_cast<size_t>(HumanoidPart::UpperArmLeft)]) - origin.position;
+    const Position arm =
+        world.PositionOf(ragdoll.Bodies()[static_cast<size_t>(HumanoidPart::UpperArmLeft)]) - origin.position;
     // Float numbers in the ragdoll's frame, about 1e-7 of a meter.
     EXPECT_LT((arm - Position(0, 0.36, -0.24)).norm(), 1e-6);
     EXPECT_LT(LargestGap(world), 1e-6);
@@ -58,7 +59,8 @@ TEST(Ragdoll, AnchorsMayBeGivenInTheRagdollsFrameOrInThatOfTheBodies) {
     for (size_t i = 1; i < inBodies.parts.size(); ++i) {
         const RagdollJointFrames frames = JointFramesOf(inRagdoll, i);
         const auto anchor = [](const RelativePose& frame) {
-            return JointAnchor{frame.position.cast<double>(), Rotate(frame.rotation, Vector3(1, 0, 0)), Rotate(frame.rotation, Vector3(0, 1, 0))};
+            return JointAnchor{frame.position.cast<double>(), Rotate(frame.rotation, Vector3(1, 0, 0)),
+                               Rotate(frame.rotation, Vector3(0, 1, 0))};
         };
         JointSettings& joint = CommonOf(inBodies.parts[i].joint);
         joint.space = JointSpace::Body;
@@ -139,7 +141,8 @@ TEST(Ragdoll, PartsThatDoNotMoveAreNotJoinedToEachOther) {
     const Ragdoll ragdoll = Add(world, settings);
     EXPECT_EQ(JointCount(world), 10);
     EXPECT_FALSE(world.System().Joints().Exists(ragdoll.Joints()[1]));
-    const Result<Ragdoll> still = Ragdoll::Create(world.System(), settings, {Position(9, 0, 0), {}}, MotionType::Kinematic);
+    const Result<Ragdoll> still =
+        Ragdoll::Create(world.System(), settings, {Position(9, 0, 0), {}}, MotionType::Kinematic);
     ASSERT_TRUE(still);
     EXPECT_EQ(JointCount(world), 10);
 }
@@ -164,23 +167,33 @@ TEST(RagdollErrors, NamePartAndField) {
     using S = RagdollSettings;
     ExpectError([](S& s) { s.parts.clear(); }, ErrorCode::Degenerate, "parts is empty");
     ExpectError([](S& s) { s.parts[3].name.clear(); }, ErrorCode::Degenerate, "parts[3].name is empty");
-    ExpectError([](S& s) { s.parts[3].name = "head"; }, ErrorCode::Degenerate, "parts[3].name is \"head\", as that of parts[2]");
-    ExpectError([](S& s) { s.parts[0].parent = 0; }, ErrorCode::OutOfRange, "parts[0].parent is 0; it must be -1", "pelvis");
-    ExpectError([](S& s) { s.parts[5].parent = -1; }, ErrorCode::OutOfRange, "parts[5].parent is -1; it must be from 0 to 4", "lower arm left");
-    ExpectError([](S& s) { s.parts[5].parent = 5; }, ErrorCode::OutOfRange, "parts[5].parent is 5; it must be from 0 to 4", "lower arm left");
+    ExpectError([](S& s) { s.parts[3].name = "head"; }, ErrorCode::Degenerate,
+                "parts[3].name is \"head\", as that of parts[2]");
+    ExpectError([](S& s) { s.parts[0].parent = 0; }, ErrorCode::OutOfRange, "parts[0].parent is 0; it must be -1",
+                "pelvis");
+    ExpectError([](S& s) { s.parts[5].parent = -1; }, ErrorCode::OutOfRange,
+                "parts[5].parent is -1; it must be from 0 to 4", "lower arm left");
+    ExpectError([](S& s) { s.parts[5].parent = 5; }, ErrorCode::OutOfRange,
+                "parts[5].parent is 5; it must be from 0 to 4", "lower arm left");
     ExpectError([](S& s) { s.parts[1].body.shape = nullptr; }, ErrorCode::Unsupported, "parts[1].body: shape", "torso");
-    ExpectError([](S& s) { s.parts[11].body.density = 0; }, ErrorCode::NonPositive, "parts[11].body: density", "foot left");
-    ExpectError([](S& s) { s.parts[2].joint = HingeJointSettings{}, std::get<HingeJointSettings>(s.parts[2].joint).angle.friction = -1; },
-                ErrorCode::Negative, "parts[2].joint: angle.friction is -1", "head");
-    ExpectError([](S& s) { CommonOf(s.parts[7].joint).anchorA.axis.y() = std::numeric_limits<float>::quiet_NaN(); }, ErrorCode::NonFinite,
-                "parts[7].joint: anchorA.axis", "upper leg left");
+    ExpectError([](S& s) { s.parts[11].body.density = 0; }, ErrorCode::NonPositive, "parts[11].body: density",
+                "foot left");
+    ExpectError(
+        [](S& s) {
+            s.parts[2].joint = HingeJointSettings{}, std::get<HingeJointSettings>(s.parts[2].joint).angle.friction = -1;
+        },
+        ErrorCode::Negative, "parts[2].joint: angle.friction is -1", "head");
+    ExpectError([](S& s) { CommonOf(s.parts[7].joint).anchorA.axis.y() = std::numeric_limits<float>::quiet_NaN(); },
+                ErrorCode::NonFinite, "parts[7].joint: anchorA.axis", "upper leg left");
 }
 
 TEST(RagdollErrors, OfCallsChangeNothing) {
     TestWorld world;
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_EQ(Ragdoll::Create(world.System(), Humanoid(), {Position(0, kNaN, 0), {}}).GetError().code, ErrorCode::NonFinite);
-    EXPECT_EQ(Ragdoll::Create(world.System(), Humanoid(), {Position(0, 0, 0), {1, 1, 1, 1}}).GetError().code, ErrorCode::Unnormalized);
+    EXPECT_EQ(Ragdoll::Create(world.System(), Humanoid(), {Position(0, kNaN, 0), {}}).GetError().code,
+              ErrorCode::NonFinite);
+    EXPECT_EQ(Ragdoll::Create(world.System(), Humanoid(), {Position(0, 0, 0), {1, 1, 1, 1}}).GetError().code,
+              ErrorCode::Unnormalized);
     EXPECT_EQ(BodyCount(world), 0);
     Ragdoll ragdoll = Add(world, HumanoidWithMotors(100, 10, 10));
     const uint64_t before = world.System().HashPoses();
@@ -258,7 +271,9 @@ TEST(Ragdoll, TenFallOnAFloorHoldTogetherAndComeToRest) {
     EXPECT_LT(LargestGap(world), 0.005);
     // Nothing went through the floor: the thinnest part has a radius of 4.5 cm.
     world.System().VisitBodies([&](BodyId id) {
-        if (world.Bodies().GetMotionType(id) == MotionType::Dynamic) { EXPECT_GT(world.PositionOf(id).y(), 0.04); }
+        if (world.Bodies().GetMotionType(id) == MotionType::Dynamic) {
+            EXPECT_GT(world.PositionOf(id).y(), 0.04);
+        }
     });
 }
 

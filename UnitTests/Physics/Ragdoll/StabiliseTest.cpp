@@ -16,10 +16,11 @@ RagdollSettings Chain(std::initializer_list<float> masses) {
         const auto index = static_cast<int>(settings.parts.size());
         PointJointSettings joint;
         joint.anchorA.point = Position(0, 0.25 - 0.5 * index, 0);
-        settings.parts.push_back({.name = std::to_string(index),
-                                  .parent = index - 1,
-                                  .body = {.shape = CubeOf(0.1f), .position = Position(0, -0.5 * index, 0), .mass = mass},
-                                  .joint = joint});
+        settings.parts.push_back(
+            {.name = std::to_string(index),
+             .parent = index - 1,
+             .body = {.shape = CubeOf(0.1f), .position = Position(0, -0.5 * index, 0), .mass = mass},
+             .joint = joint});
     }
     return settings;
 }
@@ -52,7 +53,8 @@ TEST(StabilizeMasses, ScalesInertiasAlong) {
     settings.parts[1].body.inertia = Vector3(1, 2, 3);
     ASSERT_TRUE(StabilizeMasses(settings));
     EXPECT_FLOAT_EQ(settings.parts[1].body.mass, 55);
-    EXPECT_LT((settings.parts[1].body.inertia - Vector3(0.55f, 1.1f, 1.65f)).norm(), 1e-5f * settings.parts[1].body.inertia.norm());
+    EXPECT_LT((settings.parts[1].body.inertia - Vector3(0.55f, 1.1f, 1.65f)).norm(),
+              1e-5f * settings.parts[1].body.inertia.norm());
     // The shape's own: m (2 h)^2 / 6 of a cube.
     EXPECT_NEAR(InertiaOf(settings.parts[0].body).x(), 55 * 0.04 / 6, 1e-6);
 }
@@ -72,9 +74,12 @@ TEST(StabilizeInertia, RaisesMomentsToTheRuleAndNoFurther) {
     settings.parts[1].body.inertia = Vector3(0.3f, 0.2f, 0.4f);
     settings.parts[2].body.inertia = Vector3(0.5f, 6, 6);
     ASSERT_TRUE(StabilizeInertia(settings, {.principalRatio = 3, .childRatio = 2}));
-    EXPECT_LT((settings.parts[2].body.inertia - Vector3(2, 6, 6)).norm(), 1e-5f * settings.parts[2].body.inertia.norm());           // 6 / 3
-    EXPECT_LT((settings.parts[1].body.inertia - Vector3(3, 3, 3)).norm(), 1e-5f * settings.parts[1].body.inertia.norm());           // 6 / 2 of its child
-    EXPECT_LT((settings.parts[0].body.inertia - Vector3(9.5f / 3, 9, 9.5f)).norm(), 1e-5f * settings.parts[0].body.inertia.norm());  // its own spread; the child asks for 1.5
+    EXPECT_LT((settings.parts[2].body.inertia - Vector3(2, 6, 6)).norm(),
+              1e-5f * settings.parts[2].body.inertia.norm());  // 6 / 3
+    EXPECT_LT((settings.parts[1].body.inertia - Vector3(3, 3, 3)).norm(),
+              1e-5f * settings.parts[1].body.inertia.norm());  // 6 / 2 of its child
+    EXPECT_LT((settings.parts[0].body.inertia - Vector3(9.5f / 3, 9, 9.5f)).norm(),
+              1e-5f * settings.parts[0].body.inertia.norm());  // its own spread; the child asks for 1.5
     for (const RagdollPart& part : settings.parts) EXPECT_EQ(part.body.mass, 10);
 }
 
@@ -92,7 +97,9 @@ TEST(StabilizeInertia, HoldsForTheHumanoid) {
     // Obeyed already: nothing more to do.
     RagdollSettings again = settings;
     ASSERT_TRUE(StabilizeInertia(again, rule));
-    for (size_t i = 0; i < again.parts.size(); ++i) EXPECT_LE((again.parts[i].body.inertia - settings.parts[i].body.inertia).norm(), 1e-5f * again.parts[i].body.inertia.norm());
+    for (size_t i = 0; i < again.parts.size(); ++i)
+        EXPECT_LE((again.parts[i].body.inertia - settings.parts[i].body.inertia).norm(),
+                  1e-5f * again.parts[i].body.inertia.norm());
 }
 
 TEST(Stabilize, ErrorsNameTheFieldAndChangeNothing) {
@@ -106,19 +113,22 @@ TEST(Stabilize, ErrorsNameTheFieldAndChangeNothing) {
     };
     expect(StabilizeMasses(settings, {.smallest = 0, .largest = 1}), ErrorCode::NonPositive, "smallest");
     expect(StabilizeMasses(settings, {.smallest = 2, .largest = 1}), ErrorCode::OutOfRange, "smallest");
-    expect(StabilizeInertia(settings, {.principalRatio = 0.5f, .childRatio = 1}), ErrorCode::OutOfRange, "principalRatio");
+    expect(StabilizeInertia(settings, {.principalRatio = 0.5f, .childRatio = 1}), ErrorCode::OutOfRange,
+           "principalRatio");
     expect(StabilizeInertia(settings, {.principalRatio = 2, .childRatio = -1}), ErrorCode::NonPositive, "childRatio");
     settings.parts[0].name.clear();
     expect(StabilizeMasses(settings), ErrorCode::Degenerate, "parts[0].name");
     expect(StabilizeInertia(settings), ErrorCode::Degenerate, "parts[0].name");
 }
 
-// A heavy end on light links, hung up and let go sideways: the gap of the joints where they are solved by iteration alone.
+// A heavy end on light links, hung up and let go sideways: the gap of the joints where they are solved by iteration
+// alone.
 double GapOf(const RagdollSettings& settings) {
     SystemSettings system;
     system.exactJointLoad = std::numeric_limits<float>::infinity();
     TestWorld world(system);
-    const Result<Ragdoll> ragdoll = Ragdoll::Create(world.System(), settings, {Position::Zero(), RotationAbout(Vector3(0, 0, 1), 90 * kDegree)});
+    const Result<Ragdoll> ragdoll =
+        Ragdoll::Create(world.System(), settings, {Position::Zero(), RotationAbout(Vector3(0, 0, 1), 90 * kDegree)});
     EXPECT_TRUE(ragdoll) << ragdoll.GetError().message;
     double largest = 0;
     for (int step = 0; step < 240; ++step) {

@@ -21,7 +21,8 @@ TEST(RagdollScenes, PilesAreThoseOfThePeers) {
     int joints = 0;
     world->Joints().Visit([&](JointId) { ++joints; });
     EXPECT_EQ(joints, 1760);
-    // The ragdoll 3 of the pile in row 1, column 2: turned by 108 degrees, which takes (x, z) to (x cos + z sin, z cos - x sin).
+    // The ragdoll 3 of the pile in row 1, column 2: turned by 108 degrees, which takes (x, z) to (x cos + z sin, z cos
+    // - x sin).
     const Ragdoll& ragdoll = world->ragdolls[(1 * 4 + 2) * 10 + 3];
     ASSERT_EQ(ragdoll.Bodies().size(), 12u);
     const Position foot = world->Bodies().GetPose(ragdoll.Bodies()[11]).position;
@@ -29,7 +30,10 @@ TEST(RagdollScenes, PilesAreThoseOfThePeers) {
     // (2, -2) lies on the diagonal of its cell of 3 m, from grid point (50, 50) to (51, 49), at two thirds of the way.
     const auto gridHeight = [](double x, double z) { return 5 + 5 * std::sin(0.5 * x) * std::cos(0.5 * z); };
     const double ground = (gridHeight(50, 50) + 2 * gridHeight(51, 49)) / 3;
-    EXPECT_LT((foot - Position(2 + 0.10 * cosine + 0.05 * sine, ground + 1 + 4.5 - 0.97, -2 + 0.05 * cosine - 0.10 * sine)).norm(), 1e-6);
+    EXPECT_LT(
+        (foot - Position(2 + 0.10 * cosine + 0.05 * sine, ground + 1 + 4.5 - 0.97, -2 + 0.05 * cosine - 0.10 * sine))
+            .norm(),
+        1e-6);
     // pi r^2 (2 h + 4 r / 3) of the pelvis, times 1000 kg/m3.
     EXPECT_NEAR(world->Bodies().GetMass(ragdoll.Bodies()[0]), kPi * 14.4 * (0.16 + 0.16), 1e-4);
     EXPECT_LT(world->Definition().accuracy(*world), 1e-6);

@@ -45,8 +45,8 @@ std::vector<Placed> DynamicBodies(const SceneWorld& world) {
     return placed;
 }
 
-// Positions are given in double and may pass through the center of mass and back: 1e-6 m is generous for boxes and balls,
-// whose center is their origin, and for a hull whose center is a few millimeters off it.
+// Positions are given in double and may pass through the center of mass and back: 1e-6 m is generous for boxes and
+// balls, whose center is their origin, and for a hull whose center is a few millimeters off it.
 void ExpectBodies(const std::vector<Placed>& placed, const std::vector<Position>& expected, double mass) {
     ASSERT_EQ(placed.size(), expected.size());
     for (size_t i = 0; i < expected.size(); ++i) {
@@ -91,8 +91,8 @@ TEST(Scenes, AreAllInTheTable) {
     size_t files = 0;
     for (const auto& entry : std::filesystem::directory_iterator(FULCRUM_SOURCE_DIR "/Samples/Scenes"))
         if (entry.path().extension() == ".cpp") ++files;
-    // Scenes.cpp, SceneWorld.cpp, Drawing.cpp, Humanoid.cpp, PenetrationMeter.cpp, QueryGround.cpp and WavyGround.cpp define none,
-    // and those of Drop.cpp and DropOnto.cpp need shapes from outside.
+    // Scenes.cpp, SceneWorld.cpp, Drawing.cpp, Humanoid.cpp, PenetrationMeter.cpp, QueryGround.cpp and WavyGround.cpp
+    // define none, and those of Drop.cpp and DropOnto.cpp need shapes from outside.
     EXPECT_EQ(AllScenes().size(), files - 9);
 }
 
@@ -242,7 +242,8 @@ void ExpectFigure(const char* name, double lowest, double highest) {
 }
 
 // 20 contacts, each at most at the slop and a little of the load's: 1 mm a contact.
-// Overlaps carry weight like springs of w = 2 pi 60/s on the reduced mass m / 2: below k boxes 2 k g / w^2, in all 29 mm.
+// Overlaps carry weight like springs of w = 2 pi 60/s on the reduced mass m / 2: below k boxes 2 k g / w^2, in all 29
+// mm.
 TEST(SampleScenes, TheTowerStands) { ExpectFigure("tower", -0.03, 0.001); }
 TEST(SampleScenes, ConvexShapesStayOnTheFloor) { ExpectFigure("convex_shapes", 0, 0); }
 TEST(SampleScenes, AllDominoesFall) { ExpectFigure("dominoes", 0, 0); }
@@ -260,14 +261,16 @@ TEST(SampleScenes, BallsStayInTheirBowls) { ExpectFigure("bowls", 0, 0); }
 // Velocities are floats: each of 114 steps rounds a speed of up to 19 m/s by up to 1e-6 of it, 2 s long: 0.1 mm.
 TEST(SampleScenes, FreeBallsFallByTheFormula) { ExpectFigure("gravity_factors", 0, 1e-4); }
 TEST(SampleScenes, BodiesOfThePlaneStayInIt) { ExpectFigure("flat_land", 0, 1e-6); }
-// Friction makes velocities equal, and a step along the tangent of a turning disc leads outwards by (w dt)^2 r / 2: with 1.2
-// rad/s and 1.1 m, 60 times a second for 10 s at full speed, 0.13 m. Twice that, since the tangents lag by a step too.
+// Friction makes velocities equal, and a step along the tangent of a turning disc leads outwards by (w dt)^2 r / 2:
+// with 1.2 rad/s and 1.1 m, 60 times a second for 10 s at full speed, 0.13 m. Twice that, since the tangents lag by a
+// step too.
 TEST(SampleScenes, PlatformsCarryWhatStandsOnThem) { ExpectFigure("moving_platforms", 0, 0.03); }
 TEST(SampleScenes, BeltsCarryAllGoodsRoundTheLoop) { ExpectFigure("conveyor_belt", 0, 0); }
 TEST(SampleScenes, LayersPassOrCatch) { ExpectFigure("layers", 0, 0); }
 TEST(SampleScenes, BodiesFallThroughTheHolesOfTheTerrainAlone) { ExpectFigure("terrain_with_holes", 0, 0); }
 TEST(SampleScenes, RaysAgree) { ExpectFigure("query_rays", 0, 0); }
-// The cast ends, and the distance is measured, within 1e-6 of the shapes' size: that of the ground, 16 m x 16 m, is 23 m.
+// The cast ends, and the distance is measured, within 1e-6 of the shapes' size: that of the ground, 16 m x 16 m, is 23
+// m.
 TEST(SampleScenes, CastsEndAtATouch) { ExpectFigure("query_casts", 0, 5e-5); }
 TEST(SampleScenes, OverlapsAgreeWithDistances) { ExpectFigure("query_overlaps", 0, 0); }
 // Both ways subtract floats of up to 12 m.
