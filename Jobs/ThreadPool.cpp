@@ -15,6 +15,8 @@
 
 #include <algorithm>
 #include <system_error>
+#include <thread>
+#include <vector>
 
 namespace fulcrum {
 namespace {
@@ -53,22 +55,27 @@ uint32_t PieceOf(uint32_t blocksLeft) { return (blocksLeft + 7) / 8; }
 
 }  // namespace
 
-ThreadPool::ThreadPool(uint32_t workers) {
+struct ThreadPool::Threads {
+    std::vector<std::thread> list;
+};
+
+ThreadPool::ThreadPool(uint32_t workers) : threads_(new Threads) {
     workers = std::clamp(workers, 1u, kMaximumWorkers);
     shares_ = std::make_unique<Share[]>(workers);
-    helpers_.reserve(workers - 1);
+    threads_->list.reserve(workers - 1);
     try {
         for (uint32_t worker = 1; worker < workers; ++worker)
-            helpers_.emplace_back([this, worker] { RunHelper(worker); });
+            threads_->list.emplace_back([this, worker] { RunHelper(worker); });
     } catch (const std::system_error&) {
         // No more threads to be had: go on with those that started.
     }
+    helperCount_ = static_cast<uint32_t>(threads_->list.size());
 }
 
 ThreadPool::~ThreadPool() {
     gate_.fetch_or(kStop);
     gate_.notify_all();
-    for (std::thread& helper : helpers_) helper.join();
+    for (std::thread& helper : threads_->list) helper.join();
 }
 
 uint32_t ThreadPool::CallersWorker() const {
@@ -77,7 +84,7 @@ uint32_t ThreadPool::CallersWorker() const {
 }
 
 bool ThreadPool::TryTakeHelpers() {
-    return !helpers_.empty() && !FindMembership(this) && !busy_.exchange(true, std::memory_order_acquire);
+    return helperCount_ > 0 && !FindMembership(this) && !busy_.exchange(true, std::memory_order_acquire);
 }
 
 void ThreadPool::RunOnWorkers(FunctionRef<void(uint32_t)> job) {

@@ -7,8 +7,6 @@
 
 #include <atomic>
 #include <memory>
-#include <thread>
-#include <vector>
 
 namespace fulcrum {
 
@@ -31,7 +29,7 @@ public:
     ThreadPool(const ThreadPool&) = delete;
     ThreadPool& operator=(const ThreadPool&) = delete;
 
-    uint32_t WorkerCount() const override { return static_cast<uint32_t>(helpers_.size()) + 1; }
+    uint32_t WorkerCount() const override { return helperCount_ + 1; }
 
     // minimumRange 0 counts as 1. A count of at most minimumRange is one range on the caller and wakes nobody.
     void ParallelFor(uint32_t count, uint32_t minimumRange, FunctionRef<void(JobRange)> job) override;
@@ -46,6 +44,7 @@ private:
     struct Blocks {
         uint32_t begin, end;
     };
+    struct Threads;  // so that <thread>, which is slow to compile, stays out of programs
 
     bool TryTakeHelpers();
     void Dispatch(FunctionRef<void(uint32_t)> job) noexcept;
@@ -60,7 +59,8 @@ private:
     const FunctionRef<void(uint32_t)>* job_ = nullptr;
     alignas(64) std::atomic<bool> busy_{false};
     std::unique_ptr<Share[]> shares_;
-    std::vector<std::thread> helpers_;
+    std::unique_ptr<Threads> threads_;
+    uint32_t helperCount_ = 0;
 };
 
 }  // namespace fulcrum

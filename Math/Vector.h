@@ -7,8 +7,8 @@
 // (Eigen::Vector3f e = v), wherever Eigen is included.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
+#include <iosfwd>
 #include <type_traits>
 
 namespace Eigen {
@@ -121,11 +121,10 @@ public:
     requires std::is_same_v<EigenVector, Eigen::Matrix<Real, 3, 1, 0, 3, 1>>
     operator EigenVector() const { return EigenVector(v_[0], v_[1], v_[2]); }
 
-    // "x y z", to any stream.
-    template <class Stream>
-    friend Stream& operator<<(Stream& stream, const Vec3& v) {
-        stream << v.v_[0] << ' ' << v.v_[1] << ' ' << v.v_[2];
-        return stream;
+    // "x y z"
+    template <class Char, class Traits>
+    friend std::basic_ostream<Char, Traits>& operator<<(std::basic_ostream<Char, Traits>& stream, const Vec3& v) {
+        return stream << v.v_[0] << ' ' << v.v_[1] << ' ' << v.v_[2];
     }
 
 private:
@@ -136,14 +135,8 @@ private:
                       "a vector of three coordinates of the same type is needed");
         return {m.coeff(0), m.coeff(1), m.coeff(2)};
     }
-    static Real Min(const Real& a, const Real& b) {
-        using std::min;
-        return min(a, b);
-    }
-    static Real Max(const Real& a, const Real& b) {
-        using std::max;
-        return max(a, b);
-    }
+    static Real Min(const Real& a, const Real& b) { return b < a ? b : a; }
+    static Real Max(const Real& a, const Real& b) { return a < b ? b : a; }
 
     Real v_[3];
 };

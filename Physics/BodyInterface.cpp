@@ -50,11 +50,15 @@ void SetVelocityOf(WorldState& world, uint32_t body, Vector3 linear, Vector3 ang
     world.bodies.SetVelocity(body, linear, angular);
 }
 
-// For the first body of an empty world.
+// For the first body of an empty world. Only so far out that a place near zero, measured from there, is off by less
+// than the margin of fat bounds: farther out doubles would round away what lies between two bodies near zero.
 void PlaceBoundsOrigin(WorldState& world, uint32_t body) {
-    constexpr double kStep = 1024;  // m
+    constexpr double kStep = 1024, kFarthest = 0x1p40;  // m
     const Position center = world.bodies.CenterOf(body);
-    for (int k = 0; k < 3; ++k) world.colliders.boundsOrigin[k] = std::floor(center[k] / kStep + 0.5) * kStep;
+    for (int k = 0; k < 3; ++k) {
+        const double nearest = std::floor(center[k] / kStep + 0.5) * kStep;
+        world.colliders.boundsOrigin[k] = std::clamp(nearest, -kFarthest, kFarthest);
+    }
 }
 
 // Ends the contacts that the body's filters forbid, has those found that they allow.

@@ -5,8 +5,6 @@
 #include <Fulcrum/Collision/Shapes/Shape.h>
 #include <Fulcrum/Collision/Shapes/SurfaceShape.h>
 
-#include <algorithm>
-
 namespace fulcrum {
 
 // A ball of radius zero at the origin.
@@ -25,7 +23,8 @@ public:
         for (int i = 0; i < 3; ++i) {
             vertices_[i] = triangle.vertices[i] - origin;
             bounds_.Include(vertices_[i]);
-            outerRadius_ = std::max(outerRadius_, Length(vertices_[i]));
+            const float radius = Length(vertices_[i]);
+            outerRadius_ = radius > outerRadius_ ? radius : outerRadius_;
         }
     }
     Vector3 SupportCore(const Vector3& d) const override {

@@ -1,6 +1,7 @@
 #include <Fulcrum/Collision/Queries/Distance.h>
 
 #include <Fulcrum/Collision/Queries/ConvexDistance.h>
+#include <Fulcrum/Collision/Queries/Pieces.h>
 #include <Fulcrum/Collision/Shapes/Plane.h>
 
 #include <algorithm>

@@ -2,7 +2,8 @@
 // and no world. Thread-safe; allocates nothing but where the depth of a degenerate overlap is measured.
 #pragma once
 
-#include <Fulcrum/Collision/Queries/Pieces.h>
+#include <Fulcrum/Collision/Queries/SubShape.h>
+#include <Fulcrum/Collision/Shapes/Shape.h>
 
 namespace fulcrum {
 

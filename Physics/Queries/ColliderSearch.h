@@ -19,7 +19,7 @@ public:
                    !filter.accepts && !filter.acceptsChild) {}
 
     // Traverses the trees whose layers the filter wants: walk(tree, visit), where `visit` calls found(collider) for
-    // what is accepted. What strayed from its bounds is found by where it is.
+    // what is accepted. What left its fat bounds is found by its present ones.
     template <class Walk, class Found>
     void Run(const Walk& walk, const Found& found) const {
         const ColliderStore& store = world_.colliders;
@@ -38,7 +38,7 @@ public:
             }
         }
         if (filter_.layers & store.fixedLayers) walk(store.fixedTree, visit);
-        if (filter_.sensors) walk(store.sensorTree, visit);  // they never stray: Sense sees to it
+        if (filter_.sensors) walk(store.sensorTree, visit);  // they never leave their bounds: Sense refits them
     }
 
     // What the trees hold is measured from this.

@@ -34,11 +34,11 @@ public:
             leastResponse_ += kLeastResponse * d.inverseMass;
         }
         for (int i = 0; i < hit.pointCount; ++i) {
-            before_[i] = Slip(i);
+            slipsBefore_[i] = Slip(i);
             const float approach = Dot<float>(hit.normal, RelativeVelocity(i));
-            away_[i] = approach > world.settings.restitutionSpeed ? hit.restitution * approach : 0.0f;
+            bounceSpeeds_[i] = approach > world.settings.restitutionSpeed ? hit.restitution * approach : 0.0f;
             approaches_ |= approach > 0;
-            response_[i] = Response(i, hit.normal);
+            normalResponses_[i] = Response(i, hit.normal);
         }
     }
 
@@ -74,9 +74,9 @@ private:
     float PassivePart() const {
         float first = 0, second = 0;  // work = first part + second part^2
         for (int i = 0; i < hit_.pointCount; ++i) {
-            const Vector3 impulse = rubbed_[i] - hit_.normal * pushed_[i];
-            first += Dot<float>(impulse, before_[i]);
-            second += 0.5f * Dot<float>(impulse, Vector3(Slip(i) - before_[i]));
+            const Vector3 impulse = frictionImpulses_[i] - hit_.normal * normalImpulses_[i];
+            first += Dot<float>(impulse, slipsBefore_[i]);
+            second += 0.5f * Dot<float>(impulse, Vector3(Slip(i) - slipsBefore_[i]));
         }
         if (!(first + second > 0)) return 1;
         return second > 0 ? std::clamp(-first / second, 0.0f, 1.0f) : 0.0f;
@@ -97,11 +97,12 @@ private:
         }
     }
     void Push(int i) {
-        const float response = response_[i];
+        const float response = normalResponses_[i];
         if (!(response > leastResponse_)) return;
-        const float old = pushed_[i];
-        pushed_[i] = std::max(0.0f, old + (Dot<float>(hit_.normal, RelativeVelocity(i)) + away_[i]) / response);
-        Apply(i, hit_.normal * (old - pushed_[i]));
+        const float old = normalImpulses_[i];
+        normalImpulses_[i] =
+            std::max(0.0f, old + (Dot<float>(hit_.normal, RelativeVelocity(i)) + bounceSpeeds_[i]) / response);
+        Apply(i, hit_.normal * (old - normalImpulses_[i]));
     }
     void SolveFriction(int i) {
         if (hit_.friction == 0) return;
@@ -109,23 +110,24 @@ private:
         const float speed = Length(slip);
         const float response = speed > 0 ? Response(i, Vector3(slip * (1 / speed))) : 0.0f;
         if (!(response > 0)) return;
-        const Vector3 old = rubbed_[i];
-        rubbed_[i] = old - slip * (1 / response);
-        const float size = Length(rubbed_[i]), most = hit_.friction * pushed_[i];
-        if (size > most) rubbed_[i] = rubbed_[i] * (most / size);
-        Apply(i, rubbed_[i] - old);
+        const Vector3 old = frictionImpulses_[i];
+        frictionImpulses_[i] = old - slip * (1 / response);
+        const float size = Length(frictionImpulses_[i]), most = hit_.friction * normalImpulses_[i];
+        if (size > most) frictionImpulses_[i] = frictionImpulses_[i] * (most / size);
+        Apply(i, frictionImpulses_[i] - old);
     }
 
     const SweepHit& hit_;
     Impact& v_;
     Side side_[2];
     bool approaches_ = false;
-    float leastResponse_ = 0;                    // 1/kg
-    Vector3 before_[SweepHit::kMaxPoints];       // m/s, see Slip
-    float away_[SweepHit::kMaxPoints] = {};      // m/s, speed to part with
-    float response_[SweepHit::kMaxPoints] = {};  // 1/kg, along the normal
-    float pushed_[SweepHit::kMaxPoints] = {};    // N s
-    Vector3 rubbed_[SweepHit::kMaxPoints] = {Vector3::Zero(), Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
+    float leastResponse_ = 0;                           // 1/kg
+    Vector3 slipsBefore_[SweepHit::kMaxPoints];         // m/s, see Slip
+    float bounceSpeeds_[SweepHit::kMaxPoints] = {};     // m/s, speed to part with
+    float normalResponses_[SweepHit::kMaxPoints] = {};  // 1/kg, along the normal
+    float normalImpulses_[SweepHit::kMaxPoints] = {};   // N s
+    Vector3 frictionImpulses_[SweepHit::kMaxPoints] = {Vector3::Zero(), Vector3::Zero(), Vector3::Zero(),
+                                                       Vector3::Zero()};
 };
 
 // Whether what gravity and forces have given a body since a time of its sweep is not simply their acceleration:

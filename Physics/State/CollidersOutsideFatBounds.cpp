@@ -13,7 +13,7 @@ void CollidersOutsideFatBounds::Refresh(const WorldState& world) {
     const std::lock_guard<std::mutex> guard(refreshing_);
     if (isFresh_.load(std::memory_order_relaxed)) return;
     tree_.Clear();
-    // Those that fell asleep were brought home then.
+    // Those that fell asleep were refitted then.
     for (const uint32_t body : world.bodies.awake) {
         VisitColliders(world, body, [&](uint32_t i) {
             const Bounds bounds = TightBoundsOf(world, i);

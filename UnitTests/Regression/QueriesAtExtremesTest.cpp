@@ -14,6 +14,7 @@
 #include <Fulcrum/UnitTests/Support/RandomPoses.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
+#include <algorithm>
 #include <cfloat>
 #include <ctime>
 
@@ -48,6 +49,32 @@ TEST(QueriesAtExtremes, AnOddRayDoesNotSpoilItsBatch) {
 }
 
 // A fraction may be larger than one: the list of all hits ended at one for meshes and height fields.
+// Bounds are measured from the first body. From 10^17 m away doubles told nothing near zero apart, and rays passed by
+// what they hit.
+TEST(QueriesAtExtremes, AFirstBodyFarAwayHidesNothing) {
+    for (const double away : {100.0, 1e9, 1e12, 1e15, 7.885e17, -1e18}) {
+        TestWorld world({}, 1);
+        world.Add({.shape = CubeOf(0.5f), .motion = MotionType::Static, .position = {0.5, away, 1.3}});
+        RandomPoses random(5);
+        for (int i = 0; i < 50; ++i) {
+            const Position center = random.InBox(20).cast<double>();
+            const BodyId id = world.Add({.shape = SphereOf(0.3f), .motion = MotionType::Static, .position = center});
+            const QueryInterface& queries = world.System().Queries();
+            for (int axis = 0; axis < 3; ++axis) {
+                const Vector3 along = Vector3::Unit(axis);
+                WorldRayHit hit;
+                ASSERT_TRUE(queries.CastRay({center - along.cast<double>(), along * 2}, hit)) << away;
+                EXPECT_EQ(hit.body, id) << away;
+                EXPECT_NEAR(hit.fraction, 0.35f, 1e-3f) << away;
+            }
+            std::vector<OverlapHit> inside;
+            queries.FindBodiesAt(center, inside);
+            EXPECT_TRUE(std::ranges::any_of(inside, [&](const OverlapHit& found) { return found.body == id; })) << away;
+            ASSERT_TRUE(world.Bodies().Remove(id));
+        }
+    }
+}
+
 TEST(QueriesAtExtremes, AllHitsAreListedUpToTheFractionThatIsAskedFor) {
     const float heights[] = {0, 0, 0, 0};
     const Vector3 corners[] = {{-5, 0, -5}, {-5, 0, 5}, {5, 0, -5}};
