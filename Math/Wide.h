@@ -1,7 +1,7 @@
 // Lanes: Wide<N> is N floats (N = 1, 4, 8, 16) that are added, multiplied, compared and selected at once. Kernels are
 // templates over Real = float or Wide<N> and give the same bits for every N. The only file with intrinsics and CPU
-// #ifs. The arithmetic is the compilers' vector extension, so any width works on any CPU; intrinsics are used where the
-// compilers' own code for an operation is poor.
+// conditionals. The arithmetic is the compilers' vector extension, so any width works on any CPU; intrinsics are used
+// where the compilers' own code for an operation is poor.
 #pragma once
 
 #include <Fulcrum/Math/ForceInline.h>
