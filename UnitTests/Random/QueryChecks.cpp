@@ -156,8 +156,9 @@ std::string CheckShapeHit(const std::vector<BodyShape>& bodies, const MovingShap
         center.rotation = Normalized(RotationFromVector(Vector3(moving.turn * hit.fraction)) * center.rotation);
     ClosestPoints closest;
     const RelativePose pose = Relative(body->pose, center);
-    const double size = double{shape.OuterRadius()} + double{Length(moving.displacement)} * 0x1p-23;
-    const double tolerance = ToleranceOf(*body, center.position) + 2e-3 * size;
+    // The fraction is a float: along a way of 10^6 m it tells places apart by a decimeter.
+    const double rounding = double{Length(moving.displacement)} * 0x1p-23;
+    const double tolerance = ToleranceOf(*body, center.position) + 2e-3 * double{shape.OuterRadius()} + rounding;
     if (!IsFinite(pose.position) || !FindClosestPoints(*body->shape, shape, pose, FLT_MAX, closest)) return {};
     if (double{closest.distance} > tolerance)
         return Text("a shape hits body ", body->id.index, " at ", hit.fraction, ", but is ", closest.distance,
