@@ -2,8 +2,8 @@
 // Position (double) for places in the world. Kernels are templates over Real: float, double, or Wide<N> for N lanes.
 //
 // A class of our own and not Eigen's: its header alone takes a second to compile, and its expressions most of the time
-// of every file that adds two vectors (Docs/Building.md). Members that Eigen has, too, have its names and its meaning.
-// Vectors convert implicitly from Eigen's expressions, and to Eigen's vectors in copies and assignments
+// of every file that adds two vectors (Docs/Architecture.md). Members that Eigen has, too, have its names and its
+// meaning. Vectors convert implicitly from Eigen's expressions, and to Eigen's vectors in copies and assignments
 // (Eigen::Vector3f e = v), wherever Eigen is included.
 #pragma once
 

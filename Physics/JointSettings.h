@@ -115,14 +115,13 @@ struct SixDofJointSettings : JointSettings {
 // A turns about anchor A's axis, B about anchor B's, each in a bearing that other joints make to a body at rest; their
 // teeth mesh. turns of A = -ratio turns of B.
 struct GearJointSettings : JointSettings {
-    float ratio = 1.0f;  // not 0, 1e-9..1e9 without its sign; teeth of B / teeth of A, > 0 where they mesh outside
+    float ratio = 1.0f;  // 1e-9..1e9 without its sign; teeth of B / teeth of A, > 0 where they mesh outside
 };
 
 // A, the pinion, turns about anchor A's axis through its point; B, the rack, moves along anchor B's axis. Other joints
 // make bearing and guide.
 struct RackAndPinionJointSettings : JointSettings {
-    float ratio =
-        1.0f;  // rad/m, not 0, 1e-9..1e9 without its sign; 1 / radius of the pinion, negative to move the other way
+    float ratio = 1.0f;  // rad/m, 1e-9..1e9 without its sign; 1 / radius of the pinion, negative to move the other way
 };
 
 // A rope from A's anchor over two fixed points to B's: distance of A + ratio distance of B = its length.

@@ -204,10 +204,9 @@ Vector3 TurnedFreely(const BodyDynamics& d, const Quaternion& rotation, const Ve
 Impact::Rest FlyOn(const WorldState& world, uint32_t body, const Quaternion& rotation, const Vector3& v,
                    const Vector3& w, const Vector3& since, float rest) {
     const BodyDynamics& d = world.bodies.dynamics[body];
-    const Vector3 gain = GainUntilEnd(world, body, v, since, rest);
+    Vector3 gain = GainUntilEnd(world, body, v, since, rest), none = Vector3::Zero();
+    d.Lock(gain, none);
     Impact::Rest on{(v + gain * 0.5f) * rest, w * rest, v + gain, w};
-    d.Lock(on.displacement, on.turn);
-    d.Lock(on.linear, on.angular);
     on.angular = TurnedFreely(d, rotation, w, rest, RotationFromVector(on.turn) * rotation);
     LimitLength(on.linear, d.maxLinearSpeed);
     LimitLength(on.angular, d.maxAngularSpeed);

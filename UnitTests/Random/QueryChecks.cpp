@@ -201,7 +201,7 @@ std::string CheckClosest(const ConvexShape& a, const ConvexShape& b, const Relat
     const Vector3 inB = InverseRotate(bInA.rotation, Vector3(-n));
     const double top = Dot<double>(a.Support(n).cast<double>(), n.cast<double>());
     const double bottom = Dot<double>(
-        (bInA.position.cast<double>() + Rotate(bInA.rotation, b.Support(inB)).cast<double>()), n.cast<double>());
+        bInA.position.cast<double>() + Rotate(bInA.rotation, b.Support(inB)).cast<double>(), n.cast<double>());
     const double size = double{a.OuterRadius()} + double{b.OuterRadius()} + double{Length(bInA.position)};
     const double along = bottom - top, tolerance = 1e-3 * size * (closest.distance < 0 ? 1 : 0.1) + FLT_MIN;
     if (std::abs(along - double{closest.distance}) > tolerance)

@@ -54,7 +54,7 @@ TEST(StabilizeMasses, ScalesInertiasAlong) {
     ASSERT_TRUE(StabilizeMasses(settings));
     EXPECT_FLOAT_EQ(settings.parts[1].body.mass, 55);
     EXPECT_LT((settings.parts[1].body.inertia - Vector3(0.55f, 1.1f, 1.65f)).norm(),
-              1e-5f * settings.parts[1].body.inertia.norm());
+              1e-6f * settings.parts[1].body.inertia.norm());
     // The shape's own: m (2 h)^2 / 6 of a cube.
     EXPECT_NEAR(InertiaOf(settings.parts[0].body).x(), 55 * 0.04 / 6, 1e-6);
 }
@@ -99,7 +99,7 @@ TEST(StabilizeInertia, HoldsForTheHumanoid) {
     ASSERT_TRUE(StabilizeInertia(again, rule));
     for (size_t i = 0; i < again.parts.size(); ++i)
         EXPECT_LE((again.parts[i].body.inertia - settings.parts[i].body.inertia).norm(),
-                  1e-5f * again.parts[i].body.inertia.norm());
+                  1e-6f * again.parts[i].body.inertia.norm());
 }
 
 TEST(Stabilize, ErrorsNameTheFieldAndChangeNothing) {
