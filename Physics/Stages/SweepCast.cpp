@@ -335,10 +335,55 @@ private:
         float depth = 0;  // m
     };
 
+    // What FindPoints depends on, and what it found.
+    struct FoundPoints {
+        const ColliderShape* piece = nullptr;
+        uint32_t otherCollider = 0;
+        bool isTurning = false;
+        float time = 0, depth = 0;
+        Quaternion rotation;
+        Vector3 linear = Vector3::Zero();
+        Push push;
+        SweepHit hit;
+
+        bool IsFor(const FoundPoints& asked) const {
+            return piece == asked.piece && otherCollider == asked.otherCollider && isTurning == asked.isTurning &&
+                   time == asked.time && depth == asked.depth && linear == asked.linear &&
+                   rotation.x == asked.rotation.x && rotation.y == asked.rotation.y && rotation.z == asked.rotation.z &&
+                   rotation.w == asked.rotation.w;
+        }
+    };
+
     // Writes the points of the manifold where the two approach fastest at an instant into the hit; none where they do
-    // not touch.
+    // not touch. A shape that overlaps many triangles of a surface as the cast begins hits all of them at one time, and
+    // asks the same again and again: the last two answers are kept.
     Push FindPoints(const ShapeMotion& motion, const Vector3& linear, const Sweep& theirSweep, float time, float depth,
                     SweepHit& hit) {
+        FoundPoints asked{piece_, hit.otherCollider, isTurning_, time, depth, motion.pose.rotation, linear, {}, {}};
+        for (const FoundPoints& known : foundPoints_)
+            if (known.IsFor(asked)) {
+                CopyPoints(known.hit, hit);
+                return known.push;
+            }
+        asked.push = ComputePoints(motion, linear, theirSweep, time, depth, hit);
+        CopyPoints(hit, asked.hit);
+        nextFoundPoints_ ^= 1;
+        foundPoints_[nextFoundPoints_] = asked;
+        return asked.push;
+    }
+
+    // What FindPoints writes.
+    static void CopyPoints(const SweepHit& from, SweepHit& to) {
+        to.pointCount = from.pointCount;
+        to.normal = from.normal;
+        to.material = from.material;
+        to.center = from.center;
+        std::copy_n(from.arms, from.pointCount, to.arms);
+        std::copy_n(from.otherArms, from.pointCount, to.otherArms);
+    }
+
+    Push ComputePoints(const ShapeMotion& motion, const Vector3& linear, const Sweep& theirSweep, float time,
+                       float depth, SweepHit& hit) {
         const Pose own{sweep_.PositionAt(time), isTurning_ ? sweep_.RotationAt(time) : motion.pose.rotation},
             others = theirSweep.PoseAt(time);
         const ColliderShape& piece = world_.colliders.shapes[hit.otherCollider];
@@ -399,6 +444,8 @@ private:
     bool isTurning_;
     const bool isCast_;  // else only since it was hit, in this step
     bool found_ = false;
+    FoundPoints foundPoints_[2];
+    int nextFoundPoints_ = 0;
     int restarts_ = 0;
     size_t triangles_ = 0;  // that were looked at to see what hits do
     float limit_ = 1;       // of the sweep, up to where hits are of interest
