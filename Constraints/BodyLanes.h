@@ -3,6 +3,8 @@
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/BodyState.h>
+#include <Fulcrum/Constraints/Parts/SymmetricInverse.h>
+#include <Fulcrum/Math/Trigonometry.h>
 
 namespace fulcrum {
 
@@ -45,6 +47,37 @@ FULCRUM_FORCE_INLINE Vec3<Wide<N>> GatherOffset(const uint32_t (&bodyA)[N], cons
             offsets[k][i] = static_cast<float>(poses[bodyB[i]].position[k] - poses[bodyA[i]].position[k]);
     using Real = Wide<N>;
     return Vec3<Real>(Real::Load(offsets[0]), Real::Load(offsets[1]), Real::Load(offsets[2]));
+}
+
+inline bool Any(bool mask) { return mask; }
+template <int N>
+FULCRUM_FORCE_INLINE bool Any(WideMask<N> mask) {
+    return mask.Any();
+}
+
+// sin(a / 2) / a and cos(a / 2) with a = |v|: by the first terms of the series where the angle is below a radian, as it
+// nearly always is; the next term is below a digit.
+template <class Real>
+FULCRUM_FORCE_INLINE Vec2<Real> HalfTurnOf(const Vec3<Real>& v) {
+    const Real square = Dot<Real>(v, v), one(1.0f);
+    const Real scale =
+        Real(0.5f) - square * (Real(1.0f / 48) - square * (Real(1.0f / 3840) - square * Real(1.0f / 645120)));
+    const Real cosine =
+        one - square * (Real(1.0f / 8) -
+                        square * (Real(1.0f / 384) - square * (Real(1.0f / 46080) - square * Real(1.0f / 10321920))));
+    const auto isFar = square > one;
+    if (!Any(isFar)) return Vec2<Real>(scale, cosine);
+    const Real angle = Sqrt(square);
+    const SineCosine<Real> half = SinCos<Real>(angle * Real(0.5f));
+    return Vec2<Real>(Select(isFar, Real(half.sine / angle), scale), Select(isFar, half.cosine, cosine));
+}
+
+// Brings BodyState::halfTurn of a row of displacements up to date with its rotation.
+template <class Real>
+FULCRUM_FORCE_INLINE void SetHalfTurn(Real (&row)[8]) {
+    const Vec2<Real> half = HalfTurnOf<Real>(Vec3<Real>(row[3], row[4], row[5]));
+    row[6] = half.x();
+    row[7] = half.y();
 }
 
 // A unit vector perpendicular to the unit vector n (Duff et al., JCGT 2017).

@@ -76,11 +76,23 @@ constexpr LockedAxes operator|(LockedAxes a, LockedAxes b) {
     return static_cast<LockedAxes>(static_cast<uint8_t>(a) | static_cast<uint8_t>(b));
 }
 
+// How overlaps and gaps of joints are corrected. Docs/Accuracy.md says which suits which effort.
+enum class PositionCorrection : uint8_t {
+    SoftRelax,  // soft rows push in the velocity iterations; relaxing passes take the speed of the pushes out again
+    Baumgarte,  // hard rows; position passes move the bodies and add no speed. Exact for few substeps of many
+                // iterations
+};
+
 // The trade of speed for accuracy.
 struct SolverSettings {
     int substeps = 4;            // 1..64; each integrates dt / substeps
     int velocityIterations = 1;  // 1..255 per substep
-    int positionIterations = 1;  // 0..255 per substep: passes that take the speed of pushes out again
+    int positionIterations = 1;  // 0..255 per substep: relaxing passes, or position passes
+    PositionCorrection positionCorrection = PositionCorrection::SoftRelax;
+    // Of Baumgarte: the part of an error that a position pass corrects, > 0, at most 1; and the overlap that it leaves,
+    // m, 0..1000, so that what rests keeps its contacts: without any, walls creep sideways.
+    float baumgarte = 0.2f;
+    float baumgarteSlop = 0.001f;
     friend bool operator==(const SolverSettings&, const SolverSettings&) = default;
 };
 

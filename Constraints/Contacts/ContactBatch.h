@@ -21,6 +21,7 @@
 
 #include <Fulcrum/Constraints/Contacts/ContactRecord.h>
 #include <Fulcrum/Constraints/Parts/BodyState.h>
+#include <Fulcrum/Constraints/Parts/RowSoftness.h>
 
 namespace fulcrum {
 
@@ -101,11 +102,12 @@ struct ContactSolveSettings {
     float stiffening = 0;   // s/m: by so much of the impulse less for each m/s that the push falls short
     float mostStiffer = 0;  // 0..1: but never by more than this
     float slop;             // m: overlap that is left alone
+    // Position passes, see CorrectContacts:
+    float baumgarte = 0;       // 0..1: the part of an overlap that a pass corrects
+    float mostCorrection = 0;  // m, by a pass
 
-    // Asks for maxPushSpeed. Sets pushRate, massScale and impulseScale to those of a spring of `frequency` Hz and
-    // `dampingRatio` for a substep of h seconds: with w = 2 pi f, gamma = 1 / (h (c + h k)) and beta = h k / (c + h k)
-    // of the soft constraint (k = m w^2, c = 2 m zeta w), pushRate = beta / h = w / (2 zeta + h w), massScale = a / (1
-    // + a), impulseScale = 1 / (1 + a), a = h w (2 zeta + h w). Source: Catto, "Solver2D", 2024.
+    // Sets pushRate, massScale and impulseScale to those of PushSoftnessOf (RowSoftness.h), for a substep of h seconds,
+    // and stiffening by maxPushSpeed.
     void Soften(float frequency, float dampingRatio, float h);
 };
 
@@ -135,6 +137,10 @@ void RelaxContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const Con
 // Brings the separations up to date.
 template <int N, bool kFixedB>
 void UpdateSeparations(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
+
+// A position pass (Baumgarte): moves the bodies out of overlaps, adds no speed.
+template <int N, bool kFixedB>
+void CorrectContacts(const ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
 
 // One pass over the pseudo-velocities, in the velocities' place in `pseudo`, by which joints that are far apart are
 // pulled together (PullJoints): points may close their gaps within the substep and approach no further. Sets

@@ -11,8 +11,8 @@ namespace {
 // A row along `motion` times sign.
 JointRow& AddRow(const JointRow& motion, float sign, uint32_t slot, JointRow::Kind kind, JointRowList& rows) {
     JointRow& row = rows.Add(slot, kind);
-    row.a = {motion.a.linear * sign, motion.a.angular * sign};
-    row.b = {motion.b.linear * sign, motion.b.angular * sign};
+    const RowJacobian<float>& j = motion.jacobian;
+    row.jacobian = {{j.a.linear * sign, j.a.angular * sign}, {j.b.linear * sign, j.b.angular * sign}};
     row.turnsWithA = motion.turnsWithA;
     row.radial = motion.radial;
     row.about = motion.about;

@@ -48,6 +48,8 @@ template <int N>
 void RelaxJoints(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings);
 template <int N>
 void UpdateJoints(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings);
+template <int N>
+void CorrectJoints(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings);
 // The same with the pseudo-velocities of joints that are far apart.
 template <int N>
 void PullJoints(BallBatch<N>& batch, BodyState* pseudo, const JointSolveSettings& settings);

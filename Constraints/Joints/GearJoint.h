@@ -1,12 +1,13 @@
 // Two gears that mesh: A and B turn about the x axes of their frames, each in a bearing that other joints make. Solved
 // with the other joints; no threads.
 //
-//   theta1, theta2  turned by A and by B about their axes a1, a2, since the joint was made     ratio  turns of A per
-//   turn of B Rows:       C = theta1 + ratio theta2, J = [0, a1, 0, ratio a2]
+//   theta1, theta2  turned by A and by B about their axes, since the joint was made     ratio  turns of A per turn of B
+//   Rows:       the gear part's, C = theta1 + ratio theta2
 // Both angles are counted without drift (BearingAngle.h), so that no tooth is ever lost.
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/BearingAngle.h>
+#include <Fulcrum/Constraints/Parts/GearPart.h>
 
 namespace fulcrum {
 
@@ -25,8 +26,7 @@ public:
         const double angleA = OfA().Advance(pose.frameA, Dot(axisA, pose.turnedA));
         const double angleB = OfB().Advance(pose.frameB, Dot(axisB, pose.turnedB));
         JointRow& row = rows.Add(0, JointRow::Kind::Equal);
-        row.a.angular = -axisA;
-        row.b.angular = axisB * ratio_;
+        row.jacobian = GearJacobian<float>(axisA, axisB, ratio_);
         row.error = static_cast<float>(angleA + static_cast<double>(ratio_) * angleB);
     }
     std::span<double> State() override { return state_; }

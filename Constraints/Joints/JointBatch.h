@@ -21,6 +21,7 @@
 #include <Fulcrum/Constraints/Parts/HingeRotationPart.h>
 #include <Fulcrum/Constraints/Parts/PointPart.h>
 #include <Fulcrum/Constraints/Parts/RotationEulerPart.h>
+#include <Fulcrum/Constraints/Parts/RowPart.h>
 
 namespace fulcrum {
 
@@ -43,27 +44,28 @@ struct alignas(32) JointRecord {
 };
 static_assert(sizeof(JointRecord) == 160);
 
-// One row of each of N joints; lanes without a row have no mass.
+// One row of each of N joints; lanes without a row have no Jacobian, and are inactive.
 template <int N>
 struct JointRows {
     using Real = Wide<N>;
-    Twist<Real> a, b;                    // J = [-a, b]
-    Twist<Real> responseA, responseB;    // change of velocity by a unit of impulse
+    RowPart<Real> part;                  // its response: with the reaction of the locks
     Vec3<Real> lockLinear, lockAngular;  // change of the locks' impulses by a unit of impulse
-    Real startError, error;              // m or rad, at the start of the step and now
+    Real startError, error;              // C, m or rad, at the start of the step and now
     Real speed;                          // m/s or rad/s that J v is to be
-    Real impulse, lowest, highest;       // N s or N m s
+    Real lowest, highest;                // N s or N m s, of the total impulse
     Real earlier;                        // N s or N m s: the sum of the substeps before
-    // delta = -(mass (massScale (J v - speed) + pushRate C) + softness total), see SpringPart.h
-    Real massScale, pushRate, softness;
-    Real mostPush;  // m/s or rad/s: limit of pushRate C
-    // One-sided rows whose error is above `openAbove` are open: delta = -(mass hardScale (J v + gapRate C) +
-    // openSoftness total).
-    Real openAbove, hardScale, gapRate, openSoftness;
-    Real mass;        // kg or kg m2 that the row meets; 0: no row
+    // What pushes the error away, see RowSoftness.h: pushRate is massScale beta, 1/s; mostPush the limit of pushRate C,
+    // m/s or rad/s.
+    RowSoftness<Real> softness;
+    Real pushRate, mostPush;
+    // One-sided rows whose error is above `openAbove` are open: they stop what would close the gap within a substep
+    // (gapRate C, 1/s), with `openSoftness`. Springs are not relaxed: their openSoftness is (0, 1).
+    Real openAbove, gapRate;
+    RowSoftness<Real> openSoftness;
     Real turnsWithA;  // 1: J turns with A from substep to substep
     Real radial;      // 1: the row acts along the line between the anchors and turns with it
     Real about;       // 1: its error is an angle
+    Real waits;       // 1: inactive in this step, because the joint is far apart
     Real pulled;      // N s or N m s that changed pseudo-velocities, see PullJoints
     uint8_t slot[N];  // 0xFF: no row
 };
@@ -94,7 +96,7 @@ struct JointBatch {
     Twist<Real> wayA, wayB;                      // displacements at which rows were set up last
 
     RotationEulerPart<Real> rotation;
-    Quat<Real> startTwist;  // of B against A, world axes, for AngularLock::All
+    Quat<Real> inverseInitial;  // of turns since the start of the step, for AngularLock::All
     HingeRotationPart<Real> hinge;
     Vec3<Real> startAxisA, startAxisB, startNormal;  // for AngularLock::Axis; the normal is one of B's
     DualAxisPart<Real> line;
@@ -128,6 +130,8 @@ struct JointSolveSettings {
     float pushRate;
     RowSoftness<float> softness;
     float maxPushSpeed;  // m/s and rad/s
+    bool pushes;         // else errors are corrected by position passes (CorrectJoints), and rows are hard
+    float baumgarte;     // 0..1: the part of an error that a position pass corrects; at most by maxPushSpeed substepDt
     bool continues;      // the first velocity iteration of a substep that is not the first of its step
     bool firstPass;      // the first relaxing pass of a substep, or the first of PullJoints
 };
@@ -163,6 +167,11 @@ void RelaxJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSo
 // The set-up of RelaxJoints alone, for solves without position iterations.
 template <int N>
 void UpdateJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings);
+
+// A position pass (Baumgarte): sets the parts up at the displaced poses and moves the bodies there, adds no speed.
+// Joints that are far apart are left to PullJoints.
+template <int N>
+void CorrectJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings);
 
 // One pass over the pseudo-velocities, in the velocities' place in `pseudo`, by which joints that are far apart are
 // pulled together: these give them, the others hold against them.

@@ -42,10 +42,16 @@ struct Motion {
     }
     // Lanes of bodies that are not dynamic are written nowhere.
     FULCRUM_FORCE_INLINE void Scatter(const Twist<Real>& motion, int count, uint32_t fixed) {
+        Set(motion);
+        Scatter(count, fixed);
+    }
+    FULCRUM_FORCE_INLINE void Set(const Twist<Real>& motion) {
         for (int k = 0; k < 3; ++k) {
             row[k] = motion.linear[k];
             row[3 + k] = motion.angular[k];
         }
+    }
+    FULCRUM_FORCE_INLINE void Scatter(int count, uint32_t fixed) {
         alignas(32) float nowhere[8];
         if (fixed != 0)
             for (int i = 0; i < N; ++i)
@@ -131,12 +137,6 @@ FULCRUM_FORCE_INLINE Vec3<Real> Zero() {
     return Vec3<Real>(Real(0.0f), Real(0.0f), Real(0.0f));
 }
 
-inline bool Any(bool mask) { return mask; }
-template <int N>
-FULCRUM_FORCE_INLINE bool Any(WideMask<N> mask) {
-    return mask.Any();
-}
-
 // The normal without its part along the axis, of length 1: where the axis turns, it turns no more than it must.
 template <class Real>
 FULCRUM_FORCE_INLINE Vec3<Real> Straightened(const Vec3<Real>& normal, const Vec3<Real>& axis) {
@@ -149,23 +149,6 @@ FULCRUM_FORCE_INLINE Vec3<Real> Straightened(const Vec3<Real>& normal, const Vec
 template <class Lambda, class Real>
 FULCRUM_FORCE_INLINE void AddReaction(Lambda& lambda, const Vec3<Real>& reaction) {
     for (int k = 0; k < lambda.size(); ++k) lambda[k] -= Real(0.0f) - reaction[k];
-}
-
-// sin(a / 2) / a and cos(a / 2) with a = |v|: by the first terms of the series where the angle is below a radian, as it
-// nearly always is; the next term is below a digit.
-template <class Real>
-FULCRUM_FORCE_INLINE Vec2<Real> HalfTurnOf(const Vec3<Real>& v) {
-    const Real square = Dot<Real>(v, v), one(1.0f);
-    const Real scale =
-        Real(0.5f) - square * (Real(1.0f / 48) - square * (Real(1.0f / 3840) - square * Real(1.0f / 645120)));
-    const Real cosine =
-        one - square * (Real(1.0f / 8) -
-                        square * (Real(1.0f / 384) - square * (Real(1.0f / 46080) - square * Real(1.0f / 10321920))));
-    const auto isFar = square > one;
-    if (!Any(isFar)) return Vec2<Real>(scale, cosine);
-    const Real angle = Sqrt(square);
-    const SineCosine<Real> half = SinCos<Real>(angle * Real(0.5f));
-    return Vec2<Real>(Select(isFar, Real(half.sine / angle), scale), Select(isFar, half.cosine, cosine));
 }
 
 // As RotationFromVector.
@@ -181,7 +164,7 @@ struct JointPlace {
     Vec3<Real> armA, armB, offset;
     Vec3<Real> line, lineNormal;
     Vec3<Real> axisA, axisB, normal;
-    Quat<Real> twist;
+    Vec3<Real> rotationError;  // rad, see RotationEulerPart.h
 };
 
 // What the locks miss.
@@ -193,36 +176,28 @@ struct JointErrors {
     Vec2<Real> hinge = Vec2<Real>(Real(0.0f), Real(0.0f));
 };
 
-// J of a row applied to velocities or displacements.
-template <class Real>
-FULCRUM_FORCE_INLINE Real RowMotion(const JointRows<Real::kCount>& row, const Twist<Real>& a, const Twist<Real>& b) {
-    return Dot<Real>(row.b.linear, b.linear) + Dot<Real>(row.b.angular, b.angular) - Dot<Real>(row.a.linear, a.linear) -
-           Dot<Real>(row.a.angular, a.angular);
-}
-
 // Sets the parts up, hard and without bias, and returns the errors. Where joints are far apart their velocities are
 // held as if the anchors were at one place: with levers as long as the gap they would whirl small bodies about.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE JointErrors<Wide<N>> SetUpParts(JointBatch<N>& batch, const JointPlace<Wide<N>>& place) {
     using Real = Wide<N>;
-    const Vec2<Real> none(Real(0.0f), Real(0.0f));
     JointErrors<Real> errors;
     if constexpr (kAngular == AngularLock::All) {
-        errors.rotation = RotationVectorOf<Real>(place.twist);
-        batch.rotation.CalculateProperties(batch.massA, batch.massB, Zero<Real>());
+        errors.rotation = place.rotationError;
+        batch.rotation.CalculateProperties(batch.massA, batch.massB);
     }
     if constexpr (kAngular == AngularLock::Axis) {
         const Vec3<Real> b = Straightened<Real>(place.normal, place.axisB);
         const Vec3<Real> c = Cross<Real>(place.axisB, b);
         errors.hinge = HingeError<Real>(place.axisA, b, c);
-        batch.hinge.CalculateProperties(batch.massA, batch.massB, b, c, none);
+        batch.hinge.CalculateProperties(batch.massA, batch.massB, b, c);
     }
     if constexpr (kLinear == LinearLock::Point) {
         const Real share = MeetingShare<N>(batch.fixedA, batch.fixedB);
         errors.point = place.offset;
         const Vec3<Real> between = batch.far ? ZeroUnless<Real>(batch.isFar <= Real(0.5f), place.offset) : place.offset;
         batch.point.CalculateProperties(batch.massA, batch.massB, Vec3<Real>(place.armA + between * share),
-                                        Vec3<Real>(place.armB - between * (Real(1.0f) - share)), Zero<Real>());
+                                        Vec3<Real>(place.armB - between * (Real(1.0f) - share)));
     }
     if constexpr (kLinear == LinearLock::Line) {
         const Vec3<Real> n1 = Straightened<Real>(place.lineNormal, place.line);
@@ -233,8 +208,7 @@ FULCRUM_FORCE_INLINE JointErrors<Wide<N>> SetUpParts(JointBatch<N>& batch, const
             const Vec3<Real> along = place.line * Dot<Real>(place.offset, place.line);
             for (int k = 0; k < 3; ++k) reach[k] = Select(batch.isFar > Real(0.5f), along[k], reach[k]);
         }
-        batch.line.CalculateProperties(batch.massA, batch.massB, {Vec3<Real>(place.armA + reach), place.armB, n1, n2},
-                                       none);
+        batch.line.CalculateProperties(batch.massA, batch.massB, {Vec3<Real>(place.armA + reach), place.armB, n1, n2});
     }
     return errors;
 }
@@ -430,13 +404,15 @@ FULCRUM_FORCE_INLINE void MoveRows(JointBatch<N>& batch, const Twist<Wide<N>>& a
     const Mat3<Real> turn = ToMatrix(RotationOf<Real>(moreA.angular));
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         JointRows<N>& row = batch.rows[i];
-        row.error += RowMotion<Real>(row, moreA, moreB);
+        row.error += RelativeMotion<>(row.part.GetJacobian(), moreA, moreB);
         if (!batch.rowsTurnWithA) continue;
         const auto turns = row.turnsWithA > Real(0.5f);
-        for (Vec3<Real>* v : {&row.a.linear, &row.a.angular, &row.b.linear, &row.b.angular}) {
+        RowJacobian<Real> j = row.part.GetJacobian();
+        for (Vec3<Real>* v : {&j.a.linear, &j.a.angular, &j.b.linear, &j.b.angular}) {
             const Vec3<Real> turned = turn * *v;
             for (int k = 0; k < 3; ++k) (*v)[k] = Select(turns, turned[k], (*v)[k]);
         }
+        row.part.SetJacobian(j);
     }
 }
 
@@ -450,48 +426,70 @@ FULCRUM_FORCE_INLINE void TurnRadialRow(const JointBatch<N>& batch, JointRows<N>
     const Real inverse = one / Sqrt(Select(turns, squared, one));
     Vec3<Real> n = place.offset * inverse;
     // Rows that keep the distance down point the other way.
-    const Real sign = Select(Dot<Real>(n, row.b.linear) < Real(0.0f), -one, one);
+    const RowJacobian<Real>& before = row.part.GetJacobian();
+    const Real sign = Select(Dot<Real>(n, before.b.linear) < Real(0.0f), -one, one);
     n = n * sign;
-    const Vec3<Real> atA = Cross<Real>(Vec3<Real>(place.armA + place.offset), n), atB = Cross<Real>(place.armB, n);
-    const auto choose = [&](Vec3<Real>& to, const Vec3<Real>& from) {
-        for (int k = 0; k < 3; ++k) to[k] = Select(turns, from[k], to[k]);
+    const RowJacobian<Real> along = AxisJacobian<Real>({place.armA + place.offset, place.armB, n});
+    const auto choose = [&](const Vec3<Real>& turned, const Vec3<Real>& as) {
+        return Vec3<Real>(Select(turns, turned.x(), as.x()), Select(turns, turned.y(), as.y()),
+                          Select(turns, turned.z(), as.z()));
     };
-    choose(row.a.linear, n);
-    choose(row.b.linear, n);
-    choose(row.a.angular, atA);
-    choose(row.b.angular, atB);
+    row.part.SetJacobian({{choose(along.a.linear, before.a.linear), choose(along.a.angular, before.a.angular)},
+                          {choose(along.b.linear, before.b.linear), choose(along.b.angular, before.b.angular)}});
     const Real start = Sqrt(Dot<Real>(batch.startOffset, batch.startOffset));
     row.error = Select(turns, row.startError + sign * (squared * inverse - start), row.error);
 }
 
-// After the parts were set up: responses and masses of the rows, and the reaction of the locks to their impulses.
+// After the locks were set up: responses and masses of the rows, and the reaction of the locks to their impulses.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE void SetUpRows(JointBatch<N>& batch) {
     using Real = Wide<N>;
-    const Real zero(0.0f);
     batch.reactionLinear = batch.reactionAngular = Zero<Real>();
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         JointRows<N>& row = batch.rows[i];
-        row.responseA = {row.a.linear * -batch.massA.mass, -(batch.massA.inertia * row.a.angular)};
-        row.responseB = {row.b.linear * batch.massB.mass, batch.massB.inertia * row.b.angular};
-        const Real alone = RowMotion<Real>(row, row.responseA, row.responseB);
-        Real together = alone;
+        row.part.CalculateProperties(batch.massA, batch.massB);
         row.lockLinear = row.lockAngular = Zero<Real>();
         if constexpr (kLinear != LinearLock::None || kAngular != AngularLock::None) {
-            const LockImpulses<Real> motion = LockMotion<kLinear, kAngular>(batch, row.responseA, row.responseB);
+            RowResponse<Real> response = row.part.GetResponse();
+            const LockImpulses<Real> motion = LockMotion<kLinear, kAngular>(batch, response.a, response.b);
             LockImpulses<Real> x = SolveBlock<kLinear, kAngular>(batch, motion.linear, motion.angular);
             x.linear = -x.linear;
             x.angular = -x.angular;
-            AddLockMotion<kLinear, kAngular>(batch, row.responseA, row.responseB, x);
+            AddLockMotion<kLinear, kAngular>(batch, response.a, response.b, x);
             row.lockLinear = x.linear;
             row.lockAngular = x.angular;
-            together = RowMotion<Real>(row, row.responseA, row.responseB);
+            row.part.SetResponse(response);
         }
-        // What the locks determine alone is left to them.
-        const auto acts = together > alone * Real(1e-5f);
-        row.mass = Select(acts, Real(1.0f) / Select(acts, together, Real(1.0f)), zero);
-        batch.reactionLinear += row.lockLinear * row.impulse;
-        batch.reactionAngular += row.lockAngular * row.impulse;
+        if (batch.far) row.part.Deactivate(row.waits > Real(0.5f));
+        batch.reactionLinear += row.lockLinear * row.part.GetTotalLambda();
+        batch.reactionAngular += row.lockAngular * row.part.GetTotalLambda();
+    }
+}
+
+// After it: bias and softness of the rows for velocity iterations, and for relaxing passes, which push nothing.
+template <int N>
+FULCRUM_FORCE_INLINE void SetRowPush(JointBatch<N>& batch, const JointSolveSettings& settings) {
+    using Real = Wide<N>;
+    for (uint32_t i = 0; i < batch.rowCount; ++i) {
+        JointRows<N>& row = batch.rows[i];
+        const RowSoftness<Real>&closed = row.softness, &open = row.openSoftness;
+        Real push = Clamp(row.pushRate * row.error, -row.mostPush, row.mostPush);
+        // Springs push in any case: it is their force.
+        if (!settings.pushes) push = Select(row.mostPush < Real(JointRow::kUnlimited), Real(0.0f), push);
+        push = push - closed.massScale * row.speed;
+        const Real gap = open.massScale * (row.error * row.gapRate);
+        const auto isOpen = row.error > row.openAbove;
+        row.part.SetBias(Select(isOpen, gap, push), {Select(isOpen, open.massScale, closed.massScale),
+                                                     Select(isOpen, open.impulseScale, closed.impulseScale)});
+    }
+}
+template <int N>
+FULCRUM_FORCE_INLINE void SetRowRelax(JointBatch<N>& batch) {
+    using Real = Wide<N>;
+    for (uint32_t i = 0; i < batch.rowCount; ++i) {
+        JointRows<N>& row = batch.rows[i];
+        const Real &massScale = row.openSoftness.massScale, zero(0.0f);
+        row.part.SetBias(massScale * (Max(row.error, zero) * row.gapRate - row.speed), {massScale, zero});
     }
 }
 
@@ -553,9 +551,8 @@ FULCRUM_FORCE_INLINE void Soften(JointBatch<N>& batch, const JointErrors<Wide<N>
     const RowSoftness<Real> softness{Real(settings.softness.massScale), Real(settings.softness.impulseScale)};
     const auto push = [&](const auto& error) {
         auto bias = error;
-        for (int k = 0; k < bias.size(); ++k)
-            bias[k] = Clamp<Real>(error[k] * Real(settings.pushRate), Real(-settings.maxPushSpeed),
-                                  Real(settings.maxPushSpeed));
+        const Real rate(settings.pushes ? settings.pushRate : 0.0f), most(settings.maxPushSpeed);
+        for (int k = 0; k < bias.size(); ++k) bias[k] = Clamp<Real>(error[k] * rate, -most, most);
         return bias;
     };
     const auto soften = [&](auto& part, const auto& error, Vec3<Real>& pull) {
@@ -566,13 +563,13 @@ FULCRUM_FORCE_INLINE void Soften(JointBatch<N>& batch, const JointErrors<Wide<N>
                 pull[k] = Select(isFar, PullSpeed<Real>(error[k], settings), Real(0.0f));
                 bias[k] = Select(isFar, Real(0.0f), bias[k]);
             }
-        part.SetBias(bias);
-        part.SetSoftness(softness);
+        part.SetBias(bias, softness);
     };
     if constexpr (kAngular == AngularLock::All) soften(batch.rotation, errors.rotation, batch.pullAngular);
     if constexpr (kAngular == AngularLock::Axis) soften(batch.hinge, errors.hinge, batch.pullAngular);
     if constexpr (kLinear == LinearLock::Point) soften(batch.point, errors.point, batch.pullLinear);
     if constexpr (kLinear == LinearLock::Line) soften(batch.line, errors.line, batch.pullLinear);
+    SetRowPush(batch, settings);
 }
 
 // squared: m2 or rad2, by lanes, of which the first `count` are joints with these indices.

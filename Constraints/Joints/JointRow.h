@@ -1,11 +1,10 @@
 // What the type of a joint asks for in one step beyond its locks: rows for limits in reach, motors that are on, springs
 // and friction. Filled once a step by the types (JointType.h), solved in lanes (JointBatch.h). Plain data, no threads.
 //
-// A row is one equation between two bodies, with v linear and w angular velocities in world axes:
-//     J v = linearB . vB + angularB . wB - linearA . vA - angularA . wA,     dC/dt = J v
+// A row is one equation between two bodies A and B: dC/dt = J v.
 #pragma once
 
-#include <Fulcrum/Constraints/Parts/BodyState.h>
+#include <Fulcrum/Constraints/Parts/RowJacobian.h>
 #include <Fulcrum/Constraints/Parts/SpringSettings.h>
 
 #include <limits>
@@ -25,8 +24,9 @@ struct JointRow {
     static constexpr float kUnlimited = std::numeric_limits<float>::infinity();
 
     Kind kind = Kind::Equal;
-    uint8_t slot = 0;         // which of its type's rows it is: its impulse of the last step is kept by that number
-    Twist<float> a, b;        // linearA, angularA; linearB, angularB
+    uint8_t slot = 0;  // which of its type's rows it is: its impulse of the last step is kept by that number
+    RowJacobian<float>
+        jacobian;             // of an axis, angle, gear, rack-and-pinion or independent-axis part (Constraints/Parts)
     float error = 0;          // C at the start of the step, m or rad
     float speed = 0;          // m/s or rad/s
     bool yields = true;       // softly, as the locks of joints do; not where a motor presses against it

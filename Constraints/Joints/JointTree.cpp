@@ -16,22 +16,17 @@ struct Rows {
     Matrix6 a = Matrix6::Zero(), b = Matrix6::Zero();
     int count = 0;
 
-    void AddLinear(const Vector3& axis, const Vector3& armA, const Vector3& armB) {
-        Add(a, axis, Cross<float>(armA, axis));
-        Add(b, axis, Cross<float>(armB, axis));
-        ++count;
-    }
-    void AddAngular(const Vector3& axis) {
-        Add(a, Vector3::Zero(), axis);
-        Add(b, Vector3::Zero(), axis);
+    void Add(const RowJacobian<float>& j) {
+        Add(a, j.a);
+        Add(b, j.b);
         ++count;
     }
 
 private:
-    void Add(Matrix6& to, const Vector3& linear, const Vector3& angular) const {
+    void Add(Matrix6& to, const Twist<float>& j) const {
         for (int k = 0; k < 3; ++k) {
-            to(count, k) = static_cast<double>(linear[k]);
-            to(count, 3 + k) = static_cast<double>(angular[k]);
+            to(count, k) = static_cast<double>(j.linear[k]);
+            to(count, 3 + k) = static_cast<double>(j.angular[k]);
         }
     }
 };
@@ -40,19 +35,19 @@ Rows RowsOf(const Batch& batch, uint32_t lane) {
     Rows rows;
     if (batch.linear == LinearLock::Point)
         for (int k = 0; k < 3; ++k)
-            rows.AddLinear(Vector3::Unit(k), LaneOf<kLanes>(batch.point.GetArm1(), lane),
-                           LaneOf<kLanes>(batch.point.GetArm2(), lane));
+            rows.Add(AxisJacobian<float>({LaneOf<kLanes>(batch.point.GetArm1(), lane),
+                                          LaneOf<kLanes>(batch.point.GetArm2(), lane), Vector3::Unit(k)}));
     if (batch.linear == LinearLock::Line) {
         const auto& frame = batch.line.GetFrame();
         for (const auto* axis : {&frame.axis1, &frame.axis2})
-            rows.AddLinear(LaneOf<kLanes>(*axis, lane), LaneOf<kLanes>(frame.r1PlusU, lane),
-                           LaneOf<kLanes>(frame.r2, lane));
+            rows.Add(AxisJacobian<float>(
+                {LaneOf<kLanes>(frame.r1PlusU, lane), LaneOf<kLanes>(frame.r2, lane), LaneOf<kLanes>(*axis, lane)}));
     }
     if (batch.angular == AngularLock::All)
-        for (int k = 0; k < 3; ++k) rows.AddAngular(Vector3::Unit(k));
+        for (int k = 0; k < 3; ++k) rows.Add(AngleJacobian<float>(Vector3::Unit(k)));
     if (batch.angular == AngularLock::Axis) {
-        rows.AddAngular(-LaneOf<kLanes>(batch.hinge.GetC2(), lane));
-        rows.AddAngular(LaneOf<kLanes>(batch.hinge.GetB2(), lane));
+        rows.Add(AngleJacobian<float>(-LaneOf<kLanes>(batch.hinge.GetC2(), lane)));
+        rows.Add(AngleJacobian<float>(LaneOf<kLanes>(batch.hinge.GetB2(), lane)));
     }
     return rows;
 }

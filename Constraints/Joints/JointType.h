@@ -6,6 +6,8 @@
 
 #include <Fulcrum/Constraints/Joints/AxisControl.h>
 #include <Fulcrum/Constraints/Joints/JointRow.h>
+#include <Fulcrum/Constraints/Parts/AnglePart.h>
+#include <Fulcrum/Constraints/Parts/AxisPart.h>
 #include <Fulcrum/Math/Trigonometry.h>
 
 #include <array>
@@ -70,18 +72,14 @@ struct JointPose {
     void SetAlong(JointRow& row, const Vector3& n) const {
         row.turnsWithA = true;
         row.about = false;
-        row.a = {n, Cross<float>(Vector3(armA + offset), n)};
-        row.b = {n, Cross<float>(armB, n)};
+        row.jacobian = AxisJacobian<float>({armA + offset, armB, n});
     }
     static void SetAbout(JointRow& row, const Vector3& axis) {
         row.turnsWithA = row.about = true;
-        row.a.angular = row.b.angular = axis;
+        row.jacobian = AngleJacobian<float>(axis);
     }
     // How fast the row's C changes now: J v.
-    float SpeedOf(const JointRow& row) const {
-        return Dot(row.b.linear, velocityB.linear) + Dot(row.b.angular, velocityB.angular) -
-               Dot(row.a.linear, velocityA.linear) - Dot(row.a.angular, velocityA.angular);
-    }
+    float SpeedOf(const JointRow& row) const { return RelativeMotion<>(row.jacobian, velocityA, velocityB); }
 };
 
 class JointType {

@@ -91,10 +91,11 @@ void PathJoint::AddRotationRows(const JointPose& pose, const PathSample& at, con
         JointRow& row = rows.Add(PathSlots::kRotation + static_cast<uint32_t>(k), JointRow::Kind::Equal);
         pose.SetAbout(row, Rotate(pose.frameA, axes[k]));
         const float turn = Dot(axes[k], at.turn);
-        row.a.linear -= along.a.linear * turn;
-        row.a.angular -= along.a.angular * turn;
-        row.b.linear -= along.b.linear * turn;
-        row.b.angular -= along.b.angular * turn;
+        RowJacobian<float>& j = row.jacobian;
+        j.a.linear -= along.jacobian.a.linear * turn;
+        j.a.angular -= along.jacobian.a.angular * turn;
+        j.b.linear -= along.jacobian.b.linear * turn;
+        j.b.angular -= along.jacobian.b.angular * turn;
         row.error = error[k];
     }
 }

@@ -1,5 +1,5 @@
 #include <Fulcrum/Constraints/Joints/JointKernels.h>
-#include <Fulcrum/Constraints/Parts/SpringPart.h>
+#include <Fulcrum/Constraints/Parts/SpringSoftness.h>
 
 #include <cmath>
 
@@ -25,29 +25,33 @@ void SetLane(Vec3<Wide<N>>& v, int lane, const Vector3& value) {
     for (int k = 0; k < 3; ++k) v[k].Set(lane, value[k]);
 }
 
+template <int N>
+void SetLane(RowJacobian<Wide<N>>& lanes, int lane, const RowJacobian<float>& j) {
+    SetLane(lanes.a.linear, lane, j.a.linear);
+    SetLane(lanes.a.angular, lane, j.a.angular);
+    SetLane(lanes.b.linear, lane, j.b.linear);
+    SetLane(lanes.b.angular, lane, j.b.angular);
+}
+
 // A lane without a row.
 template <int N>
 void ClearLane(JointRows<N>& rows, int lane) {
-    for (Twist<Wide<N>>* twist : {&rows.a, &rows.b}) {
-        SetLane(twist->linear, lane, Vector3::Zero());
-        SetLane(twist->angular, lane, Vector3::Zero());
-    }
-    for (Wide<N>* x : {&rows.startError, &rows.error, &rows.speed, &rows.impulse, &rows.earlier, &rows.lowest,
-                       &rows.highest, &rows.massScale, &rows.pushRate, &rows.softness, &rows.mostPush, &rows.openAbove,
-                       &rows.hardScale, &rows.gapRate, &rows.openSoftness, &rows.turnsWithA, &rows.radial, &rows.about})
+    for (Wide<N>* x : {&rows.startError, &rows.error, &rows.speed, &rows.earlier, &rows.lowest, &rows.highest,
+                       &rows.softness.massScale, &rows.softness.impulseScale, &rows.pushRate, &rows.mostPush,
+                       &rows.openAbove, &rows.gapRate, &rows.openSoftness.massScale, &rows.openSoftness.impulseScale,
+                       &rows.turnsWithA, &rows.radial, &rows.about, &rows.waits})
         x->Set(lane, 0.0f);
     rows.slot[lane] = 0xFF;
 }
 
-// All but what depends on the mass that the row meets: that is set up with the parts.
+// Of a lane's row all but what depends on the mass that it meets: that is set up with the locks. Jacobian and impulse
+// are written beside it.
 template <int N>
-void FillLane(JointRows<N>& rows, int lane, const JointRow& row, float previousImpulse, const JointSolveSettings& s) {
+void FillLane(JointRows<N>& rows, int lane, const JointRow& row, float previousImpulse, const JointSolveSettings& s,
+              RowJacobian<Wide<N>>& jacobian, Wide<N>& impulse) {
     ClearLane(rows, lane);
     if (!std::isfinite(row.error) || !std::isfinite(row.speed)) return;
-    SetLane(rows.a.linear, lane, row.a.linear);
-    SetLane(rows.a.angular, lane, row.a.angular);
-    SetLane(rows.b.linear, lane, row.b.linear);
-    SetLane(rows.b.angular, lane, row.b.angular);
+    SetLane(jacobian, lane, row.jacobian);
     rows.slot[lane] = row.slot;
 
     using Kind = JointRow::Kind;
@@ -60,29 +64,28 @@ void FillLane(JointRows<N>& rows, int lane, const JointRow& row, float previousI
     rows.error.Set(lane, row.error);
     rows.speed.Set(lane, row.kind == Kind::Speed ? row.speed : 0.0f);
     const float massScale = yields ? s.softness.massScale : 1.0f;
-    rows.massScale.Set(lane, massScale);
+    rows.softness.massScale.Set(lane, massScale);
+    rows.softness.impulseScale.Set(lane, yields ? s.softness.impulseScale : 0.0f);
     rows.pushRate.Set(lane, hard ? massScale * s.pushRate : 0.0f);
-    rows.softness.Set(lane, yields ? s.softness.impulseScale : 0.0f);
     rows.mostPush.Set(lane, hard ? massScale * s.maxPushSpeed : unlimited);
     rows.openAbove.Set(lane, oneSided ? 0.0f : unlimited);
-    rows.hardScale.Set(lane, 1.0f);
+    rows.openSoftness.massScale.Set(lane, 1.0f);
     rows.gapRate.Set(lane, oneSided ? s.inverseDt : 0.0f);
     rows.lowest.Set(lane, lowest);
     rows.highest.Set(lane, highest);
     rows.turnsWithA.Set(lane, row.turnsWithA ? 1.0f : 0.0f);
     rows.radial.Set(lane, row.radial ? 1.0f : 0.0f);
     rows.about.Set(lane, row.about ? 1.0f : 0.0f);
-    rows.impulse.Set(lane,
-                     std::isfinite(previousImpulse) ? Clamp(previousImpulse * s.impulseScale, lowest, highest) : 0.0f);
+    if (std::isfinite(previousImpulse)) impulse.Set(lane, Clamp(previousImpulse * s.impulseScale, lowest, highest));
 }
 
 // All but what depends on the mass, of a row that is pushed at the locks' rate.
 template <int N>
 void SetPush(JointRows<N>& rows, int lane, bool yields, const JointSolveSettings& s) {
     const float massScale = yields ? s.softness.massScale : 1.0f;
-    rows.massScale.Set(lane, massScale);
+    rows.softness.massScale.Set(lane, massScale);
+    rows.softness.impulseScale.Set(lane, yields ? s.softness.impulseScale : 0.0f);
     rows.pushRate.Set(lane, massScale * s.pushRate);
-    rows.softness.Set(lane, yields ? s.softness.impulseScale : 0.0f);
     rows.mostPush.Set(lane, massScale * s.maxPushSpeed);
 }
 
@@ -95,8 +98,8 @@ bool IsOverstretched(const JointBatch<N>& batch, const JointRow& row, int lane, 
     if ((row.error < 0.0f ? row.maxForce : -row.minForce) < JointRow::kUnlimited) return false;
     if (row.kind == JointRow::Kind::SpringAtLeast && row.error > 0.0f) return false;
     if (row.error * row.error * s.pushRate * s.pushRate <= s.maxPushSpeed * s.maxPushSpeed) return false;
-    const float inverse =
-        LengthSquared(row.a.linear) * batch.massA.mass[lane] + LengthSquared(row.b.linear) * batch.massB.mass[lane];
+    const float inverse = LengthSquared(row.jacobian.a.linear) * batch.massA.mass[lane] +
+                          LengthSquared(row.jacobian.b.linear) * batch.massB.mass[lane];
     const float squared = spring.squaredFrequency > 0.0f ? spring.squaredFrequency : spring.stiffness * inverse;
     const float fastest = kFastest * s.maxPushSpeed;
     return inverse > 0.0f && row.error * row.error * squared > fastest * fastest;
@@ -109,18 +112,18 @@ void SoftenLane(const JointBatch<N>& batch, JointRows<N>& rows, int lane, const 
                 const JointSolveSettings& s) {
     using Kind = JointRow::Kind;
     if (rows.slot[lane] == 0xFF || (row.kind != Kind::Spring && row.kind != Kind::SpringAtLeast)) return;
-    const float mass = rows.mass[lane];
+    const float mass = rows.part.GetEffectiveMass()[lane];
     SpringConstants<float> constants = ToConstants(row.spring);
     // As stiff as a spring can be that a substep resolves.
     if (!(constants.squaredFrequency > 0.0f || constants.stiffness > 0.0f))
         constants = FrequencyConstants(0.25f * s.inverseDt, 1.0f);
     if (IsOverstretched(batch, row, lane, constants, s)) return SetPush(rows, lane, true, s);
-    const auto gains = detail::CalculateSpringGains<float>(s.substepDt, mass > 0.0f ? 1.0f / mass : 0.0f, constants);
-    rows.massScale.Set(lane, gains.massScale);
-    rows.softness.Set(lane, gains.softness);
-    rows.pushRate.Set(lane, gains.errorGain * s.inverseDt);
-    rows.hardScale.Set(lane, 0.0f);
-    rows.openSoftness.Set(lane, 1.0f);
+    const auto spring = SpringSoftnessOf<float>(s.substepDt, mass > 0.0f ? 1.0f / mass : 0.0f, constants);
+    rows.softness.massScale.Set(lane, spring.softness.massScale);
+    rows.softness.impulseScale.Set(lane, spring.softness.impulseScale);
+    rows.pushRate.Set(lane, spring.errorRate);
+    rows.openSoftness.massScale.Set(lane, 0.0f);
+    rows.openSoftness.impulseScale.Set(lane, 1.0f);
 }
 
 // Asks the types for their rows and spreads these over the lanes. The parts are set up.
@@ -161,15 +164,23 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
         if (lists[lane].count > batch.rowCount) batch.rowCount = lists[lane].count;
     }
     if (batch.rowCount == 0) return;
-    for (int lane = 0; lane < N; ++lane) {
-        const JointRowList& list = lists[lane];
-        for (uint32_t i = list.count; i < batch.rowCount; ++i) ClearLane(batch.rows[i], lane);
-        for (uint32_t i = 0; i < list.count; ++i) {
-            FillLane(batch.rows[i], lane, list.rows[i], types[batch.joint[lane]]->impulses[list.rows[i].slot],
-                     settings);
+    for (uint32_t i = 0; i < batch.rowCount; ++i) {
+        JointRows<N>& rows = batch.rows[i];
+        RowJacobian<Wide<N>> jacobian;
+        Wide<N> impulse(0.0f);
+        for (int lane = 0; lane < N; ++lane) {
+            const JointRowList& list = lists[lane];
+            if (i >= list.count) {
+                ClearLane(rows, lane);
+                continue;
+            }
+            FillLane(rows, lane, list.rows[i], types[batch.joint[lane]]->impulses[list.rows[i].slot], settings,
+                     jacobian, impulse);
             batch.rowsTurnWithA |= list.rows[i].turnsWithA;
             batch.radial |= list.rows[i].radial;
         }
+        rows.part.SetJacobian(jacobian);
+        rows.part.RestoreState({impulse});
     }
     SetUpRows<kLinear, kAngular>(batch);
     for (int lane = 0; lane < batch.count; ++lane)
@@ -195,7 +206,8 @@ void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const Joint
     if constexpr (kAngular == AngularLock::Axis) note(angle, errors.hinge);
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         const JointRows<N>& row = batch.rows[i];
-        const Real linear = Dot<Real>(row.a.linear, row.a.linear) + Dot<Real>(row.b.linear, row.b.linear);
+        const RowJacobian<Real>& j = row.part.GetJacobian();
+        const Real linear = Dot<Real>(j.a.linear, j.a.linear) + Dot<Real>(j.b.linear, j.b.linear);
         const auto moves = (linear > zero) & (row.about <= zero),
                    acts = (row.error <= row.openAbove) & (row.mostPush > zero);
         const Real push = Select(acts, Abs(row.error) * row.pushRate / Select(acts, row.mostPush, Real(1.0f)), zero);
@@ -228,10 +240,9 @@ void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const Joint
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         JointRows<N>& row = batch.rows[i];
         const Real unlimited(JointRow::kUnlimited);
-        const auto waits = isMuch & (row.mostPush >= unlimited);
+        row.waits = Select(isMuch & (row.mostPush >= unlimited), Real(1.0f), Real(0.0f));
         row.pushRate = Select(isFar & (row.mostPush < unlimited), Real(0.0f), row.pushRate);
-        row.impulse = Select(isNew, Real(0.0f), row.impulse);
-        for (Real* x : {&row.impulse, &row.lowest, &row.highest}) *x = Select(waits, Real(0.0f), *x);
+        row.part.SetTotalLambda(Select(isNew, Real(0.0f), row.part.GetTotalLambda()));
     }
     if (batch.rowCount > 0) SetUpRows<kLinear, kAngular>(batch);
 }
@@ -275,7 +286,10 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
             batch.startLine = place.line = Column<Real>(frameA, head[6]);
             batch.startLineNormal = place.lineNormal = PerpendicularTo<Real>(place.line);
         }
-        if constexpr (angular == AngularLock::All) batch.startTwist = place.twist = frameB * frameA.Conjugate();
+        if constexpr (angular == AngularLock::All) {
+            batch.inverseInitial = InverseInitialOrientation<Real>(frameA, frameB);
+            place.rotationError = RotationVectorOf<Real>(batch.inverseInitial);
+        }
         if constexpr (angular == AngularLock::Axis) {
             batch.startAxisA = place.axisA = Column<Real>(frameA, head[7]);
             batch.startAxisB = place.axisB = Column<Real>(frameB, head[7]);
@@ -283,27 +297,27 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
         }
         const JointErrors<Real> errors = SetUpParts<linear, angular>(batch, place);
         if constexpr (linear == LinearLock::Point) {
-            batch.point.SetTotalLambda(linearImpulse);
+            batch.point.RestoreState({linearImpulse});
             NoteLargest<N>(batch.joint, batch.count, Dot<Real>(errors.point, errors.point), findings.linearError,
                            findings.linearJoint);
         }
         if constexpr (linear == LinearLock::Line) {
             const Vec3<Real> n2 = Cross<Real>(place.line, place.lineNormal);
-            batch.line.SetTotalLambda(
-                Vec2<Real>(Dot<Real>(linearImpulse, place.lineNormal), Dot<Real>(linearImpulse, n2)));
+            batch.line.RestoreState(
+                {Vec2<Real>(Dot<Real>(linearImpulse, place.lineNormal), Dot<Real>(linearImpulse, n2))});
             NoteLargest<N>(batch.joint, batch.count,
                            errors.line.x() * errors.line.x() + errors.line.y() * errors.line.y(), findings.linearError,
                            findings.linearJoint);
         }
         if constexpr (angular == AngularLock::All) {
-            batch.rotation.SetTotalLambda(angularImpulse);
+            batch.rotation.RestoreState({angularImpulse});
             NoteLargest<N>(batch.joint, batch.count, Dot<Real>(errors.rotation, errors.rotation), findings.angularError,
                            findings.angularJoint);
         }
         if constexpr (angular == AngularLock::Axis) {
             const Vec3<Real> c = Cross<Real>(place.axisB, place.normal);
-            batch.hinge.SetTotalLambda(
-                Vec2<Real>(-Dot<Real>(angularImpulse, c), Dot<Real>(angularImpulse, place.normal)));
+            batch.hinge.RestoreState(
+                {Vec2<Real>(-Dot<Real>(angularImpulse, c), Dot<Real>(angularImpulse, place.normal))});
             NoteLargest<N>(batch.joint, batch.count,
                            errors.hinge.x() * errors.hinge.x() + errors.hinge.y() * errors.hinge.y(),
                            findings.angularError, findings.angularJoint);
@@ -348,10 +362,10 @@ LockImpulses<Wide<N>> OwnImpulses(const JointBatch<N>& batch) {
     using Real = Wide<N>;
     const Real zero(0.0f);
     LockImpulses<Real> own;
-    if (batch.linear == LinearLock::Point) own.linear = Widened(batch.point.GetTotalLambda(), zero);
-    if (batch.linear == LinearLock::Line) own.linear = Widened(batch.line.GetTotalLambda(), zero);
-    if (batch.angular == AngularLock::All) own.angular = Widened(batch.rotation.GetTotalLambda(), zero);
-    if (batch.angular == AngularLock::Axis) own.angular = Widened(batch.hinge.GetTotalLambda(), zero);
+    if (batch.linear == LinearLock::Point) own.linear = Widened(batch.point.SaveState().totalLambda, zero);
+    if (batch.linear == LinearLock::Line) own.linear = Widened(batch.line.SaveState().totalLambda, zero);
+    if (batch.angular == AngularLock::All) own.angular = Widened(batch.rotation.SaveState().totalLambda, zero);
+    if (batch.angular == AngularLock::Axis) own.angular = Widened(batch.hinge.SaveState().totalLambda, zero);
     return own;
 }
 
@@ -402,11 +416,12 @@ void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* co
     Wrench<N> total = locks;
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         const JointRows<N>& rows = batch.rows[i];
-        const Real impulse = rows.earlier + rows.impulse;
+        const Real impulse = rows.earlier + rows.part.GetTotalLambda();
         const auto acts = Abs(impulse) > Real(0.0f);
-        total.force -= ZeroUnless<Real>(acts, Vec3<Real>(rows.b.linear * -impulse));
-        total.torque -= ZeroUnless<Real>(
-            acts, Vec3<Real>((rows.b.angular - Cross<Real>(batch.startArmB, rows.b.linear)) * -impulse));
+        const Twist<Real>& b = rows.part.GetJacobian().b;
+        total.force -= ZeroUnless<Real>(acts, Vec3<Real>(b.linear * -impulse));
+        total.torque -=
+            ZeroUnless<Real>(acts, Vec3<Real>((b.angular - Cross<Real>(batch.startArmB, b.linear)) * -impulse));
     }
     ScatterWrench(batch, records, JointRecord::kOwn, own, inverse, Max(batch.isFar, batch.follows));
     ScatterWrench(batch, records, JointRecord::kLocks, locks, perSecond);
@@ -420,8 +435,8 @@ void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* co
         type->forces.fill(0.0f);
         for (uint32_t i = 0; i < batch.rowCount; ++i) {
             const JointRows<N>& rows = batch.rows[i];
-            const float impulse = rows.impulse[lane] * inverse,
-                        force = (rows.earlier[lane] + rows.impulse[lane]) * perSecond;
+            const float lambda = rows.part.SaveState().totalLambda[lane], impulse = lambda * inverse,
+                        force = (rows.earlier[lane] + lambda) * perSecond;
             if (rows.slot[lane] == 0xFF || !std::isfinite(impulse) || !std::isfinite(force)) continue;
             type->impulses[rows.slot[lane]] = impulse;
             type->forces[rows.slot[lane]] = force;

@@ -21,7 +21,8 @@ FULCRUM_FORCE_INLINE Real AddWithinLimits(Rows& row, const Real& impulse) {
 template <int N>
 FULCRUM_FORCE_INLINE Wide<N> PullSpeedOf(const JointRows<N>& row, const JointSolveSettings& settings) {
     using Real = Wide<N>;
-    const Real squaredA = Dot<Real>(row.a.linear, row.a.linear), squaredB = Dot<Real>(row.b.linear, row.b.linear);
+    const RowJacobian<Real>& j = row.part.GetJacobian();
+    const Real squaredA = Dot<Real>(j.a.linear, j.a.linear), squaredB = Dot<Real>(j.b.linear, j.b.linear);
     const auto moves = (Max(squaredA, squaredB) > Real(0.0f)) & (row.about <= Real(0.0f));
     const Real ratio = Select(moves, Sqrt(Max(squaredA, squaredB)), Real(1.0f));
     return PullSpeed<Real>(row.error / ratio, settings) * ratio;
@@ -37,21 +38,22 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     const auto isDistant = batch.isDistant > Real(0.5f);
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         JointRows<N>& row = batch.rows[i];
-        const Real squaredA = Dot<Real>(row.a.linear, row.a.linear), squaredB = Dot<Real>(row.b.linear, row.b.linear);
+        const RowJacobian<Real>& j = row.part.GetJacobian();
+        const Real squaredA = Dot<Real>(j.a.linear, j.a.linear), squaredB = Dot<Real>(j.b.linear, j.b.linear);
         const Real linear = squaredA * massA + squaredB * massB;
         const auto moves = (linear > zero) & (row.about <= zero);
-        const Vec3<Real> turnA = batch.massA.inertia * row.a.angular, turnB = batch.massB.inertia * row.b.angular;
-        const Real angular = Dot<Real>(row.a.angular, turnA) + Dot<Real>(row.b.angular, turnB);
+        const Vec3<Real> turnA = batch.massA.inertia * j.a.angular, turnB = batch.massB.inertia * j.b.angular;
+        const Real angular = Dot<Real>(j.a.angular, turnA) + Dot<Real>(j.b.angular, turnB);
         const Real response = Select(moves, linear, angular);
-        const auto acts = isDistant & (row.mass > zero) & (response > zero) & (row.error <= row.openAbove) &
+        const auto acts = isDistant & row.part.IsActive() & (response > zero) & (row.error <= row.openAbove) &
                           (row.mostPush < Real(JointRow::kUnlimited));
-        const Real speed = Select(moves, Real(Dot<Real>(row.b.linear, b.linear) - Dot<Real>(row.a.linear, a.linear)),
-                                  Real(Dot<Real>(row.b.angular, b.angular) - Dot<Real>(row.a.angular, a.angular)));
+        const Real speed = Select(moves, Real(Dot<Real>(j.b.linear, b.linear) - Dot<Real>(j.a.linear, a.linear)),
+                                  Real(Dot<Real>(j.b.angular, b.angular) - Dot<Real>(j.a.angular, a.angular)));
         const Real wanted = -(speed + PullSpeedOf(row, settings)) / Select(acts, response, one);
         const Real impulse = AddWithinLimits(row, Select(acts, wanted, zero));
         const Real moving = Select(moves, impulse, zero), turning = Select(moves, zero, impulse);
-        a.linear -= row.a.linear * (massA * moving);
-        b.linear += row.b.linear * (massB * moving);
+        a.linear -= j.a.linear * (massA * moving);
+        b.linear += j.b.linear * (massB * moving);
         a.angular -= turnA * turning;
         b.angular += turnB * turning;
     }
@@ -90,13 +92,10 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
         JointRows<N>& row = batch.rows[i];
         Real speed = Max(row.error, zero) * row.gapRate;
         if (batch.far) speed = Select(isPulled & (row.error <= row.openAbove), PullSpeedOf(row, settings), speed);
-        const Real wanted = -row.mass * (RowMotion<Real>(row, a, b) + speed);
-        const auto acts = isNear & (row.mass > zero) & (row.mostPush < Real(JointRow::kUnlimited));
+        const Real wanted = -row.part.GetEffectiveMass() * (RelativeMotion<>(row.part.GetJacobian(), a, b) + speed);
+        const auto acts = isNear & row.part.IsActive() & (row.mostPush < Real(JointRow::kUnlimited));
         const Real impulse = AddWithinLimits(row, Select(acts, wanted, zero));
-        a.linear += row.responseA.linear * impulse;
-        a.angular += row.responseA.angular * impulse;
-        b.linear += row.responseB.linear * impulse;
-        b.angular += row.responseB.angular * impulse;
+        AddResponse<>(row.part.GetResponse(), impulse, a, b);
     }
     if constexpr (kLinear != LinearLock::None || kAngular != AngularLock::None) {
         LockImpulses<Real> motion = LockMotion<kLinear, kAngular>(batch, a, b);

@@ -1,5 +1,7 @@
 #include <Fulcrum/Constraints/Joints/PulleyJoint.h>
 
+#include <Fulcrum/Constraints/Parts/IndependentAxisPart.h>
+
 #include <algorithm>
 
 namespace fulcrum {
@@ -29,8 +31,7 @@ void PulleyJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     if (lengthA < givesNothing && lengthA <= ratio_ * lengthB) axisA = Vector3::Zero();
     else if (ratio_ * lengthB < givesNothing) axisB = Vector3::Zero();
     JointRow motion;
-    motion.a = {-axisA, -Cross(pose.armA, axisA)};
-    motion.b = {axisB, Cross(pose.armB, axisB)};
+    motion.jacobian = IndependentAxisJacobian<float>({pose.armA, pose.armB, axisA, axisB});
     // Swinging lengthens the rope as well, as in DistanceJoint.
     const auto across = [&](const Twist<float>& velocity, const Vector3& arm, float rope) {
         const float speed = Length(Vector3(velocity.linear + Cross(velocity.angular, arm)));

@@ -1,14 +1,13 @@
 // A pinion, A, that turns about the x axis of its frame, and a rack, B, that moves along the x axis of its own. Bearing
 // and guide are other joints. Solved with the other joints; no threads.
 //
-//   theta  turned by the pinion about its axis a, since the joint was made          ratio  rad that it turns per meter
-//   d      way of the rack's anchor from the pinion's along the rack's axis n: u . n with u = p2 - p1
-//   Rows:       C = theta - ratio (d - d0)
-//               d' = n . (v2 - v1) + ((r2 - u) x n) . w2 - (r1 x n) . w1, because n turns with B
-// The rack pushes back on the pinion's anchor, which therefore should be on its axis: momentum is kept.
+//   theta  turned by the pinion about its axis, since the joint was made          ratio  rad that it turns per meter
+//   d      way of the rack's anchor from the pinion's along the rack's axis
+//   Rows:       the rack-and-pinion part's, C = theta - ratio (d - d0)
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/BearingAngle.h>
+#include <Fulcrum/Constraints/Parts/RackAndPinionPart.h>
 
 namespace fulcrum {
 
@@ -25,10 +24,8 @@ public:
         const Vector3 axis = ToMatrix(pose.frameA).x, way = ToMatrix(pose.frameB).x;
         const double angle = Pinion().Advance(pose.frameA, Dot(axis, pose.turnedA));
         const double moved = Dot(pose.offset, way) - state_[BearingAngle::kNumbers];
-        const Vector3 scaled = way * -ratio_;
         JointRow& row = rows.Add(0, JointRow::Kind::Equal);
-        row.a = {scaled, Cross(pose.armA, scaled) - axis};
-        row.b = {scaled, Cross(Vector3(pose.armB - pose.offset), scaled)};
+        row.jacobian = RackAndPinionJacobian<float>({pose.armA, pose.armB - pose.offset, axis, way, ratio_});
         row.error = static_cast<float>(angle - static_cast<double>(ratio_) * moved);
     }
     std::span<double> State() override { return state_; }

@@ -109,7 +109,7 @@ template <int N>
 FULCRUM_FORCE_INLINE void SetPush(BallBatch<N>& batch, const Vec3<Wide<N>>& offset,
                                   const JointSolveSettings& settings) {
     using Real = Wide<N>;
-    const Real rate(settings.pushRate), most(settings.maxPushSpeed);
+    const Real rate(settings.pushes ? settings.pushRate : 0.0f), most(settings.maxPushSpeed);
     for (int k = 0; k < 3; ++k) batch.push[k] = Clamp<Real>(offset[k] * rate, -most, most);
     if (!batch.far) return;
     const auto isFar = batch.isFar > Real(0.5f);
@@ -179,10 +179,12 @@ FULCRUM_FORCE_INLINE BallPlace<Wide<N>> Displaced(const BallBatch<N>& batch, Bod
     return place;
 }
 
-// Sets the joints up at the displaced poses; the turn of the impulse is left for the next substep.
+// Sets the joints up at the displaced poses; the turn of the impulse is left for the next substep. Returns the offsets
+// from anchors to anchors.
 template <bool kRound, int N>
-FULCRUM_FORCE_INLINE void Follow(BallBatch<N>& batch, const SolverBodies& bodies, const Twist<Wide<N>>& velocityA,
-                                 const Twist<Wide<N>>& velocityB, const JointSolveSettings& settings) {
+FULCRUM_FORCE_INLINE Vec3<Wide<N>> Follow(BallBatch<N>& batch, const SolverBodies& bodies,
+                                          const Twist<Wide<N>>& velocityA, const Twist<Wide<N>>& velocityB,
+                                          const JointSolveSettings& settings) {
     using Real = Wide<N>;
     BallPlace<Real> place = Displaced(batch, bodies.states, velocityA, velocityB, settings);
     MeetBetween(batch, place);
@@ -211,6 +213,7 @@ FULCRUM_FORCE_INLINE void Follow(BallBatch<N>& batch, const SolverBodies& bodies
     batch.armB = place.armB;
     batch.mass = MassAt<kRound>(batch, place.armA, place.armB);
     SetPush(batch, place.offset, settings);
+    return place.offset;
 }
 
 template <bool kRound, int N>
@@ -225,8 +228,8 @@ void Solve(BallBatch<N>& batch, BodyState* states, const JointSolveSettings& set
         const Vec3<Real> miss = MotionAt<Real>(a, b, batch.armA, batch.armB) + batch.push;
         const Vec3<Real> hard = batch.mass * miss;
         Change<kRound>(batch, batch.armA, batch.armB,
-                       Vec3<Real>(-(hard * Real(settings.softness.massScale) +
-                                    batch.impulse * Real(settings.softness.impulseScale))),
+                       SoftDelta(Vec3<Real>(hard * Real(settings.softness.massScale)), batch.impulse,
+                                 Real(settings.softness.impulseScale)),
                        a, b);
     });
 }
@@ -239,6 +242,29 @@ void Relax(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSett
         const Vec3<Real> hard = batch.mass * MotionAt<Real>(a, b, batch.armA, batch.armB);
         Change<kRound>(batch, batch.armA, batch.armB, Vec3<Real>(-hard), a, b);
     });
+}
+
+template <bool kRound, int N>
+void Correct(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
+    using Real = Wide<N>;
+    Motion<N> velocityA, velocityB, poseA, poseB;
+    velocityA.template Gather<BodyRow::Velocity>(batch.bodyA, bodies.states);
+    velocityB.template Gather<BodyRow::Velocity>(batch.bodyB, bodies.states);
+    const Vec3<Real> offset = Follow<kRound>(batch, bodies, velocityA.Get(), velocityB.Get(), settings);
+    const Real part(settings.baumgarte), most(settings.maxPushSpeed * settings.substepDt);
+    Vec3<Real> wanted;
+    for (int k = 0; k < 3; ++k) wanted[k] = Clamp<Real>(offset[k] * part, -most, most);
+    const Vec3<Real> impulse = ZeroUnless<Real>(batch.isFar <= Real(0.5f), Vec3<Real>(-(batch.mass * wanted)));
+    poseA.template Gather<BodyRow::Displacement>(batch.bodyA, bodies.states);
+    poseB.template Gather<BodyRow::Displacement>(batch.bodyB, bodies.states);
+    Twist<Real> a = poseA.Get(), b = poseB.Get();
+    AddImpulse<kRound>(batch, batch.armA, batch.armB, impulse, a, b);
+    poseA.Set(a);
+    poseB.Set(b);
+    SetHalfTurn<Real>(poseA.row);
+    SetHalfTurn<Real>(poseB.row);
+    poseA.Scatter(batch.count, batch.fixedA);
+    poseB.Scatter(batch.count, batch.fixedB);
 }
 
 // As PullFar and HoldNear in PullJoints.cpp.
@@ -333,6 +359,12 @@ void UpdateJoints(BallBatch<N>& batch, const SolverBodies& bodies, const JointSo
 }
 
 template <int N>
+void CorrectJoints(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
+    if (batch.round) Correct<true>(batch, bodies, settings);
+    else Correct<false>(batch, bodies, settings);
+}
+
+template <int N>
 void PullJoints(BallBatch<N>& batch, BodyState* pseudo, const JointSolveSettings& settings) {
     if (batch.round) Pull<true>(batch, pseudo, settings);
     else Pull<false>(batch, pseudo, settings);
@@ -360,6 +392,7 @@ void StoreJoints(const BallBatch<N>& batch, JointRecord* records, float dt, floa
     template void SolveJointVelocities(BallBatch<lanes>&, BodyState*, const JointSolveSettings&);                      \
     template void RelaxJoints(BallBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);                      \
     template void UpdateJoints(BallBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);                     \
+    template void CorrectJoints(BallBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);                    \
     template void PullJoints(BallBatch<lanes>&, BodyState*, const JointSolveSettings&);                                \
     template void StoreJoints(const BallBatch<lanes>&, JointRecord*, float, float);
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE)

@@ -23,20 +23,16 @@ FULCRUM_FORCE_INLINE void AddLockImpulses(const JointBatch<N>& batch, Twist<Wide
     if constexpr (kLinear == LinearLock::Line) add(batch.line, batch.reactionLinear);
 }
 
-// The same of the rows' own, without the reaction of the locks; kTurning: of those alone whose direction or mass
-// changes within the step, whatever lanes beside them do.
-template <bool kTurning, int N>
-FULCRUM_FORCE_INLINE void AddRowImpulses(const JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, float sign) {
+// The same of the rows' own, without the reaction of the locks: of those alone whose direction or mass changes within
+// the step, whatever lanes beside them do.
+template <int N>
+FULCRUM_FORCE_INLINE void AddTurningRows(const JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, float sign) {
     using Real = Wide<N>;
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         const JointRows<N>& row = batch.rows[i];
-        const Real impulse =
-            row.impulse * (kTurning ? Max(Max(row.radial, row.turnsWithA), batch.turns) * Real(sign) : Real(sign));
-        const auto acts = Abs(impulse) > Real(0.0f);
-        a.linear -= ZeroUnless<Real>(acts, Vec3<Real>(row.a.linear * (batch.massA.mass * impulse)));
-        a.angular -= ZeroUnless<Real>(acts, Vec3<Real>((batch.massA.inertia * row.a.angular) * impulse));
-        b.linear -= ZeroUnless<Real>(acts, Vec3<Real>(row.b.linear * (batch.massB.mass * -impulse)));
-        b.angular -= ZeroUnless<Real>(acts, Vec3<Real>((batch.massB.inertia * row.b.angular) * -impulse));
+        const Real turns = Max(Max(row.radial, row.turnsWithA), batch.turns) * Real(sign);
+        AddResponse<>(ResponseOf<>(row.part.GetJacobian(), batch.massA, batch.massB),
+                      Real(row.part.GetTotalLambda() * turns), a, b);
     }
 }
 
@@ -54,7 +50,7 @@ FULCRUM_FORCE_INLINE void SumImpulses(JointBatch<N>& batch) {
         add(batch.earlierLinear, LinearPart<kLinear>(batch), batch.reactionLinear);
     if constexpr (kAngular != AngularLock::None)
         add(batch.earlierAngular, AngularPart<kAngular>(batch), batch.reactionAngular);
-    for (uint32_t i = 0; i < batch.rowCount; ++i) batch.rows[i].earlier += batch.rows[i].impulse;
+    for (uint32_t i = 0; i < batch.rowCount; ++i) batch.rows[i].earlier += batch.rows[i].part.GetTotalLambda();
 }
 
 // Ends a substep: what the turning of the parts in it changes of their impulses.
@@ -69,54 +65,24 @@ FULCRUM_FORCE_INLINE void Turn(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wi
     }
 }
 
-template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
+template <LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE void SolveRow(JointBatch<N>& batch, JointRows<N>& row, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
     using Real = Wide<N>;
-    const Real zero(0.0f);
-    const Real speed = RowMotion<Real>(row, a, b);
-    Real change;
-    if constexpr (kRelax) {
-        change = row.mass * row.hardScale * (speed - row.speed + Max(row.error, zero) * row.gapRate);
-    } else {
-        const Real push = Clamp(row.pushRate * row.error, -row.mostPush, row.mostPush);
-        const Real closed = row.mass * (row.massScale * (speed - row.speed) + push) + row.softness * row.impulse;
-        const Real open = row.mass * row.hardScale * (speed + row.error * row.gapRate) + row.openSoftness * row.impulse;
-        change = Select(row.error > row.openAbove, open, closed);
-    }
-    const Real total = Clamp(row.impulse - change, row.lowest, row.highest);
-    const Real wanted = total - row.impulse;
-    const auto acts = (Abs(wanted) > zero) & (row.mass > zero);  // NaN is nothing
-    const Real delta = Select(acts, wanted, zero);
-    row.impulse += delta;
-    // What a lane without the row has must keep every bit: see ZeroUnless.
-    const auto add = [&](Vec3<Real>& to, const Vec3<Real>& response) {
-        to -= ZeroUnless<Real>(acts, Vec3<Real>(response * -delta));
-    };
-    add(a.linear, row.responseA.linear);
-    add(a.angular, row.responseA.angular);
-    add(b.linear, row.responseB.linear);
-    add(b.angular, row.responseB.angular);
-    if constexpr (kLinear != LinearLock::None) add(batch.reactionLinear, row.lockLinear);
-    if constexpr (kAngular != AngularLock::None) add(batch.reactionAngular, row.lockAngular);
+    const Real before = row.part.GetTotalLambda();
+    row.part.SolveVelocity(a, b, row.lowest, row.highest);
+    const Real delta = row.part.GetTotalLambda() - before;
+    if constexpr (kLinear != LinearLock::None) batch.reactionLinear += row.lockLinear * delta;
+    if constexpr (kAngular != AngularLock::None) batch.reactionAngular += row.lockAngular * delta;
 }
 
-// Changes a lock's impulse, and the velocities with it, by what deltaOf(row, total) says; where all of it is finite and
-// not zero, and may(mask) lets it.
-template <int N, class Part, class DeltaOf, class May>
-FULCRUM_FORCE_INLINE void ChangeLock(JointBatch<N>& batch, Part& part, Twist<Wide<N>>& a, Twist<Wide<N>>& b,
-                                     DeltaOf&& deltaOf, May&& may) {
-    using Real = Wide<N>;
-    auto total = part.GetTotalLambda();
-    auto delta = total;
-    Real size(0.0f);
-    for (int k = 0; k < total.size(); ++k) {
-        delta[k] = deltaOf(k, total[k]);
-        size += Abs(delta[k]);
-    }
-    const auto applied = may(size > Real(0.0f));  // NaN is nothing
-    part.AddImpulse(a, b, batch.massA, batch.massB, delta, applied);
-    for (int k = 0; k < total.size(); ++k) total[k] = Select(applied, Real(total[k] + delta[k]), Real(total[k]));
-    part.SetTotalLambda(total);
+// The first rows of a vector of three, as many as a lock has.
+template <class Real>
+FULCRUM_FORCE_INLINE Vec3<Real> Narrowed(const Vec3<Real>& v, const Vec3<Real>&) {
+    return v;
+}
+template <class Real>
+FULCRUM_FORCE_INLINE Vec2<Real> Narrowed(const Vec3<Real>& v, const Vec2<Real>&) {
+    return {v.x(), v.y()};
 }
 
 // Both locks as one block. A relaxing pass is hard and pushes nothing; the parts are set up that way then.
@@ -125,18 +91,21 @@ FULCRUM_FORCE_INLINE void SolveBoth(JointBatch<N>& batch, Twist<Wide<N>>& a, Twi
     using Real = Wide<N>;
     auto& linearPart = LinearPart<kLinear>(batch);
     auto& angularPart = AngularPart<kAngular>(batch);
-    LockImpulses<Real> miss = LockMotion<kLinear, kAngular>(batch, a, b);
+    LockImpulses<Real> error = LockMotion<kLinear, kAngular>(batch, a, b);
     if constexpr (!kRelax) {
-        miss.linear += Widened(linearPart.GetBias(), Real(0.0f));
-        miss.angular += Widened(angularPart.GetBias(), Real(0.0f));
+        error.linear += Widened(linearPart.GetBias(), Real(0.0f));
+        error.angular += Widened(angularPart.GetBias(), Real(0.0f));
     }
-    const LockImpulses<Real> x = SolveBlock<kLinear, kAngular>(batch, miss.linear, miss.angular);
-    const auto apply = [&](auto& part, const Vec3<Real>& impulse) FULCRUM_FORCE_INLINE_LAMBDA {
-        const auto deltaOf = [&](int k, const Real& total) FULCRUM_FORCE_INLINE_LAMBDA {
-            if constexpr (kRelax) return Real(-impulse[k]);
-            else return Real(-(impulse[k] * part.GetSoftness().massScale + total * part.GetSoftness().impulseScale));
-        };
-        ChangeLock(batch, part, a, b, deltaOf, [](auto changes) { return changes; });
+    const LockImpulses<Real> x = SolveBlock<kLinear, kAngular>(batch, error.linear, error.angular);
+    const auto apply = [&](auto& part, const Vec3<Real>& wide) FULCRUM_FORCE_INLINE_LAMBDA {
+        auto delta = Narrowed(wide, part.GetTotalLambda());
+        if constexpr (kRelax) {
+            delta = -delta;
+        } else {
+            const RowSoftness<Real>& softness = part.GetSoftness();
+            delta = SoftDelta(delta * softness.massScale, part.GetTotalLambda(), softness.impulseScale);
+        }
+        part.AddLambda(a, b, batch.massA, batch.massB, delta, Real(0.0f) < Real(1.0f));
     };
     apply(angularPart, x.angular);
     apply(linearPart, x.linear);
@@ -144,7 +113,7 @@ FULCRUM_FORCE_INLINE void SolveBoth(JointBatch<N>& batch, Twist<Wide<N>>& a, Twi
 
 template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE void SolveAll(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
-    for (uint32_t i = 0; i < batch.rowCount; ++i) SolveRow<kRelax, kLinear, kAngular>(batch, batch.rows[i], a, b);
+    for (uint32_t i = 0; i < batch.rowCount; ++i) SolveRow<kLinear, kAngular>(batch, batch.rows[i], a, b);
     if constexpr (!kCoupled<kLinear, kAngular>) {
         if constexpr (kAngular != AngularLock::None)
             AngularPart<kAngular>(batch).SolveVelocity(a, b, batch.massA, batch.massB);
@@ -161,12 +130,11 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
 [[gnu::noinline]] void HoldFar(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
     using Real = Wide<N>;
     if constexpr (kLinear == LinearLock::None && kAngular == AngularLock::None) return;
-    const LockImpulses<Real> miss = LockMotion<kLinear, kAngular>(batch, a, b);
-    const LockImpulses<Real> x = SolveBlock<kLinear, kAngular>(batch, miss.linear, miss.angular);
+    const LockImpulses<Real> motion = LockMotion<kLinear, kAngular>(batch, a, b);
+    const LockImpulses<Real> x = SolveBlock<kLinear, kAngular>(batch, motion.linear, motion.angular);
     const auto apply = [&](auto& part, const Vec3<Real>& impulse) {
-        ChangeLock(
-            batch, part, a, b, [&](int k, const Real&) { return Real(-impulse[k]); },
-            [&](auto changes) { return changes & (batch.isFar > Real(0.5f)); });
+        part.AddLambda(a, b, batch.massA, batch.massB, -Narrowed(impulse, part.GetTotalLambda()),
+                       batch.isFar > Real(0.5f));
     };
     if constexpr (kAngular != AngularLock::None) apply(AngularPart<kAngular>(batch), x.angular);
     if constexpr (kLinear != LinearLock::None) apply(LinearPart<kLinear>(batch), x.linear);
@@ -188,7 +156,8 @@ FULCRUM_FORCE_INLINE JointPlace<Wide<N>> Displace(const JointBatch<N>& batch, co
         place.line = Rotate<Real>(turnA, batch.startLine);
         place.lineNormal = batch.startLineNormal;
     }
-    if constexpr (kAngular == AngularLock::All) place.twist = turnB * batch.startTwist * turnA.Conjugate();
+    if constexpr (kAngular == AngularLock::All)
+        place.rotationError = RotationError<Real>(turnA, turnB, batch.inverseInitial);
     if constexpr (kAngular == AngularLock::Axis) {
         place.axisA = Rotate<Real>(turnA, batch.startAxisA);
         place.axisB = Rotate<Real>(turnB, batch.startAxisB);
@@ -221,7 +190,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     const bool turns = kTurns || turnRows || (kLocks && (batch.rowCount > 0 || batch.turning));
     if (turns) {
         AddLockImpulses<kLinear, kAngular>(batch, turnedA, turnedB, -1.0f);
-        if (turnRows) AddRowImpulses<true>(batch, turnedA, turnedB, -1.0f);
+        if (turnRows) AddTurningRows(batch, turnedA, turnedB, -1.0f);
     }
     if (batch.turning) {
         GatherMass<N>(batch.bodyA, bodies.masses, batch.massA);
@@ -236,7 +205,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     if (batch.rowCount > 0) SetUpRows<kLinear, kAngular>(batch);
     if (turns) {
         AddLockImpulses<kLinear, kAngular>(batch, turnedA, turnedB, 1.0f);
-        if (turnRows) AddRowImpulses<true>(batch, turnedA, turnedB, 1.0f);
+        if (turnRows) AddTurningRows(batch, turnedA, turnedB, 1.0f);
     }
     batch.turnedA.angular = turnedA.angular;
     batch.turnedB.angular = turnedB.angular;
@@ -261,8 +230,10 @@ FULCRUM_FORCE_INLINE void ChangeLocked(Batch& batch, BodyState* states, F&& chan
 template <int N>
 void WarmStartJoints(const JointBatch<N>& batch, BodyState* states) {
     ChangeLocked<N>(batch, states, [&](auto linear, auto angular, auto& a, auto& b) FULCRUM_FORCE_INLINE_LAMBDA {
-        AddRowImpulses<false>(batch, a, b, 1.0f);
-        AddLockImpulses<linear, angular>(batch, a, b, 1.0f);
+        for (uint32_t i = 0; i < batch.rowCount; ++i) batch.rows[i].part.WarmStart(a, b);
+        if constexpr (angular != AngularLock::None)
+            AngularPart<angular>(batch).WarmStart(a, b, batch.massA, batch.massB);
+        if constexpr (linear != LinearLock::None) LinearPart<linear>(batch).WarmStart(a, b, batch.massA, batch.massB);
     });
 }
 
@@ -287,6 +258,7 @@ void RelaxJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSo
     ChangeLocked<N>(batch, bodies.states, [&](auto linear, auto angular, auto& a, auto& b) FULCRUM_FORCE_INLINE_LAMBDA {
         const JointErrors<Wide<N>> errors = Follow<linear, angular>(batch, bodies, a, b, settings);
         if (batch.far) HoldFar<linear, angular>(batch, a, b);
+        SetRowRelax(batch);
         SolveAll<true, linear, angular>(batch, a, b);
         Soften<linear, angular>(batch, errors, settings);
     });
@@ -303,12 +275,66 @@ void UpdateJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointS
     });
 }
 
-#define FULCRUM_INSTANTIATE(lanes)                                                                 \
-    template void WarmStartJoints(const JointBatch<lanes>&, BodyState*);                           \
-    template void TurnJoints(JointBatch<lanes>&, BodyState*);                                      \
-    template void SolveJointVelocities(JointBatch<lanes>&, BodyState*, const JointSolveSettings&); \
-    template void RelaxJoints(JointBatch<lanes>&, const SolverBodies&, const JointSolveSettings&); \
-    template void UpdateJoints(JointBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);
+template <int N>
+void CorrectJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
+    using Real = Wide<N>;
+    const Real zero(0.0f), one(1.0f), part(settings.baumgarte), most(settings.maxPushSpeed * settings.substepDt);
+    WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
+        Motion<N> velocityA, velocityB, poseA, poseB;
+        velocityA.template Gather<BodyRow::Velocity>(batch.bodyA, bodies.states);
+        velocityB.template Gather<BodyRow::Velocity>(batch.bodyB, bodies.states);
+        const JointErrors<Real> errors =
+            Follow<linear, angular>(batch, bodies, velocityA.Get(), velocityB.Get(), settings);
+        Twist<Real> a, b;
+        const auto isNear = batch.isFar <= Real(0.5f);
+        const auto correction = [&](const Real& error) {
+            return Select(isNear, Clamp(Real(error * part), -most, most), zero);
+        };
+        for (uint32_t i = 0; i < batch.rowCount; ++i) {
+            const JointRows<N>& row = batch.rows[i];
+            // Locks and limits; those that couple a motion to another count it times their ratio, springs are forces.
+            const auto corrects =
+                (row.mostPush > zero) & (row.mostPush < Real(JointRow::kUnlimited)) & (row.error <= row.openAbove);
+            row.part.SolvePosition(a, b, Select(corrects, correction(row.error), zero), one);
+        }
+        const auto correct = [&](auto& lock, const auto& error, Vec3<Real>& wide) {
+            auto wanted = error;
+            for (int k = 0; k < wanted.size(); ++k) wanted[k] = correction(error[k]);
+            if constexpr (kCoupled<linear, angular>) wide = Widened(wanted, zero);
+            else lock.SolvePosition(a, b, batch.massA, batch.massB, wanted, one);
+        };
+        LockImpulses<Real> wanted;
+        if constexpr (angular == AngularLock::All) correct(batch.rotation, errors.rotation, wanted.angular);
+        if constexpr (angular == AngularLock::Axis) correct(batch.hinge, errors.hinge, wanted.angular);
+        if constexpr (linear == LinearLock::Point) correct(batch.point, errors.point, wanted.linear);
+        if constexpr (linear == LinearLock::Line) correct(batch.line, errors.line, wanted.linear);
+        if constexpr (kCoupled<linear, angular>) {
+            LockImpulses<Real> x = SolveBlock<linear, angular>(batch, wanted.linear, wanted.angular);
+            x.linear = -x.linear;
+            x.angular = -x.angular;
+            AddLockMotion<linear, angular>(batch, a, b, x);
+        }
+        const auto move = [&](Motion<N>& pose, const uint32_t(&index)[N], const Twist<Real>& by, uint32_t fixed) {
+            pose.template Gather<BodyRow::Displacement>(index, bodies.states);
+            Twist<Real> to = pose.Get();
+            to.linear += by.linear;
+            to.angular += by.angular;
+            pose.Set(to);
+            SetHalfTurn<Real>(pose.row);
+            pose.Scatter(batch.count, fixed);
+        };
+        move(poseA, batch.bodyA, a, batch.fixedA);
+        move(poseB, batch.bodyB, b, batch.fixedB);
+    });
+}
+
+#define FULCRUM_INSTANTIATE(lanes)                                                                  \
+    template void WarmStartJoints(const JointBatch<lanes>&, BodyState*);                            \
+    template void TurnJoints(JointBatch<lanes>&, BodyState*);                                       \
+    template void SolveJointVelocities(JointBatch<lanes>&, BodyState*, const JointSolveSettings&);  \
+    template void RelaxJoints(JointBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);  \
+    template void UpdateJoints(JointBatch<lanes>&, const SolverBodies&, const JointSolveSettings&); \
+    template void CorrectJoints(JointBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE)
 #undef FULCRUM_INSTANTIATE
 

@@ -1,13 +1,14 @@
-// The life that parts of one to three rows share: rows solved together as one block, hard or soft, with their impulses
-// and states. A part derives from it and adds its set-up, its Jacobian and the impulses along it. One thread per part.
+// What the parts of two and three rows share, the locks of joints: rows solved together as one block, hard or soft,
+// with their impulses and states. A part derives from it and adds its set-up, its Jacobian and the impulses along it.
+// One thread per part.
 //
 //   K = J M^-1 J^T                       b  bias, m/s or rad/s            C  error, m or rad
 //   A solve changes the impulses by delta lambda = -massScale K^-1 (J v + b) - impulseScale * total lambda and adds
 //   M^-1 J^T delta lambda to the velocities; (1, 0) is the hard block, which reaches J v = -b (RowSoftness.h).
 //   A position pass moves the bodies by -K^-1 baumgarte C along J.
 //
-// The part keeps its Jacobian, the masses are handed in at every call as in the axis part. A block that no body can
-// answer is inactive; a lane that is inactive changes nothing.
+// The part keeps its Jacobian; the masses are handed in at every call and must be those of the set-up. A block is
+// inactive where no body can move; an inactive lane changes nothing.
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/PairMotion.h>
@@ -18,19 +19,9 @@ namespace fulcrum {
 
 namespace detail {
 
-// Rows as one number, or as a vector and a matrix; the parts below are written once for all.
+// Rows as a vector and a matrix of two or three; the parts below are written once for both.
 template <class Real, int kRows>
 struct BlockTypes;
-template <class Real>
-struct BlockTypes<Real, 1> {
-    using Rows = Real;
-    using Symmetric = Real;
-    static Rows Zero() { return Real(0.0f); }
-    static Symmetric NoMass() { return Real(0.0f); }
-    static Real Size(const Rows& a) { return Abs(a); }
-    static Real Trace(const Symmetric& k) { return k; }
-    static Symmetric Without(MaskOf<Real> mask, const Symmetric& k) { return Select(mask, Real(0.0f), k); }
-};
 template <class Real>
 struct BlockTypes<Real, 2> {
     using Rows = Vec2<Real>;
@@ -39,10 +30,6 @@ struct BlockTypes<Real, 2> {
     static Symmetric NoMass() { return {}; }
     static Real Size(const Rows& a) { return Abs(a.x()) + Abs(a.y()); }
     static Real Trace(const Symmetric& k) { return k.xx + k.yy; }
-    static Symmetric Without(MaskOf<Real> mask, const Symmetric& k) {
-        const Real zero(0.0f);
-        return {Select(mask, zero, k.xx), Select(mask, zero, k.yy), Select(mask, zero, k.xy)};
-    }
 };
 template <class Real>
 struct BlockTypes<Real, 3> {
@@ -52,11 +39,6 @@ struct BlockTypes<Real, 3> {
     static Symmetric NoMass() { return {}; }
     static Real Size(const Rows& a) { return Abs(a.x()) + Abs(a.y()) + Abs(a.z()); }
     static Real Trace(const Symmetric& k) { return k.xx + k.yy + k.zz; }
-    static Symmetric Without(MaskOf<Real> mask, const Symmetric& k) {
-        const Real zero(0.0f);
-        return {Select(mask, zero, k.xx), Select(mask, zero, k.yy), Select(mask, zero, k.zz),
-                Select(mask, zero, k.xy), Select(mask, zero, k.xz), Select(mask, zero, k.yz)};
-    }
 };
 
 template <class Real>
@@ -66,10 +48,6 @@ inline Vec2<Real> Choose(MaskOf<Real> mask, const Vec2<Real>& a, const Vec2<Real
 template <class Real>
 inline Vec3<Real> Choose(MaskOf<Real> mask, const Vec3<Real>& a, const Vec3<Real>& b) {
     return Vec3<Real>(Select(mask, a.x(), b.x()), Select(mask, a.y(), b.y()), Select(mask, a.z(), b.z()));
-}
-template <class Real>
-inline Real Choose(MaskOf<Real> mask, const Real& a, const Real& b) {
-    return Select(mask, a, b);
 }
 
 }  // namespace detail
@@ -84,7 +62,7 @@ struct BlockState {
 // Part derives from BlockPart<Part, Real, kRows> and has, for compile-time sides,
 //     Rows RelativeMotion<kSide1, kSide2>(motion1, motion2) const                                   J times motion
 //     void AddImpulse<kSide1, kSide2>(motion1, motion2, mass1, mass2, lambda, applied) const        + M^-1 J^T lambda
-// Real: float, or Wide<N> for N constraints; both give the same bits. Rows: Real, Vec2<Real> or Vec3<Real>.
+// Real: float, or Wide<N> for N constraints; both give the same bits. Rows: Vec2<Real> or Vec3<Real>.
 template <class Part, class Real, int kRows>
 class BlockPart {
     using Types = detail::BlockTypes<Real, kRows>;
@@ -96,39 +74,39 @@ public:
     using Symmetric = typename Types::Symmetric;
     using State = BlockState<Real, kRows>;
 
-    // Another bias, or another softness, for rows that are otherwise as they were set up.
-    void SetBias(const Rows& bias) { bias_ = bias; }
+    // Once per substep, after the set-up. bias: b, m/s or rad/s.
+    void SetBias(const Rows& bias, const RowSoftness<Real>& softness) {
+        bias_ = bias;
+        softness_ = softness;
+    }
     const Rows& GetBias() const { return bias_; }
-    void SetSoftness(const RowSoftness<Real>& softness) { softness_ = softness; }
     const RowSoftness<Real>& GetSoftness() const { return softness_; }
 
-    void Deactivate() { SetEffectiveMass(Types::NoMass()); }
-    // The lanes that `mask` names.
-    void Deactivate(Mask mask) { SetEffectiveMass(Types::Without(mask, effectiveMass_)); }
     Mask IsActive() const { return Types::Trace(effectiveMass_) > Real(0.0f); }
 
-    // Applies the impulse of the step before, scaled by dt / dt of that step.
+    // Applies the total impulse.
     template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     void WarmStart(Twist<Real>& velocity1, Twist<Real>& velocity2, const InverseMass<Real>& mass1,
-                   const InverseMass<Real>& mass2, Real dtRatio) {
-        totalLambda_ = detail::Choose<Real>(IsActive(), Rows(totalLambda_ * dtRatio), Types::Zero());
-        ApplyImpulse<kSide1, kSide2>(velocity1, velocity2, mass1, mass2, totalLambda_);
+                   const InverseMass<Real>& mass2) const {
+        AddNonZero<kSide1, kSide2>(velocity1, velocity2, mass1, mass2, totalLambda_, IsActive());
     }
 
     // One iteration. Returns where anything was applied.
     template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     Mask SolveVelocity(Twist<Real>& velocity1, Twist<Real>& velocity2, const InverseMass<Real>& mass1,
                        const InverseMass<Real>& mass2) {
-        return ApplyTotalLambda<kSide1, kSide2>(velocity1, velocity2, mass1, mass2,
-                                                SolveTotalLambda<kSide1, kSide2>(velocity1, velocity2));
+        const Rows error = Self().template RelativeMotion<kSide1, kSide2>(velocity1, velocity2) + bias_;
+        const Rows impulse = effectiveMass_ * Rows(error * softness_.massScale);
+        return AddLambda<kSide1, kSide2>(velocity1, velocity2, mass1, mass2,
+                                         SoftDelta(impulse, totalLambda_, softness_.impulseScale), IsActive());
     }
-    // The same for a single row whose total impulse stays in [minLambda, maxLambda].
+    // Its second half for a change of the impulses that was solved together with other parts: applies it where `mask`.
     template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
-    Mask SolveVelocity(Twist<Real>& velocity1, Twist<Real>& velocity2, const InverseMass<Real>& mass1,
-                       const InverseMass<Real>& mass2, Real minLambda, Real maxLambda) requires(kRows == 1) {
-        const Real candidate = SolveTotalLambda<kSide1, kSide2>(velocity1, velocity2);
-        return ApplyTotalLambda<kSide1, kSide2>(velocity1, velocity2, mass1, mass2,
-                                                Clamp(candidate, minLambda, maxLambda));
+    FULCRUM_FORCE_INLINE Mask AddLambda(Twist<Real>& velocity1, Twist<Real>& velocity2, const InverseMass<Real>& mass1,
+                                        const InverseMass<Real>& mass2, const Rows& deltaLambda, const Mask& mask) {
+        const Mask applied = AddNonZero<kSide1, kSide2>(velocity1, velocity2, mass1, mass2, deltaLambda, mask);
+        totalLambda_ = detail::Choose<Real>(applied, Rows(totalLambda_ + deltaLambda), totalLambda_);
+        return applied;
     }
 
     // One position pass: moves the bodies (displacement since the start of the step) by -K^-1 baumgarte C along J. The
@@ -138,7 +116,7 @@ public:
     Mask SolvePosition(Twist<Real>& displacement1, Twist<Real>& displacement2, const InverseMass<Real>& mass1,
                        const InverseMass<Real>& mass2, const Rows& error, Real baumgarte) const {
         const Rows lambda = effectiveMass_ * Rows(error * -baumgarte);
-        return ApplyImpulse<kSide1, kSide2>(displacement1, displacement2, mass1, mass2, lambda);
+        return AddNonZero<kSide1, kSide2>(displacement1, displacement2, mass1, mass2, lambda, IsActive());
     }
 
     // N s or N m s.
@@ -151,45 +129,26 @@ public:
     void RestoreState(const State& state) { totalLambda_ = state.totalLambda; }
 
 protected:
-    // Leaves the total impulse for the warm start, but zero where the block is inactive.
-    void SetRows(const Symmetric& inverseEffectiveMass, const Rows& bias, const RowSoftness<Real>& softness) {
-        bias_ = bias;
-        softness_ = softness;
-        SetEffectiveMass(SymmetricInverse(inverseEffectiveMass));
+    // K. Hard and without bias until SetBias; leaves the total impulse for the warm start, but zero where the block is
+    // inactive.
+    void SetInverseEffectiveMass(const Symmetric& inverseEffectiveMass) {
+        bias_ = Types::Zero();
+        softness_ = {};
+        effectiveMass_ = SymmetricInverse(inverseEffectiveMass);
+        totalLambda_ = detail::Choose<Real>(IsActive(), totalLambda_, Types::Zero());
     }
 
 private:
     const Part& Self() const { return static_cast<const Part&>(*this); }
 
-    // The total impulse after a solve without limits.
+    // Adds M^-1 J^T lambda where `mask` and lambda is not zero; NaN counts as zero, so that one bad constraint spoils
+    // no body. Returns where.
     template <BodySide kSide1, BodySide kSide2>
-    Rows SolveTotalLambda(const Twist<Real>& velocity1, const Twist<Real>& velocity2) const {
-        const Rows miss = Self().template RelativeMotion<kSide1, kSide2>(velocity1, velocity2) + bias_;
-        const Rows impulse = effectiveMass_ * Rows(miss * softness_.massScale);
-        return totalLambda_ - (impulse + totalLambda_ * softness_.impulseScale);
-    }
-
-    template <BodySide kSide1, BodySide kSide2>
-    Mask ApplyTotalLambda(Twist<Real>& velocity1, Twist<Real>& velocity2, const InverseMass<Real>& mass1,
-                          const InverseMass<Real>& mass2, const Rows& totalLambda) {
-        const Rows deltaLambda = detail::Choose<Real>(IsActive(), Rows(totalLambda - totalLambda_), Types::Zero());
-        const Mask applied = ApplyImpulse<kSide1, kSide2>(velocity1, velocity2, mass1, mass2, deltaLambda);
-        totalLambda_ = detail::Choose<Real>(applied, totalLambda, totalLambda_);
-        return applied;
-    }
-
-    // Adds M^-1 J^T lambda where lambda is not zero; NaN counts as zero, so that one bad constraint spoils no body.
-    template <BodySide kSide1, BodySide kSide2>
-    Mask ApplyImpulse(Twist<Real>& motion1, Twist<Real>& motion2, const InverseMass<Real>& mass1,
-                      const InverseMass<Real>& mass2, const Rows& lambda) const {
-        const Mask applied = Types::Size(lambda) > Real(0.0f);
+    FULCRUM_FORCE_INLINE Mask AddNonZero(Twist<Real>& motion1, Twist<Real>& motion2, const InverseMass<Real>& mass1,
+                                         const InverseMass<Real>& mass2, const Rows& lambda, const Mask& mask) const {
+        const Mask applied = (Types::Size(lambda) > Real(0.0f)) & mask;
         Self().template AddImpulse<kSide1, kSide2>(motion1, motion2, mass1, mass2, lambda, applied);
         return applied;
-    }
-
-    void SetEffectiveMass(const Symmetric& effectiveMass) {
-        effectiveMass_ = effectiveMass;
-        totalLambda_ = detail::Choose<Real>(IsActive(), totalLambda_, Types::Zero());
     }
 
     Symmetric effectiveMass_ = Types::NoMass();

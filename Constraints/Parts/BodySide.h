@@ -1,5 +1,5 @@
-// What every constraint part shares about its two bodies: how a side moves (known at compile time), masses overridden
-// for one constraint, masked updates of lanes. Called by the parts and by whoever sets them up. No state.
+// What every constraint part shares about its two bodies: how a side moves (known at compile time), masked updates
+// of lanes. Called by the parts and by whoever sets them up. No state.
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/BodyState.h>
@@ -18,22 +18,6 @@ constexpr bool HasMass(BodySide side) { return side == BodySide::Dynamic; }
 // bool for float, one truth value a lane for lanes.
 template <class Real>
 using MaskOf = decltype(Real(0.0f) < Real(0.0f));
-
-// The mass of a body as one constraint is to see it: another inverse mass (1/kg, >= 0) and the inverse inertia scaled
-// (>= 0). A user makes one body heavier for one contact this way. Give the result to set-up, velocity and position
-// solve alike; momentum is then not conserved unless both bodies' scales agree.
-template <class Real>
-inline InverseMass<Real> OverrideMass(const InverseMass<Real>& mass, Real inverseMass, Real inverseInertiaScale) {
-    InverseMass<Real> result;
-    result.mass = inverseMass;
-    result.inertia.xx = mass.inertia.xx * inverseInertiaScale;
-    result.inertia.yy = mass.inertia.yy * inverseInertiaScale;
-    result.inertia.zz = mass.inertia.zz * inverseInertiaScale;
-    result.inertia.xy = mass.inertia.xy * inverseInertiaScale;
-    result.inertia.xz = mass.inertia.xz * inverseInertiaScale;
-    result.inertia.yz = mass.inertia.yz * inverseInertiaScale;
-    return result;
-}
 
 // mask ? a : +0. Subtracting it leaves every bit of a lane where the mask is false, -0 and NaN included; a product with
 // zero would not.

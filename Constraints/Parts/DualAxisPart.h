@@ -32,18 +32,17 @@ public:
     using typename BlockPart<DualAxisPart, Real, 2>::Rows;
     using typename BlockPart<DualAxisPart, Real, 2>::Mask;
 
-    // Once per substep. bias: b, m/s. The solve reaches J v = -b.
+    // Once per substep.
     template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     void CalculateProperties(const InverseMass<Real>& mass1, const InverseMass<Real>& mass2,
-                             const DualAxisFrame<Real>& frame, const Rows& bias,
-                             const RowSoftness<Real>& softness = {}) {
+                             const DualAxisFrame<Real>& frame) {
         frame_ = frame;
         const Sym3<Real> point = PointInverseMass<kSide1, kSide2>(mass1, mass2, frame.r1PlusU, frame.r2);
         Sym2<Real> k;
         k.xx = Between(frame.axis1, point, frame.axis1);
         k.yy = Between(frame.axis2, point, frame.axis2);
         k.xy = Between(frame.axis1, point, frame.axis2);
-        this->SetRows(k, bias, softness);
+        this->SetInverseEffectiveMass(k);
     }
 
     // J applied to velocities (m/s), or to displacements: the change of C to first order (m).

@@ -41,10 +41,10 @@ public:
     using typename BlockPart<HingeRotationPart, Real, 2>::Rows;
     using typename BlockPart<HingeRotationPart, Real, 2>::Mask;
 
-    // Once per substep. b2, c2: world space, unit, perpendicular. bias: b, rad/s. The solve reaches J v = -b.
+    // Once per substep. b2, c2: world space, unit, perpendicular.
     template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     void CalculateProperties(const InverseMass<Real>& mass1, const InverseMass<Real>& mass2, const Vector& b2,
-                             const Vector& c2, const Rows& bias, const RowSoftness<Real>& softness = {}) {
+                             const Vector& c2) {
         b2_ = b2;
         c2_ = c2;
         const Sym3<Real> angular = AngularInverseMass<kSide1, kSide2>(mass1, mass2);
@@ -52,7 +52,7 @@ public:
         k.xx = Between(c2, angular, c2);
         k.yy = Between(b2, angular, b2);
         k.xy = -Between(c2, angular, b2);
-        this->SetRows(k, bias, softness);
+        this->SetInverseEffectiveMass(k);
     }
 
     // J applied to velocities (rad/s), or to displacements: the change of C to first order (rad).

@@ -20,13 +20,13 @@ public:
     using typename BlockPart<PointPart, Real, 3>::Vector;
     using typename BlockPart<PointPart, Real, 3>::Mask;
 
-    // Once per substep. r1, r2: world space, m. bias: b, m/s. The solve reaches J v = -b.
+    // Once per substep. r1, r2: world space, m.
     template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     void CalculateProperties(const InverseMass<Real>& mass1, const InverseMass<Real>& mass2, const Vector& r1,
-                             const Vector& r2, const Vector& bias, const RowSoftness<Real>& softness = {}) {
+                             const Vector& r2) {
         r1_ = r1;
         r2_ = r2;
-        this->SetRows(PointInverseMass<kSide1, kSide2>(mass1, mass2, r1, r2), bias, softness);
+        this->SetInverseEffectiveMass(PointInverseMass<kSide1, kSide2>(mass1, mass2, r1, r2));
     }
 
     // J applied to velocities (m/s), or to displacements: the change of C to first order (m).

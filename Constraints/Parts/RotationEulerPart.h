@@ -17,12 +17,6 @@
 
 namespace fulcrum {
 
-// q0^-1 of bodies that are now where the constraint holds.
-template <class Real>
-inline Quat<Real> InverseInitialOrientation(const Quat<Real>& rotation1, const Quat<Real>& rotation2) {
-    return rotation2.Conjugate() * rotation1;
-}
-
 namespace detail {
 
 // The rotation with these columns, orthonormal. Source: S. W. Shepperd, "Quaternion from Rotation Matrix", 1978:
@@ -41,24 +35,17 @@ inline Quaternion RotationFromColumns(const Matrix3& m) {
 }  // namespace detail
 
 // The rotation that takes the x and y axes to the given ones: unit vectors, perpendicular (y is straightened to be),
-// not parallel. The same from the axes x and z.
+// not parallel.
 inline Quaternion RotationFromAxesXY(const Vector3& axisX, const Vector3& axisY) {
     const Vector3 z = Normalized(Cross(axisX, axisY));
     return detail::RotationFromColumns({axisX, Cross(z, axisX), z});
 }
-inline Quaternion RotationFromAxesXZ(const Vector3& axisX, const Vector3& axisZ) {
-    return RotationFromAxesXY(axisX, Vector3(Cross(axisZ, axisX)));
-}
 
-// q0^-1 for which the axes given in body 1's own space and those in body 2's own space point the same way in the world:
-// q1 f1 = q2 f2 with f1, f2 the frames of the axes, so q0^-1 = f2 f1^-1. Axes as for RotationFromAxesXY.
-inline Quaternion InverseInitialOrientationFromXY(const Vector3& axisX1, const Vector3& axisY1, const Vector3& axisX2,
-                                                  const Vector3& axisY2) {
-    return Normalized(RotationFromAxesXY(axisX2, axisY2) * RotationFromAxesXY(axisX1, axisY1).Conjugate());
-}
-inline Quaternion InverseInitialOrientationFromXZ(const Vector3& axisX1, const Vector3& axisZ1, const Vector3& axisX2,
-                                                  const Vector3& axisZ2) {
-    return Normalized(RotationFromAxesXZ(axisX2, axisZ2) * RotationFromAxesXZ(axisX1, axisZ1).Conjugate());
+// q0^-1 for which frames f1 and f2, each in its body's own space, point the same way in the world: q1 f1 = q2 f2.
+// Frames in world space give it for rotations from there on.
+template <class Real>
+inline Quat<Real> InverseInitialOrientation(const Quat<Real>& frame1, const Quat<Real>& frame2) {
+    return frame2 * frame1.Conjugate();
 }
 
 // C, rad, world space.
@@ -74,11 +61,10 @@ public:
     using typename BlockPart<RotationEulerPart, Real, 3>::Vector;
     using typename BlockPart<RotationEulerPart, Real, 3>::Mask;
 
-    // Once per substep. bias: b, rad/s. The solve reaches J v = -b.
+    // Once per substep.
     template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
-    void CalculateProperties(const InverseMass<Real>& mass1, const InverseMass<Real>& mass2, const Vector& bias,
-                             const RowSoftness<Real>& softness = {}) {
-        this->SetRows(AngularInverseMass<kSide1, kSide2>(mass1, mass2), bias, softness);
+    void CalculateProperties(const InverseMass<Real>& mass1, const InverseMass<Real>& mass2) {
+        this->SetInverseEffectiveMass(AngularInverseMass<kSide1, kSide2>(mass1, mass2));
     }
 
     // J applied to velocities (rad/s), or to displacements: the change of C to first order (rad).

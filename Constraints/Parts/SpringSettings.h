@@ -1,5 +1,5 @@
 // How soft a constraint is, as its user says it, and the constants that a row makes of that. Validated once where a
-// joint or contact is created; SpringPart.h turns the constants into a row each substep. Plain data, no threads.
+// joint or contact is created; SpringSoftness.h turns the constants into the softness of a row. Plain data, no threads.
 //
 // A soft row that acts alone on a mass with error x maps its velocity, once per substep of length h, as
 //     v' = (v - K x / h) / D,    x' = x + h v'

@@ -389,12 +389,4 @@ inline void AddTwistLimits(RotationLimitList& list, const SwingTwist& r, const A
     if (!range.IsFree()) detail::AddRange(list, RotationLimit::TwistMaximum, r.twist, r.swing.w, TwistAxis(r), range);
 }
 
-inline RotationLimitList CollectLimits(const Quaternion& q, const SwingTwistLimits& limits) {
-    RotationLimitList list;
-    const SwingTwist r = Decompose(q);
-    AddSwingLimits(list, r, limits);
-    AddTwistLimits(list, r, limits.twist);
-    return list;
-}
-
 }  // namespace fulcrum

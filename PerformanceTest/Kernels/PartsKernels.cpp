@@ -1,7 +1,7 @@
-// Nanoseconds per row of the constraint parts' kernels, one constraint at a time and in lanes. Single-threaded.
+// Nanoseconds per row of the row part's kernels, one constraint at a time and in lanes. Single-threaded.
 // "rows_per_second" counts constraints, so its inverse is the time per row whatever the number of lanes.
-#include <Fulcrum/Constraints/Parts/AnglePart.h>
 #include <Fulcrum/Constraints/Parts/AxisPart.h>
+#include <Fulcrum/Constraints/Parts/SpringSoftness.h>
 
 #include <benchmark/benchmark.h>
 
@@ -17,10 +17,9 @@ constexpr int kBodies = 2 * kRows;
 template <class Real>
 constexpr int kCount = sizeof(Real) / sizeof(float);
 
-template <class Real, bool kSoft>
+template <class Real>
 struct Constraint {
-    AxisPart<Real, kSoft> part;
-    Vec3<Real> axis;
+    RowPart<Real> part;
     int bodies1[kCount<Real>], bodies2[kCount<Real>];
 };
 
@@ -30,22 +29,29 @@ struct World {
 };
 
 template <int N>
-void Gather(World& world, const int (&bodies)[N], Twist<Wide<N>>& velocity, InverseMass<Wide<N>>& mass) {
+void Gather(World& world, const int (&bodies)[N], Twist<Wide<N>>& velocity) {
     const float* rows[N];
     Wide<N> wide[8];
     for (int i = 0; i < N; ++i) rows[i] = world.states[bodies[i]].VelocityRow();
     GatherRows<N>(rows, wide);
     velocity.linear = Vec3<Wide<N>>(wide[0], wide[1], wide[2]);
     velocity.angular = Vec3<Wide<N>>(wide[3], wide[4], wide[5]);
+}
+void Gather(World& world, const int (&bodies)[1], Twist<float>& velocity) {
+    const float* row = world.states[bodies[0]].VelocityRow();
+    velocity.linear = Vector3(row[0], row[1], row[2]);
+    velocity.angular = Vector3(row[3], row[4], row[5]);
+}
+template <int N>
+void GatherMass(World& world, const int (&bodies)[N], InverseMass<Wide<N>>& mass) {
+    const float* rows[N];
+    Wide<N> wide[8];
     for (int i = 0; i < N; ++i) rows[i] = world.masses[bodies[i]].Row();
     GatherRows<N>(rows, wide);
     mass.inertia = {wide[0], wide[1], wide[2], wide[3], wide[4], wide[5]};
     mass.mass = wide[6];
 }
-void Gather(World& world, const int (&bodies)[1], Twist<float>& velocity, InverseMass<float>& mass) {
-    const float* row = world.states[bodies[0]].VelocityRow();
-    velocity.linear = Vector3(row[0], row[1], row[2]);
-    velocity.angular = Vector3(row[3], row[4], row[5]);
+void GatherMass(World& world, const int (&bodies)[1], InverseMass<float>& mass) {
     const float* m = world.masses[bodies[0]].Row();
     mass.inertia = {m[0], m[1], m[2], m[3], m[4], m[5]};
     mass.mass = m[6];
@@ -77,29 +83,26 @@ Vec3<Real> RandomVector(std::mt19937& random) {
 }
 
 // Rows between bodies 2 i and 2 i + 1, so that no two touch the same body.
-template <class Real, bool kSoft>
-std::vector<Constraint<Real, kSoft>> MakeConstraints(World& world, std::mt19937& random) {
+template <class Real>
+std::vector<Constraint<Real>> MakeConstraints(World& world, std::mt19937& random) {
     for (BodyMass& mass : world.masses) mass = {{6.0f, 7.0f, 5.0f, 0.1f, 0.2f, 0.3f}, 1.0f, 0.0f};
     for (BodyState& state : world.states)
         for (int k = 0; k < 6; ++k) state.VelocityRow()[k] = static_cast<float>(random()) / 2147483648.0f - 1.0f;
-    std::vector<Constraint<Real, kSoft>> constraints(kRows / kCount<Real>);
+    std::vector<Constraint<Real>> constraints(kRows / kCount<Real>);
     int body = 0;
     for (auto& constraint : constraints) {
         for (int i = 0; i < kCount<Real>; ++i) {
             constraint.bodies1[i] = body++;
             constraint.bodies2[i] = body++;
         }
-        Twist<Real> velocity;
         InverseMass<Real> mass1, mass2;
-        Gather(world, constraint.bodies1, velocity, mass1);
-        Gather(world, constraint.bodies2, velocity, mass2);
+        GatherMass(world, constraint.bodies1, mass1);
+        GatherMass(world, constraint.bodies2, mass2);
         const Vec3<Real> direction = RandomVector<Real>(random), r1 = RandomVector<Real>(random);
-        constraint.axis = direction * (Real(1.0f) / Sqrt(Dot<Real>(direction, direction)));
-        const AxisFrame<Real> frame{r1, RandomVector<Real>(random), constraint.axis};
-        if constexpr (kSoft)
-            constraint.part.CalculateFrequencyProperties(Real(1.0f / 240.0f), mass1, mass2, frame, Real(0.1f),
-                                                         Real(0.2f), Real(2.0f), Real(0.1f));
-        else constraint.part.CalculateProperties(mass1, mass2, frame, Real(0.1f));
+        const Vec3<Real> axis = direction * (Real(1.0f) / Sqrt(Dot<Real>(direction, direction)));
+        constraint.part.SetJacobian(AxisJacobian<Real>({r1, RandomVector<Real>(random), axis}));
+        constraint.part.CalculateProperties(mass1, mass2);
+        constraint.part.SetBias(Real(0.1f));
     }
     return constraints;
 }
@@ -123,19 +126,18 @@ struct Limits {
 };
 
 // Everything that a solver does for a row: bodies gathered, one velocity iteration, bodies scattered.
-template <class Real, bool kSoft>
+template <class Real>
 void AxisSolveVelocity(benchmark::State& state) {
     World world;
     std::mt19937 random(1);
-    auto constraints = MakeConstraints<Real, kSoft>(world, random);
+    auto constraints = MakeConstraints<Real>(world, random);
     Limits<Real> limits;
     for (auto _ : state) {
         for (auto& constraint : constraints) {
             Twist<Real> velocity1, velocity2;
-            InverseMass<Real> mass1, mass2;
-            Gather(world, constraint.bodies1, velocity1, mass1);
-            Gather(world, constraint.bodies2, velocity2, mass2);
-            constraint.part.SolveVelocity(velocity1, velocity2, mass1, mass2, constraint.axis, limits.low, limits.high);
+            Gather(world, constraint.bodies1, velocity1);
+            Gather(world, constraint.bodies2, velocity2);
+            constraint.part.SolveVelocity(velocity1, velocity2, limits.low, limits.high);
             Scatter(world, constraint.bodies1, velocity1);
             Scatter(world, constraint.bodies2, velocity2);
         }
@@ -146,19 +148,18 @@ void AxisSolveVelocity(benchmark::State& state) {
 }
 
 // The row alone, as the second to fourth point of a contact pays it: the two bodies stay in registers or on the stack.
-template <class Real, bool kSoft>
+template <class Real>
 void AxisSolveVelocityGathered(benchmark::State& state) {
     World world;
     std::mt19937 random(1);
-    auto constraints = MakeConstraints<Real, kSoft>(world, random);
+    auto constraints = MakeConstraints<Real>(world, random);
     Twist<Real> velocity1, velocity2;
-    InverseMass<Real> mass1, mass2;
-    Gather(world, constraints[0].bodies1, velocity1, mass1);
-    Gather(world, constraints[0].bodies2, velocity2, mass2);
+    Gather(world, constraints[0].bodies1, velocity1);
+    Gather(world, constraints[0].bodies2, velocity2);
     Limits<Real> limits;
     for (auto _ : state) {
         for (auto& constraint : constraints)
-            constraint.part.SolveVelocity(velocity1, velocity2, mass1, mass2, constraint.axis, limits.low, limits.high);
+            constraint.part.SolveVelocity(velocity1, velocity2, limits.low, limits.high);
         limits.Flip();
         benchmark::ClobberMemory();
     }
@@ -169,31 +170,34 @@ template <class Real>
 void AxisSetUpSpring(benchmark::State& state) {
     World world;
     std::mt19937 random(1);
-    auto constraints = MakeConstraints<Real, true>(world, random);
+    auto constraints = MakeConstraints<Real>(world, random);
     InverseMass<Real> mass1, mass2;
-    Twist<Real> velocity;
-    Gather(world, constraints[0].bodies1, velocity, mass1);
-    Gather(world, constraints[0].bodies2, velocity, mass2);
+    GatherMass(world, constraints[0].bodies1, mass1);
+    GatherMass(world, constraints[0].bodies2, mass2);
     const SpringForm form = state.range(0) != 0 ? SpringForm::Exact : SpringForm::Implicit;
     const SpringConstants<Real> spring = FrequencyConstants(Real(2.0f), Real(0.1f), form);
-    const AxisFrame<Real> frame{RandomVector<Real>(random), RandomVector<Real>(random), constraints[0].axis};
+    const AxisFrame<Real> frame{RandomVector<Real>(random), RandomVector<Real>(random),
+                                constraints[0].part.GetJacobian().a.linear};
     for (auto _ : state) {
-        for (auto& constraint : constraints)
-            constraint.part.CalculateSpringProperties(Real(1.0f / 240.0f), mass1, mass2, frame, Real(0.0f), Real(0.1f),
-                                                      spring);
+        for (auto& constraint : constraints) {
+            RowPart<Real>& part = constraint.part;
+            part.SetJacobian(AxisJacobian(frame));
+            part.CalculateProperties(mass1, mass2);
+            const SpringSoftness<Real> soft =
+                SpringSoftnessOf(Real(1.0f / 240.0f), Real(Real(1.0f) / part.GetEffectiveMass()), spring);
+            part.SetBias(soft.errorRate * Real(0.1f), soft.softness);
+        }
         benchmark::ClobberMemory();
     }
     CountRows(state);
 }
 
-BENCHMARK(AxisSolveVelocity<float, false>)->Name("Axis/SolveVelocity/hard/scalar");
-BENCHMARK(AxisSolveVelocity<Wide<4>, false>)->Name("Axis/SolveVelocity/hard/4_lanes");
-BENCHMARK(AxisSolveVelocity<Wide<8>, false>)->Name("Axis/SolveVelocity/hard/8_lanes");
-BENCHMARK(AxisSolveVelocity<float, true>)->Name("Axis/SolveVelocity/soft/scalar");
-BENCHMARK(AxisSolveVelocity<Wide<8>, true>)->Name("Axis/SolveVelocity/soft/8_lanes");
-BENCHMARK(AxisSolveVelocityGathered<float, false>)->Name("Axis/SolveVelocity/gathered/scalar");
-BENCHMARK(AxisSolveVelocityGathered<Wide<4>, false>)->Name("Axis/SolveVelocity/gathered/4_lanes");
-BENCHMARK(AxisSolveVelocityGathered<Wide<8>, false>)->Name("Axis/SolveVelocity/gathered/8_lanes");
+BENCHMARK(AxisSolveVelocity<float>)->Name("Axis/SolveVelocity/scalar");
+BENCHMARK(AxisSolveVelocity<Wide<4>>)->Name("Axis/SolveVelocity/4_lanes");
+BENCHMARK(AxisSolveVelocity<Wide<8>>)->Name("Axis/SolveVelocity/8_lanes");
+BENCHMARK(AxisSolveVelocityGathered<float>)->Name("Axis/SolveVelocity/gathered/scalar");
+BENCHMARK(AxisSolveVelocityGathered<Wide<4>>)->Name("Axis/SolveVelocity/gathered/4_lanes");
+BENCHMARK(AxisSolveVelocityGathered<Wide<8>>)->Name("Axis/SolveVelocity/gathered/8_lanes");
 BENCHMARK(AxisSetUpSpring<float>)->Name("Axis/SetUpSpring/exact/scalar")->Arg(1);
 BENCHMARK(AxisSetUpSpring<Wide<8>>)->Name("Axis/SetUpSpring/exact/8_lanes")->Arg(1);
 BENCHMARK(AxisSetUpSpring<Wide<8>>)->Name("Axis/SetUpSpring/implicit/8_lanes")->Arg(0);

@@ -23,6 +23,7 @@ inline constexpr float kTreePush = 0.5f;
 inline Effort EffortOf(const WorldState& world, const StepContext& step, const SolverGroup& group) {
     const SystemSettings& s = world.settings;
     Effort effort;
+    effort.solver = s.solver;
     effort.hasTrees = group.HasTrees();
     effort.solver.substeps = std::max(s.solver.substeps, group.effort.substeps);
     effort.solver.velocityIterations = std::max(s.solver.velocityIterations, group.effort.velocityIterations);
@@ -39,16 +40,27 @@ inline Effort EffortOf(const WorldState& world, const StepContext& step, const S
     contacts.maxPushSpeed = s.contactPushSpeed;
     contacts.Soften(std::min(s.contactFrequency, stiffest), s.contactDampingRatio, h);
 
-    ContactSolveSettings soft = contacts;
-    soft.Soften(std::min(s.jointFrequency, stiffest), s.jointDampingRatio, h);
+    const PushSoftness push = PushSoftnessOf(std::min(s.jointFrequency, stiffest), s.jointDampingRatio, h);
     JointSolveSettings& joints = effort.joints;
     joints.dt = step.dt;
     joints.substepDt = h;
     joints.inverseDt = 1.0f / h;
     joints.elapsed = 0;
     joints.impulseScale = step.impulseScale * effort.impulseScale;
-    joints.pushRate = soft.pushRate;
-    joints.softness = {soft.massScale, soft.impulseScale};
+    joints.pushRate = push.pushRate;
+    joints.softness = push.softness;
+    // Trees of joints are exact, and pushed.
+    const bool corrects = s.solver.positionCorrection == PositionCorrection::Baumgarte && !group.HasTrees();
+    if (!corrects) effort.solver.positionCorrection = PositionCorrection::SoftRelax;
+    contacts.baumgarte = joints.baumgarte = s.solver.baumgarte;
+    contacts.mostCorrection = s.contactPushSpeed * h;
+    joints.pushes = !corrects;
+    if (corrects) {
+        contacts.slop = std::max(s.penetrationSlop, s.solver.baumgarteSlop);
+        contacts.pushRate = contacts.stiffening = contacts.impulseScale = 0;
+        contacts.massScale = 1;
+        joints.softness = {};
+    }
     if (group.HasTrees()) {
         // Softness would take back part of what the trees solved.
         joints.pushRate = kTreePush / h;

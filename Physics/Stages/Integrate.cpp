@@ -163,8 +163,7 @@ void IntegratePose(WorldState& world, uint32_t body, float h, const BodyState* p
         s.deltaRotation[k] += motion.angular[k] * h;
     }
     if (!isJointed) return;
-    const Vec2<float> half =
-        joints::HalfTurnOf<float>(Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]));
+    const Vec2<float> half = HalfTurnOf<float>(Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]));
     for (int k = 0; k < 2; ++k) s.halfTurn[k] = half[k];
     TurnInertia(world.bodies, body, h);
 }
@@ -281,7 +280,7 @@ bool IntegratePosesInLanes(WorldState& world, const Indices& index, int count, f
     }
     rotation += turn;
     if (isJointed.Any()) {
-        const Vec2<Lanes> half = joints::HalfTurnOf<Lanes>(rotation);
+        const Vec2<Lanes> half = HalfTurnOf<Lanes>(rotation);
         for (int k = 0; k < 2; ++k) displacement.at[6 + k] = half[k];
     }
     displacement.Set(displacement.First() + velocity.First() * Lanes(h), rotation);

@@ -35,6 +35,8 @@ enum class Verb : uint8_t {
     IntegratePoses,
     FirstRelax,
     Relax,
+    FirstCorrection,
+    Correction,
     Separations,
     ClearPushWork,
     AddPushWork,
@@ -172,6 +174,8 @@ private:
             case Verb::Pull:
             case Verb::StopPulls:
             case Verb::IntegratePoses:
+            case Verb::FirstCorrection:
+            case Verb::Correction:
             case Verb::ClearPushWork:
             case Verb::AddPushWork:
             case Verb::SubtractPushWork:
@@ -225,6 +229,8 @@ private:
             case Verb::StopPulls: PullContacts(batch, pseudo_, effort_.contacts); break;
             case Verb::FirstRelax: NoteLift(batch, h_); [[fallthrough]];
             case Verb::Relax: RelaxContacts(batch, states, ContactSettingsAt(substep, 1)); break;
+            case Verb::FirstCorrection:
+            case Verb::Correction: CorrectContacts(batch, states, ContactSettingsAt(substep, 1)); break;
             case Verb::Separations:
                 NoteLift(batch, h_);
                 UpdateSeparations(batch, states, ContactSettingsAt(substep, 1));
@@ -255,6 +261,8 @@ private:
             case Verb::FirstRelax:
             case Verb::Relax:
             case Verb::RelaxJointsAfterRestitution: RelaxJoints(batch, world_.bodies.ForSolver(), settings); break;
+            case Verb::FirstCorrection:
+            case Verb::Correction: CorrectJoints(batch, world_.bodies.ForSolver(), settings); break;
             case Verb::Separations: UpdateJoints(batch, world_.bodies.ForSolver(), settings); break;
             case Verb::IntegrateVelocities:
             case Verb::CarriedWork:
@@ -274,7 +282,9 @@ private:
         settings.elapsed = verb == Verb::RelaxJointsAfterRestitution ? dt_ : h_ * static_cast<float>(substep + 1);
         settings.continues = verb == Verb::FirstVelocities && substep > 0 && !effort_.hasTrees;
         settings.firstPass =
-            verb == Verb::FirstPull || ((verb == Verb::FirstRelax || verb == Verb::Separations) && !effort_.hasTrees);
+            verb == Verb::FirstPull || verb == Verb::FirstCorrection ||
+            ((verb == Verb::FirstRelax || (verb == Verb::Separations && effort_.solver.positionIterations == 0)) &&
+             !effort_.hasTrees);
         return settings;
     }
 
@@ -299,7 +309,7 @@ constexpr int kStopIterations = 2;
 // The solver loop as the sequence of its verbs. pulls: some joints are far apart.
 std::span<const Verb> LoopOf(const SolverSettings& settings, bool bounces, bool pulls, ScratchArena& scratch) {
     const size_t longest = static_cast<size_t>(settings.velocityIterations + settings.positionIterations +
-                                               kPullIterations + kStopIterations + 7);
+                                               kPullIterations + kStopIterations + 8);
     std::span<Verb> verbs = scratch.Allocate<Verb>(longest * static_cast<size_t>(settings.substeps));
     size_t n = 0;
     for (int substep = 0; substep < settings.substeps; ++substep) {
@@ -315,9 +325,12 @@ std::span<const Verb> LoopOf(const SolverSettings& settings, bool bounces, bool 
             for (int i = 0; i < kStopIterations; ++i) verbs[n++] = Verb::StopPulls;
         }
         verbs[n++] = Verb::IntegratePoses;
-        for (int i = 0; i < settings.positionIterations; ++i) verbs[n++] = i == 0 ? Verb::FirstRelax : Verb::Relax;
-        // The next substep must know how far apart the points are, whether or not they are relaxed.
-        if (settings.positionIterations == 0) verbs[n++] = Verb::Separations;
+        const bool corrects = settings.positionCorrection == PositionCorrection::Baumgarte;
+        const Verb first = corrects ? Verb::FirstCorrection : Verb::FirstRelax,
+                   next = corrects ? Verb::Correction : Verb::Relax;
+        for (int i = 0; i < settings.positionIterations; ++i) verbs[n++] = i == 0 ? first : next;
+        // The next substep must know how far apart the points are.
+        if (corrects || settings.positionIterations == 0) verbs[n++] = Verb::Separations;
     }
     return verbs.first(n);
 }

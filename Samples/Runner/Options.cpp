@@ -30,6 +30,13 @@ void SetRecord(const std::string& text, RunOptions& options) {
         throw CLI::ValidationError("--record takes html, glb, html,glb or none");
 }
 
+PositionCorrection ParsePositionCorrection(const std::string& text) {
+    const std::array<std::string, 2> names{"soft", "baumgarte"};
+    for (size_t i = 0; i < names.size(); ++i)
+        if (text == names[i]) return static_cast<PositionCorrection>(i);
+    throw CLI::ValidationError(UnknownName("kind of --position-correction", text, names).message);
+}
+
 UpAxis ParseUpAxis(const std::string& text) {
     const std::array<std::string, 6> names{"x", "y", "z", "-x", "-y", "-z"};
     for (size_t i = 0; i < names.size(); ++i)
@@ -91,6 +98,9 @@ void AddSolverOptions(CLI::App& app, SolverSettings& solver) {
                [&](int value) { solver.velocityIterations = value; });
     AddInteger(app, "--position-iterations", 0, 255, text("position iterations a substep", solver.positionIterations),
                [&](int value) { solver.positionIterations = value; });
+    AddText(app, "--position-correction", "soft (default): soft rows and relaxing passes; baumgarte: position passes",
+            [&](const std::string& text) { solver.positionCorrection = ParsePositionCorrection(text); })
+        ->type_name("KIND");
 }
 
 std::vector<std::string> SceneNames() {

@@ -45,7 +45,7 @@ struct Command {
 // Arguments without the program's name. Error OutOfRange: one line that says what is wrong and what was probably meant.
 Result<Command> ParseRunnerCommand(std::vector<std::string> arguments);
 
-// --substeps, --velocity-iterations, --position-iterations: the benchmark has them too.
+// --substeps, --velocity-iterations, --position-iterations, --position-correction: the benchmark has them too.
 void AddSolverOptions(CLI::App& app, SolverSettings& solver);
 
 inline constexpr int kMostSteps = 10'000'000;

@@ -35,8 +35,9 @@ std::string Energy(double joules) {
 }
 
 std::string Settings(const SolverSettings& solver) {
-    return Text("%d substeps, %d velocity and %d position iterations", solver.substeps, solver.velocityIterations,
-                solver.positionIterations);
+    return Text("%d substeps, %d velocity and %d position iterations%s", solver.substeps, solver.velocityIterations,
+                solver.positionIterations,
+                solver.positionCorrection == PositionCorrection::Baumgarte ? ", Baumgarte" : "");
 }
 
 // What is seldom, where it happened.
@@ -116,41 +117,44 @@ nlohmann::ordered_json ReportJson(const std::string& name, const RunFigures& fig
         stages[StageName(static_cast<Stage>(stage))] = figures.stageMedianMs[static_cast<size_t>(stage)];
     const StepReport& last = figures.last;
     const Statistics& ms = ComparedMs(figures);
-    nlohmann::ordered_json json{{"engine", "fulcrum"},
-                                {"version", FULCRUM_VERSION_STRING},
-                                {"scene", name},
-                                {"threads", figures.threads},
-                                {"bodies", figures.bodies},
-                                {"contacts", last.contacts},
-                                {"contact_points", last.contactPoints},
-                                {"steps", figures.steps},
-                                {"median_ms", ms.median},
-                                {"mean_ms", ms.mean},
-                                {"p99_ms", ms.p99},
-                                {"max_ms", ms.max},
-                                {"steps_per_s", figures.stepMs.mean > 0 ? 1000 / figures.stepMs.mean : 0},
-                                {"accuracy", JsonNumber(figures.accuracy)},
-                                {"nonfinite", figures.nonFinite},
-                                {"hash", HashText(figures.poseHash)},
-                                {"stages_ms", stages},
-                                {"settings",
-                                 {{"dt", figures.dt},
-                                  {"substeps", figures.solver.substeps},
-                                  {"velocity_iterations", figures.solver.velocityIterations},
-                                  {"position_iterations", figures.solver.positionIterations},
-                                  {"seed", seed}}},
-                                {"islands", figures.islands},
-                                {"awake_islands", figures.awakeIslands},
-                                {"awake_bodies", last.awakeBodies},
-                                {"largest_penetration_m", figures.largestPenetration},
-                                {"deepest_pair", figures.deepestPair},
-                                {"largest_relative_penetration", figures.overlap.relative},
-                                {"relative_penetration_m", figures.overlap.depth},
-                                {"relative_penetration_pair", figures.overlapPair},
-                                {"relative_penetration_step", figures.overlap.step},
-                                {"energy_start_j", JsonNumber(figures.energyAtStart)},
-                                {"energy_end_j", JsonNumber(figures.energyAtEnd)},
-                                {"memory_bytes", figures.memoryBytes}};
+    nlohmann::ordered_json json{
+        {"engine", "fulcrum"},
+        {"version", FULCRUM_VERSION_STRING},
+        {"scene", name},
+        {"threads", figures.threads},
+        {"bodies", figures.bodies},
+        {"contacts", last.contacts},
+        {"contact_points", last.contactPoints},
+        {"steps", figures.steps},
+        {"median_ms", ms.median},
+        {"mean_ms", ms.mean},
+        {"p99_ms", ms.p99},
+        {"max_ms", ms.max},
+        {"steps_per_s", figures.stepMs.mean > 0 ? 1000 / figures.stepMs.mean : 0},
+        {"accuracy", JsonNumber(figures.accuracy)},
+        {"nonfinite", figures.nonFinite},
+        {"hash", HashText(figures.poseHash)},
+        {"stages_ms", stages},
+        {"settings",
+         {{"dt", figures.dt},
+          {"substeps", figures.solver.substeps},
+          {"velocity_iterations", figures.solver.velocityIterations},
+          {"position_iterations", figures.solver.positionIterations},
+          {"position_correction",
+           figures.solver.positionCorrection == PositionCorrection::Baumgarte ? "baumgarte" : "soft"},
+          {"seed", seed}}},
+        {"islands", figures.islands},
+        {"awake_islands", figures.awakeIslands},
+        {"awake_bodies", last.awakeBodies},
+        {"largest_penetration_m", figures.largestPenetration},
+        {"deepest_pair", figures.deepestPair},
+        {"largest_relative_penetration", figures.overlap.relative},
+        {"relative_penetration_m", figures.overlap.depth},
+        {"relative_penetration_pair", figures.overlapPair},
+        {"relative_penetration_step", figures.overlap.step},
+        {"energy_start_j", JsonNumber(figures.energyAtStart)},
+        {"energy_end_j", JsonNumber(figures.energyAtEnd)},
+        {"memory_bytes", figures.memoryBytes}};
     if (figures.queryCount > 0) json[figures.queryName + "_per_s"] = QueriesPerSecond(figures);
     return json;
 }

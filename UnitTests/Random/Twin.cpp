@@ -66,6 +66,9 @@ void AddSettings(const SystemSettings& settings, BitHash& hash) {
     hash.Add(settings.solver.substeps);
     hash.Add(settings.solver.velocityIterations);
     hash.Add(settings.solver.positionIterations);
+    hash.Add(settings.solver.positionCorrection);
+    hash.Add(settings.solver.baumgarte);
+    hash.Add(settings.solver.baumgarteSlop);
     hash.Add(settings.sleep.enabled);
     hash.Add(settings.sleep.seconds);
     hash.Add(settings.speculativeDistance);

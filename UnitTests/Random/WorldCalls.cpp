@@ -24,6 +24,7 @@ void SetSettings(Twin& twin, Values& values, const CallTargets&, Outcome& outcom
     if (values.Chance(0.3f)) settings.solver.substeps = values.Integer(1, 10);
     if (values.Chance(0.2f)) settings.solver.velocityIterations = values.Integer(1, 4);
     if (values.Chance(0.2f)) settings.solver.positionIterations = values.Integer(0, 2);
+    if (values.Chance(0.2f)) settings.solver.positionCorrection = static_cast<PositionCorrection>(values.Integer(0, 1));
     settings.sleep.enabled = values.Chance(0.8f);
     mostly(settings.sleep.seconds, 0, 1);
     mostly(settings.sleep.linearSpeed, 0, 0.1f);

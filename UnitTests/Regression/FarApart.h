@@ -341,8 +341,8 @@ private:
         for (uint32_t i = 0; i < list.count; ++i) {
             const JointRow& row = list.rows[i];
             if (i == 0) rows.error = static_cast<double>(row.error);
-            rows.a[row.slot] = row.a;
-            rows.b[row.slot] = row.b;
+            rows.a[row.slot] = row.jacobian.a;
+            rows.b[row.slot] = row.jacobian.b;
             rows.rate[row.slot] = static_cast<double>(pose.SpeedOf(row));
             rows.drives[row.slot] = row.kind == JointRow::Kind::Spring || row.kind == JointRow::Kind::SpringAtLeast ||
                                     (row.kind == JointRow::Kind::Speed && row.speed != 0);
@@ -373,8 +373,8 @@ private:
             end.velocityA = {world_.VelocityOf(a_), world_.Bodies().GetAngularVelocity(a_)};
             end.velocityB = {world_.VelocityOf(b_), world_.Bodies().GetAngularVelocity(b_)};
             JointRow row;
-            row.a = before.rows.a[slot];
-            row.b = before.rows.b[slot];
+            row.jacobian.a = before.rows.a[slot];
+            row.jacobian.b = before.rows.b[slot];
             power += static_cast<double>(type.forces[slot]) *
                      (before.rows.rate[slot] + static_cast<double>(end.SpeedOf(row)));
         }

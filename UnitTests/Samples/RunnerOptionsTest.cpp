@@ -68,13 +68,14 @@ TEST(RunnerOptions, HaveDefaultsThatWork) {
 TEST(RunnerOptions, AreAllRead) {
     const Command command = Parsed(
         "run tower --steps 12 --dt 0.01 --threads 3 --substeps 2 --velocity-iterations 7 --position-iterations 0 "
-        "--record glb --json out.json --seed 18446744073709551615");
+        "--position-correction baumgarte --record glb --json out.json --seed 18446744073709551615");
     EXPECT_EQ(command.options.StepsOf(*command.scene), 12);
     EXPECT_DOUBLE_EQ(command.options.dt, 0.01);
     EXPECT_EQ(command.options.threads, 3);
     EXPECT_EQ(command.options.solver.substeps, 2);
     EXPECT_EQ(command.options.solver.velocityIterations, 7);
     EXPECT_EQ(command.options.solver.positionIterations, 0);
+    EXPECT_EQ(command.options.solver.positionCorrection, PositionCorrection::Baumgarte);
     EXPECT_FALSE(command.options.recordHtml);
     EXPECT_TRUE(command.options.recordGlb);
     EXPECT_EQ(command.options.json, "out.json");
@@ -125,7 +126,7 @@ TEST(RunnerOptions, ListAndHelp) {
     const Command help = Parsed("run --help");
     EXPECT_EQ(help.kind, CommandKind::Help);
     for (const char* option : {"--steps", "--seconds", "--dt", "--threads", "--substeps", "--velocity-iterations",
-                               "--position-iterations", "--record", "--json", "--seed"})
+                               "--position-iterations", "--position-correction", "--record", "--json", "--seed"})
         EXPECT_NE(help.help.find(option), std::string::npos) << option;
 }
 
@@ -149,6 +150,7 @@ TEST(RunnerOptions, ValuesOutsideAreAnsweredWithTheNearest) {
     ExpectComplaint("run pyramid --substeps 65", "nearest valid value is 64");
     ExpectComplaint("run pyramid --velocity-iterations 0", "nearest valid value is 1");
     ExpectComplaint("run pyramid --position-iterations 256", "nearest valid value is 255");
+    ExpectComplaint("run pyramid --position-correction baumgart", "baumgarte");
     ExpectComplaint("run pyramid --threads 0", "nearest valid value is 1");
     ExpectComplaint("run pyramid --dt 2", "nearest valid value is 1");
     ExpectComplaint("run pyramid --dt inf", "nearest valid value is 1");

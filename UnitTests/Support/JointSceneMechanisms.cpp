@@ -32,8 +32,8 @@ public:
         const Vector3 axis = ToMatrix(pose.frameA).x;
         JointRow& row = rows.Add(0, JointRow::Kind::Speed);
         pose.SetAlong(row, axis * 5.0f);
-        row.a.angular += axis;
-        row.b.angular += axis;
+        row.jacobian.a.angular += axis;
+        row.jacobian.b.angular += axis;
     }
 };
 

@@ -1,4 +1,5 @@
-// A contact batch against the same rows as a sequence of axis and angle parts, and against conservation of momentum.
+// A contact batch against the same rows as a sequence of row parts along and about axes, and against conservation of
+// momentum.
 #include <Fulcrum/Constraints/Parts/AnglePart.h>
 #include <Fulcrum/Constraints/Parts/AxisPart.h>
 #include <Fulcrum/UnitTests/Constraints/Contacts/RandomContacts.h>
@@ -22,48 +23,48 @@ constexpr ContactSolveSettings kSolve{
 template <BodySide kSideB>
 class Rows {
 public:
-    Rows(const RandomContacts& contacts, uint32_t contact)
-        : record_(contacts.records[contact]),
-          mass1_(contacts.MassOf(2 * contact)),
-          mass2_(contacts.MassOf(2 * contact + 1)) {
+    Rows(const RandomContacts& contacts, uint32_t contact) : record_(contacts.records[contact]) {
+        const InverseMass<float> mass1 = contacts.MassOf(2 * contact), mass2 = contacts.MassOf(2 * contact + 1);
         const Pose a = contacts.PoseOf(2 * contact), b = contacts.PoseOf(2 * contact + 1);
         const Vector3 between((b.position - a.position).cast<float>());
         count_ = static_cast<int>(record_.pointCount);
-        normal_ = Rotate(a.rotation, Vector3(record_.normal[0], record_.normal[1], record_.normal[2]));
-        t1_ = Perpendicular(normal_);
-        t2_ = Cross<float>(normal_, t1_);
+        const Vector3 normal = Rotate(a.rotation, Vector3(record_.normal[0], record_.normal[1], record_.normal[2]));
+        const Vector3 t1 = Perpendicular(normal), t2 = Cross<float>(normal, t1);
         Vector3 points[4], center = Vector3::Zero();
         for (int i = 0; i < count_; ++i) {
             const ContactRecord::Point& p = record_.points[i];
             const Vector3 onA = Rotate(a.rotation, Vector3(p.onA[0], p.onA[1], p.onA[2]));
             const Vector3 onB = between + Rotate(b.rotation, Vector3(p.onB[0], p.onB[1], p.onB[2]));
-            separation_[i] = Dot<float>(normal_, Vector3(onB - onA));
-            points[i] = onA + normal_ * (0.5f * separation_[i]);
+            separation_[i] = Dot<float>(normal, Vector3(onB - onA));
+            points[i] = onA + normal * (0.5f * separation_[i]);
             center += points[i] / static_cast<float>(count_);
         }
-        const auto frame = [&](const Vector3& point, const Vector3& axis) {
-            return AxisFrame<float>{point, Vector3(point - between), axis};
+        const auto setUp = [&](RowPart<float>& row, const RowJacobian<float>& jacobian) {
+            row.SetJacobian(jacobian);
+            row.CalculateProperties<BodySide::Dynamic, kSideB>(mass1, mass2);
+            row.SetBias(0.0f);
+        };
+        const auto along = [&](const Vector3& point, const Vector3& axis) {
+            return AxisJacobian<float>({point, Vector3(point - between), axis});
         };
         for (int i = 0; i < count_; ++i) {
-            point_[i].template CalculateProperties<BodySide::Dynamic, kSideB>(mass1_, mass2_, frame(points[i], normal_),
-                                                                              0.0f);
+            setUp(point_[i], along(points[i], normal));
             point_[i].SetTotalLambda(record_.impulse[i]);
         }
         const Vector3 friction(record_.frictionImpulse[0], record_.frictionImpulse[1], record_.frictionImpulse[2]);
-        tangent1_.template CalculateProperties<BodySide::Dynamic, kSideB>(mass1_, mass2_, frame(center, t1_), 0.0f);
-        tangent2_.template CalculateProperties<BodySide::Dynamic, kSideB>(mass1_, mass2_, frame(center, t2_), 0.0f);
-        twist_.template CalculateProperties<BodySide::Dynamic, kSideB>(mass1_, mass2_, normal_, 0.0f);
-        tangent1_.SetTotalLambda(Dot<float>(friction, t1_));
-        tangent2_.SetTotalLambda(Dot<float>(friction, t2_));
+        setUp(tangent1_, along(center, t1));
+        setUp(tangent2_, along(center, t2));
+        setUp(twist_, AngleJacobian(normal));
+        tangent1_.SetTotalLambda(Dot<float>(friction, t1));
+        tangent2_.SetTotalLambda(Dot<float>(friction, t2));
         twist_.SetTotalLambda(record_.twistImpulse);
     }
 
     void WarmStart(Twist<float>& v1, Twist<float>& v2) {
-        tangent1_.template WarmStart<BodySide::Dynamic, kSideB>(v1, v2, mass1_, mass2_, t1_, 1.0f);
-        tangent2_.template WarmStart<BodySide::Dynamic, kSideB>(v1, v2, mass1_, mass2_, t2_, 1.0f);
-        twist_.template WarmStart<BodySide::Dynamic, kSideB>(v1, v2, mass1_, mass2_, normal_, 1.0f);
-        for (int i = 0; i < count_; ++i)
-            point_[i].template WarmStart<BodySide::Dynamic, kSideB>(v1, v2, mass1_, mass2_, normal_, 1.0f);
+        tangent1_.WarmStart<BodySide::Dynamic, kSideB>(v1, v2);
+        tangent2_.WarmStart<BodySide::Dynamic, kSideB>(v1, v2);
+        twist_.WarmStart<BodySide::Dynamic, kSideB>(v1, v2);
+        for (int i = 0; i < count_; ++i) point_[i].WarmStart<BodySide::Dynamic, kSideB>(v1, v2);
     }
 
     void SolveVelocity(Twist<float>& v1, Twist<float>& v2) {
@@ -77,31 +78,28 @@ public:
         // Both tangents' impulses are found, one after the other, before they are clamped to the cone together.
         const float before1 = tangent1_.GetTotalLambda(), before2 = tangent2_.GetTotalLambda();
         Twist<float> w1 = v1, w2 = v2;
-        const float wanted1 = tangent1_.template SolveTotalLambda<BodySide::Dynamic, kSideB>(w1, w2, t1_);
-        tangent1_.template ApplyTotalLambda<BodySide::Dynamic, kSideB>(w1, w2, mass1_, mass2_, t1_, wanted1);
-        const float wanted2 = tangent2_.template SolveTotalLambda<BodySide::Dynamic, kSideB>(w1, w2, t2_);
+        const float wanted1 = tangent1_.SolveTotalLambda<BodySide::Dynamic, kSideB>(w1, w2);
+        tangent1_.ApplyTotalLambda<BodySide::Dynamic, kSideB>(w1, w2, wanted1);
+        const float wanted2 = tangent2_.SolveTotalLambda<BodySide::Dynamic, kSideB>(w1, w2);
         tangent1_.SetTotalLambda(before1);
         tangent2_.SetTotalLambda(before2);
         const float length = std::sqrt(wanted1 * wanted1 + wanted2 * wanted2);
         const float scale = length > limit ? limit / length : 1.0f;
-        tangent1_.template ApplyTotalLambda<BodySide::Dynamic, kSideB>(v1, v2, mass1_, mass2_, t1_, wanted1 * scale);
-        tangent2_.template ApplyTotalLambda<BodySide::Dynamic, kSideB>(v1, v2, mass1_, mass2_, t2_, wanted2 * scale);
+        tangent1_.ApplyTotalLambda<BodySide::Dynamic, kSideB>(v1, v2, wanted1 * scale);
+        tangent2_.ApplyTotalLambda<BodySide::Dynamic, kSideB>(v1, v2, wanted2 * scale);
         const float most = limit * record_.twistRadius;
-        twist_.template SolveVelocity<BodySide::Dynamic, kSideB>(v1, v2, mass1_, mass2_, normal_, -most, most);
+        twist_.SolveVelocity<BodySide::Dynamic, kSideB>(v1, v2, -most, most);
         for (int i = 0; i < count_; ++i) {
             point_[i].SetBias(std::max(separation_[i], 0.0f) * kSolve.inverseDt);
-            point_[i].template SolveVelocity<BodySide::Dynamic, kSideB>(v1, v2, mass1_, mass2_, normal_, 0.0f, 1e30f);
+            point_[i].SolveVelocity<BodySide::Dynamic, kSideB>(v1, v2, 0.0f, 1e30f);
         }
     }
 
     int count_ = 0;
-    AxisPart<float, false> point_[4], tangent1_, tangent2_;
-    AnglePart<float, false> twist_;
+    RowPart<float> point_[4], tangent1_, tangent2_, twist_;
 
 private:
     ContactRecord record_;
-    InverseMass<float> mass1_, mass2_;
-    Vector3 normal_, t1_, t2_;
     float separation_[4] = {};
 };
 

@@ -31,7 +31,7 @@ TEST(AxisControl, LimitsHaveARowOnceTheyMayBeReachedWithinTheStep) {
     ASSERT_EQ(rows.size(), 1u);
     EXPECT_EQ(rows[kHigh].kind, Kind::AtLeast);
     EXPECT_NEAR(rows[kHigh].error, 0.01f, 1e-6f);
-    EXPECT_EQ(rows[kHigh].b.linear, Vector3(-1, 0, 0));
+    EXPECT_EQ(rows[kHigh].jacobian.b.linear, Vector3(-1, 0, 0));
     // At 30 m/s half a meter is covered in a step; away from the limit there is none.
     EXPECT_TRUE(RowsAt(Limited(-1, 1), 0.5f, 30.0f).contains(kHigh));
     EXPECT_TRUE(RowsAt(Limited(-1, 1), 0.5f, -30.0f).empty());
@@ -39,7 +39,7 @@ TEST(AxisControl, LimitsHaveARowOnceTheyMayBeReachedWithinTheStep) {
     rows = RowsAt(Limited(-1, 1), -1.5f, 30.0f);
     ASSERT_TRUE(rows.contains(kLow));
     EXPECT_NEAR(rows[kLow].error, -0.5f, 1e-6f);
-    EXPECT_EQ(rows[kLow].b.linear, Vector3(1, 0, 0));
+    EXPECT_EQ(rows[kLow].jacobian.b.linear, Vector3(1, 0, 0));
     // A narrow range: both.
     EXPECT_EQ(RowsAt(Limited(-0.01f, 0.01f), 0.0f).size(), 2u);
 }

@@ -19,8 +19,7 @@ void Move(RandomJoints& joints, float h) {
             s.deltaPosition[k] += s.linearVelocity[k] * h;
             s.deltaRotation[k] += s.angularVelocity[k] * h;
         }
-        const Vec2<float> half =
-            joints::HalfTurnOf<float>(Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]));
+        const Vec2<float> half = HalfTurnOf<float>(Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]));
         for (int k = 0; k < 2; ++k) s.halfTurn[k] = half[k];
         // As if it had turned.
         BodyMass& mass = joints.masses[body];

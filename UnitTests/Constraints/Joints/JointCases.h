@@ -113,7 +113,7 @@ void ExpectJacobiansOf(const Type& type, const JointBodies& bodies, float tolera
                 if (row.kind == JointRow::Kind::Speed) continue;
                 ASSERT_TRUE(ahead.contains(slot) && behind.contains(slot));
                 const float difference = (ahead[slot].error - behind[slot].error) / (2 * kWay);
-                const Twist<float>& j = body == 0 ? row.a : row.b;
+                const Twist<float>& j = body == 0 ? row.jacobian.a : row.jacobian.b;
                 const float expected = (axis < 3 ? j.linear : j.angular)[axis % 3] * (body == 0 ? -1.0f : 1.0f);
                 EXPECT_NEAR(difference, expected, tolerance * (1.0f + std::fabs(expected)))
                     << "slot " << slot << " body " << body << " axis " << axis;

@@ -57,7 +57,7 @@ TEST(DistanceJoint, IsSafeWhereThePointsCoincide) {
     DistanceJoint joint(1.0f, 1.0f, {});
     const JointRow row = RowsOf(joint, bodies.Pose())[kLow];
     EXPECT_EQ(row.error, -1.0f);
-    EXPECT_EQ(row.b.linear, Vector3(1, 0, 0));
+    EXPECT_EQ(row.jacobian.b.linear, Vector3(1, 0, 0));
 }
 
 TEST(DistanceJoint, ARopeThatSwingsFastIsCaughtInTime) {
@@ -179,12 +179,12 @@ TEST(ConeJoint, HasOneRowNearItsLimitAndAWayBackFromTheOppositeSide) {
     auto rows = RowsOf(joint, bodies.Pose());
     ASSERT_EQ(rows.size(), 1u);
     EXPECT_NEAR(rows[kHigh].error, 0.01f, 1e-6f);
-    EXPECT_LT((rows[kHigh].b.angular - Vector3(0, 0, -1)).norm(), 1e-6f);
+    EXPECT_LT((rows[kHigh].jacobian.b.angular - Vector3(0, 0, -1)).norm(), 1e-6f);
     bodies.PlaceB(Vector3::Zero(), {0, 1, 0, 0});
     rows = RowsOf(joint, bodies.Pose());
     EXPECT_NEAR(rows[kHigh].error, 1.0f - kPi, 1e-6f);
-    EXPECT_NEAR(rows[kHigh].b.angular.norm(), 1.0f, 1e-6f);
-    EXPECT_NEAR(rows[kHigh].b.angular.x(), 0.0f, 1e-6f);
+    EXPECT_NEAR(rows[kHigh].jacobian.b.angular.norm(), 1.0f, 1e-6f);
+    EXPECT_NEAR(rows[kHigh].jacobian.b.angular.x(), 0.0f, 1e-6f);
 }
 
 TEST(GearJoint, RowIsTheDerivativeOfThePhase) {
@@ -293,7 +293,7 @@ TEST(PulleyJoint, IsTautAtTheLengthItBeganWith) {
     bodies.place[1].y() = -1.1;
     rows = RowsOf(joint, bodies.Pose());
     EXPECT_NEAR(rows[kHigh].error, -0.2f, 1e-5f);
-    EXPECT_EQ(rows[kHigh].a.linear, Vector3(0, 0, 0));
+    EXPECT_EQ(rows[kHigh].jacobian.a.linear, Vector3(0, 0, 0));
 }
 
 TEST(WheelJoint, RowsAreTheDerivativesOfItsAngles) {

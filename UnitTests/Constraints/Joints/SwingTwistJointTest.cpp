@@ -86,7 +86,7 @@ TEST(SwingTwistJoint, ACurvedEdgeIsRightWhereTheSwingGoes) {
     bodies.Move(1, {Vector3::Zero(), way});
     auto there = RowsOf(joint, bodies.Pose());
     ASSERT_TRUE(there.contains(slot));
-    EXPECT_NEAR(row.error + Dot(row.b.angular, way), there[slot].error, 1e-5f);
+    EXPECT_NEAR(row.error + Dot(row.jacobian.b.angular, way), there[slot].error, 1e-5f);
 }
 
 TEST(SwingTwistJoint, LimitsHaveRowsOnlyNearby) {
@@ -116,7 +116,7 @@ TEST(SwingTwistJoint, ComesBackFromTheOppositeSide) {
     auto rows = RowsOf(joint, bodies.Pose());
     const JointRow& row = rows[SlotOf(joint, JointAxis::AngularY, ControlSlots::kHighLimit)];
     EXPECT_NEAR(row.error, 0.8f - kPi, 1e-5f);
-    EXPECT_NEAR(row.b.angular.norm(), 1.0f, 1e-5f);
+    EXPECT_NEAR(row.jacobian.b.angular.norm(), 1.0f, 1e-5f);
 }
 
 TEST(SwingTwistJoint, PositionMotorsTurnToTheTargetTheShortestWay) {
@@ -135,7 +135,7 @@ TEST(SwingTwistJoint, PositionMotorsTurnToTheTargetTheShortestWay) {
         for (int k = 0; k < 3; ++k) {
             const JointRow& row = rows[SlotOf(joint, static_cast<JointAxis>(3 + k), ControlSlots::kMotor)];
             EXPECT_EQ(row.kind, Kind::Spring);
-            way += row.b.angular * row.error;
+            way += row.jacobian.b.angular * row.error;
         }
         EXPECT_LT((InverseRotate(bodies.FrameOf(1), way) - off).norm(), 1e-5f);
     }
@@ -199,7 +199,7 @@ TEST(SwingTwistJoint, FrictionIsAboutTheAxesOfB) {
     ASSERT_EQ(rows.size(), 2u);
     const JointRow& row = rows[SlotOf(joint, JointAxis::AngularX, ControlSlots::kFriction)];
     EXPECT_EQ(row.maxForce, 3.0f);
-    EXPECT_LT((row.b.angular - ToMatrix(bodies.FrameOf(1)).x).norm(), 1e-6f);
+    EXPECT_LT((row.jacobian.b.angular - ToMatrix(bodies.FrameOf(1)).x).norm(), 1e-6f);
 }
 
 TEST(SixDofJoint, LockedTranslationsBecomeBlocks) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/AxisPart.h>
+#include <Fulcrum/Constraints/Parts/SpringSoftness.h>
 #include <Fulcrum/UnitTests/Support/RandomPoses.h>
 
 #include <cstdint>
@@ -33,9 +34,28 @@ inline RandomBody MakeBody(RandomPoses& random) {
     return body;
 }
 
+// Another inverse mass, and the inverse inertia scaled: parts act on whatever masses they are given.
+inline InverseMass<float> OverrideMass(const InverseMass<float>& mass, float inverseMass, float inverseInertiaScale) {
+    InverseMass<float> result = mass;
+    result.mass = inverseMass;
+    for (float* x : {&result.inertia.xx, &result.inertia.yy, &result.inertia.zz, &result.inertia.xy, &result.inertia.xz,
+                     &result.inertia.yz})
+        *x *= inverseInertiaScale;
+    return result;
+}
+
 inline AxisFrame<float> MakeFrame(RandomPoses& random) {
     const Vector3 r1 = random.InBox(1.0f), r2 = random.InBox(1.0f), axis = AnyDirection(random);
     return {r1, r2, axis};
+}
+
+// Makes a spring of a row that is set up; a hard row where the constants are zero.
+template <class Real>
+void SetSpring(RowPart<Real>& part, Real dt, Real bias, Real error, const SpringConstants<Real>& constants) {
+    const auto active = part.IsActive();
+    const Real k = Select(active, Real(1.0f) / Select(active, part.GetEffectiveMass(), Real(1.0f)), Real(0.0f));
+    const SpringSoftness<Real> spring = SpringSoftnessOf(dt, k, constants);
+    part.SetBias(spring.softness.massScale * bias + spring.errorRate * error, spring.softness);
 }
 
 inline uint32_t Bits(float x) {

@@ -1,8 +1,6 @@
 // Springs against closed forms: the continuous oscillator, the implicit recursion, the force law at rest.
 #include "RandomBodies.h"
 
-#include <Fulcrum/Constraints/Parts/SpringPart.h>
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,6 +25,27 @@ double Continuum(double frequency, double zeta, double t) {
     return (s2 * std::exp(s1 * t) - s1 * std::exp(s2 * t)) / (s2 - s1);
 }
 
+// A row part that is a spring along x between the world and a mass: K is its inverse.
+class Spring {
+public:
+    void Set(float dt, float k, float bias, float error, const SpringConstants<float>& constants) {
+        part_.SetJacobian(AxisJacobian<float>({Vector3::Zero(), Vector3::Zero(), Vector3(1, 0, 0)}));
+        part_.CalculateProperties({}, {k, {}});
+        soft_ = SpringSoftnessOf(dt, k, constants);
+        part_.SetBias(soft_.softness.massScale * bias + soft_.errorRate * error, soft_.softness);
+    }
+    // From J v and the total impulse before.
+    float SolveTotalLambda(float velocity, float totalLambda) {
+        part_.SetTotalLambda(totalLambda);
+        return part_.SolveTotalLambda({}, {Vector3(velocity, 0, 0), Vector3::Zero()});
+    }
+    float GetSoftMass() const { return part_.GetEffectiveMass() * soft_.softness.massScale; }
+
+private:
+    RowPart<float> part_;
+    SpringSoftness<float> soft_;
+};
+
 // One mass on a spring to the world: velocity solve with warm start, then x += dt v. `load` is an acceleration.
 struct Oscillator {
     float inverseMass = 0.5f;
@@ -34,8 +53,8 @@ struct Oscillator {
 
     void Step(const SpringSettings& settings, float load = 0.0f, int iterations = 1) {
         const float dt = static_cast<float>(kDt);
-        SpringPart<float> part;
-        part.SetSoft(dt, inverseMass, 0.0f, x, ToConstants(settings));
+        Spring part;
+        part.Set(dt, inverseMass, 0.0f, x, ToConstants(settings));
         v += load * dt;
         v += inverseMass * lambda;
         for (int i = 0; i < iterations; ++i) {
@@ -66,18 +85,29 @@ double LargestError(double frequency, double zeta, SpringForm form, int steps) {
     return worst;
 }
 
-// Frequency (Hz) and damping ratio of the linear map v' = s v - p x / dt, x' = x + dt v', from its eigenvalues.
-void EffectiveMotion(const detail::SpringGains<float>& gains, double& frequency, double& zeta) {
-    const double determinant = static_cast<double>(gains.softness);
-    const double trace = 1.0 + determinant - static_cast<double>(gains.errorGain);
+// s = 1/D, 1 - 1/D and p = Kx/D of the linear map v' = s v - p x / dt, x' = x + dt v'.
+struct Gains {
+    float massScale, impulseScale;
+    double errorGain;
+
+    Gains(float dt, const SpringConstants<float>& constants) {
+        const SpringSoftness<float> soft = SpringSoftnessOf(dt, 1.0f, constants);
+        massScale = soft.softness.massScale;
+        impulseScale = soft.softness.impulseScale;
+        errorGain = static_cast<double>(soft.errorRate) * static_cast<double>(dt);
+    }
+    Gains(float frequency, float zeta, SpringForm form)
+        : Gains(static_cast<float>(kDt), FrequencyConstants(frequency, zeta, form)) {}
+};
+
+// Frequency (Hz) and damping ratio of that map, from its eigenvalues.
+void EffectiveMotion(const Gains& gains, double& frequency, double& zeta) {
+    const double determinant = static_cast<double>(gains.impulseScale);
+    const double trace = 1.0 + determinant - gains.errorGain;
     const double decay = -0.5 * std::log(determinant) / kDt;
     const double damped = std::acos(0.5 * trace / std::sqrt(determinant)) / kDt;
     frequency = damped / (2.0 * kPi);
     zeta = decay / std::sqrt(decay * decay + damped * damped);
-}
-
-detail::SpringGains<float> Gains(float frequency, float zeta, SpringForm form) {
-    return detail::CalculateSpringGains(static_cast<float>(kDt), 1.0f, FrequencyConstants(frequency, zeta, form));
 }
 
 TEST(Spring, ExactFormMeetsTheContinuousOscillator) {
@@ -111,10 +141,10 @@ TEST(Spring, ImplicitFormIsTheSoftRowOfTheLiterature) {
     const double h = kDt, k = 80.0, c = 3.0, inverse = 0.7, error = 0.3, bias = -0.4, v = 1.3, lambda = 0.6;
     const double gamma = 1.0 / (h * (c + h * k));
     const double expected = lambda - (v + bias + h * k * gamma * error + gamma * lambda) / (inverse + gamma);
-    SpringPart<float> part;
-    part.SetSoft(static_cast<float>(h), 0.7f, -0.4f, 0.3f, StiffnessConstants(80.0f, 3.0f));
+    Spring part;
+    part.Set(static_cast<float>(h), 0.7f, -0.4f, 0.3f, StiffnessConstants(80.0f, 3.0f));
     EXPECT_NEAR(static_cast<double>(part.SolveTotalLambda(1.3f, 0.6f)), expected, 1e-6);
-    EXPECT_NEAR(static_cast<double>(part.GetEffectiveMass()), 1.0 / (inverse + gamma), 1e-6);
+    EXPECT_NEAR(static_cast<double>(part.GetSoftMass()), 1.0 / (inverse + gamma), 1e-6);
 }
 
 TEST(Spring, FormsDampAsDocumented) {
@@ -132,8 +162,8 @@ TEST(Spring, FormsDampAsDocumented) {
 }
 
 TEST(Spring, AutomaticChoosesTheForm) {
-    const auto same = [](const detail::SpringGains<float>& a, const detail::SpringGains<float>& b) {
-        return a.softness == b.softness && a.massScale == b.massScale && a.errorGain == b.errorGain;
+    const auto same = [](const Gains& a, const Gains& b) {
+        return a.impulseScale == b.impulseScale && a.massScale == b.massScale && a.errorGain == b.errorGain;
     };
     const auto automatic = [](float f, float zeta) { return Gains(f, zeta, SpringForm::Automatic); };
     EXPECT_TRUE(same(automatic(2.0f, 0.1f), Gains(2.0f, 0.1f, SpringForm::Exact)));
@@ -149,8 +179,8 @@ TEST(Spring, AutomaticNeverFeedsEnergy) {
     // allowed.
     for (float f = 0.05f; f < 40.0f; f *= 1.07f)
         for (float zeta = 0.0f; zeta < 4.0f; zeta += 0.0371f) {
-            const auto gains = Gains(f, zeta, SpringForm::Automatic);
-            EXPECT_GE(gains.massScale - 0.5f * gains.errorGain, -2e-7f) << f << " " << zeta;
+            const Gains gains(f, zeta, SpringForm::Automatic);
+            EXPECT_GE(static_cast<double>(gains.massScale) - 0.5 * gains.errorGain, -2e-7) << f << " " << zeta;
         }
 }
 
@@ -164,10 +194,10 @@ TEST(Spring, ManySpringsOnFewBodiesStayBounded) {
         for (double& m : inverse) m = std::pow(10.0, static_cast<double>(random.Between(-1.5f, 1.5f)));
         for (double& p : x) p = static_cast<double>(random.Between(-0.1f, 0.1f));
         const auto spring = FrequencyConstants(frequency, 0.0f);
-        const auto gains = detail::CalculateSpringGains(static_cast<float>(kDt), 1.0f, spring);
-        const double stiffness = static_cast<double>(gains.errorGain / gains.softness) / (kDt * kDt);
+        const Gains gains(static_cast<float>(kDt), spring);
+        const double stiffness = gains.errorGain / static_cast<double>(gains.impulseScale) / (kDt * kDt);
         std::vector<float> lambdas(kMasses * kMasses, 0.0f);
-        std::vector<SpringPart<float>> parts(kMasses * kMasses);
+        std::vector<Spring> parts(kMasses * kMasses);
         double first = 0.0, largest = 0.0, last = 0.0;
         for (int step = 0; step < 600; ++step) {
             double energy = 0.0;
@@ -177,8 +207,8 @@ TEST(Spring, ManySpringsOnFewBodiesStayBounded) {
                     const int row = i * kMasses + j;
                     const double k = inverse[i] + inverse[j], error = x[i] - x[j];
                     energy += 0.5 * stiffness / k * error * error;
-                    parts[row].SetSoft(static_cast<float>(kDt), static_cast<float>(k), 0.0f, static_cast<float>(error),
-                                       spring);
+                    parts[row].Set(static_cast<float>(kDt), static_cast<float>(k), 0.0f, static_cast<float>(error),
+                                   spring);
                     v[i] += inverse[i] * static_cast<double>(lambdas[row]);
                     v[j] -= inverse[j] * static_cast<double>(lambdas[row]);
                 }
@@ -229,11 +259,19 @@ TEST(Spring, NoStiffnessMeansHard) {
     for (const SpringSettings& settings :
          {SpringSettings{}, SpringSettings{.dampingRatio = 0.5f},
           SpringSettings{.mode = SpringMode::StiffnessAndDamping, .damping = 7.0f, .form = SpringForm::Exact}}) {
-        SpringPart<float> soft, hard;
-        soft.SetSoft(0.01f, 0.3f, 0.2f, 5.0f, ToConstants(settings));
-        hard.SetHard(0.3f, 0.2f);
-        EXPECT_EQ(soft.SolveTotalLambda(1.5f, 0.4f), hard.SolveTotalLambda(1.5f, 0.4f));
-        EXPECT_TRUE(soft.IsHard());
+        const SpringSoftness<float> soft = SpringSoftnessOf(0.01f, 0.3f, ToConstants(settings));
+        EXPECT_EQ(soft.softness.massScale, 1.0f);
+        EXPECT_EQ(soft.softness.impulseScale, 0.0f);
+        EXPECT_EQ(soft.errorRate, 0.0f);
+        Spring spring;
+        spring.Set(0.01f, 0.3f, 0.2f, 5.0f, ToConstants(settings));
+        RowPart<float> hard;
+        hard.SetJacobian(AxisJacobian<float>({Vector3::Zero(), Vector3::Zero(), Vector3(1, 0, 0)}));
+        hard.CalculateProperties({}, {0.3f, {}});
+        hard.SetBias(0.2f);
+        hard.SetTotalLambda(0.4f);
+        EXPECT_EQ(spring.SolveTotalLambda(1.5f, 0.4f),
+                  hard.SolveTotalLambda({}, {Vector3(1.5f, 0, 0), Vector3::Zero()}));
     }
 }
 
@@ -245,11 +283,11 @@ TEST(Spring, ExtremesStayFinite) {
                 for (const float damping : {0.0f, 1e-30f, 1.0f, 1e20f, largest})
                     for (const float dt : {1e-5f, 0.01f, 1.0f}) {
                         const SpringSettings settings{mode, stiffness, damping, stiffness, damping, form};
-                        const auto gains = detail::CalculateSpringGains(dt, 1.0f, ToConstants(settings));
+                        const Gains gains(dt, ToConstants(settings));
                         // No spring is stiffer than hard (v' = -x / dt), but one of two to three steps a period.
                         EXPECT_TRUE(gains.massScale >= 0.0f && gains.massScale <= 1.0f);
-                        EXPECT_TRUE(gains.softness >= 0.0f && gains.softness <= 1.0f);
-                        EXPECT_TRUE(gains.errorGain >= 0.0f && gains.errorGain <= 4.0f);
+                        EXPECT_TRUE(gains.impulseScale >= 0.0f && gains.impulseScale <= 1.0f);
+                        EXPECT_TRUE(gains.errorGain >= 0.0 && gains.errorGain <= 4.0);
                     }
 }
 

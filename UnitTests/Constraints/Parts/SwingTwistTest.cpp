@@ -1,5 +1,6 @@
 // Swing and twist: the decomposition, and limits as distances on the sphere against dense samples of their edges, as
 // continuous functions through 180 degrees and against their derivatives.
+#include "AllLimits.h"
 #include "RandomBodies.h"
 
 #include <Fulcrum/Constraints/Parts/SwingTwist.h>
@@ -13,6 +14,7 @@ namespace fulcrum {
 namespace {
 
 using testing::AnyDirection;
+using testing::CollectLimits;
 using testing::RandomPoses;
 
 constexpr float kPi = 3.14159265f;

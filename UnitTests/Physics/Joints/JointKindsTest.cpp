@@ -264,8 +264,8 @@ public:
         const Vector3 axis = Rotate(pose.frameA, Vector3(1, 0, 0));
         JointRow& row = rows.Add(0, JointRow::Kind::Speed);
         pose.SetAlong(row, axis * -lead_);
-        row.a.angular += axis;
-        row.b.angular += axis;
+        row.jacobian.a.angular += axis;
+        row.jacobian.b.angular += axis;
     }
 
 private:

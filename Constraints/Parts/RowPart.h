@@ -1,0 +1,126 @@
+// One row between two bodies, given by its Jacobian: what axis, angle, gear, rack-and-pinion and independent-axis parts
+// are (each derives its own Jacobian), and what every row of a joint is. One thread per part.
+//
+//   J  Jacobian        M^-1 J^T  response (RowJacobian.h)        lambda  total impulse, N s or N m s
+//   K = J M^-1 J^T, the inverse of the effective mass
+//   A solve changes lambda by -K^-1 (J v + b) (soft: RowSoftness.h), clamps the total to its limits and adds the
+//   response times the change to the velocities.
+// Source: D. Chappuis, "Constraints Derivation for Rigid Body Simulation in 3D".
+#pragma once
+
+#include <Fulcrum/Constraints/Parts/RowJacobian.h>
+#include <Fulcrum/Constraints/Parts/RowSoftness.h>
+
+namespace fulcrum {
+
+// What a snapshot, and a joint from step to step, keeps of a row.
+template <class Real>
+struct RowState {
+    Real totalLambda = Real(0.0f);
+};
+
+// Real: float, or Wide<N> for N constraints; both give the same bits. The sides are compile-time: BodySide says what a
+// static or kinematic one saves. Twists and masses of sides that are not read may be anything.
+template <class Real>
+class RowPart {
+public:
+    using Mask = MaskOf<Real>;
+    using State = RowState<Real>;
+
+    // Set-up, once per substep: Jacobian, response and effective mass, then SetBias. Leaves the total impulse for the
+    // warm start, but zero where the row is inactive.
+    FULCRUM_FORCE_INLINE void SetJacobian(const RowJacobian<Real>& jacobian) { jacobian_ = jacobian; }
+    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
+    FULCRUM_FORCE_INLINE void CalculateProperties(const InverseMass<Real>& mass1, const InverseMass<Real>& mass2) {
+        response_ = ResponseOf<kSide1, kSide2>(jacobian_, mass1, mass2);
+        inverseEffectiveMass_ = RelativeMotion(jacobian_, response_.a, response_.b);
+        SetEffectiveMass(inverseEffectiveMass_, Real(0.0f));
+    }
+    // After it where locks between the two bodies react to the row's impulse: `response` is the change of velocity by a
+    // unit of impulse and their reaction to it. What the locks determine alone is left to them: inactive.
+    FULCRUM_FORCE_INLINE void SetResponse(const RowResponse<Real>& response) {
+        response_ = response;
+        SetEffectiveMass(RelativeMotion(jacobian_, response_.a, response_.b), inverseEffectiveMass_ * Real(1e-5f));
+    }
+    // scaledBias: massScale (b + beta C), m/s or rad/s; hard, the solve reaches J v = -b. The softness: that of a push
+    // (PushSoftnessOf), or a spring's (SpringSoftnessOf).
+    FULCRUM_FORCE_INLINE void SetBias(const Real& scaledBias, const RowSoftness<Real>& softness = {}) {
+        softMass_ = effectiveMass_ * softness.massScale;
+        biasImpulse_ = effectiveMass_ * scaledBias;
+        impulseScale_ = softness.impulseScale;
+    }
+
+    void Deactivate(const Mask& mask) {
+        for (Real* x : {&effectiveMass_, &softMass_, &biasImpulse_, &totalLambda_}) *x = Select(mask, Real(0.0f), *x);
+    }
+    Mask IsActive() const { return effectiveMass_ > Real(0.0f); }
+
+    // Applies the total impulse.
+    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
+    FULCRUM_FORCE_INLINE void WarmStart(Twist<Real>& velocity1, Twist<Real>& velocity2) const {
+        AddResponse<kSide1, kSide2>(response_, totalLambda_, velocity1, velocity2);
+    }
+
+    // One iteration; the total impulse stays in [minLambda, maxLambda], N s or N m s. Returns where anything was
+    // applied.
+    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
+    FULCRUM_FORCE_INLINE Mask SolveVelocity(Twist<Real>& velocity1, Twist<Real>& velocity2, const Real& minLambda,
+                                            const Real& maxLambda) {
+        return ApplyTotalLambda<kSide1, kSide2>(
+            velocity1, velocity2, Clamp(SolveTotalLambda<kSide1, kSide2>(velocity1, velocity2), minLambda, maxLambda));
+    }
+    // The two halves of it. First the total impulse that would satisfy the row, which changes nothing; then, clamped by
+    // the caller (to friction's cone, with the other row's), it is applied.
+    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
+    FULCRUM_FORCE_INLINE Real SolveTotalLambda(const Twist<Real>& velocity1, const Twist<Real>& velocity2) const {
+        const Real impulse = softMass_ * RelativeMotion<kSide1, kSide2>(jacobian_, velocity1, velocity2) + biasImpulse_;
+        return totalLambda_ + SoftDelta<Real, Real>(impulse, totalLambda_, impulseScale_);
+    }
+    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
+    FULCRUM_FORCE_INLINE Mask ApplyTotalLambda(Twist<Real>& velocity1, Twist<Real>& velocity2,
+                                               const Real& totalLambda) {
+        const Real deltaLambda = Select(IsActive(), totalLambda - totalLambda_, Real(0.0f));
+        const Mask applied = AddResponse<kSide1, kSide2>(response_, deltaLambda, velocity1, velocity2);
+        totalLambda_ = Select(applied, totalLambda, totalLambda_);
+        return applied;
+    }
+
+    // One position pass: moves the bodies (displacement since the start of the step) by -K^-1 baumgarte C along J.
+    // error: C as the poses are now, m or rad; zero where it is satisfied, and for springs: their error is their force.
+    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
+    Mask SolvePosition(Twist<Real>& displacement1, Twist<Real>& displacement2, const Real& error,
+                       const Real& baumgarte) const {
+        return AddResponse<kSide1, kSide2>(response_, Real(effectiveMass_ * baumgarte * -error), displacement1,
+                                           displacement2);
+    }
+
+    const RowJacobian<Real>& GetJacobian() const { return jacobian_; }
+    const RowResponse<Real>& GetResponse() const { return response_; }
+    // 1 / K without the softness; zero where inactive. kg or kg m2.
+    const Real& GetEffectiveMass() const { return effectiveMass_; }
+
+    // N s or N m s.
+    const Real& GetTotalLambda() const { return totalLambda_; }
+    void SetTotalLambda(const Real& totalLambda) { totalLambda_ = totalLambda; }
+    State SaveState() const { return {totalLambda_}; }
+    void RestoreState(const State& state) { totalLambda_ = state.totalLambda; }
+
+private:
+    // Inactive where K is `least` or below: no body can move.
+    FULCRUM_FORCE_INLINE void SetEffectiveMass(const Real& k, const Real& least) {
+        const Mask movable = k > least;
+        effectiveMass_ = Select(movable, Real(1.0f) / Select(movable, k, Real(1.0f)), Real(0.0f));
+        totalLambda_ = Select(movable, totalLambda_, Real(0.0f));
+    }
+
+    RowJacobian<Real> jacobian_;
+    RowResponse<Real> response_;
+    Real inverseEffectiveMass_ = Real(0.0f);  // K without the locks
+    Real effectiveMass_ = Real(0.0f);
+    // Kept multiplied by the effective mass, which leaves one product to a solve.
+    Real softMass_ = Real(0.0f), biasImpulse_ = Real(0.0f);
+    Real impulseScale_ = Real(0.0f);
+    Real totalLambda_ = Real(0.0f);
+};
+
+}  // namespace fulcrum
