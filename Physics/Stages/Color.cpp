@@ -12,6 +12,7 @@ namespace fulcrum {
 void Color(uint32_t bodyCount, std::span<PairChange> changes, PairStore& pairs, ConstraintColoring& coloring,
            std::vector<uint32_t>& began) {
     coloring.ReserveBodies(bodyCount);
+    began.reserve(pairs.pairs.capacity());  // so that no step of a settled world allocates
     began.clear();
     VisitChanges(changes, [&](uint32_t index) {
         const PairChange change = changes[index];

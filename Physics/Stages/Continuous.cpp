@@ -198,7 +198,6 @@ void Continuous(WorldState& world, StepState& step) {
     store.ended.clear();
     store.endedAt.clear();
     if (world.bodies.continuousCount == 0) return;
-    store.dt = step.dt;
     ReserveLists(world, step);
     const uint32_t fast = FindFast(world, step);
     step.report.sweptBodies = fast;

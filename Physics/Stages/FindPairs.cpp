@@ -195,9 +195,17 @@ void ActivatePairs(WorldState& world, StepState& step, const std::vector<uint64_
     });
 }
 
+// The lists get room by the size of the world, so that no step of a settled one allocates, whichever worker does what.
+void ReserveLists(StepState& step, size_t colliders) {
+    step.activated.reserve(colliders);
+    step.newPairs.reserve(colliders);
+    for (WorkerFindings& findings : step.findings) findings.pairs.reserve(colliders);
+}
+
 }  // namespace
 
 void FindPairs(WorldState& world, StepState& step) {
+    ReserveLists(step, world.colliders.colliders.capacity());
     step.activated.clear();
     EndDispersing(world, step);
     if (!step.deepOverlaps.empty()) StartDispersing(world, step, step.deepOverlaps);

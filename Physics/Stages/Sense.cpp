@@ -38,14 +38,13 @@ bool Rests(const WorldState& world, const SensorSearch& sensing, uint32_t body) 
     return !world.bodies.dynamics[body].awake && !IsTouched(world, sensing, body);
 }
 
-void NoteTouched(WorldState& world, StepState& step) {
+void NoteTouched(WorldState& world, SensorSearch& sensing, std::span<WorkerFindings> workers) {
     SensorStore& store = world.sensors;
-    SensorSearch& sensing = step.sensing;
     sensing.touchedIn.resize(world.bodies.Size(), 0);
     for (uint32_t body : store.touched)
         if (world.bodies.cold[body].exists) sensing.touchedIn[body] = world.step;
     store.touched.reserve(world.colliders.colliders.capacity());
-    for (WorkerFindings& findings : step.findings) {
+    for (WorkerFindings& findings : workers) {
         findings.sensorCandidates.reserve(sensing.candidates.capacity());
         findings.sensorVisits.reserve(sensing.visits.capacity());
         findings.sensorTests = 0;
@@ -65,12 +64,12 @@ void CollectCutWays(const SweepStore& sweeps, std::vector<MotionSegment>& cut) {
 }
 
 // Sensors are found wherever they were in this step, and by queries where they are now.
-void EnlargeSensorBounds(WorldState& world, const StepState& step) {
+void EnlargeSensorBounds(WorldState& world, const SweepStore& sweeps, std::span<const MotionSegment> cut) {
     ColliderStore& colliders = world.colliders;
     for (const Sensor& sensor : world.sensors.sensors) {
         const uint32_t body = sensor.id.index;
         if (sensor.removed || !world.bodies.dynamics[body].awake) continue;
-        const Way way(world, step.sweeps, step.sensing.cut, body);
+        const Way way(world, sweeps, cut, body);
         VisitColliders(world, body, [&](uint32_t i) {
             Bounds bounds = PieceBounds(world, way, i);
             bounds.Include(TightBoundsOf(world, i));
@@ -84,16 +83,17 @@ void EnlargeSensorBounds(WorldState& world, const StepState& step) {
 }
 
 // The body's sphere all along its way.
-Bounds RoundBounds(const WorldState& world, const StepState& step, uint32_t body) {
+Bounds RoundBounds(const WorldState& world, const SweepStore& sweeps, std::span<const MotionSegment> cut,
+                   uint32_t body) {
     const Position reach = Position::Constant(double{world.bodies.dynamics[body].outerRadius});
     Position lower = world.bodies.CenterOf(body), upper = lower;
     const auto include = [&](const Position& center) {
         lower = lower.cwiseMin(center);
         upper = upper.cwiseMax(center);
     };
-    const SweepStore::Start* starts = step.sweeps.starts.data();
-    if (body < step.sweeps.starts.size() && starts[body].step == world.step) include(starts[body].pose.position);
-    for (const MotionSegment& part : CutSegmentsOf(step.sensing.cut, body)) include(part.sweep.start.position);
+    const SweepStore::Start* starts = sweeps.starts.data();
+    if (body < sweeps.starts.size() && starts[body].step == world.step) include(starts[body].pose.position);
+    for (const MotionSegment& part : CutSegmentsOf(cut, body)) include(part.sweep.start.position);
     const Position& origin = world.colliders.boundsOrigin;
     return RoundedOutwards(lower - origin - reach, upper - origin + reach);
 }
@@ -104,9 +104,10 @@ void AddCandidate(const WorldState& world, uint32_t sensorBody, uint32_t body, W
         findings.sensorCandidates.push_back(uint64_t(place) << 32 | body);
 }
 
-void SearchFromBody(const WorldState& world, const StepState& step, uint32_t body, WorkerFindings& findings) {
+void SearchFromBody(const WorldState& world, const SweepStore& sweeps, std::span<const MotionSegment> cut,
+                    uint32_t body, WorkerFindings& findings) {
     const ColliderStore& colliders = world.colliders;
-    colliders.sensorTree.Query(RoundBounds(world, step, body),
+    colliders.sensorTree.Query(RoundBounds(world, sweeps, cut, body),
                                [&](uint32_t i) { AddCandidate(world, colliders.colliders[i].body, body, findings); });
 }
 
@@ -127,28 +128,30 @@ void SearchFromSensor(const WorldState& world, const SensorSearch& sensing, cons
     });
 }
 
-void FindCandidates(WorldState& world, StepState& step) {
-    SensorStore& store = world.sensors;
+void FindCandidates(const WorldState& world, const SweepStore& sweeps, SensorSearch& sensing,
+                    std::span<WorkerFindings> workers) {
+    const SensorStore& store = world.sensors;
     const auto forEach = [&](size_t count, uint32_t minimumRange, const auto& search) {
         world.jobs->ParallelFor(static_cast<uint32_t>(count), minimumRange, [&](JobRange range) {
-            for (uint32_t i = range.begin; i < range.end; ++i) search(i, step.findings[range.worker]);
+            for (uint32_t i = range.begin; i < range.end; ++i) search(i, workers[range.worker]);
         });
     };
     const std::vector<uint32_t>& awake = world.bodies.awake;
-    forEach(awake.size(), 128,
-            [&](uint32_t i, WorkerFindings& findings) { SearchFromBody(world, step, awake[i], findings); });
+    forEach(awake.size(), 128, [&](uint32_t i, WorkerFindings& findings) {
+        SearchFromBody(world, sweeps, sensing.cut, awake[i], findings);
+    });
     forEach(store.touched.size(), 128, [&](uint32_t i, WorkerFindings& findings) {
         const uint32_t body = store.touched[i];
         if (world.bodies.cold[body].exists && !world.bodies.dynamics[body].awake)
-            SearchFromBody(world, step, body, findings);
+            SearchFromBody(world, sweeps, sensing.cut, body, findings);
     });
     forEach(store.sensors.size(), 1, [&](uint32_t i, WorkerFindings& findings) {
-        SearchFromSensor(world, step.sensing, store.sensors[i], findings);
+        SearchFromSensor(world, sensing, store.sensors[i], findings);
     });
 
-    std::vector<uint64_t>& candidates = step.sensing.candidates;
+    std::vector<uint64_t>& candidates = sensing.candidates;
     candidates.clear();
-    for (WorkerFindings& findings : step.findings) {
+    for (WorkerFindings& findings : workers) {
         candidates.insert(candidates.end(), findings.sensorCandidates.begin(), findings.sensorCandidates.end());
         findings.sensorCandidates.clear();
     }
@@ -156,37 +159,37 @@ void FindCandidates(WorldState& world, StepState& step) {
     candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
 }
 
-void LookAtCandidate(const WorldState& world, const StepState& step, uint64_t candidate, WorkerFindings& findings) {
+void LookAtCandidate(const WorldState& world, const SweepStore& sweeps, const SensorSearch& sensing, uint64_t candidate,
+                     WorkerFindings& findings) {
     const uint32_t place = static_cast<uint32_t>(candidate >> 32), body = static_cast<uint32_t>(candidate);
     const Sensor& sensor = world.sensors.sensors[place];
     AtStart atStart = AtStart::Unknown;
-    if (!IsTouched(world, step.sensing, body) && !IsTouched(world, step.sensing, sensor.id.index)) {
+    if (!IsTouched(world, sensing, body) && !IsTouched(world, sensing, sensor.id.index)) {
         const bool wasInside = std::binary_search(sensor.inside.begin(), sensor.inside.end(), world.bodies.IdOf(body));
         atStart = wasInside ? AtStart::Inside : AtStart::Outside;
     }
     ++findings.sensorTests;
     // Most of what is inside stays there.
     if (atStart == AtStart::Inside && IsOnePiece(world, body) && IsOnePiece(world, sensor.id.index) &&
-        CutSegmentsOf(step.sensing.cut, body).empty() && OverlapAtEnd(world, sensor.id.index, body)) {
+        CutSegmentsOf(sensing.cut, body).empty() && OverlapAtEnd(world, sensor.id.index, body)) {
         findings.sensorVisits.push_back({place, body, 0, 1, true, true});
         return;
     }
-    const std::vector<MotionSegment>& cut = step.sensing.cut;
-    FindVisits(world, place, Way(world, step.sweeps, cut, sensor.id.index), Way(world, step.sweeps, cut, body), atStart,
-               findings.sensorVisits);
+    FindVisits(world, place, Way(world, sweeps, sensing.cut, sensor.id.index), Way(world, sweeps, sensing.cut, body),
+               atStart, findings.sensorVisits);
 }
 
-void FindAllVisits(const WorldState& world, StepState& step) {
-    SensorSearch& sensing = step.sensing;
+void FindAllVisits(const WorldState& world, const SweepStore& sweeps, SensorSearch& sensing,
+                   std::span<WorkerFindings> workers, StepReport& report) {
     world.jobs->ParallelFor(static_cast<uint32_t>(sensing.candidates.size()), 4, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i)
-            LookAtCandidate(world, step, sensing.candidates[i], step.findings[range.worker]);
+            LookAtCandidate(world, sweeps, sensing, sensing.candidates[i], workers[range.worker]);
     });
     sensing.visits.clear();
-    for (WorkerFindings& findings : step.findings) {
+    for (WorkerFindings& findings : workers) {
         sensing.visits.insert(sensing.visits.end(), findings.sensorVisits.begin(), findings.sensorVisits.end());
         findings.sensorVisits.clear();
-        step.report.sensorTests += findings.sensorTests;
+        report.sensorTests += findings.sensorTests;
     }
     std::sort(sensing.visits.begin(), sensing.visits.end(), [](const SensorVisit& a, const SensorVisit& b) {
         return std::tie(a.sensor, a.body, a.from) < std::tie(b.sensor, b.body, b.from);
@@ -268,29 +271,29 @@ private:
     std::vector<SensorVisit>::const_iterator visit_, lastVisit_;
 };
 
-void ReportAll(WorldState& world, StepState& step) {
+void ReportAll(WorldState& world, const SensorSearch& sensing, StepReport& report) {
     SensorStore& store = world.sensors;
     world.jobs->ParallelFor(static_cast<uint32_t>(store.sensors.size()), 1, [&](JobRange range) {
-        for (uint32_t i = range.begin; i < range.end; ++i) Reporter(world, step.sensing, store.sensors[i], i).Run();
+        for (uint32_t i = range.begin; i < range.end; ++i) Reporter(world, sensing, store.sensors[i], i).Run();
     });
     for (const Sensor& sensor : store.sensors)
         store.events.insert(store.events.end(), sensor.events.begin(), sensor.events.end());
-    step.report.sensorEvents = static_cast<uint32_t>(store.events.size());
+    report.sensorEvents = static_cast<uint32_t>(store.events.size());
     std::erase_if(store.sensors, [](const Sensor& sensor) { return sensor.removed; });
 }
 
 }  // namespace
 
-void Sense(WorldState& world, StepState& step) {
+void Sense(WorldState& world, const SweepStore& sweeps, SensorSearch& sensing, std::span<WorkerFindings> workers,
+           StepReport& report) {
     SensorStore& store = world.sensors;
     if (store.IsEmpty()) return;
-    step.sweeps.dt = step.dt;
-    NoteTouched(world, step);
-    CollectCutWays(step.sweeps, step.sensing.cut);
-    EnlargeSensorBounds(world, step);
-    FindCandidates(world, step);
-    FindAllVisits(world, step);
-    ReportAll(world, step);
+    NoteTouched(world, sensing, workers);
+    CollectCutWays(sweeps, sensing.cut);
+    EnlargeSensorBounds(world, sweeps, sensing.cut);
+    FindCandidates(world, sweeps, sensing, workers);
+    FindAllVisits(world, sweeps, sensing, workers, report);
+    ReportAll(world, sensing, report);
     store.touched.clear();
 }
 

@@ -8,8 +8,9 @@
 namespace fulcrum {
 
 // Reads poses, velocities, shapes. Writes world inertia and accelerations; fat bounds and trees where a collider left
-// its own.
-void UpdateBounds(WorldState& world, StepState& step);
+// its own. Bodies that disperse (Crowd.h) get their velocities; what is not finite is frozen.
+void UpdateBounds(WorldState& world, float dt, std::vector<DispersingBody>& dispersing,
+                  std::span<WorkerFindings> workers);
 
 // Reads trees and the colliders that moved. Adds pairs, sorted by id, and activates resting ones.
 void FindPairs(WorldState& world, StepState& step);
@@ -48,8 +49,10 @@ void Store(WorldState& world, StepState& step);
 // Casts what moved far and wants it along its way; what hits something bounces there.
 void Continuous(WorldState& world, StepState& step);
 
-// Finds what is inside the sensors, and what came in or left, all along the ways of the step.
-void Sense(WorldState& world, StepState& step);
+// Finds what is inside the sensors, and what came in or left, all along the ways of the step. Of the world it writes
+// the sensors, and the bounds of their colliders.
+void Sense(WorldState& world, const SweepStore& sweeps, SensorSearch& sensing, std::span<WorkerFindings> workers,
+           StepReport& report);
 
 // Puts islands that have been slow for long enough to sleep. candidates: how many bodies have been.
 void Sleep(WorldState& world, uint32_t candidates, ScratchArena& scratch);

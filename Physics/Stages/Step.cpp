@@ -19,7 +19,8 @@ struct Stage {
 
 // The order in which they run, and what each is given.
 constexpr Stage kStages[] = {
-    {"UpdateBounds", UpdateBounds},
+    {"UpdateBounds",
+     [](WorldState& world, StepState& step) { UpdateBounds(world, step.dt, step.dispersing, step.findings); }},
     {"FindPairs", FindPairs},
     {"Collide", Collide},
     {"Color",
@@ -40,7 +41,8 @@ constexpr Stage kStages[] = {
     {"Restitution", Restitution},
     {"Store", Store},
     {"Continuous", Continuous},
-    {"Sense", Sense},
+    {"Sense",
+     [](WorldState& world, StepState& step) { Sense(world, step.sweeps, step.sensing, step.findings, step.report); }},
     {"Sleep", [](WorldState& world, StepState& step) { Sleep(world, step.sleepCandidates, step.scratch); }},
 };
 static_assert(std::size(kStages) == kStageCount, "kStageCount (StepReport.h) is not the number of stages");

@@ -289,7 +289,10 @@ void BreakJoints(WorldState& world, std::vector<JointId>& broken) {
 
 void Store(WorldState& world, StepState& step) {
     StoreImpulses(world, step);
-    if (KeepsStarts(world)) step.sweeps.starts.resize(world.bodies.Size());
+    if (KeepsStarts(world)) {
+        step.sweeps.dt = step.dt;
+        step.sweeps.starts.resize(world.bodies.Size());
+    }
     world.jobs->ParallelFor(static_cast<uint32_t>(world.bodies.awake.size()), 64,
                             [&](JobRange range) { EndBodies(world, range, step); });
     BreakJoints(world, step.broken);

@@ -57,26 +57,20 @@ void UpdateColliders(WorldState& world, uint32_t body, float dt, WorkerFindings&
     if (changed) world.bodies.poses[body].boundsChangedIn = static_cast<uint32_t>(world.step);
 }
 
-// The lists of what moves and meets get room by the size of the world, so that no step of a settled one allocates,
-// whichever worker does what.
-void ReserveLists(WorldState& world, StepState& step) {
-    const size_t colliders = world.colliders.colliders.capacity();
-    world.colliders.moved.reserve(colliders);
-    step.activated.reserve(colliders);
-    step.began.reserve(colliders);
-    step.newPairs.reserve(colliders);
-    for (WorkerFindings& findings : step.findings) {
-        findings.colliders.reserve(colliders);
-        findings.pairs.reserve(colliders);
-    }
+// The lists of what moves get room by the size of the world, so that no step of a settled one allocates, whichever
+// worker does what.
+void ReserveLists(ColliderStore& colliders, std::span<WorkerFindings> workers) {
+    const size_t most = colliders.colliders.capacity();
+    colliders.moved.reserve(most);
+    for (WorkerFindings& findings : workers) findings.colliders.reserve(most);
 }
 
 // In the order of their ids, so that the shape of the trees and the lists of sensors repeat from run to run; neither
 // depends on it where most moved and there are no sensors.
-void ListMoved(WorldState& world, StepState& step) {
+void ListMoved(WorldState& world, std::span<WorkerFindings> workers) {
     std::vector<uint32_t>& moved = world.colliders.moved;
     const auto first = static_cast<ptrdiff_t>(moved.size());
-    for (WorkerFindings& findings : step.findings) {
+    for (WorkerFindings& findings : workers) {
         moved.insert(moved.end(), findings.colliders.begin(), findings.colliders.end());
         findings.colliders.clear();
     }
@@ -103,13 +97,14 @@ void UpdateTrees(WorldState& world) {
 
 }  // namespace
 
-void UpdateBounds(WorldState& world, StepState& step) {
-    ReserveLists(world, step);
-    PushDispersing(world, step.dispersing, step.dt);
+void UpdateBounds(WorldState& world, float dt, std::vector<DispersingBody>& dispersing,
+                  std::span<WorkerFindings> workers) {
+    ReserveLists(world.colliders, workers);
+    PushDispersing(world, dispersing, dt);
     BodyStore& bodies = world.bodies;
     const Vector3 gravity = world.settings.gravity;
     world.jobs->ParallelFor(static_cast<uint32_t>(bodies.awake.size()), 64, [&](JobRange range) {
-        WorkerFindings& findings = step.findings[range.worker];
+        WorkerFindings& findings = workers[range.worker];
         for (uint32_t i = range.begin; i < range.end; ++i) {
             const uint32_t body = bodies.awake[i];
             AdmitBody(world, body, findings);
@@ -121,11 +116,11 @@ void UpdateBounds(WorldState& world, StepState& step) {
                 if (dynamics.frozen) acceleration.setZero();
                 for (int k = 0; k < 3; ++k) bodies.poses[body].acceleration[k] = acceleration[k];
             }
-            UpdateColliders(world, body, step.dt, findings);
+            UpdateColliders(world, body, dt, findings);
         }
     });
-    SettleStopped(world, step.findings);
-    ListMoved(world, step);
+    SettleStopped(world, workers);
+    ListMoved(world, workers);
     UpdateTrees(world);
 }
 
