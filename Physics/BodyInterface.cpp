@@ -1,11 +1,17 @@
 #include <Fulcrum/Physics/BodyInterface.h>
 
 #include <Fulcrum/Math/Trigonometry.h>
-#include <Fulcrum/Physics/BodyColliders.h>
-#include <Fulcrum/Physics/Stages/BodyLimits.h>
-#include <Fulcrum/Physics/Stages/Stages.h>
-#include <Fulcrum/Physics/State/BodyPairs.h>
 #include <Fulcrum/Physics/Validation.h>
+#include <Fulcrum/Physics/World/BodyColliders.h>
+#include <Fulcrum/Physics/World/BodyPairs.h>
+#include <Fulcrum/Physics/World/Colors.h>
+#include <Fulcrum/Physics/World/FatBounds.h>
+#include <Fulcrum/Physics/World/Filters.h>
+#include <Fulcrum/Physics/World/JointChanges.h>
+#include <Fulcrum/Physics/World/Materials.h>
+#include <Fulcrum/Physics/World/Sleeping.h>
+#include <Fulcrum/Physics/World/SpeedLimits.h>
+#include <Fulcrum/Physics/World/Waking.h>
 
 namespace fulcrum {
 
@@ -95,7 +101,7 @@ void Teleported(WorldState& world, uint32_t body) {
         world.colliders.TreeOf(collider).Update(i, collider.fat);
         world.outsideFatBounds.Forget(i);
     });
-    world.bodies.poses[body].boundsChangedIn = static_cast<uint32_t>(world.report.step + 1);
+    world.bodies.poses[body].boundsChangedIn = static_cast<uint32_t>(world.step + 1);
     RequeueColliders(world, body);
 }
 
@@ -111,7 +117,7 @@ Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
     cold.material = settings.material;
     cold.userData = settings.userData;
     cold.continuous = settings.continuous;
-    world_.sweeps.users += settings.continuous != ContinuousCollision::Off;
+    world_.bodies.continuousCount += settings.continuous != ContinuousCollision::Off;
     cold.isSensor = settings.isSensor;
     FillDynamics(world_.bodies.dynamics[body], settings);
     world_.bodies.SetFilter(body, {settings.category, settings.mask, settings.group});
@@ -147,7 +153,7 @@ Status BodyInterface::Remove(BodyId id) {
     WakeNeighbors(world_, body);
     world_.joints.VisitOf(body, [&](uint32_t joint) { RemoveJoint(world_, joint); });
     BodyCold& cold = world_.bodies.cold[body];
-    world_.sweeps.users -= cold.continuous != ContinuousCollision::Off;
+    world_.bodies.continuousCount -= cold.continuous != ContinuousCollision::Off;
     if (cold.isSensor) world_.sensors.Remove(id);
     VisitColliders(world_, body, [&](uint32_t i) {
         world_.colliders.TreeOf(world_.colliders.colliders[i]).Remove(i);
@@ -340,7 +346,7 @@ Status BodyInterface::SetContinuous(BodyId id, ContinuousCollision continuous) {
     BodyCold& cold = world_.bodies.cold[id.index];
     if (cold.isSensor && continuous != kOff)
         return Error{ErrorCode::Unsupported, "a sensor touches nothing, and is not cast"};
-    world_.sweeps.users += (continuous != kOff) - (cold.continuous != kOff);
+    world_.bodies.continuousCount += (continuous != kOff) - (cold.continuous != kOff);
     cold.continuous = continuous;
     world_.bodies.dynamics[id.index].continuous = continuous != kOff;
     return Done{};
@@ -357,7 +363,7 @@ Status BodyInterface::SetSensor(BodyId id, bool isSensor) {
                      "the body has continuous collision; a sensor touches nothing, and is not cast"};
     WakeBody(world_, id.index);
     WakeNeighbors(world_, id.index);
-    VisitPairsOf(world_, {&id.index, 1}, [&](uint32_t pair) { RemovePair(world_, pair); });
+    VisitPairsOf(world_, {&id.index, 1}, [&](uint32_t pair) { RemovePair(world_.pairs, world_.coloring, pair); });
     cold.isSensor = isSensor;
     MoveToItsTree(world_, id.index);
     WakeNeighbors(world_, id.index);

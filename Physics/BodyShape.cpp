@@ -1,8 +1,9 @@
 // What BodyInterface does to the shapes of bodies: edits of children, other shapes.
 #include <Fulcrum/Collision/Shapes/MutableCompound.h>
-#include <Fulcrum/Physics/BodyColliders.h>
 #include <Fulcrum/Physics/BodyInterface.h>
 #include <Fulcrum/Physics/Validation.h>
+#include <Fulcrum/Physics/World/BodyColliders.h>
+#include <Fulcrum/Physics/World/Waking.h>
 
 namespace fulcrum {
 
@@ -66,11 +67,6 @@ Status WithoutId(const Result<ChildId>& result) {
 }
 
 }  // namespace
-
-double RelativeMassOf(const Shape& shape) {
-    return shape.Type() == ShapeType::MutableCompound ? static_cast<const MutableCompound&>(shape).RelativeMass()
-                                                      : double{shape.Mass().volume};
-}
 
 Result<ChildId> BodyInterface::AddChild(BodyId id, const CompoundShape::ChildSettings& child, MassUpdate mass) {
     return EditChildren(world_, id, mass, [&](const MutableCompound& c, MassUpdate m) { return c.PlanAdd(child, m); });

@@ -3,7 +3,7 @@
 #include <Fulcrum/Constraints/Parts/HingeRotationPart.h>
 #include <Fulcrum/Constraints/Parts/RotationEulerPart.h>
 #include <Fulcrum/Physics/JointValidation.h>
-#include <Fulcrum/Physics/Stages/Stages.h>
+#include <Fulcrum/Physics/World/JointChanges.h>
 
 #include <algorithm>
 
@@ -104,43 +104,7 @@ JointPose PoseOf(const WorldState& world, uint32_t index) {
     return pose;
 }
 
-void WakeBoth(WorldState& world, const Joint& joint) {
-    for (uint32_t body : joint.body) WakeBody(world, body);
-}
-
-// The two bodies must not touch any longer.
-void DropPairs(WorldState& world, const Joint& joint) {
-    VisitColliders(world, joint.body[0], [&](uint32_t i) {
-        VisitColliders(world, joint.body[1], [&](uint32_t j) {
-            const uint32_t pair = world.pairs.Find(i, j);
-            if (pair != PairStore::kNone) RemovePair(world, pair);
-        });
-    });
-}
-
-// Brings everything in line with `enabled`.
-void Enable(WorldState& world, uint32_t index, bool enabled) {
-    Joint& joint = world.joints.joints[index];
-    joint.enabled = enabled;
-    if (enabled) {
-        if (!joint.collideConnected) DropPairs(world, joint);
-        WakeBoth(world, joint);
-        ColorJoint(world, index);
-    } else {
-        WakeBoth(world, joint);
-        UncolorJoint(world, index);
-        world.joints.Forget(index);
-        for (uint32_t body : joint.body) RequeueColliders(world, body);
-    }
-}
-
 }  // namespace
-
-void RemoveJoint(WorldState& world, uint32_t index) {
-    Enable(world, index, false);
-    world.joints.Unlink(index);
-    world.joints.Free(index);
-}
 
 Result<JointId> JointInterface::Add(const JointSettings& s, std::unique_ptr<JointType> type) {
     const WorldLock::Exclusive alone(world_.lock);
@@ -170,7 +134,7 @@ Result<JointId> JointInterface::Add(const JointSettings& s, std::unique_ptr<Join
     world_.joints.types[index] = joint.type.get();
     world_.joints.Link(index);
     joint.enabled = s.enabled;
-    if (s.enabled) Enable(world_, index, true);
+    if (s.enabled) EnableJoint(world_, index, true);
     return world_.joints.IdOf(index);
 }
 
@@ -201,7 +165,7 @@ Status JointInterface::SetEnabled(JointId id, bool enabled) {
     const WorldLock::Exclusive alone(world_.lock);
     if (alone.Refusal()) return *alone.Refusal();
     if (!Exists(id)) return Unknown(id);
-    if (world_.joints.joints[id.index].enabled != enabled) Enable(world_, id.index, enabled);
+    if (world_.joints.joints[id.index].enabled != enabled) EnableJoint(world_, id.index, enabled);
     return Done{};
 }
 
@@ -226,7 +190,7 @@ Status JointInterface::ChangeControl(JointId id, JointAxis axis, Change&& change
     *control = changed;
     Joint& joint = world_.joints.joints[id.index];
     if (joint.type->MaxRows() != joint.maxRows || !(joint.type->Locks() == joint.locks)) world_.coloring.Invalidate();
-    if (joint.enabled) WakeBoth(world_, joint);
+    if (joint.enabled) WakeBodiesOf(world_, joint);
     return Done{};
 }
 
@@ -250,7 +214,7 @@ Status JointInterface::SetTargetOrientation(JointId id, const Quaternion& target
     if (MaybeError error = CheckRotation("target", target)) return *error;
     const Joint& joint = world_.joints.joints[id.index];
     joint.type->SetTargetOrientation(Normalized(target));
-    if (joint.enabled) WakeBoth(world_, joint);
+    if (joint.enabled) WakeBodiesOf(world_, joint);
     return Done{};
 }
 
@@ -265,7 +229,7 @@ Status JointInterface::SetEffort(JointId id, const SolverSettings& effort) {
     Joint& joint = world_.joints.joints[id.index];
     joint.effort = effort;
     world_.coloring.Invalidate();
-    if (joint.enabled) WakeBoth(world_, joint);
+    if (joint.enabled) WakeBodiesOf(world_, joint);
     return Done{};
 }
 

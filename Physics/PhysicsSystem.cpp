@@ -1,102 +1,15 @@
 #include <Fulcrum/Physics/PhysicsSystem.h>
 
-#include <Fulcrum/Physics/Islands/UnionFind.h>
 #include <Fulcrum/Physics/Misuse.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
-#include <Fulcrum/Physics/Stages/Stages.h>
-#include <Fulcrum/Physics/State/BodyPairs.h>
+#include <Fulcrum/Physics/Stages/Step.h>
 #include <Fulcrum/Physics/Validation.h>
+#include <Fulcrum/Physics/World/Filters.h>
+#include <Fulcrum/Physics/World/UnionFind.h>
 
-#include <algorithm>
-#include <chrono>
 #include <cstring>
 
 namespace fulcrum {
-
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double Milliseconds(Clock::time_point from, Clock::time_point to) {
-    return std::chrono::duration<double, std::milli>(to - from).count();
-}
-
-// Forgets the bodies that were removed since the last step, and all pairs that they were part of.
-void ForgetRemoved(WorldState& world) {
-    if (world.removed.empty() && !world.colliders.movedHasEmpty) return;
-    VisitPairsOf(world, world.removed, [&](uint32_t pair) { RemovePair(world, pair); });
-    std::erase_if(world.colliders.moved, [&](uint32_t i) {
-        Collider& collider = world.colliders.colliders[i];
-        const bool isGone = !world.colliders.shapes[i].shape || world.bodies.cold[collider.body].removed;
-        if (isGone) collider.queued = false;
-        return isGone;
-    });
-    world.colliders.movedHasEmpty = false;
-    for (uint32_t body : world.removed) {
-        const BodyCold& cold = world.bodies.cold[body];
-        world.colliders.Free(cold.firstCollider, cold.colliderCount);
-        world.colliders.FreeRuns(cold.MoreColliders());
-        world.bodies.Free(body);
-    }
-    world.removed.clear();
-}
-
-void BeginReport(WorldState& world) {
-    const uint64_t step = world.report.step + 1;
-    world.report = {};
-    world.report.step = step;
-    world.broken.clear();
-    world.sensors.events.clear();
-    for (WorkerFindings& f : world.findings) {
-        f.libccd = {};
-        f.contacts = f.points = f.kept = f.clamped = f.frozen = f.sleepCandidates = 0;
-        f.deepest = 0;
-        f.deepestPair = f.firstFrozen = ~0u;
-        f.bounces = false;
-        f.joints = {};
-    }
-}
-
-// A step shorter than this, in seconds, moves nothing that a float could tell; its inverse would only overflow.
-constexpr double kShortestStep = 1e-9;
-
-// Impulses of a short step, scaled up to a long one, are mostly its noise: steps that alternate between 1/240 and 1/30
-// s threw a stack of six boxes over with no limit, and leave one of ten standing with this one.
-constexpr float kMostImpulseScale = 2;
-
-void CountBodies(WorldState& world) {
-    world.report.bodies = world.bodies.Count();
-    world.report.awakeBodies = static_cast<uint32_t>(world.bodies.awake.size());
-    world.report.islands = world.solver.islands;
-    world.report.pairs = static_cast<uint32_t>(world.pairs.active.Size());
-    for (int c = 0; c <= ConstraintColoring::kColors; ++c)
-        world.report.joints += static_cast<uint32_t>(world.coloring.At(c).Of(ConstraintColoring::Kind::Joint).size());
-}
-
-// Runs the stages one after the other and notes how long each took.
-class StepTimer {
-public:
-    explicit StepTimer(StepReport& report) : report_(report), start_(Clock::now()), last_(start_) {}
-    void Finished(Stage stage) {
-        const Clock::time_point now = Clock::now();
-        report_.stageMs[static_cast<size_t>(stage)] = Milliseconds(last_, now);
-        last_ = now;
-    }
-    void FinishedAll() { report_.totalMs = Milliseconds(start_, last_); }
-
-private:
-    StepReport& report_;
-    Clock::time_point start_, last_;
-};
-
-}  // namespace
-
-const char* StageName(Stage stage) {
-    static constexpr const char* kNames[kStageCount] = {"UpdateBounds", "FindPairs",  "Collide", "Color",
-                                                        "BuildIslands", "Prepare",    "Solve",   "Restitution",
-                                                        "Store",        "Continuous", "Sense",   "Sleep"};
-    return kNames[static_cast<size_t>(stage)];
-}
 
 Result<std::unique_ptr<PhysicsSystem>> PhysicsSystem::Create(const SystemSettings& settings, JobSystem* jobs) {
     if (MaybeError error = Check(settings)) return *error;
@@ -107,12 +20,13 @@ Result<std::unique_ptr<PhysicsSystem>> PhysicsSystem::Create(const SystemSetting
         jobs = world->ownJobs.get();
     }
     world->jobs = std::make_unique<WorldJobs>(*jobs, world->lock);
-    world->findings.resize(jobs->WorkerCount());
-    return std::unique_ptr<PhysicsSystem>(new PhysicsSystem(std::move(world)));
+    auto step = std::make_unique<StepState>();
+    step->findings.resize(jobs->WorkerCount());
+    return std::unique_ptr<PhysicsSystem>(new PhysicsSystem(std::move(world), std::move(step)));
 }
 
-PhysicsSystem::PhysicsSystem(std::unique_ptr<WorldState> world)
-    : world_(std::move(world)), bodies_(*world_), joints_(*world_), queries_(*world_) {}
+PhysicsSystem::PhysicsSystem(std::unique_ptr<WorldState> world, std::unique_ptr<StepState> step)
+    : world_(std::move(world)), step_(std::move(step)), bodies_(*world_), joints_(*world_), queries_(*world_) {}
 PhysicsSystem::~PhysicsSystem() = default;
 
 Status PhysicsSystem::Update(double dt) {
@@ -120,53 +34,11 @@ Status PhysicsSystem::Update(double dt) {
     WorldState& world = *world_;
     const WorldLock::Exclusive alone(world.lock);
     if (alone.Refusal()) return *alone.Refusal();
-    ForgetRemoved(world);
-    BeginReport(world);
-    if (dt < kShortestStep) {
-        CountBodies(world);
-        return Done{};
-    }
-    StepContext step;
-    step.dt = static_cast<float>(dt);
-    step.substepDt = step.dt / static_cast<float>(world.settings.solver.substeps);
-    step.impulseScale =
-        world.lastSubstepDt > 0 ? std::min(step.substepDt / world.lastSubstepDt, kMostImpulseScale) : 1.0f;
-    world.scratch.Reset();
-
-    StepTimer timer(world.report);
-    UpdateBounds(world, step);
-    timer.Finished(Stage::UpdateBounds);
-    FindPairs(world);
-    timer.Finished(Stage::FindPairs);
-    Collide(world, step);
-    timer.Finished(Stage::Collide);
-    Color(world);
-    DropGhosts(world);
-    timer.Finished(Stage::Color);
-    BuildIslands(world);
-    timer.Finished(Stage::BuildIslands);
-    Prepare(world, step);
-    timer.Finished(Stage::Prepare);
-    Solve(world, step);
-    timer.Finished(Stage::Solve);
-    Restitution(world, step);
-    timer.Finished(Stage::Restitution);
-    Store(world, step);
-    timer.Finished(Stage::Store);
-    Continuous(world, step);
-    timer.Finished(Stage::Continuous);
-    Sense(world, step);
-    timer.Finished(Stage::Sense);
-    Sleep(world);
-    timer.Finished(Stage::Sleep);
-    timer.FinishedAll();
-    world.outsideFatBounds.MarkStale();
-
-    CountBodies(world);
+    RunStep(world, *step_, dt);
     return Done{};
 }
 
-std::span<const JointId> PhysicsSystem::BrokenJoints() const { return world_->broken; }
+std::span<const JointId> PhysicsSystem::BrokenJoints() const { return step_->broken; }
 
 std::span<const SensorEvent> PhysicsSystem::SensorEvents() const { return world_->sensors.events; }
 
@@ -176,7 +48,7 @@ std::span<const BodyId> PhysicsSystem::BodiesInside(BodyId sensor) const {
     return store.sensors[store.PlaceOf(sensor)].inside;
 }
 
-const StepReport& PhysicsSystem::Report() const { return world_->report; }
+const StepReport& PhysicsSystem::Report() const { return step_->report; }
 const SystemSettings& PhysicsSystem::Settings() const { return world_->settings; }
 
 Status PhysicsSystem::SetSettings(const SystemSettings& settings) {
@@ -208,8 +80,8 @@ void PhysicsSystem::VisitBodies(FunctionRef<void(BodyId)> visit) const {
 void PhysicsSystem::VisitContacts(FunctionRef<void(const ContactView&)> visit) const {
     const WorldState& world = *world_;
     world.pairs.active.Visit([&](uint32_t index) {
-        // A seam has taken the points from the records of some.
-        if (!world.pairs.pairs[index].touching || !(world.pairs.records[index].pointCount > 0)) return;
+        const Pair& pair = world.pairs.pairs[index];
+        if (!pair.touching || pair.pointCount == 0 || pair.onSeam) return;
         ContactView::Point room[ContactRecord::kMaxPoints];
         visit(ViewContact(world, index, room));
     });
@@ -269,6 +141,8 @@ uint64_t PhysicsSystem::HashPoses() const {
     return hash;
 }
 
-size_t PhysicsSystem::MemoryUsed() const { return world_->MemoryUsed(); }
+size_t PhysicsSystem::MemoryUsed() const {
+    return sizeof(WorldState) + HeapBytes(*world_) + sizeof(StepState) + HeapBytes(*step_);
+}
 
 }  // namespace fulcrum

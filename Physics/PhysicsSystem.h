@@ -15,6 +15,8 @@
 
 namespace fulcrum {
 
+struct StepState;
+
 class PhysicsSystem {
 public:
     // `jobs` (not owned, may be null: no threads) must outlive the system. Errors name the field: NonFinite,
@@ -66,8 +68,9 @@ public:
     size_t MemoryUsed() const;
 
 private:
-    explicit PhysicsSystem(std::unique_ptr<WorldState> world);
+    PhysicsSystem(std::unique_ptr<WorldState> world, std::unique_ptr<StepState> step);
     std::unique_ptr<WorldState> world_;
+    std::unique_ptr<StepState> step_;
     BodyInterface bodies_;
     JointInterface joints_;
     QueryInterface queries_;

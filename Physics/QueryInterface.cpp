@@ -3,7 +3,7 @@
 #include <Fulcrum/Collision/Queries/Distance.h>
 #include <Fulcrum/Collision/Queries/Pieces.h>
 #include <Fulcrum/Physics/Queries/RaySearch.h>
-#include <Fulcrum/Physics/Stages/Stages.h>
+#include <Fulcrum/Physics/World/Filters.h>
 
 #include <algorithm>
 #include <tuple>

@@ -7,23 +7,9 @@
 
 namespace fulcrum {
 
-// The stages of a step, in their order; each is a file in Physics/Stages.
-enum class Stage : uint8_t {
-    UpdateBounds,
-    FindPairs,
-    Collide,
-    Color,
-    BuildIslands,
-    Prepare,
-    Solve,
-    Restitution,
-    Store,
-    Continuous,
-    Sense,
-    Sleep
-};
-inline constexpr int kStageCount = 12;
-const char* StageName(Stage stage);
+// The stages of a step have numbers, 0 .. kStageCount - 1, in their order. Their list is in Physics/Stages/Step.cpp.
+inline constexpr int kStageCount = 13;
+const char* StageName(int stage);
 
 struct StepReport {
     uint64_t step = 0;                          // 1 for the first

@@ -70,4 +70,4 @@ fulcrum_library(Constraints PUBLIC Fulcrum::Math PRIVATE $<BUILD_INTERFACE:Eigen
 set_source_files_properties(Constraints/Joints/SolveJoints.cpp Constraints/Joints/PrepareJoints.cpp Constraints/Joints/SolveBalls.cpp
   Constraints/Contacts/SolveContacts.cpp Constraints/Contacts/PrepareContacts.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 fulcrum_library(Physics PUBLIC Fulcrum::Collision Fulcrum::Constraints Fulcrum::Jobs PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen>
-  PRECOMPILED <Fulcrum/Physics/PhysicsSystem.h> <Fulcrum/Physics/State/WorldState.h>)
+  PRECOMPILED <Fulcrum/Physics/PhysicsSystem.h> <Fulcrum/Physics/Stages/StepState.h>)

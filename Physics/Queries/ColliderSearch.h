@@ -3,8 +3,8 @@
 #pragma once
 
 #include <Fulcrum/Physics/Misuse.h>
-#include <Fulcrum/Physics/QueryInterface.h>
-#include <Fulcrum/Physics/State/WorldState.h>
+#include <Fulcrum/Physics/QueryTypes.h>
+#include <Fulcrum/Physics/World/WorldState.h>
 
 #include <Fulcrum/Collision/BroadPhase/BoundsTreeCasts.h>
 

@@ -2,6 +2,7 @@
 // that is ignored has no color, wakes nobody and costs the solver nothing.
 #include <Fulcrum/Physics/ContactListener.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
+#include <Fulcrum/Physics/World/Materials.h>
 
 namespace fulcrum {
 

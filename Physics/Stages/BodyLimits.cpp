@@ -1,16 +1,14 @@
 #include <Fulcrum/Physics/Stages/BodyLimits.h>
 
-#include <Fulcrum/Physics/State/BodyPairs.h>
+#include <Fulcrum/Physics/World/BodyPairs.h>
+#include <Fulcrum/Physics/World/Colors.h>
+#include <Fulcrum/Physics/World/SpeedLimits.h>
 
 #include <algorithm>
-#include <limits>
 
 namespace fulcrum {
 
 namespace {
-
-// m/s, m/s2 and so on: more makes the largest speed in any step that moves anything.
-constexpr double kMostChange = 1e18;
 
 // BodyState::marks: the sum of these.
 enum Mark : int { kLimited = 1, kStopped = 2 };
@@ -91,24 +89,6 @@ void ForgetImpulses(WorldState& world, uint32_t body) {
 
 }  // namespace
 
-Vector3 LimitedPush(const Vector3& push, double inverse) {
-    const Position exact = push.cast<double>();
-    const double made = std::sqrt(Dot<double>(exact, exact)) * inverse;
-    return made > kMostChange ? Vector3((exact * (kMostChange / made)).cast<float>()) : push;
-}
-
-bool LimitLength(Vector3& v, float limit) {
-    const float squared = LengthSquared(v);
-    if (!(squared > limit * limit)) return false;
-    if (squared <= std::numeric_limits<float>::max()) {
-        v *= limit / std::sqrt(squared);
-    } else {
-        const Position exact = v.cast<double>();
-        v = (exact * (double{limit} / std::sqrt(Dot<double>(exact, exact)))).cast<float>();
-    }
-    return true;
-}
-
 bool ShortenSpeeds(WorldState& world, uint32_t body, Vector3& v, Vector3& w) {
     const BodyDynamics& d = world.bodies.dynamics[body];
     constexpr float kRounding = 1 + 1e-6f;
@@ -149,10 +129,8 @@ void Stop(WorldState& world, uint32_t body, WorkerFindings& findings) {
     BringToRest(world, body);
 }
 
-void SettleStopped(WorldState& world) {
-    if (std::none_of(world.findings.begin(), world.findings.end(),
-                     [](const WorkerFindings& f) { return f.frozen > 0; }))
-        return;
+void SettleStopped(WorldState& world, std::span<const WorkerFindings> findings) {
+    if (std::none_of(findings.begin(), findings.end(), [](const WorkerFindings& f) { return f.frozen > 0; })) return;
     for (uint32_t body : world.bodies.awake) {
         if (!IsMarked(world, body, kStopped)) continue;
         SetMark(world, body, kStopped, false);

@@ -1,26 +1,12 @@
 // Keeps the numbers of bodies within bounds, whatever users, contacts and joints make of them: speeds up to the
 // largest, forces that no float can turn into an acceleration, and bodies whose state is not finite, which are frozen.
-// Used by BodyInterface and the stages; for different bodies from any number of threads at once, but for SettleStopped.
+// For different bodies from any number of threads at once, but for SettleStopped.
 #pragma once
 
-#include <Fulcrum/Physics/Stages/Stages.h>
+#include <Fulcrum/Physics/Stages/StepState.h>
+#include <Fulcrum/Physics/World/SpeedLimits.h>
 
 namespace fulcrum {
-
-// No body is faster, whatever its own limits. Its way in a step still fits the arithmetic of the narrow phase, and its
-// turn is still a number of which more than the whole part is known.
-inline constexpr float kFastestLinear = 3e8f;   // m/s
-inline constexpr float kFastestAngular = 1e6f;  // rad/s
-
-// Shortens a finite v to `limit` if it is longer, and says so; |v| may be beyond the floats.
-bool LimitLength(Vector3& v, float limit);
-
-// A finite force, torque or impulse, shortened where times `inverse` (of a mass, or the trace of inertia's) it makes
-// more than any speed or acceleration that counts.
-Vector3 LimitedPush(const Vector3& push, double inverse);
-inline double Trace(const BodyMass& mass) {
-    return double{mass.inverseInertia[0]} + double{mass.inverseInertia[1]} + double{mass.inverseInertia[2]};
-}
 
 // Shortens a body's velocities, both finite, to its largest speeds. Returns whether the body is to be counted for it:
 // once a step, where that took more than a rounding.
@@ -42,6 +28,6 @@ void Freeze(WorldState& world, uint32_t body, WorkerFindings& findings);
 // Stops a body for this step, because what constraints made of its motion is not finite.
 void Stop(WorldState& world, uint32_t body, WorkerFindings& findings);
 // Where workers froze or stopped bodies: what pushed these is forgotten, and joints see who can move. Serial.
-void SettleStopped(WorldState& world);
+void SettleStopped(WorldState& world, std::span<const WorkerFindings> findings);
 
 }  // namespace fulcrum

@@ -5,7 +5,9 @@
 #include <Fulcrum/Collision/NarrowPhase/PlaneContact.h>
 #include <Fulcrum/Physics/Stages/CrowdContacts.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
+#include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/Stages/SweepCast.h>
+#include <Fulcrum/Physics/World/Waking.h>
 
 #include <algorithm>
 #include <limits>
@@ -70,25 +72,26 @@ float MotionBeforeCast(const WorldState& world, const Pair& pair) {
     return motion;
 }
 
-PairChange CollidePair(WorldState& world, uint32_t index, float dt, WorkerFindings& findings) {
+PairChange CollidePair(WorldState& world, std::span<PairChange> changes, uint32_t index, float dt,
+                       WorkerFindings& findings) {
     Pair& pair = world.pairs.pairs[index];
     const BodyPose& poseA = world.bodies.poses[pair.bodyA];
     const BodyPose& poseB = world.bodies.poses[pair.bodyB];
-    const uint32_t now = static_cast<uint32_t>(world.report.step);
+    const uint32_t now = static_cast<uint32_t>(world.step);
     if ((poseA.boundsChangedIn == now || poseB.boundsChangedIn == now) && !Overlap(world, pair))
         return PairChange::Dead;
 
     const float closing = FarEndFactor(world, pair) * ClosingMotion(world, pair, dt);
     const float mostMotion =
-        world.sweeps.users > 0 ? MotionBeforeCast(world, pair) : std::numeric_limits<float>::infinity();
+        world.bodies.continuousCount > 0 ? MotionBeforeCast(world, pair) : std::numeric_limits<float>::infinity();
     const auto reachOf = [&](float motion) {
         return world.settings.speculativeDistance + std::min(motion, mostMotion);
     };
     if (!pair.surface && pair.pointCount == 0 && !pair.offset && BallsApart(world, pair, reachOf(closing)))
         return PairChange::None;
     const float reachAhead = reachOf(closing + TurningMotion(world, pair, dt));
-    if (pair.surface) return CollideWithSurface(world, index, reachAhead, dt, findings);
-    const PairView view = ViewPair(world, index);
+    if (pair.surface) return CollideWithSurface(world, changes, index, reachAhead, dt, findings);
+    const PairView view = ViewPair(world.bodies, world.colliders, world.pairs, index);
     if (pair.pointCount > 0 && HardlyMoved(view)) {
         ++findings.kept;
     } else {
@@ -120,58 +123,58 @@ void PrefetchAhead(const WorldState& world, uint32_t index) {
     }
 }
 
-void CollideActive(WorldState& world, float dt) {
+void CollideActive(WorldState& world, StepState& step) {
     const IndexSet& active = world.pairs.active;
-    world.changes.resize(world.pairs.pairs.size(), PairChange::None);
+    step.changes.resize(world.pairs.pairs.size(), PairChange::None);
     world.jobs->ParallelFor(active.WordCount(), 1, [&](JobRange range) {
         for (uint32_t word = range.begin; word < range.end; ++word)
             active.VisitWord(word, [&](uint32_t index) {
                 PrefetchAhead(world, index);
                 if (world.pairs.pairs[index].isMore) return;  // comes with its pair
-                world.changes[index] = CollidePair(world, index, dt, world.findings[range.worker]);
+                step.changes[index] = CollidePair(world, step.changes, index, step.dt, step.findings[range.worker]);
             });
     });
 }
 
-void CollideActivated(WorldState& world, float dt) {
-    world.changes.resize(world.pairs.pairs.size(), PairChange::None);
-    world.jobs->ParallelFor(static_cast<uint32_t>(world.activated.size()), 16, [&](JobRange range) {
+void CollideActivated(WorldState& world, StepState& step) {
+    step.changes.resize(world.pairs.pairs.size(), PairChange::None);
+    world.jobs->ParallelFor(static_cast<uint32_t>(step.activated.size()), 16, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i) {
-            const uint32_t index = world.activated[i];
-            world.changes[index] = CollidePair(world, index, dt, world.findings[range.worker]);
+            const uint32_t index = step.activated[i];
+            step.changes[index] = CollidePair(world, step.changes, index, step.dt, step.findings[range.worker]);
         }
     });
 }
 
 // Wakes the sleeping bodies that were touched. They search for pairs of their own at once: what is hit must not lose
 // its support for a step. Returns whether that made pairs active, which are to be collided too.
-bool WakeTouched(WorldState& world) {
+bool WakeTouched(WorldState& world, StepState& step) {
     bool woke = false;
-    VisitChanges(world, [&](uint32_t index) {
-        if (world.changes[index] != PairChange::WakesOther) return;
+    VisitChanges(step.changes, [&](uint32_t index) {
+        if (step.changes[index] != PairChange::WakesOther) return;
         const Pair& pair = world.pairs.pairs[index];
         WakeBody(world, pair.bodyA);
         if (!pair.fixedB) WakeBody(world, pair.bodyB);
-        world.changes[index] = pair.touching ? PairChange::Began : PairChange::None;
+        step.changes[index] = pair.touching ? PairChange::Began : PairChange::None;
         woke = true;
     });
-    world.activated.clear();
-    if (woke) FindPairs(world);
-    return !world.activated.empty();
+    step.activated.clear();
+    if (woke) FindPairs(world, step);
+    return !step.activated.empty();
 }
 
 }  // namespace
 
-void Collide(WorldState& world, const StepContext& step) {
-    CollideActive(world, step.dt);
-    AddMoreManifolds(world, step.dt);
-    while (WakeTouched(world)) {
-        CollideActivated(world, step.dt);
-        AddMoreManifolds(world, step.dt);
+void Collide(WorldState& world, StepState& step) {
+    CollideActive(world, step);
+    AddMoreManifolds(world, step);
+    while (WakeTouched(world, step)) {
+        CollideActivated(world, step);
+        AddMoreManifolds(world, step);
     }
-    GatherCrowd(world);
-    StepReport& report = world.report;
-    for (const WorkerFindings& f : world.findings) {
+    GatherCrowd(world, step);
+    StepReport& report = step.report;
+    for (const WorkerFindings& f : step.findings) {
         report.contacts += f.contacts;
         report.contactPoints += f.points;
         report.keptManifolds += f.kept;

@@ -2,6 +2,7 @@
 // is the pair's own; the others are pairs of their own, chained to it, which the later stages take for any other. They
 // stay, empty or not, as long as the pair does.
 #include <Fulcrum/Physics/Stages/PairView.h>
+#include <Fulcrum/Physics/World/Materials.h>
 
 #include <algorithm>
 
@@ -93,10 +94,11 @@ void WriteManifolds(WorldState& world, const PairView& view, uint32_t first, flo
 
 }  // namespace
 
-PairChange CollideWithSurface(WorldState& world, uint32_t first, float reach, float dt, WorkerFindings& findings) {
+PairChange CollideWithSurface(WorldState& world, std::span<PairChange> changes, uint32_t first, float reach, float dt,
+                              WorkerFindings& findings) {
     bool touches = false;
     VisitManifolds(world, first, [&](uint32_t index) { touches |= world.pairs.pairs[index].pointCount > 0; });
-    const PairView view = ViewPair(world, first);
+    const PairView view = ViewPair(world.bodies, world.colliders, world.pairs, first);
     if (touches && HardlyMoved(view)) {
         ++findings.kept;
     } else {
@@ -119,15 +121,15 @@ PairChange CollideWithSurface(WorldState& world, uint32_t first, float reach, fl
         const PairChange change = NoteTouching(world, index, findings);
         wakes |= TouchesSleeper(world, pair);
         if (index == first) ofFirst = change;
-        else world.changes[index] = change;
+        else changes[index] = change;
     });
     return wakes ? PairChange::WakesOther : ofFirst;
 }
 
-void AddMoreManifolds(WorldState& world, float dt) {
-    std::vector<MoreManifold>& all = world.moreManifolds;
+void AddMoreManifolds(WorldState& world, StepState& step) {
+    std::vector<MoreManifold>& all = step.moreManifolds;
     all.clear();
-    for (WorkerFindings& findings : world.findings) {
+    for (WorkerFindings& findings : step.findings) {
         all.insert(all.end(), findings.more.begin(), findings.more.end());
         findings.more.clear();
     }
@@ -137,10 +139,10 @@ void AddMoreManifolds(WorldState& world, float dt) {
     });
     for (const MoreManifold& more : all) {
         const uint32_t index = world.pairs.AddMore(more.pair);
-        world.changes.resize(std::max(world.changes.size(), world.pairs.pairs.size()), PairChange::None);
-        Write(world, ViewPair(world, more.pair), index, more.contact, dt);
-        world.changes[index] = NoteTouching(world, index, world.findings[0]);
-        if (TouchesSleeper(world, world.pairs.pairs[index])) world.changes[more.pair] = PairChange::WakesOther;
+        step.changes.resize(std::max(step.changes.size(), world.pairs.pairs.size()), PairChange::None);
+        Write(world, ViewPair(world.bodies, world.colliders, world.pairs, more.pair), index, more.contact, step.dt);
+        step.changes[index] = NoteTouching(world, index, step.findings[0]);
+        if (TouchesSleeper(world, world.pairs.pairs[index])) step.changes[more.pair] = PairChange::WakesOther;
     }
 }
 

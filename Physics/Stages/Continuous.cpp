@@ -3,7 +3,9 @@
 // times, as long as both bodies' sweeps still are those that were cast (ResolveHits.h); what changed its sweep, or lost
 // its partner, is cast again.
 #include <Fulcrum/Physics/Stages/ResolveHits.h>
+#include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/Stages/SweepCast.h>
+#include <Fulcrum/Physics/World/FatBounds.h>
 
 #include <algorithm>
 #include <limits>
@@ -36,55 +38,55 @@ bool StaysInBounds(const WorldState& world, uint32_t body, const Vector3& moved,
     bool stays = true;
     VisitColliders(world, body, [&](uint32_t i) {
         if (world.colliders.colliders[i].fat.Contains(TightBoundsOf(world, i))) return;
-        findings.colliders.push_back(i);
+        findings.strayed.push_back(i);
         stays = false;
     });
     return stays;
 }
 
 // Says how a body that moved far is to be searched.
-void LookAtBody(WorldState& world, uint32_t body, float dt, WorkerFindings& findings) {
+void LookAtBody(WorldState& world, SweepStore& sweeps, uint32_t body, float dt, WorkerFindings& findings) {
     using SearchBy = SweepStore::SearchBy;
-    const SweepStore::Start& start = world.sweeps.starts[body];
+    const SweepStore::Start& start = sweeps.starts[body];
     const BodyDynamics& d = world.bodies.dynamics[body];
-    if (start.step != world.report.step || d.frozen) return;
+    if (start.step != world.step || d.frozen) return;
     const Vector3 moved = (world.bodies.CenterOf(body) - start.pose.position).cast<float>();
     const bool stays = StaysInBounds(world, body, moved, dt, findings);
     if (!d.continuous) return;
     const bool turns = IsCastTurning(world, body);
-    const float distance = Length(moved) + (turns ? Length(SweepOf(world, body).turn) * d.outerRadius : 0.0f);
+    const float distance = Length(moved) + (turns ? Length(SweepOf(world, sweeps, body).turn) * d.outerRadius : 0.0f);
     if (!(distance > FreeMotionOf(world, body))) return;
-    world.sweeps.searchBy[body] = stays && !turns ? SearchBy::Pairs : SearchBy::Trees;
+    sweeps.searchBy[body] = stays && !turns ? SearchBy::Pairs : SearchBy::Trees;
 }
 
 // What the solver moved elsewhere than its bounds foresaw is given bounds about its whole way, so that the trees find
 // it there.
-void EnlargeBounds(WorldState& world) {
+void EnlargeBounds(WorldState& world, std::span<WorkerFindings> workers) {
     std::vector<uint32_t>& moved = world.colliders.moved;
     const size_t first = moved.size();
-    for (WorkerFindings& findings : world.findings) {
-        for (uint32_t collider : findings.colliders) {
+    for (WorkerFindings& findings : workers) {
+        for (uint32_t collider : findings.strayed) {
             world.colliders.Queue(collider);
             Collider& c = world.colliders.colliders[collider];
             c.fat.Include(TightBoundsOf(world, collider));
             world.colliders.TreeOf(c).Update(collider, c.fat);
         }
-        findings.colliders.clear();
+        findings.strayed.clear();
     }
     std::sort(moved.begin() + static_cast<ptrdiff_t>(first), moved.end());
 }
 
 // Returns how many there are.
-uint32_t FindFast(WorldState& world, float dt) {
+uint32_t FindFast(WorldState& world, StepState& step) {
     using SearchBy = SweepStore::SearchBy;
-    SweepStore& store = world.sweeps;
+    SweepStore& store = step.sweeps;
     store.searchBy.assign(world.bodies.Size(), SearchBy::None);
     const std::vector<uint32_t>& awake = world.bodies.awake;
     world.jobs->ParallelFor(static_cast<uint32_t>(awake.size()), 64, [&](JobRange range) {
         for (uint32_t k = range.begin; k < range.end; ++k)
-            LookAtBody(world, awake[k], dt, world.findings[range.worker]);
+            LookAtBody(world, step.sweeps, awake[k], step.dt, step.findings[range.worker]);
     });
-    EnlargeBounds(world);
+    EnlargeBounds(world, step.findings);
     const size_t slow = static_cast<size_t>(std::count(store.searchBy.begin(), store.searchBy.end(), SearchBy::None));
     const size_t fast = store.searchBy.size() - slow;
     // To look through all pairs for a few bodies would take longer than their searches.
@@ -95,67 +97,70 @@ uint32_t FindFast(WorldState& world, float dt) {
 }
 
 // Of the collider of a pair that is to be cast against the other; kNone: neither.
-uint32_t CasterOf(const WorldState& world, const Pair& pair) {
+uint32_t CasterOf(const SweepStore& sweeps, const Pair& pair) {
     using SearchBy = SweepStore::SearchBy;
-    const SearchBy a = world.sweeps.searchBy[pair.bodyA], b = world.sweeps.searchBy[pair.bodyB];
+    const SearchBy a = sweeps.searchBy[pair.bodyA], b = sweeps.searchBy[pair.bodyB];
     if (a == SearchBy::Trees || b == SearchBy::Trees) return SweepStore::kNone;  // finds the other by itself
     return a == SearchBy::Pairs ? pair.colliderA : b == SearchBy::Pairs ? pair.colliderB : SweepStore::kNone;
 }
 
-void CastPairs(WorldState& world) {
+void CastPairs(WorldState& world, StepState& step) {
     const IndexSet& active = world.pairs.active;
     world.jobs->ParallelFor(active.WordCount(), 1, [&](JobRange range) {
-        WorkerFindings& findings = world.findings[range.worker];
+        WorkerFindings& findings = step.findings[range.worker];
         for (uint32_t word = range.begin; word < range.end; ++word)
             active.VisitWord(word, [&](uint32_t index) {
                 const Pair& pair = world.pairs.pairs[index];
-                const uint32_t caster = pair.isMore ? SweepStore::kNone : CasterOf(world, pair);
+                const uint32_t caster = pair.isMore ? SweepStore::kNone : CasterOf(step.sweeps, pair);
                 SweepHit hit;
                 if (caster == SweepStore::kNone ||
-                    !CastPair(world, caster, pair.colliderA ^ pair.colliderB ^ caster, findings, hit))
+                    !CastPair(world, step.sweeps, caster, pair.colliderA ^ pair.colliderB ^ caster, findings, hit))
                     return;
                 findings.sweepHits.push_back(hit);
             });
     });
 }
 
-void CastActive(WorldState& world) {
-    SweepStore& store = world.sweeps;
+void CastActive(WorldState& world, StepState& step) {
+    SweepStore& store = step.sweeps;
     world.jobs->ParallelFor(static_cast<uint32_t>(store.active.size()), 8, [&](JobRange range) {
-        WorkerFindings& findings = world.findings[range.worker];
+        WorkerFindings& findings = step.findings[range.worker];
         for (uint32_t i = range.begin; i < range.end; ++i) {
             SweepHit hit;
-            if (CastSweep(world, store.swept[store.active[i]], findings, hit)) findings.sweepHits.push_back(hit);
+            if (CastSweep(world, store, store.swept[store.active[i]], findings, hit)) findings.sweepHits.push_back(hit);
         }
     });
 }
 
-void GatherHits(WorldState& world) {
-    std::vector<SweepHit>& hits = world.sweeps.hits;
+void GatherHits(StepState& step) {
+    std::vector<SweepHit>& hits = step.sweeps.hits;
     hits.clear();
-    for (WorkerFindings& findings : world.findings) {
+    for (WorkerFindings& findings : step.findings) {
         hits.insert(hits.end(), findings.sweepHits.begin(), findings.sweepHits.end());
         findings.sweepHits.clear();
     }
 }
 
 // The lists get room by the number of those that may need it.
-void ReserveLists(WorldState& world) {
-    SweepStore& store = world.sweeps;
-    const size_t users = store.users;
+void ReserveLists(WorldState& world, StepState& step) {
+    SweepStore& store = step.sweeps;
+    const size_t users = world.bodies.continuousCount;
     store.searchBy.reserve(world.bodies.Size());
     store.places.resize(world.bodies.Size(), SweepStore::kNone);
     store.swept.reserve(users);
     store.hits.reserve(2 * users);
     for (std::vector<uint32_t>* list : {&store.active, &store.next}) list->reserve(2 * users);
-    for (WorkerFindings& findings : world.findings) findings.sweepHits.reserve(users);
+    for (WorkerFindings& findings : step.findings) {
+        findings.sweepHits.reserve(users);
+        findings.strayed.reserve(world.colliders.colliders.capacity());
+    }
 }
 
-void StartCourses(WorldState& world) {
-    SweepStore& store = world.sweeps;
+void StartCourses(WorldState& world, StepState& step) {
+    SweepStore& store = step.sweeps;
     store.active.clear();
     for (uint32_t body = 0; body < store.searchBy.size(); ++body)
-        if (store.searchBy[body] == SweepStore::SearchBy::Trees) store.active.push_back(PlaceOf(world, body));
+        if (store.searchBy[body] == SweepStore::SearchBy::Trees) store.active.push_back(PlaceOf(world, step, body));
 }
 
 // What goes on elsewhere than its bounds foresaw is found there by the casts of the others.
@@ -174,8 +179,8 @@ void EnlargeBounds(WorldState& world, const Sweep& sweep) {
 }
 
 // Those that hits have changed, or left undecided, are searched in the next round.
-void EndRound(WorldState& world) {
-    SweepStore& store = world.sweeps;
+void EndRound(WorldState& world, StepState& step) {
+    SweepStore& store = step.sweeps;
     for (uint32_t place : store.next) {
         store.swept[place].changed = false;
         EnlargeBounds(world, store.swept[place]);
@@ -187,25 +192,24 @@ void EndRound(WorldState& world) {
 
 }  // namespace
 
-void Continuous(WorldState& world, const StepContext& step) {
-    SweepStore& store = world.sweeps;
+void Continuous(WorldState& world, StepState& step) {
+    SweepStore& store = step.sweeps;
     store.swept.clear();
     store.ended.clear();
     store.endedAt.clear();
-    if (store.users == 0) return;
-    store.dt = step.dt;
-    ReserveLists(world);
-    const uint32_t fast = FindFast(world, step.dt);
-    world.report.sweptBodies = fast;
+    if (world.bodies.continuousCount == 0) return;
+    ReserveLists(world, step);
+    const uint32_t fast = FindFast(world, step);
+    step.report.sweptBodies = fast;
     if (fast == 0) return;
-    StartCourses(world);
+    StartCourses(world, step);
     const bool usesPairs = store.active.size() < fast;
     for (int round = 0; round < kRounds && (!store.active.empty() || (round == 0 && usesPairs)); ++round) {
-        if (round == 0 && usesPairs) CastPairs(world);
-        CastActive(world);
-        GatherHits(world);
+        if (round == 0 && usesPairs) CastPairs(world, step);
+        CastActive(world, step);
+        GatherHits(step);
         ResolveHits(world, step, round + 1 == kRounds);
-        EndRound(world);
+        EndRound(world, step);
     }
     for (const Sweep& sweep : store.swept) store.places[sweep.body] = SweepStore::kNone;
 }

@@ -4,7 +4,10 @@
 #include <Fulcrum/Physics/Stages/CrowdContacts.h>
 #include <Fulcrum/Physics/Stages/CrowdOverlaps.h>
 #include <Fulcrum/Physics/Stages/CrowdPlaces.h>
-#include <Fulcrum/Physics/State/BodyPairs.h>
+#include <Fulcrum/Physics/World/BodyPairs.h>
+#include <Fulcrum/Physics/World/Colors.h>
+#include <Fulcrum/Physics/World/SpeedLimits.h>
+#include <Fulcrum/Physics/World/Waking.h>
 
 #include <algorithm>
 #include <map>
@@ -31,8 +34,9 @@ bool MovesFreely(const WorldState& world, uint32_t body) {
 
 // Those of `bodies` of which isSo(body) is true, asked by all workers, in the same order.
 template <class Test>
-std::vector<uint32_t> Select(WorldState& world, std::span<const uint32_t> bodies, const Test& isSo) {
-    const std::span<uint8_t> is = world.scratch.Allocate<uint8_t>(bodies.size());
+std::vector<uint32_t> Select(WorldState& world, ScratchArena& scratch, std::span<const uint32_t> bodies,
+                             const Test& isSo) {
+    const std::span<uint8_t> is = scratch.Allocate<uint8_t>(bodies.size());
     world.jobs->ParallelFor(static_cast<uint32_t>(bodies.size()), 16, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i) is[i] = isSo(bodies[i]);
     });
@@ -43,16 +47,18 @@ std::vector<uint32_t> Select(WorldState& world, std::span<const uint32_t> bodies
 }
 
 // Marks those of `bodies` that are to disperse, and returns them in ascending order.
-std::vector<uint32_t> MarkDispersing(WorldState& world, const JointedGroups& groups, std::span<const uint32_t> bodies) {
+std::vector<uint32_t> MarkDispersing(WorldState& world, ScratchArena& scratch, const JointedGroups& groups,
+                                     std::span<const uint32_t> bodies) {
     const auto mayStart = [&](uint32_t body) {
         return MovesFreely(world, body) && !world.bodies.dynamics[body].dispersing;
     };
-    std::vector<uint32_t> starting =
-        Select(world, bodies, [&](uint32_t body) { return mayStart(body) && OverlapsManyDeeply(world, groups, body); });
+    std::vector<uint32_t> starting = Select(world, scratch, bodies, [&](uint32_t body) {
+        return mayStart(body) && OverlapsManyDeeply(world, groups, body);
+    });
     for (const uint32_t body : starting) world.bodies.dynamics[body].dispersing = true;
     // Those that deeply overlap only a few of these would be in their way.
     for (std::vector<uint32_t> joining = starting; !joining.empty();) {
-        joining = Select(world, bodies, [&](uint32_t body) {
+        joining = Select(world, scratch, bodies, [&](uint32_t body) {
             return mayStart(body) && OverlapsDispersingDeeply(world, groups, body);
         });
         for (const uint32_t body : joining) world.bodies.dynamics[body].dispersing = true;
@@ -62,11 +68,11 @@ std::vector<uint32_t> MarkDispersing(WorldState& world, const JointedGroups& gro
     return starting;
 }
 
-void RemoveDynamicPairs(WorldState& world, std::span<const uint32_t> bodies) {
+void RemoveDynamicPairs(WorldState& world, std::span<PairChange> changes, std::span<const uint32_t> bodies) {
     VisitPairsOf(world, bodies, [&](uint32_t pair) {
         if (world.pairs.pairs[pair].fixedB) return;
-        if (pair < world.changes.size()) world.changes[pair] = PairChange::None;
-        RemovePair(world, pair);
+        if (pair < changes.size()) changes[pair] = PairChange::None;
+        RemovePair(world.pairs, world.coloring, pair);
     });
 }
 
@@ -92,8 +98,8 @@ void AddGravity(WorldState& world, uint32_t body, float factor) {
 }
 
 // Removed bodies, and those that were put to sleep, frozen or made kinematic meanwhile.
-void ForgetStopped(WorldState& world) {
-    std::erase_if(world.dispersing, [&](const DispersingBody& dispersing) {
+void ForgetStopped(WorldState& world, std::vector<DispersingBody>& all) {
+    std::erase_if(all, [&](const DispersingBody& dispersing) {
         BodyDynamics& d = world.bodies.dynamics[dispersing.body];
         d.dispersing &= MovesFreely(world, dispersing.body);
         return !d.dispersing;
@@ -135,50 +141,49 @@ struct StartedTogether {
     bool HaveRoom() const { return !isBlocked && overlapping * kNearlyAll <= count; }
 };
 
-// By the step in which they started; overlaps[i]: whether world.dispersing[i] overlaps another body.
-std::map<uint64_t, StartedTogether> GroupByStart(const WorldState& world, const JointedGroups& groups,
-                                                 std::span<const uint8_t> overlaps) {
-    std::map<uint64_t, StartedTogether> all;
+// By the step in which they started; overlaps[i]: whether all[i] overlaps another body.
+std::map<uint64_t, StartedTogether> GroupByStart(const WorldState& world, std::span<const DispersingBody> all,
+                                                 const JointedGroups& groups, std::span<const uint8_t> overlaps) {
+    std::map<uint64_t, StartedTogether> byStart;
     for (size_t i = 0; i < overlaps.size(); ++i) {
-        StartedTogether& together = all[world.dispersing[i].startStep];
+        StartedTogether& together = byStart[all[i].startStep];
         ++together.count;
         together.overlapping += overlaps[i];
     }
     for (size_t i = 0; i < overlaps.size(); ++i) {
-        StartedTogether& together = all[world.dispersing[i].startStep];
-        if (overlaps[i] && together.HaveRoom())
-            together.isBlocked = OverlapsMany(world, groups, world.dispersing[i].body);
+        StartedTogether& together = byStart[all[i].startStep];
+        if (overlaps[i] && together.HaveRoom()) together.isBlocked = OverlapsMany(world, groups, all[i].body);
     }
-    return all;
+    return byStart;
 }
 
 }  // namespace
 
-void StartDispersing(WorldState& world, std::vector<uint32_t>& bodies) {
+void StartDispersing(WorldState& world, StepState& step, std::vector<uint32_t>& bodies) {
     std::sort(bodies.begin(), bodies.end());
     bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
-    const JointedGroups groups(world);
-    const std::vector<uint32_t> starting = MarkDispersing(world, groups, bodies);
+    const JointedGroups groups(world, step.scratch);
+    const std::vector<uint32_t> starting = MarkDispersing(world, step.scratch, groups, bodies);
     if (starting.empty()) return;
-    RemoveDynamicPairs(world, starting);
+    RemoveDynamicPairs(world, step.changes, starting);
     for (DispersingBody dispersing : PlanDispersing(world, groups, starting)) {
         BodyDynamics& d = world.bodies.dynamics[dispersing.body];
         d.dispersing = d.crowded = true;
         AddGravity(world, dispersing.body, -1);
         dispersing.ownVelocity = world.bodies.LinearVelocityOf(dispersing.body);
-        dispersing.startStep = world.report.step;
-        world.dispersing.push_back(dispersing);
+        dispersing.startStep = world.step;
+        step.dispersing.push_back(dispersing);
     }
-    std::sort(world.dispersing.begin(), world.dispersing.end(),
+    std::sort(step.dispersing.begin(), step.dispersing.end(),
               [](const DispersingBody& a, const DispersingBody& b) { return a.body < b.body; });
 }
 
-void PushDispersing(WorldState& world, float dt) {
-    if (world.dispersing.empty()) return;
-    ForgetStopped(world);
-    world.jobs->ParallelFor(static_cast<uint32_t>(world.dispersing.size()), 64, [&](JobRange range) {
+void PushDispersing(WorldState& world, std::vector<DispersingBody>& all, float dt) {
+    if (all.empty()) return;
+    ForgetStopped(world, all);
+    world.jobs->ParallelFor(static_cast<uint32_t>(all.size()), 64, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i) {
-            DispersingBody& dispersing = world.dispersing[i];
+            DispersingBody& dispersing = all[i];
             Push(world, dispersing, dt);
             dispersing.secondsLeft -= dt;
             dispersing.hasPlace &= dispersing.secondsLeft > -kPatience;
@@ -186,8 +191,9 @@ void PushDispersing(WorldState& world, float dt) {
     });
 }
 
-Vector3 OwnVelocity(const WorldState& world, uint32_t body, const Vector3& v, float dt) {
-    const auto dispersing = std::lower_bound(world.dispersing.begin(), world.dispersing.end(), body,
+Vector3 OwnVelocity(const WorldState& world, std::span<const DispersingBody> all, uint32_t body, const Vector3& v,
+                    float dt) {
+    const auto dispersing = std::lower_bound(all.begin(), all.end(), body,
                                              [](const DispersingBody& d, uint32_t index) { return d.body < index; });
     const float* a = world.bodies.poses[body].acceleration;
     return NoFasterThan(v - dispersing->push, dispersing->ownVelocity + Vector3(a[0], a[1], a[2]) * dt);
@@ -195,22 +201,22 @@ Vector3 OwnVelocity(const WorldState& world, uint32_t body, const Vector3& v, fl
 
 // Those that started together end together. A body whose time at its place is over ends by itself once it overlaps
 // nobody.
-void EndDispersing(WorldState& world) {
-    if (world.dispersing.empty()) return;
-    const JointedGroups groups(world);
-    const std::span<uint8_t> overlaps = world.scratch.Allocate<uint8_t>(world.dispersing.size());
+void EndDispersing(WorldState& world, StepState& step) {
+    if (step.dispersing.empty()) return;
+    const JointedGroups groups(world, step.scratch);
+    const std::span<uint8_t> overlaps = step.scratch.Allocate<uint8_t>(step.dispersing.size());
     world.jobs->ParallelFor(static_cast<uint32_t>(overlaps.size()), 16, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i)
-            overlaps[i] = OverlapsAnother(world, groups, world.dispersing[i].body);
+            overlaps[i] = OverlapsAnother(world, groups, step.dispersing[i].body);
     });
-    const std::map<uint64_t, StartedTogether> together = GroupByStart(world, groups, overlaps);
+    const std::map<uint64_t, StartedTogether> together = GroupByStart(world, step.dispersing, groups, overlaps);
     for (size_t i = 0; i < overlaps.size(); ++i) {
-        const DispersingBody& dispersing = world.dispersing[i];
+        const DispersingBody& dispersing = step.dispersing[i];
         const bool hasDispersed =
             together.at(dispersing.startStep).HaveRoom() || (!dispersing.hasPlace && !overlaps[i]);
         world.bodies.dynamics[dispersing.body].dispersing = !hasDispersed;
     }
-    std::erase_if(world.dispersing, [&](const DispersingBody& dispersing) {
+    std::erase_if(step.dispersing, [&](const DispersingBody& dispersing) {
         if (world.bodies.dynamics[dispersing.body].dispersing) return false;
         AddGravity(world, dispersing.body, 1);
         world.bodies.SetVelocity(dispersing.body, dispersing.ownVelocity,

@@ -12,21 +12,22 @@
 // Used by UpdateBounds, FindPairs and Store; one thread, but for OwnVelocity. Costs nothing while no body disperses.
 #pragma once
 
-#include <Fulcrum/Physics/Stages/Stages.h>
+#include <Fulcrum/Physics/Stages/StepState.h>
 
 namespace fulcrum {
 
 // Of `bodies`, in any order and sorted here, those that deeply overlap many others start to disperse. They lose their
 // pairs with dynamic bodies.
-void StartDispersing(WorldState& world, std::vector<uint32_t>& bodies);
+void StartDispersing(WorldState& world, StepState& step, std::vector<uint32_t>& bodies);
 
 // As the step begins, before bounds: dispersing bodies get the velocity with which they move in this step.
-void PushDispersing(WorldState& world, float dt);
+void PushDispersing(WorldState& world, std::vector<DispersingBody>& all, float dt);
 // As it ends, for a dispersing body: its velocity v, m/s, without that push. For different bodies from any number of
 // threads.
-Vector3 OwnVelocity(const WorldState& world, uint32_t body, const Vector3& v, float dt);
+Vector3 OwnVelocity(const WorldState& world, std::span<const DispersingBody> all, uint32_t body, const Vector3& v,
+                    float dt);
 
 // Bodies that have dispersed collide again, and search for their pairs.
-void EndDispersing(WorldState& world);
+void EndDispersing(WorldState& world, StepState& step);
 
 }  // namespace fulcrum

@@ -3,6 +3,7 @@
 #include <Fulcrum/Physics/Stages/BodyLimits.h>
 #include <Fulcrum/Physics/Stages/CrowdOverlaps.h>
 #include <Fulcrum/Physics/Stages/CrowdPlaces.h>
+#include <Fulcrum/Physics/World/SpeedLimits.h>
 
 #include <algorithm>
 #include <limits>
@@ -33,9 +34,10 @@ float SeparationOf(const WorldState& world, uint32_t index, const Vector3& norma
 }
 
 // Moves what the workers noted into one list, sorted: the same for any number of threads.
-void Gather(WorldState& world, std::vector<uint32_t> WorkerFindings::*list, std::vector<uint32_t>& all) {
+void Gather(std::vector<WorkerFindings>& workers, std::vector<uint32_t> WorkerFindings::*list,
+            std::vector<uint32_t>& all) {
     all.clear();
-    for (WorkerFindings& findings : world.findings) {
+    for (WorkerFindings& findings : workers) {
         all.insert(all.end(), (findings.*list).begin(), (findings.*list).end());
         (findings.*list).clear();
     }
@@ -82,13 +84,13 @@ void NoteOverlap(const WorldState& world, uint32_t index, const RelativePose& bI
         if (isCrowded(body)) findings.crowdedOverlaps.push_back(body);
 }
 
-void GatherCrowd(WorldState& world) {
-    for (const uint32_t body : world.crowded) world.bodies.dynamics[body].crowded = false;
-    Gather(world, &WorkerFindings::crowdedOverlaps, world.crowded);
-    for (const DispersingBody& dispersing : world.dispersing) world.crowded.push_back(dispersing.body);
-    for (const uint32_t body : world.crowded) world.bodies.dynamics[body].crowded = true;
-    Gather(world, &WorkerFindings::deepOverlaps, world.deepOverlaps);
-    if (MostRepeated(world.deepOverlaps) < kManyOverlaps) world.deepOverlaps.clear();
+void GatherCrowd(WorldState& world, StepState& step) {
+    for (const uint32_t body : step.crowded) world.bodies.dynamics[body].crowded = false;
+    Gather(step.findings, &WorkerFindings::crowdedOverlaps, step.crowded);
+    for (const DispersingBody& dispersing : step.dispersing) step.crowded.push_back(dispersing.body);
+    for (const uint32_t body : step.crowded) world.bodies.dynamics[body].crowded = true;
+    Gather(step.findings, &WorkerFindings::deepOverlaps, step.deepOverlaps);
+    if (MostRepeated(step.deepOverlaps) < kManyOverlaps) step.deepOverlaps.clear();
 }
 
 void LimitPush(WorldState& world, uint32_t body, float h) {

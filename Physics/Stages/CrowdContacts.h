@@ -3,7 +3,7 @@
 // Used by Collide, Solve and Store, for different bodies from any number of threads, but for GatherCrowd.
 #pragma once
 
-#include <Fulcrum/Physics/State/WorldState.h>
+#include <Fulcrum/Physics/Stages/StepState.h>
 
 #include <cmath>
 
@@ -19,7 +19,7 @@ RelativePose WithDistinctCenters(const WorldState& world, const Pair& pair, cons
 // the shapes.
 void NoteOverlap(const WorldState& world, uint32_t pair, const RelativePose& bInA, WorkerFindings& findings);
 // Gathers what the workers noted into WorldState::deepOverlaps and crowded. One thread.
-void GatherCrowd(WorldState& world);
+void GatherCrowd(WorldState& world, StepState& step);
 
 // Limits the velocity with which a crowded body is about to move for h seconds: contacts and joints change it by no
 // more than contactPushSpeed, and it is not pressed into what does not move, whose soft contacts would give way to the

@@ -2,8 +2,10 @@
 
 #include <Fulcrum/Collision/BroadPhase/BoundsTreeCasts.h>
 #include <Fulcrum/Collision/NarrowPhase/Collide.h>
-#include <Fulcrum/Physics/Islands/UnionFind.h>
-#include <Fulcrum/Physics/Stages/Stages.h>
+#include <Fulcrum/Physics/Stages/StepState.h>
+#include <Fulcrum/Physics/World/FatBounds.h>
+#include <Fulcrum/Physics/World/Filters.h>
+#include <Fulcrum/Physics/World/UnionFind.h>
 
 #include <algorithm>
 #include <array>
@@ -79,9 +81,9 @@ bool OverlapsAtLeast(const WorldState& world, const JointedGroups& groups, uint3
 
 }  // namespace
 
-JointedGroups::JointedGroups(WorldState& world) {
+JointedGroups::JointedGroups(const WorldState& world, ScratchArena& scratch) {
     if (world.joints.Count() == 0) return;
-    roots_ = world.scratch.Allocate<uint32_t>(world.bodies.Size());
+    roots_ = scratch.Allocate<uint32_t>(world.bodies.Size());
     UnionFind sets(roots_);
     for (const Joint& joint : world.joints.joints)
         if (joint.exists && joint.enabled && !joint.still[0] && !joint.still[1])

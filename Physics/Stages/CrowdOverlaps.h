@@ -3,7 +3,7 @@
 // any number of threads.
 #pragma once
 
-#include <Fulcrum/Physics/State/WorldState.h>
+#include <Fulcrum/Physics/Stages/StepState.h>
 
 #include <span>
 
@@ -23,7 +23,7 @@ bool OverlapDeeply(const WorldState& world, uint32_t colliderA, uint32_t collide
 // Bodies connected by joints form a group, which disperses as one. Those of a group may overlap: they were built so.
 class JointedGroups {
 public:
-    explicit JointedGroups(WorldState& world);  // takes scratch memory of the step
+    JointedGroups(const WorldState& world, ScratchArena& scratch);
     // The body of the lowest index in a body's group: that itself where it has no joints.
     uint32_t RootOf(uint32_t body) const { return roots_.empty() ? body : roots_[body]; }
 

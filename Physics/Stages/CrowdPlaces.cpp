@@ -2,7 +2,8 @@
 
 #include <Fulcrum/Collision/BroadPhase/BoundsTreeCasts.h>
 #include <Fulcrum/Collision/Queries/RayCast.h>
-#include <Fulcrum/Physics/Stages/Stages.h>
+#include <Fulcrum/Physics/Stages/StepState.h>
+#include <Fulcrum/Physics/World/Filters.h>
 
 #include <algorithm>
 #include <cmath>

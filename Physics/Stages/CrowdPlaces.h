@@ -2,7 +2,7 @@
 // allow. Used by StartDispersing; PointInBall by contacts of coincident bodies, too. One thread.
 #pragma once
 
-#include <Fulcrum/Physics/State/WorldState.h>
+#include <Fulcrum/Physics/Stages/StepState.h>
 
 #include <span>
 #include <vector>

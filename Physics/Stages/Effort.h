@@ -2,7 +2,7 @@
 // Store.
 #pragma once
 
-#include <Fulcrum/Physics/Stages/Stages.h>
+#include <Fulcrum/Physics/Stages/StepState.h>
 
 #include <algorithm>
 
@@ -20,7 +20,7 @@ struct Effort {
 // The part of a tree's errors that a substep corrects.
 inline constexpr float kTreePush = 0.5f;
 
-inline Effort EffortOf(const WorldState& world, const StepContext& step, const SolverGroup& group) {
+inline Effort EffortOf(const WorldState& world, const StepState& step, const SolverGroup& group) {
     const SystemSettings& s = world.settings;
     Effort effort;
     effort.solver = s.solver;

@@ -2,9 +2,11 @@
 // pairs depends on ids alone, not on threads nor on the shape of the trees. Pairs that exist are recognized by their
 // bounds, most of the time: the table of pairs is asked about new ones only.
 #include <Fulcrum/Collision/BroadPhase/BoundsTreeBulk.h>
-#include <Fulcrum/Collision/Shapes/SurfaceShape.h>
 #include <Fulcrum/Physics/Stages/Crowd.h>
 #include <Fulcrum/Physics/Stages/CrowdOverlaps.h>
+#include <Fulcrum/Physics/Stages/Stages.h>
+#include <Fulcrum/Physics/World/Filters.h>
+#include <Fulcrum/Physics/World/Materials.h>
 
 #include <algorithm>
 #include <utility>
@@ -59,20 +61,20 @@ void Search(const WorldState& world, uint32_t index, uint32_t mostDeep, WorkerFi
     });
 }
 
-void SearchEach(WorldState& world, uint32_t mostDeep) {
+void SearchEach(WorldState& world, StepState& step, uint32_t mostDeep) {
     const std::vector<uint32_t>& moved = world.colliders.moved;
     world.jobs->ParallelFor(static_cast<uint32_t>(moved.size()), 16, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i)
-            Search(world, moved[i], mostDeep, world.findings[range.worker]);
+            Search(world, moved[i], mostDeep, step.findings[range.worker]);
     });
 }
 
 // The same where most have moved: what moves meets what moves, neighbors with neighbors.
-void SearchTogether(WorldState& world, uint32_t mostDeep) {
+void SearchTogether(WorldState& world, StepState& step, uint32_t mostDeep) {
     const ColliderStore& store = world.colliders;
     const auto isQueued = [&](uint32_t i) { return store.colliders[i].queued; };
     world.jobs->ParallelFor(store.movingTree.NodeCount(), 8, [&](JobRange range) {
-        WorkerFindings& found = world.findings[range.worker];
+        WorkerFindings& found = step.findings[range.worker];
         const auto consider = [&](uint32_t a, uint32_t b) {
             const uint32_t low = std::min(a, b), high = std::max(a, b);
             if (isQueued(low)) Consider(world, low, high, mostDeep, found);
@@ -98,16 +100,16 @@ void SearchTogether(WorldState& world, uint32_t mostDeep) {
     world.jobs->ParallelFor(static_cast<uint32_t>(store.moved.size()), 256, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i)
             if (!store.colliders[store.moved[i]].moving)
-                Search(world, store.moved[i], mostDeep, world.findings[range.worker]);
+                Search(world, store.moved[i], mostDeep, step.findings[range.worker]);
     });
 }
 
 // Kinematic bodies search for dispersing ones. These do not search the tree of what moves themselves: each would find
 // all of the crowd.
-void SearchForDispersing(WorldState& world) {
-    if (world.dispersing.empty()) return;
+void SearchForDispersing(WorldState& world, StepState& step) {
+    if (step.dispersing.empty()) return;
     const ColliderStore& store = world.colliders;
-    WorkerFindings& findings = world.findings.front();
+    WorkerFindings& findings = step.findings.front();
     for (uint32_t body = 0; body < world.bodies.Size(); ++body) {
         if (!world.bodies.cold[body].exists || world.bodies.dynamics[body].motion != MotionType::Kinematic) continue;
         VisitColliders(world, body, [&](uint32_t index) {
@@ -120,26 +122,26 @@ void SearchForDispersing(WorldState& world) {
     }
 }
 
-void SearchAll(WorldState& world, uint32_t mostDeep) {
-    if (world.colliders.MostMoved() && world.dispersing.empty()) SearchTogether(world, mostDeep);
-    else SearchEach(world, mostDeep);
-    SearchForDispersing(world);
+void SearchAll(WorldState& world, StepState& step, uint32_t mostDeep) {
+    if (world.colliders.MostMoved() && step.dispersing.empty()) SearchTogether(world, step, mostDeep);
+    else SearchEach(world, step, mostDeep);
+    SearchForDispersing(world, step);
 }
 
 // Whether more than mostDeep pairs that overlap deeply were found; then all that was found is dropped.
-bool FoundTooDeep(WorldState& world, uint64_t mostDeep) {
+bool FoundTooDeep(StepState& step, uint64_t mostDeep) {
     uint64_t deep = 0;
-    for (WorkerFindings& findings : world.findings) deep += std::exchange(findings.deepPairs, 0);
+    for (WorkerFindings& findings : step.findings) deep += std::exchange(findings.deepPairs, 0);
     if (deep <= mostDeep) return false;
-    for (WorkerFindings& findings : world.findings) findings.pairs.clear();
+    for (WorkerFindings& findings : step.findings) findings.pairs.clear();
     return true;
 }
 
 // Bodies that have moved start to disperse, as far as they overlap many others deeply.
-void DisperseMoved(WorldState& world) {
+void DisperseMoved(WorldState& world, StepState& step) {
     std::vector<uint32_t> bodies;
     for (const uint32_t index : world.colliders.moved) bodies.push_back(world.colliders.colliders[index].body);
-    StartDispersing(world, bodies);
+    StartDispersing(world, step, bodies);
 }
 
 // The searches of this step are over.
@@ -155,17 +157,6 @@ void ForgetMoved(WorldState& world) {
     if (!world.sensors.IsEmpty())
         for (uint32_t index : store.moved) world.sensors.touched.push_back(store.colliders[index].body);
     store.moved.clear();
-}
-
-float Combine(CombineRule rule, float a, float b) {
-    switch (rule) {
-        case CombineRule::GeometricMean: return std::sqrt(a * b);
-        case CombineRule::Average: return 0.5f * (a + b);
-        case CombineRule::Minimum: return std::min(a, b);
-        case CombineRule::Multiply: return a * b;
-        case CombineRule::Maximum: return std::max(a, b);
-    }
-    return 0;
 }
 
 uint32_t AddPair(WorldState& world, uint32_t colliderA, uint32_t colliderB) {
@@ -190,83 +181,50 @@ void DescribePair(WorldState& world, uint32_t index) {
 }
 
 // Of keys, sorted: pairs that are new, and pairs that rest.
-void ActivatePairs(WorldState& world, const std::vector<uint64_t>& keys) {
-    const std::span<uint32_t> added = world.scratch.Allocate<uint32_t>(keys.size());
+void ActivatePairs(WorldState& world, StepState& step, const std::vector<uint64_t>& keys) {
+    const std::span<uint32_t> added = step.scratch.Allocate<uint32_t>(keys.size());
     uint32_t count = 0;
     for (uint64_t key : keys) {
         const uint32_t a = static_cast<uint32_t>(key >> 32), b = static_cast<uint32_t>(key);
         uint32_t index = world.pairs.Find(a, b);
         if (index == PairStore::kNone) added[count++] = index = AddPair(world, a, b);
-        if (world.pairs.active.Insert(index)) world.activated.push_back(index);
+        if (world.pairs.active.Insert(index)) step.activated.push_back(index);
     }
     world.jobs->ParallelFor(count, 16, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i) DescribePair(world, added[i]);
     });
 }
 
+// The lists get room by the size of the world, so that no step of a settled one allocates, whichever worker does what.
+void ReserveLists(StepState& step, size_t colliders) {
+    step.activated.reserve(colliders);
+    step.newPairs.reserve(colliders);
+    for (WorkerFindings& findings : step.findings) findings.pairs.reserve(colliders);
+}
+
 }  // namespace
 
-bool CanCollide(const WorldState& world, uint32_t bodyA, uint32_t bodyB) {
-    const BodyDynamics& a = world.bodies.dynamics[bodyA];
-    const BodyDynamics& b = world.bodies.dynamics[bodyB];
-    if (bodyA == bodyB) return false;
-    if (a.motion != MotionType::Dynamic && b.motion != MotionType::Dynamic) return false;
-    if (!(world.settings.layerCollides[a.layer] >> b.layer & 1u)) return false;
-    if ((a.filtered || b.filtered) && !FiltersAllow(world, bodyA, bodyB)) return false;
-    return !world.joints.ForbidsContact(bodyA, bodyB);
-}
-
-bool MayCollide(const WorldState& world, uint32_t bodyA, uint32_t bodyB) {
-    const BodyDynamics& a = world.bodies.dynamics[bodyA];
-    const BodyDynamics& b = world.bodies.dynamics[bodyB];
-    if ((a.dispersing && b.motion == MotionType::Dynamic) || (b.dispersing && a.motion == MotionType::Dynamic))
-        return false;
-    return (a.awake || b.awake) && CanCollide(world, bodyA, bodyB);
-}
-
-PairMaterial MaterialOfPair(const WorldState& world, uint32_t bodyA, uint32_t bodyB, const Shape& shapeB,
-                            uint8_t material) {
-    const Material& a = world.bodies.cold[bodyA].material;
-    const Material& b = world.bodies.cold[bodyB].material;
-    float friction = b.friction, restitution = b.restitution;
-    if (shapeB.IsSurface()) {
-        const std::span<const SurfaceMaterial> palette = static_cast<const SurfaceShape&>(shapeB).Materials();
-        if (material < palette.size()) {
-            friction = palette[material].friction;
-            restitution = palette[material].restitution;
-        }
-    }
-    return {Combine(std::max(a.frictionRule, b.frictionRule), a.friction, friction),
-            Combine(std::max(a.restitutionRule, b.restitutionRule), a.restitution, restitution)};
-}
-
-void CombineMaterials(WorldState& world, uint32_t index) {
-    const Pair& pair = world.pairs.pairs[index];
-    const PairMaterial material = MaterialOfPair(world, pair.bodyA, pair.bodyB, *pair.shapeB, pair.material);
-    world.pairs.records[index].friction = material.friction;
-    world.pairs.records[index].restitution = material.restitution;
-}
-
-void FindPairs(WorldState& world) {
-    world.activated.clear();
-    EndDispersing(world);
-    if (!world.deepOverlaps.empty()) StartDispersing(world, world.deepOverlaps);
-    world.deepOverlaps.clear();
+void FindPairs(WorldState& world, StepState& step) {
+    ReserveLists(step, world.colliders.colliders.capacity());
+    step.activated.clear();
+    EndDispersing(world, step);
+    if (!step.deepOverlaps.empty()) StartDispersing(world, step, step.deepOverlaps);
+    step.deepOverlaps.clear();
     if (world.colliders.moved.empty()) return;
-    SearchAll(world, kMostDeepPairs);
-    if (FoundTooDeep(world, kMostDeepPairs)) {
-        DisperseMoved(world);
-        SearchAll(world, kAnyNumber);
-        FoundTooDeep(world, kAnyNumber);
+    SearchAll(world, step, kMostDeepPairs);
+    if (FoundTooDeep(step, kMostDeepPairs)) {
+        DisperseMoved(world, step);
+        SearchAll(world, step, kAnyNumber);
+        FoundTooDeep(step, kAnyNumber);
     }
-    std::vector<uint64_t>& found = world.newPairs;
+    std::vector<uint64_t>& found = step.newPairs;
     found.clear();
-    for (WorkerFindings& findings : world.findings) {
+    for (WorkerFindings& findings : step.findings) {
         found.insert(found.end(), findings.pairs.begin(), findings.pairs.end());
         findings.pairs.clear();
     }
     std::sort(found.begin(), found.end());
-    ActivatePairs(world, found);
+    ActivatePairs(world, step, found);
     ForgetMoved(world);
 }
 

@@ -2,7 +2,7 @@
 // stage, for different bodies from any number of threads at once.
 #pragma once
 
-#include <Fulcrum/Physics/State/BodyStore.h>
+#include <Fulcrum/Physics/World/BodyStore.h>
 
 namespace fulcrum {
 

@@ -3,6 +3,7 @@
 #include <Fulcrum/Physics/Stages/BodyLimits.h>
 #include <Fulcrum/Physics/Stages/FreeRotation.h>
 #include <Fulcrum/Physics/Stages/SweepCast.h>
+#include <Fulcrum/Physics/World/SpeedLimits.h>
 
 #include <algorithm>
 #include <cmath>
@@ -132,8 +133,8 @@ private:
 
 // Whether what gravity and forces have given a body since a time of its sweep is not simply their acceleration:
 // contacts took a part.
-bool IsCarried(const WorldState& world, const Sweep& sweep) {
-    return !sweep.waits && world.sweeps.IsOfStep(sweep.body, world.report.step) && world.coloring.IsTouched(sweep.body);
+bool IsCarried(const WorldState& world, const SweepStore& sweeps, const Sweep& sweep) {
+    return !sweep.waits && sweeps.IsOfStep(sweep.body, world.step) && world.coloring.IsTouched(sweep.body);
 }
 
 // m2/s2, the work per kilogram of gravity and forces since a time of a sweep.
@@ -144,12 +145,12 @@ float WorkSince(const WorldState& world, const Sweep& sweep, float time) {
 
 // m/s, that gravity and forces have given a body since a time of its sweep. Where the solver moved it, contacts took a
 // part of that: then as much as the way since then has made of it, so that to go back leaves its energy as it was.
-Vector3 GainSince(const WorldState& world, const Sweep& sweep, float time, float dt) {
-    if (sweep.waits || !world.sweeps.IsOfStep(sweep.body, world.report.step)) return Vector3::Zero();
+Vector3 GainSince(const WorldState& world, const SweepStore& sweeps, const Sweep& sweep, float time, float dt) {
+    if (sweep.waits || !sweeps.IsOfStep(sweep.body, world.step)) return Vector3::Zero();
     const float* a = world.bodies.poses[sweep.body].acceleration;
     const Vector3 acceleration(a[0], a[1], a[2]);
     const float rest = (1 - time) * dt;
-    if (!IsCarried(world, sweep)) return acceleration * rest;
+    if (!IsCarried(world, sweeps, sweep)) return acceleration * rest;
     const float work = WorkSince(world, sweep, time);
     const float along = Dot<float>(acceleration, world.bodies.LinearVelocityOf(sweep.body)),
                 square = LengthSquared(acceleration);
@@ -176,10 +177,11 @@ void TakeWork(const WorldState& world, const Sweep& sweep, float time, Impact& i
 }
 
 // m/s, that they will give it until the end. What a contact carried is not dropped, but what flies up is slowed.
-Vector3 GainUntilEnd(const WorldState& world, uint32_t body, const Vector3& v, const Vector3& since, float rest) {
+Vector3 GainUntilEnd(const WorldState& world, const SweepStore& sweeps, uint32_t body, const Vector3& v,
+                     const Vector3& since, float rest) {
     const float* a = world.bodies.poses[body].acceleration;
     const Vector3 acceleration(a[0], a[1], a[2]);
-    const bool carried = world.coloring.IsTouched(body) || !world.sweeps.IsOfStep(body, world.report.step);
+    const bool carried = world.coloring.IsTouched(body) || !sweeps.IsOfStep(body, world.step);
     if (!carried || Dot<float>(v, acceleration) < 0) return acceleration * rest;
     return Dot<float>(since, acceleration) > 0 ? since : Vector3(Vector3::Zero());
 }
@@ -201,10 +203,10 @@ Vector3 TurnedFreely(const BodyDynamics& d, const Quaternion& rotation, const Ve
 }
 
 // The sweep turns at the rate of its beginning: what was just parted would else seem to meet again.
-Impact::Rest FlyOn(const WorldState& world, uint32_t body, const Quaternion& rotation, const Vector3& v,
-                   const Vector3& w, const Vector3& since, float rest) {
+Impact::Rest FlyOn(const WorldState& world, const SweepStore& sweeps, uint32_t body, const Quaternion& rotation,
+                   const Vector3& v, const Vector3& w, const Vector3& since, float rest) {
     const BodyDynamics& d = world.bodies.dynamics[body];
-    Vector3 gain = GainUntilEnd(world, body, v, since, rest), none = Vector3::Zero();
+    Vector3 gain = GainUntilEnd(world, sweeps, body, v, since, rest), none = Vector3::Zero();
     d.Lock(gain, none);
     Impact::Rest on{(v + gain * 0.5f) * rest, w * rest, v + gain, w};
     on.angular = TurnedFreely(d, rotation, w, rest, RotationFromVector(on.turn) * rotation);
@@ -215,7 +217,7 @@ Impact::Rest FlyOn(const WorldState& world, uint32_t body, const Quaternion& rot
 
 }  // namespace
 
-Impact FindImpact(const WorldState& world, const SweepHit& hit, float dt) {
+Impact FindImpact(const WorldState& world, const SweepStore& sweeps, const SweepHit& hit, float dt) {
     const BodyStore& bodies = world.bodies;
     const uint32_t pair[2] = {hit.body, hit.other};
     const float rest = (1 - hit.time) * dt;
@@ -223,12 +225,12 @@ Impact FindImpact(const WorldState& world, const SweepHit& hit, float dt) {
     Vector3 since[2];
     for (int s = 0; s < 2; ++s) {
         const BodyDynamics& d = bodies.dynamics[pair[s]];
-        impact.sweeps[s] = SweepOf(world, pair[s]);
+        impact.sweeps[s] = SweepOf(world, sweeps, pair[s]);
         impact.poses[s] = impact.sweeps[s].PoseAt(hit.time);
         impact.masses[s] =
             d.spherical ? bodies.masses[pair[s]] : bodies.MassAlong(pair[s], AxesOf(d, impact.poses[s].rotation));
-        since[s] =
-            bodies.CanMove(pair[s]) ? GainSince(world, impact.sweeps[s], hit.time, dt) : Vector3(Vector3::Zero());
+        since[s] = bodies.CanMove(pair[s]) ? GainSince(world, sweeps, impact.sweeps[s], hit.time, dt)
+                                           : Vector3(Vector3::Zero());
         impact.linear[s] = bodies.LinearVelocityOf(pair[s]) - since[s];
         const Vector3 w = bodies.AngularVelocityOf(pair[s]);
         impact.angular[s] = impact.sweeps[s].waits
@@ -236,7 +238,7 @@ Impact FindImpact(const WorldState& world, const SweepHit& hit, float dt) {
                                 : TurnedFreely(d, impact.sweeps[s].RotationAt(1), w, -rest, impact.poses[s].rotation);
         // What gravity would have given along a locked axis it did not give.
         if (d.lockedAxes != LockedAxes::None) d.Lock(impact.linear[s], impact.angular[s]);
-        if (bodies.CanMove(pair[s]) && IsCarried(world, impact.sweeps[s]))
+        if (bodies.CanMove(pair[s]) && IsCarried(world, sweeps, impact.sweeps[s]))
             TakeWork(world, impact.sweeps[s], hit.time, impact, s);
         impact.arrivingLinear[s] = impact.linear[s];
         impact.arrivingAngular[s] = impact.angular[s];
@@ -247,8 +249,8 @@ Impact FindImpact(const WorldState& world, const SweepHit& hit, float dt) {
         if (!bodies.CanMove(pair[s])) continue;
         LimitLength(impact.linear[s], bodies.dynamics[pair[s]].maxLinearSpeed);
         LimitLength(impact.angular[s], bodies.dynamics[pair[s]].maxAngularSpeed);
-        impact.rests[s] =
-            FlyOn(world, pair[s], impact.poses[s].rotation, impact.linear[s], impact.angular[s], since[s], rest);
+        impact.rests[s] = FlyOn(world, sweeps, pair[s], impact.poses[s].rotation, impact.linear[s], impact.angular[s],
+                                since[s], rest);
         const Impact::Rest& on = impact.rests[s];
         impact.isFinite &=
             IsFinite(on.linear) && IsFinite(on.angular) && IsFinite(on.displacement) && IsFinite(on.turn);

@@ -2,7 +2,7 @@
 // there. Called by the Continuous stage, for different hits from any number of threads at once.
 #pragma once
 
-#include <Fulcrum/Physics/Stages/Stages.h>
+#include <Fulcrum/Physics/Stages/StepState.h>
 
 namespace fulcrum {
 
@@ -25,6 +25,6 @@ struct Impact {
 
 // Newton's law of restitution at each point that approaches, Coulomb friction, what is locked or does not move held.
 // Never more energy than before. dt, s: of the step.
-Impact FindImpact(const WorldState& world, const SweepHit& hit, float dt);
+Impact FindImpact(const WorldState& world, const SweepStore& sweeps, const SweepHit& hit, float dt);
 
 }  // namespace fulcrum

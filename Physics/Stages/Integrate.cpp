@@ -5,6 +5,7 @@
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Physics/Stages/BodyLimits.h>
 #include <Fulcrum/Physics/Stages/CrowdContacts.h>
+#include <Fulcrum/Physics/World/SpeedLimits.h>
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 // sets of bodies from any number of threads at once. In lanes where a body has nothing that needs a look of its own.
 #pragma once
 
-#include <Fulcrum/Physics/Stages/Stages.h>
+#include <Fulcrum/Physics/Stages/StepState.h>
 
 namespace fulcrum {
 

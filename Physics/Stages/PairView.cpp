@@ -64,11 +64,13 @@ void Forget(Pair& pair, ContactRecord& record) {
 
 }  // namespace
 
-PairView ViewPair(WorldState& world, uint32_t index) {
-    Pair& pair = world.pairs.pairs[index];
-    const RelativePose bodies = Relative(world.bodies.CenterPoseOf(pair.bodyA), world.bodies.CenterPoseOf(pair.bodyB));
-    PairView view{pair, world.pairs.records[index], bodies, bodies, pair.reference};
-    if (pair.offset) view.bInA = Inverse(LocalOf(world, pair.colliderA)) * bodies * LocalOf(world, pair.colliderB);
+PairView ViewPair(const BodyStore& bodies, const ColliderStore& colliders, PairStore& pairs, uint32_t index) {
+    Pair& pair = pairs.pairs[index];
+    const RelativePose bInA = Relative(bodies.CenterPoseOf(pair.bodyA), bodies.CenterPoseOf(pair.bodyB));
+    PairView view{pair, pairs.records[index], bInA, bInA, pair.reference};
+    if (pair.offset)
+        view.bInA =
+            Inverse(LocalOf(bodies, colliders, pair.colliderA)) * bInA * LocalOf(bodies, colliders, pair.colliderB);
     return view;
 }
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <Fulcrum/Physics/ContactListener.h>
-#include <Fulcrum/Physics/Stages/Stages.h>
+#include <Fulcrum/Physics/Stages/StepState.h>
 
 namespace fulcrum {
 
@@ -14,7 +14,7 @@ struct PairView {
     RelativePose bInA;           // of the pieces'
     const RelativePose& before;  // the same when the manifold was found
 };
-PairView ViewPair(WorldState& world, uint32_t pair);
+PairView ViewPair(const BodyStore& bodies, const ColliderStore& colliders, PairStore& pairs, uint32_t pair);
 
 // A body that is hit at one end turns about there, so that its other end comes on faster than it did: a rod's by up to
 // twice. Contacts of bodies that touch something are looked for so many times as far ahead as they move within the
@@ -29,12 +29,13 @@ bool HardlyMoved(const PairView& view);
 void WriteManifold(const WorldState& world, const PairView& view, const Manifold& manifold, float dt);
 
 // Brings the manifolds of a pair with a surface up to date; `reach`, m: how far apart shapes are seen. Says of each
-// further manifold in world.changes what became of it, and returns that of the first. What has no place goes to
+// further manifold in `changes` what became of it, and returns that of the first. What has no place goes to
 // findings.more.
-PairChange CollideWithSurface(WorldState& world, uint32_t pair, float reach, float dt, WorkerFindings& findings);
+PairChange CollideWithSurface(WorldState& world, std::span<PairChange> changes, uint32_t pair, float reach, float dt,
+                              WorkerFindings& findings);
 
 // Makes places for those, serially, in the order of the pairs.
-void AddMoreManifolds(WorldState& world, float dt);
+void AddMoreManifolds(WorldState& world, StepState& step);
 
 // Notes what a manifold has come to in this step, once the listener was asked.
 PairChange NoteTouching(WorldState& world, uint32_t pair, WorkerFindings& findings);

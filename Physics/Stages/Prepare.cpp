@@ -1,5 +1,6 @@
 // Fills the rows of all batches.
 #include <Fulcrum/Physics/Stages/Effort.h>
+#include <Fulcrum/Physics/Stages/Stages.h>
 
 #include <algorithm>
 
@@ -89,10 +90,10 @@ BatchRange PieceOf(const BatchRange& range, uint32_t piece) {
     return part;
 }
 
-void FindDeepest(WorldState& world) {
-    StepReport& report = world.report;
+void FindDeepest(WorldState& world, StepState& step) {
+    StepReport& report = step.report;
     uint32_t pair = ~0u;
-    for (const WorkerFindings& findings : world.findings) {
+    for (const WorkerFindings& findings : step.findings) {
         const float depth = findings.deepest, worst = report.largestPenetration;
         if (depth < worst || (depth == worst && findings.deepestPair >= pair)) continue;
         report.largestPenetration = depth;
@@ -103,15 +104,15 @@ void FindDeepest(WorldState& world) {
     report.deepestB = world.bodies.IdOf(world.pairs.pairs[pair].bodyB);
 }
 
-void FindWorstJoints(WorldState& world) {
-    StepReport& report = world.report;
+void FindWorstJoints(WorldState& world, StepState& step) {
+    StepReport& report = step.report;
     JointFindings worst;
     const auto note = [](float error, uint32_t joint, float& largest, uint32_t& which) {
         if (joint == ~0u || error < largest || (error == largest && joint >= which)) return;
         largest = error;
         which = joint;
     };
-    for (const WorkerFindings& findings : world.findings) {
+    for (const WorkerFindings& findings : step.findings) {
         note(findings.joints.linearError, findings.joints.linearJoint, worst.linearError, worst.linearJoint);
         note(findings.joints.angularError, findings.joints.angularJoint, worst.angularError, worst.angularJoint);
     }
@@ -123,27 +124,26 @@ void FindWorstJoints(WorldState& world) {
 
 class RowFiller {
 public:
-    RowFiller(WorldState& world, const Effort& effort, const StepContext& step)
-        : world_(world), joints_(effort.joints) {
-        contacts_.impulseScale = step.impulseScale * effort.impulseScale;
+    RowFiller(WorldState& world, SolverLayout& layout, const Effort& effort, float impulseScale)
+        : world_(world), layout_(layout), joints_(effort.joints) {
+        contacts_.impulseScale = impulseScale * effort.impulseScale;
         contacts_.restitutionSpeed = world.settings.restitutionSpeed;
     }
     void Fill(const BatchRange& moving, const BatchRange& fixed, WorkerFindings& findings) const {
-        SolverLayout& layout = world_.solver;
-        FillRange(world_, layout.moving, moving, layout.movingContacts, contacts_, findings);
-        FillRange(world_, layout.fixed, fixed, layout.fixedContacts, contacts_, findings);
+        FillRange(world_, layout_.moving, moving, layout_.movingContacts, contacts_, findings);
+        FillRange(world_, layout_.fixed, fixed, layout_.fixedContacts, contacts_, findings);
     }
     void FillBalls(uint32_t begin, uint32_t end, WorkerFindings& findings) const {
         for (uint32_t i = begin; i < end; ++i)
-            PrepareJoints(world_.solver.balls[i], world_.joints.records.data(), world_.bodies.ForSolver(), joints_,
+            PrepareJoints(layout_.balls[i], world_.joints.records.data(), world_.bodies.ForSolver(), joints_,
                           findings.joints);
     }
     void FillJoints(uint32_t begin, uint32_t end, WorkerFindings& findings) const {
-        for (uint32_t i = begin; i < end; ++i) FillJoint(world_.solver.joints[i], findings);
+        for (uint32_t i = begin; i < end; ++i) FillJoint(layout_.joints[i], findings);
     }
     void FillGroup(const SolverGroup& group, WorkerFindings& findings) const {
         for (uint32_t c = group.colorsBegin; c < group.colorsEnd; ++c) {
-            const ColorBatches& color = world_.solver.colors[c];
+            const ColorBatches& color = layout_.colors[c];
             Fill(color.moving, color.fixed, findings);
             FillBalls(color.ballsBegin, color.ballsEnd, findings);
             FillJoints(color.jointsBegin, color.jointsEnd, findings);
@@ -151,14 +151,13 @@ public:
     }
     void FillOverflow(const ConstraintColoring::Color& overflow, WorkerFindings& findings) const {
         using Kind = ConstraintColoring::Kind;
-        SolverLayout& layout = world_.solver;
-        for (size_t i = 0; i < layout.overflowMoving.size(); ++i)
-            fulcrum::Fill(world_, layout.overflowMoving[i], std::span(&overflow.Of(Kind::Moving)[i], 1), contacts_,
+        for (size_t i = 0; i < layout_.overflowMoving.size(); ++i)
+            fulcrum::Fill(world_, layout_.overflowMoving[i], std::span(&overflow.Of(Kind::Moving)[i], 1), contacts_,
                           findings);
-        for (size_t i = 0; i < layout.overflowFixed.size(); ++i)
-            fulcrum::Fill(world_, layout.overflowFixed[i], std::span(&overflow.Of(Kind::Fixed)[i], 1), contacts_,
+        for (size_t i = 0; i < layout_.overflowFixed.size(); ++i)
+            fulcrum::Fill(world_, layout_.overflowFixed[i], std::span(&overflow.Of(Kind::Fixed)[i], 1), contacts_,
                           findings);
-        for (JointBatch<1>& batch : layout.overflowJoints) FillJoint(batch, findings);
+        for (JointBatch<1>& batch : layout_.overflowJoints) FillJoint(batch, findings);
     }
 
 private:
@@ -169,18 +168,19 @@ private:
     }
 
     WorldState& world_;
+    SolverLayout& layout_;
     ContactPrepareSettings contacts_;
     JointSolveSettings joints_;
 };
 
 }  // namespace
 
-void Prepare(WorldState& world, const StepContext& step) {
-    SolverLayout& layout = world.solver;
-    world.bounces = false;
+void Prepare(WorldState& world, StepState& step) {
+    SolverLayout& layout = step.solver;
+    step.bounces = false;
     if (world.coloring.Size() == 0) return;
     const SolverGroup& large = layout.groups.front();
-    const RowFiller filler(world, EffortOf(world, step, large), step);
+    const RowFiller filler(world, layout, EffortOf(world, step, large), step.impulseScale);
     const auto piecesOf = [&](uint32_t c) {
         const ColorBatches& color = layout.colors[c];
         return (std::max({color.moving.Count(), color.fixed.Count(), color.JointCount(), color.BallCount()}) + kPiece -
@@ -189,7 +189,7 @@ void Prepare(WorldState& world, const StepContext& step) {
     };
     uint32_t count = 0;
     for (uint32_t c = large.colorsBegin; c < large.colorsEnd; ++c) count += piecesOf(c);
-    std::span<std::pair<uint32_t, uint32_t>> pieces = world.scratch.Allocate<std::pair<uint32_t, uint32_t>>(count);
+    std::span<std::pair<uint32_t, uint32_t>> pieces = step.scratch.Allocate<std::pair<uint32_t, uint32_t>>(count);
     count = 0;
     for (uint32_t c = large.colorsBegin; c < large.colorsEnd; ++c)
         for (uint32_t i = 0; i < piecesOf(c); ++i) pieces[count++] = {c, i};
@@ -197,7 +197,7 @@ void Prepare(WorldState& world, const StepContext& step) {
         for (uint32_t i = range.begin; i < range.end; ++i) {
             const auto [c, piece] = pieces[i];
             const ColorBatches& color = layout.colors[c];
-            WorkerFindings& findings = world.findings[range.worker];
+            WorkerFindings& findings = step.findings[range.worker];
             filler.Fill(PieceOf(color.moving, piece), PieceOf(color.fixed, piece), findings);
             filler.FillBalls(std::min(color.ballsBegin + piece * kPiece, color.ballsEnd),
                              std::min(color.ballsBegin + (piece + 1) * kPiece, color.ballsEnd), findings);
@@ -207,17 +207,17 @@ void Prepare(WorldState& world, const StepContext& step) {
     });
     world.jobs->ParallelFor(static_cast<uint32_t>(layout.groups.size()) - 1, 1, [&](JobRange range) {
         for (uint32_t g = range.begin + 1; g < range.end + 1; ++g)
-            RowFiller(world, EffortOf(world, step, layout.groups[g]), step)
-                .FillGroup(layout.groups[g], world.findings[range.worker]);
+            RowFiller(world, layout, EffortOf(world, step, layout.groups[g]), step.impulseScale)
+                .FillGroup(layout.groups[g], step.findings[range.worker]);
     });
-    filler.FillOverflow(world.coloring.At(ConstraintColoring::kOverflow), world.findings[0]);
+    filler.FillOverflow(world.coloring.At(ConstraintColoring::kOverflow), step.findings[0]);
 
-    for (const WorkerFindings& findings : world.findings) world.bounces |= findings.bounces;
-    FindDeepest(world);
-    FindWorstJoints(world);
-    world.report.colors = layout.colorCount;
-    world.report.overflowConstraints = static_cast<uint32_t>(
-        layout.overflowMoving.size() + layout.overflowFixed.size() + layout.overflowJoints.size());
+    for (const WorkerFindings& findings : step.findings) step.bounces |= findings.bounces;
+    FindDeepest(world, step);
+    FindWorstJoints(world, step);
+    step.report.colors = layout.colorCount;
+    step.report.overflowConstraints = static_cast<uint32_t>(layout.overflowMoving.size() + layout.overflowFixed.size() +
+                                                            layout.overflowJoints.size());
 }
 
 }  // namespace fulcrum

@@ -3,6 +3,7 @@
 #include <Fulcrum/Physics/Stages/BodyLimits.h>
 #include <Fulcrum/Physics/Stages/Impact.h>
 #include <Fulcrum/Physics/Stages/SweepCast.h>
+#include <Fulcrum/Physics/World/Waking.h>
 
 #include <algorithm>
 #include <tuple>
@@ -13,22 +14,22 @@ namespace {
 
 class HitResolver {
 public:
-    HitResolver(WorldState& world, const StepContext& step, bool isLast)
-        : world_(world), dt_(step.dt), isLast_(isLast) {}
+    HitResolver(WorldState& world, StepState& step, bool isLast) : world_(world), step_(step), isLast_(isLast) {}
 
     // In the order of their times. What each would do is found beforehand, in parallel: no body is hit twice in a
     // round.
     void ResolveAll() {
-        const std::vector<SweepHit>& hits = world_.sweeps.hits;
+        const std::vector<SweepHit>& hits = step_.sweeps.hits;
         struct Key {
             float time;
             uint32_t body, otherCollider, index;
             auto Order() const { return std::tie(time, body, otherCollider); }
         };
-        const std::span<Key> order = world_.scratch.Allocate<Key>(hits.size());
-        const std::span<Impact> impacts = world_.scratch.Allocate<Impact>(hits.size());
+        const std::span<Key> order = step_.scratch.Allocate<Key>(hits.size());
+        const std::span<Impact> impacts = step_.scratch.Allocate<Impact>(hits.size());
         world_.jobs->ParallelFor(static_cast<uint32_t>(hits.size()), 8, [&](JobRange range) {
-            for (uint32_t i = range.begin; i < range.end; ++i) impacts[i] = FindImpact(world_, hits[i], dt_);
+            for (uint32_t i = range.begin; i < range.end; ++i)
+                impacts[i] = FindImpact(world_, step_.sweeps, hits[i], step_.dt);
         });
         for (uint32_t i = 0; i < hits.size(); ++i) order[i] = {hits[i].time, hits[i].body, hits[i].otherCollider, i};
         std::sort(order.begin(), order.end(), [](const Key& a, const Key& b) { return a.Order() < b.Order(); });
@@ -37,8 +38,8 @@ public:
 
 private:
     void Resolve(const SweepHit& hit, const Impact& impact) {
-        const uint32_t places[2] = {PlaceOf(world_, hit.body, &impact.sweeps[0]),
-                                    PlaceOf(world_, hit.other, &impact.sweeps[1])};
+        const uint32_t places[2] = {PlaceOf(world_, step_, hit.body, &impact.sweeps[0]),
+                                    PlaceOf(world_, step_, hit.other, &impact.sweeps[1])};
         if (Swept(places[0]).changed) return;  // it is in the next round, or waits
         const bool lostPartner = places[1] != SweepStore::kNone && Swept(places[1]).changed;
         const bool isUndecided = hit.pointCount == 0 || lostPartner;
@@ -63,7 +64,7 @@ private:
     // those say.
     void Part(const SweepHit& hit, const Impact& impact, const uint32_t (&places)[2]) {
         WakeBody(world_, hit.other);
-        world_.report.sweptHits += impact.parts;
+        step_.report.sweptHits += impact.parts;
         for (int s = 0; s < 2; ++s) {
             if (places[s] == SweepStore::kNone) continue;
             const uint32_t body = Swept(places[s]).body;
@@ -78,17 +79,17 @@ private:
         }
     }
 
-    Sweep& Swept(uint32_t place) { return world_.sweeps.swept[place]; }
+    Sweep& Swept(uint32_t place) { return step_.sweeps.swept[place]; }
 
     void CastAgain(uint32_t place) {
         Swept(place).changed = true;
-        world_.sweeps.next.push_back(place);
+        step_.sweeps.next.push_back(place);
     }
 
     void End(uint32_t place, float time, const Pose& pose) {
         Sweep& sweep = Swept(place);
-        world_.sweeps.ended.push_back(sweep);
-        world_.sweeps.endedAt.push_back(time);
+        step_.sweeps.ended.push_back(sweep);
+        step_.sweeps.endedAt.push_back(time);
         sweep.start = pose;
         sweep.from = time;
         sweep.isCut = true;
@@ -128,22 +129,22 @@ private:
     }
 
     void SetVelocity(uint32_t body, Vector3 linear, Vector3 angular) {
-        world_.report.clampedBodies += LimitSpeeds(world_, body, linear, angular);
+        step_.report.clampedBodies += LimitSpeeds(world_, body, linear, angular);
         world_.bodies.SetVelocity(body, linear, angular);
     }
 
     WorldState& world_;
-    float dt_;
+    StepState& step_;
     bool isLast_;
 };
 
 }  // namespace
 
-uint32_t PlaceOf(WorldState& world, uint32_t body, const Sweep* known) {
-    SweepStore& store = world.sweeps;
+uint32_t PlaceOf(WorldState& world, StepState& step, uint32_t body, const Sweep* known) {
+    SweepStore& store = step.sweeps;
     if (store.searchBy[body] == SweepStore::SearchBy::None && !world.bodies.CanMove(body)) return SweepStore::kNone;
     if (store.places[body] == SweepStore::kNone) {
-        Sweep sweep = known ? *known : SweepOf(world, body);
+        Sweep sweep = known ? *known : SweepOf(world, step.sweeps, body);
         sweep.turns = IsCastTurning(world, body);
         store.places[body] = static_cast<uint32_t>(store.swept.size());
         store.swept.push_back(sweep);
@@ -151,8 +152,6 @@ uint32_t PlaceOf(WorldState& world, uint32_t body, const Sweep* known) {
     return store.places[body];
 }
 
-void ResolveHits(WorldState& world, const StepContext& step, bool isLast) {
-    HitResolver(world, step, isLast).ResolveAll();
-}
+void ResolveHits(WorldState& world, StepState& step, bool isLast) { HitResolver(world, step, isLast).ResolveAll(); }
 
 }  // namespace fulcrum

@@ -2,16 +2,16 @@
 // the impacts.
 #pragma once
 
-#include <Fulcrum/Physics/Stages/Stages.h>
+#include <Fulcrum/Physics/Stages/StepState.h>
 
 namespace fulcrum {
 
 // The place of a body's sweep in `swept`, where it comes to be when it is first asked for: as `known`, unless that is
 // null. kNone for what neither is cast nor can move.
-uint32_t PlaceOf(WorldState& world, uint32_t body, const Sweep* known = nullptr);
+uint32_t PlaceOf(WorldState& world, StepState& step, uint32_t body, const Sweep* known = nullptr);
 
 // Settles SweepStore::hits, and notes in `next` whose sweep is to be cast again. isLast: in the last round whatever
 // hits something stays there until the next step.
-void ResolveHits(WorldState& world, const StepContext& step, bool isLast);
+void ResolveHits(WorldState& world, StepState& step, bool isLast);
 
 }  // namespace fulcrum

@@ -2,6 +2,9 @@
 // rest. What rests in a sensor that rests stays in its list, and is looked at by nobody. Candidates are sorted by ids
 // before their shapes are looked at, so that events do not depend on threads.
 #include <Fulcrum/Physics/Stages/SensorVisits.h>
+#include <Fulcrum/Physics/Stages/Stages.h>
+#include <Fulcrum/Physics/World/FatBounds.h>
+#include <Fulcrum/Physics/World/Filters.h>
 
 #include <algorithm>
 #include <tuple>
@@ -27,29 +30,29 @@ bool Sees(const WorldState& world, const Sensor& sensor, uint32_t body) {
     return !world.joints.ForbidsContact(self, body);
 }
 
-bool IsTouched(const WorldState& world, uint32_t body) { return world.sensors.touchedIn[body] == world.report.step; }
+bool IsTouched(const WorldState& world, const SensorSearch& sensing, uint32_t body) {
+    return sensing.touchedIn[body] == world.step;
+}
 // Whether it is where it was when the last step ended.
-bool Rests(const WorldState& world, uint32_t body) {
-    return !world.bodies.dynamics[body].awake && !IsTouched(world, body);
+bool Rests(const WorldState& world, const SensorSearch& sensing, uint32_t body) {
+    return !world.bodies.dynamics[body].awake && !IsTouched(world, sensing, body);
 }
 
-void NoteTouched(WorldState& world) {
+void NoteTouched(WorldState& world, SensorSearch& sensing, std::span<WorkerFindings> workers) {
     SensorStore& store = world.sensors;
-    store.touchedIn.resize(world.bodies.Size(), 0);
+    sensing.touchedIn.resize(world.bodies.Size(), 0);
     for (uint32_t body : store.touched)
-        if (world.bodies.cold[body].exists) store.touchedIn[body] = world.report.step;
+        if (world.bodies.cold[body].exists) sensing.touchedIn[body] = world.step;
     store.touched.reserve(world.colliders.colliders.capacity());
-    for (WorkerFindings& findings : world.findings) {
-        findings.sensorCandidates.reserve(store.candidates.capacity());
-        findings.sensorVisits.reserve(store.visits.capacity());
+    for (WorkerFindings& findings : workers) {
+        findings.sensorCandidates.reserve(sensing.candidates.capacity());
+        findings.sensorVisits.reserve(sensing.visits.capacity());
         findings.sensorTests = 0;
     }
 }
 
 // The parts of the ways that hits have cut, in the order of bodies and times.
-void CollectCutWays(WorldState& world) {
-    const SweepStore& sweeps = world.sweeps;
-    std::vector<MotionSegment>& cut = world.sensors.cut;
+void CollectCutWays(const SweepStore& sweeps, std::vector<MotionSegment>& cut) {
     cut.clear();
     for (size_t i = 0; i < sweeps.ended.size(); ++i)
         if (sweeps.ended[i].from < sweeps.endedAt[i]) cut.push_back({sweeps.ended[i], sweeps.endedAt[i]});
@@ -61,12 +64,12 @@ void CollectCutWays(WorldState& world) {
 }
 
 // Sensors are found wherever they were in this step, and by queries where they are now.
-void EnlargeSensorBounds(WorldState& world) {
+void EnlargeSensorBounds(WorldState& world, const SweepStore& sweeps, std::span<const MotionSegment> cut) {
     ColliderStore& colliders = world.colliders;
     for (const Sensor& sensor : world.sensors.sensors) {
         const uint32_t body = sensor.id.index;
         if (sensor.removed || !world.bodies.dynamics[body].awake) continue;
-        const Way way(world, body);
+        const Way way(world, sweeps, cut, body);
         VisitColliders(world, body, [&](uint32_t i) {
             Bounds bounds = PieceBounds(world, way, i);
             bounds.Include(TightBoundsOf(world, i));
@@ -80,17 +83,17 @@ void EnlargeSensorBounds(WorldState& world) {
 }
 
 // The body's sphere all along its way.
-Bounds RoundBounds(const WorldState& world, uint32_t body) {
+Bounds RoundBounds(const WorldState& world, const SweepStore& sweeps, std::span<const MotionSegment> cut,
+                   uint32_t body) {
     const Position reach = Position::Constant(double{world.bodies.dynamics[body].outerRadius});
     Position lower = world.bodies.CenterOf(body), upper = lower;
     const auto include = [&](const Position& center) {
         lower = lower.cwiseMin(center);
         upper = upper.cwiseMax(center);
     };
-    const SweepStore::Start* starts = world.sweeps.starts.data();
-    if (body < world.sweeps.starts.size() && starts[body].step == world.report.step)
-        include(starts[body].pose.position);
-    for (const MotionSegment& part : CutSegmentsOf(world, body)) include(part.sweep.start.position);
+    const SweepStore::Start* starts = sweeps.starts.data();
+    if (body < sweeps.starts.size() && starts[body].step == world.step) include(starts[body].pose.position);
+    for (const MotionSegment& part : CutSegmentsOf(cut, body)) include(part.sweep.start.position);
     const Position& origin = world.colliders.boundsOrigin;
     return RoundedOutwards(lower - origin - reach, upper - origin + reach);
 }
@@ -101,20 +104,22 @@ void AddCandidate(const WorldState& world, uint32_t sensorBody, uint32_t body, W
         findings.sensorCandidates.push_back(uint64_t(place) << 32 | body);
 }
 
-void SearchFromBody(const WorldState& world, uint32_t body, WorkerFindings& findings) {
+void SearchFromBody(const WorldState& world, const SweepStore& sweeps, std::span<const MotionSegment> cut,
+                    uint32_t body, WorkerFindings& findings) {
     const ColliderStore& colliders = world.colliders;
-    colliders.sensorTree.Query(RoundBounds(world, body),
+    colliders.sensorTree.Query(RoundBounds(world, sweeps, cut, body),
                                [&](uint32_t i) { AddCandidate(world, colliders.colliders[i].body, body, findings); });
 }
 
 // What is awake, or was touched, looks for itself.
-void SearchFromSensor(const WorldState& world, const Sensor& sensor, WorkerFindings& findings) {
-    if (sensor.removed || Rests(world, sensor.id.index)) return;
+void SearchFromSensor(const WorldState& world, const SensorSearch& sensing, const Sensor& sensor,
+                      WorkerFindings& findings) {
+    if (sensor.removed || Rests(world, sensing, sensor.id.index)) return;
     const ColliderStore& colliders = world.colliders;
     VisitColliders(world, sensor.id.index, [&](uint32_t i) {
         const auto visit = [&](uint32_t other) {
             const uint32_t body = colliders.colliders[other].body;
-            if (Rests(world, body)) AddCandidate(world, sensor.id.index, body, findings);
+            if (Rests(world, sensing, body)) AddCandidate(world, sensor.id.index, body, findings);
         };
         const Bounds& bounds = colliders.colliders[i].fat;
         colliders.movingTree.Query(bounds, visit);
@@ -123,64 +128,70 @@ void SearchFromSensor(const WorldState& world, const Sensor& sensor, WorkerFindi
     });
 }
 
-void FindCandidates(WorldState& world) {
-    SensorStore& store = world.sensors;
+void FindCandidates(const WorldState& world, const SweepStore& sweeps, SensorSearch& sensing,
+                    std::span<WorkerFindings> workers) {
+    const SensorStore& store = world.sensors;
     const auto forEach = [&](size_t count, uint32_t minimumRange, const auto& search) {
         world.jobs->ParallelFor(static_cast<uint32_t>(count), minimumRange, [&](JobRange range) {
-            for (uint32_t i = range.begin; i < range.end; ++i) search(i, world.findings[range.worker]);
+            for (uint32_t i = range.begin; i < range.end; ++i) search(i, workers[range.worker]);
         });
     };
     const std::vector<uint32_t>& awake = world.bodies.awake;
-    forEach(awake.size(), 128,
-            [&](uint32_t i, WorkerFindings& findings) { SearchFromBody(world, awake[i], findings); });
+    forEach(awake.size(), 128, [&](uint32_t i, WorkerFindings& findings) {
+        SearchFromBody(world, sweeps, sensing.cut, awake[i], findings);
+    });
     forEach(store.touched.size(), 128, [&](uint32_t i, WorkerFindings& findings) {
         const uint32_t body = store.touched[i];
-        if (world.bodies.cold[body].exists && !world.bodies.dynamics[body].awake) SearchFromBody(world, body, findings);
+        if (world.bodies.cold[body].exists && !world.bodies.dynamics[body].awake)
+            SearchFromBody(world, sweeps, sensing.cut, body, findings);
     });
-    forEach(store.sensors.size(), 1,
-            [&](uint32_t i, WorkerFindings& findings) { SearchFromSensor(world, store.sensors[i], findings); });
+    forEach(store.sensors.size(), 1, [&](uint32_t i, WorkerFindings& findings) {
+        SearchFromSensor(world, sensing, store.sensors[i], findings);
+    });
 
-    store.candidates.clear();
-    for (WorkerFindings& findings : world.findings) {
-        store.candidates.insert(store.candidates.end(), findings.sensorCandidates.begin(),
-                                findings.sensorCandidates.end());
+    std::vector<uint64_t>& candidates = sensing.candidates;
+    candidates.clear();
+    for (WorkerFindings& findings : workers) {
+        candidates.insert(candidates.end(), findings.sensorCandidates.begin(), findings.sensorCandidates.end());
         findings.sensorCandidates.clear();
     }
-    std::sort(store.candidates.begin(), store.candidates.end());
-    store.candidates.erase(std::unique(store.candidates.begin(), store.candidates.end()), store.candidates.end());
+    std::sort(candidates.begin(), candidates.end());
+    candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
 }
 
-void LookAtCandidate(const WorldState& world, uint64_t candidate, WorkerFindings& findings) {
+void LookAtCandidate(const WorldState& world, const SweepStore& sweeps, const SensorSearch& sensing, uint64_t candidate,
+                     WorkerFindings& findings) {
     const uint32_t place = static_cast<uint32_t>(candidate >> 32), body = static_cast<uint32_t>(candidate);
     const Sensor& sensor = world.sensors.sensors[place];
     AtStart atStart = AtStart::Unknown;
-    if (!IsTouched(world, body) && !IsTouched(world, sensor.id.index)) {
+    if (!IsTouched(world, sensing, body) && !IsTouched(world, sensing, sensor.id.index)) {
         const bool wasInside = std::binary_search(sensor.inside.begin(), sensor.inside.end(), world.bodies.IdOf(body));
         atStart = wasInside ? AtStart::Inside : AtStart::Outside;
     }
     ++findings.sensorTests;
     // Most of what is inside stays there.
     if (atStart == AtStart::Inside && IsOnePiece(world, body) && IsOnePiece(world, sensor.id.index) &&
-        CutSegmentsOf(world, body).empty() && OverlapAtEnd(world, sensor.id.index, body)) {
+        CutSegmentsOf(sensing.cut, body).empty() && OverlapAtEnd(world, sensor.id.index, body)) {
         findings.sensorVisits.push_back({place, body, 0, 1, true, true});
         return;
     }
-    FindVisits(world, place, Way(world, sensor.id.index), Way(world, body), atStart, findings.sensorVisits);
+    FindVisits(world, place, Way(world, sweeps, sensing.cut, sensor.id.index), Way(world, sweeps, sensing.cut, body),
+               atStart, findings.sensorVisits);
 }
 
-void FindAllVisits(WorldState& world) {
-    SensorStore& store = world.sensors;
-    world.jobs->ParallelFor(static_cast<uint32_t>(store.candidates.size()), 4, [&](JobRange range) {
+void FindAllVisits(const WorldState& world, const SweepStore& sweeps, SensorSearch& sensing,
+                   std::span<WorkerFindings> workers, StepReport& report) {
+    world.jobs->ParallelFor(static_cast<uint32_t>(sensing.candidates.size()), 4, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i)
-            LookAtCandidate(world, store.candidates[i], world.findings[range.worker]);
+            LookAtCandidate(world, sweeps, sensing, sensing.candidates[i], workers[range.worker]);
     });
-    store.visits.clear();
-    for (WorkerFindings& findings : world.findings) {
-        store.visits.insert(store.visits.end(), findings.sensorVisits.begin(), findings.sensorVisits.end());
+    sensing.visits.clear();
+    for (WorkerFindings& findings : workers) {
+        sensing.visits.insert(sensing.visits.end(), findings.sensorVisits.begin(), findings.sensorVisits.end());
         findings.sensorVisits.clear();
-        world.report.sensorTests += findings.sensorTests;
+        report.sensorTests += findings.sensorTests;
     }
-    std::sort(store.visits.begin(), store.visits.end(), [](const SensorVisit& a, const SensorVisit& b) {
+    std::sort(sensing.visits.begin(), sensing.visits.end(), [](const SensorVisit& a, const SensorVisit& b) {
         return std::tie(a.sensor, a.body, a.from) < std::tie(b.sensor, b.body, b.from);
     });
 }
@@ -188,14 +199,14 @@ void FindAllVisits(WorldState& world) {
 // Events and the new list of one sensor: what was inside and the candidates, both in the order of bodies, side by side.
 class Reporter {
 public:
-    Reporter(const WorldState& world, Sensor& sensor, uint32_t place) : world_(world), sensor_(sensor) {
-        const SensorStore& store = world.sensors;
+    Reporter(const WorldState& world, const SensorSearch& sensing, Sensor& sensor, uint32_t place)
+        : world_(world), sensing_(sensing), sensor_(sensor) {
         const uint64_t key = uint64_t(place) << 32;
-        candidate_ = std::lower_bound(store.candidates.begin(), store.candidates.end(), key);
-        lastCandidate_ = std::lower_bound(candidate_, store.candidates.end(), key + (uint64_t(1) << 32));
-        visit_ = std::lower_bound(store.visits.begin(), store.visits.end(), place,
+        candidate_ = std::lower_bound(sensing.candidates.begin(), sensing.candidates.end(), key);
+        lastCandidate_ = std::lower_bound(candidate_, sensing.candidates.end(), key + (uint64_t(1) << 32));
+        visit_ = std::lower_bound(sensing.visits.begin(), sensing.visits.end(), place,
                                   [](const SensorVisit& v, uint32_t p) { return v.sensor < p; });
-        lastVisit_ = store.visits.end();
+        lastVisit_ = sensing.visits.end();
         place_ = place;
     }
 
@@ -220,7 +231,8 @@ private:
 
     bool RestsInside(BodyId id) const {
         if (sensor_.removed || !world_.bodies.Find(id)) return false;
-        return Rests(world_, sensor_.id.index) && Rests(world_, id.index) && Sees(world_, sensor_, id.index);
+        return Rests(world_, sensing_, sensor_.id.index) && Rests(world_, sensing_, id.index) &&
+               Sees(world_, sensor_, id.index);
     }
 
     void Report(BodyId id, SensorEvent::Kind kind, float time) {
@@ -252,35 +264,36 @@ private:
     }
 
     const WorldState& world_;
+    const SensorSearch& sensing_;
     Sensor& sensor_;
     uint32_t place_;
     std::vector<uint64_t>::const_iterator candidate_, lastCandidate_;
     std::vector<SensorVisit>::const_iterator visit_, lastVisit_;
 };
 
-void ReportAll(WorldState& world) {
+void ReportAll(WorldState& world, const SensorSearch& sensing, StepReport& report) {
     SensorStore& store = world.sensors;
     world.jobs->ParallelFor(static_cast<uint32_t>(store.sensors.size()), 1, [&](JobRange range) {
-        for (uint32_t i = range.begin; i < range.end; ++i) Reporter(world, store.sensors[i], i).Run();
+        for (uint32_t i = range.begin; i < range.end; ++i) Reporter(world, sensing, store.sensors[i], i).Run();
     });
     for (const Sensor& sensor : store.sensors)
         store.events.insert(store.events.end(), sensor.events.begin(), sensor.events.end());
-    world.report.sensorEvents = static_cast<uint32_t>(store.events.size());
+    report.sensorEvents = static_cast<uint32_t>(store.events.size());
     std::erase_if(store.sensors, [](const Sensor& sensor) { return sensor.removed; });
 }
 
 }  // namespace
 
-void Sense(WorldState& world, const StepContext& step) {
+void Sense(WorldState& world, const SweepStore& sweeps, SensorSearch& sensing, std::span<WorkerFindings> workers,
+           StepReport& report) {
     SensorStore& store = world.sensors;
     if (store.IsEmpty()) return;
-    world.sweeps.dt = step.dt;
-    NoteTouched(world);
-    CollectCutWays(world);
-    EnlargeSensorBounds(world);
-    FindCandidates(world);
-    FindAllVisits(world);
-    ReportAll(world);
+    NoteTouched(world, sensing, workers);
+    CollectCutWays(sweeps, sensing.cut);
+    EnlargeSensorBounds(world, sweeps, sensing.cut);
+    FindCandidates(world, sweeps, sensing, workers);
+    FindAllVisits(world, sweeps, sensing, workers, report);
+    ReportAll(world, sensing, report);
     store.touched.clear();
 }
 

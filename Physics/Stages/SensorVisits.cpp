@@ -198,8 +198,7 @@ private:
 
 }  // namespace
 
-std::span<const MotionSegment> CutSegmentsOf(const WorldState& world, uint32_t body) {
-    const std::vector<MotionSegment>& cut = world.sensors.cut;
+std::span<const MotionSegment> CutSegmentsOf(std::span<const MotionSegment> cut, uint32_t body) {
     const auto first = std::lower_bound(cut.begin(), cut.end(), body,
                                         [](const MotionSegment& part, uint32_t b) { return part.sweep.body < b; });
     auto last = first;
@@ -207,10 +206,10 @@ std::span<const MotionSegment> CutSegmentsOf(const WorldState& world, uint32_t b
     return {first, last};
 }
 
-Way::Way(const WorldState& world, uint32_t body)
-    : body_(body), end_(world.bodies.CenterPoseOf(body)), parts_(CutSegmentsOf(world, body)) {
+Way::Way(const WorldState& world, const SweepStore& sweeps, std::span<const MotionSegment> cut, uint32_t body)
+    : body_(body), end_(world.bodies.CenterPoseOf(body)), parts_(CutSegmentsOf(cut, body)) {
     if (!parts_.empty()) return;
-    own_.sweep = SweepOf(world, body);
+    own_.sweep = SweepOf(world, sweeps, body);
     parts_ = {&own_, 1};
 }
 

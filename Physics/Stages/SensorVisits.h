@@ -2,19 +2,20 @@
 // threads at once.
 #pragma once
 
-#include <Fulcrum/Physics/Stages/Stages.h>
+#include <Fulcrum/Physics/Stages/StepState.h>
 
 #include <span>
 
 namespace fulcrum {
 
-// The parts of the way of a body that continuous collision made bounce in this step; empty for all others.
-std::span<const MotionSegment> CutSegmentsOf(const WorldState& world, uint32_t body);
+// The parts of the way of a body that continuous collision made bounce in this step; empty for all others. `cut`: see
+// SensorSearch.
+std::span<const MotionSegment> CutSegmentsOf(std::span<const MotionSegment> cut, uint32_t body);
 
 // A body's way in this step: one straight part, or several where continuous collision made it bounce.
 class Way {
 public:
-    Way(const WorldState& world, uint32_t body);
+    Way(const WorldState& world, const SweepStore& sweeps, std::span<const MotionSegment> cut, uint32_t body);
     Way(const Way&) = delete;
     Way& operator=(const Way&) = delete;
 

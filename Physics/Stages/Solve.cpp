@@ -12,6 +12,7 @@
 #include <Fulcrum/Jobs/Phases.h>
 #include <Fulcrum/Physics/Stages/Effort.h>
 #include <Fulcrum/Physics/Stages/Integrate.h>
+#include <Fulcrum/Physics/Stages/Stages.h>
 
 #include <algorithm>
 
@@ -67,15 +68,21 @@ class StepSolver {
 public:
     // pseudo: room for the pseudo-velocities of all bodies, zero; null where the group has no joints that are far
     // apart.
-    StepSolver(WorldState& world, const StepContext& step, const Effort& effort, BodyState* pseudo)
-        : world_(world), layout_(world.solver), effort_(effort), pseudo_(pseudo), h_(effort.substepDt), dt_(step.dt) {}
+    StepSolver(WorldState& world, StepState& step, const Effort& effort, BodyState* pseudo)
+        : world_(world),
+          step_(step),
+          layout_(step.solver),
+          effort_(effort),
+          pseudo_(pseudo),
+          h_(effort.substepDt),
+          dt_(step.dt) {}
 
     // The large group: all workers, phase by phase.
     void RunTogether(std::span<const Phase> phases) {
-        std::span<uint32_t> counts = world_.scratch.Allocate<uint32_t>(phases.size());
+        std::span<uint32_t> counts = step_.scratch.Allocate<uint32_t>(phases.size());
         for (size_t i = 0; i < phases.size(); ++i) counts[i] = BlockCount(phases[i]);
         RunPhases(*world_.jobs, counts, [&](uint32_t phase, uint32_t block, uint32_t worker) {
-            RunBlock(phases[phase], block, world_.findings[worker]);
+            RunBlock(phases[phase], block, step_.findings[worker]);
         });
     }
 
@@ -295,6 +302,7 @@ private:
     }
 
     WorldState& world_;
+    StepState& step_;
     SolverLayout& layout_;
     const Effort& effort_;
     BodyState* pseudo_;
@@ -336,11 +344,11 @@ std::span<const Verb> LoopOf(const SolverSettings& settings, bool bounces, bool 
 }
 
 // The same for the large group: a phase per color.
-std::span<const Phase> PhasesOf(std::span<const Verb> verbs, WorldState& world) {
-    const SolverGroup& large = world.solver.groups.front();
-    const size_t colors = large.colorsEnd - large.colorsBegin + (world.solver.HasOverflow() ? 1u : 0u);
+std::span<const Phase> PhasesOf(std::span<const Verb> verbs, const SolverLayout& layout, ScratchArena& scratch) {
+    const SolverGroup& large = layout.groups.front();
+    const size_t colors = large.colorsEnd - large.colorsBegin + (layout.HasOverflow() ? 1u : 0u);
     if (large.bodiesBegin == large.bodiesEnd) return {};
-    std::span<Phase> phases = world.scratch.Allocate<Phase>(verbs.size() * std::max<size_t>(colors, 1));
+    std::span<Phase> phases = scratch.Allocate<Phase>(verbs.size() * std::max<size_t>(colors, 1));
     size_t n = 0;
     uint8_t substep = 0;
     for (Verb verb : verbs) {
@@ -353,8 +361,7 @@ std::span<const Phase> PhasesOf(std::span<const Verb> verbs, WorldState& world) 
 }
 
 // Whether joints of the group are far apart.
-bool PullsJoints(const WorldState& world, const SolverGroup& group) {
-    const SolverLayout& layout = world.solver;
+bool PullsJoints(const SolverLayout& layout, const SolverGroup& group) {
     const auto isFar = [](const auto& batch) { return batch.far; };
     for (uint32_t c = group.colorsBegin; c < group.colorsEnd; ++c) {
         const ColorBatches& color = layout.colors[c];
@@ -369,48 +376,48 @@ bool PullsJoints(const WorldState& world, const SolverGroup& group) {
 // Runs the verbs that loopOf(effort, whether joints are pulled) names over every group. far: some joints are far apart,
 // and to be pulled.
 template <class LoopOfEffort>
-void RunVerbs(WorldState& world, const StepContext& step, bool far, LoopOfEffort&& loopOf) {
-    const std::span<const SolverGroup> groups = world.solver.groups;
-    const std::span<BodyState> pseudo = world.scratch.Allocate<BodyState>(far ? world.bodies.states.size() : 0);
+void RunVerbs(WorldState& world, StepState& step, bool far, LoopOfEffort&& loopOf) {
+    const std::span<const SolverGroup> groups = step.solver.groups;
+    const std::span<BodyState> pseudo = step.scratch.Allocate<BodyState>(far ? world.bodies.states.size() : 0);
     std::ranges::fill(pseudo, BodyState{});
     // Per group: its loop, and whether joints of it are pulled.
-    std::span<bool> pulls = world.scratch.Allocate<bool>(groups.size());
-    for (size_t g = 0; g < groups.size(); ++g) pulls[g] = far && PullsJoints(world, groups[g]);
+    std::span<bool> pulls = step.scratch.Allocate<bool>(groups.size());
+    for (size_t g = 0; g < groups.size(); ++g) pulls[g] = far && PullsJoints(step.solver, groups[g]);
     const auto pseudoOf = [&](size_t g) { return pulls[g] ? pseudo.data() : nullptr; };
     const Effort common = EffortOf(world, step, groups.front());
     const std::span<const Verb> verbs = loopOf(common, pulls[0]), usual = pulls[0] ? loopOf(common, false) : verbs;
     StepSolver solver(world, step, common, pseudoOf(0));
-    const std::span<const Phase> phases = PhasesOf(verbs, world);
+    const std::span<const Phase> phases = PhasesOf(verbs, step.solver, step.scratch);
     if (!phases.empty()) solver.RunTogether(phases);
-    std::span<std::span<const Verb>> loops = world.scratch.Allocate<std::span<const Verb>>(groups.size());
+    std::span<std::span<const Verb>> loops = step.scratch.Allocate<std::span<const Verb>>(groups.size());
     for (size_t g = 1; g < groups.size(); ++g) {
         loops[g] = groups[g].IsOwn() || pulls[g] ? loopOf(EffortOf(world, step, groups[g]), pulls[g]) : usual;
     }
     world.jobs->ParallelFor(static_cast<uint32_t>(groups.size()) - 1, 1, [&](JobRange range) {
         for (uint32_t g = range.begin + 1; g < range.end + 1; ++g) {
             const Effort effort = EffortOf(world, step, groups[g]);
-            StepSolver(world, step, effort, pseudoOf(g)).RunAlone(groups[g], loops[g], world.findings[range.worker]);
+            StepSolver(world, step, effort, pseudoOf(g)).RunAlone(groups[g], loops[g], step.findings[range.worker]);
         }
     });
 }
 
 }  // namespace
 
-void Solve(WorldState& world, const StepContext& step) {
+void Solve(WorldState& world, StepState& step) {
     if (world.coloring.Size() == 0) return;
     const bool far =
-        std::ranges::any_of(world.findings, [](const WorkerFindings& findings) { return findings.joints.far; });
+        std::ranges::any_of(step.findings, [](const WorkerFindings& findings) { return findings.joints.far; });
     RunVerbs(world, step, far, [&](const Effort& effort, bool pulls) {
-        return LoopOf(effort.solver, world.bounces, pulls, world.scratch);
+        return LoopOf(effort.solver, step.bounces, pulls, step.scratch);
     });
 }
 
-void Restitution(WorldState& world, const StepContext& step) {
-    if (!world.bounces) return;
+void Restitution(WorldState& world, StepState& step) {
+    if (!step.bounces) return;
     // A bounce tears at joints.
     static constexpr Verb kVerbs[] = {Verb::ClearPushWork, Verb::AddPushWork, Verb::SubtractPushWork, Verb::Restitution,
                                       Verb::RelaxJointsAfterRestitution};
-    const size_t count = world.solver.HasJoints() ? 5 : 4;
+    const size_t count = step.solver.HasJoints() ? 5 : 4;
     RunVerbs(world, step, false, [&](const Effort&, bool) { return std::span<const Verb>(kVerbs, count); });
 }
 

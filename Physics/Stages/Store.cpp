@@ -7,6 +7,9 @@
 #include <Fulcrum/Physics/Stages/Effort.h>
 #include <Fulcrum/Physics/Stages/FreeRotation.h>
 #include <Fulcrum/Physics/Stages/Integrate.h>
+#include <Fulcrum/Physics/Stages/Stages.h>
+#include <Fulcrum/Physics/World/Colors.h>
+#include <Fulcrum/Physics/World/Waking.h>
 
 #include <algorithm>
 
@@ -26,7 +29,7 @@ struct Ending {
 
 // A body that no contact touched: x += v t + a t^2 / 2, exact under constant acceleration. Returns whether it is still
 // to be turned, keeping its angular momentum.
-bool FlyFreely(WorldState& world, Ending& ending, const StepContext& step, WorkerFindings& findings) {
+bool FlyFreely(WorldState& world, Ending& ending, const StepState& step, WorkerFindings& findings) {
     const BodyDynamics& d = *ending.turn.body;
     const float* a = world.bodies.poses[ending.body].acceleration;
     Vector3 &v = ending.v, &w = ending.turn.angularVelocity;
@@ -141,10 +144,10 @@ bool PushIsFinite(const WorldState& world, uint32_t body) {
 }
 
 // Whether somebody asks how bodies move within the step.
-bool KeepsStarts(const WorldState& world) { return world.sweeps.users > 0 || !world.sensors.IsEmpty(); }
+bool KeepsStarts(const WorldState& world) { return world.bodies.continuousCount > 0 || !world.sensors.IsEmpty(); }
 
 // Finds how a body ends the step. False: it has nothing to end. `together`: it is still to be turned, one of several.
-bool BeginEnding(WorldState& world, uint32_t body, const StepContext& step, WorkerFindings& findings, Ending& ending,
+bool BeginEnding(WorldState& world, uint32_t body, StepState& step, WorkerFindings& findings, Ending& ending,
                  bool& together) {
     BodyStore& bodies = world.bodies;
     const BodyDynamics& d = bodies.dynamics[body];
@@ -156,7 +159,7 @@ bool BeginEnding(WorldState& world, uint32_t body, const StepContext& step, Work
     ending = {.body = body,
               .v = bodies.LinearVelocityOf(body),
               .turn = {&d, bodies.RotationOf(body), bodies.AngularVelocityOf(body)}};
-    if (KeepsStarts(world)) world.sweeps.starts[body] = {bodies.CenterPoseOf(body), world.report.step};
+    if (KeepsStarts(world)) step.sweeps.starts[body] = {bodies.CenterPoseOf(body), world.step};
     if (d.motion == MotionType::Kinematic) {
         ending.displacement = ending.v * step.dt;
         ending.turn.rotation =
@@ -171,7 +174,7 @@ bool BeginEnding(WorldState& world, uint32_t body, const StepContext& step, Work
     return true;
 }
 
-void FinishEnding(WorldState& world, Ending& ending, const StepContext& step, WorkerFindings& findings) {
+void FinishEnding(WorldState& world, Ending& ending, const StepState& step, WorkerFindings& findings) {
     BodyStore& bodies = world.bodies;
     const uint32_t body = ending.body;
     const BodyDynamics& d = bodies.dynamics[body];
@@ -182,7 +185,7 @@ void FinishEnding(WorldState& world, Ending& ending, const StepContext& step, Wo
         return Stop(world, body, findings);
     BodyState& state = bodies.states[body];
     state = {.marks = state.marks};
-    if (d.dispersing) v = OwnVelocity(world, body, v, step.dt);
+    if (d.dispersing) v = OwnVelocity(world, step.dispersing, body, v, step.dt);
     findings.clamped += LimitSpeeds(world, body, v, w);
     bodies.SetVelocity(body, v, w);
     bodies.MoveCenter(body, ending.displacement, ending.turn.rotation);
@@ -191,8 +194,8 @@ void FinishEnding(WorldState& world, Ending& ending, const StepContext& step, Wo
         MeasureSlowness(world, body, std::max(FarthestSpeed(world, body, v, w), ending.pulled), step.dt, findings);
 }
 
-void EndBodies(WorldState& world, JobRange range, const StepContext& step) {
-    WorkerFindings& findings = world.findings[range.worker];
+void EndBodies(WorldState& world, JobRange range, StepState& step) {
+    WorkerFindings& findings = step.findings[range.worker];
     Ending endings[kTurnsTogether];
     FreeTurn* const turns[kTurnsTogether] = {&endings[0].turn, &endings[1].turn, &endings[2].turn, &endings[3].turn};
     int waiting = 0;
@@ -235,8 +238,8 @@ void StoreAll(WorldState& world, const std::vector<Batch>& batches, uint32_t beg
 }
 
 // Groups lie one after the other: those without an effort of their own are stored together.
-void StoreImpulses(WorldState& world, const StepContext& step) {
-    const SolverLayout& layout = world.solver;
+void StoreImpulses(WorldState& world, StepState& step) {
+    const SolverLayout& layout = step.solver;
     uint32_t moving = 0, fixed = 0, balls = 0, joints = 0;
     const auto storeTo = [&](uint32_t movingEnd, uint32_t fixedEnd, uint32_t ballsEnd, uint32_t jointsEnd,
                              float impulseScale) {
@@ -267,7 +270,7 @@ void StoreImpulses(WorldState& world, const StepContext& step) {
 }
 
 // Serial, in the order of the joints.
-void BreakJoints(WorldState& world) {
+void BreakJoints(WorldState& world, std::vector<JointId>& broken) {
     world.joints.breakable.Visit([&](uint32_t index) {
         Joint& joint = world.joints.joints[index];
         if (joint.color.color == 0xFF) return;
@@ -278,28 +281,32 @@ void BreakJoints(WorldState& world) {
         world.joints.Forget(index);
         UncolorJoint(world, index);
         for (uint32_t body : joint.body) RequeueColliders(world, body);
-        world.broken.push_back(world.joints.IdOf(index));
+        broken.push_back(world.joints.IdOf(index));
     });
 }
 
 }  // namespace
 
-void Store(WorldState& world, const StepContext& step) {
+void Store(WorldState& world, StepState& step) {
     StoreImpulses(world, step);
-    if (KeepsStarts(world)) world.sweeps.starts.resize(world.bodies.Size());
+    if (KeepsStarts(world)) {
+        step.sweeps.dt = step.dt;
+        step.sweeps.starts.resize(world.bodies.Size());
+    }
     world.jobs->ParallelFor(static_cast<uint32_t>(world.bodies.awake.size()), 64,
                             [&](JobRange range) { EndBodies(world, range, step); });
-    BreakJoints(world);
-    world.lastSubstepDt = step.substepDt;
+    BreakJoints(world, step.broken);
+    step.lastSubstepDt = step.substepDt;
 
-    SettleStopped(world);
+    SettleStopped(world, step.findings);
     uint32_t firstFrozen = ~0u;
-    for (const WorkerFindings& findings : world.findings) {
-        world.report.clampedBodies += findings.clamped;
-        world.report.frozenBodies += findings.frozen;
+    for (const WorkerFindings& findings : step.findings) {
+        step.sleepCandidates += findings.sleepCandidates;
+        step.report.clampedBodies += findings.clamped;
+        step.report.frozenBodies += findings.frozen;
         firstFrozen = std::min(firstFrozen, findings.firstFrozen);
     }
-    if (firstFrozen != ~0u) world.report.firstFrozen = world.bodies.IdOf(firstFrozen);
+    if (firstFrozen != ~0u) step.report.firstFrozen = world.bodies.IdOf(firstFrozen);
 }
 
 }  // namespace fulcrum

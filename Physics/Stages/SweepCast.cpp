@@ -5,6 +5,8 @@
 #include <Fulcrum/Collision/Queries/ShapeCast.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
 #include <Fulcrum/Physics/Stages/PlacedConvex.h>
+#include <Fulcrum/Physics/World/Filters.h>
+#include <Fulcrum/Physics/World/Materials.h>
 
 #include <algorithm>
 
@@ -48,34 +50,36 @@ struct LazySweep {
     bool hasTurn = true;
 };
 
-LazySweep LazySweepOf(const WorldState& world, uint32_t body) {
-    const SweepStore& store = world.sweeps;
-    if (body < store.places.size() && store.places[body] != SweepStore::kNone) return {store.swept[store.places[body]]};
+LazySweep LazySweepOf(const WorldState& world, const SweepStore& sweeps, uint32_t body) {
+    if (body < sweeps.places.size() && sweeps.places[body] != SweepStore::kNone)
+        return {sweeps.swept[sweeps.places[body]]};
     LazySweep lazy;
     Sweep& sweep = lazy.sweep;
     sweep.body = body;
     sweep.start = world.bodies.CenterPoseOf(body);
-    if (body >= store.starts.size() || store.starts[body].step != world.report.step) return lazy;
+    if (body >= sweeps.starts.size() || sweeps.starts[body].step != world.step) return lazy;
     const Position end = sweep.start.position;
-    sweep.start = store.starts[body].pose;
+    sweep.start = sweeps.starts[body].pose;
     sweep.displacement = Between(sweep.start.position, end);
     lazy.hasTurn = false;
     return lazy;
 }
 
-void FindTurn(const WorldState& world, LazySweep& lazy) {
+void FindTurn(const WorldState& world, const SweepStore& sweeps, LazySweep& lazy) {
     if (lazy.hasTurn) return;
     const uint32_t body = lazy.sweep.body;
     const Quaternion end = world.bodies.RotationOf(body);
     lazy.sweep.turn = TurnNear(end * lazy.sweep.start.rotation.Conjugate(),
-                               Vector3(world.bodies.AngularVelocityOf(body) * world.sweeps.dt));
+                               Vector3(world.bodies.AngularVelocityOf(body) * sweeps.dt));
     lazy.hasTurn = true;
 }
 
 class SweepCaster {
 public:
-    SweepCaster(const WorldState& world, const LazySweep& own, WorkerFindings& findings, SweepHit& best)
+    SweepCaster(const WorldState& world, const SweepStore& sweeps, const LazySweep& own, WorkerFindings& findings,
+                SweepHit& best)
         : world_(world),
+          sweeps_(sweeps),
           own_(own),
           findings_(findings),
           best_(best),
@@ -120,12 +124,12 @@ private:
     void CastAgainst(uint32_t other, const ShapeCaster& whole, float from = 0) {
         const uint32_t body = world_.colliders.colliders[other].body;
         if (!MayCollide(world_, sweep_.body, body) || !ListenerAllows(world_, sweep_.body, body)) return;
-        LazySweep theirs = LazySweepOf(world_, body);
+        LazySweep theirs = LazySweepOf(world_, sweeps_, body);
         const Sweep& theirSweep = theirs.sweep;
         const ColliderShape& piece = world_.colliders.shapes[other];
         const float start = std::max({sweep_.from, theirSweep.from, from});
         const bool stays = theirSweep.displacement.isZero(0);
-        if (stays || start > theirSweep.from || piece.offset || isTurning_) FindTurn(world_, theirs);
+        if (stays || start > theirSweep.from || piece.offset || isTurning_) FindTurn(world_, sweeps_, theirs);
         if (stays && theirSweep.turn.isZero(0) && start == sweep_.from) {
             if (!whole.IsValid()) return;
             CastThrough(whole, motion_, other, theirs, theirSweep.start * LocalOf(world_, other), start, whole);
@@ -165,7 +169,7 @@ private:
         bool asksForTurn = false;
         caster.Visit(shape, at, settings, [&](const ShapeHit& found) {
             if (triangles_ > kMostTriangles) return 0.0f;
-            FindTurn(world_, theirs);
+            FindTurn(world_, sweeps_, theirs);
             SweepHit hit = HitOf(other, theirSweep);
             hit.time = start + found.fraction * length;
             if (ComesBefore(hit)) {
@@ -190,7 +194,7 @@ private:
     bool DoesTurn(const Shape& other) {
         constexpr float kPart = 0.25f;
         if (shape_->Type() == ShapeType::Sphere) return false;
-        FindTurn(world_, own_);
+        FindTurn(world_, sweeps_, own_);
         return Length(sweep_.turn) * shape_->OuterRadius() > kPart * DepthThatCounts(other);
     }
 
@@ -437,6 +441,7 @@ private:
     }
 
     const WorldState& world_;
+    const SweepStore& sweeps_;
     LazySweep own_;
     const Sweep& sweep_ = own_.sweep;
     WorkerFindings& findings_;
@@ -467,30 +472,31 @@ bool IsCastTurning(const WorldState& world, uint32_t body) {
     return cold.continuous == ContinuousCollision::LinearAndAngular || !cold.shape->IsConvex();
 }
 
-Sweep SweepOf(const WorldState& world, uint32_t body) {
-    LazySweep lazy = LazySweepOf(world, body);
-    FindTurn(world, lazy);
+Sweep SweepOf(const WorldState& world, const SweepStore& sweeps, uint32_t body) {
+    LazySweep lazy = LazySweepOf(world, sweeps, body);
+    FindTurn(world, sweeps, lazy);
     return lazy.sweep;
 }
 
-bool CastSweep(const WorldState& world, const Sweep& sweep, WorkerFindings& findings, SweepHit& hit) {
+bool CastSweep(const WorldState& world, const SweepStore& sweeps, const Sweep& sweep, WorkerFindings& findings,
+               SweepHit& hit) {
     hit.time = 1;
-    return SweepCaster(world, {sweep}, findings, hit).Run();
+    return SweepCaster(world, sweeps, {sweep}, findings, hit).Run();
 }
 
-bool CastPair(const WorldState& world, uint32_t collider, uint32_t other, WorkerFindings& findings, SweepHit& hit) {
+bool CastPair(const WorldState& world, const SweepStore& sweeps, uint32_t collider, uint32_t other,
+              WorkerFindings& findings, SweepHit& hit) {
     const ColliderShape& piece = world.colliders.shapes[other];
     const uint32_t body = world.colliders.colliders[collider].body, otherBody = world.colliders.colliders[other].body;
-    const SweepStore& store = world.sweeps;
-    if (!piece.offset && store.starts[otherBody].step == world.report.step) {
-        const Position &from = store.starts[body].pose.position, &otherFrom = store.starts[otherBody].pose.position;
+    if (!piece.offset && sweeps.starts[otherBody].step == world.step) {
+        const Position &from = sweeps.starts[body].pose.position, &otherFrom = sweeps.starts[otherBody].pose.position;
         const Vector3 motion =
             Between(from, world.bodies.CenterOf(body)) - Between(otherFrom, world.bodies.CenterOf(otherBody));
         const float reach = world.colliders.shapes[collider].shape->OuterRadius() + piece.shape->OuterRadius();
         if (!BallsMeet(Between(otherFrom, from), motion, reach)) return false;
     }
     hit.time = 1;
-    return SweepCaster(world, LazySweepOf(world, body), findings, hit).RunAgainst(collider, other);
+    return SweepCaster(world, sweeps, LazySweepOf(world, sweeps, body), findings, hit).RunAgainst(collider, other);
 }
 
 }  // namespace fulcrum

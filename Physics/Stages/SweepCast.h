@@ -2,7 +2,7 @@
 // once.
 #pragma once
 
-#include <Fulcrum/Physics/Stages/Stages.h>
+#include <Fulcrum/Physics/Stages/StepState.h>
 
 namespace fulcrum {
 
@@ -15,12 +15,14 @@ float FreeMotion(float innerRadius, float outerRadius);
 bool IsCastTurning(const WorldState& world, uint32_t body);
 
 // How a body moves in this step, as far as is decided. Zero motion for one that rests.
-Sweep SweepOf(const WorldState& world, uint32_t body);
+Sweep SweepOf(const WorldState& world, const SweepStore& sweeps, uint32_t body);
 
 // The first hit of the sweep's rest that counts: of what it would overlap by more than a part of its thickness. What it
 // only slides along, or touches and leaves, is left to the solver. False: none.
-bool CastSweep(const WorldState& world, const Sweep& sweep, WorkerFindings& findings, SweepHit& hit);
+bool CastSweep(const WorldState& world, const SweepStore& sweeps, const Sweep& sweep, WorkerFindings& findings,
+               SweepHit& hit);
 // The same against the other collider of a pair alone, for a body of one piece that is cast without its turn.
-bool CastPair(const WorldState& world, uint32_t collider, uint32_t other, WorkerFindings& findings, SweepHit& hit);
+bool CastPair(const WorldState& world, const SweepStore& sweeps, uint32_t collider, uint32_t other,
+              WorkerFindings& findings, SweepHit& hit);
 
 }  // namespace fulcrum

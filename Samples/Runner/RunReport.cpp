@@ -80,8 +80,7 @@ std::vector<ReportLine> ReportLines(const Scene& scene, const RunFigures& figure
             Text("%.3f ms for %d %s, %.3g/s", figures.queryMs.median, figures.queryCount, figures.queryName.c_str(),
                  QueriesPerSecond(figures)));
     for (int stage = 0; stage < kStageCount; ++stage)
-        add("Stages, median", StageName(static_cast<Stage>(stage)),
-            Text("%.3f ms", figures.stageMedianMs[static_cast<size_t>(stage)]));
+        add("Stages, median", StageName(stage), Text("%.3f ms", figures.stageMedianMs[static_cast<size_t>(stage)]));
     add("Result", "largest penetration",
         figures.deepestPair.empty()
             ? "none"
@@ -114,7 +113,7 @@ std::string ReportText(const std::vector<ReportLine>& lines) {
 nlohmann::ordered_json ReportJson(const std::string& name, const RunFigures& figures, uint64_t seed) {
     nlohmann::ordered_json stages;
     for (int stage = 0; stage < kStageCount; ++stage)
-        stages[StageName(static_cast<Stage>(stage))] = figures.stageMedianMs[static_cast<size_t>(stage)];
+        stages[StageName(stage)] = figures.stageMedianMs[static_cast<size_t>(stage)];
     const StepReport& last = figures.last;
     const Statistics& ms = ComparedMs(figures);
     nlohmann::ordered_json json{

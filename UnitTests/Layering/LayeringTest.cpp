@@ -30,6 +30,22 @@ const std::map<std::string, std::vector<std::string>> kAllowedFolders = {
     {"UnitTests", {"Math", "Collision", "Constraints", "Jobs", "Physics", "Samples"}},
 };
 
+// The same among the parts of Physics: the folders in it, and the files beside these, which are its interfaces. Every
+// folder stands here.
+const std::map<std::string, std::vector<std::string>> kAllowedPartsOfPhysics = {
+    {"Physics/World", {}},
+    {"Physics/Stages", {"Physics/World"}},
+    {"Physics/Queries", {"Physics/World"}},
+    {"Physics", {"Physics/World", "Physics/Stages", "Physics/Queries"}},
+    {"Physics/Ragdoll", {"Physics"}},
+};
+// Headers of users that the parts below may include, too: plain data, and what users derive from. They include nothing
+// else of Physics.
+const std::array<std::string, 8> kSharedHeaders = {
+    "Physics/Settings.h",    "Physics/JointSettings.h", "Physics/GroupFilter.h", "Physics/ContactListener.h",
+    "Physics/SensorEvent.h", "Physics/StepReport.h",    "Physics/QueryTypes.h",  "Physics/Misuse.h",
+};
+
 const std::array<std::string, 5> kLibraryFolders = {"Math", "Jobs", "Collision", "Constraints", "Physics"};
 
 // Jobs stands alone, and a waiting loop needs the processor's hint, which no portable call gives: this file may ask
@@ -65,6 +81,12 @@ std::vector<fs::path> SourcesBelow(const fs::path& folder) {
     }
     std::sort(files.begin(), files.end());
     return files;
+}
+
+// Of a file of Physics: its folder, or Physics where it stands beside the folders.
+std::string PartOfPhysics(const std::string& file) {
+    const size_t end = file.find('/', std::string("Physics/").size());
+    return end == std::string::npos ? "Physics" : file.substr(0, end);
 }
 
 // Collects the broken rules of a tree, one line each: "file:line: what".
@@ -111,6 +133,7 @@ private:
             if (isOfTheRoot && (target == "Version.h" || (target == "Fulcrum.h" && !library))) return;
             if (target != folder && !Contains(kAllowedFolders.at(folder), target))
                 violations_.push_back(place + folder + " must not include " + target);
+            if (target == "Physics" && folder == "Physics") CheckInsidePhysics(name, header.substr(8), place);
         } else if (library && header.starts_with("ccd/")) {
             if (!name.starts_with("Collision/NarrowPhase/") || !name.ends_with(".cpp"))
                 violations_.push_back(place + "libccd belongs in one .cpp file of Collision/NarrowPhase");
@@ -118,6 +141,18 @@ private:
             if (name != kEigenFile) violations_.push_back(place + "Eigen belongs in " + kEigenFile);
         } else if (library && name != "Math/Wide.h" && header.find_first_of("./") != std::string::npos) {
             violations_.push_back(place + "<" + header + "> is neither standard C++ nor Eigen");
+        }
+    }
+
+    void CheckInsidePhysics(const std::string& name, const std::string& header, const std::string& place) {
+        const std::string part = PartOfPhysics(name), target = PartOfPhysics(header);
+        const bool isShared = Contains(kSharedHeaders, header);
+        if (Contains(kSharedHeaders, name)) {
+            if (!isShared) violations_.push_back(place + "a shared header must not include " + header);
+        } else if (!kAllowedPartsOfPhysics.contains(part)) {
+            violations_.push_back(place + part + " has no place in the order");
+        } else if (target != part && !isShared && !Contains(kAllowedPartsOfPhysics.at(part), target)) {
+            violations_.push_back(place + part + " must not include " + header);
         }
     }
 
@@ -168,17 +203,24 @@ TEST_F(Layering, HoldsInThisTree) {
 }
 
 TEST_F(Layering, AcceptsATreeThatKeepsTheRules) {
-    EXPECT_EQ(Join(CheckTree({
-                  {"Math/Wide.h", "#include <immintrin.h>\n#ifdef __AVX2__\n#endif\n"},
-                  {"Constraints/Joints/JointTree.h", "#include <Eigen/Core>\n"},
-                  {"Math/Vector.h", "#include <cmath>\n// not the __SSE2__ of <immintrin.h>\n"},
-                  {"Jobs/ThreadPool.cpp", "#include <Fulcrum/Jobs/ThreadPool.h>\n#include <thread>\n"},
-                  {"Collision/NarrowPhase/Ccd.cpp", "#include <Fulcrum/Math/Vector.h>\n#include <ccd/ccd.h>\n"},
-                  {"Physics/World.h", "#include <Fulcrum/Collision/A.h>\n#include <Fulcrum/Constraints/B.h>\n"},
-                  {"Samples/Runner/Main.cpp", "#include <CLI/CLI.hpp>\n#include <Fulcrum/Physics/World.h>\n"},
-                  {"UnitTests/Collision/CcdTest.cpp", "#include <ccd/ccd.h>\n#include <unistd.h>\n"},
-              })),
-              "");
+    EXPECT_EQ(
+        Join(CheckTree({
+            {"Math/Wide.h", "#include <immintrin.h>\n#ifdef __AVX2__\n#endif\n"},
+            {"Constraints/Joints/JointTree.h", "#include <Eigen/Core>\n"},
+            {"Math/Vector.h", "#include <cmath>\n// not the __SSE2__ of <immintrin.h>\n"},
+            {"Jobs/ThreadPool.cpp", "#include <Fulcrum/Jobs/ThreadPool.h>\n#include <thread>\n"},
+            {"Collision/NarrowPhase/Ccd.cpp", "#include <Fulcrum/Math/Vector.h>\n#include <ccd/ccd.h>\n"},
+            {"Physics/World/A.h", "#include <Fulcrum/Collision/A.h>\n#include <Fulcrum/Constraints/B.h>\n"},
+            {"Physics/World/B.h", "#include <Fulcrum/Physics/World/A.h>\n#include <Fulcrum/Physics/Settings.h>\n"},
+            {"Physics/Settings.h", "#include <Fulcrum/Physics/GroupFilter.h>\n"},
+            {"Physics/Stages/A.cpp", "#include <Fulcrum/Physics/World/A.h>\n#include <Fulcrum/Physics/StepReport.h>\n"},
+            {"Physics/Queries/A.h", "#include <Fulcrum/Physics/World/A.h>\n#include <Fulcrum/Physics/QueryTypes.h>\n"},
+            {"Physics/A.cpp", "#include <Fulcrum/Physics/Stages/A.h>\n#include <Fulcrum/Physics/Queries/A.h>\n"},
+            {"Physics/Ragdoll/A.h", "#include <Fulcrum/Physics/A.h>\n"},
+            {"Samples/Runner/Main.cpp", "#include <CLI/CLI.hpp>\n#include <Fulcrum/Physics/A.h>\n"},
+            {"UnitTests/Collision/CcdTest.cpp", "#include <ccd/ccd.h>\n#include <unistd.h>\n"},
+        })),
+        "");
 }
 
 TEST_F(Layering, NamesEveryUpwardEdge) {
@@ -194,6 +236,37 @@ TEST_F(Layering, NamesEveryUpwardEdge) {
         for (const std::string& target : targets)
             EXPECT_EQ(Join(CheckTree({{folder + "/Sub/File.h", "\n#include <Fulcrum/" + target + "/X.h>\n"}})),
                       folder + "/Sub/File.h:2: " + folder + " must not include " + target + "\n");
+}
+
+TEST_F(Layering, NamesEveryUpwardEdgeInsidePhysics) {
+    const std::map<std::string, std::vector<std::string>> forbidden = {
+        {"World", {"Stages/A.h", "Queries/A.h", "Ragdoll/A.h", "A.h", "PhysicsSystem.h"}},
+        {"Stages", {"Queries/A.h", "Ragdoll/A.h", "A.h", "BodyInterface.h"}},
+        {"Queries", {"Stages/A.h", "Ragdoll/A.h", "A.h", "QueryInterface.h"}},
+        {"Ragdoll", {"World/A.h", "Stages/A.h", "Queries/A.h"}},
+    };
+    for (const auto& [folder, targets] : forbidden)
+        for (const std::string& target : targets)
+            for (const std::string& file : {"Physics/" + folder + "/A.h", "Physics/" + folder + "/A.cpp"})
+                EXPECT_EQ(Join(CheckTree({{file, "\n#include <Fulcrum/Physics/" + target + ">\n"}})),
+                          file + ":2: Physics/" + folder + " must not include Physics/" + target + "\n");
+    EXPECT_EQ(Join(CheckTree({{"Physics/A.cpp", "#include <Fulcrum/Physics/Ragdoll/Ragdoll.h>\n"}})),
+              "Physics/A.cpp:1: Physics must not include Physics/Ragdoll/Ragdoll.h\n");
+}
+
+TEST_F(Layering, KeepsSharedHeadersOfPhysicsApart) {
+    const std::vector<std::string> others = {"World/WorldState.h", "BodyInterface.h", "Stages/Stages.h"};
+    for (const std::string& target : others)
+        EXPECT_EQ(Join(CheckTree({{"Physics/Settings.h", "#include <Fulcrum/Physics/" + target + ">\n"}})),
+                  "Physics/Settings.h:1: a shared header must not include Physics/" + target + "\n");
+    for (const std::string& header : kSharedHeaders)
+        EXPECT_EQ(Join(CheckTree({{"Physics/World/A.h", "#include <Fulcrum/" + header + ">\n"}})), "");
+}
+
+TEST_F(Layering, GivesEveryFolderOfPhysicsItsPlace) {
+    EXPECT_EQ(Join(CheckTree({{"Physics/Soft/A.h", "#include <Fulcrum/Physics/World/A.h>\n"}})),
+              "Physics/Soft/A.h:1: Physics/Soft has no place in the order\n");
+    EXPECT_EQ(CheckTree({{"Physics/World/A.h", "#include <Fulcrum/Physics/Soft/A.h>\n"}}).size(), 1u);
 }
 
 TEST_F(Layering, LeavesTheHeaderOfAllHeadersToPrograms) {

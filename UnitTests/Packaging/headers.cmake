@@ -12,7 +12,7 @@ foreach(header Fulcrum.h Version.h Physics/PhysicsSystem.h Collision/Shapes/Prim
   endif()
 endforeach()
 # The engine's own: its stages, its state, its kernels.
-foreach(header Physics/State/WorldState.h Physics/Stages/Stages.h Constraints/Joints/JointBatch.h Collision/NarrowPhase/Epa.h)
+foreach(header Physics/World/WorldState.h Physics/Stages/Stages.h Constraints/Joints/JointBatch.h Collision/NarrowPhase/Epa.h)
   if(EXISTS ${folder}/${header})
     message(FATAL_ERROR "${header} is no public header, but it is installed")
   endif()

@@ -1,5 +1,6 @@
 // What a world at rest may cost: no allocation, little memory, nothing for what sleeps.
 #include <Fulcrum/UnitTests/Support/AllocationCounter.h>
+#include <Fulcrum/UnitTests/Support/JointScene.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
 namespace fulcrum::testing {
@@ -64,6 +65,33 @@ TEST(Cost, ARestingBoxTakesAtMost1600Bytes) {
     world.Steps(60);
     EXPECT_EQ(world.Report().contacts, 1000u);
     EXPECT_LE(static_cast<double>(world.System().MemoryUsed()) / 1000, 1600.0);
+}
+
+// What goes with a world but for its shapes: joints, sensors, bodies that are cast along their ways, several threads.
+TEST(Cost, MemoryUsedIsWhatIsAllocated) {
+    if (AllocatedBytes() == 0) GTEST_SKIP() << "the allocator does not say what it gave";
+    auto world = std::make_unique<TestWorld>(JointScene::Settings(), 2);
+    std::vector<ShapePtr> shapes;
+    {
+        JointScene scene(*world);
+        for (int i = 0; i < 200; ++i)
+            world->Add({.shape = SphereOf(0.1f),
+                        .position = {i % 20 * 1.0 - 10, 5.0 + i / 20, 30},
+                        .linearVelocity = {0, -40, 0},
+                        .continuous = ContinuousCollision::Linear});
+        world->Add({.shape = CubeOf(8), .motion = MotionType::Static, .position = {0, 4, 30}, .isSensor = true});
+        for (int step = 0; step < 60; ++step) {
+            scene.BeforeStep(step);
+            world->Step();
+        }
+        world->System().VisitBodies([&](BodyId id) { shapes.push_back(world->Bodies().GetShape(id)); });
+    }
+    const double used = static_cast<double>(world->System().MemoryUsed());
+    const uint64_t before = AllocatedBytes();
+    world.reset();
+    const double freed = static_cast<double>(before - AllocatedBytes());
+    EXPECT_GT(used, 0.95 * freed);
+    EXPECT_LT(used, 1.05 * freed);
 }
 
 TEST(Cost, SleepersAreNoWork) {

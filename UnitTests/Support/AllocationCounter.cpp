@@ -4,9 +4,26 @@
 #include <cstdlib>
 #include <new>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 namespace {
 
-std::atomic<uint64_t> allocations{0};
+std::atomic<uint64_t> allocations{0}, bytes{0};
+
+uint64_t SizeOf([[maybe_unused]] void* memory) {
+#ifdef __GLIBC__
+    return malloc_usable_size(memory);
+#else
+    return 0;
+#endif
+}
+
+void Free(void* memory) {
+    bytes.fetch_sub(SizeOf(memory), std::memory_order_relaxed);
+    std::free(memory);
+}
 
 void* Allocate(std::size_t size, std::size_t alignment) {
     allocations.fetch_add(1, std::memory_order_relaxed);
@@ -14,6 +31,7 @@ void* Allocate(std::size_t size, std::size_t alignment) {
     const std::size_t rounded = (size + alignment - 1) / alignment * alignment;
     void* memory = std::aligned_alloc(alignment, rounded > 0 ? rounded : alignment);
     if (!memory) throw std::bad_alloc();
+    bytes.fetch_add(SizeOf(memory), std::memory_order_relaxed);
     return memory;
 }
 
@@ -22,6 +40,7 @@ void* Allocate(std::size_t size, std::size_t alignment) {
 namespace fulcrum::testing {
 
 uint64_t AllocationCount() { return allocations.load(std::memory_order_relaxed); }
+uint64_t AllocatedBytes() { return bytes.load(std::memory_order_relaxed); }
 
 }  // namespace fulcrum::testing
 
@@ -30,7 +49,7 @@ void* operator new(std::size_t size) { return Allocate(size, __STDCPP_DEFAULT_NE
 void* operator new(std::size_t size, std::align_val_t alignment) {
     return Allocate(size, static_cast<std::size_t>(alignment));
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory) noexcept { Free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { Free(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { Free(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { Free(memory); }

@@ -1,5 +1,5 @@
-// Counts calls of the global operator new, all threads and all forms of it, while the test program runs. A test reads
-// it before and after what must not allocate.
+// Counts calls of the global operator new, all threads and all forms of it, while the test program runs, and the bytes
+// that it gave. A test reads them before and after what must not allocate, or whose memory it knows.
 #pragma once
 
 #include <cstdint>
@@ -8,5 +8,7 @@ namespace fulcrum::testing {
 
 // Calls since the program started. Any thread.
 uint64_t AllocationCount();
+// What is allocated now, with what the allocator rounds up; 0 where it does not say. Any thread.
+uint64_t AllocatedBytes();
 
 }  // namespace fulcrum::testing

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <Fulcrum/Physics/PhysicsSystem.h>
-#include <Fulcrum/Physics/State/WorldState.h>
+#include <Fulcrum/Physics/World/WorldState.h>
 
 namespace fulcrum::testing {
 

@@ -1,0 +1,56 @@
+// Islands as the solver groups them, and what the parts of BuildIslands share.
+#pragma once
+
+#include <Fulcrum/Jobs/ScratchArena.h>
+#include <Fulcrum/Physics/Stages/SolverLayout.h>
+#include <Fulcrum/Physics/World/BodyStore.h>
+#include <Fulcrum/Physics/World/JointStore.h>
+
+#include <span>
+#include <vector>
+
+namespace fulcrum {
+
+struct Islands {
+    std::span<uint32_t> groupOf;  // by place in bodies.awake: the group, or kNone where no constraint touches
+    uint32_t groups = 0;
+    uint32_t islands = 0;
+    static constexpr uint32_t kNone = ~0u;
+    static constexpr uint32_t kLargeGroup = 0;  // see SolverGroup
+};
+
+// Finds them anew, and makes their groups, of which bodies and colors are not yet known. In scratch memory of the step.
+Islands FindIslands(const BodyStore& bodies, const ConstraintColoring& coloring, const JointStore& joints,
+                    const JointTrees& trees, std::vector<SolverGroup>& groups, ScratchArena& scratch);
+
+// Calls visit(color, entry) for all colored constraints of a kind, those that overflow last.
+template <class Visit>
+void VisitEntries(const ConstraintColoring& coloring, ConstraintColoring::Kind kind, Visit&& visit) {
+    for (uint32_t c = 0; c <= ConstraintColoring::kColors; ++c)
+        for (const ConstraintColoring::Entry& entry : coloring.At(static_cast<int>(c)).Of(kind)) visit(c, entry);
+}
+
+inline uint32_t MovingBodyOf(const ConstraintColoring::Entry& entry) {
+    return entry.stillA ? entry.bodyB : entry.bodyA;
+}
+
+inline uint32_t GroupOf(const BodyStore& bodies, const Islands& islands, const ConstraintColoring::Entry& entry) {
+    return islands.groupOf[bodies.cold[MovingBodyOf(entry)].awakePlace];
+}
+inline uint32_t GroupOf(const BodyStore& bodies, const Islands& islands, const JointTrees& trees,
+                        const JointTrees::Tree& tree) {
+    return islands.groupOf[bodies.cold[trees.slots[tree.slotsEnd - 1].body].awakePlace];
+}
+
+// Turns counts into the index of the first of each, in order; returns the sum.
+inline uint32_t ExclusivePrefixSum(std::span<uint32_t> counts) {
+    uint32_t sum = 0;
+    for (uint32_t& count : counts) {
+        const uint32_t n = count;
+        count = sum;
+        sum += n;
+    }
+    return sum;
+}
+
+}  // namespace fulcrum

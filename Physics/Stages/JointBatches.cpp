@@ -1,0 +1,168 @@
+#include <Fulcrum/Physics/Stages/JointBatches.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+namespace {
+
+using Entry = ConstraintColoring::Entry;
+using Kind = ConstraintColoring::Kind;
+
+constexpr uint32_t kColors = ConstraintColoring::kColors;
+
+// Joints of one kind may share a batch: they have the same locks, or are balls (BallBatch.h), of round bodies or of
+// any.
+enum JointKind : uint32_t { kRoundBall = 9, kBall = 10 };
+uint32_t KindOf(uint32_t kind) { return kind >> 8; }
+bool IsBall(uint32_t kind) { return KindOf(kind) >= kRoundBall; }
+
+uint32_t KindOf(const BodyStore& bodies, const Joint& joint) {
+    if (joint.locks.linear != LinearLock::Point || joint.locks.angular != AngularLock::None || joint.maxRows > 0)
+        return static_cast<uint32_t>(joint.locks.linear) * 3 + static_cast<uint32_t>(joint.locks.angular);
+    const auto isRound = [&](int side) {
+        const BodyDynamics& d = bodies.dynamics[joint.body[side]];
+        return joint.still[side] || (d.spherical && !d.LocksRotation());
+    };
+    return isRound(0) && isRound(1) ? kRoundBall : kBall;
+}
+
+// Brings what the layout knows of the joints up to date, and their order within a color.
+void ListJoints(const BodyStore& bodies, const ConstraintColoring& coloring, JointStore& joints, SolverLayout& layout) {
+    layout.listedJoints.clear();
+    VisitEntries(coloring, Kind::Joint, [&](uint32_t c, const Entry& entry) {
+        Joint& joint = joints.joints[entry.constraint];
+        joint.locks = joint.type->Locks();
+        const uint32_t before = joint.maxRows;
+        joint.maxRows = joint.type->MaxRows();
+        // Batches without room for rows store none: what the last ones did must not stay.
+        if (joint.maxRows == 0 && before > 0) {
+            joint.type->impulses.fill(0.0f);
+            joint.type->forces.fill(0.0f);
+        }
+        JointRecord& record = joints.records[entry.constraint];
+        record.lineAxis = joint.locks.line;
+        record.freeAxis = joint.locks.axis;
+        if (c == ConstraintColoring::kOverflow) return;
+        layout.listedJoints.push_back(
+            {KindOf(bodies, joint) << 8 | joint.maxRows, entry.constraint, MovingBodyOf(entry), c});
+    });
+    std::sort(layout.listedJoints.begin(), layout.listedJoints.end());
+}
+
+// What every kind of batch knows of its joints, at most N; lanes beyond them repeat the last one and are never written.
+template <class Batch, size_t N>
+void FillLanes(const BodyStore& bodies, const JointStore& store, Batch& batch, const uint32_t (&)[N],
+               std::span<const SortedJoint> joints) {
+    batch.count = static_cast<int32_t>(joints.size());
+    batch.fixedA = batch.fixedB = batch.kinematicA = batch.kinematicB = 0;
+    for (size_t lane = 0; lane < N; ++lane) {
+        const uint32_t index = joints[std::min(lane, joints.size() - 1)].joint;
+        const Joint& joint = store.joints[index];
+        const auto bit = [&](bool set) { return static_cast<uint32_t>(set) << lane; };
+        const auto isKinematic = [&](int side) {
+            return bodies.dynamics[joint.body[side]].motion == MotionType::Kinematic;
+        };
+        batch.joint[lane] = index;
+        batch.bodyA[lane] = joint.body[0];
+        batch.bodyB[lane] = joint.body[1];
+        batch.fixedA |= bit(joint.still[0]);
+        batch.fixedB |= bit(joint.still[1]);
+        batch.kinematicA |= bit(isKinematic(0));
+        batch.kinematicB |= bit(isKinematic(1));
+    }
+}
+
+template <int N>
+void FillBatch(const BodyStore& bodies, const JointStore& store, JointBatch<N>& batch,
+               std::span<const SortedJoint> joints) {
+    FillLanes(bodies, store, batch, batch.joint, joints);
+    batch.rowCount = batch.rowRoom = 0;
+    for (const SortedJoint& sorted : joints) {
+        const Joint& joint = store.joints[sorted.joint];
+        batch.linear = joint.locks.linear;
+        batch.angular = joint.locks.angular;
+        batch.rowRoom = std::max(batch.rowRoom, joint.maxRows);
+    }
+}
+template <int N>
+void FillBatch(const BodyStore& bodies, const JointStore& store, BallBatch<N>& batch,
+               std::span<const SortedJoint> joints) {
+    FillLanes(bodies, store, batch, batch.joint, joints);
+    batch.round = KindOf(joints.front().kind) == kRoundBall;
+}
+
+template <class Batch>
+Batch& NextBatch(std::vector<Batch>& batches, uint32_t& count) {
+    if (batches.size() == count) batches.resize(count + count / 4 + 1);
+    return batches[count++];
+}
+
+template <int N>
+void ShareRows(std::span<JointBatch<N>> batches, std::vector<JointRows<N>>& rows) {
+    size_t count = 0;
+    for (const JointBatch<N>& batch : batches) count += batch.rowRoom;
+    if (rows.size() < count) rows.resize(count + count / 4);
+    count = 0;
+    for (JointBatch<N>& batch : batches) {
+        batch.rows = rows.data() + count;
+        count += batch.rowRoom;
+    }
+}
+
+}  // namespace
+
+std::span<const SortedJoint> SortJoints(const BodyStore& bodies, const ConstraintColoring& coloring,
+                                        const Islands& islands, JointStore& joints, SolverLayout& layout,
+                                        ScratchArena& scratch) {
+    if (layout.jointVersion != coloring.JointVersion()) ListJoints(bodies, coloring, joints, layout);
+    layout.jointVersion = coloring.JointVersion();
+    const size_t count = layout.listedJoints.size();
+    std::span<SortedJoint> placed = scratch.Allocate<SortedJoint>(count), sorted = scratch.Allocate<SortedJoint>(count);
+    std::span<uint32_t> next = scratch.Allocate<uint32_t>(size_t(islands.groups) * kColors);
+    std::fill(next.begin(), next.end(), 0u);
+    for (size_t i = 0; i < count; ++i) {
+        const ListedJoint& listed = layout.listedJoints[i];
+        placed[i] = {islands.groupOf[bodies.cold[listed.body].awakePlace] * kColors + listed.color, listed.kind,
+                     listed.joint};
+        ++next[placed[i].place];
+    }
+    ExclusivePrefixSum(next);
+    for (const SortedJoint& joint : placed) sorted[next[joint.place]++] = joint;
+    return sorted;
+}
+
+void MakeJointBatches(const BodyStore& bodies, const JointStore& joints, uint32_t place, bool hasTrees,
+                      std::span<const SortedJoint>& sorted, SolverLayout& layout, ColorBatches& color) {
+    color.jointsBegin = layout.jointCount;
+    color.ballsBegin = layout.ballCount;
+    while (!sorted.empty() && sorted.front().place == place) {
+        size_t n = 1;
+        while (n < kLanes && n < sorted.size() && sorted[n].place == place &&
+               KindOf(sorted[n].kind) == KindOf(sorted[0].kind))
+            ++n;
+        if (IsBall(sorted.front().kind) && !hasTrees)
+            FillBatch(bodies, joints, NextBatch(layout.balls, layout.ballCount), sorted.first(n));
+        else FillBatch(bodies, joints, NextBatch(layout.joints, layout.jointCount), sorted.first(n));
+        sorted = sorted.subspan(n);
+    }
+    color.jointsEnd = layout.jointCount;
+    color.ballsEnd = layout.ballCount;
+}
+
+void MakeOverflowJoints(const BodyStore& bodies, const JointStore& joints, const ConstraintColoring& coloring,
+                        std::vector<JointBatch<1>>& batches) {
+    const std::vector<Entry>& overflow = coloring.At(ConstraintColoring::kOverflow).Of(Kind::Joint);
+    batches.resize(overflow.size());
+    for (size_t i = 0; i < batches.size(); ++i) {
+        const SortedJoint joint{0, 0, overflow[i].constraint};
+        FillBatch(bodies, joints, batches[i], std::span(&joint, 1));
+    }
+}
+
+void ShareRows(SolverLayout& layout) {
+    ShareRows(std::span(layout.joints).first(layout.jointCount), layout.jointRows);
+    ShareRows(std::span(layout.overflowJoints), layout.overflowRows);
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,187 @@
+#include <Fulcrum/Physics/Stages/JointTrees.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+namespace {
+
+constexpr uint32_t kNone = JointTreeSlot::kNone;
+constexpr uint32_t kMostSlots = 4096;  // bodies: a tree is solved by one worker
+
+// The bodies that joints hold together, and one tree among their joints.
+struct Component {
+    std::vector<uint32_t> bodies;
+    uint32_t root = kNone;
+    bool anchored = false;  // some joint leads to what does not move
+};
+
+bool HasLocks(const Joint& joint) {
+    const JointLocks locks = joint.type->Locks();
+    return locks.linear != LinearLock::None || locks.angular != AngularLock::None;
+}
+
+class Finder {
+public:
+    Finder(const BodyStore& bodies, const ConstraintColoring& coloring, const JointStore& joints, float exactLoad,
+           JointTrees& trees, ScratchArena& scratch)
+        : bodies_(bodies),
+          coloring_(coloring),
+          joints_(joints),
+          exactLoad_(exactLoad),
+          trees_(trees),
+          scratch_(scratch),
+          slotOf_(scratch.Allocate<uint32_t>(bodies.Size())),
+          seen_(scratch.Allocate<uint8_t>(bodies.Size())) {
+        std::fill(slotOf_.begin(), slotOf_.end(), kNone);
+        std::fill(seen_.begin(), seen_.end(), uint8_t(0));
+    }
+
+    void Find() {
+        for (int c = 0; c <= ConstraintColoring::kColors; ++c)
+            for (const auto& entry : coloring_.At(c).Of(ConstraintColoring::Kind::Joint)) {
+                const uint32_t body = entry.stillA ? entry.bodyB : entry.bodyA;
+                if (!seen_[body]) AddTree(ComponentOf(body));
+            }
+    }
+
+private:
+    // Visits (joint, side of `body`) for the joints that take part.
+    template <class Visit>
+    void VisitJoints(uint32_t body, Visit&& visit) const {
+        joints_.VisitOf(body, [&](uint32_t index) {
+            const Joint& joint = joints_.joints[index];
+            if (joint.color.color != 0xFF && joint.color.color != ConstraintColoring::kOverflow && HasLocks(joint))
+                visit(index, joint, joint.SideOf(body));
+        });
+    }
+    float MassOf(uint32_t body) const { return 1.0f / bodies_.dynamics[body].inverseMass; }
+
+    Component ComponentOf(uint32_t first) {
+        Component component;
+        component.bodies.push_back(first);
+        seen_[first] = 1;
+        for (size_t i = 0; i < component.bodies.size(); ++i) {
+            const uint32_t body = component.bodies[i];
+            bool anchored = false;
+            VisitJoints(body, [&](uint32_t, const Joint& joint, int side) {
+                const uint32_t other = joint.body[1 - side];
+                anchored |= joint.still[1 - side];
+                if (joint.still[1 - side] || seen_[other]) return;
+                seen_[other] = 1;
+                component.bodies.push_back(other);
+            });
+            // The root: a body that hangs on what does not move, else the heaviest.
+            const bool better = component.root == kNone || (anchored && !component.anchored) ||
+                                (anchored == component.anchored && !anchored && MassOf(body) > MassOf(component.root));
+            if (better) component.root = body;
+            component.anchored |= anchored;
+        }
+        return component;
+    }
+
+    void AddTree(const Component& component) {
+        if (component.bodies.size() > kMostSlots) return;
+        for (uint32_t body : component.bodies) {
+            const BodyDynamics& d = bodies_.dynamics[body];
+            if (d.lockedAxes != LockedAxes::None || d.frozen) return;
+        }
+        JointTrees::Tree tree;
+        tree.slotsBegin = static_cast<uint32_t>(trees_.slots.size());
+        tree.anchorsBegin = static_cast<uint32_t>(trees_.anchors.size());
+        size_t links = 0;
+        const uint32_t hook = component.anchored ? AddHook(component.root) : kNone;
+        if (hook == kNone) AddSlot(component.root, kNone, kNone, false);
+        for (uint32_t s = hook == kNone ? 0 : 1; tree.slotsBegin + s < trees_.slots.size(); ++s) {
+            const uint32_t body = trees_.slots[tree.slotsBegin + s].body;
+            slotOf_[body] = s;
+            VisitJoints(body, [&](uint32_t index, const Joint& joint, int side) {
+                const uint32_t other = joint.body[1 - side];
+                if (index == hook) return;
+                ++links;
+                if (joint.still[1 - side]) {
+                    JointTreeAnchor& anchor = trees_.anchors.emplace_back();
+                    anchor.slot = s;
+                    anchor.joint = index;
+                    anchor.isA = side == 0;
+                } else if (slotOf_[other] == kNone) {
+                    slotOf_[other] = s;  // taken; its own is set when it is visited
+                    AddSlot(other, s, index, side == 1);
+                }
+            });
+        }
+        tree.slotsEnd = static_cast<uint32_t>(trees_.slots.size());
+        tree.anchorsEnd = static_cast<uint32_t>(trees_.anchors.size());
+        // Each joint between two bodies was met twice, an anchor once.
+        const size_t anchors = tree.anchorsEnd - tree.anchorsBegin, joints = (links - anchors) / 2;
+        const size_t bodies = tree.slotsEnd - tree.slotsBegin - (hook != kNone);
+        const size_t loops = joints - (bodies - 1);
+        tree.load = LargestLoad(tree);
+        if (loops * 4 <= joints && tree.load > exactLoad_) {
+            trees_.trees.push_back(tree);
+            return;
+        }
+        trees_.slots.resize(tree.slotsBegin);
+        trees_.anchors.resize(tree.anchorsBegin);
+    }
+
+    // Hangs the root on the first body that does not move; returns the joint.
+    uint32_t AddHook(uint32_t root) {
+        uint32_t hook = kNone;
+        VisitJoints(root, [&](uint32_t index, const Joint& joint, int side) {
+            if (hook != kNone || !joint.still[1 - side]) return;
+            hook = index;
+            AddSlot(joint.body[1 - side], kNone, kNone, false);
+            trees_.slots.back().still = true;
+            AddSlot(root, 0, index, side == 0);
+        });
+        return hook;
+    }
+
+    void AddSlot(uint32_t body, uint32_t parent, uint32_t joint, bool isA) {
+        JointTreeSlot& slot = trees_.slots.emplace_back();
+        slot.body = body;
+        slot.parent = parent;
+        slot.joint = joint;
+        slot.isA = isA;
+    }
+
+    float LargestLoad(const JointTrees::Tree& tree) const {
+        const size_t count = tree.slotsEnd - tree.slotsBegin;
+        std::span<float> load = scratch_.Allocate<float>(count);
+        std::fill(load.begin(), load.end(), 0.0f);
+        float largest = 0;
+        for (size_t s = count; s-- > 0;) {
+            const JointTreeSlot& slot = trees_.slots[tree.slotsBegin + s];
+            if (slot.parent == kNone) continue;
+            const float mass = MassOf(slot.body);
+            load[s] += mass;
+            load[slot.parent] += load[s];
+            largest = std::max(largest, load[s] / mass);
+        }
+        return largest;
+    }
+
+    const BodyStore& bodies_;
+    const ConstraintColoring& coloring_;
+    const JointStore& joints_;
+    float exactLoad_;
+    JointTrees& trees_;
+    ScratchArena& scratch_;
+    std::span<uint32_t> slotOf_;  // by body, in its tree
+    std::span<uint8_t> seen_;     // by body
+};
+
+}  // namespace
+
+void FindJointTrees(const BodyStore& bodies, const ConstraintColoring& coloring, const JointStore& joints,
+                    float exactJointLoad, JointTrees& trees, ScratchArena& scratch) {
+    if (trees.version == coloring.JointVersion()) return;
+    trees.version = coloring.JointVersion();
+    trees.trees.clear();
+    trees.slots.clear();
+    trees.anchors.clear();
+    Finder(bodies, coloring, joints, exactJointLoad, trees, scratch).Find();
+}
+
+}  // namespace fulcrum

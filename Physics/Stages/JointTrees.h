@@ -1,0 +1,44 @@
+// Finds the islands whose joints are to be solved exactly, as trees: those that carry much more than their own bodies'
+// mass. Called by the BuildIslands stage where joints came or went. Serial; the result follows from the joints alone.
+#pragma once
+
+#include <Fulcrum/Constraints/Joints/JointTree.h>
+#include <Fulcrum/Jobs/ScratchArena.h>
+#include <Fulcrum/Physics/World/BodyStore.h>
+#include <Fulcrum/Physics/World/HeapBytes.h>
+#include <Fulcrum/Physics/World/JointStore.h>
+
+#include <vector>
+
+namespace fulcrum {
+
+struct JointTrees {
+    struct Tree {
+        uint32_t slotsBegin = 0, slotsEnd = 0;
+        uint32_t anchorsBegin = 0, anchorsEnd = 0;
+        float load = 0;  // the largest mass that hangs on a body, itself included, in units of its own
+    };
+    std::vector<Tree> trees;
+    std::vector<JointTreeSlot> slots;  // a tree's parents are counted from its first slot
+    std::vector<JointTreeAnchor> anchors;
+    uint64_t version = 0;  // of the joints that this was made from
+
+    JointTree At(const Tree& tree) {
+        return {std::span(slots).subspan(tree.slotsBegin, tree.slotsEnd - tree.slotsBegin),
+                std::span(anchors).subspan(tree.anchorsBegin, tree.anchorsEnd - tree.anchorsBegin)};
+    }
+};
+
+// Their matrices are of fixed size.
+inline size_t HeapBytes(const JointTreeSlot&) { return 0; }
+inline size_t HeapBytes(const JointTreeAnchor&) { return 0; }
+inline size_t HeapBytes(const JointTrees& all) {
+    const auto& [trees, slots, anchors, version] = all;
+    return HeapBytes(trees, slots, anchors, version);
+}
+
+// Brings the trees in line with the colored joints. exactJointLoad: see SystemSettings.
+void FindJointTrees(const BodyStore& bodies, const ConstraintColoring& coloring, const JointStore& joints,
+                    float exactJointLoad, JointTrees& trees, ScratchArena& scratch);
+
+}  // namespace fulcrum

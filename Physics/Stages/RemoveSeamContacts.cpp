@@ -1,0 +1,158 @@
+// What slides from one fixed body onto the next, flush with it, must not feel the seam. The narrow phase sees pairs
+// alone: to it the next body ends in an edge, or in a side that the first one hides, and both push sideways. Such a
+// contact loses its points: its shape lies as a whole below the plane of another contact on which the body rests, so
+// there is nothing to run into.
+#include <Fulcrum/Collision/Shapes/SurfaceShape.h>
+#include <Fulcrum/Physics/Stages/PairView.h>
+#include <Fulcrum/Physics/Stages/Stages.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+namespace {
+
+using Kind = ConstraintColoring::Kind;
+
+constexpr float kFlush = 1e-3f;  // m: what rises less above a plane does not rise, but at most this part of the body:
+constexpr float kFlushPart = 0.01f;
+constexpr float kSameDirection = 0.9998f;  // 1 degree
+
+// A contact in the center frame of its body A.
+struct Support {
+    uint32_t pair;
+    float separation;  // m, of the deepest point
+    Vector3 normal;    // towards B
+    Vector3 deepest;   // on B
+};
+
+class SeamRemover {
+public:
+    SeamRemover(const BodyStore& bodies, const ColliderStore& colliders, PairStore& pairs, std::vector<uint32_t>& seams)
+        : bodies_(bodies), colliders_(colliders), pairs_(pairs), seams_(seams) {}
+
+    Support Describe(uint32_t index) const {
+        const PairView view = View(index);
+        const ContactRecord& record = view.record;
+        Support support{index, std::numeric_limits<float>::infinity(),
+                        Vector3(record.normal[0], record.normal[1], record.normal[2]), Vector3::Zero()};
+        for (int i = 0; i < view.pair.pointCount; ++i) {
+            const ContactRecord::Point& p = record.points[i];
+            const Vector3 onB = view.bodyBInA.Transform(Vector3(p.onB[0], p.onB[1], p.onB[2]));
+            const float separation = Dot(support.normal, Vector3(onB - Vector3(p.onA[0], p.onA[1], p.onA[2])));
+            if (separation >= support.separation) continue;
+            support.separation = separation;
+            support.deepest = onB;
+        }
+        return support;
+    }
+
+    // The contacts of one body with fixed ones. Of two that hide each other the deeper stays.
+    void RemoveAmong(std::span<Support> supports) {
+        std::sort(supports.begin(), supports.end(), [](const Support& a, const Support& b) {
+            return a.separation < b.separation || (a.separation == b.separation && a.pair < b.pair);
+        });
+        for (size_t i = 0; i < supports.size(); ++i) {
+            for (size_t j = 0; j < supports.size(); ++j) {
+                if (i == j || pairs_.records[supports[j].pair].pointCount <= 0 || !Hides(supports[j], supports[i]))
+                    continue;
+                if (i < j && Hides(supports[i], supports[j])) continue;
+                RemovePoints(supports[i].pair);
+                break;
+            }
+        }
+    }
+
+private:
+    PairView View(uint32_t index) const { return ViewPair(bodies_, colliders_, pairs_, index); }
+
+    // Height of the pair's shape B, of a surface the triangle that touches, above a point of A's frame.
+    float HeightOf(uint32_t index, const Vector3& point, const Vector3& up) const {
+        const PairView view = View(index);
+        const RelativePose pose = view.bodyBInA * LocalOf(bodies_, colliders_, view.pair.colliderB);
+        const Vector3 upInB = InverseRotate(pose.rotation, up);
+        const Shape& shape = *view.pair.shapeB;
+        float height = std::numeric_limits<float>::infinity();
+        if (view.pair.surface) {
+            const TriangleView triangle = static_cast<const SurfaceShape&>(shape).GetTriangle(view.pair.triangle);
+            height = -height;
+            for (const Vector3& vertex : triangle.vertices) height = std::max(height, Dot(upInB, vertex));
+        } else if (shape.IsConvex()) {
+            height = Dot(upInB, static_cast<const ConvexShape&>(shape).Support(upInB));
+        }
+        return height + Dot(up, Vector3(pose.position - point));
+    }
+
+    void RemovePoints(uint32_t index) {
+        ContactRecord& record = pairs_.records[index];
+        record.pointCount = 0;
+        for (float& impulse : record.impulse) impulse = 0;
+        for (float& impulse : record.frictionImpulse) impulse = 0;
+        record.twistImpulse = 0;
+        pairs_.pairs[index].onSeam = true;
+        seams_.push_back(index);
+    }
+
+    // Whether a body that rests on `bearing` cannot run into what `other` touches.
+    bool Hides(const Support& bearing, const Support& other) const {
+        const Pair& first = pairs_.pairs[bearing.pair];
+        const Pair& second = pairs_.pairs[other.pair];
+        if (first.colliderA != second.colliderA || first.colliderB == second.colliderB) return false;
+        const float flush = std::min(kFlush, kFlushPart * first.shapeA->OuterRadius());
+        return bearing.separation < flush && Dot(bearing.normal, other.normal) < kSameDirection &&
+               HeightOf(other.pair, bearing.deepest, Vector3(-bearing.normal)) < flush;
+    }
+
+    const BodyStore& bodies_;
+    const ColliderStore& colliders_;
+    PairStore& pairs_;
+    std::vector<uint32_t>& seams_;
+};
+
+template <class Visit>
+void VisitFixed(const ConstraintColoring& coloring, int from, int to, Visit&& visit) {
+    for (int c = from; c <= to; ++c)
+        for (const ConstraintColoring::Entry& entry : coloring.At(c).Of(Kind::Fixed)) visit(entry);
+}
+
+}  // namespace
+
+void RemoveSeamContacts(const BodyStore& bodies, const ColliderStore& colliders, const ConstraintColoring& coloring,
+                        PairStore& pairs, std::vector<uint32_t>& seams, ScratchArena& scratch) {
+    for (uint32_t index : seams) {
+        Pair& pair = pairs.pairs[index];
+        pair.onSeam = false;
+        if (pair.exists) pairs.records[index].pointCount = pair.pointCount;
+    }
+    seams.clear();
+    // Contacts with fixed bodies take the highest color that is free: few bodies have one in any other.
+    constexpr int kHighest = ConstraintColoring::kColors - 1;
+    size_t others = coloring.At(ConstraintColoring::kOverflow).Of(Kind::Fixed).size();
+    for (int c = 0; c < kHighest; ++c) others += coloring.At(c).Of(Kind::Fixed).size();
+    if (others == 0) return;
+    std::span<uint8_t> several = scratch.Allocate<uint8_t>(bodies.Size());
+    std::fill(several.begin(), several.end(), uint8_t(0));
+    VisitFixed(coloring, 0, kHighest - 1, [&](const auto& entry) { several[entry.bodyA] = 1; });
+    VisitFixed(coloring, ConstraintColoring::kOverflow, ConstraintColoring::kOverflow,
+               [&](const auto& entry) { several[entry.bodyA] = 1; });
+    std::span<uint64_t> contacts = scratch.Allocate<uint64_t>(others + coloring.At(kHighest).Of(Kind::Fixed).size());
+    size_t count = 0;
+    VisitFixed(coloring, 0, ConstraintColoring::kOverflow, [&](const auto& entry) {
+        if (several[entry.bodyA]) contacts[count++] = uint64_t(entry.bodyA) << 32 | entry.constraint;
+    });
+    contacts = contacts.first(count);
+    std::sort(contacts.begin(), contacts.end());
+    SeamRemover remover(bodies, colliders, pairs, seams);
+    std::span<Support> supports = scratch.Allocate<Support>(count);
+    for (size_t begin = 0; begin < count;) {
+        size_t end = begin + 1;
+        while (end < count && contacts[end] >> 32 == contacts[begin] >> 32) ++end;
+        if (end - begin > 1) {
+            for (size_t i = begin; i < end; ++i) supports[i] = remover.Describe(static_cast<uint32_t>(contacts[i]));
+            remover.RemoveAmong(supports.subspan(begin, end - begin));
+        }
+        begin = end;
+    }
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,11 @@
+// One step: the stages, one after the other.
+#pragma once
+
+#include <Fulcrum/Physics/Stages/StepState.h>
+
+namespace fulcrum {
+
+// Advances the world by dt seconds, and fills the report. Less than a nanosecond changes nothing.
+void RunStep(WorldState& world, StepState& step, double dt);
+
+}  // namespace fulcrum

@@ -1,0 +1,116 @@
+// What the stages of a step hand on to each other, and what they keep from step to step. All else is the world's.
+#pragma once
+
+#include <Fulcrum/Collision/NarrowPhase/SurfaceContact.h>
+#include <Fulcrum/Jobs/ScratchArena.h>
+#include <Fulcrum/Physics/Stages/SensorSearch.h>
+#include <Fulcrum/Physics/Stages/SolverLayout.h>
+#include <Fulcrum/Physics/Stages/SweepStore.h>
+#include <Fulcrum/Physics/StepReport.h>
+#include <Fulcrum/Physics/World/WorldState.h>
+
+#include <algorithm>
+#include <cstring>
+#include <vector>
+
+namespace fulcrum {
+
+// A manifold that a pair with a surface has beyond those it had.
+struct MoreManifold {
+    uint32_t pair;
+    uint32_t order;  // among those of the pair
+    SurfaceManifold contact;
+};
+
+// One worker's own findings in a stage; merged in an order that does not depend on who found what.
+struct alignas(64) WorkerFindings {
+    std::vector<uint32_t> colliders;        // UpdateBounds: those that left their fat bounds
+    std::vector<uint32_t> strayed;          // Continuous: those that the solver moved out of them
+    std::vector<uint64_t> pairs;            // FindPairs: keys of new or resting pairs
+    uint32_t deepPairs = 0;                 // FindPairs: how many of these pairs overlap deeply
+    std::vector<uint32_t> deepOverlaps;     // Collide: bodies that overlap another deeply, once for each such overlap
+    std::vector<uint32_t> crowdedOverlaps;  // Collide: crowded bodies that overlap another, likewise
+    SurfaceContacts surface;                // Collide: room to work in
+    std::vector<uint32_t> surfacePlaces, surfaceLeft, surfaceTouched;  // Collide: likewise
+    std::vector<MoreManifold> more;                                    // Collide: what has no place in its pair yet
+    std::vector<SweepHit> sweepHits;                                   // Continuous
+    std::vector<uint64_t> sensorCandidates;                            // Sense
+    std::vector<SensorVisit> sensorVisits;                             // likewise
+    uint32_t sensorTests = 0;                                          // likewise
+    CollideCounters libccd;
+    uint32_t contacts = 0, points = 0, kept = 0;
+    float deepest = 0;  // largest penetration, m
+    uint32_t deepestPair = ~0u;
+    uint32_t clamped = 0, frozen = 0;
+    uint32_t firstFrozen = ~0u;
+    uint32_t sleepCandidates = 0;  // bodies that have been slow for long enough
+    bool bounces = false;          // Prepare: some contact has restitution
+    JointFindings joints;          // Prepare
+};
+
+size_t HeapBytes(const WorkerFindings& findings);
+
+// A body that deeply overlapped many others and disperses (Stages/Crowd.h): until there is room it does not collide
+// with dynamic bodies and gravity does not act on it, and it moves with `push` on top of its own velocity.
+struct DispersingBody {
+    uint32_t body;
+    Vector3 direction;                  // of the push without a place, of length 1 at most: a part of the fastest push
+    bool hasPlace = false;              // it moves to `place`
+    Position place = Position::Zero();  // m
+    float secondsLeft = 0;              // until it is to be there; below zero since then
+    uint64_t startStep = 0;             // the step in which it started
+    Vector3 push = Vector3::Zero(), ownVelocity = Vector3::Zero();  // m/s, of this step
+};
+
+// What Collide found out about an active pair that the rest of the world must hear of.
+enum class PairChange : uint8_t { None, Began, Ended, Dead, WakesOther };
+
+struct StepState {
+    float dt = 0;             // s, of the step, > 0
+    float substepDt = 0;      // s
+    float impulseScale = 1;   // dt of its substeps / dt of the last step's, at most 2: scales the warm start
+    float lastSubstepDt = 0;  // s
+
+    StepReport report;
+    std::vector<WorkerFindings> findings;  // by worker
+    ScratchArena scratch;
+
+    std::vector<uint64_t> newPairs;           // FindPairs
+    std::vector<uint32_t> activated;          // FindPairs: pairs that it made active
+    std::vector<PairChange> changes;          // Collide: by pair, of this step; None for those that are not active
+    std::vector<MoreManifold> moreManifolds;  // Collide
+    std::vector<uint32_t>
+        deepOverlaps;  // Collide: bodies, ascending, once for each deep overlap; empty if none has many
+    std::vector<DispersingBody> dispersing;  // by body, ascending
+    std::vector<uint32_t> crowded;  // these, and those that have dispersed and still overlap something; repeated
+    std::vector<uint32_t> began;    // Color: pairs that began to touch
+    std::vector<uint32_t> seams;    // RemoveSeamContacts: pairs without their points, in the last step
+    SolverLayout solver;
+    bool bounces = false;          // Prepare: some contact of this step has restitution
+    std::vector<JointId> broken;   // Store: in the last step
+    uint32_t sleepCandidates = 0;  // Store: bodies that have been slow for long enough
+    SweepStore sweeps;
+    SensorSearch sensing;
+};
+
+size_t HeapBytes(const StepState& step);
+
+// Visits the pairs with a change, in ascending order; in most steps that are few.
+template <class Visitor>
+void VisitChanges(std::span<const PairChange> changes, Visitor&& visit) {
+    const size_t count = changes.size();
+    for (size_t i = 0; i < count;) {
+        uint64_t eight = 0;
+        if (i + 8 <= count) {
+            std::memcpy(&eight, &changes[i], 8);
+            if (eight == 0) {
+                i += 8;
+                continue;
+            }
+        }
+        for (const size_t end = std::min(i + 8, count); i < end; ++i)
+            if (changes[i] != PairChange::None) visit(static_cast<uint32_t>(i));
+    }
+}
+
+}  // namespace fulcrum

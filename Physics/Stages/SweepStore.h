@@ -1,0 +1,96 @@
+// How bodies moved within a step: for continuous collision, which cuts their sweeps short where they hit something, and
+// for whoever must see what passed in between. Kept only while a body asks for it. Written by Store and Continuous.
+#pragma once
+
+#include <Fulcrum/Math/Trigonometry.h>
+#include <Fulcrum/Physics/World/BodyStore.h>
+#include <Fulcrum/Physics/World/HeapBytes.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace fulcrum {
+
+// In float, of which the places themselves are too far from zero for it.
+inline Vector3 Between(const Position& from, const Position& to) { return (to - from).cast<float>(); }
+
+// A body's way from some time of the step to its end: its center of mass moves straight, it turns at a constant rate.
+// Times are fractions of the step, 0 .. 1. All positions are on the grid, as those of the step are.
+struct Sweep {
+    Pose start;                              // of the center frame, at `from`
+    Vector3 displacement = Vector3::Zero();  // m, until the end
+    Vector3 turn = Vector3::Zero();          // rad, rotation vector, until the end
+    float from = 0;
+    uint32_t body = 0;
+    bool turns = false;    // it is cast with its turn
+    bool isCut = false;    // something was hit
+    bool waits = false;    // stays until the step's end where it was at `from`, with the velocity of then
+    bool changed = false;  // in the present round
+
+    float PartAt(float time) const { return from < 1 ? (time - from) / (1 - from) : 0.0f; }
+    Position PositionAt(float time) const {
+        return start.position + OnGrid((displacement * PartAt(time)).cast<double>());
+    }
+    Quaternion RotationAt(float time) const {
+        if (turn.isZero(0)) return start.rotation;
+        return Normalized(RotationFromVector(Vector3(turn * PartAt(time))) * start.rotation);
+    }
+    Pose PoseAt(float time) const { return {PositionAt(time), RotationAt(time)}; }
+    // Of a whole step's length.
+    Vector3 DisplacementRate() const {
+        return from < 1 ? Vector3(displacement * (1 / (1 - from))) : Vector3(Vector3::Zero());
+    }
+    Vector3 TurnRate() const { return from < 1 ? Vector3(turn * (1 / (1 - from))) : Vector3(Vector3::Zero()); }
+};
+
+// Where a swept body first meets another one that it would overlap.
+struct SweepHit {
+    static constexpr int kMaxPoints = 4;
+    float time = 1;
+    uint32_t body = 0, other = 0;
+    uint32_t otherCollider = 0;
+    uint8_t material = 0;  // of the other's palette
+    float friction = 0, restitution = 0;
+    Vector3 surfaceVelocity = Vector3::Zero();  // m/s, of the other's surface against its body
+    bool isBlocked =
+        false;  // neither has continuous collision; the body is cast since it was hit, and waits for the next step
+    int pointCount = 0;                               // 0: the cast was not decided; nothing is touched before `time`
+    Vector3 normal = Vector3::Zero();                 // unit, from the body towards the other
+    Position center = Position::Zero();               // m, of the body's mass, where it touches
+    Vector3 arms[kMaxPoints], otherArms[kMaxPoints];  // m, from the centers of mass to the points, world axes
+};
+
+struct SweepStore {
+    // Where the first round looks for what a fast body may hit.
+    enum class SearchBy : uint8_t {
+        None,
+        Pairs,  // its way lies inside its fat bounds: there is a pair for all that it may hit
+        Trees,
+    };
+    static constexpr uint32_t kNone = ~0u;
+    struct Start {
+        Pose pose;
+        uint64_t step = 0;  // the one that it is of
+    };
+
+    float dt = 0;               // s, of the step
+    std::vector<Start> starts;  // by body: where it was when the step began
+    std::vector<SearchBy>
+        searchBy;  // by body; None for all but continuous ones that moved farther than they may without a cast
+    std::vector<Sweep> swept;            // sweeps that were searched anew, or changed
+    std::vector<uint32_t> places;        // by body: index into `swept`, or kNone
+    std::vector<Sweep> ended;            // sweeps that a hit has ended, in the order of the hits
+    std::vector<float> endedAt;          // times
+    std::vector<uint32_t> active, next;  // indices into `swept`, of this round and the next
+    std::vector<SweepHit> hits;
+
+    // Whether the body's start is that of this step: it was awake as it began.
+    bool IsOfStep(uint32_t body, uint64_t step) const { return body < starts.size() && starts[body].step == step; }
+};
+
+inline size_t HeapBytes(const SweepStore& store) {
+    const auto& [dt, starts, searchBy, swept, places, ended, endedAt, active, next, hits] = store;
+    return HeapBytes(dt, starts, searchBy, swept, places, ended, endedAt, active, next, hits);
+}
+
+}  // namespace fulcrum

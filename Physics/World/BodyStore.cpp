@@ -1,0 +1,167 @@
+#include <Fulcrum/Physics/World/BodyStore.h>
+
+#include <Fulcrum/Physics/World/HeapBytes.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fulcrum {
+
+uint32_t BodyStore::Allocate() {
+    uint32_t index;
+    if (!free_.empty()) {
+        index = free_.back();
+        free_.pop_back();
+    } else {
+        index = Size();
+        states.emplace_back();
+        masses.emplace_back();
+        poses.emplace_back();
+        unconstrained.emplace_back();
+        dynamics.emplace_back();
+        cold.emplace_back();
+        remainders.emplace_back();
+    }
+    cold[index].exists = true;
+    ++count_;
+    return index;
+}
+
+void BodyStore::Free(uint32_t index) {
+    const uint32_t generation = cold[index].generation + 1;
+    states[index] = {};
+    masses[index] = {};
+    poses[index] = {};
+    dynamics[index] = {};
+    cold[index] = {};
+    cold[index].generation = generation;
+    free_.push_back(index);
+    --count_;
+}
+
+void BodyStore::MarkAwake(uint32_t index) {
+    if (dynamics[index].awake) return;
+    dynamics[index].awake = true;
+    dynamics[index].slowSeconds = 0;
+    cold[index].awakePlace = static_cast<uint32_t>(awake.size());
+    awake.push_back(index);
+}
+
+void BodyStore::MarkAsleep(uint32_t index) {
+    if (!dynamics[index].awake) return;
+    dynamics[index].awake = false;
+    const uint32_t place = cold[index].awakePlace;
+    awake[place] = awake.back();
+    cold[awake[place]].awakePlace = place;
+    awake.pop_back();
+}
+
+namespace {
+
+void Write(BodyPose& to, const Position& position, const Quaternion& q) {
+    to.rotation[0] = q.x;
+    to.rotation[1] = q.y;
+    to.rotation[2] = q.z;
+    to.rotation[3] = q.w;
+    for (int k = 0; k < 3; ++k) to.position[k] = position[k];
+}
+
+}  // namespace
+
+void BodyStore::SetCenterPose(uint32_t index, const Pose& pose) {
+    const Position onGrid = OnGrid(pose.position);
+    remainders[index] = {pose.position - onGrid, true};
+    Write(poses[index], onGrid, pose.rotation);
+}
+
+void BodyStore::MoveCenter(uint32_t index, const Vector3& displacement, const Quaternion& rotation) {
+    Position rest = displacement.cast<double>();
+    if (!remainders[index].isGiven) rest += remainders[index].value;
+    const Position step = OnGrid(rest);
+    remainders[index] = {rest - step, false};
+    Write(poses[index], CenterOf(index) + step, rotation);
+}
+
+namespace {
+
+// World inverse inertia of a body that cannot turn about some world axes: the inverse of the block of the others.
+SymmetricMatrix3 InverseOfFreeAxes(const BodyDynamics& d, const Matrix3& axes) {
+    Vector3 principal;
+    for (int k = 0; k < 3; ++k) principal[k] = d.inverseInertia[k] > 0 ? 1.0f / d.inverseInertia[k] : 0.0f;
+    const SymmetricMatrix3 w = RotatedDiagonal(axes, principal);
+    const unsigned locked = static_cast<unsigned>(d.lockedAxes) >> 3;
+    const bool x = !(locked & 1), y = !(locked & 2), z = !(locked & 4);
+    SymmetricMatrix3 i;
+    const auto pair = [](float a, float b, float c, float& ia, float& ib, float& ic) {
+        const float determinant = a * b - c * c;
+        // Products of extreme moments leave the floats where their inverses do not.
+        const double exact = std::isnormal(determinant) ? double{determinant} : double{a} * b - double{c} * c;
+        ia = static_cast<float>(b / exact);
+        ib = static_cast<float>(a / exact);
+        ic = static_cast<float>(-c / exact);
+    };
+    if (!(d.inverseMass > 0)) return i;
+    if (x && y && !z) pair(w.xx, w.yy, w.xy, i.xx, i.yy, i.xy);
+    else if (x && z && !y) pair(w.xx, w.zz, w.xz, i.xx, i.zz, i.xz);
+    else if (y && z && !x) pair(w.yy, w.zz, w.yz, i.yy, i.zz, i.yz);
+    else if (x) i.xx = 1.0f / w.xx;
+    else if (y) i.yy = 1.0f / w.yy;
+    else if (z) i.zz = 1.0f / w.zz;
+    return i;
+}
+
+}  // namespace
+
+BodyMass BodyStore::MassAlong(uint32_t index, const Matrix3& axes) const {
+    const BodyDynamics& d = dynamics[index];
+    BodyMass m;
+    if (d.frozen) return m;
+    m.inverseMass = d.inverseMass;
+    m.turns = d.gyroscopic && !d.spherical && !d.LocksRotation() && d.motion == MotionType::Dynamic ? 1.0f : 0.0f;
+    const Vector3 inverse(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]);
+    SymmetricMatrix3 i;
+    if (d.spherical) i.xx = i.yy = i.zz = inverse.x();
+    else i = RotatedDiagonal(axes, inverse);
+    if (d.LocksRotation()) i = InverseOfFreeAxes(d, axes);
+    m.inverseInertia[0] = i.xx;
+    m.inverseInertia[1] = i.yy;
+    m.inverseInertia[2] = i.zz;
+    m.inverseInertia[3] = i.xy;
+    m.inverseInertia[4] = i.xz;
+    m.inverseInertia[5] = i.yz;
+    return m;
+}
+
+void SetMass(BodyDynamics& d, const Quaternion& q, float mass, const Vector3& inertia) {
+    const float axes[4] = {q.x, q.y, q.z, q.w};
+    for (int k = 0; k < 4; ++k) d.principalAxes[k] = axes[k];
+    d.inverseMass = 1.0f / mass;
+    for (int k = 0; k < 3; ++k) d.inverseInertia[k] = 1.0f / inertia[k];
+    const float spread = inertia.maxCoeff() - inertia.minCoeff();
+    d.spherical = spread <= 1e-5f * inertia.maxCoeff();
+}
+
+Vector3 AngularMomentum(const BodyDynamics& d, const Quaternion& rotation, const Vector3& w) {
+    const Quaternion axes = rotation * d.PrincipalAxes();
+    Vector3 local = InverseRotate(axes, w);
+    for (int k = 0; k < 3; ++k) local[k] = d.inverseInertia[k] > 0 ? local[k] / d.inverseInertia[k] : 0.0f;
+    constexpr float kMost = 1e38f;  // their sum is a float, too
+    return Rotate(axes, Vector3(local.cwiseMax(-kMost).cwiseMin(kMost)));
+}
+
+double RotationalEnergy(const BodyDynamics& d, const Quaternion& rotation, const Vector3& w) {
+    return 0.5 * TwiceRotationalEnergy<double>(d, InverseRotate(rotation * d.PrincipalAxes(), w));
+}
+
+size_t HeapBytes(const BodyCold& body) {
+    return (body.filter ? sizeof(BodyFilter) : 0) + (body.children ? sizeof(BodyChildren) : 0);
+}
+
+size_t HeapBytes(const BodyStore& store) {
+    const auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, awake, continuousCount, free,
+                 count] = store;
+    return HeapBytes(states, masses, poses, unconstrained, dynamics, cold, remainders, awake, continuousCount, free,
+                     count);
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,237 @@
+// All bodies, as arrays by index: what each stage touches lies together. Indices of removed bodies are reused with
+// another generation. Written by BodyInterface between steps and by the stages during one.
+#pragma once
+
+#include <Fulcrum/Constraints/Parts/BodyState.h>
+#include <Fulcrum/Physics/Settings.h>
+
+#include <cmath>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace fulcrum {
+
+// Warm: read once per body and step. Principal inertia, damping, limits.
+struct alignas(64) BodyDynamics {
+    float inverseInertia[3] = {0, 0, 0};    // 1/(kg m2), principal axes
+    float inverseMass = 0;                  // 1/kg
+    float principalAxes[4] = {0, 0, 0, 1};  // x y z w: from the principal frame to the center frame
+    float gravityFactor = 1;
+    float linearDamping = 0, angularDamping = 0;    // 1/s
+    float maxLinearSpeed = 0, maxAngularSpeed = 0;  // m/s, rad/s
+    float slowSeconds = 0;                          // how long it has been slow enough to sleep
+    float outerRadius = 0;                          // m
+    MotionType motion = MotionType::Static;
+    LockedAxes lockedAxes = LockedAxes::None;
+    bool awake : 1 = false;
+    bool spherical : 1 = false;  // all principal moments are equal
+    bool gyroscopic : 1 = false;
+    bool allowSleep : 1 = true;
+    bool hasForce : 1 = false;  // BodyCold::force or torque is not zero
+    bool frozen : 1 = false;
+    bool continuous : 1 = false;  // BodyCold::continuous is not Off
+    bool filtered : 1 = false;    // it has a BodyFilter: ask FiltersAllow
+    uint8_t layer : 5 = 0;
+    bool crowded : 1 = false;     // contacts push it at a limited speed, see CrowdContacts.h
+    bool dispersing : 1 = false;  // see Crowd.h
+
+    // Eight numbers each, for lanes.
+    const float* InertiaRow() const { return inverseInertia; }  // moments, mass, principal axes
+    const float* LimitsRow() const { return &gravityFactor; }   // up to outerRadius
+
+    // Sets what the locked axes forbid of a velocity or a displacement to zero.
+    void Lock(Vector3& linear, Vector3& angular) const {
+        const unsigned locked = static_cast<unsigned>(lockedAxes);
+        for (unsigned k = 0; k < 3; ++k) {
+            if (locked >> k & 1) linear[k] = 0;
+            if (locked >> (3 + k) & 1) angular[k] = 0;
+        }
+    }
+    // Whether gyroscopic torque changes anything that can be seen, at the angular velocity in rad/s.
+    bool FeelsGyroscopicTorque(const Vector3& w) const {
+        return HasGyroscopicTorque() && LengthSquared(w) > kLeastGyroscopicSpeed * kLeastGyroscopicSpeed;
+    }
+    static constexpr float kLeastGyroscopicSpeed = 0.1f;  // rad/s
+    bool HasGyroscopicTorque() const { return gyroscopic && !spherical && !LocksRotation(); }
+    bool LocksRotation() const { return (static_cast<unsigned>(lockedAxes) & 56u) != 0; }
+    Quaternion PrincipalAxes() const {
+        return {principalAxes[0], principalAxes[1], principalAxes[2], principalAxes[3]};
+    }
+};
+static_assert(sizeof(BodyDynamics) == 64);
+
+// kg m2/s about the center of mass, world axes, at the rotation and angular velocity (rad/s).
+Vector3 AngularMomentum(const BodyDynamics& body, const Quaternion& rotation, const Vector3& angularVelocity);
+// J, in double: of extreme bodies it is beyond the floats.
+double RotationalEnergy(const BodyDynamics& body, const Quaternion& rotation, const Vector3& angularVelocity);
+// Twice the energy, J, of a body that turns at this angular velocity (rad/s, along the principal axes), summed in Real.
+template <class Real>
+Real TwiceRotationalEnergy(const BodyDynamics& body, const Vector3& w) {
+    Real sum = 0;
+    for (int k = 0; k < 3; ++k)
+        sum += body.inverseInertia[k] > 0 ? Real{w[k]} * Real{w[k]} / Real{body.inverseInertia[k]} : Real{0};
+    return sum;
+}
+// The inverses of mass, kg, and principal moments of inertia, kg m2, along axes that are rotated so in the center
+// frame.
+void SetMass(BodyDynamics& body, const Quaternion& principalAxes, float mass, const Vector3& inertia);
+// The principal axes in world space.
+inline Matrix3 AxesOf(const BodyDynamics& body, const Quaternion& rotation) {
+    return ToMatrix(rotation * body.PrincipalAxes());
+}
+class MutableCompound;
+
+// What only bodies have whose children may be edited.
+struct BodyChildren {
+    MutableCompound* compound = nullptr;  // the body's own: BodyCold::shape
+    Vector3 origin = Vector3::Zero();     // of the children's frame in the center frame, m
+    double massUnit = 0;                  // kg, of the compound's RelativeMass
+    uint32_t moreColliders = ~0u;         // index into ColliderStore::runs
+};
+
+// What a body collides with, where that is not everything.
+struct BodyFilter {
+    uint64_t category = 1, mask = ~uint64_t(0);
+    CollisionGroup group;
+    bool IsDefault() const { return category == 1 && mask == ~uint64_t(0) && !group.filter; }
+};
+
+// Cold: for the interface.
+struct BodyCold {
+    ShapePtr shape;
+    uint64_t userData = 0;
+    Material material;
+    Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  // of the next step
+    std::unique_ptr<BodyFilter> filter;                         // null: the default
+    uint32_t firstCollider = 0, colliderCount = 0;
+    std::unique_ptr<BodyChildren> children;  // where `shape` is a mutable compound
+    uint32_t generation = 0;
+    uint32_t awakePlace = 0;        // index into BodyStore::awake
+    uint32_t sleepingIsland = ~0u;  // index into SleepingIslands
+    ContinuousCollision continuous = ContinuousCollision::Off;
+    bool exists = false;
+    bool removed = false;  // by the interface, its index not yet free
+    bool isSensor = false;
+
+    uint32_t MoreColliders() const {
+        return children ? children->moreColliders : ~0u;
+    }  // index into ColliderStore::runs
+};
+
+size_t HeapBytes(const BodyCold& body);
+
+// Velocity without the constraints' share, from which the next substep's warm start follows.
+struct alignas(32) UnconstrainedVelocity {
+    float row[8];
+};
+
+// Positions are multiples of this wherever the step reads them, and what is less is carried along: what bodies are to
+// each other does not depend on how far out they are, to the last bit, up to 2^30 m, where double ends at it.
+inline constexpr double kPositionGrid = 0x1p-23;  // m, 0.12 micrometers
+
+// The nearest point of the grid. Beyond 2^29 m doubles lie on it anyway.
+inline Position OnGrid(const Position& position) {
+    Position rounded;
+    for (int k = 0; k < 3; ++k)
+        rounded[k] = std::fabs(position[k]) < 0x1p29
+                         ? std::floor(position[k] * (1 / kPositionGrid) + 0.5) * kPositionGrid
+                         : position[k];
+    return rounded;
+}
+
+// The exact position minus the one on the grid.
+struct Remainder {
+    Position value = Position::Zero();  // m
+    bool isGiven = true;                // by the user, far out more coarsely than near: forgotten when the body moves
+};
+
+class BodyStore {
+public:
+    // By index; all of the same size.
+    std::vector<BodyState> states;
+    std::vector<BodyMass> masses;
+    std::vector<BodyPose> poses;
+    std::vector<UnconstrainedVelocity> unconstrained;
+    std::vector<BodyDynamics> dynamics;
+    std::vector<BodyCold> cold;
+    std::vector<Remainder> remainders;
+
+    std::vector<uint32_t> awake;   // dynamic bodies awake and kinematic ones that move, in no order
+    uint32_t continuousCount = 0;  // bodies with continuous collision
+
+    uint32_t Size() const { return static_cast<uint32_t>(cold.size()); }  // of the arrays
+    uint32_t Count() const { return count_; }                             // of the bodies
+    uint32_t Allocate();                                                  // an index with fresh values; exists is set
+    void Free(uint32_t index);                                            // after Remove: the index may be reused
+    // Whether the id names a body; then Index is its index.
+    bool Find(BodyId id) const {
+        return id.index < cold.size() && cold[id.index].exists && cold[id.index].generation == id.generation;
+    }
+    BodyId IdOf(uint32_t index) const { return {index, cold[index].generation}; }
+    const BodyFilter& FilterOf(uint32_t index) const {
+        static const BodyFilter kDefault;
+        return cold[index].filter ? *cold[index].filter : kDefault;
+    }
+    void SetFilter(uint32_t index, const BodyFilter& filter) {
+        dynamics[index].filtered = !filter.IsDefault();
+        cold[index].filter = filter.IsDefault() ? nullptr : std::make_unique<BodyFilter>(filter);
+    }
+
+    // Whether constraints move it.
+    bool CanMove(uint32_t index) const {
+        return dynamics[index].motion == MotionType::Dynamic && !dynamics[index].frozen;
+    }
+    void MarkAwake(uint32_t index);
+    void MarkAsleep(uint32_t index);
+
+    Quaternion RotationOf(uint32_t index) const {
+        const float* r = poses[index].rotation;
+        return {r[0], r[1], r[2], r[3]};
+    }
+    // On the grid.
+    Position CenterOf(uint32_t index) const {
+        const double* p = poses[index].position;
+        return Position(p[0], p[1], p[2]);
+    }
+    Pose CenterPoseOf(uint32_t index) const { return {CenterOf(index), RotationOf(index)}; }
+    Pose ExactCenterPoseOf(uint32_t index) const { return {ExactCenterOf(index), RotationOf(index)}; }
+    Position ExactCenterOf(uint32_t index) const { return CenterOf(index) + remainders[index].value; }
+    void SetCenterPose(uint32_t index, const Pose& pose);
+    // Moves the center by so many m.
+    void MoveCenter(uint32_t index, const Vector3& displacement, const Quaternion& rotation);
+    Vector3 LinearVelocityOf(uint32_t index) const {
+        const float* v = states[index].linearVelocity;
+        return Vector3(v[0], v[1], v[2]);
+    }
+    Vector3 AngularVelocityOf(uint32_t index) const {
+        const float* w = states[index].angularVelocity;
+        return Vector3(w[0], w[1], w[2]);
+    }
+    void SetVelocity(uint32_t index, const Vector3& linear, const Vector3& angular) {
+        BodyState& s = states[index];
+        for (int k = 0; k < 3; ++k) {
+            s.linearVelocity[k] = linear[k];
+            s.angularVelocity[k] = angular[k];
+        }
+    }
+    void ForgetForces(uint32_t index) {
+        if (!dynamics[index].hasForce) return;
+        cold[index].force = cold[index].torque = Vector3::Zero();
+        dynamics[index].hasForce = false;
+    }
+    // Brings the world inverse inertia of `masses` in line with the rotation, or with principal axes in the middle of a
+    // step.
+    void UpdateInertia(uint32_t index) { UpdateInertia(index, AxesOf(dynamics[index], RotationOf(index))); }
+    void UpdateInertia(uint32_t index, const Matrix3& axes) { masses[index] = MassAlong(index, axes); }
+    // Of a body whose principal axes in the world are these.
+    BodyMass MassAlong(uint32_t index, const Matrix3& axes) const;
+    SolverBodies ForSolver() { return {states.data(), masses.data(), poses.data()}; }
+    friend size_t HeapBytes(const BodyStore& store);
+
+private:
+    std::vector<uint32_t> free_;
+    uint32_t count_ = 0;
+};
+
+}  // namespace fulcrum

@@ -1,0 +1,76 @@
+#include <Fulcrum/Physics/World/Colors.h>
+
+namespace fulcrum {
+
+namespace {
+
+using Coloring = ConstraintColoring;
+
+Coloring::Kind KindOf(const Pair& pair) { return pair.fixedB ? Coloring::Kind::Fixed : Coloring::Kind::Moving; }
+Coloring::Entry EntryOf(const Joint& joint, uint32_t index) {
+    return {index, joint.body[0], joint.body[1], joint.still[0], joint.still[1]};
+}
+Coloring::Entry EntryOf(const Pair& pair, uint32_t index) {
+    return {index, pair.bodyA, pair.bodyB, false, pair.fixedB};
+}
+
+}  // namespace
+
+void ColorPair(PairStore& pairs, ConstraintColoring& coloring, uint32_t index) {
+    Pair& pair = pairs.pairs[index];
+    if (pair.color.color != 0xFF) return;
+    // Contacts with what does not move come last: they must win.
+    pair.color = coloring.Add(KindOf(pair), EntryOf(pair, index), pair.fixedB);
+}
+
+void UncolorPair(PairStore& pairs, ConstraintColoring& coloring, uint32_t index) {
+    Pair& pair = pairs.pairs[index];
+    if (pair.color.color == 0xFF) return;
+    const uint32_t moved = coloring.Remove(KindOf(pair), EntryOf(pair, index), pair.color);
+    pairs.pairs[moved].color.slot = pair.color.slot;
+    pair.color = {};
+}
+
+void RemovePair(PairStore& pairs, ConstraintColoring& coloring, uint32_t index) {
+    while (index != PairStore::kNone) {
+        const uint32_t next = pairs.pairs[index].more;
+        UncolorPair(pairs, coloring, index);
+        pairs.Remove(index);
+        index = next;
+    }
+}
+
+bool MovesAwake(const WorldState& world, uint32_t index) {
+    const Joint& joint = world.joints.joints[index];
+    const auto isAwake = [&](int side) { return !joint.still[side] && world.bodies.dynamics[joint.body[side]].awake; };
+    return isAwake(0) || isAwake(1);
+}
+
+void ColorJoint(WorldState& world, uint32_t index) {
+    Joint& joint = world.joints.joints[index];
+    if (joint.color.color != 0xFF || !joint.enabled || !MovesAwake(world, index)) return;
+    world.coloring.ReserveBodies(world.bodies.Size());
+    const bool late = joint.priority == JointPriority::High || joint.still[0] || joint.still[1];
+    joint.color = world.coloring.Add(Coloring::Kind::Joint, EntryOf(joint, index), late);
+}
+
+void UncolorJoint(WorldState& world, uint32_t index) {
+    Joint& joint = world.joints.joints[index];
+    if (joint.color.color == 0xFF) return;
+    const uint32_t moved = world.coloring.Remove(Coloring::Kind::Joint, EntryOf(joint, index), joint.color);
+    world.joints.joints[moved].color.slot = joint.color.slot;
+    joint.color = {};
+}
+
+void RecolorJointsOf(WorldState& world, uint32_t body) {
+    world.joints.VisitOf(body, [&](uint32_t index) {
+        Joint& joint = world.joints.joints[index];
+        bool& still = joint.still[joint.SideOf(body)];
+        if (still == !world.bodies.CanMove(body)) return;
+        UncolorJoint(world, index);
+        still = !still;
+        ColorJoint(world, index);
+    });
+}
+
+}  // namespace fulcrum

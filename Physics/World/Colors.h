@@ -1,0 +1,23 @@
+// Constraints get a color when they come to act and lose it when they no longer do: contacts as they begin and end,
+// joints as they come and go, wake and sleep. One thread.
+#pragma once
+
+#include <Fulcrum/Physics/World/WorldState.h>
+
+namespace fulcrum {
+
+// Gives a pair's contact a color, or takes it away; nothing where it has one, or none.
+void ColorPair(PairStore& pairs, ConstraintColoring& coloring, uint32_t pair);
+void UncolorPair(PairStore& pairs, ConstraintColoring& coloring, uint32_t pair);
+// Uncolors and removes a pair with all its manifolds.
+void RemovePair(PairStore& pairs, ConstraintColoring& coloring, uint32_t pair);
+
+// Whether a joint has a body that is awake and can move.
+bool MovesAwake(const WorldState& world, uint32_t joint);
+// As for pairs; only a joint that is enabled and moves awake gets a color.
+void ColorJoint(WorldState& world, uint32_t joint);
+void UncolorJoint(WorldState& world, uint32_t joint);
+// Has the joints of a body see whether it can move: after it was frozen, or revived.
+void RecolorJointsOf(WorldState& world, uint32_t body);
+
+}  // namespace fulcrum

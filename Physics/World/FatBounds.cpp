@@ -1,0 +1,47 @@
+#include <Fulcrum/Physics/World/FatBounds.h>
+
+namespace fulcrum {
+
+namespace {
+
+// Makes bounds about the center of a shape larger by how far a turn, a rotation vector in rad, takes what is inside of
+// them: |turn x p| along each axis, of points p up to as far out as the bounds reach by then; never beyond the outer
+// sphere. What turns so slowly that its ends do not leave where they were passes through nothing, and keeps its bounds.
+void ExtendByTurn(const Shape& shape, const Vector3& turn, Vector3& lower, Vector3& upper) {
+    const float outer = shape.OuterRadius(), angle = Length(turn);
+    if (!(angle * outer > shape.InnerRadius())) return;
+    const Vector3 sphere = Vector3::Constant(outer), rate = turn.cwiseAbs();
+    const Vector3 far = Vector3(lower.cwiseAbs().cwiseMax(upper.cwiseAbs()) + sphere * angle).cwiseMin(sphere);
+    const Vector3 swept(rate.y() * far.z() + rate.z() * far.y(), rate.z() * far.x() + rate.x() * far.z(),
+                        rate.x() * far.y() + rate.y() * far.x());
+    lower = Vector3(lower - swept).cwiseMax(-sphere);
+    upper = Vector3(upper + swept).cwiseMin(sphere);
+}
+
+}  // namespace
+
+Bounds TightBounds(const Shape& shape, const Pose& pose, const Matrix3& rotation, const Vector3& turn) {
+    const Bounds& local = shape.LocalBounds();
+    const Vector3 center = rotation * local.Center(), half = local.HalfExtents();
+    const Vector3 reach =
+        rotation.x.cwiseAbs() * half.x() + rotation.y.cwiseAbs() * half.y() + rotation.z.cwiseAbs() * half.z();
+    const Vector3 sphere = Vector3::Constant(shape.OuterRadius());
+    Vector3 lower = Vector3(center - reach).cwiseMax(-sphere), upper = Vector3(center + reach).cwiseMin(sphere);
+    ExtendByTurn(shape, turn, lower, upper);
+    return RoundedOutwards(pose.position + lower.cast<double>(), pose.position + upper.cast<double>());
+}
+
+Bounds TightBoundsOf(const WorldState& world, uint32_t index) {
+    const ColliderShape& piece = world.colliders.shapes[index];
+    Pose body = world.bodies.CenterPoseOf(world.colliders.colliders[index].body);
+    body.position -= world.colliders.boundsOrigin;
+    const Pose pose = body * LocalOf(world, index);
+    return TightBounds(*piece.shape, pose, ToMatrix(pose.rotation), Vector3::Zero());
+}
+
+void SetFatBounds(WorldState& world, uint32_t index) {
+    const float margin = 0.5f * world.settings.speculativeDistance + world.settings.boundsMargin;
+    world.colliders.colliders[index].fat = BoundsAlong(TightBoundsOf(world, index), Vector3::Zero(), margin);
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,26 @@
+// Bounds of colliders: the tight ones of where they are, and the fat ones that the trees hold.
+#pragma once
+
+#include <Fulcrum/Physics/World/WorldState.h>
+
+namespace fulcrum {
+
+// World bounds of a collider where its body is now, without any margin.
+Bounds TightBoundsOf(const WorldState& world, uint32_t collider);
+
+// Fat bounds of a collider at its body's pose, at rest.
+void SetFatBounds(WorldState& world, uint32_t collider);
+
+// Bounds of a shape at a pose about the origin of bounds while it turns by a rotation vector in rad, without any
+// margin. A hull as round as a ball is bounded best by its outer sphere.
+Bounds TightBounds(const Shape& shape, const Pose& pose, const Matrix3& rotation, const Vector3& turn);
+
+// Of what moves by `motion`, with a margin on all sides.
+inline Bounds BoundsAlong(const Bounds& tight, const Vector3& motion, float margin) {
+    Bounds b;
+    b.lower = tight.lower + motion.cwiseMin(0.0f) - Vector3::Constant(margin);
+    b.upper = tight.upper + motion.cwiseMax(0.0f) + Vector3::Constant(margin);
+    return b;
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,82 @@
+#include <Fulcrum/Physics/World/Filters.h>
+
+#include <Fulcrum/Physics/ContactListener.h>
+#include <Fulcrum/Physics/World/BodyPairs.h>
+#include <Fulcrum/Physics/World/Colors.h>
+#include <Fulcrum/Physics/World/Materials.h>
+#include <Fulcrum/Physics/World/Waking.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+namespace {
+
+bool LayersAllow(const WorldState& world, const Pair& pair) {
+    return world.settings.layerCollides[world.bodies.dynamics[pair.bodyA].layer] >>
+               world.bodies.dynamics[pair.bodyB].layer &
+           1u;
+}
+
+bool IsForbidden(const WorldState& world, const Pair& pair) {
+    return !LayersAllow(world, pair) || !FiltersAllow(world, pair.bodyA, pair.bodyB) ||
+           !ListenerAllows(world, pair.bodyA, pair.bodyB);
+}
+
+void RemoveIfForbidden(WorldState& world, uint32_t index) {
+    const Pair& pair = world.pairs.pairs[index];
+    if (!IsForbidden(world, pair)) return;
+    WakeBody(world, pair.bodyA);
+    WakeBody(world, pair.bodyB);
+    RemovePair(world.pairs, world.coloring, index);
+}
+
+void RemoveAllForbiddenPairs(WorldState& world) {
+    for (uint32_t i = 0; i < world.pairs.pairs.size(); ++i)
+        if (world.pairs.pairs[i].exists && !world.pairs.pairs[i].isMore) RemoveIfForbidden(world, i);
+}
+
+}  // namespace
+
+bool FiltersAllow(const WorldState& world, uint32_t bodyA, uint32_t bodyB) {
+    const BodyFilter& a = world.bodies.FilterOf(std::min(bodyA, bodyB));
+    const BodyFilter& b = world.bodies.FilterOf(std::max(bodyA, bodyB));
+    if ((a.category & b.mask) == 0 || (b.category & a.mask) == 0) return false;
+    const GroupFilter* filter = a.group.filter.get();
+    return !filter || filter != b.group.filter.get() ||
+           filter->Collides({a.group.group, a.group.subGroup}, {b.group.group, b.group.subGroup});
+}
+
+bool ListenerAllows(const WorldState& world, uint32_t bodyA, uint32_t bodyB) {
+    if (!world.listener) return true;
+    const auto [low, high] = std::minmax(bodyA, bodyB);
+    return world.listener->ShouldCollide(world.bodies.IdOf(low), world.bodies.IdOf(high));
+}
+
+void RemoveForbiddenPairs(WorldState& world, uint32_t body) {
+    VisitPairsOf(world, {&body, 1}, [&](uint32_t pair) { RemoveIfForbidden(world, pair); });
+}
+
+void RefilterLayers(WorldState& world, const std::array<uint32_t, 32>& before) {
+    RemoveAllForbiddenPairs(world);
+    for (uint32_t body = 0; body < world.bodies.Size(); ++body) {
+        const BodyDynamics& d = world.bodies.dynamics[body];
+        if (!world.bodies.cold[body].exists || world.settings.layerCollides[d.layer] == before[d.layer]) continue;
+        WakeBody(world, body);
+        if (d.awake) RequeueColliders(world, body);
+    }
+}
+
+void ChangeListener(WorldState& world, const ContactListener* listener) {
+    world.listener = listener;
+    RemoveAllForbiddenPairs(world);
+    // What the last one said of contacts, and of bodies that therefore have no pair.
+    for (uint32_t i = 0; i < world.pairs.pairs.size(); ++i) {
+        if (!world.pairs.pairs[i].exists) continue;
+        CombineMaterials(world, i);
+        world.pairs.records[i].SetSurfaceVelocity(Vector3::Zero(), Vector3::Zero());
+    }
+    for (uint32_t body : world.bodies.awake) RequeueColliders(world, body);
+}
+
+}  // namespace fulcrum

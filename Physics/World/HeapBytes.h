@@ -1,0 +1,37 @@
+// The memory behind buffers. A store names its members once, all of them, in a structured binding: it does not compile
+// where one is left out, so that no new buffer goes uncounted.
+#pragma once
+
+#include <Fulcrum/Jobs/ScratchArena.h>
+
+#include <cstddef>
+#include <type_traits>
+#include <vector>
+
+namespace fulcrum {
+
+// What owns no memory.
+template <class T>
+requires std::is_trivially_copyable_v<T> size_t HeapBytes(const T&) { return 0; }
+
+// What counts for itself.
+template <class T>
+requires requires(const T& t) { t.MemoryUsed(); }
+size_t HeapBytes(const T& counted) { return counted.MemoryUsed(); }
+
+inline size_t HeapBytes(const ScratchArena& arena) { return arena.CapacityInBytes(); }
+
+template <class T>
+size_t HeapBytes(const std::vector<T>& elements) {
+    size_t bytes = elements.capacity() * sizeof(T);
+    if constexpr (!std::is_trivially_copyable_v<T>)
+        for (const T& element : elements) bytes += HeapBytes(element);
+    return bytes;
+}
+
+template <class First, class Second, class... More>
+size_t HeapBytes(const First& first, const Second& second, const More&... more) {
+    return HeapBytes(first) + HeapBytes(second) + (size_t{0} + ... + HeapBytes(more));
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,47 @@
+#include <Fulcrum/Physics/World/JointChanges.h>
+
+#include <Fulcrum/Physics/World/Colors.h>
+#include <Fulcrum/Physics/World/Waking.h>
+
+namespace fulcrum {
+
+namespace {
+
+// The two bodies must not touch any longer.
+void DropPairs(WorldState& world, const Joint& joint) {
+    VisitColliders(world, joint.body[0], [&](uint32_t i) {
+        VisitColliders(world, joint.body[1], [&](uint32_t j) {
+            const uint32_t pair = world.pairs.Find(i, j);
+            if (pair != PairStore::kNone) RemovePair(world.pairs, world.coloring, pair);
+        });
+    });
+}
+
+}  // namespace
+
+void WakeBodiesOf(WorldState& world, const Joint& joint) {
+    for (uint32_t body : joint.body) WakeBody(world, body);
+}
+
+void EnableJoint(WorldState& world, uint32_t index, bool enabled) {
+    Joint& joint = world.joints.joints[index];
+    joint.enabled = enabled;
+    if (enabled) {
+        if (!joint.collideConnected) DropPairs(world, joint);
+        WakeBodiesOf(world, joint);
+        ColorJoint(world, index);
+    } else {
+        WakeBodiesOf(world, joint);
+        UncolorJoint(world, index);
+        world.joints.Forget(index);
+        for (uint32_t body : joint.body) RequeueColliders(world, body);
+    }
+}
+
+void RemoveJoint(WorldState& world, uint32_t index) {
+    EnableJoint(world, index, false);
+    world.joints.Unlink(index);
+    world.joints.Free(index);
+}
+
+}  // namespace fulcrum

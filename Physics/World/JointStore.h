@@ -1,0 +1,87 @@
+// All joints, by index: what the solver gathers lies together, the rest apart. Indices of removed joints are reused
+// with another generation. Written by JointInterface between steps and by the stages during one. Each body knows its
+// joints.
+#pragma once
+
+#include <Fulcrum/Constraints/Coloring.h>
+#include <Fulcrum/Constraints/Joints/JointBatch.h>
+#include <Fulcrum/Physics/JointSettings.h>
+#include <Fulcrum/Physics/World/IndexSet.h>
+
+#include <memory>
+#include <vector>
+
+namespace fulcrum {
+
+struct Joint {
+    uint32_t body[2] = {0, 0};      // A and B
+    uint32_t next[2] = {~0u, ~0u};  // the next joint of A and of B
+    std::unique_ptr<JointType> type;
+    JointLocks locks;      // of the type, as the layout has them
+    uint32_t maxRows = 0;  // likewise
+    ColorSlot color;
+    uint32_t generation = 0;
+    bool exists = false;
+    bool enabled = true;
+    bool collideConnected = false;
+    bool still[2] = {false, false};  // the body is not dynamic, or frozen
+    JointPriority priority = JointPriority::Normal;
+    float breakForce = 0, breakTorque = 0;
+    SolverSettings effort{0, 0, 0};  // 0: the system's
+    uint64_t userData = 0;
+
+    bool HasOwnEffort() const {
+        return effort.substeps > 0 || effort.velocityIterations > 0 || effort.positionIterations > 0;
+    }
+    int SideOf(uint32_t index) const { return body[0] == index ? 0 : 1; }
+};
+
+size_t HeapBytes(const Joint& joint);
+
+class JointStore {
+public:
+    static constexpr uint32_t kNone = ~0u;
+
+    // By index; all of the same size.
+    std::vector<JointRecord> records;
+    std::vector<JointType*> types;
+    std::vector<Joint> joints;
+    IndexSet breakable;
+
+    uint32_t Count() const { return count_; }
+    uint32_t Allocate();        // an index with fresh values; exists is set
+    void Free(uint32_t index);  // not linked, not colored
+    bool Find(JointId id) const {
+        return id.index < joints.size() && joints[id.index].exists && joints[id.index].generation == id.generation;
+    }
+    JointId IdOf(uint32_t index) const { return {index, joints[index].generation}; }
+
+    // Its impulses and forces are zero from now on.
+    void Forget(uint32_t index);
+
+    // Puts the joint on the lists of its two bodies, or takes it off them.
+    void Link(uint32_t index);
+    void Unlink(uint32_t index);
+    // The joints of a body, the newest first. The visitor may remove the one that it is at.
+    template <class Visit>
+    void VisitOf(uint32_t body, Visit&& visit) const {
+        if (body >= first_.size()) return;
+        for (uint32_t index = first_[body]; index != kNone;) {
+            const Joint& joint = joints[index];
+            const uint32_t next = joint.next[joint.SideOf(body)];
+            visit(index);
+            index = next;
+        }
+    }
+    bool HasAny(uint32_t body) const { return body < first_.size() && first_[body] != kNone; }
+    // Whether some joint keeps the two bodies from colliding.
+    bool ForbidsContact(uint32_t bodyA, uint32_t bodyB) const;
+    friend size_t HeapBytes(const JointStore& store);
+
+private:
+    std::vector<uint32_t> first_;  // by body
+    std::vector<uint32_t> free_;
+    uint32_t count_ = 0;
+};
+
+}  // namespace fulcrum

@@ -1,0 +1,48 @@
+#include <Fulcrum/Physics/World/Materials.h>
+
+#include <Fulcrum/Collision/Shapes/SurfaceShape.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fulcrum {
+
+namespace {
+
+float Combine(CombineRule rule, float a, float b) {
+    switch (rule) {
+        case CombineRule::GeometricMean: return std::sqrt(a * b);
+        case CombineRule::Average: return 0.5f * (a + b);
+        case CombineRule::Minimum: return std::min(a, b);
+        case CombineRule::Multiply: return a * b;
+        case CombineRule::Maximum: return std::max(a, b);
+    }
+    return 0;
+}
+
+}  // namespace
+
+PairMaterial MaterialOfPair(const WorldState& world, uint32_t bodyA, uint32_t bodyB, const Shape& shapeB,
+                            uint8_t material) {
+    const Material& a = world.bodies.cold[bodyA].material;
+    const Material& b = world.bodies.cold[bodyB].material;
+    float friction = b.friction, restitution = b.restitution;
+    if (shapeB.IsSurface()) {
+        const std::span<const SurfaceMaterial> palette = static_cast<const SurfaceShape&>(shapeB).Materials();
+        if (material < palette.size()) {
+            friction = palette[material].friction;
+            restitution = palette[material].restitution;
+        }
+    }
+    return {Combine(std::max(a.frictionRule, b.frictionRule), a.friction, friction),
+            Combine(std::max(a.restitutionRule, b.restitutionRule), a.restitution, restitution)};
+}
+
+void CombineMaterials(WorldState& world, uint32_t index) {
+    const Pair& pair = world.pairs.pairs[index];
+    const PairMaterial material = MaterialOfPair(world, pair.bodyA, pair.bodyB, *pair.shapeB, pair.material);
+    world.pairs.records[index].friction = material.friction;
+    world.pairs.records[index].restitution = material.restitution;
+}
+
+}  // namespace fulcrum

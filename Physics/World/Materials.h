@@ -1,0 +1,18 @@
+// The friction and restitution of two bodies where they touch.
+#pragma once
+
+#include <Fulcrum/Physics/World/WorldState.h>
+
+namespace fulcrum {
+
+struct PairMaterial {
+    float friction, restitution;
+};
+// Of body A, and of body B where it touches with a shape of which `material` is the index into the palette, if there is
+// one.
+PairMaterial MaterialOfPair(const WorldState& world, uint32_t bodyA, uint32_t bodyB, const Shape& shapeB,
+                            uint8_t material);
+// Writes that of a pair into its record.
+void CombineMaterials(WorldState& world, uint32_t pair);
+
+}  // namespace fulcrum

@@ -1,0 +1,141 @@
+#include <Fulcrum/Physics/World/PairStore.h>
+
+#include <Fulcrum/Physics/World/HeapBytes.h>
+
+namespace fulcrum {
+
+uint32_t PairStore::Home(uint64_t key) const {
+    key ^= key >> 32;
+    key *= 0x9E3779B97F4A7C15ull;  // Fibonacci hashing
+    return static_cast<uint32_t>(key >> 32) & static_cast<uint32_t>(table_.size() - 1);
+}
+
+uint32_t PairStore::Find(uint32_t colliderA, uint32_t colliderB) const {
+    if (table_.empty()) return kNone;
+    const uint64_t key = Key(colliderA, colliderB);
+    const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
+    for (uint32_t i = Home(key);; i = (i + 1) & mask) {
+        if (table_[i].index == kNone) return kNone;
+        if (table_[i].key == key) return table_[i].index;
+    }
+}
+
+void PairStore::Grow() {
+    std::vector<Entry> old(table_.empty() ? 1024 : 2 * table_.size());
+    old.swap(table_);
+    const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
+    for (const Entry& entry : old) {
+        if (entry.index == kNone) continue;
+        uint32_t i = Home(entry.key);
+        while (table_[i].index != kNone) i = (i + 1) & mask;
+        table_[i] = entry;
+    }
+}
+
+uint32_t PairStore::Allocate() {
+    uint32_t index;
+    if (!free_.empty()) {
+        index = free_.back();
+        free_.pop_back();
+    } else {
+        index = static_cast<uint32_t>(pairs.size());
+        pairs.emplace_back();
+        records.emplace_back();
+        links_.emplace_back();
+        active.Reserve(index + 1);
+        free_.reserve(pairs.capacity());  // so that removing never allocates
+    }
+    pairs[index] = {};
+    records[index] = {};
+    pairs[index].exists = true;
+    return index;
+}
+
+uint32_t PairStore::AddMore(uint32_t of) {
+    const uint32_t index = Allocate();
+    Pair& pair = pairs[index];
+    const Pair& first = pairs[of];
+    pair.bodyA = first.bodyA;
+    pair.bodyB = first.bodyB;
+    pair.colliderA = first.colliderA;
+    pair.colliderB = first.colliderB;
+    pair.shapeA = first.shapeA;
+    pair.shapeB = first.shapeB;
+    pair.fixedB = first.fixedB;
+    pair.offset = first.offset;
+    pair.surface = first.surface;
+    pair.isMore = true;
+    pair.more = first.more;
+    pairs[of].more = index;
+    return index;
+}
+
+uint32_t PairStore::Add(uint32_t colliderA, uint32_t colliderB) {
+    if (2 * (size_ + 1) > table_.size()) Grow();
+    const uint32_t index = Allocate();
+    pairs[index].colliderA = colliderA;
+    pairs[index].colliderB = colliderB;
+
+    const uint64_t key = Key(colliderA, colliderB);
+    const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
+    uint32_t i = Home(key);
+    while (table_[i].index != kNone) i = (i + 1) & mask;
+    table_[i] = {key, index};
+    ++size_;
+    Link(index);
+    return index;
+}
+
+void PairStore::Link(uint32_t index) {
+    for (int side = 0; side < 2; ++side) {
+        const uint32_t collider = ColliderOf(index, side);
+        if (collider >= heads_.size()) heads_.resize(collider + 1, kNone);
+        const uint32_t head = heads_[collider];
+        links_[index].next[side] = head;
+        links_[index].previous[side] = kNone;
+        if (head != kNone) links_[head].previous[SideOf(head, collider)] = index;
+        heads_[collider] = index;
+    }
+}
+
+void PairStore::Unlink(uint32_t index) {
+    for (int side = 0; side < 2; ++side) {
+        const uint32_t collider = ColliderOf(index, side);
+        const uint32_t next = links_[index].next[side], previous = links_[index].previous[side];
+        if (next != kNone) links_[next].previous[SideOf(next, collider)] = previous;
+        if (previous != kNone) links_[previous].next[SideOf(previous, collider)] = next;
+        else heads_[collider] = next;
+    }
+}
+
+void PairStore::Remove(uint32_t index) {
+    active.Erase(index);
+    if (pairs[index].isMore) {
+        pairs[index].exists = false;
+        free_.push_back(index);
+        return;
+    }
+    Unlink(index);
+    const uint64_t key = Key(pairs[index].colliderA, pairs[index].colliderB);
+    const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
+    uint32_t hole = Home(key);
+    while (table_[hole].key != key || table_[hole].index == kNone) hole = (hole + 1) & mask;
+    // Entries behind the hole move up where that brings them no nearer than their home.
+    for (uint32_t i = (hole + 1) & mask; table_[i].index != kNone; i = (i + 1) & mask) {
+        if (((i - Home(table_[i].key)) & mask) >= ((i - hole) & mask)) {
+            table_[hole] = table_[i];
+            hole = i;
+        }
+    }
+    table_[hole].index = kNone;
+    pairs[index].exists = false;
+    free_.push_back(index);
+    --size_;
+}
+
+size_t HeapBytes(const PairStore& store) {
+    const auto& [pairs, records, active, table, free, links, heads, size] = store;
+    return HeapBytes(pairs, records, active, table, free, links, heads, size);
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,97 @@
+// Pairs of colliders whose fat bounds overlap, with their manifolds; a pair lives as long as the overlap lasts. Pairs
+// keep their index, so pairs, records and colors refer to each other by it. A pair is active while one of its bodies is
+// awake.
+#pragma once
+
+#include <Fulcrum/Collision/NarrowPhase/Manifold.h>
+#include <Fulcrum/Collision/Shapes/Shape.h>
+#include <Fulcrum/Constraints/Coloring.h>
+#include <Fulcrum/Constraints/Contacts/ContactRecord.h>
+
+#include <Fulcrum/Physics/World/IndexSet.h>
+
+#include <vector>
+
+namespace fulcrum {
+
+struct alignas(64) Pair {
+    // First line: what a pair that keeps its manifold is read for.
+    uint32_t bodyA = 0, bodyB = 0;  // A is dynamic, B any
+    uint32_t colliderA = 0, colliderB = 0;
+    const ConvexShape* shapeA = nullptr;
+    const Shape* shapeB = nullptr;  // convex, a plane or a surface
+    RelativePose reference;         // of piece B in piece A when the manifold was found
+    uint8_t pointCount = 0;         // of the manifold, as found at `reference`; of the record, unless onSeam
+    bool exists : 1 = false;
+    bool fixedB : 1 = false;    // B's body is not dynamic
+    bool offset : 1 = false;    // a piece is not at its body's center frame (child of a compound)
+    bool surface : 1 = false;   // B is a surface
+    bool touching : 1 = false;  // was active, with points, in the last step
+    bool onSeam : 1 = false;    // but its record has none of them: a seam alone makes the contact
+    bool isMore = false;        // of a surface: a further manifold of a pair that has others
+    uint8_t material = 0;       // of a surface: what of its palette touches
+    // Second line.
+    PairCache cache;
+    uint32_t features[Manifold::kMaxPoints] = {0, 0, 0, 0};
+    ColorSlot color;
+    uint32_t more = ~0u;    // of a surface: the index of the next manifold of these two colliders
+    uint32_t triangle = 0;  // of a surface: the one of the deepest point
+};
+static_assert(sizeof(Pair) == 128);
+
+class PairStore {
+public:
+    std::vector<Pair> pairs;
+    std::vector<ContactRecord> records;  // same index
+    IndexSet active;
+
+    // Index of the pair of two colliders, or kNone.
+    static constexpr uint32_t kNone = ~0u;
+    uint32_t Find(uint32_t colliderA, uint32_t colliderB) const;
+    uint32_t Add(uint32_t colliderA, uint32_t colliderB);  // not there yet
+    // A further manifold of the pair `of`, between the same shapes and bodies. Not found by Find, and not active.
+    uint32_t AddMore(uint32_t of);
+    // Calls visit(pair) for all pairs of a collider, active or not, further manifolds left out; the visitor may remove
+    // it.
+    template <class Visitor>
+    void VisitOf(uint32_t collider, Visitor&& visit) const {
+        if (collider >= heads_.size()) return;
+        for (uint32_t index = heads_[collider]; index != kNone;) {
+            const uint32_t next = links_[index].next[SideOf(index, collider)];
+            visit(index);
+            index = next;
+        }
+    }
+    void Remove(uint32_t index);  // not colored; its further manifolds are removed by themselves
+    friend size_t HeapBytes(const PairStore& store);
+
+private:
+    static uint64_t Key(uint32_t a, uint32_t b) { return a < b ? (uint64_t(a) << 32 | b) : (uint64_t(b) << 32 | a); }
+    // The pairs of each collider as a list, without which whoever removes a collider would have to look at all pairs.
+    struct Links {
+        uint32_t next[2] = {kNone, kNone}, previous[2] = {kNone, kNone};  // in the lists of colliders A and B
+    };
+    int SideOf(uint32_t index, uint32_t collider) const { return pairs[index].colliderB == collider; }
+    uint32_t ColliderOf(uint32_t index, int side) const {
+        return side ? pairs[index].colliderB : pairs[index].colliderA;
+    }
+    void Link(uint32_t index);
+    void Unlink(uint32_t index);
+
+    uint32_t Allocate();
+    uint32_t Home(uint64_t key) const;
+    void Grow();
+
+    // Open addressing with linear probing; at most half full. Only an index: its order influences nothing.
+    struct Entry {
+        uint64_t key;
+        uint32_t index = kNone;
+    };
+    std::vector<Entry> table_;
+    std::vector<uint32_t> free_;
+    std::vector<Links> links_;     // by pair
+    std::vector<uint32_t> heads_;  // by collider
+    uint32_t size_ = 0;
+};
+
+}  // namespace fulcrum

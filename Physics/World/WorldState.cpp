@@ -1,0 +1,14 @@
+#include <Fulcrum/Physics/World/WorldState.h>
+
+#include <Fulcrum/Physics/World/HeapBytes.h>
+
+namespace fulcrum {
+
+size_t HeapBytes(const WorldState& world) {
+    const auto& [settings, ownJobs, jobs, listener, bodies, colliders, pairs, joints, coloring, sleeping, sensors,
+                 removed, step, lock, outsideFatBounds] = world;
+    return HeapBytes(settings, listener, bodies, colliders, pairs, joints, coloring, sleeping, sensors, removed, step,
+                     outsideFatBounds);
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,101 @@
+// The world: bodies, colliders, pairs, joints, sensors. What changes several of them at once stands beside this file.
+// It knows nothing of how it is stepped, nor of the interfaces.
+#pragma once
+
+#include <Fulcrum/Jobs/ThreadPool.h>
+#include <Fulcrum/Physics/World/BodyStore.h>
+#include <Fulcrum/Physics/World/ColliderStore.h>
+#include <Fulcrum/Physics/World/CollidersOutsideFatBounds.h>
+#include <Fulcrum/Physics/World/JointStore.h>
+#include <Fulcrum/Physics/World/PairStore.h>
+#include <Fulcrum/Physics/World/SensorStore.h>
+#include <Fulcrum/Physics/World/SleepingIslands.h>
+#include <Fulcrum/Physics/World/WorldLock.h>
+
+#include <memory>
+#include <vector>
+
+namespace fulcrum {
+
+class ContactListener;
+
+struct WorldState {
+    SystemSettings settings;
+    std::unique_ptr<ThreadPool> ownJobs;
+    std::unique_ptr<JobSystem> jobs;  // the user's, or our own, as WorldJobs
+    const ContactListener* listener = nullptr;
+
+    BodyStore bodies;
+    ColliderStore colliders;
+    PairStore pairs;
+    JointStore joints;
+    ConstraintColoring coloring;
+    SleepingIslands sleeping;
+    SensorStore sensors;
+
+    std::vector<uint32_t> removed;  // bodies to forget before the next step
+    uint64_t step = 0;              // how many have begun
+
+    // For the queries.
+    WorldLock lock;
+    CollidersOutsideFatBounds outsideFatBounds;
+};
+
+size_t HeapBytes(const WorldState& world);
+
+// Calls visit(collider) for the pieces of a body.
+template <class Visitor>
+void VisitColliders(const WorldState& world, uint32_t body, Visitor&& visit) {
+    const BodyCold& cold = world.bodies.cold[body];
+    const auto visitRun = [&](uint32_t first, uint32_t count) {
+        for (uint32_t i = first; i < first + count; ++i)
+            if (world.colliders.shapes[i].shape) visit(i);
+    };
+    visitRun(cold.firstCollider, cold.colliderCount);
+    for (uint32_t run = cold.MoreColliders(); run != ColliderStore::kNone; run = world.colliders.runs[run].next)
+        visitRun(world.colliders.runs[run].first, world.colliders.runs[run].count);
+}
+
+// Which piece of its body a collider is.
+inline uint32_t ChildOf(const WorldState& world, uint32_t collider) {
+    const BodyCold& cold = world.bodies.cold[world.colliders.colliders[collider].body];
+    uint32_t before = 0;
+    ColliderRun run{cold.firstCollider, cold.colliderCount, cold.MoreColliders()};
+    while (collider - run.first >= run.count) {
+        before += run.count;
+        run = world.colliders.runs[run.next];
+    }
+    return before + (collider - run.first);
+}
+
+// The piece's center frame in that of its body.
+inline RelativePose LocalOf(const BodyStore& bodies, const ColliderStore& colliders, uint32_t collider) {
+    const ColliderShape& piece = colliders.shapes[collider];
+    if (!piece.onOrigin) return piece.local;
+    return {piece.local.position + bodies.cold[colliders.colliders[collider].body].children->origin,
+            piece.local.rotation};
+}
+inline RelativePose LocalOf(const WorldState& world, uint32_t collider) {
+    return LocalOf(world.bodies, world.colliders, collider);
+}
+
+// World space, of the piece's own frame.
+inline Pose ColliderPoseOf(const WorldState& world, uint32_t collider) {
+    const Pose body = world.bodies.CenterPoseOf(world.colliders.colliders[collider].body);
+    return world.colliders.shapes[collider].offset ? body * LocalOf(world, collider) : body;
+}
+
+// The piece, seen from its body's center frame.
+inline ColliderShape PieceOf(const WorldState& world, uint32_t collider) {
+    ColliderShape piece = world.colliders.shapes[collider];
+    piece.local = LocalOf(world, collider);
+    return piece;
+}
+
+// Whether a body is a single collider, which stays so.
+inline bool IsOnePiece(const WorldState& world, uint32_t body) {
+    const BodyCold& cold = world.bodies.cold[body];
+    return cold.colliderCount == 1 && !cold.children;
+}
+
+}  // namespace fulcrum
