@@ -328,6 +328,11 @@ FULCRUM_FORCE_INLINE void Transpose4(__m128& r0, __m128& r1, __m128& r2, __m128&
 #endif
 }  // namespace registers
 
+template <int N>
+inline Vector3 LaneOf(const Vec3<Wide<N>>& v, int lane) {
+    return Vector3(v.x()[lane], v.y()[lane], v.z()[lane]);
+}
+
 // Reads eight floats at rows[lane] for each of N lanes into eight wide values: out[k][lane] = rows[lane][k].
 // The rows are 32-byte aligned.
 template <int N>

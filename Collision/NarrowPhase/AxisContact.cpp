@@ -56,14 +56,12 @@ void AddPoint(const PolyhedronPair& pair, const Vector3& onCoreA, float separati
 // Two points where nearly parallel edges lie side by side. The axis is the manifold's normal.
 bool AddParallelEdges(const PolyhedronPair& pair, const Segment& onA, const Segment& onB, uint32_t feature, float reach,
                       Manifold& manifold) {
-    float from, to;
-    if (!CommonLength(onA, onB, from, to)) return false;
-    const Vector3 d = onB.to - onB.from;
+    const CommonLength common(onA, onB);
+    if (!common.exists) return false;
     for (int i = 0; i < 2; ++i) {
-        const Vector3 x = onA.At(i == 0 ? from : to);
-        const Vector3 y = onB.from + d * (Dot(d, Vector3(x - onB.from)) / Dot(d, d));
-        const float separation = Dot(manifold.normal, Vector3(y - x));
-        if (separation <= reach) AddPoint(pair, x, separation, feature + static_cast<uint32_t>(i), manifold);
+        const float separation = common.SeparationAlong(manifold.normal, i);
+        if (separation <= reach)
+            AddPoint(pair, common.onP[i], separation, feature + static_cast<uint32_t>(i), manifold);
     }
     return manifold.pointCount > 0;
 }
@@ -109,11 +107,6 @@ bool TryFaces(const PolyhedronPair& pair, const KnownAxis& known, const ContactT
     return false;
 }
 
-void RememberAxis(const Vector3& axis, PairCache& cache) {
-    cache.kind = PairCache::Kind::Axis;
-    for (int i = 0; i < 3; ++i) cache.axis[i] = axis[i];
-}
-
 // The point where two crossing edges come closest. The normal is perpendicular to both.
 void BuildCrossing(const PolyhedronPair& pair, const Segment& onA, const Segment& onB, const Vector3& normal,
                    uint32_t feature, float reach, Manifold& manifold) {
@@ -137,7 +130,7 @@ void BuildFromEdges(const PolyhedronPair& pair, const KnownAxis& known, const Co
                     PairCache& cache, Manifold& manifold) {
     manifold.normal = known.axis;
     manifold.pointCount = 0;
-    RememberAxis(known.axis, cache);
+    cache.RememberAxis(PairCache::Kind::Axis, known.axis);
     if (known.separation > tolerances.reach) return;
 
     const SupportingEdge edgeA = FindSupportingEdge(pair.a, known.axis, known.tolerance);
@@ -183,7 +176,7 @@ EdgeContact TryCachedEdges(const PolyhedronPair& pair, const ContactTolerances& 
     const uint8_t b[2] = {static_cast<uint8_t>(cache.indexB), static_cast<uint8_t>(cache.indexB >> 8)};
     EdgeContact result;
     const Segment onA = SegmentOfA(pair, a), onB = SegmentOfB(pair, b);
-    const Vector3 normal = CrossingNormal(onA, onB, Vector3(cache.axis[0], cache.axis[1], cache.axis[2]));
+    const Vector3 normal = CrossingNormal(onA, onB, cache.Axis());
     if (normal == Vector3::Zero()) return result;
     const Vector3 normalInB = pair.DirectionInB(normal);
     const float farA = FarthestVertex(pair.a, normal).value, farB = FarthestVertex(pair.b, -normalInB).value;
@@ -200,7 +193,7 @@ EdgeContact TryCachedEdges(const PolyhedronPair& pair, const ContactTolerances& 
     const float lengthA = Length(dA), lengthB = Length(dB);
     const float sine = Length(Cross<float>(dA, dB)) / (lengthA * lengthB);
     const float inside = Min(Min(closest.s, 1 - closest.s) * lengthA, Min(closest.t, 1 - closest.t) * lengthB) * sine;
-    result.proven = NoBetterAxis(pair, normal, -separation, inside) && inside > 0;
+    result.proven = NoBetterAxis(pair.position, pair.InnerRadii(), normal, -separation, inside) && inside > 0;
     if (!result.proven) return result;
     BuildCrossing(pair, onA, onB, normal, CrossingFeature(cache.indexA, cache.indexB), tolerances.reach, manifold);
     AddFacesAhead(pair, tolerances, manifold);

@@ -22,8 +22,7 @@ BoxPair MakePair(const Box& a, const Box& b, const RelativePose& bInA) {
     pair.halfB = b.HalfExtents() - Vector3::Constant(pair.radiusB);
     pair.rotation = ToMatrix(bInA.rotation);
     const Matrix3& r = pair.rotation;
-    pair.transposed = {Vector3(r.x.x(), r.y.x(), r.z.x()), Vector3(r.x.y(), r.y.y(), r.z.y()),
-                       Vector3(r.x.z(), r.y.z(), r.z.z())};
+    pair.transposed = r.Transposed();
     pair.position = bInA.position;
     pair.positionInB = r.TransposeMultiply(bInA.position);
     return pair;

@@ -17,13 +17,21 @@ struct ClipVertex {
     uint32_t label;
 };
 inline constexpr uint32_t kSideLabel = 256;
-inline constexpr int kMaxClipVertices = 512;  // 255 corners cut by 255 sides, each adding one at most
 
 // The plane through one side of the clipping polygon: inside is normal . x <= offset.
 struct ClipSide {
     Vector3 normal;  // unit
     float offset;
 };
+
+// The one through the side from a corner of a face to the next, at right angles to the face. A side of no length, as a
+// box has that is rounded to its middle plane, cuts nothing off.
+inline ClipSide SideOfFace(const Vector3& from, const Vector3& to, const Vector3& faceNormal) {
+    const Vector3 outwards = Cross<float>(Vector3(to - from), faceNormal);
+    const float length = Length(outwards);
+    const Vector3 normal = outwards * (length > 1e-12f ? 1.0f / length : 0.0f);
+    return {normal, Dot(normal, from)};
+}
 
 // Keeps of the convex polygon `in` what lies inside the side to within `slop`. `outside` says how far each vertex lies
 // beyond it, `label` names it. Returns the number of vertices written to `out`.

@@ -53,7 +53,7 @@ void Polish(const SupportPair& pair, KnownContact& known) {
 }
 
 Vector3 StartAxis(const PairCache& cache, const RelativePose& bInA) {
-    if (cache.kind == PairCache::Kind::Axis) return Vector3(cache.axis[0], cache.axis[1], cache.axis[2]);
+    if (cache.kind == PairCache::Kind::Axis) return cache.Axis();
     return Normalized(bInA.position);
 }
 
@@ -83,8 +83,7 @@ void CollideConvex(const PairQuery& query, Manifold& manifold) {
     if (gjk.status == GjkStatus::BeyondReach) {
         manifold.normal = gjk.axis;
         manifold.pointCount = 0;
-        cache.kind = PairCache::Kind::Axis;
-        for (int i = 0; i < 3; ++i) cache.axis[i] = gjk.axis[i];
+        cache.RememberAxis(PairCache::Kind::Axis, gjk.axis);
         return;
     }
     const KnownContact known = gjk.status == GjkStatus::Apart ? KnownContact{gjk.axis, gjk.separation, gjk.onA}

@@ -22,4 +22,13 @@ inline uint32_t CrossingFeature(uint32_t edgeOfA, uint32_t edgeOfB) {
     return kCrossing | ((edgeOfA * 0x9E3779B1u ^ edgeOfB * 0x85EBCA6Bu) >> 2);
 }
 
+// Vertices and edges of a polyhedron's face, or of a segment or point; edge i goes from corner i to the next.
+struct FaceNames {
+    const uint8_t* corners;  // null: corner i is vertex i
+    uint32_t count;
+
+    uint32_t Vertex(uint32_t i) const { return corners != nullptr ? corners[i] : i; }
+    uint32_t Edge(uint32_t i) const { return EdgeName(Vertex(i), Vertex(i + 1 == count ? 0 : i + 1)); }
+};
+
 }  // namespace fulcrum

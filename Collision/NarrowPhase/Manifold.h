@@ -27,6 +27,12 @@ struct PairCache {
     Kind kind = Kind::None;
     uint16_t indexA = 0, indexB = 0;  // the faces that touched; of an EdgePair, the edges (each function's own numbers)
     float axis[3] = {0, 0, 0};        // in A's frame, where the kind is Axis
+
+    Vector3 Axis() const { return Vector3(axis[0], axis[1], axis[2]); }
+    void RememberAxis(Kind itsKind, const Vector3& itsAxis) {
+        kind = itsKind;
+        for (int i = 0; i < 3; ++i) axis[i] = itsAxis[i];
+    }
 };
 
 }  // namespace fulcrum

@@ -62,7 +62,7 @@ int ChooseFour(FlatPoints<kMost>& points, float depthSlop, int (&chosen)[4], flo
         for (int i = 0; i < count; ++i) chosen[i] = i;
         return count;
     }
-    const int blocks = (count + 7) / 8;
+    const int blocks = kMost == 8 ? 1 : (count + 7) / 8;
     for (int i = count; i < 8 * blocks; ++i) {
         points.u[i] = points.u[0];
         points.v[i] = points.v[0];

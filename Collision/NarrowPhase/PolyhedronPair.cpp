@@ -46,7 +46,7 @@ WarmStart TryCache(const PolyhedronPair& pair, const ContactTolerances& toleranc
             break;
         }
         case PairCache::Kind::Axis: {
-            const Vector3 axis(cache.axis[0], cache.axis[1], cache.axis[2]);
+            const Vector3 axis = cache.Axis();
             warm.done = pair.SeparationAlong(axis) > tolerances.reach;
             manifold.normal = axis;
             manifold.pointCount = 0;
@@ -54,7 +54,7 @@ WarmStart TryCache(const PolyhedronPair& pair, const ContactTolerances& toleranc
         }
         case PairCache::Kind::None: break;
     }
-    warm.axis = Vector3(cache.axis[0], cache.axis[1], cache.axis[2]);
+    warm.axis = cache.Axis();
     if (cache.kind == PairCache::Kind::None) warm.axis = Normalized(pair.position);
     return warm;
 }
@@ -73,8 +73,7 @@ void CollidePolyhedra(const PairQuery& query, Manifold& manifold) {
     if (gjk.status == GjkStatus::BeyondReach) {
         manifold.normal = gjk.axis;
         manifold.pointCount = 0;
-        query.cache.kind = PairCache::Kind::Axis;
-        for (int i = 0; i < 3; ++i) query.cache.axis[i] = gjk.axis[i];
+        query.cache.RememberAxis(PairCache::Kind::Axis, gjk.axis);
         return;
     }
     if (gjk.status == GjkStatus::Overlapping) {

@@ -33,22 +33,17 @@ Segment CoreSegment(const Capsule& capsule) {
 // Two points along the common length of nearly parallel capsules; false where they lie one behind the other.
 bool BuildParallel(const Segment& onA, const Segment& onB, float radiusA, float radiusB, float speculativeDistance,
                    Manifold& manifold) {
-    float from, to;
-    if (!CommonLength(onA, onB, from, to)) return false;
-    const Vector3 middle = onA.At(0.5f * (from + to)), along = onB.to - onB.from;
-    const float scale = 1.0f / Dot(along, along);
-    const auto beside = [&](const Vector3& x) -> Vector3 {
-        return onB.from + along * (Dot(along, Vector3(x - onB.from)) * scale);
-    };
-    const Vector3 between = beside(middle) - middle;
+    const CommonLength common(onA, onB);
+    if (!common.exists) return false;
+    const Vector3 middle = onA.At(0.5f * (common.at[0] + common.at[1]));
+    const Vector3 between = ClosestOnLine(onB, middle) - middle;
     const float distance = Length(between);
     if (!(distance > 1e-3f * (radiusA + radiusB))) return false;
     manifold.normal = between * (1.0f / distance);
     for (int i = 0; i < 2; ++i) {
-        const Vector3 x = onA.At(i == 0 ? from : to);
-        const float separation = Dot(manifold.normal, Vector3(beside(x) - x)) - (radiusA + radiusB);
+        const float separation = common.SeparationAlong(manifold.normal, i) - (radiusA + radiusB);
         if (separation > speculativeDistance) continue;
-        manifold.points[manifold.pointCount++] = {x + manifold.normal * radiusA, separation,
+        manifold.points[manifold.pointCount++] = {common.onP[i] + manifold.normal * radiusA, separation,
                                                   CrossingFeature(0, static_cast<uint32_t>(1 + i))};
     }
     return manifold.pointCount > 0;

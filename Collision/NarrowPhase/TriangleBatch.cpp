@@ -21,8 +21,6 @@ Lanes FarthestOfFew(const Polyhedron& core, const Vector& direction) {
     return most;
 }
 
-Vector3 At(const Vector& v, int lane) { return Vector3(v.x()[lane], v.y()[lane], v.z()[lane]); }
-
 }  // namespace
 
 Lanes SurfaceProbe::Extent(const Vector& d, uint32_t lanes) const {
@@ -42,7 +40,7 @@ Lanes SurfaceProbe::Extent(const Vector& d, uint32_t lanes) const {
     Lanes extent(0.0f);
     for (uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
         const int lane = std::countr_zero(bits);
-        const Vector3 one = At(direction, lane);
+        const Vector3 one = LaneOf(direction, lane);
         extent.Set(lane, core ? FarthestVertex(*core, one).value : Dot(one, shape.SupportCore(one)));
     }
     return extent;
@@ -135,8 +133,8 @@ void TriangleBatch::Extract(int lane, bool isReversed, const Matrix3& axes, Vect
     for (int i = 0; i < 3; ++i) {
         const int side = kSides[isReversed][i];
         const float itsLength = length[side][lane];
-        itsCorners[i] = axes * At(corners[kCorners[isReversed][i]], lane);
-        itsOutwards[i] = axes * Vector3(At(outwards[side], lane) * (itsLength > 1e-12f ? 1.0f / itsLength : 0.0f));
+        itsCorners[i] = axes * LaneOf(corners[kCorners[isReversed][i]], lane);
+        itsOutwards[i] = axes * Vector3(LaneOf(outwards[side], lane) * (itsLength > 1e-12f ? 1.0f / itsLength : 0.0f));
     }
 }
 
