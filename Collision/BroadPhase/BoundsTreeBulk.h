@@ -1,5 +1,5 @@
-// What is asked of most leaves of a BoundsTree at once, node by node: for a step in which nearly everything moved, far
-// cheaper a leaf than one by one, and shared out by ranges of nodes. Used by UpdateBounds and FindPairs. Allocates
+// Updates and pair searches of most leaves of a BoundsTree at once, node by node: where nearly everything moved, far
+// cheaper per leaf than one query each. Used by UpdateBounds and FindPairs, in parallel over ranges of nodes. Allocates
 // nothing.
 #pragma once
 

@@ -8,8 +8,7 @@ namespace fulcrum {
 
 namespace {
 
-// One or two vertices of a core that lie farthest along a direction; more than two belong to a face or a fan of
-// needles, of which the two first found do.
+// One or two vertices of a core that lie farthest along a direction. Of more than two, two are enough.
 struct SupportingEdge {
     uint8_t vertices[2];
     int count = 0;
@@ -66,8 +65,8 @@ bool AddParallelEdges(const PolyhedronPair& pair, const Segment& onA, const Segm
     return manifold.pointCount > 0;
 }
 
-// Whether a face of A that is nearly perpendicular to the axis meets, between its sides, what gives the axis: an edge
-// of the other that reaches far beyond it on both sides, and may dip below its plane there.
+// Whether the face contact of a face of A, nearly perpendicular to the axis, is as deep as the axis: then B's
+// supporting edge crosses the face, though it may be deeper beyond the face's sides.
 bool RestsOn(const PolyhedronPair& pair, const ReferenceFace& face, const KnownAxis& known,
              const ContactTolerances& tolerances, const Manifold& manifold) {
     if (!face.ofA || Dot(pair.a.faces[face.index].normal, known.axis) < tolerances.faceOfACosine) return false;
@@ -76,7 +75,7 @@ bool RestsOn(const PolyhedronPair& pair, const ReferenceFace& face, const KnownA
     return least + pair.RadiusSum() <= known.separation + tolerances.prefer;
 }
 
-// The deepest face contact that is nearly as good as the axis, if any.
+// Builds the contact of the best face whose normal is nearly as good as the axis, if any.
 bool TryFaces(const PolyhedronPair& pair, const KnownAxis& known, const ContactTolerances& tolerances, PairCache& cache,
               Manifold& manifold) {
     ReferenceFace faces[2];
@@ -97,7 +96,7 @@ bool TryFaces(const PolyhedronPair& pair, const KnownAxis& known, const ContactT
     }
     for (int i = 0; i < count; ++i) {
         const FaceContact contact = BuildFaceContact(pair, faces[i], tolerances, manifold);
-        if (manifold.pointCount == 0 || !(contact.touches || RestsOn(pair, faces[i], known, tolerances, manifold)))
+        if (manifold.pointCount == 0 || !(contact.isDeepest || RestsOn(pair, faces[i], known, tolerances, manifold)))
             continue;
         cache.kind = faces[i].ofA ? PairCache::Kind::FaceOfA : PairCache::Kind::FaceOfB;
         cache.indexA = static_cast<uint16_t>(faces[i].ofA ? faces[i].index : contact.incidentFace);
@@ -149,7 +148,7 @@ void BuildFromEdges(const PolyhedronPair& pair, const KnownAxis& known, const Co
             return;
         }
     }
-    // A vertex is involved. Where the cores are apart, the direction between the closest points is the better axis.
+    // A vertex is involved. If the cores are apart, the direction between the closest points is the better axis.
     const ClosestParameters closest = ClosestOnSegments(onA, onB);
     const Vector3 x = onA.At(closest.s), between = onB.At(closest.t) - x;
     const float distance = Length(between);
@@ -183,10 +182,10 @@ EdgeContact TryCachedEdges(const PolyhedronPair& pair, const ContactTolerances& 
     const float separation = Dot(normal, pair.position) - farB - farA;
     result.beyondReach = separation > tolerances.reach;
     if (result.beyondReach) return result;
-    // A third vertex nearly as far: a face turns towards the axis, and a face contact is preferred.
+    // A third vertex is nearly as far: a face is nearly perpendicular to the axis, and a face contact is preferred.
     if (CountBeyond(pair.a, normal, farA - tolerances.prefer) > 2) return result;
     if (CountBeyond(pair.b, -normalInB, farB - tolerances.prefer) > 2) return result;
-    // The edges must still be what lies farthest along their axis, and cross well within both.
+    // The edges must still be the supporting features along their axis, and cross well within both.
     if (Abs(Dot(normal, Vector3(onB.from - onA.from)) - separation) > 1e-5f * pair.Size()) return result;
     const ClosestParameters closest = ClosestOnSegments(onA, onB);
     const Vector3 dA = onA.to - onA.from, dB = onB.to - onB.from;

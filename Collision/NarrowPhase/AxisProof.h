@@ -1,5 +1,5 @@
-// The proof that a contact's axis is the best one, so that a cached axis need not be searched for again. Used by the
-// contact builders.
+// Proves that a contact's axis is the one of least penetration, so that GJK and EPA can be skipped. Used by the contact
+// builders.
 #pragma once
 
 #include <Fulcrum/Math/Wide.h>
@@ -10,9 +10,9 @@ namespace fulcrum {
 // a disc of radius r = discRadius in the plane at that depth belongs to the Minkowski difference, its center on the
 // normal. So does the ball of radius R = innerRadii about the difference c = centers of the two. Along a direction at
 // the angle t from the normal the disc bounds the separation by -depth cos t - r sin t, which is at most -depth while
-// tan(t / 2) <= r / depth; the ball bounds it by c_n cos t + c_t sin t - R, which must do for all larger angles: there
-// it falls, so the first angle decides. Where the cores are apart (depth <= 0), touching within the features is all it
-// takes.
+// tan(t / 2) <= r / depth; the ball bounds it by c_n cos t + c_t sin t - R, which must suffice for all larger angles:
+// there it falls, so it is enough to test the first angle. If the cores are apart (depth <= 0), nothing more is needed
+// than that the features touch.
 inline bool NoBetterAxis(const Vector3& centers, float innerRadii, const Vector3& normal, float depth,
                          float discRadius) {
     if (depth <= 0.0f) return true;

@@ -1,6 +1,6 @@
-// What is left of a face, segment or point of one core after it is clipped by the sides of a face of the other: the
-// candidates for contact points, with their separations and feature ids. Used by the contact builders; lives on the
-// stack of one call.
+// A face, segment or point of one core (the incident feature), clipped by the sides of a face of the other (the
+// reference face): the candidates for contact points, with their separations and feature ids. Used by the contact
+// builders; lives on the stack of one call.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/Clipping.h>
@@ -19,8 +19,8 @@ public:
     ClippedFeature(const ClippedFeature&) = delete;
     ClippedFeature& operator=(const ClippedFeature&) = delete;
 
-    // The feature's corners are cornerAt(0) to cornerAt(cornerCount - 1), in the frame of the sides. What lies beyond a
-    // side by less than `slop` meters stays.
+    // The feature's corners are cornerAt(0) to cornerAt(cornerCount - 1), in the frame of the sides. Vertices beyond a
+    // side by less than `slop` meters are kept.
     template <class CornerAt>
     void Clip(int cornerCount, const CornerAt& cornerAt, const ClipSide* sides, int sideCount, float slop) {
         cornerCount_ = count_ = cornerCount;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kMostClipped = 2 * SupportingFace::kMaxVertices;
 
-// What of A, or of B, faces `direction`; all in A's frame.
+// The supporting face of A, or of B, along `direction`; all in A's frame.
 void FindFace(const SupportPair& pair, bool ofA, const Vector3& direction, SupportingFace& face) {
     if (ofA) return pair.a.FindSupportingFace(direction, face);
     pair.b.FindSupportingFace(pair.DirectionInB(direction), face);
@@ -45,7 +45,7 @@ struct SupportingFaceNames {
     }
 };
 
-// The sides of a reference face and what they leave of the other core's feature.
+// A reference face's sides, and the other core's incident feature clipped by them.
 struct FaceClip {
     const SupportingFace &reference, &incident;
     ClipSide sides[SupportingFace::kMaxVertices];
@@ -65,8 +65,8 @@ struct FaceClip {
 };
 
 struct Built {
-    bool touches = false;  // what clipping left reaches as deep as the other core
-    bool proven = false;   // no axis separates the cores by more than the face does
+    bool isDeepest = false;  // the clipped feature is as deep as the other core
+    bool proven = false;     // no axis separates the cores by more than the face does
 };
 
 Built BuildFromFace(const SupportPair& pair, const ReferenceSide& reference, const ContactTolerances& tolerances,
@@ -82,8 +82,8 @@ Built BuildFromFace(const SupportPair& pair, const ReferenceSide& reference, con
     if (clipped.Count() == 0) return built;
 
     const float least = clipped.MeasureSeparations(normal, Dot(normal, reference.face.vertices[0]));
-    built.touches = least <= reference.separation + tolerances.prefer;
-    if (built.touches) {
+    built.isDeepest = least <= reference.separation + tolerances.prefer;
+    if (built.isDeepest) {
         const float depth = -reference.separation;
         const float radius =
             depth <= 0 ? 0 : clipped.DiscRadius(clip.sides, reference.face.count, least + tolerances.prefer);
@@ -102,7 +102,7 @@ Built BuildFromFace(const SupportPair& pair, const ReferenceSide& reference, con
     return built;
 }
 
-// The best face that is nearly as good an axis as the known one, if any.
+// Builds the contact of the best face whose normal is nearly as good as the known axis, if any.
 bool TryFaces(const SupportPair& pair, const KnownContact& known, const SupportingFace& faceA,
               const SupportingFace& faceB, const ContactTolerances& tolerances, PairCache& cache, Manifold& manifold) {
     ReferenceSide references[2];
@@ -122,7 +122,7 @@ bool TryFaces(const SupportPair& pair, const KnownContact& known, const Supporti
     }
     for (int i = 0; i < count; ++i) {
         const ReferenceSide& reference = references[order[i]];
-        if (!BuildFromFace(pair, reference, tolerances, manifold).touches || manifold.pointCount == 0) continue;
+        if (!BuildFromFace(pair, reference, tolerances, manifold).isDeepest || manifold.pointCount == 0) continue;
         const Vector3& normal = reference.face.normal;
         cache.RememberAxis(reference.ofA ? PairCache::Kind::FaceOfA : PairCache::Kind::FaceOfB,
                            reference.ofA ? normal : pair.DirectionInB(normal));
@@ -158,7 +158,7 @@ void AddPoint(const SupportPair& pair, const Vector3& onCoreA, float separation,
     point.feature = feature;
 }
 
-// Two points where two edges lie side by side.
+// Two points along parallel edges.
 bool TryParallelEdges(const SupportPair& pair, const SupportingFace& faceA, const SupportingFace& faceB,
                       const KnownContact& known, const ContactTolerances& tolerances, Manifold& manifold) {
     if (faceA.count < 2 || faceB.count < 2) return false;
@@ -169,7 +169,8 @@ bool TryParallelEdges(const SupportPair& pair, const SupportingFace& faceA, cons
     if (!NearlyParallel(onA, onB)) return false;
     const CommonLength common(onA, onB);
     if (!common.exists) return false;
-    // The known point is the deepest; both ends of the common length must tell the same depth, or the edges are not it.
+    // The known point is the deepest: if neither end of the common length is as deep, these are not the edges that
+    // touch.
     const float separations[2] = {common.SeparationAlong(known.axis, 0), common.SeparationAlong(known.axis, 1)};
     const float least = Min(separations[0], separations[1]);
     if (Abs(least - known.separation) > tolerances.prefer) return false;
@@ -180,7 +181,7 @@ bool TryParallelEdges(const SupportPair& pair, const SupportingFace& faceA, cons
     return manifold.pointCount > 0;
 }
 
-// To the points of edges or vertices, those of the faces beside them that lie within reach along the manifold's normal.
+// Adds points of the adjacent faces, within reach along the normal, to a manifold of edges or vertices.
 void AddFacesAhead(const SupportPair& pair, const SupportingFace& faceA, const SupportingFace& faceB,
                    const ContactTolerances& tolerances, Manifold& manifold) {
     if (!tolerances.facesAhead || manifold.pointCount == 0) return;
@@ -236,7 +237,7 @@ CachedFace TryCachedFace(const SupportPair& pair, const ContactTolerances& toler
         return result;
     }
     const Built built = BuildFromFace(pair, reference, tolerances, manifold);
-    result.done = built.touches && built.proven && manifold.pointCount > 0;
+    result.done = built.isDeepest && built.proven && manifold.pointCount > 0;
     return result;
 }
 

@@ -39,7 +39,7 @@ struct FaceView {
 constexpr int kMostSides = 255, kMostClipped = 512;
 using Clipped = ClippedFeature<kMostClipped>;
 
-// The reference face's sides and what they leave of the other polyhedron's feature that faces it.
+// The reference face's sides, and the other polyhedron's incident feature clipped by them.
 struct FaceClip {
     ClipSide sides[kMostSides];
     int sideCount;
@@ -91,8 +91,8 @@ FaceContact BuildFaceContact(const PolyhedronPair& pair, const ReferenceFace& fa
     const Vector3 normal = view.face.normal;
     manifold.normal = face.ofA ? normal : Vector3(-(pair.rotation * normal));
     const float least = clipped.MeasureSeparations(normal, view.face.offset);
-    result.touches = least <= face.separation + tolerances.prefer;
-    if (result.touches) {
+    result.isDeepest = least <= face.separation + tolerances.prefer;
+    if (result.isDeepest) {
         const float radius =
             face.separation >= 0 ? 0 : clipped.DiscRadius(clip.sides, clip.sideCount, least + tolerances.prefer);
         result.proven = NoBetterAxis(pair.position, pair.InnerRadii(), manifold.normal, -face.separation, radius);

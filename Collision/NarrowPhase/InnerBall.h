@@ -1,7 +1,7 @@
-// The contact of the ball inside a shape with the triangle that it hits first within the step. A thin body that lands
-// on its edge may turn over within the step: it comes down on a side that faced away as the step began, for which there
-// are no contacts yet, and its center ends up behind the surface. The inner ball belongs to the shape however it turns.
-// Called by SurfaceContact where the center moves far. Thread-safe.
+// The first triangle that the ball inside a shape hits within the step. A thin body that lands on its edge may turn
+// over within the step and land on a side that faced away before, which has no contacts yet: its center would end up
+// behind the surface. The inner ball is inside the shape however it turns. Called by SurfaceContact for fast bodies.
+// Thread-safe.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/SurfaceShape.h>
@@ -13,7 +13,7 @@ struct InnerBall {
     Vector3 center;  // m, in the surface's frame
     Vector3 motion;  // m, of the center within the step, likewise
 
-    // The motion that the other contacts do not cover, m. A face that is approached by less is left to them.
+    // Triangles that are approached by less than this are left to the other contacts, m.
     float FarMotion() const { return kFar * radius; }
     bool MovesFar() const { return LengthSquared(motion) > FarMotion() * FarMotion(); }
 

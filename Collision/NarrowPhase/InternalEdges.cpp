@@ -9,7 +9,7 @@ namespace fulcrum {
 
 namespace {
 
-// A direction this near to the face's is the face's: a tenth of a degree.
+// A contact normal this near to the face's counts as the face's: a tenth of a degree.
 constexpr float kFaceCosine = 0.9999985f;
 
 // Feature ids that last from step to step: corners of A are the same on every triangle, corners of the surface on all
@@ -130,7 +130,7 @@ std::vector<SurfaceManifold>& InternalEdgeFilter::Resolve() {
     });
     for (const DeferredContact& deferred : deferred_) {
         const bool isEdgeCovered = isCovered(deferred.vertices[0]) && isCovered(deferred.vertices[1]);
-        // Points before a face stay, though the neighbor is nearer: without them a shape across two faces would rock.
+        // Points on the face are kept, though the neighbor is nearer: without them a shape across two faces would rock.
         if (!isEdgeCovered) contacts_.push_back(deferred.contact);
         else if (deferred.onFace.manifold.pointCount > 0) contacts_.push_back(deferred.onFace);
         isCovered(deferred.vertices[0]) = isCovered(deferred.vertices[1]) = 1;

@@ -1,11 +1,11 @@
 // Keeps a shape that slides over a surface from bumping into the edges between its triangles (internal edges, ghost
 // collisions). Contacts with faces count as they are found. Contacts with edges and corners are deferred until all
 // faces are known; then
-// - one at an edge or corner of a triangle with a face contact is dropped: the face contact covers it;
+// - one at an edge or corner of a triangle with a face contact is dropped, since that contact covers it;
 // - one at an active edge (SurfaceShape.h), or nearly along the face's normal, counts, the deepest first, and covers
 //   its edge for those that follow;
-// - one at an inactive edge is replaced by the contact with the face beside it, if the shape lies before that.
-// Used by SurfaceContact alone.
+// - one at an inactive edge is replaced by the contact with the triangle's face, if there is one. Used by
+//   SurfaceContact alone.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/SurfaceManifold.h>
@@ -24,11 +24,11 @@ public:
     void Clear();
     void AddFace(const TriangleView& view, const Manifold& manifold);
     // What is nearest to a triangle: its face, or one of its edges or corners. `axis`: unit, towards the triangle, in
-    // the surface's frame; onFace: the points before the face, if any.
+    // the surface's frame; onFace: the contact with the face, if any.
     void AddNearest(const TriangleView& view, const Vector3& axis, bool overlaps, const Manifold& onFace,
                     const Manifold& nearest);
-    // Points before the face where the shape is deeper beyond an inactive edge or corner, in the neighbor, nearest to
-    // them. False if it is not clear beyond which: nothing was added.
+    // Points on the face of a shape that is deeper beyond an inactive edge or corner, over the neighbor. False if it is
+    // ambiguous beyond which: nothing was added.
     bool DeferToNeighbor(const TriangleView& view, const TriangleInShape& triangle, float slop, const Manifold& onFace);
     // Decides on the deferred ones. Returns all contacts that count.
     std::vector<SurfaceManifold>& Resolve();

@@ -37,7 +37,7 @@ SegmentContact::SegmentContact(const SurfaceProbe& probe, const TriangleBatch& b
     if (const uint32_t left = asked & ~(onFace | crossing)) FindSide(batch, left);
 }
 
-// By each side, as a convex polygon clips. An end less than the slop beyond a side stays.
+// Clips the segment by each side. Ends less than the slop beyond a side are kept.
 void SegmentContact::Clip(const TriangleBatch& batch, float slop) {
     from_ = Lanes(0.0f);
     to_ = Lanes(1.0f);

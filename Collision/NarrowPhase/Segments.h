@@ -34,8 +34,8 @@ inline ClosestParameters ClosestOnSegments(const Segment& p, const Segment& q) {
     return {s, t};
 }
 
-// Segments at less than this angle (about one degree) touch along their common length. Not for lanes: capsules on
-// triangles ask it for those few alone that touch a side.
+// Segments at less than this angle (about one degree) touch along their common length. Scalar: capsules on triangles
+// call it for the few triangles that they touch at a side.
 inline bool NearlyParallel(const Segment& p, const Segment& q) {
     constexpr float kSineSquared = 0.02f * 0.02f;
     const Vector3 d1 = p.to - p.from, d2 = q.to - q.from;
@@ -48,9 +48,9 @@ inline Vector3 ClosestOnLine(const Segment& q, const Vector3& x) {
     return q.from + d * (Dot(d, Vector3(x - q.from)) * (1.0f / Dot(d, d)));
 }
 
-// Where two nearly parallel segments p and q lie side by side.
+// The interval along which two nearly parallel segments p and q lie side by side.
 struct CommonLength {
-    bool exists;     // else they lie one behind the other, and nothing else is set
+    bool exists;     // otherwise they lie one behind the other, and nothing else is set
     float at[2];     // its ends, along p, 0 .. 1
     Vector3 onP[2];  // the same as points
     Vector3 onQ[2];  // and the points of q's line that are closest to those

@@ -20,11 +20,11 @@ namespace fulcrum {
 
 namespace {
 
-// A face of the shape that is this near to the direction of an edge rests on it, on two points: 4 degrees, more than a
-// body turns in a step while it rocks from one point to the other.
+// If the cosine between a face of the shape and the normal of an edge contact is larger, the face rests on the edge, on
+// two points: 4 degrees, more than a body turns in a step while it rocks from one point to the other.
 constexpr float kRestingCosine = 0.9976f;
 
-// Bounds of a shape in the surface's frame, by `reach` larger.
+// Bounds of a shape in the surface's frame, enlarged by `reach`.
 Bounds BoundsInSurface(const ConvexShape& a, const RelativePose& bInA, float reach) {
     const Matrix3 axes = ToMatrix(bInA.rotation.Conjugate());
     const Vector3 origin = -(axes * bInA.position), half = a.LocalBounds().HalfExtents();
@@ -179,7 +179,7 @@ private:
         Manifold onFace;
         const FaceContact contact =
             BuildTriangleFaceContact(core_, incident, triangle, batch.separation[lane], tolerances, onFace);
-        const bool found = onFace.pointCount > 0 && contact.touches;
+        const bool found = onFace.pointCount > 0 && contact.isDeepest;
         if (found && contact.proven) return AddFace(view, onFace);
         if (ReachesActiveEdge(view, triangle, tolerances.reach)) return CollideTriangle(index, &onFace);
         if (onFace.pointCount == 0) return;
@@ -202,7 +202,7 @@ private:
     // Of a triangle whose edges are inactive, a shape without rounding can touch the face alone.
     bool FacesAlone(const TriangleView& view) const { return core_.radius <= 0 && view.activeEdges == 0; }
     bool IsFaceContact(const TriangleView& view, const FaceContact& contact, const Manifold& onFace) const {
-        return onFace.pointCount > 0 && contact.touches && (contact.proven || FacesAlone(view));
+        return onFace.pointCount > 0 && contact.isDeepest && (contact.proven || FacesAlone(view));
     }
 
     void CollidePolyhedron(uint32_t index, const Vector3 (&corners)[3], const RelativePose& pose,

@@ -1,10 +1,11 @@
-// Contacts of a convex shape with a surface of triangles: as many manifolds as there are directions to be pushed in,
-// without those that only an edge between two triangles would make (InternalEdges.h). Called by the Collide stage, from
-// many threads at once, each with a SurfaceContacts of its own.
+// Contacts of a convex shape with a surface of triangles: one manifold per contact normal and material, without
+// contacts of internal edges (InternalEdges.h). Called by the Collide stage, from many threads at once, each with a
+// SurfaceContacts of its own.
 //
-// Each triangle that the shape may reach is collided by itself. Contacts in nearly the same direction, on the same
-// material, become one manifold of at most four points (SurfaceManifold.h). Fast bodies get one for the ball inside
-// them besides (InnerBall.h). What touched a face stays before it even if a heavier body presses its center through.
+// Each triangle that the shape may reach is collided by itself. Contacts with nearly the same normal, on the same
+// material, are merged into one manifold of at most four points (SurfaceManifold.h). Fast bodies get one for their
+// inner ball besides (InnerBall.h). A face that was touched in the last step still pushes to its front if a heavier
+// body has pushed the center through it (tunneled).
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/Collide.h>
@@ -12,7 +13,7 @@
 
 namespace fulcrum {
 
-// Buffers that are used again from call to call, so that they need not be allocated.
+// Results and buffers, which are reused from call to call.
 class SurfaceContacts {
 public:
     // Of the last call, in an order that depends on the shapes and poses alone.
@@ -34,12 +35,12 @@ private:
 struct SurfaceApproach {
     Vector3 motion =
         Vector3::Zero();  // m, of the shape's center relative to the surface within the step, in its center frame
-    std::span<const uint32_t> touched;  // triangles that it touched in the last step
+    std::span<const uint32_t> touched;  // ids of triangles with contacts in the last step
 };
 
 // Fills `contacts` with the manifolds of a and the triangles of b within settings.speculativeDistance, in a's center
-// frame, as Collide does. One-sided triangles push to their front alone, and only what has its center of mass there or
-// touched them.
+// frame, as Collide does. One-sided triangles push to their front alone, and only shapes whose center of mass is there,
+// or that touched them in the last step.
 void CollideSurface(const ConvexShape& a, const SurfaceShape& b, const RelativePose& bInA,
                     const CollideSettings& settings, const SurfaceApproach& approach, SurfaceContacts& contacts);
 

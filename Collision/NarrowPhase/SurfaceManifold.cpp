@@ -11,7 +11,7 @@ namespace {
 
 // Contacts whose normals are this near become one manifold: 2 degrees.
 constexpr float kSameDirection = 0.9994f;
-// The deepest of so many directions hold any shape; a huge one may touch thousands of triangles, each turned otherwise.
+// The deepest so many are enough to hold any shape; a huge one may touch thousands of triangles with different normals.
 constexpr size_t kMostManifolds = 128;
 
 // Points of several manifolds, along one normal.
@@ -68,7 +68,7 @@ private:
     int count_ = 0;
 };
 
-// Contact `first` and all later ones in its direction, whose points it takes.
+// Contact `first`, merged with all later ones in its direction, which are left without points.
 SurfaceManifold MergeSimilar(std::vector<SurfaceManifold>& contacts, size_t first, float depthSlop) {
     SurfaceManifold merged = contacts[first];
     contacts[first].manifold.pointCount = 0;

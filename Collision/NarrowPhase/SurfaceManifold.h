@@ -10,7 +10,7 @@ namespace fulcrum {
 
 struct SurfaceManifold {
     Manifold manifold;
-    uint32_t triangle;  // the one of the deepest point when it was found
+    uint32_t triangle;  // that of the first, deepest contact
     uint8_t material;   // index into the surface's palette
 };
 

@@ -29,8 +29,8 @@ FaceContact BuildTriangleFaceContact(const Polyhedron& core, int incidentFace, c
     const Vector3& normal = triangle.normal;
     manifold.normal = -normal;
     const float least = clipped.MeasureSeparations(normal, Dot(normal, triangle.corners[0]));
-    result.touches = least <= separation + tolerances.prefer;
-    if (result.touches) {
+    result.isDeepest = least <= separation + tolerances.prefer;
+    if (result.isDeepest) {
         const float radius = separation >= 0 ? 0 : clipped.DiscRadius(sides, 3, least + tolerances.prefer);
         result.proven = NoBetterAxis(triangle.middle, core.innerRadius, manifold.normal, -separation, radius);
     }

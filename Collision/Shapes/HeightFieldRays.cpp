@@ -1,4 +1,4 @@
-// Rays against a height field: down the hierarchy of blocks, nearest first, then along the rows of cells of a block.
+// Rays against a height field: down the min/max pyramid, nearest blocks first, then along the rows of cells of a block.
 #include <Fulcrum/Collision/Shapes/HeightField.h>
 #include <Fulcrum/Collision/Shapes/RayTriangle.h>
 #include <Fulcrum/Collision/Shapes/SurfaceNormal.h>
@@ -8,26 +8,26 @@
 namespace fulcrum {
 namespace {
 
-constexpr float kSlack = 1.0f + 0x1p-18f;  // of fractions; together with the pad, more than all rounding
+constexpr float kSlack = 1.0f + 0x1p-18f;  // of fractions; covers all rounding together with the pad
 
 struct Interval {
     float from, to;  // fractions
     bool IsEmpty() const { return !(from <= to * kSlack); }
 };
 
-// A ray and how much larger all that it may meet counts: 2^-20 of the coordinates that take part.
+// A ray, and the pad by which boxes are enlarged for its rounding: 2^-20 of the largest coordinate.
 struct PaddedRay {
     Vector3 origin, displacement, inverse;
     float pad;
 
-    // Where it is between two planes across an axis.
+    // The interval in which it is between two planes perpendicular to an axis.
     Interval Between(int axis, float low, float high, Interval within) const {
         const bool forward = inverse[axis] >= 0;
         const float first = forward ? low - pad : high + pad, second = forward ? high + pad : low - pad;
         return {Max(within.from, (first - origin[axis]) * inverse[axis]),
                 Min(within.to, (second - origin[axis]) * inverse[axis])};
     }
-    // The coordinates that it has meanwhile.
+    // The coordinates that it passes in an interval.
     void Extent(int axis, Interval interval, float& low, float& high) const {
         const float a = origin[axis] + displacement[axis] * interval.from,
                     b = origin[axis] + displacement[axis] * interval.to;
@@ -44,8 +44,8 @@ uint32_t CellAt(float place, float origin, float size, uint32_t first, uint32_t 
 
 }  // namespace
 
-// Calls visit(id, fraction, isBackFace), which returns the largest fraction that is still of interest, or a negative
-// one.
+// Calls visit(id, fraction, isBackFace) for triangles that the ray hits; it returns the new largest fraction, negative
+// to stop.
 template <class Visitor>
 void HeightField::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& visit) const {
     if (!IsUsable(ray.origin, ray.displacement) || !(maxFraction >= 0)) return;
@@ -66,7 +66,7 @@ void HeightField::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& v
         const float from = axis == 0 ? origin_.x() : origin_.z(), size = axis == 0 ? cellSizeX_ : cellSizeZ_;
         return {CellAt(low, from, size, range.first, range.last), CellAt(high, from, size, range.first, range.last)};
     };
-    // The two triangles of a cell that is no hole, where the ray's heights above it meet theirs.
+    // Tests the two triangles of a cell, unless it is a hole or the ray passes above or below them.
     const auto meetCell = [&](uint32_t x, uint32_t z, Interval within) {
         const uint32_t cell = z * CellCountX() + x, sample = z * sampleCountX_ + x;
         if (CellOf(cell) == kHoleCell) return;
@@ -111,7 +111,8 @@ void HeightField::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& v
     constexpr int kMostLevels = 31;
     Entry stack[3 * kMostLevels + 4];
     int top = 0;
-    // Puts blocks firstX .. lastX, firstZ .. lastZ of a level on the stack, at most two by two, the nearest on top.
+    // Pushes blocks firstX .. lastX, firstZ .. lastZ of a level, at most two by two, onto the stack, the nearest on
+    // top.
     const auto push = [&](uint32_t level, CellRange x, CellRange z, Interval within) {
         const int base = top;
         const uint32_t size = kBlock << level;

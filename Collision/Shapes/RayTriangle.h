@@ -1,13 +1,13 @@
-// Ray against triangle without gaps: of two triangles that share an edge, a ray through it meets at least one, because
-// the sign of an edge's function is the same number for both. Used by the ray casts of meshes and height fields.
-// Source: Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
+// Watertight ray-triangle test: a ray through an edge hits at least one of the two triangles that share it, because the
+// sign of the edge function is the same for both. Used by the ray casts of meshes and height fields. Source: Woop,
+// Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
 #pragma once
 
 #include <Fulcrum/Math/Wide.h>
 
 namespace fulcrum {
 
-// The largest absolute value of three: what the rounding of a ray's hit grows with.
+// The largest absolute value of three, to which the rounding of a ray's hit is proportional.
 inline float LargestCoordinate(const Vector3& v) { return Max(Abs(v.x()), Max(Abs(v.y()), Abs(v.z()))); }
 
 // A ray in a frame whose z axis runs along the ray's largest component and in which the ray is z itself, by shearing.
@@ -34,7 +34,7 @@ struct ShearedRay {
 // Where a ray meets triangles, by lanes. Front faces have a positive determinant.
 template <class Real>
 struct TriangleHit {
-    Real u, v, w;  // not all of one sign: missed
+    Real u, v, w;  // signs differ: missed
     Real determinant;
     Real height;  // fraction times determinant
 };
@@ -125,8 +125,7 @@ inline void IntersectTriangles(const ShearedRay& ray, const Vec3<Wide<8>> (&corn
     }
 }
 
-// Whether the ray can be sheared and its fractions told apart: finite, within the coordinates that shapes may have, not
-// zero.
+// Whether the ray is finite, within the coordinates that shapes may have, and not of length 0.
 inline bool IsUsable(const Vector3& origin, const Vector3& displacement) {
     constexpr float kFar = 1e18f, kShort = 1e-30f;
     const Vector3 from = origin.cwiseAbs(), along = displacement.cwiseAbs();
@@ -134,8 +133,7 @@ inline bool IsUsable(const Vector3& origin, const Vector3& displacement) {
            along.z() <= kFar && Max(along.x(), Max(along.y(), along.z())) >= kShort;
 }
 
-// 1 / displacement for the planes of boxes, with components of less than 1e-18 m counted as that: fractions stay
-// finite.
+// 1 / displacement for slab tests; components of less than 1e-18 m count as that, so that fractions stay finite.
 inline Vector3 BoundedInverse(const Vector3& displacement) {
     Vector3 inverse;
     for (int axis = 0; axis < 3; ++axis)

@@ -1,4 +1,4 @@
-// The searches of a triangle mesh: what overlaps a box, what a ray meets.
+// Box and ray queries of a triangle mesh.
 #include <Fulcrum/Collision/Shapes/MeshTree.h>
 #include <Fulcrum/Collision/Shapes/RayTriangle.h>
 #include <Fulcrum/Collision/Shapes/SurfaceNormal.h>
@@ -16,7 +16,7 @@ constexpr float kBeyond = 1e18f;  // farther than any coordinate
 
 Wide<4> LoadFour(const Vector3& v) { return Wide<4>::Load(v.data()); }
 
-// The box in the unscaled coordinates of the tree, with what the division may round in hand; finite.
+// The box in the unscaled coordinates of the tree, enlarged by the rounding of the division; finite.
 Bounds Unscaled(const Bounds& box, const Vector3& scale, bool isScaled) {
     Bounds result;
     for (int axis = 0; axis < 3; ++axis) {
@@ -62,7 +62,7 @@ void TriangleMesh::SearchBox(const Bounds& box, void* context, BatchFunction fou
 // Rays in the unscaled coordinates of the tree.
 inline Vector3 TriangleMesh::InTree(const Vector3& v) const { return isScaled_ ? Vector3(v.cwiseQuotient(scale_)) : v; }
 
-// How much larger boxes count for rays from origins of this size, in the tree.
+// By how much boxes are enlarged for rays from origins of this size, in the tree's coordinates.
 inline float TriangleMesh::PadFor(float largestOrigin) const {
     // Where one axis is stretched, the rounding of the test along it counts for more along the others.
     const Vector3 size = scale_.cwiseAbs();
@@ -91,8 +91,8 @@ inline void TriangleMesh::LoadCorners(uint32_t begin, uint32_t end, Vec3<Wide<8>
 
 namespace {
 
-// Calls visit(id, fraction, isBackFace), which returns the largest fraction that is still of interest, or a negative
-// one, for the triangles of a leaf that a ray meets; returns the last such fraction.
+// Calls visit(id, fraction, isBackFace) for the triangles of a leaf that a ray hits; it returns the new largest
+// fraction, negative to stop. Returns the last such fraction.
 template <class Visitor>
 inline float MeetLeaf(const ShearedRay& ray, const Vec3<Wide<8>> (&corners)[3], uint32_t begin, uint32_t end,
                       bool fromBehind, float maxFraction, Visitor&& visit) {
@@ -109,8 +109,8 @@ inline float MeetLeaf(const ShearedRay& ray, const Vec3<Wide<8>> (&corners)[3], 
 
 }  // namespace
 
-// Calls visit(id, fraction, isBackFace), which returns the largest fraction that is still of interest, or a negative
-// one.
+// Calls visit(id, fraction, isBackFace) for triangles that the ray hits; it returns the new largest fraction, negative
+// to stop.
 template <class Visitor>
 void TriangleMesh::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& visit) const {
     if (!IsUsable(ray.origin, ray.displacement) || !(maxFraction >= 0)) return;
@@ -145,11 +145,11 @@ bool TriangleMesh::CastRay(const SurfaceRay& ray, SurfaceHit& hit, float maxFrac
     return true;
 }
 
-// The tree is searched for the box that contains all rays, begun about the middle of their origins; each of them is
-// held against the boxes of the leaves found, and against their triangles.
+// Ray packets: the tree is searched with one moving box that contains all rays, and each ray is tested against the
+// boxes of the leaves found and their triangles.
 uint32_t TriangleMesh::CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hits, const float* maxFractions) const {
     constexpr float kSlack = 1.0f + 0x1p-18f;
-    // Leaves that the box may find and no ray meets, for each ray; where there are more, rays do better alone.
+    // If more leaves per ray are found that no ray hits, single casts are faster.
     constexpr int kMostInVain = 2;
     const MeshTree& tree = *tree_;
     RayLanes lanes;
@@ -172,8 +172,7 @@ uint32_t TriangleMesh::CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hi
     }
     if (lanes.count == 0) return 0;
     float largest = lanes.LargestLimit();
-    if (!(largest <= 1))
-        return SurfaceShape::CastRays(rays, hits, maxFractions);  // the box is wide enough for a whole way
+    if (!(largest <= 1)) return SurfaceShape::CastRays(rays, hits, maxFractions);  // the rays are too far apart
     const float pad = PadFor(Max(LargestCoordinate(origins.lower), LargestCoordinate(origins.upper)));
     lanes.Widen(pad);
     const Vector3 displacement = displacements.Center();
