@@ -122,7 +122,7 @@ struct Limits {
     }
 };
 
-// Everything that a solver does for a row: bodies gathered, one velocity iteration, bodies scattered.
+// All work of a solver for a row: gather bodies, one velocity iteration, scatter bodies.
 template <class Real, bool kSoft>
 void AxisSolveVelocity(benchmark::State& state) {
     World world;
@@ -145,7 +145,7 @@ void AxisSolveVelocity(benchmark::State& state) {
     CountRows(state);
 }
 
-// The row alone, as the second to fourth point of a contact pays it: the two bodies stay in registers or on the stack.
+// The row alone, as for the second to fourth point of a contact: the two bodies stay in registers or on the stack.
 template <class Real, bool kSoft>
 void AxisSolveVelocityGathered(benchmark::State& state) {
     World world;

@@ -1,5 +1,5 @@
 // Counts calls of the global operator new, all threads and all forms of it, while the test program runs. A test reads
-// it before and after what must not allocate.
+// it before and after code that must not allocate.
 #pragma once
 
 #include <cstdint>

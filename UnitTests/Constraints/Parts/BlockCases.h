@@ -1,5 +1,5 @@
-// One case a block part: how it is set up from random inputs and what its Jacobian is, written out densely in double.
-// The tests of what all block parts have in common run over the list at the end.
+// One case per block part: its setup from random inputs, and its Jacobian as a dense matrix in double. The tests for
+// all block parts run over the list at the end.
 #pragma once
 
 #include "RandomBodies.h"
@@ -16,7 +16,7 @@
 
 namespace fulcrum::testing {
 
-// What any part is set up from; axis2 is perpendicular to axis1.
+// Inputs of any part; axis2 is perpendicular to axis1.
 template <class Real>
 struct BlockInputs {
     Vec3<Real> r1, r2, axis1, axis2, bias;
@@ -113,7 +113,7 @@ Vec2<Real> FirstTwo(const Vec3<Real>& a) {
     return Vec2<Real>(a.x(), a.y());
 }
 
-// Only keeps linear and angular momentum what acts on both bodies at one point or in rotation alone.
+// Whether the part conserves momentum: it acts on both bodies at one point, or in rotation alone.
 struct PointCase {
     template <class Real>
     using Part = PointPart<Real>;
