@@ -47,9 +47,10 @@ void BoundsTree::VisitPairs(uint32_t begin, uint32_t end, Visitor&& visit) const
                 const int slot = std::countr_zero(leaves);
                 float leaf[6];
                 LimitOf(SlotBox(index, slot), leaf);
-                uint32_t met = TestSlots(group, leaf) & group.leaves;
-                if (index == own) met &= (1u << slot) - 1u;
-                for (; met != 0; met &= met - 1) visit(node.child[slot], group.child[std::countr_zero(met)]);
+                uint32_t overlaps = TestSlots(group, leaf) & group.leaves;
+                if (index == own) overlaps &= (1u << slot) - 1u;
+                for (; overlaps != 0; overlaps &= overlaps - 1)
+                    visit(node.child[slot], group.child[std::countr_zero(overlaps)]);
             }
         }
     }

@@ -76,7 +76,7 @@ ConvexSeparation MeasureConvex(const ConvexShape& a, const ConvexShape& b, const
     const Vector3 deepest = pair.PointOfB(b.SupportCore(-pair.DirectionInB(result.normal)));
     result.onB = deepest - result.normal * b.ConvexRadius();
     result.onA = result.onB - result.normal * result.separation;
-    result.isBeyond = !IsFinite(result.normal) || !IsFinite(result.onA);  // of shapes beyond the floats
+    result.isBeyond = !IsFinite(result.normal) || !IsFinite(result.onA);  // overflow, of huge shapes
     return result;
 }
 

@@ -106,7 +106,7 @@ private:
         }
     }
 
-    // Moves planes so that they support the rounded vertices. False if the center is not inside all of them.
+    // Adds the faces, with planes that support the rounded vertices. False if the center is not inside all of them.
     static bool AddFaces(ConvexHull& hull, const HullMesh& mesh) {
         float smallestOffset = std::numeric_limits<float>::infinity();
         for (const HullMesh::Face& from : mesh.faces) {

@@ -98,7 +98,7 @@ private:
     Status CheckCells(std::span<const uint8_t> cells) const;
     Status CheckRectangle(uint32_t x0, uint32_t z0, uint32_t countX, uint32_t countZ, size_t count, uint32_t limitX,
                           uint32_t limitZ) const;
-    // All members except heights, ranges and bounds.
+    // Checks the settings and sets all members except heights, ranges and bounds.
     static Result<std::shared_ptr<HeightField>> Prepare(const HeightFieldSettings& settings);
     void Finish();
     void StoreHeight(uint32_t sample, float height);

@@ -55,7 +55,7 @@ void HeightField::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& v
                            0x1p-20f * (LargestCoordinate(bounds_.lower) + LargestCoordinate(bounds_.upper) +
                                        LargestCoordinate(ray.origin))};
 
-    const auto meetBox = [&](CellRange x, CellRange z, float low, float high, Interval within) {
+    const auto clipToBox = [&](CellRange x, CellRange z, float low, float high, Interval within) {
         within = padded.Between(0, X(x.first), X(x.last + 1), within);
         within = padded.Between(2, Z(z.first), Z(z.last + 1), within);
         return padded.Between(1, origin_.y() + low, origin_.y() + high, within);
@@ -67,7 +67,7 @@ void HeightField::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& v
         return {CellAt(low, from, size, range.first, range.last), CellAt(high, from, size, range.first, range.last)};
     };
     // Tests the two triangles of a cell, unless it is a hole or the ray passes above or below them.
-    const auto meetCell = [&](uint32_t x, uint32_t z, Interval within) {
+    const auto testCell = [&](uint32_t x, uint32_t z, Interval within) {
         const uint32_t cell = z * CellCountX() + x, sample = z * sampleCountX_ + x;
         if (CellOf(cell) == kHoleCell) return;
         const float a = HeightOf(sample), b = HeightOf(sample + 1), c = HeightOf(sample + sampleCountX_),
@@ -80,13 +80,13 @@ void HeightField::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& v
         for (uint32_t half = 0; half < 2 && maxFraction >= 0; ++half) {
             float fraction;
             bool isBack;
-            const bool isMet =
+            const bool isHit =
                 half == 0 ? IntersectTriangle(sheared, others[0], atC, atB, fromBehind, maxFraction, fraction, isBack)
                           : IntersectTriangle(sheared, atB, atC, others[1], fromBehind, maxFraction, fraction, isBack);
-            if (isMet) maxFraction = visit(2 * cell + half, fraction, isBack);
+            if (isHit) maxFraction = visit(2 * cell + half, fraction, isBack);
         }
     };
-    const auto meetBlock = [&](CellRange x, CellRange z, Interval within) {
+    const auto testBlock = [&](CellRange x, CellRange z, Interval within) {
         const CellRange rows = cellsAlong(2, within, z);
         for (uint32_t row = rows.first; row <= rows.last; ++row) {
             const Interval inRow = padded.Between(2, Z(row), Z(row + 1), within);
@@ -94,14 +94,14 @@ void HeightField::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& v
             const CellRange cells = cellsAlong(0, inRow, x);
             for (uint32_t cell = cells.first; cell <= cells.last; ++cell) {
                 const Interval inCell = padded.Between(0, X(cell), X(cell + 1), inRow);
-                if (!inCell.IsEmpty()) meetCell(cell, row, inCell);
+                if (!inCell.IsEmpty()) testCell(cell, row, inCell);
                 if (maxFraction < 0) return;
             }
         }
     };
 
     const CellRange allX{0, CellCountX() - 1}, allZ{0, CellCountZ() - 1};
-    const Interval whole = meetBox(allX, allZ, ranges_.back().low, ranges_.back().high, {0, maxFraction});
+    const Interval whole = clipToBox(allX, allZ, ranges_.back().low, ranges_.back().high, {0, maxFraction});
     if (whole.IsEmpty()) return;
 
     struct Entry {
@@ -121,7 +121,7 @@ void HeightField::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& v
                 const CellRange cellsX{bx * size, std::min(bx * size + (size - 1), allX.last)};
                 const CellRange cellsZ{bz * size, std::min(bz * size + (size - 1), allZ.last)};
                 const Range& range = RangeOf(level, bx, bz);
-                const Interval inBlock = meetBox(cellsX, cellsZ, range.low, range.high, within);
+                const Interval inBlock = clipToBox(cellsX, cellsZ, range.low, range.high, within);
                 if (inBlock.IsEmpty()) continue;
                 int at = top++;
                 for (; at > base && stack[at - 1].within.from < inBlock.from; --at) stack[at] = stack[at - 1];
@@ -138,7 +138,7 @@ void HeightField::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& v
         if (entry.within.IsEmpty()) continue;
         const Level& below = levels_[entry.level == 0 ? 0 : entry.level - 1];
         if (entry.level == 0) {
-            meetBlock({entry.x * kBlock, std::min(entry.x * kBlock + (kBlock - 1), allX.last)},
+            testBlock({entry.x * kBlock, std::min(entry.x * kBlock + (kBlock - 1), allX.last)},
                       {entry.z * kBlock, std::min(entry.z * kBlock + (kBlock - 1), allZ.last)}, entry.within);
             if (maxFraction < 0) return;
         } else {

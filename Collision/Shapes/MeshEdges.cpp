@@ -64,7 +64,7 @@ private:
             }
             if (pass == 1) break;
             uint32_t sum = 0;
-            for (uint32_t& start : starts_) start = sum += start;  // ends, until the second pass has filled the ranges
+            for (uint32_t& start : starts_) start = sum += start;  // ends, which pass 1 moves to the beginnings
         }
     }
 

@@ -171,12 +171,12 @@ void MeshTree::SearchBox(const Bounds& box, Leaf&& leaf) const {
 }
 
 // The children of a node that a ray hits, and the fractions at which it enters them.
-struct MetChildren {
+struct HitChildren {
     uint32_t bits;
     alignas(32) float entry[MeshNode::kWidth];
 };
 
-inline void MeetChildren(const MeshNode& node, const MeshTreeRay& ray, float maxFraction, MetChildren& met) {
+inline void IntersectChildren(const MeshNode& node, const MeshTreeRay& ray, float maxFraction, HitChildren& hit) {
     using mesh_lanes::Lanes, mesh_lanes::kStep;
     const uint8_t* nearBytes[3];
     const uint8_t* farBytes[3];
@@ -191,7 +191,7 @@ inline void MeetChildren(const MeshNode& node, const MeshTreeRay& ray, float max
         nearStart[axis] = (node.origin[axis] - ray.nearOrigin[axis]) * ray.nearInverse[axis];
         farStart[axis] = (node.origin[axis] - ray.farOrigin[axis]) * ray.farInverse[axis];
     }
-    met.bits = 0;
+    hit.bits = 0;
     for (int i = 0; i < MeshNode::kWidth; i += kStep) {
         Lanes enter[3], leave[3];
         for (int axis = 0; axis < 3; ++axis) {
@@ -200,10 +200,10 @@ inline void MeetChildren(const MeshNode& node, const MeshTreeRay& ray, float max
         }
         const Lanes first = Max(Max(enter[0], enter[1]), Max(enter[2], Lanes(0.0f)));
         const Lanes last = Min(Min(leave[0], leave[1]), Min(leave[2], Lanes(maxFraction)));
-        first.Store(met.entry + i);
-        met.bits |= (first <= last).ToBits() << i;
+        first.Store(hit.entry + i);
+        hit.bits |= (first <= last).ToBits() << i;
     }
-    met.bits &= (1u << node.ChildCount()) - 1u;
+    hit.bits &= (1u << node.ChildCount()) - 1u;
 }
 
 template <class Leaf>
@@ -224,22 +224,22 @@ void MeshTree::SearchRay(const MeshTreeRay& ray, float maxFraction, Leaf&& leaf)
             maxFraction = leaf(node, current.leaf);
             if (maxFraction < 0) return;
         } else {
-            MetChildren met;
-            MeetChildren(node, ray, maxFraction * kSlack, met);
+            HitChildren hit;
+            IntersectChildren(node, ray, maxFraction * kSlack, hit);
             const auto entryOf = [&](int i) {
-                if (i < node.NodeCount()) return Entry{met.entry[i], node.firstChild + static_cast<uint32_t>(i), -1};
-                return Entry{met.entry[i], current.node, i};
+                if (i < node.NodeCount()) return Entry{hit.entry[i], node.firstChild + static_cast<uint32_t>(i), -1};
+                return Entry{hit.entry[i], current.node, i};
             };
             const auto takeLowest = [&] {
-                const int i = __builtin_ctz(met.bits);
-                met.bits &= met.bits - 1;
+                const int i = __builtin_ctz(hit.bits);
+                hit.bits &= hit.bits - 1;
                 return entryOf(i);
             };
-            if (std::has_single_bit(met.bits)) {
+            if (std::has_single_bit(hit.bits)) {
                 current = takeLowest();
                 continue;
             }
-            for (const int base = top; met.bits != 0;) {
+            for (const int base = top; hit.bits != 0;) {
                 const Entry child = takeLowest();
                 int at = top++;  // the nearest on top
                 for (; at > base && stack[at - 1].fraction < child.fraction; --at) stack[at] = stack[at - 1];

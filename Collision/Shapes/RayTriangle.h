@@ -31,7 +31,7 @@ struct ShearedRay {
     }
 };
 
-// Where a ray meets triangles, by lanes. Front faces have a positive determinant.
+// Ray-triangle intersections in lanes. Front faces have a positive determinant.
 template <class Real>
 struct TriangleHit {
     Real u, v, w;  // signs differ: missed
@@ -67,7 +67,7 @@ void Complete(const ShearedCorner<Real>& a, const ShearedCorner<Real>& b, const 
     hit.height = hit.u * a.z + hit.v * b.z + hit.w * c.z;
 }
 
-// The fraction at which the ray meets the triangle abc (counter-clockwise seen from the front); false: it does not
+// The fraction at which the ray hits the triangle abc (counter-clockwise seen from the front); false: it does not
 // between 0 and maxFraction, or lies in its plane. Exact to the sign where an edge function rounds to zero.
 inline bool IntersectTriangle(const ShearedRay& ray, const Vector3& a, const Vector3& b, const Vector3& c,
                               bool fromBehind, float maxFraction, float& fraction, bool& isBackFace) {
@@ -89,10 +89,10 @@ inline bool IntersectTriangle(const ShearedRay& ray, const Vector3& a, const Vec
     return fraction >= 0 && fraction <= maxFraction;
 }
 
-// The same for eight triangles at once: the lanes that are met, their fractions and which are met from behind. The same
+// The same for eight triangles at once: the lanes that are hit, their fractions and which are hit from behind. The same
 // bits.
 struct TriangleHits {
-    uint32_t met, backFaces;
+    uint32_t bits, backFaces;
     alignas(32) float fraction[8];
 };
 inline void IntersectTriangles(const ShearedRay& ray, const Vec3<Wide<8>> (&corners)[3], bool fromBehind,
@@ -105,22 +105,22 @@ inline void IntersectTriangles(const ShearedRay& ray, const Vec3<Wide<8>> (&corn
     const auto isFront = (m.u >= zero) & (m.v >= zero) & (m.w >= zero);
     const auto isBack = (m.u <= zero) & (m.v <= zero) & (m.w <= zero);
     const auto isUnsure = (m.u == zero) | (m.v == zero) | (m.w == zero);
-    hits.met = isFront.ToBits() | (fromBehind ? isBack.ToBits() : 0u);
+    hits.bits = isFront.ToBits() | (fromBehind ? isBack.ToBits() : 0u);
     const uint32_t unsure = isUnsure.ToBits();
-    if ((hits.met | unsure) == 0) return;
+    if ((hits.bits | unsure) == 0) return;
     Complete(p, q, r, m);
     const Lanes fraction = m.height / m.determinant;
     fraction.Store(hits.fraction);
     hits.backFaces = (m.determinant < zero).ToBits();
-    hits.met &= ((fraction >= zero) & (fraction <= Lanes(maxFraction))).ToBits() & ~unsure;
+    hits.bits &= ((fraction >= zero) & (fraction <= Lanes(maxFraction))).ToBits() & ~unsure;
     for (uint32_t bits = unsure; bits != 0; bits &= bits - 1) {
         const int i = __builtin_ctz(bits);
         Vector3 corner[3];
         for (int k = 0; k < 3; ++k) corner[k] = Vector3(corners[k].x()[i], corners[k].y()[i], corners[k].z()[i]);
         bool isBackFace = false;
-        const bool isMet = IntersectTriangle(ray, corner[0], corner[1], corner[2], fromBehind, maxFraction,
+        const bool isHit = IntersectTriangle(ray, corner[0], corner[1], corner[2], fromBehind, maxFraction,
                                              hits.fraction[i], isBackFace);
-        hits.met |= (isMet ? 1u : 0u) << i;
+        hits.bits |= (isHit ? 1u : 0u) << i;
         hits.backFaces = (hits.backFaces & ~(1u << i)) | (isBackFace ? 1u : 0u) << i;
     }
 }

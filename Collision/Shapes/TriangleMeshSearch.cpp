@@ -94,11 +94,11 @@ namespace {
 // Calls visit(id, fraction, isBackFace) for the triangles of a leaf that a ray hits; it returns the new largest
 // fraction, negative to stop. Returns the last such fraction.
 template <class Visitor>
-inline float MeetLeaf(const ShearedRay& ray, const Vec3<Wide<8>> (&corners)[3], uint32_t begin, uint32_t end,
-                      bool fromBehind, float maxFraction, Visitor&& visit) {
+inline float IntersectLeaf(const ShearedRay& ray, const Vec3<Wide<8>> (&corners)[3], uint32_t begin, uint32_t end,
+                           bool fromBehind, float maxFraction, Visitor&& visit) {
     TriangleHits hits;
     IntersectTriangles(ray, corners, fromBehind, maxFraction, hits);
-    for (uint32_t bits = hits.met & ((1u << (end - begin)) - 1u); bits != 0; bits &= bits - 1) {
+    for (uint32_t bits = hits.bits & ((1u << (end - begin)) - 1u); bits != 0; bits &= bits - 1) {
         const int i = std::countr_zero(bits);
         if (hits.fraction[i] > maxFraction) continue;
         maxFraction = visit(begin + static_cast<uint32_t>(i), hits.fraction[i], (hits.backFaces >> i & 1) != 0);
@@ -122,7 +122,7 @@ void TriangleMesh::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& 
         const uint32_t begin = node.LeafBegin(child), end = node.LeafEnd(child);
         Vec3<Wide<8>> corners[3];
         LoadCorners(begin, end, corners);
-        maxFraction = MeetLeaf(sheared, corners, begin, end, fromBehind, maxFraction, visit);
+        maxFraction = IntersectLeaf(sheared, corners, begin, end, fromBehind, maxFraction, visit);
         return maxFraction;
     });
 }
@@ -150,7 +150,7 @@ bool TriangleMesh::CastRay(const SurfaceRay& ray, SurfaceHit& hit, float maxFrac
 uint32_t TriangleMesh::CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hits, const float* maxFractions) const {
     constexpr float kSlack = 1.0f + 0x1p-18f;
     // If more leaves per ray are found that no ray hits, single casts are faster.
-    constexpr int kMostInVain = 2;
+    constexpr int kMostMissedLeaves = 2;
     const MeshTree& tree = *tree_;
     RayLanes lanes;
     ShearedRay sheared[kMostRays];
@@ -179,7 +179,7 @@ uint32_t TriangleMesh::CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hi
     const Vector3 reach = origins.HalfExtents() + displacements.HalfExtents() + Vector3::Constant(2 * pad) +
                           displacements.lower.cwiseAbs().cwiseMax(displacements.upper.cwiseAbs()) * 0x1p-20f;
     const MeshTreeRay swept(origins.Center(), BoundedInverse(displacement), reach);
-    int inVain = 0;
+    int missedLeaves = 0;
     tree.SearchRay(swept, largest, [&](const MeshNode& node, int child) {
         float lower[3], upper[3];
         for (int axis = 0; axis < 3; ++axis) {
@@ -187,21 +187,21 @@ uint32_t TriangleMesh::CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hi
             lower[axis] = node.origin[axis] + step * static_cast<float>(node.lower[axis][child]);
             upper[axis] = node.origin[axis] + step * static_cast<float>(node.upper[axis][child]);
         }
-        uint32_t met = lanes.Intersecting(lower, upper, kSlack);
-        if (met == 0) return ++inVain > kMostInVain * lanes.count ? -1.0f : largest;
+        uint32_t hit = lanes.Intersecting(lower, upper, kSlack);
+        if (hit == 0) return ++missedLeaves > kMostMissedLeaves * lanes.count ? -1.0f : largest;
         const uint32_t begin = node.LeafBegin(child), end = node.LeafEnd(child);
         Vec3<Wide<8>> corners[3];
         LoadCorners(begin, end, corners);
-        for (; met != 0; met &= met - 1) {
-            const int i = std::countr_zero(met);
+        for (; hit != 0; hit &= hit - 1) {
+            const int i = std::countr_zero(hit);
             const bool fromBehind = isTwoSided_ || rays[rayOf[i]].backFaces;
-            lanes.limit[i] = MeetLeaf(
+            lanes.limit[i] = IntersectLeaf(
                 sheared[i], corners, begin, end, fromBehind, lanes.limit[i],
                 [&](uint32_t id, float fraction, bool isBackFace) { return best[i].Take(id, fraction, isBackFace); });
         }
         return largest = lanes.LargestLimit();
     });
-    if (inVain > kMostInVain * lanes.count) return SurfaceShape::CastRays(rays, hits, maxFractions);
+    if (missedLeaves > kMostMissedLeaves * lanes.count) return SurfaceShape::CastRays(rays, hits, maxFractions);
     uint32_t hit = 0;
     for (int k = 0; k < lanes.count; ++k) {
         if (best[k].triangle == kNoTriangle) continue;

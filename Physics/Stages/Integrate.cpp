@@ -44,6 +44,12 @@ struct Rows {
         if constexpr (std::is_same_v<Real, float>) std::copy_n(at, 8, rows[0]);
         else ScatterRows<kCount>(rows, at, count);
     }
+    // First and Second. The other two numbers of a single body may have changed since they were read, those of lanes
+    // not.
+    void WriteVectors(int count) const {
+        if constexpr (std::is_same_v<Real, float>) std::copy_n(at, 6, rows[0]);
+        else Write(count);
+    }
     // Where the mask is set.
     void Write(int count, const WideMask<kCount>& mask) {
         const uint32_t lanes = mask.ToBits();
@@ -72,9 +78,9 @@ struct SubstepVelocity {
     }
     void Write(int count) {
         unconstrained.Set(own.linear, own.angular);
-        unconstrained.Write(count);
+        unconstrained.WriteVectors(count);
         velocity.Set(own.linear + carried.linear, own.angular + carried.angular);
-        velocity.Write(count);
+        velocity.WriteVectors(count);  // limits of speeds set the marks of a body
     }
 };
 

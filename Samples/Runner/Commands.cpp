@@ -29,7 +29,7 @@ int Fail(const std::string& message) {
     return 1;
 }
 
-// The settings that all scenes share.
+// What to simulate, report and record.
 struct Job {
     const Scene& scene;
     SceneInput input;
@@ -39,7 +39,8 @@ struct Job {
     std::string description;
 };
 
-// Before the simulation, so that it is not run in vain if the folder is misspelled. Returns an empty text if all is well.
+// Before the simulation, so that it is not run in vain if the folder is misspelled. Returns an empty text if all is
+// well.
 std::string CheckOutputs(const RunOptions& options, const JsonOutput& json) {
     std::error_code error;
     if (options.recordHtml || options.recordGlb) {
