@@ -9,8 +9,10 @@
 // - Update writes the leaf's box and enlarges its ancestors as far as needed; ancestors that could shrink are only
 //   marked stale.
 // - Remove empties the leaf's slot and frees nodes that became empty.
-// - Optimize refits the stale boxes, and rebuilds the tree where that pays (see Optimize). Where most leaves change at
-//   once, UpdateLeaves and VisitPairs cost less per leaf. Both work on ranges of nodes, which threads may share.
+// - Optimize refits the stale boxes, and rebuilds the tree where that pays.
+//
+// Where most leaves change at once, UpdateLeaves and VisitPairs cost less per leaf. Both work on ranges of nodes, which
+// threads may share.
 #pragma once
 
 #include <Fulcrum/Math/Bounds.h>

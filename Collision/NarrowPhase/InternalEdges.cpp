@@ -4,6 +4,7 @@
 #include <Fulcrum/Collision/NarrowPhase/TriangleFaceContact.h>
 
 #include <algorithm>
+#include <cstddef>
 
 namespace fulcrum {
 

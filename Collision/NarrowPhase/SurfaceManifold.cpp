@@ -4,6 +4,7 @@
 #include <Fulcrum/Collision/NarrowPhase/ManifoldReduction.h>
 
 #include <algorithm>
+#include <cstddef>
 
 namespace fulcrum {
 
