@@ -88,10 +88,4 @@ inline Vec3<Real> PerpendicularTo(const Vec3<Real>& n) {
     return Vec3<Real>(Real(1.0f) + sign * n.x() * n.x() * a, sign * n.x() * n.y() * a, -sign * n.x());
 }
 
-template <int N>
-inline Vector3 LaneOf(const Vec3<Wide<N>>& v, uint32_t lane) {
-    const int i = static_cast<int>(lane);
-    return Vector3(v.x()[i], v.y()[i], v.z()[i]);
-}
-
 }  // namespace fulcrum

@@ -1,4 +1,5 @@
-// The interface through which the engine uses threads, so that a game can plug in its own. ThreadPool is ours.
+// The interface through which the engine uses threads, so that a game can plug in its own. ThreadPool is the engine's
+// implementation.
 #pragma once
 
 #include <cstdint>
@@ -44,7 +45,7 @@ public:
     virtual void ParallelFor(uint32_t count, uint32_t minimumRange, FunctionRef<void(JobRange)> job) = 0;
 
     // Runs `job(worker)` once on every worker that is free, and always on the caller; returns when all that began have
-    // returned. The engine relies on no more than the caller's own run: others are helpers.
+    // returned. The engine relies on the caller's own run alone: further workers only make it faster.
     virtual void RunOnWorkers(FunctionRef<void(uint32_t worker)> job) = 0;
 };
 

@@ -1,14 +1,13 @@
-// How the workers stay in step. There is one counter, `done`: the blocks finished since the first phase. Block counts
-// are known beforehand, so each worker walks through the phases on its own and knows from `done` alone whether the
-// phase it is at may begin (done has reached the sum of the earlier counts) or is over already. Nobody opens a phase
-// for the others; who finishes the last block has thereby begun the next phase.
+// How workers synchronize. One counter, `done`, counts the blocks finished since the first phase. Block counts are
+// known beforehand, so each worker goes through the phases on its own and knows from `done` alone whether its phase may
+// begin (done has reached the sum of the earlier counts) or is over. No thread opens a phase for the others: finishing
+// the last block of a phase begins the next one.
 //
-// Blocks are claimed from shares: one word a worker, with the phase and how many blocks of its share have been taken at
-// the front (by the owner) and at the back (by thieves). A word is never reset: a claim for a later phase than the
-// word's starts it afresh, and a claim for an earlier phase fails. So a worker may stall anywhere, for any time:
-// - before its claim: others take its blocks over, and when it goes on its claim fails, because a phase is only over
-// once
-//   every share's word says that all of the share is taken;
+// Blocks are claimed from shares: one word per worker, with the phase and the number of blocks of the share taken from
+// the front (by the owner) and from the back (by thieves). Words are never reset: a claim for a later phase than the
+// word's restarts it, a claim for an earlier phase fails. So a worker may stall anywhere, for any time:
+// - before its claim: others take its blocks, and when it goes on its claim fails, because a phase is only over once
+//   all of every share is taken;
 // - after its claim: the others wait, since only this worker can finish that block.
 //
 // Memory order: a worker adds to `done` with release after its blocks, and begins a phase after an acquiring load saw
@@ -16,8 +15,7 @@
 // store, and the leader acquired everything before it. Claims need no order: they carry no data, and atomics of one
 // word are coherent.
 //
-// The state is on the caller's stack: RunOnWorkers returns after all that began have returned, and lets nobody in
-// later.
+// The state is on the caller's stack: RunOnWorkers returns after all that began have returned, and starts none later.
 #include <Fulcrum/Jobs/Phases.h>
 #include <Fulcrum/Jobs/Spin.h>
 
@@ -31,10 +29,11 @@ namespace {
 constexpr uint32_t kMaximumShares = 64;       // further workers begin at another's share
 constexpr uint32_t kMaximumBlocks = 1 << 20;  // fewer in a phase, so that a share's two counts fit 20 bits each
 constexpr uint32_t kMaximumPhases = 1 << 24;
-constexpr std::chrono::microseconds kBarrierSpin{100};  // several blocks; afterwards the awaited may need this core
-// A look at another's share takes the cache line away from its owner: 0.1 us on its next claim. So whoever is done
-// first waits a little, which is enough where the load is even.
-constexpr uint32_t kTurnsBeforeStealing = 16;
+// As long as several blocks take; after that the thread waited for may need this core.
+constexpr std::chrono::microseconds kBarrierSpin{100};
+// Reading another worker's share takes the cache line from its owner, which costs it 0.1 us at its next claim. So a
+// worker that finishes first waits a little before it steals.
+constexpr uint32_t kPausesBeforeStealing = 16;
 
 struct Claims {
     uint32_t phase, front, back;
@@ -63,7 +62,7 @@ private:
     uint32_t RunOtherShares(uint32_t phase, uint32_t worker);
     uint32_t Claim(uint32_t phase, uint32_t share, Side side);
 
-    // Rounded up, so that the first share has a lone block.
+    // Rounded up, so that a single block is in the first share.
     uint32_t ShareBegin(uint32_t share, uint32_t count) const {
         return static_cast<uint32_t>((uint64_t{count} * share + shareCount_ - 1) / shareCount_);
     }
@@ -83,7 +82,7 @@ private:
 void PhaseRunner::Await(uint64_t blocks) {
     Spin spin(kBarrierSpin);
     while (done_.load(std::memory_order_acquire) < blocks)
-        if (!spin.Turn()) std::this_thread::yield();
+        if (!spin.Pause()) std::this_thread::yield();
 }
 
 // The block's index in the phase, or kNone where all of the share is taken or the phase is over.
@@ -131,12 +130,12 @@ uint32_t PhaseRunner::RunOtherShares(uint32_t phase, uint32_t worker) {
 void PhaseRunner::RunWithOthers(uint32_t phase, uint32_t worker, uint64_t doneAtEnd) {
     if (const uint32_t ran = RunOwnShare(phase, worker)) done_.fetch_add(ran, std::memory_order_release);
     const bool somebodyIsMissing = arrived_.load(std::memory_order_relaxed) < shareCount_;
-    uint32_t turnsBeforeStealing = somebodyIsMissing ? 0 : kTurnsBeforeStealing;
+    uint32_t turnsBeforeStealing = somebodyIsMissing ? 0 : kPausesBeforeStealing;
     Spin spin(kBarrierSpin);
     while (done_.load(std::memory_order_acquire) < doneAtEnd) {
         if (turnsBeforeStealing-- == 0) {
             if (const uint32_t ran = RunOtherShares(phase, worker)) done_.fetch_add(ran, std::memory_order_release);
-        } else if (!spin.Turn()) {
+        } else if (!spin.Pause()) {
             std::this_thread::yield();
         }
     }
@@ -144,7 +143,7 @@ void PhaseRunner::RunWithOthers(uint32_t phase, uint32_t worker, uint64_t doneAt
 
 void PhaseRunner::Work(uint32_t worker) {
     const bool leads = arrived_.fetch_add(1, std::memory_order_relaxed) == 0;
-    bool published = true;  // done_ has the lone blocks that this worker ran as the leader
+    bool published = true;  // done_ includes the single-block phases that this worker ran as the leader
     uint64_t earlier = 0;   // blocks of the phases before this one
     const auto phaseCount = static_cast<uint32_t>(blockCounts_.size());
     for (uint32_t phase = 0; phase < phaseCount; ++phase) {
@@ -174,7 +173,7 @@ void RunPhases(JobSystem& jobs, std::span<const uint32_t> blockCounts,
         jobs.RunOnWorkers([&](uint32_t worker) { runner.Work(worker); });
         return;
     }
-    // One range of one item: on one thread, under its own worker.
+    // One range of one item: on the calling thread, under its own worker number.
     jobs.ParallelFor(1, 1, [&](JobRange range) {
         const auto phaseCount = static_cast<uint32_t>(blockCounts.size());
         for (uint32_t phase = 0; phase < phaseCount; ++phase)

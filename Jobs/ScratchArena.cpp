@@ -8,7 +8,7 @@ namespace {
 constexpr size_t kFirstBlockBytes = 64 * 1024;
 }
 
-// A block is as large as all before it together: the capacity doubles, so few blocks serve even a step that grows.
+// Each block is as large as all before it together: the capacity doubles, so there are few blocks.
 void ScratchArena::AddBlock(size_t minimumBytes) {
     const size_t bytes = std::max({minimumBytes, capacity_, kFirstBlockBytes});
     blocks_.emplace_back(static_cast<std::byte*>(::operator new (bytes, std::align_val_t{kAlignment})));

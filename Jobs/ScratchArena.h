@@ -1,5 +1,4 @@
-// Memory for one step: taken piece by piece, given back all at once. Each worker of each PhysicsSystem has one.
-// Not thread-safe.
+// Arena (bump) allocator for one step: freed all at once. Each worker of each PhysicsSystem has one. Not thread-safe.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +17,7 @@ public:
     // Reserves nothing before the first Allocate.
     ScratchArena() = default;
 
-    // Uninitialized room for `count` objects, aligned to kAlignment, valid until Reset. Empty for a count of 0.
+    // Uninitialized memory for `count` objects, aligned to kAlignment, valid until Reset. Empty for a count of 0.
     // Pieces of different calls share no cache line. Throws std::bad_alloc where memory has run out.
     template <class T>
     requires(std::is_trivially_destructible_v<T> && alignof(T) <= kAlignment) std::span<T> Allocate(size_t count) {
@@ -26,9 +25,8 @@ public:
         return {static_cast<T*>(AllocateBytes(count * sizeof(T))), count};
     }
 
-    // Ends the life of everything allocated and keeps the memory. What had to be split over several blocks since the
-    // last Reset becomes one block that has room for all of it, so steps of like size allocate once or twice and then
-    // never.
+    // Frees everything and keeps the memory. If several blocks were needed since the last Reset they are merged into
+    // one, so steps of similar size soon allocate nothing.
     void Reset();
 
     size_t CapacityInBytes() const { return capacity_; }

@@ -1,11 +1,11 @@
-// The gate. One word says whether there is a job to join and who is inside:
+// The gate: one word that says whether there is a job to join and how many helpers are in it:
 //
 //     generation (22 bits) | stop (1) | open (1) | helpers inside (8)
 //
 // The caller writes job_ while the gate is shut and empty, opens it under a new generation, does its own share, shuts
-// it, and waits until it is empty. A helper enters by a compare-and-swap that counts it in, which succeeds only while
-// the gate is open: whoever is late finds it shut and never touches the job, which lives on the caller's stack. Each
-// helper enters a generation once.
+// it, and waits until it is empty. A helper enters by a compare-and-swap that increments the count, which succeeds only
+// while the gate is open: a late helper finds it shut and never touches the job, which lives on the caller's stack.
+// Each helper enters a generation once.
 //
 // The opening store releases job_ and the caller's earlier writes, and the helper's entry acquires them; the helper's
 // exit releases its writes, and the caller acquires them where it shuts the gate or waits. Further entries and exits
@@ -25,13 +25,14 @@ constexpr uint32_t kInsideMask = 0xff;
 constexpr uint32_t kOpen = 0x100;
 constexpr uint32_t kStop = 0x200;
 constexpr uint32_t kGeneration = 0x400;
-constexpr std::chrono::microseconds kIdleSpin{
-    100};  // a helper without a job: longer than a serial stage of a small step
-constexpr std::chrono::microseconds kFinishSpin{50};  // the caller, for helpers that are still inside
+// A helper without a job: longer than a serial stage of a small step.
+constexpr std::chrono::microseconds kIdleSpin{100};
+// The caller, for helpers that are still inside.
+constexpr std::chrono::microseconds kFinishSpin{50};
 
 uint32_t GenerationOf(uint32_t gate) { return gate / kGeneration; }
 
-// Which workers this thread is, innermost job first: a job of one pool may use another pool.
+// The worker numbers of this thread, innermost job first: a job of one pool may use another pool.
 struct Membership {
     const ThreadPool* pool;
     uint32_t worker;
@@ -49,8 +50,8 @@ uint64_t Pack(uint32_t begin, uint32_t end) { return uint64_t{begin} << 32 | end
 uint32_t BeginOf(uint64_t blocks) { return static_cast<uint32_t>(blocks >> 32); }
 uint32_t EndOf(uint64_t blocks) { return static_cast<uint32_t>(blocks); }
 
-// An eighth of what is left at a time: few atomic operations at first, small pieces near the end, so that no worker is
-// left with a long one. Always at least one block.
+// Takes an eighth of the remaining blocks at a time: few atomic operations at first, small pieces near the end for load
+// balance. At least one block.
 uint32_t PieceOf(uint32_t blocksLeft) { return (blocksLeft + 7) / 8; }
 
 }  // namespace
@@ -67,7 +68,7 @@ ThreadPool::ThreadPool(uint32_t workers) : threads_(new Threads) {
         for (uint32_t worker = 1; worker < workers; ++worker)
             threads_->list.emplace_back([this, worker] { RunHelper(worker); });
     } catch (const std::system_error&) {
-        // No more threads to be had: go on with those that started.
+        // The system refuses more threads: go on with those that started.
     }
     helperCount_ = static_cast<uint32_t>(threads_->list.size());
 }
@@ -111,15 +112,15 @@ void ThreadPool::ParallelFor(uint32_t count, uint32_t minimumRange, FunctionRef<
         for (;;) {
             Blocks piece = TakeFromOwnShare(worker);
             if (piece.begin == piece.end) piece = Steal(worker);
-            if (piece.begin == piece.end) return;  // what others still hold, they finish
+            if (piece.begin == piece.end) return;  // other workers finish the blocks that they have taken
             const auto last = static_cast<uint32_t>(std::min<uint64_t>(uint64_t{piece.end} * blockSize, count));
             job({piece.begin * blockSize, last, worker});
         }
     });
 }
 
-// The blocks in a word are taken at most once whoever takes them: a successful exchange means that they were there just
-// then, so that a word that went and came back does no harm. No memory order is needed: the gate orders the data.
+// The blocks in a word are taken at most once: a successful exchange means that they were there at that moment, so that
+// ABA does no harm. No memory order is needed: the gate orders the data.
 ThreadPool::Blocks ThreadPool::TakeFromOwnShare(uint32_t worker) {
     std::atomic<uint64_t>& share = shares_[worker].blocks;
     uint64_t blocks = share.load(std::memory_order_relaxed);
@@ -156,8 +157,8 @@ void ThreadPool::Dispatch(FunctionRef<void(uint32_t)> job) noexcept {
     innermost = &membership;
     job_ = &job;
     const uint32_t opened = (GenerationOf(gate_.load(std::memory_order_relaxed)) + 1) * kGeneration | kOpen;
-    // An exchange, not a store: the full fence keeps it before notify_all's look at who sleeps. Without waiters that
-    // look is all that notify_all costs.
+    // An exchange, not a store: the full fence orders it before notify_all's check for sleeping threads, which is all
+    // that notify_all costs without waiters.
     gate_.exchange(opened, std::memory_order_seq_cst);
     gate_.notify_all();
 
@@ -166,7 +167,7 @@ void ThreadPool::Dispatch(FunctionRef<void(uint32_t)> job) noexcept {
     if ((gate_.fetch_and(~kOpen, std::memory_order_acquire) & kInsideMask) != 0) {
         Spin spin(kFinishSpin);
         while ((gate_.load(std::memory_order_acquire) & kInsideMask) != 0)
-            if (!spin.Turn()) std::this_thread::yield();
+            if (!spin.Pause()) std::this_thread::yield();
     }
     innermost = membership.outer;
     busy_.store(false, std::memory_order_release);
@@ -181,7 +182,7 @@ void ThreadPool::RunHelper(uint32_t worker) {
         uint32_t gate = gate_.load(std::memory_order_relaxed);
         while (!(gate & kOpen) || GenerationOf(gate) == joined) {
             if (gate & kStop) return;
-            if (!spin.Turn()) {
+            if (!spin.Pause()) {
                 gate_.wait(gate, std::memory_order_relaxed);
                 spin = Spin(kIdleSpin);
             }

@@ -1,6 +1,5 @@
-// The engine's own job system: threads that steal ranges from one another.
-// Used by PhysicsSystem where the game brings no JobSystem of its own.
-// Any thread may call it, jobs included; constructed and destroyed by one thread while no call is running.
+// The engine's own job system: a work-stealing thread pool. Used by PhysicsSystem where the game brings no JobSystem of
+// its own. Any thread may call it, jobs included; constructed and destroyed by one thread while no call is running.
 #pragma once
 
 #include <Fulcrum/Jobs/JobSystem.h>
@@ -10,12 +9,12 @@
 
 namespace fulcrum {
 
-// The calling thread is worker 0 and always does its share: helpers make a call faster, but no call waits for a helper
-// that has not begun. Helpers spin for some 100 us after a job, which covers the gaps within a step, and then sleep.
+// The calling thread is worker 0 and always does its share: no call waits for a helper thread that has not begun.
+// Helpers spin for some 100 us after a job, which covers the gaps within a step, and then sleep.
 //
-// Only one call has the helpers at a time. A call from inside a job runs on its own thread alone, under the worker that
-// thread already has. So does a call from a second thread outside the pool, as worker 0 of its own call: ids are unique
-// within a call, and memory they select must belong to that call.
+// Only one call uses the helpers at a time. A call from inside a job runs on its own thread alone, under the worker
+// that thread already has. So does a call from a second thread outside the pool, as worker 0 of its own call: ids are
+// unique within a call, and memory they select must belong to that call.
 //
 // Jobs must not throw. Nothing is allocated after construction.
 class ThreadPool final : public JobSystem {
@@ -54,7 +53,7 @@ private:
     Blocks TakeFromOwnShare(uint32_t worker);
     Blocks Steal(uint32_t thief);
 
-    // The door to the current job: generation, open bit, number of helpers inside. See ThreadPool.cpp.
+    // The gate to the current job: generation, open bit, number of helpers inside. See ThreadPool.cpp.
     alignas(64) std::atomic<uint32_t> gate_{0};
     const FunctionRef<void(uint32_t)>* job_ = nullptr;
     alignas(64) std::atomic<bool> busy_{false};

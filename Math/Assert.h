@@ -1,5 +1,5 @@
 // Checks of the engine's own invariants, compiled in where FULCRUM_ASSERTIONS is defined (debug and sanitizer presets).
-// What a caller passes in is never checked with these: that is answered with a Result.
+// Arguments of callers are not checked with these: invalid ones give an error in a Result.
 #pragma once
 
 #ifdef FULCRUM_ASSERTIONS

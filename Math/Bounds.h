@@ -1,5 +1,5 @@
-// Axis-aligned bounding boxes. Bounds (float) serves shapes in their own frame and the broad phase, where rounding is
-// always outwards, so that a box in double is inside its Bounds however far from the origin.
+// Axis-aligned bounding boxes. Bounds (float) is for shapes in their own frame and for the broad phase. Boxes in double
+// are rounded outwards to it, so that they are contained however far from the origin.
 #pragma once
 
 #include <Fulcrum/Math/Vector.h>
@@ -33,7 +33,7 @@ struct Bounds {
         return lower.x() <= b.lower.x() && b.upper.x() <= upper.x() && lower.y() <= b.lower.y() &&
                b.upper.y() <= upper.y() && lower.z() <= b.lower.z() && b.upper.z() <= upper.z();
     }
-    // Half the surface area: the cost of a tree's node.
+    // Half the surface area: the cost of a tree's node (SAH).
     float HalfArea() const {
         const Vector3 d = upper - lower;
         return d.x() * d.y() + d.y() * d.z() + d.z() * d.x();

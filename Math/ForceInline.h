@@ -1,5 +1,5 @@
-// For the kernels alone: code that is only fast where the compiler inlines all of it, which by itself it does not.
-// Builds with assertions, which are for finding errors, do without: they compile several times faster.
+// For kernels that are only fast if fully inlined, which compilers do not do by themselves. Off in builds with
+// assertions, which compile several times faster without it.
 #pragma once
 
 #if defined(FULCRUM_ASSERTIONS)

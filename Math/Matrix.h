@@ -14,6 +14,9 @@ struct Mat3 {
     Vec3<Real> TransposeMultiply(const Vec3<Real>& v) const {
         return Vec3<Real>(Dot<Real>(x, v), Dot<Real>(y, v), Dot<Real>(z, v));
     }
+    Mat3 Transposed() const {
+        return {Vec3<Real>(x.x(), y.x(), z.x()), Vec3<Real>(x.y(), y.y(), z.y()), Vec3<Real>(x.z(), y.z(), z.z())};
+    }
 };
 
 using Matrix3 = Mat3<float>;

@@ -1,5 +1,5 @@
-// The answer to a call whose input may be wrong: a value, or an Error that says what is wrong and where.
-// Nothing has been created or changed where an Error is returned.
+// The result of a call whose input may be invalid: a value, or an Error that says what is wrong and where. A call that
+// returns an Error has created and changed nothing.
 #pragma once
 
 #include <Fulcrum/Math/Assert.h>
@@ -30,8 +30,7 @@ struct Error {
     std::string message;  // names the field, its value and what would be valid
 };
 
-// Prints the message to standard error and ends the program: what a Result answers to a question that it has no answer
-// for.
+// Prints the message to standard error and aborts: for Value() of an error and GetError() of a value.
 [[noreturn, gnu::cold, gnu::noinline]] inline void AbortWith(const char* what, const std::string& message) {
     std::fprintf(stderr, "fulcrum: %s%s\n", what, message.c_str());
     std::abort();
@@ -44,7 +43,7 @@ public:
     Result(Error error) : content_(std::move(error)) {}
 
     explicit operator bool() const { return content_.index() == 0; }
-    // Only where the result is true: else, in every build, the error's message is printed and the program aborts.
+    // Only if the result is true. Otherwise prints the error's message and aborts, in every build.
     T& Value() {
         if (content_.index() != 0) [[unlikely]]
             AbortWith("Value() of an error: ", GetError().message);
@@ -55,7 +54,7 @@ public:
             AbortWith("Value() of an error: ", GetError().message);
         return *std::get_if<0>(&content_);
     }
-    // Only where the result is false: else the program aborts.
+    // Only if the result is false. Otherwise aborts.
     const Error& GetError() const {
         if (content_.index() != 1) [[unlikely]]
             AbortWith("GetError() of a result without an error", "");

@@ -1,5 +1,6 @@
-// Sine, arc tangent, exponential and their kin with the same bits on every machine: made of + - * / sqrt, comparisons
-// and bit operations only. Used wherever the engine turns angles into rotations and back. Free functions, no state.
+// Sine, arc tangent, exponential and related functions with the same bits on every machine: made of + - * / sqrt,
+// comparisons and bit operations only. Used wherever the engine turns angles into rotations and back. Free functions,
+// no state.
 //
 // Where not said otherwise a function takes Real = float, double or, for angles, Wide<N>, whose lanes give the bits of
 // float. Arguments must be finite. The errors are the largest measured, in units of the result's last place: over every
@@ -33,8 +34,8 @@ inline double Sqrt(double a) { return std::sqrt(a); }
 template <class Real>
 inline constexpr bool kIsDouble = std::is_same_v<Real, double>;
 
-// The nearest integer, to even from the middle: adding 1.5 * 2^(digits - 1) leaves no room for a fraction.
-// |x| < 2^22 (float), 2^51 (double).
+// The nearest integer, ties to even: adding 1.5 * 2^(digits - 1) rounds the fraction away. |x| < 2^22 (float), 2^51
+// (double).
 template <class Real>
 inline Real Round(const Real& x) {
     const Real shift = kIsDouble<Real> ? Real(6755399441055744.0) : Real(12582912.0f);

@@ -1,10 +1,9 @@
 // The engine's vectors, of three coordinates. Vector3 (float) is for everything relative to a body, a pair or a cell;
 // Position (double) for places in the world. Kernels are templates over Real: float, double, or Wide<N> for N lanes.
 //
-// A class of our own and not Eigen's: its header alone takes a second to compile, and its expressions most of the time
-// of every file that adds two vectors (Docs/Architecture.md). Members that Eigen has, too, have its names and its
-// meaning. Vectors convert implicitly from Eigen's expressions, and to Eigen's vectors in copies and assignments
-// (Eigen::Vector3f e = v), wherever Eigen is included.
+// Own class instead of Eigen's, which is slow to compile (Docs/Architecture.md). Members that Eigen has, too, have the
+// same names and meaning. Vectors convert implicitly from Eigen's expressions, and to Eigen's vectors in copies and
+// assignments (Eigen::Vector3f e = v), wherever Eigen is included.
 #pragma once
 
 #include <cmath>
@@ -91,7 +90,7 @@ public:
     }
     Vec3 cwiseProduct(const Vec3& b) const { return {v_[0] * b.v_[0], v_[1] * b.v_[1], v_[2] * b.v_[2]}; }
     Vec3 cwiseQuotient(const Vec3& b) const { return {v_[0] / b.v_[0], v_[1] / b.v_[1], v_[2] / b.v_[2]}; }
-    // Where a coordinate of b is not a number, that of this vector stays.
+    // If a coordinate of b is NaN, that of this vector is kept.
     Vec3 cwiseMin(const Vec3& b) const { return {Min(v_[0], b.v_[0]), Min(v_[1], b.v_[1]), Min(v_[2], b.v_[2])}; }
     Vec3 cwiseMax(const Vec3& b) const { return {Max(v_[0], b.v_[0]), Max(v_[1], b.v_[1]), Max(v_[2], b.v_[2])}; }
     Vec3 cwiseMin(const Real& limit) const { return cwiseMin(Constant(limit)); }
@@ -101,7 +100,7 @@ public:
     Real sum() const { return v_[0] + (v_[1] + v_[2]); }
     // Whether each coordinate is at most `tolerance` from 0.
     bool isZero(const Real& tolerance) const { return cwiseAbs().isAtMost(Constant(tolerance)); }
-    // Whether no coordinate is above, or not below, that of b.
+    // Whether every coordinate is <=, or <, that of b.
     bool isAtMost(const Vec3& b) const { return v_[0] <= b.v_[0] && v_[1] <= b.v_[1] && v_[2] <= b.v_[2]; }
     bool isBelow(const Vec3& b) const { return v_[0] < b.v_[0] && v_[1] < b.v_[1] && v_[2] < b.v_[2]; }
 

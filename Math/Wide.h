@@ -1,7 +1,7 @@
 // Lanes: Wide<N> is N floats (N = 1, 4, 8, 16) that are added, multiplied, compared and selected at once. Kernels are
 // templates over Real = float or Wide<N> and give the same bits for every N. The only file with intrinsics and CPU
-// conditionals. The arithmetic is the compilers' vector extension, so any width works on any CPU; intrinsics are used
-// where the compilers' own code for an operation is poor.
+// conditionals. The arithmetic uses the compilers' vector extension, so any width works on any CPU; intrinsics are used
+// where compilers generate poor code.
 #pragma once
 
 #include <Fulcrum/Math/ForceInline.h>
@@ -17,9 +17,8 @@
 #include <emmintrin.h>
 #endif
 
-// Where no register holds eight floats GCC and Clang say that functions which take or return them are called otherwise
-// than where one does. No such function is called from one to the other: the name of the namespace below is a part of
-// its name.
+// GCC and Clang warn that functions with vectors wider than a register have another ABI than on CPUs with such
+// registers. The two are never mixed: the inline namespace below is part of their names.
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpsabi"
@@ -27,9 +26,8 @@
 
 namespace fulcrum {
 
-// A program may be compiled for another processor than the library that it links. What is below then differs in
-// alignment, in how it is called and in its instructions, and the linker keeps one copy of an inline function of a
-// name.
+// A program may be compiled for another CPU than the library that it links. The inline namespaces keep the linker from
+// merging inline functions that differ in alignment, calling convention and instructions (ODR).
 #if defined(FULCRUM_SCALAR_LANES)
 inline namespace scalar_lanes {
 #elif defined(__AVX512F__)
@@ -72,7 +70,7 @@ inline constexpr const char* kSimdName = "vector";
 #endif
 
 namespace registers {
-// No type is aligned more strictly than a register of this build, which is what Eigen's storage expects too.
+// No type is aligned more strictly than a register of this build, as Eigen's storage expects.
 #if defined(__AVX512F__)
 #define FULCRUM_LANES_OF(lanes) __attribute__((vector_size(4 * lanes)))
 inline constexpr int kRegisterBytes = 64;
@@ -327,6 +325,11 @@ FULCRUM_FORCE_INLINE void Transpose4(__m128& r0, __m128& r1, __m128& r2, __m128&
 }
 #endif
 }  // namespace registers
+
+template <int N>
+inline Vector3 LaneOf(const Vec3<Wide<N>>& v, int lane) {
+    return Vector3(v.x()[lane], v.y()[lane], v.z()[lane]);
+}
 
 // Reads eight floats at rows[lane] for each of N lanes into eight wide values: out[k][lane] = rows[lane][k].
 // The rows are 32-byte aligned.

@@ -1,5 +1,5 @@
-// Four doubles that are added, multiplied, compared and selected at once: for the little that lanes of float are too
-// coarse for. Templates over Real = double or WideDouble give the same bits. The arithmetic is the compilers' vector
+// Four doubles that are added, multiplied, compared and selected at once, for kernels that need more precision than
+// float. Templates over Real = double or WideDouble give the same bits. The arithmetic is the compilers' vector
 // extension, on any CPU.
 #pragma once
 
@@ -52,7 +52,7 @@ inline WideDouble Sqrt(const WideDouble& a) {
     return r;
 }
 
-// Gets the constants and the reductions of double.
+// Uses the constants and argument reductions of double.
 namespace detail {
 template <>
 inline constexpr bool kIsDouble<WideDouble> = true;

@@ -10,9 +10,9 @@ namespace fulcrum {
 
 namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr uint8_t kBuilt = 255;  // depthFromLeaves of nodes that a build made
+constexpr uint8_t kBuilt = 255;  // depthFromLeaves of nodes that Rebuild made
 
-// What a build costs a leaf, in queries; the queries' own unit makes the rule independent of the machine.
+// The cost of a rebuild per leaf, in queries: a ratio that does not depend on the machine.
 constexpr double kBuildCostInQueries = 0.3;
 }  // namespace
 
@@ -42,7 +42,7 @@ uint32_t BoundsTree::AllocateNode() {
     } else {
         index = nodeCount_++;
         if (index == nodes_.size()) {
-            // By an eighth, not double: the nodes are most of the memory.
+            // Grows by an eighth instead of doubling: the nodes are most of the memory.
             if (nodes_.size() == nodes_.capacity()) nodes_.reserve(nodes_.size() + nodes_.size() / 8 + 16);
             nodes_.emplace_back();
         }
@@ -175,8 +175,8 @@ Bounds BoundsTree::GetBounds(uint32_t id) const {
     return Unpack(SlotBox(places_[id] / kWidth, static_cast<int>(places_[id] % kWidth)));
 }
 
-// A box inside `node` changed to `box`: enlarges the slots above that do not contain it, and notes in all of them that
-// they may be larger than needed. Once a slot contains it, those above do, and once a slot was noted, those above were.
+// A box inside `node` changed to `box`: enlarges the ancestors' slots that do not contain it and marks all of them
+// stale (possibly too large). If a slot contains the box, so do those above; if a slot is stale, so are those above.
 void BoundsTree::Loosen(uint32_t node, const Packed& box) {
     while (node != kRoot) {
         const int slot = nodes_[node].parentSlot;
@@ -200,7 +200,7 @@ void BoundsTree::Loosen(uint32_t node, const Packed& box) {
 
 // ---- Upkeep
 
-// Tightens the noted slots below a node. Returns the box around it.
+// Refits the stale slots below a node. Returns the node's box.
 BoundsTree::Packed BoundsTree::Refit(uint32_t node) {
     for (uint32_t stale = nodes_[node].stale; stale != 0; stale &= stale - 1) {
         const int slot = std::countr_zero(stale);
@@ -253,7 +253,7 @@ float BoundsTree::Cost() const {
         }
     }
     const double total = HalfArea(Union(nodes_[kRoot]));
-    // Without an area every line through the total goes through every node.
+    // If the total has no area, every line through it goes through every node.
     return static_cast<float>(total > 0 ? 1 + sum / total : nodes);
 }
 

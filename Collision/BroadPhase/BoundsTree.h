@@ -1,18 +1,18 @@
-// A dynamic tree of bounding boxes, eight to a node, that finds the leaves which overlap a box. The broad phase keeps
-// one for moving and one for static colliders. Queries may run on any number of threads at once; everything that is not
-// const is serial. The tree's shape decides the order in which leaves are found, never which: whoever needs an order
-// sorts.
+// Dynamic bounding-volume hierarchy of AABBs, eight to a node. The broad phase keeps one for moving and one for static
+// colliders and one for sensors. Queries may run on any number of threads at once; everything that is not const is
+// serial. The order in which leaves are found depends on the tree's shape, the set of leaves does not: callers that
+// need an order sort.
 //
-// Three ways to change it, each cheap on its own, and one call a step that keeps it good:
-// - Insert appends to a tree of recent arrivals, packed eight by eight in the order of their insertion, which hangs in
-// the
-//   last slot of the root. Colliders that are created together mostly lie together, so even this tree is worth
-//   searching.
-// - Update writes the leaf's box and enlarges what is above it as far as needed; it only notes what could shrink.
-// - Remove empties the leaf's slot and gives back nodes that became empty.
-// - Optimize tightens the noted boxes, and rebuilds all where that pays (see Optimize).
-// Where most leaves change at once there are ways that cost less a leaf: UpdateLeaves for their boxes, VisitPairs for
-// what they overlap. Both work on ranges of nodes, which any number of threads may share.
+// Leaves are changed by Insert, Update and Remove; Optimize, once a step, keeps the tree efficient:
+// - Insert appends to a tree of recent insertions, packed eight by eight in their order, which hangs in the last slot
+//   of the root. Colliders that are created together mostly lie together, so even this tree is efficient.
+// - Update writes the leaf's box and enlarges its ancestors as far as needed; ancestors that could shrink are only
+//   marked stale.
+// - Remove empties the leaf's slot and frees nodes that became empty.
+// - Optimize refits the stale boxes, and rebuilds the tree where that pays.
+//
+// Where most leaves change at once, UpdateLeaves and VisitPairs cost less per leaf. Both work on ranges of nodes, which
+// threads may share.
 #pragma once
 
 #include <Fulcrum/Math/Bounds.h>
@@ -29,9 +29,8 @@ class TreeRay;
 
 class BoundsTree {
 public:
-    // Ids are the caller's, dense from 0: memory grows with the largest. Bounds have lower <= upper (asserted). What of
-    // them lies beyond
-    // +-kFarthest counts as lying there, and NaN as nowhere: no number that comes in can spoil the tree.
+    // Ids are the caller's, dense from 0: memory grows with the largest. Bounds have lower <= upper (asserted).
+    // Coordinates are clamped to +-kFarthest, and boxes with NaN are found by no query.
     static constexpr float kFarthest = 1e38f;
     void Insert(uint32_t id, const Bounds& bounds);  // id is not in the tree
     void Remove(uint32_t id);                        // id is in the tree
@@ -41,24 +40,24 @@ public:
     uint32_t Size() const { return size_; }
     Bounds GetBounds(uint32_t id) const;  // id is in the tree
 
-    // Once a step: tightens the boxes above leaves that changed, and rebuilds the tree when the extra work which its
-    // loosened shape has cost the queries since the last build comes to the price of a build. Each Insert and Update is
-    // taken to be followed by one query. If the shape decays steadily, that is the cheapest moment to rebuild.
+    // Once a step: refits the ancestors of leaves that changed. Rebuilds the tree when the extra work that its looser
+    // boxes have cost queries since the last rebuild has added up to the cost of a rebuild; each Insert and Update is
+    // assumed to be followed by one query.
     void Optimize();
 
-    // Nodes are 0 .. NodeCount() - 1; any may be without leaves. What works on ranges of them is defined in
+    // Nodes are 0 .. NodeCount() - 1; any may have no leaves. The functions over ranges of nodes are defined in
     // BoundsTreeBulk.h.
     uint32_t NodeCount() const { return nodeCount_; }
-    // Writes boundsOf(uint32_t id) into all leaves of the nodes begin .. end - 1. Ranges that share no node may be
-    // written at once. Until all nodes are written and NoteUpdated was called, nothing else may be asked but NodeCount.
+    // Writes boundsOf(uint32_t id) into all leaves of the nodes begin .. end - 1. Disjoint ranges may be written in
+    // parallel. Until all nodes are written and NoteUpdated was called, only NodeCount may be called.
     template <class BoundsOf>
     void UpdateLeaves(uint32_t begin, uint32_t end, BoundsOf&& boundsOf);
     // After UpdateLeaves: how many of the leaves changed. The next Optimize, which must follow before any query, refits
     // their ancestors.
     void NoteUpdated(uint32_t changed);
 
-    // Builds the whole tree anew, top down, each node full but for the last ones; leaves that are large beside the
-    // whole, as floors are, hang right below the root.
+    // Rebuilds the whole tree, top down, each node full but for the last ones; leaves that are large compared to the
+    // whole, such as floors, hang right below the root.
     void Rebuild();
 
     // Forgets all leaves and keeps the memory.
@@ -69,8 +68,8 @@ public:
     template <class Visitor>
     void Query(const Bounds& bounds, Visitor&& visit) const;
 
-    // Calls visit(uint32_t id, uint32_t other) once for each two leaves that overlap, of which the node with the lower
-    // number is among begin .. end - 1: the ranges of all nodes together find all pairs.
+    // Calls visit(uint32_t id, uint32_t other) once for each pair of overlapping leaves, in the call whose range holds
+    // the lower-numbered node of the two: ranges that together cover all nodes find all pairs.
     template <class Visitor>
     void VisitPairs(uint32_t begin, uint32_t end, Visitor&& visit) const;
     // Calls visit(const Bounds& all, std::span<const uint32_t> ids) for the leaves of each node among begin .. end - 1
@@ -78,24 +77,23 @@ public:
     template <class Visitor>
     void VisitGroups(uint32_t begin, uint32_t end, Visitor&& visit) const;
 
-    // These two are defined in BoundsTreeCasts.h, which whoever calls them includes.
-    // Calls visit(uint32_t id) for the leaves that the ray, or moving box, meets within `maxFraction` of its way: those
-    // of a node that is met earlier come first. The visitor may lower maxFraction as it finds hits; below 0 ends the
-    // search.
+    // The next two are defined in BoundsTreeCasts.h, which callers include. Calls visit(uint32_t id) for the leaves
+    // that the ray, or moving box, hits within `maxFraction` of its displacement, those of nodes that are hit earlier
+    // first. The visitor may lower maxFraction as it finds hits; below 0 ends the search.
     template <class Visitor>
     void CastRay(const TreeRay& ray, float& maxFraction, Visitor&& visit) const;
     // The same for the leaves within `maxDistance` m of a box, nearer nodes first.
     template <class Visitor>
     void VisitNear(const Bounds& box, float& maxDistance, Visitor&& visit) const;
 
-    // A box around all leaves: the tightest after Optimize or Rebuild. Empty without leaves.
+    // A box around all leaves, tight after Optimize or Rebuild. Empty without leaves.
     Bounds TotalBounds() const;
 
     // The nodes that a random line through TotalBounds() is expected to visit (surface area heuristic); 0 without
     // leaves.
     float Cost() const;
 
-    // Bytes that the tree holds on to.
+    // Bytes allocated.
     size_t MemoryUsed() const;
 
     // Aborts where the structure is broken: a leaf unreachable or reached twice, a parent that does not contain a
@@ -107,13 +105,13 @@ private:
     static constexpr uint32_t kNowhere = ~0u;
     static constexpr uint32_t kNoNode = ~0u;
     static constexpr uint32_t kRoot = 0;
-    static constexpr int kPendingSlot = kWidth - 1;  // of the root: the tree of recent arrivals
+    static constexpr int kPendingSlot = kWidth - 1;  // of the root: the tree of recent insertions
     static constexpr int kMaxDepth = 24;             // of nodes; halving 2^32 leaves by eights needs 12
     static constexpr uint32_t kMaxPendingHeight = 22;
     static constexpr int kMaxStack = (kWidth - 1) * kMaxDepth + 1;
 
-    // Eight boxes, one a column. Upper coordinates are negated, so that a box is eight floats of which the union takes
-    // the smallest, and a query compares "row <= limit" alone. Empty slots are in neither mask; their box is inverted.
+    // Eight boxes, one per column. Upper coordinates are negated, so that the union is a minimum in all rows and a
+    // query is "row <= limit" in all rows. Empty slots are in neither mask; their box is inverted.
     struct alignas(64) Node {
         float lower[3][kWidth];
         uint32_t child[kWidth];  // a node, or the id of a leaf
@@ -128,7 +126,7 @@ private:
     };
     static_assert(sizeof(Node) == 256);
 
-    // A box as {lower, w, -upper, w'}: the union of boxes is the lane-wise minimum. What w and w' hold is the user's.
+    // A box as {lower, w, -upper, w'}: the union of boxes is the lane-wise minimum. w and w' are free for other data.
     struct alignas(32) Packed {
         float lane[8];
     };
@@ -164,7 +162,7 @@ private:
     static uint32_t TestSlots(const Node& node, const float (&limit)[6]);
     static uint32_t CastToSlots(const Node& node, const TreeRay& ray, float maxFraction, float (&nearest)[kWidth]);
     static uint32_t MeasureSlots(const Node& node, const float (&limit)[6], float maxSquare, float (&square)[kWidth]);
-    // Visits nodes in the order of what `test` says of their slots, as long as it is at most what `limit` says.
+    // Visits nodes in the order of the values that `test` gives their slots, up to the value that `limit` gives.
     template <class Test, class Limit, class Visitor>
     void VisitInOrder(Test&& test, Limit&& limit, Visitor&& visit) const;
 
@@ -178,9 +176,9 @@ private:
     uint32_t size_ = 0;
     uint32_t pendingCount_ = 0;  // insertions since the last build
     uint32_t changesSinceOptimize_ = 0;
-    double area_ = 0;       // summed half areas of all nodes but the root
+    double area_ = 0;       // sum of the half surface areas of all nodes but the root
     double builtArea_ = 0;  // the same after the last build
-    double debt_ = 0;       // queries' worth of work lost since the last build
+    double debt_ = 0;       // extra work of queries since the last build, in queries
 };
 
 // The slots whose boxes overlap the query; limit = {upper, -lower}.
@@ -218,7 +216,7 @@ void BoundsTree::Query(const Bounds& bounds, Visitor&& visit) const {
     }
 }
 
-// All boxes of leaves come in by here. The second operand of Min is what NaN becomes.
+// All boxes of leaves are clamped here. Min returns its second operand for NaN.
 inline BoundsTree::Packed BoundsTree::Pack(const Bounds& b) {
     Packed box = {{b.lower.x(), b.lower.y(), b.lower.z(), 0, -b.upper.x(), -b.upper.y(), -b.upper.z(), 0}};
     Max(Min(Wide<8>::Load(box.lane), Wide<8>(kFarthest)), Wide<8>(-kFarthest)).Store(box.lane);
@@ -234,7 +232,7 @@ inline Bounds BoundsTree::Unpack(const Packed& box) {
 
 // The box around a node's eight slots; empty ones are inverted and do not count.
 inline BoundsTree::Packed BoundsTree::Union(const Node& node) {
-    // The fourth rows are anything: their lanes are not read.
+    // The fourth rows hold arbitrary values: their lanes are not read.
     const float* const rows[8] = {node.lower[0],        node.lower[1],        node.lower[2],
                                   node.lower[2],        node.negatedUpper[0], node.negatedUpper[1],
                                   node.negatedUpper[2], node.negatedUpper[2]};

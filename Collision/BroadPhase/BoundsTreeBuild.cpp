@@ -21,16 +21,16 @@ inline float Center(const float* leaf, int axis) { return leaf[axis] - leaf[4 + 
 struct Spread {
     int axis;
     float lowest, extent;
-    // False where all centers coincide or lie beyond the floats, and any split is as good as another.
+    // False where all centers coincide or overflow, so that any split is as good as another.
     bool IsUsable() const { return extent > 1e-30f && extent < std::numeric_limits<float>::max(); }
 };
 
 // The axis along which the centers lie farthest apart.
 template <class Leaf>
 Spread LongestSpread(const Leaf* leaves, uint32_t count) {
-    // The fourth lane is an id's bits: no product here, those of denormal numbers are slow.
+    // The fourth lane holds an id's bits. It is not multiplied: denormal numbers are slow.
     using Lanes = Wide<4>;
-    constexpr uint32_t kChains = 4;  // that do not wait for each other
+    constexpr uint32_t kChains = 4;  // independent dependency chains
     const auto center = [&](uint32_t i) { return Lanes::Load(leaves[i].lane) - Lanes::Load(leaves[i].lane + 4); };
     Lanes lowest = center(0), highest = lowest;
     uint32_t i = 1;
@@ -64,7 +64,8 @@ inline void Swap(Leaf& a, Leaf& b) {
     was.Store(b.lane);
 }
 
-// Moves those that `belongs` to the front. Without branches: the tests are coin tosses.
+// Moves the elements for which `belongs` is true to the front. Without branches, which would be mispredicted half the
+// time.
 template <class Leaf, class Test>
 void Partition(Leaf* leaves, uint32_t count, Test belongs) {
     uint32_t end = 0;
@@ -75,7 +76,7 @@ void Partition(Leaf* leaves, uint32_t count, Test belongs) {
     }
 }
 
-// The split of a small range: a leaf's place is the number of leaves with smaller keys, counted lanes at a time.
+// The split of a small range: a leaf's rank is the number of leaves with smaller keys, counted in lanes.
 template <class Leaf>
 void SplitByRank(Leaf* leaves, uint32_t count, uint32_t left, const Spread& spread) {
     constexpr int kStep = kLanes >= 8 ? 8 : 4;
@@ -131,8 +132,8 @@ void BoundsTree::Rebuild() {
     builtArea_ = area_;
 }
 
-// Floors and walls among small boxes would make every node above them as large as they are, down to the last one.
-// Moves the few leaves that are longer than a quarter of the whole to the back, and returns their number.
+// Floors and walls among small boxes would enlarge every node above them. Moves the few leaves that are longer than a
+// quarter of the whole to the back, and returns their number.
 uint32_t BoundsTree::MoveLargeLeavesToBack() {
     using Lanes = Wide<4>;
     Wide<8> total(std::numeric_limits<float>::infinity());
@@ -204,7 +205,7 @@ void BoundsTree::SplitAt(uint32_t first, uint32_t count, uint32_t left) {
             SplitByRank(&gathered_[first], count, left, spread);
             return;
         }
-        // A histogram tells the slab in which the median lies; what is left of the problem is inside it.
+        // A histogram gives the slab that holds the median; the search goes on inside it.
         const float scale = static_cast<float>(kBins) / spread.extent;
         const auto place = [&](const Packed& leaf) { return (Center(leaf.lane, spread.axis) - spread.lowest) * scale; };
         uint32_t histogram[kBins] = {};

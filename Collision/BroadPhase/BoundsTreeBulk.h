@@ -1,5 +1,5 @@
-// What is asked of most leaves of a BoundsTree at once, node by node: for a step in which nearly everything moved, far
-// cheaper a leaf than one by one, and shared out by ranges of nodes. Used by UpdateBounds and FindPairs. Allocates
+// Updates and pair searches of most leaves of a BoundsTree at once, node by node: where nearly everything moved, far
+// cheaper per leaf than one query each. Used by UpdateBounds and FindPairs, in parallel over ranges of nodes. Allocates
 // nothing.
 #pragma once
 
@@ -47,9 +47,10 @@ void BoundsTree::VisitPairs(uint32_t begin, uint32_t end, Visitor&& visit) const
                 const int slot = std::countr_zero(leaves);
                 float leaf[6];
                 LimitOf(SlotBox(index, slot), leaf);
-                uint32_t met = TestSlots(group, leaf) & group.leaves;
-                if (index == own) met &= (1u << slot) - 1u;
-                for (; met != 0; met &= met - 1) visit(node.child[slot], group.child[std::countr_zero(met)]);
+                uint32_t overlaps = TestSlots(group, leaf) & group.leaves;
+                if (index == own) overlaps &= (1u << slot) - 1u;
+                for (; overlaps != 0; overlaps &= overlaps - 1)
+                    visit(node.child[slot], group.child[std::countr_zero(overlaps)]);
             }
         }
     }

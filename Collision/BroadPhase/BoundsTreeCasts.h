@@ -9,12 +9,12 @@
 
 namespace fulcrum {
 
-// From `origin` to origin + displacement, and a box about it that moves along. The origin is exact: what a float cannot
-// hold of it widens the box.
+// A box that moves from `origin` to origin + displacement. The origin is exact: the box is widened by its rounding to
+// float.
 class TreeRay {
 public:
     TreeRay(const Position& origin, const Vector3& displacement, const Vector3& halfExtents = Vector3::Zero()) {
-        constexpr float kLeast = 1e-30f;  // m: less is no motion, and its inverse still a number
+        constexpr float kLeast = 1e-30f;  // m: smaller displacements count as this, so that the inverse is finite
         for (int axis = 0; axis < 3; ++axis) {
             toLower[axis] = RoundUp(origin[axis] + double{halfExtents[axis]});
             toUpper[axis] = RoundDown(origin[axis] - double{halfExtents[axis]});
@@ -26,14 +26,13 @@ public:
 private:
     friend class BoundsTree;
     friend class TreeRays;
-    // Three roundings of half a unit each, with room: the plane's distance, the inverse and their product.
+    // Bounds three roundings of half a unit in the last place: of the plane's distance, the inverse and their product.
     static constexpr float kSlack = 1 + 0x1p-21f;
-    float toLower[3], toUpper[3];  // m: what meets the lower and the upper planes of boxes
+    float toLower[3], toUpper[3];  // m: the moving box's upper and lower corner at the start
     float inverse[3];
 };
 
-// Several rays in the same coordinates: which of them meet a box that the tree may give them, by the arithmetic of the
-// tree.
+// Several rays in the same coordinates, tested against the boxes of the tree with the same arithmetic.
 class TreeRays {
 public:
     void Add(const TreeRay& ray, float maxFraction) { lanes_.Add(ray.toLower, ray.toUpper, ray.inverse, maxFraction); }
@@ -50,7 +49,7 @@ private:
     RayLanes lanes_;
 };
 
-// The slots that the ray meets, and at which fractions. Empty ones may be among them.
+// The slots that the ray hits, and the fractions at which it enters them. Empty slots may be among them.
 inline uint32_t BoundsTree::CastToSlots(const Node& node, const TreeRay& ray, float maxFraction,
                                         float (&nearest)[kWidth]) {
     constexpr int kStep = kLanes >= 8 ? 8 : 4;

@@ -1,4 +1,4 @@
-// The whole-structure check of a BoundsTree, in release builds too: tests call it.
+// Checks the whole structure of a BoundsTree, in release builds too. For tests.
 #include <Fulcrum/Collision/BroadPhase/BoundsTree.h>
 
 #include <cstdio>

@@ -1,5 +1,5 @@
-// Rays that lie close together, against one box after another: each by a lane. Used by the packets of the queries and
-// by the surfaces. Allocates nothing.
+// A packet of rays that lie close together, one per lane, tested against one box after another. Used by batched ray
+// casts. Allocates nothing.
 #pragma once
 
 #include <Fulcrum/Math/Wide.h>
@@ -11,9 +11,9 @@ namespace fulcrum {
 struct RayLanes {
     static constexpr int kMost = 32;  // rays
 
-    // Of ray i, in column i: what meets the lower and the upper planes of boxes, and 1 / displacement.
+    // Ray i is column i: its origin, as it meets the lower and the upper planes of boxes, and 1 / displacement.
     alignas(32) float toLower[3][kMost] = {}, toUpper[3][kMost] = {}, inverse[3][kMost] = {};
-    // The fraction up to which it goes; negative: there is no such ray.
+    // The largest fraction; negative: the lane is empty.
     alignas(32) float limit[kMost];
     int count = 0;  // lanes that may hold rays
 
@@ -30,7 +30,7 @@ struct RayLanes {
         limit[count++] = maxFraction;
     }
 
-    // Boxes count larger by `pad` m.
+    // Boxes are enlarged by `pad` m.
     void Widen(float pad) {
         for (int axis = 0; axis < 3; ++axis) {
             for (int i = 0; i < kMost; i += 8) {
@@ -46,7 +46,7 @@ struct RayLanes {
         return HorizontalMax(largest);
     }
 
-    // The rays that meet the box. `slack`: a factor of the fraction at which they leave it, for what is rounded.
+    // The rays that hit the box. `slack`: a factor of the fraction at which they leave it, which covers rounding.
     uint32_t Intersecting(const float (&low)[3], const float (&high)[3], float slack) const {
         constexpr int kStep = kLanes >= 8 ? 8 : 4;
         using Lanes = Wide<kStep>;

@@ -8,8 +8,7 @@ namespace fulcrum {
 
 namespace {
 
-// One or two vertices of a core that lie farthest along a direction; more than two belong to a face or a fan of
-// needles, of which the two first found do.
+// One or two vertices of a core that lie farthest along a direction. Of more than two, two are enough.
 struct SupportingEdge {
     uint8_t vertices[2];
     int count = 0;
@@ -56,20 +55,18 @@ void AddPoint(const PolyhedronPair& pair, const Vector3& onCoreA, float separati
 // Two points where nearly parallel edges lie side by side. The axis is the manifold's normal.
 bool AddParallelEdges(const PolyhedronPair& pair, const Segment& onA, const Segment& onB, uint32_t feature, float reach,
                       Manifold& manifold) {
-    float from, to;
-    if (!CommonLength(onA, onB, from, to)) return false;
-    const Vector3 d = onB.to - onB.from;
+    const CommonLength common(onA, onB);
+    if (!common.exists) return false;
     for (int i = 0; i < 2; ++i) {
-        const Vector3 x = onA.At(i == 0 ? from : to);
-        const Vector3 y = onB.from + d * (Dot(d, Vector3(x - onB.from)) / Dot(d, d));
-        const float separation = Dot(manifold.normal, Vector3(y - x));
-        if (separation <= reach) AddPoint(pair, x, separation, feature + static_cast<uint32_t>(i), manifold);
+        const float separation = common.SeparationAlong(manifold.normal, i);
+        if (separation <= reach)
+            AddPoint(pair, common.onP[i], separation, feature + static_cast<uint32_t>(i), manifold);
     }
     return manifold.pointCount > 0;
 }
 
-// Whether a face of A that is nearly perpendicular to the axis meets, between its sides, what gives the axis: an edge
-// of the other that reaches far beyond it on both sides, and may dip below its plane there.
+// Whether the face contact of a face of A, nearly perpendicular to the axis, is as deep as the axis: then B's
+// supporting edge crosses the face, though it may be deeper beyond the face's sides.
 bool RestsOn(const PolyhedronPair& pair, const ReferenceFace& face, const KnownAxis& known,
              const ContactTolerances& tolerances, const Manifold& manifold) {
     if (!face.ofA || Dot(pair.a.faces[face.index].normal, known.axis) < tolerances.faceOfACosine) return false;
@@ -78,7 +75,7 @@ bool RestsOn(const PolyhedronPair& pair, const ReferenceFace& face, const KnownA
     return least + pair.RadiusSum() <= known.separation + tolerances.prefer;
 }
 
-// The deepest face contact that is nearly as good as the axis, if any.
+// Builds the contact of the best face whose normal is nearly as good as the axis, if any.
 bool TryFaces(const PolyhedronPair& pair, const KnownAxis& known, const ContactTolerances& tolerances, PairCache& cache,
               Manifold& manifold) {
     ReferenceFace faces[2];
@@ -99,7 +96,7 @@ bool TryFaces(const PolyhedronPair& pair, const KnownAxis& known, const ContactT
     }
     for (int i = 0; i < count; ++i) {
         const FaceContact contact = BuildFaceContact(pair, faces[i], tolerances, manifold);
-        if (manifold.pointCount == 0 || !(contact.touches || RestsOn(pair, faces[i], known, tolerances, manifold)))
+        if (manifold.pointCount == 0 || !(contact.isDeepest || RestsOn(pair, faces[i], known, tolerances, manifold)))
             continue;
         cache.kind = faces[i].ofA ? PairCache::Kind::FaceOfA : PairCache::Kind::FaceOfB;
         cache.indexA = static_cast<uint16_t>(faces[i].ofA ? faces[i].index : contact.incidentFace);
@@ -107,11 +104,6 @@ bool TryFaces(const PolyhedronPair& pair, const KnownAxis& known, const ContactT
         return true;
     }
     return false;
-}
-
-void RememberAxis(const Vector3& axis, PairCache& cache) {
-    cache.kind = PairCache::Kind::Axis;
-    for (int i = 0; i < 3; ++i) cache.axis[i] = axis[i];
 }
 
 // The point where two crossing edges come closest. The normal is perpendicular to both.
@@ -137,7 +129,7 @@ void BuildFromEdges(const PolyhedronPair& pair, const KnownAxis& known, const Co
                     PairCache& cache, Manifold& manifold) {
     manifold.normal = known.axis;
     manifold.pointCount = 0;
-    RememberAxis(known.axis, cache);
+    cache.RememberAxis(PairCache::Kind::Axis, known.axis);
     if (known.separation > tolerances.reach) return;
 
     const SupportingEdge edgeA = FindSupportingEdge(pair.a, known.axis, known.tolerance);
@@ -156,7 +148,7 @@ void BuildFromEdges(const PolyhedronPair& pair, const KnownAxis& known, const Co
             return;
         }
     }
-    // A vertex is involved. Where the cores are apart, the direction between the closest points is the better axis.
+    // A vertex is involved. If the cores are apart, the direction between the closest points is the better axis.
     const ClosestParameters closest = ClosestOnSegments(onA, onB);
     const Vector3 x = onA.At(closest.s), between = onB.At(closest.t) - x;
     const float distance = Length(between);
@@ -183,24 +175,24 @@ EdgeContact TryCachedEdges(const PolyhedronPair& pair, const ContactTolerances& 
     const uint8_t b[2] = {static_cast<uint8_t>(cache.indexB), static_cast<uint8_t>(cache.indexB >> 8)};
     EdgeContact result;
     const Segment onA = SegmentOfA(pair, a), onB = SegmentOfB(pair, b);
-    const Vector3 normal = CrossingNormal(onA, onB, Vector3(cache.axis[0], cache.axis[1], cache.axis[2]));
+    const Vector3 normal = CrossingNormal(onA, onB, cache.Axis());
     if (normal == Vector3::Zero()) return result;
     const Vector3 normalInB = pair.DirectionInB(normal);
     const float farA = FarthestVertex(pair.a, normal).value, farB = FarthestVertex(pair.b, -normalInB).value;
     const float separation = Dot(normal, pair.position) - farB - farA;
     result.beyondReach = separation > tolerances.reach;
     if (result.beyondReach) return result;
-    // A third vertex nearly as far: a face turns towards the axis, and a face contact is preferred.
+    // A third vertex is nearly as far: a face is nearly perpendicular to the axis, and a face contact is preferred.
     if (CountBeyond(pair.a, normal, farA - tolerances.prefer) > 2) return result;
     if (CountBeyond(pair.b, -normalInB, farB - tolerances.prefer) > 2) return result;
-    // The edges must still be what lies farthest along their axis, and cross well within both.
+    // The edges must still be the supporting features along their axis, and cross well within both.
     if (Abs(Dot(normal, Vector3(onB.from - onA.from)) - separation) > 1e-5f * pair.Size()) return result;
     const ClosestParameters closest = ClosestOnSegments(onA, onB);
     const Vector3 dA = onA.to - onA.from, dB = onB.to - onB.from;
     const float lengthA = Length(dA), lengthB = Length(dB);
     const float sine = Length(Cross<float>(dA, dB)) / (lengthA * lengthB);
     const float inside = Min(Min(closest.s, 1 - closest.s) * lengthA, Min(closest.t, 1 - closest.t) * lengthB) * sine;
-    result.proven = NoBetterAxis(pair, normal, -separation, inside) && inside > 0;
+    result.proven = NoBetterAxis(pair.position, pair.InnerRadii(), normal, -separation, inside) && inside > 0;
     if (!result.proven) return result;
     BuildCrossing(pair, onA, onB, normal, CrossingFeature(cache.indexA, cache.indexB), tolerances.reach, manifold);
     AddFacesAhead(pair, tolerances, manifold);

@@ -1,5 +1,6 @@
-// Manifolds from a known axis of separation or least depth: faces where one is nearly as good an axis, else the edges
-// or vertices that lie farthest along it. Called by CollidePolyhedra and the libccd pair function. Thread-safe.
+// Manifolds from a known axis of separation or least penetration: a face contact if a face normal is nearly as good an
+// axis, otherwise one of the supporting edges or vertices. Called by CollidePolyhedra and the libccd pair function.
+// Thread-safe.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/FaceContact.h>
@@ -9,14 +10,14 @@ namespace fulcrum {
 struct KnownAxis {
     Vector3 axis;      // unit, from A towards B
     float separation;  // m, of the cores along it
-    float tolerance;   // m: by which a vertex may miss the supporting feature because the axis is not exact
+    float tolerance;   // m: error of the axis; vertices this close to the extreme one belong to the supporting feature
 };
 
-// Writes the manifold and what to remember. A face of the cached kind is preferred among equals.
+// Writes the manifold and the cache. Of equally good faces the cached kind is preferred.
 void BuildContactFromAxis(const PolyhedronPair& pair, const KnownAxis& known, const ContactTolerances& tolerances,
                           PairCache& cache, Manifold& manifold);
 
-// The pair of edges that touched in the last step, if they still are the closest features beyond doubt; writes the
+// The pair of edges that touched in the last step, if they are proven to be the closest features still; writes the
 // manifold. `beyondReach`: the axis of the edges separates the pair, no points.
 struct EdgeContact {
     bool proven = false;

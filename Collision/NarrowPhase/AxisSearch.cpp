@@ -6,14 +6,14 @@ namespace fulcrum {
 
 namespace {
 
-// An edge and the arc between its faces' normals on the unit sphere; a segment has no faces and a whole circle there, a
-// flat polyhedron's edge half a circle, of which `outwards` is the middle.
+// An edge and the arc between its faces' normals on the unit sphere (Gauss map): a full circle for a segment, half a
+// circle for an edge of a flat polyhedron, with `outwards` in its middle.
 struct EdgeArc {
     Vector3 from, along, left, right, outwards;
     bool circle, flat;
 };
 
-// Tells half circles from the rest.
+// Detects half circles.
 void FindMiddle(EdgeArc& arc) {
     arc.flat = !arc.circle && Dot(arc.left, arc.right) < -0.9999f;
     if (arc.flat) arc.outwards = Normalized(Cross<float>(arc.along, arc.left));
@@ -34,7 +34,7 @@ EdgeArc ArcOfA(const PolyhedronPair& pair, int i) {
     return arc;
 }
 
-// Of B the arc is mirrored, as B enters the difference B - A with the opposite sign of its normals.
+// The arcs of B are mirrored, since the normals of B have the opposite sign in the difference B - A.
 EdgeArc ArcOfB(const PolyhedronPair& pair, int i) {
     const ConvexHull::Edge& e = pair.b.edges[i];
     EdgeArc arc;
@@ -47,8 +47,8 @@ EdgeArc ArcOfB(const PolyhedronPair& pair, int i) {
     return arc;
 }
 
-// Two edges make a face of the Minkowski difference where their arcs cross.
-// Source: D. Gregorius, The Separating Axis Test between Convex Polyhedra, GDC 2013.
+// Two edges form a face of the Minkowski difference if their arcs cross. Source: D. Gregorius, The Separating Axis Test
+// between Convex Polyhedra, GDC 2013.
 bool ArcsCross(const EdgeArc& p, const EdgeArc& q) {
     if (p.flat || q.flat) {
         EdgeArc half = p.flat ? p : q;

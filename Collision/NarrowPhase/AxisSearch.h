@@ -1,6 +1,5 @@
-// The axis of least depth of two overlapping polyhedra by trying every face normal and every pair of edges that meet in
-// their Minkowski difference. Exact whatever the input and slow: called by CollidePolyhedra where EPA gives up.
-// Allocates nothing; thread-safe.
+// The full separating axis test of two overlapping polyhedra: every face normal and every pair of edges that forms a
+// face of their Minkowski difference. Robust and slow: called if EPA gives up. Allocates nothing; thread-safe.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/PolyhedronPair.h>

@@ -1,6 +1,6 @@
-// Pair function of two boxes: the separating-axis test over the 15 axes of the two, by lanes, then the contact of the
-// best face, or of two edges where those separate clearly better. Source of the axes: S. Gottschalk, M. Lin, D.
-// Manocha, OBBTree, SIGGRAPH 1996.
+// Pair function of two boxes: the separating axis test over their 15 axes, in lanes, then the contact of the best face,
+// or of two edges if their axis is clearly better. Source of the axes: S. Gottschalk, M. Lin, D. Manocha, OBBTree,
+// SIGGRAPH 1996.
 #include <Fulcrum/Collision/NarrowPhase/BoxFaceContact.h>
 #include <Fulcrum/Collision/NarrowPhase/PairFunctions.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
@@ -22,8 +22,7 @@ BoxPair MakePair(const Box& a, const Box& b, const RelativePose& bInA) {
     pair.halfB = b.HalfExtents() - Vector3::Constant(pair.radiusB);
     pair.rotation = ToMatrix(bInA.rotation);
     const Matrix3& r = pair.rotation;
-    pair.transposed = {Vector3(r.x.x(), r.y.x(), r.z.x()), Vector3(r.x.y(), r.y.y(), r.z.y()),
-                       Vector3(r.x.z(), r.y.z(), r.z.z())};
+    pair.transposed = r.Transposed();
     pair.position = bInA.position;
     pair.positionInB = r.TransposeMultiply(bInA.position);
     return pair;
@@ -45,7 +44,7 @@ struct BestFace {
     int axis;
 };
 
-// The six face axes, three at once. Among equals A's come first, or what the cache holds.
+// The six face axes, three at once. Of equally good ones A's come first, or the cached one.
 BestFace FindBestFace(const BoxPair& pair, const PairCache& cache, float prefer) {
     const Matrix3 &r = pair.rotation, &t = pair.transposed;
     const Four halfA = FourOf(pair.halfA), halfB = FourOf(pair.halfB);
@@ -93,7 +92,7 @@ BestEdges FindBestEdges(const BoxPair& pair) {
         const Four reachA = Four(a[j]) * Abs(rowK) + Four(a[k]) * Abs(rowJ);
         const Four reachB = bm * Abs(rowN) + bn * Abs(rowM);
         const Four squared = rowJ * rowJ + rowK * rowK;
-        // Nearly parallel axes name no direction, and the faces' axes serve.
+        // Nearly parallel edges have no usable cross product; the face axes cover them.
         const Four separation = Select(squared > Four(1e-4f), (distance - reachA - reachB) / Sqrt(squared),
                                        Four(-std::numeric_limits<float>::infinity()));
         for (int n = 0; n < 3; ++n)
@@ -151,7 +150,7 @@ void CollideBoxBox(const PairQuery& query, Manifold& manifold) {
     } else if (BuildBoxFaceContact(pair, face.ofA, faceIndex, face.separation, tolerances, manifold)) {
         return rememberFace();
     }
-    // Corners come closest, or parallel edges: what the general function is for. It has its own kind of cache.
+    // Corners or parallel edges come closest: handled by the general function, whose cache differs.
     cache = {};
     CollidePolyhedra(query, manifold);
     cache = {};

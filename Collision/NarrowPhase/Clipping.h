@@ -17,7 +17,6 @@ struct ClipVertex {
     uint32_t label;
 };
 inline constexpr uint32_t kSideLabel = 256;
-inline constexpr int kMaxClipVertices = 512;  // 255 corners cut by 255 sides, each adding one at most
 
 // The plane through one side of the clipping polygon: inside is normal . x <= offset.
 struct ClipSide {
@@ -25,8 +24,17 @@ struct ClipSide {
     float offset;
 };
 
-// Keeps of the convex polygon `in` what lies inside the side to within `slop`. `outside` says how far each vertex lies
-// beyond it, `label` names it. Returns the number of vertices written to `out`.
+// The one through the side from a corner of a face to the next, at right angles to the face. A side of length 0 (of a
+// box whose convex radius is its half extent) clips nothing.
+inline ClipSide SideOfFace(const Vector3& from, const Vector3& to, const Vector3& faceNormal) {
+    const Vector3 outwards = Cross<float>(Vector3(to - from), faceNormal);
+    const float length = Length(outwards);
+    const Vector3 normal = outwards * (length > 1e-12f ? 1.0f / length : 0.0f);
+    return {normal, Dot(normal, from)};
+}
+
+// Clips the convex polygon `in` by a side, to within `slop`. `outside`: how far each vertex lies beyond it; `label`: of
+// the side. Returns the number of vertices written to `out`.
 inline int ClipBySide(const ClipVertex* in, int count, const float* outside, uint32_t label, float slop,
                       ClipVertex* out) {
     int written = 0;
@@ -49,7 +57,7 @@ inline int ClipBySide(const ClipVertex* in, int count, const float* outside, uin
     return written;
 }
 
-// The same for a segment, whose ends carry the labels 0 and 1. A cut end takes the side's label.
+// The same for a segment, whose ends have the labels 0 and 1. A cut end gets the side's label.
 inline int ClipSegmentBySide(ClipVertex* ends, const ClipSide& side, uint32_t label, float slop) {
     const float outside0 = Dot(side.normal, ends[0].position) - side.offset;
     const float outside1 = Dot(side.normal, ends[1].position) - side.offset;

@@ -7,7 +7,8 @@
 
 namespace fulcrum {
 
-// Which function serves a pair. Automatic: the fastest exact one of the pair table. Libccd: GJK/EPA for every pair.
+// Which function is used for a pair. Automatic: the fastest exact one of the pair table. Libccd: GJK/EPA for every
+// pair.
 enum class NarrowPhaseMethod : uint8_t { Automatic, Libccd };
 
 struct CollideSettings {

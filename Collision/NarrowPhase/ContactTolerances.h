@@ -7,25 +7,26 @@
 namespace fulcrum {
 
 struct ContactTolerances {
-    static constexpr float kFarAhead =
-        0.1f;  // of the two shapes' radii: a step's motion that may bring more than the closest points together
+    // Of the two shapes' radii: with more speculative distance, other points than the closest may touch within the
+    // step.
+    static constexpr float kFarAhead = 0.1f;
 
     float reach;    // m: the cores' separation up to which there are points
-    float prefer;   // m: a face contact is taken where its separation is at most this much below the best axis
+    float prefer;   // m: a face contact is preferred if its separation is at most this much below the best axis
     float feature;  // m: vertices this close to the extreme one belong to the supporting feature
-    float faceOfACosine =
-        2;  // or where it is one of A's and the cosine of the angle between its normal and the best axis at least this
-    bool facesAhead;  // whether edges that touch take points of the faces beside them, too
+    // A face of A is also preferred if the cosine between its normal and the best axis is at least this.
+    float faceOfACosine = 2;
+    bool facesAhead;  // whether contacts of edges get points of the adjacent faces, too
 
-    // `innerRadii`: the sum of the radii of the balls inside the two cores, or what measures those that are flat;
-    // `rounding`: of their convex radii. In m.
+    // `innerRadii`: the sum of the radii of the balls inside the two cores, or a size for flat ones; `rounding`: of
+    // their convex radii. In m.
     ContactTolerances(float innerRadii, float rounding, const CollideSettings& settings)
         : reach(settings.speculativeDistance + rounding),
           prefer(Min(0.02f * settings.speculativeDistance, 0.002f * (innerRadii + rounding))),
           feature(1e-4f * (innerRadii + rounding)),
           facesAhead(settings.speculativeDistance > kFarAhead * (innerRadii + rounding)) {}
 
-    float Apart() const { return 500 * feature; }  // m: points that are closer to each other hold the same
+    float Apart() const { return 500 * feature; }  // m: points closer to each other than this are redundant
 };
 
 }  // namespace fulcrum

@@ -1,13 +1,10 @@
 #include <Fulcrum/Collision/NarrowPhase/ConvexContact.h>
 
 #include <Fulcrum/Collision/NarrowPhase/AxisProof.h>
-#include <Fulcrum/Collision/NarrowPhase/Clipping.h>
-#include <Fulcrum/Collision/NarrowPhase/Features.h>
+#include <Fulcrum/Collision/NarrowPhase/ClippedFeature.h>
 #include <Fulcrum/Collision/NarrowPhase/PointsAhead.h>
 #include <Fulcrum/Collision/NarrowPhase/Segments.h>
 #include <Fulcrum/Collision/Shapes/SupportingFace.h>
-
-#include <algorithm>
 
 namespace fulcrum {
 
@@ -15,7 +12,7 @@ namespace {
 
 constexpr int kMostClipped = 2 * SupportingFace::kMaxVertices;
 
-// What of A, or of B, faces `direction`; all in A's frame.
+// The supporting face of A, or of B, along `direction`; all in A's frame.
 void FindFace(const SupportPair& pair, bool ofA, const Vector3& direction, SupportingFace& face) {
     if (ofA) return pair.a.FindSupportingFace(direction, face);
     pair.b.FindSupportingFace(pair.DirectionInB(direction), face);
@@ -36,152 +33,76 @@ ReferenceSide MakeReference(const SupportPair& pair, bool ofA, const SupportingF
     return reference;
 }
 
-// The plane through side i of the face, from vertex i to the next.
-ClipSide SideOf(const SupportingFace& face, int i) {
-    const Vector3& from = face.vertices[i];
-    const Vector3 outwards = Cross<float>(Vector3(face.vertices[i + 1 == face.count ? 0 : i + 1] - from), face.normal);
-    const float length = Length(outwards);
-    // A side of no length cuts nothing off.
-    const Vector3 normal = outwards * (length > 1e-12f ? 1.0f / length : 0.0f);
-    return {normal, Dot(normal, from)};
-}
+// Names of a face's vertices and edges, edge i from vertex i to the next.
+struct SupportingFaceNames {
+    const SupportingFace& face;
+    uint32_t count = static_cast<uint32_t>(face.count);
 
-// The other core's feature that faces the reference, and what clipping leaves of it.
-struct Clipped {
-    SupportingFace incident;
-    ClipVertex buffers[2][kMostClipped];
-    ClipVertex* current = buffers[0];
-    int count = 0;
-
-    void Clip(const SupportingFace& reference, float slop);
-    uint32_t Feature(int i, const ReferenceSide& reference) const;
+    uint32_t Vertex(uint32_t i) const { return face.names[i]; }
+    uint32_t Edge(uint32_t i) const {
+        const uint32_t from = face.names[i], to = face.names[i + 1 == count ? 0 : i + 1];
+        return from < to ? from | to << 16 : to | from << 16;
+    }
 };
 
-void Clipped::Clip(const SupportingFace& reference, float slop) {
-    count = incident.count;
-    for (int i = 0; i < count; ++i) current[i] = {incident.vertices[i], static_cast<uint32_t>(i)};
-    if (incident.count == 1) current[1] = current[0];
-    ClipVertex* spare = buffers[1];
-    float outside[kMostClipped];
-    for (int k = 0; k < reference.count && count > 0; ++k) {
-        const ClipSide side = SideOf(reference, k);
-        const uint32_t label = kSideLabel + static_cast<uint32_t>(k);
-        if (incident.count <= 2) {
-            if (ClipSegmentBySide(current, side, label, slop) == 0) count = 0;
-            continue;
-        }
-        bool cuts = false;
-        for (int i = 0; i < count; ++i) {
-            outside[i] = Dot(side.normal, current[i].position) - side.offset;
-            cuts |= outside[i] > slop;
-        }
-        if (!cuts) continue;
-        count = ClipBySide(current, count, outside, label, slop, spare);
-        std::swap(current, spare);
-    }
-}
+// A reference face's sides, and the other core's incident feature clipped by them.
+struct FaceClip {
+    const SupportingFace &reference, &incident;
+    ClipSide sides[SupportingFace::kMaxVertices];
+    ClippedFeature<kMostClipped> clipped;
 
-// The edge from vertex i of a face to the next, by their names.
-uint32_t NameOfEdge(const SupportingFace& face, uint32_t i) {
-    const uint32_t from = face.names[i], to = face.names[i + 1 == static_cast<uint32_t>(face.count) ? 0 : i + 1];
-    return from < to ? from | to << 16 : to | from << 16;
-}
-
-uint32_t Clipped::Feature(int i, const ReferenceSide& reference) const {
-    const auto crossing = [&](uint32_t incidentEdge, uint32_t side) {
-        const uint32_t referenceEdge = NameOfEdge(reference.face, side);
-        return reference.ofA ? CrossingFeature(referenceEdge, incidentEdge)
-                             : CrossingFeature(incidentEdge, referenceEdge);
-    };
-    const uint32_t starts = current[i].label;
-    if (incident.count <= 2) {
-        if (starts < kSideLabel) return VertexFeature(!reference.ofA, incident.names[starts]);
-        return crossing(NameOfEdge(incident, 0), starts - kSideLabel);
+    FaceClip(const SupportingFace& referenceFace, const SupportingFace& incidentFeature, float slop)
+        : reference(referenceFace), incident(incidentFeature) {
+        for (int i = 0; i < reference.count; ++i)
+            sides[i] = SideOfFace(reference.vertices[i], reference.vertices[i + 1 == reference.count ? 0 : i + 1],
+                                  reference.normal);
+        clipped.Clip(
+            incident.count, [&](int i) { return incident.vertices[i]; }, sides, reference.count, slop);
     }
-    const uint32_t ends = current[i == 0 ? count - 1 : i - 1].label;
-    if (starts < kSideLabel && ends < kSideLabel) return VertexFeature(!reference.ofA, incident.names[starts]);
-    if (starts < kSideLabel) return crossing(NameOfEdge(incident, starts), ends - kSideLabel);
-    if (ends < kSideLabel) return crossing(NameOfEdge(incident, ends), starts - kSideLabel);
-    // Two sides meet: a corner of the reference face, which begins the later of the two.
-    const uint32_t low = std::min(starts, ends) - kSideLabel, high = std::max(starts, ends) - kSideLabel;
-    const bool wraps = low == 0 && high + 1 == static_cast<uint32_t>(reference.face.count);
-    return VertexFeature(reference.ofA, reference.face.names[wraps ? 0 : high]);
-}
-
-// How far inside all sides of the face the middle of the deepest points lies: a disc of that radius about it, in the
-// reference face's plane, belongs to the Minkowski difference.
-float DiscRadius(const ReferenceSide& reference, const Clipped& clipped, float offset, float deepEnough) {
-    Vector3 middle = Vector3::Zero();
-    float count = 0;
-    for (int i = 0; i < clipped.count; ++i) {
-        if (Dot(reference.face.normal, clipped.current[i].position) - offset > deepEnough) continue;
-        middle += clipped.current[i].position;
-        count += 1;
+    uint32_t FeatureOf(int i, bool referenceOfA) const {
+        return clipped.FeatureOf(i, SupportingFaceNames{incident}, SupportingFaceNames{reference}, referenceOfA);
     }
-    middle *= 1.0f / count;
-    float radius = std::numeric_limits<float>::infinity();
-    for (int k = 0; k < reference.face.count; ++k) {
-        const ClipSide side = SideOf(reference.face, k);
-        if (side.normal != Vector3::Zero()) radius = Min(radius, side.offset - Dot(side.normal, middle));
-    }
-    return radius;
-}
+};
 
 struct Built {
-    bool touches = false;  // what clipping left reaches as deep as the other core
-    bool proven = false;   // no axis separates the cores by more than the face does
+    bool isDeepest = false;  // the clipped feature is as deep as the other core
+    bool proven = false;     // no axis separates the cores by more than the face does
 };
 
 Built BuildFromFace(const SupportPair& pair, const ReferenceSide& reference, const ContactTolerances& tolerances,
                     Manifold& manifold) {
     const Vector3& normal = reference.face.normal;
-    Clipped clipped;
-    FindFace(pair, !reference.ofA, Vector3(-normal), clipped.incident);
-    clipped.Clip(reference.face, tolerances.prefer);
+    SupportingFace incident;
+    FindFace(pair, !reference.ofA, Vector3(-normal), incident);
+    FaceClip clip(reference.face, incident, tolerances.prefer);
+    auto& clipped = clip.clipped;
     Built built;
     manifold.normal = reference.axis;
     manifold.pointCount = 0;
-    if (clipped.count == 0) return built;
+    if (clipped.Count() == 0) return built;
 
-    const float offset = Dot(normal, reference.face.vertices[0]);
-    const Vector3 tangentU = Perpendicular(normal), tangentV = Cross<float>(normal, tangentU);
-    FlatPoints<kMostClipped> points;
-    int near[kMostClipped];
-    float least = 0;
-    for (int i = 0; i < clipped.count; ++i) {
-        const Vector3& x = clipped.current[i].position;
-        const float separation = Dot(normal, x) - offset;
-        if (i == 0 || separation < least) least = separation;
-        if (separation > tolerances.reach) continue;
-        near[points.count] = i;
-        points.Add(Dot(tangentU, x), Dot(tangentV, x), separation);
-    }
-    built.touches = least <= reference.separation + tolerances.prefer;
-    if (built.touches) {
+    const float least = clipped.MeasureSeparations(normal, Dot(normal, reference.face.vertices[0]));
+    built.isDeepest = least <= reference.separation + tolerances.prefer;
+    if (built.isDeepest) {
         const float depth = -reference.separation;
-        const float radius = depth <= 0 ? 0 : DiscRadius(reference, clipped, offset, least + tolerances.prefer);
-        built.proven = NoBetterAxis(pair, reference.axis, depth, radius);
+        const float radius =
+            depth <= 0 ? 0 : clipped.DiscRadius(clip.sides, reference.face.count, least + tolerances.prefer);
+        built.proven = NoBetterAxis(pair.position, pair.InnerRadii(), reference.axis, depth, radius);
     }
     int chosen[4];
-    manifold.pointCount = ChooseFour(points, tolerances.prefer, chosen);
+    manifold.pointCount = clipped.ChooseFourWithin(tolerances.reach, normal, tolerances.prefer, chosen);
     for (int i = 0; i < manifold.pointCount; ++i) {
         const int c = chosen[i];
-        const Vector3& x = clipped.current[near[c]].position;
-        ManifoldPoint& point = manifold.points[i];
-        const Vector3 onCore = reference.ofA ? Vector3(x - normal * points.separation[c]) : x;
-        point.positionOnA = onCore + manifold.normal * pair.a.ConvexRadius();
-        point.separation = points.separation[c] - pair.RadiusSum();
-        point.feature = clipped.Feature(near[c], reference);
+        const Vector3& x = clipped[c];
+        const float separation = clipped.Separation(c);
+        const Vector3 onCore = reference.ofA ? Vector3(x - normal * separation) : x;
+        manifold.points[i] = {onCore + manifold.normal * pair.a.ConvexRadius(), separation - pair.RadiusSum(),
+                              clip.FeatureOf(c, reference.ofA)};
     }
     return built;
 }
 
-void Remember(PairCache::Kind kind, const Vector3& axis, PairCache& cache) {
-    cache.kind = kind;
-    for (int i = 0; i < 3; ++i) cache.axis[i] = axis[i];
-}
-
-// The best face that is nearly as good an axis as the known one, if any.
+// Builds the contact of the best face whose normal is nearly as good as the known axis, if any.
 bool TryFaces(const SupportPair& pair, const KnownContact& known, const SupportingFace& faceA,
               const SupportingFace& faceB, const ContactTolerances& tolerances, PairCache& cache, Manifold& manifold) {
     ReferenceSide references[2];
@@ -201,10 +122,10 @@ bool TryFaces(const SupportPair& pair, const KnownContact& known, const Supporti
     }
     for (int i = 0; i < count; ++i) {
         const ReferenceSide& reference = references[order[i]];
-        if (!BuildFromFace(pair, reference, tolerances, manifold).touches || manifold.pointCount == 0) continue;
+        if (!BuildFromFace(pair, reference, tolerances, manifold).isDeepest || manifold.pointCount == 0) continue;
         const Vector3& normal = reference.face.normal;
-        Remember(reference.ofA ? PairCache::Kind::FaceOfA : PairCache::Kind::FaceOfB,
-                 reference.ofA ? normal : pair.DirectionInB(normal), cache);
+        cache.RememberAxis(reference.ofA ? PairCache::Kind::FaceOfA : PairCache::Kind::FaceOfB,
+                           reference.ofA ? normal : pair.DirectionInB(normal));
         return true;
     }
     return false;
@@ -223,7 +144,7 @@ bool EdgeAcross(const SupportingFace& face, const Vector3& axis, float slop, Seg
         const float height = Max(Dot(axis, face.vertices[i]), Dot(axis, face.vertices[next]));
         if (height < most - slop || lean > kLean * length || length <= longest) continue;
         edge = {face.vertices[i], face.vertices[next]};
-        name = NameOfEdge(face, static_cast<uint32_t>(i));
+        name = SupportingFaceNames{face}.Edge(static_cast<uint32_t>(i));
         longest = length;
         found = true;
     }
@@ -237,7 +158,7 @@ void AddPoint(const SupportPair& pair, const Vector3& onCoreA, float separation,
     point.feature = feature;
 }
 
-// Two points where two edges lie side by side.
+// Two points along parallel edges.
 bool TryParallelEdges(const SupportPair& pair, const SupportingFace& faceA, const SupportingFace& faceB,
                       const KnownContact& known, const ContactTolerances& tolerances, Manifold& manifold) {
     if (faceA.count < 2 || faceB.count < 2) return false;
@@ -245,28 +166,22 @@ bool TryParallelEdges(const SupportPair& pair, const SupportingFace& faceA, cons
     uint32_t nameA = 0, nameB = 0;
     if (!EdgeAcross(faceA, known.axis, tolerances.prefer, onA, nameA)) return false;
     if (!EdgeAcross(faceB, Vector3(-known.axis), tolerances.prefer, onB, nameB)) return false;
-    float from, to;
-    if (!NearlyParallel(onA, onB) || !CommonLength(onA, onB, from, to)) return false;
-    const Vector3 along = onB.to - onB.from;
-    const float scale = 1.0f / Dot(along, along);
-    // The known point is the deepest; both ends of the common length must tell the same depth, or the edges are not it.
-    float separations[2], least = 0;
-    Vector3 ends[2];
-    for (int i = 0; i < 2; ++i) {
-        ends[i] = onA.At(i == 0 ? from : to);
-        const Vector3 beside = onB.from + along * (Dot(along, Vector3(ends[i] - onB.from)) * scale);
-        separations[i] = Dot(known.axis, Vector3(beside - ends[i]));
-        least = i == 0 ? separations[0] : Min(least, separations[1]);
-    }
+    if (!NearlyParallel(onA, onB)) return false;
+    const CommonLength common(onA, onB);
+    if (!common.exists) return false;
+    // The known point is the deepest: if neither end of the common length is as deep, these are not the edges that
+    // touch.
+    const float separations[2] = {common.SeparationAlong(known.axis, 0), common.SeparationAlong(known.axis, 1)};
+    const float least = Min(separations[0], separations[1]);
     if (Abs(least - known.separation) > tolerances.prefer) return false;
     const uint32_t feature = CrossingFeature(nameA, nameB) & ~1u;
     for (int i = 0; i < 2; ++i)
         if (separations[i] <= tolerances.reach)
-            AddPoint(pair, ends[i], separations[i], feature + static_cast<uint32_t>(i), manifold);
+            AddPoint(pair, common.onP[i], separations[i], feature + static_cast<uint32_t>(i), manifold);
     return manifold.pointCount > 0;
 }
 
-// To the points of edges or vertices, those of the faces beside them that lie within reach along the manifold's normal.
+// Adds points of the adjacent faces, within reach along the normal, to a manifold of edges or vertices.
 void AddFacesAhead(const SupportPair& pair, const SupportingFace& faceA, const SupportingFace& faceB,
                    const ContactTolerances& tolerances, Manifold& manifold) {
     if (!tolerances.facesAhead || manifold.pointCount == 0) return;
@@ -277,19 +192,15 @@ void AddFacesAhead(const SupportPair& pair, const SupportingFace& faceA, const S
     if (!(cosine > kLeastCosineAhead)) return;
     const bool ofA = cosineA >= cosineB;
     const SupportingFace& reference = ofA ? faceA : faceB;
-    const ReferenceSide side{ofA, reference, n, 0};
-    Clipped clipped;
-    clipped.incident = ofA ? faceB : faceA;
-    clipped.Clip(reference, tolerances.prefer);
+    const FaceClip clip(reference, ofA ? faceB : faceA, tolerances.prefer);
     const float offset = Dot(reference.normal, reference.vertices[0]);
     const auto pointAt = [&](int i) {
-        const Vector3& x = clipped.current[i].position;
+        const Vector3& x = clip.clipped[i];
         const float separation = (Dot(reference.normal, x) - offset) / cosine;
         const Vector3 onCore = ofA ? Vector3(x - n * separation) : x;
-        return ManifoldPoint{onCore + n * pair.a.ConvexRadius(), separation - pair.RadiusSum(),
-                             clipped.Feature(i, side)};
+        return ManifoldPoint{onCore + n * pair.a.ConvexRadius(), separation - pair.RadiusSum(), clip.FeatureOf(i, ofA)};
     };
-    AddPointsAhead<kMostClipped>(clipped.count, pointAt, tolerances.reach - pair.RadiusSum(), tolerances.Apart(),
+    AddPointsAhead<kMostClipped>(clip.clipped.Count(), pointAt, tolerances.reach - pair.RadiusSum(), tolerances.Apart(),
                                  tolerances.prefer, manifold);
 }
 
@@ -303,7 +214,7 @@ void BuildConvexContact(const SupportPair& pair, const KnownContact& known, cons
     if (TryFaces(pair, known, faceA, faceB, tolerances, cache, manifold)) return;
     manifold.normal = known.axis;
     manifold.pointCount = 0;
-    Remember(PairCache::Kind::Axis, known.axis, cache);
+    cache.RememberAxis(PairCache::Kind::Axis, known.axis);
     if (known.separation > tolerances.reach) return;
     if (!TryParallelEdges(pair, faceA, faceB, known, tolerances, manifold))
         AddPoint(pair, known.onA, known.separation, VertexFeature(true, 0), manifold);
@@ -313,7 +224,7 @@ void BuildConvexContact(const SupportPair& pair, const KnownContact& known, cons
 CachedFace TryCachedFace(const SupportPair& pair, const ContactTolerances& tolerances, const PairCache& cache,
                          Manifold& manifold) {
     const bool ofA = cache.kind == PairCache::Kind::FaceOfA;
-    const Vector3 stored(cache.axis[0], cache.axis[1], cache.axis[2]);
+    const Vector3 stored = cache.Axis();
     SupportingFace face;
     FindFace(pair, ofA, ofA ? stored : Vector3(pair.rotation * stored), face);
     CachedFace result{false, ofA ? stored : Vector3(-(pair.rotation * stored))};
@@ -326,7 +237,7 @@ CachedFace TryCachedFace(const SupportPair& pair, const ContactTolerances& toler
         return result;
     }
     const Built built = BuildFromFace(pair, reference, tolerances, manifold);
-    result.done = built.touches && built.proven && manifold.pointCount > 0;
+    result.done = built.isDeepest && built.proven && manifold.pointCount > 0;
     return result;
 }
 

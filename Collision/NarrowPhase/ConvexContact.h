@@ -1,5 +1,6 @@
-// Manifolds of shapes known by their support functions and supporting faces, from a known axis of separation or least
-// depth. Called by CollideConvex and, for curved cores, by the libccd pair function. Allocates nothing; thread-safe.
+// Manifolds of shapes given by support functions and supporting faces, from a known axis of separation or least
+// penetration. Called by CollideConvex and, for curved cores, by the libccd pair function. Allocates nothing;
+// thread-safe.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/ContactTolerances.h>
@@ -8,7 +9,7 @@
 
 namespace fulcrum {
 
-// Where two cores touch, by their support functions alone.
+// The deepest contact of two cores.
 struct KnownContact {
     Vector3 axis;      // unit, from A towards B
     float separation;  // m, of the cores along it
@@ -18,13 +19,13 @@ struct KnownContact {
 // The contact of two cores that overlap: GJK's `simplex` around the origin, and the best guess of the axis.
 KnownContact FindDepth(const SupportPair& pair, const Simplex<SupportVertex>& simplex, const Vector3& guess);
 
-// Writes the manifold and what to remember: a face where one is nearly as good an axis, two edges that lie side by
-// side, or the one point that is known.
+// Writes the manifold and the cache: a face contact if a face normal is nearly as good an axis, otherwise parallel
+// edges, or the known point.
 void BuildConvexContact(const SupportPair& pair, const KnownContact& known, const ContactTolerances& tolerances,
                         PairCache& cache, Manifold& manifold);
 
 // The face that touched in the last step (cache.kind FaceOfA or FaceOfB, cache.axis its normal in its own shape's
-// frame), if it still is the closest feature beyond doubt; writes the manifold then. `axis`: the best guess otherwise.
+// frame), if it is proven to be the closest feature still; writes the manifold then. `axis`: the best guess otherwise.
 struct CachedFace {
     bool done;
     Vector3 axis;

@@ -1,6 +1,6 @@
-// The pair function of everything that is known by its support function alone: tapered capsules, cylinders and what
-// users make, among themselves and against all others. What touched in the last step is looked at first. Otherwise GJK
-// finds the closest points of cores that are apart, EPA the axis of least depth of those that overlap.
+// The pair function of shapes with curved cores: tapered capsules, cylinders and custom shapes, among themselves and
+// against all others. The face that touched in the last step is tested first. Otherwise GJK finds the closest points of
+// cores that are apart, EPA the axis of least depth of those that overlap.
 #include <Fulcrum/Collision/NarrowPhase/ConvexContact.h>
 #include <Fulcrum/Collision/NarrowPhase/ConvexGjk.h>
 #include <Fulcrum/Collision/NarrowPhase/Epa.h>
@@ -10,7 +10,7 @@ namespace fulcrum {
 
 namespace {
 
-// The better of the known axis and another, by how far it separates the cores.
+// Takes the axis if it separates the cores farther than the known one.
 void TryAxis(const SupportPair& pair, const Vector3& axis, KnownContact& known) {
     const float separation = pair.SeparationAlong(axis);
     if (separation <= known.separation) return;
@@ -18,7 +18,7 @@ void TryAxis(const SupportPair& pair, const Vector3& axis, KnownContact& known) 
     known.separation = separation;
 }
 
-// Both shapes' axes and the line between their centers: where EPA gives up, one of them is a start to polish.
+// Both shapes' axes and the line between their centers: starting points for Polish if EPA gives up.
 void TryPlainAxes(const SupportPair& pair, KnownContact& known) {
     TryAxis(pair, Normalized(pair.position), known);
     for (int i = 0; i < 3; ++i) {
@@ -53,7 +53,7 @@ void Polish(const SupportPair& pair, KnownContact& known) {
 }
 
 Vector3 StartAxis(const PairCache& cache, const RelativePose& bInA) {
-    if (cache.kind == PairCache::Kind::Axis) return Vector3(cache.axis[0], cache.axis[1], cache.axis[2]);
+    if (cache.kind == PairCache::Kind::Axis) return cache.Axis();
     return Normalized(bInA.position);
 }
 
@@ -83,8 +83,7 @@ void CollideConvex(const PairQuery& query, Manifold& manifold) {
     if (gjk.status == GjkStatus::BeyondReach) {
         manifold.normal = gjk.axis;
         manifold.pointCount = 0;
-        cache.kind = PairCache::Kind::Axis;
-        for (int i = 0; i < 3; ++i) cache.axis[i] = gjk.axis[i];
+        cache.RememberAxis(PairCache::Kind::Axis, gjk.axis);
         return;
     }
     const KnownContact known = gjk.status == GjkStatus::Apart ? KnownContact{gjk.axis, gjk.separation, gjk.onA}

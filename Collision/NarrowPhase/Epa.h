@@ -27,7 +27,7 @@ EpaResult Epa(const Pair& pair, const Simplex<typename Pair::Vertex>& simplex) {
     if (!polytope.Start(pair, simplex, 10 * tolerance)) return result;
     for (int i = 0; i < kMaxIterations; ++i) {
         const auto face = polytope.ClosestFace();
-        if (face.distance < -10 * tolerance) return result;  // rounding has turned a face inside out
+        if (face.distance < -10 * tolerance) return result;  // rounding has inverted a face
         const Vector3 axis = -face.normal.template cast<float>();
         const typename Pair::Vertex vertex = pair.Support(axis);
         const float farthest = static_cast<float>(Dot<Real>(face.normal, vertex.w));

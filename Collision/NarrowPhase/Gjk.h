@@ -1,6 +1,6 @@
 // Distance between two convex cores by the algorithm of Gilbert, Johnson and Keerthi (IEEE J. Robotics and Automation
-// 4(2), 1988), started from a known axis. A template over the pair: PolyhedronPair for CollidePolyhedra, ConvexPair for
-// shapes known by their support functions alone. Allocates nothing; thread-safe.
+// 4(2), 1988), warm started from an axis. A template over the pair: PolyhedronPair for CollidePolyhedra, SupportPair
+// for shapes given by support functions. Allocates nothing; thread-safe.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/SimplexSearch.h>
@@ -51,7 +51,7 @@ GjkResult<typename Pair::Vertex> Gjk(const Pair& pair, const Vector3& start, flo
             simplex = next;
             return result;
         }
-        // Rounding stops the descent: this is as close as it gets. The last vertex may still turn the axis a little.
+        // No progress, by rounding: this is the closest point. The last vertex may still improve the axis a little.
         const bool last = distance >= 0 && closer >= distance;
         if (last && closer > distance * Real(1.000001f)) break;
         simplex = next;
@@ -64,7 +64,7 @@ GjkResult<typename Pair::Vertex> Gjk(const Pair& pair, const Vector3& start, flo
     }
     result.axis = axis.template cast<float>();
     result.separation = static_cast<float>(distance);
-    // So close that the direction is lost in rounding: the axis does not separate the cores as far as they seem apart.
+    // So close that rounding spoils the direction: the axis does not separate the cores by the distance of the points.
     if (gap > 100 * touching && distance < 1000 * touching) result.status = GjkStatus::Overlapping;
     return result;
 }

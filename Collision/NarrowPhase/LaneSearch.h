@@ -1,4 +1,4 @@
-// Largest and smallest of many floats and their places, eight at a time. Used by the narrow phase.
+// Largest and smallest of many floats and their indices, eight at a time. Used by the narrow phase.
 #pragma once
 
 #include <Fulcrum/Math/Wide.h>
@@ -16,8 +16,8 @@ inline float Largest(Wide<8> a) {
 }
 inline float Smallest(Wide<8> a) { return -Largest(-a); }
 
-// The first of `blocks` times eight values for which the mask that `test` makes of them is true; 0 if there is none.
-// No branch depends on where it is, within each 64 values.
+// The first of `blocks` times eight values for which the mask that `test` makes of them is true; 0 if there is none. No
+// branch depends on its index, within each 64 values.
 template <class Test>
 inline int FirstWhere(const Wide<8>* values, int blocks, const Test& test) {
     for (int from = 0; from < blocks; from += 8) {

@@ -1,4 +1,4 @@
-// What the narrow phase finds for a pair of convex shapes. All in the center frame of shape A.
+// The result of the narrow phase for a pair of convex shapes. All in the center frame of shape A.
 #pragma once
 
 #include <Fulcrum/Math/Vector.h>
@@ -20,13 +20,18 @@ struct Manifold {
     ManifoldPoint points[kMaxPoints];
 };
 
-// What a pair function remembers about a pair from one step to the next, to start its search from. It is part of the
-// simulation's state. All zero: nothing known.
+// What a pair function keeps from step to step, as its starting point. Part of the simulation's state. All zero: empty.
 struct PairCache {
     enum class Kind : uint8_t { None, FaceOfA, FaceOfB, EdgePair, Axis };
     Kind kind = Kind::None;
     uint16_t indexA = 0, indexB = 0;  // the faces that touched; of an EdgePair, the edges (each function's own numbers)
     float axis[3] = {0, 0, 0};        // in A's frame, where the kind is Axis
+
+    Vector3 Axis() const { return Vector3(axis[0], axis[1], axis[2]); }
+    void RememberAxis(Kind itsKind, const Vector3& itsAxis) {
+        kind = itsKind;
+        for (int i = 0; i < 3; ++i) axis[i] = itsAxis[i];
+    }
 };
 
 }  // namespace fulcrum

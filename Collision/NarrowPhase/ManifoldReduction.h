@@ -1,4 +1,5 @@
-// Chooses at most four of many contact points, for depth and area. Used by the contact builders. Thread-safe.
+// Manifold reduction: chooses at most four of many contact points, for depth and area. Used by the contact builders.
+// Thread-safe.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/LaneSearch.h>
@@ -7,8 +8,8 @@
 
 namespace fulcrum {
 
-// Contact points as the choice sees them: two coordinates in the contact plane, and the separation. By lanes: the
-// arrays are filled up with copies of the first point to a multiple of eight.
+// Contact points projected onto the contact plane, and their separations. For lanes: the arrays are padded with copies
+// of the first point to a multiple of eight.
 template <int kMost>
 struct FlatPoints {
     static_assert(kMost % 8 == 0);
@@ -22,7 +23,7 @@ struct FlatPoints {
     }
 };
 
-// Of the points outside of the triangle of three of them, the one that adds most area, weighted; kMost if there is
+// Of the points outside a triangle of three of them, the one that adds the largest weighted area; kMost if there is
 // none.
 template <int kMost>
 int FarthestOutside(const FlatPoints<kMost>& points, const float (&weights)[kMost], const int (&corner)[4],
@@ -45,15 +46,16 @@ int FarthestOutside(const FlatPoints<kMost>& points, const float (&weights)[kMos
     return kMost;
 }
 
-// Of points on a surface's triangles, which lie in several planes.
+// leastWeight of ChooseFour for points on triangles of a surface, which lie in several planes.
 inline constexpr float kLeastWeightOnSurfaces = 0.02f;
 
 // Writes the chosen indices in increasing order and returns how many: first a deepest point, then the point farthest
 // from it, then those that span the largest area on each side of the line of the two; where all are on one side,
-// another there. Distances and areas count less for points that do not touch yet, down to `leastWeight`: what a shape
-// rests on must not be left out for what is farther out but above, or it rocks. What counts as above is a matter of the
-// angle by which the shape would have to tilt. The first point that is as good as the best to within `depthSlop`
-// meters, or a hundredth of the distance or area, is taken, so that rounding and tiny motions change nothing.
+// another there. Distances and areas count less for points that do not touch yet, down to `leastWeight`: a point that
+// the shape rests on must not lose to one farther out that does not touch, or the shape rocks. The weight depends on
+// the angle by which the shape would have to tilt to touch. The first point that is as good as the best to within
+// `depthSlop` meters, or a hundredth of the distance or area, is taken, so that rounding and tiny motions do not change
+// the choice.
 template <int kMost>
 int ChooseFour(FlatPoints<kMost>& points, float depthSlop, int (&chosen)[4], float leastWeight = 1.0f) {
     constexpr float kNearly = 0.99f, kTilt = 0.0001f;  // rad: halfway to leastWeight
@@ -62,7 +64,7 @@ int ChooseFour(FlatPoints<kMost>& points, float depthSlop, int (&chosen)[4], flo
         for (int i = 0; i < count; ++i) chosen[i] = i;
         return count;
     }
-    const int blocks = (count + 7) / 8;
+    const int blocks = kMost == 8 ? 1 : (count + 7) / 8;
     for (int i = count; i < 8 * blocks; ++i) {
         points.u[i] = points.u[0];
         points.v[i] = points.v[0];

@@ -6,7 +6,7 @@
 
 namespace fulcrum {
 
-// What a pair function is given besides the manifold it writes.
+// The arguments of a pair function besides the manifold.
 struct PairQuery {
     const ConvexShape& a;
     const ConvexShape& b;
@@ -25,7 +25,7 @@ void CollideBoxSphere(const PairQuery& query, Manifold& manifold);
 void CollideBoxBox(const PairQuery& query, Manifold& manifold);
 // Any two of sphere, capsule, box, hull and triangle of which one at least is a box, a hull or a triangle.
 void CollidePolyhedra(const PairQuery& query, Manifold& manifold);
-// Any two; those with a curved core have no other.
+// Any two; the only one for curved cores.
 void CollideConvex(const PairQuery& query, Manifold& manifold);
 // Any two.
 void CollideLibccd(const PairQuery& query, Manifold& manifold);

@@ -41,7 +41,7 @@ void AddVertices(const Polyhedron& core, const Vector3& down, float outside, flo
     }
 }
 
-// Of a curved core, the flat face, straight edge or point that it turns to the plane.
+// The supporting face, edge or point of a curved core towards the plane.
 void AddSupportingFace(const ConvexShape& shape, const Vector3& down, float outside, float least, NearVertices& near) {
     SupportingFace face;
     shape.FindSupportingFace(down, face);
@@ -59,7 +59,7 @@ void CollidePlane(const Plane& plane, const ConvexShape& shape, const RelativePo
     const float outside = plane.Distance(bInA.position), radius = shape.ConvexRadius();
     if (outside - shape.OuterRadius() > settings.speculativeDistance) return;
 
-    // The plane in the shape's frame: the core's vertices need no turning.
+    // In the shape's frame, so that the core's vertices need not be rotated.
     const Vector3 down = InverseRotate(bInA.rotation, Vector3(-plane.Normal()));
     const float least = outside - (settings.speculativeDistance + radius);
     NearVertices near(down);

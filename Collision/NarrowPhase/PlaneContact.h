@@ -9,8 +9,8 @@ namespace fulcrum {
 
 // Writes the manifold of the plane (A) and the shape (B), `bInA` being the pose of the shape's center frame in the
 // plane's frame. The normal is the plane's. At most 4 points, chosen for area and depth of all vertices of the core
-// (Polyhedron.h) that lie within the speculative distance; of a curved core, of those of the face, edge or point that
-// it turns to the plane.
+// (Polyhedron.h) that lie within the speculative distance; for a curved core, of those of its supporting face, edge or
+// point.
 void CollidePlane(const Plane& plane, const ConvexShape& shape, const RelativePose& bInA,
                   const CollideSettings& settings, Manifold& manifold);
 

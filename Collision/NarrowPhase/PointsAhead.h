@@ -1,5 +1,5 @@
-// Where edges or vertices touch, the faces beside them may follow close behind: a body that turns within the step meets
-// the other with its faces. Used by the contact builders. Allocates nothing; thread-safe.
+// Adds speculative points of adjacent faces to contacts of edges or vertices: a body that turns within the step may
+// land on those faces. Used by the contact builders. Allocates nothing; thread-safe.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/Manifold.h>
@@ -7,11 +7,11 @@
 
 namespace fulcrum {
 
-// The least cosine between a face's normal and the manifold's: a face that is steeper lies too far behind.
+// The least cosine between a face's normal and the manifold's: steeper faces are ignored.
 inline constexpr float kLeastCosineAhead = 0.5f;
 
 // Adds to a manifold of one or two points those of `count` others, pointAt(0) to pointAt(count - 1), whose separation
-// is at most `reach`, m; at most four in all. What lies within `apart` meters of a point that was there adds nothing.
+// is at most `reach`, m; at most four in all. Points within `apart` meters of an existing one are left out.
 template <int kMost, class PointAt>
 void AddPointsAhead(int count, const PointAt& pointAt, float reach, float apart, float depthSlop, Manifold& manifold) {
     const Vector3 tangentU = Perpendicular(manifold.normal), tangentV = Cross<float>(manifold.normal, tangentU);

@@ -10,7 +10,7 @@ namespace {
 // Four corners a face, counter-clockwise seen from outside.
 constexpr uint8_t kBoxIndices[24] = {1, 3, 7, 5, 0, 4, 6, 2, 2, 6, 7, 3, 0, 1, 5, 4, 4, 5, 7, 6, 0, 2, 3, 1};
 
-// The six normals by lanes, filled up with the first.
+// The six normals in lanes, padded with the first.
 alignas(32) constexpr float kBoxNormals[24] = {1, -1, 0, 0, 0, 0, 1, 1, 0, 0,  1, -1,
                                                0, 0,  0, 0, 0, 0, 0, 0, 1, -1, 0, 0};
 
@@ -20,7 +20,7 @@ constexpr ConvexHull::Edge kBoxEdges[12] = {{0, 1, 5, 3}, {2, 3, 2, 5}, {4, 5, 3
                                             {0, 4, 3, 1}, {1, 5, 0, 3}, {2, 6, 1, 2}, {3, 7, 2, 0}};
 constexpr uint8_t kTriangleIndices[6] = {0, 1, 2, 2, 1, 0};
 constexpr ConvexHull::Edge kTriangleEdges[3] = {{0, 1, 0, 1}, {1, 2, 0, 1}, {2, 0, 0, 1}};
-// A segment has no faces; those named here are not looked at.
+// A segment has no faces; the indices of faces are not used.
 constexpr ConvexHull::Edge kSegmentEdge[1] = {{0, 1, 0, 0}};
 
 Polyhedron SmallCore(const PolyhedronStorage& storage, int vertexCount, int faceCount) {
@@ -122,7 +122,7 @@ Polyhedron CoreOf(const Vector3 (&corners)[3], const Vector3& n, float radius, P
     p.edges = kTriangleEdges;
     p.edgeCount = 3;
     p.radius = radius;
-    // The smallest distance of a corner from the centroid: two thirds of that median.
+    // The smallest distance of a corner from the centroid.
     p.size = Sqrt(Min(LengthSquared(corners[0]), Min(LengthSquared(corners[1]), LengthSquared(corners[2]))));
     return p;
 }

@@ -1,6 +1,5 @@
-// One view of the cores of all convex shapes that are not curved: a hull, a box, a triangle, a capsule's segment and a
-// sphere's point are polyhedra of many, 8, 3, 2 and 1 vertices. The pair functions of polyhedra work on it. Used by the
-// narrow phase alone; a view lives on the stack of one call.
+// A uniform view of polyhedral cores: a hull, a box, a triangle, a capsule's segment and a sphere's point are polyhedra
+// of many, 8, 3, 2 and 1 vertices. Used by the narrow phase alone; a view lives on the stack of one call.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/LaneSearch.h>
@@ -26,19 +25,19 @@ struct Polyhedron {
     int edgeCount;
     float radius;       // m: the shape is the polyhedron rounded by it
     float innerRadius;  // m: the ball about the origin of this radius lies inside the core
-    float size;         // m: the scale of its tolerances; the inner radius where it has one
+    float size;         // m: the scale of its tolerances; the inner radius if that is not 0
 };
 
-// Where the view of a shape that is not a hull keeps its numbers.
+// Storage for views of shapes that are not hulls.
 struct PolyhedronStorage {
     alignas(32) float lanes[24];
-    alignas(32) float normalLanes[24];  // where the shape is not aligned with its axes
+    alignas(32) float normalLanes[24];  // if the faces are not aligned with the axes
     Vector3 vertices[8];
     ConvexHull::Face faces[6];
 };
 
 inline bool HasPolyhedralCore(ShapeType type) {
-    return type <= ShapeType::Triangle;  // the order of the enumerators: those before it, too
+    return type <= ShapeType::Triangle;  // and all enumerators before it
 }
 
 Polyhedron CoreOf(const ConvexHull& hull);

@@ -1,7 +1,7 @@
-// The pair function of polyhedra: box-hull, hull-hull, and spheres and capsules against both. What touched in the last
-// step is looked at first, and where it provably still is the closest feature nothing else is. Otherwise GJK finds the
-// closest points of cores that are apart, EPA the axis of least depth of those that overlap, and where EPA gives up, a
-// search through all axes does.
+// The pair function of polyhedra: box-hull, hull-hull, and spheres and capsules against both. The features that touched
+// in the last step are tested first; if they are proven to be the closest still, that is all. Otherwise GJK finds the
+// closest points of cores that are apart, EPA the axis of least penetration of those that overlap, and if EPA gives up,
+// the full separating axis test does.
 #include <Fulcrum/Collision/NarrowPhase/AxisContact.h>
 #include <Fulcrum/Collision/NarrowPhase/AxisSearch.h>
 #include <Fulcrum/Collision/NarrowPhase/Epa.h>
@@ -13,7 +13,7 @@ namespace fulcrum {
 
 namespace {
 
-// What last step's features say about this one.
+// The result of testing the features of the last step.
 struct WarmStart {
     bool done = false;  // the manifold is written
     Vector3 axis;       // the best guess otherwise, unit
@@ -46,7 +46,7 @@ WarmStart TryCache(const PolyhedronPair& pair, const ContactTolerances& toleranc
             break;
         }
         case PairCache::Kind::Axis: {
-            const Vector3 axis(cache.axis[0], cache.axis[1], cache.axis[2]);
+            const Vector3 axis = cache.Axis();
             warm.done = pair.SeparationAlong(axis) > tolerances.reach;
             manifold.normal = axis;
             manifold.pointCount = 0;
@@ -54,7 +54,7 @@ WarmStart TryCache(const PolyhedronPair& pair, const ContactTolerances& toleranc
         }
         case PairCache::Kind::None: break;
     }
-    warm.axis = Vector3(cache.axis[0], cache.axis[1], cache.axis[2]);
+    warm.axis = cache.Axis();
     if (cache.kind == PairCache::Kind::None) warm.axis = Normalized(pair.position);
     return warm;
 }
@@ -73,8 +73,7 @@ void CollidePolyhedra(const PairQuery& query, Manifold& manifold) {
     if (gjk.status == GjkStatus::BeyondReach) {
         manifold.normal = gjk.axis;
         manifold.pointCount = 0;
-        query.cache.kind = PairCache::Kind::Axis;
-        for (int i = 0; i < 3; ++i) query.cache.axis[i] = gjk.axis[i];
+        query.cache.RememberAxis(PairCache::Kind::Axis, gjk.axis);
         return;
     }
     if (gjk.status == GjkStatus::Overlapping) {

@@ -1,5 +1,5 @@
 // Two polyhedra and the pose of one in the other's frame: the Minkowski difference B - A that GJK, EPA and the contact
-// builders walk on. Its signed distance from the origin is the separation of the two. Used by the narrow phase alone.
+// builders work on. Its signed distance from the origin is the separation of the two. Used by the narrow phase alone.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/ContactTolerances.h>
@@ -30,22 +30,22 @@ struct PolyhedronPair {
     Vector3 DirectionInB(const Vector3& n) const { return rotation.TransposeMultiply(n); }
     float InnerRadii() const { return a.innerRadius + b.innerRadius; }
     float RadiusSum() const { return a.radius + b.radius; }
-    // The scale that rounding errors are measured against, m.
+    // The scale of rounding errors, m.
     float Size() const { return Abs(position.x()) + Abs(position.y()) + Abs(position.z()) + a.size + b.size; }
-    // How far EPA's axis may miss the least depth, m.
+    // The tolerance of EPA's depth, m.
     float DepthTolerance() const { return 1e-6f * Size() + 1e-12f; }
 
     ContactTolerances Tolerances(const CollideSettings& settings) const {
         return ContactTolerances(a.size + b.size, RadiusSum(), settings);
     }
 
-    // The vertex that lies least far along n: the one that says how far the cores are separated along n.
+    // The vertex of the difference that lies least far along n (support function).
     MinkowskiVertex Support(const Vector3& n) const {
         const int ia = FarthestVertex(a, n).index;
         const int ib = FarthestVertex(b, -DirectionInB(n)).index;
         return {VertexOfB(ib) - a.vertices[ia], static_cast<uint8_t>(ia), static_cast<uint8_t>(ib)};
     }
-    // Separation of the cores along the unit vector n: negative where their shadows on n overlap.
+    // Separation of the cores along the unit vector n: negative if their projections overlap.
     float SeparationAlong(const Vector3& n) const {
         return Dot(n, position) - FarthestVertex(b, -DirectionInB(n)).value - FarthestVertex(a, n).value;
     }

@@ -20,7 +20,8 @@ struct HorizonEdge {
     uint8_t from, to;
 };
 
-// The edges around the hole, sorted into a loop that starts with the first; false where there is more than one hole.
+// Sorts the edges around the hole (the horizon) into a loop that starts with the first; false if there is more than
+// one.
 inline bool IsOneLoop(HorizonEdge* horizon, int count) {
     for (int i = 1; i < count; ++i) {
         int next = i;
@@ -81,7 +82,7 @@ bool Polytope<Pair>::AddFace(int i, int j, int k) {
     return true;
 }
 
-// Adds vertices to a simplex of fewer than four, each as far as possible out of the span of the others.
+// Completes a simplex to four vertices, each as far as possible from the span of the others.
 template <class Pair>
 bool Polytope<Pair>::GrowToTetrahedron(const Pair& pair, float tolerance) {
     static const Vector3 kAxes[3] = {Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, 0, 1)};
@@ -130,7 +131,7 @@ const typename Polytope<Pair>::Face& Polytope<Pair>::ClosestFace() const {
     return faces_[best];
 }
 
-// Removes the faces that see the new vertex and joins the vertex with the edges around the hole.
+// Removes the faces visible from the new vertex and connects the vertex to the horizon.
 template <class Pair>
 bool Polytope<Pair>::Add(const Vertex& vertex, float tolerance) {
     if (vertexCount_ == kMaxVertices) return false;

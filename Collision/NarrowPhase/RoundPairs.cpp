@@ -11,8 +11,8 @@ namespace {
 
 constexpr float kFastReach = 2.0f;  // of the smaller radius
 
-// The point between two rounded cores, from the closest points of the cores. `known` (unit) is the normal where it is
-// certain or those points coincide but for rounding.
+// The point between two rounded cores, from the closest points of the cores. `known` (unit) is the normal if it is
+// `certain`, or if the points coincide but for rounding.
 void BuildPoint(const Vector3& onCoreA, const Vector3& onCoreB, float radiusA, float radiusB, const Vector3& known,
                 bool certain, float speculativeDistance, Manifold& manifold) {
     const Vector3 between = onCoreB - onCoreA;
@@ -30,32 +30,26 @@ Segment CoreSegment(const Capsule& capsule) {
     return {Vector3(0, -capsule.HalfHeight(), 0), Vector3(0, capsule.HalfHeight(), 0)};
 }
 
-// Two points along the common length of nearly parallel capsules; false where they lie one behind the other.
+// Two points along the common length of nearly parallel capsules; false if they lie one behind the other.
 bool BuildParallel(const Segment& onA, const Segment& onB, float radiusA, float radiusB, float speculativeDistance,
                    Manifold& manifold) {
-    float from, to;
-    if (!CommonLength(onA, onB, from, to)) return false;
-    const Vector3 middle = onA.At(0.5f * (from + to)), along = onB.to - onB.from;
-    const float scale = 1.0f / Dot(along, along);
-    const auto beside = [&](const Vector3& x) -> Vector3 {
-        return onB.from + along * (Dot(along, Vector3(x - onB.from)) * scale);
-    };
-    const Vector3 between = beside(middle) - middle;
+    const CommonLength common(onA, onB);
+    if (!common.exists) return false;
+    const Vector3 middle = onA.At(0.5f * (common.at[0] + common.at[1]));
+    const Vector3 between = ClosestOnLine(onB, middle) - middle;
     const float distance = Length(between);
     if (!(distance > 1e-3f * (radiusA + radiusB))) return false;
     manifold.normal = between * (1.0f / distance);
     for (int i = 0; i < 2; ++i) {
-        const Vector3 x = onA.At(i == 0 ? from : to);
-        const float separation = Dot(manifold.normal, Vector3(beside(x) - x)) - (radiusA + radiusB);
+        const float separation = common.SeparationAlong(manifold.normal, i) - (radiusA + radiusB);
         if (separation > speculativeDistance) continue;
-        manifold.points[manifold.pointCount++] = {x + manifold.normal * radiusA, separation,
+        manifold.points[manifold.pointCount++] = {common.onP[i] + manifold.normal * radiusA, separation,
                                                   CrossingFeature(0, static_cast<uint32_t>(1 + i))};
     }
     return manifold.pointCount > 0;
 }
 
-// Where capsules are fast, their ends too: one that turns about the closest point within the step meets the other with
-// an end.
+// For fast capsules, adds points of their ends: one that turns within the step may hit with an end.
 void AddEnds(const Segment& onA, const Segment& onB, float radiusA, float radiusB, float reach, Manifold& manifold) {
     const float smaller = Min(radiusA, radiusB);
     if (reach <= kFastReach * smaller) return;
@@ -110,7 +104,7 @@ void CollideCapsuleCapsule(const PairQuery& query, Manifold& manifold) {
     const ClosestParameters closest = ClosestOnSegments(onA, onB);
     const Vector3 x = onA.At(closest.s), y = onB.At(closest.t);
     if (LengthSquared(Vector3(y - x)) > reach * reach) return;
-    // Perpendicular to both is the normal where they cross, and the shortest way out of cores that touch.
+    // The normal is perpendicular to both segments if they cross, also if the cores touch.
     const bool parallel = NearlyParallel(onA, onB);
     if (parallel && BuildParallel(onA, onB, a.Radius(), b.Radius(), query.settings.speculativeDistance, manifold))
         return;

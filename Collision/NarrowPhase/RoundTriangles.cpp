@@ -10,7 +10,6 @@ namespace {
 using Lanes = TriangleLanes;
 using Vector = Vec3<TriangleLanes>;
 
-Vector3 At(const Vector& v, int lane) { return Vector3(v.x()[lane], v.y()[lane], v.z()[lane]); }
 Vector Spread(const Vector3& v) { return Vector(Lanes(v.x()), Lanes(v.y()), Lanes(v.z())); }
 
 }  // namespace
@@ -38,7 +37,7 @@ SegmentContact::SegmentContact(const SurfaceProbe& probe, const TriangleBatch& b
     if (const uint32_t left = asked & ~(onFace | crossing)) FindSide(batch, left);
 }
 
-// By each side, as a convex polygon clips. An end less than the slop beyond a side stays.
+// Clips the segment by each side. Ends less than the slop beyond a side are kept.
 void SegmentContact::Clip(const TriangleBatch& batch, float slop) {
     from_ = Lanes(0.0f);
     to_ = Lanes(1.0f);
@@ -113,7 +112,9 @@ void SegmentContact::WriteFaceContact(int i, const Vector3& normal, Manifold& ma
     }
 }
 
-Vector3 SegmentContact::Axis(int i) const { return Normalized(At(between_, i), Vector3(-At(batch_.normal, i))); }
+Vector3 SegmentContact::Axis(int i) const {
+    return Normalized(LaneOf(between_, i), Vector3(-LaneOf(batch_.normal, i)));
+}
 
 void SegmentContact::WriteSideContact(int i, const uint32_t (&vertexOf)[3], Manifold& manifold) const {
     const auto side = static_cast<uint32_t>(side_[i]), next = side == 2 ? 0u : side + 1;
@@ -134,18 +135,17 @@ void SegmentContact::WriteSideContact(int i, const uint32_t (&vertexOf)[3], Mani
 // Two points where the capsule lies along the side.
 bool SegmentContact::WriteParallel(int i, const Vector3& normal, uint32_t feature, Manifold& manifold) const {
     const int side = static_cast<int>(side_[i]);
-    const Segment core{-half_, half_}, edge{At(batch_.corners[side], i), At(batch_.corners[(side + 1) % 3], i)};
-    float from, to;
-    if (!NearlyParallel(core, edge) || !CommonLength(core, edge, from, to)) return false;
-    const Vector3 along = edge.to - edge.from, axis = Axis(i);
-    const float scale = 1.0f / Dot(along, along);
+    const Segment core{-half_, half_}, edge{LaneOf(batch_.corners[side], i), LaneOf(batch_.corners[(side + 1) % 3], i)};
+    if (!NearlyParallel(core, edge)) return false;
+    const CommonLength common(core, edge);
+    if (!common.exists) return false;
+    const Vector3 axis = Axis(i);
     for (int k = 0; k < 2; ++k) {
-        const float at = k == 0 ? from : to;
-        const Vector3 x = core.At(at), beside = edge.from + along * (Dot(along, Vector3(x - edge.from)) * scale);
-        const float separation = Dot(axis, Vector3(beside - x)) - radius_;
+        const float separation = common.SeparationAlong(axis, k) - radius_;
         if (separation > probe_.reach) continue;
-        manifold.points[manifold.pointCount++] = {Vector3(0, halfHeight_ * (2 * at - 1), 0) + normal * radius_,
-                                                  separation, feature + static_cast<uint32_t>(k)};
+        manifold.points[manifold.pointCount++] = {
+            Vector3(0, halfHeight_ * (2 * common.at[k] - 1), 0) + normal * radius_, separation,
+            feature + static_cast<uint32_t>(k)};
     }
     return manifold.pointCount > 0;
 }

@@ -1,6 +1,5 @@
-// Contacts of a sphere or a capsule with single triangles, in closed form: the point or the segment that is its core
-// before the triangle's face, or else nearest to one of its sides. Called by SurfaceContact for a batch of triangles.
-// Thread-safe.
+// Contacts of a sphere or a capsule with single triangles, in closed form: of its core, a point or a segment, with the
+// triangle's face, or else with the nearest side. Called by SurfaceContact for a batch of triangles. Thread-safe.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/Manifold.h>
@@ -12,19 +11,19 @@ namespace fulcrum {
 // `normal`.
 void WriteBallContact(const Vector3& normal, float distance, float radius, Manifold& manifold);
 
-// How the segment from (0, -halfHeight, 0) to (0, halfHeight, 0) of the probe's frame, the core of a capsule, meets the
-// triangles of a batch. Bit i, or lane i, is triangle i.
+// Contacts of the core of a capsule, the segment from (0, -halfHeight, 0) to (0, halfHeight, 0) in the shape's frame,
+// with the triangles of a batch. Bit i, or lane i, is triangle i.
 struct SegmentContact {
     SegmentContact(const SurfaceProbe& probe, const TriangleBatch& batch, uint32_t asked, float slop);
 
-    uint32_t crossing;  // the segment ends behind the face: nothing else is said of these
-    uint32_t before;    // a part of it, from .. to, lies before the face
-    uint32_t onFace;    // and that is as near as it comes to it, to within the slop
-    uint32_t onSide;    // of the others, those with a side in reach: nearest at `at` along the segment
+    uint32_t crossing;  // an end of the segment is behind the face: nothing else is set
+    uint32_t before;    // the interval from .. to of it projects onto the face
+    uint32_t onFace;    // and that is its closest feature, to within the slop
+    uint32_t onSide;    // of the others, those with a side in reach; closest at `at` along the segment
 
     // Two points, or one, along the face's normal; in the shape's frame. Features are those of any two polyhedra.
     void WriteFaceContact(int triangle, const Vector3& normal, Manifold& manifold) const;
-    // And at the nearest side. `vertexOf`: the triangle's corners in the order of its names.
+    // With the nearest side. `vertexOf`: vertex ids of the corners.
     void WriteSideContact(int triangle, const uint32_t (&vertexOf)[3], Manifold& manifold) const;
     // The direction to the nearest side, unit, in the surface's frame.
     Vector3 Axis(int triangle) const;

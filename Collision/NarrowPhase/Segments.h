@@ -34,21 +34,41 @@ inline ClosestParameters ClosestOnSegments(const Segment& p, const Segment& q) {
     return {s, t};
 }
 
-// Segments at less than this angle (about one degree) touch along their common length.
+// Segments at less than this angle (about one degree) touch along their common length. Scalar: capsules on triangles
+// call it for the few triangles that they touch at a side.
 inline bool NearlyParallel(const Segment& p, const Segment& q) {
     constexpr float kSineSquared = 0.02f * 0.02f;
     const Vector3 d1 = p.to - p.from, d2 = q.to - q.from;
     return LengthSquared(Cross<float>(d1, d2)) <= kSineSquared * LengthSquared(d1) * LengthSquared(d2);
 }
 
-// The parameters along p between which q lies beside it, for nearly parallel segments. False: they do not overlap.
-inline bool CommonLength(const Segment& p, const Segment& q, float& from, float& to) {
-    const Vector3 d = p.to - p.from;
-    const float scale = 1.0f / Dot(d, d);
-    const float t0 = Dot(d, Vector3(q.from - p.from)) * scale, t1 = Dot(d, Vector3(q.to - p.from)) * scale;
-    from = Max(0.0f, Min(t0, t1));
-    to = Min(1.0f, Max(t0, t1));
-    return from < to;
+// The point on the line through q that is closest to x.
+inline Vector3 ClosestOnLine(const Segment& q, const Vector3& x) {
+    const Vector3 d = q.to - q.from;
+    return q.from + d * (Dot(d, Vector3(x - q.from)) * (1.0f / Dot(d, d)));
 }
+
+// The interval along which two nearly parallel segments p and q lie side by side.
+struct CommonLength {
+    bool exists;     // otherwise they lie one behind the other, and nothing else is set
+    float at[2];     // its ends, along p, 0 .. 1
+    Vector3 onP[2];  // the same as points
+    Vector3 onQ[2];  // and the points of q's line that are closest to those
+
+    CommonLength(const Segment& p, const Segment& q) {
+        const Vector3 d = p.to - p.from;
+        const float scale = 1.0f / Dot(d, d);
+        const float t0 = Dot(d, Vector3(q.from - p.from)) * scale, t1 = Dot(d, Vector3(q.to - p.from)) * scale;
+        at[0] = Max(0.0f, Min(t0, t1));
+        at[1] = Min(1.0f, Max(t0, t1));
+        exists = at[0] < at[1];
+        if (!exists) return;
+        for (int i = 0; i < 2; ++i) {
+            onP[i] = p.At(at[i]);
+            onQ[i] = ClosestOnLine(q, onP[i]);
+        }
+    }
+    float SeparationAlong(const Vector3& axis, int i) const { return Dot(axis, Vector3(onQ[i] - onP[i])); }
+};
 
 }  // namespace fulcrum

@@ -18,8 +18,8 @@ inline Real LengthSquaredOf(const Vec3<Real>& v) {
     return Dot<Real>(v, v);
 }
 
-// Each of these finds that point and keeps only the vertices that span it.
-// Source: C. Ericson, Real-Time Collision Detection, 5.1, with the origin as the query point.
+// Each of these returns that point and keeps only the vertices that span it. Source: C. Ericson, Real-Time Collision
+// Detection, 5.1, with the origin as the query point.
 template <class Vertex>
 inline Vec3<typename Vertex::Real> ClosestOnSegment(Simplex<Vertex>& s) {
     using Real = typename Vertex::Real;
@@ -88,7 +88,7 @@ inline Vec3<typename Vertex::Real> ClosestOnTriangle(Simplex<Vertex>& s) {
     const Real va = d3 * d6 - d5 * d4;
     if (va <= 0 && d4 >= d3 && d5 >= d6)
         return Keep(s, 1, 2), Vec3<Real>(b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))));
-    // Inside: the foot of the origin on the plane is more exact than the sum of the weighted corners.
+    // Inside: projecting the origin onto the plane is more accurate than barycentric weights.
     const Vec3<Real> n = Cross<Real>(ab, ac);
     const Real square = Dot<Real>(n, n);
     if (square <= Real(1e-12f) * Dot<Real>(ab, ab) * Dot<Real>(ac, ac)) return ClosestOnEdges(s);
@@ -107,7 +107,7 @@ inline Vec3<typename Vertex::Real> ClosestInTetrahedron(Simplex<Vertex>& s) {
         const Vec3<Real> n = Cross<Real>(Vec3<Real>(b - a), Vec3<Real>(c - a));
         const Vec3<Real> ad = s.vertices[face[3]].w - a;
         const Real opposite = Dot<Real>(n, ad), origin = -Dot<Real>(n, a);
-        // A flat tetrahedron has no inside: each of its faces counts.
+        // If the tetrahedron is flat, all faces are tested.
         const bool flat = opposite * opposite <= Real(1e-10f) * Dot<Real>(n, n) * Dot<Real>(ad, ad);
         if (!flat && origin * opposite > 0) continue;
         Simplex<Vertex> triangle = s;

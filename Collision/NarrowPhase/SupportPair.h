@@ -1,6 +1,6 @@
-// Two convex shapes known by their support functions, and the pose of one in the other's frame: the Minkowski
-// difference B - A of their cores, as GJK and EPA walk on it. Used by the narrow phase and the queries; lives on the
-// stack of one call.
+// Two convex shapes given by their support functions, and the pose of one in the other's frame: the Minkowski
+// difference B - A of their cores, for GJK and EPA. Used by the narrow phase and the queries; lives on the stack of one
+// call.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/Shape.h>
@@ -9,8 +9,8 @@
 
 namespace fulcrum {
 
-// A point of B's core minus a point of A's, in A's frame. In double: the closest points of two curved cores span ever
-// thinner triangles, from which float cannot tell the axis.
+// A point of B's core minus a point of A's, in A's frame. In double: simplices of curved cores become ever thinner, too
+// thin for float to give the axis.
 struct SupportVertex {
     using Real = double;
 
@@ -33,21 +33,21 @@ struct SupportPair {
     Vector3 DirectionInB(const Vector3& n) const { return rotation.TransposeMultiply(n); }
     Vector3 PointOfB(const Vector3& local) const { return rotation * local + position; }
     float RadiusSum() const { return a.ConvexRadius() + b.ConvexRadius(); }
-    // Of the balls inside the two cores, m.
+    // Sum of the radii of the balls inside the two cores, m.
     float InnerRadii() const {
         return Max(0.0f, a.InnerRadius() - a.ConvexRadius()) + Max(0.0f, b.InnerRadius() - b.ConvexRadius());
     }
-    // The scale that rounding errors are measured against, m.
+    // The scale of rounding errors, m.
     float Size() const { return Abs(position.x()) + Abs(position.y()) + Abs(position.z()) + InnerRadii(); }
-    // How far EPA's axis may miss the least depth, m: a curved core has no last facet to find.
+    // The tolerance of EPA's depth, m: for curved cores it only converges.
     float DepthTolerance() const { return 3e-5f * Size() + 1e-12f; }
 
-    // The point that lies least far along n: the one that says how far the cores are separated along n.
+    // The point of the difference that lies least far along n (support function).
     SupportVertex Support(const Vector3& n) const {
         const Vector3 onA = a.SupportCore(n), onB = PointOfB(b.SupportCore(-DirectionInB(n)));
         return {onB.cast<double>() - onA.cast<double>(), onA, onB};
     }
-    // Separation of the cores along the unit vector n: negative where their shadows on n overlap.
+    // Separation of the cores along the unit vector n: negative if their projections overlap.
     float SeparationAlong(const Vector3& n) const {
         const Vector3 inB = DirectionInB(n);
         return Dot(n, position) + Dot(inB, b.SupportCore(-inB)) - Dot(n, a.SupportCore(n));

@@ -11,7 +11,7 @@ namespace {
 using Lanes = TriangleLanes;
 using Vector = Vec3<TriangleLanes>;
 
-// In the shape's frame: by lanes over the directions, one vertex after the other.
+// The largest product with any vertex: directions in lanes, one vertex after another.
 Lanes FarthestOfFew(const Polyhedron& core, const Vector& direction) {
     const auto value = [&](int i) {
         return direction.x() * Lanes(core.x[i]) + direction.y() * Lanes(core.y[i]) + direction.z() * Lanes(core.z[i]);
@@ -21,12 +21,10 @@ Lanes FarthestOfFew(const Polyhedron& core, const Vector& direction) {
     return most;
 }
 
-Vector3 At(const Vector& v, int lane) { return Vector3(v.x()[lane], v.y()[lane], v.z()[lane]); }
-
 }  // namespace
 
 Lanes SurfaceProbe::Extent(const Vector& d, uint32_t lanes) const {
-    // Up to so many vertices, one after the other for all lanes is faster than by lanes for one after the other.
+    // Up to so many vertices, FarthestOfFew is faster than one vectorized search per direction.
     constexpr int kFew = 24;
     if (core && core->vertexCount == 1) return Lanes(0.0f);
     Vector direction;
@@ -42,7 +40,7 @@ Lanes SurfaceProbe::Extent(const Vector& d, uint32_t lanes) const {
     Lanes extent(0.0f);
     for (uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
         const int lane = std::countr_zero(bits);
-        const Vector3 one = At(direction, lane);
+        const Vector3 one = LaneOf(direction, lane);
         extent.Set(lane, core ? FarthestVertex(*core, one).value : Dot(one, shape.SupportCore(one)));
     }
     return extent;
@@ -64,7 +62,7 @@ void TriangleBatch::Load(const SurfaceProbe& probe, const TriangleView* views) {
     for (int axis = 0; axis < 3; ++axis) normal[axis] = columns[axis];
 }
 
-// Before the face it is the foot of the center, else it lies on a side.
+// The projection of the center if it is inside the triangle, otherwise on the nearest side.
 void TriangleBatch::FindClosest() {
     const auto inside = (beyond[0] <= Lanes(0.0f)) & (beyond[1] <= Lanes(0.0f)) & (beyond[2] <= Lanes(0.0f));
     Lanes least(0.0f);
@@ -112,7 +110,7 @@ uint32_t TriangleBatch::FindInReach(const SurfaceProbe& probe, const TriangleVie
     normal = normal * sign;
     separation = height - probe.Extent(-normal, bits);
     near = near & (separation <= coreReach);
-    // A plane through a side, at right angles to the face, may keep them apart.
+    // Separating axis test: planes through a side, perpendicular to the face.
     const Lanes inner(shape.InnerRadius());
     for (int i = 0; i < 3; ++i) {
         const auto outside = beyond[i] > inner * length[i];
@@ -122,7 +120,7 @@ uint32_t TriangleBatch::FindInReach(const SurfaceProbe& probe, const TriangleVie
     }
     bits &= near.ToBits();
     if (bits == 0) return 0;
-    // Or the one through the point that lies closest to the center, at right angles to the way there.
+    // And the plane through the point closest to the center, perpendicular to the line to it.
     FindClosest();
     near = near & ((distance * distance) - probe.Extent(closest, bits) <= coreReach * distance);
     return bits & near.ToBits();
@@ -135,8 +133,8 @@ void TriangleBatch::Extract(int lane, bool isReversed, const Matrix3& axes, Vect
     for (int i = 0; i < 3; ++i) {
         const int side = kSides[isReversed][i];
         const float itsLength = length[side][lane];
-        itsCorners[i] = axes * At(corners[kCorners[isReversed][i]], lane);
-        itsOutwards[i] = axes * Vector3(At(outwards[side], lane) * (itsLength > 1e-12f ? 1.0f / itsLength : 0.0f));
+        itsCorners[i] = axes * LaneOf(corners[kCorners[isReversed][i]], lane);
+        itsOutwards[i] = axes * Vector3(LaneOf(outwards[side], lane) * (itsLength > 1e-12f ? 1.0f / itsLength : 0.0f));
     }
 }
 

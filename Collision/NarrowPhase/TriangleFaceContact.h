@@ -1,6 +1,5 @@
-// What lies before a triangle's face: the face of a box or hull that is turned to it, clipped by its sides.
-// BuildFaceContact for the triangles of a surface, in the frame of the shape, whose vertices are there as they are.
-// Called by SurfaceContact. Thread-safe.
+// BuildFaceContact for the triangles of a surface as reference faces, in the frame of the shape, where the shape's
+// vertices need no transformation. Called by SurfaceContact. Thread-safe.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/FaceContact.h>

@@ -9,13 +9,13 @@ namespace fulcrum {
 
 namespace {
 
-// The axis of least depth of overlapping cores. A flat or pointed core, as a triangle or a segment, may leave EPA
-// nothing to expand: libccd's answer is held against the center line's then, and the axis of less depth wins.
+// The axis of least depth of overlapping cores. For a flat or pointed core, such as a triangle or a segment, EPA may
+// have nothing to expand: then the axis of less depth of libccd's and the line between the centers is taken.
 Vector3 AxisOfLeastDepth(const SupportPair& pair, const RelativePose& bInA, const ConvexGjkResult& gjk) {
     Vector3 axis = gjk.axis;
     float depth = -pair.SeparationAlong(axis);
-    // Far from each other GJK's simplex may seem to be around the origin, by rounding alone: a plane between the cores
-    // is a proof, and what they are apart along it all that floats know.
+    // If the cores are far apart GJK's simplex may seem to contain the origin, by rounding. A plane between the cores
+    // proves that they are apart; their separation along its normal is the best that float gives.
     if (depth < 0) return axis;
     const Vector3 centerLine = Normalized(pair.position);
     if (pair.SeparationAlong(centerLine) > 0) return centerLine;
@@ -30,8 +30,8 @@ Vector3 AxisOfLeastDepth(const SupportPair& pair, const RelativePose& bInA, cons
     if (epa.status == EpaResult::Status::Found) return axis;
     consider(centerLine);
     consider(-centerLine);
-    // Against a shape so much larger that the cores overlap by no more than it rounds, GJK's simplex is all that tells
-    // the surface.
+    // If one shape is so much larger that the overlap is below its rounding, only GJK's simplex gives the closest
+    // feature.
     using Real = SupportVertex::Real;
     const auto& simplex = gjk.simplex;
     const int faces = simplex.count == 4 ? 4 : simplex.count == 3 ? 1 : 0;
@@ -72,11 +72,11 @@ ConvexSeparation MeasureConvex(const ConvexShape& a, const ConvexShape& b, const
     }
     result.normal = AxisOfLeastDepth(pair, bInA, gjk);
     result.separation = pair.SeparationAlong(result.normal) - pair.RadiusSum();
-    // Of B the deepest point; of A the one that B would leave by.
+    // The deepest point of B, projected onto A's surface along the normal.
     const Vector3 deepest = pair.PointOfB(b.SupportCore(-pair.DirectionInB(result.normal)));
     result.onB = deepest - result.normal * b.ConvexRadius();
     result.onA = result.onB - result.normal * result.separation;
-    result.isBeyond = !IsFinite(result.normal) || !IsFinite(result.onA);  // of shapes beyond the floats
+    result.isBeyond = !IsFinite(result.normal) || !IsFinite(result.onA);  // overflow, of huge shapes
     return result;
 }
 

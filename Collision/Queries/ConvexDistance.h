@@ -1,5 +1,5 @@
-// How far two convex shapes are apart, or how deep they overlap, through their support functions. Called by the
-// queries. Thread-safe; allocates nothing but where EPA gives up and libccd answers.
+// Signed distance of two convex shapes, by their support functions. Called by the queries. Thread-safe; allocates
+// nothing unless EPA gives up and libccd is used.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/ConvexGjk.h>
@@ -8,7 +8,7 @@ namespace fulcrum {
 
 struct ConvexSeparation {
     bool isBeyond = false;             // farther apart than the reach: nothing else is set
-    float separation = 0;              // m, of the whole shapes; negative: the depth, the least move that parts them
+    float separation = 0;              // m, of the whole shapes; negative: minus the penetration depth
     Vector3 normal = Vector3::Zero();  // unit, from A towards B, A's frame
     Vector3 onA = Vector3::Zero();     // m, A's frame: the surface's closest, or deepest, points
     Vector3 onB = Vector3::Zero();

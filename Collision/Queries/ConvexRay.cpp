@@ -13,7 +13,7 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// All of a line that is inside a shape.
+// The interval of a line that is inside a shape.
 struct Chord {
     LineHit in, out;
 };
@@ -52,7 +52,7 @@ bool ChordOfBox(const Vector3& half, const LinePiece& line, Chord& chord) {
     return true;
 }
 
-// The side where the line crosses it between the ends, otherwise the ball of the end it passes.
+// The cylinder if the line crosses it between the ends, otherwise the ball at the end.
 bool ChordOfCapsule(const Capsule& capsule, const LinePiece& line, Chord& chord) {
     const float h = capsule.HalfHeight(), r = capsule.Radius();
     const double dx = line.direction.x(), dz = line.direction.z(), px = line.point.x(), pz = line.point.z();
@@ -153,8 +153,8 @@ ChordAnswer ChordOf(const ConvexShape& shape, const LinePiece& line, Chord& chor
     }
 }
 
-// `to`: where the line has left the shape for sure. What the piece leaves out of that only cuts the search short: the
-// answer is the same bits.
+// `to`: where the line has certainly left the shape. A shorter piece only ends the search earlier: the hit has the same
+// bits.
 LineResult EnterBetween(const ConvexShape& shape, const LinePiece& line, float from, float to) {
     LineResult result;
     if (!(from <= std::min(to, line.to))) return result;
@@ -200,7 +200,7 @@ bool LeaveConvex(const ConvexShape& shape, const LinePiece& line, LineHit& exit)
         exit = chord.out;
         return exit.distance <= line.to;
     }
-    // The way out is the way in of the line turned round, from beyond the shape.
+    // The exit is the entry of the reversed line, from beyond the shape.
     const float beyond = 2 * shape.OuterRadius() + Length(line.point);
     const LinePiece back{line.point, -line.direction, -beyond, -line.from};
     const LineResult entry = EnterBySupport(shape, back);

@@ -15,13 +15,13 @@ constexpr int kMaxTurningIterations = 200;
 
 using Vec4 = std::array<double, 4>;
 
-// Below this much, in m, two floats that describe the shapes' surfaces cannot tell touching from apart.
+// The rounding of the shapes' surfaces, m: below it, touching and apart cannot be told apart.
 double LeastTolerance(const ConvexShape& a, const ConvexShape& b) {
     const float small = std::min(a.OuterRadius(), b.OuterRadius()), large = std::max(a.OuterRadius(), b.OuterRadius());
     return double{1e-6f * small + 2e-7f * large + 1e-9f};
 }
 
-// The two cores with B turned, but not moved: what is added for its position is exact in double.
+// The two cores with B rotated but not moved: its position is added in double, exactly.
 struct TurnedPair {
     const ConvexShape& a;
     const ConvexShape& b;
@@ -45,10 +45,10 @@ Vec4 WeightsInside(const Simplex<SupportVertex>& s) {
         return Dot<double>(a, Cross<double>(b, c));
     };
     const Position &a = s.vertices[0].w, &b = s.vertices[1].w, &c = s.vertices[2].w, &d = s.vertices[3].w;
-    const Vec4 parts{volume(b, c, d), -volume(a, c, d), volume(a, b, d), -volume(a, b, c)};
-    const double sum = parts[0] + parts[1] + parts[2] + parts[3];
+    const Vec4 volumes{volume(b, c, d), -volume(a, c, d), volume(a, b, d), -volume(a, b, c)};
+    const double sum = volumes[0] + volumes[1] + volumes[2] + volumes[3];
     if (sum == 0) return {};
-    return {parts[0] / sum, parts[1] / sum, parts[2] / sum, parts[3] / sum};
+    return {volumes[0] / sum, volumes[1] / sum, volumes[2] / sum, volumes[3] / sum};
 }
 
 Vector3 PointOnA(const Simplex<SupportVertex>& simplex) {
@@ -88,7 +88,7 @@ CoreCastResult CoresOverlapAtStart() {
 }  // namespace
 
 Quaternion CoreMotion::RotationAt(double fraction) const {
-    // Of a turn through more radians a float knows no direction: any rotation is as right.
+    // Beyond so many radians float gives no meaningful rotation.
     constexpr float kFarthestTurn = 1e6f;
     const Vector3 turned = turn * static_cast<float>(fraction);
     if (!(turned.cwiseAbs().maxCoeff() < kFarthestTurn)) return rotation;
@@ -109,7 +109,7 @@ CoreCastResult CastLinear(const ConvexShape& a, const ConvexShape& b, const Core
     for (int i = 0; i < kMaxIterations; ++i) {
         SupportVertex vertex = pair.Support(at, axis);
         const double gap = Dot<double>(axis, vertex.w) - target;
-        // A point of each is near enough, and the axis tells so too: it is the normal.
+        // The closest points are near enough, and the separation along the axis agrees: the axis is the normal.
         if (touches && gap >= -2 * tolerance) return HitAt(Touching(advanced), fraction, axis, PointOnA(simplex));
         bool moved = false;
         if (gap > 0) {
@@ -125,7 +125,7 @@ CoreCastResult CastLinear(const ConvexShape& a, const ConvexShape& b, const Core
             moved = advanced = true;
         }
         const bool known = Contains(simplex, vertex);
-        // GJK can come no closer: the cores touch as nearly as their supports can tell.
+        // GJK makes no more progress: the cores touch to within rounding.
         if (known && !moved) return HitAt(Touching(advanced), fraction, axis, PointOnA(simplex));
         if (!known) simplex.vertices[simplex.count++] = vertex;
         const Position closest = ClosestOn(simplex);
@@ -136,7 +136,8 @@ CoreCastResult CastLinear(const ConvexShape& a, const ConvexShape& b, const Core
         }
         axis = closest * (1 / distance);
         touches = distance - target <= tolerance;
-        // So near each other, the cores' closest points tell no direction; the plane that they were advanced to does.
+        // The closest points are too near each other to give a direction: the normal of the last separating plane is
+        // used.
         if (touches && advanced && distance <= 100 * least)
             return HitAt(Outcome::Hit, fraction, provenAxis, PointOnA(simplex));
     }
@@ -147,14 +148,14 @@ CoreCastResult CastLinear(const ConvexShape& a, const ConvexShape& b, const Core
 
 namespace {
 
-// How long no point of a turning shape comes nearer than the wanted distance along an axis. All points of B follow
-//   n . x(t + s) >= n . (c + r) + s (n . d + r . (n x w)) - s^2 / 2 |w|^2 R,
+// For how long no point of a turning shape comes nearer than the target distance along an axis. All points of B follow
+//     n . x(t + s) >= n . (c + r) + s (n . d + r . (n x w)) - s^2 / 2 |w|^2 R,
 // r from B's center, R the radius of its core, w the turn: the linear part is smallest for the support of B along
-// n + s (n x w), and as a minimum of linear functions it is concave in s. So where the bound holds at the end of an
+// n + s (n x w), and as a minimum of linear functions it is concave in s. So if the bound holds at the end of an
 // interval and the shapes are apart at its beginning, it holds in between.
 class AxisAdvance {
 public:
-    // `gap`: by which B is farther away along the axis now than wanted, > 0.
+    // `gap`: by which B is farther away along the axis now than the target distance, > 0.
     AxisAdvance(const ConvexShape& b, const CoreMotion& motion, const Vector3& axis, const Quaternion& rotation,
                 double gap)
         : b_(b),
@@ -172,10 +173,10 @@ public:
         const double speed = approach_ + double{Length(turned_)} * radius_;
         if (speed * remaining <= gap_) return remaining;
         const double sure = gap_ / speed;
-        if (!(sure > 0)) return 0;  // so fast that numbers fail: the search ends early
+        if (!(sure > 0)) return 0;  // overflow: the search ends early
         double low = sure, high = remaining;
         if (Margin(high) > 0) return high;
-        // False position with halving: each turn costs a support.
+        // False position with bisection: each iteration costs a support.
         double lowMargin = Margin(low), highMargin = Margin(high);
         if (!(lowMargin > 0)) return sure;
         for (int i = 0; i < 8 && high - low > 0.02 * low; ++i) {
@@ -205,8 +206,9 @@ private:
     double gap_, approach_, radius_, bending_, lowest_;
 };
 
-// Advances until GJK, or whatever `separate` is, finds the shapes no farther apart than wanted. separate(fraction)
-// answers {apart by more than wanted along a unit axis, axis, point of A's core, cores overlap}.
+// Conservative advancement until `separate` (GJK, or a plane) finds the shapes no farther apart than the target
+// distance. separate(fraction) returns {apart by more than the target along a unit axis, axis, point of A's core, cores
+// overlap}.
 struct Separated {
     double gap;
     Vector3 axis;
@@ -228,9 +230,9 @@ CoreCastResult Advance(const ConvexShape& b, const CoreMotion& motion, const Cor
             return HitAt(i == 0 ? Outcome::AtStart : Outcome::Hit, fraction, known.axis.template cast<double>(),
                          known.onA);
         }
-        // Not shorter where only the beginning is asked for: the answer is the same bits.
+        // Not shortened to maxFraction, so that the hit has the same bits for every maxFraction.
         const double remaining = 1 - fraction;
-        // To half the tolerance from touching: there it ends, and is not asked again and again.
+        // Advances to half the tolerance from touching, so that the search ends there.
         const AxisAdvance advance(b, motion, now.axis, motion.RotationAt(fraction), now.gap - 0.5 * tolerance);
         const double step = advance.Step(remaining);
         if (step >= remaining) return {};
@@ -253,7 +255,7 @@ CoreCastResult CastTurning(const ConvexShape& a, const ConvexShape& b, const Cor
         const Vector3 start = fraction == 0 ? Normalized(pair.position) : guess;
         const ConvexGjkResult found = ConvexGjk(pair, start, std::numeric_limits<float>::infinity());
         const bool overlap = found.status == GjkStatus::Overlapping;
-        // What the axis proves, which may be a rounding less than the distance of the points.
+        // The separation along the axis, which may be less than the distance of the points by rounding.
         return {double{pair.SeparationAlong(found.axis)} - target, found.axis, found.onA, overlap};
     };
     return Advance(b, motion, limits, tolerance, separate);

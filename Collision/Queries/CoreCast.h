@@ -1,10 +1,9 @@
 // Time of impact of two convex shapes, one moving, known by their support functions alone. Called by the ray casts and
 // shape casts; the base of continuous collision. Allocates nothing; thread-safe.
 //
-// Every advance in time is proven: a plane separates the shapes by more than the wanted distance until then, whatever
-// the shape, so that nothing is stepped over however thin or fast it is. The search ends where a point of each, that
-// far apart up to a tolerance, proves that the time is not early either; should that take too many steps, the time
-// reached is given, which is early rather than late.
+// Every advance is conservative: until then a plane separates the shapes by more than the target distance, so that
+// nothing is tunneled through however thin or fast. The search ends when the closest points are within the tolerance of
+// the target distance; after too many iterations the time reached so far is returned, which is early rather than late.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/ConvexGjk.h>
@@ -26,15 +25,15 @@ struct CoreMotion {
 
 struct CoreCastLimits {
     float maxFraction = 1;  // of the motion, 0 .. 1
-    float separation = 0;   // m, >= 0: how far apart the shapes are where they count as touching
-    float tolerance = 0;    // m, >= 0: by which they may then be farther apart; never less than rounding asks for
+    float separation = 0;   // m, >= 0: the target distance: closer shapes count as touching
+    float tolerance = 0;    // m, >= 0: by which they may be farther apart at a hit; at least the rounding
 };
 
 struct CoreCastResult {
     enum class Status : uint8_t {
         Miss,  // farther apart than the separation until maxFraction
         Hit,
-        Early,    // not decided within the limit of iterations: apart until then, near each other at that time
+        Early,    // iteration limit reached: apart until then, near each other at that time
         AtStart,  // no farther apart than the separation at the start
     };
     Status status = Status::Miss;
@@ -50,8 +49,8 @@ struct CoreCastResult {
 CoreCastResult CastLinear(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion,
                           const CoreCastLimits& limits);
 
-// The same for a B that turns, by conservative advancement: GJK at each time, and an advance by a bound of second order
-// on how fast B's points may come nearer along the axis found.
+// The same for a B that turns, by conservative advancement: GJK at each time, and an advance by a second-order bound on
+// the approach of B's points along the axis found.
 CoreCastResult CastTurning(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion,
                            const CoreCastLimits& limits);
 

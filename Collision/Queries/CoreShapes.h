@@ -1,5 +1,5 @@
-// Points and triangles as convex shapes, so that all that GJK knows serves them too. Used by the queries; they live on
-// the stack of one call and are bodies' shapes nowhere.
+// Points and triangles as convex shapes, for GJK in the queries. They live on the stack of one call; bodies do not use
+// them.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/Shape.h>
@@ -17,7 +17,7 @@ public:
 // A triangle of a surface, relative to a point near it.
 class TriangleCore final : public ConvexShape {
 public:
-    // `origin`: what becomes zero, in the surface's frame, m.
+    // `origin`: the origin of the new frame, in the surface's frame, m.
     TriangleCore(const TriangleView& triangle, const Vector3& origin)
         : ConvexShape(ShapeType::Custom), normal_(triangle.normal), id_(triangle.id) {
         for (int i = 0; i < 3; ++i) {

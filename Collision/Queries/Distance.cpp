@@ -56,7 +56,7 @@ public:
     float Best() const { return limit_; }
 
 private:
-    float limit_;  // m: only what is as close
+    float limit_;  // m: largest distance of interest
     bool found_ = false;
     ClosestPoints& result_;
 };
@@ -84,7 +84,7 @@ bool ClosestToPlane(const Plane& plane, const Shape& other, const RelativePose& 
     return search.Found();
 }
 
-// What was found in the frame of the second shape, from the first one's side.
+// A result in the second shape's frame, converted to the first one's.
 ClosestPoints Swapped(const ClosestPoints& found, const RelativePose& secondInFirst) {
     return {found.distance,
             Rotate(secondInFirst.rotation, Vector3(-found.normal)),
@@ -118,7 +118,7 @@ bool FindClosestPoints(const Shape& a, const Shape& b, const RelativePose& bInA,
         VisitPairs(a, b, bInA, 0, consider);
         return search.Found();
     }
-    // In growing boxes, until one holds all that could be closer than what was found in it.
+    // Searches growing boxes, until one contains everything closer than the best result.
     const Bounds boxOfB = BoundsAt(bInA, b.LocalBounds()), &boxOfA = a.LocalBounds();
     const Vector3 gap = Vector3(boxOfB.lower - boxOfA.upper).cwiseMax(boxOfA.lower - boxOfB.upper).cwiseMax(0.0f);
     const Vector3 span = boxOfA.upper.cwiseMax(boxOfB.upper) - boxOfA.lower.cwiseMin(boxOfB.lower);

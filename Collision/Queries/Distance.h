@@ -1,5 +1,5 @@
 // Closest points of two shapes, overlap, and points inside. Called by the world's queries and by users who have shapes
-// and no world. Thread-safe; allocates nothing but where the depth of a degenerate overlap is measured.
+// and no world. Thread-safe; allocates nothing unless the depth of a degenerate overlap is measured.
 #pragma once
 
 #include <Fulcrum/Collision/Queries/SubShape.h>

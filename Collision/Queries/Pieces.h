@@ -1,5 +1,5 @@
-// A shape taken apart: the convex pieces of it that lie near a box, each at its pose. Used by the casts, distances and
-// overlaps; half spaces, which have no pieces, they treat themselves. Allocates nothing; thread-safe.
+// The convex pieces (children, triangles) of a shape near a box, each at its pose. Used by shape casts, distances and
+// overlaps; half spaces, which have no pieces, are handled by the callers. Allocates nothing; thread-safe.
 #pragma once
 
 #include <Fulcrum/Collision/Queries/CoreShapes.h>
@@ -16,7 +16,8 @@ struct Piece {
     bool isTwoSided = true;                  // of the surface
 };
 
-// What a float knows the way between two shapes by; farther apart they find nothing. And whether a rotation is one.
+// Shapes farther apart than this find nothing: squares of distances must be finite floats. Also rejects invalid
+// rotations.
 inline constexpr double kFarthestApart = 1e18;  // m
 inline bool IsWithinReach(const Position& between) {
     return IsFinite(between) && between.cwiseAbs().maxCoeff() < kFarthestApart;
@@ -30,7 +31,7 @@ inline Bounds Inflated(const Bounds& bounds, float by) {
     return b;
 }
 
-// The box moved, as wide as rounding may ask for.
+// The box moved, enlarged by the rounding.
 inline Bounds Shifted(const Bounds& bounds, const Vector3& by) {
     if (by.isZero(0)) return bounds;
     const float slack = 1e-6f * (by.cwiseAbs().sum() + bounds.lower.cwiseAbs().sum() + bounds.upper.cwiseAbs().sum());
@@ -40,7 +41,7 @@ inline Bounds Shifted(const Bounds& bounds, const Vector3& by) {
     return b;
 }
 
-// The box, in another frame, around a box that `pose` places there; as wide as rounding may ask for.
+// The AABB of a box at `pose`, enlarged by the rounding.
 inline Bounds BoundsAt(const RelativePose& pose, const Bounds& bounds) {
     const Matrix3 r = ToMatrix(pose.rotation);
     const Vector3 half = bounds.HalfExtents(), center = pose.Transform(bounds.Center());
@@ -68,8 +69,8 @@ void VisitPieces(const Shape& shape, const Bounds& box, Visitor&& visit) {
     } else if (shape.IsCompound()) {
         const CompoundShape& compound = static_cast<const CompoundShape&>(shape);
         compound.Tree().Query(Shifted(box, -compound.Origin()), [&](uint32_t child) {
-            const CompoundShape::Child& part = compound.Children()[child];
-            visit(Piece{*part.shape, compound.PoseOf(part), {child, kNoTriangle}});
+            const CompoundShape::Child& entry = compound.Children()[child];
+            visit(Piece{*entry.shape, compound.PoseOf(entry), {child, kNoTriangle}});
         });
     } else if (shape.IsSurface()) {
         const SurfaceShape& surface = static_cast<const SurfaceShape&>(shape);

@@ -12,12 +12,12 @@ namespace fulcrum {
 
 namespace {
 
-// The ray in the frame of a compound's children, as wide as its turning is inexact.
+// The ray in the frame of a compound's children, widened by the rounding of its rotation.
 TreeRay InFrameOfTree(const Ray& ray, double length, const CompoundShape& compound, const Pose& pose) {
     const Quat<double> back{-pose.rotation.x, -pose.rotation.y, -pose.rotation.z, pose.rotation.w};
     const Position origin =
         Rotate<double>(back, Position(ray.origin - pose.position)) - compound.Origin().cast<double>();
-    // Beyond the compound it does not matter how far a long ray outsideFatBounds.
+    // Beyond the compound the rounding of a long ray does not matter.
     const double reach = double{compound.OuterRadius()} + std::sqrt(Dot<double>(origin, origin));
     const float slack = static_cast<float>(1e-6 * (reach + std::min(reach, length)));
     constexpr double kMost = std::numeric_limits<float>::max();
@@ -40,14 +40,14 @@ RayCaster::RayCaster(const Ray& ray) : ray_(ray) {
 
 bool RayCaster::CastConvex(const ConvexShape& shape, const Pose& pose, const RayCastSettings& settings, float limit,
                            RayHit& hit) const {
-    // The ray's nearest point to the shape's center is the origin of the line: it is as small as the shape where that
-    // is hit.
+    // The line's origin is the ray's closest point to the shape's center, so that its coordinates are small for rays
+    // that hit.
     const Position origin = ray_.origin - pose.position, displacement = ray_.displacement.cast<double>();
     const double nearest = -Dot<double>(origin, displacement) * inverseSquare_;
     const Vector3 point = (origin + displacement * nearest).cast<float>();
     const float reach = shape.OuterRadius() * 1.0001f;
     if (LengthSquared(point) > reach * reach) return false;
-    // Longer than the limit by more than what follows rounds, so that the limit leaves out nothing within it.
+    // Longer than the limit by more than later rounding, so that no hit within the limit is lost.
     const double upTo = (double{limit} * (1 + 0x1p-22) - nearest) * length_ + 0x1p-22 * double{reach};
     const LinePiece line{InverseRotate(pose.rotation, point), InverseRotate(pose.rotation, direction_),
                          static_cast<float>(-nearest * length_),
@@ -101,7 +101,7 @@ SurfaceRay RayCaster::InFrameOf(const SurfaceShape& shape, const Pose& pose, boo
     skipped = std::max(0.0, nearest - 1.0001 * double{shape.OuterRadius()} / length_);
     const Vector3 begin = (origin + displacement * skipped).cast<float>();
     const Quaternion& q = pose.rotation;
-    if (q.x == 0 && q.y == 0 && q.z == 0) return {begin, ray_.displacement, backFaces};  // as most surfaces are
+    if (q.x == 0 && q.y == 0 && q.z == 0) return {begin, ray_.displacement, backFaces};  // the common case
     return {InverseRotate(q, begin), InverseRotate(q, ray_.displacement), backFaces};
 }
 

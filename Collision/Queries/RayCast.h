@@ -2,8 +2,8 @@
 // Thread-safe; allocates nothing.
 //
 // Convex shapes and half spaces are solid: a ray that starts inside, or on the surface, hits at fraction 0, with a
-// normal against the ray. Hollow ones, on request, are hit from inside only where they are left, and only with
-// `backFaces`. Triangles follow SurfaceShape. A ray that is not finite or has no length hits nothing.
+// normal against the ray. With `hollow`, a ray that starts inside hits them where it leaves, and only with `backFaces`.
+// Triangles follow SurfaceShape. A ray that is not finite or has no length hits nothing.
 #pragma once
 
 #include <Fulcrum/Collision/Queries/ConvexRay.h>
@@ -31,8 +31,8 @@ struct RayHit {
     bool isBackFace = false;
 };
 
-// A ray, ready to be cast at any number of shapes. Everything is in the frame of the ray, the world's or another, and
-// exact however far from its origin: only differences become floats.
+// A ray, prepared to be cast at any number of shapes. Everything is in the frame of the ray, the world's or another,
+// and exact however far from its origin: only differences are rounded to float.
 class RayCaster {
 public:
     RayCaster() = default;  // not valid
@@ -45,9 +45,9 @@ public:
     bool CastClosest(const Shape& shape, const Pose& pose, const RayCastSettings& settings, RayHit& hit) const {
         return CastClosest(shape, pose, settings, settings.maxFraction, hit);
     }
-    // The same where only hits up to `limit` <= settings.maxFraction are of interest. A hit within it is the same bits
-    // for every limit; one a little farther may be found or not. So what is closest of many shapes does not depend on
-    // their order.
+    // The same for hits up to `limit` <= settings.maxFraction. Hits within the limit have the same bits for every
+    // limit; one a little farther may be found or not. So the closest hit of many shapes does not depend on their
+    // order.
     bool CastClosest(const Shape& shape, const Pose& pose, const RayCastSettings& settings, float limit,
                      RayHit& hit) const;
     // The same for several rays at a surface, which costs less where they lie close together: for casters[i], limits[i]
@@ -72,9 +72,9 @@ private:
                      RayHit& hit) const;
     bool Search(const Shape& shape, const Pose& pose, const RayCastSettings& settings, void* context,
                 HitFunction found) const;
-    // The ray in the frame of a surface, begun where it may first meet it; how much of it that leaves out.
+    // The ray in the frame of a surface, starting at the surface's bounds, and how much of it was cut off.
     SurfaceRay InFrameOf(const SurfaceShape& shape, const Pose& pose, bool backFaces, double& skipped) const;
-    // How far that ray may go, as a fraction of it.
+    // The largest fraction of the cut ray.
     static float LeftOf(const RayCastSettings& settings, float limit, double skipped);
     static RayHit FromSurface(const SurfaceHit& found, const Pose& pose, const RayCastSettings& settings,
                               double skipped);

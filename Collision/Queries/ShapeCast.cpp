@@ -38,7 +38,7 @@ CoreMotion ShapeCaster::RelativeTo(const Pose& pose) const {
     return motion;
 }
 
-// What overlaps at the start: the least move that parts the two; off a one-sided triangle to its front.
+// Depth and normal of an overlap at the start; of a one-sided triangle towards its front.
 void ShapeCaster::MeasureDepth(const Piece& piece, const Pose& at, const CoreMotion& motion, ShapeHit& hit) const {
     const RelativePose relative{motion.position.cast<float>(), motion.rotation};
     const ConvexSeparation now = MeasureConvex(piece.shape, shape_, relative, std::numeric_limits<float>::infinity());
@@ -57,7 +57,7 @@ void ShapeCaster::MeasureDepth(const Piece& piece, const Pose& at, const CoreMot
 
 namespace {
 
-// Shapes of extreme sizes, or far away, can bring a hit beyond the floats: that is no hit.
+// Hits that overflow, of shapes of extreme sizes or distances, do not count.
 bool IsWithinFloats(const ShapeHit& hit) {
     return std::fabs(LengthSquared(hit.normal) - 1) < 1e-3f && IsFinite(hit.position) && std::isfinite(hit.depth);
 }
@@ -83,7 +83,7 @@ bool ShapeCaster::CastPiece(const Piece& piece, const Pose& pose, const ShapeCas
         return !settings.measureDepth || IsWithinFloats(hit);
     }
     if (isOneSided && motion.IsTurning()) {
-        // What swings may touch an open edge from any side: where its center is tells where it comes from.
+        // A turning shape may touch an open edge from any side: its center tells from which side it comes.
         const Position center =
             motion.PositionAt(cast.fraction) - piece.triangle->SupportCore(Vector3(1, 0, 0)).cast<double>();
         if (Dot<double>(center, piece.triangle->Normal().cast<double>()) < 0) return false;
@@ -116,22 +116,21 @@ bool ShapeCaster::CastPlane(const Shape& shape, const Pose& pose, const ShapeCas
     return IsWithinFloats(hit);
 }
 
-// A long way is cut into pieces hardly longer than the shape, so that the boxes that are searched hold few triangles
-// beside those that are met.
+// A long motion is cut into segments not much longer than the shape, so that their AABBs contain few other triangles.
 void ShapeCaster::SearchSurface(const SurfaceShape& surface, const Pose& pose, ShapeCastSettings& settings,
                                 void* context, HitFunction found) const {
-    constexpr float kLengthOfPart = 4;  // half extents
-    constexpr float kMostParts = 256;
+    constexpr float kSegmentLength = 4;  // half extents
+    constexpr float kMostSegments = 256;
     const CoreMotion motion = RelativeTo(pose);
     const Bounds turned =
         motion.IsTurning() ? bounds_ : BoundsAt({Vector3::Zero(), motion.rotation}, shape_.LocalBounds());
     const float size = turned.HalfExtents().maxCoeff();
     const float length = motion.displacement.cwiseAbs().maxCoeff();
-    const int parts = static_cast<int>(std::clamp(std::ceil(length / (kLengthOfPart * size)), 1.0f, kMostParts));
+    const int segments = static_cast<int>(std::clamp(std::ceil(length / (kSegmentLength * size)), 1.0f, kMostSegments));
     bool goOn = true;
-    for (int i = 0; i < parts && goOn; ++i) {
-        const float from = static_cast<float>(i) / static_cast<float>(parts);
-        const float to = i + 1 == parts ? 1 : static_cast<float>(i + 1) / static_cast<float>(parts);
+    for (int i = 0; i < segments && goOn; ++i) {
+        const float from = static_cast<float>(i) / static_cast<float>(segments);
+        const float to = i + 1 == segments ? 1 : static_cast<float>(i + 1) / static_cast<float>(segments);
         if (from > settings.maxFraction) return;
         Bounds box;
         for (const float fraction : {from, to}) {
@@ -144,8 +143,8 @@ void ShapeCaster::SearchSurface(const SurfaceShape& surface, const Pose& pose, S
         VisitPieces(surface, Inflated(box, slack), [&](const Piece& piece) {
             ShapeHit hit;
             if (!goOn || !CastPiece(piece, pose, settings, hit)) return;
-            // Each part answers for its own hits: a triangle near two of them is told once.
-            const bool isHere = (hit.fraction >= from || i == 0) && (hit.fraction < to || i + 1 == parts);
+            // Each segment reports the hits within it, so that a triangle near two of them is reported once.
+            const bool isHere = (hit.fraction >= from || i == 0) && (hit.fraction < to || i + 1 == segments);
             if (isHere) goOn = found(context, hit, settings);
         });
     }
@@ -176,8 +175,8 @@ void ShapeCaster::Search(const Shape& other, const Pose& pose, ShapeCastSettings
                           motion.displacement, turned.HalfExtents() + Vector3::Constant(slack));
         float limit = settings.maxFraction;
         compound.Tree().CastRay(ray, limit, [&](uint32_t child) {
-            const CompoundShape::Child& part = compound.Children()[child];
-            if (!CastPiece({*part.shape, compound.PoseOf(part), {child, kNoTriangle}}, pose, settings, hit)) return;
+            const CompoundShape::Child& entry = compound.Children()[child];
+            if (!CastPiece({*entry.shape, compound.PoseOf(entry), {child, kNoTriangle}}, pose, settings, hit)) return;
             limit = found(context, hit, settings) ? settings.maxFraction : -1;
         });
     }

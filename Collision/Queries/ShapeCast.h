@@ -1,11 +1,11 @@
 // A convex shape that moves straight, and may turn at a constant rate, against a single shape at rest at a pose. Called
 // by the world's queries and continuous collision, and by users who have shapes and no world. Thread-safe; allocates
-// nothing, but where the depth of a degenerate overlap is measured.
+// nothing unless the depth of a degenerate overlap is measured.
 //
-// Nothing that is touched is missed, however thin or fast. What overlaps at the start is hit at fraction 0, with the
-// depth and the normal of the least move that parts the two. One-sided triangles are hit from the front alone: a shape
-// that moves along their normal, or comes to touch them from behind, passes. A motion that is not finite, or of more
-// than 1e18 m or rad, or from farther away, hits nothing; one of no length hits what overlaps it.
+// No hit is missed, however thin or fast the shapes. Shapes that overlap at the start are hit at fraction 0, with
+// penetration depth and normal. One-sided triangles are hit from the front alone: a shape that moves along their
+// normal, or reaches them from behind, passes. A motion that is not finite, or of more than 1e18 m or rad, or from
+// farther away, hits nothing; one of no length hits what overlaps it.
 #pragma once
 
 #include <Fulcrum/Collision/Queries/CoreCast.h>
@@ -24,7 +24,7 @@ struct ShapeCastSettings {
     float maxFraction = 1;   // 0 .. 1, of the motion; only hits up to here
     float separation = 0;    // m, >= 0: shapes this far apart count as touching
     float tolerance = 0;     // m, >= 0: a hit may be found that much too far away; 0: to about 1e-6 of the shapes' size
-    bool measureDepth = true;  // else what overlaps at the start is hit with depth, normal and position zero
+    bool measureDepth = true;  // otherwise overlaps at the start have depth, normal and position zero
 };
 
 struct ShapeHit {
@@ -33,7 +33,7 @@ struct ShapeHit {
     Vector3 normal = Vector3::Zero();      // unit, from the shape at rest towards the one that moves
     Position position = Position::Zero();  // m, on the surface of the shape at rest
     float depth = 0;                       // m, >= 0: how far they overlap at the start
-    bool isEarly = false;                  // the search gave up: they do not touch before, but perhaps later or never
+    bool isEarly = false;  // iteration limit reached: they do not touch before, but perhaps later or never
 };
 
 // Everything is in the frame of the motion, the world's or another, and exact however far from its origin.
@@ -41,23 +41,22 @@ class ShapeCaster {
 public:
     ShapeCaster(const ConvexShape& shape, const ShapeMotion& motion);
     bool IsValid() const { return isValid_; }  // else it hits nothing
-    // The box about the shape's center that holds the shape all along, relative to where the center is.
+    // A box, relative to the moving center, that contains the shape during the whole motion.
     const Bounds& BoundsAboutCenter() const { return bounds_; }
 
     // The closest hit; of equally close ones the deepest, then that of the lowest child and triangle. `pose` is that of
     // the other shape's center frame. False: none, `hit` is unchanged.
     bool CastClosest(const Shape& other, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit) const;
-    // Calls visit(const ShapeHit&) for the first touch of each convex shape, child, triangle or half space, in no
-    // order, until it returns false. False: it did.
+    // Calls visit(const ShapeHit&) for the first hit of each convex shape, child, triangle or half space, in no order,
+    // until it returns false. False: it did.
     template <class Visitor>
     bool CastAll(const Shape& other, const Pose& pose, const ShapeCastSettings& settings, Visitor&& visit) const;
-    // The same, where visit(const ShapeHit&) returns up to which fraction hits are of interest still, less than 0:
-    // none.
+    // The same, where visit(const ShapeHit&) returns the new largest fraction, negative to stop.
     template <class Visitor>
     void Visit(const Shape& other, const Pose& pose, const ShapeCastSettings& settings, Visitor&& visit) const;
 
 private:
-    // Visits hits, and is told through `settings` up to where they are of interest still; false ends the search.
+    // Visits a hit and may lower settings.maxFraction; false ends the search.
     using HitFunction = bool (*)(void* context, const ShapeHit& hit, ShapeCastSettings& settings);
     void Search(const Shape& other, const Pose& pose, ShapeCastSettings settings, void* context,
                 HitFunction found) const;

@@ -1,4 +1,4 @@
-// Which part of a shape a query found.
+// The child or triangle of a shape that a query found.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/SurfaceShape.h>

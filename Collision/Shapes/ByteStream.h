@@ -56,7 +56,7 @@ public:
     explicit ByteReader(std::span<const uint8_t> bytes) : bytes_(bytes) {}
 
     bool HasFailed() const { return hasFailed_; }
-    // All was read, no more.
+    // Whether exactly all bytes were read.
     bool IsAtEnd() const { return !hasFailed_ && bytes_.empty(); }
 
     void Read(float& value) {
@@ -86,7 +86,7 @@ public:
         Read(value);
         return value;
     }
-    // `count` values of `size` bytes each; none where they are not there.
+    // `count` values of `size` bytes each; none if there are fewer.
     template <class T>
     void ReadAll(std::vector<T>& values, uint64_t count, size_t size = sizeof(T)) {
         values.clear();
@@ -95,14 +95,14 @@ public:
         values.resize(count);
         for (T& value : values) Read(value);
     }
-    // A part with its own length in front.
-    ByteReader ReadPart() {
+    // A block that its length precedes.
+    ByteReader ReadBlock() {
         const uint64_t length = Get<uint64_t>();
         if (length > bytes_.size()) hasFailed_ = true;
-        ByteReader part(hasFailed_ ? std::span<const uint8_t>{} : bytes_.first(length));
-        part.hasFailed_ = hasFailed_;
+        ByteReader block(hasFailed_ ? std::span<const uint8_t>{} : bytes_.first(length));
+        block.hasFailed_ = hasFailed_;
         if (!hasFailed_) bytes_ = bytes_.subspan(length);
-        return part;
+        return block;
     }
     std::span<const uint8_t> Rest() const { return bytes_; }
 

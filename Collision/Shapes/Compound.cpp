@@ -49,7 +49,7 @@ Result<std::shared_ptr<const Compound>> Compound::Create(std::span<const ChildSe
     return std::shared_ptr<const Compound>(compound);
 }
 
-// What follows from children in the center frame and the mass of all.
+// Bounds, radii and tree, from the children in the center frame and the total mass.
 void Compound::Assemble(std::vector<Child> children, const MassProperties& mass) {
     children_ = std::move(children);
     mass_ = mass;

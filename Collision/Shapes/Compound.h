@@ -1,5 +1,5 @@
-// Static compound of convex shapes, each at a pose of its own. The broad phase sees each child by itself, so that a
-// pair of bodies carries one manifold per touching pair of children.
+// Static compound of convex shapes, each at a pose of its own. Each child is a collider of its own in the broad phase,
+// so that a pair of bodies has one manifold per touching pair of children.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/CompoundShape.h>
@@ -10,9 +10,9 @@ class Compound final : public CompoundShape {
 public:
     // Mass is the sum of the children's (overlaps count twice), scaled so that the whole has density 1 on average.
     // `centerOffset`, m, moves the center of mass from there, as ballast would; the inertia is then that about the new
-    // center (parallel axes). InnerRadius is the smallest child's: no child may pass through a surface unseen. Errors:
-    // Degenerate (no child), Unsupported (null or not convex child), NonFinite, Unnormalized, NonPositive, OutOfRange
-    // (the inertia is no normal float).
+    // center (parallel axes). InnerRadius is the smallest child's, since continuous collision must stop the thinnest.
+    // Errors: Degenerate (no child), Unsupported (null or not convex child), NonFinite, Unnormalized, NonPositive,
+    // OutOfRange (the inertia is no normal float).
     static Result<std::shared_ptr<const Compound>> Create(std::span<const ChildSettings> children,
                                                           const Vector3& centerOffset = Vector3::Zero());
 

@@ -28,8 +28,8 @@ Status CompoundShape::Check(const ChildSettings& child, const char* name) {
     return Done{};
 }
 
-// By the supports along the axes; rounded outwards by what the rotation of the direction and of the point may lose, a
-// few units in the last place of the child's size.
+// By the support function along the axes, and outwards by the rounding of the rotations: a few units in the last place
+// of the child's size.
 Bounds CompoundShape::BoundsOf(const Child& child) {
     const ConvexShape& shape = *child.shape;
     const Quaternion& q = child.pose.rotation;

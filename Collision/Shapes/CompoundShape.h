@@ -1,5 +1,4 @@
-// What the two compounds have in common: convex shapes, each at a pose of its own, and a tree to find them by. Compound
-// never changes, MutableCompound may. Made by them; read by the queries, the files and the bodies.
+// The base of Compound and MutableCompound: convex shapes, each at a pose of its own, and a tree of their AABBs.
 #pragma once
 
 #include <Fulcrum/Collision/BroadPhase/BoundsTree.h>
@@ -35,9 +34,9 @@ public:
     }
     // In the center frame.
     RelativePose PoseOf(const Child& child) const { return {child.pose.position + Origin(), child.pose.rotation}; }
-    // How the child would be made again.
+    // The settings that recreate the child.
     ChildSettings SettingsOf(const Child& child) const;
-    // What this compound was made of, for making another; removed children are left out.
+    // The settings that recreate the compound, without removed children.
     std::vector<ChildSettings> Settings() const;
 
 protected:

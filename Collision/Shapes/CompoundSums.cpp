@@ -63,8 +63,8 @@ void CompoundSums::Set(uint32_t index, const CompoundSum& child) {
         const bool isNew = index == sums.size();
         if (isNew) sums.push_back(sum);
         else sums[index] = sum;
-        // A level of one is the total. One that has just become two needs another above it, whose first sum is
-        // complete.
+        // A level with one entry is the total. When it gets a second one, a level is added above it, and its first sum
+        // is complete.
         if (sums.size() == 1) return;
         sum = SumWith(level, index, sum);
         index /= kWidth;

@@ -34,7 +34,7 @@ Status CheckInput(std::span<const Vector3> points, const ConvexHullSettings& set
     return Done{};
 }
 
-// By halves, which waits a third as long as lane after lane. The order makes no difference to a maximum.
+// By halves: a third of the latency of one lane after another. The order makes no difference to a maximum.
 float LargestOf(const Wide<kLanes>& wide) {
     if constexpr (kLanes < 4) return HorizontalMax(wide);
     alignas(64) float lanes[kLanes < 4 ? 4 : kLanes];
@@ -106,7 +106,7 @@ private:
         }
     }
 
-    // Planes support the vertices as rounded. False where one does not pass outside the center.
+    // Adds the faces, with planes that support the rounded vertices. False if the center is not inside all of them.
     static bool AddFaces(ConvexHull& hull, const HullMesh& mesh) {
         float smallestOffset = std::numeric_limits<float>::infinity();
         for (const HullMesh::Face& from : mesh.faces) {
@@ -139,7 +139,7 @@ private:
         return smallestOffset > 0;
     }
 
-    // In the order of the faces that run along them first.
+    // In the order of the first face at each edge.
     static void AddEdges(ConvexHull& hull) {
         const size_t count = hull.vertices_.size();
         std::vector<int> edgeFrom(count * count, -1);
@@ -224,7 +224,7 @@ Vector3 ConvexHull::SupportCore(const Vector3& direction) const {
 }
 
 void ConvexHull::FindSupportingFace(const Vector3& direction, SupportingFace& face) const {
-    // Of a face with very many corners as many as fit, evenly spread.
+    // If a face has more corners than fit, evenly spread ones.
     const Face& found = faces_[FirstFarthest(NormalLaneX(), NormalLaneY(), NormalLaneZ(), paddedFaceCount_, direction)];
     const int count = std::min(static_cast<int>(found.cornerCount), SupportingFace::kMaxVertices);
     face.count = 0;

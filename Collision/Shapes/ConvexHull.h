@@ -10,7 +10,7 @@
 namespace fulcrum {
 
 struct ConvexHullSettings {
-    int maxVertices = 64;    // 4..255; a hull with more is simplified to the most far-flung so many, outside it nowhere
+    int maxVertices = 64;    // 4..255; a hull with more is simplified to the farthest ones, inside the exact hull
     float convexRadius = 0;  // m, >= 0: the hull is shrunk by it and rounded again; 0 keeps sharp edges. Vertices,
                              // faces and edges are then those of the shrunk core; the mass is that of the sharp hull
 };

@@ -16,8 +16,8 @@ SolidMass MassOf(const SampledSurface& surface) {
     return PolyhedronMass(vertices, triangles, surface.indices);
 }
 
-// The error of an inscribed mesh falls with the square of its spacing: a third of the difference to a mesh of twice the
-// spacing is what is left of it (Richardson's extrapolation). A polyhedron's is 0 in both.
+// Richardson extrapolation: the error of an inscribed mesh falls with the square of its spacing, so that a third of the
+// difference to a mesh of twice the spacing remains. It is 0 for polyhedra.
 double Extrapolated(double fine, double coarse) { return fine + (fine - coarse) / 3; }
 
 SolidMass Extrapolated(const SolidMass& fine, const SolidMass& coarse) {
@@ -69,7 +69,7 @@ Status CustomConvex::Complete() {
     if (!mass) return mass.GetError();
     mass_ = mass.Value();
 
-    // Out by the rounding of the subtraction, a few units in the last place.
+    // Outwards by the rounding of the subtraction, a few units in the last place.
     outerRadius_ = 0;
     for (Vector3& v : surface.vertices) {
         v -= mass_.centerOfMass;
@@ -92,7 +92,7 @@ Status CustomConvex::Complete() {
         const Position c = surface.vertices[static_cast<size_t>(surface.indices[i + 2])].cast<double>();
         const Position normal = Cross<double>(Position(b - a), Position(c - a));
         const double length = std::sqrt(Dot<double>(normal, normal));
-        // Slivers of a curved part's grid have normals of rounding.
+        // Normals of slivers are mere rounding.
         if (length <= 1e-7 * double{outerRadius_} * double{outerRadius_}) continue;
         innerRadius_ = std::min(innerRadius_, static_cast<float>(Dot<double>(normal, a) / length));
     }

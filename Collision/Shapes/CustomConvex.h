@@ -1,6 +1,5 @@
-// Convex shapes that users make: a class with a support function, and everything works. It collides with every other
-// shape, has a mass, is found by casts and is drawn. The base class completes it, in CreateCustom; immutable
-// afterwards.
+// Base of user-defined convex shapes: a class with a support function, which collides with every other shape, has a
+// mass, is found by casts and is drawn. CreateCustom fills in bounds, radii and mass; immutable afterwards.
 //
 //     class Egg final : public CustomConvex {
 //     public:
@@ -34,9 +33,9 @@ protected:
     // `convexRadius`: the shape is the core rounded by it, m, >= 0.
     explicit CustomConvex(float convexRadius = 0) : ConvexShape(ShapeType::Custom) { convexRadius_ = convexRadius; }
 
-    // Of the whole shape at density 1, in the frame of FarthestPoint. Where it is not given it is integrated over a
-    // mesh of 10^5 points and one of a quarter as many, from which the error of curved parts is extrapolated away: to
-    // about 1e-6 for smooth shapes and to rounding for polyhedra.
+    // Of the whole shape at density 1, in the frame of FarthestPoint. If not given it is integrated over a mesh of 10^5
+    // points and one of a quarter as many (Richardson extrapolation): exact to about 1e-6 for smooth shapes and to
+    // rounding for polyhedra.
     virtual std::optional<SolidMass> KnownMass() const { return std::nullopt; }
 };
 

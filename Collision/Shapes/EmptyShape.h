@@ -1,4 +1,4 @@
-// A shape without geometry, for bodies that touch nothing: anchors, frames of reference, what only joints hold.
+// A shape without geometry, for bodies that touch nothing: anchors, frames of reference, links that only joints hold.
 // Immutable.
 #pragma once
 
@@ -6,7 +6,7 @@
 
 namespace fulcrum {
 
-// Its mass properties are those of a ball of 1 m3 about the origin: a body had better be given its mass and inertia.
+// Its mass properties are those of a ball of 1 m3 about the origin: give bodies a mass and inertia of their own.
 class EmptyShape final : public Shape {
 public:
     static std::shared_ptr<const EmptyShape> Create();

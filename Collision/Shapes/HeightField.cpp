@@ -36,7 +36,7 @@ Status HeightField::CheckGrid(const HeightFieldSettings& s) {
                              "beyond %g m",
                              double{s.lowestHeight}, double{s.highestHeight}, double{kLargestCoordinate})};
     }
-    // Neighboring grid lines must differ as floats by several units.
+    // Neighboring grid lines must differ by several units in the last place.
     const double sizes[2] = {double{s.cellSizeX}, double{s.cellSizeZ}};
     const double ends[2] = {std::fabs(double{s.origin.x()}) + sizes[0] * s.sampleCountX,
                             std::fabs(double{s.origin.z()}) + sizes[1] * s.sampleCountZ};
@@ -149,7 +149,7 @@ void HeightField::StoreHeight(uint32_t sample, float height) {
     steps_[sample] = static_cast<uint16_t>(std::clamp(std::floor(steps + 0.5), 0.0, 65535.0));
 }
 
-// ---- The hierarchy of lowest and highest
+// ---- The min/max pyramid
 
 void HeightField::MakeLevels() {
     uint32_t countX = (CellCountX() + kBlock - 1) / kBlock, countZ = (CellCountZ() + kBlock - 1) / kBlock, first = 0;

@@ -7,7 +7,7 @@
 
 namespace fulcrum {
 
-// How a height is kept: in 4 bytes, or as one of 65,536 steps between two limits in 2.
+// Storage of a height: a float, or 16 bits as one of 65,536 steps between two limits.
 enum class HeightPrecision : uint8_t { Float, Steps16 };
 
 // The material of a cell without triangles.
@@ -25,7 +25,7 @@ struct HeightFieldSettings {
     HeightPrecision precision = HeightPrecision::Float;
     // The limits of Steps16, in m; equal: those of `heights`. Float ignores them.
     float lowestHeight = 0, highestHeight = 0;
-    bool isTwoSided = false;          // else hit and touched from above alone
+    bool isTwoSided = false;          // otherwise only the upper side collides and is hit
     float activeEdgeCosine = 0.996f;  // -1 .. 1: edges whose normals have a larger cosine (5 degrees) count as flat
 };
 
@@ -40,9 +40,9 @@ public:
     static Result<std::shared_ptr<HeightField>> Create(const HeightFieldSettings& settings);
 
     // Replace the heights of the samples x0 .. x0 + countX - 1, z0 .. z0 + countZ - 1, or the same of cells, row by row
-    // along x. Return the bounds of all that moved, appeared or vanished, before and after: bodies that sleep in it may
-    // have lost their support. LocalBounds() may change. Errors as in Create, and OutOfRange for a rectangle that is
-    // not inside; then nothing has changed. SetCells may leave nothing but holes.
+    // along x. Return the bounds of all that changed, before and after: sleeping bodies within may have lost their
+    // support. LocalBounds() may change. Errors as in Create, and OutOfRange for a rectangle that is not inside; then
+    // nothing has changed. SetCells may make all cells holes.
     Result<Bounds> SetHeights(uint32_t x0, uint32_t z0, uint32_t countX, uint32_t countZ,
                               std::span<const float> heights);
     Result<Bounds> SetCells(uint32_t x0, uint32_t z0, uint32_t countX, uint32_t countZ, std::span<const uint8_t> cells);
@@ -64,7 +64,7 @@ public:
     const Vector3& Origin() const { return origin_; }
     HeightPrecision Precision() const { return precision_; }
     float ActiveEdgeCosine() const { return activeEdgeCosine_; }
-    // As it is kept: of Steps16, the nearest step to what was set.
+    // The stored height: for Steps16, the step nearest to what was set.
     float Height(uint32_t x, uint32_t z) const { return HeightOf(z * sampleCountX_ + x); }
     uint8_t Cell(uint32_t x, uint32_t z) const { return CellOf(z * CellCountX() + x); }
     bool IsHole(uint32_t x, uint32_t z) const { return Cell(x, z) == kHoleCell; }
@@ -77,8 +77,8 @@ private:
     void SearchBox(const Bounds& box, void* context, BatchFunction found) const override;
     void SearchRay(const SurfaceRay& ray, float maxFraction, void* context, HitFunction found) const override;
 
-    // The lowest and highest of the samples of a square of cells. Those of level 0 are kBlock cells wide, those of each
-    // further level twice as wide as the one below; the last level has one.
+    // The lowest and highest samples of a square of cells (min/max pyramid). Those of level 0 are kBlock cells wide,
+    // those of each further level twice as wide as the one below; the last level has one.
     struct Range {
         float low, high;
     };
@@ -98,7 +98,7 @@ private:
     Status CheckCells(std::span<const uint8_t> cells) const;
     Status CheckRectangle(uint32_t x0, uint32_t z0, uint32_t countX, uint32_t countZ, size_t count, uint32_t limitX,
                           uint32_t limitZ) const;
-    // Everything but the heights and what follows from them.
+    // Checks the settings and sets all members except heights, ranges and bounds.
     static Result<std::shared_ptr<HeightField>> Prepare(const HeightFieldSettings& settings);
     void Finish();
     void StoreHeight(uint32_t sample, float height);

@@ -1,4 +1,4 @@
-// Rays against a height field: down the hierarchy of blocks, nearest first, then along the rows of cells of a block.
+// Rays against a height field: down the min/max pyramid, nearest blocks first, then along the rows of cells of a block.
 #include <Fulcrum/Collision/Shapes/HeightField.h>
 #include <Fulcrum/Collision/Shapes/RayTriangle.h>
 #include <Fulcrum/Collision/Shapes/SurfaceNormal.h>
@@ -8,26 +8,26 @@
 namespace fulcrum {
 namespace {
 
-constexpr float kSlack = 1.0f + 0x1p-18f;  // of fractions; together with the pad, more than all rounding
+constexpr float kSlack = 1.0f + 0x1p-18f;  // of fractions; covers all rounding together with the pad
 
 struct Interval {
     float from, to;  // fractions
     bool IsEmpty() const { return !(from <= to * kSlack); }
 };
 
-// A ray and how much larger all that it may meet counts: 2^-20 of the coordinates that take part.
+// A ray, and the pad by which boxes are enlarged for its rounding: 2^-20 of the largest coordinate.
 struct PaddedRay {
     Vector3 origin, displacement, inverse;
     float pad;
 
-    // Where it is between two planes across an axis.
+    // The interval in which it is between two planes perpendicular to an axis.
     Interval Between(int axis, float low, float high, Interval within) const {
         const bool forward = inverse[axis] >= 0;
         const float first = forward ? low - pad : high + pad, second = forward ? high + pad : low - pad;
         return {Max(within.from, (first - origin[axis]) * inverse[axis]),
                 Min(within.to, (second - origin[axis]) * inverse[axis])};
     }
-    // The coordinates that it has meanwhile.
+    // The coordinates that it passes in an interval.
     void Extent(int axis, Interval interval, float& low, float& high) const {
         const float a = origin[axis] + displacement[axis] * interval.from,
                     b = origin[axis] + displacement[axis] * interval.to;
@@ -44,8 +44,8 @@ uint32_t CellAt(float place, float origin, float size, uint32_t first, uint32_t 
 
 }  // namespace
 
-// Calls visit(id, fraction, isBackFace), which returns the largest fraction that is still of interest, or a negative
-// one.
+// Calls visit(id, fraction, isBackFace) for triangles that the ray hits; it returns the new largest fraction, negative
+// to stop.
 template <class Visitor>
 void HeightField::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& visit) const {
     if (!IsUsable(ray.origin, ray.displacement) || !(maxFraction >= 0)) return;
@@ -55,7 +55,7 @@ void HeightField::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& v
                            0x1p-20f * (LargestCoordinate(bounds_.lower) + LargestCoordinate(bounds_.upper) +
                                        LargestCoordinate(ray.origin))};
 
-    const auto meetBox = [&](CellRange x, CellRange z, float low, float high, Interval within) {
+    const auto clipToBox = [&](CellRange x, CellRange z, float low, float high, Interval within) {
         within = padded.Between(0, X(x.first), X(x.last + 1), within);
         within = padded.Between(2, Z(z.first), Z(z.last + 1), within);
         return padded.Between(1, origin_.y() + low, origin_.y() + high, within);
@@ -66,8 +66,8 @@ void HeightField::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& v
         const float from = axis == 0 ? origin_.x() : origin_.z(), size = axis == 0 ? cellSizeX_ : cellSizeZ_;
         return {CellAt(low, from, size, range.first, range.last), CellAt(high, from, size, range.first, range.last)};
     };
-    // The two triangles of a cell that is no hole, where the ray's heights above it meet theirs.
-    const auto meetCell = [&](uint32_t x, uint32_t z, Interval within) {
+    // Tests the two triangles of a cell, unless it is a hole or the ray passes above or below them.
+    const auto testCell = [&](uint32_t x, uint32_t z, Interval within) {
         const uint32_t cell = z * CellCountX() + x, sample = z * sampleCountX_ + x;
         if (CellOf(cell) == kHoleCell) return;
         const float a = HeightOf(sample), b = HeightOf(sample + 1), c = HeightOf(sample + sampleCountX_),
@@ -80,13 +80,13 @@ void HeightField::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& v
         for (uint32_t half = 0; half < 2 && maxFraction >= 0; ++half) {
             float fraction;
             bool isBack;
-            const bool isMet =
+            const bool isHit =
                 half == 0 ? IntersectTriangle(sheared, others[0], atC, atB, fromBehind, maxFraction, fraction, isBack)
                           : IntersectTriangle(sheared, atB, atC, others[1], fromBehind, maxFraction, fraction, isBack);
-            if (isMet) maxFraction = visit(2 * cell + half, fraction, isBack);
+            if (isHit) maxFraction = visit(2 * cell + half, fraction, isBack);
         }
     };
-    const auto meetBlock = [&](CellRange x, CellRange z, Interval within) {
+    const auto testBlock = [&](CellRange x, CellRange z, Interval within) {
         const CellRange rows = cellsAlong(2, within, z);
         for (uint32_t row = rows.first; row <= rows.last; ++row) {
             const Interval inRow = padded.Between(2, Z(row), Z(row + 1), within);
@@ -94,14 +94,14 @@ void HeightField::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& v
             const CellRange cells = cellsAlong(0, inRow, x);
             for (uint32_t cell = cells.first; cell <= cells.last; ++cell) {
                 const Interval inCell = padded.Between(0, X(cell), X(cell + 1), inRow);
-                if (!inCell.IsEmpty()) meetCell(cell, row, inCell);
+                if (!inCell.IsEmpty()) testCell(cell, row, inCell);
                 if (maxFraction < 0) return;
             }
         }
     };
 
     const CellRange allX{0, CellCountX() - 1}, allZ{0, CellCountZ() - 1};
-    const Interval whole = meetBox(allX, allZ, ranges_.back().low, ranges_.back().high, {0, maxFraction});
+    const Interval whole = clipToBox(allX, allZ, ranges_.back().low, ranges_.back().high, {0, maxFraction});
     if (whole.IsEmpty()) return;
 
     struct Entry {
@@ -111,7 +111,8 @@ void HeightField::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& v
     constexpr int kMostLevels = 31;
     Entry stack[3 * kMostLevels + 4];
     int top = 0;
-    // Puts blocks firstX .. lastX, firstZ .. lastZ of a level on the stack, at most two by two, the nearest on top.
+    // Pushes blocks firstX .. lastX, firstZ .. lastZ of a level, at most two by two, onto the stack, the nearest on
+    // top.
     const auto push = [&](uint32_t level, CellRange x, CellRange z, Interval within) {
         const int base = top;
         const uint32_t size = kBlock << level;
@@ -120,7 +121,7 @@ void HeightField::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& v
                 const CellRange cellsX{bx * size, std::min(bx * size + (size - 1), allX.last)};
                 const CellRange cellsZ{bz * size, std::min(bz * size + (size - 1), allZ.last)};
                 const Range& range = RangeOf(level, bx, bz);
-                const Interval inBlock = meetBox(cellsX, cellsZ, range.low, range.high, within);
+                const Interval inBlock = clipToBox(cellsX, cellsZ, range.low, range.high, within);
                 if (inBlock.IsEmpty()) continue;
                 int at = top++;
                 for (; at > base && stack[at - 1].within.from < inBlock.from; --at) stack[at] = stack[at - 1];
@@ -137,7 +138,7 @@ void HeightField::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& v
         if (entry.within.IsEmpty()) continue;
         const Level& below = levels_[entry.level == 0 ? 0 : entry.level - 1];
         if (entry.level == 0) {
-            meetBlock({entry.x * kBlock, std::min(entry.x * kBlock + (kBlock - 1), allX.last)},
+            testBlock({entry.x * kBlock, std::min(entry.x * kBlock + (kBlock - 1), allX.last)},
                       {entry.z * kBlock, std::min(entry.z * kBlock + (kBlock - 1), allZ.last)}, entry.within);
             if (maxFraction < 0) return;
         } else {

@@ -9,9 +9,8 @@ namespace {
 
 constexpr int kNoIndex = -1;
 
-// Groups the triangles of a hull into polygons for one tolerance. Grouping and vertices that become superfluous only
-// ever leave things out, so the result is either a proper polyhedron or found not to be: then the caller lowers the
-// tolerance, and at zero only exactly coplanar triangles are merged, for which the result is the exact polytope.
+// Merges the triangles of a hull into polygons for one tolerance. The result is checked: if it is no proper polyhedron
+// the caller lowers the tolerance. At zero only exactly coplanar triangles are merged, which gives the exact polytope.
 class Merger {
 public:
     Merger(std::span<const Position> points, const TriangleHull& hull, double tolerance)
@@ -84,7 +83,7 @@ void Merger::MergeCoplanar() {
     }
 }
 
-// Flattest seams first, so that a face's large triangles find each other before slivers at its rim join.
+// Flattest seams first, so that a face's large triangles merge before the slivers at its rim.
 void Merger::MergeNearlyCoplanar() {
     std::vector<Seam> seams;
     const auto height = [this](int t, int other) {
@@ -95,7 +94,7 @@ void Merger::MergeNearlyCoplanar() {
     for (int t = 0; t < static_cast<int>(hull_.triangles.size()); ++t) {
         for (int other : hull_.triangles[t].neighbor) {
             if (other < t || groupOf_[t] == groupOf_[other]) continue;
-            // The smaller of both: a sliver's plane says nothing of the large triangle beside it.
+            // The smaller of both: a sliver's plane is no measure for the large triangle beside it.
             const double smaller = std::min(height(t, other), height(other, t));
             if (smaller <= tolerance_) seams.push_back({smaller, t, other});
         }
@@ -222,7 +221,7 @@ Result<HullMesh> BuildHull(std::span<const Position> points, const HullLimits& l
         HullMesh mesh = MergedMesh(points, hull.Value());
         const int excess = static_cast<int>(mesh.faces.size()) - limits.maxFaces;
         if (excess <= 0) return mesh;
-        // A vertex brings two triangles at most. Ends: 4 vertices have 4 faces.
+        // Each vertex adds at most two triangles. Terminates: 4 vertices have 4 faces.
         maxVertices = std::max(4, static_cast<int>(hull.Value().vertices.size()) - (excess + 1) / 2);
     }
 }
@@ -250,7 +249,7 @@ bool IsClosedPolyhedron(const HullMesh& mesh) {
         if (a.high != b.high) return a.high < b.high;
         return a.upwards != b.upwards ? a.upwards : a.left < b.left;
     });
-    // An edge is two halves, one each way; more would break the pairing of those that follow.
+    // An edge is two half edges, one each way.
     std::vector<std::pair<int, int>> facePairs;
     if (halves.size() % 2 != 0) return false;
     for (size_t i = 0; i < halves.size(); i += 2) {

@@ -34,7 +34,8 @@ struct HullLimits {
 // hull then lies inside the exact one. Error: Degenerate.
 Result<HullMesh> BuildHull(std::span<const Position> points, const HullLimits& limits = {});
 
-// Whether the mesh is a closed polyhedron as BuildHull promises: edges in pairs, degrees, Euler's V - E + F = 2.
+// Whether the mesh is a closed polyhedron as BuildHull guarantees: edges in pairs, vertex degrees, Euler's V - E + F =
+// 2.
 bool IsClosedPolyhedron(const HullMesh& mesh);
 
 }  // namespace fulcrum

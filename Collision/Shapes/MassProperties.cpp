@@ -128,24 +128,24 @@ SolidMass PolyhedronMass(std::span<const Position> vertices, std::span<const Pol
     return solid;
 }
 
-SolidMass CombinedMass(std::span<const SolidMass> parts, std::span<const double> densities) {
+SolidMass CombinedMass(std::span<const SolidMass> solids, std::span<const double> densities) {
     SolidMass whole;
     double mass = 0;
     Position moment = Position::Zero();
-    for (size_t i = 0; i < parts.size(); ++i) {
-        whole.volume += parts[i].volume;
-        mass += densities[i] * parts[i].volume;
-        moment += parts[i].center * (densities[i] * parts[i].volume);
+    for (size_t i = 0; i < solids.size(); ++i) {
+        whole.volume += solids[i].volume;
+        mass += densities[i] * solids[i].volume;
+        moment += solids[i].center * (densities[i] * solids[i].volume);
     }
     whole.center = moment * (1 / mass);
 
     const double toDensityOne = whole.volume / mass;
-    for (size_t i = 0; i < parts.size(); ++i) {
+    for (size_t i = 0; i < solids.size(); ++i) {
         const double density = densities[i] * toDensityOne;
         Covariance steiner;
-        AddOuterProduct(steiner, parts[i].center - whole.center, 1);
-        whole.inertia = Sum(whole.inertia, parts[i].inertia, density);
-        whole.inertia = Sum(whole.inertia, InertiaOf(steiner), density * parts[i].volume);
+        AddOuterProduct(steiner, solids[i].center - whole.center, 1);
+        whole.inertia = Sum(whole.inertia, solids[i].inertia, density);
+        whole.inertia = Sum(whole.inertia, InertiaOf(steiner), density * solids[i].volume);
     }
     return whole;
 }

@@ -32,9 +32,9 @@ Sym3<double> InertiaOf(const Covariance& c);
 SolidMass PolyhedronMass(std::span<const Position> vertices, std::span<const PolygonRange> polygons,
                          std::span<const int> indices);
 
-// Sum of solids, part i weighted by densities[i] > 0: `volume` is the sum of the volumes, `inertia` is scaled so that
+// Sum of solids, solid i weighted by densities[i] > 0: `volume` is the sum of the volumes, `inertia` is scaled so that
 // the whole has density 1 on average. Overlaps count twice. Parallel axes: I += m (|d|^2 1 - d d^T).
-SolidMass CombinedMass(std::span<const SolidMass> parts, std::span<const double> densities);
+SolidMass CombinedMass(std::span<const SolidMass> solids, std::span<const double> densities);
 
 // The solid after a rotation (unit) about the origin and a translation.
 SolidMass Transformed(const SolidMass& solid, const Quaternion& rotation, const Position& translation);

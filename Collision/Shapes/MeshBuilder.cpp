@@ -11,8 +11,8 @@ constexpr uint32_t kNoNode = ~0u;
 constexpr int kWidth = MeshNode::kWidth;
 constexpr uint32_t kLeaf = MeshNode::kMaxLeaf;
 constexpr uint32_t kBottom = kWidth * kLeaf;  // triangles that fit a node whose children are leaves
-constexpr uint32_t kTask = 4096;              // triangles below which a subtree is one job
-constexpr int kFreeDepth = 18;                // below, sets are halved, which bounds the depth
+constexpr uint32_t kTask = 4096;              // subtrees of fewer triangles are one job
+constexpr int kFreeDepth = 18;                // deeper sets are halved, which bounds the depth
 
 struct DraftNode {
     struct Child {
@@ -75,7 +75,7 @@ private:
         });
     }
 
-    // Drafts the node of a set and all below it; with `tasks`, leaves smaller sets to them. Returns its number in
+    // Drafts the subtree of a set; with `tasks`, defers smaller sets to them. Returns the number of its root in
     // `nodes`.
     uint32_t DraftBelow(DraftNodes& nodes, const BoxSet& set, int depth, std::vector<Task>* tasks) {
         const uint32_t index = static_cast<uint32_t>(nodes.size());
@@ -99,7 +99,7 @@ private:
         return index;
     }
 
-    // Splits child i; the right side takes the next free place.
+    // Splits child i; the right half becomes the next free child.
     void SplitChild(DraftNode& draft, int i, const SplitRules& rules, const ParallelLoop& parallel) {
         BoxSet left, right;
         Split(boxes_, draft.children[i].set, rules, parallel, left, right);
@@ -107,8 +107,8 @@ private:
         draft.children[draft.childCount++].set = right;
     }
 
-    // A set of at most kBottom: into up to eight leaves. First what is too large for a leaf, so that all fits; then
-    // what costs the most, as long as there is room.
+    // Splits a set of at most kBottom into up to eight leaves: first sets that are too large for a leaf, then the most
+    // expensive ones while there are free children.
     void SplitIntoLeaves(DraftNode& draft) {
         constexpr uint32_t kSmallest = 3;  // a leaf this small is not split
         while (draft.childCount < kWidth) {
@@ -131,7 +131,7 @@ private:
         }
     }
 
-    // A larger set: into up to eight that need nodes of their own, each time the one which costs the most.
+    // Splits a larger set into up to eight nodes, the most expensive first.
     void SplitIntoNodes(DraftNode& draft, int depth, const ParallelLoop& parallel) {
         const bool byCount = depth >= kFreeDepth;
         while (draft.childCount < kWidth) {
@@ -153,8 +153,7 @@ private:
         return child.task == kNoNode ? nodes : tasks_[child.task].nodes;
     }
 
-    // Writes a node in its place, gives its leaves' triangles their numbers, and goes on to its children that are
-    // nodes.
+    // Writes a node, numbers the triangles of its leaves, and recurses into its child nodes.
     void WriteNode(const DraftNodes& nodes, uint32_t from, uint32_t to) {
         const DraftNode& draft = nodes[from];
         const DraftNode::Child* children[kWidth];

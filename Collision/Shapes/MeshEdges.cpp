@@ -5,7 +5,7 @@
 namespace fulcrum {
 namespace {
 
-// An edge of a triangle, filed under the smaller of its vertices.
+// An edge of a triangle, stored with the smaller of its vertices.
 struct EdgeEntry {
     uint32_t other;  // the larger vertex
     uint32_t triangle;
@@ -64,7 +64,7 @@ private:
             }
             if (pass == 1) break;
             uint32_t sum = 0;
-            for (uint32_t& start : starts_) start = sum += start;  // the ends; filing moves them to the beginnings
+            for (uint32_t& start : starts_) start = sum += start;  // ends, which pass 1 moves to the beginnings
         }
     }
 

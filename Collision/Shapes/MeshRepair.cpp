@@ -16,7 +16,7 @@ uint64_t Mixed(uint64_t h, uint64_t x) {
     return h ^ h >> 29;
 }
 
-// Chains of ids by hash; each chain in the order of insertion, backwards.
+// Hash table of ids with chaining; each chain from the latest to the first.
 class HashChains {
 public:
     explicit HashChains(size_t count)
@@ -116,7 +116,7 @@ Status CheckInput(std::span<const Vector3> vertices, std::span<const uint32_t> i
     return Done{};
 }
 
-// The corners turned so that the smallest comes first: the same for the same triangle the same way round.
+// The corners rotated so that the smallest comes first: equal for equal triangles of the same orientation.
 struct Corners {
     uint32_t a, b, c;
     bool operator==(const Corners&) const = default;

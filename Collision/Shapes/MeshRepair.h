@@ -10,7 +10,7 @@
 
 namespace fulcrum {
 
-// How often something was repaired or noticed, and where first (an id of the input).
+// How often something was repaired, and where first (an index of the input).
 struct MeshFinding {
     uint32_t count = 0;
     uint32_t first = 0;
@@ -21,11 +21,11 @@ struct MeshFinding {
 
 struct MeshReport {
     MeshFinding weldedVertices;       // made one with an earlier vertex
-    MeshFinding unusedVertices;       // left out: no triangle that is kept uses them
-    MeshFinding degenerateTriangles;  // left out: no area
-    MeshFinding duplicateTriangles;   // left out: the same three vertices the same way round as an earlier one
+    MeshFinding unusedVertices;       // dropped: no remaining triangle uses them
+    MeshFinding degenerateTriangles;  // dropped: no area
+    MeshFinding duplicateTriangles;   // dropped: the same vertices and orientation as an earlier one
     uint32_t boundaryEdges = 0;       // edges of one triangle: where the surface ends
-    uint32_t irregularEdges = 0;      // of more than two, or of two whose fronts disagree
+    uint32_t irregularEdges = 0;      // of more than two triangles, or of two with opposite orientation
     bool IsClean() const {
         return weldedVertices.count == 0 && unusedVertices.count == 0 && degenerateTriangles.count == 0 &&
                duplicateTriangles.count == 0;

@@ -30,7 +30,7 @@ struct Binning {
     }
 };
 
-// Adds up one result a chunk; sums of counts and smallest of numbers are the same in any order.
+// Reduces one result per chunk; sums of counts and minima are the same in any order.
 template <class T, class F>
 T OverChunks(std::span<const TriangleBox> boxes, const ParallelLoop& parallel, F&& add) {
     const uint32_t count = static_cast<uint32_t>(boxes.size()), chunks = (count + kChunk - 1) / kChunk;
@@ -39,14 +39,14 @@ T OverChunks(std::span<const TriangleBox> boxes, const ParallelLoop& parallel, F
         for (const TriangleBox& box : boxes) add(total, box);
         return total;
     }
-    std::vector<T> parts(chunks);
+    std::vector<T> results(chunks);
     RunLoop(parallel, chunks, [&](uint32_t i) {
         const uint32_t end = std::min(count, (i + 1) * kChunk);
-        T part;
-        for (uint32_t k = i * kChunk; k < end; ++k) add(part, boxes[k]);
-        parts[i] = part;
+        T result;
+        for (uint32_t k = i * kChunk; k < end; ++k) add(result, boxes[k]);
+        results[i] = result;
     });
-    for (const T& part : parts) total.Include(part);
+    for (const T& result : results) total.Include(result);
     return total;
 }
 
@@ -65,7 +65,7 @@ Binning BinningOf(std::span<const TriangleBox> boxes, const ParallelLoop& parall
     for (int axis = 0; axis < 3; ++axis) {
         const float extent = -centers.v[4 + axis] - centers.v[axis];
         binning.from[axis] = centers.v[axis];
-        // So small an extent that its inverse is no float counts as none.
+        // An extent whose inverse is no float counts as 0.
         binning.scale[axis] = extent > 1e-30f ? kBins * (1 - 1e-6f) / extent : 0.0f;
     }
     return binning;
@@ -102,8 +102,8 @@ Choice BestSplit(const Bins& bins, const Binning& binning, const SplitRules& rul
     return best;
 }
 
-// Where no plane between bins is allowed: along the longest axis of the centers, by count. `leaf` many fill the left
-// leaves.
+// If no plane between bins is allowed: by count along the longest axis of the centers, a multiple of `leaf` on the
+// left.
 uint32_t SplitByCount(std::span<TriangleBox> boxes, const Binning& binning, const SplitRules& rules) {
     int axis = 0;
     float best = -1;

@@ -45,8 +45,8 @@ struct BoxSet {
 
 BoxUnion UnionOf(std::span<const TriangleBox> boxes, const ParallelLoop& parallel);
 
-// What a split may be: at least `smallest` on each side; and if `leaf` is not 0, the leaves of that many which the two
-// sides need are at most `mostLeaves`.
+// Constraints of a split: at least `smallest` on each side; and if `leaf` is not 0, the two sides together need at most
+// `mostLeaves` leaves of that size.
 struct SplitRules {
     uint32_t smallest = 1;
     uint32_t leaf = 0;
@@ -58,7 +58,7 @@ struct SplitRules {
     }
 };
 
-// Sorts the set, of at least two, into two sides. The order of the boxes afterwards depends on them alone.
+// Partitions the set, of at least two boxes, into two sides. The resulting order depends on the boxes alone.
 void Split(std::span<TriangleBox> boxes, const BoxSet& set, const SplitRules& rules, const ParallelLoop& parallel,
            BoxSet& left, BoxSet& right);
 

@@ -1,8 +1,8 @@
-// The data of a triangle mesh, and the search in it. Used by TriangleMesh alone; read-only once built, so thread-safe.
+// The tree of a triangle mesh, and its traversal. Used by TriangleMesh alone; read-only once built, so thread-safe.
 //
 // Eight-way nodes of 80 bytes. The boxes of the children are given in 1/255ths of the node's own box, rounded outwards.
-// A child is a node or a leaf of up to eight triangles. Nodes come before their children; a node's leaves are a run of
-// consecutive triangles, so that a child costs one byte more than its box. Vertices are numbered in the order in which
+// A child is a node or a leaf of up to eight triangles. Nodes come before their children, and the triangles of a node's
+// leaves are consecutive, so that a child takes one byte besides its box. Vertices are numbered in the order in which
 // the triangles use them first. So the vertices of 64 triangles in a row mostly lie within 65,536 of each other, and an
 // index takes two bytes; where they do not, four.
 #pragma once
@@ -51,12 +51,13 @@ inline constexpr int kStep = kLanes >= 8 ? 8 : 4;
 using Lanes = Wide<kStep>;
 }  // namespace mesh_lanes
 
-// A ray in the tree's own coordinates, made for it. Boxes count larger by `pad` m, which is laid into the origins.
+// A ray in the tree's own coordinates, prepared for its nodes. Boxes are enlarged by `pad` m, which is included in the
+// origins.
 //
-// A plane of a box is met at the fraction byte * (step / direction) + (origin of the grid - origin of the ray) /
+// A plane of a box is hit at the fraction byte * (step / direction) + (origin of the grid - origin of the ray) /
 // direction. Its rounding, that of the origins here and that of the triangles' own test are at most 2^-22 of the
-// coordinates and distances that take part: a pad of 2^-20 of them covers it, and what remains, the last product's, a
-// factor of 1 + 2^-18. So no leaf of a triangle that the exact test finds is missed.
+// coordinates and distances involved. A pad of 2^-20 of them covers it, and a factor of 1 + 2^-18 the rounding of the
+// last product. So no leaf of a triangle that the exact test finds is missed.
 struct MeshTreeRay {
     Vector3 nearOrigin, farOrigin;    // for the planes where it enters boxes and where it leaves them
     Vector3 nearInverse, farInverse;  // 1 / displacement, bounded
@@ -76,7 +77,7 @@ struct MeshTreeRay {
 struct MeshTree {
     static constexpr int kMaxDepth = 32;  // of nodes; the builder keeps below
     static constexpr int kMaxStack = (MeshNode::kWidth - 1) * kMaxDepth + 1;
-    static constexpr uint32_t kPageBits = 6;  // 64 triangles have a page
+    static constexpr uint32_t kPageBits = 6;  // 64 triangles share a page of indices
     static constexpr uint32_t kWideIndices = ~0u;
 
     // Where the indices of 64 triangles are. Narrow ones count from firstVertex. kWideIndices: whole, low half first.
@@ -85,7 +86,7 @@ struct MeshTree {
         uint32_t offset;  // in `indices`
     };
 
-    std::vector<Vector3> vertices;  // and one more, so that all can be read by fours
+    std::vector<Vector3> vertices;  // and one more, so that all can be loaded as four floats
     std::vector<MeshNode> nodes;    // the root first
     std::vector<Page> pages;
     std::vector<uint16_t> indices;
@@ -113,12 +114,13 @@ struct MeshTree {
                sources.capacity() * sizeof(uint32_t);
     }
 
-    // Calls leaf(begin, end) for every leaf whose box overlaps `box`, which is finite, and perhaps for some near by.
+    // Calls leaf(begin, end) for every leaf whose box overlaps `box`, which is finite, and perhaps for some close to
+    // it.
     template <class Leaf>
     void SearchBox(const Bounds& box, Leaf&& leaf) const;
 
     // Calls leaf(node, child), which returns the largest fraction that is still of interest, for the leaves that a ray
-    // meets, nearly in the order of their distance; negative ends the search.
+    // hits, roughly in the order of their distance; negative ends the search.
     template <class Leaf>
     void SearchRay(const MeshTreeRay& ray, float maxFraction, Leaf&& leaf) const;
 };
@@ -126,8 +128,8 @@ struct MeshTree {
 // Writes the tree's pages, indices and triangleCount for these corners, three a triangle. At most 2^27 triangles.
 void PackIndices(MeshTree& tree, std::span<const uint32_t> corners);
 
-// The children of a node that overlap a box. Compared in the node's own grid; the slack is more than the rounding of
-// the way there, 256 * 2^-24 steps.
+// The children of a node that overlap a box. Compared in the node's own grid; the slack covers the rounding of the
+// conversion, 256 * 2^-24 steps.
 inline uint32_t OverlappingChildren(const MeshNode& node, const Bounds& box) {
     using mesh_lanes::Lanes, mesh_lanes::kStep;
     constexpr float kSlack = 0x1p-10f;
@@ -168,13 +170,13 @@ void MeshTree::SearchBox(const Bounds& box, Leaf&& leaf) const {
     }
 }
 
-// The children of a node that a ray meets, and the fractions at which it enters them.
-struct MetChildren {
+// The children of a node that a ray hits, and the fractions at which it enters them.
+struct HitChildren {
     uint32_t bits;
     alignas(32) float entry[MeshNode::kWidth];
 };
 
-inline void MeetChildren(const MeshNode& node, const MeshTreeRay& ray, float maxFraction, MetChildren& met) {
+inline void IntersectChildren(const MeshNode& node, const MeshTreeRay& ray, float maxFraction, HitChildren& hit) {
     using mesh_lanes::Lanes, mesh_lanes::kStep;
     const uint8_t* nearBytes[3];
     const uint8_t* farBytes[3];
@@ -189,7 +191,7 @@ inline void MeetChildren(const MeshNode& node, const MeshTreeRay& ray, float max
         nearStart[axis] = (node.origin[axis] - ray.nearOrigin[axis]) * ray.nearInverse[axis];
         farStart[axis] = (node.origin[axis] - ray.farOrigin[axis]) * ray.farInverse[axis];
     }
-    met.bits = 0;
+    hit.bits = 0;
     for (int i = 0; i < MeshNode::kWidth; i += kStep) {
         Lanes enter[3], leave[3];
         for (int axis = 0; axis < 3; ++axis) {
@@ -198,10 +200,10 @@ inline void MeetChildren(const MeshNode& node, const MeshTreeRay& ray, float max
         }
         const Lanes first = Max(Max(enter[0], enter[1]), Max(enter[2], Lanes(0.0f)));
         const Lanes last = Min(Min(leave[0], leave[1]), Min(leave[2], Lanes(maxFraction)));
-        first.Store(met.entry + i);
-        met.bits |= (first <= last).ToBits() << i;
+        first.Store(hit.entry + i);
+        hit.bits |= (first <= last).ToBits() << i;
     }
-    met.bits &= (1u << node.ChildCount()) - 1u;
+    hit.bits &= (1u << node.ChildCount()) - 1u;
 }
 
 template <class Leaf>
@@ -222,22 +224,22 @@ void MeshTree::SearchRay(const MeshTreeRay& ray, float maxFraction, Leaf&& leaf)
             maxFraction = leaf(node, current.leaf);
             if (maxFraction < 0) return;
         } else {
-            MetChildren met;
-            MeetChildren(node, ray, maxFraction * kSlack, met);
+            HitChildren hit;
+            IntersectChildren(node, ray, maxFraction * kSlack, hit);
             const auto entryOf = [&](int i) {
-                if (i < node.NodeCount()) return Entry{met.entry[i], node.firstChild + static_cast<uint32_t>(i), -1};
-                return Entry{met.entry[i], current.node, i};
+                if (i < node.NodeCount()) return Entry{hit.entry[i], node.firstChild + static_cast<uint32_t>(i), -1};
+                return Entry{hit.entry[i], current.node, i};
             };
             const auto takeLowest = [&] {
-                const int i = __builtin_ctz(met.bits);
-                met.bits &= met.bits - 1;
+                const int i = __builtin_ctz(hit.bits);
+                hit.bits &= hit.bits - 1;
                 return entryOf(i);
             };
-            if (std::has_single_bit(met.bits)) {
+            if (std::has_single_bit(hit.bits)) {
                 current = takeLowest();
                 continue;
             }
-            for (const int base = top; met.bits != 0;) {
+            for (const int base = top; hit.bits != 0;) {
                 const Entry child = takeLowest();
                 int at = top++;  // the nearest on top
                 for (; at > base && stack[at - 1].fraction < child.fraction; --at) stack[at] = stack[at - 1];

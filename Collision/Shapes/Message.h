@@ -1,4 +1,4 @@
-// Error texts with numbers in them. Used by the Create functions of the shapes.
+// Formatted error messages. Used by the Create functions of the shapes.
 #pragma once
 
 #include <cstdarg>

@@ -114,7 +114,7 @@ Result<MutableCompound::Edit> MutableCompound::PlanRemove(ChildId id, MassUpdate
 
 // ---- Edits
 
-// What there is of a child but the mass of the whole.
+// A child's data, without the mass of the whole.
 void MutableCompound::Place(uint32_t index, const Child& child, const CompoundSum& sum) {
     if (index == children_.size()) children_.emplace_back();
     const bool was = children_[index].shape != nullptr, is = child.shape != nullptr;
@@ -126,7 +126,7 @@ void MutableCompound::Place(uint32_t index, const Child& child, const CompoundSu
     count_ += is ? (was ? 0 : 1) : (was ? ~0u : 0);
 }
 
-// What follows from the children and the center of mass.
+// Bounds and radii, from the children and the center of mass.
 void MutableCompound::Refresh(const CompoundSum& total) {
     bounds_ = RoundedOutwards(total.bounds.lower.cast<double>() - mass_.centerOfMass.cast<double>(),
                               total.bounds.upper.cast<double>() - mass_.centerOfMass.cast<double>());

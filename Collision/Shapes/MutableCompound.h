@@ -1,30 +1,30 @@
-// A compound whose children come, go and move at run time. An edit costs in proportion to the children edited, times
-// the logarithm of how many there are. Bodies that are made of one get a copy of their own, which BodyInterface edits
-// (AddChild, MoveChild, ...). Like a container: one thread edits, or any number read.
+// A compound whose children are added, removed and moved at run time. An edit takes time proportional to the children
+// edited, times the logarithm of their total number. Bodies get a copy of their own, which BodyInterface edits
+// (AddChild, MoveChild, ...). Like a container: one thread writes, or any number read.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/CompoundSums.h>
 
 namespace fulcrum {
 
-// Names a child. Ids of removed children are never valid again: an index is reused with another generation. What
-// queries answer, SubShape::child, is the index; MutableCompound::IdOf says whose it is now.
+// Identifies a child. Ids of removed children are never valid again: an index is reused with another generation.
+// Queries return the index (SubShape::child), from which MutableCompound::IdOf makes the id.
 struct ChildId {
     uint32_t index = 0xFFFFFFFFu;
     uint32_t generation = 0;
     friend auto operator<=>(const ChildId&, const ChildId&) = default;
 };
 
-// What an edit does to mass, inertia and center of mass: they become those of the children there are, or stay as they
-// are (until the next edit that updates them).
+// Whether an edit recomputes mass, inertia and center of mass, or leaves them as they are until the next edit that
+// does.
 enum class MassUpdate : uint8_t { Update, Keep };
 
 class MutableCompound final : public CompoundShape {
 public:
     // Mass and errors as Compound::Create has them. The children's ids have the indices 0, 1, ... and the generation 0.
-    // Where children move, their own masses stay: density times volume, in units that follow from the whole's at first.
-    // OuterRadius is that of the box around the children: up to 1.7 times as far as they reach. The center frame moves
-    // with the center of mass.
+    // When children move, their masses stay the same (density times volume, in a unit fixed at creation). OuterRadius
+    // is that of the box around the children: up to 1.7 times as much as needed. The center frame moves with the center
+    // of mass.
     static Result<std::shared_ptr<MutableCompound>> Create(std::span<const ChildSettings> children);
     // With the same ids.
     std::shared_ptr<MutableCompound> Copy() const {
@@ -33,20 +33,21 @@ public:
 
     uint32_t Count() const { return count_; }  // of children; indices may be larger
     bool Exists(ChildId id) const;
-    // Whoever has the index now; not valid where nobody has.
+    // The child that has the index now; not valid if there is none.
     ChildId IdOf(uint32_t index) const;
     // The sum of density times volume over the children, as of the last update of the mass.
     double RelativeMass() const { return relativeMass_; }
 
-    // Nothing has changed where these return an error: those of Create about `child`, UnknownId, Degenerate (the last
-    // child cannot be removed).
+    // Errors, after which nothing has changed: those of Create about `child`, UnknownId, Degenerate (the last child
+    // cannot be removed).
     Result<ChildId> Add(const ChildSettings& child, MassUpdate mass = MassUpdate::Update);
     Status Set(ChildId id, const ChildSettings& child, MassUpdate mass = MassUpdate::Update);  // all of it
     Status Move(ChildId id, const Vector3& position, const Quaternion& rotation, MassUpdate mass = MassUpdate::Update);
     Status Remove(ChildId id, MassUpdate mass = MassUpdate::Update);
     Status UpdateMass();
 
-    // The same in two steps, for whoever has to know what an edit will do. A plan holds until the next edit.
+    // The same in two steps, for callers that need the effect of an edit beforehand. A plan is valid until the next
+    // edit.
     struct Edit {
         uint32_t index;
         Child child;             // its shape is null: to be removed
@@ -73,7 +74,7 @@ private:
     void Refresh(const CompoundSum& total);
 
     std::vector<uint32_t> generations_;  // by index; grows when the child is removed
-    std::vector<uint32_t> free_;         // indices without a child, the next to be used last
+    std::vector<uint32_t> free_;         // indices without a child; the last one is used next
     CompoundSums sums_;
     uint32_t count_ = 0;
     double relativeMass_ = 0;

@@ -1,4 +1,4 @@
-// How the slow builds of shapes use threads without knowing a job system. Passed by whoever creates the shape.
+// A parallel-for callback, through which slow builds of shapes use threads without depending on a job system.
 #pragma once
 
 #include <cstdint>
@@ -6,8 +6,8 @@
 
 namespace fulcrum {
 
-// Runs job(i) once for each i in 0 .. count - 1, on any threads in any order, and returns when all are done. A job
-// system's ParallelFor fits with one line of adapter. Empty: one after the other.
+// Runs job(i) once for each i in 0 .. count - 1, on any threads in any order, and returns when all are done. Easily
+// made from JobSystem::ParallelFor. Empty: serial.
 using ParallelLoop = std::function<void(uint32_t count, const std::function<void(uint32_t)>& job)>;
 
 inline void RunLoop(const ParallelLoop& parallel, uint32_t count, const std::function<void(uint32_t)>& job) {

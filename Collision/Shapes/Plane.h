@@ -1,11 +1,11 @@
-// Half space: solid on one side of a plane, without end. For static and kinematic bodies. Immutable.
+// Half space: solid on one side of a plane, infinite. For static and kinematic bodies. Immutable.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/Shape.h>
 
 namespace fulcrum {
 
-// The bounds of what has no end: floats whose squares and sums of squares are floats, too.
+// Extent of the bounds of infinite shapes: its square, and sums of a few squares, are finite floats.
 inline constexpr float kUnboundedExtent = 1e18f;  // m
 
 class Plane final : public Shape {

@@ -51,7 +51,7 @@ public:
 private:
     struct Face {
         TriangleHull::Triangle triangle;
-        int firstPoint = kNoIndex;  // list of points outside this face, by nextPoint_
+        int firstPoint = kNoIndex;  // linked list of points outside this face, by nextPoint_
         int farthestPoint = kNoIndex;
         bool alive = false;
         bool visible = false;  // from the point that is being added
@@ -123,7 +123,7 @@ private:
 
     QuickhullSettings settings_;
     TriangleHull hull_;
-    double noise_ = 0;      // grid steps: what the input's rounding may move a point by
+    double noise_ = 0;      // grid steps: by how much the input's rounding may move a point
     double tolerance_ = 0;  // grid steps
     std::vector<Face> faces_;
     std::vector<double> farthestDistance_;  // of each face; apart, because all are scanned for each new vertex
@@ -184,7 +184,7 @@ Status Builder::StartWithTetrahedron() {
                              height * meters, least * meters)};
     }
 
-    // Never below a grid step: a point farther out than that is outside beyond the rounding of its distance.
+    // Never below a grid step, so that points farther out are outside beyond doubt.
     tolerance_ = std::max(std::min(0.75 * noise_, 1e-3 * height), 1.0);
     hull_.thickness = height * meters;
     const bool above = ExactOrientation(origin, Point(b), Point(c), Point(d)) > 0;
@@ -299,8 +299,8 @@ bool Builder::Grow() {
     return true;
 }
 
-// A point within the tolerance of all faces is dropped, and may still end up beyond a face that is added later, where
-// that face cuts a sharp edge's tolerance short. Finds those. Ends, because each round adds a vertex.
+// A point that was within the tolerance of all faces, and dropped, may be outside a face that was added later. Finds
+// such points. Terminates, because each round adds a vertex.
 bool Builder::FindForgottenPoints() {
     newFaces_.clear();
     for (int f = 0; f < static_cast<int>(faces_.size()); ++f)

@@ -1,13 +1,13 @@
-// Ray against triangle without gaps: of two triangles that share an edge, a ray through it meets at least one, because
-// the sign of an edge's function is the same number for both. Used by the ray casts of meshes and height fields.
-// Source: Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
+// Watertight ray-triangle test: a ray through an edge hits at least one of the two triangles that share it, because the
+// sign of the edge function is the same for both. Used by the ray casts of meshes and height fields. Source: Woop,
+// Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
 #pragma once
 
 #include <Fulcrum/Math/Wide.h>
 
 namespace fulcrum {
 
-// The largest absolute value of three: what the rounding of a ray's hit grows with.
+// The largest absolute value of three, to which the rounding of a ray's hit is proportional.
 inline float LargestCoordinate(const Vector3& v) { return Max(Abs(v.x()), Max(Abs(v.y()), Abs(v.z()))); }
 
 // A ray in a frame whose z axis runs along the ray's largest component and in which the ray is z itself, by shearing.
@@ -31,10 +31,10 @@ struct ShearedRay {
     }
 };
 
-// Where a ray meets triangles, by lanes. Front faces have a positive determinant.
+// Ray-triangle intersections in lanes. Front faces have a positive determinant.
 template <class Real>
 struct TriangleHit {
-    Real u, v, w;  // not all of one sign: missed
+    Real u, v, w;  // signs differ: missed
     Real determinant;
     Real height;  // fraction times determinant
 };
@@ -67,7 +67,7 @@ void Complete(const ShearedCorner<Real>& a, const ShearedCorner<Real>& b, const 
     hit.height = hit.u * a.z + hit.v * b.z + hit.w * c.z;
 }
 
-// The fraction at which the ray meets the triangle abc (counter-clockwise seen from the front); false: it does not
+// The fraction at which the ray hits the triangle abc (counter-clockwise seen from the front); false: it does not
 // between 0 and maxFraction, or lies in its plane. Exact to the sign where an edge function rounds to zero.
 inline bool IntersectTriangle(const ShearedRay& ray, const Vector3& a, const Vector3& b, const Vector3& c,
                               bool fromBehind, float maxFraction, float& fraction, bool& isBackFace) {
@@ -89,10 +89,10 @@ inline bool IntersectTriangle(const ShearedRay& ray, const Vector3& a, const Vec
     return fraction >= 0 && fraction <= maxFraction;
 }
 
-// The same for eight triangles at once: the lanes that are met, their fractions and which are met from behind. The same
+// The same for eight triangles at once: the lanes that are hit, their fractions and which are hit from behind. The same
 // bits.
 struct TriangleHits {
-    uint32_t met, backFaces;
+    uint32_t bits, backFaces;
     alignas(32) float fraction[8];
 };
 inline void IntersectTriangles(const ShearedRay& ray, const Vec3<Wide<8>> (&corners)[3], bool fromBehind,
@@ -105,28 +105,27 @@ inline void IntersectTriangles(const ShearedRay& ray, const Vec3<Wide<8>> (&corn
     const auto isFront = (m.u >= zero) & (m.v >= zero) & (m.w >= zero);
     const auto isBack = (m.u <= zero) & (m.v <= zero) & (m.w <= zero);
     const auto isUnsure = (m.u == zero) | (m.v == zero) | (m.w == zero);
-    hits.met = isFront.ToBits() | (fromBehind ? isBack.ToBits() : 0u);
+    hits.bits = isFront.ToBits() | (fromBehind ? isBack.ToBits() : 0u);
     const uint32_t unsure = isUnsure.ToBits();
-    if ((hits.met | unsure) == 0) return;
+    if ((hits.bits | unsure) == 0) return;
     Complete(p, q, r, m);
     const Lanes fraction = m.height / m.determinant;
     fraction.Store(hits.fraction);
     hits.backFaces = (m.determinant < zero).ToBits();
-    hits.met &= ((fraction >= zero) & (fraction <= Lanes(maxFraction))).ToBits() & ~unsure;
+    hits.bits &= ((fraction >= zero) & (fraction <= Lanes(maxFraction))).ToBits() & ~unsure;
     for (uint32_t bits = unsure; bits != 0; bits &= bits - 1) {
         const int i = __builtin_ctz(bits);
         Vector3 corner[3];
         for (int k = 0; k < 3; ++k) corner[k] = Vector3(corners[k].x()[i], corners[k].y()[i], corners[k].z()[i]);
         bool isBackFace = false;
-        const bool isMet = IntersectTriangle(ray, corner[0], corner[1], corner[2], fromBehind, maxFraction,
+        const bool isHit = IntersectTriangle(ray, corner[0], corner[1], corner[2], fromBehind, maxFraction,
                                              hits.fraction[i], isBackFace);
-        hits.met |= (isMet ? 1u : 0u) << i;
+        hits.bits |= (isHit ? 1u : 0u) << i;
         hits.backFaces = (hits.backFaces & ~(1u << i)) | (isBackFace ? 1u : 0u) << i;
     }
 }
 
-// Whether the ray can be sheared and its fractions told apart: finite, within the coordinates that shapes may have, not
-// zero.
+// Whether the ray is finite, within the coordinates that shapes may have, and not of length 0.
 inline bool IsUsable(const Vector3& origin, const Vector3& displacement) {
     constexpr float kFar = 1e18f, kShort = 1e-30f;
     const Vector3 from = origin.cwiseAbs(), along = displacement.cwiseAbs();
@@ -134,8 +133,7 @@ inline bool IsUsable(const Vector3& origin, const Vector3& displacement) {
            along.z() <= kFar && Max(along.x(), Max(along.y(), along.z())) >= kShort;
 }
 
-// 1 / displacement for the planes of boxes, with components of less than 1e-18 m counted as that: fractions stay
-// finite.
+// 1 / displacement for slab tests; components of less than 1e-18 m count as that, so that fractions stay finite.
 inline Vector3 BoundedInverse(const Vector3& displacement) {
     Vector3 inverse;
     for (int axis = 0; axis < 3; ++axis)

@@ -9,7 +9,7 @@
 namespace fulcrum {
 namespace {
 
-// Where a direction points about y: a unit vector in the plane of x and z, and how far the direction leans that way.
+// A direction's unit vector in the x-z plane, and its component along that.
 struct Azimuth {
     float x, z, across;
 
@@ -80,14 +80,14 @@ Vector3 TaperedCapsule::SupportCore(const Vector3& direction) const {
 }
 
 void TaperedCapsule::FindSupportingFace(const Vector3& direction, SupportingFace& face) const {
-    // The line from the ball to the point touches both only where the direction is its normal; where it leans by more
-    // than a degree or two, the line would cut into the ball.
+    // The line from the ball to the point is an edge only if the direction is its normal; if it leans by more than a
+    // degree or two, the line would cut into the ball.
     constexpr float kLean = 0.03f;
     const Vector3 onBall = Vector3(0, ballY_, 0) + direction * ballRadius_, point(0, pointY_, 0);
     const Vector3 line = point - onBall;
     const float lean = Dot(direction, line), limit = kLean * std::fabs(ballY_ - pointY_);
     face.count = 0;
-    // A ball of next to no size has nothing to cut into: the core is a segment as a capsule's.
+    // If the ball is tiny, the core is a segment like a capsule's.
     const bool wholeLine = std::fabs(lean) <= limit || ballRadius_ <= 1e-3f * convexRadius_;
     if (wholeLine || lean <= 0) face.Add(onBall, 0);
     if (wholeLine || lean > 0) face.Add(point, 1);
@@ -179,7 +179,7 @@ void Cylinder::AddDisc(const Vector3& direction, SupportingFace& face) const {
     // Cosines of the multiples of 30 degrees.
     static constexpr float kCosines[12] = {1,  0.866025404f,  0.5f,  0, -0.5f, -0.866025404f,
                                            -1, -0.866025404f, -0.5f, 0, 0.5f,  0.866025404f};
-    constexpr float kLeaning = 3e-4f;  // rad: less is the noise of a cylinder that stands
+    constexpr float kLeaning = 3e-4f;  // rad: less is noise of a standing cylinder
     const bool top = direction.y() > 0;
     const float radius = top ? coreTopRadius_ : coreBottomRadius_, y = top ? coreTopY_ : coreBottomY_;
     // Counter-clockwise seen from outside: with the angle from z towards x on top.

@@ -46,9 +46,8 @@ public:
     float TopRadius() const { return topRadius_; }
     float BottomRadius() const { return bottomRadius_; }
     Vector3 SupportCore(const Vector3& direction) const override;
-    // A disc is given as a polygon of twelve corners that turn with the body, so that a cylinder that stands keeps its
-    // contacts, and where it leans as the rim's farthest point besides, so that one that rolls on its rim rolls on a
-    // circle. The side is a line.
+    // A disc is given as a polygon of twelve corners fixed to the body, so that a standing cylinder keeps its contacts;
+    // if it leans, with the farthest point of the rim besides, so that it rolls on a circle. The side is an edge.
     void FindSupportingFace(const Vector3& direction, SupportingFace& face) const override;
 
 private:

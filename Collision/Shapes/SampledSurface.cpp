@@ -14,7 +14,7 @@ SampledSurface SampleSurface(const ConvexShape& shape, int divisions) {
         const int first = static_cast<int>(surface.vertices.size());
         for (int i = 0; i < across; ++i) {
             for (int k = 0; k < across; ++k) {
-                // Not normalized: the same direction has the same bits from both sides of an edge of the cube.
+                // Not normalized, so that directions on an edge of the cube have the same bits on both of its sides.
                 Vector3 direction;
                 direction[axis] = sign;
                 direction[(axis + 1) % 3] = sign * (i == divisions ? 1.0f : static_cast<float>(i) * step - 1);

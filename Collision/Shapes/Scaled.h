@@ -7,11 +7,11 @@
 namespace fulcrum {
 
 // The shape with its user's frame multiplied by `scale`, negative factors mirror. Boxes, sharp hulls, flat triangles
-// and sharp custom shapes take any factors but 0; cylinders the same across (x and z); what is round all of one size;
-// compounds what all their children take, as they are rotated; meshes and planes any but 0. A scaled mesh shares the
-// data of the first. Rounding scales by the smallest factor. Errors: NonFinite, OutOfRange (a factor of 0; sizes out of
-// range), Unsupported (factors that the shape cannot take: the message names the nearest that it can; a hull with a
-// convex radius; a height field).
+// and sharp custom shapes take any factors but 0; cylinders the same across (x and z); round shapes uniform ones;
+// compounds those that all their children take, as they are rotated; meshes and planes any but 0. A scaled mesh shares
+// the data of the first. Rounding scales by the smallest factor. Errors: NonFinite, OutOfRange (a factor of 0; sizes
+// out of range), Unsupported (factors that the shape cannot take: the message names the nearest that it can; a hull
+// with a convex radius; a height field).
 Result<ShapePtr> Scaled(const ShapePtr& shape, const Vector3& scale);
 
 // The shape at a pose in its user's frame: a compound of one, or of the same children. Errors: those of

@@ -13,7 +13,7 @@
 
 namespace fulcrum {
 
-// One line a shape here, one in NarrowPhase/PairTable.cpp.
+// A new shape needs a line here and one in NarrowPhase/PairTable.cpp.
 enum class ShapeType : uint8_t {
     Sphere,
     Box,
@@ -33,7 +33,7 @@ enum class ShapeType : uint8_t {
 inline constexpr int kConvexShapeTypes = static_cast<int>(ShapeType::Compound);  // those before it
 const char* ShapeTypeName(ShapeType type);
 
-// Of a solid of density 1 kg/m3, about its center of mass. All zero for a shape without volume or without end.
+// Of a solid of density 1 kg/m3, about its center of mass. All zero for shapes with no volume or an infinite one.
 struct MassProperties {
     float volume = 0;                            // m3
     Vector3 centerOfMass = Vector3::Zero();      // m, in the user's frame
@@ -54,7 +54,8 @@ public:
     const MassProperties& Mass() const { return mass_; }
     // In the center frame.
     const Bounds& LocalBounds() const { return bounds_; }
-    // Radius of the largest sphere about the center of mass that fits inside: a fast body is one that moves farther.
+    // Radius of the largest sphere about the center of mass that fits inside. Continuous collision is for motions
+    // longer than this.
     float InnerRadius() const { return innerRadius_; }
     // Distance of the farthest point from the center of mass.
     float OuterRadius() const { return outerRadius_; }

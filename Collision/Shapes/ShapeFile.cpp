@@ -16,7 +16,7 @@ constexpr uint32_t kMagic = 0x53434C46;  // "FLCS"
 constexpr int kMostNested = 8;
 
 struct ShapeFormat {
-    uint8_t code;  // in files: given once, for ever
+    uint8_t code;  // must never change, since files contain it
     ShapeType type;
     void (*write)(const Shape& shape, ByteWriter& out, const ShapeFileScope& scope);
     ShapeResult (*read)(ByteReader& in, const ShapeFileScope& scope);
@@ -135,20 +135,20 @@ ShapeResult ReadCustom(ByteReader& in, const ShapeFileScope& scope) {
     std::vector<uint8_t> letters;
     in.ReadAll(letters, in.Get<uint8_t>());
     const std::string name(letters.begin(), letters.end());
-    ByteReader part = in.ReadPart();
+    ByteReader block = in.ReadBlock();
     if (in.HasFailed()) return Damaged("a custom shape breaks off");
     const auto format = std::ranges::find(scope.custom, std::string_view(name), &CustomShapeFormat::name);
     if (format == scope.custom.end()) {
         return Error{ErrorCode::Unsupported,
                      Message("no format of the name \"%.100s\" is given, which a custom shape needs", name.c_str())};
     }
-    ShapeResult shape = format->read(part.Rest());
+    ShapeResult shape = format->read(block.Rest());
     if (shape && !(shape.Value() && shape.Value()->Type() == ShapeType::Custom))
         return Error{ErrorCode::Unsupported, Message("the format \"%.100s\" reads no custom shape", name.c_str())};
     return shape;
 }
 
-// A shape that files can hold is a line here.
+// A new shape needs a line here.
 constexpr ShapeFormat kFormats[] = {
     {1, ShapeType::Sphere, WriteSphere, ReadSphere},
     {2, ShapeType::Box, WriteBox, ReadBox},
@@ -212,14 +212,14 @@ void WriteShape(const Shape& shape, ByteWriter& out, const ShapeFileScope& scope
 ShapeResult ReadShape(ByteReader& in, const ShapeFileScope& scope) {
     if (scope.depth > kMostNested) return Damaged("shapes are nested too deep");
     const uint8_t code = in.Get<uint8_t>();
-    ByteReader part = in.ReadPart();
-    if (part.HasFailed()) return Damaged("it breaks off");
+    ByteReader block = in.ReadBlock();
+    if (block.HasFailed()) return Damaged("it breaks off");
     const auto format = std::ranges::find(kFormats, code, &ShapeFormat::code);
     if (format == std::end(kFormats))
         return Error{ErrorCode::Unsupported, Message("shape code %d is unknown", int{code})};
-    ShapeResult shape = format->read(part, scope);
-    if (part.HasFailed()) return Damaged("a shape breaks off");
-    if (shape && !part.IsAtEnd()) return Damaged("a shape is followed by more");
+    ShapeResult shape = format->read(block, scope);
+    if (block.HasFailed()) return Damaged("a shape breaks off");
+    if (shape && !block.IsAtEnd()) return Damaged("a shape is followed by more");
     return shape;
 }
 

@@ -52,7 +52,7 @@ ShapeResult ReadCompound(ByteReader& in, const ShapeFileScope& scope) {
     return ShapeFileAccess::MakeCompound(std::move(children), mass);
 }
 
-// With its ids, and the order in which free indices are used next: what is done to the one can be done to the other.
+// With its ids and its free list, so that later edits give the same ids as for the original.
 void ShapeFileAccess::WriteMutableCompound(const MutableCompound& compound, ByteWriter& out,
                                            const ShapeFileScope& scope) {
     WriteMass(compound.Mass(), out);
@@ -118,7 +118,7 @@ ShapeResult ShapeFileAccess::ReadTriangle(ByteReader& in) {
     if (in.HasFailed() || !IsPlausible(triangle->mass_) || !IsNear(triangle->mass_.centerOfMass) || !IsNear(a) ||
         !IsNear(b) || !IsNear(c) || !(std::isfinite(radius) && radius >= 0 && radius < kFarthestPlace))
         return Damaged("a triangle, or its mass");
-    // About their middle, on no line, with the normal that they span: to within what floats keep of them.
+    // Whether the corners are about their centroid, not collinear, and match the normal, to within rounding.
     const Position ab = (b - a).cast<double>(), ac = (c - a).cast<double>(), cross = Cross<double>(ab, ac);
     const double twiceArea = std::sqrt(Dot<double>(cross, cross));
     const double longest = std::max(Dot<double>(ab, ab), Dot<double>(ac, ac));

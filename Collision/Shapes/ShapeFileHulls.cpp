@@ -7,7 +7,7 @@
 namespace fulcrum {
 namespace {
 
-// Corners lie in their face's plane, and nothing outside it, to within what floats keep of such a hull.
+// Whether corners lie in their face's plane and no vertex outside it, to within rounding.
 bool IsConvexPolyhedron(const HullMesh& mesh) {
     double size = 0;
     for (const Position& v : mesh.vertices) size = std::max(size, std::sqrt(Dot(v, v)));

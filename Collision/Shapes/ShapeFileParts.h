@@ -1,5 +1,5 @@
-// What the table of ShapeFile.cpp names: how each shape is written and read. Used by the shape files alone. A reader
-// checks all that it reads, because it may be anything.
+// The functions that the table of ShapeFile.cpp names, which write and read each type of shape. Readers validate
+// everything, because files may be damaged.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/ByteStream.h>
@@ -25,7 +25,7 @@ struct ShapeFileScope {
     int depth = 0;  // of nesting
 };
 
-// Reaches into the shapes whose parts the file holds as they are, so that they come back with the same bits.
+// Access to private data of shapes that are saved as they are, so that they are read back with the same bits.
 struct ShapeFileAccess {
     // The hull of these faces, or an error where they are no closed convex polyhedron around the origin.
     static ShapeResult MakeHull(const HullMesh& mesh, const MassProperties& mass, float convexRadius);
@@ -51,13 +51,13 @@ ShapeResult ReadCompound(ByteReader& in, const ShapeFileScope& scope);
 
 void WriteMass(const MassProperties& mass, ByteWriter& out);
 MassProperties ReadMass(ByteReader& in);
-// What a solid can have: positive, and no moment of inertia above the sum of the others.
+// Whether a solid can have these: positive, and no moment of inertia above the sum of the others.
 bool IsPlausible(const MassProperties& mass);
 
 void WriteMaterials(std::span<const SurfaceMaterial> materials, ByteWriter& out);
 std::vector<SurfaceMaterial> ReadMaterials(ByteReader& in);
 
-// The error of a file that breaks off or says what cannot be.
+// The error of a truncated or invalid file.
 inline Error Damaged(const char* what) { return {ErrorCode::Degenerate, std::string("damaged shape file: ") + what}; }
 
 }  // namespace fulcrum

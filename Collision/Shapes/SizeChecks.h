@@ -8,7 +8,7 @@ namespace fulcrum {
 
 inline constexpr double kPi = 3.14159265358979323846;
 
-// Squares of distances have to stay floats.
+// Squares of distances must be finite floats.
 inline constexpr float kFarthestPlace = 1e18f;  // m
 
 namespace detail {
@@ -21,7 +21,7 @@ inline Status CheckNotTooLarge(const char* name, float size) {
 
 }  // namespace detail
 
-// Ok where the size is positive and not beyond that; an Error that names it otherwise.
+// Ok if the size is positive and at most kFarthestPlace; otherwise an Error that names it.
 inline Status CheckSize(const char* name, float size) {
     if (!std::isfinite(size))
         return Error{ErrorCode::NonFinite, Message("%s is %g: it must be finite", name, double{size})};
@@ -39,7 +39,7 @@ inline Status CheckSizeOrZero(const char* name, float size) {
     return detail::CheckNotTooLarge(name, size);
 }
 
-// Ok where the center of a part lies within that.
+// Ok if the center lies within kFarthestPlace.
 inline Status CheckPlace(const char* name, const Vector3& center) {
     if (IsFinite(center) && center.cwiseAbs().maxCoeff() < kFarthestPlace) return Done{};
     return Error{ErrorCode::OutOfRange,

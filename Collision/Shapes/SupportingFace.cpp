@@ -1,4 +1,4 @@
-// The default search for the face of a core of which nothing is known but its support function.
+// The default ConvexShape::FindSupportingFace, which uses the support function alone.
 #include <Fulcrum/Collision/Shapes/SupportingFace.h>
 
 #include <bit>
@@ -7,8 +7,8 @@ namespace fulcrum {
 
 namespace {
 
-// How far the probes lean away from the direction, rad: faces that are turned by less are found. What is curved with a
-// radius R looks flat to the probes over 0.02 R, 2e-4 R deep: edges shorter than a tenth of the core count as points.
+// By how much the probe directions lean away from the direction, rad: faces that are turned by less are found. A curved
+// surface of radius R looks flat to the probes over 0.02 R, so edges shorter than a tenth of the core count as points.
 constexpr float kLean = 0.02f;
 
 // Sines of the multiples of 22.5 degrees.
@@ -81,7 +81,7 @@ void ConvexShape::FindSupportingFace(const Vector3& direction, SupportingFace& f
         const float off = Dot(face.normal, Vector3(face.vertices[i] - face.vertices[0]));
         if (std::fabs(off) > 1e-3f * coreRadius) return KeepLongest(face);
     }
-    // Seen from a direction that is not its own the polygon's plane could be any: it must face the direction, too.
+    // The probed points may lie in an unrelated plane: the polygon must face the direction.
     if (Dot(face.normal, direction) < 1 - 2 * kLean * kLean) KeepLongest(face);
 }
 

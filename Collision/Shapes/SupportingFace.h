@@ -1,5 +1,5 @@
-// What of a convex core faces a direction: a flat face, a straight edge or a point. Filled by the shapes, clipped by
-// the narrow phase. Lives on the stack of one call.
+// The feature of a convex core that faces a direction: a flat face, a straight edge or a point. Filled by shapes,
+// clipped by the narrow phase. Lives on the stack of one call.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/Shape.h>
@@ -11,7 +11,7 @@ struct SupportingFace {
 
     int count = 0;                   // 1: a point, 2: an edge, more: a face, counter-clockwise seen from outside
     Vector3 vertices[kMaxVertices];  // of the core, in the shape's center frame, m
-    uint16_t names[kMaxVertices];    // of the vertices: the same from step to step while the same feature touches
+    uint16_t names[kMaxVertices];    // vertex ids, the same from step to step while the same feature touches
     Vector3 normal;                  // unit, outwards; of a face only
 
     void Add(const Vector3& vertex, int name) {

@@ -1,4 +1,4 @@
-// The normal of a triangle. Used by the surfaces and by what fills their edges. Pure.
+// The normal of a triangle of a surface. Pure.
 #pragma once
 
 #include <Fulcrum/Math/Vector.h>

@@ -1,7 +1,6 @@
-// The base of the hollow shapes that are made of triangles: TriangleMesh and HeightField. What the contact stage, the
-// queries and the casts ask of them, all in the shape's own frame, which is the user's. Const functions may run on any
-// number of threads at once and allocate nothing. The order in which triangles are found depends on the shape's data
-// alone.
+// The base of TriangleMesh and HeightField: triangle queries for contacts, ray casts and shape casts, all in the
+// shape's own frame, which is the user's. Const functions may run on any number of threads at once and allocate
+// nothing. The order in which triangles are found depends on the shape's data alone.
 #pragma once
 
 #include <Fulcrum/Collision/BroadPhase/RayLanes.h>
@@ -14,7 +13,7 @@
 
 namespace fulcrum {
 
-// What a surface is made of where it is not the same everywhere. A triangle names an entry of its shape's palette.
+// Material of some triangles of a surface. A triangle refers to an entry of its shape's palette.
 struct SurfaceMaterial {
     float friction = 0.5f;  // >= 0
     float restitution = 0;  // 0 .. 1
@@ -23,7 +22,7 @@ struct SurfaceMaterial {
 struct TriangleView {
     Vector3 vertices[3];    // m; counter-clockwise seen from the front
     Vector3 normal;         // unit, to the front
-    uint32_t vertexIds[3];  // the shape's own numbers: triangles that share a vertex share its number
+    uint32_t vertexIds[3];  // of the shape's vertices: triangles that share a vertex share its id
     uint32_t id;
     // Bit i: contacts on the edge from vertex i to vertex (i + 1) % 3 may have normals other than the face's. Set for
     // open boundaries, for edges of more than two triangles and for convex edges above the shape's angle; on two-sided
@@ -53,13 +52,13 @@ public:
     // Ids are below this. A mesh has a triangle for each; a height field none for those of holes.
     virtual uint32_t TriangleIdEnd() const = 0;
     virtual uint32_t TriangleCount() const = 0;
-    // `id` is of a triangle: VisitTriangles, FindTriangles or a cast gave it.
+    // `id`: from VisitTriangles, FindTriangles or a cast.
     virtual TriangleView GetTriangle(uint32_t id) const = 0;
     // A triangle of each id, into views of the same length.
     virtual void GetTriangles(std::span<const uint32_t> ids, TriangleView* views) const = 0;
 
-    // Calls visit(uint32_t id) for every triangle whose bounding box overlaps `box`: touching counts, and so does a
-    // triangle that only its own bounding box brings near. Bounds may be infinite; empty or NaN ones find nothing.
+    // Calls visit(uint32_t id) for every triangle whose bounding box overlaps `box`: touching counts. The triangle
+    // itself may be outside `box`. Bounds may be infinite; empty or NaN ones find nothing.
     template <class Visitor>
     void VisitTriangles(const Bounds& box, Visitor&& visit) const;
     // The same into `ids`. Returns how many there are, which may be more than fit: the first ids.size() are written.
@@ -82,9 +81,9 @@ public:
 
     // Two-sided triangles collide and are hit from both sides; one-sided ones from the front alone.
     bool IsTwoSided() const { return isTwoSided_; }
-    // The palette; empty where all takes the body's own material.
+    // The palette; empty if the body's material is used everywhere.
     std::span<const SurfaceMaterial> Materials() const { return materials_; }
-    // What the shape holds on to, in bytes; what instances share counts in each.
+    // In bytes; data shared by instances count in each.
     virtual size_t MemoryUsed() const = 0;
 
 protected:
@@ -97,12 +96,12 @@ protected:
     virtual void SearchBox(const Bounds& box, void* context, BatchFunction found) const = 0;
     virtual void SearchRay(const SurfaceRay& ray, float maxFraction, void* context, HitFunction found) const = 0;
 
-    // The closest of the hits that a search shows it.
+    // Keeps the closest of the hits of a traversal.
     struct ClosestHit {
         float fraction;
         uint32_t triangle = kNoTriangle;
         bool isBackFace = false;
-        // Returns the largest fraction that is still of interest.
+        // Returns the new largest fraction.
         float Take(uint32_t id, float at, bool isBack) {
             if (at < fraction || (at == fraction && id < triangle)) *this = {at, id, isBack};
             return fraction;

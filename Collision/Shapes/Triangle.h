@@ -1,20 +1,21 @@
-// A single triangle, alone or as a piece of something larger. Created by Create, which checks it; immutable afterwards.
+// A single triangle, as a shape of its own or as one of a surface. Created by Create, which checks it; immutable
+// afterwards.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/Shape.h>
 
 namespace fulcrum {
 
-// Corners in meters. `radius` >= 0 makes a plate of it, rounded all around; 0, the default, has no thickness at all:
-// both sides collide, and nothing is inside. The mass properties are those of a flat plate of thickness 2 radius, or of
-// 1 mm where the radius is 0: a body of such a triangle had better be static or be given its mass. Errors: NonFinite,
-// Negative, Degenerate (corners on a line), OutOfRange.
+// Corners in meters. `radius` >= 0 makes it a rounded plate; 0, the default, leaves it without thickness: both sides
+// collide, and nothing is inside. The mass properties are those of a flat plate of thickness 2 radius, or of 1 mm if
+// the radius is 0: bodies of such triangles should be static or be given a mass. Errors: NonFinite, Negative,
+// Degenerate (corners on a line), OutOfRange.
 class Triangle final : public ConvexShape {
 public:
     static Result<std::shared_ptr<const Triangle>> Create(const Vector3& a, const Vector3& b, const Vector3& c,
                                                           float radius = 0);
 
-    // A piece of a surface: corners about their centroid, m, and the unit normal. Without mass properties and radii.
+    // A triangle of a surface: corners about their centroid, m, and the unit normal. Without mass properties and radii.
     Triangle(const Vector3 (&corners)[3], const Vector3& normal)
         : ConvexShape(ShapeType::Triangle), corners_{corners[0], corners[1], corners[2]}, normal_(normal) {}
 

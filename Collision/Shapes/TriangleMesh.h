@@ -32,7 +32,7 @@ public:
                                                               const ParallelLoop& parallel = {});
     // The same mesh with its coordinates multiplied by `scale`, which may be non-uniform and mirror: fronts stay
     // fronts. Shares tree, vertices and materials with `mesh`; triangles keep their ids. Errors: NonFinite, OutOfRange
-    // (a factor whose size is not 1e-6 to 1e6, all scales of the mesh taken together; a coordinate above 1e15 m).
+    // (the magnitude of a factor, multiplied by earlier scales, not 1e-6 to 1e6; a coordinate above 1e15 m).
     static Result<std::shared_ptr<const TriangleMesh>> Scaled(const TriangleMesh& mesh, const Vector3& scale);
 
     uint32_t TriangleIdEnd() const override;

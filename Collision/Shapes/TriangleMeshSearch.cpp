@@ -1,4 +1,4 @@
-// The searches of a triangle mesh: what overlaps a box, what a ray meets.
+// Box and ray queries of a triangle mesh.
 #include <Fulcrum/Collision/Shapes/MeshTree.h>
 #include <Fulcrum/Collision/Shapes/RayTriangle.h>
 #include <Fulcrum/Collision/Shapes/SurfaceNormal.h>
@@ -16,7 +16,7 @@ constexpr float kBeyond = 1e18f;  // farther than any coordinate
 
 Wide<4> LoadFour(const Vector3& v) { return Wide<4>::Load(v.data()); }
 
-// The box in the unscaled coordinates of the tree, with what the division may round in hand; finite.
+// The box in the unscaled coordinates of the tree, enlarged by the rounding of the division; finite.
 Bounds Unscaled(const Bounds& box, const Vector3& scale, bool isScaled) {
     Bounds result;
     for (int axis = 0; axis < 3; ++axis) {
@@ -62,7 +62,7 @@ void TriangleMesh::SearchBox(const Bounds& box, void* context, BatchFunction fou
 // Rays in the unscaled coordinates of the tree.
 inline Vector3 TriangleMesh::InTree(const Vector3& v) const { return isScaled_ ? Vector3(v.cwiseQuotient(scale_)) : v; }
 
-// How much larger boxes count for rays from origins of this size, in the tree.
+// By how much boxes are enlarged for rays from origins of this size, in the tree's coordinates.
 inline float TriangleMesh::PadFor(float largestOrigin) const {
     // Where one axis is stretched, the rounding of the test along it counts for more along the others.
     const Vector3 size = scale_.cwiseAbs();
@@ -91,14 +91,14 @@ inline void TriangleMesh::LoadCorners(uint32_t begin, uint32_t end, Vec3<Wide<8>
 
 namespace {
 
-// Calls visit(id, fraction, isBackFace), which returns the largest fraction that is still of interest, or a negative
-// one, for the triangles of a leaf that a ray meets; returns the last such fraction.
+// Calls visit(id, fraction, isBackFace) for the triangles of a leaf that a ray hits; it returns the new largest
+// fraction, negative to stop. Returns the last such fraction.
 template <class Visitor>
-inline float MeetLeaf(const ShearedRay& ray, const Vec3<Wide<8>> (&corners)[3], uint32_t begin, uint32_t end,
-                      bool fromBehind, float maxFraction, Visitor&& visit) {
+inline float IntersectLeaf(const ShearedRay& ray, const Vec3<Wide<8>> (&corners)[3], uint32_t begin, uint32_t end,
+                           bool fromBehind, float maxFraction, Visitor&& visit) {
     TriangleHits hits;
     IntersectTriangles(ray, corners, fromBehind, maxFraction, hits);
-    for (uint32_t bits = hits.met & ((1u << (end - begin)) - 1u); bits != 0; bits &= bits - 1) {
+    for (uint32_t bits = hits.bits & ((1u << (end - begin)) - 1u); bits != 0; bits &= bits - 1) {
         const int i = std::countr_zero(bits);
         if (hits.fraction[i] > maxFraction) continue;
         maxFraction = visit(begin + static_cast<uint32_t>(i), hits.fraction[i], (hits.backFaces >> i & 1) != 0);
@@ -109,8 +109,8 @@ inline float MeetLeaf(const ShearedRay& ray, const Vec3<Wide<8>> (&corners)[3], 
 
 }  // namespace
 
-// Calls visit(id, fraction, isBackFace), which returns the largest fraction that is still of interest, or a negative
-// one.
+// Calls visit(id, fraction, isBackFace) for triangles that the ray hits; it returns the new largest fraction, negative
+// to stop.
 template <class Visitor>
 void TriangleMesh::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& visit) const {
     if (!IsUsable(ray.origin, ray.displacement) || !(maxFraction >= 0)) return;
@@ -122,7 +122,7 @@ void TriangleMesh::Traverse(const SurfaceRay& ray, float maxFraction, Visitor&& 
         const uint32_t begin = node.LeafBegin(child), end = node.LeafEnd(child);
         Vec3<Wide<8>> corners[3];
         LoadCorners(begin, end, corners);
-        maxFraction = MeetLeaf(sheared, corners, begin, end, fromBehind, maxFraction, visit);
+        maxFraction = IntersectLeaf(sheared, corners, begin, end, fromBehind, maxFraction, visit);
         return maxFraction;
     });
 }
@@ -145,12 +145,12 @@ bool TriangleMesh::CastRay(const SurfaceRay& ray, SurfaceHit& hit, float maxFrac
     return true;
 }
 
-// The tree is searched for the box that contains all rays, begun about the middle of their origins; each of them is
-// held against the boxes of the leaves found, and against their triangles.
+// Ray packets: the tree is searched with one moving box that contains all rays, and each ray is tested against the
+// boxes of the leaves found and their triangles.
 uint32_t TriangleMesh::CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hits, const float* maxFractions) const {
     constexpr float kSlack = 1.0f + 0x1p-18f;
-    // Leaves that the box may find and no ray meets, for each ray; where there are more, rays do better alone.
-    constexpr int kMostInVain = 2;
+    // If more leaves per ray are found that no ray hits, single casts are faster.
+    constexpr int kMostMissedLeaves = 2;
     const MeshTree& tree = *tree_;
     RayLanes lanes;
     ShearedRay sheared[kMostRays];
@@ -172,15 +172,14 @@ uint32_t TriangleMesh::CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hi
     }
     if (lanes.count == 0) return 0;
     float largest = lanes.LargestLimit();
-    if (!(largest <= 1))
-        return SurfaceShape::CastRays(rays, hits, maxFractions);  // the box is wide enough for a whole way
+    if (!(largest <= 1)) return SurfaceShape::CastRays(rays, hits, maxFractions);  // the rays are too far apart
     const float pad = PadFor(Max(LargestCoordinate(origins.lower), LargestCoordinate(origins.upper)));
     lanes.Widen(pad);
     const Vector3 displacement = displacements.Center();
     const Vector3 reach = origins.HalfExtents() + displacements.HalfExtents() + Vector3::Constant(2 * pad) +
                           displacements.lower.cwiseAbs().cwiseMax(displacements.upper.cwiseAbs()) * 0x1p-20f;
     const MeshTreeRay swept(origins.Center(), BoundedInverse(displacement), reach);
-    int inVain = 0;
+    int missedLeaves = 0;
     tree.SearchRay(swept, largest, [&](const MeshNode& node, int child) {
         float lower[3], upper[3];
         for (int axis = 0; axis < 3; ++axis) {
@@ -188,21 +187,21 @@ uint32_t TriangleMesh::CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hi
             lower[axis] = node.origin[axis] + step * static_cast<float>(node.lower[axis][child]);
             upper[axis] = node.origin[axis] + step * static_cast<float>(node.upper[axis][child]);
         }
-        uint32_t met = lanes.Intersecting(lower, upper, kSlack);
-        if (met == 0) return ++inVain > kMostInVain * lanes.count ? -1.0f : largest;
+        uint32_t hit = lanes.Intersecting(lower, upper, kSlack);
+        if (hit == 0) return ++missedLeaves > kMostMissedLeaves * lanes.count ? -1.0f : largest;
         const uint32_t begin = node.LeafBegin(child), end = node.LeafEnd(child);
         Vec3<Wide<8>> corners[3];
         LoadCorners(begin, end, corners);
-        for (; met != 0; met &= met - 1) {
-            const int i = std::countr_zero(met);
+        for (; hit != 0; hit &= hit - 1) {
+            const int i = std::countr_zero(hit);
             const bool fromBehind = isTwoSided_ || rays[rayOf[i]].backFaces;
-            lanes.limit[i] = MeetLeaf(
+            lanes.limit[i] = IntersectLeaf(
                 sheared[i], corners, begin, end, fromBehind, lanes.limit[i],
                 [&](uint32_t id, float fraction, bool isBackFace) { return best[i].Take(id, fraction, isBackFace); });
         }
         return largest = lanes.LargestLimit();
     });
-    if (inVain > kMostInVain * lanes.count) return SurfaceShape::CastRays(rays, hits, maxFractions);
+    if (missedLeaves > kMostMissedLeaves * lanes.count) return SurfaceShape::CastRays(rays, hits, maxFractions);
     uint32_t hit = 0;
     for (int k = 0; k < lanes.count; ++k) {
         if (best[k].triangle == kNoTriangle) continue;

@@ -25,7 +25,7 @@ void BuildHull(benchmark::State& state) {
 }
 BENCHMARK(BuildHull)->Arg(32)->Arg(1000)->Arg(10000)->Unit(benchmark::kMicrosecond);
 
-// Each direction follows from the support before, as in GJK: this is latency, not throughput.
+// Each direction depends on the support before, as in GJK: this measures latency, not throughput.
 void SupportOfHull(benchmark::State& state) {
     const auto hull = ConvexHull::Create(FibonacciSphere(static_cast<int>(state.range(0)))).Value();
     std::array<Vector3, 64> directions;

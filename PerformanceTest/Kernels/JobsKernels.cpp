@@ -1,4 +1,4 @@
-// What scheduling itself costs: jobs and phases without work in them, and scratch memory.
+// The overhead of scheduling: jobs and phases without work in them, and scratch memory.
 #include <Fulcrum/Jobs/Phases.h>
 #include <Fulcrum/Jobs/ScratchArena.h>
 #include <Fulcrum/Jobs/ThreadPool.h>
@@ -21,7 +21,7 @@ void EmptyParallelFor(benchmark::State& state) {
 }
 BENCHMARK(EmptyParallelFor)->ArgNames({"workers", "items"})->ArgsProduct({{1, 2}, {2, 16, 1000}})->UseRealTime();
 
-// The first job after a pause in which the helpers went to sleep: what a step pays once.
+// The first job after a pause in which the helpers went to sleep: a cost of each step.
 void ParallelForAfterSleep(benchmark::State& state) {
     ThreadPool pool(2);
     for (auto _ : state) {
@@ -33,7 +33,8 @@ void ParallelForAfterSleep(benchmark::State& state) {
 }
 BENCHMARK(ParallelForAfterSleep)->UseManualTime()->Iterations(500);
 
-// Counted in steps of arithmetic, not by the clock, whose resolution would show. The same code wherever it is called.
+// A fixed amount of arithmetic, since the clock's resolution is too coarse. Not inlined, so that all callers run the
+// same code.
 [[gnu::noinline]] void Work(uint32_t steps) {
     uint32_t x = steps;
     for (uint32_t i = 0; i < steps; ++i) benchmark::DoNotOptimize(x = x * 1664525u + 1013904223u);

@@ -129,7 +129,7 @@ void Ray(benchmark::State& state) {
     state.counters["hits"] = static_cast<double>(hits) / static_cast<double>(state.iterations());
 }
 
-// The same test on every triangle in turn, with nothing else.
+// Brute force: the same test on every triangle.
 void RayByBruteForce(benchmark::State& state) {
     const Terrain terrain(100);
     const std::vector<SurfaceRay> rays = Rays(true);

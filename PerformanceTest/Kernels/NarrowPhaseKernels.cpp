@@ -1,6 +1,6 @@
-// Nanoseconds per narrow-phase query, per pair of shapes, beside libccd on the same poses.
-// Touching pairs overlap by up to 1 cm; apart pairs have 5 to 15 cm between them. Cold: nothing is known of the pair.
-// Warm: the pair's last query was for a pose about 1 mm and 1 mrad away, as in a running simulation.
+// Nanoseconds per narrow-phase query, per pair of shapes, beside libccd on the same poses. Touching pairs overlap by up
+// to 1 cm; apart pairs have 5 to 15 cm between them. Cold: with an empty cache. Warm: the pair's last query was for a
+// pose about 1 mm and 1 mrad away, as in a running simulation.
 #include <Fulcrum/Collision/NarrowPhase/Collide.h>
 #include <Fulcrum/Collision/NarrowPhase/Libccd.h>
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>

@@ -1,5 +1,5 @@
-// Rays at single shapes and at a world of bodies, against a loop over all of them; moving shapes; what the world's lock
-// costs.
+// Ray casts against single shapes and a world of bodies, compared to brute force; shape casts; the cost of the world's
+// lock.
 #include <Fulcrum/Collision/Queries/ShapeCast.h>
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
@@ -29,7 +29,7 @@ std::vector<ShapePtr> Shapes() {
             MakeHull(random, 32)};
 }
 
-// Most rays meet the shape.
+// Most rays hit the shape.
 void RayAtShape(benchmark::State& state) {
     const ShapePtr shape = Shapes()[static_cast<size_t>(state.range(0))];
     RandomPoses random(1);
@@ -152,7 +152,7 @@ void BatchOfRays(benchmark::State& state) {
 }
 BENCHMARK(BatchOfRays)->Arg(0)->Arg(1);
 
-// What a change of a single body pays to keep readers out.
+// The cost of the write lock for a change of a single body.
 void ChangeABody(benchmark::State& state) {
     Field field;
     for (auto _ : state) benchmark::DoNotOptimize(field.world->Bodies().SetGravityFactor(field.bodies[1], 1));

@@ -49,7 +49,7 @@ std::shared_ptr<const SurfaceShape> MakeSurface(bool isField) {
     return TriangleMesh::Create({.vertices = vertices, .indices = indices}).Value();
 }
 
-// As deep in the ground as it touches it.
+// At the height at which it touches the ground.
 std::vector<RelativePose> RestingPoses(const ConvexShape& shape, const SurfaceShape& surface) {
     testing::RandomPoses random(1);
     std::vector<RelativePose> poses;

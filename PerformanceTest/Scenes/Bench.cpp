@@ -90,7 +90,7 @@ Result<RunFigures> TimeScene(const Scene& scene, const BenchOptions& options) {
     const auto world = SceneWorld::Create(scene, input, pool ? &*pool : nullptr);
     if (!world) return world.GetError();
     const int steps = options.steps > 0 ? options.steps : scene.steps;
-    // A batch is asked after just so many steps.
+    // A batch is timed after exactly that many steps.
     const int untimed = scene.query ? 0 : 1;
     return Simulate(*world.Value(), untimed, steps, 1.0 / 60, pool ? pool->WorkerCount() : 1, [] {});
 }

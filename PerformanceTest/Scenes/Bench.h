@@ -1,4 +1,4 @@
-// Times performance scenes: what ./fulcrum bench starts. Called by Main.cpp; one thread besides the pool that it makes.
+// Times performance scenes, for ./fulcrum bench. Called by Main.cpp; one thread besides the pool that it makes.
 #pragma once
 
 #include <Fulcrum/Samples/Runner/Simulation.h>
@@ -17,7 +17,7 @@ struct BenchOptions {
     SolverSettings solver;
     uint64_t seed = 1;
     std::filesystem::path json;  // empty: none
-    std::string help;            // not empty: nothing else was asked for
+    std::string help;            // not empty: only help was requested
 };
 
 // Arguments without the program's name. Error OutOfRange as ParseRunnerCommand's.

@@ -16,6 +16,75 @@ namespace {
 using Lanes = Wide<kLanes>;
 using Indices = uint32_t[kLanes];
 
+// Kernels below are templates over Real: float for one body, Lanes for kLanes bodies at once.
+template <class Real>
+inline constexpr int kBodies = sizeof(Real) / sizeof(float);
+
+// Eight numbers of each body.
+template <class Real>
+struct Rows {
+    static constexpr int kCount = kBodies<Real>;
+    float* rows[kCount];
+    Real at[8];
+
+    template <class RowOf>
+    FULCRUM_FORCE_INLINE Rows(const uint32_t (&bodies)[kCount], RowOf&& rowOf) {
+        for (int i = 0; i < kCount; ++i) rows[i] = const_cast<float*>(rowOf(bodies[i]));
+        if constexpr (std::is_same_v<Real, float>) std::copy_n(rows[0], 8, at);
+        else GatherRows<kCount>(reinterpret_cast<const float* const(&)[kCount]>(rows), at);
+    }
+    Vec3<Real> First() const { return Vec3<Real>(at[0], at[1], at[2]); }
+    Vec3<Real> Second() const { return Vec3<Real>(at[3], at[4], at[5]); }
+    void Set(const Vec3<Real>& first, const Vec3<Real>& second) {
+        for (int k = 0; k < 3; ++k) {
+            at[k] = first[k];
+            at[3 + k] = second[k];
+        }
+    }
+    void Write(int count) const {
+        if constexpr (std::is_same_v<Real, float>) std::copy_n(at, 8, rows[0]);
+        else ScatterRows<kCount>(rows, at, count);
+    }
+    // First and Second. The other two numbers of a single body may have changed since they were read, those of lanes
+    // not.
+    void WriteVectors(int count) const {
+        if constexpr (std::is_same_v<Real, float>) std::copy_n(at, 6, rows[0]);
+        else Write(count);
+    }
+    // Where the mask is set.
+    void Write(int count, const WideMask<kCount>& mask) {
+        const uint32_t lanes = mask.ToBits();
+        alignas(32) float nowhere[8];
+        for (int i = 0; i < kCount; ++i)
+            if (!(lanes >> i & 1u)) rows[i] = nowhere;
+        Write(count);
+    }
+    void Write(int count, bool mask) const {
+        if (mask) Write(count);
+    }
+};
+
+// The velocities of a substep: `own` without the constraints' share, `carried` what they gave in the last one.
+template <class Real>
+struct SubstepVelocity {
+    Rows<Real> velocity, unconstrained;
+    Twist<Real> own, carried;
+
+    // again: not the first substep.
+    FULCRUM_FORCE_INLINE SubstepVelocity(BodyStore& bodies, const uint32_t (&index)[kBodies<Real>], bool again)
+        : velocity(index, [&](uint32_t body) { return bodies.states[body].VelocityRow(); }),
+          unconstrained(index, [&](uint32_t body) { return bodies.unconstrained[body].row; }),
+          own{velocity.First(), velocity.Second()} {
+        if (again) carried = {own.linear - unconstrained.First(), own.angular - unconstrained.Second()};
+    }
+    void Write(int count) {
+        unconstrained.Set(own.linear, own.angular);
+        unconstrained.WriteVectors(count);
+        velocity.Set(own.linear + carried.linear, own.angular + carried.angular);
+        velocity.WriteVectors(count);  // limits of speeds set the marks of a body
+    }
+};
+
 // Velocity that a body has after h seconds of damping 1/s, per unit: exp(-damping h).
 float DampingFactor(float damping, float h) { return damping > 0 ? Exp(-damping * h) : 1.0f; }
 
@@ -24,37 +93,24 @@ void IntegrateVelocity(WorldState& world, uint32_t body, float h, bool again, Wo
     const BodyDynamics& d = bodies.dynamics[body];
     if (d.motion != MotionType::Dynamic) return;
     const float* a = bodies.poses[body].acceleration;
-    float* unconstrained = bodies.unconstrained[body].row;
-    float* row = bodies.states[body].VelocityRow();
-    Vector3 v(row[0], row[1], row[2]), w(row[3], row[4], row[5]);
-    Vector3 carryV = Vector3::Zero(), carryW = Vector3::Zero();
-    if (again) {
-        const Vector3 freeV(unconstrained[0], unconstrained[1], unconstrained[2]),
-            freeW(unconstrained[3], unconstrained[4], unconstrained[5]);
-        if (d.crowded) {
-            v = NoFasterThan(v, freeV);
-            w = NoFasterThan(w, freeW);
-        } else {
-            carryV = v - freeV;
-            carryW = w - freeW;
-        }
+    SubstepVelocity<float> velocity(bodies, {body}, again);
+    Vector3 &v = velocity.own.linear, &w = velocity.own.angular;
+    if (again && d.crowded) {
+        v = NoFasterThan(v, velocity.unconstrained.First());
+        w = NoFasterThan(w, velocity.unconstrained.Second());
+        velocity.carried = {};
     }
     v = (v + Vector3(a[0], a[1], a[2]) * h) * DampingFactor(d.linearDamping, h);
     w *= DampingFactor(d.angularDamping, h);
     if (d.hasForce) w += bodies.masses[body].InverseInertia() * bodies.cold[body].torque * h;
     if (d.lockedAxes != LockedAxes::None) {
         d.Lock(v, w);
-        d.Lock(carryV, carryW);
+        d.Lock(velocity.carried.linear, velocity.carried.angular);
     }
     // What is not finite must not reach the rows: its neighbors go on. Store finds the forces and freezes it.
-    if (!IsFinite(v) || !IsFinite(w)) v = w = carryV = carryW = Vector3::Zero();
+    if (!IsFinite(v) || !IsFinite(w)) velocity.own = velocity.carried = {};
     findings.clamped += LimitSpeeds(world, body, v, w);
-    for (int k = 0; k < 3; ++k) {
-        unconstrained[k] = v[k];
-        unconstrained[3 + k] = w[k];
-        row[k] = v[k] + carryV[k];
-        row[3 + k] = w[k] + carryW[k];
-    }
+    velocity.Write(1);
 }
 
 // Rotation vectors of one rotation after another, rad, put together to the third order (the series of Baker, Campbell
@@ -67,22 +123,53 @@ FULCRUM_FORCE_INLINE Vec3<Real> BchCorrection(const Vec3<Real>& before, const Ve
 }
 constexpr float kFarthestSquared = joints::kFarthestSeries * joints::kFarthestSeries;
 
-// Joints pull at the ends of bodies, where an inertia that is left behind makes torques of their forces that are not
-// there.
-void TurnInertia(BodyStore& bodies, uint32_t body, float h) {
-    const BodyDynamics& d = bodies.dynamics[body];
-    const Vector3 w = bodies.AngularVelocityOf(body);
-    if (!d.FeelsGyroscopicTorque(w)) return;
-    BodyState& s = bodies.states[body];
-    const Vector3 turn(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]);
-    const Matrix3 axes = AxesOf(d, RotationFromVector(turn) * bodies.RotationOf(body));
-    const float* inverse = d.inverseInertia;
-    const Vector3 change = AddGyroscopicTorque<float>(Vector3(inverse[0], inverse[1], inverse[2]), axes, w, h) - w;
-    for (int k = 0; k < 3; ++k) {
-        s.angularVelocity[k] += change[k];
-        bodies.unconstrained[body].row[3 + k] += change[k];
+// Moves bodies by the motion for h seconds. Of jointed ones the rotation is put together with that before.
+template <class Real, class Mask>
+FULCRUM_FORCE_INLINE Vec3<Real> Displace(Rows<Real>& displacement, const Twist<Real>& motion, const Mask& isJointed,
+                                         Real h, int count) {
+    const Vec3<Real> turn = motion.angular * h;
+    Vec3<Real> rotation = displacement.Second();
+    const bool anyJointed = Any(isJointed);
+    if (anyJointed) {
+        const Vec3<Real> more = BchCorrection<Real>(rotation, turn);
+        const auto isFar = Dot<Real>(rotation, rotation) > Real(kFarthestSquared);
+        for (int k = 0; k < 3; ++k) {
+            const Real composed = Select(isFar, Real(rotation[k]), Real(rotation[k] + more[k]));
+            rotation[k] = Select(isJointed, composed, Real(rotation[k]));
+        }
     }
-    bodies.UpdateInertia(body, axes);
+    rotation += turn;
+    if (anyJointed) {
+        const Vec2<Real> half = HalfTurnOf<Real>(rotation);
+        for (int k = 0; k < 2; ++k) displacement.at[6 + k] = half[k];
+    }
+    displacement.Set(displacement.First() + motion.linear * h, rotation);
+    displacement.Write(count);
+    return rotation;
+}
+
+// Of the bodies that feel gyroscopic torque: changes w, rad/s, by it and turns their world inertia. Joints pull at the
+// ends of bodies, where an inertia that is left behind makes torques of their forces that are not there. turn: rotation
+// since the start of the step, rad.
+template <class Real, class Mask>
+FULCRUM_FORCE_INLINE void TurnInertia(BodyStore& bodies, const uint32_t (&index)[kBodies<Real>], int count,
+                                      const Mask& feels, const Vec3<Real>& turn, Vec3<Real>& w, Real h) {
+    const Rows<Real> pose(index, [&](uint32_t body) { return bodies.poses[body].rotation; });
+    const Rows<Real> inertia(index, [&](uint32_t body) { return bodies.dynamics[body].InertiaRow(); });
+    Rows<Real> unconstrained(index, [&](uint32_t body) { return bodies.unconstrained[body].row; });
+    const Quat<Real> rotation =
+        RotationFromVector<Real>(turn) * Quat<Real>{pose.at[0], pose.at[1], pose.at[2], pose.at[3]};
+    const Mat3<Real> axes =
+        ToMatrix<Real>(rotation * Quat<Real>{inertia.at[4], inertia.at[5], inertia.at[6], inertia.at[7]});
+    const Vec3<Real> change = AddGyroscopicTorque<Real>(inertia.First(), axes, w, h) - w;
+    for (int k = 0; k < 3; ++k) w[k] = Select(feels, Real(w[k] + change[k]), Real(w[k]));
+    unconstrained.Set(unconstrained.First(), unconstrained.Second() + change);
+    unconstrained.Write(count, feels);
+    const Sym3<Real> turned = RotatedDiagonal<Real>(axes, inertia.First());
+    Rows<Real> mass(index, [&](uint32_t body) { return bodies.masses[body].Row(); });
+    mass.at[0] = turned.xx, mass.at[1] = turned.yy, mass.at[2] = turned.zz;
+    mass.at[3] = turned.xy, mass.at[4] = turned.xz, mass.at[5] = turned.yz;
+    mass.Write(count, feels);
 }
 
 // What constraints made of a body's velocity, before it moves with it. What is not finite must not reach the poses
@@ -154,48 +241,13 @@ void IntegratePose(WorldState& world, uint32_t body, float h, const BodyState* p
     Twist<float> motion{world.bodies.LinearVelocityOf(body), world.bodies.AngularVelocityOf(body)};
     if (pseudo) AddPull(world.bodies, body, pseudo[body], motion);
     const bool isJointed = world.joints.HasAny(body);
-    const Vector3 before(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]);
-    if (isJointed && !(LengthSquared(before) > kFarthestSquared)) {
-        const Vector3 more = BchCorrection<float>(before, Vector3(motion.angular * h));
-        for (int k = 0; k < 3; ++k) s.deltaRotation[k] += more[k];
-    }
-    for (int k = 0; k < 3; ++k) {
-        s.deltaPosition[k] += motion.linear[k] * h;
-        s.deltaRotation[k] += motion.angular[k] * h;
-    }
-    if (!isJointed) return;
-    const Vec2<float> half = HalfTurnOf<float>(Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]));
-    for (int k = 0; k < 2; ++k) s.halfTurn[k] = half[k];
-    TurnInertia(world.bodies, body, h);
+    Rows<float> displacement({body}, [&](uint32_t) { return s.PoseRow(); });
+    const Vector3 turn = Displace(displacement, motion, isJointed, h, 1);
+    Vector3 w = world.bodies.AngularVelocityOf(body);
+    if (!isJointed || !d.FeelsGyroscopicTorque(w)) return;
+    TurnInertia(world.bodies, {body}, 1, true, turn, w, h);
+    world.bodies.SetVelocity(body, world.bodies.LinearVelocityOf(body), w);
 }
-
-// Eight numbers of each of so many bodies, by lanes.
-struct Rows {
-    float* rows[kLanes];
-    Lanes at[8];
-
-    template <class RowOf>
-    FULCRUM_FORCE_INLINE Rows(const Indices& bodies, RowOf&& rowOf) {
-        for (int i = 0; i < kLanes; ++i) rows[i] = const_cast<float*>(rowOf(bodies[i]));
-        GatherRows<kLanes>(reinterpret_cast<const float* const(&)[kLanes]>(rows), at);
-    }
-    Vec3<Lanes> First() const { return Vec3<Lanes>(at[0], at[1], at[2]); }
-    Vec3<Lanes> Second() const { return Vec3<Lanes>(at[3], at[4], at[5]); }
-    void Set(const Vec3<Lanes>& first, const Vec3<Lanes>& second) {
-        for (int k = 0; k < 3; ++k) {
-            at[k] = first[k];
-            at[3 + k] = second[k];
-        }
-    }
-    void Write(int count) const { ScatterRows<kLanes>(rows, at, count); }
-    // Where the bit of the lane is set.
-    void Write(int count, uint32_t lanes) {
-        alignas(32) float nowhere[8];
-        for (int i = 0; i < kLanes; ++i)
-            if (!(lanes >> i & 1u)) rows[i] = nowhere;
-        Write(count);
-    }
-};
 
 // Of velocities and a largest speed; what is not finite is beyond any.
 WideMask<kLanes> IsWithin(const Vec3<Lanes>& v, const Lanes& limit) {
@@ -211,48 +263,16 @@ bool IntegrateVelocitiesInLanes(WorldState& world, const Indices& index, int cou
         if (d.motion != MotionType::Dynamic || d.lockedAxes != LockedAxes::None || d.hasForce || d.crowded)
             return false;
     }
-    const Rows limits(index, [&](uint32_t body) { return bodies.dynamics[body].LimitsRow(); });
+    const Rows<Lanes> limits(index, [&](uint32_t body) { return bodies.dynamics[body].LimitsRow(); });
     const Lanes zero(0.0f), linearDamping = limits.at[1], angularDamping = limits.at[2], maxLinear = limits.at[3],
                             maxAngular = limits.at[4];
     if (((linearDamping > zero) | (angularDamping > zero)).Any()) return false;
-    Rows velocity(index, [&](uint32_t body) { return bodies.states[body].VelocityRow(); });
-    Rows unconstrained(index, [&](uint32_t body) { return bodies.unconstrained[body].row; });
-    const Rows pose(index, [&](uint32_t body) { return bodies.poses[body].rotation; });
-    const Vec3<Lanes> acceleration(pose.at[4], pose.at[5], pose.at[6]);
-    const Vec3<Lanes> v = velocity.First() + acceleration * Lanes(h), w = velocity.Second();
-    if (!(IsWithin(v, maxLinear) & IsWithin(w, maxAngular)).All()) return false;
-    Vec3<Lanes> carryV(zero, zero, zero), carryW(zero, zero, zero);
-    if (again) {
-        carryV = velocity.First() - unconstrained.First();
-        carryW = velocity.Second() - unconstrained.Second();
-    }
-    unconstrained.Set(v, w);
-    unconstrained.Write(count);
-    velocity.Set(v + carryV, w + carryW);
+    SubstepVelocity<Lanes> velocity(bodies, index, again);
+    const Rows<Lanes> pose(index, [&](uint32_t body) { return bodies.poses[body].rotation; });
+    velocity.own.linear += Vec3<Lanes>(pose.at[4], pose.at[5], pose.at[6]) * Lanes(h);
+    if (!(IsWithin(velocity.own.linear, maxLinear) & IsWithin(velocity.own.angular, maxAngular)).All()) return false;
     velocity.Write(count);
     return true;
-}
-
-// TurnInertia of the lanes that feel it. turn: rotation since the start of the step, rad; w: rad/s, changed.
-FULCRUM_FORCE_INLINE void TurnInertias(BodyStore& bodies, const Indices& index, int count, WideMask<kLanes> feels,
-                                       const Vec3<Lanes>& turn, Vec3<Lanes>& w, float h) {
-    const uint32_t lanes = feels.ToBits();
-    const Rows pose(index, [&](uint32_t body) { return bodies.poses[body].rotation; });
-    const Rows inertia(index, [&](uint32_t body) { return bodies.dynamics[body].InertiaRow(); });
-    Rows unconstrained(index, [&](uint32_t body) { return bodies.unconstrained[body].row; });
-    const Quat<Lanes> rotation =
-        RotationFromVector<Lanes>(turn) * Quat<Lanes>{pose.at[0], pose.at[1], pose.at[2], pose.at[3]};
-    const Mat3<Lanes> axes =
-        ToMatrix<Lanes>(rotation * Quat<Lanes>{inertia.at[4], inertia.at[5], inertia.at[6], inertia.at[7]});
-    const Vec3<Lanes> change = AddGyroscopicTorque<Lanes>(inertia.First(), axes, w, Lanes(h)) - w;
-    for (int k = 0; k < 3; ++k) w[k] = Select(feels, Lanes(w[k] + change[k]), Lanes(w[k]));
-    unconstrained.Set(unconstrained.First(), unconstrained.Second() + change);
-    unconstrained.Write(count, lanes);
-    const Sym3<Lanes> turned = RotatedDiagonal<Lanes>(axes, inertia.First());
-    Rows mass(index, [&](uint32_t body) { return bodies.masses[body].Row(); });
-    mass.at[0] = turned.xx, mass.at[1] = turned.yy, mass.at[2] = turned.zz;
-    mass.at[3] = turned.xy, mass.at[4] = turned.xz, mass.at[5] = turned.yz;
-    mass.Write(count, lanes);
 }
 
 bool IntegratePosesInLanes(WorldState& world, const Indices& index, int count, float h) {
@@ -264,33 +284,18 @@ bool IntegratePosesInLanes(WorldState& world, const Indices& index, int count, f
         jointed[i] = world.joints.HasAny(index[i]) ? 1.0f : 0.0f;
         gyroscopic[i] = d.HasGyroscopicTorque() ? 1.0f : 0.0f;
     }
-    Rows velocity(index, [&](uint32_t body) { return bodies.states[body].VelocityRow(); });
-    const Rows limits(index, [&](uint32_t body) { return bodies.dynamics[body].LimitsRow(); });
+    Rows<Lanes> velocity(index, [&](uint32_t body) { return bodies.states[body].VelocityRow(); });
+    const Rows<Lanes> limits(index, [&](uint32_t body) { return bodies.dynamics[body].LimitsRow(); });
     if (!(IsWithin(velocity.First(), limits.at[3]) & IsWithin(velocity.Second(), limits.at[4])).All()) return false;
-    Rows displacement(index, [&](uint32_t body) { return bodies.states[body].PoseRow(); });
-    const Vec3<Lanes> turn = velocity.Second() * Lanes(h);
-    Vec3<Lanes> rotation = displacement.Second();
+    Rows<Lanes> displacement(index, [&](uint32_t body) { return bodies.states[body].PoseRow(); });
     const auto isJointed = Lanes::Load(jointed) > Lanes(0.0f);
-    if (isJointed.Any()) {
-        const Vec3<Lanes> more = BchCorrection<Lanes>(rotation, turn);
-        const auto isFar = Dot<Lanes>(rotation, rotation) > Lanes(kFarthestSquared);
-        for (int k = 0; k < 3; ++k) {
-            const Lanes composed = Select(isFar, Lanes(rotation[k]), Lanes(rotation[k] + more[k]));
-            rotation[k] = Select(isJointed, composed, Lanes(rotation[k]));
-        }
-    }
-    rotation += turn;
-    if (isJointed.Any()) {
-        const Vec2<Lanes> half = HalfTurnOf<Lanes>(rotation);
-        for (int k = 0; k < 2; ++k) displacement.at[6 + k] = half[k];
-    }
-    displacement.Set(displacement.First() + velocity.First() * Lanes(h), rotation);
-    displacement.Write(count);
+    const Vec3<Lanes> turn =
+        Displace(displacement, Twist<Lanes>{velocity.First(), velocity.Second()}, isJointed, Lanes(h), count);
     Vec3<Lanes> w = velocity.Second();
     constexpr float kLeast = BodyDynamics::kLeastGyroscopicSpeed * BodyDynamics::kLeastGyroscopicSpeed;
     const auto feels = isJointed & (Lanes::Load(gyroscopic) > Lanes(0.0f)) & (Dot<Lanes>(w, w) > Lanes(kLeast));
     if (!feels.Any()) return true;
-    TurnInertias(bodies, index, count, feels, rotation, w, h);
+    TurnInertia(bodies, index, count, feels, turn, w, Lanes(h));
     velocity.Set(velocity.First(), w);
     velocity.Write(count);
     return true;

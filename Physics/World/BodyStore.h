@@ -220,10 +220,8 @@ public:
         cold[index].force = cold[index].torque = Vector3::Zero();
         dynamics[index].hasForce = false;
     }
-    // Brings the world inverse inertia of `masses` in line with the rotation, or with principal axes in the middle of a
-    // step.
-    void UpdateInertia(uint32_t index) { UpdateInertia(index, AxesOf(dynamics[index], RotationOf(index))); }
-    void UpdateInertia(uint32_t index, const Matrix3& axes) { masses[index] = MassAlong(index, axes); }
+    // Brings the world inverse inertia of `masses` in line with the rotation.
+    void UpdateInertia(uint32_t index) { masses[index] = MassAlong(index, AxesOf(dynamics[index], RotationOf(index))); }
     // Of a body whose principal axes in the world are these.
     BodyMass MassAlong(uint32_t index, const Matrix3& axes) const;
     SolverBodies ForSolver() { return {states.data(), masses.data(), poses.data()}; }

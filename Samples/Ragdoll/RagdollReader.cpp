@@ -58,7 +58,7 @@ public:
     }
     std::string PathOf(const std::string& name) const { return path_.empty() ? name : path_ + "." + name; }
 
-    // After all fields: what else there is has a wrong name.
+    // After all fields: remaining names are unknown.
     void Finish() {
         if (error_) return;
         for (const auto& [name, value] : node_.items()) {

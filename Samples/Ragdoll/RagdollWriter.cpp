@@ -107,7 +107,7 @@ Json Written(const T& value) {
     }
 }
 
-// Takes away what is as in `usual`, and what is not there.
+// Removes fields that equal those in `usual`, and empty ones.
 void Shorten(Json& node, const Json& usual) {
     for (auto field = node.begin(); field != node.end();) {
         const auto other = usual.find(field.key());
@@ -156,7 +156,7 @@ Status WriteRagdoll(const std::string& file, const RagdollSettings& settings) {
     const Result<Json> document = RagdollToJson(settings);
     if (!document) return document.GetError();
     std::ofstream stream(file);
-    // A part a line; more would hide the parts, less the fields.
+    // One part per line.
     const char* before = "{\"parts\": [\n  ";
     for (const Json& part : document.Value()["parts"]) {
         stream << before << part.dump();

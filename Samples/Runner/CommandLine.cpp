@@ -23,7 +23,7 @@ Number Parse(const std::string& name, const std::string& text, Number lowest, Nu
     const char* const end = text.data() + text.size();
     const auto [stop, error] = std::from_chars(text.data(), end, value);
     const std::string range = ToText(lowest) + " to " + ToText(highest);
-    // Too large for the type: as far outside as a number can be.
+    // Overflow: infinite.
     if (error == std::errc::result_out_of_range && stop == end) value = text[0] == '-' ? lowest : highest;
     else if (error != std::errc() || stop != end || !(value == value))
         throw CLI::ValidationError(name + " takes " + kind + " from " + range + ", not '" + text + "'");
@@ -50,7 +50,7 @@ std::string HelpHint(const CLI::App& app) {
     return app.get_parent() ? " (./fulcrum " + app.get_name() + " --help shows all)" : " (--help shows all)";
 }
 
-// What no option and no positional took.
+// Arguments that are no option and no positional.
 Error Unexpected(CLI::App& app, const std::string& argument) {
     CLI::App& chosen = Chosen(app);
     if (argument.size() > 1 && argument[0] == '-') {
@@ -109,7 +109,7 @@ Result<std::string> ParseCommandLine(CLI::App& app, std::vector<std::string> arg
     } catch (const CLI::CallForHelp&) {
         return Chosen(app).help(app.get_subcommands().empty() ? "" : "./" + app.get_name());
     } catch (const CLI::ParseError& error) {
-        // A value that is missing because an unknown option stands there is best told by that option.
+        // If a value is missing because an unknown option follows, report that option.
         const std::vector<std::string> rest = app.remaining(true);
         if (!rest.empty() && dynamic_cast<const CLI::ValidationError*>(&error) == nullptr)
             return Unexpected(app, rest[0]);

@@ -1,5 +1,5 @@
-// Reads command lines so that every mistake is answered with the nearest valid thing. Used by the runner and the
-// benchmark, on top of CLI11; one thread.
+// Parses command lines; error messages name the nearest valid option or value. Used by the runner and the benchmark, on
+// top of CLI11; one thread.
 #pragma once
 
 #include <Fulcrum/Math/Result.h>
@@ -29,8 +29,8 @@ CLI::Option* AddText(CLI::App& app, const std::string& name, const std::string& 
 // `what` is what the names are ("scene"). The error's message names the nearest one.
 Error UnknownName(const std::string& what, const std::string& name, std::span<const std::string> names);
 
-// Arguments without the program's name. An empty text: parsed; otherwise the help that was asked for.
-// Error OutOfRange: one line that says what is wrong, what was meant and where help is.
+// Arguments without the program's name. Returns an empty text, or the requested help. Error OutOfRange: one line that
+// says what is wrong, suggests what was meant and names --help.
 Result<std::string> ParseCommandLine(CLI::App& app, std::vector<std::string> arguments);
 
 }  // namespace fulcrum

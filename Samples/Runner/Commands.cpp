@@ -29,7 +29,7 @@ int Fail(const std::string& message) {
     return 1;
 }
 
-// Bodies differ from one scene to the next; what is asked for is the same.
+// What to simulate, report and record.
 struct Job {
     const Scene& scene;
     SceneInput input;
@@ -39,7 +39,8 @@ struct Job {
     std::string description;
 };
 
-// Before the simulation, so that minutes of it are not lost to a misspelt folder. Empty where all is well.
+// Before the simulation, so that it is not run in vain if the folder is misspelled. Returns an empty text if all is
+// well.
 std::string CheckOutputs(const RunOptions& options, const JsonOutput& json) {
     std::error_code error;
     if (options.recordHtml || options.recordGlb) {
@@ -49,7 +50,7 @@ std::string CheckOutputs(const RunOptions& options, const JsonOutput& json) {
     return json.Check();
 }
 
-// The files that the options name; empty where all were written, else what went wrong.
+// Writes the files that the options name. Returns an empty text, or what went wrong.
 std::string WriteOutputs(const Job& job, const Recorder* recorder, const RunFigures& figures) {
     const std::filesystem::path base = std::filesystem::path(kOutput) / job.name;
     const auto write = [&](const char* extension, auto writer) -> std::string {
@@ -100,8 +101,7 @@ int RunJob(const Job& job) {
     return unwritten.empty() ? 0 : Fail(unwritten);
 }
 
-// A broken file may claim to hold more than any memory: while it is read, what exceeds this is an error and not a
-// machine that swaps.
+// A broken file may claim a huge size: this limit makes allocations fail while it is read instead of swapping.
 class AddressSpaceLimit {
 public:
     explicit AddressSpaceLimit(rlim_t bytes) {

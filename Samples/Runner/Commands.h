@@ -1,4 +1,4 @@
-// Carries out what the command line asked for. Called by Main.cpp; one thread.
+// Executes the commands of the command line. Called by Main.cpp; one thread.
 #pragma once
 
 #include <Fulcrum/Samples/Runner/Options.h>

@@ -1,5 +1,5 @@
-// Turns the joints of a world into those of a recording: each once, as it is found, and their state frame by frame.
-// Used by Recorder; one thread.
+// Records the joints of a world: each once, when it is first seen, and their state frame by frame. Used by Recorder;
+// one thread.
 #pragma once
 
 #include <Fulcrum/Physics/PhysicsSystem.h>

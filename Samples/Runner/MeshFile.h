@@ -13,7 +13,7 @@
 
 namespace fulcrum {
 
-// A mesh as one node of the file places it, in the file's unit.
+// A mesh, placed by one node of the file, in the file's unit.
 struct MeshPart {
     std::string name;
     std::vector<Position> points;  // some may not be finite
@@ -22,9 +22,8 @@ struct MeshPart {
     size_t otherFaces = 0;  // points and lines of the file, and faces that name no point
 };
 
-// All meshes as often as the nodes of the file place them; polygons are cut into triangles, and what a node mirrors
-// keeps its fronts. Errors: UnknownId (there is no such file), Unsupported (assimp cannot read it), Degenerate (no mesh
-// in it).
+// One for each node of the file that has a mesh; polygons are triangulated, and mirrored meshes keep their fronts.
+// Errors: UnknownId (there is no such file), Unsupported (assimp cannot read it), Degenerate (no mesh in it).
 Result<std::vector<MeshPart>> ReadMeshParts(const std::filesystem::path& path);
 
 // The box around all points that are finite; empty where there are none.

@@ -73,7 +73,7 @@ Triangles Joined(const std::vector<MeshPart>& parts) {
     return all;
 }
 
-// The cyclic turn of the axes that lays `up` along y, and half a turn about z where it points down.
+// The cyclic rotation of the axes that makes `up` y, and half a turn about z if it points down.
 void LayUpAlongY(UpAxis up, std::vector<Position>& points) {
     const int axis = static_cast<int>(up) % 3;
     const double sign = static_cast<int>(up) < 3 ? 1 : -1;
@@ -89,7 +89,7 @@ double VolumeOf(const std::vector<Vector3>& vertices, const std::vector<uint32_t
     return six / 6;
 }
 
-// What was repaired, in words; empty where nothing was.
+// Descriptions of repairs; empty if there were none.
 std::vector<std::string> Repairs(const MeshReport& report) {
     std::vector<std::string> lines;
     const auto add = [&](const MeshFinding& finding, const char* what, const char* which) {
@@ -134,11 +134,11 @@ Result<ImportedMesh> ImportMesh(const std::filesystem::path& path, const MeshImp
     std::vector<Vector3> vertices;
     vertices.reserve(all.points.size());
     for (const Position& point : all.points) vertices.push_back(((point - middle) * imported.scale).cast<float>());
-    // A unit of the last place of the largest coordinate is 6e-8 of it: what lies closer was one vertex.
+    // The rounding of the largest coordinate is 6e-8 of it: closer points were one vertex.
     TriangleMeshSettings mesh{.vertices = vertices, .indices = all.indices};
     mesh.weldDistance = static_cast<float>(1e-6 * imported.scale * imported.fileSize);
     auto created = TriangleMesh::Create(mesh, &imported.report);
-    // Fronts can be trusted where they all agree and enclose a volume; elsewhere, both sides are solid.
+    // The orientation is used if it is consistent and encloses a volume; otherwise the mesh is two-sided.
     const bool isClosed = imported.report.boundaryEdges == 0 && imported.report.irregularEdges == 0;
     imported.isTwoSided = mesh.isTwoSided = created && !(isClosed && VolumeOf(vertices, all.indices) > 0);
     if (mesh.isTwoSided) {

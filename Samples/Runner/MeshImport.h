@@ -26,7 +26,7 @@ struct ImportedShape {
 // (assimp cannot read it), Degenerate (no mesh in it, or none that has a volume).
 Result<ImportedShape> ImportShape(const std::filesystem::path& path, double size);
 
-// Which way the file's makers had up.
+// The up axis of the file.
 enum class UpAxis : uint8_t { X, Y, Z, MinusX, MinusY, MinusZ };
 
 struct MeshImportSettings {
@@ -37,11 +37,11 @@ struct MeshImportSettings {
 
 struct ImportedMesh {
     std::shared_ptr<const TriangleMesh> mesh;
-    bool isTwoSided = false;  // where the surface is open, or its fronts disagree or point inwards
+    bool isTwoSided = false;  // if the surface is open, or its orientation is inconsistent or inwards
     double fileSize = 0;      // largest extent in the file's own unit
     double scale = 1;         // m a unit of the file
     MeshReport report;
-    std::vector<std::string> repairs;  // what was left out or mended, in words
+    std::vector<std::string> repairs;  // descriptions of what was dropped or repaired
 };
 
 // All triangles of the file, placed by its nodes and welded, as one mesh that stands on y = 0 above the origin, y up.

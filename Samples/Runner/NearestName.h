@@ -1,4 +1,4 @@
-// What somebody meant who misspelt a name. Called where command lines are read; pure functions.
+// Suggestions for misspelled names. Called by the command line parser; pure functions.
 #pragma once
 
 #include <span>

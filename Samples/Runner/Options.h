@@ -1,4 +1,4 @@
-// What `fulcrum run`, `drop` and `list` were asked for. Read by Main.cpp; pure function of the arguments.
+// The command line options of `fulcrum run`, `drop` and `list`. Read by Main.cpp; pure function of the arguments.
 #pragma once
 
 #include <Fulcrum/Math/Result.h>

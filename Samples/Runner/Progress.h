@@ -1,4 +1,4 @@
-// Shows on stderr how far a run is: a bar that redraws itself on a terminal, a few numbers otherwise. One thread.
+// Shows the progress of a run on stderr: a progress bar on a terminal, a few numbers otherwise. One thread.
 #pragma once
 
 namespace fulcrum {

@@ -33,7 +33,7 @@ Vector3 ToVector(const Position& position, const Position& origin) {
 RecordedShape RecordedHull(const ConvexHull& hull) {
     RecordedShape shape;
     shape.kind = RecordedShapeKind::Hull;
-    // The recording speaks of the shape's own frame, the hull of its center of mass.
+    // The recording uses the shape's own frame, the hull its center frame.
     for (const Vector3& vertex : hull.Vertices()) shape.vertices.push_back(vertex + hull.Mass().centerOfMass);
     for (const ConvexHull::Face& face : hull.Faces()) {
         const auto corners = hull.Indices().subspan(face.firstIndex, face.cornerCount);
@@ -42,7 +42,7 @@ RecordedShape RecordedHull(const ConvexHull& hull) {
     return shape;
 }
 
-// Whatever else is convex, as the mesh that its support function spans: of a cylinder's rim, points every 4 degrees.
+// Other convex shapes, as a mesh from the support function: points every 4 degrees on a cylinder's rim.
 RecordedShape RecordedConvex(const ConvexShape& source) {
     RecordedShape shape;
     shape.kind = RecordedShapeKind::Hull;
@@ -183,7 +183,7 @@ uint32_t Recorder::RecordShape(const ShapePtr& shape) {
     return index;
 }
 
-// Those that no frame has yet, of mutable compounds the children.
+// Adds bodies that are new; for mutable compounds their children.
 void Recorder::AddNewBodies() {
     const BodyInterface& bodies = world_.Bodies();
     world_.System().VisitBodies([&](BodyId id) {
@@ -279,7 +279,7 @@ std::optional<uint32_t> Recorder::RecordedBodyOf(BodyId id) const {
     return body < ids_.size() && ids_[body] == id ? std::optional(body) : std::nullopt;
 }
 
-// An island is known by its first body, so that its number, and with it its color, stays when others merge.
+// Islands are identified by their first body, so that their numbers and colors stay when others merge.
 void Recorder::CollectIslands() {
     firstOfIsland_.clear();
     world_.System().VisitIslands([&](BodyId id, uint32_t island) {
@@ -313,7 +313,7 @@ void Recorder::CollectDrawing() {
         points_.push_back({place(point.at), static_cast<uint32_t>(point.ink)});
 }
 
-// Bodies whose shape was exchanged, or edited. What sleeps would have been woken.
+// Bodies whose shape was exchanged or edited. Sleeping ones are skipped, since edits wake bodies.
 void Recorder::CollectShapes() {
     shapeChanges_.clear();
     const bool recordsEdits = editedTriangles_ < kMostEditedTriangles || world_.StepCount() == steps_;

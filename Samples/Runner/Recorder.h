@@ -13,9 +13,9 @@ namespace fulcrum {
 
 class Recorder {
 public:
-    // The first frame is the world as it is now. Of `steps` steps of dt seconds, every so many become frames that there
-    // are at most 60 a second and that the pages of large worlds stay small; the last step is always one. `world` must
-    // outlive this; its drawings are turned on.
+    // The first frame is the world as it is now. Frames are recorded at an interval of steps that gives at most 60 a
+    // second and keeps pages of large worlds small; the last of the `steps` steps of dt seconds is always a frame.
+    // `world` must outlive this; its drawings are turned on.
     Recorder(SceneWorld& world, int steps, double dt);
 
     // After every step.
@@ -24,7 +24,7 @@ public:
     Recording recording;
 
 private:
-    // A shape, and how it was when it was recorded. Kept, so that no other is taken for it.
+    // A shape, and its state when it was recorded. Kept alive, so that no other gets its address.
     struct KnownShape {
         ShapePtr shape;
         uint32_t index = 0;        // into recording.shapes
@@ -58,7 +58,7 @@ private:
     // By recorded body: the children of a mutable compound are bodies of their own, each drawn where it is as long as
     // it is there. Of all others no child.
     std::vector<ChildId> children_;
-    std::vector<uint32_t> recorded_;  // index of the recorded body, or of the first of its children, by BodyId::index
+    std::vector<uint32_t> recorded_;  // by BodyId::index: index of the recorded body, or of the first of its children
     std::map<std::pair<BodyId, ChildId>, uint32_t> recordedChildren_;
     std::vector<uint8_t> settled_;  // by recorded body: 1: its resting state is recorded
     std::vector<int32_t> islands_;  // by recorded body

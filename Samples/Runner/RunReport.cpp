@@ -40,7 +40,7 @@ std::string Settings(const SolverSettings& solver) {
                 solver.positionCorrection == PositionCorrection::Baumgarte ? ", Baumgarte" : "");
 }
 
-// What is seldom, where it happened.
+// Rare events, if they happened.
 void AddRemarks(const RunFigures& figures, std::vector<ReportLine>& lines) {
     const auto add = [&](const char* label, uint64_t count) {
         if (count > 0) lines.push_back({"Remarks", label, std::to_string(count)});

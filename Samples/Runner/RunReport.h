@@ -1,4 +1,4 @@
-// What a run measured, for people and for programs. Used by the runner and the benchmark; pure functions.
+// Reports of a run's measurements, as text and as JSON. Used by the runner and the benchmark; pure functions.
 #pragma once
 
 #include <Fulcrum/Samples/Runner/Simulation.h>
@@ -11,7 +11,7 @@
 
 namespace fulcrum {
 
-// The report's lines by section: beside the picture and on the terminal alike.
+// The report's lines by section, for the viewer and the terminal.
 std::vector<ReportLine> ReportLines(const Scene& scene, const RunFigures& figures, uint64_t seed);
 
 // Lines of text with a heading for each section.

@@ -15,7 +15,7 @@ struct Statistics {
 // p99 is the smallest sample that 99 % of them do not exceed. Zeros where there are no samples.
 Statistics Summarize(std::vector<double> samples);
 
-// What a run measured. Times are wall clock, ms.
+// Measurements of a run. Times are wall clock, ms.
 struct RunFigures {
     int steps = 0;  // those that were timed
     double dt = 0;  // s
@@ -44,11 +44,11 @@ struct RunFigures {
 };
 
 // Takes `untimed` steps, then `steps` timed ones of dt seconds; `afterStep` is called after each of all of them. A
-// scene's batch of queries is asked once untimed, then timed five times. Errors: those of PhysicsSystem::Update.
+// scene's batch of queries is run once untimed, then timed five times. Errors: those of PhysicsSystem::Update.
 Result<RunFigures> Simulate(SceneWorld& world, int untimed, int steps, double dt, uint32_t threads,
                             FunctionRef<void()> afterStep);
 
-// What a scene is compared by: the batch where it has one, else the step.
+// The time by which scenes are compared: of the batch if there is one, otherwise of the step.
 inline const Statistics& ComparedMs(const RunFigures& figures) {
     return figures.queryCount > 0 ? figures.queryMs : figures.stepMs;
 }

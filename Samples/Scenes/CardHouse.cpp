@@ -6,8 +6,8 @@ namespace {
 
 constexpr double kHalfLength = 0.5, kHalfWidth = 0.35, kHalfThickness = 0.02;  // m, of a leaning card
 constexpr double kLean = 20 * kDegree;                                         // from the vertical
-constexpr double kPitch = 0.8;                                                 // m, between the tents of a storey
-constexpr int kStoreys = 4;
+constexpr double kPitch = 0.8;                                                 // m, between the tents of a story
+constexpr int kStories = 4;
 
 // Two cards that lean against each other over x = middle, their feet at height `ground`. Returns the height of their
 // upper edges: of a card turned by kLean, half the height is L cos + t sin, and its inner upper edge is t cos + L sin
@@ -33,7 +33,7 @@ void Build(SceneWorld& world) {
     const ShapePtr flat = world.BoxOf(float(kPitch / 2 - 0.002), float(kHalfThickness), float(kHalfWidth));
 
     double ground = 0;
-    for (int tents = kStoreys; tents > 0; --tents) {
+    for (int tents = kStories; tents > 0; --tents) {
         const double first = -0.5 * kPitch * (tents - 1);
         double top = ground;
         for (int i = 0; i < tents; ++i) top = AddTent(world, leaning, first + kPitch * i, ground, paper);
@@ -45,8 +45,8 @@ void Build(SceneWorld& world) {
 }
 
 double HeightOfTheHighestFlatCard() {
-    const double storey = 2 * (kHalfLength * Cos(kLean) + kHalfThickness * Sin(kLean)) + 2 * kHalfThickness;
-    return (kStoreys - 1) * storey - kHalfThickness;
+    const double story = 2 * (kHalfLength * Cos(kLean) + kHalfThickness * Sin(kLean)) + 2 * kHalfThickness;
+    return (kStories - 1) * story - kHalfThickness;
 }
 
 double Accuracy(const SceneWorld& world) {
@@ -57,7 +57,7 @@ double Accuracy(const SceneWorld& world) {
 
 extern const Scene kScene{
     .name = "card_house",
-    .description = "a house of cards of four storeys that stands by friction alone",
+    .description = "a house of cards of four stories that stands by friction alone",
     .steps = 600,
     .build = Build,
     .accuracy = Accuracy,

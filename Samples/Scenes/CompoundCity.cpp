@@ -14,12 +14,12 @@ constexpr int kBuildings = 12;  // of a district, along each side
 constexpr double kStreet = 4;   // m, from building to building
 constexpr double kDistrict = kBuildings * kStreet;
 
-// The tower: storeys of 16 cubes of a meter around a shaft, under a roof of 25 slabs. It loses all but its lowest
-// storeys, from the roof down; each piece goes on as a body of its own, which waited under the ground.
-constexpr int kStoreys = 8, kStoreysLeft = 2;
-constexpr int kLost = 25 + 16 * (kStoreys - kStoreysLeft);
+// The tower: stories of 16 cubes of a meter around a shaft, under a roof of 25 slabs. It loses all but its lowest
+// stories, from the roof down; each lost piece is replaced by a body that was kept under the ground.
+constexpr int kStories = 8, kStoriesLeft = 2;
+constexpr int kLost = 25 + 16 * (kStories - kStoriesLeft);
 constexpr int kFirstStep = 120, kStepsBetween = 3;
-constexpr double kTop = kStoreys + 0.2;  // m
+constexpr double kTop = kStories + 0.2;  // m
 constexpr size_t kOnTheRoof = 9;
 constexpr double kDepot = -30;  // m
 
@@ -66,17 +66,17 @@ std::vector<CompoundShape::ChildSettings> PiecesOfTheTower(SceneWorld& world) {
         pieces.push_back(
             {.shape = shape, .position = Vector3(static_cast<float>(i % 5 - 2), y, static_cast<float>(i / 5 - 2))});
     };
-    for (int i = 0; i < 25; ++i) add(slab, i, kStoreys + 0.1f);
-    for (int storey = kStoreys - 1; storey >= 0; --storey) {
+    for (int i = 0; i < 25; ++i) add(slab, i, kStories + 0.1f);
+    for (int story = kStories - 1; story >= 0; --story) {
         for (int i = 0; i < 25; ++i) {
             const bool isShaft = std::abs(i % 5 - 2) < 2 && std::abs(i / 5 - 2) < 2;
-            if (!isShaft) add(cube, i, static_cast<float>(storey) + 0.5f);
+            if (!isShaft) add(cube, i, static_cast<float>(story) + 0.5f);
         }
     }
     return pieces;
 }
 
-// Watched are the tower, what stands on its roof, and its pieces as they will be when they are lost.
+// Watched are the tower, the bodies on its roof, and the bodies that replace its pieces.
 void AddTower(SceneWorld& world) {
     const std::vector<CompoundShape::ChildSettings> pieces = PiecesOfTheTower(world);
     world.watched.push_back(world.Add({.shape = world.MutableCompoundOf(pieces), .motion = MotionType::Static}));
@@ -129,12 +129,12 @@ void LoseAPiece(SceneWorld& world, double) {
     (void)world.Bodies().SetVelocity(body, Vector3(at.x(), 0, at.z()), Vector3::Zero());
 }
 
-// Pieces that should have gone and are there, or the other way round; what stood on the roof and is still up there once
-// the tower is gone; bodies below the ground.
+// Counts pieces that are in the wrong state, bodies of the roof that are still up there when the tower is gone, and
+// bodies below the ground.
 double Accuracy(const SceneWorld& world) {
     const int lost = LostAfter(world.StepCount() - 1);
     int wrong =
-        std::abs(static_cast<int>(world.Bodies().GetChildren(world.watched[0])->Count()) - (25 + 16 * kStoreys - lost));
+        std::abs(static_cast<int>(world.Bodies().GetChildren(world.watched[0])->Count()) - (25 + 16 * kStories - lost));
     for (size_t i = 1; i <= kOnTheRoof; ++i)
         if (lost == kLost && world.Bodies().GetCenterOfMass(world.watched[i]).y() > kTop - 2) ++wrong;
     return wrong + BodiesBelowTheFloor(world) - (kLost - lost);

@@ -6,7 +6,7 @@
 namespace fulcrum::ConvexShapesScene {
 namespace {
 
-// What a user writes to make a shape of his own: an egg, blunt below and pointed above.
+// A custom shape as a user would write it: an egg, blunt below and pointed above.
 class Egg final : public CustomConvex {
 public:
     Vector3 FarthestPoint(const Vector3& direction) const override {

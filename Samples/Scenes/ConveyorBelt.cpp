@@ -95,7 +95,7 @@ void Build(SceneWorld& world) {
                  feeder.rotation, i);
 }
 
-// Goods that do not ride on the loop.
+// The number of goods that are not on the loop.
 double Accuracy(const SceneWorld& world) {
     int lost = 0;
     for (BodyId id : world.watched) {

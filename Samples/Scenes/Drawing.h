@@ -1,6 +1,6 @@
-// Lines and points that a scene draws into the picture of a step: rays, hits, normals, shapes on their way. Filled in
-// by a scene's afterStep through SceneWorld::Draw(), read by the recorder. Off unless somebody records: a call is a
-// test then. One thread.
+// Debug drawing of a scene: lines and points of a step, such as rays, hits, normals and moving shapes. Filled in by a
+// scene's afterStep through SceneWorld::Draw(), read by the recorder. Disabled unless a recording is made: calls then
+// do nothing. One thread.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/Shape.h>
@@ -14,11 +14,11 @@ namespace fulcrum {
 
 // What something means, and its color: 0xRRGGBB.
 enum class Ink : uint32_t {
-    Path = 0x2f6fb4,  // of a ray or a shape that looks for something
-    Hit = 0xd7263d,   // what it found
+    Path = 0x2f6fb4,  // of a ray cast or shape cast
+    Hit = 0xd7263d,   // a hit
     Normal = 0x0f7a43,
-    Miss = 0x9aa3ad,   // a search that found nothing
-    Shape = 0x7b4fb0,  // a shape that is asked about
+    Miss = 0x9aa3ad,   // a query without result
+    Shape = 0x7b4fb0,  // the shape of a query
 };
 
 struct DrawnLine {
@@ -33,7 +33,7 @@ struct DrawnPoint {
 class Drawing {
 public:
     void TurnOn() { isOn_ = true; }
-    // Whether anything is kept: saves finding out what to draw.
+    // Whether drawing is enabled, for skipping work that only serves drawing.
     bool IsOn() const { return isOn_; }
     void Clear() {
         lines_.clear();
@@ -52,7 +52,7 @@ public:
         Point(at, Ink::Hit);
     }
     void Box(const Position& lower, const Position& upper, Ink ink);
-    // The edges of a box or a hull, three silhouettes of what is round. `pose`: of the shape's own frame.
+    // The edges of a box or a hull, three silhouettes of round shapes. `pose`: of the shape's own frame.
     void Outline(const ConvexShape& shape, const Pose& pose, Ink ink);
 
     std::span<const DrawnLine> Lines() const { return lines_; }

@@ -31,8 +31,8 @@ std::vector<Position> PlacesAbove(const SceneWorld& world, const Bounds& box, do
     return places;
 }
 
-// Turned at random, over places that are spread evenly, each as low as it has room: what falls far is so fast that it
-// passes thin ground. More than one a place fall one after another.
+// With random rotations, over evenly spread places, each as low as possible: bodies that fall far are fast enough to
+// tunnel through thin ground. Several at one place fall one after another.
 void Build(SceneWorld& world) {
     const ShapePtr shape = world.Input().shape, ground = world.Input().ground;
     if (!shape || !ground) return;

@@ -37,7 +37,7 @@ void Build(SceneWorld& world) {
                     {.shape = cube, .position = {0.8 * (i - 9.5), kHeight + 0.8 * (j - 9.5), 0.8 * (k - 9.5)}}));
 }
 
-// Through the open ends they may leave.
+// They may leave through the open ends.
 double Accuracy(const SceneWorld& world) {
     int outside = 0;
     for (BodyId id : world.watched) {

@@ -16,8 +16,8 @@ inline void AddFlatPyramid(SceneWorld& world, const ShapePtr& cube, int base, do
         }
 }
 
-// The difference of the largest size between a watched body's height and `height`, with its sign; not a number counts
-// as the largest.
+// The difference between a watched body's height and `height` with the largest magnitude, with its sign; NaN counts as
+// the largest.
 inline double WorstHeightError(const SceneWorld& world, double height) {
     double worst = 0;
     for (BodyId id : world.watched) {

@@ -23,7 +23,7 @@ void Build(SceneWorld& world) {
     for (float limit : kSpeedLimits) world.Add({.shape = ball, .position = nextPlace(), .maxLinearSpeed = limit});
 }
 
-// While none has landed yet.
+// Before any has landed.
 double Accuracy(const SceneWorld& world) {
     double worst = 0;
     for (size_t i = 0; i < kFactors.size(); ++i) {

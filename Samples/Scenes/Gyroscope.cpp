@@ -16,7 +16,7 @@ void Build(SceneWorld& world) {
     world.watched.push_back(world.Add({.shape = world.CompoundOf(bars), .angularVelocity = kSpin}));
 }
 
-// Relative to the momentum that it began with, of which y bears all but 1e-6.
+// Relative to the initial angular momentum, which is along y to within 1e-6.
 double Accuracy(const SceneWorld& world) {
     const BodyId handle = world.watched[0];
     const MassProperties& mass = world.Bodies().GetShape(handle)->Mass();

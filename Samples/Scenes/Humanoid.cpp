@@ -62,7 +62,7 @@ RagdollJoint JointOf(const Bone& bone) {
 }
 
 // Degrees: the twist about the joint's x axis, or the hinge's angle, and the swing about its y and z. A swing about y
-// leads what hangs backwards and what stands forwards, one about z leads both to the left.
+// moves hanging limbs backwards and standing ones forwards, one about z moves both to the left.
 struct Turned {
     double twist, swingY, swingZ;
 };
@@ -140,7 +140,7 @@ RagdollSettings HumanoidWithMotors(float stiffness, float damping, float maxTorq
         .maxForce = maxTorque};
     RagdollSettings settings = Humanoid();
     for (RagdollPart& part : settings.parts) {
-        // Parts pull at each other through stiff motors; a single iteration is slow to bring that to rest.
+        // Stiff motors couple the parts; with a single iteration they come to rest slowly.
         CommonOf(part.joint).velocityIterations = 4;
         if (auto* hinge = std::get_if<HingeJointSettings>(&part.joint)) hinge->angle.motor = motor;
         if (auto* ball = std::get_if<SwingTwistJointSettings>(&part.joint))

@@ -1,4 +1,4 @@
-// Shorthands with which scenes say how bodies are joined. Called while a scene is built and before its steps.
+// Shorthands for settings of joints. Called while a scene is built and before its steps.
 #pragma once
 
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>

@@ -8,8 +8,8 @@ namespace {
 
 constexpr int kBalls = 5;
 constexpr double kRadius = 0.25, kRope = 2, kLift = 0.7;  // m, m, rad
-// All contacts of a step are solved at once, so that balls which touch would share a blow. Apart by this, m, each is
-// hit by the one before it; after some blows they are together and share.
+// All contacts of a step are solved at once, so that balls in contact would share an impact. With a gap of this, m,
+// each is hit by the one before it; after some impacts the gaps have closed.
 constexpr double kApart = 0.03;
 
 // Five balls that bounce without loss, each on a hinge above it; the first one is let go.
@@ -25,7 +25,7 @@ void Build(SceneWorld& world) {
     }
 }
 
-// What the first ball was lifted by is the energy that goes to and fro.
+// The potential energy of the lifted first ball.
 double EnergyChange(const SceneWorld& world) {
     const double lift = 10 * 9.81 * kRope * (1 - Cos(kLift)), lowest = 10 * 9.81 * (3 - kRope) * kBalls;
     return 100 * std::fabs(world.System().GetEnergy() - lowest - lift) / lift;

@@ -15,12 +15,12 @@ Vector3 Lowest(const ConvexShape& shape, const RelativePose& pose, const Vector3
     return pose.Transform(shape.Support(InverseRotate(pose.rotation, Vector3(-up))));
 }
 
-// No more than this deep: the overlap along one direction of A's frame.
+// An upper bound of the depth: the overlap along one direction in A's frame.
 float OverlapAlong(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA, const Vector3& direction) {
     return Dot(direction, Vector3(a.Support(direction) - Lowest(b, bInA, direction)));
 }
 
-// Whether a point lies behind a triangle, where its prism is.
+// Whether a point lies behind a triangle, within its prism.
 bool IsBehind(const TriangleView& t, const Vector3& point) {
     if (Dot(t.normal, Vector3(point - t.vertices[0])) >= 0) return false;
     for (int i = 0; i < 3; ++i) {
@@ -31,7 +31,7 @@ bool IsBehind(const TriangleView& t, const Vector3& point) {
     return true;
 }
 
-// The deepest overlap of two shapes, searched only for what is deeper than the worst so far.
+// The depth of two shapes, computed only if it may exceed the maximum so far.
 class DepthSearch {
 public:
     explicit DepthSearch(double leastRelative) : relative_(leastRelative) {}

@@ -1,10 +1,10 @@
-// How deep bodies of a scene overlap, by their shapes and poses alone: what the engine found, or missed, has no say.
-// Used by Simulation after each step, outside of what is timed; one thread.
+// Penetration of the bodies of a scene, by their shapes and poses alone, independent of the engine's contacts. Used by
+// Simulation after each step, outside of what is timed; one thread.
 //
-// The measure is the least move that parts two bodies, over the inner radius of the smaller one: that of the largest
-// ball that fits inside. 1 means that a ball inside one body has its center on the other's surface; beyond that nobody
-// knows any more on which side it belongs. A body whose center is behind a mesh or height field has sunk by as much as
-// it must rise.
+// The measure is the penetration depth of two bodies, over the inner radius of the smaller one (of the largest ball
+// that fits inside). 1 means that a ball inside one body has its center on the other's surface; beyond that it is
+// ambiguous on which side the body belongs. For a body whose center is behind a mesh or height field the depth is how
+// far it must rise.
 #pragma once
 
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
@@ -23,18 +23,18 @@ struct Penetration {
 
 class PenetrationMeter {
 public:
-    // What overlaps before the first step by more than kStartsOverlapped counts from when it has come apart.
+    // Pairs that overlap before the first step by more than kStartsOverlapped count only after they have separated.
     explicit PenetrationMeter(const SceneWorld& world);
 
-    // Looks at the bodies where they are now. Returns whether that is the worst so far.
+    // Measures the bodies at their current poses. Returns whether there is a new maximum.
     bool Measure();
 
-    // The largest of all that was measured, relative to the bodies' size.
+    // The largest measured penetration, relative to the bodies' size.
     const Penetration& Worst() const { return worst_; }
 
 private:
     struct Placed {
-        uint32_t seenIn = 0;  // round of measuring
+        uint32_t seenIn = 0;  // number of the measurement
         BodyId id;
         ShapePtr shape;
         Pose center;  // of the shape's center frame

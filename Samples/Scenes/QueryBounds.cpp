@@ -19,7 +19,7 @@ bool Has(const std::vector<OverlapHit>& hits, const OverlapHit& hit) {
     return std::binary_search(hits.begin(), hits.end(), hit);
 }
 
-// What a box overlaps must be among what its bounds find, for there nothing but bounds are compared.
+// Bodies that a box overlaps must be among those that the query by bounds finds.
 void AskBox(SceneWorld& world, const Position& center) {
     static const auto kBox = Box::Create(kHalf.cast<float>());
     std::vector<OverlapHit> near, inside;
@@ -31,7 +31,7 @@ void AskBox(SceneWorld& world, const Position& center) {
     Mark(world, inside, Ink::Hit);
 }
 
-// Likewise what a ray hits, and what it may hit.
+// Likewise bodies that a ray hits, among those whose bounds it hits.
 void AskRay(SceneWorld& world, const Ray& ray) {
     std::vector<OverlapHit> near;
     std::vector<WorldRayHit> hits;

@@ -8,7 +8,7 @@
 namespace fulcrum::QueryCastsScene {
 namespace {
 
-constexpr int kGhosts = 4;  // outlines along the way
+constexpr int kGhosts = 4;  // outlines along the motion
 
 // Where a motion is after a fraction of it.
 Pose PoseAt(const MovingShape& shape, double fraction) {
@@ -19,7 +19,7 @@ Pose PoseAt(const MovingShape& shape, double fraction) {
     return pose;
 }
 
-// How far from touching the shape is where the cast ends, m. The shapes here have their center of mass at their origin.
+// The distance between the shapes where the cast ends, m. The shapes here have their center of mass at their origin.
 double GapAt(SceneWorld& world, const MovingShape& shape, const WorldShapeHit& hit) {
     WorldClosest closest;
     const Pose pose = PoseAt(shape, double{hit.fraction});

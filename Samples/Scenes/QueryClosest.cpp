@@ -12,8 +12,7 @@ namespace {
 constexpr float kReach = 6;  // m
 constexpr int kPoints = 24;
 
-// The same without the trees: the least distance to the bodies one by one. A shape's own frame is its center frame
-// here.
+// Brute force: the least distance to the bodies one by one. A shape's own frame is its center frame here.
 double LeastDistance(SceneWorld& world, const Position& point) {
     double least = double{kReach};
     world.System().VisitBodies([&](BodyId id) {
@@ -43,7 +42,7 @@ void Ask(SceneWorld& world) {
         const bool isFound = world.Queries().FindClosest(point, kReach, closest);
         if (isFound) Draw(world, closest);
         const double distance = isFound ? double{closest.distance} : double{kReach};
-        // All bodies one by one take long: a quarter of the points in each step.
+        // Brute force takes long: a quarter of the points in each step.
         if (i % 4 == world.StepCount() % 4)
             world.figure = std::max(world.figure, std::fabs(distance - LeastDistance(world, point)));
     }

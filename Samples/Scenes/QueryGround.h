@@ -1,4 +1,4 @@
-// What the scenes of the queries look at: bodies of all kinds on a wavy mesh, stirred by two bars. For scenes.
+// The world of the query scenes: bodies of all kinds on a wavy mesh, stirred by two bars.
 #pragma once
 
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>

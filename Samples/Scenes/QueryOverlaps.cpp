@@ -10,8 +10,8 @@
 namespace fulcrum::QueryOverlapsScene {
 namespace {
 
-// A line from the probe to each body it overlaps. Overlap and the distance to the closest body must say the same;
-// within 0.1 mm of touching either answer is right.
+// A line from the probe to each body it overlaps. Overlap and the distance to the closest body must agree, except
+// within 0.1 mm of touching.
 void Probe(SceneWorld& world, const ConvexShape& shape, const Pose& pose) {
     std::vector<OverlapHit> hits;
     const PlacedShape probe{&shape, pose};

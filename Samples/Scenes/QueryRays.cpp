@@ -35,7 +35,7 @@ void DrawFan(SceneWorld& world) {
     }
 }
 
-// All hits of rays that go on through what they hit; the first must be the closest.
+// All hits of rays; the first must be the closest.
 void DrawPiercing(SceneWorld& world) {
     std::vector<WorldRayHit> hits;
     for (int i = 0; i < 5; ++i) {

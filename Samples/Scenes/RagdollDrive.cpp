@@ -47,7 +47,7 @@ void BeforeStep(SceneWorld& world, double dt) {
     static_cast<void>(world.ragdolls[kKinematic].DriveKinematically(TargetAt(kKinematic, time), seconds));
 }
 
-// The largest angle by which a part is turned otherwise against its parent than it should be, degrees.
+// The largest error of a part's rotation relative to its parent, degrees.
 double Accuracy(const SceneWorld& world) {
     const RagdollSettings humanoid = Humanoid();
     double largest = 0;

@@ -1,4 +1,4 @@
-// A scene: how a world is filled and by which figure a run of it is judged. One scene serves sample, test and
+// A scene: a function that fills a world, and the accuracy figure of its runs. One scene serves sample, test and
 // benchmark; Scenes.cpp lists them all. Constants, so any thread may read them.
 #pragma once
 
@@ -24,18 +24,18 @@ struct Scene {
     bool usesSeed = false;  // whether another seed makes another world
     // Other settings than the defaults; null: none.
     void (*adjust)(SystemSettings& settings) = nullptr;
-    // Creates the bodies. A scene may remove some later, and add others: recordings show them as they come and go.
+    // Creates the bodies. A scene may add and remove bodies later; recordings show that.
     void (*build)(SceneWorld& world) = nullptr;
     // Called before each step, when world.StepCount() steps are done. Null: nothing to do.
     void (*beforeStep)(SceneWorld& world, double dt) = nullptr;
-    // Called after each step, when world.StepCount() counts it: asks queries, draws. Null: nothing to do.
+    // Called after each step, when world.StepCount() counts it: for queries and drawing. Null: nothing to do.
     void (*afterStep)(SceneWorld& world) = nullptr;
-    // A batch that is timed after the last step, in place of the steps: how many of what one call answers. Null: the
-    // steps are timed.
+    // A batch of queries that is timed after the last step, in place of the steps, and its size. Null: the steps are
+    // timed.
     void (*query)(SceneWorld& world) = nullptr;
     int queryCount = 0;
     const char* queryName = "";
-    // How exact a run was, after its last step, and what that number means. Null where only the run itself can tell.
+    // The accuracy figure of a run, after its last step, and its meaning. Null if the run computes it.
     double (*accuracy)(const SceneWorld& world) = nullptr;
     const char* accuracyMeaning = "";
 };

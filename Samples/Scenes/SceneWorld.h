@@ -32,7 +32,7 @@ public:
     static Result<std::unique_ptr<SceneWorld>> Create(const Scene& scene, const SceneInput& input = {},
                                                       JobSystem* jobs = nullptr);
 
-    // The scene's own doings before and after PhysicsSystem::Update. Errors as there.
+    // PhysicsSystem::Update with the scene's callbacks before and after it. Errors as there.
     Status Step(double dt);
 
     const Scene& Definition() const { return scene_; }
@@ -59,11 +59,11 @@ public:
     // -------------------------------------------------------------------------------------------------------
 
     Random random;                  // seeded by the input
-    std::vector<BodyId> watched;    // what the figure looks at, in an order that the scene chooses
+    std::vector<BodyId> watched;    // bodies that the figure uses, in an order that the scene chooses
     std::vector<JointId> joints;    // likewise
     std::vector<Ragdoll> ragdolls;  // all that AddRagdoll made
-    double figure = 0;              // what the scene's figure adds up over the steps
-    std::vector<Ray> rays;          // of a scene that times a batch of them, and their answers
+    double figure = 0;              // the figure, if the scene accumulates it over the steps
+    std::vector<Ray> rays;          // of a scene that times a batch of them, and their hits
     std::vector<WorldRayHit> rayHits;
 
     // Shapes; null, and an error of Create, where the sizes are wrong.
@@ -87,7 +87,7 @@ public:
     }
     // Adds to `ragdolls`. An error of Create where the settings are wrong.
     void AddRagdoll(const RagdollSettings& settings, const Pose& origin, std::optional<MotionType> motion = {});
-    // Has the listener, which the world keeps, asked about contacts.
+    // Sets the contact listener, which the world owns.
     void Listen(std::unique_ptr<ContactListener> listener);
     // Static box, its top at y = 0.
     BodyId AddFloor(float halfX, float halfZ);
@@ -111,13 +111,13 @@ private:
     double longestMs_ = 0;
 };
 
-// The figure of scenes that add it up themselves.
+// Returns `figure`, which the scene accumulates.
 inline double FigureOf(const SceneWorld& world) { return world.figure; }
 
-// A figure of several scenes: dynamic bodies whose center is below y = 0, or nowhere.
+// A figure of several scenes: the number of dynamic bodies whose center is below y = 0, or not finite.
 double BodiesBelowTheFloor(const SceneWorld& world);
 
-// The same: the largest distance between the two anchors of a joint, m.
+// Likewise: the largest distance between the two anchors of a joint, m.
 double LargestJointGap(const SceneWorld& world);
 
 inline constexpr double kPi = 3.14159265358979323846;

@@ -13,11 +13,11 @@ std::span<const Scene* const> AllScenes();
 // Null where no scene has the name.
 const Scene* FindScene(std::string_view name);
 
-// Not in the list: drops SceneInput::count bodies of SceneInput::shape in a heap between low walls.
+// Not in the list: drops SceneInput::count bodies of SceneInput::shape onto a heap between low walls.
 namespace DropScene {
 extern const Scene kScene;
 }
-// Nor this: drops them over SceneInput::ground, a mesh that stands on y = 0.
+// Not in the list: drops them over SceneInput::ground, a mesh that stands on y = 0.
 namespace DropOntoScene {
 extern const Scene kScene;
 }

@@ -53,7 +53,7 @@ void Build(SceneWorld& world) {
     }
 }
 
-// The field lifts what is in it, the gate takes away what has passed it, the scanner kicks what it finds aside, the
+// The field lifts bodies inside it, the gate removes bodies that have passed it, the scanner kicks bodies aside, the
 // target catches bullets.
 void React(SceneWorld& world, double) {
     BodyInterface& bodies = world.Bodies();

@@ -53,7 +53,7 @@ void Drive(SceneWorld& world, double dt) {
                                   MotorToPosition(static_cast<float>(0.8 * Sin(turned)), 15));
 }
 
-// The stage lags by about 2 zeta / w = 0.02 s; how far it is from its circle is not a matter of the lag.
+// The stage lags by about 2 zeta / w = 0.02 s; its distance from the circle does not depend on the lag.
 double Accuracy(const SceneWorld& world) {
     const Position stage = world.Bodies().GetPose(world.watched[0]).position - Position(-5, 1.5, 0);
     double worst = std::fabs(std::hypot(stage.x(), stage.z()) - 0.8);

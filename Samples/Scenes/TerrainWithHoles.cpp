@@ -12,7 +12,7 @@ constexpr uint32_t kCells = 64;
 constexpr float kCell = 0.5f;                        // m
 constexpr float kHalf = 0.5f * kCell * kCells;       // m
 constexpr int kOpens = 300;                          // step after which the middle opens
-constexpr uint32_t kMiddle = kCells / 2, kTrap = 4;  // cells: half the width of what opens
+constexpr uint32_t kMiddle = kCells / 2, kTrap = 4;  // cells: half the width of the opening
 constexpr uint8_t kGrass = 0, kIce = 1, kRubber = 2;
 
 // A valley along z with ripples, 3 to 9 m above the floor.
@@ -63,13 +63,13 @@ void Build(SceneWorld& world) {
     }
 }
 
-// The scene made the field and may change it; others see it as constant.
+// The scene created the field and may edit it; others see it as const.
 std::shared_ptr<HeightField> FieldOf(const SceneWorld& world) {
     return std::const_pointer_cast<HeightField>(
         std::static_pointer_cast<const HeightField>(world.Bodies().GetShape(world.watched[0])));
 }
 
-// The middle opens, and what lies there falls. A field that changed is placed anew: that wakes what rested on it.
+// Opens the middle. SetPose after an edit wakes the bodies that rested on the field.
 void OpenTheMiddle(SceneWorld& world, double) {
     if (world.StepCount() != kOpens) return;
     const std::vector<uint8_t> open(4 * kTrap * kTrap, kHoleCell);
@@ -77,7 +77,7 @@ void OpenTheMiddle(SceneWorld& world, double) {
     (void)world.Bodies().SetPose(world.watched[0], Position::Zero(), {});
 }
 
-// Where cells of another kind begin: red for holes, blue for ice, violet for rubber.
+// Outlines of the special cells: red for holes, blue for ice, violet for rubber.
 void DrawTheCells(SceneWorld& world, const HeightField& field) {
     if (!world.Draw().IsOn()) return;
     const auto compare = [&](uint8_t a, uint8_t b, const Vector3& from, const Vector3& to) {

@@ -7,7 +7,7 @@ namespace {
 
 constexpr int kRodsPerSide = 8, kRods = 40, kPlatesPerSide = 20;
 
-// Any way round, centered so high above the ground.
+// With a random rotation, centered at this height above the ground.
 void Toss(SceneWorld& world, const ShapePtr& shape, double x, double z, double height) {
     const double axisX = world.random.Between(-1, 1), axisY = world.random.Between(-1, 1),
                  axisZ = world.random.Between(-1, 1);
@@ -27,8 +27,8 @@ void Build(SceneWorld& world) {
         for (int j = 0; j < kPlatesPerSide; ++j) Toss(world, plate, 6.0 * i - 57, 6.0 * j - 57, 2);
 }
 
-// The lowest point of a body against the ground below its center says little on a slope; what fell through is below all
-// hills.
+// Bodies that fell through are below all hills; comparing with the ground below the center would be unreliable on
+// slopes.
 double LostOrAwake(const SceneWorld& world) {
     return static_cast<double>(std::count_if(world.watched.begin(), world.watched.end(), [&](BodyId id) {
         const Position at = world.Bodies().GetPose(id).position;

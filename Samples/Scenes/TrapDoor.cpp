@@ -28,7 +28,7 @@ void RemoveThePillar(SceneWorld& world, double) {
     if (world.StepCount() == kRemovedAt) (void)world.Bodies().Remove(world.watched[0]);
 }
 
-// The left stack must have come down by the pillar's height, or nearly, and the right one must not have noticed.
+// The left stack must have fallen by about the pillar's height, and the right one must not have moved.
 double Accuracy(const SceneWorld& world) {
     int wrong = 0;
     for (int i = 0; i < kStacked; ++i) {

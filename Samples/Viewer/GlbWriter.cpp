@@ -22,7 +22,7 @@ struct Key {
     Quaternion rotation;  // of the sign nearest to that of the key before
 };
 
-// All states of each body, the last state of a rest once more at its end: between keys, glTF moves in straight lines.
+// All states of each body; the state of a rest is repeated at its end, since glTF interpolates linearly between keys.
 std::vector<std::vector<Key>> KeysOfBodies(const Recording& recording) {
     std::vector<std::vector<Key>> keys(recording.bodies.size());
     for (size_t frame = 0; frame < recording.frames.size(); ++frame) {
@@ -43,9 +43,9 @@ std::vector<std::vector<Key>> KeysOfBodies(const Recording& recording) {
 template <size_t N>
 using Curve = std::vector<std::array<float, N>>;
 
-// Indices of the values that a straight line between those kept does not give within the tolerance. A kept value opens
-// a cone of slopes, one interval a component, that all values since must lie in; the value before the first outside is
-// kept.
+// Indices of the values to keep so that linear interpolation gives all others within the tolerance. A kept value starts
+// a cone of slopes, one interval per component, that contains all later values; the value before the first one outside
+// is kept.
 template <size_t N>
 std::vector<size_t> NeededKeys(const std::vector<float>& times, const Curve<N>& values, float tolerance) {
     std::vector<size_t> needed = {0};
@@ -181,7 +181,7 @@ private:
         return static_cast<float>(recording_.frames[frame].time - recording_.frames[0].time);
     }
 
-    // What is not there has no size.
+    // Absent bodies have scale 0.
     void AnimatePresence(size_t node) {
         const auto [body, shape, from, until] = presences_[node];
         if (from == 0 && until >= recording_.frames.size()) return;

@@ -10,9 +10,9 @@
 
 namespace fulcrum {
 
-// Creates or replaces `path`: whole or not at all. Key frames that a straight line between their neighbors gives anyway
-// (within 0.2 mm and 0.0005 of a quaternion's part) are left out. Errors as WriteHtml; OutOfRange also where the file
-// would not fit the format's 4 GiB.
+// Creates or replaces `path`: whole or not at all. Key frames that linear interpolation of their neighbors gives
+// (within 0.2 mm and 0.0005 of a quaternion's component) are left out. Errors as WriteHtml; OutOfRange also if the file
+// would exceed the format's 4 GiB.
 Status WriteGlb(const Recording& recording, const std::filesystem::path& path);
 
 }  // namespace fulcrum

@@ -1,5 +1,5 @@
-// Writes a recording as one web page that plays it and needs nothing else, not even a network. Called by the runner,
-// one thread at a time. The page is the bundle that the build makes of Page/, with the recording in it (PageData.h).
+// Writes a recording as one self-contained web page that plays it. Called by the runner, one thread at a time. The page
+// is the bundle that the build makes of Page/, with the recording in it (PageData.h).
 #pragma once
 
 #include <Fulcrum/Math/Result.h>

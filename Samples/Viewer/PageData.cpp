@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Steps4 = std::array<int64_t, 4>;
 
-constexpr double kMostSpeed = 1e6;  // m/s; a wilder velocity is stored as this, so that 32 bits hold it
+constexpr double kMostSpeed = 1e6;  // m/s; larger velocities are clamped, so that 32 bits hold them
 
 // 0.1 mm, finer in a scene of less than 26 m, coarser where 32 bits would not hold the sum that a prediction is.
 double PositionStep(const Recording& recording) {
@@ -28,7 +28,7 @@ double PositionStep(const Recording& recording) {
     return std::max(std::min(1e-4, extent / (1 << 18)), extent / (1 << 28));
 }
 
-// What the page has of a body after the frames so far.
+// The state of a body in the page after the frames so far.
 struct BodyMemory {
     Steps3 position = {}, positionBefore = {}, velocity = {};
     Steps4 rotation = {};
@@ -93,7 +93,7 @@ private:
         flags.PutUnsigned((state.awake ? 1 : 0) | (isNewIsland ? 2 : 0) | (state.isThere ? 0 : 4));
         if (isNewIsland) islands_.PutSigned(state.island - last.island);
 
-        // Where nothing was stored of the frame before, the body rested then, and no motion is expected to go on.
+        // If no state was stored for the frame before, the body was at rest, and no motion is extrapolated.
         const bool isGoingOn = last.isKnown && last.frame + 1 == frame;
         Steps3 expected = last.position;
         for (int i = 0; isGoingOn && i < 3; ++i) expected[i] += last.position[i] - last.positionBefore[i];
@@ -243,7 +243,7 @@ std::string EncodePageData(const Recording& recording) {
 std::string Deflated(const std::string& bytes) {
     uLongf size = compressBound(bytes.size());
     std::string packed(size, '\0');
-    // Fails only for want of memory, or of room in `packed`, which compressBound rules out.
+    // Fails only if memory is exhausted; compressBound guarantees that `packed` is large enough.
     if (compress2(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
                   bytes.size(), Z_DEFAULT_COMPRESSION) != Z_OK)
         throw std::bad_alloc();

@@ -26,7 +26,7 @@ struct Steps {
     int64_t color = 0;
 };
 
-// Coordinates that are wilder count as this, so that 53 bits hold their steps.
+// Larger coordinates are clamped, so that 53 bits hold their steps.
 Steps3 PlaceSteps(const Vector3& place, double step) {
     constexpr float kMost = 1e9f;  // m
     return Quantized(place.cwiseMax(-kMost).cwiseMin(kMost), step);
@@ -39,7 +39,7 @@ Steps<2> StepsOf(const RecordedLine& line, double step) {
 
 Steps<1> StepsOf(const RecordedPoint& point, double step) { return {PlaceSteps(point.place, step), point.color}; }
 
-// `latest`: those of the frame before; then those of this one.
+// `latest`: those of the frame before; updated to those of this one.
 template <class Item, size_t Places>
 void Put(const std::vector<Item>& items, double step, std::vector<Steps<Places>>& latest, Column& column) {
     column.PutUnsigned(items.size());

@@ -8,9 +8,9 @@
 namespace fulcrum {
 namespace {
 
-constexpr double kMost = 1e9;  // m or rad; wilder numbers are stored as this, so that 53 bits hold their steps
+constexpr double kMost = 1e9;  // m or rad; larger numbers are clamped, so that 53 bits hold their steps
 
-// What is no number counts as 0.
+// NaN counts as 0.
 int64_t StepsOf(double value, double step) {
     return value == value ? std::llround(std::clamp(value, -kMost, kMost) / step) : 0;
 }

@@ -1,17 +1,15 @@
-// A recording's joints as columns of a page, in the varints of PageData.h. Called by PageData. Page/decodeJoints.js
+// A recording's joints as columns of a page, in the varints of PageData.h. Called by PageData; Page/decodeJoints.js
 // reads them.
+// - joints: per joint: kind, linear lock, angular lock, line, axis, flags (1 pyramid, 2 hard length, 4 closed path);
+//   differences to the joint before of body A, body B, ratio (in kJointRatioStep), and of frame A and frame B x y z (in
+//   kJointStep m), x y z w (in 1 / kJointRotationSteps); number of points; per point the difference to the one before
+//   (in kJointStep)
+// - jointStates: per frame: number of states; per state: gap to the joint before, flags (1 enabled, 2 other limits);
+//   with flag 2: a bit for each finite end (2 axis + 0 for min, + 1 for max), and of these the differences to the
+//   joint's last ones (in kJointStep m or rad)
+// - jointErrors: per frame: distance and its joint, angle and its joint (in kJointErrorStep m or rad)
 //
-//   joints       per joint: kind, linear lock, angular lock, line, axis, flags (1 pyramid, 2 hard length, 4 closed
-//   path);
-//                differences to the joint before of body A, body B, ratio (in kJointRatioStep), and of frame A and
-//                frame B x y z (in kJointStep m), x y z w (in 1 / kJointRotationSteps); number of points; per point the
-//                difference to the one before (in kJointStep)
-//   jointStates  per frame: number of states; per state: gap to the joint before, flags (1 enabled, 2 other limits);
-//   with
-//                flag 2: a bit for each end that there is (2 axis + 0 for min, + 1 for max), and of these the
-//                differences to the joint's last ones (in kJointStep m or rad)
-//   jointErrors  per frame: distance and its joint, angle and its joint (in kJointErrorStep m or rad)
-// All are empty where there are no joints.
+// All are empty if there are no joints.
 #pragma once
 
 #include <Fulcrum/Samples/Viewer/Recording.h>

@@ -1,6 +1,5 @@
-// What a recording knows of joints: where they sit in their bodies, what never changes of them, and their state frame
-// by frame. Poses are not repeated: the page has the bodies' and puts the frames onto them. Part of Recording.h; plain
-// data.
+// Joints of a recording: their frames in the bodies, their constant properties, and their state frame by frame. World
+// poses follow from those of the bodies. Part of Recording.h; plain data.
 #pragma once
 
 #include <Fulcrum/Math/Pose.h>
@@ -32,7 +31,7 @@ enum class RecordedJointKind : uint8_t {
 };
 inline constexpr size_t kRecordedJointKinds = 14;
 
-// What the joint does not let happen, and where an error is thus seen.
+// The degrees of freedom that the joint locks, in which errors are shown.
 enum class RecordedLinearLock : uint8_t { None, Line, Point };
 enum class RecordedAngularLock : uint8_t { None, Axis, All };
 
@@ -65,7 +64,7 @@ struct RecordedJointState {
     friend bool operator==(const RecordedJointState&, const RecordedJointState&) = default;
 };
 
-// The largest errors of a frame's joints, and whose they are.
+// The largest errors of a frame's joints, and their joints.
 struct RecordedJointErrors {
     float distance = 0, angle = 0;               // m, rad
     uint32_t distanceJoint = 0, angleJoint = 0;  // indices into Recording::joints

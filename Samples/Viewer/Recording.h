@@ -1,5 +1,5 @@
-// What a run leaves behind for its pictures: shapes, bodies, joints, their states frame by frame, contacts, drawings
-// and the report. Filled in by the runner through AppendFrame, read by HtmlWriter and GlbWriter. Knows nothing of the
+// The recording of a run for the viewers: shapes, bodies, joints, their states frame by frame, contacts, drawings and
+// the report. Filled in by the runner through AppendFrame, read by HtmlWriter and GlbWriter. Knows nothing of the
 // engine but its Math types. One thread at a time.
 #pragma once
 
@@ -56,7 +56,7 @@ struct RecordedState {
     bool isThere = true;  // false: the body was removed, and does not come back
 };
 
-// From its frame on a body has another shape, or the same one as it was edited.
+// From this frame on a body has another shape, or an edited one.
 struct RecordedShapeChange {
     uint32_t body = 0, shape = 0;  // indices into Recording::bodies and shapes
 };
@@ -81,7 +81,7 @@ struct RecordedFrame {
     std::vector<RecordedShapeChange> shapes;
 };
 
-// A line of the panel beside the picture. Lines of one section follow each other.
+// A line of the viewer's panel. Lines of one section are consecutive.
 struct ReportLine {
     std::string section, label, value;
 };
@@ -108,13 +108,12 @@ inline constexpr size_t kMostContacts = 400'000;  // of a whole recording: about
 inline constexpr size_t kMostContactsPerFrame = 50'000;
 
 // Adds a frame at `time` seconds. `states` names bodies ascending by index, all of them or, from the second frame on,
-// only those that may have changed; what equals the state before is dropped, and so is a state that is not finite. A
-// body that was added to the recording since the last frame is there from this one on, at the origin if it is not
-// named; a state of what is no body of the recording's is dropped. So that no recording outgrows memory, contacts are
-// kept of every frame first, of every second once there are more than kMostContacts, then of every fourth, and so on;
-// of more than kMostContactsPerFrame in one frame an even choice is kept. Of joints too only those need be named that
-// may have changed; one that no frame has named yet counts as switched off. Lines and points that are not finite are
-// dropped.
+// only those that may have changed; states that did not change, are not finite or name no body of the recording are
+// dropped. A body that was added to the recording since the last frame is present from this one on, at the origin if it
+// is not named. To bound memory, contacts are kept of every frame first, of every second once there are more than
+// kMostContacts, then of every fourth, and so on; of more than kMostContactsPerFrame in one frame an even selection is
+// kept. Joints need only be named if they may have changed; one that no frame has named yet counts as switched off.
+// Lines and points that are not finite are dropped.
 void AppendFrame(Recording& recording, double time, std::span<const RecordedState> states,
                  std::span<const RecordedContact> contacts, const RecordedFrameJoints& joints = {},
                  const RecordedFrameDrawing& drawing = {}, std::span<const RecordedShapeChange> shapes = {});
@@ -129,10 +128,10 @@ struct RecordedPresence {
 // none.
 std::vector<RecordedPresence> PresencesOf(const Recording& recording);
 
-// Whether the next frame's contacts would be kept: saves collecting them for nothing.
+// Whether the next frame's contacts would be kept, for skipping their collection.
 bool WantsContacts(const Recording& recording);
 
-// That every index names something. Error UnknownId says which one does not.
+// Checks that every index is valid. Error UnknownId names the first that is not.
 Status CheckRecording(const Recording& recording);
 
 }  // namespace fulcrum

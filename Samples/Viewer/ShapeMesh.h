@@ -1,5 +1,5 @@
-// Triangles of recorded shapes, with normals that shade flat faces flat and round ones round. Called by GlbWriter.
-// Free functions without state: any thread.
+// Triangle meshes of recorded shapes, with normals for flat and smooth shading. Called by GlbWriter. Free functions
+// without state: any thread.
 #pragma once
 
 #include <Fulcrum/Samples/Viewer/Recording.h>

@@ -1,5 +1,5 @@
-// Writes a file whole or not at all. Called by HtmlWriter, GlbWriter and whoever else leaves results in a folder.
-// Any thread, as long as no two write the same path.
+// Writes a file atomically. Called by HtmlWriter, GlbWriter and others that write results. Any thread, as long as no
+// two write the same path.
 #pragma once
 
 #include <Fulcrum/Math/Result.h>
@@ -10,9 +10,8 @@
 
 namespace fulcrum {
 
-// Creates or replaces `path` with the parts one after another, and the folders that lead to it. They go to `path` +
-// ".part" first, which is then renamed. Error OutOfRange with the path and the system's reason; a file that was there
-// is still there.
+// Creates or replaces `path` with the concatenated parts, and its folders. They are written to `path` + ".part" first,
+// which is then renamed. Error OutOfRange with the path and the system's reason; an existing file is then kept.
 Status WriteWholeFile(const std::filesystem::path& path, std::initializer_list<std::string_view> parts);
 
 }  // namespace fulcrum

@@ -10,7 +10,7 @@
 namespace fulcrum {
 namespace {
 
-// A game's own job systems, as plain as they may be.
+// Minimal job systems, as a game could provide.
 class SerialJobs final : public JobSystem {
 public:
     explicit SerialJobs(uint32_t workers = 1) : workers_(workers) {}
@@ -114,7 +114,7 @@ TEST(Phases, RunInOrderTenThousandTimes) {
     }
 }
 
-TEST(Phases, OfNothingAreNothing) {
+TEST(Phases, WithoutPhasesOrBlocksDoNothing) {
     ThreadPool pool(2);
     ExpectPhasesInOrder(pool, {});
     ExpectPhasesInOrder(pool, std::vector<uint32_t>{0, 0, 0});

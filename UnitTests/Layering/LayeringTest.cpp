@@ -48,8 +48,7 @@ const std::array<std::string, 8> kSharedHeaders = {
 
 const std::array<std::string, 5> kLibraryFolders = {"Math", "Jobs", "Collision", "Constraints", "Physics"};
 
-// Jobs stands alone, and a waiting loop needs the processor's hint, which no portable call gives: this file may ask
-// which architecture it is compiled for.
+// Jobs includes no other folder, and a spin loop needs the processor's pause hint: this file may test the architecture.
 const std::string kPauseHintFile = "Jobs/Spin.h";
 // The one place of dense matrices; no public header needs it.
 const std::string kEigenFile = "Constraints/Joints/JointTree.h";

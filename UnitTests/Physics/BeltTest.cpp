@@ -1,4 +1,4 @@
-// Surfaces that move on their bodies, against the closed forms.
+// Conveyor belts (surface velocities), against closed forms.
 #include <Fulcrum/Collision/Shapes/Plane.h>
 #include <Fulcrum/Collision/Shapes/TriangleMesh.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
@@ -200,7 +200,7 @@ TEST(Belt, ThatIsSlowDoesNotPutToSleepWhatItCarries) {
     s.belt.velocity.setZero();
     s.world.Run(1);
     EXPECT_FALSE(s.world.Bodies().IsAwake(box));
-    // What sleeps is not asked about, until it is woken.
+    // The listener is not called for sleeping bodies.
     s.belt.velocity = {1, 0, 0};
     s.world.Run(1);
     EXPECT_NEAR(s.world.PositionOf(box).x(), 0.06, 1e-3);

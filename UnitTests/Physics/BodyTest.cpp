@@ -73,7 +73,7 @@ TEST(LockedAxes, ContactsDoNotPushAlongLockedAxes) {
     EXPECT_EQ(w.y(), 0);
 }
 
-TEST(Layers, OnlyThoseThatCollideMeet) {
+TEST(Layers, OnlyCollidingLayersHaveContacts) {
     SystemSettings settings;
     settings.layerCollides[1] &= ~4u;  // 1 and 2 ignore each other
     settings.layerCollides[2] &= ~2u;
@@ -226,7 +226,7 @@ TEST(Bodies, ASlightlyLongRotationIsNormalized) {
     EXPECT_EQ(world.Bodies().GetPose(id).rotation.w, 1);
 }
 
-TEST(Bodies, ATeleportedBodyTouchesWhatIsThere) {
+TEST(Bodies, ATeleportedBodyTouchesTheBodiesThere) {
     TestWorld world;
     world.AddFloor();
     const BodyId ball = world.Add({.shape = SphereOf(0.5f), .position = {0, 50, 0}});

@@ -185,7 +185,7 @@ TEST(ModifyContact, MakesAPlatformSolidFromAboveAlone) {
     EXPECT_EQ(world.Report().contacts, 1u);
 }
 
-TEST(ModifyContact, WhatIsIgnoredWakesNobodyAndIsNoContact) {
+TEST(ModifyContact, IgnoredContactsWakeNobodyAndAreNotReported) {
     Asking listener;
     listener.modify = [](const ContactView& contact, ContactChange& change) {
         change.ignore = contact.bodyB.index + contact.bodyA.index > 1;

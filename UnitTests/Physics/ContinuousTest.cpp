@@ -65,7 +65,7 @@ ShapePtr SheetOf(bool twoSided) {
 }
 
 // accuracy.md's gate `bullet`: 10^4 aims for each speed and thickness.
-TEST(Continuous, NoBulletPassesAThinWall) {
+TEST(Continuous, NoBulletTunnelsThroughAThinWall) {
     constexpr int kShots = 10000;
     for (const float thickness : {0.1f, 0.01f})
         for (const float speed : {200.0f, 600.0f, 1000.0f})
@@ -106,7 +106,7 @@ TEST(Continuous, TheModeCanBeChanged) {
 
 // A ball between two walls: its way folded up. The cast may stop by a fiftieth of its radius before it touches, at each
 // bounce.
-TEST(Continuous, ABallBetweenWallsIsWhereItsFoldedWayEnds) {
+TEST(Continuous, ABallBetweenWallsIsWhereItsReflectedPathEnds) {
     TestWorld world(NoGravity());
     constexpr double kHalf = 4, kRadius = 0.25, kFree = kHalf - kRadius;
     for (const double side : {-1.0, 1.0})
@@ -200,7 +200,7 @@ TEST(Continuous, ABulletWakesWhatItHitsAndSharesItsMomentum) {
 
 // A rod of 2 m turns by 96 degrees a step towards a post that stands 0.7 m from its middle. J (1 / m + r^2 / I) = (1 +
 // e) w r.
-TEST(Continuous, ATurningRodDoesNotPassAPost) {
+TEST(Continuous, ATurningRodDoesNotTunnelThroughAPost) {
     for (const float restitution : {0.0f, 1.0f}) {
         const auto turn = [&](ContinuousCollision continuous, Vector3& v, Vector3& w) {
             TestWorld world(NoGravity());
@@ -269,7 +269,7 @@ TEST(Continuous, AThousandRodsNeverSweepOverThinPosts) {
 }
 
 // 1 cm beside the edge of a wall: the same bits as without the wall.
-TEST(Continuous, WhatFliesPastAnEdgeIsNotHeldUp) {
+TEST(Continuous, ABodyThatFliesPastAnEdgeIsNotSlowed) {
     const auto fly = [](bool wall, ContinuousCollision continuous) {
         TestWorld world;
         if (wall) world.Add({.shape = BoxOf(0.05f, 5, 5), .motion = MotionType::Static, .position = {20, -4.9, 0}});
@@ -362,7 +362,7 @@ TEST(Continuous, SettledStepsWithFastBodiesAllocateNothing) {
 }
 
 // A wall that lets pass what flies towards +x, a mask, and a restitution of the listener's own.
-TEST(Continuous, FiltersAndListenersHaveTheirSay) {
+TEST(Continuous, FiltersAndListenersApply) {
     class OneWay final : public ContactListener {
     public:
         void ModifyContact(const ContactView& contact, ContactChange& change) const override {
@@ -417,7 +417,7 @@ TEST(Continuous, ASurfaceOfWhichTheTurnIsNotFiniteStands) {
     EXPECT_GT(std::fabs(shoot(&runs).y()), 1);
 }
 
-TEST(Continuous, RefusesWhatCannotBeCast) {
+TEST(Continuous, RefusesShapesThatCannotBeCast) {
     TestWorld world;
     const BodySettings plane{
         .shape = Plane::Create(Vector3(0, 1, 0), 0).Value(), .motion = MotionType::Static, .continuous = kLinear};

@@ -1,5 +1,4 @@
-// Cylinders, cones, tapered capsules and shapes that users make, in the whole engine: they stand, roll and come to
-// rest.
+// Cylinders, cones, tapered capsules and custom shapes in simulations: they stand, roll and come to rest.
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
 #include <Fulcrum/Collision/Shapes/CustomConvex.h>
@@ -113,7 +112,7 @@ TEST(ConvexShapes, AllKindsFallIntoAPileAndStayAboveTheFloor) {
         EXPECT_GT(place.y(), 0.0) << id.index;
         EXPECT_LT(place.y(), 5.0) << id.index;
         EXPECT_LT(Length(world.VelocityOf(id)),
-                  15.0f);  // what rolls off the pile rolls on: 24 m/s is all that the height gives
+                  15.0f);  // bodies that roll off the pile roll on: the height gives 24 m/s at most
     }
 }
 

@@ -1,4 +1,4 @@
-// What a world at rest may cost: no allocation, little memory, nothing for what sleeps.
+// Costs of a world at rest: no allocations, little memory, no work for sleeping bodies.
 #include <Fulcrum/UnitTests/Support/AllocationCounter.h>
 #include <Fulcrum/UnitTests/Support/JointScene.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>

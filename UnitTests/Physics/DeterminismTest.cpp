@@ -14,7 +14,7 @@ TEST(Determinism, TheSameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(HashOfMixedScene(4), one);
 }
 
-TEST(Determinism, EveryStepOfThreadsIsThatOfOne) {
+TEST(Determinism, EveryStepIsTheSameForAnyNumberOfThreads) {
     // Where the test above fails, this one says when it began.
     TestWorld one({}, 1), four({}, 4);
     MixedScene sceneOfOne(one), sceneOfFour(four);
@@ -49,7 +49,7 @@ TEST(Determinism, FastBodiesAreTheSameForAnyNumberOfThreads) {
     for (uint32_t threads : {2u, 3u, 4u}) EXPECT_EQ(HashOfFastScene(threads), one) << threads;
 }
 
-TEST(Determinism, EveryStepOfJointsOfThreadsIsThatOfOne) {
+TEST(Determinism, EveryStepOfJointsIsTheSameForAnyNumberOfThreads) {
     TestWorld one(JointScene::Settings(), 1), three(JointScene::Settings(), 3);
     JointScene sceneOfOne(one), sceneOfThree(three);
     for (int step = 0; step < 60; ++step) {

@@ -1,4 +1,4 @@
-// What is wrong is refused, by name, and nothing else changes; what goes wrong in a step stays where it went wrong.
+// Invalid input is refused by name and changes nothing; a failure in a step affects only the bodies concerned.
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
 #include <functional>

@@ -88,7 +88,7 @@ TEST(TimeStep, TinyAndAlternatingStepsKeepAStack) {
     world.AddFloor();
     std::vector<BodyId> stack;
     for (int i = 0; i < 6; ++i) stack.push_back(world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5 + i, 0}}));
-    // Each change of the step shakes the stack a little: it breathes and wanders, but stands, within 5 % of an edge.
+    // Each change of the time step disturbs the stack a little: it moves, but stands, within 5 % of an edge.
     for (int i = 0; i < 300; ++i) world.Step(i % 2 ? 1.0 / 30 : 1.0 / 240);
     for (size_t i = 0; i < 6; ++i)
         EXPECT_LT((world.PositionOf(stack[i]) - Position(0, 0.5 + double(i), 0)).norm(), 0.05) << i;

@@ -238,7 +238,7 @@ TEST(FilterChanges, ReleaseTheFilterOfARemovedBody) {
     EXPECT_EQ(table.use_count(), 1);
 }
 
-TEST(QueryFilter, SeesWhatABodyOfItsCategoryAndMaskWouldMeet) {
+TEST(QueryFilter, FindsWhatABodyOfItsCategoryAndMaskWouldCollideWith) {
     TestWorld world(NoGravity());
     const BodyId first = world.Add({.shape = SphereOf(0.5f), .position = {1, 0, 0}, .category = 2, .mask = 4});
     const BodyId second = world.Add({.shape = SphereOf(0.5f), .position = {3, 0, 0}, .category = 4, .mask = 0});

@@ -129,7 +129,7 @@ TEST(FreeRotation, AFastSpinGainsNoEnergy) {
     }
 }
 
-// Who is turned beside a body depends on the number of threads: it must not matter.
+// Which bodies are rotated together depends on the number of threads: it must not matter.
 TEST(FreeRotation, IsTheSameAloneAndTogether) {
     RandomPoses random(7);
     for (int round = 0; round < 500; ++round) {

@@ -1,5 +1,4 @@
-// Settings of joints that are wrong: the error names the field. Those that are right, the defaults first: a type is
-// made.
+// Invalid settings of joints: the error names the field. Valid ones, also the defaults, create a joint.
 #include <Fulcrum/Physics/JointValidation.h>
 
 #include <gtest/gtest.h>
@@ -18,7 +17,7 @@ void ExpectValid(const Settings& settings) {
     EXPECT_NE(MakeType(settings), nullptr);
 }
 
-// `change` spoils one field.
+// `change` makes one field invalid.
 template <class Settings, class Change>
 void ExpectError(Settings settings, Change&& change, ErrorCode code, const std::string& field) {
     change(settings);

@@ -183,7 +183,7 @@ TEST(Query, PointsInside) {
 }
 
 // 10^7 m away a double is exact to 2e-9 m, and poses are the same to that; so are all answers to a rounding of a float.
-TEST(Query, FarAwayIsAsHere) {
+TEST(Query, ResultsFarAwayAreThoseAtTheOrigin) {
     Crowd here, far(Position(1e7, -1e7, 1e7));
     RandomPoses randomHere(4), randomFar(4);
     for (int i = 0; i < 3000; ++i) {
@@ -397,7 +397,7 @@ TEST(Query, AnyThreadAsksWhileAnotherChangesAndSteps) {
     for (std::thread& thread : threads) thread.join();
 }
 
-TEST(Query, WhatIsNotFiniteFindsNothing) {
+TEST(Query, NonFiniteInputFindsNothing) {
     Crowd crowd;
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const double nanPosition = std::numeric_limits<double>::quiet_NaN();

@@ -1,5 +1,4 @@
-// Batches of rays are cast in packets of rays that lie close together: each must be told the bits that it is told
-// alone.
+// Batches of rays are cast in packets of rays that lie close together: results must have the bits of single casts.
 #include <Fulcrum/UnitTests/Support/AllocationCounter.h>
 #include <Fulcrum/UnitTests/Support/Cases.h>
 #include <Fulcrum/UnitTests/Support/RandomPoses.h>
@@ -80,7 +79,7 @@ struct Landscape {
             Add(shapes[i % shapes.size()], at, turn, i % 2 == 0 ? MotionType::Kinematic : MotionType::Dynamic,
                 random.InCube() * 30);
         }
-        world.Step();  // some have strayed from their bounds
+        world.Step();  // some have left their fat bounds
     }
     void Add(const ShapePtr& shape, const Vector3& at, const Quaternion& rotation, MotionType motion,
              const Vector3& velocity = Vector3::Zero()) {
@@ -162,7 +161,7 @@ size_t ExpectSingleAnswers(const QueryInterface& queries, std::span<const Ray> r
     return count;
 }
 
-TEST(RayPackets, EachRayIsToldWhatItIsToldAlone) {
+TEST(RayPackets, EachRayHasTheHitOfASingleCast) {
     for (const Position& where : {Position(0, 0, 0), Position(3e6, -1e6, 2e6)}) {
         Landscape land(1, where);
         const int count = Cases(3000);

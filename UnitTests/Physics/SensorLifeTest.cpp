@@ -1,4 +1,4 @@
-// What sensors see and what not; what comes and goes between steps; what sleeps; what it all costs.
+// Which bodies sensors see; changes between steps; sleeping bodies; costs.
 #include <Fulcrum/UnitTests/Physics/SensorTest.h>
 
 #include <Fulcrum/Collision/Shapes/MutableCompound.h>
@@ -117,7 +117,7 @@ TEST(SensorSees, NotTheBodyThatAJointKeepsFromTouchingIt) {
     EXPECT_EQ(InsideOf(world, sensor), std::vector<BodyId>{other});
 }
 
-TEST(Sensor, LosesWhatFallsAsleepWhereItDoesNotSeeSleepers) {
+TEST(Sensor, EndsForBodiesThatFallAsleepIfItDoesNotSeeSleepers) {
     for (const bool seesSleepers : {false, true}) {
         TestWorld world;
         world.AddFloor();
@@ -357,7 +357,7 @@ TEST(Sensor, ReportsTheSameWithAnyNumberOfThreads) {
     for (uint32_t threads : {2u, 3u, 4u}) EXPECT_EQ(run(threads), one) << threads << " threads";
 }
 
-TEST(Sensor, HasInsideWhatOverlapsItAndEventsThatAddUp) {
+TEST(Sensor, ContentsMatchOverlapsAndEvents) {
     Playground play(1);
     std::vector<std::vector<BodyId>> tracked(play.sensors.size());
     for (int step = 0; step < 180; ++step) {

@@ -1,4 +1,4 @@
-// What sensors report of what passes through them: times in closed form, whatever the speed, the shape and the way.
+// Events of bodies that pass through sensors: times in closed form, for all speeds, shapes and motions.
 #include <Fulcrum/UnitTests/Physics/SensorTest.h>
 
 #include <Fulcrum/Collision/Queries/Distance.h>

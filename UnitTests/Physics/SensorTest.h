@@ -1,4 +1,4 @@
-// What the tests of the sensors share: settings, and events in a form that a failed test prints.
+// Helpers of the tests of the sensors: settings, and events that failed tests can print.
 #pragma once
 
 #include <Fulcrum/UnitTests/Support/TestWorld.h>

@@ -1,4 +1,4 @@
-// Islands fall asleep together, lie still to the bit, and wake when something concerns them.
+// Islands fall asleep together, do not move at all, and wake when they are disturbed.
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
 #include <vector>
@@ -174,7 +174,7 @@ TEST(Sleep, IsPutToSleepByHandWithWhatItTouches) {
     EXPECT_TRUE(AllAwake(world, stack));
 }
 
-// Its pairs were there until the next step: to fall asleep read the place of a body that had none any more, a crash.
+// Its pairs existed until the next step, so that falling asleep used a removed body and crashed.
 TEST(Sleep, WhatWasRemovedTouchesNothingAtOnce) {
     for (int removed = 0; removed < 3; ++removed) {
         TestWorld world;

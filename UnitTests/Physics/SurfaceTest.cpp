@@ -79,7 +79,7 @@ void SlidesOver(TestWorld& world, float angle) {
     }
 }
 
-TEST(Surface, EdgesInsideAMeshAreNotFelt) {
+TEST(Surface, InternalEdgesOfAMeshDoNotDisturbSliding) {
     for (float angle : {0.0f, 0.3f, 0.785f, 2.0f, -1.0f}) {
         TestWorld world(NoSleep());
         AddGround(world, Grid(40, 0.25f, -5, -5).Mesh(), 0);
@@ -87,7 +87,7 @@ TEST(Surface, EdgesInsideAMeshAreNotFelt) {
     }
 }
 
-TEST(Surface, EdgesInsideAHeightFieldAreNotFelt) {
+TEST(Surface, InternalEdgesOfAHeightFieldDoNotDisturbSliding) {
     for (float angle : {0.0f, 0.3f, 0.785f, 2.0f, -1.0f}) {
         TestWorld world(NoSleep());
         AddGround(world, FieldOf(41, 0.25f, {-5, 0, -5}), 0);
@@ -95,7 +95,7 @@ TEST(Surface, EdgesInsideAHeightFieldAreNotFelt) {
     }
 }
 
-TEST(Surface, EdgesBetweenTwoMeshesAreNotFelt) {
+TEST(Surface, SeamsBetweenTwoMeshesDoNotDisturbSliding) {
     for (float angle : {0.0f, 0.3f, 0.785f, 2.0f, -1.0f}) {
         TestWorld world(NoSleep());
         AddGround(world, Grid(40, 0.25f, -10, -5).Mesh(), 0);
@@ -104,7 +104,7 @@ TEST(Surface, EdgesBetweenTwoMeshesAreNotFelt) {
     }
 }
 
-TEST(Surface, EdgesBetweenTwoHeightFieldsAreNotFelt) {
+TEST(Surface, SeamsBetweenTwoHeightFieldsDoNotDisturbSliding) {
     for (float angle : {0.0f, 0.3f, 0.785f, 2.0f, -1.0f}) {
         TestWorld world(NoSleep());
         AddGround(world, FieldOf(41, 0.25f, {-10, 0, -5}), 0);
@@ -113,7 +113,7 @@ TEST(Surface, EdgesBetweenTwoHeightFieldsAreNotFelt) {
     }
 }
 
-TEST(Surface, EdgesBetweenBoxesAreNotFelt) {
+TEST(Surface, SeamsBetweenBoxesDoNotDisturbSliding) {
     for (float angle : {0.0f, 0.3f, 0.785f, 2.0f, -1.0f}) {
         TestWorld world(NoSleep());
         for (int x = -12; x <= 12; ++x)

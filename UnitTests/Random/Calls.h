@@ -1,5 +1,5 @@
-// The public calls that random programs are made of. One line a call in a table of each file: its name, how often it
-// comes, and what it does in one world. A call draws all its arguments from its values, the same in each world.
+// The public calls that random programs are made of. Each file has a table with a line per call: its name, its weight,
+// and a function that makes it in one world. A call draws all its arguments from its values, the same in each world.
 #pragma once
 
 #include <Fulcrum/UnitTests/Random/Twin.h>
@@ -8,7 +8,7 @@
 
 namespace fulcrum::testing {
 
-// Which things a call names, by slots that were filled before it or not.
+// The objects that a call uses, by slots, which may be empty.
 struct CallTargets {
     uint32_t bodyA = 0, bodyB = 0, joint = 0, ragdoll = 0;
 };

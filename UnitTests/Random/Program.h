@@ -1,9 +1,9 @@
-// A random program: calls of the public interface, one after the other, made from a seed, played in several worlds side
-// by side and checked after each call; and a failing one made short. The same seed is the same program for one
-// compiler.
+// A random program: calls of the public interface, generated from a seed, played in several worlds side by side and
+// checked after each call; failing programs are shortened. The same seed gives the same program with one compiler.
 //
-// The worlds: with one, two and four threads, and one in which calls that were refused are left out. All answer alike
-// and have the same bits in all that can be read, after every call: so neither threads nor refusals leave a trace.
+// The worlds: with one, two and four threads, and one in which calls that were refused are left out. All must return
+// the same and have the same bits in all that can be read, after every call: neither threads nor refused calls may have
+// an effect.
 #pragma once
 
 #include <Fulcrum/UnitTests/Random/Calls.h>
@@ -37,7 +37,7 @@ public:
 
     // Empty: nothing failed.
     std::optional<ProgramFailure> Play(const RandomProgram& program);
-    // The program without the calls that it fails without.
+    // The program without calls that are not needed for its failure.
     RandomProgram Shrink(RandomProgram program, const ProgramFailure& failure);
 
 private:

@@ -20,9 +20,9 @@ double Seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 bool IsStep(const RandomCall& call) { return std::string_view(call.kind->name) == "Step"; }
 
-// What a step may add to twice the kinetic energy, J: gravity, pushes out of overlaps, kinematic bodies, belts. Each is
-// a speed that a body may gain: from v to v + g, and (v + g)^2 / 2 <= v^2 + g^2. Generous, and still far below what
-// comes of a sign error or of an impulse that is applied twice.
+// A bound of what a step may add to twice the kinetic energy, J: gravity, pushes out of overlaps, kinematic bodies,
+// belts. Each is a speed that a body may gain: from v to v + g, and (v + g)^2 / 2 <= v^2 + g^2. Generous, and still far
+// below the effect of a sign error or of an impulse that is applied twice.
 double EnergyAllowance(const Twin& twin) {
     const SystemSettings& settings = twin.system->Settings();
     const BodyInterface& bodies = twin.system->Bodies();
@@ -45,7 +45,7 @@ double EnergyAllowance(const Twin& twin) {
 
 // Whether a body is pushed out of another in opposite directions. At two points a short way apart that turns it, as
 // fast as the pushes are over their distance: a compound in a slab half as thick, pushed out on both sides. What that
-// adds has no bound by speeds. Looked at when the step is over, in which one of the two may have come out.
+// adds has no bound by speeds. Checked after the step, in which one of the two may have separated.
 bool IsSqueezed(const Twin& twin) {
     struct Push {
         BodyId bodyA, bodyB;
@@ -91,7 +91,7 @@ public:
     }
 
 private:
-    // All bodies, for whoever looks for the cause of a failure.
+    // Prints all bodies, for debugging.
     void Trace(size_t number, const RandomCall& call) {
         std::printf("%zu %s\n", number, call.kind->name);
         const BodyInterface& bodies = twins_[0].system->Bodies();

@@ -10,7 +10,7 @@ void Fail(Outcome& outcome, std::string what) {
     if (outcome.failure.empty()) outcome.failure = std::move(what);
 }
 
-// Where a query looks: at one of the call's bodies more often than past all.
+// The target of a query: mostly one of the call's bodies.
 Position Aim(const Twin& twin, Values& values, const CallTargets& targets) {
     const BodyInterface& bodies = twin.system->Bodies();
     const BodyId id = twin.bodies[values.Chance(0.5f) ? targets.bodyA : targets.bodyB];
@@ -53,7 +53,7 @@ std::string ListsText(const Ray& ray, const WorldRayHit& single, const std::vect
     return text;
 }
 
-// One by one, in a batch, all hits, any hit: the same answers, and those of every body by itself.
+// Single casts, batches, all hits and any hit must agree, also with tests of every single body.
 void CastRays(Twin& twin, Values& values, const CallTargets& targets, Outcome& outcome) {
     const QueryInterface& queries = twin.system->Queries();
     std::vector<Ray> rays;

@@ -15,19 +15,19 @@ namespace {
 // Where no body is found any more, since planes end there in a world.
 constexpr double kBeyondPlanes = 0.1 * double{kUnboundedExtent};  // m
 
-// The least fraction at which the ray meets the body; 2: it does not.
+// The least fraction at which the ray hits the body; 2: none.
 double FractionOf(const BodyShape& body, const Ray& ray) {
     RayHit hit;
     return RayCaster(ray).CastClosest(*body.shape, body.pose, {}, hit) ? double{hit.fraction} : 2.0;
 }
 
-// Whether the ray meets it where planes have their end in a world.
+// Whether the ray hits it near the end that planes have in a world.
 bool IsBeyondPlanes(const BodyShape& body, const Ray& ray, double fraction) {
     if (body.shape->Type() != ShapeType::Plane || fraction > 1) return false;
     return (ray.origin + ray.displacement.cast<double>() * fraction).cwiseAbs().maxCoeff() > kBeyondPlanes;
 }
 
-// The same for a ray moved aside by a little each way: between the least and the largest anything is right.
+// The same for slightly displaced rays: anything between the least and the largest fraction is right.
 std::pair<double, double> FractionsNear(const BodyShape& body, const Ray& ray) {
     const double by = ToleranceOf(body, ray.origin);
     std::pair<double, double> range{FractionOf(body, ray), 0};
@@ -129,7 +129,7 @@ std::string CompareRay(const std::vector<BodyShape>& bodies, const Ray& ray, con
             return Text("a ray hits body ", body.id.index, " at ", hit.fraction, ", which by itself it meets from ",
                         least, ToText(body, ray));
     }
-    // A tree knows nothing smaller than doubles do so far apart.
+    // Beyond this, trees cannot resolve the distance.
     constexpr double kFarthestApart = 1e15;  // m
     for (const BodyShape& body : bodies)
         if ((body.pose.position - bodies.front().pose.position).cwiseAbs().maxCoeff() > kFarthestApart) return {};
@@ -151,7 +151,7 @@ std::string CheckShapeHit(const std::vector<BodyShape>& bodies, const MovingShap
     Pose center = CenterPoseOf(shape, moving.pose);
     center.position += moving.displacement.cast<double>() * double{hit.fraction};
     const float angle = Length(moving.turn);
-    if (angle > 100) return {};  // a float's turn about so many radians is not known well enough
+    if (angle > 100) return {};  // the rounding of so many radians to float is too large
     if (angle > 0)
         center.rotation = Normalized(RotationFromVector(Vector3(moving.turn * hit.fraction)) * center.rotation);
     ClosestPoints closest;
@@ -181,8 +181,8 @@ std::string CompareClosest(const std::vector<BodyShape>& bodies, const PlacedSha
         if (!isFound && double{here.distance} < double{maxDistance} - tolerance)
             return Text("no body is found within ", maxDistance, " m, but body ", body.id.index, " is ", here.distance,
                         " m away");
-        // Deeper than the thinner shape is thick any axis will do that parts them: EPA ends after so many, the best is
-        // taken.
+        // If the overlap exceeds the thickness of the thinner shape, any separating direction is accepted: EPA ends
+        // after an iteration limit.
         const float thickness = 2 * std::min(body.shape->InnerRadius(), placed.shape->InnerRadius());
         const double depth = std::max(double{here.distance}, -double{thickness});
         if (isFound && depth < double{closest.distance} - tolerance)

@@ -1,5 +1,5 @@
-// What queries must agree with: each other, and the functions of single shapes asked of every body by itself. All
-// return what is wrong, empty where nothing is.
+// Checks that queries agree with each other and with the single-shape functions applied to every body. All return what
+// is wrong, or an empty text.
 #pragma once
 
 #include <Fulcrum/Collision/Queries/Distance.h>
@@ -27,11 +27,11 @@ struct BodyShape {
     Pose pose;
 };
 
-// How far two answers about the body, asked from `from`, may be apart, m: what floats of the shape's size, and doubles
-// of its place, leave open.
+// The tolerance of two results about the body, queried from `from`, m: the rounding of floats of the shape's size and
+// of doubles of its position.
 double ToleranceOf(const BodyShape& body, const Position& from);
 
-// All that queries without a filter see.
+// All bodies that queries without a filter find.
 std::vector<BodyShape> ShapesOf(const PhysicsSystem& system);
 
 bool AreSame(const WorldRayHit& a, const WorldRayHit& b);
@@ -41,15 +41,14 @@ std::string ToText(const WorldClosest& hit);
 bool AreSame(const WorldShapeHit& a, const WorldShapeHit& b);
 bool AreSame(const WorldClosest& a, const WorldClosest& b);
 
-// The closest hit of a ray against that of every body by itself; a ray that grazes may hit or not.
+// Compares the closest hit of a ray with that of every single body; grazing rays may hit or not.
 std::string CompareRay(const std::vector<BodyShape>& bodies, const Ray& ray, const WorldRayHit& hit);
-// The closest body to a point that lies in the bodies of `inside`: none of them may be farther than what floats of its
-// size leave open.
+// The closest body to a point inside the bodies of `inside`: none of those may be farther away than its tolerance.
 std::string CheckClosestInside(const std::vector<BodyShape>& bodies, const std::vector<OverlapHit>& inside,
                                const Position& point, const WorldClosest& closest);
 // Whether the shape touches the body where it is hit, and the hit is finite.
 std::string CheckShapeHit(const std::vector<BodyShape>& bodies, const MovingShape& moving, const WorldShapeHit& hit);
-// The closest body against that of every body by itself.
+// Compares the closest body with the distances of every single body.
 std::string CompareClosest(const std::vector<BodyShape>& bodies, const PlacedShape& placed, float maxDistance,
                            const WorldClosest& closest);
 // Whether two convex shapes are as far apart along the normal as the distance says.

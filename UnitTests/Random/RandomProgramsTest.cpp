@@ -1,6 +1,6 @@
-// Random programs of public calls: whatever a user does, all that can be read stays finite, threads and refusals leave
-// no trace, queries agree with each other, and every call returns. A few seconds of it run with the other tests; for
-// longer:
+// Random programs of public calls: whatever a user does, all that can be read stays finite, threads and refused calls
+// have no effect, queries agree with each other, and every call returns. A few seconds of it run with the other tests;
+// for longer:
 //     FULCRUM_RANDOM_SECONDS=3600 FULCRUM_RANDOM_SEED=1000 FulcrumTests --gtest_filter='RandomPrograms.*'
 // FULCRUM_RANDOM_PROGRAMS=1 plays one program, the one of the seed: so a failure is played again.
 #include <Fulcrum/Physics/Misuse.h>
@@ -24,7 +24,7 @@ double FromEnvironment(const char* name, double otherwise) {
     return text ? std::atof(text) : otherwise;
 }
 
-TEST(RandomPrograms, HoldWhateverAUserCalls) {
+TEST(RandomPrograms, InvariantsHoldWhateverAUserCalls) {
     const double seconds = FromEnvironment("FULCRUM_RANDOM_SECONDS", 0);
     const uint32_t firstSeed = static_cast<uint32_t>(FromEnvironment("FULCRUM_RANDOM_SEED", 1));
     const double programs = FromEnvironment("FULCRUM_RANDOM_PROGRAMS", seconds > 0 ? 1e9 : kPrograms);
@@ -51,8 +51,8 @@ TEST(RandomPrograms, HoldWhateverAUserCalls) {
     EXPECT_GT(played, 0u);
 }
 
-// Programs whose failures led to a change of the engine, as long as the same seeds make the same programs.
-TEST(RandomPrograms, HoldWhereTheyOnceFailed) {
+// Seeds of programs whose failures led to fixes, valid as long as the same seeds give the same programs.
+TEST(RandomPrograms, InvariantsHoldForSeedsThatOnceFailed) {
     const uint32_t seeds[] = {
         418704,   // opposite pushes on a compound in a thin floor became one as a normal turned: 31 kJ became 813 kJ in
                   // a step

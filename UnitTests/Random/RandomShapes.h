@@ -1,4 +1,4 @@
-// Shapes of random kinds and sizes. The caller gets null where the sizes were refused.
+// Shapes of random kinds and sizes; null if the sizes were refused.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/Shape.h>

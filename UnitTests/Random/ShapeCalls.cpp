@@ -10,7 +10,7 @@ namespace fulcrum::testing {
 
 namespace {
 
-// What is saved is loaded with the same bits.
+// Saved shapes are loaded with the same bits.
 void SaveAndLoad(Twin&, Values& values, const CallTargets&, Outcome& outcome) {
     const ShapePtr shape = RandomShape(values);
     if (!shape) return;
@@ -52,7 +52,7 @@ void MeasureDistance(Twin&, Values& values, const CallTargets&, Outcome& outcome
         outcome.failure = "whether two shapes overlap differs from their distance";
 }
 
-// A body alone, without the world's trees: the hit of a cast touches, and nothing before it does.
+// A single body, without the world's trees: the shapes touch at the hit of a cast, and not before it.
 void CastAtShape(Twin&, Values& values, const CallTargets&, Outcome& outcome) {
     const ShapePtr moving = RandomConvex(values), rest = RandomShape(values);
     if (!moving || !rest) return;

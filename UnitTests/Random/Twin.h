@@ -15,7 +15,7 @@
 
 namespace fulcrum::testing {
 
-// FNV-1a over the bits of what is told.
+// FNV-1a over the bits of added values.
 class BitHash {
 public:
     template <class T>
@@ -42,11 +42,11 @@ private:
     uint64_t hash_ = 14695981039346656037u;
 };
 
-// What a call did in one world.
+// The result of a call in one world.
 struct Outcome {
     bool isRefused = false;
-    BitHash answer;       // of all that it returned: the same in every world
-    std::string failure;  // what it found wrong by itself; empty: nothing
+    BitHash answer;       // hash of all that it returned: the same in every world
+    std::string failure;  // errors that the call detected itself; empty: none
 };
 
 struct Twin {
@@ -67,7 +67,7 @@ struct Twin {
     double energyBudget = 0;  // J: what kinetic energy the calls so far account for, see Checks.h
 };
 
-// Of all that a user can read of a world: an unchanged one has an unchanged hash.
+// Hash of all that a user can read of a world.
 uint64_t HashOfState(const Twin& twin);
 
 // Whether all that a user can read is finite, and what else holds in every world after every call. Empty: it does.

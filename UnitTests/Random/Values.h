@@ -1,6 +1,5 @@
-// Random arguments of calls: ordinary ones, and among them extremes, of which a program's style says how many and
-// which. From the bits of one seed alone, so that a call has the same arguments whatever calls come before it. One
-// thread.
+// Random arguments of calls: ordinary ones and extremes, as the program's style says. They depend on one seed alone, so
+// that a call has the same arguments whatever calls precede it. One thread.
 #pragma once
 
 #include <Fulcrum/Math/Pose.h>
@@ -11,8 +10,8 @@
 
 namespace fulcrum::testing {
 
-// What kinds of arguments a program may have beside ordinary ones. All are on: a kind that is switched off here is a
-// kind of failure that is known and not mended yet.
+// What kinds of arguments a program may have beside ordinary ones. All are on; one that is switched off stands for a
+// known failure that is not fixed yet.
 struct RandomStyle {
     float oddChance = 0;          // of each number, to be an extreme one
     bool notFinite = true;        // NaN and infinity among the extremes

@@ -8,7 +8,7 @@ namespace fulcrum::testing {
 
 class Watch {
 public:
-    // Begins to watch; a call that takes longer than `seconds` ends the process.
+    // Starts the watchdog: a call that takes longer than `seconds` ends the process.
     explicit Watch(double seconds);
     ~Watch();
     Watch(const Watch&) = delete;

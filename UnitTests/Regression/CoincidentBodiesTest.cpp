@@ -10,7 +10,7 @@
 namespace fulcrum::testing {
 namespace {
 
-// What the bodies of a world at one point come to.
+// The result for bodies that start at one point.
 struct Burst {
     TestWorld world;
     std::vector<BodyId> ids;
@@ -68,8 +68,8 @@ TEST(CoincidentBodies, PointsOfAllIndicesFillTheBall) {
     for (const int count : octants) EXPECT_NEAR(count, kCount / 8, 5 * std::sqrt(kCount * 7 / 64.0));
 }
 
-// Of whatever shape, two of a kind part, and the same way whichever was made first.
-TEST(CoincidentBodies, TwoOfAKindPart) {
+// Two equal bodies of any shape separate, in the same way whichever was created first.
+TEST(CoincidentBodies, TwoEqualBodiesSeparate) {
     const ShapePtr shapes[] = {
         SphereOf(0.5f), CubeOf(0.5f), CapsuleOf(0.5f, 0.3f), HullOf({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}),
         CompoundOf({{.shape = CubeOf(0.3f), .position = {0.3f, 0, 0}}, {.shape = SphereOf(0.4f)}})};
@@ -104,7 +104,7 @@ void ExpectApart(int count, float radius, bool isSphere, bool hasFloor, double s
     burst.Run(seconds);
     EXPECT_LT(burst.world.Report().largestPenetration, 0.1f * radius);
     EXPECT_GT(burst.LeastDistance(), 1.8 * radius);
-    // What falls from the top of the heap is as fast as its way makes it.
+    // Bodies that fall from the top of the heap are as fast as free fall makes them.
     const double height = 2 * radius * std::cbrt(count) * 1.2, fall = hasFloor ? std::sqrt(2 * kGravity * height) : 0;
     EXPECT_LT(burst.fastest, std::max(5.0, fall));
     EXPECT_GT(burst.lowest, hasFloor ? 0.5 * radius : -5 * seconds);

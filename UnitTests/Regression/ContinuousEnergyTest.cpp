@@ -1,5 +1,5 @@
-// Continuous collision moves a body back to where it hit. Its velocities must be those of that time, and a hit must be
-// one of the body that turns: else every hit makes energy.
+// Continuous collision moves a body back to where it hit. Its velocities must be those of that time, and hits must take
+// the rotation into account: otherwise every hit adds energy.
 #include <Fulcrum/Collision/Shapes/Plane.h>
 #include <Fulcrum/UnitTests/Support/Cases.h>
 #include <Fulcrum/UnitTests/Support/Drops.h>

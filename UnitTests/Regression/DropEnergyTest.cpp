@@ -1,6 +1,6 @@
-// What falls, bounces, slides and tumbles without a drive never has more energy than it began with, however it is
-// stepped: Newton's law of restitution at several points, with friction, or at impulses of several substeps made up to
-// three times as much.
+// Bodies that fall, bounce, slide and tumble never have more energy than initially, whatever the time step. Newton's
+// law of restitution at several points, with friction, or for impulses of several substeps had made up to three times
+// as much.
 #include <Fulcrum/UnitTests/Support/Cases.h>
 #include <Fulcrum/UnitTests/Support/Drops.h>
 

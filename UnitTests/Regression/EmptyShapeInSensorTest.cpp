@@ -1,4 +1,4 @@
-// A body that rested in a sensor stayed inside for ever when one of the two got the empty shape.
+// A body that rested in a sensor stayed inside forever when one of the two got the empty shape.
 #include <Fulcrum/Collision/Shapes/EmptyShape.h>
 #include <Fulcrum/UnitTests/Physics/SensorTest.h>
 

@@ -30,7 +30,7 @@ public:
         for (int i = 0; hasJoints && i < count / 3; ++i) AddJoint();
     }
 
-    // Fails the test where something is not as it must be.
+    // Fails the test if a condition is violated.
     void Run(int steps) {
         for (int i = 0; i < steps; ++i) {
             if (i % 7 == 3) Meddle();
@@ -181,7 +181,7 @@ private:
     }
     BodyId AnyBody() { return bodies_[random_() % bodies_.size()].id; }
 
-    // What is refused is none of this test's business.
+    // Refused settings are not the subject of this test.
     void Meddle() {
         BodyInterface& bodies = world_.Bodies();
         for (int i = 0; i < 4; ++i) {

@@ -1,5 +1,5 @@
-// Two bodies whose joint is pulled apart by SetPose, up to 100 m and 180 degrees, of every kind and with everything on,
-// and how they find together. Made from a seed. One thread.
+// Two bodies whose joint is separated by SetPose, by up to 100 m and 180 degrees, of every kind and with everything on,
+// and how they come together. Made from a seed. One thread.
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/ConeJoint.h>
@@ -48,7 +48,7 @@ inline constexpr double kUnseen =
     0.05;  // of the work of motors and springs, of whose powers only the steps' ends are seen
 inline constexpr double kHeld = 0.25;  // s that they must be together on end
 
-// What became of a joint that was pulled apart.
+// The result for a joint that was separated.
 struct Recovery {
     double fastest = 0;     // m/s, of either body at any time
     double apart = 0;       // m or rad beyond the locks and the hard limits, at the end

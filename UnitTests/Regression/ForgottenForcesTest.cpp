@@ -1,4 +1,4 @@
-// A force of zero kept bodies awake, and one on a body that was put to sleep acted when it woke.
+// A force of zero kept bodies awake, and a force on a body that was put to sleep acted when it woke.
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
 namespace fulcrum::testing {

@@ -1,4 +1,4 @@
-// What the mixed scene and those of joints, surfaces and fast bodies come to, as one number each. Every build gives it:
+// Golden hashes of the mixed scene and of those of joints, surfaces and fast bodies. Every build must give them:
 // scalar, SSE2 and AVX2 lanes, gcc and clang, any number of threads. A change of the engine that is meant to change
 // results writes the new numbers here, which the failure prints.
 #include <Fulcrum/UnitTests/Support/FastScene.h>

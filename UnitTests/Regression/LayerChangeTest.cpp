@@ -1,4 +1,4 @@
-// Other layerCollides were not heeded by bodies that touched, or overlapped, already.
+// Changes of layerCollides had no effect on bodies that touched, or overlapped, already.
 #include <Fulcrum/UnitTests/Physics/SensorTest.h>
 
 namespace fulcrum::testing {

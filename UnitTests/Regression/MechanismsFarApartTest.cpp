@@ -18,7 +18,7 @@ constexpr float kTogether = 0.05f;  // m
 // m/s, root of the mean square that five seconds leave at most of bodies at rest.
 constexpr double kLeftBehind = 1.5;
 
-// Puts a body elsewhere and looks on for five seconds. speed: m/s, as kLeftBehind.
+// Moves a body elsewhere and runs five seconds. speed: m/s, as kLeftBehind.
 void ExpectToFollow(TestWorld& world, std::span<const BodyId> bodies, std::span<const JointId> joints, BodyId moved,
                     const Position& away, const Quaternion& turn, double speed) {
     SCOPED_TRACE(away);

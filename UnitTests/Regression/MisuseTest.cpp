@@ -1,5 +1,5 @@
-// Calls that would wait for themselves, for ever, and arguments that crashed: each is refused with an error that says
-// why, and nothing changes.
+// Calls that would deadlock, and arguments that crashed: each is refused with an error that says why, and nothing
+// changes.
 #include <Fulcrum/UnitTests/Support/Deadline.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
@@ -22,7 +22,7 @@ Hit Touching() {
 
 constexpr double kDeadline = 60;  // s
 
-// What was reported while it lives.
+// Collects the reported errors while it exists.
 class Reports {
 public:
     Reports() {
@@ -43,7 +43,7 @@ private:
     static inline std::vector<Error> theErrors;
 };
 
-// Does something whenever it is asked.
+// Runs a function whenever it is called.
 class Listener final : public ContactListener {
 public:
     explicit Listener(std::function<void()> act) : act_(std::move(act)) {}
@@ -141,7 +141,7 @@ TEST(Misuse, QueriesInAListenerAreRefusedAndReported) {
             ASSERT_FALSE(errors.empty());
             EXPECT_EQ(errors.front().code, ErrorCode::NotAllowedHere);
             EXPECT_NE(errors.front().message.find("listener"), std::string::npos);
-            // Outside they work as ever.
+            // Outside they work as usual.
             WorldRayHit hit;
             EXPECT_TRUE(world.System().Queries().CastRay({{0, 10, 0}, {0, -20, 0}}, hit));
             world.System().SetContactListener(nullptr);

@@ -1,12 +1,11 @@
-// The narrow phase may be changed between any two steps: what the one noted of pairs that touch is not taken for the
-// other's.
+// The narrow-phase method may be changed between any two steps: caches of pairs are not shared between methods.
 #include <Fulcrum/Collision/Shapes/RoundShapes.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
 namespace fulcrum::testing {
 namespace {
 
-TEST(NarrowPhaseChange, LeavesWhatRestsAtRest) {
+TEST(NarrowPhaseChange, LeavesRestingBodiesAtRest) {
     TestWorld world;
     world.AddFloor();
     const ShapePtr shapes[] = {SphereOf(0.5f), CubeOf(0.5f), CapsuleOf(0.5f, 0.5f),

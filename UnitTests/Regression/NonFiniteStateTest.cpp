@@ -1,6 +1,6 @@
-// A frozen body kept whatever the rows of its contacts made of its velocity, NaN included; that passed from body to
-// body, and the next build of a tree read beyond an array. Here NaN and infinity are written over every number of the
-// bodies' state, of contacts, joints and what they carry, one at a time.
+// A frozen body kept the velocity that its contact rows gave it, NaN included, which spread from body to body, until a
+// rebuild of a tree read out of bounds. Here NaN and infinity are written over every number of the bodies' state, of
+// contacts, joints and their impulses, one at a time.
 #include <Fulcrum/UnitTests/Support/Cases.h>
 #include <Fulcrum/UnitTests/Support/WorldAccess.h>
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>

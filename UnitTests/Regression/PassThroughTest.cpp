@@ -1,6 +1,6 @@
-// Boxes passed through each other: a body was not seen by another that moved along with it until something stopped one
-// of the two; two edges that met had a single point, about which the boxes turned into each other; and the softness of
-// a contact gave way under a heavy load faster than its push, which has a largest speed, could follow.
+// Boxes passed through each other: a body had no contact with another that moved along with it until something stopped
+// one of the two; two crossing edges had a single point, about which the boxes turned into each other; and the softness
+// of a contact gave way under a heavy load faster than its push, which has a largest speed, could follow.
 #include <Fulcrum/Collision/Queries/Distance.h>
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
@@ -30,7 +30,7 @@ float DepthOf(TestWorld& world, BodyId a, BodyId b) {
     return overlap ? -closest.distance : 0.0f;
 }
 
-TEST(PassThrough, WhatFallsTogetherIsSeenWhenTheGroundStopsTheFirst) {
+TEST(PassThrough, BodiesThatFallTogetherHaveContactsWhenTheGroundStopsTheFirst) {
     for (const double gap : {0.03, 0.06, 0.1, 0.15, 0.2, 0.25}) {
         TestWorld world;
         world.AddFloor();
@@ -47,9 +47,9 @@ TEST(PassThrough, WhatFallsTogetherIsSeenWhenTheGroundStopsTheFirst) {
     }
 }
 
-// What turns at 20 rad/s moves by 1.7 m a step, 5 m out, while its center rests. What is in its way there is hit, and
-// leaves with at least half the speed of the place where it was hit.
-TEST(PassThrough, WhatTurnsFastHitsWhatIsInItsWay) {
+// The end of an arm of 5 m that turns at 20 rad/s moves by 1.7 m a step, while its center rests. Bodies in its way are
+// hit, and leave with at least half the speed of the point that hit them.
+TEST(PassThrough, AFastRotatingBodyHitsBodiesInItsWay) {
     constexpr float kArm = 5, kSpin = 20;  // m, rad/s
     const Vector3 corners[] = {{0, 0, -1}, {kArm + 0.5f, 0, -1}, {kArm + 0.5f, 0, 1}, {0, 0, 1}};
     const uint32_t indices[] = {0, 2, 1, 0, 3, 2};
@@ -165,7 +165,7 @@ TEST(PassThrough, AStackThatFallsIsNotSquashed) {
     EXPECT_LT(meter.Worst().relative, 0.1);
 }
 
-TEST(PassThrough, TheMeterSeesWhatNoContactSays) {
+TEST(PassThrough, TheMeterMeasuresOverlapsWithoutContacts) {
     const auto noGravity = [](SystemSettings& settings) { settings.gravity.setZero(); };
     static Scene scene{.name = "overlapped", .description = ""};
     scene.adjust = noGravity;

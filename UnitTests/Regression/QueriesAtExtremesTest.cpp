@@ -1,5 +1,4 @@
-// Queries and shapes with odd numbers: what random programs of public calls have found, each as small as it could be
-// made.
+// Queries and shapes with extreme numbers: minimal cases of failures that random programs have found.
 #include <Fulcrum/Collision/Queries/Distance.h>
 #include <Fulcrum/Collision/Shapes/EmptyShape.h>
 #include <Fulcrum/Collision/Shapes/HeightField.h>
@@ -24,7 +23,7 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-// One ray of a batch must not change what the 31 others meet, whatever its numbers are.
+// One ray of a batch must not change the hits of the 31 others, whatever its numbers are.
 TEST(QueriesAtExtremes, AnOddRayDoesNotSpoilItsBatch) {
     TestWorld world;
     world.AddFloor();
@@ -105,8 +104,8 @@ TEST(QueriesAtExtremes, AllHitsAreListedUpToTheFractionThatIsAskedFor) {
     }
 }
 
-// Where coordinates round by more than the shapes are thick, libccd's MPR refined its portal for ever: one pair of four
-// here.
+// If the rounding of coordinates exceeds the thickness of the shapes, libccd's MPR refined its portal forever: one pair
+// of four here.
 TEST(QueriesAtExtremes, ClosestPointsOfFieldsWithAnEndlessSpikeAreFound) {
     RandomPoses random(1);
     constexpr float kSpike = 3.3e12f;
@@ -147,7 +146,7 @@ TEST(QueriesAtExtremes, ALongRayMeetsATurnedCompoundWhereAShortOneDoes) {
     }
 }
 
-TEST(QueriesAtExtremes, NothingMeetsTheEmptyShape) {
+TEST(QueriesAtExtremes, NothingTouchesTheEmptyShape) {
     const std::shared_ptr<const EmptyShape> empty = EmptyShape::Create();
     const RayCaster ray({Position(0, 1, 0), Vector3(0, -2, 0)});
     RayHit hit;

@@ -1,5 +1,4 @@
-// A ragdoll's calls that were refused half-way had moved, woken or made some parts: whatever is refused leaves all as
-// it was.
+// Calls of a ragdoll that failed half-way had moved, woken or created some parts: failing calls must change nothing.
 #include <Fulcrum/Collision/Shapes/Plane.h>
 #include <Fulcrum/Physics/Ragdoll/Ragdoll.h>
 #include <Fulcrum/Samples/Scenes/Humanoid.h>

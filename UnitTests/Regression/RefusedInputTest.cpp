@@ -1,5 +1,5 @@
-// Enumerators that are none, positions that no float holds, and shapes that a body's settings forbid were accepted;
-// poses lost bits on the way there and back.
+// Invalid enumerators, positions beyond the range of float, and shapes that a body's settings do not allow were
+// accepted; poses lost bits in a round trip.
 #include <Fulcrum/Collision/Shapes/TriangleMesh.h>
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 

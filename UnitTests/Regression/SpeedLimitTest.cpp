@@ -1,5 +1,5 @@
-// The largest speeds of a body were asked for before the solve alone: contacts, joints, bounces and hits of continuous
-// collision left bodies faster than them, poses moved as fast as that, and each substep that clamped counted as a body.
+// The largest speeds of a body were applied before the solve alone: contacts, joints, bounces and hits of continuous
+// collision left bodies faster, poses moved as fast, and each clamping substep counted as a body.
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What the documents say of the performance scenes (Docs/figures.json) is what the scenes are.
+// The documents' data about the performance scenes (Docs/figures.json) match the scenes.
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
 #include <Fulcrum/Samples/Scenes/Scenes.h>
 

@@ -1,4 +1,4 @@
-// Where --json goes: a file, or standard output, which then has nothing else.
+// The output of --json: a file, or standard output, which then has nothing else.
 #include <Fulcrum/Samples/Runner/Commands.h>
 #include <Fulcrum/Samples/Runner/JsonOutput.h>
 

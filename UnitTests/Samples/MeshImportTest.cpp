@@ -1,4 +1,4 @@
-// Mesh files as shapes: good ones, and those that have nothing to drop.
+// Import of mesh files as shapes: valid files, and files without usable meshes.
 #include <Fulcrum/Collision/Shapes/Compound.h>
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
 #include <Fulcrum/Samples/Runner/MeshImport.h>
@@ -13,7 +13,7 @@
 #include <fstream>
 #include <sstream>
 
-// assimp itself loses a little memory where a file is broken; the leak checker asks this for what to pass over.
+// assimp leaks a little memory for broken files; this names the leaks to suppress.
 extern "C" const char* __lsan_default_suppressions();
 extern "C" const char* __lsan_default_suppressions() { return "leak:libassimp"; }
 
@@ -118,7 +118,7 @@ TEST_F(MeshFiles, NodesPlaceTheirMeshes) {
     EXPECT_NEAR(read.Value().shape->LocalBounds().upper.y() - read.Value().shape->LocalBounds().lower.y(), 2, 1e-4);
 }
 
-TEST_F(MeshFiles, WhatCannotBeDroppedIsExplained) {
+TEST_F(MeshFiles, InvalidMeshesAreErrorsWithAReason) {
     EXPECT_NE(Complaint(folder_ / "absent.obj").find("no file"), std::string::npos);
     EXPECT_NE(Complaint(folder_).find("not a file"), std::string::npos);
     EXPECT_NE(Complaint(Write("empty.obj", "")).find("empty.obj"), std::string::npos);
@@ -248,7 +248,7 @@ TEST_F(MeshGrounds, NodesPlaceTheirTrianglesAndMirroredOnesKeepTheirFronts) {
     }
 }
 
-TEST_F(MeshGrounds, WhatIsMendedIsSaid) {
+TEST_F(MeshGrounds, RepairsAreReported) {
     // The two squares of a step share no vertices, as in every STL; a face twice; one without area; a line.
     const ImportedMesh read =
         Import(Write("mended.obj",
@@ -266,7 +266,7 @@ TEST_F(MeshGrounds, WhatIsMendedIsSaid) {
         EXPECT_NE(all.find(part), std::string::npos) << part << " is not in:\n" << all;
 }
 
-TEST_F(MeshGrounds, WhatIsNoGroundIsRefused) {
+TEST_F(MeshGrounds, InvalidGroundsAreRefused) {
     EXPECT_NE(Refusal(folder_ / "absent.obj").find("no file"), std::string::npos);
     EXPECT_NE(Refusal(Write("text.txt", "no mesh at all")).find("cannot be read"), std::string::npos);
     const std::string line = Refusal(Write("line.obj", "v 0 0 0\nv 1 0 0\nv 2 1 0\nl 1 2 3\n"));

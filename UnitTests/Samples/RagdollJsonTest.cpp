@@ -1,4 +1,4 @@
-// Ragdolls as JSON: there and back, the file of the humanoid, and errors that name the place in the document.
+// Ragdolls as JSON: round trips, the file of the humanoid, and errors that name the path in the document.
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
 #include <Fulcrum/Physics/Ragdoll/Ragdoll.h>

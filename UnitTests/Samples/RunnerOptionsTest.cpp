@@ -1,4 +1,4 @@
-// What ./fulcrum run and drop understand, and how they answer what they do not.
+// The command lines of ./fulcrum run and drop, and their error messages.
 #include <Fulcrum/Samples/Runner/NearestName.h>
 #include <Fulcrum/Samples/Runner/Options.h>
 #include <Fulcrum/Samples/Scenes/Scenes.h>
@@ -130,7 +130,7 @@ TEST(RunnerOptions, ListAndHelp) {
         EXPECT_NE(help.help.find(option), std::string::npos) << option;
 }
 
-TEST(RunnerOptions, UnknownNamesAreAnsweredWithTheNearest) {
+TEST(RunnerOptions, ErrorsOfUnknownNamesSuggestTheNearest) {
     ExpectComplaint("run pyramyd", "unknown scene 'pyramyd'; the nearest is 'pyramid'");
     ExpectComplaint("run drumm --steps 3", "'drum'");
     ExpectComplaint("run pyramid --stpes 5", "unknown option '--stpes'; the nearest is '--steps'");
@@ -143,7 +143,7 @@ TEST(RunnerOptions, UnknownNamesAreAnsweredWithTheNearest) {
     ExpectComplaint("drop teapot.obj --coutn 5", "'--count'");
 }
 
-TEST(RunnerOptions, ValuesOutsideAreAnsweredWithTheNearest) {
+TEST(RunnerOptions, ErrorsOfValuesOutOfRangeSuggestTheNearest) {
     ExpectComplaint("run pyramid --steps 0", "--steps 0 is outside 1 to 10000000; the nearest valid value is 1");
     ExpectComplaint("run pyramid --steps -4", "nearest valid value is 1");
     ExpectComplaint("run pyramid --steps 99999999999999999999", "nearest valid value is 10000000");
@@ -158,7 +158,7 @@ TEST(RunnerOptions, ValuesOutsideAreAnsweredWithTheNearest) {
     ExpectComplaint("drop teapot.obj --count 0", "nearest valid value is 1");
 }
 
-TEST(RunnerOptions, WhatIsNoNumberIsAnsweredWithWhatIsExpected) {
+TEST(RunnerOptions, ErrorsOfInvalidNumbersSayWhatIsExpected) {
     ExpectComplaint("run pyramid --steps many", "--steps takes a whole number from 1 to 10000000, not 'many'");
     ExpectComplaint("run pyramid --steps 3.5", "whole number");
     ExpectComplaint("run pyramid --steps 3x", "whole number");

@@ -1,5 +1,5 @@
-// A recording made by formula, without the engine: a pyramid of cubes whose layers fall onto each other and come to
-// rest, under a ring of one body of each other shape that fly past, turning. For the tests of the viewer.
+// A recording computed by formulas, without the engine: a pyramid of cubes whose layers fall onto each other and come
+// to rest, under a ring of one body of each other shape that fly past, turning. For the tests of the viewer.
 #pragma once
 
 #include <Fulcrum/Samples/Viewer/Recording.h>

@@ -1,5 +1,5 @@
-// How many random cases a test runs: all of them in a normal build, a tenth under the sanitizers, which look for other
-// mistakes than the tenth case in ten finds and take twenty times as long.
+// The number of random cases of a test: all in a normal build, a tenth under the sanitizers, which are twenty times
+// slower.
 #pragma once
 
 #include <algorithm>

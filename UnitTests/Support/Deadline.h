@@ -1,4 +1,4 @@
-// Runs what may wait for ever: then the test program ends with a message instead of hanging.
+// Runs code that may deadlock: then the test program ends with a message instead of hanging.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 
 namespace fulcrum::testing {
 
-// A thread that is stuck cannot be ended: the program is.
+// A blocked thread cannot be ended, so the program is.
 template <class Call>
 void Within(double seconds, const Call& call) {
     std::future<void> done = std::async(std::launch::async, call);

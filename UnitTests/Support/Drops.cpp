@@ -90,8 +90,8 @@ public:
     }
 
 private:
-    // In the air all fly towards the middle of their group; else they start one above the other.
-    // Groups do not see each other.
+    // In the air all fly towards the middle of their group; else they start one above the other. Groups do not collide
+    // with each other.
     BodyId AddBody(RandomPoses& random, const Position& middle, int i) {
         const ShapePtr shape = RandomShape(random, settings_.together == 1 ? 4.0f : 1.0f);
         const float reach = shape->OuterRadius();

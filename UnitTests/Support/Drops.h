@@ -1,5 +1,5 @@
-// Random rods, plates, boxes and hulls that fall onto something or onto each other, and the energy that they have
-// meanwhile: without what drives them it only falls. Of the public interface alone. One thread.
+// Random rods, plates, boxes and hulls that fall onto something or onto each other, and their energy, which only falls,
+// since nothing drives them. Of the public interface alone. One thread.
 #pragma once
 
 #include <Fulcrum/Physics/PhysicsSystem.h>
@@ -27,8 +27,8 @@ ShapePtr HillyGround(float height);
 // "Floor, 1 of Linear, restitution 0.5, ...".
 std::string NameOf(const DropSettings& settings);
 
-// What is largest of the energies of groups that are dropped, relative to what each began with; its potential counts
-// from the ground.
+// The largest energy of the dropped groups, relative to each one's initial energy; potential energy counts from the
+// ground.
 struct DropEnergy {
     double most = 0;           // at any time
     double gain = 0;           // above the least before

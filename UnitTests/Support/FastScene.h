@@ -1,5 +1,5 @@
-// Fast bodies of every convex kind in a room with a mesh floor and a turning paddle: the scene by which builds, threads
-// and versions are held against each other where continuous collision is concerned.
+// Fast bodies of every convex kind in a room with a mesh floor and a turning paddle: the scene for comparing builds,
+// threads and versions of continuous collision.
 #pragma once
 
 #include <Fulcrum/UnitTests/Support/TestWorld.h>

@@ -1,5 +1,4 @@
-// Joints of every kind at work, in one world: the scene by which builds, threads and versions are held against each
-// other where the mixed scene has nothing to say.
+// Joints of every kind in one world: the scene for comparing builds, threads and versions of joints.
 #pragma once
 
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
@@ -18,7 +17,7 @@ public:
 
     explicit JointScene(TestWorld& world);
     void BeforeStep(int step);
-    // Fails the test where what is to happen in the course of the scene has not.
+    // Fails the test if expected events of the scene have not happened.
     void ExpectAllHappened() const;
     // Of the bodies' poses and velocities, and of where joints are and what they carry.
     uint64_t Hash() const;

@@ -1,4 +1,4 @@
-// What there is in the scene.
+// The bodies and joints of the scene.
 #include <Fulcrum/UnitTests/Support/JointScene.h>
 
 #include <Fulcrum/Math/Trigonometry.h>
@@ -18,7 +18,7 @@ Settings BetweenTwo(BodyId a, BodyId b, const Position& pointA, const Position& 
     return settings;
 }
 
-// A body of a mechanism: these pass through each other.
+// A body of a mechanism; these do not collide with each other.
 BodyId AddPart(TestWorld& world, const ShapePtr& shape, const Position& place, float mass = 0) {
     return world.Add({.shape = shape, .position = place, .mass = mass, .layer = 1});
 }

@@ -20,7 +20,7 @@ MixedScene::MixedScene(TestWorld& world) : world_(world) {
         return static_cast<float>((random = random * 1664525u + 1013904223u) >> 8) / 16777216.0f;
     };
     for (int i = 0; i < 150; ++i) {
-        // One number after the other: arguments are evaluated in any order.
+        // In separate statements: the order of evaluation of arguments is unspecified.
         const float x = number(), y = number(), z = number(), w = number(), bounce = number();
         BodySettings settings;
         settings.shape = shapes[i % 5];
@@ -36,7 +36,7 @@ MixedScene::MixedScene(TestWorld& world) : world_(world) {
         if (i == 20) pushed_ = id;
         if (i == 40) removed_ = id;
     }
-    // Towers that fall asleep, so that this counts too.
+    // Towers that fall asleep, so that sleeping is covered too.
     for (int i = 0; i < 12; ++i) world.Add({.shape = CubeOf(0.5f), .position = {-20.0 - 3 * (i / 3), 0.5 + i % 3, 0}});
     sweeper_ = world.Add({.shape = BoxOf(0.3f, 0.5f, 5), .motion = MotionType::Kinematic, .position = {-6, 0.6, 0}});
 }

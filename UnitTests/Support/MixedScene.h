@@ -1,4 +1,4 @@
-// One of everything, in a heap: the scene by whose poses builds, threads and versions are held against each other.
+// One of everything, in a heap: the scene for comparing builds, threads and versions by their poses.
 #pragma once
 
 #include <Fulcrum/UnitTests/Support/TestWorld.h>

@@ -1,5 +1,5 @@
-// Bodies of every shape on meshes, height fields, planes and seams between boxes: the scene by which builds, threads
-// and versions are held against each other where the mixed scene has nothing to say.
+// Bodies of every shape on meshes, height fields, planes and seams between boxes: the scene for comparing builds,
+// threads and versions of contacts with surfaces.
 #pragma once
 
 #include <Fulcrum/UnitTests/Support/TestWorld.h>

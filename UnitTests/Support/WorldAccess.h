@@ -1,4 +1,4 @@
-// For tests that spoil what no call of the interface reaches: the world behind a system.
+// Access to the internal state of a system, for tests that corrupt it on purpose.
 #pragma once
 
 #include <Fulcrum/Physics/PhysicsSystem.h>

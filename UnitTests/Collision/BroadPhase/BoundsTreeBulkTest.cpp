@@ -1,4 +1,4 @@
-// What is asked of all leaves of a tree at once, against what is asked of each.
+// Bulk updates and pair searches of a tree, against single updates and queries.
 #include <Fulcrum/Collision/BroadPhase/BoundsTreeBulk.h>
 #include <Fulcrum/UnitTests/Support/RandomPoses.h>
 
@@ -52,7 +52,7 @@ void ExpectAllGroups(const BoundsTree& tree, const std::vector<Bounds>& boxes) {
     for (uint32_t id = 0; id < boxes.size(); ++id) EXPECT_EQ(seen.count(id), tree.Contains(id) ? 1u : 0u);
 }
 
-// Built, half built with later arrivals, with holes, and with a floor that hangs in the root.
+// Rebuilt, with recent insertions, with holes, and with a floor that hangs in the root.
 TEST(BoundsTreeBulk, FindsEachPairOnceAndEachLeafOnce) {
     for (uint32_t size : {1u, 2u, 9u, 64u, 65u, 500u}) {
         RandomPoses random(size);
@@ -79,7 +79,7 @@ TEST(BoundsTreeBulk, FindsEachPairOnceAndEachLeafOnce) {
     }
 }
 
-TEST(BoundsTreeBulk, WritesAllLeavesAndStaysWhole) {
+TEST(BoundsTreeBulk, WritesAllLeavesAndStaysValid) {
     RandomPoses random(5);
     BoundsTree tree;
     std::vector<Bounds> boxes(600);
@@ -97,7 +97,7 @@ TEST(BoundsTreeBulk, WritesAllLeavesAndStaysWhole) {
     }
 }
 
-// What is above the leaves is as tight as after one update each.
+// Ancestors are as tight as after single updates.
 TEST(BoundsTreeBulk, LeavesTheTreeAsGoodAsSingleUpdatesDo) {
     RandomPoses random(6);
     BoundsTree together, single;

@@ -16,7 +16,7 @@ protected:
         const float x = Between(-half, half), y = Between(-half, half), z = Between(-half, half);
         return Vector3(x, y, z);
     }
-    // Built, with recent arrivals and holes.
+    // Rebuilt, with recent insertions and holes.
     void Fill(int count, const Position& origin) {
         for (int i = 0; i < count; ++i) {
             const Vector3 center = InCube(10), half = InCube(0.5f).cwiseAbs();
@@ -27,7 +27,7 @@ protected:
         }
         for (uint32_t i = 0; i < static_cast<uint32_t>(count); i += 7) tree_.Remove(i);
     }
-    // Where the box, grown, is entered; negative: not within the ray.
+    // The fraction at which the enlarged box is entered; negative: not hit.
     double Entry(size_t box, const Position& o, const Vector3& d, const Vector3& half) const {
         double enter = 0, leave = 1;
         for (int axis = 0; axis < 3; ++axis) {
@@ -74,7 +74,7 @@ TEST_F(BoundsTreeCasts, RaysAndMovingBoxesFindAllThatALoopFinds) {
                 extra += seen[b] != 0 && !expected;
             }
         }
-        // What a rounding brings in is rare; at 10^5 m floats are 0.008 m apart.
+        // Superfluous leaves by rounding are rare; at 10^5 m floats are 0.008 m apart.
         EXPECT_GT(found, 3000u);
         EXPECT_LT(extra, found / (origin.x() == 0 ? 1000 : 10));
     }

@@ -1,4 +1,4 @@
-// The tree against a list of boxes that is searched one by one.
+// The tree against brute force over a list of boxes.
 #include <Fulcrum/Collision/BroadPhase/BoundsTree.h>
 
 #include <gtest/gtest.h>
@@ -102,7 +102,7 @@ TEST(BoundsTree, AgreesWithBruteForceUnderRandomOperations) {
     }
 }
 
-// Recent arrivals are found before any upkeep, and so they are after each kind of it.
+// Recent insertions are found before and after Optimize and Rebuild.
 TEST(BoundsTree, FindsTenThousandBoxesBeforeAndAfterTheBuild) {
     Random random;
     Reference reference;
@@ -126,7 +126,7 @@ TEST(BoundsTree, FindsTenThousandBoxesBeforeAndAfterTheBuild) {
 }
 
 // One by one, at every size around those at which nodes fill and the tree grows in height.
-TEST(BoundsTree, IsWholeAtEverySize) {
+TEST(BoundsTree, IsValidAtEverySize) {
     Random random;
     for (uint32_t count = 1; count <= 600; count += count < 140 ? 1 : 37) {
         Reference reference;
@@ -185,7 +185,7 @@ TEST(BoundsTree, VisitsLessThanOneNodeMoreBecauseOfAFloor) {
 }
 
 // Points on a line whose distances span all of the floats: no equal halves in space, no area, sums beyond the floats.
-TEST(BoundsTree, WhatLiesBeyondCountsAsLyingAtTheFarthest) {
+TEST(BoundsTree, ClampsCoordinatesBeyondTheFarthest) {
     const float infinite = std::numeric_limits<float>::infinity();
     BoundsTree tree;
     tree.Insert(0, Box(Vector3::Constant(3e38f), Vector3::Constant(infinite)));
@@ -283,8 +283,8 @@ TEST(BoundsTree, TellsTheBoundsOfALeafAndOfAll) {
     EXPECT_EQ(tree.TotalBounds().upper, total.upper);
 }
 
-// Every leaf moves each step. A build pays when the summed excess of the nodes' area over that of the last build passes
-// 0.3, so none larger remains; two builds of the same leaves differ by less than 0.1.
+// Every leaf moves each step. A rebuild is due when the summed excess of the nodes' area over that of the last build
+// exceeds 0.3, so none larger remains; two builds of the same leaves differ by less than 0.1.
 TEST(BoundsTree, StaysAlmostAsGoodAsNewWhileAllLeavesMove) {
     Random random;
     std::vector<Vector3> centers, velocities;
@@ -309,7 +309,7 @@ TEST(BoundsTree, StaysAlmostAsGoodAsNewWhileAllLeavesMove) {
     EXPECT_LT(tree.Cost(), 1.4f * fresh.Cost());
 }
 
-// All that it holds is in its own buffers, whose capacities are what MemoryUsed counts.
+// MemoryUsed counts the capacities of all buffers.
 TEST(BoundsTree, HoldsLittleMemoryAndNoMoreInASteadyState) {
     constexpr uint32_t kCount = 10000;
     Random random;
@@ -326,7 +326,7 @@ TEST(BoundsTree, HoldsLittleMemoryAndNoMoreInASteadyState) {
     EXPECT_EQ(tree.MemoryUsed(), before);
 }
 
-TEST(BoundsTree, AnswersManyThreadsAtOnce) {
+TEST(BoundsTree, AnswersQueriesOfManyThreads) {
     Random random;
     Reference reference;
     for (uint32_t id = 0; id < 3000; ++id) reference.Insert(id, random.Box(20, 1));
@@ -344,7 +344,7 @@ TEST(BoundsTree, AnswersManyThreadsAtOnce) {
 }
 
 #ifdef FULCRUM_ASSERTIONS
-TEST(BoundsTreeDeathTest, RejectsWhatIsNoBoxAndWhatIsNotThere) {
+TEST(BoundsTreeDeathTest, RejectsInvalidBoxesAndMissingLeaves) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const Bounds box = Box(Vector3(0, 0, 0), Vector3(1, 1, 1));
     BoundsTree tree;

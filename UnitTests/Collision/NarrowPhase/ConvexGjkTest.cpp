@@ -67,7 +67,7 @@ TEST(ConvexGjk, ItsAxisSeparatesAsFarAsItsPointsAreApart) {
     EXPECT_GT(overlapping, 1000);
 }
 
-TEST(ConvexGjk, OverlapIsToldFromDistance) {
+TEST(ConvexGjk, DistinguishesOverlapFromDistance) {
     RandomPoses random(7);
     const ConvexPtr a = MakeEllipsoid(Vector3(0.3f, 0.6f, 0.9f)), b = MakeSphere(1);
     for (int i = 0; i < 2000; ++i) {

@@ -1,4 +1,4 @@
-// GJK and EPA against the exhaustive search through all separating axes.
+// GJK and EPA against the full separating axis test.
 #include "NarrowPhaseTesting.h"
 
 #include <Fulcrum/Collision/NarrowPhase/AxisSearch.h>
@@ -50,7 +50,7 @@ TEST(Epa, FindsTheDepthThatTheSearchThroughAllAxesFinds) {
         }
     }
     EXPECT_GT(overlapping, 3000);
-    // Where it gives up the search takes over, 100 times slower.
+    // If it gives up, the full separating axis test is used, 100 times slower.
     EXPECT_LE(gaveUp, overlapping / 50);
     RecordProperty("overlapping", overlapping);
     RecordProperty("gaveUp", gaveUp);
@@ -98,7 +98,7 @@ TEST(Epa, GrowsASimplexOfFewerThanFourVertices) {
     EXPECT_EQ(Epa(flat, simplex).status, EpaResult::Status::Failed);
 }
 
-// The search is what remains where EPA gives up, most often with something flat: no direction separates better than its
+// The separating axis test is used if EPA gives up, mostly for flat shapes: no direction may separate better than its
 // axis.
 TEST(AxisSearch, FindsTheBestOfAllDirectionsForFlatPolyhedraToo) {
     const std::vector<NamedShape> shapes = {

@@ -136,7 +136,7 @@ TEST(Manifold, EdgesCrossInOnePoint) {
 
 // Two cubes of side 1, gap 0.01, corner over corner along the diagonal: the distance is that of the corners, along the
 // diagonal.
-TEST(Manifold, CornersApartSeeEachOther) {
+TEST(Manifold, SeparatedCornersHaveASpeculativePoint) {
     const ConvexPtr box = MakeBox(Vector3(0.5f, 0.5f, 0.5f));
     const float gap = 0.01f;
     const Vector3 diagonal = Vector3::Constant(1 / std::sqrt(3.0f));
@@ -156,7 +156,7 @@ TEST(Manifold, ParallelCapsulesTouchInTwoPoints) {
     for (int i = 0; i < 2; ++i) EXPECT_NEAR(m.points[i].separation, -0.01f, 1e-6f);
 }
 
-TEST(Manifold, CrossingCapsulesPartAcrossBoth) {
+TEST(Manifold, CrossingCapsulesSeparateAlongTheCrossProduct) {
     const ConvexPtr capsule = MakeCapsule(0.5f, 0.2f);
     const float h = std::sqrt(0.5f);
     for (const float offset : {0.0f, 1e-9f, 1e-4f, -0.1f}) {
@@ -178,7 +178,7 @@ TEST(Manifold, CapsuleLyingOnABoxTouchesInTwoPoints) {
 }
 
 // Concentric, contained, needle and flake: always a unit normal, and moving B out by the depth parts them.
-TEST(Manifold, DegenerateOverlapsHaveAWayOut) {
+TEST(Manifold, DegenerateOverlapsHaveANormal) {
     const std::vector<NamedShape> shapes = {{"sphere", MakeSphere(0.5f)},
                                             {"box", MakeBox(Vector3(0.5f, 0.4f, 0.7f))},
                                             {"needle", MakeBox(Vector3(0.001f, 2, 0.001f))},

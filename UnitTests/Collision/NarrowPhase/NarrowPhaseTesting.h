@@ -1,5 +1,5 @@
-// What the narrow phase's tests share: shapes, random poses and measures in double that know nothing of the code under
-// test but the shapes' support functions.
+// Helpers of the narrow phase's tests: shapes, random poses and reference measures in double that use only the shapes'
+// support functions.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/Collide.h>
@@ -37,7 +37,7 @@ inline ConvexPtr MakeRoundHull(int count, float radius) {
     return MakeHull(points);
 }
 
-// Curved everywhere: no simplex and no facet of it is ever the last. As a user would write it.
+// A custom shape that is curved everywhere, so that GJK and EPA only converge.
 class Ellipsoid final : public CustomConvex {
 public:
     explicit Ellipsoid(const Vector3& radii) : radii_(radii) {}

@@ -26,7 +26,7 @@ std::vector<std::shared_ptr<const ConvexShape>> Shapes() {
             ConvexHull::Create(points, {.convexRadius = 0.05f}).Value()};
 }
 
-TEST(Plane, RefusesWhatIsNoPlane) {
+TEST(Plane, RefusesInvalidPlanes) {
     EXPECT_EQ(Plane::Create(Vector3::Zero()).GetError().code, ErrorCode::Degenerate);
     EXPECT_EQ(Plane::Create(Vector3(0, NAN, 0)).GetError().code, ErrorCode::NonFinite);
     EXPECT_EQ(Plane::Create(Vector3(0, 1, 0), INFINITY).GetError().code, ErrorCode::NonFinite);

@@ -1,5 +1,5 @@
-// What the tests of the queries share: shapes known by a support function alone, a surface without a tree, and measures
-// that know nothing of the code under test.
+// Helpers of the tests of the queries: shapes given by a support function alone, a surface without a tree, and
+// independent reference measures.
 #pragma once
 
 #include <Fulcrum/UnitTests/Collision/NarrowPhase/NarrowPhaseTesting.h>
@@ -11,7 +11,7 @@
 
 namespace fulcrum::testing {
 
-// Curved everywhere. EnterBySupport and the casts take it; it is no type of the shape table.
+// Curved everywhere. For EnterBySupport and the casts; it is not in the pair table.
 class RoundedEllipsoid final : public ConvexShape {
 public:
     explicit RoundedEllipsoid(const Vector3& radii, float rounding = 0)
@@ -41,7 +41,7 @@ inline std::vector<NamedShape> QueryShapes() {
             {"plank", MakeBox(Vector3(3, 0.01f, 0.5f))}};
 }
 
-// Triangles in a list, each looked at every time, in double where it matters.
+// Brute force over a list of triangles, in double where it matters.
 class TriangleList final : public SurfaceShape {
 public:
     explicit TriangleList(const std::vector<std::array<Vector3, 3>>& triangles, bool isTwoSided = false)

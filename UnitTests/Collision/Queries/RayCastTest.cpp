@@ -1,5 +1,5 @@
-// Rays against single shapes. What a ray hits is checked by where the hit lies: on the surface, with nothing of the
-// shape before it, both measured by distances of points, which know nothing of rays.
+// Rays against single shapes. A hit must lie on the surface, and no point of the ray before it in the shape, both
+// checked by distances of points.
 #include "QueryTesting.h"
 
 #include <Fulcrum/Collision/Queries/ConvexDistance.h>
@@ -81,7 +81,7 @@ TEST(RayCast, ShapesKnownBySupportAreHitAsTheirFormulaSays) {
         const double a = d.squaredNorm(), b = o.dot(d), c = o.squaredNorm() - 1, root = b * b - a * c;
         const double entry = (-b - std::sqrt(std::max(root, 0.0))) / a;
         const bool isInside = c < 0, expected = isInside || (root >= 0 && entry >= 0 && entry <= 1);
-        // Within 1e-5 of the surface a float cannot tell.
+        // Within 1e-5 of the surface either result is right.
         if (std::abs(root) < 1e-4 * a || std::abs(c) < 1e-4 || std::abs(entry - 1) < 1e-4) continue;
         ASSERT_EQ(found.hit, expected) << i;
         if (!expected) continue;

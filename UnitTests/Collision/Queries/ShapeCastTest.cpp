@@ -1,5 +1,4 @@
-// Moving shapes. Nothing overlaps before the time of the hit and something touches at it, both by distances at that
-// time.
+// Shape casts. Nothing overlaps before the time of the hit and the shapes touch at it, both checked by distances.
 #include "QueryTesting.h"
 
 #include <Fulcrum/Collision/Queries/ConvexDistance.h>

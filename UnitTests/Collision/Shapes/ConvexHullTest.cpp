@@ -69,7 +69,7 @@ TEST(ConvexHull, RefusesSizesWhoseInertiaIsNoNormalFloat) {
     EXPECT_TRUE(ConvexHull::Create(test::BoxCorners(Vector3(1, 1, 1) * 1e6f)));
 }
 
-// Faces, edges, vertices and lanes tell the same story, whatever the points.
+// Faces, edges, vertices and lanes are consistent, whatever the points.
 void ExpectConsistent(const ConvexHull& hull) {
     const auto vertices = hull.Vertices();
     const auto faces = hull.Faces();

@@ -1,5 +1,5 @@
-// Input without volume, without area, without numbers: repaired, with a report of what was, or refused with the reason.
-// A table of each kind; the details are in the tests of the shapes.
+// Degenerate input (no volume, no area, NaN): repaired, with a report, or refused with the reason. A table for each
+// kind; details are in the tests of the shapes.
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
 #include <Fulcrum/Collision/Shapes/HeightField.h>
 #include <Fulcrum/Collision/Shapes/Plane.h>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinite = std::numeric_limits<float>::infinity();
 
-// What Create answered.
+// The result of Create.
 struct Answer {
     ShapePtr shape;  // null: refused
     ErrorCode code{};

@@ -163,7 +163,7 @@ TEST(HeightField, EditsChangeWhatTheySay) {
         EXPECT_TRUE(changed.Value().Contains(moved));
         for (uint32_t z = 0; z < countZ; ++z)
             for (uint32_t x = 0; x < countX; ++x) samples.heights[(z0 + z) * 40 + x0 + x] = heights[z * countX + x];
-        // As if made anew: nothing is left of what was.
+        // As if created again: earlier contents have no effect.
         const FieldPtr fresh = HeightField::Create(samples.Settings()).Value();
         EXPECT_EQ(field->LocalBounds().lower, fresh->LocalBounds().lower);
         EXPECT_EQ(field->LocalBounds().upper, fresh->LocalBounds().upper);

@@ -1,4 +1,4 @@
-// What a triangle mesh makes of bad input, which edges it calls active, its scaled instances, its determinism.
+// Repair of bad meshes, active edges, scaled instances, determinism.
 #include <Fulcrum/UnitTests/Collision/Shapes/SurfaceChecks.h>
 
 #include <atomic>
@@ -72,7 +72,7 @@ TEST(MeshRepair, WeldsExactlyWithinTheDistance) {
         for (uint32_t k = 0; k < i; ++k) ASSERT_GT(Length(mesh->Vertex(i) - mesh->Vertex(k)), 1.9999e-3f);
 }
 
-// Random garbage of every kind of float: refused or built, and what is built answers queries as brute force does.
+// Random garbage of every kind of float: refused, or built so that queries agree with brute force.
 TEST(MeshRepair, SurvivesAnyInput) {
     std::mt19937 engine(1);
     SurfaceRandom random(1);

@@ -1,4 +1,4 @@
-// Edits of a mutable compound against a list of its children, from which a static compound is made anew.
+// Edits of a mutable compound against a static compound that is created from a list of its children.
 #include <Fulcrum/Collision/Queries/Distance.h>
 #include <Fulcrum/Collision/Queries/RayCast.h>
 #include <Fulcrum/Collision/Shapes/Compound.h>
@@ -85,7 +85,7 @@ TEST(MutableCompound, IsWhatTheStaticCompoundOfItsChildrenIs) {
     }
 }
 
-// The answers of a shape's queries by place in space, whatever its center.
+// Query results of a shape in the user's frame, whatever its center of mass.
 void ExpectSameQueries(const MutableCompound& compound, const std::map<ChildId, ChildSettings>& children,
                        RandomPoses& random) {
     const Pose user{Position(1, 2, 3), random.Rotation()};
@@ -264,7 +264,7 @@ TEST(MutableCompound, IsScaledChildByChild) {
     ExpectSameMass(*twice, *Scaled(still, Vector3(2, 2, 2)).Value());
 }
 
-// What an edit may cost of the 10,000 children is the way to the total: of eight at each of five levels.
+// An edit may only update the sums up to the total: of eight at each of five levels.
 TEST(MutableCompound, AnEditOfOneOfManyAllocatesNothing) {
     RandomChildren random(8);
     const auto compound = MutableCompound::Create(random.Next(10000)).Value();

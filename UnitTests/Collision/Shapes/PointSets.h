@@ -94,7 +94,7 @@ inline std::vector<Vector3> MakePointSet(PointSet kind, uint64_t seed) {
         case PointSet::BoxGrid: grid(); break;
         case PointSet::TurnedBoxGrid: grid(), turned = true; break;
         case PointSet::NoisyGrid: {
-            // Noise around the tolerance, where merging is least clear.
+            // Noise around the tolerance, where merging is ambiguous.
             grid();
             const double noise = std::pow(10.0, -8 + 3 * random.Unit());
             for (Position& p : points) p += random.InCube() * noise;

@@ -1,5 +1,5 @@
-// Cylinders, cones, tapered capsules, triangles and shapes that users make: mass against a closed form and against an
-// integration that knows nothing but the solid's definition, sizes against the support function, errors by field.
+// Cylinders, cones, tapered capsules, triangles and custom shapes: mass against closed forms and numerical integration
+// over the solid, sizes against the support function, errors by field.
 #include <Fulcrum/Collision/Shapes/CustomConvex.h>
 #include <Fulcrum/Collision/Shapes/RoundShapes.h>
 #include <Fulcrum/Collision/Shapes/SupportingFace.h>
@@ -63,7 +63,7 @@ std::vector<Vector3> Directions() {
     return directions;
 }
 
-// Bounds and radii are what the support function says, and a supporting face lies in the core and faces the direction.
+// Bounds and radii match the support function, and supporting faces lie in the core and face the direction.
 void ExpectSizes(const ConvexShape& shape) {
     Bounds bounds;
     float outer = 0, inner = kInfinity;
@@ -269,7 +269,7 @@ TEST(CustomConvex, FindsItsMassFromTheSupportFunctionAlone) {
     EXPECT_NEAR(brick->Mass().volume, 48, 1e-4);
     EXPECT_NEAR(brick->Mass().principalInertia.x(), 48.0 / 12 * (16 + 36), 1e-3);
     ExpectSizes(*brick);
-    // The default search finds the faces of a shape of which it knows only the support function.
+    // The default FindSupportingFace finds faces by the support function alone.
     SupportingFace face;
     brick->FindSupportingFace(Normalized(Vector3(0.005f, 1, 0.01f)), face);
     EXPECT_EQ(face.count, 4);
@@ -279,7 +279,7 @@ TEST(CustomConvex, FindsItsMassFromTheSupportFunctionAlone) {
     EXPECT_NEAR(rounded->Mass().volume, 4.0 / 3 * kPi * 0.125, 1e-5);
 }
 
-TEST(CustomConvex, RefusesWhatIsNoConvexSolid) {
+TEST(CustomConvex, RefusesShapesThatAreNotConvexSolids) {
     ExpectError(CreateCustom<Wrong>(), ErrorCode::Degenerate, "FarthestPoint");
     ExpectError(CreateCustom<Flat>(), ErrorCode::Degenerate, "volume");
     ExpectError(CreateCustom<Egg>(Vector3(1, 1, kNan)), ErrorCode::NonFinite, "FarthestPoint");

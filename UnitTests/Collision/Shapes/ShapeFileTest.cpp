@@ -159,7 +159,7 @@ TEST(ShapeFile, EveryShapeComesBackWithTheSameBits) {
         EXPECT_EQ(back.InnerRadius(), shape->InnerRadius());
         EXPECT_EQ(back.OuterRadius(), shape->OuterRadius());
         EXPECT_TRUE(SameBits(back.Mass(), shape->Mass())) << ShapeTypeName(shape->Type());
-        // What is saved again is the same, and that is all a shape has.
+        // Saved again, the bytes are the same.
         EXPECT_EQ(SaveShape(back).Value(), bytes.Value()) << ShapeTypeName(shape->Type());
         if (shape->IsConvex()) {
             SurfaceRandom random(1);
@@ -172,7 +172,7 @@ TEST(ShapeFile, EveryShapeComesBackWithTheSameBits) {
     }
 }
 
-TEST(ShapeFile, SurfacesAnswerAsBefore) {
+TEST(ShapeFile, SurfacesGiveTheSameQueryResults) {
     for (const ShapePtr& shape : OneOfEach()) {
         const auto* before = dynamic_cast<const SurfaceShape*>(shape.get());
         if (!before) continue;
@@ -199,7 +199,7 @@ TEST(ShapeFile, HullsOfAllSizesComeBack) {
         ASSERT_TRUE(loaded) << seed << loaded.GetError().message;
         EXPECT_EQ(SaveShape(*loaded.Value()).Value(), bytes);
     }
-    // As thin as hulls are made.
+    // The thinnest hulls that are accepted.
     std::vector<Vector3> plate;
     SurfaceRandom random(1);
     for (int i = 0; i < 40; ++i) plate.push_back(random.InBox(10).cwiseProduct(Vector3(1, 1e-4f, 1)));
@@ -275,7 +275,7 @@ TEST(ShapeFile, RefusesEveryDamagedBitAndLength) {
     }
 }
 
-// FNV-1a as the format's description has it, so that hostile files get past the checksum.
+// FNV-1a as in the format's description, so that damaged files have valid checksums.
 void Seal(std::vector<uint8_t>& bytes) {
     if (bytes.size() < 24) return;
     uint64_t hash = 0xCBF29CE484222325u;
@@ -287,7 +287,7 @@ void Seal(std::vector<uint8_t>& bytes) {
     }
 }
 
-// Uses a loaded shape in every way that could step outside its data.
+// Uses a loaded shape in every way that could read out of bounds.
 void Exercise(const Shape& shape, SurfaceRandom& random) {
     if (const auto* surface = dynamic_cast<const SurfaceShape*>(&shape)) {
         Bounds box;
@@ -366,7 +366,7 @@ TEST(ShapeFile, SurvivesHostileFiles) {
         ++loadedCount;
         Exercise(*loaded.Value(), random);
     }
-    EXPECT_GT(loadedCount, 500);  // changed numbers that are as valid
+    EXPECT_GT(loadedCount, 500);  // changes that leave the file valid
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Holds the searches of a surface against brute force, exactly. Used by the tests of triangle meshes and height fields.
+// Compares the queries of a surface with brute force, exactly. Used by the tests of triangle meshes and height fields.
 #pragma once
 
 #include <Fulcrum/UnitTests/Collision/Shapes/SurfaceSamples.h>

@@ -1,4 +1,4 @@
-// Every build must make the same mesh and give the same answers, bit by bit.
+// Every build must give the same mesh and the same query results, bit by bit.
 #include <Fulcrum/Collision/Shapes/HeightField.h>
 #include <Fulcrum/Collision/Shapes/ShapeFile.h>
 #include <Fulcrum/Collision/Shapes/TriangleMesh.h>
@@ -60,7 +60,7 @@ uint64_t HashOf(const SurfaceShape& shape) {
     return hash.value;
 }
 
-TEST(SurfaceParity, MeshesAndTheirAnswersHaveTheSameBits) {
+TEST(SurfaceParity, MeshesAndTheirQueriesHaveTheSameBits) {
     SplitMix random;
     std::vector<Vector3> vertices;
     std::vector<uint32_t> indices;
@@ -74,7 +74,7 @@ TEST(SurfaceParity, MeshesAndTheirAnswersHaveTheSameBits) {
     EXPECT_EQ(HashOf(*TriangleMesh::Scaled(*mesh, Vector3(-1, 0.7f, 1.3f)).Value()), 9170053694867493967u);
 }
 
-TEST(SurfaceParity, HeightFieldsAndTheirAnswersHaveTheSameBits) {
+TEST(SurfaceParity, HeightFieldsAndTheirQueriesHaveTheSameBits) {
     SplitMix random;
     std::vector<float> heights;
     for (int i = 0; i < 40 * 30; ++i) heights.push_back(random.Between(-2, 2));

@@ -1,4 +1,4 @@
-// Meshes and brute-force answers for the tests of triangle meshes and height fields.
+// Meshes and brute-force queries for the tests of triangle meshes and height fields.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/RayTriangle.h>
@@ -141,8 +141,7 @@ inline std::optional<SurfaceHit> ClosestOf(const std::vector<SurfaceHit>& hits) 
     return best;
 }
 
-// Moeller and Trumbore in double: a test that shares nothing with the engine's. The smallest fraction, or a negative
-// number.
+// Moeller-Trumbore in double, independent of the engine's test. The smallest fraction, or a negative number.
 inline double DoubleFraction(const TriangleView& t, const SurfaceRay& ray) {
     const Position a = t.vertices[0].cast<double>(), e1 = t.vertices[1].cast<double>() - a,
                    e2 = t.vertices[2].cast<double>() - a, d = ray.displacement.cast<double>(),

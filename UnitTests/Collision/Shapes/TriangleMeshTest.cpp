@@ -30,9 +30,9 @@ TEST(TriangleMesh, TwoSidedMeshesAreHitFromBehind) {
     ExpectExactRays(*TriangleMesh::Create(settings).Value(), 10000);
 }
 
-// The engine's test against one in double that shares nothing with it. A hit's place may differ by the rounding of the
-// sheared coordinates, 2^-22 of their size of up to 60 m, over the sine of the angle of incidence: 1e-3 m covers angles
-// down to a degree; rays within that of a triangle's rim may be told apart otherwise and are left out.
+// The engine's test against an independent one in double. A hit's place may differ by the rounding of the sheared
+// coordinates, 2^-22 of their size of up to 60 m, over the sine of the angle of incidence: 1e-3 m covers angles down to
+// a degree; rays within that of a triangle's rim may be told apart otherwise and are left out.
 TEST(TriangleMesh, RayCastsAgreeWithDouble) {
     const MeshPtr mesh = MeshOf(WavyTerrain(20, 3, 5));
     const std::vector<TriangleView> all = AllTriangles(*mesh);
@@ -54,8 +54,7 @@ TEST(TriangleMesh, RayCastsAgreeWithDouble) {
     }
 }
 
-// Rays at every vertex and at points along every edge of a closed ball, from inside and outside: each meets the
-// surface.
+// Rays at every vertex and at points along every edge of a closed ball, from inside and outside: each hits the surface.
 TEST(TriangleMesh, NoRaySlipsBetweenTriangles) {
     const MeshPtr mesh = MeshOf(BallOf(24, 32, 3));
     SurfaceRandom random(2);
@@ -94,7 +93,7 @@ TEST(TriangleMesh, AxisParallelRaysThroughGridLinesHit) {
     }
 }
 
-TEST(TriangleMesh, AnswersRaysAndBoxesThatMakeNoSense) {
+TEST(TriangleMesh, HandlesInvalidRaysAndBoxes) {
     const MeshPtr mesh = MeshOf(WavyTerrain(4, 1, 1));
     const float nan = NAN, inf = INFINITY;
     for (const Vector3& bad : {Vector3(nan, 0, 0), Vector3(0, inf, 0), Vector3(1e30f, 0, 0)}) {

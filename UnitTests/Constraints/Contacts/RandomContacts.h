@@ -1,4 +1,4 @@
-// Random bodies in touch, as the solver sees them, for the tests of the contact kernels.
+// Random bodies in contact, as input of the solver, for the tests of the contact kernels.
 #pragma once
 
 #include <Fulcrum/Constraints/Contacts/ContactBatch.h>

@@ -19,7 +19,7 @@ std::map<int, JointRow> RowsAt(const AxisControl& control, float position, float
     return RowsOf(slider, bodies.Pose());
 }
 
-TEST(AxisControl, HasNoRowsUntilSomethingIsAskedOfIt) {
+TEST(AxisControl, HasNoRowsUntilSomethingIsActive) {
     EXPECT_EQ(MaxControlRows({}), 0u);
     EXPECT_TRUE(RowsAt({}, 0.3f, 5.0f).empty());
     EXPECT_TRUE(RowsAt(Limited(-1, 1), 0.0f).empty());
@@ -58,7 +58,7 @@ TEST(AxisControl, SoftLimitsAreSprings) {
     EXPECT_EQ(rows[kHigh].spring.frequency, 3.0f);
 }
 
-TEST(AxisControl, TheSameLimitsLockAndSilenceTheRest) {
+TEST(AxisControl, EqualLimitsLockTheAxisAndDisableTheRest) {
     AxisControl control = Limited(0.25f, 0.25f);
     control.motor.mode = MotorMode::ToVelocity;
     control.friction = 1.0f;
@@ -133,7 +133,7 @@ TEST(AxisControl, BeyondAHardLimitAMotorDoesNotPushOn) {
     EXPECT_EQ(RowsAt(control, 1.1f)[kMotor].speed, 5.0f);
 }
 
-TEST(AxisControl, AStiffPositionMotorKeepsTheLimitBehindItsTargetInSight) {
+TEST(AxisControl, AStiffPositionMotorKeepsTheLimitRowBehindItsTarget) {
     AxisControl control = Limited(-1, 1);
     control.motor.mode = MotorMode::ToPosition;
     control.motor.targetPosition = 0.8f;

@@ -1,4 +1,5 @@
-// Two bodies that a joint is tried on, in any pose, and the check of a type's rows against the change of their C.
+// Two bodies with a joint, in any pose, and a check of a type's Jacobians against finite differences of its constraint
+// functions C.
 #pragma once
 
 #include "../Parts/RandomBodies.h"
@@ -43,8 +44,7 @@ struct JointBodies {
     Vector3 ArmOf(int i) const { return Rotate(rotation[i], anchor[i]); }
     Position AnchorOf(int i) const { return place[i] + ArmOf(i).cast<double>(); }
 
-    // Brings B to where its frame is turned by `turn` against A's and its anchor is at `offset`, both seen from A's
-    // frame.
+    // Moves B so that its frame is rotated by `turn` and its anchor is at `offset`, both relative to A's frame.
     void PlaceB(const Vector3& offset, const Quaternion& turn) {
         rotation[1] = Normalized(FrameOf(0) * turn * frame[1].Conjugate());
         place[1] = AnchorOf(0) + (Rotate(FrameOf(0), offset) - ArmOf(1)).cast<double>();

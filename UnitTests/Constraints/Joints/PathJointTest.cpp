@@ -141,7 +141,7 @@ TEST(PathJoint, RowsAreTheDerivativesOfWhatIsOffThePath) {
             }
 }
 
-TEST(PathJoint, IsContentWhereItRidesAsItShould) {
+TEST(PathJoint, HasNoErrorOnThePath) {
     JointBodies bodies;
     const PathPointer path = MakeLoop();
     for (const PathRotation rotation : {PathRotation::Tangent, PathRotation::TangentAndNormal}) {

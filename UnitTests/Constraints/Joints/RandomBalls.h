@@ -1,5 +1,5 @@
-// Ball joints between random bodies, in batches of their own. For the tests of their kernels and for what times them,
-// so without a test library. One thread.
+// Ball joints between random bodies, in batches of their own. For the tests and the benchmarks of their kernels, so
+// without a test library. One thread.
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/BallBatch.h>

@@ -1,5 +1,5 @@
-// Joints of every kind between random bodies, as the solver sees them: with nothing to do beyond their locks and with
-// rows. For the tests of the joint kernels and for what times them, so without a test library. One thread.
+// Joints of every kind between random bodies, as input of the solver: with locks alone and with rows. For the tests and
+// the benchmarks of the joint kernels, so without a test library. One thread.
 #pragma once
 
 #include <Fulcrum/Constraints/Contacts/ContactBatch.h>
@@ -145,7 +145,7 @@ inline std::span<const JointCase> AllJointCases() {
     return kCases;
 }
 
-// What the solver is told at the system's default settings.
+// The solver's settings at the system's defaults.
 inline JointSolveSettings DefaultJointSettings() {
     constexpr float kSubstep = 1.0f / 240;
     ContactSolveSettings soft{};

@@ -350,7 +350,7 @@ TEST(RackAndPinionPart, RackTakesTheSpeedOfTheTeeth) {
     part.CalculateProperties(pinion, rack);
     part.SetBias(0.0f, {});
     part.SolveVelocity(v1, v2, pinion, rack);
-    // Energy's generalised mass: I + m / ratio^2 = 0.02 + 0.03.
+    // Energy's generalized mass: I + m / ratio^2 = 0.02 + 0.03.
     EXPECT_NEAR(v1.angular.z(), 5.0f * 0.02f / 0.05f, 1e-5f);
     EXPECT_NEAR(v2.linear.x(), 0.2f, 1e-6f);
 }

@@ -9,8 +9,7 @@ using namespace fulcrum;
 
 extern "C" const char* EngineVersion() { return FULCRUM_VERSION_STRING; }
 
-// Where a ray that is cast down meets a ball that was dropped onto a floor two seconds ago, m; negative: something is
-// wrong.
+// The height at which a ray hits a ball that was dropped onto a floor two seconds ago, m; negative: an error.
 extern "C" double TopOfDroppedBall() {
     ThreadPool pool(2);
     auto created = PhysicsSystem::Create({}, &pool);

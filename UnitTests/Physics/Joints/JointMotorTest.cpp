@@ -173,7 +173,7 @@ TEST(Motor, TargetsMayChangeEveryStep) {
     }
 }
 
-TEST(Motor, OneThatIsSwitchedOffLetsGo) {
+TEST(Motor, OneThatIsSwitchedOffHasNoForce) {
     SliderRig rig(2, {.motor = SpeedMotor(3)});
     rig.world.Run(0.5);
     ASSERT_TRUE(rig.Joints().SetMotor(rig.joint, JointAxis::LinearX, {}));

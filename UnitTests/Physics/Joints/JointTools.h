@@ -1,4 +1,4 @@
-// What tests of joints share: joints in one line, bodies to hang things from, and the oscillator behind a series of
+// Helpers of the tests of joints: joints in one line, static bodies to attach others to, and a fit of an oscillator to
 // samples. Header only; one thread at a time.
 #pragma once
 
@@ -12,7 +12,7 @@ namespace fulcrum::testing {
 
 inline JointInterface& JointsOf(TestWorld& world) { return world.System().Joints(); }
 
-// Fails the test where the settings are wrong.
+// Fails the test if the settings are invalid.
 template <class Settings>
 JointId Join(TestWorld& world, const Settings& settings) {
     const Result<JointId> id = JointsOf(world).Create(settings);
@@ -28,7 +28,7 @@ inline SystemSettings Weightless() {
     return settings;
 }
 
-// A small static body, which joints hang things from; nothing collides with what hangs there.
+// A small static body to attach joints to, which collides with nothing.
 inline BodyId AddHook(TestWorld& world, const Position& position = Position::Zero()) {
     return world.Add({.shape = SphereOf(0.01f), .motion = MotionType::Static, .position = position});
 }

@@ -1,4 +1,4 @@
-// Ragdolls that follow a pose: by motors, by velocities, kinematically; and that nothing of it pushes the whole.
+// Ragdolls that follow a pose, by motors, by velocities and kinematically, without external forces on the whole.
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Physics/Ragdoll/Ragdoll.h>
 #include <Fulcrum/Samples/Scenes/Humanoid.h>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr size_t kParts = 12;
 
-// Parts pass through each other: joints alone are what is looked at. (The arms hang 5 mm within the pelvis.)
+// Parts do not collide with each other: only joints are tested. (The arms overlap the pelvis by 5 mm.)
 RagdollSettings WithoutContacts(RagdollSettings settings) {
     for (RagdollPart& part : settings.parts) part.body.layer = 1;
     return settings;

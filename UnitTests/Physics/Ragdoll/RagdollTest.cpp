@@ -1,4 +1,4 @@
-// Ragdolls: what is created where, what is refused, and how they fall.
+// Ragdolls: creation and poses, errors, and how they fall.
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Physics/Ragdoll/Ragdoll.h>
 #include <Fulcrum/Physics/Ragdoll/Stabilize.h>
@@ -219,7 +219,7 @@ TEST(RagdollErrors, OfCallsChangeNothing) {
 
 // ---- physics
 
-// Joints rub a little, or arms in the air would swing for ever.
+// With a little joint friction, or arms in the air would swing forever.
 RagdollSettings WithFriction(RagdollSettings settings, float torque) {
     for (RagdollPart& part : settings.parts) {
         if (auto* hinge = std::get_if<HingeJointSettings>(&part.joint)) hinge->angle.friction = torque;

@@ -1,4 +1,4 @@
-// Poses of a detailed skeleton taken to a ragdoll and back.
+// Poses of a detailed skeleton mapped to a ragdoll and back.
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Physics/Ragdoll/SkeletonMapping.h>
 #include <Fulcrum/Samples/Scenes/Humanoid.h>

@@ -1,4 +1,4 @@
-// The scenes of ragdolls: what they are made of, and what their figures say.
+// The ragdoll scenes: their contents and figures.
 #include <Fulcrum/Samples/Scenes/Scenes.h>
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
 

@@ -227,7 +227,7 @@ TEST(PerformanceScenes, RaysAre100000StraightDownOntoTheMesh) {
     EXPECT_EQ(world->Definition().queryCount, 100'000);
 }
 
-// What the feature scenes claim, after their whole duration.
+// The figures of the sample scenes, after their whole duration.
 void ExpectFigure(const char* name, double lowest, double highest) {
     const auto world = Build(name);
     ASSERT_TRUE(world);
@@ -235,7 +235,7 @@ void ExpectFigure(const char* name, double lowest, double highest) {
     const double figure = world->Definition().accuracy(*world);
     EXPECT_GE(figure, lowest) << world->Definition().accuracyMeaning;
     EXPECT_LE(figure, highest) << world->Definition().accuracyMeaning;
-    // What rolls off the floor's edge falls for ever, and the recording's camera with it.
+    // Bodies that roll off the floor fall forever, and the recording's camera follows them.
     if (world->System().Settings().gravity.y() < 0) {
         EXPECT_EQ(BodiesBelowTheFloor(*world), 0);
     }
@@ -247,7 +247,7 @@ void ExpectFigure(const char* name, double lowest, double highest) {
 TEST(SampleScenes, TheTowerStands) { ExpectFigure("tower", -0.03, 0.001); }
 TEST(SampleScenes, ConvexShapesStayOnTheFloor) { ExpectFigure("convex_shapes", 0, 0); }
 TEST(SampleScenes, AllDominoesFall) { ExpectFigure("dominoes", 0, 0); }
-// Four storeys settle by a contact each of 1 mm, and lean by what friction gives: less than half a card's thickness.
+// Four stories settle by a contact each of 1 mm, and lean by what friction gives: less than half a card's thickness.
 TEST(SampleScenes, TheCardHouseStands) { ExpectFigure("card_house", -0.02, 0.02); }
 TEST(SampleScenes, NothingFallsThroughTheFloorOfTheWreckedPile) { ExpectFigure("wrecking_pile", 0, 0); }
 TEST(SampleScenes, BoxesStickOnARampByTheirOwnFriction) { ExpectFigure("friction_ramp", 0, 0); }

@@ -1,4 +1,4 @@
-// The rules that masses and inertias of a ragdoll are brought under, and what that is good for.
+// Stabilization: the rules for masses and inertias of a ragdoll, and their effect.
 #include <Fulcrum/Physics/Ragdoll/Ragdoll.h>
 #include <Fulcrum/Physics/Ragdoll/Stabilize.h>
 #include <Fulcrum/Samples/Scenes/Humanoid.h>

@@ -1,0 +1,31 @@
+// The first triangle that the ball inside a shape hits within the step. A thin body that lands on its edge may turn
+// over within the step and land on a side that faced away before, which has no contacts yet: its center would end up
+// behind the surface. The inner ball is inside the shape however it turns. Called by SurfaceContact for fast bodies.
+// Thread-safe.
+#pragma once
+
+#include <Fulcrum/Collision/Shapes/SurfaceShape.h>
+
+namespace fulcrum {
+
+struct InnerBall {
+    float radius;    // m
+    Vector3 center;  // m, in the surface's frame
+    Vector3 motion;  // m, of the center within the step, likewise
+
+    // Triangles that are approached by less than this are left to the other contacts, m.
+    float FarMotion() const { return kFar * radius; }
+    bool MovesFar() const { return LengthSquared(motion) > FarMotion() * FarMotion(); }
+
+private:
+    static constexpr float kFar = 0.75f;
+};
+
+struct InnerBallHit {
+    bool exists = false;
+    TriangleView triangle;  // with its front to the ball
+    float separation = 0;   // m, of the ball from the triangle's plane as the step begins
+};
+InnerBallHit FindInnerBallHit(const InnerBall& ball, std::span<const TriangleView> triangles, bool twoSided);
+
+}  // namespace fulcrum

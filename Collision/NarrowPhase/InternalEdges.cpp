@@ -1,0 +1,147 @@
+#include <Fulcrum/Collision/NarrowPhase/InternalEdges.h>
+
+#include <Fulcrum/Collision/NarrowPhase/Features.h>
+#include <Fulcrum/Collision/NarrowPhase/TriangleFaceContact.h>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace fulcrum {
+
+namespace {
+
+// A contact normal this near to the face's counts as the face's: a tenth of a degree.
+constexpr float kFaceCosine = 0.9999985f;
+
+// Feature ids that last from step to step: corners of A are the same on every triangle, corners of the surface on all
+// triangles around them.
+uint32_t SurfaceFeature(uint32_t feature, const TriangleView& view) {
+    const uint32_t kind = feature & kCrossing;
+    if (kind == kVertexOfA) return feature;
+    if (kind == kVertexOfB) return kVertexOfB | (view.vertexIds[(feature & 255u) % 3] & ~kCrossing);
+    return kCrossing | ((feature * 0x9E3779B1u ^ view.id * 0x85EBCA6Bu) >> 2);
+}
+
+SurfaceManifold WithSurfaceFeatures(const TriangleView& view, const Manifold& manifold) {
+    SurfaceManifold result{manifold, view.id, view.material};
+    for (int i = 0; i < manifold.pointCount; ++i)
+        result.manifold.points[i].feature = SurfaceFeature(manifold.points[i].feature, view);
+    return result;
+}
+
+}  // namespace
+
+void InternalEdgeFilter::Clear() {
+    deferred_.clear();
+    covered_.clear();
+    contacts_.clear();
+}
+
+void InternalEdgeFilter::AddFace(const TriangleView& view, const Manifold& manifold) {
+    contacts_.push_back(WithSurfaceFeatures(view, manifold));
+    covered_.insert(covered_.end(), view.vertexIds, view.vertexIds + 3);
+}
+
+void InternalEdgeFilter::AddNearest(const TriangleView& view, const Vector3& axis, bool overlaps,
+                                    const Manifold& onFace, const Manifold& nearest) {
+    if (Dot(axis, view.normal) > 0) {
+        // The axis leads out through the back, where a surface pushes nothing.
+        if (overlaps && onFace.pointCount > 0) AddFace(view, onFace);
+        return;
+    }
+    if (nearest.pointCount == 0) return;
+    if (-Dot(axis, view.normal) > kFaceCosine) AddFace(view, nearest);
+    else Defer(view, axis, nearest, onFace);
+}
+
+void InternalEdgeFilter::Defer(const TriangleView& view, const Vector3& axis, const Manifold& manifold,
+                               const Manifold& onFace) {
+    float along[3], least = 0, most = 0;
+    for (int i = 0; i < 3; ++i) {
+        along[i] = Dot(axis, Vector3(view.vertices[i] - view.vertices[0]));
+        least = std::min(least, along[i]);
+        most = std::max(most, along[i]);
+    }
+    const float nearly = least + 1e-3f * (most - least);
+    int nearest[3], count = 0;
+    for (int i = 0; i < 3; ++i)
+        if (along[i] <= nearly) nearest[count++] = i;
+    DeferredContact deferred;
+    const auto isActive = [&](int edge) { return (view.activeEdges >> edge & 1) != 0; };
+    if (count >= 2) {
+        // Corners 0 and 1 are edge 0, 1 and 2 edge 1, 2 and 0 edge 2.
+        deferred.active = isActive(nearest[1] - nearest[0] == 1 ? nearest[0] : 2);
+    } else {
+        deferred.active = isActive(nearest[0]) || isActive((nearest[0] + 2) % 3);
+    }
+    deferred.active |= -Dot(axis, view.normal) > kFlatCosine;
+    if (!deferred.active && onFace.pointCount == 0) return;
+    deferred.vertices[0] = view.vertexIds[nearest[0]];
+    deferred.vertices[1] = view.vertexIds[nearest[count >= 2 ? 1 : 0]];
+    deferred.onFace = WithSurfaceFeatures(view, onFace);
+    deferred.contact = deferred.active ? WithSurfaceFeatures(view, manifold) : deferred.onFace;
+    deferred.separation = DeepestSeparation(deferred.contact.manifold);
+    deferred_.push_back(deferred);
+}
+
+bool InternalEdgeFilter::DeferToNeighbor(const TriangleView& view, const TriangleInShape& triangle, float slop,
+                                         const Manifold& onFace) {
+    int deepest = 0;
+    for (int i = 1; i < onFace.pointCount; ++i)
+        if (onFace.points[i].separation < onFace.points[deepest].separation) deepest = i;
+    const Vector3& point = onFace.points[deepest].positionOnA;
+    int sides[3], count = 0;
+    for (int i = 0; i < 3; ++i)
+        if (Dot(triangle.outwards[i], Vector3(point - triangle.corners[i])) >= -slop) sides[count++] = i;
+    if (count != 1 && count != 2) return false;
+    // Side i ends where side i + 1 begins.
+    const int first = count == 1 ? sides[0] : (sides[1] - sides[0] == 1 ? sides[1] : 0);
+    DeferredContact deferred;
+    deferred.contact = deferred.onFace = WithSurfaceFeatures(view, onFace);
+    deferred.vertices[0] = view.vertexIds[first];
+    deferred.vertices[1] = view.vertexIds[count == 1 ? (first + 1) % 3 : first];
+    deferred.separation = DeepestSeparation(onFace);
+    deferred.active = false;
+    deferred_.push_back(deferred);
+    return true;
+}
+
+std::vector<SurfaceManifold>& InternalEdgeFilter::Resolve() {
+    if (deferred_.empty()) return contacts_;
+    // In one array: the sorted vertices of face contacts; the sorted vertices of deferred contacts, each once; for each
+    // of these whether it is covered. Sorted, since a large shape may touch any number of them.
+    std::vector<uint32_t>& covered = covered_;
+    std::sort(covered.begin(), covered.end());
+    const ptrdiff_t faces = static_cast<ptrdiff_t>(covered.size());
+    for (const DeferredContact& deferred : deferred_)
+        covered.insert(covered.end(), deferred.vertices, deferred.vertices + 2);
+    std::sort(covered.begin() + faces, covered.end());
+    covered.erase(std::unique(covered.begin() + faces, covered.end()), covered.end());
+    const ptrdiff_t asked = static_cast<ptrdiff_t>(covered.size()) - faces;
+    covered.resize(covered.size() + static_cast<size_t>(asked));
+    for (ptrdiff_t i = 0; i < asked; ++i)
+        covered[static_cast<size_t>(faces + asked + i)] =
+            std::binary_search(covered.begin(), covered.begin() + faces, covered[static_cast<size_t>(faces + i)]);
+    const auto isCovered = [&](uint32_t vertex) -> uint32_t& {
+        return *(std::lower_bound(covered.begin() + faces, covered.begin() + faces + asked, vertex) + asked);
+    };
+    std::sort(deferred_.begin(), deferred_.end(), [](const auto& x, const auto& y) {
+        if (x.active != y.active) return x.active;
+        return x.separation < y.separation || (x.separation == y.separation && x.contact.triangle < y.contact.triangle);
+    });
+    for (const DeferredContact& deferred : deferred_) {
+        const bool isEdgeCovered = isCovered(deferred.vertices[0]) && isCovered(deferred.vertices[1]);
+        // Points on the face are kept, though the neighbor is nearer: without them a shape across two faces would rock.
+        if (!isEdgeCovered) contacts_.push_back(deferred.contact);
+        else if (deferred.onFace.manifold.pointCount > 0) contacts_.push_back(deferred.onFace);
+        isCovered(deferred.vertices[0]) = isCovered(deferred.vertices[1]) = 1;
+    }
+    return contacts_;
+}
+
+size_t InternalEdgeFilter::MemoryUsed() const {
+    return deferred_.capacity() * sizeof(DeferredContact) + covered_.capacity() * sizeof(uint32_t) +
+           contacts_.capacity() * sizeof(SurfaceManifold);
+}
+
+}  // namespace fulcrum

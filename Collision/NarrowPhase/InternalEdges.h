@@ -1,0 +1,53 @@
+// Keeps a shape that slides over a surface from bumping into the edges between its triangles (internal edges, ghost
+// collisions). Contacts with faces count as they are found. Contacts with edges and corners are deferred until all
+// faces are known; then
+// - one at an edge or corner of a triangle with a face contact is dropped, since that contact covers it;
+// - one at an active edge (SurfaceShape.h), or nearly along the face's normal, counts, the deepest first, and covers
+//   its edge for those that follow;
+// - one at an inactive edge is replaced by the contact with the triangle's face, if there is one. Used by
+//   SurfaceContact alone.
+#pragma once
+
+#include <Fulcrum/Collision/NarrowPhase/SurfaceManifold.h>
+#include <Fulcrum/Collision/Shapes/SurfaceShape.h>
+
+namespace fulcrum {
+
+struct TriangleInShape;
+
+class InternalEdgeFilter {
+public:
+    // A normal this near to that of a face may be that of an edge which counts as flat: 6 degrees, a little more than
+    // what makes an edge active.
+    static constexpr float kFlatCosine = 0.9945f;
+
+    void Clear();
+    void AddFace(const TriangleView& view, const Manifold& manifold);
+    // What is nearest to a triangle: its face, or one of its edges or corners. `axis`: unit, towards the triangle, in
+    // the surface's frame; onFace: the contact with the face, if any.
+    void AddNearest(const TriangleView& view, const Vector3& axis, bool overlaps, const Manifold& onFace,
+                    const Manifold& nearest);
+    // Points on the face of a shape that is deeper beyond an inactive edge or corner, over the neighbor. False if it is
+    // ambiguous beyond which: nothing was added.
+    bool DeferToNeighbor(const TriangleView& view, const TriangleInShape& triangle, float slop, const Manifold& onFace);
+    // Decides on the deferred ones. Returns all contacts that count.
+    std::vector<SurfaceManifold>& Resolve();
+    size_t MemoryUsed() const;  // bytes, besides the object itself
+
+private:
+    struct DeferredContact {
+        SurfaceManifold contact;
+        SurfaceManifold onFace;
+        uint32_t vertices[2];  // ids; the same twice for a corner
+        float separation;      // m, of the deepest point
+        bool active;
+    };
+
+    void Defer(const TriangleView& view, const Vector3& axis, const Manifold& manifold, const Manifold& onFace);
+
+    std::vector<DeferredContact> deferred_;
+    std::vector<uint32_t> covered_;  // ids of the vertices of triangles with face contacts
+    std::vector<SurfaceManifold> contacts_;
+};
+
+}  // namespace fulcrum

@@ -1,0 +1,113 @@
+#include <Fulcrum/Collision/NarrowPhase/SurfaceManifold.h>
+
+#include <Fulcrum/Collision/NarrowPhase/Features.h>
+#include <Fulcrum/Collision/NarrowPhase/ManifoldReduction.h>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace fulcrum {
+
+namespace {
+
+// Contacts whose normals are this near become one manifold: 2 degrees.
+constexpr float kSameDirection = 0.9994f;
+// The deepest so many are enough to hold any shape; a huge one may touch thousands of triangles with different normals.
+constexpr size_t kMostManifolds = 128;
+
+// Points of several manifolds, along one normal.
+class PointMerger {
+public:
+    PointMerger(const Vector3& normal, float slop)
+        : normal_(normal), u_(Perpendicular(normal)), v_(Cross<float>(normal, u_)), slop_(slop) {}
+
+    void Add(const Manifold& manifold) {
+        for (int i = 0; i < manifold.pointCount; ++i) Add(manifold.points[i], manifold.normal);
+    }
+    void Write(Manifold& manifold) {
+        Reduce();
+        manifold.pointCount = count_;
+        std::copy(points_, points_ + count_, manifold.points);
+    }
+
+private:
+    static constexpr int kRoom = 64;
+
+    // Of points with the same feature id the deepest stays.
+    void Add(ManifoldPoint point, const Vector3& itsNormal) {
+        point.separation *= Dot(itsNormal, normal_);
+        for (int i = 0; i < count_; ++i) {
+            if (points_[i].feature != point.feature) continue;
+            if (point.separation < points_[i].separation) points_[i] = point;
+            return;
+        }
+        if (count_ == kRoom) Reduce();
+        points_[count_++] = point;
+    }
+    void Reduce() {
+        // Corners of the shape first: the reduction prefers what comes first, and they last while it slides from
+        // triangle to triangle.
+        int order[kRoom], n = 0;
+        for (const bool corners : {true, false})
+            for (int i = 0; i < count_; ++i)
+                if (((points_[i].feature & kCrossing) == kVertexOfA) == corners) order[n++] = i;
+        FlatPoints<kRoom> flat;
+        for (int i = 0; i < count_; ++i) {
+            const ManifoldPoint& point = points_[order[i]];
+            flat.Add(Dot(u_, point.positionOnA), Dot(v_, point.positionOnA), point.separation);
+        }
+        int chosen[4];
+        count_ = ChooseFour(flat, slop_, chosen, kLeastWeightOnSurfaces);
+        ManifoldPoint kept[4];
+        for (int i = 0; i < count_; ++i) kept[i] = points_[order[chosen[i]]];
+        std::copy(kept, kept + count_, points_);
+    }
+
+    Vector3 normal_, u_, v_;
+    float slop_;
+    ManifoldPoint points_[kRoom];
+    int count_ = 0;
+};
+
+// Contact `first`, merged with all later ones in its direction, which are left without points.
+SurfaceManifold MergeSimilar(std::vector<SurfaceManifold>& contacts, size_t first, float depthSlop) {
+    SurfaceManifold merged = contacts[first];
+    contacts[first].manifold.pointCount = 0;
+    const auto isSame = [&](const SurfaceManifold& other) {
+        return other.manifold.pointCount > 0 && other.material == merged.material &&
+               Dot(other.manifold.normal, merged.manifold.normal) >= kSameDirection;
+    };
+    if (std::none_of(contacts.begin() + static_cast<ptrdiff_t>(first) + 1, contacts.end(), isSame)) return merged;
+    PointMerger points(merged.manifold.normal, depthSlop);
+    points.Add(merged.manifold);
+    for (size_t i = first + 1; i < contacts.size(); ++i) {
+        if (!isSame(contacts[i])) continue;
+        points.Add(contacts[i].manifold);
+        contacts[i].manifold.pointCount = 0;
+    }
+    points.Write(merged.manifold);
+    return merged;
+}
+
+}  // namespace
+
+SurfaceManifold& AppendManifold(std::vector<SurfaceManifold>& manifolds, size_t& count) {
+    if (manifolds.size() == count) manifolds.emplace_back();
+    return manifolds[count++];
+}
+
+void MergeContacts(std::vector<SurfaceManifold>& contacts, float depthSlop, std::vector<SurfaceManifold>& manifolds,
+                   size_t& count) {
+    if (contacts.size() > 1)
+        std::sort(contacts.begin(), contacts.end(), [](const SurfaceManifold& x, const SurfaceManifold& y) {
+            const float dx = DeepestSeparation(x.manifold), dy = DeepestSeparation(y.manifold);
+            return dx < dy || (dx == dy && x.triangle < y.triangle);
+        });
+    count = 0;
+    for (size_t i = 0; i < contacts.size() && count < kMostManifolds; ++i) {
+        if (contacts[i].manifold.pointCount == 0) continue;  // merged into another
+        AppendManifold(manifolds, count) = MergeSimilar(contacts, i, depthSlop);
+    }
+}
+
+}  // namespace fulcrum
