@@ -163,6 +163,7 @@ Status PhysicsSystem::Update(double dt) {
     world.outsideFatBounds.MarkStale();
 
     CountBodies(world);
+    for (const WorkerFindings& f : world.findings) world.report.libccd += f.libccd;
     return Done{};
 }
 

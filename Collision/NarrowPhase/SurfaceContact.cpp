@@ -7,6 +7,7 @@
 #include <Fulcrum/Collision/NarrowPhase/Epa.h>
 #include <Fulcrum/Collision/NarrowPhase/Features.h>
 #include <Fulcrum/Collision/NarrowPhase/Gjk.h>
+#include <Fulcrum/Collision/NarrowPhase/Libccd.h>
 #include <Fulcrum/Collision/NarrowPhase/ManifoldReduction.h>
 #include <Fulcrum/Collision/NarrowPhase/RoundTriangles.h>
 #include <Fulcrum/Collision/NarrowPhase/TriangleFaceContact.h>
@@ -88,7 +89,8 @@ public:
           center_(bInA.InverseTransform(Vector3::Zero())),
           motion_(InverseRotate(bInA.rotation, approach.motion)),
           touched_(approach.touched),
-          isPolyhedral_(HasPolyhedralCore(a.Type())) {
+          isPolyhedral_(HasPolyhedralCore(a.Type())),
+          asksLibccd_(settings.method == NarrowPhaseMethod::Libccd) {
         if (isPolyhedral_) core_ = CoreOf(a, storage_);
     }
 
@@ -97,6 +99,7 @@ public:
         contacts_.known_.clear();
         contacts_.found_.clear();
         contacts_.manifoldCount_ = 0;
+        contacts_.counters_ = {};
         Collect();
         const SurfaceProbe probe{a_,      isPolyhedral_ ? &core_ : nullptr, axes_,
                                  center_, settings_.speculativeDistance,    b_.IsTwoSided()};
@@ -130,6 +133,11 @@ private:
             view = Reversed(view);
         }
         const auto index = static_cast<uint32_t>(first);
+        if (asksLibccd_) {
+            for (uint32_t bits = near; bits != 0; bits &= bits - 1)
+                CollideTriangle(index + static_cast<uint32_t>(std::countr_zero(bits)));
+            return;
+        }
         if (a_.Type() == ShapeType::Sphere) return CollideSphere(batch, near, index);
         if (a_.Type() == ShapeType::Capsule) return CollideCapsule(probe, batch, near, reversed, index);
         for (uint32_t bits = near; bits != 0; bits &= bits - 1) {
@@ -286,20 +294,30 @@ private:
             if (face.separation > tolerances.reach) return;
             const FaceContact contact = BuildFaceContact(pair, face, tolerances, onFace);
             if (onFace.pointCount == 0 && FacesAlone(view)) return;
-            if (IsFaceContact(view, contact, onFace)) return AddFace(view, onFace);
+            if (!asksLibccd_ && IsFaceContact(view, contact, onFace)) return AddFace(view, onFace);
         }
 
-        const Vector3 inwards = -(pair.rotation * view.normal);
-        const auto gjk = Gjk(pair, inwards, tolerances.reach);
-        if (gjk.status == GjkStatus::BeyondReach) return;
-        KnownAxis known{gjk.axis, gjk.separation, tolerances.feature};
-        const bool overlaps = gjk.status == GjkStatus::Overlapping;
-        if (overlaps) {
-            const EpaResult epa = Epa(pair, gjk.simplex);
-            const FoundAxis found =
-                epa.status == EpaResult::Status::Found ? FoundAxis{epa.axis, epa.separation} : SearchAllAxes(pair);
-            known.axis = found.axis;
-            known.separation = found.separation;
+        KnownAxis known{};
+        bool overlaps;
+        if (asksLibccd_) {
+            const Triangle triangle(corners, view.normal);
+            const auto found = AskAbout(SupportPair(a_, triangle, pose), pose);
+            if (!found) return;
+            known = {found->axis, pair.SeparationAlong(found->axis), tolerances.feature};
+            overlaps = found->separation <= 0;
+        } else {
+            const Vector3 inwards = -(pair.rotation * view.normal);
+            const auto gjk = Gjk(pair, inwards, tolerances.reach);
+            if (gjk.status == GjkStatus::BeyondReach) return;
+            known = {gjk.axis, gjk.separation, tolerances.feature};
+            overlaps = gjk.status == GjkStatus::Overlapping;
+            if (overlaps) {
+                const EpaResult epa = Epa(pair, gjk.simplex);
+                const FoundAxis found =
+                    epa.status == EpaResult::Status::Found ? FoundAxis{epa.axis, epa.separation} : SearchAllAxes(pair);
+                known.axis = found.axis;
+                known.separation = found.separation;
+            }
         }
         Manifold nearest;
         PairCache none;
@@ -314,11 +332,19 @@ private:
         ContactTolerances tolerances(pair.InnerRadii(), pair.RadiusSum(), settings_);
         tolerances.facesAhead = false;
         const Vector3 inwards = -(pair.rotation * view.normal);
-        const ConvexGjkResult gjk = ConvexGjk(pair, inwards, tolerances.reach);
-        if (gjk.status == GjkStatus::BeyondReach) return;
-        const bool overlaps = gjk.status == GjkStatus::Overlapping;
-        const KnownContact known =
-            overlaps ? FindDepth(pair, gjk.simplex, inwards) : KnownContact{gjk.axis, gjk.separation, gjk.onA};
+        KnownContact known{};
+        bool overlaps;
+        if (asksLibccd_) {
+            const auto found = AskAbout(pair, pose);
+            if (!found) return;
+            known = *found;
+            overlaps = known.separation <= 0;
+        } else {
+            const ConvexGjkResult gjk = ConvexGjk(pair, inwards, tolerances.reach);
+            if (gjk.status == GjkStatus::BeyondReach) return;
+            overlaps = gjk.status == GjkStatus::Overlapping;
+            known = overlaps ? FindDepth(pair, gjk.simplex, inwards) : KnownContact{gjk.axis, gjk.separation, gjk.onA};
+        }
         Manifold onFace, nearest;
         PairCache none;
         onFace.pointCount = nearest.pointCount = 0;
@@ -330,6 +356,10 @@ private:
         none = {};
         BuildConvexContact(pair, known, tolerances, none, nearest);
         ResolveTriangleContact(index, pair.DirectionInB(known.axis), overlaps, onFace, nearest);
+    }
+
+    std::optional<KnownContact> AskAbout(const SupportPair& pair, const RelativePose& pose) {
+        return FindLibccdContact(pair, pose, settings_.speculativeDistance, contacts_.counters_);
     }
 
     // Decides what a triangle's contact is: before its face, or at what is nearest along `axis` (towards the triangle,
@@ -556,6 +586,7 @@ private:
     Vector3 motion_;   // of the center within the step, likewise
     std::span<const uint32_t> touched_;
     bool isPolyhedral_;
+    bool asksLibccd_;
 };
 
 size_t SurfaceContacts::MemoryUsed() const {

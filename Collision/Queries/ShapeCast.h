@@ -1,6 +1,6 @@
 // A convex shape that moves straight, and may turn at a constant rate, against a single shape at rest at a pose. Called
 // by the world's queries and continuous collision, and by users who have shapes and no world. Thread-safe; allocates
-// nothing, but where the depth of a degenerate overlap is measured.
+// nothing, but where the depth of a degenerate overlap is measured, or with the method Libccd.
 //
 // Nothing that is touched is missed, however thin or fast. What overlaps at the start is hit at fraction 0, with the
 // depth and the normal of the least move that parts the two. One-sided triangles are hit from the front alone: a shape
@@ -39,7 +39,8 @@ struct ShapeHit {
 // Everything is in the frame of the motion, the world's or another, and exact however far from its origin.
 class ShapeCaster {
 public:
-    ShapeCaster(const ConvexShape& shape, const ShapeMotion& motion);
+    ShapeCaster(const ConvexShape& shape, const ShapeMotion& motion,
+                NarrowPhaseMethod method = NarrowPhaseMethod::Automatic);
     bool IsValid() const { return isValid_; }  // else it hits nothing
     // The box about the shape's center that holds the shape all along, relative to where the center is.
     const Bounds& BoundsAboutCenter() const { return bounds_; }
@@ -71,6 +72,7 @@ private:
     const ConvexShape& shape_;
     ShapeMotion motion_;
     Bounds bounds_;
+    NarrowPhaseMethod method_;
     bool isValid_ = false;
 };
 

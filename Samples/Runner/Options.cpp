@@ -37,6 +37,14 @@ UpAxis ParseUpAxis(const std::string& text) {
     throw CLI::ValidationError(UnknownName("axis of --onto-up", text, names).message);
 }
 
+NarrowPhaseMethod ParseNarrowPhase(const std::string& text) {
+    const std::array<std::string, 2> names{"automatic", "libccd"};
+    for (size_t i = 0; i < names.size(); ++i)
+        if (text == names[i]) return static_cast<NarrowPhaseMethod>(i);
+    throw CLI::ValidationError(UnknownName("method of --narrow-phase", text, names).message +
+                               "; it takes automatic or libccd");
+}
+
 void AddOntoOptions(CLI::App& app, Command& command) {
     CLI::Option* onto =
         AddText(app, "--onto", "drop them onto the triangles of this mesh, made 20 m large, not onto a floor",
@@ -62,6 +70,7 @@ void AddRunOptions(CLI::App& app, RunOptions& options) {
     AddInteger(app, "--threads", 1, kMostThreads, "threads (default: all of this machine)",
                [&](int value) { options.threads = value; });
     AddSolverOptions(app, options.solver);
+    AddNarrowPhaseOption(app, options.narrowPhase);
     AddText(app, "--record", "html,glb (default), html, glb or none", [&](const std::string& text) {
         SetRecord(text, options);
     })->type_name("KINDS");
@@ -91,6 +100,16 @@ void AddSolverOptions(CLI::App& app, SolverSettings& solver) {
                [&](int value) { solver.velocityIterations = value; });
     AddInteger(app, "--position-iterations", 0, 255, text("position iterations a substep", solver.positionIterations),
                [&](int value) { solver.positionIterations = value; });
+}
+
+void AddNarrowPhaseOption(CLI::App& app, NarrowPhaseMethod& method) {
+    AddText(app, "--narrow-phase", "automatic (default), or libccd: shapes collide by libccd, slower, to compare",
+            [&](const std::string& text) { method = ParseNarrowPhase(text); })
+        ->type_name("METHOD");
+}
+
+const char* NarrowPhaseName(NarrowPhaseMethod method) {
+    return method == NarrowPhaseMethod::Libccd ? "libccd" : "automatic";
 }
 
 std::vector<std::string> SceneNames() {
