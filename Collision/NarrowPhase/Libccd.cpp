@@ -5,6 +5,7 @@
 #include <Fulcrum/Collision/NarrowPhase/PairFunctions.h>
 #include <Fulcrum/Collision/NarrowPhase/PlaneContact.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
+#include <Fulcrum/Collision/Shapes/Triangle.h>
 
 #include <ccd/ccd.h>
 #include <ccd/quat.h>
@@ -66,11 +67,19 @@ void FirstDirection(const void* object, const void*, ccd_vec3_t* result) {
     ccdVec3Set(result, start.x(), start.y(), start.z());
 }
 
+// Triangles of a surface come without radii.
+double OuterRadiusOf(const ConvexShape& shape) {
+    if (shape.Type() != ShapeType::Triangle) return shape.OuterRadius();
+    float square = 0;
+    for (int i = 0; i < 3; ++i) square = std::max(square, LengthSquared(static_cast<const Triangle&>(shape).Corner(i)));
+    return double{std::sqrt(square)} + shape.ConvexRadius();
+}
+
 // How thick the difference of two shapes is at least. Flat shapes have no inside: tolerances must not be 0, or EPA
 // never ends.
 double Thickness(const ConvexShape& a, const ConvexShape& b) {
     return std::max(static_cast<double>(a.InnerRadius()) + b.InnerRadius(),
-                    0.02 * (static_cast<double>(a.OuterRadius()) + b.OuterRadius()));
+                    0.02 * (OuterRadiusOf(a) + OuterRadiusOf(b)));
 }
 
 enum class Algorithm : uint8_t { Gjk, Epa, Mpr };  // Gjk: only whether they overlap
@@ -176,7 +185,7 @@ public:
     }
 
     std::optional<KnownContact> Run(CollideCounters& counters) {
-        const double balls = double{pair_.a.OuterRadius()} + pair_.b.OuterRadius() + farthest_;
+        const double balls = OuterRadiusOf(pair_.a) + OuterRadiusOf(pair_.b) + farthest_;
         const Position between = pair_.position.cast<double>();
         if (!(Dot<double>(between, between) <= 1.0001 * balls * balls)) return std::nullopt;  // or not finite
         if (best_.separation > farthest_) return std::nullopt;

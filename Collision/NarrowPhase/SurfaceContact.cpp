@@ -133,17 +133,26 @@ private:
             view = Reversed(view);
         }
         const auto index = static_cast<uint32_t>(first);
-        if (asksLibccd_) {
-            for (uint32_t bits = near; bits != 0; bits &= bits - 1)
-                CollideTriangle(index + static_cast<uint32_t>(std::countr_zero(bits)));
-            return;
-        }
+        if (asksLibccd_) return CollideByLibccd(batch, near, reversed, index);
         if (a_.Type() == ShapeType::Sphere) return CollideSphere(batch, near, index);
         if (a_.Type() == ShapeType::Capsule) return CollideCapsule(probe, batch, near, reversed, index);
         for (uint32_t bits = near; bits != 0; bits &= bits - 1) {
             const int i = std::countr_zero(bits);
             if (isPolyhedral_) CollideFaces(batch, i, (reversed >> i & 1) != 0, index + static_cast<uint32_t>(i));
             else CollideTriangle(index + static_cast<uint32_t>(i));
+        }
+    }
+
+    void CollideByLibccd(const TriangleBatch& batch, uint32_t near, uint32_t reversed, uint32_t first) {
+        const bool hasFaces = isPolyhedral_ && core_.faceCount > 0;
+        for (uint32_t bits = near; bits != 0; bits &= bits - 1) {
+            const int i = std::countr_zero(bits);
+            const uint32_t index = first + static_cast<uint32_t>(i);
+            const PlacedTriangle triangle = Place(index);
+            const std::optional<KnownContact> found = AskAbout(triangle);
+            if (!found) continue;
+            if (hasFaces) CollideFaces(batch, i, (reversed >> i & 1) != 0, index, &*found);
+            else CollideTriangle(index, nullptr, &*found);
         }
     }
 
@@ -200,21 +209,44 @@ private:
         }
     }
 
-    // `onFace`: what lies before its face, where that is known and is not all.
-    void CollideTriangle(uint32_t index, const Manifold* onFace = nullptr) {
+    // A triangle about its centroid, and that in the shape's frame.
+    struct PlacedTriangle {
+        Vector3 corners[3];
+        Vector3 normal;
+        RelativePose pose;
+    };
+    PlacedTriangle Place(uint32_t index) const {
         const TriangleView& view = contacts_.views_[index];
         const Vector3 middle = (view.vertices[0] + view.vertices[1] + view.vertices[2]) * (1.0f / 3.0f);
-        const Vector3 corners[3] = {view.vertices[0] - middle, view.vertices[1] - middle, view.vertices[2] - middle};
-        const RelativePose pose{bInA_.Transform(middle), bInA_.rotation};
-        if (isPolyhedral_) CollidePolyhedron(index, corners, pose, onFace);
-        else CollideCurved(index, corners, pose);
+        return {{view.vertices[0] - middle, view.vertices[1] - middle, view.vertices[2] - middle},
+                view.normal,
+                {bInA_.Transform(middle), bInA_.rotation}};
+    }
+    std::optional<KnownContact> AskAbout(const PlacedTriangle& placed) {
+        const Triangle triangle(placed.corners, placed.normal);
+        return FindLibccdContact(SupportPair(a_, triangle, placed.pose), placed.pose, settings_.speculativeDistance,
+                                 contacts_.counters_);
+    }
+
+    // `onFace`: what lies before its face, where that is known and is not all. `found`: by libccd, where it was asked.
+    void CollideTriangle(uint32_t index, const Manifold* onFace = nullptr, const KnownContact* found = nullptr) {
+        const PlacedTriangle triangle = Place(index);
+        std::optional<KnownContact> asked;
+        if (asksLibccd_ && !found) {
+            asked = AskAbout(triangle);
+            if (!asked) return;
+            found = &*asked;
+        }
+        if (isPolyhedral_) CollidePolyhedron(index, triangle.corners, triangle.pose, onFace, found);
+        else CollideCurved(index, triangle.corners, triangle.pose, found);
     }
 
     // Before the face first: most contacts are there.
-    void CollideFaces(const TriangleBatch& batch, int lane, bool isReversed, uint32_t index) {
+    void CollideFaces(const TriangleBatch& batch, int lane, bool isReversed, uint32_t index,
+                      const KnownContact* byLibccd = nullptr) {
         const TriangleView& view = contacts_.views_[index];
         const int incident = FaceAlong(core_, -(axes_ * view.normal));
-        if (core_.faces[incident].cornerCount > kMostCorners) return CollideTriangle(index);
+        if (core_.faces[incident].cornerCount > kMostCorners) return CollideTriangle(index, nullptr, byLibccd);
         TriangleInShape triangle;
         batch.Extract(lane, isReversed, axes_, triangle.corners, triangle.outwards);
         triangle.normal = axes_ * view.normal;
@@ -228,11 +260,11 @@ private:
             BuildTriangleFaceContact(core_, incident, triangle, batch.separation[lane], tolerances, onFace);
         const bool found = onFace.pointCount > 0 && contact.touches;
         if (found && contact.proven) return AddFace(view, onFace);
-        if (MeetsEdges(view, triangle, tolerances.reach)) return CollideTriangle(index, &onFace);
+        if (MeetsEdges(view, triangle, tolerances.reach)) return CollideTriangle(index, &onFace, byLibccd);
         if (onFace.pointCount == 0) return;
         if (found) return AddFace(view, onFace);
         if (!WaitForNeighbor(index, triangle, tolerances.prefer + 1e-3f * Sqrt(size), onFace))
-            CollideTriangle(index, &onFace);
+            CollideTriangle(index, &onFace, byLibccd);
     }
 
     // Whether there is more to the triangle than its face. A shape without rounding that reaches no active edge lies
@@ -279,7 +311,7 @@ private:
     }
 
     void CollidePolyhedron(uint32_t index, const Vector3 (&corners)[3], const RelativePose& pose,
-                           const Manifold* knownOnFace) {
+                           const Manifold* knownOnFace, const KnownContact* byLibccd) {
         const TriangleView& view = contacts_.views_[index];
         PolyhedronStorage storage;
         const PolyhedronPair pair(core_, CoreOf(corners, view.normal, 0, storage), pose);
@@ -294,17 +326,14 @@ private:
             if (face.separation > tolerances.reach) return;
             const FaceContact contact = BuildFaceContact(pair, face, tolerances, onFace);
             if (onFace.pointCount == 0 && FacesAlone(view)) return;
-            if (!asksLibccd_ && IsFaceContact(view, contact, onFace)) return AddFace(view, onFace);
+            if (IsFaceContact(view, contact, onFace)) return AddFace(view, onFace);
         }
 
         KnownAxis known{};
         bool overlaps;
-        if (asksLibccd_) {
-            const Triangle triangle(corners, view.normal);
-            const auto found = AskAbout(SupportPair(a_, triangle, pose), pose);
-            if (!found) return;
-            known = {found->axis, pair.SeparationAlong(found->axis), tolerances.feature};
-            overlaps = found->separation <= 0;
+        if (byLibccd) {
+            known = {byLibccd->axis, pair.SeparationAlong(byLibccd->axis), tolerances.feature};
+            overlaps = byLibccd->separation <= 0;
         } else {
             const Vector3 inwards = -(pair.rotation * view.normal);
             const auto gjk = Gjk(pair, inwards, tolerances.reach);
@@ -325,7 +354,8 @@ private:
         ResolveTriangleContact(index, pair.DirectionInB(known.axis), overlaps, onFace, nearest);
     }
 
-    void CollideCurved(uint32_t index, const Vector3 (&corners)[3], const RelativePose& pose) {
+    void CollideCurved(uint32_t index, const Vector3 (&corners)[3], const RelativePose& pose,
+                       const KnownContact* byLibccd) {
         const TriangleView& view = contacts_.views_[index];
         const Triangle triangle(corners, view.normal);
         const SupportPair pair(a_, triangle, pose);
@@ -334,10 +364,8 @@ private:
         const Vector3 inwards = -(pair.rotation * view.normal);
         KnownContact known{};
         bool overlaps;
-        if (asksLibccd_) {
-            const auto found = AskAbout(pair, pose);
-            if (!found) return;
-            known = *found;
+        if (byLibccd) {
+            known = *byLibccd;
             overlaps = known.separation <= 0;
         } else {
             const ConvexGjkResult gjk = ConvexGjk(pair, inwards, tolerances.reach);
@@ -356,10 +384,6 @@ private:
         none = {};
         BuildConvexContact(pair, known, tolerances, none, nearest);
         ResolveTriangleContact(index, pair.DirectionInB(known.axis), overlaps, onFace, nearest);
-    }
-
-    std::optional<KnownContact> AskAbout(const SupportPair& pair, const RelativePose& pose) {
-        return FindLibccdContact(pair, pose, settings_.speculativeDistance, contacts_.counters_);
     }
 
     // Decides what a triangle's contact is: before its face, or at what is nearest along `axis` (towards the triangle,

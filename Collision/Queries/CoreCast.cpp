@@ -276,7 +276,9 @@ CoreCastResult CastByLibccd(const ConvexShape& a, const ConvexShape& b, const Co
         const std::optional<KnownContact> touch =
             FindLibccdContact(pair, pose, std::numeric_limits<float>::infinity(), unused);
         if (!touch) return {0, Vector3(0, 1, 0), Vector3::Zero(), true};  // not finite
-        return {double{touch->separation} - target, touch->axis, touch->onA, touch->separation <= 0};
+        // Later it is known how deep they are by rounding, and along which axis.
+        const bool coresOverlap = fraction == 0 && touch->separation <= 0;
+        return {double{touch->separation} - target, touch->axis, touch->onA, coresOverlap};
     };
     return Advance(b, motion, limits, tolerance, separate);
 }

@@ -3,10 +3,19 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdlib>
 
 namespace fulcrum::testing {
 
 // Calls since the program started. Any thread.
 uint64_t AllocationCount();
+
+// Calls of malloc, as C libraries make them; operator new is not among them. Always 0 where kCountsMalloc is false.
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(__clang__)
+inline constexpr bool kCountsMalloc = true;
+#else
+inline constexpr bool kCountsMalloc = false;
+#endif
+uint64_t MallocCount();
 
 }  // namespace fulcrum::testing
