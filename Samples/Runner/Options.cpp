@@ -38,11 +38,9 @@ UpAxis ParseUpAxis(const std::string& text) {
 }
 
 NarrowPhaseMethod ParseNarrowPhase(const std::string& text) {
-    const std::array<std::string, 2> names{"automatic", "libccd"};
-    for (size_t i = 0; i < names.size(); ++i)
-        if (text == names[i]) return static_cast<NarrowPhaseMethod>(i);
-    throw CLI::ValidationError(UnknownName("method of --narrow-phase", text, names).message +
-                               "; it takes automatic or libccd");
+    for (const NarrowPhaseMethod method : {NarrowPhaseMethod::Automatic, NarrowPhaseMethod::Libccd})
+        if (text == NarrowPhaseName(method)) return method;
+    throw CLI::ValidationError("--narrow-phase takes automatic or libccd, not '" + text + "'");
 }
 
 void AddOntoOptions(CLI::App& app, Command& command) {

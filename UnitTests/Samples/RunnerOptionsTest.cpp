@@ -86,8 +86,8 @@ TEST(RunnerOptions, NameTheNarrowPhase) {
     EXPECT_EQ(Parsed("run tower --narrow-phase automatic").options.narrowPhase, NarrowPhaseMethod::Automatic);
     EXPECT_EQ(Parsed("run tower --narrow-phase libccd").options.narrowPhase, NarrowPhaseMethod::Libccd);
     EXPECT_EQ(Parsed("drop a.obj --narrow-phase libccd").options.narrowPhase, NarrowPhaseMethod::Libccd);
-    ExpectComplaint("run tower --narrow-phase bullet", "it takes automatic or libccd");
-    ExpectComplaint("run tower --narrow-phase libcd", "the nearest is 'libccd'");
+    ExpectComplaint("run tower --narrow-phase bullet", "--narrow-phase takes automatic or libccd, not 'bullet'");
+    ExpectComplaint("run tower --narrow-phase", "--narrow-phase");
     EXPECT_NE(Parsed("run --help").help.find("--narrow-phase"), std::string::npos);
 }
 

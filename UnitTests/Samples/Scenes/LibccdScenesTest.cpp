@@ -102,6 +102,12 @@ TEST(LibccdScenes, HullsAndCurvedShapesStayAboveTheFloor) {
     EXPECT_EQ(RunByLibccd("convex_shapes", Steps(200)).accuracy, 0);
 }
 
+TEST(LibccdScenes, QueriesAgreeWithEachOther) {
+    EXPECT_EQ(RunByLibccd("query_overlaps", Steps(150)).accuracy, 0);
+    EXPECT_LT(RunByLibccd("query_casts", Steps(150)).accuracy, 2e-4);    // m
+    EXPECT_LT(RunByLibccd("query_closest", Steps(150)).accuracy, 1e-4);  // m
+}
+
 TEST(LibccdScenes, ThreadsChangeNoBit) {
     for (const char* name : {"convex_on_mesh", "convex_shapes", "bullets", "endless_slope"}) {
         const Outcome one = RunByLibccd(name, Steps(100));
