@@ -280,6 +280,11 @@ CoreCastResult CastByLibccd(const ConvexShape& a, const ConvexShape& b, const Co
         const bool coresOverlap = fraction == 0 && touch->separation <= 0;
         return {double{touch->separation} - target, touch->axis, touch->onA, coresOverlap};
     };
+    // What is within the tolerance, but apart, and moves away straight does not touch, as in CastLinear.
+    if (!motion.IsTurning()) {
+        const Separated start = separate(0, Vector3(0, 1, 0));
+        if (start.gap > 0 && Dot(start.axis, motion.displacement) >= 0) return {};
+    }
     return Advance(b, motion, limits, tolerance, separate);
 }
 
