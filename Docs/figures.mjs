@@ -124,7 +124,8 @@ function writeDocuments(figures, isCheck) {
 // ---- New figures ------------------------------------------------------------------------------------------------------
 
 const isSetting = ({ settings: s }, substeps, velocity, position) =>
-  s.substeps === substeps && s.velocity_iterations === velocity && s.position_iterations === position;
+  s.substeps === substeps && s.velocity_iterations === velocity && s.position_iterations === position &&
+  (s.narrow_phase ?? 'automatic') === 'automatic';
 
 // One run of the array that fulcrum bench writes.
 export function take(figures, run) {

@@ -130,7 +130,7 @@ void QueryInterface::VisitShape(const MovingShape& shape, FunctionRef<float(cons
     const QueryScope scope(world_);
     if (!scope || !IsGiven(shape.shape)) return;
     const ShapeMotion motion{CenterPoseOf(*shape.shape, shape.pose), shape.displacement, shape.turn};
-    const ShapeCaster caster(*shape.shape, motion);
+    const ShapeCaster caster(*shape.shape, motion, world_.settings.narrowPhase);
     if (!caster.IsValid()) return;
     const ColliderSearch search(world_, filter);
     ShapeCastSettings upTo = settings;
@@ -150,7 +150,7 @@ bool QueryInterface::CastShape(const MovingShape& shape, WorldShapeHit& hit, con
     const QueryScope scope(world_);
     if (!scope || !IsGiven(shape.shape)) return false;
     const ShapeMotion motion{CenterPoseOf(*shape.shape, shape.pose), shape.displacement, shape.turn};
-    const ShapeCaster caster(*shape.shape, motion);
+    const ShapeCaster caster(*shape.shape, motion, world_.settings.narrowPhase);
     if (!caster.IsValid()) return false;
     const ColliderSearch search(world_, filter);
     ShapeCastSettings upTo = settings;
@@ -199,7 +199,8 @@ void QueryInterface::VisitOverlaps(const PlacedShape& shape, FunctionRef<bool(co
                [&](uint32_t collider) {
                    if (!goOn) return;
                    const RelativePose relative = Relative(search.PoseOf(collider), pose);
-                   if (Overlap(search.ShapeOf(collider), *shape.shape, relative)) goOn = visit(search.HitOf(collider));
+                   if (Overlap(search.ShapeOf(collider), *shape.shape, relative, world_.settings.narrowPhase))
+                       goOn = visit(search.HitOf(collider));
                });
 }
 
@@ -228,7 +229,8 @@ void QueryInterface::FindBodiesAt(const Position& point, std::vector<OverlapHit>
     const Bounds bounds = TreeBounds(world_, point, point);
     search.Run([&](const BoundsTree& tree, const auto& found) { tree.Query(bounds, found); },
                [&](uint32_t collider) {
-                   if (Contains(search.ShapeOf(collider), search.PoseOf(collider).InverseTransform(point)))
+                   if (Contains(search.ShapeOf(collider), search.PoseOf(collider).InverseTransform(point),
+                                world_.settings.narrowPhase))
                        hits.push_back(search.HitOf(collider));
                });
     std::sort(hits.begin(), hits.end());
@@ -251,7 +253,8 @@ bool QueryInterface::FindClosest(const PlacedShape& shape, float maxDistance, Wo
                [&](uint32_t collider) {
                    ClosestPoints found;
                    const Pose at = search.PoseOf(collider);
-                   if (!FindClosestPoints(search.ShapeOf(collider), *shape.shape, Relative(at, pose), limit, found))
+                   if (!FindClosestPoints(search.ShapeOf(collider), *shape.shape, Relative(at, pose), limit, found,
+                                          world_.settings.narrowPhase))
                        return;
                    const bool isCloser =
                        bestCollider == ~0u || found.distance < best.distance ||

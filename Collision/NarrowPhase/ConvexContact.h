@@ -19,6 +19,23 @@ struct KnownContact {
 // The contact of two cores that overlap: GJK's `simplex` around the origin, and the best guess of the axis.
 KnownContact FindDepth(const SupportPair& pair, const Simplex<SupportVertex>& simplex, const Vector3& guess);
 
+// Calls visit(axis) with the line between the centers and with the axes of both shapes, to both sides: where a search
+// gives up, one of them is a start to polish.
+template <class Visitor>
+void VisitPlainAxes(const SupportPair& pair, const Visitor& visit) {
+    visit(Normalized(pair.position));
+    for (int i = 0; i < 3; ++i) {
+        const Vector3 ofA = Vector3::Unit(i), ofB = pair.rotation * ofA;
+        for (const float sign : {1.0f, -1.0f}) {
+            visit(Vector3(ofA * sign));
+            visit(Vector3(ofB * sign));
+        }
+    }
+}
+
+// Turns the axis to where it separates the cores the farthest nearby, or overlaps them the least, and finds the point.
+void Polish(const SupportPair& pair, KnownContact& known);
+
 // Writes the manifold and the cache: a face contact if a face normal is nearly as good an axis, otherwise parallel
 // edges, or the known point.
 void BuildConvexContact(const SupportPair& pair, const KnownContact& known, const ContactTolerances& tolerances,

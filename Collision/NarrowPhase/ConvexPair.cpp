@@ -20,15 +20,15 @@ void TryAxis(const SupportPair& pair, const Vector3& axis, KnownContact& known) 
 
 // Both shapes' axes and the line between their centers: starting points for Polish if EPA gives up.
 void TryPlainAxes(const SupportPair& pair, KnownContact& known) {
-    TryAxis(pair, Normalized(pair.position), known);
-    for (int i = 0; i < 3; ++i) {
-        const Vector3 ofA = Vector3::Unit(i), ofB = pair.rotation * ofA;
-        for (const float sign : {1.0f, -1.0f}) {
-            TryAxis(pair, ofA * sign, known);
-            TryAxis(pair, ofB * sign, known);
-        }
-    }
+    VisitPlainAxes(pair, [&](const Vector3& axis) { TryAxis(pair, axis, known); });
 }
+
+Vector3 StartAxis(const PairCache& cache, const RelativePose& bInA) {
+    if (cache.kind == PairCache::Kind::Axis) return cache.Axis();
+    return Normalized(bInA.position);
+}
+
+}  // namespace
 
 // Moves B out along the axis until the cores are a little apart: the direction between the closest points is then an
 // axis that separates them at least as far. For n' the new axis, n the old, d the depth along n and m what is left
@@ -51,13 +51,6 @@ void Polish(const SupportPair& pair, KnownContact& known) {
         if (gained <= enough) return;
     }
 }
-
-Vector3 StartAxis(const PairCache& cache, const RelativePose& bInA) {
-    if (cache.kind == PairCache::Kind::Axis) return cache.Axis();
-    return Normalized(bInA.position);
-}
-
-}  // namespace
 
 KnownContact FindDepth(const SupportPair& pair, const Simplex<SupportVertex>& simplex, const Vector3& guess) {
     KnownContact known{guess, pair.SeparationAlong(guess), Vector3::Zero()};

@@ -1,8 +1,11 @@
 #include <Fulcrum/Collision/NarrowPhase/Libccd.h>
 
 #include <Fulcrum/Collision/NarrowPhase/AxisContact.h>
-#include <Fulcrum/Collision/NarrowPhase/ConvexContact.h>
+#include <Fulcrum/Collision/NarrowPhase/ConvexGjk.h>
 #include <Fulcrum/Collision/NarrowPhase/PairFunctions.h>
+#include <Fulcrum/Collision/NarrowPhase/PlaneContact.h>
+#include <Fulcrum/Collision/Shapes/Primitives.h>
+#include <Fulcrum/Collision/Shapes/Triangle.h>
 
 #include <ccd/ccd.h>
 #include <ccd/quat.h>
@@ -20,8 +23,10 @@ struct Body {
     Mat3<double> rotation;
     Position position;
     double rounding;  // m
-    LibccdAlgorithm algorithm;
-    mutable int supports = 0;  // asked for so far
+    Position start;   // where GJK looks first
+    bool isMpr;
+    mutable int supports = 0;                       // asked for so far
+    mutable Position lastAsked = Position::Zero();  // unit
 
     // Nothing limits libccd's loops. EPA expands what is nearest until nothing is: where a ball's center lies on a
     // corner of the other shape, all of the ball's surface is equally near, and its facets are without number. MPR
@@ -29,9 +34,7 @@ struct Body {
     static constexpr int kMostSupports = 400;
     // From there on supports lie inside, which ends EPA, or are no numbers, which MPR takes for shapes that are apart.
     Position Last() const {
-        return algorithm == LibccdAlgorithm::Epa
-                   ? position
-                   : Position(Position::Constant(std::numeric_limits<double>::quiet_NaN()));
+        return isMpr ? Position(Position::Constant(std::numeric_limits<double>::quiet_NaN())) : position;
     }
 };
 
@@ -50,6 +53,7 @@ void Support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* result
     const Vector3 local = body.rotation.TransposeMultiply(unit).cast<float>();
     const Position core = body.shape->SupportCore(local).cast<double>();
     const Position point = body.rotation * core + body.position + unit * body.rounding;
+    body.lastAsked = unit;
     ccdVec3Set(result, point.x(), point.y(), point.z());
 }
 
@@ -58,124 +62,302 @@ void Center(const void* object, ccd_vec3_t* result) {
     ccdVec3Set(result, body.position.x(), body.position.y(), body.position.z());
 }
 
-Vector3 CenterLine(const RelativePose& bInA) { return Normalized(bInA.position); }
+void FirstDirection(const void* object, const void*, ccd_vec3_t* result) {
+    const Position& start = static_cast<const Body*>(object)->start;
+    ccdVec3Set(result, start.x(), start.y(), start.z());
+}
+
+// Triangles of a surface come without radii.
+double OuterRadiusOf(const ConvexShape& shape) {
+    if (shape.Type() != ShapeType::Triangle) return shape.OuterRadius();
+    float square = 0;
+    for (int i = 0; i < 3; ++i) square = std::max(square, LengthSquared(static_cast<const Triangle&>(shape).Corner(i)));
+    return double{std::sqrt(square)} + shape.ConvexRadius();
+}
+
+// How thick the difference of two shapes is at least. Flat shapes have no inside: tolerances must not be 0, or EPA
+// never ends.
+double Thickness(const ConvexShape& a, const ConvexShape& b) {
+    return std::max(static_cast<double>(a.InnerRadius()) + b.InnerRadius(),
+                    0.02 * (OuterRadiusOf(a) + OuterRadiusOf(b)));
+}
+
+enum class Algorithm : uint8_t { Gjk, Epa, Mpr };  // Gjk: only whether they overlap
+
+struct Answer {
+    LibccdResult::Status status;
+    Position axis;      // unit, from A towards B. Apart: that GJK takes for a separating one; MPR tells none
+    double depth;       // m
+    Position position;  // m
+};
+
+// Two shapes as libccd is asked about them.
+struct Question {
+    const ConvexShape& a;
+    const ConvexShape& b;
+    const RelativePose& bInA;
+    double roundingA, roundingB;  // m, of the cores
+    double epaTolerance;          // m2: libccd holds it against squares of lengths
+    Position start = Position(1, 0, 0);
+
+    Answer Ask(Algorithm algorithm) const;
+};
+
+Answer Question::Ask(Algorithm algorithm) const {
+    const bool isMpr = algorithm == Algorithm::Mpr;
+    const Body bodyA{
+        &a, {Position(1, 0, 0), Position(0, 1, 0), Position(0, 0, 1)}, Position::Zero(), roundingA, start, isMpr};
+    const Body bodyB{&b, DoubleRotation(bInA.rotation), bInA.position.cast<double>(), roundingB, start, isMpr};
+    ccd_t ccd;
+    CCD_INIT(&ccd);
+    ccd.first_dir = FirstDirection;
+    ccd.support1 = ccd.support2 = Support;
+    ccd.center1 = ccd.center2 = Center;
+    ccd.max_iterations = 200;
+    ccd.epa_tolerance = epaTolerance;
+    ccd.mpr_tolerance = 1e-5 * Thickness(a, b);
+
+    using Status = LibccdResult::Status;
+    double depth = 0;
+    ccd_vec3_t direction = {{0, 0, 0}}, position = {{0, 0, 0}};
+    if (algorithm == Algorithm::Gjk) {
+        const bool overlap = ccdGJKIntersect(&bodyA, &bodyB, &ccd) != 0;
+        return {overlap ? Status::Found : Status::Apart, bodyA.lastAsked, 0, Position::Zero()};
+    }
+    const int status = isMpr ? ccdMPRPenetration(&bodyA, &bodyB, &ccd, &depth, &direction, &position)
+                             : ccdGJKPenetration(&bodyA, &bodyB, &ccd, &depth, &direction, &position);
+    if (status == -1) return {Status::Apart, bodyA.lastAsked, 0, Position::Zero()};
+    // -2: out of memory. Touching shapes come back as "overlapping" with a direction of zero.
+    const Position d(direction.v[0], direction.v[1], direction.v[2]);
+    const double length = std::sqrt(Dot<double>(d, d));
+    if (status != 0 || !(length > 0.5) || !std::isfinite(depth))
+        return {Status::Failed, Position::Zero(), 0, Position::Zero()};
+    return {Status::Found, d * (1 / length), depth, Position(position.v[0], position.v[1], position.v[2])};
+}
+
+// The facets of a curved shape are never exact, and their number grows with the inverse of this.
+double EpaTolerance(const ConvexShape& a, const ConvexShape& b) {
+    return HasPolyhedralCore(a.Type()) && HasPolyhedralCore(b.Type()) ? 1e-9 : 1e-7;
+}
 
 }  // namespace
 
 LibccdResult LibccdPenetration(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA, double margin,
                                LibccdAlgorithm algorithm) {
+    LibccdResult result{LibccdResult::Status::Apart, Position::Zero(), 0, Position::Zero()};
     // Where the balls around the shapes do not meet, the shapes do not. libccd would not find it out: its tolerances
     // follow from the shapes' sizes, and far apart coordinates are rounded by more than that, so that its EPA never
     // ends.
     const Position between = bInA.position.cast<double>();
     const double reach = double{a.OuterRadius()} + b.OuterRadius() + margin;
-    if (!(Dot<double>(between, between) <= 1.0001 * reach * reach))
-        return {LibccdResult::Status::Apart, Position::Zero(), 0, Position::Zero()};
-    const Body bodyA{&a,
-                     {Position(1, 0, 0), Position(0, 1, 0), Position(0, 0, 1)},
-                     Position::Zero(),
-                     a.ConvexRadius() + 0.5 * margin,
-                     algorithm};
-    const Body bodyB{&b, DoubleRotation(bInA.rotation), bInA.position.cast<double>(), b.ConvexRadius() + 0.5 * margin,
-                     algorithm};
-    ccd_t ccd;
-    CCD_INIT(&ccd);
-    ccd.support1 = ccd.support2 = Support;
-    ccd.center1 = ccd.center2 = Center;
-    ccd.max_iterations = 200;
-    // Flat shapes have no inside: their tolerance must not be 0, or EPA never ends.
-    const double size = std::max(static_cast<double>(a.InnerRadius()) + b.InnerRadius(),
-                                 0.02 * (static_cast<double>(a.OuterRadius()) + b.OuterRadius()));
-    // libccd holds this against squares of lengths. The facets of a curved core are never exact, and their number grows
-    // with the inverse of this.
-    const bool curved = !HasPolyhedralCore(a.Type()) || !HasPolyhedralCore(b.Type());
-    ccd.epa_tolerance = (curved ? 1e-7 : 1e-9) * size * size;
-    ccd.mpr_tolerance = 1e-5 * size;
-
-    double depth = 0;
-    ccd_vec3_t direction = {{0, 0, 0}}, position = {{0, 0, 0}};
-    const int status = algorithm == LibccdAlgorithm::Epa
-                           ? ccdGJKPenetration(&bodyA, &bodyB, &ccd, &depth, &direction, &position)
-                           : ccdMPRPenetration(&bodyA, &bodyB, &ccd, &depth, &direction, &position);
-    LibccdResult result{LibccdResult::Status::Apart, Position::Zero(), 0, Position::Zero()};
-    if (status == -1) return result;
-    // -2: out of memory. Touching shapes come back as "overlapping" with a direction of zero.
-    const Position d(direction.v[0], direction.v[1], direction.v[2]);
-    const double length = std::sqrt(Dot<double>(d, d));
-    if (status != 0 || !(length > 0.5) || !std::isfinite(depth)) {
-        result.status = LibccdResult::Status::Failed;
-        return result;
-    }
-    result.status = LibccdResult::Status::Found;
-    result.normal = d * (1 / length);
-    result.separation = margin - depth;
-    result.position = Position(position.v[0], position.v[1], position.v[2]);
+    if (!(Dot<double>(between, between) <= 1.0001 * reach * reach)) return result;
+    const double size = Thickness(a, b);
+    const Question question{
+        a, b, bInA, a.ConvexRadius() + 0.5 * margin, b.ConvexRadius() + 0.5 * margin, EpaTolerance(a, b) * size * size};
+    const Answer answer = question.Ask(algorithm == LibccdAlgorithm::Mpr ? Algorithm::Mpr : Algorithm::Epa);
+    result.status = answer.status;
+    if (answer.status != LibccdResult::Status::Found) return result;
+    result.normal = answer.axis;
+    result.separation = margin - answer.depth;
+    result.position = answer.position;
     return result;
 }
 
 namespace {
 
-// The axis that libccd finds, and MPR's or the center line where it contradicts itself. Pair: any that can measure
-// itself.
-struct LibccdAxis {
-    bool apart;
-    Vector3 axis;
-    float separation;  // m, of the cores along it
-    Vector3 position;  // m, somewhere where they touch
+// In no plane of symmetry of anything: where the origin lies on an edge of GJK's simplex libccd gives up.
+const Position kStarts[] = {
+    {0.5345, 0.8018, 0.2673}, {-0.7428, 0.3714, 0.5571}, {0.3015, -0.6030, 0.7385}, {0.1961, 0.5883, -0.7845}};
+
+// Finds where two shapes touch, by asking libccd until its answer agrees with what the supports say.
+class ContactSearch {
+public:
+    ContactSearch(const SupportPair& pair, const RelativePose& bInA, float reach)
+        : pair_(pair),
+          bInA_(bInA),
+          farthest_(reach + pair.RadiusSum()),
+          size_(Thickness(pair.a, pair.b)),
+          best_{Normalized(pair.position), 0, Vector3::Zero()} {
+        best_.separation = pair.SeparationAlong(best_.axis);
+        // Points of both cores prove that these are no farther apart than this.
+        const float apart = Length(pair.Support(best_.axis).w.cast<float>());
+        rounding_ = std::max(std::min(double{farthest_}, 1.01 * double{apart}), 0.02 * size_);
+    }
+
+    std::optional<KnownContact> Run(CollideCounters& counters) {
+        const double balls = OuterRadiusOf(pair_.a) + OuterRadiusOf(pair_.b) + farthest_;
+        const Position between = pair_.position.cast<double>();
+        if (!(Dot<double>(between, between) <= 1.0001 * balls * balls)) return std::nullopt;  // or not finite
+        if (best_.separation > farthest_) return std::nullopt;
+        // Without rounding first, where that leaves the difference of the cores any thickness: flat facets are exact.
+        if (pair_.InnerRadii() > 0) {
+            const Outcome outcome = TryStarts(2, 0, 0, EpaTolerance(pair_.a, pair_.b) * size_ * size_);
+            if (outcome == Outcome::Agreed) return best_;
+            coresApart_ = outcome == Outcome::Apart;
+        } else {
+            const Answer answer = Question{pair_.a, pair_.b, bInA_, 0, 0, 0, kStarts[0]}.Ask(Algorithm::Gjk);
+            if (answer.status == LibccdResult::Status::Apart) Consider(answer.axis);
+            coresApart_ = found_ && best_.separation > 1e-3 * size_;
+        }
+        const double scale = size_ + rounding_, half = 0.5 * rounding_, tolerance = 1e-7 * scale * scale;
+        if (coresApart_) {
+            // The axis is known by now.
+            const Answer answer =
+                Question{pair_.a, pair_.b, bInA_, half, half, tolerance, kStarts[0]}.Ask(Algorithm::Gjk);
+            if (answer.status == LibccdResult::Status::Found || best_.separation > farthest_) return Result();
+        }
+        if (TryStarts(4, half, half, tolerance) != Outcome::Undecided) return Result();
+        ++counters.epaFailures;
+        const Answer mpr = Question{pair_.a, pair_.b, bInA_, half, half, tolerance}.Ask(Algorithm::Mpr);
+        if (mpr.status == LibccdResult::Status::Found) Consider(mpr.axis);
+        else ++counters.centerLineFallbacks;
+        VisitPlainAxes(pair_, [&](const Vector3& axis) { Consider(axis.cast<double>()); });
+        return Result();
+    }
+
+private:
+    enum class Outcome { Undecided, Agreed, Apart };
+
+    std::optional<KnownContact> Result() const {
+        if (best_.separation > farthest_) return std::nullopt;
+        return best_;
+    }
+
+    Outcome TryStarts(int count, double roundingA, double roundingB, double tolerance) {
+        const double rounding = roundingA + roundingB;
+        Question question{pair_.a, pair_.b, bInA_, roundingA, roundingB, tolerance};
+        for (int i = 0; i < count; ++i) {
+            question.start = kStarts[i];
+            const Answer answer = question.Ask(Algorithm::Epa);
+            if (answer.status == LibccdResult::Status::Failed) continue;
+            Consider(answer.axis);
+            if (answer.status == LibccdResult::Status::Apart) {
+                if (double{best_.separation} > rounding - 1e-6 * size_) return Outcome::Apart;
+                continue;
+            }
+            // EPA's polytope lies inside the difference: no axis separates the cores by more than this.
+            const double most = rounding - answer.depth;
+            const double slack = std::max(0.005 * std::abs(most), 1.5 * std::sqrt(tolerance));
+            if (best_.separation >= most - slack && !IsDeeperThanNeeded(answer.axis, most + slack))
+                return Outcome::Agreed;
+        }
+        return Outcome::Undecided;
+    }
+
+    // Whether another axis separates the cores by more than `most`. Where the overlap is next to nothing, EPA may end
+    // with the opposite side.
+    bool IsDeeperThanNeeded(const Position& axis, double most) const {
+        double farthest = pair_.SeparationAlong(Normalized(Vector3(-axis.cast<float>())));
+        VisitPlainAxes(
+            pair_, [&](const Vector3& plain) { farthest = std::max(farthest, double{pair_.SeparationAlong(plain)}); });
+        return farthest > most;
+    }
+
+    void Consider(const Position& axis) {
+        KnownContact known{Normalized(axis.cast<float>()), 0, Vector3::Zero()};
+        known.separation = pair_.SeparationAlong(known.axis);
+        known.onA = pair_.a.SupportCore(known.axis);
+        if (known.separation <= 0) Polish(pair_, known);
+        if (known.separation > 0) {
+            const ConvexGjkResult gjk = ConvexGjk(pair_, known.axis, std::numeric_limits<float>::infinity());
+            if (gjk.status == GjkStatus::Apart) known = {gjk.axis, gjk.separation, gjk.onA};
+        }
+        if (found_ && !(known.separation > best_.separation)) return;
+        found_ = true;
+        best_ = known;
+    }
+
+    const SupportPair& pair_;
+    const RelativePose& bInA_;
+    float farthest_;  // m: cores farther apart are beyond the reach
+    double size_;     // m
+    KnownContact best_;
+    bool found_ = false;
+    bool coresApart_ = false;
+    double rounding_;  // m, of both cores together
 };
 
-template <class Pair>
-LibccdAxis FindAxis(const PairQuery& query, const Pair& pair) {
-    const double margin = query.settings.speculativeDistance;
-    const LibccdResult result = LibccdPenetration(query.a, query.b, query.bInA, margin, LibccdAlgorithm::Epa);
-    if (result.status == LibccdResult::Status::Apart) return {true, Vector3::Zero(), 0, Vector3::Zero()};
-    LibccdAxis found{false, Normalized(result.normal.cast<float>()), 0, result.position.cast<float>()};
-    found.separation = pair.SeparationAlong(found.axis);
-    // libccd takes some deep overlaps for touching ones: then its depth is not that of its own direction.
-    const double size = static_cast<double>(query.a.InnerRadius()) + query.b.InnerRadius();
-    const bool contradicts = found.separation - pair.RadiusSum() < result.separation - 0.01 * size;
-    if (result.status == LibccdResult::Status::Failed || contradicts) {
-        ++query.counters.epaFailures;
-        const LibccdResult mpr = LibccdPenetration(query.a, query.b, query.bInA, margin, LibccdAlgorithm::Mpr);
-        const bool mprFound = mpr.status == LibccdResult::Status::Found;
-        if (!mprFound) ++query.counters.centerLineFallbacks;
-        const Vector3 other = mprFound ? Vector3(mpr.normal.cast<float>()) : CenterLine(query.bInA);
-        const float otherSeparation = pair.SeparationAlong(other);
-        if (result.status == LibccdResult::Status::Failed || otherSeparation > found.separation) {
-            found.axis = other;
-            found.separation = otherSeparation;
-            found.position = mprFound ? Vector3(mpr.position.cast<float>()) : query.a.SupportCore(other);
-        }
-    }
-    return found;
+}  // namespace
+
+std::optional<KnownContact> FindLibccdContact(const SupportPair& pair, const RelativePose& bInA, float reach,
+                                              CollideCounters& counters) {
+    return ContactSearch(pair, bInA, reach).Run(counters);
 }
 
-// Contact points from the shapes' supporting faces: at least one of the cores is curved.
-void CollideCurved(const PairQuery& query, Manifold& manifold) {
-    const SupportPair pair(query.a, query.b, query.bInA);
-    const LibccdAxis found = FindAxis(query, pair);
-    if (found.apart) return;
-    // libccd's point lies between the surfaces: on the core along the axis.
-    const float off = Dot(found.axis, Vector3(query.a.SupportCore(found.axis) - found.position));
-    const KnownContact known{found.axis, found.separation, found.position + found.axis * off};
-    const ContactTolerances tolerances(pair.InnerRadii(), pair.RadiusSum(), query.settings);
-    BuildConvexContact(pair, known, tolerances, query.cache, manifold);
+LibccdVerdict AskLibccd(const SupportPair& pair, const RelativePose& bInA, float margin) {
+    const float rounding = pair.RadiusSum() + margin;
+    const Vector3 between = Normalized(pair.position);
+    if (pair.SeparationAlong(between) > rounding) return {true, between};
+    const double size = Thickness(pair.a, pair.b);
+    Question question{pair.a,
+                      pair.b,
+                      bInA,
+                      pair.a.ConvexRadius() + 0.5 * margin,
+                      pair.b.ConvexRadius() + 0.5 * margin,
+                      1e-7 * size * size};
+    for (const Position& start : kStarts) {
+        question.start = start;
+        const Answer answer = question.Ask(Algorithm::Gjk);
+        if (answer.status == LibccdResult::Status::Found) return {false, Vector3::Zero()};
+        const Vector3 axis = Normalized(answer.axis.cast<float>());
+        if (pair.SeparationAlong(axis) > rounding) return {true, axis};
+    }
+    CollideCounters unused;
+    const std::optional<KnownContact> contact =
+        FindLibccdContact(pair, bInA, std::numeric_limits<float>::infinity(), unused);
+    const bool apart = contact && contact->separation > rounding;
+    return {apart, apart ? contact->axis : Vector3(Vector3::Zero())};
+}
+
+void CollideLibccd(const PairQuery& query, Manifold& manifold) {
+    manifold.pointCount = 0;
+    const SupportPair supports(query.a, query.b, query.bInA);
+    const std::optional<KnownContact> known =
+        FindLibccdContact(supports, query.bInA, query.settings.speculativeDistance, query.counters);
+    if (!known) return;
+    if (!HasPolyhedralCore(query.a.Type()) || !HasPolyhedralCore(query.b.Type())) {
+        const ContactTolerances tolerances(supports.InnerRadii(), supports.RadiusSum(), query.settings);
+        return BuildConvexContact(supports, *known, tolerances, query.cache, manifold);
+    }
+    PolyhedronStorage storageA, storageB;
+    const PolyhedronPair pair(CoreOf(query.a, storageA), CoreOf(query.b, storageB), query.bInA);
+    const ContactTolerances tolerances = pair.Tolerances(query.settings);
+    BuildContactFromAxis(pair, {known->axis, pair.SeparationAlong(known->axis), tolerances.feature}, tolerances,
+                         query.cache, manifold);
+}
+
+namespace {
+
+// The rotation that takes +y to a unit vector.
+Quaternion FromUp(const Vector3& to) {
+    if (to.y() < -0.999999f) return {1, 0, 0, 0};
+    return Normalized(Quaternion{to.z(), 0, -to.x(), 1 + to.y()});
 }
 
 }  // namespace
 
-void CollideLibccd(const PairQuery& query, Manifold& manifold) {
+void CollideWithPlaneByLibccd(const Plane& plane, const ConvexShape& shape, const RelativePose& planeInShape,
+                              const CollideSettings& settings, PairCache& cache, Manifold& manifold,
+                              CollideCounters& counters) {
     manifold.pointCount = 0;
-    if (!HasPolyhedralCore(query.a.Type()) || !HasPolyhedralCore(query.b.Type())) return CollideCurved(query, manifold);
-    PolyhedronStorage storageA, storageB;
-    const PolyhedronPair pair(CoreOf(query.a, storageA), CoreOf(query.b, storageB), query.bInA);
-    const LibccdAxis found = FindAxis(query, pair);
-    if (found.apart) return;
-    const ContactTolerances tolerances = pair.Tolerances(query.settings);
-    // The axis is as exact as libccd's tolerance; the separation along it is measured on the cores themselves. The
-    // polytope of rounded shapes has flat facets: its normals are off by about the root of the relative tolerance.
-    BuildContactFromAxis(pair, {found.axis, found.separation, 100 * tolerances.feature}, tolerances, query.cache,
-                         manifold);
+    const Vector3 up = Rotate(planeInShape.rotation, plane.Normal());
+    const float height = plane.Distance(planeInShape.InverseTransform(Vector3::Zero()));
+    const float size = shape.OuterRadius() + settings.speculativeDistance;
+    if (height > size) return;
+    // The way out through its top is always the shortest.
+    const float half = 2 * Abs(height) + 4 * size;
+    const auto block = Box::Create(Vector3::Constant(half));
+    if (!block) return CollideWithPlane(plane, shape, planeInShape, settings, manifold);
+    const RelativePose pose{up * -(height + half), FromUp(up)};
+    CollideLibccd({shape, *block.Value(), pose, settings, cache, counters}, manifold);
+    if (manifold.pointCount == 0) return;
+    // Rounding has turned the block's top a little.
+    if (Dot(manifold.normal, up) < -0.9999f) {
+        manifold.normal = -up;
+    } else {
+        ++counters.centerLineFallbacks;
+        CollideWithPlane(plane, shape, planeInShape, settings, manifold);
+    }
 }
 
 }  // namespace fulcrum

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/Collide.h>
+#include <Fulcrum/Collision/Shapes/Plane.h>
 
 namespace fulcrum {
 
@@ -27,7 +28,11 @@ void CollideBoxBox(const PairQuery& query, Manifold& manifold);
 void CollidePolyhedra(const PairQuery& query, Manifold& manifold);
 // Any two; the only one for curved cores.
 void CollideConvex(const PairQuery& query, Manifold& manifold);
-// Any two.
+// Any two, by libccd: what NarrowPhaseMethod::Libccd calls in place of the table.
 void CollideLibccd(const PairQuery& query, Manifold& manifold);
+// The shape (A) and a half space, by libccd: of the half space a block that reaches beyond the shape on all sides.
+void CollideWithPlaneByLibccd(const Plane& plane, const ConvexShape& shape, const RelativePose& planeInShape,
+                              const CollideSettings& settings, PairCache& cache, Manifold& manifold,
+                              CollideCounters& counters);
 
 }  // namespace fulcrum

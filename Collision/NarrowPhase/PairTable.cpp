@@ -1,8 +1,6 @@
 // The pair table: which function serves which two shapes.
 #include <Fulcrum/Collision/NarrowPhase/PairFunctions.h>
-
-#include <array>
-#include <iterator>
+#include <Fulcrum/Collision/NarrowPhase/PlaneContact.h>
 
 namespace fulcrum {
 
@@ -26,49 +24,84 @@ void Flip(const PairQuery& query, Manifold& manifold) {
     manifold.normal = -(rotation * manifold.normal);
 }
 
-using PairRow = std::array<PairFunction, kConvexShapeTypes>;
-
-template <PairFunction... Functions>
-constexpr PairRow Row() {
-    static_assert(sizeof...(Functions) == kConvexShapeTypes, "every convex shape needs a column in the pair table");
-    return {Functions...};
-}
-
-constexpr PairFunction kFlipped = Flip<CollidePolyhedra>;
-
-constexpr PairFunction kPolyhedra = CollidePolyhedra, kConvex = CollideConvex, kTurned = Flip<CollideConvex>;
-
-// By the type of A down and of B across. CollideConvex serves any two shapes; a pair is always passed to it
-// the same way round, so that it makes no difference which shape is A.
-// clang-format off
-constexpr PairRow kPairTable[] = {
-    //                    Sphere, Box, Capsule, ConvexHull, Triangle, then those with curved cores:
-    //                    TaperedCapsule, Cylinder, Custom
-    /* Sphere         */ Row<CollideSphereSphere, Flip<CollideBoxSphere>, Flip<CollideCapsuleSphere>, kFlipped, kFlipped,
-                             kConvex, kConvex, kConvex>(),
-    /* Box            */ Row<CollideBoxSphere, CollideBoxBox, kPolyhedra, kFlipped, kPolyhedra,
-                             kConvex, kConvex, kConvex>(),
-    /* Capsule        */ Row<CollideCapsuleSphere, kFlipped, CollideCapsuleCapsule, kFlipped, kFlipped,
-                             kConvex, kConvex, kConvex>(),
-    /* ConvexHull     */ Row<kPolyhedra, kPolyhedra, kPolyhedra, kPolyhedra, kPolyhedra,
-                             kConvex, kConvex, kConvex>(),
-    /* Triangle       */ Row<kPolyhedra, kPolyhedra, kPolyhedra, kPolyhedra, kPolyhedra,
-                             kConvex, kConvex, kConvex>(),
-    /* TaperedCapsule */ Row<kTurned, kTurned, kTurned, kTurned, kTurned, kConvex, kConvex, kConvex>(),
-    /* Cylinder       */ Row<kTurned, kTurned, kTurned, kTurned, kTurned, kTurned, kConvex, kConvex>(),
-    /* Custom         */ Row<kTurned, kTurned, kTurned, kTurned, kTurned, kTurned, kTurned, kConvex>(),
+// How two shapes of different types meet: one function serves both orders.
+struct PairEntry {
+    PairFunction inOrder;  // the type that comes first in ShapeType is A
+    PairFunction turned;   // it is B
 };
+// A function that takes the type that comes first as A, or as B; or one that takes any two shapes as they come.
+template <PairFunction Function>
+constexpr PairEntry kFirstIsA{Function, Flip<Function>};
+template <PairFunction Function>
+constexpr PairEntry kFirstIsB{Flip<Function>, Function};
+template <PairFunction Function>
+constexpr PairEntry kAnyOrder{Function, Function};
+
+class PairTable {
+public:
+    // Adds the next type: its entries with each type before it, and with itself.
+    template <ShapeType Type, class... Entries>
+    constexpr PairTable& Column(const Entries&... entries) {
+        constexpr int type = static_cast<int>(Type);
+        static_assert(sizeof...(entries) == type + 1, "a shape meets each shape before it in ShapeType, and its like");
+        int before = 0;
+        for (const PairEntry& entry : {entries...}) {
+            functions_[before][type] = entry.inOrder;
+            functions_[type][before++] = entry.turned;
+        }
+        return *this;
+    }
+    constexpr bool IsComplete() const {
+        for (const auto& row : functions_)
+            for (const PairFunction function : row)
+                if (!function) return false;
+        return true;
+    }
+    constexpr PairFunction Of(ShapeType a, ShapeType b) const {
+        return functions_[static_cast<int>(a)][static_cast<int>(b)];
+    }
+
+private:
+    PairFunction functions_[kConvexShapeTypes][kConvexShapeTypes]{};
+};
+
+// Polyhedra: which of the two is A makes no difference to CollidePolyhedra's contract, but to the bits.
+constexpr PairEntry kPolyhedra = kFirstIsA<CollidePolyhedra>, kPolyhedraTurned = kFirstIsB<CollidePolyhedra>;
+// CollideConvex serves any two shapes; a pair is always passed to it the same way round, so that it makes no difference
+// which shape is A.
+constexpr PairEntry kConvex = kFirstIsA<CollideConvex>;
+
+// Each shape is one line: how it meets Sphere, Box, Capsule, ConvexHull, Triangle, TaperedCapsule, Cylinder, Custom, up
+// to itself. The other order follows.
+// clang-format off
+constexpr PairTable kPairTable = PairTable()
+    .Column<ShapeType::Sphere>(kAnyOrder<CollideSphereSphere>)
+    .Column<ShapeType::Box>(kFirstIsB<CollideBoxSphere>, kAnyOrder<CollideBoxBox>)
+    .Column<ShapeType::Capsule>(kFirstIsB<CollideCapsuleSphere>, kPolyhedra, kAnyOrder<CollideCapsuleCapsule>)
+    .Column<ShapeType::ConvexHull>(kPolyhedraTurned, kPolyhedraTurned, kPolyhedraTurned, kAnyOrder<CollidePolyhedra>)
+    .Column<ShapeType::Triangle>(kPolyhedraTurned, kAnyOrder<CollidePolyhedra>, kPolyhedraTurned,
+                                 kAnyOrder<CollidePolyhedra>, kAnyOrder<CollidePolyhedra>)
+    .Column<ShapeType::TaperedCapsule>(kConvex, kConvex, kConvex, kConvex, kConvex, kAnyOrder<CollideConvex>)
+    .Column<ShapeType::Cylinder>(kConvex, kConvex, kConvex, kConvex, kConvex, kConvex, kAnyOrder<CollideConvex>)
+    .Column<ShapeType::Custom>(kConvex, kConvex, kConvex, kConvex, kConvex, kConvex, kConvex,
+                               kAnyOrder<CollideConvex>);
 // clang-format on
-static_assert(std::size(kPairTable) == kConvexShapeTypes, "every convex shape needs a row in the pair table");
+static_assert(kPairTable.IsComplete(), "every convex shape needs a line in the pair table");
 
 }  // namespace
 
 void Collide(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA, const CollideSettings& settings,
              PairCache& cache, Manifold& manifold, CollideCounters& counters) {
-    const PairFunction function = settings.method == NarrowPhaseMethod::Libccd
-                                      ? CollideLibccd
-                                      : kPairTable[static_cast<int>(a.Type())][static_cast<int>(b.Type())];
+    const PairFunction function =
+        settings.method == NarrowPhaseMethod::Libccd ? CollideLibccd : kPairTable.Of(a.Type(), b.Type());
     function({a, b, bInA, settings, cache, counters}, manifold);
+}
+
+void Collide(const ConvexShape& a, const Plane& b, const RelativePose& bInA, const CollideSettings& settings,
+             PairCache& cache, Manifold& manifold, CollideCounters& counters) {
+    if (settings.method == NarrowPhaseMethod::Libccd)
+        CollideWithPlaneByLibccd(b, a, bInA, settings, cache, manifold, counters);
+    else CollideWithPlane(b, a, bInA, settings, manifold);
 }
 
 }  // namespace fulcrum

@@ -8,6 +8,7 @@
 #include <Fulcrum/Collision/NarrowPhase/Features.h>
 #include <Fulcrum/Collision/NarrowPhase/Gjk.h>
 #include <Fulcrum/Collision/NarrowPhase/InnerBall.h>
+#include <Fulcrum/Collision/NarrowPhase/Libccd.h>
 #include <Fulcrum/Collision/NarrowPhase/RoundTriangles.h>
 #include <Fulcrum/Collision/NarrowPhase/TriangleFaceContact.h>
 #include <Fulcrum/Collision/NarrowPhase/TriangleSide.h>
@@ -52,12 +53,14 @@ public:
           center_(bInA.InverseTransform(Vector3::Zero())),
           motion_(InverseRotate(bInA.rotation, approach.motion)),
           touched_(approach.touched),
-          isPolyhedral_(HasPolyhedralCore(a.Type())) {
+          isPolyhedral_(HasPolyhedralCore(a.Type())),
+          asksLibccd_(settings.method == NarrowPhaseMethod::Libccd) {
         if (isPolyhedral_) core_ = CoreOf(a, storage_);
     }
 
     void Run() {
         contacts_.filter_.Clear();
+        contacts_.counters_ = {};
         Collect();
         const SurfaceProbe probe{a_,      isPolyhedral_ ? &core_ : nullptr, axes_,
                                  center_, settings_.speculativeDistance,    b_.IsTwoSided()};
@@ -91,12 +94,26 @@ private:
             view = Reversed(view);
         }
         const auto index = static_cast<uint32_t>(first);
+        if (asksLibccd_) return CollideByLibccd(batch, near, reversed, index);
         if (a_.Type() == ShapeType::Sphere) return CollideSphere(batch, near, index);
         if (a_.Type() == ShapeType::Capsule) return CollideCapsule(probe, batch, near, reversed, index);
         for (uint32_t bits = near; bits != 0; bits &= bits - 1) {
             const int i = std::countr_zero(bits);
             if (isPolyhedral_) CollideFaces(batch, i, (reversed >> i & 1) != 0, index + static_cast<uint32_t>(i));
             else CollideTriangle(index + static_cast<uint32_t>(i));
+        }
+    }
+
+    void CollideByLibccd(const TriangleBatch& batch, uint32_t near, uint32_t reversed, uint32_t first) {
+        const bool hasFaces = isPolyhedral_ && core_.faceCount > 0;
+        for (uint32_t bits = near; bits != 0; bits &= bits - 1) {
+            const int i = std::countr_zero(bits);
+            const uint32_t index = first + static_cast<uint32_t>(i);
+            const PlacedTriangle triangle = Place(index);
+            const std::optional<KnownContact> found = AskAbout(triangle);
+            if (!found) continue;
+            if (hasFaces) CollideFaces(batch, i, (reversed >> i & 1) != 0, index, &*found);
+            else CollideTriangle(index, nullptr, &*found);
         }
     }
 
@@ -152,22 +169,45 @@ private:
         }
     }
 
-    // onFace: the points before the triangle's face, where they are known; its edges and corners are still to be
-    // tested.
-    void CollideTriangle(uint32_t index, const Manifold* onFace = nullptr) {
+    // A triangle about its centroid, and that in the shape's frame.
+    struct PlacedTriangle {
+        Vector3 corners[3];
+        Vector3 normal;
+        RelativePose pose;
+    };
+    PlacedTriangle Place(uint32_t index) const {
         const TriangleView& view = contacts_.views_[index];
         const Vector3 middle = (view.vertices[0] + view.vertices[1] + view.vertices[2]) * (1.0f / 3.0f);
-        const Vector3 corners[3] = {view.vertices[0] - middle, view.vertices[1] - middle, view.vertices[2] - middle};
-        const RelativePose pose{bInA_.Transform(middle), bInA_.rotation};
-        if (isPolyhedral_) CollidePolyhedron(index, corners, pose, onFace);
-        else CollideCurved(index, corners, pose);
+        return {{view.vertices[0] - middle, view.vertices[1] - middle, view.vertices[2] - middle},
+                view.normal,
+                {bInA_.Transform(middle), bInA_.rotation}};
+    }
+    std::optional<KnownContact> AskAbout(const PlacedTriangle& placed) {
+        const Triangle triangle(placed.corners, placed.normal);
+        return FindLibccdContact(SupportPair(a_, triangle, placed.pose), placed.pose, settings_.speculativeDistance,
+                                 contacts_.counters_);
+    }
+
+    // onFace: the points before the triangle's face, where they are known; its edges and corners are still to be
+    // tested. found: libccd's contact, where it was asked.
+    void CollideTriangle(uint32_t index, const Manifold* onFace = nullptr, const KnownContact* found = nullptr) {
+        const PlacedTriangle triangle = Place(index);
+        std::optional<KnownContact> asked;
+        if (asksLibccd_ && !found) {
+            asked = AskAbout(triangle);
+            if (!asked) return;
+            found = &*asked;
+        }
+        if (isPolyhedral_) CollidePolyhedron(index, triangle.corners, triangle.pose, onFace, found);
+        else CollideCurved(index, triangle.corners, triangle.pose, found);
     }
 
     // The contact with the triangle's face first: most contacts are of that kind.
-    void CollideFaces(const TriangleBatch& batch, int lane, bool isReversed, uint32_t index) {
+    void CollideFaces(const TriangleBatch& batch, int lane, bool isReversed, uint32_t index,
+                      const KnownContact* byLibccd = nullptr) {
         const TriangleView& view = contacts_.views_[index];
         const int incident = FaceAlong(core_, -(axes_ * view.normal));
-        if (core_.faces[incident].cornerCount > kMostCorners) return CollideTriangle(index);
+        if (core_.faces[incident].cornerCount > kMostCorners) return CollideTriangle(index, nullptr, byLibccd);
         TriangleInShape triangle;
         batch.Extract(lane, isReversed, axes_, triangle.corners, triangle.outwards);
         triangle.normal = axes_ * view.normal;
@@ -181,11 +221,11 @@ private:
             BuildTriangleFaceContact(core_, incident, triangle, batch.separation[lane], tolerances, onFace);
         const bool found = onFace.pointCount > 0 && contact.isDeepest;
         if (found && contact.proven) return AddFace(view, onFace);
-        if (ReachesActiveEdge(view, triangle, tolerances.reach)) return CollideTriangle(index, &onFace);
+        if (ReachesActiveEdge(view, triangle, tolerances.reach)) return CollideTriangle(index, &onFace, byLibccd);
         if (onFace.pointCount == 0) return;
         if (found) return AddFace(view, onFace);
         if (!contacts_.filter_.DeferToNeighbor(view, triangle, tolerances.prefer + 1e-3f * Sqrt(size), onFace))
-            CollideTriangle(index, &onFace);
+            CollideTriangle(index, &onFace, byLibccd);
     }
 
     // A shape without rounding that reaches no active edge can touch the face alone.
@@ -206,7 +246,7 @@ private:
     }
 
     void CollidePolyhedron(uint32_t index, const Vector3 (&corners)[3], const RelativePose& pose,
-                           const Manifold* knownOnFace) {
+                           const Manifold* knownOnFace, const KnownContact* byLibccd) {
         const TriangleView& view = contacts_.views_[index];
         PolyhedronStorage storage;
         const PolyhedronPair pair(core_, CoreOf(corners, view.normal, 0, storage), pose);
@@ -224,17 +264,24 @@ private:
             if (IsFaceContact(view, contact, onFace)) return AddFace(view, onFace);
         }
 
-        const Vector3 inwards = -(pair.rotation * view.normal);
-        const auto gjk = Gjk(pair, inwards, tolerances.reach);
-        if (gjk.status == GjkStatus::BeyondReach) return;
-        KnownAxis known{gjk.axis, gjk.separation, tolerances.feature};
-        const bool overlaps = gjk.status == GjkStatus::Overlapping;
-        if (overlaps) {
-            const EpaResult epa = Epa(pair, gjk.simplex);
-            const FoundAxis found =
-                epa.status == EpaResult::Status::Found ? FoundAxis{epa.axis, epa.separation} : SearchAllAxes(pair);
-            known.axis = found.axis;
-            known.separation = found.separation;
+        KnownAxis known{};
+        bool overlaps;
+        if (byLibccd) {
+            known = {byLibccd->axis, pair.SeparationAlong(byLibccd->axis), tolerances.feature};
+            overlaps = byLibccd->separation <= 0;
+        } else {
+            const Vector3 inwards = -(pair.rotation * view.normal);
+            const auto gjk = Gjk(pair, inwards, tolerances.reach);
+            if (gjk.status == GjkStatus::BeyondReach) return;
+            known = {gjk.axis, gjk.separation, tolerances.feature};
+            overlaps = gjk.status == GjkStatus::Overlapping;
+            if (overlaps) {
+                const EpaResult epa = Epa(pair, gjk.simplex);
+                const FoundAxis found =
+                    epa.status == EpaResult::Status::Found ? FoundAxis{epa.axis, epa.separation} : SearchAllAxes(pair);
+                known.axis = found.axis;
+                known.separation = found.separation;
+            }
         }
         Manifold nearest;
         PairCache none;
@@ -242,18 +289,25 @@ private:
         contacts_.filter_.AddNearest(view, pair.DirectionInB(known.axis), overlaps, onFace, nearest);
     }
 
-    void CollideCurved(uint32_t index, const Vector3 (&corners)[3], const RelativePose& pose) {
+    void CollideCurved(uint32_t index, const Vector3 (&corners)[3], const RelativePose& pose,
+                       const KnownContact* byLibccd) {
         const TriangleView& view = contacts_.views_[index];
         const Triangle triangle(corners, view.normal);
         const SupportPair pair(a_, triangle, pose);
         ContactTolerances tolerances(pair.InnerRadii(), pair.RadiusSum(), settings_);
         tolerances.facesAhead = false;
         const Vector3 inwards = -(pair.rotation * view.normal);
-        const ConvexGjkResult gjk = ConvexGjk(pair, inwards, tolerances.reach);
-        if (gjk.status == GjkStatus::BeyondReach) return;
-        const bool overlaps = gjk.status == GjkStatus::Overlapping;
-        const KnownContact known =
-            overlaps ? FindDepth(pair, gjk.simplex, inwards) : KnownContact{gjk.axis, gjk.separation, gjk.onA};
+        KnownContact known{};
+        bool overlaps;
+        if (byLibccd) {
+            known = *byLibccd;
+            overlaps = known.separation <= 0;
+        } else {
+            const ConvexGjkResult gjk = ConvexGjk(pair, inwards, tolerances.reach);
+            if (gjk.status == GjkStatus::BeyondReach) return;
+            overlaps = gjk.status == GjkStatus::Overlapping;
+            known = overlaps ? FindDepth(pair, gjk.simplex, inwards) : KnownContact{gjk.axis, gjk.separation, gjk.onA};
+        }
         Manifold onFace, nearest;
         PairCache none;
         onFace.pointCount = nearest.pointCount = 0;
@@ -292,6 +346,7 @@ private:
     Vector3 motion_;   // of the center within the step, likewise
     std::span<const uint32_t> touched_;
     bool isPolyhedral_;
+    bool asksLibccd_;
 };
 
 size_t SurfaceContacts::MemoryUsed() const {

@@ -20,6 +20,8 @@ public:
     std::span<const SurfaceManifold> Manifolds() const { return {manifolds_.data(), manifoldCount_}; }
     // Of the surface, that were tested.
     size_t TriangleCount() const { return views_.size(); }
+    // Of the last call: what went wrong in libccd, where the method is Libccd.
+    const CollideCounters& Counters() const { return counters_; }
     size_t MemoryUsed() const;  // bytes, besides the object itself
 
 private:
@@ -30,6 +32,7 @@ private:
     InternalEdgeFilter filter_;
     std::vector<SurfaceManifold> manifolds_;
     size_t manifoldCount_ = 0;
+    CollideCounters counters_;
 };
 
 struct SurfaceApproach {
@@ -40,7 +43,8 @@ struct SurfaceApproach {
 
 // Fills `contacts` with the manifolds of a and the triangles of b within settings.speculativeDistance, in a's center
 // frame, as Collide does. One-sided triangles push to their front alone, and only shapes whose center of mass is there,
-// or that touched them in the last step.
+// or that touched them in the last step. With the method Libccd, libccd decides for each triangle within reach; which
+// of them count as faces, edges and corners, and what becomes one manifold, is decided as above.
 void CollideSurface(const ConvexShape& a, const SurfaceShape& b, const RelativePose& bInA,
                     const CollideSettings& settings, const SurfaceApproach& approach, SurfaceContacts& contacts);
 

@@ -52,10 +52,40 @@ Vector3 AxisOfLeastDepth(const SupportPair& pair, const RelativePose& bInA, cons
     return axis;
 }
 
+// Of B the deepest point; of A the one that B would leave by.
+void FindDeepestPoints(const SupportPair& pair, ConvexSeparation& result) {
+    const Vector3 deepest = pair.PointOfB(pair.b.SupportCore(-pair.DirectionInB(result.normal)));
+    result.onB = deepest - result.normal * pair.b.ConvexRadius();
+    result.onA = result.onB - result.normal * result.separation;
+    result.isBeyond = !IsFinite(result.normal) || !IsFinite(result.onA);  // of shapes beyond the floats
+}
+
+ConvexSeparation MeasureByLibccd(const SupportPair& pair, const RelativePose& bInA, float reach) {
+    CollideCounters unused;
+    const std::optional<KnownContact> known = FindLibccdContact(pair, bInA, reach, unused);
+    ConvexSeparation result;
+    if (!known) {
+        result.isBeyond = true;
+        return result;
+    }
+    result.normal = known->axis;
+    result.separation = known->separation - pair.RadiusSum();
+    if (known->separation <= 0) {
+        FindDeepestPoints(pair, result);
+        return result;
+    }
+    result.onA = known->onA + known->axis * pair.a.ConvexRadius();
+    result.onB = result.onA + known->axis * result.separation;
+    result.isBeyond = !(result.separation <= reach) || !IsFinite(result.onA) || !IsFinite(result.onB);
+    return result;
+}
+
 }  // namespace
 
-ConvexSeparation MeasureConvex(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA, float reach) {
+ConvexSeparation MeasureConvex(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA, float reach,
+                               NarrowPhaseMethod method) {
     const SupportPair pair(a, b, bInA);
+    if (method == NarrowPhaseMethod::Libccd) return MeasureByLibccd(pair, bInA, reach);
     const ConvexGjkResult gjk = ConvexGjk(pair, Normalized(pair.position), reach + pair.RadiusSum());
     ConvexSeparation result;
     if (gjk.status == GjkStatus::BeyondReach) {
@@ -72,16 +102,13 @@ ConvexSeparation MeasureConvex(const ConvexShape& a, const ConvexShape& b, const
     }
     result.normal = AxisOfLeastDepth(pair, bInA, gjk);
     result.separation = pair.SeparationAlong(result.normal) - pair.RadiusSum();
-    // The deepest point of B, projected onto A's surface along the normal.
-    const Vector3 deepest = pair.PointOfB(b.SupportCore(-pair.DirectionInB(result.normal)));
-    result.onB = deepest - result.normal * b.ConvexRadius();
-    result.onA = result.onB - result.normal * result.separation;
-    result.isBeyond = !IsFinite(result.normal) || !IsFinite(result.onA);  // overflow, of huge shapes
+    FindDeepestPoints(pair, result);
     return result;
 }
 
-bool OverlapConvex(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA) {
+bool OverlapConvex(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA, NarrowPhaseMethod method) {
     const SupportPair pair(a, b, bInA);
+    if (method == NarrowPhaseMethod::Libccd) return !AskLibccd(pair, bInA, 0).apart;
     const float radii = pair.RadiusSum();
     const ConvexGjkResult gjk = ConvexGjk(pair, Normalized(pair.position), radii);
     return gjk.status == GjkStatus::Overlapping || (gjk.status == GjkStatus::Apart && gjk.separation <= radii);

@@ -1,7 +1,8 @@
 // Signed distance of two convex shapes, by their support functions. Called by the queries. Thread-safe; allocates
-// nothing unless EPA gives up and libccd is used.
+// nothing unless EPA gives up and libccd is used, or with the method Libccd.
 #pragma once
 
+#include <Fulcrum/Collision/NarrowPhase/Collide.h>
 #include <Fulcrum/Collision/NarrowPhase/ConvexGjk.h>
 
 namespace fulcrum {
@@ -15,9 +16,11 @@ struct ConvexSeparation {
 };
 
 // Exact to about 1e-6 of the shapes' size where apart, to 3e-5 of it where overlapping. `reach`: m, >= 0.
-ConvexSeparation MeasureConvex(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA, float reach);
+ConvexSeparation MeasureConvex(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA, float reach,
+                               NarrowPhaseMethod method = NarrowPhaseMethod::Automatic);
 
 // Whether they have a point in common; touching counts.
-bool OverlapConvex(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA);
+bool OverlapConvex(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA,
+                   NarrowPhaseMethod method = NarrowPhaseMethod::Automatic);
 
 }  // namespace fulcrum

@@ -1,5 +1,6 @@
 #include <Fulcrum/Collision/Queries/CoreCast.h>
 
+#include <Fulcrum/Collision/NarrowPhase/Libccd.h>
 #include <Fulcrum/Math/Trigonometry.h>
 
 #include <algorithm>
@@ -258,6 +259,34 @@ CoreCastResult CastTurning(const ConvexShape& a, const ConvexShape& b, const Cor
         // The separation along the axis, which may be less than the distance of the points by rounding.
         return {double{pair.SeparationAlong(found.axis)} - target, found.axis, found.onA, overlap};
     };
+    return Advance(b, motion, limits, tolerance, separate);
+}
+
+CoreCastResult CastByLibccd(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion,
+                            const CoreCastLimits& limits) {
+    const double target = double{a.ConvexRadius()} + b.ConvexRadius() + limits.separation;
+    const double tolerance = std::max(double{limits.tolerance}, 20 * LeastTolerance(a, b));
+    const auto separate = [&](double fraction, const Vector3&) -> Separated {
+        const RelativePose pose{motion.PositionAt(fraction).cast<float>(), motion.RotationAt(fraction)};
+        const SupportPair pair(a, b, pose);
+        const LibccdVerdict verdict = AskLibccd(pair, pose, limits.separation + static_cast<float>(tolerance));
+        if (verdict.apart) {
+            const double gap = double{pair.SeparationAlong(verdict.axis)} - target;
+            if (gap > tolerance) return {gap, verdict.axis, a.SupportCore(verdict.axis), false};
+        }
+        CollideCounters unused;
+        const std::optional<KnownContact> touch =
+            FindLibccdContact(pair, pose, std::numeric_limits<float>::infinity(), unused);
+        if (!touch) return {0, Vector3(0, 1, 0), Vector3::Zero(), true};  // not finite
+        // Later it is known how deep they are by rounding, and along which axis.
+        const bool coresOverlap = fraction == 0 && touch->separation <= 0;
+        return {double{touch->separation} - target, touch->axis, touch->onA, coresOverlap};
+    };
+    // What is within the tolerance, but apart, and moves away straight does not touch, as in CastLinear.
+    if (!motion.IsTurning()) {
+        const Separated start = separate(0, Vector3(0, 1, 0));
+        if (start.gap > 0 && Dot(start.axis, motion.displacement) >= 0) return {};
+    }
     return Advance(b, motion, limits, tolerance, separate);
 }
 

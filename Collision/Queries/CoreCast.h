@@ -6,6 +6,7 @@
 // the target distance; after too many iterations the time reached so far is returned, which is early rather than late.
 #pragma once
 
+#include <Fulcrum/Collision/NarrowPhase/Collide.h>
 #include <Fulcrum/Collision/NarrowPhase/ConvexGjk.h>
 
 namespace fulcrum {
@@ -58,8 +59,14 @@ CoreCastResult CastTurning(const ConvexShape& a, const ConvexShape& b, const Cor
 CoreCastResult CastToPlane(const Vector3& normal, double offset, const ConvexShape& b, const CoreMotion& motion,
                            const CoreCastLimits& limits);
 
+// The same, B linear or turning, by conservative advancement over libccd: it says whether the shapes, rounded by the
+// separation, overlap, and along which axis they do not, which is followed to where that ends.
+CoreCastResult CastByLibccd(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion,
+                            const CoreCastLimits& limits);
+
 inline CoreCastResult CastCore(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion,
-                               const CoreCastLimits& limits) {
+                               const CoreCastLimits& limits, NarrowPhaseMethod method = NarrowPhaseMethod::Automatic) {
+    if (method == NarrowPhaseMethod::Libccd) return CastByLibccd(a, b, motion, limits);
     return motion.IsTurning() ? CastTurning(a, b, motion, limits) : CastLinear(a, b, motion, limits);
 }
 

@@ -34,10 +34,11 @@ void VisitPairs(const Shape& a, const Shape& b, const RelativePose& bInA, float 
 
 class ClosestSearch {
 public:
-    ClosestSearch(float maxDistance, ClosestPoints& result) : limit_(maxDistance), result_(result) {}
+    ClosestSearch(float maxDistance, ClosestPoints& result, NarrowPhaseMethod method = NarrowPhaseMethod::Automatic)
+        : limit_(maxDistance), result_(result), method_(method) {}
 
     void Consider(const Piece& a, const Piece& b, const RelativePose& bInA) {
-        const ConvexSeparation found = MeasureConvex(a.shape, b.shape, bInA, std::max(limit_, 0.0f));
+        const ConvexSeparation found = MeasureConvex(a.shape, b.shape, bInA, std::max(limit_, 0.0f), method_);
         if (found.isBeyond) return;
         Consider(found.separation, Rotate(a.pose.rotation, found.normal), a.pose.Transform(found.onA),
                  a.pose.Transform(found.onB), a.subShape, b.subShape);
@@ -59,6 +60,7 @@ private:
     float limit_;  // m: largest distance of interest
     bool found_ = false;
     ClosestPoints& result_;
+    NarrowPhaseMethod method_;
 };
 
 // All pieces of a shape against a half space, both in the plane's frame.
@@ -101,7 +103,7 @@ bool IsUsable(const RelativePose& pose, float maxDistance) {
 }  // namespace
 
 bool FindClosestPoints(const Shape& a, const Shape& b, const RelativePose& bInA, float maxDistance,
-                       ClosestPoints& result) {
+                       ClosestPoints& result, NarrowPhaseMethod method) {
     if (!IsUsable(bInA, maxDistance)) return false;
     if (a.Type() == ShapeType::Plane) return ClosestToPlane(static_cast<const Plane&>(a), b, bInA, maxDistance, result);
     if (b.Type() == ShapeType::Plane) {
@@ -110,7 +112,7 @@ bool FindClosestPoints(const Shape& a, const Shape& b, const RelativePose& bInA,
         result = Swapped(result, bInA);
         return true;
     }
-    ClosestSearch search(maxDistance, result);
+    ClosestSearch search(maxDistance, result, method);
     const auto consider = [&](const Piece& pieceOfA, const Piece& pieceOfB, const RelativePose& pose) {
         search.Consider(pieceOfA, pieceOfB, pose);
     };
@@ -133,23 +135,24 @@ bool FindClosestPoints(const Shape& a, const Shape& b, const RelativePose& bInA,
     }
 }
 
-bool FindClosestPoint(const Shape& shape, const Vector3& point, float maxDistance, ClosestPoints& result) {
-    return FindClosestPoints(shape, PointCore(), {point, {}}, maxDistance, result);
+bool FindClosestPoint(const Shape& shape, const Vector3& point, float maxDistance, ClosestPoints& result,
+                      NarrowPhaseMethod method) {
+    return FindClosestPoints(shape, PointCore(), {point, {}}, maxDistance, result, method);
 }
 
-bool Overlap(const Shape& a, const Shape& b, const RelativePose& bInA) {
+bool Overlap(const Shape& a, const Shape& b, const RelativePose& bInA, NarrowPhaseMethod method) {
     if (!IsUsable(bInA, 0)) return false;
     ClosestPoints unused;
     if (a.Type() == ShapeType::Plane || b.Type() == ShapeType::Plane) return FindClosestPoints(a, b, bInA, 0, unused);
     bool overlap = false;
     VisitPairs(a, b, bInA, 0, [&](const Piece& pieceOfA, const Piece& pieceOfB, const RelativePose& pose) {
-        overlap = overlap || OverlapConvex(pieceOfA.shape, pieceOfB.shape, pose);
+        overlap = overlap || OverlapConvex(pieceOfA.shape, pieceOfB.shape, pose, method);
     });
     return overlap;
 }
 
-bool Contains(const Shape& shape, const Vector3& point) {
-    return !shape.IsSurface() && Overlap(shape, PointCore(), {point, {}});
+bool Contains(const Shape& shape, const Vector3& point, NarrowPhaseMethod method) {
+    return !shape.IsSurface() && Overlap(shape, PointCore(), {point, {}}, method);
 }
 
 }  // namespace fulcrum

@@ -1,7 +1,9 @@
 // Closest points of two shapes, overlap, and points inside. Called by the world's queries and by users who have shapes
-// and no world. Thread-safe; allocates nothing unless the depth of a degenerate overlap is measured.
+// and no world. Thread-safe; allocates nothing unless the depth of a degenerate overlap is measured, or with the method
+// Libccd. Half spaces have closed forms with either method.
 #pragma once
 
+#include <Fulcrum/Collision/NarrowPhase/Collide.h>
 #include <Fulcrum/Collision/Queries/SubShape.h>
 #include <Fulcrum/Collision/Shapes/Shape.h>
 
@@ -20,14 +22,16 @@ struct ClosestPoints {
 // triangle of A, then of B. A triangle has no inside. Two half spaces that are not opposite overlap without a depth:
 // the distance is 0.
 bool FindClosestPoints(const Shape& a, const Shape& b, const RelativePose& bInA, float maxDistance,
-                       ClosestPoints& result);
+                       ClosestPoints& result, NarrowPhaseMethod method = NarrowPhaseMethod::Automatic);
 // From a point of the shape's center frame, which is A.
-bool FindClosestPoint(const Shape& shape, const Vector3& point, float maxDistance, ClosestPoints& result);
+bool FindClosestPoint(const Shape& shape, const Vector3& point, float maxDistance, ClosestPoints& result,
+                      NarrowPhaseMethod method = NarrowPhaseMethod::Automatic);
 
 // Whether the two have a point in common; touching counts.
-bool Overlap(const Shape& a, const Shape& b, const RelativePose& bInA);
+bool Overlap(const Shape& a, const Shape& b, const RelativePose& bInA,
+             NarrowPhaseMethod method = NarrowPhaseMethod::Automatic);
 // Whether a point of the shape's center frame is inside it, or on its surface. Nothing is inside a mesh or a height
 // field.
-bool Contains(const Shape& shape, const Vector3& point);
+bool Contains(const Shape& shape, const Vector3& point, NarrowPhaseMethod method = NarrowPhaseMethod::Automatic);
 
 }  // namespace fulcrum

@@ -22,8 +22,8 @@ Bounds BoundsOfTurning(const ConvexShape& shape, const ShapeMotion& motion) {
 
 }  // namespace
 
-ShapeCaster::ShapeCaster(const ConvexShape& shape, const ShapeMotion& motion)
-    : shape_(shape), motion_(motion), bounds_(BoundsOfTurning(shape, motion)) {
+ShapeCaster::ShapeCaster(const ConvexShape& shape, const ShapeMotion& motion, NarrowPhaseMethod method)
+    : shape_(shape), motion_(motion), bounds_(BoundsOfTurning(shape, motion)), method_(method) {
     isValid_ = IsFinite(motion.pose.position) && IsTurn(motion.pose.rotation) &&
                IsWithinReach(motion.displacement.cast<double>()) && IsWithinReach(motion.turn.cast<double>()) &&
                IsFinite(bounds_.lower) && IsFinite(bounds_.upper);
@@ -41,7 +41,8 @@ CoreMotion ShapeCaster::RelativeTo(const Pose& pose) const {
 // Depth and normal of an overlap at the start; of a one-sided triangle towards its front.
 void ShapeCaster::MeasureDepth(const Piece& piece, const Pose& at, const CoreMotion& motion, ShapeHit& hit) const {
     const RelativePose relative{motion.position.cast<float>(), motion.rotation};
-    const ConvexSeparation now = MeasureConvex(piece.shape, shape_, relative, std::numeric_limits<float>::infinity());
+    const ConvexSeparation now =
+        MeasureConvex(piece.shape, shape_, relative, std::numeric_limits<float>::infinity(), method_);
     Vector3 normal = now.normal, onA = now.onA;
     hit.depth = std::max(0.0f, -now.separation);
     if (piece.triangle && !piece.isTwoSided && Dot(normal, piece.triangle->Normal()) < 0) {
@@ -72,7 +73,7 @@ bool ShapeCaster::CastPiece(const Piece& piece, const Pose& pose, const ShapeCas
     const bool isOneSided = piece.triangle && !piece.isTwoSided && !settings.backFaces;
     if (isOneSided && !motion.IsTurning() && Dot(motion.displacement, piece.triangle->Normal()) > 0) return false;
     const CoreCastResult cast =
-        CastCore(piece.shape, shape_, motion, {settings.maxFraction, settings.separation, settings.tolerance});
+        CastCore(piece.shape, shape_, motion, {settings.maxFraction, settings.separation, settings.tolerance}, method_);
     if (!cast.IsHit()) return false;
     hit = {};
     hit.subShape = piece.subShape;

@@ -1,6 +1,6 @@
 // A convex shape that moves straight, and may turn at a constant rate, against a single shape at rest at a pose. Called
 // by the world's queries and continuous collision, and by users who have shapes and no world. Thread-safe; allocates
-// nothing unless the depth of a degenerate overlap is measured.
+// nothing unless the depth of a degenerate overlap is measured, or with the method Libccd.
 //
 // No hit is missed, however thin or fast the shapes. Shapes that overlap at the start are hit at fraction 0, with
 // penetration depth and normal. One-sided triangles are hit from the front alone: a shape that moves along their
@@ -39,7 +39,8 @@ struct ShapeHit {
 // Everything is in the frame of the motion, the world's or another, and exact however far from its origin.
 class ShapeCaster {
 public:
-    ShapeCaster(const ConvexShape& shape, const ShapeMotion& motion);
+    ShapeCaster(const ConvexShape& shape, const ShapeMotion& motion,
+                NarrowPhaseMethod method = NarrowPhaseMethod::Automatic);
     bool IsValid() const { return isValid_; }  // else it hits nothing
     // A box, relative to the moving center, that contains the shape during the whole motion.
     const Bounds& BoundsAboutCenter() const { return bounds_; }
@@ -70,6 +71,7 @@ private:
     const ConvexShape& shape_;
     ShapeMotion motion_;
     Bounds bounds_;
+    NarrowPhaseMethod method_;
     bool isValid_ = false;
 };
 

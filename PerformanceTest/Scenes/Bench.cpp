@@ -60,6 +60,7 @@ Result<BenchOptions> ParseBenchOptions(std::vector<std::string> arguments) {
     AddInteger(app, "--runs", 1, 1000, "runs of each scene; the one with the lowest median counts (default 1)",
                [&](int value) { options.runs = value; });
     AddSolverOptions(app, options.solver);
+    AddNarrowPhaseOption(app, options.narrowPhase);
     AddSeed(app, "--seed", "of scenes that use random numbers (default 1)",
             [&](uint64_t value) { options.seed = value; });
     AddText(app, "--json", "also write the runs as a JSON array; -: to standard output, all else to standard error",
@@ -85,6 +86,7 @@ Result<RunFigures> TimeScene(const Scene& scene, const BenchOptions& options) {
     SceneInput input;
     input.seed = options.seed;
     input.solver = options.solver;
+    input.narrowPhase = options.narrowPhase;
     std::optional<ThreadPool> pool;
     if (options.threads > 1) pool.emplace(static_cast<uint32_t>(options.threads));
     const auto world = SceneWorld::Create(scene, input, pool ? &*pool : nullptr);

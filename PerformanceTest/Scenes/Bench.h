@@ -15,6 +15,7 @@ struct BenchOptions {
     int steps = 0;  // 0: the scene's own number
     int runs = 1;   // of each scene, of which the one with the lowest median counts
     SolverSettings solver;
+    NarrowPhaseMethod narrowPhase = NarrowPhaseMethod::Automatic;
     uint64_t seed = 1;
     std::filesystem::path json;  // empty: none
     std::string help;            // not empty: only help was requested

@@ -2,7 +2,7 @@
 // which Prepare brings the separations up to date. Contacts reach as far ahead as the bodies may move within the step,
 // so that nothing is driven into the other by a whole step's motion before it is seen: in every direction, since what
 // is hit is deflected and turned.
-#include <Fulcrum/Collision/NarrowPhase/PlaneContact.h>
+#include <Fulcrum/Collision/Shapes/Plane.h>
 #include <Fulcrum/Physics/Stages/CrowdContacts.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
@@ -100,7 +100,8 @@ PairChange CollidePair(WorldState& world, std::span<PairChange> changes, uint32_
         settings.speculativeDistance = reachAhead;
         Manifold manifold;
         if (pair.shapeB->Type() == ShapeType::Plane)
-            CollideWithPlane(static_cast<const Plane&>(*pair.shapeB), *pair.shapeA, view.bInA, settings, manifold);
+            Collide(*pair.shapeA, static_cast<const Plane&>(*pair.shapeB), view.bInA, settings, pair.cache, manifold,
+                    findings.libccd);
         else
             Collide(*pair.shapeA, static_cast<const ConvexShape&>(*pair.shapeB),
                     WithDistinctCenters(world, pair, view.bInA), settings, pair.cache, manifold, findings.libccd);
@@ -178,8 +179,6 @@ void Collide(WorldState& world, StepState& step) {
         report.contacts += f.contacts;
         report.contactPoints += f.points;
         report.keptManifolds += f.kept;
-        report.libccd.epaFailures += f.libccd.epaFailures;
-        report.libccd.centerLineFallbacks += f.libccd.centerLineFallbacks;
     }
 }
 

@@ -104,6 +104,7 @@ PairChange CollideWithSurface(WorldState& world, std::span<PairChange> changes, 
     } else {
         CollideSettings settings;
         settings.speculativeDistance = reach;
+        settings.method = world.settings.narrowPhase;
         std::vector<uint32_t>& touched = findings.surfaceTouched;
         touched.clear();
         VisitManifolds(world, first, [&](uint32_t index) {
@@ -111,6 +112,7 @@ PairChange CollideWithSurface(WorldState& world, std::span<PairChange> changes, 
         });
         CollideSurface(*view.pair.shapeA, static_cast<const SurfaceShape&>(*view.pair.shapeB), view.bInA, settings,
                        {MotionInA(world, view, dt), touched}, findings.surface);
+        findings.libccd += findings.surface.Counters();
         WriteManifolds(world, view, first, dt, findings);
         view.pair.reference = view.bInA;
     }

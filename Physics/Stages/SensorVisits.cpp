@@ -48,7 +48,7 @@ struct Touch {
 
 // From `start` to `end`, which is earlier where the way is gone back. The other keeps the rotation that it has in the
 // middle.
-Touch Cast(const Mover& caster, const Mover& other, float start, float end) {
+Touch Cast(const Mover& caster, const Mover& other, float start, float end, NarrowPhaseMethod method) {
     const ConvexShape& shape = static_cast<const ConvexShape&>(*caster.piece.shape);
     const float from = std::min(start, end), until = std::max(start, end);
     const bool turns = caster.Angle(from, until) > kLeastTurn;
@@ -67,12 +67,12 @@ Touch Cast(const Mover& caster, const Mover& other, float start, float end) {
     settings.backFaces = true;
     settings.measureDepth = false;
     ShapeHit hit;
-    if (!ShapeCaster(*cast, motion).CastClosest(*other.piece.shape, at, settings, hit)) return {};
+    if (!ShapeCaster(*cast, motion, method).CastClosest(*other.piece.shape, at, settings, hit)) return {};
     return {true, !hit.isEarly, std::clamp(start + hit.fraction * (end - start), from, until)};
 }
 
 // The first time between `start` and `end` at which the two touch.
-Touch FirstTouch(const Mover& sensor, const Mover& body, float start, float end) {
+Touch FirstTouch(const Mover& sensor, const Mover& body, float start, float end, NarrowPhaseMethod method) {
     if (!sensor.IsConvex() && !body.IsConvex()) return {};
     const float from = std::min(start, end), until = std::max(start, end);
     const float sensorAngle = sensor.Angle(from, until), bodyAngle = body.Angle(from, until);
@@ -86,7 +86,7 @@ Touch FirstTouch(const Mover& sensor, const Mover& body, float start, float end)
         const float a = start + (end - start) * (static_cast<float>(i) / static_cast<float>(parts));
         const float b =
             i + 1 == parts ? end : start + (end - start) * (static_cast<float>(i + 1) / static_cast<float>(parts));
-        if (const Touch touch = Cast(caster, other, a, b); touch.found) return touch;
+        if (const Touch touch = Cast(caster, other, a, b, method); touch.found) return touch;
     }
     return {};
 }
@@ -114,6 +114,8 @@ public:
     }
 
 private:
+    NarrowPhaseMethod Method() const { return world_.settings.narrowPhase; }
+
     void RunPieces(uint32_t sensorCollider, uint32_t bodyCollider, AtStart atStart) {
         const ColliderShape sensorPiece = PieceOf(world_, sensorCollider), bodyPiece = PieceOf(world_, bodyCollider);
         const MotionSegment* a = sensorWay_.Parts().data();
@@ -131,8 +133,9 @@ private:
         }
     }
 
-    static bool IsOverlap(const Mover& sensor, const Mover& body, float time) {
-        return Overlap(*sensor.piece.shape, *body.piece.shape, Relative(sensor.PieceAt(time), body.PieceAt(time)));
+    bool IsOverlap(const Mover& sensor, const Mover& body, float time) const {
+        return Overlap(*sensor.piece.shape, *body.piece.shape, Relative(sensor.PieceAt(time), body.PieceAt(time)),
+                       Method());
     }
 
     // Whether they overlap at its end.
@@ -145,14 +148,14 @@ private:
         if (wasInside && isInside) {
             Add(from, until, true, true);
         } else if (wasInside) {
-            const Touch last = FirstTouch(sensor, body, until, from);
+            const Touch last = FirstTouch(sensor, body, until, from, Method());
             Add(from, last.found ? last.time : from, true, false);
         } else {
-            const Touch first = FirstTouch(sensor, body, from, until);
+            const Touch first = FirstTouch(sensor, body, from, until, Method());
             if (isInside) {
                 Add(first.found ? first.time : until, until, false, true);
             } else if (first.found && first.isSure) {
-                const Touch last = FirstTouch(sensor, body, until, from);
+                const Touch last = FirstTouch(sensor, body, until, from, Method());
                 Add(first.time, last.found ? std::max(first.time, last.time) : first.time, false, false);
             }
         }
@@ -235,7 +238,8 @@ bool OverlapAtEnd(const WorldState& world, uint32_t sensor, uint32_t body) {
     const ColliderShape b = PieceOf(world, world.bodies.cold[body].firstCollider);
     const RelativePose relative =
         Relative(PoseOf(a, world.bodies.CenterPoseOf(sensor)), PoseOf(b, world.bodies.CenterPoseOf(body)));
-    return CentersTell(*a.shape, *b.shape, relative.position) || Overlap(*a.shape, *b.shape, relative);
+    return CentersTell(*a.shape, *b.shape, relative.position) ||
+           Overlap(*a.shape, *b.shape, relative, world.settings.narrowPhase);
 }
 
 Bounds PieceBounds(const WorldState& world, const Way& way, uint32_t collider) {

@@ -137,6 +137,7 @@ void RunStep(WorldState& world, StepState& step, double dt) {
         step.scratch.Reset();
         RunStages(world, step);
         world.outsideFatBounds.MarkStale();
+        for (const WorkerFindings& f : step.findings) step.report.libccd += f.libccd;
     }
     CountBodies(world, step.solver, step.report);
 }

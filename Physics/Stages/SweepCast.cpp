@@ -1,8 +1,8 @@
 #include <Fulcrum/Physics/Stages/SweepCast.h>
 
 #include <Fulcrum/Collision/BroadPhase/BoundsTreeCasts.h>
-#include <Fulcrum/Collision/NarrowPhase/PlaneContact.h>
 #include <Fulcrum/Collision/Queries/ShapeCast.h>
+#include <Fulcrum/Collision/Shapes/Plane.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
 #include <Fulcrum/Physics/Stages/PlacedConvex.h>
 #include <Fulcrum/Physics/World/Filters.h>
@@ -91,7 +91,7 @@ public:
         local_ = LocalOf(world_, collider);
         shape_ = cast_ = static_cast<const ConvexShape*>(piece_->shape);
         motion_ = {sweep_.start, sweep_.displacement, Vector3::Zero()};
-        CastAgainst(other, ShapeCaster(*shape_, motion_));
+        CastAgainst(other, ShapeCaster(*shape_, motion_, world_.settings.narrowPhase));
         return found_;
     }
 
@@ -108,7 +108,7 @@ private:
         motion_ = {sweep_.start, sweep_.displacement, isTurning_ ? sweep_.turn : Vector3(Vector3::Zero())};
         const PlacedConvex placed(*shape_, local_);
         cast_ = piece_->offset ? &placed : shape_;
-        const ShapeCaster whole(*cast_, motion_);
+        const ShapeCaster whole(*cast_, motion_, world_.settings.narrowPhase);
         if (!whole.IsValid()) return;
         const Bounds& about = whole.BoundsAboutCenter();
         const TreeRay ray(motion_.pose.position - world_.colliders.boundsOrigin + about.Center().cast<double>(),
@@ -151,7 +151,7 @@ private:
         if (!BallsMeet(Between(at.position, relative.pose.position), relative.displacement,
                        cast_->OuterRadius() + piece.shape->OuterRadius()))
             return;
-        const ShapeCaster caster(*cast_, relative);
+        const ShapeCaster caster(*cast_, relative, world_.settings.narrowPhase);
         if (caster.IsValid()) CastThrough(caster, relative, other, theirs, at, start, whole);
     }
 
@@ -216,7 +216,7 @@ private:
     void CastTurning(uint32_t other) {
         isTurning_ = true;
         motion_.turn = sweep_.turn;
-        CastAgainst(other, ShapeCaster(*cast_, motion_));
+        CastAgainst(other, ShapeCaster(*cast_, motion_, world_.settings.narrowPhase));
         motion_.turn.setZero();
         isTurning_ = false;
     }
@@ -427,14 +427,15 @@ private:
         if (shape.IsSurface()) {
             CollideSurface(*shape_, static_cast<const SurfaceShape&>(shape), bInA, settings, {}, findings_.surface);
             triangles_ += findings_.surface.TriangleCount();
+            findings_.libccd += findings_.surface.Counters();
             for (const SurfaceManifold& m : findings_.surface.Manifolds()) consider(m.manifold, m.material);
             return;
         }
         Manifold manifold;
+        PairCache cache;
         if (shape.Type() == ShapeType::Plane) {
-            CollideWithPlane(static_cast<const Plane&>(shape), *shape_, bInA, settings, manifold);
+            Collide(*shape_, static_cast<const Plane&>(shape), bInA, settings, cache, manifold, findings_.libccd);
         } else {
-            PairCache cache;
             Collide(*shape_, static_cast<const ConvexShape&>(shape), bInA, settings, cache, manifold, findings_.libccd);
         }
         consider(manifold, uint8_t{0});

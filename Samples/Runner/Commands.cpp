@@ -180,6 +180,7 @@ int Execute(const Command& command) {
     SceneInput input;
     input.seed = command.options.seed;
     input.solver = command.options.solver;
+    input.narrowPhase = command.options.narrowPhase;
     switch (command.kind) {
         case CommandKind::Run:
             return RunJob(

@@ -44,6 +44,12 @@ UpAxis ParseUpAxis(const std::string& text) {
     throw CLI::ValidationError(UnknownName("axis of --onto-up", text, names).message);
 }
 
+NarrowPhaseMethod ParseNarrowPhase(const std::string& text) {
+    for (const NarrowPhaseMethod method : {NarrowPhaseMethod::Automatic, NarrowPhaseMethod::Libccd})
+        if (text == NarrowPhaseName(method)) return method;
+    throw CLI::ValidationError("--narrow-phase takes automatic or libccd, not '" + text + "'");
+}
+
 void AddOntoOptions(CLI::App& app, Command& command) {
     CLI::Option* onto =
         AddText(app, "--onto", "drop them onto the triangles of this mesh, made 20 m large, not onto a floor",
@@ -69,6 +75,7 @@ void AddRunOptions(CLI::App& app, RunOptions& options) {
     AddInteger(app, "--threads", 1, kMostThreads, "threads (default: all of this machine)",
                [&](int value) { options.threads = value; });
     AddSolverOptions(app, options.solver);
+    AddNarrowPhaseOption(app, options.narrowPhase);
     AddText(app, "--record", "html,glb (default), html, glb or none", [&](const std::string& text) {
         SetRecord(text, options);
     })->type_name("KINDS");
@@ -101,6 +108,16 @@ void AddSolverOptions(CLI::App& app, SolverSettings& solver) {
     AddText(app, "--position-correction", "soft (default): soft rows and relaxing passes; baumgarte: position passes",
             [&](const std::string& text) { solver.positionCorrection = ParsePositionCorrection(text); })
         ->type_name("KIND");
+}
+
+void AddNarrowPhaseOption(CLI::App& app, NarrowPhaseMethod& method) {
+    AddText(app, "--narrow-phase", "automatic (default), or libccd: shapes collide by libccd, slower, to compare",
+            [&](const std::string& text) { method = ParseNarrowPhase(text); })
+        ->type_name("METHOD");
+}
+
+const char* NarrowPhaseName(NarrowPhaseMethod method) {
+    return method == NarrowPhaseMethod::Libccd ? "libccd" : "automatic";
 }
 
 std::vector<std::string> SceneNames() {

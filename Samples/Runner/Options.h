@@ -21,6 +21,7 @@ struct RunOptions {
     double dt = 1.0 / 60;
     int threads = 1;
     SolverSettings solver;
+    NarrowPhaseMethod narrowPhase = NarrowPhaseMethod::Automatic;
     bool recordHtml = true, recordGlb = true;
     std::filesystem::path json;  // empty: none
     uint64_t seed = 1;
@@ -47,6 +48,9 @@ Result<Command> ParseRunnerCommand(std::vector<std::string> arguments);
 
 // --substeps, --velocity-iterations, --position-iterations, --position-correction: the benchmark has them too.
 void AddSolverOptions(CLI::App& app, SolverSettings& solver);
+// --narrow-phase, likewise. The names are those it takes.
+void AddNarrowPhaseOption(CLI::App& app, NarrowPhaseMethod& method);
+const char* NarrowPhaseName(NarrowPhaseMethod method);
 
 inline constexpr int kMostSteps = 10'000'000;
 inline constexpr int kMostThreads = 64;  // as ThreadPool

@@ -1,5 +1,6 @@
 #include <Fulcrum/Samples/Runner/RunReport.h>
 
+#include <Fulcrum/Samples/Runner/Options.h>
 #include <Fulcrum/Version.h>
 
 #include <nlohmann/json.hpp>
@@ -46,8 +47,8 @@ void AddRemarks(const RunFigures& figures, std::vector<ReportLine>& lines) {
         if (count > 0) lines.push_back({"Remarks", label, std::to_string(count)});
     };
     add("bodies frozen, not finite", static_cast<uint64_t>(figures.nonFinite));
-    add("libccd: EPA gave up", figures.libccdFailures);
-    add("libccd: center line taken", figures.libccdFallbacks);
+    add("libccd: EPA contradicted itself", figures.libccdFailures);
+    add("libccd: gave no axis", figures.libccdFallbacks);
     add("constraints without a color", figures.last.overflowConstraints);
     add("bodies at their speed limit", figures.last.clampedBodies);
 }
@@ -70,6 +71,8 @@ std::vector<ReportLine> ReportLines(const Scene& scene, const RunFigures& figure
     add("World", "memory", Bytes(figures.memoryBytes));
     add("Run", "steps", Text("%d of %.5g s", figures.steps, figures.dt));
     add("Run", "solver", Settings(figures.solver));
+    if (figures.narrowPhase != NarrowPhaseMethod::Automatic)
+        add("Run", "narrow phase", NarrowPhaseName(figures.narrowPhase));
     add("Run", "threads", Text("%u", figures.threads));
     if (scene.usesSeed) add("Run", "seed", std::to_string(seed));
     add("Time", "a step, median", Text("%.3f ms", figures.stepMs.median));
@@ -141,6 +144,7 @@ nlohmann::ordered_json ReportJson(const std::string& name, const RunFigures& fig
           {"position_iterations", figures.solver.positionIterations},
           {"position_correction",
            figures.solver.positionCorrection == PositionCorrection::Baumgarte ? "baumgarte" : "soft"},
+          {"narrow_phase", NarrowPhaseName(figures.narrowPhase)},
           {"seed", seed}}},
         {"islands", figures.islands},
         {"awake_islands", figures.awakeIslands},

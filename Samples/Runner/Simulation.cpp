@@ -76,6 +76,7 @@ Result<RunFigures> Simulate(SceneWorld& world, int untimed, int steps, double dt
     figures.dt = dt;
     figures.threads = threads;
     figures.solver = world.System().Settings().solver;
+    figures.narrowPhase = world.System().Settings().narrowPhase;
     figures.energyAtStart = world.System().GetEnergy();
 
     PenetrationMeter meter(world);

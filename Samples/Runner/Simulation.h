@@ -21,6 +21,7 @@ struct RunFigures {
     double dt = 0;  // s
     uint32_t threads = 1;
     SolverSettings solver;
+    NarrowPhaseMethod narrowPhase = NarrowPhaseMethod::Automatic;
     Statistics stepMs;
     std::array<double, kStageCount> stageMedianMs{};
     int queryCount = 0;     // of the scene's batch; 0: it has none

@@ -16,6 +16,7 @@ SceneWorld::SceneWorld(const Scene& scene, const SceneInput& input)
 Result<std::unique_ptr<SceneWorld>> SceneWorld::Create(const Scene& scene, const SceneInput& input, JobSystem* jobs) {
     SystemSettings settings;
     settings.solver = input.solver;
+    settings.narrowPhase = input.narrowPhase;
     settings.sleep.enabled = scene.sleeping;
     if (scene.adjust) scene.adjust(settings);
     Result<std::unique_ptr<PhysicsSystem>> system = PhysicsSystem::Create(settings, jobs);

@@ -20,9 +20,10 @@ namespace fulcrum {
 struct SceneInput {
     uint64_t seed = 1;
     SolverSettings solver;  // the default effort
-    ShapePtr shape;         // of the drop scenes: what falls
-    ShapePtr ground;        // of drop_onto: what it falls onto
-    int count = 50;         // bodies of the drop scenes, >= 1
+    NarrowPhaseMethod narrowPhase = NarrowPhaseMethod::Automatic;
+    ShapePtr shape;   // of the drop scenes: what falls
+    ShapePtr ground;  // of drop_onto: what it falls onto
+    int count = 50;   // bodies of the drop scenes, >= 1
 };
 
 class SceneWorld {

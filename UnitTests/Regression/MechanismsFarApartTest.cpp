@@ -9,6 +9,7 @@
 #include <Fulcrum/UnitTests/Support/Cases.h>
 
 #include <algorithm>
+#include <array>
 
 namespace fulcrum::testing {
 namespace {
@@ -121,19 +122,31 @@ TEST(MechanismsFarApart, RagdollFollowsAPart) {
 
 // Ragdolls that fall on each other from 15 m: joints that the fall tears open are pulled while the pile keeps them
 // centimeters apart. Moved without turning to the end, as from afar, limbs whirled by up to two turns a step, and
-// joints were 0.25 to 0.5 m open.
-TEST(MechanismsFarApart, LimbsUnderAPileAreNotWhirled) {
+// joints were 0.25 to 0.5 m open. One run is chance: of 64
+// whose gravity differs by 1e-6 the widest gap is 0.07 m in the median, and more than 0.15 m in one or two.
+double WidestGapOfRagdolls(float gravityFactor) {
     SceneInput input;
     input.solver.substeps = 64;
     ThreadPool pool(2);
     const Result<std::unique_ptr<SceneWorld>> world = SceneWorld::Create(*FindScene("ragdolls"), input, &pool);
-    ASSERT_TRUE(world);
+    EXPECT_TRUE(world);
+    SystemSettings settings = world.Value()->System().Settings();
+    settings.gravity *= gravityFactor;
+    EXPECT_TRUE(world.Value()->System().SetSettings(settings));
     double widest = 0;
     for (int i = 0; i < Cases(130); ++i) {
-        ASSERT_TRUE(world.Value()->Step(kStep));
+        EXPECT_TRUE(world.Value()->Step(kStep));
         widest = std::max(widest, LargestJointGap(*world.Value()));
     }
-    EXPECT_LT(widest, 0.15);
+    return widest;
+}
+
+TEST(MechanismsFarApart, LimbsUnderAPileAreNotWhirled) {
+    std::array<double, 3> widest;
+    for (size_t run = 0; run < widest.size(); ++run)
+        widest[run] = WidestGapOfRagdolls(1 + 1e-6f * static_cast<float>(run));
+    std::sort(widest.begin(), widest.end());
+    EXPECT_LT(widest[1], 0.15);
 }
 
 // One to three hinges or ball joints, at a fixed frame or at one that is free to move.

@@ -82,6 +82,16 @@ TEST(RunnerOptions, AreAllRead) {
     EXPECT_EQ(command.options.seed, UINT64_MAX);
 }
 
+TEST(RunnerOptions, NameTheNarrowPhase) {
+    EXPECT_EQ(Parsed("run tower").options.narrowPhase, NarrowPhaseMethod::Automatic);
+    EXPECT_EQ(Parsed("run tower --narrow-phase automatic").options.narrowPhase, NarrowPhaseMethod::Automatic);
+    EXPECT_EQ(Parsed("run tower --narrow-phase libccd").options.narrowPhase, NarrowPhaseMethod::Libccd);
+    EXPECT_EQ(Parsed("drop a.obj --narrow-phase libccd").options.narrowPhase, NarrowPhaseMethod::Libccd);
+    ExpectComplaint("run tower --narrow-phase bullet", "--narrow-phase takes automatic or libccd, not 'bullet'");
+    ExpectComplaint("run tower --narrow-phase", "--narrow-phase");
+    EXPECT_NE(Parsed("run --help").help.find("--narrow-phase"), std::string::npos);
+}
+
 TEST(RunnerOptions, SecondsBecomeSteps) {
     const Command five = Parsed("run tower --seconds 5"), third = Parsed("run tower --seconds 0.1 --dt 0.03");
     EXPECT_EQ(five.options.StepsOf(*five.scene), 300);

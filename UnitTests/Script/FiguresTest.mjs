@@ -94,6 +94,8 @@ test('what has no place is refused, and nothing is written', () => {
     [[run('drum', 1)], {}, /the ratio needs "bullet_ms"/],
     [[run('drum', 4)], { drum: 40 }, /4 threads/],
     [[run('drum', 1, { settings: { substeps: 3 } })], { drum: 40 }, /no table has the settings/],
+    [[run('drum', 1, { settings: { substeps: 4, velocity_iterations: 1, position_iterations: 1, narrow_phase: 'libccd' } })],
+      { drum: 40 }, /no table has the settings/],
   ]) {
     const { status, stderr } = take(runs, bullet);
     assert.equal(status, 1);

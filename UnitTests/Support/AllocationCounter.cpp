@@ -10,7 +10,7 @@
 
 namespace {
 
-std::atomic<uint64_t> allocations{0}, bytes{0};
+std::atomic<uint64_t> allocations{0}, mallocs{0}, bytes{0};
 
 uint64_t SizeOf([[maybe_unused]] void* memory) {
 #ifdef __GLIBC__
@@ -41,8 +41,18 @@ namespace fulcrum::testing {
 
 uint64_t AllocationCount() { return allocations.load(std::memory_order_relaxed); }
 uint64_t AllocatedBytes() { return bytes.load(std::memory_order_relaxed); }
+uint64_t MallocCount() { return mallocs.load(std::memory_order_relaxed); }
 
 }  // namespace fulcrum::testing
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(__clang__)
+// The C library's own, under the name by which it calls it.
+extern "C" void* __libc_malloc(std::size_t size);
+extern "C" void* malloc(std::size_t size) noexcept {
+    mallocs.fetch_add(1, std::memory_order_relaxed);
+    return __libc_malloc(size);
+}
+#endif
 
 // The array and the non-throwing forms call these.
 void* operator new(std::size_t size) { return Allocate(size, __STDCPP_DEFAULT_NEW_ALIGNMENT__); }

@@ -67,7 +67,8 @@ float Least(const SurfaceContacts& contacts) {
     return least;
 }
 
-void FindsTheNearest(const ConvexShape& shape, const std::string& name) {
+void FindsTheNearest(const ConvexShape& shape, const std::string& name,
+                     NarrowPhaseMethod method = NarrowPhaseMethod::Automatic) {
     // A face is taken where it is this much nearer than what touches: ContactTolerances::prefer. And rounding.
     constexpr float kTolerance = 0.02f * kReach + 1e-5f;
     RandomPoses random(7);
@@ -82,6 +83,7 @@ void FindsTheNearest(const ConvexShape& shape, const std::string& name) {
         if (expected.overlaps) continue;
         CollideSettings settings;
         settings.speculativeDistance = kReach;
+        settings.method = method;
         CollideSurface(shape, *mesh, pose, settings, {}, contacts);
         const float least = Least(contacts);
         if (expected.separation > kReach + kTolerance) {
@@ -111,6 +113,19 @@ TEST(SurfaceContact, HullsFindTheNearestTriangle) {
                     "pyramid");
     FindsTheNearest(*MakeRoundHull(60, 0.4f), "round hull");  // more vertices than go one after the other
     FindsTheNearest(*MakePrism(20, 0.4f, 0.3f), "prism");     // more corners than the triangles' own clipping takes
+}
+TEST(SurfaceContact, LibccdFindsTheNearestTriangle) {
+    const auto find = [](const ConvexPtr& shape, const char* name) {
+        FindsTheNearest(*shape, name, NarrowPhaseMethod::Libccd);
+    };
+    find(MakeSphere(0.4f), "sphere");
+    find(MakeCapsule(0.3f, 0.3f), "capsule");
+    find(MakeCapsule(1.5f, 0.05f), "rod");
+    find(MakeBox(Vector3(0.2f, 0.3f, 0.4f)), "box");
+    find(MakeBox(Vector3(0.2f, 0.3f, 0.4f), 0.1f), "rounded box");
+    find(MakeRoundHull(60, 0.4f), "round hull");
+    find(MakePrism(20, 0.4f, 0.3f), "prism");
+    find(MakeEllipsoid(Vector3(0.2f, 0.3f, 0.5f)), "ellipsoid");
 }
 TEST(SurfaceContact, ACurvedShapeFindsTheNearestTriangle) {
     FindsTheNearest(*MakeEllipsoid(Vector3(0.2f, 0.3f, 0.5f)), "ellipsoid");
