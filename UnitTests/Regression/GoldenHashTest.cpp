@@ -13,7 +13,7 @@ namespace fulcrum::testing {
 namespace {
 
 constexpr uint64_t kGoldenHash = 0x095559e749781e0bull;
-constexpr uint64_t kGoldenHashOfJoints = 0xa6192097862924acull;
+constexpr uint64_t kGoldenHashOfJoints = 0xaa287c36cf7c0c17ull;
 constexpr uint64_t kGoldenHashOfSurfaces = 0xd8af03bc70271babull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0x994ffb6497699e6aull;
 

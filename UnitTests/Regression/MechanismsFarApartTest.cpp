@@ -142,11 +142,11 @@ double WidestGapOfRagdolls(float gravityFactor) {
 }
 
 TEST(MechanismsFarApart, LimbsUnderAPileAreNotWhirled) {
-    std::array<double, 3> widest;
+    std::array<double, 5> widest;
     for (size_t run = 0; run < widest.size(); ++run)
         widest[run] = WidestGapOfRagdolls(1 + 1e-6f * static_cast<float>(run));
     std::sort(widest.begin(), widest.end());
-    EXPECT_LT(widest[1], 0.15);
+    EXPECT_LT(widest[2], 0.15);
 }
 
 // One to three hinges or ball joints, at a fixed frame or at one that is free to move.
