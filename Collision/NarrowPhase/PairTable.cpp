@@ -44,6 +44,7 @@ public:
     constexpr PairTable& Column(const Entries&... entries) {
         constexpr int type = static_cast<int>(Type);
         static_assert(sizeof...(entries) == type + 1, "a shape meets each shape before it in ShapeType, and its like");
+        hasLine_[type] = true;
         int before = 0;
         for (const PairEntry& entry : {entries...}) {
             functions_[before][type] = entry.inOrder;
@@ -52,9 +53,8 @@ public:
         return *this;
     }
     constexpr bool IsComplete() const {
-        for (const auto& row : functions_)
-            for (const PairFunction function : row)
-                if (!function) return false;
+        for (const bool hasLine : hasLine_)
+            if (!hasLine) return false;
         return true;
     }
     constexpr PairFunction Of(ShapeType a, ShapeType b) const {
@@ -63,6 +63,7 @@ public:
 
 private:
     PairFunction functions_[kConvexShapeTypes][kConvexShapeTypes]{};
+    bool hasLine_[kConvexShapeTypes]{};
 };
 
 // Polyhedra: which of the two is A makes no difference to CollidePolyhedra's contract, but to the bits.

@@ -9,7 +9,7 @@
 //   K = J M^-1 J^T = a . I1^-1 a + a . I2^-1 a
 #pragma once
 
-#include <Fulcrum/Constraints/Parts/RowPart.h>
+#include <Fulcrum/Constraints/Parts/RowJacobian.h>
 
 namespace fulcrum {
 

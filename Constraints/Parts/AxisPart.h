@@ -11,7 +11,7 @@
 //   K = J M^-1 J^T = 1/m1 + ((r1+u) x n) . I1^-1 ((r1+u) x n) + 1/m2 + (r2 x n) . I2^-1 (r2 x n)
 #pragma once
 
-#include <Fulcrum/Constraints/Parts/RowPart.h>
+#include <Fulcrum/Constraints/Parts/RowJacobian.h>
 
 namespace fulcrum {
 

@@ -11,7 +11,7 @@
 // The caller supplies C: only it can count turns. The bearings, which are other parts, take the reaction.
 #pragma once
 
-#include <Fulcrum/Constraints/Parts/RowPart.h>
+#include <Fulcrum/Constraints/Parts/RowJacobian.h>
 
 namespace fulcrum {
 

@@ -11,7 +11,7 @@
 // A rope can only pull: keep the total impulse at 0 or below. The caller supplies C.
 #pragma once
 
-#include <Fulcrum/Constraints/Parts/RowPart.h>
+#include <Fulcrum/Constraints/Parts/RowJacobian.h>
 
 namespace fulcrum {
 

@@ -13,7 +13,7 @@
 // caller supplies C: only it can count turns.
 #pragma once
 
-#include <Fulcrum/Constraints/Parts/RowPart.h>
+#include <Fulcrum/Constraints/Parts/RowJacobian.h>
 
 namespace fulcrum {
 

@@ -1,6 +1,7 @@
 // Nanoseconds per row of the row part's kernels, one constraint at a time and in lanes. Single-threaded.
 // "rows_per_second" counts constraints, so its inverse is the time per row whatever the number of lanes.
 #include <Fulcrum/Constraints/Parts/AxisPart.h>
+#include <Fulcrum/Constraints/Parts/RowPart.h>
 #include <Fulcrum/Constraints/Parts/SpringSoftness.h>
 
 #include <benchmark/benchmark.h>

@@ -38,7 +38,7 @@ bool StaysInBounds(const WorldState& world, uint32_t body, const Vector3& moved,
     bool stays = true;
     VisitColliders(world, body, [&](uint32_t i) {
         if (world.colliders.colliders[i].fat.Contains(TightBoundsOf(world, i))) return;
-        findings.strayed.push_back(i);
+        findings.outsideFatBounds.push_back(i);
         stays = false;
     });
     return stays;
@@ -65,13 +65,13 @@ void EnlargeBounds(WorldState& world, std::span<WorkerFindings> workers) {
     std::vector<uint32_t>& moved = world.colliders.moved;
     const size_t first = moved.size();
     for (WorkerFindings& findings : workers) {
-        for (uint32_t collider : findings.strayed) {
+        for (uint32_t collider : findings.outsideFatBounds) {
             world.colliders.Queue(collider);
             Collider& c = world.colliders.colliders[collider];
             c.fat.Include(TightBoundsOf(world, collider));
             world.colliders.TreeOf(c).Update(collider, c.fat);
         }
-        findings.strayed.clear();
+        findings.outsideFatBounds.clear();
     }
     std::sort(moved.begin() + static_cast<ptrdiff_t>(first), moved.end());
 }
@@ -152,11 +152,11 @@ void ReserveLists(WorldState& world, StepState& step) {
     for (std::vector<uint32_t>* list : {&store.active, &store.next}) list->reserve(2 * users);
     for (WorkerFindings& findings : step.findings) {
         findings.sweepHits.reserve(users);
-        findings.strayed.reserve(world.colliders.colliders.capacity());
+        findings.outsideFatBounds.reserve(world.colliders.colliders.capacity());
     }
 }
 
-void StartCourses(WorldState& world, StepState& step) {
+void StartSweeps(WorldState& world, StepState& step) {
     SweepStore& store = step.sweeps;
     store.active.clear();
     for (uint32_t body = 0; body < store.searchBy.size(); ++body)
@@ -202,7 +202,7 @@ void Continuous(WorldState& world, StepState& step) {
     const uint32_t fast = FindFast(world, step);
     step.report.sweptBodies = fast;
     if (fast == 0) return;
-    StartCourses(world, step);
+    StartSweeps(world, step);
     const bool usesPairs = store.active.size() < fast;
     for (int round = 0; round < kRounds && (!store.active.empty() || (round == 0 && usesPairs)); ++round) {
         if (round == 0 && usesPairs) CastPairs(world, step);

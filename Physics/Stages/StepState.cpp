@@ -5,14 +5,14 @@
 namespace fulcrum {
 
 size_t HeapBytes(const WorkerFindings& findings) {
-    const auto& [colliders, strayed, pairs, deepPairs, deepOverlaps, crowdedOverlaps, surface, surfacePlaces,
+    const auto& [colliders, outsideFatBounds, pairs, deepPairs, deepOverlaps, crowdedOverlaps, surface, surfacePlaces,
                  surfaceLeft, surfaceTouched, more, sweepHits, sensorCandidates, sensorVisits, sensorTests, libccd,
                  contacts, points, kept, deepest, deepestPair, clamped, frozen, firstFrozen, sleepCandidates, bounces,
                  joints] = findings;
-    return HeapBytes(colliders, strayed, pairs, deepPairs, deepOverlaps, crowdedOverlaps, surface, surfacePlaces,
-                     surfaceLeft, surfaceTouched, more, sweepHits, sensorCandidates, sensorVisits, sensorTests, libccd,
-                     contacts, points, kept, deepest, deepestPair, clamped, frozen, firstFrozen, sleepCandidates,
-                     bounces, joints);
+    return HeapBytes(colliders, outsideFatBounds, pairs, deepPairs, deepOverlaps, crowdedOverlaps, surface,
+                     surfacePlaces, surfaceLeft, surfaceTouched, more, sweepHits, sensorCandidates, sensorVisits,
+                     sensorTests, libccd, contacts, points, kept, deepest, deepestPair, clamped, frozen, firstFrozen,
+                     sleepCandidates, bounces, joints);
 }
 
 size_t HeapBytes(const StepState& step) {

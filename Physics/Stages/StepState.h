@@ -24,13 +24,13 @@ struct MoreManifold {
 
 // One worker's own findings in a stage; merged in an order that does not depend on who found what.
 struct alignas(64) WorkerFindings {
-    std::vector<uint32_t> colliders;        // UpdateBounds: those that left their fat bounds
-    std::vector<uint32_t> strayed;          // Continuous: those that the solver moved out of them
-    std::vector<uint64_t> pairs;            // FindPairs: keys of new or resting pairs
-    uint32_t deepPairs = 0;                 // FindPairs: how many of these pairs overlap deeply
-    std::vector<uint32_t> deepOverlaps;     // Collide: bodies that overlap another deeply, once for each such overlap
-    std::vector<uint32_t> crowdedOverlaps;  // Collide: crowded bodies that overlap another, likewise
-    SurfaceContacts surface;                // Collide: room to work in
+    std::vector<uint32_t> colliders;         // UpdateBounds: those that left their fat bounds
+    std::vector<uint32_t> outsideFatBounds;  // Continuous: those that the solver moved out of them
+    std::vector<uint64_t> pairs;             // FindPairs: keys of new or resting pairs
+    uint32_t deepPairs = 0;                  // FindPairs: how many of these pairs overlap deeply
+    std::vector<uint32_t> deepOverlaps;      // Collide: bodies that overlap another deeply, once for each such overlap
+    std::vector<uint32_t> crowdedOverlaps;   // Collide: crowded bodies that overlap another, likewise
+    SurfaceContacts surface;                 // Collide: room to work in
     std::vector<uint32_t> surfacePlaces, surfaceLeft, surfaceTouched;  // Collide: likewise
     std::vector<MoreManifold> more;                                    // Collide: what has no place in its pair yet
     std::vector<SweepHit> sweepHits;                                   // Continuous

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/AxisPart.h>
+#include <Fulcrum/Constraints/Parts/RowPart.h>
 #include <Fulcrum/Constraints/Parts/SpringSoftness.h>
 #include <Fulcrum/UnitTests/Support/RandomPoses.h>
 
