@@ -232,8 +232,9 @@ TEST(Libccd, MeasuresAsTheOwnFunctionsDo) {
             }
         }
     }
-    EXPECT_GT(apart, Cases(4000));
-    EXPECT_GT(overlapping, Cases(4000));
+    constexpr int kLeast = kIsSanitized ? 100 : 4000;  // fewer poses a pair are mostly apart
+    EXPECT_GT(apart, kLeast);
+    EXPECT_GT(overlapping, kLeast);
 }
 
 TEST(Libccd, CastsHitWhereTheOwnCastsHit) {
