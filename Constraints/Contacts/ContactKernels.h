@@ -144,6 +144,11 @@ template <class Real>
 struct NormalMotion {
     Real linear, angular1, angular2;
 };
+// J v of a point's row.
+template <class Row, class Real>
+FULCRUM_FORCE_INLINE Real MotionOf(const Row& row, const NormalMotion<Real>& motion) {
+    return motion.linear + row.b * motion.angular1 - row.a * motion.angular2;
+}
 template <int N, bool kFixedB>
 FULCRUM_FORCE_INLINE NormalMotion<Wide<N>> NormalMotionOf(const ContactBatch<N, kFixedB>& batch,
                                                           const Twist<Wide<N>>& relative) {

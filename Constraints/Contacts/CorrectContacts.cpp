@@ -17,8 +17,7 @@ void CorrectContacts(const ContactBatch<N, kFixedB>& batch, BodyState* states, c
     Real missing[ContactRecord::kMaxPoints];  // m that the pass is to move the point by
     for (int i = 0; i < batch.pointCount; ++i) {
         const auto& row = batch.rows[i];
-        const Real separation =
-            row.startSeparation + (motion.linear + row.b * motion.angular1 - row.a * motion.angular2);
+        const Real separation = row.startSeparation + MotionOf(row, motion);
         missing[i] = Min((separation + Real(settings.slop)) * -part, most);
     }
     NormalImpulses<Real> impulses;

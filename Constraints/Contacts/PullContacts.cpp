@@ -15,8 +15,7 @@ void PullContacts(const ContactBatch<N, kFixedB>& batch, BodyState* pseudo, cons
     Real speed[ContactRecord::kMaxPoints];
     for (int i = 0; i < batch.pointCount; ++i) {
         const auto& row = batch.rows[i];
-        speed[i] =
-            motion.linear + row.b * motion.angular1 - row.a * motion.angular2 + Max(row.separation, zero) * inverseDt;
+        speed[i] = MotionOf(row, motion) + Max(row.separation, zero) * inverseDt;
     }
     NormalImpulses<Real> changes;
     for (int i = 0; i < batch.pointCount; ++i) {

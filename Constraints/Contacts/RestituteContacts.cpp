@@ -21,7 +21,7 @@ FULCRUM_FORCE_INLINE void FindBounces(const ContactBatch<N, kFixedB>& batch, con
     Real missing[ContactRecord::kMaxPoints];  // m/s
     for (int i = 0; i < batch.pointCount; ++i) {
         const auto& row = batch.rows[i];
-        missing[i] = motion.linear + row.b * motion.angular1 - row.a * motion.angular2 - batch.bounceSpeed[i];
+        missing[i] = MotionOf(row, motion) - batch.bounceSpeed[i];
         changes[i] = zero;
     }
     for (int pass = 0; pass < kPasses; ++pass)

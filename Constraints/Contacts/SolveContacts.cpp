@@ -42,12 +42,11 @@ void UpdateSeparations(ContactBatch<N, kFixedB>& batch, BodyState* states, const
     using Real = Wide<N>;
     Twists<N, kFixedB> twists;
     Gather<BodyRow::Displacement>(batch, states, twists);
-    const Twist<Real> relative = RelativeTwist<BodyRow::Displacement>(batch, twists, settings.elapsed);
-    const Real xn = Dot<Real>(relative.linear, batch.normal);
-    const Real w1 = Dot<Real>(relative.angular, batch.tangent1), w2 = Dot<Real>(relative.angular, batch.tangent2);
+    const NormalMotion<Real> motion =
+        NormalMotionOf(batch, RelativeTwist<BodyRow::Displacement>(batch, twists, settings.elapsed));
     for (int i = 0; i < batch.pointCount; ++i) {
         auto& row = batch.rows[i];
-        row.separation = row.startSeparation + (xn + row.b * w1 - row.a * w2);
+        row.separation = row.startSeparation + MotionOf(row, motion);
     }
 }
 

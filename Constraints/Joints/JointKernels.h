@@ -60,6 +60,37 @@ struct Motion {
     }
 };
 
+// Velocities of A and of B.
+template <int N>
+struct Velocities {
+    Twist<Wide<N>> a, b;
+
+    template <class Batch>
+    FULCRUM_FORCE_INLINE Velocities(const Batch& batch, BodyState* states) {
+        Motion<N> motion;
+        motion.template Gather<BodyRow::Velocity>(batch.bodyA, states);
+        a = motion.Get();
+        motion.template Gather<BodyRow::Velocity>(batch.bodyB, states);
+        b = motion.Get();
+    }
+};
+
+// Adds to the displacements of the bodies.
+template <int N, class Batch>
+FULCRUM_FORCE_INLINE void MoveBodies(const Batch& batch, BodyState* states, const Twist<Wide<N>>& byA,
+                                     const Twist<Wide<N>>& byB) {
+    const auto move = [&](const uint32_t(&body)[N], const Twist<Wide<N>>& by, uint32_t fixed) {
+        Motion<N> pose;
+        pose.template Gather<BodyRow::Displacement>(body, states);
+        const Twist<Wide<N>> from = pose.Get();
+        pose.Set({from.linear + by.linear, from.angular + by.angular});
+        SetHalfTurn<Wide<N>>(pose.row);
+        pose.Scatter(batch.count, fixed);
+    };
+    move(batch.bodyA, byA, batch.fixedA);
+    move(batch.bodyB, byB, batch.fixedB);
+}
+
 // Calls change(velocities of A, of B), and writes these back.
 template <int N, class Batch, class F>
 FULCRUM_FORCE_INLINE void ChangeVelocities(const Batch& batch, BodyState* states, F&& change) {

@@ -44,6 +44,16 @@ void ClearLane(JointRows<N>& rows, int lane) {
     rows.slot[lane] = 0xFF;
 }
 
+// All but what depends on the mass, of a row that is pushed at the locks' rate.
+template <int N>
+void SetPush(JointRows<N>& rows, int lane, bool yields, const JointSolveSettings& s) {
+    const float massScale = yields ? s.softness.massScale : 1.0f;
+    rows.softness.massScale.Set(lane, massScale);
+    rows.softness.impulseScale.Set(lane, yields ? s.softness.impulseScale : 0.0f);
+    rows.pushRate.Set(lane, massScale * s.pushRate);
+    rows.mostPush.Set(lane, massScale * s.maxPushSpeed);
+}
+
 // Of a lane's row all but what depends on the mass that it meets: that is set up with the locks. Jacobian and impulse
 // are written beside it.
 template <int N>
@@ -59,15 +69,16 @@ void FillLane(JointRows<N>& rows, int lane, const JointRow& row, float previousI
     const float unlimited = JointRow::kUnlimited;
     const float lowest = Max(row.minForce * s.substepDt, oneSided ? 0.0f : -unlimited),
                 highest = row.maxForce * s.substepDt;
-    const bool hard = row.kind == Kind::Equal || row.kind == Kind::AtLeast, yields = hard && row.yields;
+    const bool hard = row.kind == Kind::Equal || row.kind == Kind::AtLeast;
     rows.startError.Set(lane, row.error);
     rows.error.Set(lane, row.error);
     rows.speed.Set(lane, row.kind == Kind::Speed ? row.speed : 0.0f);
-    const float massScale = yields ? s.softness.massScale : 1.0f;
-    rows.softness.massScale.Set(lane, massScale);
-    rows.softness.impulseScale.Set(lane, yields ? s.softness.impulseScale : 0.0f);
-    rows.pushRate.Set(lane, hard ? massScale * s.pushRate : 0.0f);
-    rows.mostPush.Set(lane, hard ? massScale * s.maxPushSpeed : unlimited);
+    if (hard) {
+        SetPush(rows, lane, row.yields, s);
+    } else {
+        rows.softness.massScale.Set(lane, 1.0f);
+        rows.mostPush.Set(lane, unlimited);
+    }
     rows.openAbove.Set(lane, oneSided ? 0.0f : unlimited);
     rows.openSoftness.massScale.Set(lane, 1.0f);
     rows.gapRate.Set(lane, oneSided ? s.inverseDt : 0.0f);
@@ -77,16 +88,6 @@ void FillLane(JointRows<N>& rows, int lane, const JointRow& row, float previousI
     rows.radial.Set(lane, row.radial ? 1.0f : 0.0f);
     rows.about.Set(lane, row.about ? 1.0f : 0.0f);
     if (std::isfinite(previousImpulse)) impulse.Set(lane, Clamp(previousImpulse * s.impulseScale, lowest, highest));
-}
-
-// All but what depends on the mass, of a row that is pushed at the locks' rate.
-template <int N>
-void SetPush(JointRows<N>& rows, int lane, bool yields, const JointSolveSettings& s) {
-    const float massScale = yields ? s.softness.massScale : 1.0f;
-    rows.softness.massScale.Set(lane, massScale);
-    rows.softness.impulseScale.Set(lane, yields ? s.softness.impulseScale : 0.0f);
-    rows.pushRate.Set(lane, massScale * s.pushRate);
-    rows.mostPush.Set(lane, massScale * s.maxPushSpeed);
 }
 
 // Whether a spring is stretched so far that it would speed bodies up beyond what joints are pulled at; farther than

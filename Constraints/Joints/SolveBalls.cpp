@@ -247,24 +247,15 @@ void Relax(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSett
 template <bool kRound, int N>
 void Correct(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
     using Real = Wide<N>;
-    Motion<N> velocityA, velocityB, poseA, poseB;
-    velocityA.template Gather<BodyRow::Velocity>(batch.bodyA, bodies.states);
-    velocityB.template Gather<BodyRow::Velocity>(batch.bodyB, bodies.states);
-    const Vec3<Real> offset = Follow<kRound>(batch, bodies, velocityA.Get(), velocityB.Get(), settings);
+    const Velocities<N> v(batch, bodies.states);
+    const Vec3<Real> offset = Follow<kRound>(batch, bodies, v.a, v.b, settings);
     const Real part(settings.baumgarte), most(settings.maxPushSpeed * settings.substepDt);
     Vec3<Real> wanted;
     for (int k = 0; k < 3; ++k) wanted[k] = Clamp<Real>(offset[k] * part, -most, most);
     const Vec3<Real> impulse = ZeroUnless<Real>(batch.isFar <= Real(0.5f), Vec3<Real>(-(batch.mass * wanted)));
-    poseA.template Gather<BodyRow::Displacement>(batch.bodyA, bodies.states);
-    poseB.template Gather<BodyRow::Displacement>(batch.bodyB, bodies.states);
-    Twist<Real> a = poseA.Get(), b = poseB.Get();
+    Twist<Real> a, b;
     AddImpulse<kRound>(batch, batch.armA, batch.armB, impulse, a, b);
-    poseA.Set(a);
-    poseB.Set(b);
-    SetHalfTurn<Real>(poseA.row);
-    SetHalfTurn<Real>(poseB.row);
-    poseA.Scatter(batch.count, batch.fixedA);
-    poseB.Scatter(batch.count, batch.fixedB);
+    MoveBodies<N>(batch, bodies.states, a, b);
 }
 
 // As PullFar and HoldNear in PullJoints.cpp.
@@ -351,11 +342,9 @@ void RelaxJoints(BallBatch<N>& batch, const SolverBodies& bodies, const JointSol
 
 template <int N>
 void UpdateJoints(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
-    Motion<N> motionA, motionB;
-    motionA.template Gather<BodyRow::Velocity>(batch.bodyA, bodies.states);
-    motionB.template Gather<BodyRow::Velocity>(batch.bodyB, bodies.states);
-    if (batch.round) Follow<true>(batch, bodies, motionA.Get(), motionB.Get(), settings);
-    else Follow<false>(batch, bodies, motionA.Get(), motionB.Get(), settings);
+    const Velocities<N> v(batch, bodies.states);
+    if (batch.round) Follow<true>(batch, bodies, v.a, v.b, settings);
+    else Follow<false>(batch, bodies, v.a, v.b, settings);
 }
 
 template <int N>

@@ -267,11 +267,8 @@ void RelaxJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSo
 template <int N>
 void UpdateJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
     WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
-        Motion<N> motionA, motionB;
-        motionA.template Gather<BodyRow::Velocity>(batch.bodyA, bodies.states);
-        motionB.template Gather<BodyRow::Velocity>(batch.bodyB, bodies.states);
-        Soften<linear, angular>(batch, Follow<linear, angular>(batch, bodies, motionA.Get(), motionB.Get(), settings),
-                                settings);
+        const Velocities<N> v(batch, bodies.states);
+        Soften<linear, angular>(batch, Follow<linear, angular>(batch, bodies, v.a, v.b, settings), settings);
     });
 }
 
@@ -280,11 +277,8 @@ void CorrectJoints(JointBatch<N>& batch, const SolverBodies& bodies, const Joint
     using Real = Wide<N>;
     const Real zero(0.0f), one(1.0f), part(settings.baumgarte), most(settings.maxPushSpeed * settings.substepDt);
     WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
-        Motion<N> velocityA, velocityB, poseA, poseB;
-        velocityA.template Gather<BodyRow::Velocity>(batch.bodyA, bodies.states);
-        velocityB.template Gather<BodyRow::Velocity>(batch.bodyB, bodies.states);
-        const JointErrors<Real> errors =
-            Follow<linear, angular>(batch, bodies, velocityA.Get(), velocityB.Get(), settings);
+        const Velocities<N> v(batch, bodies.states);
+        const JointErrors<Real> errors = Follow<linear, angular>(batch, bodies, v.a, v.b, settings);
         Twist<Real> a, b;
         const auto isNear = batch.isFar <= Real(0.5f);
         const auto correction = [&](const Real& error) {
@@ -314,17 +308,7 @@ void CorrectJoints(JointBatch<N>& batch, const SolverBodies& bodies, const Joint
             x.angular = -x.angular;
             AddLockMotion<linear, angular>(batch, a, b, x);
         }
-        const auto move = [&](Motion<N>& pose, const uint32_t(&index)[N], const Twist<Real>& by, uint32_t fixed) {
-            pose.template Gather<BodyRow::Displacement>(index, bodies.states);
-            Twist<Real> to = pose.Get();
-            to.linear += by.linear;
-            to.angular += by.angular;
-            pose.Set(to);
-            SetHalfTurn<Real>(pose.row);
-            pose.Scatter(batch.count, fixed);
-        };
-        move(poseA, batch.bodyA, a, batch.fixedA);
-        move(poseB, batch.bodyB, b, batch.fixedB);
+        MoveBodies<N>(batch, bodies.states, a, b);
     });
 }
 

@@ -139,11 +139,8 @@ FULCRUM_FORCE_INLINE Vec3<Real> Displace(Rows<Real>& displacement, const Twist<R
         }
     }
     rotation += turn;
-    if (anyJointed) {
-        const Vec2<Real> half = HalfTurnOf<Real>(rotation);
-        for (int k = 0; k < 2; ++k) displacement.at[6 + k] = half[k];
-    }
     displacement.Set(displacement.First() + motion.linear * h, rotation);
+    if (anyJointed) SetHalfTurn<Real>(displacement.at);
     displacement.Write(count);
     return rotation;
 }

@@ -30,18 +30,22 @@ void SetRecord(const std::string& text, RunOptions& options) {
         throw CLI::ValidationError("--record takes html, glb, html,glb or none");
 }
 
+// The enumerator whose name, in the order of their values, the text is.
+template <class E, size_t N>
+E ParseEnumerator(const char* what, const std::string& text, const std::array<std::string, N>& names) {
+    for (size_t i = 0; i < N; ++i)
+        if (text == names[i]) return static_cast<E>(i);
+    throw CLI::ValidationError(UnknownName(what, text, names).message);
+}
+
 PositionCorrection ParsePositionCorrection(const std::string& text) {
-    const std::array<std::string, 2> names{"soft", "baumgarte"};
-    for (size_t i = 0; i < names.size(); ++i)
-        if (text == names[i]) return static_cast<PositionCorrection>(i);
-    throw CLI::ValidationError(UnknownName("kind of --position-correction", text, names).message);
+    return ParseEnumerator<PositionCorrection, 2>(
+        "kind of --position-correction", text,
+        {PositionCorrectionName(PositionCorrection::SoftRelax), PositionCorrectionName(PositionCorrection::Baumgarte)});
 }
 
 UpAxis ParseUpAxis(const std::string& text) {
-    const std::array<std::string, 6> names{"x", "y", "z", "-x", "-y", "-z"};
-    for (size_t i = 0; i < names.size(); ++i)
-        if (text == names[i]) return static_cast<UpAxis>(i);
-    throw CLI::ValidationError(UnknownName("axis of --onto-up", text, names).message);
+    return ParseEnumerator<UpAxis, 6>("axis of --onto-up", text, {"x", "y", "z", "-x", "-y", "-z"});
 }
 
 NarrowPhaseMethod ParseNarrowPhase(const std::string& text) {
@@ -106,7 +110,7 @@ void AddSolverOptions(CLI::App& app, SolverSettings& solver) {
     AddInteger(app, "--position-iterations", 0, 255, text("position iterations a substep", solver.positionIterations),
                [&](int value) { solver.positionIterations = value; });
     AddText(app, "--position-correction", "soft (default): soft rows and relaxing passes; baumgarte: position passes",
-            [&](const std::string& text) { solver.positionCorrection = ParsePositionCorrection(text); })
+            [&](const std::string& kind) { solver.positionCorrection = ParsePositionCorrection(kind); })
         ->type_name("KIND");
 }
 
@@ -114,6 +118,10 @@ void AddNarrowPhaseOption(CLI::App& app, NarrowPhaseMethod& method) {
     AddText(app, "--narrow-phase", "automatic (default), or libccd: shapes collide by libccd, slower, to compare",
             [&](const std::string& text) { method = ParseNarrowPhase(text); })
         ->type_name("METHOD");
+}
+
+const char* PositionCorrectionName(PositionCorrection correction) {
+    return correction == PositionCorrection::Baumgarte ? "baumgarte" : "soft";
 }
 
 const char* NarrowPhaseName(NarrowPhaseMethod method) {

@@ -48,6 +48,8 @@ Result<Command> ParseRunnerCommand(std::vector<std::string> arguments);
 
 // --substeps, --velocity-iterations, --position-iterations, --position-correction: the benchmark has them too.
 void AddSolverOptions(CLI::App& app, SolverSettings& solver);
+// As --position-correction takes it.
+const char* PositionCorrectionName(PositionCorrection correction);
 // --narrow-phase, likewise. The names are those it takes.
 void AddNarrowPhaseOption(CLI::App& app, NarrowPhaseMethod& method);
 const char* NarrowPhaseName(NarrowPhaseMethod method);
