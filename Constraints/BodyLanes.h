@@ -23,18 +23,19 @@ FULCRUM_FORCE_INLINE auto GatherMass(const uint32_t (&index)[N], const BodyMass*
     for (int i = 0; i < N; ++i) rows[i] = masses[index[i]].Row();
     Wide<N> r[8];
     GatherRows<N>(rows, r);
-    out.inertia = {r[0], r[1], r[2], r[3], r[4], r[5]};
-    out.mass = r[6];
-    return r[7] > Wide<N>(0.0f);
+    constexpr int i = BodyMass::kInverseInertia;
+    out.inertia = {r[i], r[i + 1], r[i + 2], r[i + 3], r[i + 4], r[i + 5]};
+    out.mass = r[BodyMass::kInverseMass];
+    return r[BodyMass::kTurns] > Wide<N>(0.0f);
 }
 
 template <int N>
 FULCRUM_FORCE_INLINE Quat<Wide<N>> GatherRotation(const uint32_t (&index)[N], const BodyPose* poses) {
     const float* rows[N];
-    for (int i = 0; i < N; ++i) rows[i] = poses[index[i]].rotation;
+    for (int i = 0; i < N; ++i) rows[i] = poses[index[i]].Row();
     Wide<N> r[8];
     GatherRows<N>(rows, r);
-    return {r[0], r[1], r[2], r[3]};
+    return QuaternionAt(r, BodyPose::kRotation);
 }
 
 // From A's center of mass to B's, m.
@@ -75,9 +76,9 @@ FULCRUM_FORCE_INLINE Vec2<Real> HalfTurnOf(const Vec3<Real>& v) {
 // Brings BodyState::halfTurn of a row of displacements up to date with its rotation.
 template <class Real>
 FULCRUM_FORCE_INLINE void SetHalfTurn(Real (&row)[8]) {
-    const Vec2<Real> half = HalfTurnOf<Real>(Vec3<Real>(row[3], row[4], row[5]));
-    row[6] = half.x();
-    row[7] = half.y();
+    const Vec2<Real> half = HalfTurnOf<Real>(VectorAt(row, BodyState::kAngular));
+    row[BodyState::kHalfTurn] = half.x();
+    row[BodyState::kHalfTurn + 1] = half.y();
 }
 
 // A unit vector perpendicular to the unit vector n (Duff et al., JCGT 2017).

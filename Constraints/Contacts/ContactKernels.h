@@ -33,11 +33,11 @@ FULCRUM_FORCE_INLINE void Scatter(const ContactBatch<N, kFixedB>& batch, const T
 
 template <class Real>
 FULCRUM_FORCE_INLINE Vec3<Real> Linear(const Real (&row)[8]) {
-    return Vec3<Real>(row[0], row[1], row[2]);
+    return VectorAt(row, BodyState::kLinear);
 }
 template <class Real>
 FULCRUM_FORCE_INLINE Vec3<Real> Angular(const Real (&row)[8]) {
-    return Vec3<Real>(row[3], row[4], row[5]);
+    return VectorAt(row, BodyState::kAngular);
 }
 
 // Adds sign * M^-1 (F, r x F + T) to a row.
@@ -46,12 +46,12 @@ FULCRUM_FORCE_INLINE void ApplyWrench(Real (&row)[8], const InverseMass<Real>& i
                                       const Vec3<Real>& force, const Vec3<Real>& torque, Real sign) {
     const Vec3<Real> dv = force * (inverse.mass * sign);
     const Vec3<Real> dw = inverse.inertia * Vec3<Real>((Cross<Real>(arm, force) + torque) * sign);
-    row[0] += dv.x();
-    row[1] += dv.y();
-    row[2] += dv.z();
-    row[3] += dw.x();
-    row[4] += dw.y();
-    row[5] += dw.z();
+    row[BodyState::kLinear] += dv.x();
+    row[BodyState::kLinear + 1] += dv.y();
+    row[BodyState::kLinear + 2] += dv.z();
+    row[BodyState::kAngular] += dw.x();
+    row[BodyState::kAngular + 1] += dw.y();
+    row[BodyState::kAngular + 2] += dw.z();
 }
 
 // The relative twist at c, of the velocities or of the displacements, `elapsed` seconds after the start of the step.
@@ -92,7 +92,7 @@ template <int N>
 FULCRUM_FORCE_INLINE void GatherRecordRow(const uint32_t (&index)[N], const ContactRecord* records, int row,
                                           Wide<N> (&out)[8]) {
     const float* rows[N];
-    for (int i = 0; i < N; ++i) rows[i] = reinterpret_cast<const float*>(&records[index[i]]) + 8 * row;
+    for (int i = 0; i < N; ++i) rows[i] = records[index[i]].Row(row);
     GatherRows<N>(rows, out);
 }
 
@@ -105,14 +105,14 @@ struct SurfaceMotion {
 template <int N, bool kFixedB>
 SurfaceMotion<Wide<N>> GatherSurfaceMotion(const ContactBatch<N, kFixedB>& batch, const ContactRecord* records) {
     using Real = Wide<N>;
-    Real spares[6];
-    for (int i = 0; i < 3; ++i) {
+    Real motion[2 * ContactRecord::kSurfacePoints];
+    for (int i = 0; i < ContactRecord::kSurfacePoints; ++i) {
         Real row[8];
-        GatherRecordRow<N>(batch.contact, records, 2 + i, row);
-        spares[2 * i] = row[3];
-        spares[2 * i + 1] = row[7];
+        GatherRecordRow<N>(batch.contact, records, ContactRecord::kPoints + i, row);
+        motion[2 * i] = row[ContactRecord::kSurfaceA];
+        motion[2 * i + 1] = row[ContactRecord::kSurfaceB];
     }
-    const Vec3<Real> linear(spares[0], spares[1], spares[2]), angular(spares[3], spares[4], spares[5]);
+    const Vec3<Real> linear(motion[0], motion[1], motion[2]), angular(motion[3], motion[4], motion[5]);
     const auto finite = (Dot<Real>(linear, linear) + Dot<Real>(angular, angular)) * Real(0.0f) == Real(0.0f);
     const auto along = [&](const Vec3<Real>& v, const Vec3<Real>& axis) {
         return Select(finite, Dot<Real>(v, axis), Real(0.0f));

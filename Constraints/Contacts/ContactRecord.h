@@ -2,7 +2,7 @@
 // that Prepare can gather the contacts of a batch into lanes. Written by the Collide stage, impulses by Store.
 #pragma once
 
-#include <Fulcrum/Math/Vector.h>
+#include <Fulcrum/Constraints/Parts/RowPlaces.h>
 
 #include <cstdint>
 
@@ -28,21 +28,57 @@ struct alignas(32) ContactRecord {
     float impulse[kMaxPoints] = {0, 0, 0, 0};  // N s along the normal, by point
     float frictionImpulse[3] = {0, 0, 0};      // N s, world axes, on B
     float twistImpulse = 0;                    // N m s about the normal
-    Point points[kMaxPoints];
+    Point points[kMaxPoints];                  // a row each
+
+    enum Rows { kHead, kImpulses, kPoints };
+    const float* Row(int row) const {
+        return reinterpret_cast<const float*>(this) + kRowFloats * static_cast<size_t>(row);
+    }
+    // Places in the first row, in the second, and in those of points.
+    enum Places {
+        kNormal = 0,
+        kPointCount = 3,
+        kFriction = 4,
+        kRestitution = 5,
+        kTwistRadius = 6,
+        kSurfaceMoves = 7,
+        kNormalImpulses = 0,
+        kFrictionImpulse = 4,
+        kTwistImpulse = 7,
+        kOnA = 0,
+        kSurfaceA = 3,
+        kOnB = 4,
+        kSurfaceB = 7
+    };
 
     // B's surface moves so against A's, beyond the motion of the bodies: m/s at the contact's center and rad/s, world
-    // axes. Few contacts have one: it has no row of its own but what is spare in those of the first three points.
+    // axes. Few contacts have one: it has no row of its own but what is spare in those of the first three points, its
+    // six numbers in their order.
+    static constexpr int kSurfacePoints = 3;
     void SetSurfaceVelocity(const Vector3& linear, const Vector3& angular) {
         surfaceMoves = linear.isZero(0) && angular.isZero(0) ? 0.0f : 1.0f;
-        float* const spares[6] = {&points[0].surfaceA, &points[0].surfaceB, &points[1].surfaceA,
-                                  &points[1].surfaceB, &points[2].surfaceA, &points[2].surfaceB};
-        for (int k = 0; k < 3; ++k) {
-            *spares[k] = linear[k];
-            *spares[3 + k] = angular[k];
+        const float motion[2 * kSurfacePoints] = {linear[0], linear[1], linear[2], angular[0], angular[1], angular[2]};
+        for (int i = 0; i < kSurfacePoints; ++i) {
+            points[i].surfaceA = motion[2 * i];
+            points[i].surfaceB = motion[2 * i + 1];
         }
     }
 };
-static_assert(sizeof(ContactRecord) == 192);
+static_assert(sizeof(ContactRecord) == 192 && sizeof(ContactRecord::Point) == sizeof(float) * kRowFloats);
+FULCRUM_CHECK_PLACE(ContactRecord, normal, ContactRecord::kHead, ContactRecord::kNormal);
+FULCRUM_CHECK_PLACE(ContactRecord, pointCount, ContactRecord::kHead, ContactRecord::kPointCount);
+FULCRUM_CHECK_PLACE(ContactRecord, friction, ContactRecord::kHead, ContactRecord::kFriction);
+FULCRUM_CHECK_PLACE(ContactRecord, restitution, ContactRecord::kHead, ContactRecord::kRestitution);
+FULCRUM_CHECK_PLACE(ContactRecord, twistRadius, ContactRecord::kHead, ContactRecord::kTwistRadius);
+FULCRUM_CHECK_PLACE(ContactRecord, surfaceMoves, ContactRecord::kHead, ContactRecord::kSurfaceMoves);
+FULCRUM_CHECK_PLACE(ContactRecord, impulse, ContactRecord::kImpulses, ContactRecord::kNormalImpulses);
+FULCRUM_CHECK_PLACE(ContactRecord, frictionImpulse, ContactRecord::kImpulses, ContactRecord::kFrictionImpulse);
+FULCRUM_CHECK_PLACE(ContactRecord, twistImpulse, ContactRecord::kImpulses, ContactRecord::kTwistImpulse);
+FULCRUM_CHECK_PLACE(ContactRecord, points, ContactRecord::kPoints, 0);
+FULCRUM_CHECK_PLACE(ContactRecord::Point, onA, 0, ContactRecord::kOnA);
+FULCRUM_CHECK_PLACE(ContactRecord::Point, surfaceA, 0, ContactRecord::kSurfaceA);
+FULCRUM_CHECK_PLACE(ContactRecord::Point, onB, 0, ContactRecord::kOnB);
+FULCRUM_CHECK_PLACE(ContactRecord::Point, surfaceB, 0, ContactRecord::kSurfaceB);
 
 // Mean distance of a convex polygon's points from the origin, the origin inside; `x`, `y` are its corners in any order,
 // at most 4. Over the triangle (0, P, Q) it is 2/3 of the mean over the edge PQ, which Simpson's rule gives to 1e-3.

@@ -171,25 +171,27 @@ template <int N, bool kFixedB>
 uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* records, const uint32_t (&bodyB)[N],
                          const SolverBodies& bodies, const ContactPrepareSettings& settings) {
     using Real = Wide<N>;
+    using Record = ContactRecord;
     const Real zero(0.0f);
     Real head[8], impulses[8];
-    GatherRecordRow<N>(batch.contact, records, 0, head);
-    GatherRecordRow<N>(batch.contact, records, 1, impulses);
-    head[3] = Select(head[3] <= Real(static_cast<float>(ContactRecord::kMaxPoints)), Max(head[3], zero), zero);
+    GatherRecordRow<N>(batch.contact, records, Record::kHead, head);
+    GatherRecordRow<N>(batch.contact, records, Record::kImpulses, impulses);
+    Real& pointCount = head[Record::kPointCount];
+    pointCount = Select(pointCount <= Real(static_cast<float>(Record::kMaxPoints)), Max(pointCount, zero), zero);
     const Vec3<Real> between = GatherOffset<N>(batch.bodyA, bodyB, bodies.poses);
     const Mat3<Real> rotation = ToMatrix(GatherRotation<N>(batch.bodyA, bodies.poses));
     const Mat3<Real> rotationB = ToMatrix(GatherRotation<N>(bodyB, bodies.poses));
 
-    const Vec3<Real> n = rotation * Vec3<Real>(head[0], head[1], head[2]);
+    const Vec3<Real> n = rotation * VectorAt(head, Record::kNormal);
     const Vec3<Real> t1 = PerpendicularTo<Real>(n), t2 = Cross<Real>(n, t1);
     batch.normal = n;
     batch.tangent1 = t1;
     batch.tangent2 = t2;
-    batch.friction = Min(head[4], Real(kMostFriction));
-    batch.twistRadius = head[6];
-    batch.pointCount = static_cast<int32_t>(HorizontalMax(head[3]));
-    batch.bounces = HorizontalMax(head[5]) > 0.0f;
-    const bool surfaceMoves = HorizontalMax(head[7]) > 0.0f;
+    batch.friction = Min(head[Record::kFriction], Real(kMostFriction));
+    batch.twistRadius = head[Record::kTwistRadius];
+    batch.pointCount = static_cast<int32_t>(HorizontalMax(pointCount));
+    batch.bounces = HorizontalMax(head[Record::kRestitution]) > 0.0f;
+    const bool surfaceMoves = HorizontalMax(head[Record::kSurfaceMoves]) > 0.0f;
     batch.surfaces = surfaceMoves && !kFixedB ? records : nullptr;
     batch.relaxedImpulse = zero;
 
@@ -198,18 +200,18 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
     Vec3<Real> center(zero, zero, zero);
     for (int i = 0; i < batch.pointCount; ++i) {
         Real p[8];
-        GatherRecordRow<N>(batch.contact, records, 2 + i, p);
-        const auto used = head[3] > Real(static_cast<float>(i));
-        const Vec3<Real> onA = rotation * Vec3<Real>(p[0], p[1], p[2]);
-        const Vec3<Real> onB = between + rotationB * Vec3<Real>(p[4], p[5], p[6]);
+        GatherRecordRow<N>(batch.contact, records, Record::kPoints + i, p);
+        const auto used = pointCount > Real(static_cast<float>(i));
+        const Vec3<Real> onA = rotation * VectorAt(p, Record::kOnA);
+        const Vec3<Real> onB = between + rotationB * VectorAt(p, Record::kOnB);
         const Real separation = Dot<Real>(n, Vec3<Real>(onB - onA));
         points[i] = onA + n * (separation * Real(0.5f));
         batch.rows[i].startSeparation = batch.rows[i].separation = Select(used, separation, zero);
-        batch.rows[i].impulse = Select(used, impulses[i] * Real(settings.impulseScale), zero);
+        batch.rows[i].impulse = Select(used, impulses[Record::kNormalImpulses + i] * Real(settings.impulseScale), zero);
         batch.relaxedImpulse += batch.rows[i].impulse;
         for (int k = 0; k < 3; ++k) center[k] += Select(used, points[i][k], zero);
     }
-    center = center * (Real(1.0f) / Max(head[3], Real(1.0f)));
+    center = center * (Real(1.0f) / Max(pointCount, Real(1.0f)));
     batch.armA = center;
 
     Responses<Real> responses;
@@ -237,11 +239,11 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
         batch.frictionResponse[k] = responses.friction[3 + k];
         for (int j = 0; j < 3; ++j) batch.coupling[j][k] = responses.coupling[j][k];
     }
-    const Vec3<Real> impulse(impulses[4], impulses[5], impulses[6]);
+    const Vec3<Real> impulse = VectorAt(impulses, Record::kFrictionImpulse);
     const Real scale(settings.impulseScale);
     batch.frictionImpulse[0] = Dot<Real>(impulse, t1) * scale;
     batch.frictionImpulse[1] = Dot<Real>(impulse, t2) * scale;
-    batch.frictionImpulse[2] = impulses[7] * scale;
+    batch.frictionImpulse[2] = impulses[Record::kTwistImpulse] * scale;
 
     // J of a point: n-row + b t1-row - a t2-row.
     const auto& g = responses.normal;
@@ -255,7 +257,7 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
         const Real diagonal = g[0] + two * (row.b * g[1] - row.a * g[2]) + row.b * row.b * g[3] -
                               two * row.a * row.b * g[4] + row.a * row.a * g[5];
         diagonals += diagonal;
-        const auto used = head[3] > Real(static_cast<float>(i));
+        const auto used = pointCount > Real(static_cast<float>(i));
         row.inverseResponse = Select(used, InverseOrZero(diagonal), zero);
         row.a = Select(used, row.a, zero);
         row.b = Select(used, row.b, zero);
@@ -267,10 +269,10 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
         }
     }
     if constexpr (kFixedB)
-        if (surfaceMoves) AddSurfaceMotion(batch, head[7], records);
+        if (surfaceMoves) AddSurfaceMotion(batch, head[Record::kSurfaceMoves], records);
     const auto finite = FiniteLanes(batch, responses, diagonals);
     if (!finite.All()) KeepLanes(batch, finite);
-    if (batch.bounces) PrepareBounces(batch, head[5], bodyB, bodies, settings);
+    if (batch.bounces) PrepareBounces(batch, head[Record::kRestitution], bodyB, bodies, settings);
     return (~finite).ToBits();
 }
 
@@ -279,9 +281,9 @@ void StoreContacts(const ContactBatch<N, kFixedB>& batch, ContactRecord* records
     const auto friction = batch.tangent1 * batch.frictionImpulse[0] + batch.tangent2 * batch.frictionImpulse[1];
     Wide<N> row[8];
     for (int i = 0; i < ContactRecord::kMaxPoints; ++i)
-        row[i] = i < batch.pointCount ? batch.rows[i].impulse : Wide<N>(0.0f);
-    for (int k = 0; k < 3; ++k) row[4 + k] = friction[k];
-    row[7] = batch.frictionImpulse[2];
+        row[ContactRecord::kNormalImpulses + i] = i < batch.pointCount ? batch.rows[i].impulse : Wide<N>(0.0f);
+    SetVectorAt<Wide<N>>(row, ContactRecord::kFrictionImpulse, friction);
+    row[ContactRecord::kTwistImpulse] = batch.frictionImpulse[2];
     if (impulseScale != 1.0f)
         for (Wide<N>& x : row) x = x / Wide<N>(impulseScale);
     // An impulse beyond the floats would push for ever.

@@ -25,7 +25,7 @@ void PullContacts(const ContactBatch<N, kFixedB>& batch, BodyState* pseudo, cons
         changes.Add(row, change);
     }
     ApplyToBoth<N, kFixedB>(batch, twists, batch.normal * changes.sum, NormalTorque(batch, changes.sumA, changes.sumB));
-    if constexpr (kFixedB) twists.a[6] = Real(1.0f);  // BodyState::nearFixed
+    if constexpr (kFixedB) twists.a[BodyState::kNearFixed] = Real(1.0f);
     Scatter(batch, twists);
 }
 

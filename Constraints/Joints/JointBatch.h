@@ -39,10 +39,37 @@ struct alignas(32) JointRecord {
     float totalForce[3] = {0, 0, 0}, totalTorque[3] = {0, 0, 0}, totalSpare[2] = {0, 0};
 
     enum Rows { kAnchors, kFrames, kOwn, kLocks, kTotal };
-    const float* Row(int row) const { return anchorA + 8 * row; }
-    float* Row(int row) { return anchorA + 8 * row; }
+    const float* Row(int row) const { return anchorA + kRowFloats * static_cast<size_t>(row); }
+    float* Row(int row) { return anchorA + kRowFloats * static_cast<size_t>(row); }
+    // Places in the first row, in the second, in those of forces, and what else kOwn has.
+    enum Places {
+        kAnchorA = 0,
+        kAnchorB = 3,
+        kLineAxis = 6,
+        kFreeAxis = 7,
+        kFrameA = 0,
+        kFrameB = 4,
+        kForce = 0,
+        kTorque = 3,
+        kWasPulled = 6,
+        kSpare = 7
+    };
 };
 static_assert(sizeof(JointRecord) == 160);
+FULCRUM_CHECK_PLACE(JointRecord, anchorA, JointRecord::kAnchors, JointRecord::kAnchorA);
+FULCRUM_CHECK_PLACE(JointRecord, anchorB, JointRecord::kAnchors, JointRecord::kAnchorB);
+FULCRUM_CHECK_PLACE(JointRecord, lineAxis, JointRecord::kAnchors, JointRecord::kLineAxis);
+FULCRUM_CHECK_PLACE(JointRecord, freeAxis, JointRecord::kAnchors, JointRecord::kFreeAxis);
+FULCRUM_CHECK_PLACE(JointRecord, frameA, JointRecord::kFrames, JointRecord::kFrameA);
+FULCRUM_CHECK_PLACE(JointRecord, frameB, JointRecord::kFrames, JointRecord::kFrameB);
+FULCRUM_CHECK_PLACE(JointRecord, ownImpulse, JointRecord::kOwn, JointRecord::kForce);
+FULCRUM_CHECK_PLACE(JointRecord, ownAngularImpulse, JointRecord::kOwn, JointRecord::kTorque);
+FULCRUM_CHECK_PLACE(JointRecord, wasPulled, JointRecord::kOwn, JointRecord::kWasPulled);
+FULCRUM_CHECK_PLACE(JointRecord, ownSpare, JointRecord::kOwn, JointRecord::kSpare);
+FULCRUM_CHECK_PLACE(JointRecord, lockForce, JointRecord::kLocks, JointRecord::kForce);
+FULCRUM_CHECK_PLACE(JointRecord, lockTorque, JointRecord::kLocks, JointRecord::kTorque);
+FULCRUM_CHECK_PLACE(JointRecord, totalForce, JointRecord::kTotal, JointRecord::kForce);
+FULCRUM_CHECK_PLACE(JointRecord, totalTorque, JointRecord::kTotal, JointRecord::kTorque);
 
 // One row of each of N joints; lanes without a row have no Jacobian, and are inactive.
 template <int N>

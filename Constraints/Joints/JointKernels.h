@@ -38,7 +38,7 @@ struct Motion {
         GatherRows<N>(reinterpret_cast<const float* const(&)[N]>(rows), row);
     }
     FULCRUM_FORCE_INLINE Twist<Real> Get() const {
-        return {Vec3<Real>(row[0], row[1], row[2]), Vec3<Real>(row[3], row[4], row[5])};
+        return {VectorAt(row, BodyState::kLinear), VectorAt(row, BodyState::kAngular)};
     }
     // Lanes of bodies that are not dynamic are written nowhere.
     FULCRUM_FORCE_INLINE void Scatter(const Twist<Real>& motion, int count, uint32_t fixed) {
@@ -46,10 +46,8 @@ struct Motion {
         Scatter(count, fixed);
     }
     FULCRUM_FORCE_INLINE void Set(const Twist<Real>& motion) {
-        for (int k = 0; k < 3; ++k) {
-            row[k] = motion.linear[k];
-            row[3 + k] = motion.angular[k];
-        }
+        SetVectorAt(row, BodyState::kLinear, motion.linear);
+        SetVectorAt(row, BodyState::kAngular, motion.angular);
     }
     FULCRUM_FORCE_INLINE void Scatter(int count, uint32_t fixed) {
         alignas(32) float nowhere[8];

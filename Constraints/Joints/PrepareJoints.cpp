@@ -139,8 +139,9 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
     for (int lane = 0; lane < batch.count; ++lane) {
         const JointRecord& record = records[batch.joint[lane]];
         const auto velocityOf = [&](uint32_t body) {
-            const float* v = bodies.states[body].VelocityRow();
-            return Twist<float>{Vector3(v[0], v[1], v[2]), Vector3(v[3], v[4], v[5])};
+            const BodyState& state = bodies.states[body];
+            const float(&v)[3] = state.linearVelocity, (&w)[3] = state.angularVelocity;
+            return Twist<float>{Vector3(v[0], v[1], v[2]), Vector3(w[0], w[1], w[2])};
         };
         const auto frameOf = [&](uint32_t body, const float* f) {
             const float* q = bodies.poses[body].rotation;
@@ -267,11 +268,11 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
                      rotationB = GatherRotation<N>(batch.bodyB, bodies.poses);
 
     JointPlace<Real> place;
-    place.armA = WithinReach<Real>(Rotate<Real>(rotationA, Vec3<Real>(head[0], head[1], head[2])));
-    place.armB = WithinReach<Real>(Rotate<Real>(rotationB, Vec3<Real>(head[3], head[4], head[5])));
+    place.armA = WithinReach<Real>(Rotate<Real>(rotationA, VectorAt(head, JointRecord::kAnchorA)));
+    place.armB = WithinReach<Real>(Rotate<Real>(rotationB, VectorAt(head, JointRecord::kAnchorB)));
     place.offset = WithinReach<Real>(between + place.armB - place.armA);
-    const Quat<Real> frameA = rotationA * Quat<Real>{frames[0], frames[1], frames[2], frames[3]};
-    const Quat<Real> frameB = rotationB * Quat<Real>{frames[4], frames[5], frames[6], frames[7]};
+    const Quat<Real> frameA = rotationA * QuaternionAt(frames, JointRecord::kFrameA);
+    const Quat<Real> frameB = rotationB * QuaternionAt(frames, JointRecord::kFrameB);
     batch.startArmA = place.armA;
     batch.startArmB = place.armB;
     batch.startOffset = place.offset;
@@ -279,12 +280,12 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
     batch.far = false;
     batch.follows = Real(0.0f);
     const Real scale(settings.impulseScale);
-    const Vec3<Real> linearImpulse = Vec3<Real>(impulses[0], impulses[1], impulses[2]) * scale;
-    const Vec3<Real> angularImpulse = Vec3<Real>(impulses[3], impulses[4], impulses[5]) * scale;
+    const Vec3<Real> linearImpulse = VectorAt(impulses, JointRecord::kForce) * scale;
+    const Vec3<Real> angularImpulse = VectorAt(impulses, JointRecord::kTorque) * scale;
 
     WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
         if constexpr (linear == LinearLock::Line) {
-            batch.startLine = place.line = Column<Real>(frameA, head[6]);
+            batch.startLine = place.line = Column<Real>(frameA, head[JointRecord::kLineAxis]);
             batch.startLineNormal = place.lineNormal = PerpendicularTo<Real>(place.line);
         }
         if constexpr (angular == AngularLock::All) {
@@ -292,8 +293,8 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
             place.rotationError = RotationVectorOf<Real>(batch.inverseInitial);
         }
         if constexpr (angular == AngularLock::Axis) {
-            batch.startAxisA = place.axisA = Column<Real>(frameA, head[7]);
-            batch.startAxisB = place.axisB = Column<Real>(frameB, head[7]);
+            batch.startAxisA = place.axisA = Column<Real>(frameA, head[JointRecord::kFreeAxis]);
+            batch.startAxisB = place.axisB = Column<Real>(frameB, head[JointRecord::kFreeAxis]);
             batch.startNormal = place.normal = PerpendicularTo<Real>(place.axisB);
         }
         const JointErrors<Real> errors = SetUpParts<linear, angular>(batch, place);
@@ -325,7 +326,7 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
         }
         SetUpCoupling<linear, angular>(batch);
         FillRows<linear, angular>(batch, records, types, bodies, settings);
-        FindFar<linear, angular>(batch, place, errors, impulses[6], settings);
+        FindFar<linear, angular>(batch, place, errors, impulses[JointRecord::kWasPulled], settings);
         findings.far |= batch.far;
         Soften<linear, angular>(batch, errors, settings);
     });
@@ -390,12 +391,10 @@ void ScatterWrench(const JointBatch<N>& batch, JointRecord* records, int row, co
     using Real = Wide<N>;
     const Real factor(scale);
     Real values[8];
-    for (int k = 0; k < 3; ++k) {
-        values[k] = wrench.force[k] * factor;
-        values[3 + k] = wrench.torque[k] * factor;
-    }
-    values[6] = wasPulled;
-    values[7] = Real(0.0f);
+    SetVectorAt<Real>(values, JointRecord::kForce, wrench.force * factor);
+    SetVectorAt<Real>(values, JointRecord::kTorque, wrench.torque * factor);
+    values[JointRecord::kWasPulled] = wasPulled;
+    values[JointRecord::kSpare] = Real(0.0f);
     ScatterRecordRow<N>(batch.joint, batch.count, records, row, values);
 }
 

@@ -153,7 +153,9 @@ FULCRUM_FORCE_INLINE Vec3<Real> MotionAt(const Twist<Real>& a, const Twist<Real>
 template <int N>
 FULCRUM_FORCE_INLINE Quat<Wide<N>> TurnOf(const Motion<N>& pose) {
     const Wide<N>(&r)[8] = pose.row;
-    return {r[3] * r[6], r[4] * r[6], r[5] * r[6], r[7]};
+    constexpr int w = BodyState::kAngular;
+    const Wide<N>&sine = r[BodyState::kHalfTurn], &cosine = r[BodyState::kHalfTurn + 1];
+    return {r[w] * sine, r[w + 1] * sine, r[w + 2] * sine, cosine};
 }
 
 // The place at the displaced poses.
@@ -289,15 +291,14 @@ void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const Solver
     GatherRecordRow<N>(batch.joint, records, JointRecord::kAnchors, anchors);
     GatherImpulses<N>(batch.joint, records, impulses);
     BallPlace<Real> place;
-    const auto armAt = [&](const uint32_t(&body)[N], int first) {
-        return WithinReach<Real>(Rotate<Real>(GatherRotation<N>(body, bodies.poses),
-                                              Vec3<Real>(anchors[first], anchors[first + 1], anchors[first + 2])));
+    const auto armAt = [&](const uint32_t(&body)[N], int anchor) {
+        return WithinReach<Real>(Rotate<Real>(GatherRotation<N>(body, bodies.poses), VectorAt(anchors, anchor)));
     };
-    place.armA = batch.startArmA = armAt(batch.bodyA, 0);
-    place.armB = batch.startArmB = armAt(batch.bodyB, 3);
+    place.armA = batch.startArmA = armAt(batch.bodyA, JointRecord::kAnchorA);
+    place.armB = batch.startArmB = armAt(batch.bodyB, JointRecord::kAnchorB);
     place.offset = batch.startOffset =
         WithinReach<Real>(GatherOffset<N>(batch.bodyA, batch.bodyB, bodies.poses) + place.armB - place.armA);
-    FindFar(batch, place.offset, impulses[6], settings);
+    FindFar(batch, place.offset, impulses[JointRecord::kWasPulled], settings);
     findings.far |= batch.far;
     MeetBetween(batch, place);
     batch.armA = place.armA;
@@ -312,9 +313,9 @@ void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const Solver
         batch.mass = MassAt<false>(batch, place.armA, place.armB);
     }
     const auto answers = batch.mass.xx + batch.mass.yy + batch.mass.zz > Real(0.0f);
-    batch.impulse = ZeroUnless<Real>(
-        answers, Vec3<Real>(Vec3<Real>(impulses[0], impulses[1], impulses[2]) * Real(settings.impulseScale)));
-    ForgetWhereNewlyFar(batch, impulses[6]);
+    batch.impulse =
+        ZeroUnless<Real>(answers, Vec3<Real>(VectorAt(impulses, JointRecord::kForce) * Real(settings.impulseScale)));
+    ForgetWhereNewlyFar(batch, impulses[JointRecord::kWasPulled]);
     SetPush(batch, place.offset, settings);
     NoteLargest<N>(batch.joint, batch.count, Dot<Real>(place.offset, place.offset), findings.linearError,
                    findings.linearJoint);
@@ -364,7 +365,9 @@ void StoreJoints(const BallBatch<N>& batch, JointRecord* records, float dt, floa
     using Real = Wide<N>;
     const Real none(0.0f);
     const auto write = [&](int row, const Vec3<Real>& v, const Real& wasPulled) {
-        const Real values[8] = {v.x(), v.y(), v.z(), none, none, none, wasPulled, none};
+        Real values[8] = {none, none, none, none, none, none, none, none};
+        SetVectorAt(values, JointRecord::kForce, v);
+        values[JointRecord::kWasPulled] = wasPulled;
         ScatterRecordRow<N>(batch.joint, batch.count, records, row, values);
     };
     write(JointRecord::kOwn, Vec3<Real>(batch.impulse * Real(1.0f / impulseScale)), Max(batch.isFar, batch.follows));

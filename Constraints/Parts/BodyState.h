@@ -2,7 +2,7 @@
 // Masses sit beside it, one row. Filled by Physics before the solve, read back after it.
 #pragma once
 
-#include <Fulcrum/Math/Matrix.h>
+#include <Fulcrum/Constraints/Parts/RowPlaces.h>
 #include <Fulcrum/Math/Wide.h>
 
 #include <cstdint>
@@ -24,8 +24,19 @@ struct alignas(64) BodyState {
 
     float* VelocityRow() { return linearVelocity; }
     float* PoseRow() { return deltaPosition; }
+    const float* VelocityRow() const { return linearVelocity; }
+    const float* PoseRow() const { return deltaPosition; }
+    // Places in both rows, in the first, and in the second.
+    enum Places { kLinear = 0, kAngular = 3, kNearFixed = 6, kMarks = 7, kHalfTurn = 6 };
 };
 static_assert(sizeof(BodyState) == 64);
+FULCRUM_CHECK_PLACE(BodyState, linearVelocity, 0, BodyState::kLinear);
+FULCRUM_CHECK_PLACE(BodyState, angularVelocity, 0, BodyState::kAngular);
+FULCRUM_CHECK_PLACE(BodyState, nearFixed, 0, BodyState::kNearFixed);
+FULCRUM_CHECK_PLACE(BodyState, marks, 0, BodyState::kMarks);
+FULCRUM_CHECK_PLACE(BodyState, deltaPosition, 1, BodyState::kLinear);
+FULCRUM_CHECK_PLACE(BodyState, deltaRotation, 1, BodyState::kAngular);
+FULCRUM_CHECK_PLACE(BodyState, halfTurn, 1, BodyState::kHalfTurn);
 
 // Zero for a body that nothing moves.
 struct alignas(32) BodyMass {
@@ -34,12 +45,16 @@ struct alignas(32) BodyMass {
     float turns = 0;                               // 1: the inertia turns with the body from substep to substep
 
     const float* Row() const { return inverseInertia; }
+    enum Places { kInverseInertia = 0, kInverseMass = 6, kTurns = 7 };
     SymmetricMatrix3 InverseInertia() const {
         const float* i = inverseInertia;
         return {i[0], i[1], i[2], i[3], i[4], i[5]};
     }
 };
 static_assert(sizeof(BodyMass) == 32);
+FULCRUM_CHECK_PLACE(BodyMass, inverseInertia, 0, BodyMass::kInverseInertia);
+FULCRUM_CHECK_PLACE(BodyMass, inverseMass, 0, BodyMass::kInverseMass);
+FULCRUM_CHECK_PLACE(BodyMass, turns, 0, BodyMass::kTurns);
 
 // Pose of the center frame at the start of the step, and the acceleration that gravity and forces give.
 struct alignas(64) BodyPose {
@@ -48,8 +63,14 @@ struct alignas(64) BodyPose {
     uint32_t boundsChangedIn = 0;       // the step in which fat bounds of it last changed: its pairs must be checked
     double position[3] = {0, 0, 0};     // m, of the center of mass
     double positionSpare = 0;
+
+    const float* Row() const { return rotation; }
+    enum Places { kRotation = 0, kAcceleration = 4, kNoFloat = 7 };
 };
 static_assert(sizeof(BodyPose) == 64);
+FULCRUM_CHECK_PLACE(BodyPose, rotation, 0, BodyPose::kRotation);
+FULCRUM_CHECK_PLACE(BodyPose, acceleration, 0, BodyPose::kAcceleration);
+FULCRUM_CHECK_PLACE(BodyPose, boundsChangedIn, 0, BodyPose::kNoFloat);
 
 // Linear and angular velocity, or linear and angular displacement: six numbers over one scalar or lanes.
 template <class Real>

@@ -26,9 +26,10 @@ Wide<8> ZeroTimes(const float* eight) { return Wide<8>::Load(eight) * Wide<8>(0.
 
 bool IsFiniteState(const BodyStore& bodies, uint32_t body) {
     const BodyState& state = bodies.states[body];
-    Wide<8> odd = ZeroTimes(bodies.poses[body].rotation) + ZeroTimes(bodies.dynamics[body].LimitsRow());
-    odd.Set(7, 0.0f);  // in both the eighth is no float
-    odd += ZeroTimes(state.linearVelocity) + ZeroTimes(state.deltaPosition) + ZeroTimes(bodies.masses[body].Row()) +
+    Wide<8> odd = ZeroTimes(bodies.poses[body].Row()) + ZeroTimes(bodies.dynamics[body].LimitsRow());
+    static_assert(int(BodyPose::kNoFloat) == int(BodyDynamics::kNoFloat));
+    odd.Set(BodyPose::kNoFloat, 0.0f);
+    odd += ZeroTimes(state.VelocityRow()) + ZeroTimes(state.PoseRow()) + ZeroTimes(bodies.masses[body].Row()) +
            ZeroTimes(bodies.dynamics[body].InertiaRow());
     const Position& rest = bodies.remainders[body].value;
     double place = 0;

@@ -94,8 +94,8 @@ void GatherCrowd(WorldState& world, StepState& step) {
 }
 
 void LimitPush(WorldState& world, uint32_t body, float h) {
-    const float* free = world.bodies.unconstrained[body].row;
-    const Vector3 freeV(free[0], free[1], free[2]), freeW(free[3], free[4], free[5]);
+    const auto& free = world.bodies.unconstrained[body].row;
+    const Vector3 freeV = VectorAt(free, BodyState::kLinear), freeW = VectorAt(free, BodyState::kAngular);
     Vector3 push = world.bodies.LinearVelocityOf(body) - freeV, spin = world.bodies.AngularVelocityOf(body) - freeW;
     const float fastest = world.settings.contactPushSpeed;
     LimitLength(push, fastest);

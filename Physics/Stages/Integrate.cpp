@@ -33,13 +33,11 @@ struct Rows {
         if constexpr (std::is_same_v<Real, float>) std::copy_n(rows[0], 8, at);
         else GatherRows<kCount>(reinterpret_cast<const float* const(&)[kCount]>(rows), at);
     }
-    Vec3<Real> First() const { return Vec3<Real>(at[0], at[1], at[2]); }
-    Vec3<Real> Second() const { return Vec3<Real>(at[3], at[4], at[5]); }
+    Vec3<Real> First() const { return VectorAt(at, BodyState::kLinear); }
+    Vec3<Real> Second() const { return VectorAt(at, BodyState::kAngular); }
     void Set(const Vec3<Real>& first, const Vec3<Real>& second) {
-        for (int k = 0; k < 3; ++k) {
-            at[k] = first[k];
-            at[3 + k] = second[k];
-        }
+        SetVectorAt(at, BodyState::kLinear, first);
+        SetVectorAt(at, BodyState::kAngular, second);
     }
     void Write(int count) const {
         if constexpr (std::is_same_v<Real, float>) std::copy_n(at, 8, rows[0]);
@@ -151,21 +149,20 @@ FULCRUM_FORCE_INLINE Vec3<Real> Displace(Rows<Real>& displacement, const Twist<R
 template <class Real, class Mask>
 FULCRUM_FORCE_INLINE void TurnInertia(BodyStore& bodies, const uint32_t (&index)[kBodies<Real>], int count,
                                       const Mask& feels, const Vec3<Real>& turn, Vec3<Real>& w, Real h) {
-    const Rows<Real> pose(index, [&](uint32_t body) { return bodies.poses[body].rotation; });
+    const Rows<Real> pose(index, [&](uint32_t body) { return bodies.poses[body].Row(); });
     const Rows<Real> inertia(index, [&](uint32_t body) { return bodies.dynamics[body].InertiaRow(); });
     Rows<Real> unconstrained(index, [&](uint32_t body) { return bodies.unconstrained[body].row; });
-    const Quat<Real> rotation =
-        RotationFromVector<Real>(turn) * Quat<Real>{pose.at[0], pose.at[1], pose.at[2], pose.at[3]};
-    const Mat3<Real> axes =
-        ToMatrix<Real>(rotation * Quat<Real>{inertia.at[4], inertia.at[5], inertia.at[6], inertia.at[7]});
+    const Quat<Real> rotation = RotationFromVector<Real>(turn) * QuaternionAt(pose.at, BodyPose::kRotation);
+    const Mat3<Real> axes = ToMatrix<Real>(rotation * QuaternionAt(inertia.at, BodyDynamics::kPrincipalAxes));
     const Vec3<Real> change = AddGyroscopicTorque<Real>(inertia.First(), axes, w, h) - w;
     for (int k = 0; k < 3; ++k) w[k] = Select(feels, Real(w[k] + change[k]), Real(w[k]));
     unconstrained.Set(unconstrained.First(), unconstrained.Second() + change);
     unconstrained.Write(count, feels);
     const Sym3<Real> turned = RotatedDiagonal<Real>(axes, inertia.First());
     Rows<Real> mass(index, [&](uint32_t body) { return bodies.masses[body].Row(); });
-    mass.at[0] = turned.xx, mass.at[1] = turned.yy, mass.at[2] = turned.zz;
-    mass.at[3] = turned.xy, mass.at[4] = turned.xz, mass.at[5] = turned.yz;
+    constexpr int i = BodyMass::kInverseInertia;
+    mass.at[i] = turned.xx, mass.at[i + 1] = turned.yy, mass.at[i + 2] = turned.zz;
+    mass.at[i + 3] = turned.xy, mass.at[i + 4] = turned.xz, mass.at[i + 5] = turned.yz;
     mass.Write(count, feels);
 }
 
@@ -186,8 +183,8 @@ void LimitSolved(WorldState& world, uint32_t body, WorkerFindings& findings) {
 
 // m/s and rad/s, by which joints that are far apart move a body.
 Twist<float> PullOf(const BodyDynamics& d, const BodyState& pseudo) {
-    const float* row = pseudo.linearVelocity;
-    Twist<float> pull{Vector3(row[0], row[1], row[2]), Vector3(row[3], row[4], row[5])};
+    const float(&v)[3] = pseudo.linearVelocity, (&w)[3] = pseudo.angularVelocity;
+    Twist<float> pull{Vector3(v[0], v[1], v[2]), Vector3(w[0], w[1], w[2])};
     if (!IsFinite(pull.linear) || !IsFinite(pull.angular)) return {};
     d.Lock(pull.linear, pull.angular);
     return pull;
@@ -204,8 +201,8 @@ void SlowDown(BodyStore& bodies, uint32_t body, const Twist<float>& pull, Twist<
     const Vector3 linear = LostTo(pull.linear, motion.linear), angular = LostTo(pull.angular, motion.angular);
     float* unconstrained = bodies.unconstrained[body].row;
     for (int n = 0; n < 3; ++n) {
-        unconstrained[n] += linear[n];
-        unconstrained[3 + n] += angular[n];
+        unconstrained[BodyState::kLinear + n] += linear[n];
+        unconstrained[BodyState::kAngular + n] += angular[n];
     }
     motion.linear += linear;
     motion.angular += angular;
@@ -261,12 +258,14 @@ bool IntegrateVelocitiesInLanes(WorldState& world, const Indices& index, int cou
             return false;
     }
     const Rows<Lanes> limits(index, [&](uint32_t body) { return bodies.dynamics[body].LimitsRow(); });
-    const Lanes zero(0.0f), linearDamping = limits.at[1], angularDamping = limits.at[2], maxLinear = limits.at[3],
-                            maxAngular = limits.at[4];
+    const Lanes zero(0.0f), linearDamping = limits.at[BodyDynamics::kLinearDamping],
+                            angularDamping = limits.at[BodyDynamics::kAngularDamping],
+                            maxLinear = limits.at[BodyDynamics::kMaxLinearSpeed],
+                            maxAngular = limits.at[BodyDynamics::kMaxAngularSpeed];
     if (((linearDamping > zero) | (angularDamping > zero)).Any()) return false;
     SubstepVelocity<Lanes> velocity(bodies, index, again);
-    const Rows<Lanes> pose(index, [&](uint32_t body) { return bodies.poses[body].rotation; });
-    velocity.own.linear += Vec3<Lanes>(pose.at[4], pose.at[5], pose.at[6]) * Lanes(h);
+    const Rows<Lanes> pose(index, [&](uint32_t body) { return bodies.poses[body].Row(); });
+    velocity.own.linear += VectorAt(pose.at, BodyPose::kAcceleration) * Lanes(h);
     if (!(IsWithin(velocity.own.linear, maxLinear) & IsWithin(velocity.own.angular, maxAngular)).All()) return false;
     velocity.Write(count);
     return true;
@@ -283,7 +282,10 @@ bool IntegratePosesInLanes(WorldState& world, const Indices& index, int count, f
     }
     Rows<Lanes> velocity(index, [&](uint32_t body) { return bodies.states[body].VelocityRow(); });
     const Rows<Lanes> limits(index, [&](uint32_t body) { return bodies.dynamics[body].LimitsRow(); });
-    if (!(IsWithin(velocity.First(), limits.at[3]) & IsWithin(velocity.Second(), limits.at[4])).All()) return false;
+    if (!(IsWithin(velocity.First(), limits.at[BodyDynamics::kMaxLinearSpeed]) &
+          IsWithin(velocity.Second(), limits.at[BodyDynamics::kMaxAngularSpeed]))
+             .All())
+        return false;
     Rows<Lanes> displacement(index, [&](uint32_t body) { return bodies.states[body].PoseRow(); });
     const auto isJointed = Lanes::Load(jointed) > Lanes(0.0f);
     const Vec3<Lanes> turn =

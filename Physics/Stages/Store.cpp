@@ -83,9 +83,9 @@ void MoveSolved(WorldState& world, Ending& ending, float dt) {
     Vector3& w = ending.turn.angularVelocity;
     ending.displacement = Vector3(s.deltaPosition[0], s.deltaPosition[1], s.deltaPosition[2]);
     if (d.crowded) {
-        const float* free = world.bodies.unconstrained[body].row;
-        ending.v = NoFasterThan(ending.v, Vector3(free[0], free[1], free[2]));
-        w = NoFasterThan(w, Vector3(free[3], free[4], free[5]));
+        const auto& free = world.bodies.unconstrained[body].row;
+        ending.v = NoFasterThan(ending.v, VectorAt(free, BodyState::kLinear));
+        w = NoFasterThan(w, VectorAt(free, BodyState::kAngular));
     }
     const Quaternion before = rotation;
     rotation =

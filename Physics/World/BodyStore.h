@@ -37,8 +37,21 @@ struct alignas(64) BodyDynamics {
     bool dispersing : 1 = false;  // see Crowd.h
 
     // Eight numbers each, for lanes.
-    const float* InertiaRow() const { return inverseInertia; }  // moments, mass, principal axes
-    const float* LimitsRow() const { return &gravityFactor; }   // up to outerRadius
+    const float* InertiaRow() const { return inverseInertia; }
+    const float* LimitsRow() const { return &gravityFactor; }
+    // Places in the first row, and in the second.
+    enum Places {
+        kInverseInertia = 0,
+        kInverseMass = 3,
+        kPrincipalAxes = 4,
+        kGravityFactor = 0,
+        kLinearDamping = 1,
+        kAngularDamping = 2,
+        kMaxLinearSpeed = 3,
+        kMaxAngularSpeed = 4,
+        kOuterRadius = 6,
+        kNoFloat = 7
+    };
 
     // Sets what the locked axes forbid of a velocity or a displacement to zero.
     void Lock(Vector3& linear, Vector3& angular) const {
@@ -60,6 +73,16 @@ struct alignas(64) BodyDynamics {
     }
 };
 static_assert(sizeof(BodyDynamics) == 64);
+FULCRUM_CHECK_PLACE(BodyDynamics, inverseInertia, 0, BodyDynamics::kInverseInertia);
+FULCRUM_CHECK_PLACE(BodyDynamics, inverseMass, 0, BodyDynamics::kInverseMass);
+FULCRUM_CHECK_PLACE(BodyDynamics, principalAxes, 0, BodyDynamics::kPrincipalAxes);
+FULCRUM_CHECK_PLACE(BodyDynamics, gravityFactor, 1, BodyDynamics::kGravityFactor);
+FULCRUM_CHECK_PLACE(BodyDynamics, linearDamping, 1, BodyDynamics::kLinearDamping);
+FULCRUM_CHECK_PLACE(BodyDynamics, angularDamping, 1, BodyDynamics::kAngularDamping);
+FULCRUM_CHECK_PLACE(BodyDynamics, maxLinearSpeed, 1, BodyDynamics::kMaxLinearSpeed);
+FULCRUM_CHECK_PLACE(BodyDynamics, maxAngularSpeed, 1, BodyDynamics::kMaxAngularSpeed);
+FULCRUM_CHECK_PLACE(BodyDynamics, outerRadius, 1, BodyDynamics::kOuterRadius);
+FULCRUM_CHECK_PLACE(BodyDynamics, motion, 1, BodyDynamics::kNoFloat);
 
 // kg m2/s about the center of mass, world axes, at the rotation and angular velocity (rad/s).
 Vector3 AngularMomentum(const BodyDynamics& body, const Quaternion& rotation, const Vector3& angularVelocity);
@@ -123,7 +146,7 @@ size_t HeapBytes(const BodyCold& body);
 
 // Velocity without the constraints' share, from which the next substep's warm start follows.
 struct alignas(32) UnconstrainedVelocity {
-    float row[8];
+    float row[kRowFloats];  // the first of BodyState
 };
 
 // Positions are multiples of this wherever the step reads them, and what is less is carried along: what bodies are to
