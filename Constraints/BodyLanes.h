@@ -29,13 +29,21 @@ FULCRUM_FORCE_INLINE auto GatherMass(const uint32_t (&index)[N], const BodyMass*
     return r[BodyMass::kTurns] > Wide<N>(0.0f);
 }
 
+// Scales are those of a MassOverride.
+template <class Real>
+FULCRUM_FORCE_INLINE void ScaleMass(InverseMass<Real>& inverse, const Real& massScale, const Real& inertiaScale) {
+    inverse.mass = inverse.mass * massScale;
+    Sym3<Real>& i = inverse.inertia;
+    for (Real* x : {&i.xx, &i.yy, &i.zz, &i.xy, &i.xz, &i.yz}) *x = *x * inertiaScale;
+}
+
 template <int N>
 FULCRUM_FORCE_INLINE Quat<Wide<N>> GatherRotation(const uint32_t (&index)[N], const BodyPose* poses) {
     const float* rows[N];
     for (int i = 0; i < N; ++i) rows[i] = poses[index[i]].Row();
     Wide<N> r[8];
     GatherRows<N>(rows, r);
-    return QuaternionAt(r, BodyPose::kRotation);
+    return QuaternionAt<BodyPose::kRotation>(r);
 }
 
 // From A's center of mass to B's, m.
@@ -76,7 +84,7 @@ FULCRUM_FORCE_INLINE Vec2<Real> HalfTurnOf(const Vec3<Real>& v) {
 // Brings BodyState::halfTurn of a row of displacements up to date with its rotation.
 template <class Real>
 FULCRUM_FORCE_INLINE void SetHalfTurn(Real (&row)[8]) {
-    const Vec2<Real> half = HalfTurnOf<Real>(VectorAt(row, BodyState::kAngular));
+    const Vec2<Real> half = HalfTurnOf<Real>(VectorAt<BodyState::kAngular>(row));
     row[BodyState::kHalfTurn] = half.x();
     row[BodyState::kHalfTurn + 1] = half.y();
 }

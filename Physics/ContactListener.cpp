@@ -20,4 +20,10 @@ void ContactChange::TurnSurface(const ContactView& contact, BodyId belt, const P
     surfaceTurn += belt == contact.bodyB ? angularVelocity : Vector3(-angularVelocity);
 }
 
+void ContactChange::ScaleInverseMass(const ContactView& contact, BodyId body, float scale) {
+    MassOverride& m = massOverride;
+    if (body == contact.bodyB) m.inverseMassScaleB = m.inverseInertiaScaleB = scale;
+    else m.inverseMassScaleA = m.inverseInertiaScaleA = scale;
+}
+
 }  // namespace fulcrum

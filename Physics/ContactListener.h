@@ -6,6 +6,7 @@
 // there and are reported (Misuse.h), changes of the world are refused with an error.
 #pragma once
 
+#include <Fulcrum/Constraints/MassOverride.h>
 #include <Fulcrum/Physics/Settings.h>
 
 #include <span>
@@ -36,6 +37,9 @@ struct ContactChange {
     // and turning so fast (rad/s, world axes). Friction makes what touches keep up with it. Only the part along the
     // contact counts, and the turn about the normal. Not finite: none.
     Vector3 surfaceVelocity = Vector3::Zero(), surfaceTurn = Vector3::Zero();
+    // For this contact the bodies are so much lighter or heavier; only the dynamic ones count. One of its four scales
+    // out of range, or not finite: none. Momentum is that of the masses as they are here, so that of the world changes.
+    MassOverride massOverride{};
     // No contact in this step: nothing bounces, wakes or rests.
     bool ignore = false;
 
@@ -44,6 +48,8 @@ struct ContactChange {
     void MoveSurface(const ContactView& contact, BodyId belt, const Vector3& velocity);
     // The same, turning about a pivot (m, world) with the angular velocity (rad/s, world axes): a belt's bend.
     void TurnSurface(const ContactView& contact, BodyId belt, const Position& pivot, const Vector3& angularVelocity);
+    // The inverse mass and inertia of `body`, which is one of the two bodies, times this: see MassOverride.
+    void ScaleInverseMass(const ContactView& contact, BodyId body, float scale);
 };
 
 class ContactListener {

@@ -119,6 +119,7 @@ Result<JointId> JointInterface::Add(const JointSettings& s, std::unique_ptr<Join
     joint.breakForce = s.breakForce;
     joint.breakTorque = s.breakTorque;
     joint.effort = {s.substeps, s.velocityIterations, s.positionIterations};
+    joint.SetMassOverride(s.massOverride);
     joint.userData = s.userData;
     if (std::isfinite(s.breakForce) || std::isfinite(s.breakTorque)) world_.joints.breakable.Insert(index);
     JointRecord& record = world_.joints.records[index];
@@ -233,6 +234,18 @@ Status JointInterface::SetEffort(JointId id, const SolverSettings& effort) {
     return Done{};
 }
 
+Status JointInterface::SetMassOverride(JointId id, const MassOverride& massOverride) {
+    const WorldLock::Exclusive alone(world_.lock);
+    if (alone.Refusal()) return *alone.Refusal();
+    if (!Exists(id)) return Unknown(id);
+    if (MaybeError error = CheckMassOverride("massOverride", massOverride)) return *error;
+    Joint& joint = world_.joints.joints[id.index];
+    if (!(joint.massOverride == massOverride)) world_.coloring.Invalidate();
+    joint.SetMassOverride(massOverride);
+    if (joint.enabled) WakeBodiesOf(world_, joint);
+    return Done{};
+}
+
 const AxisControl* JointInterface::GetControl(JointId id, JointAxis axis) const { return ControlOf(id, axis); }
 
 double JointInterface::GetCoordinate(JointId id, JointAxis axis) const {
@@ -303,6 +316,10 @@ BodyId JointInterface::GetBodyB(JointId id) const {
 }
 uint64_t JointInterface::GetUserData(JointId id) const {
     return Exists(id) ? world_.joints.joints[id.index].userData : 0;
+}
+
+MassOverride JointInterface::GetMassOverride(JointId id) const {
+    return Exists(id) ? world_.joints.joints[id.index].massOverride : MassOverride{};
 }
 
 const JointType* JointInterface::GetType(JointId id) const {

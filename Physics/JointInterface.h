@@ -48,6 +48,8 @@ public:
     Status SetTargetOrientation(JointId id, const Quaternion& target);
     // More effort for the joint's island, see JointSettings; 0: the system's. Errors also: OutOfRange.
     Status SetEffort(JointId id, const SolverSettings& effort);
+    // Other masses of the bodies for this joint, see JointSettings. Errors also: NonFinite, OutOfRange.
+    Status SetMassOverride(JointId id, const MassOverride& massOverride);
 
     // Readers return zeros for an unknown id.
     const AxisControl* GetControl(JointId id, JointAxis axis) const;  // null: nothing there
@@ -67,6 +69,7 @@ public:
     BodyId GetBodyA(JointId id) const;
     BodyId GetBodyB(JointId id) const;
     uint64_t GetUserData(JointId id) const;
+    MassOverride GetMassOverride(JointId id) const;  // none for an unknown id
     // The kind of the joint, and what only its kind has; null for an unknown id. Valid until the joint is removed.
     const JointType* GetType(JointId id) const;
 

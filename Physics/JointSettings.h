@@ -4,6 +4,7 @@
 
 #include <Fulcrum/Constraints/Joints/JointType.h>
 #include <Fulcrum/Constraints/Joints/PathJoint.h>
+#include <Fulcrum/Constraints/MassOverride.h>
 #include <Fulcrum/Constraints/Parts/SwingTwist.h>
 #include <Fulcrum/Physics/Settings.h>
 
@@ -53,6 +54,8 @@ struct JointSettings {
     int substeps = 0;            // 0..64
     int velocityIterations = 0;  // 0..255
     int positionIterations = 0;  // 0..255
+    // For this joint the bodies are so much lighter or heavier. What hangs together by it is not solved as a tree.
+    MassOverride massOverride{};
     uint64_t userData = 0;
 };
 

@@ -162,7 +162,19 @@ MaybeError CheckCommon(const JointSettings& s) {
                    CheckEnum("priority", s.priority, JointPriority::High), CheckBreak("breakForce", s.breakForce),
                    CheckBreak("breakTorque", s.breakTorque), CheckRange("substeps", s.substeps, 0, 64),
                    CheckRange("velocityIterations", s.velocityIterations, 0, 255),
-                   CheckRange("positionIterations", s.positionIterations, 0, 255));
+                   CheckRange("positionIterations", s.positionIterations, 0, 255),
+                   CheckMassOverride("massOverride", s.massOverride));
+}
+
+MaybeError CheckMassOverride(const FieldName& name, const MassOverride& o) {
+    const auto check = [&](const char* part, float scale) -> MaybeError {
+        const FieldName field(name, part);
+        if (MaybeError e = CheckFiniteField(field, scale)) return e;
+        return CheckBetween(field, scale, 0, MassOverride::kLargestScale);
+    };
+    return FirstOf(
+        check(".inverseMassScaleA", o.inverseMassScaleA), check(".inverseInertiaScaleA", o.inverseInertiaScaleA),
+        check(".inverseMassScaleB", o.inverseMassScaleB), check(".inverseInertiaScaleB", o.inverseInertiaScaleB));
 }
 
 MaybeError CheckControl(const FieldName& name, const AxisControl& control, const LimitBounds& bounds) {

@@ -31,6 +31,8 @@ MaybeError CheckCommon(const JointSettings& settings);
 // Of an axis; limits may be infinite where the bounds are. Allocates nothing where nothing is wrong.
 MaybeError CheckControl(const FieldName& name, const AxisControl& control, const LimitBounds& bounds = {});
 
+MaybeError CheckMassOverride(const FieldName& name, const MassOverride& massOverride);
+
 // The fields of a kind, and those that all joints share.
 MaybeError Check(const PointJointSettings& settings);
 MaybeError Check(const FixedJointSettings& settings);

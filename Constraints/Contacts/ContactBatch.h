@@ -20,6 +20,7 @@
 #pragma once
 
 #include <Fulcrum/Constraints/Contacts/ContactRecord.h>
+#include <Fulcrum/Constraints/MassOverride.h>
 #include <Fulcrum/Constraints/Parts/BodyState.h>
 #include <Fulcrum/Constraints/Parts/RowSoftness.h>
 
@@ -85,8 +86,9 @@ struct ContactBatch {
 };
 
 struct ContactPrepareSettings {
-    float impulseScale;      // dt of this substep / dt of the last: scales the warm start
-    float restitutionSpeed;  // m/s
+    float impulseScale;                           // dt of this substep / dt of the last: scales the warm start
+    float restitutionSpeed;                       // m/s
+    const MassOverride* massOverrides = nullptr;  // by record, of those with kMassOverride; null where none has one
 };
 
 struct ContactSolveSettings {

@@ -33,11 +33,11 @@ FULCRUM_FORCE_INLINE void Scatter(const ContactBatch<N, kFixedB>& batch, const T
 
 template <class Real>
 FULCRUM_FORCE_INLINE Vec3<Real> Linear(const Real (&row)[8]) {
-    return VectorAt(row, BodyState::kLinear);
+    return Vec3<Real>(row[BodyState::kLinear], row[BodyState::kLinear + 1], row[BodyState::kLinear + 2]);
 }
 template <class Real>
 FULCRUM_FORCE_INLINE Vec3<Real> Angular(const Real (&row)[8]) {
-    return VectorAt(row, BodyState::kAngular);
+    return Vec3<Real>(row[BodyState::kAngular], row[BodyState::kAngular + 1], row[BodyState::kAngular + 2]);
 }
 
 // Adds sign * M^-1 (F, r x F + T) to a row.

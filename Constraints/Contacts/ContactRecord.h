@@ -23,7 +23,7 @@ struct alignas(32) ContactRecord {
     float friction = 0;           // Coulomb coefficient
     float restitution = 0;        // 0..1
     float twistRadius = 0;        // m: mean distance of the contact patch from its center
-    float surfaceMoves = 0;       // 1: it has a surface velocity
+    float marks = 0;              // the sum of what it has, see Mark
     // Second row: impulses of the last substep.
     float impulse[kMaxPoints] = {0, 0, 0, 0};  // N s along the normal, by point
     float frictionImpulse[3] = {0, 0, 0};      // N s, world axes, on B
@@ -41,7 +41,7 @@ struct alignas(32) ContactRecord {
         kFriction = 4,
         kRestitution = 5,
         kTwistRadius = 6,
-        kSurfaceMoves = 7,
+        kMarks = 7,
         kNormalImpulses = 0,
         kFrictionImpulse = 4,
         kTwistImpulse = 7,
@@ -51,12 +51,20 @@ struct alignas(32) ContactRecord {
         kSurfaceB = 7
     };
 
+    // What few contacts have.
+    enum Mark { kSurfaceVelocity = 1, kMassOverride = 2 };
+    bool Has(Mark mark) const { return (static_cast<int>(marks) & mark) != 0; }
+    void Set(Mark mark, bool has) {
+        const int others = static_cast<int>(marks) & ~mark;
+        marks = static_cast<float>(has ? others | mark : others);
+    }
+
     // B's surface moves so against A's, beyond the motion of the bodies: m/s at the contact's center and rad/s, world
     // axes. Few contacts have one: it has no row of its own but what is spare in those of the first three points, its
     // six numbers in their order.
     static constexpr int kSurfacePoints = 3;
     void SetSurfaceVelocity(const Vector3& linear, const Vector3& angular) {
-        surfaceMoves = linear.isZero(0) && angular.isZero(0) ? 0.0f : 1.0f;
+        Set(kSurfaceVelocity, !(linear.isZero(0) && angular.isZero(0)));
         const float motion[2 * kSurfacePoints] = {linear[0], linear[1], linear[2], angular[0], angular[1], angular[2]};
         for (int i = 0; i < kSurfacePoints; ++i) {
             points[i].surfaceA = motion[2 * i];
@@ -70,7 +78,7 @@ FULCRUM_CHECK_PLACE(ContactRecord, pointCount, ContactRecord::kHead, ContactReco
 FULCRUM_CHECK_PLACE(ContactRecord, friction, ContactRecord::kHead, ContactRecord::kFriction);
 FULCRUM_CHECK_PLACE(ContactRecord, restitution, ContactRecord::kHead, ContactRecord::kRestitution);
 FULCRUM_CHECK_PLACE(ContactRecord, twistRadius, ContactRecord::kHead, ContactRecord::kTwistRadius);
-FULCRUM_CHECK_PLACE(ContactRecord, surfaceMoves, ContactRecord::kHead, ContactRecord::kSurfaceMoves);
+FULCRUM_CHECK_PLACE(ContactRecord, marks, ContactRecord::kHead, ContactRecord::kMarks);
 FULCRUM_CHECK_PLACE(ContactRecord, impulse, ContactRecord::kImpulses, ContactRecord::kNormalImpulses);
 FULCRUM_CHECK_PLACE(ContactRecord, frictionImpulse, ContactRecord::kImpulses, ContactRecord::kFrictionImpulse);
 FULCRUM_CHECK_PLACE(ContactRecord, twistImpulse, ContactRecord::kImpulses, ContactRecord::kTwistImpulse);

@@ -146,17 +146,44 @@ void PrepareBounces(ContactBatch<N, kFixedB>& batch, Wide<N> restitution, const 
     for (Real& impulse : batch.frictionImpulse) impulse = Select(parts, Real(0.0f), impulse);
 }
 
+// Of the marks of records.
+template <int N>
+WideMask<N> HaveSurfaceVelocity(const Wide<N>& marks) {
+    using Real = Wide<N>;
+    constexpr float kAlone = ContactRecord::kSurfaceVelocity,
+                    kBoth = ContactRecord::kSurfaceVelocity | ContactRecord::kMassOverride;
+    return (marks == Real(kAlone)) | (marks == Real(kBoth));
+}
+
+// Scales the inverse masses where contacts have an override. Lanes without one keep every bit.
+template <int N, bool kFixedB>
+[[gnu::noinline, gnu::cold]] void OverrideMasses(ContactBatch<N, kFixedB>& batch, const ContactRecord* records,
+                                                 const MassOverride* overrides) {
+    using Real = Wide<N>;
+    alignas(64) float scales[4][N];
+    for (int i = 0; i < N; ++i) {
+        MassOverride o;
+        if (records[batch.contact[i]].Has(ContactRecord::kMassOverride)) o = overrides[batch.contact[i]];
+        scales[0][i] = o.inverseMassScaleA;
+        scales[1][i] = o.inverseInertiaScaleA;
+        scales[2][i] = o.inverseMassScaleB;
+        scales[3][i] = o.inverseInertiaScaleB;
+    }
+    ScaleMass(batch.inverseA, Real::Load(scales[0]), Real::Load(scales[1]));
+    if constexpr (!kFixedB) ScaleMass(batch.sideB.inverse, Real::Load(scales[2]), Real::Load(scales[3]));
+}
+
 // Adds the surface velocities to those of fixed sides. Lanes without one keep every bit, as they do where no lane of
 // their batch has one.
 template <int N>
-void AddSurfaceMotion(ContactBatch<N, true>& batch, Wide<N> moves, const ContactRecord* records) {
+void AddSurfaceMotion(ContactBatch<N, true>& batch, const Wide<N>& marks, const ContactRecord* records) {
     using Real = Wide<N>;
     const SurfaceMotion<Real> surface = GatherSurfaceMotion(batch, records);
     const Vec3<Real> linear = batch.tangent1 * surface.v1 + batch.tangent2 * surface.v2,
                      angular = batch.normal * surface.spin;
     // What the surface turns with it moves along the arc.
     const Vec3<Real> inwards = Cross<Real>(angular, linear);
-    const auto has = moves > Real(0.0f);
+    const auto has = HaveSurfaceVelocity(marks);
     auto& side = batch.sideB;
     for (int k = 0; k < 3; ++k) {
         side.velocity.linear[k] = Select(has, side.velocity.linear[k] + linear[k], side.velocity.linear[k]);
@@ -175,6 +202,11 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
     const Real zero(0.0f);
     Real head[8], impulses[8];
     GatherRecordRow<N>(batch.contact, records, Record::kHead, head);
+    GatherMass<N>(batch.bodyA, bodies.masses, batch.inverseA);
+    if constexpr (!kFixedB) GatherMass<N>(bodyB, bodies.masses, batch.sideB.inverse);
+    const bool isMarked = HorizontalMax(head[Record::kMarks]) > 0.0f;
+    if (isMarked && settings.massOverrides) [[unlikely]]
+        OverrideMasses(batch, records, settings.massOverrides);
     GatherRecordRow<N>(batch.contact, records, Record::kImpulses, impulses);
     Real& pointCount = head[Record::kPointCount];
     pointCount = Select(pointCount <= Real(static_cast<float>(Record::kMaxPoints)), Max(pointCount, zero), zero);
@@ -182,7 +214,7 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
     const Mat3<Real> rotation = ToMatrix(GatherRotation<N>(batch.bodyA, bodies.poses));
     const Mat3<Real> rotationB = ToMatrix(GatherRotation<N>(bodyB, bodies.poses));
 
-    const Vec3<Real> n = rotation * VectorAt(head, Record::kNormal);
+    const Vec3<Real> n = rotation * VectorAt<Record::kNormal>(head);
     const Vec3<Real> t1 = PerpendicularTo<Real>(n), t2 = Cross<Real>(n, t1);
     batch.normal = n;
     batch.tangent1 = t1;
@@ -191,8 +223,7 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
     batch.twistRadius = head[Record::kTwistRadius];
     batch.pointCount = static_cast<int32_t>(HorizontalMax(pointCount));
     batch.bounces = HorizontalMax(head[Record::kRestitution]) > 0.0f;
-    const bool surfaceMoves = HorizontalMax(head[Record::kSurfaceMoves]) > 0.0f;
-    batch.surfaces = surfaceMoves && !kFixedB ? records : nullptr;
+    batch.surfaces = !kFixedB && isMarked && HaveSurfaceVelocity(head[Record::kMarks]).Any() ? records : nullptr;
     batch.relaxedImpulse = zero;
 
     // Points, halfway between the surfaces, and their center.
@@ -202,8 +233,8 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
         Real p[8];
         GatherRecordRow<N>(batch.contact, records, Record::kPoints + i, p);
         const auto used = pointCount > Real(static_cast<float>(i));
-        const Vec3<Real> onA = rotation * VectorAt(p, Record::kOnA);
-        const Vec3<Real> onB = between + rotationB * VectorAt(p, Record::kOnB);
+        const Vec3<Real> onA = rotation * VectorAt<Record::kOnA>(p);
+        const Vec3<Real> onB = between + rotationB * VectorAt<Record::kOnB>(p);
         const Real separation = Dot<Real>(n, Vec3<Real>(onB - onA));
         points[i] = onA + n * (separation * Real(0.5f));
         batch.rows[i].startSeparation = batch.rows[i].separation = Select(used, separation, zero);
@@ -215,7 +246,6 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
     batch.armA = center;
 
     Responses<Real> responses;
-    GatherMass<N>(batch.bodyA, bodies.masses, batch.inverseA);
     responses.Add(batch.inverseA, batch.armA, n, t1, t2);
     const Vec3<Real> armB = center - between;
     if constexpr (kFixedB) {
@@ -230,7 +260,6 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
     } else {
         for (int i = 0; i < N; ++i) batch.sideB.body[i] = bodyB[i];
         batch.sideB.arm = armB;
-        GatherMass<N>(bodyB, bodies.masses, batch.sideB.inverse);
         responses.Add(batch.sideB.inverse, armB, n, t1, t2);
     }
 
@@ -239,7 +268,7 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
         batch.frictionResponse[k] = responses.friction[3 + k];
         for (int j = 0; j < 3; ++j) batch.coupling[j][k] = responses.coupling[j][k];
     }
-    const Vec3<Real> impulse = VectorAt(impulses, Record::kFrictionImpulse);
+    const Vec3<Real> impulse = VectorAt<Record::kFrictionImpulse>(impulses);
     const Real scale(settings.impulseScale);
     batch.frictionImpulse[0] = Dot<Real>(impulse, t1) * scale;
     batch.frictionImpulse[1] = Dot<Real>(impulse, t2) * scale;
@@ -269,7 +298,7 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
         }
     }
     if constexpr (kFixedB)
-        if (surfaceMoves) AddSurfaceMotion(batch, head[Record::kSurfaceMoves], records);
+        if (isMarked) AddSurfaceMotion(batch, head[Record::kMarks], records);
     const auto finite = FiniteLanes(batch, responses, diagonals);
     if (!finite.All()) KeepLanes(batch, finite);
     if (batch.bounces) PrepareBounces(batch, head[Record::kRestitution], bodyB, bodies, settings);
@@ -282,7 +311,7 @@ void StoreContacts(const ContactBatch<N, kFixedB>& batch, ContactRecord* records
     Wide<N> row[8];
     for (int i = 0; i < ContactRecord::kMaxPoints; ++i)
         row[ContactRecord::kNormalImpulses + i] = i < batch.pointCount ? batch.rows[i].impulse : Wide<N>(0.0f);
-    SetVectorAt<Wide<N>>(row, ContactRecord::kFrictionImpulse, friction);
+    SetVectorAt<ContactRecord::kFrictionImpulse>(row, friction);
     row[ContactRecord::kTwistImpulse] = batch.frictionImpulse[2];
     if (impulseScale != 1.0f)
         for (Wide<N>& x : row) x = x / Wide<N>(impulseScale);

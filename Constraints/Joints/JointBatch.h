@@ -17,6 +17,7 @@
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/JointType.h>
+#include <Fulcrum/Constraints/MassOverride.h>
 #include <Fulcrum/Constraints/Parts/DualAxisPart.h>
 #include <Fulcrum/Constraints/Parts/HingeRotationPart.h>
 #include <Fulcrum/Constraints/Parts/PointPart.h>
@@ -112,6 +113,7 @@ struct JointBatch {
     bool rowsTurnWithA, radial;  // some row of some lane does or is
     bool turning;                // inertias of some lane turn from substep to substep: they are read again
     JointRows<N>* rows;
+    bool overridesMass = false;  // some lane has a MassOverride
 
     InverseMass<Real> massA, massB;
     PointPart<Real> point;
@@ -141,6 +143,16 @@ struct JointBatch {
     Real isDistant;                      // 1: by so much that a lever would be as long as the gap
     Real follows;                        // 0.5: its bodies are pulled, be it by others
     Vec3<Real> pullLinear, pullAngular;  // m/s, rad/s
+
+    // Of a MassOverride; only where `overridesMass`.
+    Real massScaleA, inertiaScaleA, massScaleB, inertiaScaleB;
+
+    void SetMassOverride(int lane, const MassOverride& o) {
+        massScaleA.Set(lane, o.inverseMassScaleA);
+        inertiaScaleA.Set(lane, o.inverseInertiaScaleA);
+        massScaleB.Set(lane, o.inverseMassScaleB);
+        inertiaScaleB.Set(lane, o.inverseInertiaScaleB);
+    }
 };
 
 // Rotation vectors of a step up to this, rad, are put together as rotations, longer ones added.

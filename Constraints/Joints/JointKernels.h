@@ -38,7 +38,7 @@ struct Motion {
         GatherRows<N>(reinterpret_cast<const float* const(&)[N]>(rows), row);
     }
     FULCRUM_FORCE_INLINE Twist<Real> Get() const {
-        return {VectorAt(row, BodyState::kLinear), VectorAt(row, BodyState::kAngular)};
+        return {VectorAt<BodyState::kLinear>(row), VectorAt<BodyState::kAngular>(row)};
     }
     // Lanes of bodies that are not dynamic are written nowhere.
     FULCRUM_FORCE_INLINE void Scatter(const Twist<Real>& motion, int count, uint32_t fixed) {
@@ -46,8 +46,8 @@ struct Motion {
         Scatter(count, fixed);
     }
     FULCRUM_FORCE_INLINE void Set(const Twist<Real>& motion) {
-        SetVectorAt(row, BodyState::kLinear, motion.linear);
-        SetVectorAt(row, BodyState::kAngular, motion.angular);
+        SetVectorAt<BodyState::kLinear>(row, motion.linear);
+        SetVectorAt<BodyState::kAngular>(row, motion.angular);
     }
     FULCRUM_FORCE_INLINE void Scatter(int count, uint32_t fixed) {
         alignas(32) float nowhere[8];
@@ -99,6 +99,18 @@ FULCRUM_FORCE_INLINE void ChangeVelocities(const Batch& batch, BodyState* states
     change(a, b);
     motionA.Scatter(a, batch.count, batch.fixedA);
     motionB.Scatter(b, batch.count, batch.fixedB);
+}
+
+// The masses that the bodies have for these joints. Returns the lanes in which an inertia turns.
+template <int N>
+FULCRUM_FORCE_INLINE auto GatherMasses(JointBatch<N>& batch, const BodyMass* masses) {
+    const auto turns =
+        GatherMass<N>(batch.bodyA, masses, batch.massA) | GatherMass<N>(batch.bodyB, masses, batch.massB);
+    if (batch.overridesMass) {
+        ScaleMass(batch.massA, batch.massScaleA, batch.inertiaScaleA);
+        ScaleMass(batch.massB, batch.massScaleB, batch.inertiaScaleB);
+    }
+    return turns;
 }
 
 template <int N>

@@ -259,20 +259,19 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
     GatherRecordRow<N>(batch.joint, records, JointRecord::kAnchors, head);
     GatherRecordRow<N>(batch.joint, records, JointRecord::kFrames, frames);
     GatherImpulses<N>(batch.joint, records, impulses);
-    const auto turnsA = GatherMass<N>(batch.bodyA, bodies.masses, batch.massA);
-    const auto turnsB = GatherMass<N>(batch.bodyB, bodies.masses, batch.massB);
-    batch.turns = Select(turnsA | turnsB, Real(1.0f), Real(0.0f));
-    batch.turning = (turnsA | turnsB).Any();
+    const auto turns = GatherMasses(batch, bodies.masses);
+    batch.turns = Select(turns, Real(1.0f), Real(0.0f));
+    batch.turning = turns.Any();
     const Vec3<Real> between = GatherOffset<N>(batch.bodyA, batch.bodyB, bodies.poses);
     const Quat<Real> rotationA = GatherRotation<N>(batch.bodyA, bodies.poses),
                      rotationB = GatherRotation<N>(batch.bodyB, bodies.poses);
 
     JointPlace<Real> place;
-    place.armA = WithinReach<Real>(Rotate<Real>(rotationA, VectorAt(head, JointRecord::kAnchorA)));
-    place.armB = WithinReach<Real>(Rotate<Real>(rotationB, VectorAt(head, JointRecord::kAnchorB)));
+    place.armA = WithinReach<Real>(Rotate<Real>(rotationA, VectorAt<JointRecord::kAnchorA>(head)));
+    place.armB = WithinReach<Real>(Rotate<Real>(rotationB, VectorAt<JointRecord::kAnchorB>(head)));
     place.offset = WithinReach<Real>(between + place.armB - place.armA);
-    const Quat<Real> frameA = rotationA * QuaternionAt(frames, JointRecord::kFrameA);
-    const Quat<Real> frameB = rotationB * QuaternionAt(frames, JointRecord::kFrameB);
+    const Quat<Real> frameA = rotationA * QuaternionAt<JointRecord::kFrameA>(frames);
+    const Quat<Real> frameB = rotationB * QuaternionAt<JointRecord::kFrameB>(frames);
     batch.startArmA = place.armA;
     batch.startArmB = place.armB;
     batch.startOffset = place.offset;
@@ -280,8 +279,8 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
     batch.far = false;
     batch.follows = Real(0.0f);
     const Real scale(settings.impulseScale);
-    const Vec3<Real> linearImpulse = VectorAt(impulses, JointRecord::kForce) * scale;
-    const Vec3<Real> angularImpulse = VectorAt(impulses, JointRecord::kTorque) * scale;
+    const Vec3<Real> linearImpulse = VectorAt<JointRecord::kForce>(impulses) * scale;
+    const Vec3<Real> angularImpulse = VectorAt<JointRecord::kTorque>(impulses) * scale;
 
     WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
         if constexpr (linear == LinearLock::Line) {
@@ -391,8 +390,8 @@ void ScatterWrench(const JointBatch<N>& batch, JointRecord* records, int row, co
     using Real = Wide<N>;
     const Real factor(scale);
     Real values[8];
-    SetVectorAt<Real>(values, JointRecord::kForce, wrench.force * factor);
-    SetVectorAt<Real>(values, JointRecord::kTorque, wrench.torque * factor);
+    SetVectorAt<JointRecord::kForce>(values, wrench.force * factor);
+    SetVectorAt<JointRecord::kTorque>(values, wrench.torque * factor);
     values[JointRecord::kWasPulled] = wasPulled;
     values[JointRecord::kSpare] = Real(0.0f);
     ScatterRecordRow<N>(batch.joint, batch.count, records, row, values);

@@ -291,11 +291,11 @@ void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const Solver
     GatherRecordRow<N>(batch.joint, records, JointRecord::kAnchors, anchors);
     GatherImpulses<N>(batch.joint, records, impulses);
     BallPlace<Real> place;
-    const auto armAt = [&](const uint32_t(&body)[N], int anchor) {
-        return WithinReach<Real>(Rotate<Real>(GatherRotation<N>(body, bodies.poses), VectorAt(anchors, anchor)));
+    const auto armAt = [&](const uint32_t(&body)[N], const Vec3<Real>& anchor) {
+        return WithinReach<Real>(Rotate<Real>(GatherRotation<N>(body, bodies.poses), anchor));
     };
-    place.armA = batch.startArmA = armAt(batch.bodyA, JointRecord::kAnchorA);
-    place.armB = batch.startArmB = armAt(batch.bodyB, JointRecord::kAnchorB);
+    place.armA = batch.startArmA = armAt(batch.bodyA, VectorAt<JointRecord::kAnchorA>(anchors));
+    place.armB = batch.startArmB = armAt(batch.bodyB, VectorAt<JointRecord::kAnchorB>(anchors));
     place.offset = batch.startOffset =
         WithinReach<Real>(GatherOffset<N>(batch.bodyA, batch.bodyB, bodies.poses) + place.armB - place.armA);
     FindFar(batch, place.offset, impulses[JointRecord::kWasPulled], settings);
@@ -314,7 +314,7 @@ void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const Solver
     }
     const auto answers = batch.mass.xx + batch.mass.yy + batch.mass.zz > Real(0.0f);
     batch.impulse =
-        ZeroUnless<Real>(answers, Vec3<Real>(VectorAt(impulses, JointRecord::kForce) * Real(settings.impulseScale)));
+        ZeroUnless<Real>(answers, Vec3<Real>(VectorAt<JointRecord::kForce>(impulses) * Real(settings.impulseScale)));
     ForgetWhereNewlyFar(batch, impulses[JointRecord::kWasPulled]);
     SetPush(batch, place.offset, settings);
     NoteLargest<N>(batch.joint, batch.count, Dot<Real>(place.offset, place.offset), findings.linearError,
@@ -366,7 +366,7 @@ void StoreJoints(const BallBatch<N>& batch, JointRecord* records, float dt, floa
     const Real none(0.0f);
     const auto write = [&](int row, const Vec3<Real>& v, const Real& wasPulled) {
         Real values[8] = {none, none, none, none, none, none, none, none};
-        SetVectorAt(values, JointRecord::kForce, v);
+        SetVectorAt<JointRecord::kForce>(values, v);
         values[JointRecord::kWasPulled] = wasPulled;
         ScatterRecordRow<N>(batch.joint, batch.count, records, row, values);
     };

@@ -192,10 +192,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
         AddLockImpulses<kLinear, kAngular>(batch, turnedA, turnedB, -1.0f);
         if (turnRows) AddTurningRows(batch, turnedA, turnedB, -1.0f);
     }
-    if (batch.turning) {
-        GatherMass<N>(batch.bodyA, bodies.masses, batch.massA);
-        GatherMass<N>(batch.bodyB, bodies.masses, batch.massB);
-    }
+    if (batch.turning) GatherMasses(batch, bodies.masses);
     const JointPlace<Real> place = Displace<kLinear, kAngular>(batch, a, b);
     const JointErrors<Real> errors = SetUpParts<kLinear, kAngular>(batch, place);
     SetUpCoupling<kLinear, kAngular>(batch);

@@ -5,6 +5,7 @@
 #include <Fulcrum/Math/Matrix.h>
 
 #include <cstddef>
+#include <type_traits>
 
 namespace fulcrum {
 
@@ -16,17 +17,17 @@ inline constexpr size_t kRowFloats = 8;
                   #member " lies at another place of its row")
 
 // Members of more than one float, from their place on.
-template <class Real>
-FULCRUM_FORCE_INLINE Vec3<Real> VectorAt(const Real (&row)[kRowFloats], int place) {
-    return Vec3<Real>(row[place], row[place + 1], row[place + 2]);
+template <int kPlace, class Real>
+FULCRUM_FORCE_INLINE Vec3<Real> VectorAt(const Real (&row)[kRowFloats]) {
+    return Vec3<Real>(row[kPlace], row[kPlace + 1], row[kPlace + 2]);
 }
-template <class Real>
-FULCRUM_FORCE_INLINE Quat<Real> QuaternionAt(const Real (&row)[kRowFloats], int place) {
-    return {row[place], row[place + 1], row[place + 2], row[place + 3]};
+template <int kPlace, class Real>
+FULCRUM_FORCE_INLINE Quat<Real> QuaternionAt(const Real (&row)[kRowFloats]) {
+    return {row[kPlace], row[kPlace + 1], row[kPlace + 2], row[kPlace + 3]};
 }
-template <class Real>
-FULCRUM_FORCE_INLINE void SetVectorAt(Real (&row)[kRowFloats], int place, const Vec3<Real>& v) {
-    for (int k = 0; k < 3; ++k) row[place + k] = v[k];
+template <int kPlace, class Real>
+FULCRUM_FORCE_INLINE void SetVectorAt(Real (&row)[kRowFloats], const std::type_identity_t<Vec3<Real>>& v) {
+    for (int k = 0; k < 3; ++k) row[kPlace + k] = v[k];
 }
 
 }  // namespace fulcrum

@@ -45,6 +45,7 @@ ContactChange AskAbout(const ContactListener& listener, const ContactView& conta
         change.surfaceVelocity.setZero();
         change.surfaceTurn.setZero();
     }
+    if (!change.massOverride.IsValid()) change.massOverride = {};
     return change;
 }
 
@@ -57,6 +58,8 @@ bool AskListener(WorldState& world, uint32_t index) {
     record.friction = change.friction;
     record.restitution = change.restitution;
     record.SetSurfaceVelocity(change.surfaceVelocity, change.surfaceTurn);
+    record.Set(ContactRecord::kMassOverride, !change.massOverride.IsNone());
+    world.pairs.massOverrides[index] = change.massOverride;
     if (change.ignore) Forget(record);
     return !change.ignore;
 }

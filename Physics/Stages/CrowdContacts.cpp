@@ -95,7 +95,7 @@ void GatherCrowd(WorldState& world, StepState& step) {
 
 void LimitPush(WorldState& world, uint32_t body, float h) {
     const auto& free = world.bodies.unconstrained[body].row;
-    const Vector3 freeV = VectorAt(free, BodyState::kLinear), freeW = VectorAt(free, BodyState::kAngular);
+    const Vector3 freeV = VectorAt<BodyState::kLinear>(free), freeW = VectorAt<BodyState::kAngular>(free);
     Vector3 push = world.bodies.LinearVelocityOf(body) - freeV, spin = world.bodies.AngularVelocityOf(body) - freeW;
     const float fastest = world.settings.contactPushSpeed;
     LimitLength(push, fastest);

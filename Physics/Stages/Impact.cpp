@@ -1,5 +1,6 @@
 #include <Fulcrum/Physics/Stages/Impact.h>
 
+#include <Fulcrum/Constraints/BodyLanes.h>
 #include <Fulcrum/Physics/Stages/BodyLimits.h>
 #include <Fulcrum/Physics/Stages/FreeRotation.h>
 #include <Fulcrum/Physics/Stages/SweepCast.h>
@@ -29,10 +30,14 @@ public:
         for (int s = 0; s < 2; ++s) {
             if (!world.bodies.CanMove(bodies[s])) continue;
             const BodyDynamics& d = world.bodies.dynamics[bodies[s]];
-            side_[s] = {impact.masses[s].InverseInertia(), Vector3::Constant(d.inverseMass)};
+            const MassOverride& o = hit.massOverride;
+            InverseMass<float> inverse{d.inverseMass, impact.masses[s].InverseInertia()};
+            if (s == 0) ScaleMass(inverse, o.inverseMassScaleA, o.inverseInertiaScaleA);
+            else ScaleMass(inverse, o.inverseMassScaleB, o.inverseInertiaScaleB);
+            side_[s] = {inverse.inertia, Vector3::Constant(inverse.mass)};
             Vector3 none = Vector3::Zero();
             d.Lock(side_[s].mass, none);
-            leastResponse_ += kLeastResponse * d.inverseMass;
+            leastResponse_ += kLeastResponse * inverse.mass;
         }
         for (int i = 0; i < hit.pointCount; ++i) {
             slipsBefore_[i] = Slip(i);

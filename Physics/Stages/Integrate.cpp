@@ -33,11 +33,11 @@ struct Rows {
         if constexpr (std::is_same_v<Real, float>) std::copy_n(rows[0], 8, at);
         else GatherRows<kCount>(reinterpret_cast<const float* const(&)[kCount]>(rows), at);
     }
-    Vec3<Real> First() const { return VectorAt(at, BodyState::kLinear); }
-    Vec3<Real> Second() const { return VectorAt(at, BodyState::kAngular); }
+    Vec3<Real> First() const { return VectorAt<BodyState::kLinear>(at); }
+    Vec3<Real> Second() const { return VectorAt<BodyState::kAngular>(at); }
     void Set(const Vec3<Real>& first, const Vec3<Real>& second) {
-        SetVectorAt(at, BodyState::kLinear, first);
-        SetVectorAt(at, BodyState::kAngular, second);
+        SetVectorAt<BodyState::kLinear>(at, first);
+        SetVectorAt<BodyState::kAngular>(at, second);
     }
     void Write(int count) const {
         if constexpr (std::is_same_v<Real, float>) std::copy_n(at, 8, rows[0]);
@@ -152,8 +152,8 @@ FULCRUM_FORCE_INLINE void TurnInertia(BodyStore& bodies, const uint32_t (&index)
     const Rows<Real> pose(index, [&](uint32_t body) { return bodies.poses[body].Row(); });
     const Rows<Real> inertia(index, [&](uint32_t body) { return bodies.dynamics[body].InertiaRow(); });
     Rows<Real> unconstrained(index, [&](uint32_t body) { return bodies.unconstrained[body].row; });
-    const Quat<Real> rotation = RotationFromVector<Real>(turn) * QuaternionAt(pose.at, BodyPose::kRotation);
-    const Mat3<Real> axes = ToMatrix<Real>(rotation * QuaternionAt(inertia.at, BodyDynamics::kPrincipalAxes));
+    const Quat<Real> rotation = RotationFromVector<Real>(turn) * QuaternionAt<BodyPose::kRotation>(pose.at);
+    const Mat3<Real> axes = ToMatrix<Real>(rotation * QuaternionAt<BodyDynamics::kPrincipalAxes>(inertia.at));
     const Vec3<Real> change = AddGyroscopicTorque<Real>(inertia.First(), axes, w, h) - w;
     for (int k = 0; k < 3; ++k) w[k] = Select(feels, Real(w[k] + change[k]), Real(w[k]));
     unconstrained.Set(unconstrained.First(), unconstrained.Second() + change);
@@ -265,7 +265,7 @@ bool IntegrateVelocitiesInLanes(WorldState& world, const Indices& index, int cou
     if (((linearDamping > zero) | (angularDamping > zero)).Any()) return false;
     SubstepVelocity<Lanes> velocity(bodies, index, again);
     const Rows<Lanes> pose(index, [&](uint32_t body) { return bodies.poses[body].Row(); });
-    velocity.own.linear += VectorAt(pose.at, BodyPose::kAcceleration) * Lanes(h);
+    velocity.own.linear += VectorAt<BodyPose::kAcceleration>(pose.at) * Lanes(h);
     if (!(IsWithin(velocity.own.linear, maxLinear) & IsWithin(velocity.own.angular, maxAngular)).All()) return false;
     velocity.Write(count);
     return true;

@@ -12,13 +12,14 @@ using Kind = ConstraintColoring::Kind;
 constexpr uint32_t kColors = ConstraintColoring::kColors;
 
 // Joints of one kind may share a batch: they have the same locks, or are balls (BallBatch.h), of round bodies or of
-// any.
+// any. Balls have the masses that they have.
 enum JointKind : uint32_t { kRoundBall = 9, kBall = 10 };
 uint32_t KindOf(uint32_t kind) { return kind >> 8; }
 bool IsBall(uint32_t kind) { return KindOf(kind) >= kRoundBall; }
 
 uint32_t KindOf(const BodyStore& bodies, const Joint& joint) {
-    if (joint.locks.linear != LinearLock::Point || joint.locks.angular != AngularLock::None || joint.maxRows > 0)
+    if (joint.locks.linear != LinearLock::Point || joint.locks.angular != AngularLock::None || joint.maxRows > 0 ||
+        joint.overridesMass)
         return static_cast<uint32_t>(joint.locks.linear) * 3 + static_cast<uint32_t>(joint.locks.angular);
     const auto isRound = [&](int side) {
         const BodyDynamics& d = bodies.dynamics[joint.body[side]];
@@ -78,12 +79,16 @@ void FillBatch(const BodyStore& bodies, const JointStore& store, JointBatch<N>& 
                std::span<const SortedJoint> joints) {
     FillLanes(bodies, store, batch, batch.joint, joints);
     batch.rowCount = batch.rowRoom = 0;
+    batch.overridesMass = false;
     for (const SortedJoint& sorted : joints) {
         const Joint& joint = store.joints[sorted.joint];
         batch.linear = joint.locks.linear;
         batch.angular = joint.locks.angular;
         batch.rowRoom = std::max(batch.rowRoom, joint.maxRows);
+        batch.overridesMass |= joint.overridesMass;
     }
+    if (batch.overridesMass)
+        for (int lane = 0; lane < N; ++lane) batch.SetMassOverride(lane, store.joints[batch.joint[lane]].massOverride);
 }
 template <int N>
 void FillBatch(const BodyStore& bodies, const JointStore& store, BallBatch<N>& batch,

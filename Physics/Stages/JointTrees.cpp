@@ -13,7 +13,8 @@ constexpr uint32_t kMostSlots = 4096;  // bodies: a tree is solved by one worker
 struct Component {
     std::vector<uint32_t> bodies;
     uint32_t root = kNone;
-    bool anchored = false;  // some joint leads to what does not move
+    bool anchored = false;       // some joint leads to what does not move
+    bool overridesMass = false;  // some joint has other masses than its bodies: a tree has one for each body
 };
 
 bool HasLocks(const Joint& joint) {
@@ -67,6 +68,7 @@ private:
             VisitJoints(body, [&](uint32_t, const Joint& joint, int side) {
                 const uint32_t other = joint.body[1 - side];
                 anchored |= joint.still[1 - side];
+                component.overridesMass |= joint.overridesMass;
                 if (joint.still[1 - side] || seen_[other]) return;
                 seen_[other] = 1;
                 component.bodies.push_back(other);
@@ -81,7 +83,7 @@ private:
     }
 
     void AddTree(const Component& component) {
-        if (component.bodies.size() > kMostSlots) return;
+        if (component.bodies.size() > kMostSlots || component.overridesMass) return;
         for (uint32_t body : component.bodies) {
             const BodyDynamics& d = bodies_.dynamics[body];
             if (d.lockedAxes != LockedAxes::None || d.frozen) return;

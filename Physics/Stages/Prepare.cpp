@@ -128,6 +128,7 @@ public:
         : world_(world), layout_(layout), joints_(effort.joints) {
         contacts_.impulseScale = impulseScale * effort.impulseScale;
         contacts_.restitutionSpeed = world.settings.restitutionSpeed;
+        contacts_.massOverrides = world.pairs.massOverrides.data();
     }
     void Fill(const BatchRange& moving, const BatchRange& fixed, WorkerFindings& findings) const {
         FillRange(world_, layout_.moving, moving, layout_.movingContacts, contacts_, findings);

@@ -34,7 +34,7 @@ void Sleep(WorldState& world, uint32_t candidates, ScratchArena& scratch) {
         if (world.listener)
             world.pairs.active.Visit([&](uint32_t index) {
                 const Pair& pair = world.pairs.pairs[index];
-                if (pair.touching && world.pairs.records[index].surfaceMoves > 0)
+                if (pair.touching && world.pairs.records[index].Has(ContactRecord::kSurfaceVelocity))
                     awake[roots[world.bodies.cold[pair.bodyA].awakePlace]] = 1;
             });
         // Members of sleeping islands, sorted by island.

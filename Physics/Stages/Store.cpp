@@ -84,8 +84,8 @@ void MoveSolved(WorldState& world, Ending& ending, float dt) {
     ending.displacement = Vector3(s.deltaPosition[0], s.deltaPosition[1], s.deltaPosition[2]);
     if (d.crowded) {
         const auto& free = world.bodies.unconstrained[body].row;
-        ending.v = NoFasterThan(ending.v, VectorAt(free, BodyState::kLinear));
-        w = NoFasterThan(w, VectorAt(free, BodyState::kAngular));
+        ending.v = NoFasterThan(ending.v, VectorAt<BodyState::kLinear>(free));
+        w = NoFasterThan(w, VectorAt<BodyState::kAngular>(free));
     }
     const Quaternion before = rotation;
     rotation =

@@ -282,6 +282,7 @@ private:
         hit.friction = change.friction;
         hit.restitution = change.restitution;
         hit.surfaceVelocity = swapped ? Vector3(-change.surfaceVelocity) : change.surfaceVelocity;
+        hit.massOverride = swapped ? change.massOverride.Swapped() : change.massOverride;
         return !change.ignore;
     }
 

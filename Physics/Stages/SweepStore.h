@@ -2,6 +2,7 @@
 // for whoever must see what passed in between. Kept only while a body asks for it. Written by Store and Continuous.
 #pragma once
 
+#include <Fulcrum/Constraints/MassOverride.h>
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Physics/World/BodyStore.h>
 #include <Fulcrum/Physics/World/HeapBytes.h>
@@ -52,6 +53,7 @@ struct SweepHit {
     uint8_t material = 0;  // of the other's palette
     float friction = 0, restitution = 0;
     Vector3 surfaceVelocity = Vector3::Zero();  // m/s, of the other's surface against its body
+    MassOverride massOverride;                  // the body as A, the other as B
     bool isBlocked =
         false;  // neither has continuous collision; the body is cast since it was hit, and waits for the next step
     int pointCount = 0;                               // 0: the cast was not decided; nothing is touched before `time`

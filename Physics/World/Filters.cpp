@@ -70,11 +70,13 @@ void RefilterLayers(WorldState& world, const std::array<uint32_t, 32>& before) {
 void ChangeListener(WorldState& world, const ContactListener* listener) {
     world.listener = listener;
     RemoveAllForbiddenPairs(world);
+    world.pairs.KeepMassOverrides(listener != nullptr);
     // What the last one said of contacts, and of bodies that therefore have no pair.
     for (uint32_t i = 0; i < world.pairs.pairs.size(); ++i) {
         if (!world.pairs.pairs[i].exists) continue;
         CombineMaterials(world, i);
         world.pairs.records[i].SetSurfaceVelocity(Vector3::Zero(), Vector3::Zero());
+        world.pairs.records[i].Set(ContactRecord::kMassOverride, false);
     }
     for (uint32_t body : world.bodies.awake) RequeueColliders(world, body);
 }

@@ -24,14 +24,20 @@ struct Joint {
     bool exists = false;
     bool enabled = true;
     bool collideConnected = false;
+    bool overridesMass = false;      // massOverride is not none
     bool still[2] = {false, false};  // the body is not dynamic, or frozen
     JointPriority priority = JointPriority::Normal;
     float breakForce = 0, breakTorque = 0;
     SolverSettings effort{0, 0, 0};  // 0: the system's
+    MassOverride massOverride;
     uint64_t userData = 0;
 
     bool HasOwnEffort() const {
         return effort.substeps > 0 || effort.velocityIterations > 0 || effort.positionIterations > 0;
+    }
+    void SetMassOverride(const MassOverride& o) {
+        massOverride = o;
+        overridesMass = !o.IsNone();
     }
     int SideOf(uint32_t index) const { return body[0] == index ? 0 : 1; }
 };

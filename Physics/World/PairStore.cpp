@@ -42,6 +42,7 @@ uint32_t PairStore::Allocate() {
         pairs.emplace_back();
         records.emplace_back();
         links_.emplace_back();
+        if (keepsMassOverrides_) massOverrides.emplace_back();
         active.Reserve(index + 1);
         free_.reserve(pairs.capacity());  // so that removing never allocates
     }
@@ -49,6 +50,11 @@ uint32_t PairStore::Allocate() {
     records[index] = {};
     pairs[index].exists = true;
     return index;
+}
+
+void PairStore::KeepMassOverrides(bool keep) {
+    keepsMassOverrides_ = keep;
+    massOverrides.resize(keep ? pairs.size() : 0);
 }
 
 uint32_t PairStore::AddMore(uint32_t of) {
@@ -134,8 +140,8 @@ void PairStore::Remove(uint32_t index) {
 }
 
 size_t HeapBytes(const PairStore& store) {
-    const auto& [pairs, records, active, table, free, links, heads, size] = store;
-    return HeapBytes(pairs, records, active, table, free, links, heads, size);
+    const auto& [pairs, records, massOverrides, active, table, free, links, heads, size, keepsMassOverrides] = store;
+    return HeapBytes(pairs, records, massOverrides, active, table, free, links, heads, size, keepsMassOverrides);
 }
 
 }  // namespace fulcrum

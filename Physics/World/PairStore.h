@@ -7,6 +7,7 @@
 #include <Fulcrum/Collision/Shapes/Shape.h>
 #include <Fulcrum/Constraints/Coloring.h>
 #include <Fulcrum/Constraints/Contacts/ContactRecord.h>
+#include <Fulcrum/Constraints/MassOverride.h>
 
 #include <Fulcrum/Physics/World/IndexSet.h>
 
@@ -43,6 +44,9 @@ class PairStore {
 public:
     std::vector<Pair> pairs;
     std::vector<ContactRecord> records;  // same index
+    // Same index, of records with kMassOverride; empty without a contact listener, which alone sets them.
+    std::vector<MassOverride> massOverrides;
+    void KeepMassOverrides(bool keep);
     IndexSet active;
 
     // Index of the pair of two colliders, or kNone.
@@ -92,6 +96,7 @@ private:
     std::vector<Links> links_;     // by pair
     std::vector<uint32_t> heads_;  // by collider
     uint32_t size_ = 0;
+    bool keepsMassOverrides_ = false;
 };
 
 }  // namespace fulcrum

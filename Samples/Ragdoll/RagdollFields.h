@@ -62,6 +62,14 @@ void Describe(Archive& archive, JointAnchor& s) {
 }
 
 template <class Archive>
+void Describe(Archive& archive, MassOverride& s) {
+    archive.Field("inverseMassScaleA", s.inverseMassScaleA);
+    archive.Field("inverseInertiaScaleA", s.inverseInertiaScaleA);
+    archive.Field("inverseMassScaleB", s.inverseMassScaleB);
+    archive.Field("inverseInertiaScaleB", s.inverseInertiaScaleB);
+}
+
+template <class Archive>
 void DescribeShared(Archive& archive, JointSettings& s) {
     archive.Choice("space", s.space, std::array{"World", "Body"});
     archive.Field("anchorA", s.anchorA);
@@ -74,6 +82,7 @@ void DescribeShared(Archive& archive, JointSettings& s) {
     archive.Field("substeps", s.substeps);
     archive.Field("velocityIterations", s.velocityIterations);
     archive.Field("positionIterations", s.positionIterations);
+    archive.Field("massOverride", s.massOverride);
     archive.Field("userData", s.userData);
 }
 

@@ -41,6 +41,7 @@ namespace fulcrum {
     scene(MovingPlatforms)    \
     scene(ConveyorBelt)       \
     scene(Layers)             \
+    scene(HeavyOnLight)       \
     scene(TrapDoor)           \
     scene(CompoundCity)       \
     scene(Sensors)            \

@@ -65,6 +65,14 @@ TEST(JointValidation, NamesTheFieldThatAllJointsShare) {
     expect([](S& s) { s.substeps = -1; }, ErrorCode::OutOfRange, "substeps");
     expect([](S& s) { s.velocityIterations = 256; }, ErrorCode::OutOfRange, "velocityIterations");
     expect([](S& s) { s.positionIterations = -1; }, ErrorCode::OutOfRange, "positionIterations");
+    expect([](S& s) { s.massOverride.inverseMassScaleA = kNaN; }, ErrorCode::NonFinite,
+           "massOverride.inverseMassScaleA");
+    expect([](S& s) { s.massOverride.inverseMassScaleB = -0.5f; }, ErrorCode::OutOfRange,
+           "massOverride.inverseMassScaleB");
+    expect([](S& s) { s.massOverride.inverseInertiaScaleA = 1.1e6f; }, ErrorCode::OutOfRange,
+           "massOverride.inverseInertiaScaleA");
+    expect([](S& s) { s.massOverride.inverseInertiaScaleB = kEndless; }, ErrorCode::NonFinite,
+           "massOverride.inverseInertiaScaleB");
     expect([](S& s) { s.space = static_cast<JointSpace>(7); }, ErrorCode::OutOfRange, "space");
     expect([](S& s) { s.priority = static_cast<JointPriority>(7); }, ErrorCode::OutOfRange, "priority");
 }

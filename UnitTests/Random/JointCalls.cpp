@@ -52,6 +52,13 @@ JointAnchor RandomAnchor(Values& values, bool inBody) {
     return anchor;
 }
 
+MassOverride RandomMassOverride(Values& values) {
+    MassOverride o;
+    for (float* scale : {&o.inverseMassScaleA, &o.inverseInertiaScaleA, &o.inverseMassScaleB, &o.inverseInertiaScaleB})
+        if (values.Chance(0.5f)) *scale = values.Chance(0.2f) ? 0.0f : values.Setting(0, 2);
+    return o;
+}
+
 void FillCommon(JointSettings& settings, const Twin& twin, Values& values, const CallTargets& targets) {
     settings.bodyA = twin.bodies[targets.bodyA];
     settings.bodyB = twin.bodies[targets.bodyB];
@@ -67,6 +74,7 @@ void FillCommon(JointSettings& settings, const Twin& twin, Values& values, const
     if (values.Chance(0.1f)) settings.breakTorque = values.Setting(10, 1e5f);
     if (values.Chance(0.1f)) settings.substeps = static_cast<int>(values.Below(20));
     if (values.Chance(0.1f)) settings.velocityIterations = static_cast<int>(values.Below(10));
+    if (values.Chance(0.1f)) settings.massOverride = RandomMassOverride(values);
 }
 
 void FillKind(PointJointSettings&, Values&) {}
@@ -156,6 +164,8 @@ FULCRUM_JOINT_CALL(SetTargetOrientation, joints.SetTargetOrientation(id, values.
 FULCRUM_JOINT_CALL(SetEffort,
                    joints.SetEffort(id, {static_cast<int>(values.Below(70)), static_cast<int>(values.Below(5)), 1}))
 
+FULCRUM_JOINT_CALL(SetMassOverride, joints.SetMassOverride(id, RandomMassOverride(values)))
+
 #undef FULCRUM_JOINT_CALL
 
 constexpr CallKind kCalls[] = {
@@ -179,6 +189,7 @@ constexpr CallKind kCalls[] = {
     {"SetFriction", 0.5f, SetFriction},
     {"SetTargetOrientation", 0.5f, SetTargetOrientation},
     {"SetEffort", 0.5f, SetEffort},
+    {"SetMassOverride", 0.5f, SetMassOverride},
 };
 
 }  // namespace

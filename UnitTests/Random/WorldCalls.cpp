@@ -66,15 +66,23 @@ class Nonsense final : public ContactListener {
         change.restitution = std::numeric_limits<float>::quiet_NaN();
         change.surfaceVelocity = Vector3(std::numeric_limits<float>::infinity(), 0, 0);
         change.surfaceTurn = Vector3(0, std::numeric_limits<float>::quiet_NaN(), 0);
+        change.massOverride = {.inverseMassScaleA = -1, .inverseMassScaleB = std::numeric_limits<float>::infinity()};
+    }
+};
+class Heavier final : public ContactListener {
+    void ModifyContact(const ContactView& contact, ContactChange& change) const override {
+        change.ScaleInverseMass(contact, contact.bodyA, static_cast<float>(contact.bodyA.index % 4) * 0.25f);
+        if (contact.bodyB.index % 3 == 0) change.ScaleInverseMass(contact, contact.bodyB, 1.5f);
     }
 };
 
 void SetContactListener(Twin& twin, Values& values, const CallTargets&, Outcome&) {
     static const Ghosts kGhosts;
     static const Belts kBelts;
+    static const Heavier kHeavier;
     static const Nonsense kNonsense;
-    const ContactListener* const listeners[] = {nullptr, &kGhosts, &kBelts, &kNonsense};
-    twin.system->SetContactListener(listeners[values.Below(values.Style().extremeSettings ? 4 : 3)]);
+    const ContactListener* const listeners[] = {nullptr, &kGhosts, &kBelts, &kHeavier, &kNonsense};
+    twin.system->SetContactListener(listeners[values.Below(values.Style().extremeSettings ? 5 : 4)]);
 }
 
 constexpr CallKind kCalls[] = {

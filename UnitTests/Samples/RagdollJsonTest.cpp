@@ -97,6 +97,7 @@ RagdollSettings Everything() {
         joint.substeps = 8;
         joint.velocityIterations = 3;
         joint.positionIterations = 2;
+        joint.massOverride = {0.5f, 0, 2, 0.25f};
         joint.userData = 0xFFFFFFFFFFFFFFFFull;
         settings.parts.push_back(part);
     }
