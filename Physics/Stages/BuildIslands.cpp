@@ -74,8 +74,8 @@ void SortConstraints(const BodyStore& bodies, const ConstraintColoring& coloring
             if (m + f == 0 && (joints.empty() || joints.front().place != key)) continue;
             used |= uint64_t(1) << c;
             ColorBatches color;
-            color.moving = MakeRange(movingFirst, m, layout.movingCount);
-            color.fixed = MakeRange(fixedFirst, f, layout.fixedCount);
+            color.of[kMovingContacts] = MakeRange(movingFirst, m, layout.moving.count);
+            color.of[kFixedContacts] = MakeRange(fixedFirst, f, layout.fixed.count);
             MakeJointBatches(bodies, store, key, hasTrees[g], joints, layout, color);
             layout.colors.push_back(color);
             movingFirst += m;
@@ -90,8 +90,8 @@ void SortConstraints(const BodyStore& bodies, const ConstraintColoring& coloring
             if (c < kColors) sorted[next[keyOf(c, entry)]++] = entry;
         });
     };
-    sort(Kind::Moving, moving, layout.movingContacts);
-    sort(Kind::Fixed, fixed, layout.fixedContacts);
+    sort(Kind::Moving, moving, layout.moving.contacts);
+    sort(Kind::Fixed, fixed, layout.fixed.contacts);
 }
 
 }  // namespace
@@ -100,15 +100,14 @@ void BuildIslands(const BodyStore& bodies, const ConstraintColoring& coloring, f
                   SolverLayout& layout, ScratchArena& scratch) {
     if (layout.version == coloring.Version()) return;
     layout.version = coloring.Version();
-    layout.movingCount = layout.fixedCount = layout.ballCount = layout.jointCount = 0;
+    ForEachBatchList(layout, [](auto& list, BatchKind) { list.count = 0; });
     FindJointTrees(bodies, coloring, joints, exactJointLoad, layout.trees, scratch);
     const Islands islands = FindIslands(bodies, coloring, joints, layout.trees, layout.groups, scratch);
     layout.islands = islands.islands;
     SortBodies(bodies, islands, layout, scratch);
     SortConstraints(bodies, coloring, islands, joints, layout, scratch);
     PlaceTrees(bodies, islands, joints.joints.size(), layout, scratch);
-    GrowTo(layout.moving, layout.movingCount);
-    GrowTo(layout.fixed, layout.fixedCount);
+    ForEachBatchList(layout, [](auto& list, BatchKind) { GrowTo(list.batches, list.count); });
     const ConstraintColoring::Color& overflow = coloring.At(ConstraintColoring::kOverflow);
     layout.overflowMoving.resize(overflow.Of(Kind::Moving).size());
     layout.overflowFixed.resize(overflow.Of(Kind::Fixed).size());

@@ -98,9 +98,9 @@ void FillBatch(const BodyStore& bodies, const JointStore& store, BallBatch<N>& b
 }
 
 template <class Batch>
-Batch& NextBatch(std::vector<Batch>& batches, uint32_t& count) {
-    if (batches.size() == count) batches.resize(count + count / 4 + 1);
-    return batches[count++];
+Batch& NextBatch(BatchList<Batch>& list) {
+    if (list.batches.size() == list.count) list.batches.resize(list.count + list.count / 4 + 1);
+    return list.batches[list.count++];
 }
 
 template <int N>
@@ -139,20 +139,20 @@ std::span<const SortedJoint> SortJoints(const BodyStore& bodies, const Constrain
 
 void MakeJointBatches(const BodyStore& bodies, const JointStore& joints, uint32_t place, bool hasTrees,
                       std::span<const SortedJoint>& sorted, SolverLayout& layout, ColorBatches& color) {
-    color.jointsBegin = layout.jointCount;
-    color.ballsBegin = layout.ballCount;
+    color.of[kJoints].begin = layout.joints.count;
+    color.of[kBalls].begin = layout.balls.count;
     while (!sorted.empty() && sorted.front().place == place) {
         size_t n = 1;
         while (n < kLanes && n < sorted.size() && sorted[n].place == place &&
                KindOf(sorted[n].kind) == KindOf(sorted[0].kind))
             ++n;
         if (IsBall(sorted.front().kind) && !hasTrees)
-            FillBatch(bodies, joints, NextBatch(layout.balls, layout.ballCount), sorted.first(n));
-        else FillBatch(bodies, joints, NextBatch(layout.joints, layout.jointCount), sorted.first(n));
+            FillBatch(bodies, joints, NextBatch(layout.balls), sorted.first(n));
+        else FillBatch(bodies, joints, NextBatch(layout.joints), sorted.first(n));
         sorted = sorted.subspan(n);
     }
-    color.jointsEnd = layout.jointCount;
-    color.ballsEnd = layout.ballCount;
+    color.of[kJoints].end = layout.joints.count;
+    color.of[kBalls].end = layout.balls.count;
 }
 
 void MakeOverflowJoints(const BodyStore& bodies, const JointStore& joints, const ConstraintColoring& coloring,
@@ -166,7 +166,7 @@ void MakeOverflowJoints(const BodyStore& bodies, const JointStore& joints, const
 }
 
 void ShareRows(SolverLayout& layout) {
-    ShareRows(std::span(layout.joints).first(layout.jointCount), layout.jointRows);
+    ShareRows(std::span(layout.joints.batches).first(layout.joints.count), layout.jointRows);
     ShareRows(std::span(layout.overflowJoints), layout.overflowRows);
 }
 

@@ -22,9 +22,9 @@ void PlaceTrees(const BodyStore& bodies, const Islands& islands, size_t jointCou
     };
     std::span<JointPlaceInBatch> places = scratch.Allocate<JointPlaceInBatch>(jointCount);
     std::fill(places.begin(), places.end(), JointPlaceInBatch{});  // balls have none, nor do the trees that they are in
-    for (uint32_t b = 0; b < layout.jointCount; ++b)
-        for (uint32_t lane = 0; lane < static_cast<uint32_t>(layout.joints[b].count); ++lane)
-            places[layout.joints[b].joint[lane]] = {b, lane};
+    for (uint32_t b = 0; b < layout.joints.count; ++b)
+        for (uint32_t lane = 0; lane < static_cast<uint32_t>(layout.joints.batches[b].count); ++lane)
+            places[layout.joints.batches[b].joint[lane]] = {b, lane};
     for (JointTreeSlot& slot : layout.trees.slots)
         if (slot.joint != JointTreeSlot::kNone) slot.place = places[slot.joint];
     for (JointTreeAnchor& anchor : layout.trees.anchors) anchor.place = places[anchor.joint];

@@ -65,16 +65,16 @@ void Fill(WorldState& world, ContactBatch<N, kFixedB>& batch, std::span<const En
     NoteDeepest(batch, findings);
 }
 
-template <class Batch>
-void FillRange(WorldState& world, std::vector<Batch>& batches, const BatchRange& range, std::span<const Entry> contacts,
+template <bool kFixedB>
+void FillRange(WorldState& world, ContactBatchList<kFixedB>& list, const BatchRange& range,
                const ContactPrepareSettings& settings, WorkerFindings& findings) {
-    contacts = contacts.subspan(range.first, range.contacts);
+    std::span<const Entry> contacts = std::span(list.contacts).subspan(range.first, range.contacts);
     for (uint32_t i = range.begin; i < range.end; ++i) {
         const size_t n = std::min(contacts.size(), size_t(kLanes));
         const std::span<const Entry> now = contacts.first(n);
         contacts = contacts.subspan(n);
         Prefetch(world, contacts.first(std::min(contacts.size(), size_t(kLanes))));
-        Fill(world, batches[i], now, settings, findings);
+        Fill(world, list.batches[i], now, settings, findings);
     }
 }
 
@@ -130,42 +130,48 @@ public:
         contacts_.restitutionSpeed = world.settings.restitutionSpeed;
         contacts_.massOverrides = world.pairs.massOverrides.data();
     }
-    void Fill(const BatchRange& moving, const BatchRange& fixed, WorkerFindings& findings) const {
-        FillRange(world_, layout_.moving, moving, layout_.movingContacts, contacts_, findings);
-        FillRange(world_, layout_.fixed, fixed, layout_.fixedContacts, contacts_, findings);
-    }
-    void FillBalls(uint32_t begin, uint32_t end, WorkerFindings& findings) const {
-        for (uint32_t i = begin; i < end; ++i)
-            PrepareJoints(layout_.balls[i], world_.joints.records.data(), world_.bodies.ForSolver(), joints_,
-                          findings.joints);
-    }
-    void FillJoints(uint32_t begin, uint32_t end, WorkerFindings& findings) const {
-        for (uint32_t i = begin; i < end; ++i) FillJoint(layout_.joints[i], findings);
-    }
     void FillGroup(const SolverGroup& group, WorkerFindings& findings) const {
-        for (uint32_t c = group.colorsBegin; c < group.colorsEnd; ++c) {
-            const ColorBatches& color = layout_.colors[c];
-            Fill(color.moving, color.fixed, findings);
-            FillBalls(color.ballsBegin, color.ballsEnd, findings);
-            FillJoints(color.jointsBegin, color.jointsEnd, findings);
-        }
+        for (uint32_t c = group.colorsBegin; c < group.colorsEnd; ++c)
+            ForEachBatchList(
+                layout_, [&](auto& list, BatchKind kind) { FillBatches(list, layout_.colors[c].of[kind], findings); });
+    }
+    void FillPiece(const ColorBatches& color, uint32_t piece, WorkerFindings& findings) const {
+        ForEachBatchList(
+            layout_, [&](auto& list, BatchKind kind) { FillBatches(list, PieceOf(color.of[kind], piece), findings); });
     }
     void FillOverflow(const ConstraintColoring::Color& overflow, WorkerFindings& findings) const {
-        using Kind = ConstraintColoring::Kind;
-        for (size_t i = 0; i < layout_.overflowMoving.size(); ++i)
-            fulcrum::Fill(world_, layout_.overflowMoving[i], std::span(&overflow.Of(Kind::Moving)[i], 1), contacts_,
-                          findings);
-        for (size_t i = 0; i < layout_.overflowFixed.size(); ++i)
-            fulcrum::Fill(world_, layout_.overflowFixed[i], std::span(&overflow.Of(Kind::Fixed)[i], 1), contacts_,
-                          findings);
-        for (JointBatch<1>& batch : layout_.overflowJoints) FillJoint(batch, findings);
+        ForEachOverflowList(layout_, [&](auto& batches) {
+            for (size_t i = 0; i < batches.size(); ++i) FillSingle(batches[i], overflow, i, findings);
+        });
     }
 
 private:
+    template <bool kFixedB>
+    void FillBatches(ContactBatchList<kFixedB>& list, const BatchRange& range, WorkerFindings& findings) const {
+        FillRange(world_, list, range, contacts_, findings);
+    }
+    template <class Batch>
+    void FillBatches(BatchList<Batch>& list, const BatchRange& range, WorkerFindings& findings) const {
+        for (uint32_t i = range.begin; i < range.end; ++i) FillJoints(list.batches[i], findings);
+    }
     template <int N>
-    void FillJoint(JointBatch<N>& batch, WorkerFindings& findings) const {
+    void FillJoints(JointBatch<N>& batch, WorkerFindings& findings) const {
         PrepareJoints(batch, world_.joints.records.data(), world_.joints.types.data(), world_.bodies.ForSolver(),
                       joints_, findings.joints);
+    }
+    template <int N>
+    void FillJoints(BallBatch<N>& batch, WorkerFindings& findings) const {
+        PrepareJoints(batch, world_.joints.records.data(), world_.bodies.ForSolver(), joints_, findings.joints);
+    }
+    // Of the overflow, the i-th of its kind.
+    template <bool kFixedB>
+    void FillSingle(ContactBatch<1, kFixedB>& batch, const ConstraintColoring::Color& overflow, size_t i,
+                    WorkerFindings& findings) const {
+        using Kind = ConstraintColoring::Kind;
+        Fill(world_, batch, std::span(&overflow.Of(kFixedB ? Kind::Fixed : Kind::Moving)[i], 1), contacts_, findings);
+    }
+    void FillSingle(JointBatch<1>& batch, const ConstraintColoring::Color&, size_t, WorkerFindings& findings) const {
+        FillJoints(batch, findings);
     }
 
     WorldState& world_;
@@ -183,10 +189,9 @@ void Prepare(WorldState& world, StepState& step) {
     const SolverGroup& large = layout.groups.front();
     const RowFiller filler(world, layout, EffortOf(world, step, large), step.impulseScale);
     const auto piecesOf = [&](uint32_t c) {
-        const ColorBatches& color = layout.colors[c];
-        return (std::max({color.moving.Count(), color.fixed.Count(), color.JointCount(), color.BallCount()}) + kPiece -
-                1) /
-               kPiece;
+        uint32_t most = 0;
+        for (const BatchRange& range : layout.colors[c].of) most = std::max(most, range.Count());
+        return (most + kPiece - 1) / kPiece;
     };
     uint32_t count = 0;
     for (uint32_t c = large.colorsBegin; c < large.colorsEnd; ++c) count += piecesOf(c);
@@ -197,13 +202,7 @@ void Prepare(WorldState& world, StepState& step) {
     world.jobs->ParallelFor(count, 1, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i) {
             const auto [c, piece] = pieces[i];
-            const ColorBatches& color = layout.colors[c];
-            WorkerFindings& findings = step.findings[range.worker];
-            filler.Fill(PieceOf(color.moving, piece), PieceOf(color.fixed, piece), findings);
-            filler.FillBalls(std::min(color.ballsBegin + piece * kPiece, color.ballsEnd),
-                             std::min(color.ballsBegin + (piece + 1) * kPiece, color.ballsEnd), findings);
-            filler.FillJoints(std::min(color.jointsBegin + piece * kPiece, color.jointsEnd),
-                              std::min(color.jointsBegin + (piece + 1) * kPiece, color.jointsEnd), findings);
+            filler.FillPiece(layout.colors[c], piece, step.findings[range.worker]);
         }
     });
     world.jobs->ParallelFor(static_cast<uint32_t>(layout.groups.size()) - 1, 1, [&](JobRange range) {
@@ -217,8 +216,7 @@ void Prepare(WorldState& world, StepState& step) {
     FindDeepest(world, step);
     FindWorstJoints(world, step);
     step.report.colors = layout.colorCount;
-    step.report.overflowConstraints = static_cast<uint32_t>(layout.overflowMoving.size() + layout.overflowFixed.size() +
-                                                            layout.overflowJoints.size());
+    step.report.overflowConstraints = static_cast<uint32_t>(layout.OverflowCount());
 }
 
 }  // namespace fulcrum

@@ -53,12 +53,14 @@ struct Phase {
     uint16_t color;  // of the large group, from 0; the number of its colors means the overflow
 };
 
-// Batches are streamed: the next one is on its way while this one is solved.
-template <class Batch>
-FULCRUM_FORCE_INLINE void Prefetch(const Batch& batch) {
+// Contacts of moving bodies are streamed: the next batch is on its way while this one is solved.
+FULCRUM_FORCE_INLINE void Prefetch(const ContactBatch<kLanes, false>& batch) {
+    using Batch = ContactBatch<kLanes, false>;
     const char* bytes = reinterpret_cast<const char*>(&batch);
     for (size_t line = 0; line < offsetof(Batch, bounceSpeed); line += 64) __builtin_prefetch(bytes + line);
 }
+template <class Batch>
+FULCRUM_FORCE_INLINE void Prefetch(const Batch&) {}
 
 bool IsOverBodies(Verb verb) {
     return verb == Verb::IntegrateVelocities || verb == Verb::ClearPulls || verb == Verb::IntegratePoses;
@@ -122,9 +124,9 @@ private:
             const uint32_t count = std::min(kBodiesPerBlock, large.bodiesEnd - begin);
             RunBodies(phase.verb, phase.substep, std::span(layout_.bodies).subspan(begin, count), findings);
         } else if (phase.color == large.colorsEnd - large.colorsBegin) {
-            for (auto& batch : layout_.overflowJoints) RunBatch(phase.verb, phase.substep, batch);
-            for (auto& batch : layout_.overflowMoving) RunBatch(phase.verb, phase.substep, batch);
-            for (auto& batch : layout_.overflowFixed) RunBatch(phase.verb, phase.substep, batch);
+            ForEachOverflowList(layout_, [&](auto& batches) {
+                for (auto& batch : batches) RunBatch(phase.verb, phase.substep, batch);
+            });
         } else {
             const ColorBatches& color = layout_.colors[large.colorsBegin + phase.color];
             RunBatches(phase.verb, phase.substep, color, block * kBatchesPerBlock,
@@ -141,7 +143,7 @@ private:
 
     // What the trees of a group do before its batches take their turn.
     void RunTrees(const SolverGroup& group, Verb verb, uint8_t substep) {
-        JointBatch<kLanes>* batches = layout_.joints.data();
+        JointBatch<kLanes>* batches = layout_.joints.batches.data();
         BodyState* states = world_.bodies.states.data();
         const std::span<JointBatch<kLanes>> own = JointBatchesOf(group);
         const auto forTrees = [&](auto&& run) {
@@ -194,28 +196,24 @@ private:
     // Those of a group's colors lie one after the other.
     std::span<JointBatch<kLanes>> JointBatchesOf(const SolverGroup& group) const {
         if (group.colorsBegin == group.colorsEnd) return {};
-        const uint32_t begin = layout_.colors[group.colorsBegin].jointsBegin,
-                       end = layout_.colors[group.colorsEnd - 1].jointsEnd;
-        return std::span(layout_.joints).subspan(begin, end - begin);
+        const uint32_t begin = layout_.colors[group.colorsBegin].of[kJoints].begin,
+                       end = layout_.colors[group.colorsEnd - 1].of[kJoints].end;
+        return std::span(layout_.joints.batches).subspan(begin, end - begin);
     }
 
-    // Batches [begin, end) of a color: balls, other joints, moving contacts, fixed ones.
+    // Batches [begin, end) of a color, kind after kind.
     void RunBatches(Verb verb, uint8_t substep, const ColorBatches& color, uint32_t begin, uint32_t end) {
-        const uint32_t balls = color.BallCount(), joints = balls + color.JointCount(),
-                       contacts = joints + color.moving.Count();
-        for (uint32_t i = begin; i < end; ++i) {
-            if (i < balls) {
-                RunBatch(verb, substep, layout_.balls[color.ballsBegin + i]);
-            } else if (i < joints) {
-                RunBatch(verb, substep, layout_.joints[color.jointsBegin + i - balls]);
-            } else if (i < contacts) {
-                const uint32_t batch = color.moving.begin + i - joints;
-                if (i + 1 < contacts) Prefetch(layout_.moving[batch + 1]);
-                RunBatch(verb, substep, layout_.moving[batch]);
-            } else {
-                RunBatch(verb, substep, layout_.fixed[color.fixed.begin + i - contacts]);
+        uint32_t first = 0;  // of the kind, among all of the color
+        ForEachBatchList(layout_, [&](auto& list, BatchKind kind) {
+            const BatchRange& range = color.of[kind];
+            const uint32_t last = first + range.Count();
+            for (uint32_t i = std::max(begin, first); i < std::min(end, last); ++i) {
+                const uint32_t batch = range.begin + i - first;
+                if (i + 1 < last) Prefetch(list.batches[batch + 1]);
+                RunBatch(verb, substep, list.batches[batch]);
             }
-        }
+            first = last;
+        });
     }
 
     template <int N, bool kFixedB>
@@ -346,7 +344,7 @@ std::span<const Verb> LoopOf(const SolverSettings& settings, bool bounces, bool 
 // The same for the large group: a phase per color.
 std::span<const Phase> PhasesOf(std::span<const Verb> verbs, const SolverLayout& layout, ScratchArena& scratch) {
     const SolverGroup& large = layout.groups.front();
-    const size_t colors = large.colorsEnd - large.colorsBegin + (layout.HasOverflow() ? 1u : 0u);
+    const size_t colors = large.colorsEnd - large.colorsBegin + (layout.OverflowCount() > 0 ? 1u : 0u);
     if (large.bodiesBegin == large.bodiesEnd) return {};
     std::span<Phase> phases = scratch.Allocate<Phase>(verbs.size() * std::max<size_t>(colors, 1));
     size_t n = 0;
@@ -362,15 +360,20 @@ std::span<const Phase> PhasesOf(std::span<const Verb> verbs, const SolverLayout&
 
 // Whether joints of the group are far apart.
 bool PullsJoints(const SolverLayout& layout, const SolverGroup& group) {
-    const auto isFar = [](const auto& batch) { return batch.far; };
-    for (uint32_t c = group.colorsBegin; c < group.colorsEnd; ++c) {
-        const ColorBatches& color = layout.colors[c];
-        if (std::ranges::any_of(std::span(layout.balls).subspan(color.ballsBegin, color.BallCount()), isFar))
-            return true;
-        if (std::ranges::any_of(std::span(layout.joints).subspan(color.jointsBegin, color.JointCount()), isFar))
-            return true;
-    }
-    return &group == &layout.groups.front() && std::ranges::any_of(layout.overflowJoints, isFar);
+    const auto isAnyFar = [](const auto& batches) {
+        if constexpr (requires { batches[0].far; })
+            return std::ranges::any_of(batches, [](const auto& batch) { return batch.far; });
+        return false;
+    };
+    bool far = false;
+    for (uint32_t c = group.colorsBegin; c < group.colorsEnd; ++c)
+        ForEachBatchList(layout, [&](const auto& list, BatchKind kind) {
+            const BatchRange& range = layout.colors[c].of[kind];
+            far = far || isAnyFar(std::span(list.batches).subspan(range.begin, range.Count()));
+        });
+    if (&group == &layout.groups.front())
+        ForEachOverflowList(layout, [&](const auto& batches) { far = far || isAnyFar(batches); });
+    return far;
 }
 
 // Runs the verbs that loopOf(effort, whether joints are pulled) names over every group. far: some joints are far apart,

@@ -5,12 +5,12 @@
 namespace fulcrum {
 
 size_t HeapBytes(const SolverLayout& layout) {
-    const auto& [groups, colors, bodies, movingContacts, fixedContacts, moving, fixed, overflowMoving, overflowFixed,
-                 balls, joints, overflowJoints, jointRows, overflowRows, listedJoints, jointVersion, trees,
-                 treesByGroup, movingCount, fixedCount, ballCount, jointCount, colorCount, islands, version] = layout;
-    return HeapBytes(groups, colors, bodies, movingContacts, fixedContacts, moving, fixed, overflowMoving,
-                     overflowFixed, balls, joints, overflowJoints, jointRows, overflowRows, listedJoints, jointVersion,
-                     trees, treesByGroup, movingCount, fixedCount, ballCount, jointCount, colorCount, islands, version);
+    const auto& [groups, colors, bodies, balls, joints, moving, fixed, overflowJoints, overflowMoving, overflowFixed,
+                 jointRows, overflowRows, listedJoints, jointVersion, trees, treesByGroup, colorCount, islands,
+                 version] = layout;
+    return HeapBytes(groups, colors, bodies, balls, joints, moving, fixed, overflowJoints, overflowMoving,
+                     overflowFixed, jointRows, overflowRows, listedJoints, jointVersion, trees, treesByGroup,
+                     colorCount, islands, version);
 }
 
 }  // namespace fulcrum

@@ -26,7 +26,10 @@ struct SolverGroup {
     bool IsOwn() const { return HasTrees() || !(effort == SolverSettings{0, 0, 0}); }
 };
 
-// Contacts [first, first + contacts) of a list, in the batches [begin, end).
+// What a color is solved in: kinds of batches, in this order.
+enum BatchKind : uint32_t { kBalls, kJoints, kMovingContacts, kFixedContacts, kBatchKinds };
+
+// Batches [begin, end) of a kind; of contacts, those that hold [first, first + contacts) of its list.
 struct BatchRange {
     uint32_t first = 0, contacts = 0;
     uint32_t begin = 0, end = 0;
@@ -34,13 +37,33 @@ struct BatchRange {
 };
 
 struct ColorBatches {
-    BatchRange moving, fixed;
-    uint32_t jointsBegin = 0, jointsEnd = 0;  // batches
-    uint32_t ballsBegin = 0, ballsEnd = 0;    // likewise, of ball joints
-    uint32_t JointCount() const { return jointsEnd - jointsBegin; }
-    uint32_t BallCount() const { return ballsEnd - ballsBegin; }
-    uint32_t Count() const { return BallCount() + JointCount() + moving.Count() + fixed.Count(); }
+    BatchRange of[kBatchKinds];
+    uint32_t Count() const {
+        uint32_t count = 0;
+        for (const BatchRange& range : of) count += range.Count();
+        return count;
+    }
 };
+
+// The batches of a kind, by group and color.
+template <class Batch>
+struct BatchList {
+    std::vector<Batch> batches;  // as many as were ever in use
+    uint32_t count = 0;          // in use
+};
+template <class Batch>
+size_t HeapBytes(const BatchList<Batch>& list) {
+    return list.batches.capacity() * sizeof(Batch);
+}
+template <bool kFixedB>
+struct ContactBatchList : BatchList<ContactBatch<kLanes, kFixedB>> {
+    std::vector<ConstraintColoring::Entry> contacts;  // by group and color
+};
+template <bool kFixedB>
+size_t HeapBytes(const ContactBatchList<kFixedB>& list) {
+    return HeapBytes(static_cast<const BatchList<ContactBatch<kLanes, kFixedB>>&>(list)) +
+           list.contacts.capacity() * sizeof(ConstraintColoring::Entry);
+}
 
 // A colored joint. Batches have joints of the same locks, and best of as many rows.
 struct ListedJoint {
@@ -55,28 +78,51 @@ struct SolverLayout {
     std::vector<SolverGroup> groups;  // empty: nothing to solve
     std::vector<ColorBatches> colors;
     std::vector<uint32_t> bodies;  // dynamic ones that a constraint touches, by group
-    std::vector<ConstraintColoring::Entry> movingContacts, fixedContacts;  // by group and color
-    std::vector<ContactBatch<kLanes, false>> moving;
-    std::vector<ContactBatch<kLanes, true>> fixed;
-    std::vector<ContactBatch<1, false>> overflowMoving;  // of the first group: solved one by one, at last
-    std::vector<ContactBatch<1, true>> overflowFixed;
-    std::vector<BallBatch<kLanes>> balls;
-    std::vector<JointBatch<kLanes>> joints;
+    BatchList<BallBatch<kLanes>> balls;
+    BatchList<JointBatch<kLanes>> joints;
+    ContactBatchList<false> moving;
+    ContactBatchList<true> fixed;
+    // Of the first group: solved one by one, at last.
     std::vector<JointBatch<1>> overflowJoints;
+    std::vector<ContactBatch<1, false>> overflowMoving;
+    std::vector<ContactBatch<1, true>> overflowFixed;
     std::vector<JointRows<kLanes>> jointRows;  // room for the batches' rows
     std::vector<JointRows<1>> overflowRows;
     std::vector<ListedJoint> listedJoints;  // in order
     uint64_t jointVersion = 0;              // of the coloring that this list was made from
     JointTrees trees;
-    std::vector<uint32_t> treesByGroup;                                       // indices of trees
-    uint32_t movingCount = 0, fixedCount = 0, ballCount = 0, jointCount = 0;  // batches in use
-    uint32_t colorCount = 0;                                                  // colors in use
+    std::vector<uint32_t> treesByGroup;  // indices of trees
+    uint32_t colorCount = 0;             // colors in use
     uint32_t islands = 0;
     uint64_t version = 0;  // of the coloring that this was made from
 
-    bool HasJoints() const { return ballCount + jointCount > 0 || !overflowJoints.empty(); }
-    bool HasOverflow() const { return !overflowMoving.empty() || !overflowFixed.empty() || !overflowJoints.empty(); }
+    bool HasJoints() const { return balls.count + joints.count > 0 || !overflowJoints.empty(); }
+    size_t OverflowCount() const;  // of constraints
 };
+
+// Calls f(list, BatchKind) for each kind of batch. A new kind is an enumerator, a list and a line here; what stages do
+// with it are overloads for its batches.
+template <class Layout, class F>
+void ForEachBatchList(Layout& layout, F&& f) {
+    f(layout.balls, kBalls);
+    f(layout.joints, kJoints);
+    f(layout.moving, kMovingContacts);
+    f(layout.fixed, kFixedContacts);
+}
+
+// Calls f(batches) for each kind of what fitted no color, in the order in which it is solved.
+template <class Layout, class F>
+void ForEachOverflowList(Layout& layout, F&& f) {
+    f(layout.overflowJoints);
+    f(layout.overflowMoving);
+    f(layout.overflowFixed);
+}
+
+inline size_t SolverLayout::OverflowCount() const {
+    size_t count = 0;
+    ForEachOverflowList(*this, [&](const auto& batches) { count += batches.size(); });
+    return count;
+}
 
 size_t HeapBytes(const SolverLayout& layout);
 

@@ -240,33 +240,26 @@ void StoreAll(WorldState& world, const std::vector<Batch>& batches, uint32_t beg
 // Groups lie one after the other: those without an effort of their own are stored together.
 void StoreImpulses(WorldState& world, StepState& step) {
     const SolverLayout& layout = step.solver;
-    uint32_t moving = 0, fixed = 0, balls = 0, joints = 0;
-    const auto storeTo = [&](uint32_t movingEnd, uint32_t fixedEnd, uint32_t ballsEnd, uint32_t jointsEnd,
-                             float impulseScale) {
-        StoreAll(world, layout.moving, moving, movingEnd, step.dt, impulseScale);
-        StoreAll(world, layout.fixed, fixed, fixedEnd, step.dt, impulseScale);
-        StoreAll(world, layout.balls, balls, ballsEnd, step.dt, impulseScale);
-        StoreAll(world, layout.joints, joints, jointsEnd, step.dt, impulseScale);
-        moving = movingEnd;
-        fixed = fixedEnd;
-        balls = ballsEnd;
-        joints = jointsEnd;
+    uint32_t stored[kBatchKinds] = {};
+    const auto storeTo = [&](auto&& endOf, float impulseScale) {
+        ForEachBatchList(layout, [&](const auto& list, BatchKind kind) {
+            const uint32_t end = endOf(list, kind);
+            StoreAll(world, list.batches, stored[kind], end, step.dt, impulseScale);
+            stored[kind] = end;
+        });
     };
     for (const SolverGroup& group : layout.groups) {
         if (group.effort == SolverSettings{0, 0, 0} || group.colorsBegin == group.colorsEnd) continue;
         const ColorBatches& first = layout.colors[group.colorsBegin];
         const ColorBatches& last = layout.colors[group.colorsEnd - 1];
-        storeTo(first.moving.begin, first.fixed.begin, first.ballsBegin, first.jointsBegin, 1.0f);
-        storeTo(last.moving.end, last.fixed.end, last.ballsEnd, last.jointsEnd,
+        storeTo([&](const auto&, BatchKind kind) { return first.of[kind].begin; }, 1.0f);
+        storeTo([&](const auto&, BatchKind kind) { return last.of[kind].end; },
                 EffortOf(world, step, group).impulseScale);
     }
-    storeTo(layout.movingCount, layout.fixedCount, layout.ballCount, layout.jointCount, 1.0f);
-    const auto storeOverflow = [&](const auto& batches) {
+    storeTo([](const auto& list, BatchKind) { return list.count; }, 1.0f);
+    ForEachOverflowList(layout, [&](const auto& batches) {
         StoreAll(world, batches, 0, static_cast<uint32_t>(batches.size()), step.dt, 1.0f);
-    };
-    storeOverflow(layout.overflowMoving);
-    storeOverflow(layout.overflowFixed);
-    storeOverflow(layout.overflowJoints);
+    });
 }
 
 // Serial, in the order of the joints.
