@@ -5,9 +5,9 @@
 #include <Fulcrum/Constraints/Joints/JointType.h>
 #include <Fulcrum/Constraints/Joints/PathJoint.h>
 #include <Fulcrum/Constraints/Parts/SwingTwist.h>
+#include <Fulcrum/Math/Function.h>
 #include <Fulcrum/Physics/Settings.h>
 
-#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -161,7 +161,7 @@ struct WheelJointSettings : JointSettings {
 
 // A constraint of the user's own.
 struct CustomJointSettings : JointSettings {
-    std::function<std::unique_ptr<JointType>()> make;  // not empty; called once a joint, gives a type
+    Function<std::unique_ptr<JointType>()> make;  // not empty; called once a joint, gives a type
 };
 
 // Calls a macro with the name of every kind above, without JointSettings.
