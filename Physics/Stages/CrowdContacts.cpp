@@ -34,7 +34,7 @@ float SeparationOf(const WorldState& world, uint32_t index, const Vector3& norma
 }
 
 // Moves what the workers noted into one list, sorted: the same for any number of threads.
-void Gather(std::vector<WorkerFindings>& workers, std::vector<uint32_t> WorkerFindings::*list,
+void Gather(std::span<WorkerFindings> workers, std::vector<uint32_t> WorkerFindings::*list,
             std::vector<uint32_t>& all) {
     all.clear();
     for (WorkerFindings& findings : workers) {
@@ -84,13 +84,13 @@ void NoteOverlap(const WorldState& world, uint32_t index, const RelativePose& bI
         if (isCrowded(body)) findings.crowdedOverlaps.push_back(body);
 }
 
-void GatherCrowd(WorldState& world, StepState& step) {
-    for (const uint32_t body : step.crowded) world.bodies.dynamics[body].crowded = false;
-    Gather(step.findings, &WorkerFindings::crowdedOverlaps, step.crowded);
-    for (const DispersingBody& dispersing : step.dispersing) step.crowded.push_back(dispersing.body);
-    for (const uint32_t body : step.crowded) world.bodies.dynamics[body].crowded = true;
-    Gather(step.findings, &WorkerFindings::deepOverlaps, step.deepOverlaps);
-    if (MostRepeated(step.deepOverlaps) < kManyOverlaps) step.deepOverlaps.clear();
+void GatherCrowd(BodyStore& bodies, CrowdState& crowd, std::span<WorkerFindings> workers) {
+    for (const uint32_t body : crowd.crowded) bodies.dynamics[body].crowded = false;
+    Gather(workers, &WorkerFindings::crowdedOverlaps, crowd.crowded);
+    for (const DispersingBody& dispersing : crowd.dispersing) crowd.crowded.push_back(dispersing.body);
+    for (const uint32_t body : crowd.crowded) bodies.dynamics[body].crowded = true;
+    Gather(workers, &WorkerFindings::deepOverlaps, crowd.deepOverlaps);
+    if (MostRepeated(crowd.deepOverlaps) < kManyOverlaps) crowd.deepOverlaps.clear();
 }
 
 void LimitPush(WorldState& world, uint32_t body, float h) {

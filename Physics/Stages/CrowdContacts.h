@@ -18,8 +18,8 @@ RelativePose WithDistinctCenters(const WorldState& world, const Pair& pair, cons
 // Notes in `findings` which bodies of a pair overlap deeply, and which crowded ones overlap at all; `bInA` is that of
 // the shapes.
 void NoteOverlap(const WorldState& world, uint32_t pair, const RelativePose& bInA, WorkerFindings& findings);
-// Gathers what the workers noted into WorldState::deepOverlaps and crowded. One thread.
-void GatherCrowd(WorldState& world, StepState& step);
+// Gathers what the workers noted into `crowd`, and marks the crowded bodies. One thread.
+void GatherCrowd(BodyStore& bodies, CrowdState& crowd, std::span<WorkerFindings> workers);
 
 // Limits the velocity with which a crowded body is about to move for h seconds: contacts and joints change it by no
 // more than contactPushSpeed, and it is not pressed into what does not move, whose soft contacts would give way to the

@@ -185,7 +185,7 @@ void FinishEnding(WorldState& world, Ending& ending, const StepState& step, Work
         return Stop(world, body, findings);
     BodyState& state = bodies.states[body];
     state = {.marks = state.marks};
-    if (d.dispersing) v = OwnVelocity(world, step.dispersing, body, v, step.dt);
+    if (d.dispersing) v = OwnVelocity(world, step.crowd.dispersing, body, v, step.dt);
     findings.clamped += LimitSpeeds(world, body, v, w);
     bodies.SetVelocity(body, v, w);
     bodies.MoveCenter(body, ending.displacement, ending.turn.rotation);
