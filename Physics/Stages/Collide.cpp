@@ -62,7 +62,7 @@ float TurningMotion(const WorldState& world, const Pair& pair, float dt) {
     return ofA + angle * std::min(pair.shapeB->OuterRadius(), Length(between) + pair.shapeA->OuterRadius());
 }
 
-// m: farther ahead than this the Continuous stage sees to the pair.
+// m: contacts farther ahead than this are left to the Continuous stage.
 float MotionBeforeCast(const WorldState& world, const Pair& pair) {
     float motion = std::numeric_limits<float>::infinity();
     if (world.bodies.dynamics[pair.bodyA].continuous)
@@ -147,8 +147,8 @@ void CollideActivated(WorldState& world, float dt, PairUpdates& updates, std::sp
     });
 }
 
-// Wakes the sleeping bodies that were touched. Returns whether there are any.
-bool WakeTouched(WorldState& world, std::span<PairChange> changes) {
+// Wakes the sleeping bodies that are to wake. Returns whether there are any.
+bool WakeSleepers(WorldState& world, std::span<PairChange> changes) {
     bool woke = false;
     VisitChanges(changes, [&](uint32_t index) {
         if (changes[index] != PairChange::WakesOther) return;
@@ -168,7 +168,7 @@ void Collide(WorldState& world, float dt, PairUpdates& updates, CrowdState& crow
     CollideActive(world, dt, updates.changes, workers);
     AddMoreManifolds(world, dt, updates, workers);
     // What wakes searches for pairs of its own at once: what is hit must not lose its support for a step.
-    while (WakeTouched(world, updates.changes)) {
+    while (WakeSleepers(world, updates.changes)) {
         FindPairs(world, updates, crowd, workers, scratch);
         if (updates.activated.empty()) break;
         CollideActivated(world, dt, updates, workers);

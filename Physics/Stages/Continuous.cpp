@@ -1,4 +1,4 @@
-// Continuous collision: what moved far in this step is cast along its way. Where it hits, it bounces there and then,
+// Continuous collision: what moved far in this step is cast along its path. Where it hits, it bounces there and then,
 // and goes on with what is left of the step. In rounds: all casts in parallel; then the hits in the order of their
 // times, as long as both bodies' sweeps still are those that were cast (ResolveHits.h); what changed its sweep, or lost
 // its partner, is cast again.
@@ -14,7 +14,7 @@ namespace fulcrum {
 
 namespace {
 
-// Whoever hits something in each of so many rounds stays where it hit last until the next step.
+// A body that hits something in each of so many rounds stays where it hit last until the next step.
 constexpr int kRounds = 16;
 
 // m: a body with continuous collision that moves less in a step is not cast.
@@ -28,7 +28,7 @@ float FreeMotionOf(const WorldState& world, uint32_t body) {
 }
 
 // Whether the fat bounds of a body's colliders, which reach ahead by the velocity that it had when the step began, hold
-// all its way. Those that do not are noted, to be enlarged.
+// its whole path. Those that do not are noted, to be enlarged.
 bool StaysInBounds(const WorldState& world, uint32_t body, const Vector3& moved, float dt, WorkerFindings& findings) {
     const float* a = world.bodies.poses[body].acceleration;
     const float slack = 0.5f * world.settings.speculativeDistance;
@@ -59,7 +59,7 @@ void LookAtBody(const WorldState& world, SweepStore& sweeps, uint32_t body, Work
     sweeps.searchBy[body] = stays && !turns ? SearchBy::Pairs : SearchBy::Trees;
 }
 
-// What the solver moved elsewhere than its bounds foresaw is given bounds about its whole way, so that the trees find
+// What the solver moved elsewhere than its bounds foresaw is given bounds about its whole path, so that the trees find
 // it there.
 void EnlargeBounds(WorldState& world, std::span<WorkerFindings> workers) {
     std::vector<uint32_t>& moved = world.colliders.moved;

@@ -108,7 +108,7 @@ void ForgetStopped(WorldState& world, std::vector<DispersingBody>& all) {
 
 // Floors, walls and kinematic bodies that a body without a place touches reflect its direction.
 void Reflect(const WorldState& world, DispersingBody& dispersing) {
-    VisitFixedContacts(world, dispersing.body, [&](uint32_t pair) {
+    VisitImmovableContacts(world, dispersing.body, [&](uint32_t pair) {
         const Vector3 normal = ContactNormal(world, pair);
         const float into = Dot<float>(normal, dispersing.direction);
         if (into > 0) dispersing.direction -= normal * (2 * into);
@@ -175,8 +175,7 @@ void StartDispersing(WorldState& world, std::vector<DispersingBody>& all, std::v
         dispersing.startStep = world.step;
         all.push_back(dispersing);
     }
-    std::sort(all.begin(), all.end(),
-              [](const DispersingBody& a, const DispersingBody& b) { return a.body < b.body; });
+    std::sort(all.begin(), all.end(), [](const DispersingBody& a, const DispersingBody& b) { return a.body < b.body; });
 }
 
 void PushDispersing(WorldState& world, std::vector<DispersingBody>& all, float dt) {
@@ -201,14 +200,13 @@ Vector3 OwnVelocity(const WorldState& world, std::span<const DispersingBody> all
 }
 
 // Those that started together end together. A body whose time at its place is over ends by itself once it overlaps
-// nobody.
+// no other.
 void EndDispersing(WorldState& world, std::vector<DispersingBody>& all, ScratchArena& scratch) {
     if (all.empty()) return;
     const JointedGroups groups(world, scratch);
     const std::span<uint8_t> overlaps = scratch.Allocate<uint8_t>(all.size());
     world.jobs->ParallelFor(static_cast<uint32_t>(overlaps.size()), 16, [&](JobRange range) {
-        for (uint32_t i = range.begin; i < range.end; ++i)
-            overlaps[i] = OverlapsAnother(world, groups, all[i].body);
+        for (uint32_t i = range.begin; i < range.end; ++i) overlaps[i] = OverlapsAnother(world, groups, all[i].body);
     });
     const std::map<uint64_t, StartedTogether> together = GroupByStart(world, all, groups, overlaps);
     for (size_t i = 0; i < overlaps.size(); ++i) {

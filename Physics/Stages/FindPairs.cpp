@@ -49,7 +49,7 @@ void VisitNeighbors(const WorldState& world, uint32_t index, const Visit& visit)
     const uint32_t layers = world.settings.layerCollides[world.bodies.dynamics[self.body].layer];
     if ((layers & store.movingLayers) && !world.bodies.dynamics[self.body].dispersing)
         store.movingTree.Query(self.fat, visit);
-    if (self.moving && (layers & store.fixedLayers)) store.fixedTree.Query(self.fat, visit);
+    if (self.moving && (layers & store.staticLayers)) store.staticTree.Query(self.fat, visit);
 }
 
 // What one collider meets.
@@ -64,8 +64,7 @@ void Search(const WorldState& world, uint32_t index, uint32_t mostDeep, WorkerFi
 void SearchEach(const WorldState& world, std::span<WorkerFindings> workers, uint32_t mostDeep) {
     const std::vector<uint32_t>& moved = world.colliders.moved;
     world.jobs->ParallelFor(static_cast<uint32_t>(moved.size()), 16, [&](JobRange range) {
-        for (uint32_t i = range.begin; i < range.end; ++i)
-            Search(world, moved[i], mostDeep, workers[range.worker]);
+        for (uint32_t i = range.begin; i < range.end; ++i) Search(world, moved[i], mostDeep, workers[range.worker]);
     });
 }
 
@@ -87,11 +86,11 @@ void SearchTogether(const WorldState& world, std::span<WorkerFindings> workers, 
         if (found.deepPairs > mostDeep) return;
         store.movingTree.VisitGroups(range.begin, range.end, [&](const Bounds& all, std::span<const uint32_t> ids) {
             bool meets = false;
-            store.fixedTree.Query(all, [&](uint32_t) { meets = true; });
+            store.staticTree.Query(all, [&](uint32_t) { meets = true; });
             if (!meets) return;
             for (uint32_t index : ids) {
                 if (!isQueued(index)) continue;
-                store.fixedTree.Query(store.colliders[index].fat, [&](uint32_t other) {
+                store.staticTree.Query(store.colliders[index].fat, [&](uint32_t other) {
                     if (!isQueued(other) || index < other) Consider(world, index, other, mostDeep, found);
                 });
             }
@@ -99,8 +98,7 @@ void SearchTogether(const WorldState& world, std::span<WorkerFindings> workers, 
     });
     world.jobs->ParallelFor(static_cast<uint32_t>(store.moved.size()), 256, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i)
-            if (!store.colliders[store.moved[i]].moving)
-                Search(world, store.moved[i], mostDeep, workers[range.worker]);
+            if (!store.colliders[store.moved[i]].moving) Search(world, store.moved[i], mostDeep, workers[range.worker]);
     });
 }
 
@@ -153,7 +151,7 @@ void ForgetMoved(WorldState& world) {
         }
     });
     if (!world.sensors.IsEmpty())
-        for (uint32_t index : store.moved) world.sensors.touched.push_back(store.colliders[index].body);
+        for (uint32_t index : store.moved) world.sensors.changed.push_back(store.colliders[index].body);
     store.moved.clear();
 }
 

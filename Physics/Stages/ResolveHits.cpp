@@ -51,26 +51,26 @@ private:
             CastAgain(places[0]);
         } else if (isUndecided) {
             Resume(places[0], hit.time, impact.poses[0]);
-        } else if (!impact.parts && (impact.sweeps[0].waits || impact.sweeps[1].waits)) {
+        } else if (!impact.bounces && (impact.sweeps[0].waits || impact.sweeps[1].waits)) {
             // What goes as fast as the one that waits runs into it, and waits, too.
             for (int s = 0; s < 2; ++s)
                 if (places[s] != SweepStore::kNone && !impact.sweeps[s].waits)
                     Wait(places[s], hit.time, impact, s, impact.linear[s], impact.angular[s]);
         } else {
-            Part(hit, impact, places);
+            Bounce(hit, impact, places);
         }
     }
 
     // Both go on with the velocities after the hit. Where nothing approaches, the solver moved them otherwise than
     // those say.
-    void Part(const SweepHit& hit, const Impact& impact, const uint32_t (&places)[2]) {
+    void Bounce(const SweepHit& hit, const Impact& impact, const uint32_t (&places)[2]) {
         WakeBody(world_, hit.other);
-        report_.sweptHits += impact.parts;
+        report_.sweptHits += impact.bounces;
         for (int s = 0; s < 2; ++s) {
             if (places[s] == SweepStore::kNone) continue;
             const uint32_t body = Swept(places[s]).body;
             if (!world_.bodies.CanMove(body)) {
-                if (s == 0 || impact.parts) Resume(places[s], hit.time, impact.poses[s]);
+                if (s == 0 || impact.bounces) Resume(places[s], hit.time, impact.poses[s]);
                 continue;
             }
             world_.bodies.masses[body] = impact.masses[s];
@@ -106,8 +106,7 @@ private:
         sweep.turn = turn;
     }
 
-    // Stays until the next step; but a kinematic body goes on as it is told. It is in the way of others, who may not
-    // know.
+    // Stays until the next step, as an obstacle that other casts have not seen; but a kinematic body moves on.
     void Wait(uint32_t place, float time, const Impact& impact, int side, const Vector3& linear,
               const Vector3& angular) {
         Sweep& sweep = Swept(place);

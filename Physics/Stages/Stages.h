@@ -28,8 +28,8 @@ void Collide(WorldState& world, float dt, PairUpdates& updates, CrowdState& crow
 void Color(uint32_t bodyCount, std::span<PairChange> changes, PairStore& pairs, ConstraintColoring& coloring,
            std::vector<uint32_t>& began);
 
-// Takes the points from the records of contacts that only a seam between two fixed bodies makes, and notes their pairs
-// in `seams`; first gives those of the last step theirs back.
+// Takes the points from the records of contacts that only a seam between two immovable bodies makes, and notes their
+// pairs in `seams`; first gives those of the last step theirs back.
 void RemoveSeamContacts(const BodyStore& bodies, const ColliderStore& colliders, const ConstraintColoring& coloring,
                         PairStore& pairs, std::vector<uint32_t>& seams, ScratchArena& scratch);
 
@@ -47,16 +47,16 @@ void Solve(WorldState& world, StepState& step);
 // Bounces what was hit.
 void Restitution(WorldState& world, StepState& step);
 
-// Writes impulses to the records, displacements to the poses; moves bodies that nothing touched; measures slowness;
-// breaks joints.
+// Writes impulses to the records, displacements to the poses; moves bodies without contacts and joints; measures
+// slowness; breaks joints.
 void Store(WorldState& world, StepState& step);
 
-// Reads where bodies were when the step began. Casts those with continuous collision that moved far along their way:
+// Reads where bodies were when the step began. Casts those with continuous collision that moved far along their path:
 // what hits something bounces there, and gets another pose and velocity. Writes the sweeps of the step.
 void Continuous(WorldState& world, SweepStore& sweeps, std::span<WorkerFindings> workers, ScratchArena& scratch,
                 StepReport& report);
 
-// Finds what is inside the sensors, and what came in or left, all along the ways of the step. Of the world it writes
+// Finds what is inside the sensors, and what came in or left, along the paths of the step. Of the world it writes
 // the sensors, and the bounds of their colliders.
 void Sense(WorldState& world, const SweepStore& sweeps, SensorSearch& sensing, std::span<WorkerFindings> workers,
            StepReport& report);
