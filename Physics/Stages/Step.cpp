@@ -22,9 +22,7 @@ constexpr Stage kStages[] = {
     {"UpdateBounds",
      [](WorldState& world, StepState& step) { UpdateBounds(world, step.dt, step.crowd.dispersing, step.findings); }},
     {"FindPairs",
-     [](WorldState& world, StepState& step) {
-         FindPairs(world, step.pairs, step.crowd, step.findings, step.scratch);
-     }},
+     [](WorldState& world, StepState& step) { FindPairs(world, step.pairs, step.crowd, step.findings, step.scratch); }},
     {"Collide",
      [](WorldState& world, StepState& step) {
          Collide(world, step.dt, step.pairs, step.crowd, step.findings, step.scratch, step.report);
@@ -46,10 +44,8 @@ constexpr Stage kStages[] = {
     {"Solve", Solve},
     {"Restitution", Restitution},
     {"Store", Store},
-    {"Continuous",
-     [](WorldState& world, StepState& step) {
-         Continuous(world, step.sweeps, step.findings, step.scratch, step.report);
-     }},
+    {"Continuous", [](WorldState& world,
+                      StepState& step) { Continuous(world, step.sweeps, step.findings, step.scratch, step.report); }},
     {"Sense",
      [](WorldState& world, StepState& step) { Sense(world, step.sweeps, step.sensing, step.findings, step.report); }},
     {"Sleep", [](WorldState& world, StepState& step) { Sleep(world, step.sleepCandidates, step.scratch); }},
