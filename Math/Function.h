@@ -1,4 +1,5 @@
-// A callable as a member or argument of public headers: <functional> takes longer to compile than they do.
+// A callable as a member or argument of public headers. Stands in for std::function, whose header takes long to
+// compile.
 #pragma once
 
 #include <cstddef>
