@@ -2,18 +2,19 @@
 //
 //     generation (22 bits) | stop (1) | open (1) | helpers inside (8)
 //
-// The caller writes job_ while the gate is shut and empty, opens it under a new generation, does its own share, shuts
+// The caller writes `job` while the gate is shut and empty, opens it under a new generation, does its own share, shuts
 // it, and waits until it is empty. A helper enters by a compare-and-swap that increments the count, which succeeds only
 // while the gate is open: a late helper finds it shut and never touches the job, which lives on the caller's stack.
 // Each helper enters a generation once.
 //
-// The opening store releases job_ and the caller's earlier writes, and the helper's entry acquires them; the helper's
+// The opening store releases `job` and the caller's earlier writes, and the helper's entry acquires them; the helper's
 // exit releases its writes, and the caller acquires them where it shuts the gate or waits. Further entries and exits
 // are read-modify-writes, so they keep the release sequence.
 #include <Fulcrum/Jobs/Spin.h>
 #include <Fulcrum/Jobs/ThreadPool.h>
 
 #include <algorithm>
+#include <atomic>
 #include <system_error>
 #include <thread>
 #include <vector>
@@ -56,27 +57,36 @@ uint32_t PieceOf(uint32_t blocksLeft) { return (blocksLeft + 7) / 8; }
 
 }  // namespace
 
-struct ThreadPool::Threads {
-    std::vector<std::thread> list;
+struct ThreadPool::State {
+    // What a worker has left of a ParallelFor: first and last block of minimumRange items, packed in one word.
+    struct alignas(64) Share {
+        std::atomic<uint64_t> blocks{0};
+    };
+
+    alignas(64) std::atomic<uint32_t> gate{0};  // generation, open bit, number of helpers inside
+    const FunctionRef<void(uint32_t)>* job = nullptr;
+    alignas(64) std::atomic<bool> busy{false};
+    std::unique_ptr<Share[]> shares;
+    std::vector<std::thread> threads;
 };
 
-ThreadPool::ThreadPool(uint32_t workers) : threads_(new Threads) {
+ThreadPool::ThreadPool(uint32_t workers) : state_(std::make_unique<State>()) {
     workers = std::clamp(workers, 1u, kMaximumWorkers);
-    shares_ = std::make_unique<Share[]>(workers);
-    threads_->list.reserve(workers - 1);
+    state_->shares = std::make_unique<State::Share[]>(workers);
+    state_->threads.reserve(workers - 1);
     try {
         for (uint32_t worker = 1; worker < workers; ++worker)
-            threads_->list.emplace_back([this, worker] { RunHelper(worker); });
+            state_->threads.emplace_back([this, worker] { RunHelper(worker); });
     } catch (const std::system_error&) {
         // The system refuses more threads: go on with those that started.
     }
-    helperCount_ = static_cast<uint32_t>(threads_->list.size());
+    helperCount_ = static_cast<uint32_t>(state_->threads.size());
 }
 
 ThreadPool::~ThreadPool() {
-    gate_.fetch_or(kStop);
-    gate_.notify_all();
-    for (std::thread& helper : threads_->list) helper.join();
+    state_->gate.fetch_or(kStop);
+    state_->gate.notify_all();
+    for (std::thread& helper : state_->threads) helper.join();
 }
 
 uint32_t ThreadPool::CallersWorker() const {
@@ -85,7 +95,7 @@ uint32_t ThreadPool::CallersWorker() const {
 }
 
 bool ThreadPool::TryTakeHelpers() {
-    return helperCount_ > 0 && !FindMembership(this) && !busy_.exchange(true, std::memory_order_acquire);
+    return helperCount_ > 0 && !FindMembership(this) && !state_->busy.exchange(true, std::memory_order_acquire);
 }
 
 void ThreadPool::RunOnWorkers(FunctionRef<void(uint32_t)> job) {
@@ -105,7 +115,7 @@ void ThreadPool::ParallelFor(uint32_t count, uint32_t minimumRange, FunctionRef<
     uint32_t begin = 0;
     for (uint32_t worker = 0; worker < workers; ++worker) {
         const auto end = static_cast<uint32_t>(uint64_t{blockCount} * (worker + 1) / workers);
-        shares_[worker].blocks.store(Pack(begin, end), std::memory_order_relaxed);
+        state_->shares[worker].blocks.store(Pack(begin, end), std::memory_order_relaxed);
         begin = end;
     }
     Dispatch([&](uint32_t worker) {
@@ -122,7 +132,7 @@ void ThreadPool::ParallelFor(uint32_t count, uint32_t minimumRange, FunctionRef<
 // The blocks in a word are taken at most once: a successful exchange means that they were there at that moment, so that
 // ABA does no harm. No memory order is needed: the gate orders the data.
 ThreadPool::Blocks ThreadPool::TakeFromOwnShare(uint32_t worker) {
-    std::atomic<uint64_t>& share = shares_[worker].blocks;
+    std::atomic<uint64_t>& share = state_->shares[worker].blocks;
     uint64_t blocks = share.load(std::memory_order_relaxed);
     for (;;) {
         const uint32_t begin = BeginOf(blocks), end = EndOf(blocks);
@@ -138,14 +148,14 @@ ThreadPool::Blocks ThreadPool::Steal(uint32_t thief) {
     const uint32_t workers = WorkerCount();
     for (uint32_t i = 1; i < workers; ++i) {
         const uint32_t victim = thief + i < workers ? thief + i : thief + i - workers;
-        std::atomic<uint64_t>& share = shares_[victim].blocks;
+        std::atomic<uint64_t>& share = state_->shares[victim].blocks;
         uint64_t blocks = share.load(std::memory_order_relaxed);
         while (BeginOf(blocks) != EndOf(blocks)) {
             const uint32_t begin = BeginOf(blocks), end = EndOf(blocks);
             const uint32_t middle = begin + (end - begin) / 2;
             if (!share.compare_exchange_weak(blocks, Pack(begin, middle), std::memory_order_relaxed)) continue;
             const uint32_t taken = middle + PieceOf(end - middle);
-            shares_[thief].blocks.store(Pack(taken, end), std::memory_order_relaxed);
+            state_->shares[thief].blocks.store(Pack(taken, end), std::memory_order_relaxed);
             return {middle, taken};
         }
     }
@@ -155,22 +165,22 @@ ThreadPool::Blocks ThreadPool::Steal(uint32_t thief) {
 void ThreadPool::Dispatch(FunctionRef<void(uint32_t)> job) noexcept {
     const Membership membership{this, 0, innermost};
     innermost = &membership;
-    job_ = &job;
-    const uint32_t opened = (GenerationOf(gate_.load(std::memory_order_relaxed)) + 1) * kGeneration | kOpen;
+    state_->job = &job;
+    const uint32_t opened = (GenerationOf(state_->gate.load(std::memory_order_relaxed)) + 1) * kGeneration | kOpen;
     // An exchange, not a store: the full fence orders it before notify_all's check for sleeping threads, which is all
     // that notify_all costs without waiters.
-    gate_.exchange(opened, std::memory_order_seq_cst);
-    gate_.notify_all();
+    state_->gate.exchange(opened, std::memory_order_seq_cst);
+    state_->gate.notify_all();
 
     job(0);
 
-    if ((gate_.fetch_and(~kOpen, std::memory_order_acquire) & kInsideMask) != 0) {
+    if ((state_->gate.fetch_and(~kOpen, std::memory_order_acquire) & kInsideMask) != 0) {
         Spin spin(kFinishSpin);
-        while ((gate_.load(std::memory_order_acquire) & kInsideMask) != 0)
+        while ((state_->gate.load(std::memory_order_acquire) & kInsideMask) != 0)
             if (!spin.Pause()) std::this_thread::yield();
     }
     innermost = membership.outer;
-    busy_.store(false, std::memory_order_release);
+    state_->busy.store(false, std::memory_order_release);
 }
 
 void ThreadPool::RunHelper(uint32_t worker) {
@@ -179,20 +189,20 @@ void ThreadPool::RunHelper(uint32_t worker) {
     uint32_t joined = 0;  // the last generation entered; the first job's is 1
     for (;;) {
         Spin spin(kIdleSpin);
-        uint32_t gate = gate_.load(std::memory_order_relaxed);
+        uint32_t gate = state_->gate.load(std::memory_order_relaxed);
         while (!(gate & kOpen) || GenerationOf(gate) == joined) {
             if (gate & kStop) return;
             if (!spin.Pause()) {
-                gate_.wait(gate, std::memory_order_relaxed);
+                state_->gate.wait(gate, std::memory_order_relaxed);
                 spin = Spin(kIdleSpin);
             }
-            gate = gate_.load(std::memory_order_relaxed);
+            gate = state_->gate.load(std::memory_order_relaxed);
         }
-        if (!gate_.compare_exchange_weak(gate, gate + 1, std::memory_order_acquire, std::memory_order_relaxed))
+        if (!state_->gate.compare_exchange_weak(gate, gate + 1, std::memory_order_acquire, std::memory_order_relaxed))
             continue;
         joined = GenerationOf(gate);
-        (*job_)(worker);
-        gate_.fetch_sub(1, std::memory_order_release);
+        (*state_->job)(worker);
+        state_->gate.fetch_sub(1, std::memory_order_release);
     }
 }
 

@@ -4,7 +4,6 @@
 
 #include <Fulcrum/Jobs/JobSystem.h>
 
-#include <atomic>
 #include <memory>
 
 namespace fulcrum {
@@ -36,14 +35,10 @@ public:
     void RunOnWorkers(FunctionRef<void(uint32_t worker)> job) override;
 
 private:
-    // What a worker has left of a ParallelFor: first and last block of minimumRange items, packed in one word.
-    struct alignas(64) Share {
-        std::atomic<uint64_t> blocks{0};
-    };
     struct Blocks {
         uint32_t begin, end;
     };
-    struct Threads;  // so that <thread>, which is slow to compile, stays out of programs
+    struct State;  // so that <thread> and <atomic>, which are slow to compile, stay out of programs
 
     bool TryTakeHelpers();
     void Dispatch(FunctionRef<void(uint32_t)> job) noexcept;
@@ -53,12 +48,7 @@ private:
     Blocks TakeFromOwnShare(uint32_t worker);
     Blocks Steal(uint32_t thief);
 
-    // The gate to the current job: generation, open bit, number of helpers inside. See ThreadPool.cpp.
-    alignas(64) std::atomic<uint32_t> gate_{0};
-    const FunctionRef<void(uint32_t)>* job_ = nullptr;
-    alignas(64) std::atomic<bool> busy_{false};
-    std::unique_ptr<Share[]> shares_;
-    std::unique_ptr<Threads> threads_;
+    const std::unique_ptr<State> state_;
     uint32_t helperCount_ = 0;
 };
 

@@ -6,9 +6,10 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
-#include <variant>
 
 namespace fulcrum {
 
@@ -39,30 +40,56 @@ struct Error {
 template <class T>
 class [[nodiscard]] Result {
 public:
-    Result(T value) : content_(std::move(value)) {}
-    Result(Error error) : content_(std::move(error)) {}
+    Result(T value) : hasValue_(true) { std::construct_at(&value_, std::move(value)); }
+    Result(Error error) : hasValue_(false) { std::construct_at(&error_, std::move(error)); }
+    Result(Result&& other) noexcept : hasValue_(other.hasValue_) { Construct(std::move(other)); }
+    Result(const Result& other) requires std::is_copy_constructible_v<T> : hasValue_(other.hasValue_) {
+        Construct(other);
+    }
+    Result& operator=(Result other) noexcept {
+        Destroy();
+        hasValue_ = other.hasValue_;
+        Construct(std::move(other));
+        return *this;
+    }
+    ~Result() { Destroy(); }
 
-    explicit operator bool() const { return content_.index() == 0; }
+    explicit operator bool() const { return hasValue_; }
     // Only if the result is true. Otherwise prints the error's message and aborts, in every build.
     T& Value() {
-        if (content_.index() != 0) [[unlikely]]
-            AbortWith("Value() of an error: ", GetError().message);
-        return *std::get_if<0>(&content_);
+        if (!hasValue_) [[unlikely]]
+            AbortWith("Value() of an error: ", error_.message);
+        return value_;
     }
     const T& Value() const {
-        if (content_.index() != 0) [[unlikely]]
-            AbortWith("Value() of an error: ", GetError().message);
-        return *std::get_if<0>(&content_);
+        if (!hasValue_) [[unlikely]]
+            AbortWith("Value() of an error: ", error_.message);
+        return value_;
     }
     // Only if the result is false. Otherwise aborts.
     const Error& GetError() const {
-        if (content_.index() != 1) [[unlikely]]
+        if (hasValue_) [[unlikely]]
             AbortWith("GetError() of a result without an error", "");
-        return *std::get_if<1>(&content_);
+        return error_;
     }
 
 private:
-    std::variant<T, Error> content_;
+    template <class Other>
+    void Construct(Other&& other) {
+        if (hasValue_) std::construct_at(&value_, std::forward<Other>(other).value_);
+        else std::construct_at(&error_, std::forward<Other>(other).error_);
+    }
+    void Destroy() {
+        if (hasValue_) std::destroy_at(&value_);
+        else std::destroy_at(&error_);
+    }
+
+    // Not std::variant, which takes much longer to compile.
+    union {
+        T value_;
+        Error error_;
+    };
+    bool hasValue_;
 };
 
 // A Result without a value: true means done.

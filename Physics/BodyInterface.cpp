@@ -80,7 +80,7 @@ void MoveToItsTree(WorldState& world, uint32_t body) {
     ColliderStore& store = world.colliders;
     const BodyCold& cold = world.bodies.cold[body];
     const BodyDynamics& d = world.bodies.dynamics[body];
-    if (!cold.isSensor) (d.motion != MotionType::Static ? store.movingLayers : store.fixedLayers) |= 1u << d.layer;
+    if (!cold.isSensor) (d.motion != MotionType::Static ? store.movingLayers : store.staticLayers) |= 1u << d.layer;
     VisitColliders(world, body, [&](uint32_t i) {
         Collider& collider = store.colliders[i];
         store.TreeOf(collider).Remove(i);
@@ -92,7 +92,7 @@ void MoveToItsTree(WorldState& world, uint32_t body) {
     RequeueColliders(world, body);
 }
 
-// Brings everything in line with a pose that was set by hand.
+// Brings everything in line with a pose that the user set.
 void Teleported(WorldState& world, uint32_t body) {
     world.bodies.UpdateInertia(body);
     VisitColliders(world, body, [&](uint32_t i) {
@@ -132,7 +132,7 @@ Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
     MakeColliders(world_, body);
     if (settings.startAsleep) {
         world_.bodies.SetVelocity(body, Vector3::Zero(), Vector3::Zero());
-        if (!world_.sensors.IsEmpty()) world_.sensors.touched.push_back(body);
+        if (!world_.sensors.IsEmpty()) world_.sensors.changed.push_back(body);
     } else if (settings.motion != MotionType::Static) {
         world_.bodies.MarkAwake(body);
         RequeueColliders(world_, body);

@@ -126,7 +126,7 @@ Status BodyInterface::SetShape(BodyId id, const ShapePtr& shape, MassUpdate mass
     MakeColliders(world_, body);
     RequeueColliders(world_, body);
     if (!world_.sensors.IsEmpty())
-        world_.sensors.touched.push_back(body);  // also where no collider is left that would tell
+        world_.sensors.changed.push_back(body);  // also where no collider is left that would tell
     WakeNeighbors(world_, body);
     return Done{};
 }

@@ -21,6 +21,10 @@ Result<std::shared_ptr<const GroupFilterTable>> GroupFilterTable::Create(std::sp
     return std::shared_ptr<const GroupFilterTable>(std::move(table));
 }
 
+Result<std::shared_ptr<const GroupFilterTable>> GroupFilterTable::Create(std::initializer_list<Pair> apart) {
+    return Create(std::span<const Pair>(apart.begin(), apart.size()));
+}
+
 bool GroupFilterTable::Collides(const Member& a, const Member& b) const {
     if (a.group != b.group || std::max(a.subGroup, b.subGroup) >= subGroups_) return true;
     return !apart_[size_t(a.subGroup) * subGroups_ + b.subGroup];

@@ -37,9 +37,7 @@ public:
 
     // Error: OutOfRange.
     static Result<std::shared_ptr<const GroupFilterTable>> Create(std::span<const Pair> apart);
-    static Result<std::shared_ptr<const GroupFilterTable>> Create(std::initializer_list<Pair> apart) {
-        return Create(std::span<const Pair>(apart.begin(), apart.size()));
-    }
+    static Result<std::shared_ptr<const GroupFilterTable>> Create(std::initializer_list<Pair> apart);
 
     bool Collides(const Member& a, const Member& b) const override;
 

@@ -6,9 +6,9 @@
 #include <Fulcrum/Constraints/Joints/PathJoint.h>
 #include <Fulcrum/Constraints/MassOverride.h>
 #include <Fulcrum/Constraints/Parts/SwingTwist.h>
+#include <Fulcrum/Math/Function.h>
 #include <Fulcrum/Physics/Settings.h>
 
-#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -35,8 +35,8 @@ struct JointAnchor {
 };
 
 // Of two joints of a body the one of higher priority is solved later in every iteration, and wins where they disagree.
-// A joint to what does not move counts as High. This is an order, no weight: where few iterations are made the other
-// one still pulls.
+// A joint to a static or kinematic body counts as High. This is an order, no weight: where few iterations are made the
+// other one still pulls.
 enum class JointPriority : uint8_t { Normal, High };
 
 struct JointSettings {
@@ -47,7 +47,7 @@ struct JointSettings {
     bool enabled = true;
     bool collideConnected = false;  // whether the two bodies collide with each other
     JointPriority priority = JointPriority::Normal;
-    // The joint is disabled where it did more on average over a step: a blow of J N s counts as J / dt.
+    // The joint is disabled where it did more on average over a step: an impulse of J N s counts as J / dt.
     float breakForce = std::numeric_limits<float>::infinity();   // N, > 0
     float breakTorque = std::numeric_limits<float>::infinity();  // N m, > 0
     // More effort for the island of this joint alone; 0: the system's.
@@ -164,7 +164,7 @@ struct WheelJointSettings : JointSettings {
 
 // A constraint of the user's own.
 struct CustomJointSettings : JointSettings {
-    std::function<std::unique_ptr<JointType>()> make;  // not empty; called once a joint, gives a type
+    Function<std::unique_ptr<JointType>()> make;  // not empty; called once a joint, gives a type
 };
 
 // Calls a macro with the name of every kind above, without JointSettings.

@@ -61,7 +61,7 @@ Status PhysicsSystem::SetSettings(const SystemSettings& settings) {
         for (Pair& pair : world_->pairs.pairs) pair.cache = {};
     world_->settings = settings;
     if (settings.layerCollides != before) RefilterLayers(*world_, before);
-    for (const Sensor& sensor : world_->sensors.sensors) world_->sensors.touched.push_back(sensor.id.index);
+    for (const Sensor& sensor : world_->sensors.sensors) world_->sensors.changed.push_back(sensor.id.index);
     return Done{};
 }
 

@@ -64,7 +64,7 @@ public:
                      const QueryFilter& filter = {}) const;
 
     // The broad phase alone: bodies and children whose bounds, which are a little larger than they, meet a box, a ray,
-    // or a box on its way. Fast; by body and child.
+    // or a moving box. Fast; by body and child.
     void FindInBox(const Position& lower, const Position& upper, std::vector<OverlapHit>& hits,
                    const QueryFilter& filter = {}) const;
     void FindOnRay(const Ray& ray, std::vector<OverlapHit>& hits, const QueryFilter& filter = {}) const;

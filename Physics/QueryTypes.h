@@ -63,7 +63,7 @@ struct PlacedShape {
     Pose pose{};
 };
 
-// A convex shape on its way: its center of mass moves straight, it turns about it at a constant rate.
+// A convex shape in motion: its center of mass moves straight, it turns about it at a constant rate.
 struct MovingShape {
     const ConvexShape* shape = nullptr;      // not null
     Pose pose{};                             // of the shape's own frame at the start

@@ -34,7 +34,7 @@ struct Material {
     CombineRule restitutionRule = CombineRule::Maximum;
 };
 
-// Whether a body is cast along its way in steps in which it moves by more than half its thickness, so that it passes
+// Whether a body is cast along its path in steps in which it moves by more than half its thickness, so that it passes
 // through nothing however fast it is. It bounces where it hits, in the middle of the step.
 enum class ContinuousCollision : uint8_t {
     Off,

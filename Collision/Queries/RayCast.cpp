@@ -1,6 +1,7 @@
 #include <Fulcrum/Collision/Queries/RayCast.h>
 
 #include <Fulcrum/Collision/BroadPhase/BoundsTreeCasts.h>
+#include <Fulcrum/Collision/Queries/ConvexRay.h>
 #include <Fulcrum/Collision/Shapes/CompoundShape.h>
 #include <Fulcrum/Collision/Shapes/Plane.h>
 

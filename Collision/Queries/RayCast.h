@@ -6,7 +6,6 @@
 // Triangles follow SurfaceShape. A ray that is not finite or has no length hits nothing.
 #pragma once
 
-#include <Fulcrum/Collision/Queries/ConvexRay.h>
 #include <Fulcrum/Collision/Queries/SubShape.h>
 #include <Fulcrum/Collision/Shapes/SurfaceShape.h>
 

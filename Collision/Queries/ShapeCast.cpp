@@ -2,6 +2,8 @@
 
 #include <Fulcrum/Collision/BroadPhase/BoundsTreeCasts.h>
 #include <Fulcrum/Collision/Queries/ConvexDistance.h>
+#include <Fulcrum/Collision/Queries/CoreCast.h>
+#include <Fulcrum/Collision/Queries/Pieces.h>
 #include <Fulcrum/Collision/Shapes/Plane.h>
 
 #include <algorithm>

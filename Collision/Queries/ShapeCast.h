@@ -8,10 +8,17 @@
 // farther away, hits nothing; one of no length hits what overlaps it.
 #pragma once
 
-#include <Fulcrum/Collision/Queries/CoreCast.h>
-#include <Fulcrum/Collision/Queries/Pieces.h>
+#include <Fulcrum/Collision/NarrowPhase/Collide.h>
+#include <Fulcrum/Collision/Queries/SubShape.h>
+#include <Fulcrum/Collision/Shapes/Shape.h>
+
+#include <type_traits>
 
 namespace fulcrum {
+
+class SurfaceShape;
+struct CoreMotion;
+struct Piece;
 
 struct ShapeMotion {
     Pose pose{};                             // of the shape's center frame at the start
@@ -93,8 +100,8 @@ template <class Visitor>
 void ShapeCaster::Visit(const Shape& other, const Pose& pose, const ShapeCastSettings& settings,
                         Visitor&& visit) const {
     Search(other, pose, settings, &visit, [](void* context, const ShapeHit& hit, ShapeCastSettings& limits) -> bool {
-        limits.maxFraction =
-            std::min(limits.maxFraction, (*static_cast<std::remove_reference_t<Visitor>*>(context))(hit));
+        const float largest = (*static_cast<std::remove_reference_t<Visitor>*>(context))(hit);
+        if (largest < limits.maxFraction) limits.maxFraction = largest;
         return limits.maxFraction >= 0;
     });
 }

@@ -9,6 +9,9 @@
 
 namespace fulcrum {
 
+Compound::Compound() : CompoundShape(ShapeType::Compound) {}
+Compound::~Compound() = default;
+
 Result<std::shared_ptr<const Compound>> Compound::Create(std::span<const ChildSettings> children,
                                                          const Vector3& centerOffset) {
     if (children.empty()) return Error{ErrorCode::Degenerate, "a compound needs at least one child"};

@@ -8,6 +8,8 @@ namespace fulcrum {
 
 class Compound final : public CompoundShape {
 public:
+    ~Compound() override;
+
     // Mass is the sum of the children's (overlaps count twice), scaled so that the whole has density 1 on average.
     // `centerOffset`, m, moves the center of mass from there, as ballast would; the inertia is then that about the new
     // center (parallel axes). InnerRadius is the smallest child's, since continuous collision must stop the thinnest.
@@ -20,7 +22,7 @@ private:
     friend struct ShapeFileAccess;
     void Assemble(std::vector<Child> children, const MassProperties& mass);
 
-    Compound() : CompoundShape(ShapeType::Compound) {}
+    Compound();
 };
 
 }  // namespace fulcrum

@@ -4,6 +4,8 @@
 
 namespace fulcrum {
 
+CompoundShape::~CompoundShape() = default;
+
 Status CompoundShape::Check(const ChildSettings& child, const char* name) {
     if (!child.shape) return Error{ErrorCode::Unsupported, Message("%s has no shape", name)};
     if (!child.shape->IsConvex()) {

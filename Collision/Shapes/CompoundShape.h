@@ -11,6 +11,8 @@ namespace fulcrum {
 
 class CompoundShape : public Shape {
 public:
+    ~CompoundShape() override;
+
     struct ChildSettings {
         ShapePtr shape;                      // convex
         Vector3 position = Vector3::Zero();  // of the child's user frame in the compound's user frame, m
@@ -24,7 +26,7 @@ public:
     };
 
     // By index; in a mutable compound some may have been removed.
-    std::span<const Child> Children() const { return children_; }
+    std::span<const Child> Children() const { return {children_.data(), children_.size()}; }
     // The children's boxes in the children's frame, by index.
     const BoundsTree& Tree() const { return tree_; }
     // The origin of the children's frame in the center frame, m; axes are the same. Zero but for mutable compounds,

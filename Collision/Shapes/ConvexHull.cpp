@@ -219,6 +219,9 @@ size_t FirstFarthest(const float* laneX, const float* laneY, const float* laneZ,
 
 }  // namespace
 
+ConvexHull::ConvexHull() : ConvexShape(ShapeType::ConvexHull) {}
+ConvexHull::~ConvexHull() = default;
+
 Vector3 ConvexHull::SupportCore(const Vector3& direction) const {
     return vertices_[FirstFarthest(LaneX(), LaneY(), LaneZ(), paddedCount_, direction)];
 }

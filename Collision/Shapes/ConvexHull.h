@@ -17,6 +17,8 @@ struct ConvexHullSettings {
 
 class ConvexHull final : public ConvexShape {
 public:
+    ~ConvexHull() override;
+
     struct Face {
         uint16_t firstIndex;   // into Indices(): the corners, counter-clockwise seen from outside
         uint16_t cornerCount;  // >= 3
@@ -39,10 +41,10 @@ public:
     Vector3 SupportCore(const Vector3& direction) const override;
     void FindSupportingFace(const Vector3& direction, SupportingFace& face) const override;
 
-    std::span<const Vector3> Vertices() const { return vertices_; }
-    std::span<const Face> Faces() const { return faces_; }
-    std::span<const Edge> Edges() const { return edges_; }
-    std::span<const uint8_t> Indices() const { return indices_; }
+    std::span<const Vector3> Vertices() const { return {vertices_.data(), vertices_.size()}; }
+    std::span<const Face> Faces() const { return {faces_.data(), faces_.size()}; }
+    std::span<const Edge> Edges() const { return {edges_.data(), edges_.size()}; }
+    std::span<const uint8_t> Indices() const { return {indices_.data(), indices_.size()}; }
     // The vertices by lanes: coordinate arrays x, y, z of PaddedVertexCount() floats each, 64-byte aligned. The padding
     // repeats vertex 0, so that a support search needs no tail.
     const float* LaneX() const { return lanes_.data()->values; }
@@ -57,7 +59,7 @@ public:
     int PaddedFaceCount() const { return paddedFaceCount_; }  // a multiple of 16
 
 private:
-    ConvexHull() : ConvexShape(ShapeType::ConvexHull) {}
+    ConvexHull();
     friend class HullFinisher;  // ConvexHull.cpp: fills a hull from the builder's mesh
 
     std::vector<Vector3> vertices_;

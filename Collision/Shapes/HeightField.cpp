@@ -8,6 +8,9 @@
 
 namespace fulcrum {
 
+HeightField::HeightField() : SurfaceShape(ShapeType::HeightField) {}
+HeightField::~HeightField() = default;
+
 Status HeightField::CheckGrid(const HeightFieldSettings& s) {
     if (s.sampleCountX < 2 || s.sampleCountZ < 2 || uint64_t{s.sampleCountX} * s.sampleCountZ > 1u << 30) {
         return Error{ErrorCode::OutOfRange, Message("%u x %u samples: at least 2 each way, at most 2^30 in all",

@@ -34,6 +34,8 @@ struct HeightFieldSettings {
 // 1, z + 1). The id of a vertex is the number of its sample.
 class HeightField final : public SurfaceShape {
 public:
+    ~HeightField() override;
+
     // The caller may keep the pointer to edit the field; bodies take it as any shape.
     // Errors: NonFinite (names the sample), NonPositive (a cell size), OutOfRange (counts, lengths of the spans, a
     // material, a height beyond the limits, coordinates that are no floats), Degenerate (every cell is a hole).
@@ -73,7 +75,7 @@ public:
 
 private:
     friend struct ShapeFileAccess;
-    HeightField() : SurfaceShape(ShapeType::HeightField) {}
+    HeightField();
     void SearchBox(const Bounds& box, void* context, BatchFunction found) const override;
     void SearchRay(const SurfaceRay& ray, float maxFraction, void* context, HitFunction found) const override;
 

@@ -29,6 +29,10 @@ Status Forget(const Result<T>& result) {
 
 }  // namespace
 
+MutableCompound::MutableCompound() : CompoundShape(ShapeType::MutableCompound) {}
+MutableCompound::MutableCompound(const MutableCompound&) = default;
+MutableCompound::~MutableCompound() = default;
+
 Result<std::shared_ptr<MutableCompound>> MutableCompound::Create(std::span<const ChildSettings> children) {
     if (children.empty()) return Error{ErrorCode::Degenerate, "a compound needs at least one child"};
     const std::shared_ptr<MutableCompound> compound(new MutableCompound);
@@ -45,6 +49,10 @@ Result<std::shared_ptr<MutableCompound>> MutableCompound::Create(std::span<const
 }
 
 // ---- Ids
+
+std::shared_ptr<MutableCompound> MutableCompound::Copy() const {
+    return std::shared_ptr<MutableCompound>(new MutableCompound(*this));
+}
 
 bool MutableCompound::Exists(ChildId id) const {
     return id.index < children_.size() && children_[id.index].shape && generations_[id.index] == id.generation;

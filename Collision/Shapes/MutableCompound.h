@@ -21,15 +21,15 @@ enum class MassUpdate : uint8_t { Update, Keep };
 
 class MutableCompound final : public CompoundShape {
 public:
+    ~MutableCompound() override;
+
     // Mass and errors as Compound::Create has them. The children's ids have the indices 0, 1, ... and the generation 0.
     // When children move, their masses stay the same (density times volume, in a unit fixed at creation). OuterRadius
     // is that of the box around the children: up to 1.7 times as much as needed. The center frame moves with the center
     // of mass.
     static Result<std::shared_ptr<MutableCompound>> Create(std::span<const ChildSettings> children);
     // With the same ids.
-    std::shared_ptr<MutableCompound> Copy() const {
-        return std::shared_ptr<MutableCompound>(new MutableCompound(*this));
-    }
+    std::shared_ptr<MutableCompound> Copy() const;
 
     uint32_t Count() const { return count_; }  // of children; indices may be larger
     bool Exists(ChildId id) const;
@@ -63,8 +63,8 @@ public:
 
 private:
     friend struct ShapeFileAccess;
-    MutableCompound() : CompoundShape(ShapeType::MutableCompound) {}
-    MutableCompound(const MutableCompound&) = default;
+    MutableCompound();
+    MutableCompound(const MutableCompound&);
 
     // Checked, in the children's frame.
     static Result<Child> Posed(const ChildSettings& child, const char* name);

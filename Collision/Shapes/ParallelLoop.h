@@ -1,16 +1,17 @@
 // A parallel-for callback, through which slow builds of shapes use threads without depending on a job system.
 #pragma once
 
+#include <Fulcrum/Math/Function.h>
+
 #include <cstdint>
-#include <functional>
 
 namespace fulcrum {
 
 // Runs job(i) once for each i in 0 .. count - 1, on any threads in any order, and returns when all are done. Easily
 // made from JobSystem::ParallelFor. Empty: serial.
-using ParallelLoop = std::function<void(uint32_t count, const std::function<void(uint32_t)>& job)>;
+using ParallelLoop = Function<void(uint32_t count, const Function<void(uint32_t)>& job)>;
 
-inline void RunLoop(const ParallelLoop& parallel, uint32_t count, const std::function<void(uint32_t)>& job) {
+inline void RunLoop(const ParallelLoop& parallel, uint32_t count, const Function<void(uint32_t)>& job) {
     if (parallel && count > 1) {
         parallel(count, job);
     } else {

@@ -4,6 +4,8 @@
 
 namespace fulcrum {
 
+SurfaceShape::~SurfaceShape() = default;
+
 uint32_t SurfaceShape::FindTriangles(const Bounds& box, std::span<uint32_t> ids) const {
     uint32_t count = 0;
     VisitTriangles(box, [&](uint32_t id) {

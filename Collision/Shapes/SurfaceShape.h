@@ -3,7 +3,6 @@
 // nothing. The order in which triangles are found depends on the shape's data alone.
 #pragma once
 
-#include <Fulcrum/Collision/BroadPhase/RayLanes.h>
 #include <Fulcrum/Collision/Shapes/Shape.h>
 
 #include <memory>
@@ -49,6 +48,8 @@ struct SurfaceHit {
 
 class SurfaceShape : public Shape {
 public:
+    ~SurfaceShape() override;
+
     // Ids are below this. A mesh has a triangle for each; a height field none for those of holes.
     virtual uint32_t TriangleIdEnd() const = 0;
     virtual uint32_t TriangleCount() const = 0;
@@ -70,7 +71,7 @@ public:
     virtual bool CastRay(const SurfaceRay& ray, SurfaceHit& hit, float maxFraction = 1) const = 0;
     // The same for up to kMostRays rays, which costs less where they lie close together: hits[i] for rays[i] up to
     // maxFractions[i]. Returns the bits of those that hit.
-    static constexpr int kMostRays = RayLanes::kMost;
+    static constexpr int kMostRays = 32;
     virtual uint32_t CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hits, const float* maxFractions) const;
     // Whether there is any.
     virtual bool IsHit(const SurfaceRay& ray, float maxFraction = 1) const = 0;
@@ -82,7 +83,7 @@ public:
     // Two-sided triangles collide and are hit from both sides; one-sided ones from the front alone.
     bool IsTwoSided() const { return isTwoSided_; }
     // The palette; empty if the body's material is used everywhere.
-    std::span<const SurfaceMaterial> Materials() const { return materials_; }
+    std::span<const SurfaceMaterial> Materials() const { return {materials_.data(), materials_.size()}; }
     // In bytes; data shared by instances count in each.
     virtual size_t MemoryUsed() const = 0;
 

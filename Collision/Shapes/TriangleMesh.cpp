@@ -39,6 +39,9 @@ Status CheckSettings(const TriangleMeshSettings& s) {
 
 }  // namespace
 
+TriangleMesh::TriangleMesh() : SurfaceShape(ShapeType::TriangleMesh) {}
+TriangleMesh::~TriangleMesh() = default;
+
 Result<std::shared_ptr<const TriangleMesh>> TriangleMesh::Create(const TriangleMeshSettings& settings,
                                                                  MeshReport* report, const ParallelLoop& parallel) {
     if (const Status status = CheckSettings(settings); !status) return status.GetError();

@@ -5,6 +5,7 @@
 #include <Fulcrum/Collision/Shapes/MeshRepair.h>
 #include <Fulcrum/Collision/Shapes/ParallelLoop.h>
 #include <Fulcrum/Collision/Shapes/SurfaceShape.h>
+#include <Fulcrum/Math/Wide.h>
 
 namespace fulcrum {
 
@@ -23,6 +24,8 @@ struct TriangleMeshSettings {
 
 class TriangleMesh final : public SurfaceShape {
 public:
+    ~TriangleMesh() override;
+
     // Vertices nearly equal are welded, triangles without area and duplicates dropped; `report` (may be null) says what
     // was repaired. The result has the same bits for any `parallel`. Errors: NonFinite (names the vertex), OutOfRange
     // (an index, a material, a setting; more than 2^27 triangles), Degenerate (nothing left, or a number of indices
@@ -54,7 +57,7 @@ public:
 
 private:
     friend struct ShapeFileAccess;
-    TriangleMesh() : SurfaceShape(ShapeType::TriangleMesh) {}
+    TriangleMesh();
     void SearchBox(const Bounds& box, void* context, BatchFunction found) const override;
     void SearchRay(const SurfaceRay& ray, float maxFraction, void* context, HitFunction found) const override;
     Vector3 InTree(const Vector3& v) const;

@@ -1,4 +1,5 @@
 // Box and ray queries of a triangle mesh.
+#include <Fulcrum/Collision/BroadPhase/RayLanes.h>
 #include <Fulcrum/Collision/Shapes/MeshTree.h>
 #include <Fulcrum/Collision/Shapes/RayTriangle.h>
 #include <Fulcrum/Collision/Shapes/SurfaceNormal.h>
@@ -152,6 +153,7 @@ uint32_t TriangleMesh::CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hi
     // If more leaves per ray are found that no ray hits, single casts are faster.
     constexpr int kMostMissedLeaves = 2;
     const MeshTree& tree = *tree_;
+    static_assert(kMostRays == RayLanes::kMost);
     RayLanes lanes;
     ShearedRay sheared[kMostRays];
     ClosestHit best[kMostRays];

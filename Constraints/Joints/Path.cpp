@@ -116,6 +116,8 @@ double Path::Closest(const Vector3& point) const {
     return isClosed_ ? t - End() * std::floor(t / End()) : t;
 }
 
+Path::Path(std::vector<PathPoint> points, bool isClosed) : points_(std::move(points)), isClosed_(isClosed) {}
+
 Result<std::shared_ptr<const Path>> Path::Make(std::vector<PathPoint> points, bool isClosed) {
     if (points.size() < 2)
         return Error{ErrorCode::Degenerate,

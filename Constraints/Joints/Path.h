@@ -64,7 +64,7 @@ private:
         double laps;  // whole
     };
 
-    Path(std::vector<PathPoint> points, bool isClosed) : points_(std::move(points)), isClosed_(isClosed) {}
+    Path(std::vector<PathPoint> points, bool isClosed);
     static Result<std::shared_ptr<const Path>> Make(std::vector<PathPoint> points, bool isClosed);
     size_t SegmentCount() const { return points_.size() - (isClosed_ ? 0 : 1); }
     const PathPoint& PointAfter(size_t i) const { return points_[i + 1 < points_.size() ? i + 1 : 0]; }

@@ -26,9 +26,7 @@
 #include <Fulcrum/Math/Result.h>
 #include <Fulcrum/Math/Wide.h>
 
-#include <cmath>
 #include <cstdint>
-#include <cstdio>
 
 namespace fulcrum {
 
@@ -54,30 +52,7 @@ struct SpringSettings {
 };
 
 // Errors: NonFinite, Negative, OutOfRange, naming the field. Every field is checked, used by the mode or not.
-inline Status Validate(const SpringSettings& settings) {
-    if (settings.mode > SpringMode::StiffnessAndDamping)
-        return Error{ErrorCode::OutOfRange,
-                     "spring mode is " + std::to_string(static_cast<int>(settings.mode)) + "; it must be from 0 to 1"};
-    if (settings.form > SpringForm::Implicit)
-        return Error{ErrorCode::OutOfRange,
-                     "spring form is " + std::to_string(static_cast<int>(settings.form)) + "; it must be from 0 to 2"};
-    const struct {
-        const char* name;
-        float value;
-    } fields[] = {{"frequency", settings.frequency},
-                  {"dampingRatio", settings.dampingRatio},
-                  {"stiffness", settings.stiffness},
-                  {"damping", settings.damping}};
-    for (const auto& field : fields) {
-        const bool finite = std::isfinite(field.value);
-        if (finite && field.value >= 0.0f) continue;
-        char message[96];
-        std::snprintf(message, sizeof(message), "spring %s is %g; it must be %s", field.name,
-                      static_cast<double>(field.value), finite ? "0 or more" : "finite");
-        return Error{finite ? ErrorCode::Negative : ErrorCode::NonFinite, message};
-    }
-    return Done{};
-}
+Status Validate(const SpringSettings& settings);
 
 // What a row needs of the settings. With K the inverse effective mass: w^2 = squaredFrequency + stiffness K and
 // 2 zeta w = decayRate + damping K; either the first or the second term of each is zero. Hard where w = 0.

@@ -37,7 +37,7 @@ public:
                 });
             }
         }
-        if (filter_.layers & store.fixedLayers) walk(store.fixedTree, visit);
+        if (filter_.layers & store.staticLayers) walk(store.staticTree, visit);
         if (filter_.sensors) walk(store.sensorTree, visit);  // they never leave their bounds: Sense refits them
     }
 

@@ -20,9 +20,9 @@ public:
     void Remove();
 
     // One a part, in the order of the settings.
-    std::span<const BodyId> Bodies() const { return bodies_; }
+    std::span<const BodyId> Bodies() const { return {bodies_.data(), bodies_.size()}; }
     // Likewise, of the joint to the parent; the first part's, and one that was not made, exist nowhere.
-    std::span<const JointId> Joints() const { return joints_; }
+    std::span<const JointId> Joints() const { return {joints_.data(), joints_.size()}; }
 
     // All that follow have one pose a part, the pose of the body's own frame. Errors: UnknownId (a body was removed),
     // OutOfRange (another number of poses), NonFinite, Unnormalized: nothing has changed then.

@@ -62,7 +62,7 @@ float TurningMotion(const WorldState& world, const Pair& pair, float dt) {
     return ofA + angle * std::min(pair.shapeB->OuterRadius(), Length(between) + pair.shapeA->OuterRadius());
 }
 
-// m: farther ahead than this the Continuous stage sees to the pair.
+// m: contacts farther ahead than this are left to the Continuous stage.
 float MotionBeforeCast(const WorldState& world, const Pair& pair) {
     float motion = std::numeric_limits<float>::infinity();
     if (world.bodies.dynamics[pair.bodyA].continuous)
@@ -124,58 +124,58 @@ void PrefetchAhead(const WorldState& world, uint32_t index) {
     }
 }
 
-void CollideActive(WorldState& world, StepState& step) {
+void CollideActive(WorldState& world, float dt, std::vector<PairChange>& changes, std::span<WorkerFindings> workers) {
     const IndexSet& active = world.pairs.active;
-    step.changes.resize(world.pairs.pairs.size(), PairChange::None);
+    changes.resize(world.pairs.pairs.size(), PairChange::None);
     world.jobs->ParallelFor(active.WordCount(), 1, [&](JobRange range) {
         for (uint32_t word = range.begin; word < range.end; ++word)
             active.VisitWord(word, [&](uint32_t index) {
                 PrefetchAhead(world, index);
                 if (world.pairs.pairs[index].isMore) return;  // comes with its pair
-                step.changes[index] = CollidePair(world, step.changes, index, step.dt, step.findings[range.worker]);
+                changes[index] = CollidePair(world, changes, index, dt, workers[range.worker]);
             });
     });
 }
 
-void CollideActivated(WorldState& world, StepState& step) {
-    step.changes.resize(world.pairs.pairs.size(), PairChange::None);
-    world.jobs->ParallelFor(static_cast<uint32_t>(step.activated.size()), 16, [&](JobRange range) {
+void CollideActivated(WorldState& world, float dt, PairUpdates& updates, std::span<WorkerFindings> workers) {
+    updates.changes.resize(world.pairs.pairs.size(), PairChange::None);
+    world.jobs->ParallelFor(static_cast<uint32_t>(updates.activated.size()), 16, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i) {
-            const uint32_t index = step.activated[i];
-            step.changes[index] = CollidePair(world, step.changes, index, step.dt, step.findings[range.worker]);
+            const uint32_t index = updates.activated[i];
+            updates.changes[index] = CollidePair(world, updates.changes, index, dt, workers[range.worker]);
         }
     });
 }
 
-// Wakes the sleeping bodies that were touched. They search for pairs of their own at once: what is hit must not lose
-// its support for a step. Returns whether that made pairs active, which are to be collided too.
-bool WakeTouched(WorldState& world, StepState& step) {
+// Wakes the sleeping bodies that are to wake. Returns whether there are any.
+bool WakeSleepers(WorldState& world, std::span<PairChange> changes) {
     bool woke = false;
-    VisitChanges(step.changes, [&](uint32_t index) {
-        if (step.changes[index] != PairChange::WakesOther) return;
+    VisitChanges(changes, [&](uint32_t index) {
+        if (changes[index] != PairChange::WakesOther) return;
         const Pair& pair = world.pairs.pairs[index];
         WakeBody(world, pair.bodyA);
         if (!pair.fixedB) WakeBody(world, pair.bodyB);
-        step.changes[index] = pair.touching ? PairChange::Began : PairChange::None;
+        changes[index] = pair.touching ? PairChange::Began : PairChange::None;
         woke = true;
     });
-    step.activated.clear();
-    if (woke) FindPairs(world, step);
-    return !step.activated.empty();
+    return woke;
 }
 
 }  // namespace
 
-void Collide(WorldState& world, StepState& step) {
-    CollideActive(world, step);
-    AddMoreManifolds(world, step);
-    while (WakeTouched(world, step)) {
-        CollideActivated(world, step);
-        AddMoreManifolds(world, step);
+void Collide(WorldState& world, float dt, PairUpdates& updates, CrowdState& crowd, std::span<WorkerFindings> workers,
+             ScratchArena& scratch, StepReport& report) {
+    CollideActive(world, dt, updates.changes, workers);
+    AddMoreManifolds(world, dt, updates, workers);
+    // What wakes searches for pairs of its own at once: what is hit must not lose its support for a step.
+    while (WakeSleepers(world, updates.changes)) {
+        FindPairs(world, updates, crowd, workers, scratch);
+        if (updates.activated.empty()) break;
+        CollideActivated(world, dt, updates, workers);
+        AddMoreManifolds(world, dt, updates, workers);
     }
-    GatherCrowd(world, step);
-    StepReport& report = step.report;
-    for (const WorkerFindings& f : step.findings) {
+    GatherCrowd(world.bodies, crowd, workers);
+    for (const WorkerFindings& f : workers) {
         report.contacts += f.contacts;
         report.contactPoints += f.points;
         report.keptManifolds += f.kept;

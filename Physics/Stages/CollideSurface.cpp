@@ -128,10 +128,10 @@ PairChange CollideWithSurface(WorldState& world, std::span<PairChange> changes, 
     return wakes ? PairChange::WakesOther : ofFirst;
 }
 
-void AddMoreManifolds(WorldState& world, StepState& step) {
-    std::vector<MoreManifold>& all = step.moreManifolds;
+void AddMoreManifolds(WorldState& world, float dt, PairUpdates& updates, std::span<WorkerFindings> workers) {
+    std::vector<MoreManifold>& all = updates.moreManifolds;
     all.clear();
-    for (WorkerFindings& findings : step.findings) {
+    for (WorkerFindings& findings : workers) {
         all.insert(all.end(), findings.more.begin(), findings.more.end());
         findings.more.clear();
     }
@@ -141,10 +141,10 @@ void AddMoreManifolds(WorldState& world, StepState& step) {
     });
     for (const MoreManifold& more : all) {
         const uint32_t index = world.pairs.AddMore(more.pair);
-        step.changes.resize(std::max(step.changes.size(), world.pairs.pairs.size()), PairChange::None);
-        Write(world, ViewPair(world.bodies, world.colliders, world.pairs, more.pair), index, more.contact, step.dt);
-        step.changes[index] = NoteTouching(world, index, step.findings[0]);
-        if (TouchesSleeper(world, world.pairs.pairs[index])) step.changes[more.pair] = PairChange::WakesOther;
+        updates.changes.resize(std::max(updates.changes.size(), world.pairs.pairs.size()), PairChange::None);
+        Write(world, ViewPair(world.bodies, world.colliders, world.pairs, more.pair), index, more.contact, dt);
+        updates.changes[index] = NoteTouching(world, index, workers.front());
+        if (TouchesSleeper(world, world.pairs.pairs[index])) updates.changes[more.pair] = PairChange::WakesOther;
     }
 }
 

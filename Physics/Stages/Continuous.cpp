@@ -1,4 +1,4 @@
-// Continuous collision: what moved far in this step is cast along its way. Where it hits, it bounces there and then,
+// Continuous collision: what moved far in this step is cast along its path. Where it hits, it bounces there and then,
 // and goes on with what is left of the step. In rounds: all casts in parallel; then the hits in the order of their
 // times, as long as both bodies' sweeps still are those that were cast (ResolveHits.h); what changed its sweep, or lost
 // its partner, is cast again.
@@ -14,7 +14,7 @@ namespace fulcrum {
 
 namespace {
 
-// Whoever hits something in each of so many rounds stays where it hit last until the next step.
+// A body that hits something in each of so many rounds stays where it hit last until the next step.
 constexpr int kRounds = 16;
 
 // m: a body with continuous collision that moves less in a step is not cast.
@@ -28,7 +28,7 @@ float FreeMotionOf(const WorldState& world, uint32_t body) {
 }
 
 // Whether the fat bounds of a body's colliders, which reach ahead by the velocity that it had when the step began, hold
-// all its way. Those that do not are noted, to be enlarged.
+// its whole path. Those that do not are noted, to be enlarged.
 bool StaysInBounds(const WorldState& world, uint32_t body, const Vector3& moved, float dt, WorkerFindings& findings) {
     const float* a = world.bodies.poses[body].acceleration;
     const float slack = 0.5f * world.settings.speculativeDistance;
@@ -45,13 +45,13 @@ bool StaysInBounds(const WorldState& world, uint32_t body, const Vector3& moved,
 }
 
 // Says how a body that moved far is to be searched.
-void LookAtBody(WorldState& world, SweepStore& sweeps, uint32_t body, float dt, WorkerFindings& findings) {
+void LookAtBody(const WorldState& world, SweepStore& sweeps, uint32_t body, WorkerFindings& findings) {
     using SearchBy = SweepStore::SearchBy;
     const SweepStore::Start& start = sweeps.starts[body];
     const BodyDynamics& d = world.bodies.dynamics[body];
     if (start.step != world.step || d.frozen) return;
     const Vector3 moved = (world.bodies.CenterOf(body) - start.pose.position).cast<float>();
-    const bool stays = StaysInBounds(world, body, moved, dt, findings);
+    const bool stays = StaysInBounds(world, body, moved, sweeps.dt, findings);
     if (!d.continuous) return;
     const bool turns = IsCastTurning(world, body);
     const float distance = Length(moved) + (turns ? Length(SweepOf(world, sweeps, body).turn) * d.outerRadius : 0.0f);
@@ -59,7 +59,7 @@ void LookAtBody(WorldState& world, SweepStore& sweeps, uint32_t body, float dt, 
     sweeps.searchBy[body] = stays && !turns ? SearchBy::Pairs : SearchBy::Trees;
 }
 
-// What the solver moved elsewhere than its bounds foresaw is given bounds about its whole way, so that the trees find
+// What the solver moved elsewhere than its bounds foresaw is given bounds about its whole path, so that the trees find
 // it there.
 void EnlargeBounds(WorldState& world, std::span<WorkerFindings> workers) {
     std::vector<uint32_t>& moved = world.colliders.moved;
@@ -77,22 +77,20 @@ void EnlargeBounds(WorldState& world, std::span<WorkerFindings> workers) {
 }
 
 // Returns how many there are.
-uint32_t FindFast(WorldState& world, StepState& step) {
+uint32_t FindFast(WorldState& world, SweepStore& sweeps, std::span<WorkerFindings> workers) {
     using SearchBy = SweepStore::SearchBy;
-    SweepStore& store = step.sweeps;
-    store.searchBy.assign(world.bodies.Size(), SearchBy::None);
+    sweeps.searchBy.assign(world.bodies.Size(), SearchBy::None);
     const std::vector<uint32_t>& awake = world.bodies.awake;
     world.jobs->ParallelFor(static_cast<uint32_t>(awake.size()), 64, [&](JobRange range) {
-        for (uint32_t k = range.begin; k < range.end; ++k)
-            LookAtBody(world, step.sweeps, awake[k], step.dt, step.findings[range.worker]);
+        for (uint32_t k = range.begin; k < range.end; ++k) LookAtBody(world, sweeps, awake[k], workers[range.worker]);
     });
-    EnlargeBounds(world, step.findings);
-    const size_t slow = static_cast<size_t>(std::count(store.searchBy.begin(), store.searchBy.end(), SearchBy::None));
-    const size_t fast = store.searchBy.size() - slow;
+    EnlargeBounds(world, workers);
+    const size_t slow = static_cast<size_t>(std::count(sweeps.searchBy.begin(), sweeps.searchBy.end(), SearchBy::None));
+    const size_t fast = sweeps.searchBy.size() - slow;
     // To look through all pairs for a few bodies would take longer than their searches.
     constexpr size_t kPairsPerSearch = 16;
     if (fast * kPairsPerSearch < world.pairs.active.Size())
-        std::replace(store.searchBy.begin(), store.searchBy.end(), SearchBy::Pairs, SearchBy::Trees);
+        std::replace(sweeps.searchBy.begin(), sweeps.searchBy.end(), SearchBy::Pairs, SearchBy::Trees);
     return static_cast<uint32_t>(fast);
 }
 
@@ -104,63 +102,60 @@ uint32_t CasterOf(const SweepStore& sweeps, const Pair& pair) {
     return a == SearchBy::Pairs ? pair.colliderA : b == SearchBy::Pairs ? pair.colliderB : SweepStore::kNone;
 }
 
-void CastPairs(WorldState& world, StepState& step) {
+void CastPairs(const WorldState& world, const SweepStore& sweeps, std::span<WorkerFindings> workers) {
     const IndexSet& active = world.pairs.active;
     world.jobs->ParallelFor(active.WordCount(), 1, [&](JobRange range) {
-        WorkerFindings& findings = step.findings[range.worker];
+        WorkerFindings& findings = workers[range.worker];
         for (uint32_t word = range.begin; word < range.end; ++word)
             active.VisitWord(word, [&](uint32_t index) {
                 const Pair& pair = world.pairs.pairs[index];
-                const uint32_t caster = pair.isMore ? SweepStore::kNone : CasterOf(step.sweeps, pair);
+                const uint32_t caster = pair.isMore ? SweepStore::kNone : CasterOf(sweeps, pair);
                 SweepHit hit;
                 if (caster == SweepStore::kNone ||
-                    !CastPair(world, step.sweeps, caster, pair.colliderA ^ pair.colliderB ^ caster, findings, hit))
+                    !CastPair(world, sweeps, caster, pair.colliderA ^ pair.colliderB ^ caster, findings, hit))
                     return;
                 findings.sweepHits.push_back(hit);
             });
     });
 }
 
-void CastActive(WorldState& world, StepState& step) {
-    SweepStore& store = step.sweeps;
-    world.jobs->ParallelFor(static_cast<uint32_t>(store.active.size()), 8, [&](JobRange range) {
-        WorkerFindings& findings = step.findings[range.worker];
+void CastActive(const WorldState& world, const SweepStore& sweeps, std::span<WorkerFindings> workers) {
+    world.jobs->ParallelFor(static_cast<uint32_t>(sweeps.active.size()), 8, [&](JobRange range) {
+        WorkerFindings& findings = workers[range.worker];
         for (uint32_t i = range.begin; i < range.end; ++i) {
             SweepHit hit;
-            if (CastSweep(world, store, store.swept[store.active[i]], findings, hit)) findings.sweepHits.push_back(hit);
+            if (CastSweep(world, sweeps, sweeps.swept[sweeps.active[i]], findings, hit))
+                findings.sweepHits.push_back(hit);
         }
     });
 }
 
-void GatherHits(StepState& step) {
-    std::vector<SweepHit>& hits = step.sweeps.hits;
+void GatherHits(std::span<WorkerFindings> workers, std::vector<SweepHit>& hits) {
     hits.clear();
-    for (WorkerFindings& findings : step.findings) {
+    for (WorkerFindings& findings : workers) {
         hits.insert(hits.end(), findings.sweepHits.begin(), findings.sweepHits.end());
         findings.sweepHits.clear();
     }
 }
 
 // The lists get room by the number of those that may need it.
-void ReserveLists(WorldState& world, StepState& step) {
-    SweepStore& store = step.sweeps;
+void ReserveLists(const WorldState& world, SweepStore& sweeps, std::span<WorkerFindings> workers) {
     const size_t users = world.bodies.continuousCount;
-    store.searchBy.reserve(world.bodies.Size());
-    store.places.resize(world.bodies.Size(), SweepStore::kNone);
-    store.swept.reserve(users);
-    store.hits.reserve(2 * users);
-    for (std::vector<uint32_t>* list : {&store.active, &store.next}) list->reserve(2 * users);
-    for (WorkerFindings& findings : step.findings) {
+    sweeps.searchBy.reserve(world.bodies.Size());
+    sweeps.places.resize(world.bodies.Size(), SweepStore::kNone);
+    sweeps.swept.reserve(users);
+    sweeps.hits.reserve(2 * users);
+    for (std::vector<uint32_t>* list : {&sweeps.active, &sweeps.next}) list->reserve(2 * users);
+    for (WorkerFindings& findings : workers) {
         findings.sweepHits.reserve(users);
         findings.outsideFatBounds.reserve(world.colliders.colliders.capacity());
     }
 }
 
-void StartSweeps(WorldState& world, StepState& step) {
-    SweepStore& store = step.sweeps;
-    store.active.clear();
-    for (uint32_t body = 0; body < store.searchBy.size(); ++body)
-        if (store.searchBy[body] == SweepStore::SearchBy::Trees) store.active.push_back(PlaceOf(world, step, body));
+void StartSweeps(const WorldState& world, SweepStore& sweeps) {
+    sweeps.active.clear();
+    for (uint32_t body = 0; body < sweeps.searchBy.size(); ++body)
+        if (sweeps.searchBy[body] == SweepStore::SearchBy::Trees) sweeps.active.push_back(PlaceOf(world, sweeps, body));
 }
 
 // What goes on elsewhere than its bounds foresaw is found there by the casts of the others.
@@ -179,39 +174,38 @@ void EnlargeBounds(WorldState& world, const Sweep& sweep) {
 }
 
 // Those that hits have changed, or left undecided, are searched in the next round.
-void EndRound(WorldState& world, StepState& step) {
-    SweepStore& store = step.sweeps;
-    for (uint32_t place : store.next) {
-        store.swept[place].changed = false;
-        EnlargeBounds(world, store.swept[place]);
+void EndRound(WorldState& world, SweepStore& sweeps) {
+    for (uint32_t place : sweeps.next) {
+        sweeps.swept[place].changed = false;
+        EnlargeBounds(world, sweeps.swept[place]);
     }
-    std::sort(store.next.begin(), store.next.end());
-    store.active.swap(store.next);
-    store.next.clear();
+    std::sort(sweeps.next.begin(), sweeps.next.end());
+    sweeps.active.swap(sweeps.next);
+    sweeps.next.clear();
 }
 
 }  // namespace
 
-void Continuous(WorldState& world, StepState& step) {
-    SweepStore& store = step.sweeps;
-    store.swept.clear();
-    store.ended.clear();
-    store.endedAt.clear();
+void Continuous(WorldState& world, SweepStore& sweeps, std::span<WorkerFindings> workers, ScratchArena& scratch,
+                StepReport& report) {
+    sweeps.swept.clear();
+    sweeps.ended.clear();
+    sweeps.endedAt.clear();
     if (world.bodies.continuousCount == 0) return;
-    ReserveLists(world, step);
-    const uint32_t fast = FindFast(world, step);
-    step.report.sweptBodies = fast;
+    ReserveLists(world, sweeps, workers);
+    const uint32_t fast = FindFast(world, sweeps, workers);
+    report.sweptBodies = fast;
     if (fast == 0) return;
-    StartSweeps(world, step);
-    const bool usesPairs = store.active.size() < fast;
-    for (int round = 0; round < kRounds && (!store.active.empty() || (round == 0 && usesPairs)); ++round) {
-        if (round == 0 && usesPairs) CastPairs(world, step);
-        CastActive(world, step);
-        GatherHits(step);
-        ResolveHits(world, step, round + 1 == kRounds);
-        EndRound(world, step);
+    StartSweeps(world, sweeps);
+    const bool usesPairs = sweeps.active.size() < fast;
+    for (int round = 0; round < kRounds && (!sweeps.active.empty() || (round == 0 && usesPairs)); ++round) {
+        if (round == 0 && usesPairs) CastPairs(world, sweeps, workers);
+        CastActive(world, sweeps, workers);
+        GatherHits(workers, sweeps.hits);
+        ResolveHits(world, sweeps, round + 1 == kRounds, scratch, report);
+        EndRound(world, sweeps);
     }
-    for (const Sweep& sweep : store.swept) store.places[sweep.body] = SweepStore::kNone;
+    for (const Sweep& sweep : sweeps.swept) sweeps.places[sweep.body] = SweepStore::kNone;
 }
 
 }  // namespace fulcrum

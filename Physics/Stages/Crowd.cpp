@@ -108,7 +108,7 @@ void ForgetStopped(WorldState& world, std::vector<DispersingBody>& all) {
 
 // Floors, walls and kinematic bodies that a body without a place touches reflect its direction.
 void Reflect(const WorldState& world, DispersingBody& dispersing) {
-    VisitFixedContacts(world, dispersing.body, [&](uint32_t pair) {
+    VisitImmovableContacts(world, dispersing.body, [&](uint32_t pair) {
         const Vector3 normal = ContactNormal(world, pair);
         const float into = Dot<float>(normal, dispersing.direction);
         if (into > 0) dispersing.direction -= normal * (2 * into);
@@ -159,23 +159,23 @@ std::map<uint64_t, StartedTogether> GroupByStart(const WorldState& world, std::s
 
 }  // namespace
 
-void StartDispersing(WorldState& world, StepState& step, std::vector<uint32_t>& bodies) {
+void StartDispersing(WorldState& world, std::vector<DispersingBody>& all, std::vector<uint32_t>& bodies,
+                     std::span<PairChange> changes, ScratchArena& scratch) {
     std::sort(bodies.begin(), bodies.end());
     bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
-    const JointedGroups groups(world, step.scratch);
-    const std::vector<uint32_t> starting = MarkDispersing(world, step.scratch, groups, bodies);
+    const JointedGroups groups(world, scratch);
+    const std::vector<uint32_t> starting = MarkDispersing(world, scratch, groups, bodies);
     if (starting.empty()) return;
-    RemoveDynamicPairs(world, step.changes, starting);
+    RemoveDynamicPairs(world, changes, starting);
     for (DispersingBody dispersing : PlanDispersing(world, groups, starting)) {
         BodyDynamics& d = world.bodies.dynamics[dispersing.body];
         d.dispersing = d.crowded = true;
         AddGravity(world, dispersing.body, -1);
         dispersing.ownVelocity = world.bodies.LinearVelocityOf(dispersing.body);
         dispersing.startStep = world.step;
-        step.dispersing.push_back(dispersing);
+        all.push_back(dispersing);
     }
-    std::sort(step.dispersing.begin(), step.dispersing.end(),
-              [](const DispersingBody& a, const DispersingBody& b) { return a.body < b.body; });
+    std::sort(all.begin(), all.end(), [](const DispersingBody& a, const DispersingBody& b) { return a.body < b.body; });
 }
 
 void PushDispersing(WorldState& world, std::vector<DispersingBody>& all, float dt) {
@@ -200,23 +200,22 @@ Vector3 OwnVelocity(const WorldState& world, std::span<const DispersingBody> all
 }
 
 // Those that started together end together. A body whose time at its place is over ends by itself once it overlaps
-// nobody.
-void EndDispersing(WorldState& world, StepState& step) {
-    if (step.dispersing.empty()) return;
-    const JointedGroups groups(world, step.scratch);
-    const std::span<uint8_t> overlaps = step.scratch.Allocate<uint8_t>(step.dispersing.size());
+// no other.
+void EndDispersing(WorldState& world, std::vector<DispersingBody>& all, ScratchArena& scratch) {
+    if (all.empty()) return;
+    const JointedGroups groups(world, scratch);
+    const std::span<uint8_t> overlaps = scratch.Allocate<uint8_t>(all.size());
     world.jobs->ParallelFor(static_cast<uint32_t>(overlaps.size()), 16, [&](JobRange range) {
-        for (uint32_t i = range.begin; i < range.end; ++i)
-            overlaps[i] = OverlapsAnother(world, groups, step.dispersing[i].body);
+        for (uint32_t i = range.begin; i < range.end; ++i) overlaps[i] = OverlapsAnother(world, groups, all[i].body);
     });
-    const std::map<uint64_t, StartedTogether> together = GroupByStart(world, step.dispersing, groups, overlaps);
+    const std::map<uint64_t, StartedTogether> together = GroupByStart(world, all, groups, overlaps);
     for (size_t i = 0; i < overlaps.size(); ++i) {
-        const DispersingBody& dispersing = step.dispersing[i];
+        const DispersingBody& dispersing = all[i];
         const bool hasDispersed =
             together.at(dispersing.startStep).HaveRoom() || (!dispersing.hasPlace && !overlaps[i]);
         world.bodies.dynamics[dispersing.body].dispersing = !hasDispersed;
     }
-    std::erase_if(step.dispersing, [&](const DispersingBody& dispersing) {
+    std::erase_if(all, [&](const DispersingBody& dispersing) {
         if (world.bodies.dynamics[dispersing.body].dispersing) return false;
         AddGravity(world, dispersing.body, 1);
         world.bodies.SetVelocity(dispersing.body, dispersing.ownVelocity,

@@ -16,9 +16,10 @@
 
 namespace fulcrum {
 
-// Of `bodies`, in any order and sorted here, those that deeply overlap many others start to disperse. They lose their
-// pairs with dynamic bodies.
-void StartDispersing(WorldState& world, StepState& step, std::vector<uint32_t>& bodies);
+// Of `bodies`, in any order and sorted here, those that deeply overlap many others start to disperse: they are added to
+// `all`. They lose their pairs with dynamic bodies, of which `changes` knows nothing more.
+void StartDispersing(WorldState& world, std::vector<DispersingBody>& all, std::vector<uint32_t>& bodies,
+                     std::span<PairChange> changes, ScratchArena& scratch);
 
 // As the step begins, before bounds: dispersing bodies get the velocity with which they move in this step.
 void PushDispersing(WorldState& world, std::vector<DispersingBody>& all, float dt);
@@ -27,7 +28,7 @@ void PushDispersing(WorldState& world, std::vector<DispersingBody>& all, float d
 Vector3 OwnVelocity(const WorldState& world, std::span<const DispersingBody> all, uint32_t body, const Vector3& v,
                     float dt);
 
-// Bodies that have dispersed collide again, and search for their pairs.
-void EndDispersing(WorldState& world, StepState& step);
+// Bodies that have dispersed are removed from `all`, collide again, and search for their pairs.
+void EndDispersing(WorldState& world, std::vector<DispersingBody>& all, ScratchArena& scratch);
 
 }  // namespace fulcrum

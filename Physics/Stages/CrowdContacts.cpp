@@ -16,8 +16,8 @@ namespace {
 constexpr float kCenterOffset =
     1e-3f;  // of coincident centers: a distance that gives a direction, and too short to be seen
 constexpr float kCrowdedOverlap = 0.01f;  // by less than this, as bodies at rest on each other do, nothing is crowded
-// The part of an overlap with what does not move that goes within a substep: all at once would throw bodies up.
-constexpr float kFixedOverlapRemoved = 0.125f;
+// The part of an overlap with an immovable body that is removed within a substep: all at once would throw bodies up.
+constexpr float kImmovableOverlapRemoved = 0.125f;
 
 // m, as the step began: the least of a manifold's points, below zero where they overlap.
 float SeparationOf(const WorldState& world, uint32_t index, const Vector3& normal) {
@@ -34,7 +34,7 @@ float SeparationOf(const WorldState& world, uint32_t index, const Vector3& norma
 }
 
 // Moves what the workers noted into one list, sorted: the same for any number of threads.
-void Gather(std::vector<WorkerFindings>& workers, std::vector<uint32_t> WorkerFindings::*list,
+void Gather(std::span<WorkerFindings> workers, std::vector<uint32_t> WorkerFindings::*list,
             std::vector<uint32_t>& all) {
     all.clear();
     for (WorkerFindings& findings : workers) {
@@ -84,13 +84,13 @@ void NoteOverlap(const WorldState& world, uint32_t index, const RelativePose& bI
         if (isCrowded(body)) findings.crowdedOverlaps.push_back(body);
 }
 
-void GatherCrowd(WorldState& world, StepState& step) {
-    for (const uint32_t body : step.crowded) world.bodies.dynamics[body].crowded = false;
-    Gather(step.findings, &WorkerFindings::crowdedOverlaps, step.crowded);
-    for (const DispersingBody& dispersing : step.dispersing) step.crowded.push_back(dispersing.body);
-    for (const uint32_t body : step.crowded) world.bodies.dynamics[body].crowded = true;
-    Gather(step.findings, &WorkerFindings::deepOverlaps, step.deepOverlaps);
-    if (MostRepeated(step.deepOverlaps) < kManyOverlaps) step.deepOverlaps.clear();
+void GatherCrowd(BodyStore& bodies, CrowdState& crowd, std::span<WorkerFindings> workers) {
+    for (const uint32_t body : crowd.crowded) bodies.dynamics[body].crowded = false;
+    Gather(workers, &WorkerFindings::crowdedOverlaps, crowd.crowded);
+    for (const DispersingBody& dispersing : crowd.dispersing) crowd.crowded.push_back(dispersing.body);
+    for (const uint32_t body : crowd.crowded) bodies.dynamics[body].crowded = true;
+    Gather(workers, &WorkerFindings::deepOverlaps, crowd.deepOverlaps);
+    if (MostRepeated(crowd.deepOverlaps) < kManyOverlaps) crowd.deepOverlaps.clear();
 }
 
 void LimitPush(WorldState& world, uint32_t body, float h) {
@@ -102,10 +102,10 @@ void LimitPush(WorldState& world, uint32_t body, float h) {
     LimitLength(spin, fastest / world.bodies.dynamics[body].outerRadius);
     Vector3 v = freeV + push;
     const float(&moved)[3] = world.bodies.states[body].deltaPosition;
-    VisitFixedContacts(world, body, [&](uint32_t pair) {
+    VisitImmovableContacts(world, body, [&](uint32_t pair) {
         const Vector3 normal = ContactNormal(world, pair);
         const float gap = SeparationOf(world, pair, normal) - Dot<float>(normal, Vector3(moved[0], moved[1], moved[2]));
-        const float most = gap >= 0 ? gap / h : std::max(gap * kFixedOverlapRemoved / h, -fastest);
+        const float most = gap >= 0 ? gap / h : std::max(gap * kImmovableOverlapRemoved / h, -fastest);
         const float into =
             Dot<float>(normal, Vector3(v - world.bodies.LinearVelocityOf(world.pairs.pairs[pair].bodyB)));
         if (into > most) v -= normal * (into - most);

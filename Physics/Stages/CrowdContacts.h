@@ -18,11 +18,11 @@ RelativePose WithDistinctCenters(const WorldState& world, const Pair& pair, cons
 // Notes in `findings` which bodies of a pair overlap deeply, and which crowded ones overlap at all; `bInA` is that of
 // the shapes.
 void NoteOverlap(const WorldState& world, uint32_t pair, const RelativePose& bInA, WorkerFindings& findings);
-// Gathers what the workers noted into WorldState::deepOverlaps and crowded. One thread.
-void GatherCrowd(WorldState& world, StepState& step);
+// Gathers what the workers noted into `crowd`, and marks the crowded bodies. One thread.
+void GatherCrowd(BodyStore& bodies, CrowdState& crowd, std::span<WorkerFindings> workers);
 
 // Limits the velocity with which a crowded body is about to move for h seconds: contacts and joints change it by no
-// more than contactPushSpeed, and it is not pressed into what does not move, whose soft contacts would give way to the
+// more than contactPushSpeed, and it is not pressed into immovable bodies, whose soft contacts would yield to the
 // pushes of so many.
 void LimitPush(WorldState& world, uint32_t body, float h);
 
@@ -35,9 +35,9 @@ inline Vector3 NoFasterThan(const Vector3& v, const Vector3& limit) {
 // World space, from body A to body B.
 Vector3 ContactNormal(const WorldState& world, uint32_t pair);
 
-// Calls visit(pair) for the touching manifolds of a dynamic body with what is not dynamic.
+// Calls visit(pair) for the touching manifolds of a dynamic body with immovable bodies.
 template <class Visitor>
-void VisitFixedContacts(const WorldState& world, uint32_t body, Visitor&& visit) {
+void VisitImmovableContacts(const WorldState& world, uint32_t body, Visitor&& visit) {
     VisitColliders(world, body, [&](uint32_t collider) {
         world.pairs.VisitOf(collider, [&](uint32_t first) {
             for (uint32_t pair = first; pair != PairStore::kNone; pair = world.pairs.pairs[pair].more)

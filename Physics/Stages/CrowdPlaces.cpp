@@ -46,7 +46,7 @@ bool FindLimit(const WorldState& world, uint32_t body, const Ball& ball, const V
     RayHit closest;
     uint32_t met = ~0u;
     float most = 1;
-    world.colliders.fixedTree.CastRay(
+    world.colliders.staticTree.CastRay(
         TreeRay(ball.middle - world.colliders.boundsOrigin, ray), most, [&](uint32_t index) {
             RayHit hit;
             if (!CanCollide(world, body, world.colliders.colliders[index].body)) return;

@@ -49,7 +49,7 @@ void VisitNeighbors(const WorldState& world, uint32_t index, const Visit& visit)
     const uint32_t layers = world.settings.layerCollides[world.bodies.dynamics[self.body].layer];
     if ((layers & store.movingLayers) && !world.bodies.dynamics[self.body].dispersing)
         store.movingTree.Query(self.fat, visit);
-    if (self.moving && (layers & store.fixedLayers)) store.fixedTree.Query(self.fat, visit);
+    if (self.moving && (layers & store.staticLayers)) store.staticTree.Query(self.fat, visit);
 }
 
 // What one collider meets.
@@ -61,20 +61,19 @@ void Search(const WorldState& world, uint32_t index, uint32_t mostDeep, WorkerFi
     });
 }
 
-void SearchEach(WorldState& world, StepState& step, uint32_t mostDeep) {
+void SearchEach(const WorldState& world, std::span<WorkerFindings> workers, uint32_t mostDeep) {
     const std::vector<uint32_t>& moved = world.colliders.moved;
     world.jobs->ParallelFor(static_cast<uint32_t>(moved.size()), 16, [&](JobRange range) {
-        for (uint32_t i = range.begin; i < range.end; ++i)
-            Search(world, moved[i], mostDeep, step.findings[range.worker]);
+        for (uint32_t i = range.begin; i < range.end; ++i) Search(world, moved[i], mostDeep, workers[range.worker]);
     });
 }
 
 // The same where most have moved: what moves meets what moves, neighbors with neighbors.
-void SearchTogether(WorldState& world, StepState& step, uint32_t mostDeep) {
+void SearchTogether(const WorldState& world, std::span<WorkerFindings> workers, uint32_t mostDeep) {
     const ColliderStore& store = world.colliders;
     const auto isQueued = [&](uint32_t i) { return store.colliders[i].queued; };
     world.jobs->ParallelFor(store.movingTree.NodeCount(), 8, [&](JobRange range) {
-        WorkerFindings& found = step.findings[range.worker];
+        WorkerFindings& found = workers[range.worker];
         const auto consider = [&](uint32_t a, uint32_t b) {
             const uint32_t low = std::min(a, b), high = std::max(a, b);
             if (isQueued(low)) Consider(world, low, high, mostDeep, found);
@@ -87,11 +86,11 @@ void SearchTogether(WorldState& world, StepState& step, uint32_t mostDeep) {
         if (found.deepPairs > mostDeep) return;
         store.movingTree.VisitGroups(range.begin, range.end, [&](const Bounds& all, std::span<const uint32_t> ids) {
             bool meets = false;
-            store.fixedTree.Query(all, [&](uint32_t) { meets = true; });
+            store.staticTree.Query(all, [&](uint32_t) { meets = true; });
             if (!meets) return;
             for (uint32_t index : ids) {
                 if (!isQueued(index)) continue;
-                store.fixedTree.Query(store.colliders[index].fat, [&](uint32_t other) {
+                store.staticTree.Query(store.colliders[index].fat, [&](uint32_t other) {
                     if (!isQueued(other) || index < other) Consider(world, index, other, mostDeep, found);
                 });
             }
@@ -99,17 +98,14 @@ void SearchTogether(WorldState& world, StepState& step, uint32_t mostDeep) {
     });
     world.jobs->ParallelFor(static_cast<uint32_t>(store.moved.size()), 256, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i)
-            if (!store.colliders[store.moved[i]].moving)
-                Search(world, store.moved[i], mostDeep, step.findings[range.worker]);
+            if (!store.colliders[store.moved[i]].moving) Search(world, store.moved[i], mostDeep, workers[range.worker]);
     });
 }
 
 // Kinematic bodies search for dispersing ones. These do not search the tree of what moves themselves: each would find
 // all of the crowd.
-void SearchForDispersing(WorldState& world, StepState& step) {
-    if (step.dispersing.empty()) return;
+void SearchForDispersing(const WorldState& world, WorkerFindings& findings) {
     const ColliderStore& store = world.colliders;
-    WorkerFindings& findings = step.findings.front();
     for (uint32_t body = 0; body < world.bodies.Size(); ++body) {
         if (!world.bodies.cold[body].exists || world.bodies.dynamics[body].motion != MotionType::Kinematic) continue;
         VisitColliders(world, body, [&](uint32_t index) {
@@ -122,26 +118,26 @@ void SearchForDispersing(WorldState& world, StepState& step) {
     }
 }
 
-void SearchAll(WorldState& world, StepState& step, uint32_t mostDeep) {
-    if (world.colliders.MostMoved() && step.dispersing.empty()) SearchTogether(world, step, mostDeep);
-    else SearchEach(world, step, mostDeep);
-    SearchForDispersing(world, step);
+void SearchAll(const WorldState& world, const CrowdState& crowd, std::span<WorkerFindings> workers, uint32_t mostDeep) {
+    if (world.colliders.MostMoved() && crowd.dispersing.empty()) SearchTogether(world, workers, mostDeep);
+    else SearchEach(world, workers, mostDeep);
+    if (!crowd.dispersing.empty()) SearchForDispersing(world, workers.front());
 }
 
 // Whether more than mostDeep pairs that overlap deeply were found; then all that was found is dropped.
-bool FoundTooDeep(StepState& step, uint64_t mostDeep) {
+bool FoundTooDeep(std::span<WorkerFindings> workers, uint64_t mostDeep) {
     uint64_t deep = 0;
-    for (WorkerFindings& findings : step.findings) deep += std::exchange(findings.deepPairs, 0);
+    for (WorkerFindings& findings : workers) deep += std::exchange(findings.deepPairs, 0);
     if (deep <= mostDeep) return false;
-    for (WorkerFindings& findings : step.findings) findings.pairs.clear();
+    for (WorkerFindings& findings : workers) findings.pairs.clear();
     return true;
 }
 
 // Bodies that have moved start to disperse, as far as they overlap many others deeply.
-void DisperseMoved(WorldState& world, StepState& step) {
+void DisperseMoved(WorldState& world, CrowdState& crowd, std::span<PairChange> changes, ScratchArena& scratch) {
     std::vector<uint32_t> bodies;
     for (const uint32_t index : world.colliders.moved) bodies.push_back(world.colliders.colliders[index].body);
-    StartDispersing(world, step, bodies);
+    StartDispersing(world, crowd.dispersing, bodies, changes, scratch);
 }
 
 // The searches of this step are over.
@@ -155,7 +151,7 @@ void ForgetMoved(WorldState& world) {
         }
     });
     if (!world.sensors.IsEmpty())
-        for (uint32_t index : store.moved) world.sensors.touched.push_back(store.colliders[index].body);
+        for (uint32_t index : store.moved) world.sensors.changed.push_back(store.colliders[index].body);
     store.moved.clear();
 }
 
@@ -181,14 +177,15 @@ void DescribePair(WorldState& world, uint32_t index) {
 }
 
 // Of keys, sorted: pairs that are new, and pairs that rest.
-void ActivatePairs(WorldState& world, StepState& step, const std::vector<uint64_t>& keys) {
-    const std::span<uint32_t> added = step.scratch.Allocate<uint32_t>(keys.size());
+void ActivatePairs(WorldState& world, std::span<const uint64_t> keys, std::vector<uint32_t>& activated,
+                   ScratchArena& scratch) {
+    const std::span<uint32_t> added = scratch.Allocate<uint32_t>(keys.size());
     uint32_t count = 0;
     for (uint64_t key : keys) {
         const uint32_t a = static_cast<uint32_t>(key >> 32), b = static_cast<uint32_t>(key);
         uint32_t index = world.pairs.Find(a, b);
         if (index == PairStore::kNone) added[count++] = index = AddPair(world, a, b);
-        if (world.pairs.active.Insert(index)) step.activated.push_back(index);
+        if (world.pairs.active.Insert(index)) activated.push_back(index);
     }
     world.jobs->ParallelFor(count, 16, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i) DescribePair(world, added[i]);
@@ -196,35 +193,37 @@ void ActivatePairs(WorldState& world, StepState& step, const std::vector<uint64_
 }
 
 // The lists get room by the size of the world, so that no step of a settled one allocates, whichever worker does what.
-void ReserveLists(StepState& step, size_t colliders) {
-    step.activated.reserve(colliders);
-    step.newPairs.reserve(colliders);
-    for (WorkerFindings& findings : step.findings) findings.pairs.reserve(colliders);
+void ReserveLists(PairUpdates& updates, std::span<WorkerFindings> workers, size_t colliders) {
+    updates.activated.reserve(colliders);
+    updates.found.reserve(colliders);
+    for (WorkerFindings& findings : workers) findings.pairs.reserve(colliders);
 }
 
 }  // namespace
 
-void FindPairs(WorldState& world, StepState& step) {
-    ReserveLists(step, world.colliders.colliders.capacity());
-    step.activated.clear();
-    EndDispersing(world, step);
-    if (!step.deepOverlaps.empty()) StartDispersing(world, step, step.deepOverlaps);
-    step.deepOverlaps.clear();
+void FindPairs(WorldState& world, PairUpdates& updates, CrowdState& crowd, std::span<WorkerFindings> workers,
+               ScratchArena& scratch) {
+    ReserveLists(updates, workers, world.colliders.colliders.capacity());
+    updates.activated.clear();
+    EndDispersing(world, crowd.dispersing, scratch);
+    if (!crowd.deepOverlaps.empty())
+        StartDispersing(world, crowd.dispersing, crowd.deepOverlaps, updates.changes, scratch);
+    crowd.deepOverlaps.clear();
     if (world.colliders.moved.empty()) return;
-    SearchAll(world, step, kMostDeepPairs);
-    if (FoundTooDeep(step, kMostDeepPairs)) {
-        DisperseMoved(world, step);
-        SearchAll(world, step, kAnyNumber);
-        FoundTooDeep(step, kAnyNumber);
+    SearchAll(world, crowd, workers, kMostDeepPairs);
+    if (FoundTooDeep(workers, kMostDeepPairs)) {
+        DisperseMoved(world, crowd, updates.changes, scratch);
+        SearchAll(world, crowd, workers, kAnyNumber);
+        FoundTooDeep(workers, kAnyNumber);
     }
-    std::vector<uint64_t>& found = step.newPairs;
+    std::vector<uint64_t>& found = updates.found;
     found.clear();
-    for (WorkerFindings& findings : step.findings) {
+    for (WorkerFindings& findings : workers) {
         found.insert(found.end(), findings.pairs.begin(), findings.pairs.end());
         findings.pairs.clear();
     }
     std::sort(found.begin(), found.end());
-    ActivatePairs(world, step, found);
+    ActivatePairs(world, found, updates.activated, scratch);
     ForgetMoved(world);
 }
 

@@ -9,7 +9,7 @@ namespace fulcrum {
 
 namespace {
 
-// The axis of rotation wanders the faster the more the principal moments differ: so many substeps that it turns by
+// The axis of rotation moves the faster the more the principal moments differ: so many substeps that it turns by
 // little in each, for a body that turns by `angle` in the step. A step's time must not depend on how fast bodies spin:
 // 256 at most, which serve up to some 1500 rad/s in steps of 1/60 s.
 int RotationSubsteps(const BodyDynamics& d, float angle) {

@@ -19,7 +19,7 @@ bool IsSymmetric(const BodyDynamics& body);
 // Any body, for dt seconds; back in time where dt is negative.
 void RotateFreely(FreeTurn& turn, float dt);
 
-// `count` symmetric bodies, 1 .. kTurnsTogether: little dearer than one, the same bits.
+// `count` symmetric bodies, 1 .. kTurnsTogether: at little more cost than one, the same bits.
 inline constexpr int kTurnsTogether = 4;
 void RotateTogether(FreeTurn* const (&turns)[kTurnsTogether], int count, float dt);
 

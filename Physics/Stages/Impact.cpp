@@ -14,8 +14,8 @@ namespace fulcrum {
 namespace {
 
 constexpr int kIterations = 8;
-// Of the inverse masses: where locked axes leave less response to a push than that, it could part the bodies by a speed
-// along other axes alone, a hundred times the approach. Then the push is left out.
+// Of the inverse masses: where locked axes leave less response to a push than that, it could separate the bodies with a
+// speed along other axes alone, a hundred times the approach. Then the push is left out.
 constexpr float kLeastResponse = 1e-4f;
 
 struct Side {
@@ -129,7 +129,7 @@ private:
     bool approaches_ = false;
     float leastResponse_ = 0;                           // 1/kg
     Vector3 slipsBefore_[SweepHit::kMaxPoints];         // m/s, see Slip
-    float bounceSpeeds_[SweepHit::kMaxPoints] = {};     // m/s, speed to part with
+    float bounceSpeeds_[SweepHit::kMaxPoints] = {};     // m/s, at which they separate
     float normalResponses_[SweepHit::kMaxPoints] = {};  // 1/kg, along the normal
     float normalImpulses_[SweepHit::kMaxPoints] = {};   // N s
     Vector3 frictionImpulses_[SweepHit::kMaxPoints] = {Vector3::Zero(), Vector3::Zero(), Vector3::Zero(),
@@ -207,7 +207,7 @@ Vector3 TurnedFreely(const BodyDynamics& d, const Quaternion& rotation, const Ve
     return after > 0 ? Rotate(then, Vector3(end * std::sqrt(before / after))) : w;
 }
 
-// The sweep turns at the rate of its beginning: what was just parted would else seem to meet again.
+// The sweep turns at the rate of its beginning: bodies that have just bounced would else seem to meet again.
 Impact::Rest FlyOn(const WorldState& world, const SweepStore& sweeps, uint32_t body, const Quaternion& rotation,
                    const Vector3& v, const Vector3& w, const Vector3& since, float rest) {
     const BodyDynamics& d = world.bodies.dynamics[body];
@@ -248,7 +248,7 @@ Impact FindImpact(const WorldState& world, const SweepStore& sweeps, const Sweep
         impact.arrivingLinear[s] = impact.linear[s];
         impact.arrivingAngular[s] = impact.angular[s];
     }
-    impact.parts = hit.pointCount > 0 && !hit.isBlocked && ImpactSolver(world, hit, impact).Run();
+    impact.bounces = hit.pointCount > 0 && !hit.isBlocked && ImpactSolver(world, hit, impact).Run();
     impact.isFinite = true;
     for (int s = 0; s < 2; ++s) {
         if (!bodies.CanMove(pair[s])) continue;

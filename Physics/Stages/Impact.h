@@ -1,5 +1,5 @@
-// How two bodies part where a sweep hit one of them: impulses at the points of their manifold, and how both go on from
-// there. Called by the Continuous stage, for different hits from any number of threads at once.
+// How two bodies bounce where a sweep hit one of them: impulses at the points of their manifold, and how both move on
+// from there. Called by the Continuous stage, for different hits from any number of threads at once.
 #pragma once
 
 #include <Fulcrum/Physics/Stages/StepState.h>
@@ -19,11 +19,11 @@ struct Impact {
     Vector3 arrivingLinear[2];      // m/s, and
     Vector3 arrivingAngular[2];     // rad/s: before it
     Rest rests[2];                  // of what can move
-    bool parts = false;             // a point approached
+    bool bounces = false;           // a point approached
     bool isFinite = false;
 };
 
-// Newton's law of restitution at each point that approaches, Coulomb friction, what is locked or does not move held.
+// Newton's law of restitution at each point that approaches, Coulomb friction; locked axes and immovable bodies hold.
 // Never more energy than before. dt, s: of the step.
 Impact FindImpact(const WorldState& world, const SweepStore& sweeps, const SweepHit& hit, float dt);
 

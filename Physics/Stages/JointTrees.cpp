@@ -13,7 +13,7 @@ constexpr uint32_t kMostSlots = 4096;  // bodies: a tree is solved by one worker
 struct Component {
     std::vector<uint32_t> bodies;
     uint32_t root = kNone;
-    bool anchored = false;       // some joint leads to what does not move
+    bool anchored = false;       // some joint leads to an immovable body
     bool overridesMass = false;  // some joint has other masses than its bodies: a tree has one for each body
 };
 
@@ -73,7 +73,7 @@ private:
                 seen_[other] = 1;
                 component.bodies.push_back(other);
             });
-            // The root: a body that hangs on what does not move, else the heaviest.
+            // The root: a body joined to an immovable one, else the heaviest.
             const bool better = component.root == kNone || (anchored && !component.anchored) ||
                                 (anchored == component.anchored && !anchored && MassOf(body) > MassOf(component.root));
             if (better) component.root = body;
@@ -127,7 +127,7 @@ private:
         trees_.anchors.resize(tree.anchorsBegin);
     }
 
-    // Hangs the root on the first body that does not move; returns the joint.
+    // Joins the root to the first immovable body; returns the joint.
     uint32_t AddHook(uint32_t root) {
         uint32_t hook = kNone;
         VisitJoints(root, [&](uint32_t index, const Joint& joint, int side) {

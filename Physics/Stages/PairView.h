@@ -35,7 +35,7 @@ PairChange CollideWithSurface(WorldState& world, std::span<PairChange> changes, 
                               WorkerFindings& findings);
 
 // Makes places for those, serially, in the order of the pairs.
-void AddMoreManifolds(WorldState& world, StepState& step);
+void AddMoreManifolds(WorldState& world, float dt, PairUpdates& updates, std::span<WorkerFindings> workers);
 
 // Notes what a manifold has come to in this step, once the listener was asked.
 PairChange NoteTouching(WorldState& world, uint32_t pair, WorkerFindings& findings);

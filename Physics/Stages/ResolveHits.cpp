@@ -14,22 +14,23 @@ namespace {
 
 class HitResolver {
 public:
-    HitResolver(WorldState& world, StepState& step, bool isLast) : world_(world), step_(step), isLast_(isLast) {}
+    HitResolver(WorldState& world, SweepStore& sweeps, bool isLast, StepReport& report)
+        : world_(world), sweeps_(sweeps), report_(report), isLast_(isLast) {}
 
     // In the order of their times. What each would do is found beforehand, in parallel: no body is hit twice in a
     // round.
-    void ResolveAll() {
-        const std::vector<SweepHit>& hits = step_.sweeps.hits;
+    void ResolveAll(ScratchArena& scratch) {
+        const std::vector<SweepHit>& hits = sweeps_.hits;
         struct Key {
             float time;
             uint32_t body, otherCollider, index;
             auto Order() const { return std::tie(time, body, otherCollider); }
         };
-        const std::span<Key> order = step_.scratch.Allocate<Key>(hits.size());
-        const std::span<Impact> impacts = step_.scratch.Allocate<Impact>(hits.size());
+        const std::span<Key> order = scratch.Allocate<Key>(hits.size());
+        const std::span<Impact> impacts = scratch.Allocate<Impact>(hits.size());
         world_.jobs->ParallelFor(static_cast<uint32_t>(hits.size()), 8, [&](JobRange range) {
             for (uint32_t i = range.begin; i < range.end; ++i)
-                impacts[i] = FindImpact(world_, step_.sweeps, hits[i], step_.dt);
+                impacts[i] = FindImpact(world_, sweeps_, hits[i], sweeps_.dt);
         });
         for (uint32_t i = 0; i < hits.size(); ++i) order[i] = {hits[i].time, hits[i].body, hits[i].otherCollider, i};
         std::sort(order.begin(), order.end(), [](const Key& a, const Key& b) { return a.Order() < b.Order(); });
@@ -38,8 +39,8 @@ public:
 
 private:
     void Resolve(const SweepHit& hit, const Impact& impact) {
-        const uint32_t places[2] = {PlaceOf(world_, step_, hit.body, &impact.sweeps[0]),
-                                    PlaceOf(world_, step_, hit.other, &impact.sweeps[1])};
+        const uint32_t places[2] = {PlaceOf(world_, sweeps_, hit.body, &impact.sweeps[0]),
+                                    PlaceOf(world_, sweeps_, hit.other, &impact.sweeps[1])};
         if (Swept(places[0]).changed) return;  // it is in the next round, or waits
         const bool lostPartner = places[1] != SweepStore::kNone && Swept(places[1]).changed;
         const bool isUndecided = hit.pointCount == 0 || lostPartner;
@@ -50,26 +51,26 @@ private:
             CastAgain(places[0]);
         } else if (isUndecided) {
             Resume(places[0], hit.time, impact.poses[0]);
-        } else if (!impact.parts && (impact.sweeps[0].waits || impact.sweeps[1].waits)) {
+        } else if (!impact.bounces && (impact.sweeps[0].waits || impact.sweeps[1].waits)) {
             // What goes as fast as the one that waits runs into it, and waits, too.
             for (int s = 0; s < 2; ++s)
                 if (places[s] != SweepStore::kNone && !impact.sweeps[s].waits)
                     Wait(places[s], hit.time, impact, s, impact.linear[s], impact.angular[s]);
         } else {
-            Part(hit, impact, places);
+            Bounce(hit, impact, places);
         }
     }
 
     // Both go on with the velocities after the hit. Where nothing approaches, the solver moved them otherwise than
     // those say.
-    void Part(const SweepHit& hit, const Impact& impact, const uint32_t (&places)[2]) {
+    void Bounce(const SweepHit& hit, const Impact& impact, const uint32_t (&places)[2]) {
         WakeBody(world_, hit.other);
-        step_.report.sweptHits += impact.parts;
+        report_.sweptHits += impact.bounces;
         for (int s = 0; s < 2; ++s) {
             if (places[s] == SweepStore::kNone) continue;
             const uint32_t body = Swept(places[s]).body;
             if (!world_.bodies.CanMove(body)) {
-                if (s == 0 || impact.parts) Resume(places[s], hit.time, impact.poses[s]);
+                if (s == 0 || impact.bounces) Resume(places[s], hit.time, impact.poses[s]);
                 continue;
             }
             world_.bodies.masses[body] = impact.masses[s];
@@ -79,17 +80,17 @@ private:
         }
     }
 
-    Sweep& Swept(uint32_t place) { return step_.sweeps.swept[place]; }
+    Sweep& Swept(uint32_t place) { return sweeps_.swept[place]; }
 
     void CastAgain(uint32_t place) {
         Swept(place).changed = true;
-        step_.sweeps.next.push_back(place);
+        sweeps_.next.push_back(place);
     }
 
     void End(uint32_t place, float time, const Pose& pose) {
         Sweep& sweep = Swept(place);
-        step_.sweeps.ended.push_back(sweep);
-        step_.sweeps.endedAt.push_back(time);
+        sweeps_.ended.push_back(sweep);
+        sweeps_.endedAt.push_back(time);
         sweep.start = pose;
         sweep.from = time;
         sweep.isCut = true;
@@ -105,8 +106,7 @@ private:
         sweep.turn = turn;
     }
 
-    // Stays until the next step; but a kinematic body goes on as it is told. It is in the way of others, who may not
-    // know.
+    // Stays until the next step, as an obstacle that other casts have not seen; but a kinematic body moves on.
     void Wait(uint32_t place, float time, const Impact& impact, int side, const Vector3& linear,
               const Vector3& angular) {
         Sweep& sweep = Swept(place);
@@ -129,29 +129,31 @@ private:
     }
 
     void SetVelocity(uint32_t body, Vector3 linear, Vector3 angular) {
-        step_.report.clampedBodies += LimitSpeeds(world_, body, linear, angular);
+        report_.clampedBodies += LimitSpeeds(world_, body, linear, angular);
         world_.bodies.SetVelocity(body, linear, angular);
     }
 
     WorldState& world_;
-    StepState& step_;
+    SweepStore& sweeps_;
+    StepReport& report_;
     bool isLast_;
 };
 
 }  // namespace
 
-uint32_t PlaceOf(WorldState& world, StepState& step, uint32_t body, const Sweep* known) {
-    SweepStore& store = step.sweeps;
-    if (store.searchBy[body] == SweepStore::SearchBy::None && !world.bodies.CanMove(body)) return SweepStore::kNone;
-    if (store.places[body] == SweepStore::kNone) {
-        Sweep sweep = known ? *known : SweepOf(world, step.sweeps, body);
+uint32_t PlaceOf(const WorldState& world, SweepStore& sweeps, uint32_t body, const Sweep* known) {
+    if (sweeps.searchBy[body] == SweepStore::SearchBy::None && !world.bodies.CanMove(body)) return SweepStore::kNone;
+    if (sweeps.places[body] == SweepStore::kNone) {
+        Sweep sweep = known ? *known : SweepOf(world, sweeps, body);
         sweep.turns = IsCastTurning(world, body);
-        store.places[body] = static_cast<uint32_t>(store.swept.size());
-        store.swept.push_back(sweep);
+        sweeps.places[body] = static_cast<uint32_t>(sweeps.swept.size());
+        sweeps.swept.push_back(sweep);
     }
-    return store.places[body];
+    return sweeps.places[body];
 }
 
-void ResolveHits(WorldState& world, StepState& step, bool isLast) { HitResolver(world, step, isLast).ResolveAll(); }
+void ResolveHits(WorldState& world, SweepStore& sweeps, bool isLast, ScratchArena& scratch, StepReport& report) {
+    HitResolver(world, sweeps, isLast, report).ResolveAll(scratch);
+}
 
 }  // namespace fulcrum

@@ -8,10 +8,10 @@ namespace fulcrum {
 
 // The place of a body's sweep in `swept`, where it comes to be when it is first asked for: as `known`, unless that is
 // null. kNone for what neither is cast nor can move.
-uint32_t PlaceOf(WorldState& world, StepState& step, uint32_t body, const Sweep* known = nullptr);
+uint32_t PlaceOf(const WorldState& world, SweepStore& sweeps, uint32_t body, const Sweep* known = nullptr);
 
 // Settles SweepStore::hits, and notes in `next` whose sweep is to be cast again. isLast: in the last round whatever
 // hits something stays there until the next step.
-void ResolveHits(WorldState& world, StepState& step, bool isLast);
+void ResolveHits(WorldState& world, SweepStore& sweeps, bool isLast, ScratchArena& scratch, StepReport& report);
 
 }  // namespace fulcrum

@@ -1,5 +1,5 @@
-// Sensors: every body that is awake looks into their tree, along its whole way; sensors that move look for bodies that
-// rest. What rests in a sensor that rests stays in its list, and is looked at by nobody. Candidates are sorted by ids
+// Sensors: every body that is awake looks into their tree, along its whole path; sensors that move look for bodies that
+// rest. What rests in a sensor that rests stays in its list, and is not looked at. Candidates are sorted by ids
 // before their shapes are looked at, so that events do not depend on threads.
 #include <Fulcrum/Physics/Stages/SensorVisits.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
@@ -31,7 +31,7 @@ bool Sees(const WorldState& world, const Sensor& sensor, uint32_t body) {
 }
 
 bool IsTouched(const WorldState& world, const SensorSearch& sensing, uint32_t body) {
-    return sensing.touchedIn[body] == world.step;
+    return sensing.changedIn[body] == world.step;
 }
 // Whether it is where it was when the last step ended.
 bool Rests(const WorldState& world, const SensorSearch& sensing, uint32_t body) {
@@ -40,10 +40,10 @@ bool Rests(const WorldState& world, const SensorSearch& sensing, uint32_t body) 
 
 void NoteTouched(WorldState& world, SensorSearch& sensing, std::span<WorkerFindings> workers) {
     SensorStore& store = world.sensors;
-    sensing.touchedIn.resize(world.bodies.Size(), 0);
-    for (uint32_t body : store.touched)
-        if (world.bodies.cold[body].exists) sensing.touchedIn[body] = world.step;
-    store.touched.reserve(world.colliders.colliders.capacity());
+    sensing.changedIn.resize(world.bodies.Size(), 0);
+    for (uint32_t body : store.changed)
+        if (world.bodies.cold[body].exists) sensing.changedIn[body] = world.step;
+    store.changed.reserve(world.colliders.colliders.capacity());
     for (WorkerFindings& findings : workers) {
         findings.sensorCandidates.reserve(sensing.candidates.capacity());
         findings.sensorVisits.reserve(sensing.visits.capacity());
@@ -51,7 +51,7 @@ void NoteTouched(WorldState& world, SensorSearch& sensing, std::span<WorkerFindi
     }
 }
 
-// The parts of the ways that hits have cut, in the order of bodies and times.
+// The segments of the paths that hits have cut, in the order of bodies and times.
 void CollectCutWays(const SweepStore& sweeps, std::vector<MotionSegment>& cut) {
     cut.clear();
     for (size_t i = 0; i < sweeps.ended.size(); ++i)
@@ -69,9 +69,9 @@ void EnlargeSensorBounds(WorldState& world, const SweepStore& sweeps, std::span<
     for (const Sensor& sensor : world.sensors.sensors) {
         const uint32_t body = sensor.id.index;
         if (sensor.removed || !world.bodies.dynamics[body].awake) continue;
-        const Way way(world, sweeps, cut, body);
+        const MotionPath path(world, sweeps, cut, body);
         VisitColliders(world, body, [&](uint32_t i) {
-            Bounds bounds = PieceBounds(world, way, i);
+            Bounds bounds = PieceBounds(world, path, i);
             bounds.Include(TightBoundsOf(world, i));
             Collider& collider = colliders.colliders[i];
             if (collider.fat.Contains(bounds)) return;
@@ -82,7 +82,7 @@ void EnlargeSensorBounds(WorldState& world, const SweepStore& sweeps, std::span<
     colliders.sensorTree.Optimize();
 }
 
-// The body's sphere all along its way.
+// The body's sphere along its whole path.
 Bounds RoundBounds(const WorldState& world, const SweepStore& sweeps, std::span<const MotionSegment> cut,
                    uint32_t body) {
     const Position reach = Position::Constant(double{world.bodies.dynamics[body].outerRadius});
@@ -93,7 +93,7 @@ Bounds RoundBounds(const WorldState& world, const SweepStore& sweeps, std::span<
     };
     const SweepStore::Start* starts = sweeps.starts.data();
     if (body < sweeps.starts.size() && starts[body].step == world.step) include(starts[body].pose.position);
-    for (const MotionSegment& part : CutSegmentsOf(cut, body)) include(part.sweep.start.position);
+    for (const MotionSegment& segment : CutSegmentsOf(cut, body)) include(segment.sweep.start.position);
     const Position& origin = world.colliders.boundsOrigin;
     return RoundedOutwards(lower - origin - reach, upper - origin + reach);
 }
@@ -111,7 +111,7 @@ void SearchFromBody(const WorldState& world, const SweepStore& sweeps, std::span
                                [&](uint32_t i) { AddCandidate(world, colliders.colliders[i].body, body, findings); });
 }
 
-// What is awake, or was touched, looks for itself.
+// What is awake, or was changed, looks for itself.
 void SearchFromSensor(const WorldState& world, const SensorSearch& sensing, const Sensor& sensor,
                       WorkerFindings& findings) {
     if (sensor.removed || Rests(world, sensing, sensor.id.index)) return;
@@ -123,7 +123,7 @@ void SearchFromSensor(const WorldState& world, const SensorSearch& sensing, cons
         };
         const Bounds& bounds = colliders.colliders[i].fat;
         colliders.movingTree.Query(bounds, visit);
-        if (sensor.sees & SensorSees::Static) colliders.fixedTree.Query(bounds, visit);
+        if (sensor.sees & SensorSees::Static) colliders.staticTree.Query(bounds, visit);
         if (sensor.sees & SensorSees::Sensors) colliders.sensorTree.Query(bounds, visit);
     });
 }
@@ -140,8 +140,8 @@ void FindCandidates(const WorldState& world, const SweepStore& sweeps, SensorSea
     forEach(awake.size(), 128, [&](uint32_t i, WorkerFindings& findings) {
         SearchFromBody(world, sweeps, sensing.cut, awake[i], findings);
     });
-    forEach(store.touched.size(), 128, [&](uint32_t i, WorkerFindings& findings) {
-        const uint32_t body = store.touched[i];
+    forEach(store.changed.size(), 128, [&](uint32_t i, WorkerFindings& findings) {
+        const uint32_t body = store.changed[i];
         if (world.bodies.cold[body].exists && !world.bodies.dynamics[body].awake)
             SearchFromBody(world, sweeps, sensing.cut, body, findings);
     });
@@ -175,8 +175,8 @@ void LookAtCandidate(const WorldState& world, const SweepStore& sweeps, const Se
         findings.sensorVisits.push_back({place, body, 0, 1, true, true});
         return;
     }
-    FindVisits(world, place, Way(world, sweeps, sensing.cut, sensor.id.index), Way(world, sweeps, sensing.cut, body),
-               atStart, findings.sensorVisits);
+    FindVisits(world, place, MotionPath(world, sweeps, sensing.cut, sensor.id.index),
+               MotionPath(world, sweeps, sensing.cut, body), atStart, findings.sensorVisits);
 }
 
 void FindAllVisits(const WorldState& world, const SweepStore& sweeps, SensorSearch& sensing,
@@ -294,7 +294,7 @@ void Sense(WorldState& world, const SweepStore& sweeps, SensorSearch& sensing, s
     FindCandidates(world, sweeps, sensing, workers);
     FindAllVisits(world, sweeps, sensing, workers, report);
     ReportAll(world, sensing, report);
-    store.touched.clear();
+    store.changed.clear();
 }
 
 }  // namespace fulcrum

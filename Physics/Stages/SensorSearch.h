@@ -15,22 +15,22 @@ struct SensorVisit {
     bool atStart = false, atEnd = false;
 };
 
-// A straight part of a body's way: its sweep, from sweep.from until then.
+// A segment of a body's path: its sweep, from sweep.from until then.
 struct MotionSegment {
     Sweep sweep;
     float until = 1;
 };
 
 struct SensorSearch {
-    std::vector<uint64_t> touchedIn;   // by body: the last step in which SensorStore::touched had it
+    std::vector<uint64_t> changedIn;   // by body: the last step in which SensorStore::changed had it
     std::vector<uint64_t> candidates;  // place of a sensor, index of a body that may overlap it in this step; sorted
     std::vector<SensorVisit> visits;   // sorted
-    std::vector<MotionSegment> cut;    // ways of several parts, by body and time
+    std::vector<MotionSegment> cut;    // paths of several segments, by body and time
 };
 
 inline size_t HeapBytes(const SensorSearch& search) {
-    const auto& [touchedIn, candidates, visits, cut] = search;
-    return HeapBytes(touchedIn, candidates, visits, cut);
+    const auto& [changedIn, candidates, visits, cut] = search;
+    return HeapBytes(changedIn, candidates, visits, cut);
 }
 
 }  // namespace fulcrum

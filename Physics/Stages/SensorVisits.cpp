@@ -22,19 +22,19 @@ constexpr float kSameTime = 1e-6f;
 
 Pose PoseOf(const ColliderShape& piece, const Pose& body) { return piece.offset ? body * piece.local : body; }
 
-// A piece of a body on a straight part of its way.
+// A piece of a body on a segment of its path.
 struct Mover {
-    const Way& way;
-    const MotionSegment& part;
+    const MotionPath& path;
+    const MotionSegment& segment;
     const ColliderShape& piece;
 
-    Pose BodyAt(float time) const { return way.PoseAt(part, time); }
+    Pose BodyAt(float time) const { return path.PoseAt(segment, time); }
     Pose PieceAt(float time) const { return PoseOf(piece, BodyAt(time)); }
-    bool IsStill() const { return part.sweep.displacement.isZero(0) && part.sweep.turn.isZero(0); }
+    bool IsStill() const { return segment.sweep.displacement.isZero(0) && segment.sweep.turn.isZero(0); }
     // rad; what no one can see of a ball is none.
     float Angle(float from, float until) const {
         const bool isRound = piece.shape->Type() == ShapeType::Sphere && !piece.offset;
-        return isRound ? 0.0f : Length(part.sweep.TurnRate()) * (until - from);
+        return isRound ? 0.0f : Length(segment.sweep.TurnRate()) * (until - from);
     }
     float Radius() const { return piece.shape->OuterRadius() + Length(piece.local.position); }
     bool IsConvex() const { return piece.shape->IsConvex(); }
@@ -46,7 +46,7 @@ struct Touch {
     float time = 0;
 };
 
-// From `start` to `end`, which is earlier where the way is gone back. The other keeps the rotation that it has in the
+// From `start` to `end`, which is earlier where the path is gone back. The other keeps the rotation that it has in the
 // middle.
 Touch Cast(const Mover& caster, const Mover& other, float start, float end, NarrowPhaseMethod method) {
     const ConvexShape& shape = static_cast<const ConvexShape&>(*caster.piece.shape);
@@ -59,7 +59,7 @@ Touch Cast(const Mover& caster, const Mover& other, float start, float end, Narr
     Pose at = other.PieceAt(start);
     motion.displacement =
         Between(motion.pose.position, last.position) - Between(at.position, other.PieceAt(end).position);
-    if (turns) motion.turn = caster.part.sweep.TurnRate() * (end - start);
+    if (turns) motion.turn = caster.segment.sweep.TurnRate() * (end - start);
     if (other.Angle(from, until) > kLeastTurn) at.rotation = other.PieceAt(0.5f * (start + end)).rotation;
     const ConvexShape* cast = &shape;
     if (turns && caster.piece.offset) cast = &placed;
@@ -93,20 +93,21 @@ Touch FirstTouch(const Mover& sensor, const Mover& body, float start, float end,
 
 class PairSearch {
 public:
-    PairSearch(const WorldState& world, uint32_t place, const Way& sensorWay, const Way& bodyWay,
+    PairSearch(const WorldState& world, uint32_t place, const MotionPath& sensorPath, const MotionPath& bodyPath,
                std::vector<SensorVisit>& visits)
         : world_(world),
           place_(place),
-          sensorWay_(sensorWay),
-          bodyWay_(bodyWay),
+          sensorPath_(sensorPath),
+          bodyPath_(bodyPath),
           visits_(visits),
           first_(visits.size()) {}
 
     void Run(AtStart atStart) {
-        if (!IsOnePiece(world_, sensorWay_.Body()) || !IsOnePiece(world_, bodyWay_.Body())) atStart = AtStart::Unknown;
-        VisitColliders(world_, bodyWay_.Body(), [&](uint32_t j) {
-            const Bounds bounds = PieceBounds(world_, bodyWay_, j);
-            VisitColliders(world_, sensorWay_.Body(), [&](uint32_t i) {
+        if (!IsOnePiece(world_, sensorPath_.Body()) || !IsOnePiece(world_, bodyPath_.Body()))
+            atStart = AtStart::Unknown;
+        VisitColliders(world_, bodyPath_.Body(), [&](uint32_t j) {
+            const Bounds bounds = PieceBounds(world_, bodyPath_, j);
+            VisitColliders(world_, sensorPath_.Body(), [&](uint32_t i) {
                 if (bounds.Overlaps(world_.colliders.colliders[i].fat)) RunPieces(i, j, atStart);
             });
         });
@@ -118,14 +119,14 @@ private:
 
     void RunPieces(uint32_t sensorCollider, uint32_t bodyCollider, AtStart atStart) {
         const ColliderShape sensorPiece = PieceOf(world_, sensorCollider), bodyPiece = PieceOf(world_, bodyCollider);
-        const MotionSegment* a = sensorWay_.Parts().data();
-        const MotionSegment* b = bodyWay_.Parts().data();
+        const MotionSegment* a = sensorPath_.Segments().data();
+        const MotionSegment* b = bodyPath_.Segments().data();
         bool inside = atStart == AtStart::Inside;
         if (atStart == AtStart::Unknown)
-            inside = IsOverlap({sensorWay_, *a, sensorPiece}, {bodyWay_, *b, bodyPiece}, 0);
+            inside = IsOverlap({sensorPath_, *a, sensorPiece}, {bodyPath_, *b, bodyPiece}, 0);
         for (float from = 0; from < 1;) {
             const float until = std::min(a->until, b->until);
-            inside = Stretch({sensorWay_, *a, sensorPiece}, {bodyWay_, *b, bodyPiece}, from, until, inside);
+            inside = Stretch({sensorPath_, *a, sensorPiece}, {bodyPath_, *b, bodyPiece}, from, until, inside);
             if (until >= 1) return;
             if (a->until <= until) ++a;
             if (b->until <= until) ++b;
@@ -165,7 +166,7 @@ private:
     void Add(float from, float until, bool inFrom, bool inUntil) {
         SensorVisit visit;
         visit.sensor = place_;
-        visit.body = bodyWay_.Body();
+        visit.body = bodyPath_.Body();
         visit.from = from;
         visit.until = until;
         visit.atStart = inFrom && from <= 0;
@@ -173,7 +174,7 @@ private:
         visits_.push_back(visit);
     }
 
-    // One visit of what several pieces or parts of the way found at the same time.
+    // One visit of what several pieces or segments of the path found at the same time.
     void Merge() {
         if (visits_.size() - first_ < 2) return;
         const auto begin = visits_.begin() + static_cast<ptrdiff_t>(first_);
@@ -193,8 +194,8 @@ private:
 
     const WorldState& world_;
     uint32_t place_;
-    const Way& sensorWay_;
-    const Way& bodyWay_;
+    const MotionPath& sensorPath_;
+    const MotionPath& bodyPath_;
     std::vector<SensorVisit>& visits_;
     size_t first_;
 };
@@ -202,23 +203,24 @@ private:
 }  // namespace
 
 std::span<const MotionSegment> CutSegmentsOf(std::span<const MotionSegment> cut, uint32_t body) {
-    const auto first = std::lower_bound(cut.begin(), cut.end(), body,
-                                        [](const MotionSegment& part, uint32_t b) { return part.sweep.body < b; });
+    const auto first = std::lower_bound(
+        cut.begin(), cut.end(), body, [](const MotionSegment& segment, uint32_t b) { return segment.sweep.body < b; });
     auto last = first;
     while (last != cut.end() && last->sweep.body == body) ++last;
     return {first, last};
 }
 
-Way::Way(const WorldState& world, const SweepStore& sweeps, std::span<const MotionSegment> cut, uint32_t body)
-    : body_(body), end_(world.bodies.CenterPoseOf(body)), parts_(CutSegmentsOf(cut, body)) {
-    if (!parts_.empty()) return;
+MotionPath::MotionPath(const WorldState& world, const SweepStore& sweeps, std::span<const MotionSegment> cut,
+                       uint32_t body)
+    : body_(body), end_(world.bodies.CenterPoseOf(body)), segments_(CutSegmentsOf(cut, body)) {
+    if (!segments_.empty()) return;
     own_.sweep = SweepOf(world, sweeps, body);
-    parts_ = {&own_, 1};
+    segments_ = {&own_, 1};
 }
 
-Pose Way::PoseAt(const MotionSegment& part, float time) const {
+Pose MotionPath::PoseAt(const MotionSegment& segment, float time) const {
     if (time >= 1) return end_;
-    return time <= part.sweep.from ? part.sweep.start : part.sweep.PoseAt(time);
+    return time <= segment.sweep.from ? segment.sweep.start : segment.sweep.PoseAt(time);
 }
 
 namespace {
@@ -242,15 +244,15 @@ bool OverlapAtEnd(const WorldState& world, uint32_t sensor, uint32_t body) {
            Overlap(*a.shape, *b.shape, relative, world.settings.narrowPhase);
 }
 
-Bounds PieceBounds(const WorldState& world, const Way& way, uint32_t collider) {
+Bounds PieceBounds(const WorldState& world, const MotionPath& path, uint32_t collider) {
     Bounds bounds;
     const ColliderShape piece = PieceOf(world, collider);
     const Position& origin = world.colliders.boundsOrigin;
-    for (const MotionSegment& part : way.Parts()) {
-        const Mover mover{way, part, piece};
-        Bounds ends = BoundsAbout(origin, *mover.piece.shape, mover.PieceAt(part.sweep.from));
-        const float angle = mover.Angle(part.sweep.from, part.until);
-        if (!mover.IsStill()) ends.Include(BoundsAbout(origin, *mover.piece.shape, mover.PieceAt(part.until)));
+    for (const MotionSegment& segment : path.Segments()) {
+        const Mover mover{path, segment, piece};
+        Bounds ends = BoundsAbout(origin, *mover.piece.shape, mover.PieceAt(segment.sweep.from));
+        const float angle = mover.Angle(segment.sweep.from, segment.until);
+        if (!mover.IsStill()) ends.Include(BoundsAbout(origin, *mover.piece.shape, mover.PieceAt(segment.until)));
         // A point at the distance r from the center leaves the straight line between its ends by at most r (1 -
         // cos(angle / 2)).
         bounds.Include(Inflated(ends, std::min(0.125f * angle * angle, 2.0f) * mover.Radius()));
@@ -258,9 +260,9 @@ Bounds PieceBounds(const WorldState& world, const Way& way, uint32_t collider) {
     return bounds;
 }
 
-void FindVisits(const WorldState& world, uint32_t sensor, const Way& sensorWay, const Way& bodyWay, AtStart atStart,
-                std::vector<SensorVisit>& visits) {
-    PairSearch(world, sensor, sensorWay, bodyWay, visits).Run(atStart);
+void FindVisits(const WorldState& world, uint32_t sensor, const MotionPath& sensorPath, const MotionPath& bodyPath,
+                AtStart atStart, std::vector<SensorVisit>& visits) {
+    PairSearch(world, sensor, sensorPath, bodyPath, visits).Run(atStart);
 }
 
 }  // namespace fulcrum

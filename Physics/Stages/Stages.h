@@ -12,19 +12,24 @@ namespace fulcrum {
 void UpdateBounds(WorldState& world, float dt, std::vector<DispersingBody>& dispersing,
                   std::span<WorkerFindings> workers);
 
-// Reads trees and the colliders that moved. Adds pairs, sorted by id, and activates resting ones.
-void FindPairs(WorldState& world, StepState& step);
+// Reads trees and the colliders that moved. Adds pairs, sorted by id, and activates resting ones, which it lists in
+// `updates`. Bodies that overlap many others deeply start to disperse, others have dispersed: these lose pairs, collide
+// again.
+void FindPairs(WorldState& world, PairUpdates& updates, CrowdState& crowd, std::span<WorkerFindings> workers,
+               ScratchArena& scratch);
 
-// Reads active pairs, poses, shapes. Writes manifolds into the records, and which pairs changed. Wakes what is hit.
-void Collide(WorldState& world, StepState& step);
+// Reads active pairs, poses, shapes. Writes manifolds into the records, which pairs changed, and which bodies overlap
+// deeply. Wakes what is hit, and finds its pairs.
+void Collide(WorldState& world, float dt, PairUpdates& updates, CrowdState& crowd, std::span<WorkerFindings> workers,
+             ScratchArena& scratch, StepReport& report);
 
 // Applies the changes, which are None afterwards: colors contacts that began, and lists them in `began`; uncolors those
 // that ended, removes dead pairs.
 void Color(uint32_t bodyCount, std::span<PairChange> changes, PairStore& pairs, ConstraintColoring& coloring,
            std::vector<uint32_t>& began);
 
-// Takes the points from the records of contacts that only a seam between two fixed bodies makes, and notes their pairs
-// in `seams`; first gives those of the last step theirs back.
+// Takes the points from the records of contacts that only a seam between two immovable bodies makes, and notes their
+// pairs in `seams`; first gives those of the last step theirs back.
 void RemoveSeamContacts(const BodyStore& bodies, const ColliderStore& colliders, const ConstraintColoring& coloring,
                         PairStore& pairs, std::vector<uint32_t>& seams, ScratchArena& scratch);
 
@@ -42,14 +47,16 @@ void Solve(WorldState& world, StepState& step);
 // Bounces what was hit.
 void Restitution(WorldState& world, StepState& step);
 
-// Writes impulses to the records, displacements to the poses; moves bodies that nothing touched; measures slowness;
-// breaks joints.
+// Writes impulses to the records, displacements to the poses; moves bodies without contacts and joints; measures
+// slowness; breaks joints.
 void Store(WorldState& world, StepState& step);
 
-// Casts what moved far and wants it along its way; what hits something bounces there.
-void Continuous(WorldState& world, StepState& step);
+// Reads where bodies were when the step began. Casts those with continuous collision that moved far along their path:
+// what hits something bounces there, and gets another pose and velocity. Writes the sweeps of the step.
+void Continuous(WorldState& world, SweepStore& sweeps, std::span<WorkerFindings> workers, ScratchArena& scratch,
+                StepReport& report);
 
-// Finds what is inside the sensors, and what came in or left, all along the ways of the step. Of the world it writes
+// Finds what is inside the sensors, and what came in or left, along the paths of the step. Of the world it writes
 // the sensors, and the bounds of their colliders.
 void Sense(WorldState& world, const SweepStore& sweeps, SensorSearch& sensing, std::span<WorkerFindings> workers,
            StepReport& report);

@@ -20,12 +20,16 @@ struct Stage {
 // The order in which they run, and what each is given.
 constexpr Stage kStages[] = {
     {"UpdateBounds",
-     [](WorldState& world, StepState& step) { UpdateBounds(world, step.dt, step.dispersing, step.findings); }},
-    {"FindPairs", FindPairs},
-    {"Collide", Collide},
+     [](WorldState& world, StepState& step) { UpdateBounds(world, step.dt, step.crowd.dispersing, step.findings); }},
+    {"FindPairs",
+     [](WorldState& world, StepState& step) { FindPairs(world, step.pairs, step.crowd, step.findings, step.scratch); }},
+    {"Collide",
+     [](WorldState& world, StepState& step) {
+         Collide(world, step.dt, step.pairs, step.crowd, step.findings, step.scratch, step.report);
+     }},
     {"Color",
      [](WorldState& world, StepState& step) {
-         Color(world.bodies.Size(), step.changes, world.pairs, world.coloring, step.began);
+         Color(world.bodies.Size(), step.pairs.changes, world.pairs, world.coloring, step.began);
      }},
     {"RemoveSeamContacts",
      [](WorldState& world, StepState& step) {
@@ -40,7 +44,8 @@ constexpr Stage kStages[] = {
     {"Solve", Solve},
     {"Restitution", Restitution},
     {"Store", Store},
-    {"Continuous", Continuous},
+    {"Continuous", [](WorldState& world,
+                      StepState& step) { Continuous(world, step.sweeps, step.findings, step.scratch, step.report); }},
     {"Sense",
      [](WorldState& world, StepState& step) { Sense(world, step.sweeps, step.sensing, step.findings, step.report); }},
     {"Sleep", [](WorldState& world, StepState& step) { Sleep(world, step.sleepCandidates, step.scratch); }},

@@ -15,13 +15,21 @@ size_t HeapBytes(const WorkerFindings& findings) {
                      sleepCandidates, bounces, joints);
 }
 
+size_t HeapBytes(const PairUpdates& updates) {
+    const auto& [found, activated, changes, moreManifolds] = updates;
+    return HeapBytes(found, activated, changes, moreManifolds);
+}
+
+size_t HeapBytes(const CrowdState& crowd) {
+    const auto& [deepOverlaps, dispersing, crowded] = crowd;
+    return HeapBytes(deepOverlaps, dispersing, crowded);
+}
+
 size_t HeapBytes(const StepState& step) {
-    const auto& [dt, substepDt, impulseScale, lastSubstepDt, report, findings, scratch, newPairs, activated, changes,
-                 moreManifolds, deepOverlaps, dispersing, crowded, began, seams, solver, bounces, broken,
-                 sleepCandidates, sweeps, sensing] = step;
-    return HeapBytes(dt, substepDt, impulseScale, lastSubstepDt, report, findings, scratch, newPairs, activated,
-                     changes, moreManifolds, deepOverlaps, dispersing, crowded, began, seams, solver, bounces, broken,
-                     sleepCandidates, sweeps, sensing);
+    const auto& [dt, substepDt, impulseScale, lastSubstepDt, report, findings, scratch, pairs, crowd, began, seams,
+                 solver, bounces, broken, sleepCandidates, sweeps, sensing] = step;
+    return HeapBytes(dt, substepDt, impulseScale, lastSubstepDt, report, findings, scratch, pairs, crowd, began, seams,
+                     solver, bounces, broken, sleepCandidates, sweeps, sensing);
 }
 
 }  // namespace fulcrum

@@ -65,6 +65,26 @@ struct DispersingBody {
 // What Collide found out about an active pair that the rest of the world must hear of.
 enum class PairChange : uint8_t { None, Began, Ended, Dead, WakesOther };
 
+// What FindPairs and Collide hand on about pairs; all of this step.
+struct PairUpdates {
+    std::vector<uint64_t> found;              // FindPairs: keys of new and of resting pairs, sorted
+    std::vector<uint32_t> activated;          // FindPairs: pairs that it made active
+    std::vector<PairChange> changes;          // Collide: by pair; None for those that are not active
+    std::vector<MoreManifold> moreManifolds;  // Collide
+};
+
+size_t HeapBytes(const PairUpdates& updates);
+
+// Bodies of crowds (Stages/Crowd.h).
+struct CrowdState {
+    // Collide: bodies, ascending, once for each deep overlap; empty if none has many.
+    std::vector<uint32_t> deepOverlaps;
+    std::vector<DispersingBody> dispersing;  // by body, ascending
+    std::vector<uint32_t> crowded;  // these, and those that have dispersed and still overlap something; repeated
+};
+
+size_t HeapBytes(const CrowdState& crowd);
+
 struct StepState {
     float dt = 0;             // s, of the step, > 0
     float substepDt = 0;      // s
@@ -75,16 +95,10 @@ struct StepState {
     std::vector<WorkerFindings> findings;  // by worker
     ScratchArena scratch;
 
-    std::vector<uint64_t> newPairs;           // FindPairs
-    std::vector<uint32_t> activated;          // FindPairs: pairs that it made active
-    std::vector<PairChange> changes;          // Collide: by pair, of this step; None for those that are not active
-    std::vector<MoreManifold> moreManifolds;  // Collide
-    std::vector<uint32_t>
-        deepOverlaps;  // Collide: bodies, ascending, once for each deep overlap; empty if none has many
-    std::vector<DispersingBody> dispersing;  // by body, ascending
-    std::vector<uint32_t> crowded;  // these, and those that have dispersed and still overlap something; repeated
-    std::vector<uint32_t> began;    // Color: pairs that began to touch
-    std::vector<uint32_t> seams;    // RemoveSeamContacts: pairs without their points, in the last step
+    PairUpdates pairs;
+    CrowdState crowd;
+    std::vector<uint32_t> began;  // Color: pairs that began to touch
+    std::vector<uint32_t> seams;  // RemoveSeamContacts: pairs without their points, in the last step
     SolverLayout solver;
     bool bounces = false;          // Prepare: some contact of this step has restitution
     std::vector<JointId> broken;   // Store: in the last step

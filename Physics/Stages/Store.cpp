@@ -1,5 +1,5 @@
-// Ends the step for each body: what was solved moves by the sum of its substeps, what nothing touched flies freely and
-// exactly. Impulses go back to the records.
+// Ends the step for each body: what was solved moves by the sum of its substeps, what has no contact or joint flies
+// freely and exactly. Impulses go back to the records.
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Physics/Stages/BodyLimits.h>
 #include <Fulcrum/Physics/Stages/Crowd.h>
@@ -23,12 +23,12 @@ struct Ending {
     Vector3 displacement = Vector3::Zero();  // m
     Vector3 v = Vector3::Zero();             // m/s, at its end
     FreeTurn turn;                           // what is found, where it turns freely, or has been found
-    bool fliesFreely = false;                // nothing touched it
+    bool fliesFreely = false;                // it has no contact or joint
     float pulled = 0;                        // m/s, see PulledSpeed
 };
 
-// A body that no contact touched: x += v t + a t^2 / 2, exact under constant acceleration. Returns whether it is still
-// to be turned, keeping its angular momentum.
+// A body without contacts and joints: x += v t + a t^2 / 2, exact under constant acceleration. Returns whether it is
+// still to be turned, keeping its angular momentum.
 bool FlyFreely(WorldState& world, Ending& ending, const StepState& step, WorkerFindings& findings) {
     const BodyDynamics& d = *ending.turn.body;
     const float* a = world.bodies.poses[ending.body].acceleration;
@@ -57,8 +57,8 @@ bool FlyFreely(WorldState& world, Ending& ending, const StepState& step, WorkerF
     return false;
 }
 
-// The solver changed the angular velocity of a body as it stood at the step's beginning. Impulses on the way let it
-// turn otherwise than about the velocity of the end; the spin of a thin rod about its own axis, left behind in world
+// The solver changed the angular velocity of a body as it stood at the step's beginning. Impulses within the step let
+// it turn otherwise than about the velocity of the end; the spin of a thin rod about its own axis, left behind in world
 // axes while that turned, is then a turn of the rod itself, with a thousand times the energy. What would gain a
 // twentieth is carried along with the body, as far as it takes to gain none; not what rocks as it comes to rest, which
 // its support damps.
@@ -143,7 +143,7 @@ bool PushIsFinite(const WorldState& world, uint32_t body) {
     return IsFinite(Vector3(a[0], a[1], a[2])) && IsFinite(Vector3(inverse * world.bodies.cold[body].torque));
 }
 
-// Whether somebody asks how bodies move within the step.
+// Whether continuous collision or sensors need to know how bodies move within the step.
 bool KeepsStarts(const WorldState& world) { return world.bodies.continuousCount > 0 || !world.sensors.IsEmpty(); }
 
 // Finds how a body ends the step. False: it has nothing to end. `together`: it is still to be turned, one of several.
@@ -185,7 +185,7 @@ void FinishEnding(WorldState& world, Ending& ending, const StepState& step, Work
         return Stop(world, body, findings);
     BodyState& state = bodies.states[body];
     state = {.marks = state.marks};
-    if (d.dispersing) v = OwnVelocity(world, step.dispersing, body, v, step.dt);
+    if (d.dispersing) v = OwnVelocity(world, step.crowd.dispersing, body, v, step.dt);
     findings.clamped += LimitSpeeds(world, body, v, w);
     bodies.SetVelocity(body, v, w);
     bodies.MoveCenter(body, ending.displacement, ending.turn.rotation);

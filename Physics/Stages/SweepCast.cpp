@@ -118,7 +118,7 @@ private:
         // Dispersing bodies do not collide with dynamic ones; to visit all that they overlap would cost n^2.
         if ((layers & world_.colliders.movingLayers) && !world_.bodies.dynamics[sweep_.body].dispersing)
             world_.colliders.movingTree.CastRay(ray, limit_, visit);
-        if (layers & world_.colliders.fixedLayers) world_.colliders.fixedTree.CastRay(ray, limit_, visit);
+        if (layers & world_.colliders.staticLayers) world_.colliders.staticTree.CastRay(ray, limit_, visit);
     }
 
     void CastAgainst(uint32_t other, const ShapeCaster& whole, float from = 0) {
@@ -165,7 +165,7 @@ private:
         settings.tolerance = 0.02f * Thickness(*shape_);
         settings.measureDepth = false;
         if (length > 0) settings.maxFraction = std::min(1.0f, std::max(0.0f, (best_.time - start) / length));
-        float touched = 1;  // when it touched, but not so that it counts
+        float touchTime = 1;  // when it touched, but not so that it counts
         bool asksForTurn = false;
         caster.Visit(shape, at, settings, [&](const ShapeHit& found) {
             if (triangles_ > kMostTriangles) return 0.0f;
@@ -180,13 +180,13 @@ private:
                     return -1.0f;
                 }
                 if (counts && Behaves(hit)) Take(hit);
-                else touched = std::min(touched, hit.time);
+                else touchTime = std::min(touchTime, hit.time);
             }
             return length > 0 ? (best_.time - start) / length : 0.0f;
         });
         if (asksForTurn) return CastTurning(other);
         // Without a turn what does not push now never will.
-        if (isTurning_ && touched < best_.time) Follow(motion, theirSweep, other, length, touched, whole);
+        if (isTurning_ && touchTime < best_.time) Follow(motion, theirSweep, other, length, touchTime, whole);
     }
 
     // Whether the turn makes another hit of one that was found without it: where it moves points by a part of the depth

@@ -1,5 +1,5 @@
 // How bodies moved within a step: for continuous collision, which cuts their sweeps short where they hit something, and
-// for whoever must see what passed in between. Kept only while a body asks for it. Written by Store and Continuous.
+// for sensors, which see what passed in between. Kept only while a body asks for it. Written by Store and Continuous.
 #pragma once
 
 #include <Fulcrum/Constraints/MassOverride.h>
@@ -15,7 +15,7 @@ namespace fulcrum {
 // In float, of which the places themselves are too far from zero for it.
 inline Vector3 Between(const Position& from, const Position& to) { return (to - from).cast<float>(); }
 
-// A body's way from some time of the step to its end: its center of mass moves straight, it turns at a constant rate.
+// A body's path from some time of the step to its end: its center of mass moves straight, it turns at a constant rate.
 // Times are fractions of the step, 0 .. 1. All positions are on the grid, as those of the step are.
 struct Sweep {
     Pose start;                              // of the center frame, at `from`
@@ -54,8 +54,8 @@ struct SweepHit {
     float friction = 0, restitution = 0;
     Vector3 surfaceVelocity = Vector3::Zero();  // m/s, of the other's surface against its body
     MassOverride massOverride;                  // the body as A, the other as B
-    bool isBlocked =
-        false;  // neither has continuous collision; the body is cast since it was hit, and waits for the next step
+    // Neither has continuous collision: the body is cast because it was hit, and waits for the next step.
+    bool isBlocked = false;
     int pointCount = 0;                               // 0: the cast was not decided; nothing is touched before `time`
     Vector3 normal = Vector3::Zero();                 // unit, from the body towards the other
     Position center = Position::Zero();               // m, of the body's mass, where it touches
@@ -66,7 +66,7 @@ struct SweepStore {
     // Where the first round looks for what a fast body may hit.
     enum class SearchBy : uint8_t {
         None,
-        Pairs,  // its way lies inside its fat bounds: there is a pair for all that it may hit
+        Pairs,  // its path lies inside its fat bounds: there is a pair for all that it may hit
         Trees,
     };
     static constexpr uint32_t kNone = ~0u;

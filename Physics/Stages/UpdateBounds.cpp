@@ -92,7 +92,7 @@ void UpdateTrees(WorldState& world) {
         if (!together || !collider.moving || collider.sensor) store.TreeOf(collider).Update(i, collider.fat);
     }
     store.movingTree.Optimize();
-    store.fixedTree.Optimize();
+    store.staticTree.Optimize();
 }
 
 }  // namespace

@@ -106,7 +106,7 @@ void MakeColliders(WorldState& world, uint32_t body) {
         compound ? static_cast<uint32_t>(compound->Children().size()) : (shape.Type() == ShapeType::Empty ? 0 : 1);
     cold.firstCollider = store.Allocate(cold.colliderCount);
     const bool moving = world.bodies.dynamics[body].motion != MotionType::Static;
-    if (!cold.isSensor) (moving ? store.movingLayers : store.fixedLayers) |= 1u << world.bodies.dynamics[body].layer;
+    if (!cold.isSensor) (moving ? store.movingLayers : store.staticLayers) |= 1u << world.bodies.dynamics[body].layer;
     for (uint32_t i = 0; i < cold.colliderCount; ++i) {
         const uint32_t index = cold.firstCollider + i;
         if (compound) SetPiece(world, index, *compound, compound->Children()[i]);
@@ -132,7 +132,7 @@ void DropColliders(WorldState& world, uint32_t body) {
 void UpdateChildCollider(WorldState& world, uint32_t body, uint32_t child) {
     const BodyCold& cold = world.bodies.cold[body];
     const CompoundShape::Child& is = cold.children->compound->Children()[child];
-    if (!world.sensors.IsEmpty()) world.sensors.touched.push_back(body);
+    if (!world.sensors.IsEmpty()) world.sensors.changed.push_back(body);
     const uint32_t index = ColliderOf(world, body, child);
     const Shape* was = world.colliders.shapes[index].shape;
     if (was) {

@@ -46,9 +46,9 @@ void ColliderStore::FreeRuns(uint32_t run) {
 }
 
 size_t HeapBytes(const ColliderStore& store) {
-    const auto& [colliders, shapes, boundsOrigin, fixedTree, movingTree, sensorTree, movingLayers, fixedLayers, moved,
+    const auto& [colliders, shapes, boundsOrigin, staticTree, movingTree, sensorTree, movingLayers, staticLayers, moved,
                  movedHasEmpty, runs, free, freeRuns] = store;
-    return HeapBytes(colliders, shapes, boundsOrigin, fixedTree, movingTree, sensorTree, movingLayers, fixedLayers,
+    return HeapBytes(colliders, shapes, boundsOrigin, staticTree, movingTree, sensorTree, movingLayers, staticLayers,
                      moved, movedHasEmpty, runs, free, freeRuns);
 }
 

@@ -1,6 +1,7 @@
 // Colliders: the pieces of the bodies, as the broad phase sees them. A compound has one per child, in a run of
 // consecutive ones, every other shape one. A mutable compound that outgrows its run gets further ones; a removed child
-// leaves its collider empty, without a shape. Trees keep what moves, what never does, and sensors apart.
+// leaves its collider empty, without a shape. There are trees of static colliders, of those that may move, and of
+// sensors.
 #pragma once
 
 #include <Fulcrum/Collision/BroadPhase/BoundsTree.h>
@@ -45,13 +46,13 @@ public:
     // m, world: where all bounds are measured from. They are float, fine near it and coarse far from it, so it is near
     // the first body of an empty world, in steps of a kilometer.
     Position boundsOrigin = Position::Zero();
-    BoundsTree fixedTree, movingTree, sensorTree;
-    uint32_t movingLayers = 0, fixedLayers = 0;  // bit i: a body of layer i is, or was, in the tree
-    std::vector<uint32_t> moved;                 // whose pairs must be searched
-    bool movedHasEmpty = false;                  // some of them have been removed since
-    std::vector<ColliderRun> runs;               // bodies' further ones
+    BoundsTree staticTree, movingTree, sensorTree;
+    uint32_t movingLayers = 0, staticLayers = 0;  // bit i: a body of layer i is, or was, in the tree
+    std::vector<uint32_t> moved;                  // whose pairs must be searched
+    bool movedHasEmpty = false;                   // some of them have been removed since
+    std::vector<ColliderRun> runs;                // bodies' further ones
 
-    BoundsTree& TreeOf(const Collider& c) { return c.sensor ? sensorTree : c.moving ? movingTree : fixedTree; }
+    BoundsTree& TreeOf(const Collider& c) { return c.sensor ? sensorTree : c.moving ? movingTree : staticTree; }
     uint32_t Allocate(uint32_t count);  // index of the first of `count` consecutive ones
     void Free(uint32_t first, uint32_t count);
     uint32_t AddRun(uint32_t count);  // index of a further run

@@ -19,7 +19,7 @@ Coloring::Entry EntryOf(const Pair& pair, uint32_t index) {
 void ColorPair(PairStore& pairs, ConstraintColoring& coloring, uint32_t index) {
     Pair& pair = pairs.pairs[index];
     if (pair.color.color != 0xFF) return;
-    // Contacts with what does not move come last: they must win.
+    // Contacts with immovable bodies come last: they must win.
     pair.color = coloring.Add(KindOf(pair), EntryOf(pair, index), pair.fixedB);
 }
 

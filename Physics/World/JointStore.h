@@ -25,7 +25,7 @@ struct Joint {
     bool enabled = true;
     bool collideConnected = false;
     bool overridesMass = false;      // massOverride is not none
-    bool still[2] = {false, false};  // the body is not dynamic, or frozen
+    bool still[2] = {false, false};  // the body is immovable: static, kinematic or frozen
     JointPriority priority = JointPriority::Normal;
     float breakForce = 0, breakTorque = 0;
     SolverSettings effort{0, 0, 0};  // 0: the system's

@@ -24,7 +24,7 @@ struct alignas(64) Pair {
     RelativePose reference;         // of piece B in piece A when the manifold was found
     uint8_t pointCount = 0;         // of the manifold, as found at `reference`; of the record, unless onSeam
     bool exists : 1 = false;
-    bool fixedB : 1 = false;    // B's body is not dynamic
+    bool fixedB : 1 = false;    // B's body is immovable: static or kinematic
     bool offset : 1 = false;    // a piece is not at its body's center frame (child of a compound)
     bool surface : 1 = false;   // B is a surface
     bool touching : 1 = false;  // was active, with points, in the last step
@@ -71,7 +71,7 @@ public:
 
 private:
     static uint64_t Key(uint32_t a, uint32_t b) { return a < b ? (uint64_t(a) << 32 | b) : (uint64_t(b) << 32 | a); }
-    // The pairs of each collider as a list, without which whoever removes a collider would have to look at all pairs.
+    // The pairs of each collider as a list, without which removing a collider would mean to look at all pairs.
     struct Links {
         uint32_t next[2] = {kNone, kNone}, previous[2] = {kNone, kNone};  // in the lists of colliders A and B
     };

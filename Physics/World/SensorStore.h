@@ -14,7 +14,7 @@ struct Sensor {
     BodyId id;
     SensorSees sees = SensorSees::Default;
     bool reportsStay = true;
-    bool removed = false;        // gone before the next step, which still has to say so
+    bool removed = false;        // since the last step: the next one reports what leaves it
     std::vector<BodyId> inside;  // ascending, as the last step ended
     std::vector<BodyId> insideNext;
     std::vector<SensorEvent> events;  // of this step
@@ -22,8 +22,8 @@ struct Sensor {
 
 struct SensorStore {
     std::vector<Sensor> sensors;  // ascending by id
-    std::vector<uint32_t>
-        touched;  // bodies that were created, moved by hand or set otherwise since the last step; any, repeated
+    // Bodies that were created, placed or given other settings since the last step; in no order, repeated.
+    std::vector<uint32_t> changed;
     std::vector<SensorEvent> events;  // of the last step
 
     bool IsEmpty() const { return sensors.empty(); }
@@ -45,7 +45,7 @@ struct SensorStore {
         sensor.sees = sees;
         sensor.reportsStay = reportsStay;
         sensor.removed = false;
-        touched.push_back(id.index);
+        changed.push_back(id.index);
     }
     // It is one.
     void Remove(BodyId id) { sensors[PlaceOf(id)].removed = true; }
@@ -56,8 +56,8 @@ inline size_t HeapBytes(const Sensor& sensor) {
     return HeapBytes(id, sees, reportsStay, removed, inside, insideNext, events);
 }
 inline size_t HeapBytes(const SensorStore& store) {
-    const auto& [sensors, touched, events] = store;
-    return HeapBytes(sensors, touched, events);
+    const auto& [sensors, changed, events] = store;
+    return HeapBytes(sensors, changed, events);
 }
 
 }  // namespace fulcrum

@@ -10,7 +10,7 @@ namespace fulcrum {
 
 namespace {
 
-// What falls asleep outside its fat bounds, because it was fast or the step long, would be found by nobody until it
+// What falls asleep outside its fat bounds, because it was fast or the step long, would not be found until it
 // wakes.
 void RefitFatBounds(WorldState& world, uint32_t body) {
     VisitColliders(world, body, [&](uint32_t i) {

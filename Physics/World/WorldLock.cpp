@@ -3,6 +3,8 @@
 #include <Fulcrum/Math/Assert.h>
 
 #include <algorithm>
+#include <atomic>
+#include <shared_mutex>
 
 namespace fulcrum {
 
@@ -12,6 +14,14 @@ namespace {
 thread_local WorldLock::Scope* tInnermost = nullptr;
 
 }  // namespace
+
+struct WorldLock::State {
+    std::shared_mutex mutex;
+    std::atomic<uint32_t> writers{0};  // that wait or hold
+};
+
+WorldLock::WorldLock() : state_(std::make_unique<State>()) {}
+WorldLock::~WorldLock() = default;
 
 WorldLock::Access WorldLock::OfThisThread(const WorldLock& lock) {
     Access most = Access::None;
@@ -61,28 +71,28 @@ WorldLock::Shared::Shared(WorldLock& lock) : Shared(lock, RefusalOfReading(lock)
 WorldLock::Shared::Shared(WorldLock& lock, std::optional<Error> refusal)
     : Scope(lock, Access::Reads), refusal_(std::move(refusal)) {
     if (before_ != Access::None) return;
-    const uint32_t writers = lock_.writers_.load(std::memory_order_acquire);
-    if (writers != 0) lock_.writers_.wait(writers, std::memory_order_acquire);
-    lock_.mutex_.lock_shared();
+    const uint32_t writers = lock_.state_->writers.load(std::memory_order_acquire);
+    if (writers != 0) lock_.state_->writers.wait(writers, std::memory_order_acquire);
+    lock_.state_->mutex.lock_shared();
 }
 
 WorldLock::Shared::~Shared() {
-    if (before_ == Access::None) lock_.mutex_.unlock_shared();
+    if (before_ == Access::None) lock_.state_->mutex.unlock_shared();
 }
 
 WorldLock::Exclusive::Exclusive(WorldLock& lock) : Exclusive(lock, RefusalOfChanging(lock)) {}
 WorldLock::Exclusive::Exclusive(WorldLock& lock, std::optional<Error> refusal)
     : Scope(lock, refusal ? Access::None : Access::Changes), refusal_(std::move(refusal)) {
     if (before_ != Access::None) return;
-    lock_.writers_.fetch_add(1, std::memory_order_acq_rel);
-    lock_.mutex_.lock();
+    lock_.state_->writers.fetch_add(1, std::memory_order_acq_rel);
+    lock_.state_->mutex.lock();
 }
 
 WorldLock::Exclusive::~Exclusive() {
     if (before_ != Access::None) return;
-    lock_.mutex_.unlock();
-    lock_.writers_.fetch_sub(1, std::memory_order_acq_rel);
-    lock_.writers_.notify_all();
+    lock_.state_->mutex.unlock();
+    lock_.state_->writers.fetch_sub(1, std::memory_order_acq_rel);
+    lock_.state_->writers.notify_all();
 }
 
 void WorldJobs::ParallelFor(uint32_t count, uint32_t minimumRange, FunctionRef<void(JobRange)> job) {

@@ -6,14 +6,16 @@
 #include <Fulcrum/Jobs/JobSystem.h>
 #include <Fulcrum/Math/Result.h>
 
-#include <atomic>
+#include <memory>
 #include <optional>
-#include <shared_mutex>
 
 namespace fulcrum {
 
 class WorldLock {
 public:
+    WorldLock();
+    ~WorldLock();
+
     enum class Access : uint8_t { None, Reads, Changes };
     // The most that this thread does with the world of the lock, by itself or for the thread whose job it runs.
     static Access OfThisThread(const WorldLock& lock);
@@ -65,8 +67,8 @@ public:
     };
 
 private:
-    std::shared_mutex mutex_;
-    std::atomic<uint32_t> writers_{0};  // that wait or hold
+    struct State;  // so that <shared_mutex> and <atomic>, which are slow to compile, stay out of programs
+    const std::unique_ptr<State> state_;
 };
 
 // A job system whose threads know, while they run a world's jobs, what the thread that gave them does with the world.

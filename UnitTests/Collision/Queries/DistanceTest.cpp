@@ -3,6 +3,7 @@
 
 #include <Fulcrum/Collision/NarrowPhase/Libccd.h>
 #include <Fulcrum/Collision/Queries/ConvexDistance.h>
+#include <Fulcrum/Collision/Queries/CoreShapes.h>
 #include <Fulcrum/Collision/Queries/Distance.h>
 #include <Fulcrum/UnitTests/Support/Cases.h>
 

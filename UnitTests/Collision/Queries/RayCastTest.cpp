@@ -3,6 +3,7 @@
 #include "QueryTesting.h"
 
 #include <Fulcrum/Collision/Queries/ConvexDistance.h>
+#include <Fulcrum/Collision/Queries/ConvexRay.h>
 #include <Fulcrum/Collision/Queries/CoreShapes.h>
 #include <Fulcrum/Collision/Queries/RayCast.h>
 #include <Fulcrum/UnitTests/Support/Cases.h>

@@ -2,6 +2,8 @@
 #include "QueryTesting.h"
 
 #include <Fulcrum/Collision/Queries/ConvexDistance.h>
+#include <Fulcrum/Collision/Queries/CoreCast.h>
+#include <Fulcrum/Collision/Queries/CoreShapes.h>
 #include <Fulcrum/Collision/Queries/Distance.h>
 #include <Fulcrum/Collision/Queries/ShapeCast.h>
 #include <Fulcrum/Math/Trigonometry.h>

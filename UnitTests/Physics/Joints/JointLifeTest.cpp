@@ -2,6 +2,7 @@
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 
 #include <algorithm>
+#include <functional>
 
 namespace fulcrum::testing {
 namespace {
