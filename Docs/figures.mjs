@@ -43,6 +43,18 @@ function sceneTable({ scenes }) {
   return table(hasPenetration ? [...heading, 'largest penetration'] : heading, rows);
 }
 
+// Of the scenes' ends: Samples/Scenes/RestMeters.h.
+function restTable({ scenes }) {
+  const rows = scenes.filter((scene) => scene.rest).map(({ name, rest }) => [
+    `\`${name}\``,
+    rest.drift_m ? `${rest.drift_m.map((meters) => twoDigits(1000 * meters)).join(', ')} mm` : '–',
+    `${twoDigits(rest.speed)} m/s`,
+    typeof rest.asleep_s === 'number' ? `${rest.asleep_s.toFixed(1)} s` : rest.asleep_s ?? '–',
+    typeof rest.energy_rise === 'number' ? twoDigits(rest.energy_rise) : '–',
+  ]);
+  return table(['scene', 'drift: largest, mean', 'speed in the last second', 'all asleep after', 'energy from nothing'], rows);
+}
+
 // Which scenes are slower than the aim, and by how much.
 function missedAims({ scenes }) {
   const missed = scenes.map((scene) => {
@@ -74,8 +86,9 @@ function settingsTable({ scenes }) {
   return table(['scene', '(4, 1, 1), the default', '(1, 10, 2)'], rows);
 }
 
-const BLOCKS = { scenes: sceneTable, stages: stageTable, settings: settingsTable, 'missed aims': missedAims };
+const BLOCKS = { scenes: sceneTable, rest: restTable, stages: stageTable, settings: settingsTable, 'missed aims': missedAims };
 const INLINE = {
+  'ns of a single ray': ({ scenes }) => thousands(Math.round(scenes.find(({ name }) => name === 'rays').single_ns)),
   'times of Bullet': bulletTimes,
   'joints of joint_grid': ({ scenes }) => thousands(scenes.find(({ name }) => name === 'joint_grid').joints),
 };
@@ -127,6 +140,20 @@ const isSetting = ({ settings: s }, substeps, velocity, position) =>
   s.substeps === substeps && s.velocity_iterations === velocity && s.position_iterations === position &&
   (s.narrow_phase ?? 'automatic') === 'automatic';
 
+function takeAccuracy(scene, run) {
+  if (scene.accuracy.runs && run.accuracy_of_runs?.length !== scene.accuracy.runs)
+    throw new Error(`${run.scene}: its accuracy figure is the median of ${scene.accuracy.runs} runs, which --steps and --only-timed leave out`);
+  scene.accuracy.value = run.accuracy;
+  if (run.single_query_ns) scene.single_ns = Math.round(run.single_query_ns);
+  if (run.end_speed_m_s === undefined) return;
+  scene.rest = {
+    drift_m: run.largest_drift_m === null ? null : [run.largest_drift_m, run.mean_drift_m],
+    speed: run.end_speed_m_s,
+    asleep_s: run.asleep_s,
+    energy_rise: run.energy_rise,
+  };
+}
+
 // One run of the array that fulcrum bench writes.
 export function take(figures, run) {
   const scene = figures.scenes.find(({ name }) => name === run.scene);
@@ -138,7 +165,7 @@ export function take(figures, run) {
     const stages = Object.entries(run.stages_ms).map(([stage, ms]) => [stage, Number(ms.toFixed(4))]).filter(([, ms]) => ms > 0);
     scene.threads[run.threads] = { ms: Number(run.median_ms.toFixed(4)), ratio: quotient };
     if (!scene.is_batch) scene.threads[run.threads].stages_ms = Object.fromEntries(stages);
-    if (run.threads === 1) scene.accuracy.value = run.accuracy;
+    if (run.threads === 1) takeAccuracy(scene, run);
     if (run.threads === 1 && run.largest_relative_penetration !== undefined) scene.penetration = run.largest_relative_penetration;
   } else if (isSetting(run, 1, 10, 2) && scene.ten_iterations) {
     scene.ten_iterations.ratio[run.threads - 1] = quotient;

@@ -42,8 +42,104 @@ void PrintRow(const Scene& scene, const RunFigures& run) {
     if (run.queryCount > 0)
         std::printf("%20s %d %s a batch, which the ms are of: %.4g %s/s\n", "", run.queryCount, run.queryName.c_str(),
                     QueriesPerSecond(run), run.queryName.c_str());
+    if (run.singleQueryNs > 0) std::printf("%20s %.4g ns for one by a call of its own\n", "", run.singleQueryNs);
     std::fflush(stdout);
 }
+
+struct Row {
+    const Scene& scene;
+    RunFigures run;
+};
+
+std::string Number(const char* format, std::optional<double> value) {
+    if (!value) return "-";
+    char text[32];
+    std::snprintf(text, sizeof text, format, *value);
+    return text;
+}
+
+std::string SleepText(const std::optional<SleepTime>& sleep) {
+    if (!sleep) return "-";
+    return sleep->seconds ? Number("%.2f", *sleep->seconds) : "never";
+}
+
+void PrintAccuracy(const std::vector<Row>& rows) {
+    std::printf("\n%-16s %11s  %7s  %10s %10s  %10s  %8s  %11s %9s\n", "scene", "accuracy", "overlap", "drift mm",
+                "mean mm", "end m/s", "asleep s", "rise J", "rise");
+    for (const Row& row : rows) {
+        const RunFigures& run = row.run;
+        std::optional<double> largest, mean, joules, relative;
+        if (run.drift) {
+            largest = 1000 * run.drift->largest;
+            mean = 1000 * run.drift->mean;
+        }
+        if (run.energyRise) {
+            joules = run.energyRise->joules;
+            relative = run.energyRise->relative;
+        }
+        std::printf("%-16s %11.5g  %7.4f  %10s %10s  %10s  %8s  %11s %9s\n", row.scene.name, run.accuracy,
+                    run.overlap.relative, Number("%.4g", largest).c_str(), Number("%.4g", mean).c_str(),
+                    Number("%.5g", run.endSpeed).c_str(), SleepText(run.sleep).c_str(), Number("%.4g", joules).c_str(),
+                    Number("%.2g", relative).c_str());
+    }
+    std::printf(
+        "accuracy: see ./fulcrum run; drift: sideways from where bodies were built, the largest and the mean;\n"
+        "end: the largest speed in the last second; rise: of kinetic plus potential energy, also over that at "
+        "the start\n");
+}
+
+SceneInput InputOf(const BenchOptions& options) {
+    SceneInput input;
+    input.seed = options.seed;
+    input.solver = options.solver;
+    input.narrowPhase = options.narrowPhase;
+    return input;
+}
+
+constexpr double kStep = 1.0 / 60, kSleepLimit = 20;  // s
+
+// A scene that is timed, with the threads that the options ask for.
+class Timed {
+public:
+    Timed(const Scene& scene, const BenchOptions& options) : scene_(scene), input_(InputOf(options)) {
+        if (options.threads > 1) pool_.emplace(static_cast<uint32_t>(options.threads));
+        steps_ = options.steps > 0 ? options.steps : scene.steps;
+    }
+
+    Result<RunFigures> Run() {
+        const auto world = SceneWorld::Create(scene_, input_, Jobs());
+        if (!world) return world.GetError();
+        return Simulate(
+            *world.Value(), UntimedSteps(), steps_, kStep, pool_ ? pool_->WorkerCount() : 1, [] {}, RestMeters::Off);
+    }
+    // Fills in what needs runs of its own.
+    Status AddAccuracyRuns(RunFigures& figures) {
+        const int steps = UntimedSteps() + steps_;
+        const Status rest = MeasureRest(scene_, input_, Jobs(), steps, kStep, figures);
+        if (!rest) return rest;
+        if (scene_.isClosed) {  // what is driven does not sleep
+            const Result<SleepTime> sleep = MeasureSleep(scene_, input_, Jobs(), kStep, kSleepLimit);
+            if (!sleep) return sleep.GetError();
+            figures.sleep = sleep.Value();
+        }
+        if (scene_.accuracyRuns <= 1) return Done{};
+        Result<std::vector<double>> runs = AccuracyOfRuns(scene_, input_, Jobs(), steps, kStep);
+        if (!runs) return runs.GetError();
+        figures.accuracies = std::move(runs.Value());
+        figures.accuracy = Summarize(figures.accuracies).median;
+        return Done{};
+    }
+
+private:
+    JobSystem* Jobs() { return pool_ ? &*pool_ : nullptr; }
+    // A batch is timed after exactly the scene's steps.
+    int UntimedSteps() const { return scene_.query ? 0 : 1; }
+
+    const Scene& scene_;
+    SceneInput input_;
+    std::optional<ThreadPool> pool_;
+    int steps_;
+};
 
 }  // namespace
 
@@ -59,6 +155,10 @@ Result<BenchOptions> ParseBenchOptions(std::vector<std::string> arguments) {
                [&](int value) { options.steps = value; });
     AddInteger(app, "--runs", 1, 1000, "runs of each scene; the one with the lowest median counts (default 1)",
                [&](int value) { options.runs = value; });
+    app.add_flag_function(
+        "--only-timed", [&](int64_t) { options.accuracyRuns = false; },
+        "only the timed runs, none for drift, speed, sleep, energy and accuracy figures that are medians; so does "
+        "--steps");
     AddSolverOptions(app, options.solver);
     AddNarrowPhaseOption(app, options.narrowPhase);
     AddSeed(app, "--seed", "of scenes that use random numbers (default 1)",
@@ -70,6 +170,7 @@ Result<BenchOptions> ParseBenchOptions(std::vector<std::string> arguments) {
     Result<std::string> parsed = ParseCommandLine(app, std::move(arguments));
     if (!parsed) return parsed.GetError();
     options.help = parsed.Value();
+    if (options.steps > 0) options.accuracyRuns = false;
     if (const Scene* scene = FindScene(name)) {
         options.scenes = {scene};
     } else if (name == "all") {
@@ -83,18 +184,18 @@ Result<BenchOptions> ParseBenchOptions(std::vector<std::string> arguments) {
 }
 
 Result<RunFigures> TimeScene(const Scene& scene, const BenchOptions& options) {
-    SceneInput input;
-    input.seed = options.seed;
-    input.solver = options.solver;
-    input.narrowPhase = options.narrowPhase;
-    std::optional<ThreadPool> pool;
-    if (options.threads > 1) pool.emplace(static_cast<uint32_t>(options.threads));
-    const auto world = SceneWorld::Create(scene, input, pool ? &*pool : nullptr);
-    if (!world) return world.GetError();
-    const int steps = options.steps > 0 ? options.steps : scene.steps;
-    // A batch is timed after exactly that many steps.
-    const int untimed = scene.query ? 0 : 1;
-    return Simulate(*world.Value(), untimed, steps, 1.0 / 60, pool ? pool->WorkerCount() : 1, [] {});
+    Timed timed(scene, options);
+    std::optional<RunFigures> best;
+    for (int i = 0; i < options.runs; ++i) {
+        Result<RunFigures> run = timed.Run();
+        if (!run) return run;
+        if (!best || ComparedMs(run.Value()).median < ComparedMs(*best).median) best = std::move(run.Value());
+    }
+    if (options.accuracyRuns) {
+        const Status status = timed.AddAccuracyRuns(*best);
+        if (!status) return status.GetError();
+    }
+    return std::move(*best);
 }
 
 int RunBench(const BenchOptions& options) {
@@ -102,19 +203,18 @@ int RunBench(const BenchOptions& options) {
     const std::string trouble = json.Check();
     if (!trouble.empty()) return Fail(trouble);
 
-    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+    nlohmann::ordered_json array = nlohmann::ordered_json::array();
+    std::vector<Row> rows;
     PrintHeading();
     for (const Scene* scene : options.scenes) {
-        std::optional<RunFigures> best;
-        for (int i = 0; i < options.runs; ++i) {
-            Result<RunFigures> run = TimeScene(*scene, options);
-            if (!run) return Fail(std::string(scene->name) + ": " + run.GetError().message);
-            if (!best || ComparedMs(run.Value()).median < ComparedMs(*best).median) best = run.Value();
-        }
-        PrintRow(*scene, *best);
-        rows.push_back(ReportJson(scene->name, *best, options.seed));
+        Result<RunFigures> run = TimeScene(*scene, options);
+        if (!run) return Fail(std::string(scene->name) + ": " + run.GetError().message);
+        PrintRow(*scene, run.Value());
+        array.push_back(ReportJson(scene->name, run.Value(), options.seed));
+        rows.push_back({*scene, std::move(run.Value())});
     }
-    const std::string unwritten = json.IsWanted() ? json.Write(rows) : "";
+    if (options.accuracyRuns) PrintAccuracy(rows);
+    const std::string unwritten = json.IsWanted() ? json.Write(array) : "";
     return unwritten.empty() ? 0 : Fail(unwritten);
 }
 

@@ -41,6 +41,24 @@ std::string Settings(const SolverSettings& solver) {
                 solver.positionCorrection == PositionCorrection::Baumgarte ? ", Baumgarte" : "");
 }
 
+std::string Length(double meters) { return meters < 1 ? Text("%.4g mm", 1000 * meters) : Text("%.4g m", meters); }
+
+void AddRest(const RunFigures& figures, std::vector<ReportLine>& lines) {
+    const auto add = [&](const char* label, std::string value) {
+        lines.push_back({"Result", label, std::move(value)});
+    };
+    if (figures.drift)
+        add("drift sideways",
+            Length(figures.drift->largest) + " at most, " + Length(figures.drift->mean) + " on average");
+    if (figures.endSpeed) add("speed in the last second", Text("%.4g m/s at most", *figures.endSpeed));
+    if (figures.sleep)
+        add("all asleep", figures.sleep->seconds ? Text("after %.4g s", *figures.sleep->seconds)
+                                                 : Text("never within %.4g s", figures.sleep->limit));
+    if (figures.energyRise)
+        add("energy from nothing",
+            Energy(figures.energyRise->joules) + Text(", %.3g of that at the start", figures.energyRise->relative));
+}
+
 // Rare events, if they happened.
 void AddRemarks(const RunFigures& figures, std::vector<ReportLine>& lines) {
     const auto add = [&](const char* label, uint64_t count) {
@@ -82,6 +100,7 @@ std::vector<ReportLine> ReportLines(const Scene& scene, const RunFigures& figure
         add("Time", "the batch, median",
             Text("%.3f ms for %d %s, %.3g/s", figures.queryMs.median, figures.queryCount, figures.queryName.c_str(),
                  QueriesPerSecond(figures)));
+    if (figures.singleQueryNs > 0) add("Time", "one by a call of its own", Text("%.0f ns", figures.singleQueryNs));
     for (int stage = 0; stage < kStageCount; ++stage)
         add("Stages, median", StageName(stage), Text("%.3f ms", figures.stageMedianMs[static_cast<size_t>(stage)]));
     add("Result", "largest penetration",
@@ -95,6 +114,7 @@ std::vector<ReportLine> ReportLines(const Scene& scene, const RunFigures& figure
             : Text("%.3g of the inner radius, %.2f mm, %s at step %d", figures.overlap.relative,
                    1000 * figures.overlap.depth, figures.overlapPair.c_str(), figures.overlap.step));
     add("Result", "energy", Energy(figures.energyAtStart) + " to " + Energy(figures.energyAtEnd));
+    AddRest(figures, lines);
     if (scene.accuracy) add("Result", "accuracy", Text("%.6g (%s)", figures.accuracy, scene.accuracyMeaning));
     add("Result", "pose hash", HashText(figures.poseHash));
     AddRemarks(figures, lines);
@@ -112,6 +132,27 @@ std::string ReportText(const std::vector<ReportLine>& lines) {
     }
     return text;
 }
+
+namespace {
+
+void AddRest(const RunFigures& figures, nlohmann::ordered_json& json) {
+    const auto number = [](bool isKnown, double value) {
+        return isKnown ? nlohmann::ordered_json(JsonNumber(value)) : nlohmann::ordered_json();
+    };
+    const Drift drift = figures.drift.value_or(Drift{});
+    const EnergyRise rise = figures.energyRise.value_or(EnergyRise{});
+    const SleepTime sleep = figures.sleep.value_or(SleepTime{});
+    json["largest_drift_m"] = number(figures.drift.has_value(), drift.largest);
+    json["mean_drift_m"] = number(figures.drift.has_value(), drift.mean);
+    json["end_speed_m_s"] = number(figures.endSpeed.has_value(), figures.endSpeed.value_or(0));
+    json["asleep_s"] = number(sleep.seconds.has_value(), sleep.seconds.value_or(0));
+    if (figures.sleep && !sleep.seconds) json["asleep_s"] = "never";
+    json["asleep_limit_s"] = number(figures.sleep.has_value(), sleep.limit);
+    json["energy_rise_j"] = number(figures.energyRise.has_value(), rise.joules);
+    json["energy_rise"] = number(figures.energyRise.has_value(), rise.relative);
+}
+
+}  // namespace
 
 nlohmann::ordered_json ReportJson(const std::string& name, const RunFigures& figures, uint64_t seed) {
     nlohmann::ordered_json stages;
@@ -156,7 +197,10 @@ nlohmann::ordered_json ReportJson(const std::string& name, const RunFigures& fig
                                 {"energy_start_j", JsonNumber(figures.energyAtStart)},
                                 {"energy_end_j", JsonNumber(figures.energyAtEnd)},
                                 {"memory_bytes", figures.memoryBytes}};
+    AddRest(figures, json);
+    if (!figures.accuracies.empty()) json["accuracy_of_runs"] = figures.accuracies;
     if (figures.queryCount > 0) json[figures.queryName + "_per_s"] = QueriesPerSecond(figures);
+    if (figures.singleQueryNs > 0) json["single_query_ns"] = figures.singleQueryNs;
     return json;
 }
 

@@ -19,7 +19,9 @@ std::string ReportText(const std::vector<ReportLine>& lines);
 
 // One run with the field names that benchmarks of other engines use: scene threads bodies contacts contact_points steps
 // median_ms mean_ms p99_ms max_ms steps_per_s accuracy nonfinite hash; and the engine's own. The ms of a scene that
-// times a batch of queries are the batch's, and their number a second is there too (rays_per_s).
+// times a batch of queries are the batch's, and their number a second is there too (rays_per_s). What is not measured
+// (the drift of a scene that is not built to stand, when all sleep where sleeping is off) is null, asleep_s may be
+// "never".
 nlohmann::ordered_json ReportJson(const std::string& name, const RunFigures& figures, uint64_t seed);
 
 }  // namespace fulcrum

@@ -34,21 +34,66 @@ void CountBodies(const SceneWorld& world, RunFigures& figures) {
     figures.awakeIslands = static_cast<uint32_t>(std::count(awake.begin(), awake.end(), true));
 }
 
-void TimeQueries(SceneWorld& world, RunFigures& figures) {
-    const Scene& scene = world.Definition();
-    if (!scene.query) return;
+// Wall clock of five calls, after one that is not timed.
+Statistics TimeFiveTimes(SceneWorld& world, void (*query)(SceneWorld& world)) {
     constexpr int kTimes = 5;
     std::vector<double> ms;
     for (int i = 0; i <= kTimes; ++i) {
         const auto begin = std::chrono::steady_clock::now();
-        scene.query(world);
+        query(world);
         const auto end = std::chrono::steady_clock::now();
         if (i > 0) ms.push_back(std::chrono::duration<double, std::milli>(end - begin).count());
     }
+    return Summarize(std::move(ms));
+}
+
+void TimeQueries(SceneWorld& world, RunFigures& figures) {
+    const Scene& scene = world.Definition();
+    if (!scene.query) return;
     figures.queryCount = scene.queryCount;
     figures.queryName = scene.queryName;
-    figures.queryMs = Summarize(std::move(ms));
+    figures.queryMs = TimeFiveTimes(world, scene.query);
+    if (scene.querySingly)
+        figures.singleQueryNs = 1e6 * TimeFiveTimes(world, scene.querySingly).median / scene.queryCount;
 }
+
+// The meters of Scenes/RestMeters.h over a run.
+class RestFigures {
+public:
+    RestFigures(const SceneWorld& world, int steps, double dt)
+        : system_(world.System()), dt_(dt), stepsBeforeTheLastSecond_(std::max(0, steps - StepsIn(1, dt))) {
+        if (world.Definition().isBuiltToStand) drift_.emplace(system_);
+        if (world.Definition().isClosed) energy_.emplace(system_);
+        if (system_.Settings().sleep.enabled) sleep_ = SleepTime{{}, steps * dt};
+        BeforeStep(0);
+    }
+    // When `done` steps are.
+    void AfterStep(int done) {
+        if (speed_) speed_->Measure(dt_);
+        if (energy_) energy_->Measure();
+        if (sleep_ && !sleep_->seconds && AllAsleep(system_)) sleep_->seconds = done * dt_;
+        BeforeStep(done);
+    }
+    void Fill(RunFigures& figures) const {
+        if (drift_) figures.drift = drift_->Measure();
+        if (speed_) figures.endSpeed = speed_->Largest();
+        if (energy_) figures.energyRise = EnergyRise{energy_->Rise(), energy_->RelativeRise()};
+        figures.sleep = sleep_;
+    }
+
+private:
+    void BeforeStep(int done) {
+        if (done == stepsBeforeTheLastSecond_) speed_.emplace(system_);
+    }
+
+    const PhysicsSystem& system_;
+    double dt_;
+    int stepsBeforeTheLastSecond_;
+    std::optional<DriftMeter> drift_;
+    std::optional<SpeedMeter> speed_;
+    std::optional<EnergyMeter> energy_;
+    std::optional<SleepTime> sleep_;
+};
 
 }  // namespace
 
@@ -70,7 +115,7 @@ Statistics Summarize(std::vector<double> samples) {
 }
 
 Result<RunFigures> Simulate(SceneWorld& world, int untimed, int steps, double dt, uint32_t threads,
-                            FunctionRef<void()> afterStep) {
+                            FunctionRef<void()> afterStep, RestMeters restMeters) {
     RunFigures figures;
     figures.steps = steps;
     figures.dt = dt;
@@ -80,6 +125,8 @@ Result<RunFigures> Simulate(SceneWorld& world, int untimed, int steps, double dt
     figures.energyAtStart = world.System().GetEnergy();
 
     PenetrationMeter meter(world);
+    std::optional<RestFigures> rest;
+    if (restMeters == RestMeters::On) rest.emplace(world, untimed + steps, dt);
     std::vector<double> stepMs;
     std::array<std::vector<double>, kStageCount> stageMs;
     for (int step = 0; step < untimed + steps; ++step) {
@@ -91,6 +138,7 @@ Result<RunFigures> Simulate(SceneWorld& world, int untimed, int steps, double dt
             for (size_t stage = 0; stage < stageMs.size(); ++stage) stageMs[stage].push_back(report.stageMs[stage]);
         }
         NotePenetration(world, figures);
+        if (rest) rest->AfterStep(step + 1);
         if (meter.Measure())
             figures.overlapPair = BodyText(world, meter.Worst().bodyA) + " and " + BodyText(world, meter.Worst().bodyB);
         figures.largestContacts = std::max(figures.largestContacts, report.contacts);
@@ -103,6 +151,7 @@ Result<RunFigures> Simulate(SceneWorld& world, int untimed, int steps, double dt
     for (size_t stage = 0; stage < stageMs.size(); ++stage)
         figures.stageMedianMs[stage] = Summarize(std::move(stageMs[stage])).median;
     figures.overlap = meter.Worst();
+    if (rest) rest->Fill(figures);
     TimeQueries(world, figures);
     figures.last = world.System().Report();
     CountBodies(world, figures);
@@ -112,6 +161,47 @@ Result<RunFigures> Simulate(SceneWorld& world, int untimed, int steps, double dt
     figures.accuracy = world.Definition().accuracy ? world.Definition().accuracy(world) : 0;
     figures.nonFinite = world.NonFiniteBodies();
     return figures;
+}
+
+Status MeasureRest(const Scene& scene, const SceneInput& input, JobSystem* jobs, int steps, double dt,
+                   RunFigures& figures) {
+    const auto world = SceneWorld::Create(scene, input, jobs);
+    if (!world) return world.GetError();
+    RestFigures rest(*world.Value(), steps, dt);
+    for (int step = 1; step <= steps; ++step) {
+        const Status status = world.Value()->Step(dt);
+        if (!status) return status;
+        rest.AfterStep(step);
+    }
+    rest.Fill(figures);
+    return Done{};
+}
+
+Result<SleepTime> MeasureSleep(const Scene& scene, SceneInput input, JobSystem* jobs, double dt, double limit) {
+    input.sleeping = true;
+    const auto world = SceneWorld::Create(scene, input, jobs);
+    if (!world) return world.GetError();
+    const Result<std::optional<double>> seconds = TimeToSleep(*world.Value(), dt, limit);
+    if (!seconds) return seconds.GetError();
+    return SleepTime{seconds.Value(), limit};
+}
+
+Result<std::vector<double>> AccuracyOfRuns(const Scene& scene, const SceneInput& input, JobSystem* jobs, int steps,
+                                           double dt) {
+    std::vector<double> accuracies;
+    for (int run = 0; run < scene.accuracyRuns; ++run) {
+        SceneInput changed = input;
+        changed.gravityScale *= 1 + 1e-6 * run;
+        const auto world = SceneWorld::Create(scene, changed, jobs);
+        if (!world) return world.GetError();
+        for (int step = 0; step < steps; ++step) {
+            const Status status = world.Value()->Step(dt);
+            if (!status) return status.GetError();
+        }
+        if (scene.query) scene.query(*world.Value());
+        accuracies.push_back(scene.accuracy(*world.Value()));
+    }
+    return accuracies;
 }
 
 std::string HashText(uint64_t hash) {

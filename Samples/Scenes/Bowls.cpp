@@ -66,6 +66,7 @@ extern const Scene kScene{
     .name = "bowls",
     .description = "balls and capsules roll in four bowls, damped by 0, 0.1, 0.5 and 3 per second",
     .steps = 600,
+    .isClosed = true,
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "bodies outside their bowl",

@@ -37,6 +37,7 @@ extern const Scene kScene{
     .name = "bridge",
     .description = "a bridge of 24 planks on hinges, with boxes and balls dropped on it",
     .steps = 480,
+    .isClosed = true,
     .build = Build,
     .accuracy = LargestJointGap,
     .accuracyMeaning = "largest distance between the two anchors of a joint, m",

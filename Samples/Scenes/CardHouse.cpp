@@ -59,6 +59,8 @@ extern const Scene kScene{
     .name = "card_house",
     .description = "a house of cards of four stories that stands by friction alone",
     .steps = 600,
+    .isBuiltToStand = true,
+    .isClosed = true,
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "height of the highest flat card minus where it was laid, m",

@@ -22,6 +22,7 @@ extern const Scene kScene{
     .kind = SceneKind::Performance,
     .steps = 300,
     .sleeping = false,
+    .isClosed = true,
     .build = Build,
     .accuracy = BodiesBelowTheMesh,
     .accuracyMeaning = "bodies more than 1 m below the lowest point of the mesh",

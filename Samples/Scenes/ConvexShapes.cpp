@@ -60,6 +60,7 @@ void Build(SceneWorld& world) {
 extern const Scene kScene{
     .name = "convex_shapes",
     .description = "cylinders, cones, tapered capsules, plates and a user's egg stand, roll and fall",
+    .isClosed = true,
     .build = Build,
     .accuracy = BodiesBelowTheFloor,
     .accuracyMeaning = "bodies that fell through the floor",

@@ -45,6 +45,7 @@ extern const Scene kScene{
     .name = "dominoes",
     .description = "a ball topples a curved row of 72 dominoes",
     .steps = 720,
+    .isClosed = true,
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "dominoes left standing",

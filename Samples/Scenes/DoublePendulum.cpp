@@ -30,6 +30,7 @@ extern const Scene kScene{
     .description = "two double pendulums that start half a millimeter apart",
     .steps = 600,
     .sleeping = false,
+    .isClosed = true,
     .build = Build,
     .accuracy = EnergyChange,
     .accuracyMeaning = "change of the energy, % of that of the fall",

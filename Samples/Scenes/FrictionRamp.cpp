@@ -54,6 +54,7 @@ extern const Scene kScene{
     .name = "friction_ramp",
     .description = "nine boxes on a ramp of 25 degrees: those with a friction above its tangent, 0.466, stick",
     .steps = 300,
+    .isClosed = true,
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "boxes that slide but should stick, or stick but should slide",

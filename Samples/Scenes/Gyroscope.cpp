@@ -35,6 +35,7 @@ extern const Scene kScene{
     .description = "a T-handle spins without gravity and flips over every few seconds",
     .steps = 1200,
     .sleeping = false,
+    .isClosed = true,
     .adjust = [](SystemSettings& settings) { settings.gravity = Vector3::Zero(); },
     .build = Build,
     .accuracy = Accuracy,

@@ -42,6 +42,7 @@ extern const Scene kScene{
     .description = "a chain of 16 links of 1 kg with a ball of 100 kg, swung from horizontal",
     .steps = 144,
     .sleeping = false,
+    .isClosed = true,
     .adjust = NoContacts,
     .build = Build,
     .accuracy = Stretch,

@@ -69,6 +69,7 @@ extern const Scene kScene{
     .kind = SceneKind::Performance,
     .steps = 200,
     .sleeping = false,
+    .isClosed = true,
     .adjust = NoGravity,
     .build = Build,
     .accuracy = EscapedBodies,

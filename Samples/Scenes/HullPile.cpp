@@ -49,6 +49,7 @@ extern const Scene kScene{
     .kind = SceneKind::Performance,
     .steps = 300,
     .sleeping = false,
+    .isClosed = true,
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "smallest height of a body's center minus 1.8 m, where negative",

@@ -34,6 +34,7 @@ extern const Scene kScene{
     .kind = SceneKind::Performance,
     .steps = 100,
     .sleeping = false,
+    .isClosed = true,
     .adjust = NoContacts,
     .build = Build,
     .accuracy = LargestJointGap,

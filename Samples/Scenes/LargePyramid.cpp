@@ -18,6 +18,8 @@ extern const Scene kScene{
     .kind = SceneKind::Performance,
     .steps = 200,
     .sleeping = false,
+    .isBuiltToStand = true,
+    .isClosed = true,
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "height of the top box minus 99.5 m, that of a perfect stack",

@@ -23,6 +23,8 @@ extern const Scene kScene{
     .kind = SceneKind::Performance,
     .steps = 100,
     .sleeping = false,
+    .isBuiltToStand = true,
+    .isClosed = true,
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "largest difference of a top box's height from 9.5 m",

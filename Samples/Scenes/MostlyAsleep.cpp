@@ -23,6 +23,7 @@ extern const Scene kScene{
     .description = "100,000 sleeping boxes on a plain, 100 balls dropped among them",
     .kind = SceneKind::Performance,
     .steps = 300,
+    .isClosed = true,
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "longest step but the first, ms: what sleeps must cost nothing",

@@ -38,6 +38,7 @@ extern const Scene kScene{
     .description = "Newton's cradle of five balls, there and back",
     .steps = 230,
     .sleeping = false,
+    .isClosed = true,
     .build = Build,
     .accuracy = EnergyChange,
     .accuracyMeaning = "change of the energy, % of what the first ball was lifted by",

@@ -30,6 +30,8 @@ extern const Scene kScene{
     .kind = SceneKind::Performance,
     .steps = 300,
     .sleeping = false,
+    .isBuiltToStand = true,
+    .isClosed = true,
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "height of the top box minus 29 m, that of a perfect stack",

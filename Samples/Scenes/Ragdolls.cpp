@@ -26,6 +26,8 @@ extern const Scene kScene{
     .kind = SceneKind::Performance,
     .steps = 300,
     .sleeping = false,
+    .isClosed = true,
+    .accuracyRuns = 8,
     .build = Build,
     .accuracy = LargestJointGap,
     .accuracyMeaning = "largest distance between the two anchors of a joint, m",

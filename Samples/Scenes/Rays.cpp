@@ -21,6 +21,13 @@ void Build(SceneWorld& world) {
 
 void Cast(SceneWorld& world) { world.Queries().CastRays(world.rays, world.rayHits); }
 
+void CastSingly(SceneWorld& world) {
+    for (size_t i = 0; i < world.rays.size(); ++i) {
+        world.rayHits[i] = {};
+        world.Queries().CastRay(world.rays[i], world.rayHits[i]);
+    }
+}
+
 double Misses(const SceneWorld& world) {
     return static_cast<double>(std::count_if(world.rayHits.begin(), world.rayHits.end(),
                                              [](const WorldRayHit& hit) { return hit.body == BodyId{}; }));
@@ -34,10 +41,12 @@ extern const Scene kScene{
     .kind = SceneKind::Performance,
     .steps = 120,
     .sleeping = false,
+    .isClosed = true,
     .build = Build,
     .query = Cast,
     .queryCount = kRays,
     .queryName = "rays",
+    .querySingly = CastSingly,
     .accuracy = Misses,
     .accuracyMeaning = "rays that hit nothing",
 };

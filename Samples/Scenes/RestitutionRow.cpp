@@ -28,6 +28,7 @@ extern const Scene kScene{
     .name = "restitution_row",
     .description = "eleven balls with restitution 0 to 1 bounce side by side",
     .steps = 600,
+    .isClosed = true,
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "energy height of the ball with restitution 1 minus its start, m",

@@ -33,6 +33,7 @@ extern const Scene kScene{
     .description = "a rope of 40 capsules with a box at its end, swung against a bar",
     .steps = 480,
     .sleeping = false,
+    .isClosed = true,
     .build = Build,
     .accuracy = LargestJointGap,
     .accuracyMeaning = "largest distance between the two anchors of a joint, m",

@@ -22,6 +22,14 @@ struct Scene {
     int steps = 300;  // of 1/60 s: what a run takes unless told otherwise
     bool sleeping = true;
     bool usesSeed = false;  // whether another seed makes another world
+    // Whether every dynamic body is created above or at the place where it is to stay: it drifts if it moves sideways.
+    bool isBuiltToStand = false;
+    // Whether nothing but gravity drives the bodies, and no spring stores energy: kinetic plus potential energy must
+    // never rise.
+    bool isClosed = false;
+    // Runs whose median is the accuracy figure of the benchmark, where one run is chance: the gravity of each is larger
+    // than that of the one before by a millionth. The first is the one that is timed.
+    int accuracyRuns = 1;
     // Other settings than the defaults; null: none.
     void (*adjust)(SystemSettings& settings) = nullptr;
     // Creates the bodies. A scene may add and remove bodies later; recordings show that.
@@ -35,6 +43,8 @@ struct Scene {
     void (*query)(SceneWorld& world) = nullptr;
     int queryCount = 0;
     const char* queryName = "";
+    // The same queries by a call each, timed beside the batch. Null: only the batch.
+    void (*querySingly)(SceneWorld& world) = nullptr;
     // The accuracy figure of a run, after its last step, and its meaning. Null if the run computes it.
     double (*accuracy)(const SceneWorld& world) = nullptr;
     const char* accuracyMeaning = "";

@@ -19,6 +19,8 @@ Result<std::unique_ptr<SceneWorld>> SceneWorld::Create(const Scene& scene, const
     settings.narrowPhase = input.narrowPhase;
     settings.sleep.enabled = scene.sleeping;
     if (scene.adjust) scene.adjust(settings);
+    if (input.sleeping) settings.sleep.enabled = *input.sleeping;
+    settings.gravity = (settings.gravity.cast<double>() * input.gravityScale).cast<float>();
     Result<std::unique_ptr<PhysicsSystem>> system = PhysicsSystem::Create(settings, jobs);
     if (!system) return system.GetError();
 

@@ -21,9 +21,11 @@ struct SceneInput {
     uint64_t seed = 1;
     SolverSettings solver;  // the default effort
     NarrowPhaseMethod narrowPhase = NarrowPhaseMethod::Automatic;
-    ShapePtr shape;   // of the drop scenes: what falls
-    ShapePtr ground;  // of drop_onto: what it falls onto
-    int count = 50;   // bodies of the drop scenes, >= 1
+    ShapePtr shape;                // of the drop scenes: what falls
+    ShapePtr ground;               // of drop_onto: what it falls onto
+    int count = 50;                // bodies of the drop scenes, >= 1
+    std::optional<bool> sleeping;  // null: as the scene has it
+    double gravityScale = 1;       // times the scene's gravity
 };
 
 class SceneWorld {

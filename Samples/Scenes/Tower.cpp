@@ -25,6 +25,8 @@ extern const Scene kScene{
     .description = "20 boxes stacked up to 1 cm out of line: the tower stands and falls asleep",
     .steps = 600,
     .usesSeed = true,
+    .isBuiltToStand = true,
+    .isClosed = true,
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "height of the top box minus 19.5 m, that of a perfect stack",

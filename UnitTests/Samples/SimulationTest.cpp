@@ -72,6 +72,139 @@ TEST(Simulation, ReportsForPeopleAndForPrograms) {
     EXPECT_EQ(json["stages_ms"].size(), static_cast<size_t>(kStageCount));
 }
 
+// A box that slides 4 / (2 mu g) = 0.408 m in 0.408 s and rests; another rests all the time.
+void BuildSliding(SceneWorld& world) {
+    world.AddFloor(20, 20);
+    const ShapePtr cube = world.BoxOf(0.5f, 0.5f, 0.5f);
+    world.Add({.shape = cube, .position = {0, 0.5, 0}, .linearVelocity = {2, 0, 0}});
+    world.Add({.shape = cube, .position = {0, 0.5, 5}});
+}
+
+const Scene kSliding{.name = "sliding",
+                     .description = "a box slides until it rests",
+                     .isBuiltToStand = true,
+                     .isClosed = true,
+                     .build = BuildSliding};
+
+Result<RunFigures> RunSliding(const Scene& scene, int steps) {
+    auto world = SceneWorld::Create(scene);
+    if (!world) return world.GetError();
+    return Simulate(*world.Value(), 0, steps, 1.0 / 60, 1, [] {});
+}
+
+TEST(RestFigures, AreThoseOfABoxThatSlidesUntilItRests) {
+    const auto run = RunSliding(kSliding, 120);
+    ASSERT_TRUE(run);
+    const RunFigures& figures = run.Value();
+    const double way = 4 / (2 * 0.5 * 9.81);
+    ASSERT_TRUE(figures.drift && figures.sleep && figures.energyRise);
+    // As in DriftMeter: the way of a substep.
+    EXPECT_NEAR(figures.drift->largest, way, 2.0 / 240);
+    EXPECT_NEAR(figures.drift->mean, figures.drift->largest / 2, 1e-4);
+    EXPECT_LT(figures.endSpeed.value(), 1e-3);  // it was 2 m/s before the last second
+    ASSERT_TRUE(figures.sleep->seconds);
+    EXPECT_NEAR(*figures.sleep->seconds, 1.95 / (0.5 * 9.81) + 0.5, 2.5 / 60);
+    EXPECT_DOUBLE_EQ(figures.sleep->limit, 2);
+    EXPECT_LT(figures.energyRise->relative, 1e-3);
+    const auto json = ReportJson("sliding", figures, 1);
+    EXPECT_DOUBLE_EQ(json["largest_drift_m"].get<double>(), figures.drift->largest);
+    EXPECT_DOUBLE_EQ(json["mean_drift_m"].get<double>(), figures.drift->mean);
+    EXPECT_DOUBLE_EQ(json["end_speed_m_s"].get<double>(), *figures.endSpeed);
+    EXPECT_DOUBLE_EQ(json["asleep_s"].get<double>(), *figures.sleep->seconds);
+    EXPECT_DOUBLE_EQ(json["energy_rise_j"].get<double>(), figures.energyRise->joules);
+    EXPECT_DOUBLE_EQ(json["energy_rise"].get<double>(), figures.energyRise->relative);
+    const std::string text = ReportText(ReportLines(kSliding, figures, 1));
+    for (const char* part : {"drift sideways", "speed in the last second", "all asleep", "energy from nothing"})
+        EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+}
+
+TEST(RestFigures, TheSpeedIsThatOfTheLastSecondOfAShortRun) {
+    const auto run = RunSliding(kSliding, 12);
+    ASSERT_TRUE(run);
+    // The first step brakes by mu g / 60 already, each substep by a quarter of it.
+    const double braked = 0.5 * 9.81 / 60;
+    EXPECT_LT(run.Value().endSpeed.value(), 2);
+    EXPECT_GT(run.Value().endSpeed.value(), 2 - braked);
+    ASSERT_TRUE(run.Value().sleep);
+    EXPECT_FALSE(run.Value().sleep->seconds);
+    EXPECT_EQ(ReportJson("sliding", run.Value(), 1)["asleep_s"], "never");
+}
+
+TEST(RestFigures, WhatASceneDoesNotHaveIsNull) {
+    Scene scene = kSliding;
+    scene.isBuiltToStand = scene.isClosed = scene.sleeping = false;
+    const auto run = RunSliding(scene, 3);
+    ASSERT_TRUE(run);
+    EXPECT_FALSE(run.Value().drift || run.Value().sleep || run.Value().energyRise);
+    const auto json = ReportJson("sliding", run.Value(), 1);
+    for (const char* field : {"largest_drift_m", "mean_drift_m", "asleep_s", "asleep_limit_s", "energy_rise"})
+        EXPECT_TRUE(json.at(field).is_null()) << field;
+    EXPECT_TRUE(json["end_speed_m_s"].is_number());
+}
+
+TEST(RestFigures, OfARunOfTheirOwnAreTheSame) {
+    auto world = SceneWorld::Create(kSliding);
+    ASSERT_TRUE(world);
+    const auto timed = Simulate(
+        *world.Value(), 1, 119, 1.0 / 60, 1, [] {}, RestMeters::Off);
+    const auto measured = RunSliding(kSliding, 120);
+    ASSERT_TRUE(timed && measured);
+    RunFigures figures = timed.Value();
+    EXPECT_FALSE(figures.drift || figures.endSpeed || figures.sleep || figures.energyRise);
+    EXPECT_TRUE(ReportJson("sliding", figures, 1)["end_speed_m_s"].is_null());
+    ASSERT_TRUE(MeasureRest(kSliding, {}, nullptr, 120, 1.0 / 60, figures));
+    ASSERT_TRUE(figures.drift && figures.sleep && figures.energyRise);
+    EXPECT_EQ(figures.drift->largest, measured.Value().drift->largest);
+    EXPECT_EQ(figures.endSpeed, measured.Value().endSpeed);
+    EXPECT_EQ(figures.sleep->seconds, measured.Value().sleep->seconds);
+    EXPECT_EQ(figures.energyRise->joules, measured.Value().energyRise->joules);
+}
+
+TEST(MeasureSleep, TurnsSleepingOn) {
+    Scene scene = kSliding;
+    scene.sleeping = false;
+    const auto sleep = MeasureSleep(scene, {}, nullptr, 1.0 / 60, 5),
+               early = MeasureSleep(scene, {}, nullptr, 1.0 / 60, 0.5);
+    ASSERT_TRUE(sleep && early);
+    ASSERT_TRUE(sleep.Value().seconds);
+    EXPECT_NEAR(*sleep.Value().seconds, 1.95 / (0.5 * 9.81) + 0.5, 2.5 / 60);
+    EXPECT_FALSE(early.Value().seconds);
+    EXPECT_DOUBLE_EQ(early.Value().limit, 0.5);
+}
+
+TEST(AccuracyOfRuns, GravityDiffersByAMillionth) {
+    const auto accuracy = [](const SceneWorld& world) {
+        return double{world.System().Settings().gravity.y()} * world.StepCount();
+    };
+    const Scene scene{.name = "sliding",
+                      .description = "a box slides until it rests",
+                      .accuracyRuns = 8,
+                      .build = BuildSliding,
+                      .accuracy = accuracy};
+    const auto runs = AccuracyOfRuns(scene, {}, nullptr, 12, 1.0 / 60);
+    ASSERT_TRUE(runs);
+    ASSERT_EQ(runs.Value().size(), 8u);
+    for (int i = 0; i < 8; ++i) {
+        const auto gravity = static_cast<float>(double{-9.81f} * (1 + 1e-6 * i));
+        EXPECT_EQ(runs.Value()[static_cast<size_t>(i)], 12 * double{gravity}) << i;
+    }
+    // The first is that of the run that is timed.
+    const auto run = RunSliding(scene, 12);
+    ASSERT_TRUE(run);
+    EXPECT_EQ(run.Value().accuracy, runs.Value()[0]);
+}
+
+TEST(Simulation, TimesQueriesOneByOneBesideTheBatch) {
+    const auto world = Build("rays");
+    ASSERT_TRUE(world);
+    const auto run = Simulate(*world, 0, 1, 1.0 / 60, 1, [] {});
+    ASSERT_TRUE(run);
+    EXPECT_EQ(run.Value().queryCount, 100'000);
+    EXPECT_GT(run.Value().singleQueryNs, 0);
+    EXPECT_EQ(run.Value().accuracy, 0);
+    EXPECT_TRUE(ReportJson("rays", run.Value(), 1).contains("single_query_ns"));
+}
+
 TEST(Recorder, KeepsEveryStepOfASmallWorld) {
     const auto world = Build("tower");
     ASSERT_TRUE(world);

@@ -84,6 +84,25 @@ test('what the benchmark wrote is taken over', () => {
   assert.equal(figures(copy, '--check').status, 0);
 });
 
+test('what the benchmark says of rest is taken over', () => {
+  const still = { largest_drift_m: 0.1234, mean_drift_m: 0.0456, end_speed_m_s: 0.0321, asleep_s: 1.25, energy_rise: 0.00078 };
+  const driven = { largest_drift_m: null, mean_drift_m: null, end_speed_m_s: 12.5, asleep_s: 'never', energy_rise: null };
+  const { status, stderr } = take([run('pyramid', 1, still), run('drum', 1, driven), run('pyramid', 2, driven),
+    run('rays', 1, { single_query_ns: 1234.4 })], { pyramid: 40, drum: 40, rays: 40 });
+  assert.equal(status, 0, stderr);
+  assert.match(read('README.md'), /`pyramid` \| 120, 46 mm \| 0\.032 m\/s \| 1\.3 s \| 0\.00078 \|/);
+  assert.match(read('README.md'), /`drum` \| – \| 13 m\/s \| never \| – \|/);
+  assert.match(read('Docs/Queries.md'), /1,234<!--/);
+});
+
+test('a figure that is the median of several runs is not taken from one', () => {
+  const { status, stderr } = take([run('ragdolls', 1)], { ragdolls: 10 });
+  assert.equal(status, 1);
+  assert.match(stderr, /ragdolls: its accuracy figure is the median of 8 runs/);
+  assert.equal(take([run('ragdolls', 1, { accuracy: 0.0155, accuracy_of_runs: Array(8).fill(0.0155) })], { ragdolls: 10 }).status, 0);
+  assert.match(read('README.md'), /`ragdolls`.*16 mm/);
+});
+
 test('what has no place is refused, and nothing is written', () => {
   const known = JSON.parse(read('Docs/figures.json'));
   delete known.scenes.find(({ name }) => name === 'drum').bullet_ms;

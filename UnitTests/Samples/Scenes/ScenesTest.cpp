@@ -91,9 +91,9 @@ TEST(Scenes, AreAllInTheTable) {
     size_t files = 0;
     for (const auto& entry : std::filesystem::directory_iterator(FULCRUM_SOURCE_DIR "/Samples/Scenes"))
         if (entry.path().extension() == ".cpp") ++files;
-    // Scenes.cpp, SceneWorld.cpp, Drawing.cpp, Humanoid.cpp, PenetrationMeter.cpp, QueryGround.cpp and WavyGround.cpp
-    // define none, and those of Drop.cpp and DropOnto.cpp need shapes from outside.
-    EXPECT_EQ(AllScenes().size(), files - 9);
+    // Scenes.cpp, SceneWorld.cpp, Drawing.cpp, Humanoid.cpp, PenetrationMeter.cpp, QueryGround.cpp, RestMeters.cpp and
+    // WavyGround.cpp define none, and those of Drop.cpp and DropOnto.cpp need shapes from outside.
+    EXPECT_EQ(AllScenes().size(), files - 10);
 }
 
 TEST(Scenes, AnotherSeedMakesAnotherWorldWhereASceneUsesIt) {
@@ -207,6 +207,32 @@ TEST(PerformanceScenes, MostlyAsleepHas100000SleepersAnd100Balls) {
     });
     EXPECT_EQ(awake, 100u);
     EXPECT_TRUE(world->System().Settings().sleep.enabled);
+}
+
+TEST(PerformanceScenes, RaysHitTheSameSinglyAndInABatch) {
+    const auto world = Build("rays");
+    ASSERT_TRUE(world);
+    for (int step = 0; step < 30; ++step) ASSERT_TRUE(world->Step(1.0 / 60));
+    const Scene& scene = world->Definition();
+    scene.query(*world);
+    const std::vector<WorldRayHit> batch = world->rayHits;
+    scene.querySingly(*world);
+    size_t different = 0;
+    for (size_t i = 0; i < batch.size(); ++i)
+        different += batch[i].body != world->rayHits[i].body || batch[i].fraction != world->rayHits[i].fraction;
+    EXPECT_EQ(different, 0u);
+    EXPECT_EQ(scene.accuracy(*world), 0);
+}
+
+TEST(PerformanceScenes, SayWhatIsMeasuredOfThem) {
+    std::set<std::string> standing, driven;
+    for (const Scene* scene : AllScenes()) {
+        if (scene->kind != SceneKind::Performance) continue;
+        if (scene->isBuiltToStand) standing.insert(scene->name);
+        if (!scene->isClosed) driven.insert(scene->name);
+    }
+    EXPECT_EQ(standing, (std::set<std::string>{"pyramid", "large_pyramid", "many_pyramids"}));
+    EXPECT_EQ(driven, (std::set<std::string>{"drum"}));
 }
 
 TEST(PerformanceScenes, RaysAre100000StraightDownOntoTheMesh) {
