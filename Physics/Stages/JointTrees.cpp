@@ -22,6 +22,12 @@ bool HasLocks(const Joint& joint) {
     return locks.linear != LinearLock::None || locks.angular != AngularLock::None;
 }
 
+// Whether its locks hold two points together and nothing else.
+bool IsBall(const Joint& joint) {
+    const JointLocks locks = joint.type->Locks();
+    return locks.linear == LinearLock::Point && locks.angular == AngularLock::None;
+}
+
 class Finder {
 public:
     Finder(const BodyStore& bodies, const ConstraintColoring& coloring, const JointStore& joints, float exactLoad,
@@ -90,6 +96,7 @@ private:
         }
         JointTrees::Tree tree;
         tree.slotsBegin = static_cast<uint32_t>(trees_.slots.size());
+        tree.blocksBegin = static_cast<uint32_t>(trees_.blocks.size());
         tree.anchorsBegin = static_cast<uint32_t>(trees_.anchors.size());
         size_t links = 0;
         const uint32_t hook = component.anchored ? AddHook(component.root) : kNone;
@@ -120,6 +127,7 @@ private:
         const size_t loops = joints - (bodies - 1);
         tree.load = LargestLoad(tree);
         if (loops * 4 <= joints && tree.load > exactLoad_) {
+            AddBlocks(tree);
             trees_.trees.push_back(tree);
             return;
         }
@@ -146,6 +154,17 @@ private:
         slot.parent = parent;
         slot.joint = joint;
         slot.isA = isA;
+    }
+
+    // For all that moves but the bodies on ball joints.
+    void AddBlocks(JointTrees::Tree& tree) {
+        for (uint32_t s = tree.slotsBegin; s < tree.slotsEnd; ++s) {
+            JointTreeSlot& slot = trees_.slots[s];
+            if (slot.still || (slot.parent != kNone && IsBall(joints_.joints[slot.joint]))) continue;
+            slot.block = static_cast<uint32_t>(trees_.blocks.size()) - tree.blocksBegin;
+            trees_.blocks.emplace_back();
+        }
+        tree.blocksEnd = static_cast<uint32_t>(trees_.blocks.size());
     }
 
     float LargestLoad(const JointTrees::Tree& tree) const {
@@ -182,6 +201,7 @@ void FindJointTrees(const BodyStore& bodies, const ConstraintColoring& coloring,
     trees.version = coloring.JointVersion();
     trees.trees.clear();
     trees.slots.clear();
+    trees.blocks.clear();
     trees.anchors.clear();
     Finder(bodies, coloring, joints, exactJointLoad, trees, scratch).Find();
 }
