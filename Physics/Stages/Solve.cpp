@@ -91,7 +91,6 @@ public:
     // A group of small islands: one worker, from beginning to end.
     void RunAlone(const SolverGroup& group, std::span<const Verb> verbs, WorkerFindings& findings) {
         uint8_t substep = 0;
-        const bool treesAlone = IsSolvedByTreesAlone(group);
         for (Verb verb : verbs) {
             if (IsOverBodies(verb)) {
                 RunBodies(verb, substep,
@@ -104,7 +103,6 @@ public:
                 continue;
             }
             if (group.HasTrees()) RunTrees(group, verb, substep);
-            if (treesAlone && IsDoneByTrees(verb)) continue;
             for (uint32_t c = group.colorsBegin; c < group.colorsEnd; ++c)
                 RunBatches(verb, substep, layout_.colors[c], 0, layout_.colors[c].Count());
         }
@@ -193,29 +191,6 @@ private:
             case Verb::Restitution:
             case Verb::NextSubstep: break;
         }
-    }
-
-    // Whether iterations would find nothing left to do: all that the group has are locks of its trees.
-    bool IsSolvedByTreesAlone(const SolverGroup& group) const {
-        if (!group.HasTrees()) return false;
-        size_t count = 0, joints = 0;
-        for (uint32_t c = group.colorsBegin; c < group.colorsEnd; ++c) count += layout_.colors[c].Count();
-        const std::span<const JointBatch<kLanes>> own = JointBatchesOf(group);
-        if (count != own.size()) return false;  // contacts
-        for (const JointBatch<kLanes>& batch : own) {
-            if (batch.rowCount > 0 || batch.far) return false;
-            joints += static_cast<size_t>(batch.count);
-        }
-        for (uint32_t t = group.treesBegin; t < group.treesEnd; ++t) {
-            const JointTrees::Tree& tree = layout_.trees.trees[layout_.treesByGroup[t]];
-            if (tree.anchorsEnd > tree.anchorsBegin) return false;
-            joints -= tree.slotsEnd - tree.slotsBegin - 1;  // the root has none
-        }
-        return joints == 0;  // else there are loops
-    }
-    static bool IsDoneByTrees(Verb verb) {
-        return verb == Verb::FirstVelocities || verb == Verb::Velocities || verb == Verb::FirstRelax ||
-               verb == Verb::Relax || verb == Verb::Separations;
     }
 
     // Those of a group's colors lie one after the other.
