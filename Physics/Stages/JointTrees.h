@@ -17,7 +17,9 @@ struct JointTrees {
         uint32_t slotsBegin = 0, slotsEnd = 0;
         uint32_t blocksBegin = 0, blocksEnd = 0;
         uint32_t anchorsBegin = 0, anchorsEnd = 0;
-        float load = 0;  // the largest mass that hangs on a body, itself included, in units of its own
+        // The largest mass that hangs on a body, itself included, in units of its own; half of it where all bodies are
+        // about as heavy.
+        float load = 0;
     };
     std::vector<Tree> trees;
     std::vector<JointTreeSlot> slots;  // a tree's parents and blocks are counted from its first ones
