@@ -122,6 +122,9 @@ public:
     // N s or N m s.
     const Rows& GetTotalLambda() const { return totalLambda_; }
     void SetTotalLambda(const Rows& totalLambda) { totalLambda_ = totalLambda; }
+    void AddTotalLambda(int row, int lane, double change) {
+        totalLambda_[row].Set(lane, static_cast<float>(static_cast<double>(totalLambda_[row][lane]) + change));
+    }
     // K^-1 without the softness; zero where inactive. kg or kg m2.
     const Symmetric& GetEffectiveMass() const { return effectiveMass_; }
 

@@ -1,6 +1,7 @@
 #include <Fulcrum/Physics/Stages/JointTrees.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace fulcrum {
 
@@ -8,6 +9,8 @@ namespace {
 
 constexpr uint32_t kNone = JointTreeSlot::kNone;
 constexpr uint32_t kMostSlots = 4096;  // bodies: a tree is solved by one worker
+// Bodies whose masses differ by this factor at most carry no load but their own weight.
+constexpr float kEvenMasses = 2;
 
 // The bodies that joints hold together, and one tree among their joints.
 struct Component {
@@ -20,6 +23,12 @@ struct Component {
 bool HasLocks(const Joint& joint) {
     const JointLocks locks = joint.type->Locks();
     return locks.linear != LinearLock::None || locks.angular != AngularLock::None;
+}
+
+// Whether its locks hold two points together and nothing else.
+bool IsBall(const Joint& joint) {
+    const JointLocks locks = joint.type->Locks();
+    return locks.linear == LinearLock::Point && locks.angular == AngularLock::None;
 }
 
 class Finder {
@@ -90,6 +99,7 @@ private:
         }
         JointTrees::Tree tree;
         tree.slotsBegin = static_cast<uint32_t>(trees_.slots.size());
+        tree.blocksBegin = static_cast<uint32_t>(trees_.blocks.size());
         tree.anchorsBegin = static_cast<uint32_t>(trees_.anchors.size());
         size_t links = 0;
         const uint32_t hook = component.anchored ? AddHook(component.root) : kNone;
@@ -119,7 +129,11 @@ private:
         const size_t bodies = tree.slotsEnd - tree.slotsBegin - (hook != kNone);
         const size_t loops = joints - (bodies - 1);
         tree.load = LargestLoad(tree);
+        // The stretch that iterations leave is that of the mean load: of a rope that carries its own weight alone, half
+        // of what its top carries.
+        if (LargestMassRatio(tree) <= kEvenMasses) tree.load *= 0.5f;
         if (loops * 4 <= joints && tree.load > exactLoad_) {
+            AddBlocks(tree);
             trees_.trees.push_back(tree);
             return;
         }
@@ -146,6 +160,29 @@ private:
         slot.parent = parent;
         slot.joint = joint;
         slot.isA = isA;
+    }
+
+    // For all that moves but the bodies on ball joints.
+    void AddBlocks(JointTrees::Tree& tree) {
+        for (uint32_t s = tree.slotsBegin; s < tree.slotsEnd; ++s) {
+            JointTreeSlot& slot = trees_.slots[s];
+            if (slot.still || (slot.parent != kNone && IsBall(joints_.joints[slot.joint]))) continue;
+            slot.block = static_cast<uint32_t>(trees_.blocks.size()) - tree.blocksBegin;
+            trees_.blocks.emplace_back();
+        }
+        tree.blocksEnd = static_cast<uint32_t>(trees_.blocks.size());
+    }
+
+    // Of the heaviest body to the lightest.
+    float LargestMassRatio(const JointTrees::Tree& tree) const {
+        float heaviest = 0, lightest = std::numeric_limits<float>::infinity();
+        for (uint32_t s = tree.slotsBegin; s < tree.slotsEnd; ++s) {
+            if (trees_.slots[s].still) continue;
+            const float mass = MassOf(trees_.slots[s].body);
+            heaviest = std::max(heaviest, mass);
+            lightest = std::min(lightest, mass);
+        }
+        return heaviest / lightest;
     }
 
     float LargestLoad(const JointTrees::Tree& tree) const {
@@ -182,6 +219,7 @@ void FindJointTrees(const BodyStore& bodies, const ConstraintColoring& coloring,
     trees.version = coloring.JointVersion();
     trees.trees.clear();
     trees.slots.clear();
+    trees.blocks.clear();
     trees.anchors.clear();
     Finder(bodies, coloring, joints, exactJointLoad, trees, scratch).Find();
 }

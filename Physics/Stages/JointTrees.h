@@ -15,26 +15,32 @@ namespace fulcrum {
 struct JointTrees {
     struct Tree {
         uint32_t slotsBegin = 0, slotsEnd = 0;
+        uint32_t blocksBegin = 0, blocksEnd = 0;
         uint32_t anchorsBegin = 0, anchorsEnd = 0;
-        float load = 0;  // the largest mass that hangs on a body, itself included, in units of its own
+        // The largest mass that hangs on a body, itself included, in units of its own; half of it where all bodies are
+        // about as heavy.
+        float load = 0;
     };
     std::vector<Tree> trees;
-    std::vector<JointTreeSlot> slots;  // a tree's parents are counted from its first slot
+    std::vector<JointTreeSlot> slots;  // a tree's parents and blocks are counted from its first ones
+    std::vector<JointTreeBlock> blocks;
     std::vector<JointTreeAnchor> anchors;
     uint64_t version = 0;  // of the joints that this was made from
 
     JointTree At(const Tree& tree) {
         return {std::span(slots).subspan(tree.slotsBegin, tree.slotsEnd - tree.slotsBegin),
+                std::span(blocks).subspan(tree.blocksBegin, tree.blocksEnd - tree.blocksBegin),
                 std::span(anchors).subspan(tree.anchorsBegin, tree.anchorsEnd - tree.anchorsBegin)};
     }
 };
 
 // Their matrices are of fixed size.
 inline size_t HeapBytes(const JointTreeSlot&) { return 0; }
+inline size_t HeapBytes(const JointTreeBlock&) { return 0; }
 inline size_t HeapBytes(const JointTreeAnchor&) { return 0; }
 inline size_t HeapBytes(const JointTrees& all) {
-    const auto& [trees, slots, anchors, version] = all;
-    return HeapBytes(trees, slots, anchors, version);
+    const auto& [trees, slots, blocks, anchors, version] = all;
+    return HeapBytes(trees, slots, blocks, anchors, version);
 }
 
 // Brings the trees in line with the colored joints. exactJointLoad: see SystemSettings.

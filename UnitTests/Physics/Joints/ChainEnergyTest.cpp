@@ -1,6 +1,8 @@
 // Chains that swing: they never gain energy, and what turns fast about its own axis stays together.
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 
+#include <limits>
+
 namespace fulcrum::testing {
 namespace {
 
@@ -63,6 +65,49 @@ TEST(ChainEnergy, LinksHungUpBesideTheirAxesUnderAHeavyLoad) {
         EXPECT_LT(gap, 1e-3) << aside;
         EXPECT_LT(change, 2e-3) << aside;
     }
+}
+
+// Rods that hang from a hook, let go at 30 degrees.
+struct Rope {
+    BodyBits end;
+    double gap = 0;
+};
+Rope SwingRope(int count, float exactJointLoad) {
+    SystemSettings settings = NoSleep();
+    settings.exactJointLoad = exactJointLoad;
+    settings.layerCollides[1] &= ~2u;
+    TestWorld world(settings);
+    BodyId last = world.Add({.shape = SphereOf(0.01f), .motion = MotionType::Static, .layer = 1});
+    std::vector<JointId> joints;
+    const Position along(0.5 * std::sin(kPi / 6), -0.5 * std::cos(kPi / 6), 0);
+    for (int i = 0; i < count; ++i) {
+        const BodyId next = world.Add({.shape = BoxOf(0.05f, 0.23f, 0.05f),
+                                       .position = along * (i + 0.5),
+                                       .rotation = RotationAbout({0, 0, 1}, kPi / 6),
+                                       .mass = 1,
+                                       .layer = 1});
+        joints.push_back(Join(world, PointJointSettings{Between(last, next, along * double(i))}));
+        last = next;
+    }
+    Rope rope;
+    for (int i = 0; i < 180; ++i) {
+        world.Step();
+        rope.gap = std::max(rope.gap, LargestGap(world, joints));
+    }
+    rope.end = BitsOf(world, last);
+    return rope;
+}
+
+TEST(ChainEnergy, RopesAreTreesOnlyWhereIterationsWouldStretchThem) {
+    const float never = std::numeric_limits<float>::infinity(), usual = SystemSettings{}.exactJointLoad;
+    for (const int count : {10, 20}) {
+        const Rope rope = SwingRope(count, usual);
+        EXPECT_EQ(rope.end, SwingRope(count, never).end) << count;
+        EXPECT_LT(rope.gap, 5e-3) << count;
+    }
+    const Rope rope = SwingRope(50, usual), iterated = SwingRope(50, never);
+    EXPECT_LT(rope.gap, 1e-3);
+    EXPECT_GT(iterated.gap, 8e-3);
 }
 
 }  // namespace
