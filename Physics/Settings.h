@@ -150,7 +150,8 @@ struct SystemSettings {
     float jointFrequency = 60.0f;      // Hz, > 0, of the spring that pulls joints together; limited likewise
     float jointDampingRatio = 1.0f;    // 0..1e6
     // Joints that carry more than this times the mass of their own bodies are solved exactly, as trees, where they form
-    // such; > 0, infinite: never.
+    // such; twice this where all masses are alike, as in a rope that carries nothing (Docs/Joints.md). > 0, infinite:
+    // never.
     float exactJointLoad = 10.0f;
     // m/s and rad/s, > 0, at most 1e6: the fastest pull; from afar up to three times that (Docs/Joints.md).
     float jointPushSpeed = 20.0f;
