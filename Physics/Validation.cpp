@@ -52,6 +52,10 @@ MaybeError CheckPositive(const char* field, double value) {
     return Error{ErrorCode::NonPositive, std::string(field) + " is " + Number(value) + "; it must be larger than 0"};
 }
 
+static MaybeError CheckPositiveOrInfinite(const char* field, double value) {
+    return value == std::numeric_limits<double>::infinity() ? std::nullopt : CheckPositive(field, value);
+}
+
 MaybeError CheckNotNegative(const char* field, double value) {
     if (MaybeError e = CheckFiniteNumber(field, value)) return e;
     if (value >= 0) return std::nullopt;
@@ -170,18 +174,16 @@ MaybeError Check(const SystemSettings& s) {
             CheckPositive("speculativeDistance", s.speculativeDistance),
             CheckRange("speculativeDistance", s.speculativeDistance, 0, 1000),
             CheckNotNegative("penetrationSlop", s.penetrationSlop),
-            CheckPositive("contactFrequency", s.contactFrequency),
+            CheckPositiveOrInfinite("contactFrequency", s.contactFrequency),
             CheckNotNegative("contactDampingRatio", s.contactDampingRatio),
             CheckRange("contactDampingRatio", s.contactDampingRatio, 0, kMost),
             CheckPositive("contactPushSpeed", s.contactPushSpeed),
             CheckRange("contactPushSpeed", s.contactPushSpeed, 0, kMost),
-            CheckPositive("jointFrequency", s.jointFrequency),
+            CheckPositiveOrInfinite("jointFrequency", s.jointFrequency),
             CheckNotNegative("jointDampingRatio", s.jointDampingRatio),
             CheckRange("jointDampingRatio", s.jointDampingRatio, 0, kMost),
             CheckPositive("jointPushSpeed", s.jointPushSpeed), CheckRange("jointPushSpeed", s.jointPushSpeed, 0, kMost),
-            s.exactJointLoad == std::numeric_limits<float>::infinity()
-                ? MaybeError()
-                : CheckPositive("exactJointLoad", s.exactJointLoad),
+            CheckPositiveOrInfinite("exactJointLoad", s.exactJointLoad),
             CheckNotNegative("restitutionSpeed", s.restitutionSpeed), CheckPositive("boundsMargin", s.boundsMargin)))
         return e;
     for (size_t i = 0; i < 32; ++i)

@@ -74,7 +74,6 @@ struct ContactBatch {
     Real coupling[3][3];       // change of V.n, W.t1, W.t2 by a unit impulse of t1, t2, twist
     Real frictionImpulse[3];
     Real friction, twistRadius;
-    Real relaxedImpulse;  // N s, sum of the normal impulses after the last relaxing pass
 
     // Only where `bounces`.
     Real restitution;              // 0..1
@@ -104,6 +103,7 @@ struct ContactSolveSettings {
     float stiffening = 0;   // s/m: by so much of the impulse less for each m/s that the push falls short
     float mostStiffer = 0;  // 0..1: but never by more than this
     float slop;             // m: overlap that is left alone
+    bool relaxes = true;    // relaxing passes follow, which friction is left to
     // Position passes, see CorrectContacts:
     float baumgarte = 0;       // 0..1: the part of an overlap that a pass corrects
     float mostCorrection = 0;  // m, by a pass

@@ -7,17 +7,12 @@
 namespace fulcrum::contacts {
 
 // The friction rows: impulses first clamped to the cone's cross-section (as a vector, so that no heading is preferred),
-// then the torque. The limit is that of the last relaxed normal impulses, where they were larger: those of the soft
-// rows since give way, and would let friction lose its grip for as long as an overlap builds up. Returns the change of
-// impulse of t1, t2 and twist.
+// then the torque. limit: N s, friction times the sum of the normal impulses. Returns the change of impulse of t1, t2
+// and twist.
 template <int N, bool kFixedB>
-FULCRUM_FORCE_INLINE void SolveFriction(ContactBatch<N, kFixedB>& batch, Wide<N> v1, Wide<N> v2, Wide<N> wn,
-                                        Wide<N> (&change)[3]) {
+FULCRUM_FORCE_INLINE void SolveFriction(ContactBatch<N, kFixedB>& batch, Wide<N> limit, Wide<N> v1, Wide<N> v2,
+                                        Wide<N> wn, Wide<N> (&change)[3]) {
     using Real = Wide<N>;
-    Real sum(0.0f);
-    for (int i = 0; i < batch.pointCount; ++i) sum += batch.rows[i].impulse;
-    const Real limit = batch.friction * Max(sum, batch.relaxedImpulse);
-
     Real* total = batch.frictionImpulse;
     const Real* inverse = batch.frictionInverse;
     const Real* response = batch.frictionResponse;
@@ -54,9 +49,42 @@ void NoteHits(ContactBatch<N, kFixedB>& batch, const NormalImpulses<Wide<N>>& ch
     NoteWork(batch, changes, before, NormalMotionOf(batch, RelativeTwist<BodyRow::Velocity>(batch, after, elapsed)));
 }
 
-// All rows of a batch once, on velocities: friction, then the normal rows. A relaxing pass pushes nothing. kRare: it
-// may have the surface velocities of a moving second body, or restitution.
-template <bool kRelax, bool kRare, int N, bool kFixedB>
+// What a pass over velocities does. With relaxing passes friction is theirs alone: a friction row that sees the speeds of
+// pushes answers them, and as pushes move bodies and friction comes too late for that, layers of boxes creep.
+enum class Pass {
+    Push,            // normal rows; overlaps are pushed apart
+    PushAndFriction, // the same with friction: where no relaxing pass follows
+    Relax            // friction and normal rows; nothing is pushed
+};
+
+// The impulses of the normal rows after one sweep over them, in `total`, where points move at `speed` (m/s along the
+// normal, what they may close in by and what pushes them included; changed to what is left). stiffer: of the rows that
+// overlap, 0..1 less soft.
+template <Pass kPass, int N, bool kFixedB>
+FULCRUM_FORCE_INLINE void SweepNormals(const ContactBatch<N, kFixedB>& batch, const ContactSolveSettings& settings,
+                                       const Wide<N>* stiffer, Wide<N>* speed, Wide<N>* total) {
+    using Real = Wide<N>;
+    const Real zero(0.0f), one(1.0f);
+    for (int i = 0; i < batch.pointCount; ++i) {
+        const auto& row = batch.rows[i];
+        Real wanted;
+        if constexpr (kPass == Pass::Relax) {
+            wanted = row.impulse - row.inverseResponse * speed[i];
+        } else {
+            const auto overlaps = row.separation < zero;
+            wanted = Select(overlaps, row.impulse * (Real(1.0f - settings.impulseScale) + stiffer[i]), row.impulse) -
+                     row.inverseResponse *
+                         Select(overlaps, speed[i] * Min(Real(settings.massScale) + stiffer[i], one), speed[i]);
+        }
+        total[i] = Max(wanted, zero);
+        const Real change = total[i] - row.impulse;
+        for (int j = i + 1; j < batch.pointCount; ++j) speed[j] += batch.response[PairIndex(i, j)] * change;
+    }
+}
+
+// All rows of a batch once, on velocities: friction, then the normal rows. kRare: it may have the surface velocities of
+// a moving second body, or restitution.
+template <Pass kPass, bool kRare, int N, bool kFixedB>
 FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* states,
                                     const ContactSolveSettings& settings) {
     using Real = Wide<N>;
@@ -64,70 +92,68 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
     Twists<N, kFixedB> twists;
     Gather<BodyRow::Velocity>(batch, states, twists);
     const Twist<Real> relative = RelativeTwist<BodyRow::Velocity>(batch, twists, settings.elapsed);
-    Real vn = Dot<Real>(relative.linear, batch.normal);
-    Real w1 = Dot<Real>(relative.angular, batch.tangent1), w2 = Dot<Real>(relative.angular, batch.tangent2);
-
-    Real friction[3];
-    Real v1 = Dot<Real>(relative.linear, batch.tangent1), v2 = Dot<Real>(relative.linear, batch.tangent2);
-    Real wn = Dot<Real>(relative.angular, batch.normal);
-    if constexpr (kRare && !kFixedB)
-        if (batch.surfaces) {
-            const SurfaceMotion<Real> surface = GatherSurfaceMotion(batch, batch.surfaces);
-            v1 = MoveBy(v1, surface.v1);
-            v2 = MoveBy(v2, surface.v2);
-            wn = MoveBy(wn, surface.spin);
-        }
-    SolveFriction<N, kFixedB>(batch, v1, v2, wn, friction);
-    for (int k = 0; k < 3; ++k) {
-        vn += batch.coupling[0][k] * friction[k];
-        w1 += batch.coupling[1][k] * friction[k];
-        w2 += batch.coupling[2][k] * friction[k];
-    }
+    NormalMotion<Real> motion = NormalMotionOf(batch, relative);
 
     // Points that are apart may close their gap within the substep; those that touch may not approach; those that
     // overlap are pushed apart, softly.
-    const Real inverseDt(settings.inverseDt), pushRate(settings.pushRate), fastest(-settings.maxPushSpeed);
-    Real speed[ContactRecord::kMaxPoints];
+    Real speed[ContactRecord::kMaxPoints], total[ContactRecord::kMaxPoints];
     [[maybe_unused]] Real stiffer[ContactRecord::kMaxPoints];
-    for (int i = 0; i < batch.pointCount; ++i) {
-        const auto& row = batch.rows[i];
-        speed[i] = vn + row.b * w1 - row.a * w2 + Max(row.separation, zero) * inverseDt;
-        if constexpr (!kRelax) {
-            // What approaches in spite of all is pushed faster by as much: in a pile that is hit hard one pass stops no
-            // body for good.
-            const Real wanted = (row.separation + Real(settings.slop)) * pushRate;
-            const Real push = Clamp(wanted, fastest + Min(speed[i], zero), zero);
-            speed[i] += push;
-            stiffer[i] = Clamp((push - wanted) * Real(settings.stiffening), zero, Real(settings.mostStiffer));
+    const auto findSpeeds = [&] {
+        const Real inverseDt(settings.inverseDt), pushRate(settings.pushRate), fastest(-settings.maxPushSpeed);
+        for (int i = 0; i < batch.pointCount; ++i) {
+            const auto& row = batch.rows[i];
+            speed[i] = MotionOf(row, motion) + Max(row.separation, zero) * inverseDt;
+            if constexpr (kPass != Pass::Relax) {
+                // What approaches in spite of all is pushed faster by as much: in a pile that is hit hard one pass stops
+                // no body for good.
+                const Real wanted = (row.separation + Real(settings.slop)) * pushRate;
+                const Real push = Clamp(wanted, fastest + Min(speed[i], zero), zero);
+                speed[i] += push;
+                stiffer[i] = Clamp((push - wanted) * Real(settings.stiffening), zero, Real(settings.mostStiffer));
+            }
         }
+    };
+    findSpeeds();
+    [[maybe_unused]] Real friction[3];
+    if constexpr (kPass != Pass::Push) {
+        // Friction comes first, non-penetration wins; but its limit is that of the normal impulses which this pass asks
+        // for, not of those of the last one.
+        SweepNormals<kPass>(batch, settings, stiffer, speed, total);
+        Real sum = zero;
+        for (int i = 0; i < batch.pointCount; ++i) sum += total[i];
+        Real v1 = Dot<Real>(relative.linear, batch.tangent1), v2 = Dot<Real>(relative.linear, batch.tangent2);
+        Real wn = Dot<Real>(relative.angular, batch.normal);
+        if constexpr (kRare && !kFixedB)
+            if (batch.surfaces) {
+                const SurfaceMotion<Real> surface = GatherSurfaceMotion(batch, batch.surfaces);
+                v1 = MoveBy(v1, surface.v1);
+                v2 = MoveBy(v2, surface.v2);
+                wn = MoveBy(wn, surface.spin);
+            }
+        SolveFriction<N, kFixedB>(batch, batch.friction * sum, v1, v2, wn, friction);
+        for (int k = 0; k < 3; ++k) {
+            motion.linear += batch.coupling[0][k] * friction[k];
+            motion.angular1 += batch.coupling[1][k] * friction[k];
+            motion.angular2 += batch.coupling[2][k] * friction[k];
+        }
+        findSpeeds();
     }
+    SweepNormals<kPass>(batch, settings, stiffer, speed, total);
     NormalImpulses<Real> changes;
-    Real relaxed = zero;
     for (int i = 0; i < batch.pointCount; ++i) {
         auto& row = batch.rows[i];
-        Real wanted;
-        if constexpr (kRelax) {
-            wanted = row.impulse - row.inverseResponse * speed[i];
-        } else {
-            const auto overlaps = row.separation < zero;
-            wanted =
-                Select(overlaps, row.impulse * (Real(1.0f - settings.impulseScale) + stiffer[i]), row.impulse) -
-                row.inverseResponse * Select(overlaps, speed[i] * (Real(settings.massScale) + stiffer[i]), speed[i]);
-        }
-        const Real total = Max(wanted, zero);
-        const Real change = total - row.impulse;
-        row.impulse = total;
-        for (int j = i + 1; j < batch.pointCount; ++j) speed[j] += batch.response[PairIndex(i, j)] * change;
-        changes.Add(row, change);
-        relaxed += total;
+        changes.Add(row, total[i] - row.impulse);
+        row.impulse = total[i];
     }
-    if constexpr (kRelax) batch.relaxedImpulse = relaxed;
 
-    ApplyToBoth<N, kFixedB>(batch, twists,
-                            batch.normal * changes.sum + batch.tangent1 * friction[0] + batch.tangent2 * friction[1],
-                            NormalTorque(batch, changes.sumA, changes.sumB) + batch.normal * friction[2]);
+    Vec3<Real> force = batch.normal * changes.sum, torque = NormalTorque(batch, changes.sumA, changes.sumB);
+    if constexpr (kPass != Pass::Push) {
+        force += batch.tangent1 * friction[0] + batch.tangent2 * friction[1];
+        torque += batch.normal * friction[2];
+    }
+    ApplyToBoth<N, kFixedB>(batch, twists, force, torque);
     if constexpr (kRare)
-        if (batch.bounces) NoteHits(batch, changes, {vn, w1, w2}, twists, settings.elapsed);
+        if (batch.bounces) NoteHits(batch, changes, motion, twists, settings.elapsed);
     Scatter(batch, twists);
 }
 
@@ -147,7 +173,7 @@ FULCRUM_FORCE_INLINE void WarmStartRows(ContactBatch<N, kFixedB>& batch, BodySta
 }
 
 // Of batches that have restitution, or a surface velocity where both bodies move.
-template <bool kRelax, int N, bool kFixedB>
+template <Pass kPass, int N, bool kFixedB>
 void SolveRareRows(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
 template <int N, bool kFixedB>
 void WarmStartRareRows(ContactBatch<N, kFixedB>& batch, BodyState* states);

@@ -101,7 +101,7 @@ template <int N, bool kFixedB>
         for (Real* x : {&batch.frictionInverse[k], &batch.frictionResponse[k], &batch.frictionImpulse[k]}) keep(*x);
         for (Real& x : batch.coupling[k]) keep(x);
     }
-    for (Real* x : {&batch.friction, &batch.twistRadius, &batch.relaxedImpulse}) keep(*x);
+    for (Real* x : {&batch.friction, &batch.twistRadius}) keep(*x);
 }
 
 template <int N, bool kFixedB>
@@ -142,7 +142,6 @@ void PrepareBounces(ContactBatch<N, kFixedB>& batch, Wide<N> restitution, const 
         left += row.impulse;
     }
     const auto parts = (restitution > Real(0.0f)) & (left == Real(0.0f));
-    batch.relaxedImpulse = Select(restitution > Real(0.0f), left, batch.relaxedImpulse);
     for (Real& impulse : batch.frictionImpulse) impulse = Select(parts, Real(0.0f), impulse);
 }
 
@@ -224,7 +223,6 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
     batch.pointCount = static_cast<int32_t>(HorizontalMax(pointCount));
     batch.bounces = HorizontalMax(head[Record::kRestitution]) > 0.0f;
     batch.surfaces = !kFixedB && isMarked && HaveSurfaceVelocity(head[Record::kMarks]).Any() ? records : nullptr;
-    batch.relaxedImpulse = zero;
 
     // Points, halfway between the surfaces, and their center.
     Vec3<Real> points[ContactRecord::kMaxPoints];
@@ -239,7 +237,6 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
         points[i] = onA + n * (separation * Real(0.5f));
         batch.rows[i].startSeparation = batch.rows[i].separation = Select(used, separation, zero);
         batch.rows[i].impulse = Select(used, impulses[Record::kNormalImpulses + i] * Real(settings.impulseScale), zero);
-        batch.relaxedImpulse += batch.rows[i].impulse;
         for (int k = 0; k < 3; ++k) center[k] += Select(used, points[i][k], zero);
     }
     center = center * (Real(1.0f) / Max(pointCount, Real(1.0f)));

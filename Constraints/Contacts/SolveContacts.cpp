@@ -6,11 +6,11 @@ namespace {
 
 using namespace contacts;
 
-template <bool kRelax, int N, bool kFixedB>
+template <Pass kPass, int N, bool kFixedB>
 FULCRUM_FORCE_INLINE void SolveAllRows(ContactBatch<N, kFixedB>& batch, BodyState* states,
                                        const ContactSolveSettings& settings) {
-    if (batch.bounces || (!kFixedB && batch.surfaces)) return SolveRareRows<kRelax>(batch, states, settings);
-    SolveRows<kRelax, false>(batch, states, settings);
+    if (batch.bounces || (!kFixedB && batch.surfaces)) return SolveRareRows<kPass>(batch, states, settings);
+    SolveRows<kPass, false>(batch, states, settings);
 }
 
 }  // namespace
@@ -34,7 +34,8 @@ void WarmStartContacts(ContactBatch<N, kFixedB>& batch, BodyState* states) {
 
 template <int N, bool kFixedB>
 void SolveContactVelocities(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings) {
-    SolveAllRows<false>(batch, states, settings);
+    if (settings.relaxes) SolveAllRows<Pass::Push>(batch, states, settings);
+    else SolveAllRows<Pass::PushAndFriction>(batch, states, settings);
 }
 
 template <int N, bool kFixedB>
@@ -53,7 +54,7 @@ void UpdateSeparations(ContactBatch<N, kFixedB>& batch, BodyState* states, const
 template <int N, bool kFixedB>
 void RelaxContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings) {
     UpdateSeparations(batch, states, settings);
-    SolveAllRows<true>(batch, states, settings);
+    SolveAllRows<Pass::Relax>(batch, states, settings);
 }
 
 #define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                       \

@@ -2,9 +2,9 @@
 
 namespace fulcrum::contacts {
 
-template <bool kRelax, int N, bool kFixedB>
+template <Pass kPass, int N, bool kFixedB>
 void SolveRareRows(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings) {
-    SolveRows<kRelax, true>(batch, states, settings);
+    SolveRows<kPass, true>(batch, states, settings);
 }
 
 template <int N, bool kFixedB>
@@ -13,8 +13,9 @@ void WarmStartRareRows(ContactBatch<N, kFixedB>& batch, BodyState* states) {
 }
 
 #define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                     \
-    template void SolveRareRows<false>(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&); \
-    template void SolveRareRows<true>(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);  \
+    template void SolveRareRows<Pass::Push>(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&); \
+    template void SolveRareRows<Pass::PushAndFriction>(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&); \
+    template void SolveRareRows<Pass::Relax>(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);  \
     template void WarmStartRareRows(ContactBatch<lanes, fixedB>&, BodyState*);
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, false)
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, true)

@@ -17,6 +17,11 @@ struct Effort {
     JointSolveSettings joints;
 };
 
+// The frequency of the springs that push overlaps and errors of joints away, times the substep: at most this, or slow
+// modes of stacks and chains, of which an iteration resolves little, gain energy. Docs/Step.md derives both: w h <
+// sqrt(2) with one relaxing pass or more, w h < 1 without.
+inline constexpr float kStiffestRelaxed = 0.21f, kStiffest = 0.14f;
+
 // The part of a tree's errors that a substep corrects.
 inline constexpr float kTreePush = 0.5f;
 
@@ -30,8 +35,7 @@ inline Effort EffortOf(const WorldState& world, const StepState& step, const Sol
     effort.solver.positionIterations = std::max(s.solver.positionIterations, group.effort.positionIterations);
     const float h = effort.substepDt = step.dt / static_cast<float>(effort.solver.substeps);
     effort.impulseScale = h / step.substepDt;
-    // A spring that is too stiff for the substep is no longer soft.
-    const float stiffest = 0.25f / h;
+    const float stiffest = (effort.solver.positionIterations > 0 ? kStiffestRelaxed : kStiffest) / (step.stiffnessDt * effort.impulseScale);
 
     ContactSolveSettings& contacts = effort.contacts;
     contacts.inverseDt = 1.0f / h;
@@ -52,6 +56,7 @@ inline Effort EffortOf(const WorldState& world, const StepState& step, const Sol
     // Trees of joints are exact, and pushed.
     const bool corrects = s.solver.positionCorrection == PositionCorrection::Baumgarte && !group.HasTrees();
     if (!corrects) effort.solver.positionCorrection = PositionCorrection::SoftRelax;
+    contacts.relaxes = !corrects && effort.solver.positionIterations > 0;
     contacts.baumgarte = joints.baumgarte = s.solver.baumgarte;
     contacts.mostCorrection = s.contactPushSpeed * h;
     joints.pushes = !corrects;

@@ -5,6 +5,7 @@
 #include <Fulcrum/Physics/World/Colors.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <chrono>
 #include <iterator>
 
@@ -99,11 +100,16 @@ constexpr double kShortestStep = 1e-9;
 
 // Impulses of a short step, scaled up to a long one, are mostly its noise: steps that alternate between 1/240 and 1/30
 // s threw a stack of six boxes over with no limit, and leave one of ten standing with this one.
-constexpr float kMostImpulseScale = 2;
+const float kMostImpulseScale = getenv("XI")?(float)atof(getenv("XI")):2;
+
+// By so much at most springs become stiffer from one step to the next, in time.
+const float kStiffnessDecay = getenv("XD")?(float)atof(getenv("XD")):.95f;
 
 void SetTimes(StepState& step, double dt, const SolverSettings& solver) {
     step.dt = static_cast<float>(dt);
     step.substepDt = step.dt / static_cast<float>(solver.substeps);
+    // Springs as stiff as short steps allow would throw apart what long ones let sink.
+    step.stiffnessDt = std::max(step.substepDt, kStiffnessDecay * step.stiffnessDt);
     step.impulseScale =
         step.lastSubstepDt > 0 ? std::min(step.substepDt / step.lastSubstepDt, kMostImpulseScale) : 1.0f;
 }

@@ -90,6 +90,7 @@ struct StepState {
     float substepDt = 0;      // s
     float impulseScale = 1;   // dt of its substeps / dt of the last step's, at most 2: scales the warm start
     float lastSubstepDt = 0;  // s
+    float stiffnessDt = 0;    // s: the longest of the last substeps, for which contacts and joints are not too stiff
 
     StepReport report;
     std::vector<WorkerFindings> findings;  // by worker
