@@ -144,13 +144,15 @@ struct SystemSettings {
     float speculativeDistance =
         0.02f;                     // m, > 0, at most 1000: contacts begin at this separation, so that nothing bumps
     float penetrationSlop = 0.0f;  // m, >= 0: overlap that is left alone
-    // Hz, > 0, of the spring that pushes overlaps apart. It is never stiffer than substeps resolve, 0.21 of their rate
-    // (0.14 without position iterations); infinite: as stiff as that.
+    // Hz, > 0, of the spring that pushes overlaps apart. It is never stiffer than substeps resolve: at most
+    // sqrt((velocityIterations + positionIterations) / 50) of their rate, by default a fifth. Infinite: as stiff as
+    // that.
     float contactFrequency = std::numeric_limits<float>::infinity();
-    float contactDampingRatio = 5.0f;  // 0..1e6
+    float contactDampingRatio = 1.0f;  // 0..1e6
     float contactPushSpeed = 3.0f;     // m/s, > 0, at most 1e6: the fastest push
-    float jointFrequency = std::numeric_limits<float>::infinity();  // Hz, likewise, of the spring that pulls joints together
-    float jointDampingRatio = 1.0f;    // 0..1e6
+    float jointFrequency =
+        std::numeric_limits<float>::infinity();  // Hz, likewise, of the spring that pulls joints together
+    float jointDampingRatio = 1.0f;              // 0..1e6
     // Joints that carry more than this times the mass of their own bodies are solved exactly, as trees, where they form
     // such; twice this where all masses are alike, as in a rope that carries nothing (Docs/Joints.md). > 0, infinite:
     // never.

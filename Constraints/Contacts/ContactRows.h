@@ -8,10 +8,10 @@ namespace fulcrum::contacts {
 
 // The friction rows: impulses first clamped to the cone's cross-section (as a vector, so that no heading is preferred),
 // then the torque. limit: N s, friction times the sum of the normal impulses. Returns the change of impulse of t1, t2
-// and twist.
+// and twist; `lanes` are those that have friction.
 template <int N, bool kFixedB>
-FULCRUM_FORCE_INLINE void SolveFriction(ContactBatch<N, kFixedB>& batch, Wide<N> limit, Wide<N> v1, Wide<N> v2,
-                                        Wide<N> wn, Wide<N> (&change)[3]) {
+FULCRUM_FORCE_INLINE void SolveFriction(ContactBatch<N, kFixedB>& batch, WideMask<N> lanes, Wide<N> limit, Wide<N> v1,
+                                        Wide<N> v2, Wide<N> wn, Wide<N> (&change)[3]) {
     using Real = Wide<N>;
     Real* total = batch.frictionImpulse;
     const Real* inverse = batch.frictionInverse;
@@ -24,14 +24,14 @@ FULCRUM_FORCE_INLINE void SolveFriction(ContactBatch<N, kFixedB>& batch, Wide<N>
         Select(lengthSquared <= limit * limit, Real(1.0f), limit / Sqrt(Max(lengthSquared, Real(1e-30f))));
     change[0] = wanted1 * scale - total[0];
     change[1] = wanted2 * scale - total[1];
-    total[0] = wanted1 * scale;
-    total[1] = wanted2 * scale;
+    total[0] = Select(lanes, wanted1 * scale, total[0]);
+    total[1] = Select(lanes, wanted2 * scale, total[1]);
 
     const Real twistLimit = limit * batch.twistRadius;
     const Real spin = wn + response[1] * change[0] + response[2] * change[1];
     const Real twist = Clamp(total[2] - inverse[2] * spin, -twistLimit, twistLimit);
     change[2] = twist - total[2];
-    total[2] = twist;
+    total[2] = Select(lanes, twist, total[2]);
 }
 
 // Lanes without a surface velocity keep every bit, a negative zero too.
@@ -49,13 +49,32 @@ void NoteHits(ContactBatch<N, kFixedB>& batch, const NormalImpulses<Wide<N>>& ch
     NoteWork(batch, changes, before, NormalMotionOf(batch, RelativeTwist<BodyRow::Velocity>(batch, after, elapsed)));
 }
 
-// What a pass over velocities does. With relaxing passes friction is theirs alone: a friction row that sees the speeds of
-// pushes answers them, and as pushes move bodies and friction comes too late for that, layers of boxes creep.
+// What a pass over velocities does. With relaxing passes friction is theirs alone: a friction row that sees the speeds
+// of pushes answers them, and as pushes move bodies and friction comes too late for that, layers of boxes creep.
 enum class Pass {
-    Push,            // normal rows; overlaps are pushed apart
-    PushAndFriction, // the same with friction: where no relaxing pass follows
-    Relax            // friction and normal rows; nothing is pushed
+    Push,             // normal rows; overlaps are pushed apart
+    PushAndFriction,  // the same with friction: where no relaxing pass follows, or the second body is moved by its user
+    Relax             // friction and normal rows; nothing is pushed
 };
+
+// The lanes whose second body is moved by its user, or has a surface that is.
+template <int N, bool kFixedB>
+FULCRUM_FORCE_INLINE WideMask<N> MovesByItself(const ContactBatch<N, kFixedB>& batch) {
+    using Real = Wide<N>;
+    if constexpr (!kFixedB) return Real(0.0f) > Real(0.0f);
+    else {
+        const Twist<Real>& velocity = batch.sideB.velocity;
+        return Dot<Real>(velocity.linear, velocity.linear) + Dot<Real>(velocity.angular, velocity.angular) > Real(0.0f);
+    }
+}
+// Those that have friction in such a pass. What rides on something that moves is moved by friction: left to relaxing
+// passes alone it would lag a substep behind on every turn.
+template <Pass kPass, int N, bool kFixedB>
+FULCRUM_FORCE_INLINE WideMask<N> HasFriction(const ContactBatch<N, kFixedB>& batch,
+                                             const ContactSolveSettings& settings) {
+    if (kPass == Pass::Relax || !settings.relaxes) return Wide<N>(0.0f) == Wide<N>(0.0f);
+    return MovesByItself(batch);
+}
 
 // The impulses of the normal rows after one sweep over them, in `total`, where points move at `speed` (m/s along the
 // normal, what they may close in by and what pushes them included; changed to what is left). stiffer: of the rows that
@@ -104,8 +123,8 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
             const auto& row = batch.rows[i];
             speed[i] = MotionOf(row, motion) + Max(row.separation, zero) * inverseDt;
             if constexpr (kPass != Pass::Relax) {
-                // What approaches in spite of all is pushed faster by as much: in a pile that is hit hard one pass stops
-                // no body for good.
+                // What approaches in spite of all is pushed faster by as much: in a pile that is hit hard one pass
+                // stops no body for good.
                 const Real wanted = (row.separation + Real(settings.slop)) * pushRate;
                 const Real push = Clamp(wanted, fastest + Min(speed[i], zero), zero);
                 speed[i] += push;
@@ -130,11 +149,12 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
                 v2 = MoveBy(v2, surface.v2);
                 wn = MoveBy(wn, surface.spin);
             }
-        SolveFriction<N, kFixedB>(batch, batch.friction * sum, v1, v2, wn, friction);
+        const WideMask<N> lanes = HasFriction<kPass>(batch, settings);
+        SolveFriction<N, kFixedB>(batch, lanes, batch.friction * sum, v1, v2, wn, friction);
         for (int k = 0; k < 3; ++k) {
-            motion.linear += batch.coupling[0][k] * friction[k];
-            motion.angular1 += batch.coupling[1][k] * friction[k];
-            motion.angular2 += batch.coupling[2][k] * friction[k];
+            motion.linear = Select(lanes, motion.linear + batch.coupling[0][k] * friction[k], motion.linear);
+            motion.angular1 = Select(lanes, motion.angular1 + batch.coupling[1][k] * friction[k], motion.angular1);
+            motion.angular2 = Select(lanes, motion.angular2 + batch.coupling[2][k] * friction[k], motion.angular2);
         }
         findSpeeds();
     }
@@ -148,8 +168,12 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
 
     Vec3<Real> force = batch.normal * changes.sum, torque = NormalTorque(batch, changes.sumA, changes.sumB);
     if constexpr (kPass != Pass::Push) {
-        force += batch.tangent1 * friction[0] + batch.tangent2 * friction[1];
-        torque += batch.normal * friction[2];
+        const WideMask<N> lanes = HasFriction<kPass>(batch, settings);
+        for (int k = 0; k < 3; ++k) {
+            force[k] =
+                Select(lanes, force[k] + (batch.tangent1[k] * friction[0] + batch.tangent2[k] * friction[1]), force[k]);
+            torque[k] = Select(lanes, torque[k] + batch.normal[k] * friction[2], torque[k]);
+        }
     }
     ApplyToBoth<N, kFixedB>(batch, twists, force, torque);
     if constexpr (kRare)

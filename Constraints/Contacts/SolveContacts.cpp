@@ -34,7 +34,7 @@ void WarmStartContacts(ContactBatch<N, kFixedB>& batch, BodyState* states) {
 
 template <int N, bool kFixedB>
 void SolveContactVelocities(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings) {
-    if (settings.relaxes) SolveAllRows<Pass::Push>(batch, states, settings);
+    if (settings.relaxes && !MovesByItself(batch).Any()) SolveAllRows<Pass::Push>(batch, states, settings);
     else SolveAllRows<Pass::PushAndFriction>(batch, states, settings);
 }
 

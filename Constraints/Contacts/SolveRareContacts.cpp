@@ -12,10 +12,11 @@ void WarmStartRareRows(ContactBatch<N, kFixedB>& batch, BodyState* states) {
     WarmStartRows<true>(batch, states);
 }
 
-#define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                     \
-    template void SolveRareRows<Pass::Push>(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&); \
-    template void SolveRareRows<Pass::PushAndFriction>(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&); \
-    template void SolveRareRows<Pass::Relax>(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);  \
+#define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                           \
+    template void SolveRareRows<Pass::Push>(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);  \
+    template void SolveRareRows<Pass::PushAndFriction>(ContactBatch<lanes, fixedB>&, BodyState*,                     \
+                                                       const ContactSolveSettings&);                                 \
+    template void SolveRareRows<Pass::Relax>(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&); \
     template void WarmStartRareRows(ContactBatch<lanes, fixedB>&, BodyState*);
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, false)
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, true)

@@ -5,6 +5,7 @@
 #include <Fulcrum/Physics/Stages/StepState.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fulcrum {
 
@@ -17,10 +18,12 @@ struct Effort {
     JointSolveSettings joints;
 };
 
-// The frequency of the springs that push overlaps and errors of joints away, times the substep: at most this, or slow
-// modes of stacks and chains, of which an iteration resolves little, gain energy. Docs/Step.md derives both: w h <
-// sqrt(2) with one relaxing pass or more, w h < 1 without.
-inline constexpr float kStiffestRelaxed = 0.21f, kStiffest = 0.14f;
+// Hz, the largest frequency of the springs that push overlaps and errors of joints away, for a substep of h seconds in
+// which so many passes are solved. Above (w h)^2 = passes the slow modes of stacks and chains, of which a pass resolves
+// little, gain energy (Docs/Step.md derives it); this is (w h)^2 = 0.79 passes.
+inline float StiffestFrequency(const SolverSettings& solver, float h) {
+    return std::sqrt(static_cast<float>(solver.velocityIterations + solver.positionIterations) / 50.0f) / h;
+}
 
 // The part of a tree's errors that a substep corrects.
 inline constexpr float kTreePush = 0.5f;
@@ -35,7 +38,7 @@ inline Effort EffortOf(const WorldState& world, const StepState& step, const Sol
     effort.solver.positionIterations = std::max(s.solver.positionIterations, group.effort.positionIterations);
     const float h = effort.substepDt = step.dt / static_cast<float>(effort.solver.substeps);
     effort.impulseScale = h / step.substepDt;
-    const float stiffest = (effort.solver.positionIterations > 0 ? kStiffestRelaxed : kStiffest) / (step.stiffnessDt * effort.impulseScale);
+    const float stiffest = StiffestFrequency(effort.solver, step.stiffnessDt * effort.impulseScale);
 
     ContactSolveSettings& contacts = effort.contacts;
     contacts.inverseDt = 1.0f / h;

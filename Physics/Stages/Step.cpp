@@ -5,7 +5,6 @@
 #include <Fulcrum/Physics/World/Colors.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <chrono>
 #include <iterator>
 
@@ -100,10 +99,10 @@ constexpr double kShortestStep = 1e-9;
 
 // Impulses of a short step, scaled up to a long one, are mostly its noise: steps that alternate between 1/240 and 1/30
 // s threw a stack of six boxes over with no limit, and leave one of ten standing with this one.
-const float kMostImpulseScale = getenv("XI")?(float)atof(getenv("XI")):2;
+constexpr float kMostImpulseScale = 2;
 
 // By so much at most springs become stiffer from one step to the next, in time.
-const float kStiffnessDecay = getenv("XD")?(float)atof(getenv("XD")):.95f;
+constexpr float kStiffnessDecay = 0.95f;
 
 void SetTimes(StepState& step, double dt, const SolverSettings& solver) {
     step.dt = static_cast<float>(dt);
