@@ -116,7 +116,7 @@ TEST(PassThrough, EdgesOfOtherShapesThatMeetDoNotTurnTheFacesIntoEachOther) {
     } pairs[] = {
         {"pyramids", pyramid, pyramid, 0.3, 0.03},       {"pyramid and capsule", pyramid, capsule, 0.65, 0.06},
         {"pyramid and box", pyramid, box, 0.3, 0.03},    {"cylinders", cylinder, cylinder, 0.5, 0.06},
-        {"cylinder and box", cylinder, box, 0.35, 0.04}, {"cylinder and capsule", cylinder, capsule, 0.3, 0.04}};
+        {"cylinder and box", cylinder, box, 0.35, 0.04}, {"cylinder and capsule", cylinder, capsule, 0.32, 0.04}};
     constexpr int kSeeds = 200;
     for (const auto& pair : pairs) {
         double deepest = 0, sum = 0;

@@ -186,12 +186,13 @@ TEST(JointCost, ASettledStepOfRunningMotorsAllocatesNothing) {
     for (const uint32_t threads : {1u, 2u}) {
         TestWorld world(NoSleep(), threads);
         Machines machines(world, 12);
-        for (int step = 0; step < 300; ++step) {
+        // Buffers grow until the machines have been in all their states.
+        for (int step = 0; step < 600; ++step) {
             machines.Drive(step);
             world.Step();
         }
         const uint64_t before = AllocationCount();
-        for (int step = 300; step < 400; ++step) {
+        for (int step = 600; step < 700; ++step) {
             machines.Drive(step);
             if (!world.System().Update(kStep)) ADD_FAILURE();
         }

@@ -184,7 +184,7 @@ TEST(Contradiction, TheJointOfHigherPriorityWins) {
             Join(world, settings);
         }
         world.Step();
-        EXPECT_GT(world.PositionOf(box).x(), 0.03) << highFirst;
+        EXPECT_GT(world.PositionOf(box).x(), 0.025) << highFirst;
         world.Run(2);
         EXPECT_NEAR(world.PositionOf(box).x(), 0.1, 1e-3);
     }
