@@ -2,7 +2,7 @@
 
 #include <Fulcrum/Constraints/Parts/HingeRotationPart.h>
 #include <Fulcrum/Constraints/Parts/RotationEulerPart.h>
-#include <Fulcrum/Physics/JointValidation.h>
+#include <Fulcrum/Physics/Joints/JointChecks.h>
 #include <Fulcrum/Physics/World/JointChanges.h>
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 #include <Fulcrum/Physics/Stages/Impact.h>
 
 #include <Fulcrum/Constraints/BodyLanes.h>
+#include <Fulcrum/Constraints/Restitution.h>
 #include <Fulcrum/Physics/Stages/BodyLimits.h>
 #include <Fulcrum/Physics/Stages/FreeRotation.h>
 #include <Fulcrum/Physics/Stages/SweepCast.h>
@@ -42,7 +43,7 @@ public:
         for (int i = 0; i < hit.pointCount; ++i) {
             slipsBefore_[i] = Slip(i);
             const float approach = Dot<float>(hit.normal, RelativeVelocity(i));
-            bounceSpeeds_[i] = approach > world.settings.restitutionSpeed ? hit.restitution * approach : 0.0f;
+            bounceSpeeds_[i] = BounceSpeed(hit.restitution, approach, world.settings.restitutionSpeed);
             approaches_ |= approach > 0;
             normalResponses_[i] = Response(i, hit.normal);
         }
