@@ -174,8 +174,10 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
                                               const JointSolveSettings& settings) {
     using Real = Wide<N>;
     Motion<N> motionA, motionB;
-    motionA.template Gather<BodyRow::Displacement>(batch.bodyA, bodies.states);
-    motionB.template Gather<BodyRow::Displacement>(batch.bodyB, bodies.states);
+    motionA.template Gather<BodyRow::Displacement>(batch.bodyA, bodies.states,
+                                                   IsStatic<N>(batch.fixedA, batch.kinematicA));
+    motionB.template Gather<BodyRow::Displacement>(batch.bodyB, bodies.states,
+                                                   IsStatic<N>(batch.fixedB, batch.kinematicB));
     Twist<Real> a = motionA.Get(), b = motionB.Get();
     AddKinematicMotion<N>(a, velocityA, batch.kinematicA, settings.elapsed);
     AddKinematicMotion<N>(b, velocityB, batch.kinematicB, settings.elapsed);

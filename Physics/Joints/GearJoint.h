@@ -7,7 +7,6 @@
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/BearingAngle.h>
-#include <Fulcrum/Constraints/Parts/GearPart.h>
 #include <Fulcrum/Physics/JointSettings.h>
 
 namespace fulcrum {
@@ -28,19 +27,8 @@ public:
     const char* Kind() const override { return "gear"; }
     JointDrawing Drawing() const override;
     uint32_t MaxRows() const override { return 1; }
-    void Start(const JointPose& pose) override {
-        OfA().Start(pose.frameA);
-        OfB().Start(pose.frameB);
-        distance_ = Length(pose.offset);
-    }
-    void CollectRows(const JointPose& pose, JointRowList& rows) override {
-        const Vector3 axisA = ToMatrix(pose.frameA).x, axisB = ToMatrix(pose.frameB).x;
-        const double angleA = OfA().Advance(pose.frameA, Dot(axisA, pose.turnedA));
-        const double angleB = OfB().Advance(pose.frameB, Dot(axisB, pose.turnedB));
-        JointRow& row = rows.Add(0, JointRow::Kind::Equal);
-        row.jacobian = GearJacobian<float>(axisA, axisB, ratio_);
-        row.error = static_cast<float>(angleA + static_cast<double>(ratio_) * angleB);
-    }
+    void Start(const JointPose& pose) override;
+    void CollectRows(const JointPose& pose, JointRowList& rows) override;
     std::span<double> State() override { return state_; }
 
 private:

@@ -7,7 +7,6 @@
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/BearingAngle.h>
-#include <Fulcrum/Constraints/Parts/RackAndPinionPart.h>
 #include <Fulcrum/Physics/JointSettings.h>
 
 namespace fulcrum {
@@ -27,18 +26,8 @@ public:
     const char* Kind() const override { return "rack and pinion"; }
     JointDrawing Drawing() const override;
     uint32_t MaxRows() const override { return 1; }
-    void Start(const JointPose& pose) override {
-        Pinion().Start(pose.frameA);
-        state_[BearingAngle::kNumbers] = Dot(pose.offset, ToMatrix(pose.frameB).x);
-    }
-    void CollectRows(const JointPose& pose, JointRowList& rows) override {
-        const Vector3 axis = ToMatrix(pose.frameA).x, way = ToMatrix(pose.frameB).x;
-        const double angle = Pinion().Advance(pose.frameA, Dot(axis, pose.turnedA));
-        const double moved = Dot(pose.offset, way) - state_[BearingAngle::kNumbers];
-        JointRow& row = rows.Add(0, JointRow::Kind::Equal);
-        row.jacobian = RackAndPinionJacobian<float>({pose.armA, pose.armB - pose.offset, axis, way, ratio_});
-        row.error = static_cast<float>(angle - static_cast<double>(ratio_) * moved);
-    }
+    void Start(const JointPose& pose) override;
+    void CollectRows(const JointPose& pose, JointRowList& rows) override;
     std::span<double> State() override { return state_; }
 
 private:
