@@ -18,7 +18,7 @@ struct JointDrawing {
     bool steering = false;                  // about y of frame A: a sector about its x axis
     std::optional<int> trackA{}, trackB{};  // along one axis of a frame: 0, 1, 2 for x, y, z
     bool isPyramid = false;                 // the cone of the swing; else an ellipse
-    float coneAngle = std::numeric_limits<float>::infinity();  // rad: a round cone that no limit of an axis says
+    float coneAngle = std::numeric_limits<float>::infinity();  // rad: a round cone beside the limits of axes
 
     // Circles about the x axes of the frames, each with a spoke along y. m; 0: as large as the joint is drawn.
     std::optional<float> circleA{}, circleB{};
