@@ -27,31 +27,11 @@ FULCRUM_FORCE_INLINE void WithLocks(LinearLock linear, AngularLock angular, F&& 
 }
 
 template <int N>
-inline constexpr uint32_t kAllLanes = (1u << N) - 1;
-
-// Whether a side of a batch is static in all lanes: its bodies have no velocity and no displacement, so they need not
-// be read. A branch a batch; kernels compiled for it would gain little more (Docs/Performance.md).
-template <int N>
-FULCRUM_FORCE_INLINE bool IsStatic(uint32_t fixed, uint32_t kinematic) {
-    return fixed == kAllLanes<N> && kinematic == 0;
-}
-
-template <int N>
 struct Motion {
     using Real = Wide<N>;
     float* rows[N];
     Real row[8];
 
-    template <BodyRow kRow>
-    FULCRUM_FORCE_INLINE void Gather(const uint32_t (&bodies)[N], BodyState* states, bool isStatic) {
-        if (!isStatic) return Gather<kRow>(bodies, states);
-        for (Real& x : row) x = Real(0.0f);
-        if constexpr (kRow == BodyRow::Displacement) {
-            constexpr BodyState kRest;
-            row[BodyState::kHalfTurn] = Real(kRest.halfTurn[0]);
-            row[BodyState::kHalfTurn + 1] = Real(kRest.halfTurn[1]);
-        }
-    }
     template <BodyRow kRow>
     FULCRUM_FORCE_INLINE void Gather(const uint32_t (&bodies)[N], BodyState* states) {
         for (int i = 0; i < N; ++i) rows[i] = RowOf<kRow>(states[bodies[i]]);
@@ -62,7 +42,6 @@ struct Motion {
     }
     // Lanes of bodies that are not dynamic are written nowhere.
     FULCRUM_FORCE_INLINE void Scatter(const Twist<Real>& motion, int count, uint32_t fixed) {
-        if (fixed == kAllLanes<N>) return;
         Set(motion);
         Scatter(count, fixed);
     }
@@ -87,9 +66,9 @@ struct Velocities {
     template <class Batch>
     FULCRUM_FORCE_INLINE Velocities(const Batch& batch, BodyState* states) {
         Motion<N> motion;
-        motion.template Gather<BodyRow::Velocity>(batch.bodyA, states, IsStatic<N>(batch.fixedA, batch.kinematicA));
+        motion.template Gather<BodyRow::Velocity>(batch.bodyA, states);
         a = motion.Get();
-        motion.template Gather<BodyRow::Velocity>(batch.bodyB, states, IsStatic<N>(batch.fixedB, batch.kinematicB));
+        motion.template Gather<BodyRow::Velocity>(batch.bodyB, states);
         b = motion.Get();
     }
 };
@@ -99,7 +78,6 @@ template <int N, class Batch>
 FULCRUM_FORCE_INLINE void MoveBodies(const Batch& batch, BodyState* states, const Twist<Wide<N>>& byA,
                                      const Twist<Wide<N>>& byB) {
     const auto move = [&](const uint32_t(&body)[N], const Twist<Wide<N>>& by, uint32_t fixed) {
-        if (fixed == kAllLanes<N>) return;
         Motion<N> pose;
         pose.template Gather<BodyRow::Displacement>(body, states);
         const Twist<Wide<N>> from = pose.Get();
@@ -115,8 +93,8 @@ FULCRUM_FORCE_INLINE void MoveBodies(const Batch& batch, BodyState* states, cons
 template <int N, class Batch, class F>
 FULCRUM_FORCE_INLINE void ChangeVelocities(const Batch& batch, BodyState* states, F&& change) {
     Motion<N> motionA, motionB;
-    motionA.template Gather<BodyRow::Velocity>(batch.bodyA, states, IsStatic<N>(batch.fixedA, batch.kinematicA));
-    motionB.template Gather<BodyRow::Velocity>(batch.bodyB, states, IsStatic<N>(batch.fixedB, batch.kinematicB));
+    motionA.template Gather<BodyRow::Velocity>(batch.bodyA, states);
+    motionB.template Gather<BodyRow::Velocity>(batch.bodyB, states);
     Twist<Wide<N>> a = motionA.Get(), b = motionB.Get();
     change(a, b);
     motionA.Scatter(a, batch.count, batch.fixedA);

@@ -165,8 +165,8 @@ FULCRUM_FORCE_INLINE BallPlace<Wide<N>> Displaced(const BallBatch<N>& batch, Bod
                                                   const JointSolveSettings& settings) {
     using Real = Wide<N>;
     Motion<N> poseA, poseB;
-    poseA.template Gather<BodyRow::Displacement>(batch.bodyA, states, IsStatic<N>(batch.fixedA, batch.kinematicA));
-    poseB.template Gather<BodyRow::Displacement>(batch.bodyB, states, IsStatic<N>(batch.fixedB, batch.kinematicB));
+    poseA.template Gather<BodyRow::Displacement>(batch.bodyA, states);
+    poseB.template Gather<BodyRow::Displacement>(batch.bodyB, states);
     Twist<Real> a = poseA.Get(), b = poseB.Get();
     Quat<Real> turnA = TurnOf(poseA), turnB = TurnOf(poseB);
     if ((batch.kinematicA | batch.kinematicB) != 0) {

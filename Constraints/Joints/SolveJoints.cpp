@@ -174,10 +174,8 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
                                               const JointSolveSettings& settings) {
     using Real = Wide<N>;
     Motion<N> motionA, motionB;
-    motionA.template Gather<BodyRow::Displacement>(batch.bodyA, bodies.states,
-                                                   IsStatic<N>(batch.fixedA, batch.kinematicA));
-    motionB.template Gather<BodyRow::Displacement>(batch.bodyB, bodies.states,
-                                                   IsStatic<N>(batch.fixedB, batch.kinematicB));
+    motionA.template Gather<BodyRow::Displacement>(batch.bodyA, bodies.states);
+    motionB.template Gather<BodyRow::Displacement>(batch.bodyB, bodies.states);
     Twist<Real> a = motionA.Get(), b = motionB.Get();
     AddKinematicMotion<N>(a, velocityA, batch.kinematicA, settings.elapsed);
     AddKinematicMotion<N>(b, velocityB, batch.kinematicB, settings.elapsed);
