@@ -19,6 +19,7 @@
 #include <Fulcrum/Collision/Shapes/ShapeFile.h>
 #include <Fulcrum/Collision/Shapes/Triangle.h>
 #include <Fulcrum/Collision/Shapes/TriangleMesh.h>
+#include <Fulcrum/Constraints/Joints/JointDrawing.h>
 #include <Fulcrum/Constraints/Joints/Path.h>
 #include <Fulcrum/Jobs/JobSystem.h>
 #include <Fulcrum/Jobs/ThreadPool.h>

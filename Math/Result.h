@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -30,6 +31,8 @@ struct Error {
     ErrorCode code;
     std::string message;  // names the field, its value and what would be valid
 };
+
+using MaybeError = std::optional<Error>;
 
 // Prints the message to standard error and aborts: for Value() of an error and GetError() of a value.
 [[noreturn, gnu::cold, gnu::noinline]] inline void AbortWith(const char* what, const std::string& message) {

@@ -2,7 +2,7 @@
 
 #include <Fulcrum/Constraints/Parts/HingeRotationPart.h>
 #include <Fulcrum/Constraints/Parts/RotationEulerPart.h>
-#include <Fulcrum/Physics/JointValidation.h>
+#include <Fulcrum/Physics/Joints/JointChecks.h>
 #include <Fulcrum/Physics/World/JointChanges.h>
 
 #include <algorithm>
@@ -70,7 +70,7 @@ std::pair<Frame, Frame> FramesOf(const WorldState& world, const JointSettings& s
     }
     const RelativePose bInA =
         Relative(world.bodies.CenterPoseOf(s.bodyA.index), world.bodies.CenterPoseOf(s.bodyB.index));
-    return {a, {bInA.InverseTransform(a.point), Normalized(bInA.rotation.Conjugate() * a.rotation)}};
+    return {a, {bInA.InverseTransform(a.point), InitialFrame2(bInA.rotation, a.rotation)}};
 }
 
 void Write(float (&to)[4], const Quaternion& q) {

@@ -4,7 +4,7 @@
 
 #include <Fulcrum/Jobs/JobSystem.h>
 #include <Fulcrum/Math/Result.h>
-#include <Fulcrum/Physics/JointSettings.h>
+#include <Fulcrum/Physics/Joints/JointKinds.h>
 
 #include <memory>
 
@@ -27,7 +27,7 @@ class JointInterface {
 public:
     explicit JointInterface(WorldState& world) : world_(world) {}
 
-    // Settings: those of any kind in JointSettings.h. The bodies may be in any pose: what is out of place is pulled
+    // Settings: those of any kind in Joints/JointKinds.h. The bodies may be in any pose: what is out of place is pulled
     // together. Errors name the field: UnknownId (a body), Unsupported (the same body twice, no dynamic one),
     // NonFinite, NonPositive, Negative, OutOfRange, Unnormalized. Nothing is created then.
     template <class Settings>

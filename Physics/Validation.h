@@ -7,8 +7,6 @@
 
 namespace fulcrum {
 
-using MaybeError = std::optional<Error>;
-
 MaybeError CheckFinite(const char* field, const Vector3& value);
 MaybeError CheckFinite(const char* field, const Position& value);
 // Finite, and near enough for floats to hold it, with its squares: 1e18 m.

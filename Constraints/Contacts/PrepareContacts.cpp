@@ -1,4 +1,5 @@
 #include <Fulcrum/Constraints/Contacts/ContactKernels.h>
+#include <Fulcrum/Constraints/Restitution.h>
 
 #include <limits>
 
@@ -131,9 +132,8 @@ void PrepareBounces(ContactBatch<N, kFixedB>& batch, Wide<N> restitution, const 
         // Speed at the time of impact, v^2 = v0^2 + 2 a s: so that restitution 1 neither gains nor loses energy.
         const Real gap = Max(row.startSeparation, Real(0.0f));
         const Real speed = Sqrt(Max(approach * approach + Real(2.0f) * closing * gap, Real(0.0f)));
-        const Real bounce = Select((approach < Real(0.0f)) & (speed > Real(settings.restitutionSpeed)),
-                                   restitution * speed, Real(0.0f));
-        batch.bounceSpeed[i] = bounce;
+        batch.bounceSpeed[i] =
+            Select(approach < Real(0.0f), BounceSpeed(restitution, speed, settings.restitutionSpeed), Real(0.0f));
         batch.largestImpulse[i] = Real(0.0f);
         // What has bounced off carries no load: its last impulses would throw it off again, and not all of that would
         // be taken back.

@@ -4,7 +4,6 @@
 
 #include <Fulcrum/Constraints/Joints/JointType.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace fulcrum {
@@ -50,20 +49,7 @@ struct TurnCount {
     double Angle() const { return numbers[0]; }
     // From here on. With limits that the angle is not in, the turn counts that is farthest inside them, or nearest to
     // them.
-    void Start(double wrapped, const AxisControl& control) {
-        numbers = {wrapped};
-        if (!control.limited) return;
-        const double min = control.limits.min, max = control.limits.max;
-        const auto outside = [&](double x) { return std::max(min - x, x - max); };
-        if (outside(wrapped) <= 0.0) return;
-        for (const double end : {min, max}) {
-            if (!std::isfinite(end)) continue;
-            for (const double near : {end, end - kFullTurn, end + kFullTurn}) {
-                const double candidate = NearestTurn(wrapped, near);
-                if (outside(candidate) < outside(numbers[0])) numbers[0] = candidate;
-            }
-        }
-    }
+    void Start(double wrapped, const AxisControl& control);
     // The angle as it is after a step in which it grew by about `turned`, rad.
     double After(double wrapped, double turned) const { return NearestTurn(wrapped, numbers[0] + turned); }
     void Advance(double wrapped, double turned) { numbers = {After(wrapped, turned)}; }

@@ -11,9 +11,9 @@
 //  - A joint that locks translation and rotation solves both as one block.
 //  - A row's impulse takes the reaction of the locks with it. Its response is M^-1 (J^T - L^T (L M^-1 L^T)^-1 L M^-1
 //  J^T) with L the
-//    locks' Jacobian: it disturbs no lock, and a spring or a motor meets the mass that it really moves. What the locks
-//    answer, `lockLinear` and `lockAngular` per unit of impulse, is kept apart from their own impulses: softness takes
-//    none of it back.
+//    locks' Jacobian: it disturbs no lock, and a spring or a motor acts on the inertia that it really moves. The
+//    reaction of the locks, `lockLinear` and `lockAngular` per unit of impulse, is kept apart from their own impulses:
+//    softness takes none of it back.
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/JointType.h>

@@ -150,10 +150,10 @@ FULCRUM_FORCE_INLINE void ScatterRecordRow(const uint32_t (&joints)[N], int coun
     ScatterRows<N>(rows, out, count);
 }
 
-// Where between two anchors a point joint's impulse and the answer to it act, as a part of the way from A's to B's.
+// Where between two anchors a point joint's impulse and its reaction act, as a fraction of the offset from A's to B's.
 // They act at one point, so that angular momentum stays: halfway, or at the anchor of the only body that moves.
 template <int N>
-FULCRUM_FORCE_INLINE Wide<N> MeetingShare(uint32_t fixedA, uint32_t fixedB) {
+FULCRUM_FORCE_INLINE Wide<N> ImpulsePointFraction(uint32_t fixedA, uint32_t fixedB) {
     Wide<N> share(0.5f);
     if ((fixedA | fixedB) != 0)
         for (int i = 0; i < N; ++i)
@@ -208,7 +208,7 @@ struct JointPlace {
     Vec3<Real> rotationError;  // rad, see RotationEulerPart.h
 };
 
-// What the locks miss.
+// The residuals of the locks.
 template <class Real>
 struct JointErrors {
     Vec3<Real> point = Zero<Real>();
@@ -218,7 +218,7 @@ struct JointErrors {
 };
 
 // Sets the parts up, hard and without bias, and returns the errors. Where joints are far apart their velocities are
-// held as if the anchors were at one place: with levers as long as the gap they would whirl small bodies about.
+// held as if the anchors were at one place: with levers as long as the gap they would spin small bodies up.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE JointErrors<Wide<N>> SetUpParts(JointBatch<N>& batch, const JointPlace<Wide<N>>& place) {
     using Real = Wide<N>;
@@ -234,7 +234,7 @@ FULCRUM_FORCE_INLINE JointErrors<Wide<N>> SetUpParts(JointBatch<N>& batch, const
         batch.hinge.CalculateProperties(batch.massA, batch.massB, b, c);
     }
     if constexpr (kLinear == LinearLock::Point) {
-        const Real share = MeetingShare<N>(batch.fixedA, batch.fixedB);
+        const Real share = ImpulsePointFraction<N>(batch.fixedA, batch.fixedB);
         errors.point = place.offset;
         const Vec3<Real> between = batch.far ? ZeroUnless<Real>(batch.isFar <= Real(0.5f), place.offset) : place.offset;
         batch.point.CalculateProperties(batch.massA, batch.massB, Vec3<Real>(place.armA + between * share),

@@ -60,7 +60,7 @@ struct JointTreeSlot {
 
     // Of the last solve.
     Twist<double> load;                       // N s and N m s, on the body
-    Vec3<double> speed, freeForce, freeTurn;  // of ball joints: that is missing; what `load` does on its own
+    Vec3<double> speed, freeForce, freeTurn;  // of ball joints: the residual; what `load` does on its own
     Twist<double> change;                     // of the velocity
 };
 
@@ -97,7 +97,7 @@ struct JointTree {
 // After the parts were set up: at the start of the step and after every substep.
 void FactorizeTree(const JointTree& tree, const JointBatch<kLanes>* batches, const BodyMass* masses);
 
-// Makes the velocities meet all locks of the tree: J v = -bias, or J v = 0 where `relax`. Adds to the parts' total
+// Makes the velocities satisfy all locks of the tree: J v = -bias, or J v = 0 where `relax`. Adds to the parts' total
 // impulses.
 void SolveTree(const JointTree& tree, JointBatch<kLanes>* batches, BodyState* states, bool relax);
 

@@ -82,9 +82,15 @@ struct JointPose {
     float SpeedOf(const JointRow& row) const { return RelativeMotion<>(row.jacobian, velocityA, velocityB); }
 };
 
+struct JointDrawing;
+
 class JointType {
 public:
     virtual ~JointType() = default;
+
+    // The kind's name, for people; and what pictures show of the joint (JointDrawing.h), by default its frames alone.
+    virtual const char* Kind() const { return "custom"; }
+    virtual JointDrawing Drawing() const;
 
     virtual JointLocks Locks() const { return {}; }
     // The largest number of rows that CollectRows adds as long as neither Locks nor motor modes change; 0: it is never

@@ -54,7 +54,7 @@ void SetPush(JointRows<N>& rows, int lane, bool yields, const JointSolveSettings
     rows.mostPush.Set(lane, massScale * s.maxPushSpeed);
 }
 
-// Of a lane's row all but what depends on the mass that it meets: that is set up with the locks. Jacobian and impulse
+// Of a lane's row all but what depends on the effective mass: that is set up with the locks. Jacobian and impulse
 // are written beside it.
 template <int N>
 void FillLane(JointRows<N>& rows, int lane, const JointRow& row, float previousImpulse, const JointSolveSettings& s,
@@ -237,7 +237,7 @@ void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const Joint
     };
     if constexpr (kAngular != AngularLock::None) forget(AngularPart<kAngular>(batch));
     if constexpr (kLinear != LinearLock::None) forget(LinearPart<kLinear>(batch));
-    // Limits are pulled. What drives or holds waits: along a line it would whirl the bodies about at the end of a lever
+    // Limits are pulled. Motors, springs and friction wait: along a line they would spin the bodies up by a lever
     // as long as the gap, and what a motor spun up while a pull turns its axis would not be its own work.
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         JointRows<N>& row = batch.rows[i];

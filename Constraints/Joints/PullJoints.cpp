@@ -1,6 +1,6 @@
 // Joints that are far apart are pulled together by pseudo-velocities (split impulses): poses move with them, velocities
-// never see them. All joints and contacts of the bodies have a say in them, so that what hangs on a pulled body comes
-// along, and stops at the ground. Ball joints: SolveBalls.cpp.
+// never see them. All joints and contacts of the bodies are solved for them, too, so that what hangs on a pulled body
+// comes along, and stops at the ground. Ball joints: SolveBalls.cpp.
 #include <Fulcrum/Constraints/Joints/JointKernels.h>
 
 namespace fulcrum {
@@ -59,29 +59,29 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     }
     if constexpr (kAngular != AngularLock::None) {
         auto& part = AngularPart<kAngular>(batch);
-        auto miss = part.RelativeMotion(a, b);
-        for (int k = 0; k < miss.size(); ++k) miss[k] = -(miss[k] + batch.pullAngular[k]) * batch.isDistant;
-        part.AddImpulse(a, b, batch.massA, batch.massB, part.GetEffectiveMass() * miss, isDistant);
+        auto residual = part.RelativeMotion(a, b);
+        for (int k = 0; k < residual.size(); ++k) residual[k] = -(residual[k] + batch.pullAngular[k]) * batch.isDistant;
+        part.AddImpulse(a, b, batch.massA, batch.massB, part.GetEffectiveMass() * residual, isDistant);
     }
     if constexpr (kLinear != LinearLock::None) {
-        Vec3<Real> miss = b.linear - a.linear;
+        Vec3<Real> residual = b.linear - a.linear;
         if constexpr (kLinear == LinearLock::Line) {
             const auto& frame = batch.line.GetFrame();
-            miss = frame.axis1 * (Dot<Real>(frame.axis1, miss) + batch.pullLinear[0]) +
-                   frame.axis2 * (Dot<Real>(frame.axis2, miss) + batch.pullLinear[1]);
+            residual = frame.axis1 * (Dot<Real>(frame.axis1, residual) + batch.pullLinear[0]) +
+                       frame.axis2 * (Dot<Real>(frame.axis2, residual) + batch.pullLinear[1]);
         } else {
-            miss += batch.pullLinear;
+            residual += batch.pullLinear;
         }
         const Real sum = massA + massB;
-        const Vec3<Real> impulse = miss * (-batch.isDistant / Select(sum > zero, sum, one));
+        const Vec3<Real> impulse = residual * (-batch.isDistant / Select(sum > zero, sum, one));
         a.linear -= impulse * massA;
         b.linear += impulse * massB;
     }
 }
 
 // The other lanes hold what they hold: locks and limits, as in a relaxing pass, those that were far apart with what is
-// left of their pull: turned about their centers they would miss each other by what that turns their anchors, and
-// whirl. Motors and springs have no part in pseudo-velocities.
+// left of their pull: turned about their centers alone, their anchors would move apart by that turn, and the
+// bodies would spin up. Motors and springs have no part in pseudo-velocities.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 [[gnu::noinline]] void HoldNear(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b,
                                 const JointSolveSettings& settings) {

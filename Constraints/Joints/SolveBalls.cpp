@@ -66,7 +66,7 @@ FULCRUM_FORCE_INLINE void Change(BallBatch<N>& batch, const Vec3<Wide<N>>& armA,
     AddImpulse<kRound>(batch, armA, armB, impulse, a, b);
 }
 
-// Where the joints are, and what they miss.
+// The arms of the joints, and the offset from the anchors of A to those of B.
 template <class Real>
 struct BallPlace {
     Vec3<Real> armA, armB, offset;
@@ -74,9 +74,9 @@ struct BallPlace {
 
 // Moves the arms to where impulses act: where joints are far apart, as if the anchors were at one place.
 template <int N>
-FULCRUM_FORCE_INLINE void MeetBetween(const BallBatch<N>& batch, BallPlace<Wide<N>>& place) {
+FULCRUM_FORCE_INLINE void MoveArmsToImpulsePoint(const BallBatch<N>& batch, BallPlace<Wide<N>>& place) {
     using Real = Wide<N>;
-    const Real share = MeetingShare<N>(batch.fixedA, batch.fixedB);
+    const Real share = ImpulsePointFraction<N>(batch.fixedA, batch.fixedB);
     const Vec3<Real> between = batch.far ? ZeroUnless<Real>(batch.isFar <= Real(0.5f), place.offset) : place.offset;
     place.armA += between * share;
     place.armB -= between * (Real(1.0f) - share);
@@ -125,10 +125,10 @@ FULCRUM_FORCE_INLINE void FindFar(BallBatch<N>& batch, const Vec3<Wide<N>>& offs
                                   const JointSolveSettings& settings) {
     using Real = Wide<N>;
     const Real most(settings.maxPushSpeed), rate(settings.pushRate);
-    const Real missing = Max(Max(Abs(offset.x()), Abs(offset.y())), Abs(offset.z())) * (rate / most);
-    const auto isDistant = missing > Real(FarPush(settings));
+    const Real error = Max(Max(Abs(offset.x()), Abs(offset.y())), Abs(offset.z())) * (rate / most);
+    const auto isDistant = error > Real(FarPush(settings));
     const Real near = SecondsNear(wasPulled, isDistant, settings);
-    const auto isFar = (missing > FarPush<Real>(wasPulled, settings)) & (near <= Real(LongestNear(settings)));
+    const auto isFar = (error > FarPush<Real>(wasPulled, settings)) & (near <= Real(LongestNear(settings)));
     batch.far = isFar.Any();
     batch.isFar = Select(isFar, Real(kWasFar) + near, Real(0.0f));
     batch.isDistant = Select(isDistant, Real(1.0f), Real(0.0f));
@@ -189,7 +189,7 @@ FULCRUM_FORCE_INLINE Vec3<Wide<N>> Follow(BallBatch<N>& batch, const SolverBodie
                                           const JointSolveSettings& settings) {
     using Real = Wide<N>;
     BallPlace<Real> place = Displaced(batch, bodies.states, velocityA, velocityB, settings);
-    MeetBetween(batch, place);
+    MoveArmsToImpulsePoint(batch, place);
     Vec3<Real> turnedA, turnedB;
     const auto turnAt = [&](const Vec3<Real>& armA, const Vec3<Real>& armB) {
         turnedA = -Times<Real>(InertiaOfA<kRound>(batch), Cross<Real>(armA, batch.impulse));
@@ -227,8 +227,8 @@ void Solve(BallBatch<N>& batch, BodyState* states, const JointSolveSettings& set
             a.angular += batch.turnedA;
             b.angular += batch.turnedB;
         }
-        const Vec3<Real> miss = MotionAt<Real>(a, b, batch.armA, batch.armB) + batch.push;
-        const Vec3<Real> hard = batch.mass * miss;
+        const Vec3<Real> residual = MotionAt<Real>(a, b, batch.armA, batch.armB) + batch.push;
+        const Vec3<Real> hard = batch.mass * residual;
         Change<kRound>(batch, batch.armA, batch.armB,
                        SoftDelta(Vec3<Real>(hard * Real(settings.softness.massScale)), batch.impulse,
                                  Real(settings.softness.impulseScale)),
@@ -273,11 +273,12 @@ void Pull(BallBatch<N>& batch, BodyState* pseudo, const JointSolveSettings& sett
             a.linear -= impulse * batch.inverseMassA;
             b.linear += impulse * batch.inverseMassB;
         }
-        Vec3<Real> miss = MotionAt<Real>(a, b, batch.armA, batch.armB);
+        Vec3<Real> residual = MotionAt<Real>(a, b, batch.armA, batch.armB);
         if (batch.far)
-            for (int k = 0; k < 3; ++k) miss[k] = Select(batch.isFar > Real(0.5f), miss[k] + batch.pull[k], miss[k]);
+            for (int k = 0; k < 3; ++k)
+                residual[k] = Select(batch.isFar > Real(0.5f), residual[k] + batch.pull[k], residual[k]);
         AddImpulse<kRound>(batch, batch.armA, batch.armB,
-                           ZeroUnless<Real>(batch.isDistant <= Real(0.5f), Vec3<Real>(-(batch.mass * miss))), a, b);
+                           ZeroUnless<Real>(batch.isDistant <= Real(0.5f), Vec3<Real>(-(batch.mass * residual))), a, b);
     });
 }
 
@@ -300,7 +301,7 @@ void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const Solver
         WithinReach<Real>(GatherOffset<N>(batch.bodyA, batch.bodyB, bodies.poses) + place.armB - place.armA);
     FindFar(batch, place.offset, impulses[JointRecord::kWasPulled], settings);
     findings.far |= batch.far;
-    MeetBetween(batch, place);
+    MoveArmsToImpulsePoint(batch, place);
     batch.armA = place.armA;
     batch.armB = place.armB;
     batch.earlier = Zero<Real>();
@@ -312,9 +313,9 @@ void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const Solver
         GatherMasses<false>(batch, bodies.masses);
         batch.mass = MassAt<false>(batch, place.armA, place.armB);
     }
-    const auto answers = batch.mass.xx + batch.mass.yy + batch.mass.zz > Real(0.0f);
+    const auto moves = batch.mass.xx + batch.mass.yy + batch.mass.zz > Real(0.0f);
     batch.impulse =
-        ZeroUnless<Real>(answers, Vec3<Real>(VectorAt<JointRecord::kForce>(impulses) * Real(settings.impulseScale)));
+        ZeroUnless<Real>(moves, Vec3<Real>(VectorAt<JointRecord::kForce>(impulses) * Real(settings.impulseScale)));
     ForgetWhereNewlyFar(batch, impulses[JointRecord::kWasPulled]);
     SetPush(batch, place.offset, settings);
     NoteLargest<N>(batch.joint, batch.count, Dot<Real>(place.offset, place.offset), findings.linearError,

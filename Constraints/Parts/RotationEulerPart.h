@@ -48,6 +48,12 @@ inline Quat<Real> InverseInitialOrientation(const Quat<Real>& frame1, const Quat
     return frame2 * frame1.Conjugate();
 }
 
+// The frame of body 2 for which the constraint holds with the bodies as they are, as a joint is made: q1 f1 = q2 f2.
+// relative: q1^-1 q2.
+inline Quaternion InitialFrame2(const Quaternion& relative, const Quaternion& frame1) {
+    return Normalized(relative.Conjugate() * frame1);
+}
+
 // C, rad, world space.
 template <class Real>
 inline Vec3<Real> RotationError(const Quat<Real>& rotation1, const Quat<Real>& rotation2,

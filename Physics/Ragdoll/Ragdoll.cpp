@@ -1,7 +1,7 @@
 #include <Fulcrum/Physics/Ragdoll/Ragdoll.h>
 
 #include <Fulcrum/Constraints/Joints/JointAngles.h>
-#include <Fulcrum/Physics/JointValidation.h>
+#include <Fulcrum/Physics/Joints/JointChecks.h>
 #include <Fulcrum/Physics/Misuse.h>
 
 namespace fulcrum {

@@ -1,7 +1,7 @@
 #include <Fulcrum/Physics/Ragdoll/RagdollSettings.h>
 
 #include <Fulcrum/Constraints/Parts/RotationEulerPart.h>
-#include <Fulcrum/Physics/JointValidation.h>
+#include <Fulcrum/Physics/Joints/JointChecks.h>
 
 namespace fulcrum {
 

@@ -2,7 +2,7 @@
 // created as often as wanted (Ragdoll.h). Plain data and free functions, any thread.
 #pragma once
 
-#include <Fulcrum/Physics/JointSettings.h>
+#include <Fulcrum/Physics/Joints/JointKinds.h>
 #include <Fulcrum/Physics/Validation.h>
 
 #include <span>

@@ -1,5 +1,5 @@
-// The user's say in a contact. Collide asks when it knows the points, and before anything follows from them: a contact
-// that is ignored has no color, wakes nobody and costs the solver nothing.
+// Asks the contact listener about a contact. Collide does so when it knows the points, and before anything follows from
+// them: a contact that is ignored has no color, wakes no body and costs the solver nothing.
 #include <Fulcrum/Physics/ContactListener.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
 #include <Fulcrum/Physics/World/Materials.h>

@@ -37,7 +37,7 @@ bool IsFiniteState(const BodyStore& bodies, uint32_t body) {
     return (odd == Wide<8>(0.0f)).All() && place == 0;
 }
 
-// The pose is good but where something wrote over it; then the center of the bounds is what is left of the position.
+// The pose is finite unless something wrote over it; then the position is taken from the center of the bounds.
 void RepairPose(WorldState& world, uint32_t body) {
     Pose pose = world.bodies.CenterPoseOf(body);
     const bool isPlaced = IsFinite(pose.position), isTurned = IsFinite(pose.rotation);
@@ -52,7 +52,7 @@ void RepairPose(WorldState& world, uint32_t body) {
     world.bodies.SetCenterPose(body, pose);
 }
 
-// Forces that are finite, but of which no finite acceleration comes. The others Store answers by freezing the body.
+// Limits forces that are finite but whose acceleration is not. Where forces are not finite Store freezes the body.
 void LimitForces(WorldState& world, uint32_t body) {
     BodyCold& cold = world.bodies.cold[body];
     if (!IsFinite(cold.force) || !IsFinite(cold.torque)) return;

@@ -44,7 +44,7 @@ bool StaysInBounds(const WorldState& world, uint32_t body, const Vector3& moved,
     return stays;
 }
 
-// Says how a body that moved far is to be searched.
+// Chooses how the candidates of a body that moved far are found.
 void LookAtBody(const WorldState& world, SweepStore& sweeps, uint32_t body, WorkerFindings& findings) {
     using SearchBy = SweepStore::SearchBy;
     const SweepStore::Start& start = sweeps.starts[body];
@@ -59,8 +59,7 @@ void LookAtBody(const WorldState& world, SweepStore& sweeps, uint32_t body, Work
     sweeps.searchBy[body] = stays && !turns ? SearchBy::Pairs : SearchBy::Trees;
 }
 
-// What the solver moved elsewhere than its bounds foresaw is given bounds about its whole path, so that the trees find
-// it there.
+// What the solver moved out of its fat bounds is given bounds about its whole path, so that the trees find it there.
 void EnlargeBounds(WorldState& world, std::span<WorkerFindings> workers) {
     std::vector<uint32_t>& moved = world.colliders.moved;
     const size_t first = moved.size();
@@ -158,7 +157,7 @@ void StartSweeps(const WorldState& world, SweepStore& sweeps) {
         if (sweeps.searchBy[body] == SweepStore::SearchBy::Trees) sweeps.active.push_back(PlaceOf(world, sweeps, body));
 }
 
-// What goes on elsewhere than its bounds foresaw is found there by the casts of the others.
+// What a hit moved out of its fat bounds is found there by the casts of the others.
 void EnlargeBounds(WorldState& world, const Sweep& sweep) {
     const Pose end = sweep.PoseAt(1);
     if (!world.bodies.CanMove(sweep.body) || !IsFinite(end.position) || !IsFinite(end.rotation)) return;

@@ -40,7 +40,8 @@ struct Ball {
     double margin;  // m: the radius of a body, by which centers stay away from floor and walls
 };
 
-// Finds the floor or wall that a ray from the ball's middle meets first, seen by `body`. False: it meets none.
+// Finds the floor or wall that a ray from the ball's middle hits first, as `body` collides with it. False: it hits
+// none.
 bool FindLimit(const WorldState& world, uint32_t body, const Ball& ball, const Vector3& ray, PlaceLimit& limit) {
     const RayCaster caster({ball.middle, ray});
     RayHit closest;

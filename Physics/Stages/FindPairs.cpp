@@ -40,7 +40,7 @@ void Consider(const WorldState& world, uint32_t index, uint32_t other, uint32_t 
     findings.pairs.push_back(KeyOf(index, other));
 }
 
-// Calls visit(other) for what the bounds of a collider meet.
+// Calls visit(other) for the colliders whose fat bounds overlap those of a collider.
 template <class Visit>
 void VisitNeighbors(const WorldState& world, uint32_t index, const Visit& visit) {
     const ColliderStore& store = world.colliders;
@@ -52,7 +52,7 @@ void VisitNeighbors(const WorldState& world, uint32_t index, const Visit& visit)
     if (self.moving && (layers & store.staticLayers)) store.staticTree.Query(self.fat, visit);
 }
 
-// What one collider meets.
+// Pairs of one collider.
 void Search(const WorldState& world, uint32_t index, uint32_t mostDeep, WorkerFindings& findings) {
     if (findings.deepPairs > mostDeep) return;
     VisitNeighbors(world, index, [&](uint32_t other) {
@@ -68,7 +68,7 @@ void SearchEach(const WorldState& world, std::span<WorkerFindings> workers, uint
     });
 }
 
-// The same where most have moved: what moves meets what moves, neighbors with neighbors.
+// The same where most have moved: a self-join of the tree of moving colliders.
 void SearchTogether(const WorldState& world, std::span<WorkerFindings> workers, uint32_t mostDeep) {
     const ColliderStore& store = world.colliders;
     const auto isQueued = [&](uint32_t i) { return store.colliders[i].queued; };

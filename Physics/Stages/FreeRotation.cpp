@@ -31,8 +31,8 @@ int SymmetryAxis(const BodyDynamics& d) {
 }
 
 // A body that turns freely about its center of mass, its angular momentum L (kg m2/s, world axes) given. In double: the
-// axis in the middle doubles what it misses every 2 radians or so, and the roundings of many substeps in float were a
-// fiftieth of a turn after ten of them.
+// rotation about the middle axis doubles its error every 2 radians or so, and the roundings of many substeps in float
+// were a fiftieth of a turn after ten of them.
 template <class Real>
 struct FreeTop {
     using Vector = Vec3<Real>;

@@ -1,6 +1,7 @@
 #include <Fulcrum/Physics/Stages/Impact.h>
 
 #include <Fulcrum/Constraints/BodyLanes.h>
+#include <Fulcrum/Constraints/Restitution.h>
 #include <Fulcrum/Physics/Stages/BodyLimits.h>
 #include <Fulcrum/Physics/Stages/FreeRotation.h>
 #include <Fulcrum/Physics/Stages/SweepCast.h>
@@ -42,7 +43,7 @@ public:
         for (int i = 0; i < hit.pointCount; ++i) {
             slipsBefore_[i] = Slip(i);
             const float approach = Dot<float>(hit.normal, RelativeVelocity(i));
-            bounceSpeeds_[i] = approach > world.settings.restitutionSpeed ? hit.restitution * approach : 0.0f;
+            bounceSpeeds_[i] = BounceSpeed(hit.restitution, approach, world.settings.restitutionSpeed);
             approaches_ |= approach > 0;
             normalResponses_[i] = Response(i, hit.normal);
         }
@@ -167,7 +168,7 @@ Vector3 GainSince(const WorldState& world, const SweepStore& sweeps, const Sweep
 }
 
 // What `since` did not take of that work is taken from the whole motion: an impact that the solver found at the end of
-// a long way leaves a body little speed along it.
+// a long displacement leaves a body little speed along it.
 void TakeWork(const WorldState& world, const Sweep& sweep, float time, Impact& impact, int side) {
     constexpr float kNotRounding = 1e-4f;
     const BodyDynamics& d = world.bodies.dynamics[sweep.body];
@@ -207,7 +208,7 @@ Vector3 TurnedFreely(const BodyDynamics& d, const Quaternion& rotation, const Ve
     return after > 0 ? Rotate(then, Vector3(end * std::sqrt(before / after))) : w;
 }
 
-// The sweep turns at the rate of its beginning: bodies that have just bounced would else seem to meet again.
+// The sweep turns at the rate of its beginning: bodies that have just bounced would otherwise seem to hit again.
 Impact::Rest FlyOn(const WorldState& world, const SweepStore& sweeps, uint32_t body, const Quaternion& rotation,
                    const Vector3& v, const Vector3& w, const Vector3& since, float rest) {
     const BodyDynamics& d = world.bodies.dynamics[body];

@@ -9,8 +9,6 @@ namespace {
 using Entry = ConstraintColoring::Entry;
 using Kind = ConstraintColoring::Kind;
 
-constexpr uint32_t kColors = ConstraintColoring::kColors;
-
 // Joints of one kind may share a batch: they have the same locks, or are balls (BallBatch.h), of round bodies or of
 // any. Balls have the masses that they have.
 enum JointKind : uint32_t { kRoundBall = 9, kBall = 10 };
@@ -124,12 +122,12 @@ std::span<const SortedJoint> SortJoints(const BodyStore& bodies, const Constrain
     layout.jointVersion = coloring.JointVersion();
     const size_t count = layout.listedJoints.size();
     std::span<SortedJoint> placed = scratch.Allocate<SortedJoint>(count), sorted = scratch.Allocate<SortedJoint>(count);
-    std::span<uint32_t> next = scratch.Allocate<uint32_t>(size_t(islands.groups) * kColors);
+    std::span<uint32_t> next = scratch.Allocate<uint32_t>(size_t(islands.groups) * ConstraintColoring::kColors);
     std::fill(next.begin(), next.end(), 0u);
     for (size_t i = 0; i < count; ++i) {
         const ListedJoint& listed = layout.listedJoints[i];
-        placed[i] = {islands.groupOf[bodies.cold[listed.body].awakePlace] * kColors + listed.color, listed.kind,
-                     listed.joint};
+        placed[i] = {islands.groupOf[bodies.cold[listed.body].awakePlace] * ConstraintColoring::kColors + listed.color,
+                     listed.kind, listed.joint};
         ++next[placed[i].place];
     }
     ExclusivePrefixSum(next);

@@ -123,14 +123,14 @@ void WriteManifold(const WorldState& world, const PairView& v, const Manifold& m
     for (int i = 0; i < manifold.pointCount; ++i) {
         const ManifoldPoint& found = manifold.points[i];
         const Vector3 onA = ToBody(world, pair, pair.colliderA, found.positionOnA);
-        const Vector3 meets = onA + normal * found.separation;  // on B, in A's frame
-        if (!IsFinite(meets)) continue;
+        const Vector3 pointOfB = onA + normal * found.separation;  // in A's frame
+        if (!IsFinite(pointOfB)) continue;
         const float ofA = Dot<float>(normal, Vector3(vA + Cross<float>(wA, onA)));
-        const float ofB = -Dot<float>(normal, Vector3(vB + Cross<float>(wB, Vector3(meets - v.bodyBInA.position))));
+        const float ofB = -Dot<float>(normal, Vector3(vB + Cross<float>(wB, Vector3(pointOfB - v.bodyBInA.position))));
         // Something else may stop one of the two.
         const float approach = std::max(ofA + ofB, std::max(ofB, pair.fixedB ? 0.0f : ofA));
         if (found.separation > world.settings.speculativeDistance + farEnd * std::max(approach, 0.0f) * dt) continue;
-        const Vector3 onB = v.bodyBInA.InverseTransform(meets);
+        const Vector3 onB = v.bodyBInA.InverseTransform(pointOfB);
         for (int k = 0; k < 3; ++k) {
             record.points[count].onA[k] = onA[k];
             record.points[count].onB[k] = onB[k];

@@ -39,7 +39,7 @@ void AddMoreManifolds(WorldState& world, float dt, PairUpdates& updates, std::sp
 
 // Notes what a manifold has come to in this step, once the listener was asked.
 PairChange NoteTouching(WorldState& world, uint32_t pair, WorkerFindings& findings);
-// Asks the listener about a manifold with points and does as it says; false: it is to be ignored.
+// Asks the listener about a manifold with points and applies its changes; false: the contact is to be ignored.
 bool AskListener(WorldState& world, uint32_t pair);
 // What the listener wants of a contact that would have this friction and restitution. All of it is in range and finite.
 ContactChange AskAbout(const ContactListener& listener, const ContactView& contact, float friction, float restitution);

@@ -90,10 +90,9 @@ BatchRange PieceOf(const BatchRange& range, uint32_t piece) {
     return part;
 }
 
-void FindDeepest(WorldState& world, StepState& step) {
-    StepReport& report = step.report;
+void FindDeepest(const WorldState& world, std::span<const WorkerFindings> workers, StepReport& report) {
     uint32_t pair = ~0u;
-    for (const WorkerFindings& findings : step.findings) {
+    for (const WorkerFindings& findings : workers) {
         const float depth = findings.deepest, worst = report.largestPenetration;
         if (depth < worst || (depth == worst && findings.deepestPair >= pair)) continue;
         report.largestPenetration = depth;
@@ -104,22 +103,21 @@ void FindDeepest(WorldState& world, StepState& step) {
     report.deepestB = world.bodies.IdOf(world.pairs.pairs[pair].bodyB);
 }
 
-void FindWorstJoints(WorldState& world, StepState& step) {
-    StepReport& report = step.report;
+void FindWorstJoints(const JointStore& joints, std::span<const WorkerFindings> workers, StepReport& report) {
     JointFindings worst;
     const auto note = [](float error, uint32_t joint, float& largest, uint32_t& which) {
         if (joint == ~0u || error < largest || (error == largest && joint >= which)) return;
         largest = error;
         which = joint;
     };
-    for (const WorkerFindings& findings : step.findings) {
+    for (const WorkerFindings& findings : workers) {
         note(findings.joints.linearError, findings.joints.linearJoint, worst.linearError, worst.linearJoint);
         note(findings.joints.angularError, findings.joints.angularJoint, worst.angularError, worst.angularJoint);
     }
     report.largestJointError = worst.linearError;
     report.largestJointAngle = worst.angularError;
-    if (worst.linearJoint != ~0u) report.worstJoint = world.joints.IdOf(worst.linearJoint);
-    if (worst.angularJoint != ~0u) report.mostTurnedJoint = world.joints.IdOf(worst.angularJoint);
+    if (worst.linearJoint != ~0u) report.worstJoint = joints.IdOf(worst.linearJoint);
+    if (worst.angularJoint != ~0u) report.mostTurnedJoint = joints.IdOf(worst.angularJoint);
 }
 
 class RowFiller {
@@ -182,10 +180,9 @@ private:
 
 }  // namespace
 
-void Prepare(WorldState& world, StepState& step) {
-    SolverLayout& layout = step.solver;
-    step.bounces = false;
-    if (world.coloring.Size() == 0) return;
+bool Prepare(WorldState& world, const StepState& step, SolverLayout& layout, std::span<WorkerFindings> workers,
+             ScratchArena& scratch, StepReport& report) {
+    if (world.coloring.Size() == 0) return false;
     const SolverGroup& large = layout.groups.front();
     const RowFiller filler(world, layout, EffortOf(world, step, large), step.impulseScale);
     const auto piecesOf = [&](uint32_t c) {
@@ -195,28 +192,28 @@ void Prepare(WorldState& world, StepState& step) {
     };
     uint32_t count = 0;
     for (uint32_t c = large.colorsBegin; c < large.colorsEnd; ++c) count += piecesOf(c);
-    std::span<std::pair<uint32_t, uint32_t>> pieces = step.scratch.Allocate<std::pair<uint32_t, uint32_t>>(count);
+    std::span<std::pair<uint32_t, uint32_t>> pieces = scratch.Allocate<std::pair<uint32_t, uint32_t>>(count);
     count = 0;
     for (uint32_t c = large.colorsBegin; c < large.colorsEnd; ++c)
         for (uint32_t i = 0; i < piecesOf(c); ++i) pieces[count++] = {c, i};
     world.jobs->ParallelFor(count, 1, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i) {
             const auto [c, piece] = pieces[i];
-            filler.FillPiece(layout.colors[c], piece, step.findings[range.worker]);
+            filler.FillPiece(layout.colors[c], piece, workers[range.worker]);
         }
     });
     world.jobs->ParallelFor(static_cast<uint32_t>(layout.groups.size()) - 1, 1, [&](JobRange range) {
         for (uint32_t g = range.begin + 1; g < range.end + 1; ++g)
             RowFiller(world, layout, EffortOf(world, step, layout.groups[g]), step.impulseScale)
-                .FillGroup(layout.groups[g], step.findings[range.worker]);
+                .FillGroup(layout.groups[g], workers[range.worker]);
     });
-    filler.FillOverflow(world.coloring.At(ConstraintColoring::kOverflow), step.findings[0]);
+    filler.FillOverflow(world.coloring.At(ConstraintColoring::kOverflow), workers[0]);
 
-    for (const WorkerFindings& findings : step.findings) step.bounces |= findings.bounces;
-    FindDeepest(world, step);
-    FindWorstJoints(world, step);
-    step.report.colors = layout.colorCount;
-    step.report.overflowConstraints = static_cast<uint32_t>(layout.OverflowCount());
+    FindDeepest(world, workers, report);
+    FindWorstJoints(world.joints, workers, report);
+    report.colors = layout.colorCount;
+    report.overflowConstraints = static_cast<uint32_t>(layout.OverflowCount());
+    return std::any_of(workers.begin(), workers.end(), [](const WorkerFindings& findings) { return findings.bounces; });
 }
 
 }  // namespace fulcrum

@@ -62,7 +62,7 @@ private:
     }
 
     // Both go on with the velocities after the hit. Where nothing approaches, the solver moved them otherwise than
-    // those say.
+    // by those.
     void Bounce(const SweepHit& hit, const Impact& impact, const uint32_t (&places)[2]) {
         WakeBody(world_, hit.other);
         report_.sweptHits += impact.bounces;

@@ -10,7 +10,7 @@ namespace fulcrum {
 // null. kNone for what neither is cast nor can move.
 uint32_t PlaceOf(const WorldState& world, SweepStore& sweeps, uint32_t body, const Sweep* known = nullptr);
 
-// Settles SweepStore::hits, and notes in `next` whose sweep is to be cast again. isLast: in the last round whatever
+// Resolves SweepStore::hits, and notes in `next` whose sweep is to be cast again. isLast: in the last round whatever
 // hits something stays there until the next step.
 void ResolveHits(WorldState& world, SweepStore& sweeps, bool isLast, ScratchArena& scratch, StepReport& report);
 

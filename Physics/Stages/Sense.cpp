@@ -38,8 +38,8 @@ bool Rests(const WorldState& world, const SensorSearch& sensing, uint32_t body) 
     return !world.bodies.dynamics[body].awake && !IsTouched(world, sensing, body);
 }
 
-void NoteTouched(WorldState& world, SensorSearch& sensing, std::span<WorkerFindings> workers) {
-    SensorStore& store = world.sensors;
+void NoteTouched(const WorldState& world, SensorStore& store, SensorSearch& sensing,
+                 std::span<WorkerFindings> workers) {
     sensing.changedIn.resize(world.bodies.Size(), 0);
     for (uint32_t body : store.changed)
         if (world.bodies.cold[body].exists) sensing.changedIn[body] = world.step;
@@ -64,8 +64,8 @@ void CollectCutWays(const SweepStore& sweeps, std::vector<MotionSegment>& cut) {
 }
 
 // Sensors are found wherever they were in this step, and by queries where they are now.
-void EnlargeSensorBounds(WorldState& world, const SweepStore& sweeps, std::span<const MotionSegment> cut) {
-    ColliderStore& colliders = world.colliders;
+void EnlargeSensorBounds(const WorldState& world, ColliderStore& colliders, const SweepStore& sweeps,
+                         std::span<const MotionSegment> cut) {
     for (const Sensor& sensor : world.sensors.sensors) {
         const uint32_t body = sensor.id.index;
         if (sensor.removed || !world.bodies.dynamics[body].awake) continue;
@@ -271,8 +271,7 @@ private:
     std::vector<SensorVisit>::const_iterator visit_, lastVisit_;
 };
 
-void ReportAll(WorldState& world, const SensorSearch& sensing, StepReport& report) {
-    SensorStore& store = world.sensors;
+void ReportAll(const WorldState& world, SensorStore& store, const SensorSearch& sensing, StepReport& report) {
     world.jobs->ParallelFor(static_cast<uint32_t>(store.sensors.size()), 1, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i) Reporter(world, sensing, store.sensors[i], i).Run();
     });
@@ -284,17 +283,16 @@ void ReportAll(WorldState& world, const SensorSearch& sensing, StepReport& repor
 
 }  // namespace
 
-void Sense(WorldState& world, const SweepStore& sweeps, SensorSearch& sensing, std::span<WorkerFindings> workers,
-           StepReport& report) {
-    SensorStore& store = world.sensors;
-    if (store.IsEmpty()) return;
-    NoteTouched(world, sensing, workers);
+void Sense(const WorldState& world, SensorStore& sensors, ColliderStore& colliders, const SweepStore& sweeps,
+           SensorSearch& sensing, std::span<WorkerFindings> workers, StepReport& report) {
+    if (sensors.IsEmpty()) return;
+    NoteTouched(world, sensors, sensing, workers);
     CollectCutWays(sweeps, sensing.cut);
-    EnlargeSensorBounds(world, sweeps, sensing.cut);
+    EnlargeSensorBounds(world, colliders, sweeps, sensing.cut);
     FindCandidates(world, sweeps, sensing, workers);
     FindAllVisits(world, sweeps, sensing, workers, report);
-    ReportAll(world, sensing, report);
-    store.changed.clear();
+    ReportAll(world, sensors, sensing, report);
+    sensors.changed.clear();
 }
 
 }  // namespace fulcrum

@@ -38,8 +38,10 @@ void RemoveSeamContacts(const BodyStore& bodies, const ColliderStore& colliders,
 void BuildIslands(const BodyStore& bodies, const ConstraintColoring& coloring, float exactJointLoad, JointStore& joints,
                   SolverLayout& layout, ScratchArena& scratch);
 
-// Reads records, poses, masses. Writes batches of rows.
-void Prepare(WorldState& world, StepState& step);
+// Reads records, poses, masses. Writes the rows of the batches; what types of joints carry from step to step; contacts
+// whose numbers are not finite lose their points. Returns whether some contact has restitution.
+bool Prepare(WorldState& world, const StepState& step, SolverLayout& layout, std::span<WorkerFindings> workers,
+             ScratchArena& scratch, StepReport& report);
 
 // Substeps: integrates velocities, warm starts, iterates, integrates poses, position passes.
 void Solve(WorldState& world, StepState& step);
@@ -48,18 +50,20 @@ void Solve(WorldState& world, StepState& step);
 void Restitution(WorldState& world, StepState& step);
 
 // Writes impulses to the records, displacements to the poses; moves bodies without contacts and joints; measures
-// slowness; breaks joints.
-void Store(WorldState& world, StepState& step);
+// slowness; breaks joints, which it lists. Where continuous collision or sensors ask for it, notes where bodies
+// started. Returns how many bodies have been slow for long enough.
+uint32_t Store(WorldState& world, const StepState& step, SweepStore& sweeps, std::vector<JointId>& broken,
+               std::span<WorkerFindings> workers, StepReport& report);
 
 // Reads where bodies were when the step began. Casts those with continuous collision that moved far along their path:
 // what hits something bounces there, and gets another pose and velocity. Writes the sweeps of the step.
 void Continuous(WorldState& world, SweepStore& sweeps, std::span<WorkerFindings> workers, ScratchArena& scratch,
                 StepReport& report);
 
-// Finds what is inside the sensors, and what came in or left, along the paths of the step. Of the world it writes
-// the sensors, and the bounds of their colliders.
-void Sense(WorldState& world, const SweepStore& sweeps, SensorSearch& sensing, std::span<WorkerFindings> workers,
-           StepReport& report);
+// Finds what is inside the sensors, and what came in or left, along the paths of the step. Writes the sensors, and the
+// bounds of their colliders, which are the world's.
+void Sense(const WorldState& world, SensorStore& sensors, ColliderStore& colliders, const SweepStore& sweeps,
+           SensorSearch& sensing, std::span<WorkerFindings> workers, StepReport& report);
 
 // Puts islands that have been slow for long enough to sleep. candidates: how many bodies have been.
 void Sleep(WorldState& world, uint32_t candidates, ScratchArena& scratch);

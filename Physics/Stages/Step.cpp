@@ -40,14 +40,22 @@ constexpr Stage kStages[] = {
          BuildIslands(world.bodies, world.coloring, world.settings.exactJointLoad, world.joints, step.solver,
                       step.scratch);
      }},
-    {"Prepare", Prepare},
+    {"Prepare",
+     [](WorldState& world, StepState& step) {
+         step.bounces = Prepare(world, step, step.solver, step.findings, step.scratch, step.report);
+     }},
     {"Solve", Solve},
     {"Restitution", Restitution},
-    {"Store", Store},
+    {"Store",
+     [](WorldState& world, StepState& step) {
+         step.sleepCandidates = Store(world, step, step.sweeps, step.broken, step.findings, step.report);
+     }},
     {"Continuous", [](WorldState& world,
                       StepState& step) { Continuous(world, step.sweeps, step.findings, step.scratch, step.report); }},
     {"Sense",
-     [](WorldState& world, StepState& step) { Sense(world, step.sweeps, step.sensing, step.findings, step.report); }},
+     [](WorldState& world, StepState& step) {
+         Sense(world, world.sensors, world.colliders, step.sweeps, step.sensing, step.findings, step.report);
+     }},
     {"Sleep", [](WorldState& world, StepState& step) { Sleep(world, step.sleepCandidates, step.scratch); }},
 };
 static_assert(std::size(kStages) == kStageCount, "kStageCount (StepReport.h) is not the number of stages");
@@ -146,6 +154,7 @@ void RunStep(WorldState& world, StepState& step, double dt) {
         SetTimes(step, dt, world.settings.solver);
         step.scratch.Reset();
         RunStages(world, step);
+        step.lastSubstepDt = step.substepDt;
         world.outsideFatBounds.MarkStale();
         for (const WorkerFindings& f : step.findings) step.report.libccd += f.libccd;
     }

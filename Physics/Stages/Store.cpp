@@ -147,8 +147,8 @@ bool PushIsFinite(const WorldState& world, uint32_t body) {
 bool KeepsStarts(const WorldState& world) { return world.bodies.continuousCount > 0 || !world.sensors.IsEmpty(); }
 
 // Finds how a body ends the step. False: it has nothing to end. `together`: it is still to be turned, one of several.
-bool BeginEnding(WorldState& world, uint32_t body, StepState& step, WorkerFindings& findings, Ending& ending,
-                 bool& together) {
+bool BeginEnding(WorldState& world, uint32_t body, const StepState& step, SweepStore& sweeps, WorkerFindings& findings,
+                 Ending& ending, bool& together) {
     BodyStore& bodies = world.bodies;
     const BodyDynamics& d = bodies.dynamics[body];
     together = false;
@@ -159,7 +159,7 @@ bool BeginEnding(WorldState& world, uint32_t body, StepState& step, WorkerFindin
     ending = {.body = body,
               .v = bodies.LinearVelocityOf(body),
               .turn = {&d, bodies.RotationOf(body), bodies.AngularVelocityOf(body)}};
-    if (KeepsStarts(world)) step.sweeps.starts[body] = {bodies.CenterPoseOf(body), world.step};
+    if (KeepsStarts(world)) sweeps.starts[body] = {bodies.CenterPoseOf(body), world.step};
     if (d.motion == MotionType::Kinematic) {
         ending.displacement = ending.v * step.dt;
         ending.turn.rotation =
@@ -194,8 +194,7 @@ void FinishEnding(WorldState& world, Ending& ending, const StepState& step, Work
         MeasureSlowness(world, body, std::max(FarthestSpeed(world, body, v, w), ending.pulled), step.dt, findings);
 }
 
-void EndBodies(WorldState& world, JobRange range, StepState& step) {
-    WorkerFindings& findings = step.findings[range.worker];
+void EndBodies(WorldState& world, JobRange range, const StepState& step, SweepStore& sweeps, WorkerFindings& findings) {
     Ending endings[kTurnsTogether];
     FreeTurn* const turns[kTurnsTogether] = {&endings[0].turn, &endings[1].turn, &endings[2].turn, &endings[3].turn};
     int waiting = 0;
@@ -207,7 +206,7 @@ void EndBodies(WorldState& world, JobRange range, StepState& step) {
     for (uint32_t i = range.begin; i < range.end; ++i) {
         Ending& ending = endings[waiting];
         bool together;
-        if (!BeginEnding(world, world.bodies.awake[i], step, findings, ending, together)) continue;
+        if (!BeginEnding(world, world.bodies.awake[i], step, sweeps, findings, ending, together)) continue;
         if (!together) FinishEnding(world, ending, step, findings);
         else if (++waiting == kTurnsTogether) turnTogether();
     }
@@ -238,7 +237,7 @@ void StoreAll(WorldState& world, const std::vector<Batch>& batches, uint32_t beg
 }
 
 // Groups lie one after the other: those without an effort of their own are stored together.
-void StoreImpulses(WorldState& world, StepState& step) {
+void StoreImpulses(WorldState& world, const StepState& step) {
     const SolverLayout& layout = step.solver;
     uint32_t stored[kBatchKinds] = {};
     const auto storeTo = [&](auto&& endOf, float impulseScale) {
@@ -280,26 +279,27 @@ void BreakJoints(WorldState& world, std::vector<JointId>& broken) {
 
 }  // namespace
 
-void Store(WorldState& world, StepState& step) {
+uint32_t Store(WorldState& world, const StepState& step, SweepStore& sweeps, std::vector<JointId>& broken,
+               std::span<WorkerFindings> workers, StepReport& report) {
     StoreImpulses(world, step);
     if (KeepsStarts(world)) {
-        step.sweeps.dt = step.dt;
-        step.sweeps.starts.resize(world.bodies.Size());
+        sweeps.dt = step.dt;
+        sweeps.starts.resize(world.bodies.Size());
     }
     world.jobs->ParallelFor(static_cast<uint32_t>(world.bodies.awake.size()), 64,
-                            [&](JobRange range) { EndBodies(world, range, step); });
-    BreakJoints(world, step.broken);
-    step.lastSubstepDt = step.substepDt;
+                            [&](JobRange range) { EndBodies(world, range, step, sweeps, workers[range.worker]); });
+    BreakJoints(world, broken);
 
-    SettleStopped(world, step.findings);
-    uint32_t firstFrozen = ~0u;
-    for (const WorkerFindings& findings : step.findings) {
-        step.sleepCandidates += findings.sleepCandidates;
-        step.report.clampedBodies += findings.clamped;
-        step.report.frozenBodies += findings.frozen;
+    SettleStopped(world, workers);
+    uint32_t sleepCandidates = 0, firstFrozen = ~0u;
+    for (const WorkerFindings& findings : workers) {
+        sleepCandidates += findings.sleepCandidates;
+        report.clampedBodies += findings.clamped;
+        report.frozenBodies += findings.frozen;
         firstFrozen = std::min(firstFrozen, findings.firstFrozen);
     }
-    if (firstFrozen != ~0u) step.report.firstFrozen = world.bodies.IdOf(firstFrozen);
+    if (firstFrozen != ~0u) report.firstFrozen = world.bodies.IdOf(firstFrozen);
+    return sleepCandidates;
 }
 
 }  // namespace fulcrum

@@ -44,7 +44,7 @@ Vector3 TurnNear(const Quaternion& q, const Vector3& guess) {
     return shortest + axis * (turns * kTwoPi);
 }
 
-// A sweep of which the turn, half the work to find it, may still be missing.
+// A sweep whose turn, half the cost of it, is found when it is first needed.
 struct LazySweep {
     Sweep sweep;
     bool hasTurn = true;
@@ -313,7 +313,7 @@ private:
 
     // Looks a little ahead, to where the two would overlap by as much as may be: their manifold there says in which
     // direction they push each other, where the cast knows only what touches first. The sides of flush neighbors, or
-    // edges inside a surface, push nowhere along the way.
+    // edges inside a surface, have normals that do not oppose the motion.
     bool Counts(const ShapeMotion& motion, const ShapeHit& found, const Sweep& theirSweep, float length,
                 SweepHit& hit) {
         if (found.isEarly) return found.fraction > 0;
@@ -361,7 +361,7 @@ private:
 
     // Writes the points of the manifold where the two approach fastest at an instant into the hit; none where they do
     // not touch. A shape that overlaps many triangles of a surface as the cast begins hits all of them at one time, and
-    // asks the same again and again: the last two answers are kept.
+    // needs the same points again and again: the last two results are cached.
     Push FindPoints(const ShapeMotion& motion, const Vector3& linear, const Sweep& theirSweep, float time, float depth,
                     SweepHit& hit) {
         FoundPoints asked{piece_, hit.otherCollider, isTurning_, time, depth, motion.pose.rotation, linear, {}, {}};

@@ -1,4 +1,4 @@
-// What a swept body meets first. Called by the Continuous stage, for different bodies from any number of threads at
+// The first hit of a swept body. Called by the Continuous stage, for different bodies from any number of threads at
 // once.
 #pragma once
 

@@ -20,7 +20,7 @@ struct alignas(64) Collider {
     uint32_t body = 0;
     bool moving = false;  // which tree
     bool queued = false;  // in ColliderStore::moved
-    bool sensor = false;  // in a tree of its own, so that nothing but Sense and queries that ask for it meets it
+    bool sensor = false;  // in a tree of its own, so that only Sense, and queries that ask for sensors, find it
 };
 static_assert(sizeof(Collider) == 64);
 

@@ -1,7 +1,6 @@
-// Which bodies may collide: layers and joints, filters, the contact listener. The answers make pairs, or none, when
-// FindPairs meets two colliders anew; a pair that exists is never asked about again, so that filters cost a step
-// nothing. Where an answer changes, the pairs that it forbids are removed here, and those that it allows are found by
-// the search that follows.
+// Which bodies may collide: layers and joints, filters, the contact listener. They are evaluated when FindPairs finds
+// two colliders that have no pair yet; never again for a pair that exists, so that filters cost a step nothing. Where
+// they change, the pairs that they forbid are removed here, and those that they allow are found by the next search.
 #pragma once
 
 #include <Fulcrum/Physics/World/WorldState.h>
@@ -15,7 +14,7 @@ bool FiltersAllow(const WorldState& world, uint32_t bodyA, uint32_t bodyB);
 // Whether the contact listener, if any, lets them.
 bool ListenerAllows(const WorldState& world, uint32_t bodyA, uint32_t bodyB);
 
-// Whether contacts between two bodies are wanted,
+// Whether two bodies are to collide at all,
 inline bool CanCollide(const WorldState& world, uint32_t bodyA, uint32_t bodyB) {
     const BodyDynamics& a = world.bodies.dynamics[bodyA];
     const BodyDynamics& b = world.bodies.dynamics[bodyB];
@@ -39,7 +38,7 @@ void RemoveForbiddenPairs(WorldState& world, uint32_t body);
 // After the settings got other layerCollides than `before`: removes pairs that these forbid, has those found that they
 // allow.
 void RefilterLayers(WorldState& world, const std::array<uint32_t, 32>& before);
-// Has another listener, or none (null), say what collides; all contacts are as the materials give them until it is
+// Replaces the listener, by none where null; all contacts are as the materials give them until it is
 // asked.
 void ChangeListener(WorldState& world, const ContactListener* listener);
 

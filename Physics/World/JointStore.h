@@ -5,6 +5,7 @@
 
 #include <Fulcrum/Constraints/Coloring.h>
 #include <Fulcrum/Constraints/Joints/JointBatch.h>
+#include <Fulcrum/Constraints/Joints/JointType.h>
 #include <Fulcrum/Physics/JointSettings.h>
 #include <Fulcrum/Physics/World/IndexSet.h>
 

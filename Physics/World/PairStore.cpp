@@ -4,7 +4,7 @@
 
 namespace fulcrum {
 
-uint32_t PairStore::Home(uint64_t key) const {
+uint32_t PairStore::FirstPlace(uint64_t key) const {
     key ^= key >> 32;
     key *= 0x9E3779B97F4A7C15ull;  // Fibonacci hashing
     return static_cast<uint32_t>(key >> 32) & static_cast<uint32_t>(table_.size() - 1);
@@ -14,7 +14,7 @@ uint32_t PairStore::Find(uint32_t colliderA, uint32_t colliderB) const {
     if (table_.empty()) return kNone;
     const uint64_t key = Key(colliderA, colliderB);
     const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
-    for (uint32_t i = Home(key);; i = (i + 1) & mask) {
+    for (uint32_t i = FirstPlace(key);; i = (i + 1) & mask) {
         if (table_[i].index == kNone) return kNone;
         if (table_[i].key == key) return table_[i].index;
     }
@@ -26,7 +26,7 @@ void PairStore::Grow() {
     const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
     for (const Entry& entry : old) {
         if (entry.index == kNone) continue;
-        uint32_t i = Home(entry.key);
+        uint32_t i = FirstPlace(entry.key);
         while (table_[i].index != kNone) i = (i + 1) & mask;
         table_[i] = entry;
     }
@@ -84,7 +84,7 @@ uint32_t PairStore::Add(uint32_t colliderA, uint32_t colliderB) {
 
     const uint64_t key = Key(colliderA, colliderB);
     const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
-    uint32_t i = Home(key);
+    uint32_t i = FirstPlace(key);
     while (table_[i].index != kNone) i = (i + 1) & mask;
     table_[i] = {key, index};
     ++size_;
@@ -124,11 +124,11 @@ void PairStore::Remove(uint32_t index) {
     Unlink(index);
     const uint64_t key = Key(pairs[index].colliderA, pairs[index].colliderB);
     const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
-    uint32_t hole = Home(key);
+    uint32_t hole = FirstPlace(key);
     while (table_[hole].key != key || table_[hole].index == kNone) hole = (hole + 1) & mask;
-    // Entries behind the hole move up where that brings them no nearer than their home.
+    // Entries behind the hole move up where that takes them to no place before their first one.
     for (uint32_t i = (hole + 1) & mask; table_[i].index != kNone; i = (i + 1) & mask) {
-        if (((i - Home(table_[i].key)) & mask) >= ((i - hole) & mask)) {
+        if (((i - FirstPlace(table_[i].key)) & mask) >= ((i - hole) & mask)) {
             table_[hole] = table_[i];
             hole = i;
         }

@@ -83,7 +83,7 @@ private:
     void Unlink(uint32_t index);
 
     uint32_t Allocate();
-    uint32_t Home(uint64_t key) const;
+    uint32_t FirstPlace(uint64_t key) const;
     void Grow();
 
     // Open addressing with linear probing; at most half full. Only an index: its order influences nothing.

@@ -6,8 +6,8 @@
 
 namespace fulcrum {
 
-// No body is faster, whatever its own limits. Its way in a step still fits the arithmetic of the narrow phase, and its
-// turn is still a number of which more than the whole part is known.
+// No body is faster, whatever its own limits. Its displacement in a step still fits the arithmetic of the narrow phase,
+// and its turn is still a number of which more than the whole part is known.
 inline constexpr float kFastestLinear = 3e8f;   // m/s
 inline constexpr float kFastestAngular = 1e6f;  // rad/s
 

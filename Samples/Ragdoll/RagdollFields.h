@@ -17,6 +17,7 @@ inline Error WrongAt(const std::string& path, const std::string& what) {
 
 inline constexpr std::array kJointKindNames = {"Point", "Fixed",      "Hinge",
                                                "Cone",  "SwingTwist", "SixDof"};  // as in RagdollJoint
+static_assert(kJointKindNames.size() == std::variant_size_v<RagdollJoint>);
 inline constexpr std::array kCombineRuleNames = {"GeometricMean", "Average", "Minimum", "Multiply", "Maximum"};
 
 template <class Archive>

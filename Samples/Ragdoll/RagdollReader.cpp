@@ -144,12 +144,10 @@ private:
             error_ = WrongAt(path, "kind is missing; it must be one of " + ListOf(kJointKindNames));
         fields.Choice("kind", kind, kJointKindNames);
         if (error_) return;
-        if (kind == 0) value = PointJointSettings{};
-        if (kind == 1) value = FixedJointSettings{};
-        if (kind == 2) value = HingeJointSettings{};
-        if (kind == 3) value = ConeJointSettings{};
-        if (kind == 4) value = SwingTwistJointSettings{};
-        if (kind == 5) value = SixDofJointSettings{};
+        [&]<size_t... kinds>(std::index_sequence<kinds...>) {
+            ((kind == kinds ? void(value.emplace<kinds>()) : void()), ...);
+        }
+        (std::make_index_sequence<std::variant_size_v<RagdollJoint>>());
         std::visit([&](auto& joint) { Describe(fields, joint); }, value);
         fields.Finish();
     }

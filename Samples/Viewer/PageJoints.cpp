@@ -28,17 +28,46 @@ FrameSteps StepsOf(const RelativePose& pose) {
     return {place[0], place[1], place[2], turn(q.x), turn(q.y), turn(q.z), turn(q.w)};
 }
 
+// In the order in which they first appear.
+std::vector<std::string> KindsOf(const Recording& recording) {
+    std::vector<std::string> kinds;
+    for (const RecordedJoint& joint : recording.joints)
+        if (std::find(kinds.begin(), kinds.end(), joint.kind) == kinds.end()) kinds.push_back(joint.kind);
+    return kinds;
+}
+
+uint64_t FlagsOf(const RecordedJoint& joint) {
+    uint64_t flags = 0, bit = 1;
+    for (const bool flag : {joint.isPyramid, joint.isHardLength, joint.isClosed, joint.rotations, joint.translations,
+                            joint.steering, joint.isRope, joint.isPath}) {
+        if (flag) flags |= bit;
+        bit *= 2;
+    }
+    return flags;
+}
+
+// One more than the number; 0: none.
+uint64_t TrackOf(const std::optional<int>& axis) { return axis ? static_cast<uint64_t>(*axis + 1) : 0; }
+uint64_t CircleOf(const std::optional<float>& radius) {
+    return radius ? static_cast<uint64_t>(std::max<int64_t>(0, StepsOf(*radius, kJointStep))) + 1 : 0;
+}
+
 Column Joints(const Recording& recording) {
     Column column;
+    const std::vector<std::string> kinds = KindsOf(recording);
     int64_t bodyA = 0, bodyB = 0, ratio = 0;
     FrameSteps frameA{}, frameB{};
     for (const RecordedJoint& joint : recording.joints) {
-        column.PutUnsigned(static_cast<uint64_t>(joint.kind));
+        column.PutUnsigned(static_cast<uint64_t>(std::find(kinds.begin(), kinds.end(), joint.kind) - kinds.begin()));
         column.PutUnsigned(static_cast<uint64_t>(joint.linearLock));
         column.PutUnsigned(static_cast<uint64_t>(joint.angularLock));
         column.PutUnsigned(joint.line);
         column.PutUnsigned(joint.axis);
-        column.PutUnsigned((joint.isPyramid ? 1u : 0u) | (joint.isHardLength ? 2u : 0u) | (joint.isClosed ? 4u : 0u));
+        column.PutUnsigned(FlagsOf(joint));
+        column.PutUnsigned(TrackOf(joint.trackA));
+        column.PutUnsigned(TrackOf(joint.trackB));
+        column.PutUnsigned(CircleOf(joint.circleA));
+        column.PutUnsigned(CircleOf(joint.circleB));
         const FrameSteps newA = StepsOf(joint.frameA), newB = StepsOf(joint.frameB);
         const int64_t newRatio = StepsOf(joint.ratio, kJointRatioStep);
         column.PutSigned(joint.bodyA - bodyA);
@@ -126,11 +155,8 @@ std::array<std::string, 3> JointColumns(const Recording& recording) {
 }
 
 nlohmann::ordered_json JointHeader(const Recording& recording) {
-    return {{"count", recording.joints.size()},
-            {"step", kJointStep},
-            {"rotationSteps", kJointRotationSteps},
-            {"ratioStep", kJointRatioStep},
-            {"errorStep", kJointErrorStep}};
+    return {{"count", recording.joints.size()},     {"kinds", KindsOf(recording)},  {"step", kJointStep},
+            {"rotationSteps", kJointRotationSteps}, {"ratioStep", kJointRatioStep}, {"errorStep", kJointErrorStep}};
 }
 
 }  // namespace fulcrum

@@ -1,9 +1,10 @@
 // A recording's joints as columns of a page, in the varints of PageData.h. Called by PageData; Page/decodeJoints.js
 // reads them.
-// - joints: per joint: kind, linear lock, angular lock, line, axis, flags (1 pyramid, 2 hard length, 4 closed path);
-//   differences to the joint before of body A, body B, ratio (in kJointRatioStep), and of frame A and frame B x y z (in
-//   kJointStep m), x y z w (in 1 / kJointRotationSteps); number of points; per point the difference to the one before
-//   (in kJointStep)
+// - joints: per joint: kind (index into the header's kinds), linear lock, angular lock, line, axis, flags (1 pyramid,
+//   2 hard length, 4 closed path, 8 rotations, 16 translations, 32 steering, 64 rope, 128 path); track on A and on B
+//   (1 + axis), circle about A and about B (1 + radius in kJointStep), each 0 for none; differences to the joint before
+//   of body A, body B, ratio (in kJointRatioStep), and of frame A and frame B x y z (in kJointStep m), x y z w (in 1 /
+//   kJointRotationSteps); number of points; per point the difference to the one before (in kJointStep)
 // - jointStates: per frame: number of states; per state: gap to the joint before, flags (1 enabled, 2 other limits);
 //   with flag 2: a bit for each finite end (2 axis + 0 for min, + 1 for max), and of these the differences to the
 //   joint's last ones (in kJointStep m or rad)

@@ -135,6 +135,23 @@ void FillKind(WheelJointSettings& settings, Values& values) {
     settings.spin = RandomControl(values);
 }
 
+void FillKind(CustomJointSettings&, Values&) {}
+
+template <class Settings>
+constexpr float kWeight = 1;
+template <>
+constexpr float kWeight<ConeJointSettings> = 0.5f;
+template <>
+constexpr float kWeight<GearJointSettings> = 0.5f;
+template <>
+constexpr float kWeight<RackAndPinionJointSettings> = 0.5f;
+template <>
+constexpr float kWeight<PulleyJointSettings> = 0.5f;
+template <>
+constexpr float kWeight<PathJointSettings> = 0.5f;
+template <>
+constexpr float kWeight<CustomJointSettings> = 0;  // what a user's class does is not in question
+
 template <class Settings>
 void Create(Twin& twin, Values& values, const CallTargets& targets, Outcome& outcome) {
     Settings settings;
@@ -169,20 +186,10 @@ FULCRUM_JOINT_CALL(SetMassOverride, joints.SetMassOverride(id, RandomMassOverrid
 #undef FULCRUM_JOINT_CALL
 
 constexpr CallKind kCalls[] = {
-    {"CreatePointJoint", 1, Create<PointJointSettings>},
-    {"CreateFixedJoint", 1, Create<FixedJointSettings>},
-    {"CreateDistanceJoint", 1, Create<DistanceJointSettings>},
-    {"CreateHingeJoint", 1, Create<HingeJointSettings>},
-    {"CreateSliderJoint", 1, Create<SliderJointSettings>},
-    {"CreateConeJoint", 0.5f, Create<ConeJointSettings>},
-    {"CreateSwingTwistJoint", 1, Create<SwingTwistJointSettings>},
-    {"CreateSixDofJoint", 1, Create<SixDofJointSettings>},
-    {"CreateGearJoint", 0.5f, Create<GearJointSettings>},
-    {"CreateRackAndPinionJoint", 0.5f, Create<RackAndPinionJointSettings>},
-    {"CreatePulleyJoint", 0.5f, Create<PulleyJointSettings>},
-    {"CreatePathJoint", 0.5f, Create<PathJointSettings>},
-    {"CreateWheelJoint", 1, Create<WheelJointSettings>},
-    {"RemoveJoint", 0.5f, RemoveJoint},
+#define FULCRUM_CREATE(kind) {"Create" #kind "Joint", kWeight<kind##JointSettings>, Create<kind##JointSettings>},
+    FULCRUM_FOR_EACH_JOINT_KIND(FULCRUM_CREATE)
+#undef FULCRUM_CREATE
+        {"RemoveJoint", 0.5f, RemoveJoint},
     {"SetEnabled", 0.5f, SetEnabled},
     {"SetLimits", 1, SetLimits},
     {"SetMotor", 1, SetMotor},

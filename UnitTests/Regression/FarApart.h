@@ -2,17 +2,7 @@
 // and how they come together. Made from a seed. One thread.
 #pragma once
 
-#include <Fulcrum/Constraints/Joints/ConeJoint.h>
-#include <Fulcrum/Constraints/Joints/DistanceJoint.h>
-#include <Fulcrum/Constraints/Joints/GearJoint.h>
-#include <Fulcrum/Constraints/Joints/HingeJoint.h>
-#include <Fulcrum/Constraints/Joints/PathJoint.h>
-#include <Fulcrum/Constraints/Joints/PulleyJoint.h>
-#include <Fulcrum/Constraints/Joints/RackAndPinionJoint.h>
-#include <Fulcrum/Constraints/Joints/SixDofJoint.h>
-#include <Fulcrum/Constraints/Joints/SliderJoint.h>
-#include <Fulcrum/Constraints/Joints/SwingTwistJoint.h>
-#include <Fulcrum/Constraints/Joints/WheelJoint.h>
+#include <Fulcrum/Physics/Joints/JointKinds.h>
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 #include <Fulcrum/UnitTests/Support/RandomPoses.h>
 
@@ -20,25 +10,12 @@
 
 namespace fulcrum::testing::far_apart {
 
-enum class Kind : uint8_t {
-    Point,
-    Fixed,
-    Distance,
-    Hinge,
-    Slider,
-    Cone,
-    SwingTwist,
-    SixDof,
-    Gear,
-    RackAndPinion,
-    Pulley,
-    Path,
-    Wheel,
-    Custom,
-    Count
-};
-inline constexpr const char* kNames[] = {"Point",  "Fixed", "Distance",      "Hinge",  "Slider", "Cone",  "SwingTwist",
-                                         "SixDof", "Gear",  "RackAndPinion", "Pulley", "Path",   "Wheel", "Custom"};
+#define FULCRUM_KIND(kind) kind,
+enum class Kind : uint8_t { FULCRUM_FOR_EACH_JOINT_KIND(FULCRUM_KIND) Count };
+#undef FULCRUM_KIND
+#define FULCRUM_NAME(kind) #kind,
+inline constexpr const char* kNames[] = {FULCRUM_FOR_EACH_JOINT_KIND(FULCRUM_NAME)};
+#undef FULCRUM_NAME
 inline constexpr double kFastest = 60;     // m/s: three times jointPushSpeed
 inline constexpr double kTogether = 0.05;  // m or rad
 inline constexpr double kRackRatio = 3;    // rad/m

@@ -13,8 +13,7 @@ Recording WithJoints(size_t count) {
     Recording recording;
     recording.shapes.emplace_back().radius = 1;
     recording.bodies.resize(2);
-    for (size_t i = 0; i < count; ++i)
-        recording.joints.push_back({.kind = RecordedJointKind::Hinge, .bodyA = 0, .bodyB = 1});
+    for (size_t i = 0; i < count; ++i) recording.joints.push_back({.kind = "hinge", .bodyA = 0, .bodyB = 1});
     return recording;
 }
 
@@ -81,7 +80,8 @@ TEST(ViewerJoints, ColumnsAreEmptyWithoutJoints) {
 TEST(ViewerJoints, ColumnsAreAsTheHeaderDescribesThem) {
     Recording recording = WithJoints(1);
     RecordedJoint& joint = recording.joints[0];
-    joint.kind = RecordedJointKind::Pulley;
+    joint.kind = "pulley";
+    joint.isRope = true;
     joint.isHardLength = true;
     joint.ratio = 2;
     joint.frameA.position = {0.5f, 0, -0.25f};
@@ -99,11 +99,11 @@ TEST(ViewerJoints, ColumnsAreAsTheHeaderDescribesThem) {
         return text;
     };
     const auto [constants, changes, errors] = JointColumns(recording);
-    // Zigzag: body B is 1, so 2; the ratio is 200000 steps, so 400000 = 128, 181, 24 as a varint; 0.5 m are 50000
-    // steps, so 100000 = 160, 141, 6; -0.25 m are -25000, so 49999 = 207, 134, 3; the quaternions' 1 and -1 are 2^21
-    // and 2^21 - 1.
-    EXPECT_EQ(constants, bytes({10, 0, 0,   0,   0,   2, 0, 2, 128, 181, 24, 160, 141, 6,   0, 207, 134, 3,  0,
-                                0,  0, 128, 128, 128, 1, 0, 0, 0,   0,   0,  255, 255, 127, 0, 1,   0,   20, 0}));
+    // Flags: a rope and its hard length. Zigzag: body B is 1, so 2; the ratio is 200000 steps, so 400000 = 128, 181, 24
+    // as a varint; 0.5 m are 50000 steps, so 100000 = 160, 141, 6; -0.25 m are -25000, so 49999 = 207, 134, 3; the
+    // quaternions' 1 and -1 are 2^21 and 2^21 - 1.
+    EXPECT_EQ(constants, bytes({0, 0, 0, 0, 0,   66,  0,   0, 0, 0, 0, 2, 128, 181, 24,  160, 141, 6, 0, 207, 134,
+                                3, 0, 0, 0, 128, 128, 128, 1, 0, 0, 0, 0, 0,   255, 255, 127, 0,   1, 0, 20,  0}));
     // Frame 0: one state, of joint 0, enabled with other limits: the end 1 is at 10 steps. Frame 1: off, and the end is
     // gone.
     EXPECT_EQ(changes, bytes({1, 0, 3, 2, 20, 1, 0, 2, 0}));

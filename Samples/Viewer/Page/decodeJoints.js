@@ -1,17 +1,17 @@
 // Reads the joints that PageJoints.cpp writes; the format is described in PageJoints.h.
 
-const KINDS = ['point', 'fixed', 'distance', 'hinge', 'slider', 'cone', 'swing-twist', 'six-dof', 'gear', 'rack and pinion',
-  'pulley', 'path', 'wheel', 'custom'];
+const FLAGS = ['isPyramid', 'isHardLength', 'isClosed', 'rotations', 'translations', 'steering', 'isRope', 'isPath'];
 const LINEAR_LOCKS = ['none', 'line', 'point'];
 const ANGULAR_LOCKS = ['none', 'axis', 'all'];
 
-function decodeConstants({ count, step, rotationSteps, ratioStep }, reader) {
+function decodeConstants({ count, kinds, step, rotationSteps, ratioStep }, reader) {
   let bodyA = 0, bodyB = 0, ratio = 0;
   const frames = [new Float64Array(7), new Float64Array(7)];
   const joints = [];
   for (let id = 0; id < count; ++id) {
-    const kind = KINDS[reader.unsigned()], linearLock = LINEAR_LOCKS[reader.unsigned()], angularLock = ANGULAR_LOCKS[reader.unsigned()];
+    const kind = kinds[reader.unsigned()], linearLock = LINEAR_LOCKS[reader.unsigned()], angularLock = ANGULAR_LOCKS[reader.unsigned()];
     const line = reader.unsigned(), axis = reader.unsigned(), flags = reader.unsigned();
+    const [trackA, trackB] = [0, 1].map(() => reader.unsigned() - 1), [circleA, circleB] = [0, 1].map(() => (reader.unsigned() - 1) * step);
     bodyA += reader.signed();
     bodyB += reader.signed();
     ratio += reader.signed();
@@ -23,7 +23,7 @@ function decodeConstants({ count, step, rotationSteps, ratioStep }, reader) {
     for (let left = reader.unsigned(); left > 0; --left) points.push(place.map((_, k) => (place[k] += reader.signed()) * step));
     joints.push({
       id, kind, bodyA, bodyB, frameA, frameB, linearLock, angularLock, line, axis, ratio: ratio * ratioStep, points,
-      isPyramid: (flags & 1) > 0, isHardLength: (flags & 2) > 0, isClosed: (flags & 4) > 0, states: [],
+      trackA, trackB, circleA, circleB, ...Object.fromEntries(FLAGS.map((name, bit) => [name, (flags & (1 << bit)) > 0])), states: [],
     });
   }
   return joints;

@@ -65,14 +65,14 @@ export function unwrapped(angle, [min, max]) {
   return angle + turnLength * Math.round((0.5 * (min + max) - angle) / turnLength);
 }
 
-// The length of a pulley's rope as its limits mean it.
+// The length of a rope over points as its limits mean it.
 export function ropeLength(joint, pose) {
   const away = (place, [x, y, z]) => Math.hypot(place.x - x, place.y - y, place.z - z);
   return away(pose.a.position, joint.points[0]) + joint.ratio * away(pose.b.position, joint.points[1]);
 }
 
 export function lengthOf(joint, pose) {
-  return joint.kind === 'pulley' ? ropeLength(joint, pose) : pose.offset.length();
+  return joint.isRope && joint.points.length > 0 ? ropeLength(joint, pose) : pose.offset.length();
 }
 
 // { distance, angle } in meters and radians, of what the joint locks; of a rod or rope how far it is out of its range.

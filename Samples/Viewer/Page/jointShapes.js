@@ -153,47 +153,20 @@ function rings(part, [min, max], size) {
   if (Number.isFinite(max) && max - min > 1e-4) part.line([min, 0, 0], [max, 0, 0]);
 }
 
-// Pitch circles that meet between the axles; their radii are as the numbers of teeth.
-export function gearRadii(distance, ratio, size) {
-  const sum = ratio > 0 ? 1 + ratio : Math.abs(1 + ratio), small = sum > 1e-3 ? distance / sum : size;
-  return small > 1e-3 ? [small, Math.abs(ratio) * small] : [size, size];
-}
-
-const byKind = {
-  distance: (parts, joint, limits, size) => rings(parts('line'), limits[0], size),
-  hinge: rotations,
-  slider: (parts, joint, limits, size) => track(parts('A'), 0, limits[0], size),
-  // One half angle all around: an ellipse with the same axes.
-  cone: (parts, joint, limits, size) => {
-    const half = limits[4][1];
-    swingCone(parts('turn'), [-half, half], [-half, half], false, size);
-  },
-  'swing-twist': rotations,
-  'six-dof': (parts, joint, limits, size) => {
-    room(parts('A'), limits.slice(0, 3), size);
-    rotations(parts, joint, limits, size);
-  },
-  gear: (parts, joint, limits, size, pose) => {
-    const [a, b] = gearRadii(pose.offset.length(), joint.ratio, size);
-    parts('A').strip(arc(1, 2, a, 0, FULL));
-    parts('B').strip(arc(1, 2, b, 0, FULL));
-  },
-  'rack and pinion': (parts, joint, limits, size) => {
-    parts('A').strip(arc(1, 2, 1 / Math.max(1e-6, Math.abs(joint.ratio)), 0, FULL));
-    track(parts('B'), 0, limits[0], size);
-  },
-  path: (parts, joint) => parts('A').strip(joint.points),
-  wheel: (parts, joint, limits, size) => {
-    track(parts('A'), 1, limits[1], size);
-    // Steering turns x towards -z, which is z towards x.
-    if (joint.angularLock !== 'axis') sector(parts('A'), 0, 2, limits[4].map((n) => -n).reverse(), size);
-    parts('B').strip(arc(1, 2, size, 0, FULL));
-  },
-};
-
-// `size`: radius of arcs and cones, meters. `pose`: as the joint is when it is first drawn.
-export function limitShape(joint, limits, size, pose) {
-  const shape = {};
-  byKind[joint.kind]?.((frame) => (shape[frame] ??= new Part()), joint, limits, size, pose);
+// `size`: radius of arcs and cones, meters.
+export function limitShape(joint, limits, size) {
+  const shape = {}, parts = (frame) => (shape[frame] ??= new Part());
+  if (joint.translations) room(parts('A'), limits.slice(0, 3), size);
+  if (joint.rotations) rotations(parts, joint, limits, size);
+  if (joint.trackA >= 0) track(parts('A'), joint.trackA, limits[joint.trackA], size);
+  if (joint.trackB >= 0) track(parts('B'), joint.trackB, limits[joint.trackB], size);
+  // Steering turns x towards -z, which is z towards x.
+  if (joint.steering) sector(parts('A'), 0, 2, limits[4].map((n) => -n).reverse(), size);
+  for (const frame of ['A', 'B']) {
+    const radius = joint[`circle${frame}`];
+    if (radius >= 0) parts(frame).strip(arc(1, 2, radius || size, 0, FULL));
+  }
+  if (joint.isRope && joint.points.length === 0) rings(parts('line'), limits[0], size);
+  if (joint.isPath) parts('A').strip(joint.points);
   return shape;
 }

@@ -1,7 +1,7 @@
 // What is drawn of joints: both frames, limits, where the joint is between them, and how far it is out of place.
 import { Color, Matrix4, Quaternion, Vector3 } from 'three';
 import { JointPose, decompose, errorOf, lengthOf, stateAt, twistOf, unwrapped } from './jointPose.js';
-import { gearRadii, limitShape } from './jointShapes.js';
+import { limitShape } from './jointShapes.js';
 import { outerRadius } from './shapes.js';
 import { Dots, Lines, Surfaces } from './strokes.js';
 
@@ -113,7 +113,7 @@ export class Joints {
     const known = (this.shapes[joint.id] ??= {});
     if (known.limits !== limits) {
       known.limits = limits;
-      known.shape = limitShape(joint, limits, this.sizes[joint.id], pose);
+      known.shape = limitShape(joint, limits, this.sizes[joint.id]);
     }
     const matrix = new Matrix4();
     for (const [frame, part] of Object.entries(known.shape)) {
@@ -167,35 +167,19 @@ export class Joints {
       }
     };
     const isAtLength = (axis) => isAt(offset.getComponent(axis), limits[axis], 2e-3);
-    const draw = {
-      hinge: turning,
-      'swing-twist': turning,
-      cone: () => needle(b, 0, size, decompose(relative).alpha > limits[4][1] - 0.01),
-      slider: () => mark(a, 0, isAtLength(0)),
-      'six-dof': () => {
-        turning();
-        if (limits.slice(0, 3).some(([min, max]) => max > min) && joint.linearLock !== 'point') mark(a, joint.line, [0, 1, 2].some(isAtLength));
-      },
-      gear: () => {
-        const radii = gearRadii(offset.length(), joint.ratio, size);
-        needle(a, 1, radii[0], false);
-        needle(b, 1, radii[1], false);
-      },
-      'rack and pinion': () => needle(a, 1, 1 / Math.abs(joint.ratio), false),
-      path: () => mark(b, 0, false),
-      wheel: () => {
-        mark(a, 1, isAtLength(1));
-        needle(b, 1, size, false);
-      },
-    };
-    draw[joint.kind]?.();
+    if (joint.rotations) turning();
+    if (joint.translations && joint.linearLock !== 'point' && limits.slice(0, 3).some(([min, max]) => max > min))
+      mark(a, joint.line, [0, 1, 2].some(isAtLength));
+    if (joint.trackA >= 0) mark(a, joint.trackA, isAtLength(joint.trackA));
+    if (joint.circleA >= 0) needle(a, 1, joint.circleA || size, false);
+    if (joint.circleB >= 0) needle(b, 1, joint.circleB || size, false);
+    if (joint.isPath) mark(b, 0, false);
   }
 
   // The dot at B's anchor and the line from A's, in the color of the error; ropes and rods as they are.
   #drawConnection(joint, limits, pose) {
     const { a, b } = pose, color = errorColor(this.error(joint, limits), new Color());
-    const isRope = joint.kind === 'distance' || joint.kind === 'pulley';
-    if (isRope) {
+    if (joint.isRope) {
       const isTaut = !joint.isHardLength || lengthOf(joint, pose) > limits[0][1] * 0.999;
       const rope = isTaut ? color : SLACK;
       const knots = joint.points.map((point) => new Vector3().fromArray(point));
@@ -208,7 +192,7 @@ export class Joints {
       foot.applyQuaternion(a.rotation).add(a.position);
       // A shorter one is behind the dot.
       if (foot.distanceTo(b.position) > 0.01 * this.sizes[joint.id]) this.bold.line(foot, b.position, color);
-    } else if (joint.kind !== 'path') {
+    } else if (!joint.isPath) {
       this.fine.line(a.position, b.position, SLACK);
     }
     this.dots.dot(b.position, color);

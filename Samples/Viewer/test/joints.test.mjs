@@ -20,11 +20,11 @@ function poseOf(offset, turn = new Quaternion()) {
   return new JointPose().set(joint, [0, 0, 0, ...offset], [0, 0, 0, 1, ...turn.toArray()], 0, 1);
 }
 
-// The bytes that the writer's own test expects (UnitTests/Samples/ViewerJointsTest.cpp).
+// As the writer's own test expects them (UnitTests/Samples/ViewerJointsTest.cpp), with a track and a circle.
 test('columns are decoded as they are encoded', () => {
-  const header = { times: [0, 1], joints: { count: 1, step: 1e-5, rotationSteps: 1 << 20, ratioStep: 1e-5, errorStep: 1e-6 } };
+  const header = { times: [0, 1], joints: { count: 1, kinds: ['pulley'], step: 1e-5, rotationSteps: 1 << 20, ratioStep: 1e-5, errorStep: 1e-6 } };
   const columns = [
-    [10, 0, 0, 0, 0, 2, 0, 2, 128, 181, 24, 160, 141, 6, 0, 207, 134, 3, 0, 0, 0, 128, 128, 128, 1,
+    [0, 0, 0, 0, 0, 66, 1, 0, 0, 50001 & 127 | 128, 50001 >> 7 & 127 | 128, 50001 >> 14, 0, 2, 128, 181, 24, 160, 141, 6, 0, 207, 134, 3, 0, 0, 0, 128, 128, 128, 1,
       0, 0, 0, 0, 0, 255, 255, 127, 0, 1, 0, 20, 0],
     [1, 0, 3, 2, 20, 1, 0, 2, 0],
     [10, 0, 2, 0, 0, 0, 0, 0],
@@ -32,7 +32,10 @@ test('columns are decoded as they are encoded', () => {
   const { joints, jointErrors } = decodeJoints(header, columns.map((bytes) => new Reader(new Uint8Array(bytes))));
   const [joint] = joints;
   assert.equal(joint.kind, 'pulley');
-  assert.deepEqual([joint.bodyA, joint.bodyB, joint.isHardLength, joint.isPyramid], [0, 1, true, false]);
+  assert.deepEqual([joint.bodyA, joint.bodyB, joint.isHardLength, joint.isRope, joint.isPyramid], [0, 1, true, true, false]);
+  assert.deepEqual([joint.trackA, joint.trackB], [0, -1]);
+  near(joint.circleB, 0.5, 1e-9);
+  assert.ok(joint.circleA < 0, 'no circle');
   near(joint.ratio, 2, 1e-9);
   near(joint.frameA.position[0], 0.5, 1e-9);
   near(joint.frameA.position[2], -0.25, 1e-9);
@@ -62,7 +65,7 @@ test('errors are of what is locked', () => {
   assert.deepEqual(error({}), { distance: 0, angle: 0 });
   near(error({ linearLock: 'point' }).distance, 0.5, 1e-6);
   near(error({ linearLock: 'line', line: 0 }).distance, 0.4, 1e-6);
-  near(error({ isHardLength: true, kind: 'distance' }).distance, 0.1, 1e-6);
+  near(error({ isHardLength: true, isRope: true, points: [] }).distance, 0.1, 1e-6);
   near(error({ angularLock: 'all' }).angle, 0.2, 1e-6);
   near(error({ angularLock: 'axis', axis: 0 }).angle, 0.2, 1e-6);
   near(error({ angularLock: 'axis', axis: 1 }).angle, 0, 1e-6);
@@ -93,28 +96,28 @@ const anglesOf = ({ lines }, radius) => {
 
 test('limits are drawn where they are', () => {
   const locked = [0, 0];
-  const cone = limitShape({ kind: 'cone' }, [FREE, FREE, FREE, FREE, [0, 0.7], FREE], 2, poseOf([0, 0, 0])).turn;
+  const cone = limitShape({ rotations: true, angularLock: 'none' }, [FREE, FREE, FREE, FREE, [-0.7, 0.7], [-0.7, 0.7]], 2).turn;
   for (const angle of anglesOf(cone, 2)) near(angle, 0.7, 1e-6);
 
-  const swing = (isPyramid) => anglesOf(limitShape({ kind: 'swing-twist', isPyramid, angularLock: 'none' },
-    [FREE, FREE, FREE, locked, [-0.5, 0.5], [-1.2, 1.2]], 2, poseOf([0, 0, 0])).turn, 2);
+  const swing = (isPyramid) => anglesOf(limitShape({ rotations: true, isPyramid, angularLock: 'none' },
+    [FREE, FREE, FREE, locked, [-0.5, 0.5], [-1.2, 1.2]], 2).turn, 2);
   near(Math.min(...swing(false)), 0.5, 1e-6);
   near(Math.max(...swing(false)), 1.2, 1e-6);
   near(Math.min(...swing(true)), 0.5, 1e-6);
   assert.ok(Math.max(...swing(true)) > 1.25, 'the corners of a pyramid are further out than its faces');
 
-  const { lines } = limitShape({ kind: 'hinge', angularLock: 'axis', axis: 0 }, [FREE, FREE, FREE, [-1, 2], FREE, FREE], 2, poseOf([0, 0, 0])).turn;
+  const { lines } = limitShape({ rotations: true, angularLock: 'axis', axis: 0 }, [FREE, FREE, FREE, [-1, 2], FREE, FREE], 2).turn;
   const angles = [];
   for (let i = 0; i < lines.length; i += 3) if (Math.hypot(lines[i + 1], lines[i + 2]) > 1) angles.push(Math.atan2(lines[i + 2], lines[i + 1]));
   near(Math.min(...angles), -1, 1e-6);
   near(Math.max(...angles), 2, 1e-6);
 
-  const slide = limitShape({ kind: 'slider' }, [[-0.5, 3], locked, locked, locked, locked, locked], 0.1, poseOf([0, 0, 0])).A.lines;
+  const slide = limitShape({ trackA: 0 }, [[-0.5, 3], locked, locked, locked, locked, locked], 0.1).A.lines;
   const along = slide.filter((_, i) => i % 3 === 0);
   near(Math.min(...along), -0.5, 1e-9);
   near(Math.max(...along), 3, 1e-9);
 
-  const box = limitShape({ kind: 'six-dof', angularLock: 'all' }, [[-1, 2], [-3, 4], [-5, 6], locked, locked, locked], 1, poseOf([0, 0, 0])).A.lines;
+  const box = limitShape({ translations: true, rotations: true, angularLock: 'all' }, [[-1, 2], [-3, 4], [-5, 6], locked, locked, locked], 1).A.lines;
   assert.equal(box.length, 12 * 6, 'a box has twelve edges');
 });
 

@@ -1,7 +1,7 @@
 // Which rows an axis has and when, on a slider along x: its coordinate is that of B.
 #include "JointCases.h"
 
-#include <Fulcrum/Constraints/Joints/SliderJoint.h>
+#include <Fulcrum/Physics/Joints/SliderJoint.h>
 
 namespace fulcrum::testing {
 namespace {

@@ -2,15 +2,7 @@
 // turns.
 #include "JointCases.h"
 
-#include <Fulcrum/Constraints/Joints/ConeJoint.h>
-#include <Fulcrum/Constraints/Joints/DistanceJoint.h>
-#include <Fulcrum/Constraints/Joints/GearJoint.h>
-#include <Fulcrum/Constraints/Joints/HingeJoint.h>
-#include <Fulcrum/Constraints/Joints/LockJoint.h>
-#include <Fulcrum/Constraints/Joints/PulleyJoint.h>
-#include <Fulcrum/Constraints/Joints/RackAndPinionJoint.h>
-#include <Fulcrum/Constraints/Joints/SliderJoint.h>
-#include <Fulcrum/Constraints/Joints/WheelJoint.h>
+#include <Fulcrum/Physics/Joints/JointKinds.h>
 
 namespace fulcrum::testing {
 namespace {
@@ -19,10 +11,9 @@ constexpr float kPi = 3.14159265f;
 constexpr int kPoses = 30;
 constexpr int kLow = ControlSlots::kLowLimit, kHigh = ControlSlots::kHighLimit, kMotor = ControlSlots::kMotor;
 
-TEST(LockJoint, HasLocksAndNoRows) {
-    const JointLocks locks{.linear = LinearLock::Point, .angular = AngularLock::All};
-    LockJoint joint(locks);
-    EXPECT_EQ(joint.Locks(), locks);
+TEST(FixedJoint, HasLocksAndNoRows) {
+    FixedJoint joint;
+    EXPECT_EQ(joint.Locks(), (JointLocks{.linear = LinearLock::Point, .angular = AngularLock::All}));
     EXPECT_EQ(joint.MaxRows(), 0u);
     EXPECT_EQ(joint.Control(JointAxis::AngularX), nullptr);
 }

@@ -1,7 +1,7 @@
 // Paths: length, frame and nearest places; the rows of what rides on them.
 #include "JointCases.h"
 
-#include <Fulcrum/Constraints/Joints/PathJoint.h>
+#include <Fulcrum/Physics/Joints/PathJoint.h>
 
 #include <Eigen/Geometry>
 

@@ -3,19 +3,8 @@
 #pragma once
 
 #include <Fulcrum/Constraints/Contacts/ContactBatch.h>
-#include <Fulcrum/Constraints/Joints/ConeJoint.h>
-#include <Fulcrum/Constraints/Joints/DistanceJoint.h>
-#include <Fulcrum/Constraints/Joints/GearJoint.h>
-#include <Fulcrum/Constraints/Joints/HingeJoint.h>
 #include <Fulcrum/Constraints/Joints/JointBatch.h>
-#include <Fulcrum/Constraints/Joints/LockJoint.h>
-#include <Fulcrum/Constraints/Joints/PathJoint.h>
-#include <Fulcrum/Constraints/Joints/PulleyJoint.h>
-#include <Fulcrum/Constraints/Joints/RackAndPinionJoint.h>
-#include <Fulcrum/Constraints/Joints/SixDofJoint.h>
-#include <Fulcrum/Constraints/Joints/SliderJoint.h>
-#include <Fulcrum/Constraints/Joints/SwingTwistJoint.h>
-#include <Fulcrum/Constraints/Joints/WheelJoint.h>
+#include <Fulcrum/Physics/Joints/JointKinds.h>
 #include <Fulcrum/UnitTests/Constraints/Parts/RandomBodies.h>
 
 #include <algorithm>
@@ -84,14 +73,8 @@ inline std::span<const JointCase> AllJointCases() {
     using namespace joint_cases;
     using Place3 = const Position&;
     static const JointCase kCases[] = {
-        {"point", "locks",
-         [](Place3) {
-             return Make<LockJoint>(JointLocks{LinearLock::Point, AngularLock::None, 0, 0});
-         }},
-        {"fixed", "locks",
-         [](Place3) {
-             return Make<LockJoint>(JointLocks{LinearLock::Point, AngularLock::All, 0, 0});
-         }},
+        {"point", "locks", [](Place3) { return Make<PointJoint>(); }},
+        {"fixed", "locks", [](Place3) { return Make<FixedJoint>(); }},
         {"distance", "slack", [](Place3) { return Make<DistanceJoint>(0.0f, 2.0f, SpringSettings{}); }, {1, 0, 0}},
         {"distance", "rod", [](Place3) { return Make<DistanceJoint>(1.0f, 1.0f, SpringSettings{}); }, {1, 0, 0}},
         {"hinge", "locks", [](Place3) { return Make<HingeJoint>(AxisControl{}); }},

@@ -1,8 +1,8 @@
 // Swing-twist and six-degrees-of-freedom joints: blocks, limits, motors and friction of rotations about three axes.
 #include "JointCases.h"
 
-#include <Fulcrum/Constraints/Joints/SixDofJoint.h>
-#include <Fulcrum/Constraints/Joints/SwingTwistJoint.h>
+#include <Fulcrum/Physics/Joints/SixDofJoint.h>
+#include <Fulcrum/Physics/Joints/SwingTwistJoint.h>
 
 namespace fulcrum::testing {
 namespace {

@@ -1,4 +1,7 @@
-#include <Fulcrum/Constraints/Joints/SixDofJoint.h>
+#include <Fulcrum/Physics/Joints/SixDofJoint.h>
+
+#include <Fulcrum/Constraints/Joints/JointDrawing.h>
+#include <Fulcrum/Physics/Joints/JointChecks.h>
 
 namespace fulcrum {
 
@@ -11,6 +14,18 @@ bool IsLockedAtZero(const AxisControl& control) {
 }
 
 }  // namespace
+
+MaybeError Check(const SixDofJointSettings& s) {
+    if (MaybeError e = CheckWith(s, CheckControl("axes[LinearX]", s.axes[0]), CheckControl("axes[LinearY]", s.axes[1]),
+                                 CheckControl("axes[LinearZ]", s.axes[2])))
+        return e;
+    return CheckSwingTwist({"axes[AngularX]", "axes[AngularY]", "axes[AngularZ]"}, {s.axes[3], s.axes[4], s.axes[5]},
+                           s.shape);
+}
+
+std::unique_ptr<JointType> MakeType(const SixDofJointSettings& s) {
+    return std::make_unique<SixDofJoint>(s.axes, s.shape);
+}
 
 SixDofJoint::SixDofJoint(const std::array<AxisControl, 6>& axes, SwingShape shape)
     : linear_{axes[0], axes[1], axes[2]}, angular_({axes[3], axes[4], axes[5]}, shape) {
@@ -41,6 +56,10 @@ void SixDofJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
         AddControlRows(linear_[k], pose, motion, Dot(pose.offset, axis), kLinearSlackSpeed, k * ControlSlots::kCount,
                        rows);
     }
+}
+
+JointDrawing SixDofJoint::Drawing() const {
+    return {.rotations = true, .translations = true, .isPyramid = angular_.Shape() == SwingShape::Pyramid};
 }
 
 }  // namespace fulcrum

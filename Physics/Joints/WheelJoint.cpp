@@ -1,4 +1,7 @@
-#include <Fulcrum/Constraints/Joints/WheelJoint.h>
+#include <Fulcrum/Physics/Joints/WheelJoint.h>
+
+#include <Fulcrum/Constraints/Joints/JointDrawing.h>
+#include <Fulcrum/Physics/Joints/JointChecks.h>
 
 #include <algorithm>
 
@@ -33,6 +36,15 @@ WheelAngles AnglesOf(const JointPose& pose) {
 }
 
 }  // namespace
+
+MaybeError Check(const WheelJointSettings& s) {
+    return CheckWith(s, CheckControl("suspension", s.suspension), CheckControl("steering", s.steering),
+                     CheckControl("spin", s.spin));
+}
+
+std::unique_ptr<JointType> MakeType(const WheelJointSettings& s) {
+    return std::make_unique<WheelJoint>(s.suspension, s.isSteered, s.steering, s.spin);
+}
 
 WheelJoint::WheelJoint(const AxisControl& suspension, bool isSteered, const AxisControl& steering,
                        const AxisControl& spin)
@@ -86,5 +98,7 @@ double WheelJoint::Coordinate(JointAxis axis, const JointPose& pose) const {
     if (axis == JointAxis::AngularZ) return angles.tilt;
     return turns_.After(angles.spin, pose.TurnedAbout(angles.spinAxis));
 }
+
+JointDrawing WheelJoint::Drawing() const { return {.steering = isSteered_, .trackA = 1, .circleB = 0.0f}; }
 
 }  // namespace fulcrum

@@ -7,14 +7,25 @@
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/JointAngles.h>
+#include <Fulcrum/Physics/JointSettings.h>
 
 namespace fulcrum {
+
+// B turns about the anchor's axis. The angle is the rotation of B against A about it, zero where the frames coincide,
+// counted over any number of turns as long as it has limits, a motor or friction.
+struct HingeJointSettings : JointSettings {
+    AxisControl angle{};  // rad, rad/s, N m
+};
+MaybeError Check(const HingeJointSettings& settings);
+std::unique_ptr<JointType> MakeType(const HingeJointSettings& settings);
 
 class HingeJoint final : public JointType {
 public:
     // rad, N m. Limits may be anywhere: turns are counted from the one that is nearest to them when the joint is made.
     explicit HingeJoint(const AxisControl& angle) : control_(angle) {}
 
+    const char* Kind() const override { return "hinge"; }
+    JointDrawing Drawing() const override;
     JointLocks Locks() const override { return {LinearLock::Point, AngularLock::Axis, 0, 0}; }
     uint32_t MaxRows() const override { return MaxControlRows(control_); }
     void Start(const JointPose& pose) override;

@@ -5,8 +5,19 @@
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/AngularControls.h>
+#include <Fulcrum/Physics/JointSettings.h>
 
 namespace fulcrum {
+
+// A point joint for shoulders: B's axis (x) swings about A's y and z in an ellipse or a pyramid, and B twists about it.
+struct SwingTwistJointSettings : JointSettings {
+    SwingShape shape = SwingShape::Ellipse;
+    // rad, N m. Limits within -pi..pi, at pi there is none. Those of the swing, the y and z of its rotation vector, are
+    // around 0, and for an ellipse the same to both sides: -a..a, -b..b.
+    AxisControl twist{}, swingY{}, swingZ{};
+};
+MaybeError Check(const SwingTwistJointSettings& settings);
+std::unique_ptr<JointType> MakeType(const SwingTwistJointSettings& settings);
 
 class SwingTwistJoint final : public JointType {
 public:
@@ -14,6 +25,8 @@ public:
     SwingTwistJoint(const AxisControl& twist, const AxisControl& swingY, const AxisControl& swingZ, SwingShape shape)
         : angular_({twist, swingY, swingZ}, shape) {}
 
+    const char* Kind() const override { return "swing-twist"; }
+    JointDrawing Drawing() const override;
     JointLocks Locks() const override { return {LinearLock::Point, angular_.Lock(), 0, angular_.FreeAxis()}; }
     uint32_t MaxRows() const override { return angular_.MaxRows(); }
     void Start(const JointPose& pose) override { angular_.Start(pose); }
@@ -33,7 +46,6 @@ public:
                                           : angular_.Coordinate(static_cast<int>(axis) - 3, pose);
     }
     std::span<double> State() override { return angular_.State(); }
-    SwingShape Shape() const { return angular_.Shape(); }
 
 private:
     AngularControls angular_;

@@ -1,8 +1,22 @@
-#include <Fulcrum/Constraints/Joints/DistanceJoint.h>
+#include <Fulcrum/Physics/Joints/DistanceJoint.h>
+
+#include <Fulcrum/Constraints/Joints/JointDrawing.h>
+#include <Fulcrum/Physics/Joints/JointChecks.h>
 
 #include <algorithm>
 
 namespace fulcrum {
+
+MaybeError Check(const DistanceJointSettings& s) {
+    const double min = s.minDistance.value_or(0.0f), max = s.maxDistance ? *s.maxDistance : LimitBounds::kEndless;
+    return CheckWith(s, CheckNotNegative("minDistance", min),
+                     CheckBetween("maxDistance", max, 0.0, LimitBounds::kEndless),
+                     CheckOrder("minDistance", min, "maxDistance", max), CheckSpring("spring", s.spring));
+}
+
+std::unique_ptr<JointType> MakeType(const DistanceJointSettings& s) {
+    return std::make_unique<DistanceJoint>(s.minDistance, s.maxDistance, s.spring);
+}
 
 DistanceJoint::DistanceJoint(std::optional<float> minDistance, std::optional<float> maxDistance,
                              const SpringSettings& spring)
@@ -32,5 +46,7 @@ void DistanceJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
 double DistanceJoint::Coordinate(JointAxis axis, const JointPose& pose) const {
     return axis == JointAxis::LinearX ? static_cast<double>(Length(pose.offset)) : JointType::Coordinate(axis, pose);
 }
+
+JointDrawing DistanceJoint::Drawing() const { return {.isRope = true}; }
 
 }  // namespace fulcrum

@@ -1,4 +1,7 @@
-#include <Fulcrum/Constraints/Joints/ConeJoint.h>
+#include <Fulcrum/Physics/Joints/ConeJoint.h>
+
+#include <Fulcrum/Constraints/Joints/JointDrawing.h>
+#include <Fulcrum/Physics/Joints/JointChecks.h>
 
 namespace fulcrum {
 
@@ -22,6 +25,15 @@ Swing SwingOf(const Quaternion& frameA, const Quaternion& frameB) {
 }
 
 }  // namespace
+
+MaybeError Check(const ConeJointSettings& s) {
+    return CheckWith(s, CheckRange("halfAngle", s.halfAngle, 0.0, static_cast<double>(kPi)),
+                     CheckSpring("spring", s.spring));
+}
+
+std::unique_ptr<JointType> MakeType(const ConeJointSettings& s) {
+    return std::make_unique<ConeJoint>(s.halfAngle, s.spring);
+}
 
 ConeJoint::ConeJoint(float halfAngle, const SpringSettings& spring) {
     control_.limited = true;
@@ -51,5 +63,7 @@ double ConeJoint::Coordinate(JointAxis axis, const JointPose& pose) const {
     return axis == JointAxis::AngularY ? static_cast<double>(SwingOf(pose.frameA, pose.frameB).angle)
                                        : JointType::Coordinate(axis, pose);
 }
+
+JointDrawing ConeJoint::Drawing() const { return {.rotations = true, .coneAngle = HalfAngle()}; }
 
 }  // namespace fulcrum

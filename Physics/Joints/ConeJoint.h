@@ -8,14 +8,25 @@
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/JointType.h>
+#include <Fulcrum/Physics/JointSettings.h>
 
 namespace fulcrum {
+
+// A point joint whose axes stay within an angle of each other; B spins about its axis freely.
+struct ConeJointSettings : JointSettings {
+    float halfAngle = 0.785398163f;  // rad, 0..pi; pi: no limit
+    SpringSettings spring{};         // of the limit
+};
+MaybeError Check(const ConeJointSettings& settings);
+std::unique_ptr<JointType> MakeType(const ConeJointSettings& settings);
 
 class ConeJoint final : public JointType {
 public:
     // halfAngle: 0..pi rad, at pi there is no limit. The spring is that of the limit.
     ConeJoint(float halfAngle, const SpringSettings& spring);
 
+    const char* Kind() const override { return "cone"; }
+    JointDrawing Drawing() const override;
     JointLocks Locks() const override;
     uint32_t MaxRows() const override { return IsAxle() || IsFree() ? 0 : MaxControlRows(control_); }
     void CollectRows(const JointPose& pose, JointRowList& rows) override;

@@ -7,10 +7,21 @@
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/JointType.h>
+#include <Fulcrum/Physics/JointSettings.h>
 
 #include <optional>
 
 namespace fulcrum {
+
+// The distance of the anchors stays in a range: a rod, a rope, a spring.
+struct DistanceJointSettings : JointSettings {
+    // m, 0 <= min <= max, max may be infinite. One left out: 0, infinite. Both left out: as it is when the joint is
+    // made.
+    std::optional<float> minDistance{}, maxDistance{};
+    SpringSettings spring{};  // of both ends; where min is max, of the distance itself
+};
+MaybeError Check(const DistanceJointSettings& settings);
+std::unique_ptr<JointType> MakeType(const DistanceJointSettings& settings);
 
 class DistanceJoint final : public JointType {
 public:
@@ -18,6 +29,8 @@ public:
     // made. The spring is of both ends.
     DistanceJoint(std::optional<float> minDistance, std::optional<float> maxDistance, const SpringSettings& spring);
 
+    const char* Kind() const override { return "distance"; }
+    JointDrawing Drawing() const override;
     uint32_t MaxRows() const override { return MaxControlRows(control_); }
     void Start(const JointPose& pose) override;
     void CollectRows(const JointPose& pose, JointRowList& rows) override;

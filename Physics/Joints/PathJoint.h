@@ -12,6 +12,7 @@
 
 #include <Fulcrum/Constraints/Joints/JointType.h>
 #include <Fulcrum/Constraints/Joints/Path.h>
+#include <Fulcrum/Physics/JointSettings.h>
 
 namespace fulcrum {
 
@@ -22,11 +23,24 @@ enum class PathRotation : uint8_t {
     Constant,          // B does not turn against A
 };
 
+// B's anchor rides on a path that is given in the frame of A's anchor. Where B is to turn with the path, its frame
+// becomes the path's: x along the tangent, y along the normal. So give anchor B: where B is tied, and which of its axes
+// these are.
+struct PathJointSettings : JointSettings {
+    std::shared_ptr<const Path> path = Path::Straight(1.0f);  // not null
+    AxisControl along{};                                      // m from its start, m/s, N
+    PathRotation rotation = PathRotation::Free;
+};
+MaybeError Check(const PathJointSettings& settings);
+std::unique_ptr<JointType> MakeType(const PathJointSettings& settings);
+
 class PathJoint final : public JointType {
 public:
     // along: m, N, from the start of the path; of a closed path, laps count.
     PathJoint(std::shared_ptr<const Path> path, const AxisControl& along, PathRotation rotation);
 
+    const char* Kind() const override { return "path"; }
+    JointDrawing Drawing() const override;
     JointLocks Locks() const override {
         return {LinearLock::None, rotation_ == PathRotation::Constant ? AngularLock::All : AngularLock::None, 0, 0};
     }

@@ -7,13 +7,23 @@
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/JointType.h>
+#include <Fulcrum/Physics/JointSettings.h>
 
 namespace fulcrum {
+
+// B slides along the anchor's axis and does not turn.
+struct SliderJointSettings : JointSettings {
+    AxisControl slide{};  // m, m/s, N
+};
+MaybeError Check(const SliderJointSettings& settings);
+std::unique_ptr<JointType> MakeType(const SliderJointSettings& settings);
 
 class SliderJoint final : public JointType {
 public:
     explicit SliderJoint(const AxisControl& slide) : control_(slide) {}  // m, N
 
+    const char* Kind() const override { return "slider"; }
+    JointDrawing Drawing() const override;
     JointLocks Locks() const override { return {LinearLock::Line, AngularLock::All, 0, 0}; }
     uint32_t MaxRows() const override { return MaxControlRows(control_); }
     void CollectRows(const JointPose& pose, JointRowList& rows) override {

@@ -8,14 +8,36 @@
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/AngularControls.h>
+#include <Fulcrum/Physics/JointSettings.h>
 
 namespace fulcrum {
+
+// What `limited` alone means: locked at zero.
+inline constexpr AxisControl kLockedAxis = {.limited = true};
+
+// Each axis free, limited or locked (kLockedAxis; hard or, with a spring on its limits, soft), with motor and friction.
+struct SixDofJointSettings : JointSettings {
+    // In the order of JointAxis: m and N; rad and N m, rotations as in SwingTwistJointSettings.
+    std::array<AxisControl, 6> axes{};
+    SwingShape shape = SwingShape::Pyramid;
+
+    // Ends the program where there is no such axis.
+    AxisControl& operator[](JointAxis axis) {
+        if (axis > JointAxis::AngularZ) [[unlikely]]
+            AbortWith("SixDofJointSettings has no axis of this number", "");
+        return axes[static_cast<size_t>(axis)];
+    }
+};
+MaybeError Check(const SixDofJointSettings& settings);
+std::unique_ptr<JointType> MakeType(const SixDofJointSettings& settings);
 
 class SixDofJoint final : public JointType {
 public:
     // In the order of JointAxis; m and N, rad and N m. Limits of rotations as AngularControls wants them.
     SixDofJoint(const std::array<AxisControl, 6>& axes, SwingShape shape);
 
+    const char* Kind() const override { return "six-dof"; }
+    JointDrawing Drawing() const override;
     JointLocks Locks() const override { return {linearLock_, angular_.Lock(), line_, angular_.FreeAxis()}; }
     uint32_t MaxRows() const override;
     void Start(const JointPose& pose) override { angular_.Start(pose); }
@@ -34,7 +56,6 @@ public:
                                           : angular_.Coordinate(static_cast<int>(axis) - 3, pose);
     }
     std::span<double> State() override { return angular_.State(); }
-    SwingShape Shape() const { return angular_.Shape(); }
 
 private:
     // Whether the linear axis k has rows of its own.

@@ -7,30 +7,29 @@
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/BearingAngle.h>
-#include <Fulcrum/Constraints/Parts/GearPart.h>
+#include <Fulcrum/Physics/JointSettings.h>
 
 namespace fulcrum {
+
+// A turns about anchor A's axis, B about anchor B's, each in a bearing that other joints make to a body at rest; their
+// teeth mesh. turns of A = -ratio turns of B.
+struct GearJointSettings : JointSettings {
+    float ratio = 1.0f;  // 1e-9..1e9 without its sign; teeth of B / teeth of A, > 0 where they mesh outside
+};
+MaybeError Check(const GearJointSettings& settings);
+std::unique_ptr<JointType> MakeType(const GearJointSettings& settings);
 
 class GearJoint final : public JointType {
 public:
     // ratio: not zero; > 0 where gears mesh outside and turn against each other.
     explicit GearJoint(float ratio) : ratio_(ratio) {}
 
+    const char* Kind() const override { return "gear"; }
+    JointDrawing Drawing() const override;
     uint32_t MaxRows() const override { return 1; }
-    void Start(const JointPose& pose) override {
-        OfA().Start(pose.frameA);
-        OfB().Start(pose.frameB);
-    }
-    void CollectRows(const JointPose& pose, JointRowList& rows) override {
-        const Vector3 axisA = ToMatrix(pose.frameA).x, axisB = ToMatrix(pose.frameB).x;
-        const double angleA = OfA().Advance(pose.frameA, Dot(axisA, pose.turnedA));
-        const double angleB = OfB().Advance(pose.frameB, Dot(axisB, pose.turnedB));
-        JointRow& row = rows.Add(0, JointRow::Kind::Equal);
-        row.jacobian = GearJacobian<float>(axisA, axisB, ratio_);
-        row.error = static_cast<float>(angleA + static_cast<double>(ratio_) * angleB);
-    }
+    void Start(const JointPose& pose) override;
+    void CollectRows(const JointPose& pose, JointRowList& rows) override;
     std::span<double> State() override { return state_; }
-    float Ratio() const { return ratio_; }
 
 private:
     static constexpr size_t kNumbers = BearingAngle::kNumbers;
@@ -38,6 +37,7 @@ private:
     BearingAngle OfB() { return BearingAngle(std::span(state_).last<kNumbers>()); }
 
     float ratio_;
+    float distance_ = 0;  // m, of the anchors when the joint was made
     std::array<double, 2 * kNumbers> state_{};
 };
 

@@ -1,6 +1,8 @@
-#include <Fulcrum/Constraints/Joints/PathJoint.h>
+#include <Fulcrum/Physics/Joints/PathJoint.h>
 
+#include <Fulcrum/Constraints/Joints/JointDrawing.h>
 #include <Fulcrum/Constraints/Parts/RotationEulerPart.h>
+#include <Fulcrum/Physics/Joints/JointChecks.h>
 
 #include <algorithm>
 
@@ -19,6 +21,18 @@ double WayOf(const Path& path, double parameter, const PathSample& at, const Vec
 }
 
 }  // namespace
+
+MaybeError Check(const PathJointSettings& s) {
+    if (MaybeError e =
+            CheckWith(s, CheckControl("along", s.along), CheckEnum("rotation", s.rotation, PathRotation::Constant)))
+        return e;
+    if (s.path) return std::nullopt;
+    return Error{ErrorCode::Unsupported, "path is null; the joint needs one"};
+}
+
+std::unique_ptr<JointType> MakeType(const PathJointSettings& s) {
+    return std::make_unique<PathJoint>(s.path, s.along, s.rotation);
+}
 
 uint32_t PathJoint::FirstSlot(JointAxis axis) const { return axis == JointAxis::LinearX ? PathSlots::kAlong : 0; }
 
@@ -106,5 +120,7 @@ double PathJoint::Coordinate(JointAxis axis, const JointPose& pose) const {
     const double parameter = path_->Closest(local, parameter_);
     return WayOf(*path_, parameter, path_->Sample(parameter), local);
 }
+
+JointDrawing PathJoint::Drawing() const { return {.path = path_}; }
 
 }  // namespace fulcrum

@@ -1,10 +1,26 @@
-#include <Fulcrum/Constraints/Joints/PulleyJoint.h>
+#include <Fulcrum/Physics/Joints/PulleyJoint.h>
 
+#include <Fulcrum/Constraints/Joints/JointDrawing.h>
 #include <Fulcrum/Constraints/Parts/IndependentAxisPart.h>
+#include <Fulcrum/Physics/Joints/JointChecks.h>
 
 #include <algorithm>
 
 namespace fulcrum {
+
+MaybeError Check(const PulleyJointSettings& s) {
+    if (MaybeError e = CheckWith(s, CheckPosition("fixedPointA", s.fixedPointA),
+                                 CheckPosition("fixedPointB", s.fixedPointB), CheckPositive("ratio", s.ratio),
+                                 CheckRatio("ratio", s.ratio), CheckNotNegative("minLength", s.minLength)))
+        return e;
+    if (!s.maxLength) return std::nullopt;
+    return FirstOf(CheckBetween("maxLength", *s.maxLength, 0.0, LimitBounds::kEndless),
+                   CheckOrder("minLength", s.minLength, "maxLength", *s.maxLength));
+}
+
+std::unique_ptr<JointType> MakeType(const PulleyJointSettings& s) {
+    return std::make_unique<PulleyJoint>(s.fixedPointA, s.fixedPointB, s.ratio, s.minLength, s.maxLength);
+}
 
 PulleyJoint::PulleyJoint(const Position& fixedPointA, const Position& fixedPointB, float ratio, float minLength,
                          std::optional<float> maxLength)
@@ -47,6 +63,10 @@ double PulleyJoint::Coordinate(JointAxis axis, const JointPose& pose) const {
     const Vector3 ropeA = (pose.anchorA - fixedPointA_).cast<float>();
     const Vector3 ropeB = (pose.anchorA + pose.offset.cast<double>() - fixedPointB_).cast<float>();
     return Length(ropeA) + ratio_ * Length(ropeB);
+}
+
+JointDrawing PulleyJoint::Drawing() const {
+    return {.isRope = true, .ropeRatio = ratio_, .ropePoints = {fixedPointA_, fixedPointB_}};
 }
 
 }  // namespace fulcrum

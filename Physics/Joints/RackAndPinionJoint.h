@@ -7,29 +7,28 @@
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/BearingAngle.h>
-#include <Fulcrum/Constraints/Parts/RackAndPinionPart.h>
+#include <Fulcrum/Physics/JointSettings.h>
 
 namespace fulcrum {
+
+// A, the pinion, turns about anchor A's axis through its point; B, the rack, moves along anchor B's axis. Other joints
+// make bearing and guide.
+struct RackAndPinionJointSettings : JointSettings {
+    float ratio = 1.0f;  // rad/m, 1e-9..1e9 without its sign; 1 / radius of the pinion, negative to move the other way
+};
+MaybeError Check(const RackAndPinionJointSettings& settings);
+std::unique_ptr<JointType> MakeType(const RackAndPinionJointSettings& settings);
 
 class RackAndPinionJoint final : public JointType {
 public:
     explicit RackAndPinionJoint(float ratio) : ratio_(ratio) {}  // rad/m, not zero
 
+    const char* Kind() const override { return "rack and pinion"; }
+    JointDrawing Drawing() const override;
     uint32_t MaxRows() const override { return 1; }
-    void Start(const JointPose& pose) override {
-        Pinion().Start(pose.frameA);
-        state_[BearingAngle::kNumbers] = Dot(pose.offset, ToMatrix(pose.frameB).x);
-    }
-    void CollectRows(const JointPose& pose, JointRowList& rows) override {
-        const Vector3 axis = ToMatrix(pose.frameA).x, way = ToMatrix(pose.frameB).x;
-        const double angle = Pinion().Advance(pose.frameA, Dot(axis, pose.turnedA));
-        const double moved = Dot(pose.offset, way) - state_[BearingAngle::kNumbers];
-        JointRow& row = rows.Add(0, JointRow::Kind::Equal);
-        row.jacobian = RackAndPinionJacobian<float>({pose.armA, pose.armB - pose.offset, axis, way, ratio_});
-        row.error = static_cast<float>(angle - static_cast<double>(ratio_) * moved);
-    }
+    void Start(const JointPose& pose) override;
+    void CollectRows(const JointPose& pose, JointRowList& rows) override;
     std::span<double> State() override { return state_; }
-    float Ratio() const { return ratio_; }  // rad/m
 
 private:
     BearingAngle Pinion() { return BearingAngle(std::span(state_).first<BearingAngle::kNumbers>()); }

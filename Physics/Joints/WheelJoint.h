@@ -10,8 +10,28 @@
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/JointAngles.h>
+#include <Fulcrum/Physics/JointSettings.h>
 
 namespace fulcrum {
+
+// B, a wheel, spins about the anchor's axis, its axle, and slides along the anchor's normal, upwards, which steers too.
+struct WheelJointSettings : JointSettings {
+    WheelJointSettings() { anchorA.normal = Vector3(0, 1, 0); }
+
+    // m, N; zero where the anchors coincide. The motor's spring carries the chassis, the limits are the stops.
+    AxisControl suspension = {
+        .limited = true,
+        .limits = {.min = -0.2f, .max = 0.2f},
+        .motor = {.mode = MotorMode::ToPosition,
+                  .spring = {.mode = SpringMode::StiffnessAndDamping, .stiffness = 4.0e4f, .damping = 4.0e3f}}};
+    bool isSteered = false;
+    // rad, N m; used where steered.
+    AxisControl steering = {
+        .limited = true, .limits = {.min = -0.6f, .max = 0.6f}, .motor = {.mode = MotorMode::ToPosition, .spring = {}}};
+    AxisControl spin{};  // rad, N m; the motor drives, friction brakes
+};
+MaybeError Check(const WheelJointSettings& settings);
+std::unique_ptr<JointType> MakeType(const WheelJointSettings& settings);
 
 class WheelJoint final : public JointType {
 public:
@@ -19,6 +39,8 @@ public:
     // not steered. spin: rad, N m; the motor drives, friction brakes.
     WheelJoint(const AxisControl& suspension, bool isSteered, const AxisControl& steering, const AxisControl& spin);
 
+    const char* Kind() const override { return "wheel"; }
+    JointDrawing Drawing() const override;
     JointLocks Locks() const override;
     uint32_t MaxRows() const override;
     void Start(const JointPose& pose) override;

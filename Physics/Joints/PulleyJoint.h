@@ -9,10 +9,22 @@
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/JointType.h>
+#include <Fulcrum/Physics/JointSettings.h>
 
 #include <optional>
 
 namespace fulcrum {
+
+// A rope from A's anchor over two fixed points to B's: distance of A + ratio distance of B = its length.
+struct PulleyJointSettings : JointSettings {
+    Position fixedPointA = Position::Zero();  // m, world space
+    Position fixedPointB = Position::Zero();  // m, world space
+    float ratio = 1.0f;                       // 1e-9..1e9
+    float minLength = 0.0f;                   // m, >= 0
+    std::optional<float> maxLength{};         // m, >= minLength; left out: as it is when the joint is made
+};
+MaybeError Check(const PulleyJointSettings& settings);
+std::unique_ptr<JointType> MakeType(const PulleyJointSettings& settings);
 
 class PulleyJoint final : public JointType {
 public:
@@ -20,6 +32,8 @@ public:
     PulleyJoint(const Position& fixedPointA, const Position& fixedPointB, float ratio, float minLength,
                 std::optional<float> maxLength);
 
+    const char* Kind() const override { return "pulley"; }
+    JointDrawing Drawing() const override;
     uint32_t MaxRows() const override { return MaxControlRows(control_); }
     void Start(const JointPose& pose) override;
     void CollectRows(const JointPose& pose, JointRowList& rows) override;
@@ -27,9 +41,6 @@ public:
     AxisControl* Control(JointAxis axis) override { return axis == JointAxis::LinearX ? &control_ : nullptr; }
     LimitBounds BoundsOf(JointAxis) const override { return {.lowest = 0.0f}; }
     double Coordinate(JointAxis axis, const JointPose& pose) const override;
-    const Position& FixedPointA() const { return fixedPointA_; }  // m, world space
-    const Position& FixedPointB() const { return fixedPointB_; }
-    float Ratio() const { return ratio_; }
 
 private:
     Position fixedPointA_, fixedPointB_;

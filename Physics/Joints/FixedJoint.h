@@ -1,0 +1,21 @@
+// B does not move against A. Locks and nothing else; no threads.
+//   Locks:      point; all rotation
+#pragma once
+
+#include <Fulcrum/Constraints/Joints/JointType.h>
+#include <Fulcrum/Physics/JointSettings.h>
+
+namespace fulcrum {
+
+// B does not move against A.
+struct FixedJointSettings : JointSettings {};
+MaybeError Check(const FixedJointSettings& settings);
+std::unique_ptr<JointType> MakeType(const FixedJointSettings& settings);
+
+class FixedJoint final : public JointType {
+public:
+    const char* Kind() const override { return "fixed"; }
+    JointLocks Locks() const override { return {.linear = LinearLock::Point, .angular = AngularLock::All}; }
+};
+
+}  // namespace fulcrum
