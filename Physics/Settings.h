@@ -145,7 +145,7 @@ struct SystemSettings {
         0.02f;                     // m, > 0, at most 1000: contacts begin at this separation, so that nothing bumps
     float penetrationSlop = 0.0f;  // m, >= 0: overlap that is left alone
     // Hz, > 0, of the spring that pushes overlaps apart. It is never stiffer than substeps resolve: at most
-    // sqrt((velocityIterations + positionIterations) / 50) of their rate, by default a fifth. Infinite: as stiff as
+    // sqrt((velocityIterations + positionIterations) / 45) of their rate, by default a fifth. Infinite: as stiff as
     // that.
     float contactFrequency = std::numeric_limits<float>::infinity();
     float contactDampingRatio = 1.0f;  // 0..1e6

@@ -20,9 +20,9 @@ struct Effort {
 
 // Hz, the largest frequency of the springs that push overlaps and errors of joints away, for a substep of h seconds in
 // which so many passes are solved. Above (w h)^2 = passes the slow modes of stacks and chains, of which a pass resolves
-// little, gain energy (Docs/Step.md derives it); this is (w h)^2 = 0.79 passes.
+// little, gain energy (Docs/Step.md derives it); this is (w h)^2 = 0.88 passes.
 inline float StiffestFrequency(const SolverSettings& solver, float h) {
-    return std::sqrt(static_cast<float>(solver.velocityIterations + solver.positionIterations) / 50.0f) / h;
+    return std::sqrt(static_cast<float>(solver.velocityIterations + solver.positionIterations) / 45.0f) / h;
 }
 
 // The part of a tree's errors that a substep corrects.

@@ -12,10 +12,10 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0x095559e749781e0bull;
-constexpr uint64_t kGoldenHashOfJoints = 0xaa287c36cf7c0c17ull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0xd8af03bc70271babull;
-constexpr uint64_t kGoldenHashOfFastBodies = 0x994ffb6497699e6aull;
+constexpr uint64_t kGoldenHash = 0xb28c2ff88bdffbb9ull;
+constexpr uint64_t kGoldenHashOfJoints = 0xce9b2c1c142bd676ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0x0dfdf3354d851a9dull;
+constexpr uint64_t kGoldenHashOfFastBodies = 0x55a1f2f91fb4a789ull;
 
 std::string Hex(uint64_t number) {
     char text[24];

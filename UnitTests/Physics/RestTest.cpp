@@ -1,0 +1,176 @@
+// What rests stays at rest, whatever its size and whatever the effort, and errors fall with effort: contacts are
+// springs as stiff as substeps and passes allow, and friction leaves pushes alone.
+#include <Fulcrum/UnitTests/Support/Cases.h>
+#include <Fulcrum/UnitTests/Support/TestWorld.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace fulcrum::testing {
+namespace {
+
+// m/s, of any body's center in a second, by poses alone.
+double FastestInASecond(TestWorld& world, const std::vector<BodyId>& bodies) {
+    double fastest = 0;
+    std::vector<Position> before(bodies.size());
+    for (int step = 0; step < 60; ++step) {
+        for (size_t i = 0; i < bodies.size(); ++i) before[i] = world.PositionOf(bodies[i]);
+        world.Step();
+        for (size_t i = 0; i < bodies.size(); ++i)
+            fastest = std::max(fastest, (world.PositionOf(bodies[i]) - before[i]).norm() / kStep);
+    }
+    return fastest;
+}
+bool AllAsleep(TestWorld& world, const std::vector<BodyId>& bodies) {
+    return std::ranges::none_of(bodies, [&](BodyId id) { return world.Bodies().IsAwake(id); });
+}
+
+// Square layers of cubes of 2 m, each cube on four of the layer below, so far apart in height.
+std::vector<BodyId> AddPyramid(TestWorld& world, int layers, double gap) {
+    world.AddFloor();
+    std::vector<BodyId> bodies;
+    for (int i = 0; i < layers; ++i)
+        for (int j = i / 2; j < layers - (i + 1) / 2; ++j)
+            for (int k = i / 2; k < layers - (i + 1) / 2; ++k) {
+                const double shift = i % 2 == 0 ? 0 : 1;
+                bodies.push_back(
+                    world.Add({.shape = CubeOf(1), .position = {2 * j + shift, 1 + (2 + gap) * i, 2 * k + shift}}));
+            }
+    return bodies;
+}
+// A wall of cubes of 1 m that tapers to one.
+std::vector<BodyId> AddFlatPyramid(TestWorld& world, int layers) {
+    world.AddFloor();
+    std::vector<BodyId> bodies;
+    for (int i = 0; i < layers; ++i)
+        for (int j = 0; j < layers - i; ++j)
+            bodies.push_back(world.Add({.shape = CubeOf(0.5f), .position = {j + 0.5 * i, 0.5 + i, 0}}));
+    return bodies;
+}
+
+TEST(Rest, PyramidsStopCreepingAndFallAsleep) {
+    const int layers = kIsSanitized ? 5 : 15;
+    for (const double gap : {0.0, 0.05, 0.5}) {
+        TestWorld world(NoSleep());
+        const std::vector<BodyId> bodies = AddPyramid(world, layers, gap);
+        world.Run(8);
+        EXPECT_LT(FastestInASecond(world, bodies), 1e-3) << gap;
+        TestWorld sleepy;
+        const std::vector<BodyId> sleepers = AddPyramid(sleepy, layers, gap);
+        sleepy.Run(5);
+        EXPECT_TRUE(AllAsleep(sleepy, sleepers)) << gap;
+    }
+}
+
+// Springs of frequency f = sqrt((V + P) / 45) / h sink by the load over w^2: as h^2 / (V + P).
+TEST(Rest, FlatPyramidsRestAtEveryEffortAndSinkByItsSquare) {
+    const int efforts[][3] = {{1, 4, 2}, {2, 1, 1}, {4, 1, 1},  {4, 2, 1}, {4, 1, 2},
+                              {4, 4, 4}, {8, 1, 1}, {16, 1, 1}, {64, 1, 1}};
+    constexpr int kLayers = 10;
+    constexpr double kUsual = 2.83e-3 * 16 * 2;  // m: sink times h^-2 and passes, measured
+    for (const auto& [substeps, velocityIterations, positionIterations] : efforts) {
+        SystemSettings settings = NoSleep();
+        settings.solver.substeps = substeps;
+        settings.solver.velocityIterations = velocityIterations;
+        settings.solver.positionIterations = positionIterations;
+        const std::string effort = std::to_string(substeps) + " " + std::to_string(velocityIterations) + " " +
+                                   std::to_string(positionIterations);
+        TestWorld world(settings);
+        const std::vector<BodyId> bodies = AddFlatPyramid(world, kLayers);
+        world.Run(6);
+        EXPECT_LT(FastestInASecond(world, bodies), substeps == 1 ? 5e-3 : 1e-3) << effort;
+        const double passes = velocityIterations + positionIterations,
+                     sink = kLayers - 0.5 - world.PositionOf(bodies.back()).y();
+        EXPECT_NEAR(sink * substeps * substeps * passes, kUsual, 0.25 * kUsual) << effort;
+    }
+}
+
+// A wave of toppling blocks. Pushes that stay in the velocities, and friction limited by pushes, made it slower with
+// each substep more.
+TEST(Rest, AWaveOfBlocksRunsAsFastAtEveryEffort) {
+    const auto speedOf = [](int substeps) {
+        SystemSettings settings = NoSleep();
+        settings.solver.substeps = substeps;
+        TestWorld world(settings);
+        world.AddFloor();
+        std::vector<BodyId> blocks;
+        for (int i = 0; i < 60; ++i)
+            blocks.push_back(world.Add({.shape = BoxOf(0.05f, 0.5f, 0.25f), .position = {0.35 * i, 0.5, 0}}));
+        EXPECT_TRUE(world.Bodies().SetVelocity(blocks[0], {0.6f, 0, 0}, {0, 0, -1.2f}));
+        const auto topples = [&](BodyId id) { return std::fabs(world.Bodies().GetPose(id).rotation.z) > 0.1f; };
+        int first = 0, step = 0;
+        for (; step < 1200 && !topples(blocks[50]); ++step) {
+            world.Step();
+            if (first == 0 && topples(blocks[20])) first = step;
+        }
+        return 0.35 * 30 / ((step - first) * kStep);
+    };
+    const double usual = speedOf(4);
+    for (const int substeps : {8, 16, 32}) EXPECT_NEAR(speedOf(substeps), usual, 0.015 * usual) << substeps;
+}
+
+// Friction of the floor is mu m g: all four boxes together get v = (F / m - mu g) t.
+TEST(Rest, AForceAcceleratesABoxWithOthersOnTopByTheFormula) {
+    for (const double dt : {kStep, 2e-4}) {
+        TestWorld world(NoSleep());
+        world.AddFloor();
+        std::vector<BodyId> boxes;
+        for (int i = 0; i < 4; ++i)
+            boxes.push_back(world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5 + i, 0}, .mass = 1}));
+        world.Run(0.5, dt);
+        const double force = 1.4 * 0.5 * 4 * kGravity;
+        const auto steps = std::lround(0.25 / dt);
+        for (int i = 0; i < steps; ++i) {
+            EXPECT_TRUE(world.Bodies().AddForce(boxes[0], Vector3(static_cast<float>(force), 0, 0)));
+            world.Step(dt);
+        }
+        const double expected = (force / 4 - 0.5 * kGravity) * static_cast<double>(steps) * dt;
+        double momentum = 0;
+        for (const BodyId id : boxes) momentum += double{world.VelocityOf(id).x()};
+        EXPECT_NEAR(momentum / 4, expected, 0.04 * expected) << dt;
+    }
+}
+
+// What a heavy load has pressed down comes back to its place, and no farther.
+TEST(Rest, WhatALoadLeavesRisesNoHigherThanItsPlace) {
+    for (const int substeps : {4, 16}) {
+        SystemSettings settings = NoSleep();
+        settings.solver.substeps = substeps;
+        TestWorld world(settings);
+        world.AddFloor();
+        const BodyId below = world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5, 0}, .mass = 1000}),
+                     load = world.Add({.shape = CubeOf(0.5f), .position = {0, 1.5, 0}, .mass = 1e5f});
+        world.Run(5);
+        EXPECT_LT(world.PositionOf(below).y(), 0.4995) << substeps;
+        EXPECT_TRUE(world.Bodies().Remove(load));
+        double highest = 0;
+        for (int i = 0; i < 120; ++i) {
+            world.Step();
+            highest = std::max(highest, world.PositionOf(below).y());
+        }
+        EXPECT_LT(highest, 0.501) << substeps;
+        EXPECT_GT(highest, 0.4995) << substeps;
+    }
+}
+
+// Springs as stiff as the short ones of these steps allow would throw up what the long ones let sink.
+TEST(Rest, AStackOutOfLineStandsWhileStepsAlternate) {
+    SystemSettings settings = NoSleep();
+    settings.solver.substeps = 16;
+    TestWorld world(settings);
+    world.AddFloor();
+    std::vector<BodyId> stack;
+    for (int i = 0; i < 6; ++i)
+        stack.push_back(
+            world.Add({.shape = CubeOf(0.5f), .position = {0.01 * (i * 7 % 3 - 1), 0.5 + i, 0.01 * (i * 5 % 3 - 1)}}));
+    for (int i = 0; i < 600; ++i) world.Step(i % 2 == 0 ? 1.0 / 240 : 1.0 / 30);
+    for (size_t i = 0; i < stack.size(); ++i)
+        EXPECT_NEAR(world.PositionOf(stack[i]).y(), 0.5 + static_cast<double>(i), 0.03) << i;
+}
+
+}  // namespace
+}  // namespace fulcrum::testing
