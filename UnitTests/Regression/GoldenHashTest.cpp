@@ -13,7 +13,7 @@ namespace fulcrum::testing {
 namespace {
 
 constexpr uint64_t kGoldenHash = 0xb28c2ff88bdffbb9ull;
-constexpr uint64_t kGoldenHashOfJoints = 0xce9b2c1c142bd676ull;
+constexpr uint64_t kGoldenHashOfJoints = 0x5400a6c9144a87dcull;
 constexpr uint64_t kGoldenHashOfSurfaces = 0x0dfdf3354d851a9dull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0x55a1f2f91fb4a789ull;
 
