@@ -80,8 +80,7 @@ constexpr LockedAxes operator|(LockedAxes a, LockedAxes b) {
 // How overlaps and gaps of joints are corrected. Docs/Accuracy.md says which suits which effort.
 enum class PositionCorrection : uint8_t {
     SoftRelax,  // soft rows push in the velocity iterations; relaxing passes take the speed of the pushes out again
-    Baumgarte,  // hard rows; position passes move the bodies and add no speed. Exact for few substeps of many
-                // iterations
+    Baumgarte,  // hard rows; position passes move the bodies and add no speed. Small gaps of joints
 };
 
 // The trade of speed for accuracy.
