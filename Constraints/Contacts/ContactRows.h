@@ -7,13 +7,13 @@
 namespace fulcrum::contacts {
 
 // The friction rows: impulses first clamped to the cone's cross-section (as a vector, so that no heading is preferred),
-// then the torque. limit: N s, friction times the sum of the normal impulses. Returns the change of impulse of t1, t2
-// and twist; `lanes` are those that have friction.
+// then the torque. limit: N s, friction times the sum of the normal impulses. Finds the totals of t1, t2 and twist, and
+// by how much they change.
 template <int N, bool kFixedB>
-FULCRUM_FORCE_INLINE void SolveFriction(ContactBatch<N, kFixedB>& batch, WideMask<N> lanes, Wide<N> limit, Wide<N> v1,
-                                        Wide<N> v2, Wide<N> wn, Wide<N> (&change)[3]) {
+FULCRUM_FORCE_INLINE void SolveFriction(const ContactBatch<N, kFixedB>& batch, Wide<N> limit, Wide<N> v1, Wide<N> v2,
+                                        Wide<N> wn, Wide<N> (&solved)[3], Wide<N> (&change)[3]) {
     using Real = Wide<N>;
-    Real* total = batch.frictionImpulse;
+    const Real* total = batch.frictionImpulse;
     const Real* inverse = batch.frictionInverse;
     const Real* response = batch.frictionResponse;
     const Real step1 = -inverse[0] * v1;
@@ -22,16 +22,15 @@ FULCRUM_FORCE_INLINE void SolveFriction(ContactBatch<N, kFixedB>& batch, WideMas
     const Real lengthSquared = wanted1 * wanted1 + wanted2 * wanted2;
     const Real scale =
         Select(lengthSquared <= limit * limit, Real(1.0f), limit / Sqrt(Max(lengthSquared, Real(1e-30f))));
-    change[0] = wanted1 * scale - total[0];
-    change[1] = wanted2 * scale - total[1];
-    total[0] = Select(lanes, wanted1 * scale, total[0]);
-    total[1] = Select(lanes, wanted2 * scale, total[1]);
+    solved[0] = wanted1 * scale;
+    solved[1] = wanted2 * scale;
+    change[0] = solved[0] - total[0];
+    change[1] = solved[1] - total[1];
 
     const Real twistLimit = limit * batch.twistRadius;
     const Real spin = wn + response[1] * change[0] + response[2] * change[1];
-    const Real twist = Clamp(total[2] - inverse[2] * spin, -twistLimit, twistLimit);
-    change[2] = twist - total[2];
-    total[2] = Select(lanes, twist, total[2]);
+    solved[2] = Clamp(total[2] - inverse[2] * spin, -twistLimit, twistLimit);
+    change[2] = solved[2] - total[2];
 }
 
 // Lanes without a surface velocity keep every bit, a negative zero too.
@@ -67,15 +66,6 @@ FULCRUM_FORCE_INLINE WideMask<N> MovesByItself(const ContactBatch<N, kFixedB>& b
         return Dot<Real>(velocity.linear, velocity.linear) + Dot<Real>(velocity.angular, velocity.angular) > Real(0.0f);
     }
 }
-// Those that have friction in such a pass. What rides on something that moves is moved by friction: left to relaxing
-// passes alone it would lag a substep behind on every turn.
-template <Pass kPass, int N, bool kFixedB>
-FULCRUM_FORCE_INLINE WideMask<N> HasFriction(const ContactBatch<N, kFixedB>& batch,
-                                             const ContactSolveSettings& settings) {
-    if (kPass == Pass::Relax || !settings.relaxes) return Wide<N>(0.0f) == Wide<N>(0.0f);
-    return MovesByItself(batch);
-}
-
 // The impulses of the normal rows after one sweep over them, in `total`, where points move at `speed` (m/s along the
 // normal, what they may close in by and what pushes them included; changed to what is left). stiffer: of the rows that
 // overlap, 0..1 less soft.
@@ -134,6 +124,15 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
     };
     findSpeeds();
     [[maybe_unused]] Real friction[3];
+    // Where relaxing passes follow, only the lanes that move by themselves have friction in a pass that pushes: what
+    // rides on something that moves is moved by friction, and would lag a substep behind on every turn. Others keep
+    // every bit.
+    [[maybe_unused]] WideMask<N> rides;
+    if constexpr (kPass == Pass::PushAndFriction) rides = settings.relaxes ? MovesByItself(batch) : zero == zero;
+    const auto where = [&](const Real& withFriction, [[maybe_unused]] const Real& without) {
+        if constexpr (kPass == Pass::PushAndFriction) return Select(rides, withFriction, without);
+        else return withFriction;
+    };
     if constexpr (kPass != Pass::Push) {
         // Friction comes first, non-penetration wins; but its limit is that of the normal impulses which this pass asks
         // for, not of those of the last one.
@@ -149,12 +148,13 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
                 v2 = MoveBy(v2, surface.v2);
                 wn = MoveBy(wn, surface.spin);
             }
-        const WideMask<N> lanes = HasFriction<kPass>(batch, settings);
-        SolveFriction<N, kFixedB>(batch, lanes, batch.friction * sum, v1, v2, wn, friction);
+        Real solved[3];
+        SolveFriction<N, kFixedB>(batch, batch.friction * sum, v1, v2, wn, solved, friction);
         for (int k = 0; k < 3; ++k) {
-            motion.linear = Select(lanes, motion.linear + batch.coupling[0][k] * friction[k], motion.linear);
-            motion.angular1 = Select(lanes, motion.angular1 + batch.coupling[1][k] * friction[k], motion.angular1);
-            motion.angular2 = Select(lanes, motion.angular2 + batch.coupling[2][k] * friction[k], motion.angular2);
+            batch.frictionImpulse[k] = where(solved[k], batch.frictionImpulse[k]);
+            motion.linear = where(motion.linear + batch.coupling[0][k] * friction[k], motion.linear);
+            motion.angular1 = where(motion.angular1 + batch.coupling[1][k] * friction[k], motion.angular1);
+            motion.angular2 = where(motion.angular2 + batch.coupling[2][k] * friction[k], motion.angular2);
         }
         findSpeeds();
     }
@@ -167,14 +167,11 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
     }
 
     Vec3<Real> force = batch.normal * changes.sum, torque = NormalTorque(batch, changes.sumA, changes.sumB);
-    if constexpr (kPass != Pass::Push) {
-        const WideMask<N> lanes = HasFriction<kPass>(batch, settings);
+    if constexpr (kPass != Pass::Push)
         for (int k = 0; k < 3; ++k) {
-            force[k] =
-                Select(lanes, force[k] + (batch.tangent1[k] * friction[0] + batch.tangent2[k] * friction[1]), force[k]);
-            torque[k] = Select(lanes, torque[k] + batch.normal[k] * friction[2], torque[k]);
+            force[k] = where(force[k] + (batch.tangent1[k] * friction[0] + batch.tangent2[k] * friction[1]), force[k]);
+            torque[k] = where(torque[k] + batch.normal[k] * friction[2], torque[k]);
         }
-    }
     ApplyToBoth<N, kFixedB>(batch, twists, force, torque);
     if constexpr (kRare)
         if (batch.bounces) NoteHits(batch, changes, motion, twists, settings.elapsed);

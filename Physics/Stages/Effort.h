@@ -30,7 +30,8 @@ inline float StiffestFrequency(const SolverSettings& solver, float h) {
 // hundredth of an overlap in 0.1 ms at most, as with four substeps; but not so much that they forget almost nothing of
 // their impulses, and slow modes are hardly damped.
 inline float LeastDampingRatio(float frequency, float h) {
-    constexpr float kMostPushRate = 100, kMost = 2.5f;  // 1/s
+    constexpr float kMostPushRate = 100;  // 1/s
+    constexpr float kMost = 2.5f;
     const float w = 6.28318531f * frequency;
     return std::min(0.5f * (w / kMostPushRate - h * w), kMost);
 }

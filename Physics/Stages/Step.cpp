@@ -109,7 +109,7 @@ constexpr double kShortestStep = 1e-9;
 // s threw a stack of six boxes over with no limit, and leave one of ten standing with this one.
 constexpr float kMostImpulseScale = 2;
 
-// By so much at most springs become stiffer from one step to the next, in time.
+// Of the stiffnessDt of the step before, which a shorter step keeps at least.
 constexpr float kStiffnessDecay = 0.95f;
 
 void SetTimes(StepState& step, double dt, const SolverSettings& solver) {

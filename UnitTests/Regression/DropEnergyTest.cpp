@@ -9,10 +9,7 @@
 namespace fulcrum::testing {
 namespace {
 
-// With 16 substeps two of 1600 drops gain up to 2.4 %: bodies that are pressed into each other in the air.
-double MostOf(const DropSettings& settings) {
-    return settings.substeps > 4 && settings.ground == DropGround::Air ? 1.03 : 1.01;
-}
+constexpr double kMost = 1.01;
 
 struct Group {
     DropGround ground;
@@ -24,8 +21,7 @@ constexpr Group kGroups[] = {{DropGround::Floor, 1}, {DropGround::Mesh, 1}, {Dro
 void ExpectNoGain(const DropSettings& settings, uint32_t drops, double seconds) {
     const DropEnergy energy = EnergyOfDrops(settings, 1, drops, seconds);
     EXPECT_TRUE(energy.finite) << NameOf(settings);
-    EXPECT_LE(energy.most, MostOf(settings))
-        << NameOf(settings) << ": drop " << energy.drop << " in step " << energy.step;
+    EXPECT_LE(energy.most, kMost) << NameOf(settings) << ": drop " << energy.drop << " in step " << energy.step;
 }
 
 // All kinds of restitution and friction.
