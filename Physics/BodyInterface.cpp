@@ -72,6 +72,7 @@ void Refilter(WorldState& world, uint32_t body) {
     RemoveForbiddenPairs(world, body);
     WakeBody(world, body);
     WakeNeighbors(world, body);
+    if (world.bodies.dynamics[body].motion == MotionType::Dynamic) world.bodies.MarkPlaced(body);
     RequeueColliders(world, body);
 }
 
@@ -94,6 +95,7 @@ void MoveToItsTree(WorldState& world, uint32_t body) {
 
 // Brings everything in line with a pose that the user set.
 void Teleported(WorldState& world, uint32_t body) {
+    if (world.bodies.dynamics[body].motion == MotionType::Dynamic) world.bodies.MarkPlaced(body);
     world.bodies.UpdateInertia(body);
     VisitColliders(world, body, [&](uint32_t i) {
         SetFatBounds(world, i);
@@ -130,6 +132,7 @@ Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
     world_.bodies.UpdateInertia(body);
     if (world_.bodies.Count() == 1) PlaceBoundsOrigin(world_, body);
     MakeColliders(world_, body);
+    world_.bodies.MarkPlaced(body);
     if (settings.startAsleep) {
         world_.bodies.SetVelocity(body, Vector3::Zero(), Vector3::Zero());
         if (!world_.sensors.IsEmpty()) world_.sensors.changed.push_back(body);

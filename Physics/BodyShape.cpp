@@ -124,6 +124,7 @@ Status BodyInterface::SetShape(BodyId id, const ShapePtr& shape, MassUpdate mass
     if (updates) ChangeMass(world_, body, next, kilograms);
     if (cold.children) cold.children->massUnit = double{kilograms} / RelativeMassOf(*shape);
     MakeColliders(world_, body);
+    if (d.motion == MotionType::Dynamic) world_.bodies.MarkPlaced(body);
     RequeueColliders(world_, body);
     if (!world_.sensors.IsEmpty())
         world_.sensors.changed.push_back(body);  // also where no collider is left that would tell

@@ -149,6 +149,9 @@ struct SystemSettings {
     float contactFrequency = std::numeric_limits<float>::infinity();
     float contactDampingRatio = 1.0f;  // 0..1e6
     float contactPushSpeed = 3.0f;     // m/s, > 0, at most 1e6: the fastest push
+    // m/s, > 0, at most 1e6: the fastest that bodies which were created, placed or grown in each other are pushed
+    // apart. They keep no speed of that.
+    float depenetrationSpeed = 0.5f;
     float jointFrequency =
         std::numeric_limits<float>::infinity();  // Hz, likewise, of the spring that pulls joints together
     float jointDampingRatio = 1.0f;              // 0..1e6

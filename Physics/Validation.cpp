@@ -179,6 +179,8 @@ MaybeError Check(const SystemSettings& s) {
             CheckRange("contactDampingRatio", s.contactDampingRatio, 0, kMost),
             CheckPositive("contactPushSpeed", s.contactPushSpeed),
             CheckRange("contactPushSpeed", s.contactPushSpeed, 0, kMost),
+            CheckPositive("depenetrationSpeed", s.depenetrationSpeed),
+            CheckRange("depenetrationSpeed", s.depenetrationSpeed, 0, kMost),
             CheckPositiveOrInfinite("jointFrequency", s.jointFrequency),
             CheckNotNegative("jointDampingRatio", s.jointDampingRatio),
             CheckRange("jointDampingRatio", s.jointDampingRatio, 0, kMost),

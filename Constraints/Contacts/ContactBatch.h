@@ -74,6 +74,7 @@ struct ContactBatch {
     Real coupling[3][3];       // change of V.n, W.t1, W.t2 by a unit impulse of t1, t2, twist
     Real frictionImpulse[3];
     Real friction, twistRadius;
+    Real maxPushSpeed;  // m/s: the fastest that overlaps are pushed apart
 
     // Only where `bounces`.
     Real restitution;              // 0..1
@@ -87,6 +88,7 @@ struct ContactBatch {
 struct ContactPrepareSettings {
     float impulseScale;                           // dt of this substep / dt of the last: scales the warm start
     float restitutionSpeed;                       // m/s
+    float maxPushSpeed;                           // m/s
     const MassOverride* massOverrides = nullptr;  // by record, of those with kMassOverride; null where none has one
 };
 
@@ -97,7 +99,6 @@ struct ContactSolveSettings {
     float pushRate;      // 1/s: speed of the push per meter of overlap
     float massScale;     // 0..1: softened effective mass / effective mass
     float impulseScale;  // 0..1: part of the impulse that the row gives way by
-    float maxPushSpeed;  // m/s
     // A soft row gives way in proportion to its load, however deep the overlap; a push that has reached its largest
     // speed would lose against a heavy one. So the deeper the overlap beyond that, the less the row gives way.
     float stiffening = 0;   // s/m: by so much of the impulse less for each m/s that the push falls short
@@ -109,8 +110,8 @@ struct ContactSolveSettings {
     float mostCorrection = 0;  // m, by a pass
 
     // Sets pushRate, massScale and impulseScale to those of PushSoftnessOf (RowSoftness.h), for a substep of h seconds,
-    // and stiffening by maxPushSpeed.
-    void Soften(float frequency, float dampingRatio, float h);
+    // and stiffening by the usual largest speed of pushes, m/s.
+    void Soften(float frequency, float dampingRatio, float h, float maxPushSpeed);
 };
 
 // Fills the batch of `batch.contact[0 .. count)` from the records, which it may look at until they are stored; bodyB[]

@@ -108,7 +108,7 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
     Real speed[ContactRecord::kMaxPoints], total[ContactRecord::kMaxPoints];
     [[maybe_unused]] Real stiffer[ContactRecord::kMaxPoints];
     const auto findSpeeds = [&] {
-        const Real inverseDt(settings.inverseDt), pushRate(settings.pushRate), fastest(-settings.maxPushSpeed);
+        const Real inverseDt(settings.inverseDt), pushRate(settings.pushRate), fastest = -batch.maxPushSpeed;
         for (int i = 0; i < batch.pointCount; ++i) {
             const auto& row = batch.rows[i];
             speed[i] = MotionOf(row, motion) + Max(row.separation, zero) * inverseDt;

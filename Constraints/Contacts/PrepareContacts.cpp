@@ -220,6 +220,7 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
     batch.tangent2 = t2;
     batch.friction = Min(head[Record::kFriction], Real(kMostFriction));
     batch.twistRadius = head[Record::kTwistRadius];
+    batch.maxPushSpeed = Real(settings.maxPushSpeed);
     batch.pointCount = static_cast<int32_t>(HorizontalMax(pointCount));
     batch.bounces = HorizontalMax(head[Record::kRestitution]) > 0.0f;
     batch.surfaces = !kFixedB && isMarked && HaveSurfaceVelocity(head[Record::kMarks]).Any() ? records : nullptr;

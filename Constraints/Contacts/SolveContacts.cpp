@@ -15,7 +15,7 @@ FULCRUM_FORCE_INLINE void SolveAllRows(ContactBatch<N, kFixedB>& batch, BodyStat
 
 }  // namespace
 
-void ContactSolveSettings::Soften(float frequency, float dampingRatio, float h) {
+void ContactSolveSettings::Soften(float frequency, float dampingRatio, float h, float maxPushSpeed) {
     const PushSoftness push = PushSoftnessOf(frequency, dampingRatio, h);
     pushRate = push.pushRate;
     massScale = push.softness.massScale;

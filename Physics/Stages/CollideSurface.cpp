@@ -1,6 +1,7 @@
 // A pair of a convex shape and a surface has as many manifolds as there are directions in which they touch. The first
 // is the pair's own; the others are pairs of their own, chained to it, which the later stages take for any other. They
 // stay, empty or not, as long as the pair does.
+#include <Fulcrum/Physics/Stages/CrowdContacts.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
 #include <Fulcrum/Physics/World/Materials.h>
 
@@ -120,6 +121,7 @@ PairChange CollideWithSurface(WorldState& world, std::span<PairChange> changes, 
     bool wakes = false;
     VisitManifolds(world, first, [&](uint32_t index) {
         Pair& pair = world.pairs.pairs[index];
+        if (pair.pointCount > 0) NoteOverlap(world, index, view.bInA, findings);
         const PairChange change = NoteTouching(world, index, findings);
         wakes |= TouchesSleeper(world, pair);
         if (index == first) ofFirst = change;

@@ -169,7 +169,8 @@ void StartDispersing(WorldState& world, std::vector<DispersingBody>& all, std::v
     RemoveDynamicPairs(world, changes, starting);
     for (DispersingBody dispersing : PlanDispersing(world, groups, starting)) {
         BodyDynamics& d = world.bodies.dynamics[dispersing.body];
-        d.dispersing = d.crowded = true;
+        d.dispersing = true;
+        d.crowded = 1;
         AddGravity(world, dispersing.body, -1);
         dispersing.ownVelocity = world.bodies.LinearVelocityOf(dispersing.body);
         dispersing.startStep = world.step;

@@ -3,12 +3,12 @@
 // far apart. So a body that deeply overlaps many others disperses: for some time it does not collide with dynamic
 // bodies, gravity does not act on it, and on top of its own velocity it moves, at a bounded speed, to a place of its
 // own in a ball that has room for all, or in what floor and walls leave of that ball. Those that started together end
-// together, when nearly all of them overlap no other. From then on contacts separate what is left, and push no faster
-// than contactPushSpeed until nothing overlaps.
+// together, when nearly all of them overlap no other. From then on contacts separate what is left, at
+// depenetrationSpeed.
 //   CrowdOverlaps.h  which bodies overlap many others
 //   CrowdPlaces.h    where bodies disperse to
 //   Crowd.h          start, motion and end of dispersing
-//   CrowdContacts.h  contacts of coincident and of crowded bodies
+//   CrowdContacts.h  contacts of coincident bodies, and of bodies that were put into each other
 // Used by UpdateBounds, FindPairs and Store; one thread, but for OwnVelocity. Costs nothing while no body disperses.
 #pragma once
 

@@ -16,21 +16,36 @@ namespace {
 constexpr float kCenterOffset =
     1e-3f;  // of coincident centers: a distance that gives a direction, and too short to be seen
 constexpr float kCrowdedOverlap = 0.01f;  // by less than this, as bodies at rest on each other do, nothing is crowded
+// Levels of crowded bodies: those that overlap others have the highest; of those that touch them, and were crowded
+// before, each has one less than its neighbor, as pushes reach it through others.
+constexpr uint32_t kLevelBits = 2;
+constexpr uint8_t kOverlaps = 3;
 // The part of an overlap with an immovable body that is removed within a substep: all at once would throw bodies up.
 constexpr float kImmovableOverlapRemoved = 0.125f;
 
-// m, as the step began: the least of a manifold's points, below zero where they overlap.
-float SeparationOf(const WorldState& world, uint32_t index, const Vector3& normal) {
+struct DeepestPoint {
+    float separation = std::numeric_limits<float>::infinity();  // m, as the step began, below zero where it overlaps
+    float approach = 0;                                         // m/s, at which the two bodies' points close in
+};
+DeepestPoint DeepestPointOf(const WorldState& world, uint32_t index, const Vector3& normal) {
     const Pair& pair = world.pairs.pairs[index];
     const Pose a = world.bodies.CenterPoseOf(pair.bodyA), b = world.bodies.CenterPoseOf(pair.bodyB);
-    float least = std::numeric_limits<float>::infinity();
+    const auto velocityOf = [&](uint32_t body, const Position& center, const Position& at) {
+        return Vector3(world.bodies.LinearVelocityOf(body) +
+                       Cross<float>(world.bodies.AngularVelocityOf(body), Vector3((at - center).cast<float>())));
+    };
+    DeepestPoint deepest;
     for (int i = 0; i < pair.pointCount; ++i) {
         const ContactRecord::Point& p = world.pairs.records[index].points[i];
         const Position onA = a.Transform(Vector3(p.onA[0], p.onA[1], p.onA[2])),
                        onB = b.Transform(Vector3(p.onB[0], p.onB[1], p.onB[2]));
-        least = std::min(least, Dot<float>(normal, Vector3((onB - onA).cast<float>())));
+        const float separation = Dot<float>(normal, Vector3((onB - onA).cast<float>()));
+        if (!(separation < deepest.separation)) continue;
+        deepest.separation = separation;
+        deepest.approach = Dot<float>(
+            normal, Vector3(velocityOf(pair.bodyA, a.position, onA) - velocityOf(pair.bodyB, b.position, onB)));
     }
-    return least;
+    return deepest;
 }
 
 // Moves what the workers noted into one list, sorted: the same for any number of threads.
@@ -42,6 +57,15 @@ void Gather(std::span<WorkerFindings> workers, std::vector<uint32_t> WorkerFindi
         (findings.*list).clear();
     }
     std::sort(all.begin(), all.end());
+}
+
+// A velocity changed by `push`, of which what only takes speed from it is whole, the rest no longer than `fastest`.
+Vector3 LimitedPush(const Vector3& own, const Vector3& push, float fastest) {
+    const float against = -Dot<float>(push, own), squared = LengthSquared(own);
+    const Vector3 left = against > 0 ? Vector3(own * (1 - std::min(against / squared, 1.0f))) : own;
+    Vector3 rest = own + push - left;
+    LimitLength(rest, fastest);
+    return left + rest;
 }
 
 // How often the most frequent of numbers occurs; they are sorted.
@@ -72,23 +96,36 @@ RelativePose WithDistinctCenters(const WorldState& world, const Pair& pair, cons
 
 void NoteOverlap(const WorldState& world, uint32_t index, const RelativePose& bInA, WorkerFindings& findings) {
     const Pair& pair = world.pairs.pairs[index];
-    if (pair.fixedB) return;
-    const float deep = DeepOverlapDistance(*pair.shapeA, *pair.shapeB);
-    if (LengthSquared(bInA.position) < deep * deep)
-        for (const uint32_t body : {pair.bodyA, pair.bodyB}) findings.deepOverlaps.push_back(body);
-    const auto isCrowded = [&](uint32_t body) { return world.bodies.dynamics[body].crowded; };
-    if (!isCrowded(pair.bodyA) && !isCrowded(pair.bodyB)) return;
-    const float radii = pair.shapeA->InnerRadius() + pair.shapeB->InnerRadius();
-    if (SeparationOf(world, index, ContactNormal(world, index)) > -kCrowdedOverlap * radii) return;
-    for (const uint32_t body : {pair.bodyA, pair.bodyB})
-        if (isCrowded(body)) findings.crowdedOverlaps.push_back(body);
+    if (!pair.fixedB && pair.shapeB->IsConvex()) {
+        const float deep = DeepOverlapDistance(*pair.shapeA, *pair.shapeB);
+        if (LengthSquared(bInA.position) < deep * deep)
+            for (const uint32_t body : {pair.bodyA, pair.bodyB}) findings.deepOverlaps.push_back(body);
+    }
+    const BodyDynamics &a = world.bodies.dynamics[pair.bodyA], &b = world.bodies.dynamics[pair.bodyB];
+    const bool isPlaced =
+        !world.bodies.placed.empty() && (world.bodies.cold[pair.bodyA].placed || world.bodies.cold[pair.bodyB].placed);
+    if (!isPlaced && a.crowded == 0 && b.crowded == 0) return;
+    const float radii = pair.shapeA->InnerRadius() + (pair.fixedB ? 0.0f : pair.shapeB->InnerRadius());
+    const DeepestPoint deepest = DeepestPointOf(world, index, ContactNormal(world, index));
+    const bool overlaps = deepest.separation < -kCrowdedOverlap * radii;
+    // What closes in fast is an impact, and leaves its speeds.
+    const bool wasPut = isPlaced && overlaps && deepest.approach < world.settings.depenetrationSpeed;
+    const auto note = [&](uint32_t body, uint8_t level, uint8_t levelOfOther) {
+        if (level == 0 && !(wasPut && !world.joints.HasAny(body))) return;
+        const uint8_t now = overlaps ? kOverlaps : uint8_t(std::max<int>(levelOfOther, 1) - 1);
+        if (now > 0) findings.crowdedOverlaps.push_back(body << kLevelBits | now);
+    };
+    note(pair.bodyA, a.crowded, b.crowded);
+    if (!pair.fixedB) note(pair.bodyB, b.crowded, a.crowded);
 }
 
 void GatherCrowd(BodyStore& bodies, CrowdState& crowd, std::span<WorkerFindings> workers) {
-    for (const uint32_t body : crowd.crowded) bodies.dynamics[body].crowded = false;
+    bodies.ForgetPlaced();
+    for (const uint32_t noted : crowd.crowded) bodies.dynamics[noted >> kLevelBits].crowded = 0;
     Gather(workers, &WorkerFindings::crowdedOverlaps, crowd.crowded);
-    for (const DispersingBody& dispersing : crowd.dispersing) crowd.crowded.push_back(dispersing.body);
-    for (const uint32_t body : crowd.crowded) bodies.dynamics[body].crowded = true;
+    for (const DispersingBody& dispersing : crowd.dispersing)
+        crowd.crowded.push_back(dispersing.body << kLevelBits | kOverlaps);
+    for (const uint32_t noted : crowd.crowded) bodies.dynamics[noted >> kLevelBits].crowded = noted & kOverlaps;
     Gather(workers, &WorkerFindings::deepOverlaps, crowd.deepOverlaps);
     if (MostRepeated(crowd.deepOverlaps) < kManyOverlaps) crowd.deepOverlaps.clear();
 }
@@ -96,21 +133,22 @@ void GatherCrowd(BodyStore& bodies, CrowdState& crowd, std::span<WorkerFindings>
 void LimitPush(WorldState& world, uint32_t body, float h) {
     const auto& free = world.bodies.unconstrained[body].row;
     const Vector3 freeV = VectorAt<BodyState::kLinear>(free), freeW = VectorAt<BodyState::kAngular>(free);
-    Vector3 push = world.bodies.LinearVelocityOf(body) - freeV, spin = world.bodies.AngularVelocityOf(body) - freeW;
+    const Vector3 push = world.bodies.LinearVelocityOf(body) - freeV,
+                  spin = world.bodies.AngularVelocityOf(body) - freeW;
     const float fastest = world.settings.contactPushSpeed;
-    LimitLength(push, fastest);
-    LimitLength(spin, fastest / world.bodies.dynamics[body].outerRadius);
-    Vector3 v = freeV + push;
+    Vector3 v = LimitedPush(freeV, push, fastest);
+    const Vector3 w = LimitedPush(freeW, spin, fastest / world.bodies.dynamics[body].outerRadius);
     const float(&moved)[3] = world.bodies.states[body].deltaPosition;
     VisitImmovableContacts(world, body, [&](uint32_t pair) {
         const Vector3 normal = ContactNormal(world, pair);
-        const float gap = SeparationOf(world, pair, normal) - Dot<float>(normal, Vector3(moved[0], moved[1], moved[2]));
+        const float gap =
+            DeepestPointOf(world, pair, normal).separation - Dot<float>(normal, Vector3(moved[0], moved[1], moved[2]));
         const float most = gap >= 0 ? gap / h : std::max(gap * kImmovableOverlapRemoved / h, -fastest);
         const float into =
             Dot<float>(normal, Vector3(v - world.bodies.LinearVelocityOf(world.pairs.pairs[pair].bodyB)));
         if (into > most) v -= normal * (into - most);
     });
-    world.bodies.SetVelocity(body, v, freeW + spin);
+    world.bodies.SetVelocity(body, v, w);
 }
 
 }  // namespace fulcrum

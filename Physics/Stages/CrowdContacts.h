@@ -1,6 +1,8 @@
-// Contacts of bodies in a crowd (Crowd.h): which way coincident bodies are pushed, which bodies Collide saw overlap,
-// and how fast contacts may push crowded bodies: those that disperse, or have dispersed and still overlap something.
-// Used by Collide, Solve and Store, for different bodies from any number of threads, but for GatherCrowd.
+// Contacts of bodies that were put into each other: which way coincident ones are pushed, and which bodies are crowded.
+// Crowded are bodies that disperse (Crowd.h), and those that overlap what they were created, placed or grown in, or
+// still touch such a body. Their contacts push at depenetrationSpeed at most, and they keep no speed of that: many
+// pushes add up, and relaxing passes leave a part of it in the velocities. Used by Collide, Prepare, Solve and Store,
+// for different bodies from any number of threads, but for GatherCrowd.
 #pragma once
 
 #include <Fulcrum/Physics/Stages/StepState.h>
@@ -15,13 +17,12 @@ namespace fulcrum {
 // that offset where it is needed.
 RelativePose WithDistinctCenters(const WorldState& world, const Pair& pair, const RelativePose& bInA);
 
-// Notes in `findings` which bodies of a pair overlap deeply, and which crowded ones overlap at all; `bInA` is that of
-// the shapes.
+// Notes in `findings` which bodies of a pair overlap deeply, and which are crowded, or still are. bInA: of the shapes.
 void NoteOverlap(const WorldState& world, uint32_t pair, const RelativePose& bInA, WorkerFindings& findings);
 // Gathers what the workers noted into `crowd`, and marks the crowded bodies. One thread.
 void GatherCrowd(BodyStore& bodies, CrowdState& crowd, std::span<WorkerFindings> workers);
 
-// Limits the velocity with which a crowded body is about to move for h seconds: contacts and joints change it by no
+// Limits the velocity with which a dispersing body is about to move for h seconds: contacts and joints change it by no
 // more than contactPushSpeed, and it is not pressed into immovable bodies, whose soft contacts would yield to the
 // pushes of so many.
 void LimitPush(WorldState& world, uint32_t body, float h);

@@ -11,7 +11,7 @@ namespace fulcrum {
 
 // A body that deeply overlaps so many others disperses; contacts still separate fewer. In the densest packing of equal
 // spheres each touches twelve others, and overlaps none of them deeply.
-inline constexpr size_t kManyOverlaps = 6;
+inline constexpr size_t kManyOverlaps = 12;
 
 // Two shapes overlap deeply where their centers are nearer than this, m: a part of the sum of their inner radii.
 // Contacts that give way under load leave far less overlap than that, so bodies that overlap deeply were put there.

@@ -55,9 +55,8 @@ inline Effort EffortOf(const WorldState& world, const StepState& step, const Sol
     contacts.inverseDt = 1.0f / h;
     contacts.elapsed = 0;
     contacts.slop = s.penetrationSlop;
-    contacts.maxPushSpeed = s.contactPushSpeed;
     const float frequency = std::min(s.contactFrequency, stiffest);
-    contacts.Soften(frequency, std::max(s.contactDampingRatio, LeastDampingRatio(frequency, h)), h);
+    contacts.Soften(frequency, std::max(s.contactDampingRatio, LeastDampingRatio(frequency, h)), h, s.contactPushSpeed);
 
     const PushSoftness push = PushSoftnessOf(std::min(s.jointFrequency, stiffest), s.jointDampingRatio, h);
     JointSolveSettings& joints = effort.joints;

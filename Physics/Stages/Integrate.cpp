@@ -96,7 +96,7 @@ void IntegrateVelocity(WorldState& world, uint32_t body, float h, bool again, Wo
     if (again && d.crowded) {
         v = NoFasterThan(v, velocity.unconstrained.First());
         w = NoFasterThan(w, velocity.unconstrained.Second());
-        velocity.carried = {};
+        if (d.dispersing) velocity.carried = {};
     }
     v = (v + Vector3(a[0], a[1], a[2]) * h) * DampingFactor(d.linearDamping, h);
     w *= DampingFactor(d.angularDamping, h);
@@ -231,7 +231,7 @@ void IntegratePose(WorldState& world, uint32_t body, float h, const BodyState* p
         d.Lock(v, w);
         world.bodies.SetVelocity(body, v, w);
     }
-    if (d.crowded) LimitPush(world, body, h);
+    if (d.dispersing) LimitPush(world, body, h);
     Twist<float> motion{world.bodies.LinearVelocityOf(body), world.bodies.AngularVelocityOf(body)};
     if (pseudo) AddPull(world.bodies, body, pseudo[body], motion);
     const bool isJointed = world.joints.HasAny(body);

@@ -46,10 +46,24 @@ template <int N, bool kFixedB>
         }
 }
 
+// Of bodies that were created in each other: they are pushed apart slowly, and what pushed them in the last step is
+// not there again, as they had to keep to that speed.
+template <int N, bool kFixedB>
+[[gnu::cold]] void LimitPushes(const WorldState& world, const uint32_t (&bodyB)[N], ContactBatch<N, kFixedB>& batch) {
+    for (int lane = 0; lane < N; ++lane) {
+        const auto isCrowded = [&](uint32_t body) {
+            const BodyDynamics& d = world.bodies.dynamics[body];
+            return d.crowded && !d.dispersing;
+        };
+        if (!isCrowded(batch.bodyA[lane]) && !isCrowded(bodyB[lane])) continue;
+        batch.maxPushSpeed.Set(lane, std::min(batch.maxPushSpeed[lane], world.settings.depenetrationSpeed));
+    }
+}
+
 // Fills the batch with at most N contacts; lanes beyond them repeat the last one and are never written.
 template <int N, bool kFixedB>
 void Fill(WorldState& world, ContactBatch<N, kFixedB>& batch, std::span<const Entry> entries,
-          const ContactPrepareSettings& settings, WorkerFindings& findings) {
+          const ContactPrepareSettings& settings, bool hasCrowds, WorkerFindings& findings) {
     batch.count = static_cast<int32_t>(entries.size());
     uint32_t bodyB[N];
     for (size_t lane = 0; lane < N; ++lane) {
@@ -61,20 +75,22 @@ void Fill(WorldState& world, ContactBatch<N, kFixedB>& batch, std::span<const En
     const uint32_t unusable =
         PrepareContacts<N, kFixedB>(batch, world.pairs.records.data(), bodyB, world.bodies.ForSolver(), settings);
     if (unusable != 0) ForgetContacts(world, batch, unusable);
+    if (hasCrowds) [[unlikely]]
+        LimitPushes(world, bodyB, batch);
     findings.bounces |= batch.bounces;
     NoteDeepest(batch, findings);
 }
 
 template <bool kFixedB>
 void FillRange(WorldState& world, ContactBatchList<kFixedB>& list, const BatchRange& range,
-               const ContactPrepareSettings& settings, WorkerFindings& findings) {
+               const ContactPrepareSettings& settings, bool hasCrowds, WorkerFindings& findings) {
     std::span<const Entry> contacts = std::span(list.contacts).subspan(range.first, range.contacts);
     for (uint32_t i = range.begin; i < range.end; ++i) {
         const size_t n = std::min(contacts.size(), size_t(kLanes));
         const std::span<const Entry> now = contacts.first(n);
         contacts = contacts.subspan(n);
         Prefetch(world, contacts.first(std::min(contacts.size(), size_t(kLanes))));
-        Fill(world, list.batches[i], now, settings, findings);
+        Fill(world, list.batches[i], now, settings, hasCrowds, findings);
     }
 }
 
@@ -122,10 +138,11 @@ void FindWorstJoints(const JointStore& joints, std::span<const WorkerFindings> w
 
 class RowFiller {
 public:
-    RowFiller(WorldState& world, SolverLayout& layout, const Effort& effort, float impulseScale)
-        : world_(world), layout_(layout), joints_(effort.joints) {
+    RowFiller(WorldState& world, SolverLayout& layout, const Effort& effort, float impulseScale, bool hasCrowds)
+        : world_(world), layout_(layout), hasCrowds_(hasCrowds), joints_(effort.joints) {
         contacts_.impulseScale = impulseScale * effort.impulseScale;
         contacts_.restitutionSpeed = world.settings.restitutionSpeed;
+        contacts_.maxPushSpeed = world.settings.contactPushSpeed;
         contacts_.massOverrides = world.pairs.massOverrides.data();
     }
     void FillGroup(const SolverGroup& group, WorkerFindings& findings) const {
@@ -146,7 +163,7 @@ public:
 private:
     template <bool kFixedB>
     void FillBatches(ContactBatchList<kFixedB>& list, const BatchRange& range, WorkerFindings& findings) const {
-        FillRange(world_, list, range, contacts_, findings);
+        FillRange(world_, list, range, contacts_, hasCrowds_, findings);
     }
     template <class Batch>
     void FillBatches(BatchList<Batch>& list, const BatchRange& range, WorkerFindings& findings) const {
@@ -166,7 +183,8 @@ private:
     void FillSingle(ContactBatch<1, kFixedB>& batch, const ConstraintColoring::Color& overflow, size_t i,
                     WorkerFindings& findings) const {
         using Kind = ConstraintColoring::Kind;
-        Fill(world_, batch, std::span(&overflow.Of(kFixedB ? Kind::Fixed : Kind::Moving)[i], 1), contacts_, findings);
+        Fill(world_, batch, std::span(&overflow.Of(kFixedB ? Kind::Fixed : Kind::Moving)[i], 1), contacts_, hasCrowds_,
+             findings);
     }
     void FillSingle(JointBatch<1>& batch, const ConstraintColoring::Color&, size_t, WorkerFindings& findings) const {
         FillJoints(batch, findings);
@@ -175,6 +193,7 @@ private:
     WorldState& world_;
     SolverLayout& layout_;
     ContactPrepareSettings contacts_;
+    bool hasCrowds_;  // some bodies are crowded
     JointSolveSettings joints_;
 };
 
@@ -184,7 +203,8 @@ bool Prepare(WorldState& world, const StepState& step, SolverLayout& layout, std
              ScratchArena& scratch, StepReport& report) {
     if (world.coloring.Size() == 0) return false;
     const SolverGroup& large = layout.groups.front();
-    const RowFiller filler(world, layout, EffortOf(world, step, large), step.impulseScale);
+    const bool hasCrowds = !step.crowd.crowded.empty();
+    const RowFiller filler(world, layout, EffortOf(world, step, large), step.impulseScale, hasCrowds);
     const auto piecesOf = [&](uint32_t c) {
         uint32_t most = 0;
         for (const BatchRange& range : layout.colors[c].of) most = std::max(most, range.Count());
@@ -204,7 +224,7 @@ bool Prepare(WorldState& world, const StepState& step, SolverLayout& layout, std
     });
     world.jobs->ParallelFor(static_cast<uint32_t>(layout.groups.size()) - 1, 1, [&](JobRange range) {
         for (uint32_t g = range.begin + 1; g < range.end + 1; ++g)
-            RowFiller(world, layout, EffortOf(world, step, layout.groups[g]), step.impulseScale)
+            RowFiller(world, layout, EffortOf(world, step, layout.groups[g]), step.impulseScale, hasCrowds)
                 .FillGroup(layout.groups[g], workers[range.worker]);
     });
     filler.FillOverflow(world.coloring.At(ConstraintColoring::kOverflow), workers[0]);

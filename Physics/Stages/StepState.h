@@ -29,7 +29,7 @@ struct alignas(64) WorkerFindings {
     std::vector<uint64_t> pairs;             // FindPairs: keys of new or resting pairs
     uint32_t deepPairs = 0;                  // FindPairs: how many of these pairs overlap deeply
     std::vector<uint32_t> deepOverlaps;      // Collide: bodies that overlap another deeply, once for each such overlap
-    std::vector<uint32_t> crowdedOverlaps;   // Collide: crowded bodies that overlap another, likewise
+    std::vector<uint32_t> crowdedOverlaps;   // Collide: crowded bodies and their levels, once for each contact
     SurfaceContacts surface;                 // Collide: room to work in
     std::vector<uint32_t> surfacePlaces, surfaceLeft, surfaceTouched;  // Collide: likewise
     std::vector<MoreManifold> more;                                    // Collide: what has no place in its pair yet
@@ -80,7 +80,7 @@ struct CrowdState {
     // Collide: bodies, ascending, once for each deep overlap; empty if none has many.
     std::vector<uint32_t> deepOverlaps;
     std::vector<DispersingBody> dispersing;  // by body, ascending
-    std::vector<uint32_t> crowded;  // these, and those that have dispersed and still overlap something; repeated
+    std::vector<uint32_t> crowded;           // with their levels (CrowdContacts.cpp), ascending, repeated
 };
 
 size_t HeapBytes(const CrowdState& crowd);

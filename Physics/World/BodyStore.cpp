@@ -43,8 +43,24 @@ void BodyStore::MarkAwake(uint32_t index) {
     if (dynamics[index].awake) return;
     dynamics[index].awake = true;
     dynamics[index].slowSeconds = 0;
+    if (cold[index].placed) placed.push_back(index);
     cold[index].awakePlace = static_cast<uint32_t>(awake.size());
     awake.push_back(index);
+}
+
+void BodyStore::MarkPlaced(uint32_t index) {
+    if (cold[index].placed) return;
+    cold[index].placed = true;
+    placed.push_back(index);
+}
+
+void BodyStore::ForgetPlaced() {
+    for (const uint32_t body : placed) {
+        cold[body].placed &= dynamics[body].motion == MotionType::Dynamic && !dynamics[body].awake;
+    }
+    placed.clear();
+    constexpr size_t kMostKept = 64;  // places: levels are created once
+    if (placed.capacity() > kMostKept) placed = {};
 }
 
 void BodyStore::MarkAsleep(uint32_t index) {
@@ -158,10 +174,10 @@ size_t HeapBytes(const BodyCold& body) {
 }
 
 size_t HeapBytes(const BodyStore& store) {
-    const auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, awake, continuousCount, free,
+    const auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, continuousCount, free,
                  count] = store;
-    return HeapBytes(states, masses, poses, unconstrained, dynamics, cold, remainders, awake, continuousCount, free,
-                     count);
+    return HeapBytes(states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, continuousCount,
+                     free, count);
 }
 
 }  // namespace fulcrum

@@ -33,7 +33,7 @@ struct alignas(64) BodyDynamics {
     bool continuous : 1 = false;  // BodyCold::continuous is not Off
     bool filtered : 1 = false;    // it has a BodyFilter: ask FiltersAllow
     uint8_t layer : 5 = 0;
-    bool crowded : 1 = false;     // contacts push it at a limited speed, see CrowdContacts.h
+    uint8_t crowded : 2 = 0;      // level, see CrowdContacts.h; 0: it is not
     bool dispersing : 1 = false;  // see Crowd.h
 
     // Eight numbers each, for lanes.
@@ -133,9 +133,10 @@ struct BodyCold {
     uint32_t awakePlace = 0;        // index into BodyStore::awake
     uint32_t sleepingIsland = ~0u;  // index into SleepingIslands
     ContinuousCollision continuous = ContinuousCollision::Off;
-    bool exists = false;
-    bool removed = false;  // by the interface, its index not yet free
-    bool isSensor = false;
+    bool exists : 1 = false;
+    bool placed : 1 = false;   // see BodyStore::MarkPlaced
+    bool removed : 1 = false;  // by the interface, its index not yet free
+    bool isSensor : 1 = false;
 
     uint32_t MoreColliders() const {
         return children ? children->moreColliders : ~0u;
@@ -180,6 +181,7 @@ public:
     std::vector<BodyCold> cold;
     std::vector<Remainder> remainders;
 
+    std::vector<uint32_t> placed;  // see MarkPlaced, in no order
     std::vector<uint32_t> awake;   // dynamic bodies awake and kinematic ones that move, in no order
     uint32_t continuousCount = 0;  // bodies with continuous collision
 
@@ -206,6 +208,10 @@ public:
         return dynamics[index].motion == MotionType::Dynamic && !dynamics[index].frozen;
     }
     void MarkAwake(uint32_t index);
+    // A body that was created, or has got another pose, shape or filter: what it overlaps in the next step, or in that
+    // in which it wakes, it was put there.
+    void MarkPlaced(uint32_t index);
+    void ForgetPlaced();
     void MarkAsleep(uint32_t index);
 
     Quaternion RotationOf(uint32_t index) const {

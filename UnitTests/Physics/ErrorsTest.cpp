@@ -177,6 +177,7 @@ TEST(Errors, ABadSystemIsNotCreated) {
         {"contactFrequency", ErrorCode::NonFinite, [](S& s) { s.contactFrequency = kNaN; }},
         {"contactDampingRatio", ErrorCode::Negative, [](S& s) { s.contactDampingRatio = -1; }},
         {"contactPushSpeed", ErrorCode::NonPositive, [](S& s) { s.contactPushSpeed = 0; }},
+        {"depenetrationSpeed", ErrorCode::NonPositive, [](S& s) { s.depenetrationSpeed = 0; }},
         {"jointFrequency", ErrorCode::NonPositive, [](S& s) { s.jointFrequency = 0; }},
         {"jointDampingRatio", ErrorCode::Negative, [](S& s) { s.jointDampingRatio = -1; }},
         {"jointPushSpeed", ErrorCode::NonPositive, [](S& s) { s.jointPushSpeed = -1; }},

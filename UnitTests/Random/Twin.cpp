@@ -73,6 +73,7 @@ void AddSettings(const SystemSettings& settings, BitHash& hash) {
     hash.Add(settings.sleep.seconds);
     hash.Add(settings.speculativeDistance);
     hash.Add(settings.contactPushSpeed);
+    hash.Add(settings.depenetrationSpeed);
     hash.Add(settings.boundsMargin);
     for (const uint32_t layer : settings.layerCollides) hash.Add(layer);
 }

@@ -81,7 +81,7 @@ TEST(CoincidentBodies, TwoEqualBodiesSeparate) {
                     .shape = shape,
                     .rotation = turned && i ? RotationAbout(Vector3(0.6f, 0, 0.8f), 1.2) : Quaternion{}};
             });
-            burst.Run(2);
+            burst.Run(3);
             EXPECT_LT(burst.world.Report().largestPenetration, 0.01f) << ShapeTypeName(shape->Type());
             EXPECT_LT(burst.fastest, 5) << ShapeTypeName(shape->Type());
             const double moved = (burst.world.Bodies().GetCenterOfMass(burst.ids[0]) -

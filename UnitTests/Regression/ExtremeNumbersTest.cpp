@@ -256,6 +256,7 @@ TEST(ExtremeNumbers, SettingsOfWhichNothingSensibleCanFollowAreRefused) {
         {"speculativeDistance", [](SystemSettings& s) { s.speculativeDistance = 1001; }},
         {"contactDampingRatio", [](SystemSettings& s) { s.contactDampingRatio = 2e6f; }},
         {"contactPushSpeed", [](SystemSettings& s) { s.contactPushSpeed = 2e6f; }},
+        {"depenetrationSpeed", [](SystemSettings& s) { s.depenetrationSpeed = 2e6f; }},
         {"jointDampingRatio", [](SystemSettings& s) { s.jointDampingRatio = 2e6f; }},
         {"jointPushSpeed", [](SystemSettings& s) { s.jointPushSpeed = 2e6f; }},
     };

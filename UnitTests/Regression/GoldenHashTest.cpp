@@ -12,9 +12,9 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0xb28c2ff88bdffbb9ull;
+constexpr uint64_t kGoldenHash = 0x431bdf4b0628c8a5ull;
 constexpr uint64_t kGoldenHashOfJoints = 0x5400a6c9144a87dcull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x0dfdf3354d851a9dull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0x5b2959741c0a377bull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0x55a1f2f91fb4a789ull;
 
 std::string Hex(uint64_t number) {

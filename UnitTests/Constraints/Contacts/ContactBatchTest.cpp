@@ -14,16 +14,10 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr ContactPrepareSettings kPrepare{1.0f, 0.5f};
+constexpr ContactPrepareSettings kPrepare{1.0f, 0.5f, 3.0f};
 // Hard rows: nothing is pushed. Friction is solved in each pass.
-constexpr ContactSolveSettings kSolve{.inverseDt = 240.0f,
-                                      .elapsed = 0,
-                                      .pushRate = 0,
-                                      .massScale = 1,
-                                      .impulseScale = 0,
-                                      .maxPushSpeed = 3,
-                                      .slop = 0,
-                                      .relaxes = false};
+constexpr ContactSolveSettings kSolve{
+    .inverseDt = 240.0f, .elapsed = 0, .pushRate = 0, .massScale = 1, .impulseScale = 0, .slop = 0, .relaxes = false};
 
 // One contact, row by row: friction along two tangents and about the normal first, then the points.
 template <BodySide kSideB>
@@ -307,7 +301,7 @@ TEST(ContactSolveSettings, SoftenIsTheSoftConstraintOfTheSpring) {
     const double f = 60, zeta = 10, h = 1.0 / 240, w = 2 * M_PI * f, k = w * w, c = 2 * zeta * w;
     const double gamma = 1 / (h * (c + h * k)), beta = h * k / (c + h * k);
     ContactSolveSettings settings = kSolve;
-    settings.Soften(60, 10, 1.0f / 240);
+    settings.Soften(60, 10, 1.0f / 240, 3);
     EXPECT_NEAR(settings.massScale, 1 / (1 + gamma), 1e-6);
     EXPECT_NEAR(settings.impulseScale, gamma / (1 + gamma), 1e-6);
     EXPECT_NEAR(settings.pushRate, beta / h, 1e-4);

@@ -26,15 +26,10 @@ RandomContacts Solved(uint32_t seed, bool surfacesMove) {
     if (surfacesMove) MoveSurfaces(contacts, seed);
     BodyState* states = contacts.states.data();
     for (uint32_t first = 0; first < kContacts; first += N) {
-        auto batch = PrepareBatch<N, kFixedB>(contacts, first, {0.9f, 0.5f});
-        ContactSolveSettings settings{.inverseDt = 240.0f,
-                                      .elapsed = 0,
-                                      .pushRate = 0,
-                                      .massScale = 0,
-                                      .impulseScale = 0,
-                                      .maxPushSpeed = 3,
-                                      .slop = 0.0005f};
-        settings.Soften(60, 10, 1.0f / 240);
+        auto batch = PrepareBatch<N, kFixedB>(contacts, first, {0.9f, 0.5f, 3.0f});
+        ContactSolveSettings settings{
+            .inverseDt = 240.0f, .elapsed = 0, .pushRate = 0, .massScale = 0, .impulseScale = 0, .slop = 0.0005f};
+        settings.Soften(60, 10, 1.0f / 240, 3);
         WarmStartContacts(batch, states);
         for (int substep = 1; substep <= 2; ++substep) {
             settings.elapsed = static_cast<float>(substep) / 240.0f;

@@ -132,7 +132,7 @@ inline std::span<const JointCase> AllJointCases() {
 inline JointSolveSettings DefaultJointSettings() {
     constexpr float kSubstep = 1.0f / 240;
     ContactSolveSettings soft{};
-    soft.Soften(60, 2, kSubstep);
+    soft.Soften(60, 2, kSubstep, 3);
     JointSolveSettings settings{};
     settings.dt = 4 * kSubstep;
     settings.substepDt = kSubstep;

@@ -1,0 +1,154 @@
+// Bodies that are created, placed or grown in each other come apart at depenetrationSpeed, and keep no speed of that.
+// They left at up to 20 m/s: the pushes of many contacts add up, and one relaxing pass leaves much of that in the
+// velocities.
+#include <Fulcrum/UnitTests/Support/TestWorld.h>
+
+#include <algorithm>
+#include <tuple>
+
+namespace fulcrum::testing {
+namespace {
+
+// (substeps, the part of the size by which bodies overlap)
+class CreatedOverlap : public ::testing::TestWithParam<std::tuple<int, float>> {
+protected:
+    int Substeps() const { return std::get<0>(GetParam()); }
+    float Part() const { return std::get<1>(GetParam()); }
+    SystemSettings Settings(bool hasGravity) const {
+        SystemSettings settings;
+        settings.solver.substeps = Substeps();
+        if (!hasGravity) settings.gravity.setZero();
+        return settings;
+    }
+};
+
+struct Result {
+    double fastest = 0;  // m/s, of all bodies in all steps
+    double left = 0;     // m of overlap at the end
+};
+
+Result RunFor(TestWorld& world, std::span<const BodyId> ids, double seconds) {
+    Result result;
+    for (int i = 0; i < static_cast<int>(seconds / kStep); ++i) {
+        world.Step();
+        for (const BodyId id : ids) result.fastest = std::max<double>(result.fastest, Length(world.VelocityOf(id)));
+    }
+    result.left = world.Report().largestPenetration;
+    return result;
+}
+
+TEST_P(CreatedOverlap, OfTwoBodiesInSpaceLeavesNoSpeed) {
+    for (const ShapePtr& shape : {SphereOf(0.5f), CubeOf(0.5f), CapsuleOf(0.5f, 0.3f)}) {
+        TestWorld world(Settings(false));
+        const float size = 2 * shape->InnerRadius();
+        const BodyId ids[] = {world.Add({.shape = shape}),
+                              world.Add({.shape = shape, .position = {(1 - Part()) * size, 0.01, 0.02}})};
+        const Result result = RunFor(world, ids, 3);
+        EXPECT_LT(result.fastest, 0.1) << ShapeTypeName(shape->Type());
+        EXPECT_LT(result.left, 0.02 * size) << ShapeTypeName(shape->Type());
+    }
+}
+
+TEST_P(CreatedOverlap, OfAStackOnAFloorLeavesLittleSpeed) {
+    TestWorld world(Settings(true));
+    world.AddFloor();
+    std::vector<BodyId> ids;
+    const float height = 1 - 0.9f * Part();
+    for (int i = 0; i < 4; ++i)
+        ids.push_back(world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5 + double{height} * i, 0}}));
+    const Result result = RunFor(world, ids, 6);
+    if (Part() <= 0.5f) EXPECT_LT(result.fastest, 0.6);
+    else EXPECT_LT(result.fastest, 5);  // what was in one place falls down beside it
+    EXPECT_LT(result.left, 0.02);
+}
+
+TEST_P(CreatedOverlap, OfAPyramidLeavesLittleSpeed) {
+    if (Part() > 0.5f) return;  // a heap in one place disperses
+    for (const bool hasGravity : {false, true}) {
+        TestWorld world(Settings(hasGravity));
+        if (hasGravity) world.AddFloor();
+        std::vector<BodyId> ids;
+        const double size = 1 - 0.9 * double{Part()};
+        for (int i = 0; i < 8; ++i)
+            for (int j = 0; j < 8 - i; ++j)
+                ids.push_back(
+                    world.Add({.shape = CubeOf(0.5f), .position = {size * (j + 0.5 * i), 0.5 + size * i, 0}}));
+        const Result result = RunFor(world, ids, 8);
+        EXPECT_LT(result.fastest, hasGravity ? 2.5 : 1.5);
+        EXPECT_LT(result.left, Substeps() == 1 ? 0.08 : 0.02);  // what its weight presses in
+    }
+}
+
+// All points are pushed as fast, however deep each is: what comes out tilted falls back onto the floor from there.
+TEST_P(CreatedOverlap, WithAFloorLeavesLittleSpeed) {
+    TestWorld world(Settings(true));
+    world.AddFloor();
+    const BodyId id = world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5 - double{Part()} * 0.9, 0}});
+    const Result result = RunFor(world, {&id, 1}, 4);
+    EXPECT_LT(result.fastest, 0.7);
+    EXPECT_NEAR(world.PositionOf(id).y(), 0.5, 0.01);
+}
+
+// What rests is woken by a body that is put into it, and by one that grows.
+TEST_P(CreatedOverlap, OfBodiesThatArePlacedOrGrowLeavesLittleSpeed) {
+    for (const bool grows : {false, true}) {
+        TestWorld world(Settings(true));
+        world.AddFloor();
+        const BodyId ids[] = {world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5, 0}}),
+                              world.Add({.shape = CubeOf(0.25f), .position = {grows ? 0.76 : 10, 0.25, 0}})};
+        world.Steps(120);
+        if (grows) {
+            ASSERT_TRUE(world.Bodies().SetShape(ids[1], BoxOf(0.25f + 0.5f * Part(), 0.25f, 0.25f)));
+        } else {
+            ASSERT_TRUE(world.Bodies().SetPose(ids[1], {0.75 - 0.5 * double{Part()}, 0.25, 0}, {}));
+        }
+        const Result result = RunFor(world, ids, 4);
+        EXPECT_LT(result.fastest, 0.8) << grows;
+        EXPECT_LT(result.left, 0.01) << grows;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Efforts, CreatedOverlap,
+                         ::testing::Combine(::testing::Values(1, 4, 16, 64), ::testing::Values(0.25f, 0.5f, 1.0f)));
+
+// What has no room is held by its container, and does not move about in it.
+TEST(CreatedOverlaps, WithoutRoomStayInside) {
+    for (const int substeps : {1, 4, 16}) {
+        SystemSettings settings;
+        settings.solver.substeps = substeps;
+        TestWorld world(settings);
+        const float half = 1.8f, thick = 0.25f, outer = half + 2 * thick;
+        for (int axis = 0; axis < 3; ++axis)
+            for (const int side : {-1, 1}) {
+                Vector3 size(outer, outer, outer);
+                size[axis] = thick;
+                Position at(Position::Zero());
+                at[axis] = side * double{half + thick};
+                world.Add({.shape = BoxOf(size.x(), size.y(), size.z()), .motion = MotionType::Static, .position = at});
+            }
+        std::vector<BodyId> ids;
+        for (int i = 0; i < 64; ++i)
+            ids.push_back(
+                world.Add({.shape = SphereOf(0.5f),
+                           .position = {-1.2 + 0.8 * (i % 4), -1.2 + 0.8 * (i / 4 % 4), -1.2 + 0.8 * (i / 16)}}));
+        RunFor(world, ids, 10);
+        for (const BodyId id : ids) EXPECT_LT(world.PositionOf(id).cwiseAbs().maxCoeff(), half) << substeps;
+        EXPECT_LT(RunFor(world, ids, 1).fastest, 0.5) << substeps;
+    }
+}
+
+// The speed is a setting.
+TEST(CreatedOverlaps, ComeApartAtTheSpeedThatIsSet) {
+    for (const float speed : {0.1f, 0.5f, 2.0f}) {
+        SystemSettings settings = NoGravity();
+        settings.depenetrationSpeed = speed;
+        TestWorld world(settings);
+        world.Add({.shape = SphereOf(0.5f)});
+        const BodyId other = world.Add({.shape = SphereOf(0.5f), .position = {0.4, 0, 0}});
+        world.Steps(12);
+        EXPECT_NEAR(world.PositionOf(other).x(), 0.4 + 0.5 * double{speed} * 12 * kStep, 0.03 * double{speed});
+    }
+}
+
+}  // namespace
+}  // namespace fulcrum::testing
