@@ -77,17 +77,14 @@ struct ContactBatch {
     Real maxPushSpeed;  // m/s: the fastest that overlaps are pushed apart
 
     // Only where `bounces`.
-    Real restitution;              // 0..1
-    Real bounceSpeed[kPoints];     // m/s that the point must leave with; 0: none
-    Real largestImpulse[kPoints];  // N s over the substeps: the point was hit where it is positive
-    Real closing;                  // m/s2 that gravity and forces press the bodies together by, along the normal
-    Real work;  // J that the normal impulses of the step have done on the bodies: where negative, what a bounce may
-                // give back
+    Real restitution;   // 0..1
+    Real closing;       // m/s2 that gravity and forces press the bodies together by, along the normal
+    Real acceleration;  // m/s2 of gravity and forces, of the body that has the larger one
 };
 
 struct ContactPrepareSettings {
     float impulseScale;                           // dt of this substep / dt of the last: scales the warm start
-    float restitutionSpeed;                       // m/s
+    float restitutionSpeed;                       // m/s, see BounceContacts
     float maxPushSpeed;                           // m/s
     const MassOverride* massOverrides = nullptr;  // by record, of those with kMassOverride; null where none has one
 };
@@ -105,6 +102,10 @@ struct ContactSolveSettings {
     float mostStiffer = 0;  // 0..1: but never by more than this
     float slop;             // m: overlap that is left alone
     bool relaxes = true;    // relaxing passes follow, which friction is left to
+    // Bounces, see BounceContacts:
+    float restitutionSpeed = 0;      // m/s: slower impacts do not bounce
+    float* unconstrained = nullptr;  // of all bodies, eight floats each: velocities without what the next substep's
+                                     // warm start repeats; null where there is none
     // Position passes, see CorrectContacts:
     float baumgarte = 0;       // 0..1: the part of an overlap that a pass corrects
     float mostCorrection = 0;  // m, by a pass
@@ -123,11 +124,6 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
 // Applies the impulses of the last step.
 template <int N, bool kFixedB>
 void WarmStartContacts(ContactBatch<N, kFixedB>& batch, BodyState* states);
-
-// Where bodies start a substep with the impulses of the last one, notes what those of the batch have done. `states`
-// have their velocities now, `freeRows` the same without these impulses, eight floats a body.
-template <int N, bool kFixedB>
-void NoteCarriedWork(ContactBatch<N, kFixedB>& batch, BodyState* states, const float* freeRows, float elapsed);
 
 template <int N, bool kFixedB>
 void SolveContactVelocities(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
@@ -150,16 +146,6 @@ void CorrectContacts(const ContactBatch<N, kFixedB>& batch, BodyState* states, c
 // BodyState::nearFixed where the second bodies are fixed.
 template <int N, bool kFixedB>
 void PullContacts(const ContactBatch<N, kFixedB>& batch, BodyState* pseudo, const ContactSolveSettings& settings);
-
-// Notes what impulses have done against gravity and forces, where bodies have just moved with them for a substep of `h`
-// seconds.
-template <int N, bool kFixedB>
-void NoteLift(ContactBatch<N, kFixedB>& batch, float h);
-
-// Makes the points that were hit leave with their bounce speed, at the end of a step of `elapsed` seconds; but with no
-// more energy than the contact has taken.
-template <int N, bool kFixedB>
-void RestituteContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, float elapsed);
 
 // Writes the impulses back to the records, divided by `impulseScale`.
 template <int N, bool kFixedB>

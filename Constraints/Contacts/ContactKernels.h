@@ -171,13 +171,6 @@ FULCRUM_FORCE_INLINE NormalImpulses<Wide<N>> TotalOf(const ContactBatch<N, kFixe
     return total;
 }
 
-// Notes the work of impulses that changed the motion from one to the other: that of its mean.
-template <int N, bool kFixedB>
-FULCRUM_FORCE_INLINE void NoteWork(ContactBatch<N, kFixedB>& batch, const NormalImpulses<Wide<N>>& impulses,
-                                   const NormalMotion<Wide<N>>& before, const NormalMotion<Wide<N>>& after) {
-    batch.work += Wide<N>(0.5f) * (WorkOf(impulses, before) + WorkOf(impulses, after));
-}
-
 // Index into `response` of the pair i < j.
 constexpr int PairIndex(int i, int j) { return i == 0 ? j - 1 : i + j; }
 

@@ -8,12 +8,12 @@ namespace fulcrum::contacts {
 
 // The friction rows: impulses first clamped to the cone's cross-section (as a vector, so that no heading is preferred),
 // then the torque. limit: N s, friction times the sum of the normal impulses. Finds the totals of t1, t2 and twist, and
-// by how much they change.
+// by how much they change from `total`.
 template <int N, bool kFixedB>
-FULCRUM_FORCE_INLINE void SolveFriction(const ContactBatch<N, kFixedB>& batch, Wide<N> limit, Wide<N> v1, Wide<N> v2,
-                                        Wide<N> wn, Wide<N> (&solved)[3], Wide<N> (&change)[3]) {
+FULCRUM_FORCE_INLINE void SolveFriction(const ContactBatch<N, kFixedB>& batch, const Wide<N> (&total)[3], Wide<N> limit,
+                                        Wide<N> v1, Wide<N> v2, Wide<N> wn, Wide<N> (&solved)[3],
+                                        Wide<N> (&change)[3]) {
     using Real = Wide<N>;
-    const Real* total = batch.frictionImpulse;
     const Real* inverse = batch.frictionInverse;
     const Real* response = batch.frictionResponse;
     const Real step1 = -inverse[0] * v1;
@@ -39,13 +39,43 @@ FULCRUM_FORCE_INLINE Real MoveBy(Real velocity, Real surface) {
     return Select(surface == Real(0.0f), velocity, velocity + surface);
 }
 
-// What restitution asks for: which points were hit, and the work of these impulses.
+// The velocities that bodies would have without what constraints did to them in this substep, impacts apart;
+// those of `solved` where the settings have none.
 template <int N, bool kFixedB>
-void NoteHits(ContactBatch<N, kFixedB>& batch, const NormalImpulses<Wide<N>>& changes,
-              const NormalMotion<Wide<N>>& before, const Twists<N, kFixedB>& after, float elapsed) {
-    for (int i = 0; i < batch.pointCount; ++i)
-        batch.largestImpulse[i] = Max(batch.largestImpulse[i], batch.rows[i].impulse);
-    NoteWork(batch, changes, before, NormalMotionOf(batch, RelativeTwist<BodyRow::Velocity>(batch, after, elapsed)));
+FULCRUM_FORCE_INLINE void GatherFree(const ContactBatch<N, kFixedB>& batch, const ContactSolveSettings& settings,
+                                     const Twists<N, kFixedB>& solved, Twists<N, kFixedB>& free) {
+    free = solved;
+    if (!settings.unconstrained) return;
+    const auto gather = [&](const uint32_t(&bodies)[N], float*(&rows)[N], Wide<N>(&row)[8]) {
+        for (int i = 0; i < N; ++i) rows[i] = settings.unconstrained + 8 * size_t(bodies[i]);
+        GatherRows<N>(reinterpret_cast<const float* const(&)[N]>(rows), row);
+    };
+    gather(batch.bodyA, free.rowsA, free.a);
+    if constexpr (!kFixedB) gather(batch.sideB.body, free.rowsB, free.b);
+}
+template <int N, bool kFixedB>
+FULCRUM_FORCE_INLINE void ScatterFree(const ContactBatch<N, kFixedB>& batch, const ContactSolveSettings& settings,
+                                      const Twists<N, kFixedB>& free) {
+    if (settings.unconstrained) Scatter(batch, free);
+}
+
+// m/s, of an impact: v^2 = u^2 + 2 a gap, with u the approach before the gravity of a substep of h seconds, and a what
+// presses the bodies together.
+template <int N, bool kFixedB>
+FULCRUM_FORCE_INLINE Wide<N> ImpactSpeed(const ContactBatch<N, kFixedB>& batch, const Wide<N>& approach,
+                                         const Wide<N>& gap, const Wide<N>& h) {
+    using Real = Wide<N>;
+    const Real before = Max(approach - batch.closing * h, Real(0.0f));
+    return Sqrt(Max(before * before + Real(2.0f) * batch.closing * gap, Real(0.0f)));
+}
+// m/s: slower impacts do not bounce. What gravity presses together comes to rest; what only touches meanwhile sees a
+// few substeps of gravity at most.
+template <int N, bool kFixedB>
+FULCRUM_FORCE_INLINE Wide<N> SlowestImpact(const ContactBatch<N, kFixedB>& batch,
+                                           const ContactSolveSettings& settings) {
+    using Real = Wide<N>;
+    const Real slowest(settings.restitutionSpeed), few(4.0f / settings.inverseDt);
+    return Select(batch.closing > Real(0.0f), slowest, Min(slowest, few * batch.acceleration));
 }
 
 // What a pass over velocities does. With relaxing passes friction is theirs alone: a friction row that sees the speeds
@@ -107,11 +137,31 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
     // overlap are pushed apart, softly.
     Real speed[ContactRecord::kMaxPoints], total[ContactRecord::kMaxPoints];
     [[maybe_unused]] Real stiffer[ContactRecord::kMaxPoints];
+    // What bounces must come with all its speed: rows stop no impact, and in relaxing passes nothing before its gap has
+    // closed.
+    [[maybe_unused]] WideMask<N> bounces[ContactRecord::kMaxPoints];
+    if constexpr (kRare)
+        if (batch.bounces) {
+            Twists<N, kFixedB> free;
+            GatherFree(batch, settings, twists, free);
+            const NormalMotion<Real> own =
+                NormalMotionOf(batch, RelativeTwist<BodyRow::Velocity>(batch, free, settings.elapsed));
+            const Real h(1.0f / settings.inverseDt), slowest = SlowestImpact(batch, settings);
+            for (int i = 0; i < batch.pointCount; ++i) {
+                const auto& row = batch.rows[i];
+                const Real gap = Max(row.separation, zero);
+                bounces[i] = ImpactSpeed(batch, Max(-MotionOf(row, own), zero), gap, h) > slowest;
+                if constexpr (kPass == Pass::Relax) bounces[i] = bounces[i] | (row.separation > zero);
+                bounces[i] = bounces[i] & (batch.restitution > zero);
+            }
+        }
     const auto findSpeeds = [&] {
         const Real inverseDt(settings.inverseDt), pushRate(settings.pushRate), fastest = -batch.maxPushSpeed;
         for (int i = 0; i < batch.pointCount; ++i) {
             const auto& row = batch.rows[i];
             speed[i] = MotionOf(row, motion) + Max(row.separation, zero) * inverseDt;
+            if constexpr (kRare)
+                if (batch.bounces) speed[i] = Select(bounces[i], Max(speed[i], zero), speed[i]);
             if constexpr (kPass != Pass::Relax) {
                 // What approaches in spite of all is pushed faster by as much: in a pile that is hit hard one pass
                 // stops no body for good.
@@ -149,7 +199,7 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
                 wn = MoveBy(wn, surface.spin);
             }
         Real solved[3];
-        SolveFriction<N, kFixedB>(batch, batch.friction * sum, v1, v2, wn, solved, friction);
+        SolveFriction<N, kFixedB>(batch, batch.frictionImpulse, batch.friction * sum, v1, v2, wn, solved, friction);
         for (int k = 0; k < 3; ++k) {
             batch.frictionImpulse[k] = where(solved[k], batch.frictionImpulse[k]);
             motion.linear = where(motion.linear + batch.coupling[0][k] * friction[k], motion.linear);
@@ -173,30 +223,22 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
             torque[k] = where(torque[k] + batch.normal[k] * friction[2], torque[k]);
         }
     ApplyToBoth<N, kFixedB>(batch, twists, force, torque);
-    if constexpr (kRare)
-        if (batch.bounces) NoteHits(batch, changes, motion, twists, settings.elapsed);
     Scatter(batch, twists);
 }
 
-template <bool kBounces, int N, bool kFixedB>
+template <int N, bool kFixedB>
 FULCRUM_FORCE_INLINE void WarmStartRows(ContactBatch<N, kFixedB>& batch, BodyState* states) {
     Twists<N, kFixedB> twists;
     Gather<BodyRow::Velocity>(batch, states, twists);
     const NormalImpulses<Wide<N>> normal = TotalOf(batch);
-    const auto motion = [&] { return NormalMotionOf(batch, RelativeTwist<BodyRow::Velocity>(batch, twists, 0)); };
-    [[maybe_unused]] NormalMotion<Wide<N>> before;
-    if constexpr (kBounces) before = motion();
     const auto* f = batch.frictionImpulse;
     ApplyToBoth<N, kFixedB>(batch, twists, batch.normal * normal.sum + batch.tangent1 * f[0] + batch.tangent2 * f[1],
                             NormalTorque(batch, normal.sumA, normal.sumB) + batch.normal * f[2]);
-    if constexpr (kBounces) NoteWork(batch, normal, before, motion());
     Scatter(batch, twists);
 }
 
 // Of batches that have restitution, or a surface velocity where both bodies move.
 template <Pass kPass, int N, bool kFixedB>
 void SolveRareRows(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
-template <int N, bool kFixedB>
-void WarmStartRareRows(ContactBatch<N, kFixedB>& batch, BodyState* states);
 
 }  // namespace fulcrum::contacts

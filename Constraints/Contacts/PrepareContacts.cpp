@@ -1,5 +1,4 @@
 #include <Fulcrum/Constraints/Contacts/ContactKernels.h>
-#include <Fulcrum/Constraints/Restitution.h>
 
 #include <limits>
 
@@ -115,29 +114,27 @@ void PrepareBounces(ContactBatch<N, kFixedB>& batch, Wide<N> restitution, const 
     const Real vn = Dot<Real>(relative.linear, batch.normal);
     const Real w1 = Dot<Real>(relative.angular, batch.tangent1), w2 = Dot<Real>(relative.angular, batch.tangent2);
     // How fast the gap closes ever faster: minus the relative acceleration along n.
-    alignas(64) float differences[3][N];
-    for (int i = 0; i < N; ++i) {
-        const BodyPose& a = bodies.poses[batch.bodyA[i]];
-        const BodyPose& b = bodies.poses[bodyB[i]];
-        for (int k = 0; k < 3; ++k) differences[k][i] = a.acceleration[k] - b.acceleration[k];
-    }
-    const Vec3<Real> acceleration(Real::Load(differences[0]), Real::Load(differences[1]), Real::Load(differences[2]));
-    const Real closing = batch.closing = Dot<Real>(acceleration, batch.normal);
+    alignas(64) float accelerations[6][N];
+    for (int i = 0; i < N; ++i)
+        for (int k = 0; k < 3; ++k) {
+            accelerations[k][i] = bodies.poses[batch.bodyA[i]].acceleration[k];
+            accelerations[3 + k][i] = bodies.poses[bodyB[i]].acceleration[k];
+        }
+    const auto load = [&](int k) {
+        return Vec3<Real>(Real::Load(accelerations[k]), Real::Load(accelerations[k + 1]),
+                          Real::Load(accelerations[k + 2]));
+    };
+    const Vec3<Real> a = load(0), b = load(3);
+    batch.closing = Dot<Real>(Vec3<Real>(a - b), batch.normal);
+    batch.acceleration = Sqrt(Max(Dot<Real>(a, a), Dot<Real>(b, b)));
     batch.restitution = restitution;
-    batch.work = Real(0.0f);
     Real left(0.0f);
     for (int i = 0; i < batch.pointCount; ++i) {
         auto& row = batch.rows[i];
-        const Real approach = vn + row.b * w1 - row.a * w2;
-        // Speed at the time of impact, v^2 = v0^2 + 2 a s: so that restitution 1 neither gains nor loses energy.
-        const Real gap = Max(row.startSeparation, Real(0.0f));
-        const Real speed = Sqrt(Max(approach * approach + Real(2.0f) * closing * gap, Real(0.0f)));
-        batch.bounceSpeed[i] =
-            Select(approach < Real(0.0f), BounceSpeed(restitution, speed, settings.restitutionSpeed), Real(0.0f));
-        batch.largestImpulse[i] = Real(0.0f);
+        const Real parting = vn + row.b * w1 - row.a * w2;
         // What has bounced off carries no load: its last impulses would throw it off again, and not all of that would
         // be taken back.
-        const auto parts = (restitution > Real(0.0f)) & (approach > Real(settings.restitutionSpeed));
+        const auto parts = (restitution > Real(0.0f)) & (parting > Real(settings.restitutionSpeed));
         row.impulse = Select(parts, Real(0.0f), row.impulse);
         left += row.impulse;
     }
@@ -228,6 +225,7 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
     // Points, halfway between the surfaces, and their center.
     Vec3<Real> points[ContactRecord::kMaxPoints];
     Vec3<Real> center(zero, zero, zero);
+    Real gaps = zero;
     for (int i = 0; i < batch.pointCount; ++i) {
         Real p[8];
         GatherRecordRow<N>(batch.contact, records, Record::kPoints + i, p);
@@ -239,13 +237,17 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
         batch.rows[i].startSeparation = batch.rows[i].separation = Select(used, separation, zero);
         batch.rows[i].impulse = Select(used, impulses[Record::kNormalImpulses + i] * Real(settings.impulseScale), zero);
         for (int k = 0; k < 3; ++k) center[k] += Select(used, points[i][k], zero);
+        gaps += Select(used, Max(separation, zero), zero);
     }
-    center = center * (Real(1.0f) / Max(pointCount, Real(1.0f)));
-    batch.armA = center;
+    const Real perPoint = Real(1.0f) / Max(pointCount, Real(1.0f));
+    center = center * perPoint;
+    // An impact is where the gap has closed: on both surfaces.
+    const Vec3<Real> toSurface = n * Select(head[Record::kRestitution] > zero, gaps * perPoint * Real(0.5f), zero);
+    batch.armA = center - toSurface;
 
     Responses<Real> responses;
     responses.Add(batch.inverseA, batch.armA, n, t1, t2);
-    const Vec3<Real> armB = center - between;
+    const Vec3<Real> armB = center + toSurface - between;
     if constexpr (kFixedB) {
         const float* rows[N];
         for (int i = 0; i < N; ++i) rows[i] = bodies.states[bodyB[i]].VelocityRow();

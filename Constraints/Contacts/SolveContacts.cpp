@@ -28,8 +28,7 @@ void ContactSolveSettings::Soften(float frequency, float dampingRatio, float h, 
 
 template <int N, bool kFixedB>
 void WarmStartContacts(ContactBatch<N, kFixedB>& batch, BodyState* states) {
-    if (batch.bounces) return WarmStartRareRows(batch, states);
-    WarmStartRows<false>(batch, states);
+    WarmStartRows(batch, states);
 }
 
 template <int N, bool kFixedB>

@@ -55,6 +55,7 @@ inline Effort EffortOf(const WorldState& world, const StepState& step, const Sol
     contacts.inverseDt = 1.0f / h;
     contacts.elapsed = 0;
     contacts.slop = s.penetrationSlop;
+    contacts.restitutionSpeed = s.restitutionSpeed;
     const float frequency = std::min(s.contactFrequency, stiffest);
     contacts.Soften(frequency, std::max(s.contactDampingRatio, LeastDampingRatio(frequency, h)), h, s.contactPushSpeed);
 

@@ -43,7 +43,7 @@ public:
         for (int i = 0; i < hit.pointCount; ++i) {
             slipsBefore_[i] = Slip(i);
             const float approach = Dot<float>(hit.normal, RelativeVelocity(i));
-            bounceSpeeds_[i] = BounceSpeed(hit.restitution, approach, world.settings.restitutionSpeed);
+            bounceSpeeds_[i] = BounceSpeed<float>(hit.restitution, approach, world.settings.restitutionSpeed);
             approaches_ |= approach > 0;
             normalResponses_[i] = Response(i, hit.normal);
         }

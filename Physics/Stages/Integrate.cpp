@@ -75,6 +75,11 @@ struct SubstepVelocity {
           own{velocity.First(), velocity.Second()} {
         if (again) carried = {own.linear - unconstrained.First(), own.angular - unconstrained.Second()};
     }
+    // Whether constraints have not changed the linear velocity in the last substep.
+    FULCRUM_FORCE_INLINE auto IsFree() const {
+        const Real zero(0.0f);
+        return (carried.linear.x() == zero) & (carried.linear.y() == zero) & (carried.linear.z() == zero);
+    }
     void Write(int count) {
         unconstrained.Set(own.linear, own.angular);
         unconstrained.WriteVectors(count);
@@ -82,6 +87,19 @@ struct SubstepVelocity {
         velocity.WriteVectors(count);  // limits of speeds set the marks of a body
     }
 };
+
+// Bodies that fly have moved by v h, with v of the end of the substep: the way is v h - a h^2 / 2. What lies on
+// something keeps to v h: contacts hold by velocities.
+template <class Real, class Mask>
+FULCRUM_FORCE_INLINE void CorrectFlight(BodyStore& bodies, const uint32_t (&index)[kBodies<Real>], int count,
+                                        const Mask& flies, const Vec3<Real>& acceleration, Real h) {
+    Rows<Real> displacement(index, [&](uint32_t body) { return bodies.states[body].PoseRow(); });
+    // What gets faster than anything moves is held to its largest speed, or frozen.
+    const Vec3<Real> gained = acceleration * h;
+    const auto isUsual = Dot<Real>(gained, gained) < Real(1e12f);
+    displacement.Set(displacement.First() - gained * (h * Real(0.5f)), displacement.Second());
+    displacement.Write(count, flies & isUsual);
+}
 
 // Velocity that a body has after h seconds of damping 1/s, per unit: exp(-damping h).
 float DampingFactor(float damping, float h) { return damping > 0 ? Exp(-damping * h) : 1.0f; }
@@ -92,6 +110,7 @@ void IntegrateVelocity(WorldState& world, uint32_t body, float h, bool again, Wo
     if (d.motion != MotionType::Dynamic) return;
     const float* a = bodies.poses[body].acceleration;
     SubstepVelocity<float> velocity(bodies, {body}, again);
+    if (again && velocity.IsFree()) CorrectFlight<float>(bodies, {body}, 1, true, Vector3(a[0], a[1], a[2]), h);
     Vector3 &v = velocity.own.linear, &w = velocity.own.angular;
     if (again && d.crowded) {
         v = NoFasterThan(v, velocity.unconstrained.First());
@@ -221,7 +240,17 @@ void AddPull(BodyStore& bodies, uint32_t body, const BodyState& pseudo, Twist<fl
     LimitLength(motion.angular, bodies.dynamics[body].maxAngularSpeed);
 }
 
-void IntegratePose(WorldState& world, uint32_t body, float h, const BodyState* pseudo, WorkerFindings& findings) {
+// Whether constraints have not changed the linear velocity in this substep.
+template <class Real>
+FULCRUM_FORCE_INLINE auto Flies(const BodyStore& bodies, const uint32_t (&index)[kBodies<Real>],
+                                const Vec3<Real>& velocity) {
+    const Rows<Real> unconstrained(index, [&](uint32_t body) { return bodies.unconstrained[body].row; });
+    const Vec3<Real> own = unconstrained.First();
+    return (own.x() == velocity.x()) & (own.y() == velocity.y()) & (own.z() == velocity.z());
+}
+
+void IntegratePose(WorldState& world, uint32_t body, float h, bool isLast, const BodyState* pseudo,
+                   WorkerFindings& findings) {
     const BodyDynamics& d = world.bodies.dynamics[body];
     if (d.motion != MotionType::Dynamic) return;
     LimitSolved(world, body, findings);
@@ -237,6 +266,9 @@ void IntegratePose(WorldState& world, uint32_t body, float h, const BodyState* p
     const bool isJointed = world.joints.HasAny(body);
     Rows<float> displacement({body}, [&](uint32_t) { return s.PoseRow(); });
     const Vector3 turn = Displace(displacement, motion, isJointed, h, 1);
+    const float* a = world.bodies.poses[body].acceleration;
+    if (isLast && Flies<float>(world.bodies, {body}, world.bodies.LinearVelocityOf(body)))
+        CorrectFlight<float>(world.bodies, {body}, 1, true, Vector3(a[0], a[1], a[2]), h);
     Vector3 w = world.bodies.AngularVelocityOf(body);
     if (!isJointed || !d.FeelsGyroscopicTorque(w)) return;
     TurnInertia(world.bodies, {body}, 1, true, turn, w, h);
@@ -265,13 +297,16 @@ bool IntegrateVelocitiesInLanes(WorldState& world, const Indices& index, int cou
     if (((linearDamping > zero) | (angularDamping > zero)).Any()) return false;
     SubstepVelocity<Lanes> velocity(bodies, index, again);
     const Rows<Lanes> pose(index, [&](uint32_t body) { return bodies.poses[body].Row(); });
-    velocity.own.linear += VectorAt<BodyPose::kAcceleration>(pose.at) * Lanes(h);
+    const Vec3<Lanes> acceleration = VectorAt<BodyPose::kAcceleration>(pose.at);
+    const auto flies = again ? velocity.IsFree() : zero > zero;
+    velocity.own.linear += acceleration * Lanes(h);
     if (!(IsWithin(velocity.own.linear, maxLinear) & IsWithin(velocity.own.angular, maxAngular)).All()) return false;
+    if (flies.Any()) CorrectFlight<Lanes>(bodies, index, count, flies, acceleration, Lanes(h));
     velocity.Write(count);
     return true;
 }
 
-bool IntegratePosesInLanes(WorldState& world, const Indices& index, int count, float h) {
+bool IntegratePosesInLanes(WorldState& world, const Indices& index, int count, float h, bool isLast) {
     BodyStore& bodies = world.bodies;
     alignas(64) float jointed[kLanes], gyroscopic[kLanes];
     for (int i = 0; i < kLanes; ++i) {
@@ -290,6 +325,13 @@ bool IntegratePosesInLanes(WorldState& world, const Indices& index, int count, f
     const auto isJointed = Lanes::Load(jointed) > Lanes(0.0f);
     const Vec3<Lanes> turn =
         Displace(displacement, Twist<Lanes>{velocity.First(), velocity.Second()}, isJointed, Lanes(h), count);
+    if (isLast) {
+        const auto flies = Flies<Lanes>(bodies, index, velocity.First());
+        if (flies.Any()) {
+            const Rows<Lanes> pose(index, [&](uint32_t body) { return bodies.poses[body].Row(); });
+            CorrectFlight<Lanes>(bodies, index, count, flies, VectorAt<BodyPose::kAcceleration>(pose.at), Lanes(h));
+        }
+    }
     Vec3<Lanes> w = velocity.Second();
     constexpr float kLeast = BodyDynamics::kLeastGyroscopicSpeed * BodyDynamics::kLeastGyroscopicSpeed;
     const auto feels = isJointed & (Lanes::Load(gyroscopic) > Lanes(0.0f)) & (Dot<Lanes>(w, w) > Lanes(kLeast));
@@ -324,12 +366,14 @@ void IntegrateVelocities(WorldState& world, std::span<const uint32_t> bodies, fl
         [&](uint32_t body) { IntegrateVelocity(world, body, h, again, findings); });
 }
 
-void IntegratePoses(WorldState& world, std::span<const uint32_t> bodies, float h, const BodyState* pseudo,
+void IntegratePoses(WorldState& world, std::span<const uint32_t> bodies, float h, bool isLast, const BodyState* pseudo,
                     WorkerFindings& findings) {
     VisitBodies(
         bodies,
-        [&](const Indices& index, int count) { return !pseudo && IntegratePosesInLanes(world, index, count, h); },
-        [&](uint32_t body) { IntegratePose(world, body, h, pseudo, findings); });
+        [&](const Indices& index, int count) {
+            return !pseudo && IntegratePosesInLanes(world, index, count, h, isLast);
+        },
+        [&](uint32_t body) { IntegratePose(world, body, h, isLast, pseudo, findings); });
 }
 
 }  // namespace fulcrum

@@ -12,9 +12,10 @@ void IntegrateVelocities(WorldState& world, std::span<const uint32_t> bodies, fl
                          WorkerFindings& findings);
 
 // Displacements, for h seconds, at the largest speeds at most; of jointed bodies the inertia and the gyroscopic torque,
-// too. pseudo: by body, what moves it besides its velocity (PullJoints), likewise at the largest speeds at most; or
-// null.
-void IntegratePoses(WorldState& world, std::span<const uint32_t> bodies, float h, const BodyState* pseudo,
+// too. Bodies that no constraint pushed move by v h - a h^2 / 2, which is exact; the next substep takes that off, or,
+// where isLast, this. pseudo: by body, what moves it besides its velocity (PullJoints), likewise at the largest speeds
+// at most; or null.
+void IntegratePoses(WorldState& world, std::span<const uint32_t> bodies, float h, bool isLast, const BodyState* pseudo,
                     WorkerFindings& findings);
 
 // The angular velocity after h seconds of gyroscopic torque, at the principal axes then reached: Euler's equations in

@@ -77,7 +77,6 @@ void Fill(WorldState& world, ContactBatch<N, kFixedB>& batch, std::span<const En
     if (unusable != 0) ForgetContacts(world, batch, unusable);
     if (hasCrowds) [[unlikely]]
         LimitPushes(world, bodyB, batch);
-    findings.bounces |= batch.bounces;
     NoteDeepest(batch, findings);
 }
 
@@ -199,9 +198,9 @@ private:
 
 }  // namespace
 
-bool Prepare(WorldState& world, const StepState& step, SolverLayout& layout, std::span<WorkerFindings> workers,
+void Prepare(WorldState& world, const StepState& step, SolverLayout& layout, std::span<WorkerFindings> workers,
              ScratchArena& scratch, StepReport& report) {
-    if (world.coloring.Size() == 0) return false;
+    if (world.coloring.Size() == 0) return;
     const SolverGroup& large = layout.groups.front();
     const bool hasCrowds = !step.crowd.crowded.empty();
     const RowFiller filler(world, layout, EffortOf(world, step, large), step.impulseScale, hasCrowds);
@@ -233,7 +232,6 @@ bool Prepare(WorldState& world, const StepState& step, SolverLayout& layout, std
     FindWorstJoints(world.joints, workers, report);
     report.colors = layout.colorCount;
     report.overflowConstraints = static_cast<uint32_t>(layout.OverflowCount());
-    return std::any_of(workers.begin(), workers.end(), [](const WorkerFindings& findings) { return findings.bounces; });
 }
 
 }  // namespace fulcrum

@@ -8,7 +8,6 @@
 // The warm start of every substep but the first costs nothing per constraint: the impulses of the last substep give
 // each body the same change of velocity again, and that is its velocity at the substep's end minus what it was without
 // constraints. Rows of contacts do not change within a step; joints add what the turning of their parts changes.
-#include <Fulcrum/Constraints/Contacts/PushWork.h>
 #include <Fulcrum/Jobs/Phases.h>
 #include <Fulcrum/Physics/Stages/Effort.h>
 #include <Fulcrum/Physics/Stages/Integrate.h>
@@ -26,7 +25,6 @@ constexpr uint32_t kBodiesPerBlock = 128;
 enum class Verb : uint8_t {
     IntegrateVelocities,
     WarmStart,
-    CarriedWork,
     FirstVelocities,
     Velocities,
     ClearPulls,
@@ -39,11 +37,6 @@ enum class Verb : uint8_t {
     FirstCorrection,
     Correction,
     Separations,
-    ClearPushWork,
-    AddPushWork,
-    SubtractPushWork,
-    Restitution,
-    RelaxJointsAfterRestitution,
     NextSubstep
 };
 
@@ -57,7 +50,7 @@ struct Phase {
 FULCRUM_FORCE_INLINE void Prefetch(const ContactBatch<kLanes, false>& batch) {
     using Batch = ContactBatch<kLanes, false>;
     const char* bytes = reinterpret_cast<const char*>(&batch);
-    for (size_t line = 0; line < offsetof(Batch, bounceSpeed); line += 64) __builtin_prefetch(bytes + line);
+    for (size_t line = 0; line < offsetof(Batch, restitution); line += 64) __builtin_prefetch(bytes + line);
 }
 template <class Batch>
 FULCRUM_FORCE_INLINE void Prefetch(const Batch&) {}
@@ -71,13 +64,7 @@ public:
     // pseudo: room for the pseudo-velocities of all bodies, zero; null where the group has no joints that are far
     // apart.
     StepSolver(WorldState& world, StepState& step, const Effort& effort, BodyState* pseudo)
-        : world_(world),
-          step_(step),
-          layout_(step.solver),
-          effort_(effort),
-          pseudo_(pseudo),
-          h_(effort.substepDt),
-          dt_(step.dt) {}
+        : world_(world), step_(step), layout_(step.solver), effort_(effort), pseudo_(pseudo), h_(effort.substepDt) {}
 
     // The large group: all workers, phase by phase.
     void RunTogether(std::span<const Phase> phases) {
@@ -135,7 +122,8 @@ private:
     }
 
     void RunBodies(Verb verb, uint8_t substep, std::span<const uint32_t> bodies, WorkerFindings& findings) {
-        if (verb == Verb::IntegratePoses) IntegratePoses(world_, bodies, h_, pseudo_, findings);
+        if (verb == Verb::IntegratePoses)
+            IntegratePoses(world_, bodies, h_, substep + 1 == effort_.solver.substeps, pseudo_, findings);
         else if (verb == Verb::IntegrateVelocities) IntegrateVelocities(world_, bodies, h_, substep > 0, findings);
         else
             for (const uint32_t body : bodies) pseudo_[body] = {};
@@ -174,10 +162,8 @@ private:
                 if (verb == Verb::FirstRelax) solve(true);
                 break;
             }
-            case Verb::Relax:
-            case Verb::RelaxJointsAfterRestitution: solve(true); break;
+            case Verb::Relax: solve(true); break;
             case Verb::IntegrateVelocities:
-            case Verb::CarriedWork:
             case Verb::ClearPulls:
             case Verb::FirstPull:
             case Verb::Pull:
@@ -185,10 +171,6 @@ private:
             case Verb::IntegratePoses:
             case Verb::FirstCorrection:
             case Verb::Correction:
-            case Verb::ClearPushWork:
-            case Verb::AddPushWork:
-            case Verb::SubtractPushWork:
-            case Verb::Restitution:
             case Verb::NextSubstep: break;
         }
     }
@@ -221,10 +203,6 @@ private:
         BodyState* states = world_.bodies.states.data();
         switch (verb) {
             case Verb::WarmStart: WarmStartContacts(batch, states); break;
-            case Verb::CarriedWork:
-                NoteCarriedWork(batch, states, world_.bodies.unconstrained.data()->row,
-                                ContactSettingsAt(substep, 0.5f).elapsed);
-                break;
             // Poses move with these velocities from the beginning of the substep to its end: they are those of its
             // middle.
             case Verb::FirstVelocities:
@@ -232,22 +210,14 @@ private:
             case Verb::FirstPull:
             case Verb::Pull:
             case Verb::StopPulls: PullContacts(batch, pseudo_, effort_.contacts); break;
-            case Verb::FirstRelax: NoteLift(batch, h_); [[fallthrough]];
+            case Verb::FirstRelax:
             case Verb::Relax: RelaxContacts(batch, states, ContactSettingsAt(substep, 1)); break;
             case Verb::FirstCorrection:
             case Verb::Correction: CorrectContacts(batch, states, ContactSettingsAt(substep, 1)); break;
-            case Verb::Separations:
-                NoteLift(batch, h_);
-                UpdateSeparations(batch, states, ContactSettingsAt(substep, 1));
-                break;
-            case Verb::ClearPushWork: ClearPushWork(batch, world_.bodies.unconstrained.data()->row); break;
-            case Verb::AddPushWork: AddPushWork(batch, world_.bodies.unconstrained.data()->row); break;
-            case Verb::SubtractPushWork: SubtractPushWork(batch, world_.bodies.unconstrained.data()->row); break;
-            case Verb::Restitution: RestituteContacts(batch, states, dt_); break;
+            case Verb::Separations: UpdateSeparations(batch, states, ContactSettingsAt(substep, 1)); break;
             case Verb::IntegrateVelocities:
             case Verb::ClearPulls:
             case Verb::IntegratePoses:
-            case Verb::RelaxJointsAfterRestitution:
             case Verb::NextSubstep: break;
         }
     }
@@ -264,27 +234,21 @@ private:
             case Verb::FirstPull:
             case Verb::Pull: PullJoints(batch, pseudo_, settings); break;
             case Verb::FirstRelax:
-            case Verb::Relax:
-            case Verb::RelaxJointsAfterRestitution: RelaxJoints(batch, world_.bodies.ForSolver(), settings); break;
+            case Verb::Relax: RelaxJoints(batch, world_.bodies.ForSolver(), settings); break;
             case Verb::FirstCorrection:
             case Verb::Correction: CorrectJoints(batch, world_.bodies.ForSolver(), settings); break;
             case Verb::Separations: UpdateJoints(batch, world_.bodies.ForSolver(), settings); break;
             case Verb::IntegrateVelocities:
-            case Verb::CarriedWork:
             case Verb::ClearPulls:
             case Verb::StopPulls:
             case Verb::IntegratePoses:
-            case Verb::ClearPushWork:
-            case Verb::AddPushWork:
-            case Verb::SubtractPushWork:
-            case Verb::Restitution:
             case Verb::NextSubstep: break;
         }
     }
 
     JointSolveSettings JointSettingsAt(Verb verb, uint8_t substep) const {
         JointSolveSettings settings = effort_.joints;
-        settings.elapsed = verb == Verb::RelaxJointsAfterRestitution ? dt_ : h_ * static_cast<float>(substep + 1);
+        settings.elapsed = h_ * static_cast<float>(substep + 1);
         settings.continues = verb == Verb::FirstVelocities && substep > 0 && !effort_.hasTrees;
         settings.firstPass =
             verb == Verb::FirstPull || verb == Verb::FirstCorrection ||
@@ -296,6 +260,7 @@ private:
     ContactSolveSettings ContactSettingsAt(uint8_t substep, float part) const {
         ContactSolveSettings settings = effort_.contacts;
         settings.elapsed = h_ * (static_cast<float>(substep) + part);
+        settings.unconstrained = world_.bodies.unconstrained.data()->row;
         return settings;
     }
 
@@ -304,7 +269,7 @@ private:
     SolverLayout& layout_;
     const Effort& effort_;
     BodyState* pseudo_;
-    float h_, dt_;  // s, of a substep and of the step
+    float h_;  // s, of a substep
 };
 
 // Passes over the pseudo-velocities of a group in which joints are far apart, in each substep.
@@ -313,7 +278,7 @@ constexpr int kPullIterations = 4;
 constexpr int kStopIterations = 2;
 
 // The solver loop as the sequence of its verbs. pulls: some joints are far apart.
-std::span<const Verb> LoopOf(const SolverSettings& settings, bool bounces, bool pulls, ScratchArena& scratch) {
+std::span<const Verb> LoopOf(const SolverSettings& settings, bool pulls, ScratchArena& scratch) {
     const size_t longest = static_cast<size_t>(settings.velocityIterations + settings.positionIterations +
                                                kPullIterations + kStopIterations + 8);
     std::span<Verb> verbs = scratch.Allocate<Verb>(longest * static_cast<size_t>(settings.substeps));
@@ -322,7 +287,6 @@ std::span<const Verb> LoopOf(const SolverSettings& settings, bool bounces, bool 
         if (substep > 0) verbs[n++] = Verb::NextSubstep;
         verbs[n++] = Verb::IntegrateVelocities;
         if (substep == 0) verbs[n++] = Verb::WarmStart;
-        else if (bounces) verbs[n++] = Verb::CarriedWork;
         for (int i = 0; i < settings.velocityIterations; ++i)
             verbs[n++] = i == 0 ? Verb::FirstVelocities : Verb::Velocities;
         if (pulls) {
@@ -410,18 +374,8 @@ void Solve(WorldState& world, StepState& step) {
     if (world.coloring.Size() == 0) return;
     const bool far =
         std::ranges::any_of(step.findings, [](const WorkerFindings& findings) { return findings.joints.far; });
-    RunVerbs(world, step, far, [&](const Effort& effort, bool pulls) {
-        return LoopOf(effort.solver, step.bounces, pulls, step.scratch);
-    });
-}
-
-void Restitution(WorldState& world, StepState& step) {
-    if (!step.bounces) return;
-    // A bounce tears at joints.
-    static constexpr Verb kVerbs[] = {Verb::ClearPushWork, Verb::AddPushWork, Verb::SubtractPushWork, Verb::Restitution,
-                                      Verb::RelaxJointsAfterRestitution};
-    const size_t count = step.solver.HasJoints() ? 5 : 4;
-    RunVerbs(world, step, false, [&](const Effort&, bool) { return std::span<const Verb>(kVerbs, count); });
+    RunVerbs(world, step, far,
+             [&](const Effort& effort, bool pulls) { return LoopOf(effort.solver, pulls, step.scratch); });
 }
 
 }  // namespace fulcrum

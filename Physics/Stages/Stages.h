@@ -1,4 +1,4 @@
-// The stages of a step; each is a file of its name beside this one, but for Restitution, which is in Solve.cpp.
+// The stages of a step; each is a file of its name beside this one.
 // Step.cpp has the list of them, in order, and what each is given. All run on the thread that steps and schedule their
 // ranges on the world's job system.
 #pragma once
@@ -39,15 +39,12 @@ void BuildIslands(const BodyStore& bodies, const ConstraintColoring& coloring, f
                   SolverLayout& layout, ScratchArena& scratch);
 
 // Reads records, poses, masses. Writes the rows of the batches; what types of joints carry from step to step; contacts
-// whose numbers are not finite lose their points. Returns whether some contact has restitution.
-bool Prepare(WorldState& world, const StepState& step, SolverLayout& layout, std::span<WorkerFindings> workers,
+// whose numbers are not finite lose their points.
+void Prepare(WorldState& world, const StepState& step, SolverLayout& layout, std::span<WorkerFindings> workers,
              ScratchArena& scratch, StepReport& report);
 
 // Substeps: integrates velocities, warm starts, iterates, integrates poses, position passes.
 void Solve(WorldState& world, StepState& step);
-
-// Bounces what was hit.
-void Restitution(WorldState& world, StepState& step);
 
 // Writes impulses to the records, displacements to the poses; moves bodies without contacts and joints; measures
 // slowness; breaks joints, which it lists. Where continuous collision or sensors ask for it, notes where bodies

@@ -40,12 +40,9 @@ constexpr Stage kStages[] = {
          BuildIslands(world.bodies, world.coloring, world.settings.exactJointLoad, world.joints, step.solver,
                       step.scratch);
      }},
-    {"Prepare",
-     [](WorldState& world, StepState& step) {
-         step.bounces = Prepare(world, step, step.solver, step.findings, step.scratch, step.report);
-     }},
+    {"Prepare", [](WorldState& world,
+                   StepState& step) { Prepare(world, step, step.solver, step.findings, step.scratch, step.report); }},
     {"Solve", Solve},
-    {"Restitution", Restitution},
     {"Store",
      [](WorldState& world, StepState& step) {
          step.sleepCandidates = Store(world, step, step.sweeps, step.broken, step.findings, step.report);
@@ -97,7 +94,6 @@ void BeginReport(WorldState& world, StepState& step) {
         f.contacts = f.points = f.kept = f.clamped = f.frozen = f.sleepCandidates = 0;
         f.deepest = 0;
         f.deepestPair = f.firstFrozen = ~0u;
-        f.bounces = false;
         f.joints = {};
     }
 }

@@ -7,12 +7,12 @@ namespace fulcrum {
 size_t HeapBytes(const WorkerFindings& findings) {
     const auto& [colliders, outsideFatBounds, pairs, deepPairs, deepOverlaps, crowdedOverlaps, surface, surfacePlaces,
                  surfaceLeft, surfaceTouched, more, sweepHits, sensorCandidates, sensorVisits, sensorTests, libccd,
-                 contacts, points, kept, deepest, deepestPair, clamped, frozen, firstFrozen, sleepCandidates, bounces,
-                 joints] = findings;
+                 contacts, points, kept, deepest, deepestPair, clamped, frozen, firstFrozen, sleepCandidates, joints] =
+        findings;
     return HeapBytes(colliders, outsideFatBounds, pairs, deepPairs, deepOverlaps, crowdedOverlaps, surface,
                      surfacePlaces, surfaceLeft, surfaceTouched, more, sweepHits, sensorCandidates, sensorVisits,
                      sensorTests, libccd, contacts, points, kept, deepest, deepestPair, clamped, frozen, firstFrozen,
-                     sleepCandidates, bounces, joints);
+                     sleepCandidates, joints);
 }
 
 size_t HeapBytes(const PairUpdates& updates) {
@@ -27,9 +27,9 @@ size_t HeapBytes(const CrowdState& crowd) {
 
 size_t HeapBytes(const StepState& step) {
     const auto& [dt, substepDt, impulseScale, lastSubstepDt, stiffnessDt, report, findings, scratch, pairs, crowd,
-                 began, seams, solver, bounces, broken, sleepCandidates, sweeps, sensing] = step;
+                 began, seams, solver, broken, sleepCandidates, sweeps, sensing] = step;
     return HeapBytes(dt, substepDt, impulseScale, lastSubstepDt, stiffnessDt, report, findings, scratch, pairs, crowd,
-                     began, seams, solver, bounces, broken, sleepCandidates, sweeps, sensing);
+                     began, seams, solver, broken, sleepCandidates, sweeps, sensing);
 }
 
 }  // namespace fulcrum

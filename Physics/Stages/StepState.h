@@ -44,7 +44,6 @@ struct alignas(64) WorkerFindings {
     uint32_t clamped = 0, frozen = 0;
     uint32_t firstFrozen = ~0u;
     uint32_t sleepCandidates = 0;  // bodies that have been slow for long enough
-    bool bounces = false;          // Prepare: some contact has restitution
     JointFindings joints;          // Prepare
 };
 
@@ -101,7 +100,6 @@ struct StepState {
     std::vector<uint32_t> began;  // Color: pairs that began to touch
     std::vector<uint32_t> seams;  // RemoveSeamContacts: pairs without their points, in the last step
     SolverLayout solver;
-    bool bounces = false;          // Prepare: some contact of this step has restitution
     std::vector<JointId> broken;   // Store: in the last step
     uint32_t sleepCandidates = 0;  // Store: bodies that have been slow for long enough
     SweepStore sweeps;

@@ -87,9 +87,14 @@ void MoveSolved(WorldState& world, Ending& ending, float dt) {
         ending.v = NoFasterThan(ending.v, VectorAt<BodyState::kLinear>(free));
         w = NoFasterThan(w, VectorAt<BodyState::kAngular>(free));
     }
+    // Impacts move bodies along the way that their speeds before and after them make, whatever limits and locks these
+    // are held to (BounceContacts.h).
+    Vector3 turn(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]);
+    LimitLength(ending.displacement, d.maxLinearSpeed * dt);
+    LimitLength(turn, d.maxAngularSpeed * dt);
+    if (d.lockedAxes != LockedAxes::None) d.Lock(ending.displacement, turn);
     const Quaternion before = rotation;
-    rotation =
-        Normalized(RotationFromVector(Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2])) * rotation);
+    rotation = Normalized(RotationFromVector(turn) * rotation);
     // With joints every substep has seen to that.
     if (!d.FeelsGyroscopicTorque(w) || world.joints.HasAny(body)) return;
     w = CarriedAlong(d, before, rotation, w);

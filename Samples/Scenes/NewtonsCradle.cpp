@@ -8,15 +8,11 @@ namespace {
 
 constexpr int kBalls = 5;
 constexpr double kRadius = 0.25, kRope = 2, kLift = 0.7;  // m, m, rad
-// All contacts of a step are solved at once, so that balls in contact would share an impact. With a gap of this, m,
-// each is hit by the one before it; after some impacts the gaps have closed.
-constexpr double kApart = 0.03;
-
-// Five balls that bounce without loss, each on a hinge above it; the first one is let go.
+// Five balls that touch and bounce without loss, each on a hinge above it; the first one is let go.
 void Build(SceneWorld& world) {
     const ShapePtr ball = world.SphereOf(static_cast<float>(kRadius));
     for (int i = 0; i < kBalls; ++i) {
-        const Position top((2 * kRadius + kApart) * i, 3, 0);
+        const Position top(2 * kRadius * i, 3, 0);
         const Position down = i == 0 ? Position(-kRope * Sin(kLift), -kRope * Cos(kLift), 0) : Position(0, -kRope, 0);
         const BodyId body = world.Add(
             {.shape = ball, .position = top + down, .mass = 10, .material = {.friction = 0, .restitution = 1}});

@@ -1,4 +1,5 @@
 // What is dropped bounces with the energy that its restitution leaves it.
+#include <Fulcrum/UnitTests/Support/RandomPoses.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
 #include <cmath>
@@ -146,6 +147,121 @@ TEST(Restitution, AFieldOfBallsKeepsItsEnergy) {
     }
     // As in the ten seconds above: 10 bounces of at most the slop each, of 4.9 m.
     EXPECT_LT(std::sqrt(squares / 1200) / expected, 10 * 0.0005 / 4.9);
+}
+
+constexpr int kEfforts[] = {1, 4, 16, 64};  // substeps
+
+// A ball that hits a row of equal ones hands all of its speed to the last, whether they touch or have gaps that it
+// crosses within a substep.
+TEST(Restitution, ARowOfBallsHandsTheSpeedOn) {
+    for (const int substeps : kEfforts)
+        for (const double gap : {0.0, 0.001, 0.005, 0.05})
+            for (const float speed : {1.0f, 3.0f, 12.0f})
+                for (const int count : {4, 8}) {
+                    // A body that moves by its own size in a substep is for continuous collision.
+                    if (double{speed} * kStep / substeps > 0.1) continue;
+                    SystemSettings settings = NoGravity();
+                    settings.solver.substeps = substeps;
+                    TestWorld world(settings);
+                    std::vector<BodyId> balls;
+                    for (int i = 0; i < count; ++i)
+                        balls.push_back(
+                            world.Add({.shape = SphereOf(0.1f),
+                                       .position = {i == 0 ? -0.5 : (0.2 + gap) * (i - 1), 0, 0},
+                                       .linearVelocity = i == 0 ? Vector3(speed, 0, 0) : Vector3(Vector3::Zero()),
+                                       .material = {.friction = 0, .restitution = 1}}));
+                    world.Run(1.5);
+                    for (int i = 0; i < count; ++i)
+                        EXPECT_NEAR(world.VelocityOf(balls[size_t(i)]).x(), i + 1 == count ? speed : 0, 1e-3 * speed)
+                            << substeps << " substeps, gap " << gap << ", ball " << i << " of " << count;
+                }
+}
+
+struct BoxOfBalls {
+    double end = 1, most = 1;  // energy after ten seconds, and the largest, of that at the start
+};
+// 125 balls without friction in a box of 3 m.
+BoxOfBalls EnergyOfBalls(int substeps, float gravity, uint32_t seed) {
+    SystemSettings settings = NoSleep();
+    settings.solver.substeps = substeps;
+    settings.gravity = {0, -gravity, 0};
+    TestWorld world(settings);
+    const Material elastic{.friction = 0, .restitution = 1};
+    constexpr double kHalf = 1.5;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const int side : {-1, 1}) {
+            Vector3 size(2.5f, 2.5f, 2.5f);
+            size[axis] = 0.5f;
+            Position at(Position::Zero());
+            at[axis] = side * (kHalf + 0.5);
+            world.Add({.shape = BoxOf(size.x(), size.y(), size.z()),
+                       .motion = MotionType::Static,
+                       .position = at,
+                       .material = elastic});
+        }
+    RandomPoses random(seed);
+    std::vector<BodyId> balls;
+    for (int i = 0; i < 125; ++i)
+        balls.push_back(world.Add({.shape = SphereOf(0.1f),
+                                   .position = {-1 + 0.5 * (i % 5), -1 + 0.5 * (i / 5 % 5), -1 + 0.5 * (i / 25)},
+                                   .linearVelocity = random.InBox(3),
+                                   .material = elastic}));
+    const auto energy = [&] {
+        double sum = 0;
+        for (const BodyId id : balls)
+            sum += world.Bodies().GetKineticEnergy(id) + double{world.Bodies().GetMass(id)} * double{gravity} *
+                                                             (world.Bodies().GetCenterOfMass(id).y() + kHalf);
+        return sum;
+    };
+    BoxOfBalls result;
+    const double start = energy();
+    for (int i = 0; i < 600; ++i) {
+        world.Step();
+        result.end = energy() / start;
+        result.most = std::max(result.most, result.end);
+    }
+    return result;
+}
+
+TEST(Restitution, ABoxOfElasticBallsKeepsItsEnergy) {
+    for (const int substeps : {1, 4, 16})
+        for (const uint32_t seed : {1u, 2u}) {
+            const BoxOfBalls flying = EnergyOfBalls(substeps, 0, seed), falling = EnergyOfBalls(substeps, 9.81f, seed);
+            EXPECT_NEAR(flying.end, 1, 1e-4) << substeps;
+            EXPECT_LT(flying.most, 1 + 1e-5) << substeps;
+            // Impacts below restitutionSpeed lose theirs, and what is pressed is not in free flight.
+            EXPECT_GT(falling.end, substeps == 1 ? 0.97 : 0.99) << substeps;
+            EXPECT_LT(falling.most, 1.0005) << substeps;
+        }
+}
+
+// A ball hits the floor obliquely, with spin w, at v = (1, -3). The tangential impulse J stops its surface, of which
+// 2/7 of the slip is the center's, or slides: J / m = min(2/7 slip, mu (1 + e) 3); vx' = 1 -+ J / m, w' = w -+ J R / I.
+TEST(Restitution, ASpinningBallLeavesWithTheTangentialRestitutionZero) {
+    struct Case {
+        float friction, restitution, spin;
+    };
+    for (const int substeps : kEfforts)
+        for (const Case& c : {Case{0.5f, 0.5f, 20}, Case{0.5f, 0.5f, -50}, Case{0.1f, 0.8f, 30}, Case{0.9f, 1, -5}}) {
+            SystemSettings settings = NoGravity();
+            settings.solver.substeps = substeps;
+            TestWorld world(settings);
+            const Material material{.friction = c.friction, .restitution = c.restitution};
+            world.AddFloor(material);
+            const BodyId ball = world.Add({.shape = SphereOf(static_cast<float>(kRadius)),
+                                           .position = {0, 0.487, 0},
+                                           .linearVelocity = {1, -3, 0},
+                                           .angularVelocity = {0, 0, c.spin},
+                                           .material = material});
+            world.Run(0.5);
+            const double slip = 1 + double{c.spin} * kRadius;
+            const double change = -std::copysign(
+                std::min(2.0 / 7 * std::fabs(slip), double{c.friction} * (1 + double{c.restitution}) * 3), slip);
+            EXPECT_NEAR(world.VelocityOf(ball).y(), 3 * c.restitution, 1e-3) << substeps;
+            EXPECT_NEAR(world.VelocityOf(ball).x(), 1 + change, 1e-3) << substeps;
+            EXPECT_NEAR(world.Bodies().GetAngularVelocity(ball).z(), double{c.spin} + change / (0.4 * kRadius), 1e-2)
+                << substeps;
+        }
 }
 
 }  // namespace

@@ -12,10 +12,10 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0x431bdf4b0628c8a5ull;
-constexpr uint64_t kGoldenHashOfJoints = 0x5400a6c9144a87dcull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x5b2959741c0a377bull;
-constexpr uint64_t kGoldenHashOfFastBodies = 0x55a1f2f91fb4a789ull;
+constexpr uint64_t kGoldenHash = 0xa524f6bebb0bcd13ull;
+constexpr uint64_t kGoldenHashOfJoints = 0x96e9f3a95a42c36aull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0x46dd9841956b0bafull;
+constexpr uint64_t kGoldenHashOfFastBodies = 0x7877391636938078ull;
 
 std::string Hex(uint64_t number) {
     char text[24];

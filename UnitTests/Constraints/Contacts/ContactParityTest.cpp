@@ -29,6 +29,7 @@ RandomContacts Solved(uint32_t seed, bool surfacesMove) {
         auto batch = PrepareBatch<N, kFixedB>(contacts, first, {0.9f, 0.5f, 3.0f});
         ContactSolveSettings settings{
             .inverseDt = 240.0f, .elapsed = 0, .pushRate = 0, .massScale = 0, .impulseScale = 0, .slop = 0.0005f};
+        settings.restitutionSpeed = 0.5f;
         settings.Soften(60, 10, 1.0f / 240, 3);
         WarmStartContacts(batch, states);
         for (int substep = 1; substep <= 2; ++substep) {
@@ -43,7 +44,6 @@ RandomContacts Solved(uint32_t seed, bool surfacesMove) {
                     }
             RelaxContacts(batch, states, settings);
         }
-        RestituteContacts(batch, states, 0);
         StoreContacts(batch, contacts.records.data());
     }
     return contacts;

@@ -1,0 +1,198 @@
+// Impacts of contacts with restitution, in every pass over velocities, before the rows are solved: what a body is hit
+// by goes on to what it touches in the same pass, and to what that touches in the next.
+//
+//   Newton's law at each point:  v+ = -e v-, all points of a contact that are hit together, friction by Coulomb's law
+//   with a tangential restitution of 0; no more impulses than do no work (W. J. Stronge, Impact Mechanics, 2000: with
+//   several points, or with friction, Newton's law may add energy)
+//   Speed at the time of impact: v^2 = u^2 + 2 a gap, with u the approach before the substep's gravity and a what
+//   presses the bodies together; the speed after it is such that kinetic energy and a times the way are those of e v at
+//   the surface: restitution 1 neither gains nor loses energy wherever in the substep the impact is Where it is: bodies
+//   move on by what is left of the substep after the impact, so they are displaced by minus the change of velocity
+//   times the time before it; in relaxing passes, after the poses moved, by it times the time since
+//
+// Impulses of impacts are none of the rows': no warm start repeats them. So they are added to the velocities without
+// constraints, too.
+#pragma once
+
+#include <Fulcrum/Constraints/Contacts/ContactRows.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace fulcrum::contacts {
+
+// The points that are hit within a substep.
+template <class Real>
+struct Hits {
+    static constexpr int kPoints = ContactRecord::kMaxPoints;
+    Real speed[kPoints];  // m/s that the point is to leave with; 0: not hit
+    Real time;            // s from the beginning of the substep to the first hit
+};
+
+// Separations are those of now, in relaxing passes of the end of the substep.
+template <bool kRelax, int N, bool kFixedB>
+FULCRUM_FORCE_INLINE Hits<Wide<N>> FindHits(const ContactBatch<N, kFixedB>& batch, const ContactSolveSettings& settings,
+                                            const NormalMotion<Wide<N>>& free, const NormalMotion<Wide<N>>& velocity) {
+    using Real = Wide<N>;
+    const float dt = 1.0f / settings.inverseDt;
+    const Real zero(0.0f), h(dt), closing = batch.closing;
+    Hits<Real> hits;
+    hits.time = h;
+    Real approach[Hits<Real>::kPoints], gap[Hits<Real>::kPoints];
+    WideMask<N> isHit[Hits<Real>::kPoints];
+    for (int i = 0; i < batch.pointCount; ++i) {
+        const auto& row = batch.rows[i];
+        approach[i] = Max(Min(-MotionOf(row, free), -MotionOf(row, velocity)), zero);
+        const Real start = kRelax ? row.separation + approach[i] * h : row.separation;  // as the substep began
+        gap[i] = Max(start, zero);
+        const auto isImpact = ImpactSpeed(batch, approach[i], gap[i], h) > SlowestImpact(batch, settings);
+        isHit[i] = isImpact & (batch.restitution > zero) & (start <= approach[i] * h) & (row.inverseResponse > zero);
+        const Real time = Min(gap[i] / Max(approach[i], Real(1e-30f)), h);
+        hits.time = Select(isHit[i], Min(hits.time, time), hits.time);
+    }
+    // All are hit at that time. Flight is exact: a h^2 / 2 comes to the way (Integrate.cpp).
+    const Real fall = closing * (h - hits.time), lift = closing * h;
+    for (int i = 0; i < batch.pointCount; ++i) {
+        const Real after = batch.restitution * ImpactSpeed(batch, approach[i], Min(gap[i], approach[i] * hits.time), h);
+        const Real leaving = Sqrt(Max(fall * fall + after * after - lift * lift, zero)) - fall;
+        hits.speed[i] = Select(isHit[i], Clamp(leaving, Real(1e-6f), approach[i]), zero);
+    }
+    return hits;
+}
+
+// The impulses that make the points which are hit leave with their speeds.
+template <int N, bool kFixedB>
+FULCRUM_FORCE_INLINE NormalImpulses<Wide<N>> FindImpulses(const ContactBatch<N, kFixedB>& batch,
+                                                          const NormalMotion<Wide<N>>& motion,
+                                                          const Wide<N> (&leaving)[ContactRecord::kMaxPoints]) {
+    using Real = Wide<N>;
+    constexpr int kPasses = 8;  // whatever the number of points: lanes of a batch have more or fewer
+    const Real zero(0.0f);
+    Real missing[ContactRecord::kMaxPoints], impulses[ContactRecord::kMaxPoints];
+    for (int i = 0; i < batch.pointCount; ++i) {
+        missing[i] = MotionOf(batch.rows[i], motion) - leaving[i];
+        impulses[i] = zero;
+    }
+    for (int pass = 0; pass < kPasses; ++pass)
+        for (int i = 0; i < batch.pointCount; ++i) {
+            const auto& row = batch.rows[i];
+            const Real wanted = Max(impulses[i] - row.inverseResponse * missing[i], zero);
+            const Real change = Select(leaving[i] > zero, wanted - impulses[i], zero);
+            impulses[i] += change;
+            missing[i] += Select(row.inverseResponse > zero, change / row.inverseResponse, zero);
+            for (int j = 0; j < batch.pointCount; ++j)
+                if (j != i) missing[j] += batch.response[i < j ? PairIndex(i, j) : PairIndex(j, i)] * change;
+        }
+    NormalImpulses<Real> sum;
+    for (int i = 0; i < batch.pointCount; ++i) sum.Add(batch.rows[i], impulses[i]);
+    return sum;
+}
+
+template <bool kRelax, int N, bool kFixedB>
+void BounceContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings) {
+    using Real = Wide<N>;
+    const float dt = 1.0f / settings.inverseDt;
+    const float elapsed = kRelax ? settings.elapsed : settings.elapsed - 0.5f * dt;
+    const Real zero(0.0f), one(1.0f);
+    // Impacts are of velocities without what constraints did in this substep: a push is none, nor is what a warm start
+    // repeats. In relaxing passes, which have taken the pushes back, of those with it.
+    Twists<N, kFixedB> free, solved, displacement;
+    Gather<BodyRow::Velocity>(batch, states, solved);
+    GatherFree(batch, settings, solved, free);
+    const Twists<N, kFixedB>& velocity = kRelax ? solved : free;
+    Gather<BodyRow::Displacement>(batch, states, displacement);
+    // Of now: impacts of this pass have displaced bodies. Lanes without restitution keep every bit.
+    const auto findSeparations = [&] {
+        const NormalMotion<Real> moved =
+            NormalMotionOf(batch, RelativeTwist<BodyRow::Displacement>(batch, displacement, elapsed));
+        for (int i = 0; i < batch.pointCount; ++i) {
+            auto& row = batch.rows[i];
+            row.separation =
+                Select(batch.restitution > zero, row.startSeparation + MotionOf(row, moved), row.separation);
+        }
+    };
+    findSeparations();
+    const Twist<Real> relative = RelativeTwist<BodyRow::Velocity>(batch, velocity, settings.elapsed);
+    const NormalMotion<Real> motion = NormalMotionOf(batch, relative);
+    const NormalMotion<Real> freeMotion =
+        NormalMotionOf(batch, RelativeTwist<BodyRow::Velocity>(batch, free, settings.elapsed));
+    const Hits<Real> hits = FindHits<kRelax>(batch, settings, freeMotion, motion);
+    Real largest = zero;
+    for (int i = 0; i < batch.pointCount; ++i) largest = Max(largest, hits.speed[i]);
+    if (!(largest > zero).Any()) return;
+
+    const NormalImpulses<Real> normal = FindImpulses(batch, motion, hits.speed);
+    const auto along = [&](const Vec3<Real>& v, const Vec3<Real>& axis) { return Dot<Real>(v, axis); };
+    Real tangential[3] = {along(relative.linear, batch.tangent1), along(relative.linear, batch.tangent2),
+                          along(relative.angular, batch.normal)};
+    if constexpr (!kFixedB)
+        if (batch.surfaces) {
+            const SurfaceMotion<Real> surface = GatherSurfaceMotion(batch, batch.surfaces);
+            tangential[0] = MoveBy(tangential[0], surface.v1);
+            tangential[1] = MoveBy(tangential[1], surface.v2);
+            tangential[2] = MoveBy(tangential[2], surface.spin);
+        }
+    Real left[3];  // what the normal impulses make of it
+    for (int k = 0; k < 3; ++k)
+        left[k] = tangential[k] + normal.sum * batch.coupling[0][k] + normal.sumB * batch.coupling[1][k] -
+                  normal.sumA * batch.coupling[2][k];
+    const Real none[3] = {zero, zero, zero};
+    Real friction[3], change[3];
+    SolveFriction<N, kFixedB>(batch, none, batch.friction * normal.sum, left[0], left[1], left[2], friction, change);
+
+    Twists<N, kFixedB> changed = velocity;
+    ApplyToBoth<N, kFixedB>(batch, changed,
+                            batch.normal * normal.sum + batch.tangent1 * friction[0] + batch.tangent2 * friction[1],
+                            NormalTorque(batch, normal.sumA, normal.sumB) + batch.normal * friction[2]);
+    // Of a part s of the impulses the work is s rate + s^2 rest, with rest the energy that they would give bodies at
+    // rest; and what they lift in what is left of the substep takes that weight's work.
+    const auto rateOf = [&](const Twists<N, kFixedB>& twists) {
+        const Twist<Real> of = RelativeTwist<BodyRow::Velocity>(batch, twists, settings.elapsed);
+        return WorkOf(normal, NormalMotionOf(batch, of)) + friction[0] * Dot<Real>(of.linear, batch.tangent1) +
+               friction[1] * Dot<Real>(of.linear, batch.tangent2) + friction[2] * Dot<Real>(of.angular, batch.normal);
+    };
+    const Real before = rateOf(velocity), rest = Real(0.5f) * (rateOf(changed) - before);
+    const Real rate = Min(before + batch.closing * (Real(dt) - hits.time) * normal.sum, zero);
+    const Real part = Select(rest > -rate, -rate / Max(rest, Real(1e-30f)), one);
+    Real sum = zero;
+    for (int k = 0; k < 6; ++k) {
+        sum += changed.a[k] * changed.a[k];
+        if constexpr (!kFixedB) sum += changed.b[k] * changed.b[k];
+    }
+    const auto isHit = (largest > zero) & (sum * part < Real(std::numeric_limits<float>::max()));
+    const Real shift = kRelax ? Real(dt) - hits.time : -hits.time;
+    const auto apply = [&](const Real(&before)[8], const Real(&after)[8], Real(&own)[8], Real(&v)[8], Real(&x)[8]) {
+        // What an impact turns by more than half a turn within the substep is left where it is.
+        Real turnSquared = zero;
+        for (int k = BodyState::kAngular; k < BodyState::kAngular + 3; ++k) {
+            const Real turn = (after[k] - before[k]) * part * shift;
+            turnSquared += turn * turn;
+        }
+        const Real way = Select(turnSquared < Real(10.0f), shift, zero);
+        for (int k = 0; k < 6; ++k) {
+            const Real difference = (after[k] - before[k]) * part;
+            const auto isOwn = own[k] == v[k];  // what nothing else has changed stays so, to the last bit
+            const Real changedOwn = own[k] + difference;
+            v[k] = Select(isHit, Select(isOwn, changedOwn, v[k] + difference), v[k]);
+            own[k] = Select(isHit, changedOwn, own[k]);
+            x[k] = Select(isHit, x[k] + difference * way, x[k]);
+        }
+        Real turned[8];
+        std::copy_n(x, 8, turned);
+        SetHalfTurn<Real>(turned);
+        for (int k = 6; k < 8; ++k) x[k] = Select(isHit, turned[k], x[k]);
+    };
+    const Twists<N, kFixedB> unchanged = velocity;
+    apply(unchanged.a, changed.a, free.a, solved.a, displacement.a);
+    if constexpr (!kFixedB) apply(unchanged.b, changed.b, free.b, solved.b, displacement.b);
+    Scatter(batch, solved);
+    Scatter(batch, displacement);
+    ScatterFree(batch, settings, free);
+    findSeparations();
+    // What bounces is displaced to where its way from the surface would have begun: there is no overlap to push.
+    for (int i = 0; i < batch.pointCount; ++i)
+        batch.rows[i].separation =
+            Select(hits.speed[i] > zero, Max(batch.rows[i].separation, zero), batch.rows[i].separation);
+}
+
+}  // namespace fulcrum::contacts
