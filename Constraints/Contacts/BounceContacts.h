@@ -1,17 +1,18 @@
 // Impacts of contacts with restitution, in every pass over velocities, before the rows are solved: what a body is hit
 // by goes on to what it touches in the same pass, and to what that touches in the next.
 //
-//   Newton's law at each point:  v+ = -e v-, all points of a contact that are hit together, friction by Coulomb's law
-//   with a tangential restitution of 0; no more impulses than do no work (W. J. Stronge, Impact Mechanics, 2000: with
-//   several points, or with friction, Newton's law may add energy)
-//   Speed at the time of impact: v^2 = u^2 + 2 a gap, with u the approach before the substep's gravity and a what
-//   presses the bodies together; the speed after it is such that kinetic energy and a times the way are those of e v at
-//   the surface: restitution 1 neither gains nor loses energy wherever in the substep the impact is Where it is: bodies
-//   move on by what is left of the substep after the impact, so they are displaced by minus the change of velocity
-//   times the time before it; in relaxing passes, after the poses moved, by it times the time since
+// Newton's law at each point: v+ = -e v-, all points of a contact that are hit together; friction by Coulomb's law with
+// a tangential restitution of 0. No more of these impulses than does no work: with several points, or with friction,
+// Newton's law may add energy (W. J. Stronge, Impact Mechanics, 2000).
 //
-// Impulses of impacts are none of the rows': no warm start repeats them. So they are added to the velocities without
-// constraints, too.
+// Speed at the time of impact: v^2 = u^2 + 2 a gap, with u the approach before the substep's gravity and a what presses
+// the bodies together. The speed after it is such that kinetic energy and a times the way are those of e v at the
+// surface: restitution 1 neither gains nor loses energy, wherever in the substep the impact is.
+//
+// Bodies move by the new velocity for what is left of the substep after the impact: they are displaced by minus the
+// change of velocity times the time before it; in relaxing passes, after the poses moved, by it times the time since.
+//
+// No warm start repeats impulses of impacts: they are added to the velocities without constraints, too.
 #pragma once
 
 #include <Fulcrum/Constraints/Contacts/ContactRows.h>
