@@ -161,8 +161,10 @@ struct SystemSettings {
     float exactJointLoad = 10.0f;
     // m/s and rad/s, > 0, at most 1e6: the fastest pull; from afar up to three times that (Docs/Joints.md).
     float jointPushSpeed = 20.0f;
-    float restitutionSpeed = 0.5f;  // m/s, >= 0: slower impacts do not bounce
-    float boundsMargin = 0.05f;     // m, > 0: fat bounds exceed the shape's by this
+    // m/s, >= 0: slower impacts do not bounce; where gravity does not press the two bodies together, only those slower
+    // than four substeps of it.
+    float restitutionSpeed = 0.5f;
+    float boundsMargin = 0.05f;  // m, > 0: fat bounds exceed the shape's by this
     // Bit j of layerCollides[i]: bodies of layer i and j collide. Must be symmetric.
     std::array<uint32_t, 32> layerCollides = AllLayers();
 
