@@ -60,6 +60,7 @@ Status PhysicsSystem::SetSettings(const SystemSettings& settings) {
     if (settings.narrowPhase != world_->settings.narrowPhase)
         for (Pair& pair : world_->pairs.pairs) pair.cache = {};
     world_->settings = settings;
+    ++world_->pairs.loadVersion;  // efforts follow the settings
     if (settings.layerCollides != before) RefilterLayers(*world_, before);
     for (const Sensor& sensor : world_->sensors.sensors) world_->sensors.changed.push_back(sensor.id.index);
     return Done{};

@@ -94,18 +94,80 @@ void SortConstraints(const BodyStore& bodies, const ConstraintColoring& coloring
     sort(Kind::Fixed, fixed, layout.fixed.contacts);
 }
 
+// Calls visit(entry) for the contacts of a group.
+template <class Visit>
+void VisitContacts(const SolverLayout& layout, const SolverGroup& group, Visit&& visit) {
+    for (uint32_t c = group.colorsBegin; c < group.colorsEnd; ++c) {
+        const auto visitRange = [&](const std::vector<Entry>& contacts, const BatchRange& range) {
+            for (uint32_t i = 0; i < range.contacts; ++i) visit(contacts[range.first + i]);
+        };
+        visitRange(layout.moving.contacts, layout.colors[c].of[kMovingContacts]);
+        visitRange(layout.fixed.contacts, layout.colors[c].of[kFixedContacts]);
+    }
+}
+
+struct SolvedContact {
+    uint32_t contact;
+    int substeps;
+};
+
+// The contacts of groups with substeps of their own, and how many.
+std::span<const SolvedContact> ContactsUnderLoad(const SolverLayout& layout, ScratchArena& scratch) {
+    const auto visitAll = [&](auto&& visit) {
+        for (const SolverGroup& group : layout.groups)
+            if (group.effort.substeps > 0)
+                VisitContacts(layout, group, [&](const Entry& entry) { visit(entry, group.effort.substeps); });
+    };
+    size_t count = 0;
+    visitAll([&](const Entry&, int) { ++count; });
+    std::span<SolvedContact> contacts = scratch.Allocate<SolvedContact>(count);
+    size_t next = 0;
+    visitAll([&](const Entry& entry, int substeps) { contacts[next++] = {entry.constraint, substeps}; });
+    return contacts;
+}
+
+// Records hold impulses as forces of the system's substeps. What an impact gave in a short substep is no force that
+// goes on in longer ones: as where the time step grows, it is repeated at most twice.
+void LimitImpulses(std::span<const SolvedContact> before, const SolverLayout& layout, int usualSubsteps,
+                   PairStore& pairs, ScratchArena& scratch) {
+    if (before.empty()) return;
+    std::span<uint8_t> substeps = scratch.Allocate<uint8_t>(pairs.pairs.size());
+    std::fill(substeps.begin(), substeps.end(), static_cast<uint8_t>(usualSubsteps));
+    for (const SolverGroup& group : layout.groups)
+        if (group.effort.substeps > usualSubsteps)
+            VisitContacts(layout, group, [&](const Entry& entry) {
+                substeps[entry.constraint] = static_cast<uint8_t>(group.effort.substeps);
+            });
+    for (const SolvedContact& solved : before) {
+        const int most = 2 * substeps[solved.contact];
+        if (solved.substeps <= most) continue;
+        const float part = static_cast<float>(most) / static_cast<float>(solved.substeps);
+        ContactRecord& record = pairs.records[solved.contact];
+        for (float& impulse : record.impulse) impulse *= part;
+        for (float& impulse : record.frictionImpulse) impulse *= part;
+        record.twistImpulse *= part;
+    }
+}
+
 }  // namespace
 
-void BuildIslands(const BodyStore& bodies, const ConstraintColoring& coloring, float exactJointLoad, JointStore& joints,
-                  SolverLayout& layout, ScratchArena& scratch) {
-    if (layout.version == coloring.Version()) return;
+void BuildIslands(const BodyStore& bodies, const ConstraintColoring& coloring, PairStore& pairs,
+                  const SystemSettings& settings, float softness, JointStore& joints, SolverLayout& layout,
+                  ScratchArena& scratch) {
+    for (SolverGroup& group : layout.groups)
+        if (group.stiffness < group.wantedStiffness) ++group.stiffness;
+    if (layout.version == coloring.Version() && layout.loadVersion == pairs.loadVersion) return;
     layout.version = coloring.Version();
+    layout.loadVersion = pairs.loadVersion;
+    const std::span<const SolvedContact> underLoad = ContactsUnderLoad(layout, scratch);
     ForEachBatchList(layout, [](auto& list, BatchKind) { list.count = 0; });
-    FindJointTrees(bodies, coloring, joints, exactJointLoad, layout.trees, scratch);
-    const Islands islands = FindIslands(bodies, coloring, joints, layout.trees, layout.groups, scratch);
+    FindJointTrees(bodies, coloring, joints, settings.exactJointLoad, layout.trees, scratch);
+    const Islands islands =
+        FindIslands(bodies, coloring, joints, pairs, settings, softness, layout.trees, layout.groups, scratch);
     layout.islands = islands.islands;
     SortBodies(bodies, islands, layout, scratch);
     SortConstraints(bodies, coloring, islands, joints, layout, scratch);
+    LimitImpulses(underLoad, layout, settings.solver.substeps, pairs, scratch);
     PlaceTrees(bodies, islands, joints.joints.size(), layout, scratch);
     ForEachBatchList(layout, [](auto& list, BatchKind) { GrowTo(list.batches, list.count); });
     const ConstraintColoring::Color& overflow = coloring.At(ConstraintColoring::kOverflow);

@@ -7,6 +7,7 @@
 #include <Fulcrum/Physics/Stages/PairView.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/Stages/SweepCast.h>
+#include <Fulcrum/Physics/World/FatBounds.h>
 #include <Fulcrum/Physics/World/Waking.h>
 
 #include <algorithm>
@@ -85,7 +86,7 @@ PairChange CollidePair(WorldState& world, std::span<PairChange> changes, uint32_
     const float mostMotion =
         world.bodies.continuousCount > 0 ? MotionBeforeCast(world, pair) : std::numeric_limits<float>::infinity();
     const auto reachOf = [&](float motion) {
-        return world.settings.speculativeDistance + std::min(motion, mostMotion);
+        return SpeculativeDistance(world.settings, pair) + std::min(motion, mostMotion);
     };
     if (!pair.surface && pair.pointCount == 0 && !pair.offset && BallsApart(world, pair, reachOf(closing)))
         return PairChange::None;

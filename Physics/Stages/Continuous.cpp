@@ -31,7 +31,10 @@ float FreeMotionOf(const WorldState& world, uint32_t body) {
 // its whole path. Those that do not are noted, to be enlarged.
 bool StaysInBounds(const WorldState& world, uint32_t body, const Vector3& moved, float dt, WorkerFindings& findings) {
     const float* a = world.bodies.poses[body].acceleration;
-    const float slack = 0.5f * world.settings.speculativeDistance;
+    const BodyCold& cold = world.bodies.cold[body];
+    // Pieces of a compound may be small.
+    const float slack =
+        cold.colliderCount == 1 && !cold.children ? 0.5f * SpeculativeDistance(world.settings, *cold.shape) : 0.0f;
     const bool flewAsForeseen =
         !world.coloring.IsTouched(body) && LengthSquared(Vector3(a[0], a[1], a[2])) * dt * dt * dt * dt < slack * slack;
     if (flewAsForeseen || LengthSquared(moved) <= slack * slack) return true;

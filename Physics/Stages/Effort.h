@@ -39,6 +39,21 @@ inline float LeastDampingRatio(float frequency, float h) {
 // The part of a tree's errors that a substep corrects.
 inline constexpr float kTreePush = 0.5f;
 
+// The part of the system's substep that SolverGroup::stiffness says.
+inline float SubstepOfStiffness(uint32_t stiffness) {
+    constexpr float kStep = 0.957603281f;  // 2^(-1/16)
+    float part = 1;
+    for (uint32_t i = 1; i < stiffness; ++i) part *= kStep;
+    return part;
+}
+// The stiffness of a group that is solved with more substeps than the system's.
+inline uint8_t StiffnessOf(int substeps, int systemSubsteps) {
+    const float part = static_cast<float>(systemSubsteps) / static_cast<float>(substeps);
+    uint8_t stiffness = 1;
+    while (SubstepOfStiffness(stiffness) > part) ++stiffness;
+    return stiffness;
+}
+
 inline Effort EffortOf(const WorldState& world, const StepState& step, const SolverGroup& group) {
     const SystemSettings& s = world.settings;
     Effort effort;
@@ -49,7 +64,8 @@ inline Effort EffortOf(const WorldState& world, const StepState& step, const Sol
     effort.solver.positionIterations = std::max(s.solver.positionIterations, group.effort.positionIterations);
     const float h = effort.substepDt = step.dt / static_cast<float>(effort.solver.substeps);
     effort.impulseScale = h / step.substepDt;
-    const float stiffest = StiffestFrequency(effort.solver, step.stiffnessDt * effort.impulseScale);
+    const float softened = group.stiffness > 0 ? SubstepOfStiffness(group.stiffness) : 0.0f;
+    const float stiffest = StiffestFrequency(effort.solver, step.stiffnessDt * std::max(effort.impulseScale, softened));
 
     ContactSolveSettings& contacts = effort.contacts;
     contacts.inverseDt = 1.0f / h;

@@ -1,5 +1,7 @@
 #include <Fulcrum/Physics/Stages/FindIslands.h>
 
+#include <Fulcrum/Physics/Stages/Effort.h>
+#include <Fulcrum/Physics/Stages/IslandEfforts.h>
 #include <Fulcrum/Physics/World/UnionFind.h>
 
 #include <algorithm>
@@ -20,34 +22,19 @@ using Kind = ConstraintColoring::Kind;
 // must resolve that, or the chain whips itself apart, however exact its joints. Measured on 16 links of 0.5 m.
 int SubstepsUnder(float load) { return std::min(static_cast<int>(std::ceil(0.8f * std::sqrt(load))), 64); }
 
-// What an island is to be solved with: of each number the largest that its joints ask for.
-SolverSettings Larger(const SolverSettings& a, const SolverSettings& b) {
-    return {std::max(a.substeps, b.substeps), std::max(a.velocityIterations, b.velocityIterations),
-            std::max(a.positionIterations, b.positionIterations)};
-}
-
-// By the root of the island, or empty where no joint asks for an effort of its own.
-std::span<SolverSettings> FindEfforts(const BodyStore& bodies, const ConstraintColoring& coloring,
-                                      const JointStore& joints, UnionFind& sets, ScratchArena& scratch) {
-    const size_t count = bodies.awake.size();
-    std::span<SolverSettings> efforts;
-    VisitEntries(coloring, Kind::Joint, [&](uint32_t, const Entry& entry) {
-        const Joint& joint = joints.joints[entry.constraint];
-        if (!joint.HasOwnEffort()) return;
-        if (efforts.empty()) {
-            efforts = scratch.Allocate<SolverSettings>(count);
-            std::fill(efforts.begin(), efforts.end(), SolverSettings{0, 0, 0});
-        }
-        SolverSettings& effort = efforts[sets.Find(bodies.cold[MovingBodyOf(entry)].awakePlace)];
-        effort = Larger(effort, joint.effort);
-    });
-    return efforts;
+// usual: the system's substeps.
+void SetEffort(SolverGroup& group, const IslandEffort& effort, int least, int usual) {
+    group.effort = {std::max<int>(effort.substeps, least), effort.velocityIterations, effort.positionIterations};
+    if (!effort.isLoaded || group.effort.substeps <= usual) return;
+    group.wantedStiffness = StiffnessOf(group.effort.substeps, usual);
+    group.stiffness = effort.stiffness == 0 ? group.wantedStiffness : std::min(effort.stiffness, group.wantedStiffness);
 }
 
 }  // namespace
 
 Islands FindIslands(const BodyStore& bodies, const ConstraintColoring& coloring, const JointStore& joints,
-                    const JointTrees& trees, std::vector<SolverGroup>& groups, ScratchArena& scratch) {
+                    const PairStore& pairs, const SystemSettings& settings, float softness, const JointTrees& trees,
+                    std::vector<SolverGroup>& groups, ScratchArena& scratch) {
     const auto placeOf = [&](uint32_t body) { return bodies.cold[body].awakePlace; };
     const size_t count = bodies.awake.size();
     UnionFind sets(scratch.Allocate<uint32_t>(count));
@@ -63,7 +50,8 @@ Islands FindIslands(const BodyStore& bodies, const ConstraintColoring& coloring,
         VisitEntries(coloring, kind, [&](uint32_t c, const Entry& entry) {
             sizes[sets.Find(placeOf(MovingBodyOf(entry)))] += c == kColors ? kLargeIsland : 1;
         });
-    const std::span<const SolverSettings> efforts = FindEfforts(bodies, coloring, joints, sets, scratch);
+    const std::span<const IslandEffort> efforts =
+        FindEfforts(bodies, coloring, joints, pairs, settings, sizes, kLargeIsland - 1, softness, sets, scratch);
     std::span<float> treeLoads = scratch.Allocate<float>(count);
     std::fill(treeLoads.begin(), treeLoads.end(), 0.0f);
     for (const JointTrees::Tree& tree : trees.trees) {
@@ -73,7 +61,7 @@ Islands FindIslands(const BodyStore& bodies, const ConstraintColoring& coloring,
 
     Islands result;
     result.groupOf = scratch.Allocate<uint32_t>(count);
-    groups.assign(1, {});
+    groups.assign(1, {.isLarge = true});
     uint32_t inGroup = kSmallGroup;  // so that the first small island opens a group
     uint32_t open = 0;
     for (uint32_t i = 0; i < count; ++i) {
@@ -87,14 +75,12 @@ Islands FindIslands(const BodyStore& bodies, const ConstraintColoring& coloring,
         ++result.islands;
         const bool large = sizes[i] >= kLargeIsland, overflows = coloring.HasOverflow() && large;
         const bool hasTree = treeLoads[i] > 0;
-        SolverSettings effort = efforts.empty() ? SolverSettings{0, 0, 0} : efforts[i];
-        const bool ownEffort = !(effort == SolverSettings{0, 0, 0});
+        const IslandEffort& effort = efforts[i];
         // One worker solves an island of its own: too slow for a large one that did not ask for it.
-        if (!overflows && (ownEffort || (hasTree && !large))) {
+        if (!overflows && (!effort.IsUsual() || (hasTree && !large))) {
             result.groupOf[i] = static_cast<uint32_t>(groups.size());
-            groups.push_back({});
-            if (hasTree) effort.substeps = std::max(effort.substeps, SubstepsUnder(treeLoads[i]));
-            groups.back().effort = effort;
+            groups.push_back({.isLarge = large && !hasTree});
+            SetEffort(groups.back(), effort, hasTree ? SubstepsUnder(treeLoads[i]) : 0, settings.solver.substeps);
             continue;
         }
         if (sizes[i] >= kLargeIsland) {

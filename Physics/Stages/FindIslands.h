@@ -5,6 +5,7 @@
 #include <Fulcrum/Physics/Stages/SolverLayout.h>
 #include <Fulcrum/Physics/World/BodyStore.h>
 #include <Fulcrum/Physics/World/JointStore.h>
+#include <Fulcrum/Physics/World/PairStore.h>
 
 #include <span>
 #include <vector>
@@ -21,7 +22,8 @@ struct Islands {
 
 // Finds them anew, and makes their groups, of which bodies and colors are not yet known. In scratch memory of the step.
 Islands FindIslands(const BodyStore& bodies, const ConstraintColoring& coloring, const JointStore& joints,
-                    const JointTrees& trees, std::vector<SolverGroup>& groups, ScratchArena& scratch);
+                    const PairStore& pairs, const SystemSettings& settings, float softness, const JointTrees& trees,
+                    std::vector<SolverGroup>& groups, ScratchArena& scratch);
 
 // Calls visit(color, entry) for all colored constraints of a kind, those that overflow last.
 template <class Visit>

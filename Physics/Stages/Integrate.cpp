@@ -192,7 +192,14 @@ void LimitSolved(WorldState& world, uint32_t body, WorkerFindings& findings) {
     Vector3 v = bodies.LinearVelocityOf(body), w = bodies.AngularVelocityOf(body);
     if (IsWithinSpeeds(bodies.dynamics[body], v, w)) return;
     if (IsFinite(v) && IsFinite(w)) {
+        const Vector3 fastV = v, fastW = w;
         findings.clamped += ShortenSpeeds(world, body, v, w);
+        // What is taken away was no impulse of a constraint: the next substep must not repeat it.
+        float* row = bodies.unconstrained[body].row;
+        for (int k = 0; k < 3; ++k) {
+            row[BodyState::kLinear + k] += v[k] - fastV[k];
+            row[BodyState::kAngular + k] += w[k] - fastW[k];
+        }
     } else {
         v = w = Vector3::Zero();
         bodies.unconstrained[body] = {};

@@ -1,5 +1,7 @@
 #include <Fulcrum/Physics/Stages/PairView.h>
 
+#include <Fulcrum/Physics/World/FatBounds.h>
+
 #include <algorithm>
 
 namespace fulcrum {
@@ -118,7 +120,7 @@ void WriteManifold(const WorldState& world, const PairView& v, const Manifold& m
     const Vector3 vA = inA(bodies.LinearVelocityOf(pair.bodyA)), wA = inA(bodies.AngularVelocityOf(pair.bodyA));
     const Vector3 vB = inA(bodies.LinearVelocityOf(pair.bodyB)), wB = inA(bodies.AngularVelocityOf(pair.bodyB));
 
-    const float farEnd = FarEndFactor(world, pair);
+    const float farEnd = FarEndFactor(world, pair), speculative = SpeculativeDistance(world.settings, pair);
     int count = 0;
     for (int i = 0; i < manifold.pointCount; ++i) {
         const ManifoldPoint& found = manifold.points[i];
@@ -129,7 +131,7 @@ void WriteManifold(const WorldState& world, const PairView& v, const Manifold& m
         const float ofB = -Dot<float>(normal, Vector3(vB + Cross<float>(wB, Vector3(pointOfB - v.bodyBInA.position))));
         // Something else may stop one of the two.
         const float approach = std::max(ofA + ofB, std::max(ofB, pair.fixedB ? 0.0f : ofA));
-        if (found.separation > world.settings.speculativeDistance + farEnd * std::max(approach, 0.0f) * dt) continue;
+        if (found.separation > speculative + farEnd * std::max(approach, 0.0f) * dt) continue;
         const Vector3 onB = v.bodyBInA.InverseTransform(pointOfB);
         for (int k = 0; k < 3; ++k) {
             record.points[count].onA[k] = onA[k];

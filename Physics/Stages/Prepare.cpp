@@ -196,37 +196,46 @@ private:
     JointSolveSettings joints_;
 };
 
-}  // namespace
-
-void Prepare(WorldState& world, const StepState& step, SolverLayout& layout, std::span<WorkerFindings> workers,
-             ScratchArena& scratch, StepReport& report) {
-    if (world.coloring.Size() == 0) return;
-    const SolverGroup& large = layout.groups.front();
-    const bool hasCrowds = !step.crowd.crowded.empty();
-    const RowFiller filler(world, layout, EffortOf(world, step, large), step.impulseScale, hasCrowds);
+// The rows of a large group, on all workers.
+void FillTogether(JobSystem& jobs, const RowFiller& filler, const SolverLayout& layout, const SolverGroup& group,
+                  std::span<WorkerFindings> workers, ScratchArena& scratch) {
     const auto piecesOf = [&](uint32_t c) {
         uint32_t most = 0;
         for (const BatchRange& range : layout.colors[c].of) most = std::max(most, range.Count());
         return (most + kPiece - 1) / kPiece;
     };
     uint32_t count = 0;
-    for (uint32_t c = large.colorsBegin; c < large.colorsEnd; ++c) count += piecesOf(c);
+    for (uint32_t c = group.colorsBegin; c < group.colorsEnd; ++c) count += piecesOf(c);
     std::span<std::pair<uint32_t, uint32_t>> pieces = scratch.Allocate<std::pair<uint32_t, uint32_t>>(count);
     count = 0;
-    for (uint32_t c = large.colorsBegin; c < large.colorsEnd; ++c)
+    for (uint32_t c = group.colorsBegin; c < group.colorsEnd; ++c)
         for (uint32_t i = 0; i < piecesOf(c); ++i) pieces[count++] = {c, i};
-    world.jobs->ParallelFor(count, 1, [&](JobRange range) {
+    jobs.ParallelFor(count, 1, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i) {
             const auto [c, piece] = pieces[i];
             filler.FillPiece(layout.colors[c], piece, workers[range.worker]);
         }
     });
-    world.jobs->ParallelFor(static_cast<uint32_t>(layout.groups.size()) - 1, 1, [&](JobRange range) {
-        for (uint32_t g = range.begin + 1; g < range.end + 1; ++g)
-            RowFiller(world, layout, EffortOf(world, step, layout.groups[g]), step.impulseScale, hasCrowds)
-                .FillGroup(layout.groups[g], workers[range.worker]);
+}
+
+}  // namespace
+
+void Prepare(WorldState& world, const StepState& step, SolverLayout& layout, std::span<WorkerFindings> workers,
+             ScratchArena& scratch, StepReport& report) {
+    if (world.coloring.Size() == 0) return;
+    const bool hasCrowds = !step.crowd.crowded.empty();
+    const auto fillerOf = [&](const SolverGroup& group) {
+        return RowFiller(world, layout, EffortOf(world, step, group), step.impulseScale, hasCrowds);
+    };
+    for (const SolverGroup& group : layout.groups)
+        if (group.isLarge) FillTogether(*world.jobs, fillerOf(group), layout, group, workers, scratch);
+    world.jobs->ParallelFor(static_cast<uint32_t>(layout.groups.size()), 1, [&](JobRange range) {
+        for (uint32_t g = range.begin; g < range.end; ++g) {
+            const SolverGroup& group = layout.groups[g];
+            if (!group.isLarge) fillerOf(group).FillGroup(group, workers[range.worker]);
+        }
     });
-    filler.FillOverflow(world.coloring.At(ConstraintColoring::kOverflow), workers[0]);
+    fillerOf(layout.groups.front()).FillOverflow(world.coloring.At(ConstraintColoring::kOverflow), workers[0]);
 
     FindDeepest(world, workers, report);
     FindWorstJoints(world.joints, workers, report);

@@ -63,10 +63,16 @@ class StepSolver {
 public:
     // pseudo: room for the pseudo-velocities of all bodies, zero; null where the group has no joints that are far
     // apart.
-    StepSolver(WorldState& world, StepState& step, const Effort& effort, BodyState* pseudo)
-        : world_(world), step_(step), layout_(step.solver), effort_(effort), pseudo_(pseudo), h_(effort.substepDt) {}
+    StepSolver(WorldState& world, StepState& step, const SolverGroup& group, const Effort& effort, BodyState* pseudo)
+        : world_(world),
+          step_(step),
+          layout_(step.solver),
+          group_(group),
+          effort_(effort),
+          pseudo_(pseudo),
+          h_(effort.substepDt) {}
 
-    // The large group: all workers, phase by phase.
+    // A large group: all workers, phase by phase.
     void RunTogether(std::span<const Phase> phases) {
         std::span<uint32_t> counts = step_.scratch.Allocate<uint32_t>(phases.size());
         for (size_t i = 0; i < phases.size(); ++i) counts[i] = BlockCount(phases[i]);
@@ -76,12 +82,12 @@ public:
     }
 
     // A group of small islands: one worker, from beginning to end.
-    void RunAlone(const SolverGroup& group, std::span<const Verb> verbs, WorkerFindings& findings) {
+    void RunAlone(std::span<const Verb> verbs, WorkerFindings& findings) {
         uint8_t substep = 0;
         for (Verb verb : verbs) {
             if (IsOverBodies(verb)) {
                 RunBodies(verb, substep,
-                          std::span(layout_.bodies).subspan(group.bodiesBegin, group.bodiesEnd - group.bodiesBegin),
+                          std::span(layout_.bodies).subspan(group_.bodiesBegin, group_.bodiesEnd - group_.bodiesBegin),
                           findings);
                 continue;
             }
@@ -89,33 +95,31 @@ public:
                 ++substep;
                 continue;
             }
-            if (group.HasTrees()) RunTrees(group, verb, substep);
-            for (uint32_t c = group.colorsBegin; c < group.colorsEnd; ++c)
+            if (group_.HasTrees()) RunTrees(verb, substep);
+            for (uint32_t c = group_.colorsBegin; c < group_.colorsEnd; ++c)
                 RunBatches(verb, substep, layout_.colors[c], 0, layout_.colors[c].Count());
         }
     }
 
 private:
     uint32_t BlockCount(const Phase& phase) const {
-        const SolverGroup& large = layout_.groups.front();
         if (IsOverBodies(phase.verb))
-            return (large.bodiesEnd - large.bodiesBegin + kBodiesPerBlock - 1) / kBodiesPerBlock;
-        if (phase.color == large.colorsEnd - large.colorsBegin) return 1;
-        return (layout_.colors[large.colorsBegin + phase.color].Count() + kBatchesPerBlock - 1) / kBatchesPerBlock;
+            return (group_.bodiesEnd - group_.bodiesBegin + kBodiesPerBlock - 1) / kBodiesPerBlock;
+        if (phase.color == group_.colorsEnd - group_.colorsBegin) return 1;
+        return (layout_.colors[group_.colorsBegin + phase.color].Count() + kBatchesPerBlock - 1) / kBatchesPerBlock;
     }
 
     void RunBlock(const Phase& phase, uint32_t block, WorkerFindings& findings) {
-        const SolverGroup& large = layout_.groups.front();
         if (IsOverBodies(phase.verb)) {
-            const uint32_t begin = large.bodiesBegin + block * kBodiesPerBlock;
-            const uint32_t count = std::min(kBodiesPerBlock, large.bodiesEnd - begin);
+            const uint32_t begin = group_.bodiesBegin + block * kBodiesPerBlock;
+            const uint32_t count = std::min(kBodiesPerBlock, group_.bodiesEnd - begin);
             RunBodies(phase.verb, phase.substep, std::span(layout_.bodies).subspan(begin, count), findings);
-        } else if (phase.color == large.colorsEnd - large.colorsBegin) {
+        } else if (phase.color == group_.colorsEnd - group_.colorsBegin) {
             ForEachOverflowList(layout_, [&](auto& batches) {
                 for (auto& batch : batches) RunBatch(phase.verb, phase.substep, batch);
             });
         } else {
-            const ColorBatches& color = layout_.colors[large.colorsBegin + phase.color];
+            const ColorBatches& color = layout_.colors[group_.colorsBegin + phase.color];
             RunBatches(phase.verb, phase.substep, color, block * kBatchesPerBlock,
                        std::min((block + 1) * kBatchesPerBlock, color.Count()));
         }
@@ -130,12 +134,12 @@ private:
     }
 
     // What the trees of a group do before its batches take their turn.
-    void RunTrees(const SolverGroup& group, Verb verb, uint8_t substep) {
+    void RunTrees(Verb verb, uint8_t substep) {
         JointBatch<kLanes>* batches = layout_.joints.batches.data();
         BodyState* states = world_.bodies.states.data();
-        const std::span<JointBatch<kLanes>> own = JointBatchesOf(group);
+        const std::span<JointBatch<kLanes>> own = JointBatchesOf(group_);
         const auto forTrees = [&](auto&& run) {
-            for (uint32_t t = group.treesBegin; t < group.treesEnd; ++t)
+            for (uint32_t t = group_.treesBegin; t < group_.treesEnd; ++t)
                 run(layout_.trees.At(layout_.trees.trees[layout_.treesByGroup[t]]));
         };
         const auto factorize = [&] {
@@ -267,6 +271,7 @@ private:
     WorldState& world_;
     StepState& step_;
     SolverLayout& layout_;
+    const SolverGroup& group_;
     const Effort& effort_;
     BodyState* pseudo_;
     float h_;  // s, of a substep
@@ -305,11 +310,12 @@ std::span<const Verb> LoopOf(const SolverSettings& settings, bool pulls, Scratch
     return verbs.first(n);
 }
 
-// The same for the large group: a phase per color.
-std::span<const Phase> PhasesOf(std::span<const Verb> verbs, const SolverLayout& layout, ScratchArena& scratch) {
-    const SolverGroup& large = layout.groups.front();
-    const size_t colors = large.colorsEnd - large.colorsBegin + (layout.OverflowCount() > 0 ? 1u : 0u);
-    if (large.bodiesBegin == large.bodiesEnd) return {};
+// The same for a large group: a phase per color. What fitted no color is solved with the first group.
+std::span<const Phase> PhasesOf(std::span<const Verb> verbs, const SolverLayout& layout, const SolverGroup& group,
+                                ScratchArena& scratch) {
+    const bool overflows = &group == &layout.groups.front() && layout.OverflowCount() > 0;
+    const size_t colors = group.colorsEnd - group.colorsBegin + (overflows ? 1u : 0u);
+    if (group.bodiesBegin == group.bodiesEnd) return {};
     std::span<Phase> phases = scratch.Allocate<Phase>(verbs.size() * std::max<size_t>(colors, 1));
     size_t n = 0;
     uint8_t substep = 0;
@@ -351,19 +357,22 @@ void RunVerbs(WorldState& world, StepState& step, bool far, LoopOfEffort&& loopO
     std::span<bool> pulls = step.scratch.Allocate<bool>(groups.size());
     for (size_t g = 0; g < groups.size(); ++g) pulls[g] = far && PullsJoints(step.solver, groups[g]);
     const auto pseudoOf = [&](size_t g) { return pulls[g] ? pseudo.data() : nullptr; };
-    const Effort common = EffortOf(world, step, groups.front());
-    const std::span<const Verb> verbs = loopOf(common, pulls[0]), usual = pulls[0] ? loopOf(common, false) : verbs;
-    StepSolver solver(world, step, common, pseudoOf(0));
-    const std::span<const Phase> phases = PhasesOf(verbs, step.solver, step.scratch);
-    if (!phases.empty()) solver.RunTogether(phases);
+    const std::span<const Verb> usual = loopOf(EffortOf(world, step, groups.front()), false);
     std::span<std::span<const Verb>> loops = step.scratch.Allocate<std::span<const Verb>>(groups.size());
-    for (size_t g = 1; g < groups.size(); ++g) {
+    for (size_t g = 0; g < groups.size(); ++g)
         loops[g] = groups[g].IsOwn() || pulls[g] ? loopOf(EffortOf(world, step, groups[g]), pulls[g]) : usual;
+    for (size_t g = 0; g < groups.size(); ++g) {
+        if (!groups[g].isLarge) continue;
+        const std::span<const Phase> phases = PhasesOf(loops[g], step.solver, groups[g], step.scratch);
+        if (phases.empty()) continue;
+        const Effort effort = EffortOf(world, step, groups[g]);
+        StepSolver(world, step, groups[g], effort, pseudoOf(g)).RunTogether(phases);
     }
-    world.jobs->ParallelFor(static_cast<uint32_t>(groups.size()) - 1, 1, [&](JobRange range) {
-        for (uint32_t g = range.begin + 1; g < range.end + 1; ++g) {
+    world.jobs->ParallelFor(static_cast<uint32_t>(groups.size()), 1, [&](JobRange range) {
+        for (uint32_t g = range.begin; g < range.end; ++g) {
+            if (groups[g].isLarge) continue;
             const Effort effort = EffortOf(world, step, groups[g]);
-            StepSolver(world, step, effort, pseudoOf(g)).RunAlone(groups[g], loops[g], step.findings[range.worker]);
+            StepSolver(world, step, groups[g], effort, pseudoOf(g)).RunAlone(loops[g], step.findings[range.worker]);
         }
     });
 }

@@ -6,11 +6,11 @@ namespace fulcrum {
 
 size_t HeapBytes(const SolverLayout& layout) {
     const auto& [groups, colors, bodies, balls, joints, moving, fixed, overflowJoints, overflowMoving, overflowFixed,
-                 jointRows, overflowRows, listedJoints, jointVersion, trees, treesByGroup, colorCount, islands,
-                 version] = layout;
+                 jointRows, overflowRows, listedJoints, jointVersion, trees, treesByGroup, colorCount, islands, version,
+                 loadVersion] = layout;
     return HeapBytes(groups, colors, bodies, balls, joints, moving, fixed, overflowJoints, overflowMoving,
                      overflowFixed, jointRows, overflowRows, listedJoints, jointVersion, trees, treesByGroup,
-                     colorCount, islands, version);
+                     colorCount, islands, version, loadVersion);
 }
 
 }  // namespace fulcrum

@@ -16,12 +16,18 @@ namespace fulcrum {
 // Islands that are solved together. The first group holds the large islands, which are solved
 // color by color on all workers. Each of the others is a handful of small islands that one worker solves from beginning
 // to end, in its own cache and without a barrier. Which islands share a group has no influence on any result.
-// An island that is to be solved with an effort of its own, or that has trees of joints, has a group of its own.
+// An island that is to be solved with an effort of its own, or that has trees of joints, has a group of its own; a
+// large one without trees is solved on all workers, too.
 struct SolverGroup {
+    bool isLarge = false;                     // solved color by color on all workers
     uint32_t colorsBegin = 0, colorsEnd = 0;  // into SolverLayout::colors
     uint32_t bodiesBegin = 0, bodiesEnd = 0;  // into SolverLayout::bodies
     SolverSettings effort{0, 0, 0};           // 0: the system's
-    uint32_t treesBegin = 0, treesEnd = 0;    // into SolverLayout::treesByGroup
+    // Of islands under load: how long the substeps are for which springs are not too stiff, as a part of the system's:
+    // 2^(-(i - 1) / 16). It follows the substeps slowly where they become shorter: springs that were suddenly stiffer
+    // would throw apart what softer ones have let sink. 0: those of the substeps.
+    uint8_t stiffness = 0, wantedStiffness = 0;
+    uint32_t treesBegin = 0, treesEnd = 0;  // into SolverLayout::treesByGroup
     bool HasTrees() const { return treesEnd > treesBegin; }
     bool IsOwn() const { return HasTrees() || !(effort == SolverSettings{0, 0, 0}); }
 };
@@ -94,7 +100,8 @@ struct SolverLayout {
     std::vector<uint32_t> treesByGroup;  // indices of trees
     uint32_t colorCount = 0;             // colors in use
     uint32_t islands = 0;
-    uint64_t version = 0;  // of the coloring that this was made from
+    uint64_t version = 0;      // of the coloring that this was made from
+    uint64_t loadVersion = 0;  // PairStore's
 
     bool HasJoints() const { return balls.count + joints.count > 0 || !overflowJoints.empty(); }
     size_t OverflowCount() const;  // of constraints

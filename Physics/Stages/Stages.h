@@ -33,10 +33,12 @@ void Color(uint32_t bodyCount, std::span<PairChange> changes, PairStore& pairs, 
 void RemoveSeamContacts(const BodyStore& bodies, const ColliderStore& colliders, const ConstraintColoring& coloring,
                         PairStore& pairs, std::vector<uint32_t>& seams, ScratchArena& scratch);
 
-// Sorts the colored constraints into the solver's groups and batches, where they changed. Of the joints it writes what
-// their types say of locks and rows.
-void BuildIslands(const BodyStore& bodies, const ConstraintColoring& coloring, float exactJointLoad, JointStore& joints,
-                  SolverLayout& layout, ScratchArena& scratch);
+// Sorts the colored constraints into the solver's groups and batches, where they changed. Islands
+// under load get more effort (ContactLoads.h); where they lose it, impulses in records are limited. Of the joints it
+// writes what their types say of locks and rows.
+void BuildIslands(const BodyStore& bodies, const ConstraintColoring& coloring, PairStore& pairs,
+                  const SystemSettings& settings, float softness, JointStore& joints, SolverLayout& layout,
+                  ScratchArena& scratch);
 
 // Reads records, poses, masses. Writes the rows of the batches; what types of joints carry from step to step; contacts
 // whose numbers are not finite lose their points.

@@ -1,5 +1,6 @@
 #include <Fulcrum/Physics/Stages/Step.h>
 
+#include <Fulcrum/Physics/Stages/ContactLoads.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/World/BodyPairs.h>
 #include <Fulcrum/Physics/World/Colors.h>
@@ -37,7 +38,9 @@ constexpr Stage kStages[] = {
      }},
     {"BuildIslands",
      [](WorldState& world, StepState& step) {
-         BuildIslands(world.bodies, world.coloring, world.settings.exactJointLoad, world.joints, step.solver,
+         const float softness = SoftnessOf(world.settings, step.substepDt);
+         NoteWeights(world, step.began, softness);
+         BuildIslands(world.bodies, world.coloring, world.pairs, world.settings, softness, world.joints, step.solver,
                       step.scratch);
      }},
     {"Prepare", [](WorldState& world,

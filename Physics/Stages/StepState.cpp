@@ -7,12 +7,12 @@ namespace fulcrum {
 size_t HeapBytes(const WorkerFindings& findings) {
     const auto& [colliders, outsideFatBounds, pairs, deepPairs, deepOverlaps, crowdedOverlaps, surface, surfacePlaces,
                  surfaceLeft, surfaceTouched, more, sweepHits, sensorCandidates, sensorVisits, sensorTests, libccd,
-                 contacts, points, kept, deepest, deepestPair, clamped, frozen, firstFrozen, sleepCandidates, joints] =
-        findings;
+                 contacts, points, kept, deepest, deepestPair, clamped, frozen, firstFrozen, sleepCandidates,
+                 loadsChanged, joints] = findings;
     return HeapBytes(colliders, outsideFatBounds, pairs, deepPairs, deepOverlaps, crowdedOverlaps, surface,
                      surfacePlaces, surfaceLeft, surfaceTouched, more, sweepHits, sensorCandidates, sensorVisits,
                      sensorTests, libccd, contacts, points, kept, deepest, deepestPair, clamped, frozen, firstFrozen,
-                     sleepCandidates, joints);
+                     sleepCandidates, loadsChanged, joints);
 }
 
 size_t HeapBytes(const PairUpdates& updates) {

@@ -44,6 +44,7 @@ struct alignas(64) WorkerFindings {
     uint32_t clamped = 0, frozen = 0;
     uint32_t firstFrozen = ~0u;
     uint32_t sleepCandidates = 0;  // bodies that have been slow for long enough
+    bool loadsChanged = false;     // Store: of some contacts, see ContactLoads.h
     JointFindings joints;          // Prepare
 };
 

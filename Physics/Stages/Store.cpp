@@ -2,6 +2,7 @@
 // freely and exactly. Impulses go back to the records.
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Physics/Stages/BodyLimits.h>
+#include <Fulcrum/Physics/Stages/ContactLoads.h>
 #include <Fulcrum/Physics/Stages/Crowd.h>
 #include <Fulcrum/Physics/Stages/CrowdContacts.h>
 #include <Fulcrum/Physics/Stages/Effort.h>
@@ -12,6 +13,7 @@
 #include <Fulcrum/Physics/World/Waking.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace fulcrum {
 
@@ -108,11 +110,17 @@ void ForgetForces(WorldState& world, uint32_t body) {
     world.bodies.dynamics[body].hasForce = false;
 }
 
+// m/s: what is slower may fall asleep. Of small bodies so many of their radii a second.
+float SlowSpeed(const WorldState& world, uint32_t body) {
+    constexpr float kRadiiPerSecond = 1;
+    return std::min(world.settings.sleep.linearSpeed, kRadiiPerSecond * world.bodies.dynamics[body].outerRadius);
+}
+
 // m/s, of the farthest point of a body that moves by v and turns by w, at most. By its outer ball, or, where that is
 // too fast to sleep, by the corners of its box: a thin rod that turns about its own length hardly moves.
 float FarthestSpeed(const WorldState& world, uint32_t body, const Vector3& v, const Vector3& w) {
     const float linear = Length(v), simple = linear + Length(w) * world.bodies.dynamics[body].outerRadius;
-    const float slow = world.settings.sleep.linearSpeed;
+    const float slow = SlowSpeed(world, body);
     if (simple < slow || linear >= slow) return simple;
     const Bounds& box = world.bodies.cold[body].shape->LocalBounds();
     const Vector3 reach = box.lower.cwiseAbs().cwiseMax(box.upper.cwiseAbs());
@@ -135,7 +143,7 @@ float PulledSpeed(const WorldState& world, uint32_t body, float dt) {
 void MeasureSlowness(WorldState& world, uint32_t body, float speed, float dt, WorkerFindings& findings) {
     BodyDynamics& d = world.bodies.dynamics[body];
     const SleepSettings& sleep = world.settings.sleep;
-    const bool slow = d.allowSleep && !d.crowded && speed < sleep.linearSpeed;
+    const bool slow = d.allowSleep && !d.crowded && speed < SlowSpeed(world, body);
     d.slowSeconds = slow ? d.slowSeconds + dt : 0.0f;
     findings.sleepCandidates += slow && d.slowSeconds >= sleep.seconds;
 }
@@ -218,52 +226,80 @@ void EndBodies(WorldState& world, JobRange range, const StepState& step, SweepSt
     if (waiting > 0) turnTogether();
 }
 
-template <int N, bool kFixedB>
-void StoreBatch(WorldState& world, const ContactBatch<N, kFixedB>& batch, float, float impulseScale) {
-    StoreContacts(batch, world.pairs.records.data(), impulseScale);
-}
-template <int N>
-void StoreBatch(WorldState& world, const JointBatch<N>& batch, float dt, float impulseScale) {
-    StoreJoints(batch, world.joints.records.data(), world.joints.types.data(), world.bodies.states.data(), dt,
-                impulseScale);
-}
+// How the batches of a group are stored.
+struct StoreScale {
+    float dt;               // s, of the step
+    float impulseScale;     // see Effort
+    const SinkScale* sink;  // of contacts; null where nobody asks how deep they sink
+};
 
+template <int N, bool kFixedB>
+void StoreBatch(WorldState& world, const ContactBatch<N, kFixedB>& batch, const StoreScale& scale,
+                WorkerFindings& findings) {
+    StoreContacts(batch, world.pairs.records.data(), scale.impulseScale);
+    if (scale.sink) findings.loadsChanged |= NoteSinks(world, batch, *scale.sink);
+}
 template <int N>
-void StoreBatch(WorldState& world, const BallBatch<N>& batch, float dt, float impulseScale) {
-    StoreJoints(batch, world.joints.records.data(), dt, impulseScale);
+void StoreBatch(WorldState& world, const JointBatch<N>& batch, const StoreScale& scale, WorkerFindings&) {
+    StoreJoints(batch, world.joints.records.data(), world.joints.types.data(), world.bodies.states.data(), scale.dt,
+                scale.impulseScale);
+}
+template <int N>
+void StoreBatch(WorldState& world, const BallBatch<N>& batch, const StoreScale& scale, WorkerFindings&) {
+    StoreJoints(batch, world.joints.records.data(), scale.dt, scale.impulseScale);
 }
 
 template <class Batch>
-void StoreAll(WorldState& world, const std::vector<Batch>& batches, uint32_t begin, uint32_t end, float dt,
-              float impulseScale) {
+void StoreAll(WorldState& world, const std::vector<Batch>& batches, uint32_t begin, uint32_t end,
+              const StoreScale& scale, std::span<WorkerFindings> workers) {
     world.jobs->ParallelFor(end - begin, 16, [&](JobRange range) {
-        for (uint32_t i = range.begin; i < range.end; ++i) StoreBatch(world, batches[begin + i], dt, impulseScale);
+        for (uint32_t i = range.begin; i < range.end; ++i)
+            StoreBatch(world, batches[begin + i], scale, workers[range.worker]);
     });
 }
 
-// Groups lie one after the other: those without an effort of their own are stored together.
-void StoreImpulses(WorldState& world, const StepState& step) {
+// How often loads that became less are noted, in steps.
+constexpr uint64_t kStepsToForget = 16;
+
+// Groups lie one after the other: those without an effort of their own are stored together. Of contacts of large ones
+// nobody asks how deep they sink.
+void StoreImpulses(WorldState& world, const StepState& step, std::span<WorkerFindings> workers) {
     const SolverLayout& layout = step.solver;
+    const SystemSettings& settings = world.settings;
+    const bool notesSinks = settings.accuracy.penetration < std::numeric_limits<float>::infinity();
+    const bool forgets = world.step % kStepsToForget == 0;
+    const float softness = SoftnessOf(settings, step.substepDt);
     uint32_t stored[kBatchKinds] = {};
-    const auto storeTo = [&](auto&& endOf, float impulseScale) {
+    const auto storeTo = [&](auto&& endOf, float impulseScale, uint8_t stiffness, bool isLarge) {
+        const SinkScale sink{.inverseDt = 1 / (step.substepDt * impulseScale),
+                             .softness = softness,
+                             .depthScale = 1 / (impulseScale * impulseScale),
+                             .gravity = settings.gravity,
+                             .stiffness = stiffness,
+                             .forgets = forgets};
+        const StoreScale scale{step.dt, impulseScale, notesSinks && !isLarge ? &sink : nullptr};
         ForEachBatchList(layout, [&](const auto& list, BatchKind kind) {
             const uint32_t end = endOf(list, kind);
-            StoreAll(world, list.batches, stored[kind], end, step.dt, impulseScale);
+            StoreAll(world, list.batches, stored[kind], end, scale, workers);
             stored[kind] = end;
         });
     };
     for (const SolverGroup& group : layout.groups) {
-        if (group.effort == SolverSettings{0, 0, 0} || group.colorsBegin == group.colorsEnd) continue;
-        const ColorBatches& first = layout.colors[group.colorsBegin];
-        const ColorBatches& last = layout.colors[group.colorsEnd - 1];
-        storeTo([&](const auto&, BatchKind kind) { return first.of[kind].begin; }, 1.0f);
+        if (group.colorsBegin == group.colorsEnd) continue;
+        if (!group.isLarge && group.effort == SolverSettings{0, 0, 0}) continue;
+        const ColorBatches &first = layout.colors[group.colorsBegin], &last = layout.colors[group.colorsEnd - 1];
+        storeTo([&](const auto&, BatchKind kind) { return first.of[kind].begin; }, 1.0f, 1, false);
         storeTo([&](const auto&, BatchKind kind) { return last.of[kind].end; },
-                EffortOf(world, step, group).impulseScale);
+                EffortOf(world, step, group).impulseScale, std::max<uint8_t>(group.stiffness, 1), group.isLarge);
     }
-    storeTo([](const auto& list, BatchKind) { return list.count; }, 1.0f);
+    storeTo([](const auto& list, BatchKind) { return list.count; }, 1.0f, 1, false);
     ForEachOverflowList(layout, [&](const auto& batches) {
-        StoreAll(world, batches, 0, static_cast<uint32_t>(batches.size()), step.dt, 1.0f);
+        StoreAll(world, batches, 0, static_cast<uint32_t>(batches.size()), {step.dt, 1.0f, nullptr}, workers);
     });
+    for (WorkerFindings& findings : workers) {
+        world.pairs.loadVersion += findings.loadsChanged;
+        findings.loadsChanged = false;
+    }
 }
 
 // Serial, in the order of the joints.
@@ -286,7 +322,7 @@ void BreakJoints(WorldState& world, std::vector<JointId>& broken) {
 
 uint32_t Store(WorldState& world, const StepState& step, SweepStore& sweeps, std::vector<JointId>& broken,
                std::span<WorkerFindings> workers, StepReport& report) {
-    StoreImpulses(world, step);
+    StoreImpulses(world, step, workers);
     if (KeepsStarts(world)) {
         sweeps.dt = step.dt;
         sweeps.starts.resize(world.bodies.Size());

@@ -40,10 +40,10 @@ void UpdateColliders(WorldState& world, uint32_t body, float dt, WorkerFindings&
         } else {
             tight = TightBounds(*piece.shape, pose, rotation, turn);
         }
-        const float speculative = 0.5f * world.settings.speculativeDistance;
+        const float speculative = 0.5f * SpeculativeDistance(world.settings, *piece.shape);
         if (collider.fat.Contains(BoundsAlong(tight, motion, speculative))) return;
         const float radius = piece.shape->OuterRadius(), distance = Length(motion);
-        const float margin = std::min(world.settings.boundsMargin, kAheadFraction * radius);
+        const float margin = BoundsMargin(world.settings, *piece.shape);
         if (distance > kFastPart * margin) {
             collider.fat = BoundsAlong(tight, motion, speculative);
         } else {

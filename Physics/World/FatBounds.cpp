@@ -40,7 +40,8 @@ Bounds TightBoundsOf(const WorldState& world, uint32_t index) {
 }
 
 void SetFatBounds(WorldState& world, uint32_t index) {
-    const float margin = 0.5f * world.settings.speculativeDistance + world.settings.boundsMargin;
+    const Shape& shape = *world.colliders.shapes[index].shape;
+    const float margin = 0.5f * SpeculativeDistance(world.settings, shape) + BoundsMargin(world.settings, shape);
     world.colliders.colliders[index].fat = BoundsAlong(TightBoundsOf(world, index), Vector3::Zero(), margin);
 }
 

@@ -3,6 +3,8 @@
 
 #include <Fulcrum/Physics/World/WorldState.h>
 
+#include <algorithm>
+
 namespace fulcrum {
 
 // World bounds of a collider where its body is now, without any margin.
@@ -21,6 +23,20 @@ inline Bounds BoundsAlong(const Bounds& tight, const Vector3& motion, float marg
     b.lower = tight.lower + motion.cwiseMin(0.0f) - Vector3::Constant(margin);
     b.upper = tight.upper + motion.cwiseMax(0.0f) + Vector3::Constant(margin);
     return b;
+}
+
+// m, up to the settings': those of small shapes are a part of their size, so that a pile of grains is to its contacts
+// what a pile of boxes is. Fat bounds exceed the shape's by the margin and half the speculative distance.
+inline constexpr float kMarginPart = 0.25f;  // of the outer radius
+inline float SpeculativeDistance(const SystemSettings& settings, const Shape& shape) {
+    return std::min(settings.speculativeDistance, kMarginPart * shape.OuterRadius());
+}
+inline float BoundsMargin(const SystemSettings& settings, const Shape& shape) {
+    return std::min(settings.boundsMargin, kMarginPart * shape.OuterRadius());
+}
+// Of a pair: the smaller shape's.
+inline float SpeculativeDistance(const SystemSettings& settings, const Pair& pair) {
+    return std::min(SpeculativeDistance(settings, *pair.shapeA), SpeculativeDistance(settings, *pair.shapeB));
 }
 
 }  // namespace fulcrum

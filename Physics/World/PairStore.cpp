@@ -42,12 +42,14 @@ uint32_t PairStore::Allocate() {
         pairs.emplace_back();
         records.emplace_back();
         links_.emplace_back();
+        loads.emplace_back();
         if (keepsMassOverrides_) massOverrides.emplace_back();
         active.Reserve(index + 1);
         free_.reserve(pairs.capacity());  // so that removing never allocates
     }
     pairs[index] = {};
     records[index] = {};
+    loads[index] = {};
     pairs[index].exists = true;
     return index;
 }
@@ -140,8 +142,10 @@ void PairStore::Remove(uint32_t index) {
 }
 
 size_t HeapBytes(const PairStore& store) {
-    const auto& [pairs, records, massOverrides, active, table, free, links, heads, size, keepsMassOverrides] = store;
-    return HeapBytes(pairs, records, massOverrides, active, table, free, links, heads, size, keepsMassOverrides);
+    const auto& [pairs, records, massOverrides, loads, loadVersion, active, table, free, links, heads, size,
+                 keepsMassOverrides] = store;
+    return HeapBytes(pairs, records, massOverrides, loads, loadVersion, active, table, free, links, heads, size,
+                     keepsMassOverrides);
 }
 
 }  // namespace fulcrum

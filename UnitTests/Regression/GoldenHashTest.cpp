@@ -12,10 +12,10 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0xa524f6bebb0bcd13ull;
+constexpr uint64_t kGoldenHash = 0xe8cc8c2ff3a76b8full;
 constexpr uint64_t kGoldenHashOfJoints = 0x96e9f3a95a42c36aull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x46dd9841956b0bafull;
-constexpr uint64_t kGoldenHashOfFastBodies = 0x7877391636938078ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0x8ebf313d09169424ull;
+constexpr uint64_t kGoldenHashOfFastBodies = 0xcc53cf15b5100bbaull;
 
 std::string Hex(uint64_t number) {
     char text[24];

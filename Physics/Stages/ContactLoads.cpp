@@ -1,0 +1,106 @@
+#include <Fulcrum/Physics/Stages/ContactLoads.h>
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+namespace fulcrum {
+
+namespace {
+
+constexpr uint32_t kMostLevel = 31;
+
+// 0 below 1, then 1 + floor(log2 x).
+uint32_t LevelOf(float x) {
+    if (!(x >= 1)) return 0;
+    return std::min((std::bit_cast<uint32_t>(x) >> 23) - 126, kMostLevel);
+}
+
+template <int N>
+Wide<N> SquaredSize(const InverseMass<Wide<N>>& inverse) {
+    return Wide<N>(4.5f) * inverse.mass / (inverse.inertia.xx + inverse.inertia.yy + inverse.inertia.zz);
+}
+
+// Bodies with joints have no size of their own; those that were created in each other are no load.
+bool IsLeftOut(const WorldState& world, const Pair& pair) {
+    const auto isLeftOut = [&](uint32_t body) {
+        return world.joints.HasAny(body) || world.bodies.dynamics[body].crowded;
+    };
+    return isLeftOut(pair.bodyA) || isLeftOut(pair.bodyB);
+}
+
+}  // namespace
+
+void NoteWeights(WorldState& world, std::span<const uint32_t> began, float softness) {
+    if (!(world.settings.accuracy.penetration < std::numeric_limits<float>::infinity())) return;
+    for (uint32_t index : began) {
+        const Pair& pair = world.pairs.pairs[index];
+        if (IsLeftOut(world, pair)) continue;
+        const BodyDynamics &a = world.bodies.dynamics[pair.bodyA], &b = world.bodies.dynamics[pair.bodyB];
+        const float* n = world.pairs.records[index].normal;
+        const float down =
+            Dot(Rotate(world.bodies.RotationOf(pair.bodyA), Vector3(n[0], n[1], n[2])), world.settings.gravity);
+        const BodyDynamics &upper = down < 0 ? b : a, &lower = down < 0 ? a : b;
+        if (!(upper.inverseMass > 0)) continue;
+        const BodyDynamics& lighter = lower.inverseMass > upper.inverseMass ? lower : upper;
+        const float sink = std::fabs(down) * lighter.inverseMass / upper.inverseMass * softness;
+        const float part = sink / SizeOf(lighter);
+        if (!(part > world.settings.accuracy.penetration)) continue;
+        const uint32_t level = LevelOf(part / kLeastSink);
+        ContactLoad& load = world.pairs.loads[index];
+        if (level <= load.level) continue;
+        load.level = load.recent = static_cast<uint8_t>(level);
+        ++world.pairs.loadVersion;
+    }
+}
+
+template <int N, bool kFixedB>
+bool NoteSinks(WorldState& world, const ContactBatch<N, kFixedB>& batch, const SinkScale& scale) {
+    using Real = Wide<N>;
+    const Real zero(0.0f);
+    Real impulse(0.0f);
+    for (int i = 0; i < batch.pointCount; ++i) impulse += batch.rows[i].impulse;
+    Real force = impulse * Real(scale.inverseDt), squaredSize = SquaredSize(batch.inverseA);
+    Real inverseMass = batch.inverseA.mass;
+    WideMask<N> unseen = zero > zero;
+    if constexpr (!kFixedB) {
+        inverseMass = Max(batch.inverseA.mass, batch.sideB.inverse.mass);
+        squaredSize = Min(squaredSize, SquaredSize(batch.sideB.inverse));
+        // While it sinks deeper than its impulses explain, it has not yet seen the weight that it is to carry: those of
+        // a heavy body on a light one grow as slowly as the light one takes its speed.
+        Real depth = zero;
+        for (int i = 0; i < batch.pointCount; ++i) {
+            const auto& row = batch.rows[i];
+            depth = Max(depth, Select(row.separation < row.startSeparation, -row.separation, zero));
+        }
+        unseen = depth * Real(scale.depthScale) > Real(2.0f) * force * inverseMass * Real(scale.softness);
+        const Real along = -Dot<Real>(
+            batch.normal, Vec3<Real>(Real(scale.gravity.x()), Real(scale.gravity.y()), Real(scale.gravity.z())));
+        const Real weight = Abs(along) / Select(along > zero, batch.sideB.inverse.mass, batch.inverseA.mass);
+        force = Select(unseen, Max(force, weight), force);
+    }
+    const Real sink = force * inverseMass * Real(scale.softness);
+    const Real part = sink * Real(1 / kLeastSink) / Sqrt(squaredSize);
+    bool changed = false;
+    for (int lane = 0; lane < batch.count; ++lane) {
+        ContactLoad& load = world.pairs.loads[batch.contact[lane]];
+        const uint32_t level = LevelOf(part[lane]),
+                       lasting = unseen[lane] ? level : std::min<uint32_t>(level, load.recent);
+        load.recent = static_cast<uint8_t>(level);
+        load.stiffness = scale.stiffness;
+        if (lasting <= load.level && !(scale.forgets && lasting + 1 < load.level)) continue;
+        const Pair& pair = world.pairs.pairs[batch.contact[lane]];
+        if (IsLeftOut(world, pair)) continue;
+        load.level = static_cast<uint8_t>(lasting > load.level ? lasting : load.level - 1);
+        changed = true;
+    }
+    return changed;
+}
+
+#define FULCRUM_INSTANTIATE(lanes, fixedB) \
+    template bool NoteSinks(WorldState&, const ContactBatch<lanes, fixedB>&, const SinkScale&);
+FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, false)
+FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, true)
+#undef FULCRUM_INSTANTIATE
+
+}  // namespace fulcrum

@@ -1,0 +1,58 @@
+// How much the contacts of small islands carry, by which FindIslands gives an island under load more substeps. Measured
+// by Store.
+#pragma once
+
+#include <Fulcrum/Constraints/Contacts/ContactBatch.h>
+#include <Fulcrum/Physics/Stages/Effort.h>
+#include <Fulcrum/Physics/World/WorldState.h>
+
+#include <cmath>
+
+namespace fulcrum {
+
+// The sink of a contact: how deep its bodies overlap at rest because its rows are soft. A normal force F that presses a
+// body of mass m sinks it by F / (m w^2), w = 2 pi StiffestFrequency; of the two bodies the lighter one counts. It
+// falls with the square of the substep.
+struct SinkScale {
+    float inverseDt;    // 1/s, of the substeps in which the batch was solved
+    float softness;     // s^2: 1 / w^2 for the system's substeps
+    float depthScale;   // (substep of the system's settings / that of the batch)^2: a depth times this is the system's
+    Vector3 gravity;    // m/s2
+    uint8_t stiffness;  // see ContactLoad
+    bool forgets;       // loads that are less than they were are noted: in few steps, so that no effort comes and goes
+};
+
+// s^2, see SinkScale.
+inline float SoftnessOf(const SystemSettings& settings, float substepDt) {
+    const float w = 6.28318531f * std::min(settings.contactFrequency, StiffestFrequency(settings.solver, substepDt));
+    return 1.0f / (w * w);
+}
+
+// Sinks are noted as powers of two of the smaller body's size (SizeOf): level i is below 2^i * kLeastSink.
+inline constexpr float kLeastSink = 0x1p-12f;
+inline float SinkOfLevel(uint32_t level) { return std::ldexp(kLeastSink, static_cast<int>(level)); }
+
+// m: half the edge of a cube with the same mass and inertia. Infinite
+// where rotation is locked.
+inline float SizeOf(const BodyDynamics& body) {
+    const float* inertia = body.inverseInertia;
+    return std::sqrt(4.5f * body.inverseMass / (inertia[0] + inertia[1] + inertia[2]));
+}
+
+// Whether its size is below that many meters.
+inline bool IsSmaller(const BodyDynamics& body, float size) {
+    const float* inertia = body.inverseInertia;
+    return 4.5f * body.inverseMass < size * size * (inertia[0] + inertia[1] + inertia[2]);
+}
+
+// Notes the weights of bodies that have come to lie on others: the impulses of such contacts tell only after many steps
+// what they are to carry, the more the lighter the lower body is.
+void NoteWeights(WorldState& world, std::span<const uint32_t> began, float softness);
+
+// Notes the sinks of a batch in the loads of its pairs. Where loads go up and down from one step to the next, as in
+// impacts, the smaller one counts. Contacts of bodies with joints, which have no size of their own, are left out.
+// Returns whether some level has changed.
+template <int N, bool kFixedB>
+bool NoteSinks(WorldState& world, const ContactBatch<N, kFixedB>& batch, const SinkScale& scale);
+
+}  // namespace fulcrum

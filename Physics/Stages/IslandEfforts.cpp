@@ -1,0 +1,239 @@
+#include <Fulcrum/Physics/Stages/IslandEfforts.h>
+
+#include <Fulcrum/Physics/Stages/ContactLoads.h>
+#include <Fulcrum/Physics/Stages/FindIslands.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fulcrum {
+
+namespace {
+
+using Entry = ConstraintColoring::Entry;
+using Kind = ConstraintColoring::Kind;
+
+void Raise(uint8_t& number, int to) { number = static_cast<uint8_t>(std::max<int>(number, to)); }
+void Raise(IslandEffort& effort, const SolverSettings& to) {
+    Raise(effort.substeps, to.substeps);
+    Raise(effort.velocityIterations, to.velocityIterations);
+    Raise(effort.positionIterations, to.positionIterations);
+}
+
+// Where the centers of mass of an island are, seen from one of them, and their masses.
+struct Extent {
+    float count = 0;
+    float low = 0, high = 0;                     // m, against gravity
+    float x = 0, z = 0, xx = 0, xz = 0, zz = 0;  // sums across it
+    float mass = 0;                              // kg, of all
+    uint32_t lightest = ~0u;                     // body
+    bool hasJoints = false;
+
+    void Add(float up, float along, float across) {
+        low = std::min(low, up);
+        high = std::max(high, up);
+        count += 1;
+        x += along;
+        z += across;
+        xx += along * along;
+        xz += along * across;
+        zz += across * across;
+    }
+    float Height() const { return high - low; }
+    // m^2: the squares of half the widths of the narrower and of the wider side, were the centers spread evenly.
+    std::pair<float, float> SquaredHalfWidths() const {
+        const float n = 1 / count, a = n * xx - n * n * x * x, b = n * xz - n * n * x * z, d = n * zz - n * n * z * z;
+        const float mean = 0.5f * (a + d), half = 0.5f * (a - d), radius = std::sqrt(half * half + b * b);
+        return {3 * std::max(mean - radius, 0.0f), 3 * (mean + radius)};
+    }
+};
+
+// A column of n boxes buckles under its own weight where its contacts sink by s at its foot and n s > 0.22 a, with a
+// half an edge (measured; as an elastic column it does so at a multiple of the stiffness over the weight). Half of
+// that, at the usual target.
+constexpr float kBuckling = 12;
+// What is that many times as high as half its width is a column: what is at its foot carries all of it.
+constexpr float kSlender = 8;
+// Bodies of large islands are held by an effort at which so many weights sink them as far as they may.
+constexpr float kWeights = 2;
+// Constraints of an island that may be high enough to buckle.
+constexpr uint32_t kLeastHigh = 4;
+// Beyond the most substeps loads ask for iterations: so many.
+constexpr int kMostIterations = 4;
+
+struct Need {
+    float need = 0;         // how much too deep the contacts of an island sink with the system's settings; 1: not
+    uint8_t stiffness = 0;  // the least of those under load in the last step; 0: none was
+};
+
+class LoadEfforts {
+public:
+    LoadEfforts(const BodyStore& bodies, const ConstraintColoring& coloring, const PairStore& pairs,
+                const SystemSettings& settings, std::span<const uint32_t> sizes, uint32_t mostLoaded, UnionFind& sets,
+                float softness, ScratchArena& scratch)
+        : bodies_(bodies),
+          coloring_(coloring),
+          pairs_(pairs),
+          settings_(settings),
+          sizes_(sizes),
+          mostLoaded_(mostLoaded),
+          sets_(sets),
+          softness_(softness),
+          places_(scratch.Allocate<uint32_t>(bodies.awake.size())),
+          needs_(scratch.Allocate<Need>(bodies.awake.size())) {
+        std::fill(needs_.begin(), needs_.end(), Need{});
+        uint32_t count = 0;
+        for (uint32_t i = 0; i < places_.size(); ++i) {
+            const bool isHigh = sizes[i] >= kLeastHigh && sizes[i] <= mostLoaded;  // sizes: 0 but for roots
+            places_[i] = isHigh ? count++ : kNone;
+        }
+        extents_ = scratch.Allocate<Extent>(count);
+        std::fill(extents_.begin(), extents_.end(), Extent{});
+    }
+
+    // By root.
+    std::span<const Need> Find() {
+        FindExtents();
+        for (Kind kind : {Kind::Moving, Kind::Fixed})
+            VisitEntries(coloring_, kind, [&](uint32_t, const Entry& entry) { AddNeed(entry); });
+        for (uint32_t i = 0; i < places_.size(); ++i)
+            if (places_[i] != kNone) AddNeedOfColumn(i, extents_[places_[i]]);
+        AddNeedsOfLarge();
+        return needs_;
+    }
+
+private:
+    uint32_t RootOf(uint32_t body) { return sets_.Find(bodies_.cold[body].awakePlace); }
+
+    void FindExtents() {
+        const Vector3 g = settings_.gravity;
+        const float length = Length(g);
+        if (!(length > 0)) return;
+        const Vector3 up = g * (-1 / length);
+        const Vector3 along = Normalized(Cross(up, std::fabs(up.x()) < 0.5f ? Vector3(1, 0, 0) : Vector3(0, 1, 0)));
+        const Vector3 across = Cross(up, along);
+        for (uint32_t i = 0; i < bodies_.awake.size(); ++i) {
+            const uint32_t root = sets_.Find(i);
+            if (places_[root] == kNone) continue;
+            const Position from = bodies_.CenterOf(bodies_.awake[i]) - bodies_.CenterOf(bodies_.awake[root]);
+            const Vector3 p(static_cast<float>(from.x()), static_cast<float>(from.y()), static_cast<float>(from.z()));
+            Extent& extent = extents_[places_[root]];
+            extent.Add(Dot(p, up), Dot(p, along), Dot(p, across));
+            const uint32_t body = bodies_.awake[i];
+            const float inverseMass = bodies_.dynamics[body].inverseMass;
+            if (!(inverseMass > 0)) continue;
+            extent.mass += 1 / inverseMass;
+            if (extent.lightest == ~0u || inverseMass > bodies_.dynamics[extent.lightest].inverseMass)
+                extent.lightest = body;
+        }
+        VisitEntries(coloring_, Kind::Joint, [&](uint32_t, const Entry& entry) {
+            const uint32_t place = places_[RootOf(MovingBodyOf(entry))];
+            if (place != kNone) extents_[place].hasJoints = true;
+        });
+    }
+
+    // How many times too deep a contact sinks, a part of the size, m, of its bodies, in an island of this extent.
+    float NeedOf(float sink, float size, const Extent& extent) const {
+        if (!(extent.count > 0)) return sink / settings_.accuracy.penetration;
+        const float width = size * size + extent.SquaredHalfWidths().first;
+        return sink / settings_.accuracy.penetration * std::max(1.0f, size * extent.Height() / (kBuckling * width));
+    }
+
+    // Of large islands only what small bodies ask for by their own weight: the load of others costs too much.
+    void AddNeedsOfLarge() {
+        const float least = kWeights * Length(settings_.gravity) * softness_ / settings_.accuracy.penetration;
+        for (uint32_t i = 0; i < bodies_.awake.size(); ++i) {
+            const BodyDynamics& body = bodies_.dynamics[bodies_.awake[i]];
+            if (!IsSmaller(body, least)) continue;
+            const uint32_t root = sets_.Find(i);
+            if (sizes_[root] > mostLoaded_) needs_[root].need = std::max(needs_[root].need, least / SizeOf(body));
+        }
+    }
+
+    // The impulses of a column take as many steps as it has bodies to tell what its foot carries.
+    void AddNeedOfColumn(uint32_t root, const Extent& extent) {
+        if (extent.hasJoints || extent.lightest == ~0u) return;
+        const BodyDynamics& lightest = bodies_.dynamics[extent.lightest];
+        const float size = SizeOf(lightest), height = extent.Height();
+        if (!(height * height > kSlender * kSlender * (size * size + extent.SquaredHalfWidths().second))) return;
+        const float sink = extent.mass * lightest.inverseMass * Length(settings_.gravity) * softness_ / size;
+        needs_[root].need = std::max(needs_[root].need, NeedOf(sink, size, extent));
+    }
+
+    void AddNeed(const Entry& entry) {
+        const ContactLoad& load = pairs_.loads[entry.constraint];
+        if (load.level == 0 && load.recent == 0) return;
+        const uint32_t root = RootOf(MovingBodyOf(entry));
+        if (sizes_[root] > mostLoaded_) return;
+        float size = std::numeric_limits<float>::infinity();
+        if (!entry.stillA) size = std::min(size, SizeOf(bodies_.dynamics[entry.bodyA]));
+        if (!entry.stillB) size = std::min(size, SizeOf(bodies_.dynamics[entry.bodyB]));
+        const Extent& extent = places_[root] == kNone ? kLow : extents_[places_[root]];
+        Need& most = needs_[root];
+        if (load.level > 0) most.need = std::max(most.need, NeedOf(SinkOfLevel(load.level), size, extent));
+        // What is pressed hard now, be it by an impact, was so with the springs of before.
+        const bool isNew = load.stiffness == 0, isSofter = most.stiffness == 0 || load.stiffness < most.stiffness;
+        if (!isNew && isSofter && NeedOf(SinkOfLevel(std::max(load.level, load.recent)), size, extent) > 1)
+            most.stiffness = load.stiffness;
+    }
+
+    const BodyStore& bodies_;
+    const ConstraintColoring& coloring_;
+    const PairStore& pairs_;
+    const SystemSettings& settings_;
+    std::span<const uint32_t> sizes_;
+    uint32_t mostLoaded_;
+    UnionFind& sets_;
+    float softness_;
+    static constexpr uint32_t kNone = ~0u;
+    static constexpr Extent kLow{};
+    std::span<uint32_t> places_;  // by root, in extents_; kNone: what it carries alone counts
+    std::span<Extent> extents_;
+    std::span<Need> needs_;
+};
+
+// The effort at which contacts sink `need` times less than with the system's settings: substeps, with whose square
+// sinks fall, then passes. In powers of two, so that efforts seldom change.
+SolverSettings EffortFor(float need, const SystemSettings& settings) {
+    const int mostSubsteps = std::max(settings.accuracy.mostSubsteps, settings.solver.substeps);
+    SolverSettings effort = settings.solver;
+    for (float factor = 1; need > 1 && effort.substeps < mostSubsteps; need *= 0.5f) {
+        factor *= 1.41421356f;
+        const int substeps = static_cast<int>(std::ceil(factor * static_cast<float>(settings.solver.substeps) - 0.01f));
+        effort.substeps = std::min(substeps, mostSubsteps);
+    }
+    for (; need > 1 && effort.velocityIterations < kMostIterations; need *= 0.5f) {
+        effort.velocityIterations *= 2;
+        effort.positionIterations = std::max(effort.positionIterations, effort.velocityIterations);
+    }
+    return effort;
+}
+
+}  // namespace
+
+std::span<const IslandEffort> FindEfforts(const BodyStore& bodies, const ConstraintColoring& coloring,
+                                          const JointStore& joints, const PairStore& pairs,
+                                          const SystemSettings& settings, std::span<const uint32_t> sizes,
+                                          uint32_t mostLoaded, float softness, UnionFind& sets, ScratchArena& scratch) {
+    const size_t count = bodies.awake.size();
+    std::span<IslandEffort> efforts = scratch.Allocate<IslandEffort>(count);
+    std::fill(efforts.begin(), efforts.end(), IslandEffort{});
+    VisitEntries(coloring, Kind::Joint, [&](uint32_t, const Entry& entry) {
+        const Joint& joint = joints.joints[entry.constraint];
+        if (!joint.HasOwnEffort()) return;
+        Raise(efforts[sets.Find(bodies.cold[MovingBodyOf(entry)].awakePlace)], joint.effort);
+    });
+    if (!(settings.accuracy.penetration < std::numeric_limits<float>::infinity())) return efforts;
+    const std::span<const Need> needs =
+        LoadEfforts(bodies, coloring, pairs, settings, sizes, mostLoaded, sets, softness, scratch).Find();
+    for (size_t i = 0; i < count; ++i) {
+        if (!(needs[i].need > 1)) continue;
+        Raise(efforts[i], EffortFor(needs[i].need, settings));
+        efforts[i].isLoaded = true;
+        efforts[i].stiffness = needs[i].stiffness;
+    }
+    return efforts;
+}
+
+}  // namespace fulcrum
