@@ -7,6 +7,7 @@
 #include <Fulcrum/Physics/World/Filters.h>
 #include <Fulcrum/Physics/World/UnionFind.h>
 
+#include <algorithm>
 #include <cstring>
 
 namespace fulcrum {
@@ -59,8 +60,13 @@ Status PhysicsSystem::SetSettings(const SystemSettings& settings) {
     // What one method notes of a pair means nothing to the other.
     if (settings.narrowPhase != world_->settings.narrowPhase)
         for (Pair& pair : world_->pairs.pairs) pair.cache = {};
+    const bool isOtherTarget = settings.accuracy.penetration != world_->settings.accuracy.penetration;
     world_->settings = settings;
-    ++world_->pairs.loadVersion;  // efforts follow the settings
+    // So do joints that are solved as trees.
+    world_->coloring.Invalidate();
+    // Efforts follow the settings; loads are parts of what they may be.
+    ++world_->pairs.loadVersion;
+    if (isOtherTarget) std::ranges::fill(world_->pairs.loads, ContactLoad{});
     if (settings.layerCollides != before) RefilterLayers(*world_, before);
     for (const Sensor& sensor : world_->sensors.sensors) world_->sensors.changed.push_back(sensor.id.index);
     return Done{};

@@ -93,6 +93,14 @@ struct SolverSettings {
     // m, 0..1000, so that what rests keeps its contacts: without any, walls creep sideways.
     float baumgarte = 0.2f;
     float baumgarteSlop = 0.001f;
+
+    // Efforts from which to choose; errors fall with the square of the substeps. Docs/Accuracy.md says what stands.
+    static constexpr SolverSettings Fast() { return {.substeps = 2}; }
+    static constexpr SolverSettings Balanced() { return {}; }  // the default
+    static constexpr SolverSettings Accurate() { return {.substeps = 16}; }
+    static constexpr SolverSettings Reference() {  // structures obey statics within 3 %
+        return {.substeps = 64, .velocityIterations = 4, .positionIterations = 4};
+    }
     friend bool operator==(const SolverSettings&, const SolverSettings&) = default;
 };
 
@@ -143,6 +151,9 @@ struct AccuracyTarget {
     // a margin of four at 0.004, in inverse proportion to this.
     float penetration = 0.004f;
     int mostSubsteps = 64;  // 1..64
+    // Of islands with 768 constraints and more, too. Else, for these, by the weight of small bodies alone: few of a
+    // large pile carry much, and all of it is solved with the same effort.
+    bool largeIslands = false;
 };
 
 struct SystemSettings {

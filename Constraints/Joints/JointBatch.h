@@ -155,9 +155,10 @@ struct JointBatch {
     }
 };
 
-// Rotation vectors of a step up to this, rad, are put together as rotations, longer ones added.
+// Rotation vectors of a step up to this, rad, are put together as rotations, longer ones added: at a full turn their
+// sum has no derivative.
 namespace joints {
-inline constexpr float kFarthestSeries = 1.0f;
+inline constexpr float kFarthestTurn = 5.5f;
 }
 
 struct JointSolveSettings {

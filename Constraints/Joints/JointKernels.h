@@ -427,16 +427,30 @@ FULCRUM_FORCE_INLINE void AddLockMotion(JointBatch<N>& batch, Twist<Wide<N>>& a,
     if constexpr (kLinear != LinearLock::None) add(LinearPart<kLinear>(batch), x.linear);
 }
 
-// The rows' errors and directions after the bodies moved on. Displacements are counted in pieces: of a body that turns
-// fast their sum is no rotation, and a direction that stayed behind would come to act against the locks.
+// The rows' errors and directions after the bodies moved on. Displacements are counted in pieces: a direction
+// that stayed behind would come to act against the locks.
 template <int N>
 FULCRUM_FORCE_INLINE void MoveRows(JointBatch<N>& batch, const Twist<Wide<N>>& a, const Twist<Wide<N>>& b) {
     using Real = Wide<N>;
-    // The rotation from one rotation vector to another, to the second order where those are put together by a series.
+    // The rotation from one rotation vector to another: the left Jacobian of rotations times their difference.
     const auto between = [](const Vec3<Real>& from, const Vec3<Real>& to) {
-        const Real half =
-            Select(Dot<Real>(from, from) > Real(kFarthestSeries * kFarthestSeries), Real(0.0f), Real(0.5f));
-        return Vec3<Real>(to - from - Cross<Real>(to, from) * half);
+        const Vec3<Real> across = Cross<Real>(from, to);
+        const Real squared = Dot<Real>(from, from);
+        // (1 - cos t) / t^2 and (t - sin t) / t^3 for an angle t.
+        Real first = Real(0.5f) - squared * (Real(1.0f / 24) - squared * Real(1.0f / 720));
+        Real second = Real(1.0f / 6) - squared * (Real(1.0f / 120) - squared * Real(1.0f / 5040));
+        const auto isFar = squared > Real(0.25f);
+        if (isFar.Any()) [[unlikely]] {
+            const Real angle = Sqrt(squared), per = Real(1.0f) / Max(squared, Real(0.25f));
+            const SineCosine<Real> at = SinCos<Real>(Min(angle, Real(kFarthestTurn)));
+            first = Select(isFar, (Real(1.0f) - at.cosine) * per, first);
+            second = Select(isFar, (angle - at.sine) * per / Max(angle, Real(0.5f)), second);
+        }
+        const auto isUsual = squared <= Real(kFarthestTurn * kFarthestTurn);
+        const Vec3<Real> more = across * first + Cross<Real>(from, across) * second;
+        Vec3<Real> sum = to - from;
+        for (int k = 0; k < 3; ++k) sum[k] = Select(isUsual, Real(sum[k] + more[k]), Real(sum[k]));
+        return sum;
     };
     const Twist<Real> moreA{a.linear - batch.wayA.linear, between(batch.wayA.angular, a.angular)};
     const Twist<Real> moreB{b.linear - batch.wayB.linear, between(batch.wayB.angular, b.angular)};

@@ -161,7 +161,7 @@ void BuildIslands(const BodyStore& bodies, const ConstraintColoring& coloring, P
     layout.loadVersion = pairs.loadVersion;
     const std::span<const SolvedContact> underLoad = ContactsUnderLoad(layout, scratch);
     ForEachBatchList(layout, [](auto& list, BatchKind) { list.count = 0; });
-    FindJointTrees(bodies, coloring, joints, settings.exactJointLoad, layout.trees, scratch);
+    FindJointTrees(bodies, coloring, joints, settings, layout.trees, scratch);
     const Islands islands =
         FindIslands(bodies, coloring, joints, pairs, settings, softness, layout.trees, layout.groups, scratch);
     layout.islands = islands.islands;

@@ -46,7 +46,7 @@ void NoteWeights(WorldState& world, std::span<const uint32_t> began, float softn
         const float sink = std::fabs(down) * lighter.inverseMass / upper.inverseMass * softness;
         const float part = sink / SizeOf(lighter);
         if (!(part > world.settings.accuracy.penetration)) continue;
-        const uint32_t level = LevelOf(part / kLeastSink);
+        const uint32_t level = LevelOf(8 * part / world.settings.accuracy.penetration);
         ContactLoad& load = world.pairs.loads[index];
         if (level <= load.level) continue;
         load.level = load.recent = static_cast<uint8_t>(level);
@@ -80,7 +80,8 @@ bool NoteSinks(WorldState& world, const ContactBatch<N, kFixedB>& batch, const S
         force = Select(unseen, Max(force, weight), force);
     }
     const Real sink = force * inverseMass * Real(scale.softness);
-    const Real part = sink * Real(1 / kLeastSink) / Sqrt(squaredSize);
+    const Real part = sink * Real(scale.perLevel) / Sqrt(squaredSize);
+    if (!scale.forgets && !(part >= Real(1.0f)).Any()) return false;
     bool changed = false;
     for (int lane = 0; lane < batch.count; ++lane) {
         ContactLoad& load = world.pairs.loads[batch.contact[lane]];

@@ -14,6 +14,7 @@ namespace fulcrum {
 // body of mass m sinks it by F / (m w^2), w = 2 pi StiffestFrequency; of the two bodies the lighter one counts. It
 // falls with the square of the substep.
 struct SinkScale {
+    float perLevel;     // 1 / the largest sink of level 0, a part of the size
     float inverseDt;    // 1/s, of the substeps in which the batch was solved
     float softness;     // s^2: 1 / w^2 for the system's substeps
     float depthScale;   // (substep of the system's settings / that of the batch)^2: a depth times this is the system's
@@ -28,9 +29,11 @@ inline float SoftnessOf(const SystemSettings& settings, float substepDt) {
     return 1.0f / (w * w);
 }
 
-// Sinks are noted as powers of two of the smaller body's size (SizeOf): level i is below 2^i * kLeastSink.
-inline constexpr float kLeastSink = 0x1p-12f;
-inline float SinkOfLevel(uint32_t level) { return std::ldexp(kLeastSink, static_cast<int>(level)); }
+// Sinks are noted as powers of two of an eighth of what they may be, AccuracyTarget::penetration: level i is below 2^i
+// of it.
+inline float SinkOfLevel(uint32_t level, const AccuracyTarget& accuracy) {
+    return std::ldexp(0.125f * accuracy.penetration, static_cast<int>(level));
+}
 
 // m: half the edge of a cube with the same mass and inertia. Infinite
 // where rotation is locked.

@@ -22,6 +22,10 @@ using Kind = ConstraintColoring::Kind;
 // must resolve that, or the chain whips itself apart, however exact its joints. Measured on 16 links of 0.5 m.
 int SubstepsUnder(float load) { return std::min(static_cast<int>(std::ceil(0.8f * std::sqrt(load))), 64); }
 
+int SubstepsOf(float rope, int usual) {
+    return std::min(static_cast<int>(std::ceil(rope * static_cast<float>(usual))), 64);
+}
+
 // usual: the system's substeps.
 void SetEffort(SolverGroup& group, const IslandEffort& effort, int least, int usual) {
     group.effort = {std::max<int>(effort.substeps, least), effort.velocityIterations, effort.positionIterations};
@@ -45,13 +49,17 @@ Islands FindIslands(const BodyStore& bodies, const ConstraintColoring& coloring,
     };
     VisitEntries(coloring, Kind::Moving, unite);
     VisitEntries(coloring, Kind::Joint, unite);
-    // A body beyond all colors makes its island a large one.
+    const std::span<bool> overflows = scratch.Allocate<bool>(coloring.HasOverflow() ? count : 0);
+    std::fill(overflows.begin(), overflows.end(), false);
     for (Kind kind : {Kind::Moving, Kind::Fixed, Kind::Joint})
         VisitEntries(coloring, kind, [&](uint32_t c, const Entry& entry) {
-            sizes[sets.Find(placeOf(MovingBodyOf(entry)))] += c == kColors ? kLargeIsland : 1;
+            const uint32_t root = sets.Find(placeOf(MovingBodyOf(entry)));
+            ++sizes[root];
+            if (c == kColors) overflows[root] = true;
         });
     const std::span<const IslandEffort> efforts =
-        FindEfforts(bodies, coloring, joints, pairs, settings, sizes, kLargeIsland - 1, softness, sets, scratch);
+        FindEfforts(bodies, coloring, joints, pairs, settings, sizes,
+                    settings.accuracy.largeIslands ? ~0u : kLargeIsland - 1, softness, sets, scratch);
     std::span<float> treeLoads = scratch.Allocate<float>(count);
     std::fill(treeLoads.begin(), treeLoads.end(), 0.0f);
     for (const JointTrees::Tree& tree : trees.trees) {
@@ -59,11 +67,19 @@ Islands FindIslands(const BodyStore& bodies, const ConstraintColoring& coloring,
         load = std::max(load, tree.load);
     }
 
+    std::span<float> ropeSubsteps = scratch.Allocate<float>(trees.ropes.empty() ? 0 : count);
+    std::fill(ropeSubsteps.begin(), ropeSubsteps.end(), 0.0f);
+    for (const JointTrees::Rope& rope : trees.ropes) {
+        float& substeps = ropeSubsteps[sets.Find(placeOf(rope.body))];
+        substeps = std::max(substeps, rope.substeps);
+    }
+
     Islands result;
     result.groupOf = scratch.Allocate<uint32_t>(count);
     groups.assign(1, {.isLarge = true});
     uint32_t inGroup = kSmallGroup;  // so that the first small island opens a group
     uint32_t open = 0;
+    IslandEffort overflowing;
     for (uint32_t i = 0; i < count; ++i) {
         const uint32_t root = sets.Find(i);
         if (root != i) {
@@ -73,18 +89,24 @@ Islands FindIslands(const BodyStore& bodies, const ConstraintColoring& coloring,
         result.groupOf[i] = Islands::kNone;
         if (sizes[i] == 0) continue;
         ++result.islands;
-        const bool large = sizes[i] >= kLargeIsland, overflows = coloring.HasOverflow() && large;
+        // What fits no color is solved with the first group.
+        const bool isOverflowing = !overflows.empty() && overflows[i];
+        const bool large = sizes[i] >= kLargeIsland || isOverflowing;
         const bool hasTree = treeLoads[i] > 0;
         const IslandEffort& effort = efforts[i];
+        const float rope = large || ropeSubsteps.empty() ? 0 : ropeSubsteps[i];
         // One worker solves an island of its own: too slow for a large one that did not ask for it.
-        if (!overflows && (!effort.IsUsual() || (hasTree && !large))) {
+        if (!isOverflowing && (!effort.IsUsual() || rope > 0 || (hasTree && !large))) {
             result.groupOf[i] = static_cast<uint32_t>(groups.size());
             groups.push_back({.isLarge = large && !hasTree});
-            SetEffort(groups.back(), effort, hasTree ? SubstepsUnder(treeLoads[i]) : 0, settings.solver.substeps);
+            const int usual = settings.solver.substeps,
+                      least = std::max(hasTree ? SubstepsUnder(treeLoads[i]) : 0, SubstepsOf(rope, usual));
+            SetEffort(groups.back(), effort, least, usual);
             continue;
         }
-        if (sizes[i] >= kLargeIsland) {
+        if (large) {
             result.groupOf[i] = Islands::kLargeGroup;
+            if (isOverflowing && !effort.IsUsual()) Raise(overflowing, effort);
             continue;
         }
         if (inGroup >= kSmallGroup) {
@@ -95,6 +117,7 @@ Islands FindIslands(const BodyStore& bodies, const ConstraintColoring& coloring,
         result.groupOf[i] = open;
         inGroup += sizes[i];
     }
+    if (!overflowing.IsUsual()) SetEffort(groups[Islands::kLargeGroup], overflowing, 0, settings.solver.substeps);
     result.groups = static_cast<uint32_t>(groups.size());
     return result;
 }

@@ -130,15 +130,21 @@ void IntegrateVelocity(WorldState& world, uint32_t body, float h, bool again, Wo
     velocity.Write(1);
 }
 
-// Rotation vectors of one rotation after another, rad, put together to the third order (the series of Baker, Campbell
-// and Hausdorff), as far as they are small; this is what comes to their sum. Without it a step's error is that of the
-// whole step, however many substeps there are.
+// By how much the rotation vector, rad, of one rotation and a small one after it exceeds their sum, to the second order
+// of the latter (the series of Baker, Campbell and Hausdorff, with all terms of the first order in it: the inverse of
+// the left Jacobian of rotations). Without it a step's error is that of the whole step, however many substeps there
+// are. half: HalfTurnOf `before`.
 template <class Real>
-FULCRUM_FORCE_INLINE Vec3<Real> BchCorrection(const Vec3<Real>& before, const Vec3<Real>& turn) {
+FULCRUM_FORCE_INLINE Vec3<Real> CompositionCorrection(const Vec3<Real>& before, const Vec2<Real>& half,
+                                                      const Vec3<Real>& turn) {
+    // (1 - (t / 2) cot(t / 2)) / t^2 for an angle t.
+    const Real squared = Dot<Real>(before, before);
+    const Real series = Real(1.0f / 12) + squared * (Real(1.0f / 720) + squared * Real(1.0f / 30240));
+    const Real closed = (Real(1.0f) - Real(0.5f) * half.y() / half.x()) / Max(squared, Real(0.1f));
+    const Real gamma = Select(squared < Real(0.1f), series, closed);
     const Vec3<Real> across = Cross<Real>(turn, before);
-    return across * Real(0.5f) + Cross<Real>(Vec3<Real>(turn - before), across) * Real(1.0f / 12.0f);
+    return across * Real(0.5f) - Cross<Real>(before, across) * gamma + Cross<Real>(turn, across) * Real(1.0f / 12);
 }
-constexpr float kFarthestSquared = joints::kFarthestSeries * joints::kFarthestSeries;
 
 // Moves bodies by the motion for h seconds. Of jointed ones the rotation is put together with that before.
 template <class Real, class Mask>
@@ -148,8 +154,10 @@ FULCRUM_FORCE_INLINE Vec3<Real> Displace(Rows<Real>& displacement, const Twist<R
     Vec3<Real> rotation = displacement.Second();
     const bool anyJointed = Any(isJointed);
     if (anyJointed) {
-        const Vec3<Real> more = BchCorrection<Real>(rotation, turn);
-        const auto isFar = Dot<Real>(rotation, rotation) > Real(kFarthestSquared);
+        const Vec3<Real> more = CompositionCorrection<Real>(
+            rotation, Vec2<Real>(displacement.at[BodyState::kHalfTurn], displacement.at[BodyState::kHalfTurn + 1]),
+            turn);
+        const auto isFar = Dot<Real>(rotation, rotation) > Real(joints::kFarthestTurn * joints::kFarthestTurn);
         for (int k = 0; k < 3; ++k) {
             const Real composed = Select(isFar, Real(rotation[k]), Real(rotation[k] + more[k]));
             rotation[k] = Select(isJointed, composed, Real(rotation[k]));
@@ -173,7 +181,8 @@ FULCRUM_FORCE_INLINE void TurnInertia(BodyStore& bodies, const uint32_t (&index)
     Rows<Real> unconstrained(index, [&](uint32_t body) { return bodies.unconstrained[body].row; });
     const Quat<Real> rotation = RotationFromVector<Real>(turn) * QuaternionAt<BodyPose::kRotation>(pose.at);
     const Mat3<Real> axes = ToMatrix<Real>(rotation * QuaternionAt<BodyDynamics::kPrincipalAxes>(inertia.at));
-    const Vec3<Real> change = AddGyroscopicTorque<Real>(inertia.First(), axes, w, h) - w;
+    const Vec3<Real> change =
+        AddGyroscopicTorque<Real>(inertia.First(), axes, w, h, Vec3<Real>(w - unconstrained.Second())) - w;
     for (int k = 0; k < 3; ++k) w[k] = Select(feels, Real(w[k] + change[k]), Real(w[k]));
     unconstrained.Set(unconstrained.First(), unconstrained.Second() + change);
     unconstrained.Write(count, feels);

@@ -171,10 +171,12 @@ private:
         if (!entry.stillB) size = std::min(size, SizeOf(bodies_.dynamics[entry.bodyB]));
         const Extent& extent = places_[root] == kNone ? kLow : extents_[places_[root]];
         Need& most = needs_[root];
-        if (load.level > 0) most.need = std::max(most.need, NeedOf(SinkOfLevel(load.level), size, extent));
+        if (load.level > 0)
+            most.need = std::max(most.need, NeedOf(SinkOfLevel(load.level, settings_.accuracy), size, extent));
         // What is pressed hard now, be it by an impact, was so with the springs of before.
         const bool isNew = load.stiffness == 0, isSofter = most.stiffness == 0 || load.stiffness < most.stiffness;
-        if (!isNew && isSofter && NeedOf(SinkOfLevel(std::max(load.level, load.recent)), size, extent) > 1)
+        if (!isNew && isSofter &&
+            NeedOf(SinkOfLevel(std::max(load.level, load.recent), settings_.accuracy), size, extent) > 1)
             most.stiffness = load.stiffness;
     }
 
@@ -211,6 +213,16 @@ SolverSettings EffortFor(float need, const SystemSettings& settings) {
 }
 
 }  // namespace
+
+void Raise(IslandEffort& effort, const IslandEffort& to) {
+    Raise(effort.substeps, to.substeps);
+    Raise(effort.velocityIterations, to.velocityIterations);
+    Raise(effort.positionIterations, to.positionIterations);
+    if (!to.isLoaded) return;
+    if (!effort.isLoaded || (to.stiffness > 0 && (effort.stiffness == 0 || to.stiffness < effort.stiffness)))
+        effort.stiffness = to.stiffness;
+    effort.isLoaded = true;
+}
 
 std::span<const IslandEffort> FindEfforts(const BodyStore& bodies, const ConstraintColoring& coloring,
                                           const JointStore& joints, const PairStore& pairs,

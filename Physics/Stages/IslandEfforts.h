@@ -18,6 +18,9 @@ struct IslandEffort {
     bool IsUsual() const { return substeps == 0 && velocityIterations == 0 && positionIterations == 0; }
 };
 
+// Sets each number of an effort to that of the other where it is less; of stiffness the lesser one counts.
+void Raise(IslandEffort& effort, const IslandEffort& to);
+
 // Efforts by the root of the island, in `sets` by place in bodies.awake. Of each number the largest that joints of the
 // island ask for; and what the loads of its contacts ask for, where it has at most `mostLoaded` constraints. sizes:
 // constraints, by root. softness: s^2, see SoftnessOf.

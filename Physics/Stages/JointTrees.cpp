@@ -1,6 +1,7 @@
 #include <Fulcrum/Physics/Stages/JointTrees.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace fulcrum {
@@ -11,6 +12,9 @@ constexpr uint32_t kNone = JointTreeSlot::kNone;
 constexpr uint32_t kMostSlots = 4096;  // bodies: a tree is solved by one worker
 // Bodies whose masses differ by this factor at most carry no load but their own weight.
 constexpr float kEvenMasses = 2;
+// What costs no more than so many times the system's substeps is iterated, where its joints are to carry no load but
+// their own bodies: a tree of hinges costs ten to twenty times as much as iterations.
+constexpr float kMostSubsteps = 3;
 
 // The bodies that joints hold together, and one tree among their joints.
 struct Component {
@@ -33,12 +37,13 @@ bool IsBall(const Joint& joint) {
 
 class Finder {
 public:
-    Finder(const BodyStore& bodies, const ConstraintColoring& coloring, const JointStore& joints, float exactLoad,
-           JointTrees& trees, ScratchArena& scratch)
+    Finder(const BodyStore& bodies, const ConstraintColoring& coloring, const JointStore& joints,
+           const SystemSettings& settings, JointTrees& trees, ScratchArena& scratch)
         : bodies_(bodies),
           coloring_(coloring),
           joints_(joints),
-          exactLoad_(exactLoad),
+          exactLoad_(settings.exactJointLoad),
+          effort_(EffortOf(settings.solver)),
           trees_(trees),
           scratch_(scratch),
           slotOf_(scratch.Allocate<uint32_t>(bodies.Size())),
@@ -64,6 +69,11 @@ private:
             if (joint.color.color != 0xFF && joint.color.color != ConstraintColoring::kOverflow && HasLocks(joint))
                 visit(index, joint, joint.SideOf(body));
         });
+    }
+    // 1 for four substeps of one iteration each: errors of iterations fall by so much.
+    static float EffortOf(const SolverSettings& solver) {
+        const float passes = static_cast<float>(solver.velocityIterations + solver.positionIterations);
+        return static_cast<float>(solver.substeps * solver.substeps) * passes / 32;
     }
     float MassOf(uint32_t body) const { return 1.0f / bodies_.dynamics[body].inverseMass; }
 
@@ -130,9 +140,16 @@ private:
         const size_t loops = joints - (bodies - 1);
         tree.load = LargestLoad(tree);
         // The stretch that iterations leave is that of the mean load: of a rope that carries its own weight alone, half
-        // of what its top carries.
-        if (LargestMassRatio(tree) <= kEvenMasses) tree.load *= 0.5f;
-        if (loops * 4 <= joints && tree.load > exactLoad_) {
+        // of what its top carries. It falls with the square of the substeps.
+        const bool isRope = LargestMassRatio(tree) <= kEvenMasses;
+        float substeps = 0;
+        if (isRope) {
+            tree.load *= 0.5f;
+            substeps = std::sqrt(tree.load / (exactLoad_ * effort_));
+        }
+        if (isRope && substeps <= kMostSubsteps) {
+            if (substeps > 1) trees_.ropes.push_back({component.root, substeps});
+        } else if (loops * 4 <= joints && tree.load > exactLoad_) {
             AddBlocks(tree);
             trees_.trees.push_back(tree);
             return;
@@ -205,6 +222,7 @@ private:
     const ConstraintColoring& coloring_;
     const JointStore& joints_;
     float exactLoad_;
+    float effort_;
     JointTrees& trees_;
     ScratchArena& scratch_;
     std::span<uint32_t> slotOf_;  // by body, in its tree
@@ -214,14 +232,15 @@ private:
 }  // namespace
 
 void FindJointTrees(const BodyStore& bodies, const ConstraintColoring& coloring, const JointStore& joints,
-                    float exactJointLoad, JointTrees& trees, ScratchArena& scratch) {
+                    const SystemSettings& settings, JointTrees& trees, ScratchArena& scratch) {
     if (trees.version == coloring.JointVersion()) return;
     trees.version = coloring.JointVersion();
     trees.trees.clear();
+    trees.ropes.clear();
     trees.slots.clear();
     trees.blocks.clear();
     trees.anchors.clear();
-    Finder(bodies, coloring, joints, exactJointLoad, trees, scratch).Find();
+    Finder(bodies, coloring, joints, settings, trees, scratch).Find();
 }
 
 }  // namespace fulcrum

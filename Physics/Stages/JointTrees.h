@@ -21,7 +21,13 @@ struct JointTrees {
         // about as heavy.
         float load = 0;
     };
+    // What iterations hold as well for less: with more substeps than the system's.
+    struct Rope {
+        uint32_t body;
+        float substeps;  // times the system's
+    };
     std::vector<Tree> trees;
+    std::vector<Rope> ropes;
     std::vector<JointTreeSlot> slots;  // a tree's parents and blocks are counted from its first ones
     std::vector<JointTreeBlock> blocks;
     std::vector<JointTreeAnchor> anchors;
@@ -39,12 +45,12 @@ inline size_t HeapBytes(const JointTreeSlot&) { return 0; }
 inline size_t HeapBytes(const JointTreeBlock&) { return 0; }
 inline size_t HeapBytes(const JointTreeAnchor&) { return 0; }
 inline size_t HeapBytes(const JointTrees& all) {
-    const auto& [trees, slots, blocks, anchors, version] = all;
-    return HeapBytes(trees, slots, blocks, anchors, version);
+    const auto& [trees, ropes, slots, blocks, anchors, version] = all;
+    return HeapBytes(trees, ropes, slots, blocks, anchors, version);
 }
 
-// Brings the trees in line with the colored joints. exactJointLoad: see SystemSettings.
+// Brings the trees in line with the colored joints. Reads the settings' exactJointLoad and solver.
 void FindJointTrees(const BodyStore& bodies, const ConstraintColoring& coloring, const JointStore& joints,
-                    float exactJointLoad, JointTrees& trees, ScratchArena& scratch);
+                    const SystemSettings& settings, JointTrees& trees, ScratchArena& scratch);
 
 }  // namespace fulcrum

@@ -261,41 +261,49 @@ void StoreAll(WorldState& world, const std::vector<Batch>& batches, uint32_t beg
 // How often loads that became less are noted, in steps.
 constexpr uint64_t kStepsToForget = 16;
 
-// Groups lie one after the other: those without an effort of their own are stored together. Of contacts of large ones
-// nobody asks how deep they sink.
+// Groups lie one after the other: those without an effort of their own are stored together.
 void StoreImpulses(WorldState& world, const StepState& step, std::span<WorkerFindings> workers) {
     const SolverLayout& layout = step.solver;
     const SystemSettings& settings = world.settings;
     const bool notesSinks = settings.accuracy.penetration < std::numeric_limits<float>::infinity();
-    const bool forgets = world.step % kStepsToForget == 0;
+    const bool notesLarge = notesSinks && (settings.accuracy.largeIslands || layout.OverflowCount() > 0);
     const float softness = SoftnessOf(settings, step.substepDt);
+    // impulseScale: see Effort; stiffness: see ContactLoad.
+    const auto sinkScaleOf = [&](float impulseScale, uint8_t stiffness) {
+        return SinkScale{.perLevel = 8 / settings.accuracy.penetration,
+                         .inverseDt = 1 / (step.substepDt * impulseScale),
+                         .softness = softness,
+                         .depthScale = 1 / (impulseScale * impulseScale),
+                         .gravity = settings.gravity,
+                         .stiffness = std::max<uint8_t>(stiffness, 1),
+                         .forgets = world.step % kStepsToForget == 0};
+    };
     uint32_t stored[kBatchKinds] = {};
-    const auto storeTo = [&](auto&& endOf, float impulseScale, uint8_t stiffness, bool isLarge) {
-        const SinkScale sink{.inverseDt = 1 / (step.substepDt * impulseScale),
-                             .softness = softness,
-                             .depthScale = 1 / (impulseScale * impulseScale),
-                             .gravity = settings.gravity,
-                             .stiffness = stiffness,
-                             .forgets = forgets};
-        const StoreScale scale{step.dt, impulseScale, notesSinks && !isLarge ? &sink : nullptr};
+    const auto storeTo = [&](auto&& endOf, const StoreScale& scale) {
         ForEachBatchList(layout, [&](const auto& list, BatchKind kind) {
             const uint32_t end = endOf(list, kind);
             StoreAll(world, list.batches, stored[kind], end, scale, workers);
             stored[kind] = end;
         });
     };
+    const SinkScale usualSink = sinkScaleOf(1, 1);
+    const StoreScale usual{step.dt, 1, notesSinks ? &usualSink : nullptr};
     for (const SolverGroup& group : layout.groups) {
-        if (group.colorsBegin == group.colorsEnd) continue;
+        const bool isFirst = &group == &layout.groups.front();
         if (!group.isLarge && group.effort == SolverSettings{0, 0, 0}) continue;
+        const float impulseScale = EffortOf(world, step, group).impulseScale;
+        const SinkScale sink = sinkScaleOf(impulseScale, group.stiffness);
+        const StoreScale scale{step.dt, impulseScale, (group.isLarge ? notesLarge : notesSinks) ? &sink : nullptr};
+        if (isFirst)
+            ForEachOverflowList(layout, [&](const auto& batches) {
+                StoreAll(world, batches, 0, static_cast<uint32_t>(batches.size()), scale, workers);
+            });
+        if (group.colorsBegin == group.colorsEnd) continue;
         const ColorBatches &first = layout.colors[group.colorsBegin], &last = layout.colors[group.colorsEnd - 1];
-        storeTo([&](const auto&, BatchKind kind) { return first.of[kind].begin; }, 1.0f, 1, false);
-        storeTo([&](const auto&, BatchKind kind) { return last.of[kind].end; },
-                EffortOf(world, step, group).impulseScale, std::max<uint8_t>(group.stiffness, 1), group.isLarge);
+        storeTo([&](const auto&, BatchKind kind) { return first.of[kind].begin; }, usual);
+        storeTo([&](const auto&, BatchKind kind) { return last.of[kind].end; }, scale);
     }
-    storeTo([](const auto& list, BatchKind) { return list.count; }, 1.0f, 1, false);
-    ForEachOverflowList(layout, [&](const auto& batches) {
-        StoreAll(world, batches, 0, static_cast<uint32_t>(batches.size()), {step.dt, 1.0f, nullptr}, workers);
-    });
+    storeTo([](const auto& list, BatchKind) { return list.count; }, usual);
     for (WorkerFindings& findings : workers) {
         world.pairs.loadVersion += findings.loadsChanged;
         findings.loadsChanged = false;

@@ -44,6 +44,17 @@ PositionCorrection ParsePositionCorrection(const std::string& text) {
         {PositionCorrectionName(PositionCorrection::SoftRelax), PositionCorrectionName(PositionCorrection::Baumgarte)});
 }
 
+SolverSettings ParsePreset(const std::string& text) {
+    enum class Preset : uint8_t { Fast, Balanced, Accurate, Reference };
+    switch (ParseEnumerator<Preset, 4>("--preset", text, {"fast", "balanced", "accurate", "reference"})) {
+        case Preset::Fast: return SolverSettings::Fast();
+        case Preset::Balanced: return SolverSettings::Balanced();
+        case Preset::Accurate: return SolverSettings::Accurate();
+        case Preset::Reference: return SolverSettings::Reference();
+    }
+    return {};
+}
+
 UpAxis ParseUpAxis(const std::string& text) {
     return ParseEnumerator<UpAxis, 6>("axis of --onto-up", text, {"x", "y", "z", "-x", "-y", "-z"});
 }
@@ -100,6 +111,9 @@ int RunOptions::StepsOf(const Scene& scene) const {
 }
 
 void AddSolverOptions(CLI::App& app, SolverSettings& solver) {
+    AddText(app, "--preset", "fast, balanced (default), accurate or reference; the numbers below come on top",
+            [&](const std::string& name) { solver = ParsePreset(name); })
+        ->type_name("PRESET");
     const auto text = [](const char* what, int value) {
         return std::string(what) + " (default " + std::to_string(value) + ")";
     };

@@ -46,7 +46,8 @@ struct Command {
 // Arguments without the program's name. Error OutOfRange: one line that says what is wrong and what was probably meant.
 Result<Command> ParseRunnerCommand(std::vector<std::string> arguments);
 
-// --substeps, --velocity-iterations, --position-iterations, --position-correction: the benchmark has them too.
+// --preset, --substeps, --velocity-iterations, --position-iterations, --position-correction: the benchmark has them
+// too.
 void AddSolverOptions(CLI::App& app, SolverSettings& solver);
 // As --position-correction takes it.
 const char* PositionCorrectionName(PositionCorrection correction);

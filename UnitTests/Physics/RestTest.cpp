@@ -7,8 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <limits>
+#include <string>
 #include <vector>
 
 namespace fulcrum::testing {

@@ -12,10 +12,10 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0xe8cc8c2ff3a76b8full;
-constexpr uint64_t kGoldenHashOfJoints = 0x96e9f3a95a42c36aull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x8ebf313d09169424ull;
-constexpr uint64_t kGoldenHashOfFastBodies = 0xcc53cf15b5100bbaull;
+constexpr uint64_t kGoldenHash = 0xed29b402759c698bull;
+constexpr uint64_t kGoldenHashOfJoints = 0x9f4f414a14af3c23ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0xac0ccce9c6ad4226ull;
+constexpr uint64_t kGoldenHashOfFastBodies = 0x7dee345a39157305ull;
 
 std::string Hex(uint64_t number) {
     char text[24];

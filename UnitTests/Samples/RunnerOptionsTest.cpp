@@ -129,6 +129,17 @@ TEST(RunnerOptions, DropMayBeOntoAMesh) {
     ExpectComplaint("drop teapot.obj --onto bunny.ply --onto-up up", "axis of --onto-up");
 }
 
+TEST(RunnerOptions, PresetsAreTheSettingsOfTheirNames) {
+    EXPECT_EQ(Parsed("run tower --preset fast").options.solver, SolverSettings::Fast());
+    EXPECT_EQ(Parsed("run tower --preset balanced").options.solver, SolverSettings{});
+    EXPECT_EQ(Parsed("run tower --preset accurate").options.solver, SolverSettings::Accurate());
+    EXPECT_EQ(Parsed("run tower --preset reference").options.solver, SolverSettings::Reference());
+    // Numbers come on top, wherever they stand.
+    SolverSettings more = SolverSettings::Accurate();
+    more.velocityIterations = 3;
+    EXPECT_EQ(Parsed("run tower --velocity-iterations 3 --preset accurate").options.solver, more);
+}
+
 TEST(RunnerOptions, ListAndHelp) {
     EXPECT_EQ(Parsed("list").kind, CommandKind::List);
     EXPECT_NE(Parsed("--help").help.find("drop"), std::string::npos);
@@ -147,6 +158,7 @@ TEST(RunnerOptions, ErrorsOfUnknownNamesSuggestTheNearest) {
     ExpectComplaint("run --substep=2 pyramid", "unknown option '--substep'; the nearest is '--substeps'");
     ExpectComplaint("run pyramid --velocity_iterations 5", "'--velocity-iterations'");
     ExpectComplaint("run pyramid -steps 5", "'--steps'");
+    ExpectComplaint("run pyramid --preset fats", "unknown --preset 'fats'; the nearest is 'fast'");
     ExpectComplaint("run pyramid --record htm", "unknown kind of --record 'htm'; the nearest is 'html'");
     ExpectComplaint("run pyramid --record html,gbl", "'glb'");
     ExpectComplaint("runn pyramid", "unknown command 'runn'; the nearest is 'run'");

@@ -1,0 +1,63 @@
+// A heavy symmetric top on a ball joint against its steady precession: at the spin w3 about its axis and the tilt t it
+// precesses at the rate W with I1 cos(t) W^2 - I3 w3 W + m g l = 0, and keeps its tilt (Goldstein, Classical Mechanics,
+// 5.7). It turns by more than a radian a step.
+#include <Fulcrum/Collision/Shapes/RoundShapes.h>
+#include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
+
+#include <cmath>
+
+namespace fulcrum::testing {
+namespace {
+
+struct Errors {
+    double azimuth = 0, tilt = 0;  // rad
+    double spin = 0;               // of the spin about the axis
+};
+
+// Of a disc of 0.2 m radius and 10 kg at the end of an arm of 0.3 m, after some seconds.
+Errors ErrorsOfTop(int substeps, double spin, double seconds) {
+    constexpr double kRadius = 0.2, kHalfHeight = 0.05, kArm = 0.3, kMass = 10, kTilt = 0.5;
+    const double i3 = 0.5 * kMass * kRadius * kRadius;
+    const double i1 = kMass * (3 * kRadius * kRadius + 4 * kHalfHeight * kHalfHeight) / 12 + kMass * kArm * kArm;
+    const double a = i1 * std::cos(kTilt), b = i3 * spin, c = kMass * kGravity * kArm;
+    const double rate = (b - std::sqrt(b * b - 4 * a * c)) / (2 * a);  // rad/s about the vertical
+
+    SystemSettings settings = NoSleep();
+    settings.solver.substeps = substeps;
+    TestWorld world(settings);
+    const BodyId hook = AddHook(world);
+    // The axis leans towards -x; the spin about it includes the share of the precession.
+    const double sine = std::sin(kTilt), cosine = std::cos(kTilt), alone = spin - rate * cosine;
+    const BodyId top = world.Add(
+        {.shape = Cylinder::Create(static_cast<float>(kHalfHeight), static_cast<float>(kRadius)).Value(),
+         .position = {-kArm * sine, kArm * cosine, 0},
+         .rotation = RotationAbout({0, 0, 1}, kTilt),
+         .linearVelocity = Vector3(0, 0, static_cast<float>(rate * kArm * sine)),
+         .angularVelocity = Vector3(static_cast<float>(-alone * sine), static_cast<float>(alone * cosine + rate), 0),
+         .mass = kMass});
+    Join(world, PointJointSettings{Between(hook, top, {0, 0, 0})});
+    world.Run(seconds);
+    const Position center = world.Bodies().GetCenterOfMass(top);
+    const Vector3 axis = Rotate(world.Bodies().GetPose(top).rotation, Vector3(0, 1, 0));
+    // A turn about +y takes -x towards +z.
+    const double azimuth = std::atan2(center.z(), -center.x());
+    return {std::remainder(azimuth - rate * seconds, 2 * kPi),
+            std::acos(center.y() / std::sqrt(center.squaredNorm())) - kTilt,
+            double{Dot(world.Bodies().GetAngularVelocity(top), axis)} / spin - 1};
+}
+
+TEST(Top, PrecessesByTheClosedFormAndMoreSubstepsErrLess) {
+    for (const double spin : {75.0, 120.0}) {
+        Errors last{1, 1, 1};
+        for (const int substeps : {4, 8, 16}) {
+            const Errors now = ErrorsOfTop(substeps, spin, 1);
+            EXPECT_LT(std::fabs(now.spin), 1e-4) << spin << " " << substeps;
+            EXPECT_LT(std::fabs(now.azimuth), 0.8 * last.azimuth) << spin << " " << substeps;
+            EXPECT_LT(std::fabs(now.tilt), 0.8 * last.tilt) << spin << " " << substeps;
+            last = {std::fabs(now.azimuth), std::fabs(now.tilt), 0};
+        }
+    }
+}
+
+}  // namespace
+}  // namespace fulcrum::testing
