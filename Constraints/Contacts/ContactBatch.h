@@ -70,6 +70,7 @@ struct ContactBatch {
     Row rows[kPoints];
     Real response[6];          // J_i M^-1 J_j^T for (i, j) = 01 02 03 12 13 23
     Real frictionInverse[3];   // effective masses of t1, t2, twist
+    Real slideMass;            // kg, the least effective mass of any direction in the plane
     Real frictionResponse[3];  // between t1 and t2, t1 and twist, t2 and twist
     Real coupling[3][3];       // change of V.n, W.t1, W.t2 by a unit impulse of t1, t2, twist
     Real frictionImpulse[3];

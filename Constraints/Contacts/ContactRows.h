@@ -6,9 +6,10 @@
 
 namespace fulcrum::contacts {
 
-// The friction rows: impulses first clamped to the cone's cross-section (as a vector, so that no heading is preferred),
-// then the torque. limit: N s, friction times the sum of the normal impulses. Finds the totals of t1, t2 and twist, and
-// by how much they change from `total`.
+// The friction rows: what stops the slip where the cone holds that; else what lies on the cone against the slip, by a
+// step of projected gradient with one mass for all directions: bodies turn, too, and what would stop them points
+// elsewhere than against their slip. Then the torque. limit: N s, friction times the sum of the normal impulses. Finds
+// the totals of t1, t2 and twist, and by how much they change from `total`.
 template <int N, bool kFixedB>
 FULCRUM_FORCE_INLINE void SolveFriction(const ContactBatch<N, kFixedB>& batch, const Wide<N> (&total)[3], Wide<N> limit,
                                         Wide<N> v1, Wide<N> v2, Wide<N> wn, Wide<N> (&solved)[3],
@@ -18,12 +19,14 @@ FULCRUM_FORCE_INLINE void SolveFriction(const ContactBatch<N, kFixedB>& batch, c
     const Real* response = batch.frictionResponse;
     const Real step1 = -inverse[0] * v1;
     const Real step2 = -inverse[1] * (v2 + response[0] * step1);
-    const Real wanted1 = total[0] + step1, wanted2 = total[1] + step2;
-    const Real lengthSquared = wanted1 * wanted1 + wanted2 * wanted2;
+    const Real stick1 = total[0] + step1, stick2 = total[1] + step2;
+    const auto sticks = stick1 * stick1 + stick2 * stick2 <= limit * limit;
+    const Real slide1 = total[0] - batch.slideMass * v1, slide2 = total[1] - batch.slideMass * v2;
+    const Real lengthSquared = slide1 * slide1 + slide2 * slide2;
     const Real scale =
         Select(lengthSquared <= limit * limit, Real(1.0f), limit / Sqrt(Max(lengthSquared, Real(1e-30f))));
-    solved[0] = wanted1 * scale;
-    solved[1] = wanted2 * scale;
+    solved[0] = Select(sticks, stick1, Real(slide1 * scale));
+    solved[1] = Select(sticks, stick2, Real(slide2 * scale));
     change[0] = solved[0] - total[0];
     change[1] = solved[1] - total[1];
 

@@ -101,7 +101,7 @@ template <int N, bool kFixedB>
         for (Real* x : {&batch.frictionInverse[k], &batch.frictionResponse[k], &batch.frictionImpulse[k]}) keep(*x);
         for (Real& x : batch.coupling[k]) keep(x);
     }
-    for (Real* x : {&batch.friction, &batch.twistRadius}) keep(*x);
+    for (Real* x : {&batch.friction, &batch.twistRadius, &batch.slideMass}) keep(*x);
 }
 
 template <int N, bool kFixedB>
@@ -222,10 +222,20 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
     batch.bounces = HorizontalMax(head[Record::kRestitution]) > 0.0f;
     batch.surfaces = !kFixedB && isMarked && HaveSurfaceVelocity(head[Record::kMarks]).Any() ? records : nullptr;
 
-    // Points, halfway between the surfaces, and their center.
+    // Points, halfway between the surfaces, and their center, where friction acts: of those that pressed in the last
+    // step. Points ahead and those of a lifted side have no share in it.
     Vec3<Real> points[ContactRecord::kMaxPoints];
     Vec3<Real> center(zero, zero, zero);
-    Real gaps = zero;
+    Real gaps = zero, pressing = zero;
+    for (int i = 0; i < batch.pointCount; ++i) {
+        const auto used = pointCount > Real(static_cast<float>(i));
+        Real& impulse = batch.rows[i].impulse;
+        impulse = Select(used, impulses[Record::kNormalImpulses + i] * Real(settings.impulseScale), zero);
+        pressing += Select(impulse > zero, Real(1.0f), zero);
+    }
+    const auto anyPresses = pressing > zero;
+    const Real perPoint = Real(1.0f) / Max(pointCount, Real(1.0f)),
+               perPressing = Real(1.0f) / Max(pressing, Real(1.0f));
     for (int i = 0; i < batch.pointCount; ++i) {
         Real p[8];
         GatherRecordRow<N>(batch.contact, records, Record::kPoints + i, p);
@@ -235,12 +245,10 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
         const Real separation = Dot<Real>(n, Vec3<Real>(onB - onA));
         points[i] = onA + n * (separation * Real(0.5f));
         batch.rows[i].startSeparation = batch.rows[i].separation = Select(used, separation, zero);
-        batch.rows[i].impulse = Select(used, impulses[Record::kNormalImpulses + i] * Real(settings.impulseScale), zero);
-        for (int k = 0; k < 3; ++k) center[k] += Select(used, points[i][k], zero);
+        const Real share = Select(anyPresses, Select(batch.rows[i].impulse > zero, perPressing, zero), perPoint);
+        for (int k = 0; k < 3; ++k) center[k] += Select(used, Real(points[i][k] * share), zero);
         gaps += Select(used, Max(separation, zero), zero);
     }
-    const Real perPoint = Real(1.0f) / Max(pointCount, Real(1.0f));
-    center = center * perPoint;
     // An impact is where the gap has closed: on both surfaces.
     const Vec3<Real> toSurface = n * Select(head[Record::kRestitution] > zero, gaps * perPoint * Real(0.5f), zero);
     batch.armA = center - toSurface;
@@ -268,6 +276,10 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
         batch.frictionResponse[k] = responses.friction[3 + k];
         for (int j = 0; j < 3; ++j) batch.coupling[j][k] = responses.coupling[j][k];
     }
+    // The larger eigenvalue of the responses of t1 and t2.
+    const Real mean = Real(0.5f) * (responses.friction[0] + responses.friction[1]),
+               half = Real(0.5f) * (responses.friction[0] - responses.friction[1]), across = responses.friction[3];
+    batch.slideMass = InverseOrZero(Real(mean + Sqrt(half * half + across * across)));
     const Vec3<Real> impulse = VectorAt<Record::kFrictionImpulse>(impulses);
     const Real scale(settings.impulseScale);
     batch.frictionImpulse[0] = Dot<Real>(impulse, t1) * scale;

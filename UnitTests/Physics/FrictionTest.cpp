@@ -121,6 +121,34 @@ TEST(Friction, TurnsSlidingIntoRolling) {
     EXPECT_NEAR(world.VelocityOf(ball).x(), 50.0 / 7, 1e-3 * 50 / 7);
 }
 
+// A hull whose points of contact are not spread about its center of mass, and that resists turns differently about
+// different axes: friction acts against the slip, where what would stop the point of contact points 8 % aside.
+TEST(Friction, LetsWhatIsLopsidedSlideStraight) {
+    const ShapePtr hull = HullOf({{0, -0.3f, 0},
+                                  {3, -0.3f, 0},
+                                  {0.6f, -0.3f, 1},
+                                  {0, -0.3f, 1},
+                                  {0, 0.3f, 0},
+                                  {3, 0.3f, 0},
+                                  {0.6f, 0.3f, 1},
+                                  {0, 0.3f, 1}});
+    for (const int substeps : {4, 16})
+        for (const double heading : {0.0, 0.5 * kPi, 0.7, 2.0, 4.0}) {
+            SystemSettings settings = NoSleep();
+            settings.solver.substeps = substeps;
+            TestWorld world(settings);
+            world.AddFloor();
+            const Vector3 along(static_cast<float>(std::cos(heading)), 0, static_cast<float>(std::sin(heading)));
+            const BodyId id = world.Add({.shape = hull, .position = {0, 0.3, 0}, .linearVelocity = along * 4});
+            world.Run(2);
+            const Position moved = world.PositionOf(id) - Position(0, 0.3, 0);
+            const double way = moved.x() * double{along.x()} + moved.z() * double{along.z()};
+            EXPECT_NEAR(way, 16 / (2 * 0.5 * kGravity), 0.01 * way) << heading;
+            EXPECT_LT(std::fabs(moved.x() * double{along.z()} - moved.z() * double{along.x()}), 2e-3) << heading;
+            EXPECT_LT(std::fabs(world.Bodies().GetPose(id).rotation.y), 1e-3f) << heading;
+        }
+}
+
 TEST(Friction, StopsASpinningBoxAtItsMeanRadius) {
     const float a = 0.5f, mu = 0.5f;
     TestWorld world(NoSleep());

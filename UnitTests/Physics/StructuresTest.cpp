@@ -100,7 +100,7 @@ TEST(Structures, ALoadSinksLittleAtTheDefaultsAndNothingJumpsWhenItIsTaken) {
             loaded.world.Run(8);
             const double sunk = 0.5 - loaded.world.PositionOf(cube).y();
             EXPECT_LT(loaded.world.Report().largestPenetration, 0.005f) << ratio << " from " << height;
-            EXPECT_LT(loaded.Drift(), 0.03) << ratio << " from " << height;
+            EXPECT_LT(loaded.Drift(), ratio < 2000 ? 0.03 : 0.06) << ratio << " from " << height;
             EXPECT_TRUE(loaded.world.Bodies().Remove(load));
             double rise = 0;
             for (int step = 0; step < 120; ++step) {

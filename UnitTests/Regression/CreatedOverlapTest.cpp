@@ -57,7 +57,7 @@ TEST_P(CreatedOverlap, OfAStackOnAFloorLeavesLittleSpeed) {
     for (int i = 0; i < 4; ++i)
         ids.push_back(world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5 + double{height} * i, 0}}));
     const Result result = RunFor(world, ids, 6);
-    if (Part() <= 0.5f) EXPECT_LT(result.fastest, 0.6);
+    if (Part() <= 0.5f) EXPECT_LT(result.fastest, 0.7);
     else EXPECT_LT(result.fastest, 5);  // what was in one place falls down beside it
     EXPECT_LT(result.left, 0.02);
 }
@@ -74,7 +74,9 @@ TEST_P(CreatedOverlap, OfAPyramidLeavesLittleSpeed) {
                 ids.push_back(
                     world.Add({.shape = CubeOf(0.5f), .position = {size * (j + 0.5 * i), 0.5 + size * i, 0}}));
         const Result result = RunFor(world, ids, 8);
-        EXPECT_LT(result.fastest, hasGravity ? 2.5 : 1.5);
+        // At one substep a box may come to fall from the top.
+        const double most = Substeps() == 1 ? 10 : 2.5;
+        EXPECT_LT(result.fastest, hasGravity ? most : 1.5);
         EXPECT_LT(result.left, Substeps() == 1 ? 0.08 : 0.02);  // what its weight presses in
     }
 }

@@ -12,10 +12,10 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0xed29b402759c698bull;
-constexpr uint64_t kGoldenHashOfJoints = 0x9f4f414a14af3c23ull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0xac0ccce9c6ad4226ull;
-constexpr uint64_t kGoldenHashOfFastBodies = 0x7dee345a39157305ull;
+constexpr uint64_t kGoldenHash = 0x568d7587473c9605ull;
+constexpr uint64_t kGoldenHashOfJoints = 0x4c2e92cb30b581c6ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0x7c26aee42fdf1e61ull;
+constexpr uint64_t kGoldenHashOfFastBodies = 0x5eb4414257c55498ull;
 
 std::string Hex(uint64_t number) {
     char text[24];

@@ -37,8 +37,13 @@ public:
             const Vector3 onB = between + Rotate(b.rotation, Vector3(p.onB[0], p.onB[1], p.onB[2]));
             separation_[i] = Dot<float>(normal, Vector3(onB - onA));
             points[i] = onA + normal * (0.5f * separation_[i]);
-            center += points[i] / static_cast<float>(count_);
         }
+        // The center of those that press.
+        const auto presses = [&](int i) { return record_.impulse[i] > 0; };
+        int pressing = 0;
+        for (int i = 0; i < count_; ++i) pressing += presses(i);
+        for (int i = 0; i < count_; ++i)
+            if (presses(i) || pressing == 0) center += points[i] / static_cast<float>(pressing ? pressing : count_);
         const auto setUp = [&](RowPart<float>& row, const RowJacobian<float>& jacobian) {
             row.SetJacobian(jacobian);
             row.CalculateProperties<BodySide::Dynamic, kSideB>(mass1, mass2);
@@ -84,13 +89,32 @@ public:
         const float wanted2 = tangent2_.SolveTotalLambda<BodySide::Dynamic, kSideB>(w1, w2);
         tangent1_.SetTotalLambda(before1);
         tangent2_.SetTotalLambda(before2);
-        const float length = std::sqrt(wanted1 * wanted1 + wanted2 * wanted2);
-        const float scale = length > limit ? limit / length : 1.0f;
-        tangent1_.ApplyTotalLambda<BodySide::Dynamic, kSideB>(v1, v2, wanted1 * scale);
-        tangent2_.ApplyTotalLambda<BodySide::Dynamic, kSideB>(v1, v2, wanted2 * scale);
+        if (wanted1 * wanted1 + wanted2 * wanted2 <= limit * limit) {
+            tangent1_.ApplyTotalLambda<BodySide::Dynamic, kSideB>(v1, v2, wanted1);
+            tangent2_.ApplyTotalLambda<BodySide::Dynamic, kSideB>(v1, v2, wanted2);
+        } else {
+            // Against the slip: the same mass for both, the least of any direction.
+            const float slip1 = SlipAlong(tangent1_, v1, v2), slip2 = SlipAlong(tangent2_, v1, v2);
+            Twist<float> unit1, unit2;
+            RowPart<float> row = tangent1_;
+            row.SetTotalLambda(0);
+            row.ApplyTotalLambda<BodySide::Dynamic, kSideB>(unit1, unit2, 1);
+            const float k1 = SlipAlong(tangent1_, unit1, unit2), k = SlipAlong(tangent2_, unit1, unit2),
+                        k2 = 1 / tangent2_.GetEffectiveMass();
+            const float mass = 1 / (0.5f * (k1 + k2) + std::hypot(0.5f * (k1 - k2), k));
+            const float slide1 = before1 - mass * slip1, slide2 = before2 - mass * slip2;
+            const float scale = std::min(limit / std::hypot(slide1, slide2), 1.0f);
+            tangent1_.ApplyTotalLambda<BodySide::Dynamic, kSideB>(v1, v2, slide1 * scale);
+            tangent2_.ApplyTotalLambda<BodySide::Dynamic, kSideB>(v1, v2, slide2 * scale);
+        }
         const float most = limit * record_.twistRadius;
         twist_.SolveVelocity<BodySide::Dynamic, kSideB>(v1, v2, -most, most);
         SolveNormals(v1, v2);
+    }
+    // m/s of the row's motion.
+    static float SlipAlong(RowPart<float> row, Twist<float> v1, Twist<float> v2) {
+        row.SetTotalLambda(0);
+        return -row.SolveTotalLambda<BodySide::Dynamic, kSideB>(v1, v2) / row.GetEffectiveMass();
     }
     void SolveNormals(Twist<float>& v1, Twist<float>& v2) {
         for (int i = 0; i < count_; ++i) {
