@@ -29,10 +29,10 @@ inline float SoftnessOf(const SystemSettings& settings, float substepDt) {
     return 1.0f / (w * w);
 }
 
-// Sinks are noted as powers of two of an eighth of what they may be, AccuracyTarget::penetration: level i is below 2^i
+// Sinks are noted as powers of two of a quarter of what they may be, AccuracyTarget::penetration: level i is below 2^i
 // of it.
 inline float SinkOfLevel(uint32_t level, const AccuracyTarget& accuracy) {
-    return std::ldexp(0.125f * accuracy.penetration, static_cast<int>(level));
+    return std::ldexp(0.25f * accuracy.penetration, static_cast<int>(level));
 }
 
 // m: half the edge of a cube with the same mass and inertia. Infinite
@@ -52,9 +52,8 @@ inline bool IsSmaller(const BodyDynamics& body, float size) {
 // what they are to carry, the more the lighter the lower body is.
 void NoteWeights(WorldState& world, std::span<const uint32_t> began, float softness);
 
-// Notes the sinks of a batch in the loads of its pairs. Where loads go up and down from one step to the next, as in
-// impacts, the smaller one counts. Contacts of bodies with joints, which have no size of their own, are left out.
-// Returns whether some level has changed.
+// Notes the sinks of a batch in the loads of its pairs. What does not last for some steps is no load. Contacts of
+// bodies with joints, which have no size of their own, are left out. Returns whether some level has changed.
 template <int N, bool kFixedB>
 bool NoteSinks(WorldState& world, const ContactBatch<N, kFixedB>& batch, const SinkScale& scale);
 

@@ -53,6 +53,8 @@ struct Extent {
 // half an edge (measured; as an elastic column it does so at a multiple of the stiffness over the weight). Half of
 // that, at the usual target.
 constexpr float kBuckling = 12;
+// Of other islands, as walls, the most of it.
+constexpr float kBucklingOfWalls = 20;
 // What is that many times as high as half its width is a column: what is at its foot carries all of it.
 constexpr float kSlender = 8;
 // Bodies of large islands are held by an effort at which so many weights sink them as far as they may.
@@ -134,10 +136,10 @@ private:
     }
 
     // How many times too deep a contact sinks, a part of the size, m, of its bodies, in an island of this extent.
-    float NeedOf(float sink, float size, const Extent& extent) const {
+    float NeedOf(float sink, float size, const Extent& extent, float buckling) const {
         if (!(extent.count > 0)) return sink / settings_.accuracy.penetration;
         const float width = size * size + extent.SquaredHalfWidths().first;
-        return sink / settings_.accuracy.penetration * std::max(1.0f, size * extent.Height() / (kBuckling * width));
+        return sink / settings_.accuracy.penetration * std::max(1.0f, size * extent.Height() / (buckling * width));
     }
 
     // Of large islands only what small bodies ask for by their own weight: the load of others costs too much.
@@ -158,7 +160,7 @@ private:
         const float size = SizeOf(lightest), height = extent.Height();
         if (!(height * height > kSlender * kSlender * (size * size + extent.SquaredHalfWidths().second))) return;
         const float sink = extent.mass * lightest.inverseMass * Length(settings_.gravity) * softness_ / size;
-        needs_[root].need = std::max(needs_[root].need, NeedOf(sink, size, extent));
+        needs_[root].need = std::max(needs_[root].need, NeedOf(sink, size, extent, kBuckling));
     }
 
     void AddNeed(const Entry& entry) {
@@ -172,11 +174,13 @@ private:
         const Extent& extent = places_[root] == kNone ? kLow : extents_[places_[root]];
         Need& most = needs_[root];
         if (load.level > 0)
-            most.need = std::max(most.need, NeedOf(SinkOfLevel(load.level, settings_.accuracy), size, extent));
+            most.need = std::max(most.need,
+                                 NeedOf(SinkOfLevel(load.level, settings_.accuracy), size, extent, kBucklingOfWalls));
         // What is pressed hard now, be it by an impact, was so with the springs of before.
         const bool isNew = load.stiffness == 0, isSofter = most.stiffness == 0 || load.stiffness < most.stiffness;
         if (!isNew && isSofter &&
-            NeedOf(SinkOfLevel(std::max(load.level, load.recent), settings_.accuracy), size, extent) > 1)
+            NeedOf(SinkOfLevel(std::max(load.level, load.recent), settings_.accuracy), size, extent, kBucklingOfWalls) >
+                1)
             most.stiffness = load.stiffness;
     }
 

@@ -270,7 +270,7 @@ void StoreImpulses(WorldState& world, const StepState& step, std::span<WorkerFin
     const float softness = SoftnessOf(settings, step.substepDt);
     // impulseScale: see Effort; stiffness: see ContactLoad.
     const auto sinkScaleOf = [&](float impulseScale, uint8_t stiffness) {
-        return SinkScale{.perLevel = 8 / settings.accuracy.penetration,
+        return SinkScale{.perLevel = 4 / settings.accuracy.penetration,
                          .inverseDt = 1 / (step.substepDt * impulseScale),
                          .softness = softness,
                          .depthScale = 1 / (impulseScale * impulseScale),

@@ -44,6 +44,7 @@ static_assert(sizeof(Pair) == 128);
 struct ContactLoad {
     uint8_t level = 0;   // that lasts
     uint8_t recent = 0;  // of the last step
+    uint8_t steps = 0;   // for how many it has carried more than `level`
     // SolverGroup::stiffness of the last step, at least 1; 0: it has not been solved yet.
     uint8_t stiffness = 0;
 };
