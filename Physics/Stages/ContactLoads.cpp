@@ -76,7 +76,8 @@ bool NoteSinks(WorldState& world, const ContactBatch<N, kFixedB>& batch, const S
         Real depth = zero;
         for (int i = 0; i < batch.pointCount; ++i) {
             const auto& row = batch.rows[i];
-            depth = Max(depth, Select(row.separation < row.startSeparation, -row.separation, zero));
+            const auto sinks = (row.separation < row.startSeparation) & (row.inverseResponse > zero);  // a point
+            depth = Max(depth, Select(sinks, -row.separation, zero));
         }
         unseen = depth * Real(scale.depthScale) > Real(2.0f) * force * inverseMass * Real(scale.softness);
         const Real along = -Dot<Real>(
@@ -86,9 +87,13 @@ bool NoteSinks(WorldState& world, const ContactBatch<N, kFixedB>& batch, const S
     }
     const Real sink = force * inverseMass * Real(scale.softness);
     const Real part = sink * Real(scale.perLevel) / Sqrt(squaredSize);
-    if (!scale.forgets && !(part >= Real(1.0f)).Any()) return false;
+    // Contacts under little load are looked at when loads are forgotten; each by itself, so that it does not matter
+    // which of them share a batch.
+    const uint32_t loaded = scale.forgets ? ~0u : (part >= Real(1.0f)).ToBits();
+    if (loaded == 0) return false;
     bool changed = false;
     for (int lane = 0; lane < batch.count; ++lane) {
+        if (!(loaded >> lane & 1u)) continue;
         ContactLoad& load = world.pairs.loads[batch.contact[lane]];
         const uint32_t level = LevelOf(part[lane]);
         load.steps = level > load.level ? static_cast<uint8_t>(load.steps + 1) : uint8_t(0);

@@ -42,6 +42,7 @@ namespace fulcrum {
     scene(ConveyorBelt)       \
     scene(Layers)             \
     scene(HeavyOnLight)       \
+    scene(Structures)         \
     scene(TrapDoor)           \
     scene(CompoundCity)       \
     scene(Sensors)            \

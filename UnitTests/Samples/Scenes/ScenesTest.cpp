@@ -294,6 +294,7 @@ TEST(SampleScenes, PlatformsCarryWhatStandsOnThem) { ExpectFigure("moving_platfo
 TEST(SampleScenes, BeltsCarryAllGoodsRoundTheLoop) { ExpectFigure("conveyor_belt", 0, 0); }
 // Ten contacts of a millimeter each; the other stack is scattered on the floor.
 TEST(SampleScenes, AStackHeavierBelowCarriesAHeavyLoad) { ExpectFigure("heavy_on_light", -0.01, 0.001); }
+TEST(SampleScenes, StructuresStandUnderTheirLoads) { ExpectFigure("structures", -0.02, 0.001); }
 TEST(SampleScenes, LayersPassOrCatch) { ExpectFigure("layers", 0, 0); }
 TEST(SampleScenes, BodiesFallThroughTheHolesOfTheTerrainAlone) { ExpectFigure("terrain_with_holes", 0, 0); }
 TEST(SampleScenes, RaysAgree) { ExpectFigure("query_rays", 0, 0); }
