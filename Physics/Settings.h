@@ -139,8 +139,9 @@ struct BodySettings {
 
 struct SleepSettings {
     bool enabled = true;
-    float seconds = 0.5f;       // >= 0: an island whose bodies have all been slow for so long falls asleep
-    float linearSpeed = 0.05f;  // m/s, >= 0: slow is below this, at the farthest point of the body
+    float seconds = 0.5f;  // >= 0: an island whose bodies have all been slow for so long falls asleep
+    // m/s, >= 0: slow is below this, at the farthest point of the body; of small bodies below one radius a second.
+    float linearSpeed = 0.05f;
 };
 
 // How exact what rests is to be: islands of contacts under load are solved with more substeps than the system's where
@@ -162,8 +163,9 @@ struct SystemSettings {
     AccuracyTarget accuracy{};
     SleepSettings sleep{};
     NarrowPhaseMethod narrowPhase = NarrowPhaseMethod::Automatic;
-    float speculativeDistance =
-        0.02f;                     // m, > 0, at most 1000: contacts begin at this separation, so that nothing bumps
+    // m, > 0, at most 1000: contacts begin at this separation, so that nothing bumps; those of small shapes at a
+    // quarter of the smaller one's outer radius.
+    float speculativeDistance = 0.02f;
     float penetrationSlop = 0.0f;  // m, >= 0: overlap that is left alone
     // Hz, > 0, of the spring that pushes overlaps apart. It is never stiffer than substeps resolve: at most
     // sqrt((velocityIterations + positionIterations) / 45) of their rate, by default a fifth. Infinite: as stiff as
@@ -186,7 +188,7 @@ struct SystemSettings {
     // m/s, >= 0: slower impacts do not bounce; where gravity does not press the two bodies together, only those slower
     // than four substeps of it.
     float restitutionSpeed = 0.5f;
-    float boundsMargin = 0.05f;  // m, > 0: fat bounds exceed the shape's by this
+    float boundsMargin = 0.05f;  // m, > 0: fat bounds exceed the shape's by this, or a quarter of its outer radius
     // Bit j of layerCollides[i]: bodies of layer i and j collide. Must be symmetric.
     std::array<uint32_t, 32> layerCollides = AllLayers();
 

@@ -35,8 +35,7 @@ inline float SinkOfLevel(uint32_t level, const AccuracyTarget& accuracy) {
     return std::ldexp(0.25f * accuracy.penetration, static_cast<int>(level));
 }
 
-// m: half the edge of a cube with the same mass and inertia. Infinite
-// where rotation is locked.
+// m: half the edge of a cube with the same mass and inertia. Infinite where rotation is locked.
 inline float SizeOf(const BodyDynamics& body) {
     const float* inertia = body.inverseInertia;
     return std::sqrt(4.5f * body.inverseMass / (inertia[0] + inertia[1] + inertia[2]));
