@@ -62,10 +62,8 @@ Status PhysicsSystem::SetSettings(const SystemSettings& settings) {
         for (Pair& pair : world_->pairs.pairs) pair.cache = {};
     const bool isOtherTarget = settings.accuracy.penetration != world_->settings.accuracy.penetration;
     world_->settings = settings;
-    // So do joints that are solved as trees.
+    // Efforts of islands follow the settings, and what is solved as a tree; loads are parts of what they may be.
     world_->coloring.Invalidate();
-    // Efforts follow the settings; loads are parts of what they may be.
-    ++world_->pairs.loadVersion;
     if (isOtherTarget) std::ranges::fill(world_->pairs.loads, ContactLoad{});
     if (settings.layerCollides != before) RefilterLayers(*world_, before);
     for (const Sensor& sensor : world_->sensors.sensors) world_->sensors.changed.push_back(sensor.id.index);

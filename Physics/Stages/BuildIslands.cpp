@@ -111,7 +111,7 @@ struct SolvedContact {
     int substeps;
 };
 
-// The contacts of groups with substeps of their own, and how many.
+// The contacts of groups with substeps of their own, and with how many.
 std::span<const SolvedContact> ContactsUnderLoad(const SolverLayout& layout, ScratchArena& scratch) {
     const auto visitAll = [&](auto&& visit) {
         for (const SolverGroup& group : layout.groups)

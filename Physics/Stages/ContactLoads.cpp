@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <limits>
 
 namespace fulcrum {
 
@@ -21,9 +20,9 @@ uint32_t LevelOf(float x) {
     return std::min((std::bit_cast<uint32_t>(x) >> 23) - 126, kMostLevel);
 }
 
-template <int N>
-Wide<N> SquaredSize(const InverseMass<Wide<N>>& inverse) {
-    return Wide<N>(4.5f) * inverse.mass / (inverse.inertia.xx + inverse.inertia.yy + inverse.inertia.zz);
+template <class Real>
+Real SquaredSizeOf(const InverseMass<Real>& inverse) {
+    return SquaredSize<Real>(inverse.mass, inverse.inertia.xx + inverse.inertia.yy + inverse.inertia.zz);
 }
 
 // Bodies with joints have no size of their own; those that were created in each other are no load.
@@ -37,7 +36,7 @@ bool IsLeftOut(const WorldState& world, const Pair& pair) {
 }  // namespace
 
 void NoteWeights(WorldState& world, std::span<const uint32_t> began, float softness) {
-    if (!(world.settings.accuracy.penetration < std::numeric_limits<float>::infinity())) return;
+    if (!HeedsLoads(world.settings)) return;
     for (uint32_t index : began) {
         const Pair& pair = world.pairs.pairs[index];
         if (IsLeftOut(world, pair)) continue;
@@ -51,7 +50,7 @@ void NoteWeights(WorldState& world, std::span<const uint32_t> began, float softn
         const float sink = kMargin * std::fabs(down) * lighter.inverseMass / upper.inverseMass * softness;
         const float part = sink / SizeOf(lighter);
         if (!(part > world.settings.accuracy.penetration)) continue;
-        const uint32_t level = LevelOf(4 * part / world.settings.accuracy.penetration);
+        const uint32_t level = LevelOf(part / LargestUnnotedSink(world.settings.accuracy));
         ContactLoad& load = world.pairs.loads[index];
         if (level <= load.level) continue;
         load.level = load.recent = static_cast<uint8_t>(level);
@@ -65,12 +64,12 @@ bool NoteSinks(WorldState& world, const ContactBatch<N, kFixedB>& batch, const S
     const Real zero(0.0f);
     Real impulse(0.0f);
     for (int i = 0; i < batch.pointCount; ++i) impulse += batch.rows[i].impulse;
-    Real force = impulse * Real(scale.inverseDt), squaredSize = SquaredSize(batch.inverseA);
+    Real force = impulse * Real(scale.inverseDt), squaredSize = SquaredSizeOf(batch.inverseA);
     Real inverseMass = batch.inverseA.mass;
     WideMask<N> unseen = zero > zero;
     if constexpr (!kFixedB) {
         inverseMass = Max(batch.inverseA.mass, batch.sideB.inverse.mass);
-        squaredSize = Min(squaredSize, SquaredSize(batch.sideB.inverse));
+        squaredSize = Min(squaredSize, SquaredSizeOf(batch.sideB.inverse));
         // While it sinks deeper than its impulses explain, it has not yet seen the weight that it is to carry: those of
         // a heavy body on a light one grow as slowly as the light one takes its speed.
         Real depth = zero;

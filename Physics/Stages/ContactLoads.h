@@ -7,6 +7,7 @@
 #include <Fulcrum/Physics/World/WorldState.h>
 
 #include <cmath>
+#include <limits>
 
 namespace fulcrum {
 
@@ -14,7 +15,7 @@ namespace fulcrum {
 // body of mass m sinks it by F / (m w^2), w = 2 pi StiffestFrequency; of the two bodies the lighter one counts. It
 // falls with the square of the substep.
 struct SinkScale {
-    float perLevel;     // 1 / the largest sink of level 0, a part of the size
+    float perLevel;     // 1 / LargestUnnotedSink
     float inverseDt;    // 1/s, of the substeps in which the batch was solved
     float softness;     // s^2: 1 / w^2 for the system's substeps
     float depthScale;   // (substep of the system's settings / that of the batch)^2: a depth times this is the system's
@@ -29,23 +30,29 @@ inline float SoftnessOf(const SystemSettings& settings, float substepDt) {
     return 1.0f / (w * w);
 }
 
+// Whether islands get more effort by what they carry.
+inline bool HeedsLoads(const SystemSettings& settings) {
+    return settings.accuracy.penetration < std::numeric_limits<float>::infinity();
+}
+
 // Sinks are noted as powers of two of a quarter of what they may be, AccuracyTarget::penetration: level i is below 2^i
 // of it.
+inline float LargestUnnotedSink(const AccuracyTarget& accuracy) { return 0.25f * accuracy.penetration; }
 inline float SinkOfLevel(uint32_t level, const AccuracyTarget& accuracy) {
-    return std::ldexp(0.25f * accuracy.penetration, static_cast<int>(level));
+    return std::ldexp(LargestUnnotedSink(accuracy), static_cast<int>(level));
 }
 
-// m: half the edge of a cube with the same mass and inertia. Infinite where rotation is locked.
-inline float SizeOf(const BodyDynamics& body) {
-    const float* inertia = body.inverseInertia;
-    return std::sqrt(4.5f * body.inverseMass / (inertia[0] + inertia[1] + inertia[2]));
+// m^2: the square of half the edge of a cube with the same inverse mass and sum of inverse moments of inertia.
+// Infinite where rotation is locked.
+template <class Real>
+Real SquaredSize(const Real& inverseMass, const Real& inverseInertia) {
+    return Real(4.5f) * inverseMass / inverseInertia;
 }
-
-// Whether its size is below that many meters.
-inline bool IsSmaller(const BodyDynamics& body, float size) {
+inline float SquaredSizeOf(const BodyDynamics& body) {
     const float* inertia = body.inverseInertia;
-    return 4.5f * body.inverseMass < size * size * (inertia[0] + inertia[1] + inertia[2]);
+    return SquaredSize(body.inverseMass, inertia[0] + inertia[1] + inertia[2]);
 }
+inline float SizeOf(const BodyDynamics& body) { return std::sqrt(SquaredSizeOf(body)); }
 
 // Notes the weights of bodies that have come to lie on others: the impulses of such contacts tell only after many steps
 // what they are to carry, the more the lighter the lower body is.

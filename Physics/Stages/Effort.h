@@ -40,17 +40,17 @@ inline float LeastDampingRatio(float frequency, float h) {
 inline constexpr float kTreePush = 0.5f;
 
 // The part of the system's substep that SolverGroup::stiffness says.
+inline constexpr float kStiffnessStep = 0.957603281f;  // 2^(-1/16)
 inline float SubstepOfStiffness(uint32_t stiffness) {
-    constexpr float kStep = 0.957603281f;  // 2^(-1/16)
     float part = 1;
-    for (uint32_t i = 1; i < stiffness; ++i) part *= kStep;
+    for (uint32_t i = 1; i < stiffness; ++i) part *= kStiffnessStep;
     return part;
 }
 // The stiffness of a group that is solved with more substeps than the system's.
 inline uint8_t StiffnessOf(int substeps, int systemSubsteps) {
     const float part = static_cast<float>(systemSubsteps) / static_cast<float>(substeps);
     uint8_t stiffness = 1;
-    while (SubstepOfStiffness(stiffness) > part) ++stiffness;
+    for (float substep = 1; substep > part; substep *= kStiffnessStep) ++stiffness;
     return stiffness;
 }
 

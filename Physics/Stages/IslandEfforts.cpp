@@ -15,7 +15,8 @@ using Entry = ConstraintColoring::Entry;
 using Kind = ConstraintColoring::Kind;
 
 void Raise(uint8_t& number, int to) { number = static_cast<uint8_t>(std::max<int>(number, to)); }
-void Raise(IslandEffort& effort, const SolverSettings& to) {
+template <class Numbers>  // SolverSettings or IslandEffort
+void RaiseNumbers(IslandEffort& effort, const Numbers& to) {
     Raise(effort.substeps, to.substeps);
     Raise(effort.velocityIterations, to.velocityIterations);
     Raise(effort.positionIterations, to.positionIterations);
@@ -49,11 +50,11 @@ struct Extent {
     }
 };
 
-// A column of n boxes buckles under its own weight where its contacts sink by s at its foot and n s > 0.22 a, with a
-// half an edge (measured; as an elastic column it does so at a multiple of the stiffness over the weight). Half of
-// that, at the usual target.
+// A column buckles under its own weight where the sink at its foot times its height is more than 0.22 a^2, with a half
+// its width (measured; as an elastic column it does so at a multiple of the stiffness over the weight). The largest
+// product that is left alone is the target's penetration times this and a^2: a quarter of that where it is 0.004.
 constexpr float kBuckling = 12;
-// Of other islands, as walls, the most of it.
+// Likewise of what is no column: neighbors hold each other.
 constexpr float kBucklingOfWalls = 20;
 // What is that many times as high as half its width is a column: what is at its foot carries all of it.
 constexpr float kSlender = 8;
@@ -135,11 +136,11 @@ private:
         });
     }
 
-    // How many times too deep a contact sinks, a part of the size, m, of its bodies, in an island of this extent.
-    float NeedOf(float sink, float size, const Extent& extent, float buckling) const {
-        if (!(extent.count > 0)) return sink / settings_.accuracy.penetration;
+    // How many times less than the target bodies of a size, m, may sink, in an island of this extent.
+    static float BucklingFactor(float size, const Extent& extent, float buckling) {
+        if (!(extent.count > 0)) return 1;
         const float width = size * size + extent.SquaredHalfWidths().first;
-        return sink / settings_.accuracy.penetration * std::max(1.0f, size * extent.Height() / (buckling * width));
+        return std::max(1.0f, size * extent.Height() / (buckling * width));
     }
 
     // Of large islands only what small bodies ask for by their own weight: the load of others costs too much.
@@ -147,7 +148,7 @@ private:
         const float least = kWeights * Length(settings_.gravity) * softness_ / settings_.accuracy.penetration;
         for (uint32_t i = 0; i < bodies_.awake.size(); ++i) {
             const BodyDynamics& body = bodies_.dynamics[bodies_.awake[i]];
-            if (!IsSmaller(body, least)) continue;
+            if (!(SquaredSizeOf(body) < least * least)) continue;
             const uint32_t root = sets_.Find(i);
             if (sizes_[root] > mostLoaded_) needs_[root].need = std::max(needs_[root].need, least / SizeOf(body));
         }
@@ -160,7 +161,8 @@ private:
         const float size = SizeOf(lightest), height = extent.Height();
         if (!(height * height > kSlender * kSlender * (size * size + extent.SquaredHalfWidths().second))) return;
         const float sink = extent.mass * lightest.inverseMass * Length(settings_.gravity) * softness_ / size;
-        needs_[root].need = std::max(needs_[root].need, NeedOf(sink, size, extent, kBuckling));
+        needs_[root].need = std::max(needs_[root].need,
+                                     sink / settings_.accuracy.penetration * BucklingFactor(size, extent, kBuckling));
     }
 
     void AddNeed(const Entry& entry) {
@@ -172,16 +174,15 @@ private:
         if (!entry.stillA) size = std::min(size, SizeOf(bodies_.dynamics[entry.bodyA]));
         if (!entry.stillB) size = std::min(size, SizeOf(bodies_.dynamics[entry.bodyB]));
         const Extent& extent = places_[root] == kNone ? kLow : extents_[places_[root]];
+        const float factor = BucklingFactor(size, extent, kBucklingOfWalls);
+        const auto needOf = [&](uint32_t level) {
+            return SinkOfLevel(level, settings_.accuracy) / settings_.accuracy.penetration * factor;
+        };
         Need& most = needs_[root];
-        if (load.level > 0)
-            most.need = std::max(most.need,
-                                 NeedOf(SinkOfLevel(load.level, settings_.accuracy), size, extent, kBucklingOfWalls));
+        if (load.level > 0) most.need = std::max(most.need, needOf(load.level));
         // What is pressed hard now, be it by an impact, was so with the springs of before.
         const bool isNew = load.stiffness == 0, isSofter = most.stiffness == 0 || load.stiffness < most.stiffness;
-        if (!isNew && isSofter &&
-            NeedOf(SinkOfLevel(std::max(load.level, load.recent), settings_.accuracy), size, extent, kBucklingOfWalls) >
-                1)
-            most.stiffness = load.stiffness;
+        if (!isNew && isSofter && needOf(std::max(load.level, load.recent)) > 1) most.stiffness = load.stiffness;
     }
 
     const BodyStore& bodies_;
@@ -219,9 +220,7 @@ SolverSettings EffortFor(float need, const SystemSettings& settings) {
 }  // namespace
 
 void Raise(IslandEffort& effort, const IslandEffort& to) {
-    Raise(effort.substeps, to.substeps);
-    Raise(effort.velocityIterations, to.velocityIterations);
-    Raise(effort.positionIterations, to.positionIterations);
+    RaiseNumbers(effort, to);
     if (!to.isLoaded) return;
     if (!effort.isLoaded || (to.stiffness > 0 && (effort.stiffness == 0 || to.stiffness < effort.stiffness)))
         effort.stiffness = to.stiffness;
@@ -238,14 +237,14 @@ std::span<const IslandEffort> FindEfforts(const BodyStore& bodies, const Constra
     VisitEntries(coloring, Kind::Joint, [&](uint32_t, const Entry& entry) {
         const Joint& joint = joints.joints[entry.constraint];
         if (!joint.HasOwnEffort()) return;
-        Raise(efforts[sets.Find(bodies.cold[MovingBodyOf(entry)].awakePlace)], joint.effort);
+        RaiseNumbers(efforts[sets.Find(bodies.cold[MovingBodyOf(entry)].awakePlace)], joint.effort);
     });
-    if (!(settings.accuracy.penetration < std::numeric_limits<float>::infinity())) return efforts;
+    if (!HeedsLoads(settings)) return efforts;
     const std::span<const Need> needs =
         LoadEfforts(bodies, coloring, pairs, settings, sizes, mostLoaded, sets, softness, scratch).Find();
     for (size_t i = 0; i < count; ++i) {
         if (!(needs[i].need > 1)) continue;
-        Raise(efforts[i], EffortFor(needs[i].need, settings));
+        RaiseNumbers(efforts[i], EffortFor(needs[i].need, settings));
         efforts[i].isLoaded = true;
         efforts[i].stiffness = needs[i].stiffness;
     }

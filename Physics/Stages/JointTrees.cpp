@@ -43,7 +43,7 @@ public:
           coloring_(coloring),
           joints_(joints),
           exactLoad_(settings.exactJointLoad),
-          effort_(EffortOf(settings.solver)),
+          errorDivisor_(ErrorDivisorOf(settings.solver)),
           trees_(trees),
           scratch_(scratch),
           slotOf_(scratch.Allocate<uint32_t>(bodies.Size())),
@@ -70,8 +70,8 @@ private:
                 visit(index, joint, joint.SideOf(body));
         });
     }
-    // 1 for four substeps of one iteration each: errors of iterations fall by so much.
-    static float EffortOf(const SolverSettings& solver) {
+    // By how much errors of iterations are less than with four substeps of one iteration of each kind.
+    static float ErrorDivisorOf(const SolverSettings& solver) {
         const float passes = static_cast<float>(solver.velocityIterations + solver.positionIterations);
         return static_cast<float>(solver.substeps * solver.substeps) * passes / 32;
     }
@@ -145,7 +145,7 @@ private:
         float substeps = 0;
         if (isRope) {
             tree.load *= 0.5f;
-            substeps = std::sqrt(tree.load / (exactLoad_ * effort_));
+            substeps = std::sqrt(tree.load / (exactLoad_ * errorDivisor_));
         }
         if (isRope && substeps <= kMostSubsteps) {
             if (substeps > 1) trees_.ropes.push_back({component.root, substeps});
@@ -222,7 +222,7 @@ private:
     const ConstraintColoring& coloring_;
     const JointStore& joints_;
     float exactLoad_;
-    float effort_;
+    float errorDivisor_;
     JointTrees& trees_;
     ScratchArena& scratch_;
     std::span<uint32_t> slotOf_;  // by body, in its tree

@@ -33,9 +33,9 @@ void Color(uint32_t bodyCount, std::span<PairChange> changes, PairStore& pairs, 
 void RemoveSeamContacts(const BodyStore& bodies, const ColliderStore& colliders, const ConstraintColoring& coloring,
                         PairStore& pairs, std::vector<uint32_t>& seams, ScratchArena& scratch);
 
-// Sorts the colored constraints into the solver's groups and batches, where they changed. Islands
-// under load get more effort (ContactLoads.h); where they lose it, impulses in records are limited. Of the joints it
-// writes what their types say of locks and rows.
+// Sorts the colored constraints into the solver's groups and batches, where they changed. Islands under
+// load get more effort (ContactLoads.h); where they lose it, impulses in records are limited. Of the joints it writes
+// what their types say of locks and rows. softness: s^2, SoftnessOf the system's substeps.
 void BuildIslands(const BodyStore& bodies, const ConstraintColoring& coloring, PairStore& pairs,
                   const SystemSettings& settings, float softness, JointStore& joints, SolverLayout& layout,
                   ScratchArena& scratch);

@@ -13,7 +13,6 @@
 #include <Fulcrum/Physics/World/Waking.h>
 
 #include <algorithm>
-#include <limits>
 
 namespace fulcrum {
 
@@ -265,12 +264,12 @@ constexpr uint64_t kStepsToForget = 16;
 void StoreImpulses(WorldState& world, const StepState& step, std::span<WorkerFindings> workers) {
     const SolverLayout& layout = step.solver;
     const SystemSettings& settings = world.settings;
-    const bool notesSinks = settings.accuracy.penetration < std::numeric_limits<float>::infinity();
+    const bool notesSinks = HeedsLoads(settings);
     const bool notesLarge = notesSinks && (settings.accuracy.largeIslands || layout.OverflowCount() > 0);
     const float softness = SoftnessOf(settings, step.substepDt);
     // impulseScale: see Effort; stiffness: see ContactLoad.
     const auto sinkScaleOf = [&](float impulseScale, uint8_t stiffness) {
-        return SinkScale{.perLevel = 4 / settings.accuracy.penetration,
+        return SinkScale{.perLevel = 1 / LargestUnnotedSink(settings.accuracy),
                          .inverseDt = 1 / (step.substepDt * impulseScale),
                          .softness = softness,
                          .depthScale = 1 / (impulseScale * impulseScale),
