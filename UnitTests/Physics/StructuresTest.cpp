@@ -83,7 +83,8 @@ TEST(Structures, ColumnsOfAHundredStandAtTheDefaults) {
             }
             EXPECT_TRUE(column.Stands(kIsSanitized ? 10 : 60, 0.02)) << boxes << " seed " << seed;
             EXPECT_LT(column.Drift(), 0.01) << boxes << " seed " << seed;
-            EXPECT_LT(column.Fastest(), 0.005) << boxes << " seed " << seed;
+            // Their sway fades slowly: ten boxes by half in 6 s.
+            EXPECT_LT(column.Fastest(), kIsSanitized ? 0.01 : 0.003) << boxes << " seed " << seed;
         }
     }
 }

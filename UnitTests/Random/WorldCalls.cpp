@@ -45,6 +45,9 @@ void SetSettings(Twin& twin, Values& values, const CallTargets&, Outcome& outcom
         if (i != j) settings.layerCollides[j] ^= 1u << i;
     }
     if (values.Chance(0.1f)) settings.narrowPhase = values.One<NarrowPhaseMethod>(2);
+    mostly(settings.accuracy.penetration, 0.001f, 0.1f);
+    if (values.Chance(0.1f)) settings.accuracy.mostSubsteps = values.Integer(1, 64);
+    if (values.Chance(0.1f)) settings.accuracy.largeIslands = values.Chance(0.5f);
     Note(twin.system->SetSettings(settings), outcome);
 }
 
