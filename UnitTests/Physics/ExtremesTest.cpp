@@ -92,7 +92,7 @@ TEST(TimeStep, TinyAndAlternatingStepsKeepAStack) {
     // Each change of the time step disturbs the stack a little: it moves, but stands, within 5 % of an edge.
     for (int i = 0; i < 300; ++i) world.Step(i % 2 ? 1.0 / 30 : 1.0 / 240);
     for (size_t i = 0; i < 6; ++i)
-        EXPECT_LT((world.PositionOf(stack[i]) - Position(0, 0.5 + double(i), 0)).norm(), 0.06) << i;
+        EXPECT_LT((world.PositionOf(stack[i]) - Position(0, 0.5 + double(i), 0)).norm(), 0.05) << i;
     world.Steps(10, 1e-5);
     world.Steps(100);
     for (size_t i = 0; i < 6; ++i)

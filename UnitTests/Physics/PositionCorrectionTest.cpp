@@ -169,7 +169,7 @@ TEST(PositionCorrection, HoldsAWallAtFewSubsteps) {
         const WallTop top = TopOfWall(solver);
         EXPECT_LT(top.sink, 0.01) << effort[0] << " " << effort[1];
         EXPECT_GT(top.sink, -0.001) << effort[0] << " " << effort[1];
-        EXPECT_LT(top.aside, 0.008) << effort[0] << " " << effort[1];
+        EXPECT_LT(top.aside, 0.005) << effort[0] << " " << effort[1];
         if (effort[1] > 10 || effort[0] > 1) continue;
         solver.positionCorrection = PositionCorrection::SoftRelax;
         EXPECT_LT(top.sink, 0.7 * TopOfWall(solver).sink);
