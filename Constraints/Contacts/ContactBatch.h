@@ -120,7 +120,7 @@ struct ContactSolveSettings {
 // are the second bodies. Returns the lanes, bit by bit, of which some number came out not finite: these do nothing.
 template <int N, bool kFixedB>
 uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* records, const uint32_t (&bodyB)[N],
-                         const SolverBodies& bodies, const ContactPrepareSettings& settings);
+                         const ConstSolverBodies& bodies, const ContactPrepareSettings& settings);
 
 // Applies the impulses of the last step.
 template <int N, bool kFixedB>

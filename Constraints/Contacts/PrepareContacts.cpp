@@ -105,11 +105,22 @@ template <int N, bool kFixedB>
 }
 
 template <int N, bool kFixedB>
+void GatherVelocities(const ContactBatch<N, kFixedB>& batch, const BodyState* states, Twists<N, kFixedB>& twists) {
+    const float* rows[N];
+    for (int i = 0; i < N; ++i) rows[i] = states[batch.bodyA[i]].VelocityRow();
+    GatherRows<N>(rows, twists.a);
+    if constexpr (!kFixedB) {
+        for (int i = 0; i < N; ++i) rows[i] = states[batch.sideB.body[i]].VelocityRow();
+        GatherRows<N>(rows, twists.b);
+    }
+}
+
+template <int N, bool kFixedB>
 void PrepareBounces(ContactBatch<N, kFixedB>& batch, Wide<N> restitution, const uint32_t (&bodyB)[N],
-                    const SolverBodies& bodies, const ContactPrepareSettings& settings) {
+                    const ConstSolverBodies& bodies, const ContactPrepareSettings& settings) {
     using Real = Wide<N>;
     Twists<N, kFixedB> twists;
-    Gather<BodyRow::Velocity>(batch, bodies.states, twists);
+    GatherVelocities(batch, bodies.states, twists);
     const Twist<Real> relative = RelativeTwist<BodyRow::Velocity>(batch, twists, 0);
     const Real vn = Dot<Real>(relative.linear, batch.normal);
     const Real w1 = Dot<Real>(relative.angular, batch.tangent1), w2 = Dot<Real>(relative.angular, batch.tangent2);
@@ -192,7 +203,7 @@ void AddSurfaceMotion(ContactBatch<N, true>& batch, const Wide<N>& marks, const 
 
 template <int N, bool kFixedB>
 uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* records, const uint32_t (&bodyB)[N],
-                         const SolverBodies& bodies, const ContactPrepareSettings& settings) {
+                         const ConstSolverBodies& bodies, const ContactPrepareSettings& settings) {
     using Real = Wide<N>;
     using Record = ContactRecord;
     const Real zero(0.0f);
@@ -336,7 +347,7 @@ void StoreContacts(const ContactBatch<N, kFixedB>& batch, ContactRecord* records
 
 #define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                          \
     template uint32_t PrepareContacts(ContactBatch<lanes, fixedB>&, const ContactRecord*, const uint32_t(&)[lanes], \
-                                      const SolverBodies&, const ContactPrepareSettings&);                          \
+                                      const ConstSolverBodies&, const ContactPrepareSettings&);                     \
     template void StoreContacts(const ContactBatch<lanes, fixedB>&, ContactRecord*, float);
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, false)
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, true)

@@ -38,7 +38,7 @@ struct alignas(64) BallBatch {
 
 // As those of JointBatch.h. Of bodies that are not kinematic they read how far they turned as BodyState::halfTurn says.
 template <int N>
-void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const SolverBodies& bodies,
+void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const ConstSolverBodies& bodies,
                    const JointSolveSettings& settings, JointFindings& findings);
 template <int N>
 void WarmStartJoints(const BallBatch<N>& batch, BodyState* states);

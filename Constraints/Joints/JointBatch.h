@@ -186,7 +186,7 @@ struct JointFindings {
 // Fills the batch whose lanes, fixed and kinematic bits, locks and room for rows are set.
 template <int N>
 void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* const* types,
-                   const SolverBodies& bodies, const JointSolveSettings& settings, JointFindings& findings);
+                   const ConstSolverBodies& bodies, const JointSolveSettings& settings, JointFindings& findings);
 
 // Applies the impulses of the last step.
 template <int N>

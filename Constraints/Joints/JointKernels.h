@@ -310,7 +310,7 @@ FULCRUM_FORCE_INLINE void SetUpCoupling(JointBatch<N>& batch) {
         });
         const auto& angularMass = AngularPart<kAngular>(batch).GetEffectiveMass();
         // S = K - sum of C_k (K_angular^-1 C^T)_k
-        Sym3<Real> s = PointInverseMass<BodySide::Dynamic, BodySide::Dynamic>(batch.massA, batch.massB, armA, armB);
+        Sym3<Real> s = PointInverseMass(batch.massA, batch.massB, armA, armB);
         if constexpr (kLinear == LinearLock::Line) {
             const auto& frame = batch.line.GetFrame();
             const Sym3<Real> point = s;

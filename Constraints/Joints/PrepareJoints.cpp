@@ -129,8 +129,8 @@ void SoftenLane(const JointBatch<N>& batch, JointRows<N>& rows, int lane, const 
 
 // Asks the types for their rows and spreads these over the lanes. The parts are set up.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const* types, const SolverBodies& bodies,
-              const JointSolveSettings& settings) {
+void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const* types,
+              const ConstSolverBodies& bodies, const JointSolveSettings& settings) {
     batch.rowCount = 0;
     batch.rowsTurnWithA = batch.radial = false;
     batch.wayA = batch.wayB = {};
@@ -253,7 +253,7 @@ void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const Joint
 
 template <int N>
 void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* const* types,
-                   const SolverBodies& bodies, const JointSolveSettings& settings, JointFindings& findings) {
+                   const ConstSolverBodies& bodies, const JointSolveSettings& settings, JointFindings& findings) {
     using Real = Wide<N>;
     Real head[8], frames[8], impulses[8];
     GatherRecordRow<N>(batch.joint, records, JointRecord::kAnchors, head);
@@ -443,10 +443,10 @@ void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* co
     }
 }
 
-#define FULCRUM_INSTANTIATE(lanes)                                                                                \
-    template void PrepareJoints(JointBatch<lanes>&, const JointRecord*, JointType* const*, const SolverBodies&,   \
-                                const JointSolveSettings&, JointFindings&);                                       \
-    template void StoreJoints(const JointBatch<lanes>&, JointRecord*, JointType* const*, const BodyState*, float, \
+#define FULCRUM_INSTANTIATE(lanes)                                                                                   \
+    template void PrepareJoints(JointBatch<lanes>&, const JointRecord*, JointType* const*, const ConstSolverBodies&, \
+                                const JointSolveSettings&, JointFindings&);                                          \
+    template void StoreJoints(const JointBatch<lanes>&, JointRecord*, JointType* const*, const BodyState*, float,    \
                               float);
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE)
 #undef FULCRUM_INSTANTIATE

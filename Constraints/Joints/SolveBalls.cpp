@@ -101,7 +101,7 @@ FULCRUM_FORCE_INLINE Sym3<Wide<N>> MassAt(const BallBatch<N>& batch, const Vec3<
         return SymmetricInverse(k);
     } else {
         const InverseMass<Real> a{batch.inverseMassA, batch.inertiaA}, b{batch.inverseMassB, batch.inertiaB};
-        return SymmetricInverse(PointInverseMass<BodySide::Dynamic, BodySide::Dynamic>(a, b, armA, armB));
+        return SymmetricInverse(PointInverseMass(a, b, armA, armB));
     }
 }
 
@@ -146,7 +146,7 @@ FULCRUM_FORCE_INLINE void ForgetWhereNewlyFar(BallBatch<N>& batch, const Wide<N>
 template <class Real>
 FULCRUM_FORCE_INLINE Vec3<Real> MotionAt(const Twist<Real>& a, const Twist<Real>& b, const Vec3<Real>& armA,
                                          const Vec3<Real>& armB) {
-    return PointMotion<BodySide::Dynamic, BodySide::Dynamic>(a, b, armA, armB);
+    return PointMotion(a, b, armA, armB);
 }
 
 // How far a body turned since the start of the step: see BodyState::halfTurn.
@@ -285,7 +285,7 @@ void Pull(BallBatch<N>& batch, BodyState* pseudo, const JointSolveSettings& sett
 }  // namespace
 
 template <int N>
-void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const SolverBodies& bodies,
+void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const ConstSolverBodies& bodies,
                    const JointSolveSettings& settings, JointFindings& findings) {
     using Real = Wide<N>;
     Real anchors[8], impulses[8];
@@ -378,15 +378,15 @@ void StoreJoints(const BallBatch<N>& batch, JointRecord* records, float dt, floa
     write(JointRecord::kTotal, force, none);
 }
 
-#define FULCRUM_INSTANTIATE(lanes)                                                                                     \
-    template void PrepareJoints(BallBatch<lanes>&, const JointRecord*, const SolverBodies&, const JointSolveSettings&, \
-                                JointFindings&);                                                                       \
-    template void WarmStartJoints(const BallBatch<lanes>&, BodyState*);                                                \
-    template void SolveJointVelocities(BallBatch<lanes>&, BodyState*, const JointSolveSettings&);                      \
-    template void RelaxJoints(BallBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);                      \
-    template void UpdateJoints(BallBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);                     \
-    template void CorrectJoints(BallBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);                    \
-    template void PullJoints(BallBatch<lanes>&, BodyState*, const JointSolveSettings&);                                \
+#define FULCRUM_INSTANTIATE(lanes)                                                                  \
+    template void PrepareJoints(BallBatch<lanes>&, const JointRecord*, const ConstSolverBodies&,    \
+                                const JointSolveSettings&, JointFindings&);                         \
+    template void WarmStartJoints(const BallBatch<lanes>&, BodyState*);                             \
+    template void SolveJointVelocities(BallBatch<lanes>&, BodyState*, const JointSolveSettings&);   \
+    template void RelaxJoints(BallBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);   \
+    template void UpdateJoints(BallBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);  \
+    template void CorrectJoints(BallBatch<lanes>&, const SolverBodies&, const JointSolveSettings&); \
+    template void PullJoints(BallBatch<lanes>&, BodyState*, const JointSolveSettings&);             \
     template void StoreJoints(const BallBatch<lanes>&, JointRecord*, float, float);
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE)
 #undef FULCRUM_INSTANTIATE

@@ -59,9 +59,9 @@ struct BlockState {
     typename Types::Rows totalLambda = Types::Zero();
 };
 
-// Part derives from BlockPart<Part, Real, kRows> and has, for compile-time sides,
-//     Rows RelativeMotion<kSide1, kSide2>(motion1, motion2) const                                   J times motion
-//     void AddImpulse<kSide1, kSide2>(motion1, motion2, mass1, mass2, lambda, applied) const        + M^-1 J^T lambda
+// Part derives from BlockPart<Part, Real, kRows> and has
+//     Rows RelativeMotion(motion1, motion2) const                                   J times motion
+//     void AddImpulse(motion1, motion2, mass1, mass2, lambda, applied) const        + M^-1 J^T lambda
 // Real: float, or Wide<N> for N constraints; both give the same bits. Rows: Vec2<Real> or Vec3<Real>.
 template <class Part, class Real, int kRows>
 class BlockPart {
@@ -85,26 +85,23 @@ public:
     Mask IsActive() const { return Types::Trace(effectiveMass_) > Real(0.0f); }
 
     // Applies the total impulse.
-    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     void WarmStart(Twist<Real>& velocity1, Twist<Real>& velocity2, const InverseMass<Real>& mass1,
                    const InverseMass<Real>& mass2) const {
-        AddNonZero<kSide1, kSide2>(velocity1, velocity2, mass1, mass2, totalLambda_, IsActive());
+        AddNonZero(velocity1, velocity2, mass1, mass2, totalLambda_, IsActive());
     }
 
     // One iteration. Returns where anything was applied.
-    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     Mask SolveVelocity(Twist<Real>& velocity1, Twist<Real>& velocity2, const InverseMass<Real>& mass1,
                        const InverseMass<Real>& mass2) {
-        const Rows error = Self().template RelativeMotion<kSide1, kSide2>(velocity1, velocity2) + bias_;
+        const Rows error = Self().RelativeMotion(velocity1, velocity2) + bias_;
         const Rows impulse = effectiveMass_ * Rows(error * softness_.massScale);
-        return AddLambda<kSide1, kSide2>(velocity1, velocity2, mass1, mass2,
-                                         SoftDelta(impulse, totalLambda_, softness_.impulseScale), IsActive());
+        return AddLambda(velocity1, velocity2, mass1, mass2, SoftDelta(impulse, totalLambda_, softness_.impulseScale),
+                         IsActive());
     }
     // Its second half for a change of the impulses that was solved together with other parts: applies it where `mask`.
-    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     FULCRUM_FORCE_INLINE Mask AddLambda(Twist<Real>& velocity1, Twist<Real>& velocity2, const InverseMass<Real>& mass1,
                                         const InverseMass<Real>& mass2, const Rows& deltaLambda, const Mask& mask) {
-        const Mask applied = AddNonZero<kSide1, kSide2>(velocity1, velocity2, mass1, mass2, deltaLambda, mask);
+        const Mask applied = AddNonZero(velocity1, velocity2, mass1, mass2, deltaLambda, mask);
         totalLambda_ = detail::Choose<Real>(applied, Rows(totalLambda_ + deltaLambda), totalLambda_);
         return applied;
     }
@@ -112,11 +109,10 @@ public:
     // One position pass: moves the bodies (displacement since the start of the step) by -K^-1 baumgarte C along J. The
     // softness is left out; springs have no business here, because their error is their force.
     // error: C as the poses are now; zero where it is satisfied.
-    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     Mask SolvePosition(Twist<Real>& displacement1, Twist<Real>& displacement2, const InverseMass<Real>& mass1,
                        const InverseMass<Real>& mass2, const Rows& error, Real baumgarte) const {
         const Rows lambda = effectiveMass_ * Rows(error * -baumgarte);
-        return AddNonZero<kSide1, kSide2>(displacement1, displacement2, mass1, mass2, lambda, IsActive());
+        return AddNonZero(displacement1, displacement2, mass1, mass2, lambda, IsActive());
     }
 
     // N s or N m s.
@@ -146,11 +142,10 @@ private:
 
     // Adds M^-1 J^T lambda where `mask` and lambda is not zero; NaN counts as zero, so that one bad constraint spoils
     // no body. Returns where.
-    template <BodySide kSide1, BodySide kSide2>
     FULCRUM_FORCE_INLINE Mask AddNonZero(Twist<Real>& motion1, Twist<Real>& motion2, const InverseMass<Real>& mass1,
                                          const InverseMass<Real>& mass2, const Rows& lambda, const Mask& mask) const {
         const Mask applied = (Types::Size(lambda) > Real(0.0f)) & mask;
-        Self().template AddImpulse<kSide1, kSide2>(motion1, motion2, mass1, mass2, lambda, applied);
+        Self().AddImpulse(motion1, motion2, mass1, mass2, lambda, applied);
         return applied;
     }
 

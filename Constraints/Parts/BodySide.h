@@ -8,6 +8,7 @@
 
 namespace fulcrum {
 
+// Of rows and of the rotation-Euler part; the other blocks treat every body as Dynamic, and immovable ones by zeros.
 // A side that is not Dynamic is neither read nor written where that changes nothing: Static has no velocity and no
 // mass, Kinematic has a velocity, which the row sees, and no mass.
 enum class BodySide : uint8_t { Static, Kinematic, Dynamic };

@@ -87,10 +87,16 @@ struct InverseMass {
 };
 
 // Constraints refer to bodies by index into these arrays.
+struct ConstSolverBodies {
+    const BodyState* states;
+    const BodyMass* masses;
+    const BodyPose* poses;
+};
 struct SolverBodies {
     BodyState* states;
     const BodyMass* masses;
     const BodyPose* poses;
+    operator ConstSolverBodies() const { return {states, masses, poses}; }
 };
 
 }  // namespace fulcrum

@@ -33,11 +33,10 @@ public:
     using typename BlockPart<DualAxisPart, Real, 2>::Mask;
 
     // Once per substep.
-    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     void CalculateProperties(const InverseMass<Real>& mass1, const InverseMass<Real>& mass2,
                              const DualAxisFrame<Real>& frame) {
         frame_ = frame;
-        const Sym3<Real> point = PointInverseMass<kSide1, kSide2>(mass1, mass2, frame.r1PlusU, frame.r2);
+        const Sym3<Real> point = PointInverseMass(mass1, mass2, frame.r1PlusU, frame.r2);
         Sym2<Real> k;
         k.xx = Between(frame.axis1, point, frame.axis1);
         k.yy = Between(frame.axis2, point, frame.axis2);
@@ -46,18 +45,16 @@ public:
     }
 
     // J applied to velocities (m/s), or to displacements: the change of C to first order (m).
-    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     Rows RelativeMotion(const Twist<Real>& motion1, const Twist<Real>& motion2) const {
-        const Vector motion = PointMotion<kSide1, kSide2>(motion1, motion2, frame_.r1PlusU, frame_.r2);
+        const Vector motion = PointMotion(motion1, motion2, frame_.r1PlusU, frame_.r2);
         return Rows(Dot<Real>(frame_.axis1, motion), Dot<Real>(frame_.axis2, motion));
     }
 
     // Adds M^-1 J^T lambda, where `applied`.
-    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     void AddImpulse(Twist<Real>& motion1, Twist<Real>& motion2, const InverseMass<Real>& mass1,
                     const InverseMass<Real>& mass2, const Rows& lambda, Mask applied) const {
         const Vector impulse = frame_.axis1 * lambda.x() + frame_.axis2 * lambda.y();
-        AddPointImpulse<kSide1, kSide2>(motion1, motion2, mass1, mass2, frame_.r1PlusU, frame_.r2, impulse, applied);
+        AddPointImpulse(motion1, motion2, mass1, mass2, frame_.r1PlusU, frame_.r2, impulse, applied);
     }
 
     // As it was set up.

@@ -42,12 +42,11 @@ public:
     using typename BlockPart<HingeRotationPart, Real, 2>::Mask;
 
     // Once per substep. b2, c2: world space, unit, perpendicular.
-    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     void CalculateProperties(const InverseMass<Real>& mass1, const InverseMass<Real>& mass2, const Vector& b2,
                              const Vector& c2) {
         b2_ = b2;
         c2_ = c2;
-        const Sym3<Real> angular = AngularInverseMass<kSide1, kSide2>(mass1, mass2);
+        const Sym3<Real> angular = AngularInverseMass(mass1, mass2);
         Sym2<Real> k;
         k.xx = Between(c2, angular, c2);
         k.yy = Between(b2, angular, b2);
@@ -56,18 +55,16 @@ public:
     }
 
     // J applied to velocities (rad/s), or to displacements: the change of C to first order (rad).
-    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     Rows RelativeMotion(const Twist<Real>& motion1, const Twist<Real>& motion2) const {
-        const Vector motion = AngularMotion<kSide1, kSide2>(motion1, motion2);
+        const Vector motion = AngularMotion(motion1, motion2);
         return Rows(-Dot<Real>(c2_, motion), Dot<Real>(b2_, motion));
     }
 
     // Adds M^-1 J^T lambda, where `applied`.
-    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     void AddImpulse(Twist<Real>& motion1, Twist<Real>& motion2, const InverseMass<Real>& mass1,
                     const InverseMass<Real>& mass2, const Rows& lambda, Mask applied) const {
         const Vector impulse = b2_ * lambda.y() - c2_ * lambda.x();
-        AddAngularImpulse<kSide1, kSide2>(motion1, motion2, mass1, mass2, impulse, applied);
+        AddAngularImpulse(motion1, motion2, mass1, mass2, impulse, applied);
     }
 
     // World space, as they were set up.

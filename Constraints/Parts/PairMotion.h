@@ -1,5 +1,5 @@
 // How two bodies move against each other and how impulses move them, at a common point or in rotation alone; shared by
-// the block parts, called from their solves. Sides as in BodySide.h. Free functions, no state.
+// the block parts, called from their solves. Sides, of rotations, as in BodySide.h. Free functions, no state.
 //
 //   r1, r2  from the centers of mass to the point at which an impulse acts on each body (the same point, where momentum
 //   is
@@ -14,17 +14,16 @@
 namespace fulcrum {
 
 // m/s, or m for displacements.
-template <BodySide kSide1, BodySide kSide2, class Real>
+template <class Real>
 inline Vec3<Real> PointMotion(const Twist<Real>& motion1, const Twist<Real>& motion2, const Vec3<Real>& r1,
                               const Vec3<Real>& r2) {
-    Vec3<Real> at1(Real(0.0f), Real(0.0f), Real(0.0f)), at2 = at1;
-    if constexpr (HasVelocity(kSide1)) at1 = motion1.linear + Cross<Real>(motion1.angular, r1);
-    if constexpr (HasVelocity(kSide2)) at2 = motion2.linear + Cross<Real>(motion2.angular, r2);
+    const Vec3<Real> at1 = motion1.linear + Cross<Real>(motion1.angular, r1);
+    const Vec3<Real> at2 = motion2.linear + Cross<Real>(motion2.angular, r2);
     return at2 - at1;
 }
 
 // rad/s, or rad.
-template <BodySide kSide1, BodySide kSide2, class Real>
+template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic, class Real>
 inline Vec3<Real> AngularMotion(const Twist<Real>& motion1, const Twist<Real>& motion2) {
     Vec3<Real> of1(Real(0.0f), Real(0.0f), Real(0.0f)), of2 = of1;
     if constexpr (HasVelocity(kSide1)) of1 = motion1.angular;
@@ -33,26 +32,20 @@ inline Vec3<Real> AngularMotion(const Twist<Real>& motion1, const Twist<Real>& m
 }
 
 // impulse: N s, on body 2; body 1 gets the opposite.
-template <BodySide kSide1, BodySide kSide2, class Real>
+template <class Real>
 inline void AddPointImpulse(Twist<Real>& motion1, Twist<Real>& motion2, const InverseMass<Real>& mass1,
                             const InverseMass<Real>& mass2, const Vec3<Real>& r1, const Vec3<Real>& r2,
                             const Vec3<Real>& impulse, MaskOf<Real> applied) {
-    if constexpr (HasMass(kSide1)) {
-        const Vec3<Real> linear = impulse * mass1.mass;
-        const Vec3<Real> angular = mass1.inertia * Cross<Real>(r1, impulse);
-        motion1.linear -= ZeroUnless<Real>(applied, linear);
-        motion1.angular -= ZeroUnless<Real>(applied, angular);
-    }
-    if constexpr (HasMass(kSide2)) {
-        const Vec3<Real> linear = impulse * -mass2.mass;
-        const Vec3<Real> angular = mass2.inertia * Cross<Real>(impulse, r2);
-        motion2.linear -= ZeroUnless<Real>(applied, linear);
-        motion2.angular -= ZeroUnless<Real>(applied, angular);
-    }
+    const Vec3<Real> linear1 = impulse * mass1.mass, angular1 = mass1.inertia * Cross<Real>(r1, impulse);
+    motion1.linear -= ZeroUnless<Real>(applied, linear1);
+    motion1.angular -= ZeroUnless<Real>(applied, angular1);
+    const Vec3<Real> linear2 = impulse * -mass2.mass, angular2 = mass2.inertia * Cross<Real>(impulse, r2);
+    motion2.linear -= ZeroUnless<Real>(applied, linear2);
+    motion2.angular -= ZeroUnless<Real>(applied, angular2);
 }
 
 // impulse: N m s, on body 2; body 1 gets the opposite.
-template <BodySide kSide1, BodySide kSide2, class Real>
+template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic, class Real>
 inline void AddAngularImpulse(Twist<Real>& motion1, Twist<Real>& motion2, const InverseMass<Real>& mass1,
                               const InverseMass<Real>& mass2, const Vec3<Real>& impulse, MaskOf<Real> applied) {
     if constexpr (HasMass(kSide1)) {
@@ -87,15 +80,12 @@ inline Sym3<Real> PointInverseMass(const InverseMass<Real>& mass, const Vec3<Rea
     return k;
 }
 // Of both.
-template <BodySide kSide1, BodySide kSide2, class Real>
+template <class Real>
 inline Sym3<Real> PointInverseMass(const InverseMass<Real>& mass1, const InverseMass<Real>& mass2, const Vec3<Real>& r1,
                                    const Vec3<Real>& r2) {
-    Sym3<Real> k1, k2;
-    if constexpr (HasMass(kSide1)) k1 = PointInverseMass(mass1, r1);
-    if constexpr (HasMass(kSide2)) k2 = PointInverseMass(mass2, r2);
-    return k1 + k2;
+    return PointInverseMass(mass1, r1) + PointInverseMass(mass2, r2);
 }
-template <BodySide kSide1, BodySide kSide2, class Real>
+template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic, class Real>
 inline Sym3<Real> AngularInverseMass(const InverseMass<Real>& mass1, const InverseMass<Real>& mass2) {
     Sym3<Real> k1, k2;
     if constexpr (HasMass(kSide1)) k1 = mass1.inertia;

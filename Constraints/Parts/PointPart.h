@@ -21,25 +21,22 @@ public:
     using typename BlockPart<PointPart, Real, 3>::Mask;
 
     // Once per substep. r1, r2: world space, m.
-    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     void CalculateProperties(const InverseMass<Real>& mass1, const InverseMass<Real>& mass2, const Vector& r1,
                              const Vector& r2) {
         r1_ = r1;
         r2_ = r2;
-        this->SetInverseEffectiveMass(PointInverseMass<kSide1, kSide2>(mass1, mass2, r1, r2));
+        this->SetInverseEffectiveMass(PointInverseMass(mass1, mass2, r1, r2));
     }
 
     // J applied to velocities (m/s), or to displacements: the change of C to first order (m).
-    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     Vector RelativeMotion(const Twist<Real>& motion1, const Twist<Real>& motion2) const {
-        return PointMotion<kSide1, kSide2>(motion1, motion2, r1_, r2_);
+        return PointMotion(motion1, motion2, r1_, r2_);
     }
 
     // Adds M^-1 J^T lambda, where `applied`.
-    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     void AddImpulse(Twist<Real>& motion1, Twist<Real>& motion2, const InverseMass<Real>& mass1,
                     const InverseMass<Real>& mass2, const Vector& lambda, Mask applied) const {
-        AddPointImpulse<kSide1, kSide2>(motion1, motion2, mass1, mass2, r1_, r2_, lambda, applied);
+        AddPointImpulse(motion1, motion2, mass1, mass2, r1_, r2_, lambda, applied);
     }
 
     // World space, m, as they were set up.

@@ -61,26 +61,24 @@ inline Vec3<Real> RotationError(const Quat<Real>& rotation1, const Quat<Real>& r
     return RotationVectorOf<Real>(rotation2 * inverseInitial * rotation1.Conjugate());
 }
 
-template <class Real>
-class RotationEulerPart : public BlockPart<RotationEulerPart<Real>, Real, 3> {
+// kSide: what is known of the bodies at compile time (BodySide.h).
+template <class Real, BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
+class RotationEulerPart : public BlockPart<RotationEulerPart<Real, kSide1, kSide2>, Real, 3> {
 public:
     using typename BlockPart<RotationEulerPart, Real, 3>::Vector;
     using typename BlockPart<RotationEulerPart, Real, 3>::Mask;
 
     // Once per substep.
-    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     void CalculateProperties(const InverseMass<Real>& mass1, const InverseMass<Real>& mass2) {
         this->SetInverseEffectiveMass(AngularInverseMass<kSide1, kSide2>(mass1, mass2));
     }
 
     // J applied to velocities (rad/s), or to displacements: the change of C to first order (rad).
-    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     Vector RelativeMotion(const Twist<Real>& motion1, const Twist<Real>& motion2) const {
         return AngularMotion<kSide1, kSide2>(motion1, motion2);
     }
 
     // Adds M^-1 J^T lambda, where `applied`.
-    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     void AddImpulse(Twist<Real>& motion1, Twist<Real>& motion2, const InverseMass<Real>& mass1,
                     const InverseMass<Real>& mass2, const Vector& lambda, Mask applied) const {
         AddAngularImpulse<kSide1, kSide2>(motion1, motion2, mass1, mass2, lambda, applied);

@@ -25,10 +25,11 @@ std::string ReadCode(const fs::path& file) {
 }
 
 // Names of the functions that a header offers: members of classes that are public, and free functions outside
-// `namespace detail`, found by their indentation of one level at most, as clang-format writes it.
+// `namespace detail`, found by their indentation of one level at most, as clang-format writes it. Conversions have no
+// name to be called by.
 std::set<std::string> PublicFunctions(const std::string& code) {
     static const std::regex kDeclaration(
-        R"(^( {4})?(?!return|if |for |else|using|static_assert|template)[A-Za-z_][^;={}()]*?[ *&]([A-Z]\w*)\()");
+        R"(^( {4})?(?!return|if |for |else|using|static_assert|template|operator )[A-Za-z_][^;={}()]*?[ *&]([A-Z]\w*)\()");
     std::set<std::string> names;
     std::istringstream lines(code);
     bool isPublic = true, isDetail = false;

@@ -119,8 +119,9 @@ Vec2<Real> FirstTwo(const Vec3<Real>& a) {
     return Vec2<Real>(a.x(), a.y());
 }
 
-// A row part as the block parts are called: with masses, without limits, and with a bias that is not scaled yet.
-template <class Real>
+// A row part as the block parts are called: with masses, without limits, with a bias that is not scaled yet, and with
+// sides that belong to the part.
+template <class Real, BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
 class OneRowPart : public RowPart<Real> {
     using Base = RowPart<Real>;
 
@@ -128,24 +129,23 @@ public:
     using Rows = Real;
     using typename Base::Mask;
 
+    void CalculateProperties(const InverseMass<Real>& mass1, const InverseMass<Real>& mass2) {
+        Base::template CalculateProperties<kSide1, kSide2>(mass1, mass2);
+    }
     void SetBias(const Real& bias, const RowSoftness<Real>& softness) {
         Base::SetBias(softness.massScale * bias, softness);
     }
-    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     void WarmStart(Twist<Real>& v1, Twist<Real>& v2, const InverseMass<Real>&, const InverseMass<Real>&) const {
         Base::template WarmStart<kSide1, kSide2>(v1, v2);
     }
-    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     Mask SolveVelocity(Twist<Real>& v1, Twist<Real>& v2, const InverseMass<Real>&, const InverseMass<Real>&) {
         const Real unlimited(std::numeric_limits<float>::max());
         return Base::template SolveVelocity<kSide1, kSide2>(v1, v2, -unlimited, unlimited);
     }
-    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     Mask SolvePosition(Twist<Real>& moved1, Twist<Real>& moved2, const InverseMass<Real>&, const InverseMass<Real>&,
                        const Real& error, const Real& baumgarte) const {
         return Base::template SolvePosition<kSide1, kSide2>(moved1, moved2, error, baumgarte);
     }
-    template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     Real RelativeMotion(const Twist<Real>& motion1, const Twist<Real>& motion2) const {
         return fulcrum::RelativeMotion<kSide1, kSide2>(this->GetJacobian(), motion1, motion2);
     }
@@ -162,17 +162,17 @@ struct BlockCase {
     static constexpr double kRounding = 5e-5;
 };
 struct OneRowCase {
-    template <class Real>
-    using Part = OneRowPart<Real>;
+    template <class Real, BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
+    using Part = OneRowPart<Real, kSide1, kSide2>;
     static constexpr int kRows = 1;
     static constexpr double kMassRounding = 2e-6;
     static constexpr double kRounding = 2e-5;
 
     template <BodySide kSide1, BodySide kSide2, class Real>
-    static void SetUpRow(OneRowPart<Real>& part, const InverseMass<Real>& m1, const InverseMass<Real>& m2,
-                         const PartInputs<Real>& in, const RowJacobian<Real>& jacobian) {
+    static void SetUpRow(OneRowPart<Real, kSide1, kSide2>& part, const InverseMass<Real>& m1,
+                         const InverseMass<Real>& m2, const PartInputs<Real>& in, const RowJacobian<Real>& jacobian) {
         part.SetJacobian(jacobian);
-        part.template CalculateProperties<kSide1, kSide2>(m1, m2);
+        part.CalculateProperties(m1, m2);
         part.SetBias(in.bias.x(), in.softness);
     }
 };
@@ -182,24 +182,24 @@ struct PointCase : BlockCase {
     using Part = PointPart<Real>;
     static constexpr int kRows = 3;
     static constexpr Momentum kKept = Momentum::LinearAndAngular;
-    template <BodySide kSide1, BodySide kSide2, class Real>
+    template <class Real>
     static void SetUp(PointPart<Real>& part, const InverseMass<Real>& m1, const InverseMass<Real>& m2,
                       const PartInputs<Real>& in) {
-        part.template CalculateProperties<kSide1, kSide2>(m1, m2, in.r1, in.r2);
+        part.CalculateProperties(m1, m2, in.r1, in.r2);
         part.SetBias(in.bias, in.softness);
     }
     static DenseRows Jacobian(const PartInputs<float>& in) { return PointRows(in.r1, in.r2); }
 };
 
 struct RotationEulerCase : BlockCase {
-    template <class Real>
-    using Part = RotationEulerPart<Real>;
+    template <class Real, BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
+    using Part = RotationEulerPart<Real, kSide1, kSide2>;
     static constexpr int kRows = 3;
     static constexpr Momentum kKept = Momentum::LinearAndAngular;
     template <BodySide kSide1, BodySide kSide2, class Real>
-    static void SetUp(RotationEulerPart<Real>& part, const InverseMass<Real>& m1, const InverseMass<Real>& m2,
-                      const PartInputs<Real>& in) {
-        part.template CalculateProperties<kSide1, kSide2>(m1, m2);
+    static void SetUp(RotationEulerPart<Real, kSide1, kSide2>& part, const InverseMass<Real>& m1,
+                      const InverseMass<Real>& m2, const PartInputs<Real>& in) {
+        part.CalculateProperties(m1, m2);
         part.SetBias(in.bias, in.softness);
     }
     static DenseRows Jacobian(const PartInputs<float>&) { return AngularRows(); }
@@ -210,10 +210,10 @@ struct DualAxisCase : BlockCase {
     using Part = DualAxisPart<Real>;
     static constexpr int kRows = 2;
     static constexpr Momentum kKept = Momentum::LinearAndAngular;
-    template <BodySide kSide1, BodySide kSide2, class Real>
+    template <class Real>
     static void SetUp(DualAxisPart<Real>& part, const InverseMass<Real>& m1, const InverseMass<Real>& m2,
                       const PartInputs<Real>& in) {
-        part.template CalculateProperties<kSide1, kSide2>(m1, m2, {in.r1, in.r2, in.axis1, in.axis2});
+        part.CalculateProperties(m1, m2, {in.r1, in.r2, in.axis1, in.axis2});
         part.SetBias(FirstTwo(in.bias), in.softness);
     }
     static DenseRows Jacobian(const PartInputs<float>& in) {
@@ -228,10 +228,10 @@ struct HingeRotationCase : BlockCase {
     using Part = HingeRotationPart<Real>;
     static constexpr int kRows = 2;
     static constexpr Momentum kKept = Momentum::LinearAndAngular;
-    template <BodySide kSide1, BodySide kSide2, class Real>
+    template <class Real>
     static void SetUp(HingeRotationPart<Real>& part, const InverseMass<Real>& m1, const InverseMass<Real>& m2,
                       const PartInputs<Real>& in) {
-        part.template CalculateProperties<kSide1, kSide2>(m1, m2, in.axis1, in.axis2);
+        part.CalculateProperties(m1, m2, in.axis1, in.axis2);
         part.SetBias(FirstTwo(in.bias), in.softness);
     }
     static DenseRows Jacobian(const PartInputs<float>& in) {
@@ -244,9 +244,9 @@ struct HingeRotationCase : BlockCase {
 struct AxisCase : OneRowCase {
     static constexpr Momentum kKept = Momentum::LinearAndAngular;
     template <BodySide kSide1, BodySide kSide2, class Real>
-    static void SetUp(OneRowPart<Real>& part, const InverseMass<Real>& m1, const InverseMass<Real>& m2,
+    static void SetUp(OneRowPart<Real, kSide1, kSide2>& part, const InverseMass<Real>& m1, const InverseMass<Real>& m2,
                       const PartInputs<Real>& in) {
-        SetUpRow<kSide1, kSide2>(part, m1, m2, in, AxisJacobian<Real>({in.r1, in.r2, in.axis1}));
+        SetUpRow(part, m1, m2, in, AxisJacobian<Real>({in.r1, in.r2, in.axis1}));
     }
     static DenseRows Jacobian(const PartInputs<float>& in) {
         return ToDense(in.axis1).transpose() * PointRows(in.r1, in.r2);
@@ -257,9 +257,9 @@ struct AngleCase : OneRowCase {
     static constexpr double kRounding = 1e-5;
     static constexpr Momentum kKept = Momentum::LinearAndAngular;
     template <BodySide kSide1, BodySide kSide2, class Real>
-    static void SetUp(OneRowPart<Real>& part, const InverseMass<Real>& m1, const InverseMass<Real>& m2,
+    static void SetUp(OneRowPart<Real, kSide1, kSide2>& part, const InverseMass<Real>& m1, const InverseMass<Real>& m2,
                       const PartInputs<Real>& in) {
-        SetUpRow<kSide1, kSide2>(part, m1, m2, in, AngleJacobian<Real>(in.axis1));
+        SetUpRow(part, m1, m2, in, AngleJacobian<Real>(in.axis1));
     }
     static DenseRows Jacobian(const PartInputs<float>& in) { return ToDense(in.axis1).transpose() * AngularRows(); }
 };
@@ -267,9 +267,9 @@ struct AngleCase : OneRowCase {
 struct GearCase : OneRowCase {
     static constexpr Momentum kKept = Momentum::Linear;
     template <BodySide kSide1, BodySide kSide2, class Real>
-    static void SetUp(OneRowPart<Real>& part, const InverseMass<Real>& m1, const InverseMass<Real>& m2,
+    static void SetUp(OneRowPart<Real, kSide1, kSide2>& part, const InverseMass<Real>& m1, const InverseMass<Real>& m2,
                       const PartInputs<Real>& in) {
-        SetUpRow<kSide1, kSide2>(part, m1, m2, in, GearJacobian<Real>(in.axis1, in.axis2, in.ratio));
+        SetUpRow(part, m1, m2, in, GearJacobian<Real>(in.axis1, in.axis2, in.ratio));
     }
     static DenseRows Jacobian(const PartInputs<float>& in) {
         DenseRows j = DenseRows::Zero(1, 12);
@@ -282,10 +282,9 @@ struct GearCase : OneRowCase {
 struct RackAndPinionCase : OneRowCase {
     static constexpr Momentum kKept = Momentum::Linear;
     template <BodySide kSide1, BodySide kSide2, class Real>
-    static void SetUp(OneRowPart<Real>& part, const InverseMass<Real>& m1, const InverseMass<Real>& m2,
+    static void SetUp(OneRowPart<Real, kSide1, kSide2>& part, const InverseMass<Real>& m1, const InverseMass<Real>& m2,
                       const PartInputs<Real>& in) {
-        SetUpRow<kSide1, kSide2>(part, m1, m2, in,
-                                 RackAndPinionJacobian<Real>({in.r1, in.r2, in.axis1, in.axis2, in.ratio}));
+        SetUpRow(part, m1, m2, in, RackAndPinionJacobian<Real>({in.r1, in.r2, in.axis1, in.axis2, in.ratio}));
     }
     // The pinion's turn, and the ratio times the way back of the rack's point against the pinion's.
     static DenseRows Jacobian(const PartInputs<float>& in) {
@@ -298,10 +297,9 @@ struct RackAndPinionCase : OneRowCase {
 struct IndependentAxisCase : OneRowCase {
     static constexpr Momentum kKept = Momentum::None;
     template <BodySide kSide1, BodySide kSide2, class Real>
-    static void SetUp(OneRowPart<Real>& part, const InverseMass<Real>& m1, const InverseMass<Real>& m2,
+    static void SetUp(OneRowPart<Real, kSide1, kSide2>& part, const InverseMass<Real>& m1, const InverseMass<Real>& m2,
                       const PartInputs<Real>& in) {
-        SetUpRow<kSide1, kSide2>(part, m1, m2, in,
-                                 IndependentAxisJacobian<Real>({in.r1, in.r2, in.axis1, in.axis2 * in.ratio}));
+        SetUpRow(part, m1, m2, in, IndependentAxisJacobian<Real>({in.r1, in.r2, in.axis1, in.axis2 * in.ratio}));
     }
     static DenseRows Jacobian(const PartInputs<float>& in) {
         const Position n1 = in.axis1.cast<double>(), n2 = in.axis2.cast<double>() * static_cast<double>(in.ratio);
@@ -314,5 +312,9 @@ struct IndependentAxisCase : OneRowCase {
 
 using AllParts = ::testing::Types<PointCase, RotationEulerCase, DualAxisCase, HingeRotationCase, AxisCase, AngleCase,
                                   GearCase, RackAndPinionCase, IndependentAxisCase>;
+
+// Those with sides that are known at compile time.
+using PartsWithSides =
+    ::testing::Types<RotationEulerCase, AxisCase, AngleCase, GearCase, RackAndPinionCase, IndependentAxisCase>;
 
 }  // namespace fulcrum::testing

@@ -49,7 +49,7 @@ TYPED_TEST(PartSpringTest, IsTheOscillatorInTheLimitOfSmallSteps) {
         Twist<float> v1, v2;
         Part part;
         for (int n = 1; n <= 4000; ++n) {
-            TypeParam::template SetUp<BodySide::Dynamic, BodySide::Dynamic>(part, m1, m2, inputs);
+            TypeParam::SetUp(part, m1, m2, inputs);
             part.SetBias(FromDense<Rows>(error * (w / (2.0 * zeta + h * w))), inputs.softness);
             // From a total of zero one solve is the implicit step.
             part.SetTotalLambda(FromDense<Rows>(Eigen::VectorXd::Zero(TypeParam::kRows)));
@@ -75,7 +75,7 @@ TYPED_TEST(PartSpringTest, MassesMayBeOverridden) {
         const Eigen::MatrixXd inverseMass = testing::DenseInverseMass(heavy, b.mass);
         Twist<float> v1 = a.velocity, v2 = b.velocity;
         Part part;
-        TypeParam::template SetUp<BodySide::Dynamic, BodySide::Dynamic>(part, heavy, b.mass, inputs);
+        TypeParam::SetUp(part, heavy, b.mass, inputs);
         const Eigen::MatrixXd expected = (j * inverseMass * j.transpose()).inverse();
         EXPECT_LT((ToDense(part.GetEffectiveMass()) - expected).norm(), TypeParam::kMassRounding * expected.norm());
         EXPECT_TRUE(part.SolveVelocity(v1, v2, heavy, b.mass));
@@ -94,7 +94,7 @@ TYPED_TEST(PartSpringTest, MassesMayBeOverridden) {
         Twist<float> still = a.velocity;
         v2 = b.velocity;
         part.SetTotalLambda(FromDense<typename Part::Rows>(Eigen::VectorXd::Zero(TypeParam::kRows)));
-        TypeParam::template SetUp<BodySide::Dynamic, BodySide::Dynamic>(part, wall, b.mass, inputs);
+        TypeParam::SetUp(part, wall, b.mass, inputs);
         part.SolveVelocity(still, v2, wall, b.mass);
         EXPECT_TRUE(SameBits(still, a.velocity));
         EXPECT_LT((ToDense(part.RelativeMotion(still, v2)) + ToDense(inputs.bias).head(TypeParam::kRows)).norm(),
@@ -126,7 +126,7 @@ TYPED_TEST(PartSpringTest, SnapshotsOfLanesGoOnAsBefore) {
         inputs.ratio.Set(i, in.ratio);
     }
     const auto step = [&](Part& part, Twist<Real>& a, Twist<Real>& b) {
-        TypeParam::template SetUp<BodySide::Dynamic, BodySide::Dynamic>(part, m1, m2, inputs);
+        TypeParam::SetUp(part, m1, m2, inputs);
         part.WarmStart(a, b, m1, m2);
         part.SolveVelocity(a, b, m1, m2);
     };
