@@ -73,7 +73,7 @@ void Refilter(WorldState& world, uint32_t body) {
     WakeBody(world, body);
     WakeNeighbors(world, body);
     if (world.bodies.dynamics[body].motion == MotionType::Dynamic) world.bodies.MarkPlaced(body);
-    RequeueColliders(world, body);
+    RequeueColliders(world.bodies, world.colliders, body);
 }
 
 // After the body became a sensor, or ceased to be one: what meets it is searched anew.
@@ -86,11 +86,11 @@ void MoveToItsTree(WorldState& world, uint32_t body) {
         Collider& collider = store.colliders[i];
         store.TreeOf(collider).Remove(i);
         collider.sensor = cold.isSensor;
-        SetFatBounds(world, i);
+        SetFatBounds(world.settings, world.bodies, world.colliders, i);
         store.TreeOf(collider).Insert(i, collider.fat);
         world.outsideFatBounds.Forget(i);
     });
-    RequeueColliders(world, body);
+    RequeueColliders(world.bodies, world.colliders, body);
 }
 
 // Brings everything in line with a pose that the user set.
@@ -98,13 +98,13 @@ void Teleported(WorldState& world, uint32_t body) {
     if (world.bodies.dynamics[body].motion == MotionType::Dynamic) world.bodies.MarkPlaced(body);
     world.bodies.UpdateInertia(body);
     VisitColliders(world, body, [&](uint32_t i) {
-        SetFatBounds(world, i);
+        SetFatBounds(world.settings, world.bodies, world.colliders, i);
         const Collider& collider = world.colliders.colliders[i];
         world.colliders.TreeOf(collider).Update(i, collider.fat);
         world.outsideFatBounds.Forget(i);
     });
     world.bodies.poses[body].boundsChangedIn = static_cast<uint32_t>(world.step + 1);
-    RequeueColliders(world, body);
+    RequeueColliders(world.bodies, world.colliders, body);
 }
 
 }  // namespace
@@ -138,9 +138,9 @@ Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
         if (!world_.sensors.IsEmpty()) world_.sensors.changed.push_back(body);
     } else if (settings.motion != MotionType::Static) {
         world_.bodies.MarkAwake(body);
-        RequeueColliders(world_, body);
+        RequeueColliders(world_.bodies, world_.colliders, body);
     } else {
-        RequeueColliders(world_, body);
+        RequeueColliders(world_.bodies, world_.colliders, body);
     }
     if (settings.isSensor)
         world_.sensors.Add(world_.bodies.IdOf(body), settings.sensorSees, settings.sensorReportsStay);
@@ -185,7 +185,7 @@ Status BodyInterface::SetPose(BodyId id, const Position& position, const Quatern
     const uint32_t body = id.index;
     if (world_.bodies.dynamics[body].frozen) {
         world_.bodies.dynamics[body].frozen = false;
-        RecolorJointsOf(world_, body);
+        RecolorJointsOf(world_.bodies, world_.joints, world_.coloring, body);
     }
     WakeBody(world_, body);
     WakeNeighbors(world_, body);
@@ -222,7 +222,7 @@ Status BodyInterface::SetVelocity(BodyId id, const Vector3& linear, const Vector
     WakeBody(world_, id.index);
     if (d.motion == MotionType::Kinematic && !(linear.isZero(0) && angular.isZero(0)) && !d.awake) {
         world_.bodies.MarkAwake(id.index);
-        RequeueColliders(world_, id.index);
+        RequeueColliders(world_.bodies, world_.colliders, id.index);
     }
     if (d.motion == MotionType::Kinematic && !(linear.isZero(0) && angular.isZero(0))) WakeJoined(world_, id.index);
     SetVelocityOf(world_, id.index, linear, angular);
@@ -303,9 +303,9 @@ Status BodyInterface::SetMaterial(BodyId id, const Material& material) {
     if (!Exists(id)) return Unknown(id);
     if (MaybeError e = Check(material)) return *e;
     world_.bodies.cold[id.index].material = material;
-    VisitPairsOf(world_, {&id.index, 1}, [&](uint32_t first) {
+    VisitPairsOf(world_.bodies, world_.colliders, world_.pairs, {&id.index, 1}, [&](uint32_t first) {
         for (uint32_t pair = first; pair != PairStore::kNone; pair = world_.pairs.pairs[pair].more)
-            CombineMaterials(world_, pair);
+            CombineMaterials(world_.bodies, world_.pairs, pair);
     });
     WakeBody(world_, id.index);
     WakeNeighbors(world_, id.index);
@@ -366,7 +366,8 @@ Status BodyInterface::SetSensor(BodyId id, bool isSensor) {
                      "the body has continuous collision; a sensor touches nothing, and is not cast"};
     WakeBody(world_, id.index);
     WakeNeighbors(world_, id.index);
-    VisitPairsOf(world_, {&id.index, 1}, [&](uint32_t pair) { RemovePair(world_.pairs, world_.coloring, pair); });
+    VisitPairsOf(world_.bodies, world_.colliders, world_.pairs, {&id.index, 1},
+                 [&](uint32_t pair) { RemovePair(world_.pairs, world_.coloring, pair); });
     cold.isSensor = isSensor;
     MoveToItsTree(world_, id.index);
     WakeNeighbors(world_, id.index);

@@ -125,7 +125,7 @@ Status BodyInterface::SetShape(BodyId id, const ShapePtr& shape, MassUpdate mass
     if (cold.children) cold.children->massUnit = double{kilograms} / RelativeMassOf(*shape);
     MakeColliders(world_, body);
     if (d.motion == MotionType::Dynamic) world_.bodies.MarkPlaced(body);
-    RequeueColliders(world_, body);
+    RequeueColliders(world_.bodies, world_.colliders, body);
     if (!world_.sensors.IsEmpty())
         world_.sensors.changed.push_back(body);  // also where no collider is left that would tell
     WakeNeighbors(world_, body);

@@ -118,7 +118,7 @@ Result<JointId> JointInterface::Add(const JointSettings& s, std::unique_ptr<Join
     joint.priority = s.priority;
     joint.breakForce = s.breakForce;
     joint.breakTorque = s.breakTorque;
-    joint.effort = {s.substeps, s.velocityIterations, s.positionIterations};
+    joint.effort = ToLeastEffort({s.substeps, s.velocityIterations, s.positionIterations});
     joint.SetMassOverride(s.massOverride);
     joint.userData = s.userData;
     if (std::isfinite(s.breakForce) || std::isfinite(s.breakTorque)) world_.joints.breakable.Insert(index);
@@ -228,7 +228,7 @@ Status JointInterface::SetEffort(JointId id, const SolverSettings& effort) {
                                    CheckRange("positionIterations", effort.positionIterations, 0, 255)))
         return *error;
     Joint& joint = world_.joints.joints[id.index];
-    joint.effort = effort;
+    joint.effort = ToLeastEffort(effort);
     world_.coloring.Invalidate();
     if (joint.enabled) WakeBodiesOf(world_, joint);
     return Done{};

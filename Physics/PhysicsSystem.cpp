@@ -88,7 +88,7 @@ void PhysicsSystem::VisitContacts(FunctionRef<void(const ContactView&)> visit) c
         const Pair& pair = world.pairs.pairs[index];
         if (!pair.touching || pair.pointCount == 0 || pair.onSeam) return;
         ContactView::Point room[ContactRecord::kMaxPoints];
-        visit(ViewContact(world, index, room));
+        visit(ViewContact(world.bodies, world.colliders, world.pairs, index, room));
     });
 }
 

@@ -302,7 +302,7 @@ bool QueryInterface::MayCollide(BodyId a, BodyId b) const {
     const BodyStore& bodies = world_.bodies;
     if (!bodies.Find(a) || !bodies.Find(b) || bodies.cold[a.index].isSensor || bodies.cold[b.index].isSensor)
         return false;
-    return CanCollide(world_, a.index, b.index);
+    return CanCollide(world_.settings, world_.bodies, world_.joints, a.index, b.index);
 }
 
 void QueryInterface::FindOnSweep(const Position& lower, const Position& upper, const Vector3& displacement,

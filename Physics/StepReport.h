@@ -11,6 +11,14 @@ namespace fulcrum {
 inline constexpr int kStageCount = 12;
 const char* StageName(int stage);
 
+// An island that was solved with more than the settings' numbers, and what it was solved with.
+struct IslandEffortReport {
+    int substeps = 0, velocityIterations = 0, positionIterations = 0;
+    // For whom: the body that would sink deepest beyond AccuracyTarget, the lighter one of its contact; or one of a
+    // joint that asks for more, or of a tree of joints that carries much.
+    BodyId culprit;
+};
+
 struct StepReport {
     uint64_t step = 0;                          // 1 for the first
     double totalMs = 0;                         // wall clock
@@ -25,7 +33,10 @@ struct StepReport {
     JointId worstJoint, mostTurnedJoint;
     uint32_t colors = 0, overflowConstraints = 0;  // overflow: fitted no color, solved one by one
     uint32_t islands = 0;                          // awake ones that something touches
-    float largestPenetration = 0;                  // m, >= 0, as found by Collide
+    uint32_t islandsWithMoreEffort = 0;            // than the settings'
+    // Of them those with the most substeps, then iterations, the greatest effort first; beyond their number zeros.
+    std::array<IslandEffortReport, 4> mostEffort{};
+    float largestPenetration = 0;  // m, >= 0, as found by Collide
     BodyId deepestA, deepestB;
     CollideCounters libccd;
     // Bodies that were stopped because numbers of theirs were not finite: frozen, where these were their own; where

@@ -44,14 +44,14 @@ public:
     // What the trees hold is measured from this.
     const Position& Origin() const { return world_.colliders.boundsOrigin; }
     uint32_t BodyOf(uint32_t collider) const { return world_.colliders.colliders[collider].body; }
-    uint32_t ChildOf(uint32_t collider) const { return fulcrum::ChildOf(world_, collider); }
+    uint32_t ChildOf(uint32_t collider) const { return fulcrum::ChildOf(world_.bodies, world_.colliders, collider); }
     BodyId IdOf(uint32_t collider) const { return world_.bodies.IdOf(BodyOf(collider)); }
     OverlapHit HitOf(uint32_t collider) const { return {IdOf(collider), ChildOf(collider)}; }
     const Shape& ShapeOf(uint32_t collider) const { return *world_.colliders.shapes[collider].shape; }
     Pose PoseOf(uint32_t collider) const {
         const ColliderShape& piece = world_.colliders.shapes[collider];
         const Pose body = world_.bodies.ExactCenterPoseOf(BodyOf(collider));
-        return piece.offset ? body * LocalOf(world_, collider) : body;
+        return piece.offset ? body * LocalOf(world_.bodies, world_.colliders, collider) : body;
     }
     // The order that breaks ties: by body, then child.
     bool ComesBefore(uint32_t a, uint32_t b) const {
@@ -92,7 +92,7 @@ class QueryScope {
 public:
     explicit QueryScope(WorldState& world) : shared_(world.lock) {
         if (shared_.Refusal()) ReportMisuse(*shared_.Refusal());
-        else world.outsideFatBounds.Refresh(world);
+        else world.outsideFatBounds.Refresh(world.bodies, world.colliders);
     }
     explicit operator bool() const { return !shared_.Refusal(); }
 

@@ -16,11 +16,11 @@ void Forget(ContactRecord& record) {
 
 }  // namespace
 
-ContactView ViewContact(const WorldState& world, uint32_t index,
+ContactView ViewContact(const BodyStore& bodies, const ColliderStore& colliders, const PairStore& pairs, uint32_t index,
                         ContactView::Point (&room)[ContactRecord::kMaxPoints]) {
-    const Pair& pair = world.pairs.pairs[index];
-    const ContactRecord& record = world.pairs.records[index];
-    const Pose poseA = world.bodies.CenterPoseOf(pair.bodyA), poseB = world.bodies.CenterPoseOf(pair.bodyB);
+    const Pair& pair = pairs.pairs[index];
+    const ContactRecord& record = pairs.records[index];
+    const Pose poseA = bodies.CenterPoseOf(pair.bodyA), poseB = bodies.CenterPoseOf(pair.bodyB);
     const Vector3 normal = Rotate(poseA.rotation, Vector3(record.normal[0], record.normal[1], record.normal[2]));
     for (size_t i = 0; i < pair.pointCount; ++i) {
         const ContactRecord::Point& p = record.points[i];
@@ -28,12 +28,12 @@ ContactView ViewContact(const WorldState& world, uint32_t index,
         const Position onB = poseB.Transform(Vector3(p.onB[0], p.onB[1], p.onB[2]));
         room[i] = {onA, Dot<float>(normal, Vector3((onB - onA).cast<float>())), record.impulse[i]};
     }
-    return {world.bodies.IdOf(pair.bodyA),
-            world.bodies.IdOf(pair.bodyB),
+    return {bodies.IdOf(pair.bodyA),
+            bodies.IdOf(pair.bodyB),
             normal,
             std::span<const ContactView::Point>(room, pair.pointCount),
-            ChildOf(world, pair.colliderA),
-            ChildOf(world, pair.colliderB)};
+            ChildOf(bodies, colliders, pair.colliderA),
+            ChildOf(bodies, colliders, pair.colliderB)};
 }
 
 ContactChange AskAbout(const ContactListener& listener, const ContactView& contact, float friction, float restitution) {
@@ -49,17 +49,18 @@ ContactChange AskAbout(const ContactListener& listener, const ContactView& conta
     return change;
 }
 
-bool AskListener(WorldState& world, uint32_t index) {
-    ContactRecord& record = world.pairs.records[index];
+bool AskListener(const ContactListener& listener, const BodyStore& bodies, const ColliderStore& colliders,
+                 PairStore& pairs, uint32_t index) {
+    ContactRecord& record = pairs.records[index];
     ContactView::Point room[ContactRecord::kMaxPoints];
-    const ContactView view = ViewContact(world, index, room);
-    CombineMaterials(world, index);
-    const ContactChange change = AskAbout(*world.listener, view, record.friction, record.restitution);
+    const ContactView view = ViewContact(bodies, colliders, pairs, index, room);
+    CombineMaterials(bodies, pairs, index);
+    const ContactChange change = AskAbout(listener, view, record.friction, record.restitution);
     record.friction = change.friction;
     record.restitution = change.restitution;
     record.SetSurfaceVelocity(change.surfaceVelocity, change.surfaceTurn);
     record.Set(ContactRecord::kMassOverride, !change.massOverride.IsNone());
-    world.pairs.massOverrides[index] = change.massOverride;
+    pairs.massOverrides[index] = change.massOverride;
     if (change.ignore) Forget(record);
     return !change.ignore;
 }

@@ -12,11 +12,11 @@ namespace {
 
 // BodyState::marks: the sum of these.
 enum Mark : int { kLimited = 1, kStopped = 2 };
-bool IsMarked(const WorldState& world, uint32_t body, Mark mark) {
-    return (static_cast<int>(world.bodies.states[body].marks) & mark) != 0;
+bool IsMarked(const BodyStore& bodies, uint32_t body, Mark mark) {
+    return (static_cast<int>(bodies.states[body].marks) & mark) != 0;
 }
-void SetMark(WorldState& world, uint32_t body, Mark mark, bool isSet) {
-    float& marks = world.bodies.states[body].marks;
+void SetMark(BodyStore& bodies, uint32_t body, Mark mark, bool isSet) {
+    float& marks = bodies.states[body].marks;
     const int others = static_cast<int>(marks) & ~mark;
     marks = static_cast<float>(isSet ? others | mark : others);
 }
@@ -38,37 +38,36 @@ bool IsFiniteState(const BodyStore& bodies, uint32_t body) {
 }
 
 // The pose is finite unless something wrote over it; then the position is taken from the center of the bounds.
-void RepairPose(WorldState& world, uint32_t body) {
-    Pose pose = world.bodies.CenterPoseOf(body);
+void RepairPose(BodyStore& bodies, const ColliderStore& colliders, uint32_t body) {
+    Pose pose = bodies.CenterPoseOf(body);
     const bool isPlaced = IsFinite(pose.position), isTurned = IsFinite(pose.rotation);
-    if (isPlaced && isTurned && IsFinite(world.bodies.remainders[body].value)) return;
+    if (isPlaced && isTurned && IsFinite(bodies.remainders[body].value)) return;
     if (!isTurned) pose.rotation = {};
     if (!isPlaced) {
-        pose.position = world.colliders.boundsOrigin;
+        pose.position = colliders.boundsOrigin;
         Bounds bounds;
-        VisitColliders(world, body, [&](uint32_t i) { bounds.Include(world.colliders.colliders[i].fat); });
+        VisitColliders(bodies, colliders, body, [&](uint32_t i) { bounds.Include(colliders.colliders[i].fat); });
         if (!bounds.IsEmpty() && IsFinite(bounds.Center())) pose.position += bounds.Center().cast<double>();
     }
-    world.bodies.SetCenterPose(body, pose);
+    bodies.SetCenterPose(body, pose);
 }
 
 // Limits forces that are finite but whose acceleration is not. Where forces are not finite Store freezes the body.
-void LimitForces(WorldState& world, uint32_t body) {
-    BodyCold& cold = world.bodies.cold[body];
+void LimitForces(BodyStore& bodies, uint32_t body) {
+    BodyCold& cold = bodies.cold[body];
     if (!IsFinite(cold.force) || !IsFinite(cold.torque)) return;
-    cold.force = LimitedPush(cold.force, double{world.bodies.dynamics[body].inverseMass});
-    cold.torque = LimitedPush(cold.torque, Trace(world.bodies.masses[body]));
+    cold.force = LimitedPush(cold.force, double{bodies.dynamics[body].inverseMass});
+    cold.torque = LimitedPush(cold.torque, Trace(bodies.masses[body]));
 }
 
 // Nothing moves it.
-void BringToRest(WorldState& world, uint32_t body) {
-    BodyStore& bodies = world.bodies;
+void BringToRest(BodyStore& bodies, uint32_t body) {
     bodies.states[body] = {};
     bodies.unconstrained[body] = {};
     bodies.cold[body].force.setZero();
     bodies.cold[body].torque.setZero();
     bodies.dynamics[body].hasForce = false;
-    SetMark(world, body, kStopped, true);
+    SetMark(bodies, body, kStopped, true);
 }
 
 void NoteStopped(uint32_t body, WorkerFindings& findings) {
@@ -76,67 +75,68 @@ void NoteStopped(uint32_t body, WorkerFindings& findings) {
     findings.firstFrozen = std::min(findings.firstFrozen, body);
 }
 
-void ForgetImpulses(WorldState& world, uint32_t body) {
-    VisitPairsOf(world, {&body, 1}, [&](uint32_t first) {
-        for (uint32_t pair = first; pair != PairStore::kNone; pair = world.pairs.pairs[pair].more) {
-            ContactRecord& record = world.pairs.records[pair];
+void ForgetImpulses(const BodyStore& bodies, const ColliderStore& colliders, PairStore& pairs, JointStore& joints,
+                    uint32_t body) {
+    VisitPairsOf(bodies, colliders, pairs, {&body, 1}, [&](uint32_t first) {
+        for (uint32_t pair = first; pair != PairStore::kNone; pair = pairs.pairs[pair].more) {
+            ContactRecord& record = pairs.records[pair];
             std::fill(std::begin(record.impulse), std::end(record.impulse), 0.0f);
             std::fill(std::begin(record.frictionImpulse), std::end(record.frictionImpulse), 0.0f);
             record.twistImpulse = 0;
         }
     });
-    world.joints.VisitOf(body, [&](uint32_t joint) { world.joints.Forget(joint); });
+    joints.VisitOf(body, [&](uint32_t joint) { joints.Forget(joint); });
 }
 
 }  // namespace
 
-bool ShortenSpeeds(WorldState& world, uint32_t body, Vector3& v, Vector3& w) {
-    const BodyDynamics& d = world.bodies.dynamics[body];
+bool ShortenSpeeds(BodyStore& bodies, uint32_t body, Vector3& v, Vector3& w) {
+    const BodyDynamics& d = bodies.dynamics[body];
     constexpr float kRounding = 1 + 1e-6f;
     const auto exceeds = [](const Vector3& x, float limit) { return LengthSquared(x) > limit * limit * kRounding; };
     const bool counts = exceeds(v, d.maxLinearSpeed) || exceeds(w, d.maxAngularSpeed);
     LimitLength(v, d.maxLinearSpeed);
     LimitLength(w, d.maxAngularSpeed);
-    const bool isFirst = counts && !IsMarked(world, body, kLimited);
-    if (isFirst) SetMark(world, body, kLimited, true);
+    const bool isFirst = counts && !IsMarked(bodies, body, kLimited);
+    if (isFirst) SetMark(bodies, body, kLimited, true);
     return isFirst;
 }
 
-void AdmitBody(WorldState& world, uint32_t body, WorkerFindings& findings) {
-    BodyStore& bodies = world.bodies;
-    if (!IsFiniteState(bodies, body)) return Freeze(world, body, findings);
-    SetMark(world, body, kLimited, false);
+void AdmitBody(BodyStore& bodies, const ColliderStore& colliders, uint32_t body, WorkerFindings& findings) {
+    if (!IsFiniteState(bodies, body)) return Freeze(bodies, colliders, body, findings);
+    SetMark(bodies, body, kLimited, false);
     const BodyDynamics& d = bodies.dynamics[body];
-    if (d.hasForce) LimitForces(world, body);
+    if (d.hasForce) LimitForces(bodies, body);
     Vector3 v = bodies.LinearVelocityOf(body), w = bodies.AngularVelocityOf(body);
     if (IsWithinSpeeds(d, v, w)) return;
-    findings.clamped += ShortenSpeeds(world, body, v, w);
+    findings.clamped += ShortenSpeeds(bodies, body, v, w);
     bodies.SetVelocity(body, v, w);
 }
 
-void Freeze(WorldState& world, uint32_t body, WorkerFindings& findings) {
-    BodyDynamics& d = world.bodies.dynamics[body];
+void Freeze(BodyStore& bodies, const ColliderStore& colliders, uint32_t body, WorkerFindings& findings) {
+    BodyDynamics& d = bodies.dynamics[body];
     if (!d.frozen) NoteStopped(body, findings);
     d.frozen = true;
     d.slowSeconds = 0;
-    BringToRest(world, body);
-    RepairPose(world, body);
-    std::fill(std::begin(world.bodies.poses[body].acceleration), std::end(world.bodies.poses[body].acceleration), 0.0f);
-    world.bodies.UpdateInertia(body);
+    BringToRest(bodies, body);
+    RepairPose(bodies, colliders, body);
+    std::fill(std::begin(bodies.poses[body].acceleration), std::end(bodies.poses[body].acceleration), 0.0f);
+    bodies.UpdateInertia(body);
 }
 
-void Stop(WorldState& world, uint32_t body, WorkerFindings& findings) {
+void Stop(BodyStore& bodies, uint32_t body, WorkerFindings& findings) {
     NoteStopped(body, findings);
-    BringToRest(world, body);
+    BringToRest(bodies, body);
 }
 
-void SettleStopped(WorldState& world, std::span<const WorkerFindings> findings) {
+void SettleStopped(std::span<const WorkerFindings> findings, const ColliderStore& colliders, BodyStore& bodies,
+                   PairStore& pairs, JointStore& joints, ConstraintColoring& coloring) {
     if (std::none_of(findings.begin(), findings.end(), [](const WorkerFindings& f) { return f.frozen > 0; })) return;
-    for (uint32_t body : world.bodies.awake) {
-        if (!IsMarked(world, body, kStopped)) continue;
-        SetMark(world, body, kStopped, false);
-        ForgetImpulses(world, body);
-        RecolorJointsOf(world, body);
+    for (uint32_t body : bodies.awake) {
+        if (!IsMarked(bodies, body, kStopped)) continue;
+        SetMark(bodies, body, kStopped, false);
+        ForgetImpulses(bodies, colliders, pairs, joints, body);
+        RecolorJointsOf(bodies, joints, coloring, body);
     }
 }
 

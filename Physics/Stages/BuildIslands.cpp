@@ -5,6 +5,7 @@
 //   JointTrees.h    joints under load that are solved as trees
 //   JointBatches.h  joints in lanes
 //   PlaceTrees.h    trees in groups
+#include <Fulcrum/Physics/Stages/ContactLoads.h>
 #include <Fulcrum/Physics/Stages/FindIslands.h>
 #include <Fulcrum/Physics/Stages/JointBatches.h>
 #include <Fulcrum/Physics/Stages/PlaceTrees.h>
@@ -155,9 +156,10 @@ void LimitImpulses(std::span<const SolvedContact> before, const SolverLayout& la
 
 }  // namespace
 
-void BuildIslands(const BodyStore& bodies, const ConstraintColoring& coloring, PairStore& pairs,
-                  const SystemSettings& settings, float softness, JointStore& joints, SolverLayout& layout,
+void BuildIslands(const StepContext& step, const BodyStore& bodies, const ConstraintColoring& coloring,
+                  std::span<const uint32_t> began, PairStore& pairs, JointStore& joints, SolverLayout& layout,
                   ScratchArena& scratch) {
+    NoteWeights(step, began, bodies, joints, pairs);
     for (SolverGroup& group : layout.groups)
         if (group.stiffness < group.wantedStiffness) ++group.stiffness;
     if (layout.version == coloring.Version() && layout.loadVersion == pairs.loadVersion) return;
@@ -165,13 +167,12 @@ void BuildIslands(const BodyStore& bodies, const ConstraintColoring& coloring, P
     layout.loadVersion = pairs.loadVersion;
     const std::span<const SolvedContact> underLoad = ContactsUnderLoad(layout, scratch);
     ForEachBatchList(layout, [](auto& list, BatchKind) { list.count = 0; });
-    FindJointTrees(bodies, coloring, joints, settings, layout.trees, scratch);
-    const Islands islands =
-        FindIslands(bodies, coloring, joints, pairs, settings, softness, layout.trees, layout.groups, scratch);
+    FindJointTrees(bodies, coloring, joints, step.settings, layout.trees, scratch);
+    const Islands islands = FindIslands(step, bodies, coloring, joints, pairs, layout.trees, layout.groups, scratch);
     layout.islands = islands.islands;
     SortBodies(bodies, islands, layout, scratch);
     SortConstraints(bodies, coloring, islands, joints, layout, scratch);
-    LimitImpulses(underLoad, layout, settings.solver.substeps, pairs, scratch);
+    LimitImpulses(underLoad, layout, step.settings.solver.substeps, pairs, scratch);
     PlaceTrees(bodies, islands, joints.joints.size(), layout, scratch);
     ForEachBatchList(layout, [](auto& list, BatchKind) { GrowTo(list.batches, list.count); });
     const ConstraintColoring::Color& overflow = coloring.At(ConstraintColoring::kOverflow);

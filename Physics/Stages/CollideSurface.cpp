@@ -12,8 +12,8 @@ namespace fulcrum {
 namespace {
 
 template <class Visit>
-void VisitManifolds(WorldState& world, uint32_t pair, Visit&& visit) {
-    for (; pair != PairStore::kNone; pair = world.pairs.pairs[pair].more) visit(pair);
+void VisitManifolds(const PairStore& pairs, uint32_t pair, Visit&& visit) {
+    for (; pair != PairStore::kNone; pair = pairs.pairs[pair].more) visit(pair);
 }
 
 int CommonFeatures(const Pair& pair, const Manifold& manifold) {
@@ -23,41 +23,40 @@ int CommonFeatures(const Pair& pair, const Manifold& manifold) {
     return count;
 }
 
-void Write(WorldState& world, const PairView& view, uint32_t index, const SurfaceManifold& contact, float dt) {
-    Pair& pair = world.pairs.pairs[index];
+void Write(const CollideStores& stores, const PairView& view, uint32_t index, const SurfaceManifold& contact) {
+    Pair& pair = stores.pairs.pairs[index];
     pair.triangle = contact.triangle;
     if (pair.material != contact.material || pair.isMore) {
         pair.material = contact.material;
-        CombineMaterials(world, index);
+        CombineMaterials(stores.bodies, stores.pairs, index);
     }
-    WriteManifold(world, {pair, world.pairs.records[index], view.bodyBInA, view.bInA, view.before}, contact.manifold,
-                  dt);
+    WriteManifold(stores, {pair, stores.pairs.records[index], view.bodyBInA, view.bInA, view.before}, contact.manifold);
 }
 
 // Of the center of the convex piece relative to the surface within the step, m, in that piece's frame.
-Vector3 MotionInA(const WorldState& world, const PairView& view, float dt) {
-    const BodyStore& bodies = world.bodies;
+Vector3 MotionInA(const CollideStores& stores, const PairView& view) {
+    const BodyStore& bodies = stores.bodies;
     const uint32_t a = view.pair.bodyA, b = view.pair.bodyB;
     const Quaternion rotation = bodies.RotationOf(a);
     Vector3 arm = Vector3::Zero();
     Quaternion toPiece{};
     if (view.pair.offset) {
-        const RelativePose piece = LocalOf(world, view.pair.colliderA);
+        const RelativePose piece = LocalOf(stores.bodies, stores.colliders, view.pair.colliderA);
         arm = Rotate(rotation, piece.position);
         toPiece = piece.rotation.Conjugate();
     }
     const Vector3 armB = arm - Rotate(rotation, view.bodyBInA.position);
     const Vector3 velocity = bodies.LinearVelocityOf(a) + Cross<float>(bodies.AngularVelocityOf(a), arm) -
                              bodies.LinearVelocityOf(b) - Cross<float>(bodies.AngularVelocityOf(b), armB);
-    return Rotate(toPiece, InverseRotate(rotation, Vector3(velocity * dt)));
+    return Rotate(toPiece, InverseRotate(rotation, Vector3(velocity * stores.step.dt)));
 }
 
 // Gives each manifold the place whose features it shares, then any that is left.
-void WriteManifolds(WorldState& world, const PairView& view, uint32_t first, float dt, WorkerFindings& findings) {
+void WriteManifolds(const CollideStores& stores, const PairView& view, uint32_t first, WorkerFindings& findings) {
     constexpr uint32_t kTaken = ~0u;
     std::vector<uint32_t>& places = findings.surfacePlaces;
     places.clear();
-    VisitManifolds(world, first, [&](uint32_t index) { places.push_back(index); });
+    VisitManifolds(stores.pairs, first, [&](uint32_t index) { places.push_back(index); });
     const std::span<const SurfaceManifold> found = findings.surface.Manifolds();
     std::vector<uint32_t>& left = findings.surfaceLeft;
     left.clear();
@@ -66,7 +65,7 @@ void WriteManifolds(WorldState& world, const PairView& view, uint32_t first, flo
         size_t best = places.size();
         for (size_t i = 0; i < places.size(); ++i) {
             const int common =
-                places[i] == kTaken ? 0 : CommonFeatures(world.pairs.pairs[places[i]], found[m].manifold);
+                places[i] == kTaken ? 0 : CommonFeatures(stores.pairs.pairs[places[i]], found[m].manifold);
             if (common > most) {
                 most = common;
                 best = i;
@@ -76,7 +75,7 @@ void WriteManifolds(WorldState& world, const PairView& view, uint32_t first, flo
             left.push_back(m);
             continue;
         }
-        Write(world, view, places[best], found[m], dt);
+        Write(stores, view, places[best], found[m]);
         places[best] = kTaken;
     }
     size_t next = 0;
@@ -86,51 +85,52 @@ void WriteManifolds(WorldState& world, const PairView& view, uint32_t first, flo
             findings.more.push_back({first, m, found[m]});
             continue;
         }
-        Write(world, view, places[next], found[m], dt);
+        Write(stores, view, places[next], found[m]);
         places[next] = kTaken;
     }
     for (uint32_t place : places)
-        if (place != kTaken) world.pairs.pairs[place].pointCount = 0;
+        if (place != kTaken) stores.pairs.pairs[place].pointCount = 0;
 }
 
 }  // namespace
 
-PairChange CollideWithSurface(WorldState& world, std::span<PairChange> changes, uint32_t first, float reach, float dt,
+PairChange CollideWithSurface(const CollideStores& stores, std::span<PairChange> changes, uint32_t first, float reach,
                               WorkerFindings& findings) {
     bool touches = false;
-    VisitManifolds(world, first, [&](uint32_t index) { touches |= world.pairs.pairs[index].pointCount > 0; });
-    const PairView view = ViewPair(world.bodies, world.colliders, world.pairs, first);
+    VisitManifolds(stores.pairs, first, [&](uint32_t index) { touches |= stores.pairs.pairs[index].pointCount > 0; });
+    const PairView view = ViewPair(stores.bodies, stores.colliders, stores.pairs, first);
     if (touches && HardlyMoved(view)) {
         ++findings.kept;
     } else {
         CollideSettings settings;
         settings.speculativeDistance = reach;
-        settings.method = world.settings.narrowPhase;
+        settings.method = stores.step.settings.narrowPhase;
         std::vector<uint32_t>& touched = findings.surfaceTouched;
         touched.clear();
-        VisitManifolds(world, first, [&](uint32_t index) {
-            if (world.pairs.pairs[index].pointCount > 0) touched.push_back(world.pairs.pairs[index].triangle);
+        VisitManifolds(stores.pairs, first, [&](uint32_t index) {
+            if (stores.pairs.pairs[index].pointCount > 0) touched.push_back(stores.pairs.pairs[index].triangle);
         });
         CollideSurface(*view.pair.shapeA, static_cast<const SurfaceShape&>(*view.pair.shapeB), view.bInA, settings,
-                       {MotionInA(world, view, dt), touched}, findings.surface);
+                       {MotionInA(stores, view), touched}, findings.surface);
         findings.libccd += findings.surface.Counters();
-        WriteManifolds(world, view, first, dt, findings);
+        WriteManifolds(stores, view, first, findings);
         view.pair.reference = view.bInA;
     }
     PairChange ofFirst = PairChange::None;
     bool wakes = false;
-    VisitManifolds(world, first, [&](uint32_t index) {
-        Pair& pair = world.pairs.pairs[index];
-        if (pair.pointCount > 0) NoteOverlap(world, index, view.bInA, findings);
-        const PairChange change = NoteTouching(world, index, findings);
-        wakes |= TouchesSleeper(world, pair);
+    VisitManifolds(stores.pairs, first, [&](uint32_t index) {
+        Pair& pair = stores.pairs.pairs[index];
+        if (pair.pointCount > 0)
+            NoteOverlap(stores.step.settings, stores.bodies, stores.joints, stores.pairs, index, view.bInA, findings);
+        const PairChange change = NoteTouching(stores, index, findings);
+        wakes |= TouchesSleeper(stores.bodies, pair);
         if (index == first) ofFirst = change;
         else changes[index] = change;
     });
     return wakes ? PairChange::WakesOther : ofFirst;
 }
 
-void AddMoreManifolds(WorldState& world, float dt, PairUpdates& updates, std::span<WorkerFindings> workers) {
+void AddMoreManifolds(const CollideStores& stores, PairUpdates& updates, std::span<WorkerFindings> workers) {
     std::vector<MoreManifold>& all = updates.moreManifolds;
     all.clear();
     for (WorkerFindings& findings : workers) {
@@ -142,11 +142,12 @@ void AddMoreManifolds(WorldState& world, float dt, PairUpdates& updates, std::sp
         return a.pair < b.pair || (a.pair == b.pair && a.order < b.order);
     });
     for (const MoreManifold& more : all) {
-        const uint32_t index = world.pairs.AddMore(more.pair);
-        updates.changes.resize(std::max(updates.changes.size(), world.pairs.pairs.size()), PairChange::None);
-        Write(world, ViewPair(world.bodies, world.colliders, world.pairs, more.pair), index, more.contact, dt);
-        updates.changes[index] = NoteTouching(world, index, workers.front());
-        if (TouchesSleeper(world, world.pairs.pairs[index])) updates.changes[more.pair] = PairChange::WakesOther;
+        const uint32_t index = stores.pairs.AddMore(more.pair);
+        updates.changes.resize(std::max(updates.changes.size(), stores.pairs.pairs.size()), PairChange::None);
+        Write(stores, ViewPair(stores.bodies, stores.colliders, stores.pairs, more.pair), index, more.contact);
+        updates.changes[index] = NoteTouching(stores, index, workers.front());
+        if (TouchesSleeper(stores.bodies, stores.pairs.pairs[index]))
+            updates.changes[more.pair] = PairChange::WakesOther;
     }
 }
 

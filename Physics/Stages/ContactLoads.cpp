@@ -27,40 +27,39 @@ Real SquaredSizeOf(const InverseMass<Real>& inverse) {
 }
 
 // Bodies with joints have no size of their own; those that were created in each other are no load.
-bool IsLeftOut(const WorldState& world, const Pair& pair) {
-    const auto isLeftOut = [&](uint32_t body) {
-        return world.joints.HasAny(body) || world.bodies.dynamics[body].crowded;
-    };
+bool IsLeftOut(const BodyStore& bodies, const JointStore& joints, const Pair& pair) {
+    const auto isLeftOut = [&](uint32_t body) { return joints.HasAny(body) || bodies.dynamics[body].crowded; };
     return isLeftOut(pair.bodyA) || isLeftOut(pair.bodyB);
 }
 
 }  // namespace
 
-void NoteWeights(WorldState& world, std::span<const uint32_t> began, float softness) {
-    if (!HeedsLoads(world.settings)) return;
+void NoteWeights(const StepContext& step, std::span<const uint32_t> began, const BodyStore& bodies,
+                 const JointStore& joints, PairStore& pairs) {
+    if (!HeedsLoads(step.settings)) return;
     for (uint32_t index : began) {
-        const Pair& pair = world.pairs.pairs[index];
-        if (IsLeftOut(world, pair)) continue;
-        const BodyDynamics &a = world.bodies.dynamics[pair.bodyA], &b = world.bodies.dynamics[pair.bodyB];
-        const float* n = world.pairs.records[index].normal;
-        const float down =
-            Dot(Rotate(world.bodies.RotationOf(pair.bodyA), Vector3(n[0], n[1], n[2])), world.settings.gravity);
+        const Pair& pair = pairs.pairs[index];
+        if (IsLeftOut(bodies, joints, pair)) continue;
+        const BodyDynamics &a = bodies.dynamics[pair.bodyA], &b = bodies.dynamics[pair.bodyB];
+        const float* n = pairs.records[index].normal;
+        const float down = Dot(Rotate(bodies.RotationOf(pair.bodyA), Vector3(n[0], n[1], n[2])), step.settings.gravity);
         const BodyDynamics &upper = down < 0 ? b : a, &lower = down < 0 ? a : b;
         if (!(upper.inverseMass > 0)) continue;
         const BodyDynamics& lighter = lower.inverseMass > upper.inverseMass ? lower : upper;
-        const float sink = kMargin * std::fabs(down) * lighter.inverseMass / upper.inverseMass * softness;
+        const float sink = kMargin * std::fabs(down) * lighter.inverseMass / upper.inverseMass * step.softness;
         const float part = sink / SizeOf(lighter);
-        if (!(part > world.settings.accuracy.penetration)) continue;
-        const uint32_t level = LevelOf(part / LargestUnnotedSink(world.settings.accuracy));
-        ContactLoad& load = world.pairs.loads[index];
+        if (!(part > step.settings.accuracy.penetration)) continue;
+        const uint32_t level = LevelOf(part / LargestUnnotedSink(step.settings.accuracy));
+        ContactLoad& load = pairs.loads[index];
         if (level <= load.level) continue;
         load.level = load.recent = static_cast<uint8_t>(level);
-        ++world.pairs.loadVersion;
+        ++pairs.loadVersion;
     }
 }
 
 template <int N, bool kFixedB>
-bool NoteSinks(WorldState& world, const ContactBatch<N, kFixedB>& batch, const SinkScale& scale) {
+bool NoteSinks(const ContactBatch<N, kFixedB>& batch, const SinkScale& scale, const BodyStore& bodies,
+               const JointStore& joints, PairStore& pairs) {
     using Real = Wide<N>;
     const Real zero(0.0f);
     Real impulse(0.0f);
@@ -94,7 +93,7 @@ bool NoteSinks(WorldState& world, const ContactBatch<N, kFixedB>& batch, const S
     bool changed = false;
     for (int lane = 0; lane < batch.count; ++lane) {
         if (!(loaded >> lane & 1u)) continue;
-        ContactLoad& load = world.pairs.loads[batch.contact[lane]];
+        ContactLoad& load = pairs.loads[batch.contact[lane]];
         const uint32_t level = LevelOf(part[lane]);
         load.steps = level > load.level ? static_cast<uint8_t>(load.steps + 1) : uint8_t(0);
         const bool lasts = load.steps >= kStepsOfLoad || (unseen[lane] && level > load.level);
@@ -103,16 +102,17 @@ bool NoteSinks(WorldState& world, const ContactBatch<N, kFixedB>& batch, const S
         load.stiffness = scale.stiffness;
         if (!lasts && !(scale.forgets && lasting + 1 < load.level)) continue;
         load.steps = 0;
-        const Pair& pair = world.pairs.pairs[batch.contact[lane]];
-        if (IsLeftOut(world, pair)) continue;
+        const Pair& pair = pairs.pairs[batch.contact[lane]];
+        if (IsLeftOut(bodies, joints, pair)) continue;
         load.level = static_cast<uint8_t>(lasts ? std::max<uint32_t>(lasting, load.level) : load.level - 1);
         changed = true;
     }
     return changed;
 }
 
-#define FULCRUM_INSTANTIATE(lanes, fixedB) \
-    template bool NoteSinks(WorldState&, const ContactBatch<lanes, fixedB>&, const SinkScale&);
+#define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                             \
+    template bool NoteSinks(const ContactBatch<lanes, fixedB>&, const SinkScale&, const BodyStore&, const JointStore&, \
+                            PairStore&);
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, false)
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, true)
 #undef FULCRUM_INSTANTIATE

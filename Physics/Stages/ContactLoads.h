@@ -4,7 +4,7 @@
 
 #include <Fulcrum/Constraints/Contacts/ContactBatch.h>
 #include <Fulcrum/Physics/Stages/Effort.h>
-#include <Fulcrum/Physics/World/WorldState.h>
+#include <Fulcrum/Physics/World/PairStore.h>
 
 #include <cmath>
 #include <limits>
@@ -24,7 +24,7 @@ struct SinkScale {
     bool forgets;       // loads that are less than they were are noted: in few steps, so that no effort comes and goes
 };
 
-// s^2, see SinkScale.
+// s^2: SinkScale::softness, which a step finds once (StepContext).
 inline float SoftnessOf(const SystemSettings& settings, float substepDt) {
     const float w = 6.28318531f * std::min(settings.contactFrequency, StiffestFrequency(settings.solver, substepDt));
     return 1.0f / (w * w);
@@ -55,12 +55,14 @@ inline float SquaredSizeOf(const BodyDynamics& body) {
 inline float SizeOf(const BodyDynamics& body) { return std::sqrt(SquaredSizeOf(body)); }
 
 // Notes the weights of bodies that have come to lie on others: the impulses of such contacts tell only after many steps
-// what they are to carry, the more the lighter the lower body is.
-void NoteWeights(WorldState& world, std::span<const uint32_t> began, float softness);
+// what they are to carry, the more the lighter the lower body is. began: pairs. Called by BuildIslands.
+void NoteWeights(const StepContext& step, std::span<const uint32_t> began, const BodyStore& bodies,
+                 const JointStore& joints, PairStore& pairs);
 
 // Notes the sinks of a batch in the loads of its pairs. What does not last for some steps is no load. Contacts of
 // bodies with joints, which have no size of their own, are left out. Returns whether some level has changed.
 template <int N, bool kFixedB>
-bool NoteSinks(WorldState& world, const ContactBatch<N, kFixedB>& batch, const SinkScale& scale);
+bool NoteSinks(const ContactBatch<N, kFixedB>& batch, const SinkScale& scale, const BodyStore& bodies,
+               const JointStore& joints, PairStore& pairs);
 
 }  // namespace fulcrum

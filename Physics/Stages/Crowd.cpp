@@ -26,18 +26,17 @@ constexpr float kPatience = 0.5f;
 constexpr uint32_t kNearlyAll = 32;
 
 // Whether a body is one that can disperse at all.
-bool MovesFreely(const WorldState& world, uint32_t body) {
-    const BodyDynamics& d = world.bodies.dynamics[body];
-    const BodyCold& cold = world.bodies.cold[body];
+bool MovesFreely(const BodyStore& bodies, uint32_t body) {
+    const BodyDynamics& d = bodies.dynamics[body];
+    const BodyCold& cold = bodies.cold[body];
     return cold.exists && !cold.removed && !cold.isSensor && d.awake && !d.frozen && d.motion == MotionType::Dynamic;
 }
 
 // Those of `bodies` of which isSo(body) is true, asked by all workers, in the same order.
 template <class Test>
-std::vector<uint32_t> Select(WorldState& world, ScratchArena& scratch, std::span<const uint32_t> bodies,
-                             const Test& isSo) {
-    const std::span<uint8_t> is = scratch.Allocate<uint8_t>(bodies.size());
-    world.jobs->ParallelFor(static_cast<uint32_t>(bodies.size()), 16, [&](JobRange range) {
+std::vector<uint32_t> Select(const StepWorkers& workers, std::span<const uint32_t> bodies, const Test& isSo) {
+    const std::span<uint8_t> is = workers.scratch.Allocate<uint8_t>(bodies.size());
+    workers.jobs.ParallelFor(static_cast<uint32_t>(bodies.size()), 16, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i) is[i] = isSo(bodies[i]);
     });
     std::vector<uint32_t> selected;
@@ -46,92 +45,94 @@ std::vector<uint32_t> Select(WorldState& world, ScratchArena& scratch, std::span
     return selected;
 }
 
-// Marks those of `bodies` that are to disperse, and returns them in ascending order.
-std::vector<uint32_t> MarkDispersing(WorldState& world, ScratchArena& scratch, const JointedGroups& groups,
-                                     std::span<const uint32_t> bodies) {
-    const auto mayStart = [&](uint32_t body) {
-        return MovesFreely(world, body) && !world.bodies.dynamics[body].dispersing;
-    };
-    std::vector<uint32_t> starting = Select(world, scratch, bodies, [&](uint32_t body) {
-        return mayStart(body) && OverlapsManyDeeply(world, groups, body);
+// Marks those of `candidates` that are to disperse, and returns them in ascending order. view: with `bodies`.
+std::vector<uint32_t> MarkDispersing(const CollisionView& view, const PairStore& pairs, const JointedGroups& groups,
+                                     std::span<const uint32_t> candidates, BodyStore& bodies,
+                                     const StepWorkers& workers) {
+    const auto mayStart = [&](uint32_t body) { return MovesFreely(bodies, body) && !bodies.dynamics[body].dispersing; };
+    std::vector<uint32_t> starting = Select(workers, candidates, [&](uint32_t body) {
+        return mayStart(body) && OverlapsManyDeeply(view, pairs, groups, body);
     });
-    for (const uint32_t body : starting) world.bodies.dynamics[body].dispersing = true;
+    for (const uint32_t body : starting) bodies.dynamics[body].dispersing = true;
     // Those that deeply overlap only a few of these would be in their way.
     for (std::vector<uint32_t> joining = starting; !joining.empty();) {
-        joining = Select(world, scratch, bodies, [&](uint32_t body) {
-            return mayStart(body) && OverlapsDispersingDeeply(world, groups, body);
+        joining = Select(workers, candidates, [&](uint32_t body) {
+            return mayStart(body) && OverlapsDispersingDeeply(view, pairs, groups, body);
         });
-        for (const uint32_t body : joining) world.bodies.dynamics[body].dispersing = true;
+        for (const uint32_t body : joining) bodies.dynamics[body].dispersing = true;
         starting.insert(starting.end(), joining.begin(), joining.end());
     }
     std::sort(starting.begin(), starting.end());
     return starting;
 }
 
-void RemoveDynamicPairs(WorldState& world, std::span<PairChange> changes, std::span<const uint32_t> bodies) {
-    VisitPairsOf(world, bodies, [&](uint32_t pair) {
-        if (world.pairs.pairs[pair].fixedB) return;
+void RemoveDynamicPairs(const CollisionView& view, std::span<const uint32_t> bodies, PairStore& pairs,
+                        ConstraintColoring& coloring, std::span<PairChange> changes) {
+    VisitPairsOf(view.bodies, view.colliders, pairs, bodies, [&](uint32_t pair) {
+        if (pairs.pairs[pair].fixedB) return;
         if (pair < changes.size()) changes[pair] = PairChange::None;
-        RemovePair(world.pairs, world.coloring, pair);
+        RemovePair(pairs, coloring, pair);
     });
 }
 
 // Where each body is to move. Bodies with joints move in one direction with those that they are connected to.
-std::vector<DispersingBody> PlanDispersing(const WorldState& world, const JointedGroups& groups,
+std::vector<DispersingBody> PlanDispersing(const CollisionView& view, const JointedGroups& groups,
                                            std::span<const uint32_t> bodies) {
     std::vector<DispersingBody> planned;
     std::vector<uint32_t> single;
     for (const uint32_t body : bodies) {
-        if (world.joints.HasAny(body)) planned.push_back({body, PointInBall(groups.RootOf(body))});
+        if (view.joints.HasAny(body)) planned.push_back({body, PointInBall(groups.RootOf(body))});
         else single.push_back(body);
     }
-    if (single.size() >= kFewestWithPlaces) AssignPlaces(world, single, planned);
+    if (single.size() >= kFewestWithPlaces) AssignPlaces(view, single, planned);
     else
         for (const uint32_t body : single) planned.push_back({body, PointInBall(body)});
     return planned;
 }
 
 // For the rest of this step: UpdateBounds has set accelerations already, with gravity for all but dispersing bodies.
-void AddGravity(WorldState& world, uint32_t body, float factor) {
-    const Vector3 gravity = world.settings.gravity * (factor * world.bodies.dynamics[body].gravityFactor);
-    for (int k = 0; k < 3; ++k) world.bodies.poses[body].acceleration[k] += gravity[k];
+void AddGravity(const SystemSettings& settings, BodyStore& bodies, uint32_t body, float factor) {
+    const Vector3 gravity = settings.gravity * (factor * bodies.dynamics[body].gravityFactor);
+    for (int k = 0; k < 3; ++k) bodies.poses[body].acceleration[k] += gravity[k];
 }
 
 // Removed bodies, and those that were put to sleep, frozen or made kinematic meanwhile.
-void ForgetStopped(WorldState& world, std::vector<DispersingBody>& all) {
+void ForgetStopped(BodyStore& bodies, std::vector<DispersingBody>& all) {
     std::erase_if(all, [&](const DispersingBody& dispersing) {
-        BodyDynamics& d = world.bodies.dynamics[dispersing.body];
-        d.dispersing &= MovesFreely(world, dispersing.body);
+        BodyDynamics& d = bodies.dynamics[dispersing.body];
+        d.dispersing &= MovesFreely(bodies, dispersing.body);
         return !d.dispersing;
     });
 }
 
 // Floors, walls and kinematic bodies that a body without a place touches reflect its direction.
-void Reflect(const WorldState& world, DispersingBody& dispersing) {
-    VisitImmovableContacts(world, dispersing.body, [&](uint32_t pair) {
-        const Vector3 normal = ContactNormal(world, pair);
+void Reflect(const BodyStore& bodies, const ColliderStore& colliders, const PairStore& pairs,
+             DispersingBody& dispersing) {
+    VisitImmovableContacts(bodies, colliders, pairs, dispersing.body, [&](uint32_t pair) {
+        const Vector3 normal = ContactNormal(bodies, pairs, pair);
         const float into = Dot<float>(normal, dispersing.direction);
         if (into > 0) dispersing.direction -= normal * (2 * into);
     });
 }
 
-void Push(WorldState& world, DispersingBody& dispersing, float dt) {
-    const BodyDynamics& d = world.bodies.dynamics[dispersing.body];
+void Push(const StepContext& step, const ColliderStore& colliders, const PairStore& pairs, BodyStore& bodies,
+          DispersingBody& dispersing) {
+    const BodyDynamics& d = bodies.dynamics[dispersing.body];
     Vector3 turn = Vector3::Zero();
-    const float fastest = DispersingSpeed(world);
-    dispersing.ownVelocity = world.bodies.LinearVelocityOf(dispersing.body);
+    const float fastest = DispersingSpeed(step.settings);
+    dispersing.ownVelocity = bodies.LinearVelocityOf(dispersing.body);
     if (dispersing.hasPlace) {
-        const Position left = dispersing.place - world.bodies.CenterOf(dispersing.body);
-        dispersing.push = (left / double{std::max(dispersing.secondsLeft, dt)}).cast<float>();
-        dispersing.place += (dispersing.ownVelocity * dt).cast<double>();
+        const Position left = dispersing.place - bodies.CenterOf(dispersing.body);
+        dispersing.push = (left / double{std::max(dispersing.secondsLeft, step.dt)}).cast<float>();
+        dispersing.place += (dispersing.ownVelocity * step.dt).cast<double>();
     } else {
-        Reflect(world, dispersing);
+        Reflect(bodies, colliders, pairs, dispersing);
         dispersing.push = dispersing.direction * fastest;
     }
     LimitLength(dispersing.push, std::min(fastest, d.maxLinearSpeed));
     d.Lock(dispersing.push, turn);
-    world.bodies.SetVelocity(dispersing.body, dispersing.ownVelocity + dispersing.push,
-                             world.bodies.AngularVelocityOf(dispersing.body));
+    bodies.SetVelocity(dispersing.body, dispersing.ownVelocity + dispersing.push,
+                       bodies.AngularVelocityOf(dispersing.body));
 }
 
 // The bodies that started to disperse in one step.
@@ -142,8 +143,9 @@ struct StartedTogether {
 };
 
 // By the step in which they started; overlaps[i]: whether all[i] overlaps another body.
-std::map<uint64_t, StartedTogether> GroupByStart(const WorldState& world, std::span<const DispersingBody> all,
-                                                 const JointedGroups& groups, std::span<const uint8_t> overlaps) {
+std::map<uint64_t, StartedTogether> GroupByStart(const CollisionView& view, const PairStore& pairs,
+                                                 std::span<const DispersingBody> all, const JointedGroups& groups,
+                                                 std::span<const uint8_t> overlaps) {
     std::map<uint64_t, StartedTogether> byStart;
     for (size_t i = 0; i < overlaps.size(); ++i) {
         StartedTogether& together = byStart[all[i].startStep];
@@ -152,76 +154,84 @@ std::map<uint64_t, StartedTogether> GroupByStart(const WorldState& world, std::s
     }
     for (size_t i = 0; i < overlaps.size(); ++i) {
         StartedTogether& together = byStart[all[i].startStep];
-        if (overlaps[i] && together.HaveRoom()) together.isBlocked = OverlapsMany(world, groups, all[i].body);
+        if (overlaps[i] && together.HaveRoom()) together.isBlocked = OverlapsMany(view, pairs, groups, all[i].body);
     }
     return byStart;
 }
 
 }  // namespace
 
-void StartDispersing(WorldState& world, std::vector<DispersingBody>& all, std::vector<uint32_t>& bodies,
-                     std::span<PairChange> changes, ScratchArena& scratch) {
-    std::sort(bodies.begin(), bodies.end());
-    bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
-    const JointedGroups groups(world, scratch);
-    const std::vector<uint32_t> starting = MarkDispersing(world, scratch, groups, bodies);
+void StartDispersing(const StepContext& step, const ColliderStore& colliders, const JointStore& joints,
+                     BodyStore& bodies, PairStore& pairs, ConstraintColoring& coloring, CrowdState& crowd,
+                     std::span<PairChange> changes, const StepWorkers& workers) {
+    const CollisionView view{step, bodies, colliders, joints};
+    std::vector<uint32_t>& candidates = crowd.deepOverlaps;
+    std::sort(candidates.begin(), candidates.end());
+    candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
+    const JointedGroups groups(bodies.Size(), joints, workers.scratch);
+    const std::vector<uint32_t> starting = MarkDispersing(view, pairs, groups, candidates, bodies, workers);
+    candidates.clear();
     if (starting.empty()) return;
-    RemoveDynamicPairs(world, changes, starting);
-    for (DispersingBody dispersing : PlanDispersing(world, groups, starting)) {
-        BodyDynamics& d = world.bodies.dynamics[dispersing.body];
+    RemoveDynamicPairs(view, starting, pairs, coloring, changes);
+    std::vector<DispersingBody>& all = crowd.dispersing;
+    for (DispersingBody dispersing : PlanDispersing(view, groups, starting)) {
+        BodyDynamics& d = bodies.dynamics[dispersing.body];
         d.dispersing = true;
         d.crowded = 1;
-        AddGravity(world, dispersing.body, -1);
-        dispersing.ownVelocity = world.bodies.LinearVelocityOf(dispersing.body);
-        dispersing.startStep = world.step;
+        AddGravity(step.settings, bodies, dispersing.body, -1);
+        dispersing.ownVelocity = bodies.LinearVelocityOf(dispersing.body);
+        dispersing.startStep = step.number;
         all.push_back(dispersing);
     }
     std::sort(all.begin(), all.end(), [](const DispersingBody& a, const DispersingBody& b) { return a.body < b.body; });
 }
 
-void PushDispersing(WorldState& world, std::vector<DispersingBody>& all, float dt) {
+void PushDispersing(const StepContext& step, const ColliderStore& colliders, const PairStore& pairs, BodyStore& bodies,
+                    std::vector<DispersingBody>& all, JobSystem& jobs) {
     if (all.empty()) return;
-    ForgetStopped(world, all);
-    world.jobs->ParallelFor(static_cast<uint32_t>(all.size()), 64, [&](JobRange range) {
+    ForgetStopped(bodies, all);
+    jobs.ParallelFor(static_cast<uint32_t>(all.size()), 64, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i) {
             DispersingBody& dispersing = all[i];
-            Push(world, dispersing, dt);
-            dispersing.secondsLeft -= dt;
+            Push(step, colliders, pairs, bodies, dispersing);
+            dispersing.secondsLeft -= step.dt;
             dispersing.hasPlace &= dispersing.secondsLeft > -kPatience;
         }
     });
 }
 
-Vector3 OwnVelocity(const WorldState& world, std::span<const DispersingBody> all, uint32_t body, const Vector3& v,
+Vector3 OwnVelocity(const BodyStore& bodies, std::span<const DispersingBody> all, uint32_t body, const Vector3& v,
                     float dt) {
     const auto dispersing = std::lower_bound(all.begin(), all.end(), body,
                                              [](const DispersingBody& d, uint32_t index) { return d.body < index; });
-    const float* a = world.bodies.poses[body].acceleration;
+    const float* a = bodies.poses[body].acceleration;
     return NoFasterThan(v - dispersing->push, dispersing->ownVelocity + Vector3(a[0], a[1], a[2]) * dt);
 }
 
 // Those that started together end together. A body whose time at its place is over ends by itself once it overlaps
 // no other.
-void EndDispersing(WorldState& world, std::vector<DispersingBody>& all, ScratchArena& scratch) {
+void EndDispersing(const StepContext& step, const JointStore& joints, const PairStore& pairs, BodyStore& bodies,
+                   ColliderStore& colliders, std::vector<DispersingBody>& all, const StepWorkers& workers) {
     if (all.empty()) return;
-    const JointedGroups groups(world, scratch);
-    const std::span<uint8_t> overlaps = scratch.Allocate<uint8_t>(all.size());
-    world.jobs->ParallelFor(static_cast<uint32_t>(overlaps.size()), 16, [&](JobRange range) {
-        for (uint32_t i = range.begin; i < range.end; ++i) overlaps[i] = OverlapsAnother(world, groups, all[i].body);
+    const CollisionView view{step, bodies, colliders, joints};
+    const JointedGroups groups(bodies.Size(), joints, workers.scratch);
+    const std::span<uint8_t> overlaps = workers.scratch.Allocate<uint8_t>(all.size());
+    workers.jobs.ParallelFor(static_cast<uint32_t>(overlaps.size()), 16, [&](JobRange range) {
+        for (uint32_t i = range.begin; i < range.end; ++i)
+            overlaps[i] = OverlapsAnother(view, pairs, groups, all[i].body);
     });
-    const std::map<uint64_t, StartedTogether> together = GroupByStart(world, all, groups, overlaps);
+    const std::map<uint64_t, StartedTogether> together = GroupByStart(view, pairs, all, groups, overlaps);
     for (size_t i = 0; i < overlaps.size(); ++i) {
         const DispersingBody& dispersing = all[i];
         const bool hasDispersed =
             together.at(dispersing.startStep).HaveRoom() || (!dispersing.hasPlace && !overlaps[i]);
-        world.bodies.dynamics[dispersing.body].dispersing = !hasDispersed;
+        bodies.dynamics[dispersing.body].dispersing = !hasDispersed;
     }
     std::erase_if(all, [&](const DispersingBody& dispersing) {
-        if (world.bodies.dynamics[dispersing.body].dispersing) return false;
-        AddGravity(world, dispersing.body, 1);
-        world.bodies.SetVelocity(dispersing.body, dispersing.ownVelocity,
-                                 world.bodies.AngularVelocityOf(dispersing.body));
-        RequeueColliders(world, dispersing.body);
+        if (bodies.dynamics[dispersing.body].dispersing) return false;
+        AddGravity(step.settings, bodies, dispersing.body, 1);
+        bodies.SetVelocity(dispersing.body, dispersing.ownVelocity, bodies.AngularVelocityOf(dispersing.body));
+        RequeueColliders(bodies, colliders, dispersing.body);
         return true;
     });
 }

@@ -12,23 +12,27 @@
 // Used by UpdateBounds, FindPairs and Store; one thread, but for OwnVelocity. Costs nothing while no body disperses.
 #pragma once
 
+#include <Fulcrum/Physics/Stages/CollisionView.h>
 #include <Fulcrum/Physics/Stages/StepState.h>
 
 namespace fulcrum {
 
-// Of `bodies`, in any order and sorted here, those that deeply overlap many others start to disperse: they are added to
-// `all`. They lose their pairs with dynamic bodies, of which `changes` knows nothing more.
-void StartDispersing(WorldState& world, std::vector<DispersingBody>& all, std::vector<uint32_t>& bodies,
-                     std::span<PairChange> changes, ScratchArena& scratch);
+// Of the bodies in CrowdState::deepOverlaps, in any order, those that deeply overlap many others start to disperse.
+// They lose their pairs with dynamic bodies, of which `changes` knows nothing more. The list is empty afterwards.
+void StartDispersing(const StepContext& step, const ColliderStore& colliders, const JointStore& joints,
+                     BodyStore& bodies, PairStore& pairs, ConstraintColoring& coloring, CrowdState& crowd,
+                     std::span<PairChange> changes, const StepWorkers& workers);
 
 // As the step begins, before bounds: dispersing bodies get the velocity with which they move in this step.
-void PushDispersing(WorldState& world, std::vector<DispersingBody>& all, float dt);
+void PushDispersing(const StepContext& step, const ColliderStore& colliders, const PairStore& pairs, BodyStore& bodies,
+                    std::vector<DispersingBody>& all, JobSystem& jobs);
 // As it ends, for a dispersing body: its velocity v, m/s, without that push. For different bodies from any number of
 // threads.
-Vector3 OwnVelocity(const WorldState& world, std::span<const DispersingBody> all, uint32_t body, const Vector3& v,
+Vector3 OwnVelocity(const BodyStore& bodies, std::span<const DispersingBody> all, uint32_t body, const Vector3& v,
                     float dt);
 
 // Bodies that have dispersed are removed from `all`, collide again, and search for their pairs.
-void EndDispersing(WorldState& world, std::vector<DispersingBody>& all, ScratchArena& scratch);
+void EndDispersing(const StepContext& step, const JointStore& joints, const PairStore& pairs, BodyStore& bodies,
+                   ColliderStore& colliders, std::vector<DispersingBody>& all, const StepWorkers& workers);
 
 }  // namespace fulcrum

@@ -27,16 +27,16 @@ struct DeepestPoint {
     float separation = std::numeric_limits<float>::infinity();  // m, as the step began, below zero where it overlaps
     float approach = 0;                                         // m/s, at which the two bodies' points close in
 };
-DeepestPoint DeepestPointOf(const WorldState& world, uint32_t index, const Vector3& normal) {
-    const Pair& pair = world.pairs.pairs[index];
-    const Pose a = world.bodies.CenterPoseOf(pair.bodyA), b = world.bodies.CenterPoseOf(pair.bodyB);
+DeepestPoint DeepestPointOf(const BodyStore& bodies, const PairStore& pairs, uint32_t index, const Vector3& normal) {
+    const Pair& pair = pairs.pairs[index];
+    const Pose a = bodies.CenterPoseOf(pair.bodyA), b = bodies.CenterPoseOf(pair.bodyB);
     const auto velocityOf = [&](uint32_t body, const Position& center, const Position& at) {
-        return Vector3(world.bodies.LinearVelocityOf(body) +
-                       Cross<float>(world.bodies.AngularVelocityOf(body), Vector3((at - center).cast<float>())));
+        return Vector3(bodies.LinearVelocityOf(body) +
+                       Cross<float>(bodies.AngularVelocityOf(body), Vector3((at - center).cast<float>())));
     };
     DeepestPoint deepest;
     for (int i = 0; i < pair.pointCount; ++i) {
-        const ContactRecord::Point& p = world.pairs.records[index].points[i];
+        const ContactRecord::Point& p = pairs.records[index].points[i];
         const Position onA = a.Transform(Vector3(p.onA[0], p.onA[1], p.onA[2])),
                        onB = b.Transform(Vector3(p.onB[0], p.onB[1], p.onB[2]));
         const float separation = Dot<float>(normal, Vector3((onB - onA).cast<float>()));
@@ -80,38 +80,39 @@ size_t MostRepeated(std::span<const uint32_t> numbers) {
 
 }  // namespace
 
-Vector3 ContactNormal(const WorldState& world, uint32_t pair) {
-    const float(&n)[3] = world.pairs.records[pair].normal;
-    return Rotate(world.bodies.RotationOf(world.pairs.pairs[pair].bodyA), Vector3(n[0], n[1], n[2]));
+Vector3 ContactNormal(const BodyStore& bodies, const PairStore& pairs, uint32_t pair) {
+    const float(&n)[3] = pairs.records[pair].normal;
+    return Rotate(bodies.RotationOf(pairs.pairs[pair].bodyA), Vector3(n[0], n[1], n[2]));
 }
 
-RelativePose WithDistinctCenters(const WorldState& world, const Pair& pair, const RelativePose& bInA) {
+RelativePose WithDistinctCenters(const BodyStore& bodies, const ColliderStore& colliders, const Pair& pair,
+                                 const RelativePose& bInA) {
     const float offset = kCenterOffset * (pair.shapeA->InnerRadius() + pair.shapeB->InnerRadius());
     if (LengthSquared(bInA.position) > offset * offset) return bInA;
     Vector3 away = PointInBall(pair.bodyB) - PointInBall(pair.bodyA);
-    away = InverseRotate(world.bodies.RotationOf(pair.bodyA), away);
-    if (pair.offset) away = InverseRotate(world.colliders.shapes[pair.colliderA].local.rotation, away);
+    away = InverseRotate(bodies.RotationOf(pair.bodyA), away);
+    if (pair.offset) away = InverseRotate(colliders.shapes[pair.colliderA].local.rotation, away);
     return {bInA.position + Normalized(away, Vector3(0, 1, 0)) * offset, bInA.rotation};
 }
 
-void NoteOverlap(const WorldState& world, uint32_t index, const RelativePose& bInA, WorkerFindings& findings) {
-    const Pair& pair = world.pairs.pairs[index];
+void NoteOverlap(const SystemSettings& settings, const BodyStore& bodies, const JointStore& joints,
+                 const PairStore& pairs, uint32_t index, const RelativePose& bInA, WorkerFindings& findings) {
+    const Pair& pair = pairs.pairs[index];
     if (!pair.fixedB && pair.shapeB->IsConvex()) {
         const float deep = DeepOverlapDistance(*pair.shapeA, *pair.shapeB);
         if (LengthSquared(bInA.position) < deep * deep)
             for (const uint32_t body : {pair.bodyA, pair.bodyB}) findings.deepOverlaps.push_back(body);
     }
-    const BodyDynamics &a = world.bodies.dynamics[pair.bodyA], &b = world.bodies.dynamics[pair.bodyB];
-    const bool isPlaced =
-        !world.bodies.placed.empty() && (world.bodies.cold[pair.bodyA].placed || world.bodies.cold[pair.bodyB].placed);
+    const BodyDynamics &a = bodies.dynamics[pair.bodyA], &b = bodies.dynamics[pair.bodyB];
+    const bool isPlaced = !bodies.placed.empty() && (bodies.cold[pair.bodyA].placed || bodies.cold[pair.bodyB].placed);
     if (!isPlaced && a.crowded == 0 && b.crowded == 0) return;
     const float radii = pair.shapeA->InnerRadius() + (pair.fixedB ? 0.0f : pair.shapeB->InnerRadius());
-    const DeepestPoint deepest = DeepestPointOf(world, index, ContactNormal(world, index));
+    const DeepestPoint deepest = DeepestPointOf(bodies, pairs, index, ContactNormal(bodies, pairs, index));
     const bool overlaps = deepest.separation < -kCrowdedOverlap * radii;
     // What closes in fast is an impact, and leaves its speeds.
-    const bool wasPut = isPlaced && overlaps && deepest.approach < world.settings.depenetrationSpeed;
+    const bool wasPut = isPlaced && overlaps && deepest.approach < settings.depenetrationSpeed;
     const auto note = [&](uint32_t body, uint8_t level, uint8_t levelOfOther) {
-        if (level == 0 && !(wasPut && !world.joints.HasAny(body))) return;
+        if (level == 0 && !(wasPut && !joints.HasAny(body))) return;
         const uint8_t now = overlaps ? kOverlaps : uint8_t(std::max<int>(levelOfOther, 1) - 1);
         if (now > 0) findings.crowdedOverlaps.push_back(body << kLevelBits | now);
     };
@@ -130,25 +131,24 @@ void GatherCrowd(BodyStore& bodies, CrowdState& crowd, std::span<WorkerFindings>
     if (MostRepeated(crowd.deepOverlaps) < kManyOverlaps) crowd.deepOverlaps.clear();
 }
 
-void LimitPush(WorldState& world, uint32_t body, float h) {
-    const auto& free = world.bodies.unconstrained[body].row;
+void LimitPush(const SystemSettings& settings, const ColliderStore& colliders, const PairStore& pairs,
+               BodyStore& bodies, uint32_t body, float h) {
+    const auto& free = bodies.unconstrained[body].row;
     const Vector3 freeV = VectorAt<BodyState::kLinear>(free), freeW = VectorAt<BodyState::kAngular>(free);
-    const Vector3 push = world.bodies.LinearVelocityOf(body) - freeV,
-                  spin = world.bodies.AngularVelocityOf(body) - freeW;
-    const float fastest = world.settings.contactPushSpeed;
+    const Vector3 push = bodies.LinearVelocityOf(body) - freeV, spin = bodies.AngularVelocityOf(body) - freeW;
+    const float fastest = settings.contactPushSpeed;
     Vector3 v = LimitedPush(freeV, push, fastest);
-    const Vector3 w = LimitedPush(freeW, spin, fastest / world.bodies.dynamics[body].outerRadius);
-    const float(&moved)[3] = world.bodies.states[body].deltaPosition;
-    VisitImmovableContacts(world, body, [&](uint32_t pair) {
-        const Vector3 normal = ContactNormal(world, pair);
-        const float gap =
-            DeepestPointOf(world, pair, normal).separation - Dot<float>(normal, Vector3(moved[0], moved[1], moved[2]));
+    const Vector3 w = LimitedPush(freeW, spin, fastest / bodies.dynamics[body].outerRadius);
+    const float(&moved)[3] = bodies.states[body].deltaPosition;
+    VisitImmovableContacts(bodies, colliders, pairs, body, [&](uint32_t pair) {
+        const Vector3 normal = ContactNormal(bodies, pairs, pair);
+        const float gap = DeepestPointOf(bodies, pairs, pair, normal).separation -
+                          Dot<float>(normal, Vector3(moved[0], moved[1], moved[2]));
         const float most = gap >= 0 ? gap / h : std::max(gap * kImmovableOverlapRemoved / h, -fastest);
-        const float into =
-            Dot<float>(normal, Vector3(v - world.bodies.LinearVelocityOf(world.pairs.pairs[pair].bodyB)));
+        const float into = Dot<float>(normal, Vector3(v - bodies.LinearVelocityOf(pairs.pairs[pair].bodyB)));
         if (into > most) v -= normal * (into - most);
     });
-    world.bodies.SetVelocity(body, v, w);
+    bodies.SetVelocity(body, v, w);
 }
 
 }  // namespace fulcrum

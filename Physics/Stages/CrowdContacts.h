@@ -15,17 +15,20 @@ namespace fulcrum {
 // each body counts as a thousandth of the inner radii away from where it is, towards its PointInBall: all pairs of a
 // crowd agree about that, and its bodies are pushed out in all directions. Returns `bInA`, that of the shapes, with
 // that offset where it is needed.
-RelativePose WithDistinctCenters(const WorldState& world, const Pair& pair, const RelativePose& bInA);
+RelativePose WithDistinctCenters(const BodyStore& bodies, const ColliderStore& colliders, const Pair& pair,
+                                 const RelativePose& bInA);
 
 // Notes in `findings` which bodies of a pair overlap deeply, and which are crowded, or still are. bInA: of the shapes.
-void NoteOverlap(const WorldState& world, uint32_t pair, const RelativePose& bInA, WorkerFindings& findings);
+void NoteOverlap(const SystemSettings& settings, const BodyStore& bodies, const JointStore& joints,
+                 const PairStore& pairs, uint32_t pair, const RelativePose& bInA, WorkerFindings& findings);
 // Gathers what the workers noted into `crowd`, and marks the crowded bodies. One thread.
 void GatherCrowd(BodyStore& bodies, CrowdState& crowd, std::span<WorkerFindings> workers);
 
 // Limits the velocity with which a dispersing body is about to move for h seconds: contacts and joints change it by no
 // more than contactPushSpeed, and it is not pressed into immovable bodies, whose soft contacts would yield to the
 // pushes of so many.
-void LimitPush(WorldState& world, uint32_t body, float h);
+void LimitPush(const SystemSettings& settings, const ColliderStore& colliders, const PairStore& pairs,
+               BodyStore& bodies, uint32_t body, float h);
 
 // `v` with at most the length of `limit`: pushes leave a crowded body no more speed than it had without them.
 inline Vector3 NoFasterThan(const Vector3& v, const Vector3& limit) {
@@ -34,15 +37,16 @@ inline Vector3 NoFasterThan(const Vector3& v, const Vector3& limit) {
 }
 
 // World space, from body A to body B.
-Vector3 ContactNormal(const WorldState& world, uint32_t pair);
+Vector3 ContactNormal(const BodyStore& bodies, const PairStore& pairs, uint32_t pair);
 
 // Calls visit(pair) for the touching manifolds of a dynamic body with immovable bodies.
 template <class Visitor>
-void VisitImmovableContacts(const WorldState& world, uint32_t body, Visitor&& visit) {
-    VisitColliders(world, body, [&](uint32_t collider) {
-        world.pairs.VisitOf(collider, [&](uint32_t first) {
-            for (uint32_t pair = first; pair != PairStore::kNone; pair = world.pairs.pairs[pair].more)
-                if (world.pairs.pairs[pair].fixedB && world.pairs.pairs[pair].touching) visit(pair);
+void VisitImmovableContacts(const BodyStore& bodies, const ColliderStore& colliders, const PairStore& pairs,
+                            uint32_t body, Visitor&& visit) {
+    VisitColliders(bodies, colliders, body, [&](uint32_t collider) {
+        pairs.VisitOf(collider, [&](uint32_t first) {
+            for (uint32_t pair = first; pair != PairStore::kNone; pair = pairs.pairs[pair].more)
+                if (pairs.pairs[pair].fixedB && pairs.pairs[pair].touching) visit(pair);
         });
     });
 }

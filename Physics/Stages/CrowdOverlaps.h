@@ -3,6 +3,7 @@
 // any number of threads.
 #pragma once
 
+#include <Fulcrum/Physics/Stages/CollisionView.h>
 #include <Fulcrum/Physics/Stages/StepState.h>
 
 #include <span>
@@ -18,12 +19,12 @@ inline constexpr size_t kManyOverlaps = 12;
 inline float DeepOverlapDistance(const Shape& a, const Shape& b) { return 0.8f * (a.InnerRadius() + b.InnerRadius()); }
 
 // Whether two colliders belong to dynamic bodies and overlap deeply.
-bool OverlapDeeply(const WorldState& world, uint32_t colliderA, uint32_t colliderB);
+bool OverlapDeeply(const CollisionView& view, uint32_t colliderA, uint32_t colliderB);
 
 // Bodies connected by joints form a group, which disperses as one. Those of a group may overlap: they were built so.
 class JointedGroups {
 public:
-    JointedGroups(const WorldState& world, ScratchArena& scratch);
+    JointedGroups(uint32_t bodyCount, const JointStore& joints, ScratchArena& scratch);
     // The body of the lowest index in a body's group: that itself where it has no joints.
     uint32_t RootOf(uint32_t body) const { return roots_.empty() ? body : roots_[body]; }
 
@@ -31,10 +32,11 @@ private:
     std::span<uint32_t> roots_;
 };
 
-// Of a dynamic body and the dynamic bodies of other groups with which it may collide:
-bool OverlapsAnother(const WorldState& world, const JointedGroups& groups, uint32_t body);
-bool OverlapsMany(const WorldState& world, const JointedGroups& groups, uint32_t body);
-bool OverlapsManyDeeply(const WorldState& world, const JointedGroups& groups, uint32_t body);
-bool OverlapsDispersingDeeply(const WorldState& world, const JointedGroups& groups, uint32_t body);
+// Of a dynamic body and the dynamic bodies of other groups with which it may collide. pairs: what the listener allowed.
+bool OverlapsAnother(const CollisionView& view, const PairStore& pairs, const JointedGroups& groups, uint32_t body);
+bool OverlapsMany(const CollisionView& view, const PairStore& pairs, const JointedGroups& groups, uint32_t body);
+bool OverlapsManyDeeply(const CollisionView& view, const PairStore& pairs, const JointedGroups& groups, uint32_t body);
+bool OverlapsDispersingDeeply(const CollisionView& view, const PairStore& pairs, const JointedGroups& groups,
+                              uint32_t body);
 
 }  // namespace fulcrum

@@ -42,16 +42,17 @@ struct Ball {
 
 // Finds the floor or wall that a ray from the ball's middle hits first, as `body` collides with it. False: it hits
 // none.
-bool FindLimit(const WorldState& world, uint32_t body, const Ball& ball, const Vector3& ray, PlaceLimit& limit) {
+bool FindLimit(const CollisionView& view, uint32_t body, const Ball& ball, const Vector3& ray, PlaceLimit& limit) {
     const RayCaster caster({ball.middle, ray});
     RayHit closest;
     uint32_t met = ~0u;
     float most = 1;
-    world.colliders.staticTree.CastRay(
-        TreeRay(ball.middle - world.colliders.boundsOrigin, ray), most, [&](uint32_t index) {
+    view.colliders.staticTree.CastRay(
+        TreeRay(ball.middle - view.colliders.boundsOrigin, ray), most, [&](uint32_t index) {
             RayHit hit;
-            if (!CanCollide(world, body, world.colliders.colliders[index].body)) return;
-            if (!caster.CastClosest(*world.colliders.shapes[index].shape, ColliderPoseOf(world, index), {}, hit))
+            if (!CanCollide(view, body, view.colliders.colliders[index].body)) return;
+            if (!caster.CastClosest(*view.colliders.shapes[index].shape,
+                                    ColliderPoseOf(view.bodies, view.colliders, index), {}, hit))
                 return;
             // Of equally near ones that of the lowest index, whatever the shape of the tree.
             if (std::pair(hit.fraction, index) >= std::pair(closest.fraction, met) && met != ~0u) return;
@@ -65,7 +66,7 @@ bool FindLimit(const WorldState& world, uint32_t body, const Ball& ball, const V
 }
 
 // Looks for floor and walls in 26 directions.
-std::vector<PlaceLimit> FindLimits(const WorldState& world, uint32_t body, const Ball& ball) {
+std::vector<PlaceLimit> FindLimits(const CollisionView& view, uint32_t body, const Ball& ball) {
     std::vector<PlaceLimit> limits;
     for (int x = -1; x <= 1; ++x)
         for (int y = -1; y <= 1; ++y)
@@ -73,16 +74,16 @@ std::vector<PlaceLimit> FindLimits(const WorldState& world, uint32_t body, const
                 const Vector3 direction(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
                 PlaceLimit limit;
                 if (direction.isZero(0)) continue;
-                if (FindLimit(world, body, ball, direction * static_cast<float>(kFarthestPlace * ball.radius), limit))
+                if (FindLimit(view, body, ball, direction * static_cast<float>(kFarthestPlace * ball.radius), limit))
                     limits.push_back(limit);
             }
     return limits;
 }
 
 // m: the outer radius that only one body in kLargeOnes exceeds.
-float NearlyLargestRadius(const WorldState& world, std::span<const uint32_t> bodies) {
+float NearlyLargestRadius(const CollisionView& view, std::span<const uint32_t> bodies) {
     std::vector<float> radii;
-    for (const uint32_t body : bodies) radii.push_back(world.bodies.dynamics[body].outerRadius);
+    for (const uint32_t body : bodies) radii.push_back(view.bodies.dynamics[body].outerRadius);
     const auto large = radii.end() - 1 - static_cast<ptrdiff_t>(radii.size() / kLargeOnes);
     std::nth_element(radii.begin(), large, radii.end());
     return *large;
@@ -91,7 +92,7 @@ float NearlyLargestRadius(const WorldState& world, std::span<const uint32_t> bod
 // Reorders bodies and places so that body i gets place i, on its side of the others, and few cross: along the axis on
 // which places extend farthest the lower half of the bodies gets the lower half of the places, and so on within each
 // half. Equal coordinates are ordered by the bodies' indices.
-void MatchPlaces(const WorldState& world, std::span<uint32_t> bodies, std::span<Vector3> places) {
+void MatchPlaces(const CollisionView& view, std::span<uint32_t> bodies, std::span<Vector3> places) {
     if (bodies.size() < 2) return;
     Vector3 lower = places[0], upper = places[0];
     for (const Vector3& place : places) {
@@ -101,14 +102,14 @@ void MatchPlaces(const WorldState& world, std::span<uint32_t> bodies, std::span<
     const Vector3 extent = upper - lower;
     const int axis = static_cast<int>(std::max_element(extent.data(), extent.data() + 3) - extent.data());
     const size_t half = bodies.size() / 2;
-    const auto bodyKey = [&](uint32_t body) { return std::pair(world.bodies.poses[body].position[axis], body); };
+    const auto bodyKey = [&](uint32_t body) { return std::pair(view.bodies.poses[body].position[axis], body); };
     const auto placeKey = [&](const Vector3& p) { return std::tuple(p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]); };
     std::nth_element(bodies.begin(), bodies.begin() + half, bodies.end(),
                      [&](uint32_t x, uint32_t y) { return bodyKey(x) < bodyKey(y); });
     std::nth_element(places.begin(), places.begin() + half, places.end(),
                      [&](const Vector3& x, const Vector3& y) { return placeKey(x) < placeKey(y); });
-    MatchPlaces(world, bodies.first(half), places.first(half));
-    MatchPlaces(world, bodies.subspan(half), places.subspan(half));
+    MatchPlaces(view, bodies.first(half), places.first(half));
+    MatchPlaces(view, bodies.subspan(half), places.subspan(half));
 }
 
 }  // namespace
@@ -157,28 +158,28 @@ std::vector<Vector3> PlacesInBall(uint32_t count, std::span<const PlaceLimit> li
     return places;
 }
 
-void AssignPlaces(const WorldState& world, std::span<uint32_t> bodies, std::vector<DispersingBody>& dispersing) {
+void AssignPlaces(const CollisionView& view, std::span<uint32_t> bodies, std::vector<DispersingBody>& dispersing) {
     const uint32_t count = static_cast<uint32_t>(bodies.size());
-    const double margin = double{NearlyLargestRadius(world, bodies)}, radius = margin * std::cbrt(count / kPacking);
+    const double margin = double{NearlyLargestRadius(view, bodies)}, radius = margin * std::cbrt(count / kPacking);
     Position middle = Position::Zero();
-    for (const uint32_t body : bodies) middle += world.bodies.CenterOf(body) / static_cast<double>(count);
+    for (const uint32_t body : bodies) middle += view.bodies.CenterOf(body) / static_cast<double>(count);
     const bool areNear = std::all_of(bodies.begin(), bodies.end(), [&](uint32_t body) {
-        return (world.bodies.CenterOf(body) - middle).norm() < kNear * radius;
+        return (view.bodies.CenterOf(body) - middle).norm() < kNear * radius;
     });
     std::vector<Vector3> places;
-    if (areNear) places = PlacesInBall(count, FindLimits(world, bodies[0], {middle, radius, margin}));
+    if (areNear) places = PlacesInBall(count, FindLimits(view, bodies[0], {middle, radius, margin}));
     if (places.empty()) places = PlacesInBall(count);
-    MatchPlaces(world, bodies, places);
+    MatchPlaces(view, bodies, places);
     double longest = 0;
     const size_t first = dispersing.size();
     for (uint32_t i = 0; i < count; ++i) {
-        const Position center = world.bodies.CenterOf(bodies[i]),
+        const Position center = view.bodies.CenterOf(bodies[i]),
                        place = (areNear ? middle : center) + places[i].cast<double>() * radius;
         longest = std::max(longest, (place - center).norm());
         dispersing.push_back(
             {.body = bodies[i], .direction = PointInBall(bodies[i]), .hasPlace = true, .place = place});
     }
-    const float seconds = static_cast<float>(longest) / DispersingSpeed(world);
+    const float seconds = static_cast<float>(longest) / DispersingSpeed(view.step.settings);
     for (DispersingBody& each : std::span(dispersing).subspan(first)) each.secondsLeft = seconds;
 }
 

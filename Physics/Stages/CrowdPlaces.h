@@ -2,6 +2,7 @@
 // allow. Used by StartDispersing; PointInBall by contacts of coincident bodies, too. One thread.
 #pragma once
 
+#include <Fulcrum/Physics/Stages/CollisionView.h>
 #include <Fulcrum/Physics/Stages/StepState.h>
 
 #include <span>
@@ -11,7 +12,7 @@ namespace fulcrum {
 
 // m/s, of the bodies that move to the surface of the ball; all others are slower. Faster than contacts push, as nothing
 // is in their way.
-inline float DispersingSpeed(const WorldState& world) { return 1.5f * world.settings.contactPushSpeed; }
+inline float DispersingSpeed(const SystemSettings& settings) { return 1.5f * settings.contactPushSpeed; }
 
 // A point in the unit ball that looks random and follows from the body's index alone; all indices together fill the
 // ball uniformly.
@@ -30,6 +31,6 @@ std::vector<Vector3> PlacesInBall(uint32_t count, std::span<const PlaceLimit> li
 // Adds an entry to `dispersing` for each of `bodies`, none of which has joints: their places, and how long they take to
 // get there. Bodies near one point get places about their common middle, others about where they are. Reorders
 // `bodies`.
-void AssignPlaces(const WorldState& world, std::span<uint32_t> bodies, std::vector<DispersingBody>& dispersing);
+void AssignPlaces(const CollisionView& view, std::span<uint32_t> bodies, std::vector<DispersingBody>& dispersing);
 
 }  // namespace fulcrum

@@ -2,7 +2,8 @@
 // Store.
 #pragma once
 
-#include <Fulcrum/Physics/Stages/StepState.h>
+#include <Fulcrum/Physics/Stages/SolverLayout.h>
+#include <Fulcrum/Physics/Stages/StepContext.h>
 
 #include <algorithm>
 #include <cmath>
@@ -54,14 +55,14 @@ inline uint8_t StiffnessOf(int substeps, int systemSubsteps) {
     return stiffness;
 }
 
-inline Effort EffortOf(const WorldState& world, const StepState& step, const SolverGroup& group) {
-    const SystemSettings& s = world.settings;
+inline Effort EffortOf(const StepContext& step, const SolverGroup& group) {
+    const SystemSettings& s = step.settings;
     Effort effort;
     effort.solver = s.solver;
     effort.hasTrees = group.HasTrees();
-    effort.solver.substeps = std::max(s.solver.substeps, group.effort.substeps);
-    effort.solver.velocityIterations = std::max(s.solver.velocityIterations, group.effort.velocityIterations);
-    effort.solver.positionIterations = std::max(s.solver.positionIterations, group.effort.positionIterations);
+    effort.solver.substeps = std::max<int>(s.solver.substeps, group.effort.substeps);
+    effort.solver.velocityIterations = std::max<int>(s.solver.velocityIterations, group.effort.velocityIterations);
+    effort.solver.positionIterations = std::max<int>(s.solver.positionIterations, group.effort.positionIterations);
     const float h = effort.substepDt = step.dt / static_cast<float>(effort.solver.substeps);
     effort.impulseScale = h / step.substepDt;
     const float softened = group.stiffness > 0 ? SubstepOfStiffness(group.stiffness) : 0.0f;

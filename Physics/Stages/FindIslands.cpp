@@ -26,9 +26,17 @@ int SubstepsOf(float rope, int usual) {
     return std::min(static_cast<int>(std::ceil(rope * static_cast<float>(usual))), 64);
 }
 
+// The substeps that trees and ropes of an island ask for.
+struct JointSubsteps {
+    int substeps = 0;
+    uint32_t body = ~0u;
+};
+
 // usual: the system's substeps.
-void SetEffort(SolverGroup& group, const IslandEffort& effort, int least, int usual) {
-    group.effort = {std::max<int>(effort.substeps, least), effort.velocityIterations, effort.positionIterations};
+void SetEffort(SolverGroup& group, const IslandEffort& effort, const JointSubsteps& joints, int usual) {
+    group.effort = effort.least;
+    group.culprit = effort.culprit;
+    if (group.effort.Raise({.substeps = static_cast<uint8_t>(joints.substeps)})) group.culprit = joints.body;
     if (!effort.isLoaded || group.effort.substeps <= usual) return;
     group.wantedStiffness = StiffnessOf(group.effort.substeps, usual);
     group.stiffness = effort.stiffness == 0 ? group.wantedStiffness : std::min(effort.stiffness, group.wantedStiffness);
@@ -36,8 +44,8 @@ void SetEffort(SolverGroup& group, const IslandEffort& effort, int least, int us
 
 }  // namespace
 
-Islands FindIslands(const BodyStore& bodies, const ConstraintColoring& coloring, const JointStore& joints,
-                    const PairStore& pairs, const SystemSettings& settings, float softness, const JointTrees& trees,
+Islands FindIslands(const StepContext& step, const BodyStore& bodies, const ConstraintColoring& coloring,
+                    const JointStore& joints, const PairStore& pairs, const JointTrees& trees,
                     std::vector<SolverGroup>& groups, ScratchArena& scratch) {
     const auto placeOf = [&](uint32_t body) { return bodies.cold[body].awakePlace; };
     const size_t count = bodies.awake.size();
@@ -57,22 +65,23 @@ Islands FindIslands(const BodyStore& bodies, const ConstraintColoring& coloring,
             ++sizes[root];
             if (c == kColors) overflows[root] = true;
         });
+    const int usual = step.settings.solver.substeps;
     const std::span<const IslandEffort> efforts =
-        FindEfforts(bodies, coloring, joints, pairs, settings, sizes,
-                    settings.accuracy.largeIslands ? ~0u : kLargeIsland - 1, softness, sets, scratch);
-    std::span<float> treeLoads = scratch.Allocate<float>(count);
-    std::fill(treeLoads.begin(), treeLoads.end(), 0.0f);
-    for (const JointTrees::Tree& tree : trees.trees) {
-        float& load = treeLoads[sets.Find(placeOf(trees.slots[tree.slotsEnd - 1].body))];
-        load = std::max(load, tree.load);
-    }
-
-    std::span<float> ropeSubsteps = scratch.Allocate<float>(trees.ropes.empty() ? 0 : count);
-    std::fill(ropeSubsteps.begin(), ropeSubsteps.end(), 0.0f);
-    for (const JointTrees::Rope& rope : trees.ropes) {
-        float& substeps = ropeSubsteps[sets.Find(placeOf(rope.body))];
-        substeps = std::max(substeps, rope.substeps);
-    }
+        FindEfforts(step, bodies, coloring, joints, pairs, sizes,
+                    step.settings.accuracy.largeIslands ? ~0u : kLargeIsland - 1, sets, scratch);
+    // By root; without room where there are neither trees nor ropes.
+    const size_t room = trees.trees.empty() && trees.ropes.empty() ? 0 : count;
+    std::span<JointSubsteps> ofTrees = scratch.Allocate<JointSubsteps>(room),
+                             ofRopes = scratch.Allocate<JointSubsteps>(room);
+    std::fill(ofTrees.begin(), ofTrees.end(), JointSubsteps{});
+    std::fill(ofRopes.begin(), ofRopes.end(), JointSubsteps{});
+    const auto raise = [&](std::span<JointSubsteps> all, int substeps, uint32_t body) {
+        JointSubsteps& most = all[sets.Find(placeOf(body))];
+        if (most.substeps < substeps) most = {substeps, body};
+    };
+    for (const JointTrees::Tree& tree : trees.trees)
+        raise(ofTrees, SubstepsUnder(tree.load), trees.slots[tree.slotsEnd - 1].body);
+    for (const JointTrees::Rope& rope : trees.ropes) raise(ofRopes, SubstepsOf(rope.substeps, usual), rope.body);
 
     Islands result;
     result.groupOf = scratch.Allocate<uint32_t>(count);
@@ -92,21 +101,20 @@ Islands FindIslands(const BodyStore& bodies, const ConstraintColoring& coloring,
         // What fits no color is solved with the first group.
         const bool isOverflowing = !overflows.empty() && overflows[i];
         const bool large = sizes[i] >= kLargeIsland || isOverflowing;
-        const bool hasTree = treeLoads[i] > 0;
+        const JointSubsteps tree = room > 0 ? ofTrees[i] : JointSubsteps{},
+                            rope = room > 0 && !large ? ofRopes[i] : JointSubsteps{};
+        const bool hasTree = tree.substeps > 0;
         const IslandEffort& effort = efforts[i];
-        const float rope = large || ropeSubsteps.empty() ? 0 : ropeSubsteps[i];
         // One worker solves an island of its own: too slow for a large one that did not ask for it.
-        if (!isOverflowing && (!effort.IsUsual() || rope > 0 || (hasTree && !large))) {
+        if (!isOverflowing && (effort.least.IsAny() || rope.substeps > 0 || (hasTree && !large))) {
             result.groupOf[i] = static_cast<uint32_t>(groups.size());
             groups.push_back({.isLarge = large && !hasTree});
-            const int usual = settings.solver.substeps,
-                      least = std::max(hasTree ? SubstepsUnder(treeLoads[i]) : 0, SubstepsOf(rope, usual));
-            SetEffort(groups.back(), effort, least, usual);
+            SetEffort(groups.back(), effort, rope.substeps > tree.substeps ? rope : tree, usual);
             continue;
         }
         if (large) {
             result.groupOf[i] = Islands::kLargeGroup;
-            if (isOverflowing && !effort.IsUsual()) Raise(overflowing, effort);
+            if (isOverflowing && effort.least.IsAny()) Raise(overflowing, effort);
             continue;
         }
         if (inGroup >= kSmallGroup) {
@@ -117,7 +125,7 @@ Islands FindIslands(const BodyStore& bodies, const ConstraintColoring& coloring,
         result.groupOf[i] = open;
         inGroup += sizes[i];
     }
-    if (!overflowing.IsUsual()) SetEffort(groups[Islands::kLargeGroup], overflowing, 0, settings.solver.substeps);
+    if (overflowing.least.IsAny()) SetEffort(groups[Islands::kLargeGroup], overflowing, {}, usual);
     result.groups = static_cast<uint32_t>(groups.size());
     return result;
 }

@@ -3,6 +3,7 @@
 
 #include <Fulcrum/Jobs/ScratchArena.h>
 #include <Fulcrum/Physics/Stages/SolverLayout.h>
+#include <Fulcrum/Physics/Stages/StepContext.h>
 #include <Fulcrum/Physics/World/BodyStore.h>
 #include <Fulcrum/Physics/World/JointStore.h>
 #include <Fulcrum/Physics/World/PairStore.h>
@@ -21,8 +22,8 @@ struct Islands {
 };
 
 // Finds them anew, and makes their groups, of which bodies and colors are not yet known. In scratch memory of the step.
-Islands FindIslands(const BodyStore& bodies, const ConstraintColoring& coloring, const JointStore& joints,
-                    const PairStore& pairs, const SystemSettings& settings, float softness, const JointTrees& trees,
+Islands FindIslands(const StepContext& step, const BodyStore& bodies, const ConstraintColoring& coloring,
+                    const JointStore& joints, const PairStore& pairs, const JointTrees& trees,
                     std::vector<SolverGroup>& groups, ScratchArena& scratch);
 
 // Calls visit(color, entry) for all colored constraints of a kind, those that overflow last.

@@ -22,62 +22,64 @@ constexpr uint32_t kMostDeepPairs = 1024;
 constexpr uint32_t kAnyNumber = ~0u;
 
 // Whether the bounds of two colliders, of which the first has moved, ask for a pair that is not active.
-bool AskForPair(const WorldState& world, uint32_t index, uint32_t other) {
-    const Collider &self = world.colliders.colliders[index], &collider = world.colliders.colliders[other];
+bool AskForPair(const CollisionView& view, const PairStore& pairs, uint32_t index, uint32_t other) {
+    const Collider &self = view.colliders.colliders[index], &collider = view.colliders.colliders[other];
     if (collider.previous.Overlaps(self.previous)) return false;  // they have their pair, or may not have one
-    if (!MayCollide(world, self.body, collider.body)) return false;
-    const uint32_t pair = world.pairs.Find(index, other);
-    return pair == PairStore::kNone ? ListenerAllows(world, self.body, collider.body)
-                                    : !world.pairs.active.Contains(pair);
+    if (!MayCollide(view, self.body, collider.body)) return false;
+    const uint32_t pair = pairs.Find(index, other);
+    return pair == PairStore::kNone ? ListenerAllows(view, self.body, collider.body) : !pairs.active.Contains(pair);
 }
 
 uint64_t KeyOf(uint32_t a, uint32_t b) { return a < b ? uint64_t(a) << 32 | b : uint64_t(b) << 32 | a; }
 
 // Notes their pair if they are to have one, until more than mostDeep of those found overlap deeply.
-void Consider(const WorldState& world, uint32_t index, uint32_t other, uint32_t mostDeep, WorkerFindings& findings) {
-    if (findings.deepPairs > mostDeep || !AskForPair(world, index, other)) return;
-    findings.deepPairs += OverlapDeeply(world, index, other);
+void Consider(const CollisionView& view, const PairStore& pairs, uint32_t index, uint32_t other, uint32_t mostDeep,
+              WorkerFindings& findings) {
+    if (findings.deepPairs > mostDeep || !AskForPair(view, pairs, index, other)) return;
+    findings.deepPairs += OverlapDeeply(view, index, other);
     findings.pairs.push_back(KeyOf(index, other));
 }
 
 // Calls visit(other) for the colliders whose fat bounds overlap those of a collider.
 template <class Visit>
-void VisitNeighbors(const WorldState& world, uint32_t index, const Visit& visit) {
-    const ColliderStore& store = world.colliders;
+void VisitNeighbors(const CollisionView& view, uint32_t index, const Visit& visit) {
+    const ColliderStore& store = view.colliders;
     const Collider& self = store.colliders[index];
     if (self.sensor) return;
-    const uint32_t layers = world.settings.layerCollides[world.bodies.dynamics[self.body].layer];
-    if ((layers & store.movingLayers) && !world.bodies.dynamics[self.body].dispersing)
+    const uint32_t layers = view.step.settings.layerCollides[view.bodies.dynamics[self.body].layer];
+    if ((layers & store.movingLayers) && !view.bodies.dynamics[self.body].dispersing)
         store.movingTree.Query(self.fat, visit);
     if (self.moving && (layers & store.staticLayers)) store.staticTree.Query(self.fat, visit);
 }
 
 // Pairs of one collider.
-void Search(const WorldState& world, uint32_t index, uint32_t mostDeep, WorkerFindings& findings) {
+void Search(const CollisionView& view, const PairStore& pairs, uint32_t index, uint32_t mostDeep,
+            WorkerFindings& findings) {
     if (findings.deepPairs > mostDeep) return;
-    VisitNeighbors(world, index, [&](uint32_t other) {
-        if (world.colliders.colliders[other].queued && other < index) return;  // it reports the pair itself
-        Consider(world, index, other, mostDeep, findings);
+    VisitNeighbors(view, index, [&](uint32_t other) {
+        if (view.colliders.colliders[other].queued && other < index) return;  // it reports the pair itself
+        Consider(view, pairs, index, other, mostDeep, findings);
     });
 }
 
-void SearchEach(const WorldState& world, std::span<WorkerFindings> workers, uint32_t mostDeep) {
-    const std::vector<uint32_t>& moved = world.colliders.moved;
-    world.jobs->ParallelFor(static_cast<uint32_t>(moved.size()), 16, [&](JobRange range) {
-        for (uint32_t i = range.begin; i < range.end; ++i) Search(world, moved[i], mostDeep, workers[range.worker]);
+void SearchEach(const CollisionView& view, const PairStore& pairs, uint32_t mostDeep, const StepWorkers& workers) {
+    const std::vector<uint32_t>& moved = view.colliders.moved;
+    workers.jobs.ParallelFor(static_cast<uint32_t>(moved.size()), 16, [&](JobRange range) {
+        for (uint32_t i = range.begin; i < range.end; ++i)
+            Search(view, pairs, moved[i], mostDeep, workers.findings[range.worker]);
     });
 }
 
 // The same where most have moved: a self-join of the tree of moving colliders.
-void SearchTogether(const WorldState& world, std::span<WorkerFindings> workers, uint32_t mostDeep) {
-    const ColliderStore& store = world.colliders;
+void SearchTogether(const CollisionView& view, const PairStore& pairs, uint32_t mostDeep, const StepWorkers& workers) {
+    const ColliderStore& store = view.colliders;
     const auto isQueued = [&](uint32_t i) { return store.colliders[i].queued; };
-    world.jobs->ParallelFor(store.movingTree.NodeCount(), 8, [&](JobRange range) {
-        WorkerFindings& found = workers[range.worker];
+    workers.jobs.ParallelFor(store.movingTree.NodeCount(), 8, [&](JobRange range) {
+        WorkerFindings& found = workers.findings[range.worker];
         const auto consider = [&](uint32_t a, uint32_t b) {
             const uint32_t low = std::min(a, b), high = std::max(a, b);
-            if (isQueued(low)) Consider(world, low, high, mostDeep, found);
-            else if (isQueued(high)) Consider(world, high, low, mostDeep, found);
+            if (isQueued(low)) Consider(view, pairs, low, high, mostDeep, found);
+            else if (isQueued(high)) Consider(view, pairs, high, low, mostDeep, found);
         };
         // Node by node, since one thread alone gets all of them as one range: a search that is given up must not go on
         // to visit n^2 pairs.
@@ -91,37 +93,39 @@ void SearchTogether(const WorldState& world, std::span<WorkerFindings> workers, 
             for (uint32_t index : ids) {
                 if (!isQueued(index)) continue;
                 store.staticTree.Query(store.colliders[index].fat, [&](uint32_t other) {
-                    if (!isQueued(other) || index < other) Consider(world, index, other, mostDeep, found);
+                    if (!isQueued(other) || index < other) Consider(view, pairs, index, other, mostDeep, found);
                 });
             }
         });
     });
-    world.jobs->ParallelFor(static_cast<uint32_t>(store.moved.size()), 256, [&](JobRange range) {
+    workers.jobs.ParallelFor(static_cast<uint32_t>(store.moved.size()), 256, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i)
-            if (!store.colliders[store.moved[i]].moving) Search(world, store.moved[i], mostDeep, workers[range.worker]);
+            if (!store.colliders[store.moved[i]].moving)
+                Search(view, pairs, store.moved[i], mostDeep, workers.findings[range.worker]);
     });
 }
 
 // Kinematic bodies search for dispersing ones. These do not search the tree of what moves themselves: each would find
 // all of the crowd.
-void SearchForDispersing(const WorldState& world, WorkerFindings& findings) {
-    const ColliderStore& store = world.colliders;
-    for (uint32_t body = 0; body < world.bodies.Size(); ++body) {
-        if (!world.bodies.cold[body].exists || world.bodies.dynamics[body].motion != MotionType::Kinematic) continue;
-        VisitColliders(world, body, [&](uint32_t index) {
+void SearchForDispersing(const CollisionView& view, const PairStore& pairs, WorkerFindings& findings) {
+    const ColliderStore& store = view.colliders;
+    for (uint32_t body = 0; body < view.bodies.Size(); ++body) {
+        if (!view.bodies.cold[body].exists || view.bodies.dynamics[body].motion != MotionType::Kinematic) continue;
+        VisitColliders(view.bodies, view.colliders, body, [&](uint32_t index) {
             if (store.colliders[index].sensor) return;
             store.movingTree.Query(store.colliders[index].fat, [&](uint32_t other) {
-                if (world.bodies.dynamics[store.colliders[other].body].dispersing)
-                    Consider(world, other, index, kAnyNumber, findings);
+                if (view.bodies.dynamics[store.colliders[other].body].dispersing)
+                    Consider(view, pairs, other, index, kAnyNumber, findings);
             });
         });
     }
 }
 
-void SearchAll(const WorldState& world, const CrowdState& crowd, std::span<WorkerFindings> workers, uint32_t mostDeep) {
-    if (world.colliders.MostMoved() && crowd.dispersing.empty()) SearchTogether(world, workers, mostDeep);
-    else SearchEach(world, workers, mostDeep);
-    if (!crowd.dispersing.empty()) SearchForDispersing(world, workers.front());
+void SearchAll(const CollisionView& view, const PairStore& pairs, const CrowdState& crowd, uint32_t mostDeep,
+               const StepWorkers& workers) {
+    if (view.colliders.MostMoved() && crowd.dispersing.empty()) SearchTogether(view, pairs, mostDeep, workers);
+    else SearchEach(view, pairs, mostDeep, workers);
+    if (!crowd.dispersing.empty()) SearchForDispersing(view, pairs, workers.findings.front());
 }
 
 // Whether more than mostDeep pairs that overlap deeply were found; then all that was found is dropped.
@@ -133,62 +137,41 @@ bool FoundTooDeep(std::span<WorkerFindings> workers, uint64_t mostDeep) {
     return true;
 }
 
-// Bodies that have moved start to disperse, as far as they overlap many others deeply.
-void DisperseMoved(WorldState& world, CrowdState& crowd, std::span<PairChange> changes, ScratchArena& scratch) {
-    std::vector<uint32_t> bodies;
-    for (const uint32_t index : world.colliders.moved) bodies.push_back(world.colliders.colliders[index].body);
-    StartDispersing(world, crowd.dispersing, bodies, changes, scratch);
-}
-
-// The searches of this step are over.
-void ForgetMoved(WorldState& world) {
-    ColliderStore& store = world.colliders;
-    world.jobs->ParallelFor(static_cast<uint32_t>(store.moved.size()), 256, [&](JobRange range) {
-        for (uint32_t i = range.begin; i < range.end; ++i) {
-            Collider& collider = store.colliders[store.moved[i]];
-            collider.queued = false;
-            collider.previous = collider.fat;
-        }
-    });
-    if (!world.sensors.IsEmpty())
-        for (uint32_t index : store.moved) world.sensors.changed.push_back(store.colliders[index].body);
-    store.moved.clear();
-}
-
-uint32_t AddPair(WorldState& world, uint32_t colliderA, uint32_t colliderB) {
-    const uint32_t bodyA = world.colliders.colliders[colliderA].body;
-    if (world.bodies.dynamics[bodyA].motion != MotionType::Dynamic) std::swap(colliderA, colliderB);
-    return world.pairs.Add(colliderA, colliderB);
+uint32_t AddPair(const BodyStore& bodies, const ColliderStore& colliders, PairStore& pairs, uint32_t colliderA,
+                 uint32_t colliderB) {
+    const uint32_t bodyA = colliders.colliders[colliderA].body;
+    if (bodies.dynamics[bodyA].motion != MotionType::Dynamic) std::swap(colliderA, colliderB);
+    return pairs.Add(colliderA, colliderB);
 }
 
 // Writes what is known of a pair that was added.
-void DescribePair(WorldState& world, uint32_t index) {
-    Pair& pair = world.pairs.pairs[index];
-    pair.bodyA = world.colliders.colliders[pair.colliderA].body;
-    pair.bodyB = world.colliders.colliders[pair.colliderB].body;
-    pair.fixedB = world.bodies.dynamics[pair.bodyB].motion != MotionType::Dynamic;
-    const ColliderShape& a = world.colliders.shapes[pair.colliderA];
-    const ColliderShape& b = world.colliders.shapes[pair.colliderB];
+void DescribePair(const BodyStore& bodies, const ColliderStore& colliders, PairStore& pairs, uint32_t index) {
+    Pair& pair = pairs.pairs[index];
+    pair.bodyA = colliders.colliders[pair.colliderA].body;
+    pair.bodyB = colliders.colliders[pair.colliderB].body;
+    pair.fixedB = bodies.dynamics[pair.bodyB].motion != MotionType::Dynamic;
+    const ColliderShape& a = colliders.shapes[pair.colliderA];
+    const ColliderShape& b = colliders.shapes[pair.colliderB];
     pair.offset = a.offset || b.offset;
     pair.shapeA = static_cast<const ConvexShape*>(a.shape);  // what moves freely has a volume
     pair.shapeB = b.shape;
     pair.surface = b.shape->IsSurface();
-    CombineMaterials(world, index);
+    CombineMaterials(bodies, pairs, index);
 }
 
 // Of keys, sorted: pairs that are new, and pairs that rest.
-void ActivatePairs(WorldState& world, std::span<const uint64_t> keys, std::vector<uint32_t>& activated,
-                   ScratchArena& scratch) {
-    const std::span<uint32_t> added = scratch.Allocate<uint32_t>(keys.size());
+void ActivatePairs(const BodyStore& bodies, const ColliderStore& colliders, std::span<const uint64_t> keys,
+                   PairStore& pairs, std::vector<uint32_t>& activated, const StepWorkers& workers) {
+    const std::span<uint32_t> added = workers.scratch.Allocate<uint32_t>(keys.size());
     uint32_t count = 0;
     for (uint64_t key : keys) {
         const uint32_t a = static_cast<uint32_t>(key >> 32), b = static_cast<uint32_t>(key);
-        uint32_t index = world.pairs.Find(a, b);
-        if (index == PairStore::kNone) added[count++] = index = AddPair(world, a, b);
-        if (world.pairs.active.Insert(index)) activated.push_back(index);
+        uint32_t index = pairs.Find(a, b);
+        if (index == PairStore::kNone) added[count++] = index = AddPair(bodies, colliders, pairs, a, b);
+        if (pairs.active.Insert(index)) activated.push_back(index);
     }
-    world.jobs->ParallelFor(count, 16, [&](JobRange range) {
-        for (uint32_t i = range.begin; i < range.end; ++i) DescribePair(world, added[i]);
+    workers.jobs.ParallelFor(count, 16, [&](JobRange range) {
+        for (uint32_t i = range.begin; i < range.end; ++i) DescribePair(bodies, colliders, pairs, added[i]);
     });
 }
 
@@ -201,30 +184,47 @@ void ReserveLists(PairUpdates& updates, std::span<WorkerFindings> workers, size_
 
 }  // namespace
 
-void FindPairs(WorldState& world, PairUpdates& updates, CrowdState& crowd, std::span<WorkerFindings> workers,
-               ScratchArena& scratch) {
-    ReserveLists(updates, workers, world.colliders.colliders.capacity());
+void FindPairs(const StepContext& step, const JointStore& joints, BodyStore& bodies, ColliderStore& colliders,
+               PairStore& pairs, ConstraintColoring& coloring, PairUpdates& updates, CrowdState& crowd,
+               const StepWorkers& workers) {
+    ReserveLists(updates, workers.findings, colliders.colliders.capacity());
     updates.activated.clear();
-    EndDispersing(world, crowd.dispersing, scratch);
+    EndDispersing(step, joints, pairs, bodies, colliders, crowd.dispersing, workers);
     if (!crowd.deepOverlaps.empty())
-        StartDispersing(world, crowd.dispersing, crowd.deepOverlaps, updates.changes, scratch);
-    crowd.deepOverlaps.clear();
-    if (world.colliders.moved.empty()) return;
-    SearchAll(world, crowd, workers, kMostDeepPairs);
-    if (FoundTooDeep(workers, kMostDeepPairs)) {
-        DisperseMoved(world, crowd, updates.changes, scratch);
-        SearchAll(world, crowd, workers, kAnyNumber);
-        FoundTooDeep(workers, kAnyNumber);
+        StartDispersing(step, colliders, joints, bodies, pairs, coloring, crowd, updates.changes, workers);
+    if (colliders.moved.empty()) return;
+    const CollisionView view{step, bodies, colliders, joints};
+    SearchAll(view, pairs, crowd, kMostDeepPairs, workers);
+    if (FoundTooDeep(workers.findings, kMostDeepPairs)) {
+        // Of what has moved, all that overlap many others deeply start to disperse.
+        for (const uint32_t index : colliders.moved) crowd.deepOverlaps.push_back(colliders.colliders[index].body);
+        StartDispersing(step, colliders, joints, bodies, pairs, coloring, crowd, updates.changes, workers);
+        SearchAll(view, pairs, crowd, kAnyNumber, workers);
+        FoundTooDeep(workers.findings, kAnyNumber);
     }
     std::vector<uint64_t>& found = updates.found;
     found.clear();
-    for (WorkerFindings& findings : workers) {
+    for (WorkerFindings& findings : workers.findings) {
         found.insert(found.end(), findings.pairs.begin(), findings.pairs.end());
         findings.pairs.clear();
     }
     std::sort(found.begin(), found.end());
-    ActivatePairs(world, found, updates.activated, scratch);
-    ForgetMoved(world);
+    ActivatePairs(bodies, colliders, found, pairs, updates.activated, workers);
+}
+
+void ForgetMoved(ColliderStore& colliders, SensorStore& sensors, JobSystem& jobs) {
+    const std::vector<uint32_t>& moved = colliders.moved;
+    if (moved.empty()) return;
+    jobs.ParallelFor(static_cast<uint32_t>(moved.size()), 256, [&](JobRange range) {
+        for (uint32_t i = range.begin; i < range.end; ++i) {
+            Collider& collider = colliders.colliders[moved[i]];
+            collider.queued = false;
+            collider.previous = collider.fat;
+        }
+    });
+    if (!sensors.IsEmpty())
+        for (uint32_t index : moved) sensors.changed.push_back(colliders.colliders[index].body);
+    colliders.moved.clear();
 }
 
 }  // namespace fulcrum

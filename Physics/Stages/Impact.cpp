@@ -26,11 +26,11 @@ struct Side {
 
 class ImpactSolver {
 public:
-    ImpactSolver(const WorldState& world, const SweepHit& hit, Impact& impact) : hit_(hit), v_(impact) {
+    ImpactSolver(const ImpactStores& stores, const SweepHit& hit, Impact& impact) : hit_(hit), v_(impact) {
         const uint32_t bodies[2] = {hit.body, hit.other};
         for (int s = 0; s < 2; ++s) {
-            if (!world.bodies.CanMove(bodies[s])) continue;
-            const BodyDynamics& d = world.bodies.dynamics[bodies[s]];
+            if (!stores.bodies.CanMove(bodies[s])) continue;
+            const BodyDynamics& d = stores.bodies.dynamics[bodies[s]];
             const MassOverride& o = hit.massOverride;
             InverseMass<float> inverse{d.inverseMass, impact.masses[s].InverseInertia()};
             if (s == 0) ScaleMass(inverse, o.inverseMassScaleA, o.inverseInertiaScaleA);
@@ -43,7 +43,7 @@ public:
         for (int i = 0; i < hit.pointCount; ++i) {
             slipsBefore_[i] = Slip(i);
             const float approach = Dot<float>(hit.normal, RelativeVelocity(i));
-            bounceSpeeds_[i] = BounceSpeed<float>(hit.restitution, approach, world.settings.restitutionSpeed);
+            bounceSpeeds_[i] = BounceSpeed<float>(hit.restitution, approach, stores.step.settings.restitutionSpeed);
             approaches_ |= approach > 0;
             normalResponses_[i] = Response(i, hit.normal);
         }
@@ -139,26 +139,27 @@ private:
 
 // Whether what gravity and forces have given a body since a time of its sweep is not simply their acceleration:
 // contacts took a part.
-bool IsCarried(const WorldState& world, const SweepStore& sweeps, const Sweep& sweep) {
-    return !sweep.waits && sweeps.IsOfStep(sweep.body, world.step) && world.coloring.IsTouched(sweep.body);
+bool IsCarried(const ImpactStores& stores, const Sweep& sweep) {
+    return !sweep.waits && stores.sweeps.IsOfStep(sweep.body, stores.step.number) &&
+           stores.coloring.IsTouched(sweep.body);
 }
 
 // m2/s2, the work per kilogram of gravity and forces since a time of a sweep.
-float WorkSince(const WorldState& world, const Sweep& sweep, float time) {
-    const float* a = world.bodies.poses[sweep.body].acceleration;
+float WorkSince(const BodyStore& bodies, const Sweep& sweep, float time) {
+    const float* a = bodies.poses[sweep.body].acceleration;
     return Dot<float>(Vector3(a[0], a[1], a[2]), Vector3(sweep.DisplacementRate() * (1 - time)));
 }
 
 // m/s, that gravity and forces have given a body since a time of its sweep. Where the solver moved it, contacts took a
 // part of that: then as much as the way since then has made of it, so that to go back leaves its energy as it was.
-Vector3 GainSince(const WorldState& world, const SweepStore& sweeps, const Sweep& sweep, float time, float dt) {
-    if (sweep.waits || !sweeps.IsOfStep(sweep.body, world.step)) return Vector3::Zero();
-    const float* a = world.bodies.poses[sweep.body].acceleration;
+Vector3 GainSince(const ImpactStores& stores, const Sweep& sweep, float time) {
+    if (sweep.waits || !stores.sweeps.IsOfStep(sweep.body, stores.step.number)) return Vector3::Zero();
+    const float* a = stores.bodies.poses[sweep.body].acceleration;
     const Vector3 acceleration(a[0], a[1], a[2]);
-    const float rest = (1 - time) * dt;
-    if (!IsCarried(world, sweeps, sweep)) return acceleration * rest;
-    const float work = WorkSince(world, sweep, time);
-    const float along = Dot<float>(acceleration, world.bodies.LinearVelocityOf(sweep.body)),
+    const float rest = (1 - time) * stores.step.dt;
+    if (!IsCarried(stores, sweep)) return acceleration * rest;
+    const float work = WorkSince(stores.bodies, sweep, time);
+    const float along = Dot<float>(acceleration, stores.bodies.LinearVelocityOf(sweep.body)),
                 square = LengthSquared(acceleration);
     if (!(square > 0) || (work < 0 && along >= 0)) return Vector3::Zero();
     // |v - a s|^2 = |v|^2 - 2 work: the solution that is nearest to 0; where there is none, the least |v - a s|.
@@ -169,10 +170,10 @@ Vector3 GainSince(const WorldState& world, const SweepStore& sweeps, const Sweep
 
 // What `since` did not take of that work is taken from the whole motion: an impact that the solver found at the end of
 // a long displacement leaves a body little speed along it.
-void TakeWork(const WorldState& world, const Sweep& sweep, float time, Impact& impact, int side) {
+void TakeWork(const BodyStore& bodies, const Sweep& sweep, float time, Impact& impact, int side) {
     constexpr float kNotRounding = 1e-4f;
-    const BodyDynamics& d = world.bodies.dynamics[sweep.body];
-    const float wanted = LengthSquared(world.bodies.LinearVelocityOf(sweep.body)) - 2 * WorkSince(world, sweep, time);
+    const BodyDynamics& d = bodies.dynamics[sweep.body];
+    const float wanted = LengthSquared(bodies.LinearVelocityOf(sweep.body)) - 2 * WorkSince(bodies, sweep, time);
     const float linear = LengthSquared(impact.linear[side]), excess = linear - wanted;
     const Vector3 inBody = InverseRotate(impact.poses[side].rotation * d.PrincipalAxes(), impact.angular[side]);
     const float all = linear + TwiceRotationalEnergy<float>(d, inBody) * d.inverseMass;
@@ -183,11 +184,10 @@ void TakeWork(const WorldState& world, const Sweep& sweep, float time, Impact& i
 }
 
 // m/s, that they will give it until the end. What a contact carried is not dropped, but what flies up is slowed.
-Vector3 GainUntilEnd(const WorldState& world, const SweepStore& sweeps, uint32_t body, const Vector3& v,
-                     const Vector3& since, float rest) {
-    const float* a = world.bodies.poses[body].acceleration;
+Vector3 GainUntilEnd(const ImpactStores& stores, uint32_t body, const Vector3& v, const Vector3& since, float rest) {
+    const float* a = stores.bodies.poses[body].acceleration;
     const Vector3 acceleration(a[0], a[1], a[2]);
-    const bool carried = world.coloring.IsTouched(body) || !sweeps.IsOfStep(body, world.step);
+    const bool carried = stores.coloring.IsTouched(body) || !stores.sweeps.IsOfStep(body, stores.step.number);
     if (!carried || Dot<float>(v, acceleration) < 0) return acceleration * rest;
     return Dot<float>(since, acceleration) > 0 ? since : Vector3(Vector3::Zero());
 }
@@ -209,10 +209,10 @@ Vector3 TurnedFreely(const BodyDynamics& d, const Quaternion& rotation, const Ve
 }
 
 // The sweep turns at the rate of its beginning: bodies that have just bounced would otherwise seem to hit again.
-Impact::Rest FlyOn(const WorldState& world, const SweepStore& sweeps, uint32_t body, const Quaternion& rotation,
-                   const Vector3& v, const Vector3& w, const Vector3& since, float rest) {
-    const BodyDynamics& d = world.bodies.dynamics[body];
-    Vector3 gain = GainUntilEnd(world, sweeps, body, v, since, rest), none = Vector3::Zero();
+Impact::Rest FlyOn(const ImpactStores& stores, uint32_t body, const Quaternion& rotation, const Vector3& v,
+                   const Vector3& w, const Vector3& since, float rest) {
+    const BodyDynamics& d = stores.bodies.dynamics[body];
+    Vector3 gain = GainUntilEnd(stores, body, v, since, rest), none = Vector3::Zero();
     d.Lock(gain, none);
     Impact::Rest on{(v + gain * 0.5f) * rest, w * rest, v + gain, w};
     on.angular = TurnedFreely(d, rotation, w, rest, RotationFromVector(on.turn) * rotation);
@@ -223,20 +223,19 @@ Impact::Rest FlyOn(const WorldState& world, const SweepStore& sweeps, uint32_t b
 
 }  // namespace
 
-Impact FindImpact(const WorldState& world, const SweepStore& sweeps, const SweepHit& hit, float dt) {
-    const BodyStore& bodies = world.bodies;
+Impact FindImpact(const ImpactStores& stores, const SweepHit& hit) {
+    const BodyStore& bodies = stores.bodies;
     const uint32_t pair[2] = {hit.body, hit.other};
-    const float rest = (1 - hit.time) * dt;
+    const float rest = (1 - hit.time) * stores.step.dt;
     Impact impact;
     Vector3 since[2];
     for (int s = 0; s < 2; ++s) {
         const BodyDynamics& d = bodies.dynamics[pair[s]];
-        impact.sweeps[s] = SweepOf(world, sweeps, pair[s]);
+        impact.sweeps[s] = SweepOf(stores.step, stores.bodies, stores.sweeps, pair[s]);
         impact.poses[s] = impact.sweeps[s].PoseAt(hit.time);
         impact.masses[s] =
             d.spherical ? bodies.masses[pair[s]] : bodies.MassAlong(pair[s], AxesOf(d, impact.poses[s].rotation));
-        since[s] = bodies.CanMove(pair[s]) ? GainSince(world, sweeps, impact.sweeps[s], hit.time, dt)
-                                           : Vector3(Vector3::Zero());
+        since[s] = bodies.CanMove(pair[s]) ? GainSince(stores, impact.sweeps[s], hit.time) : Vector3(Vector3::Zero());
         impact.linear[s] = bodies.LinearVelocityOf(pair[s]) - since[s];
         const Vector3 w = bodies.AngularVelocityOf(pair[s]);
         impact.angular[s] = impact.sweeps[s].waits
@@ -244,19 +243,19 @@ Impact FindImpact(const WorldState& world, const SweepStore& sweeps, const Sweep
                                 : TurnedFreely(d, impact.sweeps[s].RotationAt(1), w, -rest, impact.poses[s].rotation);
         // What gravity would have given along a locked axis it did not give.
         if (d.lockedAxes != LockedAxes::None) d.Lock(impact.linear[s], impact.angular[s]);
-        if (bodies.CanMove(pair[s]) && IsCarried(world, sweeps, impact.sweeps[s]))
-            TakeWork(world, impact.sweeps[s], hit.time, impact, s);
+        if (bodies.CanMove(pair[s]) && IsCarried(stores, impact.sweeps[s]))
+            TakeWork(bodies, impact.sweeps[s], hit.time, impact, s);
         impact.arrivingLinear[s] = impact.linear[s];
         impact.arrivingAngular[s] = impact.angular[s];
     }
-    impact.bounces = hit.pointCount > 0 && !hit.isBlocked && ImpactSolver(world, hit, impact).Run();
+    impact.bounces = hit.pointCount > 0 && !hit.isBlocked && ImpactSolver(stores, hit, impact).Run();
     impact.isFinite = true;
     for (int s = 0; s < 2; ++s) {
         if (!bodies.CanMove(pair[s])) continue;
         LimitLength(impact.linear[s], bodies.dynamics[pair[s]].maxLinearSpeed);
         LimitLength(impact.angular[s], bodies.dynamics[pair[s]].maxAngularSpeed);
-        impact.rests[s] = FlyOn(world, sweeps, pair[s], impact.poses[s].rotation, impact.linear[s], impact.angular[s],
-                                since[s], rest);
+        impact.rests[s] =
+            FlyOn(stores, pair[s], impact.poses[s].rotation, impact.linear[s], impact.angular[s], since[s], rest);
         const Impact::Rest& on = impact.rests[s];
         impact.isFinite &=
             IsFinite(on.linear) && IsFinite(on.angular) && IsFinite(on.displacement) && IsFinite(on.turn);

@@ -23,8 +23,16 @@ struct Impact {
     bool isFinite = false;
 };
 
+// What FindImpact reads.
+struct ImpactStores {
+    const StepContext& step;
+    const BodyStore& bodies;
+    const ConstraintColoring& coloring;  // whom contacts carried in this step
+    const SweepStore& sweeps;
+};
+
 // Newton's law of restitution at each point that approaches, Coulomb friction; locked axes and immovable bodies hold.
-// Never more energy than before. dt, s: of the step.
-Impact FindImpact(const WorldState& world, const SweepStore& sweeps, const SweepHit& hit, float dt);
+// Never more energy than before.
+Impact FindImpact(const ImpactStores& stores, const SweepHit& hit);
 
 }  // namespace fulcrum

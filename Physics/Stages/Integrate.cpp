@@ -104,8 +104,7 @@ FULCRUM_FORCE_INLINE void CorrectFlight(BodyStore& bodies, const uint32_t (&inde
 // Velocity that a body has after h seconds of damping 1/s, per unit: exp(-damping h).
 float DampingFactor(float damping, float h) { return damping > 0 ? Exp(-damping * h) : 1.0f; }
 
-void IntegrateVelocity(WorldState& world, uint32_t body, float h, bool again, WorkerFindings& findings) {
-    BodyStore& bodies = world.bodies;
+void IntegrateVelocity(BodyStore& bodies, uint32_t body, float h, bool again, WorkerFindings& findings) {
     const BodyDynamics& d = bodies.dynamics[body];
     if (d.motion != MotionType::Dynamic) return;
     const float* a = bodies.poses[body].acceleration;
@@ -126,7 +125,7 @@ void IntegrateVelocity(WorldState& world, uint32_t body, float h, bool again, Wo
     }
     // What is not finite must not reach the rows: its neighbors go on. Store finds the forces and freezes it.
     if (!IsFinite(v) || !IsFinite(w)) velocity.own = velocity.carried = {};
-    findings.clamped += LimitSpeeds(world, body, v, w);
+    findings.clamped += LimitSpeeds(bodies, body, v, w);
     velocity.Write(1);
 }
 
@@ -196,13 +195,12 @@ FULCRUM_FORCE_INLINE void TurnInertia(BodyStore& bodies, const uint32_t (&index)
 
 // What constraints made of a body's velocity, before it moves with it. What is not finite must not reach the poses
 // either, by which the constraints of its neighbors see it.
-void LimitSolved(WorldState& world, uint32_t body, WorkerFindings& findings) {
-    BodyStore& bodies = world.bodies;
+void LimitSolved(BodyStore& bodies, uint32_t body, WorkerFindings& findings) {
     Vector3 v = bodies.LinearVelocityOf(body), w = bodies.AngularVelocityOf(body);
     if (IsWithinSpeeds(bodies.dynamics[body], v, w)) return;
     if (IsFinite(v) && IsFinite(w)) {
         const Vector3 fastV = v, fastW = w;
-        findings.clamped += ShortenSpeeds(world, body, v, w);
+        findings.clamped += ShortenSpeeds(bodies, body, v, w);
         // What is taken away was no impulse of a constraint: the next substep must not repeat it.
         float* row = bodies.unconstrained[body].row;
         for (int k = 0; k < 3; ++k) {
@@ -265,30 +263,31 @@ FULCRUM_FORCE_INLINE auto Flies(const BodyStore& bodies, const uint32_t (&index)
     return (own.x() == velocity.x()) & (own.y() == velocity.y()) & (own.z() == velocity.z());
 }
 
-void IntegratePose(WorldState& world, uint32_t body, float h, bool isLast, const BodyState* pseudo,
+void IntegratePose(const MovedBodies& moved, uint32_t body, float h, bool isLast, const BodyState* pseudo,
                    WorkerFindings& findings) {
-    const BodyDynamics& d = world.bodies.dynamics[body];
+    BodyStore& bodies = moved.store;
+    const BodyDynamics& d = bodies.dynamics[body];
     if (d.motion != MotionType::Dynamic) return;
-    LimitSolved(world, body, findings);
-    BodyState& s = world.bodies.states[body];
+    LimitSolved(bodies, body, findings);
+    BodyState& s = bodies.states[body];
     if (d.lockedAxes != LockedAxes::None) {
-        Vector3 v = world.bodies.LinearVelocityOf(body), w = world.bodies.AngularVelocityOf(body);
+        Vector3 v = bodies.LinearVelocityOf(body), w = bodies.AngularVelocityOf(body);
         d.Lock(v, w);
-        world.bodies.SetVelocity(body, v, w);
+        bodies.SetVelocity(body, v, w);
     }
-    if (d.dispersing) LimitPush(world, body, h);
-    Twist<float> motion{world.bodies.LinearVelocityOf(body), world.bodies.AngularVelocityOf(body)};
-    if (pseudo) AddPull(world.bodies, body, pseudo[body], motion);
-    const bool isJointed = world.joints.HasAny(body);
+    if (d.dispersing) LimitPush(moved.settings, moved.colliders, moved.pairs, bodies, body, h);
+    Twist<float> motion{bodies.LinearVelocityOf(body), bodies.AngularVelocityOf(body)};
+    if (pseudo) AddPull(bodies, body, pseudo[body], motion);
+    const bool isJointed = moved.joints.HasAny(body);
     Rows<float> displacement({body}, [&](uint32_t) { return s.PoseRow(); });
     const Vector3 turn = Displace(displacement, motion, isJointed, h, 1);
-    const float* a = world.bodies.poses[body].acceleration;
-    if (isLast && Flies<float>(world.bodies, {body}, world.bodies.LinearVelocityOf(body)))
-        CorrectFlight<float>(world.bodies, {body}, 1, true, Vector3(a[0], a[1], a[2]), h);
-    Vector3 w = world.bodies.AngularVelocityOf(body);
+    const float* a = bodies.poses[body].acceleration;
+    if (isLast && Flies<float>(bodies, {body}, bodies.LinearVelocityOf(body)))
+        CorrectFlight<float>(bodies, {body}, 1, true, Vector3(a[0], a[1], a[2]), h);
+    Vector3 w = bodies.AngularVelocityOf(body);
     if (!isJointed || !d.FeelsGyroscopicTorque(w)) return;
-    TurnInertia(world.bodies, {body}, 1, true, turn, w, h);
-    world.bodies.SetVelocity(body, world.bodies.LinearVelocityOf(body), w);
+    TurnInertia(bodies, {body}, 1, true, turn, w, h);
+    bodies.SetVelocity(body, bodies.LinearVelocityOf(body), w);
 }
 
 // Of velocities and a largest speed; what is not finite is beyond any.
@@ -298,8 +297,7 @@ WideMask<kLanes> IsWithin(const Vec3<Lanes>& v, const Lanes& limit) {
 }
 
 // Whether that was all there is to do; else nothing is done.
-bool IntegrateVelocitiesInLanes(WorldState& world, const Indices& index, int count, float h, bool again) {
-    BodyStore& bodies = world.bodies;
+bool IntegrateVelocitiesInLanes(BodyStore& bodies, const Indices& index, int count, float h, bool again) {
     for (uint32_t body : index) {
         const BodyDynamics& d = bodies.dynamics[body];
         if (d.motion != MotionType::Dynamic || d.lockedAxes != LockedAxes::None || d.hasForce || d.crowded)
@@ -322,13 +320,13 @@ bool IntegrateVelocitiesInLanes(WorldState& world, const Indices& index, int cou
     return true;
 }
 
-bool IntegratePosesInLanes(WorldState& world, const Indices& index, int count, float h, bool isLast) {
-    BodyStore& bodies = world.bodies;
+bool IntegratePosesInLanes(const MovedBodies& moved, const Indices& index, int count, float h, bool isLast) {
+    BodyStore& bodies = moved.store;
     alignas(64) float jointed[kLanes], gyroscopic[kLanes];
     for (int i = 0; i < kLanes; ++i) {
         const BodyDynamics& d = bodies.dynamics[index[i]];
         if (d.motion != MotionType::Dynamic || d.lockedAxes != LockedAxes::None || d.crowded) return false;
-        jointed[i] = world.joints.HasAny(index[i]) ? 1.0f : 0.0f;
+        jointed[i] = moved.joints.HasAny(index[i]) ? 1.0f : 0.0f;
         gyroscopic[i] = d.HasGyroscopicTorque() ? 1.0f : 0.0f;
     }
     Rows<Lanes> velocity(index, [&](uint32_t body) { return bodies.states[body].VelocityRow(); });
@@ -374,22 +372,22 @@ void VisitBodies(std::span<const uint32_t> bodies, InLanes&& inLanes, OneByOne&&
 
 }  // namespace
 
-void IntegrateVelocities(WorldState& world, std::span<const uint32_t> bodies, float h, bool again,
+void IntegrateVelocities(BodyStore& store, std::span<const uint32_t> bodies, float h, bool again,
                          WorkerFindings& findings) {
     VisitBodies(
         bodies,
-        [&](const Indices& index, int count) { return IntegrateVelocitiesInLanes(world, index, count, h, again); },
-        [&](uint32_t body) { IntegrateVelocity(world, body, h, again, findings); });
+        [&](const Indices& index, int count) { return IntegrateVelocitiesInLanes(store, index, count, h, again); },
+        [&](uint32_t body) { IntegrateVelocity(store, body, h, again, findings); });
 }
 
-void IntegratePoses(WorldState& world, std::span<const uint32_t> bodies, float h, bool isLast, const BodyState* pseudo,
-                    WorkerFindings& findings) {
+void IntegratePoses(const MovedBodies& moved, std::span<const uint32_t> bodies, float h, bool isLast,
+                    const BodyState* pseudo, WorkerFindings& findings) {
     VisitBodies(
         bodies,
         [&](const Indices& index, int count) {
-            return !pseudo && IntegratePosesInLanes(world, index, count, h, isLast);
+            return !pseudo && IntegratePosesInLanes(moved, index, count, h, isLast);
         },
-        [&](uint32_t body) { IntegratePose(world, body, h, isLast, pseudo, findings); });
+        [&](uint32_t body) { IntegratePose(moved, body, h, isLast, pseudo, findings); });
 }
 
 }  // namespace fulcrum

@@ -8,15 +8,24 @@ namespace fulcrum {
 
 // Forces, damping, locked axes and largest speeds, for h seconds. `again`: not the first substep of its step; the
 // bodies then get the change of velocity that constraints gave them in the last one.
-void IntegrateVelocities(WorldState& world, std::span<const uint32_t> bodies, float h, bool again,
+void IntegrateVelocities(BodyStore& store, std::span<const uint32_t> bodies, float h, bool again,
                          WorkerFindings& findings);
+
+// What IntegratePoses reads, and the bodies, which it moves. Colliders and pairs: of the contacts of dispersing bodies.
+struct MovedBodies {
+    const SystemSettings& settings;
+    const ColliderStore& colliders;
+    const PairStore& pairs;
+    const JointStore& joints;
+    BodyStore& store;
+};
 
 // Displacements, for h seconds, at the largest speeds at most; of jointed bodies the inertia and the gyroscopic torque,
 // too. Bodies that no constraint pushed move by v h - a h^2 / 2, which is exact; the next substep takes that off, or,
 // where isLast, this. pseudo: by body, what moves it besides its velocity (PullJoints), likewise at the largest speeds
 // at most; or null.
-void IntegratePoses(WorldState& world, std::span<const uint32_t> bodies, float h, bool isLast, const BodyState* pseudo,
-                    WorkerFindings& findings);
+void IntegratePoses(const MovedBodies& moved, std::span<const uint32_t> bodies, float h, bool isLast,
+                    const BodyState* pseudo, WorkerFindings& findings);
 
 // The angular velocity after h seconds of gyroscopic torque, at the principal axes then reached: Euler's equations in
 // the frame of the body, by the implicit midpoint rule. As there, the energy stays, and a body of revolution keeps the

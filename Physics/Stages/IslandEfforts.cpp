@@ -14,12 +14,8 @@ namespace {
 using Entry = ConstraintColoring::Entry;
 using Kind = ConstraintColoring::Kind;
 
-void Raise(uint8_t& number, int to) { number = static_cast<uint8_t>(std::max<int>(number, to)); }
-template <class Numbers>  // SolverSettings or IslandEffort
-void RaiseNumbers(IslandEffort& effort, const Numbers& to) {
-    Raise(effort.substeps, to.substeps);
-    Raise(effort.velocityIterations, to.velocityIterations);
-    Raise(effort.positionIterations, to.positionIterations);
+void RaiseLeast(IslandEffort& effort, const LeastEffort& to, uint32_t culprit) {
+    if (effort.least.Raise(to)) effort.culprit = culprit;
 }
 
 // Where the centers of mass of an island are, seen from one of them, and their masses.
@@ -66,23 +62,30 @@ constexpr uint32_t kLeastHigh = 4;
 constexpr int kMostIterations = 4;
 
 struct Need {
-    float need = 0;         // how much too deep the contacts of an island sink with the system's settings; 1: not
-    uint8_t stiffness = 0;  // the least of those under load in the last step; 0: none was
+    float need = 0;          // how much too deep the contacts of an island sink with the system's settings; 1: not
+    uint32_t culprit = ~0u;  // the body that sinks so
+    uint8_t stiffness = 0;   // the least of those under load in the last step; 0: none was
+
+    void Raise(float to, uint32_t body) {
+        if (!(need < to)) return;
+        need = to;
+        culprit = body;
+    }
 };
 
 class LoadEfforts {
 public:
-    LoadEfforts(const BodyStore& bodies, const ConstraintColoring& coloring, const PairStore& pairs,
-                const SystemSettings& settings, std::span<const uint32_t> sizes, uint32_t mostLoaded, UnionFind& sets,
-                float softness, ScratchArena& scratch)
-        : bodies_(bodies),
+    LoadEfforts(const StepContext& step, const BodyStore& bodies, const ConstraintColoring& coloring,
+                const PairStore& pairs, std::span<const uint32_t> sizes, uint32_t mostLoaded, UnionFind& sets,
+                ScratchArena& scratch)
+        : settings_(step.settings),
+          softness_(step.softness),
+          bodies_(bodies),
           coloring_(coloring),
           pairs_(pairs),
-          settings_(settings),
           sizes_(sizes),
           mostLoaded_(mostLoaded),
           sets_(sets),
-          softness_(softness),
           places_(scratch.Allocate<uint32_t>(bodies.awake.size())),
           needs_(scratch.Allocate<Need>(bodies.awake.size())) {
         std::fill(needs_.begin(), needs_.end(), Need{});
@@ -150,7 +153,7 @@ private:
             const BodyDynamics& body = bodies_.dynamics[bodies_.awake[i]];
             if (!(SquaredSizeOf(body) < least * least)) continue;
             const uint32_t root = sets_.Find(i);
-            if (sizes_[root] > mostLoaded_) needs_[root].need = std::max(needs_[root].need, least / SizeOf(body));
+            if (sizes_[root] > mostLoaded_) needs_[root].Raise(least / SizeOf(body), bodies_.awake[i]);
         }
     }
 
@@ -161,8 +164,15 @@ private:
         const float size = SizeOf(lightest), height = extent.Height();
         if (!(height * height > kSlender * kSlender * (size * size + extent.SquaredHalfWidths().second))) return;
         const float sink = extent.mass * lightest.inverseMass * Length(settings_.gravity) * softness_ / size;
-        needs_[root].need = std::max(needs_[root].need,
-                                     sink / settings_.accuracy.penetration * BucklingFactor(size, extent, kBuckling));
+        needs_[root].Raise(sink / settings_.accuracy.penetration * BucklingFactor(size, extent, kBuckling),
+                           extent.lightest);
+    }
+
+    // Of the bodies that a contact moves.
+    uint32_t LighterOf(const Entry& entry) const {
+        const auto inverseMassOf = [&](uint32_t body) { return bodies_.dynamics[body].inverseMass; };
+        if (entry.stillA || entry.stillB) return MovingBodyOf(entry);
+        return inverseMassOf(entry.bodyB) > inverseMassOf(entry.bodyA) ? entry.bodyB : entry.bodyA;
     }
 
     void AddNeed(const Entry& entry) {
@@ -179,20 +189,20 @@ private:
             return SinkOfLevel(level, settings_.accuracy) / settings_.accuracy.penetration * factor;
         };
         Need& most = needs_[root];
-        if (load.level > 0) most.need = std::max(most.need, needOf(load.level));
+        if (load.level > 0) most.Raise(needOf(load.level), LighterOf(entry));
         // What is pressed hard now, be it by an impact, was so with the springs of before.
         const bool isNew = load.stiffness == 0, isSofter = most.stiffness == 0 || load.stiffness < most.stiffness;
         if (!isNew && isSofter && needOf(std::max(load.level, load.recent)) > 1) most.stiffness = load.stiffness;
     }
 
+    const SystemSettings& settings_;
+    float softness_;
     const BodyStore& bodies_;
     const ConstraintColoring& coloring_;
     const PairStore& pairs_;
-    const SystemSettings& settings_;
     std::span<const uint32_t> sizes_;
     uint32_t mostLoaded_;
     UnionFind& sets_;
-    float softness_;
     static constexpr uint32_t kNone = ~0u;
     static constexpr Extent kLow{};
     std::span<uint32_t> places_;  // by root, in extents_; kNone: what it carries alone counts
@@ -220,31 +230,32 @@ SolverSettings EffortFor(float need, const SystemSettings& settings) {
 }  // namespace
 
 void Raise(IslandEffort& effort, const IslandEffort& to) {
-    RaiseNumbers(effort, to);
+    RaiseLeast(effort, to.least, to.culprit);
     if (!to.isLoaded) return;
     if (!effort.isLoaded || (to.stiffness > 0 && (effort.stiffness == 0 || to.stiffness < effort.stiffness)))
         effort.stiffness = to.stiffness;
     effort.isLoaded = true;
 }
 
-std::span<const IslandEffort> FindEfforts(const BodyStore& bodies, const ConstraintColoring& coloring,
-                                          const JointStore& joints, const PairStore& pairs,
-                                          const SystemSettings& settings, std::span<const uint32_t> sizes,
-                                          uint32_t mostLoaded, float softness, UnionFind& sets, ScratchArena& scratch) {
+std::span<const IslandEffort> FindEfforts(const StepContext& step, const BodyStore& bodies,
+                                          const ConstraintColoring& coloring, const JointStore& joints,
+                                          const PairStore& pairs, std::span<const uint32_t> sizes, uint32_t mostLoaded,
+                                          UnionFind& sets, ScratchArena& scratch) {
     const size_t count = bodies.awake.size();
     std::span<IslandEffort> efforts = scratch.Allocate<IslandEffort>(count);
     std::fill(efforts.begin(), efforts.end(), IslandEffort{});
     VisitEntries(coloring, Kind::Joint, [&](uint32_t, const Entry& entry) {
         const Joint& joint = joints.joints[entry.constraint];
-        if (!joint.HasOwnEffort()) return;
-        RaiseNumbers(efforts[sets.Find(bodies.cold[MovingBodyOf(entry)].awakePlace)], joint.effort);
+        if (!joint.effort.IsAny()) return;
+        const uint32_t body = MovingBodyOf(entry);
+        RaiseLeast(efforts[sets.Find(bodies.cold[body].awakePlace)], joint.effort, body);
     });
-    if (!HeedsLoads(settings)) return efforts;
+    if (!HeedsLoads(step.settings)) return efforts;
     const std::span<const Need> needs =
-        LoadEfforts(bodies, coloring, pairs, settings, sizes, mostLoaded, sets, softness, scratch).Find();
+        LoadEfforts(step, bodies, coloring, pairs, sizes, mostLoaded, sets, scratch).Find();
     for (size_t i = 0; i < count; ++i) {
         if (!(needs[i].need > 1)) continue;
-        RaiseNumbers(efforts[i], EffortFor(needs[i].need, settings));
+        RaiseLeast(efforts[i], ToLeastEffort(EffortFor(needs[i].need, step.settings)), needs[i].culprit);
         efforts[i].isLoaded = true;
         efforts[i].stiffness = needs[i].stiffness;
     }

@@ -17,12 +17,13 @@ constexpr float kKeptAngle = 1e-3f;  // rad
 constexpr float kSameNormal = 0.5f;
 
 // Points are stored relative to the bodies, the narrow phase speaks of the pieces.
-Vector3 ToBody(const WorldState& world, const Pair& pair, uint32_t collider, const Vector3& point) {
-    return pair.offset ? LocalOf(world, collider).Transform(point) : point;
+Vector3 ToBody(const CollideStores& stores, const Pair& pair, uint32_t collider, const Vector3& point) {
+    return pair.offset ? LocalOf(stores.bodies, stores.colliders, collider).Transform(point) : point;
 }
 
-Vector3 DirectionFromBody(const WorldState& world, const Pair& pair, const Vector3& direction) {
-    return pair.offset ? InverseRotate(LocalOf(world, pair.colliderA).rotation, direction) : direction;
+Vector3 DirectionFromBody(const CollideStores& stores, const Pair& pair, const Vector3& direction) {
+    return pair.offset ? InverseRotate(LocalOf(stores.bodies, stores.colliders, pair.colliderA).rotation, direction)
+                       : direction;
 }
 
 void WriteTwistRadius(ContactRecord& record) {
@@ -88,16 +89,16 @@ bool HardlyMoved(const PairView& v) {
     return LengthSquared(d) <= 0.25f * kKeptAngle * kKeptAngle;
 }
 
-float FarEndFactor(const WorldState& world, const Pair& pair) {
-    const bool touches = world.coloring.IsTouched(pair.bodyA) || (!pair.fixedB && world.coloring.IsTouched(pair.bodyB));
+float FarEndFactor(const ConstraintColoring& coloring, const Pair& pair) {
+    const bool touches = coloring.IsTouched(pair.bodyA) || (!pair.fixedB && coloring.IsTouched(pair.bodyB));
     return touches ? 2.0f : 1.0f;
 }
 
-void WriteManifold(const WorldState& world, const PairView& v, const Manifold& manifold, float dt) {
+void WriteManifold(const CollideStores& stores, const PairView& v, const Manifold& manifold) {
     Pair& pair = v.pair;
     ContactRecord& record = v.record;
     const Vector3 normal =
-        pair.offset ? Rotate(world.colliders.shapes[pair.colliderA].local.rotation, manifold.normal) : manifold.normal;
+        pair.offset ? Rotate(stores.colliders.shapes[pair.colliderA].local.rotation, manifold.normal) : manifold.normal;
     // Shapes of extreme sizes, or far apart, can bring any pair function beyond the floats: nothing of that gets into a
     // record.
     const bool isUsable = manifold.pointCount == 0 || IsUsable(normal);
@@ -105,7 +106,7 @@ void WriteManifold(const WorldState& world, const PairView& v, const Manifold& m
     if (manifold.pointCount == 0 || !isUsable) return Forget(pair, record);
     const Vector3 oldNormal(record.normal[0], record.normal[1], record.normal[2]);
     const bool goesOn =
-        pair.pointCount > 0 && !NormalTurned(v, DirectionFromBody(world, pair, oldNormal), manifold.normal);
+        pair.pointCount > 0 && !NormalTurned(v, DirectionFromBody(stores, pair, oldNormal), manifold.normal);
     for (int k = 0; k < 3; ++k) record.normal[k] = normal[k];
     float oldImpulses[Manifold::kMaxPoints];
     std::copy(record.impulse, record.impulse + Manifold::kMaxPoints, oldImpulses);
@@ -114,24 +115,25 @@ void WriteManifold(const WorldState& world, const PairView& v, const Manifold& m
     std::copy(pair.features, pair.features + Manifold::kMaxPoints, oldFeatures);
 
     // Velocities of B relative to A, in A's frame.
-    const BodyStore& bodies = world.bodies;
+    const BodyStore& bodies = stores.bodies;
     const Quaternion toWorld = bodies.RotationOf(pair.bodyA);
     const auto inA = [&](const Vector3& world_) { return InverseRotate(toWorld, world_); };
     const Vector3 vA = inA(bodies.LinearVelocityOf(pair.bodyA)), wA = inA(bodies.AngularVelocityOf(pair.bodyA));
     const Vector3 vB = inA(bodies.LinearVelocityOf(pair.bodyB)), wB = inA(bodies.AngularVelocityOf(pair.bodyB));
 
-    const float farEnd = FarEndFactor(world, pair), speculative = SpeculativeDistance(world.settings, pair);
+    const float farEnd = FarEndFactor(stores.coloring, pair),
+                speculative = SpeculativeDistance(stores.step.settings, pair);
     int count = 0;
     for (int i = 0; i < manifold.pointCount; ++i) {
         const ManifoldPoint& found = manifold.points[i];
-        const Vector3 onA = ToBody(world, pair, pair.colliderA, found.positionOnA);
+        const Vector3 onA = ToBody(stores, pair, pair.colliderA, found.positionOnA);
         const Vector3 pointOfB = onA + normal * found.separation;  // in A's frame
         if (!IsFinite(pointOfB)) continue;
         const float ofA = Dot<float>(normal, Vector3(vA + Cross<float>(wA, onA)));
         const float ofB = -Dot<float>(normal, Vector3(vB + Cross<float>(wB, Vector3(pointOfB - v.bodyBInA.position))));
         // Something else may stop one of the two.
         const float approach = std::max(ofA + ofB, std::max(ofB, pair.fixedB ? 0.0f : ofA));
-        if (found.separation > speculative + farEnd * std::max(approach, 0.0f) * dt) continue;
+        if (found.separation > speculative + farEnd * std::max(approach, 0.0f) * stores.step.dt) continue;
         const Vector3 onB = v.bodyBInA.InverseTransform(pointOfB);
         for (int k = 0; k < 3; ++k) {
             record.points[count].onA[k] = onA[k];
@@ -148,19 +150,21 @@ void WriteManifold(const WorldState& world, const PairView& v, const Manifold& m
     if (count > 0) WriteTwistRadius(record);
 }
 
-PairChange NoteTouching(WorldState& world, uint32_t index, WorkerFindings& findings) {
-    Pair& pair = world.pairs.pairs[index];
+PairChange NoteTouching(const CollideStores& stores, uint32_t index, WorkerFindings& findings) {
+    Pair& pair = stores.pairs.pairs[index];
     const bool touched = pair.touching;
-    pair.touching = pair.pointCount > 0 && (!world.listener || AskListener(world, index));
+    pair.touching = pair.pointCount > 0 &&
+                    (!stores.step.listener ||
+                     AskListener(*stores.step.listener, stores.bodies, stores.colliders, stores.pairs, index));
     findings.contacts += pair.touching;
     findings.points += pair.touching ? pair.pointCount : 0;
     if (pair.touching == touched) return PairChange::None;
     return pair.touching ? PairChange::Began : PairChange::Ended;
 }
 
-bool TouchesSleeper(const WorldState& world, const Pair& pair) {
+bool TouchesSleeper(const BodyStore& bodies, const Pair& pair) {
     const auto sleeps = [&](uint32_t body) {
-        const BodyDynamics& d = world.bodies.dynamics[body];
+        const BodyDynamics& d = bodies.dynamics[body];
         return d.motion == MotionType::Dynamic && !d.awake;
     };
     return pair.touching && (sleeps(pair.bodyA) || sleeps(pair.bodyB));

@@ -25,45 +25,55 @@ void NoteDeepest(const ContactBatch<N, kFixedB>& batch, WorkerFindings& findings
 }
 
 // Records and masses of the contacts that come next are on their way while these are worked on.
-void Prefetch(const WorldState& world, std::span<const Entry> entries) {
+void Prefetch(const BodyStore& bodies, const PairStore& pairs, std::span<const Entry> entries) {
     for (const Entry& entry : entries) {
-        const char* record = reinterpret_cast<const char*>(&world.pairs.records[entry.constraint]);
+        const char* record = reinterpret_cast<const char*>(&pairs.records[entry.constraint]);
         for (size_t line = 0; line < sizeof(ContactRecord); line += 64) __builtin_prefetch(record + line);
         for (uint32_t body : {entry.bodyA, entry.bodyB}) {
-            __builtin_prefetch(&world.bodies.poses[body]);
-            __builtin_prefetch(&world.bodies.masses[body]);
+            __builtin_prefetch(&bodies.poses[body]);
+            __builtin_prefetch(&bodies.masses[body]);
         }
     }
 }
 
 // Has the contacts of these lanes, of which numbers are not finite, found anew in the next step.
 template <int N, bool kFixedB>
-[[gnu::cold]] void ForgetContacts(WorldState& world, const ContactBatch<N, kFixedB>& batch, uint32_t lanes) {
+[[gnu::cold]] void ForgetContacts(PairStore& pairs, const ContactBatch<N, kFixedB>& batch, uint32_t lanes) {
     for (int lane = 0; lane < batch.count; ++lane)
         if (lanes >> lane & 1u) {
-            world.pairs.pairs[batch.contact[lane]].pointCount = 0;
-            world.pairs.records[batch.contact[lane]].pointCount = 0;
+            pairs.pairs[batch.contact[lane]].pointCount = 0;
+            pairs.records[batch.contact[lane]].pointCount = 0;
         }
 }
 
 // Of bodies that were created in each other: they are pushed apart slowly, and what pushed them in the last step is
 // not there again, as they had to keep to that speed.
 template <int N, bool kFixedB>
-[[gnu::cold]] void LimitPushes(const WorldState& world, const uint32_t (&bodyB)[N], ContactBatch<N, kFixedB>& batch) {
+[[gnu::cold]] void LimitPushes(const BodyStore& bodies, float mostSpeed, const uint32_t (&bodyB)[N],
+                               ContactBatch<N, kFixedB>& batch) {
     for (int lane = 0; lane < N; ++lane) {
         const auto isCrowded = [&](uint32_t body) {
-            const BodyDynamics& d = world.bodies.dynamics[body];
+            const BodyDynamics& d = bodies.dynamics[body];
             return d.crowded && !d.dispersing;
         };
         if (!isCrowded(batch.bodyA[lane]) && !isCrowded(bodyB[lane])) continue;
-        batch.maxPushSpeed.Set(lane, std::min(batch.maxPushSpeed[lane], world.settings.depenetrationSpeed));
+        batch.maxPushSpeed.Set(lane, std::min(batch.maxPushSpeed[lane], mostSpeed));
     }
 }
 
+// What contacts are prepared from. Pairs: those whose numbers are not finite lose their points.
+struct ContactSource {
+    const BodyStore& bodies;
+    PairStore& pairs;
+    ContactPrepareSettings settings;
+    bool hasCrowds;            // some bodies are crowded:
+    float depenetrationSpeed;  // m/s, at which they are pushed at most
+};
+
 // Fills the batch with at most N contacts; lanes beyond them repeat the last one and are never written.
 template <int N, bool kFixedB>
-void Fill(WorldState& world, ContactBatch<N, kFixedB>& batch, std::span<const Entry> entries,
-          const ContactPrepareSettings& settings, bool hasCrowds, WorkerFindings& findings) {
+void Fill(const ContactSource& from, ContactBatch<N, kFixedB>& batch, std::span<const Entry> entries,
+          WorkerFindings& findings) {
     batch.count = static_cast<int32_t>(entries.size());
     uint32_t bodyB[N];
     for (size_t lane = 0; lane < N; ++lane) {
@@ -73,23 +83,23 @@ void Fill(WorldState& world, ContactBatch<N, kFixedB>& batch, std::span<const En
         bodyB[lane] = entry.bodyB;
     }
     const uint32_t unusable =
-        PrepareContacts<N, kFixedB>(batch, world.pairs.records.data(), bodyB, world.bodies.ForSolver(), settings);
-    if (unusable != 0) ForgetContacts(world, batch, unusable);
-    if (hasCrowds) [[unlikely]]
-        LimitPushes(world, bodyB, batch);
+        PrepareContacts<N, kFixedB>(batch, from.pairs.records.data(), bodyB, from.bodies.ForSolver(), from.settings);
+    if (unusable != 0) ForgetContacts(from.pairs, batch, unusable);
+    if (from.hasCrowds) [[unlikely]]
+        LimitPushes(from.bodies, from.depenetrationSpeed, bodyB, batch);
     NoteDeepest(batch, findings);
 }
 
 template <bool kFixedB>
-void FillRange(WorldState& world, ContactBatchList<kFixedB>& list, const BatchRange& range,
-               const ContactPrepareSettings& settings, bool hasCrowds, WorkerFindings& findings) {
+void FillRange(const ContactSource& from, ContactBatchList<kFixedB>& list, const BatchRange& range,
+               WorkerFindings& findings) {
     std::span<const Entry> contacts = std::span(list.contacts).subspan(range.first, range.contacts);
     for (uint32_t i = range.begin; i < range.end; ++i) {
         const size_t n = std::min(contacts.size(), size_t(kLanes));
         const std::span<const Entry> now = contacts.first(n);
         contacts = contacts.subspan(n);
-        Prefetch(world, contacts.first(std::min(contacts.size(), size_t(kLanes))));
-        Fill(world, list.batches[i], now, settings, hasCrowds, findings);
+        Prefetch(from.bodies, from.pairs, contacts.first(std::min(contacts.size(), size_t(kLanes))));
+        Fill(from, list.batches[i], now, findings);
     }
 }
 
@@ -105,7 +115,8 @@ BatchRange PieceOf(const BatchRange& range, uint32_t piece) {
     return part;
 }
 
-void FindDeepest(const WorldState& world, std::span<const WorkerFindings> workers, StepReport& report) {
+void FindDeepest(const BodyStore& bodies, const PairStore& pairs, std::span<const WorkerFindings> workers,
+                 StepReport& report) {
     uint32_t pair = ~0u;
     for (const WorkerFindings& findings : workers) {
         const float depth = findings.deepest, worst = report.largestPenetration;
@@ -114,8 +125,8 @@ void FindDeepest(const WorldState& world, std::span<const WorkerFindings> worker
         pair = findings.deepestPair;
     }
     if (pair == ~0u) return;
-    report.deepestA = world.bodies.IdOf(world.pairs.pairs[pair].bodyA);
-    report.deepestB = world.bodies.IdOf(world.pairs.pairs[pair].bodyB);
+    report.deepestA = bodies.IdOf(pairs.pairs[pair].bodyA);
+    report.deepestB = bodies.IdOf(pairs.pairs[pair].bodyB);
 }
 
 void FindWorstJoints(const JointStore& joints, std::span<const WorkerFindings> workers, StepReport& report) {
@@ -137,13 +148,19 @@ void FindWorstJoints(const JointStore& joints, std::span<const WorkerFindings> w
 
 class RowFiller {
 public:
-    RowFiller(WorldState& world, SolverLayout& layout, const Effort& effort, float impulseScale, bool hasCrowds)
-        : world_(world), layout_(layout), hasCrowds_(hasCrowds), joints_(effort.joints) {
-        contacts_.impulseScale = impulseScale * effort.impulseScale;
-        contacts_.restitutionSpeed = world.settings.restitutionSpeed;
-        contacts_.maxPushSpeed = world.settings.contactPushSpeed;
-        contacts_.massOverrides = world.pairs.massOverrides.data();
-    }
+    RowFiller(const StepContext& step, const BodyStore& bodies, const CrowdState& crowd, const Effort& effort,
+              PairStore& pairs, JointStore& joints, SolverLayout& layout)
+        : contacts_{bodies,
+                    pairs,
+                    {.impulseScale = step.impulseScale * effort.impulseScale,
+                     .restitutionSpeed = step.settings.restitutionSpeed,
+                     .maxPushSpeed = step.settings.contactPushSpeed,
+                     .massOverrides = pairs.massOverrides.data()},
+                    !crowd.crowded.empty(),
+                    step.settings.depenetrationSpeed},
+          joints_(joints),
+          jointSettings_(effort.joints),
+          layout_(layout) {}
     void FillGroup(const SolverGroup& group, WorkerFindings& findings) const {
         for (uint32_t c = group.colorsBegin; c < group.colorsEnd; ++c)
             ForEachBatchList(
@@ -162,7 +179,7 @@ public:
 private:
     template <bool kFixedB>
     void FillBatches(ContactBatchList<kFixedB>& list, const BatchRange& range, WorkerFindings& findings) const {
-        FillRange(world_, list, range, contacts_, hasCrowds_, findings);
+        FillRange(contacts_, list, range, findings);
     }
     template <class Batch>
     void FillBatches(BatchList<Batch>& list, const BatchRange& range, WorkerFindings& findings) const {
@@ -170,35 +187,33 @@ private:
     }
     template <int N>
     void FillJoints(JointBatch<N>& batch, WorkerFindings& findings) const {
-        PrepareJoints(batch, world_.joints.records.data(), world_.joints.types.data(), world_.bodies.ForSolver(),
-                      joints_, findings.joints);
+        PrepareJoints(batch, joints_.records.data(), joints_.types.data(), contacts_.bodies.ForSolver(), jointSettings_,
+                      findings.joints);
     }
     template <int N>
     void FillJoints(BallBatch<N>& batch, WorkerFindings& findings) const {
-        PrepareJoints(batch, world_.joints.records.data(), world_.bodies.ForSolver(), joints_, findings.joints);
+        PrepareJoints(batch, joints_.records.data(), contacts_.bodies.ForSolver(), jointSettings_, findings.joints);
     }
     // Of the overflow, the i-th of its kind.
     template <bool kFixedB>
     void FillSingle(ContactBatch<1, kFixedB>& batch, const ConstraintColoring::Color& overflow, size_t i,
                     WorkerFindings& findings) const {
         using Kind = ConstraintColoring::Kind;
-        Fill(world_, batch, std::span(&overflow.Of(kFixedB ? Kind::Fixed : Kind::Moving)[i], 1), contacts_, hasCrowds_,
-             findings);
+        Fill(contacts_, batch, std::span(&overflow.Of(kFixedB ? Kind::Fixed : Kind::Moving)[i], 1), findings);
     }
     void FillSingle(JointBatch<1>& batch, const ConstraintColoring::Color&, size_t, WorkerFindings& findings) const {
         FillJoints(batch, findings);
     }
 
-    WorldState& world_;
+    ContactSource contacts_;
+    JointStore& joints_;
+    JointSolveSettings jointSettings_;
     SolverLayout& layout_;
-    ContactPrepareSettings contacts_;
-    bool hasCrowds_;  // some bodies are crowded
-    JointSolveSettings joints_;
 };
 
 // The rows of a large group, on all workers.
-void FillTogether(JobSystem& jobs, const RowFiller& filler, const SolverLayout& layout, const SolverGroup& group,
-                  std::span<WorkerFindings> workers, ScratchArena& scratch) {
+void FillTogether(const RowFiller& filler, const SolverLayout& layout, const SolverGroup& group,
+                  const StepWorkers& workers) {
     const auto piecesOf = [&](uint32_t c) {
         uint32_t most = 0;
         for (const BatchRange& range : layout.colors[c].of) most = std::max(most, range.Count());
@@ -206,39 +221,39 @@ void FillTogether(JobSystem& jobs, const RowFiller& filler, const SolverLayout& 
     };
     uint32_t count = 0;
     for (uint32_t c = group.colorsBegin; c < group.colorsEnd; ++c) count += piecesOf(c);
-    std::span<std::pair<uint32_t, uint32_t>> pieces = scratch.Allocate<std::pair<uint32_t, uint32_t>>(count);
+    std::span<std::pair<uint32_t, uint32_t>> pieces = workers.scratch.Allocate<std::pair<uint32_t, uint32_t>>(count);
     count = 0;
     for (uint32_t c = group.colorsBegin; c < group.colorsEnd; ++c)
         for (uint32_t i = 0; i < piecesOf(c); ++i) pieces[count++] = {c, i};
-    jobs.ParallelFor(count, 1, [&](JobRange range) {
+    workers.jobs.ParallelFor(count, 1, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i) {
             const auto [c, piece] = pieces[i];
-            filler.FillPiece(layout.colors[c], piece, workers[range.worker]);
+            filler.FillPiece(layout.colors[c], piece, workers.findings[range.worker]);
         }
     });
 }
 
 }  // namespace
 
-void Prepare(WorldState& world, const StepState& step, SolverLayout& layout, std::span<WorkerFindings> workers,
-             ScratchArena& scratch, StepReport& report) {
-    if (world.coloring.Size() == 0) return;
-    const bool hasCrowds = !step.crowd.crowded.empty();
+void Prepare(const StepContext& step, const BodyStore& bodies, const ConstraintColoring& coloring,
+             const CrowdState& crowd, PairStore& pairs, JointStore& joints, SolverLayout& layout,
+             const StepWorkers& workers, StepReport& report) {
+    if (coloring.Size() == 0) return;
     const auto fillerOf = [&](const SolverGroup& group) {
-        return RowFiller(world, layout, EffortOf(world, step, group), step.impulseScale, hasCrowds);
+        return RowFiller(step, bodies, crowd, EffortOf(step, group), pairs, joints, layout);
     };
     for (const SolverGroup& group : layout.groups)
-        if (group.isLarge) FillTogether(*world.jobs, fillerOf(group), layout, group, workers, scratch);
-    world.jobs->ParallelFor(static_cast<uint32_t>(layout.groups.size()), 1, [&](JobRange range) {
+        if (group.isLarge) FillTogether(fillerOf(group), layout, group, workers);
+    workers.jobs.ParallelFor(static_cast<uint32_t>(layout.groups.size()), 1, [&](JobRange range) {
         for (uint32_t g = range.begin; g < range.end; ++g) {
             const SolverGroup& group = layout.groups[g];
-            if (!group.isLarge) fillerOf(group).FillGroup(group, workers[range.worker]);
+            if (!group.isLarge) fillerOf(group).FillGroup(group, workers.findings[range.worker]);
         }
     });
-    fillerOf(layout.groups.front()).FillOverflow(world.coloring.At(ConstraintColoring::kOverflow), workers[0]);
+    fillerOf(layout.groups.front()).FillOverflow(coloring.At(ConstraintColoring::kOverflow), workers.findings.front());
 
-    FindDeepest(world, workers, report);
-    FindWorstJoints(world.joints, workers, report);
+    FindDeepest(bodies, pairs, workers.findings, report);
+    FindWorstJoints(joints, workers.findings, report);
     report.colors = layout.colorCount;
     report.overflowConstraints = static_cast<uint32_t>(layout.OverflowCount());
 }

@@ -14,23 +14,23 @@ namespace {
 
 class HitResolver {
 public:
-    HitResolver(WorldState& world, SweepStore& sweeps, bool isLast, StepReport& report)
-        : world_(world), sweeps_(sweeps), report_(report), isLast_(isLast) {}
+    HitResolver(const StepContext& step, const SleepStores& stores, SweepStore& sweeps, bool isLast, StepReport& report)
+        : step_(step), stores_(stores), bodies_(stores.bodies), sweeps_(sweeps), report_(report), isLast_(isLast) {}
 
     // In the order of their times. What each would do is found beforehand, in parallel: no body is hit twice in a
     // round.
-    void ResolveAll(ScratchArena& scratch) {
+    void ResolveAll(const StepWorkers& workers) {
         const std::vector<SweepHit>& hits = sweeps_.hits;
         struct Key {
             float time;
             uint32_t body, otherCollider, index;
             auto Order() const { return std::tie(time, body, otherCollider); }
         };
-        const std::span<Key> order = scratch.Allocate<Key>(hits.size());
-        const std::span<Impact> impacts = scratch.Allocate<Impact>(hits.size());
-        world_.jobs->ParallelFor(static_cast<uint32_t>(hits.size()), 8, [&](JobRange range) {
-            for (uint32_t i = range.begin; i < range.end; ++i)
-                impacts[i] = FindImpact(world_, sweeps_, hits[i], sweeps_.dt);
+        const std::span<Key> order = workers.scratch.Allocate<Key>(hits.size());
+        const std::span<Impact> impacts = workers.scratch.Allocate<Impact>(hits.size());
+        const ImpactStores read{step_, bodies_, stores_.coloring, sweeps_};
+        workers.jobs.ParallelFor(static_cast<uint32_t>(hits.size()), 8, [&](JobRange range) {
+            for (uint32_t i = range.begin; i < range.end; ++i) impacts[i] = FindImpact(read, hits[i]);
         });
         for (uint32_t i = 0; i < hits.size(); ++i) order[i] = {hits[i].time, hits[i].body, hits[i].otherCollider, i};
         std::sort(order.begin(), order.end(), [](const Key& a, const Key& b) { return a.Order() < b.Order(); });
@@ -39,8 +39,8 @@ public:
 
 private:
     void Resolve(const SweepHit& hit, const Impact& impact) {
-        const uint32_t places[2] = {PlaceOf(world_, sweeps_, hit.body, &impact.sweeps[0]),
-                                    PlaceOf(world_, sweeps_, hit.other, &impact.sweeps[1])};
+        const uint32_t places[2] = {PlaceOf(step_, bodies_, sweeps_, hit.body, &impact.sweeps[0]),
+                                    PlaceOf(step_, bodies_, sweeps_, hit.other, &impact.sweeps[1])};
         if (Swept(places[0]).changed) return;  // it is in the next round, or waits
         const bool lostPartner = places[1] != SweepStore::kNone && Swept(places[1]).changed;
         const bool isUndecided = hit.pointCount == 0 || lostPartner;
@@ -64,17 +64,17 @@ private:
     // Both go on with the velocities after the hit. Where nothing approaches, the solver moved them otherwise than
     // by those.
     void Bounce(const SweepHit& hit, const Impact& impact, const uint32_t (&places)[2]) {
-        WakeBody(world_, hit.other);
+        WakeBody(stores_, hit.other);
         report_.sweptHits += impact.bounces;
         for (int s = 0; s < 2; ++s) {
             if (places[s] == SweepStore::kNone) continue;
             const uint32_t body = Swept(places[s]).body;
-            if (!world_.bodies.CanMove(body)) {
+            if (!bodies_.CanMove(body)) {
                 if (s == 0 || impact.bounces) Resume(places[s], hit.time, impact.poses[s]);
                 continue;
             }
-            world_.bodies.masses[body] = impact.masses[s];
-            world_.bodies.dynamics[body].slowSeconds = 0;
+            bodies_.masses[body] = impact.masses[s];
+            bodies_.dynamics[body].slowSeconds = 0;
             if (isLast_) Wait(places[s], hit.time, impact, s, impact.linear[s], impact.angular[s]);
             else Continue(places[s], hit.time, impact, s);
         }
@@ -110,7 +110,7 @@ private:
     void Wait(uint32_t place, float time, const Impact& impact, int side, const Vector3& linear,
               const Vector3& angular) {
         Sweep& sweep = Swept(place);
-        if (!world_.bodies.CanMove(sweep.body)) return;
+        if (!bodies_.CanMove(sweep.body)) return;
         End(place, time, impact.poses[side]);
         sweep.displacement.setZero();
         sweep.turn.setZero();
@@ -129,11 +129,13 @@ private:
     }
 
     void SetVelocity(uint32_t body, Vector3 linear, Vector3 angular) {
-        report_.clampedBodies += LimitSpeeds(world_, body, linear, angular);
-        world_.bodies.SetVelocity(body, linear, angular);
+        report_.clampedBodies += LimitSpeeds(bodies_, body, linear, angular);
+        bodies_.SetVelocity(body, linear, angular);
     }
 
-    WorldState& world_;
+    const StepContext& step_;
+    const SleepStores& stores_;
+    BodyStore& bodies_;
     SweepStore& sweeps_;
     StepReport& report_;
     bool isLast_;
@@ -141,19 +143,21 @@ private:
 
 }  // namespace
 
-uint32_t PlaceOf(const WorldState& world, SweepStore& sweeps, uint32_t body, const Sweep* known) {
-    if (sweeps.searchBy[body] == SweepStore::SearchBy::None && !world.bodies.CanMove(body)) return SweepStore::kNone;
+uint32_t PlaceOf(const StepContext& step, const BodyStore& bodies, SweepStore& sweeps, uint32_t body,
+                 const Sweep* known) {
+    if (sweeps.searchBy[body] == SweepStore::SearchBy::None && !bodies.CanMove(body)) return SweepStore::kNone;
     if (sweeps.places[body] == SweepStore::kNone) {
-        Sweep sweep = known ? *known : SweepOf(world, sweeps, body);
-        sweep.turns = IsCastTurning(world, body);
+        Sweep sweep = known ? *known : SweepOf(step, bodies, sweeps, body);
+        sweep.turns = IsCastTurning(bodies, body);
         sweeps.places[body] = static_cast<uint32_t>(sweeps.swept.size());
         sweeps.swept.push_back(sweep);
     }
     return sweeps.places[body];
 }
 
-void ResolveHits(WorldState& world, SweepStore& sweeps, bool isLast, ScratchArena& scratch, StepReport& report) {
-    HitResolver(world, sweeps, isLast, report).ResolveAll(scratch);
+void ResolveHits(const StepContext& step, const SleepStores& stores, SweepStore& sweeps, bool isLast,
+                 const StepWorkers& workers, StepReport& report) {
+    HitResolver(step, stores, sweeps, isLast, report).ResolveAll(workers);
 }
 
 }  // namespace fulcrum

@@ -19,31 +19,31 @@ SensorSees KindOf(const BodyDynamics& d) {
                                                : SensorSees::Dynamic;
 }
 
-bool Sees(const WorldState& world, const Sensor& sensor, uint32_t body) {
+bool Sees(const CollisionView& view, const Sensor& sensor, uint32_t body) {
     const uint32_t self = sensor.id.index;
-    const BodyDynamics& d = world.bodies.dynamics[body];
+    const BodyDynamics& d = view.bodies.dynamics[body];
     if (body == self || !(sensor.sees & KindOf(d))) return false;
     if (d.motion == MotionType::Dynamic && !d.awake && !(sensor.sees & SensorSees::Sleeping)) return false;
-    if (world.bodies.cold[body].isSensor && !(sensor.sees & SensorSees::Sensors)) return false;
-    if (!(world.settings.layerCollides[world.bodies.dynamics[self].layer] >> d.layer & 1u)) return false;
-    if ((d.filtered || world.bodies.dynamics[self].filtered) && !FiltersAllow(world, self, body)) return false;
-    return !world.joints.ForbidsContact(self, body);
+    if (view.bodies.cold[body].isSensor && !(sensor.sees & SensorSees::Sensors)) return false;
+    if (!(view.step.settings.layerCollides[view.bodies.dynamics[self].layer] >> d.layer & 1u)) return false;
+    if ((d.filtered || view.bodies.dynamics[self].filtered) && !FiltersAllow(view.bodies, self, body)) return false;
+    return !view.joints.ForbidsContact(self, body);
 }
 
-bool IsTouched(const WorldState& world, const SensorSearch& sensing, uint32_t body) {
-    return sensing.changedIn[body] == world.step;
+bool IsTouched(const StepContext& step, const SensorSearch& sensing, uint32_t body) {
+    return sensing.changedIn[body] == step.number;
 }
 // Whether it is where it was when the last step ended.
-bool Rests(const WorldState& world, const SensorSearch& sensing, uint32_t body) {
-    return !world.bodies.dynamics[body].awake && !IsTouched(world, sensing, body);
+bool Rests(const CollisionView& view, const SensorSearch& sensing, uint32_t body) {
+    return !view.bodies.dynamics[body].awake && !IsTouched(view.step, sensing, body);
 }
 
-void NoteTouched(const WorldState& world, SensorStore& store, SensorSearch& sensing,
+void NoteTouched(const CollisionView& view, SensorStore& store, SensorSearch& sensing,
                  std::span<WorkerFindings> workers) {
-    sensing.changedIn.resize(world.bodies.Size(), 0);
+    sensing.changedIn.resize(view.bodies.Size(), 0);
     for (uint32_t body : store.changed)
-        if (world.bodies.cold[body].exists) sensing.changedIn[body] = world.step;
-    store.changed.reserve(world.colliders.colliders.capacity());
+        if (view.bodies.cold[body].exists) sensing.changedIn[body] = view.step.number;
+    store.changed.reserve(view.colliders.colliders.capacity());
     for (WorkerFindings& findings : workers) {
         findings.sensorCandidates.reserve(sensing.candidates.capacity());
         findings.sensorVisits.reserve(sensing.visits.capacity());
@@ -64,15 +64,15 @@ void CollectCutWays(const SweepStore& sweeps, std::vector<MotionSegment>& cut) {
 }
 
 // Sensors are found wherever they were in this step, and by queries where they are now.
-void EnlargeSensorBounds(const WorldState& world, ColliderStore& colliders, const SweepStore& sweeps,
-                         std::span<const MotionSegment> cut) {
-    for (const Sensor& sensor : world.sensors.sensors) {
+void EnlargeSensorBounds(const StepContext& step, const BodyStore& bodies, const SensorStore& sensors,
+                         const SweepStore& sweeps, std::span<const MotionSegment> cut, ColliderStore& colliders) {
+    for (const Sensor& sensor : sensors.sensors) {
         const uint32_t body = sensor.id.index;
-        if (sensor.removed || !world.bodies.dynamics[body].awake) continue;
-        const MotionPath path(world, sweeps, cut, body);
-        VisitColliders(world, body, [&](uint32_t i) {
-            Bounds bounds = PieceBounds(world, path, i);
-            bounds.Include(TightBoundsOf(world, i));
+        if (sensor.removed || !bodies.dynamics[body].awake) continue;
+        const MotionPath path(step, bodies, sweeps, cut, body);
+        VisitColliders(bodies, colliders, body, [&](uint32_t i) {
+            Bounds bounds = PieceBounds(bodies, colliders, path, i);
+            bounds.Include(TightBoundsOf(bodies, colliders, i));
             Collider& collider = colliders.colliders[i];
             if (collider.fat.Contains(bounds)) return;
             collider.fat.Include(bounds);
@@ -83,43 +83,44 @@ void EnlargeSensorBounds(const WorldState& world, ColliderStore& colliders, cons
 }
 
 // The body's sphere along its whole path.
-Bounds RoundBounds(const WorldState& world, const SweepStore& sweeps, std::span<const MotionSegment> cut,
+Bounds RoundBounds(const CollisionView& view, const SweepStore& sweeps, std::span<const MotionSegment> cut,
                    uint32_t body) {
-    const Position reach = Position::Constant(double{world.bodies.dynamics[body].outerRadius});
-    Position lower = world.bodies.CenterOf(body), upper = lower;
+    const Position reach = Position::Constant(double{view.bodies.dynamics[body].outerRadius});
+    Position lower = view.bodies.CenterOf(body), upper = lower;
     const auto include = [&](const Position& center) {
         lower = lower.cwiseMin(center);
         upper = upper.cwiseMax(center);
     };
     const SweepStore::Start* starts = sweeps.starts.data();
-    if (body < sweeps.starts.size() && starts[body].step == world.step) include(starts[body].pose.position);
+    if (body < sweeps.starts.size() && starts[body].step == view.step.number) include(starts[body].pose.position);
     for (const MotionSegment& segment : CutSegmentsOf(cut, body)) include(segment.sweep.start.position);
-    const Position& origin = world.colliders.boundsOrigin;
+    const Position& origin = view.colliders.boundsOrigin;
     return RoundedOutwards(lower - origin - reach, upper - origin + reach);
 }
 
-void AddCandidate(const WorldState& world, uint32_t sensorBody, uint32_t body, WorkerFindings& findings) {
-    const uint32_t place = world.sensors.PlaceOf(world.bodies.IdOf(sensorBody));
-    if (Sees(world, world.sensors.sensors[place], body))
-        findings.sensorCandidates.push_back(uint64_t(place) << 32 | body);
+void AddCandidate(const CollisionView& view, const SensorStore& store, uint32_t sensorBody, uint32_t body,
+                  WorkerFindings& findings) {
+    const uint32_t place = store.PlaceOf(view.bodies.IdOf(sensorBody));
+    if (Sees(view, store.sensors[place], body)) findings.sensorCandidates.push_back(uint64_t(place) << 32 | body);
 }
 
-void SearchFromBody(const WorldState& world, const SweepStore& sweeps, std::span<const MotionSegment> cut,
-                    uint32_t body, WorkerFindings& findings) {
-    const ColliderStore& colliders = world.colliders;
-    colliders.sensorTree.Query(RoundBounds(world, sweeps, cut, body),
-                               [&](uint32_t i) { AddCandidate(world, colliders.colliders[i].body, body, findings); });
+void SearchFromBody(const CollisionView& view, const SensorStore& store, const SweepStore& sweeps,
+                    std::span<const MotionSegment> cut, uint32_t body, WorkerFindings& findings) {
+    const ColliderStore& colliders = view.colliders;
+    colliders.sensorTree.Query(RoundBounds(view, sweeps, cut, body), [&](uint32_t i) {
+        AddCandidate(view, store, colliders.colliders[i].body, body, findings);
+    });
 }
 
 // What is awake, or was changed, looks for itself.
-void SearchFromSensor(const WorldState& world, const SensorSearch& sensing, const Sensor& sensor,
-                      WorkerFindings& findings) {
-    if (sensor.removed || Rests(world, sensing, sensor.id.index)) return;
-    const ColliderStore& colliders = world.colliders;
-    VisitColliders(world, sensor.id.index, [&](uint32_t i) {
+void SearchFromSensor(const CollisionView& view, const SensorStore& store, const SensorSearch& sensing,
+                      const Sensor& sensor, WorkerFindings& findings) {
+    if (sensor.removed || Rests(view, sensing, sensor.id.index)) return;
+    const ColliderStore& colliders = view.colliders;
+    VisitColliders(view.bodies, view.colliders, sensor.id.index, [&](uint32_t i) {
         const auto visit = [&](uint32_t other) {
             const uint32_t body = colliders.colliders[other].body;
-            if (Rests(world, sensing, body)) AddCandidate(world, sensor.id.index, body, findings);
+            if (Rests(view, sensing, body)) AddCandidate(view, store, sensor.id.index, body, findings);
         };
         const Bounds& bounds = colliders.colliders[i].fat;
         colliders.movingTree.Query(bounds, visit);
@@ -128,30 +129,29 @@ void SearchFromSensor(const WorldState& world, const SensorSearch& sensing, cons
     });
 }
 
-void FindCandidates(const WorldState& world, const SweepStore& sweeps, SensorSearch& sensing,
-                    std::span<WorkerFindings> workers) {
-    const SensorStore& store = world.sensors;
+void FindCandidates(const CollisionView& view, const SensorStore& store, const SweepStore& sweeps,
+                    SensorSearch& sensing, const StepWorkers& workers) {
     const auto forEach = [&](size_t count, uint32_t minimumRange, const auto& search) {
-        world.jobs->ParallelFor(static_cast<uint32_t>(count), minimumRange, [&](JobRange range) {
-            for (uint32_t i = range.begin; i < range.end; ++i) search(i, workers[range.worker]);
+        workers.jobs.ParallelFor(static_cast<uint32_t>(count), minimumRange, [&](JobRange range) {
+            for (uint32_t i = range.begin; i < range.end; ++i) search(i, workers.findings[range.worker]);
         });
     };
-    const std::vector<uint32_t>& awake = world.bodies.awake;
+    const std::vector<uint32_t>& awake = view.bodies.awake;
     forEach(awake.size(), 128, [&](uint32_t i, WorkerFindings& findings) {
-        SearchFromBody(world, sweeps, sensing.cut, awake[i], findings);
+        SearchFromBody(view, store, sweeps, sensing.cut, awake[i], findings);
     });
     forEach(store.changed.size(), 128, [&](uint32_t i, WorkerFindings& findings) {
         const uint32_t body = store.changed[i];
-        if (world.bodies.cold[body].exists && !world.bodies.dynamics[body].awake)
-            SearchFromBody(world, sweeps, sensing.cut, body, findings);
+        if (view.bodies.cold[body].exists && !view.bodies.dynamics[body].awake)
+            SearchFromBody(view, store, sweeps, sensing.cut, body, findings);
     });
     forEach(store.sensors.size(), 1, [&](uint32_t i, WorkerFindings& findings) {
-        SearchFromSensor(world, sensing, store.sensors[i], findings);
+        SearchFromSensor(view, store, sensing, store.sensors[i], findings);
     });
 
     std::vector<uint64_t>& candidates = sensing.candidates;
     candidates.clear();
-    for (WorkerFindings& findings : workers) {
+    for (WorkerFindings& findings : workers.findings) {
         candidates.insert(candidates.end(), findings.sensorCandidates.begin(), findings.sensorCandidates.end());
         findings.sensorCandidates.clear();
     }
@@ -159,34 +159,34 @@ void FindCandidates(const WorldState& world, const SweepStore& sweeps, SensorSea
     candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
 }
 
-void LookAtCandidate(const WorldState& world, const SweepStore& sweeps, const SensorSearch& sensing, uint64_t candidate,
-                     WorkerFindings& findings) {
+void LookAtCandidate(const CollisionView& view, const SensorStore& store, const SweepStore& sweeps,
+                     const SensorSearch& sensing, uint64_t candidate, WorkerFindings& findings) {
     const uint32_t place = static_cast<uint32_t>(candidate >> 32), body = static_cast<uint32_t>(candidate);
-    const Sensor& sensor = world.sensors.sensors[place];
+    const Sensor& sensor = store.sensors[place];
     AtStart atStart = AtStart::Unknown;
-    if (!IsTouched(world, sensing, body) && !IsTouched(world, sensing, sensor.id.index)) {
-        const bool wasInside = std::binary_search(sensor.inside.begin(), sensor.inside.end(), world.bodies.IdOf(body));
+    if (!IsTouched(view.step, sensing, body) && !IsTouched(view.step, sensing, sensor.id.index)) {
+        const bool wasInside = std::binary_search(sensor.inside.begin(), sensor.inside.end(), view.bodies.IdOf(body));
         atStart = wasInside ? AtStart::Inside : AtStart::Outside;
     }
     ++findings.sensorTests;
     // Most of what is inside stays there.
-    if (atStart == AtStart::Inside && IsOnePiece(world, body) && IsOnePiece(world, sensor.id.index) &&
-        CutSegmentsOf(sensing.cut, body).empty() && OverlapAtEnd(world, sensor.id.index, body)) {
+    if (atStart == AtStart::Inside && IsOnePiece(view.bodies, body) && IsOnePiece(view.bodies, sensor.id.index) &&
+        CutSegmentsOf(sensing.cut, body).empty() && OverlapAtEnd(view, sensor.id.index, body)) {
         findings.sensorVisits.push_back({place, body, 0, 1, true, true});
         return;
     }
-    FindVisits(world, place, MotionPath(world, sweeps, sensing.cut, sensor.id.index),
-               MotionPath(world, sweeps, sensing.cut, body), atStart, findings.sensorVisits);
+    FindVisits(view, place, MotionPath(view.step, view.bodies, sweeps, sensing.cut, sensor.id.index),
+               MotionPath(view.step, view.bodies, sweeps, sensing.cut, body), atStart, findings.sensorVisits);
 }
 
-void FindAllVisits(const WorldState& world, const SweepStore& sweeps, SensorSearch& sensing,
-                   std::span<WorkerFindings> workers, StepReport& report) {
-    world.jobs->ParallelFor(static_cast<uint32_t>(sensing.candidates.size()), 4, [&](JobRange range) {
+void FindAllVisits(const CollisionView& view, const SensorStore& store, const SweepStore& sweeps, SensorSearch& sensing,
+                   const StepWorkers& workers, StepReport& report) {
+    workers.jobs.ParallelFor(static_cast<uint32_t>(sensing.candidates.size()), 4, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i)
-            LookAtCandidate(world, sweeps, sensing, sensing.candidates[i], workers[range.worker]);
+            LookAtCandidate(view, store, sweeps, sensing, sensing.candidates[i], workers.findings[range.worker]);
     });
     sensing.visits.clear();
-    for (WorkerFindings& findings : workers) {
+    for (WorkerFindings& findings : workers.findings) {
         sensing.visits.insert(sensing.visits.end(), findings.sensorVisits.begin(), findings.sensorVisits.end());
         findings.sensorVisits.clear();
         report.sensorTests += findings.sensorTests;
@@ -199,8 +199,8 @@ void FindAllVisits(const WorldState& world, const SweepStore& sweeps, SensorSear
 // Events and the new list of one sensor: what was inside and the candidates, both in the order of bodies, side by side.
 class Reporter {
 public:
-    Reporter(const WorldState& world, const SensorSearch& sensing, Sensor& sensor, uint32_t place)
-        : world_(world), sensing_(sensing), sensor_(sensor) {
+    Reporter(const CollisionView& view, const SensorSearch& sensing, Sensor& sensor, uint32_t place)
+        : view_(view), sensing_(sensing), sensor_(sensor) {
         const uint64_t key = uint64_t(place) << 32;
         candidate_ = std::lower_bound(sensing.candidates.begin(), sensing.candidates.end(), key);
         lastCandidate_ = std::lower_bound(candidate_, sensing.candidates.end(), key + (uint64_t(1) << 32));
@@ -215,7 +215,7 @@ public:
         sensor_.insideNext.clear();
         for (const BodyId id : sensor_.inside) {
             while (candidate_ != lastCandidate_ && Candidate() < id.index) ReportCandidate(false);
-            if (candidate_ != lastCandidate_ && world_.bodies.IdOf(Candidate()) == id) ReportCandidate(true);
+            if (candidate_ != lastCandidate_ && view_.bodies.IdOf(Candidate()) == id) ReportCandidate(true);
             else if (RestsInside(id)) Keep(id, true);
             else Report(id, SensorEvent::Kind::End, 0);
         }
@@ -230,9 +230,9 @@ private:
     uint32_t Candidate() const { return static_cast<uint32_t>(*candidate_); }
 
     bool RestsInside(BodyId id) const {
-        if (sensor_.removed || !world_.bodies.Find(id)) return false;
-        return Rests(world_, sensing_, sensor_.id.index) && Rests(world_, sensing_, id.index) &&
-               Sees(world_, sensor_, id.index);
+        if (sensor_.removed || !view_.bodies.Find(id)) return false;
+        return Rests(view_, sensing_, sensor_.id.index) && Rests(view_, sensing_, id.index) &&
+               Sees(view_, sensor_, id.index);
     }
 
     void Report(BodyId id, SensorEvent::Kind kind, float time) {
@@ -246,7 +246,7 @@ private:
 
     void ReportCandidate(bool wasInside) {
         const uint32_t body = Candidate();
-        const BodyId id = world_.bodies.IdOf(body);
+        const BodyId id = view_.bodies.IdOf(body);
         bool inside = wasInside, stayed = wasInside;
         for (; visit_ != lastVisit_ && visit_->sensor == place_ && visit_->body == body; ++visit_) {
             if (!(inside && visit_->atStart)) {
@@ -263,7 +263,7 @@ private:
         ++candidate_;
     }
 
-    const WorldState& world_;
+    const CollisionView& view_;
     const SensorSearch& sensing_;
     Sensor& sensor_;
     uint32_t place_;
@@ -271,9 +271,10 @@ private:
     std::vector<SensorVisit>::const_iterator visit_, lastVisit_;
 };
 
-void ReportAll(const WorldState& world, SensorStore& store, const SensorSearch& sensing, StepReport& report) {
-    world.jobs->ParallelFor(static_cast<uint32_t>(store.sensors.size()), 1, [&](JobRange range) {
-        for (uint32_t i = range.begin; i < range.end; ++i) Reporter(world, sensing, store.sensors[i], i).Run();
+void ReportAll(const CollisionView& view, SensorStore& store, const SensorSearch& sensing, JobSystem& jobs,
+               StepReport& report) {
+    jobs.ParallelFor(static_cast<uint32_t>(store.sensors.size()), 1, [&](JobRange range) {
+        for (uint32_t i = range.begin; i < range.end; ++i) Reporter(view, sensing, store.sensors[i], i).Run();
     });
     for (const Sensor& sensor : store.sensors)
         store.events.insert(store.events.end(), sensor.events.begin(), sensor.events.end());
@@ -283,15 +284,17 @@ void ReportAll(const WorldState& world, SensorStore& store, const SensorSearch& 
 
 }  // namespace
 
-void Sense(const WorldState& world, SensorStore& sensors, ColliderStore& colliders, const SweepStore& sweeps,
-           SensorSearch& sensing, std::span<WorkerFindings> workers, StepReport& report) {
+void Sense(const StepContext& step, const BodyStore& bodies, const JointStore& joints, const SweepStore& sweeps,
+           SensorStore& sensors, ColliderStore& colliders, SensorSearch& sensing, const StepWorkers& workers,
+           StepReport& report) {
     if (sensors.IsEmpty()) return;
-    NoteTouched(world, sensors, sensing, workers);
+    const CollisionView view{step, bodies, colliders, joints};
+    NoteTouched(view, sensors, sensing, workers.findings);
     CollectCutWays(sweeps, sensing.cut);
-    EnlargeSensorBounds(world, colliders, sweeps, sensing.cut);
-    FindCandidates(world, sweeps, sensing, workers);
-    FindAllVisits(world, sweeps, sensing, workers, report);
-    ReportAll(world, sensors, sensing, report);
+    EnlargeSensorBounds(step, bodies, sensors, sweeps, sensing.cut, colliders);
+    FindCandidates(view, sensors, sweeps, sensing, workers);
+    FindAllVisits(view, sensors, sweeps, sensing, workers, report);
+    ReportAll(view, sensors, sensing, workers.jobs, report);
     sensors.changed.clear();
 }
 

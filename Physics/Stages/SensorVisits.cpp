@@ -93,9 +93,9 @@ Touch FirstTouch(const Mover& sensor, const Mover& body, float start, float end,
 
 class PairSearch {
 public:
-    PairSearch(const WorldState& world, uint32_t place, const MotionPath& sensorPath, const MotionPath& bodyPath,
+    PairSearch(const CollisionView& view, uint32_t place, const MotionPath& sensorPath, const MotionPath& bodyPath,
                std::vector<SensorVisit>& visits)
-        : world_(world),
+        : view_(view),
           place_(place),
           sensorPath_(sensorPath),
           bodyPath_(bodyPath),
@@ -103,22 +103,23 @@ public:
           first_(visits.size()) {}
 
     void Run(AtStart atStart) {
-        if (!IsOnePiece(world_, sensorPath_.Body()) || !IsOnePiece(world_, bodyPath_.Body()))
+        if (!IsOnePiece(view_.bodies, sensorPath_.Body()) || !IsOnePiece(view_.bodies, bodyPath_.Body()))
             atStart = AtStart::Unknown;
-        VisitColliders(world_, bodyPath_.Body(), [&](uint32_t j) {
-            const Bounds bounds = PieceBounds(world_, bodyPath_, j);
-            VisitColliders(world_, sensorPath_.Body(), [&](uint32_t i) {
-                if (bounds.Overlaps(world_.colliders.colliders[i].fat)) RunPieces(i, j, atStart);
+        VisitColliders(view_.bodies, view_.colliders, bodyPath_.Body(), [&](uint32_t j) {
+            const Bounds bounds = PieceBounds(view_.bodies, view_.colliders, bodyPath_, j);
+            VisitColliders(view_.bodies, view_.colliders, sensorPath_.Body(), [&](uint32_t i) {
+                if (bounds.Overlaps(view_.colliders.colliders[i].fat)) RunPieces(i, j, atStart);
             });
         });
         Merge();
     }
 
 private:
-    NarrowPhaseMethod Method() const { return world_.settings.narrowPhase; }
+    NarrowPhaseMethod Method() const { return view_.step.settings.narrowPhase; }
 
     void RunPieces(uint32_t sensorCollider, uint32_t bodyCollider, AtStart atStart) {
-        const ColliderShape sensorPiece = PieceOf(world_, sensorCollider), bodyPiece = PieceOf(world_, bodyCollider);
+        const ColliderShape sensorPiece = PieceOf(view_.bodies, view_.colliders, sensorCollider),
+                            bodyPiece = PieceOf(view_.bodies, view_.colliders, bodyCollider);
         const MotionSegment* a = sensorPath_.Segments().data();
         const MotionSegment* b = bodyPath_.Segments().data();
         bool inside = atStart == AtStart::Inside;
@@ -192,7 +193,7 @@ private:
         visits_.erase(last + 1, visits_.end());
     }
 
-    const WorldState& world_;
+    const CollisionView& view_;
     uint32_t place_;
     const MotionPath& sensorPath_;
     const MotionPath& bodyPath_;
@@ -210,11 +211,11 @@ std::span<const MotionSegment> CutSegmentsOf(std::span<const MotionSegment> cut,
     return {first, last};
 }
 
-MotionPath::MotionPath(const WorldState& world, const SweepStore& sweeps, std::span<const MotionSegment> cut,
-                       uint32_t body)
-    : body_(body), end_(world.bodies.CenterPoseOf(body)), segments_(CutSegmentsOf(cut, body)) {
+MotionPath::MotionPath(const StepContext& step, const BodyStore& bodies, const SweepStore& sweeps,
+                       std::span<const MotionSegment> cut, uint32_t body)
+    : body_(body), end_(bodies.CenterPoseOf(body)), segments_(CutSegmentsOf(cut, body)) {
     if (!segments_.empty()) return;
-    own_.sweep = SweepOf(world, sweeps, body);
+    own_.sweep = SweepOf(step, bodies, sweeps, body);
     segments_ = {&own_, 1};
 }
 
@@ -235,19 +236,19 @@ bool CentersTell(const Shape& sensor, const Shape& body, const Vector3& center) 
 
 }  // namespace
 
-bool OverlapAtEnd(const WorldState& world, uint32_t sensor, uint32_t body) {
-    const ColliderShape a = PieceOf(world, world.bodies.cold[sensor].firstCollider);
-    const ColliderShape b = PieceOf(world, world.bodies.cold[body].firstCollider);
+bool OverlapAtEnd(const CollisionView& view, uint32_t sensor, uint32_t body) {
+    const ColliderShape a = PieceOf(view.bodies, view.colliders, view.bodies.cold[sensor].firstCollider);
+    const ColliderShape b = PieceOf(view.bodies, view.colliders, view.bodies.cold[body].firstCollider);
     const RelativePose relative =
-        Relative(PoseOf(a, world.bodies.CenterPoseOf(sensor)), PoseOf(b, world.bodies.CenterPoseOf(body)));
+        Relative(PoseOf(a, view.bodies.CenterPoseOf(sensor)), PoseOf(b, view.bodies.CenterPoseOf(body)));
     return CentersTell(*a.shape, *b.shape, relative.position) ||
-           Overlap(*a.shape, *b.shape, relative, world.settings.narrowPhase);
+           Overlap(*a.shape, *b.shape, relative, view.step.settings.narrowPhase);
 }
 
-Bounds PieceBounds(const WorldState& world, const MotionPath& path, uint32_t collider) {
+Bounds PieceBounds(const BodyStore& bodies, const ColliderStore& colliders, const MotionPath& path, uint32_t collider) {
     Bounds bounds;
-    const ColliderShape piece = PieceOf(world, collider);
-    const Position& origin = world.colliders.boundsOrigin;
+    const ColliderShape piece = PieceOf(bodies, colliders, collider);
+    const Position& origin = colliders.boundsOrigin;
     for (const MotionSegment& segment : path.Segments()) {
         const Mover mover{path, segment, piece};
         Bounds ends = BoundsAbout(origin, *mover.piece.shape, mover.PieceAt(segment.sweep.from));
@@ -260,9 +261,9 @@ Bounds PieceBounds(const WorldState& world, const MotionPath& path, uint32_t col
     return bounds;
 }
 
-void FindVisits(const WorldState& world, uint32_t sensor, const MotionPath& sensorPath, const MotionPath& bodyPath,
+void FindVisits(const CollisionView& view, uint32_t sensor, const MotionPath& sensorPath, const MotionPath& bodyPath,
                 AtStart atStart, std::vector<SensorVisit>& visits) {
-    PairSearch(world, sensor, sensorPath, bodyPath, visits).Run(atStart);
+    PairSearch(view, sensor, sensorPath, bodyPath, visits).Run(atStart);
 }
 
 }  // namespace fulcrum

@@ -2,6 +2,7 @@
 // threads at once.
 #pragma once
 
+#include <Fulcrum/Physics/Stages/CollisionView.h>
 #include <Fulcrum/Physics/Stages/StepState.h>
 
 #include <span>
@@ -15,7 +16,8 @@ std::span<const MotionSegment> CutSegmentsOf(std::span<const MotionSegment> cut,
 // A body's path in this step: one segment, or several where continuous collision made it bounce.
 class MotionPath {
 public:
-    MotionPath(const WorldState& world, const SweepStore& sweeps, std::span<const MotionSegment> cut, uint32_t body);
+    MotionPath(const StepContext& step, const BodyStore& bodies, const SweepStore& sweeps,
+               std::span<const MotionSegment> cut, uint32_t body);
     MotionPath(const MotionPath&) = delete;
     MotionPath& operator=(const MotionPath&) = delete;
 
@@ -32,10 +34,10 @@ private:
 };
 
 // Whether a body of one piece overlaps a sensor of one piece where they are at the end of the step.
-bool OverlapAtEnd(const WorldState& world, uint32_t sensor, uint32_t body);
+bool OverlapAtEnd(const CollisionView& view, uint32_t sensor, uint32_t body);
 
 // Bounds of a collider of the body all along its path.
-Bounds PieceBounds(const WorldState& world, const MotionPath& path, uint32_t collider);
+Bounds PieceBounds(const BodyStore& bodies, const ColliderStore& colliders, const MotionPath& path, uint32_t collider);
 
 // Whether a body overlaps a sensor as the step begins, where that is known.
 enum class AtStart : uint8_t { Unknown, Outside, Inside };
@@ -44,7 +46,7 @@ enum class AtStart : uint8_t { Unknown, Outside, Inside };
 // place in SensorStore::sensors. Bounds of the sensor's colliders contain their paths. A convex piece that turns counts
 // as inside from when it first to when it last touches a piece of the sensor in a segment of its path; a mesh or height
 // field counts as one piece. Of two of these, or half spaces, only the ends of the step are looked at.
-void FindVisits(const WorldState& world, uint32_t sensor, const MotionPath& sensorPath, const MotionPath& bodyPath,
+void FindVisits(const CollisionView& view, uint32_t sensor, const MotionPath& sensorPath, const MotionPath& bodyPath,
                 AtStart atStart, std::vector<SensorVisit>& visits);
 
 }  // namespace fulcrum

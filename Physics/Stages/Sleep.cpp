@@ -7,53 +7,55 @@
 
 namespace fulcrum {
 
-void Sleep(WorldState& world, uint32_t candidates, ScratchArena& scratch) {
+void Sleep(const StepContext& step, uint32_t candidates, const SleepStores& stores, PairStore& pairs,
+           CollidersOutsideFatBounds& outsideFatBounds, ScratchArena& scratch) {
+    BodyStore& bodies = stores.bodies;
     // Kinematic bodies that stand still have nothing to do.
     bool rested = false;
-    for (size_t i = world.bodies.awake.size(); i-- > 0;) {
-        const uint32_t body = world.bodies.awake[i];
-        if (world.bodies.dynamics[body].motion != MotionType::Kinematic) continue;
-        if (world.bodies.LinearVelocityOf(body).isZero(0) && world.bodies.AngularVelocityOf(body).isZero(0)) {
-            world.bodies.MarkAsleep(body);
+    for (size_t i = bodies.awake.size(); i-- > 0;) {
+        const uint32_t body = bodies.awake[i];
+        if (bodies.dynamics[body].motion != MotionType::Kinematic) continue;
+        if (bodies.LinearVelocityOf(body).isZero(0) && bodies.AngularVelocityOf(body).isZero(0)) {
+            bodies.MarkAsleep(body);
             rested = true;
         }
     }
-    if (candidates > 0 && world.settings.sleep.enabled) {
-        const size_t count = world.bodies.awake.size();
+    if (candidates > 0 && step.settings.sleep.enabled) {
+        const size_t count = bodies.awake.size();
         const std::span<uint32_t> roots = scratch.Allocate<uint32_t>(count);
-        FindAwakeIslands(world, roots);
+        FindAwakeIslands(bodies, pairs, stores.coloring, roots);
         // An island may sleep unless one of its bodies objects.
         std::span<uint8_t> awake = scratch.Allocate<uint8_t>(count);
         std::fill(awake.begin(), awake.end(), uint8_t(0));
         for (size_t i = 0; i < count; ++i) {
-            const BodyDynamics& d = world.bodies.dynamics[world.bodies.awake[i]];
-            if (d.motion != MotionType::Dynamic || d.slowSeconds < world.settings.sleep.seconds || !d.allowSleep)
+            const BodyDynamics& d = bodies.dynamics[bodies.awake[i]];
+            if (d.motion != MotionType::Dynamic || d.slowSeconds < step.settings.sleep.seconds || !d.allowSleep)
                 awake[roots[i]] = 1;
         }
         // What a belt carries, however slowly, does not rest.
-        if (world.listener)
-            world.pairs.active.Visit([&](uint32_t index) {
-                const Pair& pair = world.pairs.pairs[index];
-                if (pair.touching && world.pairs.records[index].Has(ContactRecord::kSurfaceVelocity))
-                    awake[roots[world.bodies.cold[pair.bodyA].awakePlace]] = 1;
+        if (step.listener)
+            pairs.active.Visit([&](uint32_t index) {
+                const Pair& pair = pairs.pairs[index];
+                if (pair.touching && pairs.records[index].Has(ContactRecord::kSurfaceVelocity))
+                    awake[roots[bodies.cold[pair.bodyA].awakePlace]] = 1;
             });
         // Members of sleeping islands, sorted by island.
         std::span<uint64_t> members = scratch.Allocate<uint64_t>(count);
         size_t sleepers = 0;
         for (size_t i = 0; i < count; ++i)
-            if (!awake[roots[i]]) members[sleepers++] = uint64_t(roots[i]) << 32 | world.bodies.awake[i];
+            if (!awake[roots[i]]) members[sleepers++] = uint64_t(roots[i]) << 32 | bodies.awake[i];
         std::sort(members.begin(), members.begin() + static_cast<ptrdiff_t>(sleepers));
         std::span<uint32_t> island = scratch.Allocate<uint32_t>(count);
         for (size_t begin = 0; begin < sleepers;) {
             size_t end = begin, size = 0;
             for (; end < sleepers && members[end] >> 32 == members[begin] >> 32; ++end)
                 island[size++] = static_cast<uint32_t>(members[end]);
-            PutToSleep(world, island.first(size));
+            PutToSleep(stores, outsideFatBounds, island.first(size));
             begin = end;
         }
         rested |= sleepers > 0;
     }
-    if (rested) RestPairs(world);
+    if (rested) RestPairs(bodies, pairs, stores.coloring);
 }
 
 }  // namespace fulcrum

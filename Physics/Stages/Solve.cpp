@@ -63,21 +63,22 @@ class StepSolver {
 public:
     // pseudo: room for the pseudo-velocities of all bodies, zero; null where the group has no joints that are far
     // apart.
-    StepSolver(WorldState& world, StepState& step, const SolverGroup& group, const Effort& effort, BodyState* pseudo)
-        : world_(world),
-          step_(step),
-          layout_(step.solver),
+    StepSolver(const MovedBodies& moved, SolverLayout& layout, const SolverGroup& group, const Effort& effort,
+               BodyState* pseudo)
+        : moved_(moved),
+          bodies_(moved.store),
+          layout_(layout),
           group_(group),
           effort_(effort),
           pseudo_(pseudo),
           h_(effort.substepDt) {}
 
     // A large group: all workers, phase by phase.
-    void RunTogether(std::span<const Phase> phases) {
-        std::span<uint32_t> counts = step_.scratch.Allocate<uint32_t>(phases.size());
+    void RunTogether(std::span<const Phase> phases, const StepWorkers& workers) {
+        std::span<uint32_t> counts = workers.scratch.Allocate<uint32_t>(phases.size());
         for (size_t i = 0; i < phases.size(); ++i) counts[i] = BlockCount(phases[i]);
-        RunPhases(*world_.jobs, counts, [&](uint32_t phase, uint32_t block, uint32_t worker) {
-            RunBlock(phases[phase], block, step_.findings[worker]);
+        RunPhases(workers.jobs, counts, [&](uint32_t phase, uint32_t block, uint32_t worker) {
+            RunBlock(phases[phase], block, workers.findings[worker]);
         });
     }
 
@@ -127,8 +128,8 @@ private:
 
     void RunBodies(Verb verb, uint8_t substep, std::span<const uint32_t> bodies, WorkerFindings& findings) {
         if (verb == Verb::IntegratePoses)
-            IntegratePoses(world_, bodies, h_, substep + 1 == effort_.solver.substeps, pseudo_, findings);
-        else if (verb == Verb::IntegrateVelocities) IntegrateVelocities(world_, bodies, h_, substep > 0, findings);
+            IntegratePoses(moved_, bodies, h_, substep + 1 == effort_.solver.substeps, pseudo_, findings);
+        else if (verb == Verb::IntegrateVelocities) IntegrateVelocities(bodies_, bodies, h_, substep > 0, findings);
         else
             for (const uint32_t body : bodies) pseudo_[body] = {};
     }
@@ -136,14 +137,14 @@ private:
     // What the trees of a group do before its batches take their turn.
     void RunTrees(Verb verb, uint8_t substep) {
         JointBatch<kLanes>* batches = layout_.joints.batches.data();
-        BodyState* states = world_.bodies.states.data();
+        BodyState* states = bodies_.states.data();
         const std::span<JointBatch<kLanes>> own = JointBatchesOf(group_);
         const auto forTrees = [&](auto&& run) {
             for (uint32_t t = group_.treesBegin; t < group_.treesEnd; ++t)
                 run(layout_.trees.At(layout_.trees.trees[layout_.treesByGroup[t]]));
         };
         const auto factorize = [&] {
-            forTrees([&](const JointTree& tree) { FactorizeTree(tree, batches, world_.bodies.masses.data()); });
+            forTrees([&](const JointTree& tree) { FactorizeTree(tree, batches, bodies_.masses.data()); });
         };
         const auto solve = [&](bool relax) {
             forTrees([&](const JointTree& tree) { SolveTree(tree, batches, states, relax); });
@@ -161,7 +162,7 @@ private:
                 JointSolveSettings settings = effort_.joints;
                 settings.elapsed = h_ * static_cast<float>(substep + 1);
                 settings.firstPass = true;
-                for (JointBatch<kLanes>& batch : own) UpdateJoints(batch, world_.bodies.ForSolver(), settings);
+                for (JointBatch<kLanes>& batch : own) UpdateJoints(batch, bodies_.ForSolver(), settings);
                 factorize();
                 if (verb == Verb::FirstRelax) solve(true);
                 break;
@@ -204,7 +205,7 @@ private:
 
     template <int N, bool kFixedB>
     void RunBatch(Verb verb, uint8_t substep, ContactBatch<N, kFixedB>& batch) {
-        BodyState* states = world_.bodies.states.data();
+        BodyState* states = bodies_.states.data();
         switch (verb) {
             case Verb::WarmStart: WarmStartContacts(batch, states); break;
             // Poses move with these velocities from the beginning of the substep to its end: they are those of its
@@ -229,7 +230,7 @@ private:
     // Of joints, balls or others.
     template <class Batch>
     void RunBatch(Verb verb, uint8_t substep, Batch& batch) {
-        BodyState* states = world_.bodies.states.data();
+        BodyState* states = bodies_.states.data();
         const JointSolveSettings settings = JointSettingsAt(verb, substep);
         switch (verb) {
             case Verb::WarmStart: WarmStartJoints(batch, states); break;
@@ -238,10 +239,10 @@ private:
             case Verb::FirstPull:
             case Verb::Pull: PullJoints(batch, pseudo_, settings); break;
             case Verb::FirstRelax:
-            case Verb::Relax: RelaxJoints(batch, world_.bodies.ForSolver(), settings); break;
+            case Verb::Relax: RelaxJoints(batch, bodies_.ForSolver(), settings); break;
             case Verb::FirstCorrection:
-            case Verb::Correction: CorrectJoints(batch, world_.bodies.ForSolver(), settings); break;
-            case Verb::Separations: UpdateJoints(batch, world_.bodies.ForSolver(), settings); break;
+            case Verb::Correction: CorrectJoints(batch, bodies_.ForSolver(), settings); break;
+            case Verb::Separations: UpdateJoints(batch, bodies_.ForSolver(), settings); break;
             case Verb::IntegrateVelocities:
             case Verb::ClearPulls:
             case Verb::StopPulls:
@@ -264,12 +265,12 @@ private:
     ContactSolveSettings ContactSettingsAt(uint8_t substep, float part) const {
         ContactSolveSettings settings = effort_.contacts;
         settings.elapsed = h_ * (static_cast<float>(substep) + part);
-        settings.unconstrained = world_.bodies.unconstrained.data()->row;
+        settings.unconstrained = bodies_.unconstrained.data()->row;
         return settings;
     }
 
-    WorldState& world_;
-    StepState& step_;
+    const MovedBodies& moved_;
+    BodyStore& bodies_;
     SolverLayout& layout_;
     const SolverGroup& group_;
     const Effort& effort_;
@@ -349,42 +350,45 @@ bool PullsJoints(const SolverLayout& layout, const SolverGroup& group) {
 // Runs the verbs that loopOf(effort, whether joints are pulled) names over every group. far: some joints are far apart,
 // and to be pulled.
 template <class LoopOfEffort>
-void RunVerbs(WorldState& world, StepState& step, bool far, LoopOfEffort&& loopOf) {
-    const std::span<const SolverGroup> groups = step.solver.groups;
-    const std::span<BodyState> pseudo = step.scratch.Allocate<BodyState>(far ? world.bodies.states.size() : 0);
+void RunVerbs(const StepContext& step, const MovedBodies& moved, SolverLayout& layout, bool far,
+              const StepWorkers& workers, LoopOfEffort&& loopOf) {
+    const std::span<const SolverGroup> groups = layout.groups;
+    const std::span<BodyState> pseudo = workers.scratch.Allocate<BodyState>(far ? moved.store.states.size() : 0);
     std::ranges::fill(pseudo, BodyState{});
     // Per group: its loop, and whether joints of it are pulled.
-    std::span<bool> pulls = step.scratch.Allocate<bool>(groups.size());
-    for (size_t g = 0; g < groups.size(); ++g) pulls[g] = far && PullsJoints(step.solver, groups[g]);
+    std::span<bool> pulls = workers.scratch.Allocate<bool>(groups.size());
+    for (size_t g = 0; g < groups.size(); ++g) pulls[g] = far && PullsJoints(layout, groups[g]);
     const auto pseudoOf = [&](size_t g) { return pulls[g] ? pseudo.data() : nullptr; };
-    const std::span<const Verb> usual = loopOf(EffortOf(world, step, groups.front()), false);
-    std::span<std::span<const Verb>> loops = step.scratch.Allocate<std::span<const Verb>>(groups.size());
+    const std::span<const Verb> usual = loopOf(EffortOf(step, groups.front()), false);
+    std::span<std::span<const Verb>> loops = workers.scratch.Allocate<std::span<const Verb>>(groups.size());
     for (size_t g = 0; g < groups.size(); ++g)
-        loops[g] = groups[g].IsOwn() || pulls[g] ? loopOf(EffortOf(world, step, groups[g]), pulls[g]) : usual;
+        loops[g] = groups[g].IsOwn() || pulls[g] ? loopOf(EffortOf(step, groups[g]), pulls[g]) : usual;
     for (size_t g = 0; g < groups.size(); ++g) {
         if (!groups[g].isLarge) continue;
-        const std::span<const Phase> phases = PhasesOf(loops[g], step.solver, groups[g], step.scratch);
+        const std::span<const Phase> phases = PhasesOf(loops[g], layout, groups[g], workers.scratch);
         if (phases.empty()) continue;
-        const Effort effort = EffortOf(world, step, groups[g]);
-        StepSolver(world, step, groups[g], effort, pseudoOf(g)).RunTogether(phases);
+        const Effort effort = EffortOf(step, groups[g]);
+        StepSolver(moved, layout, groups[g], effort, pseudoOf(g)).RunTogether(phases, workers);
     }
-    world.jobs->ParallelFor(static_cast<uint32_t>(groups.size()), 1, [&](JobRange range) {
+    workers.jobs.ParallelFor(static_cast<uint32_t>(groups.size()), 1, [&](JobRange range) {
         for (uint32_t g = range.begin; g < range.end; ++g) {
             if (groups[g].isLarge) continue;
-            const Effort effort = EffortOf(world, step, groups[g]);
-            StepSolver(world, step, groups[g], effort, pseudoOf(g)).RunAlone(loops[g], step.findings[range.worker]);
+            const Effort effort = EffortOf(step, groups[g]);
+            StepSolver(moved, layout, groups[g], effort, pseudoOf(g))
+                .RunAlone(loops[g], workers.findings[range.worker]);
         }
     });
 }
 
 }  // namespace
 
-void Solve(WorldState& world, StepState& step) {
-    if (world.coloring.Size() == 0) return;
+void Solve(const StepContext& step, const ColliderStore& colliders, const PairStore& pairs, const JointStore& joints,
+           const ConstraintColoring& coloring, BodyStore& bodies, SolverLayout& layout, const StepWorkers& workers) {
+    if (coloring.Size() == 0) return;
     const bool far =
-        std::ranges::any_of(step.findings, [](const WorkerFindings& findings) { return findings.joints.far; });
-    RunVerbs(world, step, far,
-             [&](const Effort& effort, bool pulls) { return LoopOf(effort.solver, pulls, step.scratch); });
+        std::ranges::any_of(workers.findings, [](const WorkerFindings& findings) { return findings.joints.far; });
+    RunVerbs(step, {step.settings, colliders, pairs, joints, bodies}, layout, far, workers,
+             [&](const Effort& effort, bool pulls) { return LoopOf(effort.solver, pulls, workers.scratch); });
 }
 
 }  // namespace fulcrum

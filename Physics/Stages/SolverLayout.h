@@ -22,14 +22,15 @@ struct SolverGroup {
     bool isLarge = false;                     // solved color by color on all workers
     uint32_t colorsBegin = 0, colorsEnd = 0;  // into SolverLayout::colors
     uint32_t bodiesBegin = 0, bodiesEnd = 0;  // into SolverLayout::bodies
-    SolverSettings effort{0, 0, 0};           // 0: the system's
+    LeastEffort effort{};                     // beyond the system's
+    uint32_t culprit = ~0u;                   // the body that asked for most of it
     // Of islands under load: how long the substeps are for which springs are not too stiff, as a part of the system's:
     // 2^(-(i - 1) / 16). It follows the substeps slowly where they become shorter: springs that were suddenly stiffer
     // would throw apart what softer ones have let sink. 0: those of the substeps.
     uint8_t stiffness = 0, wantedStiffness = 0;
     uint32_t treesBegin = 0, treesEnd = 0;  // into SolverLayout::treesByGroup
     bool HasTrees() const { return treesEnd > treesBegin; }
-    bool IsOwn() const { return HasTrees() || !(effort == SolverSettings{0, 0, 0}); }
+    bool IsOwn() const { return HasTrees() || effort.IsAny(); }
 };
 
 // What a color is solved in: kinds of batches, in this order.

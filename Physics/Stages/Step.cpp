@@ -1,6 +1,7 @@
 #include <Fulcrum/Physics/Stages/Step.h>
 
 #include <Fulcrum/Physics/Stages/ContactLoads.h>
+#include <Fulcrum/Physics/Stages/CrowdContacts.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/World/BodyPairs.h>
 #include <Fulcrum/Physics/World/Colors.h>
@@ -8,6 +9,8 @@
 #include <algorithm>
 #include <chrono>
 #include <iterator>
+#include <tuple>
+#include <utility>
 
 namespace fulcrum {
 
@@ -15,48 +18,84 @@ namespace {
 
 struct Stage {
     const char* name;
-    void (*run)(WorldState& world, StepState& step);
+    void (*run)(WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers);
 };
+
+// The pairs of what moved, or woke.
+void FindPairsOf(WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
+    FindPairs(step, world.joints, world.bodies, world.colliders, world.pairs, world.coloring, state.pairs, state.crowd,
+              workers);
+    ForgetMoved(world.colliders, world.sensors, workers.jobs);
+}
+
+void SettleStoppedIn(WorldState& world, const StepWorkers& workers) {
+    SettleStopped(workers.findings, world.colliders, world.bodies, world.pairs, world.joints, world.coloring);
+}
 
 // The order in which they run, and what each is given.
 constexpr Stage kStages[] = {
     {"UpdateBounds",
-     [](WorldState& world, StepState& step) { UpdateBounds(world, step.dt, step.crowd.dispersing, step.findings); }},
-    {"FindPairs",
-     [](WorldState& world, StepState& step) { FindPairs(world, step.pairs, step.crowd, step.findings, step.scratch); }},
+     [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
+         UpdateBounds(step, world.pairs, world.sensors, world.bodies, world.colliders, state.crowd.dispersing, workers);
+         SettleStoppedIn(world, workers);
+     }},
+    {"FindPairs", FindPairsOf},
     {"Collide",
-     [](WorldState& world, StepState& step) {
-         Collide(world, step.dt, step.pairs, step.crowd, step.findings, step.scratch, step.report);
+     [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
+         Collide(step, world.bodies, world.colliders, world.joints, world.coloring, world.pairs, state.pairs, workers,
+                 state.report);
+         // What wakes searches for pairs of its own at once: what is hit must not lose its support for a step.
+         while (WakeHit(world.pairs, state.pairs.changes, world)) {
+             FindPairsOf(world, state, step, workers);
+             if (state.pairs.activated.empty()) break;
+             CollideActivated(step, world.bodies, world.colliders, world.joints, world.coloring, world.pairs,
+                              state.pairs, workers, state.report);
+         }
+         GatherCrowd(world.bodies, state.crowd, workers.findings);
      }},
     {"Color",
-     [](WorldState& world, StepState& step) {
-         Color(world.bodies.Size(), step.pairs.changes, world.pairs, world.coloring, step.began);
+     [](WorldState& world, StepState& state, const StepContext&, const StepWorkers&) {
+         Color(world.bodies.Size(), state.pairs.changes, world.pairs, world.coloring, state.began);
      }},
     {"RemoveSeamContacts",
-     [](WorldState& world, StepState& step) {
-         RemoveSeamContacts(world.bodies, world.colliders, world.coloring, world.pairs, step.seams, step.scratch);
+     [](WorldState& world, StepState& state, const StepContext&, const StepWorkers& workers) {
+         RemoveSeamContacts(world.bodies, world.colliders, world.coloring, world.pairs, state.seams, workers.scratch);
      }},
     {"BuildIslands",
-     [](WorldState& world, StepState& step) {
-         const float softness = SoftnessOf(world.settings, step.substepDt);
-         NoteWeights(world, step.began, softness);
-         BuildIslands(world.bodies, world.coloring, world.pairs, world.settings, softness, world.joints, step.solver,
-                      step.scratch);
+     [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
+         BuildIslands(step, world.bodies, world.coloring, state.began, world.pairs, world.joints, state.solver,
+                      workers.scratch);
      }},
-    {"Prepare", [](WorldState& world,
-                   StepState& step) { Prepare(world, step, step.solver, step.findings, step.scratch, step.report); }},
-    {"Solve", Solve},
+    {"Prepare",
+     [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
+         Prepare(step, world.bodies, world.coloring, state.crowd, world.pairs, world.joints, state.solver, workers,
+                 state.report);
+     }},
+    {"Solve",
+     [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
+         Solve(step, world.colliders, world.pairs, world.joints, world.coloring, world.bodies, state.solver, workers);
+     }},
     {"Store",
-     [](WorldState& world, StepState& step) {
-         step.sleepCandidates = Store(world, step, step.sweeps, step.broken, step.findings, step.report);
+     [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
+         StoreImpulses(step, world.bodies, state.solver, world.pairs, world.joints, workers);
+         state.sleepCandidates = MoveBodies(step, world.colliders, world.joints, world.coloring, state.crowd,
+                                            world.bodies, state.sweeps, workers, state.report);
+         BreakJoints(world.bodies, world.colliders, world.joints, world.coloring, state.broken);
+         SettleStoppedIn(world, workers);
      }},
-    {"Continuous", [](WorldState& world,
-                      StepState& step) { Continuous(world, step.sweeps, step.findings, step.scratch, step.report); }},
+    {"Continuous",
+     [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
+         Continuous(step, world.pairs, world, state.sweeps, workers, state.report);
+     }},
     {"Sense",
-     [](WorldState& world, StepState& step) {
-         Sense(world, world.sensors, world.colliders, step.sweeps, step.sensing, step.findings, step.report);
+     [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
+         Sense(step, world.bodies, world.joints, state.sweeps, world.sensors, world.colliders, state.sensing, workers,
+               state.report);
      }},
-    {"Sleep", [](WorldState& world, StepState& step) { Sleep(world, step.sleepCandidates, step.scratch); }},
+    {"Sleep",
+     [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
+         Sleep(step, state.sleepCandidates, world, world.pairs, world.outsideFatBounds, workers.scratch);
+     }},
 };
 static_assert(std::size(kStages) == kStageCount, "kStageCount (StepReport.h) is not the number of stages");
 
@@ -69,7 +108,8 @@ double Milliseconds(Clock::time_point from, Clock::time_point to) {
 // Forgets the bodies that were removed since the last step, and all pairs that they were part of.
 void ForgetRemoved(WorldState& world) {
     if (world.removed.empty() && !world.colliders.movedHasEmpty) return;
-    VisitPairsOf(world, world.removed, [&](uint32_t pair) { RemovePair(world.pairs, world.coloring, pair); });
+    VisitPairsOf(world.bodies, world.colliders, world.pairs, world.removed,
+                 [&](uint32_t pair) { RemovePair(world.pairs, world.coloring, pair); });
     std::erase_if(world.colliders.moved, [&](uint32_t i) {
         Collider& collider = world.colliders.colliders[i];
         const bool isGone = !world.colliders.shapes[i].shape || world.bodies.cold[collider.body].removed;
@@ -86,15 +126,15 @@ void ForgetRemoved(WorldState& world) {
     world.removed.clear();
 }
 
-void BeginReport(WorldState& world, StepState& step) {
-    step.report = {};
-    step.report.step = ++world.step;
-    step.broken.clear();
-    step.sleepCandidates = 0;
+void BeginReport(WorldState& world, StepState& state) {
+    state.report = {};
+    state.report.step = ++world.step;
+    state.broken.clear();
+    state.sleepCandidates = 0;
     world.sensors.events.clear();
-    for (WorkerFindings& f : step.findings) {
+    for (WorkerFindings& f : state.findings) {
         f.libccd = {};
-        f.contacts = f.points = f.kept = f.clamped = f.frozen = f.sleepCandidates = 0;
+        f.clamped = f.frozen = f.sleepCandidates = 0;
         f.deepest = 0;
         f.deepestPair = f.firstFrozen = ~0u;
         f.joints = {};
@@ -111,13 +151,38 @@ constexpr float kMostImpulseScale = 2;
 // Of the stiffnessDt of the step before, which a shorter step keeps at least.
 constexpr float kStiffnessDecay = 0.95f;
 
-void SetTimes(StepState& step, double dt, const SolverSettings& solver) {
-    step.dt = static_cast<float>(dt);
-    step.substepDt = step.dt / static_cast<float>(solver.substeps);
-    // Springs as stiff as short steps allow would throw apart what long ones let sink.
-    step.stiffnessDt = std::max(step.substepDt, kStiffnessDecay * step.stiffnessDt);
-    step.impulseScale =
-        step.lastSubstepDt > 0 ? std::min(step.substepDt / step.lastSubstepDt, kMostImpulseScale) : 1.0f;
+StepContext ContextOf(const WorldState& world, const StepState& last, double dt) {
+    const float substepDt = static_cast<float>(dt) / static_cast<float>(world.settings.solver.substeps);
+    return {.settings = world.settings,
+            .listener = world.listener,
+            .number = world.step,
+            .dt = static_cast<float>(dt),
+            .substepDt = substepDt,
+            .impulseScale = last.lastSubstepDt > 0 ? std::min(substepDt / last.lastSubstepDt, kMostImpulseScale) : 1.0f,
+            // Springs as stiff as short steps allow would throw apart what long ones let sink.
+            .stiffnessDt = std::max(substepDt, kStiffnessDecay * last.stiffnessDt),
+            .softness = SoftnessOf(world.settings, substepDt)};
+}
+
+// The greater effort does; of equal ones that of the body of the lower index.
+bool ComesBefore(const IslandEffortReport& a, const IslandEffortReport& b) {
+    return std::tie(b.substeps, b.velocityIterations, b.positionIterations, a.culprit.index) <
+           std::tie(a.substeps, a.velocityIterations, a.positionIterations, b.culprit.index);
+}
+
+// An island with an effort of its own is a group of its own.
+void ReportEfforts(const SolverSettings& settings, const BodyStore& bodies, const SolverLayout& layout,
+                   StepReport& report) {
+    for (const SolverGroup& group : layout.groups) {
+        if (!group.effort.Exceeds(settings)) continue;
+        ++report.islandsWithMoreEffort;
+        IslandEffortReport effort{std::max<int>(group.effort.substeps, settings.substeps),
+                                  std::max<int>(group.effort.velocityIterations, settings.velocityIterations),
+                                  std::max<int>(group.effort.positionIterations, settings.positionIterations),
+                                  bodies.IdOf(group.culprit)};
+        for (IslandEffortReport& listed : report.mostEffort)
+            if (ComesBefore(effort, listed)) std::swap(effort, listed);
+    }
 }
 
 void CountBodies(const WorldState& world, const SolverLayout& solver, StepReport& report) {
@@ -130,34 +195,38 @@ void CountBodies(const WorldState& world, const SolverLayout& solver, StepReport
 }
 
 // Notes how long each took.
-void RunStages(WorldState& world, StepState& step) {
+void RunStages(WorldState& world, StepState& state, const StepContext& step) {
+    const StepWorkers workers{*world.jobs, state.findings, state.scratch};
     const Clock::time_point start = Clock::now();
     Clock::time_point last = start;
     for (size_t i = 0; i < std::size(kStages); ++i) {
-        kStages[i].run(world, step);
+        kStages[i].run(world, state, step, workers);
         const Clock::time_point now = Clock::now();
-        step.report.stageMs[i] = Milliseconds(last, now);
+        state.report.stageMs[i] = Milliseconds(last, now);
         last = now;
     }
-    step.report.totalMs = Milliseconds(start, last);
+    state.report.totalMs = Milliseconds(start, last);
 }
 
 }  // namespace
 
 const char* StageName(int stage) { return kStages[stage].name; }
 
-void RunStep(WorldState& world, StepState& step, double dt) {
+void RunStep(WorldState& world, StepState& state, double dt) {
     ForgetRemoved(world);
-    BeginReport(world, step);
+    BeginReport(world, state);
     if (dt >= kShortestStep) {
-        SetTimes(step, dt, world.settings.solver);
-        step.scratch.Reset();
-        RunStages(world, step);
-        step.lastSubstepDt = step.substepDt;
+        const StepContext step = ContextOf(world, state, dt);
+        state.scratch.Reset();
+        state.sweeps.isKept = world.bodies.continuousCount > 0 || !world.sensors.IsEmpty();
+        RunStages(world, state, step);
+        state.lastSubstepDt = step.substepDt;
+        state.stiffnessDt = step.stiffnessDt;
+        ReportEfforts(world.settings.solver, world.bodies, state.solver, state.report);
         world.outsideFatBounds.MarkStale();
-        for (const WorkerFindings& f : step.findings) step.report.libccd += f.libccd;
+        for (const WorkerFindings& f : state.findings) state.report.libccd += f.libccd;
     }
-    CountBodies(world, step.solver, step.report);
+    CountBodies(world, state.solver, state.report);
 }
 
 }  // namespace fulcrum

@@ -6,6 +6,6 @@
 namespace fulcrum {
 
 // Advances the world by dt seconds, and fills the report. Less than a nanosecond changes nothing.
-void RunStep(WorldState& world, StepState& step, double dt);
+void RunStep(WorldState& world, StepState& state, double dt);
 
 }  // namespace fulcrum

@@ -5,6 +5,7 @@
 #include <Fulcrum/Jobs/ScratchArena.h>
 #include <Fulcrum/Physics/Stages/SensorSearch.h>
 #include <Fulcrum/Physics/Stages/SolverLayout.h>
+#include <Fulcrum/Physics/Stages/StepContext.h>
 #include <Fulcrum/Physics/Stages/SweepStore.h>
 #include <Fulcrum/Physics/StepReport.h>
 #include <Fulcrum/Physics/World/WorldState.h>
@@ -86,11 +87,8 @@ struct CrowdState {
 size_t HeapBytes(const CrowdState& crowd);
 
 struct StepState {
-    float dt = 0;             // s, of the step, > 0
-    float substepDt = 0;      // s
-    float impulseScale = 1;   // dt of its substeps / dt of the last step's, at most 2: scales the warm start
-    float lastSubstepDt = 0;  // s
-    float stiffnessDt = 0;    // s: the longest of the last substeps, for which contacts and joints are not too stiff
+    float lastSubstepDt = 0;  // s, of the last step
+    float stiffnessDt = 0;    // s, of the last step: see StepContext
 
     StepReport report;
     std::vector<WorkerFindings> findings;  // by worker

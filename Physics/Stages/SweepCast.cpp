@@ -50,14 +50,14 @@ struct LazySweep {
     bool hasTurn = true;
 };
 
-LazySweep LazySweepOf(const WorldState& world, const SweepStore& sweeps, uint32_t body) {
+LazySweep LazySweepOf(const StepContext& step, const BodyStore& bodies, const SweepStore& sweeps, uint32_t body) {
     if (body < sweeps.places.size() && sweeps.places[body] != SweepStore::kNone)
         return {sweeps.swept[sweeps.places[body]]};
     LazySweep lazy;
     Sweep& sweep = lazy.sweep;
     sweep.body = body;
-    sweep.start = world.bodies.CenterPoseOf(body);
-    if (body >= sweeps.starts.size() || sweeps.starts[body].step != world.step) return lazy;
+    sweep.start = bodies.CenterPoseOf(body);
+    if (body >= sweeps.starts.size() || sweeps.starts[body].step != step.number) return lazy;
     const Position end = sweep.start.position;
     sweep.start = sweeps.starts[body].pose;
     sweep.displacement = Between(sweep.start.position, end);
@@ -65,82 +65,84 @@ LazySweep LazySweepOf(const WorldState& world, const SweepStore& sweeps, uint32_
     return lazy;
 }
 
-void FindTurn(const WorldState& world, const SweepStore& sweeps, LazySweep& lazy) {
+void FindTurn(const BodyStore& bodies, const SweepStore& sweeps, LazySweep& lazy) {
     if (lazy.hasTurn) return;
     const uint32_t body = lazy.sweep.body;
-    const Quaternion end = world.bodies.RotationOf(body);
-    lazy.sweep.turn = TurnNear(end * lazy.sweep.start.rotation.Conjugate(),
-                               Vector3(world.bodies.AngularVelocityOf(body) * sweeps.dt));
+    const Quaternion end = bodies.RotationOf(body);
+    lazy.sweep.turn =
+        TurnNear(end * lazy.sweep.start.rotation.Conjugate(), Vector3(bodies.AngularVelocityOf(body) * sweeps.dt));
     lazy.hasTurn = true;
 }
 
 class SweepCaster {
 public:
-    SweepCaster(const WorldState& world, const SweepStore& sweeps, const LazySweep& own, WorkerFindings& findings,
+    SweepCaster(const CollisionView& view, const SweepStore& sweeps, const LazySweep& own, WorkerFindings& findings,
                 SweepHit& best)
-        : world_(world),
+        : view_(view),
           sweeps_(sweeps),
           own_(own),
           findings_(findings),
           best_(best),
           isTurning_(own.sweep.turns && !own.sweep.turn.isZero(0)),
-          isCast_(world.bodies.dynamics[own.sweep.body].continuous) {}
+          isCast_(view.bodies.dynamics[own.sweep.body].continuous) {}
 
     bool RunAgainst(uint32_t collider, uint32_t other) {
-        piece_ = &world_.colliders.shapes[collider];
-        local_ = LocalOf(world_, collider);
+        piece_ = &view_.colliders.shapes[collider];
+        local_ = LocalOf(view_.bodies, view_.colliders, collider);
         shape_ = cast_ = static_cast<const ConvexShape*>(piece_->shape);
         motion_ = {sweep_.start, sweep_.displacement, Vector3::Zero()};
-        CastAgainst(other, ShapeCaster(*shape_, motion_, world_.settings.narrowPhase));
+        CastAgainst(other, ShapeCaster(*shape_, motion_, view_.step.settings.narrowPhase));
         return found_;
     }
 
     bool Run() {
-        VisitColliders(world_, sweep_.body, [&](uint32_t i) { CastPiece(i); });
+        VisitColliders(view_.bodies, view_.colliders, sweep_.body, [&](uint32_t i) { CastPiece(i); });
         return found_;
     }
 
 private:
     void CastPiece(uint32_t collider) {
-        piece_ = &world_.colliders.shapes[collider];
-        local_ = LocalOf(world_, collider);
+        piece_ = &view_.colliders.shapes[collider];
+        local_ = LocalOf(view_.bodies, view_.colliders, collider);
         shape_ = static_cast<const ConvexShape*>(piece_->shape);
         motion_ = {sweep_.start, sweep_.displacement, isTurning_ ? sweep_.turn : Vector3(Vector3::Zero())};
         const PlacedConvex placed(*shape_, local_);
         cast_ = piece_->offset ? &placed : shape_;
-        const ShapeCaster whole(*cast_, motion_, world_.settings.narrowPhase);
+        const ShapeCaster whole(*cast_, motion_, view_.step.settings.narrowPhase);
         if (!whole.IsValid()) return;
         const Bounds& about = whole.BoundsAboutCenter();
-        const TreeRay ray(motion_.pose.position - world_.colliders.boundsOrigin + about.Center().cast<double>(),
+        const TreeRay ray(motion_.pose.position - view_.colliders.boundsOrigin + about.Center().cast<double>(),
                           motion_.displacement, about.HalfExtents());
         const auto visit = [&](uint32_t other) { CastAgainst(other, whole); };
-        const uint32_t layers = world_.settings.layerCollides[world_.bodies.dynamics[sweep_.body].layer];
+        const uint32_t layers = view_.step.settings.layerCollides[view_.bodies.dynamics[sweep_.body].layer];
         // Dispersing bodies do not collide with dynamic ones; to visit all that they overlap would cost n^2.
-        if ((layers & world_.colliders.movingLayers) && !world_.bodies.dynamics[sweep_.body].dispersing)
-            world_.colliders.movingTree.CastRay(ray, limit_, visit);
-        if (layers & world_.colliders.staticLayers) world_.colliders.staticTree.CastRay(ray, limit_, visit);
+        if ((layers & view_.colliders.movingLayers) && !view_.bodies.dynamics[sweep_.body].dispersing)
+            view_.colliders.movingTree.CastRay(ray, limit_, visit);
+        if (layers & view_.colliders.staticLayers) view_.colliders.staticTree.CastRay(ray, limit_, visit);
     }
 
     void CastAgainst(uint32_t other, const ShapeCaster& whole, float from = 0) {
-        const uint32_t body = world_.colliders.colliders[other].body;
-        if (!MayCollide(world_, sweep_.body, body) || !ListenerAllows(world_, sweep_.body, body)) return;
-        LazySweep theirs = LazySweepOf(world_, sweeps_, body);
+        const uint32_t body = view_.colliders.colliders[other].body;
+        if (!MayCollide(view_, sweep_.body, body) || !ListenerAllows(view_, sweep_.body, body)) return;
+        LazySweep theirs = LazySweepOf(view_.step, view_.bodies, sweeps_, body);
         const Sweep& theirSweep = theirs.sweep;
-        const ColliderShape& piece = world_.colliders.shapes[other];
+        const ColliderShape& piece = view_.colliders.shapes[other];
         const float start = std::max({sweep_.from, theirSweep.from, from});
         const bool stays = theirSweep.displacement.isZero(0);
-        if (stays || start > theirSweep.from || piece.offset || isTurning_) FindTurn(world_, sweeps_, theirs);
+        if (stays || start > theirSweep.from || piece.offset || isTurning_) FindTurn(view_.bodies, sweeps_, theirs);
         if (stays && theirSweep.turn.isZero(0) && start == sweep_.from) {
             if (!whole.IsValid()) return;
-            CastThrough(whole, motion_, other, theirs, theirSweep.start * LocalOf(world_, other), start, whole);
+            CastThrough(whole, motion_, other, theirs, theirSweep.start * LocalOf(view_.bodies, view_.colliders, other),
+                        start, whole);
             return;
         }
         // Seen from the other, which keeps the rotation that it has at the start.
         Pose at = start > theirSweep.from ? theirSweep.PoseAt(start) : theirSweep.start;
         Vector3 others = theirSweep.DisplacementRate() * (1 - start);
         if (piece.offset) {
-            at = at * LocalOf(world_, other);
-            others = Between(at.position, (theirSweep.PoseAt(1) * LocalOf(world_, other)).position);
+            at = at * LocalOf(view_.bodies, view_.colliders, other);
+            others =
+                Between(at.position, (theirSweep.PoseAt(1) * LocalOf(view_.bodies, view_.colliders, other)).position);
         }
         ShapeMotion relative = motion_;
         const float rest = sweep_.from < 1 ? (1 - start) / (1 - sweep_.from) : 0.0f;
@@ -151,7 +153,7 @@ private:
         if (!BallsMeet(Between(at.position, relative.pose.position), relative.displacement,
                        cast_->OuterRadius() + piece.shape->OuterRadius()))
             return;
-        const ShapeCaster caster(*cast_, relative, world_.settings.narrowPhase);
+        const ShapeCaster caster(*cast_, relative, view_.step.settings.narrowPhase);
         if (caster.IsValid()) CastThrough(caster, relative, other, theirs, at, start, whole);
     }
 
@@ -159,7 +161,7 @@ private:
     void CastThrough(const ShapeCaster& caster, const ShapeMotion& motion, uint32_t other, LazySweep& theirs,
                      const Pose& at, float start, const ShapeCaster& whole) {
         const Sweep& theirSweep = theirs.sweep;
-        const Shape& shape = *world_.colliders.shapes[other].shape;
+        const Shape& shape = *view_.colliders.shapes[other].shape;
         const float length = 1 - start;
         ShapeCastSettings settings;
         settings.tolerance = 0.02f * Thickness(*shape_);
@@ -169,7 +171,7 @@ private:
         bool asksForTurn = false;
         caster.Visit(shape, at, settings, [&](const ShapeHit& found) {
             if (triangles_ > kMostTriangles) return 0.0f;
-            FindTurn(world_, sweeps_, theirs);
+            FindTurn(view_.bodies, sweeps_, theirs);
             SweepHit hit = HitOf(other, theirSweep);
             hit.time = start + found.fraction * length;
             if (ComesBefore(hit)) {
@@ -194,7 +196,7 @@ private:
     bool DoesTurn(const Shape& other) {
         constexpr float kPart = 0.25f;
         if (shape_->Type() == ShapeType::Sphere) return false;
-        FindTurn(world_, sweeps_, own_);
+        FindTurn(view_.bodies, sweeps_, own_);
         return Length(sweep_.turn) * shape_->OuterRadius() > kPart * DepthThatCounts(other);
     }
 
@@ -216,7 +218,7 @@ private:
     void CastTurning(uint32_t other) {
         isTurning_ = true;
         motion_.turn = sweep_.turn;
-        CastAgainst(other, ShapeCaster(*cast_, motion_, world_.settings.narrowPhase));
+        CastAgainst(other, ShapeCaster(*cast_, motion_, view_.step.settings.narrowPhase));
         motion_.turn.setZero();
         isTurning_ = false;
     }
@@ -226,7 +228,7 @@ private:
         hit.body = sweep_.body;
         hit.other = theirSweep.body;
         hit.otherCollider = other;
-        hit.isBlocked = !isCast_ && !world_.bodies.dynamics[theirSweep.body].continuous;
+        hit.isBlocked = !isCast_ && !view_.bodies.dynamics[theirSweep.body].continuous;
         return hit;
     }
 
@@ -235,7 +237,7 @@ private:
     void Follow(const ShapeMotion& motion, const Sweep& theirSweep, uint32_t other, float length, float time,
                 const ShapeCaster& whole) {
         constexpr int kMostSteps = 64, kMostRestarts = 8;
-        const Shape& shape = *world_.colliders.shapes[other].shape;
+        const Shape& shape = *view_.colliders.shapes[other].shape;
         const Vector3 linear = motion.displacement * (1 / length);
         const float depth = DepthThatCounts(shape);
         const float speed = Length(linear) + Length(sweep_.TurnRate()) * cast_->OuterRadius() +
@@ -257,28 +259,28 @@ private:
 
     // Notes how the contact is to behave, once the listener was asked; false: it is to be ignored.
     bool Behaves(SweepHit& hit) const {
-        const PairMaterial material = MaterialOfPair(world_, hit.body, hit.other,
-                                                     *world_.colliders.shapes[hit.otherCollider].shape, hit.material);
+        const PairMaterial material = MaterialOfPair(view_.bodies, hit.body, hit.other,
+                                                     *view_.colliders.shapes[hit.otherCollider].shape, hit.material);
         hit.friction = material.friction;
         hit.restitution = material.restitution;
-        if (!world_.listener || hit.pointCount == 0) return true;
+        if (!view_.step.listener || hit.pointCount == 0) return true;
         // A is dynamic: the other where the body itself is kinematic.
-        const bool swapped = world_.bodies.dynamics[hit.body].motion != MotionType::Dynamic;
-        const uint32_t own = static_cast<uint32_t>(piece_ - world_.colliders.shapes.data());
+        const bool swapped = view_.bodies.dynamics[hit.body].motion != MotionType::Dynamic;
+        const uint32_t own = static_cast<uint32_t>(piece_ - view_.colliders.shapes.data());
         ContactView::Point points[SweepHit::kMaxPoints];
         for (int i = 0; i < hit.pointCount; ++i) points[i] = {hit.center + hit.arms[i].cast<double>(), 0, 0};
-        ContactView view{world_.bodies.IdOf(hit.body),
-                         world_.bodies.IdOf(hit.other),
+        ContactView view{view_.bodies.IdOf(hit.body),
+                         view_.bodies.IdOf(hit.other),
                          hit.normal,
                          std::span<const ContactView::Point>(points, static_cast<size_t>(hit.pointCount)),
-                         ChildOf(world_, own),
-                         ChildOf(world_, hit.otherCollider)};
+                         ChildOf(view_.bodies, view_.colliders, own),
+                         ChildOf(view_.bodies, view_.colliders, hit.otherCollider)};
         if (swapped) {
             std::swap(view.bodyA, view.bodyB);
             std::swap(view.childA, view.childB);
             view.normal = -view.normal;
         }
-        const ContactChange change = AskAbout(*world_.listener, view, hit.friction, hit.restitution);
+        const ContactChange change = AskAbout(*view_.step.listener, view, hit.friction, hit.restitution);
         hit.friction = change.friction;
         hit.restitution = change.restitution;
         hit.surfaceVelocity = swapped ? Vector3(-change.surfaceVelocity) : change.surfaceVelocity;
@@ -290,7 +292,7 @@ private:
     float DepthThatCounts(const Shape& other) const {
         const float depth =
             kDepthFraction * (other.IsConvex() ? std::min(Thickness(*shape_), Thickness(other)) : Thickness(*shape_));
-        return isCast_ ? depth : std::min(depth, 0.5f * world_.settings.speculativeDistance);
+        return isCast_ ? depth : std::min(depth, 0.5f * view_.step.settings.speculativeDistance);
     }
 
     bool ComesBefore(const SweepHit& hit) const {
@@ -317,7 +319,7 @@ private:
     bool Counts(const ShapeMotion& motion, const ShapeHit& found, const Sweep& theirSweep, float length,
                 SweepHit& hit) {
         if (found.isEarly) return found.fraction > 0;
-        const Shape& shape = *world_.colliders.shapes[hit.otherCollider].shape;
+        const Shape& shape = *view_.colliders.shapes[hit.otherCollider].shape;
         float depth = DepthThatCounts(shape);
         const float left = 1 - hit.time;
         const Vector3 linear = length > 0 ? Vector3(motion.displacement * (1 / length)) : Vector3(Vector3::Zero());
@@ -391,7 +393,7 @@ private:
                        float depth, SweepHit& hit) {
         const Pose own{sweep_.PositionAt(time), isTurning_ ? sweep_.RotationAt(time) : motion.pose.rotation},
             others = theirSweep.PoseAt(time);
-        const ColliderShape& piece = world_.colliders.shapes[hit.otherCollider];
+        const ColliderShape& piece = view_.colliders.shapes[hit.otherCollider];
         const Pose a = own * local_;
         Push most;
         hit.pointCount = 0;
@@ -416,7 +418,8 @@ private:
                 hit.otherArms[i] = Between(others.position, point);
             }
         };
-        FindManifolds(*piece.shape, Relative(a, others * LocalOf(world_, hit.otherCollider)), 0.25f * depth, consider);
+        FindManifolds(*piece.shape, Relative(a, others * LocalOf(view_.bodies, view_.colliders, hit.otherCollider)),
+                      0.25f * depth, consider);
         return most;
     }
 
@@ -424,7 +427,7 @@ private:
     void FindManifolds(const Shape& shape, const RelativePose& bInA, float margin, const Consider& consider) {
         CollideSettings settings;
         settings.speculativeDistance = margin;
-        settings.method = world_.settings.narrowPhase;
+        settings.method = view_.step.settings.narrowPhase;
         if (shape.IsSurface()) {
             CollideSurface(*shape_, static_cast<const SurfaceShape&>(shape), bInA, settings, {}, findings_.surface);
             triangles_ += findings_.surface.TriangleCount();
@@ -442,7 +445,7 @@ private:
         consider(manifold, uint8_t{0});
     }
 
-    const WorldState& world_;
+    const CollisionView& view_;
     const SweepStore& sweeps_;
     LazySweep own_;
     const Sweep& sweep_ = own_.sweep;
@@ -469,36 +472,37 @@ float FreeMotion(float innerRadius, float outerRadius) {
     return kFreeFraction * std::max(innerRadius, kLeastThickness * outerRadius);
 }
 
-bool IsCastTurning(const WorldState& world, uint32_t body) {
-    const BodyCold& cold = world.bodies.cold[body];
+bool IsCastTurning(const BodyStore& bodies, uint32_t body) {
+    const BodyCold& cold = bodies.cold[body];
     return cold.continuous == ContinuousCollision::LinearAndAngular || !cold.shape->IsConvex();
 }
 
-Sweep SweepOf(const WorldState& world, const SweepStore& sweeps, uint32_t body) {
-    LazySweep lazy = LazySweepOf(world, sweeps, body);
-    FindTurn(world, sweeps, lazy);
+Sweep SweepOf(const StepContext& step, const BodyStore& bodies, const SweepStore& sweeps, uint32_t body) {
+    LazySweep lazy = LazySweepOf(step, bodies, sweeps, body);
+    FindTurn(bodies, sweeps, lazy);
     return lazy.sweep;
 }
 
-bool CastSweep(const WorldState& world, const SweepStore& sweeps, const Sweep& sweep, WorkerFindings& findings,
+bool CastSweep(const CollisionView& view, const SweepStore& sweeps, const Sweep& sweep, WorkerFindings& findings,
                SweepHit& hit) {
     hit.time = 1;
-    return SweepCaster(world, sweeps, {sweep}, findings, hit).Run();
+    return SweepCaster(view, sweeps, {sweep}, findings, hit).Run();
 }
 
-bool CastPair(const WorldState& world, const SweepStore& sweeps, uint32_t collider, uint32_t other,
+bool CastPair(const CollisionView& view, const SweepStore& sweeps, uint32_t collider, uint32_t other,
               WorkerFindings& findings, SweepHit& hit) {
-    const ColliderShape& piece = world.colliders.shapes[other];
-    const uint32_t body = world.colliders.colliders[collider].body, otherBody = world.colliders.colliders[other].body;
-    if (!piece.offset && sweeps.starts[otherBody].step == world.step) {
+    const ColliderShape& piece = view.colliders.shapes[other];
+    const uint32_t body = view.colliders.colliders[collider].body, otherBody = view.colliders.colliders[other].body;
+    if (!piece.offset && sweeps.starts[otherBody].step == view.step.number) {
         const Position &from = sweeps.starts[body].pose.position, &otherFrom = sweeps.starts[otherBody].pose.position;
         const Vector3 motion =
-            Between(from, world.bodies.CenterOf(body)) - Between(otherFrom, world.bodies.CenterOf(otherBody));
-        const float reach = world.colliders.shapes[collider].shape->OuterRadius() + piece.shape->OuterRadius();
+            Between(from, view.bodies.CenterOf(body)) - Between(otherFrom, view.bodies.CenterOf(otherBody));
+        const float reach = view.colliders.shapes[collider].shape->OuterRadius() + piece.shape->OuterRadius();
         if (!BallsMeet(Between(otherFrom, from), motion, reach)) return false;
     }
     hit.time = 1;
-    return SweepCaster(world, sweeps, LazySweepOf(world, sweeps, body), findings, hit).RunAgainst(collider, other);
+    return SweepCaster(view, sweeps, LazySweepOf(view.step, view.bodies, sweeps, body), findings, hit)
+        .RunAgainst(collider, other);
 }
 
 }  // namespace fulcrum

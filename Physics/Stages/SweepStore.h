@@ -75,6 +75,7 @@ struct SweepStore {
         uint64_t step = 0;  // the one that it is of
     };
 
+    bool isKept = false;        // continuous collision or sensors ask for it in this step
     float dt = 0;               // s, of the step
     std::vector<Start> starts;  // by body: where it was when the step began
     std::vector<SearchBy>
@@ -91,8 +92,8 @@ struct SweepStore {
 };
 
 inline size_t HeapBytes(const SweepStore& store) {
-    const auto& [dt, starts, searchBy, swept, places, ended, endedAt, active, next, hits] = store;
-    return HeapBytes(dt, starts, searchBy, swept, places, ended, endedAt, active, next, hits);
+    const auto& [isKept, dt, starts, searchBy, swept, places, ended, endedAt, active, next, hits] = store;
+    return HeapBytes(isKept, dt, starts, searchBy, swept, places, ended, endedAt, active, next, hits);
 }
 
 }  // namespace fulcrum

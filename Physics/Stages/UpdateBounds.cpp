@@ -20,30 +20,31 @@ constexpr float kAheadFraction = 0.25f;  // of the outer radius
 // tight ones.
 constexpr float kFastPart = 0.5f;
 
-void UpdateColliders(WorldState& world, uint32_t body, float dt, WorkerFindings& findings) {
-    Pose pose = world.bodies.CenterPoseOf(body);
-    pose.position -= world.colliders.boundsOrigin;
+void UpdateColliders(const StepContext& step, uint32_t body, BodyStore& bodies, ColliderStore& colliders,
+                     WorkerFindings& findings) {
+    Pose pose = bodies.CenterPoseOf(body);
+    pose.position -= colliders.boundsOrigin;
     const Matrix3 rotation = ToMatrix(pose.rotation);
-    const Vector3 linear = world.bodies.LinearVelocityOf(body), angular = world.bodies.AngularVelocityOf(body);
-    const Vector3 turn = angular * dt;
+    const Vector3 linear = bodies.LinearVelocityOf(body), angular = bodies.AngularVelocityOf(body);
+    const Vector3 turn = angular * step.dt;
     bool changed = false;
-    VisitColliders(world, body, [&](uint32_t i) {
-        Collider& collider = world.colliders.colliders[i];
-        const ColliderShape& piece = world.colliders.shapes[i];
+    VisitColliders(bodies, colliders, body, [&](uint32_t i) {
+        Collider& collider = colliders.colliders[i];
+        const ColliderShape& piece = colliders.shapes[i];
         Bounds tight;
-        Vector3 motion = linear * dt;
+        Vector3 motion = linear * step.dt;
         if (piece.offset) {
-            const RelativePose local = LocalOf(world, i);
+            const RelativePose local = LocalOf(bodies, colliders, i);
             const Pose at = pose * local;
             tight = TightBounds(*piece.shape, at, ToMatrix(at.rotation), turn);
-            motion += Cross<float>(angular, Vector3(rotation * local.position)) * dt;
+            motion += Cross<float>(angular, Vector3(rotation * local.position)) * step.dt;
         } else {
             tight = TightBounds(*piece.shape, pose, rotation, turn);
         }
-        const float speculative = 0.5f * SpeculativeDistance(world.settings, *piece.shape);
+        const float speculative = 0.5f * SpeculativeDistance(step.settings, *piece.shape);
         if (collider.fat.Contains(BoundsAlong(tight, motion, speculative))) return;
         const float radius = piece.shape->OuterRadius(), distance = Length(motion);
-        const float margin = BoundsMargin(world.settings, *piece.shape);
+        const float margin = BoundsMargin(step.settings, *piece.shape);
         if (distance > kFastPart * margin) {
             collider.fat = BoundsAlong(tight, motion, speculative);
         } else {
@@ -54,7 +55,7 @@ void UpdateColliders(WorldState& world, uint32_t body, float dt, WorkerFindings&
         collider.queued = true;
         changed = true;
     });
-    if (changed) world.bodies.poses[body].boundsChangedIn = static_cast<uint32_t>(world.step);
+    if (changed) bodies.poses[body].boundsChangedIn = static_cast<uint32_t>(step.number);
 }
 
 // The lists of what moves get room by the size of the world, so that no step of a settled one allocates, whichever
@@ -67,21 +68,20 @@ void ReserveLists(ColliderStore& colliders, std::span<WorkerFindings> workers) {
 
 // In the order of their ids, so that the shape of the trees and the lists of sensors repeat from run to run; neither
 // depends on it where most moved and there are no sensors.
-void ListMoved(WorldState& world, std::span<WorkerFindings> workers) {
-    std::vector<uint32_t>& moved = world.colliders.moved;
+void ListMoved(const SensorStore& sensors, ColliderStore& colliders, std::span<WorkerFindings> workers) {
+    std::vector<uint32_t>& moved = colliders.moved;
     const auto first = static_cast<ptrdiff_t>(moved.size());
     for (WorkerFindings& findings : workers) {
         moved.insert(moved.end(), findings.colliders.begin(), findings.colliders.end());
         findings.colliders.clear();
     }
-    if (!world.colliders.MostMoved() || !world.sensors.IsEmpty()) std::sort(moved.begin() + first, moved.end());
+    if (!colliders.MostMoved() || !sensors.IsEmpty()) std::sort(moved.begin() + first, moved.end());
 }
 
-void UpdateTrees(WorldState& world) {
-    ColliderStore& store = world.colliders;
+void UpdateTrees(ColliderStore& store, JobSystem& jobs) {
     const bool together = store.MostMoved();
     if (together) {
-        world.jobs->ParallelFor(store.movingTree.NodeCount(), 32, [&](JobRange range) {
+        jobs.ParallelFor(store.movingTree.NodeCount(), 32, [&](JobRange range) {
             store.movingTree.UpdateLeaves(range.begin, range.end,
                                           [&](uint32_t i) -> const Bounds& { return store.colliders[i].fat; });
         });
@@ -97,17 +97,16 @@ void UpdateTrees(WorldState& world) {
 
 }  // namespace
 
-void UpdateBounds(WorldState& world, float dt, std::vector<DispersingBody>& dispersing,
-                  std::span<WorkerFindings> workers) {
-    ReserveLists(world.colliders, workers);
-    PushDispersing(world, dispersing, dt);
-    BodyStore& bodies = world.bodies;
-    const Vector3 gravity = world.settings.gravity;
-    world.jobs->ParallelFor(static_cast<uint32_t>(bodies.awake.size()), 64, [&](JobRange range) {
-        WorkerFindings& findings = workers[range.worker];
+void UpdateBounds(const StepContext& step, const PairStore& pairs, const SensorStore& sensors, BodyStore& bodies,
+                  ColliderStore& colliders, std::vector<DispersingBody>& dispersing, const StepWorkers& workers) {
+    ReserveLists(colliders, workers.findings);
+    PushDispersing(step, colliders, pairs, bodies, dispersing, workers.jobs);
+    const Vector3 gravity = step.settings.gravity;
+    workers.jobs.ParallelFor(static_cast<uint32_t>(bodies.awake.size()), 64, [&](JobRange range) {
+        WorkerFindings& findings = workers.findings[range.worker];
         for (uint32_t i = range.begin; i < range.end; ++i) {
             const uint32_t body = bodies.awake[i];
-            AdmitBody(world, body, findings);
+            AdmitBody(bodies, colliders, body, findings);
             const BodyDynamics& dynamics = bodies.dynamics[body];
             if (dynamics.motion == MotionType::Dynamic) {
                 if (!dynamics.spherical) bodies.UpdateInertia(body);
@@ -116,12 +115,11 @@ void UpdateBounds(WorldState& world, float dt, std::vector<DispersingBody>& disp
                 if (dynamics.frozen) acceleration.setZero();
                 for (int k = 0; k < 3; ++k) bodies.poses[body].acceleration[k] = acceleration[k];
             }
-            UpdateColliders(world, body, dt, findings);
+            UpdateColliders(step, body, bodies, colliders, findings);
         }
     });
-    SettleStopped(world, workers);
-    ListMoved(world, workers);
-    UpdateTrees(world);
+    ListMoved(sensors, colliders, workers.findings);
+    UpdateTrees(colliders, workers.jobs);
 }
 
 }  // namespace fulcrum

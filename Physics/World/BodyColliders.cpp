@@ -48,7 +48,7 @@ void Insert(WorldState& world, uint32_t body, uint32_t index) {
     collider.body = body;
     collider.moving = world.bodies.dynamics[body].motion != MotionType::Static;
     collider.sensor = world.bodies.cold[body].isSensor;
-    SetFatBounds(world, index);
+    SetFatBounds(world.settings, world.bodies, world.colliders, index);
     world.colliders.TreeOf(collider).Insert(index, collider.fat);
 }
 
@@ -148,7 +148,7 @@ void UpdateChildCollider(WorldState& world, uint32_t body, uint32_t child) {
     }
     SetPiece(world, index, *cold.children->compound, is);
     if (was) {
-        SetFatBounds(world, index);
+        SetFatBounds(world.settings, world.bodies, world.colliders, index);
         const Collider& collider = world.colliders.colliders[index];
         world.colliders.TreeOf(collider).Update(index, collider.fat);
         world.outsideFatBounds.Forget(index);

@@ -254,6 +254,7 @@ public:
     // Of a body whose principal axes in the world are these.
     BodyMass MassAlong(uint32_t index, const Matrix3& axes) const;
     SolverBodies ForSolver() { return {states.data(), masses.data(), poses.data()}; }
+    ConstSolverBodies ForSolver() const { return {states.data(), masses.data(), poses.data()}; }
     friend size_t HeapBytes(const BodyStore& store);
 
 private:

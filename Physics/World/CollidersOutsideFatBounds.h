@@ -11,13 +11,14 @@
 
 namespace fulcrum {
 
-struct WorldState;
+class BodyStore;
+class ColliderStore;
 
 class CollidersOutsideFatBounds {
 public:
     void MarkStale() { isFresh_.store(false, std::memory_order_relaxed); }  // after a step
     void Forget(uint32_t collider);                                         // it was removed, or its bounds set anew
-    void Refresh(const WorldState& world);                                  // before a query
+    void Refresh(const BodyStore& bodies, const ColliderStore& colliders);  // before a query
 
     bool IsEmpty() const { return tree_.Size() == 0; }
     bool Contains(uint32_t collider) const { return tree_.Contains(collider); }

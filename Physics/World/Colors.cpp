@@ -40,36 +40,36 @@ void RemovePair(PairStore& pairs, ConstraintColoring& coloring, uint32_t index) 
     }
 }
 
-bool MovesAwake(const WorldState& world, uint32_t index) {
-    const Joint& joint = world.joints.joints[index];
-    const auto isAwake = [&](int side) { return !joint.still[side] && world.bodies.dynamics[joint.body[side]].awake; };
+bool MovesAwake(const BodyStore& bodies, const JointStore& joints, uint32_t index) {
+    const Joint& joint = joints.joints[index];
+    const auto isAwake = [&](int side) { return !joint.still[side] && bodies.dynamics[joint.body[side]].awake; };
     return isAwake(0) || isAwake(1);
 }
 
-void ColorJoint(WorldState& world, uint32_t index) {
-    Joint& joint = world.joints.joints[index];
-    if (joint.color.color != 0xFF || !joint.enabled || !MovesAwake(world, index)) return;
-    world.coloring.ReserveBodies(world.bodies.Size());
+void ColorJoint(const BodyStore& bodies, JointStore& joints, ConstraintColoring& coloring, uint32_t index) {
+    Joint& joint = joints.joints[index];
+    if (joint.color.color != 0xFF || !joint.enabled || !MovesAwake(bodies, joints, index)) return;
+    coloring.ReserveBodies(bodies.Size());
     const bool late = joint.priority == JointPriority::High || joint.still[0] || joint.still[1];
-    joint.color = world.coloring.Add(Coloring::Kind::Joint, EntryOf(joint, index), late);
+    joint.color = coloring.Add(Coloring::Kind::Joint, EntryOf(joint, index), late);
 }
 
-void UncolorJoint(WorldState& world, uint32_t index) {
-    Joint& joint = world.joints.joints[index];
+void UncolorJoint(JointStore& joints, ConstraintColoring& coloring, uint32_t index) {
+    Joint& joint = joints.joints[index];
     if (joint.color.color == 0xFF) return;
-    const uint32_t moved = world.coloring.Remove(Coloring::Kind::Joint, EntryOf(joint, index), joint.color);
-    world.joints.joints[moved].color.slot = joint.color.slot;
+    const uint32_t moved = coloring.Remove(Coloring::Kind::Joint, EntryOf(joint, index), joint.color);
+    joints.joints[moved].color.slot = joint.color.slot;
     joint.color = {};
 }
 
-void RecolorJointsOf(WorldState& world, uint32_t body) {
-    world.joints.VisitOf(body, [&](uint32_t index) {
-        Joint& joint = world.joints.joints[index];
+void RecolorJointsOf(const BodyStore& bodies, JointStore& joints, ConstraintColoring& coloring, uint32_t body) {
+    joints.VisitOf(body, [&](uint32_t index) {
+        Joint& joint = joints.joints[index];
         bool& still = joint.still[joint.SideOf(body)];
-        if (still == !world.bodies.CanMove(body)) return;
-        UncolorJoint(world, index);
+        if (still == !bodies.CanMove(body)) return;
+        UncolorJoint(joints, coloring, index);
         still = !still;
-        ColorJoint(world, index);
+        ColorJoint(bodies, joints, coloring, index);
     });
 }
 

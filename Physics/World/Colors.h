@@ -2,7 +2,9 @@
 // joints as they come and go, wake and sleep. One thread.
 #pragma once
 
-#include <Fulcrum/Physics/World/WorldState.h>
+#include <Fulcrum/Physics/World/BodyStore.h>
+#include <Fulcrum/Physics/World/JointStore.h>
+#include <Fulcrum/Physics/World/PairStore.h>
 
 namespace fulcrum {
 
@@ -13,11 +15,11 @@ void UncolorPair(PairStore& pairs, ConstraintColoring& coloring, uint32_t pair);
 void RemovePair(PairStore& pairs, ConstraintColoring& coloring, uint32_t pair);
 
 // Whether a joint has a body that is awake and can move.
-bool MovesAwake(const WorldState& world, uint32_t joint);
+bool MovesAwake(const BodyStore& bodies, const JointStore& joints, uint32_t joint);
 // As for pairs; only a joint that is enabled and moves awake gets a color.
-void ColorJoint(WorldState& world, uint32_t joint);
-void UncolorJoint(WorldState& world, uint32_t joint);
+void ColorJoint(const BodyStore& bodies, JointStore& joints, ConstraintColoring& coloring, uint32_t joint);
+void UncolorJoint(JointStore& joints, ConstraintColoring& coloring, uint32_t joint);
 // Has the joints of a body see whether it can move: after it was frozen, or revived.
-void RecolorJointsOf(WorldState& world, uint32_t body);
+void RecolorJointsOf(const BodyStore& bodies, JointStore& joints, ConstraintColoring& coloring, uint32_t body);
 
 }  // namespace fulcrum

@@ -31,18 +31,18 @@ Bounds TightBounds(const Shape& shape, const Pose& pose, const Matrix3& rotation
     return RoundedOutwards(pose.position + lower.cast<double>(), pose.position + upper.cast<double>());
 }
 
-Bounds TightBoundsOf(const WorldState& world, uint32_t index) {
-    const ColliderShape& piece = world.colliders.shapes[index];
-    Pose body = world.bodies.CenterPoseOf(world.colliders.colliders[index].body);
-    body.position -= world.colliders.boundsOrigin;
-    const Pose pose = body * LocalOf(world, index);
+Bounds TightBoundsOf(const BodyStore& bodies, const ColliderStore& colliders, uint32_t index) {
+    const ColliderShape& piece = colliders.shapes[index];
+    Pose body = bodies.CenterPoseOf(colliders.colliders[index].body);
+    body.position -= colliders.boundsOrigin;
+    const Pose pose = body * LocalOf(bodies, colliders, index);
     return TightBounds(*piece.shape, pose, ToMatrix(pose.rotation), Vector3::Zero());
 }
 
-void SetFatBounds(WorldState& world, uint32_t index) {
-    const Shape& shape = *world.colliders.shapes[index].shape;
-    const float margin = 0.5f * SpeculativeDistance(world.settings, shape) + BoundsMargin(world.settings, shape);
-    world.colliders.colliders[index].fat = BoundsAlong(TightBoundsOf(world, index), Vector3::Zero(), margin);
+void SetFatBounds(const SystemSettings& settings, const BodyStore& bodies, ColliderStore& colliders, uint32_t index) {
+    const Shape& shape = *colliders.shapes[index].shape;
+    const float margin = 0.5f * SpeculativeDistance(settings, shape) + BoundsMargin(settings, shape);
+    colliders.colliders[index].fat = BoundsAlong(TightBoundsOf(bodies, colliders, index), Vector3::Zero(), margin);
 }
 
 }  // namespace fulcrum

@@ -8,10 +8,10 @@
 namespace fulcrum {
 
 // World bounds of a collider where its body is now, without any margin.
-Bounds TightBoundsOf(const WorldState& world, uint32_t collider);
+Bounds TightBoundsOf(const BodyStore& bodies, const ColliderStore& colliders, uint32_t collider);
 
 // Fat bounds of a collider at its body's pose, at rest.
-void SetFatBounds(WorldState& world, uint32_t collider);
+void SetFatBounds(const SystemSettings& settings, const BodyStore& bodies, ColliderStore& colliders, uint32_t collider);
 
 // Bounds of a shape at a pose about the origin of bounds while it turns by a rotation vector in rad, without any
 // margin. A hull as round as a ball is bounded best by its outer sphere.

@@ -19,8 +19,8 @@ bool LayersAllow(const WorldState& world, const Pair& pair) {
 }
 
 bool IsForbidden(const WorldState& world, const Pair& pair) {
-    return !LayersAllow(world, pair) || !FiltersAllow(world, pair.bodyA, pair.bodyB) ||
-           !ListenerAllows(world, pair.bodyA, pair.bodyB);
+    return !LayersAllow(world, pair) || !FiltersAllow(world.bodies, pair.bodyA, pair.bodyB) ||
+           !ListenerAllows(world.listener, world.bodies, pair.bodyA, pair.bodyB);
 }
 
 void RemoveIfForbidden(WorldState& world, uint32_t index) {
@@ -38,23 +38,24 @@ void RemoveAllForbiddenPairs(WorldState& world) {
 
 }  // namespace
 
-bool FiltersAllow(const WorldState& world, uint32_t bodyA, uint32_t bodyB) {
-    const BodyFilter& a = world.bodies.FilterOf(std::min(bodyA, bodyB));
-    const BodyFilter& b = world.bodies.FilterOf(std::max(bodyA, bodyB));
+bool FiltersAllow(const BodyStore& bodies, uint32_t bodyA, uint32_t bodyB) {
+    const BodyFilter& a = bodies.FilterOf(std::min(bodyA, bodyB));
+    const BodyFilter& b = bodies.FilterOf(std::max(bodyA, bodyB));
     if ((a.category & b.mask) == 0 || (b.category & a.mask) == 0) return false;
     const GroupFilter* filter = a.group.filter.get();
     return !filter || filter != b.group.filter.get() ||
            filter->Collides({a.group.group, a.group.subGroup}, {b.group.group, b.group.subGroup});
 }
 
-bool ListenerAllows(const WorldState& world, uint32_t bodyA, uint32_t bodyB) {
-    if (!world.listener) return true;
+bool ListenerAllows(const ContactListener* listener, const BodyStore& bodies, uint32_t bodyA, uint32_t bodyB) {
+    if (!listener) return true;
     const auto [low, high] = std::minmax(bodyA, bodyB);
-    return world.listener->ShouldCollide(world.bodies.IdOf(low), world.bodies.IdOf(high));
+    return listener->ShouldCollide(bodies.IdOf(low), bodies.IdOf(high));
 }
 
 void RemoveForbiddenPairs(WorldState& world, uint32_t body) {
-    VisitPairsOf(world, {&body, 1}, [&](uint32_t pair) { RemoveIfForbidden(world, pair); });
+    VisitPairsOf(world.bodies, world.colliders, world.pairs, {&body, 1},
+                 [&](uint32_t pair) { RemoveIfForbidden(world, pair); });
 }
 
 void RefilterLayers(WorldState& world, const std::array<uint32_t, 32>& before) {
@@ -63,7 +64,7 @@ void RefilterLayers(WorldState& world, const std::array<uint32_t, 32>& before) {
         const BodyDynamics& d = world.bodies.dynamics[body];
         if (!world.bodies.cold[body].exists || world.settings.layerCollides[d.layer] == before[d.layer]) continue;
         WakeBody(world, body);
-        if (d.awake) RequeueColliders(world, body);
+        if (d.awake) RequeueColliders(world.bodies, world.colliders, body);
     }
 }
 
@@ -74,11 +75,11 @@ void ChangeListener(WorldState& world, const ContactListener* listener) {
     // What the last one said of contacts, and of bodies that therefore have no pair.
     for (uint32_t i = 0; i < world.pairs.pairs.size(); ++i) {
         if (!world.pairs.pairs[i].exists) continue;
-        CombineMaterials(world, i);
+        CombineMaterials(world.bodies, world.pairs, i);
         world.pairs.records[i].SetSurfaceVelocity(Vector3::Zero(), Vector3::Zero());
         world.pairs.records[i].Set(ContactRecord::kMassOverride, false);
     }
-    for (uint32_t body : world.bodies.awake) RequeueColliders(world, body);
+    for (uint32_t body : world.bodies.awake) RequeueColliders(world.bodies, world.colliders, body);
 }
 
 }  // namespace fulcrum

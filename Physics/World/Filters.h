@@ -10,27 +10,29 @@
 namespace fulcrum {
 
 // Whether category, mask and group of two bodies let them collide.
-bool FiltersAllow(const WorldState& world, uint32_t bodyA, uint32_t bodyB);
-// Whether the contact listener, if any, lets them.
-bool ListenerAllows(const WorldState& world, uint32_t bodyA, uint32_t bodyB);
+bool FiltersAllow(const BodyStore& bodies, uint32_t bodyA, uint32_t bodyB);
+// Whether the contact listener, or null, lets them.
+bool ListenerAllows(const ContactListener* listener, const BodyStore& bodies, uint32_t bodyA, uint32_t bodyB);
 
 // Whether two bodies are to collide at all,
-inline bool CanCollide(const WorldState& world, uint32_t bodyA, uint32_t bodyB) {
-    const BodyDynamics& a = world.bodies.dynamics[bodyA];
-    const BodyDynamics& b = world.bodies.dynamics[bodyB];
+inline bool CanCollide(const SystemSettings& settings, const BodyStore& bodies, const JointStore& joints,
+                       uint32_t bodyA, uint32_t bodyB) {
+    const BodyDynamics& a = bodies.dynamics[bodyA];
+    const BodyDynamics& b = bodies.dynamics[bodyB];
     if (bodyA == bodyB) return false;
     if (a.motion != MotionType::Dynamic && b.motion != MotionType::Dynamic) return false;
-    if (!(world.settings.layerCollides[a.layer] >> b.layer & 1u)) return false;
-    if ((a.filtered || b.filtered) && !FiltersAllow(world, bodyA, bodyB)) return false;
-    return !world.joints.ForbidsContact(bodyA, bodyB);
+    if (!(settings.layerCollides[a.layer] >> b.layer & 1u)) return false;
+    if ((a.filtered || b.filtered) && !FiltersAllow(bodies, bodyA, bodyB)) return false;
+    return !joints.ForbidsContact(bodyA, bodyB);
 }
 // and one of them is awake, and neither disperses while the other is dynamic (Stages/Crowd.h).
-inline bool MayCollide(const WorldState& world, uint32_t bodyA, uint32_t bodyB) {
-    const BodyDynamics& a = world.bodies.dynamics[bodyA];
-    const BodyDynamics& b = world.bodies.dynamics[bodyB];
+inline bool MayCollide(const SystemSettings& settings, const BodyStore& bodies, const JointStore& joints,
+                       uint32_t bodyA, uint32_t bodyB) {
+    const BodyDynamics& a = bodies.dynamics[bodyA];
+    const BodyDynamics& b = bodies.dynamics[bodyB];
     if ((a.dispersing && b.motion == MotionType::Dynamic) || (b.dispersing && a.motion == MotionType::Dynamic))
         return false;
-    return (a.awake || b.awake) && CanCollide(world, bodyA, bodyB);
+    return (a.awake || b.awake) && CanCollide(settings, bodies, joints, bodyA, bodyB);
 }
 
 // Removes the pairs of a body that its filters no longer allow; their bodies wake.

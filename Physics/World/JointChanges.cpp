@@ -29,12 +29,12 @@ void EnableJoint(WorldState& world, uint32_t index, bool enabled) {
     if (enabled) {
         if (!joint.collideConnected) DropPairs(world, joint);
         WakeBodiesOf(world, joint);
-        ColorJoint(world, index);
+        ColorJoint(world.bodies, world.joints, world.coloring, index);
     } else {
         WakeBodiesOf(world, joint);
-        UncolorJoint(world, index);
+        UncolorJoint(world.joints, world.coloring, index);
         world.joints.Forget(index);
-        for (uint32_t body : joint.body) RequeueColliders(world, body);
+        for (uint32_t body : joint.body) RequeueColliders(world.bodies, world.colliders, body);
     }
 }
 

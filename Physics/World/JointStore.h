@@ -9,10 +9,37 @@
 #include <Fulcrum/Physics/JointSettings.h>
 #include <Fulcrum/Physics/World/IndexSet.h>
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
 namespace fulcrum {
+
+// Numbers of substeps and passes with which an island is to be solved at least; 0: the system's do.
+struct LeastEffort {
+    uint8_t substeps = 0, velocityIterations = 0, positionIterations = 0;
+
+    bool IsAny() const { return substeps > 0 || velocityIterations > 0 || positionIterations > 0; }
+    // Whether it is more than the settings have.
+    bool Exceeds(const SolverSettings& settings) const {
+        return substeps > settings.substeps || velocityIterations > settings.velocityIterations ||
+               positionIterations > settings.positionIterations;
+    }
+    // Sets each number to that of the other where it is less. Returns whether one was.
+    bool Raise(const LeastEffort& to) {
+        const LeastEffort before = *this;
+        substeps = std::max(substeps, to.substeps);
+        velocityIterations = std::max(velocityIterations, to.velocityIterations);
+        positionIterations = std::max(positionIterations, to.positionIterations);
+        return *this != before;
+    }
+    friend bool operator==(const LeastEffort&, const LeastEffort&) = default;
+};
+// Of settings from 0 to 255; how errors are corrected is the same for all islands.
+inline LeastEffort ToLeastEffort(const SolverSettings& settings) {
+    return {static_cast<uint8_t>(settings.substeps), static_cast<uint8_t>(settings.velocityIterations),
+            static_cast<uint8_t>(settings.positionIterations)};
+}
 
 struct Joint {
     uint32_t body[2] = {0, 0};      // A and B
@@ -29,13 +56,10 @@ struct Joint {
     bool still[2] = {false, false};  // the body is immovable: static, kinematic or frozen
     JointPriority priority = JointPriority::Normal;
     float breakForce = 0, breakTorque = 0;
-    SolverSettings effort{0, 0, 0};  // 0: the system's
+    LeastEffort effort;  // of its island
     MassOverride massOverride;
     uint64_t userData = 0;
 
-    bool HasOwnEffort() const {
-        return effort.substeps > 0 || effort.velocityIterations > 0 || effort.positionIterations > 0;
-    }
     void SetMassOverride(const MassOverride& o) {
         massOverride = o;
         overridesMass = !o.IsNone();

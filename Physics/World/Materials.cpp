@@ -22,10 +22,10 @@ float Combine(CombineRule rule, float a, float b) {
 
 }  // namespace
 
-PairMaterial MaterialOfPair(const WorldState& world, uint32_t bodyA, uint32_t bodyB, const Shape& shapeB,
+PairMaterial MaterialOfPair(const BodyStore& bodies, uint32_t bodyA, uint32_t bodyB, const Shape& shapeB,
                             uint8_t material) {
-    const Material& a = world.bodies.cold[bodyA].material;
-    const Material& b = world.bodies.cold[bodyB].material;
+    const Material& a = bodies.cold[bodyA].material;
+    const Material& b = bodies.cold[bodyB].material;
     float friction = b.friction, restitution = b.restitution;
     if (shapeB.IsSurface()) {
         const std::span<const SurfaceMaterial> palette = static_cast<const SurfaceShape&>(shapeB).Materials();
@@ -38,11 +38,11 @@ PairMaterial MaterialOfPair(const WorldState& world, uint32_t bodyA, uint32_t bo
             Combine(std::max(a.restitutionRule, b.restitutionRule), a.restitution, restitution)};
 }
 
-void CombineMaterials(WorldState& world, uint32_t index) {
-    const Pair& pair = world.pairs.pairs[index];
-    const PairMaterial material = MaterialOfPair(world, pair.bodyA, pair.bodyB, *pair.shapeB, pair.material);
-    world.pairs.records[index].friction = material.friction;
-    world.pairs.records[index].restitution = material.restitution;
+void CombineMaterials(const BodyStore& bodies, PairStore& pairs, uint32_t index) {
+    const Pair& pair = pairs.pairs[index];
+    const PairMaterial material = MaterialOfPair(bodies, pair.bodyA, pair.bodyB, *pair.shapeB, pair.material);
+    pairs.records[index].friction = material.friction;
+    pairs.records[index].restitution = material.restitution;
 }
 
 }  // namespace fulcrum

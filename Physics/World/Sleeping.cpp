@@ -12,69 +12,72 @@ namespace {
 
 // What falls asleep outside its fat bounds, because it was fast or the step long, would not be found until it
 // wakes.
-void RefitFatBounds(WorldState& world, uint32_t body) {
-    VisitColliders(world, body, [&](uint32_t i) {
-        Collider& collider = world.colliders.colliders[i];
-        if (collider.fat.Contains(TightBoundsOf(world, i))) return;
-        SetFatBounds(world, i);
-        world.colliders.TreeOf(collider).Update(i, collider.fat);
-        world.outsideFatBounds.Forget(i);
+void RefitFatBounds(const SleepStores& stores, CollidersOutsideFatBounds& outsideFatBounds, uint32_t body) {
+    ColliderStore& colliders = stores.colliders;
+    VisitColliders(stores.bodies, colliders, body, [&](uint32_t i) {
+        Collider& collider = colliders.colliders[i];
+        if (collider.fat.Contains(TightBoundsOf(stores.bodies, colliders, i))) return;
+        SetFatBounds(stores.settings, stores.bodies, colliders, i);
+        colliders.TreeOf(collider).Update(i, collider.fat);
+        outsideFatBounds.Forget(i);
         collider.previous = {};
-        world.colliders.Queue(i);
+        colliders.Queue(i);
     });
 }
 
 }  // namespace
 
-void FindAwakeIslands(const WorldState& world, std::span<uint32_t> roots) {
+void FindAwakeIslands(const BodyStore& bodies, const PairStore& pairs, const ConstraintColoring& coloring,
+                      std::span<uint32_t> roots) {
     UnionFind sets(roots);
-    world.pairs.active.Visit([&](uint32_t index) {
-        const Pair& pair = world.pairs.pairs[index];
+    pairs.active.Visit([&](uint32_t index) {
+        const Pair& pair = pairs.pairs[index];
         if (!pair.touching || pair.fixedB) return;
-        sets.Unite(world.bodies.cold[pair.bodyA].awakePlace, world.bodies.cold[pair.bodyB].awakePlace);
+        sets.Unite(bodies.cold[pair.bodyA].awakePlace, bodies.cold[pair.bodyB].awakePlace);
     });
     for (int c = 0; c <= ConstraintColoring::kColors; ++c)
-        for (const ConstraintColoring::Entry& entry : world.coloring.At(c).Of(ConstraintColoring::Kind::Joint))
+        for (const ConstraintColoring::Entry& entry : coloring.At(c).Of(ConstraintColoring::Kind::Joint))
             if (!entry.stillA && !entry.stillB)
-                sets.Unite(world.bodies.cold[entry.bodyA].awakePlace, world.bodies.cold[entry.bodyB].awakePlace);
+                sets.Unite(bodies.cold[entry.bodyA].awakePlace, bodies.cold[entry.bodyB].awakePlace);
     for (uint32_t i = 0; i < roots.size(); ++i) roots[i] = sets.Find(i);
 }
 
-void PutToSleep(WorldState& world, std::span<const uint32_t> bodies) {
-    const uint32_t island = world.sleeping.Add(bodies);
+void PutToSleep(const SleepStores& stores, CollidersOutsideFatBounds& outsideFatBounds,
+                std::span<const uint32_t> bodies) {
+    const uint32_t island = stores.sleeping.Add(bodies);
     for (uint32_t body : bodies) {
-        world.bodies.cold[body].sleepingIsland = island;
-        world.bodies.SetVelocity(body, Vector3::Zero(), Vector3::Zero());
-        world.bodies.ForgetForces(body);
-        world.bodies.MarkAsleep(body);
-        RefitFatBounds(world, body);
+        stores.bodies.cold[body].sleepingIsland = island;
+        stores.bodies.SetVelocity(body, Vector3::Zero(), Vector3::Zero());
+        stores.bodies.ForgetForces(body);
+        stores.bodies.MarkAsleep(body);
+        RefitFatBounds(stores, outsideFatBounds, body);
     }
     for (uint32_t body : bodies)
-        world.joints.VisitOf(body, [&](uint32_t joint) {
-            if (!MovesAwake(world, joint)) UncolorJoint(world, joint);
+        stores.joints.VisitOf(body, [&](uint32_t joint) {
+            if (!MovesAwake(stores.bodies, stores.joints, joint)) UncolorJoint(stores.joints, stores.coloring, joint);
         });
 }
 
-void RestPairs(WorldState& world) {
-    const auto awake = [&](uint32_t body) { return world.bodies.dynamics[body].awake; };
-    world.pairs.active.Visit([&](uint32_t index) {
-        Pair& pair = world.pairs.pairs[index];
+void RestPairs(const BodyStore& bodies, PairStore& pairs, ConstraintColoring& coloring) {
+    const auto awake = [&](uint32_t body) { return bodies.dynamics[body].awake; };
+    pairs.active.Visit([&](uint32_t index) {
+        Pair& pair = pairs.pairs[index];
         if (awake(pair.bodyA) || awake(pair.bodyB)) return;
-        UncolorPair(world.pairs, world.coloring, index);
+        UncolorPair(pairs, coloring, index);
         pair.touching = false;
-        world.pairs.active.Erase(index);
+        pairs.active.Erase(index);
     });
 }
 
 void SleepIslandOf(WorldState& world, uint32_t body) {
     std::vector<uint32_t> roots(world.bodies.awake.size());
-    FindAwakeIslands(world, roots);
+    FindAwakeIslands(world.bodies, world.pairs, world.coloring, roots);
     const uint32_t root = roots[world.bodies.cold[body].awakePlace];
     std::vector<uint32_t> members;
     for (size_t i = 0; i < roots.size(); ++i)
         if (roots[i] == root) members.push_back(world.bodies.awake[i]);
-    PutToSleep(world, members);
-    RestPairs(world);
+    PutToSleep(world, world.outsideFatBounds, members);
+    RestPairs(world.bodies, world.pairs, world.coloring);
 }
 
 }  // namespace fulcrum

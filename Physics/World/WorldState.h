@@ -45,25 +45,29 @@ size_t HeapBytes(const WorldState& world);
 
 // Calls visit(collider) for the pieces of a body.
 template <class Visitor>
-void VisitColliders(const WorldState& world, uint32_t body, Visitor&& visit) {
-    const BodyCold& cold = world.bodies.cold[body];
+void VisitColliders(const BodyStore& bodies, const ColliderStore& colliders, uint32_t body, Visitor&& visit) {
+    const BodyCold& cold = bodies.cold[body];
     const auto visitRun = [&](uint32_t first, uint32_t count) {
         for (uint32_t i = first; i < first + count; ++i)
-            if (world.colliders.shapes[i].shape) visit(i);
+            if (colliders.shapes[i].shape) visit(i);
     };
     visitRun(cold.firstCollider, cold.colliderCount);
-    for (uint32_t run = cold.MoreColliders(); run != ColliderStore::kNone; run = world.colliders.runs[run].next)
-        visitRun(world.colliders.runs[run].first, world.colliders.runs[run].count);
+    for (uint32_t run = cold.MoreColliders(); run != ColliderStore::kNone; run = colliders.runs[run].next)
+        visitRun(colliders.runs[run].first, colliders.runs[run].count);
+}
+template <class Visitor>
+void VisitColliders(const WorldState& world, uint32_t body, Visitor&& visit) {
+    VisitColliders(world.bodies, world.colliders, body, visit);
 }
 
 // Which piece of its body a collider is.
-inline uint32_t ChildOf(const WorldState& world, uint32_t collider) {
-    const BodyCold& cold = world.bodies.cold[world.colliders.colliders[collider].body];
+inline uint32_t ChildOf(const BodyStore& bodies, const ColliderStore& colliders, uint32_t collider) {
+    const BodyCold& cold = bodies.cold[colliders.colliders[collider].body];
     uint32_t before = 0;
     ColliderRun run{cold.firstCollider, cold.colliderCount, cold.MoreColliders()};
     while (collider - run.first >= run.count) {
         before += run.count;
-        run = world.colliders.runs[run.next];
+        run = colliders.runs[run.next];
     }
     return before + (collider - run.first);
 }
@@ -75,26 +79,23 @@ inline RelativePose LocalOf(const BodyStore& bodies, const ColliderStore& collid
     return {piece.local.position + bodies.cold[colliders.colliders[collider].body].children->origin,
             piece.local.rotation};
 }
-inline RelativePose LocalOf(const WorldState& world, uint32_t collider) {
-    return LocalOf(world.bodies, world.colliders, collider);
-}
 
 // World space, of the piece's own frame.
-inline Pose ColliderPoseOf(const WorldState& world, uint32_t collider) {
-    const Pose body = world.bodies.CenterPoseOf(world.colliders.colliders[collider].body);
-    return world.colliders.shapes[collider].offset ? body * LocalOf(world, collider) : body;
+inline Pose ColliderPoseOf(const BodyStore& bodies, const ColliderStore& colliders, uint32_t collider) {
+    const Pose body = bodies.CenterPoseOf(colliders.colliders[collider].body);
+    return colliders.shapes[collider].offset ? body * LocalOf(bodies, colliders, collider) : body;
 }
 
 // The piece, seen from its body's center frame.
-inline ColliderShape PieceOf(const WorldState& world, uint32_t collider) {
-    ColliderShape piece = world.colliders.shapes[collider];
-    piece.local = LocalOf(world, collider);
+inline ColliderShape PieceOf(const BodyStore& bodies, const ColliderStore& colliders, uint32_t collider) {
+    ColliderShape piece = colliders.shapes[collider];
+    piece.local = LocalOf(bodies, colliders, collider);
     return piece;
 }
 
 // Whether a body is a single collider, which stays so.
-inline bool IsOnePiece(const WorldState& world, uint32_t body) {
-    const BodyCold& cold = world.bodies.cold[body];
+inline bool IsOnePiece(const BodyStore& bodies, uint32_t body) {
+    const BodyCold& cold = bodies.cold[body];
     return cold.colliderCount == 1 && !cold.children;
 }
 

@@ -1,0 +1,264 @@
+// Ends the step for each body: what was solved moves by the sum of its substeps, what has no contact or joint flies
+// freely and exactly.
+#include <Fulcrum/Math/Trigonometry.h>
+#include <Fulcrum/Physics/Stages/BodyLimits.h>
+#include <Fulcrum/Physics/Stages/Crowd.h>
+#include <Fulcrum/Physics/Stages/CrowdContacts.h>
+#include <Fulcrum/Physics/Stages/FreeRotation.h>
+#include <Fulcrum/Physics/Stages/Integrate.h>
+#include <Fulcrum/Physics/Stages/Stages.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+namespace {
+
+// What a body does in the step.
+struct Ending {
+    uint32_t body = 0;
+    Vector3 displacement = Vector3::Zero();  // m
+    Vector3 v = Vector3::Zero();             // m/s, at its end
+    FreeTurn turn;                           // what is found, where it turns freely, or has been found
+    bool fliesFreely = false;                // it has no contact or joint
+    float slowSpeed = 0;                     // m/s, see SlowSpeed
+    float pulled = 0;                        // m/s, see PulledSpeed
+};
+
+// A body without contacts and joints: x += v t + a t^2 / 2, exact under constant acceleration. Returns whether it is
+// still to be turned, keeping its angular momentum.
+bool FlyFreely(BodyStore& bodies, Ending& ending, const StepContext& step, WorkerFindings& findings) {
+    const BodyDynamics& d = *ending.turn.body;
+    const float* a = bodies.poses[ending.body].acceleration;
+    Vector3 &v = ending.v, &w = ending.turn.angularVelocity;
+    const Vector3 before = v;
+    ending.fliesFreely = true;
+    v += Vector3(a[0], a[1], a[2]) * step.dt;
+    if (d.linearDamping > 0) v *= Exp(-d.linearDamping * step.dt);
+    if (d.lockedAxes != LockedAxes::None) d.Lock(v, w);
+    findings.clamped += LimitSpeeds(bodies, ending.body, v, w);
+    Vector3& change = ending.displacement;
+    change = (before + v) * (0.5f * step.dt);
+    if (d.lockedAxes != LockedAxes::None) d.Lock(change, w);
+    const bool feelsTop = d.FeelsGyroscopicTorque(w);
+    if (d.hasForce) {
+        const Vector3 torque = bodies.cold[ending.body].torque;
+        Vector3 pushed = w + bodies.masses[ending.body].InverseInertia() * torque * step.dt;
+        const bool isLimited = LengthSquared(pushed) > d.maxAngularSpeed * d.maxAngularSpeed;
+        // What a torque spins up to the largest speed is there at once.
+        if (isLimited) findings.clamped += LimitSpeeds(bodies, ending.body, v, pushed);
+        if (isLimited || !feelsTop) w = pushed;
+        else ending.turn.torque = torque;
+    }
+    if (feelsTop) return true;
+    ending.turn.rotation = Normalized(RotationFromVector(Vector3(w * step.dt)) * ending.turn.rotation);
+    return false;
+}
+
+// The solver changed the angular velocity of a body as it stood at the step's beginning. Impulses within the step let
+// it turn otherwise than about the velocity of the end; the spin of a thin rod about its own axis, left behind in world
+// axes while that turned, is then a turn of the rod itself, with a thousand times the energy. What would gain a
+// twentieth is carried along with the body, as far as it takes to gain none; not what rocks as it comes to rest, which
+// its support damps.
+Vector3 CarriedAlong(const BodyDynamics& d, const Quaternion& before, const Quaternion& after, const Vector3& w) {
+    constexpr float kGain = 1.0001f;
+    const auto energyOf = [&](const Quaternion& rotation, const Vector3& velocity) {
+        return TwiceRotationalEnergy<float>(d, InverseRotate(rotation * d.PrincipalAxes(), velocity));
+    };
+    const float wanted = energyOf(before, w), gain = energyOf(after, w) - wanted;
+    if (!(gain > (kGain - 1) * wanted)) return w;
+    // The energy of w + s (carried - w) is a parabola in s that is `wanted` at 1, and at gain / (its curvature).
+    const Vector3 change = Rotate(after, InverseRotate(before, w)) - w;
+    const float curvature = energyOf(after, change);
+    return w + change * (gain < curvature ? gain / curvature : 1.0f);
+}
+
+void MoveSolved(BodyStore& bodies, const JointStore& joints, Ending& ending, float dt) {
+    const uint32_t body = ending.body;
+    BodyState& s = bodies.states[body];
+    const BodyDynamics& d = bodies.dynamics[body];
+    Quaternion& rotation = ending.turn.rotation;
+    Vector3& w = ending.turn.angularVelocity;
+    ending.displacement = Vector3(s.deltaPosition[0], s.deltaPosition[1], s.deltaPosition[2]);
+    if (d.crowded) {
+        const auto& free = bodies.unconstrained[body].row;
+        ending.v = NoFasterThan(ending.v, VectorAt<BodyState::kLinear>(free));
+        w = NoFasterThan(w, VectorAt<BodyState::kAngular>(free));
+    }
+    // Impacts move bodies along the way that their speeds before and after them make, whatever limits and locks these
+    // are held to (BounceContacts.h).
+    Vector3 turn(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]);
+    LimitLength(ending.displacement, d.maxLinearSpeed * dt);
+    LimitLength(turn, d.maxAngularSpeed * dt);
+    if (d.lockedAxes != LockedAxes::None) d.Lock(ending.displacement, turn);
+    const Quaternion before = rotation;
+    rotation = Normalized(RotationFromVector(turn) * rotation);
+    // With joints every substep has seen to that.
+    if (!d.FeelsGyroscopicTorque(w) || joints.HasAny(body)) return;
+    w = CarriedAlong(d, before, rotation, w);
+    w = AddGyroscopicTorque<float>(Vector3(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]),
+                                   AxesOf(d, rotation), w, dt);
+}
+
+// m/s: what is slower may fall asleep. Of small bodies so many of their radii a second.
+float SlowSpeed(const SleepSettings& sleep, const BodyDynamics& body) {
+    constexpr float kRadiiPerSecond = 1;
+    return std::min(sleep.linearSpeed, kRadiiPerSecond * body.outerRadius);
+}
+
+// m/s, of the farthest point of a body that moves by v and turns by w, at most. By its outer ball, or, where that is
+// too fast to sleep, `slow` or more, by the corners of its box: a thin rod that turns about its own length hardly
+// moves.
+float FarthestSpeed(const BodyStore& bodies, uint32_t body, float slow, const Vector3& v, const Vector3& w) {
+    const float linear = Length(v), simple = linear + Length(w) * bodies.dynamics[body].outerRadius;
+    if (simple < slow || linear >= slow) return simple;
+    const Bounds& box = bodies.cold[body].shape->LocalBounds();
+    const Vector3 reach = box.lower.cwiseAbs().cwiseMax(box.upper.cwiseAbs());
+    const Vector3 turn = InverseRotate(bodies.RotationOf(body), w).cwiseAbs();
+    const Vector3 most(turn.y() * reach.z() + turn.z() * reach.y(), turn.z() * reach.x() + turn.x() * reach.z(),
+                       turn.x() * reach.y() + turn.y() * reach.x());
+    return std::min(simple, linear + Length(most));
+}
+
+// What joints pull together moves without a speed at the step's end: pseudo-velocities are none, and relaxing has taken
+// pushes out.
+float PulledSpeed(const BodyStore& bodies, uint32_t body, float slow, float dt) {
+    const BodyState& s = bodies.states[body];
+    const float inverseDt = 1.0f / dt;
+    return FarthestSpeed(bodies, body, slow,
+                         Vector3(s.deltaPosition[0], s.deltaPosition[1], s.deltaPosition[2]) * inverseDt,
+                         Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]) * inverseDt);
+}
+
+// Whether force and torque of this step changed the velocity by finite amounts.
+bool PushIsFinite(const BodyStore& bodies, uint32_t body) {
+    if (!bodies.dynamics[body].hasForce) return true;
+    const float* a = bodies.poses[body].acceleration;
+    const SymmetricMatrix3 inverse = bodies.masses[body].InverseInertia();
+    return IsFinite(Vector3(a[0], a[1], a[2])) && IsFinite(Vector3(inverse * bodies.cold[body].torque));
+}
+
+class BodyMover {
+public:
+    BodyMover(const StepContext& step, const ColliderStore& colliders, const JointStore& joints,
+              const ConstraintColoring& coloring, const CrowdState& crowd, BodyStore& bodies, SweepStore& sweeps)
+        : step_(step),
+          colliders_(colliders),
+          joints_(joints),
+          coloring_(coloring),
+          crowd_(crowd),
+          bodies_(bodies),
+          sweeps_(sweeps) {}
+
+    // A range of the bodies that are awake.
+    void Move(JobRange range, WorkerFindings& findings) const {
+        Ending endings[kTurnsTogether];
+        FreeTurn* const turns[kTurnsTogether] = {&endings[0].turn, &endings[1].turn, &endings[2].turn,
+                                                 &endings[3].turn};
+        int waiting = 0;
+        const auto turnTogether = [&] {
+            RotateTogether(turns, waiting, step_.dt);
+            for (int i = 0; i < waiting; ++i) Finish(endings[i], findings);
+            waiting = 0;
+        };
+        for (uint32_t i = range.begin; i < range.end; ++i) {
+            Ending& ending = endings[waiting];
+            bool together;
+            if (!Begin(bodies_.awake[i], findings, ending, together)) continue;
+            if (!together) Finish(ending, findings);
+            else if (++waiting == kTurnsTogether) turnTogether();
+        }
+        if (waiting > 0) turnTogether();
+    }
+
+private:
+    // Finds how a body ends the step. False: it has nothing to end. `together`: it is still to be turned, one of
+    // several.
+    bool Begin(uint32_t body, WorkerFindings& findings, Ending& ending, bool& together) const {
+        const BodyDynamics& d = bodies_.dynamics[body];
+        together = false;
+        if (d.frozen) {
+            bodies_.states[body] = {};  // whatever rows have made of it
+            return false;
+        }
+        ending = {.body = body,
+                  .v = bodies_.LinearVelocityOf(body),
+                  .turn = {&d, bodies_.RotationOf(body), bodies_.AngularVelocityOf(body)},
+                  .slowSpeed = SlowSpeed(step_.settings.sleep, d)};
+        if (sweeps_.isKept) sweeps_.starts[body] = {bodies_.CenterPoseOf(body), step_.number};
+        if (d.motion == MotionType::Kinematic) {
+            ending.displacement = ending.v * step_.dt;
+            ending.turn.rotation =
+                Normalized(RotationFromVector(Vector3(ending.turn.angularVelocity * step_.dt)) * ending.turn.rotation);
+        } else if (coloring_.IsTouched(body)) {
+            MoveSolved(bodies_, joints_, ending, step_.dt);
+        } else if (FlyFreely(bodies_, ending, step_, findings)) {
+            together = IsSymmetric(d);
+            if (!together) RotateFreely(ending.turn, step_.dt);
+        }
+        if (step_.settings.sleep.enabled && joints_.HasAny(body))
+            ending.pulled = PulledSpeed(bodies_, body, ending.slowSpeed, step_.dt);
+        return true;
+    }
+
+    void Finish(Ending& ending, WorkerFindings& findings) const {
+        const uint32_t body = ending.body;
+        const BodyDynamics& d = bodies_.dynamics[body];
+        Vector3 &v = ending.v, &w = ending.turn.angularVelocity;
+        if (ending.fliesFreely && d.angularDamping > 0) w *= Exp(-d.angularDamping * step_.dt);
+        if (!PushIsFinite(bodies_, body)) return Freeze(bodies_, colliders_, body, findings);
+        if (!IsFinite(ending.displacement) || !IsFinite(ending.turn.rotation) || !IsFinite(v) || !IsFinite(w))
+            return Stop(bodies_, body, findings);
+        BodyState& state = bodies_.states[body];
+        state = {.marks = state.marks};
+        if (d.dispersing) v = OwnVelocity(bodies_, crowd_.dispersing, body, v, step_.dt);
+        findings.clamped += LimitSpeeds(bodies_, body, v, w);
+        bodies_.SetVelocity(body, v, w);
+        bodies_.MoveCenter(body, ending.displacement, ending.turn.rotation);
+        bodies_.ForgetForces(body);
+        if (step_.settings.sleep.enabled && d.motion == MotionType::Dynamic) MeasureSlowness(ending, findings);
+    }
+
+    void MeasureSlowness(const Ending& ending, WorkerFindings& findings) const {
+        BodyDynamics& d = bodies_.dynamics[ending.body];
+        const float speed =
+            std::max(FarthestSpeed(bodies_, ending.body, ending.slowSpeed, ending.v, ending.turn.angularVelocity),
+                     ending.pulled);
+        const bool slow = d.allowSleep && !d.crowded && speed < ending.slowSpeed;
+        d.slowSeconds = slow ? d.slowSeconds + step_.dt : 0.0f;
+        findings.sleepCandidates += slow && d.slowSeconds >= step_.settings.sleep.seconds;
+    }
+
+    const StepContext& step_;
+    const ColliderStore& colliders_;
+    const JointStore& joints_;
+    const ConstraintColoring& coloring_;
+    const CrowdState& crowd_;
+    BodyStore& bodies_;
+    SweepStore& sweeps_;
+};
+
+}  // namespace
+
+uint32_t MoveBodies(const StepContext& step, const ColliderStore& colliders, const JointStore& joints,
+                    const ConstraintColoring& coloring, const CrowdState& crowd, BodyStore& bodies, SweepStore& sweeps,
+                    const StepWorkers& workers, StepReport& report) {
+    if (sweeps.isKept) {
+        sweeps.dt = step.dt;
+        sweeps.starts.resize(bodies.Size());
+    }
+    const BodyMover mover(step, colliders, joints, coloring, crowd, bodies, sweeps);
+    workers.jobs.ParallelFor(static_cast<uint32_t>(bodies.awake.size()), 64,
+                             [&](JobRange range) { mover.Move(range, workers.findings[range.worker]); });
+    uint32_t sleepCandidates = 0, firstFrozen = ~0u;
+    for (const WorkerFindings& findings : workers.findings) {
+        sleepCandidates += findings.sleepCandidates;
+        report.clampedBodies += findings.clamped;
+        report.frozenBodies += findings.frozen;
+        firstFrozen = std::min(firstFrozen, findings.firstFrozen);
+    }
+    if (firstFrozen != ~0u) report.firstFrozen = bodies.IdOf(firstFrozen);
+    return sleepCandidates;
+}
+
+}  // namespace fulcrum

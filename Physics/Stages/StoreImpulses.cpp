@@ -1,0 +1,105 @@
+// Impulses of the batches go back to the records of contacts and joints, and what contacts carried to their loads.
+#include <Fulcrum/Physics/Stages/ContactLoads.h>
+#include <Fulcrum/Physics/Stages/Effort.h>
+#include <Fulcrum/Physics/Stages/Stages.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+namespace {
+
+// Where impulses are stored. The bodies are read.
+struct Records {
+    const BodyStore& bodies;
+    PairStore& pairs;
+    JointStore& joints;
+};
+
+// How the batches of a group are stored.
+struct StoreScale {
+    float dt;               // s, of the step
+    float impulseScale;     // see Effort
+    const SinkScale* sink;  // of contacts; null where nobody asks how deep they sink
+};
+
+template <int N, bool kFixedB>
+void StoreBatch(const Records& to, const ContactBatch<N, kFixedB>& batch, const StoreScale& scale,
+                WorkerFindings& findings) {
+    StoreContacts(batch, to.pairs.records.data(), scale.impulseScale);
+    if (scale.sink) findings.loadsChanged |= NoteSinks(batch, *scale.sink, to.bodies, to.joints, to.pairs);
+}
+template <int N>
+void StoreBatch(const Records& to, const JointBatch<N>& batch, const StoreScale& scale, WorkerFindings&) {
+    StoreJoints(batch, to.joints.records.data(), to.joints.types.data(), to.bodies.states.data(), scale.dt,
+                scale.impulseScale);
+}
+template <int N>
+void StoreBatch(const Records& to, const BallBatch<N>& batch, const StoreScale& scale, WorkerFindings&) {
+    StoreJoints(batch, to.joints.records.data(), scale.dt, scale.impulseScale);
+}
+
+template <class Batch>
+void StoreAll(const Records& to, const std::vector<Batch>& batches, uint32_t begin, uint32_t end,
+              const StoreScale& scale, const StepWorkers& workers) {
+    workers.jobs.ParallelFor(end - begin, 16, [&](JobRange range) {
+        for (uint32_t i = range.begin; i < range.end; ++i)
+            StoreBatch(to, batches[begin + i], scale, workers.findings[range.worker]);
+    });
+}
+
+// How often loads that became less are noted, in steps.
+constexpr uint64_t kStepsToForget = 16;
+
+}  // namespace
+
+// Groups lie one after the other: those without an effort of their own are stored together.
+void StoreImpulses(const StepContext& step, const BodyStore& bodies, const SolverLayout& layout, PairStore& pairs,
+                   JointStore& joints, const StepWorkers& workers) {
+    const SystemSettings& settings = step.settings;
+    const Records to{bodies, pairs, joints};
+    const bool notesSinks = HeedsLoads(settings);
+    const bool notesLarge = notesSinks && (settings.accuracy.largeIslands || layout.OverflowCount() > 0);
+    // impulseScale: see Effort; stiffness: see ContactLoad.
+    const auto sinkScaleOf = [&](float impulseScale, uint8_t stiffness) {
+        return SinkScale{.perLevel = 1 / LargestUnnotedSink(settings.accuracy),
+                         .inverseDt = 1 / (step.substepDt * impulseScale),
+                         .softness = step.softness,
+                         .depthScale = 1 / (impulseScale * impulseScale),
+                         .gravity = settings.gravity,
+                         .stiffness = std::max<uint8_t>(stiffness, 1),
+                         .forgets = step.number % kStepsToForget == 0};
+    };
+    uint32_t stored[kBatchKinds] = {};
+    const auto storeTo = [&](auto&& endOf, const StoreScale& scale) {
+        ForEachBatchList(layout, [&](const auto& list, BatchKind kind) {
+            const uint32_t end = endOf(list, kind);
+            StoreAll(to, list.batches, stored[kind], end, scale, workers);
+            stored[kind] = end;
+        });
+    };
+    const SinkScale usualSink = sinkScaleOf(1, 1);
+    const StoreScale usual{step.dt, 1, notesSinks ? &usualSink : nullptr};
+    for (const SolverGroup& group : layout.groups) {
+        const bool isFirst = &group == &layout.groups.front();
+        if (!group.isLarge && !group.effort.IsAny()) continue;
+        const float impulseScale = EffortOf(step, group).impulseScale;
+        const SinkScale sink = sinkScaleOf(impulseScale, group.stiffness);
+        const StoreScale scale{step.dt, impulseScale, (group.isLarge ? notesLarge : notesSinks) ? &sink : nullptr};
+        if (isFirst)
+            ForEachOverflowList(layout, [&](const auto& batches) {
+                StoreAll(to, batches, 0, static_cast<uint32_t>(batches.size()), scale, workers);
+            });
+        if (group.colorsBegin == group.colorsEnd) continue;
+        const ColorBatches &first = layout.colors[group.colorsBegin], &last = layout.colors[group.colorsEnd - 1];
+        storeTo([&](const auto&, BatchKind kind) { return first.of[kind].begin; }, usual);
+        storeTo([&](const auto&, BatchKind kind) { return last.of[kind].end; }, scale);
+    }
+    storeTo([](const auto& list, BatchKind) { return list.count; }, usual);
+    for (WorkerFindings& findings : workers.findings) {
+        pairs.loadVersion += findings.loadsChanged;
+        findings.loadsChanged = false;
+    }
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,67 @@
+// What the report says of islands that were solved with more than the settings' effort: how much, and for whom.
+#include <Fulcrum/UnitTests/Support/TestWorld.h>
+
+namespace fulcrum::testing {
+namespace {
+
+// A cube of 1 m, its center at so many m.
+BodyId AddCube(TestWorld& world, const Position& at, float mass = 1000) {
+    return world.Add({.shape = CubeOf(0.5f), .position = at, .mass = mass});
+}
+
+TEST(EffortReport, NamesTheLightCubeUnderAHeavyOne) {
+    TestWorld world(NoSleep());
+    world.AddFloor();
+    const BodyId light = AddCube(world, {0, 0.5, 0});
+    AddCube(world, {0, 1.5, 0}, 2e5f);
+    AddCube(world, {10, 0.5, 0});
+    world.Steps(60);
+    const StepReport& report = world.Report();
+    EXPECT_EQ(report.islands, 2u);
+    ASSERT_EQ(report.islandsWithMoreEffort, 1u);
+    EXPECT_GT(report.mostEffort[0].substeps, SolverSettings{}.substeps);
+    EXPECT_EQ(report.mostEffort[0].culprit, light);
+    EXPECT_EQ(report.mostEffort[1].substeps, 0);
+}
+
+TEST(EffortReport, IsEmptyForAPlainPile) {
+    TestWorld world(NoSleep());
+    world.AddFloor();
+    for (int layer = 0; layer < 4; ++layer)
+        for (int i = 0; i < 4 - layer; ++i) AddCube(world, {i + 0.5 * layer, 0.5 + layer, 0});
+    for (int step = 0; step < 60; ++step) {
+        world.Step();
+        EXPECT_EQ(world.Report().islandsWithMoreEffort, 0u) << step;
+        EXPECT_EQ(world.Report().mostEffort[0].substeps, 0) << step;
+    }
+}
+
+// Six islands whose joints ask for 8 to 13 substeps, and one whose joint asks for fewer than the settings have.
+TEST(EffortReport, ListsTheGreatestEffortsFirst) {
+    TestWorld world(NoGravity());
+    std::vector<BodyId> bodies;
+    for (int i = 0; i < 7; ++i) {
+        const BodyId a = AddCube(world, {4.0 * i, 0, 0}), b = AddCube(world, {4.0 * i, 1, 0});
+        PointJointSettings joint;
+        joint.bodyA = a;
+        joint.bodyB = b;
+        joint.anchorA.point = {4.0 * i, 0.5, 0};
+        joint.substeps = i == 6 ? 2 : 8 + i;
+        ASSERT_TRUE(world.System().Joints().Create(joint));
+        bodies.push_back(a);
+        bodies.push_back(b);
+    }
+    world.Step();
+    const StepReport& report = world.Report();
+    EXPECT_EQ(report.islandsWithMoreEffort, 6u);
+    for (size_t i = 0; i < report.mostEffort.size(); ++i) {
+        const size_t island = 5 - i;
+        EXPECT_EQ(report.mostEffort[i].substeps, 8 + static_cast<int>(island));
+        EXPECT_EQ(report.mostEffort[i].velocityIterations, SolverSettings{}.velocityIterations);
+        const BodyId culprit = report.mostEffort[i].culprit;
+        EXPECT_TRUE(culprit == bodies[2 * island] || culprit == bodies[2 * island + 1]) << i;
+    }
+}
+
+}  // namespace
+}  // namespace fulcrum::testing
