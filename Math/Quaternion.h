@@ -39,12 +39,12 @@ FULCRUM_FORCE_INLINE Vec3<Real> InverseRotate(const Quat<Real>& q, const Vec3<Re
 inline float LengthSquared(const Quaternion& q) { return q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w; }
 
 inline Quaternion Normalized(const Quaternion& q) {
-    const float scale = 1.0f / std::sqrt(LengthSquared(q));
+    const float scale = 1.0f / detail::SquareRoot(LengthSquared(q));
     return {q.x * scale, q.y * scale, q.z * scale, q.w * scale};
 }
 
 inline bool IsFinite(const Quaternion& q) {
-    return std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z) && std::isfinite(q.w);
+    return __builtin_isfinite(q.x) && __builtin_isfinite(q.y) && __builtin_isfinite(q.z) && __builtin_isfinite(q.w);
 }
 
 }  // namespace fulcrum

@@ -29,7 +29,7 @@ inline double Select(bool mask, double a, double b) { return mask ? a : b; }
 inline double Min(double a, double b) { return a < b ? a : b; }
 inline double Max(double a, double b) { return a > b ? a : b; }
 inline double Abs(double a) { return a < 0.0 ? -a : a; }
-inline double Sqrt(double a) { return std::sqrt(a); }
+inline double Sqrt(double a) { return detail::SquareRoot(a); }
 
 template <class Real>
 inline constexpr bool kIsDouble = std::is_same_v<Real, double>;

@@ -7,7 +7,6 @@
 #include <Fulcrum/Math/ForceInline.h>
 #include <Fulcrum/Math/Vector.h>
 
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 
@@ -272,10 +271,10 @@ inline Wide<N> Sqrt(Wide<N> a) {
     if constexpr (N == 4) return Wide<N>::Of((typename Wide<N>::Float)_mm_sqrt_ps((__m128)a.v));
 #endif
     Wide<N> r;
-    for (int i = 0; i < N; ++i) r.Set(i, std::sqrt(a[i]));
+    for (int i = 0; i < N; ++i) r.Set(i, detail::SquareRoot(a[i]));
     return r;
 }
-inline float Sqrt(float a) { return std::sqrt(a); }
+inline float Sqrt(float a) { return detail::SquareRoot(a); }
 
 template <int N>
 inline Wide<N> Abs(Wide<N> a) {

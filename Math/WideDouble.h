@@ -5,6 +5,8 @@
 
 #include <Fulcrum/Math/Trigonometry.h>
 
+#include <cmath>
+
 namespace fulcrum {
 
 struct WideDouble {

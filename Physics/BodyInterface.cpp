@@ -13,6 +13,8 @@
 #include <Fulcrum/Physics/World/SpeedLimits.h>
 #include <Fulcrum/Physics/World/Waking.h>
 
+#include <cmath>
+
 namespace fulcrum {
 
 namespace {

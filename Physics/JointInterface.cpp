@@ -6,6 +6,7 @@
 #include <Fulcrum/Physics/World/JointChanges.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fulcrum {
 

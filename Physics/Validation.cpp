@@ -1,5 +1,6 @@
 #include <Fulcrum/Physics/Validation.h>
 
+#include <cmath>
 #include <cstdio>
 #include <limits>
 

@@ -6,6 +6,7 @@
 #include <Fulcrum/Collision/BroadPhase/RayLanes.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fulcrum {
 

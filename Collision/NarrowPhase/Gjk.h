@@ -5,6 +5,7 @@
 
 #include <Fulcrum/Collision/NarrowPhase/SimplexSearch.h>
 
+#include <cmath>
 #include <cstdint>
 
 namespace fulcrum {

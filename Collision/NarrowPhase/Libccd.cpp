@@ -11,6 +11,7 @@
 #include <ccd/quat.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace fulcrum {

@@ -4,6 +4,7 @@
 
 #include <Fulcrum/Collision/NarrowPhase/SimplexSearch.h>
 
+#include <cmath>
 #include <cstdint>
 #include <utility>
 

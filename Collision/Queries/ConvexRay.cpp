@@ -6,6 +6,7 @@
 #include <Fulcrum/Collision/Shapes/Primitives.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fulcrum {
 
@@ -128,8 +129,11 @@ bool ChordOfFaces(const ConvexHull& hull, float grown, const LinePiece& line, Ch
     if (outside.Any()) return false;
     const Lane entry = Best(in, inFace, 1), exit = Best(out, outFace, -1);
     if (!(entry.value <= exit.value)) return false;
-    chord.in = {entry.value, hull.Faces()[static_cast<size_t>(entry.face)].normal};
-    chord.out = {exit.value, hull.Faces()[static_cast<size_t>(exit.face)].normal};
+    const auto normalOf = [&](int face) {
+        return Vector3(hull.NormalLaneX()[face], hull.NormalLaneY()[face], hull.NormalLaneZ()[face]);
+    };
+    chord.in = {entry.value, normalOf(entry.face)};
+    chord.out = {exit.value, normalOf(exit.face)};
     return true;
 }
 

@@ -2,6 +2,8 @@
 
 #include <Fulcrum/Collision/Shapes/Message.h>
 
+#include <cmath>
+
 namespace fulcrum {
 
 CompoundShape::~CompoundShape() = default;

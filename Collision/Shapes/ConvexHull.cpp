@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
 
 namespace fulcrum {
@@ -220,6 +221,11 @@ size_t FirstFarthest(const float* laneX, const float* laneY, const float* laneZ,
 }  // namespace
 
 ConvexHull::ConvexHull() : ConvexShape(ShapeType::ConvexHull) {}
+std::span<const Vector3> ConvexHull::Vertices() const { return vertices_; }
+std::span<const ConvexHull::Face> ConvexHull::Faces() const { return faces_; }
+std::span<const ConvexHull::Edge> ConvexHull::Edges() const { return edges_; }
+std::span<const uint8_t> ConvexHull::Indices() const { return indices_; }
+
 ConvexHull::~ConvexHull() = default;
 
 Vector3 ConvexHull::SupportCore(const Vector3& direction) const {

@@ -9,6 +9,8 @@
 
 namespace fulcrum {
 
+struct Polyhedron;
+
 struct ConvexHullSettings {
     int maxVertices = 64;    // 4..255; a hull with more is simplified to the farthest ones, inside the exact hull
     float convexRadius = 0;  // m, >= 0: the hull is shrunk by it and rounded again; 0 keeps sharp edges. Vertices,
@@ -41,10 +43,10 @@ public:
     Vector3 SupportCore(const Vector3& direction) const override;
     void FindSupportingFace(const Vector3& direction, SupportingFace& face) const override;
 
-    std::span<const Vector3> Vertices() const { return {vertices_.data(), vertices_.size()}; }
-    std::span<const Face> Faces() const { return {faces_.data(), faces_.size()}; }
-    std::span<const Edge> Edges() const { return {edges_.data(), edges_.size()}; }
-    std::span<const uint8_t> Indices() const { return {indices_.data(), indices_.size()}; }
+    std::span<const Vector3> Vertices() const;
+    std::span<const Face> Faces() const;
+    std::span<const Edge> Edges() const;
+    std::span<const uint8_t> Indices() const;
     // The vertices by lanes: coordinate arrays x, y, z of PaddedVertexCount() floats each, 64-byte aligned. The padding
     // repeats vertex 0, so that a support search needs no tail.
     const float* LaneX() const { return lanes_.data()->values; }
@@ -60,7 +62,8 @@ public:
 
 private:
     ConvexHull();
-    friend class HullFinisher;  // ConvexHull.cpp: fills a hull from the builder's mesh
+    friend class HullFinisher;                         // ConvexHull.cpp: fills a hull from the builder's mesh
+    friend Polyhedron CoreOf(const ConvexHull& hull);  // reads the arrays without a call for each
 
     std::vector<Vector3> vertices_;
     std::vector<Face> faces_;

@@ -4,6 +4,7 @@
 #include <Fulcrum/Collision/Shapes/SizeChecks.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fulcrum {
 namespace {

@@ -5,6 +5,7 @@
 #include <Fulcrum/Math/Wide.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fulcrum {
 

@@ -1,6 +1,7 @@
 #include <Fulcrum/Collision/Shapes/HullBuilder.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 

@@ -1,6 +1,7 @@
 #include <Fulcrum/Collision/Shapes/MeshEdges.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fulcrum {
 namespace {

@@ -3,6 +3,7 @@
 #include <Fulcrum/Math/Assert.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fulcrum {
 namespace {

@@ -2,6 +2,8 @@
 
 #include <Fulcrum/Collision/Shapes/Message.h>
 
+#include <cmath>
+
 namespace fulcrum {
 
 Result<std::shared_ptr<const Plane>> Plane::Create(const Vector3& normal, float offset) {

@@ -4,6 +4,8 @@
 #include <Fulcrum/Collision/Shapes/SizeChecks.h>
 #include <Fulcrum/Collision/Shapes/SupportingFace.h>
 
+#include <cmath>
+
 namespace fulcrum {
 namespace {
 

@@ -3,6 +3,7 @@
 #include <Fulcrum/Collision/Shapes/Message.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace fulcrum {

@@ -5,6 +5,8 @@
 
 #include <Fulcrum/Math/Wide.h>
 
+#include <cmath>
+
 namespace fulcrum {
 
 // The largest absolute value of three, to which the rounding of a ray's hit is proportional.

@@ -5,6 +5,7 @@
 #include <Fulcrum/Collision/Shapes/SupportingFace.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fulcrum {
 namespace {

@@ -11,6 +11,8 @@
 #include <Fulcrum/Collision/Shapes/TriangleMesh.h>
 #include <Fulcrum/Math/Matrix.h>
 
+#include <cmath>
+
 namespace fulcrum {
 namespace {
 

@@ -2,6 +2,8 @@
 #include <Fulcrum/Collision/Shapes/ShapeFileParts.h>
 #include <Fulcrum/Collision/Shapes/SizeChecks.h>
 
+#include <cmath>
+
 namespace fulcrum {
 namespace {
 

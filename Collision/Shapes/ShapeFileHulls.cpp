@@ -3,6 +3,7 @@
 #include <Fulcrum/Collision/Shapes/ShapeFileParts.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fulcrum {
 namespace {

@@ -4,6 +4,7 @@
 #include <Fulcrum/Collision/Shapes/SurfaceLimits.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fulcrum {
 namespace {

@@ -4,6 +4,8 @@
 #include <Fulcrum/Collision/Shapes/Message.h>
 #include <Fulcrum/Collision/Shapes/Shape.h>
 
+#include <cmath>
+
 namespace fulcrum {
 
 inline constexpr double kPi = 3.14159265358979323846;

@@ -2,6 +2,7 @@
 #include <Fulcrum/Collision/Shapes/SupportingFace.h>
 
 #include <bit>
+#include <cmath>
 
 namespace fulcrum {
 

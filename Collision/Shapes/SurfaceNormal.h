@@ -3,6 +3,8 @@
 
 #include <Fulcrum/Math/Vector.h>
 
+#include <cmath>
+
 namespace fulcrum {
 
 // Unit, to the side from which abc run counter-clockwise; along y for a triangle without area. In double where float

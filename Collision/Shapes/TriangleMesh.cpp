@@ -7,6 +7,7 @@
 #include <Fulcrum/Collision/Shapes/SurfaceNormal.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fulcrum {
 namespace {

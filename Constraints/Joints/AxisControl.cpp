@@ -75,6 +75,10 @@ float WayOfSpring(const SpringSettings& spring, float way, float dt) {
     return way * std::min(2.0f, 0.5f * phase * phase);
 }
 
+float StretchSpeed(float distance, float speed, float dt) {
+    return speed * std::min(1.0f, speed * dt / std::max(distance, 1e-6f));
+}
+
 JointRow& AddLimitRow(const SpringSettings& spring, const JointRow& motion, float sign, float error, uint32_t slot,
                       JointRowList& rows) {
     JointRow& row =

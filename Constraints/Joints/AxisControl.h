@@ -79,6 +79,10 @@ inline constexpr float kAngularSlackSpeed = 2.0f;  // rad/s
 // its target: of an undamped oscillator, way (1 - cos(w dt)).
 float WayOfSpring(const SpringSettings& spring, float way, float dt);
 
+// How fast, m/s on average over the step, the distance between two points may grow because they move across it at
+// `speed`, m/s: by (v dt)^2 / 2 d in the step, and by v dt at most.
+float StretchSpeed(float distance, float speed, float dt);
+
 // Beyond its limit by less, m or rad, an axis still counts as at it: rounding must not switch motors off and on.
 inline constexpr float kLimitSlop = 1e-3f;
 

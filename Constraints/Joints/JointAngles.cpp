@@ -1,6 +1,7 @@
 #include <Fulcrum/Constraints/Joints/JointAngles.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fulcrum {
 

@@ -4,8 +4,6 @@
 
 #include <Fulcrum/Constraints/Joints/JointType.h>
 
-#include <cmath>
-
 namespace fulcrum {
 
 inline constexpr double kFullTurn = 6.283185307179586;
@@ -15,7 +13,7 @@ inline float TwistAngle(const Quaternion& q) { return q.w < 0.0f ? 2.0f * Atan2(
 
 // The angle that differs from `wrapped` by whole turns and is nearest to `expected`, rad.
 inline double NearestTurn(double wrapped, double expected) {
-    return wrapped + kFullTurn * std::floor((expected - wrapped) / kFullTurn + 0.5);
+    return wrapped + kFullTurn * __builtin_floor((expected - wrapped) / kFullTurn + 0.5);
 }
 
 inline const Vector3& AxisOf(const Matrix3& frame, int axis) {

@@ -2,6 +2,7 @@
 
 #include <Fulcrum/Constraints/BodyLanes.h>
 
+#include <cmath>
 #include <type_traits>
 
 namespace fulcrum {

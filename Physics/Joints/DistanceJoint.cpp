@@ -3,8 +3,6 @@
 #include <Fulcrum/Constraints/Joints/JointDrawing.h>
 #include <Fulcrum/Physics/Joints/JointChecks.h>
 
-#include <algorithm>
-
 namespace fulcrum {
 
 MaybeError Check(const DistanceJointSettings& s) {
@@ -36,11 +34,8 @@ void DistanceJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     pose.SetAlong(motion, Normalized(pose.offset, ToMatrix(pose.frameA).x));
     motion.radial = true;
     motion.turnsWithA = false;
-    // Motion across lengthens the distance as well: by (v dt)^2 / 2 d, and by v dt at most.
-    const Vector3 velocity = pose.AnchorVelocity();
-    const float speed = Length(velocity);
-    const float across = speed * std::min(1.0f, speed * pose.dt / std::max(distance, 1e-6f));
-    AddControlRows(control_, pose, motion, distance, kLinearSlackSpeed + across, 0, rows);
+    const float slack = kLinearSlackSpeed + StretchSpeed(distance, Length(pose.AnchorVelocity()), pose.dt);
+    AddControlRows(control_, pose, motion, distance, slack, 0, rows);
 }
 
 double DistanceJoint::Coordinate(JointAxis axis, const JointPose& pose) const {

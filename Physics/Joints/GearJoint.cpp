@@ -4,6 +4,8 @@
 #include <Fulcrum/Constraints/Parts/GearPart.h>
 #include <Fulcrum/Physics/Joints/JointChecks.h>
 
+#include <cmath>
+
 namespace fulcrum {
 
 MaybeError Check(const GearJointSettings& s) { return CheckWith(s, CheckRatio("ratio", s.ratio)); }

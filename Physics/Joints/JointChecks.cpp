@@ -1,5 +1,6 @@
 #include <Fulcrum/Physics/Joints/JointChecks.h>
 
+#include <cmath>
 #include <cstdio>
 
 namespace fulcrum {

@@ -5,6 +5,7 @@
 #include <Fulcrum/Physics/Joints/JointChecks.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fulcrum {
 

@@ -29,6 +29,11 @@ PulleyJoint::PulleyJoint(const Position& fixedPointA, const Position& fixedPoint
     control_.limits = {minLength, maxLength.value_or(minLength), {}};
 }
 
+std::pair<Vector3, Vector3> PulleyJoint::RopesAt(const JointPose& pose) const {
+    return {(pose.anchorA - fixedPointA_).cast<float>(),
+            (pose.anchorA + pose.offset.cast<double>() - fixedPointB_).cast<float>()};
+}
+
 void PulleyJoint::Start(const JointPose& pose) {
     if (!isMeasured_) return;
     const auto length = static_cast<float>(Coordinate(JointAxis::LinearX, pose));
@@ -36,8 +41,7 @@ void PulleyJoint::Start(const JointPose& pose) {
 }
 
 void PulleyJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
-    const Vector3 ropeA = (pose.anchorA - fixedPointA_).cast<float>();
-    const Vector3 ropeB = (pose.anchorA + pose.offset.cast<double>() - fixedPointB_).cast<float>();
+    const auto [ropeA, ropeB] = RopesAt(pose);
     const float lengthA = Length(ropeA), lengthB = Length(ropeB), length = lengthA + ratio_ * lengthB;
     Vector3 axisA = Normalized(ropeA, Vector3::Zero()), axisB = Normalized(ropeB, Vector3::Zero()) * ratio_;
     // A side that is pulled in while more than that of the other is to come has nothing more to give: it would swing to
@@ -48,20 +52,18 @@ void PulleyJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     else if (ratio_ * lengthB < givesNothing) axisB = Vector3::Zero();
     JointRow motion;
     motion.jacobian = IndependentAxisJacobian<float>({pose.armA, pose.armB, axisA, axisB});
-    // Swinging lengthens the rope as well, as in DistanceJoint.
-    const auto across = [&](const Twist<float>& velocity, const Vector3& arm, float rope) {
-        const float speed = Length(Vector3(velocity.linear + Cross(velocity.angular, arm)));
-        return speed * std::min(1.0f, speed * pose.dt / std::max(rope, 1e-6f));
+    // Each side swings by itself.
+    const auto stretch = [&](const Twist<float>& velocity, const Vector3& arm, float rope) {
+        return StretchSpeed(rope, Length(Vector3(velocity.linear + Cross(velocity.angular, arm))), pose.dt);
     };
     const float slack =
-        across(pose.velocityA, pose.armA, lengthA) + ratio_ * across(pose.velocityB, pose.armB, lengthB);
+        stretch(pose.velocityA, pose.armA, lengthA) + ratio_ * stretch(pose.velocityB, pose.armB, lengthB);
     AddControlRows(control_, pose, motion, length, kLinearSlackSpeed + slack, 0, rows);
 }
 
 double PulleyJoint::Coordinate(JointAxis axis, const JointPose& pose) const {
     if (axis != JointAxis::LinearX) return JointType::Coordinate(axis, pose);
-    const Vector3 ropeA = (pose.anchorA - fixedPointA_).cast<float>();
-    const Vector3 ropeB = (pose.anchorA + pose.offset.cast<double>() - fixedPointB_).cast<float>();
+    const auto [ropeA, ropeB] = RopesAt(pose);
     return Length(ropeA) + ratio_ * Length(ropeB);
 }
 

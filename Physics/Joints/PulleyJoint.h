@@ -43,6 +43,9 @@ public:
     double Coordinate(JointAxis axis, const JointPose& pose) const override;
 
 private:
+    // From the fixed points to the anchors of A and of B, m.
+    std::pair<Vector3, Vector3> RopesAt(const JointPose& pose) const;
+
     Position fixedPointA_, fixedPointB_;
     float ratio_;
     AxisControl control_;

@@ -4,6 +4,8 @@
 #include <Fulcrum/Constraints/Parts/RackAndPinionPart.h>
 #include <Fulcrum/Physics/Joints/JointChecks.h>
 
+#include <cmath>
+
 namespace fulcrum {
 
 MaybeError Check(const RackAndPinionJointSettings& s) { return CheckWith(s, CheckRatio("ratio", s.ratio)); }

@@ -82,6 +82,11 @@ MaybeError Ragdoll::CheckPlaced(const Placed& placed) {
     return std::nullopt;
 }
 
+Ragdoll::Ragdoll(PhysicsSystem& system) : system_(&system) {}
+
+std::span<const BodyId> Ragdoll::Bodies() const { return bodies_; }
+std::span<const JointId> Ragdoll::Joints() const { return joints_; }
+
 Result<Ragdoll> Ragdoll::Create(PhysicsSystem& system, const RagdollSettings& settings, const Pose& origin,
                                 std::optional<MotionType> motion) {
     if (MaybeError e = FirstOf(Check(settings), CheckPosition("origin.position", origin.position),

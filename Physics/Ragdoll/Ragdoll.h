@@ -20,9 +20,9 @@ public:
     void Remove();
 
     // One a part, in the order of the settings.
-    std::span<const BodyId> Bodies() const { return {bodies_.data(), bodies_.size()}; }
+    std::span<const BodyId> Bodies() const;
     // Likewise, of the joint to the parent; the first part's, and one that was not made, exist nowhere.
-    std::span<const JointId> Joints() const { return {joints_.data(), joints_.size()}; }
+    std::span<const JointId> Joints() const;
 
     // All that follow have one pose a part, the pose of the body's own frame. Errors: UnknownId (a body was removed),
     // OutOfRange (another number of poses), NonFinite, Unnormalized: nothing has changed then.
@@ -50,7 +50,7 @@ public:
     Pose Origin() const;
 
 private:
-    explicit Ragdoll(PhysicsSystem& system) : system_(&system) {}
+    explicit Ragdoll(PhysicsSystem& system);
     struct Placed;
     static Placed Place(const RagdollSettings& settings, const Pose& origin, std::optional<MotionType> motion);
     static MaybeError CheckPlaced(const Placed& placed);

@@ -107,6 +107,8 @@ Result<SkeletonMapping> SkeletonMapping::Create(const Skeleton& skeleton, const 
 }
 
 // The joints between `end` and the nearest joint above that is placed already, if there are any and there is one.
+std::span<const RelativePose> SkeletonMapping::ReferenceLocals() const { return references_; }
+
 void SkeletonMapping::AddChain(const Skeleton& skeleton, int end, std::vector<bool>& isPlaced) {
     Chain chain{.start = joints_[static_cast<size_t>(end)].parent, .end = end, .joints = {}, .fractions = {}};
     while (chain.start != kNone && !isPlaced[static_cast<size_t>(chain.start)]) {

@@ -48,7 +48,7 @@ public:
     size_t JointCount() const { return joints_.size(); }
     size_t PartCount() const { return parts_.size(); }
     // Of the skeleton in its reference pose, one a joint.
-    std::span<const RelativePose> ReferenceLocals() const { return {references_.data(), references_.size()}; }
+    std::span<const RelativePose> ReferenceLocals() const;
 
     // World poses of the joints, by their local poses; joints without a parent are in the frame `origin`. One element a
     // joint.

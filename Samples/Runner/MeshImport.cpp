@@ -5,6 +5,7 @@
 #include <Fulcrum/Samples/Runner/MeshFile.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace fulcrum {

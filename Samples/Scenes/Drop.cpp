@@ -3,6 +3,7 @@
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fulcrum::DropScene {
 namespace {

@@ -1,6 +1,8 @@
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
 
+#include <cmath>
+
 namespace fulcrum::DrumScene {
 namespace {
 

@@ -3,6 +3,8 @@
 
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
 
+#include <cmath>
+
 namespace fulcrum {
 
 // `base` cubes of 1 m in the lowest row, one fewer in each above, touching one another; the base is centered on x =

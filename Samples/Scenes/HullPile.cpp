@@ -2,6 +2,7 @@
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace fulcrum::HullPileScene {

@@ -1,5 +1,7 @@
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
 
+#include <cmath>
+
 namespace fulcrum::TrapDoorScene {
 namespace {
 

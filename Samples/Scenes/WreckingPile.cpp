@@ -2,6 +2,7 @@
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
 
 #include <array>
+#include <cmath>
 
 namespace fulcrum::WreckingPileScene {
 namespace {

@@ -6,6 +6,8 @@
 #include <Fulcrum/Collision/Shapes/RoundShapes.h>
 #include <Fulcrum/Collision/Shapes/Triangle.h>
 
+#include <cmath>
+
 namespace fulcrum::testing {
 namespace {
 

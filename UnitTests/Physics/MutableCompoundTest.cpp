@@ -5,6 +5,7 @@
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fulcrum::testing {
 namespace {

@@ -1,5 +1,6 @@
 #include <Fulcrum/UnitTests/Random/Twin.h>
 
+#include <cmath>
 #include <sstream>
 
 namespace fulcrum::testing {

@@ -7,6 +7,7 @@
 #include <Fulcrum/UnitTests/Support/RandomPoses.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fulcrum::testing::far_apart {
 

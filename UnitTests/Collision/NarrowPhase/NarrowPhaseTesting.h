@@ -10,6 +10,7 @@
 #include <Fulcrum/Collision/Shapes/Triangle.h>
 #include <Fulcrum/UnitTests/Support/RandomPoses.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 

@@ -7,6 +7,8 @@
 #include <Fulcrum/Collision/Queries/Distance.h>
 #include <Fulcrum/UnitTests/Support/Cases.h>
 
+#include <cmath>
+
 namespace fulcrum::testing {
 namespace {
 

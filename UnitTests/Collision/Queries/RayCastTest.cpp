@@ -8,6 +8,8 @@
 #include <Fulcrum/Collision/Queries/RayCast.h>
 #include <Fulcrum/UnitTests/Support/Cases.h>
 
+#include <cmath>
+
 namespace fulcrum::testing {
 namespace {
 

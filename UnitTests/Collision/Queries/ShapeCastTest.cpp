@@ -9,6 +9,8 @@
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/UnitTests/Support/Cases.h>
 
+#include <cmath>
+
 namespace fulcrum::testing {
 namespace {
 

@@ -1,6 +1,7 @@
 #include <Fulcrum/Collision/Shapes/HeightField.h>
 #include <Fulcrum/UnitTests/Collision/Shapes/SurfaceChecks.h>
 
+#include <cmath>
 #include <limits>
 
 namespace fulcrum {

@@ -2,6 +2,7 @@
 #include <Fulcrum/UnitTests/Collision/Shapes/SurfaceChecks.h>
 
 #include <atomic>
+#include <cmath>
 #include <cstring>
 #include <functional>
 #include <limits>

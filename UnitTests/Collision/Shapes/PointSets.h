@@ -4,6 +4,7 @@
 
 #include <Fulcrum/Math/Quaternion.h>
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>

@@ -10,6 +10,7 @@
 #include <Fulcrum/Collision/Shapes/Triangle.h>
 #include <Fulcrum/UnitTests/Collision/Shapes/SurfaceChecks.h>
 
+#include <cmath>
 #include <cstring>
 
 namespace fulcrum {

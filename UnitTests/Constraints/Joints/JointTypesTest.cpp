@@ -4,6 +4,8 @@
 
 #include <Fulcrum/Physics/Joints/JointKinds.h>
 
+#include <cmath>
+
 namespace fulcrum::testing {
 namespace {
 

@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include <cmath>
+
 namespace fulcrum::testing {
 namespace {
 

@@ -8,6 +8,7 @@
 #include <Fulcrum/UnitTests/Constraints/Parts/RandomBodies.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <numeric>
 #include <span>

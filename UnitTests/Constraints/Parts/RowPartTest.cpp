@@ -2,6 +2,8 @@
 // the reaction of locks; most of it on rows along an axis, whose Jacobian is checked against its constraint.
 #include "PartCases.h"
 
+#include <cmath>
+
 namespace fulcrum {
 namespace {
 

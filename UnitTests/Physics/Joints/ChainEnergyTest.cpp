@@ -1,6 +1,7 @@
 // Chains that swing: they never gain energy, and what turns fast about its own axis stays together.
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 
+#include <cmath>
 #include <limits>
 
 namespace fulcrum::testing {

@@ -1,6 +1,8 @@
 // Cones and swing-twist limits from 0 to 180 degrees: bodies thrown about stay within, and nothing else is held.
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 
+#include <cmath>
+
 namespace fulcrum::testing {
 namespace {
 

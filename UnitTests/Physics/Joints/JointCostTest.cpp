@@ -3,6 +3,8 @@
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 #include <Fulcrum/UnitTests/Support/AllocationCounter.h>
 
+#include <cmath>
+
 namespace fulcrum::testing {
 namespace {
 

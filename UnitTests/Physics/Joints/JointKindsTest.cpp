@@ -1,6 +1,8 @@
 // Six-degrees-of-freedom joints against the special ones, paths, wheels, joints of a user's own.
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 
+#include <cmath>
+
 namespace fulcrum::testing {
 namespace {
 

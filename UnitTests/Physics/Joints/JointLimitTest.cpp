@@ -2,6 +2,8 @@
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 #include <Fulcrum/UnitTests/Support/Cases.h>
 
+#include <cmath>
+
 namespace fulcrum::testing {
 namespace {
 

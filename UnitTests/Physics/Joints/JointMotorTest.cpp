@@ -1,6 +1,8 @@
 // Motors and friction of joints: forces, speeds and places that mechanics predicts.
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 
+#include <cmath>
+
 namespace fulcrum::testing {
 namespace {
 

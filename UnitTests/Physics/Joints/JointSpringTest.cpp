@@ -1,6 +1,8 @@
 // Springs of joints against the continuous oscillator, at 60 steps a second and the default settings.
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 
+#include <cmath>
+
 namespace fulcrum::testing {
 namespace {
 

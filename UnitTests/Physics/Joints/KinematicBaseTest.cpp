@@ -2,6 +2,8 @@
 // feel.
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 
+#include <cmath>
+
 namespace fulcrum::testing {
 namespace {
 

@@ -1,6 +1,8 @@
 // Pendulums at the default settings against their closed forms.
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 
+#include <cmath>
+
 namespace fulcrum::testing {
 namespace {
 

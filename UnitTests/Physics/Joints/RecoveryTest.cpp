@@ -1,6 +1,8 @@
 // Joints made meters or half a turn out of place pull together without an explosion, on any kind of body.
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 
+#include <cmath>
+
 namespace fulcrum::testing {
 namespace {
 
