@@ -44,7 +44,7 @@ public:
     // The same entry again. Returns the constraint of its kind that now has its place, or itself where it was the last.
     uint32_t Remove(Kind kind, const Entry& entry, ColorSlot place);
 
-    // Says that what was derived from the colors holds no longer.
+    // Marks what was derived from the colors as out of date.
     void Invalidate() {
         ++version_;
         ++jointVersion_;

@@ -27,7 +27,7 @@ public:
     // Gives a kinematic body the velocity with which it reaches the pose after `dt` seconds (> 0), if its largest
     // speeds allow that. Errors also: Unsupported.
     Status MoveKinematic(BodyId id, const Position& position, const Quaternion& rotation, float dt);
-    // m/s, rad/s; wakes. Steps bring it down to the body's largest speeds. Errors: UnknownId, NonFinite, Unsupported
+    // m/s, rad/s; wakes. Steps clamp it to the body's largest speeds. Errors: UnknownId, NonFinite, Unsupported
     // (static, frozen).
     Status SetVelocity(BodyId id, const Vector3& linear, const Vector3& angular);
     // Acts during the next step only: N at a world point, N m; wakes. One of zero does nothing, and a body that falls

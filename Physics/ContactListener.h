@@ -1,9 +1,9 @@
-// What a user's code has a say in: which bodies make contact, and how a contact behaves: belts, one-way platforms, ice
-// under one kind of tyre. Derive from ContactListener and hand it to PhysicsSystem::SetContactListener. Called within a
-// step, from several threads at once, in no order: everything it answers must follow from its arguments and from what
-// the step does not change (settings of its own, bodies' poses, velocities and user data, which are those at the start
-// of the step). Then the results are the same for any number of threads. It may read Bodies(). Queries find nothing
-// there and are reported (Misuse.h), changes of the world are refused with an error.
+// User callbacks for contacts: whether two bodies collide, and how a contact behaves (conveyor belts, one-way
+// platforms, friction per tire). Derive from ContactListener and pass it to PhysicsSystem::SetContactListener. Called
+// during a step, from several threads at once, in no order. An answer may depend only on the arguments and on what the
+// step does not change (settings of the listener's own; poses, velocities and user data of bodies, which are those at
+// the start of the step): then results are the same for any number of threads. Callbacks may read Bodies(). Queries
+// find nothing there and are reported (Misuse.h); changes of the world are refused with an error.
 #pragma once
 
 #include <Fulcrum/Constraints/MassOverride.h>
@@ -31,16 +31,16 @@ struct ContactView {
 
 // How a contact is to behave in this step.
 struct ContactChange {
-    // As the two materials give them in every step anew. A value out of range, or not finite, changes nothing.
+    // Set from the two materials before every call. A value out of range or not finite is ignored.
     float friction, restitution;  // >= 0; 0..1
-    // B's surface moves against A's beyond the motion of the bodies: so fast at the contact's center (m/s, world axes),
-    // and turning so fast (rad/s, world axes). Friction makes what touches keep up with it. Only the part along the
-    // contact counts, and the turn about the normal. Not finite: none.
+    // Surface velocity of B relative to A, beyond the motion of the bodies (conveyor belt): m/s at the contact's
+    // center, and rad/s, world axes. Friction acts against the slip relative to it. Only the part along the contact
+    // plane and the rotation about the normal count. Not finite: none.
     Vector3 surfaceVelocity = Vector3::Zero(), surfaceTurn = Vector3::Zero();
-    // For this contact the bodies are so much lighter or heavier; only the dynamic ones count. One of its four scales
-    // out of range, or not finite: none. Momentum is that of the masses as they are here, so that of the world changes.
+    // Mass scales of the two bodies in this contact; those of bodies that are not dynamic do not count. A scale out of
+    // range or not finite: none. The contact conserves the momentum of the scaled masses, so not that of the world.
     MassOverride massOverride{};
-    // No contact in this step: nothing bounces, wakes or rests.
+    // No contact in this step: it gives no impulse, wakes nothing and supports nothing.
     bool ignore = false;
 
     // The surface of `belt`, which is one of the two bodies, moves with the velocity (m/s, world axes) relative to its

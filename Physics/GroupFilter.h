@@ -12,12 +12,12 @@
 
 namespace fulcrum {
 
-// Two bodies whose group names the same filter object collide only if it says so; all others are none of its business.
+// Decides about two bodies only if the groups of both name this filter object.
 class GroupFilter {
 public:
     struct Member {
-        uint32_t group = 0;     // for the table: which machine,
-        uint32_t subGroup = 0;  // and which part of it
+        uint32_t group = 0;     // for GroupFilterTable: e.g. which ragdoll
+        uint32_t subGroup = 0;  // and which of its parts
     };
 
     virtual ~GroupFilter() = default;
@@ -26,8 +26,8 @@ public:
     virtual bool Collides(const Member& a, const Member& b) const = 0;
 };
 
-// Pairs of subgroups that do not collide within one group. Members of different groups do, and so does what no pair
-// names.
+// Pairs of subgroups that do not collide within one group. All other subgroups collide, and so do members of different
+// groups.
 class GroupFilterTable final : public GroupFilter {
 public:
     struct Pair {

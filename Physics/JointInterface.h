@@ -1,5 +1,5 @@
 // Adds, removes, drives and reads joints. From PhysicsSystem::Joints(); call it between steps, from one thread at a
-// time (reading from many is fine). What a joint holds together sleeps and wakes together; every change wakes it.
+// time (reading from many is fine). Jointed bodies sleep and wake together; every change of a joint wakes them.
 #pragma once
 
 #include <Fulcrum/Jobs/JobSystem.h>
@@ -12,7 +12,7 @@ namespace fulcrum {
 
 struct WorldState;
 
-// How far a joint's locks are from where they hold, now.
+// Position error of a joint's locks, now.
 struct JointError {
     float distance = 0;  // m, between the anchors, along what is locked
     float angle = 0;     // rad, of what is locked

@@ -22,7 +22,8 @@ enum class JointSpace : uint8_t {
     Body,   // places and axes are those of each body's own frame
 };
 
-// Where a joint holds a body: a place and a frame, whose x axis is the joint's axis (hinge, slide, twist).
+// Where a joint holds a body: the anchor point and the joint's frame, whose x axis is the joint's axis (hinge, slider,
+// twist).
 struct JointAnchor {
     Position point = Position::Zero();  // m
     Vector3 axis = Vector3(1, 0, 0);    // x of the frame; unit within 1e-3
@@ -30,8 +31,8 @@ struct JointAnchor {
 };
 
 // Of two joints of a body the one of higher priority is solved later in every iteration, and wins where they disagree.
-// A joint to a static or kinematic body counts as High. This is an order, no weight: where few iterations are made the
-// other one still pulls.
+// A joint to a static or kinematic body counts as High. This is an order, not a weight: with few iterations the joint
+// of lower priority still has an effect.
 enum class JointPriority : uint8_t { Normal, High };
 
 struct JointSettings {
@@ -42,14 +43,15 @@ struct JointSettings {
     bool enabled = true;
     bool collideConnected = false;  // whether the two bodies collide with each other
     JointPriority priority = JointPriority::Normal;
-    // The joint is disabled where it did more on average over a step: an impulse of J N s counts as J / dt.
+    // The joint breaks (is disabled) when its average over a step exceeds one of these: an impulse of J N s counts as J
+    // / dt.
     float breakForce = std::numeric_limits<float>::infinity();   // N, > 0
     float breakTorque = std::numeric_limits<float>::infinity();  // N m, > 0
-    // More effort for the island of this joint alone; 0: the system's.
+    // Minimum solver effort for this joint's island; 0: the system's.
     int substeps = 0;            // 0..64
     int velocityIterations = 0;  // 0..255
     int positionIterations = 0;  // 0..255
-    // For this joint the bodies are so much lighter or heavier. What hangs together by it is not solved as a tree.
+    // Mass scales of the two bodies in this joint. Joints connected to one with scales are not solved as exact trees.
     MassOverride massOverride{};
     uint64_t userData = 0;
 };

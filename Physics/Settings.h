@@ -94,7 +94,7 @@ struct SolverSettings {
     float baumgarte = 0.2f;
     float baumgarteSlop = 0.001f;
 
-    // Efforts from which to choose; errors fall with the square of the substeps. Docs/Accuracy.md says what stands.
+    // Presets; errors fall with the square of the substeps. Docs/Accuracy.md says which structures stand with which.
     static constexpr SolverSettings Fast() { return {.substeps = 2}; }
     static constexpr SolverSettings Balanced() { return {}; }  // the default
     static constexpr SolverSettings Accurate() { return {.substeps = 16}; }
@@ -119,8 +119,8 @@ struct BodySettings {
     float angularDamping = 0.0f;  // 1/s, >= 0
     float gravityFactor = 1.0f;   // finite
     LockedAxes lockedAxes = LockedAxes::None;
-    // No step leaves the body, dynamic or kinematic, faster than these, whatever pushes it, nor moves it farther than
-    // they allow.
+    // Upper limits, which hold for dynamic and kinematic bodies whatever pushes them: of the velocity after a step, and
+    // of the motion within one.
     float maxLinearSpeed = 1000.0f;  // m/s, > 0; more than 3e8 counts as that
     float maxAngularSpeed = 300.0f;  // rad/s, > 0; more than 1e6 counts as that
     bool gyroscopicTorque = true;    // conserve angular momentum of bodies whose inertia is not spherical
@@ -144,16 +144,16 @@ struct SleepSettings {
     float linearSpeed = 0.05f;
 };
 
-// How exact what rests is to be: islands of contacts under load are solved with more substeps than the system's where
-// these do not do (Docs/Step.md). The cost is that of the island alone.
+// Accuracy of resting contacts: islands whose contacts carry loads get more substeps than the system's where these are
+// too few (Docs/Step.md). Other islands do not cost more.
 struct AccuracyTarget {
     // How deep bodies sink into each other at a contact, as a part of the smaller one's size (half an edge of a cube),
     // > 0; infinite: no island has more substeps. Slender islands, as columns are, get as many as keep them upright by
     // a margin of four at 0.004, in inverse proportion to this.
     float penetration = 0.004f;
     int mostSubsteps = 64;  // 1..64
-    // Of islands with 768 constraints and more, too. Else, for these, by the weight of small bodies alone: few of a
-    // large pile carry much, and all of it is solved with the same effort.
+    // Whether islands of 768 constraints and more get as many, too. If not, they get only what the weight of small
+    // bodies in them asks for: few contacts of a large pile carry much, but all of it is solved with the same effort.
     bool largeIslands = false;
 };
 
@@ -163,7 +163,7 @@ struct SystemSettings {
     AccuracyTarget accuracy{};
     SleepSettings sleep{};
     NarrowPhaseMethod narrowPhase = NarrowPhaseMethod::Automatic;
-    // m, > 0, at most 1000: contacts begin at this separation, so that nothing bumps; those of small shapes at a
+    // m, > 0, at most 1000: contact points are created at this separation, before bodies touch; of small shapes, at a
     // quarter of the smaller one's outer radius.
     float speculativeDistance = 0.02f;
     float penetrationSlop = 0.0f;  // m, >= 0: overlap that is left alone
@@ -174,7 +174,7 @@ struct SystemSettings {
     float contactDampingRatio = 1.0f;  // 0..1e6
     float contactPushSpeed = 3.0f;     // m/s, > 0, at most 1e6: the fastest push
     // m/s, > 0, at most 1e6: the fastest that bodies which were created, placed or grown in each other are pushed
-    // apart. They keep no speed of that.
+    // apart. They keep none of that velocity.
     float depenetrationSpeed = 0.5f;
     float jointFrequency =
         std::numeric_limits<float>::infinity();  // Hz, likewise, of the spring that pulls joints together
@@ -185,8 +185,8 @@ struct SystemSettings {
     float exactJointLoad = 10.0f;
     // m/s and rad/s, > 0, at most 1e6: the fastest pull; from afar up to three times that (Docs/Joints.md).
     float jointPushSpeed = 20.0f;
-    // m/s, >= 0: slower impacts do not bounce; where gravity does not press the two bodies together, only those slower
-    // than four substeps of it.
+    // m/s, >= 0: slower impacts do not bounce; between bodies that gravity does not press together, only those slower
+    // than four substeps of gravity do not.
     float restitutionSpeed = 0.5f;
     float boundsMargin = 0.05f;  // m, > 0: fat bounds exceed the shape's by this, or a quarter of its outer radius
     // Bit j of layerCollides[i]: bodies of layer i and j collide. Must be symmetric.

@@ -163,7 +163,7 @@ void BounceContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const Co
     const auto isHit = (largest > zero) & (sum * part < Real(std::numeric_limits<float>::max()));
     const Real shift = kRelax ? Real(dt) - hits.time : -hits.time;
     const auto apply = [&](const Real(&before)[8], const Real(&after)[8], Real(&own)[8], Real(&v)[8], Real(&x)[8]) {
-        // What an impact turns by more than half a turn within the substep is left where it is.
+        // Bodies that an impact would rotate by more than half a turn within the substep are not displaced.
         Real turnSquared = zero;
         for (int k = BodyState::kAngular; k < BodyState::kAngular + 3; ++k) {
             const Real turn = (after[k] - before[k]) * part * shift;

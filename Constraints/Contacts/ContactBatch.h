@@ -26,7 +26,7 @@
 
 namespace fulcrum {
 
-// The second body of a contact: one that is moved,
+// Body B of a contact where it is dynamic.
 template <int N>
 struct MovingSide {
     using Real = Wide<N>;
@@ -34,12 +34,12 @@ struct MovingSide {
     Vec3<Real> arm;  // m, from its center of mass to c
     InverseMass<Real> inverse;
 };
-// or one that is not (static, kinematic): the motion of its point at c is all there is to know.
+// Body B where it is static or kinematic: only the motion of its point at c is needed.
 template <int N>
 struct FixedSide {
     using Real = Wide<N>;
     Twist<Real> velocity;     // at the start of the step
-    Vec3<Real> acceleration;  // m/s2, w x (w x r): what turns takes its load along the arc, not along its tangent
+    Vec3<Real> acceleration;  // m/s2, centripetal, w x (w x r): a turntable carries its load along the arc
 };
 
 template <int N, bool kFixedB>

@@ -96,7 +96,7 @@ FULCRUM_FORCE_INLINE void GatherRecordRow(const uint32_t (&index)[N], const Cont
     GatherRows<N>(rows, out);
 }
 
-// How B's surface moves against A's at c, beyond the motion of the bodies.
+// Surface velocity of B relative to A at c, beyond the motion of the bodies.
 template <class Real>
 struct SurfaceMotion {
     Real v1, v2;  // m/s along t1 and t2
@@ -126,7 +126,7 @@ FULCRUM_FORCE_INLINE Vec3<Wide<N>> NormalTorque(const ContactBatch<N, kFixedB>& 
     return batch.tangent1 * sumB - batch.tangent2 * sumA;
 }
 
-// Impulses of the normal rows, put together: their sum, and that of each times its place along t1 and t2.
+// Sums over the normal rows: of the impulses, and of the impulses times the places a and b.
 template <class Real>
 struct NormalImpulses {
     Real sum{0.0f}, sumA{0.0f}, sumB{0.0f};
@@ -157,7 +157,7 @@ FULCRUM_FORCE_INLINE NormalMotion<Wide<N>> NormalMotionOf(const ContactBatch<N, 
             Dot<Real>(relative.angular, batch.tangent2)};
 }
 
-// J that normal impulses do on both bodies, or the rate of it, where these move like this.
+// Work of normal impulses on both bodies, J, for a displacement; for a velocity, power.
 template <class Real>
 FULCRUM_FORCE_INLINE Real WorkOf(const NormalImpulses<Real>& impulses, const NormalMotion<Real>& motion) {
     return impulses.sum * motion.linear + impulses.sumB * motion.angular1 - impulses.sumA * motion.angular2;

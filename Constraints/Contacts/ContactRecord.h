@@ -23,7 +23,7 @@ struct alignas(32) ContactRecord {
     float friction = 0;           // Coulomb coefficient
     float restitution = 0;        // 0..1
     float twistRadius = 0;        // m: mean distance of the contact patch from its center
-    float marks = 0;              // the sum of what it has, see Mark
+    float marks = 0;              // sum of its Marks
     // Second row: impulses of the last substep.
     float impulse[kMaxPoints] = {0, 0, 0, 0};  // N s along the normal, by point
     float frictionImpulse[3] = {0, 0, 0};      // N s, world axes, on B
@@ -51,7 +51,7 @@ struct alignas(32) ContactRecord {
         kSurfaceB = 7
     };
 
-    // What few contacts have.
+    // Features that few contacts have, as bits.
     enum Mark { kSurfaceVelocity = 1, kMassOverride = 2 };
     bool Has(Mark mark) const { return (static_cast<int>(marks) & mark) != 0; }
     void Set(Mark mark, bool has) {
@@ -59,9 +59,8 @@ struct alignas(32) ContactRecord {
         marks = static_cast<float>(has ? others | mark : others);
     }
 
-    // B's surface moves so against A's, beyond the motion of the bodies: m/s at the contact's center and rad/s, world
-    // axes. Few contacts have one: it has no row of its own but what is spare in those of the first three points, its
-    // six numbers in their order.
+    // Surface velocity of B relative to A beyond the motion of the bodies: m/s at the contact's center and rad/s, world
+    // axes. Few contacts have one, so its six numbers are stored in the spare floats of the first three points' rows.
     static constexpr int kSurfacePoints = 3;
     void SetSurfaceVelocity(const Vector3& linear, const Vector3& angular) {
         Set(kSurfaceVelocity, !(linear.isZero(0) && angular.isZero(0)));

@@ -6,10 +6,10 @@
 
 namespace fulcrum::contacts {
 
-// The friction rows: what stops the slip where the cone holds that; else what lies on the cone against the slip, by a
-// step of projected gradient with one mass for all directions: bodies turn, too, and what would stop them points
-// elsewhere than against their slip. Then the torque. limit: N s, friction times the sum of the normal impulses. Finds
-// the totals of t1, t2 and twist, and by how much they change from `total`.
+// The friction rows. The impulse that stops the slip, if it is inside the friction cone; else the one on the cone that
+// opposes the slip, by a step of projected gradient with one mass for all directions: since bodies turn, too, the
+// impulse that stops the slip is not parallel to it. Then torsional friction. limit: N s, friction times the sum of the
+// normal impulses. Computes the totals of t1, t2 and twist, and their change from `total`.
 template <int N, bool kFixedB>
 FULCRUM_FORCE_INLINE void SolveFriction(const ContactBatch<N, kFixedB>& batch, const Wide<N> (&total)[3], Wide<N> limit,
                                         Wide<N> v1, Wide<N> v2, Wide<N> wn, Wide<N> (&solved)[3],
@@ -85,11 +85,11 @@ FULCRUM_FORCE_INLINE Wide<N> SlowestImpact(const ContactBatch<N, kFixedB>& batch
 // of pushes answers them, and as pushes move bodies and friction comes too late for that, layers of boxes creep.
 enum class Pass {
     Push,             // normal rows; overlaps are pushed apart
-    PushAndFriction,  // the same with friction: where no relaxing pass follows, or the second body is moved by its user
+    PushAndFriction,  // the same with friction: where no relaxing pass follows, or body B is kinematic
     Relax             // friction and normal rows; nothing is pushed
 };
 
-// The lanes whose second body is moved by its user, or has a surface that is.
+// The lanes whose body B is kinematic and moves, or has a surface velocity.
 template <int N, bool kFixedB>
 FULCRUM_FORCE_INLINE WideMask<N> MovesByItself(const ContactBatch<N, kFixedB>& batch) {
     using Real = Wide<N>;

@@ -1,16 +1,15 @@
 // Rotation of B against A about three axes, each with limits, motor and friction: what swing-twist and
 // six-degrees-of-freedom joints share. Called by these; no threads.
 //
-//   Coordinates (SwingTwist.h): twist about x, swing about y and z as the rotation vector phi. An axis is free,
-//   limited, or, where its limits are the same, locked. Axes that are locked at zero from the start, and hard, become a
-//   block:
-//       all three: AngularLock::All           two: AngularLock::Axis; the third then is as in a hinge, and counts turns
+//   Coordinates (SwingTwist.h): twist about x, swing about y and z as the rotation vector phi. An axis is free, limited
+//   or, where its limits are the same, locked. Axes that are hard and locked at zero from the start become a block:
+//       all three: AngularLock::All
+//       two:       AngularLock::Axis; the third is then as in a hinge, and counts turns
 //   Else the rows are:
 //       limits    C and axis from SwingTwist.h
 //       motors    about the axes of B's frame. A target orientation g, made of the three target positions as swing and
-//       twist,
-//                 gives q = g exp(c): C = c, a spring along the shortest way from anywhere. A target speed is that
-//                 about the axis
+//                 twist, gives q = g exp(c): C = c, a spring along the shortest way from anywhere. A target speed is
+//                 that about the axis
 //       friction  about the axes of B's frame
 #pragma once
 

@@ -13,7 +13,7 @@ struct JointPose;
 struct JointRow;
 struct JointRowList;
 
-// Axes of a joint's frame; angular ones are those turned about.
+// Axes of a joint's frame: translation along them, rotation about them.
 enum class JointAxis : uint8_t { LinearX, LinearY, LinearZ, AngularX, AngularY, AngularZ };
 
 // m or rad.
@@ -58,7 +58,8 @@ inline bool IsHard(const SpringSettings& spring) {
     return (spring.mode == SpringMode::StiffnessAndDamping ? spring.stiffness : spring.frequency) <= 0.0f;
 }
 
-// Whether it goes on at a limit; a limit that yields would be pushed back by 1 % of a radian by a strong one.
+// Whether the motor goes on pushing at a limit, which must then be a hard row: a strong motor would push a soft one
+// back by 0.01 rad.
 inline bool PressesOnLimits(const JointMotor& motor) { return motor.mode == MotorMode::ToVelocity; }
 
 // Slots of the rows of one axis, counted from the axis' first one.
@@ -69,21 +70,20 @@ struct ControlSlots {
 // The largest number of rows that AddControlRows adds.
 uint32_t MaxControlRows(const AxisControl& control);
 
-// How much faster than now and than its motor wants an axis may move on average before the step is over: what pushes it
-// otherwise is unknown when limits are chosen. 120 m/s2 and 240 rad/s2 at 60 Hz; beyond that a limit is late by one
-// step.
+// Margin on the speed of an axis, now or of its motor, when it is decided which limits may be reached within the step:
+// other accelerations are not known then. 120 m/s2 and 240 rad/s2 at 60 Hz; beyond that a limit acts one step late.
 inline constexpr float kLinearSlackSpeed = 1.0f;   // m/s
 inline constexpr float kAngularSlackSpeed = 2.0f;  // rad/s
 
-// The farthest way that the spring of a position motor can take an axis within dt, s, from rest `way` m or rad before
-// its target: of an undamped oscillator, way (1 - cos(w dt)).
+// The farthest that the spring of a position motor can move an axis within dt, s, from rest at a distance of `way`, m
+// or rad, from its target: that of an undamped oscillator, way (1 - cos(w dt)).
 float WayOfSpring(const SpringSettings& spring, float way, float dt);
 
 // How fast, m/s on average over the step, the distance between two points may grow because they move across it at
 // `speed`, m/s: by (v dt)^2 / 2 d in the step, and by v dt at most.
 float StretchSpeed(float distance, float speed, float dt);
 
-// Beyond its limit by less, m or rad, an axis still counts as at it: rounding must not switch motors off and on.
+// An axis beyond its limit by less than this, m or rad, counts as at it: rounding must not switch motors off and on.
 inline constexpr float kLimitSlop = 1e-3f;
 
 // Adds the row that keeps C >= 0: C is `error`, and its rate J v of `motion` times sign.

@@ -1,19 +1,17 @@
 // N joints of the same locks side by side, solved in lanes. No two joints of a batch share a moving body.
 //
 // A joint is a linear lock, an angular lock (parts) and scalar rows. Within a joint the rows come first, then the
-// locks: what holds bodies together wins. Four things make few iterations go far:
-//  - The parts are set up anew in every substep from the displacements since the start of the step, so that a joint
-//  follows
-//    the arc that its bodies turn along.
-//  - A body keeps its constraints' share of velocity from substep to substep, in place of a warm start (Solve stage).
-//  What the
-//    turning of a part changes of its impulse is added then: `turnedA` and `turnedB`.
-//  - A joint that locks translation and rotation solves both as one block.
-//  - A row's impulse takes the reaction of the locks with it. Its response is M^-1 (J^T - L^T (L M^-1 L^T)^-1 L M^-1
-//  J^T) with L the
-//    locks' Jacobian: it disturbs no lock, and a spring or a motor acts on the inertia that it really moves. The
-//    reaction of the locks, `lockLinear` and `lockAngular` per unit of impulse, is kept apart from their own impulses:
-//    softness takes none of it back.
+// locks, which therefore win. Four things make few iterations converge:
+// - The parts are set up anew in every substep from the displacements since the start of the step, so that a joint
+//   follows the arc that its bodies turn along.
+// - A body keeps its constraints' share of velocity from substep to substep, in place of a warm start (Solve stage). By
+//   how much the rotation of a part changes its impulse is added then: `turnedA` and `turnedB`.
+// - A joint that locks translation and rotation solves both as one block.
+// - A row's impulse includes the reaction of the locks. With L the locks' Jacobian its response is
+//       M^-1 (J^T - L^T (L M^-1 L^T)^-1 L M^-1 J^T):
+//   it disturbs no lock, and a spring or a motor acts on the inertia that it really moves. The reaction of the locks,
+//   `lockLinear` and `lockAngular` per unit of impulse, is kept apart from the locks' own impulses, so that their
+//   softness does not act on it.
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/JointType.h>
@@ -155,8 +153,8 @@ struct JointBatch {
     }
 };
 
-// Rotation vectors of a step up to this, rad, are put together as rotations, longer ones added: at a full turn their
-// sum has no derivative.
+// Rotation vectors of a step up to this length, rad, are composed as rotations; longer ones are added, since their
+// composition has no derivative at a full turn.
 namespace joints {
 inline constexpr float kFarthestTurn = 5.5f;
 }
@@ -192,8 +190,8 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
 template <int N>
 void WarmStartJoints(const JointBatch<N>& batch, BodyState* states);
 
-// Adds what the turning of the parts in the last substep changes of their impulses, where SolveJointVelocities is not
-// told to.
+// Adds the change of the parts' impulses by their rotation in the last substep, which SolveJointVelocities does itself
+// where settings.continues is set.
 template <int N>
 void TurnJoints(JointBatch<N>& batch, BodyState* states);
 

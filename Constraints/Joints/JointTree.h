@@ -1,11 +1,11 @@
-// Joints that hold bodies together as a tree, solved exactly and at once: chains under heavy loads, which iterations
-// bring to rest only after as many of them as the load is heavier than a link. The Solve stage runs it before the
+// Joints that hold bodies together as a tree, solved exactly by a direct factorization: chains under heavy loads, for
+// which iterations converge only after as many as the load is heavier than a link. The Solve stage runs it before the
 // iterations of the tree's island, which then find little left to do. One thread per tree.
 //
 // With M the masses, L the Jacobian of all locks and b their biases the impulses x are the solution of
 //     [M  -L^T] [dv]   [   0    ]
 //     [L    0 ] [x ] = [-L v - b]
-// Bodies are eliminated from the leaves to the root; each leaves its mark on the mass of its parent, so the time
+// Bodies are eliminated from the leaves to the root; each adds its articulated inertia to its parent, so the time
 // grows with the number of bodies alone. A tree that hangs on what does not move has that as its root. Further joints
 // with what does not move are leaves without mass: they are given a small compliance, and the iterations do the rest.
 // In double, because the masses span many orders of magnitude.

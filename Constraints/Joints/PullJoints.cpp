@@ -28,8 +28,8 @@ FULCRUM_FORCE_INLINE Wide<N> PullSpeedOf(const JointRows<N>& row, const JointSol
     return PullSpeed<Real>(row.error / ratio, settings) * ratio;
 }
 
-// Those of the distant lanes. They need not keep momentum: what is to move is moved without turning it, and what is to
-// turn is turned about its center, so that no lever as long as the gap makes a small mass of a large one.
+// Those of the distant lanes. They need not conserve momentum: translation acts at the centers of mass, and rotation is
+// about them, since a lever as long as the gap would make the effective mass tiny.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 [[gnu::noinline]] void PullDistant(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b,
                                    const JointSolveSettings& settings) {

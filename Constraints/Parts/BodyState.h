@@ -14,7 +14,7 @@ struct alignas(64) BodyState {
     float linearVelocity[3] = {0, 0, 0};   // m/s, of the center of mass
     float angularVelocity[3] = {0, 0, 0};  // rad/s, world axes
     float nearFixed = 0;  // of pseudo-velocities: 1 where a contact with something fixed acts, see PullContacts
-    float marks = 0;      // of whoever steps the bodies; constraints leave them alone
+    float marks = 0;      // flags of the stages, not used by constraints
     // Second row: change of pose since the start of the step.
     float deltaPosition[3] = {0, 0, 0};  // m
     float deltaRotation[3] = {0, 0, 0};  // rad, rotation vector in world axes

@@ -4,7 +4,7 @@
 // Own derivation.
 //   a1, a2  unit axes in world space, each fixed in its body's bearing        ratio  turns of body 1 per turn of body 2
 //   theta1, theta2  angles turned about them
-//   Constraint:  C = theta1 + ratio theta2 - C0           (bodies that mesh outside turn against each other: ratio > 0)
+//   Constraint:  C = theta1 + ratio theta2 - C0           (external gears turn against each other: ratio > 0)
 //   Derivative:  dC/dt = w1 . a1 + ratio w2 . a2
 //   Jacobian:    J = [0, a1, 0, ratio a2]
 //   K = J M^-1 J^T = a1 . I1^-1 a1 + ratio^2 a2 . I2^-1 a2

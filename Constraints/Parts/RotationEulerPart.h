@@ -3,7 +3,7 @@
 //
 // Source: D. Chappuis, "Constraints Derivation for Rigid Body Simulation in 3D" (fixed joint); the error is our own.
 //   q1, q2  rotations of the bodies     q0 = q1^-1 q2  where the constraint holds, constant
-//   d = q2 q0^-1 q1^-1                  the rotation that body 2 has too much, world space: q2 = d q1 q0
+//   d = q2 q0^-1 q1^-1                  rotation error of body 2, world space: q2 = d q1 q0
 //   Constraint:  C = rotation vector of d, by the short way, |C| <= pi
 //   Derivative:  dC/dt = w2 - w1 for small C and, for any C, for rotations about C itself
 //   Jacobian:    J = [0, -1, 0, 1]

@@ -3,12 +3,11 @@
 //
 // A soft row that acts alone on a mass with error x maps its velocity, once per substep of length h, as
 //     v' = (v - K x / h) / D,    x' = x + h v'
-// and D and K decide which oscillator x'' + 2 zeta w x' + w^2 x = 0 that is. With a = zeta w h, W = (w h)^2, W >= a^2
-// or not:
-//     Implicit:  D = 1 + 2 a + W,  K = W                     damping added at every step: zeta grows by about w h / 2
-//     Exact:     D = e^(2a),       K = 1 + D - 2 sqrt(D) cos(sqrt(W - a^2)), or cosh(sqrt(a^2 - W)): the eigenvalues of
-//     the
-//                oscillator itself, so x is that of the continuum at every step
+// and D and K decide which oscillator x'' + 2 zeta w x' + w^2 x = 0 that is. With a = zeta w h and W = (w h)^2:
+//     Implicit:  D = 1 + 2 a + W,  K = W
+//                damping added at every step: zeta grows by about w h / 2
+//     Exact:     D = e^(2a),       K = 1 + D - 2 sqrt(D) cos(sqrt(W - a^2)), or cosh(sqrt(a^2 - W)) where a^2 > W
+//                the eigenvalues of the oscillator itself, so x is that of the continuum at every step
 // What each costs:
 //  - A constant load F rests at x = F h^2 / (m K): implicit meets F / k, exact is too stiff by about the factor 1 + a.
 //    Implicit is off by w h / (2 zeta) of the damping ratio instead; the two errors are equal at zeta = 1 / sqrt(2).

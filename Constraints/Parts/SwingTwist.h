@@ -16,14 +16,11 @@
 // the edge and n the unit tangent there that leads inwards, C = atan2(d . n, d . D) and a = D x n.
 //     cone      the circle alpha = c about x, so C = c - alpha, a = -e
 //     ellipse   phi_y^2 / Y^2 + phi_z^2 / Z^2 = 1. phi is the map of the sphere that keeps distances and directions
-//     from x.
-//               D is where d . dD/dt = 0 along the edge D(t), by bracketing
+//               from x. D is where d . dD/dt = 0 along the edge D(t), by bracketing
 //     pyramid   swing_y / swing_w between tan(minimum / 2) and tan(maximum / 2), likewise z: on the main planes these
-//     are angles.
-//               Its faces are circles through -x, so D is closed: the foot on a face, or a corner
+//               are angles. Its faces are circles through -x, so D is closed: the foot on a face, or a corner
 //     one axis free, the other limited: the circles of latitude asin(d . its direction), a band of constant width. (The
-//     edges
-//               above would pinch at 180 degrees, where the free axis leads through.)
+//               edges above would pinch at 180 degrees, where the free axis leads through.)
 //     one axis locked, the other limited: d stays on a great circle, and lambda, its longitude there, in a range
 //     both axes locked: phi = 0, in two rows along the great circle back to x, exact from any angle
 // Twist: dtau/dt = t . w / cos(alpha / 2) with t = (x + d) / |x + d| = (s, swing_z, -swing_y), of length 1 up to 180

@@ -2,9 +2,9 @@
 // Solved with the other joints; no threads.
 //
 //   alpha       angle between the two x axes, 0..pi           e  unit axis from A's x to B's: xA cross xB / sin(alpha)
-//   Locks:      point; for a half angle of zero rotation but about x as well
+//   Locks:      point; for a half angle of zero also rotation about y and z
 //   Rows:       C = halfAngle - alpha >= 0, J = [0, e, 0, -e]
-// Where the axes are the same, or opposite, any axis perpendicular to x is e.
+// Where the axes are parallel or opposite, e is any axis perpendicular to x.
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/JointType.h>
@@ -30,7 +30,7 @@ public:
     JointLocks Locks() const override;
     uint32_t MaxRows() const override { return IsAxle() || IsFree() ? 0 : MaxControlRows(control_); }
     void CollectRows(const JointPose& pose, JointRowList& rows) override;
-    // AngularY: alpha, rad. No way about a single axis, so without friction and motor.
+    // AngularY: alpha, rad. It is no rotation about a fixed axis, so it has neither friction nor motor.
     double Coordinate(JointAxis axis, const JointPose& pose) const override;
     float HalfAngle() const { return control_.limits.max; }  // rad
 

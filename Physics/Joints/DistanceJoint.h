@@ -3,7 +3,7 @@
 //
 //   u = p2 - p1, d = |u|, n = u / d
 //   Rows:       C = d - ..., J = [-n, -r1 x n, n, r2 x n] (LinearX)
-// Where the points are the same any n does: x of frame A.
+// Where the anchors coincide, n is x of frame A.
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/JointType.h>

@@ -1,9 +1,9 @@
 // Two gears that mesh: A and B turn about the x axes of their frames, each in a bearing that other joints make. Solved
 // with the other joints; no threads.
 //
-//   theta1, theta2  turned by A and by B about their axes, since the joint was made     ratio  turns of A per turn of B
-//   Rows:       the gear part's, C = theta1 + ratio theta2
-// Both angles are counted without drift (BearingAngle.h), so that no tooth is ever lost.
+//   theta1, theta2  rotation of A and of B about their axes since the joint was made     ratio  turns of A per turn of
+//   B Rows:       the gear part's, C = theta1 + ratio theta2
+// Both angles are accumulated without drift (BearingAngle.h).
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/BearingAngle.h>
@@ -14,14 +14,14 @@ namespace fulcrum {
 // A turns about anchor A's axis, B about anchor B's, each in a bearing that other joints make to a body at rest; their
 // teeth mesh. turns of A = -ratio turns of B.
 struct GearJointSettings : JointSettings {
-    float ratio = 1.0f;  // 1e-9..1e9 without its sign; teeth of B / teeth of A, > 0 where they mesh outside
+    float ratio = 1.0f;  // |ratio| in 1e-9..1e9; teeth of B / teeth of A, > 0 for external gears
 };
 MaybeError Check(const GearJointSettings& settings);
 std::unique_ptr<JointType> MakeType(const GearJointSettings& settings);
 
 class GearJoint final : public JointType {
 public:
-    // ratio: not zero; > 0 where gears mesh outside and turn against each other.
+    // ratio: not zero; > 0 for external gears, which turn against each other.
     explicit GearJoint(float ratio) : ratio_(ratio) {}
 
     const char* Kind() const override { return "gear"; }

@@ -2,11 +2,11 @@
 // with the other joints; no threads.
 //
 //   P, T, N, B, turn  of the path at the place nearest to B's anchor (Path.h), world space       u = p2 - p1, e = u - P
-//   s           way along the path, m: its length up to there; beyond the end of an open path e . T more
+//   s           arc length of that place from the start of the path, m; beyond the end of an open path plus e . T
 //   Rows:       C = e . N, e . B, J = [-n, -(r1 + u) x n, n, r2 x n] with n = N, B
 //               C = s - ..., the same with n = T (LinearX)
 //               rotation: with c the rotation vector from the path's frame to B's, C = c . n, and
-//               dC/dt = n . (w2 - w1) - (n . turn) ds/dt: riding along turns the path's frame
+//               dC/dt = n . (w2 - w1) - (n . turn) ds/dt: the path's frame turns as B moves along
 // An open path has stops at its ends.
 #pragma once
 
@@ -17,7 +17,7 @@
 namespace fulcrum {
 
 enum class PathRotation : uint8_t {
-    Free,              // B turns as it likes
+    Free,              // B turns freely
     Tangent,           // the x axis of B's frame is along the path
     TangentAndNormal,  // and its y axis along the normal
     Constant,          // B does not turn against A

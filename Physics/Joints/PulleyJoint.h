@@ -1,11 +1,10 @@
-// A rope from A over two fixed points of the world to B, where a block and tackle may multiply it. Solved with the
-// other joints; no threads.
+// A rope from A over two fixed points of the world to B, with a mechanical advantage (block and tackle) of `ratio` on
+// B's side. Solved with the other joints; no threads.
 //
 //   p1, p2  anchors of A and B      f1, f2  fixed points      n1 = (p1 - f1) / |p1 - f1|, n2 likewise
-//   l = |p1 - f1| + ratio |p2 - f2|, in minLength .. maxLength
+//   l = |p1 - f1| + ratio |p2 - f2|, in minLength .. maxLength (LinearX)
 //   Rows:       C = l - minLength >= 0, maxLength - l >= 0,  l' = n1 . (v1 + w1 x r1) + ratio n2 . (v2 + w2 x r2)
-//   (LinearX)
-// At a fixed point a side pulls nowhere.
+// A side of length zero has no direction and pulls nowhere.
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/JointType.h>

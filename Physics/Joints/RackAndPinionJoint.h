@@ -1,7 +1,7 @@
 // A pinion, A, that turns about the x axis of its frame, and a rack, B, that moves along the x axis of its own. Bearing
 // and guide are other joints. Solved with the other joints; no threads.
 //
-//   theta  turned by the pinion about its axis, since the joint was made          ratio  rad that it turns per meter
+//   theta  rotation of the pinion about its axis since the joint was made          ratio  rad of theta per meter of d
 //   d      way of the rack's anchor from the pinion's along the rack's axis
 //   Rows:       the rack-and-pinion part's, C = theta - ratio (d - d0)
 #pragma once
@@ -14,7 +14,7 @@ namespace fulcrum {
 // A, the pinion, turns about anchor A's axis through its point; B, the rack, moves along anchor B's axis. Other joints
 // make bearing and guide.
 struct RackAndPinionJointSettings : JointSettings {
-    float ratio = 1.0f;  // rad/m, 1e-9..1e9 without its sign; 1 / radius of the pinion, negative to move the other way
+    float ratio = 1.0f;  // rad/m, |ratio| in 1e-9..1e9; 1 / radius of the pinion, < 0 to reverse
 };
 MaybeError Check(const RackAndPinionJointSettings& settings);
 std::unique_ptr<JointType> MakeType(const RackAndPinionJointSettings& settings);

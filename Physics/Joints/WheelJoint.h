@@ -1,9 +1,10 @@
 // A wheel, B, on a chassis, A: it slides along the suspension's axis, may be steered about it, and spins about its
 // axle. Solved with the other joints; no threads.
 //
-//   x, y        of A's frame: the axle as it is unsteered, and the suspension's axis, upwards        d  x axis of B's
-//   frame Rotation of frame B against A: about y by delta (steering, AngularY), about z by tau (the axle's tilt, 0),
-//   about x by psi (spin, AngularX). With w the relative angular velocity and s = d . y = sin(tau):
+//   x, y        of A's frame: the axle as it is unsteered, and the suspension's axis, upwards
+//   d           x axis of B's frame
+//   Rotation of frame B against A: about y by delta (steering, AngularY), about z by tau (the axle's tilt, 0), about x
+//   by psi (spin, AngularX). With w the relative angular velocity and s = d . y = sin(tau):
 //               delta' = w . (y - s d) / (1 - s^2),   tau' = w . (d x y) / |d x y|,   psi' = w . d - s delta'
 //   Locks:      line along y; unsteered: rotation but about x
 //   Rows:       those of the suspension (LinearY) and of the spin; steered: tau = 0 and those of the steering

@@ -2,7 +2,7 @@
 // bits. Called by QueryInterface under the world's lock. Thread-safe; allocates nothing.
 //
 // A ray's hit of a collider does not depend on what else it hit before; the closest is the least by fraction, body,
-// child. So any order of colliders, and any company that the ray has, gives the same answer.
+// child. So the result depends neither on the order of the colliders nor on the other rays of the packet.
 #pragma once
 
 #include <Fulcrum/Physics/Queries/ColliderSearch.h>

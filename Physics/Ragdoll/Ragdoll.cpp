@@ -41,7 +41,7 @@ bool CanHaveMotor(const AxisControl* control) {
 
 }  // namespace
 
-// What is to be made of the settings.
+// Bodies and joints to be created, in world space.
 struct Ragdoll::Placed {
     std::vector<BodySettings> bodies;
     std::vector<RagdollJointFrames> frames;  // the first part's is not used
@@ -70,7 +70,7 @@ Ragdoll::Placed Ragdoll::Place(const RagdollSettings& settings, const Pose& orig
     return placed;
 }
 
-// What is right as settings may be wrong where it stands, or as it is to move.
+// Valid settings may be invalid once placed: beyond the largest position, or with another motion type.
 MaybeError Ragdoll::CheckPlaced(const Placed& placed) {
     for (size_t i = 0; i < placed.bodies.size(); ++i) {
         if (MaybeError e = NamedPart(i, "body", Check(placed.bodies[i]))) return e;
@@ -103,7 +103,7 @@ MaybeError Ragdoll::Build(const RagdollSettings& settings, const Placed& placed)
     const BodySettings& root = settings.parts[0].body;
     originInRoot_ = Inverse({root.position.cast<float>(), Normalized(root.rotation)});
     for (size_t i = 0; i < settings.parts.size(); ++i) {
-        // What is checked already is refused for where this is called alone: as the first part, if at all.
+        // The settings are checked: this fails only where changes are not allowed now, so for the first part or never.
         Result<BodyId> body = system_->Bodies().Create(placed.bodies[i]);
         if (!body) return body.GetError();
         bodies_.push_back(body.Value());

@@ -16,16 +16,16 @@ public:
     static Result<Ragdoll> Create(PhysicsSystem& system, const RagdollSettings& settings, const Pose& origin = {},
                                   std::optional<MotionType> motion = {});
 
-    // Bodies and joints. What of them was removed already is passed over.
+    // Removes the bodies and joints; those that were removed already are skipped.
     void Remove();
 
     // One a part, in the order of the settings.
     std::span<const BodyId> Bodies() const;
-    // Likewise, of the joint to the parent; the first part's, and one that was not made, exist nowhere.
+    // The joint of each part to its parent; an invalid id for the first part and where no joint was created.
     std::span<const JointId> Joints() const;
 
-    // All that follow have one pose a part, the pose of the body's own frame. Errors: UnknownId (a body was removed),
-    // OutOfRange (another number of poses), NonFinite, Unnormalized: nothing has changed then.
+    // Spans of poses have one element per part, the pose of the body's own frame. Errors of all that follow: UnknownId
+    // (a body was removed), OutOfRange (another number of poses), NonFinite, Unnormalized: nothing has changed then.
     Status GetPose(std::span<Pose> pose) const;
     // Teleports; velocities stay as they are.
     Status SetPose(std::span<const Pose> pose);

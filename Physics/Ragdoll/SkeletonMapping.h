@@ -1,14 +1,14 @@
 // Takes poses of a detailed animation skeleton to the few parts of a ragdoll, and back. Made once from both in their
 // reference poses, used every frame; immutable, so any number of threads may use one.
 //
-// A mapped joint and its part are rigidly connected as they are in the reference pose; so both ways are exact. Every
-// other joint
-// - that lies between two mapped ones, as in a spine of many joints over a torso of one part, keeps its place in that
-// chain:
-//   the chain is turned about its start so that its end points to where the ragdoll has it, and stretched and twisted
-//   evenly for what is missing then. A chain whose ends are where its own local poses lead keeps these, its detail;
-// - that leads to several mapped ones is of the chain of the one that was paired first;
-// - keeps its local pose otherwise: fingers, hair, a root above the first mapped joint.
+// A mapped joint and its part are rigidly connected as they are in the reference pose; so both ways are exact. Other
+// joints are placed as follows:
+// - Joints between two mapped ones are a chain, e.g. a spine of many joints over a torso of one part. The chain is
+//   rotated about its start so that its end points to where the ragdoll has it; then it is stretched and twisted evenly
+//   to close the gap that remains. A chain whose local poses reach its end already keeps them, and so the detail of the
+//   animation.
+// - Joints that lead to several mapped ones belong to the chain of the one that was paired first.
+// - All others keep their local pose: fingers, hair, a root above the first mapped joint.
 #pragma once
 
 #include <Fulcrum/Physics/Ragdoll/RagdollSettings.h>

@@ -150,8 +150,8 @@ struct alignas(32) UnconstrainedVelocity {
     float row[kRowFloats];  // the first of BodyState
 };
 
-// Positions are multiples of this wherever the step reads them, and what is less is carried along: what bodies are to
-// each other does not depend on how far out they are, to the last bit, up to 2^30 m, where double ends at it.
+// The step reads positions as multiples of this and carries the remainder: positions relative to each other are then
+// the same to the last bit however far out the bodies are, up to 2^30 m, where the spacing of doubles exceeds it.
 inline constexpr double kPositionGrid = 0x1p-23;  // m, 0.12 micrometers
 
 // The nearest point of the grid. Beyond 2^29 m doubles lie on it anyway.
@@ -208,8 +208,8 @@ public:
         return dynamics[index].motion == MotionType::Dynamic && !dynamics[index].frozen;
     }
     void MarkAwake(uint32_t index);
-    // A body that was created, or has got another pose, shape or filter: what it overlaps in the next step, or in that
-    // in which it wakes, it was put there.
+    // Of a body that was created, or has got another pose, shape or filter: its overlaps in the next step, or in that
+    // in which it wakes, count as placed by the user (Stages/CrowdContacts.h).
     void MarkPlaced(uint32_t index);
     void ForgetPlaced();
     void MarkAsleep(uint32_t index);

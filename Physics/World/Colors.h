@@ -19,7 +19,7 @@ bool MovesAwake(const BodyStore& bodies, const JointStore& joints, uint32_t join
 // As for pairs; only a joint that is enabled and moves awake gets a color.
 void ColorJoint(const BodyStore& bodies, JointStore& joints, ConstraintColoring& coloring, uint32_t joint);
 void UncolorJoint(JointStore& joints, ConstraintColoring& coloring, uint32_t joint);
-// Has the joints of a body see whether it can move: after it was frozen, or revived.
+// Updates a body's joints after it became immovable (frozen) or movable again (revived).
 void RecolorJointsOf(const BodyStore& bodies, JointStore& joints, ConstraintColoring& coloring, uint32_t body);
 
 }  // namespace fulcrum

@@ -16,7 +16,7 @@
 namespace fulcrum {
 
 struct alignas(64) Pair {
-    // First line: what a pair that keeps its manifold is read for.
+    // First cache line: all that is read of a pair that keeps its manifold.
     uint32_t bodyA = 0, bodyB = 0;  // A is dynamic, B any
     uint32_t colliderA = 0, colliderB = 0;
     const ConvexShape* shapeA = nullptr;

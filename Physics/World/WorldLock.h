@@ -1,6 +1,6 @@
 // Many readers or one writer: queries share the world, changes and steps have it alone. A reader that arrives while a
-// writer waits lets it go first, once, so that neither starves the other. Each thread knows what it does with which
-// world already: what it may do again takes no lock, and what would have to wait for itself is refused instead.
+// writer waits lets it go first, once, so that neither starves the other. Access is recorded per thread: nested access
+// of a kind that the thread has already takes no lock, and access for which it would wait for itself is refused.
 #pragma once
 
 #include <Fulcrum/Jobs/JobSystem.h>
@@ -17,14 +17,14 @@ public:
     ~WorldLock();
 
     enum class Access : uint8_t { None, Reads, Changes };
-    // The most that this thread does with the world of the lock, by itself or for the thread whose job it runs.
+    // The highest access that this thread has, by itself or from the thread whose job it runs.
     static Access OfThisThread(const WorldLock& lock);
-    // Why this thread must not read or change the world now; empty where it may.
+    // Why this thread may not read or change the world now; empty if it may.
     static std::optional<Error> RefusalOfReading(const WorldLock& lock);
     static std::optional<Error> RefusalOfChanging(const WorldLock& lock);
 
-    // What a thread does for the life of the object, which is that of a scope; it takes no lock: by itself for those
-    // that run jobs of a thread that has it.
+    // Records this thread's access for the lifetime of the object, and takes no lock. By itself it is for workers that
+    // run jobs of a thread which holds the lock.
     class Scope {
     public:
         Scope(WorldLock& lock, Access access);
@@ -71,7 +71,7 @@ private:
     const std::unique_ptr<State> state_;
 };
 
-// A job system whose threads know, while they run a world's jobs, what the thread that gave them does with the world.
+// A job system that gives workers the access of the thread whose job they run, for as long as they run it.
 class WorldJobs final : public JobSystem {
 public:
     WorldJobs(JobSystem& jobs, WorldLock& lock) : jobs_(jobs), lock_(lock) {}
