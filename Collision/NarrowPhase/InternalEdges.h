@@ -4,8 +4,8 @@
 // - one at an edge or corner of a triangle with a face contact is dropped, since that contact covers it;
 // - one at an active edge (SurfaceShape.h), or nearly along the face's normal, counts, the deepest first, and covers
 //   its edge for those that follow;
-// - one at an inactive edge is replaced by the contact with the triangle's face, if there is one. Used by
-//   SurfaceContact alone.
+// - one at an inactive edge is replaced by the contact with the triangle's face, if there is one.
+// Used by SurfaceContact alone.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/SurfaceManifold.h>

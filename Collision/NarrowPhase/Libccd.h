@@ -1,9 +1,9 @@
-// The one door to libccd, which finds by support functions, in double, whether two convex shapes overlap and how deep.
-// It serves NarrowPhaseMethod::Libccd, contacts and queries; it is what the tests hold the engine's own functions
-// against; and the queries ask it last where their own EPA gives up. libccd allocates in EPA; thread-safe.
+// The only interface to libccd, which finds by support functions, in double, whether two convex shapes overlap and how
+// deep. It serves NarrowPhaseMethod::Libccd, contacts and queries; the tests compare the engine's own functions with
+// it; and the queries ask it last where their own EPA gives up. libccd allocates in EPA; thread-safe.
 //
 // What it can not do is made good here:
-// - It knows no distance. Shapes are given a rounding, so that those up to as far apart overlap, too.
+// - It computes no distances. Shapes are given a rounding, so that those up to as far apart overlap, too.
 // - It calls shapes apart where its GJK degenerates. Only an axis that separates them counts as a proof; without one it
 //   is asked again from another start.
 // - Its EPA takes some deep overlaps for touching ones, or ends with a polytope that misses a part of the difference.
