@@ -12,6 +12,9 @@ MaybeError Check(const GearJointSettings& s) { return CheckWith(s, CheckRatio("r
 
 std::unique_ptr<JointType> MakeType(const GearJointSettings& s) { return std::make_unique<GearJoint>(s.ratio); }
 
+BearingAngle GearJoint::OfA() { return BearingAngle(std::span(state_).first<kNumbers>()); }
+BearingAngle GearJoint::OfB() { return BearingAngle(std::span(state_).last<kNumbers>()); }
+
 void GearJoint::Start(const JointPose& pose) {
     OfA().Start(pose.frameA);
     OfB().Start(pose.frameB);

@@ -33,8 +33,8 @@ public:
 
 private:
     static constexpr size_t kNumbers = BearingAngle::kNumbers;
-    BearingAngle OfA() { return BearingAngle(std::span(state_).first<kNumbers>()); }
-    BearingAngle OfB() { return BearingAngle(std::span(state_).last<kNumbers>()); }
+    BearingAngle OfA();
+    BearingAngle OfB();
 
     float ratio_;
     float distance_ = 0;  // m, of the anchors when the joint was made

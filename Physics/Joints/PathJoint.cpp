@@ -122,6 +122,8 @@ double PathJoint::Coordinate(JointAxis axis, const JointPose& pose) const {
     return WayOf(*path_, parameter, path_->Sample(parameter), local);
 }
 
+std::span<double> PathJoint::State() { return {&parameter_, 1}; }
+
 JointDrawing PathJoint::Drawing() const { return {.path = path_}; }
 
 }  // namespace fulcrum

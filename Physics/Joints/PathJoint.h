@@ -50,7 +50,7 @@ public:
     AxisControl* Control(JointAxis axis) override { return axis == JointAxis::LinearX ? &along_ : nullptr; }
     uint32_t FirstSlot(JointAxis axis) const override;
     double Coordinate(JointAxis axis, const JointPose& pose) const override;
-    std::span<double> State() override { return {&parameter_, 1}; }
+    std::span<double> State() override;
     const Path& GetPath() const { return *path_; }
 
 private:

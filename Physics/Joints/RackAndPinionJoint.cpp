@@ -14,6 +14,8 @@ std::unique_ptr<JointType> MakeType(const RackAndPinionJointSettings& s) {
     return std::make_unique<RackAndPinionJoint>(s.ratio);
 }
 
+BearingAngle RackAndPinionJoint::Pinion() { return BearingAngle(std::span(state_).first<BearingAngle::kNumbers>()); }
+
 void RackAndPinionJoint::Start(const JointPose& pose) {
     Pinion().Start(pose.frameA);
     state_[BearingAngle::kNumbers] = Dot(pose.offset, ToMatrix(pose.frameB).x);

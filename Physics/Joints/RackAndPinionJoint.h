@@ -31,7 +31,7 @@ public:
     std::span<double> State() override { return state_; }
 
 private:
-    BearingAngle Pinion() { return BearingAngle(std::span(state_).first<BearingAngle::kNumbers>()); }
+    BearingAngle Pinion();
 
     float ratio_;
     std::array<double, BearingAngle::kNumbers + 1> state_{};
