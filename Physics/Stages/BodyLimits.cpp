@@ -1,5 +1,6 @@
 #include <Fulcrum/Physics/Stages/BodyLimits.h>
 
+#include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/World/BodyPairs.h>
 #include <Fulcrum/Physics/World/Colors.h>
 #include <Fulcrum/Physics/World/SpeedLimits.h>

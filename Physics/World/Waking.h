@@ -9,6 +9,7 @@ namespace fulcrum {
 // What changes where bodies wake or fall asleep: they and their islands, the colliders whose pairs are to be searched,
 // the joints that act, or act no more. The settings are read.
 struct SleepStores {
+    // Not explicit: what changes the world between steps hands over all of it.
     SleepStores(WorldState& world)
         : settings(world.settings),
           bodies(world.bodies),
