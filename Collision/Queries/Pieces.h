@@ -69,7 +69,7 @@ void VisitPieces(const Shape& shape, const Bounds& box, Visitor&& visit) {
     } else if (shape.IsCompound()) {
         const CompoundShape& compound = static_cast<const CompoundShape&>(shape);
         compound.Tree().Query(Shifted(box, -compound.Origin()), [&](uint32_t child) {
-            const CompoundShape::Child& entry = compound.Children()[child];
+            const CompoundShape::Child& entry = compound.ChildAt(child);
             visit(Piece{*entry.shape, compound.PoseOf(entry), {child, kNoTriangle}});
         });
     } else if (shape.IsSurface()) {

@@ -167,7 +167,7 @@ bool RayCaster::CastClosest(const Shape& shape, const Pose& pose, const RayCastS
     const TreeRay ray = InFrameOfTree(ray_, length_, compound, pose);
     bool found = false;
     compound.Tree().CastRay(ray, limit, [&](uint32_t child) {
-        const CompoundShape::Child& piece = compound.Children()[child];
+        const CompoundShape::Child& piece = compound.ChildAt(child);
         RayHit here;
         if (!CastConvex(*piece.shape, pose * compound.PoseOf(piece), settings, limit, here) || here.fraction > limit)
             return;
@@ -208,7 +208,7 @@ bool RayCaster::Search(const Shape& shape, const Pose& pose, const RayCastSettin
         const TreeRay ray = InFrameOfTree(ray_, length_, compound, pose);
         float limit = settings.maxFraction;
         compound.Tree().CastRay(ray, limit, [&](uint32_t child) {
-            const CompoundShape::Child& piece = compound.Children()[child];
+            const CompoundShape::Child& piece = compound.ChildAt(child);
             if (!goOn || !CastConvex(*piece.shape, pose * compound.PoseOf(piece), settings, settings.maxFraction, hit))
                 return;
             hit.subShape.child = child;

@@ -178,7 +178,7 @@ void ShapeCaster::Search(const Shape& other, const Pose& pose, ShapeCastSettings
                           motion.displacement, turned.HalfExtents() + Vector3::Constant(slack));
         float limit = settings.maxFraction;
         compound.Tree().CastRay(ray, limit, [&](uint32_t child) {
-            const CompoundShape::Child& entry = compound.Children()[child];
+            const CompoundShape::Child& entry = compound.ChildAt(child);
             if (!CastPiece({*entry.shape, compound.PoseOf(entry), {child, kNoTriangle}}, pose, settings, hit)) return;
             limit = found(context, hit, settings) ? settings.maxFraction : -1;
         });

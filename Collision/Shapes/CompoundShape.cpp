@@ -8,6 +8,8 @@ namespace fulcrum {
 
 CompoundShape::~CompoundShape() = default;
 
+std::span<const CompoundShape::Child> CompoundShape::Children() const { return children_; }
+
 Status CompoundShape::Check(const ChildSettings& child, const char* name) {
     if (!child.shape) return Error{ErrorCode::Unsupported, Message("%s has no shape", name)};
     if (!child.shape->IsConvex()) {

@@ -26,7 +26,8 @@ public:
     };
 
     // By index; in a mutable compound some may have been removed.
-    std::span<const Child> Children() const { return {children_.data(), children_.size()}; }
+    std::span<const Child> Children() const;
+    const Child& ChildAt(uint32_t index) const { return children_[index]; }
     // The children's boxes in the children's frame, by index.
     const BoundsTree& Tree() const { return tree_; }
     // The origin of the children's frame in the center frame, m; axes are the same. Zero but for mutable compounds,

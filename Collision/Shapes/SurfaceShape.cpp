@@ -8,6 +8,8 @@ namespace fulcrum {
 
 SurfaceShape::~SurfaceShape() = default;
 
+std::span<const SurfaceMaterial> SurfaceShape::Materials() const { return materials_; }
+
 uint32_t SurfaceShape::FindTriangles(const Bounds& box, std::span<uint32_t> ids) const {
     uint32_t count = 0;
     VisitTriangles(box, [&](uint32_t id) {

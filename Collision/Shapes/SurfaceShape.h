@@ -83,7 +83,7 @@ public:
     // Two-sided triangles collide and are hit from both sides; one-sided ones from the front alone.
     bool IsTwoSided() const { return isTwoSided_; }
     // The palette; empty if the body's material is used everywhere.
-    std::span<const SurfaceMaterial> Materials() const { return {materials_.data(), materials_.size()}; }
+    std::span<const SurfaceMaterial> Materials() const;
     // In bytes; data shared by instances count in each.
     virtual size_t MemoryUsed() const = 0;
 

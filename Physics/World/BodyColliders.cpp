@@ -109,7 +109,7 @@ void MakeColliders(WorldState& world, uint32_t body) {
     if (!cold.isSensor) (moving ? store.movingLayers : store.staticLayers) |= 1u << world.bodies.dynamics[body].layer;
     for (uint32_t i = 0; i < cold.colliderCount; ++i) {
         const uint32_t index = cold.firstCollider + i;
-        if (compound) SetPiece(world, index, *compound, compound->Children()[i]);
+        if (compound) SetPiece(world, index, *compound, compound->ChildAt(i));
         else store.shapes[index].shape = &shape;
         if (store.shapes[index].shape) Insert(world, body, index);
     }
@@ -131,7 +131,7 @@ void DropColliders(WorldState& world, uint32_t body) {
 
 void UpdateChildCollider(WorldState& world, uint32_t body, uint32_t child) {
     const BodyCold& cold = world.bodies.cold[body];
-    const CompoundShape::Child& is = cold.children->compound->Children()[child];
+    const CompoundShape::Child& is = cold.children->compound->ChildAt(child);
     if (!world.sensors.IsEmpty()) world.sensors.changed.push_back(body);
     const uint32_t index = ColliderOf(world, body, child);
     const Shape* was = world.colliders.shapes[index].shape;
