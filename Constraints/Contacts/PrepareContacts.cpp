@@ -124,7 +124,7 @@ void PrepareBounces(ContactBatch<N, kFixedB>& batch, Wide<N> restitution, const 
     const Twist<Real> relative = RelativeTwist<BodyRow::Velocity>(batch, twists, 0);
     const Real vn = Dot<Real>(relative.linear, batch.normal);
     const Real w1 = Dot<Real>(relative.angular, batch.tangent1), w2 = Dot<Real>(relative.angular, batch.tangent2);
-    // How fast the gap closes ever faster: minus the relative acceleration along n.
+    // Closing acceleration: minus the relative acceleration along n.
     alignas(64) float accelerations[6][N];
     for (int i = 0; i < N; ++i)
         for (int k = 0; k < 3; ++k) {
@@ -143,8 +143,8 @@ void PrepareBounces(ContactBatch<N, kFixedB>& batch, Wide<N> restitution, const 
     for (int i = 0; i < batch.pointCount; ++i) {
         auto& row = batch.rows[i];
         const Real parting = vn + row.b * w1 - row.a * w2;
-        // What has bounced off carries no load: its last impulses would throw it off again, and not all of that would
-        // be taken back.
+        // Points that separate after a bounce are not warm started: their last impulses would throw the bodies apart
+        // again, and the rows would not take all of that back.
         const auto parts = (restitution > Real(0.0f)) & (parting > Real(settings.restitutionSpeed));
         row.impulse = Select(parts, Real(0.0f), row.impulse);
         left += row.impulse;
@@ -338,7 +338,7 @@ void StoreContacts(const ContactBatch<N, kFixedB>& batch, ContactRecord* records
     row[ContactRecord::kTwistImpulse] = batch.frictionImpulse[2];
     if (impulseScale != 1.0f)
         for (Wide<N>& x : row) x = x / Wide<N>(impulseScale);
-    // An impulse beyond the floats would push for ever.
+    // An impulse that is not finite would be warm started for ever.
     for (Wide<N>& x : row) x = Select(Abs(x) <= Wide<N>(std::numeric_limits<float>::max()), x, Wide<N>(0.0f));
     float* rows[N];
     for (int lane = 0; lane < N; ++lane) rows[lane] = records[batch.contact[lane]].impulse;

@@ -121,8 +121,8 @@ FULCRUM_FORCE_INLINE void GatherRecordRow(const uint32_t (&joints)[N], const Joi
     GatherRows<N>(rows, out);
 }
 
-// Arms and distances of anchors: what is farther along an axis counts as that far. It is pulled no faster for being
-// farther away, and the inertia at the end of a longer arm may be beyond the floats.
+// Clamps arms and distances of anchors along each axis: beyond that joints are pulled no faster, and the inertia at the
+// end of a longer arm may not fit a float.
 template <class Real>
 FULCRUM_FORCE_INLINE Vec3<Real> WithinReach(const Vec3<Real>& v) {
     const Real farthest(1e6f);
@@ -178,7 +178,7 @@ FULCRUM_FORCE_INLINE Vec3<Real> Zero() {
     return Vec3<Real>(Real(0.0f), Real(0.0f), Real(0.0f));
 }
 
-// The normal without its part along the axis, of length 1: where the axis turns, it turns no more than it must.
+// The normal orthogonalized against the axis, of length 1: as the axis turns, it turns no more than necessary.
 template <class Real>
 FULCRUM_FORCE_INLINE Vec3<Real> Straightened(const Vec3<Real>& normal, const Vec3<Real>& axis) {
     const Vec3<Real> flat = normal - axis * Dot<Real>(axis, normal);
@@ -589,7 +589,7 @@ FULCRUM_FORCE_INLINE Real Follows(const Real& before, const Twist<Real>& a, cons
 }
 
 // How fast joints that are far apart are pulled: as fast as any, and from afar so much faster that all are there within
-// some seconds. No harm comes of it, because no velocity sees it.
+// some seconds. That adds no energy, since pseudo-velocities are not part of the velocities.
 template <class Real>
 FULCRUM_FORCE_INLINE Real PullSpeed(const Real& error, const JointSolveSettings& settings) {
     constexpr float kMost = 3.0f, kPerSecond = 0.75f;

@@ -216,7 +216,7 @@ void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const Joint
         distance = Max(distance, Select(moves, push, zero));
         angle = Max(angle, Select(moves, zero, push));
     }
-    // Angles alone are no reason: no lever grows with them, and in a pile hinges bend beyond their limits.
+    // Angular errors alone do not count: no lever arm grows with them, and in a pile hinges bend beyond their limits.
     const auto isDistant = distance > farPart, isMuch = Max(distance, angle) > farPart;
     const Real near = SecondsNear(wasPulled, isDistant, settings);
     const auto isFar =
@@ -228,7 +228,7 @@ void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const Joint
     batch.pullLinear = batch.pullAngular = Zero<Real>();
     SetUpParts<kLinear, kAngular>(batch, place);
     SetUpCoupling<kLinear, kAngular>(batch);
-    // What held the bodies where they were would act with other levers here.
+    // No warm start: the last impulses would act with other lever arms here.
     const auto isNew = isFar & (wasPulled < Real(kFollowed));
     const auto forget = [&](auto& part) {
         auto total = part.GetTotalLambda();

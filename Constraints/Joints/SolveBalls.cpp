@@ -138,7 +138,7 @@ template <int N>
 FULCRUM_FORCE_INLINE void ForgetWhereNewlyFar(BallBatch<N>& batch, const Wide<N>& wasPulled) {
     using Real = Wide<N>;
     if (!batch.far) return;
-    // What held the bodies where they were would act with other levers here.
+    // No warm start: the last impulses would act with other lever arms here.
     const auto isNew = (batch.isFar > Real(0.5f)) & (wasPulled < Real(kFollowed));
     for (int k = 0; k < 3; ++k) batch.impulse[k] = Select(isNew, Real(0.0f), Real(batch.impulse[k]));
 }
