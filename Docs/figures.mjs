@@ -3,8 +3,8 @@
 //   figures.mjs                                writes the documents
 //   figures.mjs --check                        fails where a document does not say what the JSON says
 //   figures.mjs --take BENCH.json ... [--bullet MS.json]
-//                                              first puts what `fulcrum bench --json` wrote into the JSON; MS.json has the ms
-//                                              of Bullet with one thread by scene
+//                                              first puts what `fulcrum bench --json` wrote into the JSON; with --peer bullet
+//                                              it has Bullet's times, else MS.json has them, ms with one thread by scene
 import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -154,13 +154,15 @@ function takeAccuracy(scene, run) {
   };
 }
 
-// One run of the array that fulcrum bench writes.
+// One of the runs that fulcrum bench writes.
 export function take(figures, run) {
   const scene = figures.scenes.find(({ name }) => name === run.scene);
   if (!scene) throw new Error(`Docs/figures.json has no scene '${run.scene}': add it with "what", "aim" and "accuracy"`);
   if (run.threads !== 1 && run.threads !== 2) throw new Error(`${run.scene}: a run with ${run.threads} threads; the tables have 1 and 2`);
-  if (!scene.bullet_ms) throw new Error(`${run.scene}: the ratio needs "bullet_ms" (--bullet MS.json)`);
-  const quotient = Number((run.median_ms / scene.bullet_ms).toFixed(4));
+  const bullet = run.peer?.engine === 'bullet' ? run.peer : undefined;
+  if (bullet && run.threads === 1) scene.bullet_ms = Number(bullet.median_ms.toPrecision(3));
+  if (!scene.bullet_ms && !bullet) throw new Error(`${run.scene}: the ratio needs "bullet_ms" (--bullet MS.json)`);
+  const quotient = Number((bullet?.ratio ?? run.median_ms / scene.bullet_ms).toFixed(4));
   if (isSetting(run, 4, 1, 1)) {
     const stages = Object.entries(run.stages_ms).map(([stage, ms]) => [stage, Number(ms.toFixed(4))]).filter(([, ms]) => ms > 0);
     scene.threads[run.threads] = { ms: Number(run.median_ms.toFixed(4)), ratio: quotient };
@@ -195,7 +197,10 @@ function main(options) {
       for (const scene of figures.scenes) if (scene.name in times) scene.bullet_ms = times[scene.name];
       files.splice(bullet, 2);
     }
-    for (const file of files) for (const run of JSON.parse(readFileSync(file, 'utf8'))) take(figures, run);
+    for (const file of files) {
+      const written = JSON.parse(readFileSync(file, 'utf8'));
+      for (const run of written.runs ?? written) take(figures, run);
+    }
     writeFileSync(jsonFile, `${laidOut(figures)}\n`);
   } else if (verb !== undefined && verb !== '--check') {
     throw new Error(`unknown option '${verb}'; there are --check and --take`);

@@ -1,221 +1,190 @@
 #include <Fulcrum/PerformanceTest/Scenes/Bench.h>
 
-#include <Fulcrum/Jobs/ThreadPool.h>
-#include <Fulcrum/Samples/Runner/CommandLine.h>
+#include <Fulcrum/PerformanceTest/Scenes/BenchTables.h>
+#include <Fulcrum/PerformanceTest/Scenes/Comparison.h>
+#include <Fulcrum/PerformanceTest/Scenes/History.h>
 #include <Fulcrum/Samples/Runner/JsonOutput.h>
-#include <Fulcrum/Samples/Runner/Options.h>
-#include <Fulcrum/Samples/Runner/RunReport.h>
+#include <Fulcrum/Samples/Runner/Progress.h>
 #include <Fulcrum/Samples/Scenes/Scenes.h>
 
-#include <nlohmann/json.hpp>
-
+#include <algorithm>
 #include <cstdio>
-#include <optional>
 
 namespace fulcrum {
 namespace {
 
 int Fail(const std::string& message) {
     std::fprintf(stderr, "fulcrum: %s\n", message.c_str());
-    return 1;
+    return 2;
 }
 
-std::vector<const Scene*> PerformanceScenes() {
-    std::vector<const Scene*> scenes;
+int PrintHistory(const BenchOptions& options) {
+    std::vector<SavedRuns> saved;
+    for (const std::string& file : options.history) {
+        Result<SavedRuns> runs = ReadSavedRuns(file);
+        if (!runs) return Fail(runs.GetError().message);
+        saved.push_back(std::move(runs.Value()));
+    }
+    std::vector<std::string> names;
+    for (const Scene* scene : options.scenes) names.push_back(scene->name);
+    std::printf("%s", HistoryText(std::move(saved), names).c_str());
+    return 0;
+}
+
+// The scenes and threads that the options leave to the baseline.
+void CompleteFrom(const SavedRuns& baseline, BenchOptions& options) {
+    const bool areScenesGiven = !options.scenes.empty(), areThreadsGiven = !options.threads.empty();
+    for (const SavedRun& run : baseline.runs) {
+        const Scene* scene = FindScene(run.scene);
+        if (!areScenesGiven && scene &&
+            std::find(options.scenes.begin(), options.scenes.end(), scene) == options.scenes.end())
+            options.scenes.push_back(scene);
+        if (!areThreadsGiven &&
+            std::find(options.threads.begin(), options.threads.end(), run.threads) == options.threads.end())
+            options.threads.push_back(run.threads);
+    }
+}
+
+void CompleteWithDefaults(BenchOptions& options) {
+    if (options.threads.empty()) options.threads = {1};
+    if (!options.scenes.empty()) return;
     for (const Scene* scene : AllScenes())
-        if (scene->kind == SceneKind::Performance) scenes.push_back(scene);
-    return scenes;
+        if (scene->kind == SceneKind::Performance) options.scenes.push_back(scene);
 }
 
-void PrintHeading() {
-    std::printf("%-16s %3s %7s %8s %5s  %9s %9s %9s %9s %9s  %11s  %7s  %8s  %s\n", "scene", "thr", "bodies",
-                "contacts", "steps", "median ms", "mean ms", "p99 ms", "max ms", "steps/s", "accuracy", "overlap",
-                "memory", "hash");
+std::optional<double> AccuracyToleranceOf(const std::string& name) {
+    const Scene* scene = FindScene(name);
+    return scene ? scene->accuracyTolerance : std::nullopt;
 }
 
-void PrintRow(const Scene& scene, const RunFigures& run) {
-    const Statistics& ms = ComparedMs(run);
-    std::printf("%-16s %3u %7zu %8u %5d  %9.4f %9.4f %9.4f %9.4f %9.1f  %11.5g  %7.4f  %5.0f MB  %s\n", scene.name,
-                run.threads, run.bodies, run.last.contacts, run.steps, ms.median, ms.mean, ms.p99, ms.max,
-                1000 / run.stepMs.mean, run.accuracy, run.overlap.relative, static_cast<double>(run.memoryBytes) / 1e6,
-                HashText(run.poseHash).c_str());
-    if (run.queryCount > 0)
-        std::printf("%20s %d %s a batch, which the ms are of: %.4g %s/s\n", "", run.queryCount, run.queryName.c_str(),
-                    QueriesPerSecond(run), run.queryName.c_str());
-    if (run.singleQueryNs > 0) std::printf("%20s %.4g ns for one by a call of its own\n", "", run.singleQueryNs);
-    std::fflush(stdout);
-}
-
-struct Row {
-    const Scene& scene;
-    RunFigures run;
-};
-
-std::string Number(const char* format, std::optional<double> value) {
-    if (!value) return "-";
-    char text[32];
-    std::snprintf(text, sizeof text, format, *value);
-    return text;
-}
-
-std::string SleepText(const std::optional<SleepTime>& sleep) {
-    if (!sleep) return "-";
-    return sleep->seconds ? Number("%.2f", *sleep->seconds) : "never";
-}
-
-void PrintAccuracy(const std::vector<Row>& rows) {
-    std::printf("\n%-16s %11s  %7s  %10s %10s  %10s  %8s  %11s %9s\n", "scene", "accuracy", "overlap", "drift mm",
-                "mean mm", "end m/s", "asleep s", "rise J", "rise");
-    for (const Row& row : rows) {
-        const RunFigures& run = row.run;
-        std::optional<double> largest, mean, joules, relative;
-        if (run.drift) {
-            largest = 1000 * run.drift->largest;
-            mean = 1000 * run.drift->mean;
-        }
-        if (run.energyRise) {
-            joules = run.energyRise->joules;
-            relative = run.energyRise->relative;
-        }
-        std::printf("%-16s %11.5g  %7.4f  %10s %10s  %10s  %8s  %11s %9s\n", row.scene.name, run.accuracy,
-                    run.overlap.relative, Number("%.4g", largest).c_str(), Number("%.4g", mean).c_str(),
-                    Number("%.5g", run.endSpeed).c_str(), SleepText(run.sleep).c_str(), Number("%.4g", joules).c_str(),
-                    Number("%.2g", relative).c_str());
-    }
-    std::printf(
-        "accuracy: see ./fulcrum run; drift: sideways from where bodies were built, the largest and the mean;\n"
-        "end: the largest speed in the last second; rise: of kinetic plus potential energy, also over that at "
-        "the start\n");
-}
-
-SceneInput InputOf(const BenchOptions& options) {
-    SceneInput input;
-    input.seed = options.seed;
-    input.solver = options.solver;
-    input.narrowPhase = options.narrowPhase;
-    return input;
-}
-
-constexpr double kStep = 1.0 / 60, kSleepLimit = 20;  // s
-
-// A scene that is timed, with the threads that the options ask for.
-class Timed {
+// All timed scenes of a call, those of one scene next to each other.
+class Bench {
 public:
-    Timed(const Scene& scene, const BenchOptions& options) : scene_(scene), input_(InputOf(options)) {
-        if (options.threads > 1) pool_.emplace(static_cast<uint32_t>(options.threads));
-        steps_ = options.steps > 0 ? options.steps : scene.steps;
+    explicit Bench(const BenchOptions& options) : options_(options), peerRuns_(options.scenes.size()) {
+        for (const Peer* peer : BuiltPeers())
+            if (peer->name == options.peer) peer_ = peer;
+        for (const Scene* scene : options.scenes)
+            for (int threads : options.threads)
+                timed_.push_back(std::make_unique<TimedScene>(*scene, threads, options));
     }
 
-    Result<RunFigures> Run() {
-        const auto world = SceneWorld::Create(scene_, input_, Jobs());
-        if (!world) return world.GetError();
-        return Simulate(
-            *world.Value(), UntimedSteps(), steps_, kStep, pool_ ? pool_->WorkerCount() : 1, [] {}, RestMeters::Off);
-    }
-    // Fills in what needs runs of its own.
-    Status AddAccuracyRuns(RunFigures& figures) {
-        const int steps = UntimedSteps() + steps_;
-        const Status rest = MeasureRest(scene_, input_, Jobs(), steps, kStep, figures);
-        if (!rest) return rest;
-        if (scene_.isClosed) {  // what is driven does not sleep
-            const Result<SleepTime> sleep = MeasureSleep(scene_, input_, Jobs(), kStep, kSleepLimit);
-            if (!sleep) return sleep.GetError();
-            figures.sleep = sleep.Value();
-        }
-        if (scene_.accuracyRuns <= 1) return Done{};
-        Result<std::vector<double>> runs = AccuracyOfRuns(scene_, input_, Jobs(), steps, kStep);
-        if (!runs) return runs.GetError();
-        figures.accuracies = std::move(runs.Value());
-        figures.accuracy = Summarize(figures.accuracies).median;
+    // Rounds over all scenes: what disturbs the machine for some seconds disturbs one run of each, not all of one.
+    Status Run() {
+        std::optional<Progress> progress;
+        if (options_.runs > 1 && !options_.quiet)
+            progress.emplace("Timing", options_.runs * static_cast<int>(timed_.size()));
+        else if (!options_.quiet) PrintTimesHeading(peer_);
+        for (int round = 0; round < options_.runs; ++round)
+            for (size_t i = 0; i < timed_.size(); ++i) {
+                if (peer_ && IsFirstOfScene(i)) timed_[i]->RunPeer(*peer_, PeerRunsOf(i));
+                const Status status = timed_[i]->Run(kernel_);
+                if (!status) return Named(*timed_[i], status);
+                if (round + 1 == options_.runs && options_.accuracyRuns) {
+                    const Status accuracy = AddAccuracyRuns(i);
+                    if (!accuracy) return Named(*timed_[i], accuracy);
+                }
+                if (progress) progress->Advance();
+                else if (!options_.quiet) PrintTimes(*timed_[i], peer_, PeerRunsOf(i));
+            }
         return Done{};
     }
 
-private:
-    JobSystem* Jobs() { return pool_ ? &*pool_ : nullptr; }
-    // A batch is timed after exactly the scene's steps.
-    int UntimedSteps() const { return scene_.query ? 0 : 1; }
+    void Print() {
+        if (options_.quiet) return;
+        if (options_.runs > 1) {
+            PrintTimesHeading(peer_);
+            for (size_t i = 0; i < timed_.size(); ++i) PrintTimes(*timed_[i], peer_, PeerRunsOf(i));
+        }
+        if (options_.accuracyRuns) PrintAccuracy(timed_);
+    }
 
-    const Scene& scene_;
-    SceneInput input_;
-    std::optional<ThreadPool> pool_;
-    int steps_;
+    nlohmann::ordered_json ToJson() {
+        nlohmann::ordered_json document = NewDocument(), runs = nlohmann::ordered_json::array();
+        for (size_t i = 0; i < timed_.size(); ++i)
+            runs.push_back(timed_[i]->ToJson(options_.seed, peer_, PeerRunsOf(i)));
+        document["runs"] = std::move(runs);
+        return document;
+    }
+
+private:
+    bool IsFirstOfScene(size_t i) const { return i % options_.threads.size() == 0; }
+    PeerRuns& PeerRunsOf(size_t i) { return peerRuns_[i / options_.threads.size()]; }
+    Status AddAccuracyRuns(size_t i) {
+        if (IsFirstOfScene(i)) return timed_[i]->AddAccuracyRuns();
+        timed_[i]->TakeAccuracyRuns(*timed_[i - i % options_.threads.size()]);
+        return Done{};
+    }
+    static Status Named(const TimedScene& scene, const Status& status) {
+        return Error{status.GetError().code, std::string(scene.Definition().name) + ": " + status.GetError().message};
+    }
+
+    const BenchOptions& options_;
+    const Peer* peer_ = nullptr;
+    ReferenceKernel kernel_;
+    std::vector<std::unique_ptr<TimedScene>> timed_;
+    std::vector<PeerRuns> peerRuns_;  // by scene
 };
+
+// Before anything is timed for minutes.
+std::string WhatCannotBeWritten(const BenchOptions& options) {
+    const std::filesystem::path folder = options.save.parent_path();
+    std::error_code error;
+    if (!folder.empty() && !std::filesystem::is_directory(folder, error))
+        return "--save " + options.save.string() + ": there is no folder " + folder.string();
+    return {};
+}
+
+int Compare(const nlohmann::ordered_json& document, const SavedRuns& baseline, const BenchOptions& options) {
+    const Result<SavedRuns> now = ParseSavedRuns(document, "this run");
+    if (!now) return Fail(now.GetError().message);
+    const Result<std::vector<ComparedRun>> compared =
+        CompareRuns(now.Value(), baseline, options.tolerance, AccuracyToleranceOf);
+    if (!compared) return Fail(compared.GetError().message);
+    PrintComparison(compared.Value(), options.tolerance, options.quiet);
+    if (!options.quiet)
+        for (const std::string& difference : DifferencesOfMachines(now.Value(), baseline))
+            std::printf("%s\n", difference.c_str());
+    return ExitStatusOf(compared.Value());
+}
 
 }  // namespace
 
-Result<BenchOptions> ParseBenchOptions(std::vector<std::string> arguments) {
-    BenchOptions options;
-    std::string name = "all";
-    CLI::App app("Times the performance scenes: 1 untimed step, then each step by itself", "./fulcrum bench");
-    AddText(app, "--scene", "a scene's name, or all the performance scenes (default all)",
-            [&](const std::string& text) { name = text; })
-        ->type_name("SCENE");
-    AddInteger(app, "--threads", 1, kMostThreads, "threads (default 1)", [&](int value) { options.threads = value; });
-    AddInteger(app, "--steps", 1, kMostSteps, "timed steps (default: the scene's own number)",
-               [&](int value) { options.steps = value; });
-    AddInteger(app, "--runs", 1, 1000, "runs of each scene; the one with the lowest median counts (default 1)",
-               [&](int value) { options.runs = value; });
-    app.add_flag_function(
-        "--only-timed", [&](int64_t) { options.accuracyRuns = false; },
-        "only the timed runs, none for drift, speed, sleep, energy and accuracy figures that are medians; so does "
-        "--steps");
-    AddSolverOptions(app, options.solver);
-    AddNarrowPhaseOption(app, options.narrowPhase);
-    AddSeed(app, "--seed", "of scenes that use random numbers (default 1)",
-            [&](uint64_t value) { options.seed = value; });
-    AddText(app, "--json", "also write the runs as a JSON array; -: to standard output, all else to standard error",
-            [&](const std::string& text) { options.json = text; })
-        ->type_name("FILE");
+int RunBench(const BenchOptions& given) {
+    if (!given.history.empty()) return PrintHistory(given);
+    const JsonOutput json(given.json);
+    for (const std::string& trouble : {json.Check(), WhatCannotBeWritten(given)})
+        if (!trouble.empty()) return Fail(trouble);
 
-    Result<std::string> parsed = ParseCommandLine(app, std::move(arguments));
-    if (!parsed) return parsed.GetError();
-    options.help = parsed.Value();
-    if (options.steps > 0) options.accuracyRuns = false;
-    if (const Scene* scene = FindScene(name)) {
-        options.scenes = {scene};
-    } else if (name == "all") {
-        options.scenes = PerformanceScenes();
-    } else {
-        std::vector<std::string> names = SceneNames();
-        names.push_back("all");
-        return UnknownName("scene", name, names);
+    BenchOptions options = given;
+    std::optional<SavedRuns> baseline;
+    if (!options.baseline.empty()) {
+        Result<SavedRuns> read = ReadSavedRuns(options.baseline);
+        if (!read) return Fail(read.GetError().message);
+        baseline = std::move(read.Value());
+        CompleteFrom(*baseline, options);
     }
-    return options;
-}
+    CompleteWithDefaults(options);
+    if (baseline)
+        for (const Scene* scene : options.scenes)
+            for (int threads : options.threads)
+                if (const MaybeError error = CheckComparable(*baseline, scene->name, threads))
+                    return Fail(error->message);
 
-Result<RunFigures> TimeScene(const Scene& scene, const BenchOptions& options) {
-    Timed timed(scene, options);
-    std::optional<RunFigures> best;
-    for (int i = 0; i < options.runs; ++i) {
-        Result<RunFigures> run = timed.Run();
-        if (!run) return run;
-        if (!best || ComparedMs(run.Value()).median < ComparedMs(*best).median) best = std::move(run.Value());
+    Bench bench(options);
+    const Status status = bench.Run();
+    if (!status) return Fail(status.GetError().message);
+    bench.Print();
+    const nlohmann::ordered_json document = bench.ToJson();
+    if (json.IsWanted()) {
+        const std::string unwritten = json.Write(document);
+        if (!unwritten.empty()) return Fail(unwritten);
     }
-    if (options.accuracyRuns) {
-        const Status status = timed.AddAccuracyRuns(*best);
-        if (!status) return status.GetError();
+    if (!options.save.empty()) {
+        const Status written = WriteSavedRuns(document, options.save);
+        if (!written) return Fail(written.GetError().message);
+        if (!options.quiet) std::printf("Wrote %s\n", options.save.c_str());
     }
-    return std::move(*best);
-}
-
-int RunBench(const BenchOptions& options) {
-    const JsonOutput json(options.json);
-    const std::string trouble = json.Check();
-    if (!trouble.empty()) return Fail(trouble);
-
-    nlohmann::ordered_json array = nlohmann::ordered_json::array();
-    std::vector<Row> rows;
-    PrintHeading();
-    for (const Scene* scene : options.scenes) {
-        Result<RunFigures> run = TimeScene(*scene, options);
-        if (!run) return Fail(std::string(scene->name) + ": " + run.GetError().message);
-        PrintRow(*scene, run.Value());
-        array.push_back(ReportJson(scene->name, run.Value(), options.seed));
-        rows.push_back({*scene, std::move(run.Value())});
-    }
-    if (options.accuracyRuns) PrintAccuracy(rows);
-    const std::string unwritten = json.IsWanted() ? json.Write(array) : "";
-    return unwritten.empty() ? 0 : Fail(unwritten);
+    return baseline ? Compare(document, *baseline, options) : 0;
 }
 
 }  // namespace fulcrum

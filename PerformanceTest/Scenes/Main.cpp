@@ -7,7 +7,7 @@ int main(int argc, char** argv) {
     const auto options = fulcrum::ParseBenchOptions(std::vector<std::string>(argv + 1, argv + argc));
     if (!options) {
         std::fprintf(stderr, "fulcrum: %s\n", options.GetError().message.c_str());
-        return 1;
+        return 2;
     }
     if (!options.Value().help.empty()) {
         std::printf("%s", options.Value().help.c_str());

@@ -80,6 +80,19 @@ CLI::Option* AddInteger(CLI::App& app, const std::string& name, int lowest, int 
         ->type_name("N");
 }
 
+CLI::Option* AddIntegers(CLI::App& app, const std::string& name, int lowest, int highest, const std::string& help,
+                         std::function<void(const std::vector<int>&)> store) {
+    return AddText(app, name, help,
+                   [=](const std::string& text) {
+                       std::vector<int> values;
+                       std::istringstream list(text + ",");
+                       for (std::string part; std::getline(list, part, ',');)
+                           values.push_back(Parse(name, part, lowest, highest, "whole numbers"));
+                       store(values);
+                   })
+        ->type_name("N,...");
+}
+
 CLI::Option* AddReal(CLI::App& app, const std::string& name, double lowest, double highest, const std::string& help,
                      std::function<void(double)> store) {
     return AddText(app, name, help,

@@ -18,6 +18,9 @@ namespace fulcrum {
 // that names the nearest valid value.
 CLI::Option* AddInteger(CLI::App& app, const std::string& name, int lowest, int highest, const std::string& help,
                         std::function<void(int)> store);
+// Several, separated by commas.
+CLI::Option* AddIntegers(CLI::App& app, const std::string& name, int lowest, int highest, const std::string& help,
+                         std::function<void(const std::vector<int>&)> store);
 CLI::Option* AddReal(CLI::App& app, const std::string& name, double lowest, double highest, const std::string& help,
                      std::function<void(double)> store);
 CLI::Option* AddSeed(CLI::App& app, const std::string& name, const std::string& help,

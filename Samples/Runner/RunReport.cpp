@@ -71,8 +71,6 @@ void AddRemarks(const RunFigures& figures, std::vector<ReportLine>& lines) {
     add("bodies at their speed limit", figures.last.clampedBodies);
 }
 
-double JsonNumber(double value) { return std::isfinite(value) ? value : 1e300; }
-
 }  // namespace
 
 std::vector<ReportLine> ReportLines(const Scene& scene, const RunFigures& figures, uint64_t seed) {
@@ -137,7 +135,7 @@ namespace {
 
 void AddRest(const RunFigures& figures, nlohmann::ordered_json& json) {
     const auto number = [](bool isKnown, double value) {
-        return isKnown ? nlohmann::ordered_json(JsonNumber(value)) : nlohmann::ordered_json();
+        return isKnown ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
     };
     const Drift drift = figures.drift.value_or(Drift{});
     const EnergyRise rise = figures.energyRise.value_or(EnergyRise{});
@@ -173,7 +171,7 @@ nlohmann::ordered_json ReportJson(const std::string& name, const RunFigures& fig
                                 {"p99_ms", ms.p99},
                                 {"max_ms", ms.max},
                                 {"steps_per_s", figures.stepMs.mean > 0 ? 1000 / figures.stepMs.mean : 0},
-                                {"accuracy", JsonNumber(figures.accuracy)},
+                                {"accuracy", figures.accuracy},
                                 {"nonfinite", figures.nonFinite},
                                 {"hash", HashText(figures.poseHash)},
                                 {"stages_ms", stages},
@@ -194,8 +192,8 @@ nlohmann::ordered_json ReportJson(const std::string& name, const RunFigures& fig
                                 {"relative_penetration_m", figures.overlap.depth},
                                 {"relative_penetration_pair", figures.overlapPair},
                                 {"relative_penetration_step", figures.overlap.step},
-                                {"energy_start_j", JsonNumber(figures.energyAtStart)},
-                                {"energy_end_j", JsonNumber(figures.energyAtEnd)},
+                                {"energy_start_j", figures.energyAtStart},
+                                {"energy_end_j", figures.energyAtEnd},
                                 {"memory_bytes", figures.memoryBytes}};
     AddRest(figures, json);
     if (!figures.accuracies.empty()) json["accuracy_of_runs"] = figures.accuracies;

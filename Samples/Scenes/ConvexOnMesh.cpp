@@ -26,6 +26,7 @@ extern const Scene kScene{
     .build = Build,
     .accuracy = BodiesBelowTheMesh,
     .accuracyMeaning = "bodies more than 1 m below the lowest point of the mesh",
+    .accuracyTolerance = 0,
 };
 
 }  // namespace fulcrum::ConvexOnMeshScene

@@ -61,6 +61,7 @@ extern const Scene kScene{
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "boxes that went through the drum's wall",
+    .accuracyTolerance = 1,
 };
 
 }  // namespace fulcrum::DrumScene

@@ -74,6 +74,7 @@ extern const Scene kScene{
     .build = Build,
     .accuracy = EscapedBodies,
     .accuracyMeaning = "bodies outside the room",
+    .accuracyTolerance = 0,
 };
 
 }  // namespace fulcrum::HighSpeedScene

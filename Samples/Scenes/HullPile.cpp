@@ -54,6 +54,7 @@ extern const Scene kScene{
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "smallest height of a body's center minus 1.8 m, where negative",
+    .accuracyTolerance = 0.02,
 };
 
 }  // namespace fulcrum::HullPileScene

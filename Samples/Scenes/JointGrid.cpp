@@ -39,6 +39,7 @@ extern const Scene kScene{
     .build = Build,
     .accuracy = LargestJointGap,
     .accuracyMeaning = "largest distance between the two anchors of a joint, m",
+    .accuracyTolerance = 0.002,
 };
 
 }  // namespace fulcrum::JointGridScene

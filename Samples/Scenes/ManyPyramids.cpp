@@ -28,6 +28,7 @@ extern const Scene kScene{
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "largest difference of a top box's height from 9.5 m",
+    .accuracyTolerance = 0.002,
 };
 
 }  // namespace fulcrum::ManyPyramidsScene

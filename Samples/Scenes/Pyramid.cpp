@@ -35,6 +35,7 @@ extern const Scene kScene{
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "height of the top box minus 29 m, that of a perfect stack",
+    .accuracyTolerance = 0.002,
 };
 
 }  // namespace fulcrum::PyramidScene

@@ -31,6 +31,7 @@ extern const Scene kScene{
     .build = Build,
     .accuracy = LargestJointGap,
     .accuracyMeaning = "largest distance between the two anchors of a joint, m",
+    .accuracyTolerance = 0.01,
 };
 
 }  // namespace fulcrum::RagdollsScene

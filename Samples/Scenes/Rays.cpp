@@ -49,6 +49,7 @@ extern const Scene kScene{
     .querySingly = CastSingly,
     .accuracy = Misses,
     .accuracyMeaning = "rays that hit nothing",
+    .accuracyTolerance = 0,
 };
 
 }  // namespace fulcrum::RaysScene

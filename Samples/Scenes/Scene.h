@@ -5,6 +5,7 @@
 #include <Fulcrum/Physics/Settings.h>
 
 #include <cstdint>
+#include <optional>
 
 namespace fulcrum {
 
@@ -48,6 +49,9 @@ struct Scene {
     // The accuracy figure of a run, after its last step, and its meaning. Null if the run computes it.
     double (*accuracy)(const SceneWorld& world) = nullptr;
     const char* accuracyMeaning = "";
+    // By how much its magnitude may grow before the benchmark calls a run less accurate than its baseline; null: any
+    // figure will do.
+    std::optional<double> accuracyTolerance{};
 };
 
 }  // namespace fulcrum

@@ -81,6 +81,7 @@ ShapePtr SceneWorld::MutableCompoundOf(std::span<const CompoundShape::ChildSetti
 
 BodyId SceneWorld::Add(const BodySettings& settings) {
     Result<BodyId> id = Bodies().Create(settings);
+    if (id && input_.keepsSettings) added.emplace_back(id.Value(), settings);
     if (id) return id.Value();
     if (!firstError_) firstError_ = id.GetError();
     return {};

@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace fulcrum {
@@ -26,6 +27,7 @@ struct SceneInput {
     int count = 50;                // bodies of the drop scenes, >= 1
     std::optional<bool> sleeping;  // null: as the scene has it
     double gravityScale = 1;       // times the scene's gravity
+    bool keepsSettings = false;    // whether the world remembers what Add was given
 };
 
 class SceneWorld {
@@ -65,8 +67,9 @@ public:
     std::vector<BodyId> watched;    // bodies that the figure uses, in an order that the scene chooses
     std::vector<JointId> joints;    // likewise
     std::vector<Ragdoll> ragdolls;  // all that AddRagdoll made
-    double figure = 0;              // the figure, if the scene accumulates it over the steps
-    std::vector<Ray> rays;          // of a scene that times a batch of them, and their hits
+    std::vector<std::pair<BodyId, BodySettings>> added;  // where SceneInput::keepsSettings asks for them
+    double figure = 0;                                   // the figure, if the scene accumulates it over the steps
+    std::vector<Ray> rays;                               // of a scene that times a batch of them, and their hits
     std::vector<WorldRayHit> rayHits;
 
     // Shapes; null, and an error of Create, where the sizes are wrong.

@@ -27,7 +27,7 @@ const std::map<std::string, std::vector<std::string>> kAllowedFolders = {
     {"Physics", {"Math", "Collision", "Constraints", "Jobs"}},
     {"Samples", {"Math", "Collision", "Constraints", "Jobs", "Physics"}},
     {"PerformanceTest", {"Math", "Collision", "Constraints", "Jobs", "Physics", "Samples", "UnitTests"}},
-    {"UnitTests", {"Math", "Collision", "Constraints", "Jobs", "Physics", "Samples"}},
+    {"UnitTests", {"Math", "Collision", "Constraints", "Jobs", "Physics", "Samples", "PerformanceTest"}},
 };
 
 // The same among the parts of Physics: the folders in it, and the files beside these, which are its interfaces. Every

@@ -95,6 +95,15 @@ test('what the benchmark says of rest is taken over', () => {
   assert.match(read('Docs/Queries.md'), /1,234<!--/);
 });
 
+test('ratios to Bullet are taken from the runs where they are there', () => {
+  const peer = { engine: 'bullet', version: '3.24', median_ms: 40.04, ratio: 0.251 };
+  writeFileSync(file('document.json'), JSON.stringify({ schema: 1, runs: [run('drum', 1, { peer }), run('drum', 2, { peer: { ...peer, ratio: 0.148 } })] }));
+  const { status, stderr } = figures(copy, '--take', file('document.json'));
+  assert.equal(status, 0, stderr);
+  assert.match(read('README.md'), /`drum` \|.*\| 10\.0 \| 10\.0 \| 0\.251 \| 0\.148 \|/);
+  assert.equal(JSON.parse(read('Docs/figures.json')).scenes.find(({ name }) => name === 'drum').bullet_ms, 40);
+});
+
 test('a figure that is the median of several runs is not taken from one', () => {
   const { status, stderr } = take([run('ragdolls', 1)], { ragdolls: 10 });
   assert.equal(status, 1);

@@ -1,0 +1,42 @@
+// Medians of few noisy samples, with intervals that assume no distribution. Used by the benchmark; pure functions.
+#pragma once
+
+#include <vector>
+
+namespace fulcrum {
+
+// Bounds of a confidence interval; 0 and infinity where there are too few samples for the confidence.
+struct Interval {
+    double low, high;
+};
+
+// > 0 samples.
+double MedianOf(std::vector<double> samples);
+
+// Of the median of what positive samples are drawn from, by order statistics: the median lies between the k-th smallest
+// and the k-th largest of n samples unless fewer than k are on one side of it, P = 2 sum_{i<k} C(n, i) / 2^n (the sign
+// test's interval: David and Nagaraja, Order Statistics, 2003, 7.1). The narrowest one of at least `confidence`.
+Interval MedianInterval(std::vector<double> samples, double confidence);
+
+// By which factor samples are larger than those of a baseline.
+struct RatioEstimate {
+    double ratio;
+    Interval interval;
+};
+
+// Positive samples, > 0 of each. The median of all quotients of a sample and a baseline's sample, which is Hodges' and
+// Lehmann's estimate of the shift between the logarithms; its interval, between the k-th smallest and the k-th largest
+// quotient, follows from Mann's and Whitney's distribution of U: P(outside) = 2 P(U < k) (Hollander, Wolfe and Chicken,
+// Nonparametric Statistical Methods, 2014, 4.2 and 4.3). At most 1 - confidence where the two have the same shape,
+// whatever it is. Five samples of each are the fewest for a confidence of 99 %.
+RatioEstimate CompareSamples(const std::vector<double>& samples, const std::vector<double>& baseline,
+                             double confidence);
+
+enum class Verdict { Same, Faster, Slower };
+
+// Slower where the ratio is beyond the tolerance and noise does not explain that it is above 1, that is, all of the
+// interval is; faster likewise, below 1.
+Verdict JudgeRatio(const RatioEstimate& estimate, double tolerance);
+const char* VerdictName(Verdict verdict);
+
+}  // namespace fulcrum

@@ -1,0 +1,166 @@
+#include <Fulcrum/PerformanceTest/Scenes/SavedRuns.h>
+
+#include <Fulcrum/Math/Wide.h>
+#include <Fulcrum/PerformanceTest/Scenes/ReferenceKernel.h>
+#include <Fulcrum/PerformanceTest/Scenes/SampleStatistics.h>
+#include <Fulcrum/Version.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <thread>
+
+namespace fulcrum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string Now() {
+    const std::time_t now = std::time(nullptr);
+    std::tm utc{};
+    gmtime_r(&now, &utc);
+    char text[32];
+    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    return text;
+}
+
+std::string CpuModel() {
+    std::ifstream file("/proc/cpuinfo");
+    for (std::string line; std::getline(file, line);) {
+        const size_t colon = line.find(": ");
+        if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+    }
+    return "unknown";
+}
+
+std::string CompilerName() {
+#ifdef __clang__
+    return std::string("Clang ") + __clang_version__;
+#elif defined(__GNUC__)
+    return std::string("GCC ") + __VERSION__;
+#else
+    return "unknown";
+#endif
+}
+
+Error Wrong(const std::string& file, const std::string& what) { return {ErrorCode::OutOfRange, file + ": " + what}; }
+
+// Throws nlohmann's exceptions where something is missing or of another type.
+SavedRun ParseRun(const Json& json) {
+    SavedRun run;
+    run.scene = json.at("scene").get<std::string>();
+    run.threads = json.at("threads").get<int>();
+    const auto ms = json.at("run_ms").get<std::vector<double>>();
+    if (!ms.empty()) run.medianMs = MedianOf(ms);
+    run.relativeTimes = json.at("relative_times").get<std::vector<double>>();
+    run.hash = json.at("hash").get<std::string>();
+    if (!json.at("accuracy").is_null()) run.accuracy = json.at("accuracy").get<double>();
+    if (json.contains("accuracy_of_runs")) run.accuracyRuns = static_cast<int>(json["accuracy_of_runs"].size());
+    run.nonFinite = json.at("nonfinite").get<int>();
+    run.steps = json.at("steps").get<int>();
+    run.settings = json.at("settings");
+    return run;
+}
+
+std::string WhatIsWrongWith(const SavedRun& run) {
+    if (run.threads < 1) return "its threads are fewer than 1";
+    if (run.relativeTimes.empty()) return "relative_times has no number";
+    for (double time : run.relativeTimes)
+        if (!(std::isfinite(time) && time > 0)) return "relative_times has a number that is not above 0";
+    return {};
+}
+
+std::string TextOf(const Json& json, const char* name) {
+    const Json& value = json.at(name);
+    return value.is_null() ? "unknown" : value.get<std::string>();
+}
+
+}  // namespace
+
+const SavedRun* SavedRuns::Find(const std::string& scene, int threads) const {
+    for (const SavedRun& run : runs)
+        if (run.scene == scene && run.threads == threads) return &run;
+    return nullptr;
+}
+
+Json NewDocument() {
+    const char* commit = std::getenv("FULCRUM_COMMIT");
+    return {{"schema", kSavedRunsSchema},
+            {"program", "fulcrum-bench"},
+            {"version", FULCRUM_VERSION_STRING},
+            {"date", Now()},
+            {"commit", commit && *commit ? Json(commit) : Json()},
+            {"machine", {{"cpu", CpuModel()}, {"cores", std::thread::hardware_concurrency()}}},
+            {"compiler", CompilerName()},
+            {"lanes", std::to_string(kLanes)},
+            {"kernel", kReferenceKernelVersion},
+            {"units",
+             {{"*_ms", "milliseconds of wall clock"},
+              {"relative_times", "median_ms of a run over the ms of the reference kernel around it"},
+              {"*_m", "meters"},
+              {"*_m_s", "meters a second"},
+              {"*_j", "joules"},
+              {"*_s", "seconds"},
+              {"accuracy", "what ./fulcrum run says of the scene"}}}};
+}
+
+Result<SavedRuns> ParseSavedRuns(const Json& document, const std::string& file) {
+    if (document.is_array() || !document.is_object() || !document.contains("schema"))
+        return Wrong(file,
+                     "has no schema number, so it was not saved by `bench --save`, or by an older version; save it "
+                     "anew");
+    const Json& schema = document["schema"];
+    if (schema != kSavedRunsSchema)
+        return Wrong(file, "has schema " + schema.dump() + ", this version reads " + std::to_string(kSavedRunsSchema) +
+                               "; save it anew with `bench --save`");
+    SavedRuns saved;
+    saved.file = file;
+    std::string place = "the head";
+    try {
+        saved.date = TextOf(document, "date");
+        saved.commit = TextOf(document, "commit");
+        saved.compiler = TextOf(document, "compiler");
+        saved.lanes = TextOf(document, "lanes");
+        saved.kernel = document.at("kernel").get<int>();
+        saved.cpu = TextOf(document.at("machine"), "cpu");
+        saved.cores = document.at("machine").at("cores").get<int>();
+        for (const Json& run : document.at("runs")) {
+            place = "run " + std::to_string(saved.runs.size() + 1);
+            saved.runs.push_back(ParseRun(run));
+            const std::string wrong = WhatIsWrongWith(saved.runs.back());
+            if (!wrong.empty()) return Wrong(file, "is damaged: in " + place + " " + wrong);
+        }
+    } catch (const Json::exception& exception) {
+        return Wrong(file, "is damaged: in " + place + " " + exception.what());
+    }
+    if (saved.kernel != kReferenceKernelVersion)
+        return Wrong(file, "was timed against version " + std::to_string(saved.kernel) +
+                               " of the reference kernel, this is version " + std::to_string(kReferenceKernelVersion) +
+                               "; save it anew with `bench --save`");
+    return saved;
+}
+
+Result<SavedRuns> ReadSavedRuns(const std::filesystem::path& file) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error)) return Wrong(file.string(), "there is no such file");
+    std::ifstream stream(file);
+    if (!stream) return Wrong(file.string(), "cannot be read");
+    Json document;
+    try {
+        document = Json::parse(stream);
+    } catch (const Json::exception& exception) {
+        return Wrong(file.string(), std::string("is damaged: ") + exception.what());
+    }
+    return ParseSavedRuns(document, file.string());
+}
+
+Status WriteSavedRuns(const Json& document, const std::filesystem::path& file) {
+    std::ofstream stream(file);
+    stream << document.dump(2) << "\n";
+    stream.close();
+    if (!stream) return Wrong(file.string(), "cannot be written");
+    return Done{};
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,52 @@
+// What `bench --json` and `--save` write and `--baseline` and `--history` read: runs of scenes with the machine and the
+// build that they ran on. Used by the benchmark; one thread.
+#pragma once
+
+#include <Fulcrum/Math/Result.h>
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fulcrum {
+
+// One more with each change after which older files cannot be read.
+inline constexpr int kSavedRunsSchema = 1;
+
+// What a comparison needs of a scene with a number of threads.
+struct SavedRun {
+    std::string scene;
+    int threads = 1;
+    double medianMs = 0;  // of the runs
+    // Of each run: the median time of a step over the time of the reference kernel around it. > 0.
+    std::vector<double> relativeTimes;
+    std::string hash;
+    std::optional<double> accuracy;  // null: not finite
+    int accuracyRuns = 1;            // whose median it is
+    int nonFinite = 0;               // bodies
+    int steps = 0;
+    nlohmann::ordered_json settings;
+};
+
+struct SavedRuns {
+    std::string file;  // as it was named
+    std::string date, commit, cpu, compiler, lanes;
+    int cores = 0, kernel = 0;
+    std::vector<SavedRun> runs;
+
+    const SavedRun* Find(const std::string& scene, int threads) const;
+};
+
+// The document: schema, date, machine, build and units, without runs. Numbers that are not finite become null when it
+// is written. The commit is that of the environment's FULCRUM_COMMIT, which ./fulcrum sets.
+nlohmann::ordered_json NewDocument();
+
+// Errors OutOfRange: the message names the file and what is wrong with it.
+Result<SavedRuns> ParseSavedRuns(const nlohmann::ordered_json& document, const std::string& file);
+Result<SavedRuns> ReadSavedRuns(const std::filesystem::path& file);
+Status WriteSavedRuns(const nlohmann::ordered_json& document, const std::filesystem::path& file);
+
+}  // namespace fulcrum
