@@ -60,11 +60,12 @@ Status PhysicsSystem::SetSettings(const SystemSettings& settings) {
     // What one method notes of a pair means nothing to the other.
     if (settings.narrowPhase != world_->settings.narrowPhase)
         for (Pair& pair : world_->pairs.pairs) pair.cache = {};
-    const bool isOtherTarget = settings.accuracy.penetration != world_->settings.accuracy.penetration;
+    const AccuracyTarget target = world_->settings.accuracy;
     world_->settings = settings;
     // Efforts of islands follow the settings, and what is solved as a tree; loads are parts of what they may be.
     world_->coloring.Invalidate();
-    if (isOtherTarget) std::ranges::fill(world_->pairs.loads, ContactLoad{});
+    if (settings.accuracy.penetration != target.penetration) std::ranges::fill(world_->pairs.loads, LoadLevel{});
+    if (settings.accuracy.jointError != target.jointError) std::ranges::fill(world_->joints.gaps, LoadLevel{});
     if (settings.layerCollides != before) RefilterLayers(*world_, before);
     for (const Sensor& sensor : world_->sensors.sensors) world_->sensors.changed.push_back(sensor.id.index);
     return Done{};

@@ -144,13 +144,16 @@ struct SleepSettings {
     float linearSpeed = 0.05f;
 };
 
-// Accuracy of resting contacts: islands whose contacts carry loads get more substeps than the system's where these are
-// too few (Docs/Step.md). Other islands do not cost more.
+// Accuracy of resting contacts and of joints: islands get more substeps than the system's where these are too few
+// (Docs/Step.md). Other islands do not cost more.
 struct AccuracyTarget {
     // How deep bodies sink into each other at a contact, as a part of the smaller one's size (half an edge of a cube),
     // > 0; infinite: no island has more substeps. Slender islands, as columns are, get as many as keep them upright by
     // a margin of four at 0.004, in inverse proportion to this.
     float penetration = 0.004f;
+    // m, > 0: how far apart the anchors of a joint may be along what it locks; infinite: no island has more substeps
+    // for that. It follows what is measured, within some tenths of a second.
+    float jointError = std::numeric_limits<float>::infinity();
     int mostSubsteps = 64;  // 1..64
     // Whether islands of 768 constraints and more get as many, too. If not, they get only what the weight of small
     // bodies in them asks for: few contacts of a large pile carry much, but all of it is solved with the same effort.

@@ -164,6 +164,7 @@ MaybeError Check(const SystemSettings& s) {
             CheckFinite("gravity", s.gravity), CheckRange("gravity", double{s.gravity.cwiseAbs().maxCoeff()}, 0, kMost),
             CheckRange("solver.substeps", s.solver.substeps, 1, 64),
             CheckPositiveOrInfinite("accuracy.penetration", s.accuracy.penetration),
+            CheckPositiveOrInfinite("accuracy.jointError", s.accuracy.jointError),
             CheckRange("accuracy.mostSubsteps", s.accuracy.mostSubsteps, 1, 64),
             CheckRange("solver.velocityIterations", s.solver.velocityIterations, 1, 255),
             CheckRange("solver.positionIterations", s.solver.positionIterations, 0, 255),

@@ -21,6 +21,35 @@ uint32_t LevelOf(float x) {
     return std::min((std::bit_cast<uint32_t>(x) >> 23) - 126, kMostLevel);
 }
 
+// The level that lasts, from that of this step; the latter is noted. isSure: it needs no further steps to tell.
+uint8_t NextLevel(LoadLevel& load, uint32_t level, bool isSure, bool forgets) {
+    load.steps = level > load.level ? static_cast<uint8_t>(load.steps + 1) : uint8_t(0);
+    const bool lasts = load.steps >= kStepsOfLoad || (isSure && level > load.level);
+    const uint32_t lasting = isSure ? level : std::min<uint32_t>(level, load.recent);
+    load.recent = static_cast<uint8_t>(level);
+    if (!lasts && !(forgets && lasting + 1 < load.level)) return load.level;
+    load.steps = 0;
+    return static_cast<uint8_t>(lasts ? std::max<uint32_t>(lasting, load.level) : load.level - 1);
+}
+
+// Of lanes whose anchors are so far apart, m^2.
+template <class Batch, class Real>
+bool NoteSquaredGaps(const Batch& batch, const Real& squared, const GapScale& scale, std::span<LoadLevel> gaps) {
+    const Real part = Sqrt(squared) * Real(scale.perLevel);
+    const uint32_t noted = scale.forgets ? ~0u : (part >= Real(1.0f)).ToBits();
+    if (noted == 0) return false;
+    bool changed = false;
+    for (int lane = 0; lane < batch.count; ++lane) {
+        if (!(noted >> lane & 1u)) continue;
+        LoadLevel& gap = gaps[batch.joint[lane]];
+        gap.stiffness = scale.stiffness;
+        const uint8_t level = NextLevel(gap, LevelOf(part[lane]), false, scale.forgets);
+        changed |= level != gap.level;
+        gap.level = level;
+    }
+    return changed;
+}
+
 template <class Real>
 Real SquaredSizeOf(const InverseMass<Real>& inverse) {
     return SquaredSize<Real>(inverse.mass, inverse.inertia.xx + inverse.inertia.yy + inverse.inertia.zz);
@@ -50,7 +79,7 @@ void NoteWeights(const StepContext& step, std::span<const uint32_t> began, const
         const float part = sink / SizeOf(lighter);
         if (!(part > step.settings.accuracy.penetration)) continue;
         const uint32_t level = LevelOf(part / LargestUnnotedSink(step.settings.accuracy));
-        ContactLoad& load = pairs.loads[index];
+        LoadLevel& load = pairs.loads[index];
         if (level <= load.level) continue;
         load.level = load.recent = static_cast<uint8_t>(level);
         ++pairs.loadVersion;
@@ -93,22 +122,31 @@ bool NoteSinks(const ContactBatch<N, kFixedB>& batch, const SinkScale& scale, co
     bool changed = false;
     for (int lane = 0; lane < batch.count; ++lane) {
         if (!(loaded >> lane & 1u)) continue;
-        ContactLoad& load = pairs.loads[batch.contact[lane]];
-        const uint32_t level = LevelOf(part[lane]);
-        load.steps = level > load.level ? static_cast<uint8_t>(load.steps + 1) : uint8_t(0);
-        const bool lasts = load.steps >= kStepsOfLoad || (unseen[lane] && level > load.level);
-        const uint32_t lasting = unseen[lane] ? level : std::min<uint32_t>(level, load.recent);
-        load.recent = static_cast<uint8_t>(level);
+        LoadLevel& load = pairs.loads[batch.contact[lane]];
         load.stiffness = scale.stiffness;
-        if (!lasts && !(scale.forgets && lasting + 1 < load.level)) continue;
-        load.steps = 0;
-        const Pair& pair = pairs.pairs[batch.contact[lane]];
-        if (IsLeftOut(bodies, joints, pair)) continue;
-        load.level = static_cast<uint8_t>(lasts ? std::max<uint32_t>(lasting, load.level) : load.level - 1);
+        const uint8_t level = NextLevel(load, LevelOf(part[lane]), unseen[lane], scale.forgets);
+        if (level == load.level || IsLeftOut(bodies, joints, pairs.pairs[batch.contact[lane]])) continue;
+        load.level = level;
         changed = true;
     }
     return changed;
 }
+
+template <int N>
+bool NoteGaps(const JointBatch<N>& batch, const GapScale& scale, std::span<LoadLevel> gaps) {
+    using Real = Wide<N>;
+    if (batch.linear == LinearLock::None) return false;
+    Vec3<Real> gap = batch.startOffset;
+    if (batch.linear == LinearLock::Line) gap = gap - batch.startLine * Dot<Real>(gap, batch.startLine);
+    return NoteSquaredGaps(batch, Dot<Real>(gap, gap), scale, gaps);
+}
+template <int N>
+bool NoteGaps(const BallBatch<N>& batch, const GapScale& scale, std::span<LoadLevel> gaps) {
+    return NoteSquaredGaps(batch, Dot<Wide<N>>(batch.startOffset, batch.startOffset), scale, gaps);
+}
+template bool NoteGaps(const JointBatch<kLanes>&, const GapScale&, std::span<LoadLevel>);
+template bool NoteGaps(const JointBatch<1>&, const GapScale&, std::span<LoadLevel>);
+template bool NoteGaps(const BallBatch<kLanes>&, const GapScale&, std::span<LoadLevel>);
 
 #define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                             \
     template bool NoteSinks(const ContactBatch<lanes, fixedB>&, const SinkScale&, const BodyStore&, const JointStore&, \

@@ -1,8 +1,10 @@
-// How much the contacts of small islands carry, by which FindIslands gives an island under load more substeps. Measured
-// by Store.
+// How much the contacts of small islands carry, and how far the anchors of their joints are apart, by which FindIslands
+// gives an island more substeps. Measured by StoreImpulses.
 #pragma once
 
 #include <Fulcrum/Constraints/Contacts/ContactBatch.h>
+#include <Fulcrum/Constraints/Joints/BallBatch.h>
+#include <Fulcrum/Constraints/Joints/JointBatch.h>
 #include <Fulcrum/Physics/Stages/Effort.h>
 #include <Fulcrum/Physics/World/PairStore.h>
 
@@ -20,7 +22,7 @@ struct SinkScale {
     float softness;     // s^2: 1 / w^2 for the system's substeps
     float depthScale;   // (substep of the system's settings / that of the batch)^2: a depth times this is the system's
     Vector3 gravity;    // m/s2
-    uint8_t stiffness;  // see ContactLoad
+    uint8_t stiffness;  // see LoadLevel
     bool forgets;       // loads that are less than they were are noted: in few steps, so that no effort comes and goes
 };
 
@@ -30,9 +32,21 @@ inline float SoftnessOf(const SystemSettings& settings, float substepDt) {
     return 1.0f / (w * w);
 }
 
+// How far the anchors of a joint are apart is noted as if the gap fell with the square of the substep; where it falls
+// otherwise, efforts find their place in a few rounds.
+struct GapScale {
+    float perLevel;     // 1/m: a gap in the batch's substeps times this is 1 where the system's leave LargestUnnotedGap
+    uint8_t stiffness;  // see LoadLevel
+    bool forgets;       // as SinkScale::forgets
+};
+
 // Whether islands get more effort by what they carry.
 inline bool HeedsLoads(const SystemSettings& settings) {
     return settings.accuracy.penetration < std::numeric_limits<float>::infinity();
+}
+
+inline bool HeedsGaps(const SystemSettings& settings) {
+    return settings.accuracy.jointError < std::numeric_limits<float>::infinity();
 }
 
 // Sinks are noted as powers of two of a quarter of what they may be, AccuracyTarget::penetration: level i is below 2^i
@@ -40,6 +54,12 @@ inline bool HeedsLoads(const SystemSettings& settings) {
 inline float LargestUnnotedSink(const AccuracyTarget& accuracy) { return 0.25f * accuracy.penetration; }
 inline float SinkOfLevel(uint32_t level, const AccuracyTarget& accuracy) {
     return std::ldexp(LargestUnnotedSink(accuracy), static_cast<int>(level));
+}
+
+// Gaps likewise, of AccuracyTarget::jointError.
+inline float LargestUnnotedGap(const AccuracyTarget& accuracy) { return 0.25f * accuracy.jointError; }
+inline float GapOfLevel(uint32_t level, const AccuracyTarget& accuracy) {
+    return std::ldexp(LargestUnnotedGap(accuracy), static_cast<int>(level));
 }
 
 // m^2: the square of half the edge of a cube with the same inverse mass and sum of inverse moments of inertia.
@@ -64,5 +84,11 @@ void NoteWeights(const StepContext& step, std::span<const uint32_t> began, const
 template <int N, bool kFixedB>
 bool NoteSinks(const ContactBatch<N, kFixedB>& batch, const SinkScale& scale, const BodyStore& bodies,
                const JointStore& joints, PairStore& pairs);
+
+// Notes how far the anchors of a batch's joints were apart as the step began. Returns whether some level has changed.
+template <int N>
+bool NoteGaps(const JointBatch<N>& batch, const GapScale& scale, std::span<LoadLevel> gaps);
+template <int N>
+bool NoteGaps(const BallBatch<N>& batch, const GapScale& scale, std::span<LoadLevel> gaps);
 
 }  // namespace fulcrum

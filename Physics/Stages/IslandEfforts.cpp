@@ -62,8 +62,9 @@ constexpr uint32_t kLeastHigh = 4;
 constexpr int kMostIterations = 4;
 
 struct Need {
-    float need = 0;          // how much too deep the contacts of an island sink with the system's settings; 1: not
-    uint32_t culprit = ~0u;  // the body that sinks so
+    // How many times too deep contacts of an island sink, or anchors of joints are apart, with the system's settings.
+    float need = 0;
+    uint32_t culprit = ~0u;  // the body that sinks so, or has that joint
     uint8_t stiffness = 0;   // the least of those under load in the last step; 0: none was
 
     void Raise(float to, uint32_t body) {
@@ -71,13 +72,14 @@ struct Need {
         need = to;
         culprit = body;
     }
+    void Soften(uint8_t to) { stiffness = stiffness == 0 ? to : std::min(stiffness, to); }
 };
 
 class LoadEfforts {
 public:
     LoadEfforts(const StepContext& step, const BodyStore& bodies, const ConstraintColoring& coloring,
                 const PairStore& pairs, std::span<const uint32_t> sizes, uint32_t mostLoaded, UnionFind& sets,
-                ScratchArena& scratch)
+                std::span<Need> needs, ScratchArena& scratch)
         : settings_(step.settings),
           softness_(step.softness),
           bodies_(bodies),
@@ -87,8 +89,7 @@ public:
           mostLoaded_(mostLoaded),
           sets_(sets),
           places_(scratch.Allocate<uint32_t>(bodies.awake.size())),
-          needs_(scratch.Allocate<Need>(bodies.awake.size())) {
-        std::fill(needs_.begin(), needs_.end(), Need{});
+          needs_(needs) {
         uint32_t count = 0;
         for (uint32_t i = 0; i < places_.size(); ++i) {
             const bool isHigh = sizes[i] >= kLeastHigh && sizes[i] <= mostLoaded;  // sizes: 0 but for roots
@@ -98,15 +99,13 @@ public:
         std::fill(extents_.begin(), extents_.end(), Extent{});
     }
 
-    // By root.
-    std::span<const Need> Find() {
+    void Find() {
         FindExtents();
         for (Kind kind : {Kind::Moving, Kind::Fixed})
             VisitEntries(coloring_, kind, [&](uint32_t, const Entry& entry) { AddNeed(entry); });
         for (uint32_t i = 0; i < places_.size(); ++i)
             if (places_[i] != kNone) AddNeedOfColumn(i, extents_[places_[i]]);
         AddNeedsOfLarge();
-        return needs_;
     }
 
 private:
@@ -176,7 +175,7 @@ private:
     }
 
     void AddNeed(const Entry& entry) {
-        const ContactLoad& load = pairs_.loads[entry.constraint];
+        const LoadLevel& load = pairs_.loads[entry.constraint];
         if (load.level == 0 && load.recent == 0) return;
         const uint32_t root = RootOf(MovingBodyOf(entry));
         if (sizes_[root] > mostLoaded_) return;
@@ -191,8 +190,7 @@ private:
         Need& most = needs_[root];
         if (load.level > 0) most.Raise(needOf(load.level), LighterOf(entry));
         // What is pressed hard now, be it by an impact, was so with the springs of before.
-        const bool isNew = load.stiffness == 0, isSofter = most.stiffness == 0 || load.stiffness < most.stiffness;
-        if (!isNew && isSofter && needOf(std::max(load.level, load.recent)) > 1) most.stiffness = load.stiffness;
+        if (load.stiffness > 0 && needOf(std::max(load.level, load.recent)) > 1) most.Soften(load.stiffness);
     }
 
     const SystemSettings& settings_;
@@ -207,7 +205,7 @@ private:
     static constexpr Extent kLow{};
     std::span<uint32_t> places_;  // by root, in extents_; kNone: what it carries alone counts
     std::span<Extent> extents_;
-    std::span<Need> needs_;
+    std::span<Need> needs_;  // by root
 };
 
 // The effort at which contacts sink `need` times less than with the system's settings: substeps, with whose square
@@ -244,15 +242,24 @@ std::span<const IslandEffort> FindEfforts(const StepContext& step, const BodySto
     const size_t count = bodies.awake.size();
     std::span<IslandEffort> efforts = scratch.Allocate<IslandEffort>(count);
     std::fill(efforts.begin(), efforts.end(), IslandEffort{});
+    std::span<Need> needs = scratch.Allocate<Need>(count);
+    std::fill(needs.begin(), needs.end(), Need{});
+    const AccuracyTarget& target = step.settings.accuracy;
+    const bool heedsGaps = HeedsGaps(step.settings);
     VisitEntries(coloring, Kind::Joint, [&](uint32_t, const Entry& entry) {
         const Joint& joint = joints.joints[entry.constraint];
-        if (!joint.effort.IsAny()) return;
-        const uint32_t body = MovingBodyOf(entry);
-        RaiseLeast(efforts[sets.Find(bodies.cold[body].awakePlace)], joint.effort, body);
+        if (!joint.effort.IsAny() && !heedsGaps) return;
+        const uint32_t body = MovingBodyOf(entry), root = sets.Find(bodies.cold[body].awakePlace);
+        if (joint.effort.IsAny()) RaiseLeast(efforts[root], joint.effort, body);
+        const LoadLevel& gap = joints.gaps[entry.constraint];
+        if (!heedsGaps || gap.level == 0 || sizes[root] > mostLoaded) return;
+        const float need = GapOfLevel(gap.level, target) / target.jointError;
+        needs[root].Raise(need, body);
+        if (gap.stiffness > 0 && need > 1) needs[root].Soften(gap.stiffness);
     });
-    if (!HeedsLoads(step.settings)) return efforts;
-    const std::span<const Need> needs =
-        LoadEfforts(step, bodies, coloring, pairs, sizes, mostLoaded, sets, scratch).Find();
+    if (HeedsLoads(step.settings))
+        LoadEfforts(step, bodies, coloring, pairs, sizes, mostLoaded, sets, needs, scratch).Find();
+    else if (!heedsGaps) return efforts;
     for (size_t i = 0; i < count; ++i) {
         if (!(needs[i].need > 1)) continue;
         RaiseLeast(efforts[i], ToLeastEffort(EffortFor(needs[i].need, step.settings)), needs[i].culprit);

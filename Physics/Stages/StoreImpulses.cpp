@@ -21,6 +21,7 @@ struct StoreScale {
     float dt;               // s, of the step
     float impulseScale;     // see Effort
     const SinkScale* sink;  // of contacts; null where nobody asks how deep they sink
+    const GapScale* gap;    // of joints; null where nobody asks how far their anchors are apart
 };
 
 template <int N, bool kFixedB>
@@ -30,13 +31,15 @@ void StoreBatch(const Records& to, const ContactBatch<N, kFixedB>& batch, const 
     if (scale.sink) findings.loadsChanged |= NoteSinks(batch, *scale.sink, to.bodies, to.joints, to.pairs);
 }
 template <int N>
-void StoreBatch(const Records& to, const JointBatch<N>& batch, const StoreScale& scale, WorkerFindings&) {
+void StoreBatch(const Records& to, const JointBatch<N>& batch, const StoreScale& scale, WorkerFindings& findings) {
     StoreJoints(batch, to.joints.records.data(), to.joints.types.data(), to.bodies.states.data(), scale.dt,
                 scale.impulseScale);
+    if (scale.gap) findings.loadsChanged |= NoteGaps(batch, *scale.gap, to.joints.gaps);
 }
 template <int N>
-void StoreBatch(const Records& to, const BallBatch<N>& batch, const StoreScale& scale, WorkerFindings&) {
+void StoreBatch(const Records& to, const BallBatch<N>& batch, const StoreScale& scale, WorkerFindings& findings) {
     StoreJoints(batch, to.joints.records.data(), scale.dt, scale.impulseScale);
+    if (scale.gap) findings.loadsChanged |= NoteGaps(batch, *scale.gap, to.joints.gaps);
 }
 
 template <class Batch>
@@ -60,7 +63,7 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
     const Records to{bodies, pairs, joints};
     const bool notesSinks = HeedsLoads(settings);
     const bool notesLarge = notesSinks && (settings.accuracy.largeIslands || layout.OverflowCount() > 0);
-    // impulseScale: see Effort; stiffness: see ContactLoad.
+    // impulseScale: see Effort; stiffness: see LoadLevel.
     const auto sinkScaleOf = [&](float impulseScale, uint8_t stiffness) {
         return SinkScale{.perLevel = 1 / LargestUnnotedSink(settings.accuracy),
                          .inverseDt = 1 / (step.substepDt * impulseScale),
@@ -69,6 +72,12 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
                          .gravity = settings.gravity,
                          .stiffness = std::max<uint8_t>(stiffness, 1),
                          .forgets = step.number % kStepsToForget == 0};
+    };
+    const bool notesGaps = HeedsGaps(settings);
+    const auto gapScaleOf = [&](float impulseScale, uint8_t stiffness) {
+        return GapScale{.perLevel = 1 / (LargestUnnotedGap(settings.accuracy) * impulseScale * impulseScale),
+                        .stiffness = std::max<uint8_t>(stiffness, 1),
+                        .forgets = step.number % kStepsToForget == 0};
     };
     uint32_t stored[kBatchKinds] = {};
     const auto storeTo = [&](auto&& endOf, const StoreScale& scale) {
@@ -79,13 +88,16 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
         });
     };
     const SinkScale usualSink = sinkScaleOf(1, 1);
-    const StoreScale usual{step.dt, 1, notesSinks ? &usualSink : nullptr};
+    const GapScale usualGap = gapScaleOf(1, 1);
+    const StoreScale usual{step.dt, 1, notesSinks ? &usualSink : nullptr, notesGaps ? &usualGap : nullptr};
     for (const SolverGroup& group : layout.groups) {
         const bool isFirst = &group == &layout.groups.front();
         if (!group.isLarge && !group.effort.IsAny()) continue;
         const float impulseScale = EffortOf(step, group).impulseScale;
         const SinkScale sink = sinkScaleOf(impulseScale, group.stiffness);
-        const StoreScale scale{step.dt, impulseScale, (group.isLarge ? notesLarge : notesSinks) ? &sink : nullptr};
+        const GapScale gap = gapScaleOf(impulseScale, group.stiffness);
+        const StoreScale scale{step.dt, impulseScale, (group.isLarge ? notesLarge : notesSinks) ? &sink : nullptr,
+                               notesGaps ? &gap : nullptr};
         if (isFirst)
             ForEachOverflowList(layout, [&](const auto& batches) {
                 StoreAll(to, batches, 0, static_cast<uint32_t>(batches.size()), scale, workers);

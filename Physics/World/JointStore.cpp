@@ -16,6 +16,7 @@ uint32_t JointStore::Allocate() {
         joints.emplace_back();
         records.emplace_back();
         types.emplace_back();
+        gaps.emplace_back();
         breakable.Reserve(index + 1);
     }
     const uint32_t generation = joints[index].generation;
@@ -23,6 +24,7 @@ uint32_t JointStore::Allocate() {
     joints[index].generation = generation;
     joints[index].exists = true;
     records[index] = {};
+    gaps[index] = {};
     ++count_;
     return index;
 }
@@ -81,8 +83,8 @@ bool JointStore::ForbidsContact(uint32_t bodyA, uint32_t bodyB) const {
 size_t HeapBytes(const Joint& joint) { return joint.type ? sizeof(JointType) : 0; }
 
 size_t HeapBytes(const JointStore& store) {
-    const auto& [records, types, joints, breakable, first, free, count] = store;
-    return HeapBytes(records, types, joints, breakable, first, free, count);
+    const auto& [records, types, joints, gaps, breakable, first, free, count] = store;
+    return HeapBytes(records, types, joints, gaps, breakable, first, free, count);
 }
 
 }  // namespace fulcrum

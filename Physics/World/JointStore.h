@@ -8,6 +8,7 @@
 #include <Fulcrum/Constraints/Joints/JointType.h>
 #include <Fulcrum/Physics/JointSettings.h>
 #include <Fulcrum/Physics/World/IndexSet.h>
+#include <Fulcrum/Physics/World/LoadLevel.h>
 
 #include <algorithm>
 #include <memory>
@@ -77,6 +78,7 @@ public:
     std::vector<JointRecord> records;
     std::vector<JointType*> types;
     std::vector<Joint> joints;
+    std::vector<LoadLevel> gaps;  // how far the anchors are apart
     IndexSet breakable;
 
     uint32_t Count() const { return count_; }

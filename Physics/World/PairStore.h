@@ -10,6 +10,7 @@
 #include <Fulcrum/Constraints/MassOverride.h>
 
 #include <Fulcrum/Physics/World/IndexSet.h>
+#include <Fulcrum/Physics/World/LoadLevel.h>
 
 #include <vector>
 
@@ -40,15 +41,6 @@ struct alignas(64) Pair {
 };
 static_assert(sizeof(Pair) == 128);
 
-// What a contact carries, as a level (Stages/ContactLoads.h).
-struct ContactLoad {
-    uint8_t level = 0;   // that lasts
-    uint8_t recent = 0;  // of the last step
-    uint8_t steps = 0;   // for how many it has carried more than `level`
-    // SolverGroup::stiffness of the last step, at least 1; 0: it has not been solved yet.
-    uint8_t stiffness = 0;
-};
-
 class PairStore {
 public:
     std::vector<Pair> pairs;
@@ -56,8 +48,8 @@ public:
     // Same index, of records with kMassOverride; empty without a contact listener, which alone sets them.
     std::vector<MassOverride> massOverrides;
     void KeepMassOverrides(bool keep);
-    std::vector<ContactLoad> loads;  // same index
-    uint64_t loadVersion = 1;        // grows where the level of some load changes
+    std::vector<LoadLevel> loads;  // same index
+    uint64_t loadVersion = 1;      // grows where the level of some load changes, of joints, too
     IndexSet active;
 
     // Index of the pair of two colliders, or kNone.

@@ -1,0 +1,88 @@
+// AccuracyTarget::jointError: islands get the substeps at which their joints hold as exactly as was asked for, and no
+// other island does.
+#include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace fulcrum::testing {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+SystemSettings With(float jointError) {
+    SystemSettings settings = NoSleep();
+    settings.accuracy.jointError = jointError;
+    settings.exactJointLoad = kInfinity;  // iterations alone
+    return settings;
+}
+
+// 16 planks on hinges between two posts, a weight on the middle; boxes that lie beside it.
+struct Bridge {
+    explicit Bridge(float jointError, float weight = 400, uint32_t threads = 1) : world(With(jointError), threads) {
+        world.AddFloor();
+        BodyId last = AddHook(world, {-4, 4, 0});
+        for (int i = 0; i < 16; ++i) {
+            const double x = -3.75 + 0.5 * i;
+            const BodyId plank = world.Add({.shape = BoxOf(0.24f, 0.06f, 1), .position = {x, 4, 0}, .mass = 20});
+            joints.push_back(Join(world, Of<HingeJointSettings>(Between(last, plank, {x - 0.25, 4, 0}, {0, 0, 1}))));
+            last = plank;
+        }
+        joints.push_back(
+            Join(world, Of<HingeJointSettings>(Between(last, AddHook(world, {4, 4, 0}), {4, 4, 0}, {0, 0, 1}))));
+        load = world.Add({.shape = CubeOf(0.3f), .position = {0, 4.5, 0}, .mass = weight});
+        for (int i = 0; i < 10; ++i) world.Add({.shape = CubeOf(0.5f), .position = {1.5 * i, 0.5, 5}});
+    }
+    double LargestGap() {
+        double largest = 0;
+        for (const JointId id : joints) largest = std::max(largest, double{JointsOf(world).GetError(id).distance});
+        return largest;
+    }
+    TestWorld world;
+    BodyId load;
+    std::vector<JointId> joints;
+};
+
+TEST(JointAccuracy, AnIslandGetsTheSubstepsThatMeetTheTarget) {
+    Bridge usual(kInfinity);
+    usual.world.Run(4);
+    EXPECT_EQ(usual.world.Report().islandsWithMoreEffort, 0u);
+    EXPECT_GT(usual.LargestGap(), 0.002);
+    for (const float target : {0.002f, 0.0005f}) {
+        Bridge exact(target);
+        exact.world.Run(4);
+        double largest = 0;
+        int least = 64, most = 0;
+        for (int step = 0; step < 120; ++step) {
+            exact.world.Step();
+            largest = std::max(largest, exact.LargestGap());
+            ASSERT_EQ(exact.world.Report().islandsWithMoreEffort, 1u);
+            least = std::min(least, exact.world.Report().mostEffort[0].substeps);
+            most = std::max(most, exact.world.Report().mostEffort[0].substeps);
+        }
+        EXPECT_LT(largest, target);
+        EXPECT_EQ(least, most) << "efforts are not to come and go";
+    }
+}
+
+TEST(JointAccuracy, EffortsGoWhenTheLoadGoes) {
+    Bridge bridge(0.001f, 4000);
+    bridge.world.Run(4);
+    const int loaded = bridge.world.Report().mostEffort[0].substeps;
+    EXPECT_TRUE(bridge.world.Bodies().Remove(bridge.load));
+    bridge.world.Run(10);
+    EXPECT_LT(bridge.world.Report().mostEffort[0].substeps, loaded);
+    EXPECT_LT(bridge.LargestGap(), 0.001);
+}
+
+TEST(JointAccuracy, SameBitsOnAnyNumberOfThreads) {
+    Bridge one(0.0005f), two(0.0005f, 400, 2);
+    for (int step = 0; step < 240; ++step) {
+        one.world.Step();
+        two.world.Step();
+        ASSERT_EQ(one.world.System().HashPoses(), two.world.System().HashPoses()) << step;
+    }
+}
+
+}  // namespace
+}  // namespace fulcrum::testing
