@@ -168,7 +168,7 @@ public:
             const btQuaternion q = place.getRotation();
             const btVector3 origin = place * -ToBullet(centers_[i]);
             const Status status = ours.Bodies().SetPose(ids_[i], Position(origin.x(), origin.y(), origin.z()),
-                                                        Quaternion(q.w(), q.x(), q.y(), q.z()));
+                                                        Quaternion{q.x(), q.y(), q.z(), q.w()});
             if (!status) return status;
         }
         return Done{};

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kComparedRuns = 7;
 
-void AddScenes(const std::vector<std::string>& names, std::vector<const Scene*>& scenes) {
+MaybeError FindScenes(const std::vector<std::string>& names, std::vector<const Scene*>& scenes) {
     const auto add = [&](const Scene* scene) {
         if (std::find(scenes.begin(), scenes.end(), scene) == scenes.end()) scenes.push_back(scene);
     };
@@ -23,13 +23,14 @@ void AddScenes(const std::vector<std::string>& names, std::vector<const Scene*>&
         if (!found && name != "all") {
             std::vector<std::string> known = SceneNames();
             known.push_back("all");
-            throw CLI::ValidationError(UnknownName("scene", name, known).message);
+            return UnknownName("scene", name, known);
         }
         if (found) add(found);
         else
             for (const Scene* scene : AllScenes())
                 if (scene->kind == SceneKind::Performance) add(scene);
     }
+    return std::nullopt;
 }
 
 // "10%" or "10": per cent.
@@ -53,9 +54,9 @@ void CheckPeer(const std::string& name) {
                                    " builds it in, as does cmake -DFULCRUM_PEER_BULLET=ON");
 }
 
-void AddTimeOptions(CLI::App& app, BenchOptions& options, int& runs) {
+void AddTimeOptions(CLI::App& app, BenchOptions& options, std::vector<std::string>& scenes, int& runs) {
     app.add_option_function<std::vector<std::string>>(
-           "--scene,SCENE", [&](const std::vector<std::string>& names) { AddScenes(names, options.scenes); },
+           "--scene,SCENE", [&](const std::vector<std::string>& names) { scenes = names; },
            "scenes, or all the performance scenes (default all)")
         ->type_name("SCENE...");
     AddIntegers(app, "--threads", 1, kMostThreads, "threads, or several numbers of them: 1,2 (default 1)",
@@ -111,14 +112,16 @@ void AddOutputOptions(CLI::App& app, BenchOptions& options) {
 
 Result<BenchOptions> ParseBenchOptions(std::vector<std::string> arguments) {
     BenchOptions options;
+    std::vector<std::string> scenes;
     int runs = 0;
     CLI::App app("Times the performance scenes: 1 untimed step, then each step by itself", "./fulcrum bench");
-    AddTimeOptions(app, options, runs);
+    AddTimeOptions(app, options, scenes, runs);
     AddOutputOptions(app, options);
 
     Result<std::string> parsed = ParseCommandLine(app, std::move(arguments));
     if (!parsed) return parsed.GetError();
     options.help = parsed.Value();
+    if (MaybeError error = FindScenes(scenes, options.scenes)) return *error;
     if (options.steps > 0) options.accuracyRuns = false;
     const bool isCompared = !options.save.empty() || !options.baseline.empty();
     if (isCompared && runs > 0 && runs < kFewestComparedRuns)

@@ -58,20 +58,6 @@ double MedianOf(std::vector<double> samples) {
     return count % 2 == 1 ? samples[count / 2] : 0.5 * (samples[count / 2 - 1] + samples[count / 2]);
 }
 
-Interval MedianInterval(std::vector<double> samples, double confidence) {
-    std::sort(samples.begin(), samples.end());
-    const size_t count = samples.size();
-    // C(n, i) / 2^n, one after the other.
-    double term = std::pow(0.5, static_cast<double>(count)), below = 0;
-    size_t k = 0;
-    while (2 * (k + 1) <= count && 2 * (below + term) <= 1 - confidence) {
-        below += term;
-        term *= static_cast<double>(count - k) / static_cast<double>(k + 1);
-        ++k;
-    }
-    return Between(samples, k);
-}
-
 RatioEstimate CompareSamples(const std::vector<double>& samples, const std::vector<double>& baseline,
                              double confidence) {
     std::vector<double> quotients;

@@ -13,11 +13,6 @@ struct Interval {
 // > 0 samples.
 double MedianOf(std::vector<double> samples);
 
-// Of the median of what positive samples are drawn from, by order statistics: the median lies between the k-th smallest
-// and the k-th largest of n samples unless fewer than k are on one side of it, P = 2 sum_{i<k} C(n, i) / 2^n (the sign
-// test's interval: David and Nagaraja, Order Statistics, 2003, 7.1). The narrowest one of at least `confidence`.
-Interval MedianInterval(std::vector<double> samples, double confidence);
-
 // By which factor samples are larger than those of a baseline.
 struct RatioEstimate {
     double ratio;

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <random>
 
 namespace fulcrum {
@@ -33,19 +32,6 @@ int CountVerdicts(double ratio, double noise, double tolerance, Verdict wanted) 
 TEST(SampleStatistics, MedianOfAnOddAndAnEvenNumber) {
     EXPECT_DOUBLE_EQ(MedianOf({3, 1, 2}), 2);
     EXPECT_DOUBLE_EQ(MedianOf({4, 1, 2, 3}), 2.5);
-}
-
-// Of 8 samples all are on one side of the median with 2 / 256, all but one with 18 / 256 (tables of the sign test).
-TEST(SampleStatistics, IntervalOfAMedianIsThatOfTheSignTest) {
-    const std::vector<double> samples{8, 1, 7, 2, 6, 3, 5, 4};
-    const Interval at99 = MedianInterval(samples, 0.99), at90 = MedianInterval(samples, 0.9);
-    EXPECT_DOUBLE_EQ(at99.low, 1);
-    EXPECT_DOUBLE_EQ(at99.high, 8);
-    EXPECT_DOUBLE_EQ(at90.low, 2);
-    EXPECT_DOUBLE_EQ(at90.high, 7);
-    const Interval fromFew = MedianInterval({1, 2, 3}, 0.99);
-    EXPECT_EQ(fromFew.low, 0);
-    EXPECT_EQ(fromFew.high, std::numeric_limits<double>::infinity());
 }
 
 // At 99 % U of 5 and 5 samples is below 1 with 2 / C(10, 5) = 0.0079, so the bounds are the outermost quotients.

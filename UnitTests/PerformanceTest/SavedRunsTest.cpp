@@ -120,8 +120,9 @@ TEST(SavedRuns, OtherSchemasAreNamed) {
 }
 
 TEST(SavedRuns, WhatIsMissingOrWrongIsNamed) {
-    for (const auto& [name, value] : RunOf("pyramid", 1, 3).items()) {
-        Json run = RunOf("pyramid", 1, 3);
+    const Json whole = RunOf("pyramid", 1, 3);
+    for (const auto& [name, value] : whole.items()) {
+        Json run = whole;
         run.erase(name);
         EXPECT_TRUE(Says(ErrorOf(DocumentOf({RunOf("drum", 1, 3), run})), "is damaged: in run 2")) << name;
     }
