@@ -122,7 +122,7 @@ void PrintComparison(const std::vector<ComparedRun>& runs, double tolerance, boo
     }
     std::printf(
         "%d slower, %d faster, %d same (tolerance %g %%), %d less accurate; time: over the baseline's, both "
-        "measured in runs of the reference kernel\n",
+        "measured in units of the reference kernel\n",
         counts[static_cast<int>(Verdict::Slower)], counts[static_cast<int>(Verdict::Faster)],
         counts[static_cast<int>(Verdict::Same)], 100 * tolerance, worse);
 }

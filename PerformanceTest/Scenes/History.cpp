@@ -63,7 +63,7 @@ std::string HistoryText(std::vector<SavedRuns> saved, const std::vector<std::str
         }
         text += Row(scene, threads, times);
     }
-    return text + "times of a step in runs of the reference kernel, relative to the first\n";
+    return text + "times of a step in units of the reference kernel, relative to the first\n";
 }
 
 }  // namespace fulcrum

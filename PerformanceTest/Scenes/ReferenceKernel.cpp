@@ -1,5 +1,7 @@
 #include <Fulcrum/PerformanceTest/Scenes/ReferenceKernel.h>
 
+#include <Fulcrum/PerformanceTest/Scenes/SampleStatistics.h>
+
 #include <algorithm>
 #include <array>
 #include <barrier>
@@ -10,9 +12,23 @@ namespace fulcrum {
 namespace {
 
 constexpr size_t kFloats = size_t(1) << 22;  // 16 MB
-constexpr int kRepetitions = 9;
-constexpr int kSweeps = 4500;    // over the floats in cache
-constexpr int kReads = 300'000;  // of places anywhere in memory
+constexpr int kUnits = 600;
+constexpr int kSweeps = 180;    // over the floats in cache
+constexpr int kReads = 12'000;  // of places anywhere in memory
+
+// Of all rows of `count` units.
+double MedianSum(size_t count, const std::vector<std::vector<double>>& sequences) {
+    std::vector<double> sums;
+    for (const std::vector<double>& units : sequences) {
+        double sum = 0;
+        for (size_t i = 0; i < units.size(); ++i) {
+            sum += units[i];
+            if (i + 1 > count) sum -= units[i - count];
+            if (i + 1 >= count) sums.push_back(sum);
+        }
+    }
+    return MedianOf(std::move(sums));
+}
 
 }  // namespace
 
@@ -20,16 +36,15 @@ ReferenceKernel::ReferenceKernel() : memory_(kFloats) {
     for (size_t i = 0; i < memory_.size(); ++i) memory_[i] = 1.0f / static_cast<float>(1 + i % 1000);
 }
 
-float ReferenceKernel::Work(uint32_t seed) const {
+float ReferenceKernel::Work(uint32_t& place) const {
     // Each value depends on its last one, but not on the other ones: as the rows of a color.
     std::array<float, 1024> values;
-    for (size_t i = 0; i < values.size(); ++i) values[i] = memory_[i] + static_cast<float>(seed);
+    for (size_t i = 0; i < values.size(); ++i) values[i] = memory_[i + place % 1024];
     for (int sweep = 0; sweep < kSweeps; ++sweep)
         for (float& value : values) value = value * 0.999f + 0.001f;
     // Addresses that no prefetcher guesses, all known ahead: as bodies of contacts. The generator is that of Numerical
     // Recipes.
     float sum = 0;
-    uint32_t place = seed;
     for (int read = 0; read < kReads; ++read) {
         place = place * 1664525u + 1013904223u;
         sum += memory_[place >> 10];
@@ -38,19 +53,22 @@ float ReferenceKernel::Work(uint32_t seed) const {
     return sum;
 }
 
-double ReferenceKernel::Time(int threads) const {
-    std::array<double, kRepetitions> ms{};
+std::vector<double> ReferenceKernel::Time(int threads) const {
+    std::vector<double> ms(kUnits);
     std::barrier together(threads);
     std::vector<float> sums(static_cast<size_t>(threads));
     const auto repeat = [&](size_t thread) {
+        auto place = static_cast<uint32_t>(thread);
+        float sum = 0;
         for (double& time : ms) {
             together.arrive_and_wait();
             const auto begin = std::chrono::steady_clock::now();
-            sums[thread] += Work(static_cast<uint32_t>(thread));
+            sum += Work(place);
             together.arrive_and_wait();
             if (thread == 0)
                 time = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
         }
+        sums[thread] = sum;
     };
     std::vector<std::thread> others;
     for (int thread = 1; thread < threads; ++thread) others.emplace_back(repeat, static_cast<size_t>(thread));
@@ -58,8 +76,24 @@ double ReferenceKernel::Time(int threads) const {
     for (std::thread& other : others) other.join();
     volatile float kept = sums[0];  // so that the work is not left out
     static_cast<void>(kept);
-    std::nth_element(ms.begin(), ms.begin() + kRepetitions / 2, ms.end());
-    return ms[kRepetitions / 2];
+    return ms;
+}
+
+double UnitsIn(double ms, const std::vector<std::vector<double>>& sequences) {
+    size_t longest = 0;
+    for (const std::vector<double>& units : sequences) longest = std::max(longest, units.size());
+    // The sums grow with the number: low units are shorter than ms, high ones are not, if there are so many.
+    size_t low = 0, high = longest + 1;
+    double lowSum = 0, highSum = 0;
+    while (high - low > 1) {
+        const size_t middle = (low + high) / 2;
+        const double sum = MedianSum(middle, sequences);
+        (sum < ms ? low : high) = middle;
+        (sum < ms ? lowSum : highSum) = sum;
+    }
+    const auto count = static_cast<double>(low);
+    if (high > longest) return count * ms / lowSum;
+    return count + (ms - lowSum) / (highSum - lowSum);
 }
 
 }  // namespace fulcrum

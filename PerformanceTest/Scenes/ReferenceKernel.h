@@ -15,13 +15,19 @@ class ReferenceKernel {
 public:
     ReferenceKernel();
 
-    // ms, wall clock: the median of some repetitions, in each of which that many threads do the whole work at once.
-    double Time(int threads) const;
+    // ms, wall clock, of some hundred units of work one after the other, each of a tenth of a millisecond: that many
+    // threads do a whole unit at once.
+    std::vector<double> Time(int threads) const;
 
 private:
-    float Work(uint32_t seed) const;
+    float Work(uint32_t& place) const;
 
     std::vector<float> memory_;  // more than caches of second level hold
 };
+
+// How many units take as long as `ms`: so many in a row have that as the median of their sums, by interpolation. What
+// interrupts a step of 10 ms three times and one of 0.1 ms hardly ever thus does the same to the units. `sequences`
+// of units that followed each other; > 0 units.
+double UnitsIn(double ms, const std::vector<std::vector<double>>& sequences);
 
 }  // namespace fulcrum

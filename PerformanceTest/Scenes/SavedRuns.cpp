@@ -97,7 +97,7 @@ Json NewDocument() {
             {"kernel", kReferenceKernelVersion},
             {"units",
              {{"*_ms", "milliseconds of wall clock"},
-              {"relative_times", "median_ms of a run over the ms of the reference kernel around it"},
+              {"relative_times", "median_ms of a run in units of the reference kernel around it"},
               {"*_m", "meters"},
               {"*_m_s", "meters a second"},
               {"*_j", "joules"},

@@ -21,7 +21,7 @@ struct SavedRun {
     std::string scene;
     int threads = 1;
     double medianMs = 0;  // of the runs
-    // Of each run: the median time of a step over the time of the reference kernel around it. > 0.
+    // Of each run: the median time of a step in units of the reference kernel, timed around it. > 0.
     std::vector<double> relativeTimes;
     std::string hash;
     std::optional<double> accuracy;  // null: not finite

@@ -34,14 +34,14 @@ TimedScene::TimedScene(const Scene& scene, int threads, const BenchOptions& opti
 Status TimedScene::Run(const ReferenceKernel& kernel) {
     const auto world = SceneWorld::Create(scene_, input_, Jobs());
     if (!world) return world.GetError();
-    const double before = kernel.Time(threads_);
+    std::vector<std::vector<double>> units{kernel.Time(threads_)};
     Result<RunFigures> run = Simulate(
         *world.Value(), UntimedSteps(), steps_, dt_, static_cast<uint32_t>(threads_), [] {}, RestMeters::Off);
-    const double after = kernel.Time(threads_);
+    units.push_back(kernel.Time(threads_));
     if (!run) return run.GetError();
     const double median = ComparedMs(run.Value()).median;
     runMs_.push_back(median);
-    kernelMs_.push_back(0.5 * (before + after));
+    relativeTimes_.push_back(UnitsIn(median, units));
     if (!best_ || median < ComparedMs(*best_).median) best_ = std::move(run.Value());
     return Done{};
 }
@@ -94,10 +94,7 @@ double TimedScene::RatioTo(const PeerRuns& peer, const TimedScene& scene) {
 nlohmann::ordered_json TimedScene::ToJson(uint64_t seed, const Peer* peer, const PeerRuns& peerRuns) const {
     nlohmann::ordered_json json = ReportJson(scene_.name, *best_, seed);
     json["run_ms"] = runMs_;
-    json["kernel_ms"] = kernelMs_;
-    std::vector<double> relative;
-    for (size_t i = 0; i < runMs_.size(); ++i) relative.push_back(runMs_[i] / kernelMs_[i]);
-    json["relative_times"] = relative;
+    json["relative_times"] = relativeTimes_;
     if (peer && !peerRuns.ms.empty())
         json["peer"] = {{"engine", peer->name},
                         {"version", peer->version()},

@@ -56,7 +56,7 @@ private:
     int steps_;
     double dt_;
     std::optional<RunFigures> best_;
-    std::vector<double> runMs_, kernelMs_;  // of each run
+    std::vector<double> runMs_, relativeTimes_;  // of each run
 };
 
 }  // namespace fulcrum

@@ -1,4 +1,5 @@
 // The benchmark's intervals and verdicts, on made-up samples.
+#include <Fulcrum/PerformanceTest/Scenes/ReferenceKernel.h>
 #include <Fulcrum/PerformanceTest/Scenes/SampleStatistics.h>
 
 #include <gtest/gtest.h>
@@ -79,6 +80,24 @@ TEST(SampleStatistics, TheSameIsTheSame) {
         EXPECT_GE(CountVerdicts(1, noise, 0.1, Verdict::Same), 980) << noise;
     for (const double noise : {0.001, 0.02, 0.1, 0.5})
         EXPECT_GE(CountVerdicts(1, noise, 0, Verdict::Same), 970) << noise;
+}
+
+// Units of 1 ms, of which every fifth is interrupted for 5 ms: one takes 1 ms, five in a row take 10.
+TEST(ReferenceKernel, UnitsAreInterruptedAsOftenAsAStepOfThatLength) {
+    std::vector<double> units;
+    for (int i = 0; i < 100; ++i) units.push_back(i % 5 == 0 ? 6 : 1);
+    EXPECT_DOUBLE_EQ(UnitsIn(0.5, {units}), 0.5);
+    EXPECT_DOUBLE_EQ(UnitsIn(1, {units, units}), 1);
+    EXPECT_DOUBLE_EQ(UnitsIn(10, {units}), 5);
+    EXPECT_DOUBLE_EQ(UnitsIn(20, {units}), 10);
+    EXPECT_DOUBLE_EQ(UnitsIn(20.5, {units}), 10.5);
+    EXPECT_DOUBLE_EQ(UnitsIn(400, {units}), 200) << "more than there are";
+}
+
+TEST(ReferenceKernel, TakesTime) {
+    const ReferenceKernel kernel;
+    for (const int threads : {1, 2})
+        for (double ms : kernel.Time(threads)) EXPECT_GT(ms, 0);
 }
 
 // Noise alone, or a change alone, is not enough.
