@@ -1,19 +1,22 @@
-// Bundles Page/ into one web page: node build.mjs OUTPUT. Called by CMake. HtmlWriter.cpp puts a recording in its place.
+// Bundles a folder with index.html, main.js and style.css into one web page: node build.mjs FOLDER OUTPUT. Called by CMake, for
+// the viewer (Page/) and for the accuracy lab's report. C++ puts the data in their place.
 import { build } from 'esbuild';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
-const output = process.argv[2];
+const [source, output] = process.argv.slice(2);
 if (!output) {
-  console.error('usage: node build.mjs OUTPUT');
+  console.error('usage: node build.mjs FOLDER OUTPUT');
   process.exit(2);
 }
-const source = join(dirname(fileURLToPath(import.meta.url)), 'Page');
+// Pages elsewhere use the packages beside this file.
+const packages = join(dirname(fileURLToPath(import.meta.url)), 'node_modules');
 
 const result = await build({
   entryPoints: [join(source, 'main.js'), join(source, 'style.css')],
   bundle: true,
+  nodePaths: [packages],
   minify: true,
   format: 'iife',
   target: 'es2020',

@@ -1,0 +1,83 @@
+// What a scene of the lab is, and what one run of it measures. Scenes are functions in Scenes/, listed in Registry.cpp.
+// A run belongs to one thread; runs share nothing.
+#pragma once
+
+#include <Fulcrum/Jobs/JobSystem.h>
+#include <Fulcrum/PerformanceTest/Accuracy/Setting.h>
+#include <Fulcrum/Samples/Scenes/Random.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace fulcrum::accuracy {
+
+struct NamedValue {
+    std::string name;
+    double value;
+};
+
+// What a run has cost so far.
+struct Work {
+    double seconds = 0;           // wall clock, of the steps alone
+    double simulatedSeconds = 0;  // of all worlds of the run
+    // Sum over the steps of (contacts + joints) x substeps x (velocity + position iterations), with the contacts and
+    // joints of the step's report and the system's own effort: an island under load that gets more substeps counts as
+    // others do. The same on every machine.
+    double traversals = 0;
+    uint64_t hash = 0;  // of the last poses of all worlds
+};
+
+// One run of a scene with one setting and one seed: what it is given, and what it measures.
+class LabRun {
+public:
+    LabRun(const Setting& ofSetting, double ofParameter, bool isShort, uint64_t seed, JobSystem* ofJobs = nullptr)
+        : setting(ofSetting), parameter(ofParameter), isQuick(isShort), random(seed), jobs(ofJobs) {}
+
+    // Dimensionless, >= 0: how far a result is from the closed form, over its size. The first is the scene's main one.
+    void Error(const char* name, double error) { errors.push_back({name, error}); }
+    // Whatever else is worth knowing.
+    void Figure(const char* name, double value) { figures.push_back({name, value}); }
+    // A dimensionless result, for the comparison with the finest setting.
+    void Observe(double value) { observed.push_back(value); }
+    // A condition that must hold: of the scene, or of all (finite poses, bodies within their domain).
+    void Require(bool holds, const std::string& gate);
+
+    double Dt() const { return setting.Dt(); }
+    double Seconds(double full, double quick) const { return isQuick ? quick : full; }
+    int Count(int full, int quick) const { return isQuick ? quick : full; }
+    // Whole steps of the setting, at least one.
+    int Steps(double seconds) const;
+
+    const Setting& setting;
+    double parameter;
+    bool isQuick;
+    Random random;
+    JobSystem* jobs;
+
+    std::vector<NamedValue> errors, figures;
+    std::vector<double> observed;
+    std::vector<std::string> failedGates;  // each once
+    Work work;
+};
+
+struct LabScene {
+    const char* name;          // of the list of scenes
+    const char* variant = "";  // where several are of one kind
+    const char* what;          // the set-up in one line
+    const char* error;         // the main error in one line
+    double parameter = 0;
+    Influences influences{};
+    bool isExtreme = false;
+    int seeds = 1;         // of chaotic scenes 32: the errors are medians over so many runs
+    int quickSeeds = 1;    // the same with --quick
+    double blowUp = 10;    // a run whose main error exceeds this has blown up
+    double testBound = 0;  // the main error at the finest quick setting is below this
+    // Makes worlds (LabWorld.h), steps them, and reports to the run.
+    void (*run)(LabRun& run) = nullptr;
+
+    // "incline.slide"
+    std::string FullName() const { return *variant ? std::string(name) + "." + variant : name; }
+};
+
+}  // namespace fulcrum::accuracy

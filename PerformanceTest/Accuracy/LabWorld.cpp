@@ -1,0 +1,161 @@
+#include <Fulcrum/PerformanceTest/Accuracy/LabWorld.h>
+
+#include <algorithm>
+#include <chrono>
+
+namespace fulcrum::accuracy {
+
+void LabRun::Require(bool holds, const std::string& gate) {
+    if (!holds && std::find(failedGates.begin(), failedGates.end(), gate) == failedGates.end())
+        failedGates.push_back(gate);
+}
+
+int LabRun::Steps(double seconds) const { return std::max(1, static_cast<int>(std::lround(seconds * setting.rate))); }
+
+LabWorld::LabWorld(LabRun& run, const Vector3& gravity, void (*change)(SystemSettings&)) : run_(run) {
+    SystemSettings settings = run.setting.System();
+    settings.gravity = gravity;
+    settings.sleep.enabled = false;
+    change(settings);
+    system_ = std::move(PhysicsSystem::Create(settings, run.jobs).Value());
+}
+
+LabWorld::~LabWorld() {
+    bool isInside = true;
+    for (const Built& built : dynamic_) {
+        if (!Bodies().Exists(built.id)) continue;
+        const double way = (At(built.id) - built.position).norm();
+        isFinite_ &= std::isfinite(way);
+        isInside &= way <= domain;
+    }
+    run_.Require(isFinite_, "every pose is finite");
+    run_.Require(isInside, "no body leaves its domain");
+    run_.work.seconds += work_.seconds;
+    run_.work.simulatedSeconds += work_.simulatedSeconds;
+    run_.work.traversals += work_.traversals;
+    run_.work.hash = run_.work.hash * 31 + system_->HashPoses();
+}
+
+BodyId LabWorld::Add(const BodySettings& settings) {
+    const BodyId id = Bodies().Create(settings).Value();
+    if (settings.motion == MotionType::Dynamic) dynamic_.push_back({id, settings.position});
+    return id;
+}
+
+BodyId LabWorld::AddFloor(float friction, float restitution, double halfWidth, const Position& origin) {
+    return Add({.shape = BoxOf(halfWidth, 1, halfWidth),
+                .motion = MotionType::Static,
+                .position = origin + Position(0, -1, 0),
+                .material = {.friction = friction, .restitution = restitution}});
+}
+
+void LabWorld::Step(double dt) {
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point start = Clock::now();
+    (void)system_->Update(dt).Value();
+    work_.seconds += std::chrono::duration<double>(Clock::now() - start).count();
+    work_.simulatedSeconds += dt;
+    time_ += dt;
+    const StepReport& report = system_->Report();
+    const SolverSettings& solver = system_->Settings().solver;
+    work_.traversals += static_cast<double>(report.contacts + report.joints) * solver.substeps *
+                        (solver.velocityIterations + solver.positionIterations);
+    isFinite_ &= report.frozenBodies == 0;
+}
+
+double LabWorld::FastestBody() {
+    double fastest = 0;
+    for (const Built& built : dynamic_) fastest = std::max(fastest, Speed(built.id).norm());
+    return fastest;
+}
+
+double LabWorld::SumOfGaps() {
+    double sum = 0;
+    Joints().Visit(
+        [&](JointId id) { sum += (Joints().GetFrameB(id).position - Joints().GetFrameA(id).position).norm(); });
+    return sum;
+}
+
+JointSettings Between(BodyId a, BodyId b, const Position& point, const Vector3& axis) {
+    JointSettings settings;
+    settings.bodyA = a;
+    settings.bodyB = b;
+    settings.anchorA.point = point;
+    settings.anchorA.axis = axis;
+    return settings;
+}
+
+BodyId AddHook(LabWorld& world, const Position& position) {
+    return world.Add({.shape = SphereOf(0.01), .motion = MotionType::Static, .position = position, .mask = 0});
+}
+
+std::vector<BodyId> AddStack(LabWorld& world, int count, double edge, double offset, Random& random,
+                             const Position& origin) {
+    const ShapePtr cube = BoxOf(edge / 2, edge / 2, edge / 2);
+    std::vector<BodyId> boxes;
+    for (int i = 0; i < count; ++i) {
+        const double x = random.Between(-offset, offset), z = random.Between(-offset, offset);
+        boxes.push_back(world.Add({.shape = cube, .position = origin + Position(x, (i + 0.5) * edge, z)}));
+    }
+    return boxes;
+}
+
+std::vector<BodyId> AddPyramid(LabWorld& world, int base, double edge, double spacing, double rise, double topMass) {
+    const ShapePtr cube = BoxOf(edge / 2, edge / 2, edge / 2);
+    std::vector<BodyId> boxes;
+    for (int row = 0; row < base; ++row)
+        for (int i = 0; i < base - row; ++i)
+            boxes.push_back(
+                world.Add({.shape = cube,
+                           .position = {edge * spacing * (i - 0.5 * (base - row - 1)), edge * (0.5 + rise * row), 0},
+                           .mass = row == base - 1 ? static_cast<float>(topMass) : 0.0f}));
+    return boxes;
+}
+
+Chain AddChain(LabWorld& world, int links, double endMass, double stretch, const Position& origin) {
+    const ShapePtr link = BoxOf(0.45, 0.05, 0.05), ball = SphereOf(0.4);
+    Chain chain;
+    BodyId last = AddHook(world, origin);
+    const int count = links + (endMass > 0 ? 1 : 0);
+    for (int i = 0; i < count; ++i) {
+        const bool isBall = i == links;
+        const BodyId next = world.Add({.shape = isBall ? ball : link,
+                                       .position = origin + Position((i + 0.5) * stretch, 0, 0),
+                                       .mass = isBall ? static_cast<float>(endMass) : 1.0f,
+                                       .mask = 0});
+        PointJointSettings joint;
+        joint.bodyA = last;
+        joint.bodyB = next;
+        joint.space = JointSpace::Body;
+        joint.anchorA.point = {i == 0 ? 0.0 : 0.5, 0, 0};
+        joint.anchorB = JointAnchor{.point = {-0.5, 0, 0}};
+        world.Join(joint);
+        chain.bodies.push_back(next);
+        last = next;
+    }
+    chain.length = count - 0.5;
+    return chain;
+}
+
+void Crossings::Sample(double time, double value) {
+    if (last_ && (last_->second < 0) != (value < 0))
+        times_.push_back(last_->first + (time - last_->first) * last_->second / (last_->second - value));
+    last_ = {time, value};
+}
+
+std::optional<double> Crossings::Period() const {
+    if (times_.size() < 3) return std::nullopt;
+    return 2 * (times_.back() - times_.front()) / static_cast<double>(times_.size() - 1);
+}
+
+double EllipticK(double k) {
+    double a = 1, b = std::sqrt(1 - k * k);
+    for (int i = 0; i < 8; ++i) {
+        const double mean = 0.5 * (a + b);
+        b = std::sqrt(a * b);
+        a = mean;
+    }
+    return kPi / (2 * a);
+}
+
+}  // namespace fulcrum::accuracy

@@ -1,0 +1,119 @@
+// A physics system of a run: times its steps, counts what they do, and checks what holds in every scene. Beside it what
+// scenes are built of. Made by the scenes; one thread.
+#pragma once
+
+#include <Fulcrum/Fulcrum.h>
+#include <Fulcrum/PerformanceTest/Accuracy/LabScene.h>
+
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace fulcrum::accuracy {
+
+inline constexpr double kPi = 3.14159265358979323846;
+inline constexpr double kGravity = 9.81;  // m/s2
+inline const Vector3 kDown(0, -9.81f, 0), kNoGravity(0, 0, 0);
+
+class LabWorld {
+public:
+    // With the run's setting; `change` may change the rest of the settings.
+    explicit LabWorld(LabRun& run, const Vector3& gravity = kDown, void (*change)(SystemSettings&) = Nothing);
+    // Requires that all poses are finite and no body has gone farther than `domain`; adds the work to the run's.
+    ~LabWorld();
+    LabWorld(const LabWorld&) = delete;
+    LabWorld& operator=(const LabWorld&) = delete;
+
+    static void Nothing(SystemSettings&) {}
+    static void Sleeps(SystemSettings& settings) { settings.sleep.enabled = true; }
+
+    BodyId Add(const BodySettings& settings);
+    // Static, its top at y = 0.
+    BodyId AddFloor(float friction = 0.5f, float restitution = 0, double halfWidth = 100,
+                    const Position& origin = {0, 0, 0});
+    template <class Settings>
+    JointId Join(const Settings& settings) {
+        return Joints().Create(settings).Value();
+    }
+
+    void Step() { Step(run_.Dt()); }
+    void Step(double dt);
+    void Steps(double seconds) {
+        for (int i = run_.Steps(seconds); i > 0; --i) Step();
+    }
+    double Time() const { return time_; }  // s
+
+    PhysicsSystem& System() { return *system_; }
+    BodyInterface& Bodies() { return system_->Bodies(); }
+    JointInterface& Joints() { return system_->Joints(); }
+    Position At(BodyId id) { return Bodies().GetPose(id).position; }
+    Position Speed(BodyId id) { return Bodies().GetLinearVelocity(id).cast<double>(); }
+    Position Turn(BodyId id) { return Bodies().GetAngularVelocity(id).cast<double>(); }
+    double FastestBody();
+    // All gaps of the joints together, m.
+    double SumOfGaps();
+
+    double domain = 1e4;  // m
+
+private:
+    struct Built {
+        BodyId id;
+        Position position;
+    };
+    LabRun& run_;
+    std::unique_ptr<PhysicsSystem> system_;
+    std::vector<Built> dynamic_;
+    double time_ = 0;
+    Work work_;
+    bool isFinite_ = true;
+};
+
+inline ShapePtr BoxOf(double x, double y, double z) { return Box::Create(Position(x, y, z).cast<float>()).Value(); }
+inline ShapePtr SphereOf(double radius) { return Sphere::Create(static_cast<float>(radius)).Value(); }
+
+// Body A at A's anchor, in world space; B where it is.
+JointSettings Between(BodyId a, BodyId b, const Position& point, const Vector3& axis = Vector3(1, 0, 0));
+template <class Settings>
+Settings Of(const JointSettings& between) {
+    Settings settings;
+    static_cast<JointSettings&>(settings) = between;
+    return settings;
+}
+// A static body that touches nothing, to attach joints to.
+BodyId AddHook(LabWorld& world, const Position& position = {0, 0, 0});
+
+// A stack of cubes, the lowest on y = 0 above `origin`, each up to `offset` out of line.
+std::vector<BodyId> AddStack(LabWorld& world, int count, double edge, double offset, Random& random,
+                             const Position& origin = {0, 0, 0});
+// A flat pyramid of cubes whose lowest row has `base`; neighbors in a row stand `spacing` edges apart. Row by row.
+// Layers are `rise` edges apart. The top one, the last, weighs `topMass` kg, or as the others.
+std::vector<BodyId> AddPyramid(LabWorld& world, int base, double edge, double spacing = 1.05, double rise = 1,
+                               double topMass = 0);
+
+// A chain along x of links of 1 kg and 1 m, which touch nothing, from a hook at the origin; ends in a ball of
+// `endMass` kg, or none. Created `stretch` times as long as its joints want it.
+struct Chain {
+    std::vector<BodyId> bodies;
+    double length = 0;  // m, from the hook to the middle of the last body
+};
+Chain AddChain(LabWorld& world, int links, double endMass, double stretch = 1, const Position& origin = {0, 0, 0});
+
+// Times at which a sampled quantity changes its sign, interpolated.
+class Crossings {
+public:
+    void Sample(double time, double value);
+    const std::vector<double>& Times() const { return times_; }
+    // Of an oscillation, which has two crossings a period; empty with less than three crossings.
+    std::optional<double> Period() const;
+
+private:
+    std::vector<double> times_;
+    std::optional<std::pair<double, double>> last_;
+};
+
+// Complete elliptic integral of the first kind, by the arithmetic-geometric mean.
+double EllipticK(double k);
+inline double Relative(double value, double reference) { return std::abs(value - reference) / std::abs(reference); }
+
+}  // namespace fulcrum::accuracy

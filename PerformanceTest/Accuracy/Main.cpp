@@ -1,0 +1,63 @@
+// fulcrum-accuracy: what ./fulcrum accuracy and ./fulcrum advise start.
+#include <Fulcrum/PerformanceTest/Accuracy/Advice.h>
+#include <Fulcrum/PerformanceTest/Accuracy/Options.h>
+#include <Fulcrum/Samples/Viewer/WholeFile.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+
+namespace fulcrum::accuracy {
+namespace {
+
+int Fail(const std::string& message) {
+    std::fprintf(stderr, "fulcrum: %s\n", message.c_str());
+    return 1;
+}
+
+int Advise(const LabCommand& command, std::span<const SceneRuns> scenes) {
+    for (const SceneRuns& scene : scenes) {
+        if (command.adviseError) std::printf("%s\n", AdviceForError(scene, *command.adviseError).c_str());
+        if (command.adviseBudget) std::printf("%s\n", AdviceForBudget(scene, *command.adviseBudget).c_str());
+    }
+    return 0;
+}
+
+int Write(const LabCommand& command, std::span<const SceneRuns> scenes) {
+    const Circumstances circumstances{command.commit, command.lab.isQuick, command.lab.threads};
+    const nlohmann::ordered_json json = JsonOf(scenes, circumstances);
+    const std::string tables = TablesOf(scenes, circumstances);
+    const std::filesystem::path& folder = command.lab.folder;
+    for (const auto& [name, text] : {std::pair<const char*, std::string>("runs.csv", CsvOf(scenes)),
+                                     {"runs.json", json.dump(1) + "\n"},
+                                     {"tables.md", tables}})
+        if (const Status written = WriteWholeFile(folder / name, {text}); !written)
+            return Fail(written.GetError().message);
+    if (const Status written = WriteReport(json, folder / "report.html"); !written)
+        return Fail(written.GetError().message);
+    if (!command.table.empty())
+        if (const Status written = WriteTables(tables, command.table); !written)
+            return Fail(written.GetError().message);
+    std::printf("%s\nWrote %s\n", tables.c_str(), (folder / "report.html").c_str());
+    return 0;
+}
+
+int Run(const LabCommand& command) {
+    Result<std::vector<RunRecord>> runs = RunLab(command.lab);
+    if (!runs) return Fail(runs.GetError().message);
+    const std::vector<SceneRuns> scenes = ByScene(std::move(runs.Value()));
+    return command.adviseError || command.adviseBudget ? Advise(command, scenes) : Write(command, scenes);
+}
+
+}  // namespace
+}  // namespace fulcrum::accuracy
+
+int main(int argc, char** argv) {
+    const auto command = fulcrum::accuracy::ParseLabCommand(std::vector<std::string>(argv + 1, argv + argc));
+    if (!command) return fulcrum::accuracy::Fail(command.GetError().message);
+    if (!command.Value().help.empty()) {
+        std::printf("%s", command.Value().help.c_str());
+        return 0;
+    }
+    return fulcrum::accuracy::Run(command.Value());
+}

@@ -1,0 +1,96 @@
+#include <Fulcrum/PerformanceTest/Accuracy/Options.h>
+
+#include <Fulcrum/PerformanceTest/Accuracy/Registry.h>
+#include <Fulcrum/Samples/Runner/CommandLine.h>
+
+#include <cstdlib>
+
+namespace fulcrum::accuracy {
+namespace {
+
+// "1%", "0.01"; "2ms", "2". Throws CLI::ValidationError.
+double NumberWith(const std::string& text, const std::string& unit, double scale, const char* option) {
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    const std::string rest(end);
+    if (end == text.c_str() || (!rest.empty() && rest != unit) || !(value > 0))
+        throw CLI::ValidationError(option, "'" + text + "' is no positive number with or without " + unit);
+    return rest == unit ? value * scale : value;
+}
+
+Status ChooseScenes(const std::string& name, LabOptions& lab) {
+    if (name == "all") {
+        for (const LabScene& scene : AllLabScenes()) lab.scenes.push_back(&scene);
+        return Done{};
+    }
+    lab.scenes = FindLabScenes(name);
+    if (!lab.scenes.empty()) return Done{};
+    std::vector<std::string> names = LabSceneNames();
+    names.push_back("all");
+    return UnknownName("scene", name, names);
+}
+
+Result<LabCommand> ParseAdvise(std::vector<std::string> arguments) {
+    LabCommand command;
+    command.lab.isQuick = true;
+    command.lab.resumes = true;
+    std::string name;
+    CLI::App app("Names the cheapest setting for a scene of the accuracy lab, from a short grid of runs",
+                 "./fulcrum advise");
+    app.add_option("SCENE", name, "a scene of ./fulcrum accuracy, the nearest to what you simulate")->required();
+    AddText(app, "--error", "the largest error to accept, as a part or in per cent: 0.01 or 1%",
+            [&](const std::string& text) { command.adviseError = NumberWith(text, "%", 0.01, "--error"); });
+    AddText(app, "--budget", "the largest cost to accept, ms of work per frame of 1/60 s: 2 or 2ms",
+            [&](const std::string& text) { command.adviseBudget = NumberWith(text, "ms", 1, "--budget"); });
+    AddText(app, "--out", "folder whose runs are taken, and which gets those that are missing (default out/advice)",
+            [&](const std::string& text) { command.lab.folder = text; });
+    command.lab.folder = "out/advice";
+    Result<std::string> parsed = ParseCommandLine(app, std::move(arguments));
+    if (!parsed) return parsed.GetError();
+    command.help = parsed.Value();
+    if (!command.help.empty()) return command;
+    if (!command.adviseError && !command.adviseBudget)
+        return Error{ErrorCode::OutOfRange, "advise needs --error or --budget (./fulcrum advise --help)"};
+    if (const Status chosen = ChooseScenes(name, command.lab); !chosen) return chosen.GetError();
+    return command;
+}
+
+}  // namespace
+
+Result<LabCommand> ParseLabCommand(std::vector<std::string> arguments) {
+    if (!arguments.empty() && arguments[0] == "advise") {
+        arguments.erase(arguments.begin());
+        return ParseAdvise(std::move(arguments));
+    }
+    LabCommand command;
+    command.lab.folder = "out/accuracy";
+    std::string name = "all";
+    CLI::App app("Speed against accuracy: runs scenes over a grid of settings", "./fulcrum accuracy");
+    AddText(app, "--scene", "a scene's name, or all (default all)", [&](const std::string& text) {
+        name = text;
+    })->type_name("SCENE");
+    app.add_flag_function(
+        "--quick", [&](int64_t) { command.lab.isQuick = true; },
+        "about 12 settings a scene and short runs: some minutes. The full grid takes days");
+    AddInteger(app, "--threads", 1, 64,
+               "runs at a time (default 1); more than cores, or a busy machine, spoil the costs",
+               [&](int value) { command.lab.threads = value; });
+    AddText(app, "--out", "folder of runs.jsonl, runs.csv, runs.json, tables.md, report.html (default out/accuracy)",
+            [&](const std::string& text) { command.lab.folder = text; })
+        ->type_name("DIR");
+    app.add_flag_function(
+        "--resume", [&](int64_t) { command.lab.resumes = true; },
+        "take over the runs that DIR has, and make the others");
+    AddText(app, "--table", "write the tables between the marks of this document, too", [&](const std::string& text) {
+        command.table = text;
+    })->type_name("FILE");
+    AddText(app, "--commit", "what runs.json says of the version",
+            [&](const std::string& text) { command.commit = text; });
+    Result<std::string> parsed = ParseCommandLine(app, std::move(arguments));
+    if (!parsed) return parsed.GetError();
+    command.help = parsed.Value();
+    if (const Status chosen = ChooseScenes(name, command.lab); !chosen) return chosen.GetError();
+    return command;
+}
+
+}  // namespace fulcrum::accuracy

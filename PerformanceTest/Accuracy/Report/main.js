@@ -1,0 +1,105 @@
+// The report of the accuracy lab: a plot per scene. Plots are drawn when they come into view: a full grid has 10^5 runs.
+import * as Plot from '@observablehq/plot';
+import { drawnOf } from './points.js';
+
+const data = JSON.parse(document.getElementById('runs').textContent);
+const FAMILIES = [
+  { name: 'soft', label: 'soft rows (default)', color: '#0072b2' },
+  { name: 'baumgarte', label: 'Baumgarte', color: '#d55e00' },
+  { name: 'libccd', label: 'contacts by libccd', color: '#009e73' },
+  { name: 'no_trees', label: 'no trees of joints', color: '#b0499b' },
+];
+const PRESET_LABELS = { balanced: 'default' };
+const colorOf = (family) => FAMILIES.find(({ name }) => name === family).color;
+
+const element = (tag, content, properties = {}) => {
+  const made = Object.assign(document.createElement(tag), properties);
+  made.append(...[content].flat());
+  return made;
+};
+
+function peerLines(scene, metric) {
+  const peer = data.peers?.scenes?.[scene.name];
+  if (!peer?.[metric]) return [];
+  return peer[metric].flatMap((error, i) => (error > 0 ? [{ error, engine: data.peers.engines[i], cost: peer.cost[i] }] : []));
+}
+
+function draw(card, scene) {
+  const cost = document.getElementById('cost').value, isSelf = document.getElementById('reference').value === 'self';
+  const metric = isSelf ? 'self_error' : card.querySelector('.metric').value;
+  const peers = isSelf ? [] : peerLines(scene, metric);
+  const { points, envelope, curves, top, bottom } = drawnOf(scene, { cost, metric, peers: peers.map(({ error }) => error) });
+  const at = { x: 'cost', y: 'error' };
+  const isMain = !isSelf && metric === Object.keys(scene.runs[0].errors)[0];
+  const plot = Plot.plot({
+    width: 580,
+    height: 340,
+    marginLeft: 58,
+    marginRight: 70,
+    marginBottom: 42,
+    style: { fontSize: '11.5px', background: 'transparent' },
+    x: { type: 'log', grid: true, label: cost === 'us_per_second' ? 'µs of work per simulated second →' : 'traversals per simulated second →', ticks: 5, tickFormat: '~s' },
+    y: { type: 'log', domain: [bottom, top], grid: true, label: isSelf ? '↑ difference from the finest setting' : `↑ ${metric}`, ticks: 6, tickFormat: (y) => y.toExponential(0).replace('e+', 'e') },
+    marks: [
+      Plot.frame({ stroke: '#c9d0d9' }),
+      Plot.ruleY(peers, { y: 'error', stroke: '#6b7684', strokeDasharray: '4 4' }),
+      Plot.text(peers, { y: 'error', text: ({ engine }) => engine.split(' ')[0], frameAnchor: 'right', dx: 6, textAnchor: 'start', fill: '#4a5563' }),
+      Plot.line(envelope, { ...at, stroke: '#aab2bd', strokeWidth: 9, strokeOpacity: 0.45, strokeLinejoin: 'round', ariaLabel: 'envelope' }),
+      curves.map(({ family, points: best }) => Plot.line(best, { ...at, stroke: colorOf(family), strokeWidth: 1.6, ariaLabel: `curve ${family}` })),
+      Plot.dot(points, { ...at, fill: ({ family }) => colorOf(family), r: points.length > 200 ? 2 : 3.6, symbol: 'kind', fillOpacity: points.length > 200 ? 0.5 : 0.9, ariaLabel: 'runs' }),
+      Plot.dot(points.filter(({ preset }) => preset), { ...at, r: 6.5, stroke: '#1d2733', strokeWidth: 1.4, ariaLabel: 'presets' }),
+      Plot.text(points.filter(({ preset }) => preset), { ...at, text: ({ preset }) => PRESET_LABELS[preset] ?? preset, dy: -13, fill: '#1d2733', stroke: 'white', strokeWidth: 3, fontWeight: ({ preset }) => (preset === 'balanced' ? 'bold' : 'normal') }),
+      Plot.tip(points, Plot.pointer({ ...at, title: 'title', maxRadius: 30 })),
+    ],
+    // Kinds of points, not families, have symbols.
+    symbol: { domain: ['run', 'blew up', 'exact'], range: ['circle', 'times', 'triangle'] },
+  });
+  card.querySelector('.plot').replaceChildren(plot);
+  card.querySelector('.what-error').textContent = isMain ? `Error: ${scene.error}` : '';
+}
+
+function makeCard(scene) {
+  const metrics = Object.keys(scene.runs[0].errors);
+  const choice = element('select', metrics.map((name) => element('option', name, { value: name })), { className: 'metric', ariaLabel: 'Metric' });
+  const gates = scene.is_extreme ? scene.runs.find(({ preset }) => preset === 'balanced')?.failed_gates ?? [] : [];
+  const card = element('section', [
+    element('div', [element('h2', scene.name), choice], { className: 'top' }),
+    element('p', scene.what),
+    element('p', '', { className: 'what-error' }),
+    gates.length > 0 ? element('p', `The default fails: ${gates.join('; ')}`, { className: 'failed' }) : '',
+    element('div', '', { className: 'plot' }),
+  ], { className: 'scene', id: scene.name });
+  choice.addEventListener('change', () => draw(card, scene));
+  return card;
+}
+
+function contentsOf(title, isExtreme) {
+  const links = data.scenes.filter((scene) => scene.is_extreme === isExtreme).map(({ name }) => element('a', name, { href: `#${name}` }));
+  return links.length > 0 ? element('div', [element('h2', title), ...links]) : '';
+}
+
+const { machine, compiler, lanes, commit, date, quick } = data;
+document.getElementById('circumstances').textContent =
+  `${data.scenes.length} scenes, ${quick ? 'short grid' : 'full grid'}; ${date}; commit ${commit ?? 'not known'}; ${machine}; compiler ${compiler}, ${lanes} lanes`;
+document.getElementById('legend').append(...FAMILIES.map(({ label, color }) => {
+  const mark = element('i', '');
+  mark.style.background = color;
+  return element('span', [mark, label]);
+}));
+document.getElementById('contents').append(contentsOf('Accuracy', false), contentsOf('Extremes', true));
+
+const drawn = new Map();
+const watcher = new IntersectionObserver((entries) => {
+  for (const { isIntersecting, target } of entries) {
+    if (!isIntersecting || drawn.has(target)) continue;
+    const scene = data.scenes.find(({ name }) => name === target.id);
+    drawn.set(target, scene);
+    draw(target, scene);
+  }
+}, { rootMargin: '400px' });
+for (const scene of data.scenes) {
+  const card = makeCard(scene);
+  document.getElementById('scenes').append(card);
+  watcher.observe(card);
+}
+document.getElementById('controls').addEventListener('change', () => drawn.forEach((scene, card) => draw(card, scene)));

@@ -1,0 +1,58 @@
+// Where the runs of a scene are in its plot. No page is needed: the tests run it in node.
+
+// Not finite, or without a number in the file: null.
+const errorOf = (run, metric) => (metric === 'self_error' ? run.self_error : run.errors[metric]) ?? null;
+
+const number = (value) => (value === null || value === undefined ? '–' : Number(value).toPrecision(3));
+
+function titleOf(run, metric) {
+  const lines = [
+    `${run.preset ? `${run.preset === 'balanced' ? 'balanced (the default)' : run.preset}: ` : ''}${run.family}`,
+    `dt 1/${run.rate} s, ${run.substeps} substeps`,
+    `${run.velocity_iterations} velocity, ${run.position_iterations} position iterations`,
+    `${metric} ${number(errorOf(run, metric))}${run.blew_up ? ' (blew up)' : ''}`,
+    `${number(run.us_per_second)} µs a second (of ${run.timed_runs} runs), ${number(run.traversals_per_second)} traversals`,
+  ];
+  if (run.failed_gates.length > 0) lines.push(`fails: ${run.failed_gates.join('; ')}`);
+  return lines.join('\n');
+}
+
+// Those that no other one beats in both, cheapest first.
+export function envelopeOf(points) {
+  const best = [];
+  for (const point of points.filter(({ kind }) => kind !== 'blew up').sort((a, b) => a.cost - b.cost || a.error - b.error)) {
+    if (best.length === 0 || point.error < best.at(-1).error) best.push(point);
+  }
+  return best;
+}
+
+// Errors of zero are drawn at the lower edge, runs that blew up at the upper one.
+export function drawnOf(scene, { cost, metric, peers = [] }) {
+  const runs = scene.runs.filter((run) => run[cost] !== null);
+  const isBlown = (run) => run.blew_up || errorOf(run, metric) === null;
+  const positive = runs.filter((run) => !isBlown(run)).map((run) => errorOf(run, metric)).filter((error) => error > 0).concat(peers);
+  // Decades around what there is; where all is exact, any.
+  let bottom = 10 ** (Math.floor(Math.log10(Math.min(...positive, Infinity))) - (runs.some((run) => errorOf(run, metric) === 0) ? 1 : 0));
+  let top = 10 ** Math.ceil(Math.log10(Math.max(...positive, 0)) + 0.05);
+  if (positive.length === 0) [bottom, top] = [1e-6, 1];
+  if (runs.some(isBlown)) top *= 10;
+  const points = runs.map((run) => {
+    const error = errorOf(run, metric), kind = isBlown(run) ? 'blew up' : error === 0 ? 'exact' : 'run';
+    return {
+      cost: Math.max(run[cost], 1e-3),
+      error: kind === 'blew up' ? top : kind === 'exact' ? bottom : error,
+      kind,
+      family: run.family,
+      preset: run.preset,
+      title: titleOf(run, metric),
+    };
+  });
+  const families = [...new Set(points.map(({ family }) => family))];
+  return {
+    points,
+    envelope: envelopeOf(points),
+    curves: families.map((family) => ({ family, points: envelopeOf(points.filter((point) => point.family === family)) })),
+    top,
+    bottom,
+  };
+}

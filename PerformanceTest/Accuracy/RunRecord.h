@@ -1,0 +1,48 @@
+// What one run of the lab leaves behind, and its line in runs.jsonl. Plain data and free functions, any thread.
+#pragma once
+
+#include <Fulcrum/Math/Result.h>
+#include <Fulcrum/PerformanceTest/Accuracy/LabScene.h>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace fulcrum::accuracy {
+
+inline constexpr int kSchemaVersion = 1;
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+struct RunRecord {
+    std::string scene;  // full name
+    Setting setting;
+    std::vector<NamedValue> errors, figures;  // medians over the seeds; the first error is the main one
+    std::vector<double> observed;
+    std::vector<std::string> failedGates;  // of any seed
+    bool blewUp = false;                   // the main error is not finite, or beyond the scene's bound
+    int seeds = 1;
+    uint64_t hash = 0;
+    double traversals = 0;    // of constraints per simulated second
+    double microseconds = 0;  // of work per simulated second: the median of so many runs
+    int timedRuns = 0;
+    double selfError = kNaN;  // from the finest setting, not from the closed form; AddSelfErrors fills it
+
+    // The main one; NaN where the scene gave none.
+    double Error() const { return errors.empty() ? kNaN : errors[0].value; }
+};
+
+// Runs the scene with each of its seeds, and repeats it until there are five times or a share of time is used up.
+RunRecord Measure(const LabScene& scene, const Setting& setting, bool isQuick);
+
+// Not finite: null.
+nlohmann::ordered_json ToJson(const RunRecord& record);
+// Error OutOfRange: no run, or an unknown one.
+Result<RunRecord> RecordFromJson(const nlohmann::ordered_json& json);
+
+// Of one scene, in any order: the largest difference of what each observed from what the finest soft setting did. NaN
+// where there is no such, or another number of results.
+void AddSelfErrors(std::vector<RunRecord>& ofScene);
+
+}  // namespace fulcrum::accuracy

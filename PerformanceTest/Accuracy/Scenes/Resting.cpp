@@ -1,0 +1,115 @@
+// What rests: how deep, and with which forces.
+#include <Fulcrum/PerformanceTest/Accuracy/LabWorld.h>
+#include <Fulcrum/PerformanceTest/Accuracy/Scenes/Families.h>
+
+#include <algorithm>
+
+namespace fulcrum::accuracy {
+namespace {
+
+// 216 balls just above each other fall apart into a heap: none may be in another one, or in the ground. Depths are
+// from the centers; RMS over all touching pairs, mean over ten times of the second half.
+void RestingCube(LabRun& run) {
+    constexpr double kRadius = 0.5, kSpacing = 1.02;
+    const double seconds = run.Seconds(10, 2);
+    LabWorld world(run);
+    world.AddFloor();
+    const ShapePtr shape = SphereOf(kRadius);
+    std::vector<BodyId> balls;
+    for (int y = 0; y < 6; ++y)
+        for (int x = 0; x < 6; ++x)
+            for (int z = 0; z < 6; ++z) {
+                const double dx = run.random.Between(-1e-3, 1e-3), dz = run.random.Between(-1e-3, 1e-3);
+                balls.push_back(world.Add({.shape = shape,
+                                           .position = {kSpacing * (x - 2.5) + dx, kRadius + kSpacing * y + 0.01,
+                                                        kSpacing * (z - 2.5) + dz}}));
+            }
+    world.Steps(seconds / 2);
+    double squares = 0, touching = 0, deepest = 0;
+    const auto add = [&](double depth) {
+        if (depth <= 0) return;
+        squares += depth * depth;
+        touching += 1;
+        deepest = std::max(deepest, depth);
+    };
+    for (int sample = 0; sample < 10; ++sample) {
+        world.Steps(seconds / 20);
+        for (size_t i = 0; i < balls.size(); ++i) {
+            const Position at = world.At(balls[i]);
+            add(kRadius - at.y());
+            for (size_t j = 0; j < i; ++j) add(2 * kRadius - (at - world.At(balls[j])).norm());
+        }
+    }
+    const double rms = touching > 0 ? std::sqrt(squares / touching) : 0;
+    run.Error("depth", rms / kRadius);
+    run.Error("deepest", deepest / kRadius);
+    run.Figure("mean_squared_depth_m2", rms * rms);
+    run.Observe(rms / kRadius);
+}
+
+// Eight balls that can only move up and down and not turn, as in a tube without friction: interface k of them carries
+// (N - k) m g, the floor all. dt is 0.3 of the grid's, so that it is 5 ms at the default. The impulse of a contact is
+// that of the last substep: the system's own, since islands get no more substeps here.
+void Weight(LabRun& run) {
+    constexpr int kBalls = 8;
+    constexpr double kRadius = 0.05, kMass = 5;
+    const double dt = 0.3 * run.Dt(), substep = dt / run.setting.solver.substeps;
+    LabWorld world(run, kDown, [](SystemSettings& settings) {
+        settings.accuracy.penetration = std::numeric_limits<float>::infinity();
+    });
+    world.AddFloor();
+    std::vector<BodyId> balls;
+    for (int i = 0; i < kBalls; ++i)
+        balls.push_back(
+            world.Add({.shape = SphereOf(kRadius),
+                       .position = {0, kRadius * (2 * i + 1), 0},
+                       .mass = kMass,
+                       .lockedAxes = LockedAxes::TranslationX | LockedAxes::TranslationZ | LockedAxes::Rotation}));
+    const int settling = std::max(1, static_cast<int>(std::lround(0.25 / dt)));
+    for (int i = 0; i < settling; ++i) world.Step(dt);
+    // After 0.25 s: mean over ten steps.
+    std::vector<double> force(kBalls, 0);
+    for (int i = 0; i < 10; ++i) {
+        world.Step(dt);
+        world.System().VisitContacts([&](const ContactView& contact) {
+            double impulse = 0;
+            for (const ContactView::Point& point : contact.points) impulse += point.impulse;
+            // Interface k is below ball k.
+            int k = 0;
+            for (int ball = 1; ball < kBalls; ++ball)
+                if (contact.bodyA == balls[ball] || contact.bodyB == balls[ball]) k = ball;
+            force[static_cast<size_t>(k)] += impulse / substep / 10;
+        });
+    }
+    double sum = 0;
+    for (int k = 0; k < kBalls; ++k) {
+        const double reference = (kBalls - k) * kMass * kGravity;
+        sum += Relative(force[static_cast<size_t>(k)], reference) / kBalls;
+        run.Observe(force[static_cast<size_t>(k)] / reference);
+    }
+    run.Error("mean_force", sum);
+    run.Error("floor_force", Relative(force[0], kBalls * kMass * kGravity));
+}
+
+}  // namespace
+
+std::vector<LabScene> RestingScenes() {
+    return {
+        {.name = "resting_cube",
+         .what = "6 x 6 x 6 balls of 0.5 m just above each other, 10 s",
+         .error = "RMS depth over a ball's radius",
+         .influences = {.contacts = true},
+         .seeds = 32,
+         .quickSeeds = 1,
+         .testBound = 0.05,
+         .run = RestingCube},
+        {.name = "weight",
+         .what = "8 balls of 5 kg and 5 cm stacked in a tube, dt 0.3 of the setting's, after 0.25 s",
+         .error = "mean relative error of the forces at the interfaces",
+         .influences = {.contacts = true},
+         .testBound = 0.05,
+         .run = Weight},
+    };
+}
+
+}  // namespace fulcrum::accuracy

@@ -1,0 +1,118 @@
+#include <Fulcrum/PerformanceTest/Accuracy/Setting.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace fulcrum::accuracy {
+namespace {
+
+constexpr std::pair<const char*, SolverSettings> kPresets[] = {
+    {"fast", SolverSettings::Fast()},
+    {"balanced", SolverSettings::Balanced()},
+    {"accurate", SolverSettings::Accurate()},
+    {"reference", SolverSettings::Reference()},
+};
+
+// Adds settings, each once, and only those that make a difference to the scene.
+class Grid {
+public:
+    explicit Grid(const Influences& influences) : influences_(influences) {
+        for (const auto& [name, solver] : kPresets) Add({.solver = solver});
+    }
+    void Add(Setting setting) {
+        if (!influences_.timeStep && setting.rate != 60) return;
+        const bool hasConstraints = influences_.contacts || influences_.joints;
+        // Without contacts and joints nothing is solved: the time step alone matters, and the presets are one setting.
+        if (!hasConstraints && (setting.solver != SolverSettings{} || setting.family != Family::Soft)) return;
+        if (setting.family == Family::Libccd && !influences_.contacts) return;
+        if (setting.family == Family::NoTrees && !influences_.joints) return;
+        if (std::find(settings_.begin(), settings_.end(), setting) == settings_.end()) settings_.push_back(setting);
+    }
+    std::vector<Setting> Take() { return std::move(settings_); }
+
+private:
+    Influences influences_;
+    std::vector<Setting> settings_;
+};
+
+SolverSettings Effort(int substeps, int velocityIterations, int positionIterations, Family family) {
+    SolverSettings solver;
+    solver.substeps = substeps;
+    solver.velocityIterations = velocityIterations;
+    solver.positionIterations = positionIterations;
+    if (family == Family::Baumgarte) solver.positionCorrection = PositionCorrection::Baumgarte;
+    return solver;
+}
+
+}  // namespace
+
+const char* FamilyName(Family family) {
+    constexpr const char* kNames[kFamilies] = {"soft", "baumgarte", "libccd", "no_trees"};
+    return kNames[static_cast<int>(family)];
+}
+
+SystemSettings Setting::System() const {
+    SystemSettings settings;
+    settings.solver = solver;
+    if (family == Family::Libccd) settings.narrowPhase = NarrowPhaseMethod::Libccd;
+    if (family == Family::NoTrees) settings.exactJointLoad = std::numeric_limits<float>::infinity();
+    return settings;
+}
+
+double Setting::PassesPerSecond() const {
+    return static_cast<double>(rate) * solver.substeps * (solver.velocityIterations + solver.positionIterations);
+}
+
+std::string Setting::Key() const {
+    return std::string(FamilyName(family)) + " 1/" + std::to_string(rate) + " " + std::to_string(solver.substeps) +
+           " " + std::to_string(solver.velocityIterations) + " " + std::to_string(solver.positionIterations);
+}
+
+const char* Setting::Preset() const {
+    if (rate == 60 && family == Family::Soft)
+        for (const auto& [name, preset] : kPresets)
+            if (solver == preset) return name;
+    return "";
+}
+
+std::string Setting::Code() const {
+    std::string code = "settings.solver = {.substeps = " + std::to_string(solver.substeps) +
+                       ", .velocityIterations = " + std::to_string(solver.velocityIterations) +
+                       ", .positionIterations = " + std::to_string(solver.positionIterations);
+    if (family == Family::Baumgarte) code += ", .positionCorrection = PositionCorrection::Baumgarte";
+    code += "};";
+    if (family == Family::Libccd) code += " settings.narrowPhase = NarrowPhaseMethod::Libccd;";
+    if (family == Family::NoTrees) code += " settings.exactJointLoad = std::numeric_limits<float>::infinity();";
+    return code + " system->Update(1.0 / " + std::to_string(rate) + ");";
+}
+
+std::vector<Setting> QuickGrid(const Influences& influences) {
+    Grid grid(influences);
+    for (const int rate : {30, 60, 120, 240}) grid.Add({.rate = rate});
+    grid.Add({.solver = Effort(1, 10, 2, Family::Soft)});
+    for (const int rate : {60, 240})
+        grid.Add({.rate = rate, .solver = Effort(4, 1, 1, Family::Baumgarte), .family = Family::Baumgarte});
+    grid.Add({.family = Family::Libccd});
+    grid.Add({.family = Family::NoTrees});
+    return grid.Take();
+}
+
+std::vector<Setting> FullGrid(const Influences& influences) {
+    Grid grid(influences);
+    for (const Family family : {Family::Soft, Family::Baumgarte, Family::Libccd, Family::NoTrees})
+        for (const int rate : {30, 60, 120, 240, 480, 960})
+            for (const int substeps : {1, 2, 4, 8, 16})
+                for (const int velocity : {1, 2, 4, 8, 16, 32})
+                    for (const int position : {0, 1, 2, 4}) {
+                        const bool isSide = family == Family::Libccd || family == Family::NoTrees;
+                        if (isSide && (position != 1 || (velocity != 1 && velocity != 8))) continue;
+                        grid.Add({rate, Effort(substeps, velocity, position, family), family});
+                    }
+    std::vector<Setting> settings = grid.Take();
+    std::stable_sort(settings.begin(), settings.end(),
+                     [](const Setting& a, const Setting& b) { return a.PassesPerSecond() < b.PassesPerSecond(); });
+    return settings;
+}
+
+}  // namespace fulcrum::accuracy

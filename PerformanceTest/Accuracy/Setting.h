@@ -1,0 +1,52 @@
+// One choice of speed against accuracy: time step, effort of the solver, and what else is compared. The grids of the
+// lab are lists of these. Plain data and free functions, any thread.
+#pragma once
+
+#include <Fulcrum/Physics/Settings.h>
+
+#include <string>
+#include <vector>
+
+namespace fulcrum::accuracy {
+
+// What a curve of the report shows; everything else varies along it.
+enum class Family : uint8_t {
+    Soft,       // the default: soft rows, relaxed
+    Baumgarte,  // hard rows, position passes
+    Libccd,     // soft rows, contacts by libccd
+    NoTrees,    // soft rows, joints under load are not solved as trees
+};
+inline constexpr int kFamilies = 4;
+const char* FamilyName(Family family);
+
+struct Setting {
+    int rate = 60;  // time steps per second
+    SolverSettings solver{};
+    Family family = Family::Soft;
+
+    double Dt() const { return 1.0 / rate; }
+    SystemSettings System() const;
+    // Passes over a constraint per simulated second.
+    double PassesPerSecond() const;
+    // "soft 1/60 4 1 1": family, dt, substeps, velocity iterations, position iterations. Names the setting in files.
+    std::string Key() const;
+    // "fast", "balanced" (the default), "accurate", "reference"; empty for others.
+    const char* Preset() const;
+    // The lines that make a program run with it.
+    std::string Code() const;
+    friend bool operator==(const Setting&, const Setting&) = default;
+};
+
+// What makes a difference to a scene: a grid leaves out what does not.
+struct Influences {
+    bool timeStep = true, contacts = false, joints = false;
+};
+
+// The presets, then steps of 1/30 to 1/240 s at the default effort, ten iterations, and one or two of each other
+// family: about 12.
+std::vector<Setting> QuickGrid(const Influences& influences);
+// dt 1/30 .. 1/960 x substeps 1 .. 16 x velocity iterations 1 .. 32 x position iterations 0 .. 4 of Soft and Baumgarte,
+// a part of it for the others, and the presets. Cheap ones first.
+std::vector<Setting> FullGrid(const Influences& influences);
+
+}  // namespace fulcrum::accuracy

@@ -1,0 +1,125 @@
+// The summary in Markdown.
+#include <Fulcrum/PerformanceTest/Accuracy/Output.h>
+
+#include <Fulcrum/PerformanceTest/Accuracy/Curves.h>
+#include <Fulcrum/Samples/Viewer/WholeFile.h>
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+
+namespace fulcrum::accuracy {
+namespace {
+
+constexpr const char* kBegin = "<!-- accuracy lab: begin -->\n";
+constexpr const char* kEnd = "<!-- accuracy lab: end -->";
+constexpr const char* kPresets[] = {"fast", "balanced", "accurate", "reference"};
+
+// Where nothing is solved all presets are the same.
+const RunRecord* PresetOf(const SceneRuns& each, const char* preset) {
+    const RunRecord* run = FindPreset(each.runs, preset);
+    return run ? run : FindPreset(each.runs, "balanced");
+}
+
+std::string ErrorText(const RunRecord* run) {
+    if (!run) return "–";
+    return run->blewUp ? "blew up" : ShortNumber(run->Error());
+}
+
+std::string CostText(const RunRecord* run) { return run ? ShortNumber(run->microseconds) : "never"; }
+
+std::string Heading(const std::vector<std::string>& cells) {
+    std::string names, rule;
+    for (const std::string& cell : cells) {
+        names += "| " + cell + " ";
+        rule += "| --- ";
+    }
+    return names + "|\n" + rule + "|\n";
+}
+
+std::string CurveCells(const SceneRuns& each) {
+    const double slope = SlopeOverDt(each.runs);
+    char text[16];
+    std::snprintf(text, sizeof text, "%.1f", slope);
+    std::string cells =
+        std::string(" | ") + (std::isfinite(slope) ? text : "–") + " | " + ShortNumber(Floor(each.runs));
+    for (const double error : {0.1, 0.01, 0.001}) cells += " | " + CostText(CheapestFor(each.runs, error));
+    return cells;
+}
+
+std::string AccuracyTable(std::span<const SceneRuns> scenes, bool isExtreme) {
+    std::vector<std::string> heading = {"scene"};
+    for (const char* preset : kPresets) heading.push_back(preset);
+    for (const char* name : {"slope", "floor", "10 %", "1 %", "0.1 %"}) heading.push_back(name);
+    if (isExtreme) heading.push_back("gates that the default fails");
+    std::string table = Heading(heading);
+    for (const SceneRuns& each : scenes) {
+        if (each.scene->isExtreme != isExtreme) continue;
+        table += "| `" + each.scene->FullName() + "`";
+        for (const char* preset : kPresets) {
+            const RunRecord* run = PresetOf(each, preset);
+            table += " | " + ErrorText(run) + (run ? " @ " + CostText(run) : "");
+        }
+        table += CurveCells(each);
+        if (isExtreme) {
+            std::string gates;
+            if (const RunRecord* run = PresetOf(each, "balanced"))
+                for (const std::string& gate : run->failedGates) gates += (gates.empty() ? "" : "; ") + gate;
+            table += " | " + (gates.empty() ? "none" : gates);
+        }
+        table += " |\n";
+    }
+    return table;
+}
+
+std::string EnvelopeTable(std::span<const SceneRuns> scenes) {
+    std::string table = Heading({"scene", "envelope: setting: error @ cost"});
+    for (const SceneRuns& each : scenes) {
+        table += "| `" + each.scene->FullName() + "` | ";
+        bool isFirst = true;
+        for (const size_t i : Envelope(each.runs)) {
+            const RunRecord& run = each.runs[i];
+            table += (isFirst ? "" : "; ") + run.setting.Key() + ": " + ErrorText(&run) + " @ " + CostText(&run);
+            isFirst = false;
+        }
+        table += std::string(isFirst ? "none: all blew up" : "") + " |\n";
+    }
+    return table;
+}
+
+}  // namespace
+
+std::string ShortNumber(double value) {
+    if (!std::isfinite(value)) return "–";
+    if (value == 0) return "0";
+    char text[32];
+    if (value >= 1e6) std::snprintf(text, sizeof text, "%.3gM", value / 1e6);
+    else if (value >= 1e3) std::snprintf(text, sizeof text, "%.3gk", value / 1e3);
+    else std::snprintf(text, sizeof text, "%.2g", value);
+    if (value >= 99.5 && value < 1e3) std::snprintf(text, sizeof text, "%.0f", value);
+    return text;
+}
+
+std::string TablesOf(std::span<const SceneRuns> scenes, const Circumstances& circumstances) {
+    return std::string("Made by `./fulcrum accuracy") + (circumstances.isQuick ? " --quick" : "") +
+           " --table Docs/Accuracy.md`. Each cell: error @ cost, microseconds of work per simulated second.\n\n" +
+           AccuracyTable(scenes, false) + "\n" + AccuracyTable(scenes, true) + "\n" + EnvelopeTable(scenes);
+}
+
+Status WriteTables(const std::string& tables, const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream content;
+    content << file.rdbuf();
+    file.close();
+    const std::string text = content.str();
+    const size_t begin = text.find(kBegin), end = text.find(kEnd);
+    if (begin == std::string::npos || end == std::string::npos || end < begin)
+        return Error{ErrorCode::OutOfRange,
+                     path.string() + " has no lines " + std::string(kBegin, 28) + " and " + kEnd};
+    const size_t first = begin + std::char_traits<char>::length(kBegin);
+    const std::string_view whole = text;
+    return WriteWholeFile(path, {whole.substr(0, first), "\n", tables, "\n", whole.substr(end)});
+}
+
+}  // namespace fulcrum::accuracy

@@ -1,0 +1,47 @@
+// The command lines of ./fulcrum accuracy and ./fulcrum advise.
+#include <Fulcrum/PerformanceTest/Accuracy/Options.h>
+#include <Fulcrum/PerformanceTest/Accuracy/Registry.h>
+
+namespace fulcrum::accuracy {
+namespace {
+
+TEST(LabOptions, DefaultsAreTheFullGridOfAllScenes) {
+    const auto command = ParseLabCommand({});
+    ASSERT_TRUE(command);
+    EXPECT_EQ(command.Value().lab.scenes.size(), AllLabScenes().size());
+    EXPECT_FALSE(command.Value().lab.isQuick);
+    EXPECT_EQ(command.Value().lab.threads, 1);
+    EXPECT_EQ(command.Value().lab.folder, "out/accuracy");
+}
+
+TEST(LabOptions, AllAreTaken) {
+    const auto command = ParseLabCommand({"--scene", "incline", "--quick", "--threads", "2", "--out", "here",
+                                          "--resume", "--table", "Docs/Accuracy.md"});
+    ASSERT_TRUE(command);
+    EXPECT_EQ(command.Value().lab.scenes.size(), 2u);
+    EXPECT_TRUE(command.Value().lab.isQuick && command.Value().lab.resumes);
+    EXPECT_EQ(command.Value().lab.threads, 2);
+    EXPECT_EQ(command.Value().lab.folder, "here");
+    EXPECT_EQ(command.Value().table, "Docs/Accuracy.md");
+}
+
+TEST(LabOptions, AnUnknownSceneIsAnsweredWithTheNearest) {
+    const auto command = ParseLabCommand({"--scene", "inclin"});
+    ASSERT_FALSE(command);
+    EXPECT_NE(command.GetError().message.find("incline"), std::string::npos) << command.GetError().message;
+}
+
+TEST(LabOptions, AdviseTakesPartsAndPerCentAndMilliseconds) {
+    const auto error = ParseLabCommand({"advise", "weight", "--error", "1%"});
+    ASSERT_TRUE(error);
+    EXPECT_DOUBLE_EQ(error.Value().adviseError.value(), 0.01);
+    EXPECT_TRUE(error.Value().lab.isQuick && error.Value().lab.resumes);
+    EXPECT_DOUBLE_EQ(ParseLabCommand({"advise", "weight", "--error", "0.02"}).Value().adviseError.value(), 0.02);
+    EXPECT_DOUBLE_EQ(ParseLabCommand({"advise", "weight", "--budget", "2ms"}).Value().adviseBudget.value(), 2);
+    EXPECT_FALSE(ParseLabCommand({"advise", "weight", "--error", "much"}));
+    EXPECT_FALSE(ParseLabCommand({"advise", "weight"}));
+    EXPECT_FALSE(ParseLabCommand({"advise", "--error", "1%"}));
+}
+
+}  // namespace
+}  // namespace fulcrum::accuracy

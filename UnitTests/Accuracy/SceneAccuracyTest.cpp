@@ -1,0 +1,123 @@
+// Every scene of the accuracy lab at the finest setting of the short grid is within its bound, which is stated where
+// the scene is; the list is complete.
+#include <Fulcrum/PerformanceTest/Accuracy/Registry.h>
+#include <Fulcrum/PerformanceTest/Accuracy/RunRecord.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <set>
+
+namespace fulcrum::accuracy {
+namespace {
+
+Setting FinestQuick(const LabScene& scene) {
+    const std::vector<Setting> grid = QuickGrid(scene.influences);
+    return *std::max_element(grid.begin(), grid.end(), [](const Setting& a, const Setting& b) {
+        return std::pair(a.PassesPerSecond(), a.rate) < std::pair(b.PassesPerSecond(), b.rate);
+    });
+}
+
+class LabSceneTest : public testing::TestWithParam<LabScene> {};
+
+TEST_P(LabSceneTest, IsExactAtTheFinestQuickSetting) {
+    const LabScene& scene = GetParam();
+    const Setting setting = FinestQuick(scene);
+    LabRun run(setting, scene.parameter, true, 1);
+    scene.run(run);
+    ASSERT_FALSE(run.errors.empty());
+    EXPECT_LT(run.errors[0].value, scene.testBound) << setting.Key();
+    for (const NamedValue& error : run.errors) EXPECT_GE(error.value, 0) << error.name;
+    EXPECT_FALSE(run.observed.empty());
+    for (const double value : run.observed) EXPECT_TRUE(std::isfinite(value));
+    EXPECT_GT(run.work.seconds, 0);
+    for (const std::string& gate : run.failedGates) EXPECT_NE(gate, "every pose is finite");
+}
+
+std::string TestName(const testing::TestParamInfo<LabScene>& tested) {
+    std::string name = tested.param.FullName();
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
+    return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, LabSceneTest, testing::ValuesIn(AllLabScenes()), TestName);
+
+TEST(LabRegistry, HasEveryScene) {
+    std::set<std::string> names;
+    std::set<std::string> fullNames;
+    for (const LabScene& scene : AllLabScenes()) {
+        names.insert(scene.name);
+        EXPECT_TRUE(fullNames.insert(scene.FullName()).second) << scene.FullName() << " twice";
+        EXPECT_GT(scene.testBound, 0) << scene.FullName();
+        EXPECT_NE(scene.run, nullptr);
+    }
+    EXPECT_EQ(names, (std::set<std::string>{"projectile",
+                                            "free_rotation",
+                                            "pendulum",
+                                            "point_pendulum",
+                                            "incline",
+                                            "friction_isotropy",
+                                            "slide_to_roll",
+                                            "rolling",
+                                            "restitution",
+                                            "bouncing_field",
+                                            "resting_cube",
+                                            "weight",
+                                            "spring",
+                                            "motor",
+                                            "gear_pulley",
+                                            "momentum",
+                                            "heavy_on_light",
+                                            "heavy_chain",
+                                            "long_chain",
+                                            "tall_stack",
+                                            "tiny",
+                                            "huge",
+                                            "bullet",
+                                            "fast_spin",
+                                            "far_away",
+                                            "time_step",
+                                            "overlap",
+                                            "coincident",
+                                            "degenerate",
+                                            "internal_edges",
+                                            "thin",
+                                            "contradictory",
+                                            "singular",
+                                            "bad_input",
+                                            "soak"}));
+}
+
+TEST(LabRegistry, FindsScenesByTheirNameAndByTheirFullName) {
+    EXPECT_EQ(FindLabScenes("incline").size(), 2u);
+    ASSERT_EQ(FindLabScenes("incline.stick").size(), 1u);
+    EXPECT_STREQ(FindLabScenes("incline.stick")[0]->variant, "stick");
+    EXPECT_TRUE(FindLabScenes("inclin").empty());
+}
+
+TEST(LabGrid, HasThePresetsAndEachSettingOnce) {
+    const Influences all{.contacts = true, .joints = true};
+    for (const std::vector<Setting>& grid : {QuickGrid(all), FullGrid(all)}) {
+        std::set<std::string> keys, presets;
+        for (const Setting& setting : grid) {
+            EXPECT_TRUE(keys.insert(setting.Key()).second) << setting.Key();
+            presets.insert(setting.Preset());
+        }
+        EXPECT_EQ(presets, (std::set<std::string>{"", "fast", "balanced", "accurate", "reference"}));
+    }
+    EXPECT_GE(QuickGrid(all).size(), 10u);
+    EXPECT_LE(QuickGrid(all).size(), 14u);
+    // 6 steps x 5 substeps x 6 velocity x 4 position iterations of two families, a part of two more, and a preset.
+    EXPECT_EQ(FullGrid(all).size(), 2u * 720 + 2 * 60 + 1);
+}
+
+TEST(LabGrid, LeavesOutWhatDoesNotMatter) {
+    EXPECT_EQ(FullGrid({}).size(), 6u);  // time steps
+    EXPECT_EQ(FullGrid({.timeStep = false}).size(), 1u);
+    for (const Setting& setting : QuickGrid({.joints = true})) EXPECT_NE(setting.family, Family::Libccd);
+    for (const Setting& setting : QuickGrid({.contacts = true})) EXPECT_NE(setting.family, Family::NoTrees);
+}
+
+}  // namespace
+}  // namespace fulcrum::accuracy
