@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <barrier>
+#include <atomic>
 #include <chrono>
 #include <thread>
 
@@ -12,9 +12,9 @@ namespace fulcrum {
 namespace {
 
 constexpr size_t kFloats = size_t(1) << 22;  // 16 MB
-constexpr int kUnits = 600;
-constexpr int kSweeps = 180;    // over the floats in cache
-constexpr int kReads = 12'000;  // of places anywhere in memory
+constexpr size_t kUnits = 600;               // a thread
+constexpr int kSweeps = 180;                 // over the floats in cache
+constexpr int kReads = 12'000;               // of places anywhere in memory
 
 // Of all rows of `count` units.
 double MedianSum(size_t count, const std::vector<std::vector<double>>& sequences) {
@@ -54,28 +54,32 @@ float ReferenceKernel::Work(uint32_t& place) const {
 }
 
 std::vector<double> ReferenceKernel::Time(int threads) const {
-    std::vector<double> ms(kUnits);
-    std::barrier together(threads);
-    std::vector<float> sums(static_cast<size_t>(threads));
-    const auto repeat = [&](size_t thread) {
+    using Clock = std::chrono::steady_clock;
+    const auto count = static_cast<size_t>(threads);
+    std::atomic<size_t> taken = 0;
+    std::vector<std::vector<Clock::time_point>> ends(count);
+    std::vector<float> sums(count);
+    // As workers of a pool: whoever is there takes the next unit, nobody waits for a thread that is interrupted.
+    const auto work = [&](size_t thread) {
         auto place = static_cast<uint32_t>(thread);
-        float sum = 0;
-        for (double& time : ms) {
-            together.arrive_and_wait();
-            const auto begin = std::chrono::steady_clock::now();
-            sum += Work(place);
-            together.arrive_and_wait();
-            if (thread == 0)
-                time = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+        while (taken++ < kUnits * count) {
+            sums[thread] += Work(place);
+            ends[thread].push_back(Clock::now());
         }
-        sums[thread] = sum;
     };
+    std::vector<Clock::time_point> all{Clock::now()};
     std::vector<std::thread> others;
-    for (int thread = 1; thread < threads; ++thread) others.emplace_back(repeat, static_cast<size_t>(thread));
-    repeat(0);
+    for (size_t thread = 1; thread < count; ++thread) others.emplace_back(work, thread);
+    work(0);
     for (std::thread& other : others) other.join();
     volatile float kept = sums[0];  // so that the work is not left out
     static_cast<void>(kept);
+
+    for (const auto& own : ends) all.insert(all.end(), own.begin(), own.end());
+    std::sort(all.begin(), all.end());
+    std::vector<double> ms;
+    for (size_t i = count; i < all.size(); i += count)
+        ms.push_back(std::chrono::duration<double, std::milli>(all[i] - all[i - count]).count());
     return ms;
 }
 

@@ -15,8 +15,8 @@ class ReferenceKernel {
 public:
     ReferenceKernel();
 
-    // ms, wall clock, of some hundred units of work one after the other, each of a tenth of a millisecond: that many
-    // threads do a whole unit at once.
+    // ms, wall clock, of some hundred units of work one after the other, each of a tenth of a millisecond; with several
+    // threads of as many units at once.
     std::vector<double> Time(int threads) const;
 
 private:

@@ -163,6 +163,15 @@ TEST(Comparison, IsOfTimesRelativeToTheKernel) {
     EXPECT_EQ(run.verdict, Verdict::Same);
 }
 
+// Relative times say faster by a third, the clock slower by a third: the kernel was disturbed, not the scene.
+TEST(Comparison, IsTheSameWhereTheClockSaysTheOpposite) {
+    Json now = RunOf("pyramid", 1, 2);
+    for (Json& ms : now["run_ms"]) ms = 2 * ms.get<double>();
+    const ComparedRun run = Compared(now, RunOf("pyramid", 1, 3))[0];
+    EXPECT_EQ(run.verdict, Verdict::Same);
+    EXPECT_TRUE(Says(run.remark, "not faster by the clock"));
+}
+
 TEST(Comparison, AChangedHashIsReportedButNoError) {
     Json now = RunOf("pyramid", 1, 3);
     now["hash"] = "0123456789abcdee";
