@@ -17,14 +17,19 @@ SystemSettings With(float jointError) {
     return settings;
 }
 
-// 16 planks on hinges between two posts, a weight on the middle; boxes that lie beside it.
+// 16 planks on hinges between two posts, a weight on the middle, damped so that it comes to rest; boxes that lie beside
+// it.
 struct Bridge {
-    explicit Bridge(float jointError, float weight = 400, uint32_t threads = 1) : world(With(jointError), threads) {
+    explicit Bridge(float jointError, float weight = 200, uint32_t threads = 1) : world(With(jointError), threads) {
         world.AddFloor();
         BodyId last = AddHook(world, {-4, 4, 0});
         for (int i = 0; i < 16; ++i) {
             const double x = -3.75 + 0.5 * i;
-            const BodyId plank = world.Add({.shape = BoxOf(0.24f, 0.06f, 1), .position = {x, 4, 0}, .mass = 20});
+            const BodyId plank = world.Add({.shape = BoxOf(0.24f, 0.06f, 1),
+                                            .position = {x, 4, 0},
+                                            .mass = 20,
+                                            .linearDamping = 1,
+                                            .angularDamping = 1});
             joints.push_back(Join(world, Of<HingeJointSettings>(Between(last, plank, {x - 0.25, 4, 0}, {0, 0, 1}))));
             last = plank;
         }
@@ -45,12 +50,12 @@ struct Bridge {
 
 TEST(JointAccuracy, AnIslandGetsTheSubstepsThatMeetTheTarget) {
     Bridge usual(kInfinity);
-    usual.world.Run(4);
+    usual.world.Run(7);
     EXPECT_EQ(usual.world.Report().islandsWithMoreEffort, 0u);
-    EXPECT_GT(usual.LargestGap(), 0.002);
+    EXPECT_GT(usual.LargestGap(), 0.008);
     for (const float target : {0.002f, 0.0005f}) {
         Bridge exact(target);
-        exact.world.Run(4);
+        exact.world.Run(7);
         double largest = 0;
         int least = 64, most = 0;
         for (int step = 0; step < 120; ++step) {
@@ -76,7 +81,7 @@ TEST(JointAccuracy, EffortsGoWhenTheLoadGoes) {
 }
 
 TEST(JointAccuracy, SameBitsOnAnyNumberOfThreads) {
-    Bridge one(0.0005f), two(0.0005f, 400, 2);
+    Bridge one(0.0005f), two(0.0005f, 200, 2);
     for (int step = 0; step < 240; ++step) {
         one.world.Step();
         two.world.Step();
