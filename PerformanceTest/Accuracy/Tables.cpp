@@ -94,17 +94,20 @@ std::string ShortNumber(double value) {
     if (!std::isfinite(value)) return "–";
     if (value == 0) return "0";
     char text[32];
-    if (value >= 1e6) std::snprintf(text, sizeof text, "%.3gM", value / 1e6);
-    else if (value >= 1e3) std::snprintf(text, sizeof text, "%.3gk", value / 1e3);
+    if (value >= 999.5e3) std::snprintf(text, sizeof text, "%.3gM", value / 1e6);
+    else if (value >= 999.5) std::snprintf(text, sizeof text, "%.3gk", value / 1e3);
+    else if (value >= 99.5) std::snprintf(text, sizeof text, "%.0f", value);
     else std::snprintf(text, sizeof text, "%.2g", value);
-    if (value >= 99.5 && value < 1e3) std::snprintf(text, sizeof text, "%.0f", value);
-    return text;
+    std::string shortened = text;
+    if (const size_t zero = shortened.find("e-0"); zero != std::string::npos) shortened.erase(zero + 2, 1);
+    return shortened;
 }
 
 std::string TablesOf(std::span<const SceneRuns> scenes, const Circumstances& circumstances) {
     return std::string("Made by `./fulcrum accuracy") + (circumstances.isQuick ? " --quick" : "") +
            " --table Docs/Accuracy.md`. Each cell: error @ cost, microseconds of work per simulated second.\n\n" +
-           AccuracyTable(scenes, false) + "\n" + AccuracyTable(scenes, true) + "\n" + EnvelopeTable(scenes);
+           AccuracyTable(scenes, false) + "\n" + AccuracyTable(scenes, true) +
+           "\n<details>\n<summary>Envelopes</summary>\n\n" + EnvelopeTable(scenes) + "\n</details>\n";
 }
 
 Status WriteTables(const std::string& tables, const std::filesystem::path& path) {

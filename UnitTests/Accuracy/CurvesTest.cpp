@@ -52,6 +52,8 @@ TEST(Curves, SlopeIsThatOfTheErrorOverTheTimeStep) {
     // What lies on the floor does not count.
     EXPECT_NEAR(slope([](double dt) { return std::max(dt * dt, 1e-4); }), 2, 1e-9);
     EXPECT_TRUE(std::isnan(slope([](double) { return 0.0; })));
+    // Nor is there an order in rounding.
+    EXPECT_TRUE(std::isnan(slope([](double dt) { return 1e-9 / dt; })));
     // Other efforts do not count, nor what blew up.
     EXPECT_NEAR(SlopeOverDt(std::vector{Made(30, 1, 0.04), Made(60, 1, 0.01), Made(120, 1, 5, SolverSettings::Fast()),
                                         Made(240, 1, kNaN)}),
@@ -113,6 +115,7 @@ TEST(Tables, StandBetweenTheirMarks) {
 TEST(Tables, NumbersAreShort) {
     EXPECT_EQ(ShortNumber(0), "0");
     EXPECT_EQ(ShortNumber(0.01234), "0.012");
+    EXPECT_EQ(ShortNumber(1.26e-7), "1.3e-7");
     EXPECT_EQ(ShortNumber(523), "523");
     EXPECT_EQ(ShortNumber(12345), "12.3k");
     EXPECT_EQ(ShortNumber(2.5e6), "2.5M");

@@ -9,6 +9,10 @@
 #include <set>
 
 namespace fulcrum::accuracy {
+
+// For gtest's messages.
+static void PrintTo(const LabScene& scene, std::ostream* stream) { *stream << scene.FullName(); }
+
 namespace {
 
 Setting FinestQuick(const LabScene& scene) {
@@ -30,7 +34,6 @@ TEST_P(LabSceneTest, IsExactAtTheFinestQuickSetting) {
     for (const NamedValue& error : run.errors) EXPECT_GE(error.value, 0) << error.name;
     EXPECT_FALSE(run.observed.empty());
     for (const double value : run.observed) EXPECT_TRUE(std::isfinite(value));
-    EXPECT_GT(run.work.seconds, 0);
     for (const std::string& gate : run.failedGates) EXPECT_NE(gate, "every pose is finite");
 }
 

@@ -1,6 +1,6 @@
 // The report of the accuracy lab: a plot per scene. Plots are drawn when they come into view: a full grid has 10^5 runs.
 import * as Plot from '@observablehq/plot';
-import { drawnOf } from './points.js';
+import { drawnOf } from './points.mjs';
 
 const data = JSON.parse(document.getElementById('runs').textContent);
 const FAMILIES = [
@@ -9,7 +9,13 @@ const FAMILIES = [
   { name: 'libccd', label: 'contacts by libccd', color: '#009e73' },
   { name: 'no_trees', label: 'no trees of joints', color: '#b0499b' },
 ];
-const PRESET_LABELS = { balanced: 'default' };
+// Where the labels of presets stand, so that those of runs side by side do not cover each other.
+const PRESETS = {
+  fast: { text: () => 'fast', textAnchor: 'end', dx: -10 },
+  balanced: { text: () => 'default', dy: -14, fontWeight: 'bold' },
+  accurate: { text: () => 'accurate', dy: 15 },
+  reference: { text: () => 'reference', textAnchor: 'end', dx: 6, dy: -14 },
+};
 const colorOf = (family) => FAMILIES.find(({ name }) => name === family).color;
 
 const element = (tag, content, properties = {}) => {
@@ -28,7 +34,7 @@ function draw(card, scene) {
   const cost = document.getElementById('cost').value, isSelf = document.getElementById('reference').value === 'self';
   const metric = isSelf ? 'self_error' : card.querySelector('.metric').value;
   const peers = isSelf ? [] : peerLines(scene, metric);
-  const { points, envelope, curves, top, bottom } = drawnOf(scene, { cost, metric, peers: peers.map(({ error }) => error) });
+  const { points, envelope, curves, top, bottom, left, right } = drawnOf(scene, { cost, metric, peers: peers.map(({ error }) => error) });
   const at = { x: 'cost', y: 'error' };
   const isMain = !isSelf && metric === Object.keys(scene.runs[0].errors)[0];
   const plot = Plot.plot({
@@ -38,18 +44,18 @@ function draw(card, scene) {
     marginRight: 70,
     marginBottom: 42,
     style: { fontSize: '11.5px', background: 'transparent' },
-    x: { type: 'log', grid: true, label: cost === 'us_per_second' ? 'µs of work per simulated second →' : 'traversals per simulated second →', ticks: 5, tickFormat: '~s' },
+    x: { type: 'log', domain: [left, right], grid: true, label: cost === 'us_per_second' ? 'µs of work per simulated second →' : 'traversals per simulated second →', ticks: 5, tickFormat: '~s' },
     y: { type: 'log', domain: [bottom, top], grid: true, label: isSelf ? '↑ difference from the finest setting' : `↑ ${metric}`, ticks: 6, tickFormat: (y) => y.toExponential(0).replace('e+', 'e') },
     marks: [
       Plot.frame({ stroke: '#c9d0d9' }),
       Plot.ruleY(peers, { y: 'error', stroke: '#6b7684', strokeDasharray: '4 4' }),
       Plot.text(peers, { y: 'error', text: ({ engine }) => engine.split(' ')[0], frameAnchor: 'right', dx: 6, textAnchor: 'start', fill: '#4a5563' }),
-      Plot.line(envelope, { ...at, stroke: '#aab2bd', strokeWidth: 9, strokeOpacity: 0.45, strokeLinejoin: 'round', ariaLabel: 'envelope' }),
-      curves.map(({ family, points: best }) => Plot.line(best, { ...at, stroke: colorOf(family), strokeWidth: 1.6, ariaLabel: `curve ${family}` })),
-      Plot.dot(points, { ...at, fill: ({ family }) => colorOf(family), r: points.length > 200 ? 2 : 3.6, symbol: 'kind', fillOpacity: points.length > 200 ? 0.5 : 0.9, ariaLabel: 'runs' }),
-      Plot.dot(points.filter(({ preset }) => preset), { ...at, r: 6.5, stroke: '#1d2733', strokeWidth: 1.4, ariaLabel: 'presets' }),
-      Plot.text(points.filter(({ preset }) => preset), { ...at, text: ({ preset }) => PRESET_LABELS[preset] ?? preset, dy: -13, fill: '#1d2733', stroke: 'white', strokeWidth: 3, fontWeight: ({ preset }) => (preset === 'balanced' ? 'bold' : 'normal') }),
-      Plot.tip(points, Plot.pointer({ ...at, title: 'title', maxRadius: 30 })),
+      Plot.line(envelope, { ...at, stroke: '#aab2bd', strokeWidth: 9, strokeOpacity: 0.45, strokeLinejoin: 'round', className: 'envelope' }),
+      curves.map(({ family, points: best }) => Plot.line(best, { ...at, stroke: colorOf(family), strokeWidth: 1.6, className: `curve ${family}` })),
+      Plot.dot(points, { ...at, fill: ({ family }) => colorOf(family), r: points.length > 200 ? 2 : 3.6, symbol: 'kind', fillOpacity: points.length > 200 ? 0.5 : 0.9, className: 'runs' }),
+      Plot.dot(points.filter(({ preset }) => preset), { ...at, r: 6.5, stroke: '#1d2733', strokeWidth: 1.4, className: 'presets' }),
+      Object.entries(PRESETS).map(([name, place]) => Plot.text(points.filter(({ preset }) => preset === name), { ...at, ...place, fill: '#1d2733', stroke: 'white', strokeWidth: 3 })),
+      Plot.tip(points, Plot.pointer({ ...at, title: 'title', maxRadius: 30, lineHeight: 1.3, className: 'hover' })),
     ],
     // Kinds of points, not families, have symbols.
     symbol: { domain: ['run', 'blew up', 'exact'], range: ['circle', 'times', 'triangle'] },

@@ -89,7 +89,7 @@ std::vector<LabScene> PendulumScenes() {
          .what = "a ball of 1 mm on a rod of 1 m (distance joint), released horizontal, 10 s",
          .error = "period, relative (2.367842 s)",
          .influences = {.joints = true},
-         .testBound = 1e-4,
+         .testBound = 1e-3,
          .run = PointPendulum},
     };
 }

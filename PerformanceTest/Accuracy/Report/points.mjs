@@ -3,7 +3,11 @@
 // Not finite, or without a number in the file: null.
 const errorOf = (run, metric) => (metric === 'self_error' ? run.self_error : run.errors[metric]) ?? null;
 
-const number = (value) => (value === null || value === undefined ? '–' : Number(value).toPrecision(3));
+const plain = new Intl.NumberFormat('en', { maximumSignificantDigits: 3 });
+function number(value) {
+  if (value === null || value === undefined) return '–';
+  return value === 0 || Math.abs(value) >= 0.001 ? plain.format(value) : value.toExponential(2);
+}
 
 function titleOf(run, metric) {
   const lines = [
@@ -11,7 +15,8 @@ function titleOf(run, metric) {
     `dt 1/${run.rate} s, ${run.substeps} substeps`,
     `${run.velocity_iterations} velocity, ${run.position_iterations} position iterations`,
     `${metric} ${number(errorOf(run, metric))}${run.blew_up ? ' (blew up)' : ''}`,
-    `${number(run.us_per_second)} µs a second (of ${run.timed_runs} runs), ${number(run.traversals_per_second)} traversals`,
+    `${number(run.us_per_second)} µs a second (of ${run.timed_runs})`,
+    `${number(run.traversals_per_second)} traversals a second`,
   ];
   if (run.failed_gates.length > 0) lines.push(`fails: ${run.failed_gates.join('; ')}`);
   return lines.join('\n');
@@ -48,11 +53,14 @@ export function drawnOf(scene, { cost, metric, peers = [] }) {
     };
   });
   const families = [...new Set(points.map(({ family }) => family))];
+  const costs = points.map((point) => point.cost);
   return {
     points,
     envelope: envelopeOf(points),
     curves: families.map((family) => ({ family, points: envelopeOf(points.filter((point) => point.family === family)) })),
     top,
     bottom,
+    left: Math.min(...costs) / 1.2,
+    right: Math.max(...costs) * 1.2,
   };
 }

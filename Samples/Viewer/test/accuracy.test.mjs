@@ -1,0 +1,92 @@
+// The report of the accuracy lab: a plot a scene, its curves, what hovering says; and where its points are.
+// FULCRUM_RECORDING's folder has accuracy/report.html, of `./fulcrum accuracy --quick --scene incline`.
+import assert from 'node:assert/strict';
+import { existsSync } from 'node:fs';
+import { dirname, join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { pathToFileURL } from 'node:url';
+import { drawnOf, envelopeOf } from '../../../PerformanceTest/Accuracy/Report/points.mjs';
+import { launch } from './browser.mjs';
+import { html } from './recording.mjs';
+
+const report = join(dirname(html), 'accuracy', 'report.html');
+if (!existsSync(report)) throw new Error(`${report} is missing: run ./fulcrum accuracy --quick --scene incline`);
+
+let browser, page;
+const complaints = [], requests = [];
+before(async () => {
+  browser = await launch();
+  page = await browser.newPage({ viewport: { width: 1320, height: 900 } });
+  page.on('console', (message) => ['error', 'warning'].includes(message.type()) && complaints.push(message.text()));
+  page.on('pageerror', (error) => complaints.push(error.message));
+  page.on('request', (request) => requests.push(request.url()));
+  await page.goto(pathToFileURL(report).href);
+});
+after(() => browser?.close());
+
+const plotOf = (scene) => page.locator(`[id="${scene}"] svg`);
+
+test('every scene has one plot with its runs, curves and presets', async () => {
+  const scenes = await page.evaluate(() => JSON.parse(document.getElementById('runs').textContent).scenes);
+  assert.deepEqual(scenes.map(({ name }) => name), ['incline.slide', 'incline.stick']);
+  for (const { name, runs } of scenes) {
+    await page.locator(`[id="${name}"]`).scrollIntoViewIfNeeded();
+    const plot = plotOf(name);
+    await plot.waitFor();
+    assert.equal(await plot.count(), 1);
+    assert.equal(await plot.locator('.runs path, .runs circle').count(), runs.length);
+    assert.equal(await plot.locator('.presets circle').count(), 4);
+    for (const family of ['soft', 'baumgarte', 'libccd']) assert.equal(await plot.locator(`.curve.${family}`).count(), 1, family);
+    assert.equal(await plot.locator('.envelope path').count(), 1);
+    for (const label of ['fast', 'default', 'accurate', 'reference', 'Box3D', 'Bullet']) {
+      assert.ok(await plot.getByText(label, { exact: true }).isVisible(), `${name} has no ${label}`);
+    }
+  }
+});
+
+test('hovering a run names its setting', async () => {
+  const dot = await page.locator('[id="incline.slide"] .presets circle').nth(1).boundingBox();
+  await page.mouse.move(dot.x + dot.width / 2, dot.y + dot.height / 2);
+  const tip = page.locator('[id="incline.slide"] .hover');
+  await tip.locator('text').first().waitFor();
+  assert.match((await tip.textContent()).replaceAll('\u200b', '\n'), /dt 1\/60 s, 4 substeps\s+1 velocity, 1 position/);
+});
+
+test('other errors, other costs', async () => {
+  const label = () => plotOf('incline.slide').locator('[aria-label="y-axis label"], [aria-label="x-axis label"]').allTextContents();
+  await page.locator('[id="incline.slide"] .metric').selectOption('way');
+  assert.ok((await label()).includes('↑ way'), await label());
+  await page.locator('#cost').selectOption('traversals_per_second');
+  assert.ok((await label()).includes('traversals per simulated second →'));
+  await page.locator('#reference').selectOption('self');
+  assert.ok((await label()).includes('↑ difference from the finest setting'));
+});
+
+test('the page needs nothing else and complains of nothing', () => {
+  assert.deepEqual(complaints, []);
+  assert.deepEqual(requests.filter((url) => !url.startsWith('data:')), [pathToFileURL(report).href]);
+});
+
+const run = (cost, error, more = {}) => ({
+  us_per_second: cost, traversals_per_second: 2 * cost, errors: { way: error }, self_error: null, blew_up: false, family: 'soft',
+  preset: '', rate: 60, substeps: 4, velocity_iterations: 1, position_iterations: 1, timed_runs: 5, failed_gates: [], ...more,
+});
+
+test('runs that blew up are at the upper edge, exact ones at the lower', () => {
+  const runs = [run(100, 0.2), run(300, 0.3), run(200, 0.05), run(50, null, { blew_up: true }), run(900, 0)];
+  const { points, envelope, top, bottom } = drawnOf({ runs }, { cost: 'us_per_second', metric: 'way' });
+  assert.deepEqual(points.map(({ kind }) => kind), ['run', 'run', 'run', 'blew up', 'exact']);
+  assert.equal(points[3].error, top);
+  assert.equal(points[4].error, bottom);
+  assert.ok(bottom < 0.05 && top > 0.3);
+  assert.deepEqual(envelope.map(({ cost }) => cost), [100, 200, 900]);
+  assert.match(points[3].title, /blew up/);
+  assert.deepEqual(drawnOf({ runs }, { cost: 'traversals_per_second', metric: 'way' }).envelope.map(({ cost }) => cost), [200, 400, 1800]);
+});
+
+test('each family has its own curve', () => {
+  const runs = [run(100, 0.2), run(200, 0.1), run(90, 0.5, { family: 'baumgarte' })];
+  const { curves } = drawnOf({ runs }, { cost: 'us_per_second', metric: 'way' });
+  assert.deepEqual(curves.map(({ family, points }) => [family, points.length]), [['soft', 2], ['baumgarte', 1]]);
+  assert.deepEqual(envelopeOf([]), []);
+});
