@@ -65,6 +65,13 @@ const RunRecord* CheapestFor(std::span<const RunRecord> runs, double error) {
     return best;
 }
 
+const RunRecord* CheapestThatPasses(std::span<const RunRecord> runs) {
+    const RunRecord* best = nullptr;
+    for (const RunRecord& run : runs)
+        if (!run.blewUp && run.failedGates.empty() && (!best || IsCheaper(run, *best))) best = &run;
+    return best;
+}
+
 const RunRecord* BestWithin(std::span<const RunRecord> runs, double microseconds) {
     const RunRecord* best = nullptr;
     for (const RunRecord& run : runs) {

@@ -24,6 +24,8 @@ double Floor(std::span<const RunRecord> runs);
 
 // The cheapest run with an error of at most this; null where there is none.
 const RunRecord* CheapestFor(std::span<const RunRecord> runs, double error);
+// The cheapest run that fails no gate; null where there is none.
+const RunRecord* CheapestThatPasses(std::span<const RunRecord> runs);
 // The most exact run of at most this cost, microseconds per simulated second; null where there is none.
 const RunRecord* BestWithin(std::span<const RunRecord> runs, double microseconds);
 

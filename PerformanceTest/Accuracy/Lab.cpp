@@ -27,7 +27,7 @@ struct PlannedRun {
 std::vector<PlannedRun> Plan(const LabOptions& options) {
     std::vector<PlannedRun> plan;
     for (const LabScene* scene : options.scenes) {
-        const auto grid = options.isQuick ? QuickGrid(scene->influences) : FullGrid(scene->influences);
+        const auto grid = options.isQuick ? QuickGrid(scene->influences) : FullGrid(scene->influences, scene->isSlow);
         for (const Setting& setting : grid)
             plan.push_back(
                 {scene, setting, 1 + static_cast<int>((10.0 * setting.rate + setting.PassesPerSecond()) / 1000)});
@@ -135,11 +135,10 @@ Result<std::vector<RunRecord>> RunLab(const LabOptions& options) {
     std::vector<PlannedRun> missing;
     for (const PlannedRun& each : plan)
         if (!runs.contains({each.scene->FullName(), each.setting.Key()})) missing.push_back(each);
-    // Cheap settings of all scenes first: what an interrupted day leaves are whole curves. A short grid goes scene by
-    // scene.
-    if (!options.isQuick)
-        std::stable_sort(missing.begin(), missing.end(),
-                         [](const PlannedRun& a, const PlannedRun& b) { return a.weight < b.weight; });
+    // Cheap settings of all scenes first: what an interrupted day leaves are whole curves, and the time left is known
+    // soon.
+    std::stable_sort(missing.begin(), missing.end(),
+                     [](const PlannedRun& a, const PlannedRun& b) { return a.weight < b.weight; });
     if (!missing.empty()) MakeRuns(missing, options, log, runs);
 
     std::vector<RunRecord> sorted;

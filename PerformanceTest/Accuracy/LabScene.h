@@ -69,6 +69,7 @@ struct LabScene {
     double parameter = 0;
     Influences influences{};
     bool isExtreme = false;
+    bool isSlow = false;   // its full grid is a coarse one
     int seeds = 1;         // of chaotic scenes 32: the errors are medians over so many runs
     int quickSeeds = 1;    // the same with --quick
     double blowUp = 10;    // a run whose main error exceeds this has blown up

@@ -71,7 +71,7 @@ Result<LabCommand> ParseLabCommand(std::vector<std::string> arguments) {
     })->type_name("SCENE");
     app.add_flag_function(
         "--quick", [&](int64_t) { command.lab.isQuick = true; },
-        "about 12 settings a scene and short runs: some minutes. The full grid takes days");
+        "about 12 settings a scene and short runs: some minutes. The full grid takes more than a day");
     AddInteger(app, "--threads", 1, 64,
                "runs at a time (default 1); more than cores, or a busy machine, spoil the costs",
                [&](int value) { command.lab.threads = value; });

@@ -98,16 +98,21 @@ std::vector<Setting> QuickGrid(const Influences& influences) {
     return grid.Take();
 }
 
-std::vector<Setting> FullGrid(const Influences& influences) {
+std::vector<Setting> FullGrid(const Influences& influences, bool isCoarse) {
+    using List = std::vector<int>;
+    const List rates = isCoarse ? List{30, 60, 120, 240} : List{30, 60, 120, 240, 480, 960};
+    const List substeps = isCoarse ? List{1, 4, 16} : List{1, 2, 4, 8, 16};
+    const List velocities = isCoarse ? List{1, 4, 16} : List{1, 2, 4, 8, 16, 32};
+    const List positions = isCoarse ? List{0, 1, 2} : List{0, 1, 2, 4};
     Grid grid(influences);
     for (const Family family : {Family::Soft, Family::Baumgarte, Family::Libccd, Family::NoTrees})
-        for (const int rate : {30, 60, 120, 240, 480, 960})
-            for (const int substeps : {1, 2, 4, 8, 16})
-                for (const int velocity : {1, 2, 4, 8, 16, 32})
-                    for (const int position : {0, 1, 2, 4}) {
+        for (const int rate : rates)
+            for (const int count : substeps)
+                for (const int velocity : velocities)
+                    for (const int position : positions) {
                         const bool isSide = family == Family::Libccd || family == Family::NoTrees;
-                        if (isSide && (position != 1 || (velocity != 1 && velocity != 8))) continue;
-                        grid.Add({rate, Effort(substeps, velocity, position, family), family});
+                        if (isSide && (position != 1 || (velocity != 1 && velocity != 4))) continue;
+                        grid.Add({rate, Effort(count, velocity, position, family), family});
                     }
     std::vector<Setting> settings = grid.Take();
     std::stable_sort(settings.begin(), settings.end(),

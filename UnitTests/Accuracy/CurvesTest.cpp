@@ -69,6 +69,9 @@ TEST(Curves, CostsOfAccuracy) {
     EXPECT_EQ(CheapestFor(Runs(), 0.001), nullptr);
     EXPECT_EQ(BestWithin(Runs(), 250), &Runs()[2]);
     EXPECT_EQ(BestWithin(Runs(), 60), nullptr);
+    std::vector<RunRecord> gated(Runs());
+    for (const size_t i : {size_t{0}, size_t{2}, size_t{3}}) gated[i].failedGates = {"stands"};
+    EXPECT_EQ(CheapestThatPasses(gated), &gated[1]);
     EXPECT_EQ(FindPreset(Runs(), "balanced"), &Runs()[0]);
     EXPECT_EQ(FindPreset(Runs(), "fast"), nullptr);
 }

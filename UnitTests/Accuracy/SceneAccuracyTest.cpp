@@ -101,7 +101,7 @@ TEST(LabRegistry, FindsScenesByTheirNameAndByTheirFullName) {
 
 TEST(LabGrid, HasThePresetsAndEachSettingOnce) {
     const Influences all{.contacts = true, .joints = true};
-    for (const std::vector<Setting>& grid : {QuickGrid(all), FullGrid(all)}) {
+    for (const std::vector<Setting>& grid : {QuickGrid(all), FullGrid(all), FullGrid(all, true)}) {
         std::set<std::string> keys, presets;
         for (const Setting& setting : grid) {
             EXPECT_TRUE(keys.insert(setting.Key()).second) << setting.Key();
@@ -113,6 +113,8 @@ TEST(LabGrid, HasThePresetsAndEachSettingOnce) {
     EXPECT_LE(QuickGrid(all).size(), 14u);
     // 6 steps x 5 substeps x 6 velocity x 4 position iterations of two families, a part of two more, and a preset.
     EXPECT_EQ(FullGrid(all).size(), 2u * 720 + 2 * 60 + 1);
+    // 4 x 3 x 3 x 3, and the presets with 2 and 64 substeps.
+    EXPECT_EQ(FullGrid(all, true).size(), 2u * 108 + 2 * 24 + 2);
 }
 
 TEST(LabGrid, LeavesOutWhatDoesNotMatter) {

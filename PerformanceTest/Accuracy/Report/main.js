@@ -1,6 +1,6 @@
 // The report of the accuracy lab: a plot per scene. Plots are drawn when they come into view: a full grid has 10^5 runs.
 import * as Plot from '@observablehq/plot';
-import { drawnOf } from './points.mjs';
+import { drawnOf, labelsOf } from './points.mjs';
 
 const data = JSON.parse(document.getElementById('runs').textContent);
 const FAMILIES = [
@@ -41,7 +41,7 @@ function draw(card, scene) {
     width: 580,
     height: 340,
     marginLeft: 58,
-    marginRight: 70,
+    marginRight: 92,
     marginBottom: 42,
     style: { fontSize: '11.5px', background: 'transparent' },
     x: { type: 'log', domain: [left, right], grid: true, label: cost === 'us_per_second' ? 'µs of work per simulated second →' : 'traversals per simulated second →', ticks: 5, tickFormat: '~s' },
@@ -49,7 +49,7 @@ function draw(card, scene) {
     marks: [
       Plot.frame({ stroke: '#c9d0d9' }),
       Plot.ruleY(peers, { y: 'error', stroke: '#6b7684', strokeDasharray: '4 4' }),
-      Plot.text(peers, { y: 'error', text: ({ engine }) => engine.split(' ')[0], frameAnchor: 'right', dx: 6, textAnchor: 'start', fill: '#4a5563' }),
+      Plot.text(labelsOf(peers, top / bottom), { y: 'error', text: 'label', frameAnchor: 'right', dx: 6, textAnchor: 'start', fill: '#4a5563' }),
       Plot.line(envelope, { ...at, stroke: '#aab2bd', strokeWidth: 9, strokeOpacity: 0.45, strokeLinejoin: 'round', className: 'envelope' }),
       curves.map(({ family, points: best }) => Plot.line(best, { ...at, stroke: colorOf(family), strokeWidth: 1.6, className: `curve ${family}` })),
       Plot.dot(points, { ...at, fill: ({ family }) => colorOf(family), r: points.length > 200 ? 2 : 3.6, symbol: 'kind', fillOpacity: points.length > 200 ? 0.5 : 0.9, className: 'runs' }),

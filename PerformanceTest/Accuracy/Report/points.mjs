@@ -31,6 +31,18 @@ export function envelopeOf(points) {
   return best;
 }
 
+// One label for lines that are too near for one each; `range` is the quotient of the plot's edges.
+export function labelsOf(peers, range) {
+  const near = range ** 0.045;
+  const labels = [];
+  for (const { error, engine } of [...peers].sort((a, b) => a.error - b.error)) {
+    const name = engine.split(' ')[0], last = labels.at(-1);
+    if (last && error < last.error * near) last.label += `, ${name}`;
+    else labels.push({ error, label: name });
+  }
+  return labels;
+}
+
 // Errors of zero are drawn at the lower edge, runs that blew up at the upper one.
 export function drawnOf(scene, { cost, metric, peers = [] }) {
   const runs = scene.runs.filter((run) => run[cost] !== null);

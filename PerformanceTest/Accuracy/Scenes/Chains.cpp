@@ -60,6 +60,7 @@ LabScene Heavy(const char* variant, double mass, double bound) {
             .parameter = mass,
             .influences = kJoints,
             .isExtreme = true,
+            .isSlow = true,
             .testBound = bound,
             .run = HeavyChain};
 }
@@ -74,6 +75,7 @@ LabScene Long(const char* variant, double count, double bound) {
             .parameter = count,
             .influences = kJoints,
             .isExtreme = true,
+            .isSlow = true,
             .testBound = bound,
             .run = LongChain};
 }

@@ -71,6 +71,7 @@ LabScene Wall(const char* variant, double thickness) {
             .parameter = thickness,
             .influences = {.contacts = true},
             .isExtreme = true,
+            .isSlow = true,
             .testBound = 1e-9,
             .run = BallsAtWall};
 }
@@ -87,6 +88,7 @@ std::vector<LabScene> FastScenes() {
          .error = "part that passes through",
          .influences = {.contacts = true},
          .isExtreme = true,
+         .isSlow = true,
          .testBound = 1e-9,
          .run = RodAtPost},
     };

@@ -136,6 +136,7 @@ LabScene Stack(const char* variant, int count) {
             .parameter = static_cast<double>(count),
             .influences = kContacts,
             .isExtreme = true,
+            .isSlow = true,
             .seeds = 32,
             .quickSeeds = 1,
             .testBound = 0.05,
@@ -150,6 +151,7 @@ LabScene Cubes(const char* variant, double edge) {
             .parameter = edge,
             .influences = kContacts,
             .isExtreme = true,
+            .isSlow = true,
             .testBound = 0.05,
             .run = Tiny};
 }
@@ -168,6 +170,7 @@ std::vector<LabScene> LoadScenes() {
          .error = "way of the top over an edge; 1: fell",
          .influences = kContacts,
          .isExtreme = true,
+         .isSlow = true,
          .testBound = 0.1,
          .run = HeavyTop},
         Stack("15", 15),

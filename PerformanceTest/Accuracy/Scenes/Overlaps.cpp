@@ -118,6 +118,7 @@ LabScene Pyramid(const char* variant, double overlap) {
             .parameter = overlap,
             .influences = kContacts,
             .isExtreme = true,
+            .isSlow = true,
             .testBound = 2,
             .run = OverlappingPyramid};
 }
@@ -130,6 +131,7 @@ LabScene AtOnePoint(const char* variant, int count) {
             .parameter = static_cast<double>(count),
             .influences = kContacts,
             .isExtreme = true,
+            .isSlow = true,
             .testBound = 1.01,
             .run = Coincident};
 }
@@ -147,6 +149,7 @@ std::vector<LabScene> OverlapScenes() {
          .error = "part that leaves the box",
          .influences = kContacts,
          .isExtreme = true,
+         .isSlow = true,
          .testBound = 1e-9,
          .run = SealedBox},
         AtOnePoint("128", 128),

@@ -83,7 +83,7 @@ void TimeStep(LabRun& run) {
     world.AddFloor();
     const std::vector<BodyId> boxes = AddStack(world, 5, 1, 0.005, run.random);
     const Position start = world.At(boxes.back());
-    const double seconds = steps == kShort ? run.Seconds(1, 0.1) : run.Seconds(30, 10);
+    const double seconds = steps == kShort ? run.Seconds(0.5, 0.1) : run.Seconds(30, 10);
     for (int i = 0; world.Time() < seconds; ++i) {
         if (steps == kZero) world.Step(i % 2 == 0 ? 0 : 1.0 / 60);
         if (steps == kShort) world.Step(1e-5);
@@ -156,6 +156,7 @@ LabScene OddSteps(const char* variant, Steps steps) {
             .parameter = static_cast<double>(steps),
             .influences = {.timeStep = false, .contacts = true},
             .isExtreme = true,
+            .isSlow = steps == kShort,
             .testBound = 0.25,
             .run = TimeStep};
 }
@@ -177,6 +178,7 @@ std::vector<LabScene> PlaceScenes() {
          .error = "largest rise of the energy, relative",
          .influences = kBoth,
          .isExtreme = true,
+         .isSlow = true,
          .testBound = 0.01,
          .run = Soak},
     };

@@ -99,6 +99,7 @@ std::vector<LabScene> RestingScenes() {
          .what = "6 x 6 x 6 balls of 0.5 m just above each other, 10 s",
          .error = "RMS depth over a ball's radius",
          .influences = {.contacts = true},
+         .isSlow = true,
          .seeds = 32,
          .quickSeeds = 1,
          .testBound = 0.05,

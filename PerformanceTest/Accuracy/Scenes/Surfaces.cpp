@@ -139,6 +139,7 @@ LabScene OnWaves(const char* variant, double ratio) {
             .parameter = ratio,
             .influences = kContacts,
             .isExtreme = true,
+            .isSlow = true,
             .seeds = 32,
             .quickSeeds = 1,
             .testBound = 0.5,

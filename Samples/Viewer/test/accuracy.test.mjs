@@ -5,7 +5,7 @@ import { existsSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
-import { drawnOf, envelopeOf } from '../../../PerformanceTest/Accuracy/Report/points.mjs';
+import { drawnOf, envelopeOf, labelsOf } from '../../../PerformanceTest/Accuracy/Report/points.mjs';
 import { launch } from './browser.mjs';
 import { html } from './recording.mjs';
 
@@ -89,4 +89,9 @@ test('each family has its own curve', () => {
   const { curves } = drawnOf({ runs }, { cost: 'us_per_second', metric: 'way' });
   assert.deepEqual(curves.map(({ family, points }) => [family, points.length]), [['soft', 2], ['baumgarte', 1]]);
   assert.deepEqual(envelopeOf([]), []);
+});
+
+test('lines of other engines that are near each other share a label', () => {
+  const peers = [{ error: 1, engine: 'Jolt 5.5.1' }, { error: 0.01, engine: 'Box3D 0.2.0' }, { error: 1.1, engine: 'Bullet 3.24' }];
+  assert.deepEqual(labelsOf(peers, 1e4), [{ error: 0.01, label: 'Box3D' }, { error: 1, label: 'Jolt, Bullet' }]);
 });
