@@ -15,7 +15,7 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr double kFastest = 60;     // m/s: three times jointPushSpeed
+constexpr double kFastest = 60;      // m/s: three times jointPushSpeed
 constexpr float kTogether = 0.065f;  // m, of joints that carry what still swings
 // m/s, root of the mean square that five seconds leave at most of bodies at rest.
 constexpr double kLeftBehind = 1.5;
