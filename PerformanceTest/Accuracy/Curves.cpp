@@ -36,7 +36,7 @@ double SlopeOverDt(std::span<const RunRecord> runs) {
     std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.dt > b.dt; });
     double least = std::numeric_limits<double>::infinity();
     for (const Point& point : points) least = std::min(least, point.error);
-    if (points.empty() || !(points[0].error >= 3 * least)) return kNaN;
+    if (points.empty() || !(points[0].error >= std::max(3 * least, 1e-6))) return kNaN;
     double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
     for (size_t i = 0; i < points.size(); ++i) {
         if (i >= 2 && points[i].error <= 2 * least) continue;

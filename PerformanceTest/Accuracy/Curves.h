@@ -16,7 +16,7 @@ std::vector<size_t> Envelope(std::span<const RunRecord> runs);
 // d log(error) / d log(dt): least squares over the runs with the default solver of the family Soft, without those at
 // the floor, which are within a factor of two of the smallest error of these runs (but the two coarsest count in any
 // case). NaN where fewer than two are left, where errors are 0, or where the coarsest is within a factor of three of
-// the smallest: what is rounding has no order.
+// the smallest or below a millionth: what is rounding has no order.
 double SlopeOverDt(std::span<const RunRecord> runs);
 
 // The smallest error of any run; NaN where all blew up.

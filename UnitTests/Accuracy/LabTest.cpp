@@ -95,6 +95,40 @@ TEST_F(Lab, KeepsWhatItIsGoingToReplaceAndRefusesAnotherGrid) {
     EXPECT_NE(other.GetError().message.find("another grid"), std::string::npos) << other.GetError().message;
 }
 
+TEST(Measure, TakesMediansOverTheSeedsAndTheGatesOfAny) {
+    static int calls;
+    calls = 0;
+    LabScene scene{.name = "made_up", .what = "", .error = "", .quickSeeds = 3};
+    scene.run = [](LabRun& run) {
+        constexpr double kErrors[] = {3, kNaN, 1};
+        const int call = calls++;
+        run.Error("error", kErrors[call % 3]);
+        run.Figure("figure", call % 3);
+        run.Observe(10 * (call % 3));
+        run.Require(call != 1, "holds");
+        run.work.simulatedSeconds = 2;
+        run.work.traversals = 100;
+        run.work.seconds = 1e-6 * (call + 1);
+    };
+    const RunRecord record = Measure(scene, {}, true);
+    EXPECT_EQ(record.Error(), 3);
+    EXPECT_EQ(record.figures[0].value, 1);
+    EXPECT_EQ(record.observed, std::vector<double>{10});
+    EXPECT_EQ(record.failedGates, std::vector<std::string>{"holds"});
+    EXPECT_FALSE(record.blewUp);
+    EXPECT_EQ(record.seeds, 3);
+    EXPECT_EQ(record.traversals, 50);
+    // Five runs of 1 to 5 us for 2 s each.
+    EXPECT_EQ(record.timedRuns, 5);
+    EXPECT_DOUBLE_EQ(record.microseconds, 1.5);
+    scene.blowUp = 2;
+    calls = 0;
+    EXPECT_TRUE(Measure(scene, {}, true).blewUp);
+    scene.quickSeeds = 2;
+    calls = 1;  // NaN and 1: their mean is none
+    EXPECT_TRUE(Measure(scene, {}, true).blewUp);
+}
+
 TEST(RunRecord, SurvivesItsFile) {
     RunRecord run;
     run.scene = "incline.slide";
