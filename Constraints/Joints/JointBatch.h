@@ -38,8 +38,10 @@ struct alignas(32) JointRecord {
     float totalForce[3] = {0, 0, 0}, totalTorque[3] = {0, 0, 0}, totalSpare[2] = {0, 0};
 
     enum Rows { kAnchors, kFrames, kOwn, kLocks, kTotal };
-    const float* Row(int row) const { return anchorA + kRowFloats * static_cast<size_t>(row); }
-    float* Row(int row) { return anchorA + kRowFloats * static_cast<size_t>(row); }
+    const float* Row(int row) const {
+        return reinterpret_cast<const float*>(this) + kRowFloats * static_cast<size_t>(row);
+    }
+    float* Row(int row) { return reinterpret_cast<float*>(this) + kRowFloats * static_cast<size_t>(row); }
     // Places in the first row, in the second, in those of forces, and what else kOwn has.
     enum Places {
         kAnchorA = 0,
