@@ -76,15 +76,6 @@ double LabWorld::SumOfGaps() {
     return sum;
 }
 
-JointSettings Between(BodyId a, BodyId b, const Position& point, const Vector3& axis) {
-    JointSettings settings;
-    settings.bodyA = a;
-    settings.bodyB = b;
-    settings.anchorA.point = point;
-    settings.anchorA.axis = axis;
-    return settings;
-}
-
 BodyId AddHook(LabWorld& world, const Position& position) {
     return world.Add({.shape = SphereOf(0.01), .motion = MotionType::Static, .position = position, .mask = 0});
 }

@@ -72,8 +72,6 @@ private:
 inline ShapePtr BoxOf(double x, double y, double z) { return Box::Create(Position(x, y, z).cast<float>()).Value(); }
 inline ShapePtr SphereOf(double radius) { return Sphere::Create(static_cast<float>(radius)).Value(); }
 
-// Body A at A's anchor, in world space; B where it is.
-JointSettings Between(BodyId a, BodyId b, const Position& point, const Vector3& axis = Vector3(1, 0, 0));
 template <class Settings>
 Settings Of(const JointSettings& between) {
     Settings settings;

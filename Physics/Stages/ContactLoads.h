@@ -49,18 +49,13 @@ inline bool HeedsGaps(const SystemSettings& settings) {
     return settings.accuracy.jointError < std::numeric_limits<float>::infinity();
 }
 
-// Sinks are noted as powers of two of a quarter of what they may be, AccuracyTarget::penetration: level i is below 2^i
-// of it.
-inline float LargestUnnotedSink(const AccuracyTarget& accuracy) { return 0.25f * accuracy.penetration; }
-inline float SinkOfLevel(uint32_t level, const AccuracyTarget& accuracy) {
-    return std::ldexp(LargestUnnotedSink(accuracy), static_cast<int>(level));
-}
-
-// Gaps likewise, of AccuracyTarget::jointError.
-inline float LargestUnnotedGap(const AccuracyTarget& accuracy) { return 0.25f * accuracy.jointError; }
-inline float GapOfLevel(uint32_t level, const AccuracyTarget& accuracy) {
-    return std::ldexp(LargestUnnotedGap(accuracy), static_cast<int>(level));
-}
+// Sinks, and gaps, are noted as powers of two of a quarter of what they may be, AccuracyTarget::penetration and
+// jointError: level i is below 2^i of it.
+constexpr float kUnnotedPart = 0.25f;
+inline float LargestUnnotedSink(const AccuracyTarget& accuracy) { return kUnnotedPart * accuracy.penetration; }
+inline float LargestUnnotedGap(const AccuracyTarget& accuracy) { return kUnnotedPart * accuracy.jointError; }
+// How many times more than it may be what has a level can be.
+inline float ExcessOfLevel(uint32_t level) { return std::ldexp(kUnnotedPart, static_cast<int>(level)); }
 
 // m^2: the square of half the edge of a cube with the same inverse mass and sum of inverse moments of inertia.
 // Infinite where rotation is locked.

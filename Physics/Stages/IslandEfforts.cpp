@@ -184,9 +184,7 @@ private:
         if (!entry.stillB) size = std::min(size, SizeOf(bodies_.dynamics[entry.bodyB]));
         const Extent& extent = places_[root] == kNone ? kLow : extents_[places_[root]];
         const float factor = BucklingFactor(size, extent, kBucklingOfWalls);
-        const auto needOf = [&](uint32_t level) {
-            return SinkOfLevel(level, settings_.accuracy) / settings_.accuracy.penetration * factor;
-        };
+        const auto needOf = [&](uint32_t level) { return ExcessOfLevel(level) * factor; };
         Need& most = needs_[root];
         if (load.level > 0) most.Raise(needOf(load.level), LighterOf(entry));
         // What is pressed hard now, be it by an impact, was so with the springs of before.
@@ -244,7 +242,6 @@ std::span<const IslandEffort> FindEfforts(const StepContext& step, const BodySto
     std::fill(efforts.begin(), efforts.end(), IslandEffort{});
     std::span<Need> needs = scratch.Allocate<Need>(count);
     std::fill(needs.begin(), needs.end(), Need{});
-    const AccuracyTarget& target = step.settings.accuracy;
     const bool heedsGaps = HeedsGaps(step.settings);
     VisitEntries(coloring, Kind::Joint, [&](uint32_t, const Entry& entry) {
         const Joint& joint = joints.joints[entry.constraint];
@@ -253,7 +250,7 @@ std::span<const IslandEffort> FindEfforts(const StepContext& step, const BodySto
         if (joint.effort.IsAny()) RaiseLeast(efforts[root], joint.effort, body);
         const LoadLevel& gap = joints.gaps[entry.constraint];
         if (!heedsGaps || gap.level == 0 || sizes[root] > mostLoaded) return;
-        const float need = GapOfLevel(gap.level, target) / target.jointError;
+        const float need = ExcessOfLevel(gap.level);
         needs[root].Raise(need, body);
         if (gap.stiffness > 0 && need > 1) needs[root].Soften(gap.stiffness);
     });

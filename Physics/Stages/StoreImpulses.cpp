@@ -61,8 +61,8 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
                    JointStore& joints, const StepWorkers& workers) {
     const SystemSettings& settings = step.settings;
     const Records to{bodies, pairs, joints};
-    const bool notesSinks = HeedsLoads(settings);
-    const bool notesLarge = notesSinks && (settings.accuracy.largeIslands || layout.OverflowCount() > 0);
+    const bool notesSinks = HeedsLoads(settings), notesGaps = HeedsGaps(settings);
+    const bool notesLarge = settings.accuracy.largeIslands || layout.OverflowCount() > 0;
     // impulseScale: see Effort; stiffness: see LoadLevel.
     const auto sinkScaleOf = [&](float impulseScale, uint8_t stiffness) {
         return SinkScale{.perLevel = 1 / LargestUnnotedSink(settings.accuracy),
@@ -73,7 +73,6 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
                          .stiffness = std::max<uint8_t>(stiffness, 1),
                          .forgets = step.number % kStepsToForget == 0};
     };
-    const bool notesGaps = HeedsGaps(settings);
     const auto gapScaleOf = [&](float impulseScale, uint8_t stiffness) {
         return GapScale{.perLevel = 1 / (LargestUnnotedGap(settings.accuracy) * impulseScale * impulseScale),
                         .stiffness = std::max<uint8_t>(stiffness, 1),
@@ -96,8 +95,9 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
         const float impulseScale = EffortOf(step, group).impulseScale;
         const SinkScale sink = sinkScaleOf(impulseScale, group.stiffness);
         const GapScale gap = gapScaleOf(impulseScale, group.stiffness);
-        const StoreScale scale{step.dt, impulseScale, (group.isLarge ? notesLarge : notesSinks) ? &sink : nullptr,
-                               notesGaps ? &gap : nullptr};
+        const bool isNoted = notesLarge || !group.isLarge;
+        const StoreScale scale{step.dt, impulseScale, isNoted && notesSinks ? &sink : nullptr,
+                               isNoted && notesGaps ? &gap : nullptr};
         if (isFirst)
             ForEachOverflowList(layout, [&](const auto& batches) {
                 StoreAll(to, batches, 0, static_cast<uint32_t>(batches.size()), scale, workers);

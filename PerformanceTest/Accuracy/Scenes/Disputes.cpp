@@ -1,6 +1,7 @@
 // Joints that cannot all hold, and joints made far outside their limits.
 #include <Fulcrum/PerformanceTest/Accuracy/LabWorld.h>
 #include <Fulcrum/PerformanceTest/Accuracy/Scenes/Families.h>
+#include <Fulcrum/Samples/Scenes/JointShorthands.h>
 
 #include <algorithm>
 
@@ -35,7 +36,7 @@ void TwoFixed(LabRun& run) {
     LabWorld world(run);
     const BodyId hook = AddHook(world), box = world.Add({.shape = BoxOf(0.5, 0.5, 0.5), .position = {1, 0, 0}});
     for (const double x : {1.0, 1.5}) {
-        FixedJointSettings joint = Of<FixedJointSettings>(Between(hook, box, {x, 0, 0}));
+        FixedJointSettings joint = JointOf<FixedJointSettings>(hook, box, {x, 0, 0});
         joint.anchorB = JointAnchor{.point = {1, 0, 0}};
         world.Join(joint);
     }
@@ -47,7 +48,7 @@ void Door(LabRun& run) {
     LabWorld world(run);
     const BodyId hook = AddHook(world), door = world.Add({.shape = BoxOf(0.5, 1, 0.03), .position = {0.5, 0, 0}});
     for (const double y : {-0.8, 0.0, 0.8})
-        world.Join(Of<HingeJointSettings>(Between(hook, door, {0, y, y == 0 ? 0.05 : 0.0}, {0, 1, 0})));
+        world.Join(JointOf<HingeJointSettings>(hook, door, {0, y, y == 0 ? 0.05 : 0.0}, {0, 1, 0}));
     WatchDispute(run, world, door, 1);
 }
 
@@ -61,7 +62,7 @@ void Others(LabRun& run) {
     const std::vector<BodyId> same = AddStack(twin, 3, 1, 0, run.random, {50, 0, 0});
     const BodyId hook = AddHook(world), box = world.Add({.shape = BoxOf(0.5, 0.5, 0.5), .position = {1, 5, 0}});
     for (const double x : {1.0, 1.5}) {
-        FixedJointSettings joint = Of<FixedJointSettings>(Between(hook, box, {x, 5, 0}));
+        FixedJointSettings joint = JointOf<FixedJointSettings>(hook, box, {x, 5, 0});
         joint.anchorB = JointAnchor{.point = {1, 5, 0}};
         world.Join(joint);
     }

@@ -1,6 +1,7 @@
 // Springs, motors, gears and pulleys, and the momentum of jointed bodies.
 #include <Fulcrum/PerformanceTest/Accuracy/LabWorld.h>
 #include <Fulcrum/PerformanceTest/Accuracy/Scenes/Families.h>
+#include <Fulcrum/Samples/Scenes/JointShorthands.h>
 
 #include <algorithm>
 
@@ -17,7 +18,7 @@ void Spring(LabRun& run) {
     const double start = run.parameter;
     LabWorld world(run, kNoGravity);
     const BodyId ball = world.Add({.shape = SphereOf(0.5), .position = {kRest + start, 0, 0}, .mass = 1});
-    JointSettings between = Between(AddHook(world), ball, {0, 0, 0});
+    JointSettings between = JointOf<JointSettings>(AddHook(world), ball, {0, 0, 0});
     between.anchorB = JointAnchor{.point = {kRest + start, 0, 0}};
     DistanceJointSettings joint = Of<DistanceJointSettings>(between);
     joint.minDistance = joint.maxDistance = static_cast<float>(kRest);
@@ -61,7 +62,7 @@ void Spring(LabRun& run) {
 BodyId AddSlide(LabWorld& world, double speed, const AxisControl& control) {
     const BodyId sled =
         world.Add({.shape = BoxOf(1, 1, 1), .linearVelocity = {static_cast<float>(speed), 0, 0}, .mass = 8000});
-    SliderJointSettings joint = Of<SliderJointSettings>(Between(AddHook(world), sled, {0, 0, 0}));
+    SliderJointSettings joint = JointOf<SliderJointSettings>(AddHook(world), sled, {0, 0, 0});
     joint.slide = control;
     world.Join(joint);
     return sled;
@@ -106,11 +107,11 @@ void Gears(LabRun& run) {
                                        .rotation = RotationAbout({1, 0, 0}, kPi / 2),  // its axis along z
                                        .angularVelocity = {0, 0, static_cast<float>(spin)},
                                        .mask = 0});
-        world.Join(Of<HingeJointSettings>(Between(hook, disc, {x, 0, 0}, {0, 0, 1})));
+        world.Join(JointOf<HingeJointSettings>(hook, disc, {x, 0, 0}, {0, 0, 1}));
         return disc;
     };
     const BodyId small = addDisc(-0.1, 0.1, 0), big = addDisc(0.4, 0.4, 3);
-    GearJointSettings gear = Of<GearJointSettings>(Between(small, big, {-0.1, 0, 0}, {0, 0, 1}));
+    GearJointSettings gear = JointOf<GearJointSettings>(small, big, {-0.1, 0, 0}, {0, 0, 1});
     gear.anchorB = JointAnchor{.point = {0.4, 0, 0}, .axis = {0, 0, 1}};
     gear.ratio = 4;
     world.Join(gear);
@@ -143,7 +144,7 @@ void Pulley(LabRun& run) {
     const ShapePtr shape = BoxOf(0.25, 0.25, 0.25);
     const BodyId a = world.Add({.shape = shape, .position = {-5, 0, 0}, .mass = 10});
     const BodyId b = world.Add({.shape = shape, .position = {5, 0, 0}, .mass = 10});
-    PulleyJointSettings rope = Of<PulleyJointSettings>(Between(a, b, {-5, 0, 0}));
+    PulleyJointSettings rope = JointOf<PulleyJointSettings>(a, b, {-5, 0, 0});
     rope.anchorB = JointAnchor{.point = {5, 0, 0}};
     rope.fixedPointA = {-5, 10, 0};
     rope.fixedPointB = {5, 10, 0};
@@ -168,7 +169,7 @@ void Momentum(LabRun& run) {
     for (int i = 0; i < kLinks; ++i) {
         const double x = 0.5 * (i - 0.5 * (kLinks - 1));
         bodies.push_back(world.Add({.shape = link, .position = {x, 0, 0}, .mass = 1}));
-        if (i > 0) world.Join(Of<PointJointSettings>(Between(bodies[i - 1], bodies[i], {x - 0.25, 0, 0})));
+        if (i > 0) world.Join(JointOf<PointJointSettings>(bodies[i - 1], bodies[i], {x - 0.25, 0, 0}));
     }
     bodies.push_back(
         world.Add({.shape = SphereOf(0.3), .position = {1.7, 0.05, -3}, .linearVelocity = {0, 0, 5}, .mass = 10}));

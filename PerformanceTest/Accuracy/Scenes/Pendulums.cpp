@@ -1,6 +1,7 @@
 // Pendulums released at the height of their pivot: amplitude 90 degrees, T = 4 sqrt(I / (m g l)) K(sin 45 degrees).
 #include <Fulcrum/PerformanceTest/Accuracy/LabWorld.h>
 #include <Fulcrum/PerformanceTest/Accuracy/Scenes/Families.h>
+#include <Fulcrum/Samples/Scenes/JointShorthands.h>
 
 #include <algorithm>
 
@@ -41,7 +42,7 @@ void Report(LabRun& run, const Swing& swing, double period, double arm) {
 void RodPendulum(LabRun& run) {
     LabWorld world(run);
     const BodyId rod = world.Add({.shape = BoxOf(0.5, 0.05, 0.05), .position = {0.5, 0, 0}, .mass = 1});
-    const JointId hinge = world.Join(Of<HingeJointSettings>(Between(AddHook(world), rod, {0, 0, 0}, {0, 0, 1})));
+    const JointId hinge = world.Join(JointOf<HingeJointSettings>(AddHook(world), rod, {0, 0, 0}, {0, 0, 1}));
     const Swing swing = Watch(run, world, rod, 0.5, [&] { return double(world.Joints().GetError(hinge).distance); });
     const double inertia = 1.01 / 12 + 0.25;
     Report(run, swing, 4 * std::sqrt(inertia / (kGravity * 0.5)) * EllipticK(std::sin(kPi / 4)), 0.5);
@@ -66,7 +67,7 @@ Position EndOfPointPendulum() {
 void PointPendulum(LabRun& run) {
     LabWorld world(run);
     const BodyId ball = world.Add({.shape = SphereOf(0.001), .position = {-1, 0, 0}, .mass = 1});
-    JointSettings between = Between(AddHook(world), ball, {0, 0, 0});
+    JointSettings between = JointOf<JointSettings>(AddHook(world), ball, {0, 0, 0});
     between.anchorB = JointAnchor{.point = {-1, 0, 0}};
     world.Join(Of<DistanceJointSettings>(between));
     const Swing swing = Watch(run, world, ball, 1, [&] { return std::abs(world.At(ball).norm() - 1); });

@@ -1,6 +1,7 @@
 // Far from the origin, odd time steps, long runs.
 #include <Fulcrum/PerformanceTest/Accuracy/LabWorld.h>
 #include <Fulcrum/PerformanceTest/Accuracy/Scenes/Families.h>
+#include <Fulcrum/Samples/Scenes/JointShorthands.h>
 
 #include <algorithm>
 
@@ -16,7 +17,7 @@ void AddFigure(LabWorld& world, const Position& origin, std::vector<BodyId>& bod
     const Position limbs[] = {{0, 0.6, 0}, {0.45, 0.2, 0}, {-0.45, 0.2, 0}, {0.15, -0.75, 0}, {-0.15, -0.75, 0}};
     for (const Position& place : limbs) {
         const BodyId limb = world.Add({.shape = Capsule::Create(0.15f, 0.08f).Value(), .position = origin + place});
-        ConeJointSettings cone = Of<ConeJointSettings>(Between(trunk, limb, origin + place * 0.6, {0, 1, 0}));
+        ConeJointSettings cone = JointOf<ConeJointSettings>(trunk, limb, origin + place * 0.6, {0, 1, 0});
         cone.halfAngle = 0.6f;
         world.Join(cone);
         bodies.push_back(limb);
