@@ -18,9 +18,7 @@ void Spring(LabRun& run) {
     const double start = run.parameter;
     LabWorld world(run, kNoGravity);
     const BodyId ball = world.Add({.shape = SphereOf(0.5), .position = {kRest + start, 0, 0}, .mass = 1});
-    JointSettings between = JointOf<JointSettings>(AddHook(world), ball, {0, 0, 0});
-    between.anchorB = JointAnchor{.point = {kRest + start, 0, 0}};
-    DistanceJointSettings joint = Of<DistanceJointSettings>(between);
+    auto joint = JointOfTwo<DistanceJointSettings>(AddHook(world), ball, {0, 0, 0}, {kRest + start, 0, 0});
     joint.minDistance = joint.maxDistance = static_cast<float>(kRest);
     joint.spring = {.frequency = static_cast<float>(kFrequency), .dampingRatio = static_cast<float>(kDamping)};
     world.Join(joint);

@@ -67,9 +67,7 @@ Position EndOfPointPendulum() {
 void PointPendulum(LabRun& run) {
     LabWorld world(run);
     const BodyId ball = world.Add({.shape = SphereOf(0.001), .position = {-1, 0, 0}, .mass = 1});
-    JointSettings between = JointOf<JointSettings>(AddHook(world), ball, {0, 0, 0});
-    between.anchorB = JointAnchor{.point = {-1, 0, 0}};
-    world.Join(Of<DistanceJointSettings>(between));
+    world.Join(JointOfTwo<DistanceJointSettings>(AddHook(world), ball, {0, 0, 0}, {-1, 0, 0}));
     const Swing swing = Watch(run, world, ball, 1, [&] { return std::abs(world.At(ball).norm() - 1); });
     Report(run, swing, 4 / std::sqrt(kGravity) * EllipticK(std::sin(kPi / 4)), 1);
     static const Position end = EndOfPointPendulum();
