@@ -139,14 +139,4 @@ std::optional<double> Crossings::Period() const {
     return 2 * (times_.back() - times_.front()) / static_cast<double>(times_.size() - 1);
 }
 
-double EllipticK(double k) {
-    double a = 1, b = std::sqrt(1 - k * k);
-    for (int i = 0; i < 8; ++i) {
-        const double mean = 0.5 * (a + b);
-        b = std::sqrt(a * b);
-        a = mean;
-    }
-    return kPi / (2 * a);
-}
-
 }  // namespace fulcrum::accuracy

@@ -110,8 +110,6 @@ private:
     std::optional<std::pair<double, double>> last_;
 };
 
-// Complete elliptic integral of the first kind, by the arithmetic-geometric mean.
-double EllipticK(double k);
 inline double Relative(double value, double reference) { return std::abs(value - reference) / std::abs(reference); }
 
 }  // namespace fulcrum::accuracy

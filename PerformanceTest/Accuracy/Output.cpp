@@ -3,16 +3,15 @@
 #include <Fulcrum/Math/Wide.h>
 #include <Fulcrum/PerformanceTest/Accuracy/Curves.h>
 #include <Fulcrum/PerformanceTest/Accuracy/Registry.h>
+#include <Fulcrum/Samples/Runner/RunEnvironment.h>
 #include <Fulcrum/Samples/Viewer/WholeFile.h>
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <fstream>
 #include <sstream>
-#include <thread>
 
 namespace fulcrum::accuracy {
 namespace {
@@ -24,20 +23,6 @@ std::string ReadFile(const std::filesystem::path& path) {
     std::ostringstream content;
     content << file.rdbuf();
     return content.str();
-}
-
-std::string Machine() {
-    std::ifstream file("/proc/cpuinfo");
-    for (std::string line; std::getline(file, line);)
-        if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-    return "unknown";
-}
-
-std::string Now() {
-    const std::time_t now = std::time(nullptr);
-    char text[32];
-    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
-    return text;
 }
 
 std::string Number(double value) {
@@ -112,11 +97,11 @@ std::string CsvOf(std::span<const SceneRuns> scenes) {
 Json JsonOf(std::span<const SceneRuns> scenes, const Circumstances& circumstances) {
     Json json;
     json["schema"] = kSchemaVersion;
-    json["machine"] = Machine() + ", " + std::to_string(std::thread::hardware_concurrency()) + " threads";
-    json["compiler"] = __VERSION__;
+    json["machine"] = CpuModel() + ", " + std::to_string(CoreCount()) + " threads";
+    json["compiler"] = CompilerName();
     json["lanes"] = kLanes;
     json["commit"] = circumstances.commit.empty() ? Json(nullptr) : Json(circumstances.commit);
-    json["date"] = Now();
+    json["date"] = UtcNow();
     json["quick"] = circumstances.isQuick;
     json["runs_at_a_time"] = circumstances.threads;
     json["peers"] = Json::parse(ReadFile(FULCRUM_ACCURACY_PEERS), nullptr, false);

@@ -3,46 +3,17 @@
 #include <Fulcrum/Math/Wide.h>
 #include <Fulcrum/PerformanceTest/Scenes/ReferenceKernel.h>
 #include <Fulcrum/PerformanceTest/Scenes/SampleStatistics.h>
+#include <Fulcrum/Samples/Runner/RunEnvironment.h>
 #include <Fulcrum/Version.h>
 
 #include <cmath>
 #include <cstdlib>
-#include <ctime>
 #include <fstream>
-#include <thread>
 
 namespace fulcrum {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string Now() {
-    const std::time_t now = std::time(nullptr);
-    std::tm utc{};
-    gmtime_r(&now, &utc);
-    char text[32];
-    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-    return text;
-}
-
-std::string CpuModel() {
-    std::ifstream file("/proc/cpuinfo");
-    for (std::string line; std::getline(file, line);) {
-        const size_t colon = line.find(": ");
-        if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
-    }
-    return "unknown";
-}
-
-std::string CompilerName() {
-#ifdef __clang__
-    return std::string("Clang ") + __clang_version__;
-#elif defined(__GNUC__)
-    return std::string("GCC ") + __VERSION__;
-#else
-    return "unknown";
-#endif
-}
 
 Error Wrong(const std::string& file, const std::string& what) { return {ErrorCode::OutOfRange, file + ": " + what}; }
 
@@ -89,9 +60,9 @@ Json NewDocument() {
     return {{"schema", kSavedRunsSchema},
             {"program", "fulcrum-bench"},
             {"version", FULCRUM_VERSION_STRING},
-            {"date", Now()},
+            {"date", UtcNow()},
             {"commit", commit && *commit ? Json(commit) : Json()},
-            {"machine", {{"cpu", CpuModel()}, {"cores", std::thread::hardware_concurrency()}}},
+            {"machine", {{"cpu", CpuModel()}, {"cores", CoreCount()}}},
             {"compiler", CompilerName()},
             {"lanes", std::to_string(kLanes)},
             {"kernel", kReferenceKernelVersion},

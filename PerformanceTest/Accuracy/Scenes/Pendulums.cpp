@@ -2,6 +2,7 @@
 #include <Fulcrum/PerformanceTest/Accuracy/LabWorld.h>
 #include <Fulcrum/PerformanceTest/Accuracy/Scenes/Families.h>
 #include <Fulcrum/Samples/Scenes/JointShorthands.h>
+#include <Fulcrum/UnitTests/Support/EllipticIntegral.h>
 
 #include <algorithm>
 
@@ -45,7 +46,7 @@ void RodPendulum(LabRun& run) {
     const JointId hinge = world.Join(JointOf<HingeJointSettings>(AddHook(world), rod, {0, 0, 0}, {0, 0, 1}));
     const Swing swing = Watch(run, world, rod, 0.5, [&] { return double(world.Joints().GetError(hinge).distance); });
     const double inertia = 1.01 / 12 + 0.25;
-    Report(run, swing, 4 * std::sqrt(inertia / (kGravity * 0.5)) * EllipticK(std::sin(kPi / 4)), 0.5);
+    Report(run, swing, 4 * std::sqrt(inertia / (kGravity * 0.5)) * testing::EllipticK(std::sin(kPi / 4)), 0.5);
 }
 
 // A point on a rod of 1 m: I = m l^2. Integrates phi'' = -g sin(phi) by the classical Runge-Kutta method with steps of
@@ -69,7 +70,7 @@ void PointPendulum(LabRun& run) {
     const BodyId ball = world.Add({.shape = SphereOf(0.001), .position = {-1, 0, 0}, .mass = 1});
     world.Join(JointOfTwo<DistanceJointSettings>(AddHook(world), ball, {0, 0, 0}, {-1, 0, 0}));
     const Swing swing = Watch(run, world, ball, 1, [&] { return std::abs(world.At(ball).norm() - 1); });
-    Report(run, swing, 4 / std::sqrt(kGravity) * EllipticK(std::sin(kPi / 4)), 1);
+    Report(run, swing, 4 / std::sqrt(kGravity) * testing::EllipticK(std::sin(kPi / 4)), 1);
     static const Position end = EndOfPointPendulum();
     run.Error("position", (swing.end - end).norm());
 }

@@ -1,21 +1,11 @@
 // Pendulums at the default settings against their closed forms.
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
+#include <Fulcrum/UnitTests/Support/EllipticIntegral.h>
 
 #include <cmath>
 
 namespace fulcrum::testing {
 namespace {
-
-// Complete elliptic integral of the first kind: K(k) = pi / (2 agm(1, sqrt(1 - k^2))).
-double EllipticK(double k) {
-    double a = 1, b = std::sqrt(1 - k * k);
-    for (int i = 0; i < 8; ++i) {
-        const double mean = 0.5 * (a + b);
-        b = std::sqrt(a * b);
-        a = mean;
-    }
-    return kPi / (2 * a);
-}
 
 // A rod of 1 x 0.1 x 0.1 m, hung up at the middle of its end face, released where it is horizontal.
 struct RodPendulum {
