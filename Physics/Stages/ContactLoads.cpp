@@ -144,9 +144,12 @@ template <int N>
 bool NoteGaps(const BallBatch<N>& batch, const GapScale& scale, std::span<LoadLevel> gaps) {
     return NoteSquaredGaps(batch, Dot<Wide<N>>(batch.startOffset, batch.startOffset), scale, gaps);
 }
-template bool NoteGaps(const JointBatch<kLanes>&, const GapScale&, std::span<LoadLevel>);
-template bool NoteGaps(const JointBatch<1>&, const GapScale&, std::span<LoadLevel>);
-template bool NoteGaps(const BallBatch<kLanes>&, const GapScale&, std::span<LoadLevel>);
+
+#define FULCRUM_INSTANTIATE(lanes)                                                           \
+    template bool NoteGaps(const JointBatch<lanes>&, const GapScale&, std::span<LoadLevel>); \
+    template bool NoteGaps(const BallBatch<lanes>&, const GapScale&, std::span<LoadLevel>);
+FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE)
+#undef FULCRUM_INSTANTIATE
 
 #define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                             \
     template bool NoteSinks(const ContactBatch<lanes, fixedB>&, const SinkScale&, const BodyStore&, const JointStore&, \
