@@ -14,6 +14,8 @@
 #include <Fulcrum/Physics/World/Waking.h>
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace fulcrum {
 
@@ -95,8 +97,26 @@ void MoveToItsTree(WorldState& world, uint32_t body) {
     RequeueColliders(world.bodies, world.colliders, body);
 }
 
+// Tells all joints of the body's mechanism, once between two steps.
+void NoteTeleport(WorldState& world, uint32_t body) {
+    JointStore& store = world.joints;
+    std::vector<uint32_t> bodies{body};
+    while (!bodies.empty()) {
+        const uint32_t from = bodies.back();
+        bodies.pop_back();
+        store.VisitOf(from, [&](uint32_t index) {
+            Joint& joint = store.joints[index];
+            if (std::exchange(joint.teleportedBefore, world.step + 1) == world.step + 1) return;
+            store.types[index]->wasTeleported = true;
+            const int other = 1 - joint.SideOf(from);
+            if (!joint.still[other]) bodies.push_back(joint.body[other]);
+        });
+    }
+}
+
 // Brings everything in line with a pose that the user set.
 void Teleported(WorldState& world, uint32_t body) {
+    if (world.joints.HasAny(body)) NoteTeleport(world, body);
     if (world.bodies.dynamics[body].motion == MotionType::Dynamic) world.bodies.MarkPlaced(body);
     world.bodies.UpdateInertia(body);
     VisitColliders(world, body, [&](uint32_t i) {

@@ -106,25 +106,29 @@ bool IsOverstretched(const JointBatch<N>& batch, const JointRow& row, int lane, 
     return inverse > 0.0f && row.error * row.error * squared > fastest * fastest;
 }
 
-// Springs: after the masses are known. They are not relaxed: their force is what they are for. Overstretched ones are
-// pulled as locks are.
+// Springs: after the masses are known. They are not relaxed: their force is what they are for. Where a teleport has
+// overstretched them they are pulled as locks are. Returns whether it has.
 template <int N>
-void SoftenLane(const JointBatch<N>& batch, JointRows<N>& rows, int lane, const JointRow& row,
+bool SoftenLane(const JointBatch<N>& batch, JointRows<N>& rows, int lane, const JointRow& row, bool wasTeleported,
                 const JointSolveSettings& s) {
     using Kind = JointRow::Kind;
-    if (rows.slot[lane] == 0xFF || (row.kind != Kind::Spring && row.kind != Kind::SpringAtLeast)) return;
+    if (rows.slot[lane] == 0xFF || (row.kind != Kind::Spring && row.kind != Kind::SpringAtLeast)) return false;
     const float mass = rows.part.GetEffectiveMass()[lane];
     SpringConstants<float> constants = ToConstants(row.spring);
     // As stiff as a spring can be that a substep resolves.
     if (!(constants.squaredFrequency > 0.0f || constants.stiffness > 0.0f))
         constants = FrequencyConstants(0.25f * s.inverseDt, 1.0f);
-    if (IsOverstretched(batch, row, lane, constants, s)) return SetPush(rows, lane, true, s);
+    if (wasTeleported && IsOverstretched(batch, row, lane, constants, s)) {
+        SetPush(rows, lane, true, s);
+        return true;
+    }
     const auto spring = SpringSoftnessOf<float>(s.substepDt, mass > 0.0f ? 1.0f / mass : 0.0f, constants);
     rows.softness.massScale.Set(lane, spring.softness.massScale);
     rows.softness.impulseScale.Set(lane, spring.softness.impulseScale);
     rows.pushRate.Set(lane, spring.errorRate);
     rows.openSoftness.massScale.Set(lane, 0.0f);
     rows.openSoftness.impulseScale.Set(lane, 1.0f);
+    return false;
 }
 
 // Asks the types for their rows and spreads these over the lanes. The parts are set up.
@@ -185,9 +189,14 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
         rows.part.RestoreState({impulse});
     }
     SetUpRows<kLinear, kAngular>(batch);
-    for (int lane = 0; lane < batch.count; ++lane)
+    for (int lane = 0; lane < batch.count; ++lane) {
+        JointType& type = *types[batch.joint[lane]];
+        bool isOverstretched = false;
         for (uint32_t i = 0; i < lists[lane].count; ++i)
-            SoftenLane(batch, batch.rows[i], lane, lists[lane].rows[i], settings);
+            isOverstretched |=
+                SoftenLane(batch, batch.rows[i], lane, lists[lane].rows[i], type.wasTeleported, settings);
+        type.wasTeleported = isOverstretched;
+    }
 }
 
 // Which joints are so far apart that they are pulled, see PullJoints.

@@ -60,6 +60,7 @@ struct Joint {
     LeastEffort effort;  // of its island
     MassOverride massOverride;
     uint64_t userData = 0;
+    uint64_t teleportedBefore = 0;  // the step before which a body of its mechanism was teleported last
 
     void SetMassOverride(const MassOverride& o) {
         massOverride = o;

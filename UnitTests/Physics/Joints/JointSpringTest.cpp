@@ -78,6 +78,18 @@ TEST_P(JointSpring, BetweenTwoBodiesActsOnTheirReducedMass) {
     }
 }
 
+// A hundred times faster than locks are pulled together: this is a spring's own work. The distance stays positive.
+TEST_P(JointSpring, CreatedFarFromRest) {
+    TestWorld world(Weightless());
+    const BodyId hook = AddHook(world);
+    const BodyId ball = world.Add({.shape = SphereOf(0.1f), .position = {50, 0, 0}, .mass = 4});
+    DistanceJointSettings settings{Between(hook, ball, {0, 0, 0})};
+    settings.anchorB = AnchorAt({50, 0, 0});
+    settings.minDistance = settings.maxDistance = 25.0f;
+    settings.spring = ByFrequency();
+    ExpectOscillator(world, Join(world, settings), JointAxis::LinearX, 25);
+}
+
 TEST_P(JointSpring, OfASliderThatIsLockedSoftly) {
     for (const SpringSettings& spring : {ByFrequency(), ByStiffness(4)}) {
         TestWorld world(Weightless());
@@ -173,6 +185,28 @@ TEST(JointSpringAtRest, ACriticallyDampedFrequencyCarriesAWeightAtGOverOmegaSqua
     world.Run(5);
     const double omega = 4 * kPi;
     EXPECT_NEAR(JointsOf(world).GetCoordinate(spring, JointAxis::LinearX), 1 + kGravity / (omega * omega), 1e-5);
+}
+
+// SetPose is no work of the spring: what it stretches comes back no faster than locks are pulled, until it is near.
+TEST(JointSpringAtRest, AfterATeleportItIsPulledNoFasterThanLocks) {
+    TestWorld world(Weightless());
+    const BodyId hook = AddHook(world);
+    const BodyId link = world.Add({.shape = SphereOf(0.1f), .position = {2, 0, 0}, .mass = 2}),
+                 ball = world.Add({.shape = SphereOf(0.1f), .position = {3, 0, 0}, .mass = 2});
+    Join(world, FixedJointSettings{Between(link, ball, {2.5, 0, 0})});
+    DistanceJointSettings settings{Between(hook, link, {0, 0, 0})};
+    settings.anchorB = AnchorAt({2, 0, 0});
+    settings.minDistance = settings.maxDistance = 2.0f;
+    settings.spring = FrequencySpring(2, 0.5, SpringForm::Exact);
+    const JointId spring = Join(world, settings);
+    for (const BodyId moved : {link, ball})
+        ASSERT_TRUE(world.Bodies().SetPose(moved, world.PositionOf(moved) + Position(40, 0, 0), {}));
+    const float fastest = world.System().Settings().jointPushSpeed;
+    for (int i = 0; i < 600; ++i) {
+        world.Step();
+        for (const BodyId body : {link, ball}) EXPECT_LT(Length(world.VelocityOf(body)), 1.6f * fastest);
+    }
+    EXPECT_NEAR(JointsOf(world).GetCoordinate(spring, JointAxis::LinearX), 2, 1e-3);
 }
 
 TEST(JointSpringAtRest, ASpringOfMinAndMaxActsOnlyBeyondThem) {
