@@ -35,12 +35,12 @@ struct Material {
     CombineRule restitutionRule = CombineRule::Maximum;
 };
 
-// Whether a body is cast along its path in steps in which it moves by more than half its thickness, so that it passes
-// through nothing however fast it is. It bounces where it hits, in the middle of the step.
+// Whether a body is cast along its path in steps in which it moves or turns by more than half its thickness, so that it
+// passes through nothing however fast it is. It bounces where it hits, in the middle of the step.
 enum class ContinuousCollision : uint8_t {
     Off,
-    Linear,            // it is cast without its rotation; compounds are cast with it
-    LinearAndAngular,  // with it: what swings hits what is in the way, too
+    Linear,            // small turns within a step are left out of the cast; not of compounds
+    LinearAndAngular,  // all are part of it
 };
 
 // Which bodies a sensor reports; combine with |.

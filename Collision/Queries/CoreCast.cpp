@@ -1,6 +1,7 @@
 #include <Fulcrum/Collision/Queries/CoreCast.h>
 
 #include <Fulcrum/Collision/NarrowPhase/Libccd.h>
+#include <Fulcrum/Collision/Queries/CoreShapes.h>
 #include <Fulcrum/Math/Trigonometry.h>
 
 #include <algorithm>
@@ -87,14 +88,22 @@ CoreCastResult CoresOverlapAtStart() {
     return result;
 }
 
-}  // namespace
-
-Quaternion CoreMotion::RotationAt(double fraction) const {
+Quaternion TurnedBy(const Vector3& turn, const Quaternion& rotation) {
     // Beyond so many radians float gives no meaningful rotation.
     constexpr float kFarthestTurn = 1e6f;
-    const Vector3 turned = turn * static_cast<float>(fraction);
-    if (!(turned.cwiseAbs().maxCoeff() < kFarthestTurn)) return rotation;
-    return Normalized(RotationFromVector(turned) * rotation);
+    if (!(turn.cwiseAbs().maxCoeff() < kFarthestTurn)) return rotation;
+    return Normalized(RotationFromVector(turn) * rotation);
+}
+
+}  // namespace
+
+CorePoses CoreMotion::At(double fraction) const {
+    CorePoses poses{fraction, TurnedBy(turn * static_cast<float>(fraction), rotation), {}, {}};
+    poses.bInA = {PositionAt(fraction).cast<float>(), poses.rotation};
+    if (turnOfA.isZero(0)) return poses;
+    poses.rotationOfA = TurnedBy(turnOfA * static_cast<float>(fraction), {});
+    poses.bInA = Inverse({Vector3::Zero(), poses.rotationOfA}) * poses.bInA;
+    return poses;
 }
 
 CoreCastResult CastLinear(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion,
@@ -150,35 +159,32 @@ CoreCastResult CastLinear(const ConvexShape& a, const ConvexShape& b, const Core
 
 namespace {
 
-// For how long no point of a turning shape comes nearer than the target distance along an axis. All points of B follow
-//     n . x(t + s) >= n . (c + r) + s (n . d + r . (n x w)) - s^2 / 2 |w|^2 R,
-// r from B's center, R the radius of its core, w the turn: the linear part is smallest for the support of B along
-// n + s (n x w), and as a minimum of linear functions it is concave in s. So if the bound holds at the end of an
-// interval and the shapes are apart at its beginning, it holds in between.
+// For how long no point of two turning shapes comes nearer than the target distance along an axis n. Of each shape
+//     n . x(t + s) = n . (c + r) + s (n . d + r . (n x w)) + at most s^2 / 2 |w|^2 R,
+// r from its center c, R the radius of its core, w the turn, d the displacement: the linear part is extreme for the
+// shape's support along n + s (n x w). As a minimum of linear functions, that of B less that of A is concave in s. So
+// if the bound holds at the end of an interval and the shapes are apart at its beginning, it holds in between.
 class AxisAdvance {
 public:
-    // `gap`: by which B is farther away along the axis now than the target distance, > 0.
-    AxisAdvance(const ConvexShape& b, const CoreMotion& motion, const Vector3& axis, const Quaternion& rotation,
-                double gap)
-        : b_(b),
-          axis_(axis),
-          turned_(Cross<float>(axis, motion.turn)),
-          rotation_(ToMatrix(rotation)),
+    // `gap`: by which B is farther away along the axis now than the target distance, > 0. `axis`, unit: in the motion's
+    // axes.
+    AxisAdvance(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion, const CorePoses& now,
+                const Vector3& axis, double gap)
+        : a_(a, 1, axis, motion.turnOfA, now.rotationOfA),
+          b_(b, -1, axis, motion.turn, now.rotation),
           gap_(gap),
           approach_(-Dot<double>(axis.cast<double>(), motion.displacement.cast<double>())),
-          radius_(b.OuterRadius() - std::min(b.ConvexRadius(), b.OuterRadius())),
-          bending_(0.5 * double{LengthSquared(motion.turn)} * radius_),
-          lowest_(LowestAlong(0)) {}
+          bending_(a_.Bending() + b_.Bending()) {}
 
     // Proven, in fractions of the motion: `remaining` where it reaches that far.
     double Step(double remaining) const {
-        const double speed = approach_ + double{Length(turned_)} * radius_;
+        const double speed = approach_ + a_.Speed() + b_.Speed();
         if (speed * remaining <= gap_) return remaining;
         const double sure = gap_ / speed;
         if (!(sure > 0)) return 0;  // overflow: the search ends early
         double low = sure, high = remaining;
         if (Margin(high) > 0) return high;
-        // False position with bisection: each iteration costs a support.
+        // False position with bisection: each iteration costs two supports.
         double lowMargin = Margin(low), highMargin = Margin(high);
         if (!(lowMargin > 0)) return sure;
         for (int i = 0; i < 8 && high - low > 0.02 * low; ++i) {
@@ -193,24 +199,56 @@ public:
     }
 
 private:
-    double LowestAlong(double step) const {
-        const Vector3 n = axis_ + turned_ * static_cast<float>(step);
-        const Vector3 r = rotation_ * b_.SupportCore(-rotation_.TransposeMultiply(n));
-        return Dot<double>(n.cast<double>(), r.cast<double>());
-    }
+    // A shape that turns about its center, seen along the axis, or against it with sign -1.
+    class Turning {
+    public:
+        Turning(const ConvexShape& shape, float sign, const Vector3& axis, const Vector3& turn,
+                const Quaternion& rotation)
+            : shape_(shape),
+              sign_(sign),
+              axis_(axis),
+              turned_(Cross<float>(axis, turn)),
+              rotation_(ToMatrix(rotation)),
+              radius_(shape.OuterRadius() - std::min(shape.ConvexRadius(), shape.OuterRadius())),
+              bending_(0.5 * double{LengthSquared(turn)} * radius_),
+              isTurning_(!turn.isZero(0)),
+              start_(isTurning_ ? Extreme(0) : 0) {}
+
+        bool IsTurning() const { return isTurning_; }
+        double Speed() const { return double{Length(turned_)} * radius_; }  // at most, at the start; m per motion
+        double Bending() const { return bending_; }
+        // Along the axis, m: of the points that are extreme in the linear part of their motion.
+        double Extreme(double step) const {
+            const Vector3 n = axis_ + turned_ * static_cast<float>(step);
+            const Vector3 r = rotation_ * shape_.SupportCore(rotation_.TransposeMultiply(n) * sign_);
+            return Dot<double>(n.cast<double>(), r.cast<double>());
+        }
+        double Start() const { return start_; }
+
+    private:
+        const ConvexShape& shape_;
+        float sign_;
+        Vector3 axis_, turned_;
+        Matrix3 rotation_;
+        double radius_, bending_;
+        bool isTurning_;
+        double start_;
+    };
+
     double Margin(double step) const {
-        return gap_ - approach_ * step + LowestAlong(step) - lowest_ - bending_ * step * step;
+        double margin = gap_ - approach_ * step;
+        if (b_.IsTurning()) margin += b_.Extreme(step) - b_.Start();
+        if (a_.IsTurning()) margin -= a_.Extreme(step) - a_.Start();
+        return margin - bending_ * step * step;
     }
 
-    const ConvexShape& b_;
-    Vector3 axis_, turned_;
-    Matrix3 rotation_;
-    double gap_, approach_, radius_, bending_, lowest_;
+    Turning a_, b_;
+    double gap_, approach_, bending_;
 };
 
 // Conservative advancement until `separate` (GJK, or a plane) finds the shapes no farther apart than the target
-// distance. separate(fraction) returns {apart by more than the target along a unit axis, axis, point of A's core, cores
-// overlap}.
+// distance. separate(const CorePoses&, guess) returns {apart by more than the target along a unit axis, axis, point of
+// A's core, cores overlap}, all in A's axes of then, as the guess is.
 struct Separated {
     double gap;
     Vector3 axis;
@@ -218,24 +256,32 @@ struct Separated {
     bool coresOverlap;
 };
 
+// `from`, `to`: the part of the motion outside of which they do not touch.
 template <class Separate>
-CoreCastResult Advance(const ConvexShape& b, const CoreMotion& motion, const CoreCastLimits& limits, double tolerance,
-                       const Separate& separate) {
+CoreCastResult Advance(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion,
+                       const CoreCastLimits& limits, double tolerance, const Separate& separate, double from = 0,
+                       double to = 1) {
     using Outcome = CoreCastResult::Status;
-    double fraction = 0;
-    Separated last{0, Vector3(0, 1, 0), Vector3::Zero(), true};
+    const bool turnsA = !motion.turnOfA.isZero(0);
+    double fraction = from;
+    Separated last{0, Normalized(motion.PositionAt(from).cast<float>(), Vector3(0, 1, 0)), Vector3::Zero(), true};
     for (int i = 0; i < kMaxTurningIterations; ++i) {
-        const Separated now = separate(fraction, last.axis);
+        const CorePoses poses = motion.At(fraction);
+        Separated now = separate(poses, turnsA ? InverseRotate(poses.rotationOfA, last.axis) : last.axis);
+        if (turnsA) {
+            now.axis = Rotate(poses.rotationOfA, now.axis);
+            now.onA = Rotate(poses.rotationOfA, now.onA);
+        }
         if (now.coresOverlap || now.gap <= tolerance) {
-            if (now.coresOverlap && i == 0) return CoresOverlapAtStart();
+            if (now.coresOverlap && fraction == 0) return CoresOverlapAtStart();
             const Separated& known = now.coresOverlap ? last : now;
-            return HitAt(i == 0 ? Outcome::AtStart : Outcome::Hit, fraction, known.axis.template cast<double>(),
+            return HitAt(fraction == 0 ? Outcome::AtStart : Outcome::Hit, fraction, known.axis.template cast<double>(),
                          known.onA);
         }
         // Not shortened to maxFraction, so that the hit has the same bits for every maxFraction.
-        const double remaining = 1 - fraction;
+        const double remaining = to - fraction;
         // Advances to half the tolerance from touching, so that the search ends there.
-        const AxisAdvance advance(b, motion, now.axis, motion.RotationAt(fraction), now.gap - 0.5 * tolerance);
+        const AxisAdvance advance(a, b, motion, poses, now.axis, now.gap - 0.5 * tolerance);
         const double step = advance.Step(remaining);
         if (step >= remaining) return {};
         fraction += step;
@@ -245,30 +291,45 @@ CoreCastResult Advance(const ConvexShape& b, const CoreMotion& motion, const Cor
     return HitAt(Outcome::Early, fraction, last.axis.cast<double>(), last.onA);
 }
 
+// The part of the motion in which the centers are no farther apart than `reach`; empty: never.
+struct MotionPart {
+    double from = 0, to = -1;
+};
+MotionPart PartWithin(const CoreMotion& motion, double reach) {
+    const Position d = motion.displacement.cast<double>();
+    const double square = Dot<double>(d, d), along = Dot<double>(d, motion.position),
+                 beyond = Dot<double>(motion.position, motion.position) - reach * reach;
+    if (!(square > 0)) return beyond > 0 ? MotionPart{} : MotionPart{0, 1};
+    const double root = along * along - square * beyond;
+    if (root < 0) return {};
+    return {std::max(0.0, (-along - std::sqrt(root)) / square), std::min(1.0, (-along + std::sqrt(root)) / square)};
+}
+
 }  // namespace
 
 CoreCastResult CastTurning(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion,
                            const CoreCastLimits& limits) {
     const double target = double{a.ConvexRadius()} + b.ConvexRadius() + limits.separation;
     const double tolerance = std::max(double{limits.tolerance}, 20 * LeastTolerance(a, b));
-    const auto separate = [&](double fraction, const Vector3& guess) -> Separated {
-        const Position position = motion.PositionAt(fraction);
-        const SupportPair pair(a, b, {position.cast<float>(), motion.RotationAt(fraction)});
-        const Vector3 start = fraction == 0 ? Normalized(pair.position) : guess;
-        const ConvexGjkResult found = ConvexGjk(pair, start, std::numeric_limits<float>::infinity());
+    const auto separate = [&](const CorePoses& poses, const Vector3& guess) -> Separated {
+        const SupportPair pair(a, b, poses.bInA);
+        const ConvexGjkResult found = ConvexGjk(pair, guess, std::numeric_limits<float>::infinity());
         const bool overlap = found.status == GjkStatus::Overlapping;
         // The separation along the axis, which may be less than the distance of the points by rounding.
         return {double{pair.SeparationAlong(found.axis)} - target, found.axis, found.onA, overlap};
     };
-    return Advance(b, motion, limits, tolerance, separate);
+    const double reach = (double{a.OuterRadius()} + b.OuterRadius()) * (1 + 1e-6) + limits.separation + tolerance;
+    const MotionPart part = PartWithin(motion, reach);
+    if (!(part.from <= part.to) || part.from > double{limits.maxFraction}) return {};
+    return Advance(a, b, motion, limits, tolerance, separate, part.from, part.to);
 }
 
 CoreCastResult CastByLibccd(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion,
                             const CoreCastLimits& limits) {
     const double target = double{a.ConvexRadius()} + b.ConvexRadius() + limits.separation;
     const double tolerance = std::max(double{limits.tolerance}, 20 * LeastTolerance(a, b));
-    const auto separate = [&](double fraction, const Vector3&) -> Separated {
-        const RelativePose pose{motion.PositionAt(fraction).cast<float>(), motion.RotationAt(fraction)};
+    const auto separate = [&](const CorePoses& poses, const Vector3&) -> Separated {
+        const RelativePose& pose = poses.bInA;
         const SupportPair pair(a, b, pose);
         const LibccdVerdict verdict = AskLibccd(pair, pose, limits.separation + static_cast<float>(tolerance));
         if (verdict.apart) {
@@ -280,15 +341,15 @@ CoreCastResult CastByLibccd(const ConvexShape& a, const ConvexShape& b, const Co
             FindLibccdContact(pair, pose, std::numeric_limits<float>::infinity(), unused);
         if (!touch) return {0, Vector3(0, 1, 0), Vector3::Zero(), true};  // not finite
         // Later it is known how deep they are by rounding, and along which axis.
-        const bool coresOverlap = fraction == 0 && touch->separation <= 0;
+        const bool coresOverlap = poses.fraction == 0 && touch->separation <= 0;
         return {double{touch->separation} - target, touch->axis, touch->onA, coresOverlap};
     };
     // What is within the tolerance, but apart, and moves away straight does not touch, as in CastLinear.
     if (!motion.IsTurning()) {
-        const Separated start = separate(0, Vector3(0, 1, 0));
+        const Separated start = separate(motion.At(0), Vector3(0, 1, 0));
         if (start.gap > 0 && Dot(start.axis, motion.displacement) >= 0) return {};
     }
-    return Advance(b, motion, limits, tolerance, separate);
+    return Advance(a, b, motion, limits, tolerance, separate);
 }
 
 CoreCastResult CastToPlane(const Vector3& normal, double offset, const ConvexShape& b, const CoreMotion& motion,
@@ -296,21 +357,21 @@ CoreCastResult CastToPlane(const Vector3& normal, double offset, const ConvexSha
     using Outcome = CoreCastResult::Status;
     const Position n = normal.cast<double>();
     const double target = double{b.ConvexRadius()} + limits.separation;
-    const auto separate = [&](double fraction, const Vector3&) -> Separated {
-        const Matrix3 rotation = ToMatrix(motion.RotationAt(fraction));
+    const auto separate = [&](const CorePoses& poses, const Vector3&) -> Separated {
+        const Matrix3 rotation = ToMatrix(poses.rotation);
         const Vector3 support = rotation * b.SupportCore(-rotation.TransposeMultiply(normal));
-        const Position lowest = motion.PositionAt(fraction) + support.cast<double>();
+        const Position lowest = motion.PositionAt(poses.fraction) + support.cast<double>();
         const double height = Dot<double>(n, lowest) - offset;
         return {height - target, normal, Vector3((lowest - n * height).cast<float>()), false};
     };
     const double tolerance = std::max(double{limits.tolerance}, 1e-6 * double{b.OuterRadius()} + 1e-9);
-    if (motion.IsTurning()) return Advance(b, motion, limits, tolerance, separate);
-    const Separated start = separate(0, normal);
+    if (motion.IsTurning()) return Advance(PointCore{}, b, motion, limits, tolerance, separate);
+    const Separated start = separate(motion.At(0), normal);
     if (start.gap <= 0) return HitAt(Outcome::AtStart, 0, n, start.onA);
     const double speed = -Dot<double>(n, motion.displacement.cast<double>());
     if (!(speed > 0) || start.gap > speed * limits.maxFraction) return {};
     const double fraction = start.gap / speed;
-    return HitAt(Outcome::Hit, fraction, n, separate(fraction, normal).onA);
+    return HitAt(Outcome::Hit, fraction, n, separate(motion.At(fraction), normal).onA);
 }
 
 }  // namespace fulcrum

@@ -11,17 +11,26 @@
 
 namespace fulcrum {
 
-// How shape B moves in the frame of shape A, which is at rest. The center moves straight; B turns at a constant rate
-// about an axis through it.
+// Where the shapes of a motion are at a part of it.
+struct CorePoses {
+    double fraction = 0;
+    Quaternion rotation;     // of B, in the motion's axes
+    Quaternion rotationOfA;  // likewise
+    RelativePose bInA;       // in A's axes of then
+};
+
+// How shape B moves relative to the center of shape A, in axes that are A's at the start. The center moves straight;
+// each of the two turns at a constant rate about an axis through its center.
 struct CoreMotion {
     Position position;                       // of B's center at the start, m
-    Quaternion rotation{};                   // at the start, unit
+    Quaternion rotation{};                   // of B at the start, unit
     Vector3 displacement = Vector3::Zero();  // m, over the whole motion
-    Vector3 turn = Vector3::Zero();          // rad, over the whole motion; along the axis, in A's frame
-    bool IsTurning() const { return !turn.isZero(0); }
+    Vector3 turn = Vector3::Zero();          // of B: rad, over the whole motion; along the axis
+    Vector3 turnOfA = Vector3::Zero();       // likewise
+    bool IsTurning() const { return !turn.isZero(0) || !turnOfA.isZero(0); }
 
     Position PositionAt(double fraction) const { return position + displacement.cast<double>() * fraction; }
-    Quaternion RotationAt(double fraction) const;
+    CorePoses At(double fraction) const;
 };
 
 struct CoreCastLimits {
@@ -50,16 +59,16 @@ struct CoreCastResult {
 CoreCastResult CastLinear(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion,
                           const CoreCastLimits& limits);
 
-// The same for a B that turns, by conservative advancement: GJK at each time, and an advance by a second-order bound on
-// the approach of B's points along the axis found.
+// The same for shapes that turn, by conservative advancement: GJK at each time, and an advance by a second-order bound
+// on the approach of their points along the axis found.
 CoreCastResult CastTurning(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion,
                            const CoreCastLimits& limits);
 
-// Against the half space of all x with normal . x <= offset, B linear or turning.
+// Against the half space of all x with normal . x <= offset, which does not turn; B linear or turning.
 CoreCastResult CastToPlane(const Vector3& normal, double offset, const ConvexShape& b, const CoreMotion& motion,
                            const CoreCastLimits& limits);
 
-// The same, B linear or turning, by conservative advancement over libccd: it says whether the shapes, rounded by the
+// The same, linear or turning, by conservative advancement over libccd: it says whether the shapes, rounded by the
 // separation, overlap, and along which axis they do not, which is followed to where that ends.
 CoreCastResult CastByLibccd(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion,
                             const CoreCastLimits& limits);

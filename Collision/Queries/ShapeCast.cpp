@@ -28,7 +28,7 @@ ShapeCaster::ShapeCaster(const ConvexShape& shape, const ShapeMotion& motion, Na
     : shape_(shape), motion_(motion), bounds_(BoundsOfTurning(shape, motion)), method_(method) {
     isValid_ = IsFinite(motion.pose.position) && IsTurn(motion.pose.rotation) &&
                IsWithinReach(motion.displacement.cast<double>()) && IsWithinReach(motion.turn.cast<double>()) &&
-               IsFinite(bounds_.lower) && IsFinite(bounds_.upper);
+               IsWithinReach(motion.turnOfOther.cast<double>()) && IsFinite(bounds_.lower) && IsFinite(bounds_.upper);
 }
 
 CoreMotion ShapeCaster::RelativeTo(const Pose& pose) const {
@@ -67,10 +67,11 @@ bool IsWithinFloats(const ShapeHit& hit) {
 
 }  // namespace
 
-bool ShapeCaster::CastPiece(const Piece& piece, const Pose& pose, const ShapeCastSettings& settings,
-                            ShapeHit& hit) const {
+bool ShapeCaster::CastPiece(const Piece& piece, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit,
+                            const Vector3& turn) const {
     const Pose at = pose * piece.pose;
-    const CoreMotion motion = RelativeTo(at);
+    CoreMotion motion = RelativeTo(at);
+    if (!turn.isZero(0)) motion.turnOfA = InverseRotate(at.rotation, turn);
     if (!IsWithinReach(motion.position)) return false;
     const bool isOneSided = piece.triangle && !piece.isTwoSided && !settings.backFaces;
     if (isOneSided && !motion.IsTurning() && Dot(motion.displacement, piece.triangle->Normal()) > 0) return false;
@@ -161,7 +162,7 @@ void ShapeCaster::Search(const Shape& other, const Pose& pose, ShapeCastSettings
     ShapeHit hit;
     if (other.IsConvex()) {
         const Piece piece{static_cast<const ConvexShape&>(other), {}, {}};
-        if (CastPiece(piece, pose, settings, hit)) found(context, hit, settings);
+        if (CastPiece(piece, pose, settings, hit, motion_.turnOfOther)) found(context, hit, settings);
     } else if (other.Type() == ShapeType::Plane) {
         if (CastPlane(other, pose, settings, hit)) found(context, hit, settings);
     } else if (other.IsSurface()) {

@@ -1,4 +1,4 @@
-// A convex shape that moves straight, and may turn at a constant rate, against a single shape at rest at a pose. Called
+// A convex shape that moves straight, and may turn at a constant rate, against a single shape at a pose. Called
 // by the world's queries and continuous collision, and by users who have shapes and no world. Thread-safe; allocates
 // nothing unless the depth of a degenerate overlap is measured, or with the method Libccd.
 //
@@ -24,6 +24,8 @@ struct ShapeMotion {
     Pose pose{};                             // of the shape's center frame at the start
     Vector3 displacement = Vector3::Zero();  // m, of the center, over the whole motion
     Vector3 turn = Vector3::Zero();          // rad, over the whole motion: the rotation vector, about the center
+    // The same of the other shape, about its own center. Only of convex ones; others rest.
+    Vector3 turnOfOther = Vector3::Zero();
 };
 
 struct ShapeCastSettings {
@@ -36,9 +38,9 @@ struct ShapeCastSettings {
 
 struct ShapeHit {
     float fraction = 0;                    // of the motion
-    SubShape subShape{};                   // of the shape at rest
-    Vector3 normal = Vector3::Zero();      // unit, from the shape at rest towards the one that moves
-    Position position = Position::Zero();  // m, on the surface of the shape at rest
+    SubShape subShape{};                   // of the other shape
+    Vector3 normal = Vector3::Zero();      // unit, from the other shape towards the one that moves
+    Position position = Position::Zero();  // m, on the surface of the other shape
     float depth = 0;                       // m, >= 0: how far they overlap at the start
     bool isEarly = false;  // iteration limit reached: they do not touch before, but perhaps later or never
 };
@@ -70,7 +72,9 @@ private:
                 HitFunction found) const;
     void SearchSurface(const SurfaceShape& surface, const Pose& pose, ShapeCastSettings& settings, void* context,
                        HitFunction found) const;
-    bool CastPiece(const Piece& piece, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit) const;
+    // `turn`: of the piece, about its center, over the whole motion.
+    bool CastPiece(const Piece& piece, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit,
+                   const Vector3& turn = Vector3::Zero()) const;
     bool CastPlane(const Shape& plane, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit) const;
     void MeasureDepth(const Piece& piece, const Pose& at, const CoreMotion& motion, ShapeHit& hit) const;
     CoreMotion RelativeTo(const Pose& pose) const;

@@ -1,7 +1,7 @@
 // Continuous collision: what moved far in this step is cast along its path. Where it hits, it bounces there and then,
 // and goes on with what is left of the step. In rounds: all casts in parallel; then the hits in the order of their
-// times, as long as both bodies' sweeps still are those that were cast (ResolveHits.h); what changed its sweep, or lost
-// its partner, is cast again.
+// times, as long as both bodies' sweeps still are those that were cast and no earlier one may change them
+// (ResolveHits.h); what changed its sweep, or lost its partner, is cast again.
 #include <Fulcrum/Physics/Stages/ResolveHits.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/Stages/SweepCast.h>
@@ -15,7 +15,7 @@ namespace fulcrum {
 namespace {
 
 // A body that hits something in each of so many rounds stays where it hit last until the next step.
-constexpr int kRounds = 16;
+constexpr int kRounds = 64;
 
 // m: a body with continuous collision that moves less in a step is not cast.
 float FreeMotionOf(const CollisionView& view, uint32_t body) {
@@ -59,10 +59,11 @@ void LookAtBody(const CollisionView& view, const ConstraintColoring& coloring, S
     const Vector3 moved = (view.bodies.CenterOf(body) - start.pose.position).cast<float>();
     const bool stays = StaysInBounds(view, coloring, body, moved, findings);
     if (!d.continuous) return;
-    const bool turns = IsCastTurning(view.bodies, body);
-    const float distance =
-        Length(moved) + (turns ? Length(SweepOf(view.step, view.bodies, sweeps, body).turn) * d.outerRadius : 0.0f);
-    if (!(distance > FreeMotionOf(view, body))) return;
+    const bool turns = IsCastTurning(view.bodies, body),
+               isBall = !turns && view.bodies.cold[body].shape->Type() == ShapeType::Sphere;
+    const float free = FreeMotionOf(view, body), distance = Length(moved);
+    const auto turn = [&] { return Length(SweepOf(view.step, view.bodies, sweeps, body).turn) * d.outerRadius; };
+    if (!(distance > free) && (isBall || !(distance + turn() > free))) return;
     sweeps.searchBy[body] = stays && !turns ? SearchBy::Pairs : SearchBy::Trees;
 }
 
@@ -139,8 +140,8 @@ void CastActive(const CollisionView& view, const SweepStore& sweeps, const StepW
     });
 }
 
+// To those that wait.
 void GatherHits(std::span<WorkerFindings> workers, std::vector<SweepHit>& hits) {
-    hits.clear();
     for (WorkerFindings& findings : workers) {
         hits.insert(hits.end(), findings.sweepHits.begin(), findings.sweepHits.end());
         findings.sweepHits.clear();
@@ -153,7 +154,7 @@ void ReserveLists(const BodyStore& bodies, size_t colliders, SweepStore& sweeps,
     sweeps.searchBy.reserve(bodies.Size());
     sweeps.places.resize(bodies.Size(), SweepStore::kNone);
     sweeps.swept.reserve(users);
-    sweeps.hits.reserve(2 * users);
+    for (std::vector<SweepHit>* list : {&sweeps.hits, &sweeps.keptHits}) list->reserve(2 * users);
     for (std::vector<uint32_t>* list : {&sweeps.active, &sweeps.next}) list->reserve(2 * users);
     for (WorkerFindings& findings : workers) {
         findings.sweepHits.reserve(users);
@@ -210,8 +211,10 @@ void Continuous(const StepContext& step, const PairStore& pairs, const SleepStor
     report.sweptBodies = fast;
     if (fast == 0) return;
     StartSweeps(step, bodies, sweeps);
+    sweeps.hits.clear();
     const bool usesPairs = sweeps.active.size() < fast;
-    for (int round = 0; round < kRounds && (!sweeps.active.empty() || (round == 0 && usesPairs)); ++round) {
+    const auto isDone = [&] { return sweeps.active.empty() && sweeps.hits.empty(); };
+    for (int round = 0; round < kRounds && ((round == 0 && usesPairs) || !isDone()); ++round) {
         if (round == 0 && usesPairs) CastPairs(view, pairs, sweeps, workers);
         CastActive(view, sweeps, workers);
         GatherHits(workers.findings, sweeps.hits);

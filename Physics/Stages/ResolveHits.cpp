@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 namespace fulcrum {
 
@@ -18,7 +19,7 @@ public:
         : step_(step), stores_(stores), bodies_(stores.bodies), sweeps_(sweeps), report_(report), isLast_(isLast) {}
 
     // In the order of their times. What each would do is found beforehand, in parallel: no body is hit twice in a
-    // round.
+    // round. A hit whose bodies may be reached before it by what an earlier one deflects waits for the next round.
     void ResolveAll(const StepWorkers& workers) {
         const std::vector<SweepHit>& hits = sweeps_.hits;
         struct Key {
@@ -34,15 +35,79 @@ public:
         });
         for (uint32_t i = 0; i < hits.size(); ++i) order[i] = {hits[i].time, hits[i].body, hits[i].otherCollider, i};
         std::sort(order.begin(), order.end(), [](const Key& a, const Key& b) { return a.Order() < b.Order(); });
-        for (const Key& key : order) Resolve(hits[key.index], impacts[key.index]);
+        const std::span<Reach> reaches = workers.scratch.Allocate<Reach>(hits.size());
+        for (uint32_t i = 0; i < hits.size(); ++i) reaches[i] = ReachOf(hits[order[i].index], impacts[order[i].index]);
+        const std::span<uint8_t> mayChange = workers.scratch.Allocate<uint8_t>(hits.size());
+        if (isLast_) std::fill(mayChange.begin(), mayChange.end(), uint8_t{0});
+        else FindReachable(reaches, mayChange, workers);
+        kept_.clear();
+        for (uint32_t i = 0; i < hits.size(); ++i)
+            Resolve(hits[order[i].index], impacts[order[i].index], mayChange[i] != 0);
+        sweeps_.hits.swap(kept_);
     }
 
 private:
-    void Resolve(const SweepHit& hit, const Impact& impact) {
+    // Where the bodies of a hit are at its time, and how fast they come and go.
+    struct Reach {
+        Position center = Position::Zero();
+        float radius = 0;             // m: a ball about both
+        float before = 0, after = 0;  // m per step, the faster of the two
+        float time = 1;
+
+        double Farthest() const { return double{radius} + double{std::max(before, after)}; }  // m, within the step
+    };
+
+    Reach ReachOf(const SweepHit& hit, const Impact& impact) const {
+        Reach reach{.center = hit.center, .time = hit.time};
+        const uint32_t bodies[2] = {hit.body, hit.other};
+        for (int s = 0; s < 2; ++s) {
+            if (!bodies_.CanMove(bodies[s])) continue;
+            const float away = Length(Between(hit.center, impact.poses[s].position));
+            reach.radius = std::max(reach.radius, away + bodies_.dynamics[bodies[s]].outerRadius);
+            reach.before = std::max(reach.before, Length(impact.sweeps[s].DisplacementRate()));
+            if (hit.time < 1)
+                reach.after = std::max(reach.after, Length(impact.rests[s].displacement) / (1 - hit.time));
+        }
+        return reach;
+    }
+
+    // Of hits in the order of their times: which may be changed by what an earlier one deflects. Along one axis only
+    // near ones are looked at.
+    static void FindReachable(std::span<const Reach> reaches, std::span<uint8_t> mayChange,
+                              const StepWorkers& workers) {
+        const std::span<uint32_t> along = workers.scratch.Allocate<uint32_t>(reaches.size());
+        double farthest = 0;
+        for (uint32_t i = 0; i < reaches.size(); ++i) {
+            along[i] = i;
+            farthest = std::max(farthest, reaches[i].Farthest());
+        }
+        const auto place = [&](uint32_t i) { return reaches[i].center.x(); };
+        std::sort(along.begin(), along.end(),
+                  [&](uint32_t a, uint32_t b) { return std::pair(place(a), a) < std::pair(place(b), b); });
+        workers.jobs.ParallelFor(static_cast<uint32_t>(reaches.size()), 16, [&](JobRange range) {
+            for (uint32_t i = range.begin; i < range.end; ++i) {
+                const double reach = reaches[i].Farthest() + farthest;
+                mayChange[i] = 0;
+                for (auto k = std::lower_bound(along.begin(), along.end(), place(i) - reach,
+                                               [&](uint32_t a, double least) { return place(a) < least; });
+                     k != along.end() && place(*k) <= place(i) + reach && !mayChange[i]; ++k)
+                    mayChange[i] = *k < i && MayMeet(reaches[*k], reaches[i]);
+            }
+        });
+    }
+
+    // Whether a body of the earlier hit may come to one of the later before that.
+    static bool MayMeet(const Reach& earlier, const Reach& later) {
+        const float most = earlier.radius + later.radius + (earlier.after + later.before) * (later.time - earlier.time);
+        return LengthSquared(Between(earlier.center, later.center)) < most * most;
+    }
+
+    void Resolve(const SweepHit& hit, const Impact& impact, bool mayChange) {
         const uint32_t places[2] = {PlaceOf(step_, bodies_, sweeps_, hit.body, &impact.sweeps[0]),
                                     PlaceOf(step_, bodies_, sweeps_, hit.other, &impact.sweeps[1])};
         if (Swept(places[0]).changed) return;  // it is in the next round, or waits
         const bool lostPartner = places[1] != SweepStore::kNone && Swept(places[1]).changed;
+        if (mayChange && !lostPartner) return kept_.push_back(hit);
         const bool isUndecided = hit.pointCount == 0 || lostPartner;
         if (hit.isBlocked || !impact.isFinite || (isLast_ && isUndecided)) {
             // As it came: the impulses of a hit that only one of the two feels would make energy.
@@ -137,6 +202,7 @@ private:
     const SleepStores& stores_;
     BodyStore& bodies_;
     SweepStore& sweeps_;
+    std::vector<SweepHit>& kept_ = sweeps_.keptHits;
     StepReport& report_;
     bool isLast_;
 };

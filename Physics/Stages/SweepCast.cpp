@@ -1,6 +1,7 @@
 #include <Fulcrum/Physics/Stages/SweepCast.h>
 
 #include <Fulcrum/Collision/BroadPhase/BoundsTreeCasts.h>
+#include <Fulcrum/Collision/Queries/Pieces.h>
 #include <Fulcrum/Collision/Queries/ShapeCast.h>
 #include <Fulcrum/Collision/Shapes/Plane.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
@@ -15,16 +16,20 @@ namespace fulcrum {
 namespace {
 
 // A body may move by half its thickness before it is cast, and a hit counts once the two would overlap by a quarter.
-// Where they close in by more than that in a step, by a twentieth: the solver is to push apart what overlaps, not to
-// stop what is as fast as that.
-constexpr float kFreeFraction = 0.5f, kDepthFraction = 0.25f, kFastDepthFraction = 0.05f;
+// Where they close in by more than that in a step, by a fifth of that: the solver is to push apart what overlaps, not
+// to stop what is as fast as that.
+constexpr float kFreeFraction = 0.5f, kDepthFraction = 0.25f, kFastDepthPart = 0.2f;
 // What a shape as large as a surface does with each triangle in turn depends on all of them. A cast that has looked at
 // so many is left to the contacts: its time must not grow with the square of the surface.
 constexpr size_t kMostTriangles = 20000;
 // What has hardly any thickness counts as that thick, in parts of its size.
 constexpr float kLeastThickness = 0.01f;
 
-float Thickness(const Shape& shape) { return std::max(shape.InnerRadius(), kLeastThickness * shape.OuterRadius()); }
+float Thickness(float innerRadius, float outerRadius) { return std::max(innerRadius, kLeastThickness * outerRadius); }
+// Of the thinner of two.
+float Thickness(const Shape& a, const Shape& b) {
+    return Thickness(std::min(a.InnerRadius(), b.InnerRadius()), std::min(a.OuterRadius(), b.OuterRadius()));
+}
 
 // Whether two balls whose centers are `apart` and close in by `motion` come within `reach` of each other.
 bool BallsMeet(const Vector3& apart, const Vector3& motion, float reach) {
@@ -83,14 +88,13 @@ public:
           own_(own),
           findings_(findings),
           best_(best),
-          isTurning_(own.sweep.turns && !own.sweep.turn.isZero(0)),
           isCast_(view.bodies.dynamics[own.sweep.body].continuous) {}
 
     bool RunAgainst(uint32_t collider, uint32_t other) {
         piece_ = &view_.colliders.shapes[collider];
         local_ = LocalOf(view_.bodies, view_.colliders, collider);
         shape_ = cast_ = static_cast<const ConvexShape*>(piece_->shape);
-        motion_ = {sweep_.start, sweep_.displacement, Vector3::Zero()};
+        motion_ = {sweep_.start, sweep_.displacement};
         CastAgainst(other, ShapeCaster(*shape_, motion_, view_.step.settings.narrowPhase));
         return found_;
     }
@@ -105,15 +109,17 @@ private:
         piece_ = &view_.colliders.shapes[collider];
         local_ = LocalOf(view_.bodies, view_.colliders, collider);
         shape_ = static_cast<const ConvexShape*>(piece_->shape);
-        motion_ = {sweep_.start, sweep_.displacement, isTurning_ ? sweep_.turn : Vector3(Vector3::Zero())};
+        motion_ = {sweep_.start, sweep_.displacement};
         const PlacedConvex placed(*shape_, local_);
         cast_ = piece_->offset ? &placed : shape_;
-        const ShapeCaster whole(*cast_, motion_, view_.step.settings.narrowPhase);
-        if (!whole.IsValid()) return;
-        const Bounds& about = whole.BoundsAboutCenter();
+        const ShapeCaster straight(*cast_, motion_, view_.step.settings.narrowPhase);
+        if (!straight.IsValid()) return;
+        const Bounds about = IsBall(*piece_) || sweep_.turn.isZero(0)
+                                 ? straight.BoundsAboutCenter()
+                                 : Inflated({Vector3::Zero(), Vector3::Zero()}, cast_->OuterRadius() * 1.000001f);
         const TreeRay ray(motion_.pose.position - view_.colliders.boundsOrigin + about.Center().cast<double>(),
                           motion_.displacement, about.HalfExtents());
-        const auto visit = [&](uint32_t other) { CastAgainst(other, whole); };
+        const auto visit = [&](uint32_t other) { CastAgainst(other, straight); };
         const uint32_t layers = view_.step.settings.layerCollides[view_.bodies.dynamics[sweep_.body].layer];
         // Dispersing bodies do not collide with dynamic ones; to visit all that they overlap would cost n^2.
         if ((layers & view_.colliders.movingLayers) && !view_.bodies.dynamics[sweep_.body].dispersing)
@@ -121,135 +127,130 @@ private:
         if (layers & view_.colliders.staticLayers) view_.colliders.staticTree.CastRay(ray, limit_, visit);
     }
 
-    void CastAgainst(uint32_t other, const ShapeCaster& whole, float from = 0) {
+    static bool IsBall(const ColliderShape& piece) { return piece.shape->Type() == ShapeType::Sphere && !piece.offset; }
+
+    // Whether the cast of a piece of the given radius about its body's center takes its turn into account: where points
+    // move by it by a part of the depth that counts, or always.
+    static bool TurnMatters(const ColliderShape& piece, const Sweep& sweep, float radius, float depth, float start) {
+        constexpr float kPart = 0.25f;
+        if (IsBall(piece) || sweep.turn.isZero(0)) return false;
+        return sweep.turns || Length(sweep.TurnRate()) * (1 - start) * radius > kPart * depth;
+    }
+
+    // `straight`: of the whole motion, without the turn.
+    void CastAgainst(uint32_t other, const ShapeCaster& straight, float from = 0) {
         const uint32_t body = view_.colliders.colliders[other].body;
         if (!MayCollide(view_, sweep_.body, body) || !ListenerAllows(view_, sweep_.body, body)) return;
         LazySweep theirs = LazySweepOf(view_.step, view_.bodies, sweeps_, body);
         const Sweep& theirSweep = theirs.sweep;
         const ColliderShape& piece = view_.colliders.shapes[other];
+        const RelativePose theirLocal = LocalOf(view_.bodies, view_.colliders, other);
+        const float theirRadius = piece.shape->OuterRadius() + (piece.offset ? Length(theirLocal.position) : 0.0f);
         const float start = std::max({sweep_.from, theirSweep.from, from});
-        const bool stays = theirSweep.displacement.isZero(0);
-        if (stays || start > theirSweep.from || piece.offset || isTurning_) FindTurn(view_.bodies, sweeps_, theirs);
-        if (stays && theirSweep.turn.isZero(0) && start == sweep_.from) {
-            if (!whole.IsValid()) return;
-            CastThrough(whole, motion_, other, theirs, theirSweep.start * LocalOf(view_.bodies, view_.colliders, other),
-                        start, whole);
-            return;
-        }
-        // Seen from the other, which keeps the rotation that it has at the start.
+        // Seen from the other.
         Pose at = start > theirSweep.from ? theirSweep.PoseAt(start) : theirSweep.start;
         Vector3 others = theirSweep.DisplacementRate() * (1 - start);
-        if (piece.offset) {
-            at = at * LocalOf(view_.bodies, view_.colliders, other);
-            others =
-                Between(at.position, (theirSweep.PoseAt(1) * LocalOf(view_.bodies, view_.colliders, other)).position);
-        }
         ShapeMotion relative = motion_;
         const float rest = sweep_.from < 1 ? (1 - start) / (1 - sweep_.from) : 0.0f;
-        if (isTurning_ && start > sweep_.from) relative.pose = sweep_.PoseAt(start);
-        else relative.pose.position += (motion_.displacement * (1 - rest)).cast<double>();
+        relative.pose.position += (motion_.displacement * (1 - rest)).cast<double>();
         relative.displacement = motion_.displacement * rest - others;
-        relative.turn = motion_.turn * rest;
-        if (!BallsMeet(Between(at.position, relative.pose.position), relative.displacement,
-                       cast_->OuterRadius() + piece.shape->OuterRadius()))
+        if (piece.shape->IsConvex() && !BallsMeet(Between(at.position, relative.pose.position), relative.displacement,
+                                                  cast_->OuterRadius() + theirRadius))
             return;
+        FindTurn(view_.bodies, sweeps_, own_);
+        FindTurn(view_.bodies, sweeps_, theirs);
+        const float depth = DepthThatCounts(*piece.shape);
+        isTurning_ = TurnMatters(*piece_, sweep_, cast_->OuterRadius(), depth, start);
+        const bool othersTurn = TurnMatters(piece, theirSweep, theirRadius, depth, start);
+        if (start > theirSweep.from) at.rotation = theirSweep.RotationAt(start);
+        if (isTurning_) {
+            if (start > sweep_.from) relative.pose.rotation = sweep_.RotationAt(start);
+            relative.turn = sweep_.turn * rest;
+        }
+        const Pieces pieces{other, theirs, start, isTurning_ || othersTurn};
+        if (othersTurn && piece.shape->IsConvex()) {
+            relative.turnOfOther = theirSweep.TurnRate() * (1 - start);
+            const PlacedConvex placed(static_cast<const ConvexShape&>(*piece.shape), theirLocal);
+            const ConvexShape& turning = piece.offset ? placed : static_cast<const ConvexShape&>(*piece.shape);
+            const ShapeCaster caster(*cast_, relative, view_.step.settings.narrowPhase);
+            if (caster.IsValid()) CastThrough(caster, relative, turning, at, pieces, straight);
+            return;
+        }
+        if (piece.offset) {
+            at = at * theirLocal;
+            // Along the chord of the way that it turns.
+            const Vector3 chord = Between(at.position, (theirSweep.PoseAt(1) * theirLocal).position);
+            relative.displacement = motion_.displacement * rest - chord;
+        }
+        if (!isTurning_ && theirSweep.displacement.isZero(0) && theirSweep.turn.isZero(0) && start == sweep_.from) {
+            if (straight.IsValid()) CastThrough(straight, motion_, *piece.shape, at, pieces, straight);
+            return;
+        }
         const ShapeCaster caster(*cast_, relative, view_.step.settings.narrowPhase);
-        if (caster.IsValid()) CastThrough(caster, relative, other, theirs, at, start, whole);
+        if (caster.IsValid()) CastThrough(caster, relative, *piece.shape, at, pieces, straight);
     }
 
-    // From the time `start` to the end.
-    void CastThrough(const ShapeCaster& caster, const ShapeMotion& motion, uint32_t other, LazySweep& theirs,
-                     const Pose& at, float start, const ShapeCaster& whole) {
-        const Sweep& theirSweep = theirs.sweep;
-        const Shape& shape = *view_.colliders.shapes[other].shape;
-        const float length = 1 - start;
+    // What a cast is against, from which time on, and whether one of the two turns so much that the cast follows it.
+    struct Pieces {
+        uint32_t other;
+        const LazySweep& theirs;
+        float start;
+        bool turn;
+    };
+
+    // From the time `start` to the end. `shape`, `at`: of the other.
+    void CastThrough(const ShapeCaster& caster, const ShapeMotion& motion, const Shape& shape, const Pose& at,
+                     const Pieces& pieces, const ShapeCaster& straight) {
+        const Sweep& theirSweep = pieces.theirs.sweep;
+        const float start = pieces.start, length = 1 - start;
         ShapeCastSettings settings;
-        settings.tolerance = 0.02f * Thickness(*shape_);
+        settings.tolerance = 0.08f * DepthThatCounts(*view_.colliders.shapes[pieces.other].shape);
         settings.measureDepth = false;
-        if (length > 0) settings.maxFraction = std::min(1.0f, std::max(0.0f, (best_.time - start) / length));
+        const auto limit = [&] { return length > 0 ? std::max(0.0f, (best_.time - start) / length) : 0.0f; };
+        if (length > 0) settings.maxFraction = std::min(1.0f, limit());
         float touchTime = 1;  // when it touched, but not so that it counts
-        bool asksForTurn = false;
         caster.Visit(shape, at, settings, [&](const ShapeHit& found) {
             if (triangles_ > kMostTriangles) return 0.0f;
-            FindTurn(view_.bodies, sweeps_, theirs);
-            SweepHit hit = HitOf(other, theirSweep);
+            SweepHit hit = HitOf(pieces, theirSweep);
             hit.time = start + found.fraction * length;
             if (ComesBefore(hit)) {
-                const bool counts = Counts(motion, found, theirSweep, length, hit);
-                if (counts && !isTurning_ && DoesTurn(shape) &&
-                    !ApproachesTurning(hit, theirSweep, DepthThatCounts(shape))) {
-                    asksForTurn = true;
-                    return -1.0f;
-                }
-                if (counts && Behaves(hit)) Take(hit);
+                if (Counts(motion, found, theirSweep, length, hit) && Behaves(hit)) Take(hit);
                 else touchTime = std::min(touchTime, hit.time);
             }
-            return length > 0 ? (best_.time - start) / length : 0.0f;
+            return limit();
         });
-        if (asksForTurn) return CastTurning(other);
         // Without a turn what does not push now never will.
-        if (isTurning_ && touchTime < best_.time) Follow(motion, theirSweep, other, length, touchTime, whole);
+        if (pieces.turn && touchTime < best_.time) Follow(motion, pieces, touchTime, straight);
     }
 
-    // Whether the turn makes another hit of one that was found without it: where it moves points by a part of the depth
-    // that counts.
-    bool DoesTurn(const Shape& other) {
-        constexpr float kPart = 0.25f;
-        if (shape_->Type() == ShapeType::Sphere) return false;
-        FindTurn(view_.bodies, sweeps_, own_);
-        return Length(sweep_.turn) * shape_->OuterRadius() > kPart * DepthThatCounts(other);
-    }
-
-    // Whether the points of a hit that was found without the turn come so near with it, too, in what is left of the
-    // step.
-    bool ApproachesTurning(const SweepHit& hit, const Sweep& theirSweep, float depth) const {
-        const Position own = sweep_.PositionAt(hit.time), others = theirSweep.PositionAt(hit.time);
-        float speed = 0;
-        for (int i = 0; i < hit.pointCount; ++i) {
-            const Vector3 v = VelocityAt(own + hit.arms[i].cast<double>(), own,
-                                         sweep_.DisplacementRate() - theirSweep.DisplacementRate(), theirSweep, others);
-            speed = std::max(speed, Dot<float>(hit.normal, Vector3(v + Cross<float>(sweep_.TurnRate(), hit.arms[i]))));
-        }
-        return speed * (1 - hit.time) > depth;
-    }
-
-    // What is cast without its turn, and would hit, but not so with it: a rod that topples about its end comes down on
-    // it with all its speed, but for its turn.
-    void CastTurning(uint32_t other) {
-        isTurning_ = true;
-        motion_.turn = sweep_.turn;
-        CastAgainst(other, ShapeCaster(*cast_, motion_, view_.step.settings.narrowPhase));
-        motion_.turn.setZero();
-        isTurning_ = false;
-    }
-
-    SweepHit HitOf(uint32_t other, const Sweep& theirSweep) const {
+    SweepHit HitOf(const Pieces& pieces, const Sweep& theirSweep) const {
         SweepHit hit;
         hit.body = sweep_.body;
         hit.other = theirSweep.body;
-        hit.otherCollider = other;
+        hit.otherCollider = pieces.other;
         hit.isBlocked = !isCast_ && !view_.bodies.dynamics[theirSweep.body].continuous;
         return hit;
     }
 
     // Steps along with what turns while it touches, by so little that it cannot come through, until it pushes or is
     // free.
-    void Follow(const ShapeMotion& motion, const Sweep& theirSweep, uint32_t other, float length, float time,
-                const ShapeCaster& whole) {
+    void Follow(const ShapeMotion& motion, const Pieces& pieces, float time, const ShapeCaster& straight) {
         constexpr int kMostSteps = 64, kMostRestarts = 8;
-        const Shape& shape = *view_.colliders.shapes[other].shape;
+        const Sweep& theirSweep = pieces.theirs.sweep;
+        const Shape& shape = *view_.colliders.shapes[pieces.other].shape;
+        const float length = 1 - pieces.start;
         const Vector3 linear = motion.displacement * (1 / length);
         const float depth = DepthThatCounts(shape);
         const float speed = Length(linear) + Length(sweep_.TurnRate()) * cast_->OuterRadius() +
                             Length(theirSweep.TurnRate()) * shape.OuterRadius();
-        SweepHit hit = HitOf(other, theirSweep);
+        SweepHit hit = HitOf(pieces, theirSweep);
         for (int i = 0; i < kMostSteps && triangles_ <= kMostTriangles; ++i) {
             time += depth / speed;
             if (!(time < std::min(1.0f, best_.time))) return;
             const Push push = FindPoints(motion, linear, theirSweep, time, depth, hit);
             hit.time = time;
-            if (hit.pointCount == 0 && restarts_++ < kMostRestarts) return CastAgainst(other, whole, time);
-            if (!(push.speed > 0 && push.depth > depth)) continue;
+            if (hit.pointCount == 0 && restarts_++ < kMostRestarts) return CastAgainst(pieces.other, straight, time);
+            if (!(push.speed > 0 && push.depth > (push.speed > depth ? kFastDepthPart * depth : depth))) continue;
             if (Behaves(hit)) Take(hit);
             return;
         }
@@ -290,8 +291,7 @@ private:
 
     // What is cast only since it was hit leaves to the solver whatever it comes to touch.
     float DepthThatCounts(const Shape& other) const {
-        const float depth =
-            kDepthFraction * (other.IsConvex() ? std::min(Thickness(*shape_), Thickness(other)) : Thickness(*shape_));
+        const float depth = kDepthFraction * Thickness(*shape_, other.IsConvex() ? other : *shape_);
         return isCast_ ? depth : std::min(depth, 0.5f * view_.step.settings.speculativeDistance);
     }
 
@@ -330,7 +330,7 @@ private:
             const Position own = sweep_.PositionAt(hit.time), others = theirSweep.PositionAt(hit.time);
             approach = -Dot<float>(found.normal, VelocityAt(found.position, own, linear, theirSweep, others));
         }
-        if (approach > depth) depth *= kFastDepthFraction / kDepthFraction;
+        if (approach > depth) depth *= kFastDepthPart;
         if (!(approach * left > depth)) return false;
         return FindPoints(motion, linear, theirSweep, std::min(1.0f, hit.time + depth / approach), depth, hit).speed *
                    left >
@@ -451,8 +451,8 @@ private:
     const Sweep& sweep_ = own_.sweep;
     WorkerFindings& findings_;
     SweepHit& best_;
-    bool isTurning_;
-    const bool isCast_;  // else only since it was hit, in this step
+    bool isTurning_ = false;  // whether the body's turn matters to the cast at hand
+    const bool isCast_;       // else only since it was hit, in this step
     bool found_ = false;
     FoundPoints foundPoints_[2];
     int nextFoundPoints_ = 0;
@@ -468,9 +468,7 @@ private:
 
 }  // namespace
 
-float FreeMotion(float innerRadius, float outerRadius) {
-    return kFreeFraction * std::max(innerRadius, kLeastThickness * outerRadius);
-}
+float FreeMotion(float innerRadius, float outerRadius) { return kFreeFraction * Thickness(innerRadius, outerRadius); }
 
 bool IsCastTurning(const BodyStore& bodies, uint32_t body) {
     const BodyCold& cold = bodies.cold[body];

@@ -85,15 +85,16 @@ struct SweepStore {
     std::vector<Sweep> ended;            // sweeps that a hit has ended, in the order of the hits
     std::vector<float> endedAt;          // times
     std::vector<uint32_t> active, next;  // indices into `swept`, of this round and the next
-    std::vector<SweepHit> hits;
+    std::vector<SweepHit> hits;          // of a round; afterwards those that wait for the next
+    std::vector<SweepHit> keptHits;      // room for those
 
     // Whether the body's start is that of this step: it was awake as it began.
     bool IsOfStep(uint32_t body, uint64_t step) const { return body < starts.size() && starts[body].step == step; }
 };
 
 inline size_t HeapBytes(const SweepStore& store) {
-    const auto& [isKept, dt, starts, searchBy, swept, places, ended, endedAt, active, next, hits] = store;
-    return HeapBytes(isKept, dt, starts, searchBy, swept, places, ended, endedAt, active, next, hits);
+    const auto& [isKept, dt, starts, searchBy, swept, places, ended, endedAt, active, next, hits, keptHits] = store;
+    return HeapBytes(isKept, dt, starts, searchBy, swept, places, ended, endedAt, active, next, hits, keptHits);
 }
 
 }  // namespace fulcrum

@@ -15,7 +15,7 @@ namespace {
 constexpr uint64_t kGoldenHash = 0x897b09c2a9da3e7bull;
 constexpr uint64_t kGoldenHashOfJoints = 0xc7cceb2a38f2e8ecull;
 constexpr uint64_t kGoldenHashOfSurfaces = 0x36c6bd6db97a9d86ull;
-constexpr uint64_t kGoldenHashOfFastBodies = 0x5eb4414257c55498ull;
+constexpr uint64_t kGoldenHashOfFastBodies = 0x89cdbd63fae6c1aeull;
 
 std::string Hex(uint64_t number) {
     char text[24];

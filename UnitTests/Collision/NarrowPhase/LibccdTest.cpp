@@ -259,8 +259,7 @@ TEST(Libccd, CastsHitWhereTheOwnCastsHit) {
                 }
                 // Those that only graze may be a hit for one, by the tolerance.
                 const auto gapAt = [&](double fraction) {
-                    return MeasureConvex(*a.shape, *b.shape,
-                                         {motion.PositionAt(fraction).cast<float>(), motion.RotationAt(fraction)},
+                    return MeasureConvex(*a.shape, *b.shape, motion.At(fraction).bInA,
                                          std::numeric_limits<float>::infinity())
                                .separation -
                            limits.separation;
@@ -282,8 +281,7 @@ TEST(Libccd, CastsHitWhereTheOwnCastsHit) {
                 EXPECT_GT(gapAt(0.99 * first), -slack);
                 EXPECT_NEAR(Length(is.normal), 1, 1e-5);
                 // Of the whole shapes both surfaces pass the point, along the normal.
-                const SupportPair pair(*a.shape, *b.shape,
-                                       {motion.PositionAt(is.fraction).cast<float>(), motion.RotationAt(is.fraction)});
+                const SupportPair pair(*a.shape, *b.shape, motion.At(is.fraction).bInA);
                 EXPECT_GT(pair.SeparationAlong(is.normal) - pair.RadiusSum() - limits.separation, -slack)
                     << a.name << " " << b.name << " " << i;
             }

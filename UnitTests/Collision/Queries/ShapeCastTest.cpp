@@ -14,28 +14,38 @@
 namespace fulcrum::testing {
 namespace {
 
-RelativePose PoseAt(const ShapeMotion& motion, double fraction) {
-    const Vector3 turn = motion.turn * static_cast<float>(fraction);
-    return {(motion.pose.position + motion.displacement.cast<double>() * fraction).cast<float>(),
-            Normalized(RotationFromVector(turn) * motion.pose.rotation)};
+// Of the other shape, which is at the origin.
+RelativePose OtherAt(const ShapeMotion& motion, double fraction) {
+    return {Vector3::Zero(), RotationFromVector(Vector3(motion.turnOfOther * static_cast<float>(fraction)))};
 }
 
-ShapeMotion MotionNear(RandomPoses& random, bool turns) {
+// In the frame of the other.
+RelativePose PoseAt(const ShapeMotion& motion, double fraction) {
+    const Vector3 turn = motion.turn * static_cast<float>(fraction);
+    const RelativePose pose{(motion.pose.position + motion.displacement.cast<double>() * fraction).cast<float>(),
+                            Normalized(RotationFromVector(turn) * motion.pose.rotation)};
+    return motion.turnOfOther.isZero(0) ? pose : Inverse(OtherAt(motion, fraction)) * pose;
+}
+
+enum class Turning { None, OfTheCast, OfBoth };
+
+ShapeMotion MotionNear(RandomPoses& random, Turning turning) {
     const Vector3 target = random.InCube(), from = random.Direction() * random.Between(1.0f, 4);
     ShapeMotion motion;
     motion.pose = {from.cast<double>(), random.Rotation()};
     motion.displacement = (target - from) * random.Between(0.5f, 2);
-    if (turns) motion.turn = random.InCube() * 4;
+    if (turning != Turning::None) motion.turn = random.InCube() * 4;
+    if (turning == Turning::OfBoth) motion.turnOfOther = random.InCube() * 4;
     return motion;
 }
 
-void ExpectFirstTouch(const std::vector<NamedShape>& shapes, bool turns, int casesPerPair, double touch) {
-    RandomPoses random(turns ? 12 : 11);
+void ExpectFirstTouch(const std::vector<NamedShape>& shapes, Turning turning, int casesPerPair, double touch) {
+    RandomPoses random(turning == Turning::None ? 11 : 12);
     int hits = 0, early = 0, cases = 0;
     for (const NamedShape& a : shapes) {
         for (const NamedShape& b : shapes) {
             for (int i = 0; i < casesPerPair; ++i, ++cases) {
-                const ShapeMotion motion = MotionNear(random, turns);
+                const ShapeMotion motion = MotionNear(random, turning);
                 const ShapeCaster caster(*b.shape, motion);
                 ShapeHit hit;
                 const bool found = caster.CastClosest(*a.shape, {}, {}, hit);
@@ -64,9 +74,11 @@ void ExpectFirstTouch(const std::vector<NamedShape>& shapes, bool turns, int cas
                 EXPECT_LT(s, touch) << a.name << " " << b.name << " " << i;
                 EXPECT_NEAR(Length(hit.normal), 1, 1e-5f);
                 // The normal is of a plane between the two; the point lies on both.
-                EXPECT_GT(SeparationAlong(*a.shape, *b.shape, PoseAt(motion, end), hit.normal), -2 * touch)
+                const RelativePose other = OtherAt(motion, end);
+                const Vector3 normal = InverseRotate(other.rotation, hit.normal);
+                EXPECT_GT(SeparationAlong(*a.shape, *b.shape, PoseAt(motion, end), normal), -2 * touch)
                     << a.name << " " << b.name << " " << i;
-                const Vector3 point = hit.position.cast<float>();
+                const Vector3 point = other.InverseTransform(hit.position.cast<float>());
                 EXPECT_NEAR(MeasureConvex(*a.shape, PointCore(), {point, {}}, 1e6f).separation, 0, touch);
                 EXPECT_NEAR(
                     MeasureConvex(*b.shape, PointCore(), {PoseAt(motion, end).InverseTransform(point), {}}, 1e6f)
@@ -82,18 +94,22 @@ void ExpectFirstTouch(const std::vector<NamedShape>& shapes, bool turns, int cas
 }
 
 // Poses and cores of 3 m in float: 3e-7 m a rounding, and the fraction's own of 6e-8 along up to 10 m.
-TEST(ShapeCast, MovesUpToTheFirstTouch) { ExpectFirstTouch(QueryShapes(), false, Cases(2100), 1e-5); }
+TEST(ShapeCast, MovesUpToTheFirstTouch) { ExpectFirstTouch(QueryShapes(), Turning::None, Cases(2100), 1e-5); }
 
 // The search ends within 2e-5 of the smaller and 4e-6 of the larger shape's size, 3 m here.
-TEST(ShapeCast, TurnsUpToTheFirstTouch) { ExpectFirstTouch(QueryShapes(), true, Cases(2100), 8e-5); }
+TEST(ShapeCast, TurnsUpToTheFirstTouch) { ExpectFirstTouch(QueryShapes(), Turning::OfTheCast, Cases(2100), 8e-5); }
+TEST(ShapeCast, TurnsUpToTheFirstTouchOfWhatTurns) {
+    ExpectFirstTouch(QueryShapes(), Turning::OfBoth, Cases(2100), 8e-5);
+}
 
 TEST(ShapeCast, CurvedShapesTouchToo) {
     const std::vector<NamedShape> shapes = {
         {"ellipsoid", std::make_shared<RoundedEllipsoid>(Vector3(0.3f, 0.6f, 0.9f))},
         {"disc", std::make_shared<RoundedEllipsoid>(Vector3(0.5f, 0.01f, 0.5f))},
         {"soft", std::make_shared<RoundedEllipsoid>(Vector3(0.2f, 0.3f, 0.1f), 0.2f)}};
-    ExpectFirstTouch(shapes, false, 1000, 8e-5);
-    ExpectFirstTouch(shapes, true, 300, 8e-5);
+    ExpectFirstTouch(shapes, Turning::None, 1000, 8e-5);
+    ExpectFirstTouch(shapes, Turning::OfTheCast, 300, 8e-5);
+    ExpectFirstTouch(shapes, Turning::OfBoth, 300, 8e-5);
 }
 
 TEST(ShapeCast, FastShapesDoNotPassThinWalls) {
@@ -123,7 +139,7 @@ TEST(ShapeCast, SpheresMeetWhenTheirCentersAreThatFarApart) {
     RandomPoses random(14);
     const ConvexPtr a = MakeSphere(0.7f), b = MakeSphere(0.3f);
     for (int i = 0; i < 20000; ++i) {
-        const ShapeMotion motion = MotionNear(random, false);
+        const ShapeMotion motion = MotionNear(random, Turning::None);
         const Position p = motion.pose.position, d = motion.displacement.cast<double>();
         const double dd = d.squaredNorm(), pd = p.dot(d), c = p.squaredNorm() - 1, root = pd * pd - dd * c;
         const double expected = (-pd - std::sqrt(std::max(root, 0.0))) / dd;
@@ -146,7 +162,7 @@ TEST(ShapeCast, CompoundsAndSurfacesAreHitWhereTheirPartsAre) {
     int hits = 0;
     const std::vector<NamedShape> shapes = QueryShapes();
     for (int i = 0; i < 3000; ++i) {
-        ShapeMotion motion = MotionNear(random, i % 3 == 0);
+        ShapeMotion motion = MotionNear(random, i % 3 == 0 ? Turning::OfTheCast : Turning::None);
         motion.pose.position *= 1.5;
         const ConvexShape& b = *shapes[static_cast<size_t>(i) % shapes.size()].shape;
         const ShapeCaster caster(b, motion);
@@ -210,7 +226,7 @@ TEST(ShapeCast, MeetsAPlaneAsItMeetsALargeBox) {
     const ConvexPtr ground = MakeBox(Vector3(50, 1, 50));
     for (const NamedShape& b : QueryShapes()) {
         for (int i = 0; i < 400; ++i) {
-            ShapeMotion motion = MotionNear(random, i % 2 == 0);
+            ShapeMotion motion = MotionNear(random, i % 2 == 0 ? Turning::OfTheCast : Turning::None);
             motion.pose.position.y() = random.Between(1, 6);
             ShapeHit onBox;
             const bool found = ShapeCaster(*b.shape, motion).CastClosest(*ground, {}, {}, onBox);
