@@ -166,7 +166,7 @@ Polyhedron CoreOf(const ConvexShape& shape, PolyhedronStorage& storage) {
         case ShapeType::Plane:
         case ShapeType::Empty: break;
     }
-    FULCRUM_ASSERT(!"the shape has no polyhedral core");
+    FULCRUM_ASSERT(false && "the shape has no polyhedral core");
     return {};
 }
 

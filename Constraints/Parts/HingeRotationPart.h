@@ -1,8 +1,8 @@
 // Two rows that lock the rotation of two bodies but about one axis: hinges, wheels. Called by joints, which gather the
 // bodies' lanes before and scatter them after. One thread per part.
 //
-// Source: D. Chappuis, "Constraints Derivation for Rigid Body Simulation in 3D" (hinge joint); the way back from large
-// errors is our own.
+// Source: D. Chappuis, "Constraints Derivation for Rigid Body Simulation in 3D" (hinge joint);
+// the way back from large errors is our own.
 //   a1      hinge axis, moving with body 1        b2, c2  axes that move with body 2; a2 = b2 x c2 is its hinge axis
 //   theta   angle between a1 and a2, 0..pi
 //   Constraint:  C = (a1 . b2, a1 . c2) theta / sin(theta)

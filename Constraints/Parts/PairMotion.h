@@ -2,8 +2,7 @@
 // the block parts, called from their solves. Sides, of rotations, as in BodySide.h. Free functions, no state.
 //
 //   r1, r2  from the centers of mass to the point at which an impulse acts on each body (the same point, where momentum
-//   is
-//           to be kept)
+//           is to be kept)
 //   Point:    J v = v2 + w2 x r2 - v1 - w1 x r1,  K = 1/m1 + 1/m2 + sum of [r]x I^-1 [r]x^T
 //   Angular:  J v = w2 - w1,                      K = I1^-1 + I2^-1
 // Impulses are subtracted, with zeros where `applied` is false: that leaves every bit of an inactive lane (ZeroUnless).

@@ -78,7 +78,7 @@ std::vector<PosedPair> PosePairs(const ConvexShape& a, const ConvexShape& b, Pla
         Vector3 direction = random.Direction();
         pose.rotation = random.Rotation();
         if (placement == Placement::Aligned || placement == Placement::FaceContact) {  // B stands on A
-            direction = Normalized(Vector3(random.Between(-0.3f, 0.3f), 1, random.Between(-0.3f, 0.3f)));
+            direction = Normalized(Vector3{random.Between(-0.3f, 0.3f), 1, random.Between(-0.3f, 0.3f)});
             const float angle = placement == Placement::Aligned ? 0 : random.Between(-3, 3);  // about the vertical
             pose.rotation = {0, std::sin(angle / 2), 0, std::cos(angle / 2)};
         }

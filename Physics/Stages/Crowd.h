@@ -3,8 +3,8 @@
 // far apart. So a body that deeply overlaps many others disperses: for some time it does not collide with dynamic
 // bodies, gravity does not act on it, and on top of its own velocity it moves, at a bounded speed, to a place of its
 // own in a ball that has room for all, or in what floor and walls leave of that ball. Those that started together end
-// together, when nearly all of them overlap no other. From then on contacts separate what is left, at
-// depenetrationSpeed.
+// together, when nearly all of them overlap no other. From then on contacts separate what is left,
+// at depenetrationSpeed.
 //   CrowdOverlaps.h  which bodies overlap many others
 //   CrowdPlaces.h    where bodies disperse to
 //   Crowd.h          start, motion and end of dispersing
@@ -26,8 +26,8 @@ void StartDispersing(const StepContext& step, const ColliderStore& colliders, co
 // As the step begins, before bounds: dispersing bodies get the velocity with which they move in this step.
 void PushDispersing(const StepContext& step, const ColliderStore& colliders, const PairStore& pairs, BodyStore& bodies,
                     std::vector<DispersingBody>& all, JobSystem& jobs);
-// As it ends, for a dispersing body: its velocity v, m/s, without that push. For different bodies from any number of
-// threads.
+// As it ends, for a dispersing body: its velocity v, m/s, without that push.
+// For different bodies from any number of threads.
 Vector3 OwnVelocity(const BodyStore& bodies, std::span<const DispersingBody> all, uint32_t body, const Vector3& v,
                     float dt);
 

@@ -385,8 +385,8 @@ TEST(Query, AnyThreadAsksWhileAnotherChangesAndSteps) {
     for (int step = 0; step < 60 || asked < 30; ++step) {
         ASSERT_TRUE(crowd.world.System().Update(kStep));
         const size_t at = static_cast<size_t>(random.Between(0, 149.9f));
-        ASSERT_TRUE(
-            crowd.world.Bodies().SetPose(crowd.ids[at], random.InCube().cast<double>() * 10, random.Rotation()));
+        const Position place = random.InCube().cast<double>() * 10;
+        ASSERT_TRUE(crowd.world.Bodies().SetPose(crowd.ids[at], place, random.Rotation()));
         if (step % 7 == 0) {
             ASSERT_TRUE(crowd.world.Bodies().Remove(crowd.ids[at]));
             crowd.ids[at] =

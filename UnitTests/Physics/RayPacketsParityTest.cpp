@@ -110,16 +110,18 @@ std::vector<std::vector<Ray>> AllRays(const Landscape& land, int count) {
         const float right = static_cast<float>(i % 60) * 0.8f - 24,
                     down = 25 * static_cast<float>(i / 60 * 60) / static_cast<float>(count);
         kinds[2].push_back(land.At(Vector3(1, 12, -35), Vector3(right, -down, 60)));
-        kinds[3].push_back(land.At(overGround(random.Between(-8, 15)), random.InCube() * 30));
+        const Vector3 above = overGround(random.Between(-8, 15));
+        kinds[3].push_back(land.At(above, random.InCube() * 30));
         // Along axes, and on the planes where tiles, cells and boxes meet.
         Vector3 axis = Vector3::Zero();
         axis[i % 3] = i % 2 == 0 ? 40.0f : -40.0f;
-        const Vector3 grid(std::floor(random.Between(-20, 20)), 5.25f, std::floor(random.Between(-20, 20)));
+        const Vector3 grid{std::floor(random.Between(-20, 20)), 5.25f, std::floor(random.Between(-20, 20))};
         kinds[4].push_back(land.At(grid - axis * 0.5f, axis));
         // Nearly the same ray; very long and very short ones; those that end where they hit.
-        kinds[5].push_back(
-            land.At(Vector3(0.1f, 9, 0.2f) + random.InCube() * 1e-4f, Vector3(0, -10, 0) + random.InCube() * 1e-4f));
-        kinds[6].push_back(land.At(overGround(10), random.InCube() * (i % 2 == 0 ? 1e9f : 1e-3f)));
+        const Vector3 nearly(Vector3(0.1f, 9, 0.2f) + random.InCube() * 1e-4f);
+        kinds[5].push_back(land.At(nearly, Vector3(0, -10, 0) + random.InCube() * 1e-4f));
+        const Vector3 any = overGround(10);
+        kinds[6].push_back(land.At(any, random.InCube() * (i % 2 == 0 ? 1e9f : 1e-3f)));
         const float bad[] = {kNan, kInfinity, -kInfinity, 0.0f, 1e30f, -1e-30f};
         Ray odd = land.At(overGround(20), Vector3(0, -30, 0));
         if (i % 3 == 0) odd.displacement[i % 2] = bad[i % 6];

@@ -27,7 +27,10 @@ BodySettings RandomBody(Values& values) {
     settings.angularVelocity = values.Speeds(values.Chance(0.2f) ? 50.0f : 3.0f);
     settings.density = values.Chance(0.8f) ? 1000.0f : values.Mass() * 100;
     if (values.Chance(0.2f)) settings.mass = values.Mass();
-    if (values.Chance(0.1f)) settings.inertia = Vector3(values.Mass(), values.Mass(), values.Mass());
+    if (values.Chance(0.1f)) {
+        const float z = values.Mass(), y = values.Mass();
+        settings.inertia = Vector3(values.Mass(), y, z);
+    }
     settings.material = RandomMaterial(values);
     if (values.Chance(0.2f))
         settings.linearDamping = values.Setting(0, 1), settings.angularDamping = values.Setting(0, 1);
@@ -74,41 +77,53 @@ void Play(Twin& twin, const CallTargets& targets, Outcome& outcome, const Change
     Note(change(twin.system->Bodies(), twin.bodies[targets.bodyA]), outcome);
 }
 
+// Statements, the last of which returns the call's status. Each draws at most one argument: compilers differ in the
+// order in which they evaluate the arguments of a call.
 #define FULCRUM_BODY_CALL(name, ...)                                                                       \
     void name(Twin& twin, [[maybe_unused]] Values& values, const CallTargets& targets, Outcome& outcome) { \
-        Play(twin, targets, outcome, [&](BodyInterface& bodies, BodyId id) { return __VA_ARGS__; });       \
+        Play(twin, targets, outcome, [&](BodyInterface& bodies, BodyId id) { __VA_ARGS__; });              \
     }
 
-FULCRUM_BODY_CALL(Remove, bodies.Remove(id))
-FULCRUM_BODY_CALL(SetPose, bodies.SetPose(id, values.Place(3), values.Rotation()))
-FULCRUM_BODY_CALL(MoveKinematic, bodies.MoveKinematic(id, values.Place(2), values.Rotation(), values.Setting(0.01f, 1)))
-FULCRUM_BODY_CALL(SetVelocity, bodies.SetVelocity(id, values.Speeds(10), values.Speeds(10)))
-FULCRUM_BODY_CALL(AddForce, bodies.AddForce(id, values.Forces(3000)))
-FULCRUM_BODY_CALL(AddForceAt, bodies.AddForceAt(id, values.Forces(3000), values.Place(2)))
-FULCRUM_BODY_CALL(AddTorque, bodies.AddTorque(id, values.Forces(500)))
-FULCRUM_BODY_CALL(AddImpulse, bodies.AddImpulse(id, values.Forces(300)))
-FULCRUM_BODY_CALL(AddImpulseAt, bodies.AddImpulseAt(id, values.Forces(100), values.Place(2)))
-FULCRUM_BODY_CALL(AddAngularImpulse, bodies.AddAngularImpulse(id, values.Forces(30)))
-FULCRUM_BODY_CALL(SetMaterial, bodies.SetMaterial(id, RandomMaterial(values)))
-FULCRUM_BODY_CALL(SetCategoryAndMask, bodies.SetCategoryAndMask(id, values.Below(4), values.Below(4)))
-FULCRUM_BODY_CALL(SetGravityFactor, bodies.SetGravityFactor(id, values.Setting(-1, 2)))
-FULCRUM_BODY_CALL(SetContinuous, bodies.SetContinuous(id, values.One<ContinuousCollision>(3)))
-FULCRUM_BODY_CALL(SetSensor, bodies.SetSensor(id, values.Chance(0.4f)))
+FULCRUM_BODY_CALL(Remove, return bodies.Remove(id))
+FULCRUM_BODY_CALL(SetPose, const Quaternion rotation = values.Rotation();
+                  return bodies.SetPose(id, values.Place(3), rotation))
+FULCRUM_BODY_CALL(MoveKinematic, const float dt = values.Setting(0.01f, 1);
+                  const Quaternion rotation = values.Rotation();
+                  return bodies.MoveKinematic(id, values.Place(2), rotation, dt))
+FULCRUM_BODY_CALL(SetVelocity, const Vector3 angular = values.Speeds(10);
+                  return bodies.SetVelocity(id, values.Speeds(10), angular))
+FULCRUM_BODY_CALL(AddForce, return bodies.AddForce(id, values.Forces(3000)))
+FULCRUM_BODY_CALL(AddForceAt, const Position point = values.Place(2);
+                  return bodies.AddForceAt(id, values.Forces(3000), point))
+FULCRUM_BODY_CALL(AddTorque, return bodies.AddTorque(id, values.Forces(500)))
+FULCRUM_BODY_CALL(AddImpulse, return bodies.AddImpulse(id, values.Forces(300)))
+FULCRUM_BODY_CALL(AddImpulseAt, const Position point = values.Place(2);
+                  return bodies.AddImpulseAt(id, values.Forces(100), point))
+FULCRUM_BODY_CALL(AddAngularImpulse, return bodies.AddAngularImpulse(id, values.Forces(30)))
+FULCRUM_BODY_CALL(SetMaterial, return bodies.SetMaterial(id, RandomMaterial(values)))
+FULCRUM_BODY_CALL(SetCategoryAndMask, const uint32_t mask = values.Below(4);
+                  return bodies.SetCategoryAndMask(id, values.Below(4), mask))
+FULCRUM_BODY_CALL(SetGravityFactor, return bodies.SetGravityFactor(id, values.Setting(-1, 2)))
+FULCRUM_BODY_CALL(SetContinuous, return bodies.SetContinuous(id, values.One<ContinuousCollision>(3)))
+FULCRUM_BODY_CALL(SetSensor, return bodies.SetSensor(id, values.Chance(0.4f)))
 FULCRUM_BODY_CALL(SetSensorSees,
-                  bodies.SetSensorSees(id, static_cast<SensorSees>(values.Below(values.IsOdd() ? 256 : 32))))
-FULCRUM_BODY_CALL(SetSensorReportsStay, bodies.SetSensorReportsStay(id, values.Chance(0.5f)))
-FULCRUM_BODY_CALL(Wake, bodies.Wake(id))
-FULCRUM_BODY_CALL(Sleep, bodies.Sleep(id))
-FULCRUM_BODY_CALL(SetShape, bodies.SetShape(id, values.Chance(0.8f) ? RandomSolid(values) : RandomShape(values),
-                                            values.One<MassUpdate>(2)))
-FULCRUM_BODY_CALL(SetShapeOfAnother, bodies.SetShape(id, bodies.GetShape(twin.bodies[targets.bodyB])))
-FULCRUM_BODY_CALL(AddChild, bodies.AddChild(id, {RandomConvex(values), values.Offset(0.5f), values.Rotation(),
-                                                 values.Setting(0.1f, 3)}))
-FULCRUM_BODY_CALL(SetChild, bodies.SetChild(id, {values.Below(4), values.Below(2)},
-                                            {RandomConvex(values), values.Offset(0.5f), values.Rotation()}))
-FULCRUM_BODY_CALL(MoveChild, bodies.MoveChild(id, {values.Below(4), values.Below(2)}, values.Offset(0.5f),
-                                              values.Rotation(), values.One<MassUpdate>(2)))
-FULCRUM_BODY_CALL(RemoveChild, bodies.RemoveChild(id, {values.Below(4), values.Below(2)}, values.One<MassUpdate>(2)))
+                  return bodies.SetSensorSees(id, static_cast<SensorSees>(values.Below(values.IsOdd() ? 256 : 32))))
+FULCRUM_BODY_CALL(SetSensorReportsStay, return bodies.SetSensorReportsStay(id, values.Chance(0.5f)))
+FULCRUM_BODY_CALL(Wake, return bodies.Wake(id))
+FULCRUM_BODY_CALL(Sleep, return bodies.Sleep(id))
+FULCRUM_BODY_CALL(SetShape, const MassUpdate update = values.One<MassUpdate>(2);
+                  return bodies.SetShape(id, values.Chance(0.8f) ? RandomSolid(values) : RandomShape(values), update))
+FULCRUM_BODY_CALL(SetShapeOfAnother, return bodies.SetShape(id, bodies.GetShape(twin.bodies[targets.bodyB])))
+FULCRUM_BODY_CALL(AddChild, return bodies.AddChild(id, {RandomConvex(values), values.Offset(0.5f), values.Rotation(),
+                                                        values.Setting(0.1f, 3)}))
+FULCRUM_BODY_CALL(SetChild, const CompoundShape::ChildSettings child{RandomConvex(values), values.Offset(0.5f),
+                                                                     values.Rotation()};
+                  return bodies.SetChild(id, {values.Below(4), values.Below(2)}, child))
+FULCRUM_BODY_CALL(MoveChild, const MassUpdate update = values.One<MassUpdate>(2);
+                  const Quaternion rotation = values.Rotation(); const Vector3 place = values.Offset(0.5f);
+                  return bodies.MoveChild(id, {values.Below(4), values.Below(2)}, place, rotation, update))
+FULCRUM_BODY_CALL(RemoveChild, const MassUpdate update = values.One<MassUpdate>(2);
+                  return bodies.RemoveChild(id, {values.Below(4), values.Below(2)}, update))
 
 #undef FULCRUM_BODY_CALL
 

@@ -163,25 +163,28 @@ void Create(Twin& twin, Values& values, const CallTargets& targets, Outcome& out
     twin.joints[targets.joint] = id.Value();
 }
 
+// Statements, the last of which returns what the call returned.
 #define FULCRUM_JOINT_CALL(name, ...)                                                                      \
     void name(Twin& twin, [[maybe_unused]] Values& values, const CallTargets& targets, Outcome& outcome) { \
         JointInterface& joints = twin.system->Joints();                                                    \
         const JointId id = twin.joints[targets.joint];                                                     \
-        Note(__VA_ARGS__, outcome);                                                                        \
+        Note([&] { __VA_ARGS__; }(), outcome);                                                             \
     }
 
-FULCRUM_JOINT_CALL(RemoveJoint, joints.Remove(id))
-FULCRUM_JOINT_CALL(SetEnabled, joints.SetEnabled(id, values.Chance(0.6f)))
-FULCRUM_JOINT_CALL(SetLimits,
-                   joints.SetLimits(id, values.One<JointAxis>(6),
-                                    values.Chance(0.3f) ? std::optional<JointLimits>() : RandomLimits(values)))
-FULCRUM_JOINT_CALL(SetMotor, joints.SetMotor(id, values.One<JointAxis>(6), RandomMotor(values)))
-FULCRUM_JOINT_CALL(SetFriction, joints.SetFriction(id, values.One<JointAxis>(6), values.Setting(0, 100)))
-FULCRUM_JOINT_CALL(SetTargetOrientation, joints.SetTargetOrientation(id, values.Rotation()))
-FULCRUM_JOINT_CALL(SetEffort,
-                   joints.SetEffort(id, {static_cast<int>(values.Below(70)), static_cast<int>(values.Below(5)), 1}))
+FULCRUM_JOINT_CALL(RemoveJoint, return joints.Remove(id))
+FULCRUM_JOINT_CALL(SetEnabled, return joints.SetEnabled(id, values.Chance(0.6f)))
+FULCRUM_JOINT_CALL(SetLimits, std::optional<JointLimits> limits;
+                   if (!values.Chance(0.3f)) limits = RandomLimits(values);
+                   return joints.SetLimits(id, values.One<JointAxis>(6), limits))
+FULCRUM_JOINT_CALL(SetMotor, const JointMotor motor = RandomMotor(values);
+                   return joints.SetMotor(id, values.One<JointAxis>(6), motor))
+FULCRUM_JOINT_CALL(SetFriction, const float most = values.Setting(0, 100);
+                   return joints.SetFriction(id, values.One<JointAxis>(6), most))
+FULCRUM_JOINT_CALL(SetTargetOrientation, return joints.SetTargetOrientation(id, values.Rotation()))
+FULCRUM_JOINT_CALL(SetEffort, return joints.SetEffort(id, {static_cast<int>(values.Below(70)),
+                                                           static_cast<int>(values.Below(5)), 1}))
 
-FULCRUM_JOINT_CALL(SetMassOverride, joints.SetMassOverride(id, RandomMassOverride(values)))
+FULCRUM_JOINT_CALL(SetMassOverride, return joints.SetMassOverride(id, RandomMassOverride(values)))
 
 #undef FULCRUM_JOINT_CALL
 

@@ -186,7 +186,8 @@ void FindByPoint(Twin& twin, Values& values, const CallTargets& targets, Outcome
 void FindByBounds(Twin& twin, Values& values, const CallTargets& targets, Outcome& outcome) {
     const QueryInterface& queries = twin.system->Queries();
     const Position center = Aim(twin, values, targets);
-    const Position half(double{values.Size()}, double{values.Size()}, double{values.Size()});
+    const double z = double{values.Size()}, y = double{values.Size()}, x = double{values.Size()};
+    const Position half(x, y, z);
     std::vector<OverlapHit> hits, onRay, onSweep;
     queries.FindInBox(center - half, center + half, hits);
     queries.FindOnRay(RandomRay(twin, values, targets), onRay);

@@ -54,8 +54,7 @@ TEST(RandomPrograms, InvariantsHoldWhateverAUserCalls) {
 // Seeds of programs whose failures led to fixes, valid as long as the same seeds give the same programs.
 TEST(RandomPrograms, InvariantsHoldForSeedsThatOnceFailed) {
     const uint32_t seeds[] = {
-        418704,   // opposite pushes on a compound in a thin floor became one as a normal turned: 31 kJ became 813 kJ in
-                  // a step
+        418704,   // opposite pushes on a compound in a thin floor became one as a normal turned: 31 kJ to 813 kJ
         795132,   // a body was put to sleep after another that it touched was removed: a crash
         511883,   // the list of all hits of a mesh ended at fraction 1
         2431587,  // a cast of a shape that overlapped a whole mesh as it began took time with its square: 2 s a step

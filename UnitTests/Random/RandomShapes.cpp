@@ -113,7 +113,10 @@ ShapePtr Changed(Values& values, const ShapePtr& shape) {
     const float s = values.Size() * 3;
     switch (values.Below(3)) {
         case 0: return OrNull(Scaled(shape, Vector3(s, s, s)));
-        case 1: return OrNull(RotatedTranslated(shape, values.Offset(0.5f), values.Rotation()));
+        case 1: {
+            const Quaternion rotation = values.Rotation();
+            return OrNull(RotatedTranslated(shape, values.Offset(0.5f), rotation));
+        }
         default: return OrNull(OffsetCenterOfMass(shape, values.Offset(0.1f)));
     }
 }
@@ -123,15 +126,28 @@ ShapePtr Changed(Values& values, const ShapePtr& shape) {
 ShapePtr RandomConvex(Values& values) {
     switch (values.Below(9)) {
         case 0: return OrNull(Sphere::Create(values.Size()));
-        case 1: return OrNull(Capsule::Create(values.Size(), values.Size()));
+        case 1: {
+            const float radius = values.Size();
+            return OrNull(Capsule::Create(values.Size(), radius));
+        }
         case 2: return Hull(values);
         case 3: return TriangleOf(values);
-        case 4: return OrNull(TaperedCapsule::Create(values.Size(), values.Size(), values.Size()));
-        case 5: return OrNull(Cylinder::CreateTapered(values.Size(), values.Size(), values.Size()));
-        case 6:
-            return OrNull(
-                CreateCustom<Octahedron>(values.Sizes(), values.Chance(0.5f) ? 0 : values.Number(0, 0.05f, true)));
-        default: return OrNull(Box::Create(values.Sizes(), values.Chance(0.8f) ? 0 : values.Number(0, 0.05f, true)));
+        case 4: {
+            const float bottom = values.Size(), top = values.Size();
+            return OrNull(TaperedCapsule::Create(values.Size(), top, bottom));
+        }
+        case 5: {
+            const float bottom = values.Size(), top = values.Size();
+            return OrNull(Cylinder::CreateTapered(values.Size(), top, bottom));
+        }
+        case 6: {
+            const float rounding = values.Chance(0.5f) ? 0 : values.Number(0, 0.05f, true);
+            return OrNull(CreateCustom<Octahedron>(values.Sizes(), rounding));
+        }
+        default: {
+            const float rounding = values.Chance(0.8f) ? 0 : values.Number(0, 0.05f, true);
+            return OrNull(Box::Create(values.Sizes(), rounding));
+        }
     }
 }
 
@@ -146,7 +162,10 @@ ShapePtr RandomShape(Values& values) {
     switch (values.Below(10)) {
         case 0: return Mesh(values);
         case 1: return Heights(values);
-        case 2: return OrNull(Plane::Create(values.Offset(1), values.Number(-1, 1, true)));
+        case 2: {
+            const float offset = values.Number(-1, 1, true);
+            return OrNull(Plane::Create(values.Offset(1), offset));
+        }
         case 3: return EmptyShape::Create();
         default: return RandomSolid(values);
     }

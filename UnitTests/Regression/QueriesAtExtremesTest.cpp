@@ -207,9 +207,8 @@ TEST(QueriesAtExtremes, TheTimeOfAHitIsFinite) {
             const ShapeCaster caster(*capsule, {{random.InBox(4).cast<double>(), random.Rotation()}, way, turns});
             ShapeHit hit;
             const std::shared_ptr<const Plane> plane = Plane::Create().Value();
-            if (!caster.CastClosest(random.Chance(0.5f) ? *box : static_cast<const Shape&>(*plane),
-                                    {Position::Zero(), random.Rotation()}, {}, hit))
-                continue;
+            const Shape& target = random.Chance(0.5f) ? *box : static_cast<const Shape&>(*plane);
+            if (!caster.CastClosest(target, {Position::Zero(), random.Rotation()}, {}, hit)) continue;
             ++hits;
             EXPECT_GE(hit.fraction, 0) << turn;
             EXPECT_LE(hit.fraction, 1) << turn;
@@ -263,8 +262,9 @@ TEST(QueriesAtExtremes, ClosestPointsAgreeWithTheSupportsAtEverySize) {
         RandomPoses random(7);
         for (int i = 0; i < Cases(3000); ++i) {
             const auto size = [&] {
-                return random.Chance(0.2f) ? std::pow(10.0f, random.Between(-6, 6))
-                                           : random.Between(0.1f, 1) * (random.Chance(0.3f) ? 1.0f : scale);
+                if (random.Chance(0.2f)) return std::pow(10.0f, random.Between(-6, 6));
+                const float part = random.Between(0.1f, 1);
+                return part * (random.Chance(0.3f) ? 1.0f : scale);
             };
             const float halfHeight = size(), radius = size();
             const auto capsule = Capsule::Create(halfHeight, radius);
@@ -287,14 +287,14 @@ TEST(QueriesAtExtremes, ATriangleThatIsCastTouchesWhatItHits) {
     int hits = 0;
     for (int i = 0; i < Cases(20000); ++i) {
         const float size = random.Chance(0.5f) ? 1.0f : std::pow(10.0f, random.Between(-5, 5));
-        const auto triangle = Triangle::Create(random.InBox(size), random.InBox(size), random.InBox(size),
-                                               random.Chance(0.7f) ? 0 : 0.05f * size);
+        const Vector3 a = random.InBox(size), b = random.InBox(size), c = random.InBox(size);
+        const auto triangle = Triangle::Create(a, b, c, random.Chance(0.7f) ? 0 : 0.05f * size);
         if (!triangle) continue;
         const float other = random.Chance(0.5f) ? size : std::pow(10.0f, random.Between(-5, 5));
         Result<std::shared_ptr<const Cylinder>> cylinder = Cylinder::Create(other, other);
         const Result<std::shared_ptr<const Box>> box = Box::Create(Vector3(other, 0.5f * other, 2 * other));
-        const Result<std::shared_ptr<const Triangle>> second =
-            Triangle::Create(random.InBox(other), random.InBox(other), random.InBox(other));
+        const Vector3 d = random.InBox(other), e = random.InBox(other), f = random.InBox(other);
+        const Result<std::shared_ptr<const Triangle>> second = Triangle::Create(d, e, f);
         std::vector<ShapePtr> shapes;
         if (cylinder) shapes.push_back(cylinder.Value());
         if (box) shapes.push_back(box.Value());

@@ -35,12 +35,12 @@ ShapePtr RandomShape(RandomPoses& random, float longest) {
     const float size = random.Between(0.1f, 1) * (which == 0 ? longest : 1.0f);
     const auto part = [&](float least, float most) { return size * random.Between(least, most); };
     switch (which) {
-        case 0: return Must(Box::Create(Vector3(part(0.0125f, 0.1f), size, part(0.0125f, 0.1f))));
-        case 1: return Must(Box::Create(Vector3(part(0.02f, 0.1f), size, part(0.1f, 1))));
-        case 2: return Must(Box::Create(Vector3(part(0.3f, 1), part(0.3f, 1), part(0.3f, 1))));
+        case 0: return Must(Box::Create(Vector3{part(0.0125f, 0.1f), size, part(0.0125f, 0.1f)}));
+        case 1: return Must(Box::Create(Vector3{part(0.02f, 0.1f), size, part(0.1f, 1)}));
+        case 2: return Must(Box::Create(Vector3{part(0.3f, 1), part(0.3f, 1), part(0.3f, 1)}));
         default: break;
     }
-    const Vector3 half(size, part(0.1f, 1), part(0.1f, 1));
+    const Vector3 half{size, part(0.1f, 1), part(0.1f, 1)};
     std::vector<Vector3> points;
     for (uint32_t i = 0; i < 12; ++i) points.push_back(random.InCube().cwiseProduct(half));
     return Must(ConvexHull::Create(points));

@@ -1,5 +1,6 @@
 // Random numbers, places and rotations for tests and kernels: from the engine's bits alone, so the same on every
-// machine, unlike the distributions of <random>. One thread.
+// machine, unlike the distributions of <random>, if no call has two of them as arguments: compilers evaluate arguments
+// in different orders. Draw into names or between braces. One thread.
 #pragma once
 
 #include <Fulcrum/Math/Quaternion.h>

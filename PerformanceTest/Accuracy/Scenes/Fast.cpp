@@ -17,8 +17,10 @@ void BallsAtWall(LabRun& run) {
     std::vector<BodyId> balls;
     for (int i = 0; i < count; ++i) {
         const double speed = 200.0 + 400 * (i % 3);
-        const Position from(-10 - run.random.Unit(), run.random.Between(-20, 20), run.random.Between(-20, 20));
-        const Position to(0, from.y() + run.random.Between(-10, 10), from.z() + run.random.Between(-10, 10));
+        const double z = run.random.Between(-20, 20), y = run.random.Between(-20, 20);
+        const Position from(-10 - run.random.Unit(), y, z);
+        const double aside = run.random.Between(-10, 10), up = run.random.Between(-10, 10);
+        const Position to(0, y + up, z + aside);
         balls.push_back(world.Add({.shape = shape,
                                    .position = from,
                                    .linearVelocity = ((to - from).normalized() * speed).cast<float>(),

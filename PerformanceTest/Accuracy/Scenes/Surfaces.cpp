@@ -91,7 +91,8 @@ void Thin(LabRun& run) {
     for (int i = 0; i < rods + plates; ++i) {
         const bool isRod = i < rods;
         const double x = run.random.Between(-45, 45), z = run.random.Between(-45, 45);
-        const Position axis(run.random.Between(-1, 1), run.random.Between(-1, 1), run.random.Between(0.1, 1));
+        const double axisZ = run.random.Between(0.1, 1), axisY = run.random.Between(-1, 1);
+        const Position axis(run.random.Between(-1, 1), axisY, axisZ);
         BodySettings body{.shape = isRod ? rod : plate,
                           .position = {x, Waves(x, z) + (isRod ? 8 : 2) + 0.02 * i, z},
                           .rotation = RotationAbout(axis.normalized().cast<float>(), run.random.Between(0, 2 * kPi))};

@@ -12,7 +12,7 @@ export const launch = () => chromium.launch({ executablePath: process.env.CHROMI
 
 // The page of a recording, at its first frame. What it complains of and what it asks for are added to the two lists.
 export async function openPage(browser, html, complaints = [], requests = []) {
-  const page = await browser.newPage({ viewport: { width: 960, height: 540 } }); // small: software draws it
+  const page = await browser.newPage({ viewport: { width: 640, height: 360 } }); // small: software draws it
   page.on('console', (message) => ['error', 'warning'].includes(message.type()) && complaints.push(message.text()));
   page.on('pageerror', (error) => complaints.push(error.message));
   page.on('request', (request) => requests.push(request.url()));

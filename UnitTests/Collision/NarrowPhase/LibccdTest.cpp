@@ -168,7 +168,8 @@ TEST(Libccd, ServesHalfSpaces) {
     int touching = 0;
     for (const NamedShape& s : Shapes()) {
         for (int i = 0; i < Cases(300); ++i) {
-            const auto plane = Plane::Create(random.Direction(), random.Between(-1, 1)).Value();
+            const Vector3 normal = random.Direction();
+            const auto plane = Plane::Create(normal, random.Between(-1, 1)).Value();
             RelativePose pose{Vector3::Zero(), random.Rotation()};  // of the plane in the shape
             const Vector3 up = Rotate(pose.rotation, plane->Normal());
             const float reach = Length(s.shape->Support(Vector3(-up))),
@@ -204,7 +205,10 @@ TEST(Libccd, MeasuresAsTheOwnFunctionsDo) {
         for (const NamedShape& b : Shapes()) {
             for (int i = 0; i < Cases(60); ++i) {
                 RelativePose pose = RandomPose(*a.shape, *b.shape, i, random);
-                if (i % 2 == 0) pose.position += random.Direction() * random.Between(0, 3);
+                if (i % 2 == 0) {
+                    const Vector3 direction = random.Direction();
+                    pose.position += direction * random.Between(0, 3);
+                }
                 const float reach = i % 3 == 0 ? 1.0f : std::numeric_limits<float>::infinity();
                 const ConvexSeparation own = MeasureConvex(*a.shape, *b.shape, pose, reach),
                                        is = MeasureConvex(*a.shape, *b.shape, pose, reach, NarrowPhaseMethod::Libccd);
@@ -249,7 +253,10 @@ TEST(Libccd, CastsHitWhereTheOwnCastsHit) {
                 motion.position = (direction * (1.2f * size)).cast<double>();
                 motion.rotation = random.Rotation();
                 motion.displacement = (random.InCube() * 0.3f - direction) * (2 * size);
-                if (i % 2 == 1) motion.turn = random.Direction() * random.Between(0.1f, 3);
+                if (i % 2 == 1) {
+                    const Vector3 axis = random.Direction();
+                    motion.turn = axis * random.Between(0.1f, 3);
+                }
                 const CoreCastLimits limits{1, i % 4 == 0 ? 0.05f : 0.0f, 1e-4f * size};
                 const CoreCastResult own = CastCore(*a.shape, *b.shape, motion, limits);
                 const CoreCastResult is = CastCore(*a.shape, *b.shape, motion, limits, NarrowPhaseMethod::Libccd);

@@ -18,7 +18,8 @@ TEST(Distance, OfConvexShapesIsWhatLibccdAndTheirPointsSay) {
     for (const NamedShape& a : QueryShapes()) {
         for (const NamedShape& b : QueryShapes()) {
             for (int i = 0; i < Cases(2100); ++i) {
-                const RelativePose pose{random.Direction() * random.Between(0.1f, 2.5f), random.Rotation()};
+                const Vector3 direction = random.Direction();
+                const RelativePose pose{direction * random.Between(0.1f, 2.5f), random.Rotation()};
                 ClosestPoints found;
                 ASSERT_TRUE(FindClosestPoints(*a.shape, *b.shape, pose, 100, found));
                 EXPECT_EQ(Overlap(*a.shape, *b.shape, pose), found.distance <= 0)

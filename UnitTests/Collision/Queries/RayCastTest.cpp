@@ -19,7 +19,8 @@ float DistanceOf(const ConvexShape& shape, const Vector3& point) {
 
 // A ray that passes near the shape, from up to 3 m away.
 Ray RayNear(RandomPoses& random) {
-    const Vector3 target = random.InCube() * 0.8f, from = random.Direction() * random.Between(0.1f, 3);
+    const Vector3 target = random.InCube() * 0.8f, direction = random.Direction();
+    const Vector3 from = direction * random.Between(0.1f, 3);
     return {from.cast<double>(), (target - from) * random.Between(0.5f, 2)};
 }
 
@@ -50,19 +51,20 @@ TEST(RayCast, TheHitIsTheFirstPointOfTheShape) {
             ++hits;
             if (least < -1e-5f) {
                 EXPECT_EQ(hit.fraction, 0) << named.name << " " << i;
-                EXPECT_LT(Length(Vector3(hit.normal + ray.displacement / length)), 1e-5f);
+                EXPECT_LT(Length(Vector3(hit.normal + ray.displacement / length)), 1e-6f);
                 continue;
             }
             const Vector3 point = origin + ray.displacement * hit.fraction;
-            // A few roundings of coordinates of up to 3 m; at a grazing angle the surface is as near over a longer way.
-            EXPECT_LT(std::abs(DistanceOf(shape, point)), 5e-6f) << named.name << " " << i;
+            // A rounding of coordinates of up to 3 m, 2.7e-7 m; in some three of a million cases the distance itself is
+            // off by up to 8e-6 m. At a grazing angle the surface is as near over a longer way.
+            EXPECT_LT(std::abs(DistanceOf(shape, point)), 1e-5f) << named.name << " " << i;
             const float slope = std::max(1e-3f, -Dot(hit.normal, ray.displacement) / length);
-            EXPECT_NEAR(hit.fraction * length, other.entry.distance, 2e-5f / slope) << named.name << " " << i;
+            EXPECT_NEAR(hit.fraction * length, other.entry.distance, 1e-6f / slope) << named.name << " " << i;
             if (hit.fraction > 0) {
-                EXPECT_LE(Dot(hit.normal, ray.displacement), 1e-5f * length);
+                EXPECT_LE(Dot(hit.normal, ray.displacement), 0.0f);
                 EXPECT_NEAR(Length(hit.normal), 1, 1e-5f);
                 // A point beyond the surface along the normal is as far away: it is the normal there.
-                EXPECT_NEAR(DistanceOf(shape, point + hit.normal * 0.01f), 0.01f, 3e-4f) << named.name << " " << i;
+                EXPECT_NEAR(DistanceOf(shape, point + hit.normal * 0.01f), 0.01f, 1e-6f) << named.name << " " << i;
             }
         }
     }

@@ -30,7 +30,8 @@ RelativePose PoseAt(const ShapeMotion& motion, double fraction) {
 enum class Turning { None, OfTheCast, OfBoth };
 
 ShapeMotion MotionNear(RandomPoses& random, Turning turning) {
-    const Vector3 target = random.InCube(), from = random.Direction() * random.Between(1.0f, 4);
+    const Vector3 target = random.InCube(), direction = random.Direction();
+    const Vector3 from = direction * random.Between(1.0f, 4);
     ShapeMotion motion;
     motion.pose = {from.cast<double>(), random.Rotation()};
     motion.displacement = (target - from) * random.Between(0.5f, 2);
@@ -71,7 +72,8 @@ void ExpectFirstTouch(const std::vector<NamedShape>& shapes, Turning turning, in
                     EXPECT_NEAR(std::max(0.0, -s), double{hit.depth}, 1e-4);
                     continue;
                 }
-                EXPECT_LT(s, touch) << a.name << " " << b.name << " " << i;
+                // In some five of a million poses the distance itself is off by 2e-5, more than the point below.
+                EXPECT_LT(s, touch + 2e-5) << a.name << " " << b.name << " " << i;
                 EXPECT_NEAR(Length(hit.normal), 1, 1e-5f);
                 // The normal is of a plane between the two; the point lies on both.
                 const RelativePose other = OtherAt(motion, end);
@@ -93,8 +95,9 @@ void ExpectFirstTouch(const std::vector<NamedShape>& shapes, Turning turning, in
     std::printf("  %d cases, %d hits, %d early\n", cases, hits, early);
 }
 
-// Poses and cores of 3 m in float: 3e-7 m a rounding, and the fraction's own of 6e-8 along up to 10 m.
-TEST(ShapeCast, MovesUpToTheFirstTouch) { ExpectFirstTouch(QueryShapes(), Turning::None, Cases(2100), 1e-5); }
+// Poses and cores of 3 m in float: 3e-7 m a rounding, and the fraction's own of 6e-8 along up to 10 m. Of a million
+// cases the point is off by 3.5e-6 at most.
+TEST(ShapeCast, MovesUpToTheFirstTouch) { ExpectFirstTouch(QueryShapes(), Turning::None, Cases(2100), 5e-6); }
 
 // The search ends within 2e-5 of the smaller and 4e-6 of the larger shape's size, 3 m here.
 TEST(ShapeCast, TurnsUpToTheFirstTouch) { ExpectFirstTouch(QueryShapes(), Turning::OfTheCast, Cases(2100), 8e-5); }
@@ -120,8 +123,8 @@ TEST(ShapeCast, FastShapesDoNotPassThinWalls) {
     for (const NamedShape& b : QueryShapes()) {
         for (int i = 0; i < 1500; ++i) {
             ShapeMotion motion;
-            const Vector3 through(random.Between(-1, 1), random.Between(-1, 1), 0);
-            const Vector3 direction = Normalized(Vector3(random.Between(-1, 1), random.Between(-1, 1), -1.5f));
+            const Vector3 through{random.Between(-1, 1), random.Between(-1, 1), 0};
+            const Vector3 direction = Normalized(Vector3{random.Between(-1, 1), random.Between(-1, 1), -1.5f});
             // 1000 m/s for a 60th of a second.
             motion.displacement = direction * 16.7f;
             motion.pose = {(through - direction * random.Between(5, 12)).cast<double>(), random.Rotation()};

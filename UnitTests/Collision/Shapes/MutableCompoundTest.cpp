@@ -189,7 +189,8 @@ TEST(MutableCompound, KeepsNoTraceOfEditsThatWereTakenBack) {
     heavy.density = 1e9f;
     for (uint32_t round = 0; round < 50; ++round) {
         const ChildId added = compound->Add(heavy).Value(), moved{random.Below(100), 0};
-        ASSERT_TRUE(compound->Move(moved, random.random.InCube() * 1000, random.random.Rotation()));
+        const Vector3 place = random.random.InCube() * 1000;
+        ASSERT_TRUE(compound->Move(moved, place, random.random.Rotation()));
         ASSERT_TRUE(compound->Set(moved, children[moved.index]));
         ASSERT_TRUE(compound->Remove(added));
     }

@@ -39,8 +39,8 @@ TEST(TriangleMesh, RayCastsAgreeWithDouble) {
     const std::vector<TriangleView> all = AllTriangles(*mesh);
     SurfaceRandom random(5);
     for (int i = 0; i < 20000; ++i) {
-        const Vector3 origin(random.Between(-29, 29), random.Between(20, 30), random.Between(-29, 29));
-        const SurfaceRay ray{origin, Vector3(random.Between(-5, 5), -40, random.Between(-5, 5)), true};
+        const Vector3 origin{random.Between(-29, 29), random.Between(20, 30), random.Between(-29, 29)};
+        const SurfaceRay ray{origin, Vector3{random.Between(-5, 5), -40, random.Between(-5, 5)}, true};
         double best = 2;
         for (const TriangleView& t : all) {
             const double f = DoubleFraction(t, ray);

@@ -18,7 +18,8 @@ inline Quaternion AboutX(float angle) { return About(Vector3(1, 0, 0), angle); }
 inline Quaternion AboutY(float angle) { return About(Vector3(0, 1, 0), angle); }
 inline Quaternion AboutZ(float angle) { return About(Vector3(0, 0, 1), angle); }
 inline Quaternion RandomRotation(RandomPoses& random) {
-    return About(AnyDirection(random), random.Between(-3.0f, 3.0f));
+    const Vector3 axis = AnyDirection(random);
+    return About(axis, random.Between(-3.0f, 3.0f));
 }
 
 // Bodies A and B, each with an anchor and a frame in its own coordinates.

@@ -146,8 +146,8 @@ TEST(ConeJoint, RowsAreTheDerivativeOfTheAngleBetweenTheAxes) {
     RandomPoses random(5);
     for (int i = 0; i < kPoses; ++i) {
         JointBodies bodies = JointBodies::AtRandom(random);
-        const float angle = random.Between(0.2f, 2.9f);
-        bodies.PlaceB(Vector3::Zero(), AboutX(random.Between(-3, 3)) * AboutY(angle) * AboutX(random.Between(-3, 3)));
+        const float angle = random.Between(0.2f, 2.9f), before = random.Between(-3, 3), after = random.Between(-3, 3);
+        bodies.PlaceB(Vector3::Zero(), AboutX(before) * AboutY(angle) * AboutX(after));
         const ConeJoint joint(0.1f, {});
         ConeJoint copy = joint;
         EXPECT_NEAR(RowsOf(copy, bodies.Pose())[kHigh].error, 0.1f - angle, 1e-5f);

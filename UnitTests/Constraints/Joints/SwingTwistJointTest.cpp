@@ -126,7 +126,7 @@ TEST(SwingTwistJoint, PositionMotorsTurnToTheTargetTheShortestWay) {
         SwingTwistJoint joint(motor, motor, motor, SwingShape::Ellipse);
         const Quaternion target = RandomRotation(random);
         joint.SetTargetOrientation(target);
-        const Vector3 off = AnyDirection(random) * random.Between(0.01f, 3.0f);
+        const Vector3 axis = AnyDirection(random), off = axis * random.Between(0.01f, 3.0f);
         JointBodies bodies = JointBodies::AtRandom(random);
         bodies.PlaceB(Vector3::Zero(), target * RotationFromVector(off));
         auto rows = RowsOf(joint, bodies.Pose());
@@ -222,7 +222,9 @@ TEST(SixDofJoint, SingleLockedAxesAreRows) {
     RandomPoses random(14);
     for (int i = 0; i < 30; ++i) {
         JointBodies bodies = JointBodies::AtRandom(random);
-        bodies.PlaceB(random.InBox(1.0f), AboutZ(random.Between(-1, 1)) * AboutY(0.2f) * AboutX(random.Between(-1, 1)));
+        const Vector3 place = random.InBox(1.0f);
+        const float z = random.Between(-1, 1), x = random.Between(-1, 1);
+        bodies.PlaceB(place, AboutZ(z) * AboutY(0.2f) * AboutX(x));
         JointBodies at = bodies;
         SixDofJoint copy = joint;
         auto rows = RowsOf(copy, at.Pose());

@@ -262,7 +262,8 @@ TEST(SymmetricInverse, ActsWhereSomethingCanMove) {
         const float a = random.Between(0.1f, 5.0f), b = i % 2 ? random.Between(0.1f, 5.0f) : 0.0f;
         const SymmetricMatrix3 k = RotatedDiagonal(axes, Vector3(a, b, 0.0f));
         const SymmetricMatrix3 inverse = SymmetricInverse(k);
-        const Vector3 possible = axes.x * random.Between(-1, 1) + axes.y * (b > 0.0f ? random.Between(-1, 1) : 0.0f);
+        const float x = random.Between(-1, 1), y = b > 0.0f ? random.Between(-1, 1) : 0.0f;
+        const Vector3 possible = axes.x * x + axes.y * y;
         const Vector3 wanted = k * possible, reached = k * (inverse * wanted);
         // Rounding of 6e-8, times a condition of up to 50, times as much again where the first two rows are nearly
         // alike.
