@@ -20,12 +20,12 @@ uint64_t SizeOf([[maybe_unused]] void* memory) {
 #endif
 }
 
-void Free(void* memory) {
+[[maybe_unused]] void Free(void* memory) {
     bytes.fetch_sub(SizeOf(memory), std::memory_order_relaxed);
     std::free(memory);
 }
 
-void* Allocate(std::size_t size, std::size_t alignment) {
+[[maybe_unused]] void* Allocate(std::size_t size, std::size_t alignment) {
     allocations.fetch_add(1, std::memory_order_relaxed);
     // aligned_alloc wants whole multiples of the alignment.
     const std::size_t rounded = (size + alignment - 1) / alignment * alignment;
@@ -54,6 +54,13 @@ extern "C" void* malloc(std::size_t size) noexcept {
 }
 #endif
 
+// Clang's ThreadSanitizer has its own, which cannot be replaced: nothing is counted there.
+#if defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define FULCRUM_KEEPS_OPERATOR_NEW
+#endif
+#endif
+#ifndef FULCRUM_KEEPS_OPERATOR_NEW
 // The array and the non-throwing forms call these.
 void* operator new(std::size_t size) { return Allocate(size, __STDCPP_DEFAULT_NEW_ALIGNMENT__); }
 void* operator new(std::size_t size, std::align_val_t alignment) {
@@ -63,3 +70,4 @@ void operator delete(void* memory) noexcept { Free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { Free(memory); }
 void operator delete(void* memory, std::align_val_t) noexcept { Free(memory); }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { Free(memory); }
+#endif

@@ -21,7 +21,10 @@ struct Solved {
 template <int N>
 Solved Solve(std::span<const JointCase> cases, uint32_t seed, const RandomJoints::Options& options) {
     RandomJoints joints(cases, kJoints, seed, options);
-    for (BodyState& state : joints.states) std::fill(state.deltaPosition, state.deltaPosition + 6, 0.0f);
+    for (BodyState& state : joints.states) {
+        std::fill(std::begin(state.deltaPosition), std::end(state.deltaPosition), 0.0f);
+        std::fill(std::begin(state.deltaRotation), std::end(state.deltaRotation), 0.0f);
+    }
     std::vector<JointRows<N>> rows;
     std::vector<JointBatch<N>> batches = joints.Batches<N>(rows);
     BodyState* states = joints.states.data();

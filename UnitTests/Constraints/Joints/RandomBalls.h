@@ -26,7 +26,8 @@ inline RandomJoints RandomBalls(uint32_t count, uint32_t seed, const BallOptions
     RandomJoints joints(std::span(&PointCase(), 1), count, seed, options.joints);
     for (size_t i = 0; i < joints.states.size(); ++i) {
         BodyState& state = joints.states[i];
-        std::fill(state.deltaPosition, state.deltaPosition + 6, 0.0f);
+        std::fill(std::begin(state.deltaPosition), std::end(state.deltaPosition), 0.0f);
+        std::fill(std::begin(state.deltaRotation), std::end(state.deltaRotation), 0.0f);
         if (!options.round) continue;
         float(&inertia)[6] = joints.masses[i].inverseInertia;
         inertia[1] = inertia[2] = inertia[0];
