@@ -89,7 +89,7 @@ void PhysicsSystem::VisitContacts(FunctionRef<void(const ContactView&)> visit) c
         const Pair& pair = world.pairs.pairs[index];
         if (!pair.touching || pair.pointCount == 0 || pair.onSeam) return;
         ContactView::Point room[ContactRecord::kMaxPoints];
-        visit(ViewContact(world.bodies, world.colliders, world.pairs, index, room));
+        visit(ViewSolvedContact(world.bodies, world.colliders, world.pairs, index, room));
     });
 }
 

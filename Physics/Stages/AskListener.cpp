@@ -1,6 +1,7 @@
 // Asks the contact listener about a contact. Collide does so when it knows the points, and before anything follows from
 // them: a contact that is ignored has no color, wakes no body and costs the solver nothing.
 #include <Fulcrum/Physics/ContactListener.h>
+#include <Fulcrum/Physics/Stages/CrowdContacts.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
 #include <Fulcrum/Physics/World/Materials.h>
 
@@ -14,26 +15,56 @@ void Forget(ContactRecord& record) {
     record.twistImpulse = 0;
 }
 
+// World axes: the normal, and by how much the surfaces' points that touch are beside those that did when it was found,
+// m.
+struct ContactAxes {
+    Vector3 normal, besideA = Vector3::Zero(), besideB = Vector3::Zero();
+};
+
+ContactView View(const BodyStore& bodies, const ColliderStore& colliders, const PairStore& pairs, uint32_t index,
+                 const ContactAxes& axes, ContactView::Point (&room)[ContactRecord::kMaxPoints]) {
+    const Pair& pair = pairs.pairs[index];
+    const ContactRecord& record = pairs.records[index];
+    const Pose poseA = bodies.CenterPoseOf(pair.bodyA), poseB = bodies.CenterPoseOf(pair.bodyB);
+    for (size_t i = 0; i < pair.pointCount; ++i) {
+        const ContactRecord::Point& p = record.points[i];
+        const Position onA = poseA.Transform(Vector3(p.onA[0], p.onA[1], p.onA[2])) + axes.besideA.cast<double>();
+        const Position onB = poseB.Transform(Vector3(p.onB[0], p.onB[1], p.onB[2])) + axes.besideB.cast<double>();
+        room[i] = {onA, Dot<float>(axes.normal, Vector3((onB - onA).cast<float>())), record.impulse[i]};
+    }
+    return {bodies.IdOf(pair.bodyA),
+            bodies.IdOf(pair.bodyB),
+            axes.normal,
+            std::span<const ContactView::Point>(room, pair.pointCount),
+            ChildOf(bodies, colliders, pair.colliderA),
+            ChildOf(bodies, colliders, pair.colliderB)};
+}
+
 }  // namespace
 
 ContactView ViewContact(const BodyStore& bodies, const ColliderStore& colliders, const PairStore& pairs, uint32_t index,
                         ContactView::Point (&room)[ContactRecord::kMaxPoints]) {
+    return View(bodies, colliders, pairs, index, {ContactNormal(bodies, pairs, index)}, room);
+}
+
+// The normal has turned with neither body: it is taken from that one which turns less. What is round about its core
+// touches with another point of its surface as it rolls.
+ContactView ViewSolvedContact(const BodyStore& bodies, const ColliderStore& colliders, const PairStore& pairs,
+                              uint32_t index, ContactView::Point (&room)[ContactRecord::kMaxPoints]) {
     const Pair& pair = pairs.pairs[index];
-    const ContactRecord& record = pairs.records[index];
-    const Pose poseA = bodies.CenterPoseOf(pair.bodyA), poseB = bodies.CenterPoseOf(pair.bodyB);
-    const Vector3 normal = Rotate(poseA.rotation, Vector3(record.normal[0], record.normal[1], record.normal[2]));
-    for (size_t i = 0; i < pair.pointCount; ++i) {
-        const ContactRecord::Point& p = record.points[i];
-        const Position onA = poseA.Transform(Vector3(p.onA[0], p.onA[1], p.onA[2]));
-        const Position onB = poseB.Transform(Vector3(p.onB[0], p.onB[1], p.onB[2]));
-        room[i] = {onA, Dot<float>(normal, Vector3((onB - onA).cast<float>())), record.impulse[i]};
-    }
-    return {bodies.IdOf(pair.bodyA),
-            bodies.IdOf(pair.bodyB),
-            normal,
-            std::span<const ContactView::Point>(room, pair.pointCount),
-            ChildOf(bodies, colliders, pair.colliderA),
-            ChildOf(bodies, colliders, pair.colliderB)};
+    const float* n = pairs.records[index].normal;
+    Quaternion bInA = pair.reference.rotation;  // of the bodies, when the normal was found
+    if (pair.offset)
+        bInA = LocalOf(bodies, colliders, pair.colliderA).rotation * bInA *
+               LocalOf(bodies, colliders, pair.colliderB).rotation.Conjugate();
+    const Vector3 ofA = ContactNormal(bodies, pairs, index),
+                  ofB = Rotate(bodies.RotationOf(pair.bodyB), InverseRotate(bInA, Vector3(n[0], n[1], n[2])));
+    const auto squaredTurn = [&](uint32_t body) { return LengthSquared(bodies.AngularVelocityOf(body)); };
+    ContactAxes axes{squaredTurn(pair.bodyA) <= squaredTurn(pair.bodyB) ? ofA : ofB};
+    axes.besideA = (axes.normal - ofA) * pair.shapeA->ConvexRadius();
+    if (pair.shapeB->IsConvex())
+        axes.besideB = (ofB - axes.normal) * static_cast<const ConvexShape&>(*pair.shapeB).ConvexRadius();
+    return View(bodies, colliders, pairs, index, axes, room);
 }
 
 ContactChange AskAbout(const ContactListener& listener, const ContactView& contact, float friction, float restitution) {

@@ -114,7 +114,7 @@ PairChange CollideWithSurface(const CollideStores& stores, std::span<PairChange>
                        {MotionInA(stores, view), touched}, findings.surface);
         findings.libccd += findings.surface.Counters();
         WriteManifolds(stores, view, first, findings);
-        view.pair.reference = view.bInA;
+        VisitManifolds(stores.pairs, first, [&](uint32_t index) { stores.pairs.pairs[index].reference = view.bInA; });
     }
     PairChange ofFirst = PairChange::None;
     bool wakes = false;

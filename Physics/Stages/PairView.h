@@ -54,9 +54,11 @@ bool AskListener(const ContactListener& listener, const BodyStore& bodies, const
                  PairStore& pairs, uint32_t pair);
 // What the listener wants of a contact that would have this friction and restitution. All of it is in range and finite.
 ContactChange AskAbout(const ContactListener& listener, const ContactView& contact, float friction, float restitution);
-// A manifold at the poses of now, its points in `room`.
+// A manifold at the poses at which the Collide stage sees it, its points in `room`; and the same after the step.
 ContactView ViewContact(const BodyStore& bodies, const ColliderStore& colliders, const PairStore& pairs, uint32_t pair,
                         ContactView::Point (&room)[ContactRecord::kMaxPoints]);
+ContactView ViewSolvedContact(const BodyStore& bodies, const ColliderStore& colliders, const PairStore& pairs,
+                              uint32_t pair, ContactView::Point (&room)[ContactRecord::kMaxPoints]);
 // Whether one of its bodies sleeps, and is to wake where they touch.
 bool TouchesSleeper(const BodyStore& bodies, const Pair& pair);
 

@@ -85,6 +85,7 @@ uint32_t PairStore::AddMore(uint32_t of) {
     pair.fixedB = first.fixedB;
     pair.offset = first.offset;
     pair.surface = first.surface;
+    pair.reference = first.reference;
     pair.isMore = true;
     pair.more = first.more;
     pairs[of].more = index;

@@ -5,7 +5,7 @@
 
 namespace fulcrum {
 
-// Prints to stdout, complains on stderr; writes recordings to out/ below the current folder. Returns the exit status:
+// Prints to stdout, errors to stderr; writes recordings to out/ below the current folder. Returns the exit status:
 // 0, or 1 where something could not be read, simulated or written.
 int Execute(const Command& command);
 

@@ -21,8 +21,7 @@ std::string ReportText(const std::vector<ReportLine>& lines);
 // median_ms mean_ms p99_ms max_ms steps_per_s accuracy nonfinite hash; and the engine's own. The ms of a scene that
 // times a batch of queries are the batch's, and their number a second is there too (rays_per_s). What is not measured
 // (the drift of a scene that is not built to stand, when all sleep where sleeping is off) is null, asleep_s may be
-// "never". Numbers that are
-// not finite are written as null.
+// "never". Numbers that are not finite are written as null.
 nlohmann::ordered_json ReportJson(const std::string& name, const RunFigures& figures, uint64_t seed);
 
 }  // namespace fulcrum
