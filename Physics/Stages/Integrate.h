@@ -68,7 +68,9 @@ FULCRUM_FORCE_INLINE Vec3<Real> AddGyroscopicTorque(const Vec3<Real>& inverseIne
     // Rounding is left alone: it would have a sign, substep after substep.
     const Real ratio = energy / energyOf(end, end);
     const Real keeping = Select(Abs(ratio - Real(1.0f)) < Real(1e-6f), Real(1.0f), Sqrt(ratio));
-    const Vec3<Real> turned = axes * Vec3<Real>(end * keeping - added);
+    // The change alone goes through the axes: these are not quite of unit length, and w would grow or shrink with each
+    // substep.
+    const Vec3<Real> turned = w + axes * Vec3<Real>((end * keeping - added) - start);
     // A moment without end has no torque, and where moments differ by more than floats hold, nothing is known of it.
     const auto isKnown = (product > Real(0.0f)) & ((turned[0] + turned[1] + turned[2]) * Real(0.0f) == Real(0.0f));
     Vec3<Real> result;

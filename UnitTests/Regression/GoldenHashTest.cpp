@@ -12,10 +12,10 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0x897b09c2a9da3e7bull;
-constexpr uint64_t kGoldenHashOfJoints = 0xc7cceb2a38f2e8ecull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x36c6bd6db97a9d86ull;
-constexpr uint64_t kGoldenHashOfFastBodies = 0x89cdbd63fae6c1aeull;
+constexpr uint64_t kGoldenHash = 0xc3163c971690b19dull;
+constexpr uint64_t kGoldenHashOfJoints = 0x938e329a83cb251cull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0x34e2b4c3b5bdd78eull;
+constexpr uint64_t kGoldenHashOfFastBodies = 0x4b3c56bc6ca8615dull;
 
 std::string Hex(uint64_t number) {
     char text[24];

@@ -59,5 +59,29 @@ TEST(Top, PrecessesByTheClosedFormAndMoreSubstepsErrLess) {
     }
 }
 
+// A disc on a hinge in any direction: rounding has no sign, however many substeps there are. Gyroscopic torque once
+// gave 1 unit in the last place a pass, 0.3 % in 19,200 substeps.
+TEST(Top, ADiscOnAHingeKeepsItsSpin) {
+    constexpr float kSpin = 3;  // rad/s
+    for (const Vector3& axis : {Vector3(0, 0, 1), Vector3(1, 0, 0), Vector3(0.6f, 0, 0.8f), Vector3(0, -1, 0)})
+        for (const int substeps : {4, 64}) {
+            SystemSettings settings = Weightless();
+            settings.solver.substeps = substeps;
+            TestWorld world(settings);
+            const BodyId hook = AddHook(world);
+            const Vector3 across = Cross(Vector3(0, 1, 0), axis);
+            const double angle = std::acos(double{axis.y()});
+            const BodyId disc = world.Add({.shape = Cylinder::Create(0.05f, 0.4f).Value(),
+                                           .position = {0.4, 0, 0},
+                                           .rotation = RotationAbout(Normalized(across, Vector3(1, 0, 0)), angle),
+                                           .angularVelocity = axis * kSpin});
+            HingeJointSettings hinge{Between(hook, disc, {0.4, 0, 0}, axis)};
+            Join(world, hinge);
+            world.Run(5);
+            EXPECT_NEAR(Length(world.Bodies().GetAngularVelocity(disc)), kSpin, 2e-4f * kSpin)
+                << axis.x() << " " << axis.y() << ", " << substeps << " substeps";
+        }
+}
+
 }  // namespace
 }  // namespace fulcrum::testing
