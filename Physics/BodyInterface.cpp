@@ -99,6 +99,7 @@ void MoveToItsTree(WorldState& world, uint32_t body) {
 
 // Tells all joints of the body's mechanism, once between two steps.
 void NoteTeleport(WorldState& world, uint32_t body) {
+    constexpr float kSecondsOfTeleport = 5;  // in which a mechanism comes together, see Docs/Joints.md
     JointStore& store = world.joints;
     std::vector<uint32_t> bodies{body};
     while (!bodies.empty()) {
@@ -107,7 +108,7 @@ void NoteTeleport(WorldState& world, uint32_t body) {
         store.VisitOf(from, [&](uint32_t index) {
             Joint& joint = store.joints[index];
             if (std::exchange(joint.teleportedBefore, world.step + 1) == world.step + 1) return;
-            store.types[index]->wasTeleported = true;
+            store.types[index]->secondsOfTeleport = kSecondsOfTeleport;
             const int other = 1 - joint.SideOf(from);
             if (!joint.still[other]) bodies.push_back(joint.body[other]);
         });

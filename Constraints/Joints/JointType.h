@@ -133,9 +133,9 @@ public:
     // the step, N or N m. Written by the Store stage, as is what JointPose says of the last step.
     std::array<float, JointRowList::kMaxRows> impulses{}, forces{};
     Vector3 turnedA = Vector3::Zero(), turnedB = Vector3::Zero();
-    // Whether a body of its mechanism was teleported, and its springs have been overstretched since: then they are
-    // pulled as locks are. Cleared by the Prepare stage.
-    bool wasTeleported = false;
+    // How long its springs are yet pulled as locks are where they are overstretched, s: since a body of its mechanism
+    // was teleported, and as long as they are. Counted by the Prepare stage.
+    float secondsOfTeleport = 0;
 };
 
 inline double JointType::Coordinate(JointAxis axis, const JointPose& pose) const {

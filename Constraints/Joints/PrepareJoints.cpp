@@ -194,8 +194,8 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
         bool isOverstretched = false;
         for (uint32_t i = 0; i < lists[lane].count; ++i)
             isOverstretched |=
-                SoftenLane(batch, batch.rows[i], lane, lists[lane].rows[i], type.wasTeleported, settings);
-        type.wasTeleported = isOverstretched;
+                SoftenLane(batch, batch.rows[i], lane, lists[lane].rows[i], type.secondsOfTeleport > 0, settings);
+        if (!isOverstretched) type.secondsOfTeleport = Max(type.secondsOfTeleport - settings.dt, 0.0f);
     }
 }
 
