@@ -35,11 +35,15 @@ public:
         });
         for (uint32_t i = 0; i < hits.size(); ++i) order[i] = {hits[i].time, hits[i].body, hits[i].otherCollider, i};
         std::sort(order.begin(), order.end(), [](const Key& a, const Key& b) { return a.Order() < b.Order(); });
-        const std::span<Reach> reaches = workers.scratch.Allocate<Reach>(hits.size());
-        for (uint32_t i = 0; i < hits.size(); ++i) reaches[i] = ReachOf(hits[order[i].index], impacts[order[i].index]);
         const std::span<uint8_t> mayChange = workers.scratch.Allocate<uint8_t>(hits.size());
-        if (isLast_) std::fill(mayChange.begin(), mayChange.end(), uint8_t{0});
-        else FindReachable(reaches, mayChange, workers);
+        if (isLast_) {
+            std::fill(mayChange.begin(), mayChange.end(), uint8_t{0});
+        } else {
+            const std::span<Reach> reaches = workers.scratch.Allocate<Reach>(hits.size());
+            for (uint32_t i = 0; i < hits.size(); ++i)
+                reaches[i] = ReachOf(hits[order[i].index], impacts[order[i].index]);
+            FindReachable(reaches, mayChange, workers);
+        }
         kept_.clear();
         for (uint32_t i = 0; i < hits.size(); ++i)
             Resolve(hits[order[i].index], impacts[order[i].index], mayChange[i] != 0);
@@ -58,11 +62,12 @@ private:
     };
 
     Reach ReachOf(const SweepHit& hit, const Impact& impact) const {
-        Reach reach{.center = hit.center, .time = hit.time};
+        // Hits that are not decided yet have no points, and no center of their own.
+        Reach reach{.center = hit.pointCount > 0 ? hit.center : impact.poses[0].position, .time = hit.time};
         const uint32_t bodies[2] = {hit.body, hit.other};
         for (int s = 0; s < 2; ++s) {
             if (!bodies_.CanMove(bodies[s])) continue;
-            const float away = Length(Between(hit.center, impact.poses[s].position));
+            const float away = Length(Between(reach.center, impact.poses[s].position));
             reach.radius = std::max(reach.radius, away + bodies_.dynamics[bodies[s]].outerRadius);
             reach.before = std::max(reach.before, Length(impact.sweeps[s].DisplacementRate()));
             if (hit.time < 1)

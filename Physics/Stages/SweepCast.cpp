@@ -204,6 +204,7 @@ private:
         const Sweep& theirSweep = pieces.theirs.sweep;
         const float start = pieces.start, length = 1 - start;
         ShapeCastSettings settings;
+        // Less than half of what counts where they close in fast: a hit is found by so much too early.
         settings.tolerance = 0.08f * DepthThatCounts(*view_.colliders.shapes[pieces.other].shape);
         settings.measureDepth = false;
         const auto limit = [&] { return length > 0 ? std::max(0.0f, (best_.time - start) / length) : 0.0f; };

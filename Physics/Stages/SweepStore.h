@@ -23,7 +23,7 @@ struct Sweep {
     Vector3 turn = Vector3::Zero();          // rad, rotation vector, until the end
     float from = 0;
     uint32_t body = 0;
-    bool turns = false;    // it is cast with its turn
+    bool turns = false;    // it is cast with its turn, however small
     bool isCut = false;    // something was hit
     bool waits = false;    // stays until the step's end where it was at `from`, with the velocity of then
     bool changed = false;  // in the present round

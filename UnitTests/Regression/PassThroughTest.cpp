@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <vector>
 #include <cmath>
+#include <limits>
 
 namespace fulcrum::testing {
 namespace {
@@ -161,28 +162,23 @@ TEST(PassThrough, CubesOfTheDrumKeepTheirDistance) {
     EXPECT_LT(worst[1], 0.65);
 }
 
-// Rods and boxes meet at up to 500 m/s, and turn by up to 5 rad a step: 125,000 hits, of which 20 leave more than 0.1.
-TEST(PassThrough, BodiesOfHighSpeedDoNotEnterEachOther) {
-    Result<std::unique_ptr<SceneWorld>> room = SceneWorld::Create(*FindScene("high_speed"));
-    ASSERT_TRUE(room);
-    PenetrationMeter meter(*room.Value());
-    for (int step = 0; step < 200; ++step) {
-        ASSERT_TRUE(room.Value()->Step(kStep));
+// Over the smaller inner radius, of all steps.
+double WorstPenetration(const char* scene, int steps) {
+    Result<std::unique_ptr<SceneWorld>> world = SceneWorld::Create(*FindScene(scene));
+    EXPECT_TRUE(world);
+    if (!world) return std::numeric_limits<double>::infinity();
+    PenetrationMeter meter(*world.Value());
+    for (int step = 0; step < steps; ++step) {
+        EXPECT_TRUE(world.Value()->Step(kStep));
         meter.Measure();
     }
-    EXPECT_LT(meter.Worst().relative, 0.3);
+    return meter.Worst().relative;
 }
 
-TEST(PassThrough, AStackThatFallsIsNotSquashed) {
-    Result<std::unique_ptr<SceneWorld>> trapDoor = SceneWorld::Create(*FindScene("trap_door"));
-    ASSERT_TRUE(trapDoor);
-    PenetrationMeter meter(*trapDoor.Value());
-    for (int step = 0; step < 360; ++step) {
-        ASSERT_TRUE(trapDoor.Value()->Step(kStep));
-        meter.Measure();
-    }
-    EXPECT_LT(meter.Worst().relative, 0.1);
-}
+// Rods and boxes meet at up to 500 m/s, and turn by up to 5 rad a step: 125,000 hits, of which 20 leave more than 0.1.
+TEST(PassThrough, BodiesOfHighSpeedDoNotEnterEachOther) { EXPECT_LT(WorstPenetration("high_speed", 200), 0.3); }
+
+TEST(PassThrough, AStackThatFallsIsNotSquashed) { EXPECT_LT(WorstPenetration("trap_door", 360), 0.1); }
 
 TEST(PassThrough, TheMeterMeasuresOverlapsWithoutContacts) {
     const auto noGravity = [](SystemSettings& settings) { settings.gravity.setZero(); };

@@ -13,6 +13,16 @@ struct SpringCase {
     }
 };
 
+// From the origin to a point of b, with a length at rest, m.
+DistanceJointSettings SpringBetween(BodyId a, BodyId b, const Position& end, float atRest,
+                                    const SpringSettings& spring) {
+    DistanceJointSettings settings{Between(a, b, {0, 0, 0})};
+    settings.anchorB = AnchorAt(end);
+    settings.minDistance = settings.maxDistance = atRest;
+    settings.spring = spring;
+    return settings;
+}
+
 class JointSpring : public ::testing::TestWithParam<SpringCase> {
 protected:
     double Frequency() const { return GetParam().frequency; }
@@ -57,10 +67,7 @@ TEST_P(JointSpring, BetweenABodyAndTheWorldAtADistance) {
         TestWorld world(Weightless());
         const BodyId hook = AddHook(world);
         const BodyId ball = world.Add({.shape = SphereOf(0.1f), .position = {1.5, 2, 0}, .mass = 4});
-        DistanceJointSettings settings{Between(hook, ball, {0, 0, 0})};
-        settings.anchorB = AnchorAt({1.5, 2, 0});
-        settings.minDistance = settings.maxDistance = 2.0f;
-        settings.spring = spring;
+        const DistanceJointSettings settings = SpringBetween(hook, ball, {1.5, 2, 0}, 2.0f, spring);
         ExpectOscillator(world, Join(world, settings), JointAxis::LinearX, 2);
     }
 }
@@ -70,10 +77,7 @@ TEST_P(JointSpring, BetweenTwoBodiesActsOnTheirReducedMass) {
         TestWorld world(Weightless());
         const BodyId light = world.Add({.shape = SphereOf(0.1f), .position = {0, 0, 0}, .mass = 1});
         const BodyId heavy = world.Add({.shape = SphereOf(0.1f), .position = {0, 0, 2.5}, .mass = 3});
-        DistanceJointSettings settings{Between(light, heavy, {0, 0, 0})};
-        settings.anchorB = AnchorAt({0, 0, 2.5});
-        settings.minDistance = settings.maxDistance = 2.0f;
-        settings.spring = spring;
+        const DistanceJointSettings settings = SpringBetween(light, heavy, {0, 0, 2.5}, 2.0f, spring);
         ExpectOscillator(world, Join(world, settings), JointAxis::LinearX, 2);
     }
 }
@@ -83,10 +87,7 @@ TEST_P(JointSpring, CreatedFarFromRest) {
     TestWorld world(Weightless());
     const BodyId hook = AddHook(world);
     const BodyId ball = world.Add({.shape = SphereOf(0.1f), .position = {50, 0, 0}, .mass = 4});
-    DistanceJointSettings settings{Between(hook, ball, {0, 0, 0})};
-    settings.anchorB = AnchorAt({50, 0, 0});
-    settings.minDistance = settings.maxDistance = 25.0f;
-    settings.spring = ByFrequency();
+    const DistanceJointSettings settings = SpringBetween(hook, ball, {50, 0, 0}, 25.0f, ByFrequency());
     ExpectOscillator(world, Join(world, settings), JointAxis::LinearX, 25);
 }
 
@@ -177,10 +178,7 @@ TEST(JointSpringAtRest, ACriticallyDampedFrequencyCarriesAWeightAtGOverOmegaSqua
     TestWorld world(NoSleep());
     const BodyId hook = AddHook(world);
     const BodyId ball = world.Add({.shape = SphereOf(0.1f), .position = {0, -1, 0}, .mass = 7});
-    DistanceJointSettings settings{Between(hook, ball, {0, 0, 0})};
-    settings.anchorB = AnchorAt({0, -1, 0});
-    settings.minDistance = settings.maxDistance = 1.0f;
-    settings.spring = FrequencySpring(2, 1);
+    const DistanceJointSettings settings = SpringBetween(hook, ball, {0, -1, 0}, 1.0f, FrequencySpring(2, 1));
     const JointId spring = Join(world, settings);
     world.Run(5);
     const double omega = 4 * kPi;
@@ -194,10 +192,8 @@ TEST(JointSpringAtRest, AfterATeleportItIsPulledNoFasterThanLocks) {
     const BodyId link = world.Add({.shape = SphereOf(0.1f), .position = {2, 0, 0}, .mass = 2}),
                  ball = world.Add({.shape = SphereOf(0.1f), .position = {3, 0, 0}, .mass = 2});
     Join(world, FixedJointSettings{Between(link, ball, {2.5, 0, 0})});
-    DistanceJointSettings settings{Between(hook, link, {0, 0, 0})};
-    settings.anchorB = AnchorAt({2, 0, 0});
-    settings.minDistance = settings.maxDistance = 2.0f;
-    settings.spring = FrequencySpring(2, 0.5, SpringForm::Exact);
+    const DistanceJointSettings settings =
+        SpringBetween(hook, link, {2, 0, 0}, 2.0f, FrequencySpring(2, 0.5, SpringForm::Exact));
     const JointId spring = Join(world, settings);
     for (const BodyId moved : {link, ball})
         ASSERT_TRUE(world.Bodies().SetPose(moved, world.PositionOf(moved) + Position(40, 0, 0), {}));
