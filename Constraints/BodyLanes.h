@@ -58,6 +58,18 @@ FULCRUM_FORCE_INLINE Vec3<Wide<N>> GatherOffset(const uint32_t (&bodyA)[N], cons
     return Vec3<Real>(Real::Load(offsets[0]), Real::Load(offsets[1]), Real::Load(offsets[2]));
 }
 
+// Of both bodies the smaller inner radius, m.
+template <int N>
+FULCRUM_FORCE_INLINE Wide<N> GatherInnerRadius(const uint32_t (&bodyA)[N], const uint32_t (&bodyB)[N],
+                                               const BodyPose* poses) {
+    alignas(64) float radii[N];
+    for (int i = 0; i < N; ++i) {
+        const float a = poses[bodyA[i]].innerRadius, b = poses[bodyB[i]].innerRadius;
+        radii[i] = a < b ? a : b;
+    }
+    return Wide<N>::Load(radii);
+}
+
 inline bool Any(bool mask) { return mask; }
 template <int N>
 FULCRUM_FORCE_INLINE bool Any(WideMask<N> mask) {

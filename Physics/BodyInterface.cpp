@@ -42,7 +42,6 @@ void FillDynamics(BodyDynamics& d, const BodySettings& s) {
     d.angularDamping = s.angularDamping;
     d.maxLinearSpeed = std::min(s.maxLinearSpeed, kFastestLinear);
     d.maxAngularSpeed = std::min(s.maxAngularSpeed, kFastestAngular);
-    d.outerRadius = s.shape->OuterRadius();
     d.gyroscopic = s.gyroscopicTorque;
     d.allowSleep = s.allowSleep;
     d.layer = s.layer & 31u;
@@ -145,6 +144,7 @@ Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
     world_.bodies.continuousCount += settings.continuous != ContinuousCollision::Off;
     cold.isSensor = settings.isSensor;
     FillDynamics(world_.bodies.dynamics[body], settings);
+    world_.bodies.SetRadii(body, *settings.shape);
     world_.bodies.SetFilter(body, {settings.category, settings.mask, settings.group});
     if (cold.children) {
         const float kilograms = settings.mass > 0 ? settings.mass : settings.density * settings.shape->Mass().volume;

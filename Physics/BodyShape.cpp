@@ -25,7 +25,7 @@ ChildId Commit(WorldState& world, uint32_t body, const MutableCompound::Edit& ed
     const ShapePtr before = edit.index < all.size() ? all[edit.index].shape : nullptr;  // pairs name it still
     WakeBody(world, body);
     const ChildId id = children.compound->Commit(edit);
-    world.bodies.dynamics[body].outerRadius = cold.shape->OuterRadius();
+    world.bodies.SetRadii(body, *cold.shape);
     if (updatesMass) {
         MoveCenterOfMass(world, body, center, edit.mass.centerOfMass);
         children.origin = children.compound->Origin();
@@ -120,7 +120,7 @@ Status BodyInterface::SetShape(BodyId id, const ShapePtr& shape, MassUpdate mass
     const ShapePtr before = cold.shape;
     SetShapeOf(world_, body, shape);
     MoveCenterOfMass(world_, body, before->Mass().centerOfMass, next.centerOfMass);
-    d.outerRadius = shape->OuterRadius();
+    world_.bodies.SetRadii(body, *shape);
     if (updates) ChangeMass(world_, body, next, kilograms);
     if (cold.children) cold.children->massUnit = double{kilograms} / RelativeMassOf(*shape);
     MakeColliders(world_, body);

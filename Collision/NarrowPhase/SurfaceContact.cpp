@@ -118,15 +118,28 @@ private:
     }
 
     // A batch leaves out one-sided triangles with the center behind them. Those that the shape touched in the last step
-    // count all the same: the center has tunneled through them.
+    // count all the same, and so do their neighbors: the center has tunneled through them.
     void CollideTunneled(size_t first, size_t count) {
         for (size_t i = first; i < first + count; ++i)
             if (HasTunneled(contacts_.views_[i])) CollideTriangle(static_cast<uint32_t>(i));
     }
     // Only over the triangle itself: a body that tips over its edge gets behind it, too.
-    bool HasTunneled(const TriangleView& view) const {
-        return HeightAbove(view, center_) < 0 &&
-               std::find(touched_.begin(), touched_.end(), view.id) != touched_.end() && IsOver(view, center_, 0);
+    bool HasTunneled(const TriangleView& view) {
+        const float height = HeightAbove(view, center_);
+        if (!(height < 0 && height > -a_.OuterRadius()) || !IsOver(view, center_, 0)) return false;
+        return std::find(touched_.begin(), touched_.end(), view.id) != touched_.end() || ContinuesTouched(view);
+    }
+    // Whether it shares a corner with a triangle that the shape touched and faces the same way: what lies behind an
+    // edge or another side of a thin wall is none of it.
+    bool ContinuesTouched(const TriangleView& view) {
+        std::vector<TriangleView>& touched = contacts_.touched_;
+        touched.resize(touched_.size());
+        b_.GetTriangles(touched_, touched.data());
+        return std::any_of(touched.begin(), touched.end(), [&](const TriangleView& before) {
+            return Dot(before.normal, view.normal) > 0.5f &&
+                   std::find_first_of(before.vertexIds, before.vertexIds + 3, view.vertexIds, view.vertexIds + 3) !=
+                       before.vertexIds + 3;
+        });
     }
 
     void CollideSphere(const TriangleBatch& batch, uint32_t near, uint32_t first) {
@@ -260,6 +273,7 @@ private:
             const ReferenceFace face = MeasureFace(pair, false, 0);
             if (face.separation > tolerances.reach) return;
             const FaceContact contact = BuildFaceContact(pair, face, tolerances, onFace);
+            if (HeightAbove(view, center_) < 0) return AddTunneled(view, onFace);
             if (onFace.pointCount == 0 && FacesAlone(view)) return;
             if (IsFaceContact(view, contact, onFace)) return AddFace(view, onFace);
         }
@@ -297,6 +311,16 @@ private:
         ContactTolerances tolerances(pair.InnerRadii(), pair.RadiusSum(), settings_);
         tolerances.facesAhead = false;
         const Vector3 inwards = -(pair.rotation * view.normal);
+        Manifold onFace, nearest;
+        PairCache none;
+        onFace.pointCount = nearest.pointCount = 0;
+        const float separation = pair.SeparationAlong(inwards);
+        if (separation <= tolerances.reach) {
+            BuildConvexContact(pair, {inwards, separation, pair.a.SupportCore(inwards)}, tolerances, none, onFace);
+            if (onFace.pointCount > 0 && Dot(onFace.normal, inwards) < InternalEdgeFilter::kFlatCosine)
+                onFace.pointCount = 0;
+        }
+        if (HeightAbove(view, center_) < 0) return AddTunneled(view, onFace);
         KnownContact known{};
         bool overlaps;
         if (byLibccd) {
@@ -308,20 +332,15 @@ private:
             overlaps = gjk.status == GjkStatus::Overlapping;
             known = overlaps ? FindDepth(pair, gjk.simplex, inwards) : KnownContact{gjk.axis, gjk.separation, gjk.onA};
         }
-        Manifold onFace, nearest;
-        PairCache none;
-        onFace.pointCount = nearest.pointCount = 0;
-        const float separation = pair.SeparationAlong(inwards);
-        if (separation <= tolerances.reach) {
-            BuildConvexContact(pair, {inwards, separation, pair.a.SupportCore(inwards)}, tolerances, none, onFace);
-            if (onFace.pointCount > 0 && Dot(onFace.normal, inwards) < InternalEdgeFilter::kFlatCosine)
-                onFace.pointCount = 0;
-        }
         none = {};
         BuildConvexContact(pair, known, tolerances, none, nearest);
         contacts_.filter_.AddNearest(view, pair.DirectionInB(known.axis), overlaps, onFace, nearest);
     }
 
+    // Of a shape whose center has tunneled through the face, which is nearest to its back: its front alone pushes.
+    void AddTunneled(const TriangleView& view, const Manifold& onFace) {
+        if (onFace.pointCount > 0) AddFace(view, onFace);
+    }
     void AddFace(const TriangleView& view, const Manifold& manifold) { contacts_.filter_.AddFace(view, manifold); }
 
     void AddInnerBall(const InnerBall& ball) {
@@ -350,8 +369,8 @@ private:
 };
 
 size_t SurfaceContacts::MemoryUsed() const {
-    return ids_.capacity() * sizeof(uint32_t) + views_.capacity() * sizeof(TriangleView) + filter_.MemoryUsed() +
-           manifolds_.capacity() * sizeof(SurfaceManifold);
+    return ids_.capacity() * sizeof(uint32_t) + (views_.capacity() + touched_.capacity()) * sizeof(TriangleView) +
+           filter_.MemoryUsed() + manifolds_.capacity() * sizeof(SurfaceManifold);
 }
 
 void CollideSurface(const ConvexShape& a, const SurfaceShape& b, const RelativePose& bInA,

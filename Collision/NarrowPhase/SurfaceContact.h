@@ -4,8 +4,8 @@
 //
 // Each triangle that the shape may reach is collided by itself. Contacts with nearly the same normal, on the same
 // material, are merged into one manifold of at most four points (SurfaceManifold.h). Fast bodies get one for their
-// inner ball besides (InnerBall.h). A face that was touched in the last step still pushes to its front if a heavier
-// body has pushed the center through it (tunneled).
+// inner ball besides (InnerBall.h). A face that was touched in the last step, or a neighbor of it, still pushes to its
+// front if a heavier body has pushed the center through it (tunneled).
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/Collide.h>
@@ -29,6 +29,7 @@ private:
 
     std::vector<uint32_t> ids_;
     std::vector<TriangleView> views_;
+    std::vector<TriangleView> touched_;  // in the last step
     InternalEdgeFilter filter_;
     std::vector<SurfaceManifold> manifolds_;
     size_t manifoldCount_ = 0;
@@ -43,8 +44,8 @@ struct SurfaceApproach {
 
 // Fills `contacts` with the manifolds of a and the triangles of b within settings.speculativeDistance, in a's center
 // frame, as Collide does. One-sided triangles push to their front alone, and only shapes whose center of mass is there,
-// or that touched them in the last step. With the method Libccd, libccd decides for each triangle within reach; which
-// of them count as faces, edges and corners, and what becomes one manifold, is decided as above.
+// or that touched them or a neighbor of them in the last step. With the method Libccd, libccd decides for each triangle
+// within reach; which of them count as faces, edges and corners, and what becomes one manifold, is decided as above.
 void CollideSurface(const ConvexShape& a, const SurfaceShape& b, const RelativePose& bInA,
                     const CollideSettings& settings, const SurfaceApproach& approach, SurfaceContacts& contacts);
 

@@ -75,7 +75,8 @@ struct ContactBatch {
     Real coupling[3][3];       // change of V.n, W.t1, W.t2 by a unit impulse of t1, t2, twist
     Real frictionImpulse[3];
     Real friction, twistRadius;
-    Real maxPushSpeed;  // m/s: the fastest that overlaps are pushed apart
+    Real maxPushSpeed;      // m/s: the fastest that overlaps are pushed apart
+    Real inverseSoftDepth;  // 1/m, of the overlap from which on rows give way less, see ContactSolveSettings
 
     // Only where `bounces`.
     Real restitution;   // 0..1
@@ -97,8 +98,10 @@ struct ContactSolveSettings {
     float pushRate;      // 1/s: speed of the push per meter of overlap
     float massScale;     // 0..1: softened effective mass / effective mass
     float impulseScale;  // 0..1: part of the impulse that the row gives way by
-    // A soft row gives way in proportion to its load, however deep the overlap; a push that has reached its largest
-    // speed would lose against a heavy one. So the deeper the overlap beyond that, the less the row gives way.
+    // A soft row gives way in proportion to its load, however deep the overlap: a push that has reached its largest
+    // speed would lose against a heavy one, and a light body under a heavy one would be pressed through what it lies
+    // on. So rows give way less the deeper the overlap is beyond that, and beyond a quarter of the smaller inner
+    // radius: not at all, but for mostStiffer, at twice that depth.
     float stiffening = 0;   // s/m: by so much of the impulse less for each m/s that the push falls short
     float mostStiffer = 0;  // 0..1: but never by more than this
     float slop;             // m: overlap that is left alone

@@ -171,7 +171,9 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
                 const Real wanted = (row.separation + Real(settings.slop)) * pushRate;
                 const Real push = Clamp(wanted, fastest + Min(speed[i], zero), zero);
                 speed[i] += push;
-                stiffer[i] = Clamp((push - wanted) * Real(settings.stiffening), zero, Real(settings.mostStiffer));
+                const Real deep = Real(-settings.impulseScale) * (row.separation * batch.inverseSoftDepth + Real(1.0f));
+                stiffer[i] =
+                    Clamp(Max((push - wanted) * Real(settings.stiffening), deep), zero, Real(settings.mostStiffer));
             }
         }
     };

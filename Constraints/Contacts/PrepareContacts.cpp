@@ -10,6 +10,8 @@ using namespace contacts;
 
 // Coefficients above this hold as this one does; a limit of force must be a number.
 constexpr float kMostFriction = 1e6f;
+// Of the smaller inner radius: overlaps that rows give way to as they do to any.
+constexpr float kSoftPart = 0.25f;
 
 // Sums, over both bodies, what the response matrices are made of.
 template <class Real>
@@ -229,6 +231,7 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
     batch.friction = Min(head[Record::kFriction], Real(kMostFriction));
     batch.twistRadius = head[Record::kTwistRadius];
     batch.maxPushSpeed = Real(settings.maxPushSpeed);
+    batch.inverseSoftDepth = Real(1.0f / kSoftPart) / GatherInnerRadius<N>(batch.bodyA, bodyB, bodies.poses);
     batch.pointCount = static_cast<int32_t>(HorizontalMax(pointCount));
     batch.bounces = HorizontalMax(head[Record::kRestitution]) > 0.0f;
     batch.surfaces = !kFixedB && isMarked && HaveSurfaceVelocity(head[Record::kMarks]).Any() ? records : nullptr;

@@ -131,10 +131,11 @@ bool SoftenLane(const JointBatch<N>& batch, JointRows<N>& rows, int lane, const 
     return false;
 }
 
-// Asks the types for their rows and spreads these over the lanes. The parts are set up.
+// Asks the types for their rows and spreads these over the lanes. The parts are set up. wasTeleported: 1 for lanes
+// whose mechanism was teleported in the last seconds.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const* types,
-              const ConstSolverBodies& bodies, const JointSolveSettings& settings) {
+              const ConstSolverBodies& bodies, const JointSolveSettings& settings, Wide<N>& wasTeleported) {
     batch.rowCount = 0;
     batch.rowsTurnWithA = batch.radial = false;
     batch.wayA = batch.wayB = {};
@@ -192,6 +193,7 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
     for (int lane = 0; lane < batch.count; ++lane) {
         JointType& type = *types[batch.joint[lane]];
         bool isOverstretched = false;
+        wasTeleported.Set(lane, type.secondsOfTeleport > 0 ? 1.0f : 0.0f);
         for (uint32_t i = 0; i < lists[lane].count; ++i)
             isOverstretched |=
                 SoftenLane(batch, batch.rows[i], lane, lists[lane].rows[i], type.secondsOfTeleport > 0, settings);
@@ -202,7 +204,7 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
 // Which joints are so far apart that they are pulled, see PullJoints.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const JointErrors<Wide<N>>& errors,
-             const Wide<N>& wasPulled, const JointSolveSettings& settings) {
+             const Wide<N>& wasPulled, const Wide<N>& wasTeleported, const JointSolveSettings& settings) {
     using Real = Wide<N>;
     const Real farPart(FarPush(settings)), least = FarPush<Real>(wasPulled, settings), zero(0.0f);
     // Parts of the fastest push that distances and angles ask for.
@@ -225,11 +227,14 @@ void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const Joint
         distance = Max(distance, Select(moves, push, zero));
         angle = Max(angle, Select(moves, zero, push));
     }
-    // Angular errors alone do not count: no lever arm grows with them, and in a pile hinges bend beyond their limits.
+    // Angular errors alone count after a teleport only: no lever arm grows with them, and in a pile hinges bend beyond
+    // their limits. Pushed by velocities, which are relaxed in directions that have turned since, they would leave
+    // energy behind.
     const auto isDistant = distance > farPart, isMuch = Max(distance, angle) > farPart;
     const Real near = SecondsNear(wasPulled, isDistant, settings);
     const auto isFar =
-        ((distance > least) | ((angle > least) & (wasPulled >= Real(kWasFar)))) & (near <= Real(LongestNear(settings)));
+        ((distance > least) | ((angle > least) & ((wasPulled >= Real(kWasFar)) | (wasTeleported > zero)))) &
+        (near <= Real(LongestNear(settings)));
     batch.far = isFar.Any();
     batch.isFar = Select(isFar, Real(kWasFar) + near, zero);
     batch.isDistant = Select(isDistant, Real(1.0f), zero);
@@ -333,8 +338,9 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
                            findings.angularError, findings.angularJoint);
         }
         SetUpCoupling<linear, angular>(batch);
-        FillRows<linear, angular>(batch, records, types, bodies, settings);
-        FindFar<linear, angular>(batch, place, errors, impulses[JointRecord::kWasPulled], settings);
+        Real wasTeleported(0.0f);
+        FillRows<linear, angular>(batch, records, types, bodies, settings, wasTeleported);
+        FindFar<linear, angular>(batch, place, errors, impulses[JointRecord::kWasPulled], wasTeleported, settings);
         findings.far |= batch.far;
         Soften<linear, angular>(batch, errors, settings);
     });

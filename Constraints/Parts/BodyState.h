@@ -6,6 +6,7 @@
 #include <Fulcrum/Math/Wide.h>
 
 #include <cstdint>
+#include <limits>
 
 namespace fulcrum {
 
@@ -56,13 +57,16 @@ FULCRUM_CHECK_PLACE(BodyMass, inverseInertia, 0, BodyMass::kInverseInertia);
 FULCRUM_CHECK_PLACE(BodyMass, inverseMass, 0, BodyMass::kInverseMass);
 FULCRUM_CHECK_PLACE(BodyMass, turns, 0, BodyMass::kTurns);
 
-// Pose of the center frame at the start of the step, and the acceleration that gravity and forces give.
+// Pose of the center frame at the start of the step, the acceleration that gravity and forces give, and the body's
+// size.
 struct alignas(64) BodyPose {
     float rotation[4] = {0, 0, 0, 1};   // x y z w
     float acceleration[3] = {0, 0, 0};  // m/s2
     uint32_t boundsChangedIn = 0;       // the step in which fat bounds of it last changed: its pairs must be checked
     double position[3] = {0, 0, 0};     // m, of the center of mass
-    double positionSpare = 0;
+    // m, Shape::InnerRadius; infinite where it has none, as surfaces and planes.
+    float innerRadius = std::numeric_limits<float>::infinity();
+    float spare = 0;
 
     const float* Row() const { return rotation; }
     enum Places { kRotation = 0, kAcceleration = 4, kNoFloat = 7 };

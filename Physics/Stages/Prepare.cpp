@@ -58,6 +58,7 @@ template <int N, bool kFixedB>
         };
         if (!isCrowded(batch.bodyA[lane]) && !isCrowded(bodyB[lane])) continue;
         batch.maxPushSpeed.Set(lane, std::min(batch.maxPushSpeed[lane], mostSpeed));
+        batch.inverseSoftDepth.Set(lane, 0.0f);  // however deep
     }
 }
 

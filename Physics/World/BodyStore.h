@@ -214,6 +214,13 @@ public:
     void ForgetPlaced();
     void MarkAsleep(uint32_t index);
 
+    // From its shape.
+    void SetRadii(uint32_t index, const Shape& shape) {
+        dynamics[index].outerRadius = shape.OuterRadius();
+        const float inner = shape.InnerRadius();
+        poses[index].innerRadius = inner > 0 ? inner : std::numeric_limits<float>::infinity();
+    }
+
     Quaternion RotationOf(uint32_t index) const {
         const float* r = poses[index].rotation;
         return {r[0], r[1], r[2], r[3]};

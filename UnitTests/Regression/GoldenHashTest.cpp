@@ -12,10 +12,10 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0xc3163c971690b19dull;
-constexpr uint64_t kGoldenHashOfJoints = 0x938e329a83cb251cull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x34e2b4c3b5bdd78eull;
-constexpr uint64_t kGoldenHashOfFastBodies = 0x4b3c56bc6ca8615dull;
+constexpr uint64_t kGoldenHash = 0x857d608e22279941ull;
+constexpr uint64_t kGoldenHashOfJoints = 0x8f7c0d3b57031a43ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0xe8ce24ebe31cff99ull;
+constexpr uint64_t kGoldenHashOfFastBodies = 0xa7de5596f1fcbf95ull;
 
 std::string Hex(uint64_t number) {
     char text[24];

@@ -201,5 +201,36 @@ TEST(PassThrough, TheMeterMeasuresOverlapsWithoutContacts) {
     EXPECT_NEAR(meter.Worst().relative, 0.5, 1e-3);
 }
 
+// A soft row gives way in proportion to its load: by D, which a small load tells. From a quarter d of the inner radius
+// on it gives way less, by c = 1 - (x / d - 1) of that at a depth x, so that x = c D, or x = 2 D / (1 + D / d).
+TEST(PassThrough, ALightBallUnderAHeavyOneIsNotPressedIntoTheFloor) {
+    const float radius = 0.05f;
+    const auto depthUnder = [&](float weights) {
+        SystemSettings settings;
+        settings.accuracy.penetration = std::numeric_limits<float>::infinity();  // at the settings' effort alone
+        settings.sleep.enabled = false;
+        TestWorld world(settings);
+        world.AddFloor();
+        const LockedAxes upright = LockedAxes::TranslationX | LockedAxes::TranslationZ | LockedAxes::Rotation;
+        const BodyId light =
+            world.Add({.shape = SphereOf(radius), .position = {0, 0.05, 0}, .mass = 1, .lockedAxes = upright});
+        world.Add({.shape = SphereOf(0.5f),
+                   .position = {0, 0.6, 0},
+                   .mass = 1,
+                   .gravityFactor = weights,
+                   .lockedAxes = upright});
+        world.Run(10);
+        EXPECT_LT(Length(world.VelocityOf(light)), 1e-3f);
+        return double{radius} - world.PositionOf(light).y();
+    };
+    const double d = 0.25 * double{radius}, unit = depthUnder(49) / 50;
+    ASSERT_LT(unit * 50, 0.5 * d);
+    for (const float weights : {199.0f, 299.0f, 499.0f}) {
+        const double soft = unit * (double{weights} + 1);
+        ASSERT_GT(soft, 1.2 * d);
+        EXPECT_NEAR(depthUnder(weights), 2 * soft / (1 + soft / d), 0.1 * d) << weights;
+    }
+}
+
 }  // namespace
 }  // namespace fulcrum::testing

@@ -2,6 +2,7 @@
 // share no corners, so that every edge counts and none is hidden by another's contact.
 #include <Fulcrum/Collision/NarrowPhase/ConvexGjk.h>
 #include <Fulcrum/Collision/NarrowPhase/SurfaceContact.h>
+#include <Fulcrum/Collision/NarrowPhase/TriangleSide.h>
 #include <Fulcrum/Collision/Shapes/TriangleMesh.h>
 #include <Fulcrum/UnitTests/Collision/NarrowPhase/NarrowPhaseTesting.h>
 
@@ -9,6 +10,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace fulcrum::testing {
 namespace {
@@ -223,6 +225,43 @@ TEST_F(AboveATriangle, ABoxHasFourPointsAndFewerOverASide) {
     ASSERT_EQ(found.size(), 1u);
     ASSERT_EQ(found[0].manifold.pointCount, 4);
     for (int i = 0; i < 4; ++i) EXPECT_GT(found[0].manifold.points[i].positionOnA.z(), -1e-5f);
+}
+
+// A sheet of two triangles that face up. A ball of 5 cm is pressed through it, and slips to the neighbor of the
+// triangle that it touched.
+TEST(SurfaceContact, WhatWasPressedThroughAFaceIsPushedBackByItsNeighbor) {
+    const std::vector<Vector3> vertices = {{0, 0, 0}, {0, 0, 2}, {2, 0, 2}, {2, 0, 0}};
+    const std::vector<uint32_t> up = {0, 1, 2, 0, 2, 3}, upAndDown = {0, 1, 2, 0, 2, 3, 2, 1, 0, 3, 2, 0};
+    const float radius = 0.05f;
+    const std::shared_ptr<const Sphere> ball = Sphere::Create(radius).Value();
+    SurfaceContacts contacts;
+    // Over the second triangle. touched: a point of the triangle that it touched, in the sheet's plane.
+    const auto collide = [&](const std::vector<uint32_t>& indices, float height, std::optional<Vector3> touched) {
+        const auto sheet = TriangleMesh::Create({.vertices = vertices, .indices = indices}).Value();
+        const Vector3 center = sheet->Mass().centerOfMass, place = Vector3(1.2f, height, 0.8f) - center;
+        std::vector<uint32_t> ids;
+        for (uint32_t id = 0; touched && id < sheet->TriangleCount(); ++id) {
+            const TriangleView view = sheet->GetTriangle(id);
+            if (view.normal.y() > 0 && IsOver(view, *touched - center, 0)) ids.push_back(id);
+        }
+        EXPECT_EQ(ids.size(), touched ? 1u : 0u);
+        CollideSurface(*ball, *sheet, {-place, Quaternion()}, {.speculativeDistance = kReach}, {.touched = ids},
+                       contacts);
+        return contacts.Manifolds();
+    };
+    const Vector3 here(1.2f, 0, 0.8f), neighbor(0.8f, 0, 1.2f);
+    EXPECT_TRUE(collide(up, -0.01f, {}).empty()) << "what comes from behind passes";
+    for (const Vector3& touched : {here, neighbor}) {
+        const auto found = collide(up, -0.01f, touched);
+        ASSERT_EQ(found.size(), 1u);
+        EXPECT_NEAR(found[0].manifold.normal.y(), -1, 1e-5f);
+        EXPECT_NEAR(found[0].manifold.points[0].separation, -radius - 0.01f, 1e-4f);
+    }
+    // The back of a thin wall is no neighbor of its front, though they share corners.
+    const auto found = collide(upAndDown, 0.04f, here);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_NEAR(found[0].manifold.normal.y(), -1, 1e-5f);
+    EXPECT_NEAR(found[0].manifold.points[0].separation, -0.01f, 1e-5f);
 }
 
 }  // namespace
