@@ -598,6 +598,32 @@ FULCRUM_FORCE_INLINE Real PullSpeed(const Real& error, const JointSolveSettings&
     return Clamp(Real(error * Real(settings.pushRate)), -most, most);
 }
 
+// m/s, rad/s: of pushes beyond it so much is left in the velocities that the impulses of their substep turn with the
+// joint before they are relaxed. What is pushed along one direction and relaxed along another, that has turned
+// meanwhile, keeps the difference: a slider whose bodies were 2 rad apart gained 2 kJ.
+inline constexpr float kFastPush = 1.0f;
+
+// Whether a push of the last velocity iterations was that fast.
+template <LinearLock kLinear, AngularLock kAngular, int N>
+FULCRUM_FORCE_INLINE WideMask<N> IsPushedFast(const JointBatch<N>& batch) {
+    using Real = Wide<N>;
+    Real fastest(0.0f);
+    const auto note = [&](const auto& push) FULCRUM_FORCE_INLINE_LAMBDA {
+        for (int k = 0; k < push.size(); ++k) fastest = Max(fastest, Abs(push[k]));
+    };
+    if constexpr (kAngular == AngularLock::All) note(batch.rotation.GetBias());
+    if constexpr (kAngular == AngularLock::Axis) note(batch.hinge.GetBias());
+    if constexpr (kLinear == LinearLock::Point) note(batch.point.GetBias());
+    if constexpr (kLinear == LinearLock::Line) note(batch.line.GetBias());
+    for (uint32_t i = 0; i < batch.rowCount; ++i) {
+        const JointRows<N>& row = batch.rows[i];
+        const auto pushes = (row.error <= row.openAbove) & (row.mostPush < Real(JointRow::kUnlimited));
+        const Real push = Min(Abs(row.pushRate * row.error), row.mostPush);
+        fastest = Max(fastest, Select(pushes, push, Real(0.0f)));
+    }
+    return fastest > Real(kFastPush);
+}
+
 // The push that the next velocity iterations give; to locks that are far apart none, but a pull.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE void Soften(JointBatch<N>& batch, const JointErrors<Wide<N>>& errors,

@@ -218,6 +218,19 @@ FULCRUM_FORCE_INLINE Vec3<Wide<N>> Follow(BallBatch<N>& batch, const SolverBodie
     return place.offset;
 }
 
+// See kFastPush.
+template <int N>
+[[gnu::noinline, gnu::cold]] void TurnAtOnce(BallBatch<N>& batch, const WideMask<N>& lanes, Twist<Wide<N>>& a,
+                                             Twist<Wide<N>>& b) {
+    using Real = Wide<N>;
+    a.angular += ZeroUnless<Real>(lanes, batch.turnedA);
+    b.angular += ZeroUnless<Real>(lanes, batch.turnedB);
+    for (int k = 0; k < 3; ++k) {
+        batch.turnedA[k] = Select(lanes, Real(0.0f), Real(batch.turnedA[k]));
+        batch.turnedB[k] = Select(lanes, Real(0.0f), Real(batch.turnedB[k]));
+    }
+}
+
 template <bool kRound, int N>
 void Solve(BallBatch<N>& batch, BodyState* states, const JointSolveSettings& settings) {
     using Real = Wide<N>;
@@ -240,7 +253,10 @@ template <bool kRound, int N>
 void Relax(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
     using Real = Wide<N>;
     ChangeVelocities<N>(batch, bodies.states, [&](Twist<Real>& a, Twist<Real>& b) FULCRUM_FORCE_INLINE_LAMBDA {
+        const auto isPushed = Max(Max(Abs(batch.push.x()), Abs(batch.push.y())), Abs(batch.push.z())) > Real(kFastPush);
         Follow<kRound>(batch, bodies, a, b, settings);
+        if (isPushed.Any()) [[unlikely]]
+            TurnAtOnce(batch, isPushed, a, b);
         const Vec3<Real> hard = batch.mass * MotionAt<Real>(a, b, batch.armA, batch.armB);
         Change<kRound>(batch, batch.armA, batch.armB, Vec3<Real>(-hard), a, b);
     });

@@ -65,6 +65,24 @@ FULCRUM_FORCE_INLINE void Turn(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wi
     }
 }
 
+// The same at once, of these lanes.
+template <LinearLock kLinear, int N>
+[[gnu::noinline, gnu::cold]] void TurnAtOnce(JointBatch<N>& batch, const WideMask<N>& lanes, Twist<Wide<N>>& a,
+                                             Twist<Wide<N>>& b) {
+    using Real = Wide<N>;
+    const Real zero(0.0f);
+    const auto move = [&](Vec3<Real>& turned, Vec3<Real>& velocity) {
+        velocity += ZeroUnless<Real>(lanes, turned);
+        for (int k = 0; k < 3; ++k) turned[k] = Select(lanes, zero, Real(turned[k]));
+    };
+    move(batch.turnedA.angular, a.angular);
+    move(batch.turnedB.angular, b.angular);
+    if constexpr (kLinear != LinearLock::Point) {
+        move(batch.turnedA.linear, a.linear);
+        move(batch.turnedB.linear, b.linear);
+    }
+}
+
 template <LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE void SolveRow(JointBatch<N>& batch, JointRows<N>& row, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
     using Real = Wide<N>;
@@ -253,7 +271,10 @@ void SolveJointVelocities(JointBatch<N>& batch, BodyState* states, const JointSo
 template <int N>
 void RelaxJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
     ChangeLocked<N>(batch, bodies.states, [&](auto linear, auto angular, auto& a, auto& b) FULCRUM_FORCE_INLINE_LAMBDA {
+        const auto isPushed = IsPushedFast<linear, angular>(batch);
         const JointErrors<Wide<N>> errors = Follow<linear, angular>(batch, bodies, a, b, settings);
+        if (isPushed.Any()) [[unlikely]]
+            TurnAtOnce<linear>(batch, isPushed, a, b);
         if (batch.far) HoldFar<linear, angular>(batch, a, b);
         SetRowRelax(batch);
         SolveAll<true, linear, angular>(batch, a, b);

@@ -13,7 +13,7 @@ namespace fulcrum::testing {
 namespace {
 
 constexpr uint64_t kGoldenHash = 0x857d608e22279941ull;
-constexpr uint64_t kGoldenHashOfJoints = 0x8f7c0d3b57031a43ull;
+constexpr uint64_t kGoldenHashOfJoints = 0x914646092fee5263ull;
 constexpr uint64_t kGoldenHashOfSurfaces = 0xe8ce24ebe31cff99ull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0xa7de5596f1fcbf95ull;
 
