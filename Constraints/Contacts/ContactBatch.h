@@ -38,8 +38,10 @@ struct MovingSide {
 template <int N>
 struct FixedSide {
     using Real = Wide<N>;
-    Twist<Real> velocity;     // at the start of the step
-    Vec3<Real> acceleration;  // m/s2, centripetal, w x (w x r): a turntable carries its load along the arc
+    Twist<Real> velocity;  // at the start of the step
+    // m/s2, centripetal, w x (w x r): a turntable carries its load along the arc. Of what turns by more than a radian
+    // in the step less: no more than its velocity changes by within the step.
+    Vec3<Real> acceleration;
 };
 
 template <int N, bool kFixedB>
@@ -88,6 +90,7 @@ struct ContactPrepareSettings {
     float impulseScale;                           // dt of this substep / dt of the last: scales the warm start
     float restitutionSpeed;                       // m/s, see BounceContacts
     float maxPushSpeed;                           // m/s
+    float dt = 0;                                 // s, of the step
     const MassOverride* massOverrides = nullptr;  // by record, of those with kMassOverride; null where none has one
 };
 

@@ -182,16 +182,23 @@ template <int N, bool kFixedB>
     if constexpr (!kFixedB) ScaleMass(batch.sideB.inverse, Real::Load(scales[2]), Real::Load(scales[3]));
 }
 
+// An angular velocity, rad/s, limited to a radian in dt seconds. Below that every bit stays.
+template <class Real>
+Vec3<Real> WithinARadian(const Vec3<Real>& w, float dt) {
+    const Real most(1.0f / dt), squared = Dot<Real>(w, w), one(1.0f);
+    return w * Select(squared <= most * most, one, most / Sqrt(Max(squared, Real(1e-30f))));
+}
+
 // Adds the surface velocities to those of fixed sides. Lanes without one keep every bit, as they do where no lane of
 // their batch has one.
 template <int N>
-void AddSurfaceMotion(ContactBatch<N, true>& batch, const Wide<N>& marks, const ContactRecord* records) {
+void AddSurfaceMotion(ContactBatch<N, true>& batch, const Wide<N>& marks, const ContactRecord* records, float dt) {
     using Real = Wide<N>;
     const SurfaceMotion<Real> surface = GatherSurfaceMotion(batch, records);
     const Vec3<Real> linear = batch.tangent1 * surface.v1 + batch.tangent2 * surface.v2,
                      angular = batch.normal * surface.spin;
     // What the surface turns with it moves along the arc.
-    const Vec3<Real> inwards = Cross<Real>(angular, linear);
+    const Vec3<Real> inwards = Cross<Real>(WithinARadian<Real>(angular, dt), linear);
     const auto has = HaveSurfaceVelocity(marks);
     auto& side = batch.sideB;
     for (int k = 0; k < 3; ++k) {
@@ -278,7 +285,7 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
         batch.sideB.velocity.angular = Angular(velocity);
         const Vec3<Real> turning = Cross<Real>(Angular(velocity), armB);
         batch.sideB.velocity.linear = Linear(velocity) + turning;
-        batch.sideB.acceleration = Cross<Real>(Angular(velocity), turning);
+        batch.sideB.acceleration = Cross<Real>(WithinARadian<Real>(Angular(velocity), settings.dt), turning);
     } else {
         for (int i = 0; i < N; ++i) batch.sideB.body[i] = bodyB[i];
         batch.sideB.arm = armB;
@@ -324,7 +331,7 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
         }
     }
     if constexpr (kFixedB)
-        if (isMarked) AddSurfaceMotion(batch, head[Record::kMarks], records);
+        if (isMarked) AddSurfaceMotion(batch, head[Record::kMarks], records, settings.dt);
     const auto finite = FiniteLanes(batch, responses, diagonals);
     if (!finite.All()) KeepLanes(batch, finite);
     if (batch.bounces) PrepareBounces(batch, head[Record::kRestitution], bodyB, bodies, settings);

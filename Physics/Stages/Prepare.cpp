@@ -156,6 +156,7 @@ public:
                     {.impulseScale = step.impulseScale * effort.impulseScale,
                      .restitutionSpeed = step.settings.restitutionSpeed,
                      .maxPushSpeed = step.settings.contactPushSpeed,
+                     .dt = step.dt,
                      .massOverrides = pairs.massOverrides.data()},
                     !crowd.crowded.empty(),
                     step.settings.depenetrationSpeed},

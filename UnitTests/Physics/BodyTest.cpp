@@ -130,6 +130,25 @@ TEST(Kinematic, CarriesABoxByFriction) {
     EXPECT_NEAR(world.PositionOf(box).y(), 0.5, 0.005);
 }
 
+// A paddle turns by 1 to 10 rad within a step. A ball at rest before it leaves with the speed w r of the place that
+// hits it, and not with what that place's acceleration would add to it until the end of the step.
+TEST(Kinematic, ThrowsNothingFasterThanItTurns) {
+    for (const double dt : {0.01, kStep, 0.05, 0.1}) {
+        SystemSettings settings;
+        settings.gravity.setZero();
+        TestWorld world(settings);
+        const double spin = 100, radius = 1.5;
+        world.Add({.shape = BoxOf(2, 0.2f, 0.2f),
+                   .motion = MotionType::Kinematic,
+                   .angularVelocity = {0, static_cast<float>(spin), 0}});
+        const BodyId ball = world.Add({.shape = SphereOf(0.2f), .position = {radius, 0, -0.4}});
+        world.Step(dt);
+        const double speed = double{Length(world.VelocityOf(ball))};
+        EXPECT_GT(speed, 0.95 * spin * radius) << dt;
+        EXPECT_LT(speed, spin * radius) << dt;
+    }
+}
+
 TEST(Kinematic, TurnsABoxWithATurntable) {
     TestWorld world(NoSleep());
     world.Add({.shape = BoxOf(5, 0.5f, 5),

@@ -54,10 +54,11 @@ TEST(RandomPrograms, InvariantsHoldWhateverAUserCalls) {
 // Seeds of programs whose failures led to fixes, valid as long as the same seeds give the same programs.
 TEST(RandomPrograms, InvariantsHoldForSeedsThatOnceFailed) {
     const uint32_t seeds[] = {
-        418704,   // opposite pushes on a compound in a thin floor became one as a normal turned: 31 kJ to 813 kJ
-        795132,   // a body was put to sleep after another that it touched was removed: a crash
-        511883,   // the list of all hits of a mesh ended at fraction 1
-        2431587,  // a cast of a shape that overlapped a whole mesh as it began took time with its square: 2 s a step
+        418704,    // opposite pushes on a compound in a thin floor became one as a normal turned: 31 kJ to 813 kJ
+        795132,    // a body was put to sleep after another that it touched was removed: a crash
+        511883,    // the list of all hits of a mesh ended at fraction 1
+        2431587,   // a cast of a shape that overlapped a whole mesh as it began took time with its square: 2 s a step
+        20267321,  // a mesh that turned by 2 rad in a step threw a capsule at ten times the speed of where it hit
     };
     const Watch watch(kIsSanitized ? 600 : 60);
     SetMisuseHandler([](const Error&) {});
