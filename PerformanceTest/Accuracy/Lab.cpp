@@ -110,7 +110,7 @@ void MakeRuns(const std::vector<PlannedRun>& plan, const LabOptions& options, Ru
     std::mutex mutex;
     const auto work = [&] {
         for (size_t i; (i = next++) < plan.size();) {
-            RunRecord record = Measure(*plan[i].scene, plan[i].setting, options.isQuick);
+            RunRecord record = Measure(*plan[i].scene, plan[i].setting, options.isQuick, options.isTimedOnce);
             const std::lock_guard lock(mutex);
             log.Append(record);
             runs[KeyOf(record)] = std::move(record);
@@ -147,6 +147,7 @@ Result<std::vector<RunRecord>> RunLab(const LabOptions& options) {
         for (const PlannedRun& each : plan)
             if (each.scene == scene) ofScene.push_back(runs.at({scene->FullName(), each.setting.Key()}));
         AddSelfErrors(ofScene);
+        AddCostRatios(ofScene);
         for (RunRecord& record : ofScene) sorted.push_back(std::move(record));
     }
     return sorted;

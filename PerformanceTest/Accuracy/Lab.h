@@ -12,7 +12,8 @@ namespace fulcrum::accuracy {
 struct LabOptions {
     std::vector<const LabScene*> scenes;
     bool isQuick = false;
-    int threads = 1;  // runs at a time; the engine of each has one thread
+    bool isTimedOnce = false;  // else costs are medians of five runs, where that does not take too long
+    int threads = 1;           // runs at a time; the engine of each has one thread
     bool resumes = false;
     std::filesystem::path folder;  // runs.jsonl is in it; created
     bool showsProgress = true;     // on stderr

@@ -1,11 +1,14 @@
 // fulcrum-accuracy: what ./fulcrum accuracy and ./fulcrum advise start.
 #include <Fulcrum/PerformanceTest/Accuracy/Advice.h>
+#include <Fulcrum/PerformanceTest/Accuracy/Baseline.h>
 #include <Fulcrum/PerformanceTest/Accuracy/Options.h>
 #include <Fulcrum/Samples/Viewer/WholeFile.h>
 
 #include <nlohmann/json.hpp>
 
 #include <cstdio>
+#include <fstream>
+#include <sstream>
 
 namespace fulcrum::accuracy {
 namespace {
@@ -42,9 +45,28 @@ int Write(const LabCommand& command, std::span<const SceneRuns> scenes) {
     return 0;
 }
 
+int Compare(const LabCommand& command, std::span<const RunRecord> runs) {
+    std::ostringstream content;
+    std::ifstream file(command.baseline, std::ios::binary);
+    if (!file) return Fail("cannot read " + command.baseline.string());
+    content << file.rdbuf();
+    const Result<Comparison> compared = CompareWithBaseline(content.str(), runs, command.lab.isQuick);
+    if (!compared) return Fail(command.baseline.string() + ": " + compared.GetError().message);
+    const Comparison& comparison = compared.Value();
+    for (const std::string& line : comparison.better) std::printf("better: %s\n", line.c_str());
+    for (const std::string& line : comparison.worse) std::printf("worse: %s\n", line.c_str());
+    std::printf("errors: %zu worse, %zu better, %zu the same\n", comparison.worse.size(), comparison.better.size(),
+                comparison.same);
+    return comparison.worse.empty() ? 0 : 1;
+}
+
 int Run(const LabCommand& command) {
     Result<std::vector<RunRecord>> runs = RunLab(command.lab);
     if (!runs) return Fail(runs.GetError().message);
+    if (!command.save.empty())
+        if (const Status saved = SaveBaseline(command.save, runs.Value(), command.lab.isQuick); !saved)
+            return Fail(saved.GetError().message);
+    if (!command.baseline.empty()) return Compare(command, runs.Value());
     const std::vector<SceneRuns> scenes = ByScene(std::move(runs.Value()));
     return command.adviseError || command.adviseBudget ? Advise(command, scenes) : Write(command, scenes);
 }

@@ -84,6 +84,15 @@ Result<LabCommand> ParseLabCommand(std::vector<std::string> arguments) {
     AddText(app, "--table", "write the tables between the marks of this document, too", [&](const std::string& text) {
         command.table = text;
     })->type_name("FILE");
+    app.add_flag_function(
+        "--once", [&](int64_t) { command.lab.isTimedOnce = true; },
+        "time each run once: enough for the errors, in a fifth of the time");
+    AddText(app, "--save", "write what --baseline takes: the errors of all runs", [&](const std::string& text) {
+        command.save = text;
+    })->type_name("FILE");
+    AddText(app, "--baseline", "compare the errors with those of this file; exit status 1 where one is larger",
+            [&](const std::string& text) { command.baseline = text; })
+        ->type_name("FILE");
     AddText(app, "--commit", "what runs.json says of the version",
             [&](const std::string& text) { command.commit = text; });
     Result<std::string> parsed = ParseCommandLine(app, std::move(arguments));

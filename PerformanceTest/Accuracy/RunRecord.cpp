@@ -68,7 +68,7 @@ std::vector<NamedValue> ListOf(const Json& object) {
 
 }  // namespace
 
-RunRecord Measure(const LabScene& scene, const Setting& setting, bool isQuick) {
+RunRecord Measure(const LabScene& scene, const Setting& setting, bool isQuick, bool isTimedOnce) {
     RunRecord record;
     record.scene = scene.FullName();
     record.setting = setting;
@@ -84,7 +84,7 @@ RunRecord Measure(const LabScene& scene, const Setting& setting, bool isQuick) {
         runs.push_back(RunOnce(scene, setting, isQuick, static_cast<uint64_t>(seed)));
         time(runs.back().work);
     }
-    while (static_cast<int>(microseconds.size()) < kTimedRuns &&
+    while (!isTimedOnce && static_cast<int>(microseconds.size()) < kTimedRuns &&
            spent < (isQuick ? kQuickTimingLimit : kFullTimingLimit))
         time(RunOnce(scene, setting, isQuick, 1).work);
 
@@ -143,6 +143,7 @@ Json ToJson(const RunRecord& record) {
     json["hash"] = record.hash;
     json["traversals_per_second"] = NumberJson(record.traversals);
     json["us_per_second"] = NumberJson(record.microseconds);
+    json["cost_ratio"] = NumberJson(record.costRatio);
     json["timed_runs"] = record.timedRuns;
     return json;
 }
@@ -195,6 +196,13 @@ void AddSelfErrors(std::vector<RunRecord>& ofScene) {
         }
         run.selfError = largest;
     }
+}
+
+void AddCostRatios(std::vector<RunRecord>& ofScene) {
+    double usual = kNaN;
+    for (const RunRecord& run : ofScene)
+        if (run.setting == Setting{}) usual = run.microseconds;
+    for (RunRecord& run : ofScene) run.costRatio = usual > 0 ? run.microseconds / usual : kNaN;
 }
 
 }  // namespace fulcrum::accuracy

@@ -28,13 +28,15 @@ struct RunRecord {
     double microseconds = 0;  // of work per simulated second: the median of so many runs
     int timedRuns = 0;
     double selfError = kNaN;  // from the finest setting, not from the closed form; AddSelfErrors fills it
+    double costRatio = kNaN;  // to the default setting's; AddCostRatios fills it
 
     // The main one; NaN where the scene gave none.
     double Error() const { return errors.empty() ? kNaN : errors[0].value; }
 };
 
-// Runs the scene with each of its seeds, and repeats it until there are five times or a share of time is used up.
-RunRecord Measure(const LabScene& scene, const Setting& setting, bool isQuick);
+// Runs the scene with each of its seeds, and, unless isTimedOnce, repeats it until there are five times or a share of
+// time is used up.
+RunRecord Measure(const LabScene& scene, const Setting& setting, bool isQuick, bool isTimedOnce = false);
 
 // Not finite: null.
 nlohmann::ordered_json ToJson(const RunRecord& record);
@@ -44,5 +46,8 @@ Result<RunRecord> RecordFromJson(const nlohmann::ordered_json& json);
 // Of one scene, in any order: the largest difference of what each observed from what the finest soft setting did. NaN
 // where there is no such, or another number of results.
 void AddSelfErrors(std::vector<RunRecord>& ofScene);
+
+// Of one scene, in any order: the cost of each over that of the default setting. NaN where there is no such.
+void AddCostRatios(std::vector<RunRecord>& ofScene);
 
 }  // namespace fulcrum::accuracy

@@ -28,6 +28,7 @@ std::string WithoutTimes(const std::vector<RunRecord>& runs) {
         nlohmann::ordered_json json = ToJson(run);
         json.erase("us_per_second");
         json.erase("timed_runs");
+        json.erase("cost_ratio");
         text += json.dump() + "\n";
     }
     return text;

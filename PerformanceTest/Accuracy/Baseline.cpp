@@ -1,0 +1,114 @@
+#include <Fulcrum/PerformanceTest/Accuracy/Baseline.h>
+
+#include <Fulcrum/Samples/Viewer/WholeFile.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <set>
+
+namespace fulcrum::accuracy {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kSamePart = 2e-6, kSameError = 1e-9;
+
+std::string Digits(double value) {
+    if (!std::isfinite(value)) return "null";
+    char text[32];
+    std::snprintf(text, sizeof text, "%.7g", value);
+    return text;
+}
+
+std::string LineOf(const RunRecord& run) {
+    std::string line = Json(run.setting.Key()).dump() + ": {\"errors\": {";
+    for (const NamedValue& error : run.errors)
+        line += (&error == run.errors.data() ? "" : ", ") + Json(error.name).dump() + ": " + Digits(error.value);
+    line += "}";
+    if (!run.failedGates.empty()) line += ", \"failed_gates\": " + Json(run.failedGates).dump();
+    return line + "}";
+}
+
+// One run against that of the baseline.
+void CompareRun(const RunRecord& run, const Json& before, Comparison& comparison) {
+    const std::string name = run.scene + ", " + run.setting.Key() + ": ";
+    const Json none = Json::array(), &gates = before.contains("failed_gates") ? before["failed_gates"] : none;
+    for (const std::string& gate : run.failedGates)
+        if (std::find(gates.begin(), gates.end(), Json(gate)) == gates.end())
+            comparison.worse.push_back(name + "fails " + gate);
+    const Json& errors = before.at("errors");
+    std::set<std::string> found;
+    for (const NamedValue& error : run.errors) {
+        found.insert(error.name);
+        if (!errors.contains(error.name)) {
+            comparison.worse.push_back(name + error.name + " is not in the baseline");
+            continue;
+        }
+        const Json& was = errors[error.name];
+        const double from = was.is_null() ? kNaN : was.get<double>(), to = error.value;
+        const std::string change = name + error.name + " " + Digits(from) + " -> " + Digits(to);
+        const double tolerance = kSameError + kSamePart * std::fabs(from);
+        if (std::isfinite(from) ? !(to <= from + tolerance) : false) comparison.worse.push_back(change);
+        else if (std::isfinite(from) ? to < from - tolerance : std::isfinite(to)) comparison.better.push_back(change);
+        else ++comparison.same;
+    }
+    for (const auto& [error, value] : errors.items())
+        if (!found.contains(error)) comparison.worse.push_back(name + error + " is not measured any more");
+}
+
+}  // namespace
+
+std::string BaselineOf(std::span<const RunRecord> runs, bool isQuick) {
+    std::string text = "{\"fulcrum_accuracy_baseline\": " + std::to_string(kSchemaVersion) +
+                       ", \"quick\": " + (isQuick ? "true" : "false") + ", \"scenes\": {";
+    const RunRecord* last = nullptr;
+    for (const RunRecord& run : runs) {
+        const bool isSame = last && last->scene == run.scene;
+        if (!isSame) text += (last ? "\n}," : "") + ("\n" + Json(run.scene).dump()) + ": {";
+        text += (isSame ? ",\n" : "\n") + LineOf(run);
+        last = &run;
+    }
+    return text + (last ? "\n}" : "") + "}}\n";
+}
+
+Status SaveBaseline(const std::filesystem::path& path, std::span<const RunRecord> runs, bool isQuick) {
+    return WriteWholeFile(path, {BaselineOf(runs, isQuick)});
+}
+
+Result<Comparison> CompareWithBaseline(const std::string& text, std::span<const RunRecord> runs, bool isQuick) {
+    try {
+        const Json baseline = Json::parse(text);
+        if (baseline.at("fulcrum_accuracy_baseline").get<int>() != kSchemaVersion)
+            return Error{ErrorCode::OutOfRange, "the baseline is of another version"};
+        if (baseline.at("quick").get<bool>() != isQuick)
+            return Error{ErrorCode::OutOfRange,
+                         isQuick ? "the baseline is of the full grid" : "the baseline is of the quick grid: --quick"};
+        const Json& scenes = baseline.at("scenes");
+        for (const auto& [scene, settings] : scenes.items())
+            if (!settings.is_object()) return Error{ErrorCode::OutOfRange, "the baseline has no runs of " + scene};
+        Comparison comparison;
+        std::set<std::pair<std::string, std::string>> made;
+        for (const RunRecord& run : runs) {
+            const std::string key = run.setting.Key();
+            made.insert({run.scene, key});
+            if (!scenes.contains(run.scene) || !scenes[run.scene].contains(key))
+                comparison.worse.push_back(run.scene + ", " + key + ": not in the baseline");
+            else CompareRun(run, scenes[run.scene][key], comparison);
+        }
+        for (const auto& [scene, settings] : scenes.items()) {
+            const bool isRun =
+                std::any_of(runs.begin(), runs.end(), [&](const RunRecord& r) { return r.scene == scene; });
+            for (const auto& [key, values] : settings.items())
+                if (isRun && !made.contains({scene, key}))
+                    comparison.worse.push_back(scene + ", " + key + ": there is no such run any more");
+        }
+        return comparison;
+    } catch (const nlohmann::json::exception& error) {
+        return Error{ErrorCode::OutOfRange, std::string("no baseline of the lab: ") + error.what()};
+    }
+}
+
+}  // namespace fulcrum::accuracy
