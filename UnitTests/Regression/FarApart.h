@@ -23,7 +23,7 @@ inline constexpr double kRackRatio = 3;    // rad/m
 inline constexpr double kRounding =
     1e-3;  // of the energy of what falls for thousands of substeps, whose speed is a float
 inline constexpr double kUnseen =
-    0.05;  // of the work of motors and springs, of whose powers only the steps' ends are seen
+    0.06;  // of the work of motors and springs, of whose powers only the steps' ends are seen
 inline constexpr double kHeld = 0.25;  // s that they must be together on end
 
 // The result for a joint that was separated.

@@ -29,7 +29,7 @@ function decodeConstants({ count, kinds, step, rotationSteps, ratioStep }, reade
   return joints;
 }
 
-// limits: of the ways along and the rotations about x, y, z; an end that there is not is infinite.
+// limits: of translations along and rotations about x, y, z; infinite where a side has none.
 function decodeStates(joints, frameCount, step, reader) {
   const ends = joints.map(() => ({ steps: new Float64Array(12), present: 0 }));
   for (let frame = 0; frame < frameCount; ++frame) {

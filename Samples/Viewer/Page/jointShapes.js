@@ -63,7 +63,7 @@ function sector(part, u, v, range, radius, shift = 0) {
   part.fan(center, edge);
 }
 
-// The range of a way along an axis: a line with a tick at each end that there is. An endless side goes on for a bit.
+// The range of a translation along an axis: a line with a tick at each limit; a side without one goes on for a bit.
 function track(part, axis, [min, max], size) {
   if (isLocked([min, max])) return;
   const endless = 4 * size;
@@ -73,7 +73,7 @@ function track(part, axis, [min, max], size) {
   if (Number.isFinite(max)) part.tick(axis, max, 0.3 * size);
 }
 
-// The ranges of the three ways together: a line, a rectangle or a box; nothing along an axis that is free or locked.
+// The ranges of the three translations together: a line, a rectangle or a box; nothing along an axis that is free or locked.
 function room(part, ranges, size) {
   const wide = [0, 1, 2].filter((axis) => !isLocked(ranges[axis]) && ranges[axis].some(Number.isFinite));
   if (wide.length === 1 || !wide.every((axis) => hasBoth(ranges[axis]))) {

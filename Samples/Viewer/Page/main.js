@@ -169,7 +169,7 @@ class Viewer {
     this.seek(frames < 0 ? Math.ceil(frame) + frames : Math.floor(frame) + frames);
   }
 
-  // A control that was reached by the tabulator key has its own keys: space presses a button, arrows choose among radio buttons.
+  // A control that was reached by Tab keeps its own keys: space presses a button, arrows choose among radio buttons.
   // One that was clicked leaves them to the page, and lets go, so that the key's end is not its own either.
   #onKey(event) {
     if (event.key === 'Tab') this.hasPointed = false;
