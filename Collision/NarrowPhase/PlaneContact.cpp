@@ -6,6 +6,8 @@
 #include <Fulcrum/Collision/NarrowPhase/Polyhedron.h>
 #include <Fulcrum/Collision/Shapes/SupportingFace.h>
 
+#include <algorithm>
+
 namespace fulcrum {
 
 namespace {
@@ -41,6 +43,33 @@ void AddVertices(const Polyhedron& core, const Vector3& down, float outside, flo
     }
 }
 
+// Manifold reduction: the vertices of the face that faces the plane first, as a body that tilts comes to lie on these;
+// where they are fewer than four, the nearest of the others. Of all vertices the largest area may be that of two sides
+// of a rod, without the end that comes down next.
+int ChooseOfFace(const Polyhedron& core, const Vector3& down, float depthSlop, const NearVertices& near,
+                 int (&chosen)[4]) {
+    const ConvexHull::Face& face = core.faces[FaceAlong(core, down)];
+    const uint8_t* corners = core.indices + face.firstIndex;
+    FlatPoints<256> points;
+    int others[256], places[256], otherCount = 0;
+    for (int i = 0; i < near.points.count; ++i) {
+        const bool isCorner =
+            std::find(corners, corners + face.cornerCount, near.names[i]) != corners + face.cornerCount;
+        if (!isCorner) {
+            others[otherCount++] = i;
+            continue;
+        }
+        places[points.count] = i;
+        points.Add(near.points.u[i], near.points.v[i], near.points.separation[i]);
+    }
+    int count = points.count > 0 ? ChooseFour(points, depthSlop, chosen) : 0;
+    for (int i = 0; i < count; ++i) chosen[i] = places[chosen[i]];
+    std::stable_sort(others, others + otherCount,
+                     [&](int a, int b) { return near.points.separation[a] < near.points.separation[b]; });
+    for (int i = 0; i < otherCount && count < 4; ++i) chosen[count++] = others[i];
+    return count;
+}
+
 // The supporting face, edge or point of a curved core towards the plane.
 void AddSupportingFace(const ConvexShape& shape, const Vector3& down, float outside, float least, NearVertices& near) {
     SupportingFace face;
@@ -63,16 +92,19 @@ void CollidePlane(const Plane& plane, const ConvexShape& shape, const RelativePo
     const Vector3 down = InverseRotate(bInA.rotation, Vector3(-plane.Normal()));
     const float least = outside - (settings.speculativeDistance + radius);
     NearVertices near(down);
+    const ContactTolerances tolerances(Max(0.0f, shape.InnerRadius() - radius), radius, settings);
+    int chosen[4], count = 0;
     if (HasPolyhedralCore(shape.Type())) {
         PolyhedronStorage storage;
-        AddVertices(CoreOf(shape, storage), down, outside, least, near);
+        const Polyhedron core = CoreOf(shape, storage);
+        AddVertices(core, down, outside, least, near);
+        if (near.points.count > 4 && core.faceCount > 0)
+            count = ChooseOfFace(core, down, tolerances.prefer, near, chosen);
     } else {
         AddSupportingFace(shape, down, outside, least, near);
     }
     if (near.points.count == 0) return;
-    const ContactTolerances tolerances(Max(0.0f, shape.InnerRadius() - radius), radius, settings);
-    int chosen[4];
-    const int count = ChooseFour(near.points, tolerances.prefer, chosen);
+    if (count == 0) count = ChooseFour(near.points, tolerances.prefer, chosen);
     manifold.normal = plane.Normal();
     for (int i = 0; i < count; ++i) {
         const Vector3 corner = bInA.Transform(near.positions[chosen[i]]);
