@@ -65,7 +65,7 @@ public:
     // Manifold reduction: writes the indices of at most four of the vertices whose separation is at most `reach`, and
     // returns how many.
     int ChooseFourWithin(float reach, const Vector3& normal, float depthSlop, int (&chosen)[4],
-                         float leastWeight = 1.0f) const {
+                         const PointWeights& weighting = {}) const {
         int near[kMost], nearCount = 0;
         for (int i = 0; i < count_; ++i) {
             near[nearCount] = i;
@@ -79,7 +79,7 @@ public:
         const Vector3 u = Perpendicular(normal), v = Cross<float>(normal, u);
         for (int i = 0; i < nearCount; ++i)
             points.Add(Dot(u, current_[near[i]].position), Dot(v, current_[near[i]].position), separations_[near[i]]);
-        const int count = ChooseFour(points, depthSlop, chosen, leastWeight);
+        const int count = ChooseFour(points, depthSlop, chosen, weighting);
         for (int i = 0; i < count; ++i) chosen[i] = near[chosen[i]];
         return count;
     }

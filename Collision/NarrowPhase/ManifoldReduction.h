@@ -46,19 +46,24 @@ int FarthestOutside(const FlatPoints<kMost>& points, const float (&weights)[kMos
     return kMost;
 }
 
-// leastWeight of ChooseFour for points on triangles of a surface, which lie in several planes.
-inline constexpr float kLeastWeightOnSurfaces = 0.02f;
+// How much points that do not touch count in ChooseFour.
+struct PointWeights {
+    float least = 1.0f;  // 0 .. 1; 1: as much as any
+    float closing = 0;   // m, >= 0: by so much the shape comes closer within the step
+};
+// For points on triangles of a surface, which lie in several planes.
+inline PointWeights WeightsOnSurfaces(float closing) { return {0.02f, closing}; }
 
 // Writes the chosen indices in increasing order and returns how many: first a deepest point, then the point farthest
 // from it, then those that span the largest area on each side of the line of the two; where all are on one side,
-// another there. Distances and areas count less for points that do not touch yet, down to `leastWeight`: a point that
-// the shape rests on must not lose to one farther out that does not touch, or the shape rocks. The weight depends on
-// the angle by which the shape would have to tilt to touch. The first point that is as good as the best to within
-// `depthSlop` meters, or a hundredth of the distance or area, is taken, so that rounding and tiny motions do not change
-// the choice.
+// another there. Distances and areas count less for points that do not touch yet, down to `weighting.least`: a point
+// that the shape rests on must not lose to one farther out that does not touch, or the shape rocks. The weight depends
+// on the angle by which the shape would have to tilt to touch, beyond what it comes closer within the step: of what
+// falls, the corners come down next. The first point that is as good as the best to within `depthSlop` meters, or a
+// hundredth of the distance or area, is taken, so that rounding and tiny motions do not change the choice.
 template <int kMost>
-int ChooseFour(FlatPoints<kMost>& points, float depthSlop, int (&chosen)[4], float leastWeight = 1.0f) {
-    constexpr float kNearly = 0.99f, kTilt = 0.0001f;  // rad: halfway to leastWeight
+int ChooseFour(FlatPoints<kMost>& points, float depthSlop, int (&chosen)[4], const PointWeights& weighting = {}) {
+    constexpr float kNearly = 0.99f, kTilt = 0.0001f;  // rad: halfway to the least weight
     const int count = points.count;
     if (count <= 4) {
         for (int i = 0; i < count; ++i) chosen[i] = i;
@@ -90,12 +95,13 @@ int ChooseFour(FlatPoints<kMost>& points, float depthSlop, int (&chosen)[4], flo
     Wide<8> weights[kMost / 8];
     std::fill_n(weights, blocks, Wide<8>(1.0f));
     float farthestWeighted = farthest;
-    if (leastWeight < 1.0f) {
-        const Wide<8> touching(Max(points.separation[first], 0.0f)), perTilt(1.0f / (kTilt * Sqrt(farthest)));
+    if (weighting.least < 1.0f) {
+        const Wide<8> touching(Max(points.separation[first], 0.0f)),
+            perTilt(1.0f / (kTilt * Sqrt(farthest) + weighting.closing));
         best = Wide<8>(0.0f);
         for (int k = 0; k < blocks; ++k) {
             const Wide<8> above = Max(Wide<8>::Load(points.separation + 8 * k) - touching, Wide<8>(0.0f));
-            weights[k] = Wide<8>(leastWeight) + Wide<8>(1 - leastWeight) / (Wide<8>(1.0f) + above * perTilt);
+            weights[k] = Wide<8>(weighting.least) + Wide<8>(1 - weighting.least) / (Wide<8>(1.0f) + above * perTilt);
             best = Max(best, values[k] = values[k] * (weights[k] * weights[k]));
         }
         farthestWeighted = Largest(best);

@@ -18,8 +18,12 @@ constexpr size_t kMostManifolds = 128;
 // Points of several manifolds, along one normal.
 class PointMerger {
 public:
-    PointMerger(const Vector3& normal, float slop)
-        : normal_(normal), u_(Perpendicular(normal)), v_(Cross<float>(normal, u_)), slop_(slop) {}
+    PointMerger(const Vector3& normal, float slop, const Vector3& motion)
+        : normal_(normal),
+          u_(Perpendicular(normal)),
+          v_(Cross<float>(normal, u_)),
+          slop_(slop),
+          weighting_(WeightsOnSurfaces(Max(Dot(normal, motion), 0.0f))) {}
 
     void Add(const Manifold& manifold) {
         for (int i = 0; i < manifold.pointCount; ++i) Add(manifold.points[i], manifold.normal);
@@ -57,7 +61,7 @@ private:
             flat.Add(Dot(u_, point.positionOnA), Dot(v_, point.positionOnA), point.separation);
         }
         int chosen[4];
-        count_ = ChooseFour(flat, slop_, chosen, kLeastWeightOnSurfaces);
+        count_ = ChooseFour(flat, slop_, chosen, weighting_);
         ManifoldPoint kept[4];
         for (int i = 0; i < count_; ++i) kept[i] = points_[order[chosen[i]]];
         std::copy(kept, kept + count_, points_);
@@ -65,12 +69,14 @@ private:
 
     Vector3 normal_, u_, v_;
     float slop_;
+    PointWeights weighting_;
     ManifoldPoint points_[kRoom];
     int count_ = 0;
 };
 
 // Contact `first`, merged with all later ones in its direction, which are left without points.
-SurfaceManifold MergeSimilar(std::vector<SurfaceManifold>& contacts, size_t first, float depthSlop) {
+SurfaceManifold MergeSimilar(std::vector<SurfaceManifold>& contacts, size_t first, float depthSlop,
+                             const Vector3& motion) {
     SurfaceManifold merged = contacts[first];
     contacts[first].manifold.pointCount = 0;
     const auto isSame = [&](const SurfaceManifold& other) {
@@ -78,7 +84,7 @@ SurfaceManifold MergeSimilar(std::vector<SurfaceManifold>& contacts, size_t firs
                Dot(other.manifold.normal, merged.manifold.normal) >= kSameDirection;
     };
     if (std::none_of(contacts.begin() + static_cast<ptrdiff_t>(first) + 1, contacts.end(), isSame)) return merged;
-    PointMerger points(merged.manifold.normal, depthSlop);
+    PointMerger points(merged.manifold.normal, depthSlop, motion);
     points.Add(merged.manifold);
     for (size_t i = first + 1; i < contacts.size(); ++i) {
         if (!isSame(contacts[i])) continue;
@@ -96,8 +102,8 @@ SurfaceManifold& AppendManifold(std::vector<SurfaceManifold>& manifolds, size_t&
     return manifolds[count++];
 }
 
-void MergeContacts(std::vector<SurfaceManifold>& contacts, float depthSlop, std::vector<SurfaceManifold>& manifolds,
-                   size_t& count) {
+void MergeContacts(std::vector<SurfaceManifold>& contacts, float depthSlop, const Vector3& motion,
+                   std::vector<SurfaceManifold>& manifolds, size_t& count) {
     if (contacts.size() > 1)
         std::sort(contacts.begin(), contacts.end(), [](const SurfaceManifold& x, const SurfaceManifold& y) {
             const float dx = DeepestSeparation(x.manifold), dy = DeepestSeparation(y.manifold);
@@ -106,7 +112,7 @@ void MergeContacts(std::vector<SurfaceManifold>& contacts, float depthSlop, std:
     count = 0;
     for (size_t i = 0; i < contacts.size() && count < kMostManifolds; ++i) {
         if (contacts[i].manifold.pointCount == 0) continue;  // merged into another
-        AppendManifold(manifolds, count) = MergeSimilar(contacts, i, depthSlop);
+        AppendManifold(manifolds, count) = MergeSimilar(contacts, i, depthSlop, motion);
     }
 }
 
