@@ -50,7 +50,8 @@ void InternalEdgeFilter::AddNearest(const TriangleView& view, const Vector3& axi
         return;
     }
     if (nearest.pointCount == 0) return;
-    if (-Dot(axis, view.normal) > kFaceCosine) AddFace(view, nearest);
+    // What is nearest at a side may lie along the face: then the points that are farther along it count, too.
+    if (-Dot(axis, view.normal) > kFaceCosine) AddFace(view, onFace.pointCount > nearest.pointCount ? onFace : nearest);
     else Defer(view, axis, nearest, onFace);
 }
 
@@ -74,12 +75,15 @@ void InternalEdgeFilter::Defer(const TriangleView& view, const Vector3& axis, co
     } else {
         deferred.active = isActive(nearest[0]) || isActive((nearest[0] + 2) % 3);
     }
-    deferred.active |= -Dot(axis, view.normal) > kFlatCosine;
+    // At an edge that counts as flat, too: with all points along the face, where these are more.
+    const bool isFlat = !deferred.active && -Dot(axis, view.normal) > kFlatCosine;
+    const bool isAtEdge = deferred.active || (isFlat && onFace.pointCount <= manifold.pointCount);
+    deferred.active |= isFlat;
     if (!deferred.active && onFace.pointCount == 0) return;
     deferred.vertices[0] = view.vertexIds[nearest[0]];
     deferred.vertices[1] = view.vertexIds[nearest[count >= 2 ? 1 : 0]];
     deferred.onFace = WithSurfaceFeatures(view, onFace);
-    deferred.contact = deferred.active ? WithSurfaceFeatures(view, manifold) : deferred.onFace;
+    deferred.contact = isAtEdge ? WithSurfaceFeatures(view, manifold) : deferred.onFace;
     deferred.separation = DeepestSeparation(deferred.contact.manifold);
     deferred_.push_back(deferred);
 }
