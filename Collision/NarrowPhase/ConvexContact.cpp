@@ -221,6 +221,14 @@ void BuildConvexContact(const SupportPair& pair, const KnownContact& known, cons
     AddFacesAhead(pair, faceA, faceB, tolerances, manifold);
 }
 
+void BuildOverFaceOfB(const SupportPair& pair, const Vector3& axis, const ContactTolerances& tolerances,
+                      Manifold& manifold) {
+    manifold.pointCount = 0;
+    SupportingFace face;
+    FindFace(pair, false, Vector3(-axis), face);
+    if (face.count > 2) BuildFromFace(pair, MakeReference(pair, false, face), tolerances, manifold);
+}
+
 CachedFace TryCachedFace(const SupportPair& pair, const ContactTolerances& tolerances, const PairCache& cache,
                          Manifold& manifold) {
     const bool ofA = cache.kind == PairCache::Kind::FaceOfA;

@@ -41,6 +41,11 @@ void Polish(const SupportPair& pair, KnownContact& known);
 void BuildConvexContact(const SupportPair& pair, const KnownContact& known, const ContactTolerances& tolerances,
                         PairCache& cache, Manifold& manifold);
 
+// The points of A's supporting feature over the face of B that faces it, along that face's normal `-axis`, be it
+// deepest there or beside it. Without points where B has no such face.
+void BuildOverFaceOfB(const SupportPair& pair, const Vector3& axis, const ContactTolerances& tolerances,
+                      Manifold& manifold);
+
 // The face that touched in the last step (cache.kind FaceOfA or FaceOfB, cache.axis its normal in its own shape's
 // frame), if it is proven to be the closest feature still; writes the manifold then. `axis`: the best guess otherwise.
 struct CachedFace {

@@ -316,11 +316,7 @@ private:
         PairCache none;
         onFace.pointCount = nearest.pointCount = 0;
         const float separation = pair.SeparationAlong(inwards);
-        if (separation <= tolerances.reach) {
-            BuildConvexContact(pair, {inwards, separation, pair.a.SupportCore(inwards)}, tolerances, none, onFace);
-            if (onFace.pointCount > 0 && Dot(onFace.normal, inwards) < InternalEdgeFilter::kFlatCosine)
-                onFace.pointCount = 0;
-        }
+        if (separation <= tolerances.reach) BuildOverFaceOfB(pair, inwards, tolerances, onFace);
         if (HeightAbove(view, center_) < 0) return AddTunneled(view, onFace);
         KnownContact known{};
         bool overlaps;
