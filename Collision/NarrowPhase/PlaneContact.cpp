@@ -43,29 +43,32 @@ void AddVertices(const Polyhedron& core, const Vector3& down, float outside, flo
     }
 }
 
-// Manifold reduction: the vertices of the face that faces the plane first, as a body that tilts comes to lie on these;
-// where they are fewer than four, the nearest of the others. Of all vertices the largest area may be that of two sides
-// of a rod, without the end that comes down next.
+// Manifold reduction: the deepest vertex and those of the face that faces the plane first, as a body that tilts comes
+// to lie on these; where they are fewer than four, the nearest of the others. Of all vertices the largest area may be
+// that of two sides of a rod, without the end that comes down next.
 int ChooseOfFace(const Polyhedron& core, const Vector3& down, float depthSlop, const NearVertices& near,
                  int (&chosen)[4]) {
     const ConvexHull::Face& face = core.faces[FaceAlong(core, down)];
     const uint8_t* corners = core.indices + face.firstIndex;
+    const float* separations = near.points.separation;
+    const auto deepest = std::min_element(separations, separations + near.points.count) - separations;
     FlatPoints<256> points;
     int others[256], places[256], otherCount = 0;
     for (int i = 0; i < near.points.count; ++i) {
         const bool isCorner =
             std::find(corners, corners + face.cornerCount, near.names[i]) != corners + face.cornerCount;
-        if (!isCorner) {
+        if (!isCorner && i != deepest) {
             others[otherCount++] = i;
             continue;
         }
         places[points.count] = i;
-        points.Add(near.points.u[i], near.points.v[i], near.points.separation[i]);
+        points.Add(near.points.u[i], near.points.v[i], separations[i]);
     }
-    int count = points.count > 0 ? ChooseFour(points, depthSlop, chosen) : 0;
+    int count = ChooseFour(points, depthSlop, chosen);
     for (int i = 0; i < count; ++i) chosen[i] = places[chosen[i]];
-    std::stable_sort(others, others + otherCount,
-                     [&](int a, int b) { return near.points.separation[a] < near.points.separation[b]; });
+    std::sort(others, others + otherCount, [&](int a, int b) {
+        return separations[a] < separations[b] || (separations[a] == separations[b] && a < b);
+    });
     for (int i = 0; i < otherCount && count < 4; ++i) chosen[count++] = others[i];
     return count;
 }
