@@ -107,7 +107,7 @@ void NoteTeleport(WorldState& world, uint32_t body) {
         store.VisitOf(from, [&](uint32_t index) {
             Joint& joint = store.joints[index];
             if (std::exchange(joint.teleportedBefore, world.step + 1) == world.step + 1) return;
-            store.types[index]->secondsOfTeleport = kSecondsOfTeleport;
+            store.records[index].secondsOfTeleport = kSecondsOfTeleport;
             const int other = 1 - joint.SideOf(from);
             if (!joint.still[other]) bodies.push_back(joint.body[other]);
         });

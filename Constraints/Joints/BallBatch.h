@@ -33,7 +33,8 @@ struct alignas(64) BallBatch {
     // Of lanes that are far apart, as in JointBatch.
     bool far;  // some lane is
     Real isFar, isDistant, follows;
-    Vec3<Real> pull;  // m/s
+    Real secondsOfTeleport;  // as the step ends, see JointRecord
+    Vec3<Real> pull;         // m/s
 };
 
 // As those of JointBatch.h. Of bodies that are not kinematic they read how far they turned as BodyState::halfTurn says.

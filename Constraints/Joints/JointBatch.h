@@ -32,8 +32,10 @@ struct alignas(32) JointRecord {
     // On B, world axes: the locks' own impulses of the last substep, N s and N m s. And as averages over the last step,
     // N and N m: those of the locks with their reaction to the rows, and of locks and rows together, about the anchor.
     float ownImpulse[3] = {0, 0, 0}, ownAngularImpulse[3] = {0, 0, 0};
-    float wasPulled = 0,
-          ownSpare = 0;  // 1 and more: it was far apart in the last step; 0.5: it was pulled along by others that were
+    float wasPulled = 0;  // 1 and more: it was far apart in the last step; 0.5: it was pulled along by others that were
+    // s, that are left since a body of its mechanism was teleported. Counted down by the Store stage, but in steps in
+    // which a spring of it was overstretched.
+    float secondsOfTeleport = 0;
     float lockForce[3] = {0, 0, 0}, lockTorque[3] = {0, 0, 0}, lockSpare[2] = {0, 0};
     float totalForce[3] = {0, 0, 0}, totalTorque[3] = {0, 0, 0}, totalSpare[2] = {0, 0};
 
@@ -53,7 +55,7 @@ struct alignas(32) JointRecord {
         kForce = 0,
         kTorque = 3,
         kWasPulled = 6,
-        kSpare = 7
+        kSecondsOfTeleport = 7
     };
 };
 static_assert(sizeof(JointRecord) == 160);
@@ -66,7 +68,7 @@ FULCRUM_CHECK_PLACE(JointRecord, frameB, JointRecord::kFrames, JointRecord::kFra
 FULCRUM_CHECK_PLACE(JointRecord, ownImpulse, JointRecord::kOwn, JointRecord::kForce);
 FULCRUM_CHECK_PLACE(JointRecord, ownAngularImpulse, JointRecord::kOwn, JointRecord::kTorque);
 FULCRUM_CHECK_PLACE(JointRecord, wasPulled, JointRecord::kOwn, JointRecord::kWasPulled);
-FULCRUM_CHECK_PLACE(JointRecord, ownSpare, JointRecord::kOwn, JointRecord::kSpare);
+FULCRUM_CHECK_PLACE(JointRecord, secondsOfTeleport, JointRecord::kOwn, JointRecord::kSecondsOfTeleport);
 FULCRUM_CHECK_PLACE(JointRecord, lockForce, JointRecord::kLocks, JointRecord::kForce);
 FULCRUM_CHECK_PLACE(JointRecord, lockTorque, JointRecord::kLocks, JointRecord::kTorque);
 FULCRUM_CHECK_PLACE(JointRecord, totalForce, JointRecord::kTotal, JointRecord::kForce);
@@ -142,6 +144,7 @@ struct JointBatch {
     Real isFar;                          // 1 and more: this one is, see JointRecord::wasPulled
     Real isDistant;                      // 1: by so much that a lever would be as long as the gap
     Real follows;                        // 0.5: its bodies are pulled, be it by others
+    Real secondsOfTeleport;              // as the step ends, see JointRecord
     Vec3<Real> pullLinear, pullAngular;  // m/s, rad/s
 
     // Of a MassOverride; only where `overridesMass`.

@@ -133,9 +133,6 @@ public:
     // the step, N or N m. Written by the Store stage, as is what JointPose says of the last step.
     std::array<float, JointRowList::kMaxRows> impulses{}, forces{};
     Vector3 turnedA = Vector3::Zero(), turnedB = Vector3::Zero();
-    // s, that are left since a body of its mechanism was teleported: until they are over, overstretched springs are
-    // pulled like locks. Counted down by the Prepare stage in steps in which none is overstretched.
-    float secondsOfTeleport = 0;
 };
 
 inline double JointType::Coordinate(JointAxis axis, const JointPose& pose) const {

@@ -135,7 +135,7 @@ bool SoftenLane(const JointBatch<N>& batch, JointRows<N>& rows, int lane, const 
 // whose mechanism was teleported in the last seconds.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const* types,
-              const ConstSolverBodies& bodies, const JointSolveSettings& settings, Wide<N>& wasTeleported) {
+              const ConstSolverBodies& bodies, const JointSolveSettings& settings) {
     batch.rowCount = 0;
     batch.rowsTurnWithA = batch.radial = false;
     batch.wayA = batch.wayB = {};
@@ -191,20 +191,17 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
     }
     SetUpRows<kLinear, kAngular>(batch);
     for (int lane = 0; lane < batch.count; ++lane) {
-        JointType& type = *types[batch.joint[lane]];
-        bool isOverstretched = false;
-        wasTeleported.Set(lane, type.secondsOfTeleport > 0 ? 1.0f : 0.0f);
+        const bool wasTeleported = batch.secondsOfTeleport[lane] > 0;
         for (uint32_t i = 0; i < lists[lane].count; ++i)
-            isOverstretched |=
-                SoftenLane(batch, batch.rows[i], lane, lists[lane].rows[i], type.secondsOfTeleport > 0, settings);
-        if (!isOverstretched) type.secondsOfTeleport = Max(type.secondsOfTeleport - settings.dt, 0.0f);
+            if (SoftenLane(batch, batch.rows[i], lane, lists[lane].rows[i], wasTeleported, settings))
+                batch.secondsOfTeleport.Set(lane, records[batch.joint[lane]].secondsOfTeleport);
     }
 }
 
 // Which joints are so far apart that they are pulled, see PullJoints.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const JointErrors<Wide<N>>& errors,
-             const Wide<N>& wasPulled, const Wide<N>& wasTeleported, const JointSolveSettings& settings) {
+             const Wide<N>& wasPulled, const JointSolveSettings& settings) {
     using Real = Wide<N>;
     const Real farPart(FarPush(settings)), least = FarPush<Real>(wasPulled, settings), zero(0.0f);
     // Parts of the fastest push that distances and angles ask for.
@@ -233,7 +230,7 @@ void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const Joint
     const auto isDistant = distance > farPart, isMuch = Max(distance, angle) > farPart;
     const Real near = SecondsNear(wasPulled, isDistant, settings);
     const auto isFar =
-        ((distance > least) | ((angle > least) & ((wasPulled >= Real(kWasFar)) | (wasTeleported > zero)))) &
+        ((distance > least) | ((angle > least) & ((wasPulled >= Real(kWasFar)) | (batch.secondsOfTeleport > zero)))) &
         (near <= Real(LongestNear(settings)));
     batch.far = isFar.Any();
     batch.isFar = Select(isFar, Real(kWasFar) + near, zero);
@@ -292,6 +289,7 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
     batch.earlierLinear = batch.earlierAngular = Zero<Real>();
     batch.far = false;
     batch.follows = Real(0.0f);
+    batch.secondsOfTeleport = SecondsLeft<Real>(impulses[JointRecord::kSecondsOfTeleport], settings);
     const Real scale(settings.impulseScale);
     const Vec3<Real> linearImpulse = VectorAt<JointRecord::kForce>(impulses) * scale;
     const Vec3<Real> angularImpulse = VectorAt<JointRecord::kTorque>(impulses) * scale;
@@ -338,9 +336,8 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
                            findings.angularError, findings.angularJoint);
         }
         SetUpCoupling<linear, angular>(batch);
-        Real wasTeleported(0.0f);
-        FillRows<linear, angular>(batch, records, types, bodies, settings, wasTeleported);
-        FindFar<linear, angular>(batch, place, errors, impulses[JointRecord::kWasPulled], wasTeleported, settings);
+        FillRows<linear, angular>(batch, records, types, bodies, settings);
+        FindFar<linear, angular>(batch, place, errors, impulses[JointRecord::kWasPulled], settings);
         findings.far |= batch.far;
         Soften<linear, angular>(batch, errors, settings);
     });
@@ -401,14 +398,14 @@ LockImpulses<Wide<N>> StepImpulses(const JointBatch<N>& batch) {
 // Writes a wrench times `scale` to a row of the records, and what stands beside it.
 template <int N>
 void ScatterWrench(const JointBatch<N>& batch, JointRecord* records, int row, const Wrench<N>& wrench, float scale,
-                   const Wide<N>& wasPulled = Wide<N>(0.0f)) {
+                   const Wide<N>& wasPulled = Wide<N>(0.0f), const Wide<N>& secondsOfTeleport = Wide<N>(0.0f)) {
     using Real = Wide<N>;
     const Real factor(scale);
     Real values[8];
     SetVectorAt<JointRecord::kForce>(values, wrench.force * factor);
     SetVectorAt<JointRecord::kTorque>(values, wrench.torque * factor);
     values[JointRecord::kWasPulled] = wasPulled;
-    values[JointRecord::kSpare] = Real(0.0f);
+    values[JointRecord::kSecondsOfTeleport] = secondsOfTeleport;
     ScatterRecordRow<N>(batch.joint, batch.count, records, row, values);
 }
 
@@ -437,7 +434,8 @@ void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* co
         total.torque -=
             ZeroUnless<Real>(acts, Vec3<Real>((b.angular - Cross<Real>(batch.startArmB, b.linear)) * -impulse));
     }
-    ScatterWrench(batch, records, JointRecord::kOwn, own, inverse, Max(batch.isFar, batch.follows));
+    ScatterWrench(batch, records, JointRecord::kOwn, own, inverse, Max(batch.isFar, batch.follows),
+                  batch.secondsOfTeleport);
     ScatterWrench(batch, records, JointRecord::kLocks, locks, perSecond);
     ScatterWrench(batch, records, JointRecord::kTotal, total, perSecond);
     if (batch.rowRoom == 0) return;

@@ -322,6 +322,7 @@ void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const ConstS
     batch.armB = place.armB;
     batch.earlier = Zero<Real>();
     batch.follows = Real(0.0f);
+    batch.secondsOfTeleport = SecondsLeft<Real>(impulses[JointRecord::kSecondsOfTeleport], settings);
     if (batch.round) {
         GatherMasses<true>(batch, bodies.masses);
         batch.mass = MassAt<true>(batch, place.armA, place.armB);
@@ -381,17 +382,19 @@ template <int N>
 void StoreJoints(const BallBatch<N>& batch, JointRecord* records, float dt, float impulseScale) {
     using Real = Wide<N>;
     const Real none(0.0f);
-    const auto write = [&](int row, const Vec3<Real>& v, const Real& wasPulled) {
+    const auto write = [&](int row, const Vec3<Real>& v, const Real& wasPulled, const Real& secondsOfTeleport) {
         Real values[8] = {none, none, none, none, none, none, none, none};
         SetVectorAt<JointRecord::kForce>(values, v);
         values[JointRecord::kWasPulled] = wasPulled;
+        values[JointRecord::kSecondsOfTeleport] = secondsOfTeleport;
         ScatterRecordRow<N>(batch.joint, batch.count, records, row, values);
     };
-    write(JointRecord::kOwn, Vec3<Real>(batch.impulse * Real(1.0f / impulseScale)), Max(batch.isFar, batch.follows));
+    write(JointRecord::kOwn, Vec3<Real>(batch.impulse * Real(1.0f / impulseScale)), Max(batch.isFar, batch.follows),
+          batch.secondsOfTeleport);
     // Nothing but the lock acts.
     const Vec3<Real> force = (batch.impulse + batch.earlier) * Real(1.0f / dt);
-    write(JointRecord::kLocks, force, none);
-    write(JointRecord::kTotal, force, none);
+    write(JointRecord::kLocks, force, none, none);
+    write(JointRecord::kTotal, force, none, none);
 }
 
 #define FULCRUM_INSTANTIATE(lanes)                                                                  \
