@@ -83,6 +83,8 @@ struct ContactBatch {
     Real acceleration;  // m/s2 of gravity and forces, of the body that has the larger one
 };
 
+struct ContactNote;
+
 struct ContactPrepareSettings {
     float impulseScale;                           // dt of this substep / dt of the last: scales the warm start
     float restitutionSpeed;                       // m/s, see BounceContacts
@@ -107,6 +109,7 @@ struct ContactSolveSettings {
     float restitutionSpeed = 0;      // m/s: slower impacts do not bounce
     float* unconstrained = nullptr;  // of all bodies, eight floats each: velocities without what the next substep's
                                      // warm start repeats; null where there is none
+    ContactNote* notes = nullptr;    // of all contacts, by record: what bounces do is added; null where nobody asks
     // Position passes, see CorrectContacts:
     float baumgarte = 0;       // 0..1: the part of an overlap that a pass corrects
     float mostCorrection = 0;  // m, by a pass

@@ -137,6 +137,7 @@ struct BodyCold {
     bool placed : 1 = false;   // see BodyStore::MarkPlaced
     bool removed : 1 = false;  // by the interface, its index not yet free
     bool isSensor : 1 = false;
+    bool reportsContacts : 1 = true;
 
     uint32_t MoreColliders() const {
         return children ? children->moreColliders : ~0u;
@@ -184,6 +185,10 @@ public:
     std::vector<uint32_t> placed;  // see MarkPlaced, in no order
     std::vector<uint32_t> awake;   // dynamic bodies awake and kinematic ones that move, in no order
     uint32_t continuousCount = 0;  // bodies with continuous collision
+    // For events, where they are on: bodies that came to be, woke or fell asleep since the last step; repeated, in no
+    // order.
+    std::vector<uint32_t> sleepChanges;
+    bool notesSleepChanges = false;
 
     uint32_t Size() const { return static_cast<uint32_t>(cold.size()); }  // of the arrays
     uint32_t Count() const { return count_; }                             // of the bodies

@@ -1,0 +1,51 @@
+// What the events of a step are listed in, and what was said of bodies in the last one. Written by the stages that list
+// events; the arrays are the user's until the next step.
+#pragma once
+
+#include <Fulcrum/Physics/StepEvents.h>
+#include <Fulcrum/Physics/World/HeapBytes.h>
+
+#include <vector>
+
+namespace fulcrum {
+
+// An event before its manifolds are looked up.
+struct ListedContact {
+    BodyId bodyA, bodyB;
+    uint32_t childA = 0, childB = 0;
+    ContactEvent::Kind kind = ContactEvent::Kind::Begin;
+    float time = 1;
+    uint32_t source = 0;  // of Begin and Stay the pair, of a Hit its place in SweepStore::reported
+    uint32_t firstManifold = 0, manifoldCount = 0;
+};
+
+// A body as the last step ended.
+struct ReportedBody {
+    Position position = Position::Zero();  // m, of the center of mass
+    Quaternion rotation{};
+    uint32_t generation = ~0u;  // of another one: nothing is known of the body
+    bool isAwake = false;
+};
+
+struct EventBuffers {
+    StepEvents events;
+
+    std::vector<ListedContact> listed;
+    std::vector<ContactEvent> contacts;
+    std::vector<ContactEvent::Manifold> manifolds;
+
+    std::vector<ReportedBody> bodies;              // by index; empty without EventSettings::bodies
+    std::vector<uint64_t> awakeWords, movedWords;  // bodies as bits
+    std::vector<BodyId> awake, moved, woke, fellAsleep;
+
+    std::vector<BrokenJoint> broken;
+};
+
+inline size_t HeapBytes(const EventBuffers& buffers) {
+    const auto& [events, listed, contacts, manifolds, bodies, awakeWords, movedWords, awake, moved, woke, fellAsleep,
+                 broken] = buffers;
+    return HeapBytes(events, listed, contacts, manifolds, bodies, awakeWords, movedWords, awake, moved, woke,
+                     fellAsleep, broken);
+}
+
+}  // namespace fulcrum
