@@ -1,6 +1,7 @@
 // What contact events say of a contact beyond its record: impulses of the whole step, of which the record has only
 // those of the last substep, and how fast its points closed in. Rows of eight floats, for lanes. Begun by Prepare,
-// added to by Solve; only where contact events are on.
+// added to by Solve; only where contact events are on. Of points that a contact does not have there may be anything but
+// impulses.
 #pragma once
 
 #include <Fulcrum/Constraints/Contacts/ContactBatch.h>
