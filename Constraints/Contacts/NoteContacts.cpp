@@ -37,23 +37,20 @@ void BeginNotes(const ContactBatch<N, kFixedB>& batch, const uint32_t (&bodyB)[N
     const Vec3<Real> a = GatherAcceleration<N>(batch.bodyA, bodies.poses),
                      b = GatherAcceleration<N>(bodyB, bodies.poses);
     const Real closing = Dot<Real>(Vec3<Real>(a - b), batch.normal);
-    Real row[8];
-    for (Real& x : row) x = zero;
+    Real row[8], none[8];
+    for (int k = 0; k < 8; ++k) row[k] = none[k] = zero;
     for (int i = 0; i < batch.pointCount; ++i) {
         const auto& point = batch.rows[i];
         const Real approach = Max(-MotionOf(point, motion), zero), gap = Max(point.startSeparation, zero);
-        row[i] = FiniteOrZero(Sqrt(Max(approach * approach + Real(2.0f) * closing * gap, zero)));
-        row[ContactNote::kMaxPoints + i] = point.startSeparation;
+        row[ContactNote::kApproachSpeeds + i] =
+            FiniteOrZero(Sqrt(Max(approach * approach + Real(2.0f) * closing * gap, zero)));
     }
+    SetVectorAt<ContactNote::kNormal>(row, batch.normal);
     float* rows[N];
     FindRows(batch, notes, &ContactNote::approachSpeed, rows);
     ScatterRows<N>(rows, row, batch.count);
-    for (Real& x : row) x = zero;
     FindRows(batch, notes, &ContactNote::impulse, rows);
-    ScatterRows<N>(rows, row, batch.count);
-    SetVectorAt<0>(row, batch.normal);
-    FindRows(batch, notes, &ContactNote::normal, rows);
-    ScatterRows<N>(rows, row, batch.count);
+    ScatterRows<N>(rows, none, batch.count);
 }
 
 template <int N, bool kFixedB>
@@ -64,25 +61,17 @@ void AddImpulses(const ContactBatch<N, kFixedB>& batch, const Wide<N> (&normal)[
     FindRows(batch, notes, &ContactNote::impulse, rows);
     Real row[8];
     GatherRows<N>(reinterpret_cast<const float* const(&)[N]>(rows), row);
-    for (int i = 0; i < batch.pointCount; ++i) row[i] += FiniteOrZero(normal[i]);
+    for (int i = 0; i < batch.pointCount; ++i) row[ContactNote::kNormalImpulses + i] += FiniteOrZero(normal[i]);
     const Vec3<Real> slide = batch.tangent1 * friction[0] + batch.tangent2 * friction[1];
-    for (int k = 0; k < 3; ++k) row[ContactNote::kMaxPoints + k] += FiniteOrZero(slide[k]);
-    row[7] += FiniteOrZero(friction[2]);
+    for (int k = 0; k < 3; ++k) row[ContactNote::kFrictionImpulse + k] += FiniteOrZero(slide[k]);
+    row[ContactNote::kTwistImpulse] += FiniteOrZero(friction[2]);
     ScatterRows<N>(rows, row, batch.count);
 }
 
 template <int N, bool kFixedB>
 void AddRowImpulses(const ContactBatch<N, kFixedB>& batch, ContactNote* notes) {
-    using Real = Wide<N>;
-    Real normal[ContactNote::kMaxPoints], row[8];
-    float* rows[N];
-    FindRows(batch, notes, &ContactNote::approachSpeed, rows);
-    GatherRows<N>(reinterpret_cast<const float* const(&)[N]>(rows), row);
-    for (int i = 0; i < batch.pointCount; ++i) {
-        normal[i] = batch.rows[i].impulse;
-        row[ContactNote::kMaxPoints + i] = batch.rows[i].separation;
-    }
-    ScatterRows<N>(rows, row, batch.count);
+    Wide<N> normal[ContactNote::kMaxPoints];
+    for (int i = 0; i < batch.pointCount; ++i) normal[i] = batch.rows[i].impulse;
     AddImpulses(batch, normal, batch.frictionImpulse, notes);
 }
 

@@ -19,6 +19,12 @@ struct ListedContact {
     uint32_t firstManifold = 0, manifoldCount = 0;
 };
 
+// A place in the order of events.
+struct ContactOrder {
+    uint64_t bodies;  // indices, A << 32 | B
+    uint32_t listed;  // place in EventBuffers::listed
+};
+
 // A body as the last step ended.
 struct ReportedBody {
     Position position = Position::Zero();  // m, of the center of mass
@@ -31,6 +37,7 @@ struct EventBuffers {
     StepEvents events;
 
     std::vector<ListedContact> listed;
+    std::vector<ContactOrder> order;
     std::vector<ContactEvent> contacts;
     std::vector<ContactEvent::Manifold> manifolds;
 
@@ -42,9 +49,9 @@ struct EventBuffers {
 };
 
 inline size_t HeapBytes(const EventBuffers& buffers) {
-    const auto& [events, listed, contacts, manifolds, bodies, awakeWords, movedWords, awake, moved, woke, fellAsleep,
-                 broken] = buffers;
-    return HeapBytes(events, listed, contacts, manifolds, bodies, awakeWords, movedWords, awake, moved, woke,
+    const auto& [events, listed, order, contacts, manifolds, bodies, awakeWords, movedWords, awake, moved, woke,
+                 fellAsleep, broken] = buffers;
+    return HeapBytes(events, listed, order, contacts, manifolds, bodies, awakeWords, movedWords, awake, moved, woke,
                      fellAsleep, broken);
 }
 

@@ -27,40 +27,35 @@ struct ContactSources {
     std::span<const ContactNote> notes;
 };
 
-// Points of a manifold that press, or are no farther apart than `most`.
-struct TouchingPoints {
-    const Pair& pair;
-    const ContactNote& note;
-    float most;  // m
-
-    bool Has(int i) const { return note.impulse[i] > 0 || note.separation[i] <= most; }
-    template <class Visit>
-    void Each(Visit&& visit) const {
-        for (int i = 0; i < pair.pointCount; ++i)
-            if (Has(i)) visit(static_cast<size_t>(i));
-    }
-};
-
-// Calls visit(manifold, points) for the manifolds of a pair that have points which touch. before: it did in the last
-// step.
-template <class Visit>
-void VisitTouching(const ContactSources& from, uint32_t first, bool before, Visit&& visit) {
-    const PairStore& pairs = from.pairs;
-    const float most = before ? kEndPart * SpeculativeDistance(from.settings, pairs.pairs[first]) : 0.0f;
-    for (uint32_t i = first; i != PairStore::kNone; i = pairs.pairs[i].more) {
-        const Pair& pair = pairs.pairs[i];
-        if (!pair.touching || pair.onSeam) continue;
-        const TouchingPoints points{pair, from.notes[i], most};
-        bool touches = false;
-        points.Each([&](size_t) { touches = true; });
-        if (touches) visit(i, points);
-    }
+// m, within which points touch that do not press. before: the pair touched in the last step.
+float TouchDistance(const ContactSources& from, uint32_t first, bool before) {
+    return before ? kEndPart * SpeculativeDistance(from.settings, from.pairs.pairs[first]) : 0.0f;
 }
 
-bool Touches(const ContactSources& from, uint32_t first, bool before) {
-    bool touches = false;
-    VisitTouching(from, first, before, [&](uint32_t, const TouchingPoints&) { touches = true; });
-    return touches;
+ContactView ViewOf(const ContactSources& from, uint32_t index, ContactView::Point (&room)[ContactRecord::kMaxPoints]) {
+    return ViewSolvedContact(from.bodies, from.colliders, from.pairs, index, room);
+}
+
+// Whether points of a manifold press, or are no farther apart than `most`, m.
+bool Touches(const ContactSources& from, uint32_t index, float most) {
+    const Pair& pair = from.pairs.pairs[index];
+    if (!pair.touching || pair.onSeam) return false;
+    const auto isAny = [&](const auto& test) {
+        for (int i = 0; i < pair.pointCount; ++i)
+            if (test(i)) return true;
+        return false;
+    };
+    if (isAny([&](int i) { return from.notes[index].impulse[i] > 0; })) return true;
+    ContactView::Point room[ContactRecord::kMaxPoints];
+    ViewOf(from, index, room);
+    return isAny([&](int i) { return room[i].separation <= most; });
+}
+
+// Calls visit(manifold) for the manifolds of a pair that touch.
+template <class Visit>
+void VisitTouching(const ContactSources& from, uint32_t first, float most, Visit&& visit) {
+    for (uint32_t i = first; i != PairStore::kNone; i = from.pairs.pairs[i].more)
+        if (Touches(from, i, most)) visit(i);
 }
 
 bool AreReported(const BodyStore& bodies, uint32_t bodyA, uint32_t bodyB) {
@@ -85,7 +80,8 @@ void SetSides(const ContactSources& from, uint32_t colliderA, uint32_t colliderB
 }
 
 ListedContact ListedOf(const ReportedContact& reported, EventKind kind, uint32_t pair) {
-    return {reported.bodyA, reported.bodyB, reported.childA, reported.childB, kind, 1, pair, 0, 0};
+    const uint32_t manifolds = kind == EventKind::End ? 0 : reported.manifoldCount;
+    return {reported.bodyA, reported.bodyB, reported.childA, reported.childB, kind, 1, pair, 0, manifolds};
 }
 
 // Decides whether an active pair touches, and notes its event, if it has one; returns whether it has.
@@ -93,9 +89,12 @@ bool LookAtPair(const ContactSources& from, uint32_t index, ReportedContact& rep
     const Pair& pair = from.pairs.pairs[index];
     if (pair.isMore) return false;
     const bool before = reported.isOn;
-    const bool touches = Touches(from, index, before) && AreReported(from.bodies, pair.bodyA, pair.bodyB);
+    uint32_t manifolds = 0;
+    VisitTouching(from, index, TouchDistance(from, index, before), [&](uint32_t) { ++manifolds; });
+    const bool touches = manifolds > 0 && AreReported(from.bodies, pair.bodyA, pair.bodyB);
     if (!touches && !before) return false;
     reported.isOn = touches;
+    reported.manifoldCount = manifolds;
     reported.kind = !touches ? EventKind::End : before ? EventKind::Stay : EventKind::Begin;
     if (reported.kind == EventKind::Begin) SetSides(from, pair.colliderA, pair.colliderB, reported);
     return reported.kind != EventKind::Stay || from.settings.events.stays;
@@ -151,26 +150,45 @@ void ListHits(const ContactSources& from, std::span<const ReportedHit> hits, std
     }
 }
 
-// Sorted; what ended and began again in the same step, as its pair was made anew, stayed.
-void Order(bool keepsStays, std::vector<ListedContact>& listed) {
-    const auto sidesOf = [](const ListedContact& e) { return std::tie(e.bodyA, e.bodyB, e.childA, e.childB); };
-    std::sort(listed.begin(), listed.end(), [&](const ListedContact& x, const ListedContact& y) {
-        return std::tie(x.bodyA, x.bodyB, x.childA, x.childB, x.kind, x.time, x.source) <
-               std::tie(y.bodyA, y.bodyB, y.childA, y.childB, y.kind, y.time, y.source);
+// The order of events: by what most differ in, then by all of it.
+void Sort(std::span<const ListedContact> listed, std::vector<ContactOrder>& order) {
+    order.clear();
+    for (uint32_t i = 0; i < listed.size(); ++i)
+        order.push_back({uint64_t{listed[i].bodyA.index} << 32 | listed[i].bodyB.index, i});
+    const auto keyOf = [&](const ContactOrder& of) {
+        const ListedContact& e = listed[of.listed];
+        return std::tie(e.bodyA, e.bodyB, e.childA, e.childB, e.kind, e.time, e.source);
+    };
+    std::sort(order.begin(), order.end(), [&](const ContactOrder& x, const ContactOrder& y) {
+        return x.bodies != y.bodies ? x.bodies < y.bodies : keyOf(x) < keyOf(y);
     });
+}
+
+// Gives events room for their manifolds; returns of how many. What ended and began again in the same step, as its pair
+// was made anew, stayed: one of the two is dropped from the order.
+uint32_t Place(bool keepsStays, std::span<ListedContact> listed, std::vector<ContactOrder>& order) {
+    const auto areSame = [](const ListedContact& a, const ListedContact& b) {
+        return std::tie(a.bodyA, a.bodyB, a.childA, a.childB) == std::tie(b.bodyA, b.bodyB, b.childA, b.childB);
+    };
     size_t count = 0;
-    for (size_t i = 0; i < listed.size(); ++i) {
-        ListedContact event = listed[i];
-        const bool stays = event.kind == EventKind::Begin && i + 1 < listed.size() &&
-                           listed[i + 1].kind == EventKind::End && sidesOf(event) == sidesOf(listed[i + 1]);
-        if (stays) {
-            event.kind = EventKind::Stay;
-            ++i;
-            if (!keepsStays) continue;
+    uint32_t manifolds = 0;
+    for (size_t i = 0; i < order.size(); ++i) {
+        const ContactOrder place = order[i];
+        ListedContact& event = listed[place.listed];
+        if (event.kind == EventKind::Begin && i + 1 < order.size()) {
+            const ListedContact& next = listed[order[i + 1].listed];
+            if (next.kind == EventKind::End && areSame(event, next)) {
+                event.kind = EventKind::Stay;
+                ++i;
+                if (!keepsStays) continue;
+            }
         }
-        listed[count++] = event;
+        event.firstManifold = manifolds;
+        manifolds += event.manifoldCount;
+        order[count++] = place;
     }
-    listed.resize(count);
+    order.resize(count);
+    return manifolds;
 }
 
 // Turns it to the other side.
@@ -181,24 +199,24 @@ void Swap(ContactEvent::Manifold& manifold) {
 
 // Of one that touches: its points as the step ended, its normal as it was solved; raises the speed to the fastest
 // approach of its points.
-ContactEvent::Manifold ManifoldOf(const ContactSources& from, uint32_t index, const TouchingPoints& points,
-                                  float& approachSpeed) {
+ContactEvent::Manifold ManifoldOf(const ContactSources& from, uint32_t index, float most, float& approachSpeed) {
+    const Pair& pair = from.pairs.pairs[index];
+    const ContactNote& note = from.notes[index];
     ContactView::Point room[ContactRecord::kMaxPoints];
-    const ContactView view = ViewSolvedContact(from.bodies, from.colliders, from.pairs, index, room);
-    const ContactNote& note = points.note;
+    const Position normal = ViewOf(from, index, room).normal.cast<double>();
     ContactEvent::Manifold manifold{
         .normal = Vector3(note.normal[0], note.normal[1], note.normal[2]),
         .frictionImpulse = Vector3(note.frictionImpulse[0], note.frictionImpulse[1], note.frictionImpulse[2]),
         .twistImpulse = note.twistImpulse,
-        .triangle = points.pair.triangle,
-        .material = points.pair.material};
-    const Position normal = view.normal.cast<double>();
-    points.Each([&](size_t i) {
-        const double half = 0.5 * double{room[i].separation};
-        manifold.points[manifold.pointCount++] = {room[i].position + normal * half, room[i].separation,
-                                                  note.impulse[i]};
+        .triangle = pair.triangle,
+        .material = pair.material};
+    for (size_t i = 0; i < pair.pointCount; ++i) {
+        const ContactView::Point& point = room[i];
+        if (!(note.impulse[i] > 0 || point.separation <= most)) continue;
+        manifold.points[manifold.pointCount++] = {point.position + normal * (0.5 * double{point.separation}),
+                                                  point.separation, note.impulse[i]};
         approachSpeed = std::max(approachSpeed, note.approachSpeed[i]);
-    });
+    }
     return manifold;
 }
 
@@ -222,11 +240,11 @@ void Fill(const ContactSources& from, std::span<const ReportedHit> hits, const L
         event.approachSpeed = hit.approachSpeed;
     } else {
         isSwapped = from.pairs.pairs[listed.source].bodyA != listed.bodyA.index;
+        const bool before = from.pairs.reported[listed.source].kind != EventKind::Begin;
+        const float most = TouchDistance(from, listed.source, before);
         size_t count = 0;
-        VisitTouching(from, listed.source, from.pairs.reported[listed.source].kind != EventKind::Begin,
-                      [&](uint32_t index, const TouchingPoints& points) {
-                          manifolds[count++] = ManifoldOf(from, index, points, event.approachSpeed);
-                      });
+        VisitTouching(from, listed.source, most,
+                      [&](uint32_t index) { manifolds[count++] = ManifoldOf(from, index, most, event.approachSpeed); });
     }
     if (isSwapped)
         for (ContactEvent::Manifold& manifold : manifolds) Swap(manifold);
@@ -246,29 +264,15 @@ void ListContactEvents(const StepContext& step, const BodyStore& bodies, const C
     for (const ReportedContact& ended : pairs.ended) listed.push_back(ListedOf(ended, EventKind::End, 0));
     pairs.ended.clear();
     ListHits(from, sweeps.reported, listed);
-    Order(step.settings.events.stays, listed);
-
-    const uint32_t count = static_cast<uint32_t>(listed.size());
-    workers.jobs.ParallelFor(count, 64, [&](JobRange range) {
+    Sort(listed, buffers.order);
+    buffers.manifolds.resize(Place(step.settings.events.stays, listed, buffers.order));
+    buffers.contacts.resize(buffers.order.size());
+    workers.jobs.ParallelFor(static_cast<uint32_t>(buffers.order.size()), 16, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i) {
-            ListedContact& event = listed[i];
-            if (event.kind == EventKind::Begin || event.kind == EventKind::Stay)
-                VisitTouching(from, event.source, pairs.reported[event.source].kind != EventKind::Begin,
-                              [&](uint32_t, const TouchingPoints&) { ++event.manifoldCount; });
+            const ListedContact& event = listed[buffers.order[i].listed];
+            Fill(from, sweeps.reported, event,
+                 std::span(buffers.manifolds).subspan(event.firstManifold, event.manifoldCount), buffers.contacts[i]);
         }
-    });
-    uint32_t manifolds = 0;
-    for (ListedContact& event : listed) {
-        event.firstManifold = manifolds;
-        manifolds += event.manifoldCount;
-    }
-    buffers.contacts.resize(count);
-    buffers.manifolds.resize(manifolds);
-    workers.jobs.ParallelFor(count, 16, [&](JobRange range) {
-        for (uint32_t i = range.begin; i < range.end; ++i)
-            Fill(from, sweeps.reported, listed[i],
-                 std::span(buffers.manifolds).subspan(listed[i].firstManifold, listed[i].manifoldCount),
-                 buffers.contacts[i]);
     });
     buffers.events.contacts = buffers.contacts;
 }

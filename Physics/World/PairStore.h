@@ -46,8 +46,10 @@ static_assert(sizeof(Pair) == 128);
 struct ReportedContact {
     BodyId bodyA, bodyB;
     uint32_t childA = 0, childB = 0;
-    bool isOn = false;                                   // it began, and has not ended
-    ContactEvent::Kind kind = ContactEvent::Kind::Stay;  // of its event in this step, where it has one
+    bool isOn = false;  // it began, and has not ended
+    // Of its event in this step, where it has one.
+    ContactEvent::Kind kind = ContactEvent::Kind::Stay;
+    uint32_t manifoldCount = 0;
 };
 
 class PairStore {

@@ -61,7 +61,7 @@ NotedContacts Solved(uint32_t seed, bool surfacesMove) {
     // What is noted of points that only other contacts of the batch have is nobody's.
     for (size_t i = 0; i < kContacts; ++i)
         for (int k = static_cast<int>(contacts.records[i].pointCount); k < ContactNote::kMaxPoints; ++k)
-            contacts.notes[i].approachSpeed[k] = contacts.notes[i].separation[k] = 0;
+            contacts.notes[i].approachSpeed[k] = 0;
     return contacts;
 }
 
