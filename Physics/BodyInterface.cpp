@@ -144,7 +144,7 @@ Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
     cold.continuous = settings.continuous;
     world_.bodies.continuousCount += settings.continuous != ContinuousCollision::Off;
     cold.isSensor = settings.isSensor;
-    cold.reportsContacts = settings.reportsContacts;
+    if (settings.reportsContacts) world_.bodies.reportsContacts.Insert(body);
     FillDynamics(world_.bodies.dynamics[body], settings);
     world_.bodies.SetFilter(body, {settings.category, settings.mask, settings.group});
     if (cold.children) {
@@ -383,7 +383,8 @@ Status BodyInterface::SetReportsContacts(BodyId id, bool reportsContacts) {
     const WorldLock::Exclusive alone(world_.lock);
     if (alone.Refusal()) return *alone.Refusal();
     if (!Exists(id)) return Unknown(id);
-    world_.bodies.cold[id.index].reportsContacts = reportsContacts;
+    if (reportsContacts) world_.bodies.reportsContacts.Insert(id.index);
+    else world_.bodies.reportsContacts.Erase(id.index);
     return Done{};
 }
 
@@ -496,7 +497,7 @@ CollisionGroup BodyInterface::GetGroup(BodyId id) const {
 }
 uint64_t BodyInterface::GetUserData(BodyId id) const { return Exists(id) ? world_.bodies.cold[id.index].userData : 0; }
 bool BodyInterface::ReportsContacts(BodyId id) const {
-    return Exists(id) && world_.bodies.cold[id.index].reportsContacts;
+    return Exists(id) && world_.bodies.reportsContacts.Contains(id.index);
 }
 bool BodyInterface::IsSensor(BodyId id) const { return Exists(id) && world_.bodies.cold[id.index].isSensor; }
 bool BodyInterface::IsAwake(BodyId id) const { return Exists(id) && world_.bodies.dynamics[id.index].awake; }

@@ -164,7 +164,7 @@ void BounceContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const Co
         if constexpr (!kFixedB) sum += changed.b[k] * changed.b[k];
     }
     const auto isHit = (largest > zero) & (sum * part < Real(std::numeric_limits<float>::max()));
-    if (settings.notes) {
+    if (batch.hasNotes) {
         const Real done = Select(isHit, part, zero);
         for (int i = 0; i < batch.pointCount; ++i) impulses[i] = impulses[i] * done;
         for (Real& f : friction) f = f * done;

@@ -4,6 +4,7 @@
 
 #include <Fulcrum/Physics/StepEvents.h>
 #include <Fulcrum/Physics/World/HeapBytes.h>
+#include <Fulcrum/Physics/World/IndexSet.h>
 
 #include <vector>
 
@@ -32,6 +33,11 @@ struct ReportedBody {
     uint32_t generation = ~0u;  // of another one: nothing is known of the body
     bool isAwake = false;
 };
+
+// Whether the contacts of two bodies are events. reports: BodyStore's.
+inline bool AreReported(const IndexSet& reports, uint32_t bodyA, uint32_t bodyB) {
+    return reports.Contains(bodyA) || reports.Contains(bodyB);
+}
 
 struct EventBuffers {
     StepEvents events;

@@ -58,10 +58,6 @@ void VisitTouching(const ContactSources& from, uint32_t first, float most, Visit
         if (Touches(from, i, most)) visit(i);
 }
 
-bool AreReported(const BodyStore& bodies, uint32_t bodyA, uint32_t bodyB) {
-    return bodies.cold[bodyA].reportsContacts || bodies.cold[bodyB].reportsContacts;
-}
-
 // Whether an event has the second body as its A.
 bool IsSwapped(const BodyStore& bodies, uint32_t first, uint32_t second) {
     const auto isDynamic = [&](uint32_t body) { return bodies.dynamics[body].motion == MotionType::Dynamic; };
@@ -90,8 +86,9 @@ bool LookAtPair(const ContactSources& from, uint32_t index, ReportedContact& rep
     if (pair.isMore) return false;
     const bool before = reported.isOn;
     uint32_t manifolds = 0;
-    VisitTouching(from, index, TouchDistance(from, index, before), [&](uint32_t) { ++manifolds; });
-    const bool touches = manifolds > 0 && AreReported(from.bodies, pair.bodyA, pair.bodyB);
+    if (AreReported(from.bodies.reportsContacts, pair.bodyA, pair.bodyB))
+        VisitTouching(from, index, TouchDistance(from, index, before), [&](uint32_t) { ++manifolds; });
+    const bool touches = manifolds > 0;
     if (!touches && !before) return false;
     reported.isOn = touches;
     reported.manifoldCount = manifolds;
@@ -139,7 +136,7 @@ void ListApart(const ContactSources& from, std::span<ReportedContact> reported, 
 void ListHits(const ContactSources& from, std::span<const ReportedHit> hits, std::vector<ListedContact>& listed) {
     for (uint32_t i = 0; i < hits.size(); ++i) {
         const ReportedHit& hit = hits[i];
-        if (!AreReported(from.bodies, hit.body, hit.other)) continue;
+        if (!AreReported(from.bodies.reportsContacts, hit.body, hit.other)) continue;
         ListedContact event;
         event.kind = EventKind::Hit;
         event.time = hit.time;

@@ -89,7 +89,10 @@ void Fill(const ContactSource& from, ContactBatch<N, kFixedB>& batch, std::span<
     if (from.hasCrowds) [[unlikely]]
         LimitPushes(from.bodies, from.depenetrationSpeed, bodyB, batch);
     NoteDeepest(batch, findings);
-    if (from.notes) BeginNotes(batch, bodyB, from.bodies.ForSolver(), from.notes);
+    batch.hasNotes = from.notes && std::ranges::any_of(entries, [&](const Entry& entry) {
+                         return AreReported(from.bodies.reportsContacts, entry.bodyA, entry.bodyB);
+                     });
+    if (batch.hasNotes) BeginNotes(batch, bodyB, from.bodies.ForSolver(), from.notes);
 }
 
 template <bool kFixedB>

@@ -127,7 +127,7 @@ private:
         } else if (phase.color == group_.colorsEnd - group_.colorsBegin) {
             ForEachOverflowList(layout_, [&](auto& batches) {
                 for (auto& batch : batches) RunBatch(phase.verb, phase.substep, batch);
-                if (phase.isLast && notes_)
+                if (phase.isLast)
                     for (const auto& batch : batches) Note(batch);
             });
         } else {
@@ -219,7 +219,7 @@ private:
     // For contact events.
     template <int N, bool kFixedB>
     void Note(const ContactBatch<N, kFixedB>& batch) const {
-        AddRowImpulses(batch, notes_);
+        if (batch.hasNotes) AddRowImpulses(batch, notes_);
     }
     template <class Batch>
     void Note(const Batch&) const {}

@@ -21,6 +21,7 @@ uint32_t BodyStore::Allocate() {
         dynamics.emplace_back();
         cold.emplace_back();
         remainders.emplace_back();
+        reportsContacts.Reserve(index + 1);
     }
     cold[index].exists = true;
     if (notesSleepChanges) sleepChanges.push_back(index);
@@ -36,6 +37,7 @@ void BodyStore::Free(uint32_t index) {
     dynamics[index] = {};
     cold[index] = {};
     cold[index].generation = generation;
+    reportsContacts.Erase(index);
     free_.push_back(index);
     --count_;
 }
@@ -178,9 +180,9 @@ size_t HeapBytes(const BodyCold& body) {
 
 size_t HeapBytes(const BodyStore& store) {
     const auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, continuousCount,
-                 sleepChanges, notesSleepChanges, free, count] = store;
+                 reportsContacts, sleepChanges, notesSleepChanges, free, count] = store;
     return HeapBytes(states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, continuousCount,
-                     sleepChanges, notesSleepChanges, free, count);
+                     reportsContacts, sleepChanges, notesSleepChanges, free, count);
 }
 
 }  // namespace fulcrum

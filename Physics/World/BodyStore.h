@@ -4,6 +4,7 @@
 
 #include <Fulcrum/Constraints/Parts/BodyState.h>
 #include <Fulcrum/Physics/Settings.h>
+#include <Fulcrum/Physics/World/IndexSet.h>
 
 #include <cmath>
 #include <memory>
@@ -137,7 +138,6 @@ struct BodyCold {
     bool placed : 1 = false;   // see BodyStore::MarkPlaced
     bool removed : 1 = false;  // by the interface, its index not yet free
     bool isSensor : 1 = false;
-    bool reportsContacts : 1 = true;
 
     uint32_t MoreColliders() const {
         return children ? children->moreColliders : ~0u;
@@ -185,6 +185,7 @@ public:
     std::vector<uint32_t> placed;  // see MarkPlaced, in no order
     std::vector<uint32_t> awake;   // dynamic bodies awake and kinematic ones that move, in no order
     uint32_t continuousCount = 0;  // bodies with continuous collision
+    IndexSet reportsContacts;      // bodies of BodySettings::reportsContacts
     // For events, where they are on: bodies that came to be, woke or fell asleep since the last step; repeated, in no
     // order.
     std::vector<uint32_t> sleepChanges;

@@ -40,6 +40,7 @@ NotedContacts Solved(uint32_t seed, bool surfacesMove) {
         settings.notes = contacts.notes.data();
         uint32_t bodyB[N];
         for (int lane = 0; lane < N; ++lane) bodyB[lane] = batch.bodyA[lane] + 1;
+        batch.hasNotes = true;
         BeginNotes(batch, bodyB, contacts.Bodies(), contacts.notes.data());
         settings.Soften(60, 10, 1.0f / 240, 3);
         WarmStartContacts(batch, states);
