@@ -15,7 +15,7 @@ namespace fulcrum {
 struct ContactEvent {
     enum class Kind : uint8_t {
         Begin,  // they touch, and did not in the last step
-        Stay,   // they did. Those that sleep have no events, and go on with this one when they wake
+        Stay,   // they did; what slept since then goes on with this one when it wakes
         End,    // they touch no longer: they came apart, or a body was removed, teleported, filtered out
         Hit,    // continuous collision stopped or deflected one of them in the middle of the step
     };
@@ -58,7 +58,8 @@ struct BrokenJoint {
     Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  // N, N m: what it did in this step, as GetForce has it
 };
 
-// Arrays in an order that is the same for any number of threads. Valid until the next step.
+// Arrays in an order that is the same for any number of threads. Valid until the next step; one of less than a
+// nanosecond has none, and leaves what it would have to the next.
 struct StepEvents {
     // With EventSettings::contacts. By A, B, children, kind, time.
     std::span<const ContactEvent> contacts;

@@ -92,6 +92,7 @@ void Sense(const StepContext& step, const BodyStore& bodies, const JointStore& j
            SensorStore& sensors, ColliderStore& colliders, SensorSearch& sensing, const StepWorkers& workers,
            StepReport& report);
 
+// The Events stage, in Events.cpp.
 // Contacts that began, went on or ended in the step, and hits of continuous collision, if somebody asks for them. Pairs
 // note what was said of them.
 void ListContactEvents(const StepContext& step, const BodyStore& bodies, const ColliderStore& colliders,

@@ -132,6 +132,28 @@ TEST(ContactImpulses, AreAllOfTheImpulsesOfAHeap) {
     EXPECT_TRUE(hadEffort);
 }
 
+// In a row of boxes on each other, of which one alone reports its contacts: those above and below it.
+TEST(ContactImpulses, OfOneThatReportsAmongOthers) {
+    TestWorld world(WithSubsteps(4));
+    ASSERT_TRUE(world.Bodies().SetReportsContacts(world.AddFloor(), false));
+    BodyId middle;
+    for (int i = 0; i < 40; ++i) {
+        const BodyId box = world.Add({.shape = CubeOf(0.5f),
+                                      .position = {i / 5 * 3.0, 0.5 + i % 5, 0},
+                                      .mass = 2,
+                                      .reportsContacts = i == 17});
+        if (i == 17) middle = box;
+    }
+    world.Steps(120);
+    const auto events = world.System().Events().contacts;
+    ASSERT_EQ(events.size(), 2u);
+    EXPECT_EQ(events[0].bodyB, middle);
+    EXPECT_EQ(events[1].bodyA, middle);
+    EXPECT_NEAR(events[0].NormalImpulse(), 3 * 2 * kGravity * kStep, 1e-2);
+    EXPECT_NEAR(events[1].NormalImpulse(), 2 * 2 * kGravity * kStep, 1e-2);
+    EXPECT_NEAR(ImpulseOn(world, middle).y(), 2 * kGravity * kStep, 1e-3);
+}
+
 // A ball that bounces: m (1 + e) v, with v the speed of a fall from its height, and no more events of it.
 TEST(ContactImpulses, OfABounceAreThoseOfNewtonsLaw) {
     for (const int substeps : {1, 4, 16}) {
