@@ -32,7 +32,7 @@ void ListBits(const BodyStore& bodies, std::span<const uint64_t> words, std::vec
         VisitBits(words[w], 64 * w, [&](uint32_t body) { ids.push_back(bodies.IdOf(body)); });
 }
 
-// What woke and fell asleep; what is new has moved.
+// What woke and fell asleep; any of it may have moved, and what is new and awake has.
 void ListChanges(BodyStore& bodies, EventBuffers& buffers) {
     std::vector<uint32_t>& changes = bodies.sleepChanges;
     std::sort(changes.begin(), changes.end());
@@ -47,8 +47,8 @@ void ListChanges(BodyStore& bodies, EventBuffers& buffers) {
         } else if (reported.isAwake != now.isAwake) {
             (now.isAwake ? buffers.woke : buffers.fellAsleep).push_back(bodies.IdOf(body));
             reported.isAwake = now.isAwake;
-            SetBit(buffers.movedWords, body);
         }
+        SetBit(buffers.movedWords, body);
     }
 }
 

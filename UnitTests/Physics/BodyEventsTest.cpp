@@ -109,6 +109,12 @@ TEST(BodyEvents, MovedIsAllThatARendererNeeds) {
     std::vector<Pose> poses(bodies.size());
     size_t lists = 0;
     for (int step = 0; step < 200; ++step) {
+        // One that sleeps is carried off, and does not wake.
+        if (step == 180) {
+            ASSERT_FALSE(world.Bodies().IsAwake(bodies[29]));
+            ASSERT_TRUE(world.Bodies().SetPose(bodies[29], {0, 20, 9}, {}));
+            ASSERT_TRUE(world.Bodies().Sleep(bodies[29]));
+        }
         EXPECT_TRUE(step != 190 || world.Bodies().SetPose(bodies[7], {0, 9, 9}, {}));
         world.Step();
         for (const BodyId body : world.System().Events().moved)
