@@ -111,9 +111,11 @@ TEST(BodyEvents, MovedIsAllThatARendererNeeds) {
     for (int step = 0; step < 200; ++step) {
         // One that sleeps is carried off, and does not wake.
         if (step == 180) {
-            ASSERT_FALSE(world.Bodies().IsAwake(bodies[29]));
-            ASSERT_TRUE(world.Bodies().SetPose(bodies[29], {0, 20, 9}, {}));
-            ASSERT_TRUE(world.Bodies().Sleep(bodies[29]));
+            const auto sleeper =
+                std::ranges::find_if(bodies, [&](BodyId body) { return !world.Bodies().IsAwake(body); });
+            ASSERT_NE(sleeper, bodies.end());
+            ASSERT_TRUE(world.Bodies().SetPose(*sleeper, {0, 20, 9}, {}));
+            ASSERT_TRUE(world.Bodies().Sleep(*sleeper));
         }
         EXPECT_TRUE(step != 190 || world.Bodies().SetPose(bodies[7], {0, 9, 9}, {}));
         world.Step();
