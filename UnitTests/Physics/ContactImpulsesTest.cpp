@@ -1,8 +1,9 @@
 // Impulses of contact events are those of the whole step: what a body's momentum changes by, together with gravity.
-#include <Fulcrum/Collision/Shapes/Plane.h>
 #include <Fulcrum/UnitTests/Support/ContactEvents.h>
 
 #include <cmath>
+#include <map>
+#include <string>
 
 namespace fulcrum::testing {
 namespace {
@@ -39,7 +40,7 @@ TEST(ContactImpulses, AreTheChangeOfMomentumOfABallThatHits) {
                                                .linearVelocity = {3, -7, 0},
                                                .mass = 5,
                                                .material = {.friction = friction, .restitution = restitution}});
-                ExpectMomentum(world, ball, 120, 40e-4 * 0.1,
+                ExpectMomentum(world, ball, 120, 1e-4,
                                std::to_string(substeps) + " substeps, restitution " + std::to_string(restitution) +
                                    ", friction " + std::to_string(friction));
             }
@@ -75,7 +76,7 @@ TEST(ContactImpulses, AreTheSameForBothBodies) {
             EXPECT_GT(sums[0].norm(), 10);
             const Position changes[2] = {(world.VelocityOf(first) - before[0]).cast<double>() * 3.0,
                                          (world.VelocityOf(second) - before[1]).cast<double>() * 8.0};
-            for (int i = 0; i < 2; ++i) EXPECT_LT((sums[i] - changes[i]).norm(), 2e-3) << substeps << " substeps";
+            for (int i = 0; i < 2; ++i) EXPECT_LT((sums[i] - changes[i]).norm(), 1e-4) << substeps << " substeps";
         }
 }
 
@@ -101,8 +102,28 @@ TEST(ContactImpulses, OfABoxAtRestAreItsWeight) {
     }
 }
 
-// Of each body of a heap the momentum changes by gravity and the impulses of all its contacts, also where islands have
-// more substeps than the settings', and where constraints fit no color.
+// Steps, and expects that the momentum of each body, of 2 kg, changes by gravity and the impulses of all its contacts.
+void ExpectMomenta(TestWorld& world, std::span<const BodyId> bodies, const std::string& what) {
+    std::vector<Vector3> change;
+    for (const BodyId body : bodies) change.push_back(-world.VelocityOf(body) * 2.0f);
+    world.Step();
+    std::map<BodyId, Vector3> impulses;
+    const auto add = [&](BodyId body, const Vector3& impulse) {
+        impulses.try_emplace(body, Vector3::Zero()).first->second += impulse;
+    };
+    for (const ContactEvent& event : world.System().Events().contacts) {
+        add(event.bodyB, event.Impulse());
+        add(event.bodyA, -event.Impulse());
+    }
+    const Vector3 weight = world.System().Settings().gravity * static_cast<float>(2 * kStep);
+    for (size_t i = 0; i < bodies.size(); ++i) {
+        add(bodies[i], weight);
+        change[i] += world.VelocityOf(bodies[i]) * 2.0f;
+        ASSERT_LT(Length(Vector3(change[i] - impulses.at(bodies[i]))), 1e-4f) << what << ", body " << i;
+    }
+}
+
+// Also where islands have more substeps than the settings', and where constraints fit no color.
 TEST(ContactImpulses, AreAllOfTheImpulsesOfAHeap) {
     SystemSettings settings = WithSubsteps(2);
     settings.accuracy.penetration = 0.0005f;
@@ -117,19 +138,27 @@ TEST(ContactImpulses, AreAllOfTheImpulsesOfAHeap) {
                                     .material = {.restitution = i % 5 ? 0.0f : 0.7f}}));
     bool overflowed = false, hadEffort = false;
     for (int step = 0; step < 90; ++step) {
-        std::vector<Vector3> before;
-        for (const BodyId body : bodies) before.push_back(world.VelocityOf(body));
-        world.Step();
+        ExpectMomenta(world, bodies, "step " + std::to_string(step));
         overflowed |= world.Report().overflowConstraints > 0;
         hadEffort |= world.Report().islandsWithMoreEffort > 0;
-        for (size_t i = 0; i < bodies.size(); ++i) {
-            const Vector3 change = (world.VelocityOf(bodies[i]) - before[i]) * 2.0f;
-            const Vector3 impulse = ImpulseOn(world, bodies[i]) + settings.gravity * static_cast<float>(2 * kStep);
-            ASSERT_LT(Length(Vector3(change - impulse)), 2e-3f) << "step " << step << ", body " << i;
-        }
     }
     EXPECT_TRUE(overflowed);
     EXPECT_TRUE(hadEffort);
+}
+
+// An island of more than 768 contacts, which all workers solve together, as it falls together.
+TEST(ContactImpulses, AreAllOfTheImpulsesOfALargeIsland) {
+    TestWorld world(WithSubsteps(4), 2);
+    world.AddFloor();
+    std::vector<BodyId> bodies;
+    for (int row = 0; row < 30; ++row)
+        for (int i = 0; i < 30 - row; ++i)
+            bodies.push_back(world.Add({.shape = CubeOf(0.5f),
+                                        .position = {1.02 * i + 0.51 * row, 0.52 + 1.01 * row, 0},
+                                        .mass = 2,
+                                        .material = {.restitution = i % 3 ? 0.0f : 0.5f}}));
+    for (int step = 0; step < 40; ++step) ExpectMomenta(world, bodies, "step " + std::to_string(step));
+    EXPECT_GT(world.Report().contacts, 800u);
 }
 
 // In a row of boxes on each other, of which one alone reports its contacts: those above and below it.
@@ -138,10 +167,8 @@ TEST(ContactImpulses, OfOneThatReportsAmongOthers) {
     ASSERT_TRUE(world.Bodies().SetReportsContacts(world.AddFloor(), false));
     BodyId middle;
     for (int i = 0; i < 40; ++i) {
-        const BodyId box = world.Add({.shape = CubeOf(0.5f),
-                                      .position = {i / 5 * 3.0, 0.5 + i % 5, 0},
-                                      .mass = 2,
-                                      .reportsContacts = i == 17});
+        const BodyId box = world.Add(
+            {.shape = CubeOf(0.5f), .position = {i / 5 * 3.0, 0.5 + i % 5, 0}, .mass = 2, .reportsContacts = i == 17});
         if (i == 17) middle = box;
     }
     world.Steps(120);
@@ -198,7 +225,7 @@ TEST(ContactImpulses, AreThereForAllKindsOfPasses) {
             world.AddFloor();
             const BodyId box =
                 world.Add({.shape = CubeOf(0.5f), .position = {0, 0.8, 0}, .linearVelocity = {2, -3, 0}, .mass = 4});
-            ExpectMomentum(world, box, 60, 2e-3, std::to_string(positionIterations) + " position iterations");
+            ExpectMomentum(world, box, 60, 1e-4, std::to_string(positionIterations) + " position iterations");
         }
 }
 
