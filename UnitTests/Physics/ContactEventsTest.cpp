@@ -255,6 +255,28 @@ TEST(ContactEvents, AreSortedAndPointFromAToB) {
     EXPECT_NEAR(events[4].manifolds[0].Points()[0].position.x(), 6, 0.05);
 }
 
+// Another shape of the body with the lower index comes after that of the other among the colliders.
+TEST(ContactEvents, PointFromAToBWhateverTheColliders) {
+    TestWorld world(WithContactEvents(NoSleep()));
+    world.AddFloor();
+    const BodyId upper = world.Add({.shape = CubeOf(0.5f), .position = {0, 1.5, 0}, .mass = 3});
+    const BodyId lower = world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5, 0}, .mass = 3});
+    world.Steps(30);
+    for (const bool isAnother : {false, true}) {
+        if (isAnother) {
+            ASSERT_TRUE(world.Bodies().SetShape(upper, BoxOf(0.4f, 0.5f, 0.4f), MassUpdate::Keep));
+            world.Steps(30);
+        }
+        const auto events = world.System().Events().contacts;
+        ASSERT_EQ(events.size(), 2u);
+        EXPECT_EQ(events[0].bodyA, upper);
+        EXPECT_EQ(events[0].bodyB, lower);
+        EXPECT_NEAR(events[0].manifolds[0].normal.y(), -1, 1e-4);
+        EXPECT_NEAR(events[0].Impulse().y(), -3 * kGravity * kStep, 1e-2);
+        EXPECT_NEAR(events[0].manifolds[0].Points()[0].position.y(), 1, 2e-3);
+    }
+}
+
 // A ball that lies in the valley of two triangles of different materials has two manifolds.
 TEST(ContactEvents, NameTrianglesAndMaterialsOfASurface) {
     const Vector3 corners[] = {{-4, 4, -4}, {-4, 4, 4}, {0, 0, -4}, {0, 0, 4}, {4, 4, -4}, {4, 4, 4}};

@@ -123,13 +123,13 @@ std::array<int, 4> ExpectTheSame(const SystemSettings& settings, int steps) {
 }
 
 TEST(EventsDeterminism, OfAMixedScene) {
-    const auto counts = ExpectTheSame<MixedScene>({}, 200);
+    const auto counts = ExpectTheSame<MixedScene>({}, 120);
     for (const Kind kind : {Kind::Begin, Kind::Stay, Kind::End, Kind::Hit})
         EXPECT_GT(counts[static_cast<size_t>(kind)], 5) << static_cast<int>(kind);
 }
 
 TEST(EventsDeterminism, OfASceneOfJoints) {
-    const auto counts = ExpectTheSame<JointScene>(JointScene::Settings(), 150);
+    const auto counts = ExpectTheSame<JointScene>(JointScene::Settings(), 90);
     EXPECT_GT(counts[static_cast<size_t>(Kind::Stay)], 100);
 }
 
