@@ -36,19 +36,22 @@ ContactView ViewOf(const ContactSources& from, uint32_t index, ContactView::Poin
     return ViewSolvedContact(from.bodies, from.colliders, from.pairs, index, room);
 }
 
-// Whether points of a manifold press, or are no farther apart than `most`, m.
+// Whether a contact did anything. Where it comes apart friction may be left alone.
+bool HasImpulse(const ContactNote& note) {
+    const auto isAny = [](std::span<const float> impulses) {
+        return std::ranges::any_of(impulses, [](float impulse) { return impulse != 0; });
+    };
+    return isAny(note.impulse) || isAny(note.frictionImpulse) || note.twistImpulse != 0;
+}
+
+// Whether a manifold did anything, or has points no farther apart than `most`, m.
 bool Touches(const ContactSources& from, uint32_t index, float most) {
     const Pair& pair = from.pairs.pairs[index];
-    if (!pair.touching || pair.onSeam) return false;
-    const auto isAny = [&](const auto& test) {
-        for (int i = 0; i < pair.pointCount; ++i)
-            if (test(i)) return true;
-        return false;
-    };
-    if (isAny([&](int i) { return from.notes[index].impulse[i] > 0; })) return true;
+    if (!pair.touching || pair.onSeam || pair.pointCount == 0) return false;
+    if (HasImpulse(from.notes[index])) return true;
     ContactView::Point room[ContactRecord::kMaxPoints];
-    ViewOf(from, index, room);
-    return isAny([&](int i) { return room[i].separation <= most; });
+    return std::ranges::any_of(ViewOf(from, index, room).points,
+                               [&](const ContactView::Point& point) { return point.separation <= most; });
 }
 
 // Calls visit(manifold) for the manifolds of a pair that touch.
@@ -200,20 +203,27 @@ ContactEvent::Manifold ManifoldOf(const ContactSources& from, uint32_t index, fl
     const Pair& pair = from.pairs.pairs[index];
     const ContactNote& note = from.notes[index];
     ContactView::Point room[ContactRecord::kMaxPoints];
-    const Position normal = ViewOf(from, index, room).normal.cast<double>();
+    const ContactView view = ViewOf(from, index, room);
+    const Position normal = view.normal.cast<double>();
     ContactEvent::Manifold manifold{
         .normal = Vector3(note.normal[0], note.normal[1], note.normal[2]),
         .frictionImpulse = Vector3(note.frictionImpulse[0], note.frictionImpulse[1], note.frictionImpulse[2]),
         .twistImpulse = note.twistImpulse,
         .triangle = pair.triangle,
         .material = pair.material};
-    for (size_t i = 0; i < pair.pointCount; ++i) {
-        const ContactView::Point& point = room[i];
-        if (!(note.impulse[i] > 0 || point.separation <= most)) continue;
-        manifold.points[manifold.pointCount++] = {point.position + normal * (0.5 * double{point.separation}),
-                                                  point.separation, note.impulse[i]};
-        approachSpeed = std::max(approachSpeed, note.approachSpeed[i]);
-    }
+    const auto addWithin = [&](float distance) {
+        for (size_t i = 0; i < view.points.size(); ++i) {
+            const ContactView::Point& point = view.points[i];
+            if (!(note.impulse[i] > 0 || point.separation <= distance)) continue;
+            manifold.points[manifold.pointCount++] = {point.position + normal * (0.5 * double{point.separation}),
+                                                      point.separation, note.impulse[i]};
+            approachSpeed = std::max(approachSpeed, note.approachSpeed[i]);
+        }
+    };
+    addWithin(most);
+    // Friction alone was left.
+    if (manifold.pointCount == 0)
+        addWithin(std::ranges::min(view.points, {}, &ContactView::Point::separation).separation);
     return manifold;
 }
 

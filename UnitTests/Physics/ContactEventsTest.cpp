@@ -83,6 +83,27 @@ TEST(ContactEvents, AreNotOfWhatIsOnlyNear) {
     }
 }
 
+// A quarter of the speculative distance of 2 cm; of a ball of 2 cm, whose quarter of the radius is less, 1.25 mm.
+TEST(ContactEvents, EndWhereTheBodiesAreAQuarterOfTheSpeculativeDistanceApart) {
+    for (const float radius : {0.5f, 0.02f}) {
+        SystemSettings settings = WithContactEvents();
+        settings.gravity = Vector3::Zero();
+        TestWorld world(settings);
+        world.AddFloor();
+        const double radius64 = double{radius}, end = 0.25 * std::min(0.02, 0.25 * radius64);
+        const BodyId ball = world.Add({.shape = SphereOf(radius), .position = {0, radius64, 0}});
+        ASSERT_TRUE(world.Bodies().SetVelocity(ball, {0, -0.01f, 0}, {0, 0, 0}));
+        world.Step();
+        ASSERT_EQ(KindsOf(world), "B");
+        const float speed = static_cast<float>(end / 10.5 / kStep);
+        ASSERT_TRUE(world.Bodies().SetVelocity(ball, {0, speed, 0}, {0, 0, 0}));
+        for (int step = 1; step <= 12; ++step) {
+            world.Step();
+            EXPECT_EQ(KindsOf(world), step <= 10 ? "S" : step == 11 ? "E" : "") << radius << " m, step " << step;
+        }
+    }
+}
+
 TEST(ContactEvents, StaysAreLeftOutOnRequest) {
     SystemSettings settings = WithContactEvents(NoSleep());
     settings.events.stays = false;
@@ -95,6 +116,9 @@ TEST(ContactEvents, StaysAreLeftOutOnRequest) {
         kinds += KindsOf(world);
     }
     EXPECT_EQ(kinds, "B");
+    ASSERT_TRUE(world.Bodies().SetShape(box, BoxOf(0.4f, 0.5f, 0.4f)));
+    world.Step();
+    EXPECT_EQ(KindsOf(world), "");
     ASSERT_TRUE(world.Bodies().SetPose(box, {0, 5, 0}, {}));
     world.Step();
     EXPECT_EQ(KindsOf(world), "E");
@@ -255,7 +279,7 @@ TEST(ContactEvents, AreSortedAndPointFromAToB) {
     EXPECT_NEAR(events[4].manifolds[0].Points()[0].position.x(), 6, 0.05);
 }
 
-// Another shape of the body with the lower index comes after that of the other among the colliders.
+// Another shape of the body with the lower index, of more pieces, comes after that of the other among the colliders.
 TEST(ContactEvents, PointFromAToBWhateverTheColliders) {
     TestWorld world(WithContactEvents(NoSleep()));
     world.AddFloor();
@@ -264,7 +288,9 @@ TEST(ContactEvents, PointFromAToBWhateverTheColliders) {
     world.Steps(30);
     for (const bool isAnother : {false, true}) {
         if (isAnother) {
-            ASSERT_TRUE(world.Bodies().SetShape(upper, BoxOf(0.4f, 0.5f, 0.4f), MassUpdate::Keep));
+            const ShapePtr hat =
+                CompoundOf({{.shape = CubeOf(0.5f)}, {.shape = CubeOf(0.1f), .position = {0, 0.6f, 0}, .density = 1}});
+            ASSERT_TRUE(world.Bodies().SetShape(upper, hat, MassUpdate::Keep));
             world.Steps(30);
         }
         const auto events = world.System().Events().contacts;
