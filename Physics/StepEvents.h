@@ -55,7 +55,7 @@ struct ContactEvent {
 
 struct BrokenJoint {
     JointId id;
-    Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  // N, N m: what it did in this step, as GetForce has it
+    Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  // N, N m: means over the step, which were too much
 };
 
 // Arrays in an order that is the same for any number of threads. Valid until the next step; one of less than a
@@ -67,7 +67,7 @@ struct StepEvents {
     std::span<const BodyId> awake;
     // Those whose pose is not that of the step before, or which are new; of what is awake or fell asleep in this step.
     std::span<const BodyId> moved;
-    // Whose state is another than as the last step ended; new bodies are not among them.
+    // Whose state is another than as the step before ended; new bodies are not among them.
     std::span<const BodyId> woke, fellAsleep;
     // Always, by id. They are disabled now.
     std::span<const BrokenJoint> brokenJoints;
