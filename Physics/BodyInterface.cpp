@@ -143,6 +143,7 @@ Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
     cold.continuous = settings.continuous;
     world_.bodies.continuousCount += settings.continuous != ContinuousCollision::Off;
     cold.isSensor = settings.isSensor;
+    if (settings.reportsContacts) world_.bodies.reportsContacts.Insert(body);
     FillDynamics(world_.bodies.dynamics[body], settings);
     world_.bodies.SetRadii(body, *settings.shape);
     world_.bodies.SetFilter(body, {settings.category, settings.mask, settings.group});
@@ -378,6 +379,15 @@ Status BodyInterface::SetContinuous(BodyId id, ContinuousCollision continuous) {
     return Done{};
 }
 
+Status BodyInterface::SetReportsContacts(BodyId id, bool reportsContacts) {
+    const WorldLock::Exclusive alone(world_.lock);
+    if (alone.Refusal()) return *alone.Refusal();
+    if (!Exists(id)) return Unknown(id);
+    if (reportsContacts) world_.bodies.reportsContacts.Insert(id.index);
+    else world_.bodies.reportsContacts.Erase(id.index);
+    return Done{};
+}
+
 Status BodyInterface::SetSensor(BodyId id, bool isSensor) {
     const WorldLock::Exclusive alone(world_.lock);
     if (alone.Refusal()) return *alone.Refusal();
@@ -486,6 +496,9 @@ CollisionGroup BodyInterface::GetGroup(BodyId id) const {
     return Exists(id) ? world_.bodies.FilterOf(id.index).group : CollisionGroup{};
 }
 uint64_t BodyInterface::GetUserData(BodyId id) const { return Exists(id) ? world_.bodies.cold[id.index].userData : 0; }
+bool BodyInterface::ReportsContacts(BodyId id) const {
+    return Exists(id) && world_.bodies.reportsContacts.Contains(id.index);
+}
 bool BodyInterface::IsSensor(BodyId id) const { return Exists(id) && world_.bodies.cold[id.index].isSensor; }
 bool BodyInterface::IsAwake(BodyId id) const { return Exists(id) && world_.bodies.dynamics[id.index].awake; }
 bool BodyInterface::IsFrozen(BodyId id) const { return Exists(id) && world_.bodies.dynamics[id.index].frozen; }

@@ -48,6 +48,9 @@ public:
     Status SetGravityFactor(BodyId id, float factor);
     Status SetContinuous(BodyId id,
                          ContinuousCollision continuous);  // Errors also: OutOfRange, Unsupported (a surface or plane)
+    // Whether its contacts are among the events, see EventSettings. Those that no longer are end in the next step in
+    // which the body is awake.
+    Status SetReportsContacts(BodyId id, bool reportsContacts);
     // Makes it a sensor with default settings, or one that touches others again. Errors also: Unsupported (continuous
     // collision).
     Status SetSensor(BodyId id, bool isSensor);
@@ -96,6 +99,7 @@ public:
     uint64_t GetMask(BodyId id) const;
     CollisionGroup GetGroup(BodyId id) const;
     uint64_t GetUserData(BodyId id) const;
+    bool ReportsContacts(BodyId id) const;
     bool IsSensor(BodyId id) const;
     bool IsAwake(BodyId id) const;
     // Its state turned non-finite: it stands at its last good pose like a static body, with no velocity. SetPose

@@ -20,7 +20,7 @@ struct ContactView {
     struct Point {
         Position position;  // m, on A's surface
         float separation;   // m, negative where they overlap
-        float impulse;      // N s, along the normal, of the last substep that was solved
+        float impulse;      // N s, along the normal, of the last substep that was solved; StepEvents.h has whole steps'
     };
     std::span<const Point> points;    // 1..4
     uint32_t childA = 0, childB = 0;  // the pieces of compounds; else 0

@@ -2,6 +2,7 @@
 
 #include <Fulcrum/Physics/Misuse.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
+#include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/Stages/Step.h>
 #include <Fulcrum/Physics/Validation.h>
 #include <Fulcrum/Physics/World/Filters.h>
@@ -12,6 +13,17 @@
 
 namespace fulcrum {
 
+namespace {
+
+// What the world notes between steps for their events.
+void KeepForEvents(WorldState& world, const EventSettings& events) {
+    world.pairs.KeepReported(events.contacts);
+    world.bodies.notesSleepChanges = events.contacts || events.bodies;
+    if (!world.bodies.notesSleepChanges) world.bodies.sleepChanges = {};
+}
+
+}  // namespace
+
 Result<std::unique_ptr<PhysicsSystem>> PhysicsSystem::Create(const SystemSettings& settings, JobSystem* jobs) {
     if (MaybeError error = Check(settings)) return *error;
     auto world = std::make_unique<WorldState>();
@@ -21,6 +33,7 @@ Result<std::unique_ptr<PhysicsSystem>> PhysicsSystem::Create(const SystemSetting
         jobs = world->ownJobs.get();
     }
     world->jobs = std::make_unique<WorldJobs>(*jobs, world->lock);
+    KeepForEvents(*world, settings.events);
     auto step = std::make_unique<StepState>();
     step->findings.resize(jobs->WorkerCount());
     return std::unique_ptr<PhysicsSystem>(new PhysicsSystem(std::move(world), std::move(step)));
@@ -39,7 +52,12 @@ Status PhysicsSystem::Update(double dt) {
     return Done{};
 }
 
-std::span<const JointId> PhysicsSystem::BrokenJoints() const { return step_->broken; }
+const StepEvents& PhysicsSystem::Events() const {
+    static const StepEvents kNone;
+    const std::optional<Error> refusal = WorldLock::RefusalOfReading(world_->lock);
+    if (refusal) ReportMisuse(*refusal);
+    return refusal ? kNone : step_->events.events;
+}
 
 std::span<const SensorEvent> PhysicsSystem::SensorEvents() const { return world_->sensors.events; }
 
@@ -61,12 +79,16 @@ Status PhysicsSystem::SetSettings(const SystemSettings& settings) {
     if (settings.narrowPhase != world_->settings.narrowPhase)
         for (Pair& pair : world_->pairs.pairs) pair.cache = {};
     const AccuracyTarget target = world_->settings.accuracy;
+    const bool hadBodyEvents = world_->settings.events.bodies;
     world_->settings = settings;
     // Efforts of islands follow the settings, and what is solved as a tree; loads are parts of what they may be.
     world_->coloring.Invalidate();
     if (settings.accuracy.penetration != target.penetration) std::ranges::fill(world_->pairs.loads, LoadLevel{});
     if (settings.accuracy.jointError != target.jointError) std::ranges::fill(world_->joints.gaps, LoadLevel{});
     if (settings.layerCollides != before) RefilterLayers(*world_, before);
+    KeepForEvents(*world_, settings.events);
+    if (!settings.events.bodies) step_->events.bodies = {};
+    else if (!hadBodyEvents) BeginBodyEvents(world_->bodies, step_->events);
     for (const Sensor& sensor : world_->sensors.sensors) world_->sensors.changed.push_back(sensor.id.index);
     return Done{};
 }

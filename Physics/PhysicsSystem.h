@@ -8,6 +8,7 @@
 #include <Fulcrum/Physics/JointInterface.h>
 #include <Fulcrum/Physics/QueryInterface.h>
 #include <Fulcrum/Physics/SensorEvent.h>
+#include <Fulcrum/Physics/StepEvents.h>
 #include <Fulcrum/Physics/StepReport.h>
 
 #include <memory>
@@ -37,8 +38,9 @@ public:
     const JointInterface& Joints() const { return joints_; }
     const QueryInterface& Queries() const { return queries_; }
     const StepReport& Report() const;
-    // Joints that the last step loaded beyond their strength, in the order of their indices; they are disabled now.
-    std::span<const JointId> BrokenJoints() const;
+    // Contacts, bodies, broken joints: what happened in the last step, as far as Settings().events asks for it. Valid
+    // until the next. Not to be asked in what a step calls back: that is reported (Misuse.h), and there is nothing.
+    const StepEvents& Events() const;
     // What sensors saw in the last step, sorted by sensor, time, body. Valid until the next.
     std::span<const SensorEvent> SensorEvents() const;
     // What was inside a sensor when the last step ended, sorted; bodies removed since then are among them. Valid until
@@ -54,7 +56,8 @@ public:
 
     // All bodies, in the order of their indices.
     void VisitBodies(FunctionRef<void(BodyId)> visit) const;
-    // All awake contacts with at least one point as they were solved in the last step, in a deterministic order.
+    // All awake contacts with at least one point as they were solved in the last step, in a deterministic order; those
+    // that are only near are among them.
     void VisitContacts(FunctionRef<void(const ContactView&)> visit) const;
     // Calls visit(id, island) for each dynamic body; islands are numbered from 0 in the order of their smallest body
     // index. Found anew by this call: for viewers and tests.

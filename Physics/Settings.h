@@ -132,7 +132,8 @@ struct BodySettings {
     CollisionGroup group{};  // and only if the filter of a group that both are in lets them
     ContinuousCollision continuous = ContinuousCollision::Off;  // not for meshes, height fields and planes
     uint64_t userData = 0;
-    bool isSensor = false;  // touches nothing, and reports what is inside: PhysicsSystem::SensorEvents
+    bool reportsContacts = true;  // see EventSettings
+    bool isSensor = false;        // touches nothing, and reports what is inside: PhysicsSystem::SensorEvents
     SensorSees sensorSees = SensorSees::Default;  // of those that layers, masks and groups let it meet
     bool sensorReportsStay = true;                // an event in each step for each body that stays inside
 };
@@ -160,11 +161,21 @@ struct AccuracyTarget {
     bool largeIslands = false;
 };
 
+// What PhysicsSystem::Events lists. What is off costs nothing.
+struct EventSettings {
+    // Contacts that begin and end, and hits of continuous collision: of bodies of which one has
+    // BodySettings::reportsContacts.
+    bool contacts = false;
+    bool stays = true;    // with them an event in each step for each contact that goes on
+    bool bodies = false;  // which bodies are awake, moved, woke, fell asleep
+};
+
 struct SystemSettings {
     Vector3 gravity = Vector3(0, -9.81f, 0);  // m/s2, up to 1e6 along each axis
     SolverSettings solver{};
     AccuracyTarget accuracy{};
     SleepSettings sleep{};
+    EventSettings events{};
     NarrowPhaseMethod narrowPhase = NarrowPhaseMethod::Automatic;
     // m, > 0, at most 1000: contact points are created at this separation, before bodies touch; of small shapes, at a
     // quarter of the smaller one's outer radius.

@@ -8,7 +8,7 @@
 namespace fulcrum {
 
 // The stages of a step have numbers, 0 .. kStageCount - 1, in their order. Their list is in Physics/Stages/Step.cpp.
-inline constexpr int kStageCount = 12;
+inline constexpr int kStageCount = 13;
 const char* StageName(int stage);
 
 // An island that was solved with more than the settings' numbers, and what it was solved with.

@@ -15,6 +15,7 @@
 // No warm start repeats impulses of impacts: they are added to the velocities without constraints, too.
 #pragma once
 
+#include <Fulcrum/Constraints/Contacts/ContactNote.h>
 #include <Fulcrum/Constraints/Contacts/ContactRows.h>
 
 #include <algorithm>
@@ -61,15 +62,16 @@ FULCRUM_FORCE_INLINE Hits<Wide<N>> FindHits(const ContactBatch<N, kFixedB>& batc
     return hits;
 }
 
-// The impulses that make the points which are hit leave with their speeds.
+// The impulses that make the points which are hit leave with their speeds, and their sums.
 template <int N, bool kFixedB>
 FULCRUM_FORCE_INLINE NormalImpulses<Wide<N>> FindImpulses(const ContactBatch<N, kFixedB>& batch,
                                                           const NormalMotion<Wide<N>>& motion,
-                                                          const Wide<N> (&leaving)[ContactRecord::kMaxPoints]) {
+                                                          const Wide<N> (&leaving)[ContactRecord::kMaxPoints],
+                                                          Wide<N> (&impulses)[ContactRecord::kMaxPoints]) {
     using Real = Wide<N>;
     constexpr int kPasses = 8;  // whatever the number of points: lanes of a batch have more or fewer
     const Real zero(0.0f);
-    Real missing[ContactRecord::kMaxPoints], impulses[ContactRecord::kMaxPoints];
+    Real missing[ContactRecord::kMaxPoints];
     for (int i = 0; i < batch.pointCount; ++i) {
         missing[i] = MotionOf(batch.rows[i], motion) - leaving[i];
         impulses[i] = zero;
@@ -122,7 +124,8 @@ void BounceContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const Co
     for (int i = 0; i < batch.pointCount; ++i) largest = Max(largest, hits.speed[i]);
     if (!(largest > zero).Any()) return;
 
-    const NormalImpulses<Real> normal = FindImpulses(batch, motion, hits.speed);
+    Real impulses[ContactRecord::kMaxPoints];
+    const NormalImpulses<Real> normal = FindImpulses(batch, motion, hits.speed, impulses);
     const auto along = [&](const Vec3<Real>& v, const Vec3<Real>& axis) { return Dot<Real>(v, axis); };
     Real tangential[3] = {along(relative.linear, batch.tangent1), along(relative.linear, batch.tangent2),
                           along(relative.angular, batch.normal)};
@@ -161,6 +164,12 @@ void BounceContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const Co
         if constexpr (!kFixedB) sum += changed.b[k] * changed.b[k];
     }
     const auto isHit = (largest > zero) & (sum * part < Real(std::numeric_limits<float>::max()));
+    if (batch.hasNotes) {
+        const Real done = Select(isHit, part, zero);
+        for (int i = 0; i < batch.pointCount; ++i) impulses[i] = impulses[i] * done;
+        for (Real& f : friction) f = f * done;
+        AddImpulses(batch, impulses, friction, settings.notes);
+    }
     const Real shift = kRelax ? Real(dt) - hits.time : -hits.time;
     const auto apply = [&](const Real(&before)[8], const Real(&after)[8], Real(&own)[8], Real(&v)[8], Real(&x)[8]) {
         // Bodies that an impact would rotate by more than half a turn within the substep are not displaced.

@@ -52,8 +52,9 @@ struct ContactBatch {
     uint32_t contact[N];  // indices of the records; the first `count` lanes are in use
     uint32_t bodyA[N];
     int32_t count;
-    int32_t pointCount;  // largest of the lanes
-    bool bounces;        // some lane has restitution
+    int32_t pointCount;     // largest of the lanes
+    bool bounces;           // some lane has restitution
+    bool hasNotes = false;  // some lane has contact events: see ContactNote
     const ContactRecord*
         surfaces;  // where the second bodies move and some lane has a surface velocity: the records; else null
 
@@ -86,6 +87,8 @@ struct ContactBatch {
     Real acceleration;  // m/s2 of gravity and forces, of the body that has the larger one
 };
 
+struct ContactNote;
+
 struct ContactPrepareSettings {
     float impulseScale;                           // dt of this substep / dt of the last: scales the warm start
     float restitutionSpeed;                       // m/s, see BounceContacts
@@ -113,6 +116,7 @@ struct ContactSolveSettings {
     float restitutionSpeed = 0;      // m/s: slower impacts do not bounce
     float* unconstrained = nullptr;  // of all bodies, eight floats each: velocities without what the next substep's
                                      // warm start repeats; null where there is none
+    ContactNote* notes = nullptr;    // of all contacts, by record, for batches with notes: what bounces do is added
     // Position passes, see CorrectContacts:
     float baumgarte = 0;       // 0..1: the part of an overlap that a pass corrects
     float mostCorrection = 0;  // m, by a pass

@@ -15,6 +15,28 @@ struct Twists {
     Real a[8], b[8];
 };
 
+// Reads the velocities alone.
+template <int N, bool kFixedB>
+void GatherVelocities(const ContactBatch<N, kFixedB>& batch, const BodyState* states, Twists<N, kFixedB>& twists) {
+    const float* rows[N];
+    for (int i = 0; i < N; ++i) rows[i] = states[batch.bodyA[i]].VelocityRow();
+    GatherRows<N>(rows, twists.a);
+    if constexpr (!kFixedB) {
+        for (int i = 0; i < N; ++i) rows[i] = states[batch.sideB.body[i]].VelocityRow();
+        GatherRows<N>(rows, twists.b);
+    }
+}
+
+// m/s2, of gravity and forces.
+template <int N>
+Vec3<Wide<N>> GatherAcceleration(const uint32_t (&bodies)[N], const BodyPose* poses) {
+    alignas(64) float accelerations[3][N];
+    for (int i = 0; i < N; ++i)
+        for (int k = 0; k < 3; ++k) accelerations[k][i] = poses[bodies[i]].acceleration[k];
+    return Vec3<Wide<N>>(Wide<N>::Load(accelerations[0]), Wide<N>::Load(accelerations[1]),
+                         Wide<N>::Load(accelerations[2]));
+}
+
 template <BodyRow kRow, int N, bool kFixedB>
 FULCRUM_FORCE_INLINE void Gather(const ContactBatch<N, kFixedB>& batch, BodyState* states, Twists<N, kFixedB>& twists) {
     for (int i = 0; i < N; ++i) twists.rowsA[i] = RowOf<kRow>(states[batch.bodyA[i]]);

@@ -107,17 +107,6 @@ template <int N, bool kFixedB>
 }
 
 template <int N, bool kFixedB>
-void GatherVelocities(const ContactBatch<N, kFixedB>& batch, const BodyState* states, Twists<N, kFixedB>& twists) {
-    const float* rows[N];
-    for (int i = 0; i < N; ++i) rows[i] = states[batch.bodyA[i]].VelocityRow();
-    GatherRows<N>(rows, twists.a);
-    if constexpr (!kFixedB) {
-        for (int i = 0; i < N; ++i) rows[i] = states[batch.sideB.body[i]].VelocityRow();
-        GatherRows<N>(rows, twists.b);
-    }
-}
-
-template <int N, bool kFixedB>
 void PrepareBounces(ContactBatch<N, kFixedB>& batch, Wide<N> restitution, const uint32_t (&bodyB)[N],
                     const ConstSolverBodies& bodies, const ContactPrepareSettings& settings) {
     using Real = Wide<N>;
@@ -127,17 +116,8 @@ void PrepareBounces(ContactBatch<N, kFixedB>& batch, Wide<N> restitution, const 
     const Real vn = Dot<Real>(relative.linear, batch.normal);
     const Real w1 = Dot<Real>(relative.angular, batch.tangent1), w2 = Dot<Real>(relative.angular, batch.tangent2);
     // Closing acceleration: minus the relative acceleration along n.
-    alignas(64) float accelerations[6][N];
-    for (int i = 0; i < N; ++i)
-        for (int k = 0; k < 3; ++k) {
-            accelerations[k][i] = bodies.poses[batch.bodyA[i]].acceleration[k];
-            accelerations[3 + k][i] = bodies.poses[bodyB[i]].acceleration[k];
-        }
-    const auto load = [&](int k) {
-        return Vec3<Real>(Real::Load(accelerations[k]), Real::Load(accelerations[k + 1]),
-                          Real::Load(accelerations[k + 2]));
-    };
-    const Vec3<Real> a = load(0), b = load(3);
+    const Vec3<Real> a = GatherAcceleration<N>(batch.bodyA, bodies.poses),
+                     b = GatherAcceleration<N>(bodyB, bodies.poses);
     batch.closing = Dot<Real>(Vec3<Real>(a - b), batch.normal);
     batch.acceleration = Sqrt(Max(Dot<Real>(a, a), Dot<Real>(b, b)));
     batch.restitution = restitution;

@@ -7,18 +7,19 @@ namespace fulcrum {
 
 // Serial, in the order of the joints.
 void BreakJoints(const BodyStore& bodies, ColliderStore& colliders, JointStore& joints, ConstraintColoring& coloring,
-                 std::vector<JointId>& broken) {
+                 std::vector<BrokenJoint>& broken) {
     joints.breakable.Visit([&](uint32_t index) {
         Joint& joint = joints.joints[index];
         if (joint.color.color == 0xFF) return;
         const JointRecord& record = joints.records[index];
-        const auto length = [](const float(&v)[3]) { return Length(Vector3(v[0], v[1], v[2])); };
-        if (length(record.totalForce) <= joint.breakForce && length(record.totalTorque) <= joint.breakTorque) return;
+        const auto toVector = [](const float(&v)[3]) { return Vector3(v[0], v[1], v[2]); };
+        const Vector3 force = toVector(record.totalForce), torque = toVector(record.totalTorque);
+        if (Length(force) <= joint.breakForce && Length(torque) <= joint.breakTorque) return;
         joint.enabled = false;
         joints.Forget(index);
         UncolorJoint(joints, coloring, index);
         for (uint32_t body : joint.body) RequeueColliders(bodies, colliders, body);
-        broken.push_back(joints.IdOf(index));
+        broken.push_back({joints.IdOf(index), force, torque});
     });
 }
 

@@ -34,7 +34,7 @@ bool MovesFreely(const BodyStore& bodies, uint32_t body) {
 
 // Those of `bodies` of which isSo(body) is true, asked by all workers, in the same order.
 template <class Test>
-std::vector<uint32_t> Select(const StepWorkers& workers, std::span<const uint32_t> bodies, const Test& isSo) {
+std::vector<uint32_t> SelectBodies(const StepWorkers& workers, std::span<const uint32_t> bodies, const Test& isSo) {
     const std::span<uint8_t> is = workers.scratch.Allocate<uint8_t>(bodies.size());
     workers.jobs.ParallelFor(static_cast<uint32_t>(bodies.size()), 16, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i) is[i] = isSo(bodies[i]);
@@ -50,13 +50,13 @@ std::vector<uint32_t> MarkDispersing(const CollisionView& view, const PairStore&
                                      std::span<const uint32_t> candidates, BodyStore& bodies,
                                      const StepWorkers& workers) {
     const auto mayStart = [&](uint32_t body) { return MovesFreely(bodies, body) && !bodies.dynamics[body].dispersing; };
-    std::vector<uint32_t> starting = Select(workers, candidates, [&](uint32_t body) {
+    std::vector<uint32_t> starting = SelectBodies(workers, candidates, [&](uint32_t body) {
         return mayStart(body) && OverlapsManyDeeply(view, pairs, groups, body);
     });
     for (const uint32_t body : starting) bodies.dynamics[body].dispersing = true;
     // Those that deeply overlap only a few of these would be in their way.
     for (std::vector<uint32_t> joining = starting; !joining.empty();) {
-        joining = Select(workers, candidates, [&](uint32_t body) {
+        joining = SelectBodies(workers, candidates, [&](uint32_t body) {
             return mayStart(body) && OverlapsDispersingDeeply(view, pairs, groups, body);
         });
         for (const uint32_t body : joining) bodies.dynamics[body].dispersing = true;

@@ -45,6 +45,7 @@ public:
             const float approach = Dot<float>(hit.normal, RelativeVelocity(i));
             bounceSpeeds_[i] = BounceSpeed<float>(hit.restitution, approach, stores.step.settings.restitutionSpeed);
             approaches_ |= approach > 0;
+            v_.approachSpeed = std::max(v_.approachSpeed, approach);
             normalResponses_[i] = Response(i, hit.normal);
         }
     }
@@ -63,6 +64,10 @@ public:
         for (int s = 0; s < 2 && part < 1; ++s) {
             v_.linear[s] = linear[s] + (v_.linear[s] - linear[s]) * part;
             v_.angular[s] = angular[s] + (v_.angular[s] - angular[s]) * part;
+        }
+        for (int i = 0; i < hit_.pointCount; ++i) {
+            v_.normalImpulses[i] = normalImpulses_[i] * part;
+            v_.frictionImpulse -= frictionImpulses_[i] * part;
         }
         return true;
     }

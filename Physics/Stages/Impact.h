@@ -18,8 +18,12 @@ struct Impact {
     Vector3 linear[2], angular[2];  // m/s, rad/s: velocities at the time of the hit, after it
     Vector3 arrivingLinear[2];      // m/s, and
     Vector3 arrivingAngular[2];     // rad/s: before it
-    Rest rests[2];                  // of what can move
-    bool bounces = false;           // a point approached
+    // N s that hit.other got, along the normal by point, and by friction;
+    float normalImpulses[SweepHit::kMaxPoints] = {};
+    Vector3 frictionImpulse = Vector3::Zero();
+    float approachSpeed = 0;  // m/s along the normal, of the point that approached fastest
+    Rest rests[2];            // of what can move
+    bool bounces = false;     // a point approached
     bool isFinite = false;
 };
 

@@ -69,6 +69,7 @@ struct ContactSource {
     ContactPrepareSettings settings;
     bool hasCrowds;            // some bodies are crowded:
     float depenetrationSpeed;  // m/s, at which they are pushed at most
+    ContactNote* notes;        // null without contact events
 };
 
 // Fills the batch with at most N contacts; lanes beyond them repeat the last one and are never written.
@@ -89,6 +90,10 @@ void Fill(const ContactSource& from, ContactBatch<N, kFixedB>& batch, std::span<
     if (from.hasCrowds) [[unlikely]]
         LimitPushes(from.bodies, from.depenetrationSpeed, bodyB, batch);
     NoteDeepest(batch, findings);
+    batch.hasNotes = from.notes && std::ranges::any_of(entries, [&](const Entry& entry) {
+                         return AreReported(from.bodies.reportsContacts, entry.bodyA, entry.bodyB);
+                     });
+    if (batch.hasNotes) BeginNotes(batch, bodyB, from.bodies.ForSolver(), from.notes);
 }
 
 template <bool kFixedB>
@@ -159,7 +164,8 @@ public:
                      .dt = step.dt,
                      .massOverrides = pairs.massOverrides.data()},
                     !crowd.crowded.empty(),
-                    step.settings.depenetrationSpeed},
+                    step.settings.depenetrationSpeed,
+                    layout.notes.empty() ? nullptr : layout.notes.data()},
           joints_(joints),
           jointSettings_(effort.joints),
           layout_(layout) {}
@@ -240,6 +246,7 @@ void FillTogether(const RowFiller& filler, const SolverLayout& layout, const Sol
 void Prepare(const StepContext& step, const BodyStore& bodies, const ConstraintColoring& coloring,
              const CrowdState& crowd, PairStore& pairs, JointStore& joints, SolverLayout& layout,
              const StepWorkers& workers, StepReport& report) {
+    layout.notes.resize(step.settings.events.contacts ? pairs.pairs.size() : 0);
     if (coloring.Size() == 0) return;
     const auto fillerOf = [&](const SolverGroup& group) {
         return RowFiller(step, bodies, crowd, EffortOf(step, group), pairs, joints, layout);

@@ -136,6 +136,7 @@ private:
     void Bounce(const SweepHit& hit, const Impact& impact, const uint32_t (&places)[2]) {
         WakeBody(stores_, hit.other);
         report_.sweptHits += impact.bounces;
+        if (sweeps_.reportsHits && impact.bounces) Report(hit, impact);
         for (int s = 0; s < 2; ++s) {
             if (places[s] == SweepStore::kNone) continue;
             const uint32_t body = Swept(places[s]).body;
@@ -148,6 +149,22 @@ private:
             if (isLast_) Wait(places[s], hit.time, impact, s, impact.linear[s], impact.angular[s]);
             else Continue(places[s], hit.time, impact, s);
         }
+    }
+
+    void Report(const SweepHit& hit, const Impact& impact) {
+        ContactEvent::Manifold manifold{.normal = hit.normal,
+                                        .frictionImpulse = impact.frictionImpulse,
+                                        .triangle = hit.triangle,
+                                        .material = hit.material,
+                                        .pointCount = static_cast<uint32_t>(hit.pointCount)};
+        for (int i = 0; i < hit.pointCount; ++i) {
+            const Position on = hit.center + hit.arms[i].cast<double>(),
+                           onOther = impact.poses[1].position + hit.otherArms[i].cast<double>();
+            manifold.points[static_cast<size_t>(i)] = {
+                on + (onOther - on) * 0.5, Dot<float>(hit.normal, Between(on, onOther)), impact.normalImpulses[i]};
+        }
+        sweeps_.reported.push_back(
+            {hit.body, hit.other, hit.collider, hit.otherCollider, hit.time, impact.approachSpeed, manifold});
     }
 
     Sweep& Swept(uint32_t place) { return sweeps_.swept[place]; }

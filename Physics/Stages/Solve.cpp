@@ -44,6 +44,7 @@ struct Phase {
     Verb verb;
     uint8_t substep;
     uint16_t color;  // of the large group, from 0; the number of its colors means the overflow
+    bool isLast;     // over batches, of its substep
 };
 
 // Contacts of moving bodies are streamed: the next batch is on its way while this one is solved.
@@ -59,6 +60,11 @@ bool IsOverBodies(Verb verb) {
     return verb == Verb::IntegrateVelocities || verb == Verb::ClearPulls || verb == Verb::IntegratePoses;
 }
 
+// Each substep ends with a pass over batches.
+bool IsLastOfSubstep(std::span<const Verb> verbs, size_t i) {
+    return i + 1 == verbs.size() || verbs[i + 1] == Verb::NextSubstep;
+}
+
 class StepSolver {
 public:
     // pseudo: room for the pseudo-velocities of all bodies, zero; null where the group has no joints that are far
@@ -71,6 +77,7 @@ public:
           group_(group),
           effort_(effort),
           pseudo_(pseudo),
+          notes_(layout.notes.empty() ? nullptr : layout.notes.data()),
           h_(effort.substepDt) {}
 
     // A large group: all workers, phase by phase.
@@ -85,7 +92,8 @@ public:
     // A group of small islands: one worker, from beginning to end.
     void RunAlone(std::span<const Verb> verbs, WorkerFindings& findings) {
         uint8_t substep = 0;
-        for (Verb verb : verbs) {
+        for (size_t i = 0; i < verbs.size(); ++i) {
+            const Verb verb = verbs[i];
             if (IsOverBodies(verb)) {
                 RunBodies(verb, substep,
                           std::span(layout_.bodies).subspan(group_.bodiesBegin, group_.bodiesEnd - group_.bodiesBegin),
@@ -98,7 +106,8 @@ public:
             }
             if (group_.HasTrees()) RunTrees(verb, substep);
             for (uint32_t c = group_.colorsBegin; c < group_.colorsEnd; ++c)
-                RunBatches(verb, substep, layout_.colors[c], 0, layout_.colors[c].Count());
+                RunBatches({verb, substep, 0, IsLastOfSubstep(verbs, i)}, layout_.colors[c], 0,
+                           layout_.colors[c].Count());
         }
     }
 
@@ -118,11 +127,12 @@ private:
         } else if (phase.color == group_.colorsEnd - group_.colorsBegin) {
             ForEachOverflowList(layout_, [&](auto& batches) {
                 for (auto& batch : batches) RunBatch(phase.verb, phase.substep, batch);
+                if (phase.isLast)
+                    for (const auto& batch : batches) Note(batch);
             });
         } else {
             const ColorBatches& color = layout_.colors[group_.colorsBegin + phase.color];
-            RunBatches(phase.verb, phase.substep, color, block * kBatchesPerBlock,
-                       std::min((block + 1) * kBatchesPerBlock, color.Count()));
+            RunBatches(phase, color, block * kBatchesPerBlock, std::min((block + 1) * kBatchesPerBlock, color.Count()));
         }
     }
 
@@ -189,7 +199,7 @@ private:
     }
 
     // Batches [begin, end) of a color, kind after kind.
-    void RunBatches(Verb verb, uint8_t substep, const ColorBatches& color, uint32_t begin, uint32_t end) {
+    void RunBatches(const Phase& phase, const ColorBatches& color, uint32_t begin, uint32_t end) {
         uint32_t first = 0;  // of the kind, among all of the color
         ForEachBatchList(layout_, [&](auto& list, BatchKind kind) {
             const BatchRange& range = color.of[kind];
@@ -197,11 +207,22 @@ private:
             for (uint32_t i = std::max(begin, first); i < std::min(end, last); ++i) {
                 const uint32_t batch = range.begin + i - first;
                 if (i + 1 < last) Prefetch(list.batches[batch + 1]);
-                RunBatch(verb, substep, list.batches[batch]);
+                RunBatch(phase.verb, phase.substep, list.batches[batch]);
             }
+            if (phase.isLast && notes_)
+                for (uint32_t i = std::max(begin, first); i < std::min(end, last); ++i)
+                    Note(list.batches[range.begin + i - first]);
             first = last;
         });
     }
+
+    // For contact events.
+    template <int N, bool kFixedB>
+    void Note(const ContactBatch<N, kFixedB>& batch) const {
+        if (batch.hasNotes) AddRowImpulses(batch, notes_);
+    }
+    template <class Batch>
+    void Note(const Batch&) const {}
 
     template <int N, bool kFixedB>
     void RunBatch(Verb verb, uint8_t substep, ContactBatch<N, kFixedB>& batch) {
@@ -266,6 +287,7 @@ private:
         ContactSolveSettings settings = effort_.contacts;
         settings.elapsed = h_ * (static_cast<float>(substep) + part);
         settings.unconstrained = bodies_.unconstrained.data()->row;
+        settings.notes = notes_;
         return settings;
     }
 
@@ -275,7 +297,8 @@ private:
     const SolverGroup& group_;
     const Effort& effort_;
     BodyState* pseudo_;
-    float h_;  // s, of a substep
+    ContactNote* notes_;  // by record; null without contact events
+    float h_;             // s, of a substep
 };
 
 // Passes over the pseudo-velocities of a group in which joints are far apart, in each substep.
@@ -320,11 +343,13 @@ std::span<const Phase> PhasesOf(std::span<const Verb> verbs, const SolverLayout&
     std::span<Phase> phases = scratch.Allocate<Phase>(verbs.size() * std::max<size_t>(colors, 1));
     size_t n = 0;
     uint8_t substep = 0;
-    for (Verb verb : verbs) {
+    for (size_t i = 0; i < verbs.size(); ++i) {
+        const Verb verb = verbs[i];
         if (verb == Verb::NextSubstep) ++substep;
-        else if (IsOverBodies(verb)) phases[n++] = {verb, substep, 0};
+        else if (IsOverBodies(verb)) phases[n++] = {verb, substep, 0, false};
         else
-            for (size_t c = 0; c < colors; ++c) phases[n++] = {verb, substep, static_cast<uint16_t>(c)};
+            for (size_t c = 0; c < colors; ++c)
+                phases[n++] = {verb, substep, static_cast<uint16_t>(c), IsLastOfSubstep(verbs, i)};
     }
     return phases.first(n);
 }

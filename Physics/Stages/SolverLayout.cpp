@@ -6,8 +6,8 @@ namespace fulcrum {
 
 size_t HeapBytes(const SolverLayout& layout) {
     const auto& [groups, colors, bodies, balls, joints, moving, fixed, overflowJoints, overflowMoving, overflowFixed,
-                 jointRows, overflowRows, listedJoints, jointVersion, trees, treesByGroup, colorCount, islands, version,
-                 loadVersion] = layout;
+                 jointRows, overflowRows, listedJoints, jointVersion, trees, treesByGroup, notes, colorCount, islands,
+                 version, loadVersion] = layout;
     return HeapBytes(groups, colors, bodies, balls, joints, moving, fixed, overflowJoints, overflowMoving,
                      overflowFixed, jointRows, overflowRows, listedJoints, jointVersion, trees, treesByGroup,
                      colorCount, islands, version, loadVersion);

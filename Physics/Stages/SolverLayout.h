@@ -5,6 +5,7 @@
 
 #include <Fulcrum/Constraints/Coloring.h>
 #include <Fulcrum/Constraints/Contacts/ContactBatch.h>
+#include <Fulcrum/Constraints/Contacts/ContactNote.h>
 #include <Fulcrum/Constraints/Joints/BallBatch.h>
 #include <Fulcrum/Physics/Settings.h>
 #include <Fulcrum/Physics/Stages/JointTrees.h>
@@ -99,6 +100,7 @@ struct SolverLayout {
     uint64_t jointVersion = 0;              // of the coloring that this list was made from
     JointTrees trees;
     std::vector<uint32_t> treesByGroup;  // indices of trees
+    std::vector<ContactNote> notes;      // by pair, of those in batches; empty without contact events
     uint32_t colorCount = 0;             // colors in use
     uint32_t islands = 0;
     uint64_t version = 0;      // of the coloring that this was made from

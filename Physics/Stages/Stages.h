@@ -78,7 +78,7 @@ uint32_t MoveBodies(const StepContext& step, const ColliderStore& colliders, con
                     const StepWorkers& workers, StepReport& report);
 // Disables joints that did more than they stand, and lists them.
 void BreakJoints(const BodyStore& bodies, ColliderStore& colliders, JointStore& joints, ConstraintColoring& coloring,
-                 std::vector<JointId>& broken);
+                 std::vector<BrokenJoint>& broken);
 
 // Reads where bodies were when the step began. Casts those with continuous collision that moved far along their path:
 // what hits something bounces there, and gets another pose and velocity; what is hit wakes. Writes the sweeps of the
@@ -92,8 +92,20 @@ void Sense(const StepContext& step, const BodyStore& bodies, const JointStore& j
            SensorStore& sensors, ColliderStore& colliders, SensorSearch& sensing, const StepWorkers& workers,
            StepReport& report);
 
+// The Events stage, in Events.cpp.
+// Contacts that began, went on or ended in the step, and hits of continuous collision, if somebody asks for them. Pairs
+// note what was said of them.
+void ListContactEvents(const StepContext& step, const BodyStore& bodies, const ColliderStore& colliders,
+                       const SolverLayout& solver, const SweepStore& sweeps, PairStore& pairs, EventBuffers& buffers,
+                       const StepWorkers& workers);
+
+// The Sleep stage is these two.
 // Puts islands that have been slow for long enough to sleep; their pairs rest. candidates: how many bodies have been.
 void Sleep(const StepContext& step, uint32_t candidates, const SleepStores& stores, PairStore& pairs,
            CollidersOutsideFatBounds& outsideFatBounds, ScratchArena& scratch);
+// Which bodies are awake, moved, woke and fell asleep, if somebody asks for them. In BodyEvents.cpp.
+void ListBodyEvents(const StepContext& step, BodyStore& bodies, EventBuffers& buffers, const StepWorkers& workers);
+// Where somebody asks for them from now on: bodies are as they are.
+void BeginBodyEvents(const BodyStore& bodies, EventBuffers& buffers);
 
 }  // namespace fulcrum

@@ -80,7 +80,7 @@ constexpr Stage kStages[] = {
          StoreImpulses(step, world.bodies, state.solver, world.pairs, world.joints, workers);
          state.sleepCandidates = MoveBodies(step, world.colliders, world.joints, world.coloring, state.crowd,
                                             world.bodies, state.sweeps, workers, state.report);
-         BreakJoints(world.bodies, world.colliders, world.joints, world.coloring, state.broken);
+         BreakJoints(world.bodies, world.colliders, world.joints, world.coloring, state.events.broken);
          SettleStoppedIn(world, workers);
      }},
     {"Continuous",
@@ -92,9 +92,15 @@ constexpr Stage kStages[] = {
          Sense(step, world.bodies, world.joints, state.sweeps, world.sensors, world.colliders, state.sensing, workers,
                state.report);
      }},
+    {"Events",
+     [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
+         ListContactEvents(step, world.bodies, world.colliders, state.solver, state.sweeps, world.pairs, state.events,
+                           workers);
+     }},
     {"Sleep",
      [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
          Sleep(step, state.sleepCandidates, world, world.pairs, world.outsideFatBounds, workers.scratch);
+         ListBodyEvents(step, world.bodies, state.events, workers);
      }},
 };
 static_assert(std::size(kStages) == kStageCount, "kStageCount (StepReport.h) is not the number of stages");
@@ -126,12 +132,20 @@ void ForgetRemoved(WorldState& world) {
     world.removed.clear();
 }
 
+void Clear(EventBuffers& buffers) {
+    buffers.contacts.clear();
+    buffers.broken.clear();
+    for (std::vector<BodyId>* ids : {&buffers.awake, &buffers.moved, &buffers.woke, &buffers.fellAsleep}) ids->clear();
+    buffers.events = {};
+}
+
 void BeginReport(WorldState& world, StepState& state) {
     state.report = {};
     state.report.step = ++world.step;
-    state.broken.clear();
     state.sleepCandidates = 0;
     world.sensors.events.clear();
+    Clear(state.events);
+    state.sweeps.reported.clear();
     for (WorkerFindings& f : state.findings) {
         f.libccd = {};
         f.clamped = f.frozen = f.sleepCandidates = 0;
@@ -219,7 +233,9 @@ void RunStep(WorldState& world, StepState& state, double dt) {
         const StepContext step = ContextOf(world, state, dt);
         state.scratch.Reset();
         state.sweeps.isKept = world.bodies.continuousCount > 0 || !world.sensors.IsEmpty();
+        state.sweeps.reportsHits = world.settings.events.contacts;
         RunStages(world, state, step);
+        state.events.events.brokenJoints = state.events.broken;
         state.lastSubstepDt = step.substepDt;
         state.stiffnessDt = step.stiffnessDt;
         ReportEfforts(world.settings.solver, world.bodies, state.solver, state.report);

@@ -6,13 +6,13 @@ namespace fulcrum {
 
 size_t HeapBytes(const WorkerFindings& findings) {
     const auto& [colliders, outsideFatBounds, pairs, deepPairs, deepOverlaps, crowdedOverlaps, surface, surfacePlaces,
-                 surfaceLeft, surfaceTouched, more, sweepHits, sensorCandidates, sensorVisits, sensorTests, libccd,
-                 contacts, points, kept, deepest, deepestPair, clamped, frozen, firstFrozen, sleepCandidates,
+                 surfaceLeft, surfaceTouched, more, sweepHits, sensorCandidates, sensorVisits, sensorTests, eventPairs,
+                 libccd, contacts, points, kept, deepest, deepestPair, clamped, frozen, firstFrozen, sleepCandidates,
                  loadsChanged, joints] = findings;
     return HeapBytes(colliders, outsideFatBounds, pairs, deepPairs, deepOverlaps, crowdedOverlaps, surface,
                      surfacePlaces, surfaceLeft, surfaceTouched, more, sweepHits, sensorCandidates, sensorVisits,
-                     sensorTests, libccd, contacts, points, kept, deepest, deepestPair, clamped, frozen, firstFrozen,
-                     sleepCandidates, loadsChanged, joints);
+                     sensorTests, eventPairs, libccd, contacts, points, kept, deepest, deepestPair, clamped, frozen,
+                     firstFrozen, sleepCandidates, loadsChanged, joints);
 }
 
 size_t HeapBytes(const PairUpdates& updates) {
@@ -26,10 +26,10 @@ size_t HeapBytes(const CrowdState& crowd) {
 }
 
 size_t HeapBytes(const StepState& step) {
-    const auto& [lastSubstepDt, stiffnessDt, report, findings, scratch, pairs, crowd, began, seams, solver, broken,
-                 sleepCandidates, sweeps, sensing] = step;
-    return HeapBytes(lastSubstepDt, stiffnessDt, report, findings, scratch, pairs, crowd, began, seams, solver, broken,
-                     sleepCandidates, sweeps, sensing);
+    const auto& [lastSubstepDt, stiffnessDt, report, findings, scratch, pairs, crowd, began, seams, solver,
+                 sleepCandidates, sweeps, sensing, events] = step;
+    return HeapBytes(lastSubstepDt, stiffnessDt, report, findings, scratch, pairs, crowd, began, seams, solver,
+                     sleepCandidates, sweeps, sensing, events);
 }
 
 }  // namespace fulcrum

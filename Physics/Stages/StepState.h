@@ -3,6 +3,7 @@
 
 #include <Fulcrum/Collision/NarrowPhase/SurfaceContact.h>
 #include <Fulcrum/Jobs/ScratchArena.h>
+#include <Fulcrum/Physics/Stages/EventBuffers.h>
 #include <Fulcrum/Physics/Stages/SensorSearch.h>
 #include <Fulcrum/Physics/Stages/SolverLayout.h>
 #include <Fulcrum/Physics/Stages/StepContext.h>
@@ -38,6 +39,7 @@ struct alignas(64) WorkerFindings {
     std::vector<uint64_t> sensorCandidates;                            // Sense
     std::vector<SensorVisit> sensorVisits;                             // likewise
     uint32_t sensorTests = 0;                                          // likewise
+    std::vector<uint32_t> eventPairs;                                  // Events
     CollideCounters libccd;
     uint32_t contacts = 0, points = 0, kept = 0;
     float deepest = 0;  // largest penetration, m
@@ -99,10 +101,10 @@ struct StepState {
     std::vector<uint32_t> began;  // Color: pairs that began to touch
     std::vector<uint32_t> seams;  // RemoveSeamContacts: pairs without their points, in the last step
     SolverLayout solver;
-    std::vector<JointId> broken;   // Store: in the last step
     uint32_t sleepCandidates = 0;  // Store: bodies that have been slow for long enough
     SweepStore sweeps;
     SensorSearch sensing;
+    EventBuffers events;
 };
 
 size_t HeapBytes(const StepState& step);

@@ -228,6 +228,7 @@ private:
         SweepHit hit;
         hit.body = sweep_.body;
         hit.other = theirSweep.body;
+        hit.collider = static_cast<uint32_t>(piece_ - view_.colliders.shapes.data());
         hit.otherCollider = pieces.other;
         hit.isBlocked = !isCast_ && !view_.bodies.dynamics[theirSweep.body].continuous;
         return hit;
@@ -268,14 +269,13 @@ private:
         if (!view_.step.listener || hit.pointCount == 0) return true;
         // A is dynamic: the other where the body itself is kinematic.
         const bool swapped = view_.bodies.dynamics[hit.body].motion != MotionType::Dynamic;
-        const uint32_t own = static_cast<uint32_t>(piece_ - view_.colliders.shapes.data());
         ContactView::Point points[SweepHit::kMaxPoints];
         for (int i = 0; i < hit.pointCount; ++i) points[i] = {hit.center + hit.arms[i].cast<double>(), 0, 0};
         ContactView view{view_.bodies.IdOf(hit.body),
                          view_.bodies.IdOf(hit.other),
                          hit.normal,
                          std::span<const ContactView::Point>(points, static_cast<size_t>(hit.pointCount)),
-                         ChildOf(view_.bodies, view_.colliders, own),
+                         ChildOf(view_.bodies, view_.colliders, hit.collider),
                          ChildOf(view_.bodies, view_.colliders, hit.otherCollider)};
         if (swapped) {
             std::swap(view.bodyA, view.bodyB);
@@ -384,6 +384,7 @@ private:
     static void CopyPoints(const SweepHit& from, SweepHit& to) {
         to.pointCount = from.pointCount;
         to.normal = from.normal;
+        to.triangle = from.triangle;
         to.material = from.material;
         to.center = from.center;
         std::copy_n(from.arms, from.pointCount, to.arms);
@@ -398,7 +399,7 @@ private:
         const Pose a = own * local_;
         Push most;
         hit.pointCount = 0;
-        const auto consider = [&](const Manifold& manifold, uint8_t material) {
+        const auto consider = [&](const Manifold& manifold, uint8_t material, uint32_t triangle) {
             const Vector3 normal = Rotate(a.rotation, manifold.normal);
             Push push;
             for (int i = 0; i < manifold.pointCount; ++i) {
@@ -411,6 +412,7 @@ private:
             most = push;
             hit.normal = normal;
             hit.material = material;
+            hit.triangle = triangle;
             hit.pointCount = manifold.pointCount;
             hit.center = own.position;
             for (int i = 0; i < manifold.pointCount; ++i) {
@@ -433,7 +435,7 @@ private:
             CollideSurface(*shape_, static_cast<const SurfaceShape&>(shape), bInA, settings, {}, findings_.surface);
             triangles_ += findings_.surface.TriangleCount();
             findings_.libccd += findings_.surface.Counters();
-            for (const SurfaceManifold& m : findings_.surface.Manifolds()) consider(m.manifold, m.material);
+            for (const SurfaceManifold& m : findings_.surface.Manifolds()) consider(m.manifold, m.material, m.triangle);
             return;
         }
         Manifold manifold;
@@ -443,7 +445,7 @@ private:
         } else {
             Collide(*shape_, static_cast<const ConvexShape&>(shape), bInA, settings, cache, manifold, findings_.libccd);
         }
-        consider(manifold, uint8_t{0});
+        consider(manifold, uint8_t{0}, 0u);
     }
 
     const CollisionView& view_;

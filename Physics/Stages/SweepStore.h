@@ -4,6 +4,7 @@
 
 #include <Fulcrum/Constraints/MassOverride.h>
 #include <Fulcrum/Math/Trigonometry.h>
+#include <Fulcrum/Physics/StepEvents.h>
 #include <Fulcrum/Physics/World/BodyStore.h>
 #include <Fulcrum/Physics/World/HeapBytes.h>
 
@@ -49,8 +50,9 @@ struct SweepHit {
     static constexpr int kMaxPoints = 4;
     float time = 1;
     uint32_t body = 0, other = 0;
-    uint32_t otherCollider = 0;
-    uint8_t material = 0;  // of the other's palette
+    uint32_t collider = 0, otherCollider = 0;
+    uint32_t triangle = 0;  // of the other, where it is a surface: of the deepest point
+    uint8_t material = 0;   // of the other's palette
     float friction = 0, restitution = 0;
     Vector3 surfaceVelocity = Vector3::Zero();  // m/s, of the other's surface against its body
     MassOverride massOverride;                  // the body as A, the other as B
@@ -60,6 +62,14 @@ struct SweepHit {
     Vector3 normal = Vector3::Zero();                 // unit, from the body towards the other
     Position center = Position::Zero();               // m, of the body's mass, where it touches
     Vector3 arms[kMaxPoints], otherArms[kMaxPoints];  // m, from the centers of mass to the points, world axes
+};
+
+// What contact events say of a hit.
+struct ReportedHit {
+    uint32_t body = 0, other = 0;
+    uint32_t collider = 0, otherCollider = 0;
+    float time = 0, approachSpeed = 0;
+    ContactEvent::Manifold manifold;  // the body as A
 };
 
 struct SweepStore {
@@ -87,14 +97,18 @@ struct SweepStore {
     std::vector<uint32_t> active, next;  // indices into `swept`, of this round and the next
     std::vector<SweepHit> hits;          // of a round; afterwards those that wait for the next
     std::vector<SweepHit> keptHits;      // room for those
+    bool reportsHits = false;            // contact events ask for it in this step
+    std::vector<ReportedHit> reported;   // those that stopped or deflected something in this step
 
     // Whether the body's start is that of this step: it was awake as it began.
     bool IsOfStep(uint32_t body, uint64_t step) const { return body < starts.size() && starts[body].step == step; }
 };
 
 inline size_t HeapBytes(const SweepStore& store) {
-    const auto& [isKept, dt, starts, searchBy, swept, places, ended, endedAt, active, next, hits, keptHits] = store;
-    return HeapBytes(isKept, dt, starts, searchBy, swept, places, ended, endedAt, active, next, hits, keptHits);
+    const auto& [isKept, dt, starts, searchBy, swept, places, ended, endedAt, active, next, hits, keptHits, reportsHits,
+                 reported] = store;
+    return HeapBytes(isKept, dt, starts, searchBy, swept, places, ended, endedAt, active, next, hits, keptHits,
+                     reportsHits, reported);
 }
 
 }  // namespace fulcrum

@@ -21,8 +21,10 @@ uint32_t BodyStore::Allocate() {
         dynamics.emplace_back();
         cold.emplace_back();
         remainders.emplace_back();
+        reportsContacts.Reserve(index + 1);
     }
     cold[index].exists = true;
+    if (notesSleepChanges) sleepChanges.push_back(index);
     ++count_;
     return index;
 }
@@ -35,6 +37,7 @@ void BodyStore::Free(uint32_t index) {
     dynamics[index] = {};
     cold[index] = {};
     cold[index].generation = generation;
+    reportsContacts.Erase(index);
     free_.push_back(index);
     --count_;
 }
@@ -42,6 +45,7 @@ void BodyStore::Free(uint32_t index) {
 void BodyStore::MarkAwake(uint32_t index) {
     if (dynamics[index].awake) return;
     dynamics[index].awake = true;
+    if (notesSleepChanges) sleepChanges.push_back(index);
     dynamics[index].slowSeconds = 0;
     if (cold[index].placed) placed.push_back(index);
     cold[index].awakePlace = static_cast<uint32_t>(awake.size());
@@ -66,6 +70,7 @@ void BodyStore::ForgetPlaced() {
 void BodyStore::MarkAsleep(uint32_t index) {
     if (!dynamics[index].awake) return;
     dynamics[index].awake = false;
+    if (notesSleepChanges) sleepChanges.push_back(index);
     const uint32_t place = cold[index].awakePlace;
     awake[place] = awake.back();
     cold[awake[place]].awakePlace = place;
@@ -174,10 +179,10 @@ size_t HeapBytes(const BodyCold& body) {
 }
 
 size_t HeapBytes(const BodyStore& store) {
-    const auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, continuousCount, free,
-                 count] = store;
+    const auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, continuousCount,
+                 reportsContacts, sleepChanges, notesSleepChanges, free, count] = store;
     return HeapBytes(states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, continuousCount,
-                     free, count);
+                     reportsContacts, sleepChanges, notesSleepChanges, free, count);
 }
 
 }  // namespace fulcrum

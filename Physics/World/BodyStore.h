@@ -4,6 +4,7 @@
 
 #include <Fulcrum/Constraints/Parts/BodyState.h>
 #include <Fulcrum/Physics/Settings.h>
+#include <Fulcrum/Physics/World/IndexSet.h>
 
 #include <cmath>
 #include <memory>
@@ -184,6 +185,11 @@ public:
     std::vector<uint32_t> placed;  // see MarkPlaced, in no order
     std::vector<uint32_t> awake;   // dynamic bodies awake and kinematic ones that move, in no order
     uint32_t continuousCount = 0;  // bodies with continuous collision
+    IndexSet reportsContacts;      // bodies of BodySettings::reportsContacts
+    // For events, where they are on: bodies that came to be, woke or fell asleep since the last step; repeated, in no
+    // order.
+    std::vector<uint32_t> sleepChanges;
+    bool notesSleepChanges = false;
 
     uint32_t Size() const { return static_cast<uint32_t>(cold.size()); }  // of the arrays
     uint32_t Count() const { return count_; }                             // of the bodies

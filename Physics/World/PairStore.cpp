@@ -57,12 +57,14 @@ uint32_t PairStore::Allocate() {
         links_.emplace_back();
         loads.emplace_back();
         if (keepsMassOverrides_) massOverrides.emplace_back();
+        if (keepsReported_) reported.emplace_back();
         active.Reserve(index + 1);
         free_.reserve(pairs.capacity());  // so that removing never allocates
     }
     pairs[index] = {};
     records[index] = {};
     loads[index] = {};
+    if (keepsReported_) reported[index] = {};
     pairs[index].exists = true;
     return index;
 }
@@ -70,6 +72,13 @@ uint32_t PairStore::Allocate() {
 void PairStore::KeepMassOverrides(bool keep) {
     keepsMassOverrides_ = keep;
     massOverrides.resize(keep ? pairs.size() : 0);
+}
+
+void PairStore::KeepReported(bool keep) {
+    if (keep == keepsReported_) return;
+    keepsReported_ = keep;
+    reported = std::vector<ReportedContact>(keep ? pairs.size() : 0);
+    ended = {};
 }
 
 uint32_t PairStore::AddMore(uint32_t of) {
@@ -132,6 +141,7 @@ void PairStore::Unlink(uint32_t index) {
 
 void PairStore::Remove(uint32_t index) {
     active.Erase(index);
+    if (keepsReported_ && reported[index].isOn) ended.push_back(reported[index]);
     if (pairs[index].isMore) {
         pairs[index].exists = false;
         free_.push_back(index);
@@ -156,10 +166,10 @@ void PairStore::Remove(uint32_t index) {
 }
 
 size_t HeapBytes(const PairStore& store) {
-    const auto& [pairs, records, massOverrides, loads, loadVersion, active, table, free, links, heads, size,
-                 keepsMassOverrides] = store;
-    return HeapBytes(pairs, records, massOverrides, loads, loadVersion, active, table, free, links, heads, size,
-                     keepsMassOverrides);
+    const auto& [pairs, records, massOverrides, reported, ended, loads, loadVersion, active, table, free, links, heads,
+                 size, keepsMassOverrides, keepsReported] = store;
+    return HeapBytes(pairs, records, massOverrides, reported, ended, loads, loadVersion, active, table, free, links,
+                     heads, size, keepsMassOverrides, keepsReported);
 }
 
 }  // namespace fulcrum

@@ -9,6 +9,7 @@
 #include <Fulcrum/Constraints/Contacts/ContactRecord.h>
 #include <Fulcrum/Constraints/MassOverride.h>
 
+#include <Fulcrum/Physics/StepEvents.h>
 #include <Fulcrum/Physics/World/IndexSet.h>
 #include <Fulcrum/Physics/World/LoadLevel.h>
 
@@ -41,6 +42,16 @@ struct alignas(64) Pair {
 };
 static_assert(sizeof(Pair) == 128);
 
+// What contact events have said of a pair, to go on with and to end.
+struct ReportedContact {
+    BodyId bodyA, bodyB;
+    uint32_t childA = 0, childB = 0;
+    bool isOn = false;  // it began, and has not ended
+    // Of its event in this step, where it has one.
+    ContactEvent::Kind kind = ContactEvent::Kind::Stay;
+    uint32_t manifoldCount = 0;
+};
+
 class PairStore {
 public:
     std::vector<Pair> pairs;
@@ -48,6 +59,10 @@ public:
     // Same index, of records with kMassOverride; empty without a contact listener, which alone sets them.
     std::vector<MassOverride> massOverrides;
     void KeepMassOverrides(bool keep);
+    // Same index, of a pair's first manifold; empty without contact events. It outlasts their sleep.
+    std::vector<ReportedContact> reported;
+    std::vector<ReportedContact> ended;  // of pairs that were removed since the last events
+    void KeepReported(bool keep);
     std::vector<LoadLevel> loads;  // same index
     uint64_t loadVersion = 1;      // grows where the level of some load changes, of joints, too
     IndexSet active;
@@ -99,7 +114,7 @@ private:
     std::vector<Links> links_;     // by pair
     std::vector<uint32_t> heads_;  // by collider
     uint32_t size_ = 0;
-    bool keepsMassOverrides_ = false;
+    bool keepsMassOverrides_ = false, keepsReported_ = false;
 };
 
 }  // namespace fulcrum

@@ -47,6 +47,7 @@ namespace fulcrum {
     scene(CompoundCity)       \
     scene(Sensors)            \
     scene(Bullets)            \
+    scene(BreakingGlass)      \
     scene(RagdollDrive)       \
     scene(Hinge)              \
     scene(Slider)             \

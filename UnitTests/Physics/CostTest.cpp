@@ -56,6 +56,24 @@ TEST(Cost, SettledHullsCapsulesAndOverflowAllocateNothing) {
     EXPECT_GT(world.Report().overflowConstraints, 0u);
 }
 
+// As do those of which all events are listed, whichever worker finds them; a ball bounces all the while.
+TEST(Cost, ASettledStepWithEventsAllocatesNothing) {
+    for (uint32_t threads : {1u, 2u}) {
+        SystemSettings settings = NoSleep();
+        settings.events = {.contacts = true, .stays = true, .bodies = true};
+        TestWorld world(settings, threads);
+        AddPyramid(world, 12);
+        world.Add({.shape = SphereOf(0.2f),
+                   .position = {0, 3, 8},
+                   .linearVelocity = {0, -40, 0},
+                   .material = {.restitution = 1},
+                   .continuous = ContinuousCollision::Linear});
+        EXPECT_EQ(AllocationsOfSettledSteps(world), 0u) << threads << " threads";
+        EXPECT_GT(world.System().Events().contacts.size(), 100u);
+        EXPECT_GT(world.System().Events().moved.size(), 0u);
+    }
+}
+
 // 1.5 KB until positions got remainders (24 bytes) and pairs lists of their own colliders (16 a pair), 1.6 until
 // contacts got a largest push of their own (4), and what they carry is noted (30).
 TEST(Cost, ARestingBoxTakesAtMost1635Bytes) {
@@ -68,10 +86,13 @@ TEST(Cost, ARestingBoxTakesAtMost1635Bytes) {
     EXPECT_LE(static_cast<double>(world.System().MemoryUsed()) / 1000, 1635.0);
 }
 
-// What goes with a world but for its shapes: joints, sensors, bodies that are cast along their ways, several threads.
+// What goes with a world but for its shapes: joints, sensors, bodies that are cast along their ways, events, several
+// threads.
 TEST(Cost, MemoryUsedIsWhatIsAllocated) {
     if (AllocatedBytes() == 0) GTEST_SKIP() << "the allocator does not say what it gave";
-    auto world = std::make_unique<TestWorld>(JointScene::Settings(), 2);
+    SystemSettings settings = JointScene::Settings();
+    settings.events = {.contacts = true, .stays = true, .bodies = true};
+    auto world = std::make_unique<TestWorld>(settings, 2);
     std::vector<ShapePtr> shapes;
     {
         JointScene scene(*world);

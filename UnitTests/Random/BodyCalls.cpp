@@ -44,6 +44,7 @@ BodySettings RandomBody(Values& values) {
     settings.layer = static_cast<uint8_t>(values.IsOdd() ? 32 + values.Below(200) : values.Below(3));
     if (values.Chance(0.2f)) settings.category = 1u + values.Below(7), settings.mask = values.Below(8);
     settings.userData = values.Below(1000);
+    settings.reportsContacts = settings.userData % 4 != 0;
     if (values.Style().continuous && values.Chance(0.2f)) settings.continuous = values.One<ContinuousCollision>(3);
     if (values.Style().sensors && values.Chance(0.15f)) {
         settings.isSensor = true;
@@ -105,6 +106,7 @@ FULCRUM_BODY_CALL(SetCategoryAndMask, const uint32_t mask = values.Below(4);
                   return bodies.SetCategoryAndMask(id, values.Below(4), mask))
 FULCRUM_BODY_CALL(SetGravityFactor, return bodies.SetGravityFactor(id, values.Setting(-1, 2)))
 FULCRUM_BODY_CALL(SetContinuous, return bodies.SetContinuous(id, values.One<ContinuousCollision>(3)))
+FULCRUM_BODY_CALL(SetReportsContacts, return bodies.SetReportsContacts(id, values.Chance(0.7f)))
 FULCRUM_BODY_CALL(SetSensor, return bodies.SetSensor(id, values.Chance(0.4f)))
 FULCRUM_BODY_CALL(SetSensorSees,
                   return bodies.SetSensorSees(id, static_cast<SensorSees>(values.Below(values.IsOdd() ? 256 : 32))))
@@ -153,6 +155,7 @@ constexpr CallKind kCalls[] = {
     {"SetGroup", 0.5f, SetGroup},
     {"SetGravityFactor", 0.5f, SetGravityFactor},
     {"SetContinuous", 1, SetContinuous},
+    {"SetReportsContacts", 0.5f, SetReportsContacts},
     {"SetSensor", 1, SetSensor},
     {"SetSensorSees", 0.5f, SetSensorSees},
     {"SetSensorReportsStay", 0.5f, SetSensorReportsStay},

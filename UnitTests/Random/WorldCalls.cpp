@@ -12,6 +12,14 @@ void Step(Twin& twin, Values& values, const CallTargets&, Outcome& outcome) {
     outcome.answer.Add(twin.system->Report().contactPoints);
     outcome.answer.Add(twin.system->Report().largestPenetration);
     for (const SensorEvent& event : twin.system->SensorEvents()) outcome.answer.Add(event.body);
+    const StepEvents& events = twin.system->Events();
+    for (const ContactEvent& event : events.contacts) {
+        outcome.answer.Add(event.bodyA);
+        outcome.answer.Add(static_cast<uint32_t>(event.kind));
+        outcome.answer.Add(event.NormalImpulse());
+    }
+    for (const std::span<const BodyId> ids : {events.moved, events.woke, events.fellAsleep})
+        for (const BodyId id : ids) outcome.answer.Add(id);
 }
 
 void SetSettings(Twin& twin, Values& values, const CallTargets&, Outcome& outcome) {
@@ -49,6 +57,9 @@ void SetSettings(Twin& twin, Values& values, const CallTargets&, Outcome& outcom
     if (values.Chance(0.1f)) settings.accuracy.mostSubsteps = values.Integer(1, 64);
     if (values.Chance(0.1f)) settings.accuracy.jointError = values.Setting(0.0005f, 0.1f);
     if (values.Chance(0.1f)) settings.accuracy.largeIslands = values.Chance(0.5f);
+    if (values.Chance(0.3f))
+        settings.events = {
+            .contacts = values.Chance(0.7f), .stays = values.Chance(0.5f), .bodies = values.Chance(0.5f)};
     Note(twin.system->SetSettings(settings), outcome);
 }
 

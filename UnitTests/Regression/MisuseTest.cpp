@@ -172,6 +172,29 @@ TEST(Misuse, BatchesInAListenerFindNothing) {
     });
 }
 
+TEST(Misuse, EventsInAListenerAreNone) {
+    Within(kDeadline, [] {
+        SystemSettings settings;
+        settings.events.contacts = true;
+        TestWorld world(settings, 2);
+        AddRow(world);
+        world.Step();
+        EXPECT_GT(world.System().Events().contacts.size(), 400u);
+        Reports reports;
+        std::atomic<size_t> seen{0};
+        const Listener listener([&] { seen += world.System().Events().contacts.size(); });
+        world.System().SetContactListener(&listener);
+        world.Step();
+        EXPECT_EQ(seen, 0u);
+        const std::vector<Error> errors = reports.Take();
+        ASSERT_FALSE(errors.empty());
+        EXPECT_EQ(errors.front().code, ErrorCode::NotAllowedHere);
+        world.System().SetContactListener(nullptr);
+        world.Step();
+        EXPECT_GT(world.System().Events().contacts.size(), 400u);
+    });
+}
+
 TEST(Misuse, ChangesInAListenerAreRefused) {
     Within(kDeadline, [] {
         TestWorld world({}, 3), twin({}, 3);

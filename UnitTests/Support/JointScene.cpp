@@ -74,7 +74,7 @@ void JointScene::BeforeStep(int step) {
         world_.Add({.shape = SphereOf(0.3f), .position = {1.8, 2, 20.1}});
     }
     woke_ |= step > kHit && world_.Bodies().IsAwake(sleeper_);
-    for (const JointId id : world_.System().BrokenJoints()) broke_ |= id == breaking_;
+    for (const BrokenJoint& joint : world_.System().Events().brokenJoints) broke_ |= joint.id == breaking_;
     overflowed_ |= world_.Report().overflowConstraints > 0;
 }
 

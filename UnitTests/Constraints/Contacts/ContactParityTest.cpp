@@ -1,4 +1,5 @@
 // Contacts solved one by one and in lanes: the same bits, contact by contact.
+#include <Fulcrum/Constraints/Contacts/ContactNote.h>
 #include <Fulcrum/UnitTests/Constraints/Contacts/RandomContacts.h>
 
 #include <gtest/gtest.h>
@@ -19,10 +20,16 @@ void MoveSurfaces(RandomContacts& contacts, uint32_t seed) {
     }
 }
 
+struct NotedContacts : RandomContacts {
+    using RandomContacts::RandomContacts;
+    std::vector<ContactNote> notes;
+};
+
 // The whole life of contacts over two substeps.
 template <int N, bool kFixedB>
-RandomContacts Solved(uint32_t seed, bool surfacesMove) {
-    RandomContacts contacts(kContacts, kFixedB, seed);
+NotedContacts Solved(uint32_t seed, bool surfacesMove) {
+    NotedContacts contacts(kContacts, kFixedB, seed);
+    contacts.notes.resize(kContacts);
     if (surfacesMove) MoveSurfaces(contacts, seed);
     BodyState* states = contacts.states.data();
     for (uint32_t first = 0; first < kContacts; first += N) {
@@ -30,6 +37,11 @@ RandomContacts Solved(uint32_t seed, bool surfacesMove) {
         ContactSolveSettings settings{
             .inverseDt = 240.0f, .elapsed = 0, .pushRate = 0, .massScale = 0, .impulseScale = 0, .slop = 0.0005f};
         settings.restitutionSpeed = 0.5f;
+        settings.notes = contacts.notes.data();
+        uint32_t bodyB[N];
+        for (int lane = 0; lane < N; ++lane) bodyB[lane] = batch.bodyA[lane] + 1;
+        batch.hasNotes = true;
+        BeginNotes(batch, bodyB, contacts.Bodies(), contacts.notes.data());
         settings.Soften(60, 10, 1.0f / 240, 3);
         WarmStartContacts(batch, states);
         for (int substep = 1; substep <= 2; ++substep) {
@@ -43,23 +55,30 @@ RandomContacts Solved(uint32_t seed, bool surfacesMove) {
                         states[body].deltaRotation[k] += states[body].angularVelocity[k] / 240.0f;
                     }
             RelaxContacts(batch, states, settings);
+            AddRowImpulses(batch, contacts.notes.data());
         }
         StoreContacts(batch, contacts.records.data());
     }
+    // What is noted of points that only other contacts of the batch have is nobody's.
+    for (size_t i = 0; i < kContacts; ++i)
+        for (int k = static_cast<int>(contacts.records[i].pointCount); k < ContactNote::kMaxPoints; ++k)
+            contacts.notes[i].approachSpeed[k] = 0;
     return contacts;
 }
 
 template <bool kFixedB>
-void ExpectSameBits(const RandomContacts& a, const RandomContacts& b, const char* lanes) {
+void ExpectSameBits(const NotedContacts& a, const NotedContacts& b, const char* lanes) {
     for (size_t i = 0; i < a.states.size(); ++i)
         ASSERT_EQ(std::memcmp(&a.states[i], &b.states[i], sizeof(BodyState)), 0) << lanes << ", body " << i;
     for (size_t i = 0; i < a.records.size(); ++i)
         ASSERT_EQ(std::memcmp(&a.records[i], &b.records[i], sizeof(ContactRecord)), 0) << lanes << ", contact " << i;
+    for (size_t i = 0; i < a.notes.size(); ++i)
+        ASSERT_EQ(std::memcmp(&a.notes[i], &b.notes[i], sizeof(ContactNote)), 0) << lanes << ", contact " << i;
 }
 
 template <bool kFixedB>
 void ExpectParity(uint32_t seed, bool surfacesMove = false) {
-    const RandomContacts one = Solved<1, kFixedB>(seed, surfacesMove);
+    const NotedContacts one = Solved<1, kFixedB>(seed, surfacesMove);
     ExpectSameBits<kFixedB>(one, Solved<kLanes, kFixedB>(seed, surfacesMove), kSimdName);
 }
 

@@ -307,6 +307,7 @@ TEST(SampleScenes, ClosestIsWhatAllBodiesOneByOneGive) { ExpectFigure("query_clo
 TEST(SampleScenes, TheBroadPhaseNamesAllThatIsHit) { ExpectFigure("query_bounds", 0, 0); }
 TEST(SampleScenes, ARemovedPillarWakesItsStackAlone) { ExpectFigure("trap_door", 0, 0); }
 TEST(SampleScenes, SensorsSeeAndScenesReact) { ExpectFigure("sensors", 0, 0); }
+TEST(SampleScenes, GlassBreaksAtItsStrength) { ExpectFigure("breaking_glass", 0, 0); }
 
 TEST(SampleScenes, ATowerLosesItsPiecesInACityOfCompounds) { ExpectFigure("compound_city", 0, 0); }
 
