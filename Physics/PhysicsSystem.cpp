@@ -1,6 +1,7 @@
 #include <Fulcrum/Physics/PhysicsSystem.h>
 
 #include <Fulcrum/Physics/Misuse.h>
+#include <Fulcrum/Physics/Snapshots/Snapshots.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
 #include <Fulcrum/Physics/Stages/Step.h>
 #include <Fulcrum/Physics/Validation.h>
@@ -27,7 +28,12 @@ Result<std::unique_ptr<PhysicsSystem>> PhysicsSystem::Create(const SystemSetting
 }
 
 PhysicsSystem::PhysicsSystem(std::unique_ptr<WorldState> world, std::unique_ptr<StepState> step)
-    : world_(std::move(world)), step_(std::move(step)), bodies_(*world_), joints_(*world_), queries_(*world_) {}
+    : world_(std::move(world)),
+      step_(std::move(step)),
+      snapshots_(std::make_unique<SnapshotRoom>()),
+      bodies_(*world_),
+      joints_(*world_),
+      queries_(*world_) {}
 PhysicsSystem::~PhysicsSystem() = default;
 
 Status PhysicsSystem::Update(double dt) {
@@ -75,6 +81,24 @@ void PhysicsSystem::SetContactListener(const ContactListener* listener) {
     const WorldLock::Exclusive alone(world_->lock);
     if (alone.Refusal()) return ReportMisuse(*alone.Refusal());
     ChangeListener(*world_, listener);
+}
+
+Status PhysicsSystem::SaveSnapshot(std::vector<std::byte>& bytes) const {
+    const WorldLock::Exclusive alone(world_->lock);
+    if (alone.Refusal()) return *alone.Refusal();
+    return WriteSnapshot(*world_, *step_, *snapshots_, bytes);
+}
+
+Status PhysicsSystem::RestoreSnapshot(std::span<const std::byte> bytes, const SnapshotSources& sources) {
+    const WorldLock::Exclusive alone(world_->lock);
+    if (alone.Refusal()) return *alone.Refusal();
+    return ReadSnapshot(bytes, sources, *snapshots_, *world_, *step_);
+}
+
+uint64_t PhysicsSystem::HashState() const {
+    const WorldLock::Exclusive alone(world_->lock);
+    if (alone.Refusal()) return ReportMisuse(*alone.Refusal()), 0;
+    return HashOfState(*world_, *step_, *snapshots_);
 }
 
 void PhysicsSystem::VisitBodies(FunctionRef<void(BodyId)> visit) const {
@@ -148,7 +172,8 @@ uint64_t PhysicsSystem::HashPoses() const {
 }
 
 size_t PhysicsSystem::MemoryUsed() const {
-    return sizeof(WorldState) + HeapBytes(*world_) + sizeof(StepState) + HeapBytes(*step_);
+    return sizeof(WorldState) + HeapBytes(*world_) + sizeof(StepState) + HeapBytes(*step_) +
+           sizeof(SnapshotRoom) + HeapBytes(*snapshots_);
 }
 
 }  // namespace fulcrum

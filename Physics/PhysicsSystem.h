@@ -8,6 +8,7 @@
 #include <Fulcrum/Physics/JointInterface.h>
 #include <Fulcrum/Physics/QueryInterface.h>
 #include <Fulcrum/Physics/SensorEvent.h>
+#include <Fulcrum/Physics/Snapshot.h>
 #include <Fulcrum/Physics/StepReport.h>
 
 #include <memory>
@@ -16,6 +17,7 @@
 namespace fulcrum {
 
 struct StepState;
+struct SnapshotRoom;
 
 class PhysicsSystem {
 public:
@@ -52,6 +54,20 @@ public:
     // about again, and bodies wake whose contact it forbids.
     void SetContactListener(const ContactListener* listener);
 
+    // The whole state as bytes, from which steps go on with the same bits: `bytes` are overwritten, and allocated anew
+    // only where they do not suffice. Shapes, group filters and what joints of one's own are made of are named, not
+    // contained. Error: Unsupported (a body's mutable compound has a custom child); `bytes` are empty then.
+    Status SaveSnapshot(std::vector<std::byte>& bytes) const;
+    // Back to the state of a snapshot of this world, or of another one with the same calls before it: settings, bodies,
+    // joints and their ids are as they were then. The report is still that of the last step. Errors, after which
+    // nothing has changed: Unsupported (no snapshot; another version or build; a contact listener is set where none
+    // was, or the other way round), Degenerate (damaged), UnknownId (what it names is neither in the world nor given).
+    // Bytes that were forged are not noticed: load only what you trust.
+    Status RestoreSnapshot(std::span<const std::byte> bytes, const SnapshotSources& sources = {});
+    // A hash, 64 bits, of the whole state but for user data: equal hashes mean that the same calls give the same bits
+    // from now on. The same for any number of threads and lanes. 0 where it is called back by a step.
+    uint64_t HashState() const;
+
     // All bodies, in the order of their indices.
     void VisitBodies(FunctionRef<void(BodyId)> visit) const;
     // All awake contacts with at least one point as they were solved in the last step, in a deterministic order.
@@ -71,6 +87,7 @@ private:
     PhysicsSystem(std::unique_ptr<WorldState> world, std::unique_ptr<StepState> step);
     std::unique_ptr<WorldState> world_;
     std::unique_ptr<StepState> step_;
+    std::unique_ptr<SnapshotRoom> snapshots_;
     BodyInterface bodies_;
     JointInterface joints_;
     QueryInterface queries_;

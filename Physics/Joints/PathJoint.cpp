@@ -124,6 +124,24 @@ double PathJoint::Coordinate(JointAxis axis, const JointPose& pose) const {
 
 std::span<double> PathJoint::State() { return {&parameter_, 1}; }
 
+void PathJoint::VisitSettings(const SettingVisitor& visit) {
+    visit(rotation_);
+    uint32_t count = static_cast<uint32_t>(path_->Points().size());
+    bool isClosed = path_->IsClosed();
+    visit(count);
+    visit(isClosed);
+    std::vector<PathPoint> points(path_->Points().begin(), path_->Points().end());
+    points.resize(count);
+    for (PathPoint& point : points) {
+        visit(point.position);
+        visit(point.tangent);
+        visit(point.normal);
+    }
+    if (!visit.IsReplacing()) return;
+    Result<std::shared_ptr<const Path>> path = Path::Hermite(points, isClosed);
+    if (path) path_ = std::move(path.Value());
+}
+
 JointDrawing PathJoint::Drawing() const { return {.path = path_}; }
 
 }  // namespace fulcrum

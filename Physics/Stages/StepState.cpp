@@ -26,10 +26,10 @@ size_t HeapBytes(const CrowdState& crowd) {
 }
 
 size_t HeapBytes(const StepState& step) {
-    const auto& [lastSubstepDt, stiffnessDt, report, findings, scratch, pairs, crowd, began, seams, solver, broken,
-                 sleepCandidates, sweeps, sensing] = step;
-    return HeapBytes(lastSubstepDt, stiffnessDt, report, findings, scratch, pairs, crowd, began, seams, solver, broken,
-                     sleepCandidates, sweeps, sensing);
+    const auto& [lastSubstepDt, stiffnessDt, report, findings, scratch, pairs, crowd, began, seams, solver,
+                 savedEfforts, broken, sleepCandidates, sweeps, sensing] = step;
+    return HeapBytes(lastSubstepDt, stiffnessDt, report, findings, scratch, pairs, crowd, began, seams, solver,
+                     savedEfforts, broken, sleepCandidates, sweeps, sensing);
 }
 
 }  // namespace fulcrum

@@ -73,6 +73,7 @@ public:
     friend size_t HeapBytes(const PairStore& store);
 
 private:
+    friend struct SnapshotAccess;
     static uint64_t Key(uint32_t a, uint32_t b) { return a < b ? (uint64_t(a) << 32 | b) : (uint64_t(b) << 32 | a); }
     // The pairs of each collider as a list, without which removing a collider would mean to look at all pairs.
     struct Links {

@@ -1,0 +1,152 @@
+// A world that goes back to a snapshot repeats every bit, whatever is in it: by the hash of the whole state after each
+// step, in the world that was saved and in an empty one.
+#include <Fulcrum/Samples/Scenes/SceneWorld.h>
+#include <Fulcrum/Samples/Scenes/Scenes.h>
+#include <Fulcrum/UnitTests/Support/Cases.h>
+#include <Fulcrum/UnitTests/Support/FastScene.h>
+#include <Fulcrum/UnitTests/Support/JointScene.h>
+#include <Fulcrum/UnitTests/Support/MixedScene.h>
+#include <Fulcrum/UnitTests/Support/SurfaceScene.h>
+
+#include <functional>
+#include <string>
+
+namespace fulcrum::testing {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+// What is to be done before a step, by its number.
+using BeforeStep = std::function<void(int)>;
+
+// The shapes and group filters that bodies of a world have.
+struct Sources {
+    std::vector<ShapePtr> shapes;
+    std::vector<std::shared_ptr<const GroupFilter>> filters;
+
+    explicit Sources(const PhysicsSystem& system) {
+        system.VisitBodies([&](BodyId id) {
+            shapes.push_back(system.Bodies().GetShape(id));
+            const auto filter = system.Bodies().GetGroup(id).filter;
+            if (filter && std::ranges::find(filters, filter) == filters.end()) filters.push_back(filter);
+        });
+    }
+    SnapshotSources All() const { return {.shapes = shapes, .groupFilters = filters}; }
+};
+
+struct Run {
+    PhysicsSystem& system;
+    BeforeStep beforeStep;
+    std::function<void()> step;
+
+    uint64_t Step(int number) const {
+        if (beforeStep) beforeStep(number);
+        step();
+        return system.HashState();
+    }
+};
+
+// Runs `steps`, saves at some of them, goes back to each, the last first, and repeats what followed.
+void ExpectRepeats(const Run& run, int steps, int every, int repeated) {
+    std::vector<uint64_t> hashes;
+    std::vector<std::pair<int, Bytes>> saved;
+    for (int step = 0; step < steps; ++step) {
+        if (step % every == every / 2) {
+            saved.emplace_back(step, Bytes{});
+            ASSERT_TRUE(run.system.SaveSnapshot(saved.back().second));
+        }
+        hashes.push_back(run.Step(step));
+    }
+    const Sources sources(run.system);
+    while (!saved.empty()) {
+        const auto& [from, bytes] = saved.back();
+        const Status restored = run.system.RestoreSnapshot(bytes, sources.All());
+        ASSERT_TRUE(restored) << restored.GetError().message;
+        Bytes again;
+        ASSERT_TRUE(run.system.SaveSnapshot(again));
+        ASSERT_TRUE(again == bytes) << "what was restored is not what was saved, of step " << from;
+        for (int step = from; step < std::min(from + repeated, steps); ++step)
+            ASSERT_EQ(run.Step(step), hashes[static_cast<size_t>(step)]) << "step " << step << ", from " << from;
+        saved.pop_back();
+    }
+}
+
+Run RunOf(TestWorld& world, BeforeStep beforeStep) {
+    return {world.System(), std::move(beforeStep), [&world] { world.Step(); }};
+}
+
+TEST(SnapshotResume, OfTheMixedScene) {
+    for (uint32_t threads : {1u, 2u, 4u}) {
+        TestWorld world({}, threads);
+        MixedScene scene(world);
+        ExpectRepeats(RunOf(world, [&](int step) { scene.BeforeStep(step); }), 220, 40, 100);
+    }
+}
+
+TEST(SnapshotResume, OfTheJointScene) {
+    for (uint32_t threads : {1u, 2u, 4u}) {
+        TestWorld world(JointScene::Settings(), threads);
+        JointScene scene(world);
+        ExpectRepeats(RunOf(world, [&](int step) { scene.BeforeStep(step); }), 240, 40, 100);
+    }
+}
+
+TEST(SnapshotResume, OfTheSurfaceScene) {
+    for (uint32_t threads : {1u, 2u, 4u}) {
+        TestWorld world({}, threads);
+        BuildSurfaceScene(world);
+        ExpectRepeats(RunOf(world, {}), 220, 40, 100);
+    }
+}
+
+TEST(SnapshotResume, OfTheFastScene) {
+    for (uint32_t threads : {1u, 2u, 4u}) {
+        TestWorld world({}, threads);
+        BuildFastScene(world);
+        ExpectRepeats(RunOf(world, {}), 120, 20, 100);
+    }
+}
+
+TEST(SnapshotResume, OfSampleScenes) {
+    for (const Scene* scene : AllScenes()) {
+        if (scene->beforeStep || scene->query) continue;
+        const std::string name = scene->name;
+        SCOPED_TRACE(name);
+        std::printf("%s\n", name.c_str());
+        fflush(stdout);
+        ThreadPool jobs(2);
+        const auto world = SceneWorld::Create(*scene, {}, &jobs);
+        ASSERT_TRUE(world);
+        PhysicsSystem& system = world.Value()->System();
+        int bodies = 0;
+        system.VisitBodies([&](BodyId) { ++bodies; });
+        if (bodies > 3000) continue;
+        ExpectRepeats({system, {}, [&] { ASSERT_TRUE(system.Update(kStep)); }}, 120, 40, 60);
+    }
+}
+
+TEST(SnapshotResume, InAnEmptyWorld) {
+    TestWorld world(JointScene::Settings(), 1);
+    JointScene scene(world);
+    for (int step = 0; step < 100; ++step) {
+        scene.BeforeStep(step);
+        world.Step();
+    }
+    Bytes bytes;
+    ASSERT_TRUE(world.System().SaveSnapshot(bytes));
+    const Sources sources(world.System());
+    TestWorld empty(JointScene::Settings(), 2);
+    SnapshotSources all = sources.All();
+    int made = 0;
+    all.makeJoint = [&](JointId id) {
+        ++made;
+        (void)id;
+        return std::unique_ptr<JointType>();
+    };
+    const Status restored = empty.System().RestoreSnapshot(bytes, all);
+    ASSERT_FALSE(restored);
+    EXPECT_EQ(made, 1);
+}
+
+}  // namespace
+}  // namespace fulcrum::testing
