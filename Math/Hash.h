@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <initializer_list>
 
 namespace fulcrum {
 
@@ -20,26 +21,34 @@ inline uint64_t HashWord(uint64_t hash, uint64_t word) {
 // Words go round eight running hashes, so that the processor works on all at once, and these are hashed at last. A
 // change of one word, be it of one bit, always changes the result: each step is a bijection.
 inline uint64_t HashBytes(const void* bytes, size_t size, uint64_t seed = kHashSeed) {
-    constexpr size_t kRunning = 8;
     const unsigned char* at = static_cast<const unsigned char*>(bytes);
-    uint64_t running[kRunning];
-    for (size_t i = 0; i < kRunning; ++i) running[i] = seed + i * kHashSeed;
+    const auto wordAt = [&](size_t i) {
+        uint64_t word;
+        std::memcpy(&word, at + 8 * i, sizeof word);
+        return word;
+    };
+    // By name: compilers make slower vectors of an array.
+    uint64_t a = seed, b = seed + 1, c = seed + 2, d = seed + 3, e = seed + 4, f = seed + 5, g = seed + 6, h = seed + 7;
     size_t left = size;
-    for (; left >= 8 * kRunning; left -= 8 * kRunning, at += 8 * kRunning) {
-        uint64_t words[kRunning];
-        std::memcpy(words, at, sizeof words);
-        for (size_t i = 0; i < kRunning; ++i) running[i] = HashWord(running[i], words[i]);
+    for (; left >= 64; left -= 64, at += 64) {
+        a = HashWord(a, wordAt(0));
+        b = HashWord(b, wordAt(1));
+        c = HashWord(c, wordAt(2));
+        d = HashWord(d, wordAt(3));
+        e = HashWord(e, wordAt(4));
+        f = HashWord(f, wordAt(5));
+        g = HashWord(g, wordAt(6));
+        h = HashWord(h, wordAt(7));
     }
-    for (size_t i = 0; left > 0; ++i) {
+    uint64_t hash = HashWord(seed, size);
+    for (const uint64_t running : {a, b, c, d, e, f, g, h}) hash = HashWord(hash, running);
+    for (; left > 0; at += 8) {
         const size_t part = left < 8 ? left : 8;
         uint64_t word = 0;
         std::memcpy(&word, at, part);
-        running[i] = HashWord(running[i], word);
-        at += part;
+        hash = HashWord(hash, word);
         left -= part;
     }
-    uint64_t hash = HashWord(seed, size);
-    for (const uint64_t r : running) hash = HashWord(hash, r);
     return hash ^ hash >> 32;
 }
 

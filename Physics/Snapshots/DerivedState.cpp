@@ -28,6 +28,14 @@ void SnapshotAccess::Resize(ColliderStore& colliders, uint32_t count) {
 }
 
 void SnapshotAccess::Resize(PairStore& pairs, uint32_t count) {
+    for (uint32_t i = count; i < pairs.pairs.size(); ++i)
+        if (const uint64_t key = KeyOf(pairs, i); key != kNoKey) pairs.Strike(key, i);
+    // While pairs are read it has those of before, too.
+    if (size_t places = std::max<size_t>(pairs.table_.size(), 1024); 2 * size_t{count} > places || pairs.table_.empty()) {
+        while (2 * size_t{count} > places) places *= 2;
+        for (Pair& pair : pairs.pairs) pair.exists = false;
+        pairs.table_.assign(places, {});
+    }
     pairs.pairs.resize(count);
     pairs.records.resize(count);
     pairs.loads.resize(count);
@@ -106,50 +114,43 @@ void SnapshotAccess::UpdateTrees(const BodyStore& bodies, ColliderStore& store) 
     for (BoundsTree* tree : {&store.staticTree, &store.movingTree, &store.sensorTree}) tree->Optimize();
 }
 
-void SnapshotAccess::AttachPairs(const ColliderStore& colliders, PairStore& store) {
-    size_t places = std::max<size_t>(store.table_.size(), 1024);
-    while (2 * size_t{store.size_} > places) places *= 2;
-    store.table_.assign(places, {});
-    const auto mask = static_cast<uint32_t>(places - 1);
-    for (uint32_t index = 0; index < store.pairs.size(); ++index) {
-        Pair& pair = store.pairs[index];
-        if (!pair.exists) continue;
-        pair.bodyA = colliders.colliders[pair.colliderA].body;
-        pair.bodyB = colliders.colliders[pair.colliderB].body;
-        pair.shapeA = static_cast<const ConvexShape*>(colliders.shapes[pair.colliderA].shape);
-        pair.shapeB = colliders.shapes[pair.colliderB].shape;
-        if (pair.isMore) continue;
-        const uint64_t key = PairStore::Key(pair.colliderA, pair.colliderB);
-        uint32_t place = store.FirstPlace(key);
-        while (store.table_[place].index != PairStore::kNone) place = (place + 1) & mask;
-        store.table_[place] = {key, index};
-    }
-}
-
-void SnapshotAccess::ListColors(const PairStore& pairs, const JointStore& joints, uint32_t bodies,
-                                ConstraintColoring& coloring) {
-    using Kind = ConstraintColoring::Kind;
+void SnapshotAccess::ClearColors(uint32_t bodies, ConstraintColoring& coloring) {
     for (ConstraintColoring::Color& color : coloring.colors_)
         for (std::vector<ConstraintColoring::Entry>& list : color.lists) list.clear();
     coloring.ReserveBodies(bodies);
     std::ranges::fill(coloring.used_, uint64_t{0});
     std::ranges::fill(coloring.overflows_, 0u);
     coloring.size_ = 0;
-    const auto add = [&](Kind kind, const ConstraintColoring::Entry& entry, const ColorSlot& place) {
-        if (place.color == ColorSlot{}.color) return;
-        std::vector<ConstraintColoring::Entry>& list = coloring.List(place.color, kind);
-        if (place.slot >= list.size()) list.resize(place.slot + 1);
-        list[place.slot] = entry;
-        ++coloring.size_;
-        ConstraintColoring::VisitMoving(entry, [&](uint32_t body) {
-            if (place.color == ConstraintColoring::kOverflow) ++coloring.overflows_[body];
-            else coloring.used_[body] |= uint64_t(1) << place.color;
-        });
-    };
-    for (uint32_t i = 0; i < pairs.pairs.size(); ++i)
-        if (pairs.pairs[i].exists) add(KindOf(pairs.pairs[i]), EntryOf(pairs.pairs[i], i), pairs.pairs[i].color);
-    for (uint32_t i = 0; i < joints.joints.size(); ++i)
-        if (joints.joints[i].exists) add(Kind::Joint, EntryOf(joints.joints[i], i), joints.joints[i].color);
+}
+
+void SnapshotAccess::ListColor(ConstraintColoring& coloring, ConstraintColoring::Kind kind,
+                               const ConstraintColoring::Entry& entry, const ColorSlot& place) {
+    if (place.color == ColorSlot{}.color) return;
+    std::vector<ConstraintColoring::Entry>& list = coloring.List(place.color, kind);
+    if (place.slot >= list.size()) list.resize(place.slot + 1);
+    list[place.slot] = entry;
+    ++coloring.size_;
+    ConstraintColoring::VisitMoving(entry, [&](uint32_t body) {
+        if (place.color == ConstraintColoring::kOverflow) ++coloring.overflows_[body];
+        else coloring.used_[body] |= uint64_t(1) << place.color;
+    });
+}
+
+void SnapshotAccess::AttachPair(const ColliderStore& colliders, PairStore& store, ConstraintColoring& coloring,
+                                uint32_t index, uint64_t before) {
+    // Few are others than they were.
+    const uint64_t key = KeyOf(store, index);
+    if (key != before) {
+        if (before != kNoKey) store.Strike(before, index);
+        if (key != kNoKey) store.Enter(key, index);
+    }
+    Pair& pair = store.pairs[index];
+    if (!pair.exists) return;
+    pair.bodyA = colliders.colliders[pair.colliderA].body;
+    pair.bodyB = colliders.colliders[pair.colliderB].body;
+    pair.shapeA = static_cast<const ConvexShape*>(colliders.shapes[pair.colliderA].shape);
+    pair.shapeB = colliders.shapes[pair.colliderB].shape;
+    ListColor(coloring, KindOf(pair), EntryOf(pair, index), pair.color);
 }
 
 }  // namespace fulcrum

@@ -6,6 +6,7 @@
 #include <Fulcrum/Physics/Joints/JointKinds.h>
 #include <Fulcrum/Physics/Snapshots/SnapshotAccess.h>
 #include <Fulcrum/Physics/Snapshots/Snapshots.h>
+#include <Fulcrum/Physics/World/Colors.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -198,7 +199,7 @@ void RestoreBodies(SnapshotReader& s, Found& found, BodyStore& bodies) {
     SnapshotAccess::FindAwakePlaces(bodies);
 }
 
-void RestoreJoints(SnapshotReader& s, Found& found, JointStore& joints) {
+void RestoreJoints(SnapshotReader& s, Found& found, JointStore& joints, ConstraintColoring& coloring) {
     SnapshotAccess::Resize(joints, found.head.joints);
     for (uint32_t i = 0; i < joints.joints.size(); ++i) {
         Joint& joint = joints.joints[i];
@@ -207,6 +208,11 @@ void RestoreJoints(SnapshotReader& s, Found& found, JointStore& joints) {
         joints.types[i] = joint.type.get();
     }
     SnapshotAccess::VisitJoints(s, joints);
+    for (uint32_t i = 0; i < joints.joints.size(); ++i) {
+        const Joint& joint = joints.joints[i];
+        if (joint.exists)
+            SnapshotAccess::ListColor(coloring, ConstraintColoring::Kind::Joint, EntryOf(joint, i), joint.color);
+    }
 }
 
 // What a step noted for the next, or of itself.
@@ -252,11 +258,12 @@ Status ReadSnapshot(std::span<const std::byte> bytes, const SnapshotSources& sou
     SnapshotAccess::AttachPieces(world.bodies, world.colliders);
     SnapshotAccess::ListMoved(world.colliders);
     SnapshotAccess::UpdateTrees(world.bodies, world.colliders);
+    SnapshotAccess::ClearColors(world.bodies.Size(), world.coloring);
     SnapshotAccess::Resize(world.pairs, found.head.pairs);
-    SnapshotAccess::VisitPairs(s, world.pairs);
-    SnapshotAccess::AttachPairs(world.colliders, world.pairs);
-    RestoreJoints(s, found, world.joints);
-    SnapshotAccess::ListColors(world.pairs, world.joints, world.bodies.Size(), world.coloring);
+    SnapshotAccess::VisitPairs(s, world.pairs, [&](uint32_t pair, uint64_t before) {
+        SnapshotAccess::AttachPair(world.colliders, world.pairs, world.coloring, pair, before);
+    });
+    RestoreJoints(s, found, world.joints, world.coloring);
     SnapshotAccess::VisitSleeping(s, world.sleeping);
     SnapshotAccess::VisitSensors(s, world.sensors, world.sensors.changed);
     RestoreStep(s, world, step);

@@ -30,8 +30,9 @@ struct SnapshotAccess {
     static void VisitBodies(Stream& s, Bodies& bodies);
     template <class Stream, class Colliders>
     static void VisitColliders(Stream& s, Colliders& colliders);
-    template <class Stream, class Pairs>
-    static void VisitPairs(Stream& s, Pairs& pairs);
+    // attach(i, before): called for each index, with KeyOf the one that was there before.
+    template <class Stream, class Pairs, class Attach>
+    static void VisitPairs(Stream& s, Pairs& pairs, const Attach& attach);
     template <class Stream, class Joints>
     static bool VisitJoints(Stream& s, Joints& joints);
     template <class Stream, class Sleeping>
@@ -47,7 +48,7 @@ struct SnapshotAccess {
     // For the reader.
     static void Resize(BodyStore& bodies, uint32_t count);
     static void Resize(ColliderStore& colliders, uint32_t count);
-    static void Resize(PairStore& pairs, uint32_t count);
+    static void Resize(PairStore& pairs, uint32_t count);  // the arrays; the table of pairs gets room for as many, too
     static void Resize(JointStore& joints, uint32_t count);
     // What follows from the rest. Places of bodies among those that are awake;
     static void FindAwakePlaces(BodyStore& bodies);
@@ -55,10 +56,21 @@ struct SnapshotAccess {
     static void AttachPieces(const BodyStore& bodies, ColliderStore& colliders);
     static void ListMoved(ColliderStore& colliders);
     static void UpdateTrees(const BodyStore& bodies, ColliderStore& colliders);
-    // bodies and shapes of pairs, and the hash table; the lists of colors.
-    static void AttachPairs(const ColliderStore& colliders, PairStore& pairs);
-    static void ListColors(const PairStore& pairs, const JointStore& joints, uint32_t bodies,
-                           ConstraintColoring& coloring);
+    // a pair's bodies and shapes, its place in the hash table and in the lists of colors; a joint's there.
+    static void ClearColors(uint32_t bodies, ConstraintColoring& coloring);
+    // before: KeyOf it as it was.
+    static void AttachPair(const ColliderStore& colliders, PairStore& pairs, ConstraintColoring& coloring,
+                           uint32_t index, uint64_t before);
+    static void ListColor(ConstraintColoring& coloring, ConstraintColoring::Kind kind,
+                          const ConstraintColoring::Entry& entry, const ColorSlot& place);
+
+private:
+    // By which the hash table has a pair; kNoKey: it has not.
+    static constexpr uint64_t kNoKey = ~uint64_t{0};
+    static uint64_t KeyOf(const PairStore& pairs, uint32_t index) {
+        const Pair& pair = pairs.pairs[index];
+        return pair.exists && !pair.isMore ? PairStore::Key(pair.colliderA, pair.colliderB) : kNoKey;
+    }
 };
 
 template <class Stream>
@@ -111,13 +123,21 @@ void SnapshotAccess::VisitColliders(Stream& s, Colliders& store) {
     s.EndBlock();
 }
 
-template <class Stream, class Pairs>
-void SnapshotAccess::VisitPairs(Stream& s, Pairs& store) {
+template <class Stream, class Pairs, class Attach>
+void SnapshotAccess::VisitPairs(Stream& s, Pairs& store, const Attach& attach) {
     auto& [pairs, records, massOverrides, loads, loadVersion, active, table, free, links, heads, size,
            keepsMassOverrides] = store;
     s.Begin(SnapshotSection::Pairs);
-    for (uint32_t i = 0; i < pairs.size(); ++i) {
+    const auto count = static_cast<uint32_t>(pairs.size());
+    for (uint32_t i = 0; i < count; ++i) {
+        constexpr uint32_t kAhead = 12;  // of what is read
+        if (i + kAhead < count) {
+            __builtin_prefetch(&pairs[i + kAhead]);
+            __builtin_prefetch(&pairs[i + kAhead].cache);
+            __builtin_prefetch(&records[i + kAhead]);
+        }
         s.Reserve(kMostOfPair);
+        const uint64_t before = Stream::kWrites ? kNoKey : KeyOf(store, i);
         bool isActive = active.Contains(i);
         if (VisitPair(s, pairs[i], isActive)) {
             auto& [next, previous] = links[i];
@@ -125,9 +145,10 @@ void SnapshotAccess::VisitPairs(Stream& s, Pairs& store) {
             VisitLoad(s, loads[i]);
             VisitRecord(s, records[i], pairs[i].pointCount);
             if (keepsMassOverrides && records[i].Has(ContactRecord::kMassOverride)) VisitMassOverride(s, massOverrides[i]);
+            if constexpr (!Stream::kWrites)
+                if (isActive) active.Insert(i);
         }
-        if constexpr (!Stream::kWrites)
-            if (isActive && pairs[i].exists) active.Insert(i);
+        attach(i, before);
         EndElement(s, i);
     }
     s.EndBlock();

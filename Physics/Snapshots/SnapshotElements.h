@@ -152,20 +152,12 @@ void VisitBody(Stream& s, Bodies& bodies, uint32_t i) {
         if constexpr (!Stream::kWrites) mass = {}, pose = {}, dynamics = {};
         return;
     }
-    {
-        // Displacements are those of a step, zero between steps.
-        auto& [linear, angular, nearFixed, marks, deltaPosition, deltaRotation, halfTurn] = state;
-        s(linear, angular, nearFixed, marks);
-    }
-    {
-        auto& [inverseInertia, inverseMass, turns] = mass;
-        s(inverseInertia, inverseMass, turns);
-    }
-    {
-        auto& [rotation, acceleration, boundsChangedIn, position, spare] = pose;
-        s(rotation, acceleration, boundsChangedIn, position);
-    }
-    s(dynamics, remainder.value, remainder.isGiven);
+    // Displacements are those of a step, zero between steps.
+    auto& [linear, angular, nearFixed, marks, deltaPosition, deltaRotation, halfTurn] = state;
+    auto& [inverseInertia, inverseMass, turns] = mass;
+    auto& [rotation, acceleration, boundsChangedIn, position, spare] = pose;
+    s(linear, angular, nearFixed, marks, inverseInertia, inverseMass, turns, rotation, acceleration, boundsChangedIn,
+      position, dynamics, remainder.value, remainder.isGiven);
     if (dynamics.hasForce) s(cold.force, cold.torque);
     else if constexpr (!Stream::kWrites) cold.force = cold.torque = Vector3::Zero();
 }
@@ -205,14 +197,15 @@ void VisitCollider(Stream& s, Collider& collider, bool isEmpty) {
 
 inline constexpr size_t kMostOfPair = 512;
 
-// Without the shapes and bodies, which are those of the colliders. False: there is none.
+// Without the shapes and bodies, which are those of the colliders. What only the points of a contact give a meaning to
+// is left out where there are none. False: there is none.
 template <class Stream, class Pair>
 bool VisitPair(Stream& s, Pair& pair, bool& isActive) {
     auto& [bodyA, bodyB, colliderA, colliderB, shapeA, shapeB, reference, pointCount, exists, fixedB, offset, surface,
            touching, onSeam, isMore, material, cache, features, color, more, triangle] = pair;
+    auto& [kind, indexA, indexB, axis] = cache;
     const uint8_t bits = VisitBits(s, exists, fixedB, offset, surface, touching, onSeam, isMore, isActive);
     if constexpr (!Stream::kWrites) {
-        pair = {};
         exists = bits & 1;
         fixedB = bits >> 1 & 1;
         offset = bits >> 2 & 1;
@@ -221,13 +214,18 @@ bool VisitPair(Stream& s, Pair& pair, bool& isActive) {
         onSeam = bits >> 5 & 1;
         isMore = bits >> 6 & 1;
         isActive = bits >> 7 & 1;
+        material = 0;
+        more = ~0u;
+        triangle = 0;
+        color.slot = 0;
     }
     if (!exists) return false;
-    s(colliderA, colliderB, reference, pointCount, color.color);
+    s(colliderA, colliderB, pointCount, color.color, kind);
     if (color.color != ColorSlot{}.color) s(color.slot);
-    auto& [kind, indexA, indexB, axis] = cache;
-    s(kind, indexA, indexB, axis);
+    if (kind != PairCache::Kind::None) s(indexA, indexB, axis);
+    else if constexpr (!Stream::kWrites) cache = {};
     if (surface) s(material, more, triangle);
+    if (surface || pointCount > 0) s(reference);
     for (uint32_t i = 0; i < std::min<uint32_t>(pointCount, Manifold::kMaxPoints); ++i) s(features[i]);
     return true;
 }
@@ -237,15 +235,15 @@ template <class Stream, class Record>
 void VisitRecord(Stream& s, Record& record, uint32_t points) {
     auto& [normal, pointCount, friction, restitution, twistRadius, marks, impulse, frictionImpulse, twistImpulse, all] =
         record;
-    if constexpr (!Stream::kWrites) record = {};
-    s(normal, pointCount, friction, restitution, twistRadius, marks);
+    s(friction, restitution, marks);
     if (points == 0) return;
-    s(impulse, frictionImpulse, twistImpulse);
-    if (record.Has(ContactRecord::kSurfaceVelocity)) points = std::max<uint32_t>(points, ContactRecord::kSurfacePoints);
+    s(normal, pointCount, twistRadius, impulse, frictionImpulse, twistImpulse);
     for (uint32_t i = 0; i < std::min<uint32_t>(points, ContactRecord::kMaxPoints); ++i) {
         auto& [onA, surfaceA, onB, surfaceB] = all[i];
-        s(onA, surfaceA, onB, surfaceB);
+        s(onA, onB);
     }
+    if (!record.Has(ContactRecord::kSurfaceVelocity)) return;
+    for (int i = 0; i < ContactRecord::kSurfacePoints; ++i) s(all[i].surfaceA, all[i].surfaceB);
 }
 
 // ---- Joints

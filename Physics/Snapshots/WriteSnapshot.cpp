@@ -114,7 +114,7 @@ MaybeError WriteState(SnapshotWriter& s, const WorldState& world, const StepStat
     WriteJointTypes(s, world.joints, room.settings);
     SnapshotAccess::VisitBodies(s, world.bodies);
     SnapshotAccess::VisitColliders(s, world.colliders);
-    SnapshotAccess::VisitPairs(s, world.pairs);
+    SnapshotAccess::VisitPairs(s, world.pairs, [](uint32_t, uint64_t) {});
     SnapshotAccess::VisitJoints(s, world.joints);
     SnapshotAccess::VisitSleeping(s, world.sleeping);
     room.changed = world.sensors.changed;
@@ -131,7 +131,6 @@ MaybeError WriteState(SnapshotWriter& s, const WorldState& world, const StepStat
 Status WriteSnapshot(const WorldState& world, const StepState& step, SnapshotRoom& room,
                      std::vector<std::byte>& bytes) {
     SnapshotWriter s(bytes, room.blocks, true);
-    s.Reserve(0);
     if (MaybeError error = WriteState(s, world, step, room, true)) {
         bytes.clear();
         return *error;
@@ -142,10 +141,9 @@ Status WriteSnapshot(const WorldState& world, const StepState& step, SnapshotRoo
                           room.blocks.size(), 0};
     const size_t table = room.blocks.size() * sizeof(SnapshotBlock);
     header.checksum = HashBytes(room.blocks.data(), table, HashBytes(&header, sizeof header - sizeof header.checksum));
-    s.Reserve(table);
-    s.Raw(room.blocks.data(), table);
-    bytes.resize(s.Size());
+    bytes.resize(s.Size() + table);
     std::memcpy(bytes.data(), &header, sizeof header);
+    std::memcpy(bytes.data() + sizeof header + header.dataSize, room.blocks.data(), table);
     return Done{};
 }
 

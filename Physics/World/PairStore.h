@@ -89,6 +89,8 @@ private:
     uint32_t Allocate();
     uint32_t FirstPlace(uint64_t key) const;
     void Grow();
+    void Enter(uint64_t key, uint32_t index);   // into the table, which has room
+    void Strike(uint64_t key, uint32_t index);  // from the table, which has the two
 
     // Open addressing with linear probing; at most half full. Only an index: its order influences nothing.
     struct Entry {
