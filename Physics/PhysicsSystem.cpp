@@ -172,8 +172,8 @@ uint64_t PhysicsSystem::HashPoses() const {
 }
 
 size_t PhysicsSystem::MemoryUsed() const {
-    return sizeof(WorldState) + HeapBytes(*world_) + sizeof(StepState) + HeapBytes(*step_) +
-           sizeof(SnapshotRoom) + HeapBytes(*snapshots_);
+    return sizeof(WorldState) + HeapBytes(*world_) + sizeof(StepState) + HeapBytes(*step_) + sizeof(SnapshotRoom) +
+           HeapBytes(*snapshots_);
 }
 
 }  // namespace fulcrum

@@ -36,7 +36,7 @@ uint64_t HashCustom(const ConvexShape& shape) {
             for (int z = -2; z <= 2; ++z)
                 if (x != 0 || y != 0 || z != 0)
                     hash = HashNumbers(hash, shape.SupportCore(Vector3(static_cast<float>(x), static_cast<float>(y),
-                                                                      static_cast<float>(z))));
+                                                                       static_cast<float>(z))));
     return hash;
 }
 

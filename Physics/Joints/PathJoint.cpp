@@ -130,14 +130,17 @@ void PathJoint::VisitSettings(const SettingVisitor& visit) {
     bool isClosed = path_->IsClosed();
     visit(count);
     visit(isClosed);
-    std::vector<PathPoint> points(path_->Points().begin(), path_->Points().end());
-    points.resize(count);
-    for (PathPoint& point : points) {
+    const auto visitPoint = [&](PathPoint& point) {
         visit(point.position);
         visit(point.tangent);
         visit(point.normal);
+    };
+    if (!visit.IsReplacing()) {
+        for (PathPoint point : path_->Points()) visitPoint(point);
+        return;
     }
-    if (!visit.IsReplacing()) return;
+    std::vector<PathPoint> points(count);
+    for (PathPoint& point : points) visitPoint(point);
     Result<std::shared_ptr<const Path>> path = Path::Hermite(points, isClosed);
     if (path) path_ = std::move(path.Value());
 }

@@ -39,8 +39,8 @@ Result<SnapshotParts> CheckSnapshot(std::span<const std::byte> bytes) {
         return damaged("its length is not what it says");
     parts.data = bytes.subspan(sizeof header, header.dataSize);
     parts.table = bytes.subspan(sizeof header + header.dataSize);
-    const uint64_t checksum = HashBytes(parts.table.data(), parts.table.size(),
-                                        HashBytes(&header, sizeof header - sizeof header.checksum));
+    const uint64_t checksum =
+        HashBytes(parts.table.data(), parts.table.size(), HashBytes(&header, sizeof header - sizeof header.checksum));
     if (checksum != header.checksum) return damaged("the checksum of its parts is wrong");
     uint64_t stateHash = kHashSeed, dataHash = kHashSeed;
     size_t at = 0;

@@ -31,7 +31,8 @@ void SnapshotAccess::Resize(PairStore& pairs, uint32_t count) {
     for (uint32_t i = count; i < pairs.pairs.size(); ++i)
         if (const uint64_t key = KeyOf(pairs, i); key != kNoKey) pairs.Strike(key, i);
     // While pairs are read it has those of before, too.
-    if (size_t places = std::max<size_t>(pairs.table_.size(), 1024); 2 * size_t{count} > places || pairs.table_.empty()) {
+    if (size_t places = std::max<size_t>(pairs.table_.size(), 1024);
+        2 * size_t{count} > places || pairs.table_.empty()) {
         while (2 * size_t{count} > places) places *= 2;
         for (Pair& pair : pairs.pairs) pair.exists = false;
         pairs.table_.assign(places, {});

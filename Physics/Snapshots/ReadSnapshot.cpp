@@ -52,8 +52,7 @@ private:
 
     void Gather() {
         const auto add = [&](const ShapePtr& shape) {
-            if (shape && shape->Type() != ShapeType::MutableCompound)
-                shapes_.emplace_back(ContentHash(*shape), shape);
+            if (shape && shape->Type() != ShapeType::MutableCompound) shapes_.emplace_back(ContentHash(*shape), shape);
         };
         for (const BodyCold& body : bodies_.cold) add(body.shape);
         for (const ShapePtr& shape : given_) add(shape);

@@ -144,7 +144,8 @@ void SnapshotAccess::VisitPairs(Stream& s, Pairs& store, const Attach& attach) {
             if (!pairs[i].isMore) s(next, previous);
             VisitLoad(s, loads[i]);
             VisitRecord(s, records[i], pairs[i].pointCount);
-            if (keepsMassOverrides && records[i].Has(ContactRecord::kMassOverride)) VisitMassOverride(s, massOverrides[i]);
+            if (keepsMassOverrides && records[i].Has(ContactRecord::kMassOverride))
+                VisitMassOverride(s, massOverrides[i]);
             if constexpr (!Stream::kWrites)
                 if (isActive) active.Insert(i);
         }

@@ -11,7 +11,7 @@ namespace fulcrum {
 // Group filters of bodies in the order in which bodies first name them.
 struct NumberedFilters {
     std::vector<const GroupFilter*> filters;
-    std::vector<uint32_t> bodies;  // of each with a filter its index, and the filter's number
+    std::vector<uint32_t> bodies;                  // of each with a filter its index, and the filter's number
     uint32_t NumberOf(const GroupFilter* filter);  // not null
 };
 
@@ -31,8 +31,7 @@ inline constexpr uint64_t kSnapshotMagic = 0x50414E534C554675;  // "uFULSNAP"
 uint64_t SnapshotFormat();
 
 // Error: Unsupported (children of a custom shape in a mutable compound). `bytes` are empty then.
-Status WriteSnapshot(const WorldState& world, const StepState& step, SnapshotRoom& room,
-                     std::vector<std::byte>& bytes);
+Status WriteSnapshot(const WorldState& world, const StepState& step, SnapshotRoom& room, std::vector<std::byte>& bytes);
 uint64_t HashOfState(const WorldState& world, const StepState& step, SnapshotRoom& room);
 
 // The parts of a snapshot that is whole.

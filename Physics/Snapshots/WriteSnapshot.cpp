@@ -106,7 +106,8 @@ void WriteJointTypes(SnapshotWriter& s, const JointStore& joints, std::vector<st
 }
 
 // All that is part of the state.
-MaybeError WriteState(SnapshotWriter& s, const WorldState& world, const StepState& step, SnapshotRoom& room, bool keeps) {
+MaybeError WriteState(SnapshotWriter& s, const WorldState& world, const StepState& step, SnapshotRoom& room,
+                      bool keeps) {
     SnapshotHead head = SnapshotAccess::HeadOf(world, step);
     SnapshotAccess::VisitHead(s, head);
     if (MaybeError error = WriteShapes(s, world.bodies, keeps)) return error;
@@ -137,8 +138,8 @@ Status WriteSnapshot(const WorldState& world, const StepState& step, SnapshotRoo
     }
     const uint64_t stateHash = s.Hash();
     SnapshotAccess::VisitUserData(s, world);
-    SnapshotHeader header{kSnapshotMagic, SnapshotFormat(), s.Size() - sizeof header, stateHash, s.Hash(),
-                          room.blocks.size(), 0};
+    SnapshotHeader header{
+        kSnapshotMagic, SnapshotFormat(), s.Size() - sizeof header, stateHash, s.Hash(), room.blocks.size(), 0};
     const size_t table = room.blocks.size() * sizeof(SnapshotBlock);
     header.checksum = HashBytes(room.blocks.data(), table, HashBytes(&header, sizeof header - sizeof header.checksum));
     bytes.resize(s.Size() + table);

@@ -126,8 +126,9 @@ std::span<const SolvedContact> ContactsUnderLoad(const SolverLayout& layout, con
     VisitContactsUnderLoad(layout, [&](const Entry&, int) { ++count; });
     std::span<SolvedContact> contacts = scratch.Allocate<SolvedContact>(count);
     size_t next = 0;
-    VisitContactsUnderLoad(
-        layout, [&](const Entry& entry, int substeps) { contacts[next++] = {entry.constraint, substeps}; });
+    VisitContactsUnderLoad(layout, [&](const Entry& entry, int substeps) {
+        contacts[next++] = {entry.constraint, substeps};
+    });
     return contacts;
 }
 

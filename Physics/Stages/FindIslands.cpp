@@ -55,8 +55,8 @@ std::span<const IslandEffort> EffortsOf(const std::vector<SavedEffort>& saved, c
 void SetEfforts(const std::vector<SavedEffort>& saved, const BodyStore& bodies, const Islands& islands,
                 std::vector<SolverGroup>& groups) {
     for (const SavedEffort& from : saved) {
-        SolverGroup& group = groups[from.body == ~0u ? Islands::kLargeGroup
-                                                     : islands.groupOf[bodies.cold[from.body].awakePlace]];
+        SolverGroup& group =
+            groups[from.body == ~0u ? Islands::kLargeGroup : islands.groupOf[bodies.cold[from.body].awakePlace]];
         group.effort = from.effort;
         group.culprit = from.culprit;
         group.stiffness = from.stiffness;

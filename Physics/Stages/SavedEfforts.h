@@ -27,8 +27,8 @@ struct SolvedContact {
 };
 
 struct SavedEfforts {
-    bool areRestored = false;  // the next BuildIslands is to take them
-    bool areCurrent = false;   // nothing has changed since they were chosen
+    bool areRestored = false;             // the next BuildIslands is to take them
+    bool areCurrent = false;              // nothing has changed since they were chosen
     std::vector<SavedEffort> groups;      // ascending by body; empty where they are not current
     std::vector<SolvedContact> contacts;  // ascending
     // Restored ones hold as long as these stay: ConstraintColoring's and PairStore's.

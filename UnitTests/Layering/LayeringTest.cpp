@@ -44,10 +44,9 @@ const std::map<std::string, std::vector<std::string>> kAllowedPartsOfPhysics = {
 // Headers that the parts below may include, too: plain data, what users derive from, checks of what they pass in. They
 // include nothing else of Physics.
 const std::array<std::string, 10> kSharedHeaders = {
-    "Physics/Settings.h",        "Physics/JointSettings.h", "Physics/GroupFilter.h",
-    "Physics/ContactListener.h", "Physics/SensorEvent.h",   "Physics/StepReport.h",
-    "Physics/QueryTypes.h",      "Physics/Misuse.h",        "Physics/Validation.h",
-    "Physics/Snapshot.h",
+    "Physics/Settings.h",    "Physics/JointSettings.h", "Physics/GroupFilter.h", "Physics/ContactListener.h",
+    "Physics/SensorEvent.h", "Physics/StepReport.h",    "Physics/QueryTypes.h",  "Physics/Misuse.h",
+    "Physics/Validation.h",  "Physics/Snapshot.h",
 };
 
 const std::array<std::string, 5> kLibraryFolders = {"Math", "Jobs", "Collision", "Constraints", "Physics"};
