@@ -524,19 +524,6 @@ TEST(HashState, IsTheSameForWorldsThatDifferInUserDataAlone) {
     EXPECT_NE(SnapshotOf(one.System()), SnapshotOf(other.System()));
 }
 
-TEST(HashState, AndSnapshotsAreTheSameForAnyNumberOfThreads) {
-    TestWorld one(JointScene::Settings(), 1), two(JointScene::Settings(), 2), four(JointScene::Settings(), 4);
-    JointScene scenes[] = {JointScene(one), JointScene(two), JointScene(four)};
-    for (int step = 0; step < 130; ++step) {
-        for (JointScene& scene : scenes) scene.BeforeStep(step);
-        for (TestWorld* world : {&one, &two, &four}) world->Step();
-        ASSERT_EQ(one.System().HashState(), two.System().HashState()) << "step " << step;
-        ASSERT_EQ(one.System().HashState(), four.System().HashState()) << "step " << step;
-    }
-    EXPECT_EQ(SnapshotOf(one.System()), SnapshotOf(two.System()));
-    EXPECT_EQ(SnapshotOf(one.System()), SnapshotOf(four.System()));
-}
-
 TEST(HashState, OfPrefabsFollowsTheirContent) {
     const CompoundShape::ChildSettings children[] = {{.shape = CubeOf(0.3f)},
                                                      {.shape = SphereOf(0.3f), .position = {0.8f, 0, 0}}};
