@@ -64,6 +64,14 @@ public:
     // was, or the other way round), Degenerate (damaged), UnknownId (what it names is neither in the world nor given).
     // Bytes that were forged are not noticed: load only what you trust.
     Status RestoreSnapshot(std::span<const std::byte> bytes, const SnapshotSources& sources = {});
+    // Some bodies alone, and the joints between them: poses, velocities, forces that wait for the next step, how long
+    // they have been slow; what joints carry, their limits and motors. Error: UnknownId.
+    Status SaveBodies(std::span<const BodyId> bodies, std::vector<std::byte>& bytes) const;
+    // Puts them back there, awake; all else stays as it is. Contacts begin anew, as after SetPose, so that what follows
+    // is not the same to the last bit. Errors, after which nothing has changed: Unsupported and Degenerate as above;
+    // UnknownId (one of the bodies or joints does not exist), Unsupported also where a body has another shape since, or
+    // a joint another type.
+    Status RestoreBodies(std::span<const std::byte> bytes);
     // A hash, 64 bits, of the whole state but for user data: equal hashes mean that the same calls give the same bits
     // from now on. The same for any number of threads and lanes. 0 where it is called back by a step.
     uint64_t HashState() const;

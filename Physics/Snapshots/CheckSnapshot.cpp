@@ -20,7 +20,7 @@ uint64_t SnapshotFormat() {
     return format;
 }
 
-Result<SnapshotParts> CheckSnapshot(std::span<const std::byte> bytes) {
+Result<SnapshotParts> CheckSnapshot(std::span<const std::byte> bytes, uint64_t wanted) {
     const auto damaged = [](const char* what) {
         return Error{ErrorCode::Degenerate, std::string("damaged snapshot: ") + what};
     };
@@ -28,7 +28,7 @@ Result<SnapshotParts> CheckSnapshot(std::span<const std::byte> bytes) {
     SnapshotHeader& header = parts.header;
     uint64_t magic = 0;
     if (bytes.size() >= sizeof magic) std::memcpy(&magic, bytes.data(), sizeof magic);
-    if (magic != kSnapshotMagic) return Error{ErrorCode::Unsupported, "this is no snapshot"};
+    if (magic != wanted) return Error{ErrorCode::Unsupported, "this is no snapshot"};
     if (bytes.size() < sizeof header) return damaged("it breaks off");
     std::memcpy(&header, bytes.data(), sizeof header);
     if (header.format != SnapshotFormat())

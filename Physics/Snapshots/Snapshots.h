@@ -26,8 +26,10 @@ struct SnapshotRoom {
 };
 size_t HeapBytes(const SnapshotRoom& room);
 
+// How a snapshot begins: one of the whole state, and one of some bodies.
+inline constexpr uint64_t kSnapshotMagic = 0x50414E534C554675,
+                          kPartMagic = 0x54524150'4C554675;  // "uFULSNAP", "uFULPART"
 // Which build wrote a snapshot: its layout, not the machine's threads and lanes.
-inline constexpr uint64_t kSnapshotMagic = 0x50414E534C554675;  // "uFULSNAP"
 uint64_t SnapshotFormat();
 
 // Error: Unsupported (children of a custom shape in a mutable compound). `bytes` are empty then.
@@ -46,7 +48,10 @@ struct SnapshotParts {
     }
 };
 // Errors: Unsupported (no snapshot, or of another build), Degenerate (damaged).
-Result<SnapshotParts> CheckSnapshot(std::span<const std::byte> bytes);
+Result<SnapshotParts> CheckSnapshot(std::span<const std::byte> bytes, uint64_t magic = kSnapshotMagic);
+// Completes what was written: its header, and its table of blocks. stateHash: see SnapshotHeader.
+void FinishSnapshot(uint64_t magic, uint64_t stateHash, const SnapshotWriter& writer,
+                    std::span<const SnapshotBlock> blocks, std::vector<std::byte>& bytes);
 
 // Errors: those of CheckSnapshot; UnknownId (a shape, a group filter or a type of joint is not known), Unsupported (the
 // world has a contact listener and the snapshot's had none, or the other way round). The world is as it was then.

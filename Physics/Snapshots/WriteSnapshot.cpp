@@ -138,14 +138,20 @@ Status WriteSnapshot(const WorldState& world, const StepState& step, SnapshotRoo
     }
     const uint64_t stateHash = s.Hash();
     SnapshotAccess::VisitUserData(s, world);
-    SnapshotHeader header{
-        kSnapshotMagic, SnapshotFormat(), s.Size() - sizeof header, stateHash, s.Hash(), room.blocks.size(), 0};
-    const size_t table = room.blocks.size() * sizeof(SnapshotBlock);
-    header.checksum = HashBytes(room.blocks.data(), table, HashBytes(&header, sizeof header - sizeof header.checksum));
-    bytes.resize(s.Size() + table);
-    std::memcpy(bytes.data(), &header, sizeof header);
-    std::memcpy(bytes.data() + sizeof header + header.dataSize, room.blocks.data(), table);
+    FinishSnapshot(kSnapshotMagic, stateHash, s, room.blocks, bytes);
     return Done{};
+}
+
+void FinishSnapshot(uint64_t magic, uint64_t stateHash, const SnapshotWriter& writer,
+                    std::span<const SnapshotBlock> blocks, std::vector<std::byte>& bytes) {
+    SnapshotHeader header{
+        magic, SnapshotFormat(), writer.Size() - sizeof header, stateHash, writer.Hash(), blocks.size(), 0};
+    header.checksum =
+        HashBytes(blocks.data(), blocks.size_bytes(), HashBytes(&header, sizeof header - sizeof header.checksum));
+    bytes.resize(writer.Size() + blocks.size_bytes());
+    std::memcpy(bytes.data(), &header, sizeof header);
+    if (!blocks.empty())
+        std::memcpy(bytes.data() + sizeof header + header.dataSize, blocks.data(), blocks.size_bytes());
 }
 
 uint64_t HashOfState(const WorldState& world, const StepState& step, SnapshotRoom& room) {
