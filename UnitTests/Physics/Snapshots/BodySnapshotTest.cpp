@@ -1,12 +1,10 @@
 // Snapshots of some bodies: these go back, all others go on.
-#include <Fulcrum/UnitTests/Support/TestWorld.h>
+#include <Fulcrum/UnitTests/Physics/Snapshots/SnapshotTesting.h>
 
 namespace fulcrum::testing {
 namespace {
 
-using Bytes = std::vector<std::byte>;
-
-Bytes SnapshotOf(const PhysicsSystem& system, std::initializer_list<BodyId> bodies) {
+Bytes SnapshotOfBodies(const PhysicsSystem& system, std::initializer_list<BodyId> bodies) {
     Bytes bytes;
     const Status saved = system.SaveBodies(std::span(bodies.begin(), bodies.size()), bytes);
     if (!saved) ADD_FAILURE() << saved.GetError().message;
@@ -26,7 +24,7 @@ TEST(BodySnapshot, TakesTheseBodiesBackAndNoOthers) {
                             .angularVelocity = {1, 2, 3}});
     world.Steps(5);
     EXPECT_TRUE(world.Bodies().AddForce(ids[0], {100, 0, 0}));
-    const Bytes bytes = SnapshotOf(world.System(), {ids[0], ids[2]});
+    const Bytes bytes = SnapshotOfBodies(world.System(), {ids[0], ids[2]});
     BodyBits start[3];
     for (int i = 0; i < 3; ++i) start[i] = BitsOf(world, ids[i]);
     // Nothing touches them: what follows is the same to the last bit, too.
@@ -59,7 +57,7 @@ TEST(BodySnapshot, TakesTurnsAndMotorsOfJointsBack) {
     world.Run(2);
     const double angle = joints.GetCoordinate(joint, JointAxis::AngularX);
     EXPECT_NEAR(angle, 20, 0.5);  // more than three turns
-    const Bytes bytes = SnapshotOf(world.System(), {wheel, base});
+    const Bytes bytes = SnapshotOfBodies(world.System(), {wheel, base});
     EXPECT_TRUE(joints.SetMotor(joint, JointAxis::AngularX, {.mode = MotorMode::ToVelocity, .targetSpeed = -25}));
     world.Run(3);
     EXPECT_LT(joints.GetCoordinate(joint, JointAxis::AngularX), -40);
@@ -97,8 +95,8 @@ TEST(BodySnapshot, IsRefusedWhereBodiesOrJointsAreOthers) {
     hinge.bodyB = b;
     const JointId joint = world.System().Joints().Create(hinge).Value();
     world.Step();
-    Bytes bytes = SnapshotOf(world.System(), {a, b}), whole;
-    ASSERT_TRUE(world.System().SaveSnapshot(whole));
+    Bytes bytes = SnapshotOfBodies(world.System(), {a, b});
+    const Bytes whole = SnapshotOf(world.System());
     const auto expectRefused = [&](const Bytes& snapshot, ErrorCode code) {
         const uint64_t before = world.System().HashState();
         const Status restored = world.System().RestoreBodies(snapshot);

@@ -1,5 +1,5 @@
 // The whole state is the same, however many threads and lanes computed it: each number that a snapshot has.
-#include <Fulcrum/UnitTests/Support/JointScene.h>
+#include <Fulcrum/UnitTests/Physics/Snapshots/SnapshotTesting.h>
 
 namespace fulcrum::testing {
 namespace {
@@ -17,12 +17,8 @@ TEST(SnapshotDeterminism, StateAndSnapshotsAreTheSameForAnyNumberOfThreads) {
         ASSERT_EQ(one.System().HashState(), two.System().HashState()) << "step " << step;
         ASSERT_EQ(one.System().HashState(), four.System().HashState()) << "step " << step;
     }
-    std::vector<std::byte> ofOne, ofTwo, ofFour;
-    ASSERT_TRUE(one.System().SaveSnapshot(ofOne));
-    ASSERT_TRUE(two.System().SaveSnapshot(ofTwo));
-    ASSERT_TRUE(four.System().SaveSnapshot(ofFour));
-    EXPECT_EQ(ofOne, ofTwo);
-    EXPECT_EQ(ofOne, ofFour);
+    EXPECT_TRUE(SnapshotOf(one.System()) == SnapshotOf(two.System()));
+    EXPECT_TRUE(SnapshotOf(one.System()) == SnapshotOf(four.System()));
     EXPECT_EQ(one.System().HashState(), kGoldenHash)
         << "This build gives kGoldenHash = 0x" << std::hex << one.System().HashState() << "ull";
 }

@@ -2,8 +2,8 @@
 // step, in the world that was saved and in an empty one.
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
 #include <Fulcrum/Samples/Scenes/Scenes.h>
+#include <Fulcrum/UnitTests/Physics/Snapshots/SnapshotTesting.h>
 #include <Fulcrum/UnitTests/Support/FastScene.h>
-#include <Fulcrum/UnitTests/Support/JointScene.h>
 #include <Fulcrum/UnitTests/Support/MixedScene.h>
 #include <Fulcrum/UnitTests/Support/SurfaceScene.h>
 #include <Fulcrum/UnitTests/Support/WorldAccess.h>
@@ -14,25 +14,8 @@
 namespace fulcrum::testing {
 namespace {
 
-using Bytes = std::vector<std::byte>;
-
 // What is to be done before a step, by its number.
 using BeforeStep = std::function<void(int)>;
-
-// The shapes and group filters that bodies of a world have.
-struct Sources {
-    std::vector<ShapePtr> shapes;
-    std::vector<std::shared_ptr<const GroupFilter>> filters;
-
-    explicit Sources(const PhysicsSystem& system) {
-        system.VisitBodies([&](BodyId id) {
-            shapes.push_back(system.Bodies().GetShape(id));
-            const auto filter = system.Bodies().GetGroup(id).filter;
-            if (filter && std::ranges::find(filters, filter) == filters.end()) filters.push_back(filter);
-        });
-    }
-    SnapshotSources All() const { return {.shapes = shapes, .groupFilters = filters}; }
-};
 
 struct Run {
     PhysicsSystem& system;
@@ -52,19 +35,16 @@ void ExpectRepeats(const Run& run, int steps, int every, int repeated) {
     std::vector<std::pair<int, Bytes>> saved;
     for (int step = 0; step < steps; ++step) {
         if (step % every == every / 2) {
-            saved.emplace_back(step, Bytes{});
-            ASSERT_TRUE(run.system.SaveSnapshot(saved.back().second));
+            saved.emplace_back(step, SnapshotOf(run.system));
         }
         hashes.push_back(run.Step(step));
     }
-    const Sources sources(run.system);
+    const Assets assets(run.system);
     while (!saved.empty()) {
         const auto& [from, bytes] = saved.back();
-        const Status restored = run.system.RestoreSnapshot(bytes, sources.All());
+        const Status restored = run.system.RestoreSnapshot(bytes, assets.All());
         ASSERT_TRUE(restored) << restored.GetError().message;
-        Bytes again;
-        ASSERT_TRUE(run.system.SaveSnapshot(again));
-        ASSERT_TRUE(again == bytes) << "what was restored is not what was saved, of step " << from;
+        ASSERT_TRUE(SnapshotOf(run.system) == bytes) << "what was restored is not what was saved, of step " << from;
         const ColliderStore& colliders = WorldOf(run.system).colliders;
         for (const BoundsTree* tree : {&colliders.staticTree, &colliders.movingTree, &colliders.sensorTree})
             tree->Validate();

@@ -3,9 +3,9 @@
 #include <Fulcrum/Collision/Shapes/ShapeHash.h>
 #include <Fulcrum/Physics/Misuse.h>
 #include <Fulcrum/UnitTests/Physics/SensorTest.h>
+#include <Fulcrum/UnitTests/Physics/Snapshots/SnapshotTesting.h>
 #include <Fulcrum/UnitTests/Support/AllocationCounter.h>
 #include <Fulcrum/UnitTests/Support/Cases.h>
-#include <Fulcrum/UnitTests/Support/JointScene.h>
 #include <Fulcrum/UnitTests/Support/MixedScene.h>
 #include <Fulcrum/UnitTests/Support/WorldAccess.h>
 
@@ -14,15 +14,6 @@
 
 namespace fulcrum::testing {
 namespace {
-
-using Bytes = std::vector<std::byte>;
-
-Bytes SnapshotOf(const PhysicsSystem& system) {
-    Bytes bytes;
-    const Status saved = system.SaveSnapshot(bytes);
-    if (!saved) ADD_FAILURE() << saved.GetError().message;
-    return bytes;
-}
 
 void Restore(PhysicsSystem& system, const Bytes& bytes, const SnapshotSources& sources = {}) {
     const Status restored = system.RestoreSnapshot(bytes, sources);
@@ -49,7 +40,7 @@ struct Calls {
     void Before(int frame, BodyId first, BodyId second, BodyId third) {
         BodyInterface& bodies = world.Bodies();
         EXPECT_TRUE(bodies.AddImpulse(first, {200, 300, 0}));
-        if (frame == 1) EXPECT_TRUE(bodies.SetPose(second, {0, 8, 0}, {}));
+        EXPECT_TRUE(frame != 1 || bodies.SetPose(second, {0, 8, 0}, {}));
         if (frame == 2) made.push_back(world.Add({.shape = SphereOf(0.3f), .position = {0.2, 5, 0}}));
         if (frame == 3) {
             PointJointSettings joint;
@@ -58,11 +49,11 @@ struct Calls {
             joint.anchorA.point = {0.2, 4.5, 0};
             joints.push_back(world.System().Joints().Create(joint).Value());
         }
-        if (frame == 4) EXPECT_TRUE(bodies.Remove(third));
-        if (frame == 5) EXPECT_TRUE(bodies.AddForce(made.front(), {0, 100, 0}));
+        EXPECT_TRUE(frame != 4 || bodies.Remove(third));
+        EXPECT_TRUE(frame != 5 || bodies.AddForce(made.front(), {0, 100, 0}));
         if (frame == 6) made.push_back(world.Add({.shape = CubeOf(0.2f), .position = {0.3, 6, 0.1}}));
-        if (frame == 7) EXPECT_TRUE(world.System().Joints().Remove(joints.front()));
-        if (frame == 8) EXPECT_TRUE(bodies.SetVelocity(made.back(), {0, -5, 0}, {1, 2, 3}));
+        EXPECT_TRUE(frame != 7 || world.System().Joints().Remove(joints.front()));
+        EXPECT_TRUE(frame != 8 || bodies.SetVelocity(made.back(), {0, -5, 0}, {1, 2, 3}));
     }
 };
 
@@ -124,9 +115,9 @@ TEST(Snapshot, NothingIsLeftOfStepsThatWereTakenBack) {
     // The future that is given up: all move, some are removed, one that sleeps wakes.
     for (int step = 0; step < 12; ++step) {
         for (const BodyId id : heap)
-            if (back.Bodies().Exists(id)) EXPECT_TRUE(back.Bodies().AddImpulse(id, {100, 50, 0}));
-        if (step == 4) EXPECT_TRUE(back.Bodies().Remove(heap[3]));
-        if (step == 2) EXPECT_TRUE(back.Bodies().SetPose({heap.back().index + 3, 0}, {8, 3, 8}, {}));
+            EXPECT_TRUE(!back.Bodies().Exists(id) || back.Bodies().AddImpulse(id, {100, 50, 0}));
+        EXPECT_TRUE(step != 4 || back.Bodies().Remove(heap[3]));
+        EXPECT_TRUE(step != 2 || back.Bodies().SetPose({heap.back().index + 3, 0}, {8, 3, 8}, {}));
         if (step == 5)
             for (int i = 0; i < 80; ++i) back.Add({.shape = CubeOf(0.2f), .position = {5 + i * 0.5, 1, 0}});
         back.Step();
@@ -259,23 +250,6 @@ TEST(Snapshot, TakesEditsOfCompoundsBack) {
 }
 
 // ---- Other worlds
-
-// Shapes and filters of all bodies.
-struct Assets {
-    std::vector<ShapePtr> shapes;
-    std::vector<std::shared_ptr<const GroupFilter>> filters;
-
-    explicit Assets(const PhysicsSystem& system) {
-        system.VisitBodies([&](BodyId id) {
-            shapes.push_back(system.Bodies().GetShape(id));
-            const auto filter = system.Bodies().GetGroup(id).filter;
-            if (filter && std::ranges::find(filters, filter) == filters.end()) filters.push_back(filter);
-        });
-    }
-    SnapshotSources All() const {
-        return {.shapes = shapes, .groupFilters = filters, .makeJoint = [](JointId) { return MakeScrew(); }};
-    }
-};
 
 TEST(Snapshot, OfJointsOfEveryKindGoesOnInAnEmptyWorld) {
     TestWorld world(JointScene::Settings());
