@@ -100,7 +100,6 @@ void VisitFilter(Stream& s, Filter& filter) {
 }
 
 // Without the compound.
-
 template <class Stream, class Children>
 void VisitChildren(Stream& s, Children& children) {
     auto& [compound, origin, massUnit, moreColliders] = children;

@@ -58,7 +58,7 @@ void FinishSnapshot(uint64_t magic, uint64_t stateHash, const SnapshotWriter& wr
 Status ReadSnapshot(std::span<const std::byte> bytes, const SnapshotSources& sources, SnapshotRoom& room,
                     WorldState& world, StepState& step);
 
-// What the type's VisitSettings shows, appended to nothing else.
+// What the type's VisitSettings shows, in place of what the list had.
 void ReadSettings(JointType& type, std::vector<std::byte>& settings);
 // Of its Kind().
 uint64_t KindHash(const JointType& type);

@@ -525,5 +525,21 @@ TEST(Snapshot, SavedToBytesThatSufficeAllocatesNothing) {
     EXPECT_EQ(AllocationCount(), before);
 }
 
+TEST(Snapshot, StepsOfASettledWorldThatWentBackAllocateNothing) {
+    TestWorld world(NoSleep());
+    AddHeap(world);
+    world.Steps(300);
+    const Bytes bytes = SnapshotOf(world.System());
+    for (int turn = 0; turn < 3; ++turn) {
+        Restore(world.System(), bytes);
+        const uint64_t before = AllocationCount();
+        for (int step = 0; step < 20; ++step) {
+            const Status status = world.System().Update(kStep);
+            if (!status) ADD_FAILURE();
+        }
+        EXPECT_EQ(AllocationCount(), before);
+    }
+}
+
 }  // namespace
 }  // namespace fulcrum::testing
