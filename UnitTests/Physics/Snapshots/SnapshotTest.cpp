@@ -1,4 +1,5 @@
 // Snapshots: what goes back and what does not, whom they refuse, what they cost.
+#include <Fulcrum/Collision/Shapes/CustomConvex.h>
 #include <Fulcrum/Collision/Shapes/MutableCompound.h>
 #include <Fulcrum/Collision/Shapes/ShapeHash.h>
 #include <Fulcrum/Physics/Misuse.h>
@@ -331,6 +332,40 @@ TEST(Snapshot, WantsTheTypesOfJointsThatAreNotTheEngines) {
     // What is there is kept.
     Restore(other.System(), bytes);
     EXPECT_EQ(asked.size(), 1u);
+}
+
+class Egg final : public CustomConvex {
+public:
+    explicit Egg(float length) : length_(length) {}
+    Vector3 FarthestPoint(const Vector3& d) const override {
+        return Vector3(d.x() > 0 ? length_ : -length_, d.y() > 0 ? 0.3f : -0.3f, d.z() > 0 ? 0.2f : -0.2f);
+    }
+
+private:
+    float length_;
+};
+
+TEST(Snapshot, KnowsCustomShapesByWhatTheyAre) {
+    const auto egg = [](float length) { return ShapePtr(CreateCustom<Egg>(length).Value()); };
+    EXPECT_EQ(ContentHash(*egg(0.4f)), ContentHash(*egg(0.4f)));
+    EXPECT_NE(ContentHash(*egg(0.4f)), ContentHash(*egg(0.41f)));
+    TestWorld world, other;
+    const BodyId body = world.Add({.shape = egg(0.4f)});
+    const ShapePtr wrong[] = {egg(0.41f)}, right[] = {egg(0.41f), egg(0.4f)};
+    const Bytes bytes = SnapshotOf(world.System());
+    ExpectRefused(other.System(), bytes, ErrorCode::UnknownId, {.shapes = wrong});
+    Restore(other.System(), bytes, {.shapes = right});
+    // As children of compounds that are edited, which are contained whole, they cannot be written; the hash has them.
+    const CompoundShape::ChildSettings children[] = {{.shape = egg(0.4f)}};
+    EXPECT_TRUE(world.Bodies().SetShape(body, MutableCompound::Create(children).Value(), MassUpdate::Update));
+    Bytes none = bytes;
+    const Status saved = world.System().SaveSnapshot(none);
+    ASSERT_FALSE(saved);
+    EXPECT_EQ(saved.GetError().code, ErrorCode::Unsupported);
+    EXPECT_TRUE(none.empty());
+    const uint64_t before = world.System().HashState();
+    EXPECT_TRUE(world.Bodies().MoveChild(body, {0, 0}, {0, 0.1f, 0}, {}, MassUpdate::Keep));
+    EXPECT_NE(world.System().HashState(), before);
 }
 
 // ---- What is refused
