@@ -56,7 +56,7 @@ private:
         };
         for (const BodyCold& body : bodies_.cold) add(body.shape);
         for (const ShapePtr& shape : given_) add(shape);
-        std::ranges::stable_sort(shapes_, {}, &Entry::first);
+        std::ranges::sort(shapes_, {}, &Entry::first);  // equal ones are as good as each other
     }
 
     const BodyStore& bodies_;

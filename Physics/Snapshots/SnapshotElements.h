@@ -172,10 +172,10 @@ void VisitCollider(Stream& s, Collider& collider, bool isEmpty) {
     const auto isSame = [](const Bounds& a, const Bounds& b) { return std::memcmp(&a, &b, sizeof a) == 0; };
     bool isFat = false, isNone = false;
     if constexpr (Stream::kWrites) {
-        isFat = isSame(previous, fat);
-        isNone = !isFat && isSame(previous, Bounds{});
+        isFat = !isEmpty && isSame(previous, fat);
+        isNone = !isEmpty && !isFat && isSame(previous, Bounds{});
     }
-    const uint8_t bits = VisitBits(s, isEmpty, moving, queued, sensor, isFat, isNone);
+    const uint8_t bits = VisitBits(s, isEmpty, moving && !isEmpty, queued, sensor && !isEmpty, isFat, isNone);
     if constexpr (!Stream::kWrites) {
         collider = {};
         isEmpty = bits & 1;

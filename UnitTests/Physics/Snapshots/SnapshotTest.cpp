@@ -237,6 +237,9 @@ TEST(Snapshot, TakesEditsOfCompoundsBack) {
                 .Value();
         EXPECT_EQ(added.index, 2u);
         EXPECT_TRUE(world.Bodies().RemoveChild(body, {0, 0}, MassUpdate::Update));
+        const Bytes edited = SnapshotOf(world.System());
+        Restore(world.System(), edited);
+        EXPECT_TRUE(SnapshotOf(world.System()) == edited);
         for (int step = 0; step < 30; ++step) {
             world.Step();
             const uint64_t hash = world.System().HashState();
