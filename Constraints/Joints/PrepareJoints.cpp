@@ -437,6 +437,8 @@ void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* co
     if (batch.rowRoom == 0) return;
     for (int lane = 0; lane < batch.count; ++lane) {
         JointType* type = types[batch.joint[lane]];
+        // It has no rows, whatever others have that its lanes happen to lie beside.
+        if (type->MaxRows() == 0) continue;
         type->turnedA = TurnOf(states[batch.bodyA[lane]], batch.kinematicA >> lane & 1u, dt);
         type->turnedB = TurnOf(states[batch.bodyB[lane]], batch.kinematicB >> lane & 1u, dt);
         type->impulses.fill(0.0f);
