@@ -99,8 +99,14 @@ TEST(Snapshot, NothingIsLeftOfStepsThatWereTakenBack) {
     const auto build = [](TestWorld& world) {
         const std::vector<BodyId> heap = AddHeap(world);
         world.Add(SensorOf(BoxOf(3, 1, 3), {1, 1, 1}));
-        world.Add(SensorOf(BoxOf(0.5f, 0.5f, 0.5f), {8, 0.5, 8}));
-        world.Add({.shape = SphereOf(0.1f), .position = {8, 0.3, 8}, .startAsleep = true});
+        // Beside a sensor that moves, something sleeps that was above it in the steps that are taken back.
+        BodySettings passing = SensorOf(CubeOf(0.5f), {8, 0.5, 8}, MotionType::Kinematic);
+        passing.linearVelocity = Vector3(0.05f, 0, 0);
+        world.Add(passing);
+        world.Add({.shape = SphereOf(0.1f), .position = {8, 0.1, 8.62}, .startAsleep = true});
+        // In another one something sleeps.
+        world.Add(SensorOf(CubeOf(0.5f), {12, 0.5, 12}));
+        world.Add({.shape = SphereOf(0.1f), .position = {12, 0.3, 12}, .startAsleep = true});
         world.Add({.shape = SphereOf(0.1f),
                    .position = {-20, 1, 0.3},
                    .linearVelocity = {150, 0, 0},
@@ -119,6 +125,7 @@ TEST(Snapshot, NothingIsLeftOfStepsThatWereTakenBack) {
             EXPECT_TRUE(!back.Bodies().Exists(id) || back.Bodies().AddImpulse(id, {100, 50, 0}));
         EXPECT_TRUE(step != 4 || back.Bodies().Remove(heap[3]));
         EXPECT_TRUE(step != 2 || back.Bodies().SetPose({heap.back().index + 3, 0}, {8, 3, 8}, {}));
+        EXPECT_TRUE(step != 2 || back.Bodies().SetPose({heap.back().index + 5, 0}, {12, 3, 12}, {}));
         if (step == 5)
             for (int i = 0; i < 80; ++i) back.Add({.shape = CubeOf(0.2f), .position = {5 + i * 0.5, 1, 0}});
         back.Step();
