@@ -17,6 +17,7 @@
 #include <Fulcrum/Collision/Shapes/SampledSurface.h>
 #include <Fulcrum/Collision/Shapes/Scaled.h>
 #include <Fulcrum/Collision/Shapes/ShapeFile.h>
+#include <Fulcrum/Collision/Shapes/ShapeHash.h>
 #include <Fulcrum/Collision/Shapes/Triangle.h>
 #include <Fulcrum/Collision/Shapes/TriangleMesh.h>
 #include <Fulcrum/Constraints/Joints/JointDrawing.h>

@@ -12,12 +12,6 @@ void ConstraintColoring::ReserveBodies(uint32_t count) {
     overflows_.resize(count, 0);
 }
 
-template <class Visit>
-void ConstraintColoring::VisitMoving(const Entry& entry, Visit&& visit) {
-    if (!entry.stillA) visit(entry.bodyA);
-    if (!entry.stillB) visit(entry.bodyB);
-}
-
 ColorSlot ConstraintColoring::Add(Kind kind, const Entry& entry, bool late) {
     uint64_t used = 0;
     VisitMoving(entry, [&](uint32_t body) { used |= used_[body]; });

@@ -63,8 +63,12 @@ public:
     size_t MemoryUsed() const;
 
 private:
+    friend struct SnapshotAccess;
     template <class Visit>
-    static void VisitMoving(const Entry& entry, Visit&& visit);
+    static void VisitMoving(const Entry& entry, Visit&& visit) {
+        if (!entry.stillA) visit(entry.bodyA);
+        if (!entry.stillB) visit(entry.bodyB);
+    }
     std::vector<Entry>& List(uint8_t color, Kind kind) { return colors_[color].lists[static_cast<size_t>(kind)]; }
 
     std::vector<Color> colors_ = std::vector<Color>(kColors + 1);

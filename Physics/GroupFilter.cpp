@@ -1,5 +1,7 @@
 #include <Fulcrum/Physics/GroupFilter.h>
 
+#include <Fulcrum/Math/Hash.h>
+
 #include <algorithm>
 
 namespace fulcrum {
@@ -28,6 +30,13 @@ Result<std::shared_ptr<const GroupFilterTable>> GroupFilterTable::Create(std::in
 bool GroupFilterTable::Collides(const Member& a, const Member& b) const {
     if (a.group != b.group || std::max(a.subGroup, b.subGroup) >= subGroups_) return true;
     return !apart_[size_t(a.subGroup) * subGroups_ + b.subGroup];
+}
+
+uint64_t GroupFilterTable::ContentHash() const {
+    uint64_t hash = HashWord(kHashSeed, subGroups_);
+    for (size_t i = 0; i < apart_.size(); ++i)
+        if (apart_[i]) hash = HashWord(hash, i);
+    return hash;
 }
 
 }  // namespace fulcrum

@@ -24,6 +24,9 @@ public:
     // Asked from several threads at once when two bodies come near: a pure function of its arguments, the same for (b,
     // a).
     virtual bool Collides(const Member& a, const Member& b) const = 0;
+    // By which snapshots (Snapshot.h) know the filter again: the same for filters that decide the same, and another for
+    // others. 0: all filters of the class do, as far as snapshots are concerned.
+    virtual uint64_t ContentHash() const { return 0; }
 };
 
 // Pairs of subgroups that do not collide within one group. All other subgroups collide, and so do members of different
@@ -40,6 +43,7 @@ public:
     static Result<std::shared_ptr<const GroupFilterTable>> Create(std::initializer_list<Pair> apart);
 
     bool Collides(const Member& a, const Member& b) const override;
+    uint64_t ContentHash() const override;
 
 private:
     GroupFilterTable() = default;

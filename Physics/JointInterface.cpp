@@ -177,6 +177,17 @@ AxisControl* JointInterface::ControlOf(JointId id, JointAxis axis) const {
     return Exists(id) && axis <= JointAxis::AngularZ ? world_.joints.types[id.index]->Control(axis) : nullptr;
 }
 
+namespace {
+
+// Of a type that may have no rows any more: the Store stage passes it over.
+void ForgetRows(JointType& type) {
+    type.impulses.fill(0.0f);
+    type.forces.fill(0.0f);
+    type.turnedA = type.turnedB = Vector3::Zero();
+}
+
+}  // namespace
+
 template <class Change>
 Status JointInterface::ChangeControl(JointId id, JointAxis axis, Change&& change) {
     const WorldLock::Exclusive alone(world_.lock);
@@ -192,6 +203,7 @@ Status JointInterface::ChangeControl(JointId id, JointAxis axis, Change&& change
     *control = changed;
     Joint& joint = world_.joints.joints[id.index];
     if (joint.type->MaxRows() != joint.maxRows || !(joint.type->Locks() == joint.locks)) world_.coloring.Invalidate();
+    if (joint.type->MaxRows() == 0) ForgetRows(*joint.type);
     if (joint.enabled) WakeBodiesOf(world_, joint);
     return Done{};
 }

@@ -1,6 +1,7 @@
 #include <Fulcrum/Physics/PhysicsSystem.h>
 
 #include <Fulcrum/Physics/Misuse.h>
+#include <Fulcrum/Physics/Snapshots/Snapshots.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/Stages/Step.h>
@@ -13,17 +14,6 @@
 
 namespace fulcrum {
 
-namespace {
-
-// What the world notes between steps for their events.
-void KeepForEvents(WorldState& world, const EventSettings& events) {
-    world.pairs.KeepReported(events.contacts);
-    world.bodies.notesSleepChanges = events.contacts || events.bodies;
-    if (!world.bodies.notesSleepChanges) world.bodies.sleepChanges = {};
-}
-
-}  // namespace
-
 Result<std::unique_ptr<PhysicsSystem>> PhysicsSystem::Create(const SystemSettings& settings, JobSystem* jobs) {
     if (MaybeError error = Check(settings)) return *error;
     auto world = std::make_unique<WorldState>();
@@ -33,14 +23,19 @@ Result<std::unique_ptr<PhysicsSystem>> PhysicsSystem::Create(const SystemSetting
         jobs = world->ownJobs.get();
     }
     world->jobs = std::make_unique<WorldJobs>(*jobs, world->lock);
-    KeepForEvents(*world, settings.events);
+    KeepForEvents(*world);
     auto step = std::make_unique<StepState>();
     step->findings.resize(jobs->WorkerCount());
     return std::unique_ptr<PhysicsSystem>(new PhysicsSystem(std::move(world), std::move(step)));
 }
 
 PhysicsSystem::PhysicsSystem(std::unique_ptr<WorldState> world, std::unique_ptr<StepState> step)
-    : world_(std::move(world)), step_(std::move(step)), bodies_(*world_), joints_(*world_), queries_(*world_) {}
+    : world_(std::move(world)),
+      step_(std::move(step)),
+      snapshots_(std::make_unique<SnapshotRoom>()),
+      bodies_(*world_),
+      joints_(*world_),
+      queries_(*world_) {}
 PhysicsSystem::~PhysicsSystem() = default;
 
 Status PhysicsSystem::Update(double dt) {
@@ -86,7 +81,7 @@ Status PhysicsSystem::SetSettings(const SystemSettings& settings) {
     if (settings.accuracy.penetration != target.penetration) std::ranges::fill(world_->pairs.loads, LoadLevel{});
     if (settings.accuracy.jointError != target.jointError) std::ranges::fill(world_->joints.gaps, LoadLevel{});
     if (settings.layerCollides != before) RefilterLayers(*world_, before);
-    KeepForEvents(*world_, settings.events);
+    KeepForEvents(*world_);
     if (!settings.events.bodies) step_->events.bodies = {};
     else if (!hadBodyEvents) BeginBodyEvents(world_->bodies, step_->events);
     for (const Sensor& sensor : world_->sensors.sensors) world_->sensors.changed.push_back(sensor.id.index);
@@ -97,6 +92,24 @@ void PhysicsSystem::SetContactListener(const ContactListener* listener) {
     const WorldLock::Exclusive alone(world_->lock);
     if (alone.Refusal()) return ReportMisuse(*alone.Refusal());
     ChangeListener(*world_, listener);
+}
+
+Status PhysicsSystem::SaveSnapshot(std::vector<std::byte>& bytes) const {
+    const WorldLock::Exclusive alone(world_->lock);
+    if (alone.Refusal()) return *alone.Refusal();
+    return WriteSnapshot(*world_, *step_, *snapshots_, bytes);
+}
+
+Status PhysicsSystem::RestoreSnapshot(std::span<const std::byte> bytes, const SnapshotSources& sources) {
+    const WorldLock::Exclusive alone(world_->lock);
+    if (alone.Refusal()) return *alone.Refusal();
+    return ReadSnapshot(bytes, sources, *snapshots_, *world_, *step_);
+}
+
+uint64_t PhysicsSystem::HashState() const {
+    const WorldLock::Exclusive alone(world_->lock);
+    if (alone.Refusal()) return ReportMisuse(*alone.Refusal()), 0;
+    return HashOfState(*world_, *step_, *snapshots_);
 }
 
 void PhysicsSystem::VisitBodies(FunctionRef<void(BodyId)> visit) const {
@@ -170,7 +183,8 @@ uint64_t PhysicsSystem::HashPoses() const {
 }
 
 size_t PhysicsSystem::MemoryUsed() const {
-    return sizeof(WorldState) + HeapBytes(*world_) + sizeof(StepState) + HeapBytes(*step_);
+    return sizeof(WorldState) + HeapBytes(*world_) + sizeof(StepState) + HeapBytes(*step_) + sizeof(SnapshotRoom) +
+           HeapBytes(*snapshots_);
 }
 
 }  // namespace fulcrum

@@ -8,6 +8,7 @@
 #include <Fulcrum/Physics/JointInterface.h>
 #include <Fulcrum/Physics/QueryInterface.h>
 #include <Fulcrum/Physics/SensorEvent.h>
+#include <Fulcrum/Physics/Snapshot.h>
 #include <Fulcrum/Physics/StepEvents.h>
 #include <Fulcrum/Physics/StepReport.h>
 
@@ -17,6 +18,7 @@
 namespace fulcrum {
 
 struct StepState;
+struct SnapshotRoom;
 
 class PhysicsSystem {
 public:
@@ -54,6 +56,28 @@ public:
     // about again, and bodies wake whose contact it forbids.
     void SetContactListener(const ContactListener* listener);
 
+    // The whole state as bytes, from which steps go on with the same bits: `bytes` are overwritten, and allocated anew
+    // only where they do not suffice. Shapes, group filters and what joints of one's own are made of are named, not
+    // contained. Error: Unsupported (a body's mutable compound has a custom child); `bytes` are empty then.
+    Status SaveSnapshot(std::vector<std::byte>& bytes) const;
+    // Back to the state of a snapshot of this world, or of another one with the same calls before it: settings, bodies,
+    // joints and their ids are as they were then. The report is still that of the last step. Errors, after which
+    // nothing has changed: Unsupported (no snapshot; another version or build; a contact listener is set where none
+    // was, or the other way round), Degenerate (damaged), UnknownId (what it names is neither in the world nor given).
+    // Bytes that were forged are not noticed: load only what you trust.
+    Status RestoreSnapshot(std::span<const std::byte> bytes, const SnapshotSources& sources = {});
+    // Some bodies alone, and the joints between them: poses, velocities, forces that wait for the next step, how long
+    // they have been slow; what joints carry, their limits and motors. Error: UnknownId.
+    Status SaveBodies(std::span<const BodyId> bodies, std::vector<std::byte>& bytes) const;
+    // Puts them back there, awake; all else stays as it is. Contacts begin anew, as after SetPose, so that what follows
+    // is not the same to the last bit. Errors, after which nothing has changed: Unsupported and Degenerate as above;
+    // UnknownId (one of the bodies or joints does not exist), Unsupported also where a body has another shape since, or
+    // a joint another type.
+    Status RestoreBodies(std::span<const std::byte> bytes);
+    // A hash, 64 bits, of the whole state but for user data: equal hashes mean that the same calls give the same bits
+    // from now on. The same for any number of threads and lanes. 0 where it is called back by a step.
+    uint64_t HashState() const;
+
     // All bodies, in the order of their indices.
     void VisitBodies(FunctionRef<void(BodyId)> visit) const;
     // All awake contacts with at least one point as they were solved in the last step, in a deterministic order; those
@@ -74,6 +98,7 @@ private:
     PhysicsSystem(std::unique_ptr<WorldState> world, std::unique_ptr<StepState> step);
     std::unique_ptr<WorldState> world_;
     std::unique_ptr<StepState> step_;
+    std::unique_ptr<SnapshotRoom> snapshots_;
     BodyInterface bodies_;
     JointInterface joints_;
     QueryInterface queries_;

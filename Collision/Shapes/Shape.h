@@ -41,6 +41,20 @@ struct MassProperties {
     Quaternion principalAxes;                    // rotation from the principal frame to the shape's frame
 };
 
+// What ContentHash (ShapeHash.h) has found; 0: nothing yet. A copy, which may be changed, starts without.
+class CachedHash {
+public:
+    CachedHash() = default;
+    CachedHash(const CachedHash&) {}
+    CachedHash& operator=(const CachedHash&) { return *this; }
+    uint64_t Get() const { return __atomic_load_n(&hash_, __ATOMIC_RELAXED); }
+    // Threads that find it at the same time find the same.
+    void Set(uint64_t hash) const { __atomic_store_n(&hash_, hash, __ATOMIC_RELAXED); }
+
+private:
+    mutable uint64_t hash_ = 0;
+};
+
 class Shape {
 public:
     virtual ~Shape() = default;
@@ -61,6 +75,7 @@ public:
     float OuterRadius() const { return outerRadius_; }
 
 protected:
+    friend uint64_t ContentHash(const Shape& shape);
     explicit Shape(ShapeType type) : type_(type) {}
 
     ShapeType type_;
@@ -68,6 +83,7 @@ protected:
     Bounds bounds_;
     float innerRadius_ = 0;
     float outerRadius_ = 0;
+    CachedHash hash_;
 };
 
 struct SupportingFace;

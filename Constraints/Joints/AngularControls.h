@@ -38,6 +38,11 @@ public:
     void SetTargetOrientation(const Quaternion& target);
     double Coordinate(int axis, const JointPose& pose) const;
     std::span<double> State() { return turns_.numbers; }
+    void VisitSettings(const SettingVisitor& visit) {
+        visit(shape_);
+        visit(lock_);
+        visit(freeAxis_);
+    }
     SwingShape Shape() const { return shape_; }
 
 private:

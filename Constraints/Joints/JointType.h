@@ -6,6 +6,7 @@
 
 #include <Fulcrum/Constraints/Joints/AxisControl.h>
 #include <Fulcrum/Constraints/Joints/JointRow.h>
+#include <Fulcrum/Constraints/Joints/SettingVisitor.h>
 #include <Fulcrum/Constraints/Parts/AnglePart.h>
 #include <Fulcrum/Constraints/Parts/AxisPart.h>
 #include <Fulcrum/Math/Trigonometry.h>
@@ -128,6 +129,10 @@ public:
     virtual double Coordinate(JointAxis axis, const JointPose& pose) const;
     // What the type carries from step to step besides impulses; snapshots copy these numbers.
     virtual std::span<double> State() { return {}; }
+    // Shows the visitor what else the type is made of: what it was made with and what Start measured, without what
+    // Control gives, always in the same order. Snapshots tell by it whether a joint is still the one that they saved,
+    // and make it anew from it.
+    virtual void VisitSettings(const SettingVisitor& visit) { (void)visit; }
 
     // By slot, 0 where there was no row: impulses of the last substep, N s or N m s, and what they were on average over
     // the step, N or N m. Written by the Store stage, as is what JointPose says of the last step.

@@ -46,6 +46,7 @@ public:
     static std::shared_ptr<const Path> Straight(float length);
 
     bool IsClosed() const { return isClosed_; }
+    std::span<const PathPoint> Points() const { return points_; }
     // Segments: t of the end.
     double End() const { return static_cast<double>(SegmentCount()); }
     double Length() const { return lengths_.back(); }  // m

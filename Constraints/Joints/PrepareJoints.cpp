@@ -142,6 +142,7 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
     if (batch.rowRoom == 0) return;
     JointRowList lists[N];
     for (int lane = 0; lane < batch.count; ++lane) {
+        if (types[batch.joint[lane]]->MaxRows() == 0) continue;  // it is beside others that have rows
         const JointRecord& record = records[batch.joint[lane]];
         const auto velocityOf = [&](uint32_t body) {
             const BodyState& state = bodies.states[body];
@@ -441,6 +442,7 @@ void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* co
     if (batch.rowRoom == 0) return;
     for (int lane = 0; lane < batch.count; ++lane) {
         JointType* type = types[batch.joint[lane]];
+        if (type->MaxRows() == 0) continue;
         type->turnedA = TurnOf(states[batch.bodyA[lane]], batch.kinematicA >> lane & 1u, dt);
         type->turnedB = TurnOf(states[batch.bodyB[lane]], batch.kinematicB >> lane & 1u, dt);
         type->impulses.fill(0.0f);

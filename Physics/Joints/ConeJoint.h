@@ -32,6 +32,10 @@ public:
     void CollectRows(const JointPose& pose, JointRowList& rows) override;
     // AngularY: alpha, rad. It is no rotation about a fixed axis, so it has neither friction nor motor.
     double Coordinate(JointAxis axis, const JointPose& pose) const override;
+    void VisitSettings(const SettingVisitor& visit) override {
+        visit(control_.limits.max);
+        visit(control_.limits.spring);
+    }
     float HalfAngle() const { return control_.limits.max; }  // rad
 
 private:

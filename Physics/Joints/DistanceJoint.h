@@ -37,6 +37,7 @@ public:
     AxisControl* Control(JointAxis axis) override { return axis == JointAxis::LinearX ? &control_ : nullptr; }
     LimitBounds BoundsOf(JointAxis) const override { return {.lowest = 0.0f}; }
     double Coordinate(JointAxis axis, const JointPose& pose) const override;
+    void VisitSettings(const SettingVisitor& visit) override { visit(isMeasured_); }
 
 private:
     AxisControl control_;

@@ -30,6 +30,10 @@ public:
     void Start(const JointPose& pose) override;
     void CollectRows(const JointPose& pose, JointRowList& rows) override;
     std::span<double> State() override { return state_; }
+    void VisitSettings(const SettingVisitor& visit) override {
+        visit(ratio_);
+        visit(distance_);
+    }
 
 private:
     static constexpr size_t kNumbers = BearingAngle::kNumbers;

@@ -124,6 +124,27 @@ double PathJoint::Coordinate(JointAxis axis, const JointPose& pose) const {
 
 std::span<double> PathJoint::State() { return {&parameter_, 1}; }
 
+void PathJoint::VisitSettings(const SettingVisitor& visit) {
+    visit(rotation_);
+    uint32_t count = static_cast<uint32_t>(path_->Points().size());
+    bool isClosed = path_->IsClosed();
+    visit(count);
+    visit(isClosed);
+    const auto visitPoint = [&](PathPoint& point) {
+        visit(point.position);
+        visit(point.tangent);
+        visit(point.normal);
+    };
+    if (!visit.IsReplacing()) {
+        for (PathPoint point : path_->Points()) visitPoint(point);
+        return;
+    }
+    std::vector<PathPoint> points(count);
+    for (PathPoint& point : points) visitPoint(point);
+    Result<std::shared_ptr<const Path>> path = Path::Hermite(points, isClosed);
+    if (path) path_ = std::move(path.Value());
+}
+
 JointDrawing PathJoint::Drawing() const { return {.path = path_}; }
 
 }  // namespace fulcrum

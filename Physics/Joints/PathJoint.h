@@ -51,6 +51,7 @@ public:
     uint32_t FirstSlot(JointAxis axis) const override;
     double Coordinate(JointAxis axis, const JointPose& pose) const override;
     std::span<double> State() override;
+    void VisitSettings(const SettingVisitor& visit) override;
     const Path& GetPath() const { return *path_; }
 
 private:

@@ -40,6 +40,12 @@ public:
     AxisControl* Control(JointAxis axis) override { return axis == JointAxis::LinearX ? &control_ : nullptr; }
     LimitBounds BoundsOf(JointAxis) const override { return {.lowest = 0.0f}; }
     double Coordinate(JointAxis axis, const JointPose& pose) const override;
+    void VisitSettings(const SettingVisitor& visit) override {
+        visit(fixedPointA_);
+        visit(fixedPointB_);
+        visit(ratio_);
+        visit(isMeasured_);
+    }
 
 private:
     // From the fixed points to the anchors of A and of B, m.

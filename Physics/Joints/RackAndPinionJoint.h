@@ -29,6 +29,7 @@ public:
     void Start(const JointPose& pose) override;
     void CollectRows(const JointPose& pose, JointRowList& rows) override;
     std::span<double> State() override { return state_; }
+    void VisitSettings(const SettingVisitor& visit) override { visit(ratio_); }
 
 private:
     BearingAngle Pinion();

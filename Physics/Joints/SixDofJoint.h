@@ -56,6 +56,11 @@ public:
                                           : angular_.Coordinate(static_cast<int>(axis) - 3, pose);
     }
     std::span<double> State() override { return angular_.State(); }
+    void VisitSettings(const SettingVisitor& visit) override {
+        angular_.VisitSettings(visit);
+        visit(linearLock_);
+        visit(line_);
+    }
 
 private:
     // Whether the linear axis k has rows of its own.

@@ -46,6 +46,7 @@ public:
                                           : angular_.Coordinate(static_cast<int>(axis) - 3, pose);
     }
     std::span<double> State() override { return angular_.State(); }
+    void VisitSettings(const SettingVisitor& visit) override { angular_.VisitSettings(visit); }
 
 private:
     AngularControls angular_;

@@ -50,6 +50,7 @@ public:
     uint32_t FirstSlot(JointAxis axis) const override;
     double Coordinate(JointAxis axis, const JointPose& pose) const override;
     std::span<double> State() override { return turns_.numbers; }
+    void VisitSettings(const SettingVisitor& visit) override { visit(isSteered_); }
 
 private:
     AxisControl suspension_, steering_, spin_;

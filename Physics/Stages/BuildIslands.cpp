@@ -111,23 +111,24 @@ void VisitContacts(const SolverLayout& layout, const SolverGroup& group, Visit&&
     }
 }
 
-struct SolvedContact {
-    uint32_t contact;
-    int substeps;
-};
+// Calls visit(entry, substeps) for the contacts of groups with substeps of their own.
+template <class Visit>
+void VisitContactsUnderLoad(const SolverLayout& layout, Visit&& visit) {
+    for (const SolverGroup& group : layout.groups)
+        if (group.effort.substeps > 0)
+            VisitContacts(layout, group, [&](const Entry& entry) { visit(entry, group.effort.substeps); });
+}
 
-// The contacts of groups with substeps of their own, and with how many.
-std::span<const SolvedContact> ContactsUnderLoad(const SolverLayout& layout, ScratchArena& scratch) {
-    const auto visitAll = [&](auto&& visit) {
-        for (const SolverGroup& group : layout.groups)
-            if (group.effort.substeps > 0)
-                VisitContacts(layout, group, [&](const Entry& entry) { visit(entry, group.effort.substeps); });
-    };
+std::span<const SolvedContact> ContactsUnderLoad(const SolverLayout& layout, const SavedEfforts& saved,
+                                                 ScratchArena& scratch) {
+    if (saved.areRestored) return saved.contacts;
     size_t count = 0;
-    visitAll([&](const Entry&, int) { ++count; });
+    VisitContactsUnderLoad(layout, [&](const Entry&, int) { ++count; });
     std::span<SolvedContact> contacts = scratch.Allocate<SolvedContact>(count);
     size_t next = 0;
-    visitAll([&](const Entry& entry, int substeps) { contacts[next++] = {entry.constraint, substeps}; });
+    VisitContactsUnderLoad(layout, [&](const Entry& entry, int substeps) {
+        contacts[next++] = {entry.constraint, substeps};
+    });
     return contacts;
 }
 
@@ -156,23 +157,55 @@ void LimitImpulses(std::span<const SolvedContact> before, const SolverLayout& la
 
 }  // namespace
 
+void DescribeEfforts(const SolverLayout& layout, const ConstraintColoring& coloring, const PairStore& pairs,
+                     const SavedEfforts& restored, SavedEfforts& described) {
+    if (restored.areRestored) {
+        described = restored;
+        described.areCurrent = restored.AreTaken(coloring, pairs);
+        if (!described.areCurrent) described.groups.clear();
+        return;
+    }
+    described.areCurrent = layout.version == coloring.Version() && layout.loadVersion == pairs.loadVersion;
+    described.groups.clear();
+    described.contacts.clear();
+    VisitContactsUnderLoad(layout, [&](const Entry& entry, int substeps) {
+        described.contacts.push_back({entry.constraint, substeps});
+    });
+    std::ranges::sort(described.contacts, {}, &SolvedContact::contact);
+    if (!described.areCurrent) return;
+    for (const SolverGroup& group : layout.groups) {
+        if (!group.effort.IsAny()) continue;
+        const auto first = layout.bodies.begin() + group.bodiesBegin, last = layout.bodies.begin() + group.bodiesEnd;
+        const bool isFirst = &group == &layout.groups.front();
+        described.groups.push_back({isFirst ? ~0u : *std::min_element(first, last), group.culprit, group.effort,
+                                    group.stiffness, group.wantedStiffness});
+    }
+    std::ranges::sort(described.groups, {}, &SavedEffort::body);
+}
+
 void BuildIslands(const StepContext& step, const BodyStore& bodies, const ConstraintColoring& coloring,
                   std::span<const uint32_t> began, PairStore& pairs, JointStore& joints, SolverLayout& layout,
-                  ScratchArena& scratch) {
+                  SavedEfforts& saved, ScratchArena& scratch) {
     NoteWeights(step, began, bodies, joints, pairs);
-    for (SolverGroup& group : layout.groups)
-        if (group.stiffness < group.wantedStiffness) ++group.stiffness;
+    const auto stiffen = [](auto& groups) {
+        for (auto& group : groups)
+            if (group.stiffness < group.wantedStiffness) ++group.stiffness;
+    };
+    stiffen(layout.groups);
+    stiffen(saved.groups);
     if (layout.version == coloring.Version() && layout.loadVersion == pairs.loadVersion) return;
     layout.version = coloring.Version();
     layout.loadVersion = pairs.loadVersion;
-    const std::span<const SolvedContact> underLoad = ContactsUnderLoad(layout, scratch);
+    const std::span<const SolvedContact> underLoad = ContactsUnderLoad(layout, saved, scratch);
+    const bool asSaved = saved.AreTaken(coloring, pairs);
     ForEachBatchList(layout, [](auto& list, BatchKind) { list.count = 0; });
     FindJointTrees(bodies, coloring, joints, step.settings, layout.trees, scratch);
-    const Islands islands = FindIslands(step, bodies, coloring, joints, pairs, layout.trees, layout.groups, scratch);
+    const Islands islands = FindIslands(step, bodies, coloring, joints, pairs, layout.trees,
+                                        asSaved ? &saved.groups : nullptr, layout.groups, scratch);
     layout.islands = islands.islands;
     SortBodies(bodies, islands, layout, scratch);
     SortConstraints(bodies, coloring, islands, joints, layout, scratch);
-    LimitImpulses(underLoad, layout, step.settings.solver.substeps, pairs, scratch);
+    if (!asSaved) LimitImpulses(underLoad, layout, step.settings.solver.substeps, pairs, scratch);
     PlaceTrees(bodies, islands, joints.joints.size(), layout, scratch);
     ForEachBatchList(layout, [](auto& list, BatchKind) { GrowTo(list.batches, list.count); });
     const ConstraintColoring::Color& overflow = coloring.At(ConstraintColoring::kOverflow);
@@ -180,6 +213,7 @@ void BuildIslands(const StepContext& step, const BodyStore& bodies, const Constr
     layout.overflowFixed.resize(overflow.Of(Kind::Fixed).size());
     MakeOverflowJoints(bodies, joints, coloring, layout.overflowJoints);
     ShareRows(layout);
+    saved.areRestored = false;
 }
 
 }  // namespace fulcrum

@@ -42,11 +42,33 @@ void SetEffort(SolverGroup& group, const IslandEffort& effort, const JointSubste
     group.stiffness = effort.stiffness == 0 ? group.wantedStiffness : std::min(effort.stiffness, group.wantedStiffness);
 }
 
+// By root; only what makes an island have a group of its own.
+std::span<const IslandEffort> EffortsOf(const std::vector<SavedEffort>& saved, const BodyStore& bodies, UnionFind& sets,
+                                        ScratchArena& scratch) {
+    std::span<IslandEffort> efforts = scratch.Allocate<IslandEffort>(bodies.awake.size());
+    std::fill(efforts.begin(), efforts.end(), IslandEffort{});
+    for (const SavedEffort& group : saved)
+        if (group.body != ~0u) efforts[sets.Find(bodies.cold[group.body].awakePlace)].least = group.effort;
+    return efforts;
+}
+
+void SetEfforts(const std::vector<SavedEffort>& saved, const BodyStore& bodies, const Islands& islands,
+                std::vector<SolverGroup>& groups) {
+    for (const SavedEffort& from : saved) {
+        SolverGroup& group =
+            groups[from.body == ~0u ? Islands::kLargeGroup : islands.groupOf[bodies.cold[from.body].awakePlace]];
+        group.effort = from.effort;
+        group.culprit = from.culprit;
+        group.stiffness = from.stiffness;
+        group.wantedStiffness = from.wantedStiffness;
+    }
+}
+
 }  // namespace
 
 Islands FindIslands(const StepContext& step, const BodyStore& bodies, const ConstraintColoring& coloring,
                     const JointStore& joints, const PairStore& pairs, const JointTrees& trees,
-                    std::vector<SolverGroup>& groups, ScratchArena& scratch) {
+                    const std::vector<SavedEffort>* saved, std::vector<SolverGroup>& groups, ScratchArena& scratch) {
     const auto placeOf = [&](uint32_t body) { return bodies.cold[body].awakePlace; };
     const size_t count = bodies.awake.size();
     UnionFind sets(scratch.Allocate<uint32_t>(count));
@@ -67,8 +89,9 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
         });
     const int usual = step.settings.solver.substeps;
     const std::span<const IslandEffort> efforts =
-        FindEfforts(step, bodies, coloring, joints, pairs, sizes,
-                    step.settings.accuracy.largeIslands ? ~0u : kLargeIsland - 1, sets, scratch);
+        saved ? EffortsOf(*saved, bodies, sets, scratch)
+              : FindEfforts(step, bodies, coloring, joints, pairs, sizes,
+                            step.settings.accuracy.largeIslands ? ~0u : kLargeIsland - 1, sets, scratch);
     // By root; without room where there are neither trees nor ropes.
     const size_t room = trees.trees.empty() && trees.ropes.empty() ? 0 : count;
     std::span<JointSubsteps> ofTrees = scratch.Allocate<JointSubsteps>(room),
@@ -126,6 +149,7 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
         inGroup += sizes[i];
     }
     if (overflowing.least.IsAny()) SetEffort(groups[Islands::kLargeGroup], overflowing, {}, usual);
+    if (saved) SetEfforts(*saved, bodies, result, groups);
     result.groups = static_cast<uint32_t>(groups.size());
     return result;
 }

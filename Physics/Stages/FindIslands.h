@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Fulcrum/Jobs/ScratchArena.h>
+#include <Fulcrum/Physics/Stages/SavedEfforts.h>
 #include <Fulcrum/Physics/Stages/SolverLayout.h>
 #include <Fulcrum/Physics/Stages/StepContext.h>
 #include <Fulcrum/Physics/World/BodyStore.h>
@@ -22,9 +23,10 @@ struct Islands {
 };
 
 // Finds them anew, and makes their groups, of which bodies and colors are not yet known. In scratch memory of the step.
+// saved: their efforts, where these are known already, or null.
 Islands FindIslands(const StepContext& step, const BodyStore& bodies, const ConstraintColoring& coloring,
                     const JointStore& joints, const PairStore& pairs, const JointTrees& trees,
-                    std::vector<SolverGroup>& groups, ScratchArena& scratch);
+                    const std::vector<SavedEffort>* saved, std::vector<SolverGroup>& groups, ScratchArena& scratch);
 
 // Calls visit(color, entry) for all colored constraints of a kind, those that overflow last.
 template <class Visit>

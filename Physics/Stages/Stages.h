@@ -51,10 +51,11 @@ void RemoveSeamContacts(const BodyStore& bodies, const ColliderStore& colliders,
 
 // Sorts the colored constraints into the solver's groups and batches, where they changed. Islands under load get more
 // effort (ContactLoads.h); for that it notes the weights that lie on contacts which began; where islands lose effort,
-// impulses in records are limited. Of the joints it writes what their types say of locks and rows.
+// impulses in records are limited. Of the joints it writes what their types say of locks and rows. Efforts that a
+// snapshot restored are taken, and no longer `saved` afterwards.
 void BuildIslands(const StepContext& step, const BodyStore& bodies, const ConstraintColoring& coloring,
                   std::span<const uint32_t> began, PairStore& pairs, JointStore& joints, SolverLayout& layout,
-                  ScratchArena& scratch);
+                  SavedEfforts& saved, ScratchArena& scratch);
 
 // Reads records, poses, masses, who is crowded. Writes the rows of the batches; what types of joints carry from step to
 // step; contacts whose numbers are not finite lose their points.

@@ -64,7 +64,7 @@ constexpr Stage kStages[] = {
     {"BuildIslands",
      [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
          BuildIslands(step, world.bodies, world.coloring, state.began, world.pairs, world.joints, state.solver,
-                      workers.scratch);
+                      state.savedEfforts, workers.scratch);
      }},
     {"Prepare",
      [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {

@@ -4,6 +4,7 @@
 #include <Fulcrum/Collision/NarrowPhase/SurfaceContact.h>
 #include <Fulcrum/Jobs/ScratchArena.h>
 #include <Fulcrum/Physics/Stages/EventBuffers.h>
+#include <Fulcrum/Physics/Stages/SavedEfforts.h>
 #include <Fulcrum/Physics/Stages/SensorSearch.h>
 #include <Fulcrum/Physics/Stages/SolverLayout.h>
 #include <Fulcrum/Physics/Stages/StepContext.h>
@@ -101,6 +102,7 @@ struct StepState {
     std::vector<uint32_t> began;  // Color: pairs that began to touch
     std::vector<uint32_t> seams;  // RemoveSeamContacts: pairs without their points, in the last step
     SolverLayout solver;
+    SavedEfforts savedEfforts;     // restored by a snapshot, for BuildIslands
     uint32_t sleepCandidates = 0;  // Store: bodies that have been slow for long enough
     SweepStore sweeps;
     SensorSearch sensing;

@@ -36,13 +36,6 @@ uint32_t ColliderOf(WorldState& world, uint32_t body, uint32_t child) {
     return at.first + (child - before);
 }
 
-void SetPiece(WorldState& world, uint32_t collider, const CompoundShape& compound, const CompoundShape::Child& child) {
-    world.colliders.shapes[collider] = {.shape = child.shape.get(),
-                                        .offset = true,
-                                        .onOrigin = compound.Type() == ShapeType::MutableCompound,
-                                        .local = child.pose};
-}
-
 void Insert(WorldState& world, uint32_t body, uint32_t index) {
     Collider& collider = world.colliders.colliders[index];
     collider.body = body;
@@ -87,6 +80,13 @@ void ShiftContacts(WorldState& world, uint32_t body, const Vector3& by) {
 
 }  // namespace
 
+ColliderShape PieceOfChild(const CompoundShape& compound, const CompoundShape::Child& child) {
+    return {.shape = child.shape.get(),
+            .offset = true,
+            .onOrigin = compound.Type() == ShapeType::MutableCompound,
+            .local = child.pose};
+}
+
 void SetShapeOf(WorldState& world, uint32_t body, const ShapePtr& shape) {
     BodyCold& cold = world.bodies.cold[body];
     cold.shape = shape;
@@ -109,7 +109,7 @@ void MakeColliders(WorldState& world, uint32_t body) {
     if (!cold.isSensor) (moving ? store.movingLayers : store.staticLayers) |= 1u << world.bodies.dynamics[body].layer;
     for (uint32_t i = 0; i < cold.colliderCount; ++i) {
         const uint32_t index = cold.firstCollider + i;
-        if (compound) SetPiece(world, index, *compound, compound->ChildAt(i));
+        if (compound) store.shapes[index] = PieceOfChild(*compound, compound->ChildAt(i));
         else store.shapes[index].shape = &shape;
         if (store.shapes[index].shape) Insert(world, body, index);
     }
@@ -146,7 +146,7 @@ void UpdateChildCollider(WorldState& world, uint32_t body, uint32_t child) {
         world.colliders.movedHasEmpty |= world.colliders.colliders[index].queued;
         return;
     }
-    SetPiece(world, index, *cold.children->compound, is);
+    world.colliders.shapes[index] = PieceOfChild(*cold.children->compound, is);
     if (was) {
         SetFatBounds(world.settings, world.bodies, world.colliders, index);
         const Collider& collider = world.colliders.colliders[index];

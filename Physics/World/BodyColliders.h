@@ -2,10 +2,13 @@
 // the world's lock. Fat bounds and trees are up to date afterwards, pairs at the next FindPairs.
 #pragma once
 
+#include <Fulcrum/Collision/Shapes/CompoundShape.h>
 #include <Fulcrum/Physics/World/WorldState.h>
 
 namespace fulcrum {
 
+// The piece that a child of a compound is; empty where it has been removed.
+ColliderShape PieceOfChild(const CompoundShape& compound, const CompoundShape::Child& child);
 // Gives a body its shape, of a mutable compound a copy of its own; then what it is made of, in the trees.
 void SetShapeOf(WorldState& world, uint32_t body, const ShapePtr& shape);
 void MakeColliders(WorldState& world, uint32_t body);

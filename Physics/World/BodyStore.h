@@ -271,6 +271,7 @@ public:
     friend size_t HeapBytes(const BodyStore& store);
 
 private:
+    friend struct SnapshotAccess;
     std::vector<uint32_t> free_;
     uint32_t count_ = 0;
 };

@@ -67,6 +67,7 @@ public:
     friend size_t HeapBytes(const ColliderStore& store);
 
 private:
+    friend struct SnapshotAccess;
     std::vector<std::vector<uint32_t>> free_;  // by count: first indices of runs that were given back
     std::vector<uint32_t> freeRuns_;
 };

@@ -2,19 +2,7 @@
 
 namespace fulcrum {
 
-namespace {
-
 using Coloring = ConstraintColoring;
-
-Coloring::Kind KindOf(const Pair& pair) { return pair.fixedB ? Coloring::Kind::Fixed : Coloring::Kind::Moving; }
-Coloring::Entry EntryOf(const Joint& joint, uint32_t index) {
-    return {index, joint.body[0], joint.body[1], joint.still[0], joint.still[1]};
-}
-Coloring::Entry EntryOf(const Pair& pair, uint32_t index) {
-    return {index, pair.bodyA, pair.bodyB, false, pair.fixedB};
-}
-
-}  // namespace
 
 void ColorPair(PairStore& pairs, ConstraintColoring& coloring, uint32_t index) {
     Pair& pair = pairs.pairs[index];

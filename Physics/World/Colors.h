@@ -8,6 +8,17 @@
 
 namespace fulcrum {
 
+// A pair, or a joint, as the coloring sees it.
+inline ConstraintColoring::Kind KindOf(const Pair& pair) {
+    return pair.fixedB ? ConstraintColoring::Kind::Fixed : ConstraintColoring::Kind::Moving;
+}
+inline ConstraintColoring::Entry EntryOf(const Joint& joint, uint32_t index) {
+    return {index, joint.body[0], joint.body[1], joint.still[0], joint.still[1]};
+}
+inline ConstraintColoring::Entry EntryOf(const Pair& pair, uint32_t index) {
+    return {index, pair.bodyA, pair.bodyB, false, pair.fixedB};
+}
+
 // Gives a pair's contact a color, or takes it away; nothing where it has one, or none.
 void ColorPair(PairStore& pairs, ConstraintColoring& coloring, uint32_t pair);
 void UncolorPair(PairStore& pairs, ConstraintColoring& coloring, uint32_t pair);

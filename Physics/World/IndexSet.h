@@ -45,6 +45,7 @@ public:
     }
 
 private:
+    friend struct SnapshotAccess;
     std::vector<uint64_t> words_;
     uint32_t size_ = 0;
 };

@@ -113,6 +113,7 @@ public:
     friend size_t HeapBytes(const JointStore& store);
 
 private:
+    friend struct SnapshotAccess;
     std::vector<uint32_t> first_;  // by body
     std::vector<uint32_t> free_;
     uint32_t count_ = 0;

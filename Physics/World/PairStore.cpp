@@ -107,14 +107,31 @@ uint32_t PairStore::Add(uint32_t colliderA, uint32_t colliderB) {
     pairs[index].colliderA = colliderA;
     pairs[index].colliderB = colliderB;
 
-    const uint64_t key = Key(colliderA, colliderB);
+    Enter(Key(colliderA, colliderB), index);
+    ++size_;
+    Link(index);
+    return index;
+}
+
+void PairStore::Enter(uint64_t key, uint32_t index) {
     const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
     uint32_t i = FirstPlace(key);
     while (table_[i].index != kNone) i = (i + 1) & mask;
     table_[i] = {key, index};
-    ++size_;
-    Link(index);
-    return index;
+}
+
+void PairStore::Strike(uint64_t key, uint32_t index) {
+    const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
+    uint32_t hole = FirstPlace(key);
+    while (table_[hole].key != key || table_[hole].index != index) hole = (hole + 1) & mask;
+    // Entries behind the hole move up where that takes them to no place before their first one.
+    for (uint32_t i = (hole + 1) & mask; table_[i].index != kNone; i = (i + 1) & mask) {
+        if (((i - FirstPlace(table_[i].key)) & mask) >= ((i - hole) & mask)) {
+            table_[hole] = table_[i];
+            hole = i;
+        }
+    }
+    table_[hole].index = kNone;
 }
 
 void PairStore::Link(uint32_t index) {
@@ -148,18 +165,7 @@ void PairStore::Remove(uint32_t index) {
         return;
     }
     Unlink(index);
-    const uint64_t key = Key(pairs[index].colliderA, pairs[index].colliderB);
-    const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
-    uint32_t hole = FirstPlace(key);
-    while (table_[hole].key != key || table_[hole].index == kNone) hole = (hole + 1) & mask;
-    // Entries behind the hole move up where that takes them to no place before their first one.
-    for (uint32_t i = (hole + 1) & mask; table_[i].index != kNone; i = (i + 1) & mask) {
-        if (((i - FirstPlace(table_[i].key)) & mask) >= ((i - hole) & mask)) {
-            table_[hole] = table_[i];
-            hole = i;
-        }
-    }
-    table_[hole].index = kNone;
+    Strike(Key(pairs[index].colliderA, pairs[index].colliderB), index);
     pairs[index].exists = false;
     free_.push_back(index);
     --size_;

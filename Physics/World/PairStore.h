@@ -88,6 +88,7 @@ public:
     friend size_t HeapBytes(const PairStore& store);
 
 private:
+    friend struct SnapshotAccess;
     static uint64_t Key(uint32_t a, uint32_t b) { return a < b ? (uint64_t(a) << 32 | b) : (uint64_t(b) << 32 | a); }
     // The pairs of each collider as a list, without which removing a collider would mean to look at all pairs.
     struct Links {
@@ -103,6 +104,8 @@ private:
     uint32_t Allocate();
     uint32_t FirstPlace(uint64_t key) const;
     void Grow();
+    void Enter(uint64_t key, uint32_t index);   // into the table, which has room
+    void Strike(uint64_t key, uint32_t index);  // from the table, which has the two
 
     // Open addressing with linear probing; at most half full. Only an index: its order influences nothing.
     struct Entry {

@@ -20,6 +20,7 @@ public:
     friend size_t HeapBytes(const SleepingIslands& sleeping);
 
 private:
+    friend struct SnapshotAccess;
     std::vector<std::vector<uint32_t>> islands_;
     std::vector<uint32_t> free_;
 };

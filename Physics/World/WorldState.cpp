@@ -11,4 +11,11 @@ size_t HeapBytes(const WorldState& world) {
                      outsideFatBounds);
 }
 
+void KeepForEvents(WorldState& world) {
+    const EventSettings& events = world.settings.events;
+    world.pairs.KeepReported(events.contacts);
+    world.bodies.notesSleepChanges = events.contacts || events.bodies;
+    if (!world.bodies.notesSleepChanges) world.bodies.sleepChanges = {};
+}
+
 }  // namespace fulcrum

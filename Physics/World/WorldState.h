@@ -99,4 +99,7 @@ inline bool IsOnePiece(const BodyStore& bodies, uint32_t body) {
     return cold.colliderCount == 1 && !cold.children;
 }
 
+// Has the world note between steps what events of the settings follow from, and no more.
+void KeepForEvents(WorldState& world);
+
 }  // namespace fulcrum

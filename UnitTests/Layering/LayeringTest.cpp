@@ -37,7 +37,8 @@ const std::map<std::string, std::vector<std::string>> kAllowedPartsOfPhysics = {
     {"Physics/Joints", {}},
     {"Physics/Stages", {"Physics/World"}},
     {"Physics/Queries", {"Physics/World"}},
-    {"Physics", {"Physics/World", "Physics/Joints", "Physics/Stages", "Physics/Queries"}},
+    {"Physics/Snapshots", {"Physics/World", "Physics/Joints", "Physics/Stages"}},
+    {"Physics", {"Physics/World", "Physics/Joints", "Physics/Stages", "Physics/Queries", "Physics/Snapshots"}},
     {"Physics/Ragdoll", {"Physics", "Physics/Joints"}},
 };
 // Headers that the parts below may include, too: plain data, what users derive from, checks of what they pass in. They
@@ -45,7 +46,7 @@ const std::map<std::string, std::vector<std::string>> kAllowedPartsOfPhysics = {
 const std::array<std::string, 10> kSharedHeaders = {
     "Physics/Settings.h",    "Physics/JointSettings.h", "Physics/GroupFilter.h", "Physics/ContactListener.h",
     "Physics/SensorEvent.h", "Physics/StepEvents.h",    "Physics/StepReport.h",  "Physics/QueryTypes.h",
-    "Physics/Misuse.h",      "Physics/Validation.h",
+    "Physics/Misuse.h",      "Physics/Validation.h",    "Physics/Snapshot.h",
 };
 
 const std::array<std::string, 5> kLibraryFolders = {"Math", "Jobs", "Collision", "Constraints", "Physics"};

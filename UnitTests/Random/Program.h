@@ -1,9 +1,9 @@
 // A random program: calls of the public interface, generated from a seed, played in several worlds side by side and
 // checked after each call; failing programs are shortened. The same seed gives the same program with one compiler.
 //
-// The worlds: with one, two and four threads, and one in which calls that were refused are left out. All must return
-// the same and have the same bits in all that can be read, after every call: neither threads nor refused calls may have
-// an effect.
+// The worlds: with one, two and four threads, one in which calls that were refused are left out, and one in which each
+// call is taken back by a snapshot and made again. All must return the same and have the same bits, after every call:
+// neither threads nor refused calls nor snapshots may have an effect.
 #pragma once
 
 #include <Fulcrum/UnitTests/Random/Calls.h>

@@ -75,8 +75,8 @@ bool IsSqueezed(const Twin& twin) {
 class Game {
 public:
     Game(const RandomProgram& program, JobSystem* two, JobSystem* four) : program_(program) {
-        for (JobSystem* const jobs : {static_cast<JobSystem*>(nullptr), two, four, static_cast<JobSystem*>(nullptr)})
-            twins_.emplace_back(SystemSettings{}, jobs);
+        JobSystem* const none = nullptr;
+        for (JobSystem* const jobs : {none, two, four, none, none}) twins_.emplace_back(SystemSettings{}, jobs);
     }
 
     std::optional<ProgramFailure> Play() {
@@ -115,13 +115,48 @@ private:
         });
     }
 
-    static constexpr size_t kWithoutRefused = 3;
+    static constexpr size_t kWithoutRefused = 3, kGoesBack = 4;
 
     Outcome PlayIn(Twin& twin, const RandomCall& call) {
         Outcome outcome;
         Values values(call.seed, program_.style);
         call.kind->play(twin, values, call.targets, outcome);
         return outcome;
+    }
+
+    // Plays the call, takes it back by a snapshot, and plays it again.
+    Outcome PlayTwice(Twin& twin, const RandomCall& call) {
+        const bool changesListener = std::string_view(call.kind->name) == "SetContactListener";
+        // Compounds with custom children cannot be saved.
+        if (changesListener || !twin.system->SaveSnapshot(saved_)) return PlayIn(twin, call);
+        NoteSources(*twin.system);
+        const auto bodies = twin.bodies;
+        const auto joints = twin.joints;
+        const auto ragdolls = twin.ragdolls;
+        const double energyBudget = twin.energyBudget;
+        PlayIn(twin, call);
+        Outcome outcome;
+        const Status restored = twin.system->RestoreSnapshot(saved_, {.shapes = shapes_, .groupFilters = filters_});
+        if (!restored) outcome.failure = "a snapshot was refused: " + restored.GetError().message;
+        else if (!twin.system->SaveSnapshot(again_) || again_ != saved_)
+            outcome.failure = "a snapshot did not restore what was saved";
+        if (!outcome.failure.empty()) return outcome;
+        twin.bodies = bodies;
+        twin.joints = joints;
+        twin.ragdolls = ragdolls;
+        twin.energyBudget = energyBudget;
+        return PlayIn(twin, call);
+    }
+
+    // Shapes and filters that snapshots may name.
+    void NoteSources(const PhysicsSystem& system) {
+        const auto note = [](auto& list, const auto& item) {
+            if (item && std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
+        };
+        system.VisitBodies([&](BodyId id) {
+            note(shapes_, system.Bodies().GetShape(id));
+            note(filters_, system.Bodies().GetGroup(id).filter);
+        });
     }
 
     std::string PlayCall(const RandomCall& call) {
@@ -141,14 +176,19 @@ private:
     }
 
     std::string PlayInOthers(const RandomCall& call, const Outcome& first, uint64_t state) {
-        constexpr const char* kNames[] = {"one thread", "two threads", "four threads", "no calls that are refused"};
+        constexpr const char* kNames[] = {"one thread", "two threads", "four threads", "no calls that are refused",
+                                          "snapshots"};
+        const uint64_t whole = twins_[0].system->HashState();
         for (size_t i = 1; i < twins_.size(); ++i) {
             if (i == kWithoutRefused && first.isRefused) continue;
-            const Outcome outcome = PlayIn(twins_[i], call);
+            const Outcome outcome = i == kGoesBack ? PlayTwice(twins_[i], call) : PlayIn(twins_[i], call);
+            if (!outcome.failure.empty()) return outcome.failure;
             if (outcome.answer.Value() != first.answer.Value()) return std::string("another answer with ") + kNames[i];
             if (twins_[i].system->HashPoses() != twins_[0].system->HashPoses())
                 return std::string("other poses with ") + kNames[i];
             if (HashOfState(twins_[i]) != state) return std::string("another state with ") + kNames[i];
+            if (twins_[i].system->HashState() != whole)
+                return std::string("another state that cannot be read with ") + kNames[i];
         }
         return {};
     }
@@ -171,6 +211,9 @@ private:
 
     const RandomProgram& program_;
     std::vector<Twin> twins_;
+    std::vector<std::byte> saved_, again_;
+    std::vector<ShapePtr> shapes_;
+    std::vector<std::shared_ptr<const GroupFilter>> filters_;
     uint64_t state_ = 0;
     uint64_t posesBefore_ = 0;
     bool isPushed_ = false;

@@ -38,8 +38,7 @@ void AddRoom(TestWorld& world) {
 
 }  // namespace
 
-uint64_t HashOfFastScene(uint32_t threads) {
-    TestWorld world({}, threads);
+std::vector<BodyId> BuildFastScene(TestWorld& world) {
     AddRoom(world);
     const ShapePtr shapes[] = {
         SphereOf(0.2f),
@@ -69,6 +68,12 @@ uint64_t HashOfFastScene(uint32_t threads) {
                                     .material = {.restitution = 0.5f},
                                     .continuous = continuous}));
     }
+    return bodies;
+}
+
+uint64_t HashOfFastScene(uint32_t threads) {
+    TestWorld world({}, threads);
+    const std::vector<BodyId> bodies = BuildFastScene(world);
     world.Steps(kSteps);
     for (const BodyId body : bodies) {
         if (world.Bodies().GetContinuous(body) == ContinuousCollision::Off) continue;

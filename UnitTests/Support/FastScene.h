@@ -6,6 +6,9 @@
 
 namespace fulcrum::testing {
 
+// Fills the world; returns the bodies that fly.
+std::vector<BodyId> BuildFastScene(TestWorld& world);
+
 // Hash of the poses after 90 steps with so many threads. Adds a failure where a body of continuous collision has left
 // the room.
 uint64_t HashOfFastScene(uint32_t threads);

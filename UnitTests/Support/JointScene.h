@@ -42,6 +42,9 @@ private:
     bool slept_ = false, woke_ = false, broke_ = false, overflowed_ = false;
 };
 
+// The type of the scene's one joint that is not of the engine's kinds: a screw.
+std::unique_ptr<JointType> MakeScrew();
+
 // Hash after kJointSceneSteps with so many threads.
 uint64_t HashOfJointScene(uint32_t threads);
 

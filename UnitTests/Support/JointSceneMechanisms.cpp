@@ -39,6 +39,8 @@ public:
 
 }  // namespace
 
+std::unique_ptr<JointType> MakeScrew() { return std::make_unique<Screw>(); }
+
 // A rope on a kinematic swing, and a chain of 1 kg links with 100 kg at its end.
 void JointScene::AddChains() {
     swing_ = world_.Add({.shape = BoxOf(0.3f, 0.1f, 0.3f), .motion = MotionType::Kinematic, .position = {0, 8, 0}});
@@ -102,7 +104,7 @@ void JointScene::AddSprings() {
     gate_ = Join(world_, piston);
     auto screw = Of<CustomJointSettings>(
         Between(hook, AddPart(world_, BoxOf(0.3f, 0.1f, 0.2f), {-6, 5, 6}), {-6, 5, 6}, {0, 1, 0}));
-    screw.make = [] { return std::make_unique<Screw>(); };
+    screw.make = MakeScrew;
     Join(world_, screw);
 }
 

@@ -71,8 +71,7 @@ BodyId AddGrounds(TestWorld& world) {
 
 }  // namespace
 
-uint64_t HashOfSurfaceScene(uint32_t threads) {
-    TestWorld world({}, threads);
+BodyId BuildSurfaceScene(TestWorld& world) {
     const BodyId lift = AddGrounds(world);
     const ShapePtr shapes[] = {
         SphereOf(0.3f),
@@ -97,6 +96,12 @@ uint64_t HashOfSurfaceScene(uint32_t threads) {
                    .linearVelocity = {4 * w - 2, 0, 3 * y - 1.5f},
                    .angularVelocity = Vector3(x, y, z) * 4.0f});
     }
+    return lift;
+}
+
+uint64_t HashOfSurfaceScene(uint32_t threads) {
+    TestWorld world({}, threads);
+    const BodyId lift = BuildSurfaceScene(world);
     for (int step = 0; step < kSteps; ++step) {
         EXPECT_TRUE(step != 120 || world.Bodies().SetVelocity(lift, {-0.3f, -0.2f, 0.1f}, {0, -0.1f, 0}));
         world.Step();

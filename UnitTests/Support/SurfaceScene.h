@@ -6,6 +6,9 @@
 
 namespace fulcrum::testing {
 
+// Fills the world; returns a kinematic body.
+BodyId BuildSurfaceScene(TestWorld& world);
+
 // Hash of the poses after 240 steps with so many threads.
 uint64_t HashOfSurfaceScene(uint32_t threads);
 

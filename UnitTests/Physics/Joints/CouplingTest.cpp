@@ -20,6 +20,7 @@ Wheel AddWheel(TestWorld& world, BodyId hook, const Position& position, double i
                             .mass = 1,
                             .inertia = {i, i, i}});
     HingeJointSettings settings{Between(hook, wheel.body, position, {0, 0, 1})};
+    settings.angle = Limited(-1e6, 1e6);  // never reached: with them turns are counted
     if (driven) settings.angle.motor = SpeedMotor(speed);
     wheel.bearing = Join(world, settings);
     return wheel;

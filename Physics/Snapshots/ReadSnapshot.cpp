@@ -1,0 +1,277 @@
+// A snapshot is restored in two passes. The first finds, or makes, all that may be missing, and leaves the world as it
+// is; the second writes over it, and cannot fail.
+#include <Fulcrum/Collision/Shapes/MutableCompound.h>
+#include <Fulcrum/Collision/Shapes/ShapeFile.h>
+#include <Fulcrum/Collision/Shapes/ShapeHash.h>
+#include <Fulcrum/Physics/Joints/JointKinds.h>
+#include <Fulcrum/Physics/Snapshots/SnapshotAccess.h>
+#include <Fulcrum/Physics/Snapshots/Snapshots.h>
+#include <Fulcrum/Physics/World/Colors.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+namespace fulcrum {
+
+namespace {
+
+Error Missing(const char* what, uint64_t hash, const char* remedy) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+    return {ErrorCode::UnknownId, std::string("the snapshot names ") + what + " (hash " + text + ") that " + remedy};
+}
+
+// What the first pass finds.
+struct Found {
+    SnapshotHead head;
+    // By body; null: the one that it has now.
+    std::vector<ShapePtr> shapes;
+    std::vector<std::shared_ptr<MutableCompound>> compounds;
+    std::vector<std::shared_ptr<const GroupFilter>> filters;  // by number
+    std::vector<uint32_t> filtered;                           // of each with a filter its index, and the number
+    std::vector<bool> hasJoint;                               // by joint
+    std::vector<std::unique_ptr<JointType>> types;            // by joint; null: the one that it has now
+};
+
+// ---- Shapes
+
+// The shapes that are known, by their hashes; gathered when the first is missed.
+class KnownShapes {
+public:
+    KnownShapes(const BodyStore& bodies, std::span<const ShapePtr> given) : bodies_(bodies), given_(given) {}
+
+    ShapePtr Find(uint64_t hash) {
+        if (shapes_.empty()) Gather();
+        const auto found = std::ranges::lower_bound(shapes_, hash, {}, &Entry::first);
+        return found != shapes_.end() && found->first == hash ? found->second : nullptr;
+    }
+
+private:
+    using Entry = std::pair<uint64_t, ShapePtr>;
+
+    void Gather() {
+        const auto add = [&](const ShapePtr& shape) {
+            if (shape && shape->Type() != ShapeType::MutableCompound) shapes_.emplace_back(ContentHash(*shape), shape);
+        };
+        for (const BodyCold& body : bodies_.cold) add(body.shape);
+        for (const ShapePtr& shape : given_) add(shape);
+        std::ranges::sort(shapes_, {}, &Entry::first);  // equal ones are as good as each other
+    }
+
+    const BodyStore& bodies_;
+    std::span<const ShapePtr> given_;
+    std::vector<Entry> shapes_;
+};
+
+Status FindShapes(SnapshotReader& s, const BodyStore& bodies, std::span<const ShapePtr> given, Found& found) {
+    const uint32_t count = found.head.bodies;
+    found.shapes.resize(count);
+    found.compounds.resize(count);
+    KnownShapes known(bodies, given);
+    std::vector<uint32_t> ownCompounds;
+    for (uint32_t i = 0; i < count; ++i) {
+        const uint64_t hash = s.Get<uint64_t>();
+        if (hash == kOwnCompound) ownCompounds.push_back(i);
+        if (hash == kNoShape || hash == kOwnCompound) continue;
+        const BodyCold* now = i < bodies.Size() ? &bodies.cold[i] : nullptr;
+        if (now && now->shape && !now->children && ContentHash(*now->shape) == hash) continue;
+        found.shapes[i] = known.Find(hash);
+        if (!found.shapes[i])
+            return Missing("a shape", hash, "no body of the world has; give it in SnapshotSources::shapes");
+    }
+    std::vector<uint8_t> bytes;
+    for (const uint32_t i : ownCompounds) {
+        s.List(bytes);
+        if (i < bodies.Size() && bodies.cold[i].children) {
+            const Result<std::vector<uint8_t>> now = SaveShape(*bodies.cold[i].shape);
+            if (now && now.Value() == bytes) continue;
+        }
+        const Result<ShapePtr> shape = LoadShape(bytes);
+        if (!shape) return shape.GetError();
+        if (shape.Value()->Type() != ShapeType::MutableCompound)
+            return Error{ErrorCode::Degenerate, "damaged snapshot: a shape is no compound that can be edited"};
+        found.compounds[i] = static_cast<const MutableCompound&>(*shape.Value()).Copy();
+    }
+    return Done{};
+}
+
+// ---- Group filters
+
+// Filters count as objects, of which several may decide alike: each of the snapshot becomes one of its own. A body's
+// own comes first, then those of other bodies, then those that are given.
+Status FindFilters(SnapshotReader& s, const BodyStore& bodies,
+                   std::span<const std::shared_ptr<const GroupFilter>> given, Found& found) {
+    std::vector<uint64_t> hashes(s.Get<uint32_t>());
+    for (uint64_t& hash : hashes) s(hash);
+    s.List(found.filtered);
+    found.filters.resize(hashes.size());
+    if (hashes.empty()) return Done{};
+    const auto tryTo = [&](size_t number, const std::shared_ptr<const GroupFilter>& filter) {
+        if (!filter || found.filters[number] || filter->ContentHash() != hashes[number]) return;
+        if (std::ranges::find(found.filters, filter) == found.filters.end()) found.filters[number] = filter;
+    };
+    for (size_t i = 0; i + 1 < found.filtered.size(); i += 2) {
+        const uint32_t body = found.filtered[i];
+        if (body < bodies.Size() && bodies.cold[body].filter && found.filtered[i + 1] < hashes.size())
+            tryTo(found.filtered[i + 1], bodies.cold[body].filter->group.filter);
+    }
+    for (size_t number = 0; number < hashes.size(); ++number) {
+        for (uint32_t body = 0; body < bodies.Size() && !found.filters[number]; ++body)
+            if (bodies.cold[body].filter) tryTo(number, bodies.cold[body].filter->group.filter);
+        for (const std::shared_ptr<const GroupFilter>& filter : given) tryTo(number, filter);
+        if (!found.filters[number])
+            return Missing("a group filter", hashes[number],
+                           "no body of the world has; give it in SnapshotSources::groupFilters");
+    }
+    return Done{};
+}
+
+// ---- Types of joints
+
+// One of the engine's kinds, with settings that are to be overwritten; null for others.
+std::unique_ptr<JointType> MakeOfKind(uint64_t kind) {
+    std::unique_ptr<JointType> made;
+    const auto tryTo = [&](const auto& settings) {
+        if (made) return;
+        if constexpr (!std::is_same_v<std::remove_cvref_t<decltype(settings)>, CustomJointSettings>) {
+            made = MakeType(settings);
+            if (KindHash(*made) != kind) made = nullptr;
+        }
+    };
+#define FULCRUM_TRY_KIND(kind) tryTo(kind##JointSettings{});
+    FULCRUM_FOR_EACH_JOINT_KIND(FULCRUM_TRY_KIND)
+#undef FULCRUM_TRY_KIND
+    return made;
+}
+
+// Returns whether the type has as many settings as there are bytes.
+bool WriteSettings(JointType& type, std::span<const std::byte> settings) {
+    SnapshotReader reader(settings);
+    type.VisitSettings(SettingVisitor(
+        [](void* from, void* bytes, size_t size) { static_cast<SnapshotReader*>(from)->Raw(bytes, size); }, &reader,
+        true));
+    return !reader.HasFailed() && reader.IsAtEnd();
+}
+
+Status FindJointTypes(SnapshotReader& s, const JointStore& joints, const SnapshotSources& sources,
+                      std::vector<std::byte>& now, Found& found) {
+    const uint32_t count = found.head.joints;
+    found.hasJoint.resize(count);
+    found.types.resize(count);
+    std::vector<std::byte> settings;
+    for (uint32_t i = 0; i < count; ++i) {
+        const bool exists = s.Get<bool>();
+        const uint32_t generation = s.Get<uint32_t>();
+        found.hasJoint[i] = exists;
+        if (!exists) continue;
+        const uint64_t kind = s.Get<uint64_t>();
+        s.List(settings);
+        if (i < joints.joints.size() && joints.joints[i].exists && KindHash(*joints.types[i]) == kind) {
+            ReadSettings(*joints.types[i], now);
+            if (now == settings) continue;
+        }
+        std::unique_ptr<JointType>& type = found.types[i];
+        type = MakeOfKind(kind);
+        if (!type && sources.makeJoint) type = sources.makeJoint({i, generation});
+        if (!type || KindHash(*type) != kind || !WriteSettings(*type, settings))
+            return Missing("a type of joint", kind,
+                           "the world does not have there; make it in SnapshotSources::makeJoint");
+    }
+    return Done{};
+}
+
+// ---- The second pass
+
+void RestoreBodies(SnapshotReader& s, Found& found, BodyStore& bodies) {
+    SnapshotAccess::Resize(bodies, found.head.bodies);
+    SnapshotAccess::VisitBodies(s, bodies);
+    for (uint32_t i = 0; i < bodies.Size(); ++i) {
+        BodyCold& body = bodies.cold[i];
+        if (found.shapes[i]) body.shape = std::move(found.shapes[i]);
+        if (!found.compounds[i]) continue;
+        body.children->compound = found.compounds[i].get();
+        body.shape = std::move(found.compounds[i]);
+    }
+    for (size_t i = 0; i + 1 < found.filtered.size(); i += 2)
+        bodies.cold[found.filtered[i]].filter->group.filter = found.filters[found.filtered[i + 1]];
+    SnapshotAccess::FindAwakePlaces(bodies);
+}
+
+void RestoreJoints(SnapshotReader& s, Found& found, JointStore& joints, ConstraintColoring& coloring) {
+    SnapshotAccess::Resize(joints, found.head.joints);
+    for (uint32_t i = 0; i < joints.joints.size(); ++i) {
+        Joint& joint = joints.joints[i];
+        if (!found.hasJoint[i]) joint = {};
+        else if (found.types[i]) joint.type = std::move(found.types[i]);
+        joints.types[i] = joint.type.get();
+    }
+    SnapshotAccess::VisitJoints(s, joints);
+    for (uint32_t i = 0; i < joints.joints.size(); ++i) {
+        const Joint& joint = joints.joints[i];
+        if (joint.exists)
+            SnapshotAccess::ListColor(coloring, ConstraintColoring::Kind::Joint, EntryOf(joint, i), joint.color);
+    }
+}
+
+// What a step noted for the next, or of itself.
+void RestoreStep(SnapshotReader& s, WorldState& world, StepState& step) {
+    SavedEfforts& efforts = step.savedEfforts;
+    SnapshotAccess::VisitStep(s, world, step, efforts);
+    step.events.events = {};
+    step.events.events.brokenJoints = step.events.broken;
+    world.coloring.Invalidate();
+    ++world.pairs.loadVersion;
+    efforts.areRestored = true;
+    efforts.version = world.coloring.Version();
+    efforts.loadVersion = world.pairs.loadVersion;
+    // Steps that are now ahead must not be taken for those that were.
+    std::ranges::fill(step.sweeps.starts, SweepStore::Start{});
+    std::ranges::fill(step.sensing.changedIn, uint64_t{0});
+    std::ranges::fill(step.pairs.changes, PairChange::None);
+    world.outsideFatBounds.MarkStale();
+}
+
+}  // namespace
+
+Status ReadSnapshot(std::span<const std::byte> bytes, const SnapshotSources& sources, SnapshotRoom& room,
+                    WorldState& world, StepState& step) {
+    const Result<SnapshotParts> parts = CheckSnapshot(bytes);
+    if (!parts) return parts.GetError();
+    SnapshotReader s(parts.Value().data);
+    Found found;
+    SnapshotAccess::VisitHead(s, found.head);
+    if (found.head.keepsMassOverrides != (world.listener != nullptr))
+        return Error{ErrorCode::Unsupported,
+                     world.listener ? "the world has a contact listener, and had none when the snapshot was saved"
+                                    : "the world has no contact listener, and had one when the snapshot was saved"};
+    if (Status shapes = FindShapes(s, world.bodies, sources.shapes, found); !shapes) return shapes;
+    if (Status filters = FindFilters(s, world.bodies, sources.groupFilters, found); !filters) return filters;
+    if (Status types = FindJointTypes(s, world.joints, sources, room.settings, found); !types) return types;
+
+    world.settings = found.head.settings;
+    KeepForEvents(world);
+    world.step = found.head.step;
+    step.lastSubstepDt = found.head.lastSubstepDt;
+    step.stiffnessDt = found.head.stiffnessDt;
+    RestoreBodies(s, found, world.bodies);
+    SnapshotAccess::Resize(world.colliders, found.head.colliders);
+    SnapshotAccess::VisitColliders(s, world.colliders);
+    SnapshotAccess::AttachPieces(world.bodies, world.colliders);
+    SnapshotAccess::ListMoved(world.colliders);
+    SnapshotAccess::UpdateTrees(world.bodies, world.colliders);
+    SnapshotAccess::ClearColors(world.bodies.Size(), world.coloring);
+    SnapshotAccess::Resize(world.pairs, found.head.pairs);
+    SnapshotAccess::VisitPairs(s, world.pairs, [&](uint32_t pair, uint64_t before) {
+        SnapshotAccess::AttachPair(world.colliders, world.pairs, world.coloring, pair, before);
+    });
+    RestoreJoints(s, found, world.joints, world.coloring);
+    SnapshotAccess::VisitSleeping(s, world.sleeping);
+    SnapshotAccess::VisitSensors(s, world.sensors, world.sensors.changed);
+    RestoreStep(s, world, step);
+    SnapshotAccess::VisitUserData(s, world);
+    FULCRUM_ASSERT(!s.HasFailed() && s.IsAtEnd());
+    return Done{};
+}
+
+}  // namespace fulcrum

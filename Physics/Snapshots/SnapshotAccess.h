@@ -1,0 +1,257 @@
+// The sections of a snapshot: what it has of each store. They are written, and read into a world whose arrays have been
+// given their sizes. What follows from other state is not written: places in lists, which shapes and bodies pairs are
+// of, lists of colors, trees and the hash table of pairs. Called by the functions of Snapshots.h; one thread.
+#pragma once
+
+#include <Fulcrum/Physics/Snapshots/SnapshotElements.h>
+#include <Fulcrum/Physics/Snapshots/Snapshots.h>
+
+namespace fulcrum {
+
+// Single numbers, and sizes of arrays.
+struct SnapshotHead {
+    SystemSettings settings;
+    uint64_t step = 0;
+    float lastSubstepDt = 0, stiffnessDt = 0;
+    uint32_t bodies = 0, colliders = 0, pairs = 0, joints = 0;
+    bool keepsMassOverrides = false;
+};
+
+// In the place of the hash of a body's shape: it has none, or a compound of its own.
+inline constexpr uint64_t kNoShape = 0, kOwnCompound = 2;
+
+// Member functions, since stores let it see what is private.
+struct SnapshotAccess {
+    static SnapshotHead HeadOf(const WorldState& world, const StepState& step);
+    template <class Stream>
+    static void VisitHead(Stream& s, SnapshotHead& head);
+
+    template <class Stream, class Bodies>
+    static void VisitBodies(Stream& s, Bodies& bodies);
+    template <class Stream, class Colliders>
+    static void VisitColliders(Stream& s, Colliders& colliders);
+    // attach(i, before): called for each index, with KeyOf the one that was there before.
+    template <class Stream, class Pairs, class Attach>
+    static void VisitPairs(Stream& s, Pairs& pairs, const Attach& attach);
+    template <class Stream, class Joints>
+    static bool VisitJoints(Stream& s, Joints& joints);
+    template <class Stream, class Sleeping>
+    static void VisitSleeping(Stream& s, Sleeping& sleeping);
+    // changed: SensorStore::changed, or a copy without repetitions.
+    template <class Stream, class Sensors, class Changed>
+    static void VisitSensors(Stream& s, Sensors& sensors, Changed& changed);
+    template <class Stream, class World, class Step>
+    static void VisitStep(Stream& s, World& world, Step& step, SavedEfforts& efforts);
+    template <class Stream, class World>
+    static void VisitUserData(Stream& s, World& world);
+
+    // For the reader.
+    static void Resize(BodyStore& bodies, uint32_t count);
+    static void Resize(ColliderStore& colliders, uint32_t count);
+    static void Resize(PairStore& pairs, uint32_t count);  // the arrays; the table of pairs gets room for as many, too
+    static void Resize(JointStore& joints, uint32_t count);
+    // What follows from the rest. Places of bodies among those that are awake;
+    static void FindAwakePlaces(BodyStore& bodies);
+    // the body and the piece of each collider; which of them moved; the trees;
+    static void AttachPieces(const BodyStore& bodies, ColliderStore& colliders);
+    static void ListMoved(ColliderStore& colliders);
+    static void UpdateTrees(const BodyStore& bodies, ColliderStore& colliders);
+    // a pair's bodies and shapes, its place in the hash table and in the lists of colors; a joint's there.
+    static void ClearColors(uint32_t bodies, ConstraintColoring& coloring);
+    // before: KeyOf it as it was.
+    static void AttachPair(const ColliderStore& colliders, PairStore& pairs, ConstraintColoring& coloring,
+                           uint32_t index, uint64_t before);
+    static void ListColor(ConstraintColoring& coloring, ConstraintColoring::Kind kind,
+                          const ConstraintColoring::Entry& entry, const ColorSlot& place);
+
+private:
+    // By which the hash table has a pair; kNoKey: it has not.
+    static constexpr uint64_t kNoKey = ~uint64_t{0};
+    static uint64_t KeyOf(const PairStore& pairs, uint32_t index) {
+        const Pair& pair = pairs.pairs[index];
+        return pair.exists && !pair.isMore ? PairStore::Key(pair.colliderA, pair.colliderB) : kNoKey;
+    }
+};
+
+template <class Stream>
+void SnapshotAccess::VisitHead(Stream& s, SnapshotHead& head) {
+    auto& [settings, step, lastSubstepDt, stiffnessDt, bodies, colliders, pairs, joints, keepsMassOverrides] = head;
+    s.Begin(SnapshotSection::Head);
+    s.Reserve(2048);
+    VisitSystemSettings(s, settings);
+    s(step, lastSubstepDt, stiffnessDt, bodies, colliders, pairs, joints, keepsMassOverrides);
+    s.EndBlock();
+}
+
+template <class Stream, class Bodies>
+void SnapshotAccess::VisitBodies(Stream& s, Bodies& bodies) {
+    auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, continuousCount,
+           reportsContacts, sleepChanges, notesSleepChanges, free, count] = bodies;
+    s.Begin(SnapshotSection::Bodies);
+    for (uint32_t i = 0; i < cold.size(); ++i) {
+        s.Reserve(kMostOfBody);
+        VisitBody(s, bodies, i);
+        EndElement(s, i);
+    }
+    s.EndBlock();
+    s.Begin(SnapshotSection::BodyLists);
+    s.Reserve(64);
+    s(continuousCount, count, reportsContacts.size_);
+    s.List(placed);
+    s.List(awake);
+    s.List(free);
+    s.List(reportsContacts.words_);
+    s.List(sleepChanges);
+    s.EndBlock();
+}
+
+template <class Stream, class Colliders>
+void SnapshotAccess::VisitColliders(Stream& s, Colliders& store) {
+    auto& [colliders, shapes, boundsOrigin, staticTree, movingTree, sensorTree, movingLayers, staticLayers, moved,
+           movedHasEmpty, runs, free, freeRuns] = store;
+    s.Begin(SnapshotSection::Colliders);
+    for (uint32_t i = 0; i < colliders.size(); ++i) {
+        s.Reserve(kMostOfCollider);
+        VisitCollider(s, colliders[i], !shapes[i].shape);
+        EndElement(s, i);
+    }
+    s.EndBlock();
+    s.Begin(SnapshotSection::ColliderLists);
+    s.Reserve(64);
+    s(boundsOrigin, movingLayers, staticLayers, movedHasEmpty);
+    s.List(runs);
+    VisitList(s, free, 0, [&](auto& firsts) { s.List(firsts); });
+    s.List(freeRuns);
+    s.EndBlock();
+}
+
+template <class Stream, class Pairs, class Attach>
+void SnapshotAccess::VisitPairs(Stream& s, Pairs& store, const Attach& attach) {
+    auto& [pairs, records, massOverrides, reported, ended, loads, loadVersion, active, table, free, links, heads, size,
+           keepsMassOverrides, keepsReported] = store;
+    s.Begin(SnapshotSection::Pairs);
+    const auto count = static_cast<uint32_t>(pairs.size());
+    for (uint32_t i = 0; i < count; ++i) {
+        constexpr uint32_t kAhead = 12;  // of what is read
+        if (i + kAhead < count) {
+            __builtin_prefetch(&pairs[i + kAhead]);
+            __builtin_prefetch(&pairs[i + kAhead].cache);
+            __builtin_prefetch(&records[i + kAhead]);
+        }
+        s.Reserve(kMostOfPair);
+        const uint64_t before = Stream::kWrites ? kNoKey : KeyOf(store, i);
+        bool isActive = active.Contains(i);
+        if (VisitPair(s, pairs[i], isActive)) {
+            auto& [next, previous] = links[i];
+            if (!pairs[i].isMore) s(next, previous);
+            VisitLoad(s, loads[i]);
+            VisitRecord(s, records[i], pairs[i].pointCount);
+            if (keepsMassOverrides && records[i].Has(ContactRecord::kMassOverride))
+                VisitMassOverride(s, massOverrides[i]);
+            if (keepsReported) VisitReported(s, reported[i]);
+            if constexpr (!Stream::kWrites)
+                if (isActive) active.Insert(i);
+        }
+        attach(i, before);
+        EndElement(s, i);
+    }
+    s.EndBlock();
+    s.Begin(SnapshotSection::PairLists);
+    s.Reserve(64);
+    s(size);
+    s.List(free);
+    s.List(heads);
+    VisitList(s, ended, 32, [&](auto& contact) { VisitReported(s, contact); });
+    s.EndBlock();
+}
+
+template <class Stream, class Joints>
+bool SnapshotAccess::VisitJoints(Stream& s, Joints& store) {
+    auto& [records, types, joints, gaps, breakable, first, free, count] = store;
+    s.Begin(SnapshotSection::Joints);
+    for (uint32_t i = 0; i < joints.size(); ++i) {
+        s.Reserve(kMostOfJoint);
+        bool isBreakable = breakable.Contains(i);
+        if (VisitJoint(s, joints[i], isBreakable)) {
+            VisitLoad(s, gaps[i]);
+            VisitJointRecord(s, records[i]);
+            if (!VisitType(s, *types[i])) return false;
+            if constexpr (!Stream::kWrites)
+                if (isBreakable) breakable.Insert(i);
+        }
+        EndElement(s, i);
+    }
+    s.EndBlock();
+    s.Begin(SnapshotSection::JointLists);
+    s.Reserve(64);
+    s(count);
+    s.List(first);
+    s.List(free);
+    s.EndBlock();
+    return true;
+}
+
+template <class Stream, class Sleeping>
+void SnapshotAccess::VisitSleeping(Stream& s, Sleeping& sleeping) {
+    auto& [islands, free] = sleeping;
+    s.Begin(SnapshotSection::Sleeping);
+    VisitList(s, islands, 0, [&](auto& bodies) { s.List(bodies); });
+    s.List(free);
+    s.EndBlock();
+}
+
+template <class Stream, class Sensors, class Changed>
+void SnapshotAccess::VisitSensors(Stream& s, Sensors& store, Changed& itsChanged) {
+    auto& [sensors, changed, events] = store;
+    s.Begin(SnapshotSection::Sensors);
+    VisitList(s, sensors, 0, [&](auto& sensor) {
+        auto& [id, sees, reportsStay, removed, inside, insideNext, ownEvents] = sensor;
+        s.Reserve(64);
+        s(id, sees, reportsStay, removed);
+        s.List(inside);
+    });
+    s.List(itsChanged);
+    VisitList(s, events, sizeof(SensorEvent), [&](auto& event) { VisitEvent(s, event); });
+    s.EndBlock();
+}
+
+// Names all members: those that are not used here are elsewhere, are of a step, or follow from the rest.
+template <class Stream, class World, class Step>
+void SnapshotAccess::VisitStep(Stream& s, World& world, Step& step, SavedEfforts& efforts) {
+    auto& [settings, ownJobs, jobs, listener, bodies, colliders, itsPairs, joints, coloring, sleeping, sensors, removed,
+           number, lock, outsideFatBounds] = world;
+    auto& [lastSubstepDt, stiffnessDt, report, findings, scratch, pairs, crowd, began, seams, solver, saved,
+           sleepCandidates, sweeps, sensing, events] = step;
+    auto& [deepOverlaps, dispersing, crowded] = crowd;
+    s.Begin(SnapshotSection::Step);
+    s.List(removed);
+    s.List(deepOverlaps);
+    VisitList(s, dispersing, 128, [&](auto& body) { VisitDispersing(s, body); });
+    s.List(crowded);
+    s.List(seams);
+    VisitList(s, events.broken, 32, [&](auto& joint) { VisitBroken(s, joint); });
+    VisitList(s, events.bodies, 64, [&](auto& body) { VisitReportedBody(s, body); });
+    s.Reserve(64);
+    s(efforts.areCurrent);
+    VisitList(s, efforts.groups, 32, [&](auto& group) { VisitSavedEffort(s, group); });
+    s.List(efforts.contacts);
+    s.EndBlock();
+}
+
+template <class Stream, class World>
+void SnapshotAccess::VisitUserData(Stream& s, World& world) {
+    s.Begin(SnapshotSection::UserData);
+    for (uint32_t i = 0; i < world.bodies.cold.size(); ++i) {
+        s.Reserve(sizeof(uint64_t));
+        if (world.bodies.cold[i].exists) s(world.bodies.cold[i].userData);
+        EndElement(s, i);
+    }
+    for (uint32_t i = 0; i < world.joints.joints.size(); ++i) {
+        s.Reserve(sizeof(uint64_t));
+        if (world.joints.joints[i].exists) s(world.joints.joints[i].userData);
+        EndElement(s, i);
+    }
+    s.EndBlock();
+}
+
+}  // namespace fulcrum

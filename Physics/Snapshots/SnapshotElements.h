@@ -1,0 +1,357 @@
+// What a snapshot has of settings, bodies, colliders, pairs and joints, number by number. Each structure names its
+// members once, all of them: it does not compile where one is left out, so that no new state is forgotten. A function
+// serves writer and reader, which gets elements that are to be written over. See Snapshots.md for what is left out.
+#pragma once
+
+#include <Fulcrum/Physics/Snapshots/SnapshotStream.h>
+#include <Fulcrum/Physics/Stages/StepState.h>
+#include <Fulcrum/Physics/World/WorldState.h>
+
+#include <array>
+#include <cmath>
+
+namespace fulcrum {
+
+template <>
+struct IsPlain<BodyId> : std::true_type {};
+template <>
+struct IsPlain<JointId> : std::true_type {};
+template <>
+struct IsPlain<ColliderRun> : std::true_type {};
+template <>
+struct IsPlain<SolvedContact> : std::true_type {};
+// Fifteen floats, two bytes and sixteen bits: no padding.
+template <>
+struct IsPlain<BodyDynamics> : std::true_type {};
+static_assert(sizeof(BodyId) == 8 && sizeof(JointId) == 8 && sizeof(ColliderRun) == 12 && sizeof(SolvedContact) == 8);
+
+// Bits of a byte, which are no objects of their own.
+template <class Stream, class... Bits>
+uint8_t VisitBits(Stream& s, Bits... bits) {
+    uint8_t all = 0;
+    if constexpr (Stream::kWrites) {
+        int place = 0;
+        ((all = static_cast<uint8_t>(all | unsigned{bits} << place++)), ...);
+    }
+    s(all);
+    return all;
+}
+
+template <class Stream, class Spring>
+void VisitSpring(Stream& s, Spring& spring) {
+    auto& [mode, frequency, dampingRatio, stiffness, damping, form] = spring;
+    s(mode, frequency, dampingRatio, stiffness, damping, form);
+}
+
+template <class Stream, class Control>
+void VisitControl(Stream& s, Control& control) {
+    auto& [limited, limits, motor, friction] = control;
+    auto& [min, max, limitSpring] = limits;
+    auto& [mode, targetSpeed, targetPosition, motorSpring, minForce, maxForce] = motor;
+    s(limited, min, max, mode, targetSpeed, targetPosition, minForce, maxForce, friction);
+    VisitSpring(s, limitSpring);
+    VisitSpring(s, motorSpring);
+}
+
+template <class Stream, class Settings>
+void VisitSystemSettings(Stream& s, Settings& settings) {
+    auto& [gravity, solver, accuracy, sleep, events, narrowPhase, speculativeDistance, penetrationSlop,
+           contactFrequency, contactDampingRatio, contactPushSpeed, depenetrationSpeed, jointFrequency,
+           jointDampingRatio, exactJointLoad, jointPushSpeed, restitutionSpeed, boundsMargin, layerCollides] = settings;
+    auto& [substeps, velocityIterations, positionIterations, positionCorrection, baumgarte, baumgarteSlop] = solver;
+    auto& [penetration, jointError, mostSubsteps, largeIslands] = accuracy;
+    auto& [sleepEnabled, sleepSeconds, sleepSpeed] = sleep;
+    auto& [reportsContacts, reportsStays, reportsBodies] = events;
+    s(gravity, substeps, velocityIterations, positionIterations, positionCorrection, baumgarte, baumgarteSlop);
+    s(penetration, jointError, mostSubsteps, largeIslands, sleepEnabled, sleepSeconds, sleepSpeed, narrowPhase);
+    s(speculativeDistance, penetrationSlop, contactFrequency, contactDampingRatio, contactPushSpeed);
+    s(depenetrationSpeed, jointFrequency, jointDampingRatio, exactJointLoad, jointPushSpeed, restitutionSpeed);
+    s(boundsMargin, layerCollides, reportsContacts, reportsStays, reportsBodies);
+}
+
+template <class Stream, class Override>
+void VisitMassOverride(Stream& s, Override& massOverride) {
+    auto& [massA, inertiaA, massB, inertiaB] = massOverride;
+    s(massA, inertiaA, massB, inertiaB);
+}
+
+template <class Stream, class Load>
+void VisitLoad(Stream& s, Load& load) {
+    auto& [level, recent, steps, stiffness] = load;
+    s(level, recent, steps, stiffness);
+}
+
+template <class Stream, class Effort>
+void VisitEffort(Stream& s, Effort& effort) {
+    auto& [substeps, velocityIterations, positionIterations] = effort;
+    s(substeps, velocityIterations, positionIterations);
+}
+
+// ---- Bodies
+
+// What an element of a body holds at most, its filter and children included.
+inline constexpr size_t kMostOfBody = 512;
+
+// Without the group's filter.
+template <class Stream, class Filter>
+void VisitFilter(Stream& s, Filter& filter) {
+    auto& [category, mask, group] = filter;
+    s(category, mask, group.group, group.subGroup);
+    if constexpr (!Stream::kWrites) group.filter = nullptr;
+}
+
+// Without the compound.
+template <class Stream, class Children>
+void VisitChildren(Stream& s, Children& children) {
+    auto& [compound, origin, massUnit, moreColliders] = children;
+    s(origin, massUnit, moreColliders);
+}
+
+// Of an index without a body the generation is all that counts. A body that was removed has its colliders until the
+// next step.
+template <class Stream, class Cold>
+bool VisitCold(Stream& s, Cold& body) {
+    auto& [shape, userData, material, force, torque, filter, firstCollider, colliderCount, children, generation,
+           awakePlace, sleepingIsland, continuous, exists, placed, removed, isSensor] = body;
+    s(generation);
+    const uint8_t bits = VisitBits(s, exists, placed, removed, isSensor, filter != nullptr, children != nullptr);
+    if constexpr (!Stream::kWrites) {
+        exists = bits & 1;
+        placed = bits >> 1 & 1;
+        removed = bits >> 2 & 1;
+        isSensor = bits >> 3 & 1;
+        if (!(bits >> 4 & 1)) filter = nullptr;
+        else if (!filter) filter = std::make_unique<BodyFilter>();
+        if (!(bits >> 5 & 1)) children = nullptr;
+        else if (!children) children = std::make_unique<BodyChildren>();
+        if (!exists && !removed) {
+            const uint32_t itsGeneration = generation;
+            body = {};
+            generation = itsGeneration;
+        }
+    }
+    if (!exists && !removed) return false;
+    auto& [friction, restitution, frictionRule, restitutionRule] = material;
+    s(friction, restitution, frictionRule, restitutionRule, firstCollider, colliderCount, sleepingIsland, continuous);
+    if (filter) VisitFilter(s, *filter);
+    if (children) VisitChildren(s, *children);
+    return true;
+}
+
+// userData is a section of its own; the others follow from lists.
+template <class Stream, class Bodies>
+void VisitBody(Stream& s, Bodies& bodies, uint32_t i) {
+    auto& state = bodies.states[i];
+    auto& mass = bodies.masses[i];
+    auto& pose = bodies.poses[i];
+    auto& dynamics = bodies.dynamics[i];
+    auto& cold = bodies.cold[i];
+    auto& remainder = bodies.remainders[i];
+    if constexpr (!Stream::kWrites) state = {};
+    if (!VisitCold(s, cold)) {
+        if constexpr (!Stream::kWrites) mass = {}, pose = {}, dynamics = {};
+        return;
+    }
+    // Displacements are those of a step, zero between steps.
+    auto& [linear, angular, nearFixed, marks, deltaPosition, deltaRotation, halfTurn] = state;
+    auto& [inverseInertia, inverseMass, turns] = mass;
+    auto& [rotation, acceleration, boundsChangedIn, position, innerRadius, spare] = pose;
+    s(linear, angular, nearFixed, marks, inverseInertia, inverseMass, turns, rotation, acceleration, boundsChangedIn,
+      position, innerRadius, dynamics, remainder.value, remainder.isGiven);
+    if (dynamics.hasForce) s(cold.force, cold.torque);
+    else if constexpr (!Stream::kWrites) cold.force = cold.torque = Vector3::Zero();
+}
+
+// ---- Colliders
+
+inline constexpr size_t kMostOfCollider = 64;
+
+// Of an empty one only counts whether it waits in a list. The piece follows from the body's shape.
+template <class Stream, class Collider>
+void VisitCollider(Stream& s, Collider& collider, bool isEmpty) {
+    auto& [fat, previous, body, moving, queued, sensor] = collider;
+    const auto isSame = [](const Bounds& a, const Bounds& b) { return std::memcmp(&a, &b, sizeof a) == 0; };
+    bool isFat = false, isNone = false;
+    if constexpr (Stream::kWrites) {
+        isFat = !isEmpty && isSame(previous, fat);
+        isNone = !isEmpty && !isFat && isSame(previous, Bounds{});
+    }
+    const uint8_t bits = VisitBits(s, isEmpty, moving && !isEmpty, queued, sensor && !isEmpty, isFat, isNone);
+    if constexpr (!Stream::kWrites) {
+        collider = {};
+        isEmpty = bits & 1;
+        queued = bits >> 2 & 1;
+        if (isEmpty) return;
+        moving = bits >> 1 & 1;
+        sensor = bits >> 3 & 1;
+        isFat = bits >> 4 & 1;
+        isNone = bits >> 5 & 1;
+    }
+    if (isEmpty) return;
+    s(fat);
+    if (!isFat && !isNone) s(previous);
+    else if constexpr (!Stream::kWrites) previous = isFat ? fat : Bounds{};
+}
+
+// ---- Pairs
+
+inline constexpr size_t kMostOfPair = 512;
+
+// Without the shapes and bodies, which are those of the colliders. What only the points of a contact give a meaning to
+// is left out where there are none. False: there is none.
+template <class Stream, class Pair>
+bool VisitPair(Stream& s, Pair& pair, bool& isActive) {
+    auto& [bodyA, bodyB, colliderA, colliderB, shapeA, shapeB, reference, pointCount, exists, fixedB, offset, surface,
+           touching, onSeam, isMore, material, cache, features, color, more, triangle] = pair;
+    auto& [kind, indexA, indexB, axis] = cache;
+    const uint8_t bits = VisitBits(s, exists, fixedB, offset, surface, touching, onSeam, isMore, isActive);
+    if constexpr (!Stream::kWrites) {
+        exists = bits & 1;
+        fixedB = bits >> 1 & 1;
+        offset = bits >> 2 & 1;
+        surface = bits >> 3 & 1;
+        touching = bits >> 4 & 1;
+        onSeam = bits >> 5 & 1;
+        isMore = bits >> 6 & 1;
+        isActive = bits >> 7 & 1;
+        material = 0;
+        more = ~0u;
+        triangle = 0;
+        color.slot = 0;
+    }
+    if (!exists) return false;
+    s(colliderA, colliderB, pointCount, color.color, kind);
+    if (color.color != ColorSlot{}.color) s(color.slot);
+    if (kind != PairCache::Kind::None) s(indexA, indexB, axis);
+    else if constexpr (!Stream::kWrites) cache = {};
+    if (surface) s(material, more, triangle);
+    if (surface || pointCount > 0) s(reference);
+    for (uint32_t i = 0; i < std::min<uint32_t>(pointCount, Manifold::kMaxPoints); ++i) s(features[i]);
+    return true;
+}
+
+// Of a pair with so many points.
+template <class Stream, class Record>
+void VisitRecord(Stream& s, Record& record, uint32_t points) {
+    auto& [normal, pointCount, friction, restitution, twistRadius, marks, impulse, frictionImpulse, twistImpulse, all] =
+        record;
+    s(friction, restitution, marks);
+    if (points == 0) return;
+    s(normal, pointCount, twistRadius, impulse, frictionImpulse, twistImpulse);
+    for (uint32_t i = 0; i < std::min<uint32_t>(points, ContactRecord::kMaxPoints); ++i) {
+        auto& [onA, surfaceA, onB, surfaceB] = all[i];
+        s(onA, onB);
+    }
+    if (!record.Has(ContactRecord::kSurfaceVelocity)) return;
+    for (int i = 0; i < ContactRecord::kSurfacePoints; ++i) s(all[i].surfaceA, all[i].surfaceB);
+}
+
+// ---- Joints
+
+inline constexpr size_t kMostOfJoint = 1024 + 2 * sizeof(float) * JointRowList::kMaxRows;
+
+template <class Stream, class Record>
+void VisitJointRecord(Stream& s, Record& record) {
+    auto& [anchorA, anchorB, lineAxis, freeAxis, frameA, frameB, ownImpulse, ownAngularImpulse, wasPulled,
+           secondsOfTeleport, lockForce, lockTorque, lockSpare, totalForce, totalTorque, totalSpare] = record;
+    if constexpr (!Stream::kWrites) record = {};
+    s(anchorA, anchorB, lineAxis, freeAxis, frameA, frameB, ownImpulse, ownAngularImpulse, wasPulled,
+      secondsOfTeleport);
+    s(lockForce, lockTorque, totalForce, totalTorque);
+}
+
+// Without the type. False: there is none.
+template <class Stream, class Joint>
+bool VisitJoint(Stream& s, Joint& joint, bool& isBreakable) {
+    auto& [body, next, type, locks, maxRows, color, generation, exists, enabled, collideConnected, overridesMass, still,
+           priority, breakForce, breakTorque, effort, massOverride, userData, teleportedBefore] = joint;
+    s(generation, exists);
+    if (!exists) return false;
+    auto& [linear, angular, line, axis] = locks;
+    s(body, next, linear, angular, line, axis, maxRows, color.color);
+    if constexpr (!Stream::kWrites) color.slot = 0;
+    if (color.color != ColorSlot{}.color) s(color.slot);
+    s(isBreakable, enabled, collideConnected, overridesMass, still, priority, breakForce, breakTorque);
+    VisitEffort(s, effort);
+    if (overridesMass) VisitMassOverride(s, massOverride);
+    else if constexpr (!Stream::kWrites) massOverride = {};
+    s(teleportedBefore);
+    return true;
+}
+
+// What a type carries from step to step, and what is set along its axes. Its constants are a section of their own.
+// False: the type has other state than what is read.
+template <class Stream>
+bool VisitType(Stream& s, JointType& type) {
+    s(type.impulses, type.forces, type.turnedA, type.turnedB);
+    const std::span<double> state = type.State();
+    uint32_t count = static_cast<uint32_t>(state.size());
+    s(count);
+    if (count != state.size()) return false;
+    s.Reserve(count * sizeof(double) + kMostOfJoint);
+    for (double& number : state) s(number);
+    for (int axis = 0; axis < 6; ++axis) {
+        AxisControl* control = type.Control(static_cast<JointAxis>(axis));
+        bool is = control != nullptr;
+        s(is);
+        if (is != (control != nullptr)) return false;
+        if (control) VisitControl(s, *control);
+    }
+    return true;
+}
+
+// ---- What is listed
+
+template <class Stream, class Body>
+void VisitDispersing(Stream& s, Body& dispersing) {
+    auto& [body, direction, hasPlace, place, secondsLeft, startStep, push, ownVelocity] = dispersing;
+    s(body, direction, hasPlace, place, secondsLeft, startStep, push, ownVelocity);
+}
+
+template <class Stream, class Event>
+void VisitEvent(Stream& s, Event& event) {
+    auto& [sensor, body, kind, time] = event;
+    s(sensor, body, kind, time);
+}
+
+// ---- Events: what the next ones follow from
+
+// Without what is of one step.
+template <class Stream, class Contact>
+void VisitReported(Stream& s, Contact& contact) {
+    auto& [bodyA, bodyB, childA, childB, isOn, kind, manifoldCount] = contact;
+    if constexpr (!Stream::kWrites) contact = {};
+    s(isOn);
+    if (isOn) s(bodyA, bodyB, childA, childB);
+}
+
+template <class Stream, class Body>
+void VisitReportedBody(Stream& s, Body& body) {
+    auto& [position, rotation, generation, isAwake] = body;
+    s(position, rotation, generation, isAwake);
+}
+
+template <class Stream, class Broken>
+void VisitBroken(Stream& s, Broken& joint) {
+    auto& [id, force, torque] = joint;
+    s(id, force, torque);
+}
+
+template <class Stream, class Group>
+void VisitSavedEffort(Stream& s, Group& group) {
+    auto& [body, culprit, effort, stiffness, wantedStiffness] = group;
+    s(body, culprit, stiffness, wantedStiffness);
+    VisitEffort(s, effort);
+}
+
+// A list whose elements are visited one by one, each of at most `most` bytes.
+template <class Stream, class List, class Visit>
+void VisitList(Stream& s, List& list, size_t most, Visit&& visit) {
+    uint32_t count = static_cast<uint32_t>(list.size());
+    s.Reserve(sizeof count + list.size() * most);
+    s(count);
+    if constexpr (!Stream::kWrites) list.resize(s.HasFailed() ? 0 : count);
+    for (auto& element : list) visit(element);
+}
+
+}  // namespace fulcrum

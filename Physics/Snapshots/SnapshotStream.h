@@ -1,0 +1,210 @@
+// How snapshots are written and read: numbers one after the other, without padding, in blocks. Writer and reader are
+// called alike, so that one function describes an element for both. A block is hashed as it is written, while it is in
+// the cache. Used by Snapshots/; one thread.
+#pragma once
+
+#include <Fulcrum/Math/Assert.h>
+#include <Fulcrum/Math/Bounds.h>
+#include <Fulcrum/Math/Hash.h>
+#include <Fulcrum/Math/Pose.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+namespace fulcrum {
+
+// What arrays of a snapshot hold: deltas compare it with the same block of the same section of another snapshot.
+enum class SnapshotSection : uint8_t {
+    Head,
+    Shapes,
+    Compounds,
+    GroupFilters,
+    JointTypes,
+    Bodies,
+    BodyLists,
+    Colliders,
+    ColliderLists,
+    Pairs,
+    PairLists,
+    Joints,
+    JointLists,
+    Sleeping,
+    Sensors,
+    Step,
+    UserData,  // the last; no part of the state, as far as HashState is concerned
+};
+
+// One for each block, behind the data.
+struct SnapshotBlock {
+    uint32_t size;  // bytes
+    uint32_t key;   // section << 24 | number of the block within it
+    SnapshotSection Section() const { return static_cast<SnapshotSection>(key >> 24); }
+};
+
+struct SnapshotHeader {
+    uint64_t magic, format;  // see SnapshotFormat
+    uint64_t dataSize;       // bytes, of all blocks
+    uint64_t stateHash;      // of the blocks before UserData: HashState
+    uint64_t dataHash;       // of all blocks
+    uint64_t blocks;         // their number
+    uint64_t checksum;       // of the rows above and the table of blocks
+};
+static_assert(std::has_unique_object_representations_v<SnapshotHeader>);
+
+// What has no padding and owns nothing.
+template <class T>
+struct IsPlain : std::bool_constant<std::is_arithmetic_v<T> || std::is_enum_v<T> || std::is_same_v<T, std::byte>> {};
+template <class Real>
+struct IsPlain<Vec3<Real>> : std::true_type {};
+template <class Real>
+struct IsPlain<Quat<Real>> : std::true_type {};
+template <>
+struct IsPlain<Bounds> : std::true_type {};
+template <>
+struct IsPlain<RelativePose> : std::true_type {};
+template <class T, size_t kCount>
+struct IsPlain<T[kCount]> : IsPlain<T> {};
+template <class T, size_t kCount>
+struct IsPlain<std::array<T, kCount>> : IsPlain<T> {};
+static_assert(sizeof(Bounds) == 24 && sizeof(RelativePose) == 28 && sizeof(Position) == 24);
+
+// A call with several numbers costs less than several calls: places are kept in registers meanwhile, which the
+// compiler cannot do by itself, since bytes that are written might be the place.
+class SnapshotWriter {
+public:
+    static constexpr bool kWrites = true;
+
+    // Writes to `bytes`, from its beginning, which grow as needed; or, with keeps = false, only hashes, and uses them
+    // as room.
+    SnapshotWriter(std::vector<std::byte>& bytes, std::vector<SnapshotBlock>& blocks, bool keeps)
+        : bytes_(bytes), blocks_(blocks), keeps_(keeps) {
+        blocks_.clear();
+        Reserve(sizeof(SnapshotHeader));
+        if (keeps) at_ = blockStart_ += sizeof(SnapshotHeader);
+    }
+
+    // Before numbers are written: at most so many bytes follow until the next Reserve.
+    void Reserve(size_t bytes) {
+        if (bytes > static_cast<size_t>(end_ - at_)) [[unlikely]]
+            Grow(bytes);
+    }
+    template <class... T>
+    void operator()(const T&... values) {
+        static_assert((IsPlain<T>::value && ...));
+        FULCRUM_ASSERT((sizeof(T) + ...) <= static_cast<size_t>(end_ - at_));
+        std::byte* at = at_;
+        ((std::memcpy(at, &values, sizeof values), at += sizeof values), ...);
+        at_ = at;
+    }
+    // Numbers of any number, after a Reserve of their own.
+    template <class T>
+    void List(const std::vector<T>& values) {
+        static_assert(IsPlain<T>::value);
+        Reserve(sizeof(uint32_t) + values.size() * sizeof(T));
+        (*this)(static_cast<uint32_t>(values.size()));
+        if (values.empty()) return;
+        std::memcpy(at_, values.data(), values.size() * sizeof(T));
+        at_ += values.size() * sizeof(T);
+    }
+    void Begin(SnapshotSection section) { key_ = static_cast<uint32_t>(section) << 24; }
+    // Ends a block of the section, if there is anything in it.
+    void EndBlock() {
+        const auto size = static_cast<size_t>(at_ - blockStart_);
+        if (size == 0) return;
+        blocks_.push_back({static_cast<uint32_t>(size), key_++});
+        hash_ = HashWord(hash_, HashBytes(blockStart_, size));
+        if (keeps_) blockStart_ = at_;
+        else at_ = blockStart_;
+    }
+
+    uint64_t Hash() const { return hash_; }  // of the blocks so far
+    size_t Size() const { return static_cast<size_t>(at_ - bytes_.data()); }
+
+private:
+    // By an eighth at least: what is new is written twice, with zeros first.
+    void Grow(size_t bytes) {
+        const size_t at = Size(), start = static_cast<size_t>(blockStart_ - bytes_.data());
+        bytes_.resize(std::max(at + bytes, bytes_.size() + bytes_.size() / 8));
+        at_ = bytes_.data() + at;
+        blockStart_ = bytes_.data() + start;
+        end_ = bytes_.data() + bytes_.size();
+    }
+
+    std::vector<std::byte>& bytes_;
+    std::vector<SnapshotBlock>& blocks_;
+    bool keeps_;
+    std::byte *at_ = bytes_.data(), *blockStart_ = at_, *end_ = at_ + bytes_.size();
+    uint64_t hash_ = kHashSeed;
+    uint32_t key_ = 0;
+};
+
+// Of data whose hash is right; still it never reads beyond them: then it gives zeros, and HasFailed is true.
+class SnapshotReader {
+public:
+    static constexpr bool kWrites = false;
+
+    explicit SnapshotReader(std::span<const std::byte> data) : at_(data.data()), end_(data.data() + data.size()) {}
+
+    template <class... T>
+    void operator()(T&... values) {
+        static_assert((IsPlain<T>::value && ...));
+        if (!Has((sizeof(T) + ...))) [[unlikely]] {
+            (std::memset(static_cast<void*>(&values), 0, sizeof values), ...);
+            return;
+        }
+        const std::byte* at = at_;
+        ((std::memcpy(static_cast<void*>(&values), at, sizeof values), at += sizeof values), ...);
+        at_ = at;
+    }
+    template <class T>
+    T Get() {
+        T value{};
+        (*this)(value);
+        return value;
+    }
+    template <class T>
+    void List(std::vector<T>& values) {
+        static_assert(IsPlain<T>::value);
+        const size_t count = Get<uint32_t>();
+        values.resize(Has(count * sizeof(T)) ? count : 0);
+        Raw(values.data(), values.size() * sizeof(T));
+    }
+    void Raw(void* to, size_t size) {
+        if (size == 0 || !Has(size)) return;
+        std::memcpy(to, at_, size);
+        at_ += size;
+    }
+    void Reserve(size_t) {}
+    void Begin(SnapshotSection) {}
+    void EndBlock() {}
+    bool HasFailed() const { return hasFailed_; }
+    bool IsAtEnd() const { return at_ == end_; }
+
+private:
+    bool Has(size_t size) {
+        if (size > static_cast<size_t>(end_ - at_)) [[unlikely]] {
+            hasFailed_ = true;
+            at_ = end_;
+        }
+        return !hasFailed_;
+    }
+
+    const std::byte* at_;
+    const std::byte* end_;
+    bool hasFailed_ = false;
+};
+
+// Elements of an array end a block after so many: what does not change stays a block of its own in deltas.
+inline constexpr uint32_t kElementsPerBlock = 64;
+template <class Stream>
+void EndElement(Stream& stream, uint32_t index) {
+    if (index % kElementsPerBlock == kElementsPerBlock - 1) stream.EndBlock();
+}
+
+}  // namespace fulcrum
