@@ -43,7 +43,7 @@ const std::map<std::string, std::vector<std::string>> kAllowedPartsOfPhysics = {
 };
 // Headers that the parts below may include, too: plain data, what users derive from, checks of what they pass in. They
 // include nothing else of Physics.
-const std::array<std::string, 10> kSharedHeaders = {
+const std::array<std::string, 11> kSharedHeaders = {
     "Physics/Settings.h",    "Physics/JointSettings.h", "Physics/GroupFilter.h", "Physics/ContactListener.h",
     "Physics/SensorEvent.h", "Physics/StepEvents.h",    "Physics/StepReport.h",  "Physics/QueryTypes.h",
     "Physics/Misuse.h",      "Physics/Validation.h",    "Physics/Snapshot.h",
