@@ -16,7 +16,7 @@ struct ContactTolerances {
     float feature;  // m: vertices this close to the extreme one belong to the supporting feature
     // A face of A is also preferred if the cosine between its normal and the best axis is at least this.
     float faceOfACosine = 2;
-    float closing = 0;  // m, of contacts with surfaces: by so much the shape comes closer within the step
+    float closing = 0;  // m, of contacts with surfaces: by so much the shape moves towards it within the step
     bool facesAhead;    // whether contacts of edges get points of the adjacent faces, too
 
     // `innerRadii`: the sum of the radii of the balls inside the two cores, or a size for flat ones; `rounding`: of

@@ -51,8 +51,11 @@ struct PointWeights {
     float least = 1.0f;  // 0 .. 1; 1: as much as any
     float closing = 0;   // m, >= 0: by so much the shape comes closer within the step
 };
-// For points on triangles of a surface, which lie in several planes.
-inline PointWeights WeightsOnSurfaces(float closing) { return {0.02f, closing}; }
+// For points on triangles of a surface, which lie in several planes. motion: m, towards the surface within the step;
+// what rocks to rest moves by less than a tenth of the shape's inner radius, m.
+inline PointWeights WeightsOnSurfaces(float motion, float innerRadius) {
+    return {0.02f, Max(motion - 0.1f * innerRadius, 0.0f)};
+}
 
 // Writes the chosen indices in increasing order and returns how many: first a deepest point, then the point farthest
 // from it, then those that span the largest area on each side of the line of the two; where all are on one side,

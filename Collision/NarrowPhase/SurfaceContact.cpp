@@ -67,8 +67,8 @@ public:
         std::vector<TriangleView>& views = contacts_.views_;
         for (size_t first = 0; first < views.size(); first += 8)
             CollideBatch(probe, first, std::min<size_t>(views.size() - first, 8));
-        MergeContacts(contacts_.filter_.Resolve(), 1e-3f * a_.InnerRadius(), Vector3(axes_ * motion_),
-                      contacts_.manifolds_, contacts_.manifoldCount_);
+        MergeContacts(contacts_.filter_.Resolve(), a_.InnerRadius(), Vector3(axes_ * motion_), contacts_.manifolds_,
+                      contacts_.manifoldCount_);
         const InnerBall ball{a_.InnerRadius(), center_, motion_};
         if (contacts_.manifoldCount_ > 0 && ball.MovesFar()) AddInnerBall(ball);
     }
@@ -229,7 +229,7 @@ private:
         for (const Vector3& corner : triangle.corners)
             size = Min(size, LengthSquared(Vector3(corner - triangle.middle)));
         ContactTolerances tolerances(core_.size + Sqrt(size), core_.radius, settings_);
-        tolerances.closing = Max(-Dot(view.normal, motion_), 0.0f);
+        tolerances.closing = -Dot(view.normal, motion_);
         Manifold onFace;
         const FaceContact contact =
             BuildTriangleFaceContact(core_, incident, triangle, batch.separation[lane], tolerances, onFace);

@@ -18,12 +18,12 @@ constexpr size_t kMostManifolds = 128;
 // Points of several manifolds, along one normal.
 class PointMerger {
 public:
-    PointMerger(const Vector3& normal, float slop, const Vector3& motion)
+    PointMerger(const Vector3& normal, float innerRadius, const Vector3& motion)
         : normal_(normal),
           u_(Perpendicular(normal)),
           v_(Cross<float>(normal, u_)),
-          slop_(slop),
-          weighting_(WeightsOnSurfaces(Max(Dot(normal, motion), 0.0f))) {}
+          slop_(1e-3f * innerRadius),
+          weighting_(WeightsOnSurfaces(Dot(normal, motion), innerRadius)) {}
 
     void Add(const Manifold& manifold) {
         for (int i = 0; i < manifold.pointCount; ++i) Add(manifold.points[i], manifold.normal);
@@ -75,7 +75,7 @@ private:
 };
 
 // Contact `first`, merged with all later ones in its direction, which are left without points.
-SurfaceManifold MergeSimilar(std::vector<SurfaceManifold>& contacts, size_t first, float depthSlop,
+SurfaceManifold MergeSimilar(std::vector<SurfaceManifold>& contacts, size_t first, float innerRadius,
                              const Vector3& motion) {
     SurfaceManifold merged = contacts[first];
     contacts[first].manifold.pointCount = 0;
@@ -84,7 +84,7 @@ SurfaceManifold MergeSimilar(std::vector<SurfaceManifold>& contacts, size_t firs
                Dot(other.manifold.normal, merged.manifold.normal) >= kSameDirection;
     };
     if (std::none_of(contacts.begin() + static_cast<ptrdiff_t>(first) + 1, contacts.end(), isSame)) return merged;
-    PointMerger points(merged.manifold.normal, depthSlop, motion);
+    PointMerger points(merged.manifold.normal, innerRadius, motion);
     points.Add(merged.manifold);
     for (size_t i = first + 1; i < contacts.size(); ++i) {
         if (!isSame(contacts[i])) continue;
@@ -102,7 +102,7 @@ SurfaceManifold& AppendManifold(std::vector<SurfaceManifold>& manifolds, size_t&
     return manifolds[count++];
 }
 
-void MergeContacts(std::vector<SurfaceManifold>& contacts, float depthSlop, const Vector3& motion,
+void MergeContacts(std::vector<SurfaceManifold>& contacts, float innerRadius, const Vector3& motion,
                    std::vector<SurfaceManifold>& manifolds, size_t& count) {
     if (contacts.size() > 1)
         std::sort(contacts.begin(), contacts.end(), [](const SurfaceManifold& x, const SurfaceManifold& y) {
@@ -112,7 +112,7 @@ void MergeContacts(std::vector<SurfaceManifold>& contacts, float depthSlop, cons
     count = 0;
     for (size_t i = 0; i < contacts.size() && count < kMostManifolds; ++i) {
         if (contacts[i].manifold.pointCount == 0) continue;  // merged into another
-        AppendManifold(manifolds, count) = MergeSimilar(contacts, i, depthSlop, motion);
+        AppendManifold(manifolds, count) = MergeSimilar(contacts, i, innerRadius, motion);
     }
 }
 

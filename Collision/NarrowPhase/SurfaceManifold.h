@@ -28,9 +28,9 @@ inline float DeepestSeparation(const Manifold& manifold) {
 SurfaceManifold& AppendManifold(std::vector<SurfaceManifold>& manifolds, size_t& count);
 
 // Writes manifolds[0 .. count): contacts in nearly the same direction and on the same material become one manifold,
-// with the normal of the deepest and at most four of their points. Changes `contacts`. depthSlop: m. motion: m, of the
-// shape relative to the surface within the step.
-void MergeContacts(std::vector<SurfaceManifold>& contacts, float depthSlop, const Vector3& motion,
+// with the normal of the deepest and at most four of their points. Changes `contacts`. innerRadius: m, of the shape.
+// motion: m, of the shape relative to the surface within the step.
+void MergeContacts(std::vector<SurfaceManifold>& contacts, float innerRadius, const Vector3& motion,
                    std::vector<SurfaceManifold>& manifolds, size_t& count);
 
 }  // namespace fulcrum

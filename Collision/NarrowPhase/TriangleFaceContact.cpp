@@ -36,8 +36,9 @@ FaceContact BuildTriangleFaceContact(const Polyhedron& core, int incidentFace, c
     }
 
     int chosen[4];
-    manifold.pointCount = clipped.ChooseFourWithin(tolerances.reach, normal, tolerances.prefer, chosen,
-                                                   WeightsOnSurfaces(tolerances.closing));
+    manifold.pointCount =
+        clipped.ChooseFourWithin(tolerances.reach, normal, tolerances.prefer, chosen,
+                                 WeightsOnSurfaces(tolerances.closing, core.innerRadius + core.radius));
     for (int i = 0; i < manifold.pointCount; ++i) {
         const int c = chosen[i];
         manifold.points[i] = {clipped[c] + manifold.normal * core.radius, clipped.Separation(c) - core.radius,
