@@ -46,11 +46,11 @@ FULCRUM_FORCE_INLINE Vec3<Real> AddGyroscopicTorque(const Vec3<Real>& inverseIne
     const Vec3<Real> rate(scale * (i[0] * i[0] * (i[2] - i[1])), scale * (i[1] * i[1] * (i[0] - i[2])),
                           scale * (i[2] * i[2] * (i[1] - i[0])));
     const Vec3<Real> inertia(i[1] * i[2], i[2] * i[0], i[0] * i[1]);  // times the product
-    // What is no small change, as a push, is no reaction to gyroscopic torque, and feels none.
+    const Vec3<Real> start(Dot<Real>(axes.x, w), Dot<Real>(axes.y, w), Dot<Real>(axes.z, w));
+    // What is no small change, as a pull from afar, is no answer to gyroscopic torque.
     const Real part = Select(Dot<Real>(other, other) < Real(0.0625f) * Dot<Real>(w, w), Real(1.0f), Real(0.0f));
-    const Vec3<Real> reaction = other * part, push = other - reaction, own = w - push;
-    const Vec3<Real> start(Dot<Real>(axes.x, own), Dot<Real>(axes.y, own), Dot<Real>(axes.z, own));
-    const Vec3<Real> added(Dot<Real>(axes.x, reaction), Dot<Real>(axes.y, reaction), Dot<Real>(axes.z, reaction));
+    const Vec3<Real> added =
+        Vec3<Real>(Dot<Real>(axes.x, other), Dot<Real>(axes.y, other), Dot<Real>(axes.z, other)) * part;
     const auto energyOf = [&](const Vec3<Real>& u, const Vec3<Real>& v) {
         return inertia.x() * u.x() * v.x() + inertia.y() * u.y() * v.y() + inertia.z() * u.z() * v.z();
     };

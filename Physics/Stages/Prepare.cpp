@@ -246,7 +246,8 @@ void FillTogether(const RowFiller& filler, const SolverLayout& layout, const Sol
 void Prepare(const StepContext& step, const BodyStore& bodies, const ConstraintColoring& coloring,
              const CrowdState& crowd, PairStore& pairs, JointStore& joints, SolverLayout& layout,
              const StepWorkers& workers, StepReport& report) {
-    layout.notes.resize(step.settings.events.contacts ? pairs.pairs.size() : 0);
+    // Of contacts that are not solved in this step, too: their bodies are frozen, say.
+    layout.notes.assign(step.settings.events.contacts ? pairs.pairs.size() : 0, {});
     if (coloring.Size() == 0) return;
     const auto fillerOf = [&](const SolverGroup& group) {
         return RowFiller(step, bodies, crowd, EffortOf(step, group), pairs, joints, layout);

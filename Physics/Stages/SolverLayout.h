@@ -100,7 +100,7 @@ struct SolverLayout {
     uint64_t jointVersion = 0;              // of the coloring that this list was made from
     JointTrees trees;
     std::vector<uint32_t> treesByGroup;  // indices of trees
-    std::vector<ContactNote> notes;      // by pair, of those in batches; empty without contact events
+    std::vector<ContactNote> notes;      // by pair, zero but of those in batches; empty without contact events
     uint32_t colorCount = 0;             // colors in use
     uint32_t islands = 0;
     uint64_t version = 0;      // of the coloring that this was made from

@@ -9,7 +9,7 @@ namespace {
 // Bodies are at rest in the beginning: what they get is the work of gravity, motors and springs, and the rest of the
 // last push. Not judged: drives on the ground or within the substeps of a step, whose powers nobody sees, and racks on
 // the ground (Docs/Joints.md).
-constexpr double kLeftBehind = 2.5;  // J, of bodies of 0.4 and 1 t
+constexpr double kLeftBehind = 5;  // J, of bodies of 0.4 and 1 t
 
 void ExpectAllToRecover(Kind kind, uint32_t count) {
     for (uint32_t i = 0; i < count; ++i) {
