@@ -66,10 +66,11 @@ int ChooseOfFace(const Polyhedron& core, const Vector3& down, float depthSlop, c
     }
     int count = ChooseFour(points, depthSlop, chosen);
     for (int i = 0; i < count; ++i) chosen[i] = places[chosen[i]];
-    std::sort(others, others + otherCount, [&](int a, int b) {
+    const int missing = std::min(4 - count, otherCount);
+    std::partial_sort(others, others + missing, others + otherCount, [&](int a, int b) {
         return separations[a] < separations[b] || (separations[a] == separations[b] && a < b);
     });
-    for (int i = 0; i < otherCount && count < 4; ++i) chosen[count++] = others[i];
+    for (int i = 0; i < missing; ++i) chosen[count++] = others[i];
     return count;
 }
 

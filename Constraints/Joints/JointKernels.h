@@ -610,7 +610,20 @@ FULCRUM_FORCE_INLINE Real PullSpeed(const Real& error, const JointSolveSettings&
 // alone: of joints that a pile tears at, what one gains by that no other has seen.
 inline constexpr float kFastPush = 1.0f;
 
-// Whether a push of the last velocity iterations was that fast.
+// Of lanes whose fastest push, m/s or rad/s, this was in the last velocity iterations.
+template <class Batch, class Real>
+FULCRUM_FORCE_INLINE auto IsPushedFast(const Batch& batch, const Real& fastest) {
+    return (fastest > Real(kFastPush)) & (batch.secondsOfTeleport > Real(0.0f));
+}
+
+// Adds what the turning of a substep is to change of a velocity in the next one at once, of these lanes.
+template <int N>
+inline void AddAtOnce(const WideMask<N>& lanes, Vec3<Wide<N>>& turned, Vec3<Wide<N>>& velocity) {
+    using Real = Wide<N>;
+    velocity += ZeroUnless<Real>(lanes, turned);
+    for (int k = 0; k < 3; ++k) turned[k] = Select(lanes, Real(0.0f), Real(turned[k]));
+}
+
 template <LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE WideMask<N> IsPushedFast(const JointBatch<N>& batch) {
     using Real = Wide<N>;
@@ -628,7 +641,7 @@ FULCRUM_FORCE_INLINE WideMask<N> IsPushedFast(const JointBatch<N>& batch) {
         const Real push = Min(Abs(row.pushRate * row.error), row.mostPush);
         fastest = Max(fastest, Select(pushes, push, Real(0.0f)));
     }
-    return (fastest > Real(kFastPush)) & (batch.secondsOfTeleport > Real(0.0f));
+    return IsPushedFast(batch, fastest);
 }
 
 // The push that the next velocity iterations give; to locks that are far apart none, but a pull.

@@ -131,8 +131,7 @@ bool SoftenLane(const JointBatch<N>& batch, JointRows<N>& rows, int lane, const 
     return false;
 }
 
-// Asks the types for their rows and spreads these over the lanes. The parts are set up. wasTeleported: 1 for lanes
-// whose mechanism was teleported in the last seconds.
+// Asks the types for their rows and spreads these over the lanes. The parts are set up.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const* types,
               const ConstSolverBodies& bodies, const JointSolveSettings& settings) {

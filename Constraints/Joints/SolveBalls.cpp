@@ -222,13 +222,8 @@ FULCRUM_FORCE_INLINE Vec3<Wide<N>> Follow(BallBatch<N>& batch, const SolverBodie
 template <int N>
 [[gnu::noinline, gnu::cold]] void TurnAtOnce(BallBatch<N>& batch, const WideMask<N>& lanes, Twist<Wide<N>>& a,
                                              Twist<Wide<N>>& b) {
-    using Real = Wide<N>;
-    a.angular += ZeroUnless<Real>(lanes, batch.turnedA);
-    b.angular += ZeroUnless<Real>(lanes, batch.turnedB);
-    for (int k = 0; k < 3; ++k) {
-        batch.turnedA[k] = Select(lanes, Real(0.0f), Real(batch.turnedA[k]));
-        batch.turnedB[k] = Select(lanes, Real(0.0f), Real(batch.turnedB[k]));
-    }
+    AddAtOnce<N>(lanes, batch.turnedA, a.angular);
+    AddAtOnce<N>(lanes, batch.turnedB, b.angular);
 }
 
 template <bool kRound, int N>
@@ -253,7 +248,8 @@ template <bool kRound, int N>
 void Relax(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
     using Real = Wide<N>;
     ChangeVelocities<N>(batch, bodies.states, [&](Twist<Real>& a, Twist<Real>& b) FULCRUM_FORCE_INLINE_LAMBDA {
-        const auto isPushed = Max(Max(Abs(batch.push.x()), Abs(batch.push.y())), Abs(batch.push.z())) > Real(kFastPush);
+        const auto isPushed =
+            IsPushedFast(batch, Real(Max(Max(Abs(batch.push.x()), Abs(batch.push.y())), Abs(batch.push.z()))));
         Follow<kRound>(batch, bodies, a, b, settings);
         if (isPushed.Any()) [[unlikely]]
             TurnAtOnce(batch, isPushed, a, b);

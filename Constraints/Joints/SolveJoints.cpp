@@ -69,17 +69,11 @@ FULCRUM_FORCE_INLINE void Turn(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wi
 template <LinearLock kLinear, int N>
 [[gnu::noinline, gnu::cold]] void TurnAtOnce(JointBatch<N>& batch, const WideMask<N>& lanes, Twist<Wide<N>>& a,
                                              Twist<Wide<N>>& b) {
-    using Real = Wide<N>;
-    const Real zero(0.0f);
-    const auto move = [&](Vec3<Real>& turned, Vec3<Real>& velocity) {
-        velocity += ZeroUnless<Real>(lanes, turned);
-        for (int k = 0; k < 3; ++k) turned[k] = Select(lanes, zero, Real(turned[k]));
-    };
-    move(batch.turnedA.angular, a.angular);
-    move(batch.turnedB.angular, b.angular);
+    AddAtOnce<N>(lanes, batch.turnedA.angular, a.angular);
+    AddAtOnce<N>(lanes, batch.turnedB.angular, b.angular);
     if constexpr (kLinear != LinearLock::Point) {
-        move(batch.turnedA.linear, a.linear);
-        move(batch.turnedB.linear, b.linear);
+        AddAtOnce<N>(lanes, batch.turnedA.linear, a.linear);
+        AddAtOnce<N>(lanes, batch.turnedB.linear, b.linear);
     }
 }
 

@@ -51,8 +51,9 @@ void CompareRun(const RunRecord& run, const Json& before, Comparison& comparison
         const double from = was.is_null() ? kNaN : was.get<double>(), to = error.value;
         const std::string change = name + error.name + " " + Digits(from) + " -> " + Digits(to);
         const double tolerance = kSameError + kSamePart * std::fabs(from);
-        if (std::isfinite(from) ? !(to <= from + tolerance) : false) comparison.worse.push_back(change);
-        else if (std::isfinite(from) ? to < from - tolerance : std::isfinite(to)) comparison.better.push_back(change);
+        const bool hadNumber = std::isfinite(from);
+        if (hadNumber && !(to <= from + tolerance)) comparison.worse.push_back(change);
+        else if (hadNumber ? to < from - tolerance : std::isfinite(to)) comparison.better.push_back(change);
         else ++comparison.same;
     }
     for (const auto& [error, value] : errors.items())

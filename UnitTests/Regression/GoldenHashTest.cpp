@@ -13,7 +13,7 @@ namespace fulcrum::testing {
 namespace {
 
 constexpr uint64_t kGoldenHash = 0x857d608e22279941ull;
-constexpr uint64_t kGoldenHashOfJoints = 0xd5d0394b6db2614eull;
+constexpr uint64_t kGoldenHashOfJoints = 0x8f7c0d3b57031a43ull;
 constexpr uint64_t kGoldenHashOfSurfaces = 0xf419c1f952a185d3ull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0xa7de5596f1fcbf95ull;
 
