@@ -56,8 +56,10 @@ BodySettings RandomBody(Values& values) {
 }
 
 void Create(Twin& twin, Values& values, const CallTargets& targets, Outcome& outcome) {
-    const Result<BodyId> id = twin.system->Bodies().Create(RandomBody(values));
+    const BodySettings settings = RandomBody(values);
+    const Result<BodyId> id = twin.system->Bodies().Create(settings);
     if (!Note(id, outcome)) return;
+    if (settings.lockedAxes != LockedAxes::None) twin.guided.push_back(id.Value());
     outcome.answer.Add(id.Value());
     twin.bodies[targets.bodyA] = id.Value();
 }

@@ -98,7 +98,9 @@ void SetContactListener(Twin& twin, Values& values, const CallTargets&, Outcome&
     static const Heavier kHeavier;
     static const Nonsense kNonsense;
     const ContactListener* const listeners[] = {nullptr, &kGhosts, &kBelts, &kHeavier, &kNonsense};
-    twin.system->SetContactListener(listeners[values.Below(values.Style().extremeSettings ? 5 : 4)]);
+    const ContactListener* const chosen = listeners[values.Below(values.Style().extremeSettings ? 5 : 4)];
+    twin.system->SetContactListener(chosen);
+    twin.scalesMasses = chosen == &kHeavier || chosen == &kNonsense;
 }
 
 constexpr CallKind kCalls[] = {
