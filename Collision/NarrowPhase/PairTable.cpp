@@ -1,4 +1,5 @@
 // The pair table: which function serves which two shapes.
+#include <Fulcrum/Collision/NarrowPhase/BoxPart.h>
 #include <Fulcrum/Collision/NarrowPhase/PairFunctions.h>
 #include <Fulcrum/Collision/NarrowPhase/PlaneContact.h>
 
@@ -89,13 +90,36 @@ constexpr PairTable kPairTable = PairTable()
 // clang-format on
 static_assert(kPairTable.IsComplete(), "every convex shape needs a line in the pair table");
 
+// Where one of the two is a box far larger than the other its part near that takes its place. Two boxes need no such
+// help: their axes are known. False: nothing is done.
+bool CollidePart(PairFunction function, const PairQuery& query, Manifold& manifold) {
+    const bool isA = query.a.Type() == ShapeType::Box;
+    if (isA == (query.b.Type() == ShapeType::Box)) return false;
+    const float reach = query.settings.speculativeDistance;
+    BoxPart part;
+    if (isA) {
+        const Vector3& center = query.bInA.position;
+        if (!part.Cut(static_cast<const Box&>(query.a), center, query.b.OuterRadius(), reach)) return false;
+        const RelativePose bInPart{center - part.Offset(), query.bInA.rotation};
+        function({part.Shape(), query.b, bInPart, query.settings, query.cache, query.counters}, manifold);
+        for (int i = 0; i < manifold.pointCount; ++i) manifold.points[i].positionOnA += part.Offset();
+        return true;
+    }
+    const Vector3 center = -InverseRotate(query.bInA.rotation, query.bInA.position);
+    if (!part.Cut(static_cast<const Box&>(query.b), center, query.a.OuterRadius(), reach)) return false;
+    const RelativePose partInA{Rotate(query.bInA.rotation, Vector3(part.Offset() - center)), query.bInA.rotation};
+    function({query.a, part.Shape(), partInA, query.settings, query.cache, query.counters}, manifold);
+    return true;
+}
+
 }  // namespace
 
 void Collide(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA, const CollideSettings& settings,
              PairCache& cache, Manifold& manifold, CollideCounters& counters) {
     const PairFunction function =
         settings.method == NarrowPhaseMethod::Libccd ? CollideLibccd : kPairTable.Of(a.Type(), b.Type());
-    function({a, b, bInA, settings, cache, counters}, manifold);
+    const PairQuery query{a, b, bInA, settings, cache, counters};
+    if (!CollidePart(function, query, manifold)) function(query, manifold);
 }
 
 void Collide(const ConvexShape& a, const Plane& b, const RelativePose& bInA, const CollideSettings& settings,

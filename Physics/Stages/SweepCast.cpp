@@ -95,7 +95,7 @@ public:
         local_ = LocalOf(view_.bodies, view_.colliders, collider);
         shape_ = cast_ = static_cast<const ConvexShape*>(piece_->shape);
         motion_ = {sweep_.start, sweep_.displacement};
-        CastAgainst(other, ShapeCaster(*shape_, motion_, view_.step.settings.narrowPhase));
+        CastAnew(other, ShapeCaster(*shape_, motion_, view_.step.settings.narrowPhase));
         return found_;
     }
 
@@ -119,7 +119,7 @@ private:
                                  : Inflated({Vector3::Zero(), Vector3::Zero()}, cast_->OuterRadius() * 1.000001f);
         const TreeRay ray(motion_.pose.position - view_.colliders.boundsOrigin + about.Center().cast<double>(),
                           motion_.displacement, about.HalfExtents());
-        const auto visit = [&](uint32_t other) { CastAgainst(other, straight); };
+        const auto visit = [&](uint32_t other) { CastAnew(other, straight); };
         const uint32_t layers = view_.step.settings.layerCollides[view_.bodies.dynamics[sweep_.body].layer];
         // Dispersing bodies do not collide with dynamic ones; to visit all that they overlap would cost n^2.
         if ((layers & view_.colliders.movingLayers) && !view_.bodies.dynamics[sweep_.body].dispersing)
@@ -135,6 +135,13 @@ private:
         constexpr float kPart = 0.25f;
         if (IsBall(piece) || sweep.turn.isZero(0)) return false;
         return sweep.turns || Length(sweep.TurnRate()) * (1 - start) * radius > kPart * depth;
+    }
+
+    // The bounds of effort are those of one candidate: the order in which the trees find several must not matter.
+    void CastAnew(uint32_t other, const ShapeCaster& straight) {
+        restarts_ = 0;
+        triangles_ = 0;
+        CastAgainst(other, straight);
     }
 
     // `straight`: of the whole motion, without the turn.
