@@ -14,8 +14,8 @@ using Vector6 = JointTreeBlock::Vector6;
 using Matrix6 = JointTreeBlock::Matrix6;
 using Batch = JointBatch<kLanes>;
 constexpr uint32_t kNone = JointTreeSlot::kNone;
-constexpr double kAnchorCompliance = 1e-5;  // of that of its body
-constexpr double kSmallestPivot = 1e-13;    // of the diagonal: below it there is nothing but rounding
+constexpr double kAnchorCompliance = 1e-5;  // relative to the compliance of its body
+constexpr double kSmallestPivot = 1e-13;    // relative to the diagonal: smaller pivots are rounding errors
 
 Vector ToDouble(const float (&v)[3]) {
     return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
@@ -94,7 +94,7 @@ void AddImpulses(Batch& batch, uint32_t lane, const Vector6& impulses) {
     });
 }
 
-// Rows for a motion about the center of mass become those for the same motion about `reference`.
+// Transforms rows for motions about the center of mass to rows for motions about `reference`.
 void MoveRows(Matrix6& rows, int count, const Vector& reference) {
     for (int i = 0; i < count; ++i) {
         const Vector by = reference.cross(Vector(rows(i, 0), rows(i, 1), rows(i, 2)));
@@ -189,7 +189,7 @@ Mat3<double> TimesCross(const Sym3<double>& m, const Vector& r) {
     return {y * r.z() - z * r.y(), z * r.x() - x * r.z(), x * r.y() - y * r.x()};
 }
 
-// Adds a mass that sits at a point of the body: `linear` at `arm` from the reference point.
+// Adds a point mass of the body: `linear` at `arm` from the reference point.
 void AddAt(ArticulatedMass& to, const Sym3<double>& linear, const Vector& arm) {
     to.linear.xx += linear.xx;
     to.linear.yy += linear.yy;
@@ -210,7 +210,7 @@ void AddAt(ArticulatedMass& to, const Sym3<double>& linear, const Vector& arm) {
     to.angular.yz -= arm.z() * p.z.x() - arm.x() * p.z.z();
 }
 
-// Of a body alone, about a point `reference` from its center of mass.
+// The mass of a single body about a point that is `reference` from its center of mass.
 ArticulatedMass MassOf(const BodyMass& body, const Vector& reference) {
     const float* i = body.inverseInertia;
     Sym3<double> inverse;
@@ -279,7 +279,7 @@ Matrix6 ToMatrix6(const ArticulatedMass& mass) {
 
 // ---- Slots ----
 
-// Velocity of the body's point that is `arm` from its center of mass.
+// Velocity of the body's point at `arm` from its center of mass.
 Vector VelocityAt(const BodyState& state, const Vector& arm) {
     return ToDouble(state.linearVelocity) + ToDouble(state.angularVelocity).cross(arm);
 }
@@ -287,7 +287,7 @@ Vector6 VelocityOf(const BodyState& state, const Vector& reference) {
     return ToSix({VelocityAt(state, reference), ToDouble(state.angularVelocity)});
 }
 
-// A ball joint's velocities are those of B less those of A.
+// A ball joint's velocity is that of B minus that of A.
 double SignOf(const JointTreeSlot& slot) { return slot.isA ? -1.0 : 1.0; }
 
 void SetUpBall(JointTreeSlot& slot, const JointTreeSlot& parent, const Batch& batch) {
@@ -403,7 +403,7 @@ void SolveTree(const JointTree& tree, JointBatch<kLanes>* batches, BodyState* st
         JointTreeSlot& slot = tree.slots[anchor.slot];
         const Batch& batch = batches[anchor.place.batch];
         const uint32_t lane = anchor.place.lane;
-        // What does not move may be kinematic.
+        // The side without mass may be kinematic.
         const uint32_t still = anchor.isA ? batch.bodyB[lane] : batch.bodyA[lane];
         anchor.residual = relax ? Vector6(Vector6::Zero()) : Vector6(-BiasOf(batch, lane));
         anchor.residual -= Times(anchor.own, VelocityOf(states[slot.body], slot.reference), anchor.rows);
