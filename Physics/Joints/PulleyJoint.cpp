@@ -44,15 +44,14 @@ void PulleyJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     const auto [ropeA, ropeB] = RopesAt(pose);
     const float lengthA = Length(ropeA), lengthB = Length(ropeB), length = lengthA + ratio_ * lengthB;
     Vector3 axisA = Normalized(ropeA, Vector3::Zero()), axisB = Normalized(ropeB, Vector3::Zero()) * ratio_;
-    // A side that is pulled in while more than that of the other is to come has nothing more to give: it would swing to
-    // and fro.
+    // A side shorter than the excess length cannot shorten further and would oscillate: only the other side acts.
     constexpr float kShort = 0.5f;  // m
     const float givesNothing = std::min(length - control_.limits.max, kShort);
     if (lengthA < givesNothing && lengthA <= ratio_ * lengthB) axisA = Vector3::Zero();
     else if (ratio_ * lengthB < givesNothing) axisB = Vector3::Zero();
     JointRow motion;
     motion.jacobian = IndependentAxisJacobian<float>({pose.armA, pose.armB, axisA, axisB});
-    // Each side swings by itself.
+    // Each side may swing independently.
     const auto stretch = [&](const Twist<float>& velocity, const Vector3& arm, float rope) {
         return StretchSpeed(rope, Length(Vector3(velocity.linear + Cross(velocity.angular, arm))), pose.dt);
     };

@@ -1,10 +1,9 @@
-// Six axes, each free, limited or locked, hard or soft, with motors and friction. Solved with the other joints; no
-// threads.
+// Six-degrees-of-freedom joint: six axes, each free, limited or locked, hard or soft, with motors and friction.
 //
-//   translation  d = way of B's anchor along the axes of A's frame; rows as in SliderJoint.h
+//   translation  d = position of B's anchor along the axes of A's frame; rows as in SliderJoint.h
 //   rotation     AngularControls.h
-// What is locked at zero and hard from the start becomes a block where blocks exist: all three translations a point,
-// two of them a line, rotations as in AngularControls.h; else a row of its own.
+// Axes that are locked at zero and hard from the start become block parts where possible: three translations a point,
+// two a line, rotations as in AngularControls.h. Other locked axes are rows of their own.
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/AngularControls.h>
@@ -12,7 +11,7 @@
 
 namespace fulcrum {
 
-// What `limited` alone means: locked at zero.
+// A locked axis: `limited` with the default limits, both zero.
 inline constexpr AxisControl kLockedAxis = {.limited = true};
 
 // Each axis free, limited or locked (kLockedAxis; hard or, with a spring on its limits, soft), with motor and friction.
@@ -21,7 +20,7 @@ struct SixDofJointSettings : JointSettings {
     std::array<AxisControl, 6> axes{};
     SwingShape shape = SwingShape::Pyramid;
 
-    // Ends the program where there is no such axis.
+    // Aborts the program if there is no such axis.
     AxisControl& operator[](JointAxis axis) {
         if (axis > JointAxis::AngularZ) [[unlikely]]
             AbortWith("SixDofJointSettings has no axis of this number", "");
@@ -33,7 +32,7 @@ std::unique_ptr<JointType> MakeType(const SixDofJointSettings& settings);
 
 class SixDofJoint final : public JointType {
 public:
-    // In the order of JointAxis; m and N, rad and N m. Limits of rotations as AngularControls wants them.
+    // In the order of JointAxis; m and N, rad and N m. Limits of rotations as AngularControls requires them.
     SixDofJoint(const std::array<AxisControl, 6>& axes, SwingShape shape);
 
     const char* Kind() const override { return "six-dof"; }
@@ -63,7 +62,7 @@ public:
     }
 
 private:
-    // Whether the linear axis k has rows of its own.
+    // Whether the linear axis k has rows of its own, not only a lock.
     bool HasRows(uint8_t k) const {
         return linearLock_ == LinearLock::None || (linearLock_ == LinearLock::Line && k == line_);
     }

@@ -1,5 +1,5 @@
-// A shoulder: B's anchor stays at A's, B's x axis swings within an ellipse or a pyramid about A's, and B twists about
-// it in a range; motors and friction about all axes. Solved with the other joints; no threads.
+// Swing-twist joint (shoulder): B's anchor stays at A's, B's x axis swings within an ellipse or a pyramid about A's,
+// and B twists about it within a range; motors and friction about all axes.
 //   Locks:      point; rotation as far as axes are locked (AngularControls.h)
 //   Rows:       AngularControls.h (AngularX the twist, AngularY and AngularZ the swing)
 #pragma once
@@ -12,8 +12,8 @@ namespace fulcrum {
 // A point joint for shoulders: B's axis (x) swings about A's y and z in an ellipse or a pyramid, and B twists about it.
 struct SwingTwistJointSettings : JointSettings {
     SwingShape shape = SwingShape::Ellipse;
-    // rad, N m. Limits within -pi..pi, at pi there is none. Those of the swing, the y and z of its rotation vector, are
-    // around 0, and for an ellipse the same to both sides: -a..a, -b..b.
+    // rad, N m. Limits within -pi..pi; pi means no limit. Those of the swing apply to y and z of its rotation vector
+    // and contain 0; for an ellipse they are symmetric: -a..a, -b..b.
     AxisControl twist{}, swingY{}, swingZ{};
 };
 MaybeError Check(const SwingTwistJointSettings& settings);
@@ -21,7 +21,7 @@ std::unique_ptr<JointType> MakeType(const SwingTwistJointSettings& settings);
 
 class SwingTwistJoint final : public JointType {
 public:
-    // rad, N m; limits as AngularControls wants them.
+    // rad, N m; limits as AngularControls requires them.
     SwingTwistJoint(const AxisControl& twist, const AxisControl& swingY, const AxisControl& swingZ, SwingShape shape)
         : angular_({twist, swingY, swingZ}, shape) {}
 
