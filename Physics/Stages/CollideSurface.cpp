@@ -1,6 +1,6 @@
-// A pair of a convex shape and a surface has as many manifolds as there are directions in which they touch. The first
-// is the pair's own; the others are pairs of their own, chained to it, which the later stages take for any other. They
-// stay, empty or not, as long as the pair does.
+// A pair of a convex shape and a surface has one manifold per direction of contact. The first is stored in the pair;
+// the others are additional pairs chained to it, which later stages treat like any other pair. They persist, empty or
+// not, as long as the pair does.
 #include <Fulcrum/Physics/Stages/CrowdContacts.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
 #include <Fulcrum/Physics/World/Materials.h>
@@ -33,7 +33,7 @@ void Write(const CollideStores& stores, const PairView& view, uint32_t index, co
     WriteManifold(stores, {pair, stores.pairs.records[index], view.bodyBInA, view.bInA, view.before}, contact.manifold);
 }
 
-// Of the center of the convex piece relative to the surface within the step, m, in that piece's frame.
+// Motion of the center of the convex piece relative to the surface within the step, m, in that piece's frame.
 Vector3 MotionInA(const CollideStores& stores, const PairView& view) {
     const BodyStore& bodies = stores.bodies;
     const uint32_t a = view.pair.bodyA, b = view.pair.bodyB;
@@ -51,7 +51,7 @@ Vector3 MotionInA(const CollideStores& stores, const PairView& view) {
     return Rotate(toPiece, InverseRotate(rotation, Vector3(velocity * stores.step.dt)));
 }
 
-// Gives each manifold the place whose features it shares, then any that is left.
+// Assigns each manifold to the slot with matching features, then the rest to free slots.
 void WriteManifolds(const CollideStores& stores, const PairView& view, uint32_t first, WorkerFindings& findings) {
     constexpr uint32_t kTaken = ~0u;
     std::vector<uint32_t>& places = findings.surfacePlaces;

@@ -73,7 +73,7 @@ bool OverlapsAtLeast(const CollisionView& view, const PairStore& pairs, const Jo
                (pairs.Find(collider, index) != PairStore::kNone || ListenerAllows(view, body, other));
     };
     VisitColliders(view.bodies, view.colliders, body, [&](uint32_t collider) {
-        float distance = 0;  // below zero ends the search
+        float distance = 0;  // negative ends the search
         if (count == kCount) return;
         view.colliders.movingTree.VisitNear(TightBoundsOf(view.bodies, view.colliders, collider), distance,
                                             [&](uint32_t index) {
