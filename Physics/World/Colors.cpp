@@ -7,7 +7,7 @@ using Coloring = ConstraintColoring;
 void ColorPair(PairStore& pairs, ConstraintColoring& coloring, uint32_t index) {
     Pair& pair = pairs.pairs[index];
     if (pair.color.color != 0xFF) return;
-    // Contacts with immovable bodies come last: they must win.
+    // Contacts with immovable bodies are solved last, so they win.
     pair.color = coloring.Add(KindOf(pair), EntryOf(pair, index), pair.fixedB);
 }
 

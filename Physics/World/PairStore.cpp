@@ -6,7 +6,7 @@ namespace fulcrum {
 
 namespace {
 
-// An eighth to spare: of the largest arrays of a world, doubling would leave up to half unused.
+// Grows by an eighth: doubling the largest arrays of a world would leave up to half unused.
 template <class T>
 void ReserveAnother(std::vector<T>& elements) {
     const size_t size = elements.size();
@@ -59,7 +59,7 @@ uint32_t PairStore::Allocate() {
         if (keepsMassOverrides_) massOverrides.emplace_back();
         if (keepsReported_) reported.emplace_back();
         active.Reserve(index + 1);
-        free_.reserve(pairs.capacity());  // so that removing never allocates
+        free_.reserve(pairs.capacity());  // so that Remove never allocates
     }
     pairs[index] = {};
     records[index] = {};
@@ -124,7 +124,7 @@ void PairStore::Strike(uint64_t key, uint32_t index) {
     const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
     uint32_t hole = FirstPlace(key);
     while (table_[hole].key != key || table_[hole].index != index) hole = (hole + 1) & mask;
-    // Entries behind the hole move up where that takes them to no place before their first one.
+    // Backward-shift deletion: entries after the hole move up unless that would put them before their home slot.
     for (uint32_t i = (hole + 1) & mask; table_[i].index != kNone; i = (i + 1) & mask) {
         if (((i - FirstPlace(table_[i].key)) & mask) >= ((i - hole) & mask)) {
             table_[hole] = table_[i];

@@ -10,8 +10,8 @@ namespace fulcrum {
 
 namespace {
 
-// What falls asleep outside its fat bounds, because it was fast or the step long, would not be found until it
-// wakes.
+// Bodies that fall asleep outside their fat bounds, because they were fast or the step long, would otherwise not be
+// found until they wake.
 void RefitFatBounds(const SleepStores& stores, CollidersOutsideFatBounds& outsideFatBounds, uint32_t body) {
     ColliderStore& colliders = stores.colliders;
     VisitColliders(stores.bodies, colliders, body, [&](uint32_t i) {
