@@ -10,9 +10,9 @@ namespace fulcrum {
 struct ConvexGjkResult {
     using Status = GjkStatus;
     Status status;
-    Vector3 axis;      // unit, from A towards B; if overlapping, the last one tried
-    float separation;  // m of the cores along the axis: a lower bound of their distance if beyond reach
-    Vector3 onA, onB;  // the cores' closest points in A's frame, m; if apart
+    Vector3 axis;                    // unit, from A towards B; if overlapping, the last one tried
+    float separation;                // m of the cores along the axis: a lower bound of their distance if beyond reach
+    Vector3 onA, onB;                // the cores' closest points in A's frame, m; if apart
     Simplex<SupportVertex> simplex;  // if overlapping: 1 to 4 vertices around or at the origin
 };
 

@@ -35,11 +35,11 @@ struct TriangleBatch {
     Vec3<TriangleLanes> normal;
     Vec3<TriangleLanes> outwards[3];  // outward normal of side i, from corner i to the next; as long as the side
     TriangleLanes length[3];          // of the sides, m
-    TriangleLanes beyond[3];          // signed distance of the shape's center outside of each side, times the side's length
-    TriangleLanes height;             // of the center above the face, m; negative: behind a one-sided one
-    TriangleLanes separation;         // of the core from the face's plane, m
-    Vec3<TriangleLanes> closest;      // the point of the triangle that lies closest to the center
-    TriangleLanes distance;           // its distance, m
+    TriangleLanes beyond[3];      // signed distance of the shape's center outside of each side, times the side's length
+    TriangleLanes height;         // of the center above the face, m; negative: behind a one-sided one
+    TriangleLanes separation;     // of the core from the face's plane, m
+    Vec3<TriangleLanes> closest;  // the point of the triangle that lies closest to the center
+    TriangleLanes distance;       // its distance, m
 
     // Loads views[0 .. count), 1 to 8, and returns a bit for each that the shape may reach. The others are certainly
     // out of reach, or one-sided with the shape's center behind. Bits of `reversed`: two-sided ones whose back faces
