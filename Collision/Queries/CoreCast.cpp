@@ -256,7 +256,7 @@ struct Separated {
     bool coresOverlap;
 };
 
-// `from`, `to`: the part of the motion outside of which they do not touch.
+// `from`, `to`: the interval of the motion outside of which they do not touch.
 template <class Separate>
 CoreCastResult Advance(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion,
                        const CoreCastLimits& limits, double tolerance, const Separate& separate, double from = 0,
@@ -278,7 +278,7 @@ CoreCastResult Advance(const ConvexShape& a, const ConvexShape& b, const CoreMot
             return HitAt(fraction == 0 ? Outcome::AtStart : Outcome::Hit, fraction, known.axis.template cast<double>(),
                          known.onA);
         }
-        // Not shortened to maxFraction, so that the hit has the same bits for every maxFraction.
+        // Not shortened to maxFraction, so that the hit is bit-identical for every maxFraction.
         const double remaining = to - fraction;
         // Advances to half the tolerance from touching, so that the search ends there.
         const AxisAdvance advance(a, b, motion, poses, now.axis, now.gap - 0.5 * tolerance);
@@ -291,7 +291,7 @@ CoreCastResult Advance(const ConvexShape& a, const ConvexShape& b, const CoreMot
     return HitAt(Outcome::Early, fraction, last.axis.cast<double>(), last.onA);
 }
 
-// The part of the motion in which the centers are no farther apart than `reach`; empty: never.
+// The interval of the motion in which the centers are no farther apart than `reach`; empty: never.
 struct MotionPart {
     double from = 0, to = -1;
 };
@@ -340,11 +340,11 @@ CoreCastResult CastByLibccd(const ConvexShape& a, const ConvexShape& b, const Co
         const std::optional<KnownContact> touch =
             FindLibccdContact(pair, pose, std::numeric_limits<float>::infinity(), unused);
         if (!touch) return {0, Vector3(0, 1, 0), Vector3::Zero(), true};  // not finite
-        // Later it is known how deep they are by rounding, and along which axis.
+        // At later times an overlap is only rounding error, and the axis is known.
         const bool coresOverlap = poses.fraction == 0 && touch->separation <= 0;
         return {double{touch->separation} - target, touch->axis, touch->onA, coresOverlap};
     };
-    // What is within the tolerance, but apart, and moves away straight does not touch, as in CastLinear.
+    // Shapes within the tolerance that are separated and move apart without rotation do not touch, as in CastLinear.
     if (!motion.IsTurning()) {
         const Separated start = separate(motion.At(0), Vector3(0, 1, 0));
         if (start.gap > 0 && Dot(start.axis, motion.displacement) >= 0) return {};
