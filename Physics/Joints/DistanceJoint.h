@@ -5,7 +5,7 @@
 // If the anchors coincide, n is x of frame A.
 #pragma once
 
-#include <Fulcrum/Constraints/Joints/JointType.h>
+#include <Fulcrum/Constraints/Joints/LengthJointType.h>
 #include <Fulcrum/Physics/JointSettings.h>
 
 #include <optional>
@@ -22,7 +22,7 @@ struct DistanceJointSettings : JointSettings {
 MaybeError Check(const DistanceJointSettings& settings);
 std::unique_ptr<JointType> MakeType(const DistanceJointSettings& settings);
 
-class DistanceJoint final : public JointType {
+class DistanceJoint final : public LengthJointType {
 public:
     // m, 0 <= min <= max. If one is left out: 0 or infinity; if both: a rod as long as the distance when the joint is
     // created. The spring is that of both limits.
@@ -30,17 +30,11 @@ public:
 
     const char* Kind() const override { return "distance"; }
     JointDrawing Drawing() const override;
-    uint32_t MaxRows() const override { return MaxControlRows(control_); }
     void Start(const JointPose& pose) override;
     void CollectRows(const JointPose& pose, JointRowList& rows) override;
-    AxisControl* Control(JointAxis axis) override { return axis == JointAxis::LinearX ? &control_ : nullptr; }
-    LimitBounds BoundsOf(JointAxis) const override { return {.lowest = 0.0f}; }
-    double Coordinate(JointAxis axis, const JointPose& pose) const override;
-    void VisitSettings(const SettingVisitor& visit) override { visit(isMeasured_); }
 
 private:
-    AxisControl control_;
-    bool isMeasured_;
+    float LengthAt(const JointPose& pose) const override { return Length(pose.offset); }
 };
 
 }  // namespace fulcrum

@@ -24,10 +24,10 @@ std::unique_ptr<JointType> MakeType(const PulleyJointSettings& s) {
 
 PulleyJoint::PulleyJoint(const Position& fixedPointA, const Position& fixedPointB, float ratio, float minLength,
                          std::optional<float> maxLength)
-    : fixedPointA_(fixedPointA), fixedPointB_(fixedPointB), ratio_(ratio), isMeasured_(!maxLength) {
-    control_.limited = true;
-    control_.limits = {minLength, maxLength.value_or(minLength), {}};
-}
+    : LengthJointType({minLength, maxLength.value_or(minLength), {}}, !maxLength),
+      fixedPointA_(fixedPointA),
+      fixedPointB_(fixedPointB),
+      ratio_(ratio) {}
 
 std::pair<Vector3, Vector3> PulleyJoint::RopesAt(const JointPose& pose) const {
     return {(pose.anchorA - fixedPointA_).cast<float>(),
@@ -35,9 +35,7 @@ std::pair<Vector3, Vector3> PulleyJoint::RopesAt(const JointPose& pose) const {
 }
 
 void PulleyJoint::Start(const JointPose& pose) {
-    if (!isMeasured_) return;
-    const auto length = static_cast<float>(Coordinate(JointAxis::LinearX, pose));
-    control_.limits.max = std::max(length, control_.limits.min);
+    if (isMeasured_) control_.limits.max = std::max(LengthAt(pose), control_.limits.min);
 }
 
 void PulleyJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
@@ -60,8 +58,7 @@ void PulleyJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     AddControlRows(control_, pose, motion, length, kLinearSlackSpeed + slack, 0, rows);
 }
 
-double PulleyJoint::Coordinate(JointAxis axis, const JointPose& pose) const {
-    if (axis != JointAxis::LinearX) return JointType::Coordinate(axis, pose);
+float PulleyJoint::LengthAt(const JointPose& pose) const {
     const auto [ropeA, ropeB] = RopesAt(pose);
     return Length(ropeA) + ratio_ * Length(ropeB);
 }

@@ -7,7 +7,7 @@
 // A side of length zero has no direction and exerts no force.
 #pragma once
 
-#include <Fulcrum/Constraints/Joints/JointType.h>
+#include <Fulcrum/Constraints/Joints/LengthJointType.h>
 #include <Fulcrum/Physics/JointSettings.h>
 
 #include <optional>
@@ -25,7 +25,7 @@ struct PulleyJointSettings : JointSettings {
 MaybeError Check(const PulleyJointSettings& settings);
 std::unique_ptr<JointType> MakeType(const PulleyJointSettings& settings);
 
-class PulleyJoint final : public JointType {
+class PulleyJoint final : public LengthJointType {
 public:
     // m, world space. ratio > 0; 0 <= minLength <= maxLength; if left out, maxLength is the length when the joint is
     // created.
@@ -34,28 +34,22 @@ public:
 
     const char* Kind() const override { return "pulley"; }
     JointDrawing Drawing() const override;
-    uint32_t MaxRows() const override { return MaxControlRows(control_); }
     void Start(const JointPose& pose) override;
     void CollectRows(const JointPose& pose, JointRowList& rows) override;
-    // Controls the length: the motor winds the rope.
-    AxisControl* Control(JointAxis axis) override { return axis == JointAxis::LinearX ? &control_ : nullptr; }
-    LimitBounds BoundsOf(JointAxis) const override { return {.lowest = 0.0f}; }
-    double Coordinate(JointAxis axis, const JointPose& pose) const override;
     void VisitSettings(const SettingVisitor& visit) override {
         visit(fixedPointA_);
         visit(fixedPointB_);
         visit(ratio_);
-        visit(isMeasured_);
+        LengthJointType::VisitSettings(visit);
     }
 
 private:
+    float LengthAt(const JointPose& pose) const override;
     // From the fixed points to the anchors of A and of B, m.
     std::pair<Vector3, Vector3> RopesAt(const JointPose& pose) const;
 
     Position fixedPointA_, fixedPointB_;
     float ratio_;
-    AxisControl control_;
-    bool isMeasured_;
 };
 
 }  // namespace fulcrum

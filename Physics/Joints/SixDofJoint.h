@@ -6,7 +6,7 @@
 // two a line, rotations as in AngularControls.h. Other locked axes are rows of their own.
 #pragma once
 
-#include <Fulcrum/Constraints/Joints/AngularControls.h>
+#include <Fulcrum/Constraints/Joints/AngularJointType.h>
 #include <Fulcrum/Physics/JointSettings.h>
 
 namespace fulcrum {
@@ -30,7 +30,7 @@ struct SixDofJointSettings : JointSettings {
 MaybeError Check(const SixDofJointSettings& settings);
 std::unique_ptr<JointType> MakeType(const SixDofJointSettings& settings);
 
-class SixDofJoint final : public JointType {
+class SixDofJoint final : public AngularJointType {
 public:
     // In the order of JointAxis; m and N, rad and N m. Limits of rotations as AngularControls requires them.
     SixDofJoint(const std::array<AxisControl, 6>& axes, SwingShape shape);
@@ -39,24 +39,13 @@ public:
     JointDrawing Drawing() const override;
     JointLocks Locks() const override { return {linearLock_, angular_.Lock(), line_, angular_.FreeAxis()}; }
     uint32_t MaxRows() const override;
-    void Start(const JointPose& pose) override { angular_.Start(pose); }
     void CollectRows(const JointPose& pose, JointRowList& rows) override;
     AxisControl* Control(JointAxis axis) override {
-        const auto index = static_cast<int>(axis);
-        return index < 3 ? &linear_[static_cast<size_t>(index)] : &angular_.At(index - 3);
-    }
-    LimitBounds BoundsOf(JointAxis axis) const override {
-        return axis < JointAxis::AngularX ? LimitBounds{} : angular_.BoundsOf(static_cast<int>(axis) - 3);
+        return IsAngular(axis) ? AngularJointType::Control(axis) : &linear_[static_cast<size_t>(axis)];
     }
     uint32_t FirstSlot(JointAxis axis) const override { return static_cast<uint32_t>(axis) * ControlSlots::kCount; }
-    void SetTargetOrientation(const Quaternion& target) override { angular_.SetTargetOrientation(target); }
-    double Coordinate(JointAxis axis, const JointPose& pose) const override {
-        return axis < JointAxis::AngularX ? JointType::Coordinate(axis, pose)
-                                          : angular_.Coordinate(static_cast<int>(axis) - 3, pose);
-    }
-    std::span<double> State() override { return angular_.State(); }
     void VisitSettings(const SettingVisitor& visit) override {
-        angular_.VisitSettings(visit);
+        AngularJointType::VisitSettings(visit);
         visit(linearLock_);
         visit(line_);
     }
@@ -68,7 +57,6 @@ private:
     }
 
     std::array<AxisControl, 3> linear_;
-    AngularControls angular_;
     LinearLock linearLock_ = LinearLock::None;
     uint8_t line_ = 0;
 };
