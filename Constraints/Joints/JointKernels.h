@@ -1,8 +1,8 @@
-// Shared by the joint kernels: gather and scatter of bodies, dispatch by a batch's locks, set-up of the parts.
+// Shared by the joint kernels: dispatch by a batch's locks, set-up and solve of the parts.
 #pragma once
 
-#include <Fulcrum/Constraints/BodyLanes.h>
-#include <Fulcrum/Constraints/Joints/JointBatch.h>
+#include <Fulcrum/Constraints/Joints/FarJoints.h>
+#include <Fulcrum/Constraints/Joints/JointLanes.h>
 
 #include <cmath>
 
@@ -23,130 +23,6 @@ FULCRUM_FORCE_INLINE void WithLocks(LinearLock linear, AngularLock angular, F&& 
         case LinearLock::Line: withAngular(std::integral_constant<LinearLock, LinearLock::Line>()); break;
         case LinearLock::Point: withAngular(std::integral_constant<LinearLock, LinearLock::Point>()); break;
     }
-}
-
-template <int N>
-struct Motion {
-    using Real = Wide<N>;
-    float* rows[N];
-    Real row[8];
-
-    template <BodyRow kRow>
-    FULCRUM_FORCE_INLINE void Gather(const uint32_t (&bodies)[N], BodyState* states) {
-        for (int i = 0; i < N; ++i) rows[i] = RowOf<kRow>(states[bodies[i]]);
-        GatherRows<N>(reinterpret_cast<const float* const(&)[N]>(rows), row);
-    }
-    FULCRUM_FORCE_INLINE Twist<Real> Get() const {
-        return {VectorAt<BodyState::kLinear>(row), VectorAt<BodyState::kAngular>(row)};
-    }
-    // Lanes of static and kinematic bodies are not written.
-    FULCRUM_FORCE_INLINE void Scatter(const Twist<Real>& motion, int count, uint32_t fixed) {
-        Set(motion);
-        Scatter(count, fixed);
-    }
-    FULCRUM_FORCE_INLINE void Set(const Twist<Real>& motion) {
-        SetVectorAt<BodyState::kLinear>(row, motion.linear);
-        SetVectorAt<BodyState::kAngular>(row, motion.angular);
-    }
-    FULCRUM_FORCE_INLINE void Scatter(int count, uint32_t fixed) {
-        alignas(32) float nowhere[8];
-        if (fixed != 0)
-            for (int i = 0; i < N; ++i)
-                if (fixed >> i & 1u) rows[i] = nowhere;
-        ScatterRows<N>(rows, row, count);
-    }
-};
-
-// Velocities of A and of B.
-template <int N>
-struct Velocities {
-    Twist<Wide<N>> a, b;
-
-    template <class Batch>
-    FULCRUM_FORCE_INLINE Velocities(const Batch& batch, BodyState* states) {
-        Motion<N> motion;
-        motion.template Gather<BodyRow::Velocity>(batch.bodyA, states);
-        a = motion.Get();
-        motion.template Gather<BodyRow::Velocity>(batch.bodyB, states);
-        b = motion.Get();
-    }
-};
-
-// Adds to the displacements of the bodies.
-template <int N, class Batch>
-FULCRUM_FORCE_INLINE void MoveBodies(const Batch& batch, BodyState* states, const Twist<Wide<N>>& byA,
-                                     const Twist<Wide<N>>& byB) {
-    const auto move = [&](const uint32_t(&body)[N], const Twist<Wide<N>>& by, uint32_t fixed) {
-        Motion<N> pose;
-        pose.template Gather<BodyRow::Displacement>(body, states);
-        const Twist<Wide<N>> from = pose.Get();
-        pose.Set({from.linear + by.linear, from.angular + by.angular});
-        SetHalfTurn<Wide<N>>(pose.row);
-        pose.Scatter(batch.count, fixed);
-    };
-    move(batch.bodyA, byA, batch.fixedA);
-    move(batch.bodyB, byB, batch.fixedB);
-}
-
-// Calls change(velocities of A, of B) and scatters them back.
-template <int N, class Batch, class F>
-FULCRUM_FORCE_INLINE void ChangeVelocities(const Batch& batch, BodyState* states, F&& change) {
-    Motion<N> motionA, motionB;
-    motionA.template Gather<BodyRow::Velocity>(batch.bodyA, states);
-    motionB.template Gather<BodyRow::Velocity>(batch.bodyB, states);
-    Twist<Wide<N>> a = motionA.Get(), b = motionB.Get();
-    change(a, b);
-    motionA.Scatter(a, batch.count, batch.fixedA);
-    motionB.Scatter(b, batch.count, batch.fixedB);
-}
-
-// The bodies' masses for these joints, mass overrides applied. Returns the mask of lanes in which an inertia rotates.
-template <int N>
-FULCRUM_FORCE_INLINE auto GatherMasses(JointBatch<N>& batch, const BodyMass* masses) {
-    const auto turns =
-        GatherMass<N>(batch.bodyA, masses, batch.massA) | GatherMass<N>(batch.bodyB, masses, batch.massB);
-    if (batch.overridesMass) {
-        ScaleMass(batch.massA, batch.massScaleA, batch.inertiaScaleA);
-        ScaleMass(batch.massB, batch.massScaleB, batch.inertiaScaleB);
-    }
-    return turns;
-}
-
-template <int N>
-FULCRUM_FORCE_INLINE void GatherRecordRow(const uint32_t (&joints)[N], const JointRecord* records, int row,
-                                          Wide<N> (&out)[8]) {
-    const float* rows[N];
-    for (int i = 0; i < N; ++i) rows[i] = records[joints[i]].Row(row);
-    GatherRows<N>(rows, out);
-}
-
-// Clamps arms and offsets of anchors along each axis: longer ones do not increase the correction speed, and the inertia
-// at the end of a longer arm may overflow a float.
-template <class Real>
-FULCRUM_FORCE_INLINE Vec3<Real> WithinReach(const Vec3<Real>& v) {
-    const Real farthest(1e6f);
-    Vec3<Real> result;
-    for (int k = 0; k < 3; ++k) result[k] = Clamp(Real(v[k]), -farthest, farthest);
-    return result;
-}
-
-// The locks' impulses of the last substep; values that are not finite as zero.
-template <int N>
-FULCRUM_FORCE_INLINE void GatherImpulses(const uint32_t (&joints)[N], const JointRecord* records, Wide<N> (&out)[8]) {
-    GatherRecordRow<N>(joints, records, JointRecord::kOwn, out);
-    for (Wide<N>& x : out) x = Select(Abs(x) < Wide<N>(JointRow::kUnlimited), x, Wide<N>(0.0f));
-}
-
-// Writes a row of the first `count` records; values that are not finite as zero.
-template <int N>
-FULCRUM_FORCE_INLINE void ScatterRecordRow(const uint32_t (&joints)[N], int count, JointRecord* records, int row,
-                                           const Wide<N> (&values)[8]) {
-    using Real = Wide<N>;
-    float* rows[N];
-    for (int i = 0; i < N; ++i) rows[i] = records[joints[i]].Row(row);
-    Real out[8];
-    for (int k = 0; k < 8; ++k) out[k] = Select(Abs(values[k]) < Real(JointRow::kUnlimited), values[k], Real(0.0f));
-    ScatterRows<N>(rows, out, count);
 }
 
 // The point at which a point lock's impulse and its reaction act, as a fraction of the offset from A's anchor to B's.
@@ -547,83 +423,6 @@ FULCRUM_FORCE_INLINE void SetRowRelax(JointBatch<N>& batch) {
         const Real &massScale = row.openSoftness.massScale, zero(0.0f);
         row.part.SetBias(massScale * (Max(row.error, zero) * row.gapRate - row.speed), {massScale, zero});
     }
-}
-
-// A joint is far apart if its gap asks for more than this fraction of the largest push speed, or for 5 cm in a substep.
-// It stays so until its gap and angles are reduced to a fiftieth of that: correcting the last decimeter by velocities
-// would leave energy. Joints connected to joints that are far apart are far apart from a fifth of it on.
-inline float FarPush(const JointSolveSettings& settings) {
-    constexpr float kFarPart = 0.5f, kFarWay = 0.05f;  // m
-    return std::fmin(kFarPart, kFarWay * settings.inverseDt / settings.maxPushSpeed);
-}
-inline constexpr float kNearPart = 0.02f, kFollowPart = 0.2f;
-
-// JointRecord::wasPulled. Joints that are far apart add the seconds for which they have not been distant.
-inline constexpr float kWasFar = 1.0f, kFollowed = 0.5f;
-
-// JointRecord::secondsOfTeleport after this step.
-template <class Real>
-FULCRUM_FORCE_INLINE Real SecondsLeft(const Real& before, const JointSolveSettings& settings) {
-    return Max(before - Real(settings.dt), Real(0.0f));
-}
-
-// For how many seconds a joint that is far apart has not been distant. The pull ends after the time that it takes to
-// move by 100 m or rotate by 100 rad: a joint that is still apart then is held apart, by a pile on it, say, and would
-// jitter.
-template <class Real, class Mask>
-FULCRUM_FORCE_INLINE Real SecondsNear(const Real& wasPulled, const Mask& isDistant,
-                                      const JointSolveSettings& settings) {
-    return Select(isDistant, Real(0.0f), Max(wasPulled - Real(kWasFar), Real(0.0f)) + Real(settings.dt));
-}
-inline float LongestNear(const JointSolveSettings& settings) { return 100.0f / settings.maxPushSpeed; }
-
-// Thresholds by lane, as fractions of the largest push speed.
-template <class Real>
-FULCRUM_FORCE_INLINE Real FarPush(const Real& wasPulled, const JointSolveSettings& settings) {
-    const float far = FarPush(settings);
-    const Real following = Select(wasPulled >= Real(kFollowed), Real(kFollowPart * far), Real(far));
-    return Select(wasPulled >= Real(kWasFar), Real(kNearPart * far), following);
-}
-
-// Marks lanes whose bodies have significant pseudo-velocities.
-template <class Real>
-FULCRUM_FORCE_INLINE Real Follows(const Real& before, const Twist<Real>& a, const Twist<Real>& b,
-                                  const JointSolveSettings& settings) {
-    const Real fast(kNearPart * settings.maxPushSpeed);
-    const auto isPulled = [&](const Twist<Real>& v) {
-        return Dot<Real>(v.linear, v.linear) + Dot<Real>(v.angular, v.angular) > fast * fast;
-    };
-    return Select(isPulled(a) | isPulled(b), Real(kFollowed), before);
-}
-
-// Pull speed of joints that are far apart, proportional to the error and limited: the limit grows with the error, so
-// that any gap closes within some seconds. Adds no energy, since pseudo-velocities are not part of the velocities.
-template <class Real>
-FULCRUM_FORCE_INLINE Real PullSpeed(const Real& error, const JointSolveSettings& settings) {
-    constexpr float kMost = 3.0f, kPerSecond = 0.75f;
-    const Real most =
-        Clamp(Abs(error) * Real(kPerSecond), Real(settings.maxPushSpeed), Real(kMost * settings.maxPushSpeed));
-    return Clamp(Real(error * Real(settings.pushRate)), -most, most);
-}
-
-// m/s, rad/s. Faster pushes have their impulses rotated with the joint before they are relaxed. Without that, a
-// velocity that was pushed along one direction and relaxed along another, rotated one keeps the difference: a slider
-// whose bodies were 2 rad apart gained 2 kJ. Applied only in the seconds after a teleport: in joints under load in a
-// pile the other joints would not see the change of velocity.
-inline constexpr float kFastPush = 1.0f;
-
-// Whether lanes, whose fastest push in the last velocity iterations is given (m/s or rad/s), are pushed fast.
-template <class Batch, class Real>
-FULCRUM_FORCE_INLINE auto IsPushedFast(const Batch& batch, const Real& fastest) {
-    return (fastest > Real(kFastPush)) & (batch.secondsOfTeleport > Real(0.0f));
-}
-
-// For these lanes, adds the change of velocity due to the rotation of a substep at once instead of in the next substep.
-template <int N>
-inline void AddAtOnce(const WideMask<N>& lanes, Vec3<Wide<N>>& turned, Vec3<Wide<N>>& velocity) {
-    using Real = Wide<N>;
-    velocity += ZeroUnless<Real>(lanes, turned);
-    for (int k = 0; k < 3; ++k) turned[k] = Select(lanes, Real(0.0f), Real(turned[k]));
 }
 
 template <LinearLock kLinear, AngularLock kAngular, int N>
