@@ -24,7 +24,7 @@ public:
 
     struct Entry {
         uint32_t constraint, bodyA, bodyB;
-        bool stillA = false, stillB = false;  // the body is not dynamic: constraints may share it
+        bool fixedA = false, fixedB = false;  // the body is not dynamic: constraints may share it
     };
     enum class Kind : uint8_t {
         Moving,  // contacts of two dynamic bodies
@@ -68,8 +68,8 @@ private:
     friend struct SnapshotAccess;
     template <class Visit>
     static void VisitMoving(const Entry& entry, Visit&& visit) {
-        if (!entry.stillA) visit(entry.bodyA);
-        if (!entry.stillB) visit(entry.bodyB);
+        if (!entry.fixedA) visit(entry.bodyA);
+        if (!entry.fixedB) visit(entry.bodyB);
     }
     std::vector<Entry>& List(uint8_t color, Kind kind) { return colors_[color].lists[static_cast<size_t>(kind)]; }
 

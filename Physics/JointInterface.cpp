@@ -115,7 +115,7 @@ Result<JointId> JointInterface::Add(const JointSettings& s, std::unique_ptr<Join
     Joint& joint = world_.joints.joints[index];
     joint.body[0] = s.bodyA.index;
     joint.body[1] = s.bodyB.index;
-    for (int side = 0; side < 2; ++side) joint.still[side] = !world_.bodies.CanMove(joint.body[side]);
+    for (int side = 0; side < 2; ++side) joint.fixed[side] = !world_.bodies.CanMove(joint.body[side]);
     joint.collideConnected = s.collideConnected;
     joint.priority = s.priority;
     joint.breakForce = s.breakForce;

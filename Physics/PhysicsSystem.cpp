@@ -138,7 +138,7 @@ void PhysicsSystem::VisitIslands(FunctionRef<void(BodyId, uint32_t island)> visi
         if (pair.touching && !pair.fixedB) sets.Unite(pair.bodyA, pair.bodyB);
     });
     for (const Joint& joint : world_->joints.joints)
-        if (joint.exists && joint.enabled && !joint.still[0] && !joint.still[1])
+        if (joint.exists && joint.enabled && !joint.fixed[0] && !joint.fixed[1])
             sets.Unite(joint.body[0], joint.body[1]);
     // Sleeping bodies form the islands in which they fell asleep.
     std::vector<uint32_t> first(bodies.Size(), ~0u);

@@ -366,7 +366,7 @@ void FactorizeTree(const JointTree& tree, const JointBatch<kLanes>* batches, con
             if (slot.block == kNone) SetUpBall(slot, parent, batch);
             else SetUpBlock(tree.blocks[slot.block], slot, parent, batch);
         }
-        if (!slot.still) slot.mass = MassOf(masses[slot.body], slot.reference);
+        if (!slot.fixed) slot.mass = MassOf(masses[slot.body], slot.reference);
     }
     for (JointTreeAnchor& anchor : tree.anchors) {
         const Rows rows = RowsOf(batches[anchor.place.batch], anchor.place.lane);
@@ -381,11 +381,11 @@ void FactorizeTree(const JointTree& tree, const JointBatch<kLanes>* batches, con
     }
     for (size_t s = tree.slots.size(); s-- > 0;) {
         JointTreeSlot& slot = tree.slots[s];
-        if (slot.still) continue;
+        if (slot.fixed) continue;
         if (slot.block == kNone) {
             EliminateBall(slot.mass);
             JointTreeSlot& parent = tree.slots[slot.parent];
-            if (!parent.still) AddAt(parent.mass, slot.mass.linear, slot.parentArm);
+            if (!parent.fixed) AddAt(parent.mass, slot.mass.linear, slot.parentArm);
             continue;
         }
         JointTreeBlock& block = tree.blocks[slot.block];
@@ -393,7 +393,7 @@ void FactorizeTree(const JointTree& tree, const JointBatch<kLanes>* batches, con
         if (slot.parent == kNone) continue;
         EliminateBlock(block);
         JointTreeSlot& parent = tree.slots[slot.parent];
-        if (!parent.still) AddSquare(parent.mass, block.other, block.effectiveMass, block.rows);
+        if (!parent.fixed) AddSquare(parent.mass, block.other, block.effectiveMass, block.rows);
     }
 }
 
@@ -404,10 +404,10 @@ void SolveTree(const JointTree& tree, JointBatch<kLanes>* batches, BodyState* st
         const Batch& batch = batches[anchor.place.batch];
         const uint32_t lane = anchor.place.lane;
         // The side without mass may be kinematic.
-        const uint32_t still = anchor.isA ? batch.bodyB[lane] : batch.bodyA[lane];
+        const uint32_t fixed = anchor.isA ? batch.bodyB[lane] : batch.bodyA[lane];
         anchor.residual = relax ? Vector6(Vector6::Zero()) : Vector6(-BiasOf(batch, lane));
         anchor.residual -= Times(anchor.own, VelocityOf(states[slot.body], slot.reference), anchor.rows);
-        anchor.residual -= Times(anchor.other, VelocityOf(states[still], Vector::Zero()), anchor.rows);
+        anchor.residual -= Times(anchor.other, VelocityOf(states[fixed], Vector::Zero()), anchor.rows);
         AddTransposed(slot.load, anchor.own, Vector6(anchor.residual * anchor.stiffness), anchor.rows);
     }
     for (size_t s = tree.slots.size(); s-- > 0;) {
@@ -424,7 +424,7 @@ void SolveTree(const JointTree& tree, JointBatch<kLanes>* batches, BodyState* st
             block.residual -= Times(block.other, VelocityOf(states[parent.body], parent.reference), block.rows);
             block.residual -= Times(block.own, change, block.rows);
             AddTransposed(parent.load, block.other, Times(block.effectiveMass, block.residual, block.rows), block.rows);
-        } else if (slot.still) {
+        } else if (slot.fixed) {
             slot.change = {Vector::Zero(), Vector::Zero()};
         } else {
             JointTreeSlot& parent = tree.slots[slot.parent];
@@ -440,7 +440,7 @@ void SolveTree(const JointTree& tree, JointBatch<kLanes>* batches, BodyState* st
         }
     }
     for (JointTreeSlot& slot : tree.slots) {
-        if (slot.still) continue;
+        if (slot.fixed) continue;
         if (slot.parent != kNone) {
             const Twist<double>& parent = tree.slots[slot.parent].change;
             Batch& batch = batches[slot.place.batch];

@@ -43,7 +43,7 @@ struct JointTreeSlot {
     static constexpr uint32_t kNone = ~0u;
 
     uint32_t body = 0;
-    bool still = false;       // the body is static or kinematic: a root
+    bool fixed = false;       // the body is static or kinematic: a root
     bool isA = false;         // whether `body` is the joint's body A
     uint32_t parent = kNone;  // slot of the parent body, to which the joint below leads; smaller than this slot; kNone:
                               // this is the root

@@ -262,7 +262,7 @@ void VisitJointRecord(Stream& s, Record& record) {
 // Except the type. Returns false if there is no joint.
 template <class Stream, class Joint>
 bool VisitJoint(Stream& s, Joint& joint, bool& isBreakable) {
-    auto& [body, next, type, locks, maxRows, color, generation, exists, enabled, collideConnected, overridesMass, still,
+    auto& [body, next, type, locks, maxRows, color, generation, exists, enabled, collideConnected, overridesMass, fixed,
            priority, breakForce, breakTorque, effort, massOverride, userData, teleportedBefore] = joint;
     s(generation, exists);
     if (!exists) return false;
@@ -270,7 +270,7 @@ bool VisitJoint(Stream& s, Joint& joint, bool& isBreakable) {
     s(body, next, linear, angular, line, axis, maxRows, color.color);
     if constexpr (!Stream::kWrites) color.slot = 0;
     if (color.color != ColorSlot{}.color) s(color.slot);
-    s(isBreakable, enabled, collideConnected, overridesMass, still, priority, breakForce, breakTorque);
+    s(isBreakable, enabled, collideConnected, overridesMass, fixed, priority, breakForce, breakTorque);
     VisitEffort(s, effort);
     if (overridesMass) VisitMassOverride(s, massOverride);
     else if constexpr (!Stream::kWrites) massOverride = {};

@@ -92,7 +92,7 @@ JointedGroups::JointedGroups(uint32_t bodyCount, const JointStore& joints, Scrat
     roots_ = scratch.Allocate<uint32_t>(bodyCount);
     UnionFind sets(roots_);
     for (const Joint& joint : joints.joints)
-        if (joint.exists && joint.enabled && !joint.still[0] && !joint.still[1])
+        if (joint.exists && joint.enabled && !joint.fixed[0] && !joint.fixed[1])
             sets.Unite(joint.body[0], joint.body[1]);
     for (uint32_t body = 0; body < roots_.size(); ++body) roots_[body] = sets.Find(body);
 }

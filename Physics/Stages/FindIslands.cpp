@@ -75,7 +75,7 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
     std::span<uint32_t> sizes = scratch.Allocate<uint32_t>(count);
     std::fill(sizes.begin(), sizes.end(), 0u);
     const auto unite = [&](uint32_t, const Entry& entry) {
-        if (!entry.stillA && !entry.stillB) sets.Unite(placeOf(entry.bodyA), placeOf(entry.bodyB));
+        if (!entry.fixedA && !entry.fixedB) sets.Unite(placeOf(entry.bodyA), placeOf(entry.bodyB));
     };
     VisitEntries(coloring, Kind::Moving, unite);
     VisitEntries(coloring, Kind::Joint, unite);

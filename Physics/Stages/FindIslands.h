@@ -36,7 +36,7 @@ void VisitEntries(const ConstraintColoring& coloring, ConstraintColoring::Kind k
 }
 
 inline uint32_t MovingBodyOf(const ConstraintColoring::Entry& entry) {
-    return entry.stillA ? entry.bodyB : entry.bodyA;
+    return entry.fixedA ? entry.bodyB : entry.bodyA;
 }
 
 inline uint32_t GroupOf(const BodyStore& bodies, const Islands& islands, const ConstraintColoring::Entry& entry) {

@@ -174,7 +174,7 @@ private:
     // The lighter one of the dynamic bodies of a contact.
     uint32_t LighterOf(const Entry& entry) const {
         const auto inverseMassOf = [&](uint32_t body) { return bodies_.dynamics[body].inverseMass; };
-        if (entry.stillA || entry.stillB) return MovingBodyOf(entry);
+        if (entry.fixedA || entry.fixedB) return MovingBodyOf(entry);
         return inverseMassOf(entry.bodyB) > inverseMassOf(entry.bodyA) ? entry.bodyB : entry.bodyA;
     }
 
@@ -184,8 +184,8 @@ private:
         const uint32_t root = RootOf(MovingBodyOf(entry));
         if (sizes_[root] > mostLoaded_) return;
         float size = std::numeric_limits<float>::infinity();
-        if (!entry.stillA) size = std::min(size, SizeOf(bodies_.dynamics[entry.bodyA]));
-        if (!entry.stillB) size = std::min(size, SizeOf(bodies_.dynamics[entry.bodyB]));
+        if (!entry.fixedA) size = std::min(size, SizeOf(bodies_.dynamics[entry.bodyA]));
+        if (!entry.fixedB) size = std::min(size, SizeOf(bodies_.dynamics[entry.bodyB]));
         const Extent& extent = places_[root] == kNone ? kLow : extents_[places_[root]];
         const float factor = BucklingFactor(size, extent, kBucklingOfWalls);
         const auto needOf = [&](uint32_t level) { return ExcessOfLevel(level) * factor; };

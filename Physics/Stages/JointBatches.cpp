@@ -21,7 +21,7 @@ uint32_t KindOf(const BodyStore& bodies, const Joint& joint) {
         return static_cast<uint32_t>(joint.locks.linear) * 3 + static_cast<uint32_t>(joint.locks.angular);
     const auto isRound = [&](int side) {
         const BodyDynamics& d = bodies.dynamics[joint.body[side]];
-        return joint.still[side] || (d.spherical && !d.LocksRotation());
+        return joint.fixed[side] || (d.spherical && !d.LocksRotation());
     };
     return isRound(0) && isRound(1) ? kRoundBall : kBall;
 }
@@ -66,8 +66,8 @@ void FillLanes(const BodyStore& bodies, const JointStore& store, Batch& batch, c
         batch.joint[lane] = index;
         batch.bodyA[lane] = joint.body[0];
         batch.bodyB[lane] = joint.body[1];
-        batch.fixedA |= bit(joint.still[0]);
-        batch.fixedB |= bit(joint.still[1]);
+        batch.fixedA |= bit(joint.fixed[0]);
+        batch.fixedB |= bit(joint.fixed[1]);
         batch.kinematicA |= bit(isKinematic(0));
         batch.kinematicB |= bit(isKinematic(1));
     }

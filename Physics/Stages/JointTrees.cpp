@@ -55,7 +55,7 @@ public:
     void Find() {
         for (int c = 0; c <= ConstraintColoring::kColors; ++c)
             for (const auto& entry : coloring_.At(c).Of(ConstraintColoring::Kind::Joint)) {
-                const uint32_t body = entry.stillA ? entry.bodyB : entry.bodyA;
+                const uint32_t body = entry.fixedA ? entry.bodyB : entry.bodyA;
                 if (!seen_[body]) AddTree(ComponentOf(body));
             }
     }
@@ -86,9 +86,9 @@ private:
             bool anchored = false;
             VisitJoints(body, [&](uint32_t, const Joint& joint, int side) {
                 const uint32_t other = joint.body[1 - side];
-                anchored |= joint.still[1 - side];
+                anchored |= joint.fixed[1 - side];
                 component.overridesMass |= joint.overridesMass;
-                if (joint.still[1 - side] || seen_[other]) return;
+                if (joint.fixed[1 - side] || seen_[other]) return;
                 seen_[other] = 1;
                 component.bodies.push_back(other);
             });
@@ -121,7 +121,7 @@ private:
                 const uint32_t other = joint.body[1 - side];
                 if (index == hook) return;
                 ++links;
-                if (joint.still[1 - side]) {
+                if (joint.fixed[1 - side]) {
                     JointTreeAnchor& anchor = trees_.anchors.emplace_back();
                     anchor.slot = s;
                     anchor.joint = index;
@@ -162,10 +162,10 @@ private:
     uint32_t AddHook(uint32_t root) {
         uint32_t hook = kNone;
         VisitJoints(root, [&](uint32_t index, const Joint& joint, int side) {
-            if (hook != kNone || !joint.still[1 - side]) return;
+            if (hook != kNone || !joint.fixed[1 - side]) return;
             hook = index;
             AddSlot(joint.body[1 - side], kNone, kNone, false);
-            trees_.slots.back().still = true;
+            trees_.slots.back().fixed = true;
             AddSlot(root, 0, index, side == 0);
         });
         return hook;
@@ -183,7 +183,7 @@ private:
     void AddBlocks(JointTrees::Tree& tree) {
         for (uint32_t s = tree.slotsBegin; s < tree.slotsEnd; ++s) {
             JointTreeSlot& slot = trees_.slots[s];
-            if (slot.still || (slot.parent != kNone && IsBall(joints_.joints[slot.joint]))) continue;
+            if (slot.fixed || (slot.parent != kNone && IsBall(joints_.joints[slot.joint]))) continue;
             slot.block = static_cast<uint32_t>(trees_.blocks.size()) - tree.blocksBegin;
             trees_.blocks.emplace_back();
         }
@@ -194,7 +194,7 @@ private:
     float LargestMassRatio(const JointTrees::Tree& tree) const {
         float heaviest = 0, lightest = std::numeric_limits<float>::infinity();
         for (uint32_t s = tree.slotsBegin; s < tree.slotsEnd; ++s) {
-            if (trees_.slots[s].still) continue;
+            if (trees_.slots[s].fixed) continue;
             const float mass = MassOf(trees_.slots[s].body);
             heaviest = std::max(heaviest, mass);
             lightest = std::min(lightest, mass);

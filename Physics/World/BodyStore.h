@@ -210,7 +210,7 @@ public:
         cold[index].filter = filter.IsDefault() ? nullptr : std::make_unique<BodyFilter>(filter);
     }
 
-    // Whether constraints can move it.
+    // Whether constraints can move it: it is not fixed.
     bool CanMove(uint32_t index) const {
         return dynamics[index].motion == MotionType::Dynamic && !dynamics[index].frozen;
     }

@@ -13,7 +13,7 @@ inline ConstraintColoring::Kind KindOf(const Pair& pair) {
     return pair.fixedB ? ConstraintColoring::Kind::Fixed : ConstraintColoring::Kind::Moving;
 }
 inline ConstraintColoring::Entry EntryOf(const Joint& joint, uint32_t index) {
-    return {index, joint.body[0], joint.body[1], joint.still[0], joint.still[1]};
+    return {index, joint.body[0], joint.body[1], joint.fixed[0], joint.fixed[1]};
 }
 inline ConstraintColoring::Entry EntryOf(const Pair& pair, uint32_t index) {
     return {index, pair.bodyA, pair.bodyB, false, pair.fixedB};

@@ -54,7 +54,7 @@ struct Joint {
     bool enabled = true;
     bool collideConnected = false;
     bool overridesMass = false;      // massOverride is not none
-    bool still[2] = {false, false};  // the body is immovable: static, kinematic or frozen
+    bool fixed[2] = {false, false};  // the body is immovable: static, kinematic or frozen
     JointPriority priority = JointPriority::Normal;
     float breakForce = 0, breakTorque = 0;
     LeastEffort effort;  // minimum effort for its island

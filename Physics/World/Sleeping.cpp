@@ -37,7 +37,7 @@ void FindAwakeIslands(const BodyStore& bodies, const PairStore& pairs, const Con
     });
     for (int c = 0; c <= ConstraintColoring::kColors; ++c)
         for (const ConstraintColoring::Entry& entry : coloring.At(c).Of(ConstraintColoring::Kind::Joint))
-            if (!entry.stillA && !entry.stillB)
+            if (!entry.fixedA && !entry.fixedB)
                 sets.Unite(bodies.cold[entry.bodyA].awakePlace, bodies.cold[entry.bodyB].awakePlace);
     for (uint32_t i = 0; i < roots.size(); ++i) roots[i] = sets.Find(i);
 }
