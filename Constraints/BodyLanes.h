@@ -6,6 +6,8 @@
 #include <Fulcrum/Constraints/Parts/SymmetricInverse.h>
 #include <Fulcrum/Math/Trigonometry.h>
 
+#include <initializer_list>
+
 namespace fulcrum {
 
 // Which row of a body's solver state.

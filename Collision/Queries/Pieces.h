@@ -22,7 +22,7 @@ inline constexpr double kFarthestApart = 1e18;  // m
 inline bool IsWithinReach(const Position& between) {
     return IsFinite(between) && between.cwiseAbs().maxCoeff() < kFarthestApart;
 }
-inline bool IsTurn(const Quaternion& q) { return IsFinite(q) && Abs(LengthSquared(q) - 1) < 0.01f; }
+inline bool IsRotation(const Quaternion& q) { return IsFinite(q) && Abs(LengthSquared(q) - 1) < 0.01f; }
 
 inline Bounds Inflated(const Bounds& bounds, float by) {
     Bounds b;

@@ -26,7 +26,7 @@ Bounds BoundsOfTurning(const ConvexShape& shape, const ShapeMotion& motion) {
 
 ShapeCaster::ShapeCaster(const ConvexShape& shape, const ShapeMotion& motion, NarrowPhaseMethod method)
     : shape_(shape), motion_(motion), bounds_(BoundsOfTurning(shape, motion)), method_(method) {
-    isValid_ = IsFinite(motion.pose.position) && IsTurn(motion.pose.rotation) &&
+    isValid_ = IsFinite(motion.pose.position) && IsRotation(motion.pose.rotation) &&
                IsWithinReach(motion.displacement.cast<double>()) && IsWithinReach(motion.turn.cast<double>()) &&
                IsWithinReach(motion.turnOfOther.cast<double>()) && IsFinite(bounds_.lower) && IsFinite(bounds_.upper);
 }

@@ -11,7 +11,7 @@ using namespace contacts;
 // Larger coefficients are clamped to this, which keeps force limits finite.
 constexpr float kMostFriction = 1e6f;
 // Fraction of the smaller inner radius up to which overlaps have the full softness.
-constexpr float kSoftPart = 0.25f;
+constexpr float kSoftFraction = 0.25f;
 
 // The terms of the response matrices, summed over both bodies.
 template <class Real>
@@ -217,7 +217,7 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
     batch.friction = Min(head[Record::kFriction], Real(kMostFriction));
     batch.twistRadius = head[Record::kTwistRadius];
     batch.maxPushSpeed = Real(settings.maxPushSpeed);
-    batch.inverseSoftDepth = Real(1.0f / kSoftPart) / GatherInnerRadius<N>(batch.bodyA, bodyB, bodies.poses);
+    batch.inverseSoftDepth = Real(1.0f / kSoftFraction) / GatherInnerRadius<N>(batch.bodyA, bodyB, bodies.poses);
     batch.pointCount = static_cast<int32_t>(HorizontalMax(pointCount));
     batch.bounces = HorizontalMax(head[Record::kRestitution]) > 0.0f;
     batch.surfaces = !kFixedB && isMarked && HaveSurfaceVelocity(head[Record::kMarks]).Any() ? records : nullptr;

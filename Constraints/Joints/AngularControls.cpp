@@ -164,7 +164,7 @@ void AngularControls::CollectRows(const JointPose& pose, uint32_t firstSlot, Joi
     // Edges out of reach are skipped: an ellipse and a pyramid contain the circle of their smallest angle.
     float reach = (1.25f * std::max(Length(motion.velocity), Length(motion.motorSpeed)) + kAngularSlackSpeed) * pose.dt;
     for (int k = 0; k < 3; ++k)
-        reach += WayOfSpring(axes_[static_cast<size_t>(k)].motor.spring, Abs(motion.toTarget[k]), pose.dt);
+        reach += SpringTravel(axes_[static_cast<size_t>(k)].motor.spring, Abs(motion.toTarget[k]), pose.dt);
     const AngleRange &y = limits.swingY, &z = limits.swingZ;
     // A curved edge is linearized at the predicted swing.
     const bool curves = IsLimited(y) && IsLimited(z) && limits.shape == SwingShape::Ellipse;
@@ -206,7 +206,7 @@ void AngularControls::AddLimitRows(const JointPose& pose, const Motion& motion, 
         float reach = (1.25f * speed + kAngularSlackSpeed) * pose.dt;
         for (int k = 0; k < 3; ++k) {
             const float way = motion.toTarget[k] * Dot(limit.axis, AxisOf(motion.axes, k));
-            reach += WayOfSpring(axes_[static_cast<size_t>(k)].motor.spring, std::max(0.0f, way), pose.dt);
+            reach += SpringTravel(axes_[static_cast<size_t>(k)].motor.spring, std::max(0.0f, way), pose.dt);
         }
         if (limit.error > reach) continue;
         AddLimitRow(spring, row, 1.0f, limit.error, firstSlot + SlotOfLimit(limit.slot), rows).yields =

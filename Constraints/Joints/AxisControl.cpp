@@ -29,7 +29,7 @@ float Reach(const AxisControl& control, double position, float speed, float sign
     float reach = (1.25f * closing + slackSpeed) * dt;
     if (motor.mode == MotorMode::ToPosition) {
         const float target = std::clamp(motor.targetPosition, control.limits.min, control.limits.max);
-        reach += WayOfSpring(motor.spring, std::max(0.0f, sign * static_cast<float>(target - position)), dt);
+        reach += SpringTravel(motor.spring, std::max(0.0f, sign * static_cast<float>(target - position)), dt);
     }
     return reach;
 }
@@ -68,12 +68,12 @@ void AddMotorRow(const AxisControl& control, const JointRow& motion, double posi
 
 }  // namespace
 
-float WayOfSpring(const SpringSettings& spring, float way, float dt) {
-    if (IsHard(spring)) return way;
+float SpringTravel(const SpringSettings& spring, float distance, float dt) {
+    if (IsHard(spring)) return distance;
     if (spring.mode == SpringMode::StiffnessAndDamping)
-        return 2.0f * way;  // upper bound, since the mass is unknown here
+        return 2.0f * distance;  // upper bound, since the mass is unknown here
     const float phase = 6.28318531f * spring.frequency * dt;
-    return way * std::min(2.0f, 0.5f * phase * phase);
+    return distance * std::min(2.0f, 0.5f * phase * phase);
 }
 
 float StretchSpeed(float distance, float speed, float dt) {

@@ -77,9 +77,9 @@ uint32_t MaxControlRows(const AxisControl& control);
 inline constexpr float kLinearSlackSpeed = 1.0f;   // m/s
 inline constexpr float kAngularSlackSpeed = 2.0f;  // rad/s
 
-// The largest displacement that the spring of a position motor can cause within dt, s, from rest at a distance of
-// `way`, m or rad, from its target: that of an undamped oscillator, way (1 - cos(w dt)).
-float WayOfSpring(const SpringSettings& spring, float way, float dt);
+// The largest displacement that the spring of a position motor can cause within dt, s, from rest at `distance`, m or
+// rad, from its target: that of an undamped oscillator, distance (1 - cos(w dt)).
+float SpringTravel(const SpringSettings& spring, float distance, float dt);
 
 // Growth rate, m/s, average over the step, of the distance between two points due to relative motion perpendicular to
 // the line between them at `speed`, m/s: (v dt)^2 / 2 d in the step, v dt at most.

@@ -12,10 +12,10 @@ namespace fulcrum::joints {
 // It stays so until its gap and angles are reduced to a fiftieth of that: correcting the last decimeter by velocities
 // would leave energy. Joints connected to joints that are far apart are far apart from a fifth of it on.
 inline float FarPush(const JointSolveSettings& settings) {
-    constexpr float kFarPart = 0.5f, kFarWay = 0.05f;  // m
-    return std::fmin(kFarPart, kFarWay * settings.inverseDt / settings.maxPushSpeed);
+    constexpr float kFarFraction = 0.5f, kFarDistance = 0.05f;  // m
+    return std::fmin(kFarFraction, kFarDistance * settings.inverseDt / settings.maxPushSpeed);
 }
-inline constexpr float kNearPart = 0.02f, kFollowPart = 0.2f;
+inline constexpr float kNearFraction = 0.02f, kFollowFraction = 0.2f;
 
 // JointRecord::wasPulled. Joints that are far apart add the seconds for which they have not been distant.
 inline constexpr float kWasFar = 1.0f, kFollowed = 0.5f;
@@ -40,15 +40,15 @@ inline float LongestNear(const JointSolveSettings& settings) { return 100.0f / s
 template <class Real>
 FULCRUM_FORCE_INLINE Real FarPush(const Real& wasPulled, const JointSolveSettings& settings) {
     const float far = FarPush(settings);
-    const Real following = Select(wasPulled >= Real(kFollowed), Real(kFollowPart * far), Real(far));
-    return Select(wasPulled >= Real(kWasFar), Real(kNearPart * far), following);
+    const Real following = Select(wasPulled >= Real(kFollowed), Real(kFollowFraction * far), Real(far));
+    return Select(wasPulled >= Real(kWasFar), Real(kNearFraction * far), following);
 }
 
 // Marks lanes whose bodies have significant pseudo-velocities.
 template <class Real>
 FULCRUM_FORCE_INLINE Real Follows(const Real& before, const Twist<Real>& a, const Twist<Real>& b,
                                   const JointSolveSettings& settings) {
-    const Real fast(kNearPart * settings.maxPushSpeed);
+    const Real fast(kNearFraction * settings.maxPushSpeed);
     const auto isPulled = [&](const Twist<Real>& v) {
         return Dot<Real>(v.linear, v.linear) + Dot<Real>(v.angular, v.angular) > fast * fast;
     };

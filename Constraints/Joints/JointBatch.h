@@ -200,7 +200,7 @@ void WarmStartJoints(const JointBatch<N>& batch, BodyState* states);
 // Adds the change of the parts' impulses due to their rotation in the last substep. SolveJointVelocities does that
 // itself if settings.continues is set.
 template <int N>
-void TurnJoints(JointBatch<N>& batch, BodyState* states);
+void RotateJointImpulses(JointBatch<N>& batch, BodyState* states);
 
 template <int N>
 void SolveJointVelocities(JointBatch<N>& batch, BodyState* states, const JointSolveSettings& settings);

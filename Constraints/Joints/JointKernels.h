@@ -348,8 +348,8 @@ FULCRUM_FORCE_INLINE void MoveRows(JointBatch<N>& batch, const Twist<Wide<N>>& a
 
 // The line between the anchors, if they are apart; else the previous direction.
 template <int N>
-FULCRUM_FORCE_INLINE void TurnRadialRow(const JointBatch<N>& batch, JointRows<N>& row,
-                                        const JointPlace<Wide<N>>& place) {
+FULCRUM_FORCE_INLINE void RotateRadialRow(const JointBatch<N>& batch, JointRows<N>& row,
+                                          const JointPlace<Wide<N>>& place) {
     using Real = Wide<N>;
     const Real squared = Dot<Real>(place.offset, place.offset), one(1.0f);
     const auto turns = (row.radial > Real(0.5f)) & (squared > Real(1e-10f));

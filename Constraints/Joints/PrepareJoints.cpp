@@ -203,7 +203,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
 void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const JointErrors<Wide<N>>& errors,
              const Wide<N>& wasPulled, const JointSolveSettings& settings) {
     using Real = Wide<N>;
-    const Real farPart(FarPush(settings)), least = FarPush<Real>(wasPulled, settings), zero(0.0f);
+    const Real farFraction(FarPush(settings)), least = FarPush<Real>(wasPulled, settings), zero(0.0f);
     // Correction speeds that distances and angles ask for, as fractions of the largest push speed.
     Real distance(0.0f), angle(0.0f);
     const Real rate(settings.pushRate / settings.maxPushSpeed);
@@ -227,7 +227,7 @@ void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const Joint
     // Angular errors alone count only after a teleport: they do not lengthen lever arms, and in a pile hinges bend
     // beyond their limits anyway. After a teleport, correcting them by velocities, which are relaxed in rotated
     // directions, would leave energy.
-    const auto isDistant = distance > farPart, isMuch = Max(distance, angle) > farPart;
+    const auto isDistant = distance > farFraction, isMuch = Max(distance, angle) > farFraction;
     const Real near = SecondsNear(wasPulled, isDistant, settings);
     const auto isFar =
         ((distance > least) | ((angle > least) & ((wasPulled >= Real(kWasFar)) | (batch.secondsOfTeleport > zero)))) &

@@ -210,7 +210,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     SetUpCoupling<kLinear, kAngular>(batch);
     if (batch.rowCount > 0) MoveRows(batch, a, b);
     if (batch.radial)
-        for (uint32_t i = 0; i < batch.rowCount; ++i) TurnRadialRow(batch, batch.rows[i], place);
+        for (uint32_t i = 0; i < batch.rowCount; ++i) RotateRadialRow(batch, batch.rows[i], place);
     if (batch.rowCount > 0) SetUpRows<kLinear, kAngular>(batch);
     if (turns) {
         AddLockImpulses<kLinear, kAngular>(batch, turnedA, turnedB, 1.0f);
@@ -247,7 +247,7 @@ void WarmStartJoints(const JointBatch<N>& batch, BodyState* states) {
 }
 
 template <int N>
-void TurnJoints(JointBatch<N>& batch, BodyState* states) {
+void RotateJointImpulses(JointBatch<N>& batch, BodyState* states) {
     ChangeLocked<N>(batch, states, [&](auto linear, auto angular, auto& a, auto& b) FULCRUM_FORCE_INLINE_LAMBDA {
         Turn<linear, angular>(batch, a, b);
     });
@@ -327,7 +327,7 @@ void CorrectJoints(JointBatch<N>& batch, const SolverBodies& bodies, const Joint
 
 #define FULCRUM_INSTANTIATE(lanes)                                                                  \
     template void WarmStartJoints(const JointBatch<lanes>&, BodyState*);                            \
-    template void TurnJoints(JointBatch<lanes>&, BodyState*);                                       \
+    template void RotateJointImpulses(JointBatch<lanes>&, BodyState*);                              \
     template void SolveJointVelocities(JointBatch<lanes>&, BodyState*, const JointSolveSettings&);  \
     template void RelaxJoints(JointBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);  \
     template void UpdateJoints(JointBatch<lanes>&, const SolverBodies&, const JointSolveSettings&); \

@@ -290,8 +290,8 @@ struct Pyramid {
 
     // The rotation from d, which is beyond some of the faces, to the nearest point of the region. `slot` is that of the
     // worst face.
-    RotationLimit WayBack(const Vector3& d, const RotationLimit (&faces)[4], const bool (&isBeyond)[4],
-                          RotationLimit::Slot slot) const {
+    RotationLimit RotationToRegion(const Vector3& d, const RotationLimit (&faces)[4], const bool (&isBeyond)[4],
+                                   RotationLimit::Slot slot) const {
         RotationLimit best;
         best.error = -2.0f * AngleRange::kHalfTurn;
         for (int face = 0; face < 4; ++face)
@@ -328,11 +328,11 @@ inline void AddPyramidLimits(RotationLimitList& list, const SwingTwist& r, const
         isBeyond[face] = pyramid.IsBeyond(face, r.swing);
         if (isBeyond[face] && (worst < 0 || faces[face].error < faces[worst].error)) worst = face;
     }
-    constexpr float kShortWay = 0.1f;  // rad; farther out the circles deviate from the faces
+    constexpr float kShortAngle = 0.1f;  // rad; farther out the circles deviate from the faces
     if (worst >= 0) {
-        const RotationLimit back = pyramid.WayBack(d, faces, isBeyond, faces[worst].slot);
+        const RotationLimit back = pyramid.RotationToRegion(d, faces, isBeyond, faces[worst].slot);
         list.Add(back.slot, back.error, detail::FromSwingPlane(back.axis));
-        if (back.error < -kShortWay) return;
+        if (back.error < -kShortAngle) return;
     }
     for (int face = 0; face < 4; ++face)
         if (!isBeyond[face]) list.Add(faces[face].slot, faces[face].error, detail::FromSwingPlane(faces[face].axis));

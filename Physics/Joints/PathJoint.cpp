@@ -16,7 +16,7 @@ struct PathSlots {
 };
 
 // Arc length of B's anchor along the path.
-double WayOf(const Path& path, double parameter, const PathSample& at, const Vector3& local) {
+double DistanceAlong(const Path& path, double parameter, const PathSample& at, const Vector3& local) {
     const double beyond = path.IsClosed() ? 0.0 : static_cast<double>(Dot(Vector3(local - at.position), at.tangent));
     return path.LengthAt(parameter) + beyond;
 }
@@ -73,8 +73,8 @@ void PathJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     if (!isNear) acting.armA -= Rotate(pose.frameA, away);
     JointRow along;
     acting.SetAlong(along, Rotate(pose.frameA, at.tangent));
-    const double way = WayOf(*path_, parameter_, at, local);
-    AddControlRows(Bounded(), pose, along, way, kLinearSlackSpeed, PathSlots::kAlong, rows);
+    const double distance = DistanceAlong(*path_, parameter_, at, local);
+    AddControlRows(Bounded(), pose, along, distance, kLinearSlackSpeed, PathSlots::kAlong, rows);
     if (isNear && (rotation_ == PathRotation::Tangent || rotation_ == PathRotation::TangentAndNormal))
         AddRotationRows(pose, at, along, rows);
     uint32_t slot = PathSlots::kAcross;
@@ -118,7 +118,7 @@ double PathJoint::Coordinate(JointAxis axis, const JointPose& pose) const {
     if (axis != JointAxis::LinearX) return JointType::Coordinate(axis, pose);
     const Vector3 local = InverseRotate(pose.frameA, pose.offset);
     const double parameter = path_->Closest(local, parameter_);
-    return WayOf(*path_, parameter, path_->Sample(parameter), local);
+    return DistanceAlong(*path_, parameter, path_->Sample(parameter), local);
 }
 
 std::span<double> PathJoint::State() { return {&parameter_, 1}; }

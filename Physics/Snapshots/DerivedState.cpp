@@ -29,7 +29,7 @@ void SnapshotAccess::Resize(ColliderStore& colliders, uint32_t count) {
 
 void SnapshotAccess::Resize(PairStore& pairs, uint32_t count) {
     for (uint32_t i = count; i < pairs.pairs.size(); ++i)
-        if (const uint64_t key = KeyOf(pairs, i); key != kNoKey) pairs.Strike(key, i);
+        if (const uint64_t key = KeyOf(pairs, i); key != kNoKey) pairs.RemoveKey(key, i);
     // While pairs are read the table also contains the previous ones.
     if (size_t places = std::max<size_t>(pairs.table_.size(), 1024);
         2 * size_t{count} > places || pairs.table_.empty()) {
@@ -143,8 +143,8 @@ void SnapshotAccess::AttachPair(const ColliderStore& colliders, PairStore& store
     // Few pairs differ from the previous ones.
     const uint64_t key = KeyOf(store, index);
     if (key != before) {
-        if (before != kNoKey) store.Strike(before, index);
-        if (key != kNoKey) store.Enter(key, index);
+        if (before != kNoKey) store.RemoveKey(before, index);
+        if (key != kNoKey) store.AddKey(key, index);
     }
     Pair& pair = store.pairs[index];
     if (!pair.exists) return;

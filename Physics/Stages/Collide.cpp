@@ -115,7 +115,7 @@ PairChange CollidePair(const CollideStores& stores, std::span<PairChange> change
     if (pair.pointCount > 0)
         NoteOverlap(stores.step.settings, stores.bodies, stores.joints, stores.pairs, index, view.bInA, findings);
     const PairChange change = NoteTouching(stores, index, findings);
-    return TouchesSleeper(stores.bodies, pair) ? PairChange::WakesOther : change;
+    return TouchesSleepingBody(stores.bodies, pair) ? PairChange::WakesOther : change;
 }
 
 // Prefetches data of the next pairs while this one is collided.

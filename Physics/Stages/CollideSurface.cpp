@@ -123,7 +123,7 @@ PairChange CollideWithSurface(const CollideStores& stores, std::span<PairChange>
         if (pair.pointCount > 0)
             NoteOverlap(stores.step.settings, stores.bodies, stores.joints, stores.pairs, index, view.bInA, findings);
         const PairChange change = NoteTouching(stores, index, findings);
-        wakes |= TouchesSleeper(stores.bodies, pair);
+        wakes |= TouchesSleepingBody(stores.bodies, pair);
         if (index == first) ofFirst = change;
         else changes[index] = change;
     });
@@ -146,7 +146,7 @@ void AddMoreManifolds(const CollideStores& stores, PairUpdates& updates, std::sp
         updates.changes.resize(std::max(updates.changes.size(), stores.pairs.pairs.size()), PairChange::None);
         Write(stores, ViewPair(stores.bodies, stores.colliders, stores.pairs, more.pair), index, more.contact);
         updates.changes[index] = NoteTouching(stores, index, workers.front());
-        if (TouchesSleeper(stores.bodies, stores.pairs.pairs[index]))
+        if (TouchesSleepingBody(stores.bodies, stores.pairs.pairs[index]))
             updates.changes[more.pair] = PairChange::WakesOther;
     }
 }

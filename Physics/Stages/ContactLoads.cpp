@@ -65,7 +65,7 @@ bool IsLeftOut(const BodyStore& bodies, const JointStore& joints, const Pair& pa
 
 void NoteWeights(const StepContext& step, std::span<const uint32_t> began, const BodyStore& bodies,
                  const JointStore& joints, PairStore& pairs) {
-    if (!HeedsLoads(step.settings)) return;
+    if (!AdaptsToLoads(step.settings)) return;
     for (uint32_t index : began) {
         const Pair& pair = pairs.pairs[index];
         if (IsLeftOut(bodies, joints, pair)) continue;

@@ -42,21 +42,21 @@ struct GapScale {
 };
 
 // Whether the settings give islands more effort by load.
-inline bool HeedsLoads(const SystemSettings& settings) {
+inline bool AdaptsToLoads(const SystemSettings& settings) {
     return settings.accuracy.penetration < std::numeric_limits<float>::infinity();
 }
 
-inline bool HeedsGaps(const SystemSettings& settings) {
+inline bool AdaptsToGaps(const SystemSettings& settings) {
     return settings.accuracy.jointError < std::numeric_limits<float>::infinity();
 }
 
 // Sinks and gaps are quantized to powers of two of a quarter of their target, AccuracyTarget::penetration and
 // jointError: level i is below 2^i of that.
-constexpr float kUnnotedPart = 0.25f;
-inline float LargestUnnotedSink(const AccuracyTarget& accuracy) { return kUnnotedPart * accuracy.penetration; }
-inline float LargestUnnotedGap(const AccuracyTarget& accuracy) { return kUnnotedPart * accuracy.jointError; }
+constexpr float kUnnotedFraction = 0.25f;
+inline float LargestUnnotedSink(const AccuracyTarget& accuracy) { return kUnnotedFraction * accuracy.penetration; }
+inline float LargestUnnotedGap(const AccuracyTarget& accuracy) { return kUnnotedFraction * accuracy.jointError; }
 // Upper bound of the ratio to the target for a level.
-inline float ExcessOfLevel(uint32_t level) { return std::ldexp(kUnnotedPart, static_cast<int>(level)); }
+inline float ExcessOfLevel(uint32_t level) { return std::ldexp(kUnnotedFraction, static_cast<int>(level)); }
 
 // m^2: the square of half the edge of a cube with the same inverse mass and sum of inverse moments of inertia.
 // Infinite if rotation is locked.

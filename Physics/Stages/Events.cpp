@@ -16,7 +16,7 @@ using EventKind = ContactEvent::Kind;
 
 // Hysteresis: a contact ends when it is farther apart than this fraction of the speculative distance, so that jitter
 // does not end it in every other step.
-constexpr float kEndPart = 0.25f;
+constexpr float kEndFraction = 0.25f;
 
 // Inputs of contact events.
 struct ContactSources {
@@ -29,7 +29,7 @@ struct ContactSources {
 
 // m: points without impulse touch within this separation. before: the pair touched in the last step.
 float TouchDistance(const ContactSources& from, uint32_t first, bool before) {
-    return before ? kEndPart * SpeculativeDistance(from.settings, from.pairs.pairs[first]) : 0.0f;
+    return before ? kEndFraction * SpeculativeDistance(from.settings, from.pairs.pairs[first]) : 0.0f;
 }
 
 ContactView ViewOf(const ContactSources& from, uint32_t index, ContactView::Point (&room)[ContactRecord::kMaxPoints]) {

@@ -60,7 +60,7 @@ public:
                 Push(i);
                 SolveFriction(i);
             }
-        const float part = PassivePart();
+        const float part = PassiveFraction();
         for (int s = 0; s < 2 && part < 1; ++s) {
             v_.linear[s] = linear[s] + (v_.linear[s] - linear[s]) * part;
             v_.angular[s] = angular[s] + (v_.angular[s] - angular[s]) * part;
@@ -83,7 +83,7 @@ private:
     // Factor of all impulses for which they do no positive work. The work is J . (u + u') / 2, with u and u' the
     // relative velocities of the points before and after; Newton's law at several points or with friction may make it
     // positive. 1 if it is not.
-    float PassivePart() const {
+    float PassiveFraction() const {
         float first = 0, second = 0;  // work = first part + second part^2
         for (int i = 0; i < hit_.pointCount; ++i) {
             const Vector3 impulse = frictionImpulses_[i] - hit_.normal * normalImpulses_[i];
@@ -202,7 +202,7 @@ Vector3 GainUntilEnd(const ImpactStores& stores, uint32_t body, const Vector3& v
 // the rotation by a constant rate up to `then`.
 Vector3 TurnedFreely(const BodyDynamics& d, const Quaternion& rotation, const Vector3& w, float seconds,
                      const Quaternion& then) {
-    if (d.motion != MotionType::Dynamic || !d.FeelsGyroscopicTorque(w)) return w;
+    if (d.motion != MotionType::Dynamic || !d.HasGyroscopicTorqueAt(w)) return w;
     const auto energyOf = [&](const Vector3& inBody) {
         return TwiceRotationalEnergy<float>(d, InverseRotate(d.PrincipalAxes(), inBody));
     };

@@ -285,7 +285,7 @@ void IntegratePose(const MovedBodies& moved, uint32_t body, float h, bool isLast
     if (isLast && Flies<float>(bodies, {body}, bodies.LinearVelocityOf(body)))
         CorrectFlight<float>(bodies, {body}, 1, true, Vector3(a[0], a[1], a[2]), h);
     Vector3 w = bodies.AngularVelocityOf(body);
-    if (!isJointed || !d.FeelsGyroscopicTorque(w)) return;
+    if (!isJointed || !d.HasGyroscopicTorqueAt(w)) return;
     TurnInertia(bodies, {body}, 1, true, turn, w, h);
     bodies.SetVelocity(body, bodies.LinearVelocityOf(body), w);
 }

@@ -246,21 +246,21 @@ std::span<const IslandEffort> FindEfforts(const StepContext& step, const BodySto
     std::fill(efforts.begin(), efforts.end(), IslandEffort{});
     std::span<Need> needs = scratch.Allocate<Need>(count);
     std::fill(needs.begin(), needs.end(), Need{});
-    const bool heedsGaps = HeedsGaps(step.settings);
+    const bool adaptsToGaps = AdaptsToGaps(step.settings);
     VisitEntries(coloring, Kind::Joint, [&](uint32_t, const Entry& entry) {
         const Joint& joint = joints.joints[entry.constraint];
-        if (!joint.effort.IsAny() && !heedsGaps) return;
+        if (!joint.effort.IsAny() && !adaptsToGaps) return;
         const uint32_t body = MovingBodyOf(entry), root = sets.Find(bodies.cold[body].awakePlace);
         if (joint.effort.IsAny()) RaiseLeast(efforts[root], joint.effort, body);
         const LoadLevel& gap = joints.gaps[entry.constraint];
-        if (!heedsGaps || gap.level == 0 || sizes[root] > mostLoaded) return;
+        if (!adaptsToGaps || gap.level == 0 || sizes[root] > mostLoaded) return;
         const float need = ExcessOfLevel(gap.level);
         needs[root].Raise(need, body);
         if (gap.stiffness > 0 && need > 1) needs[root].Soften(gap.stiffness);
     });
-    if (HeedsLoads(step.settings))
+    if (AdaptsToLoads(step.settings))
         LoadEfforts(step, bodies, coloring, pairs, sizes, mostLoaded, sets, needs, scratch).Find();
-    else if (!heedsGaps) return efforts;
+    else if (!adaptsToGaps) return efforts;
     for (size_t i = 0; i < count; ++i) {
         if (!(needs[i].need > 1)) continue;
         RaiseLeast(efforts[i], ToLeastEffort(EffortFor(needs[i].need, step.settings)), needs[i].culprit);

@@ -40,7 +40,7 @@ bool FlyFreely(BodyStore& bodies, Ending& ending, const StepContext& step, Worke
     Vector3& change = ending.displacement;
     change = (before + v) * (0.5f * step.dt);
     if (d.lockedAxes != LockedAxes::None) d.Lock(change, w);
-    const bool feelsTop = d.FeelsGyroscopicTorque(w);
+    const bool feelsTop = d.HasGyroscopicTorqueAt(w);
     if (d.hasForce) {
         const Vector3 torque = bodies.cold[ending.body].torque;
         Vector3 pushed = w + bodies.masses[ending.body].InverseInertia() * torque * step.dt;
@@ -94,7 +94,7 @@ void MoveSolved(BodyStore& bodies, const JointStore& joints, Ending& ending, flo
     const Quaternion before = rotation;
     rotation = Normalized(RotationFromVector(turn) * rotation);
     // For jointed bodies every substep has done that.
-    if (!d.FeelsGyroscopicTorque(w) || joints.HasAny(body)) return;
+    if (!d.HasGyroscopicTorqueAt(w) || joints.HasAny(body)) return;
     w = CarriedAlong(d, before, rotation, w);
     w = AddGyroscopicTorque<float>(Vector3(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]),
                                    AxesOf(d, rotation), w, dt);

@@ -10,7 +10,7 @@ namespace {
 
 // A manifold is kept up to this relative motion since it was found.
 constexpr float kKeptDistance = 1e-3f;  // m, but at most this fraction of the smaller body's size:
-constexpr float kKeptPart = 2e-3f;
+constexpr float kKeptFraction = 2e-3f;
 constexpr float kKeptAngle = 1e-3f;  // rad
 
 // Impulses are kept for warm starting if the cosine of the angle between the normals of two steps is at least this.
@@ -80,7 +80,7 @@ PairView ViewPair(const BodyStore& bodies, const ColliderStore& colliders, PairS
 bool HardlyMoved(const PairView& v) {
     const RelativePose& old = v.pair.reference;
     const float size = std::min(v.pair.shapeA->OuterRadius(), v.pair.shapeB->OuterRadius());
-    const float distance = std::min(kKeptDistance, kKeptPart * size);
+    const float distance = std::min(kKeptDistance, kKeptFraction * size);
     if (LengthSquared(Vector3(v.bInA.position - old.position)) > distance * distance) return false;
     // For small angles |q - q0| is half the angle; the quaternion's sign does not flip between two steps.
     const Quaternion& a = v.bInA.rotation;
@@ -161,7 +161,7 @@ PairChange NoteTouching(const CollideStores& stores, uint32_t index, WorkerFindi
     return pair.touching ? PairChange::Began : PairChange::Ended;
 }
 
-bool TouchesSleeper(const BodyStore& bodies, const Pair& pair) {
+bool TouchesSleepingBody(const BodyStore& bodies, const Pair& pair) {
     const auto sleeps = [&](uint32_t body) {
         const BodyDynamics& d = bodies.dynamics[body];
         return d.motion == MotionType::Dynamic && !d.awake;

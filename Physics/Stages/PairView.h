@@ -60,6 +60,6 @@ ContactView ViewContact(const BodyStore& bodies, const ColliderStore& colliders,
 ContactView ViewSolvedContact(const BodyStore& bodies, const ColliderStore& colliders, const PairStore& pairs,
                               uint32_t pair, ContactView::Point (&room)[ContactRecord::kMaxPoints]);
 // Whether one of its bodies sleeps and wakes if they touch.
-bool TouchesSleeper(const BodyStore& bodies, const Pair& pair);
+bool TouchesSleepingBody(const BodyStore& bodies, const Pair& pair);
 
 }  // namespace fulcrum

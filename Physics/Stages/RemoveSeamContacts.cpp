@@ -15,7 +15,7 @@ namespace {
 using Kind = ConstraintColoring::Kind;
 
 constexpr float kFlush = 1e-3f;  // m: height above the plane that counts as flush, but at most this fraction of a body:
-constexpr float kFlushPart = 0.01f;
+constexpr float kFlushFraction = 0.01f;
 constexpr float kSameDirection = 0.9998f;  // 1 degree
 
 // A contact in the center frame of its body A.
@@ -99,7 +99,7 @@ private:
         const Pair& first = pairs_.pairs[bearing.pair];
         const Pair& second = pairs_.pairs[other.pair];
         if (first.colliderA != second.colliderA || first.colliderB == second.colliderB) return false;
-        const float flush = std::min(kFlush, kFlushPart * first.shapeA->OuterRadius());
+        const float flush = std::min(kFlush, kFlushFraction * first.shapeA->OuterRadius());
         return bearing.separation < flush && Dot(bearing.normal, other.normal) < kSameDirection &&
                HeightOf(other.pair, bearing.deepest, Vector3(-bearing.normal)) < flush;
     }

@@ -162,7 +162,7 @@ private:
             case Verb::WarmStart: factorize(); break;
             case Verb::FirstVelocities:
                 if (substep > 0)
-                    for (JointBatch<kLanes>& batch : own) TurnJoints(batch, states);
+                    for (JointBatch<kLanes>& batch : own) RotateJointImpulses(batch, states);
                 solve(false);
                 break;
             case Verb::Velocities: solve(false); break;

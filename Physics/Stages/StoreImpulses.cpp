@@ -61,7 +61,7 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
                    JointStore& joints, const StepWorkers& workers) {
     const SystemSettings& settings = step.settings;
     const Records to{bodies, pairs, joints};
-    const bool notesSinks = HeedsLoads(settings), notesGaps = HeedsGaps(settings);
+    const bool notesSinks = AdaptsToLoads(settings), notesGaps = AdaptsToGaps(settings);
     const bool notesLarge = settings.accuracy.largeIslands || layout.OverflowCount() > 0;
     // impulseScale: see Effort; stiffness: see LoadLevel.
     const auto sinkScaleOf = [&](float impulseScale, uint8_t stiffness) {

@@ -18,7 +18,7 @@ namespace {
 // A body may move by half its thickness before it is cast, and a hit counts if the overlap would reach a quarter of the
 // thickness. If the approach in a step exceeds that, a fifth of it is enough: the solver should recover overlaps, not
 // stop such fast bodies.
-constexpr float kFreeFraction = 0.5f, kDepthFraction = 0.25f, kFastDepthPart = 0.2f;
+constexpr float kFreeFraction = 0.5f, kDepthFraction = 0.25f, kFastDepthFraction = 0.2f;
 // Limit of triangles tested by a cast of a shape as large as the surface: beyond it the cast is left to the contacts,
 // since its time would grow with the square of the surface's size.
 constexpr size_t kMostTriangles = 20000;
@@ -132,9 +132,9 @@ private:
     // Whether the cast of a shape with the given radius about its body's center includes rotation: if points move by it
     // by a fraction of the depth that counts, or always.
     static bool TurnMatters(const ColliderShape& piece, const Sweep& sweep, float radius, float depth, float start) {
-        constexpr float kPart = 0.25f;
+        constexpr float kTurnFraction = 0.25f;
         if (IsBall(piece) || sweep.turn.isZero(0)) return false;
-        return sweep.turns || Length(sweep.TurnRate()) * (1 - start) * radius > kPart * depth;
+        return sweep.turns || Length(sweep.TurnRate()) * (1 - start) * radius > kTurnFraction * depth;
     }
 
     // `straight`: caster of the whole motion, without rotation.
@@ -251,7 +251,7 @@ private:
             const Push push = FindPoints(motion, linear, theirSweep, time, depth, hit);
             hit.time = time;
             if (hit.pointCount == 0 && restarts_++ < kMostRestarts) return CastAgainst(pieces.other, straight, time);
-            if (!(push.speed > 0 && push.depth > (push.speed > depth ? kFastDepthPart * depth : depth))) continue;
+            if (!(push.speed > 0 && push.depth > (push.speed > depth ? kFastDepthFraction * depth : depth))) continue;
             if (Behaves(hit)) Take(hit);
             return;
         }
@@ -330,7 +330,7 @@ private:
             const Position own = sweep_.PositionAt(hit.time), others = theirSweep.PositionAt(hit.time);
             approach = -Dot<float>(found.normal, VelocityAt(found.position, own, linear, theirSweep, others));
         }
-        if (approach > depth) depth *= kFastDepthPart;
+        if (approach > depth) depth *= kFastDepthFraction;
         if (!(approach * left > depth)) return false;
         return FindPoints(motion, linear, theirSweep, std::min(1.0f, hit.time + depth / approach), depth, hit).speed *
                    left >

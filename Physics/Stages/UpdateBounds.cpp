@@ -18,7 +18,7 @@ constexpr float kStepsAhead = 4;
 constexpr float kAheadFraction = 0.25f;  // of the outer radius
 // A body that moves by this fraction of the margin in a step would leave fat bounds so soon that they only cost pairs:
 // it gets tight ones.
-constexpr float kFastPart = 0.5f;
+constexpr float kFastFraction = 0.5f;
 
 void UpdateColliders(const StepContext& step, uint32_t body, BodyStore& bodies, ColliderStore& colliders,
                      WorkerFindings& findings) {
@@ -45,7 +45,7 @@ void UpdateColliders(const StepContext& step, uint32_t body, BodyStore& bodies, 
         if (collider.fat.Contains(BoundsAlong(tight, motion, speculative))) return;
         const float radius = piece.shape->OuterRadius(), distance = Length(motion);
         const float margin = BoundsMargin(step.settings, *piece.shape);
-        if (distance > kFastPart * margin) {
+        if (distance > kFastFraction * margin) {
             collider.fat = BoundsAlong(tight, motion, speculative);
         } else {
             const float ahead = kAheadFraction * radius / std::max(distance, 1e-6f);

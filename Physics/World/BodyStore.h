@@ -63,7 +63,7 @@ struct alignas(64) BodyDynamics {
         }
     }
     // Whether gyroscopic torque is significant at the angular velocity in rad/s.
-    bool FeelsGyroscopicTorque(const Vector3& w) const {
+    bool HasGyroscopicTorqueAt(const Vector3& w) const {
         return HasGyroscopicTorque() && LengthSquared(w) > kLeastGyroscopicSpeed * kLeastGyroscopicSpeed;
     }
     static constexpr float kLeastGyroscopicSpeed = 0.1f;  // rad/s

@@ -27,12 +27,12 @@ inline Bounds BoundsAlong(const Bounds& tight, const Vector3& motion, float marg
 
 // m, margin and speculative distance of a shape: for small shapes a fraction of their size, so that contacts scale with
 // size; at most those of the settings. Fat bounds exceed the shape's by the margin and half the speculative distance.
-inline constexpr float kMarginPart = 0.25f;  // of the outer radius
+inline constexpr float kMarginFraction = 0.25f;  // of the outer radius
 inline float SpeculativeDistance(const SystemSettings& settings, const Shape& shape) {
-    return std::min(settings.speculativeDistance, kMarginPart * shape.OuterRadius());
+    return std::min(settings.speculativeDistance, kMarginFraction * shape.OuterRadius());
 }
 inline float BoundsMargin(const SystemSettings& settings, const Shape& shape) {
-    return std::min(settings.boundsMargin, kMarginPart * shape.OuterRadius());
+    return std::min(settings.boundsMargin, kMarginFraction * shape.OuterRadius());
 }
 // For a pair: that of the smaller shape.
 inline float SpeculativeDistance(const SystemSettings& settings, const Pair& pair) {

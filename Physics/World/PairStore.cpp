@@ -107,20 +107,20 @@ uint32_t PairStore::Add(uint32_t colliderA, uint32_t colliderB) {
     pairs[index].colliderA = colliderA;
     pairs[index].colliderB = colliderB;
 
-    Enter(Key(colliderA, colliderB), index);
+    AddKey(Key(colliderA, colliderB), index);
     ++size_;
     Link(index);
     return index;
 }
 
-void PairStore::Enter(uint64_t key, uint32_t index) {
+void PairStore::AddKey(uint64_t key, uint32_t index) {
     const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
     uint32_t i = FirstPlace(key);
     while (table_[i].index != kNone) i = (i + 1) & mask;
     table_[i] = {key, index};
 }
 
-void PairStore::Strike(uint64_t key, uint32_t index) {
+void PairStore::RemoveKey(uint64_t key, uint32_t index) {
     const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
     uint32_t hole = FirstPlace(key);
     while (table_[hole].key != key || table_[hole].index != index) hole = (hole + 1) & mask;
@@ -165,7 +165,7 @@ void PairStore::Remove(uint32_t index) {
         return;
     }
     Unlink(index);
-    Strike(Key(pairs[index].colliderA, pairs[index].colliderB), index);
+    RemoveKey(Key(pairs[index].colliderA, pairs[index].colliderB), index);
     pairs[index].exists = false;
     free_.push_back(index);
     --size_;

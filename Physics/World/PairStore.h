@@ -104,8 +104,8 @@ private:
     uint32_t Allocate();
     uint32_t FirstPlace(uint64_t key) const;
     void Grow();
-    void Enter(uint64_t key, uint32_t index);   // inserts into the table, which must have space
-    void Strike(uint64_t key, uint32_t index);  // removes from the table, which must contain it
+    void AddKey(uint64_t key, uint32_t index);     // inserts into the table, which must have space
+    void RemoveKey(uint64_t key, uint32_t index);  // removes from the table, which must contain it
 
     // Open addressing with linear probing; at most half full. Its order does not influence results.
     struct Entry {
