@@ -1,7 +1,10 @@
 #include <Fulcrum/Physics/Joints/JointChecks.h>
 
+#include <Fulcrum/Constraints/Parts/RotationEulerPart.h>
+
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 namespace fulcrum {
 
