@@ -92,14 +92,4 @@ inline SpringConstants<float> ToConstants(const SpringSettings& settings) {
     return FrequencyConstants(settings.frequency, settings.dampingRatio, settings.form);
 }
 
-// Puts one constraint's constants into a lane, 0 <= lane < N.
-template <int N>
-inline void SetLane(SpringConstants<Wide<N>>& lanes, int lane, const SpringConstants<float>& constants) {
-    lanes.squaredFrequency.Set(lane, constants.squaredFrequency);
-    lanes.decayRate.Set(lane, constants.decayRate);
-    lanes.stiffness.Set(lane, constants.stiffness);
-    lanes.damping.Set(lane, constants.damping);
-    lanes.form.Set(lane, constants.form);
-}
-
 }  // namespace fulcrum

@@ -18,7 +18,6 @@ class Vec2 {
 public:
     Vec2() = default;
     Vec2(const Real& x, const Real& y) : v_{x, y} {}
-    static Vec2 Zero() { return {Real(0.0f), Real(0.0f)}; }
 
     Real& x() { return v_[0]; }
     Real& y() { return v_[1]; }
