@@ -1,5 +1,5 @@
-// Everything that programs use. What this file includes, and what those headers include in turn, is the public
-// interface: it is what an installation has.
+// The umbrella header. The headers that it includes, directly or indirectly, are the public interface and part of an
+// installation.
 #pragma once
 
 #include <Fulcrum/Collision/Queries/Distance.h>

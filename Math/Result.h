@@ -1,5 +1,5 @@
-// The result of a call whose input may be invalid: a value, or an Error that says what is wrong and where. A call that
-// returns an Error has created and changed nothing.
+// The result of a call whose input may be invalid: a value, or an Error that tells what is wrong and where. A call that
+// returns an Error has no effect.
 #pragma once
 
 #include <Fulcrum/Math/Assert.h>
@@ -20,10 +20,10 @@ enum class ErrorCode {
     Negative,        // must be zero or more
     OutOfRange,      // outside the range named in the message
     Unnormalized,    // a rotation or a direction is not of length 1
-    Degenerate,      // points without volume, an empty compound and the like
+    Degenerate,      // points without volume, an empty compound, etc.
     UnknownId,       // no such body, or it was removed
     Unsupported,     // valid, but not for this kind of body or shape
-    NotAllowedHere,  // a call in what the engine calls back, or under Queries().Hold(), that would have to wait for
+    NotAllowedHere,  // a call from a callback of the engine, or under Queries().Hold(), that would have to wait for
                      // itself
 };
 

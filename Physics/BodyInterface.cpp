@@ -21,14 +21,14 @@ namespace fulcrum {
 
 namespace {
 
-// What GetPose gave is taken back with its bits: normalizing a rotation again changes them.
+// Normalizes unless q is already normalized within rounding: rotations returned by GetPose keep their bits.
 Quaternion NormalizedUnlessItIs(const Quaternion& q) {
     const double squared = double{q.x} * q.x + double{q.y} * q.y + double{q.z} * q.z + double{q.w} * q.w;
-    constexpr double kRounding = 0x1p-21;  // more than four components, rounded to float, leave
+    constexpr double kRounding = 0x1p-21;  // more than the error of four components rounded to float
     return std::fabs(squared - 1) <= kRounding ? q : Normalized(q);
 }
 
-// The center frame's pose of a body whose own frame is at `position`, `q`, which is normalized.
+// The pose of the center frame of a body whose own frame is at `position`, `q`; q must be normalized.
 Pose CenterPose(const Shape& shape, const Position& position, const Quaternion& q) {
     return {position + Rotate(q, shape.Mass().centerOfMass).cast<double>(), q};
 }
@@ -52,15 +52,15 @@ void FillDynamics(BodyDynamics& d, const BodySettings& s) {
             s.inertia.isZero(0) ? Vector3(mass.principalInertia * (kilograms / mass.volume)) : s.inertia);
 }
 
-// What a user may set: any finite velocity, of which what no body can have is cut off.
+// Sets a velocity given by the user: any finite one, clamped to what bodies support.
 void SetVelocityOf(WorldState& world, uint32_t body, Vector3 linear, Vector3 angular) {
     LimitLength(linear, kFastestLinear);
     LimitLength(angular, kFastestAngular);
     world.bodies.SetVelocity(body, linear, angular);
 }
 
-// For the first body of an empty world. Only so far out that a place near zero, measured from there, is off by less
-// than the margin of fat bounds: farther out doubles would round away what lies between two bodies near zero.
+// Called for the first body of an empty world: moves the origin of the bounds near it. Limited so that positions near
+// zero relative to that origin are rounded by less than the fat bounds' margin.
 void PlaceBoundsOrigin(WorldState& world, uint32_t body) {
     constexpr double kStep = 1024, kFarthest = 0x1p40;  // m
     const Position center = world.bodies.CenterOf(body);
@@ -70,7 +70,8 @@ void PlaceBoundsOrigin(WorldState& world, uint32_t body) {
     }
 }
 
-// Ends the contacts that the body's filters forbid, has those found that they allow.
+// After a change of the body's filters: ends the contacts that they forbid, and has the pairs that they allow searched
+// for.
 void Refilter(WorldState& world, uint32_t body) {
     RemoveForbiddenPairs(world, body);
     WakeBody(world, body);
@@ -79,7 +80,7 @@ void Refilter(WorldState& world, uint32_t body) {
     RequeueColliders(world.bodies, world.colliders, body);
 }
 
-// After the body became a sensor, or ceased to be one: what meets it is searched anew.
+// After the body became a sensor or ceased to be one: its pairs are searched for again.
 void MoveToItsTree(WorldState& world, uint32_t body) {
     ColliderStore& store = world.colliders;
     const BodyCold& cold = world.bodies.cold[body];
@@ -96,9 +97,9 @@ void MoveToItsTree(WorldState& world, uint32_t body) {
     RequeueColliders(world.bodies, world.colliders, body);
 }
 
-// Tells all joints of the body's mechanism, once between two steps.
+// Marks all joints of the body's mechanism, once between two steps.
 void NoteTeleport(WorldState& world, uint32_t body) {
-    constexpr float kSecondsOfTeleport = 5;  // in which a mechanism comes together, see Docs/Joints.md
+    constexpr float kSecondsOfTeleport = 5;  // time for a mechanism to come together, see Docs/Joints.md
     JointStore& store = world.joints;
     std::vector<uint32_t> bodies{body};
     while (!bodies.empty()) {
@@ -109,12 +110,12 @@ void NoteTeleport(WorldState& world, uint32_t body) {
             if (std::exchange(joint.teleportedBefore, world.step + 1) == world.step + 1) return;
             store.records[index].secondsOfTeleport = kSecondsOfTeleport;
             const int other = 1 - joint.SideOf(from);
-            if (!joint.still[other]) bodies.push_back(joint.body[other]);
+            if (!joint.fixed[other]) bodies.push_back(joint.body[other]);
         });
     }
 }
 
-// Brings everything in line with a pose that the user set.
+// Updates everything that depends on a pose set by the user.
 void Teleported(WorldState& world, uint32_t body) {
     if (world.joints.HasAny(body)) NoteTeleport(world, body);
     if (world.bodies.dynamics[body].motion == MotionType::Dynamic) world.bodies.MarkPlaced(body);
@@ -185,8 +186,7 @@ Status BodyInterface::Remove(BodyId id) {
     VisitColliders(world_, body, [&](uint32_t i) {
         world_.colliders.TreeOf(world_.colliders.colliders[i]).Remove(i);
         world_.outsideFatBounds.Forget(i);
-        // It touches nothing from now on. Its pairs are removed with the next step, in one go with those of other
-        // bodies.
+        // Its contacts end now. Its pairs are removed in the next step, together with those of other removed bodies.
         world_.pairs.VisitOf(i, [&](uint32_t pair) {
             for (; pair != PairStore::kNone; pair = world_.pairs.pairs[pair].more)
                 world_.pairs.pairs[pair].touching = false;

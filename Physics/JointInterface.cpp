@@ -33,7 +33,7 @@ MaybeError CheckBodies(const WorldState& world, const JointSettings& settings) {
     return std::nullopt;
 }
 
-// A place and a frame, in the world or in a body's center frame.
+// A point and a rotation, in the world or in a body's center frame.
 struct Frame {
     Vector3 point;  // m, in the center frame
     Quaternion rotation;
@@ -53,7 +53,8 @@ Pose WorldFrameOf(const WorldState& world, uint32_t body, const Frame& frame) {
     return {center.Transform(frame.point), center.rotation * frame.rotation};
 }
 
-// The frames of a joint: B's is where A's is in the world unless it is given; a normal that is left out follows A's.
+// The frames of a joint. If B's is not given, it coincides with A's in the world; if only its normal is missing, it is
+// derived from A's.
 std::pair<Frame, Frame> FramesOf(const WorldState& world, const JointSettings& s) {
     const Frame a = FrameOf(world, s.bodyA.index, s.anchorA, s.space);
     const Pose pose = WorldFrameOf(world, s.bodyA.index, a);
@@ -85,7 +86,7 @@ Frame Read(const float (&anchor)[3], const float (&frame)[4]) {
     return {Vector3(anchor[0], anchor[1], anchor[2]), {frame[0], frame[1], frame[2], frame[3]}};
 }
 
-// The bodies as they stand, without velocities.
+// The current poses of the bodies, with zero velocities.
 JointPose PoseOf(const WorldState& world, uint32_t index) {
     const Joint& joint = world.joints.joints[index];
     const JointRecord& record = world.joints.records[index];
@@ -114,7 +115,7 @@ Result<JointId> JointInterface::Add(const JointSettings& s, std::unique_ptr<Join
     Joint& joint = world_.joints.joints[index];
     joint.body[0] = s.bodyA.index;
     joint.body[1] = s.bodyB.index;
-    for (int side = 0; side < 2; ++side) joint.still[side] = !world_.bodies.CanMove(joint.body[side]);
+    for (int side = 0; side < 2; ++side) joint.fixed[side] = !world_.bodies.CanMove(joint.body[side]);
     joint.collideConnected = s.collideConnected;
     joint.priority = s.priority;
     joint.breakForce = s.breakForce;
@@ -179,7 +180,7 @@ AxisControl* JointInterface::ControlOf(JointId id, JointAxis axis) const {
 
 namespace {
 
-// Of a type that may have no rows any more: the Store stage passes it over.
+// Clears the stored row impulses, for a type that may have no rows anymore: the Store stage skips it.
 void ForgetRows(JointType& type) {
     type.impulses.fill(0.0f);
     type.forces.fill(0.0f);

@@ -7,7 +7,7 @@ namespace fulcrum {
 
 namespace {
 
-// A listener that queries would fill a disk with the same line.
+// Limits the output: a listener that queries in every callback would fill the disk.
 constexpr uint32_t kMostPrinted = 100;
 
 void Print(const Error& error) {

@@ -70,13 +70,14 @@ Status PhysicsSystem::SetSettings(const SystemSettings& settings) {
     const WorldLock::Exclusive alone(world_->lock);
     if (alone.Refusal()) return *alone.Refusal();
     const std::array<uint32_t, 32> before = world_->settings.layerCollides;
-    // What one method notes of a pair means nothing to the other.
+    // The pair caches of one method are invalid for the other.
     if (settings.narrowPhase != world_->settings.narrowPhase)
         for (Pair& pair : world_->pairs.pairs) pair.cache = {};
     const AccuracyTarget target = world_->settings.accuracy;
     const bool hadBodyEvents = world_->settings.events.bodies;
     world_->settings = settings;
-    // Efforts of islands follow the settings, and what is solved as a tree; loads are parts of what they may be.
+    // The efforts of islands, the choice of trees and the loads, which are relative to their limits, depend on the
+    // settings.
     world_->coloring.Invalidate();
     if (settings.accuracy.penetration != target.penetration) std::ranges::fill(world_->pairs.loads, LoadLevel{});
     if (settings.accuracy.jointError != target.jointError) std::ranges::fill(world_->joints.gaps, LoadLevel{});
@@ -137,9 +138,9 @@ void PhysicsSystem::VisitIslands(FunctionRef<void(BodyId, uint32_t island)> visi
         if (pair.touching && !pair.fixedB) sets.Unite(pair.bodyA, pair.bodyB);
     });
     for (const Joint& joint : world_->joints.joints)
-        if (joint.exists && joint.enabled && !joint.still[0] && !joint.still[1])
+        if (joint.exists && joint.enabled && !joint.fixed[0] && !joint.fixed[1])
             sets.Unite(joint.body[0], joint.body[1]);
-    // Sleepers belong together as they fell asleep.
+    // Sleeping bodies form the islands in which they fell asleep.
     std::vector<uint32_t> first(bodies.Size(), ~0u);
     for (uint32_t i = 0; i < bodies.Size(); ++i) {
         const uint32_t island = bodies.cold[i].sleepingIsland;

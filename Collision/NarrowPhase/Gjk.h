@@ -24,7 +24,7 @@ struct GjkResult {
 };
 
 // `start`: a unit vector, the guess of the axis. Ends as soon as the cores are found to be farther apart than `reach`.
-// The pair tells its Vertex, Support(axis), SeparationAlong(axis) and Size().
+// Pair has Vertex, Support(axis), SeparationAlong(axis) and Size().
 template <class Pair>
 GjkResult<typename Pair::Vertex> Gjk(const Pair& pair, const Vector3& start, float reach) {
     constexpr int kMaxIterations = 40;
@@ -34,7 +34,7 @@ GjkResult<typename Pair::Vertex> Gjk(const Pair& pair, const Vector3& start, flo
     Simplex<typename Pair::Vertex>& simplex = result.simplex;
     Vec3<Real> axis = start.cast<Real>();
     Real distance = -1;  // of the closest point so far; negative: none yet
-    Real gap = 0;        // by which the axis found last fails to separate the cores as far as that
+    Real gap = 0;        // by how much the separation along the last axis falls short of that
     for (int i = 0; i < kMaxIterations; ++i) {
         const typename Pair::Vertex vertex = pair.Support(Vector3(axis.template cast<float>()));
         const Real bound = Dot<Real>(axis, vertex.w);

@@ -8,7 +8,7 @@ namespace fulcrum {
 namespace {
 
 // Serves (a, b) with a function written for (b, a): the same contact seen from the other side. The cache is always used
-// the same way round, so that it needs no flip.
+// in this order, so it needs no swap.
 template <PairFunction Function>
 void Flip(const PairQuery& query, Manifold& manifold) {
     const RelativePose aInB = Inverse(query.bInA);
@@ -25,7 +25,7 @@ void Flip(const PairQuery& query, Manifold& manifold) {
     manifold.normal = -(rotation * manifold.normal);
 }
 
-// How two shapes of different types meet: one function serves both orders.
+// Entry for two different types: one function serves both orders.
 struct PairEntry {
     PairFunction inOrder;  // the type that comes first in ShapeType is A
     PairFunction turned;   // it is B
@@ -67,14 +67,14 @@ private:
     bool hasLine_[kConvexShapeTypes]{};
 };
 
-// Polyhedra: which of the two is A makes no difference to CollidePolyhedra's contract, but to the bits.
+// Polyhedra: CollidePolyhedra works for both orders, but the bits of the result depend on the order.
 constexpr PairEntry kPolyhedra = kFirstIsA<CollidePolyhedra>, kPolyhedraTurned = kFirstIsB<CollidePolyhedra>;
-// CollideConvex serves any two shapes; a pair is always passed to it the same way round, so that it makes no difference
-// which shape is A.
+// CollideConvex serves any two shapes; a pair is always passed to it in the same order, so it makes no difference which
+// shape is A.
 constexpr PairEntry kConvex = kFirstIsA<CollideConvex>;
 
-// Each shape is one line: how it meets Sphere, Box, Capsule, ConvexHull, Triangle, TaperedCapsule, Cylinder, Custom, up
-// to itself. The other order follows.
+// Each shape is one line: its functions with Sphere, Box, Capsule, ConvexHull, Triangle, TaperedCapsule, Cylinder,
+// Custom, up to itself. The other order is derived.
 // clang-format off
 constexpr PairTable kPairTable = PairTable()
     .Column<ShapeType::Sphere>(kAnyOrder<CollideSphereSphere>)

@@ -1,7 +1,7 @@
 // The pair function of polyhedra: box-hull, hull-hull, and spheres and capsules against both. The features that touched
-// in the last step are tested first; if they are proven to be the closest still, that is all. Otherwise GJK finds the
-// closest points of cores that are apart, EPA the axis of least penetration of those that overlap, and if EPA gives up,
-// the full separating axis test does.
+// in the last step are tested first; if they are proven to be still the closest, they are used. Otherwise GJK finds the
+// closest points of separated cores, EPA the axis of least penetration of overlapping ones, or, if EPA fails, the full
+// separating axis test.
 #include <Fulcrum/Collision/NarrowPhase/AxisContact.h>
 #include <Fulcrum/Collision/NarrowPhase/AxisSearch.h>
 #include <Fulcrum/Collision/NarrowPhase/Epa.h>

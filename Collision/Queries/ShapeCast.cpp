@@ -26,7 +26,7 @@ Bounds BoundsOfTurning(const ConvexShape& shape, const ShapeMotion& motion) {
 
 ShapeCaster::ShapeCaster(const ConvexShape& shape, const ShapeMotion& motion, NarrowPhaseMethod method)
     : shape_(shape), motion_(motion), bounds_(BoundsOfTurning(shape, motion)), method_(method) {
-    isValid_ = IsFinite(motion.pose.position) && IsTurn(motion.pose.rotation) &&
+    isValid_ = IsFinite(motion.pose.position) && IsRotation(motion.pose.rotation) &&
                IsWithinReach(motion.displacement.cast<double>()) && IsWithinReach(motion.turn.cast<double>()) &&
                IsWithinReach(motion.turnOfOther.cast<double>()) && IsFinite(bounds_.lower) && IsFinite(bounds_.upper);
 }
@@ -87,7 +87,7 @@ bool ShapeCaster::CastPiece(const Piece& piece, const Pose& pose, const ShapeCas
         return !settings.measureDepth || IsWithinFloats(hit);
     }
     if (isOneSided && motion.IsTurning()) {
-        // A turning shape may touch an open edge from any side: its center tells from which side it comes.
+        // A rotating shape may touch an open edge from any side: its center determines from which side it comes.
         const Position center =
             motion.PositionAt(cast.fraction) - piece.triangle->SupportCore(Vector3(1, 0, 0)).cast<double>();
         if (Dot<double>(center, piece.triangle->Normal().cast<double>()) < 0) return false;
@@ -194,7 +194,7 @@ bool ShapeCaster::CastClosest(const Shape& other, const Pose& pose, const ShapeC
     } best{hit};
     Search(other, pose, settings, &best, [](void* context, const ShapeHit& found, ShapeCastSettings& limits) -> bool {
         Best& b = *static_cast<Best*>(context);
-        // Of what overlaps at the start the deepest counts.
+        // Of overlaps at the start the deepest is the hit.
         const bool isCloser =
             !b.found || found.fraction < b.hit.fraction ||
             (found.fraction == b.hit.fraction &&

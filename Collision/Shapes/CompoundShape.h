@@ -30,8 +30,8 @@ public:
     const Child& ChildAt(uint32_t index) const { return children_[index]; }
     // The children's boxes in the children's frame, by index.
     const BoundsTree& Tree() const { return tree_; }
-    // The origin of the children's frame in the center frame, m; axes are the same. Zero but for mutable compounds,
-    // whose children stay where they are in the user's frame while the center of mass moves.
+    // The origin of the children's frame in the center frame, m; axes are the same. Zero except for mutable compounds,
+    // whose children keep their poses in the user's frame when the center of mass moves.
     Vector3 Origin() const {
         return type_ == ShapeType::Compound ? Vector3(Vector3::Zero()) : Vector3(-mass_.centerOfMass);
     }

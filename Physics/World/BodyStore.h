@@ -1,4 +1,4 @@
-// All bodies, as arrays by index: what each stage touches lies together. Indices of removed bodies are reused with
+// All bodies, as arrays by index: data used by the same stages are adjacent. Indices of removed bodies are reused with
 // another generation. Written by BodyInterface between steps and by the stages during one.
 #pragma once
 
@@ -54,7 +54,7 @@ struct alignas(64) BodyDynamics {
         kNoFloat = 7
     };
 
-    // Sets what the locked axes forbid of a velocity or a displacement to zero.
+    // Sets the components of a velocity or displacement along locked axes to zero.
     void Lock(Vector3& linear, Vector3& angular) const {
         const unsigned locked = static_cast<unsigned>(lockedAxes);
         for (unsigned k = 0; k < 3; ++k) {
@@ -62,8 +62,8 @@ struct alignas(64) BodyDynamics {
             if (locked >> (3 + k) & 1) angular[k] = 0;
         }
     }
-    // Whether gyroscopic torque changes anything that can be seen, at the angular velocity in rad/s.
-    bool FeelsGyroscopicTorque(const Vector3& w) const {
+    // Whether gyroscopic torque is significant at the angular velocity in rad/s.
+    bool HasGyroscopicTorqueAt(const Vector3& w) const {
         return HasGyroscopicTorque() && LengthSquared(w) > kLeastGyroscopicSpeed * kLeastGyroscopicSpeed;
     }
     static constexpr float kLeastGyroscopicSpeed = 0.1f;  // rad/s
@@ -87,9 +87,10 @@ FULCRUM_CHECK_PLACE(BodyDynamics, motion, 1, BodyDynamics::kNoFloat);
 
 // kg m2/s about the center of mass, world axes, at the rotation and angular velocity (rad/s).
 Vector3 AngularMomentum(const BodyDynamics& body, const Quaternion& rotation, const Vector3& angularVelocity);
-// J, in double: of extreme bodies it is beyond the floats.
+// J, in double: for extreme bodies it overflows a float.
 double RotationalEnergy(const BodyDynamics& body, const Quaternion& rotation, const Vector3& angularVelocity);
-// Twice the energy, J, of a body that turns at this angular velocity (rad/s, along the principal axes), summed in Real.
+// Twice the kinetic energy, J, of a body that rotates at this angular velocity (rad/s, along the principal axes),
+// summed in Real.
 template <class Real>
 Real TwiceRotationalEnergy(const BodyDynamics& body, const Vector3& w) {
     Real sum = 0;
@@ -97,8 +98,8 @@ Real TwiceRotationalEnergy(const BodyDynamics& body, const Vector3& w) {
         sum += body.inverseInertia[k] > 0 ? Real{w[k]} * Real{w[k]} / Real{body.inverseInertia[k]} : Real{0};
     return sum;
 }
-// The inverses of mass, kg, and principal moments of inertia, kg m2, along axes that are rotated so in the center
-// frame.
+// Sets the inverses of mass, kg, and principal moments of inertia, kg m2; principalAxes: rotation of the principal
+// frame in the center frame.
 void SetMass(BodyDynamics& body, const Quaternion& principalAxes, float mass, const Vector3& inertia);
 // The principal axes in world space.
 inline Matrix3 AxesOf(const BodyDynamics& body, const Quaternion& rotation) {
@@ -106,15 +107,15 @@ inline Matrix3 AxesOf(const BodyDynamics& body, const Quaternion& rotation) {
 }
 class MutableCompound;
 
-// What only bodies have whose children may be edited.
+// Data of bodies with editable children.
 struct BodyChildren {
     MutableCompound* compound = nullptr;  // the body's own: BodyCold::shape
-    Vector3 origin = Vector3::Zero();     // of the children's frame in the center frame, m
-    double massUnit = 0;                  // kg, of the compound's RelativeMass
+    Vector3 origin = Vector3::Zero();     // origin of the children's frame in the center frame, m
+    double massUnit = 0;                  // kg, mass per unit of the compound's RelativeMass
     uint32_t moreColliders = ~0u;         // index into ColliderStore::runs
 };
 
-// What a body collides with, where that is not everything.
+// Collision filter of a body, if not the default.
 struct BodyFilter {
     uint64_t category = 1, mask = ~uint64_t(0);
     CollisionGroup group;
@@ -129,14 +130,14 @@ struct BodyCold {
     Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  // of the next step
     std::unique_ptr<BodyFilter> filter;                         // null: the default
     uint32_t firstCollider = 0, colliderCount = 0;
-    std::unique_ptr<BodyChildren> children;  // where `shape` is a mutable compound
+    std::unique_ptr<BodyChildren> children;  // if `shape` is a mutable compound
     uint32_t generation = 0;
     uint32_t awakePlace = 0;        // index into BodyStore::awake
     uint32_t sleepingIsland = ~0u;  // index into SleepingIslands
     ContinuousCollision continuous = ContinuousCollision::Off;
     bool exists : 1 = false;
     bool placed : 1 = false;   // see BodyStore::MarkPlaced
-    bool removed : 1 = false;  // by the interface, its index not yet free
+    bool removed : 1 = false;  // removed by the interface, its index not yet free
     bool isSensor : 1 = false;
 
     uint32_t MoreColliders() const {
@@ -146,16 +147,16 @@ struct BodyCold {
 
 size_t HeapBytes(const BodyCold& body);
 
-// Velocity without the constraints' share, from which the next substep's warm start follows.
+// Unconstrained velocity, from which the next substep's warm start is computed.
 struct alignas(32) UnconstrainedVelocity {
-    float row[kRowFloats];  // the first of BodyState
+    float row[kRowFloats];  // same layout as the first row of BodyState
 };
 
-// The step reads positions as multiples of this and carries the remainder: positions relative to each other are then
-// the same to the last bit however far out the bodies are, up to 2^30 m, where the spacing of doubles exceeds it.
+// The step reads positions rounded to multiples of this and keeps the remainder: relative positions are then
+// bit-identical wherever the bodies are, up to 2^30 m, where the spacing of doubles exceeds it.
 inline constexpr double kPositionGrid = 0x1p-23;  // m, 0.12 micrometers
 
-// The nearest point of the grid. Beyond 2^29 m doubles lie on it anyway.
+// The nearest point of the grid. Beyond 2^29 m all doubles are on the grid.
 inline Position OnGrid(const Position& position) {
     Position rounded;
     for (int k = 0; k < 3; ++k)
@@ -168,7 +169,7 @@ inline Position OnGrid(const Position& position) {
 // The exact position minus the one on the grid.
 struct Remainder {
     Position value = Position::Zero();  // m
-    bool isGiven = true;                // by the user, far out more coarsely than near: forgotten when the body moves
+    bool isGiven = true;  // set by the user, whose positions are coarser far out: dropped when the body moves
 };
 
 class BodyStore {
@@ -182,20 +183,20 @@ public:
     std::vector<BodyCold> cold;
     std::vector<Remainder> remainders;
 
-    std::vector<uint32_t> placed;  // see MarkPlaced, in no order
-    std::vector<uint32_t> awake;   // dynamic bodies awake and kinematic ones that move, in no order
+    std::vector<uint32_t> placed;  // see MarkPlaced, unordered
+    std::vector<uint32_t> awake;   // awake dynamic bodies and moving kinematic ones, unordered
     uint32_t continuousCount = 0;  // bodies with continuous collision
-    IndexSet reportsContacts;      // bodies of BodySettings::reportsContacts
-    // For events, where they are on: bodies that came to be, woke or fell asleep since the last step; repeated, in no
-    // order.
+    IndexSet reportsContacts;      // bodies with BodySettings::reportsContacts
+    // For events, if on: bodies that were created, woke or fell asleep since the last step; with repetitions,
+    // unordered.
     std::vector<uint32_t> sleepChanges;
     bool notesSleepChanges = false;
 
     uint32_t Size() const { return static_cast<uint32_t>(cold.size()); }  // of the arrays
     uint32_t Count() const { return count_; }                             // of the bodies
-    uint32_t Allocate();                                                  // an index with fresh values; exists is set
+    uint32_t Allocate();                                                  // an index with default values; exists is set
     void Free(uint32_t index);                                            // after Remove: the index may be reused
-    // Whether the id names a body; then Index is its index.
+    // Whether the id is that of an existing body; then id.index is its index.
     bool Find(BodyId id) const {
         return id.index < cold.size() && cold[id.index].exists && cold[id.index].generation == id.generation;
     }
@@ -209,18 +210,18 @@ public:
         cold[index].filter = filter.IsDefault() ? nullptr : std::make_unique<BodyFilter>(filter);
     }
 
-    // Whether constraints move it.
+    // Whether constraints can move it: it is not fixed.
     bool CanMove(uint32_t index) const {
         return dynamics[index].motion == MotionType::Dynamic && !dynamics[index].frozen;
     }
     void MarkAwake(uint32_t index);
-    // Of a body that was created, or has got another pose, shape or filter: its overlaps in the next step, or in that
-    // in which it wakes, count as placed by the user (Stages/CrowdContacts.h).
+    // Called for a body that was created, or got another pose, shape or filter: its overlaps in the next step, or in
+    // the one in which it wakes, count as placed by the user (Stages/CrowdContacts.h).
     void MarkPlaced(uint32_t index);
     void ForgetPlaced();
     void MarkAsleep(uint32_t index);
 
-    // From its shape.
+    // Sets them from its shape.
     void SetRadii(uint32_t index, const Shape& shape) {
         dynamics[index].outerRadius = shape.OuterRadius();
         const float inner = shape.InnerRadius();
@@ -240,7 +241,7 @@ public:
     Pose ExactCenterPoseOf(uint32_t index) const { return {ExactCenterOf(index), RotationOf(index)}; }
     Position ExactCenterOf(uint32_t index) const { return CenterOf(index) + remainders[index].value; }
     void SetCenterPose(uint32_t index, const Pose& pose);
-    // Moves the center by so many m.
+    // Moves the center by a displacement, m, and sets the rotation.
     void MoveCenter(uint32_t index, const Vector3& displacement, const Quaternion& rotation);
     Vector3 LinearVelocityOf(uint32_t index) const {
         const float* v = states[index].linearVelocity;
@@ -262,9 +263,9 @@ public:
         cold[index].force = cold[index].torque = Vector3::Zero();
         dynamics[index].hasForce = false;
     }
-    // Brings the world inverse inertia of `masses` in line with the rotation.
+    // Updates the world inverse inertia of `masses` from the rotation.
     void UpdateInertia(uint32_t index) { masses[index] = MassAlong(index, AxesOf(dynamics[index], RotationOf(index))); }
-    // Of a body whose principal axes in the world are these.
+    // Mass and world inertia for the given principal axes in world space.
     BodyMass MassAlong(uint32_t index, const Matrix3& axes) const;
     SolverBodies ForSolver() { return {states.data(), masses.data(), poses.data()}; }
     ConstSolverBodies ForSolver() const { return {states.data(), masses.data(), poses.data()}; }

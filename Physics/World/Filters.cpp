@@ -72,7 +72,7 @@ void ChangeListener(WorldState& world, const ContactListener* listener) {
     world.listener = listener;
     RemoveAllForbiddenPairs(world);
     world.pairs.KeepMassOverrides(listener != nullptr);
-    // What the last one said of contacts, and of bodies that therefore have no pair.
+    // Resets the previous listener's changes of contacts, and searches for pairs that it had forbidden.
     for (uint32_t i = 0; i < world.pairs.pairs.size(); ++i) {
         if (!world.pairs.pairs[i].exists) continue;
         CombineMaterials(world.bodies, world.pairs, i);

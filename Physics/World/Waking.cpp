@@ -68,7 +68,7 @@ void WakeJoined(const SleepStores& stores, uint32_t body) {
 }
 
 void WakeInside(const SleepStores& stores, const Bounds& bounds) {
-    // Waking changes no tree, but collect first: a query must not see the world change under it.
+    // Collects the bodies first, since the world must not change during a query.
     std::vector<uint32_t> found;
     stores.colliders.movingTree.Query(
         bounds, [&](uint32_t collider) { found.push_back(stores.colliders.colliders[collider].body); });
