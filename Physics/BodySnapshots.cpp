@@ -20,6 +20,8 @@ struct SavedBody {
     Remainder remainder;
     Vector3 linear = Vector3::Zero(), angular = Vector3::Zero(), force = Vector3::Zero(), torque = Vector3::Zero();
     float slowSeconds = 0;
+    BodyPush lastPush;
+    bool isSteady = false;
 };
 
 // How a joint is known again, and what is read of it.
@@ -33,9 +35,9 @@ struct SavedJoint {
 
 template <class Stream>
 void Visit(Stream& s, SavedBody& body) {
-    auto& [id, shape, center, remainder, linear, angular, force, torque, slowSeconds] = body;
+    auto& [id, shape, center, remainder, linear, angular, force, torque, slowSeconds, lastPush, isSteady] = body;
     s(id, shape, center.position, center.rotation, remainder.value, remainder.isGiven, linear, angular, force, torque,
-      slowSeconds);
+      slowSeconds, lastPush.force, lastPush.torque, isSteady);
 }
 template <class Stream>
 void Visit(Stream& s, SavedJoint& joint) {
@@ -53,7 +55,9 @@ SavedBody Describe(const BodyStore& bodies, BodyId id) {
             bodies.AngularVelocityOf(id.index),
             cold.force,
             cold.torque,
-            bodies.dynamics[id.index].slowSeconds};
+            bodies.dynamics[id.index].slowSeconds,
+            cold.lastPush,
+            cold.isSteady};
 }
 
 SavedJoint Describe(const JointStore& joints, uint32_t index, std::vector<std::byte>& settings) {
@@ -115,6 +119,9 @@ void Complete(BodyStore& bodies, const SavedBody& saved) {
     bodies.cold[i].torque = saved.torque;
     bodies.dynamics[i].hasForce = !saved.force.isZero(0) || !saved.torque.isZero(0);
     bodies.dynamics[i].slowSeconds = saved.slowSeconds;
+    bodies.cold[i].lastPush = saved.lastPush;
+    bodies.cold[i].isSteady = saved.isSteady;
+    if (bodies.dynamics[i].hasForce || !saved.lastPush.IsZero()) bodies.pushed.Insert(i);
 }
 
 }  // namespace

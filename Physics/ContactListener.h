@@ -42,6 +42,8 @@ struct ContactChange {
     MassOverride massOverride{};
     // No contact in this step: it gives no impulse, wakes nothing and supports nothing.
     bool ignore = false;
+    // As ignored, but among the events of the step, with its points and without impulses. Continuous collision passes.
+    bool isSensor = false;
 
     // The surface of `belt`, which is one of the two bodies, moves with the velocity (m/s, world axes) relative to its
     // body.

@@ -287,7 +287,7 @@ private:
         hit.restitution = change.restitution;
         hit.surfaceVelocity = swapped ? Vector3(-change.surfaceVelocity) : change.surfaceVelocity;
         hit.massOverride = swapped ? change.massOverride.Swapped() : change.massOverride;
-        return !change.ignore;
+        return !change.ignore && !change.isSensor;
     }
 
     // What is cast only since it was hit leaves to the solver whatever it comes to touch.

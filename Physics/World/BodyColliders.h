@@ -15,6 +15,9 @@ void MakeColliders(WorldState& world, uint32_t body);
 // Takes them away again, with their pairs.
 void DropColliders(WorldState& world, uint32_t body);
 
+// After the body became a sensor, static or movable, or ceased to be one: what meets it is searched anew.
+void MoveToItsTree(WorldState& world, uint32_t body);
+
 // Brings the collider of a child of a mutable compound in line with it, new, removed, moved or of another shape. Wakes
 // what was or is near.
 void UpdateChildCollider(WorldState& world, uint32_t body, uint32_t child);
