@@ -9,6 +9,7 @@
 #include <Fulcrum/Physics/World/Filters.h>
 #include <Fulcrum/Physics/World/Materials.h>
 #include <Fulcrum/Physics/World/SpeedLimits.h>
+#include <Fulcrum/Physics/World/SteadyPushes.h>
 #include <Fulcrum/Physics/World/Teleports.h>
 #include <Fulcrum/Physics/World/Waking.h>
 
@@ -79,10 +80,8 @@ void LoseMass(BodyStore& bodies, uint32_t body) {
     d.crowded = 0;
     d.dispersing = false;
     d.slowSeconds = 0;
-    bodies.ForgetForces(body);
-    bodies.cold[body].lastPush = {};
-    bodies.cold[body].isSteady = bodies.cold[body].placed = false;
-    bodies.pushed.Erase(body);
+    ForgetPush(bodies, body);
+    bodies.cold[body].placed = false;
     std::erase(bodies.placed, body);
     bodies.unconstrained[body] = {};
     for (float& a : bodies.poses[body].acceleration) a = 0;

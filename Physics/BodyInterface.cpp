@@ -8,6 +8,7 @@
 #include <Fulcrum/Physics/World/JointChanges.h>
 #include <Fulcrum/Physics/World/Sleeping.h>
 #include <Fulcrum/Physics/World/SpeedLimits.h>
+#include <Fulcrum/Physics/World/SteadyPushes.h>
 #include <Fulcrum/Physics/World/Waking.h>
 
 #include <cmath>
@@ -296,7 +297,10 @@ Status BodyInterface::Sleep(BodyId id) {
     if (!Exists(id)) return Unknown(id);
     if (world_.bodies.dynamics[id.index].motion != MotionType::Dynamic)
         return Error{ErrorCode::Unsupported, "only dynamic bodies sleep"};
-    if (world_.bodies.dynamics[id.index].awake) SleepIslandOf(world_, id.index);
+    if (!world_.bodies.dynamics[id.index].awake) return Done{};
+    SleepIslandOf(world_, id.index);
+    for (const uint32_t body : world_.sleeping.Bodies(world_.bodies.cold[id.index].sleepingIsland))
+        ForgetPush(world_.bodies, body);
     return Done{};
 }
 

@@ -22,6 +22,7 @@ struct SavedBody {
     float slowSeconds = 0;
     BodyPush lastPush;
     bool isSteady = false;
+    SingleMove singleMove = SingleMove::None;
 };
 
 // How a joint is known again, and what is read of it.
@@ -35,9 +36,10 @@ struct SavedJoint {
 
 template <class Stream>
 void Visit(Stream& s, SavedBody& body) {
-    auto& [id, shape, center, remainder, linear, angular, force, torque, slowSeconds, lastPush, isSteady] = body;
+    auto& [id, shape, center, remainder, linear, angular, force, torque, slowSeconds, lastPush, isSteady, singleMove] =
+        body;
     s(id, shape, center.position, center.rotation, remainder.value, remainder.isGiven, linear, angular, force, torque,
-      slowSeconds, lastPush.force, lastPush.torque, isSteady);
+      slowSeconds, lastPush.force, lastPush.torque, isSteady, singleMove);
 }
 template <class Stream>
 void Visit(Stream& s, SavedJoint& joint) {
@@ -57,7 +59,8 @@ SavedBody Describe(const BodyStore& bodies, BodyId id) {
             cold.torque,
             bodies.dynamics[id.index].slowSeconds,
             cold.lastPush,
-            cold.isSteady};
+            cold.isSteady,
+            cold.singleMove};
 }
 
 SavedJoint Describe(const JointStore& joints, uint32_t index, std::vector<std::byte>& settings) {
@@ -122,6 +125,8 @@ void Complete(BodyStore& bodies, const SavedBody& saved) {
     bodies.cold[i].lastPush = saved.lastPush;
     bodies.cold[i].isSteady = saved.isSteady;
     if (bodies.dynamics[i].hasForce || !saved.lastPush.IsZero()) bodies.pushed.Insert(i);
+    bodies.cold[i].singleMove = saved.singleMove;
+    if (saved.singleMove != SingleMove::None) bodies.singleMoves.Insert(i);
 }
 
 }  // namespace

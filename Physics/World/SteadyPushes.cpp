@@ -1,5 +1,7 @@
 #include <Fulcrum/Physics/World/SteadyPushes.h>
 
+#include <algorithm>
+
 namespace fulcrum {
 
 namespace {
@@ -23,7 +25,8 @@ void BeginPushes(const SleepStores& stores) {
         BodyCold& cold = bodies.cold[body];
         const BodyDynamics& d = bodies.dynamics[body];
         const BodyPush now{cold.force, cold.torque};
-        const bool isSame = !now.IsZero() && IsSame(cold.lastPush, now, d.outerRadius);
+        constexpr float kLeastRadius = 1e-6f;  // m, of what has no geometry
+        const bool isSame = !now.IsZero() && IsSame(cold.lastPush, now, std::max(d.outerRadius, kLeastRadius));
         if (!d.awake && isSame && cold.isSteady) return;  // the push that it fell asleep under is kept as it was then
         // A push that came and went within a step is over: what follows from it shows in the body's speed.
         if (now.IsZero() ? cold.isSteady : !isSame) WakeBody(stores, body);
@@ -31,6 +34,13 @@ void BeginPushes(const SleepStores& stores) {
         cold.lastPush = now;
         if (now.IsZero()) bodies.pushed.Erase(body);
     });
+}
+
+void ForgetPush(BodyStore& bodies, uint32_t body) {
+    bodies.ForgetForces(body);
+    bodies.cold[body].lastPush = {};
+    bodies.cold[body].isSteady = false;
+    bodies.pushed.Erase(body);
 }
 
 void EndPushes(BodyStore& bodies) {

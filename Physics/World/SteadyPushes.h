@@ -10,6 +10,8 @@ namespace fulcrum {
 
 // As a step begins: bodies whose push is another than in the last step count as moving, and wake.
 void BeginPushes(const SleepStores& stores);
+// Of a body that the user puts to sleep, or that is dynamic no more: nothing pushes it, nor did before.
+void ForgetPush(BodyStore& bodies, uint32_t body);
 // As it ends: what sleeps has used its push, too.
 void EndPushes(BodyStore& bodies);
 

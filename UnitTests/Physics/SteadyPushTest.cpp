@@ -76,6 +76,17 @@ TEST_F(PushedBox, ASlowChangeWakesItInTheEnd) {
     EXPECT_EQ(steps, 7);  // the first beyond 1 % is that of 1.012
 }
 
+// Put to sleep by a call it has no push to sleep under: the next one wakes it, none does not.
+TEST_F(PushedBox, PutToSleepItSleepsWithoutAPush) {
+    Push(20, steady);
+    ASSERT_TRUE(world.Bodies().AddForce(box, steady));
+    ASSERT_TRUE(world.Bodies().Sleep(box));
+    world.Steps(5);
+    EXPECT_FALSE(world.Bodies().IsAwake(box));
+    ASSERT_TRUE(world.Bodies().AddForce(box, steady));
+    EXPECT_TRUE(world.Bodies().IsAwake(box));
+}
+
 // Hit in its sleep, it has its force in the same step as before.
 TEST(SteadyPush, ABodyThatIsHitInItsSleepIsHeldUpInTheSameStep) {
     TestWorld world;
