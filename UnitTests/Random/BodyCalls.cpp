@@ -117,7 +117,7 @@ FULCRUM_BODY_CALL(SetInertia, SymmetricMatrix3 inertia; inertia.xx = values.Mass
 FULCRUM_BODY_CALL(SetLayer, return bodies.SetLayer(id, static_cast<uint8_t>(values.Below(values.IsOdd() ? 256 : 3))))
 FULCRUM_BODY_CALL(SetDamping, const float linear = values.Setting(0, 2);
                   return bodies.SetDamping(id, linear, values.Setting(0, 2)))
-FULCRUM_BODY_CALL(SetLockedAxes,
+FULCRUM_BODY_CALL(SetLockedAxes, twin.guided.push_back(id);
                   return bodies.SetLockedAxes(id, static_cast<LockedAxes>(values.Below(values.IsOdd() ? 256 : 64))))
 FULCRUM_BODY_CALL(SetMaxSpeeds, const float linear = values.Setting(0.1f, 100);
                   return bodies.SetMaxSpeeds(id, linear, values.Setting(0.1f, 100)))
