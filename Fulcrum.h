@@ -18,6 +18,7 @@
 #include <Fulcrum/Collision/Shapes/Scaled.h>
 #include <Fulcrum/Collision/Shapes/ShapeFile.h>
 #include <Fulcrum/Collision/Shapes/ShapeHash.h>
+#include <Fulcrum/Collision/Shapes/Submersion.h>
 #include <Fulcrum/Collision/Shapes/Triangle.h>
 #include <Fulcrum/Collision/Shapes/TriangleMesh.h>
 #include <Fulcrum/Constraints/Joints/JointDrawing.h>
@@ -25,6 +26,7 @@
 #include <Fulcrum/Jobs/JobSystem.h>
 #include <Fulcrum/Jobs/ThreadPool.h>
 #include <Fulcrum/Math/Trigonometry.h>
+#include <Fulcrum/Physics/Fields/Fields.h>
 #include <Fulcrum/Physics/PhysicsSystem.h>
 #include <Fulcrum/Physics/Ragdoll/Ragdoll.h>
 #include <Fulcrum/Physics/Ragdoll/RagdollSettings.h>

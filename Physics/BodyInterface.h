@@ -3,11 +3,33 @@
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/MutableCompound.h>
+#include <Fulcrum/Math/Matrix.h>
+#include <Fulcrum/Physics/QueryTypes.h>
 #include <Fulcrum/Physics/Settings.h>
+
+#include <optional>
+#include <span>
 
 namespace fulcrum {
 
 struct WorldState;
+
+// An axis-aligned box in the world, m.
+struct BodyBounds {
+    Position lower = Position::Zero(), upper = Position::Zero();
+};
+
+// An explosion: pushes bodies away from a point, once.
+struct RadialImpulse {
+    enum class Falloff : uint8_t {
+        Constant,  // the same impulse for all within the radius
+        Linear,    // less with the distance, nothing at the radius
+    };
+    Position center = Position::Zero();  // m
+    float radius = 1;                    // m, > 0
+    float impulse = 0;                   // N s, finite: what a body at the center gets; negative pulls
+    Falloff falloff = Falloff::Linear;
+};
 
 class BodyInterface {
 public:
@@ -24,16 +46,22 @@ public:
     // at rest. A pose returned by GetPose is restored bit-exactly. Errors: UnknownId, NonFinite, OutOfRange (beyond
     // 1e18 m), Unnormalized.
     Status SetPose(BodyId id, const Position& position, const Quaternion& rotation);
-    // Sets the velocity of a kinematic body such that it reaches the pose after `dt` seconds (> 0), within its speed
-    // limits. Errors: those of SetPose, Unsupported (not kinematic).
+    // Several bodies at once, each to its pose: joints between bodies that keep their places to each other do not
+    // notice, as of a ragdoll or a vehicle that is moved as a whole. Velocities stay. Errors also: OutOfRange (not as
+    // many poses as bodies), Unsupported (a body is named twice). Nothing has changed then.
+    Status SetPoses(std::span<const BodyId> ids, std::span<const Pose> poses);
+    // Gives a kinematic body the velocity with which it reaches the pose after `dt` seconds (> 0), if its largest
+    // speeds allow that: for the next step, after which it rests unless it is told again. To let it move on, use
+    // SetVelocity. Errors also: Unsupported.
     Status MoveKinematic(BodyId id, const Position& position, const Quaternion& rotation, float dt);
     // m/s, rad/s; wakes the body. Steps clamp it to the body's speed limits. Errors: UnknownId, NonFinite, Unsupported
     // (static, frozen).
     Status SetVelocity(BodyId id, const Vector3& linear, const Vector3& angular);
-    // Force (N, at the center of mass or a world point) and torque (N m) for the next step only; wakes the body. Zero
-    // does nothing; a body that falls asleep loses its forces. The body's speed limits hold; if the sum of forces
-    // overflows a float, the body is frozen. Errors: UnknownId, NonFinite, OutOfRange (point), Unsupported (not
-    // dynamic, frozen).
+    // Acts during the next step only: N at a world point, N m; wakes. One that is the same, within 1 %, step after
+    // step does not keep a body awake: it falls asleep under it, and wakes when it is another or given no more. One of
+    // zero does nothing, and a body that is put to sleep forgets what it had. However large it is, the body stays
+    // within its largest speeds; where the sum of several is beyond the floats, it is frozen. Errors: UnknownId,
+    // NonFinite, OutOfRange (point), Unsupported (not dynamic, frozen).
     Status AddForce(BodyId id, const Vector3& force);
     Status AddForceAt(BodyId id, const Vector3& force, const Position& point);
     Status AddTorque(BodyId id, const Vector3& torque);
@@ -41,11 +69,36 @@ public:
     Status AddImpulse(BodyId id, const Vector3& impulse);
     Status AddImpulseAt(BodyId id, const Vector3& impulse, const Position& point);
     Status AddAngularImpulse(BodyId id, const Vector3& impulse);
+    // Acts at once on the dynamic bodies that the filter sees and that are within the radius, at their point that is
+    // closest to the center; wakes them. What the center is inside of is pushed at its center of mass. Returns how many
+    // were pushed. Errors: NonFinite, NonPositive, OutOfRange.
+    Result<uint32_t> AddRadialImpulse(const RadialImpulse& settings, const QueryFilter& filter = {});
+    // Contacts begin anew, joints stay; wakes the body and what is near. What is no longer dynamic keeps its mass for
+    // when it is again; what never was has that of its settings. Static bodies lose their velocities. Errors:
+    // UnknownId, OutOfRange, Unsupported (frozen; a dynamic body of a shape without volume).
+    Status SetMotionType(BodyId id, MotionType motion);
+    // kg, > 0; moments of inertia change in proportion. Of a body that is not dynamic: for when it becomes so. Errors:
+    // UnknownId, NonFinite, NonPositive, OutOfRange (no inverse), Unsupported (no volume).
+    Status SetMass(BodyId id, float mass);
+    // With the inertia tensor, kg m2, about the center of mass along the axes of the body's own frame; positive
+    // definite.
+    Status SetMass(BodyId id, float mass, const SymmetricMatrix3& inertia);
     Status SetMaterial(BodyId id, const Material& material);
-    // Collision filter, see BodySettings. Contacts that it forbids end; the body and those that it touched wake.
+    // 0..31. As SetCategoryAndMask.
+    Status SetLayer(BodyId id, uint8_t layer);
+    // What it collides with, see BodySettings. Contacts that no longer may be end; the body and what it touched wake.
     Status SetCategoryAndMask(BodyId id, uint64_t category, uint64_t mask);
     Status SetGroup(BodyId id, const CollisionGroup& group);
     Status SetGravityFactor(BodyId id, float factor);
+    // m/s2, up to 1e6 along each axis, in place of the system's; none: the system's again. The factor holds for both.
+    // Wakes.
+    Status SetGravity(BodyId id, const std::optional<Vector3>& gravity);
+    // As in BodySettings. Locking wakes, damping and speeds do not.
+    Status SetDamping(BodyId id, float linear, float angular);
+    Status SetLockedAxes(BodyId id, LockedAxes axes);
+    Status SetMaxSpeeds(BodyId id, float linear, float angular);
+    Status SetUserData(BodyId id, uint64_t userData);
+    Status SetAllowSleep(BodyId id, bool allowSleep);  // one that may not wakes
     Status SetContinuous(BodyId id,
                          ContinuousCollision continuous);  // Errors also: OutOfRange, Unsupported (a surface or plane)
     // Whether its contacts are reported as events, see EventSettings. If not, contacts reported so far get an end event
@@ -89,12 +142,26 @@ public:
     Vector3 GetLinearVelocity(BodyId id) const;   // m/s, of the center of mass
     Vector3 GetAngularVelocity(BodyId id) const;  // rad/s, world axes
     Vector3 GetVelocityAt(BodyId id, const Position& point) const;
-    float GetMass(BodyId id) const;               // kg; 0 for a body that is not dynamic
+    float GetMass(BodyId id) const;  // kg; 0 for a body that is not dynamic
+    // kg m2 about the center of mass, along the axes of the body's own frame; zero where it is not dynamic.
+    SymmetricMatrix3 GetInertia(BodyId id) const;
+    // Around all of its shape, a millionth larger at most where that is near the first body of the world.
+    BodyBounds GetBounds(BodyId id) const;
     Vector3 GetAngularMomentum(BodyId id) const;  // kg m2/s, about the center of mass, world axes
     double GetKineticEnergy(BodyId id) const;     // J
     MotionType GetMotionType(BodyId id) const;
     ContinuousCollision GetContinuous(BodyId id) const;
     ShapePtr GetShape(BodyId id) const;
+    Material GetMaterial(BodyId id) const;
+    uint8_t GetLayer(BodyId id) const;
+    float GetGravityFactor(BodyId id) const;
+    Vector3 GetGravity(BodyId id) const;  // m/s2, its own or the system's, without the factor
+    float GetLinearDamping(BodyId id) const;
+    float GetAngularDamping(BodyId id) const;
+    LockedAxes GetLockedAxes(BodyId id) const;
+    float GetMaxLinearSpeed(BodyId id) const;
+    float GetMaxAngularSpeed(BodyId id) const;
+    bool AllowsSleep(BodyId id) const;
     uint64_t GetCategory(BodyId id) const;
     uint64_t GetMask(BodyId id) const;
     CollisionGroup GetGroup(BodyId id) const;

@@ -20,6 +20,9 @@ struct SavedBody {
     Remainder remainder;
     Vector3 linear = Vector3::Zero(), angular = Vector3::Zero(), force = Vector3::Zero(), torque = Vector3::Zero();
     float slowSeconds = 0;
+    BodyPush lastPush;
+    bool isSteady = false;
+    SingleMove singleMove = SingleMove::None;
 };
 
 // Identifies a joint and the size of its state.
@@ -33,9 +36,10 @@ struct SavedJoint {
 
 template <class Stream>
 void Visit(Stream& s, SavedBody& body) {
-    auto& [id, shape, center, remainder, linear, angular, force, torque, slowSeconds] = body;
+    auto& [id, shape, center, remainder, linear, angular, force, torque, slowSeconds, lastPush, isSteady, singleMove] =
+        body;
     s(id, shape, center.position, center.rotation, remainder.value, remainder.isGiven, linear, angular, force, torque,
-      slowSeconds);
+      slowSeconds, lastPush.force, lastPush.torque, isSteady, singleMove);
 }
 template <class Stream>
 void Visit(Stream& s, SavedJoint& joint) {
@@ -53,7 +57,10 @@ SavedBody Describe(const BodyStore& bodies, BodyId id) {
             bodies.AngularVelocityOf(id.index),
             cold.force,
             cold.torque,
-            bodies.dynamics[id.index].slowSeconds};
+            bodies.dynamics[id.index].slowSeconds,
+            cold.lastPush,
+            cold.isSteady,
+            cold.singleMove};
 }
 
 SavedJoint Describe(const JointStore& joints, uint32_t index, std::vector<std::byte>& settings) {
@@ -116,6 +123,11 @@ void Complete(BodyStore& bodies, const SavedBody& saved) {
     bodies.cold[i].torque = saved.torque;
     bodies.dynamics[i].hasForce = !saved.force.isZero(0) || !saved.torque.isZero(0);
     bodies.dynamics[i].slowSeconds = saved.slowSeconds;
+    bodies.cold[i].lastPush = saved.lastPush;
+    bodies.cold[i].isSteady = saved.isSteady;
+    if (bodies.dynamics[i].hasForce || !saved.lastPush.IsZero()) bodies.pushed.Insert(i);
+    bodies.cold[i].singleMove = saved.singleMove;
+    if (saved.singleMove != SingleMove::None) bodies.singleMoves.Insert(i);
 }
 
 }  // namespace

@@ -24,6 +24,18 @@ struct JointAxisForces {
     float limit = 0, motor = 0, friction = 0;
 };
 
+// A spring from a place in the world to a point of a body, as a mouse drags it. Made of the translations of a six-dof
+// joint, whose motors may be changed as such.
+struct TargetJointSettings {
+    BodyId body{};                       // dynamic
+    Position anchor = Position::Zero();  // m, world: the point of the body, as it stands now
+    Position target = Position::Zero();  // m, world
+    SpringSettings spring = {.frequency = 5.0f, .dampingRatio = 1.0f};
+    float maxForce = std::numeric_limits<float>::infinity();  // N, > 0, along each axis of the world
+    bool collideConnected = true;
+    uint64_t userData = 0;
+};
+
 class JointInterface {
 public:
     explicit JointInterface(WorldState& world) : world_(world) {}
@@ -33,7 +45,11 @@ public:
     // NonFinite, NonPositive, Negative, OutOfRange, Unnormalized. On error nothing is created.
     template <class Settings>
     Result<JointId> Create(const Settings& settings);
-    // Removing a body removes its joints. Error: UnknownId, as for all functions below.
+    Result<JointId> CreateTarget(const TargetJointSettings& settings);
+    // Moves A's anchor, of a joint whose body A is the world, to a place, m; the bodies wake, unless it is there
+    // already. Errors also: Unsupported (body A is another), NonFinite, OutOfRange.
+    Status SetTarget(JointId id, const Position& target);
+    // Removing a body removes its joints. Error: UnknownId, as for all that follow.
     Status Remove(JointId id);
     bool Exists(JointId id) const;
 

@@ -17,6 +17,10 @@ struct JointId {
     friend auto operator<=>(const JointId&, const JointId&) = default;
 };
 
+// The world itself, which never moves, as a body of joints: in JointSettings, and what JointInterface says of them. No
+// other call knows it.
+inline constexpr BodyId kWorldBody = {0xFFFFFFFFu, 0xFFFFFFFFu};
+
 enum class JointSpace : uint8_t {
     World,  // points and axes are in world space, at the bodies' current poses
     Body,   // points and axes are in each body's own frame
@@ -36,7 +40,7 @@ struct JointAnchor {
 enum class JointPriority : uint8_t { Normal, High };
 
 struct JointSettings {
-    BodyId bodyA{}, bodyB{};  // at least one is dynamic
+    BodyId bodyA{}, bodyB{};  // at least one is dynamic; kWorldBody: the world, whose own frame is that of the world
     JointSpace space = JointSpace::World;
     JointAnchor anchorA;
     std::optional<JointAnchor> anchorB{};  // left out: coincides with anchor A at the current poses

@@ -10,8 +10,7 @@ namespace fulcrum {
 // end the program, but not throw.
 using MisuseHandler = void (*)(const Error& error);
 
-// Sets the handler for all worlds of the program, from any thread. Null: the default, which prints the first 100 errors
-// to standard error.
+// For all worlds of the program, from any thread. Null: the default, which logs the first 100 errors (Math/Log.h).
 void SetMisuseHandler(MisuseHandler handler);
 
 void ReportMisuse(const Error& error);

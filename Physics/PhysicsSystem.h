@@ -10,6 +10,7 @@
 #include <Fulcrum/Physics/SensorEvent.h>
 #include <Fulcrum/Physics/Snapshot.h>
 #include <Fulcrum/Physics/StepEvents.h>
+#include <Fulcrum/Physics/StepObserver.h>
 #include <Fulcrum/Physics/StepReport.h>
 
 #include <memory>
@@ -56,9 +57,13 @@ public:
     // bodies whose contact it forbids wake.
     void SetContactListener(const ContactListener* listener);
 
-    // Saves the whole state, from which steps continue bit-identically. `bytes` are overwritten; their memory is
-    // reused. Shapes, group filters and user-defined joint types are referenced, not contained. Error: Unsupported (a
-    // body's mutable compound has a custom child); `bytes` are empty then.
+    // Tells it of steps and their stages from now on (not owned, must outlive its use); null: nobody. Not part of
+    // snapshots.
+    void SetStepObserver(StepObserver* observer);
+
+    // The whole state as bytes, from which steps go on with the same bits: `bytes` are overwritten, and allocated anew
+    // only where they do not suffice. Shapes, group filters and what joints of one's own are made of are named, not
+    // contained. Error: Unsupported (a body's mutable compound has a custom child); `bytes` are empty then.
     Status SaveSnapshot(std::vector<std::byte>& bytes) const;
     // Restores a snapshot of this world, or of another one: settings, bodies, joints and their ids become those of the
     // snapshot. Report() stays that of the last step. Errors, which leave the world unchanged: Unsupported (not a
@@ -83,6 +88,8 @@ public:
     // Visits all awake contacts with at least one point, as solved in the last step, in a deterministic order. Includes
     // speculative contacts.
     void VisitContacts(FunctionRef<void(const ContactView&)> visit) const;
+    // Those of one body, by pair; nothing for an unknown id.
+    void VisitContactsOf(BodyId body, FunctionRef<void(const ContactView&)> visit) const;
     // Calls visit(id, island) for each dynamic body; islands are numbered from 0 in the order of their smallest body
     // index. Computed by this call: for viewers and tests.
     void VisitIslands(FunctionRef<void(BodyId, uint32_t island)> visit) const;

@@ -6,6 +6,7 @@
 #include <Fulcrum/Jobs/JobSystem.h>
 #include <Fulcrum/Physics/Settings.h>
 
+#include <array>
 #include <optional>
 #include <span>
 
@@ -47,6 +48,22 @@ struct OverlapHit {
     BodyId body;
     uint32_t child = 0;  // of a compound; else 0
     friend auto operator<=>(const OverlapHit&, const OverlapHit&) = default;
+};
+
+// A convex piece of a shape in touch with a piece of a body: points with one normal.
+struct WorldContact {
+    struct Point {
+        Position onBody = Position::Zero(), onQuery = Position::Zero();  // m
+        float separation = 0;  // m, from the body to the shape along the normal; negative where they overlap
+    };
+    BodyId body;
+    SubShape subShape{};               // of the body; a triangle is that of the deepest point
+    uint32_t childOfQuery = 0;         // of a compound; else 0
+    Vector3 normal = Vector3::Zero();  // unit, world space, from the body towards the shape asked for
+    uint32_t pointCount = 0;           // 1..4
+    std::array<Point, 4> points{};
+
+    std::span<const Point> Points() const { return {points.data(), pointCount}; }
 };
 
 struct WorldClosest {

@@ -67,6 +67,14 @@ bool IsWithinFloats(const ShapeHit& hit) {
 
 }  // namespace
 
+// Along a surface rounding has a sign: what would sink in by less than that over the whole motion goes along it.
+bool ShapeCaster::Separates(const ShapeHit& hit) const {
+    constexpr float kAlong = 1e-4f;  // of the motion
+    const Vector3 arm = (hit.position - motion_.pose.position).cast<float>();
+    const Vector3 motion = motion_.displacement + Cross<float>(motion_.turn, arm);
+    return Dot(motion, hit.normal) >= -kAlong * Length(motion);
+}
+
 bool ShapeCaster::CastPiece(const Piece& piece, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit,
                             const Vector3& turn) const {
     const Pose at = pose * piece.pose;
@@ -83,8 +91,11 @@ bool ShapeCaster::CastPiece(const Piece& piece, const Pose& pose, const ShapeCas
     hit.fraction = std::min(static_cast<float>(cast.fraction), settings.maxFraction);
     hit.isEarly = cast.status == CoreCastResult::Status::Early;
     if (cast.status == CoreCastResult::Status::AtStart) {
-        if (settings.measureDepth) MeasureDepth(piece, at, motion, hit);
-        return !settings.measureDepth || IsWithinFloats(hit);
+        if (!settings.measureDepth && !settings.ignoreSeparating) return true;
+        MeasureDepth(piece, at, motion, hit);
+        if (!IsWithinFloats(hit) || (settings.ignoreSeparating && Separates(hit))) return false;
+        if (!settings.measureDepth) hit = {.fraction = hit.fraction, .subShape = hit.subShape, .isEarly = hit.isEarly};
+        return true;
     }
     if (isOneSided && motion.IsTurning()) {
         // A rotating shape may touch an open edge from any side: its center determines from which side it comes.
@@ -116,6 +127,7 @@ bool ShapeCaster::CastPlane(const Shape& shape, const Pose& pose, const ShapeCas
         const double height =
             Dot<double>(plane.Normal().cast<double>(), Position(motion.position + lowest.cast<double>()));
         hit.depth = std::max(0.0f, static_cast<float>(double{plane.Offset()} - height));
+        if (settings.ignoreSeparating && Separates(hit)) return false;
     }
     return IsWithinFloats(hit);
 }

@@ -14,7 +14,7 @@ public:
     ~CompoundShape() override;
 
     struct ChildSettings {
-        ShapePtr shape;                      // convex
+        ShapePtr shape;                      // convex; of a Compound, another compound, too
         Vector3 position = Vector3::Zero();  // of the child's user frame in the compound's user frame, m
         Quaternion rotation{};               // unit
         float density = 1;                   // relative to the other children's, > 0
@@ -44,8 +44,9 @@ public:
 
 protected:
     using Shape::Shape;
-    // Errors: Unsupported (null or not convex), NonFinite, Unnormalized, NonPositive; they begin with `name`.
-    static Status Check(const ChildSettings& child, const char* name);
+    // Errors: Unsupported (null; not convex, nor a compound where one may be), NonFinite, Unnormalized, NonPositive;
+    // they begin with `name`.
+    static Status Check(const ChildSettings& child, const char* name, bool mayBeCompound = false);
     // The child's box in the children's frame.
     static Bounds BoundsOf(const Child& child);
 

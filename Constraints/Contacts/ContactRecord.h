@@ -53,7 +53,8 @@ struct alignas(32) ContactRecord {
     };
 
     // Features that few contacts have, as bits.
-    enum Mark { kSurfaceVelocity = 1, kMassOverride = 2 };
+    enum Mark { kSurfaceVelocity = 1, kMassOverride = 2, kSensed = 4 };
+    // kSensed: the contact is an event, but not solved
     bool Has(Mark mark) const { return (static_cast<int>(marks) & mark) != 0; }
     void Set(Mark mark, bool has) {
         const int others = static_cast<int>(marks) & ~mark;

@@ -61,6 +61,21 @@ void SnapshotAccess::FindAwakePlaces(BodyStore& bodies) {
     for (uint32_t place = 0; place < bodies.awake.size(); ++place) bodies.cold[bodies.awake[place]].awakePlace = place;
 }
 
+void SnapshotAccess::ListSpecial(BodyStore& bodies) {
+    bodies.worldBody = BodyStore::kNone;
+    for (IndexSet* set : {&bodies.pushed, &bodies.singleMoves}) {
+        set->words_.assign((bodies.cold.size() + 63) / 64, 0);
+        set->size_ = 0;
+    }
+    for (uint32_t i = 0; i < bodies.Size(); ++i) {
+        const BodyCold& body = bodies.cold[i];
+        if (!body.exists) continue;
+        if (bodies.dynamics[i].hasForce || !body.lastPush.IsZero()) bodies.pushed.Insert(i);
+        if (body.singleMove != SingleMove::None) bodies.singleMoves.Insert(i);
+        if (body.isWorld) bodies.worldBody = i;
+    }
+}
+
 void SnapshotAccess::AttachPieces(const BodyStore& bodies, ColliderStore& store) {
     store.shapes.assign(store.shapes.size(), {});
     for (uint32_t body = 0; body < bodies.Size(); ++body) {

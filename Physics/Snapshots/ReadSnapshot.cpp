@@ -1,5 +1,6 @@
-// A snapshot is restored in two passes. The first finds or creates all referenced objects and does not change the
-// world; the second overwrites the world and cannot fail.
+// A snapshot is restored in two passes. The first finds, or makes, all that may be missing, and leaves the world as it
+// is; the second writes over it, and cannot fail.
+#include <Fulcrum/Collision/Shapes/EmptyShape.h>
 #include <Fulcrum/Collision/Shapes/MutableCompound.h>
 #include <Fulcrum/Collision/Shapes/ShapeFile.h>
 #include <Fulcrum/Collision/Shapes/ShapeHash.h>
@@ -56,7 +57,8 @@ private:
         };
         for (const BodyCold& body : bodies_.cold) add(body.shape);
         for (const ShapePtr& shape : given_) add(shape);
-        std::ranges::sort(shapes_, {}, &Entry::first);  // shapes with equal hashes are interchangeable
+        add(EmptyShape::Create());                      // that of the world body
+        std::ranges::sort(shapes_, {}, &Entry::first);  // equal ones are as good as each other
     }
 
     const BodyStore& bodies_;
@@ -196,6 +198,7 @@ void RestoreBodies(SnapshotReader& s, Found& found, BodyStore& bodies) {
     for (size_t i = 0; i + 1 < found.filtered.size(); i += 2)
         bodies.cold[found.filtered[i]].filter->group.filter = found.filters[found.filtered[i + 1]];
     SnapshotAccess::FindAwakePlaces(bodies);
+    SnapshotAccess::ListSpecial(bodies);
 }
 
 void RestoreJoints(SnapshotReader& s, Found& found, JointStore& joints, ConstraintColoring& coloring) {

@@ -52,7 +52,9 @@ struct SnapshotAccess {
     static void Resize(JointStore& joints, uint32_t count);
     // Derived state. Indices of bodies in the list of awake ones;
     static void FindAwakePlaces(BodyStore& bodies);
-    // the body and the shape of each collider; the list of moved ones; the trees;
+    // which of them were pushed, are to stop, or stand for the world;
+    static void ListSpecial(BodyStore& bodies);
+    // the body and the piece of each collider; which of them moved; the trees;
     static void AttachPieces(const BodyStore& bodies, ColliderStore& colliders);
     static void ListMoved(ColliderStore& colliders);
     static void UpdateTrees(const BodyStore& bodies, ColliderStore& colliders);
@@ -85,8 +87,8 @@ void SnapshotAccess::VisitHead(Stream& s, SnapshotHead& head) {
 
 template <class Stream, class Bodies>
 void SnapshotAccess::VisitBodies(Stream& s, Bodies& bodies) {
-    auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, continuousCount,
-           reportsContacts, sleepChanges, notesSleepChanges, free, count] = bodies;
+    auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, worldBody, continuousCount,
+           reportsContacts, pushed, singleMoves, sleepChanges, notesSleepChanges, free, count] = bodies;
     s.Begin(SnapshotSection::Bodies);
     for (uint32_t i = 0; i < cold.size(); ++i) {
         s.Reserve(kMostOfBody);
@@ -218,8 +220,8 @@ void SnapshotAccess::VisitSensors(Stream& s, Sensors& store, Changed& itsChanged
 // Names all members: those not used here are written elsewhere, are temporary, or are derived.
 template <class Stream, class World, class Step>
 void SnapshotAccess::VisitStep(Stream& s, World& world, Step& step, SavedEfforts& efforts) {
-    auto& [settings, ownJobs, jobs, listener, bodies, colliders, itsPairs, joints, coloring, sleeping, sensors, removed,
-           number, lock, outsideFatBounds] = world;
+    auto& [settings, ownJobs, jobs, listener, observer, bodies, colliders, itsPairs, joints, coloring, sleeping,
+           sensors, removed, number, lock, outsideFatBounds] = world;
     auto& [lastSubstepDt, stiffnessDt, report, findings, scratch, pairs, crowd, began, seams, solver, saved,
            sleepCandidates, sweeps, sensing, events] = step;
     auto& [deepOverlaps, dispersing, crowded] = crowd;

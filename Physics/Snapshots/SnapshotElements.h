@@ -107,13 +107,45 @@ void VisitChildren(Stream& s, Children& children) {
     s(origin, massUnit, moreColliders);
 }
 
-// For an unused index only the generation matters. A removed body keeps its colliders until the next step.
+// What few bodies have. isOdd: whether this one has any of it.
+template <class Stream, class Cold>
+void VisitOddities(Stream& s, Cold& body, bool isOdd) {
+    if constexpr (!Stream::kWrites) {
+        body.singleMove = SingleMove::None;
+        body.lastPush = {};
+        body.gravity = Vector3::Zero();
+        body.isSteady = body.isWorld = body.hasGravity = false;
+        if (!isOdd) body.keptMass = nullptr;
+    }
+    if (!isOdd) return;
+    const uint8_t bits = VisitBits(s, body.isSteady, body.hasGravity, body.keptMass != nullptr, body.isWorld);
+    if constexpr (!Stream::kWrites) {
+        body.isSteady = bits & 1;
+        body.hasGravity = bits >> 1 & 1;
+        body.isWorld = bits >> 3 & 1;
+        if (!(bits >> 2 & 1)) body.keptMass = nullptr;
+        else if (!body.keptMass) body.keptMass = std::make_unique<KeptMass>();
+    }
+    s(body.singleMove, body.lastPush.force, body.lastPush.torque);
+    if (body.hasGravity) s(body.gravity);
+    if (!body.keptMass) return;
+    auto& [mass, inertia, principalAxes] = *body.keptMass;
+    s(mass, inertia, principalAxes);
+}
+
+// Of an index without a body the generation is all that counts. A body that was removed has its colliders until the
+// next step.
 template <class Stream, class Cold>
 bool VisitCold(Stream& s, Cold& body) {
     auto& [shape, userData, material, force, torque, filter, firstCollider, colliderCount, children, generation,
-           awakePlace, sleepingIsland, continuous, exists, placed, removed, isSensor] = body;
+           awakePlace, sleepingIsland, continuous, singleMove, keptMass, lastPush, gravity, exists, placed, removed,
+           isSensor, isSteady, isWorld, hasGravity] = body;
     s(generation);
-    const uint8_t bits = VisitBits(s, exists, placed, removed, isSensor, filter != nullptr, children != nullptr);
+    // What few bodies have.
+    bool isOdd = false;
+    if constexpr (Stream::kWrites)
+        isOdd = singleMove != SingleMove::None || keptMass || !lastPush.IsZero() || isSteady || isWorld || hasGravity;
+    const uint8_t bits = VisitBits(s, exists, placed, removed, isSensor, filter != nullptr, children != nullptr, isOdd);
     if constexpr (!Stream::kWrites) {
         exists = bits & 1;
         placed = bits >> 1 & 1;
@@ -123,6 +155,7 @@ bool VisitCold(Stream& s, Cold& body) {
         else if (!filter) filter = std::make_unique<BodyFilter>();
         if (!(bits >> 5 & 1)) children = nullptr;
         else if (!children) children = std::make_unique<BodyChildren>();
+        isOdd = bits >> 6 & 1;
         if (!exists && !removed) {
             const uint32_t itsGeneration = generation;
             body = {};
@@ -134,6 +167,7 @@ bool VisitCold(Stream& s, Cold& body) {
     s(friction, restitution, frictionRule, restitutionRule, firstCollider, colliderCount, sleepingIsland, continuous);
     if (filter) VisitFilter(s, *filter);
     if (children) VisitChildren(s, *children);
+    VisitOddities(s, body, isOdd);
     return true;
 }
 

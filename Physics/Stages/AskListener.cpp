@@ -92,8 +92,10 @@ bool AskListener(const ContactListener& listener, const BodyStore& bodies, const
     record.SetSurfaceVelocity(change.surfaceVelocity, change.surfaceTurn);
     record.Set(ContactRecord::kMassOverride, !change.massOverride.IsNone());
     pairs.massOverrides[index] = change.massOverride;
-    if (change.ignore) Forget(record);
-    return !change.ignore;
+    record.Set(ContactRecord::kSensed, change.isSensor && !change.ignore);
+    const bool acts = !change.ignore && !change.isSensor;
+    if (!acts) Forget(record);
+    return acts;
 }
 
 }  // namespace fulcrum

@@ -47,8 +47,9 @@ bool HasImpulse(const ContactNote& note) {
 // Whether a manifold had an impulse, or has points with a separation of at most `most`, m.
 bool Touches(const ContactSources& from, uint32_t index, float most) {
     const Pair& pair = from.pairs.pairs[index];
-    if (!pair.touching || pair.onSeam || pair.pointCount == 0) return false;
-    if (HasImpulse(from.notes[index])) return true;
+    if (pair.onSeam || pair.pointCount == 0) return false;
+    if (!pair.touching && !from.pairs.records[index].Has(ContactRecord::kSensed)) return false;
+    if (pair.touching && HasImpulse(from.notes[index])) return true;
     ContactView::Point room[ContactRecord::kMaxPoints];
     return std::ranges::any_of(ViewOf(from, index, room).points,
                                [&](const ContactView::Point& point) { return point.separation <= most; });
@@ -201,12 +202,13 @@ void Swap(ContactEvent::Manifold& manifold) {
 // largest approach speed of its points.
 ContactEvent::Manifold ManifoldOf(const ContactSources& from, uint32_t index, float most, float& approachSpeed) {
     const Pair& pair = from.pairs.pairs[index];
-    const ContactNote& note = from.notes[index];
+    static constexpr ContactNote kNone{};  // of what is not solved
+    const ContactNote& note = pair.touching ? from.notes[index] : kNone;
     ContactView::Point room[ContactRecord::kMaxPoints];
     const ContactView view = ViewOf(from, index, room);
     const Position normal = view.normal.cast<double>();
     ContactEvent::Manifold manifold{
-        .normal = Vector3(note.normal[0], note.normal[1], note.normal[2]),
+        .normal = pair.touching ? Vector3(note.normal[0], note.normal[1], note.normal[2]) : view.normal,
         .frictionImpulse = Vector3(note.frictionImpulse[0], note.frictionImpulse[1], note.frictionImpulse[2]),
         .twistImpulse = note.twistImpulse,
         .triangle = pair.triangle,

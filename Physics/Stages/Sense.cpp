@@ -26,7 +26,7 @@ bool Sees(const CollisionView& view, const Sensor& sensor, uint32_t body) {
     if (d.motion == MotionType::Dynamic && !d.awake && !(sensor.sees & SensorSees::Sleeping)) return false;
     if (view.bodies.cold[body].isSensor && !(sensor.sees & SensorSees::Sensors)) return false;
     if (!(view.step.settings.layerCollides[view.bodies.dynamics[self].layer] >> d.layer & 1u)) return false;
-    if ((d.filtered || view.bodies.dynamics[self].filtered) && !FiltersAllow(view.bodies, self, body)) return false;
+    if ((d.special || view.bodies.dynamics[self].special) && !FiltersAllow(view.bodies, self, body)) return false;
     return !view.joints.ForbidsContact(self, body);
 }
 

@@ -1,10 +1,12 @@
 #include <Fulcrum/Physics/Stages/Step.h>
 
+#include <Fulcrum/Physics/StepObserver.h>
 #include <Fulcrum/Physics/Stages/ContactLoads.h>
 #include <Fulcrum/Physics/Stages/CrowdContacts.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/World/BodyPairs.h>
 #include <Fulcrum/Physics/World/Colors.h>
+#include <Fulcrum/Physics/World/SteadyPushes.h>
 
 #include <algorithm>
 #include <chrono>
@@ -201,7 +203,7 @@ void ReportEfforts(const SolverSettings& settings, const BodyStore& bodies, cons
 }
 
 void CountBodies(const WorldState& world, const SolverLayout& solver, StepReport& report) {
-    report.bodies = world.bodies.Count();
+    report.bodies = world.bodies.Count() - (world.bodies.worldBody != BodyStore::kNone);
     report.awakeBodies = static_cast<uint32_t>(world.bodies.awake.size());
     report.islands = solver.islands;
     report.pairs = static_cast<uint32_t>(world.pairs.active.Size());
@@ -215,7 +217,9 @@ void RunStages(WorldState& world, StepState& state, const StepContext& step) {
     const Clock::time_point start = Clock::now();
     Clock::time_point last = start;
     for (size_t i = 0; i < std::size(kStages); ++i) {
+        if (world.observer) world.observer->BeginStage(static_cast<int>(i), kStages[i].name);
         kStages[i].run(world, state, step, workers);
+        if (world.observer) world.observer->EndStage(static_cast<int>(i), kStages[i].name);
         const Clock::time_point now = Clock::now();
         state.report.stageMs[i] = Milliseconds(last, now);
         last = now;
@@ -230,12 +234,16 @@ const char* StageName(int stage) { return kStages[stage].name; }
 void RunStep(WorldState& world, StepState& state, double dt) {
     ForgetRemoved(world);
     BeginReport(world, state);
+    if (world.observer) world.observer->BeginStep(world.step);
     if (dt >= kShortestStep) {
         const StepContext step = ContextOf(world, state, dt);
         state.scratch.Reset();
         state.sweeps.isKept = world.bodies.continuousCount > 0 || !world.sensors.IsEmpty();
         state.sweeps.reportsHits = world.settings.events.contacts;
+        BeginPushes(world);
+        BeginSingleMoves(world.bodies);
         RunStages(world, state, step);
+        EndPushes(world.bodies);
         state.events.events.brokenJoints = state.events.broken;
         state.lastSubstepDt = step.substepDt;
         state.stiffnessDt = step.stiffnessDt;
@@ -244,6 +252,7 @@ void RunStep(WorldState& world, StepState& state, double dt) {
         for (const WorkerFindings& f : state.findings) state.report.libccd += f.libccd;
     }
     CountBodies(world, state.solver, state.report);
+    if (world.observer) world.observer->EndStep(world.step);
 }
 
 }  // namespace fulcrum

@@ -293,7 +293,7 @@ private:
         hit.restitution = change.restitution;
         hit.surfaceVelocity = swapped ? Vector3(-change.surfaceVelocity) : change.surfaceVelocity;
         hit.massOverride = swapped ? change.massOverride.Swapped() : change.massOverride;
-        return !change.ignore;
+        return !change.ignore && !change.isSensor;
     }
 
     // Bodies that are cast only because they were hit leave light touches to the solver.

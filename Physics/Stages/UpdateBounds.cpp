@@ -110,7 +110,8 @@ void UpdateBounds(const StepContext& step, const PairStore& pairs, const SensorS
             const BodyDynamics& dynamics = bodies.dynamics[body];
             if (dynamics.motion == MotionType::Dynamic) {
                 if (!dynamics.spherical) bodies.UpdateInertia(body);
-                Vector3 acceleration = gravity * (dynamics.dispersing ? 0.0f : dynamics.gravityFactor);
+                Vector3 acceleration = (dynamics.special ? bodies.GravityOf(body, gravity) : gravity) *
+                                       (dynamics.dispersing ? 0.0f : dynamics.gravityFactor);
                 if (dynamics.hasForce) acceleration += bodies.cold[body].force * dynamics.inverseMass;
                 if (dynamics.frozen) acceleration.setZero();
                 for (int k = 0; k < 3; ++k) bodies.poses[body].acceleration[k] = acceleration[k];

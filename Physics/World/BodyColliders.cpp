@@ -162,6 +162,23 @@ void UpdateChildCollider(WorldState& world, uint32_t body, uint32_t child) {
     WakeNear(world, index);
 }
 
+void MoveToItsTree(WorldState& world, uint32_t body) {
+    ColliderStore& store = world.colliders;
+    const BodyCold& cold = world.bodies.cold[body];
+    const BodyDynamics& d = world.bodies.dynamics[body];
+    if (!cold.isSensor) (d.motion != MotionType::Static ? store.movingLayers : store.staticLayers) |= 1u << d.layer;
+    VisitColliders(world, body, [&](uint32_t i) {
+        Collider& collider = store.colliders[i];
+        store.TreeOf(collider).Remove(i);
+        collider.moving = d.motion != MotionType::Static;
+        collider.sensor = cold.isSensor;
+        SetFatBounds(world.settings, world.bodies, world.colliders, i);
+        store.TreeOf(collider).Insert(i, collider.fat);
+        world.outsideFatBounds.Forget(i);
+    });
+    RequeueColliders(world.bodies, world.colliders, body);
+}
+
 double RelativeMassOf(const Shape& shape) {
     return shape.Type() == ShapeType::MutableCompound ? static_cast<const MutableCompound&>(shape).RelativeMass()
                                                       : double{shape.Mass().volume};

@@ -15,8 +15,11 @@ void MakeColliders(WorldState& world, uint32_t body);
 // Removes them with their pairs.
 void DropColliders(WorldState& world, uint32_t body);
 
-// Updates the collider of a child of a mutable compound that was added, removed, moved or given another shape. Wakes
-// bodies near its old and new pose.
+// After the body became a sensor, static or movable, or ceased to be one: what meets it is searched anew.
+void MoveToItsTree(WorldState& world, uint32_t body);
+
+// Brings the collider of a child of a mutable compound in line with it, new, removed, moved or of another shape. Wakes
+// what was or is near.
 void UpdateChildCollider(WorldState& world, uint32_t body, uint32_t child);
 
 // The sum of the relative masses of a shape's children; for shapes without children the volume, m3.

@@ -21,7 +21,7 @@ uint32_t BodyStore::Allocate() {
         dynamics.emplace_back();
         cold.emplace_back();
         remainders.emplace_back();
-        reportsContacts.Reserve(index + 1);
+        for (IndexSet* set : {&reportsContacts, &pushed, &singleMoves}) set->Reserve(index + 1);
     }
     cold[index].exists = true;
     if (notesSleepChanges) sleepChanges.push_back(index);
@@ -37,7 +37,7 @@ void BodyStore::Free(uint32_t index) {
     dynamics[index] = {};
     cold[index] = {};
     cold[index].generation = generation;
-    reportsContacts.Erase(index);
+    for (IndexSet* set : {&reportsContacts, &pushed, &singleMoves}) set->Erase(index);
     free_.push_back(index);
     --count_;
 }
@@ -175,14 +175,17 @@ double RotationalEnergy(const BodyDynamics& d, const Quaternion& rotation, const
 }
 
 size_t HeapBytes(const BodyCold& body) {
-    return (body.filter ? sizeof(BodyFilter) : 0) + (body.children ? sizeof(BodyChildren) : 0);
+    return (body.filter ? sizeof(BodyFilter) : 0) + (body.children ? sizeof(BodyChildren) : 0) +
+           (body.keptMass ? sizeof(KeptMass) : 0);
 }
 
 size_t HeapBytes(const BodyStore& store) {
-    const auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, continuousCount,
-                 reportsContacts, sleepChanges, notesSleepChanges, free, count] = store;
-    return HeapBytes(states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, continuousCount,
-                     reportsContacts, sleepChanges, notesSleepChanges, free, count);
+    const auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, worldBody,
+                 continuousCount, reportsContacts, pushed, singleMoves, sleepChanges, notesSleepChanges, free, count] =
+        store;
+    return HeapBytes(states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, worldBody,
+                     continuousCount, reportsContacts, pushed, singleMoves, sleepChanges, notesSleepChanges, free,
+                     count);
 }
 
 }  // namespace fulcrum

@@ -32,7 +32,7 @@ struct alignas(64) BodyDynamics {
     bool hasForce : 1 = false;  // BodyCold::force or torque is not zero
     bool frozen : 1 = false;
     bool continuous : 1 = false;  // BodyCold::continuous is not Off
-    bool filtered : 1 = false;    // it has a BodyFilter: ask FiltersAllow
+    bool special : 1 = false;     // it has a BodyFilter, ask FiltersAllow; or gravity of its own, ask GravityOf
     uint8_t layer : 5 = 0;
     uint8_t crowded : 2 = 0;      // level, see CrowdContacts.h; 0: it is not
     bool dispersing : 1 = false;  // see Crowd.h
@@ -122,6 +122,26 @@ struct BodyFilter {
     bool IsDefault() const { return category == 1 && mask == ~uint64_t(0) && !group.filter; }
 };
 
+// What a body that is not dynamic has when it becomes so.
+struct KeptMass {
+    float mass = 0;                     // kg
+    Vector3 inertia = Vector3::Zero();  // kg m2, principal
+    Quaternion principalAxes;           // from the principal frame to the center frame
+};
+
+// Force, N, and torque, N m, that the interface lets act in a step.
+struct BodyPush {
+    Vector3 force = Vector3::Zero(), torque = Vector3::Zero();
+    bool IsZero() const { return force.isZero(0) && torque.isZero(0); }
+};
+
+// Of a kinematic body that moves for one step only.
+enum class SingleMove : uint8_t {
+    None,
+    Next,  // in the next step
+    Last,  // in the last one: it stops unless it is told again
+};
+
 // Cold: for the interface.
 struct BodyCold {
     ShapePtr shape;
@@ -135,10 +155,17 @@ struct BodyCold {
     uint32_t awakePlace = 0;        // index into BodyStore::awake
     uint32_t sleepingIsland = ~0u;  // index into SleepingIslands
     ContinuousCollision continuous = ContinuousCollision::Off;
+    SingleMove singleMove = SingleMove::None;
+    std::unique_ptr<KeptMass> keptMass;  // null: that of a density of 1000 kg/m3
+    BodyPush lastPush;                   // of the last step in which it was awake; see World/SteadyPushes.h
+    Vector3 gravity = Vector3::Zero();   // m/s2, where hasGravity
     bool exists : 1 = false;
     bool placed : 1 = false;   // see BodyStore::MarkPlaced
     bool removed : 1 = false;  // removed by the interface, its index not yet free
     bool isSensor : 1 = false;
+    bool isSteady : 1 = false;    // lastPush was the same in the step before
+    bool isWorld : 1 = false;     // it is BodyStore::worldBody
+    bool hasGravity : 1 = false;  // of its own, in place of the system's
 
     uint32_t MoreColliders() const {
         return children ? children->moreColliders : ~0u;
@@ -174,6 +201,7 @@ struct Remainder {
 
 class BodyStore {
 public:
+    static constexpr uint32_t kNone = ~0u;
     // By index; all of the same size.
     std::vector<BodyState> states;
     std::vector<BodyMass> masses;
@@ -183,12 +211,15 @@ public:
     std::vector<BodyCold> cold;
     std::vector<Remainder> remainders;
 
-    std::vector<uint32_t> placed;  // see MarkPlaced, unordered
-    std::vector<uint32_t> awake;   // awake dynamic bodies and moving kinematic ones, unordered
+    std::vector<uint32_t> placed;  // see MarkPlaced, in no order
+    std::vector<uint32_t> awake;   // dynamic bodies awake and kinematic ones that move, in no order
+    uint32_t worldBody = kNone;    // the static one that stands for the world in joints, see JointInterface.cpp
     uint32_t continuousCount = 0;  // bodies with continuous collision
-    IndexSet reportsContacts;      // bodies with BodySettings::reportsContacts
-    // For events, if on: bodies that were created, woke or fell asleep since the last step; with repetitions,
-    // unordered.
+    IndexSet reportsContacts;      // bodies of BodySettings::reportsContacts
+    IndexSet pushed;               // bodies that have a force or torque, or had one in the last step
+    IndexSet singleMoves;          // bodies with a SingleMove
+    // For events, where they are on: bodies that came to be, woke or fell asleep since the last step; repeated, in no
+    // order.
     std::vector<uint32_t> sleepChanges;
     bool notesSleepChanges = false;
 
@@ -206,11 +237,13 @@ public:
         return cold[index].filter ? *cold[index].filter : kDefault;
     }
     void SetFilter(uint32_t index, const BodyFilter& filter) {
-        dynamics[index].filtered = !filter.IsDefault();
         cold[index].filter = filter.IsDefault() ? nullptr : std::make_unique<BodyFilter>(filter);
+        UpdateSpecial(index);
     }
 
-    // Whether constraints can move it: it is not fixed.
+    void UpdateSpecial(uint32_t index) { dynamics[index].special = cold[index].filter || cold[index].hasGravity; }
+
+    // Whether constraints move it.
     bool CanMove(uint32_t index) const {
         return dynamics[index].motion == MotionType::Dynamic && !dynamics[index].frozen;
     }
@@ -257,6 +290,10 @@ public:
             s.linearVelocity[k] = linear[k];
             s.angularVelocity[k] = angular[k];
         }
+    }
+    // m/s2, without the body's factor; `gravity`: the system's.
+    Vector3 GravityOf(uint32_t index, const Vector3& gravity) const {
+        return dynamics[index].special && cold[index].hasGravity ? cold[index].gravity : gravity;
     }
     void ForgetForces(uint32_t index) {
         if (!dynamics[index].hasForce) return;

@@ -77,7 +77,8 @@ void ChangeListener(WorldState& world, const ContactListener* listener) {
         if (!world.pairs.pairs[i].exists) continue;
         CombineMaterials(world.bodies, world.pairs, i);
         world.pairs.records[i].SetSurfaceVelocity(Vector3::Zero(), Vector3::Zero());
-        world.pairs.records[i].Set(ContactRecord::kMassOverride, false);
+        for (const auto mark : {ContactRecord::kMassOverride, ContactRecord::kSensed})
+            world.pairs.records[i].Set(mark, false);
     }
     for (uint32_t body : world.bodies.awake) RequeueColliders(world.bodies, world.colliders, body);
 }

@@ -22,7 +22,7 @@ inline bool CanCollide(const SystemSettings& settings, const BodyStore& bodies, 
     if (bodyA == bodyB) return false;
     if (a.motion != MotionType::Dynamic && b.motion != MotionType::Dynamic) return false;
     if (!(settings.layerCollides[a.layer] >> b.layer & 1u)) return false;
-    if ((a.filtered || b.filtered) && !FiltersAllow(bodies, bodyA, bodyB)) return false;
+    if ((a.special || b.special) && !FiltersAllow(bodies, bodyA, bodyB)) return false;
     return !joints.ForbidsContact(bodyA, bodyB);
 }
 // and one of them is awake, and neither disperses while the other is dynamic (Stages/Crowd.h).

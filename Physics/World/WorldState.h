@@ -18,12 +18,14 @@
 namespace fulcrum {
 
 class ContactListener;
+class StepObserver;
 
 struct WorldState {
     SystemSettings settings;
     std::unique_ptr<ThreadPool> ownJobs;
     std::unique_ptr<JobSystem> jobs;  // the user's, or our own, as WorldJobs
     const ContactListener* listener = nullptr;
+    StepObserver* observer = nullptr;
 
     BodyStore bodies;
     ColliderStore colliders;

@@ -36,10 +36,10 @@ double EnergyAllowance(const Twin& twin) {
     });
     double sum = 0;
     twin.system->VisitBodies([&](BodyId id) {
-        const double gained =
-            double{Length(settings.gravity)} * 0.3 + 2 * double{settings.contactPushSpeed} + 2 * fastest + 2;
+        const double gravity = double{Length(bodies.GetGravity(id))};
+        const double gained = gravity * 0.3 + 2 * double{settings.contactPushSpeed} + 2 * fastest + 2;
         const double speed = double{Length(bodies.GetLinearVelocity(id))};
-        sum += double{bodies.GetMass(id)} * (gained * gained + speed * double{Length(settings.gravity)} * 0.2);
+        sum += double{bodies.GetMass(id)} * (gained * gained + speed * gravity * 0.2);
     });
     return sum;
 }
@@ -213,7 +213,8 @@ private:
     // Of programs without extremes and joints, whose springs hold any energy, in steps in which no force is pending.
     std::string CheckEnergy(const RandomCall& call, double before, double allowance) {
         const std::string_view name = call.kind->name;
-        if (name.starts_with("AddForce") || name == "AddTorque") isPushed_ = true;
+        if (name.starts_with("AddForce") || name == "AddTorque" || name == "AddSteadyForce" || name == "ApplyFields")
+            isPushed_ = true;
         if (!IsStep(call) || program_.style.oddChance > 0 || program_.style.joints) return {};
         if (twins_[0].system->HashPoses() == posesBefore_)
             return {};  // a step of no length, after which forces wait still

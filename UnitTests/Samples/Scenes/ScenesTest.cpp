@@ -290,6 +290,7 @@ TEST(SampleScenes, BodiesOfThePlaneStayInIt) { ExpectFigure("flat_land", 0, 1e-6
 // Friction makes velocities equal, and a step along the tangent of a turning disc leads outwards by (w dt)^2 r / 2:
 // with 1.2 rad/s and 1.1 m, 60 times a second for 10 s at full speed, 0.13 m. Twice that, since the tangents lag by a
 // step too.
+TEST(SampleScenes, CratesFloatAndTheBargeRightsItself) { ExpectFigure("harbor", 0, 0.03); }
 TEST(SampleScenes, PlatformsCarryWhatStandsOnThem) { ExpectFigure("moving_platforms", 0, 0.03); }
 TEST(SampleScenes, BeltsCarryAllGoodsRoundTheLoop) { ExpectFigure("conveyor_belt", 0, 0); }
 // Ten contacts of a millimeter each; the other stack is scattered on the floor.
