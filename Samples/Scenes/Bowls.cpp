@@ -38,7 +38,8 @@ void Build(SceneWorld& world) {
     const ShapePtr bowl = Bowl(world), ball = world.SphereOf(0.2f), capsule = world.CapsuleOf(0.2f, 0.12f);
     for (size_t i = 0; i < kDamping.size(); ++i) {
         const Position center = BowlCenter(i);
-        world.Add({.shape = bowl, .motion = MotionType::Static, .position = center});
+        const BodyId id = world.Add({.shape = bowl, .motion = MotionType::Static, .position = center});
+        world.Show(id, {.label = "damping " + LabelOf(kDamping[i]) + "/s", .look = Look::Wood});
         const auto addMoving = [&](const ShapePtr& shape, const Position& place) {
             world.watched.push_back(world.Add({.shape = shape,
                                                .position = center + place,
@@ -70,6 +71,8 @@ extern const Scene kScene{
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "bodies outside their bowl",
+    .accuracyUnit = "bodies",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::BowlsScene

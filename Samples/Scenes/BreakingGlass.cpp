@@ -80,6 +80,8 @@ extern const Scene kScene{
     .afterStep = DrawImpulses,
     .accuracy = Accuracy,
     .accuracyMeaning = "panes that broke too early, or not at all",
+    .accuracyUnit = "panes",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::BreakingGlassScene

@@ -40,7 +40,10 @@ extern const Scene kScene{
     .isClosed = true,
     .build = Build,
     .accuracy = LargestJointGap,
-    .accuracyMeaning = "largest distance between the two anchors of a joint, m",
+    .accuracyMeaning = "largest distance between the two anchors of a joint",
+    .accuracyUnit = "m",
+    // A gap of 7 mm was measured, under boxes that fall on planks of 10 kg.
+    .accuracyRange = {{0, 0.02}},
 };
 
 }  // namespace fulcrum::BridgeScene

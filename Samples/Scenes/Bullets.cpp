@@ -50,6 +50,8 @@ extern const Scene kScene{
     .build = Build,
     .accuracy = BallsBehindTheWalls,
     .accuracyMeaning = "balls behind the walls",
+    .accuracyUnit = "balls",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::BulletsScene

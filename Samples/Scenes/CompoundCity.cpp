@@ -145,7 +145,7 @@ double Accuracy(const SceneWorld& world) {
 extern const Scene kScene{
     .name = "compound_city",
     .description =
-        "bodies fall on 3456 buildings, children of 24 compounds; a tower loses its, children of one that changes",
+        "bodies fall on 3456 buildings in 24 compounds; a tower, one mutable compound, loses its pieces one by one",
     .steps = 720,
     .usesSeed = true,
     .build = Build,
@@ -153,6 +153,8 @@ extern const Scene kScene{
     .accuracy = Accuracy,
     .accuracyMeaning =
         "pieces of the tower, bodies on its roof and bodies in the ground that are where they should not be",
+    .accuracyUnit = "pieces and bodies",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::CompoundCityScene

@@ -42,7 +42,9 @@ extern const Scene kScene{
     .sleeping = false,
     .build = Build,
     .accuracy = Accuracy,
-    .accuracyMeaning = "largest angle beyond a cone, rad",
+    .accuracyMeaning = "largest angle beyond a cone",
+    .accuracyUnit = "rad",
+    .accuracyRange = {{0, 0.001}},
 };
 
 }  // namespace fulcrum::ConeScene

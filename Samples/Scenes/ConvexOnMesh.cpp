@@ -26,6 +26,8 @@ extern const Scene kScene{
     .build = Build,
     .accuracy = BodiesBelowTheMesh,
     .accuracyMeaning = "bodies more than 1 m below the lowest point of the mesh",
+    .accuracyUnit = "bodies",
+    .accuracyRange = {{0, 0}},
     .accuracyTolerance = 0,
 };
 

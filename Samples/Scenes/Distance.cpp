@@ -49,7 +49,9 @@ extern const Scene kScene{
     .sleeping = false,
     .build = Build,
     .accuracy = Accuracy,
-    .accuracyMeaning = "largest error of a length, m",
+    .accuracyMeaning = "largest error of a length",
+    .accuracyUnit = "m",
+    .accuracyRange = {{0, 0.002}},
 };
 
 }  // namespace fulcrum::DistanceScene

@@ -49,6 +49,8 @@ extern const Scene kScene{
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "dominoes left standing",
+    .accuracyUnit = "dominoes",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::DominoesScene

@@ -61,6 +61,9 @@ extern const Scene kScene{
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "boxes that went through the drum's wall",
+    .accuracyUnit = "boxes",
+    // A box in a corner of the paddles may be pressed through.
+    .accuracyRange = {{0, 1}},
     .accuracyTolerance = 1,
 };
 

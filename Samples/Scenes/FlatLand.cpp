@@ -43,7 +43,9 @@ extern const Scene kScene{
     .usesSeed = true,
     .build = Build,
     .accuracy = Accuracy,
-    .accuracyMeaning = "largest distance of a body's center from the plane, m",
+    .accuracyMeaning = "largest distance of a body's center from the plane",
+    .accuracyUnit = "m",
+    .accuracyRange = {{0, 1e-06}},
 };
 
 }  // namespace fulcrum::FlatLandScene

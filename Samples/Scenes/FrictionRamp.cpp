@@ -35,6 +35,7 @@ void Build(SceneWorld& world) {
                        .position = StartOf(i),
                        .rotation = tilt,
                        .material = {.friction = kFriction[i], .frictionRule = CombineRule::Multiply}}));
+    for (size_t i = 0; i < kFriction.size(); ++i) world.Show(world.watched[i], {.label = LabelOf(kFriction[i])});
 }
 
 // A box that sticks has moved less than 1 cm; one that slides has covered the 1 m that even mu = 0.44 slides in 3 s.
@@ -58,6 +59,8 @@ extern const Scene kScene{
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "boxes that slide but should stick, or stick but should slide",
+    .accuracyUnit = "boxes",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::FrictionRampScene

@@ -33,6 +33,7 @@ void Build(SceneWorld& world) {
         const Position place = center + Position(0, 0, height);
         const BodyId wheel =
             world.Add({.shape = WheelOf(world, kTeeth[i]), .position = place, .density = 500, .layer = 1});
+        world.Show(wheel, {.look = Look::Metal, .teeth = kTeeth[i]});
         world.watched.push_back(wheel);
         if (isOnTheSameAxle) {
             world.Join(JointOf<FixedJointSettings>(world.watched[i - 1], wheel, place));
@@ -58,8 +59,9 @@ double Accuracy(const SceneWorld& world) {
     for (size_t axle = 1; axle < world.joints.size(); ++axle) {
         const double before = world.Joints().GetCoordinate(world.joints[axle - 1], JointAxis::AngularX);
         const double after = world.Joints().GetCoordinate(world.joints[axle], JointAxis::AngularX);
-        worst = std::max(
-            worst, std::fabs(before * kTeeth[2 * axle - 2] + after * kTeeth[2 * axle - 1]) / kTeeth[2 * axle - 2]);
+        // Coordinates without limits may be off by whole turns, which are whole teeth.
+        const double off = before * kTeeth[2 * axle - 2] + after * kTeeth[2 * axle - 1];
+        worst = std::max(worst, std::fabs(std::remainder(off, 2 * kPi)) / kTeeth[2 * axle - 2]);
     }
     return worst;
 }
@@ -75,6 +77,8 @@ extern const Scene kScene{
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "largest angle by which two gears are out of step, rad of the smaller one",
+    .accuracyUnit = "rad",
+    .accuracyRange = {{0, 0.002}},
 };
 
 }  // namespace fulcrum::GearsScene

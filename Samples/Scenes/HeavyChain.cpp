@@ -46,7 +46,9 @@ extern const Scene kScene{
     .adjust = NoContacts,
     .build = Build,
     .accuracy = Stretch,
-    .accuracyMeaning = "stretch of the chain, % of its length",
+    .accuracyMeaning = "stretch of the chain, of its length",
+    .accuracyUnit = "%",
+    .accuracyRange = {{0, 0.1}},
 };
 
 }  // namespace fulcrum::HeavyChainScene

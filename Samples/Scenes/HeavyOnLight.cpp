@@ -42,6 +42,9 @@ extern const Scene kScene{
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "height of that stack's top box minus 9.5 m, that of a perfect stack",
+    .accuracyUnit = "m",
+    // Ten contacts of a millimeter each; the other stack is scattered on the floor.
+    .accuracyRange = {{-0.01, 0.001}},
 };
 
 }  // namespace fulcrum::HeavyOnLightScene

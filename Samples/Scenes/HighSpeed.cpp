@@ -74,6 +74,8 @@ extern const Scene kScene{
     .build = Build,
     .accuracy = EscapedBodies,
     .accuracyMeaning = "bodies outside the room",
+    .accuracyUnit = "bodies",
+    .accuracyRange = {{0, 0}},
     .accuracyTolerance = 0,
 };
 

@@ -71,6 +71,8 @@ extern const Scene kScene{
     .accuracy = Accuracy,
     .accuracyMeaning =
         "worst of: driven door off its limit, rad; fan's change of speed, parts; rubbing door's speed, rad/s",
+    .accuracyUnit = "",
+    .accuracyRange = {{0, 0.001}},
 };
 
 }  // namespace fulcrum::HingeScene

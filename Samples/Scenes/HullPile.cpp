@@ -54,6 +54,8 @@ extern const Scene kScene{
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "smallest height of a body's center minus 1.8 m, where negative",
+    .accuracyUnit = "m",
+    .accuracyRange = {{-0.1, 0}},
     .accuracyTolerance = 0.02,
 };
 

@@ -38,7 +38,9 @@ extern const Scene kScene{
     .adjust = NoContacts,
     .build = Build,
     .accuracy = LargestJointGap,
-    .accuracyMeaning = "largest distance between the two anchors of a joint, m",
+    .accuracyMeaning = "largest distance between the two anchors of a joint",
+    .accuracyUnit = "m",
+    .accuracyRange = {{0, 0.02}},
     .accuracyTolerance = 0.002,
 };
 

@@ -23,6 +23,8 @@ extern const Scene kScene{
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "height of the top box minus 99.5 m, that of a perfect stack",
+    .accuracyUnit = "m",
+    .accuracyRange = {{-1, 0.01}},
     .accuracyTolerance = 0.25,
 };
 

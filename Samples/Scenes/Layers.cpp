@@ -49,6 +49,8 @@ extern const Scene kScene{
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "bodies on the wrong floor",
+    .accuracyUnit = "bodies",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::LayersScene

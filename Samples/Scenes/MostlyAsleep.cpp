@@ -26,7 +26,8 @@ extern const Scene kScene{
     .isClosed = true,
     .build = Build,
     .accuracy = Accuracy,
-    .accuracyMeaning = "longest step but the first, ms: what sleeps must cost nothing",
+    .accuracyMeaning = "longest step but the first: what sleeps must cost nothing",
+    .accuracyUnit = "ms",
 };
 
 }  // namespace fulcrum::MostlyAsleepScene

@@ -97,7 +97,11 @@ extern const Scene kScene{
     .build = Build,
     .beforeStep = MoveThePlatforms,
     .accuracy = Accuracy,
-    .accuracyMeaning = "farthest that a box slid on what carries it, m",
+    .accuracyMeaning = "farthest that a box slid on what carries it",
+    .accuracyUnit = "m",
+    // Friction makes velocities equal, and a step along the tangent of a turning disc leads outwards by (w dt)^2 r /
+    // 2.
+    .accuracyRange = {{0, 0.03}},
 };
 
 }  // namespace fulcrum::MovingPlatformsScene

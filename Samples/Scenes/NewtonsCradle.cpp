@@ -37,7 +37,9 @@ extern const Scene kScene{
     .isClosed = true,
     .build = Build,
     .accuracy = EnergyChange,
-    .accuracyMeaning = "change of the energy, % of what the first ball was lifted by",
+    .accuracyMeaning = "change of the energy, of what the first ball was lifted by",
+    .accuracyUnit = "%",
+    .accuracyRange = {{0, 15}},
 };
 
 }  // namespace fulcrum::NewtonsCradleScene

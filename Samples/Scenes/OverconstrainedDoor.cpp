@@ -35,6 +35,8 @@ extern const Scene kScene{
     .accuracy = LargestJointGap,
     .accuracyMeaning =
         "largest distance between the two anchors of a joint, m; a third of a centimeter cannot be helped",
+    .accuracyUnit = "m",
+    .accuracyRange = {{0, 0.01}},
 };
 
 }  // namespace fulcrum::OverconstrainedDoorScene

@@ -73,7 +73,9 @@ extern const Scene kScene{
     .adjust = NoContacts,
     .build = Build,
     .accuracy = Accuracy,
-    .accuracyMeaning = "largest distance of a car or the bead from the track, m",
+    .accuracyMeaning = "largest distance of a car or the bead from the track",
+    .accuracyUnit = "m",
+    .accuracyRange = {{0, 0.005}},
 };
 
 }  // namespace fulcrum::PathScene

@@ -60,7 +60,9 @@ extern const Scene kScene{
     .build = Build,
     .beforeStep = Wind,
     .accuracy = Accuracy,
-    .accuracyMeaning = "how much longer than it is a rope is stretched, m",
+    .accuracyMeaning = "largest length by which a rope is stretched",
+    .accuracyUnit = "m",
+    .accuracyRange = {{0, 0.002}},
 };
 
 }  // namespace fulcrum::PulleyScene

@@ -35,6 +35,8 @@ extern const Scene kScene{
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "height of the top box minus 29 m, that of a perfect stack",
+    .accuracyUnit = "m",
+    .accuracyRange = {{-0.01, 0.01}},
     .accuracyTolerance = 0.002,
 };
 

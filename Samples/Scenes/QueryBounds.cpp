@@ -71,6 +71,8 @@ extern const Scene kScene{
     .afterStep = Ask,
     .accuracy = FigureOf,
     .accuracyMeaning = "hits that the broad phase did not name",
+    .accuracyUnit = "hits",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::QueryBoundsScene

@@ -63,7 +63,10 @@ extern const Scene kScene{
     .build = AddQueryGround,
     .afterStep = Ask,
     .accuracy = FigureOf,
-    .accuracyMeaning = "largest difference to the distance that all bodies one by one give, m",
+    .accuracyMeaning = "largest difference to the distance that all bodies one by one give",
+    .accuracyUnit = "m",
+    // Both ways subtract floats of up to 12 m.
+    .accuracyRange = {{0, 5e-06}},
 };
 
 }  // namespace fulcrum::QueryClosestScene

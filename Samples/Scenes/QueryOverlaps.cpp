@@ -67,6 +67,8 @@ extern const Scene kScene{
     .afterStep = Ask,
     .accuracy = FigureOf,
     .accuracyMeaning = "probes whose overlap and distance disagree",
+    .accuracyUnit = "probes",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::QueryOverlapsScene

@@ -80,6 +80,8 @@ extern const Scene kScene{
     .afterStep = Ask,
     .accuracy = FigureOf,
     .accuracyMeaning = "rays for which closest, all, any and batch disagree",
+    .accuracyUnit = "rays",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::QueryRaysScene

@@ -53,7 +53,8 @@ double Accuracy(const SceneWorld& world) {
     for (size_t i = 0; i < world.joints.size(); i += 2) {
         const double angle = world.Joints().GetCoordinate(world.joints[i], JointAxis::AngularX);
         const double way = world.Joints().GetCoordinate(world.joints[i + 1], JointAxis::LinearX);
-        worst = std::max({worst, std::fabs(angle * kRadius - way), std::fabs(way) - double(kWay)});
+        // The angle may be off by whole turns: without limits and motor nobody counts them.
+        worst = std::max({worst, std::fabs(std::remainder(angle * kRadius - way, 2 * kPi * kRadius)), std::fabs(way) - double(kWay)});
     }
     return worst;
 }
@@ -69,7 +70,9 @@ extern const Scene kScene{
     .build = Build,
     .beforeStep = Drive,
     .accuracy = Accuracy,
-    .accuracyMeaning = "how far a rack is from its pinion's angle times the radius, or beyond a stop, m",
+    .accuracyMeaning = "how far a rack is from its pinion's angle times the radius, or beyond a stop",
+    .accuracyUnit = "m",
+    .accuracyRange = {{0, 0.002}},
 };
 
 }  // namespace fulcrum::RackAndPinionScene

@@ -30,7 +30,9 @@ extern const Scene kScene{
     .accuracyRuns = 8,
     .build = Build,
     .accuracy = LargestJointGap,
-    .accuracyMeaning = "largest distance between the two anchors of a joint, m",
+    .accuracyMeaning = "largest distance between the two anchors of a joint",
+    .accuracyUnit = "m",
+    .accuracyRange = {{0, 0.05}},
     .accuracyTolerance = 0.01,
 };
 

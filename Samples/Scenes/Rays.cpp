@@ -49,6 +49,8 @@ extern const Scene kScene{
     .querySingly = CastSingly,
     .accuracy = Misses,
     .accuracyMeaning = "rays that hit nothing",
+    .accuracyUnit = "rays",
+    .accuracyRange = {{0, 0}},
     .accuracyTolerance = 0,
 };
 

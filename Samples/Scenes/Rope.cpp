@@ -36,7 +36,9 @@ extern const Scene kScene{
     .isClosed = true,
     .build = Build,
     .accuracy = LargestJointGap,
-    .accuracyMeaning = "largest distance between the two anchors of a joint, m",
+    .accuracyMeaning = "largest distance between the two anchors of a joint",
+    .accuracyUnit = "m",
+    .accuracyRange = {{0, 0.002}},
 };
 
 }  // namespace fulcrum::RopeScene

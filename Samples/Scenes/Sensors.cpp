@@ -91,6 +91,8 @@ extern const Scene kScene{
     .beforeStep = React,
     .accuracy = Accuracy,
     .accuracyMeaning = "crates not held up, balls and bullets not caught, sleepers not found",
+    .accuracyUnit = "bodies",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::SensorsScene

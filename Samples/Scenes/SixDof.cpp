@@ -73,7 +73,9 @@ extern const Scene kScene{
     .build = Build,
     .beforeStep = Drive,
     .accuracy = Accuracy,
-    .accuracyMeaning = "stage off its circle, or the box beyond a limit, m",
+    .accuracyMeaning = "stage off its circle, or the box beyond a limit",
+    .accuracyUnit = "m",
+    .accuracyRange = {{0, 0.002}},
 };
 
 }  // namespace fulcrum::SixDofScene

@@ -66,8 +66,9 @@ extern const Scene kScene{
     .build = Build,
     .beforeStep = Drive,
     .accuracy = Accuracy,
-    .accuracyMeaning =
-        "how far the elevator, the cart that holds and the cart that slides are from where they belong, m",
+    .accuracyMeaning = "how far the elevator, the cart that holds and the cart that slides are from where they belong",
+    .accuracyUnit = "m",
+    .accuracyRange = {{0, 0.001}},
 };
 
 }  // namespace fulcrum::SliderScene

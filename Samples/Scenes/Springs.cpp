@@ -20,6 +20,7 @@ void Build(SceneWorld& world) {
             const Position middle(static_cast<double>(i) - 2, 1.5, static_cast<double>(k) - 2),
                 place = middle + Position(0, kStart, 0);
             const BodyId weight = world.Add({.shape = cube, .position = place, .mass = 1.0f + static_cast<float>(k)});
+            world.Show(weight, {.label = LabelOf(kFrequencies[i]) + " Hz, " + LabelOf(kDampings[k])});
             auto settings = JointOfTwo<SliderJointSettings>(AddHook(world, middle - Position(0, 1, 0)), weight, middle,
                                                             place, {0, 1, 0});
             settings.slide = Limited(0, 0, static_cast<float>(kFrequencies[i]), static_cast<float>(kDampings[k]));
@@ -55,7 +56,9 @@ extern const Scene kScene{
     .adjust = NoGravity,
     .build = Build,
     .accuracy = Accuracy,
-    .accuracyMeaning = "largest distance of a weight from where the continuous oscillator is, m",
+    .accuracyMeaning = "largest distance of a weight from where the continuous oscillator is",
+    .accuracyUnit = "m",
+    .accuracyRange = {{0, 0.005}},
 };
 
 }  // namespace fulcrum::SpringsScene

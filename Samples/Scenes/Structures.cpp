@@ -69,6 +69,8 @@ extern const Scene kScene{
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "height of the top box of the highest column minus 49.5 m, that of a perfect one",
+    .accuracyUnit = "m",
+    .accuracyRange = {{-0.02, 0.001}},
 };
 
 }  // namespace fulcrum::StructuresScene

@@ -72,7 +72,9 @@ extern const Scene kScene{
     .build = Build,
     .beforeStep = Drive,
     .accuracy = Accuracy,
-    .accuracyMeaning = "driven arm off its pose (its weight alone: 0.01 or so), or a twist beyond its limit, rad",
+    .accuracyMeaning = "driven arm off its pose (its weight alone: 0.01 or so), or a twist beyond its limit",
+    .accuracyUnit = "rad",
+    .accuracyRange = {{0, 0.02}},
 };
 
 }  // namespace fulcrum::SwingTwistScene

@@ -46,6 +46,8 @@ extern const Scene kScene{
     .build = Build,
     .accuracy = LostOrAwake,
     .accuracyMeaning = "bodies that fell through the ground or do not sleep yet",
+    .accuracyUnit = "bodies",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::ThinScene

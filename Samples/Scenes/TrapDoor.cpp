@@ -54,6 +54,8 @@ extern const Scene kScene{
     .beforeStep = RemoveThePillar,
     .accuracy = Accuracy,
     .accuracyMeaning = "boxes that should have fallen and did not, or should have slept on and did not",
+    .accuracyUnit = "boxes",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::TrapDoorScene

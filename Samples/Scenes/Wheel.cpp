@@ -61,7 +61,9 @@ extern const Scene kScene{
     .build = Build,
     .beforeStep = Steer,
     .accuracy = Accuracy,
-    .accuracyMeaning = "how far its speed is from that of its wheels, parts; 1 where it fell over",
+    .accuracyMeaning = "how far its speed is from that of its wheels; 1 where it fell over",
+    .accuracyUnit = "parts",
+    .accuracyRange = {{0, 0.02}},
 };
 
 }  // namespace fulcrum::WheelScene

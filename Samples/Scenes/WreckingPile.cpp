@@ -92,6 +92,8 @@ extern const Scene kScene{
     .beforeStep = OpenTheGate,
     .accuracy = BodiesBelowTheFloor,
     .accuracyMeaning = "bodies that fell through the floor",
+    .accuracyUnit = "bodies",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::WreckingPileScene
