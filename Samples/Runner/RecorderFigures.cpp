@@ -25,11 +25,15 @@ void Recorder::NoteView() {
 
 void Recorder::NoteLooks(BodyId id, uint32_t body) {
     RecordedBody& recorded = recording.bodies[body];
+    const int follows = world_.Definition().view.follows;
+    if (follows >= 0 && world_.watched.at(static_cast<size_t>(follows)) == id)
+        recording.view.follows = static_cast<int>(body);
     for (const auto& [owner, look] : world_.looks) {
         if (owner != id) continue;
         recorded.name = look.label;
         recorded.look = {.look = static_cast<uint8_t>(look.look),
                          .teeth = look.teeth,
+                         .toothAngle = look.toothAngle,
                          .beltVelocity = look.beltVelocity,
                          .beltTurning = look.beltTurning,
                          .beltPivot = PlaceFrom(look.beltPivot, recording.origin)};

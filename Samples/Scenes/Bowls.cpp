@@ -68,6 +68,7 @@ extern const Scene kScene{
     .description = "balls and capsules roll in four bowls, damped by 0, 0.1, 0.5 and 3 per second",
     .steps = 600,
     .isClosed = true,
+    .view = {.color = ColorMode::Plain, .from = {0, 0.8f, 1}, .picture = 0.08},
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "bodies outside their bowl",

@@ -74,6 +74,7 @@ double Accuracy(const SceneWorld& world) {
 extern const Scene kScene{
     .name = "breaking_glass",
     .description = "balls of 2 to 200 m/s hit panes, which break where the impulse is more than they stand",
+    .view = {.color = ColorMode::Plain, .picture = 0.35},
     .adjust = Adjust,
     .build = Build,
     .beforeStep = React,

@@ -38,6 +38,7 @@ extern const Scene kScene{
     .description = "a bridge of 24 planks on hinges, with boxes and balls dropped on it",
     .steps = 480,
     .isClosed = true,
+    .view = {.color = ColorMode::Plain, .from = {0.4f, 0.2f, 1}, .showsJoints = false},
     .build = Build,
     .accuracy = LargestJointGap,
     .accuracyMeaning = "largest distance between the two anchors of a joint",

@@ -61,6 +61,7 @@ extern const Scene kScene{
     .steps = 600,
     .isBuiltToStand = true,
     .isClosed = true,
+    .view = {.color = ColorMode::Plain, .from = {0.35f, 0.15f, 1}},
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "height of the highest flat card minus where it was laid",

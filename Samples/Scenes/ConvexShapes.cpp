@@ -61,6 +61,7 @@ extern const Scene kScene{
     .name = "convex_shapes",
     .description = "cylinders, cones, tapered capsules, plates and a user's egg stand, roll and fall",
     .isClosed = true,
+    .view = {.color = ColorMode::Plain},
     .build = Build,
     .accuracy = BodiesBelowTheFloor,
     .accuracyMeaning = "bodies that fell through the floor",

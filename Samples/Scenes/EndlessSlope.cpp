@@ -56,6 +56,7 @@ double LargestError(const SceneWorld& world) {
 extern const Scene kScene{
     .name = "endless_slope",
     .description = "balls roll down a half space that has no end, crates stay; swings hang from bodies without a shape",
+    .view = {.color = ColorMode::Plain, .from = {0.1f, 0.35f, 1}},
     .build = Build,
     .accuracy = LargestError,
     .accuracyMeaning = "largest distance of a ball from where rolling takes it",

@@ -33,7 +33,11 @@ void Build(SceneWorld& world) {
         const Position place = center + Position(0, 0, height);
         const BodyId wheel =
             world.Add({.shape = WheelOf(world, kTeeth[i]), .position = place, .density = 500, .layer = 1});
-        world.Show(wheel, {.look = Look::Metal, .teeth = kTeeth[i]});
+        // A wheel that is driven has a gap where its driver's tooth is, towards -x.
+        const double pitch = 2 * kPi / kTeeth[i];
+        world.Show(wheel, {.look = Look::Metal,
+                           .teeth = kTeeth[i],
+                           .toothAngle = i % 2 ? static_cast<float>(kPi + 0.5 * pitch) : 0.0f});
         world.watched.push_back(wheel);
         if (isOnTheSameAxle) {
             world.Join(JointOf<FixedJointSettings>(world.watched[i - 1], wheel, place));
@@ -73,6 +77,7 @@ extern const Scene kScene{
     .description = "a clockwork of eight gears on five axles, 144 turns of the first for one of the last",
     .steps = 900,
     .sleeping = false,
+    .view = {.color = ColorMode::Plain, .from = {0.12f, 0.1f, 1}, .picture = 0.3, .showsJoints = false},
     .adjust = NoContacts,
     .build = Build,
     .accuracy = Accuracy,

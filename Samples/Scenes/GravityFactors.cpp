@@ -47,6 +47,7 @@ extern const Scene kScene{
     .description = "ten balls fall from one height: gravity factors -0.2 to 1, dampings, speed limits",
     .steps = 114,
     .sleeping = false,
+    .view = {.color = ColorMode::Plain, .from = {0, 0.05f, 1}, .picture = 0.75},
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "largest error of a free ball's height against g t^2 / 2",

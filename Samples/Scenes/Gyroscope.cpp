@@ -36,6 +36,7 @@ extern const Scene kScene{
     .steps = 1200,
     .sleeping = false,
     .isClosed = true,
+    .view = {.color = ColorMode::Plain},
     .adjust = [](SystemSettings& settings) { settings.gravity = Vector3::Zero(); },
     .build = Build,
     .accuracy = Accuracy,

@@ -70,6 +70,7 @@ extern const Scene kScene{
     .steps = 200,
     .sleeping = false,
     .isClosed = true,
+    .view = {.color = ColorMode::Speed, .picture = 0.2},
     .adjust = NoGravity,
     .build = Build,
     .accuracy = EscapedBodies,

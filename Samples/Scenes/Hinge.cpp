@@ -66,6 +66,7 @@ extern const Scene kScene{
     .description = "doors on hinges: driven between limits, following a target, with friction, soft stops; a fan",
     .steps = 480,
     .sleeping = false,
+    .view = {.color = ColorMode::Plain},
     .build = Build,
     .beforeStep = Drive,
     .accuracy = Accuracy,

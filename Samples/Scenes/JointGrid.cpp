@@ -35,6 +35,7 @@ extern const Scene kScene{
     .steps = 100,
     .sleeping = false,
     .isClosed = true,
+    .view = {.color = ColorMode::Speed, .from = {0.3f, 0.1f, 1}, .picture = 1},
     .adjust = NoContacts,
     .build = Build,
     .accuracy = LargestJointGap,

@@ -24,6 +24,7 @@ extern const Scene kScene{
     .kind = SceneKind::Performance,
     .steps = 300,
     .isClosed = true,
+    .view = {.color = ColorMode::Awake, .lower = {-60, 0, -40}, .upper = {60, 4, 60}, .picture = 0.4},
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "longest step but the first: what sleeps must cost nothing",

@@ -31,6 +31,7 @@ extern const Scene kScene{
     .description = "doors on three hinges, the middle one of the first 1 cm out of line, each hit by a ball",
     .steps = 480,
     .sleeping = false,
+    .view = {.color = ColorMode::Plain},
     .build = Build,
     .accuracy = LargestJointGap,
     .accuracyMeaning =

@@ -70,6 +70,7 @@ extern const Scene kScene{
     .description = "cars that motors drive along a hilly track, and a bead that slides on it",
     .steps = 600,
     .sleeping = false,
+    .view = {.color = ColorMode::Plain},
     .adjust = NoContacts,
     .build = Build,
     .accuracy = Accuracy,

@@ -57,6 +57,7 @@ extern const Scene kScene{
     .description = "a crane whose winch lifts a load by a block and tackle, and two weights on a rope over a pulley",
     .steps = 480,
     .sleeping = false,
+    .view = {.color = ColorMode::Plain},
     .build = Build,
     .beforeStep = Wind,
     .accuracy = Accuracy,

@@ -67,6 +67,7 @@ extern const Scene kScene{
     .name = "query_bounds",
     .description = "boxes, a ray and a box on its way ask the broad phase alone; red: what really overlaps",
     .steps = 600,
+    .view = {.color = ColorMode::Plain},
     .build = AddQueryGround,
     .afterStep = Ask,
     .accuracy = FigureOf,

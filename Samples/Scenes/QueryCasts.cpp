@@ -71,6 +71,7 @@ extern const Scene kScene{
     .name = "query_casts",
     .description = "shapes on their way, straight and turning, up to the first touch among stirred bodies",
     .steps = 600,
+    .view = {.color = ColorMode::Plain},
     .build = AddQueryGround,
     .afterStep = Ask,
     .accuracy = FigureOf,

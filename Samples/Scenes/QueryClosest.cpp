@@ -60,6 +60,7 @@ extern const Scene kScene{
     .name = "query_closest",
     .description = "points, a box and a capsule over stirred bodies, each with a line to what is closest to it",
     .steps = 600,
+    .view = {.color = ColorMode::Plain},
     .build = AddQueryGround,
     .afterStep = Ask,
     .accuracy = FigureOf,

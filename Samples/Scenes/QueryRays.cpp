@@ -76,6 +76,7 @@ extern const Scene kScene{
     .description =
         "rays among stirred bodies: closest hits (blue), all hits (violet), any hit (a curtain, red where blocked)",
     .steps = 600,
+    .view = {.color = ColorMode::Plain},
     .build = AddQueryGround,
     .afterStep = Ask,
     .accuracy = FigureOf,

@@ -72,6 +72,7 @@ extern const Scene kScene{
     .description =
         "four ragdolls take the same poses: by motors (one hung up, one floating), by velocities, kinematically",
     .steps = 300,
+    .view = {.color = ColorMode::Plain, .from = {0.35f, 0.2f, 1}, .showsJoints = false},
     .build = Build,
     .beforeStep = BeforeStep,
     .accuracy = Accuracy,

@@ -42,6 +42,7 @@ extern const Scene kScene{
     .steps = 120,
     .sleeping = false,
     .isClosed = true,
+    .view = {.color = ColorMode::Plain, .picture = 0.3},
     .build = Build,
     .query = Cast,
     .queryCount = kRays,

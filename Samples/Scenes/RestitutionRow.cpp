@@ -30,6 +30,7 @@ extern const Scene kScene{
     .description = "eleven balls with restitution 0 to 1 bounce side by side",
     .steps = 600,
     .isClosed = true,
+    .view = {.color = ColorMode::Plain, .from = {0, 0.12f, 1}, .picture = 0.19},
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "energy height of the ball with restitution 1 minus its start",

@@ -23,6 +23,8 @@ struct SceneView {
     double picture = 0.6;
     // Whether what a scene draws of joints is shown from the start, where it has joints.
     bool showsJoints = true;
+    // Index into SceneWorld::watched of the body that the camera goes with; -1: it stays.
+    int follows = -1;
 };
 
 // What something is made of, for the eye alone.
@@ -32,7 +34,8 @@ inline constexpr int kLookCount = 8;
 struct BodyLook {
     std::string label{};  // stands beside the body in the picture; empty: none
     Look look = Look::Default;
-    int teeth = 0;  // > 0: a gear of so many teeth about the z axis of its own frame
+    int teeth = 0;         // > 0: a gear of so many teeth about the z axis of its own frame
+    float toothAngle = 0;  // rad, where the middle of the first tooth is
     // How the surface of a belt moves, world axes, m/s; where `beltTurning` (rad/s) is not zero, about the pivot.
     Vector3 beltVelocity = Vector3::Zero(), beltTurning = Vector3::Zero();
     Position beltPivot = Position::Zero();

@@ -87,6 +87,7 @@ extern const Scene kScene{
     .name = "sensors",
     .description =
         "a force field, a gate that takes balls away, a scanner that kicks sleepers, a thin target for bullets",
+    .view = {.color = ColorMode::Plain},
     .build = Build,
     .beforeStep = React,
     .accuracy = Accuracy,

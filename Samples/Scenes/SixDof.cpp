@@ -70,6 +70,7 @@ extern const Scene kScene{
     .description = "joints of six axes: a stage driven in a circle, a table on springs, a box loose within limits",
     .steps = 480,
     .sleeping = false,
+    .view = {.color = ColorMode::Plain},
     .build = Build,
     .beforeStep = Drive,
     .accuracy = Accuracy,

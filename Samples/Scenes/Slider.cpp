@@ -63,6 +63,7 @@ extern const Scene kScene{
     .description = "sliders: an elevator with freight, two carts on a slope of which friction holds one, a soft stop",
     .steps = 540,
     .sleeping = false,
+    .view = {.color = ColorMode::Plain},
     .build = Build,
     .beforeStep = Drive,
     .accuracy = Accuracy,

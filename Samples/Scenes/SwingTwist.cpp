@@ -69,6 +69,7 @@ extern const Scene kScene{
     .description = "arms in shoulders: driven from pose to pose, falling in an ellipse and in a pyramid, braked",
     .steps = 540,
     .sleeping = false,
+    .view = {.color = ColorMode::Plain},
     .build = Build,
     .beforeStep = Drive,
     .accuracy = Accuracy,

@@ -119,6 +119,7 @@ extern const Scene kScene{
     .description =
         "bodies roll down a height field of grass, ice and rubber into its holes; in the middle one opens after 5 s",
     .steps = 600,
+    .view = {.color = ColorMode::Plain, .from = {0.4f, 0.75f, 1}, .picture = 0.45},
     .build = Build,
     .beforeStep = OpenTheMiddle,
     .afterStep = Watch,

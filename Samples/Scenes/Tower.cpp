@@ -27,6 +27,7 @@ extern const Scene kScene{
     .usesSeed = true,
     .isBuiltToStand = true,
     .isClosed = true,
+    .view = {.color = ColorMode::Plain, .from = {0.5f, 0.2f, 1}},
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "height of the top box minus 19.5 m, that of a perfect stack",

@@ -59,6 +59,7 @@ std::string FigureColumn(const Recording& recording) {
 
 Json ViewHeader(const RecordedView& view) {
     Json json{{"picture", view.picture}, {"joints", view.showsJoints}};
+    if (view.follows >= 0) json["follows"] = view.follows;
     if (!view.color.empty()) json["color"] = view.color;
     if (view.from != Vector3::Zero()) json["from"] = ArrayOf(view.from);
     if (view.lower != view.upper) json.update({{"lower", ArrayOf(view.lower)}, {"upper", ArrayOf(view.upper)}});
@@ -71,7 +72,7 @@ Json LookHeader(const Recording& recording) {
         const RecordedLook& look = recording.bodies[i].look;
         if (look == RecordedLook{}) continue;
         Json json{{"look", look.look}};
-        if (look.teeth > 0) json["teeth"] = look.teeth;
+        if (look.teeth > 0) json.update({{"teeth", look.teeth}, {"phase", look.toothAngle}});
         if (look.beltVelocity != Vector3::Zero() || look.beltTurning != Vector3::Zero())
             json.update({{"velocity", ArrayOf(look.beltVelocity)},
                          {"turning", ArrayOf(look.beltTurning)},

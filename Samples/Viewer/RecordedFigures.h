@@ -27,11 +27,13 @@ struct RecordedView {
     Vector3 lower = Vector3::Zero(), upper = Vector3::Zero();  // m, the box that fills the picture
     double picture = 0.6;                                      // part of the run
     bool showsJoints = true;
+    int follows = -1;  // a body; -1: none
 };
 
 struct RecordedLook {
-    uint8_t look = 0;  // index into the page's list of materials, 0: the default
-    int teeth = 0;     // of a gear about z
+    uint8_t look = 0;      // index into the page's list of materials, 0: the default
+    int teeth = 0;         // of a gear about z
+    float toothAngle = 0;  // rad
     Vector3 beltVelocity = Vector3::Zero(), beltTurning = Vector3::Zero();  // m/s, rad/s
     Vector3 beltPivot = Vector3::Zero();                                    // m, relative to Recording::origin
     friend bool operator==(const RecordedLook&, const RecordedLook&) = default;

@@ -35,12 +35,13 @@ export class Viewer {
     });
     this.top = topSpeed(recording);
     this.selected = -1;
-    this.isPlaying = this.isLooping = this.isFollowing = false;
+    this.isPlaying = this.isLooping = false;
     showTexts(recording);
     element('curves').hidden = this.curves.isEmpty;
     this.resize();
     this.stage.frameSubject();
     const view = recording.view ?? {};
+    this.#follow(view.follows ?? -1);
     this.setTheme(matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light');
     this.show('solid', !isEnclosed(recording, this.timeline, subject));
     this.show('joints', view.joints !== false && recording.joints.length > 0 && recording.joints.length <= MOST_WITH_LIMITS);
@@ -61,9 +62,9 @@ export class Viewer {
 
   // The camera goes with the body that it follows.
   #goTo(frame) {
-    const before = this.isFollowing ? this.#placeOf(this.selected) : undefined;
+    const before = this.followed >= 0 ? this.#placeOf(this.followed) : undefined;
     this.timeline.seek(frame);
-    if (before && this.timeline.isThere(this.selected)) this.stage.moveBy(this.#placeOf(this.selected).sub(before));
+    if (before && this.timeline.isThere(this.followed)) this.stage.moveBy(this.#placeOf(this.followed).sub(before));
   }
   #placeOf(body) {
     return new Vector3().fromArray(this.timeline.positions, 3 * body);
@@ -104,16 +105,19 @@ export class Viewer {
   // -1, or what is no body: none.
   select(body) {
     this.selected = this.bodies.selected = Number.isInteger(body) && body >= 0 && body < this.recording.bodyCount ? body : -1;
-    if (this.selected < 0) this.setFollowing(false);
     this.draw();
   }
-  // Without a body that is selected there is none to follow.
+  // The camera goes with the selected body, or with none. Without a body that is selected there is none to follow.
   setFollowing(isFollowing) {
-    this.isFollowing = isFollowing && this.selected >= 0;
-    element('follow').setAttribute('aria-pressed', this.isFollowing);
-    if (this.isFollowing) this.stage.moveBy(this.#placeOf(this.selected).sub(this.stage.controls.target));
+    this.#follow(isFollowing ? this.selected : -1);
+    if (this.isFollowing) this.stage.moveBy(this.#placeOf(this.followed).sub(this.stage.controls.target));
     this.draw();
   }
+  #follow(body) {
+    this.followed = body;
+    element('follow').setAttribute('aria-pressed', this.isFollowing);
+  }
+  get isFollowing() { return this.followed >= 0; }
   setLooping(isLooping) {
     this.isLooping = isLooping;
     element('loop').setAttribute('aria-pressed', isLooping);
