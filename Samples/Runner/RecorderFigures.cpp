@@ -72,6 +72,7 @@ void Recorder::CollectFigures() {
     Position momentum = Position::Zero(), angular = Position::Zero();
     world_.System().VisitBodies([&](BodyId id) {
         if (bodies.GetMotionType(id) != MotionType::Dynamic || !bodies.IsAwake(id)) return;
+        ++figures_.awake;
         figures_.kinetic += bodies.GetKineticEnergy(id);
         const Position push = bodies.GetLinearVelocity(id).cast<double>() * double{bodies.GetMass(id)};
         momentum += push;
@@ -83,7 +84,6 @@ void Recorder::CollectFigures() {
     figures_.momentum = momentum.norm();
     figures_.angularMomentum = angular.norm();
     figures_.contacts = world_.System().Report().contacts;
-    figures_.awake = world_.System().Report().awakeBodies;
 }
 
 }  // namespace fulcrum

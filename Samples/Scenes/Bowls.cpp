@@ -39,7 +39,7 @@ void Build(SceneWorld& world) {
     for (size_t i = 0; i < kDamping.size(); ++i) {
         const Position center = BowlCenter(i);
         const BodyId id = world.Add({.shape = bowl, .motion = MotionType::Static, .position = center});
-        world.Show(id, {.label = "damping " + LabelOf(kDamping[i]) + "/s", .look = Look::Wood});
+        world.Show(id, {.label = LabelOf(kDamping[i]) + "/s", .look = Look::Wood});
         const auto addMoving = [&](const ShapePtr& shape, const Position& place) {
             world.watched.push_back(world.Add({.shape = shape,
                                                .position = center + place,

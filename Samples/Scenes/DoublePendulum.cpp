@@ -31,7 +31,7 @@ extern const Scene kScene{
     .steps = 600,
     .sleeping = false,
     .isClosed = true,
-    .view = {.color = ColorMode::Plain, .from = {0.45f, 0.15f, 1}, .picture = 0.4, .showsJoints = false},
+    .view = {.color = ColorMode::Island, .from = {0.45f, 0.15f, 1}, .picture = 0.4, .showsJoints = false},
     .build = Build,
     .accuracy = EnergyChange,
     .accuracyMeaning = "change of the energy, of that of the fall",

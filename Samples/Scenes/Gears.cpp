@@ -35,7 +35,7 @@ void Build(SceneWorld& world) {
             world.Add({.shape = WheelOf(world, kTeeth[i]), .position = place, .density = 500, .layer = 1});
         // A wheel that is driven has a gap where its driver's tooth is, towards -x.
         const double pitch = 2 * kPi / kTeeth[i];
-        world.Show(wheel, {.look = Look::Metal,
+        world.Show(wheel, {.look = Look::Brass,
                            .teeth = kTeeth[i],
                            .toothAngle = i % 2 ? static_cast<float>(kPi + 0.5 * pitch) : 0.0f});
         world.watched.push_back(wheel);

@@ -24,10 +24,10 @@ void Build(SceneWorld& world) {
     }
     for (float damping : kDamping)
         world.Show(world.Add({.shape = ball, .position = nextPlace(), .linearDamping = damping}),
-                   {.label = "damping " + LabelOf(damping)});
+                   {.label = LabelOf(damping) + "/s"});
     for (float limit : kSpeedLimits)
         world.Show(world.Add({.shape = ball, .position = nextPlace(), .maxLinearSpeed = limit}),
-                   {.label = "at most " + LabelOf(limit) + " m/s"});
+                   {.label = LabelOf(limit) + " m/s"});
 }
 
 // Before any has landed.
@@ -44,7 +44,7 @@ double Accuracy(const SceneWorld& world) {
 
 extern const Scene kScene{
     .name = "gravity_factors",
-    .description = "ten balls fall from one height: gravity factors -0.2 to 1, dampings, speed limits",
+    .description = "ten balls fall from one height: gravity factors -0.2 to 1, dampings in 1/s, speed limits in m/s",
     .steps = 114,
     .sleeping = false,
     .view = {.color = ColorMode::Plain, .from = {0, 0.05f, 1}, .picture = 0.75},

@@ -43,7 +43,7 @@ extern const Scene kScene{
     .steps = 144,
     .sleeping = false,
     .isClosed = true,
-    .view = {.color = ColorMode::Plain, .from = {0, 0.1f, 1}, .picture = 0.35, .showsJoints = false},
+    .view = {.color = ColorMode::Plain, .from = {0, 0.1f, 1}, .picture = 0.55, .showsJoints = false},
     .adjust = NoContacts,
     .build = Build,
     .accuracy = Stretch,

@@ -24,7 +24,7 @@ void Build(SceneWorld& world) {
         const Vector3 way = driven ? Vector3(1, 0, 0) : Vector3(0, 1, 0);
         const BodyId frame = AddHook(world, center + Position(0, 0, -0.5));
         const BodyId pinion = world.Add({.shape = wheel, .position = center, .layer = 1});
-        world.Show(pinion, {.look = Look::Metal, .teeth = 20});
+        world.Show(pinion, {.look = Look::Brass, .teeth = 20});
         const BodyId rack = world.Add({.shape = driven ? world.BoxOf(2.5f, 0.1f, 0.1f) : world.BoxOf(0.1f, 2.5f, 0.1f),
                                        .position = edge,
                                        .mass = 20,

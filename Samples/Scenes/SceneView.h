@@ -28,7 +28,7 @@ struct SceneView {
 };
 
 // What something is made of, for the eye alone.
-enum class Look : uint8_t { Default, Grass, Ice, Rubber, Metal, Wood, Stone, Belt };
+enum class Look : uint8_t { Default, Grass, Ice, Rubber, Brass, Wood, Stone, Belt };
 inline constexpr int kLookCount = 8;
 
 struct BodyLook {

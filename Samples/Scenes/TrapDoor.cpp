@@ -50,7 +50,7 @@ extern const Scene kScene{
     .name = "trap_door",
     .description = "two stacks sleep on pillars; one pillar vanishes: its stack wakes and falls, the other sleeps on",
     .steps = 360,
-    .view = {.color = ColorMode::Awake, .picture = 0.45},
+    .view = {.color = ColorMode::Awake, .picture = 0.62},
     .build = Build,
     .beforeStep = RemoveThePillar,
     .accuracy = Accuracy,

@@ -36,9 +36,9 @@ async function pictureOf(browser, scene) {
 const sheetPage = (pictures) => `<!doctype html><style>
   body { margin: 0; padding: 6px; width: ${COLUMNS * (WIDTH + 6)}px; display: grid; grid-template-columns: repeat(${COLUMNS}, ${WIDTH}px); gap: 6px;
     background: #fff; font: 600 14px/1.2 "DejaVu Sans", sans-serif; color: #16202b; }
-  figure { margin: 0; position: relative; height: ${HEIGHT}px; border-radius: 6px; overflow: hidden; }
-  img { width: 100%; height: 100%; display: block; }
-  figcaption { position: absolute; left: 8px; top: 6px; padding: 1px 6px; border-radius: 5px; background: rgb(255 255 255 / 78%); }
+  figure { margin: 0; }
+  img { width: 100%; height: ${HEIGHT}px; display: block; border-radius: 6px; }
+  figcaption { padding: 3px 4px 6px; }
 </style>${pictures.map(({ scene, image }) => `<figure><img src="data:image/png;base64,${image.toString('base64')}"><figcaption>${scene}</figcaption></figure>`).join('')}`;
 
 mkdirSync(output, { recursive: true });

@@ -8,7 +8,7 @@ import { GeometryChoice, halfBounds, leavesOf } from './shapes.js';
 import { addBelts, addGrid, growSmall } from './shaders.js';
 
 const RESTING_WITH_SHADOW_AT_MOST = 30000;
-const METAL = 4; // of the looks
+const BRASS = 4; // of the looks
 const UNTURNED = new Quaternion();
 
 export class Bodies {
@@ -17,7 +17,7 @@ export class Bodies {
     this.timeline = timeline;
     this.selected = -1;
     this.material = growSmall(new MeshStandardMaterial({ vertexColors: true, roughness: 0.58, metalness: 0.02 }), stage.least);
-    this.metal = growSmall(new MeshStandardMaterial({ vertexColors: true, roughness: stage.isFine ? 0.32 : 0.45, metalness: stage.isFine ? 0.75 : 0.15, envMapIntensity: 1.6 }), stage.least);
+    this.brass = growSmall(new MeshStandardMaterial({ vertexColors: true, roughness: stage.isFine ? 0.32 : 0.45, metalness: stage.isFine ? 0.75 : 0.15, envMapIntensity: 1.6 }), stage.least);
     this.fixedMaterial = addBelts(addGrid(new MeshStandardMaterial({ vertexColors: true, roughness: 0.95 }), stage.grid), stage.clock);
     this.drivenMaterial = new MeshStandardMaterial({ vertexColors: true, roughness: 0.7 });
     this.glass = new Glass(stage);
@@ -95,8 +95,8 @@ export class Bodies {
   }
 
   #addMesh(group) {
-    const isMetal = group.motion === 2 && group.leaves.every(({ body }) => this.recording.lookOf.get(body)?.look === METAL);
-    const material = isMetal ? this.metal : [this.fixedMaterial, this.drivenMaterial, this.material, this.glass.material][group.motion];
+    const isBrass = group.motion === 2 && group.leaves.every(({ body }) => this.recording.lookOf.get(body)?.look === BRASS);
+    const material = isBrass ? this.brass : [this.fixedMaterial, this.drivenMaterial, this.material, this.glass.material][group.motion];
     const mesh = new InstancedMesh(group.make(), material, group.leaves.length);
     if (group.motion === 2) mesh.geometry.setAttribute('halfSize', this.#halfSizes(group.leaves));
     if (group.motion === 0) this.#setBelts(mesh.geometry, group.leaves);

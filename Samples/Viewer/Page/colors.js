@@ -29,7 +29,7 @@ function ramp(colors, fraction, out) {
 }
 
 // Neighbors of one color are told apart by a little light.
-const shade = (color, body) => color.multiplyScalar(0.9 + 0.2 * scattered(body + 1));
+const shade = (color, body) => color.multiplyScalar(0.86 + 0.26 * scattered(body + 1));
 
 // The speed that the scale ends at: 99 % of the moving samples are slower.
 export function topSpeed({ samples }) {

@@ -1,7 +1,7 @@
 // What materials look like, in the order of Look (Samples/Scenes/SceneView.h), and the teeth of gears.
 import { Color, ExtrudeGeometry, Shape } from 'three';
 
-const LOOKS = [null, '#7fae55', '#cfe8f4', '#4b4d57', '#b4bcc6', '#c09a6b', '#b9b3a8', '#454b54'].map((hex) => hex && new Color(hex));
+const LOOKS = [null, '#7fae55', '#cfe8f4', '#4b4d57', '#cfa552', '#c09a6b', '#b9b3a8', '#454b54'].map((hex) => hex && new Color(hex));
 const WHITE = new Color('#ffffff');
 
 // The color of a body's material or of its surface's, undefined where it has none. A surface of several is painted itself.

@@ -8,8 +8,8 @@ import { RoomEnvironment } from 'three/addons/environments/RoomEnvironment.js';
 import { addGrid } from './shaders.js';
 
 const THEMES = {
-  light: { horizon: '#e3e9ee', zenith: '#a9c3dc', ground: '#d3d9de', sky: 1.15, sun: 2.3, room: 0.42 },
-  dark: { horizon: '#232a32', zenith: '#0c1015', ground: '#3a424b', sky: 0.75, sun: 1.9, room: 0.3 },
+  light: { horizon: '#e3e9ee', zenith: '#a9c3dc', ground: '#d3d9de', sky: 1.15, sun: 2.6, room: 0.42 },
+  dark: { horizon: '#232a32', zenith: '#0c1015', ground: '#3a424b', sky: 0.95, sun: 1.9, room: 0.3 },
 };
 const LIGHT_DIRECTION = new Vector3(-0.55, 1, 0.62).normalize();
 const FROM = [0.62, 0.42, 1]; // where the camera is, unless the scene says otherwise
@@ -58,6 +58,7 @@ export class Stage {
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
     this.renderer.toneMapping = NeutralToneMapping;
+    this.renderer.toneMappingExposure = 1.12;
     this.scene = new Scene();
     this.scene.fog = new Fog('#ffffff', 1, 1000);
     this.skyColors = { horizon: { value: new Color() }, zenith: { value: new Color() } };

@@ -6,7 +6,7 @@ import { includeLeaf, leavesOf, outerRadius } from './shapes.js';
 const MOMENTS = [0, 0.12, 0.25, 0.38, 0.5, 0.62, 0.75, 0.88, 1];
 const STRAYS = 0.01;   // of the places at either end of each axis
 const FAR_STRAY = 0.4; // of the others' extent: strays nearer than this are shown
-const AMONG = 3;       // of the radius: what stands farther away from the middle is not meant
+const AMONG = 1.3;     // of the radius: what stands farther away from the middle is not meant
 
 // The range of values, without strays.
 function rangeOf(lower, upper) {
