@@ -3,7 +3,7 @@
 namespace fulcrum {
 
 Position ContactView::Center() const {
-    // As an offset from the first: sums of positions far out would lose digits.
+    // Averages offsets from the first point: sums of large positions would lose digits.
     Position offset = Position::Zero();
     for (const Point& point : points) offset += point.position - points.front().position;
     return points.front().position + offset / static_cast<double>(points.size());

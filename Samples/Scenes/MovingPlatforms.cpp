@@ -9,7 +9,7 @@ namespace {
 
 enum Platform : size_t { kLift, kShuttle, kTurntable, kSweeper, kPlatforms };
 
-// Where the platforms are after `time` seconds; all begin at rest. Accelerations stay below what friction can pass on.
+// Where the platforms are after `time` seconds; all begin at rest. Accelerations are small enough for friction.
 Pose PlatformPose(size_t platform, double time) {
     switch (platform) {
         case kLift: return {Position(-6, 1.75 - 1.25 * Cos(2 * kPi * time / 4), 0), {}};
@@ -63,7 +63,7 @@ void Build(SceneWorld& world) {
     for (const Carried& carried : kCarried)
         world.watched.push_back(
             world.Add({.shape = cube, .position = PlatformPose(carried.platform, 0).position + carried.offset}));
-    // What the sweeper pushes about.
+    // Boxes that the sweeper pushes.
     for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 3; ++j)
             world.Add({.shape = (i + j) % 2 == 0 ? cube : ball, .position = {5.2 + 0.8 * i, 0.3, 0.8 + 0.8 * j}});

@@ -5,7 +5,7 @@ namespace {
 
 constexpr int kLinks = 40;
 
-// A rope of capsules swings over a bar and back, with a box at its end.
+// A rope of capsules with a box at its end swings over a bar and back.
 void Build(SceneWorld& world) {
     world.AddFloor(12, 6);
     world.Add({.shape = world.CapsuleOf(1, 0.5f),

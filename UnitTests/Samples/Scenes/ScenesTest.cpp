@@ -282,6 +282,7 @@ TEST(SampleScenes, BallsRollDownAPlaneByTheFormula) { ExpectFigure("endless_slop
 TEST(SampleScenes, BallsStayInTheirBowls) { ExpectFigure("bowls"); }
 TEST(SampleScenes, FreeBallsFallByTheFormula) { ExpectFigure("gravity_factors"); }
 TEST(SampleScenes, BodiesOfThePlaneStayInIt) { ExpectFigure("flat_land"); }
+TEST(SampleScenes, CratesFloatAndTheBargeRightsItself) { ExpectFigure("harbor"); }
 TEST(SampleScenes, PlatformsCarryWhatStandsOnThem) { ExpectFigure("moving_platforms"); }
 TEST(SampleScenes, BeltsCarryAllGoodsRoundTheLoop) { ExpectFigure("conveyor_belt"); }
 TEST(SampleScenes, AStackHeavierBelowCarriesAHeavyLoad) { ExpectFigure("heavy_on_light"); }
