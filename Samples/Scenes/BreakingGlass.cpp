@@ -74,12 +74,15 @@ double Accuracy(const SceneWorld& world) {
 extern const Scene kScene{
     .name = "breaking_glass",
     .description = "balls of 2 to 200 m/s hit panes, which break where the impulse is more than they stand",
+    .view = {.color = ColorMode::Plain, .picture = 0.35},
     .adjust = Adjust,
     .build = Build,
     .beforeStep = React,
     .afterStep = DrawImpulses,
     .accuracy = Accuracy,
     .accuracyMeaning = "panes that broke too early, or not at all",
+    .accuracyUnit = "panes",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::BreakingGlassScene

@@ -67,10 +67,13 @@ extern const Scene kScene{
     .name = "harbor",
     .description = "crates float as deep as they are heavy, a heeled barge rights itself, wind drives buoys",
     .steps = 1800,
+    .view = {.color = ColorMode::Plain, .picture = 0.3},
     .build = Build,
     .beforeStep = ApplyFields,
     .accuracy = Accuracy,
-    .accuracyMeaning = "farthest from floating at rest: m, or rad of the barge's heel",
+    .accuracyMeaning = "farthest from floating at rest, or the barge's heel",
+    .accuracyUnit = "m or rad",
+    .accuracyRange = {{0, 0.03}},
 };
 
 }  // namespace fulcrum::HarborScene

@@ -94,10 +94,15 @@ extern const Scene kScene{
     .name = "moving_platforms",
     .description = "a lift, a shuttle and a turntable carry boxes, a turning bar sweeps others away",
     .steps = 720,
+    .view = {.color = ColorMode::Plain, .picture = 0.5},
     .build = Build,
     .beforeStep = MoveThePlatforms,
     .accuracy = Accuracy,
-    .accuracyMeaning = "farthest that a box slid on what carries it, m",
+    .accuracyMeaning = "farthest that a box slid on what carries it",
+    .accuracyUnit = "m",
+    // Friction makes velocities equal, and a step along the tangent of a turning disc leads outwards by (w dt)^2 r /
+    // 2.
+    .accuracyRange = {{0, 0.03}},
 };
 
 }  // namespace fulcrum::MovingPlatformsScene

@@ -28,9 +28,12 @@ extern const Scene kScene{
     .sleeping = false,
     .isClosed = true,
     .accuracyRuns = 8,
+    .view = {.color = ColorMode::Plain, .picture = 0.6},
     .build = Build,
     .accuracy = LargestJointGap,
-    .accuracyMeaning = "largest distance between the two anchors of a joint, m",
+    .accuracyMeaning = "largest distance between the two anchors of a joint",
+    .accuracyUnit = "m",
+    .accuracyRange = {{0, 0.05}},
     .accuracyTolerance = 0.01,
 };
 

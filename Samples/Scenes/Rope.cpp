@@ -34,9 +34,12 @@ extern const Scene kScene{
     .steps = 480,
     .sleeping = false,
     .isClosed = true,
+    .view = {.color = ColorMode::Plain, .from = {0.35f, 0.1f, 1}, .picture = 0.25, .showsJoints = false},
     .build = Build,
     .accuracy = LargestJointGap,
-    .accuracyMeaning = "largest distance between the two anchors of a joint, m",
+    .accuracyMeaning = "largest distance between the two anchors of a joint",
+    .accuracyUnit = "m",
+    .accuracyRange = {{0, 0.002}},
 };
 
 }  // namespace fulcrum::RopeScene

@@ -88,10 +88,13 @@ extern const Scene kScene{
     .description = "a heap of balls, boxes, capsules, rocks and jacks, hit by a ball of 29 t",
     .steps = 600,
     .usesSeed = true,
+    .view = {.color = ColorMode::Plain, .lower = {-13, 0, -9}, .upper = {11, 7, 9}, .picture = 0.5},
     .build = Build,
     .beforeStep = OpenTheGate,
     .accuracy = BodiesBelowTheFloor,
     .accuracyMeaning = "bodies that fell through the floor",
+    .accuracyUnit = "bodies",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::WreckingPileScene
