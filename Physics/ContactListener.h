@@ -36,7 +36,7 @@ struct ContactChange {
     // Surface velocity of B relative to A in addition to the motion of the bodies (conveyor belt): m/s at the contact's
     // center, and rad/s, world axes. It changes the slip velocity of friction. Only its components in the contact plane
     // and the rotation about the normal are used. Ignored if not finite.
-    Vector3 surfaceVelocity = Vector3::Zero(), surfaceTurn = Vector3::Zero();
+    Vector3 surfaceVelocity = Vector3::Zero(), surfaceAngularVelocity = Vector3::Zero();
     // Mass scales of the two bodies in this contact; ignored for static and kinematic bodies, and if out of range or
     // not finite. The contact conserves momentum computed with the scaled masses, not the real one.
     MassOverride massOverride{};
@@ -49,7 +49,7 @@ struct ContactChange {
     void MoveSurface(const ContactView& contact, BodyId belt, const Vector3& velocity);
     // The same for a surface that rotates about a pivot (m, world) with the angular velocity (rad/s, world axes): a
     // curved belt.
-    void TurnSurface(const ContactView& contact, BodyId belt, const Position& pivot, const Vector3& angularVelocity);
+    void RotateSurface(const ContactView& contact, BodyId belt, const Position& pivot, const Vector3& angularVelocity);
     // Multiplies the inverse mass and inertia of `body`, one of the two bodies: see MassOverride.
     void ScaleInverseMass(const ContactView& contact, BodyId body, float scale);
 };

@@ -72,9 +72,9 @@ ContactChange AskAbout(const ContactListener& listener, const ContactView& conta
     listener.ModifyContact(contact, change);
     if (!(change.friction >= 0 && std::isfinite(change.friction))) change.friction = friction;
     if (!(change.restitution >= 0 && change.restitution <= 1)) change.restitution = restitution;
-    if (!IsFinite(change.surfaceVelocity) || !IsFinite(change.surfaceTurn)) {
+    if (!IsFinite(change.surfaceVelocity) || !IsFinite(change.surfaceAngularVelocity)) {
         change.surfaceVelocity.setZero();
-        change.surfaceTurn.setZero();
+        change.surfaceAngularVelocity.setZero();
     }
     if (!change.massOverride.IsValid()) change.massOverride = {};
     return change;
@@ -89,7 +89,7 @@ bool AskListener(const ContactListener& listener, const BodyStore& bodies, const
     const ContactChange change = AskAbout(listener, view, record.friction, record.restitution);
     record.friction = change.friction;
     record.restitution = change.restitution;
-    record.SetSurfaceVelocity(change.surfaceVelocity, change.surfaceTurn);
+    record.SetSurfaceVelocity(change.surfaceVelocity, change.surfaceAngularVelocity);
     record.Set(ContactRecord::kMassOverride, !change.massOverride.IsNone());
     pairs.massOverrides[index] = change.massOverride;
     record.Set(ContactRecord::kSensed, change.isSensor && !change.ignore);

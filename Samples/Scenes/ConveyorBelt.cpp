@@ -24,7 +24,7 @@ public:
         for (const Belt& belt : belts_) {
             if (belt.body != contact.bodyB) continue;
             change.MoveSurface(contact, belt.body, belt.velocity);
-            change.TurnSurface(contact, belt.body, belt.pivot, belt.turning);
+            change.RotateSurface(contact, belt.body, belt.pivot, belt.turning);
         }
     }
 

@@ -84,7 +84,7 @@ class Nonsense final : public ContactListener {
         change.friction = -3e38f;
         change.restitution = std::numeric_limits<float>::quiet_NaN();
         change.surfaceVelocity = Vector3(std::numeric_limits<float>::infinity(), 0, 0);
-        change.surfaceTurn = Vector3(0, std::numeric_limits<float>::quiet_NaN(), 0);
+        change.surfaceAngularVelocity = Vector3(0, std::numeric_limits<float>::quiet_NaN(), 0);
         change.massOverride = {.inverseMassScaleA = -1, .inverseMassScaleB = std::numeric_limits<float>::infinity()};
     }
 };
