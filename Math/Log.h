@@ -1,5 +1,5 @@
-// The few lines that the engine has for people: misuse that no Result can tell of, and why the program is about to be
-// aborted. They go to standard error, or where the program wants them. For all worlds, from any thread.
+// Log messages of the engine: misuse that no Result can report, and why the program is about to be aborted. They go to
+// standard error, or to a handler of the program. For all worlds, from any thread.
 #pragma once
 
 #include <atomic>
@@ -9,7 +9,7 @@
 namespace fulcrum {
 
 enum class LogLevel : uint8_t {
-    Warning,  // a call that was not allowed did nothing
+    Warning,  // a call that was not allowed had no effect
     Fatal,    // the program is aborted as soon as the handler returns
 };
 

@@ -34,8 +34,7 @@ struct Error {
 
 using MaybeError = std::optional<Error>;
 
-// Logs the message (Log.h: to standard error, unless a program wants it elsewhere) and aborts: for Value() of an error
-// and GetError() of a value.
+// Logs the message (Log.h: to standard error by default) and aborts: for Value() of an error and GetError() of a value.
 [[noreturn, gnu::cold, gnu::noinline]] inline void AbortWith(const char* what, const std::string& message) {
     Log(LogLevel::Fatal, (what + message).c_str());
     std::abort();

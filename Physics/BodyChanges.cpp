@@ -1,4 +1,4 @@
-// What BodyInterface changes of bodies that exist: kind of motion, mass, damping and limits, what they collide with.
+// Functions of BodyInterface that change existing bodies: motion type, mass, damping and limits, collision filters.
 #include <Fulcrum/Collision/Shapes/MassProperties.h>
 #include <Fulcrum/Physics/BodyInterface.h>
 #include <Fulcrum/Physics/Validation.h>
@@ -20,14 +20,14 @@ namespace fulcrum {
 
 namespace {
 
-// What GetPose gave is taken back with its bits: normalizing a rotation again changes them.
+// A pose returned by GetPose is set with the same bits: normalizing its rotation again would change them.
 Quaternion NormalizedUnlessItIs(const Quaternion& q) {
     const double squared = double{q.x} * q.x + double{q.y} * q.y + double{q.z} * q.z + double{q.w} * q.w;
-    constexpr double kRounding = 0x1p-21;  // more than four components, rounded to float, leave
+    constexpr double kRounding = 0x1p-21;  // more than the error of four components rounded to float
     return std::fabs(squared - 1) <= kRounding ? q : Normalized(q);
 }
 
-// Ends the contacts that the body's filters forbid, has those found that they allow.
+// Ends the contacts that the body's filters forbid, and searches for those that they allow.
 void Refilter(WorldState& world, uint32_t body) {
     RemoveForbiddenPairs(world, body);
     WakeBody(world, body);
@@ -38,7 +38,7 @@ void Refilter(WorldState& world, uint32_t body) {
 
 constexpr float kUsualDensity = 1000;  // kg/m3, of BodySettings
 
-// Of a body that is not dynamic: its mass when it becomes so.
+// Of a body that is not dynamic: the mass it gets when it becomes dynamic.
 KeptMass KeptMassOf(const BodyCold& body) {
     if (body.keptMass) return *body.keptMass;
     const MassProperties& shape = body.shape->Mass();

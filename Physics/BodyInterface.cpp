@@ -38,7 +38,7 @@ void FillDynamics(BodyDynamics& d, BodyCold& cold, const BodySettings& s) {
     d.layer = s.layer & 31u;
     d.continuous = s.continuous != ContinuousCollision::Off;
     const bool isDynamic = s.motion == MotionType::Dynamic;
-    // Of the others what is said of their mass counts when they become dynamic.
+    // For the others, mass settings take effect when they become dynamic.
     const bool isGiven = mass.volume > 0 && (s.mass > 0 || s.density != 1000.0f || !s.inertia.isZero(0));
     if (!isDynamic && !isGiven) return;
     const float kilograms = s.mass > 0 ? s.mass : s.density * mass.volume;
@@ -201,7 +201,7 @@ Status Push(WorldState& world, BodyId id, const Vector3& force, const Vector3& t
         return *e;
     if (force.isZero(0) && torque.isZero(0)) return Done{};
     BodyCold& cold = world.bodies.cold[id.index];
-    // Under a steady push it may sleep on: the step finds whether this is the same.
+    // Under a steady push it may stay asleep: the step checks whether this one is the same.
     if (!world.bodies.dynamics[id.index].awake && !cold.isSteady) WakeBody(world, id.index);
     cold.force += force;
     cold.torque += torque;

@@ -22,12 +22,12 @@ struct BodyBounds {
 // An explosion: pushes bodies away from a point, once.
 struct RadialImpulse {
     enum class Falloff : uint8_t {
-        Constant,  // the same impulse for all within the radius
-        Linear,    // less with the distance, nothing at the radius
+        Constant,  // the same impulse everywhere within the radius
+        Linear,    // decreases linearly to zero at the radius
     };
     Position center = Position::Zero();  // m
     float radius = 1;                    // m, > 0
-    float impulse = 0;                   // N s, finite: what a body at the center gets; negative pulls
+    float impulse = 0;                   // N s, finite: of a body at the center; negative attracts
     Falloff falloff = Falloff::Linear;
 };
 
@@ -46,21 +46,21 @@ public:
     // at rest. A pose returned by GetPose is restored bit-exactly. Errors: UnknownId, NonFinite, OutOfRange (beyond
     // 1e18 m), Unnormalized.
     Status SetPose(BodyId id, const Position& position, const Quaternion& rotation);
-    // Several bodies at once, each to its pose: joints between bodies that keep their places to each other do not
-    // notice, as of a ragdoll or a vehicle that is moved as a whole. Velocities stay. Errors also: OutOfRange (not as
-    // many poses as bodies), Unsupported (a body is named twice). Nothing has changed then.
+    // Several bodies at once, each to its pose: joints between bodies whose relative poses do not change are not
+    // disturbed, as in a ragdoll or vehicle that is moved as a whole. Velocities are kept. Errors also: OutOfRange (not
+    // as many poses as bodies), Unsupported (a body is named twice). No body has moved then.
     Status SetPoses(std::span<const BodyId> ids, std::span<const Pose> poses);
-    // Gives a kinematic body the velocity with which it reaches the pose after `dt` seconds (> 0), if its largest
-    // speeds allow that: for the next step, after which it rests unless it is told again. To let it move on, use
+    // Gives a kinematic body the velocity with which it reaches the pose after `dt` seconds (> 0), within its maximum
+    // speeds: for the next step only, after which it rests unless this is called again. To keep it moving, use
     // SetVelocity. Errors also: Unsupported.
     Status MoveKinematic(BodyId id, const Position& position, const Quaternion& rotation, float dt);
     // m/s, rad/s; wakes the body. Steps clamp it to the body's speed limits. Errors: UnknownId, NonFinite, Unsupported
     // (static, frozen).
     Status SetVelocity(BodyId id, const Vector3& linear, const Vector3& angular);
-    // Acts during the next step only: N at a world point, N m; wakes. One that is the same, within 1 %, step after
-    // step does not keep a body awake: it falls asleep under it, and wakes when it is another or given no more. One of
-    // zero does nothing, and a body that is put to sleep forgets what it had. However large it is, the body stays
-    // within its largest speeds; where the sum of several is beyond the floats, it is frozen. Errors: UnknownId,
+    // Acts during the next step only: N at a world point, N m; wakes. A force that is the same, within 1 %, in every
+    // step does not keep a body awake: the body falls asleep under it, and wakes when it changes or is no longer
+    // applied. Zero has no effect, and putting a body to sleep discards its forces. However large the force is, the
+    // body stays within its maximum speeds; if the sum of several is not finite, it is frozen. Errors: UnknownId,
     // NonFinite, OutOfRange (point), Unsupported (not dynamic, frozen).
     Status AddForce(BodyId id, const Vector3& force);
     Status AddForceAt(BodyId id, const Vector3& force, const Position& point);
@@ -70,15 +70,15 @@ public:
     Status AddImpulseAt(BodyId id, const Vector3& impulse, const Position& point);
     Status AddAngularImpulse(BodyId id, const Vector3& impulse);
     // Acts at once on the dynamic bodies that the filter sees and that are within the radius, at their point that is
-    // closest to the center; wakes them. What the center is inside of is pushed at its center of mass. Returns how many
-    // were pushed. Errors: NonFinite, NonPositive, OutOfRange.
+    // closest to the center; wakes them. A body that contains the center is pushed at its center of mass. Returns how
+    // many were pushed. Errors: NonFinite, NonPositive, OutOfRange.
     Result<uint32_t> AddRadialImpulse(const RadialImpulse& settings, const QueryFilter& filter = {});
-    // Contacts begin anew, joints stay; wakes the body and what is near. What is no longer dynamic keeps its mass for
-    // when it is again; what never was has that of its settings. Static bodies lose their velocities. Errors:
-    // UnknownId, OutOfRange, Unsupported (frozen; a dynamic body of a shape without volume).
+    // Contacts begin again, joints remain; wakes the body and its neighbors. A body that is no longer dynamic keeps its
+    // mass for when it is dynamic again; one that never was uses the mass of its settings. Static bodies lose their
+    // velocities. Errors: UnknownId, OutOfRange, Unsupported (frozen; a dynamic body of a shape without volume).
     Status SetMotionType(BodyId id, MotionType motion);
-    // kg, > 0; moments of inertia change in proportion. Of a body that is not dynamic: for when it becomes so. Errors:
-    // UnknownId, NonFinite, NonPositive, OutOfRange (no inverse), Unsupported (no volume).
+    // kg, > 0; moments of inertia change in proportion. If the body is not dynamic, it takes effect when it becomes
+    // dynamic. Errors: UnknownId, NonFinite, NonPositive, OutOfRange (no inverse), Unsupported (no volume).
     Status SetMass(BodyId id, float mass);
     // With the inertia tensor, kg m2, about the center of mass along the axes of the body's own frame; positive
     // definite.
@@ -86,19 +86,20 @@ public:
     Status SetMaterial(BodyId id, const Material& material);
     // 0..31. As SetCategoryAndMask.
     Status SetLayer(BodyId id, uint8_t layer);
-    // What it collides with, see BodySettings. Contacts that no longer may be end; the body and what it touched wake.
+    // What it collides with, see BodySettings. Contacts that are no longer allowed end; the body and those it touched
+    // wake.
     Status SetCategoryAndMask(BodyId id, uint64_t category, uint64_t mask);
     Status SetGroup(BodyId id, const CollisionGroup& group);
     Status SetGravityFactor(BodyId id, float factor);
-    // m/s2, up to 1e6 along each axis, in place of the system's; none: the system's again. The factor holds for both.
-    // Wakes.
+    // m/s2, up to 1e6 along each axis, in place of the system's; none: the system's again. The gravity factor applies
+    // to both. Wakes.
     Status SetGravity(BodyId id, const std::optional<Vector3>& gravity);
     // As in BodySettings. Locking wakes, damping and speeds do not.
     Status SetDamping(BodyId id, float linear, float angular);
     Status SetLockedAxes(BodyId id, LockedAxes axes);
     Status SetMaxSpeeds(BodyId id, float linear, float angular);
     Status SetUserData(BodyId id, uint64_t userData);
-    Status SetAllowSleep(BodyId id, bool allowSleep);  // one that may not wakes
+    Status SetAllowSleep(BodyId id, bool allowSleep);  // false wakes the body
     Status SetContinuous(BodyId id,
                          ContinuousCollision continuous);  // Errors also: OutOfRange, Unsupported (a surface or plane)
     // Whether its contacts are reported as events, see EventSettings. If not, contacts reported so far get an end event
@@ -143,9 +144,9 @@ public:
     Vector3 GetAngularVelocity(BodyId id) const;  // rad/s, world axes
     Vector3 GetVelocityAt(BodyId id, const Position& point) const;
     float GetMass(BodyId id) const;  // kg; 0 for a body that is not dynamic
-    // kg m2 about the center of mass, along the axes of the body's own frame; zero where it is not dynamic.
+    // kg m2 about the center of mass, along the axes of the body's own frame; zero if it is not dynamic.
     SymmetricMatrix3 GetInertia(BodyId id) const;
-    // Around all of its shape, a millionth larger at most where that is near the first body of the world.
+    // Of the whole shape, at most 1e-6 too large near the first body of the world.
     BodyBounds GetBounds(BodyId id) const;
     Vector3 GetAngularMomentum(BodyId id) const;  // kg m2/s, about the center of mass, world axes
     double GetKineticEnergy(BodyId id) const;     // J

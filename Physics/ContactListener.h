@@ -42,7 +42,8 @@ struct ContactChange {
     MassOverride massOverride{};
     // Disables the contact in this step: no impulses, and it neither wakes nor supports bodies.
     bool ignore = false;
-    // As ignored, but among the events of the step, with its points and without impulses. Continuous collision passes.
+    // No impulses, as with `ignore`, but the contact is among the events of the step, with its points. Continuous
+    // collision passes through it.
     bool isSensor = false;
 
     // Gives the surface of `belt`, one of the two bodies, a velocity (m/s, world axes) relative to its body.

@@ -110,7 +110,7 @@ JointPose PoseOf(const WorldState& world, uint32_t index) {
     return pose;
 }
 
-// Static, without a shape, near the first body, where floats are fine.
+// Static, without a shape, near the first body, where floats are precise.
 void AddWorldBody(WorldState& world) {
     BodyStore& bodies = world.bodies;
     const uint32_t body = bodies.worldBody = bodies.Allocate();
@@ -122,7 +122,7 @@ void AddWorldBody(WorldState& world) {
     MakeColliders(world, body);
 }
 
-// The index of a body of settings that are right. That of the world is made when it is first needed.
+// The index of a body in valid settings. The body of the world is created when it is first needed.
 uint32_t IndexOf(WorldState& world, BodyId id) {
     if (id != kWorldBody) return id.index;
     if (world.bodies.worldBody == BodyStore::kNone) AddWorldBody(world);

@@ -28,7 +28,7 @@ struct JointAxisForces {
 // joint, whose motors may be changed as such.
 struct TargetJointSettings {
     BodyId body{};                       // dynamic
-    Position anchor = Position::Zero();  // m, world: the point of the body, as it stands now
+    Position anchor = Position::Zero();  // m, world: the point of the body at its present pose
     Position target = Position::Zero();  // m, world
     SpringSettings spring = {.frequency = 5.0f, .dampingRatio = 1.0f};
     float maxForce = std::numeric_limits<float>::infinity();  // N, > 0, along each axis of the world
@@ -46,7 +46,7 @@ public:
     template <class Settings>
     Result<JointId> Create(const Settings& settings);
     Result<JointId> CreateTarget(const TargetJointSettings& settings);
-    // Moves A's anchor, of a joint whose body A is the world, to a place, m; the bodies wake, unless it is there
+    // Moves A's anchor of a joint whose body A is the world to a position, m; wakes the bodies, unless it is there
     // already. Errors also: Unsupported (body A is another), NonFinite, OutOfRange.
     Status SetTarget(JointId id, const Position& target);
     // Removing a body removes its joints. Error: UnknownId, as for all that follow.

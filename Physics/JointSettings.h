@@ -17,8 +17,8 @@ struct JointId {
     friend auto operator<=>(const JointId&, const JointId&) = default;
 };
 
-// The world itself, which never moves, as a body of joints: in JointSettings, and what JointInterface says of them. No
-// other call knows it.
+// The world as a body of joints, which never moves: for JointSettings and JointInterface. Other calls do not know this
+// id.
 inline constexpr BodyId kWorldBody = {0xFFFFFFFFu, 0xFFFFFFFFu};
 
 enum class JointSpace : uint8_t {
@@ -40,7 +40,7 @@ struct JointAnchor {
 enum class JointPriority : uint8_t { Normal, High };
 
 struct JointSettings {
-    BodyId bodyA{}, bodyB{};  // at least one is dynamic; kWorldBody: the world, whose own frame is that of the world
+    BodyId bodyA{}, bodyB{};  // at least one is dynamic; kWorldBody: the world, whose body frame is world space
     JointSpace space = JointSpace::World;
     JointAnchor anchorA;
     std::optional<JointAnchor> anchorB{};  // left out: coincides with anchor A at the current poses

@@ -57,7 +57,7 @@ public:
     // bodies whose contact it forbids wake.
     void SetContactListener(const ContactListener* listener);
 
-    // Tells it of steps and their stages from now on (not owned, must outlive its use); null: nobody. Not part of
+    // The observer of steps and their stages from now on (not owned, must outlive its use); null: none. Not part of
     // snapshots.
     void SetStepObserver(StepObserver* observer);
 
@@ -88,7 +88,7 @@ public:
     // Visits all awake contacts with at least one point, as solved in the last step, in a deterministic order. Includes
     // speculative contacts.
     void VisitContacts(FunctionRef<void(const ContactView&)> visit) const;
-    // Those of one body, by pair; nothing for an unknown id.
+    // The contacts of one body, by pair; none for an unknown id.
     void VisitContactsOf(BodyId body, FunctionRef<void(const ContactView&)> visit) const;
     // Calls visit(id, island) for each dynamic body; islands are numbered from 0 in the order of their smallest body
     // index. Computed by this call: for viewers and tests.

@@ -1,4 +1,4 @@
-// QueryInterface::CollideShape: the narrow phase of a shape that is no body.
+// QueryInterface::CollideShape: the narrow phase for a shape that is not a body.
 #include <Fulcrum/Collision/NarrowPhase/SurfaceContact.h>
 #include <Fulcrum/Collision/Queries/Pieces.h>
 #include <Fulcrum/Collision/Shapes/Plane.h>
@@ -21,7 +21,7 @@ struct Pieces {
     Pose poseOfOther;
 };
 
-// A manifold in the piece's frame, with its normal towards the body; nothing where no point is near enough.
+// A manifold in the piece's frame, with its normal towards the body; empty if no point is near enough.
 void Add(const Pieces& pieces, const WorldContact& of, const Manifold& manifold, float maxSeparation,
          std::vector<WorldContact>& contacts) {
     WorldContact contact = of;
@@ -39,7 +39,7 @@ void Add(const Pieces& pieces, const WorldContact& of, const Manifold& manifold,
 
 void CollidePieces(const Pieces& pieces, const WorldContact& of, float maxSeparation, NarrowPhaseMethod method,
                    SurfaceContacts& surface, std::vector<WorldContact>& contacts) {
-    // The narrow phase wants a distance; what is beyond the one that is asked for is left out later.
+    // The narrow phase needs a positive distance; points beyond maxSeparation are removed later.
     const CollideSettings settings{std::max(maxSeparation, 1e-3f * pieces.shape.OuterRadius()), method};
     const RelativePose relative = Relative(pieces.pose, pieces.poseOfOther);
     if (pieces.other.IsSurface()) {

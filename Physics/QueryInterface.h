@@ -54,13 +54,13 @@ public:
     // In no particular order, until `visit` returns false.
     void VisitOverlaps(const PlacedShape& shape, FunctionRef<bool(const OverlapHit&)> visit,
                        const QueryFilter& filter = {}) const;
-    // All contacts of a shape, convex or a compound, as the narrow phase makes them: what the shape would feel there.
-    // With points up to `maxSeparation` m apart, >= 0. By body, its child, the shape's child, triangle, normal. Of
-    // surfaces those of internal edges are left out; one-sided triangles count from the front. Other shapes touch
-    // nothing, which is reported.
+    // All contacts of a shape, convex or a compound, as the narrow phase makes them for a body there. With points up to
+    // `maxSeparation` m apart, >= 0. Ordered by body, its child, the shape's child, triangle and normal. Contacts with
+    // internal edges of surfaces are omitted; one-sided triangles collide from the front only. Other shapes have no
+    // contacts, and are reported as misuse.
     void CollideShape(const PlacedShape& shape, float maxSeparation, std::vector<WorldContact>& contacts,
                       const QueryFilter& filter = {}) const;
-    // What a point is inside of; nothing is inside a mesh or a height field.
+    // The bodies that contain a point; nothing is inside a mesh or a height field.
     void FindBodiesAt(const Position& point, std::vector<OverlapHit>& hits, const QueryFilter& filter = {}) const;
 
     // The body closest to a point or shape within `maxDistance` m, >= 0; if some overlap the shape, the deepest.

@@ -50,16 +50,16 @@ struct OverlapHit {
     friend auto operator<=>(const OverlapHit&, const OverlapHit&) = default;
 };
 
-// A convex piece of a shape in touch with a piece of a body: points with one normal.
+// A contact of a convex piece of a shape with a piece of a body: points with one normal.
 struct WorldContact {
     struct Point {
         Position onBody = Position::Zero(), onQuery = Position::Zero();  // m
-        float separation = 0;  // m, from the body to the shape along the normal; negative where they overlap
+        float separation = 0;  // m, from the body to the shape along the normal; negative if they overlap
     };
     BodyId body;
     SubShape subShape{};               // of the body; a triangle is that of the deepest point
     uint32_t childOfQuery = 0;         // of a compound; else 0
-    Vector3 normal = Vector3::Zero();  // unit, world space, from the body towards the shape asked for
+    Vector3 normal = Vector3::Zero();  // unit, world space, from the body towards the query's shape
     uint32_t pointCount = 0;           // 1..4
     std::array<Point, 4> points{};
 

@@ -1,4 +1,4 @@
-// BodyInterface::AddRadialImpulse: what a ball about the center meets, each body at its point that is closest.
+// BodyInterface::AddRadialImpulse: the bodies within a ball about the center, each at its closest point.
 #include <Fulcrum/Collision/Queries/CoreShapes.h>
 #include <Fulcrum/Collision/Queries/Distance.h>
 #include <Fulcrum/Physics/BodyInterface.h>

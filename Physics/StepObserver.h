@@ -1,6 +1,6 @@
-// What a profiler is told of a step: derive from StepObserver and pass it to PhysicsSystem::SetStepObserver. Without
-// one a step looks at a null pointer per stage. Called by the thread that steps; what workers do is seen by the
-// program's own JobSystem.
+// Callbacks for profilers: derive from StepObserver and pass it to PhysicsSystem::SetStepObserver. Without one a step
+// only tests a pointer per stage. Called by the thread that steps; to observe the workers, use a JobSystem of the
+// program.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
-// The part of a large box, a ground, say, near a small shape: what the two have in common is the same, and GJK and EPA,
-// which work in floats, need not tell a body of a meter from faces of kilometers. Used by Collide; lives on the stack
-// of one call.
+// The part of a large box (a ground, for example) near a small shape. Contacts with the part are those with the box,
+// and GJK and EPA, which work in floats, do not have to resolve a body of a meter against faces of kilometers. Used by
+// Collide; lives on the stack of one call.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/Primitives.h>
@@ -10,8 +10,8 @@ namespace fulcrum {
 class BoxPart {
 public:
     // Cuts out of `box` what lies within 16 times radius + reach, m, of a shape of that outer radius, at `center` in
-    // the box's frame, for contacts as far ahead as `reach`. False: the box is no more than four times as large, or the
-    // shape is so deep inside that no face of the box is as near; then there is no part.
+    // the box's frame, for contacts as far ahead as `reach`. False if the box is at most four times as large, or if the
+    // shape is so deep inside that no face of the box is that near; then there is no part.
     bool Cut(const Box& box, const Vector3& center, float radius, float reach) {
         const float extent = kExtent * (radius + reach);
         if (!(box.OuterRadius() > kLarge * extent)) return false;

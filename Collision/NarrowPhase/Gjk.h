@@ -19,7 +19,7 @@ struct GjkResult {
     Vector3 axis;             // unit, from A towards B; the separating axis, or that of the closest points
     float separation;         // m along the axis: a lower bound of the distance where beyond reach, else the distance
     Simplex<Vertex> simplex;  // apart: spans the closest point; overlapping: 1 to 4 vertices around or at the origin
-    // Apart: whether the axis separates the cores by that distance. False where rounding ended the search before.
+    // Apart: whether the axis separates the cores by that distance. False if rounding ended the search before.
     bool converged = true;
 };
 

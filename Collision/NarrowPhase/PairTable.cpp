@@ -90,8 +90,8 @@ constexpr PairTable kPairTable = PairTable()
 // clang-format on
 static_assert(kPairTable.IsComplete(), "every convex shape needs a line in the pair table");
 
-// Where one of the two is a box far larger than the other its part near that takes its place. Two boxes need no such
-// help: their axes are known. False: nothing is done.
+// If one of the two is a box far larger than the other, it is replaced by its part near the other. Not for two boxes,
+// whose separating axes are known. False: nothing is done.
 bool CollidePart(PairFunction function, const PairQuery& query, Manifold& manifold) {
     const bool isA = query.a.Type() == ShapeType::Box;
     if (isA == (query.b.Type() == ShapeType::Box)) return false;

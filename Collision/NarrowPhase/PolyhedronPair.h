@@ -51,7 +51,8 @@ struct PolyhedronPair {
     }
 };
 
-// The same in double, for cores of such different sizes that floats do not tell the closest points of their difference.
+// The same in double, for cores of so different sizes that floats cannot resolve the closest points of their
+// difference.
 struct PrecisePolyhedronPair {
     struct Vertex {
         using Real = double;

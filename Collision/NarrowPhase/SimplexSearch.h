@@ -18,9 +18,8 @@ inline Real LengthSquaredOf(const Vec3<Real>& v) {
     return Dot<Real>(v, v);
 }
 
-// Sines whose squares are below these are zero but for rounding: of a triangle's angle, of the angle between a
-// tetrahedron's face and the fourth vertex. What rests on a ground of kilometers makes simplices that are as flat as a
-// hundred thousandth.
+// Squared sines below these count as zero within rounding: of a triangle's angle, and of the angle between a
+// tetrahedron's face and the fourth vertex. A body at rest on a ground of kilometers makes simplices as flat as 1e-5.
 template <class Real>
 inline constexpr Real kFlatTriangle = sizeof(Real) == sizeof(double) ? Real(1e-24) : Real(1e-12f);
 template <class Real>

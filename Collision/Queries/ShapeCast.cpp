@@ -67,7 +67,8 @@ bool IsWithinFloats(const ShapeHit& hit) {
 
 }  // namespace
 
-// Along a surface rounding has a sign: what would sink in by less than that over the whole motion goes along it.
+// A motion along a surface is not exactly parallel to it, due to rounding: one that penetrates by less than this over
+// its whole length counts as parallel.
 bool ShapeCaster::Separates(const ShapeHit& hit) const {
     constexpr float kAlong = 1e-4f;  // of the motion
     const Vector3 arm = (hit.position - motion_.pose.position).cast<float>();

@@ -33,9 +33,9 @@ struct ShapeCastSettings {
     bool backFaces = false;  // triangles are hit from behind
     float maxFraction = 1;   // 0 .. 1, of the motion; only hits up to here
     float separation = 0;    // m, >= 0: shapes this far apart count as touching
-    float tolerance = 0;     // m, >= 0: a hit may be found that much too far away; 0: to about 1e-6 of the shapes' size
-    // What touches or overlaps at the start is not hit where the motion begins along its surface or out of it: of a
-    // character that stands on a floor, and walks. A motion of no length then hits nothing at the start.
+    float tolerance = 0;     // m, >= 0: a hit may be reported this much too late; 0: to about 1e-6 of the shapes' size
+    // A shape that touches or overlaps at the start is not hit if the motion begins along its surface or out of it, as
+    // for a character that stands on a floor and walks. A motion of zero length then hits nothing at the start.
     bool ignoreSeparating = false;
     bool measureDepth = true;  // otherwise overlaps at the start have depth, normal and position zero
 };
@@ -80,7 +80,7 @@ private:
     bool CastPiece(const Piece& piece, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit,
                    const Vector3& turn = Vector3::Zero()) const;
     bool CastPlane(const Shape& plane, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit) const;
-    // Whether the motion, where it begins, leads out of what it overlaps, or along it.
+    // Whether the motion at its start leads out of the overlapping shape, or along its surface.
     bool Separates(const ShapeHit& hit) const;
     void MeasureDepth(const Piece& piece, const Pose& at, const CoreMotion& motion, ShapeHit& hit) const;
     CoreMotion RelativeTo(const Pose& pose) const;

@@ -32,7 +32,7 @@ SubmergedPart OfBall(double r, const Half& half) {
     return {kPiHere * h * h * (3 * r - h) / 3, half.up * -below};
 }
 
-// Signed tetrahedra between a point of the plane and the faces, cut off at it: the cut itself has none.
+// Signed tetrahedra between a point of the plane and the faces, clipped at the plane; the cut face contributes none.
 class ClippedVolume {
 public:
     explicit ClippedVolume(const Half& half) : half_(half), apex_(half.up * half.level) {}
@@ -140,7 +140,7 @@ DiscPart PartOfDisc(double r, double d) {
     return {r * r * Acos(-d / r) + d * root, -2.0 / 3.0 * root * root * root};
 }
 
-// Roots of a t^2 + b t + c in the order of their size; returns how many.
+// Roots of a t^2 + b t + c in ascending order; returns how many.
 int Roots(double a, double b, double c, double (&roots)[2]) {
     if (std::fabs(a) < 1e-12 * (std::fabs(b) + std::fabs(c))) {
         if (b == 0) return 0;
@@ -229,8 +229,8 @@ SubmergedPart OfTaperedCapsule(double h, double top, double bottom, double cente
     return BySlices(pieces, centerY, half);
 }
 
-// An affine image of a ball: a plane at a part of its height cuts off what it does of a ball, about the same place on
-// the line from the middle to where it is touched from below.
+// An affine image of a ball: a plane at a given fraction of its height cuts off the same fraction of its volume as of a
+// ball's, with the center at the same fraction of the line from the middle to the lowest point.
 SubmergedPart AsEllipsoid(const ConvexShape& shape, const Half& half) {
     const Vector3 up = half.up.cast<float>();
     const Position top = shape.Support(up).cast<double>(), bottom = shape.Support(Vector3(-up)).cast<double>();

@@ -22,7 +22,7 @@ void VisitConvex(const Shape& shape, const Pose& center, Visit&& visit) {
         if (child.shape) visit(*child.shape, center * compound.PoseOf(child));
 }
 
-// Of pieces that overlap both count, as in their mass.
+// Pieces that overlap both count, as in the mass.
 Lift SubmergedOf(const Shape& shape, const Pose& center, const Vector3& up, double level) {
     Lift lift;
     Position moment = Position::Zero();  // about the center
@@ -62,7 +62,7 @@ public:
         torque_ -= bodies_.GetAngularMomentum(id_) * Decay(water.angularDrag * displaced / mass_);
     }
     void Add(const Wind& wind) {
-        // v' = -k |v| v: v / (1 + k |v| t) after t. Of several pieces their sum slows the body.
+        // v' = -k |v| v: v / (1 + k |v| t) after t. Rates of several pieces add up.
         float rate = 0;  // 1/s, of all of them
         VisitConvex(*shape_, center_,
                     [&](const ConvexShape& piece, const Pose& pose) { rate += DragOf(wind, piece, pose).rate; });
@@ -78,7 +78,7 @@ public:
         force_ += acceleration * mass_;
     }
     void Push() const {
-        // Where these are refused the body was frozen, or a field's function gave no number: nothing to add.
+        // Refused if the body was frozen, or a field's function returned no finite number: nothing is added.
         (void)bool(bodies_.AddForce(id_, force_));
         (void)bool(bodies_.AddTorque(id_, torque_));
     }
@@ -86,7 +86,7 @@ public:
 private:
     struct Drag {
         Vector3 against;  // m/s, of the wind
-        float rate;       // 1/s: the acceleration that the piece's drag gives the body, over that
+        float rate;       // 1/s: the acceleration of the body by the piece's drag, divided by `against`
     };
     Drag DragOf(const Wind& wind, const ConvexShape& piece, const Pose& pose) const {
         const Vector3 against = wind.velocity - bodies_.GetVelocityAt(id_, pose.position);

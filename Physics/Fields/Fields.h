@@ -1,6 +1,6 @@
-// Water, wind and fields of force in regions of the world. A program has a Fields of its own, fills its lists, and
-// calls Apply before each step. Uses the public interfaces alone; one thread. Forces are those of where bodies are
-// then, and what they do to a body that rests stays the same: it falls asleep, and sleeps on while they are applied
+// Water, wind and fields of force in regions of the world. A program creates a Fields, fills its lists, and calls Apply
+// before each step. Uses only the public interfaces; one thread. Forces are computed at the bodies' present poses. For
+// a body at rest they are the same in every step, so that it falls asleep and stays asleep while they are applied
 // (BodyInterface::AddForce).
 #pragma once
 
@@ -17,21 +17,21 @@ struct FieldRegion {
     Position lower = Position::Constant(-1e9), upper = Position::Constant(1e9);  // m
 };
 
-// Lifts what is below its surface by the weight of the water that it displaces, and slows it down.
+// Buoyancy: the weight of the displaced water; and drag.
 struct Water {
-    FieldRegion region{};  // high enough for what swims with its center above the surface
+    FieldRegion region{};  // high enough for bodies that float with their center above the surface
     // The surface is where up . x = level, below is water. The system's gravity counts along `up`.
     Vector3 up = Vector3(0, 1, 0);       // unit
     double level = 0;                    // m
     float density = 1000;                // kg/m3, >= 0
     Vector3 velocity = Vector3::Zero();  // m/s, of a current
-    // 1/s, >= 0: a body loses its velocity against the water, and its angular velocity, at this rate times the mass of
-    // the water that it displaces over its own. v' = -drag v where it has the density of water and is all below.
+    // 1/s, >= 0: the decay rate of a body's velocity relative to the water, and of its angular velocity, times the mass
+    // of the displaced water over its own: v' = -drag v for a submerged body with the density of water.
     float drag = 1, angularDrag = 1;
 };
 
-// Air that moves: a force of density / 2 c A |u| u at the center of each convex piece, u the wind seen from the piece,
-// A the area that it shows to the wind.
+// Moving air: a force of density / 2 c A |u| u at the center of each convex piece, u the wind relative to the piece, A
+// its frontal area.
 struct Wind {
     FieldRegion region{};
     Vector3 velocity = Vector3::Zero();  // m/s
@@ -42,7 +42,7 @@ struct Wind {
 struct ForceField {
     FieldRegion region{};
     Vector3 acceleration = Vector3::Zero();  // m/s2, the same everywhere
-    // m/s2 at a place, on top of that; for planets, whirls and the like. A pure function of the place.
+    // m/s2 at a place, on top of that; for planets, vortices and the like. A pure function of the position.
     std::function<Vector3(const Position&)> accelerationAt{};
 };
 
@@ -52,15 +52,14 @@ struct Fields {
     std::vector<ForceField> forces{};
     std::vector<OverlapHit> found{};  // room for Apply
 
-    // Adds what acts on the dynamic bodies that the filter sees for a step of dt s, > 0, at most 1. Drag never turns a
-    // velocity round, however large it is. Errors, after which no force was added: NonFinite, NonPositive, OutOfRange,
-    // Negative, Unnormalized, naming the field and its number. Allocates nothing once its lists have grown.
+    // Adds the forces of a step of dt s, > 0, at most 1, to the dynamic bodies that the filter accepts. Drag never
+    // reverses a velocity, however large it is. Errors, after which no force was added: NonFinite, NonPositive,
+    // OutOfRange, Negative, Unnormalized, naming the field and its number. Allocates nothing once its lists have grown.
     Status Apply(PhysicsSystem& system, double dt, const QueryFilter& filter = {});
 };
 
-// What of a body is below a plane, for games that have waves of their own: of each body, with the plane that its piece
-// of water is. The lift is the density of the water times the volume times gravity, at the center. Zero for an unknown
-// id.
+// The part of a body below a plane, for games with waves: pass the plane of the water surface at each body. The lift is
+// the density of the water times the volume times gravity, at the center. Zero for an unknown id.
 struct Lift {
     double volume = 0;                   // m3, submerged
     Position center = Position::Zero();  // m, world

@@ -107,7 +107,7 @@ void VisitChildren(Stream& s, Children& children) {
     s(origin, massUnit, moreColliders);
 }
 
-// What few bodies have. isOdd: whether this one has any of it.
+// Members that few bodies use. isOdd: whether this one uses any.
 template <class Stream, class Cold>
 void VisitOddities(Stream& s, Cold& body, bool isOdd) {
     if constexpr (!Stream::kWrites) {
@@ -133,15 +133,15 @@ void VisitOddities(Stream& s, Cold& body, bool isOdd) {
     s(mass, inertia, principalAxes);
 }
 
-// Of an index without a body the generation is all that counts. A body that was removed has its colliders until the
-// next step.
+// Of an index without a body only the generation matters. A body that was removed has its colliders until the next
+// step.
 template <class Stream, class Cold>
 bool VisitCold(Stream& s, Cold& body) {
     auto& [shape, userData, material, force, torque, filter, firstCollider, colliderCount, children, generation,
            awakePlace, sleepingIsland, continuous, singleMove, keptMass, lastPush, gravity, exists, placed, removed,
            isSensor, isSteady, isWorld, hasGravity] = body;
     s(generation);
-    // What few bodies have.
+    // Members that few bodies use.
     bool isOdd = false;
     if constexpr (Stream::kWrites)
         isOdd = singleMove != SingleMove::None || keptMass || !lastPush.IsZero() || isSteady || isWorld || hasGravity;

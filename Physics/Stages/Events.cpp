@@ -202,7 +202,7 @@ void Swap(ContactEvent::Manifold& manifold) {
 // largest approach speed of its points.
 ContactEvent::Manifold ManifoldOf(const ContactSources& from, uint32_t index, float most, float& approachSpeed) {
     const Pair& pair = from.pairs.pairs[index];
-    static constexpr ContactNote kNone{};  // of what is not solved
+    static constexpr ContactNote kNone{};  // of contacts that are not solved
     const ContactNote& note = pair.touching ? from.notes[index] : kNone;
     ContactView::Point room[ContactRecord::kMaxPoints];
     const ContactView view = ViewOf(from, index, room);

@@ -15,11 +15,11 @@ void MakeColliders(WorldState& world, uint32_t body);
 // Removes them with their pairs.
 void DropColliders(WorldState& world, uint32_t body);
 
-// After the body became a sensor, static or movable, or ceased to be one: what meets it is searched anew.
+// After the body became a sensor, static or movable, or ceased to be one: its pairs are searched again.
 void MoveToItsTree(WorldState& world, uint32_t body);
 
-// Brings the collider of a child of a mutable compound in line with it, new, removed, moved or of another shape. Wakes
-// what was or is near.
+// Updates the collider of a child of a mutable compound that was added, removed, moved or has another shape. Wakes the
+// bodies near its old and new places.
 void UpdateChildCollider(WorldState& world, uint32_t body, uint32_t child);
 
 // The sum of the relative masses of a shape's children; for shapes without children the volume, m3.

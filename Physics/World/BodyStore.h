@@ -122,24 +122,24 @@ struct BodyFilter {
     bool IsDefault() const { return category == 1 && mask == ~uint64_t(0) && !group.filter; }
 };
 
-// What a body that is not dynamic has when it becomes so.
+// The mass that a body gets when it becomes dynamic.
 struct KeptMass {
     float mass = 0;                     // kg
     Vector3 inertia = Vector3::Zero();  // kg m2, principal
     Quaternion principalAxes;           // from the principal frame to the center frame
 };
 
-// Force, N, and torque, N m, that the interface lets act in a step.
+// Force, N, and torque, N m, applied by the user in a step.
 struct BodyPush {
     Vector3 force = Vector3::Zero(), torque = Vector3::Zero();
     bool IsZero() const { return force.isZero(0) && torque.isZero(0); }
 };
 
-// Of a kinematic body that moves for one step only.
+// State of a kinematic body that moves for one step only.
 enum class SingleMove : uint8_t {
     None,
     Next,  // in the next step
-    Last,  // in the last one: it stops unless it is told again
+    Last,  // in the last one: it stops unless MoveKinematic is called again
 };
 
 // Cold: for the interface.
@@ -218,8 +218,7 @@ public:
     IndexSet reportsContacts;      // bodies of BodySettings::reportsContacts
     IndexSet pushed;               // bodies that have a force or torque, or had one in the last step
     IndexSet singleMoves;          // bodies with a SingleMove
-    // For events, where they are on: bodies that came to be, woke or fell asleep since the last step; repeated, in no
-    // order.
+    // For events, if enabled: bodies created, woken or fallen asleep since the last step; with duplicates, unordered.
     std::vector<uint32_t> sleepChanges;
     bool notesSleepChanges = false;
 
