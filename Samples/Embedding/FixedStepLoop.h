@@ -1,6 +1,5 @@
-// A game's loop: frames take as long as they take, steps are all equally long. What is left of a frame's time is shown
-// by interpolation between the last two steps, so that motion is even whatever the frame rate; the picture is one step
-// behind. One thread.
+// A game loop: frames have any length, steps a fixed one. Poses are interpolated between the last two steps, so that
+// motion is smooth at any frame rate; what is drawn lags one step behind. One thread.
 #pragma once
 
 #include <Fulcrum/Math/Trigonometry.h>
@@ -12,17 +11,17 @@ namespace fulcrum::samples {
 
 class FixedStepLoop {
 public:
-    // The system's settings have events.bodies on: by these the loop knows which poses it must keep. `mostSteps`: of a
-    // frame; a frame that takes longer slows the game down, instead of taking the next one longer still.
+    // The system's settings must have events.bodies on, which lists the poses to store. `mostSteps`: largest number of
+    // steps in a frame; a frame that would need more slows the game down, instead of making the next one longer still.
     explicit FixedStepLoop(PhysicsSystem& system, double stepSeconds = 1.0 / 60, int mostSteps = 4)
         : system_(system), stepSeconds_(stepSeconds), mostSteps_(mostSteps) {}
 
-    // A frame that took so many seconds. Calls beforeStep(dt) before each step that is due: there inputs and forces
-    // belong. Returns the number of steps, or the error of one.
+    // A frame of the given seconds. Calls beforeStep(dt) before each step, for inputs and forces. Returns the number of
+    // steps, or the error of one.
     Result<int> Advance(double frameSeconds, FunctionRef<void(double dt)> beforeStep) {
         left_ = std::min(left_ + frameSeconds, mostSteps_ * stepSeconds_);
         int steps = 0;
-        // A millionth of a step is rounding of the frames' times.
+        // A millionth of a step allows for rounding of the frame times.
         for (; left_ >= stepSeconds_ * (1 - 1e-6); ++steps) {
             beforeStep(stepSeconds_);
             if (Status status = system_.Update(stepSeconds_); !status) return status.GetError();
@@ -32,10 +31,10 @@ public:
         return steps;
     }
 
-    // How far the frame is from the last step but one, 0, to the last, 1.
+    // The fraction between the last step but one, 0, and the last, 1.
     double Part() const { return std::max(left_ / stepSeconds_, 0.0); }
 
-    // Where a body is to be drawn; of one that did not move, where it is.
+    // The pose to draw a body at; its present pose if it did not move.
     Pose PoseOf(BodyId id) const {
         const Pose now = system_.Bodies().GetPose(id);
         if (id.index >= kept_.size() || kept_[id.index].id != id || kept_[id.index].step != steps_) return now;
@@ -46,7 +45,7 @@ public:
                 Normalized(RotationFromVector(Vector3(turn * static_cast<float>(part))) * before.rotation)};
     }
 
-    // After SetPose: it is drawn there at once, not on the way.
+    // After SetPose: it is drawn there at once, without interpolation.
     void Jump(BodyId id) {
         if (id.index < kept_.size()) kept_[id.index] = {};
     }
@@ -58,7 +57,7 @@ private:
         Pose before{}, now{};
     };
 
-    // What moved in this step was before it where it was after the last in which it moved.
+    // The pose of a moved body before this step is that after the last step in which it moved.
     void KeepPoses() {
         ++steps_;
         for (const BodyId id : system_.Events().moved) {

@@ -1,6 +1,5 @@
-// Rollback netcode of two players: each peer steps at once, with its own input and a guess of the other's, and goes
-// back to the frame in which it guessed wrongly when it learns so. One thread; the line between the peers is the
-// game's.
+// Rollback network code for two players: each peer steps at once, with its own input and a prediction of the other's,
+// and rolls back to the first frame with a wrong prediction. One thread; the game transmits the inputs.
 #pragma once
 
 #include <Fulcrum/Physics/PhysicsSystem.h>
@@ -11,11 +10,11 @@
 
 namespace fulcrum::samples {
 
-// Input: plain data with ==. What a peer does not know yet it takes to be as the last input that it knows.
+// Input: plain data with ==. The prediction of an unknown input is the last known one.
 template <class Input>
 class RollbackPeer {
 public:
-    static constexpr int kMostFrames = 16;  // a peer may be ahead of what it knows of the other
+    static constexpr int kMostFrames = 16;  // a peer may be ahead of the last known input of the other
 
     // step(inputs): a frame of the game with the inputs of both players, in the order of the players; it must do the
     // same in both peers. shapes: of all bodies that the game creates or removes while it runs.
@@ -23,7 +22,7 @@ public:
                  std::vector<ShapePtr> shapes = {})
         : system_(system), player_(player), step_(std::move(step)), shapes_(std::move(shapes)) {}
 
-    // Whether the next frame may be played: else the other's input of frame Known() must come first.
+    // Whether the next frame may be played; otherwise the other's input of frame Known() must arrive first.
     bool MayAdvance() const { return now_ - known_ < kMostFrames; }
     // Plays a frame; `own` is to be sent to the other. Only if MayAdvance.
     Status Advance(const Input& own) {
@@ -32,8 +31,8 @@ public:
         if (now_ >= known_) inputs[1 - player_] = lastKnown_;
         return Play(now_++);
     }
-    // The other's input of the frame Known(); inputs come in order, at most kMostFrames ahead of this peer. Frames that
-    // guessed otherwise are played again.
+    // The other's input of the frame Known(); inputs come in order, at most kMostFrames ahead of this peer. Frames with
+    // a wrong prediction are played again.
     Status Receive(const Input& input) {
         const int frame = known_++;
         lastKnown_ = input;

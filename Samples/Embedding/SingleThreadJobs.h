@@ -1,5 +1,5 @@
-// The smallest job system: the caller does everything. For programs without threads, and to look for faults without
-// them; what the engine computes is the same to the last bit as with any number of threads.
+// The smallest job system: the calling thread does everything. For programs without threads, and for debugging; results
+// are bit-identical to those with any number of threads.
 #pragma once
 
 #include <Fulcrum/Jobs/JobSystem.h>

@@ -1,5 +1,5 @@
-// The engine's loops on oneTBB: for games whose own work runs there, so that both share their threads. Any thread may
-// call it, jobs included.
+// Runs the engine's loops on oneTBB, for games that use it, so that both share its threads. Any thread may call it,
+// also from within a job.
 #pragma once
 
 #include <Fulcrum/Jobs/JobSystem.h>
@@ -15,13 +15,13 @@
 
 namespace fulcrum::samples {
 
-// An arena numbers the threads that are in it at a time: that is the worker. A thread that waits in it must not begin
-// another range of the engine's meanwhile, since that would be the same worker: hence `isolate`.
+// The worker number is the slot of the thread in the arena. A thread that waits in the arena must not begin another
+// range of the engine meanwhile, which would have the same worker number: hence `isolate`.
 class TbbJobs final : public JobSystem {
 public:
     static constexpr uint32_t kMostWorkers = 64;
 
-    // threads: the caller included, 1 .. kMostWorkers; more or fewer count as that.
+    // threads: the caller included, 1 .. kMostWorkers; other values are clamped.
     explicit TbbJobs(uint32_t threads)
         : workers_(std::clamp(threads, 1u, kMostWorkers)), arena_(static_cast<int>(workers_)) {}
 
@@ -29,7 +29,7 @@ public:
 
     void ParallelFor(uint32_t count, uint32_t minimumRange, FunctionRef<void(JobRange)> job) override {
         if (count == 0) return;
-        // Ranges of a size of their own: those of TBB's partitioners may be half as long as what they are asked for.
+        // Own ranges: those of TBB's partitioners may be half as long as requested.
         constexpr uint32_t kRangesPerWorker = 4;
         const uint32_t even = (count - 1) / (workers_ * kRangesPerWorker) + 1;
         const uint32_t size = std::max({minimumRange, even, 1u}), ranges = (count - 1) / size + 1;
@@ -54,7 +54,7 @@ public:
                 tbb::task_group others;
                 for (uint32_t i = 1; i < workers_; ++i) others.run(run);
                 run();
-                others.wait();  // those that have not begun find that this worker has run, and return
+                others.wait();  // workers that have not begun return at once
             });
         });
     }

@@ -28,7 +28,7 @@ void Build(SceneWorld& world) {
                                        .position = {0, kLevel + 0.5, -3},
                                        .rotation = RotationAbout({0, 0, 1}, 0.7),
                                        .density = 450}));
-    // Buoys that the wind drives, and what rolls off them.
+    // Buoys driven by the wind, and bodies that roll off them.
     for (int i = 0; i < 12; ++i)
         world.Add({.shape = i % 3 == 0 ? world.CapsuleOf(0.5f, 0.25f) : world.SphereOf(0.3f),
                    .position = {-8 + 0.3 * i, kLevel + 2 + 0.7 * i, -8 + 0.1 * i},
@@ -46,8 +46,8 @@ void ApplyFields(SceneWorld& world, double dt) {
     (void)fields.Apply(world.System(), dt);
 }
 
-// How far crates and barge are from the height at which they displace their weight, by m; and the barge, from upright,
-// by rad. The crate that sinks lies on the floor.
+// Deviation of crates and barge from the height at which they displace their weight, m, and of the barge from upright,
+// rad. The crate that sinks lies on the floor.
 double Accuracy(const SceneWorld& world) {
     double worst = 0;
     for (size_t i = 0; i < kDensities.size(); ++i) {
