@@ -27,7 +27,7 @@ void NoteTeleport(WorldState& world, uint32_t body) {
             if (std::exchange(joint.teleportedBefore, world.step + 1) == world.step + 1) return;
             store.records[index].secondsOfTeleport = kSecondsOfTeleport;
             const int other = 1 - joint.SideOf(from);
-            if (!joint.still[other]) bodies.push_back(joint.body[other]);
+            if (!joint.fixed[other]) bodies.push_back(joint.body[other]);
         });
     }
 }
