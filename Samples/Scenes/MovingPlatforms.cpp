@@ -94,7 +94,7 @@ extern const Scene kScene{
     .name = "moving_platforms",
     .description = "a lift, a shuttle and a turntable carry boxes, a turning bar sweeps others away",
     .steps = 720,
-    .view = {.color = ColorMode::Plain, .picture = 0.5},
+    .view = {.color = ColorMode::Plain, .lower = {-7, 0, -5}, .upper = {12, 5, 6}, .picture = 0.5},
     .build = Build,
     .beforeStep = MoveThePlatforms,
     .accuracy = Accuracy,
