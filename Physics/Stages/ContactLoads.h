@@ -20,7 +20,7 @@ struct SinkScale {
     float perLevel;     // 1 / LargestUnnotedSink
     float inverseDt;    // 1/s, of the substeps in which the batch was solved
     float softness;     // s^2: 1 / w^2 for the system's substeps
-    float depthScale;   // (substep of the system's settings / that of the batch)^2: a depth times this is the system's
+    float depthScale;   // (substep of the system's settings / that of its springs)^2: a depth times this is the system's
     Vector3 gravity;    // m/s2
     uint8_t stiffness;  // see LoadLevel
     bool forgets;       // loads that are less than they were are noted: in few steps, so that no effort comes and goes

@@ -12,9 +12,9 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0x857d608e22279941ull;
+constexpr uint64_t kGoldenHash = 0xa26a604e1762f1c2ull;
 constexpr uint64_t kGoldenHashOfJoints = 0x8f7c0d3b57031a43ull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0xf419c1f952a185d3ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0x7f651c3bbca415dfull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0xa7de5596f1fcbf95ull;
 
 std::string Hex(uint64_t number) {
