@@ -48,12 +48,22 @@ inline float SubstepOfStiffness(uint32_t stiffness) {
     for (uint32_t i = 1; i < stiffness; ++i) part *= kStiffnessStep;
     return part;
 }
-// The stiffness of a group that is solved with more substeps than the system's.
-inline uint8_t StiffnessOf(int substeps, int systemSubsteps) {
-    const float part = static_cast<float>(systemSubsteps) / static_cast<float>(substeps);
+// The stiffest springs damp slow modes hardly at all (Docs/Step.md). Those of islands under load are half as stiff:
+// those of substeps longer by this.
+inline constexpr float kLoadedSubstep = 1.41421356f;
+// The stiffness of a group that is solved with more substeps than the system's, with springs of substeps `longer` times
+// its own, but no longer than the system's.
+inline uint8_t StiffnessOf(int substeps, int systemSubsteps, float longer) {
+    const float own = static_cast<float>(systemSubsteps) / static_cast<float>(substeps);
+    const float part = std::max(own, std::min(own * longer, 1.0f));
     uint8_t stiffness = 1;
     for (float substep = 1; substep > part; substep *= kStiffnessStep) ++stiffness;
     return stiffness;
+}
+
+// The part of the system's substep whose springs a group has. impulseScale: see Effort.
+inline float SpringsOf(const SolverGroup& group, float impulseScale) {
+    return group.stiffness > 0 ? std::max(impulseScale, SubstepOfStiffness(group.stiffness)) : impulseScale;
 }
 
 inline Effort EffortOf(const StepContext& step, const SolverGroup& group) {
@@ -66,8 +76,7 @@ inline Effort EffortOf(const StepContext& step, const SolverGroup& group) {
     effort.solver.positionIterations = std::max<int>(s.solver.positionIterations, group.effort.positionIterations);
     const float h = effort.substepDt = step.dt / static_cast<float>(effort.solver.substeps);
     effort.impulseScale = h / step.substepDt;
-    const float softened = group.stiffness > 0 ? SubstepOfStiffness(group.stiffness) : 0.0f;
-    const float stiffest = StiffestFrequency(effort.solver, step.stiffnessDt * std::max(effort.impulseScale, softened));
+    const float stiffest = StiffestFrequency(effort.solver, step.stiffnessDt * SpringsOf(group, effort.impulseScale));
 
     ContactSolveSettings& contacts = effort.contacts;
     contacts.inverseDt = 1.0f / h;

@@ -55,8 +55,11 @@ constexpr float kBuckling = 12;
 constexpr float kBucklingOfWalls = 20;
 // A column is at least this many times as high as half its width: its base carries all of it.
 constexpr float kSlender = 8;
-// In large islands, bodies get the effort at which a load of this many times their own weight sinks them by the allowed
-// penetration.
+// Of large islands, all of whose bodies cost more then, only walls ask for more: those so much higher than they are
+// thick that they would buckle soon. A column of their height would have to be twice as stiff; walls that taper come to
+// rest.
+constexpr float kBucklingOfLarge = 110;
+// Bodies of large islands are held by an effort at which so many weights sink them as far as they may.
 constexpr float kWeights = 2;
 // Minimum number of constraints of an island that may buckle.
 constexpr uint32_t kLeastHigh = 4;
@@ -94,10 +97,8 @@ public:
           places_(scratch.Allocate<uint32_t>(bodies.awake.size())),
           needs_(needs) {
         uint32_t count = 0;
-        for (uint32_t i = 0; i < places_.size(); ++i) {
-            const bool isHigh = sizes[i] >= kLeastHigh && sizes[i] <= mostLoaded;  // sizes: 0 except for roots
-            places_[i] = isHigh ? count++ : kNone;
-        }
+        for (uint32_t i = 0; i < places_.size(); ++i)
+            places_[i] = sizes[i] >= kLeastHigh ? count++ : kNone;  // sizes: 0 but for roots
         extents_ = scratch.Allocate<Extent>(count);
         std::fill(extents_.begin(), extents_.end(), Extent{});
     }
@@ -159,15 +160,19 @@ private:
         }
     }
 
-    // The load at a column's base is computed from its weight, since its impulses take as many steps as it has bodies
-    // to build up.
+    // The impulses of a column take as many steps as it has bodies to tell what its foot carries; those of a large
+    // island are not looked at. All of the latter's foot carries it: as many bodies as its widths have room for.
     void AddNeedOfColumn(uint32_t root, const Extent& extent) {
         if (extent.hasJoints || extent.lightest == ~0u) return;
         const BodyDynamics& lightest = bodies_.dynamics[extent.lightest];
         const float size = SizeOf(lightest), height = extent.Height();
-        if (!(height * height > kSlender * kSlender * (size * size + extent.SquaredHalfWidths().second))) return;
-        const float sink = extent.mass * lightest.inverseMass * Length(settings_.gravity) * softness_ / size;
-        needs_[root].Raise(sink / settings_.accuracy.penetration * BucklingFactor(size, extent, kBuckling),
+        const auto [narrow, wide] = extent.SquaredHalfWidths();
+        const bool isLarge = sizes_[root] > mostLoaded_;
+        if (!(height * height > kSlender * kSlender * (size * size + (isLarge ? narrow : wide)))) return;
+        float sink = extent.mass * lightest.inverseMass * Length(settings_.gravity) * softness_ / size;
+        if (isLarge) sink /= std::sqrt((1 + narrow / (size * size)) * (1 + wide / (size * size)));
+        needs_[root].Raise(sink / settings_.accuracy.penetration *
+                               BucklingFactor(size, extent, isLarge ? kBucklingOfLarge : kBuckling),
                            extent.lightest);
     }
 
@@ -210,9 +215,10 @@ private:
     std::span<Need> needs_;  // by root
 };
 
-// The effort at which contacts sink `need` times less than with the system's settings: more substeps, with the square
-// of which sinks decrease, then more iterations. In powers of two, so that efforts change rarely.
-SolverSettings EffortFor(float need, const SystemSettings& settings) {
+// The effort at which contacts sink `need` times less than with the system's settings: substeps, with whose square
+// sinks fall, then passes. In powers of two, so that efforts seldom change. Leaves what of the need it does not meet:
+// at most 1 where it does.
+SolverSettings EffortFor(float& need, const SystemSettings& settings) {
     const int mostSubsteps = std::max(settings.accuracy.mostSubsteps, settings.solver.substeps);
     SolverSettings effort = settings.solver;
     for (float factor = 1; need > 1 && effort.substeps < mostSubsteps; need *= 0.5f) {
@@ -234,6 +240,7 @@ void Raise(IslandEffort& effort, const IslandEffort& to) {
     if (!to.isLoaded) return;
     if (!effort.isLoaded || (to.stiffness > 0 && (effort.stiffness == 0 || to.stiffness < effort.stiffness)))
         effort.stiffness = to.stiffness;
+    effort.longer = effort.isLoaded ? std::min(effort.longer, to.longer) : to.longer;
     effort.isLoaded = true;
 }
 
@@ -263,7 +270,13 @@ std::span<const IslandEffort> FindEfforts(const StepContext& step, const BodySto
     else if (!adaptsToGaps) return efforts;
     for (size_t i = 0; i < count; ++i) {
         if (!(needs[i].need > 1)) continue;
-        RaiseLeast(efforts[i], ToLeastEffort(EffortFor(needs[i].need, step.settings)), needs[i].culprit);
+        // Walls of large islands are as stiff as their substeps allow, as is what carries more than the greatest effort
+        // does; other islands under load half as stiff.
+        const float half = kLoadedSubstep * kLoadedSubstep;
+        float need = needs[i].need * (sizes[i] > mostLoaded ? 1 : half);
+        const SolverSettings effort = EffortFor(need, step.settings);
+        efforts[i].longer = sizes[i] > mostLoaded ? 1 : std::sqrt(half / std::clamp(need, 1.0f, half));
+        RaiseLeast(efforts[i], ToLeastEffort(effort), needs[i].culprit);
         efforts[i].isLoaded = true;
         efforts[i].stiffness = needs[i].stiffness;
     }

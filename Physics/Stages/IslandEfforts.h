@@ -14,9 +14,10 @@ namespace fulcrum {
 
 struct IslandEffort {
     LeastEffort least;
-    bool isLoaded = false;   // whether loads of contacts require it
-    uint8_t stiffness = 0;   // stiffness with which loaded contacts were solved; 0: they are new
-    uint32_t culprit = ~0u;  // the body of the joint or contact that requires most of it
+    bool isLoaded = false;   // loads of contacts ask for it
+    uint8_t stiffness = 0;   // with which loaded contacts were solved; 0: they are new
+    float longer = 1;        // its springs are to be those of substeps longer by this, see kLoadedSubstep
+    uint32_t culprit = ~0u;  // the body of the joint or contact that asked for most of it
 };
 
 // Component-wise maximum of both efforts; for stiffness the minimum.

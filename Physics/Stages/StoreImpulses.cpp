@@ -63,18 +63,18 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
     const Records to{bodies, pairs, joints};
     const bool notesSinks = AdaptsToLoads(settings), notesGaps = AdaptsToGaps(settings);
     const bool notesLarge = settings.accuracy.largeIslands || layout.OverflowCount() > 0;
-    // impulseScale: see Effort; stiffness: see LoadLevel.
-    const auto sinkScaleOf = [&](float impulseScale, uint8_t stiffness) {
+    // impulseScale: see Effort; stiffness: see LoadLevel. Springs are those of `springs` of the system's substep.
+    const auto sinkScaleOf = [&](float impulseScale, float springs, uint8_t stiffness) {
         return SinkScale{.perLevel = 1 / LargestUnnotedSink(settings.accuracy),
                          .inverseDt = 1 / (step.substepDt * impulseScale),
                          .softness = step.softness,
-                         .depthScale = 1 / (impulseScale * impulseScale),
+                         .depthScale = 1 / (springs * springs),
                          .gravity = settings.gravity,
                          .stiffness = std::max<uint8_t>(stiffness, 1),
                          .forgets = step.number % kStepsToForget == 0};
     };
-    const auto gapScaleOf = [&](float impulseScale, uint8_t stiffness) {
-        return GapScale{.perLevel = 1 / (LargestUnnotedGap(settings.accuracy) * impulseScale * impulseScale),
+    const auto gapScaleOf = [&](float springs, uint8_t stiffness) {
+        return GapScale{.perLevel = 1 / (LargestUnnotedGap(settings.accuracy) * springs * springs),
                         .stiffness = std::max<uint8_t>(stiffness, 1),
                         .forgets = step.number % kStepsToForget == 0};
     };
@@ -86,15 +86,16 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
             stored[kind] = end;
         });
     };
-    const SinkScale usualSink = sinkScaleOf(1, 1);
+    const SinkScale usualSink = sinkScaleOf(1, 1, 1);
     const GapScale usualGap = gapScaleOf(1, 1);
     const StoreScale usual{step.dt, 1, notesSinks ? &usualSink : nullptr, notesGaps ? &usualGap : nullptr};
     for (const SolverGroup& group : layout.groups) {
         const bool isFirst = &group == &layout.groups.front();
         if (!group.isLarge && !group.effort.IsAny()) continue;
         const float impulseScale = EffortOf(step, group).impulseScale;
-        const SinkScale sink = sinkScaleOf(impulseScale, group.stiffness);
-        const GapScale gap = gapScaleOf(impulseScale, group.stiffness);
+        const float springs = SpringsOf(group, impulseScale);
+        const SinkScale sink = sinkScaleOf(impulseScale, springs, group.stiffness);
+        const GapScale gap = gapScaleOf(springs, group.stiffness);
         const bool isNoted = notesLarge || !group.isLarge;
         const StoreScale scale{step.dt, impulseScale, isNoted && notesSinks ? &sink : nullptr,
                                isNoted && notesGaps ? &gap : nullptr};

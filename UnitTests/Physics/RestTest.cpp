@@ -91,6 +91,23 @@ TEST(Rest, FlatPyramidsRestAtEveryEffortAndSinkByItsSquare) {
     }
 }
 
+// 5050 boxes a meter thick and 100 m high: with the system's substeps they sway in their plane, lean out of it within
+// eight seconds, and fall.
+TEST(Rest, AWallOfAHundredLayersFallsAsleep) {
+    if (kIsSanitized) GTEST_SKIP() << "minutes";
+    TestWorld world;
+    const std::vector<BodyId> bodies = AddFlatPyramid(world, 100);
+    std::vector<Position> starts;
+    for (const BodyId id : bodies) starts.push_back(world.PositionOf(id));
+    world.Run(1);
+    EXPECT_GT(world.Report().mostEffort[0].substeps, 4);
+    double time = 1;
+    for (; time < 10 && !AllAsleep(world, bodies); time += 0.5) world.Run(0.5);
+    EXPECT_LT(time, 9);
+    for (size_t i = 0; i < bodies.size(); ++i)
+        EXPECT_LT((world.PositionOf(bodies[i]) - starts[i]).norm(), 0.1) << i;  // 0.07 of it the top's sink
+}
+
 // A wave of toppling blocks. Pushes that stay in the velocities, and friction limited by pushes, made it slower with
 // each substep more.
 TEST(Rest, AWaveOfBlocksRunsAsFastAtEveryEffort) {
