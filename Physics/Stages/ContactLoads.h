@@ -17,11 +17,11 @@ namespace fulcrum {
 // the lighter of the two, gives a sink of F / (m w^2), w = 2 pi StiffestFrequency. It is proportional to the square of
 // the substep.
 struct SinkScale {
-    float perLevel;     // 1 / LargestUnnotedSink
-    float inverseDt;    // 1/s, of the batch's substeps
-    float softness;     // s^2: 1 / w^2 for the system's substeps
-    float depthScale;   // (substep of the system's settings / that of its springs)^2: a depth times this is the system's
-    Vector3 gravity;    // m/s2
+    float perLevel;    // 1 / LargestUnnotedSink
+    float inverseDt;   // 1/s, of the batch's substeps
+    float softness;    // s^2: 1 / w^2 for the system's substeps
+    float depthScale;  // (substep of the system's settings / that of its springs)^2: a depth times this is the system's
+    Vector3 gravity;   // m/s2
     uint8_t stiffness;  // see LoadLevel
     bool forgets;       // levels may decrease: only in few steps, so that efforts do not alternate
 };
