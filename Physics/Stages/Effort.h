@@ -48,8 +48,8 @@ inline float SubstepOfStiffness(uint32_t stiffness) {
     for (uint32_t i = 1; i < stiffness; ++i) part *= kStiffnessStep;
     return part;
 }
-// The stiffest springs damp slow modes hardly at all (Docs/Step.md). Those of islands under load are half as stiff:
-// those of substeps longer by this.
+// The stiffest springs hardly damp slow modes (Docs/Step.md). The springs of islands under load are half as stiff:
+// those of substeps longer by this factor.
 inline constexpr float kLoadedSubstep = 1.41421356f;
 // The stiffness of a group that is solved with more substeps than the system's, with springs of substeps `longer` times
 // its own, but no longer than the system's.

@@ -55,11 +55,11 @@ constexpr float kBuckling = 12;
 constexpr float kBucklingOfWalls = 20;
 // A column is at least this many times as high as half its width: its base carries all of it.
 constexpr float kSlender = 8;
-// Of large islands, all of whose bodies cost more then, only walls ask for more: those so much higher than they are
-// thick that they would buckle soon. A column of their height would have to be twice as stiff; walls that taper come to
-// rest.
+// Large islands, where more effort costs time for all bodies, get more only for walls: those so much higher than thick
+// that they would soon buckle. A column of their height would need twice the stiffness; tapered walls come to rest
+// without.
 constexpr float kBucklingOfLarge = 110;
-// Bodies of large islands are held by an effort at which so many weights sink them as far as they may.
+// Large islands get the effort at which a load of so many weights sinks a body by the allowed penetration.
 constexpr float kWeights = 2;
 // Minimum number of constraints of an island that may buckle.
 constexpr uint32_t kLeastHigh = 4;
@@ -160,8 +160,9 @@ private:
         }
     }
 
-    // The impulses of a column take as many steps as it has bodies to tell what its foot carries; those of a large
-    // island are not looked at. All of the latter's foot carries it: as many bodies as its widths have room for.
+    // In a column the impulse at the foot reaches the load after as many steps as it has bodies; impulses of large
+    // islands are not used. The load of a large island is carried by its whole foot: as many bodies as fit in its
+    // widths.
     void AddNeedOfColumn(uint32_t root, const Extent& extent) {
         if (extent.hasJoints || extent.lightest == ~0u) return;
         const BodyDynamics& lightest = bodies_.dynamics[extent.lightest];
@@ -216,8 +217,8 @@ private:
 };
 
 // The effort at which contacts sink `need` times less than with the system's settings: substeps, with whose square
-// sinks fall, then passes. In powers of two, so that efforts seldom change. Leaves what of the need it does not meet:
-// at most 1 where it does.
+// sinks fall, then passes. In powers of two, so that efforts seldom change. Leaves the part of the need that is not
+// met: at most 1 if all of it is.
 SolverSettings EffortFor(float& need, const SystemSettings& settings) {
     const int mostSubsteps = std::max(settings.accuracy.mostSubsteps, settings.solver.substeps);
     SolverSettings effort = settings.solver;
@@ -270,8 +271,8 @@ std::span<const IslandEffort> FindEfforts(const StepContext& step, const BodySto
     else if (!adaptsToGaps) return efforts;
     for (size_t i = 0; i < count; ++i) {
         if (!(needs[i].need > 1)) continue;
-        // Walls of large islands are as stiff as their substeps allow, as is what carries more than the greatest effort
-        // does; other islands under load half as stiff.
+        // Walls of large islands, and islands with more load than the greatest effort carries, are as stiff as their
+        // substeps allow; other islands under load half as stiff.
         const float half = kLoadedSubstep * kLoadedSubstep;
         float need = needs[i].need * (sizes[i] > mostLoaded ? 1 : half);
         const SolverSettings effort = EffortFor(need, step.settings);
