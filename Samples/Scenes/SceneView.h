@@ -29,7 +29,6 @@ struct SceneView {
 
 // What something is made of, for the eye alone.
 enum class Look : uint8_t { Default, Grass, Ice, Rubber, Brass, Wood, Stone, Belt };
-inline constexpr int kLookCount = 8;
 
 struct BodyLook {
     std::string label{};  // stands beside the body in the picture; empty: none
