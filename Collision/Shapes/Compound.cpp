@@ -68,6 +68,7 @@ Result<std::shared_ptr<const Compound>> Compound::Create(std::span<const ChildSe
             posed.push_back(
                 {std::static_pointer_cast<const ConvexShape>(children[i].shape), pose, children[i].density});
     }
+    if (posed.empty()) return Error{ErrorCode::Degenerate, "the compounds that are its children have none"};
     const std::shared_ptr<Compound> compound(new Compound);
     compound->Assemble(std::move(posed), mass.Value());
     return std::shared_ptr<const Compound>(compound);

@@ -82,9 +82,9 @@ void Play(Twin& twin, const CallTargets& targets, Outcome& outcome, const Change
 
 // Statements, the last of which returns the call's status. Each draws at most one argument: compilers differ in the
 // order in which they evaluate the arguments of a call.
-#define FULCRUM_BODY_CALL(name, ...)                                                                       \
-    void name(Twin& twin, [[maybe_unused]] Values& values, const CallTargets& targets, Outcome& outcome) { \
-        Play(twin, targets, outcome, [&](BodyInterface& bodies, BodyId id) { __VA_ARGS__; });              \
+#define FULCRUM_BODY_CALL(name, ...)                                                                           \
+    void name(Twin& twin, [[maybe_unused]] Values& values, const CallTargets& targets, Outcome& outcome) {     \
+        Play(twin, targets, outcome, [&](BodyInterface& bodies, [[maybe_unused]] BodyId id) { __VA_ARGS__; }); \
     }
 
 FULCRUM_BODY_CALL(Remove, return bodies.Remove(id))
