@@ -70,6 +70,7 @@ struct Need {
     float need = 0;
     uint32_t culprit = ~0u;  // the body that sinks so, or has that joint
     uint8_t stiffness = 0;   // the least of those under load in the last step; 0: none was
+    bool isStiff = false;    // it needs the stiffest springs: joints' gaps ask for it
 
     void Raise(float to, uint32_t body) {
         if (!(need < to)) return;
@@ -261,6 +262,7 @@ std::span<const IslandEffort> FindEfforts(const StepContext& step, const BodySto
         if (!heedsGaps || gap.level == 0 || sizes[root] > mostLoaded) return;
         const float need = ExcessOfLevel(gap.level);
         needs[root].Raise(need, body);
+        needs[root].isStiff = true;
         if (gap.stiffness > 0 && need > 1) needs[root].Soften(gap.stiffness);
     });
     if (HeedsLoads(step.settings))
@@ -268,12 +270,12 @@ std::span<const IslandEffort> FindEfforts(const StepContext& step, const BodySto
     else if (!heedsGaps) return efforts;
     for (size_t i = 0; i < count; ++i) {
         if (!(needs[i].need > 1)) continue;
-        // Walls of large islands are as stiff as their substeps allow, as is what carries more than the greatest effort
-        // does; other islands under load half as stiff.
-        const float half = kLoadedSubstep * kLoadedSubstep;
-        float need = needs[i].need * (sizes[i] > mostLoaded ? 1 : half);
+        // Springs of islands under load are half as stiff as the stiffest, unless the greatest effort would not do
+        // then.
+        const float softer = needs[i].isStiff || sizes[i] > mostLoaded ? 1 : kLoadedSubstep * kLoadedSubstep;
+        float need = needs[i].need * softer;
         const SolverSettings effort = EffortFor(need, step.settings);
-        efforts[i].longer = sizes[i] > mostLoaded ? 1 : std::sqrt(half / std::clamp(need, 1.0f, half));
+        efforts[i].longer = std::sqrt(softer / std::clamp(need, 1.0f, softer));
         RaiseLeast(efforts[i], ToLeastEffort(effort), needs[i].culprit);
         efforts[i].isLoaded = true;
         efforts[i].stiffness = needs[i].stiffness;
